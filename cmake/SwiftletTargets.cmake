@@ -1,0 +1,53 @@
+# Every target of the project is made here, so that language level, warnings, sanitizers and install rules are one thing.
+
+option(SWIFTLET_WERROR "Treat warnings as errors" ON)
+set(SWIFTLET_SANITIZE "" CACHE STRING "Sanitizers to build with, as given to -fsanitize=")
+
+add_library(swiftlet_flags INTERFACE)
+target_compile_features(swiftlet_flags INTERFACE cxx_std_17)
+target_compile_options(swiftlet_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual -Wcast-qual
+  -ffp-contract=off  # one result on every machine: lockstep runs are compared bit by bit
+  $<$<BOOL:${SWIFTLET_WERROR}>:-Werror>)
+if(SWIFTLET_SANITIZE)
+  target_compile_options(swiftlet_flags INTERFACE -fsanitize=${SWIFTLET_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(swiftlet_flags INTERFACE -fsanitize=${SWIFTLET_SANITIZE})
+endif()
+
+# swiftlet_add_library(NAME [SOURCES ...] [PUBLIC ...] [PRIVATE ...]): a static library swiftlet_NAME, alias swiftlet::NAME,
+# installed and exported. PUBLIC and PRIVATE are link libraries.
+function(swiftlet_add_library name)
+  cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  set(target swiftlet_${name})
+  add_library(${target} STATIC ${arg_SOURCES})
+  add_library(swiftlet::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_compile_features(${target} PUBLIC cxx_std_17)
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/swiftlet>)
+  target_link_libraries(${target} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:swiftlet_flags>)
+  set_property(GLOBAL APPEND PROPERTY SWIFTLET_LIBRARIES ${target})
+endfunction()
+
+# swiftlet_add_executable(NAME SOURCES ... LIBS ...): an installed program bin/NAME.
+function(swiftlet_add_executable name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LIBS" ${ARGN})
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE ${arg_LIBS} swiftlet_flags)
+  set_property(GLOBAL APPEND PROPERTY SWIFTLET_EXECUTABLES ${name})
+endfunction()
+
+# swiftlet_add_test(NAME SOURCES ... LIBS ... [LABELS ...] [TIMEOUT seconds]): a GoogleTest program whose cases CTest runs one by one.
+function(swiftlet_add_test name)
+  cmake_parse_arguments(arg "" "TIMEOUT" "SOURCES;LIBS;LABELS" ${ARGN})
+  if(NOT arg_TIMEOUT)
+    set(arg_TIMEOUT 60)
+  endif()
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE ${arg_LIBS} GTest::gtest GTest::gtest_main swiftlet_flags)
+  target_compile_definitions(${name} PRIVATE
+    SWIFTLET_SOURCE_DIR="${PROJECT_SOURCE_DIR}" SWIFTLET_BIN_DIR="${PROJECT_BINARY_DIR}/bin")
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
+  gtest_discover_tests(${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST
+    PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS "${arg_LABELS}")
+endfunction()
