@@ -1,0 +1,30 @@
+// The one exception for bad input files: vehicle, settings, missions, CSV.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace swiftlet::runtime {
+
+// what() is one sentence: "FILE:LINE: KEY: is VALUE, must be LIMIT". A line of 0 and an empty key are left
+// out.
+class ConfigError : public std::runtime_error {
+ public:
+  ConfigError(const std::string& file, int line, const std::string& key, const std::string& message)
+      : std::runtime_error(file + (line > 0 ? ":" + std::to_string(line) : "") + ": " +
+                           (key.empty() ? "" : key + ": ") + message),
+        file_(file),
+        line_(line),
+        key_(key) {}
+
+  const std::string& file() const { return file_; }
+  int line() const { return line_; }               // from 1; 0: the file as a whole
+  const std::string& key() const { return key_; }  // "motor.time_constant", "rotors[2].spin"; may be empty
+
+ private:
+  std::string file_;
+  int line_;
+  std::string key_;
+};
+
+}  // namespace swiftlet::runtime
