@@ -26,13 +26,15 @@ struct Request {
   RequestKind kind = RequestKind::kHold;
   Eigen::Vector3d position_ned = Eigen::Vector3d::Zero();  // m
   double yaw_rad = 0.0;
-  bool yaw_free = true;                    // keep the present yaw
-  double speed = 0.5;                      // m/s, peak
-  const Mission* mission = nullptr;        // kMission; owned by the caller and kept until the controller has left it
+  bool yaw_free = true;  // keep the present yaw
+  double speed = 0.5;    // m/s, peak
+  const Mission* mission =
+      nullptr;  // kMission; owned by the caller and kept until the controller has left it
   const Trajectory* trajectory = nullptr;  // kTrajectory; likewise
 };
 
-// Accepted, or refused with one sentence that names the value and the limit. Nothing of a refused request is applied.
+// Accepted, or refused with one sentence that names the value and the limit. Nothing of a refused request is
+// applied.
 struct Outcome {
   bool accepted = false;
   char reason[192] = {};

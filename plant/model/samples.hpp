@@ -1,6 +1,7 @@
-// The vehicle and mocap boundaries as plain structs: what a vehicle measures, what it obeys, what motion capture sees.
-// Frames: n is North-East-Down (suffix _ned), b is Forward-Right-Down (suffix _frd). SI units, radians.
-// stamp_ns is the time of the measurement on the vehicle's clock; sequence counts up from 1 for each stream.
+// The vehicle and mocap boundaries as plain structs: what a vehicle measures, what it obeys, what motion
+// capture sees. Frames: n is North-East-Down (suffix _ned), b is Forward-Right-Down (suffix _frd). SI units,
+// radians. stamp_ns is the time of the measurement on the vehicle's clock; sequence counts up from 1 for each
+// stream.
 #pragma once
 
 #include <array>
@@ -28,7 +29,7 @@ struct PoseSample {
   std::int64_t stamp_ns = 0;  // when the frame was exposed, not when it arrived
   std::uint64_t sequence = 0;
   bool tracked = false;  // false: the system saw too few markers; the pose is then without meaning
-  Eigen::Vector3d position_ned = Eigen::Vector3d::Zero();                   // m
+  Eigen::Vector3d position_ned = Eigen::Vector3d::Zero();  // m
   Eigen::Quaterniond q_ned_from_frd = Eigen::Quaterniond::Identity();
 };
 
@@ -51,10 +52,10 @@ struct RotorSpeedSample {
 enum class RotorState : std::uint8_t { kOff = 0, kRunning = 1 };
 
 struct ActuatorCommand {
-  std::int64_t stamp_ns = 0;          // stamp of the IMU sample that this command answers
+  std::int64_t stamp_ns = 0;  // stamp of the IMU sample that this command answers
   std::uint64_t sequence = 0;
-  std::uint64_t imu_sequence = 0;     // the IMU sample that this command answers
-  std::uint64_t mocap_sequence = 0;   // the newest mocap frame that had been taken in
+  std::uint64_t imu_sequence = 0;    // the IMU sample that this command answers
+  std::uint64_t mocap_sequence = 0;  // the newest mocap frame that had been taken in
   RotorState rotor_state = RotorState::kOff;
   int rotor_count = 0;
   PerRotor throttle{};  // delta of Eq. (8), 0 .. 1
@@ -64,12 +65,12 @@ struct ActuatorCommand {
 struct TruthSample {
   std::int64_t stamp_ns = 0;
   std::uint64_t sequence = 0;
-  Eigen::Vector3d position_ned = Eigen::Vector3d::Zero();               // m
-  Eigen::Vector3d velocity_ned = Eigen::Vector3d::Zero();               // m/s
+  Eigen::Vector3d position_ned = Eigen::Vector3d::Zero();  // m
+  Eigen::Vector3d velocity_ned = Eigen::Vector3d::Zero();  // m/s
   Eigen::Quaterniond q_ned_from_frd = Eigen::Quaterniond::Identity();
-  Eigen::Vector3d body_rates_frd = Eigen::Vector3d::Zero();             // rad/s
+  Eigen::Vector3d body_rates_frd = Eigen::Vector3d::Zero();  // rad/s
   int rotor_count = 0;
-  PerRotor rotor_speeds{};   // rad/s
+  PerRotor rotor_speeds{};  // rad/s
   double supply_voltage_v = 0.0;
   bool on_ground = false;
 };

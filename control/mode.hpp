@@ -1,0 +1,42 @@
+// The states of flight and what the controller says of itself.
+#pragma once
+
+#include <cstdint>
+
+namespace swiftlet::control {
+
+enum class Mode : std::uint8_t {
+  kDisarmed = 0,  // rotors off
+  kArmed = 1,     // on the ground, rotors turning slowly
+  kTakingOff = 2,
+  kHolding = 3,  // at a place, or on the way to one
+  kMission = 4,
+  kTrajectory = 5,
+  kSetpoint = 6,  // follows a setpoint stream
+  kLanding = 7,
+  kDescent = 8,  // level, without position, until the ground or a time-out
+  kStopped = 9,  // rotors off by a request or a failsafe; disarm to leave
+};
+const char* to_string(Mode mode);
+
+enum class MissionState : std::uint8_t { kNone = 0, kRunning = 1, kCompleted = 2, kAborted = 3 };
+
+struct MissionProgress {
+  std::uint64_t id = 0;
+  MissionState state = MissionState::kNone;
+  int item_index = 0;  // the item being flown, from 0
+  int item_count = 0;
+};
+
+struct Status {
+  Mode mode = Mode::kDisarmed;
+  const char* reason = "";  // why the mode was entered; a static string
+  bool has_pose = false;    // a mocap pose has come within the time-out
+  double pose_age_s = 0.0;  // at this step
+  bool airborne = false;
+  double supply_voltage_v = 0.0;
+  bool saturated = false;  // the last command was cut by the rotors' limits
+  MissionProgress mission;
+};
+
+}  // namespace swiftlet::control
