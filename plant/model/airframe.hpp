@@ -1,0 +1,37 @@
+// Airframe: what the rotors do to the body, Eq. (27) and (28), for any 4 .. 8 upright rotors.
+#pragma once
+
+#include <cmath>
+
+#include <Eigen/Core>
+
+#include "plant/model/rotor.hpp"
+#include "plant/model/vehicle.hpp"
+
+namespace swiftlet::plant {
+
+// 4 x N, on the stack. Rows: total thrust (N, along -z of FRD), roll, pitch and yaw moment (N m); columns:
+// rotors.
+using Effectiveness = Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::ColMajor, 4, kMaxRotors>;
+
+// One thrust per rotor, N.
+using RotorThrusts = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxRotors, 1>;
+
+// (thrust, roll, pitch, yaw) = effectiveness * thrusts. Eq. (27): thrust is sum T, the force is (0, 0,
+// -thrust). Eq. (28): a rotor at (x, y, z) gives the moment (x, y, z) x (0, 0, -T) = (-y T, x T, 0), and its
+// torque Q = (k_Q / k_T) T about z, positive if it turns counter-clockwise seen from above.
+Effectiveness effectiveness(const Vehicle& vehicle);
+
+// Thrust of each rotor, N, and its speed, rad/s, when all share the weight evenly.
+inline double hover_thrust(const Vehicle& vehicle) {
+  return vehicle.mass_kg * kGravity / vehicle.rotor_count();
+}
+inline double hover_speed(const Vehicle& vehicle) {
+  return speed_from_thrust(vehicle.rotor, hover_thrust(vehicle));
+}
+
+// The least thrusts, in the sense of their sum of squares, that carry the weight without a moment; sized 4
+// .. 8. The effectiveness must have rank 4.
+RotorThrusts trim_thrusts(const Vehicle& vehicle);
+
+}  // namespace swiftlet::plant

@@ -1,0 +1,221 @@
+#include "plant/model/vehicle.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+
+#include "plant/model/airframe.hpp"
+#include "plant/model/propulsion.hpp"
+
+namespace swiftlet::plant {
+
+namespace {
+
+constexpr double kMinTimeConstant = 1e-3;   // s; below it nothing integrates in real time
+constexpr double kMinHubDistance = 1e-3;    // m
+constexpr double kMinSingularValue = 1e-3;  // of the effectiveness with rows of length 1
+constexpr double kSymmetry = 1e-9;          // relative
+
+// Collects violations. Each check returns whether it holds; comparisons are written so that a NaN fails.
+class Checker {
+ public:
+  template <typename... Parts>
+  void add(const std::string& key, const Parts&... parts) {
+    std::ostringstream message;
+    (message << ... << parts);
+    violations_.push_back({key, message.str()});
+  }
+
+  bool above(const std::string& key, double value, double min) {
+    const bool holds = value > min && std::isfinite(value);
+    if (!holds) add(key, "is ", value, ", must be a finite number above ", min);
+    return holds;
+  }
+
+  bool at_least(const std::string& key, double value, double min) {
+    const bool holds = value >= min && std::isfinite(value);
+    if (!holds) add(key, "is ", value, ", must be a finite number of at least ", min);
+    return holds;
+  }
+
+  bool finite(const std::string& key, double value) {
+    if (!std::isfinite(value)) add(key, "is ", value, ", must be a finite number");
+    return std::isfinite(value);
+  }
+
+  std::vector<Violation> take() { return std::move(violations_); }
+
+ private:
+  std::vector<Violation> violations_;
+};
+
+std::string rotor_key(std::size_t index, const char* name) {
+  return "rotors[" + std::to_string(index) + "]." + name;
+}
+
+bool check_inertia(const Eigen::Matrix3d& inertia, Checker& check) {
+  const char* const key = "inertia";
+  if (!inertia.allFinite()) {
+    check.add(key, "holds a value that is not finite");
+    return false;
+  }
+  if ((inertia - inertia.transpose()).cwiseAbs().maxCoeff() > kSymmetry * inertia.cwiseAbs().maxCoeff()) {
+    check.add(key, "is not symmetric, must be");
+    return false;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia, Eigen::EigenvaluesOnly);
+  const Eigen::Vector3d principal = solver.eigenvalues();  // rising
+  if (!(principal[0] > 0.0)) {
+    check.add(key, "has the principal moment ", principal[0], ", must be above 0");
+    return false;
+  }
+  const double sum = principal[0] + principal[1];
+  if (!(principal[2] <= sum * (1.0 + kSymmetry))) {
+    check.add(key, "has the principal moment ", principal[2], ", must be at most the sum of the others, ",
+              sum);
+    return false;
+  }
+  return true;
+}
+
+bool check_rotors(const std::vector<RotorMount>& rotors, Checker& check) {
+  if (rotors.size() < static_cast<std::size_t>(kMinRotors) ||
+      rotors.size() > static_cast<std::size_t>(kMaxRotors)) {
+    check.add("rotors", "is a list of ", rotors.size(), ", must be a list of ", kMinRotors, " to ",
+              kMaxRotors);
+    return false;
+  }
+  bool holds = true;
+  for (std::size_t i = 0; i < rotors.size(); ++i) {
+    if (!rotors[i].position_frd.allFinite()) {
+      check.add(rotor_key(i, "position"), "holds a value that is not finite");
+      holds = false;
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      const double distance = (rotors[i].position_frd - rotors[j].position_frd).norm();
+      if (distance < kMinHubDistance) {
+        check.add(rotor_key(i, "position"), "is ", distance, " m from that of rotors[", j,
+                  "], must be at least ", kMinHubDistance);
+        holds = false;
+      }
+    }
+  }
+  return holds;
+}
+
+bool check_motor(const Vehicle& vehicle, Checker& check) {
+  const Motor& motor = vehicle.motor;
+  bool holds = check.above("rotor.thrust_factor", vehicle.rotor.thrust, 0.0);
+  holds = check.above("rotor.torque_factor", vehicle.rotor.torque, 0.0) && holds;
+  holds = check.at_least("motor.time_constant", motor.time_constant_s, kMinTimeConstant) && holds;
+  holds = check.above("motor.k2", motor.k2, 0.0) && holds;
+  holds = check.above("motor.k3", motor.k3, 0.0) && holds;
+  holds = check.above("motor.armature_resistance", motor.armature_resistance_ohm, 0.0) && holds;
+  holds = check.at_least("motor.armature_inductance", motor.armature_inductance_h, 0.0) && holds;
+  if (!holds) return false;
+  const double max_resistance = motor.k2 * motor.k3 / vehicle.rotor.torque;
+  if (!(motor.armature_resistance_ohm <= max_resistance)) {
+    check.add("motor.armature_resistance", "is ", motor.armature_resistance_ohm,
+              ", must be at most K2 K3 / k_Q = ", max_resistance,
+              ": the friction of Eq. (21) is not negative");
+    return false;
+  }
+  return true;
+}
+
+bool check_esc(const Esc& esc, Checker& check) {
+  bool holds = check.above("esc.gain", esc.gain, 0.0);
+  holds = check.finite("esc.offset", esc.offset_v2) && holds;
+  holds = check.at_least("esc.pulse_min", esc.pulse_min_us, 0.0) && holds;
+  return check.above("esc.pulse_range", esc.pulse_range_us, 0.0) && holds;
+}
+
+bool is_strictly_rising(const std::vector<double>& values) {
+  return std::adjacent_find(values.begin(), values.end(), [](double a, double b) { return !(a < b); }) ==
+         values.end();
+}
+
+bool check_battery(const BatteryParameters& battery, Checker& check) {
+  bool holds = check.above("battery.capacity", battery.capacity_ah, 0.0);
+  holds = check.at_least("battery.internal_resistance", battery.internal_resistance_ohm, 0.0) && holds;
+  holds = check.at_least("battery.sag_time_constant", battery.sag_time_constant_s, kMinTimeConstant) && holds;
+  holds = check.at_least("battery.electronics_current", battery.electronics_current_a, 0.0) && holds;
+
+  const std::vector<double>& soc = battery.state_of_charge;
+  const std::vector<double>& voltage = battery.open_circuit_voltage_v;
+  if (soc.size() < 2 || soc.front() != 0.0 || soc.back() != 1.0 || !is_strictly_rising(soc)) {
+    check.add("battery.open_circuit.state_of_charge", "must rise from 0 to 1");
+    holds = false;
+  }
+  if (voltage.size() != soc.size()) {
+    check.add("battery.open_circuit.voltage", "is a list of ", voltage.size(),
+              ", must have one value for each of the ", soc.size(), " states of charge");
+    holds = false;
+  } else if (voltage.empty() || !(voltage.front() > 0.0) || !std::isfinite(voltage.back()) ||
+             !is_strictly_rising(voltage)) {
+    check.add("battery.open_circuit.voltage", "must be above 0, finite and rising");
+    holds = false;
+  }
+  return holds;
+}
+
+// Whether thrust, roll, pitch and yaw can be commanded one by one.
+bool check_authority(const Vehicle& vehicle, Checker& check) {
+  Effectiveness rows = effectiveness(vehicle);
+  for (int i = 0; i < rows.rows(); ++i) {
+    const double length = rows.row(i).norm();
+    if (length > 0.0) rows.row(i) /= length;
+  }
+  const double smallest = Eigen::JacobiSVD<Effectiveness>(rows).singularValues().minCoeff();
+  if (smallest > kMinSingularValue) return true;
+  check.add(
+      "rotors",
+      "cannot produce thrust, roll, pitch and yaw one by one, must: Eq. (27) and (28) have rank below 4");
+  return false;
+}
+
+void check_hover(const Vehicle& vehicle, Checker& check) {
+  const double full = vehicle.battery.open_circuit_voltage_v.back();
+  const ThrustRange range = steady_thrust_range(vehicle, full);
+  const double max_mass = vehicle.rotor_count() * range.max / kGravity;
+  const double min_mass = vehicle.rotor_count() * range.min / kGravity;
+  if (!(vehicle.mass_kg < max_mass)) {
+    check.add("mass", "is ", vehicle.mass_kg, ", must be below ", max_mass, ", which full throttle at ", full,
+              " V can lift");
+    return;
+  }
+  if (!(vehicle.mass_kg > min_mass)) {
+    check.add("mass", "is ", vehicle.mass_kg, ", must be above ", min_mass, ", which throttle 0 at ", full,
+              " V lifts already");
+    return;
+  }
+  const RotorThrusts trim = trim_thrusts(vehicle);
+  for (int i = 0; i < vehicle.rotor_count(); ++i) {
+    if (trim[i] > range.min && trim[i] < range.max) continue;
+    check.add(rotor_key(static_cast<std::size_t>(i), "position"), "asks this rotor for ", trim[i],
+              " N in hover, must be between ", range.min, " and ", range.max, " (throttle 0 and 1 at ", full,
+              " V)");
+  }
+}
+
+}  // namespace
+
+std::vector<Violation> validate(const Vehicle& vehicle) {
+  Checker check;
+  if (vehicle.name.empty()) check.add("name", "is empty, must be given");
+  bool holds = check.above("mass", vehicle.mass_kg, 0.0);
+  holds = check_inertia(vehicle.inertia, check) && holds;
+  holds = check.at_least("linear_drag", vehicle.linear_drag, 0.0) && holds;
+  holds = check_rotors(vehicle.rotors, check) && holds;
+  holds = check_motor(vehicle, check) && holds;
+  holds = check_esc(vehicle.esc, check) && holds;
+  holds = check_battery(vehicle.battery, check) && holds;
+  if (holds && check_authority(vehicle, check)) check_hover(vehicle, check);
+  return check.take();
+}
+
+}  // namespace swiftlet::plant
