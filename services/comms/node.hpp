@@ -2,10 +2,10 @@
 // No Fast DDS header is seen through this file.
 #pragma once
 
-#include <chrono>
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "services/comms/topics.hpp"
 
@@ -14,20 +14,28 @@ namespace swiftlet::comms {
 enum class Transport {
   kUdp,           // works everywhere, leaves nothing behind
   kSharedMemory,  // between processes of one user on one host; UDP for others
+  kDataSharing,   // streams through memory that writer and reader map, the rest as kUdp; for measurements
 };
 
 struct NodeSettings {
   std::string name;             // of the process: "plant", "mocap", "control", "ground"
-  std::string vehicle = "kl1";  // namespace of the topics
+  std::string vehicle = "kl1";  // namespace of the topics: letters, digits and _, at most 64
   int domain = 0;               // 0 .. 232
   Transport transport = Transport::kUdp;
   bool localhost_only = false;  // discover and talk over the loopback interface only, without multicast
 };
 
-// Another process of the same vehicle appeared or went away (ended, died or was cut off).
+// Another process of the same vehicle appeared or went away.
 struct PeerEvent {
   std::string name;
   bool alive = false;
+  bool said_goodbye = false;  // of one that went away: it ended cleanly; otherwise it died or was cut off
+};
+
+// Which thread runs the callback.
+enum class Delivery {
+  kShared,     // one that all such subscriptions of the node share
+  kOwnThread,  // one of its own, with a socket of its own: nothing else that arrives delays a sample
 };
 
 namespace detail {
@@ -42,9 +50,9 @@ class Reader {
   virtual ~Reader() = default;
   virtual int matched() const = 0;
 };
-struct TypeSupportOf;  // maps a message type to its generated DDS type support
 }  // namespace detail
 
+// May outlive its node. One thread at a time calls publish().
 template <class T>
 class Publisher {
  public:
@@ -58,7 +66,8 @@ class Publisher {
   std::unique_ptr<detail::Writer> writer_;
 };
 
-// Deliveries stop when it is destroyed; the destructor waits for a callback that is running.
+// Deliveries stop when it is destroyed; the destructor waits for a callback that is running, so it must not
+// be destroyed from there. May outlive its node.
 class Subscription {
  public:
   Subscription() = default;
@@ -71,28 +80,34 @@ class Subscription {
 
 class Node {
  public:
-  // Throws std::runtime_error with a sentence if the participant cannot be made.
+  // Throws std::runtime_error with a sentence if the participant cannot be made. The node's threads have the
+  // scheduling of the thread that makes it. With kSharedMemory, removes what dead processes of this user left
+  // in /dev/shm.
   explicit Node(const NodeSettings& settings);
   ~Node();
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
 
-  // strength: of an owned stream; the strongest living writer is heard.
+  // strength: of an owned stream; the strongest living writer is heard. Throws std::runtime_error.
   template <class T>
   Publisher<T> publish(const Topic<T>& topic, int strength = 0);
 
-  // The callback runs in the thread that received the sample, once for each sample, and must not block.
-  // on_deadline_missed (may be empty) runs when a stream's deadline passes without a sample.
+  // The callback runs in the thread that received the sample, once for each sample, one at a time, and must
+  // not block. on_deadline_missed (may be empty) runs in a middleware thread, once for each silence of a
+  // stream that had been heard. Throws std::runtime_error.
   template <class T>
   Subscription subscribe(const Topic<T>& topic, std::function<void(const T&)> callback,
-                         std::function<void()> on_deadline_missed = {});
+                         std::function<void()> on_deadline_missed = {},
+                         Delivery delivery = Delivery::kShared);
 
-  // Tells of peers that come and go, also of those that were there before the call. Runs in a middleware thread.
+  // Tells of peers that come and go, also of those that were there before the call. Runs in a middleware
+  // thread. A later call takes the place of an earlier one; when it returns, the earlier callback runs no
+  // more.
   void on_peer(std::function<void(const PeerEvent&)> callback);
 
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::shared_ptr<Impl> impl_;
 };
 
 }  // namespace swiftlet::comms

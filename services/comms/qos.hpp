@@ -1,5 +1,7 @@
-// The four ways in which topics are delivered.
+// The four ways in which topics are delivered, and their numbers. idl/README.md shows them as a table.
 #pragma once
+
+#include <chrono>
 
 namespace swiftlet::comms {
 
@@ -10,5 +12,17 @@ enum class Qos {
   kState,        // reliable, transient local, keep last 1
   kRequest,      // reliable, volatile, keep all within limits
 };
+
+// Requests that may be under way between a writer and its readers before publish() waits, and how long it
+// waits.
+constexpr int kMaxPendingRequests = 64;
+constexpr std::chrono::milliseconds kReliableWriteTimeout{200};
+
+// A process says that it lives once in each period; after a lease without it the others take it for dead.
+constexpr std::chrono::milliseconds kLivelinessPeriod{400};
+constexpr std::chrono::milliseconds kLivelinessLease{2000};
+
+// With localhost_only: as many processes of one domain find each other.
+constexpr int kMaxLocalProcesses = 40;
 
 }  // namespace swiftlet::comms

@@ -1,7 +1,7 @@
-// The topics of a vehicle: name, type and QoS profile of each, as in idl/README.md. The wire name is rt/<vehicle>/<name>.
+// The topics of a vehicle: name, type and QoS profile of each, as in idl/README.md. The wire name is
+// rt/<vehicle>/<name>.
 #pragma once
 
-#include "services/comms/qos.hpp"
 #include "swiftlet_msgs/msg/ActuatorCommand.h"
 #include "swiftlet_msgs/msg/Battery.h"
 #include "swiftlet_msgs/msg/Command.h"
@@ -19,6 +19,8 @@
 #include "swiftlet_msgs/msg/Trajectory.h"
 #include "swiftlet_msgs/msg/VehicleInfo.h"
 
+#include "services/comms/qos.hpp"
+
 namespace swiftlet::comms {
 
 namespace msg = swiftlet_msgs::msg;
@@ -28,14 +30,15 @@ struct Topic {
   using Message = T;
   const char* name;
   Qos qos;
+  int deadline_ms = 0;  // of streams: longest time between samples that is offered and asked for
 };
 
 namespace topics {
-inline constexpr Topic<msg::Imu> kImu{"imu", Qos::kStream};
-inline constexpr Topic<msg::ActuatorCommand> kActuatorCommand{"actuator_command", Qos::kOwnedStream};
-inline constexpr Topic<msg::MocapPose> kMocapPose{"mocap_pose", Qos::kStream};
-inline constexpr Topic<msg::RotorSpeeds> kRotorSpeeds{"rotor_speeds", Qos::kStream};
-inline constexpr Topic<msg::Setpoint> kSetpoint{"setpoint", Qos::kStream};
+inline constexpr Topic<msg::Imu> kImu{"imu", Qos::kStream, 50};
+inline constexpr Topic<msg::ActuatorCommand> kActuatorCommand{"actuator_command", Qos::kOwnedStream, 50};
+inline constexpr Topic<msg::MocapPose> kMocapPose{"mocap_pose", Qos::kStream, 200};
+inline constexpr Topic<msg::RotorSpeeds> kRotorSpeeds{"rotor_speeds", Qos::kStream, 100};
+inline constexpr Topic<msg::Setpoint> kSetpoint{"setpoint", Qos::kStream, 500};
 inline constexpr Topic<msg::Battery> kBattery{"battery", Qos::kTelemetry};
 inline constexpr Topic<msg::Estimate> kEstimate{"estimate", Qos::kTelemetry};
 inline constexpr Topic<msg::Reference> kReference{"reference", Qos::kTelemetry};

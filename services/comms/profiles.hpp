@@ -1,0 +1,16 @@
+// The QoS profiles as Fast DDS states them.
+#pragma once
+
+#include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
+#include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
+
+#include "services/comms/node.hpp"
+
+namespace swiftlet::comms {
+
+eprosima::fastdds::dds::DataWriterQos writer_qos(Qos profile, int deadline_ms, int strength,
+                                                 Transport transport);
+eprosima::fastdds::dds::DataReaderQos reader_qos(Qos profile, int deadline_ms, Transport transport,
+                                                 Delivery delivery);
+
+}  // namespace swiftlet::comms
