@@ -1,5 +1,6 @@
 #include "services/comms/shared_memory.hpp"
 
+#include <cerrno>
 #include <chrono>
 #include <fcntl.h>
 #include <filesystem>
@@ -21,25 +22,16 @@ bool is_young(const fs::path& path) {
   return error || fs::file_time_type::clock::now() - written < std::chrono::seconds(1);
 }
 
-// Holds the lock of a dead owner's file, so that nobody takes the name up again while its files are removed.
-class DeadOwner {
- public:
-  explicit DeadOwner(const fs::path& lock_file) : fd_(::open(lock_file.c_str(), O_RDWR | O_CLOEXEC)) {
-    struct stat status {};
-    dead_ = fd_ >= 0 && ::fstat(fd_, &status) == 0 && status.st_uid == ::geteuid() && !is_young(lock_file) &&
-            ::flock(fd_, LOCK_EX | LOCK_NB) == 0;
-  }
-  ~DeadOwner() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  DeadOwner(const DeadOwner&) = delete;
-  DeadOwner& operator=(const DeadOwner&) = delete;
-  explicit operator bool() const { return dead_; }
-
- private:
-  int fd_;
-  bool dead_ = false;
-};
+// Whether the lock file's holder, a process of this user, is dead; true as well if there is no such file.
+bool is_free(const fs::path& lock_file) {
+  const int fd = ::open(lock_file.c_str(), O_RDWR | O_CLOEXEC);
+  if (fd < 0) return errno == ENOENT;
+  struct stat status {};
+  const bool free = ::fstat(fd, &status) == 0 && status.st_uid == ::geteuid() && !is_young(lock_file) &&
+                    ::flock(fd, LOCK_EX | LOCK_NB) == 0;
+  ::close(fd);
+  return free;
+}
 
 int remove_files(const std::vector<fs::path>& paths) {
   int removed = 0;
@@ -53,7 +45,8 @@ int remove_files(const std::vector<fs::path>& paths) {
 }  // namespace
 
 int remove_stale_shared_memory(const std::string& directory) {
-  // A segment has one lock file, held by its owner; a port's readers hold one of two, exclusive or shared.
+  // A segment has one lock file, held by its owner; a port has one of two, exclusive or shared, held by its
+  // readers.
   static const std::regex kSegmentLock("(fastrtps_[0-9a-f]{16})_el");
   static const std::regex kPortLock("(fastrtps_port[0-9]+)_[es]l");
 
@@ -66,22 +59,13 @@ int remove_stale_shared_memory(const std::string& directory) {
   for (const std::string& name : names) {
     std::smatch match;
     if (std::regex_match(name, match, kSegmentLock)) {
-      const DeadOwner dead(root / name);
-      if (dead) removed += remove_files({root / match[1].str(), root / name});
+      if (is_free(root / name)) removed += remove_files({root / match[1].str(), root / name});
     } else if (std::regex_match(name, match, kPortLock)) {
       const std::string port = match[1];
-      const std::string other =
-          name.back() == 'l' && name[name.size() - 2] == 'e' ? port + "_sl" : port + "_el";
-      const DeadOwner dead(root / name);
-      const bool other_exists = fs::exists(root / other, error);
-      if (dead && !other_exists) {
-        removed += remove_files({root / port, root / ("sem." + port + "_mutex"), root / name});
-      } else if (dead && other_exists) {
-        const DeadOwner other_dead(root / other);
-        if (other_dead) {
-          removed +=
-              remove_files({root / port, root / ("sem." + port + "_mutex"), root / name, root / other});
-        }
+      const fs::path exclusive = root / (port + "_el");
+      const fs::path shared = root / (port + "_sl");
+      if (is_free(exclusive) && is_free(shared)) {
+        removed += remove_files({root / port, root / ("sem." + port + "_mutex"), exclusive, shared});
       }
     }
   }
