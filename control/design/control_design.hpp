@@ -1,0 +1,85 @@
+// All gains of the controller, from the vehicle and the settings: what FlightController flies and what
+// `swiftlet gains` prints.
+#pragma once
+
+#include <array>
+#include <complex>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "control/design/loop.hpp"
+#include "control/settings.hpp"
+#include "plant/model/vehicle.hpp"
+
+namespace swiftlet::control {
+
+// One attitude axis: u = -k (angle, rate, moment / inertia), u the commanded moment / inertia.
+struct AttitudeAxisDesign {
+  AttitudeModel model = AttitudeModel::kMotorLag;
+  LqrWeights weights;
+  Eigen::Vector3d k =
+      Eigen::Vector3d::Zero();              // rad/s^2 per rad, per rad/s, per rad/s^2; [2] is 0 on (38)-(40)
+  std::vector<std::complex<double>> poles;  // rad/s, of the closed loop on the model it is designed on
+  std::vector<std::complex<double>> poles_with_lag;  // rad/s, of the closed loop with the rotor lag
+  double phase_margin_deg = 0.0;                     // cut at the rotor command, rotor lag included
+};
+
+// a = a_r + k_v (u_r - u) + k_p (x_r - x) + k_s integral(x_r - x), Eq. (48) and its integral form.
+struct RptGains {
+  double k_p = 0.0;  // 1/s^2
+  double k_v = 0.0;  // 1/s
+  double k_s = 0.0;  // 1/s^3
+};
+
+// One position axis.
+struct PositionAxisDesign {
+  RptSettings settings;
+  Eigen::Matrix<double, 5, 1> f =
+      Eigen::Matrix<double, 5, 1>::Zero();  // Eq. (49) for the state (45); without integral
+  RptGains gains;                           // what is flown; with the integral if k_i > 0
+  std::vector<std::complex<double>> poles;  // rad/s, of the closed loop with the inner loop and the rotor lag
+  double phase_margin_deg = 0.0;  // cut at the acceleration command, inner loop and rotor lag included
+};
+
+struct ControlDesign {
+  double rotor_lag_s = 0.0;  // tau_m of Eq. (18)
+  AttitudeAxisDesign roll, pitch, yaw;
+  PositionAxisDesign x, y, z;  // margins and poles with x over pitch, y over roll (yaw 0), z over the rotors
+};
+
+// (A, B) of one attitude axis: Eq. (38)-(40), or with moment / inertia as third state, tau d(m)/dt = u - m.
+struct StateSpace {
+  Eigen::MatrixXd a;
+  Eigen::VectorXd b;
+};
+StateSpace attitude_axis_model(AttitudeModel model, double rotor_lag_s);
+
+// The gains k (2 or 3 entries are used) closed around the axis with rotor lag, cut at the rotor command.
+Loop attitude_loop(const Eigen::Vector3d& k, double rotor_lag_s);
+
+// A horizontal position axis over a closed attitude axis, cut at the acceleration command (small angles:
+// acceleration = g * angle, the angle command takes the acceleration command at once).
+Loop horizontal_position_loop(const RptGains& gains, const Eigen::Vector3d& attitude_k, double rotor_lag_s);
+
+// The vertical position axis over the rotor lag, cut at the acceleration command.
+Loop vertical_position_loop(const RptGains& gains, double rotor_lag_s);
+
+// Eq. (49) in the state order of Eq. (45): (x_r, u_r, a_r, x, u).
+Eigen::Matrix<double, 5, 1> rpt_feedback(const RptSettings& settings);
+
+// Eq. (48), or the integral form if k_i > 0.
+RptGains rpt_gains(const RptSettings& settings);
+
+// LQR of one attitude axis. Throws std::invalid_argument with a sentence if the weights break a rule.
+AttitudeAxisDesign design_attitude_axis(AttitudeModel model, const LqrWeights& weights, double rotor_lag_s);
+
+// Everything. Throws std::invalid_argument with a sentence if the vehicle or the settings break a rule.
+ControlDesign design(const plant::Vehicle& vehicle, const ControlSettings& settings);
+
+// Which loops would not be stable with the rotor lag, keys as in the control settings file; empty for one
+// that can be flown. design() hands such gains out all the same, so that they can be looked at.
+std::vector<plant::Violation> unstable_loops(const ControlDesign& design);
+
+}  // namespace swiftlet::control

@@ -1,0 +1,156 @@
+#include "control/design/riccati.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <stdexcept>
+#include <string>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+
+namespace swiftlet::control {
+namespace {
+
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::VectorXcd;
+
+constexpr int kSignIterations = 100;
+constexpr int kNewtonIterations = 30;
+constexpr double kSymmetryTolerance = 1e-12;
+constexpr double kRankTolerance = 1e-10;
+constexpr double kResidualLimit = 1e-8;
+
+MatrixXd symmetric_part(const MatrixXd& m) { return 0.5 * (m + m.transpose()); }
+
+double largest_entry(const MatrixXd& m) { return m.size() > 0 ? m.cwiseAbs().maxCoeff() : 0.0; }
+
+bool is_symmetric(const MatrixXd& m) {
+  return largest_entry(m - m.transpose()) <= kSymmetryTolerance * largest_entry(m);
+}
+
+std::string shape(const MatrixXd& m) { return std::to_string(m.rows()) + " x " + std::to_string(m.cols()); }
+
+[[noreturn]] void refuse(const std::string& sentence) { throw std::invalid_argument(sentence); }
+
+void check_problem(const MatrixXd& a, const MatrixXd& b, const MatrixXd& q, const MatrixXd& r) {
+  const Eigen::Index n = a.rows();
+  if (n == 0 || a.cols() != n) refuse("A is " + shape(a) + ", must be square and not empty");
+  if (b.rows() != n || b.cols() == 0) {
+    refuse("B is " + shape(b) + ", must have " + std::to_string(n) +
+           " rows, as A has, and at least one column");
+  }
+  if (q.rows() != n || q.cols() != n) refuse("Q is " + shape(q) + ", must be " + shape(a) + ", as A is");
+  if (r.rows() != b.cols() || r.cols() != b.cols()) {
+    refuse("R is " + shape(r) + ", must be square with a row for each column of B");
+  }
+  if (!a.allFinite() || !b.allFinite() || !q.allFinite() || !r.allFinite()) {
+    refuse("A, B, Q and R must be finite");
+  }
+  if (!is_symmetric(q)) refuse("Q must be symmetric");
+  if (!is_symmetric(r)) refuse("R must be symmetric");
+  const double least_q = Eigen::SelfAdjointEigenSolver<MatrixXd>(q, Eigen::EigenvaluesOnly).eigenvalues()[0];
+  if (least_q < -kSymmetryTolerance * largest_entry(q)) {
+    refuse("Q has the eigenvalue " + std::to_string(least_q) + ", must be positive semidefinite");
+  }
+  if (Eigen::LLT<MatrixXd>(r).info() != Eigen::Success) refuse("R must be positive definite");
+}
+
+// Popov-Belevitch-Hautus: every mode that is not stable must be reached, rank [A - lambda I, B] = n.
+void check_stabilisable(const MatrixXd& a, const MatrixXd& b) {
+  const Eigen::Index n = a.rows();
+  const VectorXcd modes = a.eigenvalues();
+  for (const std::complex<double>& mode : modes) {
+    if (mode.real() < 0.0) continue;
+    MatrixXcd pencil(n, n + b.cols());
+    pencil << a.cast<std::complex<double>>() - mode * MatrixXcd::Identity(n, n),
+        b.cast<std::complex<double>>();
+    const Eigen::VectorXd s = Eigen::JacobiSVD<MatrixXcd>(pencil).singularValues();
+    if (s[n - 1] <= kRankTolerance * s[0]) {
+      refuse("(A, B) is not stabilisable: the mode at " + std::to_string(mode.real()) + " + " +
+             std::to_string(std::abs(mode.imag())) + "i cannot be reached by the input");
+    }
+  }
+}
+
+// X from the stable invariant subspace of the Hamiltonian by its matrix sign; not finite if there is none.
+MatrixXd solution_by_sign(const MatrixXd& a, const MatrixXd& g, const MatrixXd& q) {
+  const Eigen::Index n = a.rows();
+  MatrixXd z(2 * n, 2 * n);
+  z << a, -g, -q, -a.transpose();
+  for (int i = 0; i < kSignIterations; ++i) {
+    const Eigen::PartialPivLU<MatrixXd> lu(z);
+    // |det|^(-1/2n) brings the eigenvalues' geometric mean to one.
+    const double log_det = lu.matrixLU().diagonal().cwiseAbs().array().log().sum();
+    const double scale = std::exp(-log_det / static_cast<double>(2 * n));
+    const MatrixXd next = 0.5 * (scale * z + lu.inverse() / scale);
+    const double change = (next - z).norm();
+    z = next;
+    if (!z.allFinite() || change <= 1e-13 * z.norm()) break;
+  }
+  // sign(H) [I; X] = -[I; X]: both block columns, in the least-squares sense.
+  MatrixXd left(2 * n, n);
+  MatrixXd right(2 * n, n);
+  left << z.topRightCorner(n, n), z.bottomRightCorner(n, n) + MatrixXd::Identity(n, n);
+  right << z.topLeftCorner(n, n) + MatrixXd::Identity(n, n), z.bottomLeftCorner(n, n);
+  if (!left.allFinite() || !right.allFinite()) return MatrixXd::Constant(n, n, std::nan(""));
+  return symmetric_part(left.colPivHouseholderQr().solve(-right));
+}
+
+bool is_stable(const MatrixXd& a) { return a.allFinite() && a.eigenvalues().real().maxCoeff() < 0.0; }
+
+}  // namespace
+
+MatrixXd solve_lyapunov(const MatrixXd& a, const MatrixXd& q) {
+  // (I (x) A' + A' (x) I) vec X = -vec Q.
+  const Eigen::Index n = a.rows();
+  MatrixXd kronecker = MatrixXd::Zero(n * n, n * n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    kronecker.block(i * n, i * n, n, n) += a.transpose();
+    for (Eigen::Index j = 0; j < n; ++j) {
+      kronecker.block(i * n, j * n, n, n).diagonal().array() += a(j, i);
+    }
+  }
+  const Eigen::VectorXd x = kronecker.partialPivLu().solve(-q.reshaped());
+  return symmetric_part(x.reshaped(n, n));
+}
+
+double care_residual(const MatrixXd& a, const MatrixXd& b, const MatrixXd& q, const MatrixXd& r,
+                     const MatrixXd& x) {
+  const MatrixXd ax = a.transpose() * x;
+  const MatrixXd xgx = x * b * r.llt().solve(b.transpose() * x);
+  const double scale = std::max({largest_entry(ax), largest_entry(xgx), largest_entry(q)});
+  return scale > 0.0 ? largest_entry(ax + ax.transpose() - xgx + q) / scale : 0.0;
+}
+
+MatrixXd solve_care(const MatrixXd& a, const MatrixXd& b, const MatrixXd& q, const MatrixXd& r) {
+  check_problem(a, b, q, r);
+  check_stabilisable(a, b);
+  const MatrixXd g = b * r.llt().solve(b.transpose());
+  MatrixXd x = solution_by_sign(a, g, q);
+  // Kleinman: (A - G X)' X+ + X+ (A - G X) + Q + X G X = 0, for as long as it gains.
+  double residual = x.allFinite() ? care_residual(a, b, q, r, x) : 0.0;
+  for (int i = 0; i < kNewtonIterations && is_stable(a - g * x); ++i) {
+    const MatrixXd next = solve_lyapunov(a - g * x, q + x * g * x);
+    const double next_residual = next.allFinite() ? care_residual(a, b, q, r, next) : residual;
+    if (!(next_residual < residual)) break;
+    x = next;
+    residual = next_residual;
+  }
+  if (!is_stable(a - g * x) || residual > kResidualLimit) {
+    refuse(
+        "no stabilising solution of the Riccati equation: Q must weight every mode of A on the imaginary "
+        "axis");
+  }
+  return x;
+}
+
+MatrixXd lqr(const MatrixXd& a, const MatrixXd& b, const MatrixXd& q, const MatrixXd& r) {
+  return r.llt().solve(b.transpose() * solve_care(a, b, q, r));
+}
+
+}  // namespace swiftlet::control

@@ -1,0 +1,104 @@
+#include "control/trajectory/polynomial.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace swiftlet::control {
+namespace {
+
+// A polynomial and its first four derivatives at one t.
+using Derivatives = std::array<double, 5>;
+
+// Horner's scheme for the value and the derivatives at once; d[k] collects the k-th derivative over k!.
+Derivatives horner(const Polynomial& c, double t) {
+  Derivatives d{};
+  for (std::size_t i = c.size(); i-- > 0;) {
+    for (std::size_t k = d.size() - 1; k > 0; --k) d[k] = d[k] * t + d[k - 1];
+    d[0] = d[0] * t + c[i];
+  }
+  d[2] *= 2.0;
+  d[3] *= 6.0;
+  d[4] *= 24.0;
+  return d;
+}
+
+// 10 s^3 - 15 s^4 + 6 s^5 from `from` to `to`, s = t / duration.
+Polynomial minimum_jerk_axis(double from, double to, double duration_s) {
+  const double step = to - from;
+  const double w = 1.0 / duration_s;
+  const double w3 = w * w * w;
+  return {from, 0.0, 0.0, 10.0 * step * w3, -15.0 * step * w3 * w, 6.0 * step * w3 * w * w, 0.0, 0.0};
+}
+
+// The quintic with the given start and with zero velocity and acceleration at `to`.
+Polynomial quintic_to_rest(double position, double velocity, double acceleration, double to,
+                           double duration_s) {
+  const double w = 1.0 / duration_s;
+  const double w3 = w * w * w;
+  const double d = to - position;
+  const double v = velocity * duration_s;
+  const double a = acceleration * duration_s * duration_s;
+  return {position,
+          velocity,
+          0.5 * acceleration,
+          (10.0 * d - 6.0 * v - 1.5 * a) * w3,
+          (-15.0 * d + 8.0 * v + 1.5 * a) * w3 * w,
+          (6.0 * d - 3.0 * v - 0.5 * a) * w3 * w * w,
+          0.0,
+          0.0};
+}
+
+}  // namespace
+
+Reference evaluate(const PolynomialSegment& segment, double t_s) {
+  const double t = std::clamp(t_s, 0.0, segment.duration_s);
+  const Derivatives x = horner(segment.x, t);
+  const Derivatives y = horner(segment.y, t);
+  const Derivatives z = horner(segment.z, t);
+  const Derivatives yaw = horner(segment.yaw, t);
+  Reference reference;
+  reference.position_ned = {x[0], y[0], z[0]};
+  reference.velocity_ned = {x[1], y[1], z[1]};
+  reference.acceleration_ned = {x[2], y[2], z[2]};
+  reference.jerk_ned = {x[3], y[3], z[3]};
+  reference.snap_ned = {x[4], y[4], z[4]};
+  reference.yaw_rad = yaw[0];
+  reference.yaw_rate = yaw[1];
+  reference.yaw_acceleration = yaw[2];
+  return reference;
+}
+
+PolynomialSegment minimum_jerk(const Eigen::Vector3d& from_ned, double from_yaw,
+                               const Eigen::Vector3d& to_ned, double to_yaw, double duration_s) {
+  PolynomialSegment segment;
+  segment.duration_s = duration_s;
+  segment.x = minimum_jerk_axis(from_ned.x(), to_ned.x(), duration_s);
+  segment.y = minimum_jerk_axis(from_ned.y(), to_ned.y(), duration_s);
+  segment.z = minimum_jerk_axis(from_ned.z(), to_ned.z(), duration_s);
+  segment.yaw = minimum_jerk_axis(from_yaw, to_yaw, duration_s);
+  return segment;
+}
+
+PolynomialSegment join_to_rest(const Reference& from, const Eigen::Vector3d& to_ned, double to_yaw,
+                               double duration_s) {
+  const auto axis = [&](int i) {
+    return quintic_to_rest(from.position_ned[i], from.velocity_ned[i], from.acceleration_ned[i], to_ned[i],
+                           duration_s);
+  };
+  PolynomialSegment segment;
+  segment.duration_s = duration_s;
+  segment.x = axis(0);
+  segment.y = axis(1);
+  segment.z = axis(2);
+  segment.yaw = quintic_to_rest(from.yaw_rad, from.yaw_rate, from.yaw_acceleration, to_yaw, duration_s);
+  return segment;
+}
+
+double minimum_jerk_duration(double distance, double peak_speed, double peak_acceleration,
+                             double min_duration_s) {
+  const double for_speed = 15.0 / 8.0 * distance / peak_speed;
+  const double for_acceleration = std::sqrt(10.0 / std::sqrt(3.0) * distance / peak_acceleration);
+  return std::max({for_speed, for_acceleration, min_duration_s});
+}
+
+}  // namespace swiftlet::control
