@@ -1,0 +1,24 @@
+// Logging of a process: spdlog's default logger, made asynchronous. A caller never waits for the output: when
+// the queue is full the oldest line is lost.
+#pragma once
+
+#include <string>
+
+namespace swiftlet::runtime {
+
+struct LogSettings {
+  std::string level = "info";  // trace, debug, info, warning, error, off
+  std::string file;            // written besides stderr; empty: none
+};
+
+// Sets the default logger for as long as it lives; its end writes what is queued. One a process.
+class Logging {
+ public:
+  // Throws std::runtime_error if the file cannot be written.
+  Logging(const std::string& process, const LogSettings& settings);
+  ~Logging();
+  Logging(const Logging&) = delete;
+  Logging& operator=(const Logging&) = delete;
+};
+
+}  // namespace swiftlet::runtime

@@ -1,0 +1,33 @@
+#include "services/runtime/periodic_timer.hpp"
+
+#include <cerrno>
+#include <time.h>
+
+namespace swiftlet::runtime {
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+}  // namespace
+
+std::int64_t monotonic_ns() noexcept {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * kSecond + now.tv_nsec;
+}
+
+PeriodicTimer::PeriodicTimer(std::int64_t period_ns, std::int64_t max_lateness_ns)
+    : period_ns_(period_ns), max_lateness_ns_(max_lateness_ns), next_ns_(monotonic_ns()) {}
+
+std::int64_t PeriodicTimer::wait() noexcept {
+  next_ns_ += period_ns_;
+  const timespec next{next_ns_ / kSecond, next_ns_ % kSecond};
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &next, nullptr) == EINTR) {
+  }
+  const std::int64_t lateness = monotonic_ns() - next_ns_;
+  if (lateness <= max_lateness_ns_) return 0;
+  next_ns_ += lateness;
+  return lateness;
+}
+
+}  // namespace swiftlet::runtime

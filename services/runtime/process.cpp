@@ -1,0 +1,56 @@
+#include "services/runtime/process.hpp"
+
+#include <cstdio>
+#include <exception>
+#include <stdexcept>
+
+#include <CLI/CLI.hpp>
+
+#include "services/runtime/config_error.hpp"
+
+namespace swiftlet::runtime {
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kBadInput = 2;
+
+int fail(const CLI::App& app, const std::exception& error, int code) {
+  std::fprintf(stderr, "%s: %s\n", app.get_name().c_str(), error.what());
+  return code;
+}
+
+}  // namespace
+
+void add_process_options(CLI::App& app, ProcessOptions& options) {
+  app.add_option("--log-level", options.log.level, "Least severe lines to log")
+      ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
+      ->capture_default_str();
+  app.add_option("--log-file", options.log.file, "Log to this file as well as to stderr");
+  app.add_flag("!--no-realtime", options.realtime.enabled, "Neither lock memory nor ask for SCHED_FIFO");
+  app.add_option("--priority", options.realtime.priority, "SCHED_FIFO priority of the thread that counts")
+      ->check(CLI::Range(1, 99))
+      ->capture_default_str();
+  app.add_option("--cpu", options.realtime.cpu, "Core of that thread; -1: any")
+      ->check(CLI::Range(-1, 1023))
+      ->capture_default_str();
+}
+
+int run_process(CLI::App& app, int argc, char** argv, const std::function<void()>& body) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kBadInput;
+  }
+  try {
+    body();
+    return 0;
+  } catch (const ConfigError& error) {
+    return fail(app, error, kBadInput);
+  } catch (const std::invalid_argument& error) {
+    return fail(app, error, kBadInput);
+  } catch (const std::exception& error) {
+    return fail(app, error, kFailed);
+  }
+}
+
+}  // namespace swiftlet::runtime

@@ -1,0 +1,27 @@
+// What the services' mains have in common: options and exit codes.
+#pragma once
+
+#include <functional>
+
+#include "services/runtime/log.hpp"
+#include "services/runtime/realtime.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace swiftlet::runtime {
+
+struct ProcessOptions {
+  LogSettings log;
+  RealtimeSettings realtime;
+};
+
+// --log-level, --log-file, --no-realtime, --priority, --cpu. The priority in options is the default.
+void add_process_options(CLI::App& app, ProcessOptions& options);
+
+// Reads the command line, then runs body. Exit code: 0 done (also --help); 2 wrong usage or bad input
+// (ConfigError, std::invalid_argument); 1 any other exception. A fault is one line on stderr.
+int run_process(CLI::App& app, int argc, char** argv, const std::function<void()>& body);
+
+}  // namespace swiftlet::runtime

@@ -1,0 +1,26 @@
+// Locked memory, SCHED_FIFO and the choice of a core, where the system permits them.
+#pragma once
+
+#include <string>
+
+namespace swiftlet::runtime {
+
+struct RealtimeSettings {
+  bool enabled = true;
+  int priority = 0;  // SCHED_FIFO, 1 .. 99
+  int cpu = -1;      // core of the thread that counts; -1: any
+};
+
+// Locks all memory of the process, present and future, if that can be done without a limit that would make
+// later allocations fail. Returns what was refused, as half a sentence, or nothing.
+std::string lock_memory();
+
+// Gives the calling thread SCHED_FIFO and pins it to the core. For threads that wait for a sample or a timer
+// between short steps; one that spins would starve the others on its core. Returns what was refused, as half
+// a sentence, or nothing.
+std::string make_this_thread_realtime(const RealtimeSettings& settings);
+
+// Whether the calling thread has SCHED_FIFO.
+bool this_thread_is_realtime();
+
+}  // namespace swiftlet::runtime
