@@ -1,6 +1,6 @@
 // ESC, Eq. (8) and (9): pulse width -> throttle delta -> mean motor voltage v_a, and back. Identified for v_s
-// of 3.6 to 4.2 V. Total: finite arguments give finite results, throttles are clipped to 0 .. 1, roots of
-// negative numbers are 0.
+// of 3.6 to 4.2 V. Total: finite arguments, up to 1e100, give finite results; throttles are clipped to
+// 0 .. 1, roots of negative numbers are 0.
 #pragma once
 
 #include <algorithm>

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
-#include <utility>
+#include <string>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
@@ -20,44 +19,11 @@ constexpr double kMinHubDistance = 1e-3;    // m
 constexpr double kMinSingularValue = 1e-3;  // of the effectiveness with rows of length 1
 constexpr double kSymmetry = 1e-9;          // relative
 
-// Collects violations. Each check returns whether it holds; comparisons are written so that a NaN fails.
-class Checker {
- public:
-  template <typename... Parts>
-  void add(const std::string& key, const Parts&... parts) {
-    std::ostringstream message;
-    (message << ... << parts);
-    violations_.push_back({key, message.str()});
-  }
-
-  bool above(const std::string& key, double value, double min) {
-    const bool holds = value > min && std::isfinite(value);
-    if (!holds) add(key, "is ", value, ", must be a finite number above ", min);
-    return holds;
-  }
-
-  bool at_least(const std::string& key, double value, double min) {
-    const bool holds = value >= min && std::isfinite(value);
-    if (!holds) add(key, "is ", value, ", must be a finite number of at least ", min);
-    return holds;
-  }
-
-  bool finite(const std::string& key, double value) {
-    if (!std::isfinite(value)) add(key, "is ", value, ", must be a finite number");
-    return std::isfinite(value);
-  }
-
-  std::vector<Violation> take() { return std::move(violations_); }
-
- private:
-  std::vector<Violation> violations_;
-};
-
 std::string rotor_key(std::size_t index, const char* name) {
   return "rotors[" + std::to_string(index) + "]." + name;
 }
 
-bool check_inertia(const Eigen::Matrix3d& inertia, Checker& check) {
+bool check_inertia(const Eigen::Matrix3d& inertia, RuleChecker& check) {
   const char* const key = "inertia";
   if (!inertia.allFinite()) {
     check.add(key, "holds a value that is not finite");
@@ -82,7 +48,7 @@ bool check_inertia(const Eigen::Matrix3d& inertia, Checker& check) {
   return true;
 }
 
-bool check_rotors(const std::vector<RotorMount>& rotors, Checker& check) {
+bool check_rotors(const std::vector<RotorMount>& rotors, RuleChecker& check) {
   if (rotors.size() < static_cast<std::size_t>(kMinRotors) ||
       rotors.size() > static_cast<std::size_t>(kMaxRotors)) {
     check.add("rotors", "is a list of ", rotors.size(), ", must be a list of ", kMinRotors, " to ",
@@ -92,13 +58,13 @@ bool check_rotors(const std::vector<RotorMount>& rotors, Checker& check) {
   bool holds = true;
   for (std::size_t i = 0; i < rotors.size(); ++i) {
     if (!rotors[i].position_frd.allFinite()) {
-      check.add(rotor_key(i, "position"), "holds a value that is not finite");
+      check.add(rotor_key(i, "position_frd"), "holds a value that is not finite");
       holds = false;
     }
     for (std::size_t j = 0; j < i; ++j) {
       const double distance = (rotors[i].position_frd - rotors[j].position_frd).norm();
       if (distance < kMinHubDistance) {
-        check.add(rotor_key(i, "position"), "is ", distance, " m from that of rotors[", j,
+        check.add(rotor_key(i, "position_frd"), "is ", distance, " m from that of rotors[", j,
                   "], must be at least ", kMinHubDistance);
         holds = false;
       }
@@ -107,7 +73,7 @@ bool check_rotors(const std::vector<RotorMount>& rotors, Checker& check) {
   return holds;
 }
 
-bool check_motor(const Vehicle& vehicle, Checker& check) {
+bool check_motor(const Vehicle& vehicle, RuleChecker& check) {
   const Motor& motor = vehicle.motor;
   bool holds = check.above("rotor.thrust_factor", vehicle.rotor.thrust, 0.0);
   holds = check.above("rotor.torque_factor", vehicle.rotor.torque, 0.0) && holds;
@@ -127,7 +93,7 @@ bool check_motor(const Vehicle& vehicle, Checker& check) {
   return true;
 }
 
-bool check_esc(const Esc& esc, Checker& check) {
+bool check_esc(const Esc& esc, RuleChecker& check) {
   bool holds = check.above("esc.gain", esc.gain, 0.0);
   holds = check.finite("esc.offset", esc.offset_v2) && holds;
   holds = check.at_least("esc.pulse_min", esc.pulse_min_us, 0.0) && holds;
@@ -139,7 +105,7 @@ bool is_strictly_rising(const std::vector<double>& values) {
          values.end();
 }
 
-bool check_battery(const BatteryParameters& battery, Checker& check) {
+bool check_battery(const BatteryParameters& battery, RuleChecker& check) {
   bool holds = check.above("battery.capacity", battery.capacity_ah, 0.0);
   holds = check.at_least("battery.internal_resistance", battery.internal_resistance_ohm, 0.0) && holds;
   holds = check.at_least("battery.sag_time_constant", battery.sag_time_constant_s, kMinTimeConstant) && holds;
@@ -164,7 +130,7 @@ bool check_battery(const BatteryParameters& battery, Checker& check) {
 }
 
 // Whether thrust, roll, pitch and yaw can be commanded one by one.
-bool check_authority(const Vehicle& vehicle, Checker& check) {
+bool check_authority(const Vehicle& vehicle, RuleChecker& check) {
   Effectiveness rows = effectiveness(vehicle);
   for (int i = 0; i < rows.rows(); ++i) {
     const double length = rows.row(i).norm();
@@ -178,7 +144,7 @@ bool check_authority(const Vehicle& vehicle, Checker& check) {
   return false;
 }
 
-void check_hover(const Vehicle& vehicle, Checker& check) {
+void check_hover(const Vehicle& vehicle, RuleChecker& check) {
   const double full = vehicle.battery.open_circuit_voltage_v.back();
   const ThrustRange range = steady_thrust_range(vehicle, full);
   const double max_mass = vehicle.rotor_count() * range.max / kGravity;
@@ -196,7 +162,7 @@ void check_hover(const Vehicle& vehicle, Checker& check) {
   const RotorThrusts trim = trim_thrusts(vehicle);
   for (int i = 0; i < vehicle.rotor_count(); ++i) {
     if (trim[i] > range.min && trim[i] < range.max) continue;
-    check.add(rotor_key(static_cast<std::size_t>(i), "position"), "asks this rotor for ", trim[i],
+    check.add(rotor_key(static_cast<std::size_t>(i), "position_frd"), "asks this rotor for ", trim[i],
               " N in hover, must be between ", range.min, " and ", range.max, " (throttle 0 and 1 at ", full,
               " V)");
   }
@@ -205,7 +171,7 @@ void check_hover(const Vehicle& vehicle, Checker& check) {
 }  // namespace
 
 std::vector<Violation> validate(const Vehicle& vehicle) {
-  Checker check;
+  RuleChecker check;
   if (vehicle.name.empty()) check.add("name", "is empty, must be given");
   bool holds = check.above("mass", vehicle.mass_kg, 0.0);
   holds = check_inertia(vehicle.inertia, check) && holds;

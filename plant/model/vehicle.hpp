@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "plant/model/samples.hpp"
+#include "plant/model/violation.hpp"
 
 namespace swiftlet::plant {
 
@@ -75,12 +76,6 @@ struct Vehicle {
   BatteryParameters battery;
 
   int rotor_count() const { return static_cast<int>(rotors.size()); }
-};
-
-// One broken rule: which key of the vehicle file, and a sentence with value and limit.
-struct Violation {
-  std::string key;      // as in the vehicle file, "motor.time_constant", "rotors[2].position"
-  std::string message;  // "is -0.1, must be above 0"
 };
 
 // Every rule that a vehicle breaks; empty for one that can be simulated and flown. Takes any values, NaN

@@ -1,0 +1,83 @@
+#include "control/settings.hpp"
+
+#include <string>
+
+namespace swiftlet::control {
+
+namespace {
+
+using plant::RuleChecker;
+
+constexpr double kMaxTilt = 1.5;  // rad; thrust along the vertical must remain
+constexpr char kAxis[] = {'x', 'y', 'z'};
+
+void check_weights(const std::string& key, const LqrWeights& weights, RuleChecker& check) {
+  check.above(key + ".q[0]", weights.q[0], 0.0);
+  check.at_least(key + ".q[1]", weights.q[1], 0.0);
+  check.at_least(key + ".q[2]", weights.q[2], 0.0);
+  check.above(key + ".r", weights.r, 0.0);
+}
+
+void check_rpt(const std::string& key, const RptSettings& rpt, RuleChecker& check) {
+  check.above(key + ".omega_n", rpt.omega_n, 0.0);
+  check.above(key + ".zeta", rpt.zeta, 0.0);
+  check.above(key + ".epsilon", rpt.epsilon, 0.0);
+  check.at_least(key + ".k_i", rpt.k_i, 0.0);
+}
+
+void check_limits(const Limits& limits, RuleChecker& check) {
+  check.above("limits.max_tilt_rad", limits.max_tilt_rad, 0.0);
+  check.between("limits.max_tilt_rad", limits.max_tilt_rad, 0.0, kMaxTilt);
+  check.above("limits.max_acceleration_m_s2", limits.max_acceleration, 0.0);
+  check.above("limits.max_speed_m_s", limits.max_speed, 0.0);
+  check.above("limits.max_reference_acceleration_m_s2", limits.max_reference_acceleration, 0.0);
+  check.above("limits.max_yaw_rate_rad_s", limits.max_yaw_rate, 0.0);
+  for (int i = 0; i < 3; ++i) {
+    const std::string index = "[" + std::to_string(i) + "]";
+    const bool finite = check.finite("limits.fence_min_ned_m" + index, limits.fence_min_ned[i]);
+    if (!check.finite("limits.fence_max_ned_m" + index, limits.fence_max_ned[i]) || !finite) continue;
+    if (limits.fence_max_ned[i] > limits.fence_min_ned[i]) continue;
+    check.add("limits.fence_max_ned_m" + index, "is ", limits.fence_max_ned[i],
+              ", must be above fence_min_ned_m in ", kAxis[i], ", ", limits.fence_min_ned[i]);
+  }
+}
+
+void check_estimator(const EstimatorSettings& estimator, RuleChecker& check) {
+  check.above("estimator.position_bandwidth_rad_s", estimator.position_bandwidth, 0.0);
+  check.above("estimator.attitude_bandwidth_rad_s", estimator.attitude_bandwidth, 0.0);
+  check.at_least("estimator.accelerometer_bias_limit_m_s2", estimator.accelerometer_bias_limit, 0.0);
+  check.at_least("estimator.gyro_bias_limit_rad_s", estimator.gyro_bias_limit, 0.0);
+}
+
+void check_failsafe(const FailsafeSettings& failsafe, const Limits& limits, RuleChecker& check) {
+  check.above("failsafe.mocap_timeout_s", failsafe.mocap_timeout_s, 0.0);
+  check.above("failsafe.descent_speed_m_s", failsafe.descent_speed, 0.0);
+  check.above("failsafe.descent_timeout_s", failsafe.descent_timeout_s, 0.0);
+  if (check.above("failsafe.tip_over_tilt_rad", failsafe.tip_over_tilt_rad, 0.0) &&
+      failsafe.tip_over_tilt_rad <= limits.max_tilt_rad) {
+    check.add("failsafe.tip_over_tilt_rad", "is ", failsafe.tip_over_tilt_rad,
+              ", must be above limits.max_tilt_rad, ", limits.max_tilt_rad);
+  }
+  check.at_least("failsafe.low_battery_voltage_v", failsafe.low_battery_voltage, 0.0);
+  check.above("failsafe.setpoint_timeout_s", failsafe.setpoint_timeout_s, 0.0);
+}
+
+}  // namespace
+
+std::vector<plant::Violation> validate(const ControlSettings& settings) {
+  RuleChecker check;
+  if (settings.name.empty()) check.add("name", "is empty, must be given");
+  check_weights("attitude.roll", settings.attitude.roll, check);
+  check_weights("attitude.pitch", settings.attitude.pitch, check);
+  check_weights("attitude.yaw", settings.attitude.yaw, check);
+  check_rpt("position.x", settings.position.x, check);
+  check_rpt("position.y", settings.position.y, check);
+  check_rpt("position.z", settings.position.z, check);
+  check.at_least("position.integral_limit_m_s2", settings.position.integral_limit, 0.0);
+  check_limits(settings.limits, check);
+  check_estimator(settings.estimator, check);
+  check_failsafe(settings.failsafe, settings.limits, check);
+  return check.take();
+}
+
+}  // namespace swiftlet::control

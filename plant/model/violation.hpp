@@ -1,0 +1,56 @@
+// Broken rules of plain parameter structs: vehicles, settings.
+#pragma once
+
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace swiftlet::plant {
+
+// One broken rule: which key of the file that holds the parameters, and a sentence with value and limit.
+struct Violation {
+  std::string key;      // as in the file: "motor.time_constant", "rotors[2].position_frd"
+  std::string message;  // "is -0.1, must be a finite number above 0"
+};
+
+// Collects violations. Each check returns whether it holds; a NaN breaks every one.
+class RuleChecker {
+ public:
+  template <typename... Parts>
+  void add(const std::string& key, const Parts&... parts) {
+    std::ostringstream message;
+    (message << ... << parts);
+    violations_.push_back({key, message.str()});
+  }
+
+  bool finite(const std::string& key, double value) {
+    return demand(std::isfinite(value), key, "is ", value, ", must be a finite number");
+  }
+  bool above(const std::string& key, double value, double min) {
+    return demand(std::isfinite(value) && value > min, key, "is ", value, ", must be a finite number above ",
+                  min);
+  }
+  bool at_least(const std::string& key, double value, double min) {
+    return demand(std::isfinite(value) && value >= min, key, "is ", value,
+                  ", must be a finite number of at least ", min);
+  }
+  bool between(const std::string& key, double value, double min, double max) {
+    return demand(value >= min && value <= max, key, "is ", value, ", must be at least ", min,
+                  " and at most ", max);
+  }
+
+  std::vector<Violation> take() { return std::move(violations_); }
+
+ private:
+  template <typename... Parts>
+  bool demand(bool holds, const std::string& key, const Parts&... parts) {
+    if (!holds) add(key, parts...);
+    return holds;
+  }
+
+  std::vector<Violation> violations_;
+};
+
+}  // namespace swiftlet::plant

@@ -1,0 +1,103 @@
+#include "services/runtime/control_settings_file.hpp"
+
+#include "services/runtime/config.hpp"
+#include "services/runtime/text_file.hpp"
+#include "services/runtime/violations.hpp"
+
+namespace swiftlet::runtime {
+
+namespace {
+
+// As many weights as the model has states.
+control::LqrWeights read_weights(const ConfigNode& node, control::AttitudeModel model) {
+  const std::size_t states = model == control::AttitudeModel::kMotorLag ? 3 : 2;
+  const std::vector<double> q = node.at("q").numbers(states, states);
+  control::LqrWeights weights;
+  for (std::size_t i = 0; i < states; ++i) weights.q[static_cast<Eigen::Index>(i)] = q[i];
+  weights.r = node.at("r").number();
+  return weights;
+}
+
+control::AttitudeSettings read_attitude(const ConfigNode& node) {
+  control::AttitudeSettings attitude;
+  attitude.model = node.at("model").choice<control::AttitudeModel>(
+      {{"double_integrator", control::AttitudeModel::kDoubleIntegrator},
+       {"motor_lag", control::AttitudeModel::kMotorLag}});
+  attitude.roll = read_weights(node.at("roll"), attitude.model);
+  attitude.pitch = read_weights(node.at("pitch"), attitude.model);
+  attitude.yaw = read_weights(node.at("yaw"), attitude.model);
+  attitude.feed_forward = node.at("feed_forward").boolean();
+  return attitude;
+}
+
+control::RptSettings read_rpt(const ConfigNode& node) {
+  control::RptSettings rpt;
+  rpt.omega_n = node.at("omega_n").number();
+  rpt.zeta = node.at("zeta").number();
+  rpt.epsilon = node.at("epsilon").number();
+  rpt.k_i = node.at("k_i").number();
+  return rpt;
+}
+
+control::PositionSettings read_position(const ConfigNode& node) {
+  control::PositionSettings position;
+  position.x = read_rpt(node.at("x"));
+  position.y = read_rpt(node.at("y"));
+  position.z = read_rpt(node.at("z"));
+  position.integral_limit = node.at("integral_limit_m_s2").number();
+  return position;
+}
+
+control::Limits read_limits(const ConfigNode& node) {
+  control::Limits limits;
+  limits.max_tilt_rad = node.at("max_tilt_rad").number();
+  limits.max_acceleration = node.at("max_acceleration_m_s2").number();
+  limits.max_speed = node.at("max_speed_m_s").number();
+  limits.max_reference_acceleration = node.at("max_reference_acceleration_m_s2").number();
+  limits.max_yaw_rate = node.at("max_yaw_rate_rad_s").number();
+  limits.fence_min_ned = node.at("fence_min_ned_m").vector3();
+  limits.fence_max_ned = node.at("fence_max_ned_m").vector3();
+  return limits;
+}
+
+control::EstimatorSettings read_estimator(const ConfigNode& node) {
+  control::EstimatorSettings estimator;
+  estimator.position_bandwidth = node.at("position_bandwidth_rad_s").number();
+  estimator.attitude_bandwidth = node.at("attitude_bandwidth_rad_s").number();
+  estimator.accelerometer_bias_limit = node.at("accelerometer_bias_limit_m_s2").number();
+  estimator.gyro_bias_limit = node.at("gyro_bias_limit_rad_s").number();
+  return estimator;
+}
+
+control::FailsafeSettings read_failsafe(const ConfigNode& node) {
+  control::FailsafeSettings failsafe;
+  failsafe.mocap_timeout_s = node.at("mocap_timeout_s").number();
+  failsafe.descent_speed = node.at("descent_speed_m_s").number();
+  failsafe.descent_timeout_s = node.at("descent_timeout_s").number();
+  failsafe.tip_over_tilt_rad = node.at("tip_over_tilt_rad").number();
+  failsafe.low_battery_voltage = node.at("low_battery_voltage_v").number();
+  failsafe.setpoint_timeout_s = node.at("setpoint_timeout_s").number();
+  return failsafe;
+}
+
+}  // namespace
+
+control::ControlSettings parse_control_settings(std::string_view text, const std::string& file_name) {
+  const ConfigNode root = parse_config(text, file_name);
+  control::ControlSettings settings;
+  settings.name = root.at("name").text();
+  settings.attitude = read_attitude(root.at("attitude"));
+  settings.position = read_position(root.at("position"));
+  settings.limits = read_limits(root.at("limits"));
+  settings.estimator = read_estimator(root.at("estimator"));
+  settings.failsafe = read_failsafe(root.at("failsafe"));
+  root.reject_unknown_keys();
+  reject_violations(root, control::validate(settings));
+  return settings;
+}
+
+control::ControlSettings load_control_settings(const std::string& path) {
+  return parse_control_settings(read_text_file(path), path);
+}
+
+}  // namespace swiftlet::runtime

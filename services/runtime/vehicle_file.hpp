@@ -1,0 +1,18 @@
+// The vehicle file: YAML, every parameter a map {value, unit, source}, where source names the equation or
+// measurement that the value is from, or says "estimate". config/vehicles/kaylion.yaml shows all keys.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "plant/model/vehicle.hpp"
+
+namespace swiftlet::runtime {
+
+// A vehicle that plant::validate() finds no fault with. Throws ConfigError for anything else: a key that is
+// missing or unknown, a unit that is not the expected one, a source that is left out, a rule that is broken.
+// file_name is for the messages only.
+plant::Vehicle parse_vehicle(std::string_view text, const std::string& file_name);
+plant::Vehicle load_vehicle(const std::string& path);
+
+}  // namespace swiftlet::runtime
