@@ -1,0 +1,28 @@
+# What `cmake --install` lays down, in two components: `programs` (to fly: programs and configuration) and `development`
+# (to build on: libraries, headers, IDL, and the package that find_package(swiftlet) reads).
+
+include(CMakePackageConfigHelpers)
+
+get_property(libraries GLOBAL PROPERTY SWIFTLET_LIBRARIES)
+get_property(executables GLOBAL PROPERTY SWIFTLET_EXECUTABLES)
+
+add_custom_target(programs DEPENDS ${executables})  # all that a flight needs, and no test
+
+install(TARGETS ${executables} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
+install(DIRECTORY config DESTINATION ${CMAKE_INSTALL_DATADIR}/swiftlet COMPONENT programs)
+
+install(TARGETS ${libraries} EXPORT swiftletTargets
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+foreach(folder plant control services/runtime services/comms ground)
+  cmake_path(GET folder PARENT_PATH parent)
+  install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/swiftlet/${parent}
+    COMPONENT development FILES_MATCHING PATTERN "*.hpp")
+endforeach()
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/swiftlet)
+configure_package_config_file(cmake/swiftletConfig.cmake.in ${PROJECT_BINARY_DIR}/swiftletConfig.cmake
+  INSTALL_DESTINATION ${package_dir} NO_SET_AND_CHECK_MACRO)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/swiftletConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(EXPORT swiftletTargets NAMESPACE swiftlet:: DESTINATION ${package_dir} COMPONENT development)
+install(FILES ${PROJECT_BINARY_DIR}/swiftletConfig.cmake ${PROJECT_BINARY_DIR}/swiftletConfigVersion.cmake
+  DESTINATION ${package_dir} COMPONENT development)
