@@ -1,0 +1,85 @@
+// Allocation: the identified model inverted. Wanted thrust and moments, at the measured supply voltage, become one
+// throttle for each rotor: wrench -> thrusts (27)(28) -> speeds (25) -> v_a (22) -> delta (9).
+#pragma once
+
+#include <array>
+
+#include <Eigen/Core>
+
+#include "plant/model/airframe.hpp"
+#include "plant/model/samples.hpp"
+#include "plant/model/vehicle.hpp"
+
+namespace swiftlet::control {
+
+struct Wrench {
+  double thrust_n = 0.0;                                  // sum of the rotors', along -z of FRD
+  Eigen::Vector3d moment_frd = Eigen::Vector3d::Zero();   // N m: u1 .. u3
+};
+
+struct Allocation {
+  plant::PerRotor throttle{};  // delta of Eq. (8), 0 .. 1
+  plant::PerRotor thrust_n{};  // what each rotor will hold, N
+  Wrench achieved;             // what they give together once their lag is over
+  bool saturated = false;      // achieved is not what was wanted
+  bool invalid_input = false;  // something was not finite, or the supply not plausible; see allocate
+};
+
+class Allocator {
+ public:
+  // Throws std::invalid_argument with a sentence if the rotors cannot give thrust and all three moments, or the vehicle
+  // has no battery table.
+  explicit Allocator(const plant::Vehicle& vehicle);
+
+  // Thrusts by the pseudo-inverse of the effectiveness: the exact solution with four rotors, the one of least squares
+  // with more. Each rotor stays between its thrusts at throttle 0 (which is not zero thrust) and 1 at this supply
+  // voltage. Where the wanted wrench does not fit, within the pseudo-inverse's solutions:
+  //   1. roll and pitch moment are kept, whatever thrust and yaw that takes; if even that does not do, both are scaled
+  //      by one factor, the largest that fits;
+  //   2. thrust then comes as near to the wanted one as it can, whatever yaw that takes;
+  //   3. yaw moment then comes as near as it can.
+  // Total: the result is finite and within limits for every input. A moment that is not finite counts as 0, a thrust
+  // that is not finite as the vehicle's weight, and a supply voltage that is not finite or outside
+  // plausible_supply() as the middle of the battery's open-circuit voltages; each sets invalid_input.
+  Allocation allocate(const Wrench& wanted, double supply_voltage_v) const;
+
+  // Half the empty battery's voltage .. one and a half times the full one's, V.
+  struct SupplyRange {
+    double min = 0.0;
+    double max = 0.0;
+    double assumed = 0.0;
+  };
+  const SupplyRange& plausible_supply() const { return supply_; }
+
+ private:
+  struct Interval {
+    double low;
+    double high;
+  };
+  // An interval whose ends move with the scale of roll and pitch.
+  struct MovingInterval {
+    Interval at;
+    Interval slope;
+  };
+
+  Wrench sanitised(const Wrench& wanted, bool& invalid) const;
+  void fit(Wrench& wanted, const Interval& thrust_limits, plant::PerRotor& thrusts) const;
+  MovingInterval thrust_interval(double scale, double largest_scale, const plant::PerRotor& tilt, const Interval& limits) const;
+  double largest_scale(const plant::PerRotor& tilt, const Interval& limits) const;
+  Interval yaw_interval(double scale, double thrust, const plant::PerRotor& tilt, const Interval& limits) const;
+
+  plant::Esc esc_;
+  plant::Motor motor_;
+  plant::RotorCoefficients rotor_;
+  plant::Effectiveness effectiveness_;
+  int count_ = 0;
+  double weight_n_ = 0.0;
+  double idle_thrust_n_ = 0.0;  // of one rotor at throttle 0
+  SupplyRange supply_;
+  Wrench bound_;  // beyond what any plausible supply can give
+
+  // Columns of the pseudo-inverse: thrust of each rotor for 1 N, and for 1 N m about each axis.
+  plant::PerRotor for_thrust_{}, for_roll_{}, for_pitch_{}, for_yaw_{};
+};
+
+}  // namespace swiftlet::control
