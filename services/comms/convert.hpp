@@ -1,0 +1,50 @@
+// Messages <-> the plain structs of plant and control. What comes in is checked: numbers finite, counts and
+// enumerations in range, quaternions of unit length. Whether a request can be flown is not judged here.
+#pragma once
+
+#include "control/estimation/estimator.hpp"
+#include "control/flight_controller.hpp"
+#include "control/mission.hpp"
+#include "control/request.hpp"
+#include "control/trajectory/polynomial.hpp"
+#include "plant/model/samples.hpp"
+#include "services/comms/topics.hpp"
+
+namespace swiftlet::comms {
+
+// What is wrong with a message: a sentence with field, value and limit, or nothing. Without heap.
+struct Fault {
+  char text[160] = {};
+  explicit operator bool() const { return text[0] != '\0'; }
+};
+
+// Into out, unless there is a fault: then out is not touched. Those of samples do not allocate.
+Fault from_message(const msg::Imu& in, plant::ImuSample& out);
+Fault from_message(const msg::MocapPose& in,
+                   plant::PoseSample& out);  // of an untracked one, the pose is not looked at
+Fault from_message(const msg::Battery& in, plant::BatterySample& out);
+Fault from_message(const msg::RotorSpeeds& in, plant::RotorSpeedSample& out);
+Fault from_message(const msg::ActuatorCommand& in, plant::ActuatorCommand& out);
+Fault from_message(const msg::GroundTruth& in, plant::TruthSample& out);
+Fault from_message(const msg::Setpoint& in, control::Setpoint& out);
+Fault from_message(const msg::Command& in, control::Request& out);
+Fault from_message(const msg::Mission& in, control::Mission& out);
+Fault from_message(const msg::Trajectory& in, control::Trajectory& out);
+
+msg::Imu to_message(const plant::ImuSample& in);
+msg::MocapPose to_message(const plant::PoseSample& in);
+msg::Battery to_message(const plant::BatterySample& in);
+msg::RotorSpeeds to_message(const plant::RotorSpeedSample& in);
+msg::ActuatorCommand to_message(const plant::ActuatorCommand& in);
+msg::GroundTruth to_message(const plant::TruthSample& in);
+msg::Setpoint to_message(const control::Setpoint& in);
+msg::Estimate to_message(const control::Estimate& in,
+                         double pose_age_s);  // sequence_number is left to the sender
+msg::Reference to_message(const control::Reference& in, const control::AttitudeSetpoint& setpoint,
+                          control::Mode mode);
+// client and id are left to the sender; of a command, kind is not that of a mission or trajectory.
+msg::Command to_message(const control::Request& in);
+msg::Mission to_message(const control::Mission& in);
+msg::Trajectory to_message(const control::Trajectory& in);
+
+}  // namespace swiftlet::comms
