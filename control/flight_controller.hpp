@@ -38,7 +38,10 @@ class FlightController {
   void on_pose(const plant::PoseSample& sample);
   void on_battery(const plant::BatterySample& sample);
   void on_rotor_speeds(const plant::RotorSpeedSample& sample);
-  void on_setpoint(const Setpoint& setpoint);
+  // Setpoints are followed while holding; a refused one changes nothing.
+  Outcome on_setpoint(const Setpoint& setpoint);
+  // Answers by the present mode. A mission or trajectory must have passed check() of supervision/checks.hpp
+  // before.
   Outcome request(const Request& request);
 
   // As of the last step.

@@ -1,0 +1,41 @@
+// What the rotors do at this moment: the motor model run on the commands that were sent, corrected by measured speeds where they come.
+// Its moment is the third state of the attitude design with motor lag.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "plant/model/airframe.hpp"
+#include "plant/model/motor.hpp"
+#include "plant/model/samples.hpp"
+#include "plant/model/vehicle.hpp"
+
+namespace swiftlet::control {
+
+class RotorObserver {
+ public:
+  explicit RotorObserver(const plant::Vehicle& vehicle);
+
+  // Runs the speeds on by dt_s > 0 under the command that has been in force, at the measured supply voltage.
+  // First order with Eq. (18)'s time constant, whichever motor model the vehicle file names.
+  void step(double dt_s, const plant::ActuatorCommand& command, double supply_voltage_v);
+
+  // Draws the speeds towards measured ones. Ignored unless finite, not negative and for the vehicle's number of rotors.
+  void correct(const plant::RotorSpeedSample& sample);
+
+  const plant::PerRotor& speeds() const { return speeds_; }                   // rad/s
+  double thrust_n() const { return wrench_[0]; }                              // along -z of FRD
+  Eigen::Vector3d moment_frd() const { return wrench_.tail<3>(); }            // N m, Eq. (28)
+
+ private:
+  void update_wrench();
+
+  plant::Esc esc_;
+  plant::Motor motor_;
+  plant::RotorCoefficients rotor_;
+  plant::Effectiveness effectiveness_;
+  int count_ = 0;
+  plant::PerRotor speeds_{};
+  Eigen::Vector4d wrench_ = Eigen::Vector4d::Zero();
+};
+
+}  // namespace swiftlet::control

@@ -1,0 +1,250 @@
+#include "control/flight_controller.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "control/allocation/allocator.hpp"
+#include "control/attitude/attitude_controller.hpp"
+#include "control/design/control_design.hpp"
+#include "control/estimation/rotor_observer.hpp"
+#include "control/position/position_controller.hpp"
+#include "control/position/thrust_attitude_map.hpp"
+#include "control/supervision/supervisor.hpp"
+
+namespace swiftlet::control {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kFirstStep_s = 0.002;  // taken for the first sample, which has none before it
+constexpr double kMaxStep_s = 0.1;
+constexpr int kUnusableToFault = 50;   // IMU samples in a row that cannot be used: 0.1 s at 500 Hz
+constexpr double kDescentGain = 2.0;   // 1/s, vertical speed to acceleration, in descent without position
+constexpr double kDescentLimit = 2.0;  // m/s^2, of that acceleration
+
+double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
+
+ControlDesign flyable_design(const plant::Vehicle& vehicle, const ControlSettings& settings) {
+  ControlDesign gains = design(vehicle, settings);
+  const std::vector<plant::Violation> unstable = unstable_loops(gains);
+  if (unstable.empty()) return gains;
+  throw std::invalid_argument(settings.name + ": " + unstable.front().key + " " + unstable.front().message);
+}
+
+}  // namespace
+
+struct FlightController::Loops {
+  Loops(const plant::Vehicle& vehicle_in, const ControlSettings& settings_in, ControlDesign design_in);
+
+  void begin_anew_if_clock_went_back(const plant::ImuSample& sample);
+  Situation situation() const;
+  void act(const Directive& directive, double dt_s);
+  void fly(const Directive& directive, double dt_s);
+  void spool_up(const Directive& directive);
+  void descend_level();
+  void command_wrench(double thrust_n, const AttitudeReference& attitude_reference);
+  plant::ActuatorCommand answer(const plant::ImuSample& sample);
+
+  plant::Vehicle vehicle;
+  ControlSettings settings;
+  double rotor_lag_s;
+  Estimator estimator;
+  RotorObserver rotors;
+  PositionController position;
+  AttitudeController attitude;
+  Allocator allocator;
+  Supervisor supervisor;
+
+  std::int64_t last_stamp_ns = 0;
+  int unusable_samples = 0;
+  Vector3d specific_force_frd = Vector3d::Zero();
+  bool has_battery = false;
+  double supply_voltage_v;
+  plant::ActuatorCommand command;
+  Reference reference;
+  AttitudeSetpoint setpoint;
+  Status status;
+};
+
+FlightController::Loops::Loops(const plant::Vehicle& vehicle_in, const ControlSettings& settings_in,
+                               ControlDesign design_in)
+    : vehicle(vehicle_in),
+      settings(settings_in),
+      rotor_lag_s(design_in.rotor_lag_s),
+      estimator(settings_in.estimator),
+      rotors(vehicle_in),
+      position(settings_in.position, settings_in.limits, design_in),
+      attitude(vehicle_in, settings_in.attitude, design_in),
+      allocator(vehicle_in),
+      supervisor(settings_in.limits, settings_in.failsafe),
+      supply_voltage_v(allocator.plausible_supply().assumed) {
+  command.rotor_count = vehicle.rotor_count();
+}
+
+// A vehicle that was started again counts its time anew; that is believed while the rotors are off.
+void FlightController::Loops::begin_anew_if_clock_went_back(const plant::ImuSample& sample) {
+  const bool rotors_off = command.rotor_state == plant::RotorState::kOff;
+  if (sample.stamp_ns >= last_stamp_ns || !rotors_off) return;
+  estimator = Estimator(settings.estimator);
+  rotors = RotorObserver(vehicle);
+  last_stamp_ns = 0;
+  has_battery = false;
+}
+
+Situation FlightController::Loops::situation() const {
+  Situation situation;
+  const Estimate& estimate = estimator.estimate();
+  situation.stamp_ns = estimate.stamp_ns;
+  situation.estimate = &estimate;
+  situation.has_estimate = estimator.initialised();
+  situation.pose_age_s = estimator.pose_age_s();
+  situation.has_battery = has_battery;
+  situation.supply_voltage_v = supply_voltage_v;
+  situation.unexplained_lift =
+      -(specific_force_frd.z() - estimate.accelerometer_bias.z()) - rotors.thrust_n() / vehicle.mass_kg;
+  situation.imu_healthy = unusable_samples < kUnusableToFault;
+  return situation;
+}
+
+void FlightController::Loops::act(const Directive& directive, double dt_s) {
+  reference = directive.reference;
+  command.rotor_state =
+      directive.actuation == Actuation::kOff ? plant::RotorState::kOff : plant::RotorState::kRunning;
+  switch (directive.actuation) {
+    case Actuation::kOff:
+    case Actuation::kIdle:
+      position.reset();
+      setpoint = AttitudeSetpoint();
+      command.throttle = plant::PerRotor{};
+      status.saturated = false;
+      return;
+    case Actuation::kSpoolUp:
+      return spool_up(directive);
+    case Actuation::kFly:
+      return fly(directive, dt_s);
+    case Actuation::kLevelDescent:
+      return descend_level();
+  }
+}
+
+// Eq. (48) outside, Eq. (35)-(40) inside.
+void FlightController::Loops::fly(const Directive& directive, double dt_s) {
+  const Estimate& estimate = estimator.estimate();
+  const PositionCommand wanted =
+      position.step(estimate.position_ned, estimate.velocity_ned, reference, dt_s, !directive.integrate);
+  const double yaw = euler_from_quaternion(estimate.q_ned_from_frd).z();
+  const ThrustAttitude outer =
+      thrust_attitude(vehicle.mass_kg, wanted.acceleration_ned, yaw, settings.limits.max_tilt_rad);
+  AttitudeReference inner;
+  double thrust_n = outer.thrust_n;
+  if (settings.attitude.feed_forward) {
+    const ReferenceAttitude on_reference = reference_attitude(vehicle.mass_kg, reference);
+    inner = on_reference.attitude;
+    thrust_n += rotor_lag_s * on_reference.thrust_rate;
+  }
+  inner.euler_rad = {outer.euler_rad.x(), outer.euler_rad.y(), reference.yaw_rad};
+  command_wrench(thrust_n, inner);
+}
+
+void FlightController::Loops::spool_up(const Directive& directive) {
+  AttitudeReference level;
+  level.euler_rad.z() = reference.yaw_rad;
+  command_wrench(directive.lift_fraction * vehicle.mass_kg * plant::kGravity, level);
+}
+
+void FlightController::Loops::descend_level() {
+  const Estimate& estimate = estimator.estimate();
+  const double acceleration =
+      std::clamp(kDescentGain * (settings.failsafe.descent_speed - estimate.velocity_ned.z()), -kDescentLimit,
+                 kDescentLimit);
+  AttitudeReference level;
+  level.euler_rad.z() = euler_from_quaternion(estimate.q_ned_from_frd).z();
+  command_wrench(vehicle.mass_kg * (plant::kGravity - acceleration), level);
+}
+
+void FlightController::Loops::command_wrench(double thrust_n, const AttitudeReference& attitude_reference) {
+  const Estimate& estimate = estimator.estimate();
+  Wrench wrench;
+  wrench.thrust_n = thrust_n;
+  wrench.moment_frd = attitude.moments(estimate.q_ned_from_frd, estimate.body_rates_frd, rotors.moment_frd(),
+                                       attitude_reference);
+  const Allocation allocation = allocator.allocate(wrench, supply_voltage_v);
+  command.throttle = allocation.throttle;
+  setpoint = {quaternion_from_euler(attitude_reference.euler_rad), wrench.thrust_n, wrench.moment_frd};
+  status.saturated = allocation.saturated;
+}
+
+plant::ActuatorCommand FlightController::Loops::answer(const plant::ImuSample& sample) {
+  command.stamp_ns = sample.stamp_ns;
+  command.imu_sequence = sample.sequence;
+  command.mocap_sequence = estimator.pose_sequence();
+  ++command.sequence;
+  return command;
+}
+
+FlightController::FlightController(const plant::Vehicle& vehicle, const ControlSettings& settings)
+    : loops_(std::make_unique<Loops>(vehicle, settings, flyable_design(vehicle, settings))) {}
+
+FlightController::~FlightController() = default;
+FlightController::FlightController(FlightController&&) noexcept = default;
+FlightController& FlightController::operator=(FlightController&&) noexcept = default;
+
+plant::ActuatorCommand FlightController::on_imu(const plant::ImuSample& sample) {
+  Loops& l = *loops_;
+  l.begin_anew_if_clock_went_back(sample);
+  const bool usable = l.estimator.predict(sample);
+  l.unusable_samples = usable ? 0 : l.unusable_samples + 1;
+  if (!usable && l.unusable_samples < kUnusableToFault) return l.answer(sample);
+
+  double dt_s = 0.0;
+  if (usable) {
+    dt_s = l.last_stamp_ns == 0 ? kFirstStep_s
+                                : std::min(seconds(sample.stamp_ns - l.last_stamp_ns), kMaxStep_s);
+    l.last_stamp_ns = sample.stamp_ns;
+    l.specific_force_frd = sample.specific_force_frd;
+    l.rotors.step(dt_s, l.command, l.supply_voltage_v);
+  }
+  const Situation situation = l.situation();
+  const Directive directive = l.supervisor.step(situation);
+  l.act(directive, dt_s);
+
+  l.status.mode = l.supervisor.mode();
+  l.status.reason = l.supervisor.reason();
+  l.status.has_pose = situation.has_estimate && situation.pose_age_s <= l.settings.failsafe.mocap_timeout_s;
+  l.status.pose_age_s = situation.pose_age_s;
+  l.status.airborne = l.supervisor.airborne();
+  l.status.supply_voltage_v = l.supply_voltage_v;
+  l.status.mission = l.supervisor.mission();
+  return l.answer(sample);
+}
+
+void FlightController::on_pose(const plant::PoseSample& sample) { loops_->estimator.correct(sample); }
+
+void FlightController::on_battery(const plant::BatterySample& sample) {
+  const Allocator::SupplyRange& plausible = loops_->allocator.plausible_supply();
+  if (!(sample.voltage_v >= plausible.min && sample.voltage_v <= plausible.max)) return;
+  loops_->has_battery = true;
+  loops_->supply_voltage_v = sample.voltage_v;
+}
+
+void FlightController::on_rotor_speeds(const plant::RotorSpeedSample& sample) {
+  loops_->rotors.correct(sample);
+}
+
+Outcome FlightController::on_setpoint(const Setpoint& setpoint) {
+  return loops_->supervisor.setpoint(setpoint, loops_->situation());
+}
+
+Outcome FlightController::request(const Request& request) {
+  return loops_->supervisor.request(request, loops_->situation());
+}
+
+const Estimate& FlightController::estimate() const { return loops_->estimator.estimate(); }
+const Reference& FlightController::reference() const { return loops_->reference; }
+const AttitudeSetpoint& FlightController::attitude_setpoint() const { return loops_->setpoint; }
+const Status& FlightController::status() const { return loops_->status; }
+
+}  // namespace swiftlet::control

@@ -1,0 +1,172 @@
+#include "control/estimation/estimator.hpp"
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "plant/model/vehicle.hpp"
+
+namespace swiftlet::control {
+namespace {
+
+using Eigen::AngleAxisd;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+constexpr std::int64_t kStep_ns = 2'000'000;
+constexpr std::int64_t kFrame_ns = 10'000'000;
+
+// A vehicle that swings about on a known path, with the IMU that it would carry.
+struct Motion {
+  Vector3d gyro_bias = Vector3d::Zero();
+  Vector3d accelerometer_bias = Vector3d::Zero();
+
+  static Vector3d position(double t) {
+    return {std::sin(0.9 * t), 0.5 * std::cos(1.3 * t), -1.0 + 0.2 * std::sin(0.7 * t)};
+  }
+  static Vector3d velocity(double t) {
+    return {0.9 * std::cos(0.9 * t), -0.65 * std::sin(1.3 * t), 0.14 * std::cos(0.7 * t)};
+  }
+  static Vector3d acceleration(double t) {
+    return {-0.81 * std::sin(0.9 * t), -0.845 * std::cos(1.3 * t), -0.098 * std::sin(0.7 * t)};
+  }
+  static Quaterniond attitude(double t) {
+    return AngleAxisd(0.4 * std::sin(0.8 * t), Vector3d::UnitZ()) *
+           AngleAxisd(0.2 * std::sin(1.1 * t), Vector3d::UnitY()) *
+           Quaterniond(AngleAxisd(0.3 * std::sin(1.7 * t), Vector3d::UnitX()));
+  }
+  plant::ImuSample imu(std::int64_t stamp_ns) const {
+    const double t = static_cast<double>(stamp_ns) * 1e-9;
+    const double h = 1e-5;
+    plant::ImuSample sample;
+    sample.stamp_ns = stamp_ns;
+    const Quaterniond change = attitude(t - h).conjugate() * attitude(t + h);
+    sample.body_rates_frd = change.vec() * (change.w() < 0 ? -1.0 : 1.0) / h + gyro_bias;
+    sample.specific_force_frd =
+        attitude(t).conjugate() * (acceleration(t) - Vector3d(0, 0, plant::kGravity)) + accelerometer_bias;
+    return sample;
+  }
+  static plant::PoseSample pose(std::int64_t stamp_ns, std::uint64_t sequence) {
+    const double t = static_cast<double>(stamp_ns) * 1e-9;
+    return {stamp_ns, sequence, true, position(t), attitude(t)};
+  }
+};
+
+double angle_between(const Quaterniond& a, const Quaterniond& b) { return a.angularDistance(b); }
+
+// Runs to `end_s` with poses that come `latency_ns` after their exposure.
+void run(Estimator& estimator, const Motion& motion, double end_s, std::int64_t latency_ns) {
+  std::uint64_t sequence = 0;
+  for (std::int64_t t = kStep_ns; static_cast<double>(t) * 1e-9 <= end_s; t += kStep_ns) {
+    ASSERT_TRUE(estimator.predict(motion.imu(t)));
+    const std::int64_t exposed = t - latency_ns;
+    if (exposed > 0 && exposed % kFrame_ns == 0) estimator.correct(Motion::pose(exposed, ++sequence));
+  }
+}
+
+class EstimatorLatency : public testing::TestWithParam<int> {};
+
+TEST_P(EstimatorLatency, FollowsTheMotionWhateverTheLatencyOfThePoses) {
+  Estimator estimator{EstimatorSettings{}};
+  Motion motion;
+  run(estimator, motion, 8.0, GetParam() * 1'000'000);
+  const Estimate& e = estimator.estimate();
+  const double t = static_cast<double>(e.stamp_ns) * 1e-9;
+  EXPECT_LT((e.position_ned - Motion::position(t)).norm(), 2e-4);
+  EXPECT_LT((e.velocity_ned - Motion::velocity(t)).norm(), 2e-3);
+  EXPECT_LT(angle_between(e.q_ned_from_frd, Motion::attitude(t)), 1e-3);
+}
+INSTANTIATE_TEST_SUITE_P(Milliseconds, EstimatorLatency, testing::Values(0, 10, 30, 100));
+
+TEST(Estimator, FindsTheBiasesOfGyroAndAccelerometer) {
+  Estimator estimator{EstimatorSettings{}};
+  Motion motion;
+  motion.gyro_bias = {0.02, -0.03, 0.01};
+  motion.accelerometer_bias = {0.15, -0.1, 0.2};
+  run(estimator, motion, 12.0, 10'000'000);
+  EXPECT_LT((estimator.estimate().gyro_bias - motion.gyro_bias).norm(), 2e-3);
+  EXPECT_LT((estimator.estimate().accelerometer_bias - motion.accelerometer_bias).norm(), 2e-2);
+  const double t = static_cast<double>(estimator.estimate().stamp_ns) * 1e-9;
+  EXPECT_LT((estimator.estimate().velocity_ned - Motion::velocity(t)).norm(), 1e-2);
+}
+
+TEST(Estimator, DeadReckonsThroughHalfASecondWithoutPoses) {
+  Estimator estimator{EstimatorSettings{}};
+  Motion motion;
+  motion.accelerometer_bias = {0.05, -0.05, 0.05};
+  run(estimator, motion, 10.0, 10'000'000);
+  for (int i = 0; i < 250; ++i) {
+    ASSERT_TRUE(estimator.predict(motion.imu(estimator.estimate().stamp_ns + kStep_ns)));
+  }
+  const double t = static_cast<double>(estimator.estimate().stamp_ns) * 1e-9;
+  EXPECT_LT((estimator.estimate().position_ned - Motion::position(t)).norm(), 0.02);
+  EXPECT_NEAR(estimator.pose_age_s(), 0.51, 0.011);
+}
+
+TEST(Estimator, HasNoMeaningBeforeTheFirstPose) {
+  Estimator estimator{EstimatorSettings{}};
+  EXPECT_TRUE(estimator.predict(Motion().imu(kStep_ns)));
+  EXPECT_FALSE(estimator.initialised());
+  EXPECT_TRUE(std::isinf(estimator.pose_age_s()));
+}
+
+TEST(Estimator, RefusesSamplesThatAreNotFiniteOrNotNewer) {
+  Estimator estimator{EstimatorSettings{}};
+  Motion motion;
+  run(estimator, motion, 1.0, 0);
+  const Estimate before = estimator.estimate();
+  plant::ImuSample imu = motion.imu(before.stamp_ns + kStep_ns);
+  imu.body_rates_frd.y() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(estimator.predict(imu));
+  EXPECT_FALSE(estimator.predict(motion.imu(before.stamp_ns)));
+  plant::PoseSample pose = Motion::pose(before.stamp_ns, 1000);
+  EXPECT_FALSE(estimator.correct(pose));  // its stamp has been used
+  pose = Motion::pose(before.stamp_ns + 1, 1001);
+  pose.tracked = false;
+  EXPECT_FALSE(estimator.correct(pose));
+  pose.tracked = true;
+  pose.position_ned.x() = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(estimator.correct(pose));
+  pose = Motion::pose(before.stamp_ns + 1, 1001);
+  pose.q_ned_from_frd.coeffs() *= 1.5;
+  EXPECT_FALSE(estimator.correct(pose));
+  EXPECT_EQ(estimator.estimate().position_ned, before.position_ned);
+  EXPECT_EQ(estimator.estimate().stamp_ns, before.stamp_ns);
+}
+
+TEST(Estimator, IgnoresAJumpOfThePoseUntilItLasts) {
+  Estimator estimator{EstimatorSettings{}};
+  Motion motion;
+  run(estimator, motion, 2.0, 0);
+  std::uint64_t sequence = 10'000;
+  const Vector3d jump(2.0, 0.0, 0.0);
+  int refused = 0;
+  for (int frame = 0; frame < Estimator::kRejectionsToReset; ++frame) {
+    for (int i = 0; i < 5; ++i) estimator.predict(motion.imu(estimator.estimate().stamp_ns + kStep_ns));
+    plant::PoseSample pose = Motion::pose(estimator.estimate().stamp_ns, ++sequence);
+    pose.position_ned += jump;
+    if (!estimator.correct(pose)) ++refused;
+    const double t = static_cast<double>(estimator.estimate().stamp_ns) * 1e-9;
+    const bool last = frame + 1 == Estimator::kRejectionsToReset;
+    EXPECT_LT(
+        (estimator.estimate().position_ned - Motion::position(t) - (last ? jump : Vector3d::Zero().eval()))
+            .norm(),
+        0.01);
+  }
+  EXPECT_EQ(refused, Estimator::kRejectionsToReset - 1);
+}
+
+TEST(Estimator, RefusesAPoseThatIsOlderThanItsHistory) {
+  Estimator estimator{EstimatorSettings{}};
+  Motion motion;
+  ASSERT_TRUE(estimator.predict(motion.imu(kStep_ns)));
+  ASSERT_TRUE(estimator.correct(Motion::pose(kStep_ns, 1)));
+  for (int i = 0; i < 2 * Estimator::kHistory; ++i)
+    estimator.predict(motion.imu(estimator.estimate().stamp_ns + kStep_ns));
+  EXPECT_FALSE(estimator.correct(Motion::pose(3 * kStep_ns, 2)));
+}
+
+}  // namespace
+}  // namespace swiftlet::control
