@@ -1,0 +1,53 @@
+#include "plant/simulation/actuator_watchdog.hpp"
+
+namespace swiftlet::plant {
+
+const char* to_string(CommandFault fault) {
+  switch (fault) {
+    case CommandFault::kNone:
+      return "no fault";
+    case CommandFault::kRotorCount:
+      return "rotor count is not the vehicle's";
+    case CommandFault::kRotorState:
+      return "rotor state is neither off nor running";
+    case CommandFault::kThrottle:
+      return "throttle is not a number within 0 .. 1";
+    case CommandFault::kStale:
+      return "answers an old IMU sample";
+    case CommandFault::kFuture:
+      return "answers an IMU sample that has not been taken";
+  }
+  return "";
+}
+
+ActuatorWatchdog::ActuatorWatchdog(int rotor_count, std::int64_t timeout_ns)
+    : rotor_count_(rotor_count), timeout_ns_(timeout_ns) {}
+
+CommandFault ActuatorWatchdog::accept(const ActuatorCommand& command, std::int64_t now_ns) {
+  if (command.rotor_count != rotor_count_) return CommandFault::kRotorCount;
+  if (command.rotor_state != RotorState::kOff && command.rotor_state != RotorState::kRunning) {
+    return CommandFault::kRotorState;
+  }
+  RotorDrive drive;
+  drive.state = command.rotor_state;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(rotor_count_); ++i) {
+    if (!(command.throttle[i] >= 0.0 && command.throttle[i] <= 1.0)) return CommandFault::kThrottle;
+    drive.throttle[i] = command.throttle[i];
+  }
+  if (command.stamp_ns > now_ns) return CommandFault::kFuture;
+  if (last_stamp_ns_ && command.stamp_ns < *last_stamp_ns_) return CommandFault::kStale;
+  if (command.stamp_ns < now_ns - timeout_ns_) return CommandFault::kStale;
+  last_stamp_ns_ = command.stamp_ns;
+  drive_ = drive;
+  return CommandFault::kNone;
+}
+
+bool ActuatorWatchdog::expired(std::int64_t now_ns) const {
+  return last_stamp_ns_ && *last_stamp_ns_ < now_ns - timeout_ns_;
+}
+
+RotorDrive ActuatorWatchdog::drive(std::int64_t now_ns) const {
+  return expired(now_ns) ? RotorDrive{} : drive_;
+}
+
+}  // namespace swiftlet::plant

@@ -1,0 +1,113 @@
+// Eq. (1)-(28) as one system of ordinary differential equations, integrated by the classical Runge-Kutta
+// method of order 4: rigid body in NED velocities with quaternion attitude, ESC, motors, rotors and battery
+// in one state.
+//
+//   dp/dt = v                                        Eq. (1)
+//   m dv/dt = R F + m g z - c (v - wind)             Eq. (5), written in NED; c is the vehicle's linear drag
+//   dq/dt = q (0, w) / 2                             Eq. (2)-(4) without their singularity
+//   J dw/dt = M - w x J w                            Eq. (6)
+//   rotors: Eq. (9), (18) or (10)-(16), (25)-(28); battery: vehicle.hpp, drawn from by the power that the
+//   motors take.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+
+#include <Eigen/Core>
+
+#include "plant/model/motor.hpp"
+#include "plant/model/vehicle.hpp"
+#include "plant/simulation/vehicle_state.hpp"
+
+namespace swiftlet::plant {
+
+// Where v_s of Eq. (9) comes from: the vehicle's battery, or a source of constant voltage.
+struct Supply {
+  bool ideal = false;
+  double voltage_v = 0.0;  // of the ideal source
+
+  static Supply battery() { return {}; }
+  static Supply constant(double voltage_v) { return {true, voltage_v}; }
+};
+
+// The forms that the motor's equations take: Eq. (18); Eq. (15) with the current at once; Eq. (10) and (15).
+enum class MotorForm { kReduced, kPhysical, kInductive };
+
+class Dynamics {
+ public:
+  // The vehicle is one that validate() finds no fault with. max_step_s bounds the steps that are taken inside
+  // advance(), besides the bound that the vehicle's fastest time constant sets.
+  Dynamics(const Vehicle& vehicle, const Supply& supply,
+           double max_step_s = std::numeric_limits<double>::infinity());
+
+  // Brings the state forward by dt > 0 in as few equal Runge-Kutta steps as max_step_s() allows, with drive
+  // and wind held.
+  void advance(VehicleState& state, const RotorDrive& drive, const Eigen::Vector3d& wind_ned,
+               double dt) const;
+
+  // A third of the smallest of the time constants tau_a = L_a / R_a (with inductance), tau_m and the
+  // battery's sag, or the max_step_s asked for: RK4 is stable up to 2.7 of them, and off by less than 1e-4 of
+  // a transient at a third.
+  double max_step_s() const { return max_step_s_; }
+
+  // All forces but gravity, over mass: what an ideal accelerometer at the centre of mass measures in flight.
+  Eigen::Vector3d specific_force_frd(const VehicleState& state, const Eigen::Vector3d& wind_ned) const;
+
+  // At the battery's terminals, motors and electronics together.
+  double supply_voltage(const VehicleState& state) const;
+  double supply_current(const VehicleState& state, const RotorDrive& drive) const;
+
+  // Armature currents that belong to these speeds when the voltages have stood for long against tau_a, i_a =
+  // (v_a - e) / R_a.
+  PerRotor settled_currents(const VehicleState& state, const RotorDrive& drive) const;
+
+  int rotor_count() const { return rotor_count_; }
+
+ private:
+  template <int kRotors, MotorForm kMotor>
+  struct System;
+  struct OpenCircuit;
+
+  template <int kRotors, MotorForm kMotor>
+  void advance_as(VehicleState& state, const RotorDrive& drive, const Eigen::Vector3d& wind_ned,
+                  double dt) const;
+  OpenCircuit open_circuit(double state_of_charge) const;
+  double armature_voltage(double supply_voltage_v, const RotorDrive& drive, std::size_t rotor) const;
+
+  using Advance = void (Dynamics::*)(VehicleState&, const RotorDrive&, const Eigen::Vector3d&, double) const;
+  template <MotorForm kMotor>
+  static Advance choose(int rotor_count);
+
+  Advance advance_;
+  int rotor_count_;
+  double max_step_s_;
+
+  double inverse_mass_;
+  double drag_over_mass_;
+  Eigen::Matrix3d inertia_;
+  Eigen::Matrix3d inverse_inertia_;
+  struct Wrench {
+    double lift = 0.0;  // over the vehicle's mass
+    double roll = 0.0;
+    double pitch = 0.0;
+    double yaw = 0.0;
+  };
+  std::array<Wrench, kMaxRotors> wrenches_;  // of each rotor, over Omega^2
+
+  Esc esc_;
+  MotorDynamics motor_;
+  double inverse_electrical_time_;  // R_a / L_a
+  // Eq. (22) solved: Omega_ss = sqrt(steady_square + steady_gain v_a) - steady_offset.
+  double steady_offset_;
+  double steady_square_;
+  double steady_gain_;
+
+  bool ideal_supply_;
+  double ideal_voltage_;
+  BatteryParameters battery_;  // of an ideal supply: one without resistance
+  double charge_per_current_;  // 1/(A s)
+  double inverse_sag_time_;
+};
+
+}  // namespace swiftlet::plant

@@ -1,0 +1,112 @@
+#include "plant/simulation/plant_simulation.hpp"
+
+#include "plant/model/battery.hpp"
+
+namespace swiftlet::plant {
+
+namespace {
+
+Vehicle with_drag(Vehicle vehicle, const SimulationSettings& settings) {
+  if (!settings.air.drag) vehicle.linear_drag = 0.0;
+  return vehicle;
+}
+
+Supply supply_of(const Vehicle& vehicle, const SupplySettings& settings) {
+  return settings.ideal
+             ? Supply::constant(open_circuit_voltage(vehicle.battery, settings.initial_state_of_charge))
+             : Supply::battery();
+}
+
+double seconds(std::int64_t nanoseconds) {
+  return static_cast<double>(nanoseconds) / static_cast<double>(kNanosecondsPerSecond);
+}
+
+}  // namespace
+
+PlantSimulation::PlantSimulation(const Vehicle& vehicle, const SimulationSettings& settings,
+                                 std::uint64_t seed, const VehicleState& initial)
+    : dynamics_(with_drag(vehicle, settings), supply_of(vehicle, settings.supply)),
+      ground_(vehicle, settings.ground),
+      air_(settings.air, seconds(settings.step_ns), seed),
+      imu_(settings.imu, seed),
+      step_ns_(settings.step_ns),
+      step_s_(seconds(settings.step_ns)),
+      rotor_count_(vehicle.rotor_count()),
+      state_(initial),
+      imu_schedule_{period_ns(settings.imu.rate_hz) / settings.step_ns},
+      battery_schedule_{period_ns(settings.supply.rate_hz) / settings.step_ns},
+      rotor_speed_schedule_{period_ns(settings.rotor_speed_rate_hz) / settings.step_ns} {
+  state_.q_ned_from_frd.normalize();
+  state_.state_of_charge = settings.supply.initial_state_of_charge;
+  state_.sag_v = 0.0;
+  on_ground_ = !ground_.out_of_reach(state_.position_ned.z()) && ground_.clearance(state_) <= 0.0;
+  if (on_ground_) {
+    // The floor bears what the rotors do not.
+    contact_sum_ned_ =
+        -state_.q_ned_from_frd._transformVector(dynamics_.specific_force_frd(state_, air_.wind_ned()));
+    contact_sum_ned_.z() -= kGravity;
+    contact_steps_ = 1;
+  }
+  sample({});
+}
+
+void PlantSimulation::step(const RotorDrive& drive) {
+  air_.advance();
+  const VehicleState before = state_;
+  dynamics_.advance(state_, drive, air_.wind_ned(), step_s_);
+  on_ground_ = false;
+  if (!ground_.out_of_reach(state_.position_ned.z())) {
+    Eigen::Vector3d acceleration_ned = Eigen::Vector3d::Zero();
+    on_ground_ = ground_.resolve(before, state_, step_s_, acceleration_ned);
+    contact_sum_ned_ += acceleration_ned;
+  }
+  ++contact_steps_;
+  ++steps_;
+  stamp_ns_ += step_ns_;
+  sample(drive);
+}
+
+void PlantSimulation::sample(const RotorDrive& drive) {
+  imu_sample_.reset();
+  battery_sample_.reset();
+  rotor_speed_sample_.reset();
+  if (imu_schedule_.due()) imu_sample_ = imu_.sample(stamp_ns_, specific_force_frd(), state_.body_rates_frd);
+  if (battery_schedule_.due()) {
+    battery_sample_ = BatterySample{stamp_ns_, battery_schedule_.sequence, dynamics_.supply_voltage(state_),
+                                    dynamics_.supply_current(state_, drive), state_.state_of_charge};
+  }
+  if (rotor_speed_schedule_.due()) {
+    rotor_speed_sample_ =
+        RotorSpeedSample{stamp_ns_, rotor_speed_schedule_.sequence, rotor_count_, state_.rotor_speeds};
+  }
+}
+
+// Forces of the flow as they are, the floor's as a mean since the last sample: impacts are shorter than a
+// sample.
+Eigen::Vector3d PlantSimulation::specific_force_frd() {
+  Eigen::Vector3d specific_force = dynamics_.specific_force_frd(state_, air_.wind_ned());
+  if (contact_steps_ > 0) {
+    specific_force +=
+        state_.q_ned_from_frd.conjugate() * (contact_sum_ned_ / static_cast<double>(contact_steps_));
+  }
+  contact_sum_ned_.setZero();
+  contact_steps_ = 0;
+  return specific_force;
+}
+
+TruthSample PlantSimulation::truth() const {
+  TruthSample truth;
+  truth.stamp_ns = stamp_ns_;
+  truth.sequence = steps_ + 1;
+  truth.position_ned = state_.position_ned;
+  truth.velocity_ned = state_.velocity_ned;
+  truth.q_ned_from_frd = state_.q_ned_from_frd;
+  truth.body_rates_frd = state_.body_rates_frd;
+  truth.rotor_count = rotor_count_;
+  truth.rotor_speeds = state_.rotor_speeds;
+  truth.supply_voltage_v = dynamics_.supply_voltage(state_);
+  truth.on_ground = on_ground_;
+  return truth;
+}
+
+}  // namespace swiftlet::plant

@@ -1,0 +1,98 @@
+#include "plant/simulation/random.hpp"
+
+#include <cmath>
+
+namespace swiftlet::plant {
+
+namespace {
+
+std::uint64_t splitmix64(std::uint64_t& state) {
+  state += 0x9e3779b97f4a7c15U;
+  std::uint64_t z = state;
+  z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
+  z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
+  return z ^ (z >> 31U);
+}
+
+std::uint64_t rotate_left(std::uint64_t x, unsigned count) { return (x << count) | (x >> (64U - count)); }
+
+// Natural logarithm of x > 0, normal: x = m 2^e with m around 1, log m = 2 atanh((m - 1)/(m + 1)) as a
+// series. The C library's differs in the last bit from processor to processor.
+double portable_log(double x) {
+  int exponent = 0;
+  double mantissa = std::frexp(x, &exponent);
+  if (mantissa < 0.70710678118654752) {
+    mantissa *= 2.0;
+    --exponent;
+  }
+  const double s = (mantissa - 1.0) / (mantissa + 1.0);
+  const double s2 = s * s;
+  double sum = 0.0;
+  for (int k = 21; k >= 1; k -= 2) sum = sum * s2 + 1.0 / k;
+  return 2.0 * s * sum + exponent * 0.69314718055994531;
+}
+
+}  // namespace
+
+RandomStream::RandomStream(std::uint64_t seed, std::uint64_t stream_id) {
+  std::uint64_t mix = seed;
+  mix = splitmix64(mix) ^ stream_id;
+  for (std::uint64_t& word : state_) word = splitmix64(mix);
+}
+
+std::uint64_t RandomStream::next() {
+  const std::uint64_t result = rotate_left(state_[0] + state_[3], 23U) + state_[0];
+  const std::uint64_t t = state_[1] << 17U;
+  state_[2] ^= state_[0];
+  state_[3] ^= state_[1];
+  state_[1] ^= state_[2];
+  state_[0] ^= state_[3];
+  state_[2] ^= t;
+  state_[3] = rotate_left(state_[3], 45U);
+  return result;
+}
+
+double RandomStream::uniform() { return static_cast<double>(next() >> 11U) * 0x1.0p-53; }
+
+double RandomStream::normal() {
+  if (has_spare_) {
+    has_spare_ = false;
+    return spare_;
+  }
+  for (;;) {
+    const double u = 2.0 * uniform() - 1.0;
+    const double v = 2.0 * uniform() - 1.0;
+    const double s = u * u + v * v;
+    if (s >= 1.0 || s == 0.0) continue;
+    const double scale = std::sqrt(-2.0 * portable_log(s) / s);
+    spare_ = v * scale;
+    has_spare_ = true;
+    return u * scale;
+  }
+}
+
+Eigen::Vector3d RandomStream::normal3() {
+  const double x = normal();
+  const double y = normal();
+  const double z = normal();
+  return {x, y, z};
+}
+
+Eigen::Vector3d RandomStream::in_unit_ball() {
+  for (;;) {
+    const double x = 2.0 * uniform() - 1.0;
+    const double y = 2.0 * uniform() - 1.0;
+    const double z = 2.0 * uniform() - 1.0;
+    if (x * x + y * y + z * z <= 1.0) return {x, y, z};
+  }
+}
+
+Eigen::Vector3d RandomStream::on_unit_sphere() {
+  for (;;) {
+    const Eigen::Vector3d point = in_unit_ball();
+    const double square = point.x() * point.x() + point.y() * point.y() + point.z() * point.z();
+    if (square > 0.01) return point / std::sqrt(square);
+  }
+}
+
+}  // namespace swiftlet::plant

@@ -1,0 +1,82 @@
+// What a user sets of the simulated world: integration, sensors, battery, air, ground. The simulation file
+// holds the same keys.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "plant/model/vehicle.hpp"
+
+namespace swiftlet::plant {
+
+constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
+
+// Noise densities as on data sheets; a sample's standard deviation is density * sqrt(rate).
+struct ImuSettings {
+  double rate_hz = 500.0;                       // 1 s / rate must be a whole number of integration steps
+  double accelerometer_noise_density = 4.0e-3;  // m/s^2/sqrt(Hz)
+  double gyro_noise_density = 2.0e-4;           // rad/s/sqrt(Hz)
+  double accelerometer_bias_sigma = 0.1;        // m/s^2, of the constant part, drawn once a run for each axis
+  double gyro_bias_sigma = 0.01;                // rad/s, likewise
+  double accelerometer_bias_walk = 1.0e-3;      // m/s^2/sqrt(s): the bias wanders by walk * sqrt(t)
+  double gyro_bias_walk = 1.0e-4;               // rad/s/sqrt(s)
+  double accelerometer_range = 16.0 * kGravity;  // m/s^2, a sample saturates here
+  double gyro_range = 34.9;                      // rad/s
+};
+
+// Errors are bounded, not Gaussian: what a calibrated system shows inside its arena.
+struct MocapSettings {
+  double rate_hz = 100.0;
+  double latency_s = 0.010;               // from exposure to delivery
+  double position_error_m = 1.0e-4;       // radius of the ball that each frame's error lies in
+  double orientation_error_rad = 1.4e-3;  // likewise, as a rotation vector: 0.1 mm over an arm of 69.5 mm
+  double misalignment_rad =
+      1.75e-3;  // angle between the marker body's axes and the vehicle's; direction drawn once a run
+  double dropout_probability = 0.0;  // that a frame begins a dropout
+  double dropout_length_s = 0.2;     // frames come untracked for so long
+};
+
+struct SupplySettings {
+  bool ideal = false;                    // holds the open-circuit voltage of the initial charge
+  double initial_state_of_charge = 1.0;  // 0 .. 1
+  double rate_hz = 10.0;                 // of battery samples; a whole number of steps, like the IMU's
+};
+
+struct AirSettings {
+  bool drag = true;                                    // the vehicle's linear drag
+  Eigen::Vector3d wind_ned = Eigen::Vector3d::Zero();  // m/s, steady
+  Eigen::Vector3d gust_sigma_ned =
+      Eigen::Vector3d::Zero();        // m/s, of gusts: an Ornstein-Uhlenbeck process for each axis
+  double gust_time_constant_s = 1.0;  // its correlation time
+};
+
+// The floor is level. Standing level on it, the body origin is at z = 0 NED: the floor is leg_height_m below.
+struct GroundSettings {
+  bool present = true;
+  double leg_height_m =
+      0.02;  // from the rotor hubs' plane through the body origin down to the feet, one under each rotor
+  double friction = 0.6;  // Coulomb
+};
+
+struct SimulationSettings {
+  std::string name = "default";
+  std::int64_t step_ns = 1'000'000;    // integration step
+  double command_timeout_s = 0.2;      // rotors off if no valid command has come for so long
+  double rotor_speed_rate_hz = 500.0;  // of rotor speed samples; 0: the vehicle does not measure them
+  ImuSettings imu;
+  MocapSettings mocap;
+  SupplySettings supply;
+  AirSettings air;
+  GroundSettings ground;
+};
+
+// Period of a rate, to the nanosecond; 0 for a rate of 0.
+std::int64_t period_ns(double rate_hz);
+
+// Every rule that the settings break; keys are those of the simulation file ("imu.rate_hz").
+std::vector<Violation> validate(const SimulationSettings& settings);
+
+}  // namespace swiftlet::plant

@@ -1,0 +1,28 @@
+// Everything about the vehicle that is integrated.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "plant/model/samples.hpp"
+
+namespace swiftlet::plant {
+
+struct VehicleState {
+  Eigen::Vector3d position_ned = Eigen::Vector3d::Zero();  // m
+  Eigen::Vector3d velocity_ned = Eigen::Vector3d::Zero();  // m/s
+  Eigen::Quaterniond q_ned_from_frd = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d body_rates_frd = Eigen::Vector3d::Zero();  // rad/s
+  PerRotor rotor_speeds{};                                   // rad/s, >= 0
+  PerRotor armature_currents{};                              // A; only integrated with armature inductance
+  double state_of_charge = 1.0;                              // of the battery, 1 full .. 0 empty
+  double sag_v = 0.0;                                        // open-circuit less terminal voltage
+};
+
+// What the ESCs are told.
+struct RotorDrive {
+  RotorState state = RotorState::kOff;  // kOff: v_a = 0
+  PerRotor throttle{};                  // delta of Eq. (8), 0 .. 1
+};
+
+}  // namespace swiftlet::plant
