@@ -1,4 +1,5 @@
-// How a subcommand joins the program `swiftlet`: add_X_command adds its options to the command line and hands back what to run.
+// How a subcommand joins the program `swiftlet`: add_X_command adds its options to the command line and hands
+// back what to run.
 #pragma once
 
 #include <functional>
@@ -17,8 +18,9 @@ constexpr int kFailed = 1;    // it ran and failed
 constexpr int kBadInput = 2;  // wrong usage or bad input; nothing was started or moved
 
 struct Command {
-  CLI::App* app = nullptr;   // the subcommand; run is called if it was parsed
-  std::function<int()> run;  // returns kDone, kFailed or kBadInput, or throws: InputError is bad input, any other a failure
+  CLI::App* app = nullptr;  // the subcommand; run is called if it was parsed
+  std::function<int()>
+      run;  // returns kDone, kFailed or kBadInput, or throws: InputError is bad input, any other a failure
 };
 
 // Input that was refused. what() is one sentence for the user.

@@ -1,0 +1,12 @@
+#include "ground/commands.hpp"
+#include "ground/request_command.hpp"
+
+namespace swiftlet::ground {
+
+Command add_arm_command(CLI::App& root) {
+  return add_plain_request_command(root, "arm",
+                                   "Start the rotors turning on the ground, once all checks pass",
+                                   msg::Command_Constants::ARM);
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,232 @@
+#include "ground/client.hpp"
+
+#include <algorithm>
+#include <array>
+#include <random>
+#include <utility>
+
+#include "control/mode.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+constexpr std::chrono::milliseconds kResendPeriod{200};
+constexpr std::chrono::milliseconds kLookPeriod{20};  // how often a wait looks at what makes no noise
+
+std::uint64_t random_id() {
+  std::random_device device;
+  return (static_cast<std::uint64_t>(device()) << 32) | device();
+}
+
+TruthRow row_of(const msg::GroundTruth& truth) {
+  TruthRow row;
+  row.stamp_ns = truth.stamp_ns();
+  row.position_ned = truth.position_ned();
+  row.velocity_ned = truth.velocity_ned();
+  row.q_ned_from_frd = truth.q_ned_from_frd();
+  row.body_rates_frd = truth.body_rates_frd();
+  row.rotor_speeds = truth.rotor_speeds();
+  row.rotor_count = std::min<int>(truth.rotor_count(), static_cast<int>(row.rotor_speeds.size()));
+  row.supply_voltage_v = truth.supply_voltage_v();
+  row.on_ground = truth.on_ground();
+  return row;
+}
+
+ReferenceRow row_of(const msg::Reference& reference) {
+  ReferenceRow row;
+  row.stamp_ns = reference.stamp_ns();
+  row.mode = reference.mode();
+  row.position_ned = reference.position_ned();
+  row.velocity_ned = reference.velocity_ned();
+  row.yaw_rad = reference.yaw();
+  return row;
+}
+
+EstimateRow row_of(const msg::Estimate& estimate) {
+  return {estimate.stamp_ns(), estimate.position_ned(), estimate.velocity_ned()};
+}
+
+MissionRow row_of(const msg::MissionStatus& status) {
+  return {status.stamp_ns(), status.mission_id(), status.state(), status.item_index()};
+}
+
+msg::MissionItem message_of(const control::MissionItem& item) {
+  msg::MissionItem message;
+  message.kind(static_cast<std::uint8_t>(item.kind));
+  message.position_ned({item.position_ned.x(), item.position_ned.y(), item.position_ned.z()});
+  message.yaw_free(item.yaw_free);
+  message.yaw(item.yaw_rad);
+  message.speed(item.speed);
+  message.hold_s(item.hold_s);
+  return message;
+}
+
+}  // namespace
+
+Client::Client(const comms::NodeSettings& settings, FlightRecord* record)
+    : settings_(settings),
+      record_(record),
+      client_id_(random_id()),
+      last_id_(random_id() >> 1),
+      node_(settings),
+      commands_(node_.publish(comms::topics::kCommand)),
+      missions_(node_.publish(comms::topics::kMission)) {
+  subscribe_all();
+}
+
+template <class T>
+void Client::keep(Latest<T> View::*slot, const T& message) {
+  const std::lock_guard lock(mutex_);
+  Latest<T>& latest = view_.*slot;
+  latest.message = message;
+  latest.received = Clock::now();
+  ++latest.count;
+}
+
+void Client::subscribe_all() {
+  using namespace comms::topics;
+  // States, answers and peers wake whoever waits; telemetry comes too often for that.
+  subscriptions_.push_back(
+      node_.subscribe<msg::ControlStatus>(kControlStatus, [this](const msg::ControlStatus& status) {
+        keep(&View::control, status);
+        changed_.notify_all();
+      }));
+  subscriptions_.push_back(
+      node_.subscribe<msg::MissionStatus>(kMissionStatus, [this](const msg::MissionStatus& status) {
+        if (record_ != nullptr) record_->mission.append(row_of(status));
+        keep(&View::mission, status);
+        changed_.notify_all();
+      }));
+  subscriptions_.push_back(
+      node_.subscribe<msg::VehicleInfo>(kVehicleInfo, [this](const msg::VehicleInfo& info) {
+        keep(&View::vehicle, info);
+        changed_.notify_all();
+      }));
+  subscriptions_.push_back(node_.subscribe<msg::CommandAck>(kCommandAck, [this](const msg::CommandAck& ack) {
+    if (ack.client() != client_id_) return;
+    {
+      const std::lock_guard lock(mutex_);
+      ack_ = ack;
+    }
+    changed_.notify_all();
+  }));
+  subscriptions_.push_back(node_.subscribe<msg::Battery>(
+      kBattery, [this](const msg::Battery& battery) { keep(&View::battery, battery); }));
+  subscriptions_.push_back(node_.subscribe<msg::Estimate>(kEstimate, [this](const msg::Estimate& estimate) {
+    if (record_ != nullptr) record_->estimate.append(row_of(estimate));
+    keep(&View::estimate, estimate);
+  }));
+  subscriptions_.push_back(
+      node_.subscribe<msg::Reference>(kReference, [this](const msg::Reference& reference) {
+        if (record_ != nullptr) record_->reference.append(row_of(reference));
+        keep(&View::reference, reference);
+      }));
+  subscriptions_.push_back(
+      node_.subscribe<msg::GroundTruth>(kGroundTruth, [this](const msg::GroundTruth& truth) {
+        if (record_ != nullptr) record_->truth.append(row_of(truth));
+        keep(&View::truth, truth);
+      }));
+  node_.on_peer([this](const comms::PeerEvent& peer) {
+    {
+      const std::lock_guard lock(mutex_);
+      view_.peers[peer.name] = peer.alive;
+    }
+    changed_.notify_all();
+  });
+}
+
+View Client::view() const {
+  const std::lock_guard lock(mutex_);
+  return view_;
+}
+
+bool Client::wait(std::chrono::milliseconds timeout, const std::function<bool(const View&)>& done) const {
+  const auto deadline = Clock::now() + timeout;
+  std::unique_lock lock(mutex_);
+  while (!done(view_)) {
+    const auto now = Clock::now();
+    if (now >= deadline) return false;
+    changed_.wait_until(lock, std::min(deadline, now + kLookPeriod));
+  }
+  return true;
+}
+
+Answer Client::ask(std::uint64_t id, const std::function<void()>& send, const std::function<bool()>& heard,
+                   std::chrono::milliseconds timeout, const Cancelled& cancelled) {
+  const auto deadline = Clock::now() + timeout;
+  auto next_send = Clock::now();
+  bool sent = false;
+  const auto answered = [&] { return ack_ && ack_->id() == id; };
+
+  std::unique_lock lock(mutex_);
+  while (!answered()) {
+    const auto now = Clock::now();
+    if (cancelled && cancelled()) return {Answer::Kind::kCancelled, "it was cancelled"};
+    if (now >= deadline) {
+      lock.unlock();
+      if (sent) return {Answer::Kind::kSilence, "no answer from the control service of " + where()};
+      return {Answer::Kind::kNoControl, "no control service for " + where()};
+    }
+    if (now >= next_send) {
+      lock.unlock();
+      if (heard()) {
+        send();
+        sent = true;
+        next_send = now + kResendPeriod;
+      }
+      lock.lock();
+      if (answered()) break;
+    }
+    changed_.wait_until(lock, std::min(deadline, now + kLookPeriod));
+  }
+  if (ack_->accepted()) return {Answer::Kind::kAccepted, ""};
+  return {Answer::Kind::kRefused, ack_->reason().c_str()};
+}
+
+Answer Client::command(msg::Command command, std::chrono::milliseconds timeout, const Cancelled& cancelled) {
+  const std::uint64_t id = next_id();
+  command.client(client_id_);
+  command.id(id);
+  return ask(
+      id, [&] { commands_.publish(command); }, [&] { return commands_.matched() > 0; }, timeout, cancelled);
+}
+
+Answer Client::upload(const control::Mission& mission, std::chrono::milliseconds timeout,
+                      const Cancelled& cancelled) {
+  msg::Mission message;
+  message.client(client_id_);
+  mission_id_ = next_id();
+  message.id(mission_id_);
+  for (const control::MissionItem& item : mission.items) message.items().push_back(message_of(item));
+  return ask(
+      mission_id_, [&] { missions_.publish(message); }, [&] { return missions_.matched() > 0; }, timeout,
+      cancelled);
+}
+
+std::string Client::where() const {
+  std::string alive;
+  for (const auto& [name, is_alive] : view().peers) {
+    if (is_alive) alive += (alive.empty() ? "" : ", ") + name;
+  }
+  return "vehicle " + settings_.vehicle + " in domain " + std::to_string(settings_.domain) +
+         "; seen there: " + (alive.empty() ? "nothing" : alive);
+}
+
+const char* mode_name(std::uint8_t mode) { return control::to_string(static_cast<control::Mode>(mode)); }
+
+const char* mission_state_name(std::uint8_t state) {
+  switch (state) {
+    case msg::MissionStatus_Constants::NONE:
+      return "none";
+    case msg::MissionStatus_Constants::RUNNING:
+      return "running";
+    case msg::MissionStatus_Constants::COMPLETED:
+      return "completed";
+    case msg::MissionStatus_Constants::ABORTED:
+      return "aborted";
+    default:
+      return "unknown";
+  }
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,115 @@
+// The ground's end of the wire to one vehicle: hears what it says of itself and asks things of it.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "control/mission.hpp"
+#include "ground/flight_record.hpp"
+#include "services/comms/node.hpp"
+
+namespace swiftlet::ground {
+
+namespace msg = comms::msg;
+using Clock = std::chrono::steady_clock;
+
+// The newest sample of a topic.
+template <class T>
+struct Latest {
+  T message{};
+  Clock::time_point received{};
+  std::uint64_t count = 0;  // of the samples that came
+
+  bool seen() const { return count > 0; }
+  double age_s(Clock::time_point now) const { return std::chrono::duration<double>(now - received).count(); }
+};
+
+// What the vehicle and its controller have said.
+struct View {
+  Latest<msg::ControlStatus> control;
+  Latest<msg::MissionStatus> mission;
+  Latest<msg::VehicleInfo> vehicle;
+  Latest<msg::Battery> battery;
+  Latest<msg::Estimate> estimate;
+  Latest<msg::Reference> reference;
+  Latest<msg::GroundTruth> truth;
+  std::map<std::string, bool> peers;  // by name: alive
+};
+
+// The answer to a request.
+struct Answer {
+  enum class Kind {
+    kAccepted,
+    kRefused,    // by the controller, for `reason`
+    kNoControl,  // no controller was there to take it
+    kSilence,    // a controller was there and did not answer
+    kCancelled,
+  };
+  Kind kind = Kind::kSilence;
+  std::string reason;  // a sentence unless accepted
+
+  bool accepted() const { return kind == Kind::kAccepted; }
+};
+
+class Client {
+ public:
+  // record: where every sample of truth, reference, estimate and mission status is kept; may be null. Throws
+  // std::runtime_error if the network cannot be joined.
+  explicit Client(const comms::NodeSettings& settings, FlightRecord* record = nullptr);
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+  View view() const;
+
+  // Waits until `done` holds of the view; false if it does not within the time-out. `done` must not call this
+  // client.
+  bool wait(std::chrono::milliseconds timeout, const std::function<bool(const View&)>& done) const;
+
+  // Sends until it is answered, the time is over, or `cancelled` says so.
+  using Cancelled = std::function<bool()>;
+  Answer command(msg::Command command, std::chrono::milliseconds timeout, const Cancelled& cancelled = {});
+  Answer upload(const control::Mission& mission, std::chrono::milliseconds timeout,
+                const Cancelled& cancelled = {});
+  // Of the mission uploaded last: MissionStatus::mission_id.
+  std::uint64_t mission_id() const { return mission_id_; }
+
+  // "vehicle kl1 in domain 0; seen there: plant, mocap"
+  std::string where() const;
+
+ private:
+  template <class T>
+  void keep(Latest<T> View::*slot, const T& message);
+  void subscribe_all();
+  Answer ask(std::uint64_t id, const std::function<void()>& send, const std::function<bool()>& heard,
+             std::chrono::milliseconds timeout, const Cancelled& cancelled);
+  std::uint64_t next_id() { return ++last_id_; }
+
+  comms::NodeSettings settings_;
+  FlightRecord* record_;
+  std::uint64_t client_id_;
+  std::uint64_t last_id_;  // starts at random: mission ids of two tools must differ
+  std::uint64_t mission_id_ = 0;
+
+  mutable std::mutex mutex_;  // guards view_ and ack_; held for copies only
+  mutable std::condition_variable changed_;
+  View view_;
+  std::optional<msg::CommandAck> ack_;  // to the last request
+
+  comms::Node node_;
+  comms::Publisher<msg::Command> commands_;
+  comms::Publisher<msg::Mission> missions_;
+  std::vector<comms::Subscription> subscriptions_;  // last: their callbacks use all of the above
+};
+
+// Words for the constants of the wire.
+const char* mode_name(std::uint8_t mode);
+const char* mission_state_name(std::uint8_t state);
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,22 @@
+// The subcommands of `swiftlet`, one file each.
+#pragma once
+
+#include "ground/command.hpp"
+
+namespace swiftlet::ground {
+
+// A flight from one command: the processes, the mission, the report.
+Command add_fly_command(CLI::App& root);
+
+// Asked of a vehicle that runs already.
+Command add_arm_command(CLI::App& root);
+Command add_disarm_command(CLI::App& root);
+Command add_takeoff_command(CLI::App& root);
+Command add_goto_command(CLI::App& root);
+Command add_land_command(CLI::App& root);
+Command add_hold_command(CLI::App& root);
+Command add_stop_command(CLI::App& root);
+Command add_mission_command(CLI::App& root);
+Command add_status_command(CLI::App& root);
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,11 @@
+#include "ground/commands.hpp"
+#include "ground/request_command.hpp"
+
+namespace swiftlet::ground {
+
+Command add_disarm_command(CLI::App& root) {
+  return add_plain_request_command(root, "disarm", "Stop the rotors on the ground",
+                                   msg::Command_Constants::DISARM);
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,260 @@
+#include "ground/flight.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <utility>
+
+#include "control/mode.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using namespace std::chrono_literals;
+using ControlMode = control::Mode;
+
+constexpr auto kReadyTimeout = 20s;
+constexpr auto kRequestTimeout = 3s;
+constexpr auto kArmTimeout = 5s;  // the estimator may need a moment for the first checks to pass
+constexpr auto kRetryPeriod = 200ms;
+constexpr auto kStep = 50ms;
+constexpr auto kLastFiguresTimeout = 1500ms;
+constexpr double kSilenceS = 3.0;  // without a control status
+constexpr double kLandingTimeoutS = 30.0;
+constexpr double kLandingSpeed = 0.4;  // m/s
+
+ControlMode mode_of(const View& view) { return static_cast<ControlMode>(view.control.message.mode()); }
+
+bool rotors_off(ControlMode mode) { return mode == ControlMode::kDisarmed || mode == ControlMode::kStopped; }
+
+// What is not there yet; empty when all is.
+std::string missing(const View& view) {
+  std::string list;
+  const auto need = [&list](bool there, const char* what) {
+    if (!there) list += (list.empty() ? "" : ", ") + std::string(what);
+  };
+  need(view.vehicle.seen(), "the vehicle (vehicle_info of swiftlet-plant)");
+  need(view.battery.seen(), "battery (of swiftlet-plant)");
+  need(view.control.seen(), "control_status (of swiftlet-control)");
+  need(view.control.seen() && view.control.message.has_pose(),
+       "a pose that control has taken in (mocap_pose of swiftlet-mocap)");
+  need(view.truth.seen(), "ground_truth (of swiftlet-plant)");
+  need(view.reference.seen(), "reference (of swiftlet-control)");
+  return list;
+}
+
+double since_s(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// The newest tracking error of which truth and reference are both in; NaN if there is none among the last
+// rows.
+double newest_error_m(const FlightRecord& record) {
+  constexpr std::size_t kLookBack = 64;
+  const std::size_t truths = record.truth.size();
+  const std::size_t references = record.reference.size();
+  for (std::size_t i = 0; i < std::min(truths, kLookBack); ++i) {
+    const TruthRow& truth = record.truth[truths - 1 - i];
+    for (std::size_t k = 0; k < std::min(references, kLookBack); ++k) {
+      const ReferenceRow& reference = record.reference[references - 1 - k];
+      if (reference.stamp_ns != truth.stamp_ns) continue;
+      return std::hypot(truth.position_ned[0] - reference.position_ned[0],
+                        truth.position_ned[1] - reference.position_ned[1],
+                        truth.position_ned[2] - reference.position_ned[2]);
+    }
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+Flight::Flight(Client& client, const FlightRecord& record, const MissionFile& mission,
+               double planned_duration_s, Watch watch, ProgressLine& progress)
+    : client_(client),
+      record_(record),
+      mission_(mission),
+      planned_duration_s_(planned_duration_s),
+      watch_(std::move(watch)),
+      progress_(progress) {}
+
+void Flight::run() {
+  wait_until_ready();
+  arm();
+  start_mission();
+  follow();
+  wait_for_last_figures();
+}
+
+void Flight::demand_alive() const {
+  if (const auto casualty = watch_.casualty()) throw FlightFailure(*casualty);
+}
+
+void Flight::demand_no_interrupt() const {
+  if (watch_.interrupts() > 0) throw FlightFailure("interrupted before take-off");
+}
+
+void Flight::wait_until_ready() {
+  const auto start = Clock::now();
+  while (true) {
+    std::string absent;
+    const bool ready = client_.wait(kStep, [&](const View& view) {
+      absent = missing(view);
+      return absent.empty();
+    });
+    if (ready) return;
+    demand_alive();
+    demand_no_interrupt();
+    if (Clock::now() - start > kReadyTimeout) {
+      throw FlightFailure("after 20 s there is still missing: " + absent + "; looked for " + client_.where());
+    }
+    progress_.update(0, "waiting for " + absent);
+  }
+}
+
+void Flight::arm() {
+  msg::Command command;
+  command.kind(msg::Command_Constants::ARM);
+  const auto deadline = Clock::now() + kArmTimeout;
+  while (true) {
+    const Answer answer = client_.command(command, kRequestTimeout,
+                                          [this] { return watch_.casualty() || watch_.interrupts() > 0; });
+    demand_alive();
+    demand_no_interrupt();
+    if (answer.accepted()) return;
+    if (answer.kind != Answer::Kind::kRefused || Clock::now() > deadline)
+      throw FlightFailure("arming: " + answer.reason);
+    progress_.update(0, "arming: " + answer.reason);
+    client_.wait(kRetryPeriod, [this](const View&) { return watch_.interrupts() > 0; });
+  }
+}
+
+void Flight::start_mission() {
+  const Answer answer = client_.upload(mission_.mission, kRequestTimeout,
+                                       [this] { return watch_.casualty() || watch_.interrupts() > 0; });
+  demand_alive();
+  if (watch_.interrupts() > 0) bring_down("interrupted");
+  if (!answer.accepted()) throw FlightFailure("the mission was refused: " + answer.reason);
+}
+
+void Flight::follow() {
+  const std::uint64_t id = client_.mission_id();
+  const double time_limit_s = 1.5 * planned_duration_s_ + 30.0;
+  const auto start = Clock::now();
+  while (true) {
+    // Wakes for the end; looks around at every step besides.
+    client_.wait(kStep, [id](const View& view) {
+      return view.mission.message.mission_id() == id &&
+             view.mission.message.state() == msg::MissionStatus_Constants::COMPLETED;
+    });
+    demand_alive();
+    const View view = client_.view();
+    show(view);
+    if (watch_.interrupts() > 0) bring_down("interrupted");
+    const ControlMode mode = mode_of(view);
+    if (view.mission.message.mission_id() == id) {
+      const auto state = view.mission.message.state();
+      if (state == msg::MissionStatus_Constants::COMPLETED && rotors_off(mode)) return;
+      if (state == msg::MissionStatus_Constants::ABORTED) {
+        const std::string reason = view.control.message.reason().c_str();
+        bring_down("the mission was aborted: " + std::string(control::to_string(mode)) + ", " + reason);
+      }
+    }
+    if (view.control.age_s(Clock::now()) > kSilenceS) throw FlightFailure("control has said nothing for 3 s");
+    if (since_s(start) > time_limit_s) {
+      char reason[96];
+      std::snprintf(reason, sizeof reason,
+                    "the mission took longer than %.0f s, of which %.0f s were planned", time_limit_s,
+                    planned_duration_s_);
+      bring_down(reason);
+    }
+  }
+}
+
+// Plant and control give their figures of the flight with their next status after it.
+void Flight::wait_for_last_figures() {
+  const auto landed = Clock::now();
+  client_.wait(kLastFiguresTimeout, [landed](const View& view) {
+    return !view.vehicle.message.rotors_running() && view.vehicle.received > landed &&
+           view.control.received > landed;
+  });
+}
+
+void Flight::bring_down(const std::string& reason) {
+  const int interrupts_before = watch_.interrupts();
+  progress_.say(reason +
+                (interrupts_before > 0 ? "; landing (interrupt again to end at once)" : "; landing"));
+  msg::Command land;
+  land.kind(msg::Command_Constants::LAND);
+  land.speed(kLandingSpeed);
+  const auto start = Clock::now();
+  bool descending = false;
+  while (!rotors_off(mode_of(client_.view()))) {
+    if (const auto casualty = watch_.casualty())
+      throw FlightFailure(reason + "; while landing, " + *casualty);
+    if (watch_.interrupts() > std::max(1, interrupts_before))
+      throw FlightFailure(reason + "; ended in flight");
+    if (since_s(start) > kLandingTimeoutS) throw FlightFailure(reason + "; it did not land within 30 s");
+    if (mode_of(client_.view()) == ControlMode::kArmed) {
+      msg::Command disarm;
+      disarm.kind(msg::Command_Constants::DISARM);
+      client_.command(disarm, kRetryPeriod);
+    } else if (!descending) {
+      // Refused while the rotors spool up or the descent is already on: asked again.
+      descending = client_.command(land, kRetryPeriod).accepted();
+    }
+    show(client_.view());
+    client_.wait(kRetryPeriod, [](const View& view) { return rotors_off(mode_of(view)); });
+  }
+  wait_for_last_figures();
+  throw FlightFailure(reason +
+                      (mode_of(client_.view()) == ControlMode::kStopped ? "; rotors stopped" : "; landed"));
+}
+
+void Flight::show(const View& view) {
+  const auto& mission = view.mission.message;
+  const auto& position = view.truth.message.position_ned();
+  const auto window = mission_window(record_, client_.mission_id(), mission_.mission);
+  const double time_s = window ? mission_duration_s(record_, client_.mission_id(), *window) : 0.0;
+  const std::size_t item = std::min<std::size_t>(mission.item_index(), mission_.mission.items.size() - 1);
+  char text[192];
+  std::snprintf(
+      text, sizeof text, "%5.1f s  %u/%zu %-8s  %-10s  at (%5.2f, %5.2f, %5.2f) m  off by %5.1f mm  %.2f V",
+      time_s, static_cast<unsigned>(item + 1), mission_.mission.items.size(),
+      to_string(mission_.mission.items[item].kind), mode_name(view.control.message.mode()), position[0],
+      position[1], position[2], newest_error_m(record_) * 1e3, view.battery.message.voltage_v());
+  progress_.update(static_cast<int>(item), text);
+}
+
+std::optional<Window> mission_window(const FlightRecord& record, std::uint64_t mission_id,
+                                     const control::Mission& mission) {
+  const ReferenceRow* const end = record.reference.end();
+  const auto in_mission = [](const ReferenceRow& row) {
+    return row.mode == static_cast<int>(ControlMode::kMission);
+  };
+  const ReferenceRow* const first = std::find_if(record.reference.begin(), end, in_mission);
+  if (first == end) return std::nullopt;
+
+  const std::size_t land = mission.items.back().kind == control::MissionItemKind::kLand
+                               ? mission.items.size() - 1
+                               : mission.items.size();
+  for (const MissionRow& row : record.mission) {
+    if (row.mission_id != mission_id || row.stamp_ns < first->stamp_ns) continue;
+    if (row.item_index >= land) return Window{first->stamp_ns, row.stamp_ns};
+  }
+  const ReferenceRow* last = end - 1;
+  while (last != first && !in_mission(*last)) --last;
+  return Window{first->stamp_ns, last->stamp_ns + 1};
+}
+
+double mission_duration_s(const FlightRecord& record, std::uint64_t mission_id, Window window) {
+  std::int64_t end_ns = record.reference.empty() ? window.to_ns : record.reference.back().stamp_ns;
+  for (const MissionRow& row : record.mission) {
+    if (row.mission_id != mission_id || row.state == msg::MissionStatus_Constants::RUNNING) continue;
+    end_ns = row.stamp_ns;
+    break;
+  }
+  return static_cast<double>(end_ns - window.from_ns) * 1e-9;
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,64 @@
+// One mission flown from the ground: wait for the vehicle, arm, upload, follow it down.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "ground/client.hpp"
+#include "ground/flight_record.hpp"
+#include "ground/mission_file.hpp"
+#include "ground/progress_line.hpp"
+
+namespace swiftlet::ground {
+
+// Why a flight did not come to its end. what() is a sentence.
+class FlightFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class Flight {
+ public:
+  struct Watch {
+    std::function<std::optional<std::string>()> casualty;  // a process that died, as a sentence
+    std::function<int()> interrupts;                       // how often the user asked to end
+  };
+
+  Flight(Client& client, const FlightRecord& record, const MissionFile& mission, double planned_duration_s,
+         Watch watch, ProgressLine& progress);
+
+  // Until vehicle, pose and control are there, the mission is flown, and the rotors are off. Throws
+  // FlightFailure; the vehicle has then been landed where that was possible. The first interrupt lands it,
+  // the second gives up at once.
+  void run();
+
+ private:
+  void wait_until_ready();
+  void arm();
+  void start_mission();
+  void follow();
+  void wait_for_last_figures();
+  [[noreturn]] void bring_down(const std::string& reason);
+  void demand_alive() const;
+  void demand_no_interrupt() const;
+  void show(const View& view);
+
+  Client& client_;
+  const FlightRecord& record_;
+  const MissionFile& mission_;
+  double planned_duration_s_;
+  Watch watch_;
+  ProgressLine& progress_;
+};
+
+// From the mission's start to the start of its landing (or its end, without one); empty if it was not
+// started.
+std::optional<Window> mission_window(const FlightRecord& record, std::uint64_t mission_id,
+                                     const control::Mission& mission);
+
+// From the mission's start to its end, as far as it went; 0 if it was not started.
+double mission_duration_s(const FlightRecord& record, std::uint64_t mission_id, Window window);
+
+}  // namespace swiftlet::ground

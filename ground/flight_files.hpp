@@ -1,0 +1,23 @@
+// The files that a recorded flight leaves in its folder: flight.csv, report.json, flight.gp and flight.png.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "ground/flight_record.hpp"
+#include "ground/flight_report.hpp"
+
+namespace swiftlet::ground {
+
+// One row for each ground truth, t = 0 at the window's start, with reference and estimate of the same stamp;
+// empty cells where one of them did not come. Columns: t, mode, position, velocity, attitude, body rates,
+// then ref_, est_, v_s and rotor speeds, SI units. Throws std::runtime_error if the file cannot be written.
+void write_flight_csv(const std::filesystem::path& file, const FlightRecord& record, Window window);
+
+void write_report_json(const std::filesystem::path& file, const FlightReport& report);
+
+// Writes folder/flight.gp, which draws folder/flight.png from folder/flight.csv, and runs gnuplot on it.
+// Returns an empty text, or one sentence that says why there is no picture.
+std::string draw_flight(const std::filesystem::path& folder, const FlightReport& report, Window window);
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,92 @@
+#include "ground/flight_plan.hpp"
+
+#include <ctime>
+
+#include "ground/command.hpp"
+#include "ground/installation.hpp"
+#include "ground/network_options.hpp"
+#include "services/runtime/control_settings_file.hpp"
+#include "services/runtime/simulation_file.hpp"
+#include "services/runtime/vehicle_file.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path default_folder(const std::string& mission) {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char stamp[32];
+  std::strftime(stamp, sizeof stamp, "%Y%m%d-%H%M%S", &local);
+  const fs::path wanted = fs::path("flights") / (std::string(stamp) + "-" + mission);
+  fs::path folder = wanted;
+  for (int i = 2; fs::exists(folder); ++i) folder = wanted.string() + "-" + std::to_string(i);
+  return folder;
+}
+
+void demand_whole_flight(const MissionFile& mission, const fs::path& file, double duration_s) {
+  if (!mission.takes_off())
+    throw InputError(file.string() +
+                     ": items: the first is no takeoff, which a flight from the ground needs");
+  if (!mission.lands())
+    throw InputError(file.string() + ": items: the last is no land, which a flight that ends needs");
+  if (duration_s > kLongestMissionS) {
+    throw InputError(file.string() + ": items: take " + std::to_string(static_cast<int>(duration_s)) +
+                     " s, must be at most " + std::to_string(static_cast<int>(kLongestMissionS)) + " s");
+  }
+}
+
+std::string absolute(const fs::path& path) { return fs::absolute(path).string(); }
+
+}  // namespace
+
+FlightPlan plan_flight(const FlyOptions& options) {
+  FlightPlan plan;
+  plan.vehicle_file = configuration_file("vehicles", options.vehicle);
+  plan.control_file = configuration_file("control", options.control);
+  plan.simulation_file = configuration_file("simulation", options.simulation);
+  plan.vehicle_name = runtime::load_vehicle(plan.vehicle_file).name;
+  const control::ControlSettings control = runtime::load_control_settings(plan.control_file);
+  plan.control_name = control.name;
+  const plant::SimulationSettings simulation = runtime::load_simulation_settings(plan.simulation_file);
+  plan.imu_rate_hz = options.imu_rate_hz > 0.0 ? options.imu_rate_hz : simulation.imu.rate_hz;
+  plan.seed = options.seed;
+
+  const fs::path mission_file = configuration_file("missions", options.mission);
+  plan.mission = load_mission_file(mission_file, control.limits);
+  plan.planned_duration_s = planned_duration_s(plan.mission.mission, control.limits);
+  demand_whole_flight(plan.mission, mission_file, plan.planned_duration_s);
+
+  plan.plant_program = program_beside("swiftlet-plant");
+  plan.mocap_program = program_beside("swiftlet-mocap");
+  plan.control_program = program_beside("swiftlet-control");
+  plan.folder = options.record.empty() ? default_folder(plan.mission.name) : fs::path(options.record);
+  return plan;
+}
+
+std::vector<ProcessSettings> processes(const FlightPlan& plan, const comms::NodeSettings& network) {
+  std::vector<std::string> common = {"--domain",       std::to_string(network.domain),
+                                     "--vehicle-name", network.vehicle,
+                                     "--transport",    to_string(network.transport)};
+  if (network.localhost_only) common.emplace_back("--localhost-only");
+  const auto process = [&](const std::string& name, const fs::path& program,
+                           std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), common.begin(), common.end());
+    return ProcessSettings{name, program, std::move(arguments), plan.folder / (name + ".log")};
+  };
+  const std::string vehicle = absolute(plan.vehicle_file);
+  const std::string simulation = absolute(plan.simulation_file);
+  const std::string seed = std::to_string(plan.seed);
+  const std::string imu_rate = std::to_string(plan.imu_rate_hz);
+  return {
+      process("swiftlet-plant", plan.plant_program,
+              {"--vehicle", vehicle, "--simulation", simulation, "--seed", seed, "--imu-rate", imu_rate}),
+      process("swiftlet-mocap", plan.mocap_program, {"--simulation", simulation, "--seed", seed}),
+      process("swiftlet-control", plan.control_program,
+              {"--vehicle", vehicle, "--control", absolute(plan.control_file)}),
+  };
+}
+
+}  // namespace swiftlet::ground

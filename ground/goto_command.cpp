@@ -1,0 +1,52 @@
+#include <array>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+
+#include "ground/commands.hpp"
+#include "ground/numbers.hpp"
+#include "ground/request_command.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+struct Options : RequestOptions {
+  std::array<double, 3> position_ned{};
+  std::optional<double> yaw_rad;
+  double speed = 0.5;
+};
+
+}  // namespace
+
+Command add_goto_command(CLI::App& root) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* const app = add_request_subcommand(
+      root, "goto", "Fly straight to a place, north, east and down of the origin, and hold there",
+      "swiftlet goto -1 0 -1.5 --yaw 1.57    (1 m south of the origin, 1.5 m up, nose to the east)", options);
+  constexpr const char* kNames[] = {"x", "y", "z"};
+  constexpr const char* kMeanings[] = {"north, m", "east, m", "down, m: negative is up"};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    app->add_option(kNames[axis], options->position_ned[axis], kMeanings[axis])
+        ->required()
+        ->check(finite_number());
+  }
+  app->add_option("--yaw", options->yaw_rad,
+                  "heading to be reached with the place, rad from north to the east; kept unless given")
+      ->check(finite_number());
+  app->add_option("--speed", options->speed, "peak speed, m/s")
+      ->check(positive_number())
+      ->capture_default_str();
+  return {app, [options] {
+            return run_request(*options, "goto", [&](Client& client) {
+              msg::Command command;
+              command.kind(msg::Command_Constants::GOTO);
+              command.position_ned(options->position_ned);
+              command.yaw_free(!options->yaw_rad);
+              command.yaw(options->yaw_rad.value_or(0.0));
+              command.speed(options->speed);
+              return client.command(command, milliseconds(options->timeout_s));
+            });
+          }};
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,11 @@
+#include "ground/commands.hpp"
+#include "ground/request_command.hpp"
+
+namespace swiftlet::ground {
+
+Command add_hold_command(CLI::App& root) {
+  return add_plain_request_command(root, "hold", "Stop where it is and stay there",
+                                   msg::Command_Constants::HOLD);
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,27 @@
+#include "ground/installation.hpp"
+
+#include <stdexcept>
+#include <unistd.h>
+
+#include "services/runtime/find_config.hpp"
+
+namespace swiftlet::ground {
+
+namespace fs = std::filesystem;
+
+fs::path program_beside(const std::string& name) {
+  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / name;
+  if (access(program.c_str(), X_OK) != 0) {
+    throw std::runtime_error(name + " is not there: it should stand beside this program, in " +
+                             program.parent_path().string());
+  }
+  return program;
+}
+
+fs::path configuration_file(const std::string& kind, const std::string& name) {
+  const bool bare = name.find('/') == std::string::npos && !fs::path(name).has_extension();
+  const fs::path file = runtime::find_config(bare && !fs::exists(name) ? kind + "/" + name + ".yaml" : name);
+  return file.lexically_normal();
+}
+
+}  // namespace swiftlet::ground

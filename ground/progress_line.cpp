@@ -1,0 +1,41 @@
+#include "ground/progress_line.hpp"
+
+#include <cstdio>
+#include <unistd.h>
+
+namespace swiftlet::ground {
+namespace {
+
+constexpr std::chrono::milliseconds kTerminalPeriod{100};
+constexpr std::chrono::seconds kLinePeriod{10};
+constexpr const char* kClearLine = "\r\x1b[K";
+
+}  // namespace
+
+ProgressLine::ProgressLine() : terminal_(isatty(STDERR_FILENO) != 0) {}
+
+ProgressLine::~ProgressLine() {
+  if (line_open_) std::fputc('\n', stderr);
+}
+
+void ProgressLine::update(int stage, const std::string& text) {
+  const auto now = std::chrono::steady_clock::now();
+  if (now < next_ && stage == stage_) return;
+  stage_ = stage;
+  if (terminal_) {
+    next_ = now + kTerminalPeriod;
+    std::fprintf(stderr, "%s%s", kClearLine, text.c_str());
+    std::fflush(stderr);
+    line_open_ = true;
+  } else {
+    next_ = now + kLinePeriod;
+    std::fprintf(stderr, "%s\n", text.c_str());
+  }
+}
+
+void ProgressLine::say(const std::string& text) {
+  std::fprintf(stderr, "%s%s\n", line_open_ ? kClearLine : "", text.c_str());
+  line_open_ = false;
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,28 @@
+// Progress on standard error: one line that is rewritten on a terminal, a line now and then elsewhere.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace swiftlet::ground {
+
+class ProgressLine {
+ public:
+  ProgressLine();
+  ~ProgressLine();  // leaves the terminal on a fresh line
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  // What stands now. stage: a change of it is worth a line of its own where lines cannot be rewritten.
+  void update(int stage, const std::string& text);
+  // A line that stays.
+  void say(const std::string& text);
+
+ private:
+  bool terminal_;
+  bool line_open_ = false;
+  int stage_ = -1;
+  std::chrono::steady_clock::time_point next_{};
+};
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,38 @@
+#include <CLI/CLI.hpp>
+
+#include "ground/commands.hpp"
+#include "ground/numbers.hpp"
+#include "ground/request_command.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+struct Options : RequestOptions {
+  double height_m = 1.0;
+  double speed = 0.5;
+};
+
+}  // namespace
+
+Command add_takeoff_command(CLI::App& root) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* const app = add_request_subcommand(root, "takeoff", "Climb straight up and hold; arm first",
+                                               "swiftlet takeoff 1.2 --speed 0.5", options);
+  app->add_option("height", options->height_m, "height above the origin, m")
+      ->check(positive_number())
+      ->capture_default_str();
+  app->add_option("--speed", options->speed, "peak speed, m/s")
+      ->check(positive_number())
+      ->capture_default_str();
+  return {app, [options] {
+            return run_request(*options, "takeoff", [&](Client& client) {
+              msg::Command command;
+              command.kind(msg::Command_Constants::TAKEOFF);
+              command.position_ned({0.0, 0.0, -options->height_m});
+              command.speed(options->speed);
+              return client.command(command, milliseconds(options->timeout_s));
+            });
+          }};
+}
+
+}  // namespace swiftlet::ground
