@@ -1,0 +1,40 @@
+# Run by CTest: see CMakeLists.txt beside it for the variables.
+
+set(prefix ${WORK_DIR}/prefix)
+set(consumer ${WORK_DIR}/consumer)
+file(REMOVE_RECURSE ${WORK_DIR})
+
+function(run)
+  execute_process(COMMAND ${ARGV} COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+
+function(expect_file path)
+  if(NOT EXISTS ${prefix}/${path})
+    message(FATAL_ERROR "not installed: ${path}")
+  endif()
+endfunction()
+
+# What flies, alone.
+run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${prefix} --component programs)
+foreach(program swiftlet swiftlet-plant swiftlet-mocap swiftlet-control)
+  run(${prefix}/bin/${program} --help)
+endforeach()
+expect_file(share/swiftlet/config/vehicles/kaylion.yaml)
+expect_file(share/swiftlet/config/missions/square.yaml)
+if(EXISTS ${prefix}/include)
+  message(FATAL_ERROR "headers came with the programs")
+endif()
+
+# The rest, to build on.
+run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${prefix})
+expect_file(share/swiftlet/idl/swiftlet_msgs/msg/Imu.idl)
+set(flags "")
+if(SANITIZE)
+  set(flags "-fsanitize=${SANITIZE}")
+endif()
+run(${CMAKE_COMMAND} -S ${CONSUMER_DIR} -B ${consumer} -G ${GENERATOR} -DCMAKE_BUILD_TYPE=Debug
+  -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -DCMAKE_CXX_FLAGS=${flags}
+  -DCMAKE_PREFIX_PATH=${prefix})
+run(${CMAKE_COMMAND} --build ${consumer})
+run(${consumer}/design_and_step ${prefix}/share/swiftlet/config)
+run(${consumer}/read_mission ${prefix}/share/swiftlet/config)
