@@ -1,5 +1,5 @@
-// Allocation: the identified model inverted. Wanted thrust and moments, at the measured supply voltage, become one
-// throttle for each rotor: wrench -> thrusts (27)(28) -> speeds (25) -> v_a (22) -> delta (9).
+// Allocation: the identified model inverted. Wanted thrust and moments, at the measured supply voltage,
+// become one throttle for each rotor: wrench -> thrusts (27)(28) -> speeds (25) -> v_a (22) -> delta (9).
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 namespace swiftlet::control {
 
 struct Wrench {
-  double thrust_n = 0.0;                                  // sum of the rotors', along -z of FRD
-  Eigen::Vector3d moment_frd = Eigen::Vector3d::Zero();   // N m: u1 .. u3
+  double thrust_n = 0.0;                                 // sum of the rotors', along -z of FRD
+  Eigen::Vector3d moment_frd = Eigen::Vector3d::Zero();  // N m: u1 .. u3
 };
 
 struct Allocation {
@@ -27,19 +27,20 @@ struct Allocation {
 
 class Allocator {
  public:
-  // Throws std::invalid_argument with a sentence if the rotors cannot give thrust and all three moments, or the vehicle
-  // has no battery table.
+  // Throws std::invalid_argument with a sentence if the rotors cannot give thrust and all three moments, or
+  // the vehicle has no battery table.
   explicit Allocator(const plant::Vehicle& vehicle);
 
-  // Thrusts by the pseudo-inverse of the effectiveness: the exact solution with four rotors, the one of least squares
-  // with more. Each rotor stays between its thrusts at throttle 0 (which is not zero thrust) and 1 at this supply
-  // voltage. Where the wanted wrench does not fit, within the pseudo-inverse's solutions:
-  //   1. roll and pitch moment are kept, whatever thrust and yaw that takes; if even that does not do, both are scaled
+  // Thrusts by the pseudo-inverse of the effectiveness: the exact solution with four rotors, the one of least
+  // squares with more. Each rotor stays between its thrusts at throttle 0 (which is not zero thrust) and 1 at
+  // this supply voltage. Where the wanted wrench does not fit, within the pseudo-inverse's solutions:
+  //   1. roll and pitch moment are kept, whatever thrust and yaw that takes; if even that does not do, both
+  //   are scaled
   //      by one factor, the largest that fits;
   //   2. thrust then comes as near to the wanted one as it can, whatever yaw that takes;
   //   3. yaw moment then comes as near as it can.
-  // Total: the result is finite and within limits for every input. A moment that is not finite counts as 0, a thrust
-  // that is not finite as the vehicle's weight, and a supply voltage that is not finite or outside
+  // Total: the result is finite and within limits for every input. A moment that is not finite counts as 0, a
+  // thrust that is not finite as the vehicle's weight, and a supply voltage that is not finite or outside
   // plausible_supply() as the middle of the battery's open-circuit voltages; each sets invalid_input.
   Allocation allocate(const Wrench& wanted, double supply_voltage_v) const;
 
@@ -56,17 +57,24 @@ class Allocator {
     double low;
     double high;
   };
-  // An interval whose ends move with the scale of roll and pitch.
-  struct MovingInterval {
+  // An interval of thrust at one scale of roll and pitch, and how its ends move with that scale.
+  struct ThrustInterval {
     Interval at;
     Interval slope;
   };
 
+  double thrust_at(double supply_voltage_v, double throttle) const;
+  double throttle_for(double supply_voltage_v, double thrust_n) const;
   Wrench sanitised(const Wrench& wanted, bool& invalid) const;
-  void fit(Wrench& wanted, const Interval& thrust_limits, plant::PerRotor& thrusts) const;
-  MovingInterval thrust_interval(double scale, double largest_scale, const plant::PerRotor& tilt, const Interval& limits) const;
+  void fit(const Wrench& wanted, const plant::PerRotor& tilt, const Interval& limits,
+           plant::PerRotor& thrusts) const;
+  template <typename Visit>
+  void visit_thrust_bounds(const plant::PerRotor& tilt, const Interval& limits, Visit&& visit) const;
+  ThrustInterval thrust_interval(double scale, const plant::PerRotor& tilt, const Interval& limits) const;
   double largest_scale(const plant::PerRotor& tilt, const Interval& limits) const;
-  Interval yaw_interval(double scale, double thrust, const plant::PerRotor& tilt, const Interval& limits) const;
+  Interval yaw_interval(double scale, double thrust, const plant::PerRotor& tilt,
+                        const Interval& limits) const;
+  static double nearest(double wanted, const Interval& interval);
 
   plant::Esc esc_;
   plant::Motor motor_;
@@ -80,6 +88,8 @@ class Allocator {
 
   // Columns of the pseudo-inverse: thrust of each rotor for 1 N, and for 1 N m about each axis.
   plant::PerRotor for_thrust_{}, for_roll_{}, for_pitch_{}, for_yaw_{};
+  // Where yaw moves a rotor's thrust: 1 / for_yaw and for_thrust / for_yaw. Elsewhere both are 0.
+  plant::PerRotor per_yaw_{}, thrust_per_yaw_{};
 };
 
 }  // namespace swiftlet::control

@@ -20,8 +20,8 @@ class PositionController {
 
   // Eq. (48): a = a_r + k_v (u_r - u) + k_p (x_r - x), and with k_i > 0 its integral form. Cut to
   // limits.max_acceleration, the horizontal part in length, the vertical part by itself.
-  // The integral runs on by dt_s unless freeze_integral is set, stays within settings.integral_limit on each axis, and
-  // does not grow on an axis that the limits cut. Without k_i it is zero.
+  // The integral runs on by dt_s unless freeze_integral is set, stays within settings.integral_limit on each
+  // axis, and does not grow on an axis that the limits cut. Without k_i it is zero.
   PositionCommand step(const Eigen::Vector3d& position_ned, const Eigen::Vector3d& velocity_ned,
                        const Reference& reference, double dt_s, bool freeze_integral);
 

@@ -1,5 +1,6 @@
-// Between the loops: the acceleration that the outer loop wants becomes thrust and Euler angles, and the derivatives of a
-// smooth reference become the body rates and accelerations that go with it (differential flatness).
+// Between the loops: the acceleration that the outer loop wants becomes thrust and Euler angles, and the
+// derivatives of a smooth reference become the body rates and accelerations that go with it (differential
+// flatness).
 #pragma once
 
 #include <Eigen/Core>
@@ -15,27 +16,27 @@ struct ThrustAttitude {
   bool limited = false;                                 // not the acceleration that was asked for
 };
 
-// The least upward specific force that is asked of the rotors, as a part of g: no acceleration command makes the
-// vehicle fall faster than 0.9 g or turn over.
+// The least upward specific force that is asked of the rotors, as a part of g: no acceleration command makes
+// the vehicle fall faster than 0.9 g or turn over.
 constexpr double kMinimumLift = 0.1;
 
 // b = R_z(psi)' (g e3 - a), thrust = m |b|, phi = -asin b_y / |b|, theta = atan2(b_x, b_z).
-// yaw_rad should be the vehicle's present yaw: the acceleration then points right while yaw is still turning; the angles'
-// psi is yaw_rad, to be overwritten by the reference's where yaw is controlled.
-// The vertical part comes first: b_z is kept (at least kMinimumLift g), and b_x and b_y are shortened until the tilt is
-// at most max_tilt_rad (0 .. below pi/2). An acceleration that is not finite counts as 0 and is marked as limited.
+// yaw_rad should be the vehicle's present yaw: the acceleration then points right while yaw is still turning;
+// the angles' psi is yaw_rad, to be overwritten by the reference's where yaw is controlled. The vertical part
+// comes first: b_z is kept (at least kMinimumLift g), and b_x and b_y are shortened until the tilt is at most
+// max_tilt_rad (0 .. below pi/2). An acceleration that is not finite counts as 0 and is marked as limited.
 ThrustAttitude thrust_attitude(double mass_kg, const Eigen::Vector3d& acceleration_ned, double yaw_rad,
                                double max_tilt_rad);
 
 struct ReferenceAttitude {
   AttitudeReference attitude;  // body_jerks_frd is zero: it would need the derivative of snap
   double thrust_n = 0.0;
-  double thrust_rate = 0.0;    // N/s; thrust + tau thrust_rate leads the rotor lag
+  double thrust_rate = 0.0;  // N/s; thrust + tau thrust_rate leads the rotor lag
 };
 
-// Thrust, attitude, body rates and body accelerations of a vehicle that is on the reference, from its acceleration,
-// jerk, snap and yaw. Where the reference falls so fast that b_z is below kMinimumLift g, b_z is taken as that and all
-// derivatives are zero.
+// Thrust, attitude, body rates and body accelerations of a vehicle that is on the reference, from its
+// acceleration, jerk, snap and yaw. Where the reference falls so fast that b_z is below kMinimumLift g, b_z
+// is taken as that and all derivatives are zero.
 ReferenceAttitude reference_attitude(double mass_kg, const Reference& reference);
 
 }  // namespace swiftlet::control

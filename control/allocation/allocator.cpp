@@ -1,0 +1,244 @@
+#include "control/allocation/allocator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <Eigen/LU>
+
+#include "plant/model/esc.hpp"
+#include "plant/model/motor.hpp"
+#include "plant/model/rotor.hpp"
+
+namespace swiftlet::control {
+namespace {
+
+using plant::PerRotor;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kFitTolerance = 1e-12;         // of the highest thrust: how far beyond a limit is rounding
+constexpr double kCoefficientTolerance = 1e-9;  // of the largest of its kind: smaller counts as 0
+constexpr int kScaleSteps = 64;
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+double largest(const PerRotor& values) {
+  double found = 0.0;
+  for (const double value : values) found = std::max(found, std::abs(value));
+  return found;
+}
+
+}  // namespace
+
+Allocator::Allocator(const plant::Vehicle& vehicle)
+    : esc_(vehicle.esc),
+      motor_(vehicle.motor),
+      rotor_(vehicle.rotor),
+      count_(vehicle.rotor_count()),
+      weight_n_(vehicle.mass_kg * plant::kGravity) {
+  if (count_ < plant::kMinRotors || count_ > plant::kMaxRotors) {
+    throw std::invalid_argument("rotors: there are " + std::to_string(count_) + ", must be 4 .. 8");
+  }
+  effectiveness_ = plant::effectiveness(vehicle);
+
+  // Rows of one size, so that rank and inverse are well judged.
+  const Eigen::Vector4d row_size = effectiveness_.rowwise().norm();
+  const bool finite = effectiveness_.allFinite() && row_size.minCoeff() > 0.0;
+  const plant::Effectiveness scaled = row_size.cwiseInverse().asDiagonal() * effectiveness_;
+  const Eigen::FullPivLU<Eigen::Matrix4d> gram(scaled * scaled.transpose());
+  if (!finite || gram.rank() < 4) {
+    throw std::invalid_argument("rotors: their places and spins cannot give thrust and all three moments");
+  }
+  const Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::ColMajor, plant::kMaxRotors, 4> inverse =
+      scaled.transpose() * gram.inverse() * row_size.cwiseInverse().asDiagonal();
+  for (int i = 0; i < count_; ++i) {
+    for_thrust_[index(i)] = inverse(i, 0);
+    for_roll_[index(i)] = inverse(i, 1);
+    for_pitch_[index(i)] = inverse(i, 2);
+    for_yaw_[index(i)] = inverse(i, 3);
+  }
+  for (int i = 0; i < count_; ++i) {
+    const std::size_t k = index(i);
+    if (std::abs(for_yaw_[k]) <= kCoefficientTolerance * largest(for_yaw_)) continue;
+    per_yaw_[k] = 1.0 / for_yaw_[k];
+    thrust_per_yaw_[k] = for_thrust_[k] / for_yaw_[k];
+  }
+
+  const std::vector<double>& voltages = vehicle.battery.open_circuit_voltage_v;
+  if (voltages.empty() || !(voltages.front() > 0.0)) {
+    throw std::invalid_argument("battery.open_circuit_voltage: must be a table of voltages above 0");
+  }
+  supply_ = {0.5 * voltages.front(), 1.5 * voltages.back(), 0.5 * (voltages.front() + voltages.back())};
+  idle_thrust_n_ = thrust_at(supply_.assumed, 0.0);
+  const double most = thrust_at(supply_.max, 1.0);
+  bound_.thrust_n = most * count_;
+  bound_.moment_frd = most * effectiveness_.bottomRows<3>().cwiseAbs().rowwise().sum();
+}
+
+double Allocator::thrust_at(double supply_voltage_v, double throttle) const {
+  const double v_a = plant::motor_voltage(esc_, supply_voltage_v, throttle);
+  return plant::thrust_from_speed(rotor_, plant::steady_speed_from_voltage(motor_, v_a));
+}
+
+double Allocator::throttle_for(double supply_voltage_v, double thrust_n) const {
+  const double v_a = plant::voltage_from_steady_speed(motor_, plant::speed_from_thrust(rotor_, thrust_n));
+  return plant::throttle_from_motor_voltage(esc_, supply_voltage_v, v_a);
+}
+
+Wrench Allocator::sanitised(const Wrench& wanted, bool& invalid) const {
+  Wrench out = wanted;
+  if (!std::isfinite(out.thrust_n)) {
+    out.thrust_n = weight_n_;
+    invalid = true;
+  }
+  for (double& moment : out.moment_frd) {
+    if (std::isfinite(moment)) continue;
+    moment = 0.0;
+    invalid = true;
+  }
+  // Nothing beyond the bound fits, so cutting there first changes no result and keeps the arithmetic finite.
+  out.thrust_n = std::clamp(out.thrust_n, -bound_.thrust_n, bound_.thrust_n);
+  const double excess = std::max(std::abs(out.moment_frd.x()) / bound_.moment_frd.x(),
+                                 std::abs(out.moment_frd.y()) / bound_.moment_frd.y());
+  if (excess > 1.0) out.moment_frd.head<2>() /= excess;
+  out.moment_frd.z() = std::clamp(out.moment_frd.z(), -bound_.moment_frd.z(), bound_.moment_frd.z());
+  return out;
+}
+
+Allocation Allocator::allocate(const Wrench& wanted, double supply_voltage_v) const {
+  Allocation out;
+  double supply = supply_voltage_v;
+  if (!(supply >= supply_.min && supply <= supply_.max)) {
+    supply = supply_.assumed;
+    out.invalid_input = true;
+  }
+  const Wrench wrench = sanitised(wanted, out.invalid_input);
+  const Interval limits{idle_thrust_n_, thrust_at(supply, 1.0)};
+
+  const double slack = kFitTolerance * limits.high;
+  PerRotor tilt{};
+  for (int i = 0; i < count_; ++i) {
+    const std::size_t k = index(i);
+    tilt[k] = for_roll_[k] * wrench.moment_frd.x() + for_pitch_[k] * wrench.moment_frd.y();
+    out.thrust_n[k] = tilt[k] + for_thrust_[k] * wrench.thrust_n + for_yaw_[k] * wrench.moment_frd.z();
+    out.saturated |= out.thrust_n[k] < limits.low - slack || out.thrust_n[k] > limits.high + slack;
+  }
+  if (out.saturated) fit(wrench, tilt, limits, out.thrust_n);
+  for (int i = 0; i < count_; ++i) {
+    const std::size_t k = index(i);
+    out.thrust_n[k] = std::clamp(out.thrust_n[k], limits.low, limits.high);
+    out.throttle[k] = throttle_for(supply, out.thrust_n[k]);
+    out.achieved.thrust_n += out.thrust_n[k];
+    out.achieved.moment_frd += effectiveness_.col(i).tail<3>() * out.thrust_n[k];
+  }
+  return out;
+}
+
+// With roll and pitch scaled by s, rotor i holds t_i = s tilt_i + for_thrust_i T + for_yaw_i Y, and low <=
+// t_i <= high for all i is a convex region of (s, T, Y). Its shadow on (s, T), then on s, is found by
+// elimination (Fourier-Motzkin), and s, T, Y are chosen one after the other.
+void Allocator::fit(const Wrench& wanted, const PerRotor& tilt, const Interval& limits,
+                    PerRotor& thrusts) const {
+  const double scale = largest_scale(tilt, limits);
+  const Interval thrust_range = thrust_interval(scale, tilt, limits).at;
+  const double thrust = nearest(wanted.thrust_n, thrust_range);
+  const double yaw = nearest(wanted.moment_frd.z(), yaw_interval(scale, thrust, tilt, limits));
+  for (int i = 0; i < count_; ++i) {
+    const std::size_t k = index(i);
+    thrusts[k] = scale * tilt[k] + for_thrust_[k] * thrust + for_yaw_[k] * yaw;
+  }
+}
+
+double Allocator::nearest(double wanted, const Interval& interval) {
+  if (interval.low > interval.high) return 0.5 * (interval.low + interval.high);  // apart by rounding
+  return std::clamp(wanted, interval.low, interval.high);
+}
+
+// Every bound a T <= c + d s that is left once yaw is eliminated: for each pair of rotors, the least yaw that
+// one needs is at most the greatest that the other bears; a rotor that yaw does not move has two bounds of
+// its own. Coefficients a that are 0 but for rounding are handed over as 0.
+template <typename Visit>
+void Allocator::visit_thrust_bounds(const PerRotor& tilt, const Interval& limits, Visit&& visit) const {
+  PerRotor least{};
+  PerRotor greatest{};
+  PerRotor tilt_per_yaw{};
+  double size = 0.0;
+  for (int i = 0; i < count_; ++i) {
+    const std::size_t k = index(i);
+    const double at_low = limits.low * per_yaw_[k];
+    const double at_high = limits.high * per_yaw_[k];
+    least[k] = std::min(at_low, at_high);
+    greatest[k] = std::max(at_low, at_high);
+    tilt_per_yaw[k] = tilt[k] * per_yaw_[k];
+    size = std::max(size, std::abs(thrust_per_yaw_[k]));
+  }
+  for (int i = 0; i < count_; ++i) {
+    const std::size_t k = index(i);
+    if (per_yaw_[k] == 0.0) {
+      visit(for_thrust_[k], limits.high, -tilt[k]);
+      visit(-for_thrust_[k], -limits.low, tilt[k]);
+      continue;
+    }
+    for (int j = 0; j < count_; ++j) {
+      const std::size_t l = index(j);
+      if (l == k || per_yaw_[l] == 0.0) continue;
+      const double a = thrust_per_yaw_[l] - thrust_per_yaw_[k];
+      visit(std::abs(a) > kCoefficientTolerance * size ? a : 0.0, greatest[l] - least[k],
+            tilt_per_yaw[k] - tilt_per_yaw[l]);
+    }
+  }
+}
+
+Allocator::ThrustInterval Allocator::thrust_interval(double scale, const PerRotor& tilt,
+                                                     const Interval& limits) const {
+  ThrustInterval out{{-kInfinity, kInfinity}, {0.0, 0.0}};
+  visit_thrust_bounds(tilt, limits, [&](double a, double c, double d) {
+    if (a == 0.0) return;
+    const double end = (c + d * scale) / a;
+    if (a > 0.0 && end < out.at.high) {
+      out.at.high = end;
+      out.slope.high = d / a;
+    } else if (a < 0.0 && end > out.at.low) {
+      out.at.low = end;
+      out.slope.low = d / a;
+    }
+  });
+  return out;
+}
+
+// The width of the thrust interval is concave in the scale, so that Newton's method from above meets its root
+// from above, piece by piece, in a few steps.
+double Allocator::largest_scale(const PerRotor& tilt, const Interval& limits) const {
+  double scale = 1.0;
+  visit_thrust_bounds(tilt, limits, [&](double a, double c, double d) {
+    if (a == 0.0 && d < 0.0) scale = std::min(scale, c / -d);
+  });
+  for (int i = 0; i < kScaleSteps && scale > 0.0; ++i) {
+    const ThrustInterval thrust = thrust_interval(scale, tilt, limits);
+    const double width = thrust.at.high - thrust.at.low;
+    const double slope = thrust.slope.high - thrust.slope.low;
+    if (width >= -kFitTolerance * limits.high) break;
+    scale = slope < 0.0 ? scale - width / slope : 0.0;
+  }
+  return std::max(scale, 0.0);
+}
+
+Allocator::Interval Allocator::yaw_interval(double scale, double thrust, const PerRotor& tilt,
+                                            const Interval& limits) const {
+  Interval out{-kInfinity, kInfinity};
+  for (int i = 0; i < count_; ++i) {
+    const std::size_t k = index(i);
+    if (per_yaw_[k] == 0.0) continue;
+    const double without_yaw = scale * tilt[k] + for_thrust_[k] * thrust;
+    const double at_low = (limits.low - without_yaw) * per_yaw_[k];
+    const double at_high = (limits.high - without_yaw) * per_yaw_[k];
+    out.low = std::max(out.low, std::min(at_low, at_high));
+    out.high = std::min(out.high, std::max(at_low, at_high));
+  }
+  return out;
+}
+
+}  // namespace swiftlet::control

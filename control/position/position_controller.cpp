@@ -1,0 +1,42 @@
+#include "control/position/position_controller.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace swiftlet::control {
+
+PositionController::PositionController(const PositionSettings& settings, const Limits& limits,
+                                       const ControlDesign& design)
+    : k_p_(design.x.gains.k_p, design.y.gains.k_p, design.z.gains.k_p),
+      k_v_(design.x.gains.k_v, design.y.gains.k_v, design.z.gains.k_v),
+      k_s_(design.x.gains.k_s, design.y.gains.k_s, design.z.gains.k_s),
+      integral_limit_(settings.integral_limit),
+      max_acceleration_(limits.max_acceleration) {}
+
+PositionCommand PositionController::step(const Eigen::Vector3d& position_ned,
+                                         const Eigen::Vector3d& velocity_ned, const Reference& reference,
+                                         double dt_s, bool freeze_integral) {
+  const Eigen::Vector3d error = reference.position_ned - position_ned;
+  const Eigen::Vector3d velocity_error = reference.velocity_ned - velocity_ned;
+  const Eigen::Vector3d wanted = reference.acceleration_ned + k_v_.cwiseProduct(velocity_error) +
+                                 k_p_.cwiseProduct(error) + integral_;  // Eq. (48)
+  PositionCommand command;
+  command.acceleration_ned = wanted;
+  const double horizontal = std::hypot(wanted.x(), wanted.y());
+  const bool cut_horizontal = horizontal > max_acceleration_;
+  const bool cut_vertical = std::abs(wanted.z()) > max_acceleration_;
+  if (cut_horizontal) command.acceleration_ned.head<2>() *= max_acceleration_ / horizontal;
+  if (cut_vertical) command.acceleration_ned.z() = std::copysign(max_acceleration_, wanted.z());
+  command.limited = cut_horizontal || cut_vertical;
+
+  if (freeze_integral) return command;
+  for (int i = 0; i < 3; ++i) {
+    const double increment = k_s_[i] * error[i] * dt_s;
+    const bool winds_up = (i < 2 ? cut_horizontal : cut_vertical) && increment * wanted[i] > 0.0;
+    if (winds_up || !std::isfinite(increment)) continue;
+    integral_[i] = std::clamp(integral_[i] + increment, -integral_limit_, integral_limit_);
+  }
+  return command;
+}
+
+}  // namespace swiftlet::control

@@ -1,0 +1,119 @@
+#include "control/position/thrust_attitude_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "plant/model/vehicle.hpp"
+
+namespace swiftlet::control {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kLeastLift = kMinimumLift * plant::kGravity;  // m/s^2
+
+// R_z(psi)' v.
+Vector3d unyawed(const Vector3d& v, double cosine, double sine) {
+  return {cosine * v.x() + sine * v.y(), -sine * v.x() + cosine * v.y(), v.z()};
+}
+
+// e3 x v.
+Vector3d turned(const Vector3d& v) { return {-v.y(), v.x(), 0.0}; }
+
+// The angles whose body z axis points along -b: phi = -asin b_y / |b|, theta = atan2(b_x, b_z).
+Vector3d angles_along(const Vector3d& b, double yaw_rad) {
+  return {-std::atan2(b.y(), std::hypot(b.x(), b.z())), std::atan2(b.x(), b.z()), yaw_rad};
+}
+
+}  // namespace
+
+ThrustAttitude thrust_attitude(double mass_kg, const Vector3d& acceleration_ned, double yaw_rad,
+                               double max_tilt_rad) {
+  ThrustAttitude out;
+  const bool finite = acceleration_ned.allFinite() && std::isfinite(yaw_rad);
+  const double yaw = finite ? yaw_rad : 0.0;
+  Vector3d b(0.0, 0.0, plant::kGravity);
+  if (finite) b -= unyawed(acceleration_ned, std::cos(yaw), std::sin(yaw));
+  out.limited = !finite;
+  if (b.z() < kLeastLift) {
+    b.z() = kLeastLift;
+    out.limited = true;
+  }
+  const double longest = b.z() * std::tan(max_tilt_rad);
+  const double horizontal = std::hypot(b.x(), b.y());
+  if (horizontal > longest) {
+    b.head<2>() *= longest / horizontal;
+    out.limited = true;
+  }
+  out.thrust_n = mass_kg * b.norm();
+  out.euler_rad = angles_along(b, yaw);
+  return out;
+}
+
+ReferenceAttitude reference_attitude(double mass_kg, const Reference& reference) {
+  const double cosine = std::cos(reference.yaw_rad);
+  const double sine = std::sin(reference.yaw_rad);
+  const double psi_1 = reference.yaw_rate;
+  const double psi_2 = reference.yaw_acceleration;
+
+  // b, seen from a frame that yaws with the reference, and its derivatives there.
+  const Vector3d n0 = Vector3d(0.0, 0.0, plant::kGravity) - reference.acceleration_ned;
+  const Vector3d& jerk = reference.jerk_ned;
+  const Vector3d& snap = reference.snap_ned;
+  Vector3d b = unyawed(n0, cosine, sine);
+
+  ReferenceAttitude out;
+  if (!(b.z() >= kLeastLift)) {
+    b.z() = kLeastLift;
+    out.thrust_n = mass_kg * b.norm();
+    out.attitude.euler_rad = angles_along(b, reference.yaw_rad);
+    return out;
+  }
+  const Vector3d b_1 = unyawed(-jerk - psi_1 * turned(n0), cosine, sine);
+  const Vector3d b_2 =
+      unyawed(-snap + 2.0 * psi_1 * turned(jerk) - psi_2 * turned(n0) + psi_1 * psi_1 * turned(turned(n0)),
+              cosine, sine);
+
+  // theta = atan2(b_x, b_z), with rho its radius.
+  const double rho_squared = b.x() * b.x() + b.z() * b.z();
+  const double rho = std::sqrt(rho_squared);
+  const double rho_1 = (b.x() * b_1.x() + b.z() * b_1.z()) / rho;
+  const double rho_2 =
+      (b_1.x() * b_1.x() + b_1.z() * b_1.z() + b.x() * b_2.x() + b.z() * b_2.z() - rho_1 * rho_1) / rho;
+  const double theta_1 = (b_1.x() * b.z() - b.x() * b_1.z()) / rho_squared;
+  const double theta_2 = (b_2.x() * b.z() - b.x() * b_2.z()) / rho_squared - 2.0 * theta_1 * rho_1 / rho;
+
+  // phi = -atan2(b_y, rho), with |b| its radius.
+  const double norm_squared = rho_squared + b.y() * b.y();
+  const double norm = std::sqrt(norm_squared);
+  const double norm_1 = b.dot(b_1) / norm;
+  const double phi_1 = -(b_1.y() * rho - b.y() * rho_1) / norm_squared;
+  const double phi_2 = -(b_2.y() * rho - b.y() * rho_2) / norm_squared - 2.0 * phi_1 * norm_1 / norm;
+
+  // omega = S1^-1 Theta', Eq. (29)-(31) backwards, and its derivative.
+  const Vector3d euler = angles_along(b, reference.yaw_rad);
+  const double sin_phi = std::sin(euler[0]);
+  const double cos_phi = std::cos(euler[0]);
+  const double sin_theta = std::sin(euler[1]);
+  const double cos_theta = std::cos(euler[1]);
+  Matrix3d to_rates;
+  to_rates << 1.0, 0.0, -sin_theta,       //
+      0.0, cos_phi, sin_phi * cos_theta,  //
+      0.0, -sin_phi, cos_phi * cos_theta;
+  Matrix3d to_rates_1;
+  to_rates_1 << 0.0, 0.0, -theta_1 * cos_theta,                                            //
+      0.0, -phi_1 * sin_phi, phi_1 * cos_phi * cos_theta - theta_1 * sin_phi * sin_theta,  //
+      0.0, -phi_1 * cos_phi, -phi_1 * sin_phi * cos_theta - theta_1 * cos_phi * sin_theta;
+  const Vector3d euler_1(phi_1, theta_1, psi_1);
+  const Vector3d euler_2(phi_2, theta_2, psi_2);
+
+  out.attitude.euler_rad = euler;
+  out.attitude.body_rates_frd = to_rates * euler_1;
+  out.attitude.body_accelerations_frd = to_rates * euler_2 + to_rates_1 * euler_1;
+  out.thrust_n = mass_kg * norm;
+  out.thrust_rate = mass_kg * norm_1;
+  return out;
+}
+
+}  // namespace swiftlet::control
