@@ -3,8 +3,11 @@
 #include <cstdio>
 #include <exception>
 #include <stdexcept>
+#include <string>
+#include <thread>
 
 #include <CLI/CLI.hpp>
+#include <spdlog/spdlog.h>
 
 #include "services/runtime/config_error.hpp"
 
@@ -33,6 +36,17 @@ void add_process_options(CLI::App& app, ProcessOptions& options) {
   app.add_option("--cpu", options.realtime.cpu, "Core of that thread; -1: any")
       ->check(CLI::Range(-1, 1023))
       ->capture_default_str();
+}
+
+void prepare_realtime(const RealtimeSettings& settings) {
+  if (!settings.enabled) return;
+  std::string refusals = lock_memory();
+  std::thread([&] {
+    const std::string refusal = make_this_thread_realtime(settings);
+    if (!refusals.empty() && !refusal.empty()) refusals += "; ";
+    refusals += refusal;
+  }).join();
+  if (!refusals.empty()) spdlog::warn("not real-time, expect late steps: {}", refusals);
 }
 
 int run_process(CLI::App& app, int argc, char** argv, const std::function<void()>& body) {

@@ -1,0 +1,112 @@
+// swiftlet-mocap: simulated motion capture. Takes truth in, gives poses out, and goes by the stamps alone.
+#include <atomic>
+#include <cstdint>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <spdlog/spdlog.h>
+
+#include "plant/simulation/mocap.hpp"
+#include "services/comms/convert.hpp"
+#include "services/comms/node.hpp"
+#include "services/comms/node_options.hpp"
+#include "services/comms/peer_log.hpp"
+#include "services/runtime/find_config.hpp"
+#include "services/runtime/log.hpp"
+#include "services/runtime/process.hpp"
+#include "services/runtime/simulation_file.hpp"
+#include "services/runtime/stop_signal.hpp"
+
+namespace swiftlet::services {
+namespace {
+
+struct Options {
+  std::string simulation = "simulation/default.yaml";
+  std::uint64_t seed = 1;
+  comms::NodeSettings node;
+  runtime::ProcessOptions process;
+};
+
+void add_options(CLI::App& app, Options& options) {
+  app.add_option("--simulation", options.simulation, "Simulation file")->capture_default_str();
+  app.add_option("--seed", options.seed, "Of errors and dropouts")->capture_default_str();
+  comms::add_node_options(app, options.node);
+  runtime::add_process_options(app, options.process);
+}
+
+// Runs in the thread that receives the truth.
+class Camera {
+ public:
+  Camera(const plant::MocapSettings& settings, std::uint64_t seed, comms::Node& node,
+         const runtime::RealtimeSettings& realtime)
+      : mocap_(settings, seed),
+        realtime_(realtime),
+        poses_(node.publish(comms::topics::kMocapPose)),
+        truth_(node.subscribe<comms::msg::GroundTruth>(
+            comms::topics::kGroundTruth, [this](const auto& message) { on_truth(message); }, {},
+            comms::Delivery::kOwnThread)) {}
+
+  std::uint64_t frames() const { return frames_; }
+  std::uint64_t untracked() const { return untracked_; }
+
+ private:
+  void on_truth(const comms::msg::GroundTruth& message) {
+    if (!scheduled_) {
+      scheduled_ = true;
+      if (realtime_.enabled) runtime::make_this_thread_realtime(realtime_);
+    }
+    plant::TruthSample truth;
+    const comms::Fault fault = comms::from_message(message, truth);
+    if (fault) {
+      if (!told_fault_) spdlog::warn("ground truth refused: {}", fault.text);
+      told_fault_ = true;
+      return;
+    }
+    const auto pose = mocap_.update(truth);
+    if (!pose) return;
+    poses_.publish(comms::to_message(*pose));
+    frames_.fetch_add(1, std::memory_order_relaxed);
+    if (!pose->tracked) untracked_.fetch_add(1, std::memory_order_relaxed);
+  }
+
+  plant::Mocap mocap_;
+  runtime::RealtimeSettings realtime_;
+  bool scheduled_ = false;
+  bool told_fault_ = false;
+  std::atomic<std::uint64_t> frames_{0};
+  std::atomic<std::uint64_t> untracked_{0};
+  comms::Publisher<comms::msg::MocapPose> poses_;
+  comms::Subscription truth_;  // last: its callback uses what stands above
+};
+
+void run(const Options& options) {
+  const plant::SimulationSettings settings =
+      runtime::load_simulation_settings(runtime::find_config(options.simulation));
+
+  runtime::StopSignal stop;
+  const runtime::Logging logging("mocap", options.process.log);
+  runtime::prepare_realtime(options.process.realtime);
+
+  comms::NodeSettings node_settings = options.node;
+  node_settings.name = "mocap";
+  comms::Node node(node_settings);
+  comms::log_peers(node);
+  const Camera camera(settings.mocap, options.seed, node, options.process.realtime);
+  spdlog::info("watching: vehicle {}, domain {}, {:g} frames a second, seed {}", node_settings.vehicle,
+               node_settings.domain, settings.mocap.rate_hz, options.seed);
+  stop.wait();
+  spdlog::info("ended: {} frames, {} of them untracked", camera.frames(), camera.untracked());
+}
+
+}  // namespace
+}  // namespace swiftlet::services
+
+int main(int argc, char** argv) {
+  CLI::App app("Simulated motion capture: sees the ground truth of a simulated vehicle, publishes its pose.",
+               "swiftlet-mocap");
+  app.footer("Example: swiftlet-mocap --seed 7 --localhost-only");
+  swiftlet::services::Options options;
+  options.process.realtime.priority = 50;
+  swiftlet::services::add_options(app, options);
+  return swiftlet::runtime::run_process(app, argc, argv, [&] { swiftlet::services::run(options); });
+}

@@ -1,0 +1,20 @@
+#include "services/plant/answer_times.hpp"
+
+namespace swiftlet::services {
+
+void AnswerTimes::written(std::uint64_t imu_sequence, std::int64_t now_ns) {
+  Sample& slot = waiting_[imu_sequence % kPatience];
+  if (slot.sequence != 0) ++unanswered_;
+  slot = {imu_sequence, now_ns};
+}
+
+void AnswerTimes::answered(std::uint64_t imu_sequence, std::int64_t now_ns) {
+  Sample& slot = waiting_[imu_sequence % kPatience];
+  if (slot.sequence != imu_sequence) return;
+  times_.record(now_ns - slot.written_ns);
+  slot.sequence = 0;
+}
+
+void AnswerTimes::reset() { *this = {}; }
+
+}  // namespace swiftlet::services

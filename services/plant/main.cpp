@@ -1,0 +1,166 @@
+// swiftlet-plant: the simulated vehicle.
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+#include <spdlog/spdlog.h>
+
+#include "services/comms/node.hpp"
+#include "services/comms/node_options.hpp"
+#include "services/comms/peer_log.hpp"
+#include "services/plant/plant_loop.hpp"
+#include "services/runtime/find_config.hpp"
+#include "services/runtime/log.hpp"
+#include "services/runtime/process.hpp"
+#include "services/runtime/simulation_file.hpp"
+#include "services/runtime/stop_signal.hpp"
+#include "services/runtime/vehicle_file.hpp"
+
+namespace swiftlet::services {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct Options {
+  std::string vehicle = "vehicles/kaylion.yaml";
+  std::string simulation = "simulation/default.yaml";
+  std::uint64_t seed = 1;
+  int imu_rate = 0;  // Hz; 0: that of the simulation file
+  comms::NodeSettings node;
+  runtime::ProcessOptions process;
+};
+
+void add_options(CLI::App& app, Options& options) {
+  app.add_option("--vehicle", options.vehicle, "Vehicle file")->capture_default_str();
+  app.add_option("--simulation", options.simulation, "Simulation file")->capture_default_str();
+  app.add_option("--seed", options.seed, "Of noise, biases and gusts")->capture_default_str();
+  app.add_option("--imu-rate", options.imu_rate,
+                 "IMU samples a second, 500 or 1000; default: the simulation file's")
+      ->check(CLI::IsMember({500, 1000}));
+  comms::add_node_options(app, options.node);
+  runtime::add_process_options(app, options.process);
+}
+
+comms::msg::VehicleInfo describe(const plant::Vehicle& vehicle, double imu_rate_hz) {
+  comms::msg::VehicleInfo info;
+  info.name() = vehicle.name;
+  info.simulated(true);
+  info.rotor_count(static_cast<std::uint8_t>(vehicle.rotor_count()));
+  info.mass_kg(vehicle.mass_kg);
+  info.imu_rate_hz(imu_rate_hz);
+  return info;
+}
+
+void update(comms::msg::VehicleInfo& info, const PlantReport& report, const std::string& fault) {
+  info.stamp_ns(report.stamp_ns);
+  info.sequence_number(info.sequence_number() + 1);
+  info.rotors_running(report.rotors_running);
+  info.answered(report.answered);
+  info.unanswered(report.unanswered);
+  info.sense_to_actuate_p50_us(static_cast<double>(report.answer_p50_ns) * 1e-3);
+  info.sense_to_actuate_p99_us(static_cast<double>(report.answer_p99_ns) * 1e-3);
+  info.sense_to_actuate_max_us(static_cast<double>(report.answer_max_ns) * 1e-3);
+  info.fault() = fault;
+}
+
+// Says what changed between two reports.
+void log_changes(const PlantReport& before, const PlantReport& now, const std::string& fault) {
+  if (now.rotors_running && !before.rotors_running) spdlog::info("rotors started");
+  if (!now.rotors_running && before.rotors_running) {
+    if (now.timed_out) {
+      spdlog::error("rotors stopped: {}", fault);
+    } else {
+      spdlog::info("rotors stopped on command");
+    }
+  }
+  if (now.refused_commands > before.refused_commands) {
+    spdlog::warn("{} actuator commands refused, the last because: {}",
+                 now.refused_commands - before.refused_commands, now.refusal.text);
+  }
+  if (now.slips > before.slips) {
+    spdlog::warn("fell behind real time: simulated time put off {} times, by {:.1f} ms in all",
+                 now.slips - before.slips, static_cast<double>(now.slipped_ns - before.slipped_ns) * 1e-6);
+  }
+}
+
+// Vehicle information goes out every second and at once when the rotors start or stop.
+void tell(PlantLoop& loop, comms::Publisher<comms::msg::VehicleInfo>& publisher, comms::msg::VehicleInfo info,
+          const std::string& timeout_fault, runtime::StopSignal& stop, PlantReport& logged) {
+  PlantReport report;
+  std::int64_t next_ns = runtime::monotonic_ns();
+  bool first = true;
+  do {
+    loop.reports().take(report);
+    const bool changed = report.rotors_running != info.rotors_running() ||
+                         report.timed_out != !info.fault().to_string().empty();
+    const std::int64_t now_ns = runtime::monotonic_ns();
+    if (!first && !changed && now_ns < next_ns) continue;
+    const std::string fault = report.timed_out ? timeout_fault : "";
+    update(info, report, fault);
+    publisher.publish(info);
+    log_changes(logged, report, fault);
+    logged = report;
+    first = false;
+    next_ns = now_ns + 1'000'000'000;
+  } while (!stop.wait_for(20ms));
+  loop.reports().take(logged);
+}
+
+void run(const Options& options) {
+  const plant::Vehicle vehicle = runtime::load_vehicle(runtime::find_config(options.vehicle));
+  plant::SimulationSettings settings =
+      runtime::load_simulation_settings(runtime::find_config(options.simulation));
+  if (options.imu_rate != 0) settings.imu.rate_hz = options.imu_rate;
+  for (const plant::Violation& violation : plant::validate(settings)) {
+    throw std::invalid_argument("--imu-rate: " + violation.key + " " + violation.message);
+  }
+
+  runtime::StopSignal stop;
+  const runtime::Logging logging("plant", options.process.log);
+  runtime::prepare_realtime(options.process.realtime);
+
+  comms::NodeSettings node_settings = options.node;
+  node_settings.name = "plant";
+  comms::Node node(node_settings);
+  comms::log_peers(node);
+  auto info_publisher = node.publish(comms::topics::kVehicleInfo);
+  PlantLoop loop(vehicle, settings, options.seed, node, options.process.realtime);
+  spdlog::info("{} flies: vehicle {}, domain {}, IMU at {:g} Hz, seed {}", vehicle.name,
+               node_settings.vehicle, node_settings.domain, settings.imu.rate_hz, options.seed);
+
+  std::atomic<bool> loop_ends{false};
+  std::thread loop_thread([&] { loop.run(loop_ends); });
+  char timeout_fault[96];
+  std::snprintf(timeout_fault, sizeof timeout_fault, "no actuator command for %g s",
+                settings.command_timeout_s);
+  PlantReport last;
+  tell(loop, info_publisher, describe(vehicle, settings.imu.rate_hz), timeout_fault, stop, last);
+  loop_ends = true;
+  loop_thread.join();
+
+  spdlog::info(
+      "ended after {:.1f} s of simulated time: {} commands obeyed, {} refused; sense to actuate p50 {:.0f} "
+      "us, "
+      "p99 {:.0f} us, max {:.0f} us over {} samples, {} unanswered; behind real time {} times, {:.1f} ms",
+      static_cast<double>(last.stamp_ns) * 1e-9, last.commands, last.refused_commands,
+      static_cast<double>(last.answer_p50_ns) * 1e-3, static_cast<double>(last.answer_p99_ns) * 1e-3,
+      static_cast<double>(last.answer_max_ns) * 1e-3, last.answered, last.unanswered, last.slips,
+      static_cast<double>(last.slipped_ns) * 1e-6);
+}
+
+}  // namespace
+}  // namespace swiftlet::services
+
+int main(int argc, char** argv) {
+  CLI::App app("A simulated quadrotor on the network: publishes what it senses, obeys actuator commands.",
+               "swiftlet-plant");
+  app.footer("Example: swiftlet-plant --vehicle config/vehicles/kaylion.yaml --seed 7 --localhost-only");
+  swiftlet::services::Options options;
+  options.process.realtime.priority = 60;
+  swiftlet::services::add_options(app, options);
+  return swiftlet::runtime::run_process(app, argc, argv, [&] { swiftlet::services::run(options); });
+}
