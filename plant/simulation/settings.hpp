@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "plant/model/vehicle.hpp"
+#include "plant/model/violation.hpp"
 
 namespace swiftlet::plant {
 

@@ -1,0 +1,87 @@
+#include "services/runtime/simulation_file.hpp"
+
+#include <cmath>
+
+#include "services/runtime/config.hpp"
+#include "services/runtime/text_file.hpp"
+#include "services/runtime/violations.hpp"
+
+namespace swiftlet::runtime {
+
+namespace {
+
+plant::ImuSettings read_imu(const ConfigNode& node) {
+  plant::ImuSettings imu;
+  imu.rate_hz = node.at("rate_hz").number();
+  imu.accelerometer_noise_density = node.at("accelerometer_noise_m_s2_per_sqrt_hz").number();
+  imu.gyro_noise_density = node.at("gyro_noise_rad_s_per_sqrt_hz").number();
+  imu.accelerometer_bias_sigma = node.at("accelerometer_bias_m_s2").number();
+  imu.gyro_bias_sigma = node.at("gyro_bias_rad_s").number();
+  imu.accelerometer_bias_walk = node.at("accelerometer_bias_walk_m_s2_per_sqrt_s").number();
+  imu.gyro_bias_walk = node.at("gyro_bias_walk_rad_s_per_sqrt_s").number();
+  imu.accelerometer_range = node.at("accelerometer_range_m_s2").number();
+  imu.gyro_range = node.at("gyro_range_rad_s").number();
+  return imu;
+}
+
+plant::MocapSettings read_mocap(const ConfigNode& node) {
+  plant::MocapSettings mocap;
+  mocap.rate_hz = node.at("rate_hz").number();
+  mocap.latency_s = node.at("latency_s").number();
+  mocap.position_error_m = node.at("position_error_m").number();
+  mocap.orientation_error_rad = node.at("orientation_error_rad").number();
+  mocap.misalignment_rad = node.at("misalignment_rad").number();
+  mocap.dropout_probability = node.at("dropout_probability").number();
+  mocap.dropout_length_s = node.at("dropout_length_s").number();
+  return mocap;
+}
+
+plant::SupplySettings read_supply(const ConfigNode& node) {
+  plant::SupplySettings supply;
+  supply.ideal = node.at("ideal").boolean();
+  supply.initial_state_of_charge = node.at("initial_state_of_charge").number();
+  supply.rate_hz = node.at("rate_hz").number();
+  return supply;
+}
+
+plant::AirSettings read_air(const ConfigNode& node) {
+  plant::AirSettings air;
+  air.drag = node.at("drag").boolean();
+  air.wind_ned = node.at("wind_ned_m_s").vector3();
+  air.gust_sigma_ned = node.at("gust_sigma_ned_m_s").vector3();
+  air.gust_time_constant_s = node.at("gust_time_constant_s").number();
+  return air;
+}
+
+plant::GroundSettings read_ground(const ConfigNode& node) {
+  plant::GroundSettings ground;
+  ground.present = node.at("present").boolean();
+  ground.leg_height_m = node.at("leg_height_m").number();
+  ground.friction = node.at("friction").number();
+  return ground;
+}
+
+}  // namespace
+
+plant::SimulationSettings parse_simulation_settings(std::string_view text, const std::string& file_name) {
+  const ConfigNode root = parse_config(text, file_name);
+  plant::SimulationSettings settings;
+  settings.name = root.at("name").text();
+  settings.step_ns = std::llround(root.at("step_s").number(between(0.0, 1.0)) * 1.0e9);
+  settings.command_timeout_s = root.at("command_timeout_s").number();
+  settings.rotor_speed_rate_hz = root.at("rotor_speed_rate_hz").number();
+  settings.imu = read_imu(root.at("imu"));
+  settings.mocap = read_mocap(root.at("mocap"));
+  settings.supply = read_supply(root.at("supply"));
+  settings.air = read_air(root.at("air"));
+  settings.ground = read_ground(root.at("ground"));
+  root.reject_unknown_keys();
+  reject_violations(root, plant::validate(settings));
+  return settings;
+}
+
+plant::SimulationSettings load_simulation_settings(const std::string& path) {
+  return parse_simulation_settings(read_text_file(path), path);
+}
+
+}  // namespace swiftlet::runtime
