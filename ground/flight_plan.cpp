@@ -38,7 +38,7 @@ void demand_whole_flight(const MissionFile& mission, const fs::path& file, doubl
   }
 }
 
-std::string absolute(const fs::path& path) { return fs::absolute(path).string(); }
+std::string absolute_path(const fs::path& path) { return fs::absolute(path).string(); }
 
 }  // namespace
 
@@ -51,7 +51,8 @@ FlightPlan plan_flight(const FlyOptions& options) {
   const control::ControlSettings control = runtime::load_control_settings(plan.control_file);
   plan.control_name = control.name;
   const plant::SimulationSettings simulation = runtime::load_simulation_settings(plan.simulation_file);
-  plan.imu_rate_hz = options.imu_rate_hz > 0.0 ? options.imu_rate_hz : simulation.imu.rate_hz;
+  plan.imu_rate_hz = options.imu_rate_hz > 0 ? options.imu_rate_hz : simulation.imu.rate_hz;
+  plan.imu_rate_option_hz = options.imu_rate_hz;
   plan.seed = options.seed;
 
   const fs::path mission_file = configuration_file("missions", options.mission);
@@ -76,16 +77,18 @@ std::vector<ProcessSettings> processes(const FlightPlan& plan, const comms::Node
     arguments.insert(arguments.end(), common.begin(), common.end());
     return ProcessSettings{name, program, std::move(arguments), plan.folder / (name + ".log")};
   };
-  const std::string vehicle = absolute(plan.vehicle_file);
-  const std::string simulation = absolute(plan.simulation_file);
+  const std::string vehicle = absolute_path(plan.vehicle_file);
+  const std::string simulation = absolute_path(plan.simulation_file);
   const std::string seed = std::to_string(plan.seed);
-  const std::string imu_rate = std::to_string(plan.imu_rate_hz);
+  std::vector<std::string> plant = {"--vehicle", vehicle, "--simulation", simulation, "--seed", seed};
+  if (plan.imu_rate_option_hz > 0) {
+    plant.insert(plant.end(), {"--imu-rate", std::to_string(plan.imu_rate_option_hz)});
+  }
   return {
-      process("swiftlet-plant", plan.plant_program,
-              {"--vehicle", vehicle, "--simulation", simulation, "--seed", seed, "--imu-rate", imu_rate}),
+      process("swiftlet-plant", plan.plant_program, std::move(plant)),
       process("swiftlet-mocap", plan.mocap_program, {"--simulation", simulation, "--seed", seed}),
       process("swiftlet-control", plan.control_program,
-              {"--vehicle", vehicle, "--control", absolute(plan.control_file)}),
+              {"--vehicle", vehicle, "--control", absolute_path(plan.control_file)}),
   };
 }
 

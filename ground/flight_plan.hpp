@@ -17,11 +17,11 @@ namespace swiftlet::ground {
 struct FlyOptions {
   std::string mission;
   std::string vehicle = "kaylion";
-  std::string control = "default";
+  std::string control = "motor_lag";
   std::string simulation = "default";
   std::string record;  // empty: flights/<date-time>-<mission>
   std::uint64_t seed = 1;
-  double imu_rate_hz = 0.0;  // 0: as the simulation file says
+  int imu_rate_hz = 0;  // 0: as the simulation file says
   comms::NodeSettings network;
   int domain = -1;  // below 0: a free one
   bool json = false;
@@ -32,6 +32,7 @@ struct FlightPlan {
   double planned_duration_s = 0.0;
   std::filesystem::path vehicle_file, control_file, simulation_file;
   std::string vehicle_name, control_name;
+  int imu_rate_option_hz = 0;  // as FlyOptions
   double imu_rate_hz = 0.0;
   std::uint64_t seed = 0;
   std::filesystem::path folder;  // where the flight is recorded; not made yet

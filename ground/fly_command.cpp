@@ -149,7 +149,6 @@ int fly(const FlyOptions& options) {
 
 Command add_fly_command(CLI::App& root) {
   const auto options = std::make_shared<FlyOptions>();
-  options->network.name = "ground";
   options->network.localhost_only = true;
   CLI::App* const app = root.add_subcommand(
       "fly", "Start plant, mocap and control on this computer, fly a mission, and report");
@@ -157,20 +156,24 @@ Command add_fly_command(CLI::App& root) {
       ->required();
   app->add_option("--vehicle", options->vehicle, "vehicle file or name")->capture_default_str();
   app->add_option("--control", options->control,
-                  "control settings, file or name: default, or paper for the paper's own loops")
+                  "control settings, file or name: motor_lag, or paper for the paper's own loops")
       ->capture_default_str();
   app->add_option("--simulation", options->simulation, "simulation settings, file or name")
       ->capture_default_str();
   app->add_option(
       "--record", options->record,
       "folder for flight.csv, report.json, flight.png and logs; flights/<date>-<mission> unless given");
-  app->add_option("--seed", options->seed, "of all that is random in the simulation")->capture_default_str();
+  app->add_option("--seed", options->seed, "of all that is random in the simulation")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   app->add_option("--imu-rate", options->imu_rate_hz,
                   "IMU and inner-loop rate, Hz; as the simulation file says unless given")
       ->check(CLI::IsMember({500, 1000}));
+  add_network_options(*app, options->network);
+  app->remove_option(app->get_option("--localhost-only"));  // it stays there
+  app->remove_option(app->get_option("--domain"));          // whose default is not that of a flight
   app->add_option("--domain", options->domain, "DDS domain; a free one unless given")
-      ->check(CLI::Range(0, kMaxDomain));
-  add_vehicle_options(*app, options->network);
+      ->check(CLI::Range(0, 232));
   app->add_flag("--json", options->json, "print one JSON object instead of the summary");
   app->footer(
       "Ctrl-C lands; a second Ctrl-C ends at once.\nexample: swiftlet fly square --record /tmp/square --json "

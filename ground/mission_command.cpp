@@ -21,7 +21,7 @@ constexpr double kSilenceS = 3.0;
 
 struct Options : RequestOptions {
   std::string file;
-  std::string control = "default";
+  std::string control = "motor_lag";
   bool no_wait = false;
 };
 

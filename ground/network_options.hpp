@@ -1,6 +1,8 @@
 // Where a vehicle is to be found: the options that all commands which talk to one share.
 #pragma once
 
+#include <string>
+
 #include "services/comms/node.hpp"
 
 namespace CLI {
@@ -9,14 +11,10 @@ class App;
 
 namespace swiftlet::ground {
 
-// Adds --vehicle-name, --transport and --localhost-only; `network` must outlive the parsing.
-void add_vehicle_options(CLI::App& app, comms::NodeSettings& network);
+// The options of comms::add_node_options, a name that cannot be one refused as bad input. `network` must
+// outlive the parsing.
+void add_network_options(CLI::App& app, comms::NodeSettings& network);
 
-// Adds --domain, which $SWIFTLET_DOMAIN sets too.
-void add_domain_option(CLI::App& app, int& domain);
-
-constexpr int kMaxDomain = 232;
-
-const char* to_string(comms::Transport transport);  // as on the command line
+std::string to_string(comms::Transport transport);  // as on the command line
 
 }  // namespace swiftlet::ground

@@ -15,10 +15,8 @@ std::chrono::milliseconds milliseconds(double seconds) {
 
 CLI::App* add_request_subcommand(CLI::App& root, const std::string& name, const std::string& description,
                                  const std::string& example, const std::shared_ptr<RequestOptions>& options) {
-  options->network.name = "ground";
   CLI::App* const app = root.add_subcommand(name, description);
-  add_domain_option(*app, options->network.domain);
-  add_vehicle_options(*app, options->network);
+  add_network_options(*app, options->network);
   app->add_option("--timeout", options->timeout_s, "longest wait for an answer, s")
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();

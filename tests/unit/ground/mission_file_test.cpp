@@ -1,6 +1,7 @@
 #include "ground/mission_file.hpp"
 
 #include <cmath>
+#include <ostream>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -77,6 +78,9 @@ struct Fault {
   std::string sentence;
 };
 
+void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
+std::string name_of(const testing::TestParamInfo<Fault>& fault) { return fault.param.name; }
+
 class BadMissionFile : public testing::TestWithParam<Fault> {};
 
 TEST_P(BadMissionFile, IsRefusedWithASentence) { EXPECT_EQ(refusal(GetParam().text), GetParam().sentence); }
@@ -93,27 +97,28 @@ INSTANTIATE_TEST_SUITE_P(
               "m.yaml:5: items[1].speed_m_s: is 4, must be above 0 and at most 2"},
         Fault{"NotANumber",
               kHead + kTakeoff + "  - {kind: waypoint, position_m: [.nan, 0, -1], speed_m_s: 0.5}\n",
-              "m.yaml:5: items[1].position_m[0]: is '.nan', must be a number"},
+              "m.yaml:5: items[1].position_m[0]: is .nan, must be a finite number"},
         Fault{"NegativeHold", kHead + "  - {kind: takeoff, height_m: 1, speed_m_s: 0.5, hold_s: -1}\n",
               "m.yaml:4: items[0].hold_s: is -1, must be at least 0 and at most 3600"},
         Fault{"UnknownKind", kHead + "  - {kind: loop, speed_m_s: 0.5}\n",
-              "m.yaml:4: items[0].kind: is 'loop', must be takeoff, waypoint or land"},
+              "m.yaml:4: items[0].kind: is loop, must be takeoff, waypoint or land"},
         Fault{"LateTakeoff", kHead + kTakeoff + kTakeoff,
               "m.yaml:5: items[1]: is a takeoff, which must be the first item"},
         Fault{"EarlyLand", kHead + kTakeoff + kLand + kWaypoint,
               "m.yaml:5: items[1]: is a land, which must be the last item"},
         Fault{"NoItems", "frame: ned\ntolerance_m: 0.1\nitems: []\n",
-              "m.yaml:3: items: has 0 values, must have 1 to 2048"},
+              "m.yaml:3: items: is a list of 0, must be a list of 1 to 2048"},
         Fault{"UnknownFrame", "frame: body\ntolerance_m: 0.1\nitems:\n" + kTakeoff,
-              "m.yaml:1: frame: is 'body', must be ned or enu"},
-        Fault{"NoTolerance", "frame: ned\nitems:\n" + kTakeoff, "m.yaml:1: tolerance_m: is missing"},
+              "m.yaml:1: frame: is body, must be ned or enu"},
+        Fault{"NoTolerance", "frame: ned\nitems:\n" + kTakeoff,
+              "m.yaml:1: tolerance_m: is missing, must be given"},
         Fault{"ZeroTolerance", "frame: ned\ntolerance_m: 0\nitems:\n" + kTakeoff,
               "m.yaml:2: tolerance_m: is 0, must be above 0 and at most 10"},
         Fault{"MisspeltKey", kHead + "  - {kind: takeoff, height_m: 1, speed_m_s: 0.5, hold: 2}\n",
-              "m.yaml:4: items[0].hold: is not a key that is known here"},
+              "m.yaml:4: items[0].hold: is unknown, must be one of kind, height_m, speed_m_s or hold_s"},
         Fault{"NameWithAFolder", "name: ../x\n" + kHead + kTakeoff,
               "m.yaml:1: name: must be at most 64 characters and hold no /"}),
-    [](const testing::TestParamInfo<Fault>& info) { return info.param.name; });
+    name_of);
 
 TEST(MissionFile, RefusesOneThatIsCutShort) {
   const std::string whole = kHead + kTakeoff + kWaypoint + kLand;
