@@ -19,7 +19,11 @@ namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{4} << 20;
 constexpr std::size_t kMaxDepth = 24;
+constexpr std::size_t kMaxKeys = 1000;  // of one map
 constexpr std::size_t kMaxShownLength = 60;
+
+// Ends the document: without it yaml-cpp takes a quote that is never closed for a text that ends with the file.
+constexpr const char* kDocumentEnd = "...\n";
 
 enum class Kind { kNull, kScalar, kList, kMap };
 
@@ -42,7 +46,7 @@ std::string shown(std::string_view text) {
     if (!out.empty() && (static_cast<unsigned char>(out.back()) & 0x80) != 0) out.pop_back();
     out += "...";
   }
-  return out.empty() ? "\"\"" : out;
+  return out;
 }
 
 std::string joined(const std::vector<std::string>& names) {
@@ -186,6 +190,7 @@ class TreeBuilder final : public YAML::EventHandler {
   struct Frame {
     Value* value = nullptr;
     bool has_name = false;  // of a map: the key has come, its value is next
+    int name_line = 0;
   };
 
   [[noreturn]] void fail(const YAML::Mark& mark, const std::string& message) const {
@@ -203,8 +208,9 @@ class TreeBuilder final : public YAML::EventHandler {
   Value* add(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, Kind kind,
              const std::string& text) {
     if (anchor != 0) fail(mark, "has an anchor, must be without");
-    if (!tag.empty() && tag != "?" && tag != "!")
+    if (!tag.empty() && tag != "?" && tag != "!") {
       fail(mark, "has the tag " + shown(std::string_view(tag)) + ", must be without");
+    }
     if (!stack_.empty() && stack_.back().value->kind == Kind::kMap && !stack_.back().has_name) {
       if (kind != Kind::kScalar) fail(mark, "has a key that is not a text, must be a plain name");
       add_name(mark, text);
@@ -225,6 +231,7 @@ class TreeBuilder final : public YAML::EventHandler {
     if (frame.value->kind == Kind::kMap) {
       const std::string& name = frame.value->names.back();
       raw->key = frame.value->key.empty() ? name : frame.value->key + "." + name;
+      raw->line = frame.name_line;
       frame.has_name = false;
     } else {
       raw->key = frame.value->key + "[" + std::to_string(frame.value->children.size()) + "]";
@@ -241,11 +248,15 @@ class TreeBuilder final : public YAML::EventHandler {
     }
     if (name.empty() || name.size() > kMaxShownLength ||
         !std::all_of(name.begin(), name.end(), is_printable)) {
-      fail(mark, "has the key " + shown(std::string_view(name)) + ", must be one line of 1 to " +
+      fail(mark, "has the key \"" + shown(std::string_view(name)) + "\", must be one line of 1 to " +
                      std::to_string(kMaxShownLength) + " bytes");
+    }
+    if (frame.value->names.size() == kMaxKeys) {
+      fail(mark, "is a map of too many keys, must be at most " + std::to_string(kMaxKeys));
     }
     frame.value->names.push_back(name);
     frame.has_name = true;
+    frame.name_line = mark.line + 1;
   }
 
   std::string file_;
@@ -427,7 +438,7 @@ ConfigNode parse_config(std::string_view text, const std::string& file_name) {
   check_text(text, file_name);
   TreeBuilder builder(file_name);
   try {
-    std::istringstream stream{std::string(text)};
+    std::istringstream stream{std::string(text) + kDocumentEnd};
     YAML::Parser parser(stream);
     while (parser.HandleNextDocument(builder)) {
     }

@@ -1,0 +1,192 @@
+#include "services/runtime/control_settings_file.hpp"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "services/runtime/text_file.hpp"
+#include "tests/unit/runtime/config_error_check.hpp"
+
+namespace swiftlet::runtime {
+namespace {
+
+using control::AttitudeModel;
+using control::ControlSettings;
+using tests::refusal;
+
+std::string file(const std::string& name) {
+  return read_text_file(SWIFTLET_SOURCE_DIR "/config/control/" + name + ".yaml");
+}
+
+TEST(ControlSettingsFile, BothLoopsOfTheProjectLoad) {
+  EXPECT_EQ(parse_control_settings(file("motor_lag"), "c.yaml").attitude.model, AttitudeModel::kMotorLag);
+  EXPECT_EQ(parse_control_settings(file("paper"), "c.yaml").attitude.model, AttitudeModel::kDoubleIntegrator);
+}
+
+TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
+  const ControlSettings s = parse_control_settings(
+      "name: n\n"
+      "attitude:\n"
+      "  model: motor_lag\n"
+      "  roll: {q: [1, 2, 3], r: 4}\n"
+      "  pitch: {q: [5, 6, 7], r: 8}\n"
+      "  yaw: {q: [9, 10, 11], r: 12}\n"
+      "  feed_forward: false\n"
+      "position:\n"
+      "  x: {omega_n: 13, zeta: 14, epsilon: 15, k_i: 16}\n"
+      "  y: {omega_n: 17, zeta: 18, epsilon: 19, k_i: 20}\n"
+      "  z: {omega_n: 21, zeta: 22, epsilon: 23, k_i: 24}\n"
+      "  integral_limit_m_s2: 25\n"
+      "limits:\n"
+      "  max_tilt_rad: 0.26\n"
+      "  max_acceleration_m_s2: 27\n"
+      "  max_speed_m_s: 28\n"
+      "  max_reference_acceleration_m_s2: 29\n"
+      "  max_yaw_rate_rad_s: 30\n"
+      "  fence_min_ned_m: [-31, -32, -33]\n"
+      "  fence_max_ned_m: [34, 35, 36]\n"
+      "estimator:\n"
+      "  position_bandwidth_rad_s: 37\n"
+      "  attitude_bandwidth_rad_s: 38\n"
+      "  accelerometer_bias_limit_m_s2: 39\n"
+      "  gyro_bias_limit_rad_s: 40\n"
+      "failsafe:\n"
+      "  mocap_timeout_s: 41\n"
+      "  descent_speed_m_s: 42\n"
+      "  descent_timeout_s: 43\n"
+      "  tip_over_tilt_rad: 44\n"
+      "  low_battery_voltage_v: 45\n"
+      "  setpoint_timeout_s: 46\n",
+      "c.yaml");
+  EXPECT_EQ(s.name, "n");
+  EXPECT_EQ(s.attitude.roll.q, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(s.attitude.roll.r, 4);
+  EXPECT_EQ(s.attitude.pitch.q, Eigen::Vector3d(5, 6, 7));
+  EXPECT_EQ(s.attitude.pitch.r, 8);
+  EXPECT_EQ(s.attitude.yaw.q, Eigen::Vector3d(9, 10, 11));
+  EXPECT_EQ(s.attitude.yaw.r, 12);
+  EXPECT_FALSE(s.attitude.feed_forward);
+  double value = 13;
+  for (const control::RptSettings* rpt : {&s.position.x, &s.position.y, &s.position.z}) {
+    EXPECT_EQ(rpt->omega_n, value++);
+    EXPECT_EQ(rpt->zeta, value++);
+    EXPECT_EQ(rpt->epsilon, value++);
+    EXPECT_EQ(rpt->k_i, value++);
+  }
+  EXPECT_EQ(s.position.integral_limit, 25);
+  EXPECT_EQ(s.limits.max_tilt_rad, 0.26);
+  EXPECT_EQ(s.limits.max_acceleration, 27);
+  EXPECT_EQ(s.limits.max_speed, 28);
+  EXPECT_EQ(s.limits.max_reference_acceleration, 29);
+  EXPECT_EQ(s.limits.max_yaw_rate, 30);
+  EXPECT_EQ(s.limits.fence_min_ned, Eigen::Vector3d(-31, -32, -33));
+  EXPECT_EQ(s.limits.fence_max_ned, Eigen::Vector3d(34, 35, 36));
+  EXPECT_EQ(s.estimator.position_bandwidth, 37);
+  EXPECT_EQ(s.estimator.attitude_bandwidth, 38);
+  EXPECT_EQ(s.estimator.accelerometer_bias_limit, 39);
+  EXPECT_EQ(s.estimator.gyro_bias_limit, 40);
+  EXPECT_EQ(s.failsafe.mocap_timeout_s, 41);
+  EXPECT_EQ(s.failsafe.descent_speed, 42);
+  EXPECT_EQ(s.failsafe.descent_timeout_s, 43);
+  EXPECT_EQ(s.failsafe.tip_over_tilt_rad, 44);
+  EXPECT_EQ(s.failsafe.low_battery_voltage, 45);
+  EXPECT_EQ(s.failsafe.setpoint_timeout_s, 46);
+}
+
+TEST(ControlSettingsFile, EveryTruncationIsRefused) {
+  for (const char* name : {"motor_lag", "paper"}) {
+    const std::string text = file(name);
+    for (std::size_t length = 0; length < text.size(); ++length) {
+      EXPECT_THROW(parse_control_settings(text.substr(0, length), "c.yaml"), ConfigError) << length;
+    }
+  }
+}
+
+TEST(ControlSettingsFile, EveryLineThatHoldsAKeyIsNeeded) {
+  for (const char* name : {"motor_lag", "paper"}) {
+    const std::string text = file(name);
+    for (std::size_t begin = 0; begin < text.size();) {
+      const std::size_t end = text.find('\n', begin) + 1;
+      const std::string line = text.substr(begin, end - begin);
+      const std::size_t first = line.find_first_not_of(' ');
+      if (line[first] != '#' && line[first] != '\n') {
+        std::string without = text;
+        without.erase(begin, end - begin);
+        EXPECT_THROW(parse_control_settings(without, "c.yaml"), ConfigError) << line;
+      }
+      begin = end;
+    }
+  }
+}
+
+struct Fault {
+  const char* key;    // as the message has it
+  const char* value;  // in place of what stands behind the key
+  const char* message;
+};
+void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.key << ": " << fault.value; }
+
+class SettingsFaults : public testing::TestWithParam<Fault> {};
+
+// Puts a value behind a key "section.name" of paper.yaml, and says in which line.
+std::string with_value(const Fault& fault, int& line) {
+  std::string text = file("paper");
+  const std::string key = fault.key;
+  std::size_t at = 0;
+  std::size_t begin = 0;
+  while (begin < key.size()) {
+    const std::size_t end = std::min(key.find('.', begin), key.size());
+    at = text.find(key.substr(begin, end - begin) + ":", at);
+    EXPECT_NE(at, std::string::npos) << key;
+    begin = end + 1;
+  }
+  at = text.find(':', at) + 1;
+  line = 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+  const std::size_t end = text[at + 1] == '[' ? text.find(']', at) + 1 : text.find_first_of(",}\n", at);
+  return text.replace(at, end - at, std::string(" ") + fault.value);
+}
+
+TEST_P(SettingsFaults, AreNamedWithLineKeyValueAndLimit) {
+  int line = 0;
+  const std::string text = with_value(GetParam(), line);
+  const std::string sentence = refusal([&] { parse_control_settings(text, "c.yaml"); });
+  EXPECT_EQ(sentence.rfind("c.yaml:" + std::to_string(line) + ": " + GetParam().key, 0), 0U) << sentence;
+  EXPECT_NE(sentence.find(GetParam().message), std::string::npos) << sentence;
+}
+
+const Fault kFaults[] = {
+    {"attitude.model", "lqr", "is lqr, must be double_integrator or motor_lag"},
+    {"attitude.roll.q", "[625, 0, 0]", "is a list of 3, must be a list of 2"},
+    {"attitude.roll.q", "[0, 1]", "[0]: is 0, must be a finite number above 0"},
+    {"attitude.pitch.q", "[1, -1]", "[1]: is -1, must be a finite number of at least 0"},
+    {"attitude.yaw.r", "0", "is 0, must be a finite number above 0"},
+    {"attitude.feed_forward", "maybe", "is maybe, must be true or false"},
+    {"position.x.omega_n", "0", "is 0, must be a finite number above 0"},
+    {"position.y.zeta", "-1", "above 0"},
+    {"position.z.epsilon", ".inf", "must be a finite number"},
+    {"position.x.k_i", "-0.1", "at least 0"},
+    {"position.integral_limit_m_s2", "-2", "at least 0"},
+    {"limits.max_tilt_rad", "0", "above 0"},
+    {"limits.max_tilt_rad", "1.6", "is 1.6, must be at least 0 and at most 1.5"},
+    {"limits.max_acceleration_m_s2", "0", "above 0"},
+    {"limits.max_speed_m_s", "0", "above 0"},
+    {"limits.max_reference_acceleration_m_s2", "0", "above 0"},
+    {"limits.max_yaw_rate_rad_s", "0", "above 0"},
+    {"limits.fence_max_ned_m", "[3, -99, 0.2]", "[1]: is -99, must be above fence_min_ned_m in y, -"},
+    {"limits.fence_min_ned_m", "[-3, .nan, -2]", "[1]: is .nan, must be a finite number"},
+    {"estimator.position_bandwidth_rad_s", "0", "above 0"},
+    {"estimator.attitude_bandwidth_rad_s", "0", "above 0"},
+    {"estimator.accelerometer_bias_limit_m_s2", "-1", "at least 0"},
+    {"estimator.gyro_bias_limit_rad_s", "-1", "at least 0"},
+    {"failsafe.mocap_timeout_s", "0", "above 0"},
+    {"failsafe.descent_speed_m_s", "0", "above 0"},
+    {"failsafe.descent_timeout_s", "0", "above 0"},
+    {"failsafe.tip_over_tilt_rad", "0.1", "is 0.1, must be above limits.max_tilt_rad"},
+    {"failsafe.low_battery_voltage_v", "-1", "at least 0"},
+    {"failsafe.setpoint_timeout_s", "soon", "is soon, must be a number"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Control, SettingsFaults, testing::ValuesIn(kFaults));
+
+}  // namespace
+}  // namespace swiftlet::runtime
