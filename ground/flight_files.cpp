@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdio>
 #include <fstream>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 
@@ -16,6 +17,7 @@ namespace swiftlet::ground {
 namespace {
 
 constexpr std::chrono::seconds kPlotTimeout{30};
+constexpr std::int64_t kLongestRowGapNs = 15'000'000;  // references come every 10 ms
 
 struct Closer {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -65,8 +67,8 @@ set datafile separator ','
 csv = 'flight.csv'
 
 set multiplot title headline font 'DejaVu Sans,15'
-set style line 1 lc rgb '#1f5fa8' lw 2.2           # flown
-set style line 2 lc rgb '#d9822b' lw 1.6 dt (8,5)  # reference
+set style line 1 lc rgb '#5b9bd5' lw 3.2            # flown
+set style line 2 lc rgb '#1a1a1a' lw 1.2 dt (10,6)  # reference, on top of it
 set style line 3 lc rgb '#b03a2e' lw 1.1
 set style line 4 lc rgb '#2e8b57' lw 1.1
 set style line 5 lc rgb '#7d4fa1' lw 1.1
@@ -84,15 +86,15 @@ set format x ''
 set tmargin at screen 0.935; set bmargin at screen 0.735
 set ylabel 'north x (m)' offset 1
 set yrange [-2.2:2.2]; set autoscale y; set offsets 0,0,0.15,0.1
-plot csv using 't':'ref_px' with lines ls 2 title 'reference', csv using 't':'px' with lines ls 1 title 'flown'
+plot csv using 't':'px' with lines ls 1 title 'flown', csv using 't':'ref_px' with lines ls 2 title 'reference'
 unset key
 set tmargin at screen 0.715; set bmargin at screen 0.515
 set ylabel 'east y (m)'
-plot csv using 't':'ref_py' with lines ls 2, csv using 't':'py' with lines ls 1
+plot csv using 't':'py' with lines ls 1, csv using 't':'ref_py' with lines ls 2
 set tmargin at screen 0.495; set bmargin at screen 0.295
 set ylabel 'down z (m)'
 set yrange [*:*] reverse
-plot csv using 't':'ref_pz' with lines ls 2, csv using 't':'pz' with lines ls 1
+plot csv using 't':'pz' with lines ls 1, csv using 't':'ref_pz' with lines ls 2
 set yrange [*:*] noreverse
 set tmargin at screen 0.275; set bmargin at screen 0.065
 set format x '%g'
@@ -117,20 +119,22 @@ set lmargin at screen 0.590; set rmargin at screen 0.975
 set tmargin at screen 0.935; set bmargin at screen 0.500
 set size ratio -1
 set label 1 'plan view' at graph 0.03,0.95 front
-plot csv using 'ref_py':'ref_px' with lines ls 2, csv using 'py':'px' with lines ls 1
+plot csv using 'py':'px' with lines ls 1, csv using 'ref_py':'ref_px' with lines ls 2
 unset label 1
 
-unset offsets
+set offsets 0.2,0.2,0.2,0.2
 set size noratio
 set lmargin at screen 0.600; set rmargin at screen 0.960
 set tmargin at screen 0.430; set bmargin at screen 0.060
 set view 62,35
 set view equal xyz
-set xyplane relative 0
+set xyplane at 0
+set zrange [0:*]
 set ztics 0.5
 set xtics 0.5 offset 0,-0.2; set ytics 0.5
 set xlabel 'east y (m)' offset 0,-0.5; set ylabel 'north x (m)' offset 0,-0.5; set zlabel 'height -z (m)' rotate by 90 offset -1
-splot csv using 'ref_py':'ref_px':(-column('ref_pz')) with lines ls 2, csv using 'py':'px':(-column('pz')) with lines ls 1
+splot csv using 'py':'px':(-column('pz')) with lines ls 1, \
+      csv using 'ref_py':'ref_px':(-column('ref_pz')) with lines ls 2
 unset multiplot
 )";
 
@@ -165,8 +169,11 @@ void write_flight_csv(const std::filesystem::path& file, const FlightRecord& rec
 
   const ReferenceRow* next_reference = record.reference.begin();
   const EstimateRow* next_estimate = record.estimate.begin();
+  std::int64_t last_ns = std::numeric_limits<std::int64_t>::min() / 2;
   for (const TruthRow& truth : record.truth) {
     const ReferenceRow* reference = row_at(next_reference, record.reference.end(), truth.stamp_ns);
+    if (reference == nullptr && truth.stamp_ns - last_ns < kLongestRowGapNs) continue;
+    last_ns = truth.stamp_ns;
     const EstimateRow* estimate = row_at(next_estimate, record.estimate.end(), truth.stamp_ns);
     std::fprintf(out, "%.6f,", static_cast<double>(truth.stamp_ns - window.from_ns) * 1e-9);
     if (reference != nullptr) std::fprintf(out, "%d", reference->mode);

@@ -43,7 +43,7 @@ void take_figures(const View& view, FlightReport& report) {
 // Why a mission that was flown to its end does not count as completed; empty if it does.
 std::string shortfall(const FlightReport& report, Window window) {
   char text[160];
-  if (!enough_samples(report.errors, window, report.imu_rate_hz)) {
+  if (!enough_samples(report.errors, window)) {
     std::snprintf(text, sizeof text,
                   "too little telemetry to judge it: %zu samples matched of %.0f, longest gap %.2f s (at "
                   "least %.0f %%, at most %.2f s)",

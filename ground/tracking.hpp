@@ -21,10 +21,11 @@ struct TrackingErrors {
 TrackingErrors tracking_errors(const Track<TruthRow>& truth, const Track<ReferenceRow>& reference,
                                Window window);
 
-// Too few samples to judge the flight by: under half of those that rate_hz makes in the window, or nothing
-// for longer than kLongestGap, in which a slow loop could go astray and come back.
+// Enough samples to judge the flight by: half of those that rate_hz makes in the window, and never none for longer than
+// kLongestGapS, in which a slow loop could go astray and come back.
+constexpr double kTelemetryRateHz = 100.0;  // of references
 constexpr double kLeastMatchedFraction = 0.5;
 constexpr double kLongestGapS = 0.25;
-bool enough_samples(const TrackingErrors& errors, Window window, double rate_hz);
+bool enough_samples(const TrackingErrors& errors, Window window, double rate_hz = kTelemetryRateHz);
 
 }  // namespace swiftlet::ground

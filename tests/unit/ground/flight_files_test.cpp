@@ -1,5 +1,6 @@
 #include "ground/flight_files.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -40,7 +41,8 @@ std::vector<std::vector<std::string>> table(const fs::path& file) {
   return rows;
 }
 
-FlightRecord& fly(FlightRecord& record, int count) {
+// Truth at 500 Hz, a reference with each fifth of it until `last_reference`.
+FlightRecord& fly(FlightRecord& record, int count, int last_reference) {
   for (int i = 0; i < count; ++i) {
     TruthRow truth;
     truth.stamp_ns = 1'000'000'000 + i * 2'000'000LL;
@@ -49,7 +51,7 @@ FlightRecord& fly(FlightRecord& record, int count) {
     truth.rotor_speeds = {1600, 1601, 1602, 1603};
     truth.supply_voltage_v = 4.1;
     record.truth.append(truth);
-    if (i % 2 == 1) continue;
+    if (i % 5 != 0 || i > last_reference) continue;
     ReferenceRow reference;
     reference.stamp_ns = truth.stamp_ns;
     reference.mode = 4;
@@ -59,31 +61,33 @@ FlightRecord& fly(FlightRecord& record, int count) {
   return record;
 }
 
-TEST_F(FlightFilesTest, CsvHasARowForEachTruthAndEmptyCellsForWhatDidNotCome) {
-  FlightRecord record(10);
-  write_flight_csv(folder_ / "flight.csv", fly(record, 3), {1'002'000'000, 1'100'000'000});
+TEST_F(FlightFilesTest, CsvHasARowForEachReferenceAndGoesOnWithoutThem) {
+  FlightRecord record(100);
+  write_flight_csv(folder_ / "flight.csv", fly(record, 30, 10), {1'010'000'000, 1'100'000'000});
   const auto rows = table(folder_ / "flight.csv");
-  ASSERT_EQ(rows.size(), 4U);
+  ASSERT_EQ(rows.size(), 6U) << "header, references at 0, 10 and 20 ms, truth alone at 36 and 52 ms";
   const auto& header = rows.front();
   for (const auto& row : rows) EXPECT_EQ(row.size(), header.size());
   const auto column = [&](const std::string& name) {
     return static_cast<std::size_t>(std::find(header.begin(), header.end(), name) - header.begin());
   };
-  EXPECT_EQ(rows[1][column("t")], "-0.002000") << "t = 0 is the window's start";
-  EXPECT_EQ(rows[3][column("px")], "0.502");
-  EXPECT_EQ(rows[3][column("ref_px")], "0.503");
+  EXPECT_EQ(rows[1][column("t")], "-0.010000") << "t = 0 is the window's start";
+  EXPECT_EQ(rows[3][column("px")], "0.51");
+  EXPECT_EQ(rows[3][column("ref_px")], "0.511");
   EXPECT_EQ(rows[3][column("mode")], "4");
-  EXPECT_EQ(rows[2][column("ref_px")], "") << "no reference of this stamp came";
-  EXPECT_EQ(rows[3][column("est_px")], "");
+  EXPECT_EQ(rows[3][column("est_px")], "") << "no estimate of this stamp came";
   EXPECT_EQ(rows[3][column("v_s")], "4.1");
   EXPECT_EQ(rows[3][column("om4")], "1603");
+  EXPECT_EQ(rows[4][column("t")], "0.026000");
+  EXPECT_EQ(rows[4][column("ref_px")], "") << "no reference of this stamp came";
+  EXPECT_EQ(rows[5][column("t")], "0.042000");
 }
 
 TEST_F(FlightFilesTest, DrawsAPicture) {
   if (find_program("gnuplot").empty()) GTEST_SKIP() << "gnuplot is not installed";
   FlightRecord record(2000);
   const Window window = {1'000'000'000, 3'000'000'000};
-  write_flight_csv(folder_ / "flight.csv", fly(record, 1000), window);
+  write_flight_csv(folder_ / "flight.csv", fly(record, 1000, 1000), window);
   FlightReport report;
   report.mission = "it's_a 'square'";  // quotes and commands of gnuplot's are text
   report.duration_s = 2.0;
