@@ -25,10 +25,10 @@ Vector4 array(const Quaterniond& in) { return {in.w(), in.x(), in.y(), in.z()}; 
 // Collects the first fault of a message; later checks are skipped.
 class Check {
  public:
-  // `index`: of the item that is checked, named with `list`; below 0: none.
-  void in_list(const char* list, int index) {
-    list_ = list;
-    index_ = index;
+  // What follows is checked of the item of this number, counted from 1.
+  void of_item(const char* item, std::size_t number) {
+    item_ = item;
+    number_ = number;
   }
 
   Check& finite(const char* field, double value) {
@@ -88,7 +88,7 @@ class Check {
  private:
   [[gnu::format(printf, 2, 3)]] void fail(const char* format, ...) {
     int length = 0;
-    if (index_ >= 0) length = std::snprintf(fault_.text, sizeof fault_.text, "%s[%d].", list_, index_);
+    if (number_ > 0) length = std::snprintf(fault_.text, sizeof fault_.text, "%s %zu: ", item_, number_);
     std::va_list values;
     va_start(values, format);
     std::vsnprintf(fault_.text + length, sizeof fault_.text - static_cast<std::size_t>(length), format,
@@ -96,8 +96,8 @@ class Check {
     va_end(values);
   }
 
-  const char* list_ = "";
-  int index_ = -1;
+  const char* item_ = "";
+  std::size_t number_ = 0;  // 0: the message itself is checked
   Fault fault_;
 };
 
@@ -328,7 +328,7 @@ Fault from_message(const msg::Mission& in, control::Mission& out) {
   check.at_most("number of items", in.items().size(), control::kMaxMissionItems);
   for (std::size_t i = 0; check.ok() && i < in.items().size(); ++i) {
     const msg::MissionItem& item = in.items()[i];
-    check.in_list("items", static_cast<int>(i));
+    check.of_item("item", i + 1);
     check.at_most("kind", item.kind(), msg::MissionItem_Constants::LAND)
         .finite("position_ned", item.position_ned())
         .finite("yaw", item.yaw())
@@ -368,7 +368,7 @@ Fault from_message(const msg::Trajectory& in, control::Trajectory& out) {
   check.at_most("number of segments", in.segments().size(), control::kMaxTrajectorySegments);
   for (std::size_t i = 0; check.ok() && i < in.segments().size(); ++i) {
     const msg::PolynomialSegment& segment = in.segments()[i];
-    check.in_list("segments", static_cast<int>(i));
+    check.of_item("segment", i + 1);
     check.at_least("duration_s", segment.duration_s(), 0.0)
         .finite("x", segment.x())
         .finite("y", segment.y())

@@ -17,7 +17,7 @@ void add_node_options(CLI::App& app, NodeSettings& settings) {
   app.add_option("--vehicle-name", settings.vehicle, "Namespace of the topics")->capture_default_str();
   app.add_option("--transport", settings.transport,
                  "udp, or shm: shared memory between processes of this host")
-      ->transform(CLI::CheckedTransformer(kTransports))
+      ->transform(CLI::CheckedTransformer(kTransports).description("{udp,shm}"))
       ->default_str("udp");
   app.add_flag("--localhost-only", settings.localhost_only,
                "Use the loopback interface only, without multicast");

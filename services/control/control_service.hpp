@@ -1,0 +1,52 @@
+// The flight controller on the network.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "services/comms/convert.hpp"
+#include "services/comms/fault_log.hpp"
+#include "services/comms/node.hpp"
+#include "services/control/inner_loop.hpp"
+#include "services/control/request_desk.hpp"
+#include "services/control/telemetry.hpp"
+#include "services/runtime/realtime.hpp"
+#include "services/runtime/semaphore.hpp"
+
+namespace swiftlet::services {
+
+// Threads: the IMU's own runs the inner loop and sends the command before it returns; missions and trajectories arrive in their own,
+// all else in one that is shared; run() is telemetry's.
+class ControlService {
+ public:
+  // Throws std::invalid_argument as FlightController does, std::runtime_error as Node does. strength: of the command
+  // stream; the vehicle hears the strongest living controller.
+  ControlService(const plant::Vehicle& vehicle, const control::ControlSettings& settings, int strength,
+                 comms::Node& node, const runtime::RealtimeSettings& realtime);
+
+  void run(const std::atomic<bool>& stop);
+  void wake() { wake_.post(); }
+
+  const Snapshot& last() const { return telemetry_.last(); }  // once run() has returned
+
+ private:
+  void on_imu(const comms::msg::Imu& message);
+  void subscribe(comms::Node& node);
+
+  runtime::RealtimeSettings realtime_;
+  runtime::Semaphore wake_;
+  InnerLoop loop_;
+  RequestDesk desk_;
+  Telemetry telemetry_;
+  comms::Publisher<comms::msg::ActuatorCommand> commands_;
+  bool imu_thread_ready_ = false;
+
+  comms::FaultLog pose_faults_{"mocap_pose"};
+  comms::FaultLog battery_faults_{"battery"};
+  comms::FaultLog rotor_speed_faults_{"rotor_speeds"};
+  comms::FaultLog setpoint_faults_{"setpoint"};
+
+  std::vector<comms::Subscription> subscriptions_;  // last: their callbacks use what stands above
+};
+
+}  // namespace swiftlet::services

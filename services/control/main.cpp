@@ -1,0 +1,86 @@
+// swiftlet-control: the flight controller.
+#include <atomic>
+#include <string>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+#include <spdlog/spdlog.h>
+
+#include "services/comms/node.hpp"
+#include "services/comms/node_options.hpp"
+#include "services/comms/peer_log.hpp"
+#include "services/control/control_service.hpp"
+#include "services/runtime/control_settings_file.hpp"
+#include "services/runtime/find_config.hpp"
+#include "services/runtime/log.hpp"
+#include "services/runtime/process.hpp"
+#include "services/runtime/stop_signal.hpp"
+#include "services/runtime/vehicle_file.hpp"
+
+namespace swiftlet::services {
+namespace {
+
+struct Options {
+  std::string vehicle = "vehicles/kaylion.yaml";
+  std::string control = "control/motor_lag.yaml";
+  int strength = 0;
+  comms::NodeSettings node;
+  runtime::ProcessOptions process;
+};
+
+void add_options(CLI::App& app, Options& options) {
+  app.add_option("--vehicle", options.vehicle, "Vehicle file")->capture_default_str();
+  app.add_option("--control", options.control, "Control settings file")->capture_default_str();
+  app.add_option("--strength", options.strength,
+                 "Of several controllers, the vehicle obeys the strongest alive")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
+  comms::add_node_options(app, options.node);
+  runtime::add_process_options(app, options.process);
+}
+
+void run(const Options& options) {
+  const plant::Vehicle vehicle = runtime::load_vehicle(runtime::find_config(options.vehicle));
+  const control::ControlSettings settings =
+      runtime::load_control_settings(runtime::find_config(options.control));
+
+  runtime::StopSignal stop;
+  const runtime::Logging logging("control", options.process.log);
+  runtime::prepare_realtime(options.process.realtime);
+
+  comms::NodeSettings node_settings = options.node;
+  node_settings.name = "control";
+  comms::Node node(node_settings);
+  comms::log_peers(node);
+  ControlService service(vehicle, settings, options.strength, node, options.process.realtime);
+  spdlog::info("ready: {} with {} control, vehicle {}, domain {}, strength {}", vehicle.name, settings.name,
+               node_settings.vehicle, node_settings.domain, options.strength);
+
+  std::atomic<bool> telemetry_ends{false};
+  std::thread telemetry([&] { service.run(telemetry_ends); });
+  stop.wait();
+  telemetry_ends = true;
+  service.wake();
+  telemetry.join();
+
+  const Snapshot& last = service.last();
+  spdlog::info(
+      "ended in mode {}: {} steps at {:.1f} Hz since the rotors were last started, {} late, longest {:.0f} "
+      "us",
+      control::to_string(last.status.mode), last.timing.cycles, last.timing.rate_hz,
+      last.timing.deadline_misses, static_cast<double>(last.timing.longest_ns) * 1e-3);
+}
+
+}  // namespace
+}  // namespace swiftlet::services
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "The flight controller: answers every IMU sample with an actuator command, flies what it is asked to.",
+      "swiftlet-control");
+  app.footer("Example: swiftlet-control --control config/control/motor_lag.yaml --localhost-only");
+  swiftlet::services::Options options;
+  options.process.realtime.priority = 70;
+  swiftlet::services::add_options(app, options);
+  return swiftlet::runtime::run_process(app, argc, argv, [&] { swiftlet::services::run(options); });
+}

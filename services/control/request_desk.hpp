@@ -1,0 +1,66 @@
+// Takes requests in, has them judged by the inner loop and keeps the answers.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "control/settings.hpp"
+#include "services/comms/topics.hpp"
+#include "services/control/inner_loop.hpp"
+#include "services/runtime/semaphore.hpp"
+
+namespace swiftlet::services {
+
+// For the one who asked.
+struct RequestAnswer {
+  std::uint64_t client = 0;
+  std::uint64_t id = 0;
+  const char* kind = "";  // "mission", "arm"
+  control::Outcome outcome;
+  bool repeated = false;  // it was given before
+};
+
+// Requests are known by client and id: one that was answered is answered alike again and not applied twice; one that is
+// under way is not taken in again.
+class RequestDesk {
+ public:
+  // wake is posted when there is something to collect.
+  RequestDesk(InnerLoop& loop, const control::Limits& limits, runtime::Semaphore& wake);
+
+  // By any thread that may take a lock; each message type by one thread at a time. What is wrong in itself is refused
+  // here, the rest is for the inner loop to judge.
+  void on_command(const comms::msg::Command& message);
+  void on_mission(const comms::msg::Mission& message);
+  void on_trajectory(const comms::msg::Trajectory& message);
+
+  // The answers to be given. Refuses what the inner loop has not looked at in time, because no IMU sample came; lets go
+  // of missions and trajectories that the controller has left. By one thread.
+  std::vector<RequestAnswer> collect();
+
+ private:
+  using Key = std::pair<std::uint64_t, std::uint64_t>;  // client, id
+
+  bool is_known(const Key& key);
+  void submit(std::unique_ptr<PendingRequest> pending);
+  void refuse(const Key& key, control::RequestKind kind, const control::Outcome& outcome);
+  void settle(const Key& key, control::RequestKind kind, const control::Outcome& outcome);
+
+  InnerLoop& loop_;
+  const control::Limits limits_;
+  runtime::Semaphore& wake_;
+
+  std::mutex mutex_;  // guards all below; held for moments
+  std::map<Key, std::unique_ptr<PendingRequest>> pending_;
+  std::map<Key, RequestAnswer> answers_;
+  std::deque<Key> oldest_;  // of answers_
+  std::vector<RequestAnswer> outbox_;
+  std::unique_ptr<control::Mission> mission_;  // the last accepted one: the controller may be flying it
+  std::unique_ptr<control::Trajectory> trajectory_;
+};
+
+}  // namespace swiftlet::services

@@ -1,0 +1,41 @@
+#include "services/control/step_timing.hpp"
+
+#include <algorithm>
+
+namespace swiftlet::services {
+namespace {
+
+constexpr std::int64_t kPaceShare = 8;  // of a delay, that the pace gives way by, one in so many
+
+}  // namespace
+
+void StepTiming::arrived(std::uint64_t sequence, std::int64_t stamp_ns, std::int64_t now_ns,
+                         bool rotors_running) {
+  const std::int64_t elapsed_ns = stamp_ns - last_stamp_ns_;
+  const bool starts_anew = last_sequence_ == 0 || sequence <= last_sequence_ || elapsed_ns <= 0;
+  if (!starts_anew && sequence == last_sequence_ + 1) period_ns_ = elapsed_ns;
+  const std::int64_t delay_ns = starts_anew ? 0 : now_ns - (pace_ns_ + elapsed_ns);
+  pace_ns_ = delay_ns > 0 ? now_ns - delay_ns + delay_ns / kPaceShare : now_ns;
+  last_sequence_ = sequence;
+  last_stamp_ns_ = stamp_ns;
+  arrival_ns_ = now_ns;
+
+  if (rotors_running && !running_) {
+    figures_ = {};
+    first_arrival_ns_ = now_ns;
+  }
+  running_ = rotors_running;
+  if (!running_) return;
+  ++figures_.cycles;
+  if (period_ns_ > 0 && delay_ns > period_ns_ / 2) ++figures_.deadline_misses;
+  if (now_ns > first_arrival_ns_) {
+    figures_.rate_hz =
+        static_cast<double>(figures_.cycles - 1) * 1e9 / static_cast<double>(now_ns - first_arrival_ns_);
+  }
+}
+
+void StepTiming::answered(std::int64_t now_ns) {
+  if (running_) figures_.longest_ns = std::max(figures_.longest_ns, now_ns - arrival_ns_);
+}
+
+}  // namespace swiftlet::services

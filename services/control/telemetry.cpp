@@ -1,0 +1,139 @@
+#include "services/control/telemetry.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+
+#include <spdlog/spdlog.h>
+
+#include "services/comms/convert.hpp"
+#include "services/runtime/periodic_timer.hpp"
+
+namespace swiftlet::services {
+namespace {
+
+using namespace std::chrono_literals;
+namespace topics = comms::topics;
+
+constexpr std::int64_t kStatusPeriodNs = 100'000'000;
+constexpr std::int64_t kMissionPeriodNs = 500'000'000;
+
+bool differ(const control::MissionProgress& a, const control::MissionProgress& b) {
+  return a.id != b.id || a.state != b.state || a.item_index != b.item_index || a.item_count != b.item_count;
+}
+
+bool is_over(control::MissionState state) {
+  return state == control::MissionState::kCompleted || state == control::MissionState::kAborted;
+}
+
+}  // namespace
+
+Telemetry::Telemetry(InnerLoop& loop, RequestDesk& desk, comms::Node& node, runtime::Semaphore& wake)
+    : loop_(loop),
+      desk_(desk),
+      wake_(wake),
+      estimates_(node.publish(topics::kEstimate)),
+      references_(node.publish(topics::kReference)),
+      statuses_(node.publish(topics::kControlStatus)),
+      missions_(node.publish(topics::kMissionStatus)),
+      acks_(node.publish(topics::kCommandAck)) {}
+
+void Telemetry::run(const std::atomic<bool>& stop) {
+  while (!stop.load(std::memory_order_relaxed)) {
+    loop_.snapshots.consume_all([this](const Snapshot& snapshot) { take(snapshot); });
+    answer_requests();
+    const std::int64_t now_ns = runtime::monotonic_ns();
+    if (now_ns >= status_due_ns_) publish_status();
+    if (now_ns >= mission_due_ns_) publish_mission();
+    wake_.wait_for(50ms);
+  }
+}
+
+void Telemetry::take(const Snapshot& snapshot) {
+  const control::Status& before = last_.status;
+  const control::Status& now = snapshot.status;
+  const bool mode_changed = now.mode != before.mode || std::strcmp(now.reason, before.reason) != 0;
+  const bool mission_changed = differ(now.mission, before.mission);
+  if (mission_changed) mission_end_ = is_over(now.mission.state) ? now.reason : "";
+  if (mode_changed) spdlog::info("{}: {}", control::to_string(now.mode), now.reason);
+  if (now.has_pose != before.has_pose) {
+    if (now.has_pose) {
+      spdlog::info("mocap is there");
+    } else {
+      spdlog::warn("mocap lost: the last pose is {:.2f} s old", now.pose_age_s);
+    }
+  }
+  if (snapshot.sampled) publish_sampled(snapshot);
+  saturated_ = saturated_ || snapshot.saturated;
+  last_ = snapshot;
+  if (mode_changed) publish_status();
+  if (mission_changed) publish_mission();
+}
+
+void Telemetry::publish_sampled(const Snapshot& snapshot) {
+  ++sampled_count_;
+  comms::msg::Estimate estimate = comms::to_message(snapshot.estimate, snapshot.status.pose_age_s);
+  estimate.sequence_number(sampled_count_);
+  estimates_.publish(estimate);
+  comms::msg::Reference reference =
+      comms::to_message(snapshot.reference, snapshot.setpoint, snapshot.status.mode);
+  reference.stamp_ns(snapshot.stamp_ns);
+  reference.sequence_number(sampled_count_);
+  references_.publish(reference);
+}
+
+void Telemetry::publish_status() {
+  const control::Status& status = last_.status;
+  comms::msg::ControlStatus message;
+  message.stamp_ns(last_.stamp_ns);
+  message.sequence_number(++status_count_);
+  message.mode(static_cast<std::uint8_t>(status.mode));
+  message.reason() = status.reason;
+  message.airborne(status.airborne);
+  message.has_pose(status.has_pose);
+  message.pose_age_s(status.pose_age_s);
+  message.supply_voltage_v(status.supply_voltage_v);
+  message.saturated(saturated_);
+  message.cycles(last_.timing.cycles);
+  message.deadline_misses(last_.timing.deadline_misses);
+  message.rate_hz(last_.timing.rate_hz);
+  message.step_time_max_us(static_cast<double>(last_.timing.longest_ns) * 1e-3);
+  message.realtime_scheduling(realtime_.load(std::memory_order_relaxed));
+  statuses_.publish(message);
+  saturated_ = false;
+  status_due_ns_ = runtime::monotonic_ns() + kStatusPeriodNs;
+}
+
+void Telemetry::publish_mission() {
+  const control::MissionProgress& mission = last_.status.mission;
+  comms::msg::MissionStatus message;
+  message.stamp_ns(last_.stamp_ns);
+  message.sequence_number(++mission_count_);
+  message.mission_id(mission.id);
+  message.state(static_cast<std::uint8_t>(mission.state));
+  message.item_index(static_cast<std::uint32_t>(std::max(mission.item_index, 0)));
+  message.item_count(static_cast<std::uint32_t>(std::max(mission.item_count, 0)));
+  message.reason() = mission_end_;
+  missions_.publish(message);
+  mission_due_ns_ = runtime::monotonic_ns() + kMissionPeriodNs;
+}
+
+void Telemetry::answer_requests() {
+  for (const RequestAnswer& answer : desk_.collect()) {
+    comms::msg::CommandAck ack;
+    ack.client(answer.client);
+    ack.id(answer.id);
+    ack.accepted(answer.outcome.accepted);
+    ack.reason() = answer.outcome.reason;
+    acks_.publish(ack);
+    if (answer.repeated) {
+      spdlog::debug("{} {} was answered before: answered again", answer.kind, answer.id);
+    } else if (answer.outcome.accepted) {
+      spdlog::info("{} {} accepted", answer.kind, answer.id);
+    } else {
+      spdlog::warn("{} {} refused: {}", answer.kind, answer.id, answer.outcome.reason);
+    }
+  }
+}
+
+}  // namespace swiftlet::services

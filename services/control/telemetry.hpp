@@ -1,0 +1,52 @@
+// What the control service says of itself: telemetry, status, answers to requests, log lines. Nothing here is in a hurry.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "services/comms/node.hpp"
+#include "services/control/inner_loop.hpp"
+#include "services/control/request_desk.hpp"
+#include "services/runtime/semaphore.hpp"
+
+namespace swiftlet::services {
+
+class Telemetry {
+ public:
+  Telemetry(InnerLoop& loop, RequestDesk& desk, comms::Node& node, runtime::Semaphore& wake);
+
+  // Until `stop`, in a thread of its own.
+  void run(const std::atomic<bool>& stop);
+
+  void set_realtime(bool granted) { realtime_.store(granted, std::memory_order_relaxed); }  // by any thread
+  const Snapshot& last() const { return last_; }  // once run() has returned
+
+ private:
+  void take(const Snapshot& snapshot);
+  void answer_requests();
+  void publish_sampled(const Snapshot& snapshot);
+  void publish_status();
+  void publish_mission();
+
+  InnerLoop& loop_;
+  RequestDesk& desk_;
+  runtime::Semaphore& wake_;
+  std::atomic<bool> realtime_{false};
+
+  Snapshot last_;
+  bool saturated_ = false;        // since the last status
+  const char* mission_end_ = "";  // why the last mission ended
+  std::int64_t status_due_ns_ = 0;
+  std::int64_t mission_due_ns_ = 0;
+  std::uint64_t sampled_count_ = 0;
+  std::uint64_t status_count_ = 0;
+  std::uint64_t mission_count_ = 0;
+
+  comms::Publisher<comms::msg::Estimate> estimates_;
+  comms::Publisher<comms::msg::Reference> references_;
+  comms::Publisher<comms::msg::ControlStatus> statuses_;
+  comms::Publisher<comms::msg::MissionStatus> missions_;
+  comms::Publisher<comms::msg::CommandAck> acks_;
+};
+
+}  // namespace swiftlet::services
