@@ -22,7 +22,7 @@ using Eigen::Vector3d;
 constexpr double kFirstStep_s = 0.002;  // taken for the first sample, which has none before it
 constexpr double kMaxStep_s = 0.1;
 constexpr int kUnusableToFault = 50;   // IMU samples in a row that cannot be used: 0.1 s at 500 Hz
-constexpr double kDescentGain = 2.0;   // 1/s, vertical speed to acceleration, in descent without position
+constexpr double kDescentGain = 4.0;   // 1/s, vertical speed to acceleration, in descent without position
 constexpr double kDescentLimit = 2.0;  // m/s^2, of that acceleration
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }

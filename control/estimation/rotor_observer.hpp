@@ -22,9 +22,9 @@ class RotorObserver {
   // Draws the speeds towards measured ones. Ignored unless finite, not negative and for the vehicle's number of rotors.
   void correct(const plant::RotorSpeedSample& sample);
 
-  const plant::PerRotor& speeds() const { return speeds_; }                   // rad/s
-  double thrust_n() const { return wrench_[0]; }                              // along -z of FRD
-  Eigen::Vector3d moment_frd() const { return wrench_.tail<3>(); }            // N m, Eq. (28)
+  const plant::PerRotor& speeds() const { return speeds_; }         // rad/s
+  double thrust_n() const { return wrench_[0]; }                    // along -z of FRD
+  Eigen::Vector3d moment_frd() const { return wrench_.tail<3>(); }  // N m, Eq. (28)
 
  private:
   void update_wrench();

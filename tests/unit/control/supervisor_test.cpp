@@ -338,7 +338,7 @@ TEST(Checks, RefuseTrajectoriesThatStepLeaveTheFenceOrAreTooFast) {
             std::string::npos);
   trajectory.segments = {minimum_jerk({0, 0, -1}, 0, {8, 0, -1}, 0, 30.0)};
   EXPECT_NE(std::string(check(trajectory, limits).reason).find("outside the fence"), std::string::npos);
-  trajectory.segments = {minimum_jerk({0, 0, -1}, 0, {2, 0, -1}, 0, 1.0)};
+  trajectory.segments = {minimum_jerk({0, 0, -1}, 0, {2, 0, -1}, 0, 1.6)};
   EXPECT_NE(std::string(check(trajectory, limits).reason).find("m/s, the limit"), std::string::npos);
   trajectory.segments = {minimum_jerk({0, 0, -1}, 0, {2, 0, -1}, 0, 5.0)};
   trajectory.segments[0].y[3] = std::numeric_limits<double>::infinity();

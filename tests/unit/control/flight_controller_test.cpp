@@ -1,0 +1,279 @@
+#include "control/flight_controller.hpp"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "control/supervision/checks.hpp"
+#include "services/runtime/control_settings_file.hpp"
+#include "services/runtime/vehicle_file.hpp"
+#include "tests/support/closed_loop.hpp"
+#include "tests/support/malloc_guard.hpp"
+
+namespace swiftlet::control {
+namespace {
+
+using Eigen::Vector3d;
+using test::ClosedLoop;
+
+plant::Vehicle kaylion() {
+  return runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
+}
+ControlSettings settings(const std::string& name) {
+  return runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/" + name + ".yaml");
+}
+
+MissionItem waypoint(double x, double y, double z, double speed = 0.5) {
+  return {MissionItemKind::kWaypoint, {x, y, z}, 0.0, true, speed, 0.0};
+}
+
+// The paper's square, Fig. 8: sides of 2 m at up to `speed`.
+Mission square(double speed) {
+  Mission mission;
+  mission.id = 1;
+  mission.items = {{MissionItemKind::kTakeoff, {0, 0, -1}, 0.0, true, 0.5, 1.0},
+                   waypoint(2, 0, -1, speed),
+                   waypoint(2, 2, -1, speed),
+                   waypoint(0, 2, -1, speed),
+                   waypoint(0, 0, -1, speed),
+                   {MissionItemKind::kLand, {0, 0, 0}, 0.0, true, 0.4, 0.0}};
+  return mission;
+}
+
+Request request(RequestKind kind, Vector3d position = Vector3d::Zero(), double speed = 0.5) {
+  Request request;
+  request.kind = kind;
+  request.position_ned = position;
+  request.speed = speed;
+  return request;
+}
+
+// In the air, holding at 1 m, with all sensor models on.
+class InFlight : public testing::Test {
+ protected:
+  void SetUp() override {
+    loop_.step_until([&] { return loop_.time_s() > 0.5; }, 1.0);
+    const Outcome armed = loop_.controller.request(request(RequestKind::kArm));
+    ASSERT_TRUE(armed.accepted) << armed.reason;
+    ASSERT_TRUE(loop_.controller.request(request(RequestKind::kTakeoff, {0, 0, -1})).accepted);
+    ASSERT_TRUE(wait_for(Mode::kHolding, 10.0));
+    loop_.step_until([&] { return loop_.time_s() > 10.0; }, 10.0);
+  }
+  bool wait_for(Mode mode, double limit_s) {
+    return loop_.step_until([&] { return loop_.controller.status().mode == mode; }, limit_s);
+  }
+  double altitude_m() const { return -loop_.plant.state().position_ned.z(); }
+
+  ClosedLoop loop_{kaylion(), plant::SimulationSettings(), settings("motor_lag"), 11};
+};
+
+class Seeds : public testing::TestWithParam<int> {};
+
+TEST_P(Seeds, MotorAwareLoopsFlyTheSquareWithinTenMillimetres) {
+  ClosedLoop loop(kaylion(), plant::SimulationSettings(), settings("motor_lag"),
+                  static_cast<std::uint64_t>(GetParam()));
+  const test::MissionResult result = test::fly(loop, square(0.5));
+  ASSERT_TRUE(result.completed) << result.reason;
+  EXPECT_LT(result.rms_3d_m, 0.010);
+  EXPECT_GT(result.duration_s, 30.0);
+  EXPECT_TRUE(loop.plant.on_ground());
+  EXPECT_EQ(loop.command.rotor_state, plant::RotorState::kOff);
+}
+
+TEST_P(Seeds, ThePapersLoopsFlyTheSquareWithinThirtyMillimetres) {
+  ClosedLoop loop(kaylion(), plant::SimulationSettings(), settings("paper"),
+                  static_cast<std::uint64_t>(GetParam()));
+  const test::MissionResult result = test::fly(loop, square(0.5));
+  ASSERT_TRUE(result.completed) << result.reason;
+  EXPECT_LT(result.rms_3d_m, 0.030);
+}
+INSTANTIATE_TEST_SUITE_P(OfTheSquare, Seeds, testing::Range(1, 9));
+
+TEST(FlightController, KnowingTheRotorLagTracksBetter) {
+  ClosedLoop with(kaylion(), plant::SimulationSettings(), settings("motor_lag"), 3);
+  ClosedLoop without(kaylion(), plant::SimulationSettings(), settings("paper"), 3);
+  EXPECT_LT(test::fly(with, square(0.5)).rms_3d_m, 0.5 * test::fly(without, square(0.5)).rms_3d_m);
+}
+
+TEST(FlightController, RefusesGainsThatTheRotorLagMakesUnstable) {
+  ControlSettings hot = settings("paper");
+  hot.position.x.omega_n = 8.0;
+  try {
+    FlightController controller(kaylion(), hot);
+    FAIL() << "took gains that are not stable";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("position.x"), std::string::npos) << error.what();
+  }
+}
+
+TEST(FlightController, KeepsTheRotorsOffUntilAsked) {
+  ClosedLoop loop(kaylion(), plant::SimulationSettings(), settings("motor_lag"), 1);
+  for (int i = 0; i < 1000; ++i) {
+    loop.step();
+    ASSERT_EQ(loop.command.rotor_state, plant::RotorState::kOff);
+  }
+  EXPECT_NEAR(loop.plant.state().position_ned.norm(), 0.0, 1e-3);
+}
+
+TEST_F(InFlight, OneStepDoesNotTouchTheHeap) {
+  const Mission mission = square(0.5);
+  Request start = request(RequestKind::kMission);
+  start.mission = &mission;
+  std::size_t calls = 0;
+  const auto flown = [&](int steps) {
+    for (int i = 0; i < steps; ++i) {
+      do {
+        loop_.plant.step(loop_.watchdog.drive(loop_.plant.stamp_ns()));
+      } while (!loop_.plant.imu());
+      const auto pose = loop_.mocap.update(loop_.plant.truth());
+      const test::MallocGuard guard;
+      if (pose) loop_.controller.on_pose(*pose);
+      if (loop_.plant.battery()) loop_.controller.on_battery(*loop_.plant.battery());
+      if (loop_.plant.rotor_speeds()) loop_.controller.on_rotor_speeds(*loop_.plant.rotor_speeds());
+      loop_.command = loop_.controller.on_imu(*loop_.plant.imu());
+      calls += guard.calls();
+      loop_.watchdog.accept(loop_.command, loop_.plant.stamp_ns());
+    }
+  };
+  ASSERT_TRUE(loop_.controller.request(start).accepted);
+  flown(5000);
+  EXPECT_EQ(loop_.controller.status().mode, Mode::kMission);
+  EXPECT_EQ(calls, 0u);
+}
+
+TEST_F(InFlight, GoesWhereItIsToldAndHolds) {
+  ASSERT_TRUE(loop_.controller.request(request(RequestKind::kGoTo, {1, -1, -1.5})).accepted);
+  ASSERT_TRUE(loop_.step_until(
+      [&] { return (loop_.plant.state().position_ned - Vector3d(1, -1, -1.5)).norm() < 0.01; }, 10.0));
+  for (int i = 0; i < 2500; ++i) {
+    loop_.step();
+    ASSERT_LT((loop_.plant.state().position_ned - Vector3d(1, -1, -1.5)).norm(), 0.02);
+  }
+}
+
+TEST_F(InFlight, TurnsToAYawTheShortWay) {
+  Request turn = request(RequestKind::kGoTo, {0, 0, -1});
+  turn.yaw_free = false;
+  turn.yaw_rad = 3.0;
+  ASSERT_TRUE(loop_.controller.request(turn).accepted);
+  loop_.step_until([] { return false; }, 6.0);
+  turn.yaw_rad = -3.0;
+  ASSERT_TRUE(loop_.controller.request(turn).accepted);
+  double least = 4.0;
+  loop_.step_until(
+      [&] {
+        const auto& q = loop_.plant.state().q_ned_from_frd;
+        least = std::min(least, std::abs(2.0 * std::atan2(q.z(), q.w())));
+        return false;
+      },
+      6.0);
+  EXPECT_GT(least, 2.9);
+  EXPECT_LT((loop_.plant.state().position_ned - Vector3d(0, 0, -1)).norm(), 0.02);
+}
+
+TEST_F(InFlight, WithoutMocapItComesDownLevelAndStopsOnTheGround) {
+  loop_.mocap_connected = false;
+  ASSERT_TRUE(wait_for(Mode::kDescent, 1.0));
+  double most_tilt = 0.0, fastest = 0.0;
+  ASSERT_TRUE(loop_.step_until(
+      [&] {
+        const auto& state = loop_.plant.state();
+        most_tilt = std::max(most_tilt, std::acos((state.q_ned_from_frd * Vector3d::UnitZ()).z()));
+        fastest = std::max(fastest, state.velocity_ned.z());
+        return loop_.controller.status().mode != Mode::kDescent;
+      },
+      8.0));
+  EXPECT_STREQ(loop_.controller.status().reason, "landed without position");
+  EXPECT_TRUE(loop_.plant.on_ground());
+  EXPECT_LT(most_tilt, 0.1);
+  EXPECT_LT(fastest, 0.8);
+  EXPECT_LT(loop_.plant.state().position_ned.head<2>().norm(), 0.5);
+}
+
+TEST_F(InFlight, FliesOnThroughAMocapGapOfFourTenthsOfASecond) {
+  loop_.mocap_connected = false;
+  loop_.step_until([] { return false; }, 0.4);
+  loop_.mocap_connected = true;
+  double worst = 0.0;
+  loop_.step_until(
+      [&] {
+        worst = std::max(worst, loop_.tracking_error().norm());
+        return false;
+      },
+      2.0);
+  EXPECT_EQ(loop_.controller.status().mode, Mode::kHolding);
+  EXPECT_LT(worst, 0.05);
+}
+
+TEST_F(InFlight, AnImuThatGivesNoNumbersStopsTheRotorsAfterATenthOfASecond) {
+  plant::ImuSample broken = *loop_.plant.imu();
+  broken.body_rates_frd.setConstant(std::numeric_limits<double>::quiet_NaN());
+  int answers = 0;
+  plant::ActuatorCommand command = loop_.command;
+  while (command.rotor_state == plant::RotorState::kRunning && answers < 200) {
+    broken.stamp_ns += 2'000'000;
+    ++broken.sequence;
+    command = loop_.controller.on_imu(broken);
+    EXPECT_EQ(command.imu_sequence, broken.sequence);
+    for (const double throttle : command.throttle) EXPECT_TRUE(std::isfinite(throttle));
+    ++answers;
+  }
+  EXPECT_EQ(answers, 50);
+  EXPECT_EQ(loop_.controller.status().mode, Mode::kStopped);
+}
+
+TEST(FlightController, ABatteryThatRunsLowLandsIt) {
+  ControlSettings careful = settings("motor_lag");
+  careful.failsafe.low_battery_voltage = 4.0;
+  ClosedLoop loop(kaylion(), plant::SimulationSettings(), careful, 2);
+  const test::MissionResult result = test::fly(loop, square(0.3));
+  EXPECT_FALSE(result.completed);
+  EXPECT_EQ(result.reason, "battery is low");
+  ASSERT_TRUE(loop.step_until([&] { return loop.controller.status().mode == Mode::kDisarmed; }, 10.0));
+  EXPECT_TRUE(loop.plant.on_ground());
+}
+
+TEST_F(InFlight, AVoltageThatNoBatteryHasIsNotBelieved) {
+  const double before = loop_.controller.status().supply_voltage_v;
+  plant::BatterySample broken;
+  for (const double voltage : {0.0, -3.0, 400.0, std::numeric_limits<double>::quiet_NaN()}) {
+    broken.voltage_v = voltage;
+    loop_.controller.on_battery(broken);
+    loop_.controller.on_imu(*loop_.plant.imu());
+    EXPECT_EQ(loop_.controller.status().supply_voltage_v, before);
+  }
+}
+
+TEST_F(InFlight, StopTurnsTheRotorsOffWhereverItIs) {
+  ASSERT_TRUE(loop_.controller.request(request(RequestKind::kStop)).accepted);
+  loop_.step();
+  EXPECT_EQ(loop_.command.rotor_state, plant::RotorState::kOff);
+  ASSERT_TRUE(loop_.step_until([&] { return loop_.plant.on_ground(); }, 2.0));
+}
+
+TEST(FlightController, RepeatsItselfBitByBit) {
+  ClosedLoop one(kaylion(), plant::SimulationSettings(), settings("motor_lag"), 5);
+  ClosedLoop two(kaylion(), plant::SimulationSettings(), settings("motor_lag"), 5);
+  ClosedLoop other(kaylion(), plant::SimulationSettings(), settings("motor_lag"), 6);
+  test::fly(one, square(1.0));
+  test::fly(two, square(1.0));
+  test::fly(other, square(1.0));
+  EXPECT_EQ(one.plant.state().position_ned, two.plant.state().position_ned);
+  EXPECT_EQ(one.command.throttle, two.command.throttle);
+  EXPECT_NE(one.plant.state().position_ned, other.plant.state().position_ned);
+}
+
+TEST(FlightController, BeginsAnewWhenTheVehicleWasStartedAgain) {
+  ClosedLoop first(kaylion(), plant::SimulationSettings(), settings("motor_lag"), 5);
+  first.step_until([] { return false; }, 3.0);
+  ClosedLoop again(kaylion(), plant::SimulationSettings(), settings("motor_lag"), 6);
+  again.controller = std::move(first.controller);
+  const test::MissionResult result = test::fly(again, square(1.0));
+  EXPECT_TRUE(result.completed) << result.reason;
+}
+
+}  // namespace
+}  // namespace swiftlet::control
