@@ -23,6 +23,7 @@ constexpr auto kLastFiguresTimeout = 1500ms;
 constexpr double kSilenceS = 3.0;  // without a control status
 constexpr double kLandingTimeoutS = 30.0;
 constexpr double kLandingSpeed = 0.4;  // m/s
+constexpr int kBeforeFlight = -1;      // stage of the progress; later ones are the mission's items
 
 ControlMode mode_of(const View& view) { return static_cast<ControlMode>(view.control.message.mode()); }
 
@@ -108,7 +109,7 @@ void Flight::wait_until_ready() {
     if (Clock::now() - start > kReadyTimeout) {
       throw FlightFailure("after 20 s there is still missing: " + absent + "; looked for " + client_.where());
     }
-    progress_.update(0, "waiting for " + absent);
+    progress_.update(kBeforeFlight, "waiting for " + absent);
   }
 }
 
@@ -124,7 +125,7 @@ void Flight::arm() {
     if (answer.accepted()) return;
     if (answer.kind != Answer::Kind::kRefused || Clock::now() > deadline)
       throw FlightFailure("arming: " + answer.reason);
-    progress_.update(0, "arming: " + answer.reason);
+    progress_.update(kBeforeFlight, "arming: " + answer.reason);
     client_.wait(kRetryPeriod, [this](const View&) { return watch_.interrupts() > 0; });
   }
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <limits>
 #include <string>
 
 namespace swiftlet::ground {
@@ -21,7 +22,7 @@ class ProgressLine {
  private:
   bool terminal_;
   bool line_open_ = false;
-  int stage_ = -1;
+  int stage_ = std::numeric_limits<int>::min();
   std::chrono::steady_clock::time_point next_{};
 };
 

@@ -1,0 +1,239 @@
+// `swiftlet fly` from end to end: real processes, real time, real network.
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/integration/program.hpp"
+
+namespace swiftlet::tests {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+using nlohmann::json;
+
+constexpr auto kStartTimeout = 40s;  // until it is in the air; processes come up slowly on a busy machine
+
+const std::string kShortMission =
+    "name: hop\n"
+    "frame: ned\n"
+    "tolerance_m: 0.1\n"
+    "items:\n"
+    "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.5}\n"
+    "  - {kind: waypoint, position_m: [0.5, -0.3, -0.7], speed_m_s: 0.5}\n"
+    "  - {kind: land, speed_m_s: 0.5}\n";
+
+// Long enough to do something to it while it flies.
+const std::string kLongMission =
+    "name: hover\n"
+    "frame: ned\n"
+    "tolerance_m: 0.1\n"
+    "items:\n"
+    "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.5}\n"
+    "  - {kind: waypoint, position_m: [0, 0, -0.6], speed_m_s: 0.5, hold_s: 120}\n"
+    "  - {kind: land, speed_m_s: 0.5}\n";
+
+class Fly : public testing::Test {
+ protected:
+  std::vector<std::string> arguments(const std::string& mission, std::vector<std::string> more = {}) const {
+    std::vector<std::string> words = {"fly", mission, "--json", "--record", record().string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  fs::path record() const { return folder_.path() / "record"; }
+
+  // All that was said, for a message of a failed expectation.
+  std::string told(const Program& fly) const {
+    std::string text = fly.output() + fly.errors();
+    for (const char* process : {"swiftlet-plant", "swiftlet-mocap", "swiftlet-control"}) {
+      std::ifstream log(record() / (std::string(process) + ".log"));
+      text += std::string("\n--- ") + process + "\n" + std::string(std::istreambuf_iterator<char>(log), {});
+    }
+    return text;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Fly, FliesReportsAndRecordsAMission) {
+  Program fly("swiftlet", arguments(folder_.write("hop.yaml", kShortMission), {"--seed", "7"}),
+              folder_.path());
+  ASSERT_EQ(fly.wait(90s), 0) << told(fly);
+
+  const json report = json::parse(fly.output());
+  EXPECT_EQ(report.at("completed"), true);
+  EXPECT_FALSE(report.contains("reason"));
+  EXPECT_EQ(report.at("mission"), "hop");
+  EXPECT_EQ(report.at("seed"), 7);
+  EXPECT_EQ(report.at("record_dir"), record().string());
+  EXPECT_GT(report.at("duration_s"), 5.0);
+  EXPECT_LT(report.at("duration_s"), 15.0);
+  EXPECT_GT(report.at("rms_3d_m"), 0.0);
+  EXPECT_LT(report.at("rms_3d_m"), 0.010);
+  EXPECT_LT(report.at("peak_3d_m"), 0.1);
+  EXPECT_GT(report.at("matched_samples"), 200);
+  EXPECT_NEAR(report.at("control_rate_hz"), 500.0, 25.0);
+  const json& latency = report.at("sense_to_actuate_us");
+  EXPECT_GT(latency.at("p50"), 0.0);
+  EXPECT_LE(latency.at("p50"), latency.at("p99"));
+  EXPECT_LE(latency.at("p99"), latency.at("max"));
+
+  std::ifstream kept(record() / "report.json");
+  EXPECT_EQ(json::parse(kept), report);
+  EXPECT_GT(fs::file_size(record() / "flight.csv"), 50'000U);
+  EXPECT_GT(fs::file_size(record() / "flight.png"), 20'000U);
+  EXPECT_NE(fly.errors().find("2/3 waypoint"), std::string::npos)
+      << "no progress was shown: " << fly.errors();
+}
+
+TEST_F(Fly, FliesAtOneKilohertz) {
+  Program fly("swiftlet", arguments(folder_.write("hop.yaml", kShortMission), {"--imu-rate", "1000"}),
+              folder_.path());
+  ASSERT_EQ(fly.wait(90s), 0) << told(fly);
+  const json report = json::parse(fly.output());
+  EXPECT_NEAR(report.at("control_rate_hz"), 1000.0, 50.0);
+  EXPECT_LT(report.at("rms_3d_m"), 0.010);
+}
+
+TEST_F(Fly, FliesOverSharedMemoryAndLeavesNothingThere) {
+  Program fly("swiftlet", arguments(folder_.write("hop.yaml", kShortMission), {"--transport", "shm"}),
+              folder_.path());
+  const auto children = [&] { return children_of(fly.pid()); };
+  std::vector<std::string> files;
+  EXPECT_TRUE(eventually(kStartTimeout, [&] {
+    for (const pid_t child : children()) {
+      for (const std::string& file : shared_memory_of(child)) files.push_back(file);
+    }
+    return fly.errors().find("2/3 waypoint") != std::string::npos;
+  })) << told(fly);
+  EXPECT_FALSE(files.empty()) << "no process used shared memory";
+  ASSERT_EQ(fly.wait(90s), 0) << told(fly);
+  for (const std::string& file : files) EXPECT_FALSE(fs::exists(file)) << file;
+}
+
+TEST_F(Fly, FailsBeyondTheMissionsTolerance) {
+  std::string mission = kShortMission;
+  mission.replace(mission.find("0.1"), 3, "1e-6");
+  Program fly("swiftlet", arguments(folder_.write("strict.yaml", mission)), folder_.path());
+  ASSERT_EQ(fly.wait(90s), 1) << told(fly);
+  const json report = json::parse(fly.output());
+  EXPECT_EQ(report.at("completed"), false);
+  EXPECT_NE(report.at("reason").get<std::string>().find("the tolerance is 0.000 m"), std::string::npos)
+      << report;
+}
+
+TEST_F(Fly, TwoAtOnceDoNotDisturbEachOther) {
+  const std::string mission = folder_.write("hop.yaml", kShortMission);
+  Program first("swiftlet", {"fly", mission, "--json", "--record", folder_.path() / "a"}, folder_.path());
+  Program second("swiftlet", {"fly", mission, "--json", "--record", folder_.path() / "b"}, folder_.path());
+  EXPECT_EQ(first.wait(90s), 0) << first.errors();
+  EXPECT_EQ(second.wait(90s), 0) << second.errors();
+}
+
+// Everything that happens to a flight under way.
+class FlyInterrupted : public Fly {
+ protected:
+  FlyInterrupted() : fly_("swiftlet", arguments(folder_.write("hover.yaml", kLongMission)), folder_.path()) {}
+
+  void SetUp() override {
+    ASSERT_TRUE(eventually(kStartTimeout, [&] {
+      return fly_.errors().find("2/3 waypoint") != std::string::npos;
+    })) << told(fly_);
+    children_ = children_of(fly_.pid());
+    ASSERT_EQ(children_.size(), 3U);
+  }
+
+  void expect_end_without_leftovers() {
+    for (const pid_t child : children_) {
+      EXPECT_TRUE(eventually(10s, [&] { return !is_running(child); })) << child << " still runs";
+    }
+  }
+
+  Program fly_;
+  std::vector<pid_t> children_;
+};
+
+class FlyWithADeath : public FlyInterrupted, public testing::WithParamInterface<const char*> {};
+
+TEST_P(FlyWithADeath, NamesTheProcessThatDied) {
+  const pid_t victim = child_of(fly_.pid(), GetParam());
+  ASSERT_GT(victim, 0);
+  ASSERT_EQ(kill(victim, SIGKILL), 0);
+  ASSERT_EQ(fly_.wait(20s), 1) << told(fly_);
+  const json report = json::parse(fly_.output());
+  EXPECT_EQ(report.at("completed"), false);
+  EXPECT_EQ(report.at("reason").get<std::string>().find(std::string(GetParam()) +
+                                                        " was killed by signal 9 (Killed)"),
+            0U)
+      << report;
+  EXPECT_NE(fly_.errors().find(GetParam()), std::string::npos);
+  EXPECT_TRUE(fs::exists(record() / "flight.csv")) << "what was flown until then is kept";
+  expect_end_without_leftovers();
+}
+
+INSTANTIATE_TEST_SUITE_P(, FlyWithADeath,
+                         testing::Values("swiftlet-plant", "swiftlet-mocap", "swiftlet-control"));
+
+TEST_F(FlyInterrupted, LandsOnTheFirstInterrupt) {
+  fly_.signal(SIGINT);
+  ASSERT_EQ(fly_.wait(30s), 1) << told(fly_);
+  const json report = json::parse(fly_.output());
+  EXPECT_EQ(report.at("completed"), false);
+  EXPECT_EQ(report.at("reason"), "interrupted; landed");
+  expect_end_without_leftovers();
+}
+
+TEST_F(FlyInterrupted, EndsAtOnceOnTheSecond) {
+  fly_.signal(SIGINT);
+  ASSERT_TRUE(eventually(
+      10s, [&] { return fly_.errors().find("interrupt again to end at once") != std::string::npos; }));
+  const auto second = std::chrono::steady_clock::now();
+  fly_.signal(SIGINT);
+  ASSERT_EQ(fly_.wait(30s), 1) << told(fly_);
+  EXPECT_EQ(json::parse(fly_.output()).at("reason"), "interrupted; ended in flight");
+  EXPECT_LT(std::chrono::steady_clock::now() - second, 10s);
+  expect_end_without_leftovers();
+}
+
+TEST_F(FlyInterrupted, TakesItsProcessesWithItWhenItIsKilled) {
+  fly_.signal(SIGKILL);
+  ASSERT_EQ(fly_.wait(10s), 128 + SIGKILL);
+  expect_end_without_leftovers();
+}
+
+// The whole paths of the paper's Figs. 8 and 9.
+struct PaperFlight {
+  const char* name;
+  const char* mission;
+  const char* control;
+  double rms_limit_m;
+};
+void PrintTo(const PaperFlight& flight, std::ostream* out) { *out << flight.name; }
+
+class FlyPaper : public Fly, public testing::WithParamInterface<PaperFlight> {};
+
+TEST_P(FlyPaper, KeepsToItsPath) {
+  const PaperFlight& flight = GetParam();
+  Program fly("swiftlet", arguments(flight.mission, {"--control", flight.control}), folder_.path());
+  ASSERT_EQ(fly.wait(120s), 0) << told(fly);
+  const json report = json::parse(fly.output());
+  EXPECT_EQ(report.at("completed"), true) << report;
+  EXPECT_NEAR(report.at("duration_s"), 40.0, 4.0);
+  EXPECT_LE(report.at("rms_3d_m"), flight.rms_limit_m) << report;
+  EXPECT_GT(report.at("matched_samples"), 2500);
+  RecordProperty("rms_3d_m", std::to_string(report.at("rms_3d_m").get<double>()));
+}
+
+INSTANTIATE_TEST_SUITE_P(, FlyPaper,
+                         testing::Values(PaperFlight{"Square", "square", "motor_lag", 0.010},
+                                         PaperFlight{"ZigZag", "zigzag", "motor_lag", 0.010},
+                                         PaperFlight{"SquareWithThePapersLoops", "square", "paper", 0.030}),
+                         [](const auto& flight) { return std::string(flight.param.name); });
+
+}  // namespace
+}  // namespace swiftlet::tests
