@@ -159,12 +159,12 @@ double inductance_error(double inductance_h) {
 
 TEST(Motor, ElectricalModelTendsToThePhysicalOne) {
   // The speed lags by tau_a = L_a / R_a: the error falls in proportion to L_a.
-  const double coarse = inductance_error(1e-4);
-  const double middle = inductance_error(1e-5);
-  const double fine = inductance_error(1e-6);
+  const double coarse = inductance_error(4e-4);
+  const double middle = inductance_error(4e-5);
+  const double fine = inductance_error(4e-6);
   EXPECT_NEAR(coarse / middle, 10.0, 0.5);
   EXPECT_NEAR(middle / fine, 10.0, 0.5);
-  EXPECT_LT(fine, 0.05);  // rad/s, of 1600
+  EXPECT_LT(fine, 0.1);  // rad/s, of 1600
 }
 
 TEST(Motor, RotorsThatAreOffSlowDownAndStop) {
