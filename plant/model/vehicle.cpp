@@ -34,7 +34,7 @@ bool check_inertia(const Eigen::Matrix3d& inertia, RuleChecker& check) {
     return false;
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia, Eigen::EigenvaluesOnly);
-  const Eigen::Vector3d principal = solver.eigenvalues();  // rising
+  const Eigen::Vector3d& principal = solver.eigenvalues();  // rising
   if (!(principal[0] > 0.0)) {
     check.add(key, "has the principal moment ", principal[0], ", must be above 0");
     return false;
