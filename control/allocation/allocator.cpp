@@ -21,6 +21,7 @@ using plant::PerRotor;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFitTolerance = 1e-12;         // of the highest thrust: how far beyond a limit is rounding
 constexpr double kCoefficientTolerance = 1e-9;  // of the largest of its kind: smaller counts as 0
+constexpr double kLargestMoment = 1e100;        // N m, so that no quotient of moments overflows
 constexpr int kScaleSteps = 64;
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
@@ -95,9 +96,8 @@ Wrench Allocator::sanitised(const Wrench& wanted, bool& invalid) const {
     invalid = true;
   }
   for (double& moment : out.moment_frd) {
-    if (std::isfinite(moment)) continue;
-    moment = 0.0;
-    invalid = true;
+    invalid |= !std::isfinite(moment);
+    moment = std::isfinite(moment) ? std::clamp(moment, -kLargestMoment, kLargestMoment) : 0.0;
   }
   // Nothing beyond the bound fits, so cutting there first changes no result and keeps the arithmetic finite.
   out.thrust_n = std::clamp(out.thrust_n, -bound_.thrust_n, bound_.thrust_n);

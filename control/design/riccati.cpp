@@ -8,8 +8,8 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/Jacobi>
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <Eigen/SVD>
 
 namespace swiftlet::control {
@@ -19,11 +19,10 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 
-constexpr int kSignIterations = 100;
 constexpr int kNewtonIterations = 30;
 constexpr double kSymmetryTolerance = 1e-12;
 constexpr double kRankTolerance = 1e-10;
-constexpr double kResidualLimit = 1e-8;
+constexpr double kResidualLimit = 1e-10;
 
 MatrixXd symmetric_part(const MatrixXd& m) { return 0.5 * (m + m.transpose()); }
 
@@ -77,28 +76,38 @@ void check_stabilisable(const MatrixXd& a, const MatrixXd& b) {
   }
 }
 
-// X from the stable invariant subspace of the Hamiltonian by its matrix sign; not finite if there is none.
-MatrixXd solution_by_sign(const MatrixXd& a, const MatrixXd& g, const MatrixXd& q) {
+// Exchanges the eigenvalues k and k + 1 of the complex Schur form T, keeping U T U^H (Golub and Van Loan 7.6.2).
+void swap_eigenvalues(MatrixXcd& t, MatrixXcd& u, Eigen::Index k) {
+  Eigen::JacobiRotation<std::complex<double>> rotation;
+  rotation.makeGivens(t(k, k + 1), t(k + 1, k + 1) - t(k, k));
+  t.applyOnTheLeft(k, k + 1, rotation.adjoint());
+  t.applyOnTheRight(k, k + 1, rotation);
+  u.applyOnTheRight(k, k + 1, rotation);
+  t(k + 1, k) = 0.0;
+}
+
+// X from the stable invariant subspace of the Hamiltonian [A, -G; -Q, -A'], by its ordered Schur form (Laub 1979);
+// not finite if it has not n stable eigenvalues.
+MatrixXd solution_by_schur(const MatrixXd& a, const MatrixXd& g, const MatrixXd& q) {
   const Eigen::Index n = a.rows();
-  MatrixXd z(2 * n, 2 * n);
-  z << a, -g, -q, -a.transpose();
-  for (int i = 0; i < kSignIterations; ++i) {
-    const Eigen::PartialPivLU<MatrixXd> lu(z);
-    // |det|^(-1/2n) brings the eigenvalues' geometric mean to one.
-    const double log_det = lu.matrixLU().diagonal().cwiseAbs().array().log().sum();
-    const double scale = std::exp(-log_det / static_cast<double>(2 * n));
-    const MatrixXd next = 0.5 * (scale * z + lu.inverse() / scale);
-    const double change = (next - z).norm();
-    z = next;
-    if (!z.allFinite() || change <= 1e-13 * z.norm()) break;
+  // X = size * X', with which the off-diagonal blocks come to one size.
+  const double size = q.norm() > 0.0 && g.norm() > 0.0 ? std::sqrt(q.norm() / g.norm()) : 1.0;
+  MatrixXd hamiltonian(2 * n, 2 * n);
+  hamiltonian << a, -size * g, -q / size, -a.transpose();
+  const Eigen::ComplexSchur<MatrixXd> schur(hamiltonian);
+  MatrixXcd t = schur.matrixT();
+  MatrixXcd u = schur.matrixU();
+  Eigen::Index stable = 0;
+  for (Eigen::Index i = 0; i < 2 * n; ++i) {
+    if (t(i, i).real() >= 0.0) continue;
+    for (Eigen::Index k = i; k > stable; --k) swap_eigenvalues(t, u, k - 1);
+    ++stable;
   }
-  // sign(H) [I; X] = -[I; X]: both block columns, in the least-squares sense.
-  MatrixXd left(2 * n, n);
-  MatrixXd right(2 * n, n);
-  left << z.topRightCorner(n, n), z.bottomRightCorner(n, n) + MatrixXd::Identity(n, n);
-  right << z.topLeftCorner(n, n) + MatrixXd::Identity(n, n), z.bottomLeftCorner(n, n);
-  if (!left.allFinite() || !right.allFinite()) return MatrixXd::Constant(n, n, std::nan(""));
-  return symmetric_part(left.colPivHouseholderQr().solve(-right));
+  if (stable != n) return MatrixXd::Constant(n, n, std::nan(""));
+  // X = U21 U11^-1.
+  const MatrixXcd x =
+      u.topLeftCorner(n, n).transpose().fullPivLu().solve(u.bottomLeftCorner(n, n).transpose());
+  return size * symmetric_part(x.real());
 }
 
 bool is_stable(const MatrixXd& a) { return a.allFinite() && a.eigenvalues().real().maxCoeff() < 0.0; }
@@ -122,16 +131,16 @@ MatrixXd solve_lyapunov(const MatrixXd& a, const MatrixXd& q) {
 double care_residual(const MatrixXd& a, const MatrixXd& b, const MatrixXd& q, const MatrixXd& r,
                      const MatrixXd& x) {
   const MatrixXd ax = a.transpose() * x;
-  const MatrixXd xgx = x * b * r.llt().solve(b.transpose() * x);
-  const double scale = std::max({largest_entry(ax), largest_entry(xgx), largest_entry(q)});
-  return scale > 0.0 ? largest_entry(ax + ax.transpose() - xgx + q) / scale : 0.0;
+  const MatrixXd g = b * r.llt().solve(b.transpose());
+  const double scale = 2.0 * a.norm() * x.norm() + x.norm() * g.norm() * x.norm() + q.norm();
+  return scale > 0.0 ? (ax + ax.transpose() - x * g * x + q).norm() / scale : 0.0;
 }
 
 MatrixXd solve_care(const MatrixXd& a, const MatrixXd& b, const MatrixXd& q, const MatrixXd& r) {
   check_problem(a, b, q, r);
   check_stabilisable(a, b);
   const MatrixXd g = b * r.llt().solve(b.transpose());
-  MatrixXd x = solution_by_sign(a, g, q);
+  MatrixXd x = solution_by_schur(a, g, q);
   // Kleinman: (A - G X)' X+ + X+ (A - G X) + Q + X G X = 0, for as long as it gains.
   double residual = x.allFinite() ? care_residual(a, b, q, r, x) : 0.0;
   for (int i = 0; i < kNewtonIterations && is_stable(a - g * x); ++i) {
