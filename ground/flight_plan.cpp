@@ -14,6 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kHighestImuRateHz = 1000.0;
+
 fs::path default_folder(const std::string& mission) {
   const std::time_t now = std::time(nullptr);
   std::tm local{};
@@ -52,6 +54,7 @@ FlightPlan plan_flight(const FlyOptions& options) {
   plan.control_name = control.name;
   const plant::SimulationSettings simulation = runtime::load_simulation_settings(plan.simulation_file);
   plan.imu_rate_hz = options.imu_rate_hz > 0 ? options.imu_rate_hz : simulation.imu.rate_hz;
+  if (options.attach) plan.imu_rate_hz = kHighestImuRateHz;  // the vehicle's own is not known yet
   plan.imu_rate_option_hz = options.imu_rate_hz;
   plan.seed = options.seed;
 
@@ -60,14 +63,18 @@ FlightPlan plan_flight(const FlyOptions& options) {
   plan.planned_duration_s = planned_duration_s(plan.mission.mission, control.limits);
   demand_whole_flight(plan.mission, mission_file, plan.planned_duration_s);
 
-  plan.plant_program = program_beside("swiftlet-plant");
-  plan.mocap_program = program_beside("swiftlet-mocap");
-  plan.control_program = program_beside("swiftlet-control");
+  plan.attach = options.attach;
+  if (!plan.attach) {
+    plan.plant_program = program_beside("swiftlet-plant");
+    plan.mocap_program = program_beside("swiftlet-mocap");
+    plan.control_program = program_beside("swiftlet-control");
+  }
   plan.folder = options.record.empty() ? default_folder(plan.mission.name) : fs::path(options.record);
   return plan;
 }
 
 std::vector<ProcessSettings> processes(const FlightPlan& plan, const comms::NodeSettings& network) {
+  if (plan.attach) return {};
   std::vector<std::string> common = {"--domain",       std::to_string(network.domain),
                                      "--vehicle-name", network.vehicle,
                                      "--transport",    to_string(network.transport)};

@@ -23,7 +23,8 @@ struct FlyOptions {
   std::uint64_t seed = 1;
   int imu_rate_hz = 0;  // 0: as the simulation file says
   comms::NodeSettings network;
-  int domain = -1;  // below 0: a free one
+  int domain = -1;      // below 0: a free one, or 0 to attach
+  bool attach = false;  // to plant, mocap and control that run already
   bool json = false;
 };
 
@@ -36,7 +37,8 @@ struct FlightPlan {
   double imu_rate_hz = 0.0;
   std::uint64_t seed = 0;
   std::filesystem::path folder;  // where the flight is recorded; not made yet
-  std::filesystem::path plant_program, mocap_program, control_program;
+  bool attach = false;
+  std::filesystem::path plant_program, mocap_program, control_program;  // none to attach
 };
 
 // Longer missions are refused: the record is kept in memory.
@@ -45,7 +47,7 @@ constexpr double kLongestMissionS = 600.0;
 // Throws runtime::ConfigError or InputError for input that cannot be flown. Starts and writes nothing.
 FlightPlan plan_flight(const FlyOptions& options);
 
-// The three processes of the plan, on this network.
+// The three processes of the plan, on this network; none to attach.
 std::vector<ProcessSettings> processes(const FlightPlan& plan, const comms::NodeSettings& network);
 
 }  // namespace swiftlet::ground

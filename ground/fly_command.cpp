@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -34,6 +35,7 @@ void take_figures(const View& view, FlightReport& report) {
   report.step_time_max_us = control.step_time_max_us();
   report.realtime_scheduling = control.realtime_scheduling();
   const auto& vehicle = view.vehicle.message;
+  if (vehicle.name().size() > 0) report.vehicle = vehicle.name().c_str();
   report.imu_rate_hz = vehicle.imu_rate_hz();
   report.unanswered = vehicle.unanswered();
   report.sense_to_actuate = {vehicle.sense_to_actuate_p50_us(), vehicle.sense_to_actuate_p99_us(),
@@ -125,13 +127,14 @@ int fly(const FlyOptions& options) {
   make_folder(plan.folder);
 
   std::optional<DomainClaim> claim;
-  if (options.domain < 0) claim.emplace();
+  if (options.domain < 0 && !options.attach) claim.emplace();
   comms::NodeSettings network = options.network;
-  network.domain = claim ? claim->domain() : options.domain;
+  network.domain = claim ? claim->domain() : std::max(options.domain, 0);
 
   ProgressLine progress;
-  progress.say("flying " + plan.mission.name + " with " + plan.vehicle_name + ": " + network.vehicle +
-               " in domain " + std::to_string(network.domain) + ", record in " + plan.folder.string());
+  progress.say("flying " + plan.mission.name + (plan.attach ? "" : " with " + plan.vehicle_name) + ": " +
+               network.vehicle + " in domain " + std::to_string(network.domain) + ", record in " +
+               plan.folder.string());
   FlightRecord record(record_capacity(plan));
   const Flown flown = fly_mission(plan, network, record, progress);
   keep_record(plan, record, flown, progress);
@@ -174,6 +177,14 @@ Command add_fly_command(CLI::App& root) {
   app->remove_option(app->get_option("--domain"));          // whose default is not that of a flight
   app->add_option("--domain", options->domain, "DDS domain; a free one unless given")
       ->check(CLI::Range(0, 232));
+  CLI::Option* const attach = app->add_flag(
+      "--attach", options->attach,
+      "start nothing: fly with the plant, mocap and control that run in the domain (0 unless given)");
+  for (const char* of_the_started : {"--vehicle", "--simulation", "--seed", "--imu-rate"}) {
+    attach->excludes(app->get_option(of_the_started));
+  }
+  app->add_flag("--network{false}", options->network.localhost_only, "use all interfaces, not loopback alone")
+      ->needs(attach);
   app->add_flag("--json", options->json, "print one JSON object instead of the summary");
   app->footer(
       "Ctrl-C lands; a second Ctrl-C ends at once.\nexample: swiftlet fly square --record /tmp/square --json "

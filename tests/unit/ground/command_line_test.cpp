@@ -55,6 +55,13 @@ TEST_F(CommandLine, GotoRefusesWhatIsNoPlace) {
   EXPECT_FALSE(parses("goto 1 2 -1 --speed 0"));
 }
 
+TEST_F(CommandLine, FlyAttachesOrStartsProcesses) {
+  EXPECT_TRUE(parses("fly square --attach --network"));
+  EXPECT_FALSE(parses("fly square --attach --seed 2"));
+  EXPECT_FALSE(parses("fly square --attach --vehicle other.yaml"));
+  EXPECT_FALSE(parses("fly square --network"));
+}
+
 TEST_F(CommandLine, TakeoffWantsAHeightAboveZero) {
   EXPECT_TRUE(parses("takeoff"));
   EXPECT_TRUE(parses("takeoff 1.5"));
