@@ -19,4 +19,7 @@ Command add_stop_command(CLI::App& root);
 Command add_mission_command(CLI::App& root);
 Command add_status_command(CLI::App& root);
 
+// What will be flown, without flying.
+Command add_gains_command(CLI::App& root);
+
 }  // namespace swiftlet::ground
