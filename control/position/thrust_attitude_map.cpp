@@ -93,10 +93,10 @@ ReferenceAttitude reference_attitude(double mass_kg, const Reference& reference)
 
   // omega = S1^-1 Theta', Eq. (29)-(31) backwards, and its derivative.
   const Vector3d euler = angles_along(b, reference.yaw_rad);
-  const double sin_phi = std::sin(euler[0]);
-  const double cos_phi = std::cos(euler[0]);
-  const double sin_theta = std::sin(euler[1]);
-  const double cos_theta = std::cos(euler[1]);
+  const double sin_phi = -b.y() / norm;
+  const double cos_phi = rho / norm;
+  const double sin_theta = b.x() / rho;
+  const double cos_theta = b.z() / rho;
   Matrix3d to_rates;
   to_rates << 1.0, 0.0, -sin_theta,       //
       0.0, cos_phi, sin_phi * cos_theta,  //
