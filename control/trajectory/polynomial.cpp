@@ -9,17 +9,17 @@ namespace {
 // A polynomial and its first four derivatives at one t.
 using Derivatives = std::array<double, 5>;
 
-// Horner's scheme for the value and the derivatives at once; d[k] collects the k-th derivative over k!.
+// Horner's scheme for the value and the derivatives at once; dk collects the k-th derivative over k!.
 Derivatives horner(const Polynomial& c, double t) {
-  Derivatives d{};
+  double d0 = 0.0, d1 = 0.0, d2 = 0.0, d3 = 0.0, d4 = 0.0;
   for (std::size_t i = c.size(); i-- > 0;) {
-    for (std::size_t k = d.size() - 1; k > 0; --k) d[k] = d[k] * t + d[k - 1];
-    d[0] = d[0] * t + c[i];
+    d4 = d4 * t + d3;
+    d3 = d3 * t + d2;
+    d2 = d2 * t + d1;
+    d1 = d1 * t + d0;
+    d0 = d0 * t + c[i];
   }
-  d[2] *= 2.0;
-  d[3] *= 6.0;
-  d[4] *= 24.0;
-  return d;
+  return {d0, d1, 2.0 * d2, 6.0 * d3, 24.0 * d4};
 }
 
 // 10 s^3 - 15 s^4 + 6 s^5 from `from` to `to`, s = t / duration.
