@@ -1,0 +1,98 @@
+// The parts of one control step, one by one, and the design that runs once at start.
+#include <random>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "control/allocation/allocator.hpp"
+#include "control/attitude/attitude_controller.hpp"
+#include "control/design/control_design.hpp"
+#include "control/position/position_controller.hpp"
+#include "control/position/thrust_attitude_map.hpp"
+#include "control/trajectory/polynomial.hpp"
+#include "services/runtime/control_settings_file.hpp"
+#include "tests/unit/plant_model/vehicles.hpp"
+
+namespace swiftlet::control {
+namespace {
+
+using Eigen::Vector3d;
+
+const ControlSettings& settings() {
+  static const ControlSettings loaded =
+      runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml");
+  return loaded;
+}
+
+// Different wrenches in turn, so that no branch is learnt by heart. `size` scales moments and thrust's way from hover.
+std::vector<Wrench> wrenches(const plant::Vehicle& vehicle, double size) {
+  std::mt19937 generator(1);
+  std::uniform_real_distribution<double> draw(-size, size);
+  std::vector<Wrench> out(1024);
+  for (Wrench& w : out) {
+    w.thrust_n = vehicle.mass_kg * plant::kGravity * (1.0 + draw(generator));
+    w.moment_frd = {0.03 * draw(generator), 0.03 * draw(generator), 0.003 * draw(generator)};
+  }
+  return out;
+}
+
+// Arguments: rotors; size of the wrenches in per cent. The share of saturated ones is counted.
+void allocate(benchmark::State& state) {
+  const int rotors = static_cast<int>(state.range(0));
+  const plant::Vehicle vehicle = rotors == 4 ? tests::kaylion() : tests::multirotor(rotors);
+  const Allocator allocator(vehicle);
+  const std::vector<Wrench> wanted = wrenches(vehicle, 0.01 * static_cast<double>(state.range(1)));
+  std::size_t i = 0;
+  std::size_t saturated = 0;
+  for (auto _ : state) {
+    const Allocation out = allocator.allocate(wanted[i++ % wanted.size()], 3.8);
+    saturated += out.saturated ? 1 : 0;
+    benchmark::DoNotOptimize(out);
+  }
+  state.counters["saturated"] = static_cast<double>(saturated) / static_cast<double>(state.iterations());
+}
+BENCHMARK(allocate)->ArgNames({"rotors", "percent"})->ArgsProduct({{4, 6, 8}, {5, 100, 300}});
+
+void attitude_moments(benchmark::State& state) {
+  const plant::Vehicle& vehicle = tests::kaylion();
+  const AttitudeController controller(vehicle, settings().attitude, design(vehicle, settings()));
+  AttitudeReference reference;
+  reference.euler_rad = {0.1, -0.05, 0.3};
+  Eigen::Quaterniond q = quaternion_from_euler({0.12, -0.04, 0.31});
+  Vector3d rates(0.2, -0.3, 0.1);
+  Vector3d moment(1e-4, -2e-4, 1e-5);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(q.coeffs().data());
+    benchmark::ClobberMemory();
+    benchmark::DoNotOptimize(controller.moments(q, rates, moment, reference));
+  }
+}
+BENCHMARK(attitude_moments);
+
+// Reference from the polynomial, position loop, map to thrust and attitude, feed forward.
+void outer_loop(benchmark::State& state) {
+  const plant::Vehicle& vehicle = tests::kaylion();
+  PositionController controller(settings().position, settings().limits, design(vehicle, settings()));
+  const PolynomialSegment segment = minimum_jerk({0, 0, -1}, 0.0, {2, 1, -1.5}, 0.5, 8.0);
+  Vector3d position(0.0, 0.0, -1.0);
+  double t = 0.0;
+  for (auto _ : state) {
+    t = t < 8.0 ? t + 0.002 : 0.0;
+    const Reference reference = evaluate(segment, t);
+    const PositionCommand command = controller.step(position, Vector3d::Zero(), reference, 0.002, false);
+    benchmark::DoNotOptimize(
+        thrust_attitude(vehicle.mass_kg, command.acceleration_ned, reference.yaw_rad, 0.6));
+    benchmark::DoNotOptimize(reference_attitude(vehicle.mass_kg, reference));
+  }
+}
+BENCHMARK(outer_loop);
+
+void design_all_gains(benchmark::State& state) {
+  for (auto _ : state) benchmark::DoNotOptimize(design(tests::kaylion(), settings()));
+}
+BENCHMARK(design_all_gains)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace swiftlet::control
+
+BENCHMARK_MAIN();
