@@ -43,11 +43,12 @@
 #include "services/comms/shared_memory.hpp"
 
 // Each message type that is a topic's.
-#define SWIFTLET_FOR_EACH_MESSAGE(X)                                                                      \
-  X(ActuatorCommand)                                                                                      \
-  X(Battery)                                                                                              \
-  X(Command) X(CommandAck) X(ControlStatus) X(Estimate) X(GroundTruth) X(Imu) X(Mission) X(MissionStatus) \
-      X(MocapPose) X(Reference) X(RotorSpeeds) X(Setpoint) X(Trajectory) X(VehicleInfo)
+#define SWIFTLET_FOR_EACH_MESSAGE(X)                                                                        \
+  X(ActuatorCommand)                                                                                        \
+  X(Battery)                                                                                                \
+  X(Command)                                                                                                \
+  X(CommandAck) X(ControlStatus) X(Estimate) X(GroundTruth) X(Imu) X(Mission) X(MissionStatus) X(MocapPose) \
+      X(Reference) X(RotorSpeeds) X(Setpoint) X(Trajectory) X(VehicleInfo)
 
 namespace swiftlet::comms {
 namespace {
@@ -184,12 +185,17 @@ struct Node::Impl final : public dds::DomainParticipantListener {
 
 namespace {
 
+const eprosima::fastrtps::Duration_t kWriteTimeout{0,
+                                                   std::chrono::nanoseconds(kReliableWriteTimeout).count()};
+
 // Endpoints share the participant, so that the order in which a process lets go of them does not matter.
 template <class Impl>
 class DdsWriter final : public detail::Writer {
  public:
   DdsWriter(std::shared_ptr<Impl> node, dds::Topic* topic, const dds::DataWriterQos& qos)
-      : node_(std::move(node)), writer_(node_->publisher->create_datawriter(topic, qos)) {
+      : node_(std::move(node)),
+        writer_(node_->publisher->create_datawriter(topic, qos)),
+        waits_(qos.history().kind == dds::KEEP_ALL_HISTORY_QOS) {
     if (writer_ == nullptr) throw std::runtime_error("cannot publish " + topic->get_name());
   }
   ~DdsWriter() override { node_->publisher->delete_datawriter(writer_); }
@@ -197,7 +203,11 @@ class DdsWriter final : public detail::Writer {
   DdsWriter& operator=(const DdsWriter&) = delete;
 
   bool write(const void* sample) override {
-    return writer_->write(const_cast<void*>(sample));  // serialized before it returns, not altered
+    void* const data = const_cast<void*>(sample);  // serialized before write() returns, not altered
+    if (writer_->write(data)) return true;
+    // A full history of requests makes room when they are acknowledged; write() does not always wait for that.
+    return waits_ && writer_->wait_for_acknowledgments(kWriteTimeout) == ReturnCode_t::RETCODE_OK &&
+           writer_->write(data);
   }
 
   int matched() const override {
@@ -209,6 +219,7 @@ class DdsWriter final : public detail::Writer {
  private:
   std::shared_ptr<Impl> node_;
   dds::DataWriter* writer_;
+  bool waits_;
 };
 
 template <class Impl, class T>

@@ -24,11 +24,11 @@ Duration_t duration(std::chrono::milliseconds time) {
           static_cast<std::uint32_t>(time.count() % 1000 * 1'000'000)};
 }
 
-// Port 0: the middleware puts in the ports of the domain.
-rtps::Locator_t loopback_locator() {
+rtps::Locator_t loopback_locator(std::uint32_t port) {
   rtps::Locator_t locator;
   locator.kind = LOCATOR_KIND_UDPv4;
   rtps::IPLocator::setIPv4(locator, kLoopback);
+  locator.port = port;
   return locator;
 }
 
@@ -54,8 +54,12 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings) {
   if (settings.localhost_only) {
     udp->interfaceWhiteList = {kLoopback};
     udp->maxInitialPeersRange = kMaxLocalProcesses;
-    builtin.metatrafficUnicastLocatorList.push_back(loopback_locator());  // and so none for multicast
-    builtin.initialPeersList.push_back(loopback_locator());
+    // The first of the domain's ports that is free, whatever number the middleware gives the participant; none for
+    // multicast. Of the peers (port 0), the middleware tries as many ports as maxInitialPeersRange.
+    const auto first_port =
+        qos.wire_protocol().port.getUnicastPort(static_cast<std::uint32_t>(settings.domain), 0);
+    builtin.metatrafficUnicastLocatorList.push_back(loopback_locator(first_port));
+    builtin.initialPeersList.push_back(loopback_locator(0));
   }
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports.push_back(udp);

@@ -5,6 +5,8 @@
 #include <fcntl.h>
 #include <filesystem>
 #include <regex>
+#include <set>
+#include <string>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <system_error>
@@ -16,10 +18,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// False as well if there is no such file.
 bool is_young(const fs::path& path) {
   std::error_code error;
   const auto written = fs::last_write_time(path, error);
-  return error || fs::file_time_type::clock::now() - written < std::chrono::seconds(1);
+  return !error && fs::file_time_type::clock::now() - written < std::chrono::seconds(1);
 }
 
 // Whether the lock file's holder, a process of this user, is dead; true as well if there is no such file.
@@ -45,29 +48,24 @@ int remove_files(const std::vector<fs::path>& paths) {
 }  // namespace
 
 int remove_stale_shared_memory(const std::string& directory) {
-  // A segment has one lock file, held by its owner; a port has one of two, exclusive or shared, held by its
-  // readers.
-  static const std::regex kSegmentLock("(fastrtps_[0-9a-f]{16})_el");
-  static const std::regex kPortLock("(fastrtps_port[0-9]+)_[es]l");
+  // A segment, or a port with its semaphore; beside it a lock file that its owner holds, exclusive or shared.
+  static const std::regex kFile("(fastrtps_(?:[0-9a-f]{16}|port[0-9]+))(?:_[es]l)?");
 
   std::error_code error;
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(directory, error)) names.push_back(entry.path().filename());
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(directory, error)) {
+    const std::string file = entry.path().filename();
+    std::smatch match;
+    if (std::regex_match(file, match, kFile)) names.insert(match[1]);
+  }
 
   const fs::path root(directory);
   int removed = 0;
   for (const std::string& name : names) {
-    std::smatch match;
-    if (std::regex_match(name, match, kSegmentLock)) {
-      if (is_free(root / name)) removed += remove_files({root / match[1].str(), root / name});
-    } else if (std::regex_match(name, match, kPortLock)) {
-      const std::string port = match[1];
-      const fs::path exclusive = root / (port + "_el");
-      const fs::path shared = root / (port + "_sl");
-      if (is_free(exclusive) && is_free(shared)) {
-        removed += remove_files({root / port, root / ("sem." + port + "_mutex"), exclusive, shared});
-      }
-    }
+    const fs::path exclusive = root / (name + "_el");
+    const fs::path shared = root / (name + "_sl");
+    if (is_young(root / name) || !is_free(exclusive) || !is_free(shared)) continue;
+    removed += remove_files({root / name, root / ("sem." + name + "_mutex"), exclusive, shared});
   }
   return removed;
 }

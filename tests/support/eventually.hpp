@@ -1,0 +1,56 @@
+// Waiting for what will be so.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace swiftlet::tests {
+
+// True as soon as the predicate holds; false if it has not within the time.
+inline bool eventually(const std::function<bool()>& predicate,
+                       std::chrono::milliseconds timeout = std::chrono::seconds(10)) {
+  const auto give_up = std::chrono::steady_clock::now() + timeout;
+  while (!predicate()) {
+    if (std::chrono::steady_clock::now() > give_up) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return true;
+}
+
+// Collects what callbacks in other threads deliver.
+template <class T>
+class Inbox {
+ public:
+  void put(T item) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    items_.push_back(std::move(item));
+    changed_.notify_all();
+  }
+  std::vector<T> items() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return items_;
+  }
+  std::size_t size() const { return items().size(); }
+
+  // True as soon as the predicate holds of the items; false if it has not within the time.
+  bool wait(const std::function<bool(const std::vector<T>&)>& predicate,
+            std::chrono::milliseconds timeout = std::chrono::seconds(10)) const {
+    std::unique_lock<std::mutex> lock(mutex_);
+    return changed_.wait_for(lock, timeout, [&] { return predicate(items_); });
+  }
+  bool wait_for_count(std::size_t count) const {
+    return wait([count](const std::vector<T>& items) { return items.size() >= count; });
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  mutable std::condition_variable changed_;
+  std::vector<T> items_;
+};
+
+}  // namespace swiftlet::tests

@@ -1,0 +1,206 @@
+// Messages with a value of its own in every field.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "services/comms/convert.hpp"
+#include "services/comms/topics.hpp"
+
+namespace swiftlet::comms::tests {
+
+inline plant::PerRotor four_rotors(double first) { return {first, first + 0.1, first + 0.2, first + 0.3}; }
+
+inline plant::ImuSample imu_sample() { return {1001, 11, {0.1, -0.2, -9.8}, {0.3, -0.4, 0.5}}; }
+inline plant::PoseSample pose_sample() {
+  return {1002, 12, true, {1.0, -2.0, -3.0}, Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5)};
+}
+inline plant::BatterySample battery_sample() { return {1003, 13, 3.9, 2.5, 0.75}; }
+inline plant::RotorSpeedSample rotor_speed_sample() { return {1004, 14, 4, four_rotors(1600.0)}; }
+inline plant::ActuatorCommand actuator_command() {
+  return {1005, 15, 11, 12, plant::RotorState::kRunning, 4, four_rotors(0.3)};
+}
+inline plant::TruthSample truth_sample() {
+  return {1006,
+          16,
+          {1.0, 2.0, -3.0},
+          {0.1, 0.2, 0.3},
+          Eigen::Quaterniond(0.5, 0.5, -0.5, -0.5),
+          {-0.1, 0.2, -0.3},
+          4,
+          four_rotors(1500.0),
+          3.8,
+          true};
+}
+inline control::Setpoint setpoint() {
+  return {1007, 17, {1.0, 2.0, -1.0}, {0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}, 0.7, 0.8};
+}
+inline control::Request request() {
+  control::Request request;
+  request.kind = control::RequestKind::kGoTo;
+  request.position_ned = {1.0, -1.0, -1.5};
+  request.yaw_rad = 0.3;
+  request.yaw_free = false;
+  request.speed = 0.4;
+  return request;
+}
+inline control::Mission mission(std::size_t items) {
+  control::Mission mission{18, {}};
+  for (std::size_t i = 0; i < items; ++i) {
+    const double x = static_cast<double>(i);
+    mission.items.push_back(
+        {control::MissionItemKind::kWaypoint, {x, -x, -1.0 - x}, 0.001 * x, i % 2 == 0, 0.5, x});
+  }
+  return mission;
+}
+inline control::Trajectory trajectory(std::size_t segments) {
+  control::Trajectory trajectory{19, {}};
+  for (std::size_t i = 0; i < segments; ++i) {
+    control::PolynomialSegment segment;
+    segment.duration_s = 1.0 + static_cast<double>(i);
+    for (std::size_t k = 0; k < segment.x.size(); ++k) {
+      const double c = static_cast<double>(8 * i + k);
+      segment.x[k] = c;
+      segment.y[k] = -c;
+      segment.z[k] = 0.5 * c;
+      segment.yaw[k] = 0.25 * c;
+    }
+    trajectory.segments.push_back(segment);
+  }
+  return trajectory;
+}
+
+template <class T>
+T example();
+template <>
+inline msg::Imu example() {
+  return to_message(imu_sample());
+}
+template <>
+inline msg::MocapPose example() {
+  return to_message(pose_sample());
+}
+template <>
+inline msg::Battery example() {
+  return to_message(battery_sample());
+}
+template <>
+inline msg::RotorSpeeds example() {
+  return to_message(rotor_speed_sample());
+}
+template <>
+inline msg::ActuatorCommand example() {
+  return to_message(actuator_command());
+}
+template <>
+inline msg::GroundTruth example() {
+  return to_message(truth_sample());
+}
+template <>
+inline msg::Setpoint example() {
+  return to_message(setpoint());
+}
+template <>
+inline msg::Command example() {
+  msg::Command message = to_message(request());
+  message.client(3);
+  message.id(4);
+  return message;
+}
+template <>
+inline msg::Mission example() {
+  msg::Mission message = to_message(mission(5));
+  message.client(3);
+  return message;
+}
+template <>
+inline msg::Trajectory example() {
+  msg::Trajectory message = to_message(trajectory(3));
+  message.client(3);
+  return message;
+}
+template <>
+inline msg::Estimate example() {
+  control::Estimate estimate;
+  estimate.stamp_ns = 1008;
+  estimate.position_ned = {1.0, 2.0, 3.0};
+  estimate.velocity_ned = {4.0, 5.0, 6.0};
+  estimate.q_ned_from_frd = Eigen::Quaterniond(0.5, -0.5, -0.5, -0.5);
+  estimate.body_rates_frd = {7.0, 8.0, 9.0};
+  estimate.gyro_bias = {0.1, 0.2, 0.3};
+  estimate.accelerometer_bias = {0.4, 0.5, 0.6};
+  return to_message(estimate, 0.02);
+}
+template <>
+inline msg::Reference example() {
+  control::Reference reference;
+  reference.position_ned = {1.0, 2.0, 3.0};
+  reference.velocity_ned = {4.0, 5.0, 6.0};
+  reference.acceleration_ned = {0.1, 0.2, 0.3};
+  reference.jerk_ned = {0.4, 0.5, 0.6};
+  reference.yaw_rad = 0.7;
+  reference.yaw_rate = 0.8;
+  return to_message(reference, {Eigen::Quaterniond(0.5, 0.5, 0.5, 0.5), 0.39, {0.01, 0.02, 0.03}},
+                    control::Mode::kMission);
+}
+template <>
+inline msg::ControlStatus example() {
+  msg::ControlStatus message;
+  message.stamp_ns(1009);
+  message.sequence_number(20);
+  message.mode(msg::ControlStatus_Constants::MODE_HOLDING);
+  message.reason() = "arrived";
+  message.airborne(true);
+  message.has_pose(true);
+  message.pose_age_s(0.015);
+  message.supply_voltage_v(3.7);
+  message.saturated(true);
+  message.cycles(1000);
+  message.deadline_misses(2);
+  message.rate_hz(499.5);
+  message.step_time_max_us(80.0);
+  message.realtime_scheduling(true);
+  return message;
+}
+template <>
+inline msg::MissionStatus example() {
+  msg::MissionStatus message;
+  message.stamp_ns(1010);
+  message.sequence_number(21);
+  message.mission_id(18);
+  message.state(msg::MissionStatus_Constants::ABORTED);
+  message.item_index(3);
+  message.item_count(5);
+  message.reason() = "mocap lost";
+  return message;
+}
+template <>
+inline msg::CommandAck example() {
+  msg::CommandAck message;
+  message.client(3);
+  message.id(4);
+  message.accepted(false);
+  message.reason() = std::string(192, 'x');  // as long as it can be
+  return message;
+}
+template <>
+inline msg::VehicleInfo example() {
+  msg::VehicleInfo message;
+  message.stamp_ns(1011);
+  message.sequence_number(22);
+  message.name() = "kaylion";
+  message.simulated(true);
+  message.rotor_count(4);
+  message.mass_kg(0.04);
+  message.imu_rate_hz(500.0);
+  message.rotors_running(true);
+  message.answered(100);
+  message.unanswered(1);
+  message.sense_to_actuate_p50_us(60.0);
+  message.sense_to_actuate_p99_us(120.0);
+  message.sense_to_actuate_max_us(400.0);
+  message.fault() = "no actuator command for 0.2 s";
+  return message;
+}
+
+}  // namespace swiftlet::comms::tests
