@@ -1,0 +1,70 @@
+// The periodic timer and the semaphore, against the clock. Bounds are one-sided or generous: the machine may be loaded.
+#include <chrono>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "services/runtime/periodic_timer.hpp"
+#include "services/runtime/semaphore.hpp"
+
+namespace swiftlet::runtime {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::int64_t kMillisecond = 1'000'000;
+
+TEST(PeriodicTimer, NeverTicksBeforeItsTime) {
+  const std::int64_t start = monotonic_ns();
+  PeriodicTimer timer(2 * kMillisecond, 1000 * kMillisecond);
+  for (std::int64_t tick = 1; tick <= 50; ++tick) {
+    timer.wait();
+    EXPECT_GE(monotonic_ns() - start, tick * 2 * kMillisecond);
+  }
+}
+
+TEST(PeriodicTimer, MakesUpForSmallDelays) {
+  const std::int64_t start = monotonic_ns();
+  PeriodicTimer timer(2 * kMillisecond, 10'000 * kMillisecond);
+  timer.wait();
+  while (monotonic_ns() - start < 20 * kMillisecond) {
+  }
+  for (int tick = 2; tick <= 9; ++tick) EXPECT_EQ(timer.wait(), 0);  // at once: their times have passed
+  timer.wait();
+  timer.wait();
+  EXPECT_GE(monotonic_ns() - start, 22 * kMillisecond);  // the eleventh is on time again
+}
+
+TEST(PeriodicTimer, PutsOffWhatIsTooLate) {
+  const std::int64_t start = monotonic_ns();
+  PeriodicTimer timer(2 * kMillisecond, 4 * kMillisecond);
+  timer.wait();
+  while (monotonic_ns() - start < 30 * kMillisecond) {
+  }
+  const std::int64_t put_off = timer.wait();
+  EXPECT_GE(put_off, 26 * kMillisecond);
+  timer.wait();
+  EXPECT_GE(monotonic_ns() - start, 4 * kMillisecond + put_off + 2 * kMillisecond);  // no burst
+}
+
+TEST(Semaphore, WakesAWaitingThread) {
+  Semaphore semaphore;
+  std::thread poster([&] { semaphore.post(); });
+  const std::int64_t start = monotonic_ns();
+  semaphore.wait_for(20s);
+  EXPECT_LT(monotonic_ns() - start, 10'000 * kMillisecond);
+  poster.join();
+}
+
+TEST(Semaphore, RemembersOnePostOfMany) {
+  Semaphore semaphore;
+  semaphore.post();
+  semaphore.post();
+  semaphore.wait_for(20s);
+  const std::int64_t start = monotonic_ns();
+  semaphore.wait_for(20ms);
+  EXPECT_GE(monotonic_ns() - start, 20 * kMillisecond);
+}
+
+}  // namespace
+}  // namespace swiftlet::runtime

@@ -1,0 +1,115 @@
+// What the services measure of themselves.
+#include <cstdint>
+
+#include <gtest/gtest.h>
+
+#include "services/control/step_timing.hpp"
+#include "services/plant/answer_times.hpp"
+
+namespace swiftlet::services {
+namespace {
+
+constexpr std::int64_t kPeriod = 2'000'000;  // ns
+
+// Samples of 500 Hz whose arrival is delayed as told.
+class Arrivals {
+ public:
+  explicit Arrivals(StepTiming& timing) : timing_(timing) {}
+  void arrive(std::int64_t delay_ns = 0, bool rotors_running = true) {
+    ++sequence_;
+    const std::int64_t stamp = static_cast<std::int64_t>(sequence_) * kPeriod;
+    timing_.arrived(sequence_, stamp, 1'000'000'000 + stamp + delay_ns, rotors_running);
+    timing_.answered(1'000'000'000 + stamp + delay_ns + 50'000);
+  }
+  void lose(std::uint64_t samples) { sequence_ += samples; }
+
+ private:
+  StepTiming& timing_;
+  std::uint64_t sequence_ = 0;
+};
+
+TEST(StepTiming, CountsStepsSinceTheRotorsWereStarted) {
+  StepTiming timing;
+  Arrivals samples(timing);
+  for (int i = 0; i < 10; ++i) samples.arrive(0, false);
+  EXPECT_EQ(timing.figures().cycles, 0U);
+  EXPECT_EQ(timing.period_ns(), kPeriod);
+  for (int i = 0; i < 101; ++i) samples.arrive();
+  EXPECT_EQ(timing.figures().cycles, 101U);
+  EXPECT_NEAR(timing.figures().rate_hz, 500.0, 1e-9);
+  EXPECT_EQ(timing.figures().longest_ns, 50'000);
+  EXPECT_EQ(timing.figures().deadline_misses, 0U);
+
+  for (int i = 0; i < 10; ++i) samples.arrive(0, false);
+  EXPECT_EQ(timing.figures().cycles, 101U);  // kept until they start again
+  samples.arrive();
+  EXPECT_EQ(timing.figures().cycles, 1U);
+}
+
+TEST(StepTiming, AStepIsLateBeyondHalfAPeriod) {
+  StepTiming timing;
+  Arrivals samples(timing);
+  for (int i = 0; i < 100; ++i) samples.arrive();
+  samples.arrive(kPeriod / 2 - 100'000);
+  EXPECT_EQ(timing.figures().deadline_misses, 0U);
+  for (int i = 0; i < 100; ++i) samples.arrive();
+  samples.arrive(kPeriod / 2 + 100'000);
+  EXPECT_EQ(timing.figures().deadline_misses, 1U);
+  samples.arrive();
+  EXPECT_EQ(timing.figures().deadline_misses, 1U);
+}
+
+TEST(StepTiming, ALastingDelayBecomesThePace) {
+  StepTiming timing;
+  Arrivals samples(timing);
+  for (int i = 0; i < 100; ++i) samples.arrive();
+  for (int i = 0; i < 100; ++i) samples.arrive(2 * kPeriod);
+  EXPECT_GE(timing.figures().deadline_misses, 1U);
+  EXPECT_LE(timing.figures().deadline_misses, 12U);
+}
+
+TEST(StepTiming, LostSamplesAreNotLateOnes) {
+  StepTiming timing;
+  Arrivals samples(timing);
+  for (int i = 0; i < 10; ++i) samples.arrive();
+  samples.lose(5);
+  samples.arrive();
+  EXPECT_EQ(timing.figures().deadline_misses, 0U);
+  EXPECT_EQ(timing.period_ns(), kPeriod);
+  EXPECT_NEAR(timing.figures().rate_hz, 500.0 * 10.0 / 15.0, 1e-9);  // what was flown, not what was sent
+}
+
+TEST(StepTiming, AClockThatStartsAnewIsNoDelay) {
+  StepTiming timing;
+  timing.arrived(100, 100 * kPeriod, 1'000'000, true);
+  timing.arrived(101, 101 * kPeriod, 1'000'000 + kPeriod, true);
+  timing.arrived(1, kPeriod, 900'000'000, true);
+  timing.arrived(2, 2 * kPeriod, 900'000'000 + kPeriod, true);
+  EXPECT_EQ(timing.figures().deadline_misses, 0U);
+}
+
+TEST(AnswerTimes, AreFromSampleToItsFirstAnswer) {
+  AnswerTimes times;
+  times.written(1, 1000);
+  times.answered(1, 1500);
+  times.answered(1, 9000);  // again
+  times.answered(7, 9000);  // never written
+  EXPECT_EQ(times.times().count(), 1U);
+  EXPECT_EQ(times.times().max_ns(), 500);
+  EXPECT_EQ(times.unanswered(), 0U);
+}
+
+TEST(AnswerTimes, ASampleWithoutAnswerIsCountedWhenPatienceEnds) {
+  AnswerTimes times;
+  for (std::uint64_t sequence = 1; sequence <= AnswerTimes::kPatience; ++sequence) times.written(sequence, 0);
+  EXPECT_EQ(times.unanswered(), 0U);
+  times.answered(2, 10);
+  times.written(AnswerTimes::kPatience + 1, 0);  // ends the wait for 1
+  times.written(AnswerTimes::kPatience + 2, 0);  // 2 was answered
+  EXPECT_EQ(times.unanswered(), 1U);
+  times.answered(1, 20);  // too late
+  EXPECT_EQ(times.times().count(), 1U);
+}
+
+}  // namespace
+}  // namespace swiftlet::services
