@@ -1,0 +1,72 @@
+// One step of the whole inner loop in flight: estimate, supervision, position, attitude, allocation.
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <benchmark/benchmark.h>
+
+#include "control/flight_controller.hpp"
+#include "services/runtime/control_settings_file.hpp"
+#include "services/runtime/find_config.hpp"
+#include "services/runtime/vehicle_file.hpp"
+#include "tests/support/closed_loop.hpp"
+
+namespace swiftlet {
+namespace {
+
+control::Request request(control::RequestKind kind,
+                         const Eigen::Vector3d& position_ned = Eigen::Vector3d::Zero()) {
+  control::Request request;
+  request.kind = kind;
+  request.position_ned = position_ned;
+  return request;
+}
+
+// A closed loop that has taken off, on its way along a minimum-jerk line that it flies for a long time.
+test::ClosedLoop under_way(const char* settings) {
+  test::ClosedLoop loop(runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml")),
+                        plant::SimulationSettings(),
+                        runtime::load_control_settings(runtime::find_config(settings)), 1);
+  loop.step_until([&] { return loop.time_s() > 0.5; }, 1.0);
+  if (!loop.controller.request(request(control::RequestKind::kArm)).accepted ||
+      !loop.controller.request(request(control::RequestKind::kTakeoff, {0, 0, -1})).accepted ||
+      !loop.step_until([&] { return loop.controller.status().mode == control::Mode::kHolding; }, 10.0)) {
+    throw std::runtime_error("did not take off");
+  }
+  control::Request away = request(control::RequestKind::kGoTo, {2, 2, -1.5});
+  away.speed = 1e-3;
+  if (!loop.controller.request(away).accepted) throw std::runtime_error("did not move");
+  return loop;
+}
+
+// Samples of steady flight come again and again with new stamps, a pose every tenth of the IMU's: the controller does all it does
+// in flight, the plant is not timed.
+void inner_loop_step(benchmark::State& state, const char* settings) {
+  test::ClosedLoop loop = under_way(settings);
+  constexpr int kPosePeriod = 5;
+  plant::ImuSample imu = *loop.plant.imu();
+  imu.specific_force_frd = {0.0, 0.0, -plant::kGravity};
+  imu.body_rates_frd.setZero();
+  plant::PoseSample pose;
+  pose.tracked = true;
+  pose.position_ned = loop.controller.estimate().position_ned;
+  pose.sequence = 1'000'000;
+  for (auto _ : state) {
+    imu.stamp_ns += 2'000'000;
+    ++imu.sequence;
+    if (imu.sequence % kPosePeriod == 0) {
+      pose.stamp_ns = imu.stamp_ns - 10'000'000;
+      ++pose.sequence;
+      loop.controller.on_pose(pose);
+    }
+    benchmark::DoNotOptimize(loop.controller.on_imu(imu));
+  }
+  if (loop.controller.status().mode != control::Mode::kHolding) state.SkipWithError("left the flight");
+}
+BENCHMARK_CAPTURE(inner_loop_step, motor_lag, "control/motor_lag.yaml");
+BENCHMARK_CAPTURE(inner_loop_step, paper, "control/paper.yaml");
+
+}  // namespace
+}  // namespace swiftlet
+
+BENCHMARK_MAIN();
