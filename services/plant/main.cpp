@@ -67,48 +67,70 @@ void update(comms::msg::VehicleInfo& info, const PlantReport& report, const std:
   info.fault() = fault;
 }
 
-// Says what changed between two reports.
-void log_changes(const PlantReport& before, const PlantReport& now, const std::string& fault) {
-  if (now.rotors_running && !before.rotors_running) spdlog::info("rotors started");
-  if (!now.rotors_running && before.rotors_running) {
-    if (now.timed_out) {
+// Tells the network and the log what the loop reports: every second, and at once when the rotors start or stop.
+class Reporter {
+ public:
+  Reporter(comms::Node& node, const plant::Vehicle& vehicle, const plant::SimulationSettings& settings)
+      : publisher_(node.publish(comms::topics::kVehicleInfo)),
+        info_(describe(vehicle, settings.imu.rate_hz)) {
+    char text[96];
+    std::snprintf(text, sizeof text, "no actuator command for %g s", settings.command_timeout_s);
+    timeout_fault_ = text;
+  }
+
+  void tell(const PlantReport& report) {
+    const bool changed = report.rotors_running != told_.rotors_running || report.timed_out != told_.timed_out;
+    const std::int64_t now_ns = runtime::monotonic_ns();
+    if (!changed && now_ns < due_ns_) return;
+    due_ns_ = now_ns + kPeriodNs;
+    const std::string fault = report.timed_out ? timeout_fault_ : "";
+    update(info_, report, fault);
+    publisher_.publish(info_);
+    log_rotors(report, fault);
+    if (now_ns >= trouble_due_ns_ && log_trouble(report)) trouble_due_ns_ = now_ns + kTroublePeriodNs;
+    told_ = report;
+  }
+
+ private:
+  static constexpr std::int64_t kPeriodNs = 1'000'000'000;
+  static constexpr std::int64_t kTroublePeriodNs = 10'000'000'000;
+
+  void log_rotors(const PlantReport& report, const std::string& fault) {
+    if (report.rotors_running == told_.rotors_running) return;
+    if (report.rotors_running) {
+      spdlog::info("rotors started");
+    } else if (report.timed_out) {
       spdlog::error("rotors stopped: {}", fault);
     } else {
       spdlog::info("rotors stopped on command");
     }
   }
-  if (now.refused_commands > before.refused_commands) {
-    spdlog::warn("{} actuator commands refused, the last because: {}",
-                 now.refused_commands - before.refused_commands, now.refusal.text);
-  }
-  if (now.slips > before.slips) {
-    spdlog::warn("fell behind real time: simulated time put off {} times, by {:.1f} ms in all",
-                 now.slips - before.slips, static_cast<double>(now.slipped_ns - before.slipped_ns) * 1e-6);
-  }
-}
 
-// Vehicle information goes out every second and at once when the rotors start or stop.
-void tell(PlantLoop& loop, comms::Publisher<comms::msg::VehicleInfo>& publisher, comms::msg::VehicleInfo info,
-          const std::string& timeout_fault, runtime::StopSignal& stop, PlantReport& logged) {
-  PlantReport report;
-  std::int64_t next_ns = runtime::monotonic_ns();
-  bool first = true;
-  do {
-    loop.reports().take(report);
-    const bool changed = report.rotors_running != info.rotors_running() ||
-                         report.timed_out != !info.fault().to_string().empty();
-    const std::int64_t now_ns = runtime::monotonic_ns();
-    if (!first && !changed && now_ns < next_ns) continue;
-    const std::string fault = report.timed_out ? timeout_fault : "";
-    update(info, report, fault);
-    publisher.publish(info);
-    log_changes(logged, report, fault);
-    logged = report;
-    first = false;
-    next_ns = now_ns + 1'000'000'000;
-  } while (!stop.wait_for(20ms));
-  loop.reports().take(logged);
-}
+  // True if there was trouble since it was last told.
+  bool log_trouble(const PlantReport& report) {
+    const bool refused = report.refused_commands > told_trouble_.refused_commands;
+    const bool slipped = report.slips > told_trouble_.slips;
+    if (refused) {
+      spdlog::warn("{} actuator commands refused, the last: {}",
+                   report.refused_commands - told_trouble_.refused_commands, report.refusal.text);
+    }
+    if (slipped) {
+      spdlog::warn("fell behind real time: simulated time put off {} times, by {:.1f} ms in all",
+                   report.slips - told_trouble_.slips,
+                   static_cast<double>(report.slipped_ns - told_trouble_.slipped_ns) * 1e-6);
+    }
+    told_trouble_ = report;
+    return refused || slipped;
+  }
+
+  comms::Publisher<comms::msg::VehicleInfo> publisher_;
+  comms::msg::VehicleInfo info_;
+  std::string timeout_fault_;
+  PlantReport told_;
+  PlantReport told_trouble_;
+  std::int64_t due_ns_ = 0;
+  std::int64_t trouble_due_ns_ = 0;
+};
 
 void run(const Options& options) {
   const plant::Vehicle vehicle = runtime::load_vehicle(runtime::find_config(options.vehicle));
@@ -127,20 +149,22 @@ void run(const Options& options) {
   node_settings.name = "plant";
   comms::Node node(node_settings);
   comms::log_peers(node);
-  auto info_publisher = node.publish(comms::topics::kVehicleInfo);
+  Reporter reporter(node, vehicle, settings);
   PlantLoop loop(vehicle, settings, options.seed, node, options.process.realtime);
   spdlog::info("{} flies: vehicle {}, domain {}, IMU at {:g} Hz, seed {}", vehicle.name,
                node_settings.vehicle, node_settings.domain, settings.imu.rate_hz, options.seed);
 
   std::atomic<bool> loop_ends{false};
   std::thread loop_thread([&] { loop.run(loop_ends); });
-  char timeout_fault[96];
-  std::snprintf(timeout_fault, sizeof timeout_fault, "no actuator command for %g s",
-                settings.command_timeout_s);
   PlantReport last;
-  tell(loop, info_publisher, describe(vehicle, settings.imu.rate_hz), timeout_fault, stop, last);
+  do {
+    loop.reports().take(last);
+    reporter.tell(last);
+  } while (!stop.wait_for(20ms));
   loop_ends = true;
   loop_thread.join();
+  loop.reports().take(last);
+  reporter.tell(last);
 
   spdlog::info(
       "ended after {:.1f} s of simulated time: {} commands obeyed, {} refused; sense to actuate p50 {:.0f} "
