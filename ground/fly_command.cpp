@@ -17,6 +17,7 @@
 #include "ground/flight_report.hpp"
 #include "ground/interrupts.hpp"
 #include "ground/network_options.hpp"
+#include "services/comms/shared_memory.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -98,6 +99,9 @@ Flown fly_mission(const FlightPlan& plan, const comms::NodeSettings& network, Fl
   for (const std::string& complaint : fleet.stop()) {
     if (report.reason.empty()) report.reason = "after the flight, " + complaint;
   }
+
+  // What a process that was killed left there.
+  if (network.transport == comms::Transport::kSharedMemory) comms::remove_stale_shared_memory();
 
   flown.window = window.value_or(Window{});
   report.errors = tracking_errors(record.truth, record.reference, flown.window);

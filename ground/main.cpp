@@ -17,10 +17,11 @@ int complain(const std::exception& error, int code) {
   return code;
 }
 
-int run(const std::vector<ground::Command>& commands) {
+int run(const CLI::App& app, const std::vector<ground::Command>& commands) {
   for (const ground::Command& command : commands) {
     if (command.app->parsed()) return command.run();
   }
+  std::fprintf(stderr, "%s\nswiftlet: a command is required\n", app.help().c_str());
   return ground::kBadInput;
 }
 
@@ -28,7 +29,7 @@ int run(const std::vector<ground::Command>& commands) {
 
 int main(int argc, char** argv) {
   CLI::App app("Swiftlet: fly micro quadrotors over DDS", "swiftlet");
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);
   app.footer(
       "example: swiftlet fly square\n`swiftlet COMMAND --help` explains a command.\nExit codes: 0 done, 1 "
       "failed, 2 bad input.");
@@ -47,7 +48,7 @@ int main(int argc, char** argv) {
     return ground::kBadInput;
   }
   try {
-    return run(commands);
+    return run(app, commands);
   } catch (const ground::InputError& error) {
     return complain(error, ground::kBadInput);
   } catch (const runtime::ConfigError& error) {

@@ -127,18 +127,28 @@ TEST_F(Fly, FailsBeyondTheMissionsTolerance) {
       << report;
 }
 
-TEST_F(Fly, TwoAtOnceDoNotDisturbEachOther) {
+class FlyTwoAtOnce : public Fly, public testing::WithParamInterface<const char*> {};
+
+TEST_P(FlyTwoAtOnce, DoNotDisturbEachOther) {
   const std::string mission = folder_.write("hop.yaml", kShortMission);
-  Program first("swiftlet", {"fly", mission, "--json", "--record", folder_.path() / "a"}, folder_.path());
-  Program second("swiftlet", {"fly", mission, "--json", "--record", folder_.path() / "b"}, folder_.path());
+  const auto words = [&](const char* name) {
+    return std::vector<std::string>{
+        "fly", mission, "--json", "--transport", GetParam(), "--record", folder_.path() / name};
+  };
+  Program first("swiftlet", words("a"), folder_.path());
+  Program second("swiftlet", words("b"), folder_.path());
   EXPECT_EQ(first.wait(90s), 0) << first.errors();
   EXPECT_EQ(second.wait(90s), 0) << second.errors();
 }
 
+INSTANTIATE_TEST_SUITE_P(, FlyTwoAtOnce, testing::Values("udp", "shm"));
+
 // Everything that happens to a flight under way.
 class FlyInterrupted : public Fly {
  protected:
-  FlyInterrupted() : fly_("swiftlet", arguments(folder_.write("hover.yaml", kLongMission)), folder_.path()) {}
+  explicit FlyInterrupted(const std::string& transport = "udp")
+      : fly_("swiftlet", arguments(folder_.write("hover.yaml", kLongMission), {"--transport", transport}),
+             folder_.path()) {}
 
   void SetUp() override {
     ASSERT_TRUE(eventually(kStartTimeout, [&] {
@@ -178,6 +188,22 @@ TEST_P(FlyWithADeath, NamesTheProcessThatDied) {
 
 INSTANTIATE_TEST_SUITE_P(, FlyWithADeath,
                          testing::Values("swiftlet-plant", "swiftlet-mocap", "swiftlet-control"));
+
+class FlyOverSharedMemoryWithADeath : public FlyInterrupted {
+ protected:
+  FlyOverSharedMemoryWithADeath() : FlyInterrupted("shm") {}
+};
+
+TEST_F(FlyOverSharedMemoryWithADeath, LeavesNothingThere) {
+  std::vector<std::string> files;
+  for (const pid_t child : children_) {
+    for (const std::string& file : shared_memory_of(child)) files.push_back(file);
+  }
+  EXPECT_FALSE(files.empty()) << "no process used shared memory";
+  ASSERT_EQ(kill(child_of(fly_.pid(), "swiftlet-control"), SIGKILL), 0);
+  ASSERT_EQ(fly_.wait(20s), 1) << told(fly_);
+  for (const std::string& file : files) EXPECT_FALSE(fs::exists(file)) << file;
+}
 
 TEST_F(FlyInterrupted, LandsOnTheFirstInterrupt) {
   fly_.signal(SIGINT);

@@ -128,8 +128,8 @@ int Program::wait(std::chrono::milliseconds timeout) {
 std::string Program::output() const { return text_of(output_file_); }
 std::string Program::errors() const { return text_of(error_file_); }
 
-Run run(const std::string& name, std::vector<std::string> arguments, const fs::path& folder,
-        std::chrono::milliseconds timeout) {
+Ending run_program(const std::string& name, std::vector<std::string> arguments, const fs::path& folder,
+                   std::chrono::milliseconds timeout) {
   Program program(name, std::move(arguments), folder);
   const int exit_code = program.wait(timeout);
   return {exit_code, program.output(), program.errors()};

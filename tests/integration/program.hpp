@@ -56,13 +56,14 @@ class Program {
 };
 
 // What a finished run of a program gave.
-struct Run {
+struct Ending {
   int exit_code = -1;
   std::string output;
   std::string errors;
 };
-Run run(const std::string& name, std::vector<std::string> arguments, const std::filesystem::path& folder,
-        std::chrono::milliseconds timeout = std::chrono::seconds(30));
+Ending run_program(const std::string& name, std::vector<std::string> arguments,
+                   const std::filesystem::path& folder,
+                   std::chrono::milliseconds timeout = std::chrono::seconds(30));
 
 // The child of a process whose program has this name; -1 if there is none.
 pid_t child_of(pid_t parent, const std::string& program);

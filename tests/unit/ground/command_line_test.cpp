@@ -13,7 +13,7 @@ class CommandLine : public testing::Test {
     commands_ = {add_fly_command(app_),     add_arm_command(app_),  add_disarm_command(app_),
                  add_takeoff_command(app_), add_goto_command(app_), add_land_command(app_),
                  add_hold_command(app_),    add_stop_command(app_), add_mission_command(app_),
-                 add_status_command(app_)};
+                 add_status_command(app_),  add_gains_command(app_)};
   }
 
   bool parses(const std::string& line) {

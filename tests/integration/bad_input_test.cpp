@@ -1,0 +1,138 @@
+// What is wrong with the input ends with exit code 2 and a sentence, before anything is started or moved.
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "tests/integration/program.hpp"
+
+namespace swiftlet::tests {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+const std::string kMission =
+    "frame: ned\ntolerance_m: 0.1\nitems:\n"
+    "  - {kind: takeoff, height_m: 1, speed_m_s: 0.5}\n"
+    "  - {kind: waypoint, position_m: [1, 0, -1], speed_m_s: 0.5}\n"
+    "  - {kind: land, speed_m_s: 0.5}\n";
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+std::string text_of(const std::string& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+class BadInput : public testing::Test {
+ protected:
+  fs::path record() const { return folder_.path() / "record"; }
+
+  // Runs `swiftlet fly` with these words: refused with the sentence, nothing started.
+  void expect_refusal(std::vector<std::string> words, const std::string& sentence) const {
+    words.insert(words.begin(), "fly");
+    words.insert(words.end(), {"--json", "--record", record().string()});
+    const Ending end = run_program("swiftlet", words, folder_.path());
+    EXPECT_EQ(end.exit_code, 2) << end.errors;
+    EXPECT_NE(end.errors.find(sentence), std::string::npos) << end.errors;
+    EXPECT_EQ(end.output, "");
+    EXPECT_FALSE(fs::exists(record())) << "there are logs, so processes were started";
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(BadInput, MissionOutsideTheFence) {
+  const std::string file = folder_.write("far.yaml", replaced(kMission, "[1, 0, -1]", "[1, 40, -1]"));
+  expect_refusal({file}, file + ":5: items[1].position_m: east is 40 m, must be inside the fence, -3 to 3 m");
+}
+
+TEST_F(BadInput, MissionThatIsNotThere) { expect_refusal({"nowhere.yaml"}, "nowhere.yaml: is not found"); }
+
+TEST_F(BadInput, MissionThatIsCutShort) {
+  expect_refusal({folder_.write("cut.yaml", kMission.substr(0, kMission.size() - 20))}, "cut.yaml:6:");
+}
+
+TEST_F(BadInput, MissionWithoutATakeoff) {
+  const std::string file =
+      folder_.write("low.yaml", replaced(kMission, "  - {kind: takeoff, height_m: 1, speed_m_s: 0.5}\n", ""));
+  expect_refusal({file}, file + ": items: the first is no takeoff");
+}
+
+TEST_F(BadInput, MissionWithoutALand) {
+  const std::string file =
+      folder_.write("up.yaml", replaced(kMission, "  - {kind: land, speed_m_s: 0.5}\n", ""));
+  expect_refusal({file}, file + ": items: the last is no land");
+}
+
+TEST_F(BadInput, MissionThatTakesTooLong) {
+  const std::string file = folder_.write(
+      "long.yaml", replaced(kMission, "-1], speed_m_s: 0.5", "-1], speed_m_s: 0.5, hold_s: 900"));
+  expect_refusal({file}, "must be at most 600 s");
+}
+
+TEST_F(BadInput, VehicleThatBreaksARule) {
+  const std::string vehicle = text_of(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
+  const std::string key = "mass: {value: ";
+  ASSERT_NE(vehicle.find(key), std::string::npos);
+  const std::string file = folder_.write("heavy.yaml", replaced(vehicle, key, key + "-"));
+  expect_refusal({"square", "--vehicle", file}, "heavy.yaml:");
+}
+
+TEST_F(BadInput, ControlSettingsWithAnUnknownKey) {
+  const std::string settings = text_of(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml");
+  const std::string file = folder_.write("odd.yaml", settings + "thrust: 3\n");
+  expect_refusal({"square", "--control", file}, "odd.yaml:");
+}
+
+TEST_F(BadInput, SimulationThatIsNotThere) {
+  expect_refusal({"square", "--simulation", "moon"}, "moon.yaml");
+}
+
+TEST_F(BadInput, WrongUsage) {
+  expect_refusal({"square", "--imu-rate", "777"}, "--imu-rate");
+  expect_refusal({"square", "--domain", "500"}, "--domain");
+  expect_refusal({"square", "--vehicle-name", "a b"}, "--vehicle-name");
+  expect_refusal({}, "mission is required");
+}
+
+TEST_F(BadInput, RecordFolderThatCannotBeMade) {
+  const std::string file = folder_.write("file", "");
+  const Ending end = run_program("swiftlet", {"fly", "square", "--record", file + "/record"}, folder_.path());
+  EXPECT_EQ(end.exit_code, 2);
+  EXPECT_NE(end.errors.find("the folder cannot be made"), std::string::npos) << end.errors;
+}
+
+TEST_F(BadInput, OfTheOnlineCommands) {
+  const auto refuses = [&](std::vector<std::string> words, const std::string& sentence) {
+    const Ending end = run_program("swiftlet", std::move(words), folder_.path());
+    EXPECT_EQ(end.exit_code, 2) << end.errors;
+    EXPECT_NE(end.errors.find(sentence), std::string::npos) << end.errors;
+  };
+  refuses({"goto", "1", "2"}, "z is required");
+  refuses({"goto", "1", "2", "nan"}, "nan is not a finite number");
+  refuses({"takeoff", "-1"}, "must be a finite number above 0");
+  refuses({"land", "--speed", "0"}, "must be a finite number above 0");
+  refuses({"mission", folder_.write("far.yaml", replaced(kMission, "[1, 0, -1]", "[1, 40, -1]"))},
+          "east is 40 m");
+  refuses({"circle"}, "circle");
+  refuses({}, "swiftlet: a command is required");
+}
+
+TEST_F(BadInput, HelpIsNone) {
+  for (const char* command :
+       {"fly", "arm", "disarm", "takeoff", "goto", "land", "hold", "stop", "mission", "status", "gains"}) {
+    const Ending end = run_program("swiftlet", {command, "--help"}, folder_.path());
+    EXPECT_EQ(end.exit_code, 0);
+    EXPECT_NE(end.output.find("example: swiftlet " + std::string(command)), std::string::npos) << end.output;
+  }
+}
+
+}  // namespace
+}  // namespace swiftlet::tests

@@ -1,0 +1,98 @@
+#include "tests/integration/fake_vehicle.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "plant/model/propulsion.hpp"
+
+namespace swiftlet::tests {
+namespace {
+
+constexpr double kPeriodS = static_cast<double>(FakeVehicle::kPeriodNs) * 1e-9;
+constexpr std::uint64_t kImuPerFrame = 5;
+constexpr std::uint64_t kImuPerBattery = 50;
+
+}  // namespace
+
+FakeVehicle::FakeVehicle(const plant::Vehicle& parameters, const comms::NodeSettings& network)
+    : parameters_(parameters),
+      node_(network),
+      imu_(node_.publish(comms::topics::kImu)),
+      mocap_(node_.publish(comms::topics::kMocapPose)),
+      battery_(node_.publish(comms::topics::kBattery)),
+      subscription_(
+          node_.subscribe<comms::msg::ActuatorCommand>(comms::topics::kActuatorCommand,
+                                                       [this](const comms::msg::ActuatorCommand& command) {
+                                                         const std::lock_guard lock(mutex_);
+                                                         commands_.push_back(command);
+                                                       })),
+      thread_([this] { run(); }) {}
+
+FakeVehicle::~FakeVehicle() {
+  stop_ = true;
+  thread_.join();
+}
+
+std::vector<comms::msg::ActuatorCommand> FakeVehicle::commands() const {
+  const std::lock_guard lock(mutex_);
+  return commands_;
+}
+
+void FakeVehicle::run() {
+  auto next = std::chrono::steady_clock::now();
+  while (!stop_) {
+    move();
+    publish();
+    next += std::chrono::nanoseconds(kPeriodNs);
+    std::this_thread::sleep_until(next);
+  }
+}
+
+// Up and down only; stands on the floor at height 0.
+void FakeVehicle::move() {
+  double wanted_speed = 0.0;
+  {
+    const std::lock_guard lock(mutex_);
+    const bool running = !commands_.empty() && commands_.back().rotor_state() ==
+                                                   comms::msg::ActuatorCommand_Constants::ROTORS_RUNNING;
+    if (running)
+      wanted_speed = plant::steady_speed_from_throttle(parameters_, kSupplyV, commands_.back().throttle()[0]);
+  }
+  rotor_speed_ += (wanted_speed - rotor_speed_) * kPeriodS / parameters_.motor.time_constant_s;
+  const double lift = parameters_.rotor_count() * plant::thrust_from_speed(parameters_.rotor, rotor_speed_);
+  up_acceleration_ = lift / parameters_.mass_kg - plant::kGravity;
+  const bool stands = height_m_ <= 0.0 && up_acceleration_ <= 0.0;
+  if (stands) up_acceleration_ = up_speed_ = 0.0;
+  up_speed_ += up_acceleration_ * kPeriodS;
+  height_m_ = std::max(height_m_ + up_speed_ * kPeriodS, 0.0);
+  highest_m_ = std::max(highest_m_.load(), height_m_.load());
+}
+
+void FakeVehicle::publish() {
+  const std::uint64_t sequence = ++imu_sequence_;
+  const auto stamp_ns = static_cast<std::int64_t>(sequence) * kPeriodNs;
+  if (seen_by_mocap && sequence % kImuPerFrame == 0) {
+    comms::msg::MocapPose pose;
+    pose.stamp_ns(stamp_ns);
+    pose.sequence_number(++mocap_sequence_);
+    pose.tracked(tracked);
+    pose.position_ned({0.0, 0.0, -height_m_});
+    pose.q_ned_from_frd({1.0, 0.0, 0.0, 0.0});
+    mocap_.publish(pose);
+  }
+  if (sequence % kImuPerBattery == 1) {
+    comms::msg::Battery battery;
+    battery.stamp_ns(stamp_ns);
+    battery.sequence_number(++battery_sequence_);
+    battery.voltage_v(kSupplyV);
+    battery.state_of_charge(0.8);
+    battery_.publish(battery);
+  }
+  comms::msg::Imu imu;
+  imu.stamp_ns(stamp_ns);
+  imu.sequence_number(sequence);
+  imu.specific_force_frd({0.0, 0.0, -(up_acceleration_ + plant::kGravity)});
+  imu_.publish(imu);
+}
+
+}  // namespace swiftlet::tests

@@ -1,0 +1,64 @@
+// A vehicle that is not the project's plant: a mass on a vertical rail, which senses, is seen by motion capture, and obeys
+// actuator commands over the network. It knows nothing of the control service but the topics.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "plant/model/vehicle.hpp"
+#include "services/comms/node.hpp"
+
+namespace swiftlet::tests {
+
+class FakeVehicle {
+ public:
+  FakeVehicle(const plant::Vehicle& parameters, const comms::NodeSettings& network);
+  ~FakeVehicle();
+  FakeVehicle(const FakeVehicle&) = delete;
+  FakeVehicle& operator=(const FakeVehicle&) = delete;
+
+  // What the script turns off and on.
+  std::atomic<bool> seen_by_mocap{true};  // frames come; otherwise none do
+  std::atomic<bool> tracked{true};        // frames hold a pose
+
+  // What was heard, in order.
+  std::vector<comms::msg::ActuatorCommand> commands() const;
+  double height_m() const { return height_m_; }
+  double highest_m() const { return highest_m_; }
+  std::uint64_t samples() const { return imu_sequence_; }
+
+  static constexpr std::int64_t kPeriodNs = 2'000'000;  // of the IMU
+  static constexpr double kSupplyV = 3.9;
+
+ private:
+  void run();
+  void move();
+  void publish();
+
+  const plant::Vehicle parameters_;
+  double up_speed_ = 0.0;
+  double up_acceleration_ = 0.0;
+  double rotor_speed_ = 0.0;
+  std::atomic<double> height_m_{0.0};
+  std::atomic<double> highest_m_{0.0};
+  std::atomic<std::uint64_t> imu_sequence_{0};
+  std::uint64_t mocap_sequence_ = 0;
+  std::uint64_t battery_sequence_ = 0;
+
+  mutable std::mutex mutex_;  // guards commands_
+  std::vector<comms::msg::ActuatorCommand> commands_;
+
+  comms::Node node_;
+  comms::Publisher<comms::msg::Imu> imu_;
+  comms::Publisher<comms::msg::MocapPose> mocap_;
+  comms::Publisher<comms::msg::Battery> battery_;
+  comms::Subscription subscription_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+}  // namespace swiftlet::tests

@@ -1,0 +1,172 @@
+// The plant swapped: the control service against a vehicle that the test makes. Whatever publishes imu and battery and obeys
+// actuator_command is a vehicle.
+#include "tests/integration/fake_vehicle.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "control/mode.hpp"
+#include "ground/client.hpp"
+#include "services/runtime/vehicle_file.hpp"
+#include "tests/integration/program.hpp"
+#include "tests/support/domain_claim.hpp"
+
+namespace swiftlet::tests {
+namespace {
+
+using namespace std::chrono_literals;
+using control::Mode;
+using ground::View;
+namespace msg = comms::msg;
+
+constexpr auto kTimeout = 20s;
+
+class FakeVehicleFlight : public testing::Test {
+ protected:
+  FakeVehicleFlight()
+      : control_("swiftlet-control", {"--domain", std::to_string(claim_.domain()), "--localhost-only"},
+                 folder_.path()),
+        client_(network("ground")) {}
+
+  comms::NodeSettings network(const std::string& name) const {
+    comms::NodeSettings settings;
+    settings.name = name;
+    settings.domain = claim_.domain();
+    settings.localhost_only = true;
+    return settings;
+  }
+
+  void start_vehicle() {
+    const auto parameters = runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
+    vehicle_ = std::make_unique<FakeVehicle>(parameters, network("plant"));
+    ASSERT_TRUE(client_.wait(kTimeout, [](const View& view) { return view.control.message.has_pose(); }))
+        << control_.errors();
+  }
+
+  ground::Answer ask(std::uint8_t kind) {
+    msg::Command command;
+    command.kind(kind);
+    command.position_ned({0.0, 0.0, -0.6});
+    command.speed(0.5);
+    return client_.command(command, kTimeout);
+  }
+
+  bool wait_for(Mode mode) {
+    return client_.wait(kTimeout, [mode](const View& view) {
+      return view.control.message.mode() == static_cast<std::uint8_t>(mode);
+    });
+  }
+
+  void hover() {
+    start_vehicle();
+    const ground::Answer armed = ask(msg::Command_Constants::ARM);
+    ASSERT_TRUE(armed.accepted()) << armed.reason;
+    const ground::Answer off = ask(msg::Command_Constants::TAKEOFF);
+    ASSERT_TRUE(off.accepted()) << off.reason;
+    ASSERT_TRUE(wait_for(Mode::kHolding)) << control_.errors();
+  }
+
+  static bool running(const msg::ActuatorCommand& command) {
+    return command.rotor_state() == msg::ActuatorCommand_Constants::ROTORS_RUNNING;
+  }
+  bool rotors_are_off() const {
+    const auto commands = vehicle_->commands();
+    return !commands.empty() && !running(commands.back());
+  }
+
+  DomainClaim claim_;
+  TemporaryFolder folder_;
+  Program control_;
+  ground::Client client_;
+  std::unique_ptr<FakeVehicle> vehicle_;
+};
+
+TEST_F(FakeVehicleFlight, WithoutAVehicleNothingIsArmed) {
+  const ground::Answer answer = ask(msg::Command_Constants::ARM);
+  EXPECT_EQ(answer.kind, ground::Answer::Kind::kRefused) << answer.reason;
+  EXPECT_NE(answer.reason.find("IMU"), std::string::npos) << answer.reason;
+}
+
+TEST_F(FakeVehicleFlight, EveryCommandAnswersASample) {
+  start_vehicle();
+  ASSERT_TRUE(ask(msg::Command_Constants::ARM).accepted());
+  ASSERT_TRUE(eventually(kTimeout, [&] {
+    const auto commands = vehicle_->commands();
+    return std::count_if(commands.begin(), commands.end(), running) > 250;
+  })) << control_.errors();
+
+  const auto commands = vehicle_->commands();
+  ASSERT_FALSE(commands.empty());
+  EXPECT_FALSE(running(commands.front())) << "rotors ran before they were armed";
+  std::uint64_t last = 0;
+  for (const msg::ActuatorCommand& command : commands) {
+    EXPECT_GT(command.imu_sequence_number(), last) << "answered twice or out of order";
+    last = command.imu_sequence_number();
+    EXPECT_EQ(command.stamp_ns(), static_cast<std::int64_t>(last) * FakeVehicle::kPeriodNs);
+    ASSERT_EQ(command.rotor_count(), 4);
+    for (int i = 0; i < 4; ++i)
+      EXPECT_EQ(command.throttle()[static_cast<std::size_t>(i)], 0.0) << "it stands";
+  }
+  EXPECT_GT(commands.back().mocap_sequence_number(), 0U);
+  const double asked = static_cast<double>(last - commands.front().imu_sequence_number() + 1);
+  EXPECT_GT(static_cast<double>(commands.size()), 0.9 * asked) << "samples went unanswered";
+}
+
+TEST_F(FakeVehicleFlight, FliesAMission) {
+  start_vehicle();
+  ASSERT_TRUE(ask(msg::Command_Constants::ARM).accepted());
+  control::Mission mission;
+  mission.items.resize(3);
+  mission.items[0].kind = control::MissionItemKind::kTakeoff;
+  mission.items[0].position_ned = {0.0, 0.0, -0.5};
+  mission.items[1].position_ned = {0.0, 0.0, -0.8};
+  mission.items[2].kind = control::MissionItemKind::kLand;
+  const ground::Answer answer = client_.upload(mission, kTimeout);
+  ASSERT_TRUE(answer.accepted()) << answer.reason;
+  ASSERT_TRUE(client_.wait(40s, [&](const View& view) {
+    return view.mission.message.mission_id() == client_.mission_id() &&
+           view.mission.message.state() == msg::MissionStatus_Constants::COMPLETED;
+  })) << control_.errors();
+  EXPECT_NEAR(vehicle_->highest_m(), 0.8, 0.05);
+  EXPECT_EQ(vehicle_->height_m(), 0.0);
+  EXPECT_TRUE(eventually(kTimeout, [&] { return rotors_are_off(); }));
+}
+
+TEST_F(FakeVehicleFlight, ComesDownWithoutMocap) {
+  hover();
+  vehicle_->seen_by_mocap = false;
+  EXPECT_TRUE(wait_for(Mode::kDescent)) << control_.errors();
+  EXPECT_GT(vehicle_->height_m(), 0.1) << "it fell";
+  EXPECT_TRUE(eventually(kTimeout, [&] { return rotors_are_off(); })) << control_.errors();
+  EXPECT_LT(vehicle_->height_m(), 0.1) << "the rotors went off in the air";
+}
+
+TEST_F(FakeVehicleFlight, HoldsAgainWhenThePoseIsBack) {
+  hover();
+  vehicle_->tracked = false;
+  ASSERT_TRUE(wait_for(Mode::kDescent)) << control_.errors();
+  vehicle_->tracked = true;
+  EXPECT_TRUE(wait_for(Mode::kHolding)) << control_.errors();
+  EXPECT_TRUE(ask(msg::Command_Constants::LAND).accepted());
+  EXPECT_TRUE(wait_for(Mode::kDisarmed)) << control_.errors();
+  EXPECT_EQ(vehicle_->height_m(), 0.0);
+}
+
+TEST_F(FakeVehicleFlight, TheLongestMissionFitsOnTheWire) {
+  hover();
+  control::Mission mission;
+  mission.items.resize(control::kMaxMissionItems);
+  for (control::MissionItem& item : mission.items) item.position_ned = {0.0, 0.0, -0.7};
+  const ground::Answer answer = client_.upload(mission, kTimeout);
+  EXPECT_TRUE(answer.accepted()) << answer.reason;
+  EXPECT_TRUE(client_.wait(kTimeout, [&](const View& view) {
+    return view.mission.message.mission_id() == client_.mission_id() &&
+           view.mission.message.item_count() == control::kMaxMissionItems;
+  }));
+}
+
+}  // namespace
+}  // namespace swiftlet::tests

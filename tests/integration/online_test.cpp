@@ -1,0 +1,185 @@
+// The online commands against processes that run already.
+#include <chrono>
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/integration/program.hpp"
+#include "tests/support/domain_claim.hpp"
+
+namespace swiftlet::tests {
+namespace {
+
+using namespace std::chrono_literals;
+using nlohmann::json;
+
+class Online : public testing::Test {
+ protected:
+  std::vector<std::string> network() const {
+    return {"--domain", std::to_string(claim_.domain()), "--vehicle-name", "kl7", "--localhost-only"};
+  }
+  // `swiftlet` with the words of a command line.
+  Ending swiftlet(std::vector<std::string> words, std::chrono::milliseconds timeout = 30s) const {
+    for (const std::string& word : network()) words.push_back(word);
+    return run_program("swiftlet", std::move(words), folder_.path(), timeout);
+  }
+
+  DomainClaim claim_;
+  TemporaryFolder folder_;
+};
+
+class OnlineFlight : public Online {
+ protected:
+  OnlineFlight()
+      : plant_("swiftlet-plant", network(), folder_.path()),
+        mocap_("swiftlet-mocap", network(), folder_.path()),
+        control_("swiftlet-control", network(), folder_.path()) {}
+
+  void SetUp() override {
+    ASSERT_TRUE(reaches("has_pose", [](const json& status) { return status.at("has_pose") == true; }));
+  }
+
+  json status() const {
+    const Ending end = swiftlet({"status", "--json", "--watch", "0.1"});
+    EXPECT_EQ(end.exit_code, 0) << end.errors;
+    return end.exit_code == 0 ? json::parse(end.output) : json();
+  }
+  template <class Predicate>
+  bool reaches(const char* what, const Predicate& predicate) const {
+    json last;
+    const bool reached = eventually(30s, [&] { return predicate(last = status()); });
+    EXPECT_TRUE(reached) << what << "\n" << last << "\n" << control_.errors();
+    return reached;
+  }
+  bool reaches_mode(const std::string& mode) const {
+    return reaches(mode.c_str(), [&](const json& status) { return status.at("mode") == mode; });
+  }
+  bool reaches_place(double x, double y, double z) const {
+    return reaches("place", [&](const json& status) {
+      const auto& at = status.at("position_ned_m");
+      return std::hypot(at[0].get<double>() - x, at[1].get<double>() - y, at[2].get<double>() - z) < 0.02;
+    });
+  }
+  void expect_accepted(const std::vector<std::string>& words) const {
+    const Ending end = swiftlet(words);
+    EXPECT_EQ(end.exit_code, 0) << words.front() << ": " << end.errors;
+    EXPECT_EQ(end.output, words.front() + ": accepted by kl7\n");
+  }
+  void expect_refused(const std::vector<std::string>& words, const std::string& reason) const {
+    const Ending end = swiftlet(words);
+    EXPECT_EQ(end.exit_code, 1);
+    EXPECT_EQ(end.errors, "swiftlet: " + words.front() + ": " + reason + "\n");
+  }
+  void take_off() const {
+    expect_accepted({"arm"});
+    expect_accepted({"takeoff", "0.6"});
+    ASSERT_TRUE(reaches_mode("holding"));
+  }
+
+  Program plant_, mocap_, control_;
+};
+
+TEST_F(OnlineFlight, EveryCommandDoesWhatItSays) {
+  expect_refused({"takeoff"}, "cannot take off while disarmed; arm first");
+  expect_refused({"hold"}, "cannot do that while disarmed");
+  expect_accepted({"arm"});
+  ASSERT_TRUE(reaches_mode("armed"));
+  expect_accepted({"disarm"});
+  ASSERT_TRUE(reaches_mode("disarmed"));
+  take_off();
+  expect_refused({"disarm"}, "cannot disarm while holding; land first, or stop");
+  expect_refused({"goto", "-1", "9", "-1"}, "goto: y is 9.000 m, outside the fence of -3.000 to 3.000 m");
+  expect_accepted({"goto", "-0.4", "0.3", "-0.8", "--yaw", "0.5", "--speed", "0.8"});
+  ASSERT_TRUE(reaches_place(-0.4, 0.3, -0.8));
+  expect_accepted({"hold"});
+  expect_accepted({"land"});
+  ASSERT_TRUE(reaches_mode("disarmed"));
+  ASSERT_TRUE(reaches_place(-0.4, 0.3, 0.0));
+}
+
+TEST_F(OnlineFlight, StopTurnsTheRotorsOffInTheAir) {
+  take_off();
+  expect_accepted({"stop"});
+  const json now = status();
+  EXPECT_EQ(now.at("mode"), "stopped");
+  EXPECT_EQ(now.at("reason"), "requested");
+  EXPECT_TRUE(reaches("rotors off", [](const json& status) {
+    return status.at("vehicle_info").at("rotors_running") == false;
+  }));
+}
+
+TEST_F(OnlineFlight, FollowsAMissionFileToItsEnd) {
+  const std::string file = folder_.write("hop.yaml",
+                                         "frame: enu\ntolerance_m: 0.1\nitems:\n"
+                                         "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.8}\n"
+                                         "  - {kind: waypoint, position_m: [0.4, 0, 0.6], speed_m_s: 0.8}\n"
+                                         "  - {kind: land, speed_m_s: 0.8}\n");
+  const Ending unarmed = swiftlet({"mission", file});
+  EXPECT_EQ(unarmed.exit_code, 1);
+  EXPECT_EQ(unarmed.errors, "swiftlet: mission hop: cannot start a mission while disarmed\n");
+  expect_accepted({"arm"});
+  const Ending flown = swiftlet({"mission", file, "--json"}, 60s);
+  EXPECT_EQ(flown.exit_code, 0) << flown.errors;
+  EXPECT_EQ(json::parse(flown.output), json({{"mission", "hop"}, {"accepted", true}, {"completed", true}}));
+  EXPECT_NE(flown.errors.find("2/3"), std::string::npos) << "no progress was shown: " << flown.errors;
+  const json now = status();
+  EXPECT_EQ(now.at("mode"), "disarmed");
+  EXPECT_EQ(now.at("mission").at("state"), "completed");
+  EXPECT_NEAR(now.at("position_ned_m")[1].get<double>(), 0.4, 0.02) << "0.4 m east";
+}
+
+TEST_F(OnlineFlight, TellsThatAMissionWasAborted) {
+  const std::string file = folder_.write("hover.yaml",
+                                         "frame: ned\ntolerance_m: 0.1\nitems:\n"
+                                         "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.8, hold_s: 100}\n"
+                                         "  - {kind: land, speed_m_s: 0.8}\n");
+  expect_accepted({"arm"});
+  std::vector<std::string> words = {"mission", file};
+  for (const std::string& word : network()) words.push_back(word);
+  Program mission("swiftlet", words, folder_.path());
+  ASSERT_TRUE(reaches("in the air", [](const json& status) { return status.at("airborne") == true; }));
+  expect_accepted({"land"});
+  EXPECT_EQ(mission.wait(20s), 1);
+  EXPECT_NE(mission.errors().find("swiftlet: mission hover: aborted: requested"), std::string::npos)
+      << mission.errors();
+  ASSERT_TRUE(reaches_mode("disarmed"));
+}
+
+TEST_F(OnlineFlight, StatusNamesAllThatAPilotAsksFor) {
+  const json now = status();
+  EXPECT_EQ(now.at("vehicle"), "kl7");
+  EXPECT_EQ(now.at("mode"), "disarmed");
+  EXPECT_NEAR(now.at("battery").at("voltage_v").get<double>(), 4.18, 0.05);
+  EXPECT_EQ(now.at("vehicle_info").at("imu_rate_hz"), 500.0);
+  EXPECT_LT(now.at("pose_age_s"), 0.2);
+  for (const char* peer : {"plant", "mocap", "control"})
+    EXPECT_EQ(now.at("peers_alive").at(peer), true) << peer;
+  for (const auto& [topic, age] : now.at("ages_s").items()) EXPECT_LT(age.get<double>(), 5.0) << topic;
+  const Ending text = swiftlet({"status"});
+  EXPECT_EQ(text.exit_code, 0);
+  EXPECT_NE(text.output.find("kl7 in domain " + std::to_string(claim_.domain()) + ": disarmed"),
+            std::string::npos)
+      << text.output;
+}
+
+TEST_F(Online, SaysWhereItLookedWhenNothingIsThere) {
+  for (const char* command : {"status", "arm"}) {
+    const Ending end = swiftlet({command, "--timeout", "0.5"});
+    EXPECT_EQ(end.exit_code, 1);
+    EXPECT_EQ(end.errors, "swiftlet: " + std::string(command) +
+                              ": no control service for vehicle kl7 in domain " +
+                              std::to_string(claim_.domain()) + "; seen there: nothing\n");
+  }
+}
+
+TEST_F(Online, SaysWhatItSawWhenOnlyControlIsMissing) {
+  Program plant("swiftlet-plant", network(), folder_.path());
+  ASSERT_TRUE(eventually(20s, [&] {
+    const Ending end = swiftlet({"arm", "--timeout", "1"});
+    return end.exit_code == 1 && end.errors.find("seen there: plant") != std::string::npos;
+  }));
+}
+
+}  // namespace
+}  // namespace swiftlet::tests
