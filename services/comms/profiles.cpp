@@ -73,8 +73,10 @@ dds::DataWriterQos writer_qos(Qos profile, int deadline_ms, int strength, Transp
 dds::DataReaderQos reader_qos(Qos profile, int deadline_ms, Transport transport, Delivery delivery) {
   dds::DataReaderQos qos;
   set_common(qos, profile, deadline_ms, transport);
-  if (delivery == Delivery::kOwnThread)
+  // Not over shared memory: there two processes can be given the same port, and one hears nothing.
+  if (delivery == Delivery::kOwnThread && transport != Transport::kSharedMemory) {
     qos.properties().properties().emplace_back("fastdds.unique_network_flows", "");
+  }
   return qos;
 }
 
