@@ -43,12 +43,13 @@
 #include "services/comms/shared_memory.hpp"
 
 // Each message type that is a topic's.
-#define SWIFTLET_FOR_EACH_MESSAGE(X)                                                                        \
-  X(ActuatorCommand)                                                                                        \
-  X(Battery)                                                                                                \
-  X(Command)                                                                                                \
-  X(CommandAck) X(ControlStatus) X(Estimate) X(GroundTruth) X(Imu) X(Mission) X(MissionStatus) X(MocapPose) \
-      X(Reference) X(RotorSpeeds) X(Setpoint) X(Trajectory) X(VehicleInfo)
+#define SWIFTLET_FOR_EACH_MESSAGE(X)                                                                       \
+  X(ActuatorCommand)                                                                                       \
+  X(Battery)                                                                                               \
+  X(Command)                                                                                               \
+  X(CommandAck)                                                                                            \
+  X(ControlStatus) X(Estimate) X(GroundTruth) X(Imu) X(Mission) X(MissionStatus) X(MocapPose) X(Reference) \
+      X(RotorSpeeds) X(Setpoint) X(Trajectory) X(VehicleInfo)
 
 namespace swiftlet::comms {
 namespace {
@@ -125,6 +126,7 @@ struct Node::Impl final : public dds::DomainParticipantListener {
     participant->set_listener(nullptr);
     participant->delete_contained_entities();
     dds::DomainParticipantFactory::get_instance()->delete_participant(participant);
+    if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
   }
 
   Impl(const Impl&) = delete;

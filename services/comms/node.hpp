@@ -82,8 +82,8 @@ class Subscription {
 class Node {
  public:
   // Throws std::runtime_error with a sentence if the participant cannot be made. The node's threads have the
-  // scheduling of the thread that makes it. With kSharedMemory, removes what dead processes of this user left
-  // in /dev/shm.
+  // scheduling of the thread that makes it. With kSharedMemory, what dead processes of this user left
+  // in /dev/shm is removed at its start and its end.
   explicit Node(const NodeSettings& settings);
   ~Node();
   Node(const Node&) = delete;
