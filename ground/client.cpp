@@ -165,7 +165,7 @@ Answer Client::ask(std::uint64_t id, const std::function<void()>& send, const st
     if (now >= deadline) {
       lock.unlock();
       if (sent) return {Answer::Kind::kSilence, "no answer from the control service of " + where()};
-      return {Answer::Kind::kNoControl, "no control service for " + where()};
+      return {Answer::Kind::kNoControl, no_control()};
     }
     if (now >= next_send) {
       lock.unlock();
@@ -210,6 +210,15 @@ std::string Client::where() const {
   }
   return "vehicle " + settings_.vehicle + " in domain " + std::to_string(settings_.domain) +
          "; seen there: " + (alive.empty() ? "nothing" : alive);
+}
+
+std::string Client::no_control() const {
+  // Those that keep to the loopback interface are seen, but do not talk to others.
+  const auto peers = view().peers;
+  const auto control = peers.find("control");
+  const bool seen = control != peers.end() && control->second;
+  return "no control service for " + where() +
+         (seen && !settings_.localhost_only ? " (try --localhost-only)" : "");
 }
 
 const char* mode_name(std::uint8_t mode) { return control::to_string(static_cast<control::Mode>(mode)); }

@@ -82,6 +82,8 @@ class Client {
 
   // "vehicle kl1 in domain 0; seen there: plant, mocap"
   std::string where() const;
+  // That none was found there, as half a sentence.
+  std::string no_control() const;
 
  private:
   template <class T>

@@ -35,13 +35,12 @@ std::string missing(const View& view) {
   const auto need = [&list](bool there, const char* what) {
     if (!there) list += (list.empty() ? "" : ", ") + std::string(what);
   };
-  need(view.vehicle.seen(), "the vehicle (vehicle_info of swiftlet-plant)");
-  need(view.battery.seen(), "battery (of swiftlet-plant)");
-  need(view.control.seen(), "control_status (of swiftlet-control)");
-  need(view.control.seen() && view.control.message.has_pose(),
-       "a pose that control has taken in (mocap_pose of swiftlet-mocap)");
-  need(view.truth.seen(), "ground_truth (of swiftlet-plant)");
-  need(view.reference.seen(), "reference (of swiftlet-control)");
+  need(view.vehicle.seen(), "vehicle_info");
+  need(view.battery.seen(), "battery");
+  need(view.truth.seen(), "ground_truth");
+  need(view.control.seen(), "control_status");
+  need(view.reference.seen(), "reference");
+  need(view.control.message.has_pose(), "a mocap_pose that control has taken in");
   return list;
 }
 
@@ -218,13 +217,15 @@ void Flight::show(const View& view) {
   const auto window = mission_window(record_, client_.mission_id(), mission_.mission);
   const double time_s = window ? mission_duration_s(record_, client_.mission_id(), *window) : 0.0;
   const std::size_t item = std::min<std::size_t>(mission.item_index(), mission_.mission.items.size() - 1);
-  char text[192];
-  std::snprintf(
-      text, sizeof text, "%5.1f s  %u/%zu %-8s  %-10s  at (%5.2f, %5.2f, %5.2f) m  off by %5.1f mm  %.2f V",
-      time_s, static_cast<unsigned>(item + 1), mission_.mission.items.size(),
-      to_string(mission_.mission.items[item].kind), mode_name(view.control.message.mode()), position[0],
-      position[1], position[2], newest_error_m(record_) * 1e3, view.battery.message.voltage_v());
-  progress_.update(static_cast<int>(item), text);
+  char text[160];
+  std::snprintf(text, sizeof text, "%5.1f s  %zu/%zu %-8s  (%5.2f, %5.2f, %5.2f) m, %5.1f mm off, %.2f V",
+                time_s, item + 1, mission_.mission.items.size(), to_string(mission_.mission.items[item].kind),
+                position[0], position[1], position[2], newest_error_m(record_) * 1e3,
+                view.battery.message.voltage_v());
+  std::string line = text;
+  if (mode_of(view) != ControlMode::kMission)
+    line += std::string(", ") + mode_name(view.control.message.mode());
+  progress_.update(static_cast<int>(item), line);
 }
 
 std::optional<Window> mission_window(const FlightRecord& record, std::uint64_t mission_id,

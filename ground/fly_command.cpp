@@ -137,11 +137,12 @@ int fly(const FlyOptions& options) {
 
   ProgressLine progress;
   progress.say("flying " + plan.mission.name + (plan.attach ? "" : " with " + plan.vehicle_name) + ": " +
-               network.vehicle + " in domain " + std::to_string(network.domain) + ", record in " +
-               plan.folder.string());
+               network.vehicle + " in domain " + std::to_string(network.domain) +
+               (network.localhost_only ? " (--localhost-only)" : "") + ", record in " + plan.folder.string());
   FlightRecord record(record_capacity(plan));
   const Flown flown = fly_mission(plan, network, record, progress);
   keep_record(plan, record, flown, progress);
+  progress.close();
 
   if (options.json) {
     std::printf("%s\n", to_json(flown.report).dump().c_str());

@@ -35,9 +35,9 @@ void show(const View& view, const MissionFile& mission, ProgressLine& progress) 
   const auto& status = view.mission.message;
   const auto& position = view.estimate.message.position_ned();
   char text[160];
-  std::snprintf(text, sizeof text, "%u/%zu  %-10s  at (%5.2f, %5.2f, %5.2f) m  %.2f V",
-                status.item_index() + 1, mission.mission.items.size(), mode_name(view.control.message.mode()),
-                position[0], position[1], position[2], view.battery.message.voltage_v());
+  std::snprintf(text, sizeof text, "%u/%zu  %s  (%5.2f, %5.2f, %5.2f) m, %.2f V", status.item_index() + 1,
+                mission.mission.items.size(), mode_name(view.control.message.mode()), position[0],
+                position[1], position[2], view.battery.message.voltage_v());
   progress.update(static_cast<int>(status.item_index()), text);
 }
 

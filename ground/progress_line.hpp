@@ -10,14 +10,16 @@ namespace swiftlet::ground {
 class ProgressLine {
  public:
   ProgressLine();
-  ~ProgressLine();  // leaves the terminal on a fresh line
+  ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  // What stands now. stage: a change of it is worth a line of its own where lines cannot be rewritten.
+  // What stands now, cut to the terminal's width. stage: a change of it is worth a line of its own where lines cannot be rewritten.
   void update(int stage, const std::string& text);
   // A line that stays.
   void say(const std::string& text);
+  // No more progress for now: what others print begins on a fresh line.
+  void close();
 
  private:
   bool terminal_;

@@ -9,6 +9,8 @@
 namespace swiftlet::ground {
 namespace {
 
+constexpr std::chrono::milliseconds kRestTimeout{1000};
+
 struct Options : RequestOptions {
   double watch_s = 1.0;
 };
@@ -155,9 +157,13 @@ void print(const View& view, const Rates& rates, const RequestOptions& options) 
 int show_status(const Options& options) {
   Client client(options.network);
   if (!client.wait(milliseconds(options.timeout_s), [](const View& view) { return view.control.seen(); })) {
-    std::fprintf(stderr, "swiftlet: status: no control service for %s\n", client.where().c_str());
+    std::fprintf(stderr, "swiftlet: status: %s\n", client.no_control().c_str());
     return kFailed;
   }
+  // What is there comes within moments; what does not is shown as missing.
+  client.wait(kRestTimeout, [](const View& view) {
+    return view.vehicle.seen() && view.battery.seen() && view.estimate.seen() && view.mission.seen();
+  });
   const View before = client.view();
   client.wait(milliseconds(options.watch_s), [](const View&) { return false; });
   const View after = client.view();

@@ -173,6 +173,16 @@ TEST_F(Online, SaysWhereItLookedWhenNothingIsThere) {
   }
 }
 
+TEST_F(OnlineFlight, SaysWhenItStandsOnTheWrongNetwork) {
+  const Ending end = run_program(
+      "swiftlet",
+      {"status", "--timeout", "2", "--domain", std::to_string(claim_.domain()), "--vehicle-name", "kl7"},
+      folder_.path());
+  if (end.exit_code == 0) GTEST_SKIP() << "here all interfaces reach the loopback interface";
+  EXPECT_EQ(end.exit_code, 1);
+  EXPECT_NE(end.errors.find("control, mocap, plant (try --localhost-only)"), std::string::npos) << end.errors;
+}
+
 TEST_F(Online, SaysWhatItSawWhenOnlyControlIsMissing) {
   Program plant("swiftlet-plant", network(), folder_.path());
   ASSERT_TRUE(eventually(20s, [&] {
