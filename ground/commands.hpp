@@ -21,5 +21,6 @@ Command add_status_command(CLI::App& root);
 
 // What will be flown, without flying.
 Command add_gains_command(CLI::App& root);
+Command add_sim_command(CLI::App& root);
 
 }  // namespace swiftlet::ground
