@@ -9,7 +9,6 @@
 
 #include "ground/client.hpp"
 #include "ground/commands.hpp"
-#include "ground/domain_claim.hpp"
 #include "ground/fleet.hpp"
 #include "ground/flight.hpp"
 #include "ground/flight_files.hpp"
@@ -17,6 +16,7 @@
 #include "ground/flight_report.hpp"
 #include "ground/interrupts.hpp"
 #include "ground/network_options.hpp"
+#include "services/comms/domain_claim.hpp"
 #include "services/comms/shared_memory.hpp"
 
 namespace swiftlet::ground {
@@ -130,7 +130,7 @@ int fly(const FlyOptions& options) {
   const FlightPlan plan = plan_flight(options);
   make_folder(plan.folder);
 
-  std::optional<DomainClaim> claim;
+  std::optional<comms::DomainClaim> claim;
   if (options.domain < 0 && !options.attach) claim.emplace();
   comms::NodeSettings network = options.network;
   network.domain = claim ? claim->domain() : std::max(options.domain, 0);

@@ -14,11 +14,11 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "services/comms/domain_claim.hpp"
 #include "services/comms/node.hpp"
 #include "services/runtime/latency_histogram.hpp"
 #include "services/runtime/periodic_timer.hpp"
 #include "services/runtime/process.hpp"
-#include "tests/support/domain_claim.hpp"
 
 namespace swiftlet {
 namespace {
@@ -201,7 +201,7 @@ Result measure(const Options& options, int domain, const char* name, comms::Tran
 
 void run(const Options& options) {
   if (options.echo_domain >= 0) return echo(options);
-  const tests::DomainClaim claim;
+  const comms::DomainClaim claim;
   nlohmann::json rows = nlohmann::json::array();
   if (!options.json) {
     std::printf("IMU out to command back, us\n%-14s %6s %8s %8s %8s %6s\n", "transport", "Hz", "p50", "p99",

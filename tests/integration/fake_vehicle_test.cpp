@@ -10,9 +10,10 @@
 
 #include "control/mode.hpp"
 #include "ground/client.hpp"
+#include "services/comms/domain_claim.hpp"
 #include "services/runtime/vehicle_file.hpp"
 #include "tests/integration/program.hpp"
-#include "tests/support/domain_claim.hpp"
+#include "tests/support/eventually.hpp"
 
 namespace swiftlet::tests {
 namespace {
@@ -77,7 +78,7 @@ class FakeVehicleFlight : public testing::Test {
     return !commands.empty() && !running(commands.back());
   }
 
-  DomainClaim claim_;
+  comms::DomainClaim claim_;
   TemporaryFolder folder_;
   Program control_;
   ground::Client client_;
@@ -93,10 +94,13 @@ TEST_F(FakeVehicleFlight, WithoutAVehicleNothingIsArmed) {
 TEST_F(FakeVehicleFlight, EveryCommandAnswersASample) {
   start_vehicle();
   ASSERT_TRUE(ask(msg::Command_Constants::ARM).accepted());
-  ASSERT_TRUE(eventually(kTimeout, [&] {
-    const auto commands = vehicle_->commands();
-    return std::count_if(commands.begin(), commands.end(), running) > 250;
-  })) << control_.errors();
+  ASSERT_TRUE(eventually(
+      [&] {
+        const auto commands = vehicle_->commands();
+        return std::count_if(commands.begin(), commands.end(), running) > 250;
+      },
+      kTimeout))
+      << control_.errors();
 
   const auto commands = vehicle_->commands();
   ASSERT_FALSE(commands.empty());
@@ -132,7 +136,7 @@ TEST_F(FakeVehicleFlight, FliesAMission) {
   })) << control_.errors();
   EXPECT_NEAR(vehicle_->highest_m(), 0.8, 0.05);
   EXPECT_EQ(vehicle_->height_m(), 0.0);
-  EXPECT_TRUE(eventually(kTimeout, [&] { return rotors_are_off(); }));
+  EXPECT_TRUE(eventually([&] { return rotors_are_off(); }, kTimeout));
 }
 
 TEST_F(FakeVehicleFlight, ComesDownWithoutMocap) {
@@ -140,7 +144,7 @@ TEST_F(FakeVehicleFlight, ComesDownWithoutMocap) {
   vehicle_->seen_by_mocap = false;
   EXPECT_TRUE(wait_for(Mode::kDescent)) << control_.errors();
   EXPECT_GT(vehicle_->height_m(), 0.1) << "it fell";
-  EXPECT_TRUE(eventually(kTimeout, [&] { return rotors_are_off(); })) << control_.errors();
+  EXPECT_TRUE(eventually([&] { return rotors_are_off(); }, kTimeout)) << control_.errors();
   EXPECT_LT(vehicle_->height_m(), 0.1) << "the rotors went off in the air";
 }
 

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/integration/program.hpp"
+#include "tests/support/eventually.hpp"
 
 namespace swiftlet::tests {
 namespace {
@@ -105,12 +106,15 @@ TEST_F(Fly, FliesOverSharedMemoryAndLeavesNothingThere) {
               folder_.path());
   const auto children = [&] { return children_of(fly.pid()); };
   std::vector<std::string> files;
-  EXPECT_TRUE(eventually(kStartTimeout, [&] {
-    for (const pid_t child : children()) {
-      for (const std::string& file : shared_memory_of(child)) files.push_back(file);
-    }
-    return fly.errors().find("2/3 waypoint") != std::string::npos;
-  })) << told(fly);
+  EXPECT_TRUE(eventually(
+      [&] {
+        for (const pid_t child : children()) {
+          for (const std::string& file : shared_memory_of(child)) files.push_back(file);
+        }
+        return fly.errors().find("2/3 waypoint") != std::string::npos;
+      },
+      kStartTimeout))
+      << told(fly);
   EXPECT_FALSE(files.empty()) << "no process used shared memory";
   ASSERT_EQ(fly.wait(90s), 0) << told(fly);
   for (const std::string& file : files) EXPECT_FALSE(fs::exists(file)) << file;
@@ -151,16 +155,16 @@ class FlyInterrupted : public Fly {
              folder_.path()) {}
 
   void SetUp() override {
-    ASSERT_TRUE(eventually(kStartTimeout, [&] {
-      return fly_.errors().find("2/3 waypoint") != std::string::npos;
-    })) << told(fly_);
+    ASSERT_TRUE(
+        eventually([&] { return fly_.errors().find("2/3 waypoint") != std::string::npos; }, kStartTimeout))
+        << told(fly_);
     children_ = children_of(fly_.pid());
     ASSERT_EQ(children_.size(), 3U);
   }
 
   void expect_end_without_leftovers() {
     for (const pid_t child : children_) {
-      EXPECT_TRUE(eventually(10s, [&] { return !is_running(child); })) << child << " still runs";
+      EXPECT_TRUE(eventually([&] { return !is_running(child); }, 10s)) << child << " still runs";
     }
   }
 
@@ -217,7 +221,7 @@ TEST_F(FlyInterrupted, LandsOnTheFirstInterrupt) {
 TEST_F(FlyInterrupted, EndsAtOnceOnTheSecond) {
   fly_.signal(SIGINT);
   ASSERT_TRUE(eventually(
-      10s, [&] { return fly_.errors().find("interrupt again to end at once") != std::string::npos; }));
+      [&] { return fly_.errors().find("interrupt again to end at once") != std::string::npos; }, 10s));
   const auto second = std::chrono::steady_clock::now();
   fly_.signal(SIGINT);
   ASSERT_EQ(fly_.wait(30s), 1) << told(fly_);

@@ -5,8 +5,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "services/comms/domain_claim.hpp"
 #include "tests/integration/program.hpp"
-#include "tests/support/domain_claim.hpp"
+#include "tests/support/eventually.hpp"
 
 namespace swiftlet::tests {
 namespace {
@@ -25,7 +26,7 @@ class Online : public testing::Test {
     return run_program("swiftlet", std::move(words), folder_.path(), timeout);
   }
 
-  DomainClaim claim_;
+  comms::DomainClaim claim_;
   TemporaryFolder folder_;
 };
 
@@ -48,7 +49,7 @@ class OnlineFlight : public Online {
   template <class Predicate>
   bool reaches(const char* what, const Predicate& predicate) const {
     json last;
-    const bool reached = eventually(30s, [&] { return predicate(last = status()); });
+    const bool reached = eventually([&] { return predicate(last = status()); }, 30s);
     EXPECT_TRUE(reached) << what << "\n" << last << "\n" << control_.errors();
     return reached;
   }
@@ -185,10 +186,12 @@ TEST_F(OnlineFlight, SaysWhenItStandsOnTheWrongNetwork) {
 
 TEST_F(Online, SaysWhatItSawWhenOnlyControlIsMissing) {
   Program plant("swiftlet-plant", network(), folder_.path());
-  ASSERT_TRUE(eventually(20s, [&] {
-    const Ending end = swiftlet({"arm", "--timeout", "1"});
-    return end.exit_code == 1 && end.errors.find("seen there: plant") != std::string::npos;
-  }));
+  ASSERT_TRUE(eventually(
+      [&] {
+        const Ending end = swiftlet({"arm", "--timeout", "1"});
+        return end.exit_code == 1 && end.errors.find("seen there: plant") != std::string::npos;
+      },
+      20s));
 }
 
 }  // namespace

@@ -13,18 +13,17 @@
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <system_error>
-#include <thread>
 #include <unistd.h>
 
 #include <gtest/gtest.h>
+
+#include "tests/support/eventually.hpp"
 
 namespace swiftlet::tests {
 namespace {
 
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
-
-constexpr auto kLookPeriod = 5ms;
 
 std::string text_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -46,15 +45,6 @@ ProcessStat stat_of(pid_t pid) {
 }
 
 }  // namespace
-
-bool eventually(std::chrono::milliseconds timeout, const std::function<bool()>& predicate) {
-  const auto deadline = std::chrono::steady_clock::now() + timeout;
-  while (!predicate()) {
-    if (std::chrono::steady_clock::now() >= deadline) return false;
-    std::this_thread::sleep_for(kLookPeriod);
-  }
-  return true;
-}
 
 TemporaryFolder::TemporaryFolder() {
   std::string pattern = (fs::temp_directory_path() / "swiftlet-test-XXXXXX").string();
@@ -121,7 +111,7 @@ std::optional<int> Program::exit_code() {
 }
 
 int Program::wait(std::chrono::milliseconds timeout) {
-  eventually(timeout, [this] { return exit_code().has_value(); });
+  eventually([this] { return exit_code().has_value(); }, timeout);
   return exit_code().value_or(-1);
 }
 

@@ -3,16 +3,12 @@
 
 #include <chrono>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <sys/types.h>
 #include <vector>
 
 namespace swiftlet::tests {
-
-// Looks at `predicate` until it holds; false if it does not within the time-out.
-bool eventually(std::chrono::milliseconds timeout, const std::function<bool()>& predicate);
 
 // A folder that is removed with its contents, unless the test has failed: its logs then tell why.
 class TemporaryFolder {

@@ -15,16 +15,16 @@
 
 #include <gtest/gtest.h>
 
+#include "services/comms/domain_claim.hpp"
 #include "services/comms/node.hpp"
 #include "services/comms/shared_memory.hpp"
-#include "tests/support/domain_claim.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/unit/comms/messages.hpp"
 
 namespace swiftlet::comms::tests {
 namespace {
 
-using swiftlet::tests::DomainClaim;
+using swiftlet::comms::DomainClaim;
 using swiftlet::tests::eventually;
 using swiftlet::tests::Inbox;
 using namespace std::chrono_literals;
