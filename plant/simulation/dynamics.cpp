@@ -113,7 +113,7 @@ struct Dynamics::System {
     for (std::size_t i = 0; i < kN; ++i) {
       const double speed = y[kSpeeds + i];
       const double speed_squared = speed * speed;
-      const double v_a = std::sqrt(v_a_gain[i] * v_s_squared + v_a_offset);
+      const double v_a = std::sqrt(std::max(v_a_gain[i] * v_s_squared + v_a_offset, 0.0));
       double current = (v_a - d.motor_.torque_constant * speed) * d.motor_.inverse_resistance;
       if constexpr (kMotor == MotorForm::kInductive) {
         dy[kCurrents + i] = (current - y[kCurrents + i]) * d.inverse_electrical_time_;
