@@ -93,7 +93,7 @@ struct Dynamics::System {
                                          square(y[kQuaternion + 2]) + square(y[kQuaternion + 3]));
     to.q_ned_from_frd = Eigen::Quaterniond(y[kQuaternion] * scale, y[kQuaternion + 1] * scale,
                                            y[kQuaternion + 2] * scale, y[kQuaternion + 3] * scale);
-    to.state_of_charge = y[kCharge];
+    to.state_of_charge = std::max(y[kCharge], 0.0);
     to.sag_v = y[kSag];
     for (std::size_t i = 0; i < kN; ++i) to.rotor_speeds[i] = y[kSpeeds + i];
     if constexpr (kMotor == MotorForm::kInductive) {
@@ -222,6 +222,7 @@ Dynamics::Dynamics(const Vehicle& vehicle, const Supply& supply, double max_step
   }
   if (ideal_supply_) {
     battery_.internal_resistance_ohm = 0.0;
+    charge_per_current_ = 0.0;
   } else {
     max_step_s_ = std::min(max_step_s_, kStepPerTimeConstant * battery_.sag_time_constant_s);
   }

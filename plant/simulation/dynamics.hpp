@@ -106,7 +106,7 @@ class Dynamics {
   bool ideal_supply_;
   double ideal_voltage_;
   BatteryParameters battery_;  // of an ideal supply: one without resistance
-  double charge_per_current_;  // 1/(A s)
+  double charge_per_current_;  // 1/(A s); 0 for an ideal supply
   double inverse_sag_time_;
 };
 
