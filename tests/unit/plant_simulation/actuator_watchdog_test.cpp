@@ -1,0 +1,114 @@
+#include "plant/simulation/actuator_watchdog.hpp"
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace swiftlet::tests {
+namespace {
+
+using plant::ActuatorCommand;
+using plant::ActuatorWatchdog;
+using plant::CommandFault;
+using plant::RotorState;
+
+constexpr std::int64_t kTimeout = 200;
+
+ActuatorCommand command(std::int64_t stamp_ns, double throttle = 0.5) {
+  ActuatorCommand command;
+  command.stamp_ns = stamp_ns;
+  command.rotor_state = RotorState::kRunning;
+  command.rotor_count = 4;
+  for (std::size_t i = 0; i < 4; ++i) command.throttle[i] = throttle;
+  return command;
+}
+
+TEST(ActuatorWatchdog, KeepsRotorsOffUntilTheFirstCommand) {
+  const ActuatorWatchdog watchdog(4, kTimeout);
+  EXPECT_EQ(watchdog.drive(0).state, RotorState::kOff);
+  EXPECT_EQ(watchdog.drive(1'000'000).state, RotorState::kOff);
+  EXPECT_FALSE(watchdog.expired(1'000'000));  // nothing has ceased
+}
+
+TEST(ActuatorWatchdog, PassesGoodCommandsOn) {
+  ActuatorWatchdog watchdog(4, kTimeout);
+  ActuatorCommand good = command(1000);
+  good.throttle = {0.0, 1.0, 0.25, 0.75, 0.9, 0.9, 0.9, 0.9};
+  EXPECT_EQ(watchdog.accept(good, 1000), CommandFault::kNone);
+  EXPECT_EQ(watchdog.drive(1000).state, RotorState::kRunning);
+  EXPECT_EQ(watchdog.drive(1000).throttle, (plant::PerRotor{0.0, 1.0, 0.25, 0.75, 0.0, 0.0, 0.0, 0.0}));
+  good.rotor_state = RotorState::kOff;
+  EXPECT_EQ(watchdog.accept(good, 1001), CommandFault::kNone);  // answers the same sample again
+  EXPECT_EQ(watchdog.drive(1001).state, RotorState::kOff);
+}
+
+TEST(ActuatorWatchdog, StopsRotorsWhenCommandsCease) {
+  ActuatorWatchdog watchdog(4, kTimeout);
+  watchdog.accept(command(1000), 1100);
+  EXPECT_FALSE(watchdog.expired(1200));
+  EXPECT_EQ(watchdog.drive(1200).state, RotorState::kRunning);
+  EXPECT_TRUE(watchdog.expired(1201));  // counted from the sample, not from the command's arrival
+  EXPECT_EQ(watchdog.drive(1201).state, RotorState::kOff);
+  EXPECT_EQ(watchdog.drive(1201).throttle, plant::PerRotor{});
+  EXPECT_EQ(watchdog.accept(command(1300), 1300), CommandFault::kNone);
+  EXPECT_EQ(watchdog.drive(1300).state, RotorState::kRunning);
+}
+
+struct Broken {
+  const char* name;
+  CommandFault fault;
+  ActuatorCommand command;
+  std::string sentence;
+};
+
+std::vector<Broken> broken_commands() {
+  std::vector<Broken> all;
+  const auto add = [&](const char* name, CommandFault fault, const ActuatorCommand& c, const char* sentence) {
+    all.push_back({name, fault, c, sentence});
+  };
+  ActuatorCommand c = command(1000, 0.9);
+  c.rotor_count = 6;
+  add("too many rotors", CommandFault::kRotorCount, c, "rotor count is not the vehicle's");
+  c.rotor_count = 0;
+  add("no rotors", CommandFault::kRotorCount, c, "rotor count is not the vehicle's");
+  c = command(1000, 0.9);
+  c.rotor_state = static_cast<RotorState>(2);
+  add("unknown state", CommandFault::kRotorState, c, "rotor state is neither off nor running");
+  for (const double throttle : {std::numeric_limits<double>::quiet_NaN(), -1.0e-9, 1.0 + 1.0e-9,
+                                std::numeric_limits<double>::infinity()}) {
+    c = command(1000, 0.9);
+    c.throttle[3] = throttle;
+    add("bad throttle", CommandFault::kThrottle, c, "throttle is not a number within 0 .. 1");
+    c.rotor_state = RotorState::kOff;
+    add("bad throttle of rotors that are off", CommandFault::kThrottle, c,
+        "throttle is not a number within 0 .. 1");
+  }
+  add("older than the last", CommandFault::kStale, command(899, 0.9), "answers an old IMU sample");
+  add("from the future", CommandFault::kFuture, command(1051, 0.9),
+      "answers an IMU sample that has not been taken");
+  return all;
+}
+
+TEST(ActuatorWatchdog, RefusesBrokenCommandsWithoutEffect) {
+  for (const Broken& broken : broken_commands()) {
+    SCOPED_TRACE(broken.name);
+    ActuatorWatchdog watchdog(4, kTimeout);
+    ASSERT_EQ(watchdog.accept(command(900), 900), CommandFault::kNone);
+    EXPECT_EQ(watchdog.accept(broken.command, 1050), broken.fault);
+    EXPECT_EQ(plant::to_string(broken.fault), broken.sentence);
+    EXPECT_EQ(watchdog.drive(1100).throttle[0], 0.5);
+    EXPECT_EQ(watchdog.drive(1101).state, RotorState::kOff) << "it counted as a command";
+  }
+}
+
+TEST(ActuatorWatchdog, RefusesCommandsBeyondTheTimeout) {
+  ActuatorWatchdog watchdog(4, kTimeout);
+  EXPECT_EQ(watchdog.accept(command(999), 1200), CommandFault::kStale);
+  EXPECT_EQ(watchdog.drive(1200).state, RotorState::kOff);
+  EXPECT_EQ(watchdog.accept(command(1000), 1200), CommandFault::kNone);
+}
+
+}  // namespace
+}  // namespace swiftlet::tests

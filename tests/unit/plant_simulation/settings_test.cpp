@@ -1,0 +1,112 @@
+#include "plant/simulation/settings.hpp"
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace swiftlet::tests {
+namespace {
+
+using plant::SimulationSettings;
+
+TEST(SimulationSettings, DefaultsBreakNoRule) { EXPECT_TRUE(plant::validate(SimulationSettings()).empty()); }
+
+struct Rule {
+  const char* key;
+  std::function<void(SimulationSettings&, double)> set;
+  double min;
+  double max;
+};
+
+const std::vector<Rule>& rules() {
+  using S = SimulationSettings;
+  static const std::vector<Rule> all = {
+      {"command_timeout_s", [](S& s, double v) { s.command_timeout_s = v; }, 0.01, 10.0},
+      {"rotor_speed_rate_hz", [](S& s, double v) { s.rotor_speed_rate_hz = v; }, 0.0, 2000.0},
+      {"imu.rate_hz", [](S& s, double v) { s.imu.rate_hz = v; }, 50.0, 8000.0},
+      {"imu.accelerometer_noise_m_s2_per_sqrt_hz",
+       [](S& s, double v) { s.imu.accelerometer_noise_density = v; }, 0.0, 1.0},
+      {"imu.gyro_noise_rad_s_per_sqrt_hz", [](S& s, double v) { s.imu.gyro_noise_density = v; }, 0.0, 1.0},
+      {"imu.accelerometer_bias_m_s2", [](S& s, double v) { s.imu.accelerometer_bias_sigma = v; }, 0.0, 10.0},
+      {"imu.gyro_bias_rad_s", [](S& s, double v) { s.imu.gyro_bias_sigma = v; }, 0.0, 1.0},
+      {"imu.accelerometer_bias_walk_m_s2_per_sqrt_s",
+       [](S& s, double v) { s.imu.accelerometer_bias_walk = v; }, 0.0, 1.0},
+      {"imu.gyro_bias_walk_rad_s_per_sqrt_s", [](S& s, double v) { s.imu.gyro_bias_walk = v; }, 0.0, 1.0},
+      {"imu.accelerometer_range_m_s2", [](S& s, double v) { s.imu.accelerometer_range = v; }, 20.0, 1.0e6},
+      {"imu.gyro_range_rad_s", [](S& s, double v) { s.imu.gyro_range = v; }, 1.0, 1.0e6},
+      {"mocap.rate_hz", [](S& s, double v) { s.mocap.rate_hz = v; }, 1.0, 1000.0},
+      {"mocap.latency_s", [](S& s, double v) { s.mocap.latency_s = v; }, 0.0, 1.0},
+      {"mocap.position_error_m", [](S& s, double v) { s.mocap.position_error_m = v; }, 0.0, 1.0},
+      {"mocap.orientation_error_rad", [](S& s, double v) { s.mocap.orientation_error_rad = v; }, 0.0, 0.5},
+      {"mocap.misalignment_rad", [](S& s, double v) { s.mocap.misalignment_rad = v; }, 0.0, 0.5},
+      {"mocap.dropout_probability", [](S& s, double v) { s.mocap.dropout_probability = v; }, 0.0, 1.0},
+      {"mocap.dropout_length_s", [](S& s, double v) { s.mocap.dropout_length_s = v; }, 0.0, 60.0},
+      {"supply.initial_state_of_charge", [](S& s, double v) { s.supply.initial_state_of_charge = v; }, 0.0,
+       1.0},
+      {"supply.rate_hz", [](S& s, double v) { s.supply.rate_hz = v; }, 1.0, 1000.0},
+      {"air.wind_ned_m_s[1]", [](S& s, double v) { s.air.wind_ned[1] = v; }, -30.0, 30.0},
+      {"air.gust_sigma_ned_m_s[2]", [](S& s, double v) { s.air.gust_sigma_ned[2] = v; }, 0.0, 10.0},
+      {"air.gust_time_constant_s", [](S& s, double v) { s.air.gust_time_constant_s = v; }, 0.01, 1000.0},
+      {"ground.leg_height_m", [](S& s, double v) { s.ground.leg_height_m = v; }, 0.0, 1.0},
+      {"ground.friction", [](S& s, double v) { s.ground.friction = v; }, 0.0, 10.0},
+  };
+  return all;
+}
+
+// What the settings are refused for, the whole-steps rule left aside.
+std::vector<std::string> out_of_range(const SimulationSettings& settings) {
+  std::vector<std::string> keys;
+  for (const plant::Violation& violation : plant::validate(settings)) {
+    if (violation.message.find("must be at least") != std::string::npos) keys.push_back(violation.key);
+  }
+  return keys;
+}
+
+TEST(SimulationSettings, EveryNumberHasItsRange) {
+  for (const Rule& rule : rules()) {
+    SCOPED_TRACE(rule.key);
+    SimulationSettings settings;
+    settings.step_ns = 125'000;  // divides the periods of both ends of every rate
+    for (const double good : {rule.min, rule.max}) {
+      rule.set(settings, good);
+      EXPECT_TRUE(plant::validate(settings).empty()) << good;
+    }
+    const double slack = 1.0e-6 * (1.0 + rule.max);
+    for (const double bad : {rule.min - slack, rule.max + slack, std::numeric_limits<double>::quiet_NaN(),
+                             std::numeric_limits<double>::infinity()}) {
+      rule.set(settings, bad);
+      EXPECT_EQ(out_of_range(settings), std::vector<std::string>{rule.key}) << bad;
+    }
+  }
+}
+
+TEST(SimulationSettings, StepHasItsRange) {
+  for (const std::int64_t step_ns : {0, -1'000'000, 9'000, 2'000'000}) {
+    SimulationSettings settings;
+    settings.step_ns = step_ns;
+    EXPECT_EQ(out_of_range(settings), std::vector<std::string>{"step_s"}) << step_ns;
+  }
+}
+
+TEST(SimulationSettings, SamplesFallOnStepsEnds) {
+  SimulationSettings settings;
+  settings.imu.rate_hz = 400.0;  // 2.5 ms
+  settings.rotor_speed_rate_hz = 300.0;
+  settings.supply.rate_hz = 7.0;
+  const std::vector<plant::Violation> violations = plant::validate(settings);
+  ASSERT_EQ(violations.size(), 3U);
+  EXPECT_EQ(violations[0].key, "rotor_speed_rate_hz");
+  EXPECT_EQ(violations[1].key, "imu.rate_hz");
+  EXPECT_EQ(violations[1].message, "is 400, must have a period that is a whole number of steps of 0.001 s");
+  EXPECT_EQ(violations[2].key, "supply.rate_hz");
+  settings = {};
+  settings.imu.rate_hz = 400.0;
+  settings.step_ns = 500'000;
+  EXPECT_TRUE(plant::validate(settings).empty());
+}
+
+}  // namespace
+}  // namespace swiftlet::tests
