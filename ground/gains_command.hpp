@@ -15,21 +15,21 @@ struct GainsOptions {
 };
 
 // The design as JSON, two spaces to a level, without a newline at its end:
-//   vehicle, control       names
-//   rotor_lag_s            tau_m of Eq. (18)
+//   vehicle, control: names
+//   rotor_lag_s: tau_m of Eq. (18)
 //   attitude.{roll,pitch,yaw}
-//     model                "double_integrator", Eq. (38)-(40), or "motor_lag"
-//     q, r, k              diagonal weights and gains on (angle, rate) or (angle, rate, moment / inertia)
-//     poles                [re, im] in rad/s, of the closed loop on that model
-//     poles_with_motor_lag the same gains with the rotor lag
-//     phase_margin_deg     cut at the rotor command, rotor lag included; null if the gain never crosses one
+//     model: "double_integrator", Eq. (38)-(40), or "motor_lag"
+//     q, r, k: diagonal weights and gains on (angle, rate) or (angle, rate, moment / inertia)
+//     poles: [re, im] in rad/s, of the closed loop on that model
+//     poles_with_motor_lag: the same gains with the rotor lag
+//     phase_margin_deg: cut at the rotor command, rotor lag included; null if the gain never crosses one
 //   position.{x,y,z}
 //     omega_n, zeta, epsilon, k_i
-//     f                    Eq. (49) for the state (x_r, u_r, a_r, x, u) of Eq. (45), without the integral
-//     integral_form        only with k_i > 0, the gains that are then flown in place of f:
-//                          a = a_r + k_v (u_r - u) + k_p (x_r - x) + k_s integral(x_r - x)
-//     poles                of the closed loop over inner loop and rotor lag (x over pitch, y over roll, yaw 0)
-//     phase_margin_deg     cut at the acceleration command, inner loop and rotor lag included
+//     f: Eq. (49) for the state (x_r, u_r, a_r, x, u) of Eq. (45), without the integral
+//     integral_form: only with k_i > 0, the gains that are then flown in place of f:
+//       a = a_r + k_v (u_r - u) + k_p (x_r - x) + k_s integral(x_r - x)
+//     poles: of the closed loop over inner loop and rotor lag (x over pitch, y over roll, yaw 0)
+//     phase_margin_deg: cut at the acceleration command, inner loop and rotor lag included
 // Margins and poles leave out the estimator and the sampling.
 std::string gains_json(const control::ControlDesign& design, const std::string& vehicle,
                        const std::string& control);
@@ -38,8 +38,8 @@ std::string gains_json(const control::ControlDesign& design, const std::string& 
 std::string gains_table(const control::ControlDesign& design, const std::string& vehicle,
                         const std::string& control);
 
-// Prints one of both; loops that would not be stable are named on stderr. Returns kDone. Throws runtime::ConfigError for a
-// file that is refused.
+// Prints one of both; loops that would not be stable are named on stderr. Returns kDone. Throws
+// runtime::ConfigError for a file that is refused.
 int run_gains(const GainsOptions& options);
 
 }  // namespace swiftlet::ground

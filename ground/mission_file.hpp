@@ -1,14 +1,13 @@
 // Mission files (YAML):
 //
-//   name: square                  # optional; the file's name without its ending
-//   description: One lap          # optional
-//   frame: ned                    # of the positions and yaws: ned (north, east, down) or enu (east, north,
-//   up) tolerance_m: 0.1              # peak 3-D tracking error with which the mission still counts as
-//   completed items:
-//     - {kind: takeoff, height_m: 1.0, speed_m_s: 0.5, hold_s: 2}           # straight up to this height
-//     above the origin
+//   name: square         # optional; the file's name without its ending
+//   description: One lap # optional
+//   frame: ned           # of the positions and yaws: ned (north, east, down) or enu (east, north, up)
+//   tolerance_m: 0.1     # peak 3-D tracking error with which the mission still counts as completed
+//   items:
+//     - {kind: takeoff, height_m: 1.0, speed_m_s: 0.5, hold_s: 2}  # straight up to this height above the origin
 //     - {kind: waypoint, position_m: [2, 0, -1], yaw_rad: 0, speed_m_s: 0.5, hold_s: 1}
-//     - {kind: land, speed_m_s: 0.3}                                         # straight down, rotors off
+//     - {kind: land, speed_m_s: 0.3}                               # straight down, rotors off
 //
 // yaw_rad and hold_s may be left out: the yaw is then kept, and the flight goes on at once. A takeoff stands
 // first, a land last.

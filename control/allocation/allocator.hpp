@@ -2,8 +2,6 @@
 // become one throttle for each rotor: wrench -> thrusts (27)(28) -> speeds (25) -> v_a (22) -> delta (9).
 #pragma once
 
-#include <array>
-
 #include <Eigen/Core>
 
 #include "plant/model/airframe.hpp"
@@ -35,8 +33,7 @@ class Allocator {
   // squares with more. Each rotor stays between its thrusts at throttle 0 (which is not zero thrust) and 1 at
   // this supply voltage. Where the wanted wrench does not fit, within the pseudo-inverse's solutions:
   //   1. roll and pitch moment are kept, whatever thrust and yaw that takes; if even that does not do, both
-  //   are scaled
-  //      by one factor, the largest that fits;
+  //      are scaled by one factor, the largest that fits;
   //   2. thrust then comes as near to the wanted one as it can, whatever yaw that takes;
   //   3. yaw moment then comes as near as it can.
   // Total: the result is finite and within limits for every input. A moment that is not finite counts as 0, a

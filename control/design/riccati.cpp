@@ -76,7 +76,8 @@ void check_stabilisable(const MatrixXd& a, const MatrixXd& b) {
   }
 }
 
-// Exchanges the eigenvalues k and k + 1 of the complex Schur form T, keeping U T U^H (Golub and Van Loan 7.6.2).
+// Exchanges the eigenvalues k and k + 1 of the complex Schur form T, keeping U T U^H
+// (Golub and Van Loan 7.6.2).
 void swap_eigenvalues(MatrixXcd& t, MatrixXcd& u, Eigen::Index k) {
   Eigen::JacobiRotation<std::complex<double>> rotation;
   rotation.makeGivens(t(k, k + 1), t(k + 1, k + 1) - t(k, k));
@@ -86,8 +87,8 @@ void swap_eigenvalues(MatrixXcd& t, MatrixXcd& u, Eigen::Index k) {
   t(k + 1, k) = 0.0;
 }
 
-// X from the stable invariant subspace of the Hamiltonian [A, -G; -Q, -A'], by its ordered Schur form (Laub 1979);
-// not finite if it has not n stable eigenvalues.
+// X from the stable invariant subspace of the Hamiltonian [A, -G; -Q, -A'], by its ordered Schur form
+// (Laub 1979); not finite if it has not n stable eigenvalues.
 MatrixXd solution_by_schur(const MatrixXd& a, const MatrixXd& g, const MatrixXd& q) {
   const Eigen::Index n = a.rows();
   // X = size * X', with which the off-diagonal blocks come to one size.

@@ -8,8 +8,8 @@ namespace swiftlet::control {
 // The stabilising solution X of A'X + XA - XBR^-1B'X + Q = 0: symmetric, positive semidefinite, A - BR^-1B'X
 // stable. A is n x n, B n x m, Q n x n symmetric positive semidefinite, R m x m symmetric positive definite.
 //
-// The first digits come from the ordered Schur form of the Hamiltonian (Laub 1979), the last from Newton's method on
-// the equation itself (Kleinman 1968). Meant for n up to about 12.
+// The first digits come from the ordered Schur form of the Hamiltonian (Laub 1979), the last from Newton's
+// method on the equation itself (Kleinman 1968). Meant for n up to about 12.
 //
 // Throws std::invalid_argument with a sentence if a shape or a definiteness is wrong, if a mode of A that is
 // not stable cannot be reached from B, or if Q leaves a mode on the imaginary axis unweighted, so that no

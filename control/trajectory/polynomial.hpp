@@ -15,8 +15,8 @@ constexpr int kPolynomialCoefficients = 8;  // up to t^7: minimum snap between f
 using Polynomial = std::array<double, kPolynomialCoefficients>;
 
 struct PolynomialSegment {
-  double duration_s = 0.0;             // > 0
-  Polynomial x{}, y{}, z{}, yaw{};     // m in NED, rad
+  double duration_s = 0.0;          // > 0
+  Polynomial x{}, y{}, z{}, yaw{};  // m in NED, rad
 };
 
 struct Trajectory {
@@ -29,15 +29,20 @@ constexpr int kMaxTrajectorySegments = 1024;
 // The reference at time t_s of the segment; t_s is clamped to 0 .. duration_s.
 Reference evaluate(const PolynomialSegment& segment, double t_s);
 
-// Rest to rest along a straight line, minimum jerk (Flash and Hogan 1985): 10 s^3 - 15 s^4 + 6 s^5. duration_s > 0.
-PolynomialSegment minimum_jerk(const Eigen::Vector3d& from_ned, double from_yaw, const Eigen::Vector3d& to_ned,
-                               double to_yaw, double duration_s);
+// Rest to rest along a straight line, minimum jerk (Flash and Hogan 1985): 10 s^3 - 15 s^4 + 6 s^5.
+// duration_s > 0.
+PolynomialSegment minimum_jerk(const Eigen::Vector3d& from_ned, double from_yaw,
+                               const Eigen::Vector3d& to_ned, double to_yaw, double duration_s);
 
-// The quintic that leaves `from` with its position, velocity and acceleration and is at rest at `to_ned`, `to_yaw` after duration_s > 0.
-PolynomialSegment join_to_rest(const Reference& from, const Eigen::Vector3d& to_ned, double to_yaw, double duration_s);
+// The quintic that leaves `from` with its position, velocity and acceleration and is at rest at `to_ned`,
+// `to_yaw` after duration_s > 0.
+PolynomialSegment join_to_rest(const Reference& from, const Eigen::Vector3d& to_ned, double to_yaw,
+                               double duration_s);
 
-// The shortest duration for which a minimum-jerk move over `distance` (>= 0) stays within peak speed and peak acceleration (both > 0).
-// 15/8 d/T is the peak speed, 10/sqrt(3) d/T^2 the peak acceleration. At least min_duration_s.
-double minimum_jerk_duration(double distance, double peak_speed, double peak_acceleration, double min_duration_s = 0.1);
+// The shortest duration for which a minimum-jerk move over `distance` (>= 0) stays within peak speed and peak
+// acceleration (both > 0). 15/8 d/T is the peak speed, 10/sqrt(3) d/T^2 the peak acceleration. At least
+// min_duration_s.
+double minimum_jerk_duration(double distance, double peak_speed, double peak_acceleration,
+                             double min_duration_s = 0.1);
 
 }  // namespace swiftlet::control

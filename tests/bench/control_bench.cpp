@@ -24,7 +24,8 @@ const ControlSettings& settings() {
   return loaded;
 }
 
-// Different wrenches in turn, so that no branch is learnt by heart. `size` scales moments and thrust's way from hover.
+// Different wrenches in turn, so that no branch is learnt by heart. `size` scales moments and thrust's way
+// from hover.
 std::vector<Wrench> wrenches(const plant::Vehicle& vehicle, double size) {
   std::mt19937 generator(1);
   std::uniform_real_distribution<double> draw(-size, size);

@@ -143,7 +143,8 @@ TEST_F(AttitudeControllerTest, StaysFiniteAndBoundedAtAnyAttitude) {
   const double most =
       (Vector3d(loops.gains.roll.k[0], loops.gains.pitch.k[0], loops.gains.yaw.k[0]) * kPi).norm() *
       loops.vehicle.inertia.norm();
-  for (double theta = -kPi; theta <= kPi; theta += kPi / 64.0) {  // passes +-90 degrees exactly
+  for (int step = -64; step <= 64; ++step) {
+    const double theta = step * kPi / 64.0;  // passes +-90 degrees exactly
     for (const double phi : {-2.0, 0.0, 0.7}) {
       const Quaterniond q = Quaterniond(Eigen::AngleAxisd(theta, Vector3d::UnitY())) *
                             Quaterniond(Eigen::AngleAxisd(phi, Vector3d::UnitX()));

@@ -76,8 +76,8 @@ TEST(MinimumJerk, FromRestToRestOnAStraightLine) {
   expect_rest(evaluate(s, 3.0), to, -0.9);
   const Vector3d direction = (to - from).normalized();
   double before = -1.0;
-  for (double t = 0.0; t <= 3.0; t += 0.05) {
-    const Vector3d way = evaluate(s, t).position_ned - from;
+  for (int i = 0; i <= 60; ++i) {
+    const Vector3d way = evaluate(s, 0.05 * i).position_ned - from;
     EXPECT_LT((way - way.dot(direction) * direction).norm(), 1e-12);
     EXPECT_GT(way.dot(direction), before);
     before = way.dot(direction);
