@@ -43,14 +43,13 @@
 #include "services/comms/shared_memory.hpp"
 
 // Each message type that is a topic's.
-#define SWIFTLET_FOR_EACH_MESSAGE(X)                                                                     \
-  X(ActuatorCommand)                                                                                     \
-  X(Battery)                                                                                             \
-  X(Command)                                                                                             \
-  X(CommandAck)                                                                                          \
-  X(ControlStatus)                                                                                       \
-  X(Estimate) X(GroundTruth) X(Imu) X(Mission) X(MissionStatus) X(MocapPose) X(Reference) X(RotorSpeeds) \
-      X(Setpoint) X(Trajectory) X(VehicleInfo)
+// clang-format off
+#define SWIFTLET_FOR_EACH_MESSAGE(X)                                      \
+  X(ActuatorCommand) X(Battery) X(Command) X(CommandAck) X(ControlStatus) \
+  X(Estimate) X(GroundTruth) X(Imu) X(Mission) X(MissionStatus)           \
+  X(MocapPose) X(Reference) X(RotorSpeeds) X(Setpoint) X(Trajectory)      \
+  X(VehicleInfo)
+// clang-format on
 
 namespace swiftlet::comms {
 namespace {
