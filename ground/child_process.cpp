@@ -81,6 +81,7 @@ ChildProcess::ChildProcess(ProcessSettings settings) : settings_(std::move(setti
   std::vector<std::string> words = {settings_.program.string()};
   words.insert(words.end(), settings_.arguments.begin(), settings_.arguments.end());
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
 

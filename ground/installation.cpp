@@ -10,7 +10,7 @@ namespace swiftlet::ground {
 namespace fs = std::filesystem;
 
 fs::path program_beside(const std::string& name) {
-  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / name;
+  fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / name;
   if (access(program.c_str(), X_OK) != 0) {
     throw std::runtime_error(name + " is not there: it should stand beside this program, in " +
                              program.parent_path().string());

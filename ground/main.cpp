@@ -17,7 +17,7 @@ int complain(const std::exception& error, int code) {
   return code;
 }
 
-int run(const CLI::App& app, const std::vector<ground::Command>& commands) {
+int run_chosen(const CLI::App& app, const std::vector<ground::Command>& commands) {
   for (const ground::Command& command : commands) {
     if (command.app->parsed()) return command.run();
   }
@@ -25,9 +25,7 @@ int run(const CLI::App& app, const std::vector<ground::Command>& commands) {
   return ground::kBadInput;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app("Swiftlet: fly micro quadrotors over DDS", "swiftlet");
   app.require_subcommand(0, 1);
   app.footer(
@@ -47,8 +45,14 @@ int main(int argc, char** argv) {
     app.exit(error);
     return ground::kBadInput;
   }
+  return run_chosen(app, commands);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
   try {
-    return run(app, commands);
+    return run(argc, argv);
   } catch (const ground::InputError& error) {
     return complain(error, ground::kBadInput);
   } catch (const runtime::ConfigError& error) {

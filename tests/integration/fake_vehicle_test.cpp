@@ -14,6 +14,7 @@
 #include "services/runtime/vehicle_file.hpp"
 #include "tests/integration/program.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::tests {
 namespace {

@@ -10,6 +10,7 @@
 
 #include "tests/integration/program.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::tests {
 namespace {

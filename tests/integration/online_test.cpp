@@ -8,6 +8,7 @@
 #include "services/comms/domain_claim.hpp"
 #include "tests/integration/program.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::tests {
 namespace {

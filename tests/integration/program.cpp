@@ -15,8 +15,6 @@
 #include <system_error>
 #include <unistd.h>
 
-#include <gtest/gtest.h>
-
 #include "tests/support/eventually.hpp"
 
 namespace swiftlet::tests {
@@ -46,22 +44,6 @@ ProcessStat stat_of(pid_t pid) {
 
 }  // namespace
 
-TemporaryFolder::TemporaryFolder() {
-  std::string pattern = (fs::temp_directory_path() / "swiftlet-test-XXXXXX").string();
-  if (mkdtemp(pattern.data()) == nullptr) throw std::system_error(errno, std::generic_category(), pattern);
-  path_ = pattern;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  if (!testing::Test::HasFailure()) fs::remove_all(path_, ignored);
-}
-
-std::string TemporaryFolder::write(const std::string& name, const std::string& text) const {
-  std::ofstream(path_ / name) << text;
-  return path_ / name;
-}
-
 Program::Program(const std::string& name, std::vector<std::string> arguments, const fs::path& folder) {
   static std::atomic<int> count{0};
   const std::string stem = name + "-" + std::to_string(++count);
@@ -69,12 +51,14 @@ Program::Program(const std::string& name, std::vector<std::string> arguments, co
   error_file_ = folder / (stem + ".err");
   arguments.insert(arguments.begin(), fs::path(SWIFTLET_BIN_DIR) / name);
   std::vector<char*> words;
+  words.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) words.push_back(argument.data());
   words.push_back(nullptr);
 
   const int output = open(output_file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
   const int errors = open(error_file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
   const int input = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  setenv("SWIFTLET_CONFIG_DIR", SWIFTLET_SOURCE_DIR "/config", 1);
   pid_ = fork();
   if (pid_ == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);

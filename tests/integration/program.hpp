@@ -10,22 +10,6 @@
 
 namespace swiftlet::tests {
 
-// A folder that is removed with its contents, unless the test has failed: its logs then tell why.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-  // Writes a file into it and returns its path.
-  std::string write(const std::string& name, const std::string& text) const;
-
- private:
-  std::filesystem::path path_;
-};
-
 class Program {
  public:
   // `name` is that of a program in the build's bin folder. Output goes to files in `folder`. Ends with the test.

@@ -3,7 +3,6 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <stdexcept>
@@ -13,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "ground/fleet.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -21,12 +21,6 @@ using namespace std::chrono_literals;
 
 class ChildProcessTest : public testing::Test {
  protected:
-  ChildProcessTest() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "swiftlet-child-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-  }
-  ~ChildProcessTest() override { std::filesystem::remove_all(folder_); }
-
   ProcessSettings shell(const std::string& script) const {
     return {"child", "/bin/sh", {"-c", script}, folder_ / "child.log"};
   }
@@ -39,7 +33,8 @@ class ChildProcessTest : public testing::Test {
     return child;
   }
 
-  std::filesystem::path folder_;
+  tests::TemporaryFolder temporary_;
+  const std::filesystem::path folder_ = temporary_.path();
 };
 
 TEST_F(ChildProcessTest, TellsTheExitStatusAndTheLastLine) {

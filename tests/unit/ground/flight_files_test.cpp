@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "ground/child_process.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -17,13 +18,8 @@ namespace fs = std::filesystem;
 
 class FlightFilesTest : public testing::Test {
  protected:
-  FlightFilesTest() {
-    std::string pattern = (fs::temp_directory_path() / "swiftlet-files-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-  }
-  ~FlightFilesTest() override { fs::remove_all(folder_); }
-
-  fs::path folder_;
+  tests::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 std::vector<std::string> cells(const std::string& line) {
@@ -101,7 +97,8 @@ TEST_F(FlightFilesTest, DrawsAPicture) {
 }
 
 TEST_F(FlightFilesTest, SaysWhyThereIsNoPicture) {
-  const std::string path = std::getenv("PATH");
+  const char* const before = std::getenv("PATH");
+  const std::string path = before != nullptr ? before : "";
   setenv("PATH", folder_.c_str(), 1);
   const std::string sentence = draw_flight(folder_, {}, {});
   setenv("PATH", path.c_str(), 1);
