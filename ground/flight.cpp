@@ -20,7 +20,7 @@ constexpr auto kArmTimeout = 5s;  // the estimator may need a moment for the fir
 constexpr auto kRetryPeriod = 200ms;
 constexpr auto kStep = 50ms;
 constexpr auto kLastFiguresTimeout = 1500ms;
-constexpr double kSilenceS = 3.0;  // without a control status
+constexpr double kSilenceS = 3.0;  // without control_status or ground_truth
 constexpr double kLandingTimeoutS = 30.0;
 constexpr double kLandingSpeed = 0.4;  // m/s
 constexpr int kBeforeFlight = -1;      // stage of the progress; later ones are the mission's items
@@ -161,6 +161,8 @@ void Flight::follow() {
       }
     }
     if (view.control.age_s(Clock::now()) > kSilenceS) throw FlightFailure("control has said nothing for 3 s");
+    if (view.truth.age_s(Clock::now()) > kSilenceS)
+      throw FlightFailure("the vehicle has said nothing for 3 s");
     if (since_s(start) > time_limit_s) {
       char reason[96];
       std::snprintf(reason, sizeof reason,

@@ -1,6 +1,7 @@
 // The online commands against processes that run already.
 #include <chrono>
 #include <cmath>
+#include <csignal>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -79,6 +80,19 @@ class OnlineFlight : public Online {
     ASSERT_TRUE(reaches_mode("holding"));
   }
 
+  std::vector<std::string> attach(const std::string& mission) const {
+    return {"fly",
+            mission,
+            "--attach",
+            "--domain",
+            std::to_string(claim_.domain()),
+            "--vehicle-name",
+            "kl7",
+            "--json",
+            "--record",
+            folder_.path() / "record"};
+  }
+
   Program plant_, mocap_, control_;
 };
 
@@ -146,6 +160,34 @@ TEST_F(OnlineFlight, TellsThatAMissionWasAborted) {
   EXPECT_NE(mission.errors().find("swiftlet: mission hover: aborted: requested"), std::string::npos)
       << mission.errors();
   ASSERT_TRUE(reaches_mode("disarmed"));
+}
+
+TEST_F(OnlineFlight, FlyAttachesToWhatRuns) {
+  const std::string file = folder_.write("hop.yaml",
+                                         "frame: ned\ntolerance_m: 0.1\nitems:\n"
+                                         "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.8}\n"
+                                         "  - {kind: land, speed_m_s: 0.8}\n");
+  const Ending end = run_program("swiftlet", attach(file), folder_.path(), 60s);
+  ASSERT_EQ(end.exit_code, 0) << end.errors;
+  const json report = json::parse(end.output);
+  EXPECT_EQ(report.at("completed"), true);
+  EXPECT_EQ(report.at("vehicle"), "kaylion");
+  EXPECT_LT(report.at("rms_3d_m"), 0.01);
+  EXPECT_FALSE(plant_.exit_code() || mocap_.exit_code() || control_.exit_code())
+      << "they were not its own to end";
+}
+
+TEST_F(OnlineFlight, FlyNamesAVehicleThatFellSilent) {
+  const std::string file = folder_.write("hover.yaml",
+                                         "frame: ned\ntolerance_m: 0.1\nitems:\n"
+                                         "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.8, hold_s: 100}\n"
+                                         "  - {kind: land, speed_m_s: 0.8}\n");
+  Program fly("swiftlet", attach(file), folder_.path());
+  ASSERT_TRUE(eventually([&] { return fly.errors().find("1/2 takeoff") != std::string::npos; }, 30s))
+      << fly.errors();
+  plant_.signal(SIGKILL);
+  ASSERT_EQ(fly.wait(30s), 1) << fly.errors();
+  EXPECT_EQ(json::parse(fly.output()).at("reason"), "the vehicle has said nothing for 3 s");
 }
 
 TEST_F(OnlineFlight, StatusNamesAllThatAPilotAsksFor) {
