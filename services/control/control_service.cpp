@@ -37,8 +37,18 @@ ControlService::ControlService(const plant::Vehicle& vehicle, const control::Con
 }
 
 void ControlService::subscribe(comms::Node& node) {
-  subscriptions_.push_back(
-      node.subscribe<msg::MocapPose>(topics::kMocapPose, deliver<msg::MocapPose>(loop_.pose, pose_faults_)));
+  // Poses hold the vehicle in place: like the IMU's, their thread does not wait behind the host's other work.
+  const auto take_pose = deliver<msg::MocapPose>(loop_.pose, pose_faults_);
+  subscriptions_.push_back(node.subscribe<msg::MocapPose>(
+      topics::kMocapPose,
+      [this, take_pose](const auto& message) {
+        if (!pose_thread_ready_) {
+          pose_thread_ready_ = true;
+          if (realtime_.enabled) runtime::make_this_thread_realtime(realtime_);
+        }
+        take_pose(message);
+      },
+      {}, Delivery::kOwnThread));
   subscriptions_.push_back(
       node.subscribe<msg::Battery>(topics::kBattery, deliver<msg::Battery>(loop_.battery, battery_faults_)));
   subscriptions_.push_back(node.subscribe<msg::RotorSpeeds>(

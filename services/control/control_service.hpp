@@ -15,7 +15,7 @@
 
 namespace swiftlet::services {
 
-// Threads: the IMU's own runs the inner loop and sends the command before it returns; missions and trajectories arrive in their own,
+// Threads: the IMU's own runs the inner loop and sends the command before it returns; poses, missions and trajectories arrive in their own,
 // all else in one that is shared; run() is telemetry's.
 class ControlService {
  public:
@@ -39,7 +39,8 @@ class ControlService {
   RequestDesk desk_;
   Telemetry telemetry_;
   comms::Publisher<comms::msg::ActuatorCommand> commands_;
-  bool imu_thread_ready_ = false;
+  bool imu_thread_ready_ = false;  // by the thread of that name alone
+  bool pose_thread_ready_ = false;
 
   comms::FaultLog pose_faults_{"mocap_pose"};
   comms::FaultLog battery_faults_{"battery"};
