@@ -48,6 +48,26 @@ double since_s(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+// No new sample for kSilenceS, of which only what this process was awake for counts: when the computer stalls, nobody is to
+// blame.
+class Silence {
+ public:
+  bool lasts(std::uint64_t sample_count) {
+    const auto now = Clock::now();
+    const double step_s = std::min(std::chrono::duration<double>(now - looked_).count(), kLongestStepS);
+    looked_ = now;
+    lasted_s_ = sample_count == count_ ? lasted_s_ + step_s : 0.0;
+    count_ = sample_count;
+    return lasted_s_ > kSilenceS;
+  }
+
+ private:
+  static constexpr double kLongestStepS = 0.2;
+  Clock::time_point looked_ = Clock::now();
+  std::uint64_t count_ = 0;
+  double lasted_s_ = 0.0;
+};
+
 // The newest tracking error of which truth and reference are both in; NaN if there is none among the last
 // rows.
 double newest_error_m(const FlightRecord& record) {
@@ -141,6 +161,8 @@ void Flight::follow() {
   const std::uint64_t id = client_.mission_id();
   const double time_limit_s = 1.5 * planned_duration_s_ + 30.0;
   const auto start = Clock::now();
+  Silence control_silence;
+  Silence vehicle_silence;
   while (true) {
     // Wakes for the end; looks around at every step besides.
     client_.wait(kStep, [id](const View& view) {
@@ -156,8 +178,7 @@ void Flight::follow() {
       const auto state = view.mission.message.state();
       if (state == msg::MissionStatus_Constants::COMPLETED && rotors_off(mode)) return;
       if (state == msg::MissionStatus_Constants::ABORTED) {
-        const std::string reason = view.control.message.reason().c_str();
-        bring_down("the mission was aborted: " + std::string(control::to_string(mode)) + ", " + reason);
+        bring_down(std::string("the mission was aborted: ") + view.mission.message.reason().c_str());
       }
     }
     if (view.control.age_s(Clock::now()) > kSilenceS) throw FlightFailure("control has said nothing for 3 s");
