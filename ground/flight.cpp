@@ -48,8 +48,8 @@ double since_s(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// No new sample for kSilenceS, of which only what this process was awake for counts: when the computer stalls, nobody is to
-// blame.
+// No new sample for kSilenceS, of which only what this process was awake for counts: when the computer
+// stalls, nobody is to blame.
 class Silence {
  public:
   bool lasts(std::uint64_t sample_count) {

@@ -9,9 +9,10 @@
 
 namespace swiftlet::ground {
 
-// One row for each ground truth with a reference of the same stamp, and estimate if there is one; t = 0 at the window's start. Where
-// references stay away, a row now and then with empty cells. Columns: t, mode, position, velocity, attitude, body rates, then ref_, est_, v_s
-// and rotor speeds, SI units. Throws std::runtime_error if the file cannot be written.
+// One row for each ground truth with a reference of the same stamp, and estimate if there is one; t = 0 at
+// the window's start. Where references stay away, a row now and then with empty cells. Columns: t, mode,
+// position, velocity, attitude, body rates, then ref_, est_, v_s and rotor speeds, SI units. Throws
+// std::runtime_error if the file cannot be written.
 void write_flight_csv(const std::filesystem::path& file, const FlightRecord& record, Window window);
 
 void write_report_json(const std::filesystem::path& file, const FlightReport& report);

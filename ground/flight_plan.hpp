@@ -15,7 +15,7 @@
 namespace swiftlet::ground {
 
 struct FlyOptions {
-  std::string mission;
+  std::string mission = "square";
   std::string vehicle = "kaylion";
   std::string control = "motor_lag";
   std::string simulation = "default";

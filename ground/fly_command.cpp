@@ -161,7 +161,7 @@ Command add_fly_command(CLI::App& root) {
   CLI::App* const app = root.add_subcommand(
       "fly", "Start plant, mocap and control on this computer, fly a mission, and report");
   app->add_option("mission", options->mission, "mission file, or the name of one in the configuration")
-      ->required();
+      ->capture_default_str();
   app->add_option("--vehicle", options->vehicle, "vehicle file or name")->capture_default_str();
   app->add_option("--control", options->control,
                   "control settings, file or name: motor_lag, or paper for the paper's own loops")
@@ -181,6 +181,7 @@ Command add_fly_command(CLI::App& root) {
   app->remove_option(app->get_option("--localhost-only"));  // it stays there
   app->remove_option(app->get_option("--domain"));          // whose default is not that of a flight
   app->add_option("--domain", options->domain, "DDS domain; a free one unless given")
+      ->envname("ROS_DOMAIN_ID")
       ->check(CLI::Range(0, 232));
   CLI::Option* const attach = app->add_flag(
       "--attach", options->attach,

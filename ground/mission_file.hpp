@@ -5,7 +5,7 @@
 //   frame: ned           # of the positions and yaws: ned (north, east, down) or enu (east, north, up)
 //   tolerance_m: 0.1     # peak 3-D tracking error with which the mission still counts as completed
 //   items:
-//     - {kind: takeoff, height_m: 1.0, speed_m_s: 0.5, hold_s: 2}  # straight up to this height above the origin
+//     - {kind: takeoff, height_m: 1.0, speed_m_s: 0.5, hold_s: 2}  # straight up, to this height
 //     - {kind: waypoint, position_m: [2, 0, -1], yaw_rad: 0, speed_m_s: 0.5, hold_s: 1}
 //     - {kind: land, speed_m_s: 0.3}                               # straight down, rotors off
 //

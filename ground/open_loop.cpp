@@ -13,7 +13,12 @@ namespace swiftlet::ground {
 namespace {
 
 constexpr std::int64_t kRowPeriodNs = 1'000'000;
-constexpr double kMaxStepS = 1e-4;  // keeps a tumble of 50 rad/s within 1e-8 a second
+constexpr double kMaxStepS = 2e-5;
+// Turn of the body in one step; its attitude is then off by 1e-8 after a second.
+constexpr double kMaxTurnRad = 0.01;
+constexpr double kFastestTurn = 1e4;   // rad/s
+constexpr double kLargest = 1e6;       // of positions, velocities and rotor speeds to start with, SI
+constexpr double kFastestStart = 2e3;  // of body rates to start with, rad/s
 constexpr double kUnitTolerance = 1e-3;
 constexpr double kLatestTimeS = 1e6;    // nanoseconds stay exact
 constexpr double kLongestRunS = 600.0;  // the motion is kept in memory
@@ -23,6 +28,23 @@ std::int64_t nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
 bool finite(const plant::VehicleState& state) {
   return state.position_ned.allFinite() && state.velocity_ned.allFinite() &&
          state.body_rates_frd.allFinite() && state.q_ned_from_frd.coeffs().allFinite();
+}
+
+double seconds(std::int64_t nanoseconds) { return static_cast<double>(nanoseconds) / 1e9; }
+
+// In steps that suit the body's rates; throws if it turns too fast.
+void advance(const plant::Dynamics& dynamics, MotionRow& now, const plant::RotorDrive& drive,
+             std::int64_t until_ns) {
+  const double dt = static_cast<double>(until_ns - now.time_ns) * 1e-9;
+  const double rate = now.state.body_rates_frd.norm();
+  if (!(rate < kFastestTurn) || !finite(now.state)) {
+    throw std::runtime_error("the vehicle turns at " + runtime::exact(rate) +
+                             " rad/s at t = " + runtime::exact(seconds(now.time_ns)) +
+                             " s, the simulation holds up to " + runtime::exact(kFastestTurn) + " rad/s");
+  }
+  const int count = static_cast<int>(std::ceil(dt * std::max(1.0 / kMaxStepS, rate / kMaxTurnRad)));
+  for (int i = 0; i < count; ++i) dynamics.advance(now.state, drive, Eigen::Vector3d::Zero(), dt / count);
+  now.time_ns = until_ns;
 }
 
 std::vector<double> values(const plant::VehicleState& state, int rotor_count) {
@@ -78,7 +100,9 @@ std::vector<PulseWidths> read_pulses(const runtime::CsvTable& table, const plant
 
 plant::VehicleState read_state(const runtime::CsvTable& table, int rotor_count) {
   if (table.row_count() != 1) table.fail(1, "", "is a second row, there must be only one");
-  const auto value = [&](std::size_t column) { return table.number(0, column); };
+  const auto value = [&](std::size_t column) {
+    return table.number(0, column, runtime::between(-kLargest, kLargest));
+  };
   plant::VehicleState state;
   state.position_ned = {value(0), value(1), value(2)};
   state.velocity_ned = {value(3), value(4), value(5)};
@@ -89,10 +113,13 @@ plant::VehicleState read_state(const runtime::CsvTable& table, int rotor_count) 
                "has length " + runtime::exact(norm) + ", must be 1 within " + runtime::exact(kUnitTolerance));
   }
   state.q_ned_from_frd.normalize();
-  state.body_rates_frd = {value(10), value(11), value(12)};
+  const auto rate = [&](std::size_t column) {
+    return table.number(0, column, runtime::between(-kFastestStart, kFastestStart), "rad/s");
+  };
+  state.body_rates_frd = {rate(10), rate(11), rate(12)};
   for (int i = 0; i < rotor_count; ++i) {
     const auto n = static_cast<std::size_t>(i);
-    state.rotor_speeds[n] = table.number(0, 13 + n, runtime::at_least(0.0), "rad/s");
+    state.rotor_speeds[n] = table.number(0, 13 + n, runtime::between(0.0, kLargest), "rad/s");
   }
   return state;
 }
@@ -102,8 +129,7 @@ std::vector<MotionRow> simulate_open_loop(const plant::Vehicle& vehicle, double 
                                           const std::vector<PulseWidths>& pulses) {
   plant::Vehicle without_drag = vehicle;
   without_drag.linear_drag = 0.0;
-  const plant::Dynamics dynamics(without_drag, plant::Supply::constant(supply_voltage_v), kMaxStepS);
-  const Eigen::Vector3d still_air = Eigen::Vector3d::Zero();
+  const plant::Dynamics dynamics(without_drag, plant::Supply::constant(supply_voltage_v));
 
   MotionRow now{pulses.front().time_ns, initial};
   plant::RotorDrive drive{plant::RotorState::kRunning, pulses.front().throttle};
@@ -113,13 +139,7 @@ std::vector<MotionRow> simulate_open_loop(const plant::Vehicle& vehicle, double 
   std::int64_t next_row_ns = now.time_ns + kRowPeriodNs;
   while (held + 1 < pulses.size()) {
     drive.throttle = pulses[held].throttle;
-    const std::int64_t until_ns = std::min(next_row_ns, pulses[held + 1].time_ns);
-    dynamics.advance(now.state, drive, still_air, static_cast<double>(until_ns - now.time_ns) * 1e-9);
-    now.time_ns = until_ns;
-    if (!finite(now.state)) {
-      throw std::runtime_error("the simulation ran out of numbers at t = " +
-                               runtime::exact(static_cast<double>(now.time_ns) * 1e-9) + " s");
-    }
+    advance(dynamics, now, drive, std::min(next_row_ns, pulses[held + 1].time_ns));
     if (now.time_ns == next_row_ns) {
       rows.push_back(now);
       next_row_ns += kRowPeriodNs;
@@ -130,24 +150,27 @@ std::vector<MotionRow> simulate_open_loop(const plant::Vehicle& vehicle, double 
 }
 
 void write_motion(const std::string& path, const std::vector<MotionRow>& rows, int rotor_count) {
-  const std::string unfinished = path + ".part";
+  namespace fs = std::filesystem;
+  std::error_code fault;
+  const bool is_device = fs::exists(path, fault) && !fs::is_regular_file(path, fault);  // a pipe, a terminal
+  const std::string unfinished = is_device ? path : path + ".part";
   std::ofstream out(unfinished);
   out << "t";
   for (const std::string& column : state_columns(rotor_count)) out << ',' << column;
   out << '\n';
   for (const MotionRow& row : rows) {
-    out << runtime::exact(static_cast<double>(row.time_ns) * 1e-9);
+    out << runtime::exact(seconds(row.time_ns));
     for (const double value : values(row.state, rotor_count)) out << ',' << runtime::exact(value);
     out << '\n';
   }
   out.close();
-  std::error_code fault;
-  if (out) std::filesystem::rename(unfinished, path, fault);
-  if (!out || fault) {
-    std::error_code ignored;
-    std::filesystem::remove(unfinished, ignored);
-    throw std::runtime_error(path + ": cannot be written");
-  }
+  const bool written = static_cast<bool>(out);
+  if (is_device && written) return;
+  fault.clear();
+  if (written) fs::rename(unfinished, path, fault);
+  if (written && !fault) return;
+  if (!is_device) fs::remove(unfinished, fault);
+  throw std::runtime_error(path + ": cannot be written");
 }
 
 }  // namespace swiftlet::ground

@@ -14,7 +14,8 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  // What stands now, cut to the terminal's width. stage: a change of it is worth a line of its own where lines cannot be rewritten.
+  // What stands now, cut to the terminal's width. stage: a change of it is worth a line of its own where
+  // lines cannot be rewritten.
   void update(int stage, const std::string& text);
   // A line that stays.
   void say(const std::string& text);

@@ -7,6 +7,7 @@
 
 #include "ground/commands.hpp"
 #include "ground/installation.hpp"
+#include "ground/numbers.hpp"
 #include "ground/open_loop.hpp"
 #include "services/runtime/csv.hpp"
 #include "services/runtime/vehicle_file.hpp"
@@ -61,6 +62,7 @@ Command add_sim_command(CLI::App& root) {
   open_loop->add_option("--pwm", options->pulses, "pulse widths, CSV")->required();
   open_loop->add_option("--supply", options->supply_voltage_v, "supply voltage v_s of Eq. (9), V")
       ->required()
+      ->check(finite_number())
       ->check(CLI::Range(0.1, 100.0));
   open_loop->add_option("--initial", options->initial,
                         "initial state, CSV; at rest at the origin, rotors still, unless given");

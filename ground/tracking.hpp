@@ -21,8 +21,8 @@ struct TrackingErrors {
 TrackingErrors tracking_errors(const Track<TruthRow>& truth, const Track<ReferenceRow>& reference,
                                Window window);
 
-// Enough samples to judge the flight by: half of those that rate_hz makes in the window, and never none for longer than
-// kLongestGapS, in which a slow loop could go astray and come back.
+// Enough samples to judge the flight by: half of those that rate_hz makes in the window, and never none for
+// longer than kLongestGapS, in which a slow loop could go astray and come back.
 constexpr double kTelemetryRateHz = 100.0;  // of references
 constexpr double kLeastMatchedFraction = 0.5;
 constexpr double kLongestGapS = 0.25;

@@ -1,5 +1,5 @@
-// What the rotors do at this moment: the motor model run on the commands that were sent, corrected by measured speeds where they come.
-// Its moment is the third state of the attitude design with motor lag.
+// What the rotors do at this moment: the motor model run on the commands that were sent, corrected by
+// measured speeds where they come. Its moment is the third state of the attitude design with motor lag.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,8 @@ class RotorObserver {
   // First order with Eq. (18)'s time constant, whichever motor model the vehicle file names.
   void step(double dt_s, const plant::ActuatorCommand& command, double supply_voltage_v);
 
-  // Draws the speeds towards measured ones. Ignored unless finite, not negative and for the vehicle's number of rotors.
+  // Draws the speeds towards measured ones. Ignored unless finite, not negative and for the vehicle's number
+  // of rotors.
   void correct(const plant::RotorSpeedSample& sample);
 
   const plant::PerRotor& speeds() const { return speeds_; }         // rad/s

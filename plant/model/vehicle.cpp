@@ -14,10 +14,11 @@ namespace swiftlet::plant {
 
 namespace {
 
-constexpr double kMinTimeConstant = 1e-3;   // s; below it nothing integrates in real time
-constexpr double kMinHubDistance = 1e-3;    // m
-constexpr double kMinSingularValue = 1e-3;  // of the effectiveness with rows of length 1
-constexpr double kSymmetry = 1e-9;          // relative
+constexpr double kMinTimeConstant = 1e-3;            // s; below it nothing integrates in real time
+constexpr double kMinElectricalTimeConstant = 1e-6;  // s, L_a / R_a; likewise
+constexpr double kMinHubDistance = 1e-3;             // m
+constexpr double kMinSingularValue = 1e-3;           // of the effectiveness with rows of length 1
+constexpr double kSymmetry = 1e-9;                   // relative
 
 std::string rotor_key(std::size_t index, const char* name) {
   return "rotors[" + std::to_string(index) + "]." + name;
@@ -88,6 +89,13 @@ bool check_motor(const Vehicle& vehicle, RuleChecker& check) {
     check.add("motor.armature_resistance", "is ", motor.armature_resistance_ohm,
               ", must be at most K2 K3 / k_Q = ", max_resistance,
               ": the friction of Eq. (21) is not negative");
+    return false;
+  }
+  const double min_inductance = kMinElectricalTimeConstant * motor.armature_resistance_ohm;
+  if (motor.armature_inductance_h > 0.0 && motor.armature_inductance_h < min_inductance) {
+    check.add(
+        "motor.armature_inductance", "is ", motor.armature_inductance_h,
+        ", must be 0, so that the current follows at once, or at least 1 us times R_a = ", min_inductance);
     return false;
   }
   return true;

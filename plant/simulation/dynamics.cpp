@@ -194,9 +194,9 @@ struct Dynamics::System {
   }
 };
 
-Dynamics::Dynamics(const Vehicle& vehicle, const Supply& supply, double max_step_s)
+Dynamics::Dynamics(const Vehicle& vehicle, const Supply& supply)
     : rotor_count_(vehicle.rotor_count()),
-      max_step_s_(std::min(max_step_s, kStepPerTimeConstant * vehicle.motor.time_constant_s)),
+      max_step_s_(kStepPerTimeConstant * vehicle.motor.time_constant_s),
       inverse_mass_(1.0 / vehicle.mass_kg),
       drag_over_mass_(vehicle.linear_drag * inverse_mass_),
       inertia_(vehicle.inertia),

@@ -12,7 +12,6 @@
 
 #include <array>
 #include <cstddef>
-#include <limits>
 
 #include <Eigen/Core>
 
@@ -36,10 +35,8 @@ enum class MotorForm { kReduced, kPhysical, kInductive };
 
 class Dynamics {
  public:
-  // The vehicle is one that validate() finds no fault with. max_step_s bounds the steps that are taken inside
-  // advance(), besides the bound that the vehicle's fastest time constant sets.
-  Dynamics(const Vehicle& vehicle, const Supply& supply,
-           double max_step_s = std::numeric_limits<double>::infinity());
+  // The vehicle is one that validate() finds no fault with.
+  Dynamics(const Vehicle& vehicle, const Supply& supply);
 
   // Brings the state forward by dt > 0 in as few equal Runge-Kutta steps as max_step_s() allows, with drive
   // and wind held.
@@ -47,8 +44,7 @@ class Dynamics {
                double dt) const;
 
   // A third of the smallest of the time constants tau_a = L_a / R_a (with inductance), tau_m and the
-  // battery's sag, or the max_step_s asked for: RK4 is stable up to 2.7 of them, and off by less than 1e-4 of
-  // a transient at a third.
+  // battery's sag: RK4 is stable up to 2.7 of them, and off by less than 1e-4 of a transient at a third.
   double max_step_s() const { return max_step_s_; }
 
   // All forces but gravity, over mass: what an ideal accelerometer at the centre of mass measures in flight.

@@ -25,10 +25,12 @@ double portable_log(double x) {
     mantissa *= 2.0;
     --exponent;
   }
+  constexpr std::array<double, 11> kSeries = {1.0 / 21, 1.0 / 19, 1.0 / 17, 1.0 / 15, 1.0 / 13, 1.0 / 11,
+                                              1.0 / 9,  1.0 / 7,  1.0 / 5,  1.0 / 3,  1.0};
   const double s = (mantissa - 1.0) / (mantissa + 1.0);
   const double s2 = s * s;
   double sum = 0.0;
-  for (int k = 21; k >= 1; k -= 2) sum = sum * s2 + 1.0 / k;
+  for (const double coefficient : kSeries) sum = sum * s2 + coefficient;
   return 2.0 * s * sum + exponent * 0.69314718055994531;
 }
 

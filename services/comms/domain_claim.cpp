@@ -12,7 +12,8 @@
 namespace swiftlet::comms {
 namespace {
 
-// Opens the file, which another user may have made: a lock needs no right to write, but O_CREAT would be refused there.
+// Opens the file, which another user may have made: a lock needs no right to write, but O_CREAT would be
+// refused there.
 int open_or_create(const std::string& file) {
   const int there = ::open(file.c_str(), O_RDONLY | O_NOFOLLOW);
   if (there >= 0 || errno != ENOENT) return there;

@@ -3,8 +3,9 @@
 
 namespace swiftlet::comms {
 
-// Claims a free domain for as long as it lives, by a lock on a file in the folder for temporary files, which the kernel lets
-// go however the process ends. Child processes inherit the claim: the domain is not free before they have ended too.
+// Claims a free domain for as long as it lives, by a lock on a file in the folder for temporary files, which
+// the kernel lets go however the process ends. Child processes inherit the claim: the domain is not free
+// before they have ended too.
 class DomainClaim {
  public:
   // Throws std::runtime_error if no domain of kFirst .. kLast is free.

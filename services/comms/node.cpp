@@ -207,7 +207,8 @@ class DdsWriter final : public detail::Writer {
   bool write(const void* sample) override {
     void* const data = const_cast<void*>(sample);  // serialized before write() returns, not altered
     if (writer_->write(data)) return true;
-    // A full history of requests makes room when they are acknowledged; write() does not always wait for that.
+    // A full history of requests makes room when they are acknowledged; write() does not always wait for
+    // that.
     return waits_ && writer_->wait_for_acknowledgments(kWriteTimeout) == ReturnCode_t::RETCODE_OK &&
            writer_->write(data);
   }

@@ -34,9 +34,10 @@ struct PeerEvent {
 
 // Which thread runs the callback.
 enum class Delivery {
-  kShared,  // one that all such subscriptions of the node share
-  kOwnThread,  // one of its own, with a socket of its own: nothing else that arrives delays a sample; over shared memory
-               // as kShared
+  // One that all such subscriptions of the node share.
+  kShared,
+  // One of its own, with a socket of its own: nothing else that arrives delays a sample. Over shared memory as kShared.
+  kOwnThread,
 };
 
 namespace detail {

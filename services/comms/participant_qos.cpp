@@ -54,8 +54,8 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings) {
   if (settings.localhost_only) {
     udp->interfaceWhiteList = {kLoopback};
     udp->maxInitialPeersRange = kMaxLocalProcesses;
-    // The first of the domain's ports that is free, whatever number the middleware gives the participant; none for
-    // multicast. Of the peers (port 0), the middleware tries as many ports as maxInitialPeersRange.
+    // The first of the domain's ports that is free, whatever number the middleware gives the participant;
+    // none for multicast. Of the peers (port 0), the middleware tries as many ports as maxInitialPeersRange.
     const auto first_port =
         qos.wire_protocol().port.getUnicastPort(static_cast<std::uint32_t>(settings.domain), 0);
     builtin.metatrafficUnicastLocatorList.push_back(loopback_locator(first_port));

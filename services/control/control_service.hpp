@@ -15,12 +15,12 @@
 
 namespace swiftlet::services {
 
-// Threads: the IMU's own runs the inner loop and sends the command before it returns; poses, missions and trajectories arrive in their own,
-// all else in one that is shared; run() is telemetry's.
+// Threads: the IMU's own runs the inner loop and sends the command before it returns; poses, missions and
+// trajectories arrive in their own, all else in one that is shared; run() is telemetry's.
 class ControlService {
  public:
-  // Throws std::invalid_argument as FlightController does, std::runtime_error as Node does. strength: of the command
-  // stream; the vehicle hears the strongest living controller.
+  // Throws std::invalid_argument as FlightController does, std::runtime_error as Node does. strength: of the
+  // command stream; the vehicle hears the strongest living controller.
   ControlService(const plant::Vehicle& vehicle, const control::ControlSettings& settings, int strength,
                  comms::Node& node, const runtime::RealtimeSettings& realtime);
 

@@ -1,5 +1,5 @@
-// The flight controller in the thread that receives the IMU. All other input reaches it through mailboxes and a ring, all output
-// but the command leaves it through rings. Nothing in it waits, allocates or logs.
+// The flight controller in the thread that receives the IMU. All other input reaches it through mailboxes and
+// a ring, all output but the command leaves it through rings. Nothing in it waits, allocates or logs.
 #pragma once
 
 #include <cstdint>
@@ -42,8 +42,9 @@ class InnerLoop {
   boost::lockfree::spsc_queue<PendingRequest*, boost::lockfree::capacity<kMaxPendingRequests>> judged;
   boost::lockfree::spsc_queue<Snapshot, boost::lockfree::capacity<256>> snapshots;
 
-  // By the IMU thread: step() gives the command; once it is sent, finish() does the rest of the step and returns whether there is
-  // new output. now_ns: monotonic time of the sample's arrival, or of the command's departure.
+  // By the IMU thread: step() gives the command; once it is sent, finish() does the rest of the step and
+  // returns whether there is new output. now_ns: monotonic time of the sample's arrival, or of the command's
+  // departure.
   plant::ActuatorCommand step(const plant::ImuSample& sample, std::int64_t now_ns);
   bool finish(std::int64_t now_ns);
 

@@ -25,21 +25,21 @@ struct RequestAnswer {
   bool repeated = false;  // it was given before
 };
 
-// Requests are known by client and id: one that was answered is answered alike again and not applied twice; one that is
-// under way is not taken in again.
+// Requests are known by client and id: one that was answered is answered alike again and not applied twice;
+// one that is under way is not taken in again.
 class RequestDesk {
  public:
   // wake is posted when there is something to collect.
   RequestDesk(InnerLoop& loop, const control::Limits& limits, runtime::Semaphore& wake);
 
-  // By any thread that may take a lock; each message type by one thread at a time. What is wrong in itself is refused
-  // here, the rest is for the inner loop to judge.
+  // By any thread that may take a lock; each message type by one thread at a time. What is wrong in itself is
+  // refused here, the rest is for the inner loop to judge.
   void on_command(const comms::msg::Command& message);
   void on_mission(const comms::msg::Mission& message);
   void on_trajectory(const comms::msg::Trajectory& message);
 
-  // The answers to be given. Refuses what the inner loop has not looked at in time, because no IMU sample came; lets go
-  // of missions and trajectories that the controller has left. By one thread.
+  // The answers to be given. Refuses what the inner loop has not looked at in time, because no IMU sample
+  // came; lets go of missions and trajectories that the controller has left. By one thread.
   std::vector<RequestAnswer> collect();
 
  private:

@@ -5,7 +5,8 @@
 
 namespace swiftlet::services {
 
-// Counts the steps since the rotors were last started. One thread calls it; times of arrival are monotonic, ns.
+// Counts the steps since the rotors were last started. One thread calls it; times of arrival are monotonic,
+// ns.
 class StepTiming {
  public:
   struct Figures {
@@ -15,8 +16,8 @@ class StepTiming {
     std::int64_t longest_ns = 0;
   };
 
-  // A sample arrived. It is late if it came more than half a period after the pace that the samples before it have set;
-  // the pace gives way to a lasting delay within some ten samples. Lost samples are not waited for.
+  // A sample arrived. It is late if it came more than half a period after the pace that the samples before it
+  // have set; the pace gives way to a lasting delay within some ten samples. Lost samples are not waited for.
   void arrived(std::uint64_t sequence, std::int64_t stamp_ns, std::int64_t now_ns, bool rotors_running);
 
   // The command that answers it has been sent.

@@ -1,4 +1,5 @@
-// What the control service says of itself: telemetry, status, answers to requests, log lines. Nothing here is in a hurry.
+// What the control service says of itself: telemetry, status, answers to requests, log lines. Nothing here is
+// in a hurry.
 #pragma once
 
 #include <atomic>

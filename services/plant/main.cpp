@@ -67,7 +67,8 @@ void update(comms::msg::VehicleInfo& info, const PlantReport& report, const std:
   info.fault() = fault;
 }
 
-// Tells the network and the log what the loop reports: every second, and at once when the rotors start or stop.
+// Tells the network and the log what the loop reports: every second, and at once when the rotors start or
+// stop.
 class Reporter {
  public:
   Reporter(comms::Node& node, const plant::Vehicle& vehicle, const plant::SimulationSettings& settings)

@@ -22,7 +22,8 @@ constexpr std::size_t kMaxDepth = 24;
 constexpr std::size_t kMaxKeys = 1000;  // of one map
 constexpr std::size_t kMaxShownLength = 60;
 
-// Ends the document: without it yaml-cpp takes a quote that is never closed for a text that ends with the file.
+// Ends the document: without it yaml-cpp takes a quote that is never closed for a text that ends with the
+// file.
 constexpr const char* kDocumentEnd = "...\n";
 
 enum class Kind { kNull, kScalar, kList, kMap };

@@ -1,10 +1,13 @@
-// Strict reader of CSV tables of numbers: one header line that names every column, then rows of finite numbers. Anything else is a
-// ConfigError with file, line, column, value and limit.
+// Strict reader of CSV tables of numbers: one header line that names every column, then rows of finite
+// numbers. Anything else is a ConfigError with file, line, column, value and limit.
 //
 //   const CsvTable table = load_csv("pwm.csv", {"t", "pwm1", "pwm2"});
-//   for (std::size_t row = 0; row < table.row_count(); ++row) use(table.number(row, 0), table.number(row, 1, between(1000, 2000)));
+//   for (std::size_t row = 0; row < table.row_count(); ++row) {
+//     use(table.number(row, 0), table.number(row, 1, between(1000, 2000)));
+//   }
 //
-// Lines end with LF or CRLF, the last one may lack it; blanks around a field are ignored; there are no quotes and no comments.
+// Lines end with LF or CRLF, the last one may lack it; blanks around a field are ignored; there are no quotes
+// and no comments.
 #pragma once
 
 #include <cstddef>
@@ -28,7 +31,8 @@ class CsvTable {
   double number(std::size_t row, std::size_t column, const Bounds& bounds = any_number(),
                 const char* unit = "") const;
 
-  // Throws ConfigError for a row's value; message is "is 3, must be below 2" or the like. columns names what it is about.
+  // Throws ConfigError for a row's value; message is "is 3, must be below 2" or the like. columns names what
+  // it is about.
   [[noreturn]] void fail(std::size_t row, const std::string& columns, const std::string& message) const;
 
   const std::string& file() const { return file_; }
@@ -44,7 +48,8 @@ class CsvTable {
   std::vector<double> numbers_;  // row by row
 };
 
-// A table of exactly these columns, in this order, with at least min_rows rows. file_name is for the messages only.
+// A table of exactly these columns, in this order, with at least min_rows rows. file_name is for the messages
+// only.
 CsvTable parse_csv(std::string_view text, const std::string& file_name,
                    const std::vector<std::string>& columns, std::size_t min_rows = 1);
 CsvTable load_csv(const std::string& path, const std::vector<std::string>& columns, std::size_t min_rows = 1);

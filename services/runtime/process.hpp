@@ -20,7 +20,8 @@ struct ProcessOptions {
 // --log-level, --log-file, --no-realtime, --priority, --cpu. The priority in options is the default.
 void add_process_options(CLI::App& app, ProcessOptions& options);
 
-// Locks memory and tries what make_this_thread_realtime() will do. What the system refuses is one line of warning.
+// Locks memory and tries what make_this_thread_realtime() will do. What the system refuses is one line of
+// warning.
 void prepare_realtime(const RealtimeSettings& settings);
 
 // Reads the command line, then runs body. Exit code: 0 done (also --help); 2 wrong usage or bad input

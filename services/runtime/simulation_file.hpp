@@ -9,8 +9,8 @@
 
 namespace swiftlet::runtime {
 
-// Settings that plant::validate() finds no fault with. Throws ConfigError for anything else. All keys must be given.
-// file_name is for the messages only.
+// Settings that plant::validate() finds no fault with. Throws ConfigError for anything else. All keys must be
+// given. file_name is for the messages only.
 plant::SimulationSettings parse_simulation_settings(std::string_view text, const std::string& file_name);
 plant::SimulationSettings load_simulation_settings(const std::string& path);
 

@@ -1,5 +1,6 @@
-// Sense to actuate over DDS: one process publishes IMU samples as the plant does, another answers each with an actuator
-// command as the control service does, without computing anything. Prints the round trip for each transport and rate.
+// Sense to actuate over DDS: one process publishes IMU samples as the plant does, another answers each with
+// an actuator command as the control service does, without computing anything. Prints the round trip for each
+// transport and rate.
 #include <atomic>
 #include <chrono>
 #include <csignal>

@@ -39,8 +39,8 @@ test::ClosedLoop under_way(const char* settings) {
   return loop;
 }
 
-// Samples of steady flight come again and again with new stamps, a pose every tenth of the IMU's: the controller does all it does
-// in flight, the plant is not timed.
+// Samples of steady flight come again and again with new stamps, a pose every tenth of the IMU's: the
+// controller does all it does in flight, the plant is not timed.
 void inner_loop_step(benchmark::State& state, const char* settings) {
   test::ClosedLoop loop = under_way(settings);
   constexpr int kPosePeriod = 5;

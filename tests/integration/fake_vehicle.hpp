@@ -1,5 +1,6 @@
-// A vehicle that is not the project's plant: a mass on a vertical rail, which senses, is seen by motion capture, and obeys
-// actuator commands over the network. It knows nothing of the control service but the topics.
+// A vehicle that is not the project's plant: a mass on a vertical rail, which senses, is seen by motion
+// capture, and obeys actuator commands over the network. It knows nothing of the control service but the
+// topics.
 #pragma once
 
 #include <atomic>

@@ -1,4 +1,5 @@
-// Plant, mocap and flight controller in one thread, without DDS: each IMU sample is answered at its own stamp.
+// Plant, mocap and flight controller in one thread, without DDS: each IMU sample is answered at its own
+// stamp.
 #pragma once
 
 #include <functional>

@@ -54,7 +54,8 @@ TEST(Convert, PlainStructsKeepTheirFields) {
   EXPECT_EQ(pose.q_ned_from_frd.coeffs(), pose_sample().q_ned_from_frd.coeffs());
 }
 
-// GIVEN a good message, WHEN change breaks it, THEN it is refused with these words and the struct is left as it was.
+// GIVEN a good message, WHEN change breaks it, THEN it is refused with these words and the struct is left as
+// it was.
 template <class Plain, class Message, class Change>
 void expect_refused(Message message, const char* words, Change change) {
   change(message);

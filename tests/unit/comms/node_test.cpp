@@ -1,4 +1,5 @@
-// Topics between participants, each with its own sockets: in one process delivery takes the same way as between two.
+// Topics between participants, each with its own sockets: in one process delivery takes the same way as
+// between two.
 #include "services/comms/node.hpp"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
-// A process of its own for the tests: joins a domain as "peer", publishes its state and the strongest actuator commands until its
-// standard input is closed, then leaves.
+// A process of its own for the tests: joins a domain as "peer", publishes its state and the strongest
+// actuator commands until its standard input is closed, then leaves.
 //   comms_peer DOMAIN udp|shm
-// With "isolated" for the domain, it enters a fresh network namespace instead, checks that two nodes find each other there, and exits
-// with 0, or 77 if it may not.
+// With "isolated" for the domain, it enters a fresh network namespace instead, checks that two nodes find
+// each other there, and exits with 0, or 77 if it may not.
 #include <atomic>
 #include <cstdlib>
 #include <cstring>

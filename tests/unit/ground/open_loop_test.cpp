@@ -1,7 +1,9 @@
 #include "ground/open_loop.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <stdexcept>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -9,14 +11,13 @@
 #include "plant/model/airframe.hpp"
 #include "plant/model/propulsion.hpp"
 #include "services/runtime/config_error.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "tests/unit/plant_model/vehicles.hpp"
+#include "tests/unit/plant_simulation/paper_equations.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
-plant::Vehicle kaylion() {
-  return runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
-}
+using tests::kaylion;
 
 std::vector<PulseWidths> pulses(const std::string& rows) {
   return read_pulses(runtime::parse_csv("t,pwm1,pwm2,pwm3,pwm4\n" + rows, "pwm.csv", pulse_columns(4), 2),
@@ -73,6 +74,71 @@ TEST(OpenLoop, AThrottleChangesAtItsTimeAlsoBetweenMilliseconds) {
   EXPECT_NEAR(rows[10].state.rotor_speeds[0], rise(0.0, 0.0, 0.010), 1e-8);
   EXPECT_NEAR(rows[20].state.rotor_speeds[0], rise(before, 1.0, 0.0095), 1e-8);
   EXPECT_NEAR(rows[20].state.rotor_speeds[1], rise(before, 0.0, 0.0095), 1e-8);
+}
+
+// Flies 2 s with pulse widths that change at any nanosecond, and compares each row with the paper's equations
+// as another method integrates them. Every quantity must agree within tolerance of the largest value that it
+// takes.
+void expect_paper_motion(const plant::VehicleState& initial, const std::vector<PulseWidths>& commands,
+                         double tolerance) {
+  constexpr double kSupply = 3.9;
+  const std::vector<MotionRow> rows = simulate_open_loop(kaylion(), kSupply, initial, commands);
+  ASSERT_EQ(rows.size(), 2001u);
+
+  tests::paper::Equations equations{kaylion().inertia, tests::paper::Motor::kReduced, kSupply, true};
+  tests::paper::State reference = tests::paper::state_of(initial);
+  tests::paper::Comparison comparison;
+  std::size_t held = 0;
+  std::int64_t now_ns = 0;
+  for (std::size_t row = 1; row < rows.size(); ++row) {
+    while (now_ns < rows[row].time_ns) {
+      std::copy_n(commands[held].throttle.begin(), 4, equations.throttle.begin());
+      const std::int64_t until_ns = std::min(rows[row].time_ns, commands[held + 1].time_ns);
+      tests::paper::integrate(equations, reference, static_cast<double>(now_ns) * 1e-9,
+                              static_cast<double>(until_ns) * 1e-9);
+      now_ns = until_ns;
+      if (now_ns == commands[held + 1].time_ns) ++held;
+    }
+    comparison.add(reference, tests::paper::state_of(rows[row].state));
+  }
+  for (std::size_t i = 0; i < tests::paper::kNames.size(); ++i) {
+    // What symmetry keeps at 0 may be off by what is nothing beside the rest.
+    EXPECT_LT(comparison.worst[i], tolerance * std::max(comparison.peak[i], 1e-3))
+        << tests::paper::kNames[i] << " reaches " << comparison.peak[i];
+  }
+}
+
+TEST(OpenLoop, ATumbleAgreesWithThePaper) {
+  tests::Draw draw;
+  for (int flight = 0; flight < 5; ++flight) {
+    SCOPED_TRACE("flight " + std::to_string(flight));
+    plant::VehicleState initial;
+    initial.velocity_ned = {draw(-3, 3), draw(-3, 3), draw(-3, 3)};
+    initial.q_ned_from_frd =
+        Eigen::Quaterniond(draw(-1, 1), draw(-1, 1), draw(-1, 1), draw(-1, 1)).normalized();
+    initial.body_rates_frd = {draw(-15, 15), draw(-15, 15), draw(-15, 15)};
+    for (std::size_t i = 0; i < 4; ++i) initial.rotor_speeds[i] = draw(0, 2300);
+    std::vector<PulseWidths> commands;
+    for (std::int64_t at_ns = 0; at_ns < 2'000'000'000; at_ns += static_cast<std::int64_t>(draw(1e5, 8e7))) {
+      PulseWidths pulse{at_ns, {}};
+      for (std::size_t i = 0; i < 4; ++i) pulse.throttle[i] = draw(0, 1);
+      commands.push_back(pulse);
+    }
+    commands.push_back({2'000'000'000, {}});
+    expect_paper_motion(initial, commands, 1e-7);
+  }
+}
+
+// The fastest there is: both left rotors at full throttle, the right ones at none, 2 s long.
+TEST(OpenLoop, TheWildestTumbleAgreesWithThePaper) {
+  PulseWidths roll;
+  roll.throttle = {0.0, 1.0, 1.0, 0.0};
+  expect_paper_motion({}, {roll, {2'000'000'000, {}}}, 1e-6);
+}
+
+TEST(OpenLoop, RefusesToSpinBeyondAllBounds) {
+  const auto commands = pulses("0,1039,2039,2039,1039\n60,1039,2039,2039,1039\n");
+  EXPECT_THROW(simulate_open_loop(kaylion(), 4.0, {}, commands), std::runtime_error);
 }
 
 TEST(OpenLoop, TakesTheInitialStateAsItIs) {

@@ -1,4 +1,5 @@
-// The periodic timer and the semaphore, against the clock. Bounds are one-sided or generous: the machine may be loaded.
+// The periodic timer and the semaphore, against the clock. Bounds are one-sided or generous: the machine may
+// be loaded.
 #include <chrono>
 #include <thread>
 
