@@ -120,10 +120,15 @@ void Client::subscribe_all() {
       node_.subscribe<msg::Reference>(kReference, [this](const msg::Reference& reference) {
         if (record_ != nullptr) record_->reference.append(row_of(reference));
         keep(&View::reference, reference);
+        const std::lock_guard lock(mutex_);
+        if (grants_) grants_->telemetry(reference.stamp_ns());
       }));
   subscriptions_.push_back(
       node_.subscribe<msg::GroundTruth>(kGroundTruth, [this](const msg::GroundTruth& truth) {
-        if (record_ != nullptr) record_->truth.append(row_of(truth));
+        // In lockstep a sample comes again when its answer is late.
+        const bool again = record_ != nullptr && !record_->truth.empty() &&
+                           record_->truth.back().stamp_ns == truth.stamp_ns();
+        if (record_ != nullptr && !again) record_->truth.append(row_of(truth));
         keep(&View::truth, truth);
       }));
   node_.on_peer([this](const comms::PeerEvent& peer) {
@@ -138,6 +143,12 @@ void Client::subscribe_all() {
 View Client::view() const {
   const std::lock_guard lock(mutex_);
   return view_;
+}
+
+TimeGrants& Client::grants() {
+  const std::lock_guard lock(mutex_);
+  if (!grants_) grants_.emplace(node_);
+  return *grants_;
 }
 
 bool Client::wait(std::chrono::milliseconds timeout, const std::function<bool(const View&)>& done) const {

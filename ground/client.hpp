@@ -13,6 +13,7 @@
 
 #include "control/mission.hpp"
 #include "ground/flight_record.hpp"
+#include "ground/time_grants.hpp"
 #include "services/comms/node.hpp"
 
 namespace swiftlet::ground {
@@ -68,6 +69,9 @@ class Client {
 
   View view() const;
 
+  // For a plant in lockstep that was started paused: from the first call on, this client grants it time.
+  TimeGrants& grants();
+
   // Waits until `done` holds of the view; false if it does not within the time-out. `done` must not call this
   // client.
   bool wait(std::chrono::milliseconds timeout, const std::function<bool(const View&)>& done) const;
@@ -107,6 +111,7 @@ class Client {
   comms::Node node_;
   comms::Publisher<msg::Command> commands_;
   comms::Publisher<msg::Mission> missions_;
+  std::optional<TimeGrants> grants_;
   std::vector<comms::Subscription> subscriptions_;  // last: their callbacks use all of the above
 };
 

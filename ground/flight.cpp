@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "control/mode.hpp"
+#include "ground/flight_schedule.hpp"
+#include "ground/flight_window.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -44,8 +46,18 @@ std::string missing(const View& view) {
   return list;
 }
 
-double since_s(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
+// Who is not there yet; empty when all are. Samples come only when time passes.
+std::string missing_peer(const View& view) {
+  for (const char* name : {"plant", "mocap", "control"}) {
+    const auto peer = view.peers.find(name);
+    if (peer == view.peers.end() || !peer->second) return name;
+  }
+  return {};
+}
+
+// Since a stamp of the vehicle's clock, which a flight's time limits are about.
+double simulated_s(const View& view, std::int64_t since_ns) {
+  return static_cast<double>(view.truth.message.stamp_ns() - since_ns) * 1e-9;
 }
 
 // No new sample for kSilenceS, of which only what this process was awake for counts: when the computer
@@ -90,11 +102,12 @@ double newest_error_m(const FlightRecord& record) {
 }  // namespace
 
 Flight::Flight(Client& client, const FlightRecord& record, const MissionFile& mission,
-               double planned_duration_s, Watch watch, ProgressLine& progress)
+               double planned_duration_s, runtime::Clock clock, Watch watch, ProgressLine& progress)
     : client_(client),
       record_(record),
       mission_(mission),
       planned_duration_s_(planned_duration_s),
+      lockstep_(clock == runtime::Clock::kLockstep),
       watch_(std::move(watch)),
       progress_(progress) {}
 
@@ -102,6 +115,7 @@ void Flight::run() {
   wait_until_ready();
   arm();
   start_mission();
+  if (lockstep_) client_.grants().follow_telemetry(paused_at_ns_);
   follow();
   wait_for_last_figures();
 }
@@ -119,16 +133,33 @@ void Flight::wait_until_ready() {
   while (true) {
     std::string absent;
     const bool ready = client_.wait(kStep, [&](const View& view) {
-      absent = missing(view);
+      absent = lockstep_ ? missing_peer(view) : missing(view);
       return absent.empty();
     });
-    if (ready) return;
+    if (ready) break;
     demand_alive();
     demand_no_interrupt();
     if (Clock::now() - start > kReadyTimeout) {
       throw FlightFailure("after 20 s there is still missing: " + absent + "; looked for " + client_.where());
     }
     progress_.update(kBeforeFlight, "waiting for " + absent);
+  }
+  if (lockstep_) wait_until_paused_at(FlightSchedule::kFirstRequestNs);
+}
+
+// Grants the time up to there, and waits until it has passed and all samples are answered.
+void Flight::wait_until_paused_at(std::int64_t stamp_ns) {
+  client_.grants().up_to(stamp_ns);
+  paused_at_ns_ = stamp_ns;
+  const auto paused = [stamp_ns](const View& view) {
+    return view.vehicle.message.paused() && view.vehicle.message.stamp_ns() >= stamp_ns;
+  };
+  const auto start = Clock::now();
+  while (!client_.wait(kStep, paused)) {
+    demand_alive();
+    demand_no_interrupt();
+    if (Clock::now() - start > kReadyTimeout)
+      throw FlightFailure("after 20 s simulated time has not come to " + std::to_string(stamp_ns) + " ns");
   }
 }
 
@@ -142,9 +173,14 @@ void Flight::arm() {
     demand_alive();
     demand_no_interrupt();
     if (answer.accepted()) return;
-    if (answer.kind != Answer::Kind::kRefused || Clock::now() > deadline)
-      throw FlightFailure("arming: " + answer.reason);
+    const bool late = lockstep_ ? paused_at_ns_ + FlightSchedule::kRetryNs > FlightSchedule::kLastArmingNs
+                                : Clock::now() > deadline;
+    if (answer.kind != Answer::Kind::kRefused || late) throw FlightFailure("arming: " + answer.reason);
     progress_.update(kBeforeFlight, "arming: " + answer.reason);
+    if (lockstep_) {
+      wait_until_paused_at(paused_at_ns_ + FlightSchedule::kRetryNs);
+      continue;
+    }
     client_.wait(kRetryPeriod, [this](const View&) { return watch_.interrupts() > 0; });
   }
 }
@@ -159,8 +195,8 @@ void Flight::start_mission() {
 
 void Flight::follow() {
   const std::uint64_t id = client_.mission_id();
-  const double time_limit_s = 1.5 * planned_duration_s_ + 30.0;
-  const auto start = Clock::now();
+  const double time_limit_s = FlightSchedule::time_limit_s(planned_duration_s_);
+  const std::int64_t start_ns = client_.view().truth.message.stamp_ns();
   Silence control_silence;
   Silence vehicle_silence;
   while (true) {
@@ -181,10 +217,9 @@ void Flight::follow() {
         bring_down(std::string("the mission was aborted: ") + view.mission.message.reason().c_str());
       }
     }
-    if (view.control.age_s(Clock::now()) > kSilenceS) throw FlightFailure("control has said nothing for 3 s");
-    if (view.truth.age_s(Clock::now()) > kSilenceS)
-      throw FlightFailure("the vehicle has said nothing for 3 s");
-    if (since_s(start) > time_limit_s) {
+    if (control_silence.lasts(view.control.count)) throw FlightFailure("control has said nothing for 3 s");
+    if (vehicle_silence.lasts(view.truth.count)) throw FlightFailure("the vehicle has said nothing for 3 s");
+    if (simulated_s(view, start_ns) > time_limit_s) {
       char reason[96];
       std::snprintf(reason, sizeof reason,
                     "the mission took longer than %.0f s, of which %.0f s were planned", time_limit_s,
@@ -210,14 +245,18 @@ void Flight::bring_down(const std::string& reason) {
   msg::Command land;
   land.kind(msg::Command_Constants::LAND);
   land.speed(kLandingSpeed);
-  const auto start = Clock::now();
+  const std::int64_t start_ns = client_.view().truth.message.stamp_ns();
+  Silence silence;
   bool descending = false;
   while (!rotors_off(mode_of(client_.view()))) {
     if (const auto casualty = watch_.casualty())
       throw FlightFailure(reason + "; while landing, " + *casualty);
     if (watch_.interrupts() > std::max(1, interrupts_before))
       throw FlightFailure(reason + "; ended in flight");
-    if (since_s(start) > kLandingTimeoutS) throw FlightFailure(reason + "; it did not land within 30 s");
+    if (silence.lasts(client_.view().truth.count))
+      throw FlightFailure(reason + "; while landing, the vehicle has said nothing for 3 s");
+    if (simulated_s(client_.view(), start_ns) > kLandingTimeoutS)
+      throw FlightFailure(reason + "; it did not land within 30 s");
     if (mode_of(client_.view()) == ControlMode::kArmed) {
       msg::Command disarm;
       disarm.kind(msg::Command_Constants::DISARM);
@@ -249,37 +288,6 @@ void Flight::show(const View& view) {
   if (mode_of(view) != ControlMode::kMission)
     line += std::string(", ") + mode_name(view.control.message.mode());
   progress_.update(static_cast<int>(item), line);
-}
-
-std::optional<Window> mission_window(const FlightRecord& record, std::uint64_t mission_id,
-                                     const control::Mission& mission) {
-  const ReferenceRow* const end = record.reference.end();
-  const auto in_mission = [](const ReferenceRow& row) {
-    return row.mode == static_cast<int>(ControlMode::kMission);
-  };
-  const ReferenceRow* const first = std::find_if(record.reference.begin(), end, in_mission);
-  if (first == end) return std::nullopt;
-
-  const std::size_t land = mission.items.back().kind == control::MissionItemKind::kLand
-                               ? mission.items.size() - 1
-                               : mission.items.size();
-  for (const MissionRow& row : record.mission) {
-    if (row.mission_id != mission_id || row.stamp_ns < first->stamp_ns) continue;
-    if (row.item_index >= land) return Window{first->stamp_ns, row.stamp_ns};
-  }
-  const ReferenceRow* last = end - 1;
-  while (last != first && !in_mission(*last)) --last;
-  return Window{first->stamp_ns, last->stamp_ns + 1};
-}
-
-double mission_duration_s(const FlightRecord& record, std::uint64_t mission_id, Window window) {
-  std::int64_t end_ns = record.reference.empty() ? window.to_ns : record.reference.back().stamp_ns;
-  for (const MissionRow& row : record.mission) {
-    if (row.mission_id != mission_id || row.state == msg::MissionStatus_Constants::RUNNING) continue;
-    end_ns = row.stamp_ns;
-    break;
-  }
-  return static_cast<double>(end_ns - window.from_ns) * 1e-9;
 }
 
 }  // namespace swiftlet::ground

@@ -10,6 +10,7 @@
 #include "ground/flight_record.hpp"
 #include "ground/mission_file.hpp"
 #include "ground/progress_line.hpp"
+#include "services/runtime/clock.hpp"
 
 namespace swiftlet::ground {
 
@@ -26,8 +27,9 @@ class Flight {
     std::function<int()> interrupts;                       // how often the user asked to end
   };
 
+  // In lockstep the plant is one that was started paused.
   Flight(Client& client, const FlightRecord& record, const MissionFile& mission, double planned_duration_s,
-         Watch watch, ProgressLine& progress);
+         runtime::Clock clock, Watch watch, ProgressLine& progress);
 
   // Until vehicle, pose and control are there, the mission is flown, and the rotors are off. Throws
   // FlightFailure; the vehicle has then been landed where that was possible. The first interrupt lands it,
@@ -36,6 +38,7 @@ class Flight {
 
  private:
   void wait_until_ready();
+  void wait_until_paused_at(std::int64_t stamp_ns);
   void arm();
   void start_mission();
   void follow();
@@ -49,16 +52,10 @@ class Flight {
   const FlightRecord& record_;
   const MissionFile& mission_;
   double planned_duration_s_;
+  bool lockstep_;
+  std::int64_t paused_at_ns_ = 0;  // in lockstep, before the mission
   Watch watch_;
   ProgressLine& progress_;
 };
-
-// From the mission's start to the start of its landing (or its end, without one); empty if it was not
-// started.
-std::optional<Window> mission_window(const FlightRecord& record, std::uint64_t mission_id,
-                                     const control::Mission& mission);
-
-// From the mission's start to its end, as far as it went; 0 if it was not started.
-double mission_duration_s(const FlightRecord& record, std::uint64_t mission_id, Window window);
 
 }  // namespace swiftlet::ground

@@ -3,6 +3,7 @@
 #include <ctime>
 
 #include "ground/command.hpp"
+#include "ground/flight_schedule.hpp"
 #include "ground/installation.hpp"
 #include "ground/network_options.hpp"
 #include "services/runtime/control_settings_file.hpp"
@@ -15,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kHighestImuRateHz = 1000.0;
+constexpr double kSpareS = 30.0;  // of the record, before and after the mission
 
 fs::path default_folder(const std::string& mission) {
   const std::time_t now = std::time(nullptr);
@@ -46,38 +48,61 @@ std::string absolute_path(const fs::path& path) { return fs::absolute(path).stri
 
 FlightPlan plan_flight(const FlyOptions& options) {
   FlightPlan plan;
+  plan.parties = options.parties;
+  plan.clock = options.clock;
+  plan.speed = options.speed;
   plan.vehicle_file = configuration_file("vehicles", options.vehicle);
   plan.control_file = configuration_file("control", options.control);
   plan.simulation_file = configuration_file("simulation", options.simulation);
-  plan.vehicle_name = runtime::load_vehicle(plan.vehicle_file).name;
-  const control::ControlSettings control = runtime::load_control_settings(plan.control_file);
-  plan.control_name = control.name;
-  const plant::SimulationSettings simulation = runtime::load_simulation_settings(plan.simulation_file);
-  plan.imu_rate_hz = options.imu_rate_hz > 0 ? options.imu_rate_hz : simulation.imu.rate_hz;
-  if (options.attach) plan.imu_rate_hz = kHighestImuRateHz;  // the vehicle's own is not known yet
+  plan.vehicle = runtime::load_vehicle(plan.vehicle_file);
+  plan.control = runtime::load_control_settings(plan.control_file);
+  plan.simulation = runtime::load_simulation_settings(plan.simulation_file);
   plan.imu_rate_option_hz = options.imu_rate_hz;
+  if (options.imu_rate_hz > 0) plan.simulation.imu.rate_hz = options.imu_rate_hz;
+  for (const plant::Violation& violation : plant::validate(plan.simulation)) {
+    throw InputError("--imu-rate: " + violation.key + " " + violation.message);
+  }
   plan.seed = options.seed;
 
   const fs::path mission_file = configuration_file("missions", options.mission);
-  plan.mission = load_mission_file(mission_file, control.limits);
-  plan.planned_duration_s = planned_duration_s(plan.mission.mission, control.limits);
+  plan.mission = load_mission_file(mission_file, plan.control.limits);
+  plan.planned_duration_s = planned_duration_s(plan.mission.mission, plan.control.limits);
   demand_whole_flight(plan.mission, mission_file, plan.planned_duration_s);
 
-  plan.attach = options.attach;
-  if (!plan.attach) {
+  if (plan.parties == Parties::kStarted) {
     plan.plant_program = program_beside("swiftlet-plant");
     plan.mocap_program = program_beside("swiftlet-mocap");
     plan.control_program = program_beside("swiftlet-control");
   }
   plan.folder = options.record.empty() ? default_folder(plan.mission.name) : fs::path(options.record);
+  if (options.trace) plan.trace_file = plan.folder / "trace.csv";
   return plan;
 }
 
+std::size_t FlightPlan::record_capacity() const {
+  // The rate of a vehicle that runs already is not known yet.
+  const double rate_hz = parties == Parties::kAttached ? kHighestImuRateHz : simulation.imu.rate_hz;
+  return static_cast<std::size_t>((FlightSchedule::time_limit_s(planned_duration_s) + kSpareS) * rate_hz);
+}
+
+FlightReport report_of(const FlightPlan& plan) {
+  FlightReport report;
+  report.clock = plan.parties == Parties::kInProcess ? "in process" : runtime::to_string(plan.clock);
+  report.mission = plan.mission.name;
+  report.vehicle = plan.vehicle.name;
+  report.control = plan.control.name;
+  report.seed = plan.seed;
+  report.imu_rate_hz = plan.simulation.imu.rate_hz;
+  report.record_dir = plan.folder.string();
+  report.tolerance_m = plan.mission.tolerance_m;
+  return report;
+}
+
 std::vector<ProcessSettings> processes(const FlightPlan& plan, const comms::NodeSettings& network) {
-  if (plan.attach) return {};
-  std::vector<std::string> common = {"--domain",       std::to_string(network.domain),
-                                     "--vehicle-name", network.vehicle,
-                                     "--transport",    to_string(network.transport)};
+  if (plan.parties != Parties::kStarted) return {};
+  std::vector<std::string> common = {
+      "--domain",    std::to_string(network.domain), "--vehicle-name", network.vehicle,
+      "--transport", to_string(network.transport),   "--clock",        runtime::to_string(plan.clock)};
   if (network.localhost_only) common.emplace_back("--localhost-only");
   const auto process = [&](const std::string& name, const fs::path& program,
                            std::vector<std::string> arguments) {
@@ -90,6 +115,12 @@ std::vector<ProcessSettings> processes(const FlightPlan& plan, const comms::Node
   std::vector<std::string> plant = {"--vehicle", vehicle, "--simulation", simulation, "--seed", seed};
   if (plan.imu_rate_option_hz > 0) {
     plant.insert(plant.end(), {"--imu-rate", std::to_string(plan.imu_rate_option_hz)});
+  }
+  if (plan.clock == runtime::Clock::kLockstep) {
+    plant.emplace_back("--paused");
+    if (!plan.trace_file.empty()) plant.insert(plant.end(), {"--trace", absolute_path(plan.trace_file)});
+  } else {
+    plant.insert(plant.end(), {"--speed", std::to_string(plan.speed)});
   }
   return {
       process("swiftlet-plant", plan.plant_program, std::move(plant)),

@@ -9,12 +9,26 @@
 
 #include "control/settings.hpp"
 #include "ground/child_process.hpp"
+#include "ground/flight_report.hpp"
 #include "ground/mission_file.hpp"
+#include "plant/model/vehicle.hpp"
+#include "plant/simulation/settings.hpp"
 #include "services/comms/node.hpp"
+#include "services/runtime/clock.hpp"
 
 namespace swiftlet::ground {
 
+// Where plant, mocap and control run.
+enum class Parties {
+  kStarted,    // in processes that this one starts
+  kAttached,   // in processes that run already
+  kInProcess,  // here, without DDS
+};
+
 struct FlyOptions {
+  Parties parties = Parties::kStarted;
+  runtime::Clock clock = runtime::Clock::kRealtime;
+  double speed = 1.0;  // of simulated time against real time
   std::string mission = "square";
   std::string vehicle = "kaylion";
   std::string control = "motor_lag";
@@ -23,22 +37,28 @@ struct FlyOptions {
   std::uint64_t seed = 1;
   int imu_rate_hz = 0;  // 0: as the simulation file says
   comms::NodeSettings network;
-  int domain = -1;      // below 0: a free one, or 0 to attach
-  bool attach = false;  // to plant, mocap and control that run already
+  int domain = -1;     // below 0: a free one, or 0 to attach
+  bool trace = false;  // keep a trace of a lockstep or in-process flight
   bool json = false;
 };
 
 struct FlightPlan {
+  Parties parties = Parties::kStarted;
+  runtime::Clock clock = runtime::Clock::kRealtime;
+  double speed = 1.0;
   MissionFile mission;
   double planned_duration_s = 0.0;
   std::filesystem::path vehicle_file, control_file, simulation_file;
-  std::string vehicle_name, control_name;
+  plant::Vehicle vehicle;
+  control::ControlSettings control;
+  plant::SimulationSettings simulation;
   int imu_rate_option_hz = 0;  // as FlyOptions
-  double imu_rate_hz = 0.0;
   std::uint64_t seed = 0;
-  std::filesystem::path folder;  // where the flight is recorded; not made yet
-  bool attach = false;
-  std::filesystem::path plant_program, mocap_program, control_program;  // none to attach
+  std::filesystem::path folder;                                         // of the record; not made yet
+  std::filesystem::path trace_file;                                     // empty: none is kept
+  std::filesystem::path plant_program, mocap_program, control_program;  // of kStarted
+
+  std::size_t record_capacity() const;  // for each IMU sample of the longest that it may take
 };
 
 // Longer missions are refused: the record is kept in memory.
@@ -47,7 +67,10 @@ constexpr double kLongestMissionS = 600.0;
 // Throws runtime::ConfigError or InputError for input that cannot be flown. Starts and writes nothing.
 FlightPlan plan_flight(const FlyOptions& options);
 
-// The three processes of the plan, on this network; none to attach.
+// The three processes of a plan of kStarted, on this network; none of others.
 std::vector<ProcessSettings> processes(const FlightPlan& plan, const comms::NodeSettings& network);
+
+// A report that says what is to be flown.
+FlightReport report_of(const FlightPlan& plan);
 
 }  // namespace swiftlet::ground

@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "services/runtime/clock.hpp"
+
 namespace swiftlet::ground {
 namespace {
 
@@ -18,6 +20,8 @@ namespace {
   return buffer;
 }
 
+const std::string kRealtime = runtime::to_string(runtime::Clock::kRealtime);
+
 nlohmann::ordered_json axes(const std::array<double, 3>& values) {
   return {{"x", values[0]}, {"y", values[1]}, {"z", values[2]}};
 }
@@ -28,6 +32,7 @@ nlohmann::ordered_json to_json(const FlightReport& report) {
   nlohmann::ordered_json json;
   json["completed"] = report.completed;
   if (!report.completed) json["reason"] = report.reason;
+  json["clock"] = report.clock;
   json["mission"] = report.mission;
   json["vehicle"] = report.vehicle;
   json["control"] = report.control;
@@ -41,6 +46,9 @@ nlohmann::ordered_json to_json(const FlightReport& report) {
   json["peak_m"] = axes(report.errors.peak_m);
   json["matched_samples"] = report.errors.matched;
   json["longest_gap_s"] = report.errors.longest_gap_s;
+  json["simulated_s"] = report.simulated_s;
+  json["wall_s"] = report.wall_s;
+  json["real_time_factor"] = report.simulated_s / report.wall_s;
   json["control_rate_hz"] = report.control_rate_hz;
   json["imu_rate_hz"] = report.imu_rate_hz;
   json["cycles"] = report.cycles;
@@ -69,7 +77,10 @@ std::string to_text(const FlightReport& report) {
                    report.tolerance_m * kMm);
     text += format("    from %zu samples, takeoff to landing\n", errors.matched);
   }
-  if (report.cycles > 0) {
+  if (report.clock != kRealtime && report.wall_s > 0.0) {
+    text += format("  simulated         %.1f s in %.2f s, %s: %.0f times real time\n", report.simulated_s,
+                   report.wall_s, report.clock.c_str(), report.simulated_s / report.wall_s);
+  } else if (report.cycles > 0) {
     text += format("  control rate      %.1f Hz, %llu of %llu steps late by more than half a period%s\n",
                    report.control_rate_hz, static_cast<unsigned long long>(report.deadline_misses),
                    static_cast<unsigned long long>(report.cycles),

@@ -21,6 +21,7 @@ struct FlightReport {
   bool completed = false;
   std::string reason;  // why not; empty if completed
 
+  std::string clock;  // "realtime", "lockstep" or "in process"
   std::string mission;
   std::string vehicle;  // names or files, as flown
   std::string control;
@@ -31,6 +32,10 @@ struct FlightReport {
   double tolerance_m = 0.0;  // on the peak 3-D error
   TrackingErrors errors;     // from the mission's start to the landing command
   double imu_rate_hz = 0.0;
+  double simulated_s = 0.0;  // from stamp 0
+  double wall_s = 0.0;       // that this took
+
+  // Of a flight in real time.
   double control_rate_hz = 0.0;
   std::uint64_t cycles = 0;
   std::uint64_t deadline_misses = 0;

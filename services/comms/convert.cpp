@@ -12,6 +12,7 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 constexpr double kQuaternionTolerance = 1e-3;  // of the norm
+constexpr double kRounding = 1e-12;
 
 using Vector3 = std::array<double, 3>;
 using Vector4 = std::array<double, 4>;
@@ -19,7 +20,12 @@ using PerRotor = std::array<double, plant::kMaxRotors>;
 
 Vector3d vector(const Vector3& in) { return {in[0], in[1], in[2]}; }
 Vector3 array(const Vector3d& in) { return {in.x(), in.y(), in.z()}; }
-Quaterniond quaternion(const Vector4& in) { return Quaterniond(in[0], in[1], in[2], in[3]).normalized(); }
+// What differs from unit length by rounding only stays as it is: a sample that was sent is the one that was
+// taken.
+Quaterniond quaternion(const Vector4& in) {
+  const Quaterniond q(in[0], in[1], in[2], in[3]);
+  return std::abs(q.squaredNorm() - 1.0) < kRounding ? q : q.normalized();
+}
 Vector4 array(const Quaterniond& in) { return {in.w(), in.x(), in.y(), in.z()}; }
 
 // Collects the first fault of a message; later checks are skipped.

@@ -35,6 +35,7 @@
 #include "swiftlet_msgs/msg/ReferencePubSubTypes.h"
 #include "swiftlet_msgs/msg/RotorSpeedsPubSubTypes.h"
 #include "swiftlet_msgs/msg/SetpointPubSubTypes.h"
+#include "swiftlet_msgs/msg/SimulationClockPubSubTypes.h"
 #include "swiftlet_msgs/msg/TrajectoryPubSubTypes.h"
 #include "swiftlet_msgs/msg/VehicleInfoPubSubTypes.h"
 
@@ -47,8 +48,8 @@
 #define SWIFTLET_FOR_EACH_MESSAGE(X)                                      \
   X(ActuatorCommand) X(Battery) X(Command) X(CommandAck) X(ControlStatus) \
   X(Estimate) X(GroundTruth) X(Imu) X(Mission) X(MissionStatus)           \
-  X(MocapPose) X(Reference) X(RotorSpeeds) X(Setpoint) X(Trajectory)      \
-  X(VehicleInfo)
+  X(MocapPose) X(Reference) X(RotorSpeeds) X(Setpoint)                    \
+  X(SimulationClock) X(Trajectory) X(VehicleInfo)
 // clang-format on
 
 namespace swiftlet::comms {

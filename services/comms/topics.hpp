@@ -16,6 +16,7 @@
 #include "swiftlet_msgs/msg/Reference.h"
 #include "swiftlet_msgs/msg/RotorSpeeds.h"
 #include "swiftlet_msgs/msg/Setpoint.h"
+#include "swiftlet_msgs/msg/SimulationClock.h"
 #include "swiftlet_msgs/msg/Trajectory.h"
 #include "swiftlet_msgs/msg/VehicleInfo.h"
 
@@ -46,6 +47,7 @@ inline constexpr Topic<msg::GroundTruth> kGroundTruth{"ground_truth", Qos::kTele
 inline constexpr Topic<msg::ControlStatus> kControlStatus{"control_status", Qos::kState};
 inline constexpr Topic<msg::MissionStatus> kMissionStatus{"mission_status", Qos::kState};
 inline constexpr Topic<msg::VehicleInfo> kVehicleInfo{"vehicle_info", Qos::kState};
+inline constexpr Topic<msg::SimulationClock> kSimulationClock{"simulation_clock", Qos::kState};
 inline constexpr Topic<msg::Command> kCommand{"command", Qos::kRequest};
 inline constexpr Topic<msg::Mission> kMission{"mission", Qos::kRequest};
 inline constexpr Topic<msg::Trajectory> kTrajectory{"trajectory", Qos::kRequest};

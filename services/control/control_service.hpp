@@ -3,26 +3,32 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
+#include <mutex>
+#include <vector>
 
 #include "services/comms/convert.hpp"
 #include "services/comms/fault_log.hpp"
 #include "services/comms/node.hpp"
 #include "services/control/inner_loop.hpp"
+#include "services/control/lockstep_gate.hpp"
 #include "services/control/request_desk.hpp"
 #include "services/control/telemetry.hpp"
+#include "services/runtime/clock.hpp"
 #include "services/runtime/realtime.hpp"
 #include "services/runtime/semaphore.hpp"
 
 namespace swiftlet::services {
 
 // Threads: the IMU's own runs the inner loop and sends the command before it returns; poses, missions and
-// trajectories arrive in their own, all else in one that is shared; run() is telemetry's.
+// trajectories arrive in their own, all else in one that is shared; run() is telemetry's. In lockstep the
+// inner loop runs in the thread that brings the last of the samples that belong together.
 class ControlService {
  public:
   // Throws std::invalid_argument as FlightController does, std::runtime_error as Node does. strength: of the
   // command stream; the vehicle hears the strongest living controller.
   ControlService(const plant::Vehicle& vehicle, const control::ControlSettings& settings, int strength,
-                 comms::Node& node, const runtime::RealtimeSettings& realtime);
+                 comms::Node& node, const runtime::RealtimeSettings& realtime, runtime::Clock clock);
 
   void run(const std::atomic<bool>& stop);
   void wake() { wake_.post(); }
@@ -30,8 +36,16 @@ class ControlService {
   const Snapshot& last() const { return telemetry_.last(); }  // once run() has returned
 
  private:
+  void subscribe(comms::Node& node, runtime::Clock clock);
   void on_imu(const comms::msg::Imu& message);
-  void subscribe(comms::Node& node);
+  void on_imu_in_lockstep(const comms::msg::Imu& message);
+  void answer(const comms::msg::Imu& message);
+  template <class Message, class Sample>
+  std::function<void(const Message&)> deliver(runtime::Mailbox<Sample>& mailbox, comms::FaultLog& faults);
+  template <class Message, class Sample>
+  std::function<void(const Message&)> deliver_in_lockstep(runtime::Mailbox<Sample>& mailbox,
+                                                          comms::FaultLog& faults,
+                                                          LockstepGate::Stream stream);
 
   runtime::RealtimeSettings realtime_;
   runtime::Semaphore wake_;
@@ -39,8 +53,12 @@ class ControlService {
   RequestDesk desk_;
   Telemetry telemetry_;
   comms::Publisher<comms::msg::ActuatorCommand> commands_;
+  comms::msg::ActuatorCommand last_answer_;
   bool imu_thread_ready_ = false;  // by the thread of that name alone
   bool pose_thread_ready_ = false;
+
+  std::mutex gate_mutex_;  // in lockstep: of the inner loop and all that it takes in
+  LockstepGate gate_;
 
   comms::FaultLog pose_faults_{"mocap_pose"};
   comms::FaultLog battery_faults_{"battery"};

@@ -48,9 +48,11 @@ class InnerLoop {
   plant::ActuatorCommand step(const plant::ImuSample& sample, std::int64_t now_ns);
   bool finish(std::int64_t now_ns);
 
+  // Between two steps: has the controller judge what is asked. step() does it too.
+  void judge_requests();
+
  private:
   void take_samples();
-  void judge_requests();
   bool is_sampled(std::uint64_t imu_sequence) const;
   bool status_changed() const;
 

@@ -10,6 +10,7 @@
 #include "services/comms/node_options.hpp"
 #include "services/comms/peer_log.hpp"
 #include "services/control/control_service.hpp"
+#include "services/runtime/clock.hpp"
 #include "services/runtime/control_settings_file.hpp"
 #include "services/runtime/find_config.hpp"
 #include "services/runtime/log.hpp"
@@ -24,6 +25,7 @@ struct Options {
   std::string vehicle = "vehicles/kaylion.yaml";
   std::string control = "control/motor_lag.yaml";
   int strength = 0;
+  runtime::Clock clock = runtime::Clock::kRealtime;
   comms::NodeSettings node;
   runtime::ProcessOptions process;
 };
@@ -35,6 +37,7 @@ void add_options(CLI::App& app, Options& options) {
                  "Of several controllers, the vehicle obeys the strongest alive")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
+  runtime::add_clock_option(app, options.clock);
   comms::add_node_options(app, options.node);
   runtime::add_process_options(app, options.process);
 }
@@ -46,13 +49,15 @@ void run(const Options& options) {
 
   runtime::StopSignal stop;
   const runtime::Logging logging("control", options.process.log);
-  runtime::prepare_realtime(options.process.realtime);
+  runtime::RealtimeSettings realtime = options.process.realtime;
+  if (options.clock == runtime::Clock::kLockstep) realtime.enabled = false;
+  runtime::prepare_realtime(realtime);
 
   comms::NodeSettings node_settings = options.node;
   node_settings.name = "control";
   comms::Node node(node_settings);
   comms::log_peers(node);
-  ControlService service(vehicle, settings, options.strength, node, options.process.realtime);
+  ControlService service(vehicle, settings, options.strength, node, realtime, options.clock);
   spdlog::info("ready: {} with {} control, vehicle {}, domain {}, strength {}", vehicle.name, settings.name,
                node_settings.vehicle, node_settings.domain, options.strength);
 

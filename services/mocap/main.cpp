@@ -1,6 +1,7 @@
 // swiftlet-mocap: simulated motion capture. Takes truth in, gives poses out, and goes by the stamps alone.
 #include <atomic>
 #include <cstdint>
+#include <stdexcept>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -11,6 +12,7 @@
 #include "services/comms/node.hpp"
 #include "services/comms/node_options.hpp"
 #include "services/comms/peer_log.hpp"
+#include "services/runtime/clock.hpp"
 #include "services/runtime/find_config.hpp"
 #include "services/runtime/log.hpp"
 #include "services/runtime/process.hpp"
@@ -23,6 +25,7 @@ namespace {
 struct Options {
   std::string simulation = "simulation/default.yaml";
   std::uint64_t seed = 1;
+  runtime::Clock clock = runtime::Clock::kRealtime;
   comms::NodeSettings node;
   runtime::ProcessOptions process;
 };
@@ -30,6 +33,7 @@ struct Options {
 void add_options(CLI::App& app, Options& options) {
   app.add_option("--simulation", options.simulation, "Simulation file")->capture_default_str();
   app.add_option("--seed", options.seed, "Of errors and dropouts")->capture_default_str();
+  runtime::add_clock_option(app, options.clock);
   comms::add_node_options(app, options.node);
   runtime::add_process_options(app, options.process);
 }
@@ -38,9 +42,11 @@ void add_options(CLI::App& app, Options& options) {
 class Camera {
  public:
   Camera(const plant::MocapSettings& settings, std::uint64_t seed, comms::Node& node,
-         const runtime::RealtimeSettings& realtime)
+         const runtime::RealtimeSettings& realtime, runtime::Clock clock, runtime::StopSignal& stop)
       : mocap_(settings, seed),
         realtime_(realtime),
+        clock_(clock),
+        stop_(stop),
         poses_(node.publish(comms::topics::kMocapPose)),
         truth_(node.subscribe<comms::msg::GroundTruth>(
             comms::topics::kGroundTruth, [this](const auto& message) { on_truth(message); }, {},
@@ -48,6 +54,8 @@ class Camera {
 
   std::uint64_t frames() const { return frames_; }
   std::uint64_t untracked() const { return untracked_; }
+  // Lockstep: a sample of the truth is missing, and with it what this process was to make of it.
+  bool lost_truth() const { return lost_truth_; }
 
  private:
   void on_truth(const comms::msg::GroundTruth& message) {
@@ -62,15 +70,37 @@ class Camera {
       told_fault_ = true;
       return;
     }
+    if (clock_ == runtime::Clock::kLockstep && !goes_on(truth)) return;
     const auto pose = mocap_.update(truth);
     if (!pose) return;
-    poses_.publish(comms::to_message(*pose));
+    last_pose_ = comms::to_message(*pose);
+    poses_.publish(last_pose_);
     frames_.fetch_add(1, std::memory_order_relaxed);
     if (!pose->tracked) untracked_.fetch_add(1, std::memory_order_relaxed);
   }
 
+  // In lockstep: true if this is the next sample. One that comes again is answered again.
+  bool goes_on(const plant::TruthSample& truth) {
+    if (truth.sequence <= truth_sequence_) {
+      poses_.publish(last_pose_);
+      return false;
+    }
+    if (truth.sequence != truth_sequence_ + 1) {
+      lost_truth_ = true;
+      stop_.request();
+      return false;
+    }
+    truth_sequence_ = truth.sequence;
+    return true;
+  }
+
   plant::Mocap mocap_;
   runtime::RealtimeSettings realtime_;
+  runtime::Clock clock_;
+  runtime::StopSignal& stop_;
+  std::uint64_t truth_sequence_ = 0;
+  comms::msg::MocapPose last_pose_;  // number 0, untracked, before the first frame: a sign of life
+  std::atomic<bool> lost_truth_{false};
   bool scheduled_ = false;
   bool told_fault_ = false;
   std::atomic<std::uint64_t> frames_{0};
@@ -85,16 +115,19 @@ void run(const Options& options) {
 
   runtime::StopSignal stop;
   const runtime::Logging logging("mocap", options.process.log);
-  runtime::prepare_realtime(options.process.realtime);
+  runtime::RealtimeSettings realtime = options.process.realtime;
+  if (options.clock == runtime::Clock::kLockstep) realtime.enabled = false;
+  runtime::prepare_realtime(realtime);
 
   comms::NodeSettings node_settings = options.node;
   node_settings.name = "mocap";
   comms::Node node(node_settings);
   comms::log_peers(node);
-  const Camera camera(settings.mocap, options.seed, node, options.process.realtime);
+  const Camera camera(settings.mocap, options.seed, node, realtime, options.clock, stop);
   spdlog::info("watching: vehicle {}, domain {}, {:g} frames a second, seed {}", node_settings.vehicle,
                node_settings.domain, settings.mocap.rate_hz, options.seed);
   stop.wait();
+  if (camera.lost_truth()) throw std::runtime_error("lockstep: a sample of ground_truth was lost");
   spdlog::info("ended: {} frames, {} of them untracked", camera.frames(), camera.untracked());
 }
 

@@ -2,6 +2,9 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <exception>
+#include <functional>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -12,9 +15,13 @@
 #include "services/comms/node.hpp"
 #include "services/comms/node_options.hpp"
 #include "services/comms/peer_log.hpp"
-#include "services/plant/plant_loop.hpp"
+#include "services/plant/lockstep_loop.hpp"
+#include "services/plant/realtime_loop.hpp"
+#include "services/plant/simulated_vehicle.hpp"
+#include "services/runtime/clock.hpp"
 #include "services/runtime/find_config.hpp"
 #include "services/runtime/log.hpp"
+#include "services/runtime/periodic_timer.hpp"
 #include "services/runtime/process.hpp"
 #include "services/runtime/simulation_file.hpp"
 #include "services/runtime/stop_signal.hpp"
@@ -30,6 +37,9 @@ struct Options {
   std::string simulation = "simulation/default.yaml";
   std::uint64_t seed = 1;
   int imu_rate = 0;  // Hz; 0: that of the simulation file
+  runtime::Clock clock = runtime::Clock::kRealtime;
+  double speed = 1.0;
+  LockstepSettings lockstep;
   comms::NodeSettings node;
   runtime::ProcessOptions process;
 };
@@ -41,8 +51,26 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--imu-rate", options.imu_rate,
                  "IMU samples a second, 500 or 1000; default: the simulation file's")
       ->check(CLI::IsMember({500, 1000}));
+  runtime::add_clock_option(app, options.clock);
+  app.add_option("--speed", options.speed, "Of simulated time against real time")
+      ->check(CLI::Range(0.01, 100.0))
+      ->capture_default_str();
+  app.add_flag("--paused", options.lockstep.paused,
+               "Lockstep: let time pass only as far as simulation_clock grants it");
+  app.add_option("--trace", options.lockstep.trace,
+                 "Lockstep: keep every sample and command of the flight in this CSV file, to the last bit");
   comms::add_node_options(app, options.node);
   runtime::add_process_options(app, options.process);
+}
+
+// Throws std::invalid_argument for options that do not go together.
+void check(const Options& options) {
+  const bool lockstep = options.clock == runtime::Clock::kLockstep;
+  if (lockstep && options.speed != 1.0)
+    throw std::invalid_argument("--speed: lockstep goes as fast as the answers come");
+  if (!lockstep && options.lockstep.paused) throw std::invalid_argument("--paused: needs --clock lockstep");
+  if (!lockstep && !options.lockstep.trace.empty())
+    throw std::invalid_argument("--trace: needs --clock lockstep");
 }
 
 comms::msg::VehicleInfo describe(const plant::Vehicle& vehicle, double imu_rate_hz) {
@@ -59,6 +87,7 @@ void update(comms::msg::VehicleInfo& info, const PlantReport& report, const std:
   info.stamp_ns(report.stamp_ns);
   info.sequence_number(info.sequence_number() + 1);
   info.rotors_running(report.rotors_running);
+  info.paused(report.paused);
   info.answered(report.answered);
   info.unanswered(report.unanswered);
   info.sense_to_actuate_p50_us(static_cast<double>(report.answer_p50_ns) * 1e-3);
@@ -80,7 +109,9 @@ class Reporter {
   }
 
   void tell(const PlantReport& report) {
-    const bool changed = report.rotors_running != told_.rotors_running || report.timed_out != told_.timed_out;
+    const bool changed = report.rotors_running != told_.rotors_running ||
+                         report.timed_out != told_.timed_out || report.paused != told_.paused ||
+                         (report.paused && report.stamp_ns != told_.stamp_ns);
     const std::int64_t now_ns = runtime::monotonic_ns();
     if (!changed && now_ns < due_ns_) return;
     due_ns_ = now_ns + kPeriodNs;
@@ -133,6 +164,33 @@ class Reporter {
   std::int64_t trouble_due_ns_ = 0;
 };
 
+// Runs the loop in a thread of its own until a stop or its failure, which is thrown on. Returns its last
+// report.
+PlantReport run_loop(const std::function<void(const std::atomic<bool>&)>& loop, SimulatedVehicle& vehicle,
+                     Reporter& reporter, runtime::StopSignal& stop) {
+  std::atomic<bool> ends{false};
+  std::exception_ptr failure;
+  std::thread thread([&] {
+    try {
+      loop(ends);
+    } catch (...) {
+      failure = std::current_exception();
+      stop.request();
+    }
+  });
+  PlantReport last;
+  do {
+    vehicle.reports().take(last);
+    reporter.tell(last);
+  } while (!stop.wait_for(20ms));
+  ends = true;
+  thread.join();
+  if (failure) std::rethrow_exception(failure);
+  vehicle.reports().take(last);
+  reporter.tell(last);
+  return last;
+}
+
 void run(const Options& options) {
   const plant::Vehicle vehicle = runtime::load_vehicle(runtime::find_config(options.vehicle));
   plant::SimulationSettings settings =
@@ -142,30 +200,37 @@ void run(const Options& options) {
     throw std::invalid_argument("--imu-rate: " + violation.key + " " + violation.message);
   }
 
+  check(options);
+
   runtime::StopSignal stop;
   const runtime::Logging logging("plant", options.process.log);
-  runtime::prepare_realtime(options.process.realtime);
+  runtime::RealtimeSettings realtime = options.process.realtime;
+  if (options.clock == runtime::Clock::kLockstep) realtime.enabled = false;
+  runtime::prepare_realtime(realtime);
 
   comms::NodeSettings node_settings = options.node;
   node_settings.name = "plant";
   comms::Node node(node_settings);
   comms::log_peers(node);
   Reporter reporter(node, vehicle, settings);
-  PlantLoop loop(vehicle, settings, options.seed, node, options.process.realtime);
-  spdlog::info("{} flies: vehicle {}, domain {}, IMU at {:g} Hz, seed {}", vehicle.name,
-               node_settings.vehicle, node_settings.domain, settings.imu.rate_hz, options.seed);
+  SimulatedVehicle simulated(vehicle, settings, options.seed, node);
+  spdlog::info("{} flies: vehicle {}, domain {}, clock {}, IMU at {:g} Hz, seed {}", vehicle.name,
+               node_settings.vehicle, node_settings.domain, runtime::to_string(options.clock),
+               settings.imu.rate_hz, options.seed);
 
-  std::atomic<bool> loop_ends{false};
-  std::thread loop_thread([&] { loop.run(loop_ends); });
-  PlantReport last;
-  do {
-    loop.reports().take(last);
-    reporter.tell(last);
-  } while (!stop.wait_for(20ms));
-  loop_ends = true;
-  loop_thread.join();
-  loop.reports().take(last);
-  reporter.tell(last);
+  std::optional<RealtimeLoop> realtime_loop;
+  std::optional<LockstepLoop> lockstep_loop;
+  if (options.clock == runtime::Clock::kRealtime) {
+    realtime_loop.emplace(simulated, settings, options.speed, node, realtime);
+  } else {
+    lockstep_loop.emplace(simulated, settings, options.lockstep, vehicle.rotor_count(), node);
+  }
+  const PlantReport last = run_loop(
+      [&](const std::atomic<bool>& ends) {
+        if (realtime_loop) realtime_loop->run(ends);
+        if (lockstep_loop) lockstep_loop->run(ends);
+      },
+      simulated, reporter, stop);
 
   spdlog::info(
       "ended after {:.1f} s of simulated time: {} commands obeyed, {} refused; sense to actuate p50 {:.0f} "

@@ -6,10 +6,10 @@
 #include <benchmark/benchmark.h>
 
 #include "control/flight_controller.hpp"
+#include "ground/simulation/closed_loop.hpp"
 #include "services/runtime/control_settings_file.hpp"
 #include "services/runtime/find_config.hpp"
 #include "services/runtime/vehicle_file.hpp"
-#include "tests/support/closed_loop.hpp"
 
 namespace swiftlet {
 namespace {
@@ -23,10 +23,10 @@ control::Request request(control::RequestKind kind,
 }
 
 // A closed loop that has taken off, on its way along a minimum-jerk line that it flies for a long time.
-test::ClosedLoop under_way(const char* settings) {
-  test::ClosedLoop loop(runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml")),
-                        plant::SimulationSettings(),
-                        runtime::load_control_settings(runtime::find_config(settings)), 1);
+ground::ClosedLoop under_way(const char* settings) {
+  ground::ClosedLoop loop(runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml")),
+                          plant::SimulationSettings(),
+                          runtime::load_control_settings(runtime::find_config(settings)), 1);
   loop.step_until([&] { return loop.time_s() > 0.5; }, 1.0);
   if (!loop.controller.request(request(control::RequestKind::kArm)).accepted ||
       !loop.controller.request(request(control::RequestKind::kTakeoff, {0, 0, -1})).accepted ||
@@ -42,7 +42,7 @@ test::ClosedLoop under_way(const char* settings) {
 // Samples of steady flight come again and again with new stamps, a pose every tenth of the IMU's: the
 // controller does all it does in flight, the plant is not timed.
 void inner_loop_step(benchmark::State& state, const char* settings) {
-  test::ClosedLoop loop = under_way(settings);
+  ground::ClosedLoop loop = under_way(settings);
   constexpr int kPosePeriod = 5;
   plant::ImuSample imu = *loop.plant.imu();
   imu.specific_force_frd = {0.0, 0.0, -plant::kGravity};

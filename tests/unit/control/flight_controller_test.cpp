@@ -8,16 +8,18 @@
 #include <gtest/gtest.h>
 
 #include "control/supervision/checks.hpp"
+#include "ground/flight_window.hpp"
+#include "ground/simulation/simulated_flight.hpp"
+#include "ground/tracking.hpp"
 #include "services/runtime/control_settings_file.hpp"
 #include "services/runtime/vehicle_file.hpp"
-#include "tests/support/closed_loop.hpp"
 #include "tests/support/malloc_guard.hpp"
 
 namespace swiftlet::control {
 namespace {
 
 using Eigen::Vector3d;
-using test::ClosedLoop;
+using ground::ClosedLoop;
 
 plant::Vehicle kaylion() {
   return runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
@@ -51,6 +53,23 @@ Request request(RequestKind kind, Vector3d position = Vector3d::Zero(), double s
   return request;
 }
 
+struct Flown : ground::SimulatedFlight {
+  double rms_3d_m = 0.0;
+  double duration_s = 0.0;  // of what is judged: take-off to landing
+};
+
+Flown fly(ClosedLoop& loop, const Mission& mission) {
+  constexpr double kPlannedS = 100.0;
+  constexpr std::size_t kCapacity = 200'000;
+  ground::FlightRecord record(kCapacity);
+  Flown flown{ground::fly(loop, mission, kPlannedS, {&record, nullptr, {}})};
+  if (const auto window = ground::mission_window(record, mission.id, mission)) {
+    flown.rms_3d_m = ground::tracking_errors(record.truth, record.reference, *window).rms_3d_m;
+    flown.duration_s = window->duration_s();
+  }
+  return flown;
+}
+
 // In the air, holding at 1 m, with all sensor models on.
 class InFlight : public testing::Test {
  protected:
@@ -75,7 +94,7 @@ class Seeds : public testing::TestWithParam<int> {};
 TEST_P(Seeds, MotorAwareLoopsFlyTheSquareWithinTenMillimetres) {
   ClosedLoop loop(kaylion(), plant::SimulationSettings(), settings("motor_lag"),
                   static_cast<std::uint64_t>(GetParam()));
-  const test::MissionResult result = test::fly(loop, square(0.5));
+  const Flown result = fly(loop, square(0.5));
   ASSERT_TRUE(result.completed) << result.reason;
   EXPECT_LT(result.rms_3d_m, 0.010);
   EXPECT_GT(result.duration_s, 30.0);
@@ -86,7 +105,7 @@ TEST_P(Seeds, MotorAwareLoopsFlyTheSquareWithinTenMillimetres) {
 TEST_P(Seeds, ThePapersLoopsFlyTheSquareWithinThirtyMillimetres) {
   ClosedLoop loop(kaylion(), plant::SimulationSettings(), settings("paper"),
                   static_cast<std::uint64_t>(GetParam()));
-  const test::MissionResult result = test::fly(loop, square(0.5));
+  const Flown result = fly(loop, square(0.5));
   ASSERT_TRUE(result.completed) << result.reason;
   EXPECT_LT(result.rms_3d_m, 0.030);
 }
@@ -95,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(OfTheSquare, Seeds, testing::Range(1, 9));
 TEST(FlightController, KnowingTheRotorLagTracksBetter) {
   ClosedLoop with(kaylion(), plant::SimulationSettings(), settings("motor_lag"), 3);
   ClosedLoop without(kaylion(), plant::SimulationSettings(), settings("paper"), 3);
-  EXPECT_LT(test::fly(with, square(0.5)).rms_3d_m, 0.5 * test::fly(without, square(0.5)).rms_3d_m);
+  EXPECT_LT(fly(with, square(0.5)).rms_3d_m, 0.5 * fly(without, square(0.5)).rms_3d_m);
 }
 
 TEST(FlightController, RefusesGainsThatTheRotorLagMakesUnstable) {
@@ -229,9 +248,9 @@ TEST(FlightController, ABatteryThatRunsLowLandsIt) {
   ControlSettings careful = settings("motor_lag");
   careful.failsafe.low_battery_voltage = 4.0;
   ClosedLoop loop(kaylion(), plant::SimulationSettings(), careful, 2);
-  const test::MissionResult result = test::fly(loop, square(0.3));
+  const Flown result = fly(loop, square(0.3));
   EXPECT_FALSE(result.completed);
-  EXPECT_EQ(result.reason, "battery is low");
+  EXPECT_EQ(result.reason, "the mission was aborted: battery is low");
   ASSERT_TRUE(loop.step_until([&] { return loop.controller.status().mode == Mode::kDisarmed; }, 10.0));
   EXPECT_TRUE(loop.plant.on_ground());
 }
@@ -258,9 +277,9 @@ TEST(FlightController, RepeatsItselfBitByBit) {
   ClosedLoop one(kaylion(), plant::SimulationSettings(), settings("motor_lag"), 5);
   ClosedLoop two(kaylion(), plant::SimulationSettings(), settings("motor_lag"), 5);
   ClosedLoop other(kaylion(), plant::SimulationSettings(), settings("motor_lag"), 6);
-  test::fly(one, square(1.0));
-  test::fly(two, square(1.0));
-  test::fly(other, square(1.0));
+  fly(one, square(1.0));
+  fly(two, square(1.0));
+  fly(other, square(1.0));
   EXPECT_EQ(one.plant.state().position_ned, two.plant.state().position_ned);
   EXPECT_EQ(one.command.throttle, two.command.throttle);
   EXPECT_NE(one.plant.state().position_ned, other.plant.state().position_ned);
@@ -271,7 +290,7 @@ TEST(FlightController, BeginsAnewWhenTheVehicleWasStartedAgain) {
   first.step_until([] { return false; }, 3.0);
   ClosedLoop again(kaylion(), plant::SimulationSettings(), settings("motor_lag"), 6);
   again.controller = std::move(first.controller);
-  const test::MissionResult result = test::fly(again, square(1.0));
+  const Flown result = fly(again, square(1.0));
   EXPECT_TRUE(result.completed) << result.reason;
 }
 

@@ -1,21 +1,26 @@
 // Plant, mocap and flight controller in one thread, without DDS: each IMU sample is answered at its own
-// stamp.
+// stamp, after the samples that were taken before it. The separate processes do the same in lockstep, to the
+// last bit.
 #pragma once
 
+#include <cstdint>
 #include <functional>
-#include <string>
+#include <optional>
 
 #include "control/flight_controller.hpp"
-#include "control/mission.hpp"
 #include "control/settings.hpp"
+#include "plant/model/samples.hpp"
+#include "plant/model/vehicle.hpp"
 #include "plant/simulation/actuator_watchdog.hpp"
 #include "plant/simulation/mocap.hpp"
 #include "plant/simulation/plant_simulation.hpp"
+#include "plant/simulation/settings.hpp"
 
-namespace swiftlet::test {
+namespace swiftlet::ground {
 
 class ClosedLoop {
  public:
+  // Answers the samples of stamp 0. Throws std::invalid_argument as FlightController does.
   ClosedLoop(const plant::Vehicle& vehicle, const plant::SimulationSettings& simulation,
              const control::ControlSettings& settings, std::uint64_t seed);
 
@@ -28,23 +33,21 @@ class ClosedLoop {
   // Position less reference, m NED; zero while the rotors are off.
   Eigen::Vector3d tracking_error() const;
 
+  const double imu_rate_hz;
   plant::PlantSimulation plant;
   plant::Mocap mocap;
   plant::ActuatorWatchdog watchdog;
   control::FlightController controller;
-  plant::ActuatorCommand command;
+  plant::ActuatorCommand command;  // the last answer
   bool mocap_connected = true;
+
+ private:
+  void collect();
+  void answer();
+
+  // The newest since the last answer.
+  std::optional<plant::BatterySample> battery_;
+  std::optional<plant::RotorSpeedSample> rotor_speeds_;
 };
 
-struct MissionResult {
-  bool completed = false;
-  std::string reason;
-  double rms_3d_m = 0.0;
-  double peak_3d_m = 0.0;
-  double duration_s = 0.0;  // take-off to landing item
-};
-
-// Arms, flies the mission to its end, and takes the errors from its start to its landing item.
-MissionResult fly(ClosedLoop& loop, const control::Mission& mission);
-
-}  // namespace swiftlet::test
+}  // namespace swiftlet::ground

@@ -1,0 +1,69 @@
+#include "ground/flight_conclusion.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+
+#include "ground/command.hpp"
+#include "ground/flight_files.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+// Why a mission that was flown to its end does not count as completed; empty if it does.
+std::string shortfall(const FlightReport& report, Window window) {
+  char text[160];
+  if (!enough_samples(report.errors, window)) {
+    std::snprintf(text, sizeof text,
+                  "too little telemetry to judge it: %zu samples matched of %.0f, longest gap %.2f s (at "
+                  "least %.0f %%, at most %.2f s)",
+                  report.errors.matched, window.duration_s() * kTelemetryRateHz, report.errors.longest_gap_s,
+                  kLeastMatchedFraction * 100.0, kLongestGapS);
+    return text;
+  }
+  if (!std::isfinite(report.errors.rms_3d_m)) return "the ground truth is not finite";
+  if (report.errors.peak_3d_m > report.tolerance_m) {
+    std::snprintf(text, sizeof text, "the peak tracking error was %.3f m, the tolerance is %.3f m",
+                  report.errors.peak_3d_m, report.tolerance_m);
+    return text;
+  }
+  return {};
+}
+
+}  // namespace
+
+void make_record_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw InputError("--record " + folder.string() + ": the folder cannot be made: " + error.message());
+}
+
+void judge(FlightReport& report, const FlightRecord& record, Window window) {
+  report.errors = tracking_errors(record.truth, record.reference, window);
+  if (report.reason.empty()) report.reason = shortfall(report, window);
+  report.completed = report.reason.empty();
+}
+
+void keep_record(const std::filesystem::path& folder, const FlightRecord& record, const FlightReport& report,
+                 Window window, ProgressLine& progress) {
+  write_flight_csv(folder / "flight.csv", record, window);
+  write_report_json(folder / "report.json", report);
+  if (report.errors.matched == 0) return;
+  const std::string no_picture = draw_flight(folder, report, window);
+  if (!no_picture.empty()) progress.say(no_picture);
+}
+
+int tell(const FlightReport& report, bool json, ProgressLine& progress) {
+  progress.close();
+  if (json) {
+    std::printf("%s\n", to_json(report).dump().c_str());
+    if (!report.completed) progress.say("swiftlet: " + report.reason);
+  } else {
+    std::fputs(to_text(report).c_str(), report.completed ? stdout : stderr);
+  }
+  return report.completed ? kDone : kFailed;
+}
+
+}  // namespace swiftlet::ground

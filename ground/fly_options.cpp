@@ -1,0 +1,28 @@
+#include "ground/fly_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+namespace swiftlet::ground {
+
+void add_fly_options(CLI::App& app, FlyOptions& options) {
+  app.add_option("mission", options.mission, "mission file, or the name of one in the configuration")
+      ->capture_default_str();
+  app.add_option("--vehicle", options.vehicle, "vehicle file or name")->capture_default_str();
+  app.add_option("--control", options.control,
+                 "control settings, file or name: motor_lag, or paper for the paper's own loops")
+      ->capture_default_str();
+  app.add_option("--simulation", options.simulation, "simulation settings, file or name")
+      ->capture_default_str();
+  app.add_option(
+      "--record", options.record,
+      "folder for flight.csv, report.json, flight.png and logs; flights/<date>-<mission> unless given");
+  app.add_option("--seed", options.seed, "of all that is random in the simulation")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--imu-rate", options.imu_rate_hz,
+                 "IMU and inner-loop rate, Hz; as the simulation file says unless given")
+      ->check(CLI::IsMember({500, 1000}));
+  app.add_flag("--json", options.json, "print one JSON object instead of the summary");
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,56 @@
+#include "ground/simulation/closed_loop.hpp"
+
+#include <cmath>
+
+namespace swiftlet::ground {
+
+ClosedLoop::ClosedLoop(const plant::Vehicle& vehicle, const plant::SimulationSettings& simulation,
+                       const control::ControlSettings& settings, std::uint64_t seed)
+    : imu_rate_hz(simulation.imu.rate_hz),
+      plant(vehicle, simulation, seed),
+      mocap(simulation.mocap, seed),
+      watchdog(vehicle.rotor_count(), std::llround(simulation.command_timeout_s * 1e9)),
+      controller(vehicle, settings) {
+  collect();
+  answer();
+}
+
+void ClosedLoop::step() {
+  do {
+    plant.step(watchdog.drive(plant.stamp_ns()));
+    collect();
+  } while (!plant.imu());
+  answer();
+}
+
+void ClosedLoop::collect() {
+  if (plant.battery()) battery_ = plant.battery();
+  if (plant.rotor_speeds()) rotor_speeds_ = plant.rotor_speeds();
+}
+
+void ClosedLoop::answer() {
+  const auto pose = mocap.update(plant.truth());
+  if (pose && mocap_connected) controller.on_pose(*pose);
+  if (battery_) controller.on_battery(*battery_);
+  if (rotor_speeds_) controller.on_rotor_speeds(*rotor_speeds_);
+  battery_.reset();
+  rotor_speeds_.reset();
+  command = controller.on_imu(*plant.imu());
+  watchdog.accept(command, plant.stamp_ns());
+}
+
+bool ClosedLoop::step_until(const std::function<bool()>& predicate, double limit_s) {
+  const double end = time_s() + limit_s;
+  while (!predicate()) {
+    if (time_s() > end) return false;
+    step();
+  }
+  return true;
+}
+
+Eigen::Vector3d ClosedLoop::tracking_error() const {
+  if (command.rotor_state == plant::RotorState::kOff) return Eigen::Vector3d::Zero();
+  return plant.state().position_ned - controller.reference().position_ned;
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,152 @@
+#include "services/plant/lockstep_loop.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+#include <thread>
+
+#include "plant/simulation/mocap.hpp"
+#include "services/runtime/periodic_timer.hpp"
+
+namespace swiftlet::services {
+namespace {
+
+using namespace std::chrono_literals;
+using Lock = std::lock_guard<std::mutex>;
+
+constexpr auto kLookPeriod = 20ms;  // also after which what has no answer is sent again
+constexpr double kLongestLookS = 0.1;
+
+}  // namespace
+
+LockstepLoop::LockstepLoop(SimulatedVehicle& vehicle, const plant::SimulationSettings& settings,
+                           const LockstepSettings& lockstep, int rotor_count, comms::Node& node)
+    : vehicle_(vehicle),
+      settings_(settings),
+      lockstep_(lockstep),
+      imu_period_ns_(plant::period_ns(settings.imu.rate_hz)),
+      granted_ns_(lockstep.paused ? -1 : std::numeric_limits<std::int64_t>::max()) {
+  if (!lockstep.trace.empty()) trace_.emplace(lockstep.trace, rotor_count);
+  commands_ = node.subscribe<comms::msg::ActuatorCommand>(
+      comms::topics::kActuatorCommand, [this](const auto& message) { on_command(message); }, {},
+      comms::Delivery::kOwnThread);
+  poses_ = node.subscribe<comms::msg::MocapPose>(comms::topics::kMocapPose,
+                                                 [this](const auto& message) { on_pose(message); });
+  if (lockstep.paused) {
+    clock_ = node.subscribe<comms::msg::SimulationClock>(comms::topics::kSimulationClock,
+                                                         [this](const auto& message) { on_clock(message); });
+  }
+}
+
+void LockstepLoop::run(const std::atomic<bool>& stop) {
+  std::int64_t looked_ns = runtime::monotonic_ns();
+  while (!stop.load(std::memory_order_relaxed)) {
+    {
+      const Lock lock(mutex_);
+      const std::int64_t now_ns = runtime::monotonic_ns();
+      look_after(std::min(static_cast<double>(now_ns - looked_ns) * 1e-9, kLongestLookS));
+      looked_ns = now_ns;
+    }
+    std::this_thread::sleep_for(kLookPeriod);
+  }
+  const Lock lock(mutex_);
+  if (trace_) trace_->close();
+}
+
+void LockstepLoop::on_command(const comms::msg::ActuatorCommand& message) {
+  const Lock lock(mutex_);
+  if (!started_ || command_arrived_) return;  // an answer that came again
+  if (message.imu_sequence_number() != vehicle_.simulation().imu()->sequence) return;
+  const ReceivedCommand received(message, runtime::monotonic_ns());
+  if (!vehicle_.obey(received)) return;
+  command_ = received.command;
+  command_arrived_ = true;
+  advance();
+}
+
+void LockstepLoop::on_pose(const comms::msg::MocapPose& message) {
+  const Lock lock(mutex_);
+  mocap_heard_ = true;
+  mocap_sequence_ = std::max(mocap_sequence_, message.sequence_number());
+  advance();
+}
+
+void LockstepLoop::on_clock(const comms::msg::SimulationClock& message) {
+  const Lock lock(mutex_);
+  clock_heard_ = true;
+  clock_silence_s_ = 0.0;
+  granted_ns_ = std::max(granted_ns_, message.advance_to_ns());
+  advance();
+}
+
+bool LockstepLoop::may_advance() const {
+  return vehicle_.simulation().stamp_ns() + imu_period_ns_ <= granted_ns_;
+}
+
+// In the thread that brought the last of what was waited for.
+void LockstepLoop::advance() {
+  if (!failure_.empty() || !started_ || !answered()) return;
+  vehicle_.note_pause(!may_advance());
+  vehicle_.report();
+  if (!may_advance()) return;
+  silence_s_ = 0.0;
+  command_arrived_ = false;
+  try {
+    if (trace_) trace_->add(vehicle_.simulation().truth(), command_);
+  } catch (const std::runtime_error& error) {
+    failure_ = error.what();
+    return;
+  }
+  do {
+    vehicle_.step();
+    if (!vehicle_.simulation().imu()) publish();
+  } while (!vehicle_.simulation().imu());
+  publish();
+}
+
+void LockstepLoop::publish() {
+  if (vehicle_.simulation().imu()) {
+    mocap_due_ =
+        plant::newest_mocap_sequence(settings_.mocap, imu_period_ns_, vehicle_.simulation().stamp_ns());
+  }
+  vehicle_.publish_samples_in_order(mocap_due_);
+}
+
+void LockstepLoop::look_after(double awake_s) {
+  if (!failure_.empty()) throw std::runtime_error(failure_);
+  if (!started_) {
+    if (granted_ns_ < 0) return;
+    started_ = true;
+    publish();
+    return;
+  }
+  if (clock_heard_ && (clock_silence_s_ += awake_s) > lockstep_.patience_s)
+    throw std::runtime_error("lockstep: ground is silent: no simulation_clock for 2 s");
+  if (answered()) {
+    // The controller looks at requests with each sample, also with one that it has answered.
+    vehicle_.publish_imu_again();
+    return;
+  }
+  if ((silence_s_ += awake_s) > lockstep_.patience_s) throw std::runtime_error(silent_peer());
+  if (silence_s_ > std::chrono::duration<double>(kLookPeriod).count()) vehicle_.publish_again();
+}
+
+std::string LockstepLoop::silent_peer() const {
+  const double time_s = static_cast<double>(vehicle_.simulation().stamp_ns()) * 1e-9;
+  char text[192];
+  if (!mocap_heard_ || mocap_sequence_ < mocap_due_) {
+    std::snprintf(text, sizeof text,
+                  "lockstep: mocap is silent: frame %llu, due at t = %.3f s, has not come for %g s",
+                  static_cast<unsigned long long>(mocap_due_), time_s, lockstep_.patience_s);
+  } else {
+    std::snprintf(text, sizeof text,
+                  "lockstep: control is silent: IMU sample %llu of t = %.3f s has no answer for %g s",
+                  static_cast<unsigned long long>(vehicle_.simulation().imu()->sequence), time_s,
+                  lockstep_.patience_s);
+  }
+  return text;
+}
+
+}  // namespace swiftlet::services

@@ -1,0 +1,73 @@
+// Simulated time that waits for the answers: the plant goes on from a stamp when the command that answers its
+// IMU sample and the mocap frame that was due have arrived.
+//
+// What has no answer is sent again; whoever took it in before answers as before and does not take it in
+// twice. So a lost datagram costs time and changes nothing.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "services/comms/node.hpp"
+#include "services/plant/simulated_vehicle.hpp"
+#include "services/runtime/flight_trace.hpp"
+
+namespace swiftlet::services {
+
+struct LockstepSettings {
+  bool paused = false;      // time passes only as far as simulation_clock grants it
+  double patience_s = 2.0;  // for an answer
+  std::string trace;        // file; empty: none is kept
+};
+
+class LockstepLoop {
+ public:
+  // Throws std::runtime_error if the trace cannot be written. The vehicle must outlive the loop.
+  LockstepLoop(SimulatedVehicle& vehicle, const plant::SimulationSettings& settings,
+               const LockstepSettings& lockstep, int rotor_count, comms::Node& node);
+
+  // Until `stop`. Throws std::runtime_error that names the peer whose answer has not come in time, of which
+  // only what this process was awake for counts.
+  void run(const std::atomic<bool>& stop);
+
+ private:
+  void on_command(const comms::msg::ActuatorCommand& message);
+  void on_pose(const comms::msg::MocapPose& message);
+  void on_clock(const comms::msg::SimulationClock& message);
+
+  // All below with the lock held.
+  bool answered() const { return command_arrived_ && mocap_heard_ && mocap_sequence_ >= mocap_due_; }
+  bool may_advance() const;
+  void advance();
+  void publish();
+  void look_after(double awake_s);
+  std::string silent_peer() const;
+
+  SimulatedVehicle& vehicle_;
+  const plant::SimulationSettings settings_;
+  const LockstepSettings lockstep_;
+  std::int64_t imu_period_ns_;
+
+  std::mutex mutex_;
+  bool started_ = false;  // the first samples have been published
+  plant::ActuatorCommand command_;
+  bool command_arrived_ = false;
+  bool mocap_heard_ = false;
+  std::uint64_t mocap_sequence_ = 0;
+  std::uint64_t mocap_due_ = 0;
+  std::int64_t granted_ns_ = 0;
+  bool clock_heard_ = false;
+  double silence_s_ = 0.0;        // since the last progress
+  double clock_silence_s_ = 0.0;  // since simulation_clock was last heard
+  std::optional<runtime::FlightTrace> trace_;
+  std::string failure_;  // of a callback
+
+  comms::Subscription commands_;  // last: their callbacks use what stands above
+  comms::Subscription poses_;
+  comms::Subscription clock_;
+};
+
+}  // namespace swiftlet::services

@@ -1,0 +1,38 @@
+// Simulated time that follows the computer's clock.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include <boost/lockfree/spsc_queue.hpp>
+
+#include "services/comms/node.hpp"
+#include "services/plant/simulated_vehicle.hpp"
+#include "services/runtime/realtime.hpp"
+
+namespace swiftlet::services {
+
+class RealtimeLoop {
+ public:
+  // speed: of simulated time against the clock, > 0. The vehicle must outlive the loop.
+  RealtimeLoop(SimulatedVehicle& vehicle, const plant::SimulationSettings& settings, double speed,
+               comms::Node& node, const runtime::RealtimeSettings& realtime);
+
+  // Steps until `stop`. Behind by more than an IMU period, simulated time is put off instead of made up for:
+  // no burst of samples that nobody could answer.
+  void run(const std::atomic<bool>& stop);
+
+ private:
+  void on_command(const comms::msg::ActuatorCommand& message);
+
+  SimulatedVehicle& vehicle_;
+  std::int64_t step_ns_;  // of the clock
+  std::int64_t imu_period_ns_;
+  runtime::RealtimeSettings realtime_;
+
+  boost::lockfree::spsc_queue<ReceivedCommand, boost::lockfree::capacity<64>> received_;
+  bool listener_scheduled_ = false;
+  comms::Subscription commands_;  // last: its callback uses what stands above
+};
+
+}  // namespace swiftlet::services

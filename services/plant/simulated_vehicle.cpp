@@ -1,0 +1,130 @@
+#include "services/plant/simulated_vehicle.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "services/runtime/periodic_timer.hpp"
+
+namespace swiftlet::services {
+namespace {
+
+using comms::topics::kBattery;
+using comms::topics::kGroundTruth;
+using comms::topics::kImu;
+using comms::topics::kRotorSpeeds;
+
+constexpr std::int64_t kReportPeriodNs = 50'000'000;
+
+}  // namespace
+
+SimulatedVehicle::SimulatedVehicle(const plant::Vehicle& vehicle, const plant::SimulationSettings& settings,
+                                   std::uint64_t seed, comms::Node& node)
+    : simulation_(vehicle, settings, seed),
+      watchdog_(vehicle.rotor_count(), std::llround(settings.command_timeout_s * 1e9)),
+      imu_(node.publish(kImu)),
+      ground_truth_(node.publish(kGroundTruth)),
+      rotor_speeds_(node.publish(kRotorSpeeds)),
+      battery_(node.publish(kBattery)) {}
+
+bool SimulatedVehicle::obey(const ReceivedCommand& received) {
+  comms::Fault fault = received.fault;
+  if (!fault) {
+    const plant::CommandFault refusal = watchdog_.accept(received.command, simulation_.stamp_ns());
+    if (refusal != plant::CommandFault::kNone) {
+      std::snprintf(fault.text, sizeof fault.text, "%s", plant::to_string(refusal));
+    }
+  }
+  if (fault) {
+    ++report_.refused_commands;
+    report_.refusal = fault;
+    return false;
+  }
+  ++report_.commands;
+  answers_.answered(received.command.imu_sequence, received.received_ns);
+  return true;
+}
+
+void SimulatedVehicle::step() {
+  const plant::RotorDrive drive = watchdog_.drive(simulation_.stamp_ns());
+  const bool running = drive.state == plant::RotorState::kRunning;
+  if (running && !report_.rotors_running) {
+    answers_.reset();
+    report_.timed_out = false;
+  }
+  if (!running && report_.rotors_running) report_.timed_out = watchdog_.expired(simulation_.stamp_ns());
+  report_.rotors_running = running;
+  simulation_.step(drive);
+}
+
+void SimulatedVehicle::publish_samples() {
+  if (simulation_.imu()) {
+    imu_message_ = comms::to_message(*simulation_.imu());
+    if (report_.rotors_running) answers_.written(simulation_.imu()->sequence, runtime::monotonic_ns());
+    imu_.publish(imu_message_);
+    publish_truth();
+  }
+  publish_slow_samples();
+}
+
+void SimulatedVehicle::publish_samples_in_order(std::uint64_t mocap_sequence) {
+  publish_slow_samples();
+  if (!simulation_.imu()) return;
+  // The longest way first: motion capture makes a frame of the truth, for which the controller waits.
+  const bool frame_due = mocap_sequence > imu_message_.mocap_sequence_number();
+  imu_message_ = comms::to_message(*simulation_.imu());
+  imu_message_.mocap_sequence_number(mocap_sequence);
+  imu_message_.battery_sequence_number(battery_message_.sequence_number());
+  imu_message_.rotor_speeds_sequence_number(rotor_speeds_message_.sequence_number());
+  if (frame_due) publish_truth();
+  if (report_.rotors_running) answers_.written(simulation_.imu()->sequence, runtime::monotonic_ns());
+  imu_.publish(imu_message_);
+  if (!frame_due) publish_truth();
+}
+
+void SimulatedVehicle::publish_imu_again() { imu_.publish(imu_message_); }
+
+void SimulatedVehicle::publish_again() {
+  if (rotor_speeds_message_.sequence_number() > 0) rotor_speeds_.publish(rotor_speeds_message_);
+  if (battery_message_.sequence_number() > 0) battery_.publish(battery_message_);
+  publish_truth();
+  publish_imu_again();
+}
+
+// One for each IMU sample, with its number.
+void SimulatedVehicle::publish_truth() {
+  comms::msg::GroundTruth message = comms::to_message(simulation_.truth());
+  message.sequence_number(imu_message_.sequence_number());
+  ground_truth_.publish(message);
+}
+
+void SimulatedVehicle::publish_slow_samples() {
+  if (simulation_.rotor_speeds()) {
+    rotor_speeds_message_ = comms::to_message(*simulation_.rotor_speeds());
+    rotor_speeds_.publish(rotor_speeds_message_);
+  }
+  if (simulation_.battery()) {
+    battery_message_ = comms::to_message(*simulation_.battery());
+    battery_.publish(battery_message_);
+  }
+}
+
+void SimulatedVehicle::note_slip(std::int64_t slipped_ns) {
+  ++report_.slips;
+  report_.slipped_ns += slipped_ns;
+}
+
+void SimulatedVehicle::report() {
+  const bool changed = report_.rotors_running != told_.rotors_running ||
+                       report_.timed_out != told_.timed_out || report_.paused != told_.paused;
+  if (!changed && simulation_.stamp_ns() - told_.stamp_ns < kReportPeriodNs) return;
+  report_.stamp_ns = simulation_.stamp_ns();
+  report_.answered = answers_.times().count();
+  report_.unanswered = answers_.unanswered();
+  report_.answer_p50_ns = answers_.times().quantile_ns(0.5);
+  report_.answer_p99_ns = answers_.times().quantile_ns(0.99);
+  report_.answer_max_ns = answers_.times().max_ns();
+  told_ = report_;
+  reports_.put(report_);
+}
+
+}  // namespace swiftlet::services

@@ -1,0 +1,20 @@
+// What makes simulated time pass.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace swiftlet::runtime {
+
+enum class Clock {
+  kRealtime,  // the computer's clock, scaled
+  kLockstep,  // the answers: time stands still until the samples of this moment have been answered
+};
+
+// --clock realtime|lockstep. `clock` must outlive the parsing.
+void add_clock_option(CLI::App& app, Clock& clock);
+
+const char* to_string(Clock clock);  // as on the command line
+
+}  // namespace swiftlet::runtime
