@@ -7,11 +7,10 @@
 
 #include "control/mode.hpp"
 #include "ground/flight_schedule.hpp"
+#include "services/runtime/telemetry_rate.hpp"
 
 namespace swiftlet::ground {
 namespace {
-
-constexpr double kTelemetryPeriodS = 0.010;  // as the control service's
 
 std::array<double, 3> array(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -39,8 +38,7 @@ class Run {
         mission_(mission),
         observer_(observer),
         status_(loop.controller.status()),
-        samples_per_row_(
-            static_cast<std::uint64_t>(std::max(1.0, std::round(kTelemetryPeriodS * loop.imu_rate_hz)))) {
+        imu_period_ns_(plant::period_ns(loop.imu_rate_hz)) {
     observe();
   }
 
@@ -110,7 +108,7 @@ class Run {
 
   // False if the flight is to end.
   bool observe() {
-    const bool sampled = loop_.command.imu_sequence % samples_per_row_ == 0;
+    const bool sampled = runtime::is_telemetry_sample(loop_.command.imu_sequence, imu_period_ns_);
     if (observer_.trace != nullptr) observer_.trace->add(loop_.plant.truth(), loop_.command);
     if (observer_.record != nullptr) record(*observer_.record, sampled);
     return !sampled || !observer_.cancelled || !observer_.cancelled();
@@ -137,7 +135,7 @@ class Run {
   const control::Mission& mission_;
   const FlightObserver& observer_;
   const control::Status& status_;
-  std::uint64_t samples_per_row_;
+  std::int64_t imu_period_ns_;
   control::MissionProgress told_;
   std::string reason_;
 };

@@ -85,4 +85,13 @@ std::uint64_t newest_mocap_sequence(const MocapSettings& settings, std::int64_t 
   return static_cast<std::uint64_t>(on_grid_ns / period_ns(settings.rate_hz)) + 1;
 }
 
+bool mocap_needs_truth(const MocapSettings& settings, std::int64_t truth_period_ns, std::int64_t stamp_ns) {
+  const std::int64_t before_ns = stamp_ns - truth_period_ns;
+  if (before_ns < 0) return true;
+  const std::int64_t period = period_ns(settings.rate_hz);
+  const bool exposes = stamp_ns / period > before_ns / period;
+  return exposes || newest_mocap_sequence(settings, truth_period_ns, stamp_ns) >
+                        newest_mocap_sequence(settings, truth_period_ns, before_ns);
+}
+
 }  // namespace swiftlet::plant

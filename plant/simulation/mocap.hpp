@@ -53,4 +53,8 @@ class Mocap {
 std::uint64_t newest_mocap_sequence(const MocapSettings& settings, std::int64_t truth_period_ns,
                                     std::int64_t stamp_ns);
 
+// Whether update() exposes or hands out a frame at this stamp, of those 0, truth_period_ns, ...: in lockstep
+// the others need not be sent.
+bool mocap_needs_truth(const MocapSettings& settings, std::int64_t truth_period_ns, std::int64_t stamp_ns);
+
 }  // namespace swiftlet::plant

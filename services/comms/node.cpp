@@ -148,6 +148,8 @@ struct Node::Impl final : public dds::DomainParticipantListener {
     return found;
   }
 
+  int deadline_ms(int of_topic) const { return settings.deadlines ? of_topic : 0; }
+
   void on_participant_discovery(dds::DomainParticipant*, rtps::ParticipantDiscoveryInfo&& info) override {
     const std::lock_guard<std::mutex> lock(peers_mutex);
     switch (info.status) {
@@ -303,7 +305,7 @@ Publisher<T> Node::publish(const Topic<T>& topic, int strength) {
     throw std::runtime_error("strength is " + std::to_string(strength) + ", must be at least 0");
   return Publisher<T>(std::make_unique<DdsWriter<Impl>>(
       impl_, impl_->topic<T>(topic.name),
-      writer_qos(topic.qos, topic.deadline_ms, strength, impl_->settings.transport)));
+      writer_qos(topic.qos, impl_->deadline_ms(topic.deadline_ms), strength, impl_->settings.transport)));
 }
 
 template <class T>
@@ -311,8 +313,8 @@ Subscription Node::subscribe(const Topic<T>& topic, std::function<void(const T&)
                              std::function<void()> on_deadline_missed, Delivery delivery) {
   return Subscription(std::make_unique<DdsReader<Impl, T>>(
       impl_, impl_->topic<T>(topic.name),
-      reader_qos(topic.qos, topic.deadline_ms, impl_->settings.transport, delivery), std::move(callback),
-      std::move(on_deadline_missed)));
+      reader_qos(topic.qos, impl_->deadline_ms(topic.deadline_ms), impl_->settings.transport, delivery),
+      std::move(callback), std::move(on_deadline_missed)));
 }
 
 #define SWIFTLET_INSTANTIATE(Name)                                                                      \

@@ -23,6 +23,9 @@ struct NodeSettings {
   int domain = 0;               // 0 .. 232
   Transport transport = Transport::kUdp;
   bool localhost_only = false;  // discover and talk over the loopback interface only, without multicast
+  // Offer and ask for the topics' deadlines. Not in lockstep, where time stands still: each costs a wake-up a
+  // sample, and who asks for one does not hear who offers none.
+  bool deadlines = true;
 };
 
 // Another process of the same vehicle appeared or went away.
@@ -36,7 +39,8 @@ struct PeerEvent {
 enum class Delivery {
   // One that all such subscriptions of the node share.
   kShared,
-  // One of its own, with a socket of its own: nothing else that arrives delays a sample. Over shared memory as kShared.
+  // One of its own, with a socket of its own: nothing else that arrives delays a sample. Over shared memory
+  // as kShared.
   kOwnThread,
 };
 

@@ -33,6 +33,8 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
   std::function<void(const msg::RotorSpeeds&)> take_rotor_speeds;
   std::function<void(const msg::Imu&)> take_imu;
   std::function<void()> miss_imu;
+  // In real time nothing else may delay them; in lockstep a thread each would only cost wake-ups.
+  const Delivery delivery = clock == runtime::Clock::kLockstep ? Delivery::kShared : Delivery::kOwnThread;
   if (clock == runtime::Clock::kLockstep) {
     take_pose = deliver_in_lockstep<msg::MocapPose>(loop_.pose, pose_faults_, Stream::kPose);
     take_battery = deliver_in_lockstep<msg::Battery>(loop_.battery, battery_faults_, Stream::kBattery);
@@ -57,7 +59,7 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
         }
         take_pose(message);
       },
-      {}, Delivery::kOwnThread));
+      {}, delivery));
   subscriptions_.push_back(node.subscribe<msg::Battery>(topics::kBattery, take_battery));
   subscriptions_.push_back(node.subscribe<msg::RotorSpeeds>(topics::kRotorSpeeds, take_rotor_speeds));
   subscriptions_.push_back(node.subscribe<msg::Setpoint>(
@@ -70,7 +72,7 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
   subscriptions_.push_back(node.subscribe<msg::Trajectory>(
       topics::kTrajectory, [this](const auto& message) { desk_.on_trajectory(message); }, {},
       Delivery::kOwnThread));
-  subscriptions_.push_back(node.subscribe<msg::Imu>(topics::kImu, take_imu, miss_imu, Delivery::kOwnThread));
+  subscriptions_.push_back(node.subscribe<msg::Imu>(topics::kImu, take_imu, miss_imu, delivery));
 }
 
 // Hands a good sample to the inner loop.

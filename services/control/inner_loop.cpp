@@ -1,14 +1,8 @@
 #include "services/control/inner_loop.hpp"
 
-#include <algorithm>
+#include "services/runtime/telemetry_rate.hpp"
 
 namespace swiftlet::services {
-namespace {
-
-constexpr std::int64_t kTelemetryPeriodNs = 10'000'000;
-
-}  // namespace
-
 InnerLoop::InnerLoop(const plant::Vehicle& vehicle, const control::ControlSettings& settings)
     : controller_(vehicle, settings) {}
 
@@ -48,7 +42,8 @@ bool InnerLoop::finish(std::int64_t now_ns) {
   timing_.answered(now_ns);
   const control::Status& status = controller_.status();
   saturated_ = saturated_ || status.saturated;
-  const bool sampled = is_sampled(imu_sequence_);
+  const bool sampled =
+      timing_.period_ns() > 0 && runtime::is_telemetry_sample(imu_sequence_, timing_.period_ns());
   const bool answers = judged_any_;
   judged_any_ = false;
   if (!sampled && !status_changed()) return answers;
@@ -66,14 +61,6 @@ bool InnerLoop::finish(std::int64_t now_ns) {
     saturated_ = false;
   }
   return true;
-}
-
-// By the sample's number, so that all who thin out a stream keep the same stamps.
-bool InnerLoop::is_sampled(std::uint64_t imu_sequence) const {
-  if (timing_.period_ns() <= 0) return false;
-  const auto every =
-      std::max<std::int64_t>((kTelemetryPeriodNs + timing_.period_ns() / 2) / timing_.period_ns(), 1);
-  return imu_sequence % static_cast<std::uint64_t>(every) == 0;
 }
 
 bool InnerLoop::status_changed() const {

@@ -53,7 +53,6 @@ class InnerLoop {
 
  private:
   void take_samples();
-  bool is_sampled(std::uint64_t imu_sequence) const;
   bool status_changed() const;
 
   control::FlightController controller_;

@@ -55,6 +55,7 @@ void run(const Options& options) {
 
   comms::NodeSettings node_settings = options.node;
   node_settings.name = "control";
+  node_settings.deadlines = options.clock == runtime::Clock::kRealtime;
   comms::Node node(node_settings);
   comms::log_peers(node);
   ControlService service(vehicle, settings, options.strength, node, realtime, options.clock);

@@ -9,6 +9,7 @@
 
 #include "plant/simulation/mocap.hpp"
 #include "services/runtime/periodic_timer.hpp"
+#include "services/runtime/telemetry_rate.hpp"
 
 namespace swiftlet::services {
 namespace {
@@ -30,8 +31,7 @@ LockstepLoop::LockstepLoop(SimulatedVehicle& vehicle, const plant::SimulationSet
       granted_ns_(lockstep.paused ? -1 : std::numeric_limits<std::int64_t>::max()) {
   if (!lockstep.trace.empty()) trace_.emplace(lockstep.trace, rotor_count);
   commands_ = node.subscribe<comms::msg::ActuatorCommand>(
-      comms::topics::kActuatorCommand, [this](const auto& message) { on_command(message); }, {},
-      comms::Delivery::kOwnThread);
+      comms::topics::kActuatorCommand, [this](const auto& message) { on_command(message); });
   poses_ = node.subscribe<comms::msg::MocapPose>(comms::topics::kMocapPose,
                                                  [this](const auto& message) { on_pose(message); });
   if (lockstep.paused) {
@@ -107,11 +107,13 @@ void LockstepLoop::advance() {
 }
 
 void LockstepLoop::publish() {
-  if (vehicle_.simulation().imu()) {
-    mocap_due_ =
-        plant::newest_mocap_sequence(settings_.mocap, imu_period_ns_, vehicle_.simulation().stamp_ns());
+  bool truth_needed = false;
+  if (const auto& imu = vehicle_.simulation().imu()) {
+    mocap_due_ = plant::newest_mocap_sequence(settings_.mocap, imu_period_ns_, imu->stamp_ns);
+    truth_needed = plant::mocap_needs_truth(settings_.mocap, imu_period_ns_, imu->stamp_ns) ||
+                   runtime::is_telemetry_sample(imu->sequence, imu_period_ns_);
   }
-  vehicle_.publish_samples_in_order(mocap_due_);
+  vehicle_.publish_samples_in_order(mocap_due_, truth_needed);
 }
 
 void LockstepLoop::look_after(double awake_s) {

@@ -66,7 +66,7 @@ void SimulatedVehicle::publish_samples() {
   publish_slow_samples();
 }
 
-void SimulatedVehicle::publish_samples_in_order(std::uint64_t mocap_sequence) {
+void SimulatedVehicle::publish_samples_in_order(std::uint64_t mocap_sequence, bool truth_needed) {
   publish_slow_samples();
   if (!simulation_.imu()) return;
   // The longest way first: motion capture makes a frame of the truth, for which the controller waits.
@@ -75,10 +75,10 @@ void SimulatedVehicle::publish_samples_in_order(std::uint64_t mocap_sequence) {
   imu_message_.mocap_sequence_number(mocap_sequence);
   imu_message_.battery_sequence_number(battery_message_.sequence_number());
   imu_message_.rotor_speeds_sequence_number(rotor_speeds_message_.sequence_number());
-  if (frame_due) publish_truth();
+  if (truth_needed && frame_due) publish_truth();
   if (report_.rotors_running) answers_.written(simulation_.imu()->sequence, runtime::monotonic_ns());
   imu_.publish(imu_message_);
-  if (!frame_due) publish_truth();
+  if (truth_needed && !frame_due) publish_truth();
 }
 
 void SimulatedVehicle::publish_imu_again() { imu_.publish(imu_message_); }
@@ -86,15 +86,15 @@ void SimulatedVehicle::publish_imu_again() { imu_.publish(imu_message_); }
 void SimulatedVehicle::publish_again() {
   if (rotor_speeds_message_.sequence_number() > 0) rotor_speeds_.publish(rotor_speeds_message_);
   if (battery_message_.sequence_number() > 0) battery_.publish(battery_message_);
-  publish_truth();
+  ground_truth_.publish(truth_message_);
   publish_imu_again();
 }
 
-// One for each IMU sample, with its number.
 void SimulatedVehicle::publish_truth() {
-  comms::msg::GroundTruth message = comms::to_message(simulation_.truth());
-  message.sequence_number(imu_message_.sequence_number());
-  ground_truth_.publish(message);
+  const std::uint64_t sequence = truth_message_.sequence_number() + 1;
+  truth_message_ = comms::to_message(simulation_.truth());
+  truth_message_.sequence_number(sequence);
+  ground_truth_.publish(truth_message_);
 }
 
 void SimulatedVehicle::publish_slow_samples() {

@@ -59,7 +59,7 @@ class SimulatedVehicle {
   void publish_samples();
   // The same for lockstep: each sample that belongs to the IMU's before it, and the IMU's with the numbers of
   // what is to be waited for. mocap_sequence: the newest frame that motion capture makes of the truth so far.
-  void publish_samples_in_order(std::uint64_t mocap_sequence);
+  void publish_samples_in_order(std::uint64_t mocap_sequence, bool truth_needed);
   void publish_imu_again();
   void publish_again();  // the newest of all samples
 
@@ -79,6 +79,7 @@ class SimulatedVehicle {
   comms::msg::Imu imu_message_;
   comms::msg::Battery battery_message_;
   comms::msg::RotorSpeeds rotor_speeds_message_;
+  comms::msg::GroundTruth truth_message_;
 
   PlantReport report_;
   PlantReport told_;
