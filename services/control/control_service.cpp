@@ -87,16 +87,15 @@ std::function<void(const Message&)> ControlService::deliver(runtime::Mailbox<Sam
   };
 }
 
-// Number 0 is motion capture's sign of life before its first frame.
+// Number 0, motion capture's sign of life before its first frame, is never new.
 template <class Message, class Sample>
 std::function<void(const Message&)> ControlService::deliver_in_lockstep(runtime::Mailbox<Sample>& mailbox,
                                                                         comms::FaultLog& faults,
                                                                         LockstepGate::Stream stream) {
   return [this, stream, take = deliver<Message>(mailbox, faults)](const Message& message) {
-    if (message.sequence_number() == 0) return;
     const std::lock_guard<std::mutex> lock(gate_mutex_);
+    if (!gate_.is_new(stream, message.sequence_number())) return;
     take(message);
-    gate_.arrived(stream, message.sequence_number());
     if (const auto imu = gate_.take()) answer(*imu);
   };
 }

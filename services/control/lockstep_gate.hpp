@@ -2,7 +2,6 @@
 // them in in one order.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -18,10 +17,12 @@ class LockstepGate {
  public:
   enum class Stream : std::size_t { kPose, kBattery, kRotorSpeeds };
 
-  // A sample of this stream has been taken in.
-  void arrived(Stream stream, std::uint64_t sequence) {
+  // A sample has come; false if it is one that came before and must not be taken in again.
+  bool is_new(Stream stream, std::uint64_t sequence) {
     std::uint64_t& newest = newest_[static_cast<std::size_t>(stream)];
-    newest = std::max(newest, sequence);
+    if (sequence <= newest) return false;
+    newest = sequence;
+    return true;
   }
 
   // An IMU sample has come; false if it is one that has been let through before.

@@ -124,7 +124,8 @@ TEST_F(Fly, FliesOverSharedMemoryAndLeavesNothingThere) {
 TEST_F(Fly, FailsBeyondTheMissionsTolerance) {
   std::string mission = kShortMission;
   mission.replace(mission.find("0.1"), 3, "1e-6");
-  Program fly("swiftlet", arguments(folder_.write("strict.yaml", mission)), folder_.path());
+  Program fly("swiftlet", arguments(folder_.write("strict.yaml", mission), {"--clock", "lockstep"}),
+              folder_.path());
   ASSERT_EQ(fly.wait(90s), 1) << told(fly);
   const json report = json::parse(fly.output());
   EXPECT_EQ(report.at("completed"), false);
@@ -242,6 +243,7 @@ struct PaperFlight {
   const char* name;
   const char* mission;
   const char* control;
+  const char* clock;
   double rms_limit_m;
 };
 void PrintTo(const PaperFlight& flight, std::ostream* out) { *out << flight.name; }
@@ -250,7 +252,8 @@ class FlyPaper : public Fly, public testing::WithParamInterface<PaperFlight> {};
 
 TEST_P(FlyPaper, KeepsToItsPath) {
   const PaperFlight& flight = GetParam();
-  Program fly("swiftlet", arguments(flight.mission, {"--control", flight.control}), folder_.path());
+  Program fly("swiftlet", arguments(flight.mission, {"--control", flight.control, "--clock", flight.clock}),
+              folder_.path());
   ASSERT_EQ(fly.wait(120s), 0) << told(fly);
   const json report = json::parse(fly.output());
   EXPECT_EQ(report.at("completed"), true) << report;
@@ -261,9 +264,10 @@ TEST_P(FlyPaper, KeepsToItsPath) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, FlyPaper,
-                         testing::Values(PaperFlight{"Square", "square", "motor_lag", 0.010},
-                                         PaperFlight{"ZigZag", "zigzag", "motor_lag", 0.010},
-                                         PaperFlight{"SquareWithThePapersLoops", "square", "paper", 0.030}),
+                         testing::Values(PaperFlight{"Square", "square", "motor_lag", "realtime", 0.010},
+                                         PaperFlight{"ZigZag", "zigzag", "motor_lag", "lockstep", 0.010},
+                                         PaperFlight{"SquareWithThePapersLoops", "square", "paper",
+                                                     "lockstep", 0.030}),
                          [](const auto& flight) { return std::string(flight.param.name); });
 
 }  // namespace

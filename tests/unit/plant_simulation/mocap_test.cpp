@@ -73,6 +73,36 @@ TEST(Mocap, DeliversFramesOnTimeAtEveryRateAndLatency) {
   }
 }
 
+TEST(Mocap, NeedsOnlySomeOfTheTruth) {
+  for (const double rate : {50.0, 100.0, 120.0, 240.0, 500.0, 1000.0}) {
+    for (const double latency_s : {0.0, 0.0031, 0.010, 0.0457}) {
+      SCOPED_TRACE(std::to_string(rate) + " Hz, " + std::to_string(latency_s) + " s");
+      MocapSettings settings = perfect();
+      settings.rate_hz = rate;
+      settings.latency_s = latency_s;
+      Mocap all(settings, 1);
+      Mocap some(settings, 1);
+      int left_out = 0;
+      for (std::int64_t now = 0; now <= 1'000 * kMillisecond; now += 2 * kMillisecond) {
+        const auto of_all = all.update(truth_at(now));
+        if (!plant::mocap_needs_truth(settings, 2 * kMillisecond, now)) {
+          ASSERT_FALSE(of_all.has_value()) << now;
+          ++left_out;
+          continue;
+        }
+        const auto of_some = some.update(truth_at(now));
+        ASSERT_EQ(of_all.has_value(), of_some.has_value()) << now;
+        if (of_all) {
+          ASSERT_EQ(of_all->stamp_ns, of_some->stamp_ns) << now;
+        }
+      }
+      if (rate <= 50.0) {
+        EXPECT_GT(left_out, 250);
+      }
+    }
+  }
+}
+
 TEST(Mocap, ErrorsStayInTheirBoundAndFillIt) {
   MocapSettings settings;
   settings.latency_s = 0.0;

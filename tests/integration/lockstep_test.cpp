@@ -1,0 +1,204 @@
+// Lockstep: runs that repeat exactly, and what becomes of them when a peer falls silent.
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "services/comms/domain_claim.hpp"
+#include "tests/integration/program.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace swiftlet::tests {
+namespace {
+
+using namespace std::chrono_literals;
+using nlohmann::json;
+
+const std::string kMission =
+    "name: hop\n"
+    "frame: ned\n"
+    "tolerance_m: 0.1\n"
+    "items:\n"
+    "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.5}\n"
+    "  - {kind: waypoint, position_m: [0.5, -0.3, -0.7], yaw_rad: 0.5, speed_m_s: 0.5}\n"
+    "  - {kind: land, speed_m_s: 0.5}\n";
+
+// Works on every core for as long as it lives.
+class OtherLoad {
+ public:
+  OtherLoad() {
+    for (unsigned i = 0; i < std::thread::hardware_concurrency(); ++i) {
+      threads_.emplace_back([this] {
+        volatile double x = 1.0;
+        while (!end_.load(std::memory_order_relaxed)) x = x * 1.0000001;
+      });
+    }
+  }
+  ~OtherLoad() {
+    end_ = true;
+    for (std::thread& thread : threads_) thread.join();
+  }
+
+ private:
+  std::atomic<bool> end_{false};
+  std::vector<std::thread> threads_;
+};
+
+std::string contents(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class Lockstep : public testing::Test {
+ protected:
+  struct Flight {
+    json report;
+    std::string trace;
+  };
+
+  // words: how to fly, without mission and record.
+  Flight fly(std::vector<std::string> words, const std::string& name) {
+    const auto record = folder_.path() / name;
+    words.insert(words.end(), {mission_, "--trace", "--json", "--record", record.string()});
+    const Ending ending = run_program("swiftlet", words, folder_.path(), 90s);
+    EXPECT_EQ(ending.exit_code, 0) << ending.errors;
+    return {json::parse(ending.output), contents(record / "trace.csv")};
+  }
+
+  TemporaryFolder folder_;
+  std::string mission_ = folder_.write("hop.yaml", kMission);
+};
+
+TEST_F(Lockstep, RepeatsAFlightToTheLastBitAlsoBesideOtherWork) {
+  const Flight alone = fly({"fly", "--clock", "lockstep", "--seed", "3"}, "alone");
+  const OtherLoad load;
+  const Flight beside = fly({"fly", "--clock", "lockstep", "--seed", "3"}, "beside");
+  EXPECT_GT(alone.trace.size(), 1'000'000U);
+  EXPECT_TRUE(alone.trace == beside.trace);
+  EXPECT_EQ(alone.report.at("rms_3d_m"), beside.report.at("rms_3d_m"));
+  EXPECT_EQ(alone.report.at("matched_samples"), beside.report.at("matched_samples"));
+  EXPECT_EQ(alone.report.at("clock"), "lockstep");
+}
+
+class LockstepRate : public Lockstep, public testing::WithParamInterface<const char*> {};
+
+TEST_P(LockstepRate, IsTheFlightOfOneProcess) {
+  const std::string rate = GetParam();
+  const Flight over_dds = fly({"fly", "--clock", "lockstep", "--seed", "4", "--imu-rate", rate}, "dds");
+  const Flight in_process = fly({"sim", "fly", "--seed", "4", "--imu-rate", rate}, "process");
+  EXPECT_GT(in_process.trace.size(), 1'000'000U);
+  EXPECT_TRUE(over_dds.trace == in_process.trace);
+  for (const char* key : {"rms_3d_m", "peak_3d_m", "rms_m", "peak_m", "matched_samples", "duration_s"}) {
+    EXPECT_EQ(over_dds.report.at(key), in_process.report.at(key)) << key;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(, LockstepRate, testing::Values("500", "1000"),
+                         [](const auto& rate) { return std::string(rate.param) + "Hz"; });
+
+TEST_F(Lockstep, AnotherSeedIsAnotherFlight) {
+  EXPECT_FALSE(fly({"sim", "fly", "--seed", "5"}, "five").trace ==
+               fly({"sim", "fly", "--seed", "6"}, "six").trace);
+}
+
+TEST_F(Lockstep, NamesAControllerThatFallsSilent) {
+  const std::string hover = folder_.write("hover.yaml",
+                                          "name: hover\nframe: ned\ntolerance_m: 0.1\nitems:\n"
+                                          "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.5, hold_s: 400}\n"
+                                          "  - {kind: land, speed_m_s: 0.5}\n");
+  Program fly("swiftlet", {"fly", hover, "--clock", "lockstep", "--record", folder_.path() / "record"},
+              folder_.path());
+  ASSERT_TRUE(eventually([&] { return fly.errors().find("1/2 takeoff") != std::string::npos; }, 40s))
+      << fly.errors();
+  const pid_t control = child_of(fly.pid(), "swiftlet-control");
+  ASSERT_GT(control, 0);
+  ASSERT_EQ(kill(control, SIGSTOP), 0);
+  EXPECT_EQ(fly.wait(20s), 1);
+  EXPECT_NE(fly.errors().find("lockstep: control is silent: IMU sample"), std::string::npos) << fly.errors();
+}
+
+// Two of three processes, without a ground tool.
+class LockstepWithout : public testing::Test {
+ protected:
+  std::unique_ptr<Program> start(const std::string& name, std::vector<std::string> more = {}) {
+    more.insert(more.end(),
+                {"--clock", "lockstep", "--localhost-only", "--domain", std::to_string(domain_.domain())});
+    return std::make_unique<Program>(name, more, folder_.path());
+  }
+
+  comms::DomainClaim domain_;
+  TemporaryFolder folder_;
+};
+
+TEST_F(LockstepWithout, MocapThePlantSaysSo) {
+  const auto control = start("swiftlet-control");
+  const auto plant = start("swiftlet-plant");
+  EXPECT_EQ(plant->wait(20s), 1);
+  EXPECT_NE(plant->errors().find("lockstep: mocap is silent: "), std::string::npos) << plant->errors();
+}
+
+TEST_F(LockstepWithout, ControlThePlantSaysSo) {
+  const auto mocap = start("swiftlet-mocap");
+  const auto plant = start("swiftlet-plant");
+  EXPECT_EQ(plant->wait(20s), 1);
+  EXPECT_NE(plant->errors().find("lockstep: control is silent: "), std::string::npos) << plant->errors();
+}
+
+TEST_F(LockstepWithout, GroundTimeStandsStill) {
+  const auto mocap = start("swiftlet-mocap");
+  const auto control = start("swiftlet-control");
+  const auto plant = start("swiftlet-plant", {"--paused"});
+  EXPECT_TRUE(eventually([&] { return plant->errors().find("control joined") != std::string::npos; }, 20s));
+  plant->signal(SIGTERM);
+  EXPECT_EQ(plant->wait(20s), 0);
+  EXPECT_NE(plant->errors().find("ended after 0.0 s of simulated time: 0 commands"), std::string::npos)
+      << plant->errors();
+}
+
+TEST_F(LockstepWithout, AnythingElseTimePassesAsFastAsItCan) {
+  const auto mocap = start("swiftlet-mocap");
+  const auto control = start("swiftlet-control");
+  const auto plant = start("swiftlet-plant");
+  EXPECT_TRUE(eventually([&] { return control->errors().find("mocap is there") != std::string::npos; }, 20s))
+      << plant->errors() << control->errors() << mocap->errors();
+  plant->signal(SIGTERM);
+  EXPECT_EQ(plant->wait(20s), 0) << plant->errors();
+}
+
+TEST(LockstepOptions, ThatDoNotGoTogetherAreRefused) {
+  const TemporaryFolder folder;
+  const auto refused = [&](const std::string& program, const std::vector<std::string>& words) {
+    const Ending ending = run_program(program, words, folder.path());
+    EXPECT_EQ(ending.exit_code, 2) << ending.errors;
+    return ending.errors;
+  };
+  EXPECT_NE(refused("swiftlet", {"fly", "--clock", "lockstep", "--speed", "2"}).find("--speed"),
+            std::string::npos);
+  EXPECT_NE(refused("swiftlet", {"fly", "--trace"}).find("--trace"), std::string::npos);
+  EXPECT_NE(refused("swiftlet", {"fly", "--clock", "sundial"}).find("--clock"), std::string::npos);
+  EXPECT_NE(refused("swiftlet-plant", {"--paused"}).find("--paused"), std::string::npos);
+}
+
+// Real time, scaled.
+TEST_F(Lockstep, SpeedScalesRealTime) {
+  const auto record = folder_.path() / "record";
+  const Ending ending =
+      run_program("swiftlet", {"fly", mission_, "--speed", "4", "--json", "--record", record.string()},
+                  folder_.path(), 90s);
+  ASSERT_EQ(ending.exit_code, 0) << ending.errors;
+  const json report = json::parse(ending.output);
+  EXPECT_NEAR(report.at("control_rate_hz"), 2000.0, 200.0);
+  EXPECT_LT(report.at("rms_3d_m"), 0.010);
+}
+
+}  // namespace
+}  // namespace swiftlet::tests

@@ -1,0 +1,55 @@
+#include "services/control/lockstep_gate.hpp"
+
+#include <gtest/gtest.h>
+
+namespace swiftlet::services {
+namespace {
+
+using Stream = LockstepGate::Stream;
+
+comms::msg::Imu imu(std::uint64_t number, std::uint64_t pose, std::uint64_t battery,
+                    std::uint64_t rotor_speeds) {
+  comms::msg::Imu message;
+  message.sequence_number(number);
+  message.mocap_sequence_number(pose);
+  message.battery_sequence_number(battery);
+  message.rotor_speeds_sequence_number(rotor_speeds);
+  return message;
+}
+
+TEST(LockstepGate, LetsASampleThatWaitsForNothingThroughOnce) {
+  LockstepGate gate;
+  EXPECT_FALSE(gate.take().has_value());
+  EXPECT_TRUE(gate.offer(imu(1, 0, 0, 0)));
+  const auto first = gate.take();
+  ASSERT_TRUE(first.has_value());
+  EXPECT_EQ(first->sequence_number(), 1U);
+  EXPECT_FALSE(gate.take().has_value());
+  EXPECT_FALSE(gate.offer(imu(1, 0, 0, 0))) << "it came again";
+  EXPECT_FALSE(gate.take().has_value());
+}
+
+TEST(LockstepGate, HoldsASampleBackUntilAllThatItNamesHaveCome) {
+  LockstepGate gate;
+  gate.offer(imu(7, 2, 3, 4));
+  EXPECT_TRUE(gate.is_new(Stream::kRotorSpeeds, 4));
+  EXPECT_FALSE(gate.take().has_value());
+  EXPECT_TRUE(gate.is_new(Stream::kPose, 2));
+  EXPECT_FALSE(gate.take().has_value());
+  EXPECT_TRUE(gate.is_new(Stream::kBattery, 2));
+  EXPECT_FALSE(gate.take().has_value()) << "an older one than it names";
+  EXPECT_TRUE(gate.is_new(Stream::kBattery, 3));
+  EXPECT_TRUE(gate.take().has_value());
+}
+
+TEST(LockstepGate, KnowsWhatCameBefore) {
+  LockstepGate gate;
+  EXPECT_FALSE(gate.is_new(Stream::kPose, 0)) << "a sign of life";
+  EXPECT_TRUE(gate.is_new(Stream::kPose, 5));
+  EXPECT_FALSE(gate.is_new(Stream::kPose, 5));
+  EXPECT_FALSE(gate.is_new(Stream::kPose, 4));
+  EXPECT_TRUE(gate.is_new(Stream::kBattery, 4)) << "each stream counts for itself";
+}
+
+}  // namespace
+}  // namespace swiftlet::services
