@@ -1,0 +1,345 @@
+// The tracking table of the field: five paths flown in one process, the 3-D error against truth, once with perfect state
+// feedback and once with all sensor models. Figures of other projects are those that were measured on such a machine with
+// their own vehicles, gains and perfect state feedback.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "control/supervision/checks.hpp"
+#include "ground/simulation/closed_loop.hpp"
+#include "services/runtime/control_settings_file.hpp"
+#include "services/runtime/csv.hpp"
+#include "services/runtime/find_config.hpp"
+#include "services/runtime/process.hpp"
+#include "services/runtime/simulation_file.hpp"
+#include "services/runtime/text_file.hpp"
+#include "services/runtime/vehicle_file.hpp"
+
+namespace swiftlet {
+namespace {
+
+using control::PolynomialSegment;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kHeight = 1.0;  // m
+constexpr double kHover = 5.0;   // s before a path
+constexpr double kJoin = 0.5;   // s that the controller takes to join a trajectory whose start is where it is
+constexpr double kJump = 1e-4;  // m, between segments whose coefficients are rounded
+
+// What is asked of a vehicle: where it should be, and the trajectory that is commanded for it.
+struct Path {
+  std::string name;
+  std::function<Vector3d(double)> position_ned;  // at s from the trajectory's start
+  control::Trajectory trajectory;
+  double score_from_s = 0.0;
+  double score_to_s = 0.0;
+};
+
+// Position, velocity, acceleration and jerk in the plane.
+struct Knot {
+  Vector2d p = Vector2d::Zero();
+  Vector2d v = Vector2d::Zero();
+  Vector2d a = Vector2d::Zero();
+  Vector2d j = Vector2d::Zero();
+};
+
+// The septic that joins two knots.
+PolynomialSegment join(const Knot& from, const Knot& to, double duration_s) {
+  Eigen::Matrix4d powers;  // of position, velocity, acceleration and jerk at the end, from t^4 on
+  const double t = duration_s;
+  for (int k = 0; k < 4; ++k) {
+    const double n = k + 4;
+    powers(0, k) = std::pow(t, n);
+    powers(1, k) = n * std::pow(t, n - 1);
+    powers(2, k) = n * (n - 1) * std::pow(t, n - 2);
+    powers(3, k) = n * (n - 1) * (n - 2) * std::pow(t, n - 3);
+  }
+  const auto axis = [&](int i) {
+    control::Polynomial c{from.p[i], from.v[i], from.a[i] / 2.0, from.j[i] / 6.0};
+    Eigen::Vector4d rest;
+    rest << to.p[i] - (c[0] + t * (c[1] + t * (c[2] + t * c[3]))),
+        to.v[i] - (c[1] + t * (2.0 * c[2] + t * 3.0 * c[3])), to.a[i] - (2.0 * c[2] + t * 6.0 * c[3]),
+        to.j[i] - 6.0 * c[3];
+    const Eigen::Vector4d high = powers.partialPivLu().solve(rest);
+    for (std::size_t k = 0; k < 4; ++k) c[k + 4] = high[static_cast<Eigen::Index>(k)];
+    return c;
+  };
+  PolynomialSegment segment;
+  segment.duration_s = duration_s;
+  segment.x = axis(0);
+  segment.y = axis(1);
+  segment.z[0] = -kHeight;
+  return segment;
+}
+
+Vector3d at_height(const Vector2d& p) { return {p.x(), p.y(), -kHeight}; }
+
+constexpr double kHold = 4.0;  // s before and after a square
+constexpr double kSide = 8.0;  // s
+
+std::array<Vector2d, 5> corners(double length) {
+  return {Vector2d{0, 0}, Vector2d{length, 0}, Vector2d{length, length}, Vector2d{0, length}, Vector2d{0, 0}};
+}
+
+// Sides at constant speed: the velocity steps at the corners. A vehicle cannot follow a step; the trajectory rounds each off
+// within kBlend before and after it.
+Path square(const std::string& name, double length) {
+  constexpr double kBlend = 0.22;  // s
+  const auto at = corners(length);
+  const auto knot = [at](double t) {
+    const double u = std::clamp((t - kHold) / kSide, 0.0, 4.0);
+    const auto side = static_cast<std::size_t>(std::min(std::floor(u), 3.0));
+    const bool moves = t > kHold && t < kHold + 4.0 * kSide;
+    const Vector2d along = at[side + 1] - at[side];
+    return Knot{at[side] + (u - static_cast<double>(side)) * along,
+                moves ? Vector2d(along / kSide) : Vector2d::Zero()};
+  };
+  Path path{name, [knot](double t) { return at_height(knot(t).p); }, {}, 0.0, 2.0 * kHold + 4.0 * kSide};
+  double from = 0.0;
+  for (int corner = 0; corner <= 4; ++corner) {
+    const double t = kHold + kSide * corner;
+    for (const double to : {t - kBlend, t + kBlend}) {
+      path.trajectory.segments.push_back(join(knot(from), knot(to), to - from));
+      from = to;
+    }
+  }
+  path.trajectory.segments.push_back(join(knot(from), knot(path.score_to_s), path.score_to_s - from));
+  return path;
+}
+
+Path minimum_jerk_square() {
+  const auto at = corners(2.0);
+  const auto hold = [](const Vector2d& p) { return join({p}, {p}, kHold); };
+  control::Trajectory trajectory;
+  trajectory.segments.push_back(hold(at[0]));
+  for (std::size_t i = 0; i < 4; ++i) {
+    trajectory.segments.push_back(
+        control::minimum_jerk(at_height(at[i]), 0.0, at_height(at[i + 1]), 0.0, kSide));
+  }
+  trajectory.segments.push_back(hold(at[4]));
+  return {"sq2j", {}, trajectory, 0.0, 2.0 * kHold + 4.0 * kSide};
+}
+
+// Laps of a trajectory file of the Crazyswarm form: duration, then eight coefficients each of x, y, z and yaw, in ENU.
+Path figure_of_eight(const std::string& file, int laps) {
+  std::vector<std::string> columns{"duration"};
+  for (const char* axis : {"x", "y", "z", "yaw"}) {
+    for (int power = 0; power < control::kPolynomialCoefficients; ++power)
+      columns.push_back(std::string(axis) + "^" + std::to_string(power));
+  }
+  std::string text = runtime::read_text_file(file);
+  for (std::size_t at = 0; (at = text.find(",\n", at)) != std::string::npos;)
+    text.erase(at, 1);  // as written there
+  const runtime::CsvTable table = runtime::parse_csv(text, file, columns);
+  Path path{"fig8", {}, {}, 0.0, 0.0};
+  for (int lap = 0; lap < laps; ++lap) {
+    for (std::size_t row = 0; row < table.row_count(); ++row) {
+      PolynomialSegment segment;
+      segment.duration_s = table.number(row, 0);
+      for (std::size_t k = 0; k < segment.x.size(); ++k) {
+        segment.y[k] = table.number(row, 1 + k);
+        segment.x[k] = table.number(row, 9 + k);
+        segment.z[k] = -table.number(row, 17 + k);
+      }
+      segment.z[0] -= kHeight;
+      path.trajectory.segments.push_back(segment);
+      path.score_to_s += segment.duration_s;
+    }
+  }
+  return path;
+}
+
+// x = 2 sin(w t), y = sin(2 w t), 10 s a lap, as septics of half a second; 10 s before get up speed from rest.
+Path lemniscate() {
+  constexpr double kLap = 10.0;
+  constexpr double kPiece = 0.5;
+  constexpr double kEnd = 5.0 * kLap;
+  constexpr double kW = 2.0 * M_PI / kLap;
+  const auto point = [](double phase) { return Vector2d(2.0 * std::sin(phase), std::sin(2.0 * phase)); };
+  // Its rate rises from 0 to w as 10 s^3 - 15 s^4 + 6 s^5 does to 1.
+  const auto phase = [](double t) {
+    if (t >= kLap) return kW * (t - kLap / 2.0);
+    const double s = t / kLap;
+    return kW * kLap * s * s * s * s * (2.5 - 3.0 * s + s * s);
+  };
+  const auto knot = [&](double t) {
+    // Derivatives by central differences of step h, exact to h^4.
+    constexpr double kH = 2e-3;
+    const auto f = [&](int n) { return point(phase(t + n * kH)); };
+    const Vector2d v = (f(-2) - 8.0 * f(-1) + 8.0 * f(1) - f(2)) / (12.0 * kH);
+    const Vector2d a = (-f(-2) + 16.0 * f(-1) - 30.0 * f(0) + 16.0 * f(1) - f(2)) / (12.0 * kH * kH);
+    const Vector2d j = (-f(-2) + 2.0 * f(-1) - 2.0 * f(1) + f(2)) / (-2.0 * kH * kH * kH);
+    return Knot{f(0), v, a, j};
+  };
+  Path path{"lem", [phase, point](double t) { return at_height(point(phase(t))); }, {}, kLap, kEnd};
+  Knot from{point(0.0)};
+  for (double t = kPiece; t <= kEnd + kPiece / 2.0; t += kPiece) {
+    const Knot to = knot(t);
+    path.trajectory.segments.push_back(join(from, to, kPiece));
+    from = to;
+  }
+  return path;
+}
+
+Vector3d reference_at(const control::Trajectory& trajectory, double t) {
+  for (const PolynomialSegment& segment : trajectory.segments) {
+    if (t <= segment.duration_s) return control::evaluate(segment, t).position_ned;
+    t -= segment.duration_s;
+  }
+  return control::evaluate(trajectory.segments.back(), trajectory.segments.back().duration_s).position_ned;
+}
+
+struct Score {
+  double rms_m = 0.0;
+  double peak_m = 0.0;
+};
+
+control::Request request(control::RequestKind kind) {
+  control::Request asked;
+  asked.kind = kind;
+  return asked;
+}
+
+void demand(ground::ClosedLoop& loop, const control::Request& asked) {
+  const control::Outcome outcome = loop.controller.request(asked);
+  if (!outcome.accepted) throw std::runtime_error(outcome.reason);
+}
+
+Score fly(const Path& path, const plant::SimulationSettings& simulation,
+          const control::ControlSettings& settings, std::uint64_t seed) {
+  const control::Outcome sound = control::check(path.trajectory, settings.limits);
+  if (!sound.accepted) throw std::runtime_error(path.name + ": " + sound.reason);
+  ground::ClosedLoop loop(runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml")), simulation,
+                          settings, seed);
+  loop.step_until([&] { return loop.time_s() >= 1.0; }, 2.0);
+  demand(loop, request(control::RequestKind::kArm));
+  control::Request takeoff = request(control::RequestKind::kTakeoff);
+  takeoff.position_ned.z() = -kHeight;
+  demand(loop, takeoff);
+  if (!loop.step_until([&] { return loop.controller.status().mode == control::Mode::kHolding; }, 20.0))
+    throw std::runtime_error("did not take off");
+  const double hover_end = loop.time_s() + kHover;
+  loop.step_until([&] { return loop.time_s() >= hover_end; }, 2.0 * kHover);
+
+  control::Request follow = request(control::RequestKind::kTrajectory);
+  follow.trajectory = &path.trajectory;
+  demand(loop, follow);
+  const double start_s = loop.time_s() + kJoin;
+  Score score;
+  double sum = 0.0;
+  int samples = 0;
+  while (loop.time_s() < start_s + path.score_to_s) {
+    loop.step();
+    const double t = loop.time_s() - start_s;
+    if (t < path.score_from_s) continue;
+    const Vector3d commanded = reference_at(path.trajectory, t);
+    if ((loop.controller.reference().position_ned - commanded).norm() > kJump)
+      throw std::runtime_error(path.name + ": the controller does not follow the trajectory of this time");
+    const Vector3d asked = path.position_ned ? path.position_ned(t) : commanded;
+    const double error = (loop.plant.state().position_ned - asked).norm();
+    sum += error * error;
+    score.peak_m = std::max(score.peak_m, error);
+    ++samples;
+  }
+  score.rms_m = std::sqrt(sum / samples);
+  return score;
+}
+
+struct Peer {
+  const char* name;
+  std::array<double, 5> rms_m;
+};
+
+constexpr Peer kPeers[] = {
+    {"kr SO3 (100 Hz, 1 kHz)", {0.0137, 0.030, 0.0001, 0.0025, 0.0010}},
+    {"flightlib + rpg (100 Hz)", {0.0144, 0.030, 0.0001, 0.0070, 0.0011}},
+    {"RotorPy SE3, Crazyflie, 500 Hz", {0.018, 0.037, 0.009, 0.023, 0.031}},
+    {"Crazyflie Mellinger, mass matched", {0.020, 0.033, 0.014, 0.020, 0.019}},
+    {"the same, stock mass", {0.055, 0.061, 0.053, 0.063, 0.061}},
+    {"mrs position + feed-forward", {0.034, 0.070, 0.005, 0.135, 0.060}},
+    {"PX4 with feed-forward", {0.100, 0.200, 0.114, 0.236, 0.515}},
+    {"Crazyflie PID", {0.109, 0.218, 0.132, 0.394, 0.648}},
+};
+
+void run(const std::string& figure_of_eight_file, std::uint64_t seed, bool json) {
+  control::ControlSettings settings =
+      runtime::load_control_settings(runtime::find_config("control/motor_lag.yaml"));
+  settings.limits.fence_min_ned = {-5.0, -5.0, -2.5};  // sq4 is larger than the arena
+  settings.limits.fence_max_ned = {5.0, 5.0, 0.2};
+  plant::SimulationSettings perfect =
+      runtime::load_simulation_settings(runtime::find_config("simulation/ideal.yaml"));
+  perfect.imu.rate_hz = perfect.mocap.rate_hz = perfect.rotor_speed_rate_hz = 1000.0;
+  const plant::SimulationSettings real =
+      runtime::load_simulation_settings(runtime::find_config("simulation/default.yaml"));
+  const std::vector<Path> paths = {square("sq2", 2.0), square("sq4", 4.0), minimum_jerk_square(),
+                                   figure_of_eight(figure_of_eight_file, 5), lemniscate()};
+
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  const auto add = [&](const std::string& name, const plant::SimulationSettings& simulation) {
+    nlohmann::ordered_json row{{"name", name}};
+    std::array<Score, 5> scores;
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      scores[i] = fly(paths[i], simulation, settings, seed);
+      row[paths[i].name] = {{"rms_m", scores[i].rms_m}, {"peak_m", scores[i].peak_m}};
+    }
+    rows.push_back(row);
+    return scores;
+  };
+  const auto with_perfect = add("Swiftlet, perfect state feedback, 1 kHz", perfect);
+  const auto with_sensors = add("Swiftlet, all sensor models, 500 Hz", real);
+  if (json) {
+    std::printf("%s\n", rows.dump().c_str());
+    return;
+  }
+  std::printf("%-42s", "3-D error against truth, RMS in mm");
+  for (const Path& path : paths) std::printf("%8s", path.name.c_str());
+  std::printf("\n");
+  const auto print = [](const char* name, const auto& values) {
+    std::printf("%-42s", name);
+    for (const double value : values) std::printf("%8.2f", value * 1e3);
+    std::printf("\n");
+  };
+  const auto of = [](const std::array<Score, 5>& scores, double Score::*what) {
+    std::array<double, 5> values{};
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = scores[i].*what;
+    return values;
+  };
+  print("Swiftlet, perfect state feedback, 1 kHz", of(with_perfect, &Score::rms_m));
+  print("  peak", of(with_perfect, &Score::peak_m));
+  print("Swiftlet, all sensor models, 500 Hz", of(with_sensors, &Score::rms_m));
+  print("  peak", of(with_sensors, &Score::peak_m));
+  for (const Peer& peer : kPeers) print(peer.name, peer.rms_m);
+  std::printf(
+      "\nsq2: 2 m square at 1 m, 4 s hold, sides of 8 s at constant speed, 4 s hold; sq4: 4 m; sq2j: "
+      "minimum-jerk sides;\n"
+      "fig8: 5 laps of crazyswarm's figure8.csv; lem: x = 2 sin(wt), y = sin(2wt), 10 s a lap, from the "
+      "second lap.\n"
+      "Swiftlet is commanded sq2 and sq4 with corners that polynomials round off; scored against the path "
+      "with its corners.\n"
+      "All sensor models: IMU noise and bias, mocap at 100 Hz with 0.1 mm and 10 ms of latency, the battery "
+      "sagging.\n");
+}
+
+}  // namespace
+}  // namespace swiftlet
+
+int main(int argc, char** argv) {
+  CLI::App app("Tracking errors of five paths, beside those of other projects", "tracking_bench");
+  std::string file = SWIFTLET_SOURCE_DIR "/tests/data/crazyswarm_figure8.csv";
+  std::uint64_t seed = 1;
+  bool json = false;
+  app.add_option("--figure-of-eight", file, "Crazyswarm trajectory file")->capture_default_str();
+  app.add_option("--seed", seed, "of the sensors' errors")->capture_default_str();
+  app.add_flag("--json", json, "print JSON instead of the table");
+  return swiftlet::runtime::run_process(app, argc, argv, [&] { swiftlet::run(file, seed, json); });
+}
