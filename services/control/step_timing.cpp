@@ -1,6 +1,7 @@
 #include "services/control/step_timing.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace swiftlet::services {
 namespace {
@@ -14,6 +15,7 @@ void StepTiming::arrived(std::uint64_t sequence, std::int64_t stamp_ns, std::int
   const std::int64_t elapsed_ns = stamp_ns - last_stamp_ns_;
   const bool starts_anew = last_sequence_ == 0 || sequence <= last_sequence_ || elapsed_ns <= 0;
   if (!starts_anew && sequence == last_sequence_ + 1) period_ns_ = elapsed_ns;
+  const std::int64_t interval_ns = now_ns - arrival_ns_;
   const std::int64_t delay_ns = starts_anew ? 0 : now_ns - (pace_ns_ + elapsed_ns);
   pace_ns_ = delay_ns > 0 ? now_ns - delay_ns + delay_ns / kPaceShare : now_ns;
   last_sequence_ = sequence;
@@ -22,10 +24,12 @@ void StepTiming::arrived(std::uint64_t sequence, std::int64_t stamp_ns, std::int
 
   if (rotors_running && !running_) {
     figures_ = {};
+    jitter_.reset();
     first_arrival_ns_ = now_ns;
   }
   running_ = rotors_running;
   if (!running_) return;
+  if (!starts_anew && figures_.cycles > 0) jitter_.record(std::abs(interval_ns - elapsed_ns));
   ++figures_.cycles;
   if (period_ns_ > 0 && delay_ns > period_ns_ / 2) ++figures_.deadline_misses;
   if (now_ns > first_arrival_ns_) {
@@ -35,7 +39,12 @@ void StepTiming::arrived(std::uint64_t sequence, std::int64_t stamp_ns, std::int
 }
 
 void StepTiming::answered(std::int64_t now_ns) {
-  if (running_) figures_.longest_ns = std::max(figures_.longest_ns, now_ns - arrival_ns_);
+  if (!running_) return;
+  figures_.longest_ns = std::max(figures_.longest_ns, now_ns - arrival_ns_);
+  figures_.jitter_max_ns = jitter_.max_ns();
+  if (figures_.cycles % kJitterUpdate != 0) return;
+  figures_.jitter_p50_ns = jitter_.quantile_ns(0.5);
+  figures_.jitter_p99_ns = jitter_.quantile_ns(0.99);
 }
 
 }  // namespace swiftlet::services

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "services/runtime/latency_histogram.hpp"
+
 namespace swiftlet::services {
 
 // Counts the steps since the rotors were last started. One thread calls it; times of arrival are monotonic,
@@ -14,7 +16,13 @@ class StepTiming {
     std::uint64_t deadline_misses = 0;
     double rate_hz = 0.0;
     std::int64_t longest_ns = 0;
+    // How far the time between two steps is from that between their samples' stamps; of quantiles, the newest
+    // of every kJitterUpdate cycles.
+    std::int64_t jitter_p50_ns = 0;
+    std::int64_t jitter_p99_ns = 0;
+    std::int64_t jitter_max_ns = 0;
   };
+  static constexpr std::uint64_t kJitterUpdate = 128;
 
   // A sample arrived. It is late if it came more than half a period after the pace that the samples before it
   // have set; the pace gives way to a lasting delay within some ten samples. Lost samples are not waited for.
@@ -36,6 +44,7 @@ class StepTiming {
   std::int64_t first_arrival_ns_ = 0;
   bool running_ = false;
   Figures figures_;
+  runtime::LatencyHistogram jitter_;
 };
 
 }  // namespace swiftlet::services

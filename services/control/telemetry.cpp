@@ -98,6 +98,9 @@ void Telemetry::publish_status() {
   message.deadline_misses(last_.timing.deadline_misses);
   message.rate_hz(last_.timing.rate_hz);
   message.step_time_max_us(static_cast<double>(last_.timing.longest_ns) * 1e-3);
+  message.period_jitter_p50_us(static_cast<double>(last_.timing.jitter_p50_ns) * 1e-3);
+  message.period_jitter_p99_us(static_cast<double>(last_.timing.jitter_p99_ns) * 1e-3);
+  message.period_jitter_max_us(static_cast<double>(last_.timing.jitter_max_ns) * 1e-3);
   message.realtime_scheduling(realtime_.load(std::memory_order_relaxed));
   statuses_.publish(message);
   saturated_ = false;

@@ -12,9 +12,10 @@ void AnswerTimes::answered(std::uint64_t imu_sequence, std::int64_t now_ns) {
   Sample& slot = waiting_[imu_sequence % kPatience];
   if (slot.sequence != imu_sequence) return;
   times_.record(now_ns - slot.written_ns);
+  if (now_ns - slot.written_ns > late_after_ns_) ++late_;
   slot.sequence = 0;
 }
 
-void AnswerTimes::reset() { *this = {}; }
+void AnswerTimes::reset() { *this = AnswerTimes(late_after_ns_); }
 
 }  // namespace swiftlet::services

@@ -14,6 +14,9 @@ class AnswerTimes {
   // A sample that has no answer when kPatience more have been written counts as unanswered.
   static constexpr std::uint64_t kPatience = 8;
 
+  // late_after_ns: from when on an answer counts as late.
+  explicit AnswerTimes(std::int64_t late_after_ns) : late_after_ns_(late_after_ns) {}
+
   void written(std::uint64_t imu_sequence, std::int64_t now_ns);
   void answered(std::uint64_t imu_sequence,
                 std::int64_t now_ns);  // second answers and unknown samples are left out
@@ -21,6 +24,7 @@ class AnswerTimes {
 
   const runtime::LatencyHistogram& times() const { return times_; }
   std::uint64_t unanswered() const { return unanswered_; }
+  std::uint64_t late() const { return late_; }
 
  private:
   struct Sample {
@@ -31,6 +35,8 @@ class AnswerTimes {
   std::array<Sample, kPatience> waiting_{};
   runtime::LatencyHistogram times_;
   std::uint64_t unanswered_ = 0;
+  std::uint64_t late_ = 0;
+  std::int64_t late_after_ns_;
 };
 
 }  // namespace swiftlet::services

@@ -90,8 +90,10 @@ void update(comms::msg::VehicleInfo& info, const PlantReport& report, const std:
   info.paused(report.paused);
   info.answered(report.answered);
   info.unanswered(report.unanswered);
+  info.late(report.late);
   info.sense_to_actuate_p50_us(static_cast<double>(report.answer_p50_ns) * 1e-3);
   info.sense_to_actuate_p99_us(static_cast<double>(report.answer_p99_ns) * 1e-3);
+  info.sense_to_actuate_p999_us(static_cast<double>(report.answer_p999_ns) * 1e-3);
   info.sense_to_actuate_max_us(static_cast<double>(report.answer_max_ns) * 1e-3);
   info.fault() = fault;
 }

@@ -21,6 +21,7 @@ SimulatedVehicle::SimulatedVehicle(const plant::Vehicle& vehicle, const plant::S
                                    std::uint64_t seed, comms::Node& node)
     : simulation_(vehicle, settings, seed),
       watchdog_(vehicle.rotor_count(), std::llround(settings.command_timeout_s * 1e9)),
+      answers_(plant::period_ns(settings.imu.rate_hz)),
       imu_(node.publish(kImu)),
       ground_truth_(node.publish(kGroundTruth)),
       rotor_speeds_(node.publish(kRotorSpeeds)),
@@ -120,8 +121,10 @@ void SimulatedVehicle::report() {
   report_.stamp_ns = simulation_.stamp_ns();
   report_.answered = answers_.times().count();
   report_.unanswered = answers_.unanswered();
+  report_.late = answers_.late();
   report_.answer_p50_ns = answers_.times().quantile_ns(0.5);
   report_.answer_p99_ns = answers_.times().quantile_ns(0.99);
+  report_.answer_p999_ns = answers_.times().quantile_ns(0.999);
   report_.answer_max_ns = answers_.times().max_ns();
   told_ = report_;
   reports_.put(report_);

@@ -22,8 +22,10 @@ struct PlantReport {
   bool paused = false;     // in lockstep: waits to be granted more time
   std::uint64_t answered = 0;
   std::uint64_t unanswered = 0;
+  std::uint64_t late = 0;
   std::int64_t answer_p50_ns = 0;
   std::int64_t answer_p99_ns = 0;
+  std::int64_t answer_p999_ns = 0;
   std::int64_t answer_max_ns = 0;
   std::uint64_t commands = 0;  // that were obeyed
   std::uint64_t refused_commands = 0;

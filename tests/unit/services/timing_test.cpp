@@ -46,6 +46,17 @@ TEST(StepTiming, CountsStepsSinceTheRotorsWereStarted) {
   EXPECT_EQ(timing.figures().cycles, 1U);
 }
 
+TEST(StepTiming, JitterIsOfTheTimeBetweenSteps) {
+  StepTiming timing;
+  Arrivals samples(timing);
+  for (std::uint64_t i = 0; i < 2 * StepTiming::kJitterUpdate; ++i) samples.arrive(i % 2 == 0 ? 0 : 30'000);
+  EXPECT_NEAR(static_cast<double>(timing.figures().jitter_p50_ns), 30'000.0, 1'000.0);
+  EXPECT_NEAR(static_cast<double>(timing.figures().jitter_p99_ns), 30'000.0, 1'000.0);
+  samples.lose(3);
+  samples.arrive(30'000 + 200'000);
+  EXPECT_EQ(timing.figures().jitter_max_ns, 200'000) << "lost samples are no jitter";
+}
+
 TEST(StepTiming, AStepIsLateBeyondHalfAPeriod) {
   StepTiming timing;
   Arrivals samples(timing);
@@ -89,7 +100,7 @@ TEST(StepTiming, AClockThatStartsAnewIsNoDelay) {
 }
 
 TEST(AnswerTimes, AreFromSampleToItsFirstAnswer) {
-  AnswerTimes times;
+  AnswerTimes times(kPeriod);
   times.written(1, 1000);
   times.answered(1, 1500);
   times.answered(1, 9000);  // again
@@ -99,8 +110,20 @@ TEST(AnswerTimes, AreFromSampleToItsFirstAnswer) {
   EXPECT_EQ(times.unanswered(), 0U);
 }
 
+TEST(AnswerTimes, AnAnswerIsLateAfterAPeriod) {
+  AnswerTimes times(kPeriod);
+  times.written(1, 0);
+  times.answered(1, kPeriod);
+  EXPECT_EQ(times.late(), 0U);
+  times.written(2, 0);
+  times.answered(2, kPeriod + 1);
+  EXPECT_EQ(times.late(), 1U);
+  times.reset();
+  EXPECT_EQ(times.late(), 0U);
+}
+
 TEST(AnswerTimes, ASampleWithoutAnswerIsCountedWhenPatienceEnds) {
-  AnswerTimes times;
+  AnswerTimes times(kPeriod);
   for (std::uint64_t sequence = 1; sequence <= AnswerTimes::kPatience; ++sequence) times.written(sequence, 0);
   EXPECT_EQ(times.unanswered(), 0U);
   times.answered(2, 10);

@@ -1,0 +1,389 @@
+// What the way from sense to actuate costs at least: one process sends the bytes of an IMU sample at the pace
+// of the plant, another answers each with those of an actuator command. Over Fast DDS without anything of
+// ours but the QoS profiles, and over a Unix socket.
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <fastdds/dds/topic/Topic.hpp>
+#include <fastdds/dds/topic/TypeSupport.hpp>
+#include <nlohmann/json.hpp>
+
+#include "swiftlet_msgs/msg/ActuatorCommandPubSubTypes.h"
+#include "swiftlet_msgs/msg/ImuPubSubTypes.h"
+
+#include "services/comms/domain_claim.hpp"
+#include "services/comms/participant_qos.hpp"
+#include "services/comms/profiles.hpp"
+#include "services/runtime/latency_histogram.hpp"
+#include "services/runtime/periodic_timer.hpp"
+#include "services/runtime/process.hpp"
+
+namespace swiftlet {
+namespace {
+
+using namespace std::chrono_literals;
+namespace dds = eprosima::fastdds::dds;
+using comms::msg::ActuatorCommand;
+using comms::msg::Imu;
+using eprosima::fastrtps::types::ReturnCode_t;
+
+struct Options {
+  double seconds = 5.0;
+  std::vector<int> rates_hz{500, 1000};
+  std::vector<std::string> transports;  // empty: all
+  bool json = false;
+  bool no_deadline = false;
+  runtime::ProcessOptions process;
+  // Of the process that answers.
+  int echo_domain = -1;
+  int echo_transport = 0;
+  int echo_socket = -1;
+};
+
+constexpr std::pair<const char*, comms::Transport> kTransports[] = {
+    {"udp", comms::Transport::kUdp},
+    {"shm", comms::Transport::kSharedMemory},
+    {"data-sharing", comms::Transport::kDataSharing}};
+constexpr const char* kSocket = "unix-socket";
+
+// Makes the thread that first comes here real-time, once.
+class ThreadSetUp {
+ public:
+  explicit ThreadSetUp(const runtime::RealtimeSettings& settings) : settings_(settings) {}
+  void operator()() {
+    if (done_) return;
+    done_ = true;
+    if (settings_.enabled) runtime::make_this_thread_realtime(settings_);
+  }
+
+ private:
+  runtime::RealtimeSettings settings_;
+  bool done_ = false;
+};
+
+template <class T>
+T* demand(T* made, const char* what) {
+  if (made == nullptr) throw std::runtime_error(std::string("cannot make a ") + what);
+  return made;
+}
+
+// A participant with one writer and one reader.
+template <class Sent, class SentType, class Received, class ReceivedType>
+class BarePair final : private dds::DataReaderListener {
+ public:
+  BarePair(const Options& options, const char* name, int domain, comms::Transport transport,
+           const comms::Topic<Sent>& sent, const comms::Topic<Received>& received,
+           std::function<void(const Received&)> on_sample)
+      : on_sample_(std::move(on_sample)) {
+    comms::NodeSettings settings;
+    settings.name = name;
+    settings.domain = domain;
+    settings.transport = transport;
+    settings.localhost_only = true;
+    const int sent_deadline_ms = options.no_deadline ? 0 : sent.deadline_ms;
+    const int received_deadline_ms = options.no_deadline ? 0 : received.deadline_ms;
+    participant_ = demand(dds::DomainParticipantFactory::get_instance()->create_participant(
+                              static_cast<std::uint32_t>(domain), comms::participant_qos(settings)),
+                          "participant");
+    auto* const publisher = demand(participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT), "publisher");
+    auto* const subscriber =
+        demand(participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT), "subscriber");
+    writer_ =
+        demand(publisher->create_datawriter(topic<SentType>(sent.name),
+                                            comms::writer_qos(sent.qos, sent_deadline_ms, 0, transport)),
+               "writer");
+    reader_ = demand(subscriber->create_datareader(topic<ReceivedType>(received.name),
+                                                   comms::reader_qos(received.qos, received_deadline_ms,
+                                                                     transport, comms::Delivery::kOwnThread),
+                                                   this, dds::StatusMask::data_available()),
+                     "reader");
+  }
+  ~BarePair() override {
+    reader_->set_listener(nullptr);
+    participant_->delete_contained_entities();
+    dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
+  }
+  BarePair(const BarePair&) = delete;
+  BarePair& operator=(const BarePair&) = delete;
+
+  void send(Sent& sample) { writer_->write(&sample); }
+
+  bool matched() const {
+    dds::PublicationMatchedStatus readers;
+    dds::SubscriptionMatchedStatus writers;
+    writer_->get_publication_matched_status(readers);
+    reader_->get_subscription_matched_status(writers);
+    return readers.current_count > 0 && writers.current_count > 0;
+  }
+
+ private:
+  template <class Type>
+  dds::Topic* topic(const std::string& name) {
+    const dds::TypeSupport type(new Type());
+    participant_->register_type(type);
+    return demand(participant_->create_topic(name, type.get_type_name(), dds::TOPIC_QOS_DEFAULT), "topic");
+  }
+
+  void on_data_available(dds::DataReader* reader) override {
+    dds::SampleInfo info;
+    while (reader->take_next_sample(&sample_, &info) == ReturnCode_t::RETCODE_OK) {
+      if (info.valid_data) on_sample_(sample_);
+    }
+  }
+
+  std::function<void(const Received&)> on_sample_;
+  Received sample_;
+  dds::DomainParticipant* participant_ = nullptr;
+  dds::DataWriter* writer_ = nullptr;
+  dds::DataReader* reader_ = nullptr;
+};
+using BarePlant = BarePair<Imu, swiftlet_msgs::msg::ImuPubSubType, ActuatorCommand,
+                           swiftlet_msgs::msg::ActuatorCommandPubSubType>;
+using BareControl = BarePair<ActuatorCommand, swiftlet_msgs::msg::ActuatorCommandPubSubType, Imu,
+                             swiftlet_msgs::msg::ImuPubSubType>;
+
+// The control-like process: lives until its standard input is closed.
+void echo_dds(const Options& options) {
+  std::unique_ptr<BareControl> pair;
+  std::atomic<BareControl*> ready{nullptr};
+  ThreadSetUp set_up(options.process.realtime);
+  ActuatorCommand command;
+  pair = std::make_unique<BareControl>(
+      options, "control", options.echo_domain, static_cast<comms::Transport>(options.echo_transport),
+      comms::topics::kActuatorCommand, comms::topics::kImu, [&](const Imu& imu) {
+        set_up();
+        command.imu_sequence_number(imu.sequence_number());
+        if (BareControl* const self = ready.load()) self->send(command);
+      });
+  ready = pair.get();
+  char byte = 0;
+  while (::read(STDIN_FILENO, &byte, 1) > 0) {
+  }
+}
+
+// On a socket the numbers alone count; the rest is as long as on the wire.
+struct Datagram {
+  std::uint64_t sequence;
+  char rest[120];
+};
+
+void echo_socket(const Options& options) {
+  ThreadSetUp set_up(options.process.realtime);
+  set_up();
+  Datagram datagram{};
+  while (::recv(options.echo_socket, &datagram, sizeof datagram, 0) > 0) {
+    if (::send(options.echo_socket, &datagram, sizeof datagram, 0) < 0) return;
+  }
+}
+
+// The other process, for as long as this lives.
+class EchoProcess {
+ public:
+  EchoProcess(const Options& options, std::vector<std::string> words, int kept_open) {
+    int ends[2];
+    if (::pipe(ends) != 0) throw std::runtime_error("cannot make a pipe");
+    words.insert(words.begin(), "ping_pong_bench");
+    words.insert(words.end(), {"--priority", std::to_string(options.process.realtime.priority)});
+    if (!options.process.realtime.enabled) words.emplace_back("--no-realtime");
+    if (options.no_deadline) words.emplace_back("--no-deadline");
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    child_ = ::fork();
+    if (child_ == 0) {
+      ::dup2(ends[0], STDIN_FILENO);
+      ::close(ends[0]);
+      ::close(ends[1]);
+      if (kept_open >= 0) ::dup2(kept_open, kEchoSocket);
+      ::execv("/proc/self/exe", arguments.data());
+      ::_exit(127);
+    }
+    ::close(ends[0]);
+    input_ = ends[1];
+  }
+  ~EchoProcess() {
+    ::close(input_);
+    ::waitpid(child_, nullptr, 0);
+  }
+  EchoProcess(const EchoProcess&) = delete;
+  EchoProcess& operator=(const EchoProcess&) = delete;
+
+  static constexpr int kEchoSocket = 9;  // its number there
+
+ private:
+  pid_t child_ = -1;
+  int input_ = -1;
+};
+
+// The times of one measurement, by sequence number from 1.
+class RoundTrips {
+ public:
+  explicit RoundTrips(std::uint64_t count) : written_(count + 1) {}
+
+  // By the thread that sends, once all is ready: half a second to warm up, then what counts.
+  void pace(const Options& options, int rate_hz, const std::function<void(std::uint64_t)>& send) {
+    std::thread([&] {
+      if (options.process.realtime.enabled) runtime::make_this_thread_realtime(options.process.realtime);
+      runtime::PeriodicTimer timer(1'000'000'000 / rate_hz, 1'000'000);
+      for (int warm_up = 0; warm_up < rate_hz / 2; ++warm_up) {
+        timer.wait();
+        send(written_.size());
+      }
+      timer.wait();
+      for (std::uint64_t sequence = 1; sequence < written_.size(); ++sequence) {
+        timer.wait();
+        written_[sequence] = runtime::monotonic_ns();
+        send(sequence);
+      }
+    }).join();
+    std::this_thread::sleep_for(20ms);  // the last answers
+  }
+
+  // By the thread that receives.
+  void answered(std::uint64_t sequence) {
+    const std::int64_t now_ns = runtime::monotonic_ns();
+    if (sequence < written_.size()) times_.record(now_ns - written_[sequence].load());
+  }
+
+  std::uint64_t count() const { return written_.size() - 1; }
+  const runtime::LatencyHistogram& times() const { return times_; }
+
+ private:
+  std::vector<std::atomic<std::int64_t>> written_;
+  runtime::LatencyHistogram times_;
+};
+
+void over_dds(const Options& options, comms::Transport transport, int rate_hz, RoundTrips& trips) {
+  const comms::DomainClaim claim;
+  ThreadSetUp set_up(options.process.realtime);
+  BarePlant pair(options, "plant", claim.domain(), transport, comms::topics::kImu,
+                 comms::topics::kActuatorCommand, [&](const ActuatorCommand& command) {
+                   set_up();
+                   trips.answered(command.imu_sequence_number());
+                 });
+  const EchoProcess process(options,
+                            {"--echo-domain", std::to_string(claim.domain()), "--echo-transport",
+                             std::to_string(static_cast<int>(transport))},
+                            -1);
+  const auto give_up = std::chrono::steady_clock::now() + 10s;
+  while (!pair.matched()) {
+    if (std::chrono::steady_clock::now() > give_up)
+      throw std::runtime_error("the other process was not found");
+    std::this_thread::sleep_for(10ms);
+  }
+  Imu imu;
+  trips.pace(options, rate_hz, [&](std::uint64_t sequence) {
+    imu.sequence_number(sequence);
+    pair.send(imu);
+  });
+}
+
+void over_socket(const Options& options, int rate_hz, RoundTrips& trips) {
+  int ends[2];
+  if (::socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends) != 0) throw std::runtime_error("cannot make a socket");
+  {
+    const EchoProcess process(options, {"--echo-socket", std::to_string(EchoProcess::kEchoSocket)}, ends[1]);
+    ::close(ends[1]);
+    std::thread receiver([&] {
+      ThreadSetUp set_up(options.process.realtime);
+      set_up();
+      Datagram datagram{};
+      while (::recv(ends[0], &datagram, sizeof datagram, 0) > 0) trips.answered(datagram.sequence);
+    });
+    Datagram datagram{};
+    trips.pace(options, rate_hz, [&](std::uint64_t sequence) {
+      datagram.sequence = sequence;
+      if (::send(ends[0], &datagram, sizeof datagram, 0) < 0) throw std::runtime_error("cannot send");
+    });
+    ::shutdown(ends[0], SHUT_RDWR);
+    receiver.join();
+  }
+  ::close(ends[0]);
+}
+
+nlohmann::ordered_json measure(const Options& options, const std::string& name, int rate_hz) {
+  RoundTrips trips(static_cast<std::uint64_t>(options.seconds * rate_hz));
+  if (name == kSocket) over_socket(options, rate_hz, trips);
+  for (const auto& [transport_name, transport] : kTransports) {
+    if (name == transport_name) over_dds(options, transport, rate_hz, trips);
+  }
+  const auto us = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-3; };
+  const runtime::LatencyHistogram& times = trips.times();
+  return {{"transport", name},
+          {"rate_hz", rate_hz},
+          {"sent", trips.count()},
+          {"lost", trips.count() - times.count()},
+          {"p50_us", us(times.quantile_ns(0.5))},
+          {"p99_us", us(times.quantile_ns(0.99))},
+          {"p999_us", us(times.quantile_ns(0.999))},
+          {"max_us", us(times.max_ns())}};
+}
+
+void run(Options options) {
+  if (options.echo_domain >= 0) return echo_dds(options);
+  if (options.echo_socket >= 0) return echo_socket(options);
+  if (options.transports.empty()) {
+    for (const auto& [name, transport] : kTransports) options.transports.emplace_back(name);
+    options.transports.emplace_back(kSocket);
+  }
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  if (!options.json) {
+    std::printf("IMU out to command back, us\n%-14s %6s %8s %8s %8s %8s %6s\n", "transport", "Hz", "p50",
+                "p99", "p99.9", "max", "lost");
+  }
+  for (const std::string& transport : options.transports) {
+    for (const int rate_hz : options.rates_hz) {
+      const nlohmann::ordered_json row = measure(options, transport, rate_hz);
+      rows.push_back(row);
+      if (options.json) continue;
+      std::printf("%-14s %6d %8.1f %8.1f %8.1f %8.1f %6d\n", transport.c_str(), rate_hz,
+                  row["p50_us"].get<double>(), row["p99_us"].get<double>(), row["p999_us"].get<double>(),
+                  row["max_us"].get<double>(), row["lost"].get<int>());
+      std::fflush(stdout);
+    }
+  }
+  if (options.json) std::printf("%s\n", rows.dump().c_str());
+}
+
+}  // namespace
+}  // namespace swiftlet
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Round trip of an IMU sample and its actuator command between two processes that do nothing else.",
+      "ping_pong_bench");
+  app.footer("Example: ping_pong_bench --seconds 10 --transport udp --json");
+  swiftlet::Options options;
+  options.process.realtime.priority = 60;
+  app.add_option("--seconds", options.seconds, "Of each measurement")->check(CLI::Range(0.1, 3600.0));
+  app.add_option("--rate", options.rates_hz, "Samples a second; several may be given")
+      ->check(CLI::Range(1, 10'000));
+  app.add_option("--transport", options.transports, "Of these alone; several may be given")
+      ->check(CLI::IsMember({"udp", "shm", "data-sharing", swiftlet::kSocket}));
+  app.add_flag("--json", options.json, "Print JSON");
+  app.add_flag("--no-deadline", options.no_deadline, "Leave out the streams' deadline QoS");
+  app.add_option("--echo-domain", options.echo_domain)->group("");
+  app.add_option("--echo-transport", options.echo_transport)->group("");
+  app.add_option("--echo-socket", options.echo_socket)->group("");
+  swiftlet::runtime::add_process_options(app, options.process);
+  return swiftlet::runtime::run_process(app, argc, argv, [&] { swiftlet::run(options); });
+}

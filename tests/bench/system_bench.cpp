@@ -1,0 +1,441 @@
+// What the whole system costs, each figure beside its limit as it was measured in the same run: latency, jitter, lockstep, steps,
+// load, and how many vehicles this computer carries.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "ground/child_process.hpp"
+#include "ground/client.hpp"
+#include "services/comms/domain_claim.hpp"
+#include "services/runtime/process.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace swiftlet {
+namespace {
+
+using namespace std::chrono_literals;
+namespace fs = std::filesystem;
+namespace msg = comms::msg;
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+struct Options {
+  double seconds = 5.0;
+  std::vector<std::string> only;  // sections; empty: all
+  bool json = false;
+};
+
+// ---- the table
+
+struct Row {
+  std::string what;
+  double value = 0.0;
+  std::string unit;
+  std::string limit;         // what it is measured against; empty: nothing
+  double limit_value = 0.0;  // in the same unit
+  std::string target;
+};
+
+class Table {
+ public:
+  explicit Table(bool as_json) : json_(as_json) {
+    if (!json_) std::printf("%-52s %12s %-6s %12s %8s  %s\n", "", "measured", "", "limit", "ratio", "of");
+  }
+
+  void section(const std::string& title) {
+    section_ = title;
+    if (!json_) std::printf("\n%s\n", title.c_str());
+  }
+
+  void add(const Row& row) {
+    ordered_json entry{{"section", section_}, {"what", row.what}, {"value", row.value}, {"unit", row.unit}};
+    if (!row.limit.empty()) entry["limit"] = {{"what", row.limit}, {"value", row.limit_value}};
+    if (!row.target.empty()) entry["target"] = row.target;
+    rows_.push_back(entry);
+    if (json_) return;
+    std::printf("  %-50s %12.2f %-6s", row.what.c_str(), row.value, row.unit.c_str());
+    if (!row.limit.empty())
+      std::printf(" %12.2f %8.2f  %s", row.limit_value, row.value / row.limit_value, row.limit.c_str());
+    if (!row.target.empty()) std::printf("%s (%s)", row.limit.empty() ? "  " : "", row.target.c_str());
+    std::printf("\n");
+    std::fflush(stdout);
+  }
+
+  void end() const {
+    if (json_) std::printf("%s\n", rows_.dump(2).c_str());
+  }
+
+ private:
+  bool json_;
+  std::string section_;
+  ordered_json rows_ = ordered_json::array();
+};
+
+// ---- programs
+
+fs::path program(const std::string& name) {
+  const fs::path here = fs::read_symlink("/proc/self/exe").parent_path();
+  for (const fs::path& path : {here / name, here.parent_path() / "bin" / name}) {
+    if (fs::exists(path)) return path;
+  }
+  throw std::runtime_error(name + " is not built");
+}
+
+// Standard output of a program that must succeed.
+std::string output_of(const std::string& command) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(::popen((command + " 2>/dev/null").c_str(), "r"),
+                                                             ::pclose);
+  if (!pipe) throw std::runtime_error("cannot run " + command);
+  std::string text;
+  std::array<char, 4096> buffer;
+  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe.get()))
+    text.append(buffer.data(), count);
+  return text;
+}
+
+// Works on every core for as long as it lives, two processes each: arithmetic, memory and system calls in turn.
+class OtherLoad {
+ public:
+  OtherLoad() {
+    for (unsigned i = 0; i < 2 * std::thread::hardware_concurrency(); ++i) {
+      const pid_t child = ::fork();
+      if (child == 0) {
+        ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+        work();
+      }
+      children_.push_back(child);
+    }
+  }
+  ~OtherLoad() {
+    for (const pid_t child : children_) ::kill(child, SIGKILL);
+    for (const pid_t child : children_) ::waitpid(child, nullptr, 0);
+  }
+  OtherLoad(const OtherLoad&) = delete;
+  OtherLoad& operator=(const OtherLoad&) = delete;
+
+ private:
+  [[noreturn]] static void work() {
+    std::vector<double> memory(1 << 20, 1.0);
+    volatile double sum = 0.0;
+    while (true) {
+      for (double& value : memory) value = value * 1.0000001 + 1e-9;
+      for (const double value : memory) sum = sum + value;
+      for (int i = 0; i < 1000; ++i) ::getppid();
+    }
+  }
+  std::vector<pid_t> children_;
+};
+
+// ---- vehicles that hover
+
+struct Usage {
+  double cpu_s = 0.0;
+  double memory_mib = 0.0;  // resident
+};
+
+Usage usage_of(pid_t pid) {
+  std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
+  std::string text;
+  std::getline(stat, text);
+  std::istringstream fields(text.substr(text.rfind(')') + 2));
+  std::vector<std::string> field;
+  for (std::string word; fields >> word;) field.push_back(word);
+  if (field.size() < 22) throw std::runtime_error("process " + std::to_string(pid) + " has ended");
+  const double ticks = static_cast<double>(::sysconf(_SC_CLK_TCK));
+  return {(std::stod(field[11]) + std::stod(field[12])) / ticks,
+          std::stod(field[21]) * static_cast<double>(::sysconf(_SC_PAGESIZE)) / (1 << 20)};
+}
+
+constexpr std::array<const char*, 3> kProcesses = {"plant", "mocap", "control"};
+
+struct VehicleFigures {
+  msg::VehicleInfo vehicle;
+  msg::ControlStatus control;
+  std::uint64_t answered = 0;  // while it was measured
+  std::uint64_t overdue = 0;   // of those, after more than a period or not at all
+  std::uint64_t cycles = 0;
+  std::uint64_t late_steps = 0;
+  std::array<double, 3> cpu_percent{};  // of one core, by kProcesses
+  std::array<double, 3> memory_mib{};
+};
+
+class Vehicle {
+ public:
+  Vehicle(const comms::DomainClaim& claim, int number, int rate_hz, bool realtime, const fs::path& folder) {
+    network_.vehicle = "kl" + std::to_string(number);
+    network_.domain = claim.domain();
+    network_.localhost_only = true;
+    for (const char* name : kProcesses) {
+      std::vector<std::string> words{"--domain", std::to_string(network_.domain), "--vehicle-name",
+                                     network_.vehicle, "--localhost-only"};
+      if (!realtime) words.emplace_back("--no-realtime");
+      if (name == kProcesses[0]) words.insert(words.end(), {"--imu-rate", std::to_string(rate_hz)});
+      const std::string full = std::string("swiftlet-") + name;
+      processes_.emplace_back(
+          ground::ProcessSettings{full, program(full), words, folder / (network_.vehicle + name)});
+    }
+  }
+
+  void take_off() {
+    ground::Client client(network_);
+    if (!client.wait(30s, [](const ground::View& view) { return view.control.message.has_pose(); }))
+      throw std::runtime_error("no vehicle came up: " + client.where());
+    msg::Command arm;
+    arm.kind(msg::Command_Constants::ARM);
+    ask(client, arm);
+    msg::Command takeoff;
+    takeoff.kind(msg::Command_Constants::TAKEOFF);
+    takeoff.position_ned({0.0, 0.0, -1.0});
+    takeoff.speed(0.5);
+    ask(client, takeoff);
+    if (!client.wait(20s, [](const ground::View& view) {
+          return view.control.message.mode() == msg::ControlStatus_Constants::MODE_HOLDING;
+        }))
+      throw std::runtime_error("a vehicle did not take off");
+  }
+
+  void begin() { begin_ = read(); }
+  VehicleFigures end(double seconds) {
+    VehicleFigures figures = read();
+    figures.answered -= begin_.answered;
+    figures.overdue -= begin_.overdue;
+    figures.cycles -= begin_.cycles;
+    figures.late_steps -= begin_.late_steps;
+    for (std::size_t i = 0; i < kProcesses.size(); ++i) {
+      figures.cpu_percent[i] = 100.0 * (figures.cpu_percent[i] - begin_.cpu_percent[i]) / seconds;
+    }
+    return figures;
+  }
+
+ private:
+  static void ask(ground::Client& client, const msg::Command& command) {
+    const auto give_up = ground::Clock::now() + 10s;
+    while (true) {
+      const ground::Answer answer = client.command(command, 3s);
+      if (answer.accepted()) return;
+      if (ground::Clock::now() > give_up) throw std::runtime_error(answer.reason);
+      std::this_thread::sleep_for(100ms);
+    }
+  }
+
+  // Counts so far; of the processors, seconds.
+  VehicleFigures read() {
+    VehicleFigures figures;
+    for (std::size_t i = 0; i < kProcesses.size(); ++i) {
+      const Usage usage = usage_of(processes_[i].pid());
+      figures.cpu_percent[i] = usage.cpu_s;
+      figures.memory_mib[i] = usage.memory_mib;
+    }
+    ground::Client client(network_);
+    if (!client.wait(
+            10s, [](const ground::View& view) { return view.vehicle.count > 1 && view.control.count > 1; }))
+      throw std::runtime_error("a vehicle fell silent");
+    const ground::View view = client.view();
+    figures.vehicle = view.vehicle.message;
+    figures.control = view.control.message;
+    figures.answered = figures.vehicle.answered();
+    figures.overdue = figures.vehicle.late() + figures.vehicle.unanswered();
+    figures.cycles = figures.control.cycles();
+    figures.late_steps = figures.control.deadline_misses();
+    return figures;
+  }
+
+  comms::NodeSettings network_ = [] {
+    comms::NodeSettings settings;
+    settings.name = "ground";
+    return settings;
+  }();
+  std::vector<ground::ChildProcess> processes_;
+  VehicleFigures begin_;
+};
+
+// Figures of vehicles that hover side by side, from their take-off on; counts are of the last `seconds`.
+std::vector<VehicleFigures> hover(int vehicles, int rate_hz, bool realtime, double seconds,
+                                  bool loaded = false) {
+  const tests::TemporaryFolder folder;
+  const comms::DomainClaim claim;
+  std::vector<std::unique_ptr<Vehicle>> fleet;
+  for (int i = 1; i <= vehicles; ++i)
+    fleet.push_back(std::make_unique<Vehicle>(claim, i, rate_hz, realtime, folder.path()));
+  std::optional<OtherLoad> load;
+  if (loaded) load.emplace();
+  for (const auto& vehicle : fleet) vehicle->take_off();
+  for (const auto& vehicle : fleet) vehicle->begin();
+  const auto start = ground::Clock::now();
+  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+  const double measured_s = std::chrono::duration<double>(ground::Clock::now() - start).count();
+  std::vector<VehicleFigures> figures;
+  for (const auto& vehicle : fleet) figures.push_back(vehicle->end(measured_s));
+  return figures;
+}
+
+// ---- the sections
+
+void latency_and_load(Table& table, const Options& options) {
+  std::vector<std::pair<int, VehicleFigures>> flown;
+  table.section("(a) sense to actuate over DDS, IMU written to command received by the plant");
+  for (const int rate_hz : {500, 1000}) {
+    const VehicleFigures figures = hover(1, rate_hz, true, options.seconds).front();
+    flown.emplace_back(rate_hz, figures);
+    const json limits = json::parse(output_of(
+        program("ping_pong_bench").string() + " --json --seconds " + std::to_string(options.seconds) +
+        " --rate " + std::to_string(rate_hz) + " --transport udp --transport unix-socket"));
+    const std::string at = std::to_string(rate_hz) + " Hz, ";
+    const msg::VehicleInfo& own = figures.vehicle;
+    const auto row = [&](const char* name, double value, const char* key, const char* target) {
+      table.add({at + name, value, "us", "bare Fast DDS ping-pong", limits[0].at(key).get<double>(), target});
+      table.add({at + name, value, "us", "Unix socket ping-pong", limits[1].at(key).get<double>(), ""});
+    };
+    row("p50", own.sense_to_actuate_p50_us(), "p50_us", "at most 1.25");
+    row("p99", own.sense_to_actuate_p99_us(), "p99_us", "at most 1.5");
+    row("p99.9", own.sense_to_actuate_p999_us(), "p999_us", "");
+    row("max", own.sense_to_actuate_max_us(), "max_us", "");
+  }
+  table.section("(f) load of one vehicle that hovers");
+  for (const auto& [rate_hz, figures] : flown) {
+    for (std::size_t i = 0; i < kProcesses.size(); ++i) {
+      const std::string name = std::to_string(rate_hz) + " Hz, swiftlet-" + kProcesses[i];
+      table.add({name, figures.cpu_percent[i], "% core", "", 0.0, ""});
+      table.add({name, figures.memory_mib[i], "MiB", "", 0.0, ""});
+    }
+  }
+}
+
+void jitter(Table& table, const Options& options) {
+  table.section("(b) jitter of the control period of 2 ms");
+  for (const bool loaded : {false, true}) {
+    for (const bool realtime : {true, false}) {
+      const VehicleFigures figures = hover(1, 500, realtime, options.seconds, loaded).front();
+      const bool granted = figures.control.realtime_scheduling();
+      const std::string name = std::string(loaded ? "loaded" : "idle") + ", " +
+                               (granted ? "SCHED_FIFO" : "SCHED_OTHER") +
+                               (realtime && !granted ? " (FIFO refused)" : "");
+      table.add({name + ", p50", figures.control.period_jitter_p50_us(), "us", "the period", 2000.0, ""});
+      table.add({name + ", p99", figures.control.period_jitter_p99_us(), "us", "the period", 2000.0, ""});
+      table.add({name + ", max", figures.control.period_jitter_max_us(), "us", "the period", 2000.0, ""});
+    }
+  }
+}
+
+// Medians of a Google Benchmark program, ns of CPU, by name; of counters too.
+json benchmarks(const std::string& name, const std::string& filter) {
+  const json report =
+      json::parse(output_of(program(name).string() + " --benchmark_format=json --benchmark_repetitions=5" +
+                            " --benchmark_report_aggregates_only=true --benchmark_filter='" + filter + "'"));
+  json medians;
+  for (const json& entry : report.at("benchmarks")) {
+    if (entry.at("aggregate_name") == "median") medians[entry.at("run_name").get<std::string>()] = entry;
+  }
+  return medians;
+}
+
+double cpu_ns(const json& entry) {
+  const std::string unit = entry.at("time_unit");
+  return entry.at("cpu_time").get<double>() * (unit == "us" ? 1e3 : unit == "ms" ? 1e6 : 1.0);
+}
+
+void simulated_time(Table& table) {
+  const json plant = benchmarks("plant_step_bench", ".*");
+  const json inner = benchmarks("inner_loop_bench", ".*");
+  const json loop = benchmarks("closed_loop_bench", ".*");
+  const double plant_ns = cpu_ns(plant.at("simulation_step"));
+  const double inner_ns = cpu_ns(inner.at("inner_loop_step/motor_lag"));
+
+  const tests::TemporaryFolder folder;
+  std::vector<double> factors;
+  for (int i = 0; i < 3; ++i) {
+    const json flown =
+        json::parse(output_of(program("swiftlet").string() + " fly square --clock lockstep --json --record " +
+                              (folder.path() / std::to_string(i)).string()));
+    factors.push_back(flown.at("real_time_factor"));
+  }
+  std::sort(factors.begin(), factors.end());
+  table.section("(c) lockstep, separate processes, 500 Hz control");
+  table.add({"square, simulated over wall time, median of 3", factors[1], "x",
+             "plant and controller steps alone", 2e6 / (2.0 * plant_ns + inner_ns), "at least 20"});
+
+  table.section("(d) closed loop in one process, 1 kHz control, all sensor models");
+  for (const auto& [name, entry] : loop.items()) {
+    if (entry.contains("real_time_factor"))
+      table.add({name, entry.at("real_time_factor").get<double>(), "x", "plant steps alone", 1e6 / plant_ns,
+                 "at least 2000"});
+  }
+
+  table.section("(e) steps, CPU time, median of 5");
+  for (const auto& [name, entry] : plant.items()) {
+    table.add(
+        {name, cpu_ns(entry), "ns", "the target", 300.0, name == "simulation_step" ? "with sensors" : ""});
+  }
+  for (const auto& [name, entry] : inner.items())
+    table.add({name, cpu_ns(entry), "ns", "the target", 2000.0, ""});
+}
+
+void fleets(Table& table, const Options& options) {
+  table.section("(g) vehicles on this computer, 500 Hz each");
+  for (const int vehicles : {1, 2, 4, 8, 16}) {
+    const std::vector<VehicleFigures> all = hover(vehicles, 500, true, options.seconds);
+    double worst_overdue = 0.0;
+    double worst_late = 0.0;
+    double cpu = 0.0;
+    for (const VehicleFigures& one : all) {
+      const auto share = [](std::uint64_t part, std::uint64_t whole) {
+        return whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 100.0;
+      };
+      worst_overdue = std::max(worst_overdue, share(one.overdue, one.answered));
+      worst_late = std::max(worst_late, share(one.late_steps, one.cycles));
+      for (const double percent : one.cpu_percent) cpu += percent;
+    }
+    const std::string name = std::to_string(vehicles) + (vehicles == 1 ? " vehicle" : " vehicles");
+    table.add({name + ": answers after a period, worst", worst_overdue, "%", "", 0.0,
+               vehicles == 8 ? "at most 0.1" : ""});
+    table.add({name + ": steps late by half a period, worst", worst_late, "%", "", 0.0, ""});
+    table.add({name + ": CPU of all processes", cpu, "% core", "all cores",
+               100.0 * std::thread::hardware_concurrency(), ""});
+  }
+}
+
+void run(const Options& options) {
+  Table table(options.json);
+  const auto wanted = [&](const char* section) {
+    return options.only.empty() ||
+           std::find(options.only.begin(), options.only.end(), section) != options.only.end();
+  };
+  if (wanted("latency")) latency_and_load(table, options);
+  if (wanted("jitter")) jitter(table, options);
+  if (wanted("simulation")) simulated_time(table);
+  if (wanted("fleet")) fleets(table, options);
+  table.end();
+}
+
+}  // namespace
+}  // namespace swiftlet
+
+int main(int argc, char** argv) {
+  CLI::App app("The system's figures, each beside its limit as measured in the same run.", "system_bench");
+  app.footer("Example: system_bench --only latency --seconds 10");
+  swiftlet::Options options;
+  app.add_option("--seconds", options.seconds, "Of each measurement in real time")
+      ->check(CLI::Range(1.0, 3600.0));
+  app.add_option("--only", options.only, "Of these sections; several may be given")
+      ->check(CLI::IsMember({"latency", "jitter", "simulation", "fleet"}));
+  app.add_flag("--json", options.json, "Print JSON");
+  return swiftlet::runtime::run_process(app, argc, argv, [&] { swiftlet::run(options); });
+}
