@@ -102,11 +102,13 @@ void run(const Options& options) {
 }  // namespace swiftlet::services
 
 int main(int argc, char** argv) {
-  CLI::App app("Simulated motion capture: sees the ground truth of a simulated vehicle, publishes its pose.",
-               "swiftlet-mocap");
-  app.footer("Example: swiftlet-mocap --seed 7 --localhost-only");
-  swiftlet::services::Options options;
+  using namespace swiftlet;
+  services::Options options;
   options.process.realtime.priority = 50;
-  swiftlet::services::add_options(app, options);
-  return swiftlet::runtime::run_process(app, argc, argv, [&] { swiftlet::services::run(options); });
+  return runtime::run_process(
+      {"swiftlet-mocap",
+       "Simulated motion capture: sees the ground truth of a simulated vehicle, publishes its pose.",
+       "--seed 7 --localhost-only"},
+      argc, argv, [&](CLI::App& app) { services::add_options(app, options); },
+      [&] { services::run(options); });
 }

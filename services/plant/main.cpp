@@ -181,11 +181,13 @@ void run(const Options& options) {
 }  // namespace swiftlet::services
 
 int main(int argc, char** argv) {
-  CLI::App app("A simulated quadrotor on the network: publishes what it senses, obeys actuator commands.",
-               "swiftlet-plant");
-  app.footer("Example: swiftlet-plant --vehicle config/vehicles/kaylion.yaml --seed 7 --localhost-only");
-  swiftlet::services::Options options;
+  using namespace swiftlet;
+  services::Options options;
   options.process.realtime.priority = 60;
-  swiftlet::services::add_options(app, options);
-  return swiftlet::runtime::run_process(app, argc, argv, [&] { swiftlet::services::run(options); });
+  return runtime::run_process(
+      {"swiftlet-plant",
+       "A simulated quadrotor on the network: publishes what it senses, obeys actuator commands.",
+       "--vehicle config/vehicles/kaylion.yaml --seed 7 --localhost-only"},
+      argc, argv, [&](CLI::App& app) { services::add_options(app, options); },
+      [&] { services::run(options); });
 }
