@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -172,7 +174,7 @@ Command add_fly_command(CLI::App& root) {
       "--record", options->record,
       "folder for flight.csv, report.json, flight.png and logs; flights/<date>-<mission> unless given");
   app->add_option("--seed", options->seed, "of all that is random in the simulation")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(std::numeric_limits<std::int64_t>::max()))
       ->capture_default_str();
   app->add_option("--imu-rate", options->imu_rate_hz,
                   "IMU and inner-loop rate, Hz; as the simulation file says unless given")

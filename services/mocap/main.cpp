@@ -1,6 +1,7 @@
 // swiftlet-mocap: simulated motion capture. Takes truth in, gives poses out, and goes by the stamps alone.
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -29,7 +30,9 @@ struct Options {
 
 void add_options(CLI::App& app, Options& options) {
   app.add_option("--simulation", options.simulation, "Simulation file")->capture_default_str();
-  app.add_option("--seed", options.seed, "Of errors and dropouts")->capture_default_str();
+  app.add_option("--seed", options.seed, "Of errors and dropouts")
+      ->check(CLI::Range(std::numeric_limits<std::int64_t>::max()))
+      ->capture_default_str();
   comms::add_node_options(app, options.node);
   runtime::add_process_options(app, options.process);
 }

@@ -1,7 +1,9 @@
 // swiftlet-plant: the simulated vehicle.
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -37,7 +39,9 @@ struct Options {
 void add_options(CLI::App& app, Options& options) {
   app.add_option("--vehicle", options.vehicle, "Vehicle file")->capture_default_str();
   app.add_option("--simulation", options.simulation, "Simulation file")->capture_default_str();
-  app.add_option("--seed", options.seed, "Of noise, biases and gusts")->capture_default_str();
+  app.add_option("--seed", options.seed, "Of noise, biases and gusts")
+      ->check(CLI::Range(std::numeric_limits<std::int64_t>::max()))
+      ->capture_default_str();
   app.add_option("--imu-rate", options.imu_rate,
                  "IMU samples a second, 500 or 1000; default: the simulation file's")
       ->check(CLI::IsMember({500, 1000}));
