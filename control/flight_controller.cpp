@@ -37,7 +37,7 @@ ControlDesign flyable_design(const plant::Vehicle& vehicle, const ControlSetting
 }  // namespace
 
 struct FlightController::Loops {
-  Loops(const plant::Vehicle& vehicle_in, const ControlSettings& settings_in, ControlDesign design_in);
+  Loops(const plant::Vehicle& vehicle_in, const ControlSettings& settings_in, const ControlDesign& design_in);
 
   void begin_anew_if_clock_went_back(const plant::ImuSample& sample);
   Situation situation() const;
@@ -70,7 +70,7 @@ struct FlightController::Loops {
 };
 
 FlightController::Loops::Loops(const plant::Vehicle& vehicle_in, const ControlSettings& settings_in,
-                               ControlDesign design_in)
+                               const ControlDesign& design_in)
     : vehicle(vehicle_in),
       settings(settings_in),
       rotor_lag_s(design_in.rotor_lag_s),

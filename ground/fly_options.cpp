@@ -1,5 +1,8 @@
 #include "ground/fly_options.hpp"
 
+#include <cstdint>
+#include <limits>
+
 #include <CLI/CLI.hpp>
 
 namespace swiftlet::ground {
@@ -17,7 +20,7 @@ void add_fly_options(CLI::App& app, FlyOptions& options) {
       "--record", options.record,
       "folder for flight.csv, report.json, flight.png and logs; flights/<date>-<mission> unless given");
   app.add_option("--seed", options.seed, "of all that is random in the simulation")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(std::numeric_limits<std::int64_t>::max()))
       ->capture_default_str();
   app.add_option("--imu-rate", options.imu_rate_hz,
                  "IMU and inner-loop rate, Hz; as the simulation file says unless given")

@@ -232,12 +232,9 @@ template <class Impl, class T>
 class DdsReader final : public detail::Reader, private dds::DataReaderListener {
  public:
   DdsReader(std::shared_ptr<Impl> node, dds::Topic* topic, const dds::DataReaderQos& qos,
-            std::function<void(const T&)> callback, std::function<void()> on_deadline_missed)
-      : node_(std::move(node)),
-        callback_(std::move(callback)),
-        on_deadline_missed_(std::move(on_deadline_missed)) {
-    reader_ = node_->subscriber->create_datareader(
-        topic, qos, this, dds::StatusMask::data_available() << dds::StatusMask::requested_deadline_missed());
+            std::function<void(const T&)> callback)
+      : node_(std::move(node)), callback_(std::move(callback)) {
+    reader_ = node_->subscriber->create_datareader(topic, qos, this, dds::StatusMask::data_available());
     if (reader_ == nullptr) throw std::runtime_error("cannot subscribe to " + topic->get_name());
   }
 
@@ -264,25 +261,15 @@ class DdsReader final : public detail::Reader, private dds::DataReaderListener {
     dds::SampleInfo info;
     while (!closed_ && reader->take_next_sample(&sample_, &info) == ReturnCode_t::RETCODE_OK) {
       if (!info.valid_data) continue;
-      silent_ = false;
       callback_(sample_);
     }
-  }
-
-  void on_requested_deadline_missed(dds::DataReader*, const dds::RequestedDeadlineMissedStatus&) override {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (closed_ || silent_) return;
-    silent_ = true;
-    if (on_deadline_missed_) on_deadline_missed_();
   }
 
   std::shared_ptr<Impl> node_;
   dds::DataReader* reader_ = nullptr;
   std::mutex mutex_;  // of all below; held while a callback runs
   std::function<void(const T&)> callback_;
-  std::function<void()> on_deadline_missed_;
   T sample_;
-  bool silent_ = true;  // nothing was heard since the last missed deadline
   bool closed_ = false;
 };
 
@@ -310,17 +297,17 @@ Publisher<T> Node::publish(const Topic<T>& topic, int strength) {
 
 template <class T>
 Subscription Node::subscribe(const Topic<T>& topic, std::function<void(const T&)> callback,
-                             std::function<void()> on_deadline_missed, Delivery delivery) {
+                             Delivery delivery) {
   return Subscription(std::make_unique<DdsReader<Impl, T>>(
       impl_, impl_->topic<T>(topic.name),
       reader_qos(topic.qos, impl_->deadline_ms(topic.deadline_ms), impl_->settings.transport, delivery),
-      std::move(callback), std::move(on_deadline_missed)));
+      std::move(callback)));
 }
 
 #define SWIFTLET_INSTANTIATE(Name)                                                                      \
   template Publisher<msg::Name> Node::publish(const Topic<msg::Name>&, int);                            \
   template Subscription Node::subscribe(const Topic<msg::Name>&, std::function<void(const msg::Name&)>, \
-                                        std::function<void()>, Delivery);
+                                        Delivery);
 SWIFTLET_FOR_EACH_MESSAGE(SWIFTLET_INSTANTIATE)
 #undef SWIFTLET_INSTANTIATE
 

@@ -23,8 +23,8 @@ struct NodeSettings {
   int domain = 0;               // 0 .. 232
   Transport transport = Transport::kUdp;
   bool localhost_only = false;  // discover and talk over the loopback interface only, without multicast
-  // Offer and ask for the topics' deadlines. Not in lockstep, where time stands still: each costs a wake-up a
-  // sample, and who asks for one does not hear who offers none.
+  // Offer and ask for the topics' deadlines. Not in lockstep, where time stands still; who asks for one does
+  // not hear who offers none.
   bool deadlines = true;
 };
 
@@ -99,11 +99,9 @@ class Node {
   Publisher<T> publish(const Topic<T>& topic, int strength = 0);
 
   // The callback runs in the thread that received the sample, once for each sample, one at a time, and must
-  // not block. on_deadline_missed (may be empty) runs in a middleware thread, once for each silence of a
-  // stream that had been heard. Throws std::runtime_error.
+  // not block. Throws std::runtime_error.
   template <class T>
   Subscription subscribe(const Topic<T>& topic, std::function<void(const T&)> callback,
-                         std::function<void()> on_deadline_missed = {},
                          Delivery delivery = Delivery::kShared);
 
   // Tells of peers that come and go, also of those that were there before the call. Runs in a middleware

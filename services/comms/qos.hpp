@@ -6,7 +6,7 @@
 namespace swiftlet::comms {
 
 enum class Qos {
-  kStream,       // best effort, keep last 1, volatile, deadline, preallocated
+  kStream,       // best effort, keep last 1, volatile, preallocated
   kOwnedStream,  // a stream of which the strongest living writer is heard (exclusive ownership)
   kTelemetry,    // best effort, keep last 1, volatile
   kState,        // reliable, transient local, keep last 1

@@ -31,15 +31,15 @@ struct Topic {
   using Message = T;
   const char* name;
   Qos qos;
-  int deadline_ms = 0;  // of streams: longest time between samples that is offered and asked for
+  int deadline_ms = 0;  // of owned streams: silence after which the next strongest writer is heard
 };
 
 namespace topics {
-inline constexpr Topic<msg::Imu> kImu{"imu", Qos::kStream, 50};
+inline constexpr Topic<msg::Imu> kImu{"imu", Qos::kStream};
 inline constexpr Topic<msg::ActuatorCommand> kActuatorCommand{"actuator_command", Qos::kOwnedStream, 50};
-inline constexpr Topic<msg::MocapPose> kMocapPose{"mocap_pose", Qos::kStream, 200};
-inline constexpr Topic<msg::RotorSpeeds> kRotorSpeeds{"rotor_speeds", Qos::kStream, 100};
-inline constexpr Topic<msg::Setpoint> kSetpoint{"setpoint", Qos::kStream, 500};
+inline constexpr Topic<msg::MocapPose> kMocapPose{"mocap_pose", Qos::kStream};
+inline constexpr Topic<msg::RotorSpeeds> kRotorSpeeds{"rotor_speeds", Qos::kStream};
+inline constexpr Topic<msg::Setpoint> kSetpoint{"setpoint", Qos::kStream};
 inline constexpr Topic<msg::Battery> kBattery{"battery", Qos::kTelemetry};
 inline constexpr Topic<msg::Estimate> kEstimate{"estimate", Qos::kTelemetry};
 inline constexpr Topic<msg::Reference> kReference{"reference", Qos::kTelemetry};

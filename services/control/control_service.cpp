@@ -2,8 +2,6 @@
 
 #include <limits>
 
-#include <spdlog/spdlog.h>
-
 #include "services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {
@@ -32,7 +30,6 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
   std::function<void(const msg::Battery&)> take_battery;
   std::function<void(const msg::RotorSpeeds&)> take_rotor_speeds;
   std::function<void(const msg::Imu&)> take_imu;
-  std::function<void()> miss_imu;
   // In real time nothing else may delay them; in lockstep a thread each would only cost wake-ups.
   const Delivery delivery = clock == runtime::Clock::kLockstep ? Delivery::kShared : Delivery::kOwnThread;
   if (clock == runtime::Clock::kLockstep) {
@@ -46,7 +43,7 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
     take_battery = deliver<msg::Battery>(loop_.battery, battery_faults_);
     take_rotor_speeds = deliver<msg::RotorSpeeds>(loop_.rotor_speeds, rotor_speed_faults_);
     take_imu = [this](const msg::Imu& message) { on_imu(message); };
-    miss_imu = [] { spdlog::warn("no IMU sample for {} ms", topics::kImu.deadline_ms); };
+    telemetry_.watch_imu();
   }
 
   // Poses hold the vehicle in place: like the IMU's, their thread does not wait behind the host's other work.
@@ -59,7 +56,7 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
         }
         take_pose(message);
       },
-      {}, delivery));
+      delivery));
   subscriptions_.push_back(node.subscribe<msg::Battery>(topics::kBattery, take_battery));
   subscriptions_.push_back(node.subscribe<msg::RotorSpeeds>(topics::kRotorSpeeds, take_rotor_speeds));
   subscriptions_.push_back(node.subscribe<msg::Setpoint>(
@@ -67,12 +64,11 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
   subscriptions_.push_back(node.subscribe<msg::Command>(
       topics::kCommand, [this](const auto& message) { desk_.on_command(message); }));
   subscriptions_.push_back(node.subscribe<msg::Mission>(
-      topics::kMission, [this](const auto& message) { desk_.on_mission(message); }, {},
-      Delivery::kOwnThread));
+      topics::kMission, [this](const auto& message) { desk_.on_mission(message); }, Delivery::kOwnThread));
   subscriptions_.push_back(node.subscribe<msg::Trajectory>(
-      topics::kTrajectory, [this](const auto& message) { desk_.on_trajectory(message); }, {},
+      topics::kTrajectory, [this](const auto& message) { desk_.on_trajectory(message); },
       Delivery::kOwnThread));
-  subscriptions_.push_back(node.subscribe<msg::Imu>(topics::kImu, take_imu, miss_imu, delivery));
+  subscriptions_.push_back(node.subscribe<msg::Imu>(topics::kImu, take_imu, delivery));
 }
 
 // Hands a good sample to the inner loop.

@@ -7,6 +7,7 @@ InnerLoop::InnerLoop(const plant::Vehicle& vehicle, const control::ControlSettin
     : controller_(vehicle, settings) {}
 
 plant::ActuatorCommand InnerLoop::step(const plant::ImuSample& sample, std::int64_t now_ns) {
+  last_arrival_ns_.store(now_ns, std::memory_order_relaxed);
   take_samples();
   judge_requests();
   const plant::ActuatorCommand command = controller_.on_imu(sample);

@@ -2,6 +2,7 @@
 // a ring, all output but the command leaves it through rings. Nothing in it waits, allocates or logs.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 
 #include <boost/lockfree/spsc_queue.hpp>
@@ -48,6 +49,9 @@ class InnerLoop {
   plant::ActuatorCommand step(const plant::ImuSample& sample, std::int64_t now_ns);
   bool finish(std::int64_t now_ns);
 
+  // Monotonic; 0 before the first sample. By any thread.
+  std::int64_t last_arrival_ns() const { return last_arrival_ns_.load(std::memory_order_relaxed); }
+
   // Between two steps: has the controller judge what is asked. step() does it too.
   void judge_requests();
 
@@ -61,6 +65,7 @@ class InnerLoop {
   control::Status told_;  // in the last snapshot
   std::int64_t stamp_ns_ = 0;
   std::uint64_t imu_sequence_ = 0;
+  std::atomic<std::int64_t> last_arrival_ns_{0};
   bool rotors_running_ = false;
   bool saturated_ = false;
   bool judged_any_ = false;

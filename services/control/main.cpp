@@ -81,12 +81,13 @@ void run(const Options& options) {
 }  // namespace swiftlet::services
 
 int main(int argc, char** argv) {
-  CLI::App app(
-      "The flight controller: answers every IMU sample with an actuator command, flies what it is asked to.",
-      "swiftlet-control");
-  app.footer("Example: swiftlet-control --control config/control/motor_lag.yaml --localhost-only");
-  swiftlet::services::Options options;
+  using namespace swiftlet;
+  services::Options options;
   options.process.realtime.priority = 70;
-  swiftlet::services::add_options(app, options);
-  return swiftlet::runtime::run_process(app, argc, argv, [&] { swiftlet::services::run(options); });
+  return runtime::run_process(
+      {"swiftlet-control",
+       "The flight controller: answers every IMU sample with an actuator command, flies what it is asked to.",
+       "--control config/control/motor_lag.yaml --localhost-only"},
+      argc, argv, [&](CLI::App& app) { services::add_options(app, options); },
+      [&] { services::run(options); });
 }

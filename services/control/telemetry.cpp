@@ -17,6 +17,7 @@ namespace topics = comms::topics;
 
 constexpr std::int64_t kStatusPeriodNs = 100'000'000;
 constexpr std::int64_t kMissionPeriodNs = 500'000'000;
+constexpr std::int64_t kImuSilenceNs = 50'000'000;
 
 bool differ(const control::MissionProgress& a, const control::MissionProgress& b) {
   return a.id != b.id || a.state != b.state || a.item_index != b.item_index || a.item_count != b.item_count;
@@ -43,6 +44,7 @@ void Telemetry::run(const std::atomic<bool>& stop) {
     loop_.snapshots.consume_all([this](const Snapshot& snapshot) { take(snapshot); });
     answer_requests();
     const std::int64_t now_ns = runtime::monotonic_ns();
+    if (watches_imu_) log_imu_silence(now_ns);
     if (now_ns >= status_due_ns_) publish_status();
     if (now_ns >= mission_due_ns_) publish_mission();
     wake_.wait_for(50ms);
@@ -68,6 +70,13 @@ void Telemetry::take(const Snapshot& snapshot) {
   last_ = snapshot;
   if (mode_changed) publish_status();
   if (mission_changed) publish_mission();
+}
+
+void Telemetry::log_imu_silence(std::int64_t now_ns) {
+  const std::int64_t arrival_ns = loop_.last_arrival_ns();
+  const bool silent = arrival_ns > 0 && now_ns - arrival_ns > kImuSilenceNs;
+  if (silent && !imu_silent_) spdlog::warn("no IMU sample for {} ms", kImuSilenceNs / 1'000'000);
+  imu_silent_ = silent;
 }
 
 void Telemetry::publish_sampled(const Snapshot& snapshot) {

@@ -20,11 +20,13 @@ class Telemetry {
   void run(const std::atomic<bool>& stop);
 
   void set_realtime(bool granted) { realtime_.store(granted, std::memory_order_relaxed); }  // by any thread
+  void watch_imu() { watches_imu_ = true; }       // before run(): a silence of the samples is worth a warning
   const Snapshot& last() const { return last_; }  // once run() has returned
 
  private:
   void take(const Snapshot& snapshot);
   void answer_requests();
+  void log_imu_silence(std::int64_t now_ns);
   void publish_sampled(const Snapshot& snapshot);
   void publish_status();
   void publish_mission();
@@ -33,6 +35,8 @@ class Telemetry {
   RequestDesk& desk_;
   runtime::Semaphore& wake_;
   std::atomic<bool> realtime_{false};
+  bool watches_imu_ = false;
+  bool imu_silent_ = false;
 
   Snapshot last_;
   bool saturated_ = false;        // since the last status

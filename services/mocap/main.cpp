@@ -1,6 +1,7 @@
 // swiftlet-mocap: simulated motion capture. Takes truth in, gives poses out, and goes by the stamps alone.
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -32,7 +33,9 @@ struct Options {
 
 void add_options(CLI::App& app, Options& options) {
   app.add_option("--simulation", options.simulation, "Simulation file")->capture_default_str();
-  app.add_option("--seed", options.seed, "Of errors and dropouts")->capture_default_str();
+  app.add_option("--seed", options.seed, "Of errors and dropouts")
+      ->check(CLI::Range(std::numeric_limits<std::int64_t>::max()))
+      ->capture_default_str();
   runtime::add_clock_option(app, options.clock);
   comms::add_node_options(app, options.node);
   runtime::add_process_options(app, options.process);
@@ -49,7 +52,7 @@ class Camera {
         stop_(stop),
         poses_(node.publish(comms::topics::kMocapPose)),
         truth_(node.subscribe<comms::msg::GroundTruth>(
-            comms::topics::kGroundTruth, [this](const auto& message) { on_truth(message); }, {},
+            comms::topics::kGroundTruth, [this](const auto& message) { on_truth(message); },
             comms::Delivery::kOwnThread)) {}
 
   std::uint64_t frames() const { return frames_; }
@@ -136,11 +139,13 @@ void run(const Options& options) {
 }  // namespace swiftlet::services
 
 int main(int argc, char** argv) {
-  CLI::App app("Simulated motion capture: sees the ground truth of a simulated vehicle, publishes its pose.",
-               "swiftlet-mocap");
-  app.footer("Example: swiftlet-mocap --seed 7 --localhost-only");
-  swiftlet::services::Options options;
+  using namespace swiftlet;
+  services::Options options;
   options.process.realtime.priority = 50;
-  swiftlet::services::add_options(app, options);
-  return swiftlet::runtime::run_process(app, argc, argv, [&] { swiftlet::services::run(options); });
+  return runtime::run_process(
+      {"swiftlet-mocap",
+       "Simulated motion capture: sees the ground truth of a simulated vehicle, publishes its pose.",
+       "--seed 7 --localhost-only"},
+      argc, argv, [&](CLI::App& app) { services::add_options(app, options); },
+      [&] { services::run(options); });
 }

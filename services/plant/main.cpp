@@ -1,9 +1,11 @@
 // swiftlet-plant: the simulated vehicle.
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -47,7 +49,9 @@ struct Options {
 void add_options(CLI::App& app, Options& options) {
   app.add_option("--vehicle", options.vehicle, "Vehicle file")->capture_default_str();
   app.add_option("--simulation", options.simulation, "Simulation file")->capture_default_str();
-  app.add_option("--seed", options.seed, "Of noise, biases and gusts")->capture_default_str();
+  app.add_option("--seed", options.seed, "Of noise, biases and gusts")
+      ->check(CLI::Range(std::numeric_limits<std::int64_t>::max()))
+      ->capture_default_str();
   app.add_option("--imu-rate", options.imu_rate,
                  "IMU samples a second, 500 or 1000; default: the simulation file's")
       ->check(CLI::IsMember({500, 1000}));
@@ -249,11 +253,13 @@ void run(const Options& options) {
 }  // namespace swiftlet::services
 
 int main(int argc, char** argv) {
-  CLI::App app("A simulated quadrotor on the network: publishes what it senses, obeys actuator commands.",
-               "swiftlet-plant");
-  app.footer("Example: swiftlet-plant --vehicle config/vehicles/kaylion.yaml --seed 7 --localhost-only");
-  swiftlet::services::Options options;
+  using namespace swiftlet;
+  services::Options options;
   options.process.realtime.priority = 60;
-  swiftlet::services::add_options(app, options);
-  return swiftlet::runtime::run_process(app, argc, argv, [&] { swiftlet::services::run(options); });
+  return runtime::run_process(
+      {"swiftlet-plant",
+       "A simulated quadrotor on the network: publishes what it senses, obeys actuator commands.",
+       "--vehicle config/vehicles/kaylion.yaml --seed 7 --localhost-only"},
+      argc, argv, [&](CLI::App& app) { services::add_options(app, options); },
+      [&] { services::run(options); });
 }

@@ -20,7 +20,7 @@ RealtimeLoop::RealtimeLoop(SimulatedVehicle& vehicle, const plant::SimulationSet
       imu_period_ns_(scaled(plant::period_ns(settings.imu.rate_hz), speed)),
       realtime_(realtime),
       commands_(node.subscribe<comms::msg::ActuatorCommand>(
-          comms::topics::kActuatorCommand, [this](const auto& message) { on_command(message); }, {},
+          comms::topics::kActuatorCommand, [this](const auto& message) { on_command(message); },
           comms::Delivery::kOwnThread)) {}
 
 void RealtimeLoop::run(const std::atomic<bool>& stop) {

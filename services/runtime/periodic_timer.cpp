@@ -1,7 +1,7 @@
 #include "services/runtime/periodic_timer.hpp"
 
 #include <cerrno>
-#include <time.h>
+#include <ctime>
 
 namespace swiftlet::runtime {
 namespace {

@@ -17,8 +17,8 @@ namespace {
 constexpr int kFailed = 1;
 constexpr int kBadInput = 2;
 
-int fail(const CLI::App& app, const std::exception& error, int code) {
-  std::fprintf(stderr, "%s: %s\n", app.get_name().c_str(), error.what());
+int fail(const ProgramText& text, const std::exception& error, int code) {
+  std::fprintf(stderr, "%s: %s\n", text.name, error.what());
   return code;
 }
 
@@ -49,21 +49,25 @@ void prepare_realtime(const RealtimeSettings& settings) {
   if (!refusals.empty()) spdlog::warn("not real-time, expect late steps: {}", refusals);
 }
 
-int run_process(CLI::App& app, int argc, char** argv, const std::function<void()>& body) {
+int run_process(const ProgramText& text, int argc, char** argv,
+                const std::function<void(CLI::App&)>& add_options, const std::function<void()>& body) {
   try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kBadInput;
-  }
-  try {
+    CLI::App app(text.purpose, text.name);
+    app.footer(std::string("Example: ") + text.name + ' ' + text.example);
+    add_options(app);
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return app.exit(error) == 0 ? 0 : kBadInput;
+    }
     body();
     return 0;
   } catch (const ConfigError& error) {
-    return fail(app, error, kBadInput);
+    return fail(text, error, kBadInput);
   } catch (const std::invalid_argument& error) {
-    return fail(app, error, kBadInput);
+    return fail(text, error, kBadInput);
   } catch (const std::exception& error) {
-    return fail(app, error, kFailed);
+    return fail(text, error, kFailed);
   }
 }
 

@@ -24,8 +24,16 @@ void add_process_options(CLI::App& app, ProcessOptions& options);
 // warning.
 void prepare_realtime(const RealtimeSettings& settings);
 
+// What --help says besides the options.
+struct ProgramText {
+  const char* name;
+  const char* purpose;
+  const char* example;  // arguments
+};
+
 // Reads the command line, then runs body. Exit code: 0 done (also --help); 2 wrong usage or bad input
 // (ConfigError, std::invalid_argument); 1 any other exception. A fault is one line on stderr.
-int run_process(CLI::App& app, int argc, char** argv, const std::function<void()>& body);
+int run_process(const ProgramText& text, int argc, char** argv,
+                const std::function<void(CLI::App&)>& add_options, const std::function<void()>& body);
 
 }  // namespace swiftlet::runtime

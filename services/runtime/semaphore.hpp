@@ -3,8 +3,8 @@
 
 #include <cerrno>
 #include <chrono>
+#include <ctime>
 #include <semaphore.h>
-#include <time.h>
 
 namespace swiftlet::runtime {
 

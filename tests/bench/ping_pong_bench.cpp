@@ -206,6 +206,7 @@ class EchoProcess {
     if (!options.process.realtime.enabled) words.emplace_back("--no-realtime");
     if (options.no_deadline) words.emplace_back("--no-deadline");
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     child_ = ::fork();
@@ -364,26 +365,30 @@ void run(Options options) {
   if (options.json) std::printf("%s\n", rows.dump().c_str());
 }
 
-}  // namespace
-}  // namespace swiftlet
-
-int main(int argc, char** argv) {
-  CLI::App app(
-      "Round trip of an IMU sample and its actuator command between two processes that do nothing else.",
-      "ping_pong_bench");
-  app.footer("Example: ping_pong_bench --seconds 10 --transport udp --json");
-  swiftlet::Options options;
-  options.process.realtime.priority = 60;
+void add_options(CLI::App& app, Options& options) {
   app.add_option("--seconds", options.seconds, "Of each measurement")->check(CLI::Range(0.1, 3600.0));
   app.add_option("--rate", options.rates_hz, "Samples a second; several may be given")
       ->check(CLI::Range(1, 10'000));
   app.add_option("--transport", options.transports, "Of these alone; several may be given")
-      ->check(CLI::IsMember({"udp", "shm", "data-sharing", swiftlet::kSocket}));
+      ->check(CLI::IsMember({"udp", "shm", "data-sharing", kSocket}));
   app.add_flag("--json", options.json, "Print JSON");
-  app.add_flag("--no-deadline", options.no_deadline, "Leave out the streams' deadline QoS");
+  app.add_flag("--no-deadline", options.no_deadline, "Leave out the deadline QoS");
   app.add_option("--echo-domain", options.echo_domain)->group("");
   app.add_option("--echo-transport", options.echo_transport)->group("");
   app.add_option("--echo-socket", options.echo_socket)->group("");
-  swiftlet::runtime::add_process_options(app, options.process);
-  return swiftlet::runtime::run_process(app, argc, argv, [&] { swiftlet::run(options); });
+  runtime::add_process_options(app, options.process);
+}
+
+}  // namespace
+}  // namespace swiftlet
+
+int main(int argc, char** argv) {
+  using namespace swiftlet;
+  Options options;
+  options.process.realtime.priority = 60;
+  return runtime::run_process(
+      {"ping_pong_bench",
+       "Round trip of an IMU sample and its actuator command between two processes that do nothing else.",
+       "--seconds 10 --transport udp --json"},
+      argc, argv, [&](CLI::App& app) { add_options(app, options); }, [&] { run(options); });
 }

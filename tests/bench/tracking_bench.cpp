@@ -36,6 +36,12 @@ constexpr double kHover = 5.0;   // s before a path
 constexpr double kJoin = 0.5;   // s that the controller takes to join a trajectory whose start is where it is
 constexpr double kJump = 1e-4;  // m, between segments whose coefficients are rounded
 
+struct Options {
+  std::string figure_of_eight = SWIFTLET_SOURCE_DIR "/tests/data/crazyswarm_figure8.csv";
+  std::uint64_t seed = 1;
+  bool json = false;
+};
+
 // What is asked of a vehicle: where it should be, and the trajectory that is commanded for it.
 struct Path {
   std::string name;
@@ -271,7 +277,7 @@ constexpr Peer kPeers[] = {
     {"Crazyflie PID", {0.109, 0.218, 0.132, 0.394, 0.648}},
 };
 
-void run(const std::string& figure_of_eight_file, std::uint64_t seed, bool json) {
+void run(const Options& options) {
   control::ControlSettings settings =
       runtime::load_control_settings(runtime::find_config("control/motor_lag.yaml"));
   settings.limits.fence_min_ned = {-5.0, -5.0, -2.5};  // sq4 is larger than the arena
@@ -282,14 +288,14 @@ void run(const std::string& figure_of_eight_file, std::uint64_t seed, bool json)
   const plant::SimulationSettings real =
       runtime::load_simulation_settings(runtime::find_config("simulation/default.yaml"));
   const std::vector<Path> paths = {square("sq2", 2.0), square("sq4", 4.0), minimum_jerk_square(),
-                                   figure_of_eight(figure_of_eight_file, 5), lemniscate()};
+                                   figure_of_eight(options.figure_of_eight, 5), lemniscate()};
 
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   const auto add = [&](const std::string& name, const plant::SimulationSettings& simulation) {
     nlohmann::ordered_json row{{"name", name}};
     std::array<Score, 5> scores;
     for (std::size_t i = 0; i < paths.size(); ++i) {
-      scores[i] = fly(paths[i], simulation, settings, seed);
+      scores[i] = fly(paths[i], simulation, settings, options.seed);
       row[paths[i].name] = {{"rms_m", scores[i].rms_m}, {"peak_m", scores[i].peak_m}};
     }
     rows.push_back(row);
@@ -297,7 +303,7 @@ void run(const std::string& figure_of_eight_file, std::uint64_t seed, bool json)
   };
   const auto with_perfect = add("Swiftlet, perfect state feedback, 1 kHz", perfect);
   const auto with_sensors = add("Swiftlet, all sensor models, 500 Hz", real);
-  if (json) {
+  if (options.json) {
     std::printf("%s\n", rows.dump().c_str());
     return;
   }
@@ -330,16 +336,20 @@ void run(const std::string& figure_of_eight_file, std::uint64_t seed, bool json)
       "sagging.\n");
 }
 
+void add_options(CLI::App& app, Options& options) {
+  app.add_option("--figure-of-eight", options.figure_of_eight, "Crazyswarm trajectory file")
+      ->capture_default_str();
+  app.add_option("--seed", options.seed, "Of the sensors' errors")->capture_default_str();
+  app.add_flag("--json", options.json, "Print JSON instead of the table");
+}
+
 }  // namespace
 }  // namespace swiftlet
 
 int main(int argc, char** argv) {
-  CLI::App app("Tracking errors of five paths, beside those of other projects", "tracking_bench");
-  std::string file = SWIFTLET_SOURCE_DIR "/tests/data/crazyswarm_figure8.csv";
-  std::uint64_t seed = 1;
-  bool json = false;
-  app.add_option("--figure-of-eight", file, "Crazyswarm trajectory file")->capture_default_str();
-  app.add_option("--seed", seed, "of the sensors' errors")->capture_default_str();
-  app.add_flag("--json", json, "print JSON instead of the table");
-  return swiftlet::runtime::run_process(app, argc, argv, [&] { swiftlet::run(file, seed, json); });
+  using namespace swiftlet;
+  Options options;
+  return runtime::run_process(
+      {"tracking_bench", "Tracking errors of five paths, beside those of other projects.", "--json"}, argc,
+      argv, [&](CLI::App& app) { add_options(app, options); }, [&] { run(options); });
 }

@@ -100,7 +100,8 @@ TEST_F(BadInput, WrongUsage) {
   expect_refusal({"square", "--imu-rate", "777"}, "--imu-rate");
   expect_refusal({"square", "--domain", "500"}, "--domain");
   expect_refusal({"square", "--vehicle-name", "a b"}, "--vehicle-name");
-  expect_refusal({}, "mission is required");
+  expect_refusal({"square", "--seed", "-1"}, "--seed: Value -1 not in range");
+  expect_refusal({"square", "--transport", "pigeon"}, "--transport: pigeon not in {udp,shm}");
 }
 
 TEST_F(BadInput, RecordFolderThatCannotBeMade) {

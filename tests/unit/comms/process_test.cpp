@@ -38,6 +38,7 @@ class PeerProcess {
     std::vector<std::string> arguments{SWIFTLET_COMMS_PEER};
     arguments.insert(arguments.end(), words.begin(), words.end());
     std::vector<char*> pointers;
+    pointers.reserve(arguments.size() + 1);
     for (std::string& argument : arguments) pointers.push_back(argument.data());
     pointers.push_back(nullptr);
     pid_ = ::fork();

@@ -71,7 +71,7 @@ class EstimatorLatency : public testing::TestWithParam<int> {};
 TEST_P(EstimatorLatency, FollowsTheMotionWhateverTheLatencyOfThePoses) {
   Estimator estimator{EstimatorSettings{}};
   Motion motion;
-  run(estimator, motion, 8.0, GetParam() * 1'000'000);
+  run(estimator, motion, 8.0, std::int64_t{GetParam()} * 1'000'000);
   const Estimate& e = estimator.estimate();
   const double t = static_cast<double>(e.stamp_ns) * 1e-9;
   EXPECT_LT((e.position_ned - Motion::position(t)).norm(), 2e-4);

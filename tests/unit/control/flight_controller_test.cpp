@@ -45,7 +45,7 @@ Mission square(double speed) {
   return mission;
 }
 
-Request request(RequestKind kind, Vector3d position = Vector3d::Zero(), double speed = 0.5) {
+Request request(RequestKind kind, const Vector3d& position = Vector3d::Zero(), double speed = 0.5) {
   Request request;
   request.kind = kind;
   request.position_ned = position;

@@ -43,7 +43,8 @@ class Flight : public testing::Test {
   }
   // Steps until the predicate holds; false if it does not within `limit_s` of flight.
   bool step_until(const std::function<bool()>& predicate, double limit_s) {
-    for (double t = 0.0; t < limit_s; t += 0.002) {
+    const std::int64_t end_ns = situation_.stamp_ns + std::llround(limit_s * 1e9);
+    while (situation_.stamp_ns < end_ns) {
       if (predicate()) return true;
       step();
     }
@@ -53,7 +54,7 @@ class Flight : public testing::Test {
     return step_until([&] { return supervisor_.mode() == mode; }, limit_s);
   }
 
-  Outcome ask(RequestKind kind, Vector3d position = Vector3d::Zero(), double speed = 0.5) {
+  Outcome ask(RequestKind kind, const Vector3d& position = Vector3d::Zero(), double speed = 0.5) {
     Request request;
     request.kind = kind;
     request.position_ned = position;

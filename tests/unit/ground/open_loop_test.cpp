@@ -49,7 +49,7 @@ TEST(OpenLoop, ARowForEachMillisecondFromTheFirstTimeToTheLast) {
 }
 
 TEST(OpenLoop, HoversAtTheSpeedAndPulseWidthOfTheAnchors) {
-  const plant::Vehicle vehicle = kaylion();
+  const plant::Vehicle& vehicle = kaylion();
   const double throttle = plant::throttle_from_steady_thrust(vehicle, 3.7, plant::hover_thrust(vehicle));
   const double pulse = 1039.0 + 1000.0 * throttle;
   plant::VehicleState initial;
@@ -61,7 +61,7 @@ TEST(OpenLoop, HoversAtTheSpeedAndPulseWidthOfTheAnchors) {
 }
 
 TEST(OpenLoop, AThrottleChangesAtItsTimeAlsoBetweenMilliseconds) {
-  const plant::Vehicle vehicle = kaylion();
+  const plant::Vehicle& vehicle = kaylion();
   const auto rows = simulate_open_loop(
       vehicle, 4.0, {},
       pulses("0,1039,1039,1039,1039\n0.0105,2039,1039,1039,1039\n0.02,1039,1039,1039,1039\n"));

@@ -145,7 +145,8 @@ double inductance_error(double inductance_h) {
   Eigen::Vector2d state(0.0, 0.0);  // speed, current
   double speed = 0.0;
   double error = 0.0;
-  for (double t = 0.0; t < 0.2; t += dt) {
+  const auto steps = static_cast<int>(std::ceil(0.2 / dt));
+  for (int i = 0; i < steps; ++i) {
     state = runge_kutta(state, dt, [&](const Eigen::Vector2d& y) {
       return Eigen::Vector2d(speed_rate_from_current(electrical, y[1], y[0]),
                              motor_current_rate(electrical, voltage, y[1], y[0]));

@@ -12,7 +12,6 @@
 namespace swiftlet::plant {
 namespace {
 
-using tests::Draw;
 using tests::kaylion;
 using tests::multirotor;
 

@@ -242,7 +242,7 @@ TEST(Dynamics, SagFollowsItsLag) {
 
 TEST(Dynamics, HoverDrawsItsPowerFromTheBattery) {
   // At hover i_a = (2.370 V - K1 1608.8 rad/s) / 1.54 ohm with K1 = 1.54 k_Q / K3: 0.4729 A, P = 4 * 1.121 W.
-  const Vehicle vehicle = kaylion();
+  const Vehicle& vehicle = kaylion();
   const Dynamics dynamics(vehicle, Supply::battery());
   VehicleState state = hovering(vehicle);
   state.state_of_charge = 0.9;

@@ -113,7 +113,7 @@ TEST(Mocap, ErrorsStayInTheirBoundAndFillIt) {
   Vector3d mean = Vector3d::Zero();
   constexpr int kFrames = 20'000;
   for (int i = 0; i < kFrames; ++i) {
-    const TruthSample truth = truth_at(i * 10 * kMillisecond);
+    const TruthSample truth = truth_at(i * (10 * kMillisecond));
     const std::optional<PoseSample> pose = mocap.update(truth);
     ASSERT_TRUE(pose.has_value());
     const Vector3d error = pose->position_ned - truth.position_ned;
@@ -137,7 +137,7 @@ TEST(Mocap, MisalignmentIsOneAngleForTheWholeRun) {
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     Mocap mocap(settings, seed);
     for (int i = 0; i < 10; ++i) {
-      const TruthSample truth = truth_at(i * 10 * kMillisecond);
+      const TruthSample truth = truth_at(i * (10 * kMillisecond));
       const PoseSample pose = mocap.update(truth).value();
       const Quaterniond turn = truth.q_ned_from_frd.conjugate() * pose.q_ned_from_frd;
       EXPECT_NEAR(angle(turn, Quaterniond::Identity()), 0.05, 0.05 * 1.0e-3);
@@ -158,7 +158,7 @@ TEST(Mocap, DropoutsComeWithTheirProbabilityAndLength) {
   int untracked = 0;
   int run = 0;
   for (int i = 0; i < kFrames; ++i) {
-    const PoseSample pose = mocap.update(truth_at(i * 10 * kMillisecond)).value();
+    const PoseSample pose = mocap.update(truth_at(i * (10 * kMillisecond))).value();
     ASSERT_EQ(pose.sequence, static_cast<std::uint64_t>(i + 1));
     if (!pose.tracked) {
       ++untracked;
@@ -181,8 +181,8 @@ TEST(Mocap, ADropoutChangesNoOtherFrame) {
   Mocap broken(settings, 7);
   int tracked = 0;
   for (int i = 0; i < 1000; ++i) {
-    const PoseSample a = whole.update(truth_at(i * 10 * kMillisecond)).value();
-    const PoseSample b = broken.update(truth_at(i * 10 * kMillisecond)).value();
+    const PoseSample a = whole.update(truth_at(i * (10 * kMillisecond))).value();
+    const PoseSample b = broken.update(truth_at(i * (10 * kMillisecond))).value();
     if (!b.tracked) continue;
     ++tracked;
     ASSERT_EQ(a.position_ned, b.position_ned);

@@ -23,7 +23,7 @@ class FindConfig : public testing::Test {
     std::ofstream(folder_ / "vehicles" / "own.yaml") << "a: 1\n";
     ::setenv("SWIFTLET_CONFIG_DIR", folder_.c_str(), 1);
   }
-  ~FindConfig() override {
+  void TearDown() override {
     ::unsetenv("SWIFTLET_CONFIG_DIR");
     fs::remove_all(folder_);
   }

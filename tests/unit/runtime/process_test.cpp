@@ -28,14 +28,15 @@ namespace {
 using namespace std::chrono_literals;
 
 int run(std::vector<std::string> words, const std::function<void()>& body) {
-  CLI::App app("Test", "prog");
   ProcessOptions options;
   options.realtime.priority = 10;
-  add_process_options(app, options);
   words.insert(words.begin(), "prog");
   std::vector<char*> arguments;
+  arguments.reserve(words.size());
   for (std::string& word : words) arguments.push_back(word.data());
-  return run_process(app, static_cast<int>(arguments.size()), arguments.data(), body);
+  return run_process(
+      {"prog", "Test", ""}, static_cast<int>(arguments.size()), arguments.data(),
+      [&](CLI::App& app) { add_process_options(app, options); }, body);
 }
 
 TEST(RunProcess, ExitCodesTellHowItEnded) {
