@@ -14,8 +14,6 @@ std::uint64_t splitmix64(std::uint64_t& state) {
   return z ^ (z >> 31U);
 }
 
-std::uint64_t rotate_left(std::uint64_t x, unsigned count) { return (x << count) | (x >> (64U - count)); }
-
 // Natural logarithm of x > 0, normal: x = m 2^e with m around 1, log m = 2 atanh((m - 1)/(m + 1)) as a
 // series. The C library's differs in the last bit from processor to processor.
 double portable_log(double x) {
@@ -34,7 +32,28 @@ double portable_log(double x) {
   return 2.0 * s * sum + exponent * 0.69314718055994531;
 }
 
+// For 256 layers: where the tail begins, the curve's height there, and the area of each layer, which is that
+// height times that place plus the tail's area.
+constexpr double kTail = 3.6541528853610088;
+constexpr double kTailHeight = 1.2602859304985976e-3;
+constexpr double kLayerArea = 4.9286732339746547e-3;
+
+Ziggurat make_ziggurat() {
+  Ziggurat out;
+  out.edge[0] = kLayerArea / kTailHeight;
+  out.edge[1] = kTail;
+  out.height[1] = kTailHeight;
+  for (std::size_t i = 2; i < Ziggurat::kLayers; ++i) {
+    out.height[i] = out.height[i - 1] + kLayerArea / out.edge[i - 1];
+    out.edge[i] = std::sqrt(-2.0 * portable_log(out.height[i]));
+  }
+  out.height[Ziggurat::kLayers] = 1.0;
+  return out;
+}
+
 }  // namespace
+
+const Ziggurat kZiggurat = make_ziggurat();
 
 RandomStream::RandomStream(std::uint64_t seed, std::uint64_t stream_id) {
   std::uint64_t mix = seed;
@@ -42,42 +61,21 @@ RandomStream::RandomStream(std::uint64_t seed, std::uint64_t stream_id) {
   for (std::uint64_t& word : state_) word = splitmix64(mix);
 }
 
-std::uint64_t RandomStream::next() {
-  const std::uint64_t result = rotate_left(state_[0] + state_[3], 23U) + state_[0];
-  const std::uint64_t t = state_[1] << 17U;
-  state_[2] ^= state_[0];
-  state_[3] ^= state_[1];
-  state_[1] ^= state_[2];
-  state_[0] ^= state_[3];
-  state_[2] ^= t;
-  state_[3] = rotate_left(state_[3], 45U);
-  return result;
+// A draw that lies in its layer beside the part that is below the curve for sure.
+double RandomStream::normal_beside(std::size_t layer, double x) {
+  if (layer == 0) return x < 0.0 ? -normal_tail() : normal_tail();
+  const double bottom = kZiggurat.height[layer];
+  const double height = bottom + uniform() * (kZiggurat.height[layer + 1] - bottom);
+  return -2.0 * portable_log(height) > x * x ? x : normal();
 }
 
-double RandomStream::uniform() { return static_cast<double>(next() >> 11U) * 0x1.0p-53; }
-
-double RandomStream::normal() {
-  if (has_spare_) {
-    has_spare_ = false;
-    return spare_;
-  }
+// Beyond kTail (Marsaglia 1964).
+double RandomStream::normal_tail() {
   for (;;) {
-    const double u = 2.0 * uniform() - 1.0;
-    const double v = 2.0 * uniform() - 1.0;
-    const double s = u * u + v * v;
-    if (s >= 1.0 || s == 0.0) continue;
-    const double scale = std::sqrt(-2.0 * portable_log(s) / s);
-    spare_ = v * scale;
-    has_spare_ = true;
-    return u * scale;
+    const double beyond = -portable_log(1.0 - uniform()) / kTail;
+    const double depth = -portable_log(1.0 - uniform());
+    if (2.0 * depth > beyond * beyond) return kTail + beyond;
   }
-}
-
-Eigen::Vector3d RandomStream::normal3() {
-  const double x = normal();
-  const double y = normal();
-  const double z = normal();
-  return {x, y, z};
 }
 
 Eigen::Vector3d RandomStream::in_unit_ball() {
