@@ -45,12 +45,14 @@ struct FlightController::Loops {
   void fly(const Directive& directive, double dt_s);
   void spool_up(const Directive& directive);
   void descend_level();
-  void command_wrench(double thrust_n, const AttitudeReference& attitude_reference);
+  void command_wrench(double thrust_n, const Vector3d& euler_rad,
+                      const AttitudeReference& attitude_reference);
   plant::ActuatorCommand answer(const plant::ImuSample& sample);
 
   plant::Vehicle vehicle;
   ControlSettings settings;
   double rotor_lag_s;
+  double max_tilt_tangent;
   Estimator estimator;
   RotorObserver rotors;
   PositionController position;
@@ -74,6 +76,7 @@ FlightController::Loops::Loops(const plant::Vehicle& vehicle_in, const ControlSe
     : vehicle(vehicle_in),
       settings(settings_in),
       rotor_lag_s(design_in.rotor_lag_s),
+      max_tilt_tangent(std::tan(settings_in.limits.max_tilt_rad)),
       estimator(settings_in.estimator),
       rotors(vehicle_in),
       position(settings_in.position, settings_in.limits, design_in),
@@ -135,24 +138,26 @@ void FlightController::Loops::fly(const Directive& directive, double dt_s) {
   const Estimate& estimate = estimator.estimate();
   const PositionCommand wanted =
       position.step(estimate.position_ned, estimate.velocity_ned, reference, dt_s, !directive.integrate);
-  const double yaw = euler_from_quaternion(estimate.q_ned_from_frd).z();
+  const Vector3d euler = euler_from_quaternion(estimate.q_ned_from_frd);
   const ThrustAttitude outer =
-      thrust_attitude(vehicle.mass_kg, wanted.acceleration_ned, yaw, settings.limits.max_tilt_rad);
+      thrust_attitude(vehicle.mass_kg, wanted.acceleration_ned, euler.z(), max_tilt_tangent);
   AttitudeReference inner;
   double thrust_n = outer.thrust_n;
   if (settings.attitude.feed_forward) {
-    const ReferenceAttitude on_reference = reference_attitude(vehicle.mass_kg, reference);
-    inner = on_reference.attitude;
-    thrust_n += rotor_lag_s * on_reference.thrust_rate;
+    const ReferenceMotion on_reference = reference_motion(vehicle.mass_kg, reference);
+    inner.body_rates_frd = on_reference.body_rates_frd;
+    inner.body_accelerations_frd = on_reference.body_accelerations_frd;
+    thrust_n += rotor_lag_s * on_reference.thrust_rate;  // leads the rotor lag
   }
   inner.euler_rad = {outer.euler_rad.x(), outer.euler_rad.y(), reference.yaw_rad};
-  command_wrench(thrust_n, inner);
+  command_wrench(thrust_n, euler, inner);
 }
 
 void FlightController::Loops::spool_up(const Directive& directive) {
   AttitudeReference level;
   level.euler_rad.z() = reference.yaw_rad;
-  command_wrench(directive.lift_fraction * vehicle.mass_kg * plant::kGravity, level);
+  command_wrench(directive.lift_fraction * vehicle.mass_kg * plant::kGravity,
+                 euler_from_quaternion(estimator.estimate().q_ned_from_frd), level);
 }
 
 void FlightController::Loops::descend_level() {
@@ -160,20 +165,21 @@ void FlightController::Loops::descend_level() {
   const double acceleration =
       std::clamp(kDescentGain * (settings.failsafe.descent_speed - estimate.velocity_ned.z()), -kDescentLimit,
                  kDescentLimit);
+  const Vector3d euler = euler_from_quaternion(estimate.q_ned_from_frd);
   AttitudeReference level;
-  level.euler_rad.z() = euler_from_quaternion(estimate.q_ned_from_frd).z();
-  command_wrench(vehicle.mass_kg * (plant::kGravity - acceleration), level);
+  level.euler_rad.z() = euler.z();
+  command_wrench(vehicle.mass_kg * (plant::kGravity - acceleration), euler, level);
 }
 
-void FlightController::Loops::command_wrench(double thrust_n, const AttitudeReference& attitude_reference) {
-  const Estimate& estimate = estimator.estimate();
+void FlightController::Loops::command_wrench(double thrust_n, const Vector3d& euler_rad,
+                                             const AttitudeReference& attitude_reference) {
   Wrench wrench;
   wrench.thrust_n = thrust_n;
-  wrench.moment_frd = attitude.moments(estimate.q_ned_from_frd, estimate.body_rates_frd, rotors.moment_frd(),
+  wrench.moment_frd = attitude.moments(euler_rad, estimator.estimate().body_rates_frd, rotors.moment_frd(),
                                        attitude_reference);
   const Allocation allocation = allocator.allocate(wrench, supply_voltage_v);
   command.throttle = allocation.throttle;
-  setpoint = {quaternion_from_euler(attitude_reference.euler_rad), wrench.thrust_n, wrench.moment_frd};
+  setpoint = {attitude_reference.euler_rad, wrench.thrust_n, wrench.moment_frd};
   status.saturated = allocation.saturated;
 }
 

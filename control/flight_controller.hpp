@@ -17,7 +17,7 @@ namespace swiftlet::control {
 
 // What each step asked of the inner loop, for plots and logs.
 struct AttitudeSetpoint {
-  Eigen::Quaterniond q_ned_from_frd = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d euler_rad = Eigen::Vector3d::Zero();  // phi, theta, psi
   double thrust_n = 0.0;
   Eigen::Vector3d moment_frd = Eigen::Vector3d::Zero();  // N m
 };

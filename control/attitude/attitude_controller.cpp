@@ -15,11 +15,13 @@ constexpr double kGimbalCosine = 1e-6;  // of theta; closer to +-90 degrees psi 
 
 }  // namespace
 
-double wrap_angle(double angle_rad) { return std::remainder(angle_rad, 2.0 * kPi); }
+double wrap_angle(double angle_rad) {
+  return std::abs(angle_rad) <= kPi ? angle_rad : std::remainder(angle_rad, 2.0 * kPi);
+}
 
 Eigen::Vector3d euler_from_quaternion(const Eigen::Quaterniond& q_ned_from_frd) {
   const Eigen::Matrix3d r = q_ned_from_frd.toRotationMatrix();
-  const double cosine = std::hypot(r(2, 1), r(2, 2));
+  const double cosine = std::sqrt(r(2, 1) * r(2, 1) + r(2, 2) * r(2, 2));
   const double theta = std::atan2(-r(2, 0), cosine);
   if (cosine < kGimbalCosine) {
     return {theta > 0.0 ? std::atan2(r(0, 1), r(1, 1)) : std::atan2(-r(0, 1), r(1, 1)), theta, 0.0};
@@ -51,11 +53,11 @@ AttitudeController::AttitudeController(const plant::Vehicle& vehicle, const Atti
   inverse_inertia_ = inertia_.inverse();
 }
 
-Eigen::Vector3d AttitudeController::moments(const Eigen::Quaterniond& q_ned_from_frd,
+Eigen::Vector3d AttitudeController::moments(const Eigen::Vector3d& euler_rad,
                                             const Eigen::Vector3d& body_rates_frd,
                                             const Eigen::Vector3d& present_moment_frd,
                                             const AttitudeReference& reference) const {
-  Eigen::Vector3d angle_error = reference.euler_rad - euler_from_quaternion(q_ned_from_frd);
+  Eigen::Vector3d angle_error = reference.euler_rad - euler_rad;
   for (double& angle : angle_error) angle = wrap_angle(angle);
 
   Eigen::Vector3d rates_r = Eigen::Vector3d::Zero();

@@ -41,7 +41,7 @@ class AttitudeController {
   // Nothing in the law divides by cos(theta): at theta = +-90 degrees it stays finite, but phi and psi jump
   // there, so it does not hold an attitude beyond about +-80 degrees of pitch. An input that is not finite
   // gives moments that are not finite, which Allocator takes.
-  Eigen::Vector3d moments(const Eigen::Quaterniond& q_ned_from_frd, const Eigen::Vector3d& body_rates_frd,
+  Eigen::Vector3d moments(const Eigen::Vector3d& euler_rad, const Eigen::Vector3d& body_rates_frd,
                           const Eigen::Vector3d& present_moment_frd,
                           const AttitudeReference& reference) const;
 

@@ -22,7 +22,7 @@ PositionCommand PositionController::step(const Eigen::Vector3d& position_ned,
                                  k_p_.cwiseProduct(error) + integral_;  // Eq. (48)
   PositionCommand command;
   command.acceleration_ned = wanted;
-  const double horizontal = std::hypot(wanted.x(), wanted.y());
+  const double horizontal = wanted.head<2>().norm();
   const bool cut_horizontal = horizontal > max_acceleration_;
   const bool cut_vertical = std::abs(wanted.z()) > max_acceleration_;
   if (cut_horizontal) command.acceleration_ned.head<2>() *= max_acceleration_ / horizontal;

@@ -23,13 +23,13 @@ Vector3d turned(const Vector3d& v) { return {-v.y(), v.x(), 0.0}; }
 
 // The angles whose body z axis points along -b: phi = -asin b_y / |b|, theta = atan2(b_x, b_z).
 Vector3d angles_along(const Vector3d& b, double yaw_rad) {
-  return {-std::atan2(b.y(), std::hypot(b.x(), b.z())), std::atan2(b.x(), b.z()), yaw_rad};
+  return {-std::atan2(b.y(), std::sqrt(b.x() * b.x() + b.z() * b.z())), std::atan2(b.x(), b.z()), yaw_rad};
 }
 
 }  // namespace
 
 ThrustAttitude thrust_attitude(double mass_kg, const Vector3d& acceleration_ned, double yaw_rad,
-                               double max_tilt_rad) {
+                               double max_tilt_tangent) {
   ThrustAttitude out;
   const bool finite = acceleration_ned.allFinite() && std::isfinite(yaw_rad);
   const double yaw = finite ? yaw_rad : 0.0;
@@ -40,8 +40,8 @@ ThrustAttitude thrust_attitude(double mass_kg, const Vector3d& acceleration_ned,
     b.z() = kLeastLift;
     out.limited = true;
   }
-  const double longest = b.z() * std::tan(max_tilt_rad);
-  const double horizontal = std::hypot(b.x(), b.y());
+  const double longest = b.z() * max_tilt_tangent;
+  const double horizontal = b.head<2>().norm();
   if (horizontal > longest) {
     b.head<2>() *= longest / horizontal;
     out.limited = true;
@@ -51,7 +51,7 @@ ThrustAttitude thrust_attitude(double mass_kg, const Vector3d& acceleration_ned,
   return out;
 }
 
-ReferenceAttitude reference_attitude(double mass_kg, const Reference& reference) {
+ReferenceMotion reference_motion(double mass_kg, const Reference& reference) {
   const double cosine = std::cos(reference.yaw_rad);
   const double sine = std::sin(reference.yaw_rad);
   const double psi_1 = reference.yaw_rate;
@@ -63,11 +63,10 @@ ReferenceAttitude reference_attitude(double mass_kg, const Reference& reference)
   const Vector3d& snap = reference.snap_ned;
   Vector3d b = unyawed(n0, cosine, sine);
 
-  ReferenceAttitude out;
+  ReferenceMotion out;
   if (!(b.z() >= kLeastLift)) {
     b.z() = kLeastLift;
     out.thrust_n = mass_kg * b.norm();
-    out.attitude.euler_rad = angles_along(b, reference.yaw_rad);
     return out;
   }
   const Vector3d b_1 = unyawed(-jerk - psi_1 * turned(n0), cosine, sine);
@@ -92,7 +91,6 @@ ReferenceAttitude reference_attitude(double mass_kg, const Reference& reference)
   const double phi_2 = -(b_2.y() * rho - b.y() * rho_2) / norm_squared - 2.0 * phi_1 * norm_1 / norm;
 
   // omega = S1^-1 Theta', Eq. (29)-(31) backwards, and its derivative.
-  const Vector3d euler = angles_along(b, reference.yaw_rad);
   const double sin_phi = -b.y() / norm;
   const double cos_phi = rho / norm;
   const double sin_theta = b.x() / rho;
@@ -108,9 +106,8 @@ ReferenceAttitude reference_attitude(double mass_kg, const Reference& reference)
   const Vector3d euler_1(phi_1, theta_1, psi_1);
   const Vector3d euler_2(phi_2, theta_2, psi_2);
 
-  out.attitude.euler_rad = euler;
-  out.attitude.body_rates_frd = to_rates * euler_1;
-  out.attitude.body_accelerations_frd = to_rates * euler_2 + to_rates_1 * euler_1;
+  out.body_rates_frd = to_rates * euler_1;
+  out.body_accelerations_frd = to_rates * euler_2 + to_rates_1 * euler_1;
   out.thrust_n = mass_kg * norm;
   out.thrust_rate = mass_kg * norm_1;
   return out;

@@ -5,7 +5,6 @@
 
 #include <Eigen/Core>
 
-#include "control/attitude/attitude_controller.hpp"
 #include "control/reference.hpp"
 
 namespace swiftlet::control {
@@ -24,19 +23,21 @@ constexpr double kMinimumLift = 0.1;
 // yaw_rad should be the vehicle's present yaw: the acceleration then points right while yaw is still turning;
 // the angles' psi is yaw_rad, to be overwritten by the reference's where yaw is controlled. The vertical part
 // comes first: b_z is kept (at least kMinimumLift g), and b_x and b_y are shortened until the tilt is at most
-// max_tilt_rad (0 .. below pi/2). An acceleration that is not finite counts as 0 and is marked as limited.
+// the angle of max_tilt_tangent. An acceleration that is not finite counts as 0 and is marked as limited.
 ThrustAttitude thrust_attitude(double mass_kg, const Eigen::Vector3d& acceleration_ned, double yaw_rad,
-                               double max_tilt_rad);
+                               double max_tilt_tangent);
 
-struct ReferenceAttitude {
-  AttitudeReference attitude;  // body_jerks_frd is zero: it would need the derivative of snap
+struct ReferenceMotion {
   double thrust_n = 0.0;
-  double thrust_rate = 0.0;  // N/s; thrust + tau thrust_rate leads the rotor lag
+  double thrust_rate = 0.0;                                          // N/s
+  Eigen::Vector3d body_rates_frd = Eigen::Vector3d::Zero();          // rad/s
+  Eigen::Vector3d body_accelerations_frd = Eigen::Vector3d::Zero();  // rad/s^2
 };
 
-// Thrust, attitude, body rates and body accelerations of a vehicle that is on the reference, from its
-// acceleration, jerk, snap and yaw. Where the reference falls so fast that b_z is below kMinimumLift g, b_z
-// is taken as that and all derivatives are zero.
-ReferenceAttitude reference_attitude(double mass_kg, const Reference& reference);
+// Thrust, body rates and body accelerations of a vehicle that is on the reference, its attitude being that
+// of thrust_attitude() at the reference's acceleration and yaw; from acceleration, jerk, snap and yaw. Where
+// the reference falls so fast that b_z is below kMinimumLift g, b_z is taken as that and all derivatives are
+// zero.
+ReferenceMotion reference_motion(double mass_kg, const Reference& reference);
 
 }  // namespace swiftlet::control

@@ -31,9 +31,7 @@ double yaw_of(const Eigen::Quaterniond& q) {
   return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
 }
 
-double tilt_of(const Eigen::Quaterniond& q) {
-  return std::acos(std::clamp(1.0 - 2.0 * (q.x() * q.x() + q.y() * q.y()), -1.0, 1.0));
-}
+double cosine_of_tilt(const Eigen::Quaterniond& q) { return 1.0 - 2.0 * (q.x() * q.x() + q.y() * q.y()); }
 
 // The yaw that is `to` plus whole turns, nearest to `from`.
 double nearest_turn(double to, double from) { return from + std::remainder(to - from, 2.0 * M_PI); }
@@ -84,7 +82,9 @@ const char* to_string(Mode mode) {
 }
 
 Supervisor::Supervisor(const Limits& limits, const FailsafeSettings& failsafe)
-    : limits_(limits), failsafe_(failsafe) {}
+    : limits_(limits),
+      failsafe_(failsafe),
+      tip_over_cosine_(std::cos(std::min(failsafe.tip_over_tilt_rad, M_PI))) {}
 
 Directive Supervisor::step(const Situation& situation) {
   now_ns_ = situation.stamp_ns;
@@ -122,8 +122,7 @@ void Supervisor::check_failsafes(const Situation& situation) {
   const Estimate& estimate = *situation.estimate;
   const bool pose_lost = !situation.has_estimate || situation.pose_age_s > failsafe_.mocap_timeout_s;
   if (!situation.imu_healthy) return enter(Mode::kStopped, "IMU samples are not usable");
-  if (tilt_of(estimate.q_ned_from_frd) > failsafe_.tip_over_tilt_rad)
-    return enter(Mode::kStopped, "tipped over");
+  if (cosine_of_tilt(estimate.q_ned_from_frd) < tip_over_cosine_) return enter(Mode::kStopped, "tipped over");
   if (mode_ == Mode::kDescent) {
     if (!pose_lost) {
       enter(Mode::kHolding, "position is back");
@@ -342,7 +341,7 @@ Outcome Supervisor::request_arm(const Situation& situation) {
     return refuse("cannot arm: the battery has %.2f V, the limit is %.2f V", situation.supply_voltage_v,
                   failsafe_.low_battery_voltage);
   }
-  const double tilt = tilt_of(estimate.q_ned_from_frd);
+  const double tilt = std::acos(std::clamp(cosine_of_tilt(estimate.q_ned_from_frd), -1.0, 1.0));
   if (tilt > kArmTilt_rad)
     return refuse("cannot arm: tilted by %.2f rad, the limit is %.2f rad", tilt, kArmTilt_rad);
   const double speed = estimate.velocity_ned.norm();

@@ -83,6 +83,7 @@ class Supervisor {
 
   Limits limits_;
   FailsafeSettings failsafe_;
+  double tip_over_cosine_;
   Mode mode_ = Mode::kDisarmed;
   const char* reason_ = "started";
   std::int64_t mode_since_ns_ = 0;

@@ -5,6 +5,8 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "control/attitude/attitude_controller.hpp"
+
 namespace swiftlet::comms {
 namespace {
 
@@ -430,7 +432,7 @@ msg::Reference to_message(const control::Reference& in, const control::AttitudeS
   out.jerk_ned(array(in.jerk_ned));
   out.yaw(in.yaw_rad);
   out.yaw_rate(in.yaw_rate);
-  out.attitude_setpoint(array(setpoint.q_ned_from_frd));
+  out.attitude_setpoint(array(control::quaternion_from_euler(setpoint.euler_rad)));
   out.thrust_setpoint(setpoint.thrust_n);
   out.moment_setpoint(array(setpoint.moment_frd));
   return out;

@@ -65,7 +65,7 @@ void attitude_moments(benchmark::State& state) {
   for (auto _ : state) {
     benchmark::DoNotOptimize(q.coeffs().data());
     benchmark::ClobberMemory();
-    benchmark::DoNotOptimize(controller.moments(q, rates, moment, reference));
+    benchmark::DoNotOptimize(controller.moments(euler_from_quaternion(q), rates, moment, reference));
   }
 }
 BENCHMARK(attitude_moments);
@@ -82,8 +82,8 @@ void outer_loop(benchmark::State& state) {
     const Reference reference = evaluate(segment, t);
     const PositionCommand command = controller.step(position, Vector3d::Zero(), reference, 0.002, false);
     benchmark::DoNotOptimize(
-        thrust_attitude(vehicle.mass_kg, command.acceleration_ned, reference.yaw_rad, 0.6));
-    benchmark::DoNotOptimize(reference_attitude(vehicle.mass_kg, reference));
+        thrust_attitude(vehicle.mass_kg, command.acceleration_ned, reference.yaw_rad, 0.7));
+    benchmark::DoNotOptimize(reference_motion(vehicle.mass_kg, reference));
   }
 }
 BENCHMARK(outer_loop);

@@ -96,8 +96,7 @@ TEST_F(AttitudeControllerTest, LinearisesTheDoubleIntegrator) {
     const Vector3d euler = any(1.0);
     const Vector3d rates = any(10.0);
     const AttitudeReference reference{any(1.0), any(3.0), any(20.0), any(50.0)};
-    const Vector3d moment =
-        loops.controller->moments(quaternion_from_euler(euler), rates, any(1.0), reference);
+    const Vector3d moment = loops.controller->moments(euler, rates, any(1.0), reference);
     const Vector3d expected = reference.body_accelerations_frd +
                               k1.cwiseProduct(reference.euler_rad - euler) +
                               k2.cwiseProduct(reference.body_rates_frd - rates);
@@ -112,8 +111,8 @@ TEST_F(AttitudeControllerTest, ClosesTheThirdStateOnThePresentMoment) {
   const Quaterniond q = quaternion_from_euler({0.1, 0.2, 0.3});
   const Vector3d rates = any(2.0);
   const Vector3d change(1e-4, -2e-4, 5e-5);
-  const Vector3d one = loops.controller->moments(q, rates, Vector3d::Zero(), {});
-  const Vector3d other = loops.controller->moments(q, rates, change, {});
+  const Vector3d one = loops.controller->moments(euler_from_quaternion(q), rates, Vector3d::Zero(), {});
+  const Vector3d other = loops.controller->moments(euler_from_quaternion(q), rates, change, {});
   const Vector3d expected =
       -loops.vehicle.inertia * k3.cwiseProduct(loops.vehicle.inertia.inverse() * change);
   EXPECT_LT((other - one - expected).norm(), 1e-15);
@@ -124,16 +123,18 @@ TEST_F(AttitudeControllerTest, FeedForwardIsLeftOutWhenNotWanted) {
   const Quaterniond q = quaternion_from_euler({0.1, 0.2, 0.3});
   const Vector3d euler(0.3, 0.1, 0.2);
   const Vector3d rates = any(2.0);
-  EXPECT_EQ(loops.controller->moments(q, rates, Vector3d::Zero(), {euler, any(2.0), any(9.0), any(30.0)}),
-            loops.controller->moments(q, rates, Vector3d::Zero(), {euler, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}}));
+  EXPECT_EQ(loops.controller->moments(euler_from_quaternion(q), rates, Vector3d::Zero(),
+                                      {euler, any(2.0), any(9.0), any(30.0)}),
+            loops.controller->moments(euler_from_quaternion(q), rates, Vector3d::Zero(),
+                                      {euler, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}}));
 }
 
 TEST_F(AttitudeControllerTest, YawTurnsTheShortWay) {
   const Loops loops(AttitudeModel::kMotorLag);
   AttitudeReference reference;
   reference.euler_rad.z() = -3.0;
-  const Vector3d moment = loops.controller->moments(quaternion_from_euler({0.0, 0.0, 3.0}), Vector3d::Zero(),
-                                                    Vector3d::Zero(), reference);
+  const Vector3d moment =
+      loops.controller->moments({0.0, 0.0, 3.0}, Vector3d::Zero(), Vector3d::Zero(), reference);
   const double error = 2.0 * kPi - 6.0;
   EXPECT_NEAR(loops.accelerations(moment, Vector3d::Zero()).z(), loops.gains.yaw.k[0] * error, 1e-9);
 }
@@ -148,7 +149,8 @@ TEST_F(AttitudeControllerTest, StaysFiniteAndBoundedAtAnyAttitude) {
     for (const double phi : {-2.0, 0.0, 0.7}) {
       const Quaterniond q = Quaterniond(Eigen::AngleAxisd(theta, Vector3d::UnitY())) *
                             Quaterniond(Eigen::AngleAxisd(phi, Vector3d::UnitX()));
-      const Vector3d moment = loops.controller->moments(q, Vector3d::Zero(), Vector3d::Zero(), {});
+      const Vector3d moment =
+          loops.controller->moments(euler_from_quaternion(q), Vector3d::Zero(), Vector3d::Zero(), {});
       ASSERT_TRUE(moment.allFinite()) << "theta " << theta;
       EXPECT_LE(moment.norm(), most);
     }
@@ -181,7 +183,9 @@ TEST_F(AttitudeControllerTest, BringsALargeAttitudeErrorToRest) {
     body.rates = {3.0, -2.0, 1.0};
     constexpr double kStep = 1e-3;
     for (int i = 0; i < 8000; ++i) {
-      body.step(loops, loops.controller->moments(body.q, body.rates, body.moment, reference), kStep);
+      body.step(loops,
+                loops.controller->moments(euler_from_quaternion(body.q), body.rates, body.moment, reference),
+                kStep);
     }
     EXPECT_LT(body.q.angularDistance(quaternion_from_euler(reference.euler_rad)), 1e-3);
     EXPECT_LT(body.rates.norm(), 1e-3);
@@ -206,7 +210,9 @@ TEST_F(AttitudeControllerTest, FeedForwardWithItsDerivativeLeadsTheLag) {
       reference.body_accelerations_frd.y() = -kOmega * kOmega * s;
       if (lead) reference.body_jerks_frd.y() = -kOmega * kOmega * kOmega * c;
       if (i > 6000) error = std::max(error, std::abs(euler_from_quaternion(body.q).y() - s));
-      body.step(loops, loops.controller->moments(body.q, body.rates, body.moment, reference), kStep);
+      body.step(loops,
+                loops.controller->moments(euler_from_quaternion(body.q), body.rates, body.moment, reference),
+                kStep);
     }
     return error;
   };

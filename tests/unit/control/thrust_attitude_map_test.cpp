@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "control/attitude/attitude_controller.hpp"
 #include "control/trajectory/polynomial.hpp"
 #include "plant/model/vehicle.hpp"
 
@@ -17,6 +18,7 @@ using Eigen::Vector3d;
 
 constexpr double kMass = 0.04;
 constexpr double kTilt = 0.6;
+const double kTiltTangent = std::tan(kTilt);
 const Vector3d kGravityNed(0.0, 0.0, plant::kGravity);
 
 // Eq. (1) and (5) without drag: what the vehicle does under this thrust at this attitude.
@@ -26,6 +28,11 @@ Vector3d acceleration(double thrust_n, const Vector3d& euler) {
 
 double tilt(const Vector3d& euler) {
   return std::acos(std::min((quaternion_from_euler(euler) * Vector3d::UnitZ()).z(), 1.0));
+}
+
+// Of a vehicle that is on the reference.
+ThrustAttitude attitude_on(const Reference& r) {
+  return thrust_attitude(kMass, r.acceleration_ned, r.yaw_rad, std::tan(1.5));
 }
 
 class ThrustAttitudeTest : public testing::Test {
@@ -38,14 +45,14 @@ class ThrustAttitudeTest : public testing::Test {
 TEST_F(ThrustAttitudeTest, GivesTheAccelerationThatWasAskedFor) {
   for (int trial = 0; trial < 1000; ++trial) {
     const Vector3d wanted = any(3.0);
-    const ThrustAttitude out = thrust_attitude(kMass, wanted, draw(3.1), kTilt);
+    const ThrustAttitude out = thrust_attitude(kMass, wanted, draw(3.1), kTiltTangent);
     ASSERT_FALSE(out.limited);
     EXPECT_LT((acceleration(out.thrust_n, out.euler_rad) - wanted).norm(), 1e-13);
   }
 }
 
 TEST_F(ThrustAttitudeTest, HoverIsLevel) {
-  const ThrustAttitude out = thrust_attitude(kMass, Vector3d::Zero(), 1.0, kTilt);
+  const ThrustAttitude out = thrust_attitude(kMass, Vector3d::Zero(), 1.0, kTiltTangent);
   EXPECT_DOUBLE_EQ(out.thrust_n, kMass * plant::kGravity);
   EXPECT_EQ(out.euler_rad, Vector3d(0.0, 0.0, 1.0));
 }
@@ -54,7 +61,7 @@ TEST_F(ThrustAttitudeTest, TiltIsCutAndTheVerticalPartKept) {
   int cut = 0;
   for (int trial = 0; trial < 1000; ++trial) {
     const Vector3d wanted = any(1.0).cwiseProduct(Vector3d(30.0, 30.0, 8.0));
-    const ThrustAttitude out = thrust_attitude(kMass, wanted, draw(3.1), kTilt);
+    const ThrustAttitude out = thrust_attitude(kMass, wanted, draw(3.1), kTiltTangent);
     const Vector3d got = acceleration(out.thrust_n, out.euler_rad);
     EXPECT_LE(tilt(out.euler_rad), kTilt + 1e-9);
     EXPECT_NEAR(got.z(), wanted.z(), 1e-12);
@@ -69,7 +76,7 @@ TEST_F(ThrustAttitudeTest, TiltIsCutAndTheVerticalPartKept) {
 
 TEST_F(ThrustAttitudeTest, NeverFallsFasterThanTheGuardNorTurnsOver) {
   for (const double down : {0.95 * plant::kGravity, plant::kGravity, 20.0, 1e6}) {
-    const ThrustAttitude out = thrust_attitude(kMass, {1.0, -2.0, down}, 0.3, kTilt);
+    const ThrustAttitude out = thrust_attitude(kMass, {1.0, -2.0, down}, 0.3, kTiltTangent);
     EXPECT_TRUE(out.limited);
     EXPECT_LE(tilt(out.euler_rad), kTilt + 1e-9);
     EXPECT_NEAR(acceleration(out.thrust_n, out.euler_rad).z(), 0.9 * plant::kGravity, 1e-12);
@@ -79,9 +86,9 @@ TEST_F(ThrustAttitudeTest, NeverFallsFasterThanTheGuardNorTurnsOver) {
 TEST_F(ThrustAttitudeTest, BadInputMeansHover) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
-  for (const ThrustAttitude& out : {thrust_attitude(kMass, {nan, 0.0, 0.0}, 0.0, kTilt),
-                                    thrust_attitude(kMass, {0.0, 0.0, -inf}, 0.0, kTilt),
-                                    thrust_attitude(kMass, {0.0, 0.0, 0.0}, nan, kTilt)}) {
+  for (const ThrustAttitude& out : {thrust_attitude(kMass, {nan, 0.0, 0.0}, 0.0, kTiltTangent),
+                                    thrust_attitude(kMass, {0.0, 0.0, -inf}, 0.0, kTiltTangent),
+                                    thrust_attitude(kMass, {0.0, 0.0, 0.0}, nan, kTiltTangent)}) {
     EXPECT_TRUE(out.limited);
     EXPECT_DOUBLE_EQ(out.thrust_n, kMass * plant::kGravity);
     EXPECT_EQ(out.euler_rad, Vector3d::Zero());
@@ -103,14 +110,12 @@ PolynomialSegment lively_segment(std::mt19937& generator) {
   return segment;
 }
 
-TEST_F(ThrustAttitudeTest, ReferenceIsTheMapOfItsAcceleration) {
+TEST_F(ThrustAttitudeTest, ReferenceThrustIsTheMapOfItsAcceleration) {
   for (int trial = 0; trial < 50; ++trial) {
     const Reference r = evaluate(lively_segment(generator_), 0.5);
-    const ReferenceAttitude out = reference_attitude(kMass, r);
-    const ThrustAttitude map = thrust_attitude(kMass, r.acceleration_ned, r.yaw_rad, 1.5);
+    const ThrustAttitude map = attitude_on(r);
     ASSERT_FALSE(map.limited);
-    EXPECT_NEAR(out.thrust_n, map.thrust_n, 1e-14);
-    EXPECT_LT((out.attitude.euler_rad - map.euler_rad).norm(), 1e-14);
+    EXPECT_NEAR(reference_motion(kMass, r).thrust_n, map.thrust_n, 1e-14);
   }
 }
 
@@ -119,19 +124,20 @@ TEST_F(ThrustAttitudeTest, ReferenceRatesAgreeWithFiniteDifferences) {
   double fastest = 0.0;
   for (int trial = 0; trial < 100; ++trial) {
     const PolynomialSegment segment = lively_segment(generator_);
-    const auto at = [&](double t) { return reference_attitude(kMass, evaluate(segment, t)); };
-    const auto q = [&](double t) { return quaternion_from_euler(at(t).attitude.euler_rad); };
+    const auto at = [&](double t) { return reference_motion(kMass, evaluate(segment, t)); };
+    const auto q = [&](double t) {
+      return quaternion_from_euler(attitude_on(evaluate(segment, t)).euler_rad);
+    };
     for (const double t : {0.2, 0.5, 0.9}) {
-      const ReferenceAttitude here = at(t);
+      const ReferenceMotion here = at(t);
       // q(t-h)^-1 q(t+h) turns by 2 h omega.
       const Eigen::AngleAxisd turn(q(t - kH).conjugate() * q(t + kH));
       const double angle = turn.angle() > 3.0 ? turn.angle() - 2.0 * M_PI : turn.angle();
       const Vector3d rates = angle * turn.axis() / (2.0 * kH);
-      const double size = 1.0 + here.attitude.body_rates_frd.norm();
-      EXPECT_LT((here.attitude.body_rates_frd - rates).norm(), 1e-5 * size * size * size);
-      const Vector3d accelerations =
-          (at(t + kH).attitude.body_rates_frd - at(t - kH).attitude.body_rates_frd) / (2.0 * kH);
-      EXPECT_LT((here.attitude.body_accelerations_frd - accelerations).norm(),
+      const double size = 1.0 + here.body_rates_frd.norm();
+      EXPECT_LT((here.body_rates_frd - rates).norm(), 1e-5 * size * size * size);
+      const Vector3d accelerations = (at(t + kH).body_rates_frd - at(t - kH).body_rates_frd) / (2.0 * kH);
+      EXPECT_LT((here.body_accelerations_frd - accelerations).norm(),
                 1e-5 * (1.0 + accelerations.norm()) * size * size);
       EXPECT_NEAR(here.thrust_rate, (at(t + kH).thrust_n - at(t - kH).thrust_n) / (2.0 * kH), 1e-5);
       fastest = std::max(fastest, rates.norm());
@@ -145,11 +151,10 @@ TEST_F(ThrustAttitudeTest, ReferenceThatFallsFreelyHasNoDerivatives) {
   r.acceleration_ned = {0.0, 0.0, plant::kGravity};
   r.jerk_ned = {1.0, 2.0, 3.0};
   r.snap_ned = {4.0, 5.0, 6.0};
-  const ReferenceAttitude out = reference_attitude(kMass, r);
+  const ReferenceMotion out = reference_motion(kMass, r);
   EXPECT_NEAR(out.thrust_n, kMinimumLift * kMass * plant::kGravity, 1e-15);
-  EXPECT_EQ(out.attitude.euler_rad, Vector3d::Zero());
-  EXPECT_EQ(out.attitude.body_rates_frd, Vector3d::Zero());
-  EXPECT_EQ(out.attitude.body_accelerations_frd, Vector3d::Zero());
+  EXPECT_EQ(out.body_rates_frd, Vector3d::Zero());
+  EXPECT_EQ(out.body_accelerations_frd, Vector3d::Zero());
   EXPECT_EQ(out.thrust_rate, 0.0);
 }
 
