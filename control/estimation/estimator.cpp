@@ -20,11 +20,22 @@ constexpr double kGate_rad = 0.5;
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
+// The unit quaternion of a rotation vector: (cos h, sin(h) / h * half), h being the length of half the
+// vector. Small ones, as of every step, by series whose first term left out is below 1e-16.
 Quaterniond rotation(const Vector3d& angle) {
-  const double norm = angle.norm();
-  const double half = 0.5 * norm;
-  const double scale = norm > 1e-9 ? std::sin(half) / norm : 0.5;
-  return Quaterniond(std::cos(half), scale * angle.x(), scale * angle.y(), scale * angle.z());
+  constexpr double kLargestForSeries = 0.01;  // h^2
+  const Vector3d half = 0.5 * angle;
+  const double h2 = half.squaredNorm();
+  double cosine =
+      1.0 - 0.5 * h2 * (1.0 - (1.0 / 12) * h2 * (1.0 - (1.0 / 30) * h2 * (1.0 - (1.0 / 56) * h2)));
+  double sine_over_h =
+      1.0 - (1.0 / 6) * h2 * (1.0 - (1.0 / 20) * h2 * (1.0 - (1.0 / 42) * h2 * (1.0 - (1.0 / 72) * h2)));
+  if (h2 > kLargestForSeries) {
+    const double h = std::sqrt(h2);
+    cosine = std::cos(h);
+    sine_over_h = std::sin(h) / h;
+  }
+  return Quaterniond(cosine, sine_over_h * half.x(), sine_over_h * half.y(), sine_over_h * half.z());
 }
 
 // The rotation vector of a unit quaternion near identity.
@@ -54,11 +65,12 @@ bool Estimator::predict(const plant::ImuSample& sample) {
     const Vector3d mean_rates = 0.5 * (before.body_rates_frd + sample.body_rates_frd) - now_.gyro_bias;
     const Vector3d mean_force =
         0.5 * (before.specific_force_frd + sample.specific_force_frd) - now_.accelerometer_bias;
-    const Quaterniond q_mid = now_.q_ned_from_frd * rotation(0.5 * dt * mean_rates);
+    const Quaterniond half_turn = rotation(0.5 * dt * mean_rates);
+    const Quaterniond q_mid = now_.q_ned_from_frd * half_turn;
     const Vector3d acceleration = q_mid * mean_force + Vector3d(0.0, 0.0, plant::kGravity);
     now_.position_ned += dt * now_.velocity_ned + (0.5 * dt * dt) * acceleration;
     now_.velocity_ned += dt * acceleration;
-    now_.q_ned_from_frd = (now_.q_ned_from_frd * rotation(dt * mean_rates)).normalized();
+    now_.q_ned_from_frd = (q_mid * half_turn).normalized();
     remember();
   }
   last_imu_ = sample;

@@ -80,6 +80,25 @@ TEST_P(EstimatorLatency, FollowsTheMotionWhateverTheLatencyOfThePoses) {
 }
 INSTANTIATE_TEST_SUITE_P(Milliseconds, EstimatorLatency, testing::Values(0, 10, 30, 100));
 
+// A constant rate is integrated without error, however long the steps.
+TEST(Estimator, TurnsByTheMeasuredRate) {
+  for (const std::int64_t step_ns : {100'000, 1'000'000, 10'000'000, 100'000'000}) {
+    Estimator estimator{EstimatorSettings{}};
+    plant::ImuSample imu;
+    imu.stamp_ns = 1;
+    imu.body_rates_frd = {7.0, -20.0, 15.0};
+    ASSERT_TRUE(estimator.predict(imu));
+    ASSERT_TRUE(estimator.correct({1, 1, true, Vector3d::Zero(), Quaterniond::Identity()}));
+    while (imu.stamp_ns < 300'000'000) {
+      imu.stamp_ns += step_ns;
+      ASSERT_TRUE(estimator.predict(imu));
+    }
+    const double angle = 0.3 * imu.body_rates_frd.norm();
+    const Quaterniond expected(AngleAxisd(angle, imu.body_rates_frd.normalized()));
+    EXPECT_LT(angle_between(estimator.estimate().q_ned_from_frd, expected), 1e-12) << step_ns;
+  }
+}
+
 TEST(Estimator, FindsTheBiasesOfGyroAndAccelerometer) {
   Estimator estimator{EstimatorSettings{}};
   Motion motion;
