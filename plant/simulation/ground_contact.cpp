@@ -89,6 +89,7 @@ bool GroundContact::resolve(const VehicleState& before, VehicleState& after, dou
       const Eigen::Vector3d old = point.impulse;
       // Down is positive: at most gap / dt downwards, pushed upwards only.
       const double excess = (velocity + turn_rate.cross(point.arm_ned)).z() - point.gap / dt;
+      if (excess <= 0.0 && old.z() == 0.0) continue;  // needs no impulse and has none
       point.impulse.z() = std::min(old.z() - excess / point.inverse_mass.z(), 0.0);
       apply(point, {0.0, 0.0, point.impulse.z() - old.z()});
 
