@@ -14,6 +14,12 @@ if(SWIFTLET_SANITIZE)
   target_link_options(swiftlet_flags INTERFACE -fsanitize=${SWIFTLET_SANITIZE})
 endif()
 
+# For the libraries that are arithmetic and little else. No result depends on these: nobody reads errno after a root, nor the
+# floating-point exception flags.
+add_library(swiftlet_numeric_flags INTERFACE)
+target_compile_options(swiftlet_numeric_flags INTERFACE
+  $<$<NOT:$<CONFIG:Debug>>:-O3> -fno-math-errno -fno-trapping-math)
+
 # swiftlet_add_library(NAME [SOURCES ...] [PUBLIC ...] [PRIVATE ...]): a static library swiftlet_NAME, alias swiftlet::NAME,
 # installed and exported. PUBLIC and PRIVATE are link libraries.
 function(swiftlet_add_library name)
