@@ -58,6 +58,7 @@ bool GroundContact::resolve(const VehicleState& before, VehicleState& after, dou
   for (std::size_t i = 0; i < count; ++i) {
     Point& point = points_[i];
     point.arm_ned = rotation * points_frd_[i];
+    point.has_inertia = false;
     point.gap = std::max(floor_z_ - before.position_ned.z() - point.arm_ned.z(), 0.0);
     touching = touching || dt * (velocity + turn_rate.cross(point.arm_ned)).z() > point.gap;
   }
@@ -71,14 +72,18 @@ bool GroundContact::resolve(const VehicleState& before, VehicleState& after, dou
     velocity += impulse / mass_;
     turn_rate += point.turn * impulse;
   };
-  for (std::size_t i = 0; i < count; ++i) {
-    Point& point = points_[i];
+  const auto find_inertia = [&](Point& point) {
     Eigen::Matrix3d cross;  // arm x
     cross << 0.0, -point.arm_ned.z(), point.arm_ned.y(), point.arm_ned.z(), 0.0, -point.arm_ned.x(),
         -point.arm_ned.y(), point.arm_ned.x(), 0.0;
     point.turn = inverse_inertia_ned * cross;
     point.inverse_mass = (-cross * point.turn).diagonal().array() + 1.0 / mass_;
-    apply(point, point.impulse);
+    point.has_inertia = true;
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    if (points_[i].impulse.z() == 0.0) continue;
+    find_inertia(points_[i]);
+    apply(points_[i], points_[i].impulse);
   }
 
   double change = std::numeric_limits<double>::infinity();
@@ -90,6 +95,7 @@ bool GroundContact::resolve(const VehicleState& before, VehicleState& after, dou
       // Down is positive: at most gap / dt downwards, pushed upwards only.
       const double excess = (velocity + turn_rate.cross(point.arm_ned)).z() - point.gap / dt;
       if (excess <= 0.0 && old.z() == 0.0) continue;  // needs no impulse and has none
+      if (!point.has_inertia) find_inertia(point);
       point.impulse.z() = std::min(old.z() - excess / point.inverse_mass.z(), 0.0);
       apply(point, {0.0, 0.0, point.impulse.z() - old.z()});
 

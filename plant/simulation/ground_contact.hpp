@@ -35,6 +35,7 @@ class GroundContact {
   struct Point {
     Eigen::Vector3d arm_ned;       // from the origin
     double gap;                    // m, to the floor
+    bool has_inertia;              // the next two are those of this step
     Eigen::Matrix3d turn;          // angular velocity over impulse
     Eigen::Vector3d inverse_mass;  // velocity over impulse, along each axis
     Eigen::Vector3d impulse;       // N s, in NED; kept from step to step, where the next solution starts
