@@ -101,9 +101,9 @@ Wrench Allocator::sanitised(const Wrench& wanted, bool& invalid) const {
   }
   // Nothing beyond the bound fits, so cutting there first changes no result and keeps the arithmetic finite.
   out.thrust_n = std::clamp(out.thrust_n, -bound_.thrust_n, bound_.thrust_n);
-  const double excess = std::max(std::abs(out.moment_frd.x()) / bound_.moment_frd.x(),
-                                 std::abs(out.moment_frd.y()) / bound_.moment_frd.y());
-  if (excess > 1.0) out.moment_frd.head<2>() /= excess;
+  const Eigen::Array2d size = out.moment_frd.head<2>().array().abs();
+  const Eigen::Array2d bound = bound_.moment_frd.head<2>().array();
+  if ((size > bound).any()) out.moment_frd.head<2>() /= (size / bound).maxCoeff();
   out.moment_frd.z() = std::clamp(out.moment_frd.z(), -bound_.moment_frd.z(), bound_.moment_frd.z());
   return out;
 }

@@ -16,15 +16,6 @@ double square(double x) { return x * x; }
 
 }  // namespace
 
-// Open-circuit voltage as a straight line over the state of charge: that of the table's segment where a step
-// begins.
-struct Dynamics::OpenCircuit {
-  double at_empty;  // V
-  double slope;     // V
-
-  double voltage(double state_of_charge) const { return at_empty + slope * state_of_charge; }
-};
-
 // The right-hand side for kRotors rotors, with the state as one array and what is constant over a step worked
 // out.
 template <int kRotors, MotorForm kMotor>
@@ -101,18 +92,15 @@ struct Dynamics::System {
     }
   }
 
-  void derivative(const State& y, State& dy) const {
-    // Eq. (9)-(28) rotor by rotor
+  State derivative(const State& y) const {
+    State dy;
+    // Eq. (9)-(22), all rotors side by side
     const double v_s = std::max(open_circuit.voltage(y[kCharge]) - y[kSag], 0.0);
+    const double inverse_v_s = v_s > 0.0 ? 1.0 / v_s : 0.0;
     const double v_s_squared = v_s * v_s;
-    double power = 0.0;
-    double lift = 0.0;  // m/s^2, against body z
-    double roll = 0.0;
-    double pitch = 0.0;
-    double yaw = 0.0;
+    std::array<double, kN> powers;
     for (std::size_t i = 0; i < kN; ++i) {
       const double speed = y[kSpeeds + i];
-      const double speed_squared = speed * speed;
       const double v_a = std::sqrt(std::max(v_a_gain[i] * v_s_squared + v_a_offset, 0.0));
       double current = (v_a - d.motor_.torque_constant * speed) * d.motor_.inverse_resistance;
       if constexpr (kMotor == MotorForm::kInductive) {
@@ -125,7 +113,18 @@ struct Dynamics::System {
       } else {
         dy[kSpeeds + i] = speed_rate_from_current(d.motor_, current, speed);
       }
-      power += std::max(v_a * current, 0.0);
+      powers[i] = std::max(v_a * current, 0.0);
+    }
+
+    // Eq. (25)-(28)
+    double power = 0.0;
+    double lift = 0.0;  // m/s^2, against body z
+    double roll = 0.0;
+    double pitch = 0.0;
+    double yaw = 0.0;
+    for (std::size_t i = 0; i < kN; ++i) {
+      const double speed_squared = square(y[kSpeeds + i]);
+      power += powers[i];
       lift += d.wrenches_[i].lift * speed_squared;
       roll += d.wrenches_[i].roll * speed_squared;
       pitch += d.wrenches_[i].pitch * speed_squared;
@@ -133,7 +132,7 @@ struct Dynamics::System {
     }
 
     // The ESCs pass on all the power that they draw, as in esc_supply_current().
-    const double drawn = d.battery_.electronics_current_a + (v_s > 0.0 ? power / v_s : 0.0);
+    const double drawn = d.battery_.electronics_current_a + power * inverse_v_s;
     dy[kCharge] = drawn * d.charge_per_current_;
     dy[kSag] = (d.battery_.internal_resistance_ohm * drawn - y[kSag]) * d.inverse_sag_time_;
 
@@ -174,23 +173,25 @@ struct Dynamics::System {
     dy[kRates] = inverse(0, 0) * m_x + inverse(0, 1) * m_y + inverse(0, 2) * m_z;
     dy[kRates + 1] = inverse(1, 0) * m_x + inverse(1, 1) * m_y + inverse(1, 2) * m_z;
     dy[kRates + 2] = inverse(2, 0) * m_x + inverse(2, 1) * m_y + inverse(2, 2) * m_z;
+    return dy;
   }
 
-  void step(State& y, double h) const {
-    State k;
-    State sum;
-    State at;
-    derivative(y, k);
-    for (std::size_t i = 0; i < kSize; ++i) sum[i] = k[i];
-    for (std::size_t i = 0; i < kSize; ++i) at[i] = y[i] + 0.5 * h * k[i];
-    derivative(at, k);
-    for (std::size_t i = 0; i < kSize; ++i) sum[i] += 2.0 * k[i];
-    for (std::size_t i = 0; i < kSize; ++i) at[i] = y[i] + 0.5 * h * k[i];
-    derivative(at, k);
-    for (std::size_t i = 0; i < kSize; ++i) sum[i] += 2.0 * k[i];
-    for (std::size_t i = 0; i < kSize; ++i) at[i] = y[i] + h * k[i];
-    derivative(at, k);
-    for (std::size_t i = 0; i < kSize; ++i) y[i] += h / 6.0 * (sum[i] + k[i]);
+  // y + h k
+  static State moved(const State& y, double h, const State& k) {
+    State out;
+    for (std::size_t i = 0; i < kSize; ++i) out[i] = y[i] + h * k[i];
+    return out;
+  }
+
+  // The classical Runge-Kutta step.
+  State step(const State& y, double h) const {
+    const State k1 = derivative(y);
+    const State k2 = derivative(moved(y, 0.5 * h, k1));
+    const State k3 = derivative(moved(y, 0.5 * h, k2));
+    const State k4 = derivative(moved(y, h, k3));
+    State out;
+    for (std::size_t i = 0; i < kSize; ++i) out[i] = y[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
+    return out;
   }
 };
 
@@ -219,6 +220,12 @@ Dynamics::Dynamics(const Vehicle& vehicle, const Supply& supply)
     const double yaw = mount.spin == Spin::kCounterClockwise ? vehicle.rotor.torque : -vehicle.rotor.torque;
     wrenches_[i] = {vehicle.rotor.thrust * inverse_mass_, -mount.position_frd.y() * vehicle.rotor.thrust,
                     mount.position_frd.x() * vehicle.rotor.thrust, yaw};
+  }
+  const std::vector<double>& charge = battery_.state_of_charge;
+  const std::vector<double>& voltage = battery_.open_circuit_voltage_v;
+  for (std::size_t i = 1; i < charge.size(); ++i) {
+    const double slope = (voltage[i] - voltage[i - 1]) / (charge[i] - charge[i - 1]);
+    open_circuits_.push_back({voltage[i] - slope * charge[i], slope});
   }
   if (ideal_supply_) {
     battery_.internal_resistance_ohm = 0.0;
@@ -268,20 +275,17 @@ void Dynamics::advance_as(VehicleState& state, const RotorDrive& drive, const Ei
   const int count = dt <= max_step_s_ ? 1 : static_cast<int>(std::ceil(dt / max_step_s_));
   const double h = dt / count;
   typename Equations::State y = Equations::pack(state);
-  for (int i = 0; i < count; ++i) equations.step(y, h);
+  for (int i = 0; i < count; ++i) y = equations.step(y, h);
   Equations::unpack(y, state);
 }
 
 Dynamics::OpenCircuit Dynamics::open_circuit(double state_of_charge) const {
   if (ideal_supply_) return {ideal_voltage_, 0.0};
   const std::vector<double>& charge = battery_.state_of_charge;
-  const std::vector<double>& voltage = battery_.open_circuit_voltage_v;
-  if (state_of_charge <= charge.front()) return {voltage.front(), 0.0};
-  if (state_of_charge >= charge.back()) state_of_charge = charge.back();
-  std::size_t i = charge.size() - 1;
-  while (i > 1 && state_of_charge <= charge[i - 1]) --i;
-  const double slope = (voltage[i] - voltage[i - 1]) / (charge[i] - charge[i - 1]);
-  return {voltage[i] - slope * charge[i], slope};
+  if (state_of_charge <= charge.front()) return {battery_.open_circuit_voltage_v.front(), 0.0};
+  std::size_t segment = open_circuits_.size() - 1;
+  while (segment > 0 && state_of_charge <= charge[segment]) --segment;
+  return open_circuits_[segment];
 }
 
 // Eq. (9); a rotor that is off gets no voltage at all.
@@ -319,8 +323,10 @@ Eigen::Vector3d Dynamics::specific_force_frd(const VehicleState& state,
   double lift = 0.0;
   for (std::size_t i = 0; i < wrenches_.size(); ++i)
     lift += wrenches_[i].lift * square(state.rotor_speeds[i]);
+  const Eigen::Vector3d thrust(0.0, 0.0, -lift);
+  if (drag_over_mass_ == 0.0) return thrust;
   const Eigen::Vector3d drag = drag_over_mass_ * (state.velocity_ned - wind_ned);
-  return Eigen::Vector3d(0.0, 0.0, -lift) - state.q_ned_from_frd.conjugate() * drag;
+  return thrust - state.q_ned_from_frd.conjugate() * drag;
 }
 
 }  // namespace swiftlet::plant

@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -63,7 +64,14 @@ class Dynamics {
  private:
   template <int kRotors, MotorForm kMotor>
   struct System;
-  struct OpenCircuit;
+  // Open-circuit voltage as a straight line over the state of charge: that of the table's segment where a
+  // step begins.
+  struct OpenCircuit {
+    double at_empty;  // V
+    double slope;     // V
+
+    double voltage(double state_of_charge) const { return at_empty + slope * state_of_charge; }
+  };
 
   template <int kRotors, MotorForm kMotor>
   void advance_as(VehicleState& state, const RotorDrive& drive, const Eigen::Vector3d& wind_ned,
@@ -101,8 +109,9 @@ class Dynamics {
 
   bool ideal_supply_;
   double ideal_voltage_;
-  BatteryParameters battery_;  // of an ideal supply: one without resistance
-  double charge_per_current_;  // 1/(A s); 0 for an ideal supply
+  BatteryParameters battery_;               // of an ideal supply: one without resistance
+  std::vector<OpenCircuit> open_circuits_;  // of each segment of its table
+  double charge_per_current_;               // 1/(A s); 0 for an ideal supply
   double inverse_sag_time_;
 };
 

@@ -85,7 +85,7 @@ void PlantSimulation::sample(const RotorDrive& drive) {
 // sample.
 Eigen::Vector3d PlantSimulation::specific_force_frd() {
   Eigen::Vector3d specific_force = dynamics_.specific_force_frd(state_, air_.wind_ned());
-  if (contact_steps_ > 0) {
+  if (!contact_sum_ned_.isZero(0.0)) {
     specific_force +=
         state_.q_ned_from_frd.conjugate() * (contact_sum_ned_ / static_cast<double>(contact_steps_));
   }
