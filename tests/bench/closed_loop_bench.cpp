@@ -5,11 +5,11 @@
 #include <benchmark/benchmark.h>
 
 #include "ground/mission_file.hpp"
+#include "ground/simulation/simulated_flight.hpp"
 #include "services/runtime/control_settings_file.hpp"
 #include "services/runtime/find_config.hpp"
 #include "services/runtime/simulation_file.hpp"
 #include "services/runtime/vehicle_file.hpp"
-#include "tests/support/closed_loop.hpp"
 
 namespace swiftlet {
 namespace {
@@ -19,24 +19,25 @@ void fly_square(benchmark::State& state, const char* settings_file) {
   const plant::Vehicle vehicle = runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml"));
   const control::ControlSettings settings =
       runtime::load_control_settings(runtime::find_config(settings_file));
-  const control::Mission mission =
+  control::Mission mission =
       ground::load_mission_file(runtime::find_config("missions/square.yaml"), settings.limits).mission;
   plant::SimulationSettings simulation =
       runtime::load_simulation_settings(runtime::find_config("simulation/default.yaml"));
   simulation.imu.rate_hz = 1000.0;
 
+  mission.id = 1;
+  const double planned_s = ground::planned_duration_s(mission, settings.limits);
+
   std::int64_t simulated_ns = 0;
-  test::MissionResult result;
   for (auto _ : state) {
-    test::ClosedLoop loop(vehicle, simulation, settings, 1);
-    result = test::fly(loop, mission);
-    if (!result.completed) return state.SkipWithError(result.reason.c_str());
+    ground::ClosedLoop loop(vehicle, simulation, settings, 1);
+    const ground::SimulatedFlight flight = ground::fly(loop, mission, planned_s, {});
+    if (!flight.completed) return state.SkipWithError(flight.reason.c_str());
     simulated_ns += loop.plant.stamp_ns();
   }
   state.SetItemsProcessed(simulated_ns / simulation.step_ns);
   state.counters["real_time_factor"] =
       benchmark::Counter(static_cast<double>(simulated_ns) * 1e-9, benchmark::Counter::kIsRate);
-  state.counters["rms_3d_mm"] = 1e3 * result.rms_3d_m;
 }
 BENCHMARK_CAPTURE(fly_square, motor_lag, "control/motor_lag.yaml")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(fly_square, paper, "control/paper.yaml")->Unit(benchmark::kMillisecond);
