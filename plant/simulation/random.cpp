@@ -1,10 +1,13 @@
 #include "plant/simulation/random.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace swiftlet::plant {
 
 namespace {
+
+constexpr double kLog2 = 0.69314718055994531;
 
 std::uint64_t splitmix64(std::uint64_t& state) {
   state += 0x9e3779b97f4a7c15U;
@@ -31,7 +34,16 @@ double portable_log(double x) {
   const double s2 = s * s;
   double sum = 0.0;
   for (const double coefficient : kSeries) sum = sum * s2 + coefficient;
-  return 2.0 * s * sum + exponent * 0.69314718055994531;
+  return 2.0 * s * sum + exponent * kLog2;
+}
+
+// e^x of a finite x: 2^k e^r with r within +-log(2)/2, e^r as a series.
+double portable_exp(double x) {
+  const double k = std::floor(x / kLog2 + 0.5);
+  const double r = x - k * kLog2;
+  double sum = 1.0;
+  for (int i = 16; i > 0; --i) sum = 1.0 + sum * r / i;
+  return std::ldexp(sum, static_cast<int>(k));
 }
 
 }  // namespace
@@ -55,6 +67,22 @@ std::uint64_t RandomStream::next() {
 }
 
 double RandomStream::uniform() { return static_cast<double>(next() >> 11U) * 0x1.0p-53; }
+
+double RandomStream::uniform(double min, double max) {
+  return std::clamp(min + (max - min) * uniform(), min, max);
+}
+
+double RandomStream::log_uniform(double min, double max) {
+  const double log_min = portable_log(min);
+  return std::clamp(portable_exp(log_min + (portable_log(max) - log_min) * uniform()), min, max);
+}
+
+double RandomStream::truncated_normal(double mean, double sigma, double min, double max) {
+  for (;;) {
+    const double value = mean + sigma * normal();
+    if (value >= min && value <= max) return value;
+  }
+}
 
 double RandomStream::normal() {
   if (has_spare_) {
