@@ -23,6 +23,7 @@ Command add_status_command(CLI::App& root);
 Command add_gains_command(CLI::App& root);
 Command add_sim_command(CLI::App& root);
 Command add_sim_fly_command(CLI::App& sim);
+Command add_sim_batch_command(CLI::App& sim);
 Command add_sim_open_loop_command(CLI::App& sim);
 
 }  // namespace swiftlet::ground

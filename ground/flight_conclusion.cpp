@@ -33,11 +33,11 @@ std::string shortfall(const FlightReport& report, Window window) {
 
 }  // namespace
 
-void make_record_folder(const std::filesystem::path& folder) {
+void make_record_folder(const std::filesystem::path& folder, const std::string& option) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error)
-    throw InputError("--record " + folder.string() + ": the folder cannot be made: " + error.message());
+    throw InputError(option + " " + folder.string() + ": the folder cannot be made: " + error.message());
 }
 
 void judge(FlightReport& report, const FlightRecord& record, Window window) {

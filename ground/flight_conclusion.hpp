@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "ground/flight_record.hpp"
 #include "ground/flight_report.hpp"
@@ -9,8 +10,8 @@
 
 namespace swiftlet::ground {
 
-// Throws InputError if the folder cannot be made.
-void make_record_folder(const std::filesystem::path& folder);
+// Throws InputError if the folder cannot be made; option is the one that names it.
+void make_record_folder(const std::filesystem::path& folder, const std::string& option = "--record");
 
 // Takes the errors inside the window, and decides whether the flight counts as completed: no reason against
 // it in the report, enough telemetry to judge it by, and the errors within the tolerance.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdio>
 #include <fstream>
 #include <limits>
@@ -11,12 +10,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ground/child_process.hpp"
+#include "ground/gnuplot.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
-constexpr std::chrono::seconds kPlotTimeout{30};
 constexpr std::int64_t kLongestRowGapNs = 15'000'000;  // references come every 10 ms
 
 struct Closer {
@@ -43,20 +41,6 @@ std::string number(double value) {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, "%.4g", value);
   return buffer;
-}
-
-// For a gnuplot string in single quotes, without the characters that enhanced text takes for commands.
-std::string quoted(const std::string& text) {
-  std::string plain = "'";
-  for (const char c : text) {
-    if (c == '\'')
-      plain += "''";
-    else if (std::string("_^{}@&~\\").find(c) != std::string::npos)
-      plain += ' ';
-    else
-      plain += c;
-  }
-  return plain + "'";
 }
 
 constexpr const char* kPlot = R"(
@@ -144,8 +128,8 @@ void write_script(const std::filesystem::path& file, const FlightReport& report,
   char figures[160];
   std::snprintf(figures, sizeof figures, ": 3-D error RMS %.1f mm, peak %.1f mm over %.0f s",
                 report.errors.rms_3d_m * 1e3, report.errors.peak_3d_m * 1e3, land_s);
-  script << "headline = " << quoted(report.mission + " - " + report.vehicle + ", " + report.control + figures)
-         << "\n"
+  script << "headline = "
+         << gnuplot_quoted(report.mission + " - " + report.vehicle + ", " + report.control + figures) << "\n"
          << "t_from = 0\nt_land = " << number(land_s)
          << "\nt_to = " << number(std::max(report.duration_s, 1.0) + 0.5) << "\n"
          << kPlot;
@@ -210,18 +194,7 @@ void write_report_json(const std::filesystem::path& file, const FlightReport& re
 
 std::string draw_flight(const std::filesystem::path& folder, const FlightReport& report, Window window) {
   write_script(folder / "flight.gp", report, window);
-  const std::filesystem::path gnuplot = find_program("gnuplot");
-  if (gnuplot.empty())
-    return "no picture was drawn: gnuplot is not installed (flight.gp draws it from flight.csv)";
-  const std::filesystem::path log = folder / "gnuplot.log";
-  ChildProcess plot({"gnuplot", gnuplot, {"flight.gp"}, log, folder});
-  const auto end = plot.wait(kPlotTimeout);
-  if (!end) return "no picture was drawn: gnuplot took longer than 30 s";
-  if (end->by_signal || end->code != 0) {
-    return "no picture was drawn: gnuplot " + end->to_string() + ": " + plot.last_log_line();
-  }
-  std::filesystem::remove(log);
-  return {};
+  return run_gnuplot(folder, "flight");
 }
 
 }  // namespace swiftlet::ground

@@ -6,6 +6,7 @@
 #include "ground/flight_schedule.hpp"
 #include "ground/installation.hpp"
 #include "ground/network_options.hpp"
+#include "ground/vary_file.hpp"
 #include "services/runtime/control_settings_file.hpp"
 #include "services/runtime/simulation_file.hpp"
 #include "services/runtime/vehicle_file.hpp"
@@ -62,6 +63,9 @@ FlightPlan plan_flight(const FlyOptions& options) {
   for (const plant::Violation& violation : plant::validate(plan.simulation)) {
     throw InputError("--imu-rate: " + violation.key + " " + violation.message);
   }
+  if (!options.vary.empty())
+    plan.variation =
+        load_vary_file(configuration_file("vary", options.vary), {plan.vehicle, plan.simulation});
   plan.seed = options.seed;
 
   const fs::path mission_file = configuration_file("missions", options.mission);
@@ -79,6 +83,10 @@ FlightPlan plan_flight(const FlyOptions& options) {
   return plan;
 }
 
+Draw draw(const FlightPlan& plan, std::uint64_t seed) {
+  return draw(plan.variation, {plan.vehicle, plan.simulation}, seed);
+}
+
 std::size_t FlightPlan::record_capacity() const {
   // The rate of a vehicle that runs already is not known yet.
   const double rate_hz = parties == Parties::kAttached ? kHighestImuRateHz : simulation.imu.rate_hz;
@@ -91,6 +99,7 @@ FlightReport report_of(const FlightPlan& plan) {
   report.mission = plan.mission.name;
   report.vehicle = plan.vehicle.name;
   report.control = plan.control.name;
+  report.vary = plan.variation.name;
   report.seed = plan.seed;
   report.imu_rate_hz = plan.simulation.imu.rate_hz;
   report.record_dir = plan.folder.string();

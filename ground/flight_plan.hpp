@@ -11,6 +11,7 @@
 #include "ground/child_process.hpp"
 #include "ground/flight_report.hpp"
 #include "ground/mission_file.hpp"
+#include "ground/simulation/variation.hpp"
 #include "plant/model/vehicle.hpp"
 #include "plant/simulation/settings.hpp"
 #include "services/comms/node.hpp"
@@ -33,6 +34,7 @@ struct FlyOptions {
   std::string vehicle = "kaylion";
   std::string control = "motor_lag";
   std::string simulation = "default";
+  std::string vary;    // of kInProcess: a vary file; empty: what flies is as the files say
   std::string record;  // empty: flights/<date-time>-<mission>
   std::uint64_t seed = 1;
   int imu_rate_hz = 0;  // 0: as the simulation file says
@@ -52,6 +54,7 @@ struct FlightPlan {
   plant::Vehicle vehicle;
   control::ControlSettings control;
   plant::SimulationSettings simulation;
+  Variation variation;         // of what is flown; without variates unless asked for
   int imu_rate_option_hz = 0;  // as FlyOptions
   std::uint64_t seed = 0;
   std::filesystem::path folder;                                         // of the record; not made yet
@@ -66,6 +69,9 @@ constexpr double kLongestMissionS = 600.0;
 
 // Throws runtime::ConfigError or InputError for input that cannot be flown. Starts and writes nothing.
 FlightPlan plan_flight(const FlyOptions& options);
+
+// What flies with a seed, while the controller is designed on plan.vehicle. Throws as draw() does.
+Draw draw(const FlightPlan& plan, std::uint64_t seed);
 
 // The three processes of a plan of kStarted, on this network; none of others.
 std::vector<ProcessSettings> processes(const FlightPlan& plan, const comms::NodeSettings& network);

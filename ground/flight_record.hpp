@@ -60,6 +60,11 @@ class Track {
     size_.store(at + 1, std::memory_order_release);
   }
 
+  void clear() noexcept {  // for another flight; while nobody reads
+    size_.store(0, std::memory_order_release);
+    dropped_.store(0, std::memory_order_relaxed);
+  }
+
   std::size_t size() const { return size_.load(std::memory_order_acquire); }
   std::size_t dropped() const { return dropped_.load(std::memory_order_relaxed); }  // came when it was full
   bool empty() const { return size() == 0; }
@@ -79,6 +84,13 @@ struct FlightRecord {
   // capacity: of each track
   explicit FlightRecord(std::size_t capacity)
       : truth(capacity), reference(capacity), estimate(capacity), mission(capacity) {}
+
+  void clear() noexcept {
+    truth.clear();
+    reference.clear();
+    estimate.clear();
+    mission.clear();
+  }
 
   Track<TruthRow> truth;
   Track<ReferenceRow> reference;

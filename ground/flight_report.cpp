@@ -1,24 +1,14 @@
 #include "ground/flight_report.hpp"
 
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 
 #include <nlohmann/json.hpp>
 
+#include "ground/format.hpp"
 #include "services/runtime/clock.hpp"
 
 namespace swiftlet::ground {
 namespace {
-
-[[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...) {
-  char buffer[256];
-  std::va_list arguments;
-  va_start(arguments, pattern);
-  std::vsnprintf(buffer, sizeof buffer, pattern, arguments);
-  va_end(arguments);
-  return buffer;
-}
 
 const std::string kRealtime = runtime::to_string(runtime::Clock::kRealtime);
 
@@ -36,6 +26,7 @@ nlohmann::ordered_json to_json(const FlightReport& report) {
   json["mission"] = report.mission;
   json["vehicle"] = report.vehicle;
   json["control"] = report.control;
+  if (!report.vary.empty()) json["vary"] = report.vary;
   json["seed"] = report.seed;
   json["record_dir"] = report.record_dir;
   json["duration_s"] = report.duration_s;
@@ -89,6 +80,9 @@ std::string to_text(const FlightReport& report) {
         format("  sense to actuate  p50 %.0f us, p99 %.0f us, max %.0f us\n", report.sense_to_actuate.p50_us,
                report.sense_to_actuate.p99_us, report.sense_to_actuate.max_us);
   }
+  if (!report.vary.empty())
+    text += format("  varied by         %s, seed %llu\n", report.vary.c_str(),
+                   static_cast<unsigned long long>(report.seed));
   if (!report.record_dir.empty()) text += "  record            " + report.record_dir + "\n";
   return text;
 }

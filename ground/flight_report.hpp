@@ -25,6 +25,7 @@ struct FlightReport {
   std::string mission;
   std::string vehicle;  // names or files, as flown
   std::string control;
+  std::string vary;  // empty: what flew is as the files say
   std::uint64_t seed = 0;
   std::string record_dir;
 

@@ -7,7 +7,7 @@
 
 namespace swiftlet::ground {
 
-void add_fly_options(CLI::App& app, FlyOptions& options) {
+void add_mission_options(CLI::App& app, FlyOptions& options) {
   app.add_option("mission", options.mission, "mission file, or the name of one in the configuration")
       ->capture_default_str();
   app.add_option("--vehicle", options.vehicle, "vehicle file or name")->capture_default_str();
@@ -16,16 +16,26 @@ void add_fly_options(CLI::App& app, FlyOptions& options) {
       ->capture_default_str();
   app.add_option("--simulation", options.simulation, "simulation settings, file or name")
       ->capture_default_str();
-  app.add_option(
-      "--record", options.record,
-      "folder for flight.csv, report.json, flight.png and logs; flights/<date>-<mission> unless given");
   app.add_option("--seed", options.seed, "of all that is random in the simulation")
       ->check(CLI::Range(std::numeric_limits<std::int64_t>::max()))
       ->capture_default_str();
   app.add_option("--imu-rate", options.imu_rate_hz,
                  "IMU and inner-loop rate, Hz; as the simulation file says unless given")
       ->check(CLI::IsMember({500, 1000}));
+}
+
+void add_fly_options(CLI::App& app, FlyOptions& options) {
+  add_mission_options(app, options);
+  app.add_option(
+      "--record", options.record,
+      "folder for flight.csv, report.json, flight.png and logs; flights/<date>-<mission> unless given");
   app.add_flag("--json", options.json, "print one JSON object instead of the summary");
+}
+
+CLI::Option* add_vary_option(CLI::App& app, FlyOptions& options) {
+  return app.add_option("--vary", options.vary,
+                        "vary file, or the name of one in the configuration: what differs from seed to seed "
+                        "in the vehicle that flies and in its world; the controller knows the vehicle file");
 }
 
 }  // namespace swiftlet::ground

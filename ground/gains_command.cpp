@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <cstdarg>
 #include <cstdio>
 #include <memory>
 #include <vector>
@@ -12,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ground/commands.hpp"
+#include "ground/format.hpp"
 #include "ground/installation.hpp"
 #include "services/runtime/control_settings_file.hpp"
 #include "services/runtime/vehicle_file.hpp"
@@ -73,36 +73,28 @@ Json json_of(const PositionAxisDesign& axis) {
   return out;
 }
 
-[[gnu::format(printf, 1, 2)]] std::string text(const char* format, ...) {
-  char line[256];
-  std::va_list values;
-  va_start(values, format);
-  std::vsnprintf(line, sizeof line, format, values);
-  va_end(values);
-  return line;
-}
-
 // Each conjugate pair once: "-5.5 +- 3.2i, -12".
 std::string text_of(const Poles& poles) {
   std::string out;
   for (const std::complex<double>& pole : poles) {
     if (pole.imag() < 0.0) continue;
     if (!out.empty()) out += ", ";
-    out += pole.imag() > 0.0 ? text("%.3g +- %.3gi", pole.real(), pole.imag()) : text("%.3g", pole.real());
+    out +=
+        pole.imag() > 0.0 ? format("%.3g +- %.3gi", pole.real(), pole.imag()) : format("%.3g", pole.real());
   }
   return out;
 }
 
 std::string row(const char* name, const AttitudeAxisDesign& axis) {
   std::string k;
-  for (Eigen::Index i = 0; i < state_count(axis.model); ++i) k += text(" %9.4g", axis.k[i]);
-  return text("  %-6s k =%-30s  margin %5.1f deg  poles ", name, k.c_str(), axis.phase_margin_deg) +
+  for (Eigen::Index i = 0; i < state_count(axis.model); ++i) k += format(" %9.4g", axis.k[i]);
+  return format("  %-6s k =%-30s  margin %5.1f deg  poles ", name, k.c_str(), axis.phase_margin_deg) +
          text_of(axis.poles_with_lag) + "\n";
 }
 
 std::string row(const char* name, const PositionAxisDesign& axis) {
-  return text("  %-6s k_p =%7.3f  k_v =%7.3f  k_s =%7.3f  margin %5.1f deg  poles ", name, axis.gains.k_p,
-              axis.gains.k_v, axis.gains.k_s, axis.phase_margin_deg) +
+  return format("  %-6s k_p =%7.3f  k_v =%7.3f  k_s =%7.3f  margin %5.1f deg  poles ", name, axis.gains.k_p,
+                axis.gains.k_v, axis.gains.k_s, axis.phase_margin_deg) +
          text_of(axis.poles) + "\n";
 }
 
@@ -120,11 +112,12 @@ std::string gains_json(const ControlDesign& design, const std::string& vehicle, 
 }
 
 std::string gains_table(const ControlDesign& design, const std::string& vehicle, const std::string& control) {
-  return text("%s flown with %s; rotor lag %.4g s in every margin and pole (rad/s)\n", vehicle.c_str(),
-              control.c_str(), design.rotor_lag_s) +
-         text("attitude: LQR on %s, u = -k (angle, rate%s)\n",
-              design.roll.model == AttitudeModel::kDoubleIntegrator ? "double integrators" : "the rotor lag",
-              design.roll.model == AttitudeModel::kDoubleIntegrator ? "" : ", moment / inertia") +
+  return format("%s flown with %s; rotor lag %.4g s in every margin and pole (rad/s)\n", vehicle.c_str(),
+                control.c_str(), design.rotor_lag_s) +
+         format(
+             "attitude: LQR on %s, u = -k (angle, rate%s)\n",
+             design.roll.model == AttitudeModel::kDoubleIntegrator ? "double integrators" : "the rotor lag",
+             design.roll.model == AttitudeModel::kDoubleIntegrator ? "" : ", moment / inertia") +
          row("roll", design.roll) + row("pitch", design.pitch) + row("yaw", design.yaw) +
          "position: RPT over the closed inner loop\n" + row("x", design.x) + row("y", design.y) +
          row("z", design.z);

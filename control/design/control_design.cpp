@@ -92,20 +92,21 @@ StateSpace attitude_axis_model(AttitudeModel model, double rotor_lag_s) {
   return axis;
 }
 
-Loop attitude_loop(const Eigen::Vector3d& k, double rotor_lag_s) {
-  const StateSpace axis = attitude_axis_model(AttitudeModel::kMotorLag, rotor_lag_s);
-  return {axis.a, axis.b, k.transpose()};
+Loop attitude_loop(const Eigen::Vector3d& k, const RotorResponse& moment) {
+  const StateSpace axis = attitude_axis_model(AttitudeModel::kMotorLag, moment.lag_s);
+  return {axis.a, axis.b * moment.gain, Eigen::RowVector3d(k[0], k[1], k[2] * moment.observed)};
 }
 
-Loop horizontal_position_loop(const RptGains& gains, const Eigen::Vector3d& attitude_k, double rotor_lag_s) {
-  const StateSpace axis = attitude_axis_model(AttitudeModel::kMotorLag, rotor_lag_s);
-  const Eigen::MatrixXd closed = axis.a - axis.b * attitude_k.transpose();
-  return with_outer_states(gains, closed, axis.b * attitude_k[0], Eigen::RowVector3d(1.0, 0.0, 0.0));
+Loop horizontal_position_loop(const RptGains& gains, const Eigen::Vector3d& attitude_k,
+                              const RotorResponse& moment, double tilt_gain) {
+  const Loop inner = attitude_loop(attitude_k, moment);
+  return with_outer_states(gains, inner.a - inner.b * inner.c, inner.b * attitude_k[0],
+                           Eigen::RowVector3d(tilt_gain, 0.0, 0.0));
 }
 
-Loop vertical_position_loop(const RptGains& gains, double rotor_lag_s) {
-  return with_outer_states(gains, Eigen::MatrixXd::Constant(1, 1, -1.0 / rotor_lag_s),
-                           Eigen::VectorXd::Constant(1, 1.0 / rotor_lag_s),
+Loop vertical_position_loop(const RptGains& gains, const RotorResponse& thrust) {
+  return with_outer_states(gains, Eigen::MatrixXd::Constant(1, 1, -1.0 / thrust.lag_s),
+                           Eigen::VectorXd::Constant(1, thrust.gain / thrust.lag_s),
                            Eigen::RowVectorXd::Constant(1, 1.0));
 }
 
@@ -143,7 +144,7 @@ AttitudeAxisDesign design_attitude_axis(AttitudeModel model, const LqrWeights& w
   axis_design.weights = weights;
   axis_design.k.head(n) = k.transpose();
   axis_design.poles = closed_loop_poles({axis.a, axis.b, k});
-  const Loop loop = attitude_loop(axis_design.k, rotor_lag_s);
+  const Loop loop = attitude_loop(axis_design.k, {rotor_lag_s});
   axis_design.poles_with_lag = closed_loop_poles(loop);
   axis_design.phase_margin_deg = phase_margin_deg(loop);
   return axis_design;
@@ -161,9 +162,9 @@ ControlDesign design(const plant::Vehicle& vehicle, const ControlSettings& setti
   d.x = position_axis("x", settings.position.x);
   d.y = position_axis("y", settings.position.y);
   d.z = position_axis("z", settings.position.z);
-  analyse(d.x, horizontal_position_loop(d.x.gains, d.pitch.k, lag));
-  analyse(d.y, horizontal_position_loop(d.y.gains, d.roll.k, lag));
-  analyse(d.z, vertical_position_loop(d.z.gains, lag));
+  analyse(d.x, horizontal_position_loop(d.x.gains, d.pitch.k, {lag}));
+  analyse(d.y, horizontal_position_loop(d.y.gains, d.roll.k, {lag}));
+  analyse(d.z, vertical_position_loop(d.z.gains, {lag}));
   return d;
 }
 

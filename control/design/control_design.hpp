@@ -56,15 +56,24 @@ struct StateSpace {
 };
 StateSpace attitude_axis_model(AttitudeModel model, double rotor_lag_s);
 
+// How the rotors answer on one axis: gain times what is commanded, behind the lag. The controller sees
+// `observed` times the answer. 1 both on the vehicle that the loops are designed on.
+struct RotorResponse {
+  double lag_s = 0.0;
+  double gain = 1.0;
+  double observed = 1.0;
+};
+
 // The gains k (2 or 3 entries are used) closed around the axis with rotor lag, cut at the rotor command.
-Loop attitude_loop(const Eigen::Vector3d& k, double rotor_lag_s);
+Loop attitude_loop(const Eigen::Vector3d& k, const RotorResponse& moment);
 
 // A horizontal position axis over a closed attitude axis, cut at the acceleration command (small angles:
-// acceleration = g * angle, the angle command takes the acceleration command at once).
-Loop horizontal_position_loop(const RptGains& gains, const Eigen::Vector3d& attitude_k, double rotor_lag_s);
+// acceleration = tilt_gain * g * angle, the angle command takes the acceleration command at once).
+Loop horizontal_position_loop(const RptGains& gains, const Eigen::Vector3d& attitude_k,
+                              const RotorResponse& moment, double tilt_gain = 1.0);
 
 // The vertical position axis over the rotor lag, cut at the acceleration command.
-Loop vertical_position_loop(const RptGains& gains, double rotor_lag_s);
+Loop vertical_position_loop(const RptGains& gains, const RotorResponse& thrust);
 
 // Eq. (49) in the state order of Eq. (45): (x_r, u_r, a_r, x, u).
 Eigen::Matrix<double, 5, 1> rpt_feedback(const RptSettings& settings);

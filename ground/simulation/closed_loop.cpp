@@ -6,11 +6,16 @@ namespace swiftlet::ground {
 
 ClosedLoop::ClosedLoop(const plant::Vehicle& vehicle, const plant::SimulationSettings& simulation,
                        const control::ControlSettings& settings, std::uint64_t seed)
+    : ClosedLoop(vehicle, vehicle, simulation, settings, seed) {}
+
+ClosedLoop::ClosedLoop(const plant::Vehicle& plant_vehicle, const plant::Vehicle& control_vehicle,
+                       const plant::SimulationSettings& simulation, const control::ControlSettings& settings,
+                       std::uint64_t seed)
     : imu_rate_hz(simulation.imu.rate_hz),
-      plant(vehicle, simulation, seed),
+      plant(plant_vehicle, simulation, seed),
       mocap(simulation.mocap, seed),
-      watchdog(vehicle.rotor_count(), std::llround(simulation.command_timeout_s * 1e9)),
-      controller(vehicle, settings) {
+      watchdog(plant_vehicle.rotor_count(), std::llround(simulation.command_timeout_s * 1e9)),
+      controller(control_vehicle, settings) {
   collect();
   answer();
 }

@@ -23,6 +23,10 @@ class ClosedLoop {
   // Answers the samples of stamp 0. Throws std::invalid_argument as FlightController does.
   ClosedLoop(const plant::Vehicle& vehicle, const plant::SimulationSettings& simulation,
              const control::ControlSettings& settings, std::uint64_t seed);
+  // A controller that was designed on another vehicle than the one that flies. Both have as many rotors.
+  ClosedLoop(const plant::Vehicle& plant_vehicle, const plant::Vehicle& control_vehicle,
+             const plant::SimulationSettings& simulation, const control::ControlSettings& settings,
+             std::uint64_t seed);
 
   // Up to the next IMU sample, and the controller's answer to it.
   void step();

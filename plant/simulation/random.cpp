@@ -1,10 +1,13 @@
 #include "plant/simulation/random.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace swiftlet::plant {
 
 namespace {
+
+constexpr double kLog2 = 0.69314718055994531;
 
 std::uint64_t splitmix64(std::uint64_t& state) {
   state += 0x9e3779b97f4a7c15U;
@@ -29,7 +32,16 @@ double portable_log(double x) {
   const double s2 = s * s;
   double sum = 0.0;
   for (const double coefficient : kSeries) sum = sum * s2 + coefficient;
-  return 2.0 * s * sum + exponent * 0.69314718055994531;
+  return 2.0 * s * sum + exponent * kLog2;
+}
+
+// e^x of a finite x: 2^k e^r with r within +-log(2)/2, e^r as a series.
+double portable_exp(double x) {
+  const double k = std::floor(x / kLog2 + 0.5);
+  const double r = x - k * kLog2;
+  double sum = 1.0;
+  for (int i = 16; i > 0; --i) sum = 1.0 + sum * r / i;
+  return std::ldexp(sum, static_cast<int>(k));
 }
 
 // For 256 layers: where the tail begins, the curve's height there, and the area of each layer, which is that
@@ -67,6 +79,22 @@ double RandomStream::normal_beside(std::size_t layer, double x) {
   const double bottom = kZiggurat.height[layer];
   const double height = bottom + uniform() * (kZiggurat.height[layer + 1] - bottom);
   return -2.0 * portable_log(height) > x * x ? x : normal();
+}
+
+double RandomStream::uniform(double min, double max) {
+  return std::clamp(min + (max - min) * uniform(), min, max);
+}
+
+double RandomStream::log_uniform(double min, double max) {
+  const double log_min = portable_log(min);
+  return std::clamp(portable_exp(log_min + (portable_log(max) - log_min) * uniform()), min, max);
+}
+
+double RandomStream::truncated_normal(double mean, double sigma, double min, double max) {
+  for (;;) {
+    const double value = mean + sigma * normal();
+    if (value >= min && value <= max) return value;
+  }
 }
 
 // Beyond kTail (Marsaglia 1964).

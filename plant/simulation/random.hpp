@@ -1,6 +1,6 @@
 // Random numbers that are the same on every machine and with every standard library: xoshiro256++ (Blackman,
-// Vigna 2019) seeded by splitmix64, normal deviates by the ziggurat (Marsaglia, Tsang 2000; Doornik 2005)
-// with a logarithm made of additions, multiplications and divisions only.
+// Vigna 2019) seeded by splitmix64, normal deviates by the ziggurat (Marsaglia, Tsang 2000; Doornik 2005),
+// logarithm and exponential made of additions, multiplications and divisions only.
 #pragma once
 
 #include <array>
@@ -29,10 +29,15 @@ class RandomStream {
 
   std::uint64_t next();
   double uniform() { return static_cast<double>(next() >> 11U) * 0x1.0p-53; }  // [0, 1)
-  double normal();                                                             // mean 0, standard deviation 1
-  Eigen::Vector3d normal3();                                                   // three of them
-  Eigen::Vector3d in_unit_ball();                                              // uniform in volume
-  Eigen::Vector3d on_unit_sphere();                                            // uniform in area
+  double uniform(double min, double max);                                      // [min, max]
+  double log_uniform(double min, double max);  // of uniform logarithm; 0 < min <= max
+  double normal();                             // mean 0, standard deviation 1
+  // A normal deviate that lies within min .. max: those outside are drawn again, so the mean must lie within
+  // and the limits be at least a sigma apart.
+  double truncated_normal(double mean, double sigma, double min, double max);
+  Eigen::Vector3d normal3();         // three of them
+  Eigen::Vector3d in_unit_ball();    // uniform in volume
+  Eigen::Vector3d on_unit_sphere();  // uniform in area
 
  private:
   double normal_beside(std::size_t layer, double x);

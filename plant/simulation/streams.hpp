@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 namespace swiftlet::plant::streams {
 
@@ -14,5 +15,12 @@ constexpr std::uint64_t kMocapPosition = 6;
 constexpr std::uint64_t kMocapOrientation = 7;
 constexpr std::uint64_t kMocapMisalignment = 8;
 constexpr std::uint64_t kMocapDropouts = 9;
+
+// The stream of a parameter that is drawn once a run, by its name: FNV-1a.
+constexpr std::uint64_t of_name(std::string_view name) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+  return hash;
+}
 
 }  // namespace swiftlet::plant::streams

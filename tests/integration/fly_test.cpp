@@ -10,6 +10,7 @@
 
 #include "tests/integration/program.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/hop_mission.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::tests {
@@ -20,15 +21,6 @@ using namespace std::chrono_literals;
 using nlohmann::json;
 
 constexpr auto kStartTimeout = 40s;  // until it is in the air; processes come up slowly on a busy machine
-
-const std::string kShortMission =
-    "name: hop\n"
-    "frame: ned\n"
-    "tolerance_m: 0.1\n"
-    "items:\n"
-    "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.5}\n"
-    "  - {kind: waypoint, position_m: [0.5, -0.3, -0.7], speed_m_s: 0.5}\n"
-    "  - {kind: land, speed_m_s: 0.5}\n";
 
 // Long enough to do something to it while it flies.
 const std::string kLongMission =
@@ -63,8 +55,7 @@ class Fly : public testing::Test {
 };
 
 TEST_F(Fly, FliesReportsAndRecordsAMission) {
-  Program fly("swiftlet", arguments(folder_.write("hop.yaml", kShortMission), {"--seed", "7"}),
-              folder_.path());
+  Program fly("swiftlet", arguments(folder_.write("hop.yaml", kHopMission), {"--seed", "7"}), folder_.path());
   ASSERT_EQ(fly.wait(90s), 0) << told(fly);
 
   const json report = json::parse(fly.output());
@@ -94,7 +85,7 @@ TEST_F(Fly, FliesReportsAndRecordsAMission) {
 }
 
 TEST_F(Fly, FliesAtOneKilohertz) {
-  Program fly("swiftlet", arguments(folder_.write("hop.yaml", kShortMission), {"--imu-rate", "1000"}),
+  Program fly("swiftlet", arguments(folder_.write("hop.yaml", kHopMission), {"--imu-rate", "1000"}),
               folder_.path());
   ASSERT_EQ(fly.wait(90s), 0) << told(fly);
   const json report = json::parse(fly.output());
@@ -103,7 +94,7 @@ TEST_F(Fly, FliesAtOneKilohertz) {
 }
 
 TEST_F(Fly, FliesOverSharedMemoryAndLeavesNothingThere) {
-  Program fly("swiftlet", arguments(folder_.write("hop.yaml", kShortMission), {"--transport", "shm"}),
+  Program fly("swiftlet", arguments(folder_.write("hop.yaml", kHopMission), {"--transport", "shm"}),
               folder_.path());
   const auto children = [&] { return children_of(fly.pid()); };
   std::vector<std::string> files;
@@ -122,7 +113,7 @@ TEST_F(Fly, FliesOverSharedMemoryAndLeavesNothingThere) {
 }
 
 TEST_F(Fly, FailsBeyondTheMissionsTolerance) {
-  std::string mission = kShortMission;
+  std::string mission = kHopMission;
   mission.replace(mission.find("0.1"), 3, "1e-6");
   Program fly("swiftlet", arguments(folder_.write("strict.yaml", mission), {"--clock", "lockstep"}),
               folder_.path());
@@ -136,7 +127,7 @@ TEST_F(Fly, FailsBeyondTheMissionsTolerance) {
 class FlyTwoAtOnce : public Fly, public testing::WithParamInterface<const char*> {};
 
 TEST_P(FlyTwoAtOnce, DoNotDisturbEachOther) {
-  const std::string mission = folder_.write("hop.yaml", kShortMission);
+  const std::string mission = folder_.write("hop.yaml", kHopMission);
   const auto words = [&](const char* name) {
     return std::vector<std::string>{
         "fly", mission, "--json", "--transport", GetParam(), "--record", folder_.path() / name};

@@ -99,8 +99,8 @@ TEST(LoopMargin, AgreesWithAScan) {
     const auto about = [&](double v) { return v * std::pow(10.0, exponent(generator)); };
     const Vector3d k(about(40.0), about(8.0), about(0.3));
     const RptGains gains{about(1.0), about(1.5), about(0.1)};
-    for (const Loop& loop : {attitude_loop(k, kLag), horizontal_position_loop(gains, k, kLag),
-                             vertical_position_loop(gains, kLag)}) {
+    for (const Loop& loop : {attitude_loop(k, {kLag}), horizontal_position_loop(gains, k, {kLag}),
+                             vertical_position_loop(gains, {kLag})}) {
       EXPECT_NEAR(phase_margin_deg(loop), scanned_margin_deg(loop), 0.1) << "trial " << trial;
     }
   }
@@ -150,7 +150,7 @@ TEST(RptDesign, IntegralFormPlacesThePoles) {
 TEST(RptDesign, MarginOverTheInnerLoopAnchors) {
   const Vector3d k(25.0, std::sqrt(50.0), 0.0);
   const auto margin = [&](double omega_n) {
-    return phase_margin_deg(horizontal_position_loop(rpt_gains({omega_n, 1.0, 1.0, 0.0}), k, kLag));
+    return phase_margin_deg(horizontal_position_loop(rpt_gains({omega_n, 1.0, 1.0, 0.0}), k, {kLag}));
   };
   EXPECT_NEAR(margin(1.0), 43.0, 0.5);
   EXPECT_NEAR(margin(2.0), 4.5, 0.2);

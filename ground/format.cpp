@@ -1,0 +1,17 @@
+#include "ground/format.hpp"
+
+#include <cstdarg>
+#include <cstdio>
+
+namespace swiftlet::ground {
+
+std::string format(const char* pattern, ...) {
+  char buffer[256];
+  std::va_list arguments;
+  va_start(arguments, pattern);
+  std::vsnprintf(buffer, sizeof buffer, pattern, arguments);
+  va_end(arguments);
+  return buffer;
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,119 @@
+// `swiftlet sim batch` from end to end.
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/integration/program.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/support/hop_mission.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace swiftlet::tests {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+using nlohmann::json;
+
+const std::string kMass =
+    "parameters:\n"
+    "  vehicle.mass: {distribution: uniform, min: 0.95, max: 1.05, unit: nominal, source: estimate}\n";
+const std::string kGrossMass =
+    "parameters:\n"
+    "  vehicle.mass: {distribution: uniform, min: 0.95, max: 1.8, unit: nominal, source: estimate}\n";
+
+class SimBatch : public testing::Test {
+ protected:
+  std::vector<std::string> words(const std::string& command, const std::string& vary,
+                                 const std::vector<std::string>& more) const {
+    std::vector<std::string> all = {"sim", command, folder_.write("hop.yaml", kHopMission), "--vary",
+                                    folder_.write("vary.yaml", vary)};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  Ending batch(const std::string& vary, std::vector<std::string> more) const {
+    more.insert(more.end(), {"--out", out().string()});
+    return run_program("swiftlet", words("batch", vary, more), folder_.path());
+  }
+  fs::path out() const { return folder_.path() / "out"; }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(SimBatch, CompletesWritesAndTells) {
+  const Ending end = batch(kMass, {"--runs", "4", "--seed", "3"});
+  EXPECT_EQ(end.exit_code, 0) << end.errors;
+  EXPECT_NE(end.output.find("4 completed, 0 failed"), std::string::npos) << end.output;
+  EXPECT_NE(end.output.find("tracking error, RMS"), std::string::npos);
+  EXPECT_NE(end.output.find("vehicle.mass"), std::string::npos);
+  EXPECT_NE(end.errors.find("4/4 runs, 0 failed"), std::string::npos) << "no progress: " << end.errors;
+  EXPECT_TRUE(fs::exists(out() / "batch.csv"));
+  EXPECT_GT(fs::file_size(out() / "batch.png"), 20'000U);
+}
+
+TEST_F(SimBatch, AFailedRunIsRepeatedToTheLastDigit) {
+  const Ending end = batch(kGrossMass, {"--runs", "6", "--seed", "11", "--json"});
+  EXPECT_EQ(end.exit_code, 1) << end.errors;
+  const json report = json::parse(end.output);
+  EXPECT_EQ(report.at("completed"), false);
+  EXPECT_GT(report.at("runs_failed"), 0);
+  EXPECT_LT(report.at("runs_failed"), 6);
+  const json& failure = report.at("failures").at(0);
+  const std::string seed = std::to_string(failure.at("seed").get<int>());
+  EXPECT_NE(failure.at("repeat").get<std::string>().find(" --seed " + seed), std::string::npos);
+
+  const Ending again = run_program(
+      "swiftlet",
+      words("fly", kGrossMass, {"--seed", seed, "--json", "--record", (folder_.path() / "record").string()}),
+      folder_.path());
+  EXPECT_EQ(again.exit_code, 1) << again.errors;
+  const json flight = json::parse(again.output);
+  EXPECT_EQ(flight.at("reason"), failure.at("reason"));
+  EXPECT_EQ(flight.at("vary"), "vary");
+  std::ifstream csv(out() / "batch.csv");
+  const std::string table{std::istreambuf_iterator<char>(csv), {}};
+  const std::string figures = "," + flight.at("rms_3d_m").dump() + "," + flight.at("peak_3d_m").dump() + ",";
+  EXPECT_NE(table.find("\n" + seed + ",0,"), std::string::npos) << table;
+  EXPECT_NE(table.find(figures), std::string::npos) << figures << " is not in\n" << table;
+}
+
+TEST_F(SimBatch, IsCancelledAndTellsWhatIsDone) {
+  Program program("swiftlet", words("batch", kMass, {"--runs", "20000", "--json", "--out", out().string()}),
+                  folder_.path());
+  ASSERT_TRUE(eventually([&] { return program.errors().find("/20000 runs") != std::string::npos; }, 30s));
+  program.signal(SIGINT);
+  EXPECT_EQ(program.wait(30s), 1) << program.errors();
+  const json report = json::parse(program.output());
+  EXPECT_EQ(report.at("interrupted"), true);
+  EXPECT_LT(report.at("runs_done"), 20000);
+  EXPECT_NE(program.errors().find("it was cancelled after"), std::string::npos) << program.errors();
+}
+
+TEST_F(SimBatch, RefusesBadInputBeforeItMakesAFolder) {
+  const auto expect_refusal = [&](const std::string& vary, const std::vector<std::string>& more,
+                                  const std::string& sentence) {
+    const Ending end = batch(vary, more);
+    EXPECT_EQ(end.exit_code, 2) << end.errors;
+    EXPECT_NE(end.errors.find(sentence), std::string::npos) << end.errors;
+    EXPECT_EQ(end.output, "");
+    EXPECT_FALSE(fs::exists(out()));
+  };
+  expect_refusal("parameters: {}\n", {}, "vary.yaml:1: parameters: is empty");
+  expect_refusal(kMass, {"--runs", "0"}, "--runs");
+  expect_refusal(kMass, {"--jobs", "0"}, "--jobs");
+  expect_refusal(kMass, {"--seed", "-1"}, "--seed");
+  expect_refusal(kMass, {"--seed", "18446744073709551615", "--runs", "2"}, "--seed");
+  expect_refusal(kMass, {"--vehicle", "nobody"}, "nobody.yaml");
+  const Ending none = run_program("swiftlet", {"sim", "batch", "square"}, folder_.path());
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_NE(none.errors.find("--vary"), std::string::npos) << none.errors;
+}
+
+}  // namespace
+}  // namespace swiftlet::tests
