@@ -12,8 +12,7 @@ namespace swiftlet::ground {
 namespace {
 
 constexpr std::size_t kMostScatters = 3;
-constexpr double kMostZeros = 2.0;  // before or behind the point of an axis label
-constexpr double kLongTail = 4.0;   // times the median: beyond, errors stand on a logarithmic axis
+constexpr double kLongTail = 4.0;  // times the median: beyond, errors stand on a logarithmic axis
 
 constexpr const char* kPlot = R"(
 # Draws batch.png from batch.csv: run `gnuplot batch.gp` in this folder.
@@ -85,14 +84,15 @@ constexpr const char* kScatter =
      csv using (column(name) / scale):(failed(mm('rms_3d_m'))) with points ls 4
 )";
 
-// Ten to the power that an axis is read in, so that its labels are short.
+// The power of a thousand that an axis is read in, so that its labels are short.
 double axis_scale(const BatchReport& report, const std::string& name) {
   const auto index = static_cast<std::size_t>(
       std::find(report.parameters.begin(), report.parameters.end(), name) - report.parameters.begin());
   double largest = 0.0;
   for (const BatchRun& run : report.batch.runs) largest = std::max(largest, std::abs(run.values[index]));
   const double exponent = largest > 0.0 ? std::floor(std::log10(largest)) : 0.0;
-  return std::abs(exponent) > kMostZeros ? std::pow(10.0, exponent) : 1.0;
+  const bool reads_well = exponent >= -1.0 && exponent <= 3.0;
+  return reads_well ? 1.0 : std::pow(10.0, 3.0 * std::floor(exponent / 3.0));
 }
 
 std::string axis_label(const std::string& name, double scale) {

@@ -115,7 +115,7 @@ set view equal xyz
 set xyplane at 0
 set zrange [0:*]
 set ztics 0.5
-set xtics 0.5 offset 0,-0.2; set ytics 0.5
+set xtics 0.5 offset -0.8,-0.3; set ytics 0.5 offset 0.9,-0.1
 set xlabel 'east y (m)' offset 0,-0.5; set ylabel 'north x (m)' offset 0,-0.5; set zlabel 'height -z (m)' rotate by 90 offset -1
 splot csv using 'py':'px':(-column('pz')) with lines ls 1, \
       csv using 'ref_py':'ref_px':(-column('ref_pz')) with lines ls 2

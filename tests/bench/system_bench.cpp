@@ -213,16 +213,19 @@ class Vehicle {
   }
 
   void begin() { begin_ = read(); }
-  VehicleFigures end(double seconds) {
+  VehicleFigures end() {
     VehicleFigures figures = read();
     figures.answered -= begin_.answered;
     figures.overdue -= begin_.overdue;
     figures.cycles -= begin_.cycles;
     figures.late_steps -= begin_.late_steps;
-    for (std::size_t i = 0; i < kProcesses.size(); ++i) {
-      figures.cpu_percent[i] = 100.0 * (figures.cpu_percent[i] - begin_.cpu_percent[i]) / seconds;
-    }
     return figures;
+  }
+
+  std::array<Usage, 3> usage() const {
+    std::array<Usage, 3> now;
+    for (std::size_t i = 0; i < now.size(); ++i) now[i] = usage_of(processes_[i].pid());
+    return now;
   }
 
  private:
@@ -236,14 +239,9 @@ class Vehicle {
     }
   }
 
-  // Counts so far; of the processors, seconds.
+  // Counts so far.
   VehicleFigures read() {
     VehicleFigures figures;
-    for (std::size_t i = 0; i < kProcesses.size(); ++i) {
-      const Usage usage = usage_of(processes_[i].pid());
-      figures.cpu_percent[i] = usage.cpu_s;
-      figures.memory_mib[i] = usage.memory_mib;
-    }
     ground::Client client(network_);
     if (!client.wait(
             10s, [](const ground::View& view) { return view.vehicle.count > 1 && view.control.count > 1; }))
@@ -279,11 +277,25 @@ std::vector<VehicleFigures> hover(int vehicles, int rate_hz, bool realtime, doub
   if (loaded) load.emplace();
   for (const auto& vehicle : fleet) vehicle->take_off();
   for (const auto& vehicle : fleet) vehicle->begin();
+  const auto usage = [&] {
+    std::vector<std::array<Usage, 3>> all;
+    for (const auto& vehicle : fleet) all.push_back(vehicle->usage());
+    return all;
+  };
   const auto start = ground::Clock::now();
+  const auto before = usage();
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+  const auto after = usage();
   const double measured_s = std::chrono::duration<double>(ground::Clock::now() - start).count();
+
   std::vector<VehicleFigures> figures;
-  for (const auto& vehicle : fleet) figures.push_back(vehicle->end(measured_s));
+  for (std::size_t i = 0; i < fleet.size(); ++i) {
+    figures.push_back(fleet[i]->end());
+    for (std::size_t k = 0; k < kProcesses.size(); ++k) {
+      figures.back().cpu_percent[k] = 100.0 * (after[i][k].cpu_s - before[i][k].cpu_s) / measured_s;
+      figures.back().memory_mib[k] = after[i][k].memory_mib;
+    }
+  }
   return figures;
 }
 
