@@ -6,8 +6,7 @@
 
 namespace swiftlet::ground {
 
-// Requests are made while time stands still, at whole multiples of kStep, between an answered IMU sample and
-// the next.
+// Requests are made between an answered IMU sample and the next; in lockstep, while time stands still.
 struct FlightSchedule {
   static constexpr std::int64_t kFirstRequestNs = 1'000'000'000;  // the estimator has settled
   static constexpr std::int64_t kRetryNs = 200'000'000;           // after a refusal to arm

@@ -323,7 +323,7 @@ Eigen::Vector3d Dynamics::specific_force_frd(const VehicleState& state,
   double lift = 0.0;
   for (std::size_t i = 0; i < wrenches_.size(); ++i)
     lift += wrenches_[i].lift * square(state.rotor_speeds[i]);
-  const Eigen::Vector3d thrust(0.0, 0.0, -lift);
+  Eigen::Vector3d thrust(0.0, 0.0, -lift);
   if (drag_over_mass_ == 0.0) return thrust;
   const Eigen::Vector3d drag = drag_over_mass_ * (state.velocity_ned - wind_ned);
   return thrust - state.q_ned_from_frd.conjugate() * drag;

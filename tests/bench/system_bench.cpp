@@ -279,6 +279,7 @@ std::vector<VehicleFigures> hover(int vehicles, int rate_hz, bool realtime, doub
   for (const auto& vehicle : fleet) vehicle->begin();
   const auto usage = [&] {
     std::vector<std::array<Usage, 3>> all;
+    all.reserve(fleet.size());
     for (const auto& vehicle : fleet) all.push_back(vehicle->usage());
     return all;
   };

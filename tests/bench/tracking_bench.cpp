@@ -169,7 +169,8 @@ Path figure_of_eight(const std::string& file, int laps) {
 Path lemniscate() {
   constexpr double kLap = 10.0;
   constexpr double kPiece = 0.5;
-  constexpr double kEnd = 5.0 * kLap;
+  constexpr int kPieces = 100;
+  constexpr double kEnd = kPieces * kPiece;
   constexpr double kW = 2.0 * M_PI / kLap;
   const auto point = [](double phase) { return Vector2d(2.0 * std::sin(phase), std::sin(2.0 * phase)); };
   // Its rate rises from 0 to w as 10 s^3 - 15 s^4 + 6 s^5 does to 1.
@@ -189,8 +190,8 @@ Path lemniscate() {
   };
   Path path{"lem", [phase, point](double t) { return at_height(point(phase(t))); }, {}, kLap, kEnd};
   Knot from{point(0.0)};
-  for (double t = kPiece; t <= kEnd + kPiece / 2.0; t += kPiece) {
-    const Knot to = knot(t);
+  for (int piece = 1; piece <= kPieces; ++piece) {
+    const Knot to = knot(kPiece * piece);
     path.trajectory.segments.push_back(join(from, to, kPiece));
     from = to;
   }
