@@ -80,7 +80,7 @@ TEST_F(FlightFilesTest, CsvHasARowForEachReferenceAndGoesOnWithoutThem) {
 }
 
 TEST_F(FlightFilesTest, DrawsAPicture) {
-  if (find_program("gnuplot").empty()) GTEST_SKIP() << "gnuplot is not installed";
+  ASSERT_FALSE(find_program("gnuplot").empty()) << "packages.txt names what the tests need";
   FlightRecord record(2000);
   const Window window = {1'000'000'000, 3'000'000'000};
   write_flight_csv(folder_ / "flight.csv", fly(record, 1000, 1000), window);
@@ -106,7 +106,7 @@ TEST_F(FlightFilesTest, SaysWhyThereIsNoPicture) {
 }
 
 TEST_F(FlightFilesTest, SaysWhatGnuplotSaid) {
-  if (find_program("gnuplot").empty()) GTEST_SKIP() << "gnuplot is not installed";
+  ASSERT_FALSE(find_program("gnuplot").empty()) << "packages.txt names what the tests need";
   const std::string sentence = draw_flight(folder_, {}, {});  // there is no flight.csv
   EXPECT_EQ(sentence.find("no picture was drawn: gnuplot ended with exit status"), 0U) << sentence;
 }

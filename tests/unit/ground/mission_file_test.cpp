@@ -1,12 +1,12 @@
 #include "ground/mission_file.hpp"
 
 #include <cmath>
-#include <ostream>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "services/runtime/config_error.hpp"
+#include "tests/unit/ground/fault.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -71,15 +71,6 @@ TEST(MissionFile, TurnsEnuIntoNed) {
   EXPECT_NEAR(items[1].yaw_rad, M_PI / 2, 1e-12) << "east";
   EXPECT_NEAR(items[2].yaw_rad, M_PI / 2 + 3.0 - 2 * M_PI, 1e-12);
 }
-
-struct Fault {
-  const char* name;
-  std::string text;
-  std::string sentence;
-};
-
-void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
-std::string name_of(const testing::TestParamInfo<Fault>& fault) { return fault.param.name; }
 
 class BadMissionFile : public testing::TestWithParam<Fault> {};
 

@@ -8,19 +8,11 @@
 
 #include "ground/vary_file.hpp"
 #include "plant/simulation/streams.hpp"
-#include "services/runtime/simulation_file.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "tests/unit/ground/nominal_world.hpp"
 #include "tests/unit/runtime/config_error_check.hpp"
 
 namespace swiftlet::ground {
 namespace {
-
-const World& nominal() {
-  static const World world{
-      runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml"),
-      runtime::load_simulation_settings(SWIFTLET_SOURCE_DIR "/config/simulation/default.yaml")};
-  return world;
-}
 
 Variation parse(const std::string& parameters) {
   return parse_vary_file("parameters:\n" + parameters, "v.yaml", nominal());

@@ -1,23 +1,15 @@
 #include "ground/vary_file.hpp"
 
-#include <ostream>
 #include <string>
 
 #include <gtest/gtest.h>
 
-#include "services/runtime/simulation_file.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "tests/unit/ground/fault.hpp"
+#include "tests/unit/ground/nominal_world.hpp"
 #include "tests/unit/runtime/config_error_check.hpp"
 
 namespace swiftlet::ground {
 namespace {
-
-const World& nominal() {
-  static const World world{
-      runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml"),
-      runtime::load_simulation_settings(SWIFTLET_SOURCE_DIR "/config/simulation/default.yaml")};
-  return world;
-}
 
 Variation parse(const std::string& text) { return parse_vary_file(text, "v.yaml", nominal()); }
 
@@ -83,15 +75,6 @@ TEST(VaryFile, AnUnknownKeyIsRefusedWithTheList) {
   for (const Parameter& parameter : parameters())
     EXPECT_NE(sentence.find(parameter.name), std::string::npos) << parameter.name;
 }
-
-struct Fault {
-  const char* name;
-  std::string text;
-  std::string sentence;
-};
-
-void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
-std::string name_of(const testing::TestParamInfo<Fault>& fault) { return fault.param.name; }
 
 std::string one(const std::string& key, const std::string& fields) {
   return "parameters:\n  " + key + ": {" + fields + "}\n";
