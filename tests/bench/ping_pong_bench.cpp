@@ -36,6 +36,7 @@
 #include "services/runtime/latency_histogram.hpp"
 #include "services/runtime/periodic_timer.hpp"
 #include "services/runtime/process.hpp"
+#include "tests/support/eventually.hpp"
 
 namespace swiftlet {
 namespace {
@@ -256,13 +257,15 @@ class RoundTrips {
         send(sequence);
       }
     }).join();
-    std::this_thread::sleep_for(20ms);  // the last answers
+    tests::eventually([this] { return answers_ == count(); }, 100ms);  // what is then missing is lost
   }
 
   // By the thread that receives.
   void answered(std::uint64_t sequence) {
     const std::int64_t now_ns = runtime::monotonic_ns();
-    if (sequence < written_.size()) times_.record(now_ns - written_[sequence].load());
+    if (sequence >= written_.size()) return;
+    times_.record(now_ns - written_[sequence].load());
+    ++answers_;
   }
 
   std::uint64_t count() const { return written_.size() - 1; }
@@ -271,6 +274,7 @@ class RoundTrips {
  private:
   std::vector<std::atomic<std::int64_t>> written_;
   runtime::LatencyHistogram times_;
+  std::atomic<std::uint64_t> answers_{0};
 };
 
 void over_dds(const Options& options, comms::Transport transport, int rate_hz, RoundTrips& trips) {
@@ -285,12 +289,8 @@ void over_dds(const Options& options, comms::Transport transport, int rate_hz, R
                             {"--echo-domain", std::to_string(claim.domain()), "--echo-transport",
                              std::to_string(static_cast<int>(transport))},
                             -1);
-  const auto give_up = std::chrono::steady_clock::now() + 10s;
-  while (!pair.matched()) {
-    if (std::chrono::steady_clock::now() > give_up)
-      throw std::runtime_error("the other process was not found");
-    std::this_thread::sleep_for(10ms);
-  }
+  if (!tests::eventually([&] { return pair.matched(); }))
+    throw std::runtime_error("the other process was not found");
   Imu imu;
   trips.pace(options, rate_hz, [&](std::uint64_t sequence) {
     imu.sequence_number(sequence);

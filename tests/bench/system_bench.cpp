@@ -1,5 +1,5 @@
-// What the whole system costs, each figure beside its limit as it was measured in the same run: latency, jitter, lockstep, steps,
-// load, and how many vehicles this computer carries.
+// What the whole system costs, each figure beside its limit as it was measured in the same run: latency,
+// jitter, lockstep, steps, load, and how many vehicles this computer carries.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -26,6 +26,7 @@
 #include "ground/client.hpp"
 #include "services/comms/domain_claim.hpp"
 #include "services/runtime/process.hpp"
+#include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet {
@@ -111,7 +112,8 @@ std::string output_of(const std::string& command) {
   return text;
 }
 
-// Works on every core for as long as it lives, two processes each: arithmetic, memory and system calls in turn.
+// Works on every core for as long as it lives, two processes each: arithmetic, memory and system calls in
+// turn.
 class OtherLoad {
  public:
   OtherLoad() {
@@ -230,13 +232,9 @@ class Vehicle {
 
  private:
   static void ask(ground::Client& client, const msg::Command& command) {
-    const auto give_up = ground::Clock::now() + 10s;
-    while (true) {
-      const ground::Answer answer = client.command(command, 3s);
-      if (answer.accepted()) return;
-      if (ground::Clock::now() > give_up) throw std::runtime_error(answer.reason);
-      std::this_thread::sleep_for(100ms);
-    }
+    ground::Answer answer;
+    if (!tests::eventually([&] { return (answer = client.command(command, 3s)).accepted(); }))
+      throw std::runtime_error(answer.reason);
   }
 
   // Counts so far.
