@@ -125,7 +125,7 @@ void LockstepLoop::look_after(double awake_s) {
     return;
   }
   if (clock_heard_ && (clock_silence_s_ += awake_s) > lockstep_.patience_s)
-    throw std::runtime_error("lockstep: ground is silent: no simulation_clock for 2 s");
+    throw std::runtime_error(silent_ground());
   if (answered()) {
     // The controller looks at requests with each sample, also with one that it has answered.
     vehicle_.publish_imu_again();
@@ -133,6 +133,13 @@ void LockstepLoop::look_after(double awake_s) {
   }
   if ((silence_s_ += awake_s) > lockstep_.patience_s) throw std::runtime_error(silent_peer());
   if (silence_s_ > std::chrono::duration<double>(kLookPeriod).count()) vehicle_.publish_again();
+}
+
+std::string LockstepLoop::silent_ground() const {
+  char text[96];
+  std::snprintf(text, sizeof text, "lockstep: ground is silent: no simulation_clock has come for %g s",
+                lockstep_.patience_s);
+  return text;
 }
 
 std::string LockstepLoop::silent_peer() const {

@@ -45,6 +45,7 @@ class LockstepLoop {
   void publish();
   void look_after(double awake_s);
   std::string silent_peer() const;
+  std::string silent_ground() const;
 
   SimulatedVehicle& vehicle_;
   const plant::SimulationSettings settings_;

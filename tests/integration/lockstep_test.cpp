@@ -2,6 +2,7 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <memory>
@@ -13,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/comms/domain_claim.hpp"
+#include "services/comms/node.hpp"
 #include "tests/integration/program.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -153,14 +155,40 @@ TEST_F(LockstepWithout, ControlThePlantSaysSo) {
   EXPECT_NE(plant->errors().find("lockstep: control is silent: "), std::string::npos) << plant->errors();
 }
 
+// Time passes up to each grant and no further; when the grants cease, the plant ends the run.
 TEST_F(LockstepWithout, GroundTimeStandsStill) {
   const auto mocap = start("swiftlet-mocap");
   const auto control = start("swiftlet-control");
   const auto plant = start("swiftlet-plant", {"--paused"});
-  EXPECT_TRUE(eventually([&] { return plant->errors().find("control joined") != std::string::npos; }, 20s));
-  plant->signal(SIGTERM);
-  EXPECT_EQ(plant->wait(20s), 0);
-  EXPECT_NE(plant->errors().find("ended after 0.0 s of simulated time: 0 commands"), std::string::npos)
+  {
+    comms::NodeSettings settings;
+    settings.name = "ground";
+    settings.domain = domain_.domain();
+    settings.localhost_only = true;
+    comms::Node ground(settings);
+    Inbox<std::int64_t> pauses;
+    const auto subscription =
+        ground.subscribe<comms::msg::VehicleInfo>(comms::topics::kVehicleInfo, [&](const auto& info) {
+          if (info.paused()) pauses.put(info.stamp_ns());
+        });
+    auto clock = ground.publish(comms::topics::kSimulationClock);
+    comms::msg::SimulationClock grant;
+    for (const std::int64_t until_ns : {100'000'000, 150'000'000}) {
+      grant.advance_to_ns(until_ns);
+      ASSERT_TRUE(eventually(
+          [&] {
+            clock.publish(grant);
+            return pauses.wait(
+                [&](const auto& stamps) { return !stamps.empty() && stamps.back() == until_ns; }, 200ms);
+          },
+          20s))
+          << plant->errors();
+      for (const std::int64_t stamp_ns : pauses.items()) EXPECT_LE(stamp_ns, until_ns);
+    }
+  }
+  EXPECT_EQ(plant->wait(20s), 1);
+  EXPECT_NE(plant->errors().find("lockstep: ground is silent: no simulation_clock has come for 2 s"),
+            std::string::npos)
       << plant->errors();
 }
 
