@@ -18,6 +18,7 @@ enum class Mode : std::uint8_t {
   kStopped = 9,  // rotors off by a request or a failsafe; disarm to leave
 };
 const char* to_string(Mode mode);
+inline bool rotors_off(Mode mode) { return mode == Mode::kDisarmed || mode == Mode::kStopped; }
 
 enum class MissionState : std::uint8_t { kNone = 0, kRunning = 1, kCompleted = 2, kAborted = 3 };
 

@@ -29,8 +29,6 @@ constexpr int kBeforeFlight = -1;      // stage of the progress; later ones are 
 
 ControlMode mode_of(const View& view) { return static_cast<ControlMode>(view.control.message.mode()); }
 
-bool rotors_off(ControlMode mode) { return mode == ControlMode::kDisarmed || mode == ControlMode::kStopped; }
-
 // What is not there yet; empty when all is.
 std::string missing(const View& view) {
   std::string list;

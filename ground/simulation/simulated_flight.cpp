@@ -27,10 +27,6 @@ TruthRow row_of(const plant::TruthSample& truth) {
           truth.on_ground};
 }
 
-bool rotors_off(control::Mode mode) {
-  return mode == control::Mode::kDisarmed || mode == control::Mode::kStopped;
-}
-
 class Run {
  public:
   Run(ClosedLoop& loop, const control::Mission& mission, const FlightObserver& observer)

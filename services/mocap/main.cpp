@@ -118,9 +118,8 @@ void run(const Options& options) {
 
   runtime::StopSignal stop;
   const runtime::Logging logging("mocap", options.process.log);
-  runtime::RealtimeSettings realtime = options.process.realtime;
-  if (options.clock == runtime::Clock::kLockstep) realtime.enabled = false;
-  runtime::prepare_realtime(realtime);
+  const runtime::RealtimeSettings realtime =
+      runtime::prepare_realtime(options.process.realtime, options.clock);
 
   comms::NodeSettings node_settings = options.node;
   node_settings.name = "mocap";

@@ -38,8 +38,9 @@ void add_process_options(CLI::App& app, ProcessOptions& options) {
       ->capture_default_str();
 }
 
-void prepare_realtime(const RealtimeSettings& settings) {
-  if (!settings.enabled) return;
+RealtimeSettings prepare_realtime(RealtimeSettings settings, Clock clock) {
+  settings.enabled = settings.enabled && clock == Clock::kRealtime;
+  if (!settings.enabled) return settings;
   std::string refusals = lock_memory();
   std::thread([&] {
     const std::string refusal = make_this_thread_realtime(settings);
@@ -47,6 +48,7 @@ void prepare_realtime(const RealtimeSettings& settings) {
     refusals += refusal;
   }).join();
   if (!refusals.empty()) spdlog::warn("not real-time, expect late steps: {}", refusals);
+  return settings;
 }
 
 int run_process(const ProgramText& text, int argc, char** argv,

@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "services/runtime/clock.hpp"
 #include "services/runtime/log.hpp"
 #include "services/runtime/realtime.hpp"
 
@@ -22,7 +23,10 @@ void add_process_options(CLI::App& app, ProcessOptions& options);
 
 // Locks memory and tries what make_this_thread_realtime() will do. What the system refuses is one line of
 // warning.
-void prepare_realtime(const RealtimeSettings& settings);
+//
+// Returns the settings that hold under this clock: in lockstep nothing is in a hurry, and nothing is asked of
+// the system.
+RealtimeSettings prepare_realtime(RealtimeSettings settings, Clock clock);
 
 // What --help says besides the options.
 struct ProgramText {
