@@ -28,6 +28,7 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
       "name: n\n"
       "attitude:\n"
       "  model: motor_lag\n"
+      "  error: rotation\n"
       "  roll: {q: [1, 2, 3], r: 4}\n"
       "  pitch: {q: [5, 6, 7], r: 8}\n"
       "  yaw: {q: [9, 10, 11], r: 12}\n"
