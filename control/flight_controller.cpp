@@ -65,6 +65,7 @@ struct FlightController::Loops {
   Vector3d specific_force_frd = Vector3d::Zero();
   bool has_battery = false;
   double supply_voltage_v;
+  Allocator::Supply supply;
   plant::ActuatorCommand command;
   Reference reference;
   AttitudeSetpoint setpoint;
@@ -83,7 +84,8 @@ FlightController::Loops::Loops(const plant::Vehicle& vehicle_in, const ControlSe
       attitude(vehicle_in, settings_in.attitude, design_in),
       allocator(vehicle_in),
       supervisor(settings_in.limits, settings_in.failsafe),
-      supply_voltage_v(allocator.plausible_supply().assumed) {
+      supply_voltage_v(allocator.plausible_supply().assumed),
+      supply(allocator.supply_at(supply_voltage_v)) {
   command.rotor_count = vehicle.rotor_count();
 }
 
@@ -176,7 +178,7 @@ void FlightController::Loops::command_wrench(double thrust_n, const AttitudeRefe
   wrench.thrust_n = thrust_n * std::max(attitude_reference.body_z_ned.dot(body_z_ned), 0.0);
   wrench.moment_frd = attitude.moments(estimate.q_ned_from_frd, estimate.body_rates_frd, rotors.moment_frd(),
                                        attitude_reference);
-  const Allocation allocation = allocator.allocate(wrench, supply_voltage_v);
+  const Allocation allocation = allocator.allocate(wrench, supply);
   command.throttle = allocation.throttle;
   setpoint = {attitude_reference.body_z_ned, attitude_reference.yaw_rad, wrench.thrust_n, wrench.moment_frd};
   status.saturated = allocation.saturated;
@@ -229,10 +231,11 @@ plant::ActuatorCommand FlightController::on_imu(const plant::ImuSample& sample) 
 void FlightController::on_pose(const plant::PoseSample& sample) { loops_->estimator.correct(sample); }
 
 void FlightController::on_battery(const plant::BatterySample& sample) {
-  const Allocator::SupplyRange& plausible = loops_->allocator.plausible_supply();
-  if (!(sample.voltage_v >= plausible.min && sample.voltage_v <= plausible.max)) return;
+  const Allocator::Supply supply = loops_->allocator.supply_at(sample.voltage_v);
+  if (!supply.plausible) return;
   loops_->has_battery = true;
   loops_->supply_voltage_v = sample.voltage_v;
+  loops_->supply = supply;
 }
 
 void FlightController::on_rotor_speeds(const plant::RotorSpeedSample& sample) {

@@ -43,11 +43,12 @@ void allocate(benchmark::State& state) {
   const int rotors = static_cast<int>(state.range(0));
   const plant::Vehicle vehicle = rotors == 4 ? tests::kaylion() : tests::multirotor(rotors);
   const Allocator allocator(vehicle);
+  const Allocator::Supply supply = allocator.supply_at(3.8);
   const std::vector<Wrench> wanted = wrenches(vehicle, 0.01 * static_cast<double>(state.range(1)));
   std::size_t i = 0;
   std::size_t saturated = 0;
   for (auto _ : state) {
-    const Allocation out = allocator.allocate(wanted[i++ % wanted.size()], 3.8);
+    const Allocation out = allocator.allocate(wanted[i++ % wanted.size()], supply);
     saturated += out.saturated ? 1 : 0;
     benchmark::DoNotOptimize(out);
   }

@@ -48,7 +48,8 @@ class Tumble {
       wrench.thrust_n = vehicle_.mass_kg * plant::kGravity * std::max(cosine, 0.0);
       wrench.moment_frd =
           attitude_->moments(truth.q_ned_from_frd, truth.body_rates_frd, moment(truth), level);
-      plant.step({plant::RotorState::kRunning, allocator_.allocate(wrench, truth.supply_voltage_v).throttle});
+      plant.step({plant::RotorState::kRunning,
+                  allocator_.allocate(wrench, allocator_.supply_at(truth.supply_voltage_v)).throttle});
     }
     return tilted_s;
   }
