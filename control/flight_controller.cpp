@@ -10,6 +10,7 @@
 #include "control/attitude/attitude_controller.hpp"
 #include "control/attitude/euler.hpp"
 #include "control/design/control_design.hpp"
+#include "control/estimation/disturbance_observer.hpp"
 #include "control/estimation/rotor_observer.hpp"
 #include "control/position/position_controller.hpp"
 #include "control/position/thrust_attitude_map.hpp"
@@ -55,6 +56,7 @@ struct FlightController::Loops {
   double max_tilt_tangent;
   Estimator estimator;
   RotorObserver rotors;
+  DisturbanceObserver disturbance;
   PositionController position;
   AttitudeController attitude;
   Allocator allocator;
@@ -80,6 +82,7 @@ FlightController::Loops::Loops(const plant::Vehicle& vehicle_in, const ControlSe
       max_tilt_tangent(std::tan(settings_in.limits.max_tilt_rad)),
       estimator(settings_in.estimator),
       rotors(vehicle_in),
+      disturbance(settings_in.disturbance),
       position(settings_in.position, settings_in.limits, design_in),
       attitude(vehicle_in, settings_in.attitude, design_in),
       allocator(vehicle_in),
@@ -122,6 +125,7 @@ void FlightController::Loops::act(const Directive& directive, double dt_s) {
     case Actuation::kOff:
     case Actuation::kIdle:
       position.reset();
+      disturbance.reset();
       setpoint = AttitudeSetpoint();
       command.throttle = plant::PerRotor{};
       status.saturated = false;
@@ -138,9 +142,14 @@ void FlightController::Loops::act(const Directive& directive, double dt_s) {
 // Eq. (48) outside, Eq. (35)-(40) inside.
 void FlightController::Loops::fly(const Directive& directive, double dt_s) {
   const Estimate& estimate = estimator.estimate();
+  if (directive.integrate) {
+    disturbance.step(dt_s, specific_force_frd - estimate.accelerometer_bias, estimate.q_ned_from_frd,
+                     rotors.thrust_n() / vehicle.mass_kg);
+  }
   const PositionCommand wanted =
       position.step(estimate.position_ned, estimate.velocity_ned, reference, dt_s, !directive.integrate);
-  const ThrustAttitude outer = thrust_attitude(vehicle.mass_kg, wanted.acceleration_ned, max_tilt_tangent);
+  const ThrustAttitude outer = thrust_attitude(
+      vehicle.mass_kg, wanted.acceleration_ned - disturbance.acceleration_ned(), max_tilt_tangent);
   AttitudeReference inner;
   double thrust_n = outer.thrust_n;
   if (settings.attitude.feed_forward) {

@@ -46,6 +46,12 @@ struct PositionSettings {
   double integral_limit = 2.0;  // m/s^2, bound of the integral's part of the acceleration, each axis
 };
 
+// The observer of what pushes the vehicle besides its thrust; what it sees is commanded against.
+struct DisturbanceSettings {
+  double bandwidth = 20.0;  // rad/s; 0: nothing is observed
+  double limit = 3.0;       // m/s^2, bound of the length of what it sees
+};
+
 // Bounds on what is flown; a request beyond them is refused, a feedback command beyond them is clipped.
 struct Limits {
   double max_tilt_rad = 0.6;
@@ -79,6 +85,7 @@ struct ControlSettings {
   std::string name;
   AttitudeSettings attitude;
   PositionSettings position;
+  DisturbanceSettings disturbance;
   Limits limits;
   EstimatorSettings estimator;
   FailsafeSettings failsafe;

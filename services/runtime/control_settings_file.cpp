@@ -51,6 +51,13 @@ control::PositionSettings read_position(const ConfigNode& node) {
   return position;
 }
 
+control::DisturbanceSettings read_disturbance(const ConfigNode& node) {
+  control::DisturbanceSettings disturbance;
+  disturbance.bandwidth = node.at("bandwidth_rad_s").number();
+  disturbance.limit = node.at("limit_m_s2").number();
+  return disturbance;
+}
+
 control::Limits read_limits(const ConfigNode& node) {
   control::Limits limits;
   limits.max_tilt_rad = node.at("max_tilt_rad").number();
@@ -91,6 +98,7 @@ control::ControlSettings parse_control_settings(std::string_view text, const std
   settings.name = root.at("name").text();
   settings.attitude = read_attitude(root.at("attitude"));
   settings.position = read_position(root.at("position"));
+  settings.disturbance = read_disturbance(root.at("disturbance"));
   settings.limits = read_limits(root.at("limits"));
   settings.estimator = read_estimator(root.at("estimator"));
   settings.failsafe = read_failsafe(root.at("failsafe"));
