@@ -55,47 +55,21 @@ Reference standing_at(const Estimate& estimate) {
 
 }  // namespace
 
-const char* to_string(Mode mode) {
-  switch (mode) {
-    case Mode::kDisarmed:
-      return "disarmed";
-    case Mode::kArmed:
-      return "armed";
-    case Mode::kTakingOff:
-      return "taking off";
-    case Mode::kHolding:
-      return "holding";
-    case Mode::kMission:
-      return "mission";
-    case Mode::kTrajectory:
-      return "trajectory";
-    case Mode::kSetpoint:
-      return "setpoint";
-    case Mode::kLanding:
-      return "landing";
-    case Mode::kDescent:
-      return "descent";
-    case Mode::kStopped:
-      return "stopped";
-  }
-  return "unknown";
-}
-
 Supervisor::Supervisor(const Limits& limits, const FailsafeSettings& failsafe)
     : limits_(limits),
       failsafe_(failsafe),
       tip_over_cosine_(std::cos(std::min(failsafe.tip_over_tilt_rad, M_PI))) {}
 
 Directive Supervisor::step(const Situation& situation) {
-  now_ns_ = situation.stamp_ns;
-  if (mode_ != Mode::kDisarmed && mode_ != Mode::kStopped) check_failsafes(situation);
-  if (mode_ == Mode::kDescent) {
-    const bool standing =
-        held(situation.unexplained_lift > kContactLift, contact_since_ns_, now_ns_, kBlindContactTime_s);
+  state_.now_ns = situation.stamp_ns;
+  if (state_.mode != Mode::kDisarmed && state_.mode != Mode::kStopped) check_failsafes(situation);
+  if (state_.mode == Mode::kDescent) {
+    const bool standing = held(situation.unexplained_lift > kContactLift, state_.contact_since_ns,
+                               state_.now_ns, kBlindContactTime_s);
     if (standing)
-      touch_down("landed without position");
-    else if (seconds(now_ns_ - mode_since_ns_) > failsafe_.descent_timeout_s) {
-      enter(Mode::kStopped, "descent without position timed out");
+      touch_down(Reason::kLandedWithoutPosition);
+    else if (seconds(state_.now_ns - state_.mode_since_ns) > failsafe_.descent_timeout_s) {
+      enter(Mode::kStopped, Reason::kDescentTimedOut);
     }
   } else if (flying()) {
     advance_phase(situation);
@@ -103,16 +77,16 @@ Directive Supervisor::step(const Situation& situation) {
   return directive(situation);
 }
 
-void Supervisor::enter(Mode mode, const char* reason) {
-  if (progress_.state == MissionState::kRunning && mode != Mode::kMission)
-    progress_.state = MissionState::kAborted;
-  mode_ = mode;
-  reason_ = reason;
-  mode_since_ns_ = now_ns_;
-  contact_since_ns_ = 0;
+void Supervisor::enter(Mode mode, Reason reason) {
+  if (state_.mission.state == MissionState::kRunning && mode != Mode::kMission)
+    state_.mission.state = MissionState::kAborted;
+  state_.mode = mode;
+  state_.reason = reason;
+  state_.mode_since_ns = state_.now_ns;
+  state_.contact_since_ns = 0;
   if (mode == Mode::kDisarmed || mode == Mode::kStopped || mode == Mode::kArmed) {
-    phase_ = Phase::kGround;
-    airborne_ = false;
+    state_.phase = Phase::kGround;
+    state_.airborne = false;
   }
   if (mode != Mode::kMission) mission_ = nullptr;
   if (mode != Mode::kTrajectory) trajectory_ = nullptr;
@@ -121,90 +95,92 @@ void Supervisor::enter(Mode mode, const char* reason) {
 void Supervisor::check_failsafes(const Situation& situation) {
   const Estimate& estimate = *situation.estimate;
   const bool pose_lost = !situation.has_estimate || situation.pose_age_s > failsafe_.mocap_timeout_s;
-  if (!situation.imu_healthy) return enter(Mode::kStopped, "IMU samples are not usable");
-  if (cosine_of_tilt(estimate.q_ned_from_frd) < tip_over_cosine_) return enter(Mode::kStopped, "tipped over");
-  if (mode_ == Mode::kDescent) {
+  if (!situation.imu_healthy) return enter(Mode::kStopped, Reason::kImuUnusable);
+  if (cosine_of_tilt(estimate.q_ned_from_frd) < tip_over_cosine_)
+    return enter(Mode::kStopped, Reason::kTippedOver);
+  if (state_.mode == Mode::kDescent) {
     if (!pose_lost) {
-      enter(Mode::kHolding, "position is back");
+      enter(Mode::kHolding, Reason::kPoseIsBack);
       Reference here = standing_at(estimate);
       here.velocity_ned = estimate.velocity_ned;
-      path_.pin(here);
+      state_.path.pin(here);
       start_stop();
     }
     return;
   }
   if (pose_lost) {
-    if (!flying()) return enter(Mode::kDisarmed, "no mocap pose");
-    return enter(Mode::kDescent, "no mocap pose");
+    if (!flying()) return enter(Mode::kDisarmed, Reason::kNoPose);
+    return enter(Mode::kDescent, Reason::kNoPose);
   }
-  if (!flying() || mode_ == Mode::kLanding) return;
+  if (!flying() || state_.mode == Mode::kLanding) return;
 
   const bool low = situation.has_battery && situation.supply_voltage_v < failsafe_.low_battery_voltage;
   const bool outside = ((estimate.position_ned - limits_.fence_max_ned).maxCoeff() > kFenceMargin_m) ||
                        ((limits_.fence_min_ned - estimate.position_ned).maxCoeff() > kFenceMargin_m);
-  if (held(low, low_battery_since_ns_, now_ns_, kLowBatteryTime_s)) {
-    enter(Mode::kLanding, "battery is low");
-    start_landing(limits_.max_speed, now_ns_);
+  if (held(low, state_.low_battery_since_ns, state_.now_ns, kLowBatteryTime_s)) {
+    enter(Mode::kLanding, Reason::kBatteryLow);
+    start_landing(limits_.max_speed, state_.now_ns);
   } else if (outside) {
-    enter(Mode::kLanding, "outside the fence");
-    start_landing(limits_.max_speed, now_ns_);
-  } else if (mode_ == Mode::kSetpoint &&
-             seconds(now_ns_ - setpoint_stamp_ns_) > failsafe_.setpoint_timeout_s) {
-    enter(Mode::kHolding, "setpoints stopped");
+    enter(Mode::kLanding, Reason::kOutsideFence);
+    start_landing(limits_.max_speed, state_.now_ns);
+  } else if (state_.mode == Mode::kSetpoint &&
+             seconds(state_.now_ns - state_.setpoint_ns) > failsafe_.setpoint_timeout_s) {
+    enter(Mode::kHolding, Reason::kSetpointsStopped);
     start_stop();
   }
 }
 
 void Supervisor::advance_phase(const Situation& situation) {
   const Estimate& estimate = *situation.estimate;
-  if (estimate.position_ned.z() < ground_z_ - kAirborneHeight_m) airborne_ = true;
-  if (phase_ == Phase::kSpoolUp && seconds(now_ns_ - phase_since_ns_) >= kSpoolUp_s) {
-    phase_ = Phase::kPath;
-    const Reference stand = path_.at(now_ns_);
+  if (estimate.position_ned.z() < state_.ground_z_ned - kAirborneHeight_m) state_.airborne = true;
+  if (state_.phase == Phase::kSpoolUp && seconds(state_.now_ns - state_.phase_since_ns) >= kSpoolUp_s) {
+    state_.phase = Phase::kPath;
+    const Reference stand = state_.path.at(state_.now_ns);
     Eigen::Vector3d top = stand.position_ned;
-    top.z() = climb_to_z_;
-    start_move(top, true, 0.0, climb_speed_, now_ns_);
+    top.z() = state_.climb_to_z_ned;
+    start_move(top, true, 0.0, state_.climb_speed, state_.now_ns);
   }
-  if (phase_ == Phase::kPath) path_ended(situation);
-  if (phase_ == Phase::kSink) {
-    const bool standing = path_.at(now_ns_).position_ned.z() - estimate.position_ned.z() > kContactDepth_m &&
-                          estimate.velocity_ned.norm() < kContactSpeed;
-    if (held(standing, contact_since_ns_, now_ns_, kContactTime_s)) touch_down("landed");
+  if (state_.phase == Phase::kPath) path_ended(situation);
+  if (state_.phase == Phase::kSink) {
+    const bool standing =
+        state_.path.at(state_.now_ns).position_ned.z() - estimate.position_ned.z() > kContactDepth_m &&
+        estimate.velocity_ned.norm() < kContactSpeed;
+    if (held(standing, state_.contact_since_ns, state_.now_ns, kContactTime_s)) touch_down(Reason::kLanded);
   }
 }
 
 // What comes after the path of this mode; nothing while it is still flown.
 void Supervisor::path_ended(const Situation& situation) {
-  if (!path_.finished(now_ns_)) return;
-  switch (mode_) {
+  if (!state_.path.finished(state_.now_ns)) return;
+  switch (state_.mode) {
     case Mode::kTakingOff:
-      return enter(Mode::kHolding, "take-off completed");
+      return enter(Mode::kHolding, Reason::kTakeOffCompleted);
     case Mode::kMission: {
-      const MissionItem& item = mission_->items[static_cast<std::size_t>(progress_.item_index)];
+      const MissionItem& item = mission_->items[static_cast<std::size_t>(state_.mission.item_index)];
       if (item.kind == MissionItemKind::kLand) break;
-      item_end_ns_ = path_.end_ns() + nanoseconds(item.hold_s);
-      if (now_ns_ < item_end_ns_) return;
-      if (progress_.item_index + 1 < progress_.item_count) {
-        ++progress_.item_index;
-        return start_item(situation, item_end_ns_);
+      state_.item_end_ns = state_.path.end_ns + nanoseconds(item.hold_s);
+      if (state_.now_ns < state_.item_end_ns) return;
+      if (state_.mission.item_index + 1 < state_.mission.item_count) {
+        ++state_.mission.item_index;
+        return start_item(situation, state_.item_end_ns);
       }
-      progress_.state = MissionState::kCompleted;
-      return enter(Mode::kHolding, "mission completed");
+      state_.mission.state = MissionState::kCompleted;
+      return enter(Mode::kHolding, Reason::kMissionCompleted);
     }
     case Mode::kTrajectory:
-      if (next_segment_ < trajectory_->segments.size()) {
-        return path_.follow(trajectory_->segments[next_segment_++], path_.end_ns());
+      if (state_.next_segment < trajectory_->segments.size()) {
+        return state_.path.follow(trajectory_->segments[state_.next_segment++], state_.path.end_ns);
       }
-      return enter(Mode::kHolding, "trajectory completed");
+      return enter(Mode::kHolding, Reason::kTrajectoryCompleted);
     case Mode::kLanding:
       break;
     default:
       return;
   }
   // The planned part of a landing is over: sink until the ground is felt.
-  phase_ = Phase::kSink;
-  contact_since_ns_ = 0;
-  const Reference end = path_.at(now_ns_);
+  state_.phase = Phase::kSink;
+  state_.contact_since_ns = 0;
+  const Reference end = state_.path.at(state_.now_ns);
   PolynomialSegment sink;
   sink.duration_s = 60.0;
   sink.x[0] = end.position_ned.x();
@@ -212,13 +188,13 @@ void Supervisor::path_ended(const Situation& situation) {
   sink.z[0] = end.position_ned.z();
   sink.z[1] = kSinkSpeed;
   sink.yaw[0] = end.yaw_rad;
-  path_.follow(sink, now_ns_);
+  state_.path.follow(sink, state_.now_ns);
 }
 
 Directive Supervisor::directive(const Situation& situation) const {
   Directive directive;
-  directive.reference = flying() ? path_.at(now_ns_) : standing_at(*situation.estimate);
-  switch (mode_) {
+  directive.reference = flying() ? state_.path.at(state_.now_ns) : standing_at(*situation.estimate);
+  switch (state_.mode) {
     case Mode::kDisarmed:
     case Mode::kStopped:
       directive.actuation = Actuation::kOff;
@@ -232,14 +208,34 @@ Directive Supervisor::directive(const Situation& situation) const {
     default:
       break;
   }
-  if (phase_ == Phase::kSpoolUp) {
+  if (state_.phase == Phase::kSpoolUp) {
     directive.actuation = Actuation::kSpoolUp;
-    directive.lift_fraction = kSpoolUpLift * std::min(1.0, seconds(now_ns_ - phase_since_ns_) / kSpoolUp_s);
+    directive.lift_fraction =
+        kSpoolUpLift * std::min(1.0, seconds(state_.now_ns - state_.phase_since_ns) / kSpoolUp_s);
   } else {
     directive.actuation = Actuation::kFly;
-    directive.integrate = airborne_ && phase_ == Phase::kPath;
+    directive.integrate = state_.airborne && state_.phase == Phase::kPath;
   }
   return directive;
+}
+
+void Supervisor::adopt(const SupervisorState& state, const Mission* mission, const Trajectory* trajectory) {
+  state_ = state;
+  mission_ = nullptr;
+  trajectory_ = nullptr;
+  bool plan_known = true;
+  if (state_.mode == Mode::kMission) {
+    const auto count = static_cast<std::size_t>(state_.mission.item_count);
+    plan_known = mission != nullptr && mission->id == state_.mission.id && mission->items.size() == count;
+    if (plan_known) mission_ = mission;
+  } else if (state_.mode == Mode::kTrajectory) {
+    plan_known = trajectory != nullptr && trajectory->id == state_.trajectory_id &&
+                 state_.next_segment <= trajectory->segments.size();
+    if (plan_known) trajectory_ = trajectory;
+  }
+  if (plan_known) return;
+  enter(Mode::kHolding, Reason::kPlanUnknown);
+  start_stop();
 }
 
 Outcome Supervisor::request(const Request& request, const Situation& situation) {
@@ -247,11 +243,11 @@ Outcome Supervisor::request(const Request& request, const Situation& situation) 
     case RequestKind::kArm:
       return request_arm(situation);
     case RequestKind::kDisarm:
-      if (flying()) return refuse("cannot disarm while %s; land first, or stop", to_string(mode_));
-      enter(Mode::kDisarmed, "requested");
+      if (flying()) return refuse("cannot disarm while %s; land first, or stop", to_string(state_.mode));
+      enter(Mode::kDisarmed, Reason::kRequested);
       return accept();
     case RequestKind::kStop:
-      enter(Mode::kStopped, "requested");
+      enter(Mode::kStopped, Reason::kRequested);
       return accept();
     case RequestKind::kTakeoff:
       return request_takeoff(request, situation);
@@ -267,18 +263,18 @@ Outcome Supervisor::request(const Request& request, const Situation& situation) 
       return refuse("unknown request %d", static_cast<int>(request.kind));
   }
 
-  if (!flying() || phase_ == Phase::kSpoolUp || mode_ == Mode::kDescent)
-    return refuse("cannot do that while %s", to_string(mode_));
+  if (!flying() || state_.phase == Phase::kSpoolUp || state_.mode == Mode::kDescent)
+    return refuse("cannot do that while %s", to_string(state_.mode));
   if (request.kind == RequestKind::kLand) {
-    if (mode_ == Mode::kLanding) return accept();
+    if (state_.mode == Mode::kLanding) return accept();
     const Outcome speed = check_speed("land", request.speed, limits_);
     if (!speed.accepted) return speed;
-    enter(Mode::kLanding, "requested");
-    start_landing(request.speed, now_ns_);
+    enter(Mode::kLanding, Reason::kRequested);
+    start_landing(request.speed, state_.now_ns);
     return accept();
   }
   if (request.kind == RequestKind::kHold) {
-    enter(Mode::kHolding, "requested");
+    enter(Mode::kHolding, Reason::kRequested);
     start_stop();
     return accept();
   }
@@ -287,15 +283,15 @@ Outcome Supervisor::request(const Request& request, const Situation& situation) 
   const Outcome speed = check_speed("goto", request.speed, limits_);
   if (!speed.accepted) return speed;
   if (!request.yaw_free && !std::isfinite(request.yaw_rad)) return refuse("goto: yaw is not a finite number");
-  enter(Mode::kHolding, "requested");
-  phase_ = Phase::kPath;
-  start_move(request.position_ned, request.yaw_free, request.yaw_rad, request.speed, now_ns_);
+  enter(Mode::kHolding, Reason::kRequested);
+  state_.phase = Phase::kPath;
+  start_move(request.position_ned, request.yaw_free, request.yaw_rad, request.speed, state_.now_ns);
   return accept();
 }
 
 Outcome Supervisor::setpoint(const Setpoint& setpoint, const Situation& situation) {
-  const bool takes_setpoints = mode_ == Mode::kHolding || mode_ == Mode::kSetpoint;
-  if (!takes_setpoints) return refuse("setpoints are not followed while %s", to_string(mode_));
+  const bool takes_setpoints = state_.mode == Mode::kHolding || state_.mode == Mode::kSetpoint;
+  if (!takes_setpoints) return refuse("setpoints are not followed while %s", to_string(state_.mode));
   const Outcome position = check_position("setpoint", setpoint.position_ned, limits_);
   if (!position.accepted) return position;
   if (!setpoint.velocity_ned.allFinite() || !setpoint.acceleration_ned.allFinite() ||
@@ -314,21 +310,21 @@ Outcome Supervisor::setpoint(const Setpoint& setpoint, const Situation& situatio
   const double step = (setpoint.position_ned - situation.estimate->position_ned).norm();
   if (step > kMaxStep_m)
     return refuse("setpoint: %.2f m away from the vehicle, the limit is %.2f m", step, kMaxStep_m);
-  if (mode_ != Mode::kSetpoint) enter(Mode::kSetpoint, "setpoints came");
+  if (state_.mode != Mode::kSetpoint) enter(Mode::kSetpoint, Reason::kSetpointsCame);
   Reference reference;
   reference.position_ned = setpoint.position_ned;
   reference.velocity_ned = setpoint.velocity_ned;
   reference.acceleration_ned = setpoint.acceleration_ned;
   reference.yaw_rad = setpoint.yaw_rad;
   reference.yaw_rate = setpoint.yaw_rate;
-  path_.pin(reference);
-  setpoint_stamp_ns_ = now_ns_;
+  state_.path.pin(reference);
+  state_.setpoint_ns = state_.now_ns;
   return accept();
 }
 
 Outcome Supervisor::request_arm(const Situation& situation) {
-  if (mode_ == Mode::kArmed) return accept();
-  if (mode_ != Mode::kDisarmed) return refuse("cannot arm while %s", to_string(mode_));
+  if (state_.mode == Mode::kArmed) return accept();
+  if (state_.mode != Mode::kDisarmed) return refuse("cannot arm while %s", to_string(state_.mode));
   const Estimate& estimate = *situation.estimate;
   if (!situation.has_estimate) return refuse("cannot arm: no mocap pose has come");
   if (situation.pose_age_s > failsafe_.mocap_timeout_s) {
@@ -349,24 +345,25 @@ Outcome Supervisor::request_arm(const Situation& situation) {
     return refuse("cannot arm: moving at %.2f m/s, the limit is %.2f m/s", speed, kArmSpeed);
   const Outcome position = check_position("cannot arm", estimate.position_ned, limits_);
   if (!position.accepted) return position;
-  ground_z_ = estimate.position_ned.z();
-  enter(Mode::kArmed, "requested");
+  state_.ground_z_ned = estimate.position_ned.z();
+  enter(Mode::kArmed, Reason::kRequested);
   return accept();
 }
 
 Outcome Supervisor::request_takeoff(const Request& request, const Situation& situation) {
-  if (mode_ != Mode::kArmed) return refuse("cannot take off while %s; arm first", to_string(mode_));
+  if (state_.mode != Mode::kArmed)
+    return refuse("cannot take off while %s; arm first", to_string(state_.mode));
   const Outcome speed = check_speed("takeoff", request.speed, limits_);
   if (!speed.accepted) return speed;
   Eigen::Vector3d top = situation.estimate->position_ned;
   top.z() = request.position_ned.z();
   const Outcome position = check_position("takeoff", top, limits_);
   if (!position.accepted) return position;
-  if (top.z() > ground_z_ - 2.0 * kAirborneHeight_m) {
+  if (top.z() > state_.ground_z_ned - 2.0 * kAirborneHeight_m) {
     return refuse("takeoff: z is %.3f m, must be above the ground at %.3f m (z points down)", top.z(),
-                  ground_z_);
+                  state_.ground_z_ned);
   }
-  enter(Mode::kTakingOff, "requested");
+  enter(Mode::kTakingOff, Reason::kRequested);
   start_takeoff(top.z(), request.speed, situation);
   return accept();
 }
@@ -375,70 +372,72 @@ Outcome Supervisor::request_mission(const Request& request, const Situation& sit
   const Mission* mission = request.mission;
   if (mission == nullptr || mission->items.empty()) return refuse("the mission has no items");
   const MissionItem& first = mission->items.front();
-  const bool on_ground = mode_ == Mode::kArmed;
-  if (!on_ground && mode_ != Mode::kHolding)
-    return refuse("cannot start a mission while %s", to_string(mode_));
+  const bool on_ground = state_.mode == Mode::kArmed;
+  if (!on_ground && state_.mode != Mode::kHolding)
+    return refuse("cannot start a mission while %s", to_string(state_.mode));
   if (on_ground && first.kind != MissionItemKind::kTakeoff) {
     return refuse("the vehicle stands on the ground: the mission must begin with a takeoff");
   }
-  if (on_ground && first.position_ned.z() > ground_z_ - 2.0 * kAirborneHeight_m) {
+  if (on_ground && first.position_ned.z() > state_.ground_z_ned - 2.0 * kAirborneHeight_m) {
     return refuse("item 1: takeoff to z = %.3f m, must be above the ground at %.3f m (z points down)",
-                  first.position_ned.z(), ground_z_);
+                  first.position_ned.z(), state_.ground_z_ned);
   }
-  enter(Mode::kMission, "requested");
+  enter(Mode::kMission, Reason::kRequested);
   mission_ = mission;
-  progress_ = {mission->id, MissionState::kRunning, 0, static_cast<int>(mission->items.size())};
-  start_item(situation, now_ns_);
+  state_.mission = {mission->id, MissionState::kRunning, 0, static_cast<int>(mission->items.size())};
+  start_item(situation, state_.now_ns);
   return accept();
 }
 
 Outcome Supervisor::request_trajectory(const Request& request) {
   if (request.trajectory == nullptr || request.trajectory->segments.empty())
     return refuse("the trajectory has no segments");
-  if (mode_ != Mode::kHolding) return refuse("cannot start a trajectory while %s", to_string(mode_));
+  if (state_.mode != Mode::kHolding)
+    return refuse("cannot start a trajectory while %s", to_string(state_.mode));
   const Reference start = evaluate(request.trajectory->segments.front(), 0.0);
   const Outcome position = check_position("trajectory", start.position_ned, limits_);
   if (!position.accepted) return position;
-  enter(Mode::kTrajectory, "requested");
+  enter(Mode::kTrajectory, Reason::kRequested);
   trajectory_ = request.trajectory;
-  next_segment_ = 0;
-  start_move(start.position_ned, false, start.yaw_rad, std::min(0.5, limits_.max_speed), now_ns_);
+  state_.trajectory_id = trajectory_->id;
+  state_.next_segment = 0;
+  start_move(start.position_ned, false, start.yaw_rad, std::min(0.5, limits_.max_speed), state_.now_ns);
   return accept();
 }
 
 void Supervisor::start_takeoff(double height_ned_z, double speed, const Situation& situation) {
-  phase_ = Phase::kSpoolUp;
-  phase_since_ns_ = now_ns_;
-  climb_to_z_ = height_ned_z;
-  climb_speed_ = speed;
-  path_.rest(standing_at(*situation.estimate));
+  state_.phase = Phase::kSpoolUp;
+  state_.phase_since_ns = state_.now_ns;
+  state_.climb_to_z_ned = height_ned_z;
+  state_.climb_speed = speed;
+  state_.path.rest(standing_at(*situation.estimate));
 }
 
 // From the reference as it is at start_ns, straight to a place; a vehicle in motion gets there by a quintic.
 void Supervisor::start_move(const Eigen::Vector3d& to_ned, bool yaw_free, double yaw, double speed,
                             std::int64_t start_ns) {
-  const Reference from = path_.at(start_ns);
+  const Reference from = state_.path.at(start_ns);
   const double to_yaw = yaw_free ? from.yaw_rad : nearest_turn(yaw, from.yaw_rad);
   const double distance = (to_ned - from.position_ned).norm();
   double duration = minimum_jerk_duration(distance, speed, limits_.max_reference_acceleration, kMinMove_s);
   duration = std::max(duration, 15.0 / 8.0 * std::abs(to_yaw - from.yaw_rad) / limits_.max_yaw_rate);
   duration = std::max(duration, stopping_time(from));
-  path_.follow(join_to_rest(from, to_ned, to_yaw, duration), start_ns);
+  state_.path.follow(join_to_rest(from, to_ned, to_yaw, duration), start_ns);
 }
 
 // Comes to rest along the present velocity, inside the fence.
 void Supervisor::start_stop() {
-  const Reference from = path_.at(now_ns_);
+  const Reference from = state_.path.at(state_.now_ns);
   const double duration = stopping_time(from);
-  phase_ = Phase::kPath;
-  path_.follow(join_to_rest(from, stopping_place(from), from.yaw_rad, duration), now_ns_);
+  state_.phase = Phase::kPath;
+  state_.path.follow(join_to_rest(from, stopping_place(from), from.yaw_rad, duration), state_.now_ns);
 }
 
 void Supervisor::start_landing(double speed, std::int64_t start_ns) {
-  phase_ = Phase::kPath;
-  const Reference from = path_.at(start_ns);
+  state_.phase = Phase::kPath;
+  const Reference from = state_.path.at(start_ns);
   Eigen::Vector3d above_ground = stopping_place(from);
-  above_ground.z() = ground_z_ - kFlareHeight_m;
+  above_ground.z() = state_.ground_z_ned - kFlareHeight_m;
   start_move(above_ground, true, 0.0, std::min(speed, failsafe_.descent_speed), start_ns);
 }
 
@@ -452,12 +451,12 @@ Eigen::Vector3d Supervisor::stopping_place(const Reference& from) const {
 }
 
 void Supervisor::start_item(const Situation& situation, std::int64_t start_ns) {
-  const MissionItem& item = mission_->items[static_cast<std::size_t>(progress_.item_index)];
+  const MissionItem& item = mission_->items[static_cast<std::size_t>(state_.mission.item_index)];
   switch (item.kind) {
     case MissionItemKind::kTakeoff:
-      if (phase_ == Phase::kGround) return start_takeoff(item.position_ned.z(), item.speed, situation);
+      if (state_.phase == Phase::kGround) return start_takeoff(item.position_ned.z(), item.speed, situation);
       {
-        Eigen::Vector3d up = path_.at(start_ns).position_ned;
+        Eigen::Vector3d up = state_.path.at(start_ns).position_ned;
         up.z() = item.position_ned.z();
         return start_move(up, true, 0.0, item.speed, start_ns);
       }
@@ -468,8 +467,8 @@ void Supervisor::start_item(const Situation& situation, std::int64_t start_ns) {
   }
 }
 
-void Supervisor::touch_down(const char* reason) {
-  if (mode_ == Mode::kMission) progress_.state = MissionState::kCompleted;
+void Supervisor::touch_down(Reason reason) {
+  if (state_.mode == Mode::kMission) state_.mission.state = MissionState::kCompleted;
   enter(Mode::kDisarmed, reason);
 }
 

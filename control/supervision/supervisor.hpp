@@ -10,7 +10,7 @@
 #include "control/reference.hpp"
 #include "control/request.hpp"
 #include "control/settings.hpp"
-#include "control/trajectory/reference_path.hpp"
+#include "control/supervision/state.hpp"
 
 namespace swiftlet::control {
 
@@ -51,16 +51,20 @@ class Supervisor {
   // Refused setpoints (outside the fence, too fast, not flying) change nothing.
   Outcome setpoint(const Setpoint& setpoint, const Situation& situation);
 
-  Mode mode() const { return mode_; }
-  const char* reason() const { return reason_; }
-  const MissionProgress& mission() const { return progress_; }
-  bool airborne() const { return airborne_; }
+  Mode mode() const { return state_.mode; }
+  Reason reason() const { return state_.reason; }
+  const MissionProgress& mission() const { return state_.mission; }
+  bool airborne() const { return state_.airborne; }
+
+  const SupervisorState& state() const { return state_; }
+  // Goes on from the state of another controller with the same settings. mission, trajectory: what is being
+  // flown there, or null where it is not known here, upon which the vehicle comes to rest and holds; owned by
+  // the caller and kept until the controller has left it.
+  void adopt(const SupervisorState& state, const Mission* mission, const Trajectory* trajectory);
 
  private:
-  enum class Phase : std::uint8_t { kGround, kSpoolUp, kPath, kSink };
-
-  void enter(Mode mode, const char* reason);
-  bool flying() const { return phase_ != Phase::kGround; }
+  void enter(Mode mode, Reason reason);
+  bool flying() const { return state_.phase != Phase::kGround; }
   void check_failsafes(const Situation& situation);
   void advance_phase(const Situation& situation);
   void path_ended(const Situation& situation);
@@ -79,32 +83,14 @@ class Supervisor {
   Eigen::Vector3d stopping_place(const Reference& from) const;
   void start_landing(double speed, std::int64_t start_ns);
   void start_item(const Situation& situation, std::int64_t start_ns);
-  void touch_down(const char* reason);
+  void touch_down(Reason reason);
 
   Limits limits_;
   FailsafeSettings failsafe_;
   double tip_over_cosine_;
-  Mode mode_ = Mode::kDisarmed;
-  const char* reason_ = "started";
-  std::int64_t mode_since_ns_ = 0;
-  std::int64_t now_ns_ = 0;
-
-  Phase phase_ = Phase::kGround;
-  std::int64_t phase_since_ns_ = 0;
-  ReferencePath path_;
-  double climb_to_z_ = 0.0;  // of the take-off under way
-  double climb_speed_ = 0.5;
-  double ground_z_ = 0.0;  // where it stood when it was armed
-  bool airborne_ = false;
-  std::int64_t contact_since_ns_ = 0;      // 0: no contact
-  std::int64_t low_battery_since_ns_ = 0;  // 0: battery is well
-
-  const Mission* mission_ = nullptr;
-  MissionProgress progress_;
-  std::int64_t item_end_ns_ = 0;  // path and hold of the item being flown
+  SupervisorState state_;
+  const Mission* mission_ = nullptr;  // what state_.mission and state_.trajectory_id are of
   const Trajectory* trajectory_ = nullptr;
-  std::size_t next_segment_ = 0;
-  std::int64_t setpoint_stamp_ns_ = 0;
 };
 
 }  // namespace swiftlet::control

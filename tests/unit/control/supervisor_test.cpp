@@ -91,7 +91,7 @@ TEST_F(Flight, TakesOffHoldsAndLands) {
   EXPECT_TRUE(supervisor_.airborne());
   ASSERT_TRUE(ask(RequestKind::kLand).accepted);
   ASSERT_TRUE(step_until(Mode::kDisarmed, 10.0));
-  EXPECT_STREQ(supervisor_.reason(), "landed");
+  EXPECT_EQ(supervisor_.reason(), Reason::kLanded);
   EXPECT_EQ(directive_.actuation, Actuation::kOff);
   EXPECT_FALSE(supervisor_.airborne());
 }
@@ -224,7 +224,7 @@ TEST_F(Flight, DescentWithoutPositionEndsAtTheGroundOrByTimeOut) {
   hover();
   situation_.pose_age_s = 1.0;
   ASSERT_TRUE(step_until(Mode::kStopped, 8.0));
-  EXPECT_STREQ(supervisor_.reason(), "descent without position timed out");
+  EXPECT_EQ(supervisor_.reason(), Reason::kDescentTimedOut);
 }
 
 TEST_F(Flight, TippingOverStopsTheRotors) {
@@ -246,7 +246,7 @@ TEST_F(Flight, ALowBatteryLandsOnlyIfItStaysLow) {
   step();
   situation_.supply_voltage_v = 3.2;
   ASSERT_TRUE(step_until(Mode::kLanding, 1.5));
-  EXPECT_STREQ(supervisor_.reason(), "battery is low");
+  EXPECT_EQ(supervisor_.reason(), Reason::kBatteryLow);
 }
 
 TEST_F(Flight, AMissionThatIsInterruptedIsAborted) {
@@ -278,7 +278,7 @@ TEST_F(Flight, FollowsSetpointsAndHoldsWhenTheyStop) {
   setpoint.position_ned = {0.2, 9.0, -1};
   EXPECT_FALSE(supervisor_.setpoint(setpoint, situation_).accepted);
   ASSERT_TRUE(step_until(Mode::kHolding, 0.6));
-  EXPECT_STREQ(supervisor_.reason(), "setpoints stopped");
+  EXPECT_EQ(supervisor_.reason(), Reason::kSetpointsStopped);
 }
 
 TEST_F(Flight, FliesATrajectoryFromItsStartToItsEnd) {
@@ -294,6 +294,71 @@ TEST_F(Flight, FliesATrajectoryFromItsStartToItsEnd) {
   EXPECT_EQ(supervisor_.mode(), Mode::kTrajectory);
   ASSERT_TRUE(step_until(Mode::kHolding, 12.0));
   EXPECT_NEAR((estimate_.position_ned - Vector3d(0, 1, -1.5)).norm(), 0.0, 1e-3);
+}
+
+bool same(const Directive& a, const Directive& b) {
+  return a.actuation == b.actuation && a.lift_fraction == b.lift_fraction && a.integrate == b.integrate &&
+         a.reference.position_ned == b.reference.position_ned &&
+         a.reference.velocity_ned == b.reference.velocity_ned &&
+         a.reference.acceleration_ned == b.reference.acceleration_ned &&
+         a.reference.jerk_ned == b.reference.jerk_ned && a.reference.snap_ned == b.reference.snap_ned &&
+         a.reference.yaw_rad == b.reference.yaw_rad && a.reference.yaw_rate == b.reference.yaw_rate;
+}
+
+TEST_F(Flight, AnotherGoesOnFromItsStateAtEveryStep) {
+  Mission mission;
+  mission.id = 5;
+  mission.items = {{MissionItemKind::kTakeoff, {0, 0, -1}, 0, true, 0.5, 0.2},
+                   {MissionItemKind::kWaypoint, {1, 0, -1}, 1.0, false, 1.0, 0.2},
+                   {MissionItemKind::kLand, {0, 0, 0}, 0, true, 0.4, 0.0}};
+  ASSERT_TRUE(ask(RequestKind::kArm).accepted);
+  Request request;
+  request.kind = RequestKind::kMission;
+  request.mission = &mission;
+  ASSERT_TRUE(supervisor_.request(request, situation_).accepted);
+  Supervisor follower(Limits{}, FailsafeSettings{});
+  int steps = 0;
+  while (supervisor_.mode() == Mode::kMission) {
+    if (++steps % 7 == 0) {
+      const SupervisorState state = supervisor_.state();
+      follower.adopt(state, &mission, nullptr);
+    }
+    Situation seen = situation_;
+    const Estimate before = estimate_;
+    step();
+    if (steps < 7) continue;
+    seen.stamp_ns = situation_.stamp_ns;
+    seen.estimate = &before;
+    ASSERT_TRUE(same(follower.step(seen), directive_)) << "at step " << steps;
+    ASSERT_EQ(follower.mode(), supervisor_.mode());
+  }
+  EXPECT_EQ(supervisor_.reason(), Reason::kLanded);
+  EXPECT_EQ(follower.mission().state, MissionState::kCompleted);
+}
+
+TEST_F(Flight, AMissionThatIsNotKnownToWhoTakesOverEndsInHold) {
+  hover();
+  Mission mission;
+  mission.id = 5;
+  mission.items = {{MissionItemKind::kWaypoint, {2, 0, -1}, 0, true, 1.0, 0.0}};
+  Request request;
+  request.kind = RequestKind::kMission;
+  request.mission = &mission;
+  ASSERT_TRUE(supervisor_.request(request, situation_).accepted);
+  for (int i = 0; i < 500; ++i) step();
+  const Reference before = directive_.reference;
+  ASSERT_GT(before.velocity_ned.x(), 0.3);
+  Mission other = mission;
+  other.id = 6;
+  const SupervisorState state = supervisor_.state();
+  supervisor_.adopt(state, &other, nullptr);
+  EXPECT_EQ(supervisor_.mode(), Mode::kHolding);
+  EXPECT_EQ(supervisor_.reason(), Reason::kPlanUnknown);
+  EXPECT_EQ(supervisor_.mission().state, MissionState::kAborted);
+  step();
+  EXPECT_NEAR(directive_.reference.velocity_ned.x(), before.velocity_ned.x(), 0.02);
+  for (int i = 0; i < 1000; ++i) step();
+  EXPECT_EQ(directive_.reference.velocity_ned, Vector3d::Zero());
 }
 
 TEST(Checks, RefuseMissionsWithTheItemTheValueAndTheLimit) {
