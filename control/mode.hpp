@@ -32,12 +32,16 @@ enum class Reason : std::uint8_t {
   kSetpointsCame,
   kSetpointsStopped,
   kBatteryLow,
+  kBatteryCritical,
+  kBatterySilent,
   kOutsideFence,
   kNoPose,
   kPoseIsBack,
   kDescentTimedOut,
   kTippedOver,
   kImuUnusable,
+  kImuGap,
+  kGroundLinkLost,
   kPlanUnknown,  // another controller was taken over from whose mission or trajectory is not known here
 };
 constexpr int kReasonCount = static_cast<int>(Reason::kPlanUnknown) + 1;

@@ -25,6 +25,7 @@ class Flight : public testing::Test {
     situation_.has_estimate = true;
     situation_.has_battery = true;
     situation_.supply_voltage_v = 3.9;
+    situation_.specific_force = plant::kGravity;
     step();
   }
 
@@ -67,7 +68,7 @@ class Flight : public testing::Test {
     ASSERT_TRUE(step_until(Mode::kHolding, 10.0));
   }
 
-  Supervisor supervisor_{Limits{}, FailsafeSettings{}};
+  Supervisor supervisor_{SupervisionSettings()};
   Estimate estimate_;
   Situation situation_;
   Directive directive_;
@@ -316,7 +317,7 @@ TEST_F(Flight, AnotherGoesOnFromItsStateAtEveryStep) {
   request.kind = RequestKind::kMission;
   request.mission = &mission;
   ASSERT_TRUE(supervisor_.request(request, situation_).accepted);
-  Supervisor follower(Limits{}, FailsafeSettings{});
+  Supervisor follower{SupervisionSettings()};
   int steps = 0;
   while (supervisor_.mode() == Mode::kMission) {
     if (++steps % 7 == 0) {
