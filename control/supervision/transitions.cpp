@@ -40,7 +40,7 @@ const Transition kTransitions[] = {
   // Without position.
   {{M::kLanding}, E::kPoseLost, when::kAlways, check_of::kNone, M::kDescent, R::kNoPose, act::kLandOnReturn},
   {{M::kMission}, E::kPoseLost, when::kOnLandingItem, check_of::kNone, M::kDescent, R::kNoPose, act::kLandOnReturn},
-  {kWithPosition, E::kPoseLost, when::kAlways, check_of::kNone, M::kDescent, R::kNoPose, act::kHoldOnReturn},
+  {kUnderWay, E::kPoseLost, when::kAlways, check_of::kNone, M::kDescent, R::kNoPose, act::kHoldOnReturn},
   {{M::kDescent}, E::kGroundFelt, when::kAlways, check_of::kNone, M::kDisarmed, R::kLandedWithoutPosition, act::kNothing},
   {{M::kDescent}, E::kPoseIsBack, when::kWasLanding, check_of::kNone, M::kLanding, R::kPoseIsBack, act::kLandFromEstimate},
   {{M::kDescent}, E::kPoseIsBack, when::kAlways, check_of::kNone, M::kHolding, R::kPoseIsBack, act::kStopFromEstimate},

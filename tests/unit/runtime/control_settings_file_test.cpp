@@ -171,7 +171,9 @@ std::string with_value(const Fault& fault, int& line) {
   }
   at = text.find(':', at) + 1;
   line = 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
-  const std::size_t end = text[at + 1] == '[' ? text.find(']', at) + 1 : text.find_first_of(",}\n", at);
+  const std::size_t end = text[at + 1] == '['
+                              ? text.find(']', at) + 1
+                              : std::min(text.find_first_of(",}\n", at), text.find("  #", at));
   return text.replace(at, end - at, std::string(" ") + fault.value);
 }
 
@@ -215,7 +217,7 @@ const Fault kFaults[] = {
     {"arming.max_speed_m_s", "0", "above 0"},
     {"arming.max_body_rate_rad_s", "-1", "above 0"},
     {"arming.max_specific_force_error_m_s2", "0", "above 0"},
-    {"arming.max_rotor_speed_rad_s", ".nan", "above 0"},
+    {"arming.max_rotor_speed_rad_s", ".nan", "must be a finite number"},
     {"failsafe.imu_timeout_s", "0", "above 0"},
     {"failsafe.imu_gap_s", "0", "above 0"},
     {"failsafe.low_battery_voltage_v", "-1", "at least 0"},
