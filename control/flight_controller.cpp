@@ -240,6 +240,7 @@ plant::ActuatorCommand FlightController::on_imu(const plant::ImuSample& sample) 
   l.status.has_pose = situation.has_estimate && situation.pose_age_s <= l.settings.failsafe.mocap_timeout_s;
   l.status.pose_age_s = situation.pose_age_s;
   l.status.airborne = l.supervisor.airborne();
+  l.status.ground_links = l.supervisor.ground_links();
   l.status.supply_voltage_v = l.supply_voltage_v;
   l.status.mission = l.supervisor.mission();
   return l.answer(sample);
@@ -263,9 +264,7 @@ Outcome FlightController::on_setpoint(const Setpoint& setpoint) {
   return loops_->supervisor.setpoint(setpoint, loops_->situation());
 }
 
-bool FlightController::on_ground_link(std::uint64_t client, bool depends) {
-  return loops_->supervisor.ground_link(client, depends);
-}
+bool FlightController::on_ground_sign(const GroundSign& sign) { return loops_->supervisor.ground_sign(sign); }
 
 Outcome FlightController::request(const Request& request) {
   return loops_->supervisor.request(request, loops_->situation());

@@ -72,6 +72,8 @@ const char* to_string(Reason reason) {
       return "ground link lost";
     case Reason::kPlanUnknown:
       return "taken over without the plan that was flown";
+    case Reason::kFoundFlying:
+      return "found flying";
   }
   return "unknown";
 }

@@ -43,8 +43,9 @@ enum class Reason : std::uint8_t {
   kImuGap,
   kGroundLinkLost,
   kPlanUnknown,  // another controller was taken over from whose mission or trajectory is not known here
+  kFoundFlying,  // the controller was started while its vehicle flew
 };
-constexpr int kReasonCount = static_cast<int>(Reason::kPlanUnknown) + 1;
+constexpr int kReasonCount = static_cast<int>(Reason::kFoundFlying) + 1;
 const char* to_string(Reason reason);
 
 enum class MissionState : std::uint8_t { kNone = 0, kRunning = 1, kCompleted = 2, kAborted = 3 };
@@ -62,6 +63,7 @@ struct Status {
   bool has_pose = false;             // a mocap pose has come within the time-out
   double pose_age_s = 0.0;           // at this step
   bool airborne = false;
+  int ground_links = 0;  // ground tools that the flight depends on
   double supply_voltage_v = 0.0;
   bool saturated = false;  // the last command was cut by the rotors' limits
   MissionProgress mission;

@@ -88,4 +88,11 @@ const Action kLandFromEstimate{"land at `descent_speed`, from the estimate", [](
                                  land(scene);
                                }};
 
+const Action kTakeIntoHold{"come to rest, from the estimate; the ground is at z = 0", [](Scene& scene) {
+                             scene.state.ground_z_ned = 0.0;
+                             scene.state.airborne = true;
+                             begin_at_estimate(scene);
+                             start_stop(scene);
+                           }};
+
 }  // namespace swiftlet::control::act

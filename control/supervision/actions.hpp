@@ -27,6 +27,7 @@ extern const Action kHoldOnReturn;  // when the pose is back
 extern const Action kLandOnReturn;
 extern const Action kStopFromEstimate;  // the reference begins anew where the vehicle is
 extern const Action kLandFromEstimate;
+extern const Action kTakeIntoHold;
 
 }  // namespace act
 }  // namespace swiftlet::control

@@ -54,6 +54,8 @@ const char* to_string(Event event) {
       return "stop";
     case Event::kPlanUnknown:
       return "taken over without the plan";
+    case Event::kFoundFlying:
+      return "found flying";
   }
   return "unknown";
 }

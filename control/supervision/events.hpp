@@ -36,8 +36,9 @@ enum class Event : std::uint8_t {
   kLand,
   kStop,
   kPlanUnknown,  // taken over from another controller without the mission or trajectory that it flew
+  kFoundFlying,  // the controller was started while its vehicle flew
 };
-constexpr int kEventCount = static_cast<int>(Event::kPlanUnknown) + 1;
+constexpr int kEventCount = static_cast<int>(Event::kFoundFlying) + 1;
 constexpr Event kFirstRequest = Event::kArm;
 inline bool is_request(Event event) { return event >= kFirstRequest; }
 

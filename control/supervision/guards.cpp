@@ -4,6 +4,7 @@
 
 #include "control/supervision/arming.hpp"
 #include "control/supervision/checks.hpp"
+#include "control/supervision/conditions.hpp"
 #include "control/supervision/phases.hpp"
 
 namespace swiftlet::control {
@@ -137,6 +138,11 @@ const Check kSetpoint{"inside the fence, within the limits, near the vehicle", c
 const Check kGoTo{"inside the fence, within the limits", check_goto};
 const Check kLand{"speed", [](const Scene& scene) {
                     return check_speed("land", scene.request->speed, scene.settings.limits);
+                  }};
+
+const Check kPose{"a pose", [](const Scene& scene) {
+                    if (!pose_lost(scene.situation, scene.settings.failsafe)) return accept();
+                    return refuse("cannot take a flying vehicle over without a mocap pose");
                   }};
 
 }  // namespace check_of

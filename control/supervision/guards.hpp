@@ -42,6 +42,7 @@ extern const Check kTrajectory;
 extern const Check kSetpoint;
 extern const Check kGoTo;
 extern const Check kLand;
+extern const Check kPose;
 
 }  // namespace check_of
 }  // namespace swiftlet::control

@@ -1,5 +1,7 @@
 #include "control/supervision/supervisor.hpp"
 
+#include <algorithm>
+
 #include "control/supervision/checks.hpp"
 #include "control/supervision/conditions.hpp"
 #include "control/supervision/phases.hpp"
@@ -93,15 +95,20 @@ Outcome Supervisor::setpoint(const Setpoint& setpoint, const Situation& situatio
   return answer(Event::kSetpoint, now);
 }
 
-bool Supervisor::ground_link(std::uint64_t client, bool depends) {
+bool Supervisor::ground_sign(const GroundSign& sign) {
   GroundLink* place = nullptr;
   for (GroundLink& link : state_.ground_links) {
-    if (link.client == client || (link.client == 0 && place == nullptr)) place = &link;
-    if (link.client == client) break;
+    if (link.client == sign.client || (link.client == 0 && place == nullptr)) place = &link;
+    if (link.client == sign.client) break;
   }
-  if (place == nullptr) return !depends;
-  *place = depends ? GroundLink{client, state_.now_ns} : GroundLink();
+  if (place == nullptr) return !sign.depends;
+  *place = sign.depends ? GroundLink{sign.client, state_.now_ns} : GroundLink();
   return true;
+}
+
+int Supervisor::ground_links() const {
+  return static_cast<int>(std::count_if(state_.ground_links.begin(), state_.ground_links.end(),
+                                        [](const GroundLink& link) { return link.client != 0; }));
 }
 
 void Supervisor::adopt(const SupervisorState& state, const Mission* mission, const Trajectory* trajectory) {
@@ -124,6 +131,12 @@ void Supervisor::adopt(const SupervisorState& state, const Mission* mission, con
   situation.estimate = &nowhere;
   Scene now = scene(situation);
   answer(Event::kPlanUnknown, now);
+}
+
+Outcome Supervisor::find_flying(const Situation& situation) {
+  state_.now_ns = situation.stamp_ns;
+  Scene now = scene(situation);
+  return answer(Event::kFoundFlying, now);
 }
 
 }  // namespace swiftlet::control

@@ -22,20 +22,23 @@ class Supervisor {
   Outcome request(const Request& request, const Situation& situation);
   // Refused setpoints (outside the fence, too fast, not flying) change nothing.
   Outcome setpoint(const Setpoint& setpoint, const Situation& situation);
-  // A sign of life of a ground tool. depends: from now on the flight depends on hearing it; false: no longer.
-  // Returns false if kMaxGroundLinks others are depended on already.
-  bool ground_link(std::uint64_t client, bool depends);
+  // False if the flight depends on kMaxGroundLinks others already.
+  bool ground_sign(const GroundSign& sign);
 
   Mode mode() const { return state_.mode; }
   Reason reason() const { return state_.reason; }
   const MissionProgress& mission() const { return state_.mission; }
   bool airborne() const { return state_.airborne; }
+  int ground_links() const;  // ground tools that the flight depends on
 
   const SupervisorState& state() const { return state_; }
   // Goes on from the state of another controller with the same settings. mission, trajectory: what is being
   // flown there, or null where it is not known here, upon which the vehicle comes to rest and holds; owned by
   // the caller and kept until the controller has left it.
   void adopt(const SupervisorState& state, const Mission* mission, const Trajectory* trajectory);
+  // The vehicle flies, and nobody knows what for: it comes to rest and holds. The ground is taken to be at z = 0.
+  // Refused without a pose, or if this supervisor flies it already.
+  Outcome find_flying(const Situation& situation);
 
  private:
   Scene scene(const Situation& situation) { return {settings_, situation, state_, plan_}; }

@@ -81,6 +81,7 @@ const Transition kTransitions[] = {
   {kUnderWay, E::kLand, when::kAlways, check_of::kLand, M::kLanding, R::kRequested, act::kLandAsAsked},
   {kLeavingGround, E::kPlanUnknown, when::kSpoolingUp, check_of::kNone, M::kDisarmed, R::kPlanUnknown, act::kNothing},
   {{M::kMission, M::kTrajectory}, E::kPlanUnknown, when::kAlways, check_of::kNone, M::kHolding, R::kPlanUnknown, act::kStop},
+  {{M::kDisarmed}, E::kFoundFlying, when::kAlways, check_of::kPose, M::kHolding, R::kFoundFlying, act::kTakeIntoHold},
 };
 // clang-format on
 

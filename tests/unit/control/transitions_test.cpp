@@ -210,6 +210,7 @@ const Row kGrid[] = {
     {Event::kHold, kLand,          "xxxHHxHHHHHxx", Reason::kRequested, request(RequestKind::kHold)},
     {Event::kLand, kLand,          "xxDLLDLLLL==x", Reason::kRequested, request(RequestKind::kLand)},
     {Event::kPlanUnknown, kLand,   ".....DHHH....", Reason::kPlanUnknown, [](Placed& f) { f.forget_plan(); return std::optional<Outcome>(); }},
+    {Event::kFoundFlying, kLand,   "Hxxxxxxxxxxxx", Reason::kFoundFlying, [](Placed& f) { return std::optional(f.supervisor_.find_flying(f.situation_)); }},
     // clang-format on
 };
 
@@ -442,6 +443,24 @@ TEST(Failsafes, ALandingAskedForWithoutPositionFollowsWhenItIsBack) {
   EXPECT_EQ(flight.mode(), Mode::kLanding);
 }
 
+TEST(FoundFlying, ComesToRestAndHoldsButNotWithoutAPose) {
+  Placed flight(kLand);
+  flight.estimate_.position_ned = {1.0, 0.0, -1.5};
+  flight.estimate_.velocity_ned = {0.8, 0.0, 0.0};
+  flight.situation_.pose_age_s = 0.6;
+  EXPECT_FALSE(flight.supervisor_.find_flying(flight.situation_).accepted);
+  EXPECT_EQ(flight.mode(), Mode::kDisarmed);
+  flight.situation_.pose_age_s = 0.0;
+  ASSERT_TRUE(flight.supervisor_.find_flying(flight.situation_).accepted);
+  flight.step();
+  EXPECT_EQ(flight.directive_.actuation, Actuation::kFly);
+  EXPECT_NEAR(flight.directive_.reference.velocity_ned.x(), 0.8, 0.02);
+  flight.step_until([] { return false; }, 3.0);
+  EXPECT_EQ(flight.directive_.reference.velocity_ned, Vector3d::Zero());
+  ASSERT_TRUE(flight.ask(RequestKind::kLand).accepted);
+  EXPECT_TRUE(flight.step_until(Mode::kDisarmed, 20.0));
+}
+
 class GroundLinks : public testing::Test {
  protected:
   // For seconds of flight, with a sign of life each 0.2 s of these clients.
@@ -449,7 +468,8 @@ class GroundLinks : public testing::Test {
     const std::int64_t end_ns = flight_.situation_.stamp_ns + std::llround(seconds * 1e9);
     for (int i = 0; flight_.situation_.stamp_ns < end_ns; ++i) {
       if (i % 100 == 0) {
-        for (const std::uint64_t client : clients) EXPECT_TRUE(flight_.supervisor_.ground_link(client, true));
+        for (const std::uint64_t client : clients)
+          EXPECT_TRUE(flight_.supervisor_.ground_sign({client, true}));
       }
       flight_.step();
     }
@@ -477,7 +497,7 @@ TEST_F(GroundLinks, OneThatFallsSilentIsMissedThoughAnotherTalks) {
 TEST_F(GroundLinks, OneThatTakesLeaveIsNotMissed) {
   ASSERT_TRUE(flight_.take_off());
   fly_on(1.0, {1});
-  EXPECT_TRUE(flight_.supervisor_.ground_link(1, false));
+  EXPECT_TRUE(flight_.supervisor_.ground_sign({1, false}));
   fly_on(3.0, {});
   EXPECT_EQ(flight_.mode(), Mode::kHolding);
 }
@@ -507,16 +527,16 @@ TEST_F(GroundLinks, OneThatIsLostWithoutPositionIsAnsweredWhenThePoseIsBack) {
 
 TEST_F(GroundLinks, NoMoreThanFitAreTaken) {
   for (std::uint64_t client = 1; client <= kMaxGroundLinks; ++client)
-    EXPECT_TRUE(flight_.supervisor_.ground_link(client, true));
-  EXPECT_FALSE(flight_.supervisor_.ground_link(99, true));
-  EXPECT_TRUE(flight_.supervisor_.ground_link(99, false)) << "it never was depended on";
-  EXPECT_TRUE(flight_.supervisor_.ground_link(2, true));
-  EXPECT_TRUE(flight_.supervisor_.ground_link(3, false));
-  EXPECT_TRUE(flight_.supervisor_.ground_link(99, true));
+    EXPECT_TRUE(flight_.supervisor_.ground_sign({client, true}));
+  EXPECT_FALSE(flight_.supervisor_.ground_sign({99, true}));
+  EXPECT_TRUE(flight_.supervisor_.ground_sign({99, false})) << "it never was depended on";
+  EXPECT_TRUE(flight_.supervisor_.ground_sign({2, true}));
+  EXPECT_TRUE(flight_.supervisor_.ground_sign({3, false}));
+  EXPECT_TRUE(flight_.supervisor_.ground_sign({99, true}));
 }
 
 TEST_F(GroundLinks, OnesThatFellSilentOnTheGroundDoNotEndTheNextFlight) {
-  EXPECT_TRUE(flight_.supervisor_.ground_link(1, true));
+  EXPECT_TRUE(flight_.supervisor_.ground_sign({1, true}));
   fly_on(3.0, {});
   ASSERT_TRUE(flight_.take_off());
   EXPECT_EQ(flight_.mode(), Mode::kHolding);
