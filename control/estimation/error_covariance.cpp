@@ -17,9 +17,9 @@ constexpr std::size_t kAccelerometerBias = 12;
 //   velocity' = velocity - u x (rotation - T/2 R gyro_bias) - T R accelerometer_bias
 //   position' = position + T velocity - U x (rotation - T/3 R gyro_bias) - T^2/2 R accelerometer_bias,
 // which is exact for constant f and R.
-template <std::size_t kColumns>
+template <int kColumns>
 inline void advance_columns(const ErrorInterval& interval,
-                            std::array<std::array<double, kColumns>, kErrorStates>& x) {
+                            std::array<Eigen::Array<double, kColumns, 1>, kErrorStates>& x) {
   const double t = interval.duration_s;
   const double half_t = t / 2;
   const double third_t = t / 3;
@@ -34,35 +34,40 @@ inline void advance_columns(const ErrorInterval& interval,
   const double r00 = r(0, 0), r01 = r(0, 1), r02 = r(0, 2);
   const double r10 = r(1, 0), r11 = r(1, 1), r12 = r(1, 2);
   const double r20 = r(2, 0), r21 = r(2, 1), r22 = r(2, 2);
-  for (std::size_t c = 0; c < kColumns; ++c) {
-    const double g0 = r00 * x[9][c] + r01 * x[10][c] + r02 * x[11][c];
-    const double g1 = r10 * x[9][c] + r11 * x[10][c] + r12 * x[11][c];
-    const double g2 = r20 * x[9][c] + r21 * x[10][c] + r22 * x[11][c];
-    const double a0 = r00 * x[12][c] + r01 * x[13][c] + r02 * x[14][c];
-    const double a1 = r10 * x[12][c] + r11 * x[13][c] + r12 * x[14][c];
-    const double a2 = r20 * x[12][c] + r21 * x[13][c] + r22 * x[14][c];
-    const double h0 = x[6][c] - third_t * g0;
-    const double h1 = x[7][c] - third_t * g1;
-    const double h2 = x[8][c] - third_t * g2;
-    x[0][c] += t * x[3][c] - (s1 * h2 - s2 * h1) - half_t2 * a0;
-    x[1][c] += t * x[4][c] - (s2 * h0 - s0 * h2) - half_t2 * a1;
-    x[2][c] += t * x[5][c] - (s0 * h1 - s1 * h0) - half_t2 * a2;
-    const double w0 = x[6][c] - half_t * g0;
-    const double w1 = x[7][c] - half_t * g1;
-    const double w2 = x[8][c] - half_t * g2;
-    x[3][c] -= (u1 * w2 - u2 * w1) + t * a0;
-    x[4][c] -= (u2 * w0 - u0 * w2) + t * a1;
-    x[5][c] -= (u0 * w1 - u1 * w0) + t * a2;
-    x[6][c] -= t * g0;
-    x[7][c] -= t * g1;
-    x[8][c] -= t * g2;
+  constexpr int kWidth = kColumns % 2 == 0 ? 2 : 1;  // columns at once, as many as a register holds
+  using Columns = Eigen::Array<double, kWidth, 1>;
+  for (int c = 0; c < kColumns; c += kWidth) {
+    const auto at = [&](std::size_t row) { return x[row].template segment<kWidth>(c); };
+    const Columns b0 = at(9), b1 = at(10), b2 = at(11);
+    const Columns g0 = r00 * b0 + r01 * b1 + r02 * b2;
+    const Columns g1 = r10 * b0 + r11 * b1 + r12 * b2;
+    const Columns g2 = r20 * b0 + r21 * b1 + r22 * b2;
+    const Columns d0 = at(12), d1 = at(13), d2 = at(14);
+    const Columns a0 = r00 * d0 + r01 * d1 + r02 * d2;
+    const Columns a1 = r10 * d0 + r11 * d1 + r12 * d2;
+    const Columns a2 = r20 * d0 + r21 * d1 + r22 * d2;
+    const Columns h0 = at(6) - third_t * g0;
+    const Columns h1 = at(7) - third_t * g1;
+    const Columns h2 = at(8) - third_t * g2;
+    at(0) += t * at(3) - (s1 * h2 - s2 * h1) - half_t2 * a0;
+    at(1) += t * at(4) - (s2 * h0 - s0 * h2) - half_t2 * a1;
+    at(2) += t * at(5) - (s0 * h1 - s1 * h0) - half_t2 * a2;
+    const Columns w0 = at(6) - half_t * g0;
+    const Columns w1 = at(7) - half_t * g1;
+    const Columns w2 = at(8) - half_t * g2;
+    at(3) -= (u1 * w2 - u2 * w1) + t * a0;
+    at(4) -= (u2 * w0 - u0 * w2) + t * a1;
+    at(5) -= (u0 * w1 - u1 * w0) + t * a2;
+    at(6) -= t * g0;
+    at(7) -= t * g1;
+    at(8) -= t * g2;
   }
 }
 
 }  // namespace
 
 ErrorState advance(const ErrorInterval& interval, const ErrorState& error) {
-  std::array<std::array<double, 1>, kErrorStates> x{};
+  std::array<Eigen::Array<double, 1, 1>, kErrorStates> x;
   for (std::size_t i = 0; i < kErrorStates; ++i) x[i][0] = error[static_cast<Eigen::Index>(i)];
   advance_columns(interval, x);
   ErrorState out;
@@ -71,7 +76,7 @@ ErrorState advance(const ErrorInterval& interval, const ErrorState& error) {
 }
 
 void ErrorCovariance::reset(const ErrorState& standard_deviation) {
-  for (auto& row : p_) row.fill(0.0);
+  for (Row& row : p_) row.setZero();
   for (std::size_t i = 0; i < kErrorStates; ++i) {
     const double sigma = standard_deviation[static_cast<Eigen::Index>(i)];
     p_[i][i] = sigma * sigma;
@@ -95,7 +100,7 @@ void ErrorCovariance::reset_motion(const Eigen::Matrix<double, 9, 1>& standard_d
 void ErrorCovariance::advance(const ErrorInterval& interval, const ErrorNoise& noise) {
   advance_columns(interval, p_);
   constexpr std::size_t kChanged = kGyroBias;
-  alignas(32) std::array<std::array<double, kChanged + 1>, kErrorStates> transposed;
+  std::array<Eigen::Array<double, kChanged + 1, 1>, kErrorStates> transposed;
   for (std::size_t i = 0; i < kErrorStates; ++i) {
     for (std::size_t j = 0; j < kChanged; ++j) transposed[i][j] = p_[j][i];
     transposed[i][kChanged] = 0.0;
@@ -126,8 +131,8 @@ void ErrorCovariance::add_motion(double position_variance, double velocity_varia
   }
 }
 
-// S = H P H' + N = L L'. The rows are L^-1 (H P), with L^-1 innovation as their last column, by forward
-// substitution.
+// S = H P H' + N = L D L'. The rows are D^-1/2 L^-1 (H P), with D^-1/2 L^-1 innovation as their last column, by
+// forward substitution.
 ErrorCovariance::Correction ErrorCovariance::weigh(const PoseInnovation& innovation, double position_variance,
                                                    double rotation_variance) const {
   constexpr std::size_t kRows = Correction::kRows;
@@ -137,40 +142,55 @@ ErrorCovariance::Correction ErrorCovariance::weigh(const PoseInnovation& innovat
   std::array<std::array<double, kRows>, kRows> s;
   for (std::size_t i = 0; i < kRows; ++i) {
     out.rows_[i] = p_[kMeasured[i]];
-    out.rows_[i][kErrorStates] = i < 3 ? innovation.position[static_cast<Eigen::Index>(i)]
-                                       : innovation.rotation[static_cast<Eigen::Index>(i - 3)];
     for (std::size_t j = 0; j <= i; ++j) s[i][j] = p_[kMeasured[i]][kMeasured[j]];
-    s[i][i] += i < 3 ? position_variance : rotation_variance;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    out.rows_[i][kErrorStates] = innovation.position[i];
+    out.rows_[3 + i][kErrorStates] = innovation.rotation[i];
+    s[i][i] += position_variance;
+    s[3 + i][3 + i] += rotation_variance;
   }
   for (std::size_t i = 0; i < kRows; ++i) {
-    const double inverse = 1.0 / std::sqrt(s[i][i]);
-    for (std::size_t c = 0; c < kStride; ++c) out.rows_[i][c] *= inverse;
+    const double inverse = 1.0 / s[i][i];
     for (std::size_t k = i + 1; k < kRows; ++k) {
       const double l = s[k][i] * inverse;
-      for (std::size_t c = 0; c < kStride; ++c) out.rows_[k][c] -= l * out.rows_[i][c];
-      for (std::size_t j = i + 1; j <= k; ++j) s[k][j] -= l * (s[j][i] * inverse);
+      for (std::size_t j = i + 1; j <= k; ++j) s[k][j] -= l * s[j][i];
+      out.rows_[k] -= l * out.rows_[i];
     }
+  }
+  for (std::size_t i = 0; i < kRows; ++i) {
+    out.rows_[i] *= 1.0 / std::sqrt(s[i][i]);
     out.normalised_square_ += out.rows_[i][kErrorStates] * out.rows_[i][kErrorStates];
   }
   return out;
 }
 
 ErrorState ErrorCovariance::Correction::step() const {
-  std::array<double, kErrorStates + 1> sum{};
-  for (const auto& row : rows_) {
-    for (std::size_t c = 0; c <= kErrorStates; ++c) sum[c] += row[kErrorStates] * row[c];
+  Row sum = Row::Zero();
+  for (const Row& row : rows_) sum += row[kErrorStates] * row;
+  return sum.head<kErrorStates>();
+}
+
+// What stands in four rows from the first one's diagonal on.
+template <int kFirst>
+void ErrorCovariance::reduce_rows(const Correction& correction) {
+  constexpr int kWidth = kErrorStates + 1 - kFirst;
+  const auto& w = correction.rows_;
+  for (int i = kFirst; i < std::min(kFirst + 4, kErrorStates); ++i) {
+    p_[i].tail<kWidth>() -= w[0][i] * w[0].tail<kWidth>() + w[1][i] * w[1].tail<kWidth>() +
+                            w[2][i] * w[2].tail<kWidth>() + w[3][i] * w[3].tail<kWidth>() +
+                            w[4][i] * w[4].tail<kWidth>() + w[5][i] * w[5].tail<kWidth>();
+    p_[i][kErrorStates] = 0.0;
   }
-  return Eigen::Map<const ErrorState>(sum.data());
 }
 
 void ErrorCovariance::reduce(const Correction& correction) {
-  const auto& w = correction.rows_;
-  for (std::size_t i = 0; i < kErrorStates; ++i) {
-    for (std::size_t c = 0; c < kStride; ++c) {
-      p_[i][c] -= w[0][i] * w[0][c] + w[1][i] * w[1][c] + w[2][i] * w[2][c] + w[3][i] * w[3][c] +
-                  w[4][i] * w[4][c] + w[5][i] * w[5][c];
-    }
-    p_[i][kErrorStates] = 0.0;
+  reduce_rows<0>(correction);
+  reduce_rows<4>(correction);
+  reduce_rows<8>(correction);
+  reduce_rows<12>(correction);
+  for (int i = 4; i < kErrorStates; ++i) {
+    for (int j = 0; j < i / 4 * 4; ++j) p_[i][j] = p_[j][i];
   }
 }
 

@@ -47,7 +47,12 @@ struct PoseInnovation {
 };
 
 class ErrorCovariance {
+  // One column more than there are states, so that rows fill vector registers. Of no meaning here.
+  using Row = Eigen::Array<double, kErrorStates + 1, 1>;
+
  public:
+  ErrorCovariance() { reset(ErrorState::Zero()); }
+
   // Uncorrelated, from standard deviations.
   void reset(const ErrorState& standard_deviation);
   // The same for position, velocity and rotation alone: what is known of the biases is kept.
@@ -67,7 +72,7 @@ class ErrorCovariance {
    private:
     friend class ErrorCovariance;
     static constexpr int kRows = 6;
-    alignas(32) std::array<std::array<double, kErrorStates + 1>, kRows> rows_;  // see weigh()
+    std::array<Row, kRows> rows_;  // see weigh()
     double normalised_square_ = 0.0;
   };
   Correction weigh(const PoseInnovation& innovation, double position_variance, double rotation_variance) const;
@@ -78,9 +83,10 @@ class ErrorCovariance {
   Eigen::Matrix<double, kErrorStates, kErrorStates> matrix() const;
 
  private:
-  // Rows of 16 columns, the last of no meaning, so that rows fill vector registers.
-  static constexpr int kStride = kErrorStates + 1;
-  alignas(32) std::array<std::array<double, kStride>, kErrorStates> p_{};
+  template <int kFirst>
+  void reduce_rows(const Correction& correction);
+
+  std::array<Row, kErrorStates> p_;
 };
 
 // How an error moves over an interval: p_.advance() does it to both sides of the covariance.

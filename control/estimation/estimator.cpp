@@ -33,8 +33,9 @@ double squared(double x) { return x * x; }
 
 Vector3d bounded(const Vector3d& v, double limit) { return v.cwiseMax(-limit).cwiseMin(limit); }
 
-Quaterniond mean(const Quaterniond& a, const Quaterniond& b) {
-  return Quaterniond((a.coeffs() + b.coeffs()).eval()).normalized();
+// Between attitudes of a path that are close to each other.
+Quaterniond mean(const Quaterniond& a, double part_a, const Quaterniond& b, double part_b) {
+  return Quaterniond((part_a * a.coeffs() + part_b * b.coeffs()).eval()).normalized();
 }
 
 }  // namespace
@@ -118,7 +119,7 @@ PoseFault Estimator::take_in(const plant::PoseSample& pose, plant::RotorState ro
   }
 
   std::uint64_t first_newer = next_;
-  while (first_newer > first_after_anchor_ && past(first_newer - 1).stamp_ns > pose.stamp_ns) --first_newer;
+  while (first_newer > first_after_anchor_ && remembered(first_newer - 1).stamp_ns > pose.stamp_ns) --first_newer;
   const Moment moment = moment_at(pose.stamp_ns, first_newer);
   advance(covariance_, anchor_, first_after_anchor_, moment);
   anchor_at(moment, first_newer);
@@ -164,33 +165,22 @@ PoseFault Estimator::disagree(const plant::PoseSample& pose, const PoseInnovatio
 // Takes a step of the error state at the anchor into the nominal state, there and since.
 void Estimator::apply(const ErrorState& step) {
   const Eigen::Matrix3d r = anchor_.q_ned_from_frd.toRotationMatrix();
-  const Vector3d position = step.segment<3>(0);
-  const Vector3d velocity = step.segment<3>(3);
-  const Vector3d turn = step.segment<3>(6);
-  const Vector3d rate = r * step.segment<3>(9);           // of the rotation, less
-  const Vector3d acceleration = r * step.segment<3>(12);  // of the velocity, less
-  const auto carry = [&](Moment& moment) {
-    const ErrorInterval since = interval(anchor_, moment);
-    const double t = since.duration_s;
-    moment.position_ned += position + t * velocity -
-                           since.position_change.cross(turn - (t / 3) * rate) - (t * t / 2) * acceleration;
-    moment.velocity_ned +=
-        velocity - since.velocity_change.cross(turn - (t / 2) * rate) - t * acceleration;
-    moment.q_ned_from_frd = (rotation(turn - t * rate) * moment.q_ned_from_frd).normalized();
-  };
-  std::uint64_t number = next_;
-  do {
-    --number;
-    carry(past(number));
-  } while (number > first_after_anchor_);
-  const Moment& newest = past(next_ - 1);
-  now_.position_ned = newest.position_ned;
-  now_.velocity_ned = newest.velocity_ned;
-  now_.q_ned_from_frd = newest.q_ned_from_frd;
-
-  anchor_.position_ned += position;
-  anchor_.velocity_ned += velocity;
-  anchor_.q_ned_from_frd = (rotation(turn) * anchor_.q_ned_from_frd).normalized();
+  if (next_ > first_after_anchor_ &&
+      corrections_made_ - remembered(first_after_anchor_).corrections >= kCorrections)
+    catch_up();
+  Correction& correction = corrections_[corrections_made_++ % kCorrections];
+  correction.at = anchor_;
+  correction.position = step.segment<3>(0);
+  correction.velocity = step.segment<3>(3);
+  correction.rotation = step.segment<3>(6);
+  correction.rate = r * step.segment<3>(9);
+  correction.acceleration = r * step.segment<3>(12);
+  correction.carry_to(anchor_);
+  Moment moment = now();
+  correction.carry_to(moment);
+  now_.position_ned = moment.position_ned;
+  now_.velocity_ned = moment.velocity_ned;
+  now_.q_ned_from_frd = moment.q_ned_from_frd;
 
   const Vector3d gyro_bias =
       bounded(now_.gyro_bias + step.segment<3>(9), settings_.gyro_bias_limit);
@@ -200,6 +190,33 @@ void Estimator::apply(const ErrorState& step) {
       bounded(now_.accelerometer_bias + step.segment<3>(12), settings_.accelerometer_bias_limit);
 }
 
+// As advance() of error_covariance.hpp, with the attitude's step as a rotation.
+void Estimator::Correction::carry_to(Moment& moment) const {
+  const ErrorInterval since = interval(at, moment);
+  const double t = since.duration_s;
+  moment.position_ned += position + t * velocity - since.position_change.cross(rotation - (t / 3) * rate) -
+                         (t * t / 2) * acceleration;
+  moment.velocity_ned += velocity - since.velocity_change.cross(rotation - (t / 2) * rate) - t * acceleration;
+  moment.q_ned_from_frd = (control::rotation(rotation - t * rate) * moment.q_ned_from_frd).normalized();
+  ++moment.corrections;
+}
+
+Estimator::Moment Estimator::past(std::uint64_t number) const {
+  Moment moment = remembered(number);
+  while (moment.corrections < corrections_made_)
+    corrections_[moment.corrections % kCorrections].carry_to(moment);
+  return moment;
+}
+
+void Estimator::catch_up() {
+  for (std::uint64_t number = first_after_anchor_; number < next_; ++number)
+    history_[number % kHistory] = past(number);
+}
+
+Estimator::Moment Estimator::now() const {
+  return {now_.stamp_ns, now_.position_ned, now_.velocity_ned, now_.q_ned_from_frd, corrections_made_};
+}
+
 // Shifts and turns what is remembered onto the pose; velocity and biases are kept.
 void Estimator::jump(const plant::PoseSample& pose, const PoseInnovation& innovation) {
   const Quaterniond turn = rotation(innovation.rotation);
@@ -207,8 +224,10 @@ void Estimator::jump(const plant::PoseSample& pose, const PoseInnovation& innova
     moment.position_ned += innovation.position;
     moment.q_ned_from_frd = (turn * moment.q_ned_from_frd).normalized();
   };
+  catch_up();
   shift(anchor_);
-  for (std::uint64_t number = first_after_anchor_; number < next_; ++number) shift(past(number));
+  for (std::uint64_t number = first_after_anchor_; number < next_; ++number)
+    shift(history_[number % kHistory]);
   now_.position_ned += innovation.position;
   now_.q_ned_from_frd = (turn * now_.q_ned_from_frd).normalized();
   Eigen::Matrix<double, 9, 1> sigma;
@@ -236,7 +255,8 @@ void Estimator::start_at(const plant::PoseSample& pose) {
       Vector3d::Constant(settings_.mocap_orientation_sigma), Vector3d::Constant(settings_.gyro_bias_sigma),
       Vector3d::Constant(settings_.accelerometer_bias_sigma);
   covariance_.reset(sigma);
-  anchor_at({pose.stamp_ns, now_.position_ned, now_.velocity_ned, now_.q_ned_from_frd}, next_);
+  anchor_at(now(), next_);
+  anchor_.stamp_ns = pose.stamp_ns;
   remember();
 }
 
@@ -248,7 +268,12 @@ void Estimator::remember() {
     advance(covariance_, anchor_, first_after_anchor_, moment);
     anchor_at(moment, number + 1);
   }
-  past(next_++) = {now_.stamp_ns, now_.position_ned, now_.velocity_ned, now_.q_ned_from_frd};
+  Moment& moment = history_[next_++ % kHistory];
+  moment.stamp_ns = now_.stamp_ns;
+  moment.position_ned = now_.position_ned;
+  moment.velocity_ned = now_.velocity_ned;
+  moment.q_ned_from_frd = now_.q_ned_from_frd;
+  moment.corrections = corrections_made_;
   if (now_.stamp_ns <= anchor_.stamp_ns) first_after_anchor_ = next_;
 }
 
@@ -258,7 +283,7 @@ void Estimator::anchor_at(const Moment& moment, std::uint64_t first_newer) {
 }
 
 Estimator::Moment Estimator::moment_at(std::int64_t stamp_ns, std::uint64_t first_newer) const {
-  const Moment& before = first_newer > first_after_anchor_ ? past(first_newer - 1) : anchor_;
+  const Moment before = first_newer > first_after_anchor_ ? past(first_newer - 1) : anchor_;
   if (before.stamp_ns == stamp_ns) return before;
   Moment moment = before;
   moment.stamp_ns = stamp_ns;
@@ -268,11 +293,11 @@ Estimator::Moment Estimator::moment_at(std::int64_t stamp_ns, std::uint64_t firs
     moment.q_ned_from_frd = (before.q_ned_from_frd * rotation(ahead_s * now_.body_rates_frd)).normalized();
     return moment;
   }
-  const Moment& after = past(first_newer);
+  const Moment after = past(first_newer);
   const double part = ahead_s / seconds(after.stamp_ns - before.stamp_ns);
   moment.position_ned += part * (after.position_ned - before.position_ned);
   moment.velocity_ned += part * (after.velocity_ned - before.velocity_ned);
-  moment.q_ned_from_frd = before.q_ned_from_frd.slerp(part, after.q_ned_from_frd);
+  moment.q_ned_from_frd = mean(before.q_ned_from_frd, 1.0 - part, after.q_ned_from_frd, part);
   return moment;
 }
 
@@ -288,7 +313,7 @@ ErrorInterval Estimator::interval(const Moment& from, const Moment& to) {
 
 void Estimator::advance_step(ErrorCovariance& covariance, const Moment& from, const Moment& to) const {
   ErrorInterval step = interval(from, to);
-  step.r_ned_from_frd = mean(from.q_ned_from_frd, to.q_ned_from_frd).toRotationMatrix();
+  step.r_ned_from_frd = mean(from.q_ned_from_frd, 0.5, to.q_ned_from_frd, 0.5).toRotationMatrix();
   covariance.advance(step, noise_);
   const double t = step.duration_s;
   if (t <= kUnseen_s * 1.5) return;
@@ -302,10 +327,11 @@ void Estimator::advance(ErrorCovariance& covariance, Moment from, std::uint64_t 
   while (from.stamp_ns + kInterval_ns < to.stamp_ns && number < next_) {
     // To the last moment within the interval, or over the gap to the next.
     std::uint64_t last = number;
-    while (last + 1 < next_ && past(last + 1).stamp_ns <= from.stamp_ns + kInterval_ns) ++last;
-    if (past(last).stamp_ns >= to.stamp_ns) break;
-    advance_step(covariance, from, past(last));
-    from = past(last);
+    while (last + 1 < next_ && remembered(last + 1).stamp_ns <= from.stamp_ns + kInterval_ns) ++last;
+    if (remembered(last).stamp_ns >= to.stamp_ns) break;
+    const Moment moment = past(last);
+    advance_step(covariance, from, moment);
+    from = moment;
     number = last + 1;
   }
   if (from.stamp_ns != to.stamp_ns) advance_step(covariance, from, to);
@@ -317,7 +343,7 @@ ErrorCovariance Estimator::covariance() const {
     covariance.reset(ErrorState::Constant(std::numeric_limits<double>::infinity()));
     return covariance;
   }
-  advance(covariance, anchor_, first_after_anchor_, past(next_ - 1));
+  advance(covariance, anchor_, first_after_anchor_, now());
   return covariance;
 }
 

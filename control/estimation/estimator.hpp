@@ -95,16 +95,31 @@ class Estimator {
     Eigen::Vector3d position_ned = Eigen::Vector3d::Zero();
     Eigen::Vector3d velocity_ned = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_ned_from_frd = Eigen::Quaterniond::Identity();
+    std::uint64_t corrections = 0;  // that it has seen, of all that were made
+  };
+  // A step of the error state at a moment, and what it makes of those before and after.
+  struct Correction {
+    Moment at;  // before the correction
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+    Eigen::Vector3d rotation = Eigen::Vector3d::Zero();
+    Eigen::Vector3d rate = Eigen::Vector3d::Zero();          // that the rotation loses
+    Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // that the velocity loses
+    void carry_to(Moment& moment) const;
   };
 
-  Moment& past(std::uint64_t number) { return history_[number % kHistory]; }
-  const Moment& past(std::uint64_t number) const { return history_[number % kHistory]; }
+  // What is remembered is corrected when it is looked at: of most moments, nothing but the stamp ever is.
+  static constexpr std::uint64_t kCorrections = 32;
+  const Moment& remembered(std::uint64_t number) const { return history_[number % kHistory]; }
+  Moment past(std::uint64_t number) const;
+  Moment now() const;
   void start_at(const plant::PoseSample& pose);
   void remember();
   PoseFault take_in(const plant::PoseSample& pose, plant::RotorState rotors);
   PoseFault disagree(const plant::PoseSample& pose, const PoseInnovation& innovation,
                      plant::RotorState rotors);
   void apply(const ErrorState& step);
+  void catch_up();
   void jump(const plant::PoseSample& pose, const PoseInnovation& innovation);
 
   static ErrorInterval interval(const Moment& from, const Moment& to);
@@ -134,6 +149,8 @@ class Estimator {
 
   std::array<Moment, kHistory> history_;
   std::uint64_t next_ = 0;  // number of the moment that will be remembered next
+  std::array<Correction, kCorrections> corrections_;
+  std::uint64_t corrections_made_ = 0;
 };
 
 }  // namespace swiftlet::control

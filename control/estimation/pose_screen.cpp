@@ -7,24 +7,27 @@
 namespace swiftlet::control {
 namespace {
 
-constexpr double kSame = 1e-8;      // m, and of a quaternion's component
+constexpr double kSame = 1e-8;
+constexpr double kDistinct = 2e-6;  // more than the last bits of what has come to rest
 constexpr int kDistinctPoses = 20;  // that show that a stream has noise
 constexpr double kScatter_m = 0.03;
 constexpr double kScatter_rad = 0.1;
 
-bool same(const plant::PoseSample& a, const plant::PoseSample& b) {
-  return (a.position_ned - b.position_ned).cwiseAbs().maxCoeff() < kSame &&
-         (a.q_ned_from_frd.coeffs() - b.q_ned_from_frd.coeffs()).cwiseAbs().maxCoeff() < kSame;
+// No component differs by as much, of the position in m or of the quaternion.
+bool closer(const plant::PoseSample& a, const plant::PoseSample& b, double distance) {
+  return (a.position_ned - b.position_ned).cwiseAbs().maxCoeff() < distance &&
+         (a.q_ned_from_frd.coeffs() - b.q_ned_from_frd.coeffs()).cwiseAbs().maxCoeff() < distance;
 }
 
 }  // namespace
 
 void RepetitionWatch::look_at(const plant::PoseSample& pose, plant::RotorState rotors) {
-  const bool again = last_.tracked && same(pose, last_);
+  const bool again = last_.tracked && closer(pose, last_, kSame);
+  const bool distinct = last_.tracked && !closer(pose, last_, kDistinct);
   repetitions_ = again ? std::min(repetitions_ + 1, kRepetitions) : 0;
   last_ = pose;
   if (rotors != plant::RotorState::kOff) return;
-  distinct_ = again ? 0 : std::min(distinct_ + 1, kDistinctPoses);
+  distinct_ = distinct ? std::min(distinct_ + 1, kDistinctPoses) : 0;
   if (distinct_ == kDistinctPoses) noisy_ = true;
 }
 
