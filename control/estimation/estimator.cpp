@@ -111,7 +111,8 @@ PoseFault Estimator::take_in(const plant::PoseSample& pose, plant::RotorState ro
   if (!pose.position_ned.allFinite() || !pose.q_ned_from_frd.coeffs().allFinite()) return PoseFault::kInvalid;
   if (std::abs(pose.q_ned_from_frd.norm() - 1.0) > 0.01) return PoseFault::kInvalid;
   if (now_.stamp_ns == 0 || pose.stamp_ns > now_.stamp_ns + kMaxLead_ns) return PoseFault::kUntimely;
-  if (initialised_ && pose.stamp_ns <= anchor_.stamp_ns) return PoseFault::kUntimely;
+  if (initialised_ && (pose.stamp_ns <= pose_stamp_ns_ || pose.stamp_ns < anchor_.stamp_ns))
+    return PoseFault::kUntimely;
   repetition_.look_at(pose, rotors);
   if (!initialised_) {
     start_at(pose);
@@ -120,14 +121,16 @@ PoseFault Estimator::take_in(const plant::PoseSample& pose, plant::RotorState ro
 
   std::uint64_t first_newer = next_;
   while (first_newer > first_after_anchor_ && remembered(first_newer - 1).stamp_ns > pose.stamp_ns) --first_newer;
-  const Moment moment = moment_at(pose.stamp_ns, first_newer);
+  const Moment moment = moment_at(std::min(pose.stamp_ns, now_.stamp_ns), first_newer);
   advance(covariance_, anchor_, first_after_anchor_, moment);
   anchor_at(moment, first_newer);
 
   PoseInnovation innovation;
-  innovation.position = pose.position_ned - moment.position_ned;
-  innovation.rotation =
-      rotation_vector(pose.q_ned_from_frd.normalized() * moment.q_ned_from_frd.conjugate());
+  // A pose that is ahead of the IMU is compared with where the estimate goes.
+  const double ahead_s = seconds(pose.stamp_ns - moment.stamp_ns);
+  const Quaterniond q_ned_from_frd = moment.q_ned_from_frd * rotation(ahead_s * now_.body_rates_frd);
+  innovation.position = pose.position_ned - (moment.position_ned + ahead_s * moment.velocity_ned);
+  innovation.rotation = rotation_vector(pose.q_ned_from_frd.normalized() * q_ned_from_frd.conjugate());
   const ErrorCovariance::Correction correction = covariance_.weigh(
       innovation, squared(settings_.mocap_position_sigma), squared(settings_.mocap_orientation_sigma));
   normalised_innovation_ = correction.normalised_square();
@@ -256,7 +259,7 @@ void Estimator::start_at(const plant::PoseSample& pose) {
       Vector3d::Constant(settings_.accelerometer_bias_sigma);
   covariance_.reset(sigma);
   anchor_at(now(), next_);
-  anchor_.stamp_ns = pose.stamp_ns;
+  anchor_.stamp_ns = std::min(pose.stamp_ns, now_.stamp_ns);
   remember();
 }
 
@@ -287,14 +290,8 @@ Estimator::Moment Estimator::moment_at(std::int64_t stamp_ns, std::uint64_t firs
   if (before.stamp_ns == stamp_ns) return before;
   Moment moment = before;
   moment.stamp_ns = stamp_ns;
-  const double ahead_s = seconds(stamp_ns - before.stamp_ns);
-  if (first_newer == next_) {  // not seen yet: goes on as it goes now
-    moment.position_ned += ahead_s * before.velocity_ned;
-    moment.q_ned_from_frd = (before.q_ned_from_frd * rotation(ahead_s * now_.body_rates_frd)).normalized();
-    return moment;
-  }
   const Moment after = past(first_newer);
-  const double part = ahead_s / seconds(after.stamp_ns - before.stamp_ns);
+  const double part = seconds(stamp_ns - before.stamp_ns) / seconds(after.stamp_ns - before.stamp_ns);
   moment.position_ned += part * (after.position_ned - before.position_ned);
   moment.velocity_ned += part * (after.velocity_ned - before.velocity_ned);
   moment.q_ned_from_frd = mean(before.q_ned_from_frd, 1.0 - part, after.q_ned_from_frd, part);
