@@ -246,7 +246,9 @@ plant::ActuatorCommand FlightController::on_imu(const plant::ImuSample& sample) 
   return l.answer(sample);
 }
 
-void FlightController::on_pose(const plant::PoseSample& sample) { loops_->estimator.correct(sample); }
+void FlightController::on_pose(const plant::PoseSample& sample) {
+  loops_->estimator.correct(sample, loops_->command.rotor_state);
+}
 
 void FlightController::on_battery(const plant::BatterySample& sample) {
   const Allocator::SupplyRange& plausible = loops_->allocator.plausible_supply();

@@ -43,10 +43,19 @@ void check_limits(const Limits& limits, RuleChecker& check) {
 }
 
 void check_estimator(const EstimatorSettings& estimator, RuleChecker& check) {
-  check.above("estimator.position_bandwidth_rad_s", estimator.position_bandwidth, 0.0);
-  check.above("estimator.attitude_bandwidth_rad_s", estimator.attitude_bandwidth, 0.0);
+  check.above("estimator.accelerometer_noise_m_s2_per_sqrt_hz", estimator.accelerometer_noise_density, 0.0);
+  check.above("estimator.gyro_noise_rad_s_per_sqrt_hz", estimator.gyro_noise_density, 0.0);
+  check.at_least("estimator.accelerometer_bias_walk_m_s2_per_sqrt_s", estimator.accelerometer_bias_walk, 0.0);
+  check.at_least("estimator.gyro_bias_walk_rad_s_per_sqrt_s", estimator.gyro_bias_walk, 0.0);
+  check.at_least("estimator.accelerometer_bias_m_s2", estimator.accelerometer_bias_sigma, 0.0);
+  check.at_least("estimator.gyro_bias_rad_s", estimator.gyro_bias_sigma, 0.0);
   check.at_least("estimator.accelerometer_bias_limit_m_s2", estimator.accelerometer_bias_limit, 0.0);
   check.at_least("estimator.gyro_bias_limit_rad_s", estimator.gyro_bias_limit, 0.0);
+  check.above("estimator.mocap_position_m", estimator.mocap_position_sigma, 0.0);
+  check.above("estimator.mocap_orientation_rad", estimator.mocap_orientation_sigma, 0.0);
+  check.above("estimator.gate_chi_square", estimator.gate_chi_square, 0.0);
+  check.above("estimator.outlier_position_m", estimator.outlier_position_m, 0.0);
+  check.above("estimator.outlier_orientation_rad", estimator.outlier_orientation_rad, 0.0);
 }
 
 void check_arming(const ArmingSettings& arming, RuleChecker& check) {

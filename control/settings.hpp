@@ -53,12 +53,24 @@ struct Limits {
   Eigen::Vector3d fence_max_ned = {3.0, 3.0, 0.2};     // m
 };
 
-// Observer gains: each corrects by the mocap innovation. Bandwidths in rad/s.
+// What the estimator believes of its sensors. Noise densities as on data sheets; standard deviations are each
+// axis's.
 struct EstimatorSettings {
-  double position_bandwidth = 12.0;       // of the position/velocity/accelerometer-bias observer
-  double attitude_bandwidth = 6.0;        // of the attitude/gyro-bias observer
-  double accelerometer_bias_limit = 1.0;  // m/s^2
-  double gyro_bias_limit = 0.3;           // rad/s
+  double accelerometer_noise_density = 4.0e-3;  // m/s^2/sqrt(Hz)
+  double gyro_noise_density = 2.0e-4;           // rad/s/sqrt(Hz)
+  double accelerometer_bias_walk = 1.0e-3;      // m/s^2/sqrt(s)
+  double gyro_bias_walk = 1.0e-4;               // rad/s/sqrt(s)
+  double accelerometer_bias_sigma = 0.2;        // m/s^2, before the first pose
+  double gyro_bias_sigma = 0.02;                // rad/s, likewise
+  double accelerometer_bias_limit = 1.0;        // m/s^2
+  double gyro_bias_limit = 0.3;                 // rad/s
+  double mocap_position_sigma = 5.0e-5;         // m
+  double mocap_orientation_sigma = 7.0e-4;      // rad
+  // Bound on the squared normalised innovation, chi-square of 6 degrees of freedom: one good pose in 26,000
+  // is beyond 30.
+  double gate_chi_square = 30.0;
+  double outlier_position_m = 0.05;      // beyond the bound and this far off: refused
+  double outlier_orientation_rad = 0.1;  // likewise
 };
 
 // What a vehicle may show on the ground and still be armed.

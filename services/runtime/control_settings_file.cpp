@@ -62,10 +62,19 @@ control::Limits read_limits(const ConfigNode& node) {
 
 control::EstimatorSettings read_estimator(const ConfigNode& node) {
   control::EstimatorSettings estimator;
-  estimator.position_bandwidth = node.at("position_bandwidth_rad_s").number();
-  estimator.attitude_bandwidth = node.at("attitude_bandwidth_rad_s").number();
+  estimator.accelerometer_noise_density = node.at("accelerometer_noise_m_s2_per_sqrt_hz").number();
+  estimator.gyro_noise_density = node.at("gyro_noise_rad_s_per_sqrt_hz").number();
+  estimator.accelerometer_bias_walk = node.at("accelerometer_bias_walk_m_s2_per_sqrt_s").number();
+  estimator.gyro_bias_walk = node.at("gyro_bias_walk_rad_s_per_sqrt_s").number();
+  estimator.accelerometer_bias_sigma = node.at("accelerometer_bias_m_s2").number();
+  estimator.gyro_bias_sigma = node.at("gyro_bias_rad_s").number();
   estimator.accelerometer_bias_limit = node.at("accelerometer_bias_limit_m_s2").number();
   estimator.gyro_bias_limit = node.at("gyro_bias_limit_rad_s").number();
+  estimator.mocap_position_sigma = node.at("mocap_position_m").number();
+  estimator.mocap_orientation_sigma = node.at("mocap_orientation_rad").number();
+  estimator.gate_chi_square = node.at("gate_chi_square").number();
+  estimator.outlier_position_m = node.at("outlier_position_m").number();
+  estimator.outlier_orientation_rad = node.at("outlier_orientation_rad").number();
   return estimator;
 }
 
