@@ -103,12 +103,15 @@ void FlightController::Loops::begin_anew_if_clock_went_back(const plant::ImuSamp
   has_battery = false;
 }
 
-// For how long no sample could be used, by their stamps; a clock that stands still does not hide it.
+// For how long no sample could be used, by their stamps. A clock that stands still does not hide it, and one
+// that goes far back is that of a vehicle which was started again: it must not hear the flight's commands.
 void FlightController::Loops::count_unusable(bool usable, std::int64_t stamp_ns) {
   unusable_samples = usable ? 0 : unusable_samples + 1;
   if (unusable_samples == 1) unusable_since_ns = std::min(stamp_ns, last_stamp_ns);
   unusable_s = usable ? 0.0 : seconds(stamp_ns - unusable_since_ns);
-  if (unusable_samples >= kUnusableToFault) unusable_s = std::numeric_limits<double>::infinity();
+  const bool started_again = seconds(last_stamp_ns - stamp_ns) > settings.failsafe.imu_timeout_s;
+  if (unusable_samples >= kUnusableToFault || started_again)
+    unusable_s = std::numeric_limits<double>::infinity();
 }
 
 Situation FlightController::Loops::situation() const {

@@ -23,6 +23,13 @@ Outcome pose_there(const Scene& scene) {
   return accept();
 }
 
+// One that was late or came twice is no fault of motion capture.
+Outcome pose_believed(const Scene& scene) {
+  const PoseFault fault = scene.estimate().pose_fault;
+  if (fault == PoseFault::kNone || fault == PoseFault::kUntimely) return accept();
+  return refuse("the last mocap pose was refused: %s", to_string(fault));
+}
+
 Outcome imu_usable(const Scene& scene) {
   if (scene.situation.imu_unusable_s > 0.0) return refuse("IMU samples are not usable");
   return accept();
@@ -85,8 +92,8 @@ Outcome inside_fence(const Scene& scene) {
   return check_position("the vehicle", scene.estimate().position_ned, scene.settings.limits);
 }
 
-constexpr ArmingCheck kChecks[] = {pose_there,   imu_usable, battery_there, imu_at_rest, not_turning,
-                                   rotors_still, level,      not_moving,    inside_fence};
+constexpr ArmingCheck kChecks[] = {pose_there,  pose_believed, imu_usable, battery_there, imu_at_rest,
+                                   not_turning, rotors_still,  level,      not_moving,    inside_fence};
 
 // "a; b; c", or the part of it that fits.
 void append(const char* sentence, Outcome& outcome) {
