@@ -82,6 +82,14 @@ Outcome check_setpoint(const Scene& scene) {
     return refuse("setpoint: acceleration is %.2f m/s^2, the limit is %.2f m/s^2", acceleration,
                   limits.max_acceleration);
   }
+  // The stream may cease with this one.
+  Reference last;
+  last.position_ned =
+      setpoint.position_ned + scene.settings.failsafe.setpoint_timeout_s * setpoint.velocity_ned;
+  last.velocity_ned = setpoint.velocity_ned;
+  const Outcome at_rest =
+      check_position("setpoint: where it could come to rest", rest_place(limits, last), limits);
+  if (!at_rest.accepted) return at_rest;
   const double step = (setpoint.position_ned - scene.estimate().position_ned).norm();
   if (step <= kMaxSetpointStep_m) return accept();
   return refuse("setpoint: %.2f m away from the vehicle, the limit is %.2f m", step, kMaxSetpointStep_m);
@@ -134,7 +142,8 @@ const Check kMissionFromGround{"battery, and it begins with a takeoff to above t
                                check_mission_from_ground};
 const Check kMission{"it has items", check_mission};
 const Check kTrajectory{"it begins inside the fence", check_trajectory};
-const Check kSetpoint{"inside the fence, within the limits, near the vehicle", check_setpoint};
+const Check kSetpoint{"inside the fence, from where it can stop inside, within the limits, near the vehicle",
+                      check_setpoint};
 const Check kGoTo{"inside the fence, within the limits", check_goto};
 const Check kLand{"speed", [](const Scene& scene) {
                     return check_speed("land", scene.request->speed, scene.settings.limits);

@@ -27,8 +27,7 @@ double stopping_time(const Limits& limits, const Reference& from) {
 }
 
 Eigen::Vector3d stopping_place(const Limits& limits, const Reference& from) {
-  const Eigen::Vector3d place = from.position_ned + 0.5 * stopping_time(limits, from) * from.velocity_ned;
-  return place.cwiseMax(limits.fence_min_ned).cwiseMin(limits.fence_max_ned);
+  return rest_place(limits, from).cwiseMax(limits.fence_min_ned).cwiseMin(limits.fence_max_ned);
 }
 
 void climb(Scene& scene) {
@@ -82,6 +81,10 @@ Reference standing_at(const Estimate& estimate) {
   reference.position_ned = estimate.position_ned;
   reference.yaw_rad = yaw_of(estimate.q_ned_from_frd);
   return reference;
+}
+
+Eigen::Vector3d rest_place(const Limits& limits, const Reference& from) {
+  return from.position_ned + 0.5 * stopping_time(limits, from) * from.velocity_ned;
 }
 
 void start_takeoff(Scene& scene, double to_z_ned, double speed) {

@@ -11,6 +11,9 @@ constexpr double kAirborneHeight_m = 0.03;  // above the ground
 // Where the estimate is, at rest, with its yaw.
 Reference standing_at(const Estimate& estimate);
 
+// Where a reference that moves so can come to rest, as start_stop() would have it without a fence.
+Eigen::Vector3d rest_place(const Limits& limits, const Reference& from);
+
 // Spool up, then climb straight to that height.
 void start_takeoff(Scene& scene, double to_z_ned, double speed);
 // From the reference as it is at start_ns, straight to a place; a vehicle in motion gets there by a quintic.

@@ -48,7 +48,7 @@ const Transition kTransitions[] = {
 
   // What ends a flight early.
   {kWithPosition, E::kBatteryCritical, when::kNotHurrying, check_of::kNone, M::kLanding, R::kBatteryCritical, act::kLandFast},
-  {kUnderWay, E::kOutsideFence, when::kAlways, check_of::kNone, M::kLanding, R::kOutsideFence, act::kLand},
+  {kUnderWay, E::kOutsideFence, when::kAlways, check_of::kNone, M::kLanding, R::kOutsideFence, act::kLandFromEstimate},
   {kUnderWay, E::kBatteryLow, when::kAlways, check_of::kNone, M::kLanding, R::kBatteryLow, act::kLand},
   {kUnderWay, E::kBatterySilent, when::kAlways, check_of::kNone, M::kLanding, R::kBatterySilent, act::kLand},
   {kUnderWay, E::kGroundLinkLost, when::kLinkLands, check_of::kNone, M::kLanding, R::kGroundLinkLost, act::kLand},

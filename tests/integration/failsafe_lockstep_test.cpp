@@ -213,7 +213,7 @@ TEST_F(FaultInFlight, APushTipsItOverTheRotorsStop) {
 }
 
 TEST_F(FaultInFlight, AGaleBlowsItOutOfTheFenceItLandsInside) {
-  const Flown flown = fly("push", "1.6", "force_ned_n: [1.1, 0, 0], moment_frd_n_m: [0, 0, 0]");
+  const Flown flown = fly("push", "1.6", "force_ned_n: [0.42, 0, 0], moment_frd_n_m: [0, 0, 0]");
   EXPECT_EQ(reason(flown), "the mission was aborted: outside the fence; landed");
   EXPECT_GT(flown.farthest_m(), 3.2);
   flown.expect_landed();

@@ -126,7 +126,7 @@ TEST_F(Failsafe, ToolsThatOnlyAskForSomethingAreNotMissed) {
   fly_on(3.0);
   EXPECT_EQ(client_->view().control.message.ground_links(), 0);
   EXPECT_TRUE(settles_at(0.3, 0, -1));
-  EXPECT_EQ(story(), "holding: requested\n");
+  EXPECT_EQ(story(), "holding: take-off completed\nholding: requested\n");
 }
 
 TEST_F(Failsafe, ControlIsKilledTheVehicleStopsItsRotorsAndAnotherOneStartsAnew) {
@@ -227,9 +227,8 @@ TEST_F(Failsafe, SetpointsThatLeaveTheFenceAreRefusedAndItHoldsInside) {
   fly_on(1.0);
   double farthest_north = 0.0;
   for (const TruthRow& row : truth()) farthest_north = std::max(farthest_north, row.position_ned[0]);
-  EXPECT_GT(farthest_north, 0.5);
-  EXPECT_LT(farthest_north, 0.8) << "it followed them no further than the fence, and came to rest";
-  EXPECT_LT(client_->view().truth.message.position_ned()[0], 0.65);
+  EXPECT_GT(farthest_north, 0.3);
+  EXPECT_LT(farthest_north, 0.6) << "it follows them as far as it can come to rest inside";
   EXPECT_EQ(client_->view().control.message.mode(), static_cast<std::uint8_t>(Mode::kHolding));
 }
 

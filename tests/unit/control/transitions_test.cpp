@@ -407,7 +407,7 @@ TEST(Failsafes, OutsideTheFenceItComesDownInside) {
   ASSERT_EQ(flight.mode(), Mode::kLanding);
   flight.follows_ = true;
   ASSERT_TRUE(flight.step_until(Mode::kDisarmed, 30.0));
-  EXPECT_LE(flight.estimate_.position_ned.x(), 3.0);
+  EXPECT_LE(flight.estimate_.position_ned.x(), 3.0 + 1e-9);
 }
 
 TEST(Failsafes, ALandingThatLosesThePoseGoesOnWhenItIsBack) {
