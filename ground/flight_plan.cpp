@@ -63,6 +63,9 @@ FlightPlan plan_flight(const FlyOptions& options) {
   for (const plant::Violation& violation : plant::validate(plan.simulation)) {
     throw InputError("--imu-rate: " + violation.key + " " + violation.message);
   }
+  for (const plant::Violation& violation : plant::validate_faults(plan.simulation.faults, plan.vehicle)) {
+    throw InputError(plan.simulation_file.string() + ": " + violation.key + ": " + violation.message);
+  }
   if (!options.vary.empty())
     plan.variation =
         load_vary_file(configuration_file("vary", options.vary), {plan.vehicle, plan.simulation});
