@@ -48,7 +48,7 @@ struct FlightController::Loops {
   void act(const Directive& directive, double dt_s);
   void fly(const Directive& directive, double dt_s);
   void spool_up(const Directive& directive);
-  void descend_level();
+  void descend_level(double speed);
   void command_wrench(double thrust_n, const AttitudeReference& attitude_reference);
   plant::ActuatorCommand answer(const plant::ImuSample& sample);
 
@@ -156,7 +156,7 @@ void FlightController::Loops::act(const Directive& directive, double dt_s) {
     case Actuation::kFly:
       return fly(directive, dt_s);
     case Actuation::kLevelDescent:
-      return descend_level();
+      return descend_level(directive.descent_speed);
   }
 }
 
@@ -190,11 +190,10 @@ void FlightController::Loops::spool_up(const Directive& directive) {
   command_wrench(directive.lift_fraction * vehicle.mass_kg * plant::kGravity, level);
 }
 
-void FlightController::Loops::descend_level() {
+void FlightController::Loops::descend_level(double speed) {
   const Estimate& estimate = estimator.estimate();
   const double acceleration =
-      std::clamp(kDescentGain * (settings.failsafe.descent_speed - estimate.velocity_ned.z()), -kDescentLimit,
-                 kDescentLimit);
+      std::clamp(kDescentGain * (speed - estimate.velocity_ned.z()), -kDescentLimit, kDescentLimit);
   AttitudeReference level;
   level.yaw_rad = euler_from_quaternion(estimate.q_ned_from_frd).z();
   command_wrench(vehicle.mass_kg * (plant::kGravity - acceleration), level);

@@ -120,9 +120,12 @@ void Client::subscribe_all() {
       node_.subscribe<msg::Reference>(kReference, [this](const msg::Reference& reference) {
         if (record_ != nullptr) record_->reference.append(row_of(reference));
         keep(&View::reference, reference);
-        const std::lock_guard lock(mutex_);
-        if (grants_) grants_->telemetry(reference.stamp_ns());
-        if (signs_) signs_->telemetry(reference.stamp_ns());
+        std::unique_lock lock(mutex_);
+        const auto grants = grants_;
+        const auto signs = signs_;
+        lock.unlock();
+        if (grants) grants->telemetry(reference.stamp_ns());
+        if (signs) signs->telemetry(reference.stamp_ns());
       }));
   subscriptions_.push_back(
       node_.subscribe<msg::GroundTruth>(kGroundTruth, [this](const msg::GroundTruth& truth) {
@@ -147,19 +150,28 @@ View Client::view() const {
 }
 
 TimeGrants& Client::grants() {
-  const std::lock_guard lock(mutex_);
-  if (!grants_) grants_.emplace(node_);
+  std::unique_lock lock(mutex_);
+  if (grants_) return *grants_;
+  lock.unlock();
+  auto grants = std::make_shared<TimeGrants>(node_);
+  lock.lock();
+  grants_ = std::move(grants);
   return *grants_;
 }
 
 void Client::stay() {
-  const std::lock_guard lock(mutex_);
-  if (!signs_) signs_.emplace(node_, client_id_);
+  std::unique_lock lock(mutex_);
+  if (signs_) return;
+  lock.unlock();
+  auto signs = std::make_shared<SignsOfLife>(node_, client_id_);
+  lock.lock();
+  signs_ = std::move(signs);
 }
 
 void Client::leave() {
+  std::shared_ptr<SignsOfLife> signs;
   const std::lock_guard lock(mutex_);
-  signs_.reset();
+  signs_.swap(signs);  // which outlives the lock
 }
 
 bool Client::wait(std::chrono::milliseconds timeout, const std::function<bool(const View&)>& done) const {
