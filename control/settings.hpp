@@ -15,6 +15,10 @@ namespace swiftlet::control {
 // as third state.
 enum class AttitudeModel { kDoubleIntegrator, kMotorLag };
 
+// What the attitude's angle errors are: differences of the paper's Euler angles, Eq. (29)-(31), or parts of
+// the rotation that is missing, which know no singularity (attitude/attitude_error.hpp).
+enum class AttitudeErrorKind { kEulerAngles, kRotation };
+
 // LQR weights of one axis on (angle, rate, moment / inertia): rad^-2, (rad/s)^-2, (rad/s^2)^-2. The third is
 // used with kMotorLag only.
 struct LqrWeights {
@@ -24,6 +28,7 @@ struct LqrWeights {
 
 struct AttitudeSettings {
   AttitudeModel model = AttitudeModel::kMotorLag;
+  AttitudeErrorKind error = AttitudeErrorKind::kRotation;
   LqrWeights roll, pitch, yaw;
   bool feed_forward = true;  // rates and accelerations of the reference's attitude, from its jerk and snap
 };

@@ -56,6 +56,10 @@ nlohmann::ordered_json to_json(const View& view, const Rates& rates, const Reque
   if (view.estimate.seen()) {
     json["position_ned_m"] = view.estimate.message.position_ned();
     json["velocity_ned_m_s"] = view.estimate.message.velocity_ned();
+    json["poses"] = {{"fault", pose_fault_name(view.estimate.message.pose_fault())},
+                     {"accepted", view.estimate.message.poses_accepted()},
+                     {"refused", view.estimate.message.poses_refused()},
+                     {"resets", view.estimate.message.resets()}};
   }
   json["battery"] = nullptr;
   if (view.battery.seen()) {

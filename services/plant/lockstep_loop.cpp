@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <thread>
 
-#include "plant/simulation/mocap.hpp"
 #include "services/runtime/periodic_timer.hpp"
 #include "services/runtime/telemetry_rate.hpp"
 
@@ -23,9 +22,10 @@ constexpr double kLongestLookS = 0.1;
 }  // namespace
 
 LockstepLoop::LockstepLoop(SimulatedVehicle& vehicle, const plant::SimulationSettings& settings,
-                           const LockstepSettings& lockstep, int rotor_count, comms::Node& node)
+                           std::uint64_t seed, const LockstepSettings& lockstep, int rotor_count,
+                           comms::Node& node)
     : vehicle_(vehicle),
-      settings_(settings),
+      mocap_(settings.mocap, seed),
       lockstep_(lockstep),
       imu_period_ns_(plant::period_ns(settings.imu.rate_hz)),
       granted_ns_(lockstep.paused ? -1 : std::numeric_limits<std::int64_t>::max()) {
@@ -109,11 +109,11 @@ void LockstepLoop::advance() {
 void LockstepLoop::publish() {
   bool truth_needed = false;
   if (const auto& imu = vehicle_.simulation().imu()) {
-    mocap_due_ = plant::newest_mocap_sequence(settings_.mocap, imu_period_ns_, imu->stamp_ns);
-    truth_needed = plant::mocap_needs_truth(settings_.mocap, imu_period_ns_, imu->stamp_ns) ||
+    const plant::MocapSchedule::Events events = mocap_.advance(imu->stamp_ns);
+    truth_needed = events.exposes || events.delivers ||
                    runtime::is_telemetry_sample(imu->sequence, imu_period_ns_);
   }
-  vehicle_.publish_samples_in_order(mocap_due_, truth_needed);
+  vehicle_.publish_samples_in_order(mocap_.delivered(), truth_needed);
 }
 
 void LockstepLoop::look_after(double awake_s) {
@@ -145,10 +145,10 @@ std::string LockstepLoop::silent_ground() const {
 std::string LockstepLoop::silent_peer() const {
   const double time_s = static_cast<double>(vehicle_.simulation().stamp_ns()) * 1e-9;
   char text[192];
-  if (!mocap_heard_ || mocap_sequence_ < mocap_due_) {
+  if (!mocap_heard_ || mocap_sequence_ < mocap_.delivered()) {
     std::snprintf(text, sizeof text,
                   "lockstep: mocap is silent: frame %llu, due at t = %.3f s, has not come for %g s",
-                  static_cast<unsigned long long>(mocap_due_), time_s, lockstep_.patience_s);
+                  static_cast<unsigned long long>(mocap_.delivered()), time_s, lockstep_.patience_s);
   } else {
     std::snprintf(text, sizeof text,
                   "lockstep: control is silent: IMU sample %llu of t = %.3f s has no answer for %g s",

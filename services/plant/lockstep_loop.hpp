@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "plant/simulation/mocap_schedule.hpp"
 #include "services/comms/node.hpp"
 #include "services/plant/simulated_vehicle.hpp"
 #include "services/runtime/flight_trace.hpp"
@@ -26,7 +27,8 @@ struct LockstepSettings {
 class LockstepLoop {
  public:
   // Throws std::runtime_error if the trace cannot be written. The vehicle must outlive the loop.
-  LockstepLoop(SimulatedVehicle& vehicle, const plant::SimulationSettings& settings,
+  // Settings and seed are those that motion capture has, too.
+  LockstepLoop(SimulatedVehicle& vehicle, const plant::SimulationSettings& settings, std::uint64_t seed,
                const LockstepSettings& lockstep, int rotor_count, comms::Node& node);
 
   // Until `stop`. Throws std::runtime_error that names the peer whose answer has not come in time, of which
@@ -39,7 +41,7 @@ class LockstepLoop {
   void on_clock(const comms::msg::SimulationClock& message);
 
   // All below with the lock held.
-  bool answered() const { return command_arrived_ && mocap_heard_ && mocap_sequence_ >= mocap_due_; }
+  bool answered() const { return command_arrived_ && mocap_heard_ && mocap_sequence_ >= mocap_.delivered(); }
   bool may_advance() const;
   void advance();
   void publish();
@@ -48,7 +50,7 @@ class LockstepLoop {
   std::string silent_ground() const;
 
   SimulatedVehicle& vehicle_;
-  const plant::SimulationSettings settings_;
+  plant::MocapSchedule mocap_;  // as motion capture keeps it
   const LockstepSettings lockstep_;
   std::int64_t imu_period_ns_;
 
@@ -58,7 +60,6 @@ class LockstepLoop {
   bool command_arrived_ = false;
   bool mocap_heard_ = false;
   std::uint64_t mocap_sequence_ = 0;
-  std::uint64_t mocap_due_ = 0;
   std::int64_t granted_ns_ = 0;
   bool clock_heard_ = false;
   double silence_s_ = 0.0;        // since the last progress

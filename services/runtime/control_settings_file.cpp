@@ -23,6 +23,9 @@ control::AttitudeSettings read_attitude(const ConfigNode& node) {
   attitude.model = node.at("model").choice<control::AttitudeModel>(
       {{"double_integrator", control::AttitudeModel::kDoubleIntegrator},
        {"motor_lag", control::AttitudeModel::kMotorLag}});
+  attitude.error = node.at("error").choice<control::AttitudeErrorKind>(
+      {{"euler_angles", control::AttitudeErrorKind::kEulerAngles},
+       {"rotation", control::AttitudeErrorKind::kRotation}});
   attitude.roll = read_weights(node.at("roll"), attitude.model);
   attitude.pitch = read_weights(node.at("pitch"), attitude.model);
   attitude.yaw = read_weights(node.at("yaw"), attitude.model);
