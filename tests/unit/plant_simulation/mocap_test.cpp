@@ -15,7 +15,7 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using plant::Mocap;
 using plant::MocapSettings;
-using plant::newest_mocap_sequence;
+using plant::MocapSchedule;
 using plant::PoseSample;
 using plant::TruthSample;
 
@@ -49,6 +49,7 @@ TEST(Mocap, DeliversFramesOnTimeAtEveryRateAndLatency) {
       settings.rate_hz = rate;
       settings.latency_s = latency_s;
       Mocap mocap(settings, 1);
+      MocapSchedule schedule(settings, 1);
       const std::int64_t period = std::llround(1.0e9 / rate);
       const std::int64_t latency = std::llround(1.0e9 * latency_s);
       const auto next_step = [](std::int64_t t) {
@@ -66,7 +67,8 @@ TEST(Mocap, DeliversFramesOnTimeAtEveryRateAndLatency) {
           ASSERT_LT((pose->position_ned - truth_at(exposed).position_ned).norm(), 1.0e-12);
           ASSERT_LT(angle(pose->q_ned_from_frd, truth_at(exposed).q_ned_from_frd), 1.0e-7);
         }
-        ASSERT_EQ(newest_mocap_sequence(settings, kMillisecond, now), count) << now;
+        schedule.advance(now);
+        ASSERT_EQ(schedule.delivered(), count) << now;
       }
       EXPECT_NEAR(static_cast<double>(count), rate * (1.0 - latency_s), 2.0);
     }
@@ -82,10 +84,13 @@ TEST(Mocap, NeedsOnlySomeOfTheTruth) {
       settings.latency_s = latency_s;
       Mocap all(settings, 1);
       Mocap some(settings, 1);
+      MocapSchedule schedule(settings, 1);
       int left_out = 0;
       for (std::int64_t now = 0; now <= 1'000 * kMillisecond; now += 2 * kMillisecond) {
         const auto of_all = all.update(truth_at(now));
-        if (!plant::mocap_needs_truth(settings, 2 * kMillisecond, now)) {
+        const MocapSchedule::Events events = schedule.advance(now);
+        ASSERT_EQ(of_all.has_value(), events.delivers) << now;
+        if (!events.exposes && !events.delivers) {
           ASSERT_FALSE(of_all.has_value()) << now;
           ++left_out;
           continue;
