@@ -5,6 +5,7 @@
 #include <random>
 #include <utility>
 
+#include "control/estimation/estimator.hpp"
 #include "control/mode.hpp"
 
 namespace swiftlet::ground {

@@ -227,5 +227,38 @@ TEST(Mocap, AGapInTheTruthCostsItsFrames) {
   EXPECT_EQ(poses[2].sequence, poses[0].sequence + 2);
 }
 
+// Uneven intervals: whoever keeps the same schedule knows each frame, whether all of the truth is looked at or
+// only what is needed; another seed has others.
+TEST(Mocap, UnevenFramesAreAFunctionOfTheSeed) {
+  MocapSettings settings = perfect();
+  settings.model = plant::MocapModel::kOptitrack;
+  Mocap all(settings, 5);
+  Mocap some(settings, 5);
+  MocapSchedule schedule(settings, 5);
+  MocapSchedule other(settings, 6);
+  std::uint64_t handed_out = 0;
+  int differences = 0;
+  int left_out = 0;
+  for (std::int64_t now = 0; now <= 60'000 * kMillisecond; now += 2 * kMillisecond) {
+    const auto of_all = all.update(truth_at(now));
+    const MocapSchedule::Events events = schedule.advance(now);
+    if (of_all) handed_out = of_all->sequence;
+    ASSERT_EQ(schedule.delivered(), handed_out) << now;
+    if (other.advance(now).exposes != events.exposes) ++differences;
+    if (!events.exposes && !events.delivers) {
+      ++left_out;
+      continue;
+    }
+    const auto of_some = some.update(truth_at(now));
+    ASSERT_EQ(of_all.has_value(), of_some.has_value()) << now;
+    if (of_all) {
+      ASSERT_EQ(of_all->stamp_ns, of_some->stamp_ns) << now;
+    }
+  }
+  EXPECT_NEAR(static_cast<double>(handed_out), 60.0 / 0.0183, 200.0);
+  EXPECT_GT(differences, 1000);
+  EXPECT_GT(left_out, 20'000);
+}
+
 }  // namespace
 }  // namespace swiftlet::tests
