@@ -28,7 +28,7 @@ struct ErrorInterval {
   double duration_s = 0.0;
   Eigen::Vector3d velocity_change = Eigen::Vector3d::Zero();  // m/s, integral of f: without gravity
   Eigen::Vector3d position_change =
-      Eigen::Vector3d::Zero();                           // m, its second integral: without gravity and first velocity
+      Eigen::Vector3d::Zero();  // m, its second integral: without gravity and first velocity
   Eigen::Matrix3d r_ned_from_frd = Eigen::Matrix3d::Identity();  // in its middle
 };
 
@@ -75,7 +75,8 @@ class ErrorCovariance {
     std::array<Row, kRows> rows_;  // see weigh()
     double normalised_square_ = 0.0;
   };
-  Correction weigh(const PoseInnovation& innovation, double position_variance, double rotation_variance) const;
+  Correction weigh(const PoseInnovation& innovation, double position_variance,
+                   double rotation_variance) const;
   // The covariance after the correction has been made: P - K S K'.
   void reduce(const Correction& correction);
 

@@ -16,15 +16,15 @@ using Eigen::Vector3d;
 constexpr double kMaxStep_s = 0.25;  // longer gaps between IMU samples are not integrated over
 // A gap longer than the first may hide accelerations and rates of the others.
 constexpr double kUnseen_s = 0.02;
-constexpr double kUnseenAcceleration = 2.0;  // m/s^2
-constexpr double kUnseenRate = 0.5;          // rad/s
+constexpr double kUnseenAcceleration = 2.0;        // m/s^2
+constexpr double kUnseenRate = 0.5;                // rad/s
 constexpr std::int64_t kInterval_ns = 20'000'000;  // the covariance goes by no longer ones ...
 constexpr std::uint64_t kIntervalMoments = 32;     // ... nor by more moments of the history
 constexpr std::int64_t kMaxLead_ns = 20'000'000;   // that a pose may be ahead of the IMU
 constexpr double kStartSpeed = 1.0;                // m/s, standard deviation at the first pose
 constexpr double kJumpSpeed = 0.3;                 // m/s, likewise after a reset
-constexpr double kMaxDrift = 0.3;                  // m/s, of a disagreement that leads to a reset in flight ...
-constexpr double kMaxDriftAtRest = 3.0;            // ... and with rotors off
+constexpr double kMaxDrift = 0.3;        // m/s, of a disagreement that leads to a reset in flight ...
+constexpr double kMaxDriftAtRest = 3.0;  // ... and with rotors off
 constexpr double kSwap_rad = 0.35;
 constexpr double kLongFall = 1e3;  // m/s
 
@@ -126,7 +126,8 @@ PoseFault Estimator::take_in(const plant::PoseSample& pose, plant::RotorState ro
   }
 
   std::uint64_t first_newer = next_;
-  while (first_newer > first_after_anchor_ && remembered(first_newer - 1).stamp_ns > pose.stamp_ns) --first_newer;
+  while (first_newer > first_after_anchor_ && remembered(first_newer - 1).stamp_ns > pose.stamp_ns)
+    --first_newer;
   const Moment moment = moment_at(std::min(pose.stamp_ns, now_.stamp_ns), first_newer);
   advance(covariance_, anchor_, first_after_anchor_, moment);
   anchor_at(moment, first_newer);
@@ -188,8 +189,7 @@ void Estimator::apply(const ErrorState& step) {
   correction.carry_to(path_);
   show_path();
 
-  const Vector3d gyro_bias =
-      bounded(now_.gyro_bias + step.segment<3>(9), settings_.gyro_bias_limit);
+  const Vector3d gyro_bias = bounded(now_.gyro_bias + step.segment<3>(9), settings_.gyro_bias_limit);
   now_.body_rates_frd += now_.gyro_bias - gyro_bias;
   now_.gyro_bias = gyro_bias;
   now_.accelerometer_bias =
@@ -257,7 +257,8 @@ void Estimator::start_at(const plant::PoseSample& pose) {
   first_after_anchor_ = next_ - std::min<std::uint64_t>(next_, kHistory);
   anchor_ = remembered(first_after_anchor_);
   std::uint64_t first_newer = next_;
-  while (first_newer > first_after_anchor_ && remembered(first_newer - 1).stamp_ns > pose.stamp_ns) --first_newer;
+  while (first_newer > first_after_anchor_ && remembered(first_newer - 1).stamp_ns > pose.stamp_ns)
+    --first_newer;
   const bool remembers = pose.stamp_ns > anchor_.stamp_ns;
   const Moment drawn = remembers ? moment_at(std::min(pose.stamp_ns, path_.stamp_ns), first_newer) : anchor_;
   const Moment start = {std::min(pose.stamp_ns, path_.stamp_ns), pose.position_ned, Vector3d::Zero(),
@@ -319,8 +320,8 @@ ErrorInterval Estimator::interval(const Moment& from, const Moment& to) {
   out.duration_s = seconds(to.stamp_ns - from.stamp_ns);
   const Vector3d fall = {0.0, 0.0, out.duration_s * plant::kGravity};
   out.velocity_change = to.velocity_ned - from.velocity_ned - fall;
-  out.position_change = to.position_ned - from.position_ned -
-                        out.duration_s * (from.velocity_ned + 0.5 * fall);
+  out.position_change =
+      to.position_ned - from.position_ned - out.duration_s * (from.velocity_ned + 0.5 * fall);
   return out;
 }
 

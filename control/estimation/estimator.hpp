@@ -28,8 +28,9 @@ enum class PoseFault : std::uint8_t {
   kInvalid = 2,    // not finite, or no unit quaternion
   kUntimely = 3,   // not newer than the last, older than the kept history, or ahead of the IMU
   kOutlier = 4,    // too far from the estimate
-  kSwapped = 5,    // turned against the estimate as no gyro misses it: markers taken for each other, another vehicle
-  kFrozen = 6,     // the same again and again
+  kSwapped =
+      5,  // turned against the estimate as no gyro misses it: markers taken for each other, another vehicle
+  kFrozen = 6,  // the same again and again
 };
 const char* to_string(PoseFault fault);
 

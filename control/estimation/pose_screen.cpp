@@ -33,10 +33,10 @@ void RepetitionWatch::look_at(const plant::PoseSample& pose, plant::RotorState r
 
 void Disagreement::add(std::int64_t stamp_ns, const PoseInnovation& innovation, double max_drift) {
   const double elapsed_s = static_cast<double>(stamp_ns - first_stamp_ns_) * 1e-9;
-  const bool goes_on = count_ > 0 &&
-                       (innovation.position - first_.position).norm() < kScatter_m + max_drift * elapsed_s &&
-                       rotation_vector(rotation(innovation.rotation) * rotation(first_.rotation).conjugate())
-                               .norm() < kScatter_rad;
+  const bool goes_on =
+      count_ > 0 && (innovation.position - first_.position).norm() < kScatter_m + max_drift * elapsed_s &&
+      rotation_vector(rotation(innovation.rotation) * rotation(first_.rotation).conjugate()).norm() <
+          kScatter_rad;
   stamp_ns_ = stamp_ns;
   if (goes_on) {
     ++count_;

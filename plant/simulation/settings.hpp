@@ -30,7 +30,7 @@ struct ImuSettings {
 };
 
 enum class MocapModel {
-  kBounded,    // frames at a steady rate, errors inside a bound: a calibrated system as its maker describes it
+  kBounded,  // frames at a steady rate, errors inside a bound: a calibrated system as its maker describes it
   kOptitrack,  // frames at uneven intervals, Gaussian errors: recorded sessions of such a system
 };
 

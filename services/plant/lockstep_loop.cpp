@@ -110,8 +110,8 @@ void LockstepLoop::publish() {
   bool truth_needed = false;
   if (const auto& imu = vehicle_.simulation().imu()) {
     const plant::MocapSchedule::Events events = mocap_.advance(imu->stamp_ns);
-    truth_needed = events.exposes || events.delivers ||
-                   runtime::is_telemetry_sample(imu->sequence, imu_period_ns_);
+    truth_needed =
+        events.exposes || events.delivers || runtime::is_telemetry_sample(imu->sequence, imu_period_ns_);
   }
   vehicle_.publish_samples_in_order(mocap_.delivered(), truth_needed);
 }

@@ -105,8 +105,7 @@ TEST(EstimatorConsistency, CovarianceStaysSymmetricAndPositiveDefinite) {
   EXPECT_EQ(p, p.transpose());
   // In units of its standard deviations, so that metres and radians compare.
   const ErrorState sigma = p.diagonal().cwiseSqrt();
-  const Matrix15 correlation =
-      sigma.cwiseInverse().asDiagonal() * p * sigma.cwiseInverse().asDiagonal();
+  const Matrix15 correlation = sigma.cwiseInverse().asDiagonal() * p * sigma.cwiseInverse().asDiagonal();
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<Matrix15>(correlation).eigenvalues().minCoeff(), 1e-6);
 }
 
@@ -145,8 +144,8 @@ TEST(EstimatorConsistency, TransitionIsTheDerivativeOfTheMotion) {
     const ErrorState error = kSmall * ErrorState::Unit(i);
     const auto other = flown(error);
     ErrorState moved;
-    moved << other.p - nominal.p, other.v - nominal.v,
-        rotation_vector(other.q * nominal.q.conjugate()), error.tail<6>();
+    moved << other.p - nominal.p, other.v - nominal.v, rotation_vector(other.q * nominal.q.conjugate()),
+        error.tail<6>();
     EXPECT_LT((advance(interval, error) - moved).norm(), 2e-5 * kSmall) << i;
   }
 }

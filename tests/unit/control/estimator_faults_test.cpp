@@ -23,8 +23,9 @@ class EstimatorFaults : public testing::Test {
   using Change = std::function<void(PoseSample&)>;
 
   // What the estimator says of the last pose.
-  PoseFault fly(double duration_s, const Change& change = [](PoseSample&) {},
-                RotorState rotors = RotorState::kRunning) {
+  PoseFault fly(
+      double duration_s, const Change& change = [](PoseSample&) {},
+      RotorState rotors = RotorState::kRunning) {
     const std::int64_t end = time_ns_ + static_cast<std::int64_t>(duration_s * 1e9);
     while (time_ns_ < end) {
       time_ns_ += kStep_ns;
@@ -103,9 +104,10 @@ TEST_F(EstimatorFaults, AJumpThatPersistsIsBelievedInTheEnd) {
 TEST_F(EstimatorFaults, SwappedMarkersAreNotBelievedInFlight) {
   fly(2.0);
   for (const double angle : {0.5 * M_PI, M_PI}) {
-    EXPECT_EQ(fly(0.5, [&](PoseSample& pose) {
-                pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(angle, Vector3d::UnitZ());
-              }),
+    EXPECT_EQ(fly(0.5,
+                  [&](PoseSample& pose) {
+                    pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(angle, Vector3d::UnitZ());
+                  }),
               PoseFault::kSwapped);
     EXPECT_LT(angle_error(), 0.01);
     EXPECT_EQ(fly(0.5), PoseFault::kNone);
@@ -119,7 +121,9 @@ TEST_F(EstimatorFaults, WithRotorsOffTheyAre) {
   };
   fly(1.0, turned, RotorState::kOff);
   EXPECT_GT(angle_error(), 3.0);
-  EXPECT_EQ(fly(0.5, [](PoseSample&) {}, RotorState::kOff), PoseFault::kNone);
+  EXPECT_EQ(fly(
+                0.5, [](PoseSample&) {}, RotorState::kOff),
+            PoseFault::kNone);
   EXPECT_LT(angle_error(), 0.02);
   EXPECT_GE(estimator_.estimate().resets, 1U);
 }
@@ -127,10 +131,11 @@ TEST_F(EstimatorFaults, WithRotorsOffTheyAre) {
 TEST_F(EstimatorFaults, AnotherVehicleThatMovesIsNotTakenForThisOne) {
   fly(2.0);
   const double start = static_cast<double>(time_ns_) * 1e-9;
-  EXPECT_EQ(fly(0.6, [&](PoseSample& pose) {
-              const double t = static_cast<double>(pose.stamp_ns) * 1e-9;
-              pose.position_ned = Vector3d(1.5 + (t - start), 0.3, -1.2);
-            }),
+  EXPECT_EQ(fly(0.6,
+                [&](PoseSample& pose) {
+                  const double t = static_cast<double>(pose.stamp_ns) * 1e-9;
+                  pose.position_ned = Vector3d(1.5 + (t - start), 0.3, -1.2);
+                }),
             PoseFault::kOutlier);
   EXPECT_EQ(estimator_.estimate().resets, 0U);
 }

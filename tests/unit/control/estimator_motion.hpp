@@ -45,7 +45,8 @@ struct Motion {
     const Eigen::Quaterniond change = attitude(t - h).conjugate() * attitude(t + h);
     sample.body_rates_frd = change.vec() * (change.w() < 0 ? -1.0 : 1.0) / h + gyro_bias;
     sample.specific_force_frd =
-        attitude(t).conjugate() * (acceleration(t) - Eigen::Vector3d(0, 0, plant::kGravity)) + accelerometer_bias;
+        attitude(t).conjugate() * (acceleration(t) - Eigen::Vector3d(0, 0, plant::kGravity)) +
+        accelerometer_bias;
     return sample;
   }
   static plant::PoseSample pose(std::int64_t stamp_ns, std::uint64_t sequence) {

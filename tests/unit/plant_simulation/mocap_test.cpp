@@ -14,8 +14,8 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using plant::Mocap;
-using plant::MocapSettings;
 using plant::MocapSchedule;
+using plant::MocapSettings;
 using plant::PoseSample;
 using plant::TruthSample;
 
