@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "control/attitude/attitude_controller.hpp"
 #include "control/attitude/euler.hpp"
 #include "control/design/control_design.hpp"
+#include "control/estimation/disturbance_observer.hpp"
 #include "control/estimation/rotor_observer.hpp"
 #include "control/position/position_controller.hpp"
 #include "control/position/thrust_attitude_map.hpp"
@@ -22,7 +24,7 @@ using Eigen::Vector3d;
 
 constexpr double kFirstStep_s = 0.002;  // taken for the first sample, which has none before it
 constexpr double kMaxStep_s = 0.1;
-constexpr int kUnusableToFault = 50;   // IMU samples in a row that cannot be used: 0.1 s at 500 Hz
+constexpr int kUnusableToFault = 200;  // IMU samples in a row that cannot be used, whatever their stamps say
 constexpr double kDescentGain = 4.0;   // 1/s, vertical speed to acceleration, in descent without position
 constexpr double kDescentLimit = 2.0;  // m/s^2, of that acceleration
 
@@ -40,6 +42,7 @@ ControlDesign flyable_design(const plant::Vehicle& vehicle, const ControlSetting
 struct FlightController::Loops {
   Loops(const plant::Vehicle& vehicle_in, const ControlSettings& settings_in, const ControlDesign& design_in);
 
+  void count_unusable(bool usable, std::int64_t stamp_ns);
   void begin_anew_if_clock_went_back(const plant::ImuSample& sample);
   Situation situation() const;
   void act(const Directive& directive, double dt_s);
@@ -55,15 +58,20 @@ struct FlightController::Loops {
   double max_tilt_tangent;
   Estimator estimator;
   RotorObserver rotors;
+  DisturbanceObserver disturbance;
   PositionController position;
   AttitudeController attitude;
   Allocator allocator;
   Supervisor supervisor;
 
   std::int64_t last_stamp_ns = 0;
-  int unusable_samples = 0;
+  int unusable_samples = 0;            // in a row
+  std::int64_t unusable_since_ns = 0;  // the last stamp before them, or that to which time went back
+  double unusable_s = 0.0;
+  double imu_gap_s = 0.0;  // between the last two samples that could be used
   Vector3d specific_force_frd = Vector3d::Zero();
   bool has_battery = false;
+  std::int64_t battery_stamp_ns = 0;
   double supply_voltage_v;
   Allocator::Supply supply;
   plant::ActuatorCommand command;
@@ -80,10 +88,11 @@ FlightController::Loops::Loops(const plant::Vehicle& vehicle_in, const ControlSe
       max_tilt_tangent(std::tan(settings_in.limits.max_tilt_rad)),
       estimator(settings_in.estimator),
       rotors(vehicle_in),
+      disturbance(settings_in.disturbance),
       position(settings_in.position, settings_in.limits, design_in),
       attitude(vehicle_in, settings_in.attitude, design_in),
       allocator(vehicle_in),
-      supervisor(settings_in.limits, settings_in.failsafe),
+      supervisor({settings_in.limits, settings_in.arming, settings_in.failsafe}),
       supply_voltage_v(allocator.plausible_supply().assumed),
       supply(allocator.supply_at(supply_voltage_v)) {
   command.rotor_count = vehicle.rotor_count();
@@ -99,6 +108,17 @@ void FlightController::Loops::begin_anew_if_clock_went_back(const plant::ImuSamp
   has_battery = false;
 }
 
+// For how long no sample could be used, by their stamps. A clock that stands still does not hide it, and one
+// that goes far back is that of a vehicle which was started again: it must not hear the flight's commands.
+void FlightController::Loops::count_unusable(bool usable, std::int64_t stamp_ns) {
+  unusable_samples = usable ? 0 : unusable_samples + 1;
+  if (unusable_samples == 1) unusable_since_ns = std::min(stamp_ns, last_stamp_ns);
+  unusable_s = usable ? 0.0 : seconds(stamp_ns - unusable_since_ns);
+  const bool started_again = seconds(last_stamp_ns - stamp_ns) > settings.failsafe.imu_timeout_s;
+  if (unusable_samples >= kUnusableToFault || started_again)
+    unusable_s = std::numeric_limits<double>::infinity();
+}
+
 Situation FlightController::Loops::situation() const {
   Situation situation;
   const Estimate& estimate = estimator.estimate();
@@ -108,9 +128,13 @@ Situation FlightController::Loops::situation() const {
   situation.pose_age_s = estimator.pose_age_s();
   situation.has_battery = has_battery;
   situation.supply_voltage_v = supply_voltage_v;
+  situation.battery_age_s = seconds(estimate.stamp_ns - battery_stamp_ns);
   situation.unexplained_lift =
       -(specific_force_frd.z() - estimate.accelerometer_bias.z()) - rotors.thrust_n() / vehicle.mass_kg;
-  situation.imu_healthy = unusable_samples < kUnusableToFault;
+  situation.specific_force = specific_force_frd.norm();
+  situation.rotor_speed = *std::max_element(rotors.speeds().begin(), rotors.speeds().end());
+  situation.imu_unusable_s = unusable_s;
+  situation.imu_gap_s = imu_gap_s;
   return situation;
 }
 
@@ -122,6 +146,7 @@ void FlightController::Loops::act(const Directive& directive, double dt_s) {
     case Actuation::kOff:
     case Actuation::kIdle:
       position.reset();
+      disturbance.reset();
       setpoint = AttitudeSetpoint();
       command.throttle = plant::PerRotor{};
       status.saturated = false;
@@ -138,9 +163,14 @@ void FlightController::Loops::act(const Directive& directive, double dt_s) {
 // Eq. (48) outside, Eq. (35)-(40) inside.
 void FlightController::Loops::fly(const Directive& directive, double dt_s) {
   const Estimate& estimate = estimator.estimate();
+  if (directive.integrate) {
+    disturbance.step(dt_s, specific_force_frd - estimate.accelerometer_bias, estimate.q_ned_from_frd,
+                     rotors.thrust_n() / vehicle.mass_kg);
+  }
   const PositionCommand wanted =
       position.step(estimate.position_ned, estimate.velocity_ned, reference, dt_s, !directive.integrate);
-  const ThrustAttitude outer = thrust_attitude(vehicle.mass_kg, wanted.acceleration_ned, max_tilt_tangent);
+  const ThrustAttitude outer = thrust_attitude(
+      vehicle.mass_kg, wanted.acceleration_ned - disturbance.acceleration_ned(), max_tilt_tangent);
   AttitudeReference inner;
   double thrust_n = outer.thrust_n;
   if (settings.attitude.feed_forward) {
@@ -203,13 +233,13 @@ plant::ActuatorCommand FlightController::on_imu(const plant::ImuSample& sample) 
   Loops& l = *loops_;
   l.begin_anew_if_clock_went_back(sample);
   const bool usable = l.estimator.predict(sample);
-  l.unusable_samples = usable ? 0 : l.unusable_samples + 1;
-  if (!usable && l.unusable_samples < kUnusableToFault) return l.answer(sample);
+  l.count_unusable(usable, sample.stamp_ns);
+  if (!usable && l.unusable_s < l.settings.failsafe.imu_timeout_s) return l.answer(sample);
 
   double dt_s = 0.0;
   if (usable) {
-    dt_s = l.last_stamp_ns == 0 ? kFirstStep_s
-                                : std::min(seconds(sample.stamp_ns - l.last_stamp_ns), kMaxStep_s);
+    l.imu_gap_s = l.last_stamp_ns == 0 ? kFirstStep_s : seconds(sample.stamp_ns - l.last_stamp_ns);
+    dt_s = std::min(l.imu_gap_s, kMaxStep_s);
     l.last_stamp_ns = sample.stamp_ns;
     l.specific_force_frd = sample.specific_force_frd;
     l.rotors.step(dt_s, l.command, l.supply_voltage_v);
@@ -223,6 +253,7 @@ plant::ActuatorCommand FlightController::on_imu(const plant::ImuSample& sample) 
   l.status.has_pose = situation.has_estimate && situation.pose_age_s <= l.settings.failsafe.mocap_timeout_s;
   l.status.pose_age_s = situation.pose_age_s;
   l.status.airborne = l.supervisor.airborne();
+  l.status.ground_links = l.supervisor.ground_links();
   l.status.supply_voltage_v = l.supply_voltage_v;
   l.status.mission = l.supervisor.mission();
   return l.answer(sample);
@@ -236,6 +267,7 @@ void FlightController::on_battery(const plant::BatterySample& sample) {
   const Allocator::Supply supply = loops_->allocator.supply_at(sample.voltage_v);
   if (!supply.plausible) return;
   loops_->has_battery = true;
+  loops_->battery_stamp_ns = sample.stamp_ns;
   loops_->supply_voltage_v = sample.voltage_v;
   loops_->supply = supply;
 }
@@ -247,6 +279,8 @@ void FlightController::on_rotor_speeds(const plant::RotorSpeedSample& sample) {
 Outcome FlightController::on_setpoint(const Setpoint& setpoint) {
   return loops_->supervisor.setpoint(setpoint, loops_->situation());
 }
+
+bool FlightController::on_ground_sign(const GroundSign& sign) { return loops_->supervisor.ground_sign(sign); }
 
 Outcome FlightController::request(const Request& request) {
   return loops_->supervisor.request(request, loops_->situation());

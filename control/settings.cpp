@@ -58,7 +58,17 @@ void check_estimator(const EstimatorSettings& estimator, RuleChecker& check) {
   check.above("estimator.outlier_orientation_rad", estimator.outlier_orientation_rad, 0.0);
 }
 
+void check_arming(const ArmingSettings& arming, RuleChecker& check) {
+  check.above("arming.max_tilt_rad", arming.max_tilt_rad, 0.0);
+  check.above("arming.max_speed_m_s", arming.max_speed, 0.0);
+  check.above("arming.max_body_rate_rad_s", arming.max_body_rate, 0.0);
+  check.above("arming.max_specific_force_error_m_s2", arming.max_specific_force_error, 0.0);
+  check.above("arming.max_rotor_speed_rad_s", arming.max_rotor_speed, 0.0);
+}
+
 void check_failsafe(const FailsafeSettings& failsafe, const Limits& limits, RuleChecker& check) {
+  check.above("failsafe.imu_timeout_s", failsafe.imu_timeout_s, 0.0);
+  check.above("failsafe.imu_gap_s", failsafe.imu_gap_s, 0.0);
   check.above("failsafe.mocap_timeout_s", failsafe.mocap_timeout_s, 0.0);
   check.above("failsafe.descent_speed_m_s", failsafe.descent_speed, 0.0);
   check.above("failsafe.descent_timeout_s", failsafe.descent_timeout_s, 0.0);
@@ -67,8 +77,16 @@ void check_failsafe(const FailsafeSettings& failsafe, const Limits& limits, Rule
     check.add("failsafe.tip_over_tilt_rad", "is ", failsafe.tip_over_tilt_rad,
               ", must be above limits.max_tilt_rad, ", limits.max_tilt_rad);
   }
-  check.at_least("failsafe.low_battery_voltage_v", failsafe.low_battery_voltage, 0.0);
+  if (check.at_least("failsafe.low_battery_voltage_v", failsafe.low_battery_voltage, 0.0)) {
+    check.between("failsafe.critical_battery_voltage_v", failsafe.critical_battery_voltage, 0.0,
+                  failsafe.low_battery_voltage);
+  }
+  check.at_least("failsafe.battery_delay_s", failsafe.battery_delay_s, 0.0);
+  check.above("failsafe.battery_timeout_s", failsafe.battery_timeout_s, 0.0);
+  check.above("failsafe.critical_descent_speed_m_s", failsafe.critical_descent_speed, 0.0);
+  check.at_least("failsafe.fence_margin_m", failsafe.fence_margin_m, 0.0);
   check.above("failsafe.setpoint_timeout_s", failsafe.setpoint_timeout_s, 0.0);
+  check.above("failsafe.ground_link_timeout_s", failsafe.ground_link_timeout_s, 0.0);
 }
 
 }  // namespace
@@ -83,8 +101,11 @@ std::vector<plant::Violation> validate(const ControlSettings& settings) {
   check_rpt("position.y", settings.position.y, check);
   check_rpt("position.z", settings.position.z, check);
   check.at_least("position.integral_limit_m_s2", settings.position.integral_limit, 0.0);
+  check.at_least("disturbance.bandwidth_rad_s", settings.disturbance.bandwidth, 0.0);
+  check.at_least("disturbance.limit_m_s2", settings.disturbance.limit, 0.0);
   check_limits(settings.limits, check);
   check_estimator(settings.estimator, check);
+  check_arming(settings.arming, check);
   check_failsafe(settings.failsafe, settings.limits, check);
   return check.take();
 }

@@ -2,6 +2,7 @@
 // holds the same keys.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,12 @@ struct PositionSettings {
   double integral_limit = 2.0;  // m/s^2, bound of the integral's part of the acceleration, each axis
 };
 
+// The observer of what pushes the vehicle besides its thrust; what it sees is commanded against.
+struct DisturbanceSettings {
+  double bandwidth = 20.0;  // rad/s; 0: nothing is observed
+  double limit = 3.0;       // m/s^2, bound of the length of what it sees
+};
+
 // Bounds on what is flown; a request beyond them is refused, a feedback command beyond them is clipped.
 struct Limits {
   double max_tilt_rad = 0.6;
@@ -77,22 +84,45 @@ struct EstimatorSettings {
   double outlier_orientation_rad = 0.1;  // likewise
 };
 
+// What a vehicle may show on the ground and still be armed.
+struct ArmingSettings {
+  double max_tilt_rad = 0.35;
+  double max_speed = 0.3;                 // m/s, by the estimate
+  double max_body_rate = 0.2;             // rad/s, bias removed
+  double max_specific_force_error = 1.5;  // m/s^2, of its length against g
+  double max_rotor_speed = 100.0;         // rad/s, of any rotor
+};
+
+// What the vehicle does when a ground tool falls silent that its flight depends on.
+enum class GroundLinkAction : std::uint8_t { kNone, kHold, kLand };
+
 // When to give up what. Times in s.
 struct FailsafeSettings {
-  double mocap_timeout_s = 0.5;      // without a pose: from dead reckoning to level descent
-  double descent_speed = 0.4;        // m/s
-  double descent_timeout_s = 6.0;    // then rotors off
-  double tip_over_tilt_rad = 1.4;    // rotors off
-  double low_battery_voltage = 3.3;  // land
-  double setpoint_timeout_s = 0.5;   // from setpoint stream to hold
+  double imu_timeout_s = 0.1;             // of samples that cannot be used, in a row: rotors off
+  double imu_gap_s = 0.3;                 // between two samples: rotors off
+  double tip_over_tilt_rad = 1.4;         // rotors off
+  double mocap_timeout_s = 0.5;           // without a pose: from dead reckoning to level descent
+  double descent_speed = 0.4;             // m/s, without position, and of landings at most
+  double descent_timeout_s = 6.0;         // without position: rotors off
+  double low_battery_voltage = 3.3;       // land
+  double critical_battery_voltage = 3.1;  // land faster
+  double battery_delay_s = 1.0;           // the voltage has been below these for so long
+  double battery_timeout_s = 2.0;         // without a battery sample: land
+  double critical_descent_speed = 0.8;    // m/s
+  double fence_margin_m = 0.2;            // this far outside the fence: land, inside it
+  double setpoint_timeout_s = 0.5;        // from setpoint stream to hold
+  double ground_link_timeout_s = 1.0;     // without a sign of life
+  GroundLinkAction ground_link_action = GroundLinkAction::kLand;
 };
 
 struct ControlSettings {
   std::string name;
   AttitudeSettings attitude;
   PositionSettings position;
+  DisturbanceSettings disturbance;
   Limits limits;
   EstimatorSettings estimator;
+  ArmingSettings arming;
   FailsafeSettings failsafe;
 };
 

@@ -11,6 +11,7 @@
 
 #include "plant/model/vehicle.hpp"
 #include "plant/model/violation.hpp"
+#include "plant/simulation/faults.hpp"
 
 namespace swiftlet::plant {
 
@@ -84,6 +85,7 @@ struct SimulationSettings {
   SupplySettings supply;
   AirSettings air;
   GroundSettings ground;
+  std::vector<Fault> faults;  // that are injected; in any order
 };
 
 // Period of a rate, to the nanosecond; 0 for a rate of 0.

@@ -51,6 +51,13 @@ control::PositionSettings read_position(const ConfigNode& node) {
   return position;
 }
 
+control::DisturbanceSettings read_disturbance(const ConfigNode& node) {
+  control::DisturbanceSettings disturbance;
+  disturbance.bandwidth = node.at("bandwidth_rad_s").number();
+  disturbance.limit = node.at("limit_m_s2").number();
+  return disturbance;
+}
+
 control::Limits read_limits(const ConfigNode& node) {
   control::Limits limits;
   limits.max_tilt_rad = node.at("max_tilt_rad").number();
@@ -81,14 +88,37 @@ control::EstimatorSettings read_estimator(const ConfigNode& node) {
   return estimator;
 }
 
+control::ArmingSettings read_arming(const ConfigNode& node) {
+  control::ArmingSettings arming;
+  arming.max_tilt_rad = node.at("max_tilt_rad").number();
+  arming.max_speed = node.at("max_speed_m_s").number();
+  arming.max_body_rate = node.at("max_body_rate_rad_s").number();
+  arming.max_specific_force_error = node.at("max_specific_force_error_m_s2").number();
+  arming.max_rotor_speed = node.at("max_rotor_speed_rad_s").number();
+  return arming;
+}
+
 control::FailsafeSettings read_failsafe(const ConfigNode& node) {
   control::FailsafeSettings failsafe;
+  failsafe.imu_timeout_s = node.at("imu_timeout_s").number();
+  failsafe.imu_gap_s = node.at("imu_gap_s").number();
   failsafe.mocap_timeout_s = node.at("mocap_timeout_s").number();
   failsafe.descent_speed = node.at("descent_speed_m_s").number();
   failsafe.descent_timeout_s = node.at("descent_timeout_s").number();
   failsafe.tip_over_tilt_rad = node.at("tip_over_tilt_rad").number();
   failsafe.low_battery_voltage = node.at("low_battery_voltage_v").number();
+  failsafe.critical_battery_voltage = node.at("critical_battery_voltage_v").number();
+  failsafe.battery_delay_s = node.at("battery_delay_s").number();
+  failsafe.battery_timeout_s = node.at("battery_timeout_s").number();
+  failsafe.critical_descent_speed = node.at("critical_descent_speed_m_s").number();
+  failsafe.fence_margin_m = node.at("fence_margin_m").number();
   failsafe.setpoint_timeout_s = node.at("setpoint_timeout_s").number();
+  failsafe.ground_link_timeout_s = node.at("ground_link_timeout_s").number();
+  failsafe.ground_link_action =
+      node.at("ground_link_action")
+          .choice<control::GroundLinkAction>({{"none", control::GroundLinkAction::kNone},
+                                              {"hold", control::GroundLinkAction::kHold},
+                                              {"land", control::GroundLinkAction::kLand}});
   return failsafe;
 }
 
@@ -100,8 +130,10 @@ control::ControlSettings parse_control_settings(std::string_view text, const std
   settings.name = root.at("name").text();
   settings.attitude = read_attitude(root.at("attitude"));
   settings.position = read_position(root.at("position"));
+  settings.disturbance = read_disturbance(root.at("disturbance"));
   settings.limits = read_limits(root.at("limits"));
   settings.estimator = read_estimator(root.at("estimator"));
+  settings.arming = read_arming(root.at("arming"));
   settings.failsafe = read_failsafe(root.at("failsafe"));
   root.reject_unknown_keys();
   reject_violations(root, control::validate(settings));

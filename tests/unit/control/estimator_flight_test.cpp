@@ -23,9 +23,11 @@ plant::SimulationSettings world(const std::string& name) {
   return runtime::load_simulation_settings(kConfig + "simulation/" + name + ".yaml");
 }
 
+// Patient enough to dead reckon where it would give up.
 ClosedLoop loop(const plant::SimulationSettings& simulation, std::uint64_t seed) {
-  return {runtime::load_vehicle(kConfig + "vehicles/kaylion.yaml"), simulation,
-          runtime::load_control_settings(kConfig + "control/motor_lag.yaml"), seed};
+  ControlSettings settings = runtime::load_control_settings(kConfig + "control/motor_lag.yaml");
+  settings.failsafe.mocap_timeout_s = 0.6;
+  return {runtime::load_vehicle(kConfig + "vehicles/kaylion.yaml"), simulation, settings, seed};
 }
 
 Request request(RequestKind kind, const Vector3d& position_ned = Vector3d::Zero()) {
