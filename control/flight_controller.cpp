@@ -286,6 +286,7 @@ Outcome FlightController::request(const Request& request) {
 }
 
 const Estimate& FlightController::estimate() const { return loops_->estimator.estimate(); }
+ErrorState FlightController::estimate_deviation() const { return loops_->estimator.standard_deviation(); }
 const Reference& FlightController::reference() const { return loops_->reference; }
 const AttitudeSetpoint& FlightController::attitude_setpoint() const { return loops_->setpoint; }
 const Status& FlightController::status() const { return loops_->status; }

@@ -49,6 +49,7 @@ class FlightController {
 
   // As of the last step.
   const Estimate& estimate() const;
+  ErrorState estimate_deviation() const;  // Estimator::standard_deviation()
   const Reference& reference() const;
   const AttitudeSetpoint& attitude_setpoint() const;
   const Status& status() const;

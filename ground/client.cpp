@@ -5,6 +5,7 @@
 #include <random>
 #include <utility>
 
+#include "control/estimation/estimator.hpp"
 #include "control/mode.hpp"
 
 namespace swiftlet::ground {
@@ -255,6 +256,9 @@ std::string Client::no_control() const {
          (seen && !settings_.localhost_only ? " (try --localhost-only)" : "");
 }
 
+const char* pose_fault_name(std::uint8_t fault) {
+  return control::to_string(static_cast<control::PoseFault>(fault));
+}
 const char* mode_name(std::uint8_t mode) { return control::to_string(static_cast<control::Mode>(mode)); }
 
 const char* mission_state_name(std::uint8_t state) {

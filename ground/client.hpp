@@ -126,6 +126,7 @@ class Client {
 
 // Words for the constants of the wire.
 const char* mode_name(std::uint8_t mode);
+const char* pose_fault_name(std::uint8_t fault);  // "none", "frozen" ...
 const char* mission_state_name(std::uint8_t state);
 
 }  // namespace swiftlet::ground

@@ -56,6 +56,10 @@ nlohmann::ordered_json to_json(const View& view, const Rates& rates, const Reque
   if (view.estimate.seen()) {
     json["position_ned_m"] = view.estimate.message.position_ned();
     json["velocity_ned_m_s"] = view.estimate.message.velocity_ned();
+    json["poses"] = {{"fault", pose_fault_name(view.estimate.message.pose_fault())},
+                     {"accepted", view.estimate.message.poses_accepted()},
+                     {"refused", view.estimate.message.poses_refused()},
+                     {"resets", view.estimate.message.resets()}};
   }
   json["battery"] = nullptr;
   if (view.battery.seen()) {
@@ -123,8 +127,16 @@ void print(const View& view, const Rates& rates, const RequestOptions& options) 
     std::printf("  position  %.3f, %.3f, %.3f m   velocity %.2f, %.2f, %.2f m/s   (NED)\n", p[0], p[1], p[2],
                 v[0], v[1], v[2]);
   }
-  std::printf("  pose      %s, %.3f s old\n", control.has_pose() ? "tracked" : "MISSING",
-              control.pose_age_s());
+  std::printf("  pose      %s, %.3f s old", control.has_pose() ? "tracked" : "MISSING", control.pose_age_s());
+  if (view.estimate.seen()) {
+    const auto& estimate = view.estimate.message;
+    std::printf(", %llu used and %llu refused", static_cast<unsigned long long>(estimate.poses_accepted()),
+                static_cast<unsigned long long>(estimate.poses_refused()));
+    if (estimate.pose_fault() != msg::Estimate_Constants::POSE_FAULT_NONE)
+      std::printf(", now as %s", pose_fault_name(estimate.pose_fault()));
+    if (estimate.resets() > 0) std::printf(", %u resets", estimate.resets());
+  }
+  std::printf("\n");
   if (view.battery.seen()) {
     const auto& battery = view.battery.message;
     std::printf("  battery   %.2f V, %.2f A, %.0f %%\n", battery.voltage_v(), battery.current_a(),

@@ -417,7 +417,8 @@ msg::Trajectory to_message(const control::Trajectory& in) {
   return out;
 }
 
-msg::Estimate to_message(const control::Estimate& in, double pose_age_s) {
+msg::Estimate to_message(const control::Estimate& in, const control::ErrorState& standard_deviation,
+                         double pose_age_s) {
   msg::Estimate out;
   out.stamp_ns(in.stamp_ns);
   out.position_ned(array(in.position_ned));
@@ -427,6 +428,13 @@ msg::Estimate to_message(const control::Estimate& in, double pose_age_s) {
   out.gyro_bias(array(in.gyro_bias));
   out.accelerometer_bias(array(in.accelerometer_bias));
   out.pose_age_s(pose_age_s);
+  std::copy(standard_deviation.begin(), standard_deviation.end(), out.standard_deviation().begin());
+  out.pose_fault(static_cast<std::uint8_t>(in.pose_fault));
+  out.poses_accepted(in.poses_accepted);
+  out.poses_refused(in.poses_refused);
+  out.resets(in.resets);
+  out.reset_position_ned(array(in.reset_position_ned));
+  out.reset_rotation_ned(array(in.reset_rotation_ned));
   return out;
 }
 

@@ -39,7 +39,7 @@ msg::RotorSpeeds to_message(const plant::RotorSpeedSample& in);
 msg::ActuatorCommand to_message(const plant::ActuatorCommand& in);
 msg::GroundTruth to_message(const plant::TruthSample& in);
 msg::Setpoint to_message(const control::Setpoint& in);
-msg::Estimate to_message(const control::Estimate& in,
+msg::Estimate to_message(const control::Estimate& in, const control::ErrorState& standard_deviation,
                          double pose_age_s);  // sequence_number is left to the sender
 msg::Reference to_message(const control::Reference& in, const control::AttitudeSetpoint& setpoint,
                           control::Mode mode);

@@ -57,6 +57,7 @@ bool InnerLoop::finish(std::int64_t now_ns) {
   snapshot_.stamp_ns = stamp_ns_;
   snapshot_.sampled = sampled;
   snapshot_.estimate = controller_.estimate();
+  if (sampled) snapshot_.estimate_deviation = controller_.estimate_deviation();
   snapshot_.reference = controller_.reference();
   snapshot_.setpoint = controller_.attitude_setpoint();
   snapshot_.status = status;

@@ -20,6 +20,7 @@ struct Snapshot {
   bool sampled =
       false;  // one of the 100 a second that telemetry shows; others are there for a change of status
   control::Estimate estimate;
+  control::ErrorState estimate_deviation;  // of a sampled one
   control::Reference reference;
   control::AttitudeSetpoint setpoint;
   control::Status status;

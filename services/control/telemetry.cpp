@@ -82,7 +82,8 @@ void Telemetry::log_imu_silence(std::int64_t now_ns) {
 
 void Telemetry::publish_sampled(const Snapshot& snapshot) {
   ++sampled_count_;
-  comms::msg::Estimate estimate = comms::to_message(snapshot.estimate, snapshot.status.pose_age_s);
+  comms::msg::Estimate estimate =
+      comms::to_message(snapshot.estimate, snapshot.estimate_deviation, snapshot.status.pose_age_s);
   estimate.sequence_number(sampled_count_);
   estimates_.publish(estimate);
   comms::msg::Reference reference =

@@ -232,7 +232,7 @@ void run(const Options& options) {
   if (options.clock == runtime::Clock::kRealtime) {
     realtime_loop.emplace(simulated, settings, options.speed, node, realtime);
   } else {
-    lockstep_loop.emplace(simulated, settings, options.lockstep, vehicle.rotor_count(), node);
+    lockstep_loop.emplace(simulated, settings, options.seed, options.lockstep, vehicle.rotor_count(), node);
   }
   const PlantReport last = run_loop(
       [&](const std::atomic<bool>& ends) {

@@ -138,7 +138,13 @@ inline msg::Estimate example() {
   estimate.body_rates_frd = {7.0, 8.0, 9.0};
   estimate.gyro_bias = {0.1, 0.2, 0.3};
   estimate.accelerometer_bias = {0.4, 0.5, 0.6};
-  return to_message(estimate, 0.02);
+  estimate.pose_fault = control::PoseFault::kSwapped;
+  estimate.poses_accepted = 1010;
+  estimate.poses_refused = 11;
+  estimate.resets = 2;
+  estimate.reset_position_ned = {0.7, 0.8, 0.9};
+  estimate.reset_rotation_ned = {-0.1, -0.2, -0.3};
+  return to_message(estimate, control::ErrorState::LinSpaced(0.01, 0.15), 0.02);
 }
 template <>
 inline msg::Reference example() {
@@ -149,7 +155,7 @@ inline msg::Reference example() {
   reference.jerk_ned = {0.4, 0.5, 0.6};
   reference.yaw_rad = 0.7;
   reference.yaw_rate = 0.8;
-  return to_message(reference, {{0.1, -0.2, 0.3}, 0.39, {0.01, 0.02, 0.03}}, control::Mode::kMission);
+  return to_message(reference, {{0.6, 0.0, 0.8}, 0.3, 0.39, {0.01, 0.02, 0.03}}, control::Mode::kMission);
 }
 template <>
 inline msg::ControlStatus example() {
