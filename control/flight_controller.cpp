@@ -21,7 +21,9 @@ using Eigen::Vector3d;
 
 constexpr double kFirstStep_s = 0.002;  // taken for the first sample, which has none before it
 constexpr double kMaxStep_s = 0.1;
-constexpr int kUnusableToFault = 50;   // IMU samples in a row that cannot be used: 0.1 s at 500 Hz
+constexpr int kUnusableToFault = 50;  // IMU samples in a row that cannot be used: 0.1 s at 500 Hz
+constexpr double kStandingLift =
+    0.5;  // of the weight, that the rotors do not explain: something else carries it
 constexpr double kDescentGain = 4.0;   // 1/s, vertical speed to acceleration, in descent without position
 constexpr double kDescentLimit = 2.0;  // m/s^2, of that acceleration
 
@@ -246,6 +248,29 @@ Outcome FlightController::on_setpoint(const Setpoint& setpoint) {
 
 Outcome FlightController::request(const Request& request) {
   return loops_->supervisor.request(request, loops_->situation());
+}
+
+FlightState FlightController::state() const {
+  const Loops& l = *loops_;
+  return {l.supervisor.state(), l.position.integral(), l.command.rotor_state, l.command.throttle};
+}
+
+void FlightController::adopt(const FlightState& state, const Mission* mission, const Trajectory* trajectory) {
+  Loops& l = *loops_;
+  l.supervisor.adopt(state.supervisor, mission, trajectory);
+  l.position.adopt(state.position_integral);
+  l.command.rotor_state = state.rotor_state;
+  l.command.throttle = state.throttle;
+}
+
+bool FlightController::feels_airborne() const {
+  return loops_->situation().unexplained_lift < kStandingLift * plant::kGravity;
+}
+
+bool FlightController::find_flying() {
+  if (!loops_->status.has_pose) return false;
+  loops_->supervisor.find_flying(loops_->situation());
+  return true;
 }
 
 const Estimate& FlightController::estimate() const { return loops_->estimator.estimate(); }

@@ -64,6 +64,8 @@ const char* to_string(Reason reason) {
       return "IMU samples are not usable";
     case Reason::kPlanUnknown:
       return "taken over without the plan that was flown";
+    case Reason::kFoundFlying:
+      return "found flying";
   }
   return "unknown";
 }

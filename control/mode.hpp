@@ -39,8 +39,9 @@ enum class Reason : std::uint8_t {
   kTippedOver,
   kImuUnusable,
   kPlanUnknown,  // another controller was taken over from whose mission or trajectory is not known here
+  kFoundFlying,  // the controller was started while its vehicle flew
 };
-constexpr int kReasonCount = static_cast<int>(Reason::kPlanUnknown) + 1;
+constexpr int kReasonCount = static_cast<int>(Reason::kFoundFlying) + 1;
 const char* to_string(Reason reason);
 
 enum class MissionState : std::uint8_t { kNone = 0, kRunning = 1, kCompleted = 2, kAborted = 3 };

@@ -101,10 +101,7 @@ void Supervisor::check_failsafes(const Situation& situation) {
   if (state_.mode == Mode::kDescent) {
     if (!pose_lost) {
       enter(Mode::kHolding, Reason::kPoseIsBack);
-      Reference here = standing_at(estimate);
-      here.velocity_ned = estimate.velocity_ned;
-      state_.path.pin(here);
-      start_stop();
+      stop_from(estimate);
     }
     return;
   }
@@ -236,6 +233,14 @@ void Supervisor::adopt(const SupervisorState& state, const Mission* mission, con
   if (plan_known) return;
   enter(Mode::kHolding, Reason::kPlanUnknown);
   start_stop();
+}
+
+void Supervisor::find_flying(const Situation& situation) {
+  state_.now_ns = situation.stamp_ns;
+  enter(Mode::kHolding, Reason::kFoundFlying);
+  state_.ground_z_ned = 0.0;
+  state_.airborne = true;
+  stop_from(*situation.estimate);
 }
 
 Outcome Supervisor::request(const Request& request, const Situation& situation) {
@@ -423,6 +428,14 @@ void Supervisor::start_move(const Eigen::Vector3d& to_ned, bool yaw_free, double
   duration = std::max(duration, 15.0 / 8.0 * std::abs(to_yaw - from.yaw_rad) / limits_.max_yaw_rate);
   duration = std::max(duration, stopping_time(from));
   state_.path.follow(join_to_rest(from, to_ned, to_yaw, duration), start_ns);
+}
+
+// The reference of before is not known, or has been left behind.
+void Supervisor::stop_from(const Estimate& estimate) {
+  Reference here = standing_at(estimate);
+  here.velocity_ned = estimate.velocity_ned;
+  state_.path.pin(here);
+  start_stop();
 }
 
 // Comes to rest along the present velocity, inside the fence.

@@ -61,6 +61,9 @@ class Supervisor {
   // flown there, or null where it is not known here, upon which the vehicle comes to rest and holds; owned by
   // the caller and kept until the controller has left it.
   void adopt(const SupervisorState& state, const Mission* mission, const Trajectory* trajectory);
+  // The vehicle flies, and nobody knows what for: it comes to rest and holds. The ground is taken to be at z = 0.
+  // Needs an estimate.
+  void find_flying(const Situation& situation);
 
  private:
   void enter(Mode mode, Reason reason);
@@ -79,6 +82,7 @@ class Supervisor {
   void start_move(const Eigen::Vector3d& to_ned, bool yaw_free, double yaw, double speed,
                   std::int64_t start_ns);
   void start_stop();
+  void stop_from(const Estimate& estimate);
   double stopping_time(const Reference& from) const;
   Eigen::Vector3d stopping_place(const Reference& from) const;
   void start_landing(double speed, std::int64_t start_ns);
