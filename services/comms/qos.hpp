@@ -1,4 +1,4 @@
-// The four ways in which topics are delivered, and their numbers. idl/README.md shows them as a table.
+// The ways in which topics are delivered, and their numbers. idl/README.md shows them as a table.
 #pragma once
 
 #include <chrono>
@@ -10,6 +10,7 @@ enum class Qos {
   kOwnedStream,  // a stream of which the strongest living writer is heard (exclusive ownership)
   kTelemetry,    // best effort, keep last 1, volatile
   kState,        // reliable, transient local, keep last 1
+  kDocument,     // a state that may be long: takes memory as it needs it
   kRequest,      // reliable, volatile, keep all within limits
 };
 

@@ -18,7 +18,7 @@ inline plant::PoseSample pose_sample() {
 inline plant::BatterySample battery_sample() { return {1003, 13, 3.9, 2.5, 0.75}; }
 inline plant::RotorSpeedSample rotor_speed_sample() { return {1004, 14, 4, four_rotors(1600.0)}; }
 inline plant::ActuatorCommand actuator_command() {
-  return {1005, 15, 11, 12, plant::RotorState::kRunning, 4, four_rotors(0.3)};
+  return {1005, 15, 11, 12, plant::RotorState::kRunning, 4, four_rotors(0.3), 21};
 }
 inline plant::TruthSample truth_sample() {
   return {1006,
