@@ -100,6 +100,7 @@ nlohmann::ordered_json to_json(const View& view, const Rates& rates, const Reque
   for (const msg::ControllerState& controller : controllers_of(view, now)) {
     json["controllers"].push_back({{"number", controller.controller()},
                                    {"role", role_name(controller)},
+                                   {"ready", controller.ready()},
                                    {"strength", controller.strength()},
                                    {"term", controller.term()}});
   }
@@ -168,9 +169,9 @@ void print(const View& view, const Rates& rates, const RequestOptions& options) 
       static_cast<unsigned long long>(control.cycles()), control.step_time_max_us(),
       control.realtime_scheduling() ? "" : ", no real-time scheduling");
   for (const msg::ControllerState& controller : controllers_of(view, now)) {
-    std::printf("  controller %016llx: %s, strength %u, term %u\n",
+    std::printf("  controller %016llx: %s%s, strength %u, term %u\n",
                 static_cast<unsigned long long>(controller.controller()), role_name(controller),
-                controller.strength(), controller.term());
+                controller.ready() ? "" : ", not ready", controller.strength(), controller.term());
   }
   if (view.vehicle.seen()) {
     const auto& info = view.vehicle.message;

@@ -457,6 +457,7 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
   out.strength = static_cast<int>(in.strength());
   out.term = in.term();
   out.active = in.role() == ControllerState_Constants::ACTIVE;
+  out.ready = in.ready();
 
   control::SupervisorState& state = out.flight.supervisor;
   state.mode = static_cast<control::Mode>(in.mode());
@@ -503,6 +504,7 @@ msg::ControllerState to_message(const ControllerReport& in) {
   out.strength(static_cast<std::uint32_t>(in.strength));
   out.term(in.term);
   out.role(in.active ? msg::ControllerState_Constants::ACTIVE : msg::ControllerState_Constants::STANDBY);
+  out.ready(in.ready);
   out.mode(static_cast<std::uint8_t>(state.mode));
   out.reason(static_cast<std::uint8_t>(state.reason));
   out.phase(static_cast<std::uint8_t>(state.phase));

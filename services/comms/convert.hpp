@@ -36,6 +36,7 @@ struct ControllerReport {
   int strength = 0;
   std::uint32_t term = 0;
   bool active = false;
+  bool ready = false;  // it can go on with the flight
   // Of an active one.
   control::FlightState flight;
   int rotor_count = 0;

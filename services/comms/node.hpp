@@ -2,6 +2,7 @@
 // No Fast DDS header is seen through this file.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -27,6 +28,8 @@ struct NodeSettings {
   // Offer and ask for the topics' deadlines. Not in lockstep, where time stands still; who asks for one does
   // not hear who offers none.
   bool deadlines = true;
+  // How often it announces itself: kFixturePeriod for what a controller cannot fly without.
+  std::chrono::milliseconds announcement_period = kLivelinessPeriod;
 };
 
 // Another process of the same vehicle appeared or went away.

@@ -51,6 +51,9 @@ void InnerLoop::follow(std::uint32_t term) {
   if (newest.term == term) {
     controller_.adopt(newest.flight, newest.mission, newest.trajectory);
     accepted_ = newest.accepted;
+    const control::Mode mode = newest.flight.supervisor.mode;
+    knows_plan_ = (mode != control::Mode::kMission || newest.mission != nullptr) &&
+                  (mode != control::Mode::kTrajectory || newest.trajectory != nullptr);
     looks_since_ns_ = kLooksNot;
   }
   taken_handover_.store(newest.number, std::memory_order_release);
@@ -93,6 +96,7 @@ void InnerLoop::remember(const PendingRequest& accepted) {
 
 void InnerLoop::report(comms::ControllerReport& report) const {
   report.active = role_ == Role::kActive;
+  report.ready = (report.active && !looking()) || (knows_plan_ && controller_.status().has_pose);
   if (!report.active) return;
   report.flight = controller_.state();
   report.accepted = accepted_;

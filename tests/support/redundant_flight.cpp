@@ -146,8 +146,11 @@ void RedundantFlight::wait(const char* what, const std::function<bool()>& predic
 }
 
 void RedundantFlight::wait_for_roles(int active, int standby) const {
-  wait("controllers have their roles",
-       [&] { return active_count() == active && standby_count() == standby; });
+  wait("controllers have their roles", [&] {
+    const auto all = heard();
+    const bool ready = std::all_of(all.begin(), all.end(), [](const auto& c) { return c.second.ready(); });
+    return ready && active_count() == active && standby_count() == standby;
+  });
 }
 
 void RedundantFlight::ask(std::uint8_t kind, double z_ned) {

@@ -57,7 +57,7 @@ class RedundantFlight {
 
   // Until it holds; throws std::runtime_error that names it if it does not within 30 s.
   void wait(const char* what, const std::function<bool()>& predicate) const;
-  void wait_for_roles(int active, int standby) const;
+  void wait_for_roles(int active, int standby) const;  // and until all are ready
 
   // Arms and uploads; throws std::runtime_error with the reason of a refusal.
   void fly(const control::Mission& mission);

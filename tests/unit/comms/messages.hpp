@@ -78,6 +78,7 @@ inline ControllerReport controller_report() {
   report.strength = 24;
   report.term = 25;
   report.active = true;
+  report.ready = true;
   control::SupervisorState& state = report.flight.supervisor;
   state.mode = control::Mode::kMission;
   state.reason = control::Reason::kRequested;
