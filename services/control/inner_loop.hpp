@@ -110,7 +110,7 @@ class InnerLoop {
   Role told_role_ = Role::kStandby;
   AcceptedRequests accepted_{};  // oldest first
   std::int64_t looks_since_ns_ = kLooksNot;
-  int rotor_samples_ = 0;  // of the rotors' speeds, since it looks
+  int rotor_samples_ = 0;    // of the rotors' speeds, since it looks
   bool knows_plan_ = false;  // of the flight that it follows
   bool report_due_ = false;
   std::int64_t reported_ns_ = 0;

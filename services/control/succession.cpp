@@ -41,6 +41,7 @@ void Succession::heard(const Heartbeat& beat) {
   }
   const bool recent = beat.heard_ns - followed_heard_ns_ < kForgottenNs;
   if (beat.term < followed_term_ && recent) return;
+  if (beat.term != followed_term_) followed_for_ns_ = 0;
   followed_term_ = beat.term;
   followed_heard_ns_ = beat.heard_ns;
   silence_ns_ = 0;
@@ -68,7 +69,7 @@ Role Succession::sample(std::int64_t stamp_ns, const plant::ObeyedCommand& obeye
   if (role_ == Role::kActive) {
     const bool another_flies = obeyed.any && obeyed.term > own_term_ && silence_ns_ <= kPatienceNs;
     if (another_flies) step_down(obeyed.term);
-  } else if (silence_ns_ > patience_ns(obeyed, now_ns)) {
+  } else if (silence_ns_ > patience_ns(obeyed, now_ns) && !is_on_trial()) {
     continues_ = knows_flight(now_ns);
     own_term_ = next_term();
     newest_term_ = own_term_;
@@ -88,6 +89,7 @@ void Succession::pass_time(std::int64_t stamp_ns, const plant::ObeyedCommand& ob
     // Of a burst of samples that waited for this process, next to nothing.
     silence_ns_ += std::min({elapsed_ns, waited_ns, kMaxStepNs});
   }
+  followed_for_ns_ += std::clamp<std::int64_t>(elapsed_ns, 0, kMaxStepNs);
   sampled_ = true;
   last_stamp_ns_ = stamp_ns;
   last_now_ns_ = now_ns;
@@ -96,6 +98,10 @@ void Succession::pass_time(std::int64_t stamp_ns, const plant::ObeyedCommand& ob
 bool Succession::knows_flight(std::int64_t now_ns) const {
   const bool obeyed = obeyed_term_ == 0 || obeyed_term_ == followed_term_;
   return followed_term_ != 0 && obeyed && now_ns - followed_heard_ns_ < kForgottenNs;
+}
+
+bool Succession::is_on_trial() const {
+  return obeyed_term_ != 0 && obeyed_term_ < followed_term_ && followed_for_ns_ < kTrialNs;
 }
 
 std::int64_t Succession::patience_ns(const plant::ObeyedCommand& obeyed, std::int64_t now_ns) const {

@@ -57,6 +57,8 @@ class Succession {
   static constexpr std::int64_t kStrangersPatienceNs = 100'000'000;
   // Where the vehicle does not say whom it obeys: time to find an active controller that may be there.
   static constexpr std::int64_t kSearchNs = 1'000'000'000;
+  // The vehicle has not obeyed the last takeover, perhaps nobody: so long the one that took over is left to try.
+  static constexpr std::int64_t kTrialNs = 500'000'000;
   // A standby that was not heard for so long has no rank; an active one can no longer be gone on from.
   static constexpr std::int64_t kForgottenNs = 1'000'000'000;
 
@@ -67,6 +69,7 @@ class Succession {
   void step_down(std::uint32_t to_term);
   void pass_time(std::int64_t stamp_ns, const plant::ObeyedCommand& obeyed, std::int64_t now_ns);
   bool knows_flight(std::int64_t now_ns) const;
+  bool is_on_trial() const;
   std::int64_t patience_ns(const plant::ObeyedCommand& obeyed, std::int64_t now_ns) const;
   int rank(std::int64_t now_ns) const;
 
@@ -78,6 +81,7 @@ class Succession {
   std::uint32_t obeyed_term_ = 0;  // by the vehicle; 0: it obeyed none, or does not say
   std::uint32_t followed_term_ = 0;
   std::int64_t followed_heard_ns_ = 0;
+  std::int64_t followed_for_ns_ = 0;  // the vehicle's time
   bool continues_ = false;
 
   bool sampled_ = false;

@@ -64,7 +64,7 @@ class Vehicle {
 
   // As the vehicle's watchdog takes them.
   void command(const Controller& c, std::int64_t stamp_ns) {
-    if (obeyed_.any && stamp_ns < obeyed_.stamp_ns) return;
+    if (!obeys_ || (obeyed_.any && stamp_ns < obeyed_.stamp_ns)) return;
     if (obeyed_.any && c.succession.term() < obeyed_.term && stamp_ns_ - obeyed_.stamp_ns < ms(200)) {
       ++refused_;
       return;
@@ -81,6 +81,7 @@ class Vehicle {
     longest_gap_ns_ = 0;
   }
   void tell_nothing() { told_ = false; }
+  void obey(bool obeys) { obeys_ = obeys; }
 
   int active() const {
     return static_cast<int>(std::count_if(controllers_.begin(), controllers_.end(), [](const auto& c) {
@@ -96,6 +97,7 @@ class Vehicle {
   std::int64_t stamp_ns_ = 0;
   std::int64_t now_ns_ = kStartNs;
   bool told_ = true;
+  bool obeys_ = true;
   plant::ObeyedCommand obeyed_{true, false, 0, 0};
   std::uint64_t commander_ = 0;
   std::int64_t longest_gap_ns_ = 0;
@@ -295,6 +297,21 @@ TEST(Succession, AVehicleThatSaysNothingIsFlownByHeartbeats) {
   vehicle.run(500);
   EXPECT_EQ(vehicle.active(), 1);
   EXPECT_EQ(vehicle.commander(), 8U);
+}
+
+TEST(Succession, AVehicleThatObeysNobodyIsNotFoughtOver) {
+  Vehicle vehicle;
+  auto& one = vehicle.add(7, 1);
+  auto& two = vehicle.add(8, 1);
+  vehicle.run(1000);
+  const std::uint32_t before = std::max(one.succession.term(), two.succession.term());
+  vehicle.obey(false);
+  vehicle.run(2000);
+  const std::uint32_t after = std::max(one.succession.term(), two.succession.term());
+  EXPECT_LE((after >> 16) - (before >> 16), 5U) << "takeovers in 2 s";
+  vehicle.obey(true);
+  vehicle.run(1000);
+  EXPECT_EQ(vehicle.active(), 1);
 }
 
 TEST(Succession, TermsRiseWithEachTakeover) {
