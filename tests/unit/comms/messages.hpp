@@ -180,7 +180,7 @@ inline msg::Reference example() {
   reference.jerk_ned = {0.4, 0.5, 0.6};
   reference.yaw_rad = 0.7;
   reference.yaw_rate = 0.8;
-  return to_message(reference, {{0.1, -0.2, 0.3}, 0.39, {0.01, 0.02, 0.03}}, control::Mode::kMission);
+  return to_message(reference, {{0.0, 0.6, 0.8}, 0.3, 0.39, {0.01, 0.02, 0.03}}, control::Mode::kMission);
 }
 template <>
 inline msg::ControlStatus example() {
