@@ -50,6 +50,10 @@ const char* to_string(Reason reason) {
       return "setpoints stopped";
     case Reason::kBatteryLow:
       return "battery is low";
+    case Reason::kBatteryCritical:
+      return "battery is critical";
+    case Reason::kBatterySilent:
+      return "no battery voltage";
     case Reason::kOutsideFence:
       return "outside the fence";
     case Reason::kNoPose:
@@ -62,6 +66,10 @@ const char* to_string(Reason reason) {
       return "tipped over";
     case Reason::kImuUnusable:
       return "IMU samples are not usable";
+    case Reason::kImuGap:
+      return "IMU samples were missing";
+    case Reason::kGroundLinkLost:
+      return "ground link lost";
     case Reason::kPlanUnknown:
       return "taken over without the plan that was flown";
     case Reason::kFoundFlying:

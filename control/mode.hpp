@@ -32,12 +32,16 @@ enum class Reason : std::uint8_t {
   kSetpointsCame,
   kSetpointsStopped,
   kBatteryLow,
+  kBatteryCritical,
+  kBatterySilent,
   kOutsideFence,
   kNoPose,
   kPoseIsBack,
   kDescentTimedOut,
   kTippedOver,
   kImuUnusable,
+  kImuGap,
+  kGroundLinkLost,
   kPlanUnknown,  // another controller was taken over from whose mission or trajectory is not known here
   kFoundFlying,  // the controller was started while its vehicle flew
 };
@@ -59,6 +63,7 @@ struct Status {
   bool has_pose = false;             // a mocap pose has come within the time-out
   double pose_age_s = 0.0;           // at this step
   bool airborne = false;
+  int ground_links = 0;  // ground tools that the flight depends on
   double supply_voltage_v = 0.0;
   bool saturated = false;  // the last command was cut by the rotors' limits
   MissionProgress mission;

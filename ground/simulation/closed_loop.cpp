@@ -14,6 +14,8 @@ ClosedLoop::ClosedLoop(const plant::Vehicle& plant_vehicle, const plant::Vehicle
     : imu_rate_hz(simulation.imu.rate_hz),
       plant(plant_vehicle, simulation, seed),
       mocap(simulation.mocap, seed),
+      mocap_path(simulation, seed),
+      command_path(simulation),
       watchdog(plant_vehicle.rotor_count(), std::llround(simulation.command_timeout_s * 1e9)),
       controller(control_vehicle, settings) {
   collect();
@@ -22,9 +24,9 @@ ClosedLoop::ClosedLoop(const plant::Vehicle& plant_vehicle, const plant::Vehicle
 
 void ClosedLoop::step() {
   do {
-    plant.step(watchdog.drive(plant.stamp_ns()));
+    plant.step(drive());
     collect();
-  } while (!plant.imu());
+  } while (!plant.imu_due());
   answer();
 }
 
@@ -34,14 +36,24 @@ void ClosedLoop::collect() {
 }
 
 void ClosedLoop::answer() {
-  const auto pose = mocap.update(plant.truth());
-  if (pose && mocap_connected) controller.on_pose(*pose);
+  const auto pose = mocap_path.pass(mocap.update(plant.truth()), plant.stamp_ns());
+  if (pose && mocap_connected) pose_ = pose;
+  if (!plant.imu()) return;
+  if (pose_) controller.on_pose(*pose_);
   if (battery_) controller.on_battery(*battery_);
   if (rotor_speeds_) controller.on_rotor_speeds(*rotor_speeds_);
+  pose_.reset();
   battery_.reset();
   rotor_speeds_.reset();
   command = controller.on_imu(*plant.imu());
-  watchdog.accept(command, plant.stamp_ns());
+  if (const auto arrived = command_path.send(command, plant.stamp_ns()))
+    watchdog.accept(*arrived, plant.stamp_ns());
+}
+
+plant::RotorDrive ClosedLoop::drive() {
+  if (const auto arrived = command_path.arrived(plant.stamp_ns()))
+    watchdog.accept(*arrived, plant.stamp_ns());
+  return watchdog.drive(plant.stamp_ns());
 }
 
 bool ClosedLoop::step_until(const std::function<bool()>& predicate, double limit_s) {

@@ -12,7 +12,9 @@
 #include "plant/model/samples.hpp"
 #include "plant/model/vehicle.hpp"
 #include "plant/simulation/actuator_watchdog.hpp"
+#include "plant/simulation/command_path.hpp"
 #include "plant/simulation/mocap.hpp"
+#include "plant/simulation/mocap_path.hpp"
 #include "plant/simulation/plant_simulation.hpp"
 #include "plant/simulation/settings.hpp"
 
@@ -28,7 +30,8 @@ class ClosedLoop {
              const plant::SimulationSettings& simulation, const control::ControlSettings& settings,
              std::uint64_t seed);
 
-  // Up to the next IMU sample, and the controller's answer to it.
+  // Up to the next stamp of the IMU, and the controller's answer to its sample if a fault does not keep it
+  // back.
   void step();
   // Steps until the predicate holds; false if it does not within limit_s of simulated time.
   bool step_until(const std::function<bool()>& predicate, double limit_s);
@@ -40,6 +43,8 @@ class ClosedLoop {
   const double imu_rate_hz;
   plant::PlantSimulation plant;
   plant::Mocap mocap;
+  plant::MocapPath mocap_path;
+  plant::CommandPath command_path;
   plant::ActuatorWatchdog watchdog;
   control::FlightController controller;
   plant::ActuatorCommand command;  // the last answer
@@ -48,8 +53,10 @@ class ClosedLoop {
  private:
   void collect();
   void answer();
+  plant::RotorDrive drive();
 
   // The newest since the last answer.
+  std::optional<plant::PoseSample> pose_;
   std::optional<plant::BatterySample> battery_;
   std::optional<plant::RotorSpeedSample> rotor_speeds_;
 };

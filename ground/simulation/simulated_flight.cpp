@@ -104,7 +104,7 @@ class Run {
 
   // False if the flight is to end.
   bool observe() {
-    const bool sampled = runtime::is_telemetry_sample(loop_.command.imu_sequence, imu_period_ns_);
+    const bool sampled = runtime::is_telemetry_sample(loop_.plant.imu_count(), imu_period_ns_);
     if (observer_.trace != nullptr) observer_.trace->add(loop_.plant.truth(), loop_.command);
     if (observer_.record != nullptr) record(*observer_.record, sampled);
     return !sampled || !observer_.cancelled || !observer_.cancelled();
@@ -119,7 +119,7 @@ class Run {
           {stamp_ns, now.id, static_cast<int>(now.state), static_cast<std::uint32_t>(now.item_index)});
       told_ = now;
     }
-    if (!sampled) return;
+    if (!sampled || !loop_.plant.imu()) return;
     const control::Reference& reference = loop_.controller.reference();
     const control::Estimate& estimate = loop_.controller.estimate();
     record.reference.append({stamp_ns, static_cast<int>(status_.mode), array(reference.position_ned),

@@ -107,7 +107,7 @@ struct Dynamics::Drivetrain {
 
   // Eq. (25)-(28)
   [[gnu::always_inline]] Wrench wrench(const State& y) const {
-    Wrench sum;
+    Wrench sum{0.0, d.push_moment_frd_.x(), d.push_moment_frd_.y(), d.push_moment_frd_.z()};
     for (std::size_t i = 0; i < kN; ++i) {
       const double speed_squared = square(y[kSpeeds + i]);
       sum.lift += d.wrenches_[i].lift * speed_squared;
@@ -129,12 +129,13 @@ struct Dynamics::RigidBody {
   using State = std::array<double, kSize>;
 
   const Dynamics& d;
-  std::array<double, 3> drift;  // gravity and the wind's part of the drag, m/s^2
+  std::array<double, 3> drift;  // gravity, a push and the wind's part of the drag, m/s^2
 
   RigidBody(const Dynamics& dynamics, const Eigen::Vector3d& wind_ned)
       : d(dynamics),
-        drift{d.drag_over_mass_ * wind_ned.x(), d.drag_over_mass_ * wind_ned.y(),
-              d.drag_over_mass_ * wind_ned.z() + kGravity} {}
+        drift{d.drag_over_mass_ * wind_ned.x() + d.push_acceleration_ned_.x(),
+              d.drag_over_mass_ * wind_ned.y() + d.push_acceleration_ned_.y(),
+              d.drag_over_mass_ * wind_ned.z() + d.push_acceleration_ned_.z() + kGravity} {}
 
   static State pack(const VehicleState& from) {
     State y;
@@ -230,9 +231,11 @@ Dynamics::Dynamics(const Vehicle& vehicle, const Supply& supply)
   for (std::size_t i = 0; i < vehicle.rotors.size(); ++i) {
     const RotorMount& mount = vehicle.rotors[i];
     const double yaw = mount.spin == Spin::kCounterClockwise ? vehicle.rotor.torque : -vehicle.rotor.torque;
-    wrenches_[i] = {vehicle.rotor.thrust * inverse_mass_, -mount.position_frd.y() * vehicle.rotor.thrust,
-                    mount.position_frd.x() * vehicle.rotor.thrust, yaw};
+    sound_wrenches_[i] = {vehicle.rotor.thrust * inverse_mass_,
+                          -mount.position_frd.y() * vehicle.rotor.thrust,
+                          mount.position_frd.x() * vehicle.rotor.thrust, yaw};
   }
+  wrenches_ = sound_wrenches_;
   const std::vector<double>& charge = battery_.state_of_charge;
   const std::vector<double>& voltage = battery_.open_circuit_voltage_v;
   for (std::size_t i = 1; i < charge.size(); ++i) {
@@ -314,13 +317,27 @@ void Dynamics::advance_as(VehicleState& state, const RotorDrive& drive, const Ei
   RigidBody::unpack(y, state);
 }
 
+void Dynamics::disturb(const Disturbance& disturbance) {
+  push_acceleration_ned_ = inverse_mass_ * disturbance.force_ned;
+  push_moment_frd_ = disturbance.moment_frd;
+  supply_drop_v_ = disturbance.supply_drop_v;
+  for (std::size_t i = 0; i < wrenches_.size(); ++i) {
+    const double factor = disturbance.rotor_factors[i];
+    const Wrench& sound = sound_wrenches_[i];
+    wrenches_[i] = {factor * sound.lift, factor * sound.roll, factor * sound.pitch, factor * sound.yaw};
+  }
+}
+
 Dynamics::OpenCircuit Dynamics::open_circuit(double state_of_charge) const {
-  if (ideal_supply_) return {ideal_voltage_, 0.0};
+  if (ideal_supply_) return {ideal_voltage_ - supply_drop_v_, 0.0};
   const std::vector<double>& charge = battery_.state_of_charge;
-  if (state_of_charge <= charge.front()) return {battery_.open_circuit_voltage_v.front(), 0.0};
+  if (state_of_charge <= charge.front())
+    return {battery_.open_circuit_voltage_v.front() - supply_drop_v_, 0.0};
   std::size_t segment = open_circuits_.size() - 1;
   while (segment > 0 && state_of_charge <= charge[segment]) --segment;
-  return open_circuits_[segment];
+  OpenCircuit line = open_circuits_[segment];
+  line.at_empty -= supply_drop_v_;
+  return line;
 }
 
 // Eq. (9); a rotor that is off gets no voltage at all.
@@ -359,8 +376,8 @@ Eigen::Vector3d Dynamics::specific_force_frd(const VehicleState& state,
   for (std::size_t i = 0; i < wrenches_.size(); ++i)
     lift += wrenches_[i].lift * square(state.rotor_speeds[i]);
   Eigen::Vector3d thrust(0.0, 0.0, -lift);
-  if (drag_over_mass_ == 0.0) return thrust;
-  const Eigen::Vector3d drag = drag_over_mass_ * (state.velocity_ned - wind_ned);
+  if (drag_over_mass_ == 0.0 && push_acceleration_ned_.isZero(0.0)) return thrust;
+  const Eigen::Vector3d drag = drag_over_mass_ * (state.velocity_ned - wind_ned) - push_acceleration_ned_;
   return thrust - state.q_ned_from_frd.conjugate() * drag;
 }
 

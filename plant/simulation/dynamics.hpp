@@ -31,6 +31,14 @@ struct Supply {
   static Supply constant(double voltage_v) { return {true, voltage_v}; }
 };
 
+// What acts on a vehicle besides its own equations.
+struct Disturbance {
+  Eigen::Vector3d force_ned = Eigen::Vector3d::Zero();                // N, at the centre of mass
+  Eigen::Vector3d moment_frd = Eigen::Vector3d::Zero();               // N m
+  double supply_drop_v = 0.0;                                         // of the open-circuit voltage
+  PerRotor rotor_factors = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};  // of thrust and torque
+};
+
 // The forms that the motor's equations take: Eq. (18); Eq. (15) with the current at once; Eq. (10) and (15).
 enum class MotorForm { kReduced, kPhysical, kInductive };
 
@@ -38,6 +46,9 @@ class Dynamics {
  public:
   // The vehicle is one that validate() finds no fault with.
   Dynamics(const Vehicle& vehicle, const Supply& supply);
+
+  // From now on, until another is given.
+  void disturb(const Disturbance& disturbance);
 
   // Brings the state forward by dt > 0 in as few equal Runge-Kutta steps as max_step_s() allows, with drive
   // and wind held.
@@ -98,7 +109,11 @@ class Dynamics {
   double drag_over_mass_;
   Eigen::Matrix3d inertia_;
   Eigen::Matrix3d inverse_inertia_;
-  std::array<Wrench, kMaxRotors> wrenches_;  // of each rotor, over Omega^2
+  std::array<Wrench, kMaxRotors> sound_wrenches_;  // of each rotor, over Omega^2, without a disturbance
+  std::array<Wrench, kMaxRotors> wrenches_;
+  Eigen::Vector3d push_acceleration_ned_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d push_moment_frd_ = Eigen::Vector3d::Zero();
+  double supply_drop_v_ = 0.0;
 
   Esc esc_;
   MotorDynamics motor_;

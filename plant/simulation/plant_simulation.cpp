@@ -1,5 +1,7 @@
 #include "plant/simulation/plant_simulation.hpp"
 
+#include <limits>
+
 #include "plant/model/battery.hpp"
 
 namespace swiftlet::plant {
@@ -32,6 +34,9 @@ PlantSimulation::PlantSimulation(const Vehicle& vehicle, const SimulationSetting
       step_ns_(settings.step_ns),
       step_s_(seconds(settings.step_ns)),
       rotor_count_(vehicle.rotor_count()),
+      faults_(settings.faults),
+      fault_change_ns_(faults_.next_change_ns(-1)),
+      wind_ned_(air_.wind_ned()),
       state_(initial),
       imu_schedule_{period_ns(settings.imu.rate_hz) / settings.step_ns},
       battery_schedule_{period_ns(settings.supply.rate_hz) / settings.step_ns},
@@ -43,7 +48,7 @@ PlantSimulation::PlantSimulation(const Vehicle& vehicle, const SimulationSetting
   if (on_ground_) {
     // The floor bears what the rotors do not.
     contact_sum_ned_ =
-        -state_.q_ned_from_frd._transformVector(dynamics_.specific_force_frd(state_, air_.wind_ned()));
+        -state_.q_ned_from_frd._transformVector(dynamics_.specific_force_frd(state_, wind_ned_));
     contact_sum_ned_.z() -= kGravity;
     contact_steps_ = 1;
   }
@@ -51,9 +56,11 @@ PlantSimulation::PlantSimulation(const Vehicle& vehicle, const SimulationSetting
 }
 
 void PlantSimulation::step(const RotorDrive& drive) {
+  if (stamp_ns_ >= fault_change_ns_) change_faults();
   air_.advance();
+  wind_ned_ = air_.wind_ned() + fault_wind_ned_;
   const VehicleState before = state_;
-  dynamics_.advance(state_, drive, air_.wind_ned(), step_s_);
+  dynamics_.advance(state_, drive, wind_ned_, step_s_);
   on_ground_ = false;
   if (!ground_.out_of_reach(state_.position_ned.z())) {
     Eigen::Vector3d acceleration_ned = Eigen::Vector3d::Zero();
@@ -66,25 +73,67 @@ void PlantSimulation::step(const RotorDrive& drive) {
   sample(drive);
 }
 
+// Those that are there from this stamp on.
+void PlantSimulation::change_faults() {
+  Disturbance disturbance;
+  if (const Fault* push = faults_.active(FaultKind::kPush, stamp_ns_)) {
+    disturbance.force_ned = push->force_ned;
+    disturbance.moment_frd = push->moment_frd;
+  }
+  if (const Fault* drop = faults_.active(FaultKind::kBatteryDrop, stamp_ns_))
+    disturbance.supply_drop_v = drop->voltage_v;
+  if (const Fault* rotor = faults_.active(FaultKind::kRotorThrust, stamp_ns_))
+    disturbance.rotor_factors[static_cast<std::size_t>(rotor->rotor - 1)] = rotor->factor;
+  dynamics_.disturb(disturbance);
+  const Fault* wind = faults_.active(FaultKind::kWind, stamp_ns_);
+  fault_wind_ned_ = wind != nullptr ? wind->wind_ned : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  fault_change_ns_ = faults_.next_change_ns(stamp_ns_);
+}
+
 void PlantSimulation::sample(const RotorDrive& drive) {
   imu_sample_.reset();
   battery_sample_.reset();
   rotor_speed_sample_.reset();
-  if (imu_schedule_.due()) imu_sample_ = imu_.sample(stamp_ns_, specific_force_frd(), state_.body_rates_frd);
-  if (battery_schedule_.due()) {
+  imu_due_ = imu_schedule_.due();
+  if (imu_due_) sample_imu();
+  if (battery_schedule_.due() && faults_.active(FaultKind::kBatteryStop, stamp_ns_) == nullptr) {
     battery_sample_ = BatterySample{stamp_ns_, battery_schedule_.sequence, dynamics_.supply_voltage(state_),
                                     dynamics_.supply_current(state_, drive), state_.state_of_charge};
   }
-  if (rotor_speed_schedule_.due()) {
+  if (rotor_speed_schedule_.due() && faults_.active(FaultKind::kRotorSpeedsStop, stamp_ns_) == nullptr) {
     rotor_speed_sample_ =
         RotorSpeedSample{stamp_ns_, rotor_speed_schedule_.sequence, rotor_count_, state_.rotor_speeds};
   }
 }
 
+// What a fault does to a sample is done to one that was drawn: it moves no later one.
+void PlantSimulation::sample_imu() {
+  ImuSample sample = imu_.sample(stamp_ns_, specific_force_frd(), state_.body_rates_frd);
+  if (faults_.empty()) {
+    imu_sample_ = sample;
+    return;
+  }
+  if (const Fault* bias = faults_.active(FaultKind::kImuBias, stamp_ns_)) {
+    sample.specific_force_frd += bias->specific_force_frd;
+    sample.body_rates_frd += bias->body_rates_frd;
+  }
+  if (faults_.active(FaultKind::kImuStuck, stamp_ns_) == nullptr) {
+    last_sound_imu_ = sample;
+  } else {
+    sample.specific_force_frd = last_sound_imu_.specific_force_frd;
+    sample.body_rates_frd = last_sound_imu_.body_rates_frd;
+  }
+  if (faults_.active(FaultKind::kImuNan, stamp_ns_) != nullptr) {
+    sample.specific_force_frd.setConstant(std::numeric_limits<double>::quiet_NaN());
+    sample.body_rates_frd.setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  if (faults_.active(FaultKind::kImuStop, stamp_ns_) == nullptr) imu_sample_ = sample;
+}
+
 // Forces of the flow as they are, the floor's as a mean since the last sample: impacts are shorter than a
 // sample.
 Eigen::Vector3d PlantSimulation::specific_force_frd() {
-  Eigen::Vector3d specific_force = dynamics_.specific_force_frd(state_, air_.wind_ned());
+  Eigen::Vector3d specific_force = dynamics_.specific_force_frd(state_, wind_ned_);
   if (!contact_sum_ned_.isZero(0.0)) {
     specific_force +=
         state_.q_ned_from_frd.conjugate() * (contact_sum_ned_ / static_cast<double>(contact_steps_));

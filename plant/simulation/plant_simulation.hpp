@@ -18,6 +18,7 @@
 #include "plant/model/vehicle.hpp"
 #include "plant/simulation/air.hpp"
 #include "plant/simulation/dynamics.hpp"
+#include "plant/simulation/faults.hpp"
 #include "plant/simulation/ground_contact.hpp"
 #include "plant/simulation/imu.hpp"
 #include "plant/simulation/settings.hpp"
@@ -39,7 +40,10 @@ class PlantSimulation {
   std::int64_t stamp_ns() const { return stamp_ns_; }
   const VehicleState& state() const { return state_; }
   TruthSample truth() const;
-  // Samples that are due at this stamp.
+  // The stamp is one of the IMU's, whether a fault keeps the sample back or not; how many there have been.
+  bool imu_due() const { return imu_due_; }
+  std::uint64_t imu_count() const { return imu_schedule_.sequence; }
+  // Samples that are sent at this stamp.
   const std::optional<ImuSample>& imu() const { return imu_sample_; }
   const std::optional<BatterySample>& battery() const { return battery_sample_; }
   const std::optional<RotorSpeedSample>& rotor_speeds() const { return rotor_speed_sample_; }
@@ -62,7 +66,9 @@ class PlantSimulation {
     }
   };
 
+  void change_faults();
   void sample(const RotorDrive& drive);
+  void sample_imu();
   Eigen::Vector3d specific_force_frd();
 
   Dynamics dynamics_;
@@ -72,6 +78,10 @@ class PlantSimulation {
   std::int64_t step_ns_;
   double step_s_;
   int rotor_count_;
+  FaultSchedule faults_;
+  std::int64_t fault_change_ns_;  // the next
+  Eigen::Vector3d fault_wind_ned_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d wind_ned_;  // of the step under way
 
   std::int64_t stamp_ns_ = 0;
   std::uint64_t steps_ = 0;
@@ -84,7 +94,9 @@ class PlantSimulation {
   Schedule imu_schedule_;
   Schedule battery_schedule_;
   Schedule rotor_speed_schedule_;
+  bool imu_due_ = false;
   std::optional<ImuSample> imu_sample_;
+  ImuSample last_sound_imu_;  // before the values got stuck
   std::optional<BatterySample> battery_sample_;
   std::optional<RotorSpeedSample> rotor_speed_sample_;
 };

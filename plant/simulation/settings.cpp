@@ -69,6 +69,8 @@ std::vector<Violation> validate(const SimulationSettings& settings) {
 
   check.between("ground.leg_height_m", settings.ground.leg_height_m, 0.0, 1.0);
   check.between("ground.friction", settings.ground.friction, 0.0, 10.0);
+
+  check_faults(settings.faults, step_s(settings), check);
   return check.take();
 }
 

@@ -10,6 +10,7 @@
 
 #include "plant/model/vehicle.hpp"
 #include "plant/model/violation.hpp"
+#include "plant/simulation/faults.hpp"
 
 namespace swiftlet::plant {
 
@@ -72,6 +73,7 @@ struct SimulationSettings {
   SupplySettings supply;
   AirSettings air;
   GroundSettings ground;
+  std::vector<Fault> faults;  // that are injected; in any order
 };
 
 // Period of a rate, to the nanosecond; 0 for a rate of 0.

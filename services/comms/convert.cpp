@@ -110,7 +110,7 @@ class Check {
 };
 
 constexpr std::uint64_t kMaxStrength = 1000;
-constexpr std::size_t kReplicatedStateBytes = 416;
+constexpr std::size_t kReplicatedStateBytes = 488;
 constexpr double kMaxRotorSpeed = 1e5;  // rad/s; none turns as fast
 
 void copy_rotors(int count, const PerRotor& from, PerRotor& to) {
@@ -319,6 +319,14 @@ msg::Setpoint to_message(const control::Setpoint& in) {
   return out;
 }
 
+Fault from_message(const msg::GroundLink& in, control::GroundSign& out) {
+  Check check;
+  check.at_least("client", static_cast<double>(in.client()), 1.0).time(in.stamp_ns());
+  if (!check.ok()) return check.fault();
+  out = {in.client(), in.depends()};
+  return {};
+}
+
 Fault from_message(const msg::Command& in, control::Request& out) {
   Check check;
   check.at_most("kind", in.kind(), msg::Command_Constants::STOP);
@@ -482,6 +490,10 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
   state.setpoint_ns = in.setpoint_ns();
   state.contact_since_ns = in.contact_since_ns();
   state.low_battery_since_ns = in.low_battery_since_ns();
+  state.critical_battery_since_ns = in.critical_battery_since_ns();
+  state.land_on_return = in.land_on_return();
+  for (std::size_t i = 0; i < state.ground_links.size(); ++i)
+    state.ground_links[i] = {in.ground_link_clients()[i], in.ground_link_heard_ns()[i]};
   out.flight.position_integral = vector(in.position_integral_ned());
   out.flight.rotor_state = static_cast<plant::RotorState>(in.rotor_state());
   out.rotor_count = in.rotor_count();
@@ -532,6 +544,12 @@ msg::ControllerState to_message(const ControllerReport& in) {
   out.setpoint_ns(state.setpoint_ns);
   out.contact_since_ns(state.contact_since_ns);
   out.low_battery_since_ns(state.low_battery_since_ns);
+  out.critical_battery_since_ns(state.critical_battery_since_ns);
+  out.land_on_return(state.land_on_return);
+  for (std::size_t i = 0; i < state.ground_links.size(); ++i) {
+    out.ground_link_clients()[i] = state.ground_links[i].client;
+    out.ground_link_heard_ns()[i] = state.ground_links[i].heard_ns;
+  }
   out.position_integral_ned(array(in.flight.position_integral));
   out.rotor_state(static_cast<std::uint8_t>(in.flight.rotor_state));
   out.rotor_count(static_cast<std::uint8_t>(in.rotor_count));

@@ -48,6 +48,7 @@ class ControlService {
   void subscribe(comms::Node& node, runtime::Clock clock);
   void on_imu(const comms::msg::Imu& message);
   void on_imu_in_lockstep(const comms::msg::Imu& message);
+  void on_ground_link(const comms::msg::GroundLink& message);
   void on_controller_state(const comms::msg::ControllerState& message);
   Role take_role(const comms::msg::Imu& message);
   Role take_role_in_lockstep(const comms::msg::Imu& message);
@@ -96,6 +97,7 @@ class ControlService {
   comms::FaultLog rotor_speed_faults_{"rotor_speeds"};
   comms::FaultLog setpoint_faults_{"setpoint"};
   comms::FaultLog controller_faults_{"controller_state"};
+  comms::FaultLog ground_link_faults_{"ground_link"};
 
   std::vector<comms::Subscription> subscriptions_;  // last: their callbacks use what stands above
 };

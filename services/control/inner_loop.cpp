@@ -20,6 +20,7 @@ plant::ActuatorCommand InnerLoop::step(const plant::ImuSample& sample, std::int6
   last_arrival_ns_.store(now_ns, std::memory_order_relaxed);
   role_ = role;
   take_samples();
+  hear_ground();
   judge_requests();
   if (role == Role::kStandby) follow(followed_term);
   if (looking()) look(sample);
@@ -71,6 +72,10 @@ void InnerLoop::look(const plant::ImuSample& sample) {
   if (!rotors_known) return;
   const bool stands = !controller_.feels_airborne();
   if (stands || over || controller_.find_flying()) looks_since_ns_ = kLooksNot;
+}
+
+void InnerLoop::hear_ground() {
+  ground_signs.consume_all([this](const control::GroundSign& sign) { controller_.on_ground_sign(sign); });
 }
 
 void InnerLoop::judge_requests() {
@@ -138,8 +143,9 @@ bool InnerLoop::finish(std::int64_t now_ns) {
 bool InnerLoop::status_changed() const {
   const control::Status& now = controller_.status();
   return now.mode != told_.mode || now.reason != told_.reason || now.has_pose != told_.has_pose ||
-         now.airborne != told_.airborne || now.mission.id != told_.mission.id ||
-         now.mission.state != told_.mission.state || now.mission.item_index != told_.mission.item_index;
+         now.airborne != told_.airborne || now.ground_links != told_.ground_links ||
+         now.mission.id != told_.mission.id || now.mission.state != told_.mission.state ||
+         now.mission.item_index != told_.mission.item_index;
 }
 
 }  // namespace swiftlet::services

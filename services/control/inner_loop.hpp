@@ -56,6 +56,8 @@ class InnerLoop {
   runtime::Mailbox<Handover> handover;
   boost::lockfree::spsc_queue<PendingRequest*, boost::lockfree::capacity<kMaxPendingRequests>> requests;
 
+  boost::lockfree::spsc_queue<control::GroundSign, boost::lockfree::capacity<32>> ground_signs;
+
   // Output, to one thread. When snapshots are not taken, the newest are lost.
   boost::lockfree::spsc_queue<PendingRequest*, boost::lockfree::capacity<kMaxPendingRequests>> judged;
   boost::lockfree::spsc_queue<Snapshot, boost::lockfree::capacity<256>> snapshots;
@@ -93,6 +95,7 @@ class InnerLoop {
   void follow(std::uint32_t term);
   void look(const plant::ImuSample& sample);
   void remember(const PendingRequest& accepted);
+  void hear_ground();
   bool status_changed() const;
 
   static constexpr std::int64_t kLooksNot = -1;

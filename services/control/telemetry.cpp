@@ -101,6 +101,8 @@ void Telemetry::take(const Snapshot& snapshot) {
       spdlog::warn("mocap lost: the last pose is {:.2f} s old", now.pose_age_s);
     }
   }
+  if (now.ground_links != before.ground_links)
+    spdlog::info("the flight depends on {} ground tools", now.ground_links);
   if (snapshot.sampled) publish_sampled(snapshot);
   saturated_ = saturated_ || snapshot.saturated;
   last_ = snapshot;
@@ -147,6 +149,7 @@ void Telemetry::publish_status() {
   message.period_jitter_p50_us(static_cast<double>(last_.timing.jitter_p50_ns) * 1e-3);
   message.period_jitter_p99_us(static_cast<double>(last_.timing.jitter_p99_ns) * 1e-3);
   message.period_jitter_max_us(static_cast<double>(last_.timing.jitter_max_ns) * 1e-3);
+  message.ground_links(static_cast<std::uint8_t>(status.ground_links));
   message.realtime_scheduling(realtime_.load(std::memory_order_relaxed));
   statuses_.publish(message);
   saturated_ = false;

@@ -9,6 +9,7 @@
 #include <spdlog/spdlog.h>
 
 #include "plant/simulation/mocap.hpp"
+#include "plant/simulation/mocap_path.hpp"
 #include "services/comms/convert.hpp"
 #include "services/comms/node.hpp"
 #include "services/comms/node_options.hpp"
@@ -44,9 +45,10 @@ void add_options(CLI::App& app, Options& options) {
 // Runs in the thread that receives the truth.
 class Camera {
  public:
-  Camera(const plant::MocapSettings& settings, std::uint64_t seed, comms::Node& node,
+  Camera(const plant::SimulationSettings& settings, std::uint64_t seed, comms::Node& node,
          const runtime::RealtimeSettings& realtime, runtime::Clock clock, runtime::StopSignal& stop)
-      : mocap_(settings, seed),
+      : mocap_(settings.mocap, seed),
+        path_(settings, seed),
         realtime_(realtime),
         clock_(clock),
         stop_(stop),
@@ -74,8 +76,12 @@ class Camera {
       return;
     }
     if (clock_ == runtime::Clock::kLockstep && !goes_on(truth)) return;
-    const auto pose = mocap_.update(truth);
-    if (!pose) return;
+    const auto pose = path_.pass(mocap_.update(truth), truth.stamp_ns);
+    made_frame_ = pose.has_value();
+    if (!pose) {
+      if (clock_ == runtime::Clock::kLockstep) say_that_it_is_there(truth.stamp_ns);
+      return;
+    }
     last_pose_ = comms::to_message(*pose);
     poses_.publish(last_pose_);
     frames_.fetch_add(1, std::memory_order_relaxed);
@@ -85,7 +91,7 @@ class Camera {
   // In lockstep: true if this is the next sample. One that comes again is answered again.
   bool goes_on(const plant::TruthSample& truth) {
     if (truth.sequence <= truth_sequence_) {
-      poses_.publish(last_pose_);
+      answer_again(truth.stamp_ns);
       return false;
     }
     if (truth.sequence != truth_sequence_ + 1) {
@@ -97,12 +103,33 @@ class Camera {
     return true;
   }
 
+  // Whoever missed the last frame, and the plant that missed a sign of life: in turn, for of two that follow
+  // each other at once the first may be lost.
+  void answer_again(std::int64_t stamp_ns) {
+    sign_is_next_ = !sign_is_next_;
+    if (made_frame_ || (last_pose_.sequence_number() > 0 && !sign_is_next_)) {
+      poses_.publish(last_pose_);
+    } else {
+      say_that_it_is_there(stamp_ns);
+    }
+  }
+
+  // By a pose of number 0: truth has come up to this stamp, and the frames that it makes have gone out.
+  void say_that_it_is_there(std::int64_t stamp_ns) {
+    comms::msg::MocapPose sign;
+    sign.stamp_ns(stamp_ns);
+    poses_.publish(sign);
+  }
+
   plant::Mocap mocap_;
+  plant::MocapPath path_;
   runtime::RealtimeSettings realtime_;
   runtime::Clock clock_;
   runtime::StopSignal& stop_;
   std::uint64_t truth_sequence_ = 0;
-  comms::msg::MocapPose last_pose_;  // number 0, untracked, before the first frame: a sign of life
+  comms::msg::MocapPose last_pose_;  // number 0 before the first frame
+  bool made_frame_ = false;          // of the newest truth
+  bool sign_is_next_ = false;
   std::atomic<bool> lost_truth_{false};
   bool scheduled_ = false;
   bool told_fault_ = false;
@@ -127,7 +154,7 @@ void run(const Options& options) {
   node_settings.deadlines = options.clock == runtime::Clock::kRealtime;
   comms::Node node(node_settings);
   comms::log_peers(node);
-  const Camera camera(settings.mocap, options.seed, node, realtime, options.clock, stop);
+  const Camera camera(settings, options.seed, node, realtime, options.clock, stop);
   spdlog::info("watching: vehicle {}, domain {}, {:g} frames a second, seed {}", node_settings.vehicle,
                node_settings.domain, settings.mocap.rate_hz, options.seed);
   stop.wait();

@@ -28,6 +28,7 @@ LockstepLoop::LockstepLoop(SimulatedVehicle& vehicle, const plant::SimulationSet
       settings_(settings),
       lockstep_(lockstep),
       imu_period_ns_(plant::period_ns(settings.imu.rate_hz)),
+      expected_(settings, 0),
       granted_ns_(lockstep.paused ? -1 : std::numeric_limits<std::int64_t>::max()) {
   if (!lockstep.trace.empty()) trace_.emplace(lockstep.trace, rotor_count);
   commands_ = node.subscribe<comms::msg::ActuatorCommand>(
@@ -57,7 +58,7 @@ void LockstepLoop::run(const std::atomic<bool>& stop) {
 
 void LockstepLoop::on_command(const comms::msg::ActuatorCommand& message) {
   const Lock lock(mutex_);
-  if (!started_ || command_arrived_) return;  // an answer that came again
+  if (!started_ || !command_due()) return;  // an answer that came again
   if (message.imu_sequence_number() != vehicle_.simulation().imu()->sequence) return;
   const ReceivedCommand received(message, runtime::monotonic_ns());
   if (!vehicle_.obey(received)) return;
@@ -70,6 +71,7 @@ void LockstepLoop::on_pose(const comms::msg::MocapPose& message) {
   const Lock lock(mutex_);
   mocap_heard_ = true;
   mocap_sequence_ = std::max(mocap_sequence_, message.sequence_number());
+  if (message.sequence_number() == 0) mocap_seen_ns_ = std::max(mocap_seen_ns_, message.stamp_ns());
   advance();
 }
 
@@ -85,35 +87,58 @@ bool LockstepLoop::may_advance() const {
   return vehicle_.simulation().stamp_ns() + imu_period_ns_ <= granted_ns_;
 }
 
-// In the thread that brought the last of what was waited for.
+// In the thread that brought the last of what was waited for; on and on while faults leave nothing to wait
+// for.
 void LockstepLoop::advance() {
-  if (!failure_.empty() || !started_ || !answered()) return;
-  vehicle_.note_pause(!may_advance());
-  vehicle_.report();
-  if (!may_advance()) return;
-  silence_s_ = 0.0;
-  command_arrived_ = false;
-  try {
-    if (trace_) trace_->add(vehicle_.simulation().truth(), command_);
-  } catch (const std::runtime_error& error) {
-    failure_ = error.what();
-    return;
+  while (failure_.empty() && started_ && answered()) {
+    vehicle_.note_pause(!may_advance());
+    vehicle_.report();
+    if (!may_advance()) return;
+    silence_s_ = 0.0;
+    command_arrived_ = false;
+    try {
+      if (trace_) trace_->add(vehicle_.simulation().truth(), command_);
+    } catch (const std::runtime_error& error) {
+      failure_ = error.what();
+      return;
+    }
+    advance_to_imu_stamp();
   }
+}
+
+void LockstepLoop::advance_to_imu_stamp() {
   do {
     vehicle_.step();
-    if (!vehicle_.simulation().imu()) publish();
-  } while (!vehicle_.simulation().imu());
-  publish();
+    publish();
+  } while (!vehicle_.simulation().imu_due());
 }
 
 void LockstepLoop::publish() {
+  const plant::PlantSimulation& simulation = vehicle_.simulation();
   bool truth_needed = false;
-  if (const auto& imu = vehicle_.simulation().imu()) {
-    mocap_due_ = plant::newest_mocap_sequence(settings_.mocap, imu_period_ns_, imu->stamp_ns);
-    truth_needed = plant::mocap_needs_truth(settings_.mocap, imu_period_ns_, imu->stamp_ns) ||
-                   runtime::is_telemetry_sample(imu->sequence, imu_period_ns_);
+  if (simulation.imu_due()) {
+    const std::int64_t stamp_ns = simulation.stamp_ns();
+    const bool frame = frame_is_due(stamp_ns);
+    truth_needed = frame || plant::mocap_needs_truth(settings_.mocap, imu_period_ns_, stamp_ns) ||
+                   runtime::is_telemetry_sample(simulation.imu_count(), imu_period_ns_);
+    if (truth_needed && !frame) truth_sent_ns_ = stamp_ns;
   }
   vehicle_.publish_samples_in_order(mocap_due_, truth_needed);
+}
+
+// Whether a frame comes out of the faults' path at this stamp.
+bool LockstepLoop::frame_is_due(std::int64_t stamp_ns) {
+  std::optional<plant::PoseSample> frame;
+  const std::uint64_t newest = plant::newest_mocap_sequence(settings_.mocap, imu_period_ns_, stamp_ns);
+  if (newest > mocap_handed_over_) {
+    frame.emplace();
+    frame->stamp_ns = stamp_ns;
+    frame->sequence = newest;
+    mocap_handed_over_ = newest;
+  }
+  const auto out = expected_.pass(frame, stamp_ns);
+  if (out) mocap_due_ = out->sequence;
+  return out.has_value();
 }
 
 void LockstepLoop::look_after(double awake_s) {
@@ -145,7 +170,11 @@ std::string LockstepLoop::silent_ground() const {
 std::string LockstepLoop::silent_peer() const {
   const double time_s = static_cast<double>(vehicle_.simulation().stamp_ns()) * 1e-9;
   char text[192];
-  if (!mocap_heard_ || mocap_sequence_ < mocap_due_) {
+  if (mocap_heard_ && mocap_sequence_ >= mocap_due_ && mocap_silent()) {
+    std::snprintf(text, sizeof text,
+                  "lockstep: mocap is silent: the truth of t = %.3f s has no answer for %g s",
+                  static_cast<double>(truth_sent_ns_) * 1e-9, lockstep_.patience_s);
+  } else if (mocap_silent()) {
     std::snprintf(text, sizeof text,
                   "lockstep: mocap is silent: frame %llu, due at t = %.3f s, has not come for %g s",
                   static_cast<unsigned long long>(mocap_due_), time_s, lockstep_.patience_s);

@@ -1,5 +1,6 @@
 // Simulated time that waits for the answers: the plant goes on from a stamp when the command that answers its
-// IMU sample and the mocap frame that was due have arrived.
+// IMU sample and the mocap frame that was due have arrived. What a fault of the simulation keeps back is not
+// waited for.
 //
 // What has no answer is sent again; whoever took it in before answers as before and does not take it in
 // twice. So a lost datagram costs time and changes nothing.
@@ -11,6 +12,7 @@
 #include <optional>
 #include <string>
 
+#include "plant/simulation/mocap_path.hpp"
 #include "services/comms/node.hpp"
 #include "services/plant/simulated_vehicle.hpp"
 #include "services/runtime/flight_trace.hpp"
@@ -39,10 +41,16 @@ class LockstepLoop {
   void on_clock(const comms::msg::SimulationClock& message);
 
   // All below with the lock held.
-  bool answered() const { return command_arrived_ && mocap_heard_ && mocap_sequence_ >= mocap_due_; }
+  bool command_due() const { return vehicle_.simulation().imu().has_value() && !command_arrived_; }
+  bool mocap_silent() const {
+    return !mocap_heard_ || mocap_sequence_ < mocap_due_ || mocap_seen_ns_ < truth_sent_ns_;
+  }
+  bool answered() const { return !command_due() && !mocap_silent(); }
   bool may_advance() const;
   void advance();
+  void advance_to_imu_stamp();
   void publish();
+  bool frame_is_due(std::int64_t stamp_ns);
   void look_after(double awake_s);
   std::string silent_peer() const;
   std::string silent_ground() const;
@@ -59,6 +67,10 @@ class LockstepLoop {
   bool mocap_heard_ = false;
   std::uint64_t mocap_sequence_ = 0;
   std::uint64_t mocap_due_ = 0;
+  std::int64_t mocap_seen_ns_ = -1;  // truth up to this stamp, of which there was no frame
+  std::int64_t truth_sent_ns_ = -1;  // likewise
+  plant::MocapPath expected_;        // carries the numbers of the frames that are due
+  std::uint64_t mocap_handed_over_ = 0;
   std::int64_t granted_ns_ = 0;
   bool clock_heard_ = false;
   double silence_s_ = 0.0;        // since the last progress

@@ -205,6 +205,9 @@ void run(const Options& options) {
   for (const plant::Violation& violation : plant::validate(settings)) {
     throw std::invalid_argument("--imu-rate: " + violation.key + " " + violation.message);
   }
+  for (const plant::Violation& violation : plant::validate_faults(settings.faults, vehicle)) {
+    throw std::invalid_argument(options.simulation + ": " + violation.key + ": " + violation.message);
+  }
 
   check(options);
 

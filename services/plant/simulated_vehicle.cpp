@@ -20,6 +20,7 @@ constexpr std::int64_t kReportPeriodNs = 50'000'000;
 SimulatedVehicle::SimulatedVehicle(const plant::Vehicle& vehicle, const plant::SimulationSettings& settings,
                                    std::uint64_t seed, comms::Node& node)
     : simulation_(vehicle, settings, seed),
+      command_path_(settings),
       watchdog_(vehicle.rotor_count(), std::llround(settings.command_timeout_s * 1e9)),
       answers_(plant::period_ns(settings.imu.rate_hz)),
       imu_(node.publish(kImu)),
@@ -28,24 +29,36 @@ SimulatedVehicle::SimulatedVehicle(const plant::Vehicle& vehicle, const plant::S
       battery_(node.publish(kBattery)) {}
 
 bool SimulatedVehicle::obey(const ReceivedCommand& received) {
-  comms::Fault fault = received.fault;
-  if (!fault) {
-    const plant::CommandFault refusal = watchdog_.accept(received.command, simulation_.stamp_ns());
-    if (refusal != plant::CommandFault::kNone) {
-      std::snprintf(fault.text, sizeof fault.text, "%s", plant::to_string(refusal));
-    }
-  }
-  if (fault) {
-    ++report_.refused_commands;
-    report_.refusal = fault;
+  if (received.fault) {
+    refuse(received.fault);
     return false;
   }
-  ++report_.commands;
+  const auto arrived = command_path_.send(received.command, simulation_.stamp_ns());
+  if (!arrived) return true;
+  if (!accept(*arrived)) return false;
   answers_.answered(received.command.imu_sequence, received.received_ns);
   return true;
 }
 
+bool SimulatedVehicle::accept(const plant::ActuatorCommand& command) {
+  const plant::CommandFault refusal = watchdog_.accept(command, simulation_.stamp_ns());
+  if (refusal == plant::CommandFault::kNone) {
+    ++report_.commands;
+    return true;
+  }
+  comms::Fault fault;
+  std::snprintf(fault.text, sizeof fault.text, "%s", plant::to_string(refusal));
+  refuse(fault);
+  return false;
+}
+
+void SimulatedVehicle::refuse(const comms::Fault& fault) {
+  ++report_.refused_commands;
+  report_.refusal = fault;
+}
+
 void SimulatedVehicle::step() {
+  if (const auto arrived = command_path_.arrived(simulation_.stamp_ns())) accept(*arrived);
   const plant::RotorDrive drive = watchdog_.drive(simulation_.stamp_ns());
   const bool running = drive.state == plant::RotorState::kRunning;
   if (running && !report_.rotors_running) {
@@ -63,14 +76,17 @@ void SimulatedVehicle::publish_samples() {
     comms::tell(watchdog_.obeyed(), imu_message_);
     if (report_.rotors_running) answers_.written(simulation_.imu()->sequence, runtime::monotonic_ns());
     imu_.publish(imu_message_);
-    publish_truth();
   }
+  if (simulation_.imu_due()) publish_truth();
   publish_slow_samples();
 }
 
 void SimulatedVehicle::publish_samples_in_order(std::uint64_t mocap_sequence, bool truth_needed) {
   publish_slow_samples();
-  if (!simulation_.imu()) return;
+  if (!simulation_.imu()) {
+    if (truth_needed) publish_truth();
+    return;
+  }
   // The longest way first: motion capture makes a frame of the truth, for which the controller waits.
   const bool frame_due = mocap_sequence > imu_message_.mocap_sequence_number();
   imu_message_ = comms::to_message(*simulation_.imu());

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "plant/simulation/actuator_watchdog.hpp"
+#include "plant/simulation/command_path.hpp"
 #include "plant/simulation/plant_simulation.hpp"
 #include "services/comms/convert.hpp"
 #include "services/comms/node.hpp"
@@ -53,7 +54,7 @@ class SimulatedVehicle {
 
   const plant::PlantSimulation& simulation() const { return simulation_; }
 
-  // False if the command was refused; it then counts as none.
+  // False if the command was refused; it then counts as none. One that a fault keeps back is not refused.
   bool obey(const ReceivedCommand& received);
   // One integration step.
   void step();
@@ -72,10 +73,13 @@ class SimulatedVehicle {
   runtime::Mailbox<PlantReport>& reports() { return reports_; }
 
  private:
+  bool accept(const plant::ActuatorCommand& command);
+  void refuse(const comms::Fault& fault);
   void publish_truth();
   void publish_slow_samples();
 
   plant::PlantSimulation simulation_;
+  plant::CommandPath command_path_;
   plant::ActuatorWatchdog watchdog_;
   // The newest; number 0 before the first.
   comms::msg::Imu imu_message_;

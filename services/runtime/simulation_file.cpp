@@ -1,6 +1,8 @@
 #include "services/runtime/simulation_file.hpp"
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "services/runtime/config.hpp"
 #include "services/runtime/text_file.hpp"
@@ -61,6 +63,68 @@ plant::GroundSettings read_ground(const ConfigNode& node) {
   return ground;
 }
 
+plant::FaultKind read_fault_kind(const ConfigNode& node) {
+  using Kind = plant::FaultKind;
+  const auto named = [](Kind kind) { return std::make_pair(plant::to_string(kind), kind); };
+  return node.choice<Kind>({named(Kind::kMocapStop), named(Kind::kMocapFreeze), named(Kind::kMocapUntracked),
+                            named(Kind::kMocapJump), named(Kind::kMocapSwap), named(Kind::kMocapLatency),
+                            named(Kind::kImuStop), named(Kind::kImuNan), named(Kind::kImuStuck),
+                            named(Kind::kImuBias), named(Kind::kBatteryStop), named(Kind::kRotorSpeedsStop),
+                            named(Kind::kBatteryDrop), named(Kind::kRotorThrust), named(Kind::kPush),
+                            named(Kind::kWind), named(Kind::kCommandsStop), named(Kind::kCommandsDelay)});
+}
+
+plant::Fault read_fault(const ConfigNode& node) {
+  using Kind = plant::FaultKind;
+  plant::Fault fault;
+  fault.kind = read_fault_kind(node.at("kind"));
+  fault.at_s = node.at("at_s").number();
+  fault.for_s = node.at("for_s").number();
+  switch (fault.kind) {
+    case Kind::kMocapJump:
+      fault.position_ned = node.at("position_ned_m").vector3();
+      fault.rotation_frd = node.at("rotation_frd_rad").vector3();
+      break;
+    case Kind::kMocapSwap:
+      fault.position_ned = node.at("position_ned_m").vector3();
+      fault.yaw_rad = node.at("yaw_rad").number();
+      break;
+    case Kind::kMocapLatency:
+    case Kind::kCommandsDelay:
+      fault.delay_s = node.at("delay_s").number();
+      break;
+    case Kind::kImuBias:
+      fault.specific_force_frd = node.at("accelerometer_m_s2").vector3();
+      fault.body_rates_frd = node.at("gyro_rad_s").vector3();
+      break;
+    case Kind::kBatteryDrop:
+      fault.voltage_v = node.at("voltage_v").number();
+      break;
+    case Kind::kRotorThrust:
+      fault.rotor = static_cast<int>(node.at("rotor").integer(1, plant::kMaxRotors));
+      fault.factor = node.at("factor").number();
+      break;
+    case Kind::kPush:
+      fault.force_ned = node.at("force_ned_n").vector3();
+      fault.moment_frd = node.at("moment_frd_n_m").vector3();
+      break;
+    case Kind::kWind:
+      fault.wind_ned = node.at("wind_ned_m_s").vector3();
+      break;
+    default:
+      break;  // no parameters
+  }
+  return fault;
+}
+
+std::vector<plant::Fault> read_faults(const ConfigNode& root) {
+  std::vector<plant::Fault> faults;
+  const auto list = root.find("faults");
+  if (!list) return faults;
+  for (const ConfigNode& node : list->items()) faults.push_back(read_fault(node));
+  return faults;
+}
+
 }  // namespace
 
 plant::SimulationSettings parse_simulation_settings(std::string_view text, const std::string& file_name) {
@@ -75,6 +139,7 @@ plant::SimulationSettings parse_simulation_settings(std::string_view text, const
   settings.supply = read_supply(root.at("supply"));
   settings.air = read_air(root.at("air"));
   settings.ground = read_ground(root.at("ground"));
+  settings.faults = read_faults(root);
   root.reject_unknown_keys();
   reject_violations(root, plant::validate(settings));
   return settings;

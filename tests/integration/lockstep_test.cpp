@@ -107,6 +107,39 @@ TEST_P(LockstepRate, IsTheFlightOfOneProcess) {
 INSTANTIATE_TEST_SUITE_P(, LockstepRate, testing::Values("500", "1000"),
                          [](const auto& rate) { return std::string(rate.param) + "Hz"; });
 
+// What a fault keeps back is not waited for, and whatever comes comes at the same stamp.
+TEST_F(Lockstep, FaultsAreTheSameInEveryProcess) {
+  std::ifstream world(SWIFTLET_SOURCE_DIR "/config/simulation/default.yaml");
+  const std::string simulation = folder_.write(
+      "faults.yaml",
+      std::string(std::istreambuf_iterator<char>(world), {}) +
+          "faults:\n"
+          "  - {kind: imu_stop, at_s: 0.2, for_s: 0.1}\n"
+          "  - {kind: mocap_stop, at_s: 0.25, for_s: 0.1}\n"
+          "  - {kind: mocap_latency, at_s: 1.5, for_s: 0.5, delay_s: 0.017}\n"
+          "  - {kind: imu_stop, at_s: 2.503, for_s: 0.015}\n"
+          "  - {kind: mocap_stop, at_s: 3.5, for_s: 0.15}\n"
+          "  - {kind: imu_stop, at_s: 3.6, for_s: 0.025}\n"
+          "  - {kind: imu_nan, at_s: 4, for_s: 0.02}\n"
+          "  - {kind: mocap_freeze, at_s: 4.3, for_s: 0.05}\n"
+          "  - {kind: mocap_untracked, at_s: 4.5, for_s: 0.05}\n"
+          "  - {kind: mocap_swap, at_s: 4.7, for_s: 0.05, position_ned_m: [1, 1, 0], yaw_rad: 1}\n"
+          "  - {kind: commands_stop, at_s: 5, for_s: 0.03}\n"
+          "  - {kind: commands_delay, at_s: 5.2, for_s: 0.1, delay_s: 0.007}\n"
+          "  - {kind: battery_stop, at_s: 5, for_s: 0.5}\n"
+          "  - {kind: rotor_speeds_stop, at_s: 5, for_s: 0.5}\n"
+          "  - {kind: push, at_s: 5.5, for_s: 0.05, force_ned_n: [0.1, 0, 0], moment_frd_n_m: [0, 0, 0]}\n");
+  const Flight over_dds = fly({"fly", "--clock", "lockstep", "--simulation", simulation}, "dds");
+  const Flight in_process = fly({"sim", "fly", "--simulation", simulation}, "process");
+  const Flight without = fly({"sim", "fly"}, "without");
+  EXPECT_GT(in_process.trace.size(), 1'000'000U);
+  EXPECT_TRUE(over_dds.trace == in_process.trace);
+  EXPECT_FALSE(without.trace == in_process.trace);
+  for (const char* key : {"rms_3d_m", "peak_3d_m", "matched_samples", "duration_s"}) {
+    EXPECT_EQ(over_dds.report.at(key), in_process.report.at(key)) << key;
+  }
+}
+
 TEST_F(Lockstep, AnotherSeedIsAnotherFlight) {
   EXPECT_FALSE(fly({"sim", "fly", "--seed", "5"}, "five").trace ==
                fly({"sim", "fly", "--seed", "6"}, "six").trace);

@@ -98,6 +98,9 @@ inline ControllerReport controller_report() {
   state.setpoint_ns = 35;
   state.contact_since_ns = 36;
   state.low_battery_since_ns = 37;
+  state.critical_battery_since_ns = 46;
+  state.land_on_return = true;
+  state.ground_links = {{{47, 48}, {49, 50}, {51, 52}, {53, 54}}};
   report.flight.position_integral = {0.1, -0.2, 0.3};
   report.flight.rotor_state = plant::RotorState::kRunning;
   report.rotor_count = 4;
@@ -139,6 +142,15 @@ inline msg::ControllerState example() {
 template <>
 inline msg::Setpoint example() {
   return to_message(setpoint());
+}
+template <>
+inline msg::GroundLink example() {
+  msg::GroundLink message;
+  message.client(3);
+  message.sequence_number(4);
+  message.stamp_ns(5);
+  message.depends(true);
+  return message;
 }
 template <>
 inline msg::Command example() {

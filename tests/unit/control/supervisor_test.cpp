@@ -8,70 +8,17 @@
 #include <gtest/gtest.h>
 
 #include "control/supervision/checks.hpp"
+#include "tests/unit/control/supervised_flight.hpp"
 
 namespace swiftlet::control {
 namespace {
 
 using Eigen::Vector3d;
+using tests::SupervisedFlight;
 
-constexpr std::int64_t kStep_ns = 2'000'000;
-
-// A supervisor whose vehicle is exactly where the reference asks it to be, and never below the ground.
-class Flight : public testing::Test {
+class Flight : public testing::Test, protected SupervisedFlight {
  protected:
-  Flight() {
-    situation_.stamp_ns = kStep_ns;
-    situation_.estimate = &estimate_;
-    situation_.has_estimate = true;
-    situation_.has_battery = true;
-    situation_.supply_voltage_v = 3.9;
-    step();
-  }
-
-  void step() {
-    situation_.stamp_ns += kStep_ns;
-    estimate_.stamp_ns = situation_.stamp_ns;
-    directive_ = supervisor_.step(situation_);
-    if (directive_.actuation == Actuation::kFly && follows_) {
-      estimate_.position_ned = directive_.reference.position_ned;
-      estimate_.velocity_ned = directive_.reference.velocity_ned;
-      if (estimate_.position_ned.z() > 0.0) {
-        estimate_.position_ned.z() = 0.0;
-        estimate_.velocity_ned.setZero();
-      }
-    }
-  }
-  // Steps until the predicate holds; false if it does not within `limit_s` of flight.
-  bool step_until(const std::function<bool()>& predicate, double limit_s) {
-    const std::int64_t end_ns = situation_.stamp_ns + std::llround(limit_s * 1e9);
-    while (situation_.stamp_ns < end_ns) {
-      if (predicate()) return true;
-      step();
-    }
-    return predicate();
-  }
-  bool step_until(Mode mode, double limit_s) {
-    return step_until([&] { return supervisor_.mode() == mode; }, limit_s);
-  }
-
-  Outcome ask(RequestKind kind, const Vector3d& position = Vector3d::Zero(), double speed = 0.5) {
-    Request request;
-    request.kind = kind;
-    request.position_ned = position;
-    request.speed = speed;
-    return supervisor_.request(request, situation_);
-  }
-  void hover() {
-    ASSERT_TRUE(ask(RequestKind::kArm).accepted);
-    ASSERT_TRUE(ask(RequestKind::kTakeoff, {0, 0, -1}).accepted);
-    ASSERT_TRUE(step_until(Mode::kHolding, 10.0));
-  }
-
-  Supervisor supervisor_{Limits{}, FailsafeSettings{}};
-  Estimate estimate_;
-  Situation situation_;
-  Directive directive_;
-  bool follows_ = true;
+  void hover() { ASSERT_TRUE(take_off()); }
 };
 
 TEST_F(Flight, StartsDisarmedWithRotorsOff) {
@@ -277,6 +224,11 @@ TEST_F(Flight, FollowsSetpointsAndHoldsWhenTheyStop) {
   EXPECT_EQ(directive_.reference.velocity_ned, setpoint.velocity_ned);
   setpoint.position_ned = {0.2, 9.0, -1};
   EXPECT_FALSE(supervisor_.setpoint(setpoint, situation_).accepted);
+  setpoint.position_ned = {2.9, 0, -1};
+  estimate_.position_ned = setpoint.position_ned;
+  const Outcome outcome = supervisor_.setpoint(setpoint, situation_);
+  EXPECT_STREQ(outcome.reason,
+               "setpoint: where it could come to rest: x is 3.125 m, outside the fence of -3.000 to 3.000 m");
   ASSERT_TRUE(step_until(Mode::kHolding, 0.6));
   EXPECT_EQ(supervisor_.reason(), Reason::kSetpointsStopped);
 }
@@ -316,7 +268,7 @@ TEST_F(Flight, AnotherGoesOnFromItsStateAtEveryStep) {
   request.kind = RequestKind::kMission;
   request.mission = &mission;
   ASSERT_TRUE(supervisor_.request(request, situation_).accepted);
-  Supervisor follower(Limits{}, FailsafeSettings{});
+  Supervisor follower{SupervisionSettings()};
   int steps = 0;
   while (supervisor_.mode() == Mode::kMission) {
     if (++steps % 7 == 0) {

@@ -101,6 +101,83 @@ TEST(SimulationFile, RefusesWhatIsNoSetting) {
   EXPECT_NE(refused("step_s: 0.001", "step_s: 7").find("s.yaml:5: step_s: is 7"), std::string::npos);
 }
 
+std::string with_faults(const std::string& faults) { return file("default") + "faults:\n" + faults; }
+
+std::string refused_faults(const std::string& faults) {
+  return refusal([&] { parse_simulation_settings(with_faults(faults), "s.yaml"); });
+}
+
+TEST(SimulationFile, ReadsFaultsOfEveryKind) {
+  EXPECT_TRUE(parse_simulation_settings(file("default"), "s.yaml").faults.empty());
+  const SimulationSettings s = parse_simulation_settings(
+      with_faults(
+          "  - {kind: mocap_stop, at_s: 1, for_s: 0.5}\n"
+          "  - {kind: mocap_freeze, at_s: 1, for_s: 0.5}\n"
+          "  - {kind: mocap_untracked, at_s: 1, for_s: 0.5}\n"
+          "  - {kind: mocap_jump, at_s: 1, for_s: 0.5, position_ned_m: [1, 2, 3], rotation_frd_rad: [0, 0, "
+          "3]}\n"
+          "  - {kind: mocap_swap, at_s: 1, for_s: 0.5, position_ned_m: [1, 2, 3], yaw_rad: 0.5}\n"
+          "  - {kind: mocap_latency, at_s: 1, for_s: 0.5, delay_s: 0.1}\n"
+          "  - {kind: imu_stop, at_s: 1, for_s: 0.5}\n"
+          "  - {kind: imu_nan, at_s: 1, for_s: 0.5}\n"
+          "  - {kind: imu_stuck, at_s: 1, for_s: 0.5}\n"
+          "  - {kind: imu_bias, at_s: 1, for_s: 0.5, accelerometer_m_s2: [1, 2, 3], gyro_rad_s: [4, 5, 6]}\n"
+          "  - {kind: battery_stop, at_s: 1, for_s: 0.5}\n"
+          "  - {kind: rotor_speeds_stop, at_s: 1, for_s: 0.5}\n"
+          "  - {kind: battery_drop, at_s: 1, for_s: 0.5, voltage_v: 0.25}\n"
+          "  - {kind: rotor_thrust, at_s: 1, for_s: 0.5, rotor: 3, factor: 0.75}\n"
+          "  - {kind: push, at_s: 1, for_s: 0.5, force_ned_n: [1, 2, 3], moment_frd_n_m: [4, 5, 6]}\n"
+          "  - {kind: wind, at_s: 1, for_s: 0.5, wind_ned_m_s: [1, 2, 3]}\n"
+          "  - {kind: commands_stop, at_s: 1, for_s: 0.5}\n"
+          "  - {kind: commands_delay, at_s: 1, for_s: 0.5, delay_s: 0.05}\n"),
+      "s.yaml");
+  ASSERT_EQ(s.faults.size(), plant::kFaultKinds);
+  for (std::size_t i = 0; i < s.faults.size(); ++i) {
+    EXPECT_EQ(static_cast<std::size_t>(s.faults[i].kind), i);
+    EXPECT_EQ(s.faults[i].at_s, 1.0);
+    EXPECT_EQ(s.faults[i].for_s, 0.5);
+  }
+  EXPECT_EQ(s.faults[3].position_ned, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(s.faults[3].rotation_frd, Eigen::Vector3d(0, 0, 3));
+  EXPECT_EQ(s.faults[4].position_ned, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(s.faults[4].yaw_rad, 0.5);
+  EXPECT_EQ(s.faults[5].delay_s, 0.1);
+  EXPECT_EQ(s.faults[9].specific_force_frd, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(s.faults[9].body_rates_frd, Eigen::Vector3d(4, 5, 6));
+  EXPECT_EQ(s.faults[12].voltage_v, 0.25);
+  EXPECT_EQ(s.faults[13].rotor, 3);
+  EXPECT_EQ(s.faults[13].factor, 0.75);
+  EXPECT_EQ(s.faults[14].force_ned, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(s.faults[14].moment_frd, Eigen::Vector3d(4, 5, 6));
+  EXPECT_EQ(s.faults[15].wind_ned, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(s.faults[17].delay_s, 0.05);
+}
+
+TEST(SimulationFile, FaultsThatCannotBeAreRefused) {
+  EXPECT_EQ(refused_faults("  - {kind: imu_stop, at_s: -1, for_s: 1}\n"),
+            "s.yaml:48: faults[0].at_s: is -1, must be at least 0 and at most 86400");
+  EXPECT_NE(refused_faults("  - {kind: imu_stopped, at_s: 1, for_s: 1}\n")
+                .find("s.yaml:48: faults[0].kind: is imu_stopped, must be "),
+            std::string::npos);
+  EXPECT_NE(refused_faults("  - {kind: mocap_latency, at_s: 1, for_s: 1}\n").find("faults[0].delay_s"),
+            std::string::npos);
+  EXPECT_NE(refused_faults("  - {kind: imu_stop, at_s: 1, for_s: 1, delay_s: 1}\n").find("faults[0].delay_s"),
+            std::string::npos);
+  EXPECT_EQ(
+      refused_faults("  - {kind: imu_stop, at_s: 1, for_s: 1}\n"
+                     "  - {kind: imu_stop, at_s: 1.5, for_s: 1}\n"),
+      "s.yaml:49: faults[1].at_s: is 1.5, but faults[0], imu_stop too, lasts from 1 s to 2 s: faults of "
+      "one kind must not overlap");
+}
+
+TEST(SimulationFile, TheExampleOfFaultsIsTheDefaultWithThem) {
+  const std::string example = file("faults_example");
+  EXPECT_GT(parse_simulation_settings(example, "s.yaml").faults.size(), 10U);
+  const std::string world = file("default");
+  const std::string settings = world.substr(world.find("step_s:"));
+  EXPECT_NE(example.find(settings), std::string::npos);
+}
+
 TEST(SimulationFile, NamesAFileThatIsNotThere) {
   EXPECT_NE(refusal([] { load_simulation_settings("/nowhere/s.yaml"); }).find("/nowhere/s.yaml: "),
             std::string::npos);

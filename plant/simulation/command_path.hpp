@@ -1,0 +1,38 @@
+// The way of the actuator commands to the vehicle, with the faults that befall them there.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "plant/model/samples.hpp"
+#include "plant/simulation/delay_line.hpp"
+#include "plant/simulation/faults.hpp"
+#include "plant/simulation/settings.hpp"
+
+namespace swiftlet::plant {
+
+class CommandPath {
+ public:
+  explicit CommandPath(const SimulationSettings& settings);
+
+  // A command is sent at now_ns. Returns what of it arrives at once: itself or nothing.
+  std::optional<ActuatorCommand> send(const ActuatorCommand& command, std::int64_t now_ns) {
+    if (faultless_) return command;
+    return send_with_faults(command, now_ns);
+  }
+
+  // One that was sent before and arrives now.
+  std::optional<ActuatorCommand> arrived(std::int64_t now_ns) {
+    if (delayed_.empty()) return std::nullopt;
+    return delayed_.take(now_ns);
+  }
+
+ private:
+  std::optional<ActuatorCommand> send_with_faults(const ActuatorCommand& command, std::int64_t now_ns);
+
+  FaultSchedule faults_;
+  bool faultless_;
+  DelayLine<ActuatorCommand> delayed_;
+};
+
+}  // namespace swiftlet::plant

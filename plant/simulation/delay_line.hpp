@@ -1,0 +1,55 @@
+// Holds what is under way for a while, in order. Memory is taken at construction alone.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace swiftlet::plant {
+
+template <class Item>
+class DelayLine {
+ public:
+  // Room for so many; when it is full, the oldest is lost.
+  explicit DelayLine(std::size_t capacity) : items_(std::max<std::size_t>(capacity, 1)) {}
+
+  // Arrives at due_ns, or with the one before it if that is later.
+  void put(const Item& item, std::int64_t due_ns) {
+    if (count_ == items_.size()) drop_oldest();
+    if (count_ > 0) due_ns = std::max(due_ns, at(count_ - 1).due_ns);
+    at(count_++) = {item, due_ns};
+  }
+
+  // The newest that has arrived at now_ns; older ones are lost.
+  std::optional<Item> take(std::int64_t now_ns) {
+    std::optional<Item> newest;
+    while (count_ > 0 && at(0).due_ns <= now_ns) {
+      newest = at(0).item;
+      drop_oldest();
+    }
+    return newest;
+  }
+
+  void clear() { count_ = 0; }
+  bool empty() const { return count_ == 0; }
+
+ private:
+  struct Held {
+    Item item;
+    std::int64_t due_ns;
+  };
+
+  Held& at(std::size_t i) { return items_[(oldest_ + i) % items_.size()]; }
+  void drop_oldest() {
+    oldest_ = (oldest_ + 1) % items_.size();
+    --count_;
+  }
+
+  std::vector<Held> items_;
+  std::size_t oldest_ = 0;
+  std::size_t count_ = 0;
+};
+
+}  // namespace swiftlet::plant

@@ -1,0 +1,186 @@
+#include "tests/soak/soak_flight.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "ground/installation.hpp"
+#include "ground/simulation/closed_loop.hpp"
+#include "ground/vary_file.hpp"
+#include "services/runtime/control_settings_file.hpp"
+#include "services/runtime/simulation_file.hpp"
+#include "services/runtime/vehicle_file.hpp"
+#include "tests/soak/fault_draw.hpp"
+
+namespace swiftlet::soak {
+namespace {
+
+using control::Mode;
+using Eigen::Vector3d;
+using plant::Fault;
+
+constexpr double kFlight_s = 120.0;
+constexpr double kFirstFault_s = 3.0;
+constexpr double kAftermath_s = 1.0;
+constexpr double kLyingCosine = 0.5;  // of the tilt: 60 degrees
+constexpr double kLies_s = 3.0;       // on the ground, tilted, rotors off
+
+double cosine_of_tilt(const Eigen::Quaterniond& q) { return 1.0 - 2.0 * (q.x() * q.x() + q.y() * q.y()); }
+
+template <typename... Values>
+std::string text(const char* format, Values... values) {
+  char buffer[256];
+  std::snprintf(buffer, sizeof buffer, format, values...);
+  return buffer;
+}
+
+class Run {
+ public:
+  Run(const SoakSetup& setup, std::uint64_t seed, const Log& log)
+      : limits_(setup.control.limits),
+        log_(log),
+        world_(world(setup, seed)),
+        loop_(world_.vehicle, setup.nominal.vehicle, world_.simulation, setup.control, seed),
+        pilot_(seed, limits_, log ? Log([this](const std::string& what) { tell(what); }) : Log()) {
+    flight_.seed = seed;
+    for (const Fault& fault : world_.simulation.faults)
+      flight_.faults.push_back({fault, Consequence::kOnGround});
+  }
+
+  SoakFlight fly() {
+    while (loop_.time_s() < kFlight_s && !flight_.violation && !flight_.lies) {
+      const Mode before = loop_.controller.status().mode;
+      tell_faults();
+      pilot_.act(loop_);
+      const Mode asked = loop_.controller.status().mode;
+      loop_.step();
+      look(before, asked);
+    }
+    if (!flight_.violation && upside_down() && rotors_running())
+      violate("ended upside down with its rotors running");
+    flight_.simulated_s = loop_.time_s();
+    flight_.take_offs = pilot_.take_offs();
+    return flight_;
+  }
+
+ private:
+  static ground::World world(const SoakSetup& setup, std::uint64_t seed) {
+    ground::World world = ground::draw(setup.variation, setup.nominal, seed).world;
+    world.simulation.faults =
+        draw_faults(seed, kFirstFault_s, kFlight_s, world.vehicle, setup.control.limits);
+    return world;
+  }
+
+  bool rotors_running() const {
+    return loop_.watchdog.drive(loop_.plant.stamp_ns()).state == plant::RotorState::kRunning;
+  }
+  bool upside_down() const { return cosine_of_tilt(loop_.plant.state().q_ned_from_frd) < 0.0; }
+  bool airborne() const { return !loop_.plant.on_ground(); }
+
+  void look(Mode before, Mode asked) {
+    const Mode mode = loop_.controller.status().mode;
+    if (mode != before && log_)
+      tell(std::string("mode: ") + to_string(mode) + ", " + loop_.controller.status().reason);
+    const double step_s = loop_.time_s() - looked_s_;
+    looked_s_ = loop_.time_s();
+    if (airborne()) flight_.airborne_s += step_s;
+
+    if (airborne()) happened(Consequence::kFlewOn);
+    if (mode != asked && mode == Mode::kLanding) happened(Consequence::kLanded);
+    if (mode != asked && mode == Mode::kDescent) happened(Consequence::kDescended);
+    if (mode != asked && mode == Mode::kStopped) happened(Consequence::kStopped);
+    if (airborne() && was_running_ && !rotors_running() && mode != Mode::kDisarmed) {
+      if (log_) tell(std::string("the rotors stop in the air"));
+      happened(Consequence::kFell);
+    }
+    was_running_ = rotors_running();
+    judge_fence();
+    judge_attitude(step_s);
+  }
+
+  void happened(Consequence consequence) {
+    for (MetFault& met : flight_.faults) {
+      const double now_s = loop_.time_s();
+      if (now_s < met.fault.at_s || now_s > met.fault.at_s + met.fault.for_s + kAftermath_s) continue;
+      met.consequence = std::max(met.consequence, consequence);
+    }
+  }
+
+  void judge_fence() {
+    const Vector3d& p = loop_.plant.state().position_ned;
+    const double outside =
+        std::max((p - limits_.fence_max_ned).maxCoeff(), (limits_.fence_min_ned - p).maxCoeff());
+    flight_.most_outside_m = std::max(flight_.most_outside_m, outside);
+    if (outside > kFenceMargin_m) violate(text("%.2f m outside the fence", outside));
+  }
+
+  void judge_attitude(double step_s) {
+    upside_down_s_ = upside_down() && rotors_running() ? upside_down_s_ + step_s : 0.0;
+    if (upside_down_s_ > kUpsideDown_s)
+      violate(text("upside down with its rotors running for %.1f s", upside_down_s_));
+    const bool lies = loop_.plant.on_ground() && !rotors_running() &&
+                      cosine_of_tilt(loop_.plant.state().q_ned_from_frd) < kLyingCosine;
+    lies_s_ = lies ? lies_s_ + step_s : 0.0;
+    if (lies_s_ > kLies_s) {
+      flight_.lies = true;
+      if (log_) tell("lies on the ground");
+    }
+  }
+
+  void violate(const std::string& what) {
+    if (flight_.violation) return;
+    flight_.violation = Violation{loop_.time_s(), what};
+    if (log_) tell("VIOLATION: " + what);
+  }
+
+  void tell(const std::string& what) {
+    const plant::VehicleState& state = loop_.plant.state();
+    const Vector3d& p = state.position_ned;
+    const Vector3d error = loop_.controller.estimate().position_ned - p;
+    log_(text("%8.3f s  (%5.2f, %5.2f, %5.2f) m, tilt %3.0f deg, estimate off %5.2f m, %4.1f deg: %s",
+              loop_.time_s(), p.x(), p.y(), p.z(),
+              std::acos(std::clamp(cosine_of_tilt(state.q_ned_from_frd), -1.0, 1.0)) * 180.0 / M_PI,
+              error.norm(),
+              loop_.controller.estimate().q_ned_from_frd.angularDistance(state.q_ned_from_frd) * 180.0 / M_PI,
+              what.c_str()));
+  }
+
+  void tell_faults() {
+    if (!log_) return;
+    for (const MetFault& met : flight_.faults) {
+      if (told_s_ < met.fault.at_s && met.fault.at_s <= loop_.time_s())
+        tell(text("fault: %s for %.3f s", plant::to_string(met.fault.kind), met.fault.for_s));
+    }
+    told_s_ = loop_.time_s();
+  }
+
+  const control::Limits& limits_;
+  const Log& log_;
+  ground::World world_;
+  ground::ClosedLoop loop_;
+  Pilot pilot_;
+  SoakFlight flight_;
+  double looked_s_ = 0.0;
+  double told_s_ = 0.0;
+  bool was_running_ = false;
+  double upside_down_s_ = 0.0;
+  double lies_s_ = 0.0;
+};
+
+}  // namespace
+
+SoakSetup load_setup(const std::string& control) {
+  SoakSetup setup;
+  setup.nominal.vehicle = runtime::load_vehicle(ground::configuration_file("vehicles", "kaylion"));
+  setup.nominal.simulation =
+      runtime::load_simulation_settings(ground::configuration_file("simulation", "default"));
+  setup.control = runtime::load_control_settings(ground::configuration_file("control", control));
+  setup.variation = ground::load_vary_file(ground::configuration_file("vary", "kaylion"), setup.nominal);
+  return setup;
+}
+
+SoakFlight fly(const SoakSetup& setup, std::uint64_t seed, const Log& log) {
+  return Run(setup, seed, log).fly();
+}
+
+}  // namespace swiftlet::soak
