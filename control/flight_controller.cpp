@@ -25,6 +25,9 @@ using Eigen::Vector3d;
 constexpr double kFirstStep_s = 0.002;  // taken for the first sample, which has none before it
 constexpr double kMaxStep_s = 0.1;
 constexpr int kUnusableToFault = 200;  // IMU samples in a row that cannot be used, whatever their stamps say
+// Of the weight, specific force that the rotors do not explain: something else carries the vehicle, on its legs or on
+// its side.
+constexpr double kStandingLift = 0.5;
 constexpr double kDescentGain = 4.0;   // 1/s, vertical speed to acceleration, in descent without position
 constexpr double kDescentLimit = 2.0;  // m/s^2, of that acceleration
 
@@ -284,6 +287,28 @@ bool FlightController::on_ground_sign(const GroundSign& sign) { return loops_->s
 Outcome FlightController::request(const Request& request) {
   return loops_->supervisor.request(request, loops_->situation());
 }
+
+FlightState FlightController::state() const {
+  const Loops& l = *loops_;
+  return {l.supervisor.state(), l.position.integral(), l.command.rotor_state, l.command.throttle};
+}
+
+void FlightController::adopt(const FlightState& state, const Mission* mission, const Trajectory* trajectory) {
+  Loops& l = *loops_;
+  l.supervisor.adopt(state.supervisor, mission, trajectory);
+  l.position.adopt(state.position_integral);
+  l.command.rotor_state = state.rotor_state;
+  l.command.throttle = state.throttle;
+}
+
+bool FlightController::feels_airborne() const {
+  const Loops& l = *loops_;
+  const Vector3d lift_frd(0.0, 0.0, -l.rotors.thrust_n() / l.vehicle.mass_kg);
+  const Vector3d unexplained = l.specific_force_frd - l.estimator.estimate().accelerometer_bias - lift_frd;
+  return unexplained.norm() < kStandingLift * plant::kGravity;
+}
+
+bool FlightController::find_flying() { return loops_->supervisor.find_flying(loops_->situation()).accepted; }
 
 const Estimate& FlightController::estimate() const { return loops_->estimator.estimate(); }
 ErrorState FlightController::estimate_deviation() const { return loops_->estimator.standard_deviation(); }

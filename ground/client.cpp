@@ -139,10 +139,21 @@ void Client::subscribe_all() {
   node_.on_peer([this](const comms::PeerEvent& peer) {
     {
       const std::lock_guard lock(mutex_);
-      view_.peers[peer.name] = peer.alive;
+      view_.peers[peer.name] += peer.alive ? 1 : -1;
     }
     changed_.notify_all();
   });
+}
+
+void Client::hear_controllers() {
+  subscriptions_.push_back(node_.subscribe<msg::ControllerState>(
+      comms::topics::kControllerState, [this](const msg::ControllerState& state) {
+        const std::lock_guard lock(mutex_);
+        Latest<msg::ControllerState>& latest = view_.controllers[state.controller()];
+        latest.message = state;
+        latest.received = Clock::now();
+        ++latest.count;
+      }));
 }
 
 View Client::view() const {
@@ -240,8 +251,8 @@ Answer Client::upload(const control::Mission& mission, std::chrono::milliseconds
 
 std::string Client::where() const {
   std::string alive;
-  for (const auto& [name, is_alive] : view().peers) {
-    if (is_alive) alive += (alive.empty() ? "" : ", ") + name;
+  for (const auto& [name, count] : view().peers) {
+    if (count > 0) alive += (alive.empty() ? "" : ", ") + name;
   }
   return "vehicle " + settings_.vehicle + " in domain " + std::to_string(settings_.domain) +
          "; seen there: " + (alive.empty() ? "nothing" : alive);
@@ -251,7 +262,7 @@ std::string Client::no_control() const {
   // Those that keep to the loopback interface are seen, but do not talk to others.
   const auto peers = view().peers;
   const auto control = peers.find("control");
-  const bool seen = control != peers.end() && control->second;
+  const bool seen = control != peers.end() && control->second > 0;
   return "no control service for " + where() +
          (seen && !settings_.localhost_only ? " (try --localhost-only)" : "");
 }

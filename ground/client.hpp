@@ -43,7 +43,9 @@ struct View {
   Latest<msg::Estimate> estimate;
   Latest<msg::Reference> reference;
   Latest<msg::GroundTruth> truth;
-  std::map<std::string, bool> peers;  // by name: alive
+  std::map<std::string, int> peers;  // by name: how many are alive
+  std::map<std::uint64_t, Latest<msg::ControllerState>>
+      controllers;  // by number; once hear_controllers() was called
 };
 
 // The answer to a request.
@@ -70,6 +72,9 @@ class Client {
   Client& operator=(const Client&) = delete;
 
   View view() const;
+
+  // From now on the view holds what the controllers say of themselves, the standbys too.
+  void hear_controllers();
 
   // For a plant in lockstep that was started paused: from the first call on, this client grants it time.
   TimeGrants& grants();

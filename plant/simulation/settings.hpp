@@ -78,7 +78,7 @@ struct GroundSettings {
 struct SimulationSettings {
   std::string name = "default";
   std::int64_t step_ns = 1'000'000;    // integration step
-  double command_timeout_s = 0.2;      // rotors off if no valid command has come for so long
+  double command_timeout_s = 0.5;      // rotors off if no valid command has come for so long
   double rotor_speed_rate_hz = 500.0;  // of rotor speed samples; 0: the vehicle does not measure them
   ImuSettings imu;
   MocapSettings mocap;

@@ -218,6 +218,7 @@ void run(const Options& options) {
 
   comms::NodeSettings node_settings = options.node;
   node_settings.name = "plant";
+  node_settings.announcement_period = comms::kFixturePeriod;
   node_settings.deadlines = options.clock == runtime::Clock::kRealtime;
   comms::Node node(node_settings);
   comms::log_peers(node);
