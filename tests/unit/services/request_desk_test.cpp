@@ -333,6 +333,7 @@ TEST_F(DeskOfAStandby, AnswersNothing) {
 TEST_F(DeskOfAStandby, GoesOnWithTheMissionThatItHeardBeingAskedFor) {
   fly_mission();
   standby_desk_.on_mission(mission(2, 1.0));
+  follow(20);  // until it has a pose
   for (int i = 0; i < 1500; ++i) {
     const plant::ActuatorCommand flown = step();
     hand_over();
@@ -357,11 +358,11 @@ TEST_F(DeskOfAStandby, GoesOnWithTheMissionThatItHeardBeingFlown) {
   EXPECT_EQ(standby_state().mode, control::Mode::kMission);
 }
 
-TEST_F(DeskOfAStandby, WithoutTheMissionItHolds) {
+TEST_F(DeskOfAStandby, WithoutTheMissionItStaysOnTheGround) {
   fly_mission();
   follow(20);
   const control::SupervisorState state = standby_state();
-  EXPECT_EQ(state.mode, control::Mode::kHolding);
+  EXPECT_EQ(state.mode, control::Mode::kDisarmed);
   EXPECT_EQ(state.reason, control::Reason::kPlanUnknown);
 }
 
