@@ -8,7 +8,9 @@
 
 #include "control/allocation/allocator.hpp"
 #include "control/attitude/attitude_controller.hpp"
+#include "control/attitude/euler.hpp"
 #include "control/design/control_design.hpp"
+#include "control/estimation/disturbance_observer.hpp"
 #include "control/estimation/rotor_observer.hpp"
 #include "control/position/position_controller.hpp"
 #include "control/position/thrust_attitude_map.hpp"
@@ -45,8 +47,7 @@ struct FlightController::Loops {
   void fly(const Directive& directive, double dt_s);
   void spool_up(const Directive& directive);
   void descend_level();
-  void command_wrench(double thrust_n, const Vector3d& euler_rad,
-                      const AttitudeReference& attitude_reference);
+  void command_wrench(double thrust_n, const AttitudeReference& attitude_reference);
   plant::ActuatorCommand answer(const plant::ImuSample& sample);
 
   plant::Vehicle vehicle;
@@ -55,6 +56,7 @@ struct FlightController::Loops {
   double max_tilt_tangent;
   Estimator estimator;
   RotorObserver rotors;
+  DisturbanceObserver disturbance;
   PositionController position;
   AttitudeController attitude;
   Allocator allocator;
@@ -65,6 +67,7 @@ struct FlightController::Loops {
   Vector3d specific_force_frd = Vector3d::Zero();
   bool has_battery = false;
   double supply_voltage_v;
+  Allocator::Supply supply;
   plant::ActuatorCommand command;
   Reference reference;
   AttitudeSetpoint setpoint;
@@ -79,11 +82,13 @@ FlightController::Loops::Loops(const plant::Vehicle& vehicle_in, const ControlSe
       max_tilt_tangent(std::tan(settings_in.limits.max_tilt_rad)),
       estimator(settings_in.estimator),
       rotors(vehicle_in),
+      disturbance(settings_in.disturbance),
       position(settings_in.position, settings_in.limits, design_in),
       attitude(vehicle_in, settings_in.attitude, design_in),
       allocator(vehicle_in),
       supervisor(settings_in.limits, settings_in.failsafe),
-      supply_voltage_v(allocator.plausible_supply().assumed) {
+      supply_voltage_v(allocator.plausible_supply().assumed),
+      supply(allocator.supply_at(supply_voltage_v)) {
   command.rotor_count = vehicle.rotor_count();
 }
 
@@ -120,6 +125,7 @@ void FlightController::Loops::act(const Directive& directive, double dt_s) {
     case Actuation::kOff:
     case Actuation::kIdle:
       position.reset();
+      disturbance.reset();
       setpoint = AttitudeSetpoint();
       command.throttle = plant::PerRotor{};
       status.saturated = false;
@@ -136,28 +142,31 @@ void FlightController::Loops::act(const Directive& directive, double dt_s) {
 // Eq. (48) outside, Eq. (35)-(40) inside.
 void FlightController::Loops::fly(const Directive& directive, double dt_s) {
   const Estimate& estimate = estimator.estimate();
+  if (directive.integrate) {
+    disturbance.step(dt_s, specific_force_frd - estimate.accelerometer_bias, estimate.q_ned_from_frd,
+                     rotors.thrust_n() / vehicle.mass_kg);
+  }
   const PositionCommand wanted =
       position.step(estimate.position_ned, estimate.velocity_ned, reference, dt_s, !directive.integrate);
-  const Vector3d euler = euler_from_quaternion(estimate.q_ned_from_frd);
-  const ThrustAttitude outer =
-      thrust_attitude(vehicle.mass_kg, wanted.acceleration_ned, euler.z(), max_tilt_tangent);
+  const ThrustAttitude outer = thrust_attitude(
+      vehicle.mass_kg, wanted.acceleration_ned - disturbance.acceleration_ned(), max_tilt_tangent);
   AttitudeReference inner;
   double thrust_n = outer.thrust_n;
   if (settings.attitude.feed_forward) {
     const ReferenceMotion on_reference = reference_motion(vehicle.mass_kg, reference);
-    inner.body_rates_frd = on_reference.body_rates_frd;
-    inner.body_accelerations_frd = on_reference.body_accelerations_frd;
+    inner.body_rates = on_reference.body_rates;
+    inner.body_accelerations = on_reference.body_accelerations;
     thrust_n += rotor_lag_s * on_reference.thrust_rate;  // leads the rotor lag
   }
-  inner.euler_rad = {outer.euler_rad.x(), outer.euler_rad.y(), reference.yaw_rad};
-  command_wrench(thrust_n, euler, inner);
+  inner.body_z_ned = outer.body_z_ned;
+  inner.yaw_rad = reference.yaw_rad;
+  command_wrench(thrust_n, inner);
 }
 
 void FlightController::Loops::spool_up(const Directive& directive) {
   AttitudeReference level;
-  level.euler_rad.z() = reference.yaw_rad;
-  command_wrench(directive.lift_fraction * vehicle.mass_kg * plant::kGravity,
-                 euler_from_quaternion(estimator.estimate().q_ned_from_frd), level);
+  level.yaw_rad = reference.yaw_rad;
+  command_wrench(directive.lift_fraction * vehicle.mass_kg * plant::kGravity, level);
 }
 
 void FlightController::Loops::descend_level() {
@@ -165,21 +174,22 @@ void FlightController::Loops::descend_level() {
   const double acceleration =
       std::clamp(kDescentGain * (settings.failsafe.descent_speed - estimate.velocity_ned.z()), -kDescentLimit,
                  kDescentLimit);
-  const Vector3d euler = euler_from_quaternion(estimate.q_ned_from_frd);
   AttitudeReference level;
-  level.euler_rad.z() = euler.z();
-  command_wrench(vehicle.mass_kg * (plant::kGravity - acceleration), euler, level);
+  level.yaw_rad = euler_from_quaternion(estimate.q_ned_from_frd).z();
+  command_wrench(vehicle.mass_kg * (plant::kGravity - acceleration), level);
 }
 
-void FlightController::Loops::command_wrench(double thrust_n, const Vector3d& euler_rad,
-                                             const AttitudeReference& attitude_reference) {
+// Of the wanted thrust, the part along the axis on which the rotors can give it: none while upside down.
+void FlightController::Loops::command_wrench(double thrust_n, const AttitudeReference& attitude_reference) {
+  const Estimate& estimate = estimator.estimate();
+  const Vector3d body_z_ned = estimate.q_ned_from_frd * Vector3d::UnitZ();
   Wrench wrench;
-  wrench.thrust_n = thrust_n;
-  wrench.moment_frd = attitude.moments(euler_rad, estimator.estimate().body_rates_frd, rotors.moment_frd(),
+  wrench.thrust_n = thrust_n * std::max(attitude_reference.body_z_ned.dot(body_z_ned), 0.0);
+  wrench.moment_frd = attitude.moments(estimate.q_ned_from_frd, estimate.body_rates_frd, rotors.moment_frd(),
                                        attitude_reference);
-  const Allocation allocation = allocator.allocate(wrench, supply_voltage_v);
+  const Allocation allocation = allocator.allocate(wrench, supply);
   command.throttle = allocation.throttle;
-  setpoint = {attitude_reference.euler_rad, wrench.thrust_n, wrench.moment_frd};
+  setpoint = {attitude_reference.body_z_ned, attitude_reference.yaw_rad, wrench.thrust_n, wrench.moment_frd};
   status.saturated = allocation.saturated;
 }
 
@@ -230,10 +240,11 @@ plant::ActuatorCommand FlightController::on_imu(const plant::ImuSample& sample) 
 void FlightController::on_pose(const plant::PoseSample& sample) { loops_->estimator.correct(sample); }
 
 void FlightController::on_battery(const plant::BatterySample& sample) {
-  const Allocator::SupplyRange& plausible = loops_->allocator.plausible_supply();
-  if (!(sample.voltage_v >= plausible.min && sample.voltage_v <= plausible.max)) return;
+  const Allocator::Supply supply = loops_->allocator.supply_at(sample.voltage_v);
+  if (!supply.plausible) return;
   loops_->has_battery = true;
   loops_->supply_voltage_v = sample.voltage_v;
+  loops_->supply = supply;
 }
 
 void FlightController::on_rotor_speeds(const plant::RotorSpeedSample& sample) {

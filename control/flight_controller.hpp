@@ -17,7 +17,8 @@ namespace swiftlet::control {
 
 // What each step asked of the inner loop, for plots and logs.
 struct AttitudeSetpoint {
-  Eigen::Vector3d euler_rad = Eigen::Vector3d::Zero();  // phi, theta, psi
+  Eigen::Vector3d body_z_ned = Eigen::Vector3d::UnitZ();  // unit length
+  double yaw_rad = 0.0;
   double thrust_n = 0.0;
   Eigen::Vector3d moment_frd = Eigen::Vector3d::Zero();  // N m
 };

@@ -74,6 +74,8 @@ std::vector<plant::Violation> validate(const ControlSettings& settings) {
   check_rpt("position.y", settings.position.y, check);
   check_rpt("position.z", settings.position.z, check);
   check.at_least("position.integral_limit_m_s2", settings.position.integral_limit, 0.0);
+  check.at_least("disturbance.bandwidth_rad_s", settings.disturbance.bandwidth, 0.0);
+  check.at_least("disturbance.limit_m_s2", settings.disturbance.limit, 0.0);
   check_limits(settings.limits, check);
   check_estimator(settings.estimator, check);
   check_failsafe(settings.failsafe, settings.limits, check);

@@ -15,6 +15,10 @@ namespace swiftlet::control {
 // as third state.
 enum class AttitudeModel { kDoubleIntegrator, kMotorLag };
 
+// What the attitude's angle errors are: differences of the paper's Euler angles, Eq. (29)-(31), or parts of
+// the rotation that is missing, which know no singularity (attitude/attitude_error.hpp).
+enum class AttitudeErrorKind { kEulerAngles, kRotation };
+
 // LQR weights of one axis on (angle, rate, moment / inertia): rad^-2, (rad/s)^-2, (rad/s^2)^-2. The third is
 // used with kMotorLag only.
 struct LqrWeights {
@@ -24,6 +28,7 @@ struct LqrWeights {
 
 struct AttitudeSettings {
   AttitudeModel model = AttitudeModel::kMotorLag;
+  AttitudeErrorKind error = AttitudeErrorKind::kRotation;
   LqrWeights roll, pitch, yaw;
   bool feed_forward = true;  // rates and accelerations of the reference's attitude, from its jerk and snap
 };
@@ -39,6 +44,12 @@ struct RptSettings {
 struct PositionSettings {
   RptSettings x, y, z;
   double integral_limit = 2.0;  // m/s^2, bound of the integral's part of the acceleration, each axis
+};
+
+// The observer of what pushes the vehicle besides its thrust; what it sees is commanded against.
+struct DisturbanceSettings {
+  double bandwidth = 20.0;  // rad/s; 0: nothing is observed
+  double limit = 3.0;       // m/s^2, bound of the length of what it sees
 };
 
 // Bounds on what is flown; a request beyond them is refused, a feedback command beyond them is clipped.
@@ -74,6 +85,7 @@ struct ControlSettings {
   std::string name;
   AttitudeSettings attitude;
   PositionSettings position;
+  DisturbanceSettings disturbance;
   Limits limits;
   EstimatorSettings estimator;
   FailsafeSettings failsafe;

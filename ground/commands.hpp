@@ -19,6 +19,9 @@ Command add_stop_command(CLI::App& root);
 Command add_mission_command(CLI::App& root);
 Command add_status_command(CLI::App& root);
 
+// What was flown.
+Command add_report_command(CLI::App& root);
+
 // What will be flown, without flying.
 Command add_gains_command(CLI::App& root);
 Command add_sim_command(CLI::App& root);

@@ -71,10 +71,10 @@ FlightPlan plan_flight(const FlyOptions& options) {
         load_vary_file(configuration_file("vary", options.vary), {plan.vehicle, plan.simulation});
   plan.seed = options.seed;
 
-  const fs::path mission_file = configuration_file("missions", options.mission);
-  plan.mission = load_mission_file(mission_file, plan.control.limits);
+  plan.mission_file = configuration_file("missions", options.mission);
+  plan.mission = load_mission_file(plan.mission_file, plan.control.limits);
   plan.planned_duration_s = planned_duration_s(plan.mission.mission, plan.control.limits);
-  demand_whole_flight(plan.mission, mission_file, plan.planned_duration_s);
+  demand_whole_flight(plan.mission, plan.mission_file, plan.planned_duration_s);
 
   if (plan.parties == Parties::kStarted) {
     plan.plant_program = program_beside("swiftlet-plant");

@@ -50,7 +50,7 @@ struct FlightPlan {
   double speed = 1.0;
   MissionFile mission;
   double planned_duration_s = 0.0;
-  std::filesystem::path vehicle_file, control_file, simulation_file;
+  std::filesystem::path vehicle_file, control_file, simulation_file, mission_file;
   plant::Vehicle vehicle;
   control::ControlSettings control;
   plant::SimulationSettings simulation;

@@ -16,6 +16,7 @@
 #include "ground/flight.hpp"
 #include "ground/flight_conclusion.hpp"
 #include "ground/flight_plan.hpp"
+#include "ground/flight_settings.hpp"
 #include "ground/flight_window.hpp"
 #include "ground/fly_options.hpp"
 #include "ground/interrupts.hpp"
@@ -95,6 +96,7 @@ int fly(const FlyOptions& options) {
   check(options);
   const FlightPlan plan = plan_flight(options);
   make_record_folder(plan.folder);
+  keep_settings(plan);
 
   std::optional<comms::DomainClaim> claim;
   if (options.domain < 0 && plan.parties == Parties::kStarted) claim.emplace();

@@ -6,6 +6,7 @@
 #include "ground/commands.hpp"
 #include "ground/flight_conclusion.hpp"
 #include "ground/flight_plan.hpp"
+#include "ground/flight_settings.hpp"
 #include "ground/fly_options.hpp"
 #include "ground/in_process_flight.hpp"
 #include "ground/interrupts.hpp"
@@ -17,6 +18,7 @@ int sim_fly(const FlyOptions& options) {
   const FlightPlan plan = plan_flight(options);
   ClosedLoop loop = closed_loop(plan, draw(plan, plan.seed).world, plan.seed);
   make_record_folder(plan.folder);
+  keep_settings(plan);
   std::optional<runtime::FlightTrace> trace;
   if (!plan.trace_file.empty()) trace.emplace(plan.trace_file, plan.vehicle.rotor_count());
   FlightRecord record(plan.record_capacity());

@@ -39,7 +39,8 @@ Allocator::Allocator(const plant::Vehicle& vehicle)
       motor_(vehicle.motor),
       rotor_(vehicle.rotor),
       count_(vehicle.rotor_count()),
-      weight_n_(vehicle.mass_kg * plant::kGravity) {
+      weight_n_(vehicle.mass_kg * plant::kGravity),
+      square_per_thrust_(1.0 / vehicle.rotor.thrust) {
   if (count_ < plant::kMinRotors || count_ > plant::kMaxRotors) {
     throw std::invalid_argument("rotors: there are " + std::to_string(count_) + ", must be 4 .. 8");
   }
@@ -72,9 +73,9 @@ Allocator::Allocator(const plant::Vehicle& vehicle)
   if (voltages.empty() || !(voltages.front() > 0.0)) {
     throw std::invalid_argument("battery.open_circuit_voltage: must be a table of voltages above 0");
   }
-  supply_ = {0.5 * voltages.front(), 1.5 * voltages.back(), 0.5 * (voltages.front() + voltages.back())};
-  idle_thrust_n_ = thrust_at(supply_.assumed, 0.0);
-  const double most = thrust_at(supply_.max, 1.0);
+  plausible_ = {0.5 * voltages.front(), 1.5 * voltages.back(), 0.5 * (voltages.front() + voltages.back())};
+  idle_thrust_n_ = thrust_at(plausible_.assumed, 0.0);
+  const double most = thrust_at(plausible_.max, 1.0);
   bound_.thrust_n = most * count_;
   bound_.moment_frd = most * effectiveness_.bottomRows<3>().cwiseAbs().rowwise().sum();
 }
@@ -84,9 +85,30 @@ double Allocator::thrust_at(double supply_voltage_v, double throttle) const {
   return plant::thrust_from_speed(rotor_, plant::steady_speed_from_voltage(motor_, v_a));
 }
 
-double Allocator::throttle_for(double supply_voltage_v, double thrust_n) const {
-  const double v_a = plant::voltage_from_steady_speed(motor_, plant::speed_from_thrust(rotor_, thrust_n));
-  return plant::throttle_from_motor_voltage(esc_, supply_voltage_v, v_a);
+Allocator::Supply Allocator::supply_at(double supply_voltage_v) const {
+  Supply supply;
+  supply.plausible = supply_voltage_v >= plausible_.min && supply_voltage_v <= plausible_.max;
+  const double voltage_v = supply.plausible ? supply_voltage_v : plausible_.assumed;
+  supply.highest_thrust_n = thrust_at(voltage_v, 1.0);
+  supply.throttle_per_square = 1.0 / (esc_.gain * voltage_v * voltage_v);
+  return supply;
+}
+
+Wrench Allocator::wrench(const PerRotor& thrust_n) const {
+  Wrench sum;
+  for (int i = 0; i < count_; ++i) {
+    sum.thrust_n += thrust_n[index(i)];
+    sum.moment_frd += effectiveness_.col(i).tail<3>() * thrust_n[index(i)];
+  }
+  return sum;
+}
+
+// Finite, and sanitised() would change nothing.
+bool Allocator::within_bound(const Wrench& wanted) const {
+  return std::abs(wanted.thrust_n) <= bound_.thrust_n &&
+         std::abs(wanted.moment_frd.x()) <= bound_.moment_frd.x() &&
+         std::abs(wanted.moment_frd.y()) <= bound_.moment_frd.y() &&
+         std::abs(wanted.moment_frd.z()) <= bound_.moment_frd.z();
 }
 
 Wrench Allocator::sanitised(const Wrench& wanted, bool& invalid) const {
@@ -108,18 +130,14 @@ Wrench Allocator::sanitised(const Wrench& wanted, bool& invalid) const {
   return out;
 }
 
-Allocation Allocator::allocate(const Wrench& wanted, double supply_voltage_v) const {
+Allocation Allocator::allocate(const Wrench& wanted, const Supply& supply) const {
   Allocation out;
-  double supply = supply_voltage_v;
-  if (!(supply >= supply_.min && supply <= supply_.max)) {
-    supply = supply_.assumed;
-    out.invalid_input = true;
-  }
-  const Wrench wrench = sanitised(wanted, out.invalid_input);
-  const Interval limits{idle_thrust_n_, thrust_at(supply, 1.0)};
+  out.invalid_input = !supply.plausible;
+  const Wrench wrench = within_bound(wanted) ? wanted : sanitised(wanted, out.invalid_input);
+  const Interval limits{idle_thrust_n_, supply.highest_thrust_n};
 
   const double slack = kFitTolerance * limits.high;
-  PerRotor tilt{};
+  PerRotor tilt;
   for (int i = 0; i < count_; ++i) {
     const std::size_t k = index(i);
     tilt[k] = for_roll_[k] * wrench.moment_frd.x() + for_pitch_[k] * wrench.moment_frd.y();
@@ -129,10 +147,12 @@ Allocation Allocator::allocate(const Wrench& wanted, double supply_voltage_v) co
   if (out.saturated) fit(wrench, tilt, limits, out.thrust_n);
   for (int i = 0; i < count_; ++i) {
     const std::size_t k = index(i);
-    out.thrust_n[k] = std::clamp(out.thrust_n[k], limits.low, limits.high);
-    out.throttle[k] = throttle_for(supply, out.thrust_n[k]);
-    out.achieved.thrust_n += out.thrust_n[k];
-    out.achieved.moment_frd += effectiveness_.col(i).tail<3>() * out.thrust_n[k];
+    const double thrust_n = std::clamp(out.thrust_n[k], limits.low, limits.high);
+    const double speed_squared = thrust_n * square_per_thrust_;                           // Eq. (25)
+    const double v_a = motor_.k2 * std::sqrt(speed_squared) + motor_.k3 * speed_squared;  // Eq. (22)
+    const double throttle = (v_a * v_a - esc_.offset_v2) * supply.throttle_per_square;    // Eq. (9)
+    out.thrust_n[k] = thrust_n;
+    out.throttle[k] = std::clamp(throttle, 0.0, 1.0);
   }
   return out;
 }

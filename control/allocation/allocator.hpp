@@ -18,8 +18,7 @@ struct Wrench {
 struct Allocation {
   plant::PerRotor throttle{};  // delta of Eq. (8), 0 .. 1
   plant::PerRotor thrust_n{};  // what each rotor will hold, N
-  Wrench achieved;             // what they give together once their lag is over
-  bool saturated = false;      // achieved is not what was wanted
+  bool saturated = false;      // together they do not give what was wanted
   bool invalid_input = false;  // something was not finite, or the supply not plausible; see allocate
 };
 
@@ -29,6 +28,15 @@ class Allocator {
   // the vehicle has no battery table.
   explicit Allocator(const plant::Vehicle& vehicle);
 
+  // What a supply voltage lets one rotor give. A voltage that is not finite or outside plausible_supply()
+  // counts as the middle of the battery's open-circuit voltages.
+  struct Supply {
+    double highest_thrust_n = 0.0;     // at throttle 1
+    double throttle_per_square = 0.0;  // V^-2: of v_a^2 less the offset, Eq. (9) backwards
+    bool plausible = false;
+  };
+  Supply supply_at(double supply_voltage_v) const;
+
   // Thrusts by the pseudo-inverse of the effectiveness: the exact solution with four rotors, the one of least
   // squares with more. Each rotor stays between its thrusts at throttle 0 (which is not zero thrust) and 1 at
   // this supply voltage. Where the wanted wrench does not fit, within the pseudo-inverse's solutions:
@@ -37,9 +45,12 @@ class Allocator {
   //   2. thrust then comes as near to the wanted one as it can, whatever yaw that takes;
   //   3. yaw moment then comes as near as it can.
   // Total: the result is finite and within limits for every input. A moment that is not finite counts as 0, a
-  // thrust that is not finite as the vehicle's weight, and a supply voltage that is not finite or outside
-  // plausible_supply() as the middle of the battery's open-circuit voltages; each sets invalid_input.
-  Allocation allocate(const Wrench& wanted, double supply_voltage_v) const;
+  // thrust that is not finite as the vehicle's weight; each, and a supply that is not plausible, sets
+  // invalid_input.
+  Allocation allocate(const Wrench& wanted, const Supply& supply) const;
+
+  // What rotors that hold these thrusts give together.
+  Wrench wrench(const plant::PerRotor& thrust_n) const;
 
   // Half the empty battery's voltage .. one and a half times the full one's, V.
   struct SupplyRange {
@@ -47,7 +58,7 @@ class Allocator {
     double max = 0.0;
     double assumed = 0.0;
   };
-  const SupplyRange& plausible_supply() const { return supply_; }
+  const SupplyRange& plausible_supply() const { return plausible_; }
 
  private:
   struct Interval {
@@ -61,7 +72,7 @@ class Allocator {
   };
 
   double thrust_at(double supply_voltage_v, double throttle) const;
-  double throttle_for(double supply_voltage_v, double thrust_n) const;
+  bool within_bound(const Wrench& wanted) const;
   Wrench sanitised(const Wrench& wanted, bool& invalid) const;
   void fit(const Wrench& wanted, const plant::PerRotor& tilt, const Interval& limits,
            plant::PerRotor& thrusts) const;
@@ -79,8 +90,9 @@ class Allocator {
   plant::Effectiveness effectiveness_;
   int count_ = 0;
   double weight_n_ = 0.0;
-  double idle_thrust_n_ = 0.0;  // of one rotor at throttle 0
-  SupplyRange supply_;
+  double idle_thrust_n_ = 0.0;      // of one rotor at throttle 0
+  double square_per_thrust_ = 0.0;  // Omega^2 over thrust, Eq. (25) backwards
+  SupplyRange plausible_;
   Wrench bound_;  // beyond what any plausible supply can give
 
   // Columns of the pseudo-inverse: thrust of each rotor for 1 N, and for 1 N m about each axis.

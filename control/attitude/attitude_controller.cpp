@@ -1,44 +1,18 @@
 #include "control/attitude/attitude_controller.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "control/attitude/attitude_error.hpp"
+
 namespace swiftlet::control {
-namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kGimbalCosine = 1e-6;  // of theta; closer to +-90 degrees psi is taken as 0
-
-}  // namespace
-
-double wrap_angle(double angle_rad) {
-  return std::abs(angle_rad) <= kPi ? angle_rad : std::remainder(angle_rad, 2.0 * kPi);
-}
-
-Eigen::Vector3d euler_from_quaternion(const Eigen::Quaterniond& q_ned_from_frd) {
-  const Eigen::Matrix3d r = q_ned_from_frd.toRotationMatrix();
-  const double cosine = std::sqrt(r(2, 1) * r(2, 1) + r(2, 2) * r(2, 2));
-  const double theta = std::atan2(-r(2, 0), cosine);
-  if (cosine < kGimbalCosine) {
-    return {theta > 0.0 ? std::atan2(r(0, 1), r(1, 1)) : std::atan2(-r(0, 1), r(1, 1)), theta, 0.0};
-  }
-  return {std::atan2(r(2, 1), r(2, 2)), theta, std::atan2(r(1, 0), r(0, 0))};
-}
-
-Eigen::Quaterniond quaternion_from_euler(const Eigen::Vector3d& euler_rad) {
-  using Eigen::AngleAxisd;
-  using Eigen::Vector3d;
-  return AngleAxisd(euler_rad[2], Vector3d::UnitZ()) * AngleAxisd(euler_rad[1], Vector3d::UnitY()) *
-         AngleAxisd(euler_rad[0], Vector3d::UnitX());
-}
 
 AttitudeController::AttitudeController(const plant::Vehicle& vehicle, const AttitudeSettings& settings,
                                        const ControlDesign& design)
     : model_(settings.model),
+      error_(settings.error),
       feed_forward_(settings.feed_forward),
       rotor_lag_s_(design.rotor_lag_s),
       inertia_(vehicle.inertia),
@@ -53,18 +27,27 @@ AttitudeController::AttitudeController(const plant::Vehicle& vehicle, const Atti
   inverse_inertia_ = inertia_.inverse();
 }
 
-Eigen::Vector3d AttitudeController::moments(const Eigen::Vector3d& euler_rad,
+Eigen::Vector3d AttitudeController::moments(const Eigen::Quaterniond& q_ned_from_frd,
                                             const Eigen::Vector3d& body_rates_frd,
                                             const Eigen::Vector3d& present_moment_frd,
                                             const AttitudeReference& reference) const {
-  Eigen::Vector3d angle_error = reference.euler_rad - euler_rad;
-  for (double& angle : angle_error) angle = wrap_angle(angle);
-
+  Eigen::Vector3d angle_error;
   Eigen::Vector3d rates_r = Eigen::Vector3d::Zero();
   Eigen::Vector3d accelerations_r = Eigen::Vector3d::Zero();
+  Eigen::Vector3d jerks_r = Eigen::Vector3d::Zero();
   if (feed_forward_) {
-    rates_r = reference.body_rates_frd;
-    accelerations_r = reference.body_accelerations_frd;
+    rates_r = reference.body_rates;
+    accelerations_r = reference.body_accelerations;
+    jerks_r = reference.body_jerks;
+  }
+  if (error_ == AttitudeErrorKind::kEulerAngles) {
+    angle_error = euler_error(q_ned_from_frd, reference.body_z_ned, reference.yaw_rad);
+  } else {
+    const RotationError error = rotation_error(q_ned_from_frd, reference.body_z_ned, reference.yaw_rad);
+    angle_error = error.angle;
+    rates_r = error.r_frd_from_reference * rates_r;
+    accelerations_r = error.r_frd_from_reference * accelerations_r;
+    jerks_r = error.r_frd_from_reference * jerks_r;
   }
   const Eigen::Vector3d gyroscopic = body_rates_frd.cross(inertia_ * body_rates_frd);
 
@@ -74,7 +57,7 @@ Eigen::Vector3d AttitudeController::moments(const Eigen::Vector3d& euler_rad,
   if (model_ == AttitudeModel::kMotorLag) {
     const Eigen::Vector3d acceleration = inverse_inertia_ * (present_moment_frd - gyroscopic);  // Eq. (6)
     command += k_acceleration_.cwiseProduct(accelerations_r - acceleration);
-    if (feed_forward_) command += rotor_lag_s_ * reference.body_jerks_frd;
+    command += rotor_lag_s_ * jerks_r;
   }
   return inertia_ * command + gyroscopic;  // Eq. (35)-(37)
 }

@@ -21,21 +21,13 @@ Vector3d unyawed(const Vector3d& v, double cosine, double sine) {
 // e3 x v.
 Vector3d turned(const Vector3d& v) { return {-v.y(), v.x(), 0.0}; }
 
-// The angles whose body z axis points along -b: phi = -asin b_y / |b|, theta = atan2(b_x, b_z).
-Vector3d angles_along(const Vector3d& b, double yaw_rad) {
-  return {-std::atan2(b.y(), std::sqrt(b.x() * b.x() + b.z() * b.z())), std::atan2(b.x(), b.z()), yaw_rad};
-}
-
 }  // namespace
 
-ThrustAttitude thrust_attitude(double mass_kg, const Vector3d& acceleration_ned, double yaw_rad,
-                               double max_tilt_tangent) {
+ThrustAttitude thrust_attitude(double mass_kg, const Vector3d& acceleration_ned, double max_tilt_tangent) {
   ThrustAttitude out;
-  const bool finite = acceleration_ned.allFinite() && std::isfinite(yaw_rad);
-  const double yaw = finite ? yaw_rad : 0.0;
   Vector3d b(0.0, 0.0, plant::kGravity);
-  if (finite) b -= unyawed(acceleration_ned, std::cos(yaw), std::sin(yaw));
-  out.limited = !finite;
+  out.limited = !acceleration_ned.allFinite();
+  if (!out.limited) b -= acceleration_ned;
   if (b.z() < kLeastLift) {
     b.z() = kLeastLift;
     out.limited = true;
@@ -46,8 +38,9 @@ ThrustAttitude thrust_attitude(double mass_kg, const Vector3d& acceleration_ned,
     b.head<2>() *= longest / horizontal;
     out.limited = true;
   }
-  out.thrust_n = mass_kg * b.norm();
-  out.euler_rad = angles_along(b, yaw);
+  const double length = b.norm();
+  out.thrust_n = mass_kg * length;
+  out.body_z_ned = b / length;
   return out;
 }
 
@@ -106,8 +99,8 @@ ReferenceMotion reference_motion(double mass_kg, const Reference& reference) {
   const Vector3d euler_1(phi_1, theta_1, psi_1);
   const Vector3d euler_2(phi_2, theta_2, psi_2);
 
-  out.body_rates_frd = to_rates * euler_1;
-  out.body_accelerations_frd = to_rates * euler_2 + to_rates_1 * euler_1;
+  out.body_rates = to_rates * euler_1;
+  out.body_accelerations = to_rates * euler_2 + to_rates_1 * euler_1;
   out.thrust_n = mass_kg * norm;
   out.thrust_rate = mass_kg * norm_1;
   return out;

@@ -14,20 +14,25 @@ constexpr double kStepPerTimeConstant = 1.0 / 3.0;
 
 double square(double x) { return x * x; }
 
+// y + h k
+template <std::size_t kSize>
+[[gnu::always_inline]] inline std::array<double, kSize> moved(const std::array<double, kSize>& y, double h,
+                                                              const std::array<double, kSize>& k) {
+  std::array<double, kSize> out;
+  for (std::size_t i = 0; i < kSize; ++i) out[i] = y[i] + h * k[i];
+  return out;
+}
+
 }  // namespace
 
-// The right-hand side for kRotors rotors, with the state as one array and what is constant over a step worked
-// out.
+// What battery and rotors do, for kRotors rotors, with what is constant over a step worked out. They do not
+// feel how the body moves.
 template <int kRotors, MotorForm kMotor>
-struct Dynamics::System {
+struct Dynamics::Drivetrain {
   static constexpr std::size_t kN = kRotors;
-  static constexpr std::size_t kPosition = 0;
-  static constexpr std::size_t kVelocity = 3;
-  static constexpr std::size_t kQuaternion = 6;  // w, x, y, z
-  static constexpr std::size_t kRates = 10;
-  static constexpr std::size_t kCharge = 13;
-  static constexpr std::size_t kSag = 14;
-  static constexpr std::size_t kSpeeds = 15;
+  static constexpr std::size_t kCharge = 0;
+  static constexpr std::size_t kSag = 1;
+  static constexpr std::size_t kSpeeds = 2;
   static constexpr std::size_t kCurrents = kSpeeds + kN;
   static constexpr std::size_t kSize = kSpeeds + (kMotor == MotorForm::kInductive ? 2 : 1) * kN;
 
@@ -36,18 +41,12 @@ struct Dynamics::System {
 
   const Dynamics& d;
   OpenCircuit open_circuit;
-  std::array<double, 3> drift;  // gravity, a push and the wind's part of the drag, m/s^2
   // Eq. (9): v_a^2 = v_a_gain v_s^2 + v_a_offset; a rotor that is off gets no voltage at all.
   std::array<double, kN> v_a_gain{};
   double v_a_offset = 0.0;
 
-  System(const Dynamics& dynamics, const RotorDrive& drive, const Eigen::Vector3d& wind_ned,
-         const OpenCircuit& open_circuit_voltage)
-      : d(dynamics),
-        open_circuit(open_circuit_voltage),
-        drift{d.drag_over_mass_ * wind_ned.x() + d.push_acceleration_ned_.x(),
-              d.drag_over_mass_ * wind_ned.y() + d.push_acceleration_ned_.y(),
-              d.drag_over_mass_ * wind_ned.z() + d.push_acceleration_ned_.z() + kGravity} {
+  Drivetrain(const Dynamics& dynamics, const RotorDrive& drive, const OpenCircuit& open_circuit_voltage)
+      : d(dynamics), open_circuit(open_circuit_voltage) {
     if (drive.state != RotorState::kRunning) return;
     for (std::size_t i = 0; i < kN; ++i) v_a_gain[i] = d.esc_.gain * drive.throttle[i];
     v_a_offset = d.esc_.offset_v2;
@@ -55,16 +54,6 @@ struct Dynamics::System {
 
   static State pack(const VehicleState& from) {
     State y;
-    for (int i = 0; i < 3; ++i) {
-      const auto j = static_cast<std::size_t>(i);
-      y[kPosition + j] = from.position_ned[i];
-      y[kVelocity + j] = from.velocity_ned[i];
-      y[kRates + j] = from.body_rates_frd[i];
-    }
-    y[kQuaternion] = from.q_ned_from_frd.w();
-    y[kQuaternion + 1] = from.q_ned_from_frd.x();
-    y[kQuaternion + 2] = from.q_ned_from_frd.y();
-    y[kQuaternion + 3] = from.q_ned_from_frd.z();
     y[kCharge] = from.state_of_charge;
     y[kSag] = from.sag_v;
     for (std::size_t i = 0; i < kN; ++i) y[kSpeeds + i] = from.rotor_speeds[i];
@@ -75,16 +64,6 @@ struct Dynamics::System {
   }
 
   static void unpack(const State& y, VehicleState& to) {
-    for (int i = 0; i < 3; ++i) {
-      const auto j = static_cast<std::size_t>(i);
-      to.position_ned[i] = y[kPosition + j];
-      to.velocity_ned[i] = y[kVelocity + j];
-      to.body_rates_frd[i] = y[kRates + j];
-    }
-    const double scale = 1.0 / std::sqrt(square(y[kQuaternion]) + square(y[kQuaternion + 1]) +
-                                         square(y[kQuaternion + 2]) + square(y[kQuaternion + 3]));
-    to.q_ned_from_frd = Eigen::Quaterniond(y[kQuaternion] * scale, y[kQuaternion + 1] * scale,
-                                           y[kQuaternion + 2] * scale, y[kQuaternion + 3] * scale);
     to.state_of_charge = std::max(y[kCharge], 0.0);
     to.sag_v = y[kSag];
     for (std::size_t i = 0; i < kN; ++i) to.rotor_speeds[i] = y[kSpeeds + i];
@@ -93,12 +72,13 @@ struct Dynamics::System {
     }
   }
 
-  State derivative(const State& y) const {
+  // Eq. (9)-(22), all rotors side by side.
+  [[gnu::always_inline]] State derivative(const State& y) const {
     State dy;
-    // Eq. (9)-(22), all rotors side by side
     const double v_s = std::max(open_circuit.voltage(y[kCharge]) - y[kSag], 0.0);
     const double inverse_v_s = v_s > 0.0 ? 1.0 / v_s : 0.0;
     const double v_s_squared = v_s * v_s;
+    double power = 0.0;
     std::array<double, kN> powers;
     for (std::size_t i = 0; i < kN; ++i) {
       const double speed = y[kSpeeds + i];
@@ -116,27 +96,77 @@ struct Dynamics::System {
       }
       powers[i] = std::max(v_a * current, 0.0);
     }
-
-    // Eq. (25)-(28)
-    double power = 0.0;
-    double lift = 0.0;  // m/s^2, against body z
-    double roll = d.push_moment_frd_.x();
-    double pitch = d.push_moment_frd_.y();
-    double yaw = d.push_moment_frd_.z();
-    for (std::size_t i = 0; i < kN; ++i) {
-      const double speed_squared = square(y[kSpeeds + i]);
-      power += powers[i];
-      lift += d.wrenches_[i].lift * speed_squared;
-      roll += d.wrenches_[i].roll * speed_squared;
-      pitch += d.wrenches_[i].pitch * speed_squared;
-      yaw += d.wrenches_[i].yaw * speed_squared;
-    }
+    for (std::size_t i = 0; i < kN; ++i) power += powers[i];
 
     // The ESCs pass on all the power that they draw, as in esc_supply_current().
     const double drawn = d.battery_.electronics_current_a + power * inverse_v_s;
     dy[kCharge] = drawn * d.charge_per_current_;
     dy[kSag] = (d.battery_.internal_resistance_ohm * drawn - y[kSag]) * d.inverse_sag_time_;
+    return dy;
+  }
 
+  // Eq. (25)-(28)
+  [[gnu::always_inline]] Wrench wrench(const State& y) const {
+    Wrench sum = d.push_;
+    for (std::size_t i = 0; i < kN; ++i) {
+      const double speed_squared = square(y[kSpeeds + i]);
+      sum.lift += d.wrenches_[i].lift * speed_squared;
+      sum.roll += d.wrenches_[i].roll * speed_squared;
+      sum.pitch += d.wrenches_[i].pitch * speed_squared;
+      sum.yaw += d.wrenches_[i].yaw * speed_squared;
+    }
+    return sum;
+  }
+};
+
+// How the body moves under what the rotors give.
+struct Dynamics::RigidBody {
+  static constexpr std::size_t kPosition = 0;
+  static constexpr std::size_t kVelocity = 3;
+  static constexpr std::size_t kQuaternion = 6;  // w, x, y, z
+  static constexpr std::size_t kRates = 10;
+  static constexpr std::size_t kSize = 13;
+  using State = std::array<double, kSize>;
+
+  const Dynamics& d;
+  std::array<double, 3> drift;  // gravity, a push and the wind's part of the drag, m/s^2
+
+  RigidBody(const Dynamics& dynamics, const Eigen::Vector3d& wind_ned)
+      : d(dynamics),
+        drift{d.drag_over_mass_ * wind_ned.x() + d.push_acceleration_ned_.x(),
+              d.drag_over_mass_ * wind_ned.y() + d.push_acceleration_ned_.y(),
+              d.drag_over_mass_ * wind_ned.z() + d.push_acceleration_ned_.z() + kGravity} {}
+
+  static State pack(const VehicleState& from) {
+    State y;
+    for (int i = 0; i < 3; ++i) {
+      const auto j = static_cast<std::size_t>(i);
+      y[kPosition + j] = from.position_ned[i];
+      y[kVelocity + j] = from.velocity_ned[i];
+      y[kRates + j] = from.body_rates_frd[i];
+    }
+    y[kQuaternion] = from.q_ned_from_frd.w();
+    y[kQuaternion + 1] = from.q_ned_from_frd.x();
+    y[kQuaternion + 2] = from.q_ned_from_frd.y();
+    y[kQuaternion + 3] = from.q_ned_from_frd.z();
+    return y;
+  }
+
+  static void unpack(const State& y, VehicleState& to) {
+    for (int i = 0; i < 3; ++i) {
+      const auto j = static_cast<std::size_t>(i);
+      to.position_ned[i] = y[kPosition + j];
+      to.velocity_ned[i] = y[kVelocity + j];
+      to.body_rates_frd[i] = y[kRates + j];
+    }
+    const double scale = 1.0 / std::sqrt(square(y[kQuaternion]) + square(y[kQuaternion + 1]) +
+                                         square(y[kQuaternion + 2]) + square(y[kQuaternion + 3]));
+    to.q_ned_from_frd = Eigen::Quaterniond(y[kQuaternion] * scale, y[kQuaternion + 1] * scale,
+                                           y[kQuaternion + 2] * scale, y[kQuaternion + 3] * scale);
+  }
+
+  [[gnu::always_inline]] State derivative(const State& y, const Wrench& wrench) const {
+    State dy;
     // Eq. (1), (5)
     const double q_w = y[kQuaternion];
     const double q_x = y[kQuaternion + 1];
@@ -148,10 +178,10 @@ struct Dynamics::System {
     dy[kPosition] = v_x;
     dy[kPosition + 1] = v_y;
     dy[kPosition + 2] = v_z;
-    dy[kVelocity] = drift[0] - d.drag_over_mass_ * v_x - lift * (2.0 * (q_x * q_z + q_w * q_y));
-    dy[kVelocity + 1] = drift[1] - d.drag_over_mass_ * v_y - lift * (2.0 * (q_y * q_z - q_w * q_x));
+    dy[kVelocity] = drift[0] - d.drag_over_mass_ * v_x - wrench.lift * (2.0 * (q_x * q_z + q_w * q_y));
+    dy[kVelocity + 1] = drift[1] - d.drag_over_mass_ * v_y - wrench.lift * (2.0 * (q_y * q_z - q_w * q_x));
     dy[kVelocity + 2] =
-        drift[2] - d.drag_over_mass_ * v_z - lift * (q_w * q_w - q_x * q_x - q_y * q_y + q_z * q_z);
+        drift[2] - d.drag_over_mass_ * v_z - wrench.lift * (q_w * q_w - q_x * q_x - q_y * q_y + q_z * q_z);
 
     // dq/dt = q (0, w) / 2
     const double p = y[kRates];
@@ -168,31 +198,13 @@ struct Dynamics::System {
     const double h_x = inertia(0, 0) * p + inertia(0, 1) * q + inertia(0, 2) * r;
     const double h_y = inertia(1, 0) * p + inertia(1, 1) * q + inertia(1, 2) * r;
     const double h_z = inertia(2, 0) * p + inertia(2, 1) * q + inertia(2, 2) * r;
-    const double m_x = roll - (q * h_z - r * h_y);
-    const double m_y = pitch - (r * h_x - p * h_z);
-    const double m_z = yaw - (p * h_y - q * h_x);
+    const double m_x = wrench.roll - (q * h_z - r * h_y);
+    const double m_y = wrench.pitch - (r * h_x - p * h_z);
+    const double m_z = wrench.yaw - (p * h_y - q * h_x);
     dy[kRates] = inverse(0, 0) * m_x + inverse(0, 1) * m_y + inverse(0, 2) * m_z;
     dy[kRates + 1] = inverse(1, 0) * m_x + inverse(1, 1) * m_y + inverse(1, 2) * m_z;
     dy[kRates + 2] = inverse(2, 0) * m_x + inverse(2, 1) * m_y + inverse(2, 2) * m_z;
     return dy;
-  }
-
-  // y + h k
-  static State moved(const State& y, double h, const State& k) {
-    State out;
-    for (std::size_t i = 0; i < kSize; ++i) out[i] = y[i] + h * k[i];
-    return out;
-  }
-
-  // The classical Runge-Kutta step.
-  State step(const State& y, double h) const {
-    const State k1 = derivative(y);
-    const State k2 = derivative(moved(y, 0.5 * h, k1));
-    const State k3 = derivative(moved(y, 0.5 * h, k2));
-    const State k4 = derivative(moved(y, h, k3));
-    State out;
-    for (std::size_t i = 0; i < kSize; ++i) out[i] = y[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
-    return out;
   }
 };
 
@@ -270,21 +282,44 @@ void Dynamics::advance(VehicleState& state, const RotorDrive& drive, const Eigen
   (this->*advance_)(state, drive, wind_ned, dt);
 }
 
+// The classical Runge-Kutta step of both systems as one, its stages as a loop: the code stays small, so that
+// plant and controller fit into the processor's first cache together.
 template <int kRotors, MotorForm kMotor>
 void Dynamics::advance_as(VehicleState& state, const RotorDrive& drive, const Eigen::Vector3d& wind_ned,
                           double dt) const {
-  using Equations = System<kRotors, kMotor>;
-  const Equations equations(*this, drive, wind_ned, open_circuit(state.state_of_charge));
+  using Rotors = Drivetrain<kRotors, kMotor>;
+  const Rotors rotors(*this, drive, open_circuit(state.state_of_charge));
+  const RigidBody body(*this, wind_ned);
   const int count = dt <= max_step_s_ ? 1 : static_cast<int>(std::ceil(dt / max_step_s_));
   const double h = dt / count;
-  typename Equations::State y = Equations::pack(state);
-  for (int i = 0; i < count; ++i) y = equations.step(y, h);
-  Equations::unpack(y, state);
+  const std::array<double, 4> ahead = {0.5 * h, 0.5 * h, h, 0.0};  // to where the next stage looks
+  const std::array<double, 4> weight = {h / 6.0, h / 3.0, h / 3.0, h / 6.0};
+  typename Rotors::State x = Rotors::pack(state);
+  RigidBody::State y = RigidBody::pack(state);
+  for (int i = 0; i < count; ++i) {
+    typename Rotors::State x_end = x;
+    typename Rotors::State x_stage = x;
+    RigidBody::State y_end = y;
+    RigidBody::State y_stage = y;
+    for (std::size_t stage = 0; stage < 4; ++stage) {
+      const Wrench wrench = rotors.wrench(x_stage);
+      const typename Rotors::State x_rate = rotors.derivative(x_stage);
+      const RigidBody::State y_rate = body.derivative(y_stage, wrench);
+      x_end = moved(x_end, weight[stage], x_rate);
+      y_end = moved(y_end, weight[stage], y_rate);
+      x_stage = moved(x, ahead[stage], x_rate);
+      y_stage = moved(y, ahead[stage], y_rate);
+    }
+    x = x_end;
+    y = y_end;
+  }
+  Rotors::unpack(x, state);
+  RigidBody::unpack(y, state);
 }
 
 void Dynamics::disturb(const Disturbance& disturbance) {
   push_acceleration_ned_ = inverse_mass_ * disturbance.force_ned;
-  push_moment_frd_ = disturbance.moment_frd;
+  push_ = {0.0, disturbance.moment_frd.x(), disturbance.moment_frd.y(), disturbance.moment_frd.z()};
   supply_drop_v_ = disturbance.supply_drop_v;
   for (std::size_t i = 0; i < wrenches_.size(); ++i) {
     const double factor = disturbance.rotor_factors[i];

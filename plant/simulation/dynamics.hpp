@@ -74,7 +74,14 @@ class Dynamics {
 
  private:
   template <int kRotors, MotorForm kMotor>
-  struct System;
+  struct Drivetrain;
+  struct RigidBody;
+  struct Wrench {
+    double lift = 0.0;  // over the vehicle's mass, m/s^2, against body z
+    double roll = 0.0;  // N m
+    double pitch = 0.0;
+    double yaw = 0.0;
+  };
   // Open-circuit voltage as a straight line over the state of charge: that of the table's segment where a
   // step begins.
   struct OpenCircuit {
@@ -102,16 +109,10 @@ class Dynamics {
   double drag_over_mass_;
   Eigen::Matrix3d inertia_;
   Eigen::Matrix3d inverse_inertia_;
-  struct Wrench {
-    double lift = 0.0;  // over the vehicle's mass
-    double roll = 0.0;
-    double pitch = 0.0;
-    double yaw = 0.0;
-  };
   std::array<Wrench, kMaxRotors> sound_wrenches_;  // of each rotor, over Omega^2, without a disturbance
   std::array<Wrench, kMaxRotors> wrenches_;
   Eigen::Vector3d push_acceleration_ned_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d push_moment_frd_ = Eigen::Vector3d::Zero();
+  Wrench push_;  // its moments
   double supply_drop_v_ = 0.0;
 
   Esc esc_;

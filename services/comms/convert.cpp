@@ -5,7 +5,7 @@
 #include <cstdarg>
 #include <cstdio>
 
-#include "control/attitude/attitude_controller.hpp"
+#include "control/attitude/attitude_error.hpp"
 
 namespace swiftlet::comms {
 namespace {
@@ -432,7 +432,8 @@ msg::Reference to_message(const control::Reference& in, const control::AttitudeS
   out.jerk_ned(array(in.jerk_ned));
   out.yaw(in.yaw_rad);
   out.yaw_rate(in.yaw_rate);
-  out.attitude_setpoint(array(control::quaternion_from_euler(setpoint.euler_rad)));
+  out.attitude_setpoint(
+      array(Eigen::Quaterniond(control::attitude_along(setpoint.body_z_ned, setpoint.yaw_rad))));
   out.thrust_setpoint(setpoint.thrust_n);
   out.moment_setpoint(array(setpoint.moment_frd));
   return out;

@@ -23,6 +23,9 @@ control::AttitudeSettings read_attitude(const ConfigNode& node) {
   attitude.model = node.at("model").choice<control::AttitudeModel>(
       {{"double_integrator", control::AttitudeModel::kDoubleIntegrator},
        {"motor_lag", control::AttitudeModel::kMotorLag}});
+  attitude.error = node.at("error").choice<control::AttitudeErrorKind>(
+      {{"euler_angles", control::AttitudeErrorKind::kEulerAngles},
+       {"rotation", control::AttitudeErrorKind::kRotation}});
   attitude.roll = read_weights(node.at("roll"), attitude.model);
   attitude.pitch = read_weights(node.at("pitch"), attitude.model);
   attitude.yaw = read_weights(node.at("yaw"), attitude.model);
@@ -46,6 +49,13 @@ control::PositionSettings read_position(const ConfigNode& node) {
   position.z = read_rpt(node.at("z"));
   position.integral_limit = node.at("integral_limit_m_s2").number();
   return position;
+}
+
+control::DisturbanceSettings read_disturbance(const ConfigNode& node) {
+  control::DisturbanceSettings disturbance;
+  disturbance.bandwidth = node.at("bandwidth_rad_s").number();
+  disturbance.limit = node.at("limit_m_s2").number();
+  return disturbance;
 }
 
 control::Limits read_limits(const ConfigNode& node) {
@@ -88,6 +98,7 @@ control::ControlSettings parse_control_settings(std::string_view text, const std
   settings.name = root.at("name").text();
   settings.attitude = read_attitude(root.at("attitude"));
   settings.position = read_position(root.at("position"));
+  settings.disturbance = read_disturbance(root.at("disturbance"));
   settings.limits = read_limits(root.at("limits"));
   settings.estimator = read_estimator(root.at("estimator"));
   settings.failsafe = read_failsafe(root.at("failsafe"));

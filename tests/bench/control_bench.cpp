@@ -6,6 +6,7 @@
 
 #include "control/allocation/allocator.hpp"
 #include "control/attitude/attitude_controller.hpp"
+#include "control/attitude/euler.hpp"
 #include "control/design/control_design.hpp"
 #include "control/position/position_controller.hpp"
 #include "control/position/thrust_attitude_map.hpp"
@@ -42,11 +43,12 @@ void allocate(benchmark::State& state) {
   const int rotors = static_cast<int>(state.range(0));
   const plant::Vehicle vehicle = rotors == 4 ? tests::kaylion() : tests::multirotor(rotors);
   const Allocator allocator(vehicle);
+  const Allocator::Supply supply = allocator.supply_at(3.8);
   const std::vector<Wrench> wanted = wrenches(vehicle, 0.01 * static_cast<double>(state.range(1)));
   std::size_t i = 0;
   std::size_t saturated = 0;
   for (auto _ : state) {
-    const Allocation out = allocator.allocate(wanted[i++ % wanted.size()], 3.8);
+    const Allocation out = allocator.allocate(wanted[i++ % wanted.size()], supply);
     saturated += out.saturated ? 1 : 0;
     benchmark::DoNotOptimize(out);
   }
@@ -54,21 +56,25 @@ void allocate(benchmark::State& state) {
 }
 BENCHMARK(allocate)->ArgNames({"rotors", "percent"})->ArgsProduct({{4, 6, 8}, {5, 100, 300}});
 
-void attitude_moments(benchmark::State& state) {
+void attitude_moments(benchmark::State& state, AttitudeErrorKind error) {
   const plant::Vehicle& vehicle = tests::kaylion();
-  const AttitudeController controller(vehicle, settings().attitude, design(vehicle, settings()));
+  AttitudeSettings attitude = settings().attitude;
+  attitude.error = error;
+  const AttitudeController controller(vehicle, attitude, design(vehicle, settings()));
   AttitudeReference reference;
-  reference.euler_rad = {0.1, -0.05, 0.3};
+  reference.body_z_ned = quaternion_from_euler({0.1, -0.05, 0.3}) * Vector3d::UnitZ();
+  reference.yaw_rad = 0.3;
   Eigen::Quaterniond q = quaternion_from_euler({0.12, -0.04, 0.31});
   Vector3d rates(0.2, -0.3, 0.1);
   Vector3d moment(1e-4, -2e-4, 1e-5);
   for (auto _ : state) {
     benchmark::DoNotOptimize(q.coeffs().data());
     benchmark::ClobberMemory();
-    benchmark::DoNotOptimize(controller.moments(euler_from_quaternion(q), rates, moment, reference));
+    benchmark::DoNotOptimize(controller.moments(q, rates, moment, reference));
   }
 }
-BENCHMARK(attitude_moments);
+BENCHMARK_CAPTURE(attitude_moments, euler_angles, AttitudeErrorKind::kEulerAngles);
+BENCHMARK_CAPTURE(attitude_moments, rotation, AttitudeErrorKind::kRotation);
 
 // Reference from the polynomial, position loop, map to thrust and attitude, feed forward.
 void outer_loop(benchmark::State& state) {
@@ -81,8 +87,7 @@ void outer_loop(benchmark::State& state) {
     t = t < 8.0 ? t + 0.002 : 0.0;
     const Reference reference = evaluate(segment, t);
     const PositionCommand command = controller.step(position, Vector3d::Zero(), reference, 0.002, false);
-    benchmark::DoNotOptimize(
-        thrust_attitude(vehicle.mass_kg, command.acceleration_ned, reference.yaw_rad, 0.7));
+    benchmark::DoNotOptimize(thrust_attitude(vehicle.mass_kg, command.acceleration_ned, 0.7));
     benchmark::DoNotOptimize(reference_motion(vehicle.mass_kg, reference));
   }
 }

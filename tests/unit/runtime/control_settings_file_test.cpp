@@ -28,6 +28,7 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
       "name: n\n"
       "attitude:\n"
       "  model: motor_lag\n"
+      "  error: rotation\n"
       "  roll: {q: [1, 2, 3], r: 4}\n"
       "  pitch: {q: [5, 6, 7], r: 8}\n"
       "  yaw: {q: [9, 10, 11], r: 12}\n"
@@ -37,6 +38,9 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
       "  y: {omega_n: 17, zeta: 18, epsilon: 19, k_i: 20}\n"
       "  z: {omega_n: 21, zeta: 22, epsilon: 23, k_i: 24}\n"
       "  integral_limit_m_s2: 25\n"
+      "disturbance:\n"
+      "  bandwidth_rad_s: 47\n"
+      "  limit_m_s2: 48\n"
       "limits:\n"
       "  max_tilt_rad: 0.26\n"
       "  max_acceleration_m_s2: 27\n"
@@ -74,6 +78,8 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
     EXPECT_EQ(rpt->k_i, value++);
   }
   EXPECT_EQ(s.position.integral_limit, 25);
+  EXPECT_EQ(s.disturbance.bandwidth, 47);
+  EXPECT_EQ(s.disturbance.limit, 48);
   EXPECT_EQ(s.limits.max_tilt_rad, 0.26);
   EXPECT_EQ(s.limits.max_acceleration, 27);
   EXPECT_EQ(s.limits.max_speed, 28);
@@ -166,6 +172,8 @@ const Fault kFaults[] = {
     {"position.z.epsilon", ".inf", "must be a finite number"},
     {"position.x.k_i", "-0.1", "at least 0"},
     {"position.integral_limit_m_s2", "-2", "at least 0"},
+    {"disturbance.bandwidth_rad_s", "-2", "at least 0"},
+    {"disturbance.limit_m_s2", "-2", "at least 0"},
     {"limits.max_tilt_rad", "0", "above 0"},
     {"limits.max_tilt_rad", "1.6", "is 1.6, must be at least 0 and at most 1.5"},
     {"limits.max_acceleration_m_s2", "0", "above 0"},

@@ -1,0 +1,16 @@
+#include "control/estimation/disturbance_observer.hpp"
+
+namespace swiftlet::control {
+
+void DisturbanceObserver::step(double dt_s, const Eigen::Vector3d& specific_force_frd,
+                               const Eigen::Quaterniond& q_ned_from_frd, double lift) {
+  const double turned = settings_.bandwidth * dt_s;
+  const Eigen::Vector3d unexplained_frd = specific_force_frd + lift * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d unexplained_ned = q_ned_from_frd * unexplained_frd;
+  if (!unexplained_ned.allFinite()) return;
+  acceleration_ned_ += turned / (1.0 + turned) * (unexplained_ned - acceleration_ned_);
+  const double length = acceleration_ned_.norm();
+  if (length > settings_.limit) acceleration_ned_ *= settings_.limit / length;
+}
+
+}  // namespace swiftlet::control

@@ -1,0 +1,44 @@
+#include "ground/flight_settings.hpp"
+
+#include <array>
+#include <stdexcept>
+
+#include "services/runtime/flat_yaml.hpp"
+#include "services/runtime/text_file.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array kKinds = {"control", "mission", "simulation", "vehicle"};
+
+void keep(const fs::path& file, const fs::path& folder, const std::string& kind) {
+  const fs::path copy = folder / (kind + ".yaml");
+  std::error_code error;
+  fs::copy_file(file, copy, fs::copy_options::overwrite_existing, error);
+  if (error) throw std::runtime_error(copy.string() + " cannot be written: " + error.message());
+}
+
+}  // namespace
+
+void keep_settings(const FlightPlan& plan) {
+  keep(plan.mission_file, plan.folder, "mission");
+  if (plan.parties == Parties::kAttached) return;
+  keep(plan.control_file, plan.folder, "control");
+  keep(plan.vehicle_file, plan.folder, "vehicle");
+  keep(plan.simulation_file, plan.folder, "simulation");
+}
+
+std::vector<std::pair<std::string, std::string>> kept_settings(const fs::path& folder) {
+  std::vector<std::pair<std::string, std::string>> all;
+  for (const std::string kind : kKinds) {
+    const fs::path file = folder / (kind + ".yaml");
+    if (!fs::exists(file)) continue;
+    for (auto& [key, value] : runtime::flatten_yaml(runtime::read_text_file(file.string()), file.string()))
+      all.emplace_back(kind + "." + key, std::move(value));
+  }
+  return all;
+}
+
+}  // namespace swiftlet::ground
