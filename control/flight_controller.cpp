@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -23,7 +24,7 @@ using Eigen::Vector3d;
 
 constexpr double kFirstStep_s = 0.002;  // taken for the first sample, which has none before it
 constexpr double kMaxStep_s = 0.1;
-constexpr int kUnusableToFault = 50;   // IMU samples in a row that cannot be used: 0.1 s at 500 Hz
+constexpr int kUnusableToFault = 200;  // IMU samples in a row that cannot be used, whatever their stamps say
 constexpr double kDescentGain = 4.0;   // 1/s, vertical speed to acceleration, in descent without position
 constexpr double kDescentLimit = 2.0;  // m/s^2, of that acceleration
 
@@ -41,6 +42,7 @@ ControlDesign flyable_design(const plant::Vehicle& vehicle, const ControlSetting
 struct FlightController::Loops {
   Loops(const plant::Vehicle& vehicle_in, const ControlSettings& settings_in, const ControlDesign& design_in);
 
+  void count_unusable(bool usable, std::int64_t stamp_ns);
   void begin_anew_if_clock_went_back(const plant::ImuSample& sample);
   Situation situation() const;
   void act(const Directive& directive, double dt_s);
@@ -63,9 +65,13 @@ struct FlightController::Loops {
   Supervisor supervisor;
 
   std::int64_t last_stamp_ns = 0;
-  int unusable_samples = 0;
+  int unusable_samples = 0;            // in a row
+  std::int64_t unusable_since_ns = 0;  // the last stamp before them, or that to which time went back
+  double unusable_s = 0.0;
+  double imu_gap_s = 0.0;  // between the last two samples that could be used
   Vector3d specific_force_frd = Vector3d::Zero();
   bool has_battery = false;
+  std::int64_t battery_stamp_ns = 0;
   double supply_voltage_v;
   Allocator::Supply supply;
   plant::ActuatorCommand command;
@@ -86,7 +92,7 @@ FlightController::Loops::Loops(const plant::Vehicle& vehicle_in, const ControlSe
       position(settings_in.position, settings_in.limits, design_in),
       attitude(vehicle_in, settings_in.attitude, design_in),
       allocator(vehicle_in),
-      supervisor(settings_in.limits, settings_in.failsafe),
+      supervisor({settings_in.limits, settings_in.arming, settings_in.failsafe}),
       supply_voltage_v(allocator.plausible_supply().assumed),
       supply(allocator.supply_at(supply_voltage_v)) {
   command.rotor_count = vehicle.rotor_count();
@@ -102,6 +108,17 @@ void FlightController::Loops::begin_anew_if_clock_went_back(const plant::ImuSamp
   has_battery = false;
 }
 
+// For how long no sample could be used, by their stamps. A clock that stands still does not hide it, and one
+// that goes far back is that of a vehicle which was started again: it must not hear the flight's commands.
+void FlightController::Loops::count_unusable(bool usable, std::int64_t stamp_ns) {
+  unusable_samples = usable ? 0 : unusable_samples + 1;
+  if (unusable_samples == 1) unusable_since_ns = std::min(stamp_ns, last_stamp_ns);
+  unusable_s = usable ? 0.0 : seconds(stamp_ns - unusable_since_ns);
+  const bool started_again = seconds(last_stamp_ns - stamp_ns) > settings.failsafe.imu_timeout_s;
+  if (unusable_samples >= kUnusableToFault || started_again)
+    unusable_s = std::numeric_limits<double>::infinity();
+}
+
 Situation FlightController::Loops::situation() const {
   Situation situation;
   const Estimate& estimate = estimator.estimate();
@@ -111,9 +128,13 @@ Situation FlightController::Loops::situation() const {
   situation.pose_age_s = estimator.pose_age_s();
   situation.has_battery = has_battery;
   situation.supply_voltage_v = supply_voltage_v;
+  situation.battery_age_s = seconds(estimate.stamp_ns - battery_stamp_ns);
   situation.unexplained_lift =
       -(specific_force_frd.z() - estimate.accelerometer_bias.z()) - rotors.thrust_n() / vehicle.mass_kg;
-  situation.imu_healthy = unusable_samples < kUnusableToFault;
+  situation.specific_force = specific_force_frd.norm();
+  situation.rotor_speed = *std::max_element(rotors.speeds().begin(), rotors.speeds().end());
+  situation.imu_unusable_s = unusable_s;
+  situation.imu_gap_s = imu_gap_s;
   return situation;
 }
 
@@ -212,13 +233,13 @@ plant::ActuatorCommand FlightController::on_imu(const plant::ImuSample& sample) 
   Loops& l = *loops_;
   l.begin_anew_if_clock_went_back(sample);
   const bool usable = l.estimator.predict(sample);
-  l.unusable_samples = usable ? 0 : l.unusable_samples + 1;
-  if (!usable && l.unusable_samples < kUnusableToFault) return l.answer(sample);
+  l.count_unusable(usable, sample.stamp_ns);
+  if (!usable && l.unusable_s < l.settings.failsafe.imu_timeout_s) return l.answer(sample);
 
   double dt_s = 0.0;
   if (usable) {
-    dt_s = l.last_stamp_ns == 0 ? kFirstStep_s
-                                : std::min(seconds(sample.stamp_ns - l.last_stamp_ns), kMaxStep_s);
+    l.imu_gap_s = l.last_stamp_ns == 0 ? kFirstStep_s : seconds(sample.stamp_ns - l.last_stamp_ns);
+    dt_s = std::min(l.imu_gap_s, kMaxStep_s);
     l.last_stamp_ns = sample.stamp_ns;
     l.specific_force_frd = sample.specific_force_frd;
     l.rotors.step(dt_s, l.command, l.supply_voltage_v);
@@ -232,17 +253,21 @@ plant::ActuatorCommand FlightController::on_imu(const plant::ImuSample& sample) 
   l.status.has_pose = situation.has_estimate && situation.pose_age_s <= l.settings.failsafe.mocap_timeout_s;
   l.status.pose_age_s = situation.pose_age_s;
   l.status.airborne = l.supervisor.airborne();
+  l.status.ground_links = l.supervisor.ground_links();
   l.status.supply_voltage_v = l.supply_voltage_v;
   l.status.mission = l.supervisor.mission();
   return l.answer(sample);
 }
 
-void FlightController::on_pose(const plant::PoseSample& sample) { loops_->estimator.correct(sample); }
+void FlightController::on_pose(const plant::PoseSample& sample) {
+  loops_->estimator.correct(sample, loops_->command.rotor_state);
+}
 
 void FlightController::on_battery(const plant::BatterySample& sample) {
   const Allocator::Supply supply = loops_->allocator.supply_at(sample.voltage_v);
   if (!supply.plausible) return;
   loops_->has_battery = true;
+  loops_->battery_stamp_ns = sample.stamp_ns;
   loops_->supply_voltage_v = sample.voltage_v;
   loops_->supply = supply;
 }
@@ -254,6 +279,8 @@ void FlightController::on_rotor_speeds(const plant::RotorSpeedSample& sample) {
 Outcome FlightController::on_setpoint(const Setpoint& setpoint) {
   return loops_->supervisor.setpoint(setpoint, loops_->situation());
 }
+
+bool FlightController::on_ground_sign(const GroundSign& sign) { return loops_->supervisor.ground_sign(sign); }
 
 Outcome FlightController::request(const Request& request) {
   return loops_->supervisor.request(request, loops_->situation());

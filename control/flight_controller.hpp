@@ -41,6 +41,8 @@ class FlightController {
   void on_rotor_speeds(const plant::RotorSpeedSample& sample);
   // Setpoints are followed while holding; a refused one changes nothing.
   Outcome on_setpoint(const Setpoint& setpoint);
+  // A sign of life of a ground tool. False if the flight depends on too many others already.
+  bool on_ground_sign(const GroundSign& sign);
   // Answers by the present mode. A mission or trajectory must have passed check() of supervision/checks.hpp
   // before.
   Outcome request(const Request& request);

@@ -20,6 +20,34 @@ enum class Mode : std::uint8_t {
 const char* to_string(Mode mode);
 inline bool rotors_off(Mode mode) { return mode == Mode::kDisarmed || mode == Mode::kStopped; }
 
+// Why a mode was entered.
+enum class Reason : std::uint8_t {
+  kStarted = 0,
+  kRequested,
+  kTakeOffCompleted,
+  kMissionCompleted,
+  kTrajectoryCompleted,
+  kLanded,
+  kLandedWithoutPosition,
+  kSetpointsCame,
+  kSetpointsStopped,
+  kBatteryLow,
+  kBatteryCritical,
+  kBatterySilent,
+  kOutsideFence,
+  kNoPose,
+  kPoseIsBack,
+  kDescentTimedOut,
+  kTippedOver,
+  kImuUnusable,
+  kImuGap,
+  kGroundLinkLost,
+  kPlanUnknown,  // another controller was taken over from whose mission or trajectory is not known here
+  kFoundFlying,  // the controller was started while its vehicle flew
+};
+constexpr int kReasonCount = static_cast<int>(Reason::kFoundFlying) + 1;
+const char* to_string(Reason reason);
+
 enum class MissionState : std::uint8_t { kNone = 0, kRunning = 1, kCompleted = 2, kAborted = 3 };
 
 struct MissionProgress {
@@ -31,10 +59,11 @@ struct MissionProgress {
 
 struct Status {
   Mode mode = Mode::kDisarmed;
-  const char* reason = "";  // why the mode was entered; a static string
-  bool has_pose = false;    // a mocap pose has come within the time-out
-  double pose_age_s = 0.0;  // at this step
+  Reason reason = Reason::kStarted;  // why the mode was entered
+  bool has_pose = false;             // a mocap pose has come within the time-out
+  double pose_age_s = 0.0;           // at this step
   bool airborne = false;
+  int ground_links = 0;  // ground tools that the flight depends on
   double supply_voltage_v = 0.0;
   bool saturated = false;  // the last command was cut by the rotors' limits
   MissionProgress mission;

@@ -51,4 +51,10 @@ struct Setpoint {
   double yaw_rate = 0.0;
 };
 
+// A sign of life of a ground tool. depends: from now on the flight depends on hearing it; false: no longer.
+struct GroundSign {
+  std::uint64_t client = 0;  // not 0
+  bool depends = false;
+};
+
 }  // namespace swiftlet::control

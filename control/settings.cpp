@@ -43,13 +43,32 @@ void check_limits(const Limits& limits, RuleChecker& check) {
 }
 
 void check_estimator(const EstimatorSettings& estimator, RuleChecker& check) {
-  check.above("estimator.position_bandwidth_rad_s", estimator.position_bandwidth, 0.0);
-  check.above("estimator.attitude_bandwidth_rad_s", estimator.attitude_bandwidth, 0.0);
+  check.above("estimator.accelerometer_noise_m_s2_per_sqrt_hz", estimator.accelerometer_noise_density, 0.0);
+  check.above("estimator.gyro_noise_rad_s_per_sqrt_hz", estimator.gyro_noise_density, 0.0);
+  check.at_least("estimator.accelerometer_bias_walk_m_s2_per_sqrt_s", estimator.accelerometer_bias_walk, 0.0);
+  check.at_least("estimator.gyro_bias_walk_rad_s_per_sqrt_s", estimator.gyro_bias_walk, 0.0);
+  check.at_least("estimator.accelerometer_bias_m_s2", estimator.accelerometer_bias_sigma, 0.0);
+  check.at_least("estimator.gyro_bias_rad_s", estimator.gyro_bias_sigma, 0.0);
   check.at_least("estimator.accelerometer_bias_limit_m_s2", estimator.accelerometer_bias_limit, 0.0);
   check.at_least("estimator.gyro_bias_limit_rad_s", estimator.gyro_bias_limit, 0.0);
+  check.above("estimator.mocap_position_m", estimator.mocap_position_sigma, 0.0);
+  check.above("estimator.mocap_orientation_rad", estimator.mocap_orientation_sigma, 0.0);
+  check.above("estimator.gate_chi_square", estimator.gate_chi_square, 0.0);
+  check.above("estimator.outlier_position_m", estimator.outlier_position_m, 0.0);
+  check.above("estimator.outlier_orientation_rad", estimator.outlier_orientation_rad, 0.0);
+}
+
+void check_arming(const ArmingSettings& arming, RuleChecker& check) {
+  check.above("arming.max_tilt_rad", arming.max_tilt_rad, 0.0);
+  check.above("arming.max_speed_m_s", arming.max_speed, 0.0);
+  check.above("arming.max_body_rate_rad_s", arming.max_body_rate, 0.0);
+  check.above("arming.max_specific_force_error_m_s2", arming.max_specific_force_error, 0.0);
+  check.above("arming.max_rotor_speed_rad_s", arming.max_rotor_speed, 0.0);
 }
 
 void check_failsafe(const FailsafeSettings& failsafe, const Limits& limits, RuleChecker& check) {
+  check.above("failsafe.imu_timeout_s", failsafe.imu_timeout_s, 0.0);
+  check.above("failsafe.imu_gap_s", failsafe.imu_gap_s, 0.0);
   check.above("failsafe.mocap_timeout_s", failsafe.mocap_timeout_s, 0.0);
   check.above("failsafe.descent_speed_m_s", failsafe.descent_speed, 0.0);
   check.above("failsafe.descent_timeout_s", failsafe.descent_timeout_s, 0.0);
@@ -58,8 +77,16 @@ void check_failsafe(const FailsafeSettings& failsafe, const Limits& limits, Rule
     check.add("failsafe.tip_over_tilt_rad", "is ", failsafe.tip_over_tilt_rad,
               ", must be above limits.max_tilt_rad, ", limits.max_tilt_rad);
   }
-  check.at_least("failsafe.low_battery_voltage_v", failsafe.low_battery_voltage, 0.0);
+  if (check.at_least("failsafe.low_battery_voltage_v", failsafe.low_battery_voltage, 0.0)) {
+    check.between("failsafe.critical_battery_voltage_v", failsafe.critical_battery_voltage, 0.0,
+                  failsafe.low_battery_voltage);
+  }
+  check.at_least("failsafe.battery_delay_s", failsafe.battery_delay_s, 0.0);
+  check.above("failsafe.battery_timeout_s", failsafe.battery_timeout_s, 0.0);
+  check.above("failsafe.critical_descent_speed_m_s", failsafe.critical_descent_speed, 0.0);
+  check.at_least("failsafe.fence_margin_m", failsafe.fence_margin_m, 0.0);
   check.above("failsafe.setpoint_timeout_s", failsafe.setpoint_timeout_s, 0.0);
+  check.above("failsafe.ground_link_timeout_s", failsafe.ground_link_timeout_s, 0.0);
 }
 
 }  // namespace
@@ -78,6 +105,7 @@ std::vector<plant::Violation> validate(const ControlSettings& settings) {
   check.at_least("disturbance.limit_m_s2", settings.disturbance.limit, 0.0);
   check_limits(settings.limits, check);
   check_estimator(settings.estimator, check);
+  check_arming(settings.arming, check);
   check_failsafe(settings.failsafe, settings.limits, check);
   return check.take();
 }

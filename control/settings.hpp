@@ -2,6 +2,7 @@
 // holds the same keys.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -63,22 +64,55 @@ struct Limits {
   Eigen::Vector3d fence_max_ned = {3.0, 3.0, 0.2};     // m
 };
 
-// Observer gains: each corrects by the mocap innovation. Bandwidths in rad/s.
+// What the estimator believes of its sensors. Noise densities as on data sheets; standard deviations are each
+// axis's.
 struct EstimatorSettings {
-  double position_bandwidth = 12.0;       // of the position/velocity/accelerometer-bias observer
-  double attitude_bandwidth = 6.0;        // of the attitude/gyro-bias observer
-  double accelerometer_bias_limit = 1.0;  // m/s^2
-  double gyro_bias_limit = 0.3;           // rad/s
+  double accelerometer_noise_density = 4.0e-3;  // m/s^2/sqrt(Hz)
+  double gyro_noise_density = 2.0e-4;           // rad/s/sqrt(Hz)
+  double accelerometer_bias_walk = 1.0e-3;      // m/s^2/sqrt(s)
+  double gyro_bias_walk = 1.0e-4;               // rad/s/sqrt(s)
+  double accelerometer_bias_sigma = 0.2;        // m/s^2, before the first pose
+  double gyro_bias_sigma = 0.02;                // rad/s, likewise
+  double accelerometer_bias_limit = 1.0;        // m/s^2
+  double gyro_bias_limit = 0.3;                 // rad/s
+  double mocap_position_sigma = 5.0e-5;         // m
+  double mocap_orientation_sigma = 7.0e-4;      // rad
+  // Bound on the squared normalised innovation, chi-square of 6 degrees of freedom: one good pose in 26,000
+  // is beyond 30.
+  double gate_chi_square = 30.0;
+  double outlier_position_m = 0.05;      // beyond the bound and this far off: refused
+  double outlier_orientation_rad = 0.1;  // likewise
 };
+
+// What a vehicle may show on the ground and still be armed.
+struct ArmingSettings {
+  double max_tilt_rad = 0.35;
+  double max_speed = 0.3;                 // m/s, by the estimate
+  double max_body_rate = 0.2;             // rad/s, bias removed
+  double max_specific_force_error = 1.5;  // m/s^2, of its length against g
+  double max_rotor_speed = 100.0;         // rad/s, of any rotor
+};
+
+// What the vehicle does when a ground tool falls silent that its flight depends on.
+enum class GroundLinkAction : std::uint8_t { kNone, kHold, kLand };
 
 // When to give up what. Times in s.
 struct FailsafeSettings {
-  double mocap_timeout_s = 0.5;      // without a pose: from dead reckoning to level descent
-  double descent_speed = 0.4;        // m/s
-  double descent_timeout_s = 6.0;    // then rotors off
-  double tip_over_tilt_rad = 1.4;    // rotors off
-  double low_battery_voltage = 3.3;  // land
-  double setpoint_timeout_s = 0.5;   // from setpoint stream to hold
+  double imu_timeout_s = 0.1;             // of samples that cannot be used, in a row: rotors off
+  double imu_gap_s = 0.3;                 // between two samples: rotors off
+  double tip_over_tilt_rad = 1.4;         // rotors off
+  double mocap_timeout_s = 0.5;           // without a pose: from dead reckoning to level descent
+  double descent_speed = 0.4;             // m/s, without position, and of landings at most
+  double descent_timeout_s = 6.0;         // without position: rotors off
+  double low_battery_voltage = 3.3;       // land
+  double critical_battery_voltage = 3.1;  // land faster
+  double battery_delay_s = 1.0;           // the voltage has been below these for so long
+  double battery_timeout_s = 2.0;         // without a battery sample: land
+  double critical_descent_speed = 0.8;    // m/s
+  double fence_margin_m = 0.2;            // this far outside the fence: land, inside it
+  double setpoint_timeout_s = 0.5;        // from setpoint stream to hold
+  double ground_link_timeout_s = 1.0;     // without a sign of life
+  GroundLinkAction ground_link_action = GroundLinkAction::kLand;
 };
 
 struct ControlSettings {
@@ -88,6 +122,7 @@ struct ControlSettings {
   DisturbanceSettings disturbance;
   Limits limits;
   EstimatorSettings estimator;
+  ArmingSettings arming;
   FailsafeSettings failsafe;
 };
 

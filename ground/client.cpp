@@ -122,6 +122,7 @@ void Client::subscribe_all() {
         keep(&View::reference, reference);
         const std::lock_guard lock(mutex_);
         if (grants_) grants_->telemetry(reference.stamp_ns());
+        if (signs_) signs_->telemetry(reference.stamp_ns());
       }));
   subscriptions_.push_back(
       node_.subscribe<msg::GroundTruth>(kGroundTruth, [this](const msg::GroundTruth& truth) {
@@ -149,6 +150,16 @@ TimeGrants& Client::grants() {
   const std::lock_guard lock(mutex_);
   if (!grants_) grants_.emplace(node_);
   return *grants_;
+}
+
+void Client::stay() {
+  const std::lock_guard lock(mutex_);
+  if (!signs_) signs_.emplace(node_, client_id_);
+}
+
+void Client::leave() {
+  const std::lock_guard lock(mutex_);
+  signs_.reset();
 }
 
 bool Client::wait(std::chrono::milliseconds timeout, const std::function<bool(const View&)>& done) const {

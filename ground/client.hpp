@@ -13,6 +13,7 @@
 
 #include "control/mission.hpp"
 #include "ground/flight_record.hpp"
+#include "ground/signs_of_life.hpp"
 #include "ground/time_grants.hpp"
 #include "services/comms/node.hpp"
 
@@ -72,6 +73,11 @@ class Client {
   // For a plant in lockstep that was started paused: from the first call on, this client grants it time.
   TimeGrants& grants();
 
+  // From now on the flight depends on this client: if it falls silent, the controller does what its settings
+  // say. Until leave() or the client's end.
+  void stay();
+  void leave();
+
   // Waits until `done` holds of the view; false if it does not within the time-out. `done` must not call this
   // client.
   bool wait(std::chrono::milliseconds timeout, const std::function<bool(const View&)>& done) const;
@@ -112,6 +118,7 @@ class Client {
   comms::Publisher<msg::Command> commands_;
   comms::Publisher<msg::Mission> missions_;
   std::optional<TimeGrants> grants_;
+  std::optional<SignsOfLife> signs_;
   std::vector<comms::Subscription> subscriptions_;  // last: their callbacks use all of the above
 };
 

@@ -111,10 +111,13 @@ Flight::Flight(Client& client, const FlightRecord& record, const MissionFile& mi
 
 void Flight::run() {
   wait_until_ready();
+  // In lockstep time stands still without this process, and the plant ends the run.
+  if (!lockstep_) client_.stay();
   arm();
   start_mission();
   if (lockstep_) client_.grants().follow_telemetry(paused_at_ns_);
   follow();
+  client_.leave();
   wait_for_last_figures();
 }
 

@@ -23,6 +23,7 @@ struct Options : RequestOptions {
   std::string file;
   std::string control = "motor_lag";
   bool no_wait = false;
+  bool link = false;
 };
 
 // How a mission ended, as far as it was followed.
@@ -66,6 +67,7 @@ int fly_mission(const Options& options) {
   const MissionFile mission =
       load_mission_file(configuration_file("missions", options.file), settings.limits);
   Client client(options.network);
+  if (options.link) client.stay();
   const Answer answer = client.upload(mission.mission, milliseconds(options.timeout_s));
   End end = {answer.accepted(), answer.reason};
   if (answer.accepted() && !options.no_wait) end = follow(client, mission);
@@ -94,7 +96,12 @@ Command add_mission_command(CLI::App& root) {
   app->add_option("--control", options->control,
                   "control settings whose limits and fence the file is checked against")
       ->capture_default_str();
-  app->add_flag("--no-wait", options->no_wait, "return once it is accepted");
+  CLI::Option* const no_wait = app->add_flag("--no-wait", options->no_wait, "return once it is accepted");
+  app->add_flag(
+         "--link", options->link,
+         "the flight depends on this command: if it falls silent, the vehicle does what ground_link_action "
+         "of its control settings says")
+      ->excludes(no_wait);
   return {app, [options] { return fly_mission(*options); }};
 }
 

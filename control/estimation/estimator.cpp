@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "control/estimation/rotation_vector.hpp"
 #include "plant/model/vehicle.hpp"
 
 namespace swiftlet::control {
@@ -12,40 +13,59 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double kMaxStep_s = 0.1;          // longer gaps between IMU samples are not integrated over
-constexpr double kMaxPoseInterval_s = 0.1;  // the gains do not grow beyond this interval
-constexpr double kGate_m = 0.3;             // innovation that is believed at once ...
-constexpr double kGateGrowth_m_s = 1.0;     // ... and how it widens with the age of the last pose
-constexpr double kGate_rad = 0.5;
+constexpr double kMaxStep_s = 0.25;  // longer gaps between IMU samples are not integrated over
+// A gap longer than the first may hide accelerations and rates of the others.
+constexpr double kUnseen_s = 0.02;
+constexpr double kUnseenAcceleration = 2.0;        // m/s^2
+constexpr double kUnseenRate = 0.5;                // rad/s
+constexpr std::int64_t kInterval_ns = 20'000'000;  // the covariance goes by no longer ones ...
+constexpr std::uint64_t kIntervalMoments = 32;     // ... nor by more moments of the history
+constexpr std::int64_t kMaxLead_ns = 20'000'000;   // that a pose may be ahead of the IMU
+constexpr double kStartSpeed = 1.0;                // m/s, standard deviation at the first pose
+constexpr double kJumpSpeed = 0.3;                 // m/s, likewise after a reset
+constexpr double kMaxDrift = 0.3;        // m/s, of a disagreement that leads to a reset in flight ...
+constexpr double kMaxDriftAtRest = 3.0;  // ... and with rotors off
+constexpr double kSwap_rad = 0.35;
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
-// The unit quaternion of a rotation vector: (cos h, sin(h) / h * half), h being the length of half the
-// vector. Small ones, as of every step, by series whose first term left out is below 1e-16.
-Quaterniond rotation(const Vector3d& angle) {
-  constexpr double kLargestForSeries = 0.01;  // h^2
-  const Vector3d half = 0.5 * angle;
-  const double h2 = half.squaredNorm();
-  double cosine =
-      1.0 - 0.5 * h2 * (1.0 - (1.0 / 12) * h2 * (1.0 - (1.0 / 30) * h2 * (1.0 - (1.0 / 56) * h2)));
-  double sine_over_h =
-      1.0 - (1.0 / 6) * h2 * (1.0 - (1.0 / 20) * h2 * (1.0 - (1.0 / 42) * h2 * (1.0 - (1.0 / 72) * h2)));
-  if (h2 > kLargestForSeries) {
-    const double h = std::sqrt(h2);
-    cosine = std::cos(h);
-    sine_over_h = std::sin(h) / h;
-  }
-  return Quaterniond(cosine, sine_over_h * half.x(), sine_over_h * half.y(), sine_over_h * half.z());
-}
-
-// The rotation vector of a unit quaternion near identity.
-Vector3d small_angle(const Quaterniond& q) { return (q.w() < 0.0 ? -2.0 : 2.0) * q.vec(); }
+double squared(double x) { return x * x; }
 
 Vector3d bounded(const Vector3d& v, double limit) { return v.cwiseMax(-limit).cwiseMin(limit); }
 
+// Between attitudes of a path that are close to each other.
+Quaterniond mean(const Quaterniond& a, double part_a, const Quaterniond& b, double part_b) {
+  return Quaterniond((part_a * a.coeffs() + part_b * b.coeffs()).eval()).normalized();
+}
+
 }  // namespace
 
-Estimator::Estimator(const EstimatorSettings& settings) : settings_(settings) {}
+const char* to_string(PoseFault fault) {
+  switch (fault) {
+    case PoseFault::kNone:
+      return "none";
+    case PoseFault::kUntracked:
+      return "untracked";
+    case PoseFault::kInvalid:
+      return "invalid";
+    case PoseFault::kUntimely:
+      return "untimely";
+    case PoseFault::kOutlier:
+      return "outlier";
+    case PoseFault::kSwapped:
+      return "swapped";
+    case PoseFault::kFrozen:
+      return "frozen";
+  }
+  return "unknown";
+}
+
+Estimator::Estimator(const EstimatorSettings& settings) : settings_(settings) {
+  noise_.velocity = squared(settings.accelerometer_noise_density);
+  noise_.rotation = squared(settings.gyro_noise_density);
+  noise_.gyro_bias = squared(settings.gyro_bias_walk);
+  noise_.accelerometer_bias = squared(settings.accelerometer_bias_walk);
+}
 
 double Estimator::pose_age_s() const {
   return initialised_ ? seconds(now_.stamp_ns - pose_stamp_ns_) : std::numeric_limits<double>::infinity();
@@ -77,88 +97,251 @@ bool Estimator::predict(const plant::ImuSample& sample) {
   return true;
 }
 
-bool Estimator::correct(const plant::PoseSample& pose) {
-  if (!pose.tracked || !pose.position_ned.allFinite() || !pose.q_ned_from_frd.coeffs().allFinite())
-    return false;
-  if (std::abs(pose.q_ned_from_frd.norm() - 1.0) > 0.01) return false;
-  if (pose.stamp_ns <= pose_stamp_ns_ || now_.stamp_ns == 0) return false;
+bool Estimator::correct(const plant::PoseSample& pose, plant::RotorState rotors) {
+  if (pose.stamp_ns == received_stamp_ns_ && received_stamp_ns_ != 0) return false;
+  received_stamp_ns_ = pose.stamp_ns;
+  now_.pose_fault = take_in(pose, rotors);
+  const bool accepted = now_.pose_fault == PoseFault::kNone;
+  ++(accepted ? now_.poses_accepted : now_.poses_refused);
+  return accepted;
+}
+
+PoseFault Estimator::take_in(const plant::PoseSample& pose, plant::RotorState rotors) {
+  if (!pose.tracked) return PoseFault::kUntracked;
+  if (!pose.position_ned.allFinite() || !pose.q_ned_from_frd.coeffs().allFinite()) return PoseFault::kInvalid;
+  if (std::abs(pose.q_ned_from_frd.norm() - 1.0) > 0.01) return PoseFault::kInvalid;
+  if (now_.stamp_ns == 0 || pose.stamp_ns > now_.stamp_ns + kMaxLead_ns) return PoseFault::kUntimely;
+  if (initialised_ && (pose.stamp_ns <= pose_stamp_ns_ || pose.stamp_ns < anchor_.stamp_ns))
+    return PoseFault::kUntimely;
+  repetition_.look_at(pose, rotors);
   if (!initialised_) {
     start_at(pose);
-    return true;
+    return PoseFault::kNone;
   }
 
-  int newer = -1;  // steps back to the oldest entry that is newer than the pose
-  while (newer + 1 < filled_ && past(newer + 1).stamp_ns > pose.stamp_ns) ++newer;
-  if (newer + 1 == filled_) return false;
-  const Past& before = past(newer + 1);
-  Vector3d position = before.position_ned;
-  Quaterniond q = before.q_ned_from_frd;
-  if (newer >= 0 && before.stamp_ns < pose.stamp_ns) {
-    const Past& after = past(newer);
-    const double part = seconds(pose.stamp_ns - before.stamp_ns) / seconds(after.stamp_ns - before.stamp_ns);
-    position += part * (after.position_ned - before.position_ned);
-    q = q.slerp(part, after.q_ned_from_frd);
+  std::uint64_t first_newer = next_;
+  while (first_newer > first_after_anchor_ && remembered(first_newer - 1).stamp_ns > pose.stamp_ns)
+    --first_newer;
+  const Moment moment = moment_at(std::min(pose.stamp_ns, now_.stamp_ns), first_newer);
+  advance(covariance_, anchor_, first_after_anchor_, moment);
+  anchor_at(moment, first_newer);
+
+  PoseInnovation innovation;
+  // A pose that is ahead of the IMU is compared with where the estimate goes.
+  const double ahead_s = seconds(pose.stamp_ns - moment.stamp_ns);
+  const Quaterniond q_ned_from_frd = moment.q_ned_from_frd * rotation(ahead_s * now_.body_rates_frd);
+  innovation.position = pose.position_ned - (moment.position_ned + ahead_s * moment.velocity_ned);
+  innovation.rotation = rotation_vector(pose.q_ned_from_frd.normalized() * q_ned_from_frd.conjugate());
+  const ErrorCovariance::Correction correction = covariance_.weigh(
+      innovation, squared(settings_.mocap_position_sigma), squared(settings_.mocap_orientation_sigma));
+  normalised_innovation_ = correction.normalised_square();
+  const bool contradicts = normalised_innovation_ > settings_.gate_chi_square;
+  if (repetition_.frozen() || (contradicts && repetition_.repeats())) return PoseFault::kFrozen;
+  if (contradicts && (innovation.position.norm() > settings_.outlier_position_m ||
+                      innovation.rotation.norm() > settings_.outlier_orientation_rad)) {
+    return disagree(pose, innovation, rotors);
   }
 
-  const Vector3d position_error = pose.position_ned - position;
-  const Vector3d angle_error = small_angle(pose.q_ned_from_frd.normalized() * q.conjugate());  // in NED
-  const double interval = seconds(pose.stamp_ns - pose_stamp_ns_);
-  if (position_error.norm() > kGate_m + kGateGrowth_m_s * interval || angle_error.norm() > kGate_rad) {
-    if (++rejections_ < kRejectionsToReset) return false;
-    start_at(pose);
-    return true;
-  }
-  rejections_ = 0;
+  disagreement_.clear();
   pose_stamp_ns_ = pose.stamp_ns;
   pose_sequence_ = pose.sequence;
-
-  // Critically damped gains for the interval T, all poles at exp(-bandwidth T).
-  const double T = std::min(interval, kMaxPoseInterval_s);
-  const double b = std::exp(-settings_.position_bandwidth * T);
-  const Vector3d position_step = (1.0 - b * b * b) * position_error;
-  const Vector3d velocity_step = (1.5 * (1.0 - b) * (1.0 - b) * (1.0 + b) / T) * position_error;
-  const Vector3d acceleration_step = ((1.0 - b) * (1.0 - b) * (1.0 - b) / (T * T)) * position_error;
-  const double c = std::exp(-settings_.attitude_bandwidth * T);
-  const Vector3d angle_step = (1.0 - c * c) * angle_error;
-  const Vector3d rate_step = ((1.0 - c) * (1.0 - c) / T) * angle_error;
-
-  const Quaterniond turn = rotation(angle_step);
-  for (int k = newer; k >= 0; --k) {
-    Past& entry = past(k);
-    entry.position_ned += position_step + seconds(entry.stamp_ns - pose.stamp_ns) * velocity_step;
-    entry.velocity_ned += velocity_step;
-    entry.q_ned_from_frd = turn * entry.q_ned_from_frd;
+  if (contradicts) {
+    apply(std::sqrt(settings_.gate_chi_square / normalised_innovation_) * correction.step());
+  } else {
+    covariance_.reduce(correction);
+    apply(correction.step());
   }
-  now_.position_ned += position_step + seconds(now_.stamp_ns - pose.stamp_ns) * velocity_step;
-  now_.velocity_ned += velocity_step;
-  now_.q_ned_from_frd = (turn * now_.q_ned_from_frd).normalized();
+  return PoseFault::kNone;
+}
 
-  const Quaterniond q_frd_from_ned = now_.q_ned_from_frd.conjugate();
-  now_.accelerometer_bias = bounded(now_.accelerometer_bias - q_frd_from_ned * acceleration_step,
-                                    settings_.accelerometer_bias_limit);
-  const Vector3d gyro_bias = bounded(now_.gyro_bias - q_frd_from_ned * rate_step, settings_.gyro_bias_limit);
+PoseFault Estimator::disagree(const plant::PoseSample& pose, const PoseInnovation& innovation,
+                              plant::RotorState rotors) {
+  const bool at_rest = rotors == plant::RotorState::kOff;
+  const bool turned = innovation.rotation.norm() > kSwap_rad;
+  disagreement_.add(pose.stamp_ns, innovation, at_rest ? kMaxDriftAtRest : kMaxDrift);
+  if (disagreement_.persistent() && (at_rest || !turned)) {
+    jump(pose, innovation);
+    return PoseFault::kNone;
+  }
+  return turned ? PoseFault::kSwapped : PoseFault::kOutlier;
+}
+
+// Takes a step of the error state at the anchor into the nominal state, there and since.
+void Estimator::apply(const ErrorState& step) {
+  const Eigen::Matrix3d r = anchor_.q_ned_from_frd.toRotationMatrix();
+  if (next_ > first_after_anchor_ &&
+      corrections_made_ - remembered(first_after_anchor_).corrections >= kCorrections)
+    catch_up();
+  Correction& correction = corrections_[corrections_made_++ % kCorrections];
+  correction.at = anchor_;
+  correction.position = step.segment<3>(0);
+  correction.velocity = step.segment<3>(3);
+  correction.rotation = step.segment<3>(6);
+  correction.rate = r * step.segment<3>(9);
+  correction.acceleration = r * step.segment<3>(12);
+  correction.carry_to(anchor_);
+  Moment moment = now();
+  correction.carry_to(moment);
+  now_.position_ned = moment.position_ned;
+  now_.velocity_ned = moment.velocity_ned;
+  now_.q_ned_from_frd = moment.q_ned_from_frd;
+
+  const Vector3d gyro_bias = bounded(now_.gyro_bias + step.segment<3>(9), settings_.gyro_bias_limit);
   now_.body_rates_frd += now_.gyro_bias - gyro_bias;
   now_.gyro_bias = gyro_bias;
-  return true;
+  now_.accelerometer_bias =
+      bounded(now_.accelerometer_bias + step.segment<3>(12), settings_.accelerometer_bias_limit);
+}
+
+// As advance() of error_covariance.hpp, with the attitude's step as a rotation.
+void Estimator::Correction::carry_to(Moment& moment) const {
+  const ErrorInterval since = interval(at, moment);
+  const double t = since.duration_s;
+  moment.position_ned += position + t * velocity - since.position_change.cross(rotation - (t / 3) * rate) -
+                         (t * t / 2) * acceleration;
+  moment.velocity_ned += velocity - since.velocity_change.cross(rotation - (t / 2) * rate) - t * acceleration;
+  moment.q_ned_from_frd = (control::rotation(rotation - t * rate) * moment.q_ned_from_frd).normalized();
+  ++moment.corrections;
+}
+
+Estimator::Moment Estimator::past(std::uint64_t number) const {
+  Moment moment = remembered(number);
+  while (moment.corrections < corrections_made_)
+    corrections_[moment.corrections % kCorrections].carry_to(moment);
+  return moment;
+}
+
+void Estimator::catch_up() {
+  for (std::uint64_t number = first_after_anchor_; number < next_; ++number)
+    history_[number % kHistory] = past(number);
+}
+
+Estimator::Moment Estimator::now() const {
+  return {now_.stamp_ns, now_.position_ned, now_.velocity_ned, now_.q_ned_from_frd, corrections_made_};
+}
+
+// Shifts and turns what is remembered onto the pose; velocity and biases are kept.
+void Estimator::jump(const plant::PoseSample& pose, const PoseInnovation& innovation) {
+  const Quaterniond turn = rotation(innovation.rotation);
+  const auto shift = [&](Moment& moment) {
+    moment.position_ned += innovation.position;
+    moment.q_ned_from_frd = (turn * moment.q_ned_from_frd).normalized();
+  };
+  catch_up();
+  shift(anchor_);
+  for (std::uint64_t number = first_after_anchor_; number < next_; ++number)
+    shift(history_[number % kHistory]);
+  now_.position_ned += innovation.position;
+  now_.q_ned_from_frd = (turn * now_.q_ned_from_frd).normalized();
+  Eigen::Matrix<double, 9, 1> sigma;
+  sigma << Vector3d::Constant(settings_.mocap_position_sigma), Vector3d::Constant(kJumpSpeed),
+      Vector3d::Constant(settings_.mocap_orientation_sigma);
+  covariance_.reset_motion(sigma);
+
+  pose_stamp_ns_ = pose.stamp_ns;
+  pose_sequence_ = pose.sequence;
+  disagreement_.clear();
+  ++now_.resets;
+  now_.reset_position_ned = innovation.position;
+  now_.reset_rotation_ned = innovation.rotation;
 }
 
 void Estimator::start_at(const plant::PoseSample& pose) {
   now_.position_ned = pose.position_ned;
   now_.velocity_ned.setZero();
   now_.q_ned_from_frd = pose.q_ned_from_frd.normalized();
-  now_.accelerometer_bias.setZero();
   initialised_ = true;
   pose_stamp_ns_ = pose.stamp_ns;
   pose_sequence_ = pose.sequence;
-  rejections_ = 0;
-  filled_ = 0;
+  ErrorState sigma;
+  sigma << Vector3d::Constant(settings_.mocap_position_sigma), Vector3d::Constant(kStartSpeed),
+      Vector3d::Constant(settings_.mocap_orientation_sigma), Vector3d::Constant(settings_.gyro_bias_sigma),
+      Vector3d::Constant(settings_.accelerometer_bias_sigma);
+  covariance_.reset(sigma);
+  anchor_at(now(), next_);
+  anchor_.stamp_ns = std::min(pose.stamp_ns, now_.stamp_ns);
   remember();
 }
 
+// The covariance follows before the moments that it has to go through are forgotten.
 void Estimator::remember() {
-  head_ = (head_ + 1) % kHistory;
-  filled_ = std::min(filled_ + 1, kHistory);
-  past(0) = {now_.stamp_ns, now_.position_ned, now_.velocity_ned, now_.q_ned_from_frd};
+  if (next_ - first_after_anchor_ >= kHistory - kIntervalMoments) {
+    const std::uint64_t number = first_after_anchor_ + kIntervalMoments / 2;
+    const Moment moment = past(number);
+    advance(covariance_, anchor_, first_after_anchor_, moment);
+    anchor_at(moment, number + 1);
+  }
+  Moment& moment = history_[next_++ % kHistory];
+  moment.stamp_ns = now_.stamp_ns;
+  moment.position_ned = now_.position_ned;
+  moment.velocity_ned = now_.velocity_ned;
+  moment.q_ned_from_frd = now_.q_ned_from_frd;
+  moment.corrections = corrections_made_;
+  if (now_.stamp_ns <= anchor_.stamp_ns) first_after_anchor_ = next_;
+}
+
+void Estimator::anchor_at(const Moment& moment, std::uint64_t first_newer) {
+  anchor_ = moment;
+  first_after_anchor_ = first_newer;
+}
+
+Estimator::Moment Estimator::moment_at(std::int64_t stamp_ns, std::uint64_t first_newer) const {
+  const Moment before = first_newer > first_after_anchor_ ? past(first_newer - 1) : anchor_;
+  if (before.stamp_ns == stamp_ns) return before;
+  Moment moment = before;
+  moment.stamp_ns = stamp_ns;
+  const Moment after = past(first_newer);
+  const double part = seconds(stamp_ns - before.stamp_ns) / seconds(after.stamp_ns - before.stamp_ns);
+  moment.position_ned += part * (after.position_ned - before.position_ned);
+  moment.velocity_ned += part * (after.velocity_ned - before.velocity_ned);
+  moment.q_ned_from_frd = mean(before.q_ned_from_frd, 1.0 - part, after.q_ned_from_frd, part);
+  return moment;
+}
+
+ErrorInterval Estimator::interval(const Moment& from, const Moment& to) {
+  ErrorInterval out;
+  out.duration_s = seconds(to.stamp_ns - from.stamp_ns);
+  const Vector3d fall = {0.0, 0.0, out.duration_s * plant::kGravity};
+  out.velocity_change = to.velocity_ned - from.velocity_ned - fall;
+  out.position_change =
+      to.position_ned - from.position_ned - out.duration_s * (from.velocity_ned + 0.5 * fall);
+  return out;
+}
+
+void Estimator::advance_step(ErrorCovariance& covariance, const Moment& from, const Moment& to) const {
+  ErrorInterval step = interval(from, to);
+  step.r_ned_from_frd = mean(from.q_ned_from_frd, 0.5, to.q_ned_from_frd, 0.5).toRotationMatrix();
+  covariance.advance(step, noise_);
+  const double t = step.duration_s;
+  if (t <= kUnseen_s * 1.5) return;
+  const double speed = kUnseenAcceleration * t;
+  covariance.add_motion(squared(0.5 * t * speed), squared(speed), squared(kUnseenRate * t));
+}
+
+void Estimator::advance(ErrorCovariance& covariance, Moment from, std::uint64_t first,
+                        const Moment& to) const {
+  std::uint64_t number = first;
+  while (from.stamp_ns + kInterval_ns < to.stamp_ns && number < next_) {
+    // To the last moment within the interval, or over the gap to the next.
+    std::uint64_t last = number;
+    while (last + 1 < next_ && remembered(last + 1).stamp_ns <= from.stamp_ns + kInterval_ns) ++last;
+    if (remembered(last).stamp_ns >= to.stamp_ns) break;
+    const Moment moment = past(last);
+    advance_step(covariance, from, moment);
+    from = moment;
+    number = last + 1;
+  }
+  if (from.stamp_ns != to.stamp_ns) advance_step(covariance, from, to);
+}
+
+ErrorCovariance Estimator::covariance() const {
+  ErrorCovariance covariance = covariance_;
+  if (!initialised_) {
+    covariance.reset(ErrorState::Constant(std::numeric_limits<double>::infinity()));
+    return covariance;
+  }
+  advance(covariance, anchor_, first_after_anchor_, now());
+  return covariance;
 }
 
 }  // namespace swiftlet::control

@@ -1,10 +1,11 @@
 // State estimate: the IMU propagates, mocap corrects. Position, velocity, attitude, gyro and accelerometer
 // bias.
 //
-// Two fixed-gain observers with critically damped poles (fading-memory filters, Morrison 1969): position,
-// velocity and accelerometer bias in one, attitude and gyro bias in the other. A pose is compared with the
-// estimate at the pose's own stamp, and the correction is brought forward to now, so that latency costs no
-// stability.
+// An error-state Kalman filter on the attitude manifold, its attitude error taken in the world frame (Sola
+// 2017, arXiv:1711.02508; error_covariance.hpp). The nominal state goes on with each IMU sample. The covariance
+// stays at the last pose's stamp; a pose is compared with the estimate at the pose's own stamp, the
+// covariance brought there, and the correction brought forward to now along the kept history, so that latency
+// costs no stability.
 #pragma once
 
 #include <array>
@@ -13,10 +14,25 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "control/estimation/error_covariance.hpp"
+#include "control/estimation/pose_screen.hpp"
 #include "control/settings.hpp"
 #include "plant/model/samples.hpp"
 
 namespace swiftlet::control {
+
+// Why the newest pose was not used.
+enum class PoseFault : std::uint8_t {
+  kNone = 0,       // it was
+  kUntracked = 1,  // the system says so
+  kInvalid = 2,    // not finite, or no unit quaternion
+  kUntimely = 3,   // not newer than the last, older than the kept history, or ahead of the IMU
+  kOutlier = 4,    // too far from the estimate
+  kSwapped =
+      5,  // turned against the estimate as no gyro misses it: markers taken for each other, another vehicle
+  kFrozen = 6,  // the same again and again
+};
+const char* to_string(PoseFault fault);
 
 struct Estimate {
   std::int64_t stamp_ns = 0;
@@ -26,6 +42,16 @@ struct Estimate {
   Eigen::Vector3d body_rates_frd = Eigen::Vector3d::Zero();      // rad/s, bias removed
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();           // rad/s
   Eigen::Vector3d accelerometer_bias = Eigen::Vector3d::Zero();  // m/s^2, in FRD
+
+  PoseFault pose_fault = PoseFault::kNone;
+  std::uint64_t poses_accepted = 0;
+  std::uint64_t poses_refused = 0;
+  // Poses that disagreed for long were believed in the end, and the estimate jumped: how often, and by how
+  // much in position and yaw the last time. A reference that is to stay where it is in the room jumps with
+  // it.
+  std::uint32_t resets = 0;
+  Eigen::Vector3d reset_position_ned = Eigen::Vector3d::Zero();  // m
+  Eigen::Vector3d reset_rotation_ned = Eigen::Vector3d::Zero();  // rad, a rotation vector
 };
 
 class Estimator {
@@ -34,13 +60,18 @@ class Estimator {
 
   // Brings the estimate forward to the sample. Returns false, and changes nothing, for a sample that is not
   // finite or not newer than the last. A gap in the samples is bridged with the last rates and specific
-  // force.
+  // force, and what may have happened in it is added to the covariance.
   bool predict(const plant::ImuSample& sample);
 
-  // Takes a pose in. Returns false, and changes nothing, for one that is untracked, not finite, not newer
-  // than the last, older than the kept history, or too far from the estimate; kRejectionsToReset of the last
-  // kind in a row start the estimate anew.
-  bool correct(const plant::PoseSample& pose);
+  // Takes a pose in. Returns false for one that is refused, and why is told in the estimate, of which nothing
+  // else changes. A pose of the last stamp is the last that came again and leaves no trace.
+  //
+  // An innovation beyond the chi-square bound is cut to it if it is short of an outlier: what the noise
+  // densities leave out (vibration, stamps that are late) moves the estimate no faster than noise would, and
+  // does not make it surer. Outliers are refused until they persist and agree with each other; then the
+  // estimate jumps to them. In flight, that holds only for a jump of the position: where the gyro and
+  // the accelerometer contradict attitude or velocity, they are believed. With rotors off the poses are.
+  bool correct(const plant::PoseSample& pose, plant::RotorState rotors = plant::RotorState::kRunning);
 
   // A pose has been taken in, so the estimate has a meaning.
   bool initialised() const { return initialised_; }
@@ -49,33 +80,78 @@ class Estimator {
   double pose_age_s() const;
   std::uint64_t pose_sequence() const { return pose_sequence_; }
 
+  // Of the estimate's error at its stamp; infinite before the first pose. Takes some microseconds at most: for
+  // telemetry.
+  ErrorState standard_deviation() const { return covariance().standard_deviation(); }
+  ErrorCovariance covariance() const;
+  // Innovation of the last pose that was compared, squared and normalised: chi-square of 6 degrees of
+  // freedom.
+  double normalised_innovation() const { return normalised_innovation_; }
+
   static constexpr int kHistory = 256;  // IMU samples: 0.5 s at 500 Hz
-  static constexpr int kRejectionsToReset = 20;
 
  private:
-  struct Past {
+  struct Moment {
     std::int64_t stamp_ns = 0;
     Eigen::Vector3d position_ned = Eigen::Vector3d::Zero();
     Eigen::Vector3d velocity_ned = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_ned_from_frd = Eigen::Quaterniond::Identity();
+    std::uint64_t corrections = 0;  // that it has seen, of all that were made
+  };
+  // A step of the error state at a moment, and what it makes of those before and after.
+  struct Correction {
+    Moment at;  // before the correction
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+    Eigen::Vector3d rotation = Eigen::Vector3d::Zero();
+    Eigen::Vector3d rate = Eigen::Vector3d::Zero();          // that the rotation loses
+    Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // that the velocity loses
+    void carry_to(Moment& moment) const;
   };
 
-  Past& past(int steps_back) {
-    return history_[static_cast<std::size_t>((head_ - steps_back + kHistory) % kHistory)];
-  }
+  // What is remembered is corrected when it is looked at: of most moments, nothing but the stamp ever is.
+  static constexpr std::uint64_t kCorrections = 32;
+  const Moment& remembered(std::uint64_t number) const { return history_[number % kHistory]; }
+  Moment past(std::uint64_t number) const;
+  Moment now() const;
   void start_at(const plant::PoseSample& pose);
   void remember();
+  PoseFault take_in(const plant::PoseSample& pose, plant::RotorState rotors);
+  PoseFault disagree(const plant::PoseSample& pose, const PoseInnovation& innovation,
+                     plant::RotorState rotors);
+  void apply(const ErrorState& step);
+  void catch_up();
+  void jump(const plant::PoseSample& pose, const PoseInnovation& innovation);
+
+  static ErrorInterval interval(const Moment& from, const Moment& to);
+  // The covariance from one moment of the history to another; first is the number of the first after `from`.
+  void advance(ErrorCovariance& covariance, Moment from, std::uint64_t first, const Moment& to) const;
+  void advance_step(ErrorCovariance& covariance, const Moment& from, const Moment& to) const;
+  // The nominal state at a stamp after the anchor's.
+  Moment moment_at(std::int64_t stamp_ns, std::uint64_t first_newer) const;
+  void anchor_at(const Moment& moment, std::uint64_t first_newer);
 
   EstimatorSettings settings_;
+  ErrorNoise noise_;
   Estimate now_;
   plant::ImuSample last_imu_;
   bool initialised_ = false;
-  std::int64_t pose_stamp_ns_ = 0;
+  std::int64_t received_stamp_ns_ = 0;  // of the last pose that came
+  std::int64_t pose_stamp_ns_ = 0;      // of the last that was taken in
   std::uint64_t pose_sequence_ = 0;
-  int rejections_ = 0;
-  std::array<Past, kHistory> history_;
-  int head_ = 0;
-  int filled_ = 0;
+  double normalised_innovation_ = 0.0;
+  RepetitionWatch repetition_;
+  Disagreement disagreement_;
+
+  // The covariance is that of the anchor: the last pose's moment, or one since.
+  ErrorCovariance covariance_;
+  Moment anchor_;
+  std::uint64_t first_after_anchor_ = 0;  // number in the history
+
+  std::array<Moment, kHistory> history_;
+  std::uint64_t next_ = 0;  // number of the moment that will be remembered next
+  std::array<Correction, kCorrections> corrections_;
+  std::uint64_t corrections_made_ = 0;
 };
 
 }  // namespace swiftlet::control

@@ -1,476 +1,142 @@
 #include "control/supervision/supervisor.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "control/supervision/checks.hpp"
+#include "control/supervision/conditions.hpp"
+#include "control/supervision/phases.hpp"
 
 namespace swiftlet::control {
-namespace {
 
-constexpr double kSpoolUp_s = 0.8;
-constexpr double kSpoolUpLift = 0.95;  // of the weight, at the end of the spool-up
-constexpr double kAirborneHeight_m = 0.03;
-constexpr double kFlareHeight_m = 0.08;   // the landing's planned path ends here, then it sinks
-constexpr double kSinkSpeed = 0.15;       // m/s
-constexpr double kContactDepth_m = 0.05;  // reference this far below the vehicle ...
-constexpr double kContactSpeed = 0.05;    // ... which does not move: it stands
-constexpr double kContactTime_s = 0.2;
-constexpr double kContactLift = 1.0;  // m/s^2 of lift that the rotors do not explain, for kBlindContactTime_s
-constexpr double kBlindContactTime_s = 0.3;
-constexpr double kLowBatteryTime_s = 1.0;
-constexpr double kArmTilt_rad = 0.35;
-constexpr double kArmSpeed = 0.3;       // m/s
-constexpr double kFenceMargin_m = 0.5;  // this far outside the fence it lands
-constexpr double kMinMove_s = 0.5;
-
-double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
-std::int64_t nanoseconds(double s) { return static_cast<std::int64_t>(std::llround(s * 1e9)); }
-
-double yaw_of(const Eigen::Quaterniond& q) {
-  return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
-}
-
-double cosine_of_tilt(const Eigen::Quaterniond& q) { return 1.0 - 2.0 * (q.x() * q.x() + q.y() * q.y()); }
-
-// The yaw that is `to` plus whole turns, nearest to `from`.
-double nearest_turn(double to, double from) { return from + std::remainder(to - from, 2.0 * M_PI); }
-
-// True once `condition` has held for `duration_s`; `since` keeps when it began (0: it does not hold).
-bool held(bool condition, std::int64_t& since, std::int64_t now_ns, double duration_s) {
-  if (!condition) {
-    since = 0;
-    return false;
-  }
-  if (since == 0) since = now_ns;
-  return seconds(now_ns - since) >= duration_s;
-}
-
-Reference standing_at(const Estimate& estimate) {
-  Reference reference;
-  reference.position_ned = estimate.position_ned;
-  reference.yaw_rad = yaw_of(estimate.q_ned_from_frd);
-  return reference;
-}
-
-}  // namespace
-
-const char* to_string(Mode mode) {
-  switch (mode) {
-    case Mode::kDisarmed:
-      return "disarmed";
-    case Mode::kArmed:
-      return "armed";
-    case Mode::kTakingOff:
-      return "taking off";
-    case Mode::kHolding:
-      return "holding";
-    case Mode::kMission:
-      return "mission";
-    case Mode::kTrajectory:
-      return "trajectory";
-    case Mode::kSetpoint:
-      return "setpoint";
-    case Mode::kLanding:
-      return "landing";
-    case Mode::kDescent:
-      return "descent";
-    case Mode::kStopped:
-      return "stopped";
-  }
-  return "unknown";
-}
-
-Supervisor::Supervisor(const Limits& limits, const FailsafeSettings& failsafe)
-    : limits_(limits),
-      failsafe_(failsafe),
-      tip_over_cosine_(std::cos(std::min(failsafe.tip_over_tilt_rad, M_PI))) {}
+Supervisor::Supervisor(const SupervisionSettings& settings) : settings_(settings) {}
 
 Directive Supervisor::step(const Situation& situation) {
-  now_ns_ = situation.stamp_ns;
-  if (mode_ != Mode::kDisarmed && mode_ != Mode::kStopped) check_failsafes(situation);
-  if (mode_ == Mode::kDescent) {
-    const bool standing =
-        held(situation.unexplained_lift > kContactLift, contact_since_ns_, now_ns_, kBlindContactTime_s);
-    if (standing)
-      touch_down("landed without position");
-    else if (seconds(now_ns_ - mode_since_ns_) > failsafe_.descent_timeout_s) {
-      enter(Mode::kStopped, "descent without position timed out");
-    }
-  } else if (flying()) {
-    advance_phase(situation);
+  state_.now_ns = situation.stamp_ns;
+  Scene now = scene(situation);
+  if (rotors_off(state_.mode)) {
+    forget_silent_ground_links(state_, settings_.failsafe);
+    return directive(situation);
   }
+  advance(now);
+  const EventSet conditions = observe(now);
+  const Transition* const row = find(now, conditions);
+  const bool link_answered =
+      row == nullptr ? state_.mode != Mode::kDescent : row->event == Event::kGroundLinkLost;
+  if (row != nullptr) take(*row, now);
+  // A lost link is answered once, but only where nothing more urgent comes first.
+  if (link_answered && conditions.has(Event::kGroundLinkLost))
+    forget_silent_ground_links(state_, settings_.failsafe);
   return directive(situation);
 }
 
-void Supervisor::enter(Mode mode, const char* reason) {
-  if (progress_.state == MissionState::kRunning && mode != Mode::kMission)
-    progress_.state = MissionState::kAborted;
-  mode_ = mode;
-  reason_ = reason;
-  mode_since_ns_ = now_ns_;
-  contact_since_ns_ = 0;
-  if (mode == Mode::kDisarmed || mode == Mode::kStopped || mode == Mode::kArmed) {
-    phase_ = Phase::kGround;
-    airborne_ = false;
-  }
-  if (mode != Mode::kMission) mission_ = nullptr;
-  if (mode != Mode::kTrajectory) trajectory_ = nullptr;
+void Supervisor::take(const Transition& row, Scene& scene) {
+  if (!row.to.stays) enter(row.to.mode, row.reason);
+  row.action.run(scene);
 }
 
-void Supervisor::check_failsafes(const Situation& situation) {
-  const Estimate& estimate = *situation.estimate;
-  const bool pose_lost = !situation.has_estimate || situation.pose_age_s > failsafe_.mocap_timeout_s;
-  if (!situation.imu_healthy) return enter(Mode::kStopped, "IMU samples are not usable");
-  if (cosine_of_tilt(estimate.q_ned_from_frd) < tip_over_cosine_) return enter(Mode::kStopped, "tipped over");
-  if (mode_ == Mode::kDescent) {
-    if (!pose_lost) {
-      enter(Mode::kHolding, "position is back");
-      Reference here = standing_at(estimate);
-      here.velocity_ned = estimate.velocity_ned;
-      path_.pin(here);
-      start_stop();
-    }
-    return;
+void Supervisor::enter(Mode mode, Reason reason) {
+  if (state_.mission.state == MissionState::kRunning && mode != Mode::kMission) {
+    const bool completed = reason == Reason::kMissionCompleted || reason == Reason::kLanded;
+    state_.mission.state = completed ? MissionState::kCompleted : MissionState::kAborted;
   }
-  if (pose_lost) {
-    if (!flying()) return enter(Mode::kDisarmed, "no mocap pose");
-    return enter(Mode::kDescent, "no mocap pose");
+  state_.mode = mode;
+  state_.reason = reason;
+  state_.mode_since_ns = state_.now_ns;
+  state_.contact_since_ns = 0;
+  if (rotors_off(mode) || mode == Mode::kArmed) {
+    state_.phase = Phase::kGround;
+    state_.airborne = false;
+    state_.low_battery_since_ns = 0;
+    state_.critical_battery_since_ns = 0;
   }
-  if (!flying() || mode_ == Mode::kLanding) return;
-
-  const bool low = situation.has_battery && situation.supply_voltage_v < failsafe_.low_battery_voltage;
-  const bool outside = ((estimate.position_ned - limits_.fence_max_ned).maxCoeff() > kFenceMargin_m) ||
-                       ((limits_.fence_min_ned - estimate.position_ned).maxCoeff() > kFenceMargin_m);
-  if (held(low, low_battery_since_ns_, now_ns_, kLowBatteryTime_s)) {
-    enter(Mode::kLanding, "battery is low");
-    start_landing(limits_.max_speed, now_ns_);
-  } else if (outside) {
-    enter(Mode::kLanding, "outside the fence");
-    start_landing(limits_.max_speed, now_ns_);
-  } else if (mode_ == Mode::kSetpoint &&
-             seconds(now_ns_ - setpoint_stamp_ns_) > failsafe_.setpoint_timeout_s) {
-    enter(Mode::kHolding, "setpoints stopped");
-    start_stop();
-  }
-}
-
-void Supervisor::advance_phase(const Situation& situation) {
-  const Estimate& estimate = *situation.estimate;
-  if (estimate.position_ned.z() < ground_z_ - kAirborneHeight_m) airborne_ = true;
-  if (phase_ == Phase::kSpoolUp && seconds(now_ns_ - phase_since_ns_) >= kSpoolUp_s) {
-    phase_ = Phase::kPath;
-    const Reference stand = path_.at(now_ns_);
-    Eigen::Vector3d top = stand.position_ned;
-    top.z() = climb_to_z_;
-    start_move(top, true, 0.0, climb_speed_, now_ns_);
-  }
-  if (phase_ == Phase::kPath) path_ended(situation);
-  if (phase_ == Phase::kSink) {
-    const bool standing = path_.at(now_ns_).position_ned.z() - estimate.position_ned.z() > kContactDepth_m &&
-                          estimate.velocity_ned.norm() < kContactSpeed;
-    if (held(standing, contact_since_ns_, now_ns_, kContactTime_s)) touch_down("landed");
-  }
-}
-
-// What comes after the path of this mode; nothing while it is still flown.
-void Supervisor::path_ended(const Situation& situation) {
-  if (!path_.finished(now_ns_)) return;
-  switch (mode_) {
-    case Mode::kTakingOff:
-      return enter(Mode::kHolding, "take-off completed");
-    case Mode::kMission: {
-      const MissionItem& item = mission_->items[static_cast<std::size_t>(progress_.item_index)];
-      if (item.kind == MissionItemKind::kLand) break;
-      item_end_ns_ = path_.end_ns() + nanoseconds(item.hold_s);
-      if (now_ns_ < item_end_ns_) return;
-      if (progress_.item_index + 1 < progress_.item_count) {
-        ++progress_.item_index;
-        return start_item(situation, item_end_ns_);
-      }
-      progress_.state = MissionState::kCompleted;
-      return enter(Mode::kHolding, "mission completed");
-    }
-    case Mode::kTrajectory:
-      if (next_segment_ < trajectory_->segments.size()) {
-        return path_.follow(trajectory_->segments[next_segment_++], path_.end_ns());
-      }
-      return enter(Mode::kHolding, "trajectory completed");
-    case Mode::kLanding:
-      break;
-    default:
-      return;
-  }
-  // The planned part of a landing is over: sink until the ground is felt.
-  phase_ = Phase::kSink;
-  contact_since_ns_ = 0;
-  const Reference end = path_.at(now_ns_);
-  PolynomialSegment sink;
-  sink.duration_s = 60.0;
-  sink.x[0] = end.position_ned.x();
-  sink.y[0] = end.position_ned.y();
-  sink.z[0] = end.position_ned.z();
-  sink.z[1] = kSinkSpeed;
-  sink.yaw[0] = end.yaw_rad;
-  path_.follow(sink, now_ns_);
+  if (mode != Mode::kMission) plan_.mission = nullptr;
+  if (mode != Mode::kTrajectory) plan_.trajectory = nullptr;
 }
 
 Directive Supervisor::directive(const Situation& situation) const {
   Directive directive;
-  directive.reference = flying() ? path_.at(now_ns_) : standing_at(*situation.estimate);
-  switch (mode_) {
-    case Mode::kDisarmed:
-    case Mode::kStopped:
-      directive.actuation = Actuation::kOff;
-      return directive;
-    case Mode::kArmed:
-      directive.actuation = Actuation::kIdle;
-      return directive;
-    case Mode::kDescent:
-      directive.actuation = Actuation::kLevelDescent;
-      return directive;
-    default:
-      break;
-  }
-  if (phase_ == Phase::kSpoolUp) {
+  const bool flying = state_.phase != Phase::kGround;
+  directive.reference = flying ? state_.path.at(state_.now_ns) : standing_at(*situation.estimate);
+  if (rotors_off(state_.mode)) {
+    directive.actuation = Actuation::kOff;
+  } else if (state_.mode == Mode::kArmed) {
+    directive.actuation = Actuation::kIdle;
+  } else if (state_.mode == Mode::kDescent) {
+    directive.actuation = Actuation::kLevelDescent;
+  } else if (state_.phase == Phase::kSpoolUp) {
     directive.actuation = Actuation::kSpoolUp;
-    directive.lift_fraction = kSpoolUpLift * std::min(1.0, seconds(now_ns_ - phase_since_ns_) / kSpoolUp_s);
+    directive.lift_fraction = spool_up_lift(state_);
   } else {
     directive.actuation = Actuation::kFly;
-    directive.integrate = airborne_ && phase_ == Phase::kPath;
+    directive.integrate = state_.airborne && state_.phase == Phase::kPath;
   }
   return directive;
 }
 
-Outcome Supervisor::request(const Request& request, const Situation& situation) {
-  switch (request.kind) {
-    case RequestKind::kArm:
-      return request_arm(situation);
-    case RequestKind::kDisarm:
-      if (flying()) return refuse("cannot disarm while %s; land first, or stop", to_string(mode_));
-      enter(Mode::kDisarmed, "requested");
-      return accept();
-    case RequestKind::kStop:
-      enter(Mode::kStopped, "requested");
-      return accept();
-    case RequestKind::kTakeoff:
-      return request_takeoff(request, situation);
-    case RequestKind::kMission:
-      return request_mission(request, situation);
-    case RequestKind::kTrajectory:
-      return request_trajectory(request);
-    case RequestKind::kGoTo:
-    case RequestKind::kHold:
-    case RequestKind::kLand:
-      break;
-    default:
-      return refuse("unknown request %d", static_cast<int>(request.kind));
-  }
+Outcome Supervisor::answer(Event request, Scene& scene) {
+  const Transition* const row = find(scene, request);
+  if (row == nullptr) return refusal(request, state_.mode);
+  const Outcome outcome = row->provided.judge(scene);
+  if (outcome.accepted) take(*row, scene);
+  return outcome;
+}
 
-  if (!flying() || phase_ == Phase::kSpoolUp || mode_ == Mode::kDescent)
-    return refuse("cannot do that while %s", to_string(mode_));
-  if (request.kind == RequestKind::kLand) {
-    if (mode_ == Mode::kLanding) return accept();
-    const Outcome speed = check_speed("land", request.speed, limits_);
-    if (!speed.accepted) return speed;
-    enter(Mode::kLanding, "requested");
-    start_landing(request.speed, now_ns_);
-    return accept();
-  }
-  if (request.kind == RequestKind::kHold) {
-    enter(Mode::kHolding, "requested");
-    start_stop();
-    return accept();
-  }
-  const Outcome position = check_position("goto", request.position_ned, limits_);
-  if (!position.accepted) return position;
-  const Outcome speed = check_speed("goto", request.speed, limits_);
-  if (!speed.accepted) return speed;
-  if (!request.yaw_free && !std::isfinite(request.yaw_rad)) return refuse("goto: yaw is not a finite number");
-  enter(Mode::kHolding, "requested");
-  phase_ = Phase::kPath;
-  start_move(request.position_ned, request.yaw_free, request.yaw_rad, request.speed, now_ns_);
-  return accept();
+Outcome Supervisor::request(const Request& request, const Situation& situation) {
+  Event event = Event::kHold;
+  if (!event_of(request.kind, event)) return refuse("unknown request %d", static_cast<int>(request.kind));
+  Scene now = scene(situation);
+  now.request = &request;
+  return answer(event, now);
 }
 
 Outcome Supervisor::setpoint(const Setpoint& setpoint, const Situation& situation) {
-  const bool takes_setpoints = mode_ == Mode::kHolding || mode_ == Mode::kSetpoint;
-  if (!takes_setpoints) return refuse("setpoints are not followed while %s", to_string(mode_));
-  const Outcome position = check_position("setpoint", setpoint.position_ned, limits_);
-  if (!position.accepted) return position;
-  if (!setpoint.velocity_ned.allFinite() || !setpoint.acceleration_ned.allFinite() ||
-      !std::isfinite(setpoint.yaw_rad) || !std::isfinite(setpoint.yaw_rate)) {
-    return refuse("setpoint: a value is not a finite number");
+  Scene now = scene(situation);
+  now.setpoint = &setpoint;
+  return answer(Event::kSetpoint, now);
+}
+
+bool Supervisor::ground_sign(const GroundSign& sign) {
+  GroundLink* place = nullptr;
+  for (GroundLink& link : state_.ground_links) {
+    if (link.client == sign.client || (link.client == 0 && place == nullptr)) place = &link;
+    if (link.client == sign.client) break;
   }
-  if (setpoint.velocity_ned.norm() > limits_.max_speed) {
-    return refuse("setpoint: speed is %.2f m/s, the limit is %.2f m/s", setpoint.velocity_ned.norm(),
-                  limits_.max_speed);
+  if (place == nullptr) return !sign.depends;
+  *place = sign.depends ? GroundLink{sign.client, state_.now_ns} : GroundLink();
+  return true;
+}
+
+int Supervisor::ground_links() const {
+  return static_cast<int>(std::count_if(state_.ground_links.begin(), state_.ground_links.end(),
+                                        [](const GroundLink& link) { return link.client != 0; }));
+}
+
+void Supervisor::adopt(const SupervisorState& state, const Mission* mission, const Trajectory* trajectory) {
+  state_ = state;
+  plan_ = FlownPlan();
+  bool known = true;
+  if (state_.mode == Mode::kMission) {
+    const auto count = static_cast<std::size_t>(state_.mission.item_count);
+    known = mission != nullptr && mission->id == state_.mission.id && mission->items.size() == count;
+    if (known) plan_.mission = mission;
+  } else if (state_.mode == Mode::kTrajectory) {
+    known = trajectory != nullptr && trajectory->id == state_.trajectory_id &&
+            state_.next_segment <= trajectory->segments.size();
+    if (known) plan_.trajectory = trajectory;
   }
-  if (setpoint.acceleration_ned.norm() > limits_.max_acceleration) {
-    return refuse("setpoint: acceleration is %.2f m/s^2, the limit is %.2f m/s^2",
-                  setpoint.acceleration_ned.norm(), limits_.max_acceleration);
-  }
-  constexpr double kMaxStep_m = 1.0;
-  const double step = (setpoint.position_ned - situation.estimate->position_ned).norm();
-  if (step > kMaxStep_m)
-    return refuse("setpoint: %.2f m away from the vehicle, the limit is %.2f m", step, kMaxStep_m);
-  if (mode_ != Mode::kSetpoint) enter(Mode::kSetpoint, "setpoints came");
-  Reference reference;
-  reference.position_ned = setpoint.position_ned;
-  reference.velocity_ned = setpoint.velocity_ned;
-  reference.acceleration_ned = setpoint.acceleration_ned;
-  reference.yaw_rad = setpoint.yaw_rad;
-  reference.yaw_rate = setpoint.yaw_rate;
-  path_.pin(reference);
-  setpoint_stamp_ns_ = now_ns_;
-  return accept();
+  if (known) return;
+  Estimate nowhere;  // not looked at: the vehicle stops along its reference
+  Situation situation;
+  situation.stamp_ns = state_.now_ns;
+  situation.estimate = &nowhere;
+  Scene now = scene(situation);
+  answer(Event::kPlanUnknown, now);
 }
 
-Outcome Supervisor::request_arm(const Situation& situation) {
-  if (mode_ == Mode::kArmed) return accept();
-  if (mode_ != Mode::kDisarmed) return refuse("cannot arm while %s", to_string(mode_));
-  const Estimate& estimate = *situation.estimate;
-  if (!situation.has_estimate) return refuse("cannot arm: no mocap pose has come");
-  if (situation.pose_age_s > failsafe_.mocap_timeout_s) {
-    return refuse("cannot arm: the last mocap pose is %.2f s old, the limit is %.2f s", situation.pose_age_s,
-                  failsafe_.mocap_timeout_s);
-  }
-  if (!situation.imu_healthy) return refuse("cannot arm: IMU samples are not usable");
-  if (!situation.has_battery) return refuse("cannot arm: no battery voltage has come");
-  if (situation.supply_voltage_v < failsafe_.low_battery_voltage) {
-    return refuse("cannot arm: the battery has %.2f V, the limit is %.2f V", situation.supply_voltage_v,
-                  failsafe_.low_battery_voltage);
-  }
-  const double tilt = std::acos(std::clamp(cosine_of_tilt(estimate.q_ned_from_frd), -1.0, 1.0));
-  if (tilt > kArmTilt_rad)
-    return refuse("cannot arm: tilted by %.2f rad, the limit is %.2f rad", tilt, kArmTilt_rad);
-  const double speed = estimate.velocity_ned.norm();
-  if (speed > kArmSpeed)
-    return refuse("cannot arm: moving at %.2f m/s, the limit is %.2f m/s", speed, kArmSpeed);
-  const Outcome position = check_position("cannot arm", estimate.position_ned, limits_);
-  if (!position.accepted) return position;
-  ground_z_ = estimate.position_ned.z();
-  enter(Mode::kArmed, "requested");
-  return accept();
-}
-
-Outcome Supervisor::request_takeoff(const Request& request, const Situation& situation) {
-  if (mode_ != Mode::kArmed) return refuse("cannot take off while %s; arm first", to_string(mode_));
-  const Outcome speed = check_speed("takeoff", request.speed, limits_);
-  if (!speed.accepted) return speed;
-  Eigen::Vector3d top = situation.estimate->position_ned;
-  top.z() = request.position_ned.z();
-  const Outcome position = check_position("takeoff", top, limits_);
-  if (!position.accepted) return position;
-  if (top.z() > ground_z_ - 2.0 * kAirborneHeight_m) {
-    return refuse("takeoff: z is %.3f m, must be above the ground at %.3f m (z points down)", top.z(),
-                  ground_z_);
-  }
-  enter(Mode::kTakingOff, "requested");
-  start_takeoff(top.z(), request.speed, situation);
-  return accept();
-}
-
-Outcome Supervisor::request_mission(const Request& request, const Situation& situation) {
-  const Mission* mission = request.mission;
-  if (mission == nullptr || mission->items.empty()) return refuse("the mission has no items");
-  const MissionItem& first = mission->items.front();
-  const bool on_ground = mode_ == Mode::kArmed;
-  if (!on_ground && mode_ != Mode::kHolding)
-    return refuse("cannot start a mission while %s", to_string(mode_));
-  if (on_ground && first.kind != MissionItemKind::kTakeoff) {
-    return refuse("the vehicle stands on the ground: the mission must begin with a takeoff");
-  }
-  if (on_ground && first.position_ned.z() > ground_z_ - 2.0 * kAirborneHeight_m) {
-    return refuse("item 1: takeoff to z = %.3f m, must be above the ground at %.3f m (z points down)",
-                  first.position_ned.z(), ground_z_);
-  }
-  enter(Mode::kMission, "requested");
-  mission_ = mission;
-  progress_ = {mission->id, MissionState::kRunning, 0, static_cast<int>(mission->items.size())};
-  start_item(situation, now_ns_);
-  return accept();
-}
-
-Outcome Supervisor::request_trajectory(const Request& request) {
-  if (request.trajectory == nullptr || request.trajectory->segments.empty())
-    return refuse("the trajectory has no segments");
-  if (mode_ != Mode::kHolding) return refuse("cannot start a trajectory while %s", to_string(mode_));
-  const Reference start = evaluate(request.trajectory->segments.front(), 0.0);
-  const Outcome position = check_position("trajectory", start.position_ned, limits_);
-  if (!position.accepted) return position;
-  enter(Mode::kTrajectory, "requested");
-  trajectory_ = request.trajectory;
-  next_segment_ = 0;
-  start_move(start.position_ned, false, start.yaw_rad, std::min(0.5, limits_.max_speed), now_ns_);
-  return accept();
-}
-
-void Supervisor::start_takeoff(double height_ned_z, double speed, const Situation& situation) {
-  phase_ = Phase::kSpoolUp;
-  phase_since_ns_ = now_ns_;
-  climb_to_z_ = height_ned_z;
-  climb_speed_ = speed;
-  path_.rest(standing_at(*situation.estimate));
-}
-
-// From the reference as it is at start_ns, straight to a place; a vehicle in motion gets there by a quintic.
-void Supervisor::start_move(const Eigen::Vector3d& to_ned, bool yaw_free, double yaw, double speed,
-                            std::int64_t start_ns) {
-  const Reference from = path_.at(start_ns);
-  const double to_yaw = yaw_free ? from.yaw_rad : nearest_turn(yaw, from.yaw_rad);
-  const double distance = (to_ned - from.position_ned).norm();
-  double duration = minimum_jerk_duration(distance, speed, limits_.max_reference_acceleration, kMinMove_s);
-  duration = std::max(duration, 15.0 / 8.0 * std::abs(to_yaw - from.yaw_rad) / limits_.max_yaw_rate);
-  duration = std::max(duration, stopping_time(from));
-  path_.follow(join_to_rest(from, to_ned, to_yaw, duration), start_ns);
-}
-
-// Comes to rest along the present velocity, inside the fence.
-void Supervisor::start_stop() {
-  const Reference from = path_.at(now_ns_);
-  const double duration = stopping_time(from);
-  phase_ = Phase::kPath;
-  path_.follow(join_to_rest(from, stopping_place(from), from.yaw_rad, duration), now_ns_);
-}
-
-void Supervisor::start_landing(double speed, std::int64_t start_ns) {
-  phase_ = Phase::kPath;
-  const Reference from = path_.at(start_ns);
-  Eigen::Vector3d above_ground = stopping_place(from);
-  above_ground.z() = ground_z_ - kFlareHeight_m;
-  start_move(above_ground, true, 0.0, std::min(speed, failsafe_.descent_speed), start_ns);
-}
-
-double Supervisor::stopping_time(const Reference& from) const {
-  return std::max(kMinMove_s, 2.0 * from.velocity_ned.norm() / limits_.max_reference_acceleration);
-}
-
-Eigen::Vector3d Supervisor::stopping_place(const Reference& from) const {
-  const Eigen::Vector3d place = from.position_ned + 0.5 * stopping_time(from) * from.velocity_ned;
-  return place.cwiseMax(limits_.fence_min_ned).cwiseMin(limits_.fence_max_ned);
-}
-
-void Supervisor::start_item(const Situation& situation, std::int64_t start_ns) {
-  const MissionItem& item = mission_->items[static_cast<std::size_t>(progress_.item_index)];
-  switch (item.kind) {
-    case MissionItemKind::kTakeoff:
-      if (phase_ == Phase::kGround) return start_takeoff(item.position_ned.z(), item.speed, situation);
-      {
-        Eigen::Vector3d up = path_.at(start_ns).position_ned;
-        up.z() = item.position_ned.z();
-        return start_move(up, true, 0.0, item.speed, start_ns);
-      }
-    case MissionItemKind::kWaypoint:
-      return start_move(item.position_ned, item.yaw_free, item.yaw_rad, item.speed, start_ns);
-    case MissionItemKind::kLand:
-      return start_landing(item.speed, start_ns);
-  }
-}
-
-void Supervisor::touch_down(const char* reason) {
-  if (mode_ == Mode::kMission) progress_.state = MissionState::kCompleted;
-  enter(Mode::kDisarmed, reason);
+Outcome Supervisor::find_flying(const Situation& situation) {
+  state_.now_ns = situation.stamp_ns;
+  Scene now = scene(situation);
+  return answer(Event::kFoundFlying, now);
 }
 
 }  // namespace swiftlet::control

@@ -12,26 +12,40 @@ Reference at_rest(const Reference& at) {
   return rest;
 }
 
+// The Taylor polynomial of which evaluate(segment, 0) is `at`.
+PolynomialSegment instant(const Reference& at) {
+  const auto axis = [&](int i) {
+    return Polynomial{at.position_ned[i], at.velocity_ned[i], at.acceleration_ned[i] / 2.0,
+                      at.jerk_ned[i] / 6.0, at.snap_ned[i] / 24.0};
+  };
+  PolynomialSegment segment;
+  segment.x = axis(0);
+  segment.y = axis(1);
+  segment.z = axis(2);
+  segment.yaw = {at.yaw_rad, at.yaw_rate, at.yaw_acceleration / 2.0};
+  return segment;
+}
+
 }  // namespace
 
 void ReferencePath::rest(const Reference& at) { pin(at_rest(at)); }
 
 void ReferencePath::pin(const Reference& at) {
-  moving_ = false;
-  rest_ = at;
+  moving = false;
+  segment = instant(at);
 }
 
-void ReferencePath::follow(const PolynomialSegment& segment, std::int64_t start_ns) {
-  moving_ = true;
-  segment_ = segment;
-  start_ns_ = start_ns;
-  end_ns_ = start_ns + std::llround(segment.duration_s * 1e9);
-  rest_ = at_rest(evaluate(segment, segment.duration_s));
+void ReferencePath::follow(const PolynomialSegment& along, std::int64_t from_ns) {
+  moving = true;
+  segment = along;
+  start_ns = from_ns;
+  end_ns = from_ns + std::llround(along.duration_s * 1e9);
 }
 
 Reference ReferencePath::at(std::int64_t now_ns) const {
-  if (finished(now_ns)) return rest_;
-  return evaluate(segment_, static_cast<double>(now_ns - start_ns_) * 1e-9);
+  if (!moving) return evaluate(segment, 0.0);
+  if (finished(now_ns)) return at_rest(evaluate(segment, segment.duration_s));
+  return evaluate(segment, static_cast<double>(now_ns - start_ns) * 1e-9);
 }
 
 }  // namespace swiftlet::control

@@ -93,7 +93,7 @@ class Run {
       if (is_over && status_.mission.state == control::MissionState::kCompleted && rotors_off(status_.mode))
         return true;
       if (is_over && status_.mission.state == control::MissionState::kAborted)
-        return fail(std::string("the mission was aborted: ") + status_.reason);
+        return fail(std::string("the mission was aborted: ") + control::to_string(status_.reason));
       if (loop_.time_s() > end_s) {
         char reason[96];
         std::snprintf(reason, sizeof reason, "the mission took longer than %.0f s", time_limit_s);

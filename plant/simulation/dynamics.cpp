@@ -107,7 +107,7 @@ struct Dynamics::Drivetrain {
 
   // Eq. (25)-(28)
   [[gnu::always_inline]] Wrench wrench(const State& y) const {
-    Wrench sum = d.push_;
+    Wrench sum{0.0, d.push_moment_frd_.x(), d.push_moment_frd_.y(), d.push_moment_frd_.z()};
     for (std::size_t i = 0; i < kN; ++i) {
       const double speed_squared = square(y[kSpeeds + i]);
       sum.lift += d.wrenches_[i].lift * speed_squared;
@@ -319,7 +319,7 @@ void Dynamics::advance_as(VehicleState& state, const RotorDrive& drive, const Ei
 
 void Dynamics::disturb(const Disturbance& disturbance) {
   push_acceleration_ned_ = inverse_mass_ * disturbance.force_ned;
-  push_ = {0.0, disturbance.moment_frd.x(), disturbance.moment_frd.y(), disturbance.moment_frd.z()};
+  push_moment_frd_ = disturbance.moment_frd;
   supply_drop_v_ = disturbance.supply_drop_v;
   for (std::size_t i = 0; i < wrenches_.size(); ++i) {
     const double factor = disturbance.rotor_factors[i];

@@ -112,7 +112,7 @@ class Dynamics {
   std::array<Wrench, kMaxRotors> sound_wrenches_;  // of each rotor, over Omega^2, without a disturbance
   std::array<Wrench, kMaxRotors> wrenches_;
   Eigen::Vector3d push_acceleration_ned_ = Eigen::Vector3d::Zero();
-  Wrench push_;  // its moments
+  Eigen::Vector3d push_moment_frd_ = Eigen::Vector3d::Zero();
   double supply_drop_v_ = 0.0;
 
   Esc esc_;

@@ -302,6 +302,14 @@ msg::Setpoint to_message(const control::Setpoint& in) {
   return out;
 }
 
+Fault from_message(const msg::GroundLink& in, control::GroundSign& out) {
+  Check check;
+  check.at_least("client", static_cast<double>(in.client()), 1.0).time(in.stamp_ns());
+  if (!check.ok()) return check.fault();
+  out = {in.client(), in.depends()};
+  return {};
+}
+
 Fault from_message(const msg::Command& in, control::Request& out) {
   Check check;
   check.at_most("kind", in.kind(), msg::Command_Constants::STOP);

@@ -27,6 +27,7 @@ Fault from_message(const msg::RotorSpeeds& in, plant::RotorSpeedSample& out);
 Fault from_message(const msg::ActuatorCommand& in, plant::ActuatorCommand& out);
 Fault from_message(const msg::GroundTruth& in, plant::TruthSample& out);
 Fault from_message(const msg::Setpoint& in, control::Setpoint& out);
+Fault from_message(const msg::GroundLink& in, control::GroundSign& out);
 Fault from_message(const msg::Command& in, control::Request& out);
 Fault from_message(const msg::Mission& in, control::Mission& out);
 Fault from_message(const msg::Trajectory& in, control::Trajectory& out);

@@ -27,6 +27,7 @@
 #include "swiftlet_msgs/msg/CommandPubSubTypes.h"
 #include "swiftlet_msgs/msg/ControlStatusPubSubTypes.h"
 #include "swiftlet_msgs/msg/EstimatePubSubTypes.h"
+#include "swiftlet_msgs/msg/GroundLinkPubSubTypes.h"
 #include "swiftlet_msgs/msg/GroundTruthPubSubTypes.h"
 #include "swiftlet_msgs/msg/ImuPubSubTypes.h"
 #include "swiftlet_msgs/msg/MissionPubSubTypes.h"
@@ -47,7 +48,7 @@
 // clang-format off
 #define SWIFTLET_FOR_EACH_MESSAGE(X)                                      \
   X(ActuatorCommand) X(Battery) X(Command) X(CommandAck) X(ControlStatus) \
-  X(Estimate) X(GroundTruth) X(Imu) X(Mission) X(MissionStatus)           \
+  X(Estimate) X(GroundLink) X(GroundTruth) X(Imu) X(Mission) X(MissionStatus) \
   X(MocapPose) X(Reference) X(RotorSpeeds) X(Setpoint)                    \
   X(SimulationClock) X(Trajectory) X(VehicleInfo)
 // clang-format on

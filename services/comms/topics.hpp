@@ -8,6 +8,7 @@
 #include "swiftlet_msgs/msg/CommandAck.h"
 #include "swiftlet_msgs/msg/ControlStatus.h"
 #include "swiftlet_msgs/msg/Estimate.h"
+#include "swiftlet_msgs/msg/GroundLink.h"
 #include "swiftlet_msgs/msg/GroundTruth.h"
 #include "swiftlet_msgs/msg/Imu.h"
 #include "swiftlet_msgs/msg/Mission.h"
@@ -47,6 +48,7 @@ inline constexpr Topic<msg::GroundTruth> kGroundTruth{"ground_truth", Qos::kTele
 inline constexpr Topic<msg::ControlStatus> kControlStatus{"control_status", Qos::kState};
 inline constexpr Topic<msg::MissionStatus> kMissionStatus{"mission_status", Qos::kState};
 inline constexpr Topic<msg::VehicleInfo> kVehicleInfo{"vehicle_info", Qos::kState};
+inline constexpr Topic<msg::GroundLink> kGroundLink{"ground_link", Qos::kState};
 inline constexpr Topic<msg::SimulationClock> kSimulationClock{"simulation_clock", Qos::kState};
 inline constexpr Topic<msg::Command> kCommand{"command", Qos::kRequest};
 inline constexpr Topic<msg::Mission> kMission{"mission", Qos::kRequest};

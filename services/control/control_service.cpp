@@ -61,6 +61,8 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
   subscriptions_.push_back(node.subscribe<msg::RotorSpeeds>(topics::kRotorSpeeds, take_rotor_speeds));
   subscriptions_.push_back(node.subscribe<msg::Setpoint>(
       topics::kSetpoint, deliver<msg::Setpoint>(loop_.setpoint, setpoint_faults_)));
+  subscriptions_.push_back(node.subscribe<msg::GroundLink>(
+      topics::kGroundLink, [this](const auto& message) { on_ground_link(message); }));
   subscriptions_.push_back(node.subscribe<msg::Command>(
       topics::kCommand, [this](const auto& message) { desk_.on_command(message); }));
   subscriptions_.push_back(node.subscribe<msg::Mission>(
@@ -117,6 +119,14 @@ void ControlService::on_imu_in_lockstep(const msg::Imu& message) {
   } else if (const auto imu = gate_.take()) {
     answer(*imu);
   }
+}
+
+// One that finds no room is said again.
+void ControlService::on_ground_link(const msg::GroundLink& message) {
+  control::GroundSign sign;
+  const comms::Fault fault = comms::from_message(message, sign);
+  if (fault) return ground_link_faults_.note(fault);
+  loop_.ground_signs.push(sign);
 }
 
 void ControlService::answer(const msg::Imu& message) {

@@ -39,6 +39,7 @@ class ControlService {
   void subscribe(comms::Node& node, runtime::Clock clock);
   void on_imu(const comms::msg::Imu& message);
   void on_imu_in_lockstep(const comms::msg::Imu& message);
+  void on_ground_link(const comms::msg::GroundLink& message);
   void answer(const comms::msg::Imu& message);
   template <class Message, class Sample>
   std::function<void(const Message&)> deliver(runtime::Mailbox<Sample>& mailbox, comms::FaultLog& faults);
@@ -64,6 +65,7 @@ class ControlService {
   comms::FaultLog battery_faults_{"battery"};
   comms::FaultLog rotor_speed_faults_{"rotor_speeds"};
   comms::FaultLog setpoint_faults_{"setpoint"};
+  comms::FaultLog ground_link_faults_{"ground_link"};
 
   std::vector<comms::Subscription> subscriptions_;  // last: their callbacks use what stands above
 };

@@ -9,6 +9,7 @@ InnerLoop::InnerLoop(const plant::Vehicle& vehicle, const control::ControlSettin
 plant::ActuatorCommand InnerLoop::step(const plant::ImuSample& sample, std::int64_t now_ns) {
   last_arrival_ns_.store(now_ns, std::memory_order_relaxed);
   take_samples();
+  hear_ground();
   judge_requests();
   const plant::ActuatorCommand command = controller_.on_imu(sample);
   rotors_running_ = command.rotor_state == plant::RotorState::kRunning;
@@ -27,6 +28,10 @@ void InnerLoop::take_samples() {
   if (rotor_speeds.take(new_rotor_speeds)) controller_.on_rotor_speeds(new_rotor_speeds);
   control::Setpoint new_setpoint;
   if (setpoint.take(new_setpoint)) controller_.on_setpoint(new_setpoint);
+}
+
+void InnerLoop::hear_ground() {
+  ground_signs.consume_all([this](const control::GroundSign& sign) { controller_.on_ground_sign(sign); });
 }
 
 void InnerLoop::judge_requests() {
@@ -67,8 +72,9 @@ bool InnerLoop::finish(std::int64_t now_ns) {
 bool InnerLoop::status_changed() const {
   const control::Status& now = controller_.status();
   return now.mode != told_.mode || now.reason != told_.reason || now.has_pose != told_.has_pose ||
-         now.airborne != told_.airborne || now.mission.id != told_.mission.id ||
-         now.mission.state != told_.mission.state || now.mission.item_index != told_.mission.item_index;
+         now.airborne != told_.airborne || now.ground_links != told_.ground_links ||
+         now.mission.id != told_.mission.id || now.mission.state != told_.mission.state ||
+         now.mission.item_index != told_.mission.item_index;
 }
 
 }  // namespace swiftlet::services

@@ -39,6 +39,8 @@ class InnerLoop {
   runtime::Mailbox<control::Setpoint> setpoint;
   boost::lockfree::spsc_queue<PendingRequest*, boost::lockfree::capacity<kMaxPendingRequests>> requests;
 
+  boost::lockfree::spsc_queue<control::GroundSign, boost::lockfree::capacity<32>> ground_signs;
+
   // Output, to one thread. When snapshots are not taken, the newest are lost.
   boost::lockfree::spsc_queue<PendingRequest*, boost::lockfree::capacity<kMaxPendingRequests>> judged;
   boost::lockfree::spsc_queue<Snapshot, boost::lockfree::capacity<256>> snapshots;
@@ -57,6 +59,7 @@ class InnerLoop {
 
  private:
   void take_samples();
+  void hear_ground();
   bool status_changed() const;
 
   control::FlightController controller_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
 
 #include <spdlog/spdlog.h>
 
@@ -54,10 +53,10 @@ void Telemetry::run(const std::atomic<bool>& stop) {
 void Telemetry::take(const Snapshot& snapshot) {
   const control::Status& before = last_.status;
   const control::Status& now = snapshot.status;
-  const bool mode_changed = now.mode != before.mode || std::strcmp(now.reason, before.reason) != 0;
+  const bool mode_changed = now.mode != before.mode || now.reason != before.reason;
   const bool mission_changed = differ(now.mission, before.mission);
-  if (mission_changed) mission_end_ = is_over(now.mission.state) ? now.reason : "";
-  if (mode_changed) spdlog::info("{}: {}", control::to_string(now.mode), now.reason);
+  if (mission_changed) mission_end_ = is_over(now.mission.state) ? control::to_string(now.reason) : "";
+  if (mode_changed) spdlog::info("{}: {}", control::to_string(now.mode), control::to_string(now.reason));
   if (now.has_pose != before.has_pose) {
     if (now.has_pose) {
       spdlog::info("mocap is there");
@@ -65,6 +64,8 @@ void Telemetry::take(const Snapshot& snapshot) {
       spdlog::warn("mocap lost: the last pose is {:.2f} s old", now.pose_age_s);
     }
   }
+  if (now.ground_links != before.ground_links)
+    spdlog::info("the flight depends on {} ground tools", now.ground_links);
   if (snapshot.sampled) publish_sampled(snapshot);
   saturated_ = saturated_ || snapshot.saturated;
   last_ = snapshot;
@@ -97,7 +98,7 @@ void Telemetry::publish_status() {
   message.stamp_ns(last_.stamp_ns);
   message.sequence_number(++status_count_);
   message.mode(static_cast<std::uint8_t>(status.mode));
-  message.reason() = status.reason;
+  message.reason() = control::to_string(status.reason);
   message.airborne(status.airborne);
   message.has_pose(status.has_pose);
   message.pose_age_s(status.pose_age_s);
@@ -110,6 +111,7 @@ void Telemetry::publish_status() {
   message.period_jitter_p50_us(static_cast<double>(last_.timing.jitter_p50_ns) * 1e-3);
   message.period_jitter_p99_us(static_cast<double>(last_.timing.jitter_p99_ns) * 1e-3);
   message.period_jitter_max_us(static_cast<double>(last_.timing.jitter_max_ns) * 1e-3);
+  message.ground_links(static_cast<std::uint8_t>(status.ground_links));
   message.realtime_scheduling(realtime_.load(std::memory_order_relaxed));
   statuses_.publish(message);
   saturated_ = false;

@@ -72,21 +72,53 @@ control::Limits read_limits(const ConfigNode& node) {
 
 control::EstimatorSettings read_estimator(const ConfigNode& node) {
   control::EstimatorSettings estimator;
-  estimator.position_bandwidth = node.at("position_bandwidth_rad_s").number();
-  estimator.attitude_bandwidth = node.at("attitude_bandwidth_rad_s").number();
+  estimator.accelerometer_noise_density = node.at("accelerometer_noise_m_s2_per_sqrt_hz").number();
+  estimator.gyro_noise_density = node.at("gyro_noise_rad_s_per_sqrt_hz").number();
+  estimator.accelerometer_bias_walk = node.at("accelerometer_bias_walk_m_s2_per_sqrt_s").number();
+  estimator.gyro_bias_walk = node.at("gyro_bias_walk_rad_s_per_sqrt_s").number();
+  estimator.accelerometer_bias_sigma = node.at("accelerometer_bias_m_s2").number();
+  estimator.gyro_bias_sigma = node.at("gyro_bias_rad_s").number();
   estimator.accelerometer_bias_limit = node.at("accelerometer_bias_limit_m_s2").number();
   estimator.gyro_bias_limit = node.at("gyro_bias_limit_rad_s").number();
+  estimator.mocap_position_sigma = node.at("mocap_position_m").number();
+  estimator.mocap_orientation_sigma = node.at("mocap_orientation_rad").number();
+  estimator.gate_chi_square = node.at("gate_chi_square").number();
+  estimator.outlier_position_m = node.at("outlier_position_m").number();
+  estimator.outlier_orientation_rad = node.at("outlier_orientation_rad").number();
   return estimator;
+}
+
+control::ArmingSettings read_arming(const ConfigNode& node) {
+  control::ArmingSettings arming;
+  arming.max_tilt_rad = node.at("max_tilt_rad").number();
+  arming.max_speed = node.at("max_speed_m_s").number();
+  arming.max_body_rate = node.at("max_body_rate_rad_s").number();
+  arming.max_specific_force_error = node.at("max_specific_force_error_m_s2").number();
+  arming.max_rotor_speed = node.at("max_rotor_speed_rad_s").number();
+  return arming;
 }
 
 control::FailsafeSettings read_failsafe(const ConfigNode& node) {
   control::FailsafeSettings failsafe;
+  failsafe.imu_timeout_s = node.at("imu_timeout_s").number();
+  failsafe.imu_gap_s = node.at("imu_gap_s").number();
   failsafe.mocap_timeout_s = node.at("mocap_timeout_s").number();
   failsafe.descent_speed = node.at("descent_speed_m_s").number();
   failsafe.descent_timeout_s = node.at("descent_timeout_s").number();
   failsafe.tip_over_tilt_rad = node.at("tip_over_tilt_rad").number();
   failsafe.low_battery_voltage = node.at("low_battery_voltage_v").number();
+  failsafe.critical_battery_voltage = node.at("critical_battery_voltage_v").number();
+  failsafe.battery_delay_s = node.at("battery_delay_s").number();
+  failsafe.battery_timeout_s = node.at("battery_timeout_s").number();
+  failsafe.critical_descent_speed = node.at("critical_descent_speed_m_s").number();
+  failsafe.fence_margin_m = node.at("fence_margin_m").number();
   failsafe.setpoint_timeout_s = node.at("setpoint_timeout_s").number();
+  failsafe.ground_link_timeout_s = node.at("ground_link_timeout_s").number();
+  failsafe.ground_link_action =
+      node.at("ground_link_action")
+          .choice<control::GroundLinkAction>({{"none", control::GroundLinkAction::kNone},
+                                              {"hold", control::GroundLinkAction::kHold},
+                                              {"land", control::GroundLinkAction::kLand}});
   return failsafe;
 }
 
@@ -101,6 +133,7 @@ control::ControlSettings parse_control_settings(std::string_view text, const std
   settings.disturbance = read_disturbance(root.at("disturbance"));
   settings.limits = read_limits(root.at("limits"));
   settings.estimator = read_estimator(root.at("estimator"));
+  settings.arming = read_arming(root.at("arming"));
   settings.failsafe = read_failsafe(root.at("failsafe"));
   root.reject_unknown_keys();
   reject_violations(root, control::validate(settings));

@@ -36,6 +36,10 @@ class Inbox {
     return items_;
   }
   std::size_t size() const { return items().size(); }
+  void clear() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    items_.clear();
+  }
 
   // True as soon as the predicate holds of the items; false if it has not within the time.
   bool wait(const std::function<bool(const std::vector<T>&)>& predicate,

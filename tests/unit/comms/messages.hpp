@@ -101,6 +101,15 @@ inline msg::Setpoint example() {
   return to_message(setpoint());
 }
 template <>
+inline msg::GroundLink example() {
+  msg::GroundLink message;
+  message.client(3);
+  message.sequence_number(4);
+  message.stamp_ns(5);
+  message.depends(true);
+  return message;
+}
+template <>
 inline msg::Command example() {
   msg::Command message = to_message(request());
   message.client(3);

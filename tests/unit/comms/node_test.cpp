@@ -51,6 +51,7 @@ SWIFTLET_TOPIC_OF(GroundTruth)
 SWIFTLET_TOPIC_OF(ControlStatus)
 SWIFTLET_TOPIC_OF(MissionStatus)
 SWIFTLET_TOPIC_OF(VehicleInfo)
+SWIFTLET_TOPIC_OF(GroundLink)
 SWIFTLET_TOPIC_OF(Command)
 SWIFTLET_TOPIC_OF(Mission)
 SWIFTLET_TOPIC_OF(Trajectory)
@@ -61,8 +62,8 @@ template <class T>
 class EachTopic : public testing::Test {};
 using Messages = testing::Types<msg::Imu, msg::ActuatorCommand, msg::MocapPose, msg::RotorSpeeds,
                                 msg::Setpoint, msg::Battery, msg::Estimate, msg::Reference, msg::GroundTruth,
-                                msg::ControlStatus, msg::MissionStatus, msg::VehicleInfo, msg::Command,
-                                msg::Mission, msg::Trajectory, msg::CommandAck>;
+                                msg::ControlStatus, msg::MissionStatus, msg::VehicleInfo, msg::GroundLink,
+                                msg::Command, msg::Mission, msg::Trajectory, msg::CommandAck>;
 TYPED_TEST_SUITE(EachTopic, Messages);
 
 TYPED_TEST(EachTopic, ArrivesAsItWasSent) {

@@ -205,7 +205,7 @@ TEST_F(InFlight, WithoutMocapItComesDownLevelAndStopsOnTheGround) {
         return loop_.controller.status().mode != Mode::kDescent;
       },
       8.0));
-  EXPECT_STREQ(loop_.controller.status().reason, "landed without position");
+  EXPECT_EQ(loop_.controller.status().reason, Reason::kLandedWithoutPosition);
   EXPECT_TRUE(loop_.plant.on_ground());
   EXPECT_LT(most_tilt, 0.1);
   EXPECT_LT(fastest, 0.8);

@@ -8,70 +8,17 @@
 #include <gtest/gtest.h>
 
 #include "control/supervision/checks.hpp"
+#include "tests/unit/control/supervised_flight.hpp"
 
 namespace swiftlet::control {
 namespace {
 
 using Eigen::Vector3d;
+using tests::SupervisedFlight;
 
-constexpr std::int64_t kStep_ns = 2'000'000;
-
-// A supervisor whose vehicle is exactly where the reference asks it to be, and never below the ground.
-class Flight : public testing::Test {
+class Flight : public testing::Test, protected SupervisedFlight {
  protected:
-  Flight() {
-    situation_.stamp_ns = kStep_ns;
-    situation_.estimate = &estimate_;
-    situation_.has_estimate = true;
-    situation_.has_battery = true;
-    situation_.supply_voltage_v = 3.9;
-    step();
-  }
-
-  void step() {
-    situation_.stamp_ns += kStep_ns;
-    estimate_.stamp_ns = situation_.stamp_ns;
-    directive_ = supervisor_.step(situation_);
-    if (directive_.actuation == Actuation::kFly && follows_) {
-      estimate_.position_ned = directive_.reference.position_ned;
-      estimate_.velocity_ned = directive_.reference.velocity_ned;
-      if (estimate_.position_ned.z() > 0.0) {
-        estimate_.position_ned.z() = 0.0;
-        estimate_.velocity_ned.setZero();
-      }
-    }
-  }
-  // Steps until the predicate holds; false if it does not within `limit_s` of flight.
-  bool step_until(const std::function<bool()>& predicate, double limit_s) {
-    const std::int64_t end_ns = situation_.stamp_ns + std::llround(limit_s * 1e9);
-    while (situation_.stamp_ns < end_ns) {
-      if (predicate()) return true;
-      step();
-    }
-    return predicate();
-  }
-  bool step_until(Mode mode, double limit_s) {
-    return step_until([&] { return supervisor_.mode() == mode; }, limit_s);
-  }
-
-  Outcome ask(RequestKind kind, const Vector3d& position = Vector3d::Zero(), double speed = 0.5) {
-    Request request;
-    request.kind = kind;
-    request.position_ned = position;
-    request.speed = speed;
-    return supervisor_.request(request, situation_);
-  }
-  void hover() {
-    ASSERT_TRUE(ask(RequestKind::kArm).accepted);
-    ASSERT_TRUE(ask(RequestKind::kTakeoff, {0, 0, -1}).accepted);
-    ASSERT_TRUE(step_until(Mode::kHolding, 10.0));
-  }
-
-  Supervisor supervisor_{Limits{}, FailsafeSettings{}};
-  Estimate estimate_;
-  Situation situation_;
-  Directive directive_;
-  bool follows_ = true;
+  void hover() { ASSERT_TRUE(take_off()); }
 };
 
 TEST_F(Flight, StartsDisarmedWithRotorsOff) {
@@ -91,7 +38,7 @@ TEST_F(Flight, TakesOffHoldsAndLands) {
   EXPECT_TRUE(supervisor_.airborne());
   ASSERT_TRUE(ask(RequestKind::kLand).accepted);
   ASSERT_TRUE(step_until(Mode::kDisarmed, 10.0));
-  EXPECT_STREQ(supervisor_.reason(), "landed");
+  EXPECT_EQ(supervisor_.reason(), Reason::kLanded);
   EXPECT_EQ(directive_.actuation, Actuation::kOff);
   EXPECT_FALSE(supervisor_.airborne());
 }
@@ -224,7 +171,7 @@ TEST_F(Flight, DescentWithoutPositionEndsAtTheGroundOrByTimeOut) {
   hover();
   situation_.pose_age_s = 1.0;
   ASSERT_TRUE(step_until(Mode::kStopped, 8.0));
-  EXPECT_STREQ(supervisor_.reason(), "descent without position timed out");
+  EXPECT_EQ(supervisor_.reason(), Reason::kDescentTimedOut);
 }
 
 TEST_F(Flight, TippingOverStopsTheRotors) {
@@ -246,7 +193,7 @@ TEST_F(Flight, ALowBatteryLandsOnlyIfItStaysLow) {
   step();
   situation_.supply_voltage_v = 3.2;
   ASSERT_TRUE(step_until(Mode::kLanding, 1.5));
-  EXPECT_STREQ(supervisor_.reason(), "battery is low");
+  EXPECT_EQ(supervisor_.reason(), Reason::kBatteryLow);
 }
 
 TEST_F(Flight, AMissionThatIsInterruptedIsAborted) {
@@ -277,8 +224,13 @@ TEST_F(Flight, FollowsSetpointsAndHoldsWhenTheyStop) {
   EXPECT_EQ(directive_.reference.velocity_ned, setpoint.velocity_ned);
   setpoint.position_ned = {0.2, 9.0, -1};
   EXPECT_FALSE(supervisor_.setpoint(setpoint, situation_).accepted);
+  setpoint.position_ned = {2.9, 0, -1};
+  estimate_.position_ned = setpoint.position_ned;
+  const Outcome outcome = supervisor_.setpoint(setpoint, situation_);
+  EXPECT_STREQ(outcome.reason,
+               "setpoint: where it could come to rest: x is 3.125 m, outside the fence of -3.000 to 3.000 m");
   ASSERT_TRUE(step_until(Mode::kHolding, 0.6));
-  EXPECT_STREQ(supervisor_.reason(), "setpoints stopped");
+  EXPECT_EQ(supervisor_.reason(), Reason::kSetpointsStopped);
 }
 
 TEST_F(Flight, FliesATrajectoryFromItsStartToItsEnd) {
@@ -294,6 +246,71 @@ TEST_F(Flight, FliesATrajectoryFromItsStartToItsEnd) {
   EXPECT_EQ(supervisor_.mode(), Mode::kTrajectory);
   ASSERT_TRUE(step_until(Mode::kHolding, 12.0));
   EXPECT_NEAR((estimate_.position_ned - Vector3d(0, 1, -1.5)).norm(), 0.0, 1e-3);
+}
+
+bool same(const Directive& a, const Directive& b) {
+  return a.actuation == b.actuation && a.lift_fraction == b.lift_fraction && a.integrate == b.integrate &&
+         a.reference.position_ned == b.reference.position_ned &&
+         a.reference.velocity_ned == b.reference.velocity_ned &&
+         a.reference.acceleration_ned == b.reference.acceleration_ned &&
+         a.reference.jerk_ned == b.reference.jerk_ned && a.reference.snap_ned == b.reference.snap_ned &&
+         a.reference.yaw_rad == b.reference.yaw_rad && a.reference.yaw_rate == b.reference.yaw_rate;
+}
+
+TEST_F(Flight, AnotherGoesOnFromItsStateAtEveryStep) {
+  Mission mission;
+  mission.id = 5;
+  mission.items = {{MissionItemKind::kTakeoff, {0, 0, -1}, 0, true, 0.5, 0.2},
+                   {MissionItemKind::kWaypoint, {1, 0, -1}, 1.0, false, 1.0, 0.2},
+                   {MissionItemKind::kLand, {0, 0, 0}, 0, true, 0.4, 0.0}};
+  ASSERT_TRUE(ask(RequestKind::kArm).accepted);
+  Request request;
+  request.kind = RequestKind::kMission;
+  request.mission = &mission;
+  ASSERT_TRUE(supervisor_.request(request, situation_).accepted);
+  Supervisor follower{SupervisionSettings()};
+  int steps = 0;
+  while (supervisor_.mode() == Mode::kMission) {
+    if (++steps % 7 == 0) {
+      const SupervisorState state = supervisor_.state();
+      follower.adopt(state, &mission, nullptr);
+    }
+    Situation seen = situation_;
+    const Estimate before = estimate_;
+    step();
+    if (steps < 7) continue;
+    seen.stamp_ns = situation_.stamp_ns;
+    seen.estimate = &before;
+    ASSERT_TRUE(same(follower.step(seen), directive_)) << "at step " << steps;
+    ASSERT_EQ(follower.mode(), supervisor_.mode());
+  }
+  EXPECT_EQ(supervisor_.reason(), Reason::kLanded);
+  EXPECT_EQ(follower.mission().state, MissionState::kCompleted);
+}
+
+TEST_F(Flight, AMissionThatIsNotKnownToWhoTakesOverEndsInHold) {
+  hover();
+  Mission mission;
+  mission.id = 5;
+  mission.items = {{MissionItemKind::kWaypoint, {2, 0, -1}, 0, true, 1.0, 0.0}};
+  Request request;
+  request.kind = RequestKind::kMission;
+  request.mission = &mission;
+  ASSERT_TRUE(supervisor_.request(request, situation_).accepted);
+  for (int i = 0; i < 500; ++i) step();
+  const Reference before = directive_.reference;
+  ASSERT_GT(before.velocity_ned.x(), 0.3);
+  Mission other = mission;
+  other.id = 6;
+  const SupervisorState state = supervisor_.state();
+  supervisor_.adopt(state, &other, nullptr);
+  EXPECT_EQ(supervisor_.mode(), Mode::kHolding);
+  EXPECT_EQ(supervisor_.reason(), Reason::kPlanUnknown);
+  EXPECT_EQ(supervisor_.mission().state, MissionState::kAborted);
+  step();
+  EXPECT_NEAR(directive_.reference.velocity_ned.x(), before.velocity_ned.x(), 0.02);
+  for (int i = 0; i < 1000; ++i) step();
+  EXPECT_EQ(directive_.reference.velocity_ned, Vector3d::Zero());
 }
 
 TEST(Checks, RefuseMissionsWithTheItemTheValueAndTheLimit) {

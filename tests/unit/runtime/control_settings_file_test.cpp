@@ -54,13 +54,28 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
       "  attitude_bandwidth_rad_s: 38\n"
       "  accelerometer_bias_limit_m_s2: 39\n"
       "  gyro_bias_limit_rad_s: 40\n"
+      "arming:\n"
+      "  max_tilt_rad: 0.41\n"
+      "  max_speed_m_s: 42\n"
+      "  max_body_rate_rad_s: 43\n"
+      "  max_specific_force_error_m_s2: 44\n"
+      "  max_rotor_speed_rad_s: 45\n"
       "failsafe:\n"
-      "  mocap_timeout_s: 41\n"
-      "  descent_speed_m_s: 42\n"
-      "  descent_timeout_s: 43\n"
-      "  tip_over_tilt_rad: 44\n"
-      "  low_battery_voltage_v: 45\n"
-      "  setpoint_timeout_s: 46\n",
+      "  imu_timeout_s: 46\n"
+      "  imu_gap_s: 47\n"
+      "  mocap_timeout_s: 48\n"
+      "  descent_speed_m_s: 49\n"
+      "  descent_timeout_s: 50\n"
+      "  tip_over_tilt_rad: 51\n"
+      "  low_battery_voltage_v: 53\n"
+      "  critical_battery_voltage_v: 52\n"
+      "  battery_delay_s: 54\n"
+      "  battery_timeout_s: 55\n"
+      "  critical_descent_speed_m_s: 56\n"
+      "  fence_margin_m: 57\n"
+      "  setpoint_timeout_s: 58\n"
+      "  ground_link_timeout_s: 59\n"
+      "  ground_link_action: hold\n",
       "c.yaml");
   EXPECT_EQ(s.name, "n");
   EXPECT_EQ(s.attitude.roll.q, Eigen::Vector3d(1, 2, 3));
@@ -91,12 +106,26 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
   EXPECT_EQ(s.estimator.attitude_bandwidth, 38);
   EXPECT_EQ(s.estimator.accelerometer_bias_limit, 39);
   EXPECT_EQ(s.estimator.gyro_bias_limit, 40);
-  EXPECT_EQ(s.failsafe.mocap_timeout_s, 41);
-  EXPECT_EQ(s.failsafe.descent_speed, 42);
-  EXPECT_EQ(s.failsafe.descent_timeout_s, 43);
-  EXPECT_EQ(s.failsafe.tip_over_tilt_rad, 44);
-  EXPECT_EQ(s.failsafe.low_battery_voltage, 45);
-  EXPECT_EQ(s.failsafe.setpoint_timeout_s, 46);
+  EXPECT_EQ(s.arming.max_tilt_rad, 0.41);
+  EXPECT_EQ(s.arming.max_speed, 42);
+  EXPECT_EQ(s.arming.max_body_rate, 43);
+  EXPECT_EQ(s.arming.max_specific_force_error, 44);
+  EXPECT_EQ(s.arming.max_rotor_speed, 45);
+  EXPECT_EQ(s.failsafe.imu_timeout_s, 46);
+  EXPECT_EQ(s.failsafe.imu_gap_s, 47);
+  EXPECT_EQ(s.failsafe.mocap_timeout_s, 48);
+  EXPECT_EQ(s.failsafe.descent_speed, 49);
+  EXPECT_EQ(s.failsafe.descent_timeout_s, 50);
+  EXPECT_EQ(s.failsafe.tip_over_tilt_rad, 51);
+  EXPECT_EQ(s.failsafe.low_battery_voltage, 53);
+  EXPECT_EQ(s.failsafe.critical_battery_voltage, 52);
+  EXPECT_EQ(s.failsafe.battery_delay_s, 54);
+  EXPECT_EQ(s.failsafe.battery_timeout_s, 55);
+  EXPECT_EQ(s.failsafe.critical_descent_speed, 56);
+  EXPECT_EQ(s.failsafe.fence_margin_m, 57);
+  EXPECT_EQ(s.failsafe.setpoint_timeout_s, 58);
+  EXPECT_EQ(s.failsafe.ground_link_timeout_s, 59);
+  EXPECT_EQ(s.failsafe.ground_link_action, control::GroundLinkAction::kHold);
 }
 
 TEST(ControlSettingsFile, EveryTruncationIsRefused) {
@@ -148,7 +177,9 @@ std::string with_value(const Fault& fault, int& line) {
   }
   at = text.find(':', at) + 1;
   line = 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
-  const std::size_t end = text[at + 1] == '[' ? text.find(']', at) + 1 : text.find_first_of(",}\n", at);
+  const std::size_t end = text[at + 1] == '['
+                              ? text.find(']', at) + 1
+                              : std::min(text.find_first_of(",}\n", at), text.find("  #", at));
   return text.replace(at, end - at, std::string(" ") + fault.value);
 }
 
@@ -190,7 +221,21 @@ const Fault kFaults[] = {
     {"failsafe.descent_speed_m_s", "0", "above 0"},
     {"failsafe.descent_timeout_s", "0", "above 0"},
     {"failsafe.tip_over_tilt_rad", "0.1", "is 0.1, must be above limits.max_tilt_rad"},
+    {"arming.max_tilt_rad", "0", "above 0"},
+    {"arming.max_speed_m_s", "0", "above 0"},
+    {"arming.max_body_rate_rad_s", "-1", "above 0"},
+    {"arming.max_specific_force_error_m_s2", "0", "above 0"},
+    {"arming.max_rotor_speed_rad_s", ".nan", "must be a finite number"},
+    {"failsafe.imu_timeout_s", "0", "above 0"},
+    {"failsafe.imu_gap_s", "0", "above 0"},
     {"failsafe.low_battery_voltage_v", "-1", "at least 0"},
+    {"failsafe.critical_battery_voltage_v", "3.4", "is 3.4, must be at least 0 and at most 3.3"},
+    {"failsafe.battery_delay_s", "-1", "at least 0"},
+    {"failsafe.battery_timeout_s", "0", "above 0"},
+    {"failsafe.critical_descent_speed_m_s", "0", "above 0"},
+    {"failsafe.fence_margin_m", "-0.1", "at least 0"},
+    {"failsafe.ground_link_timeout_s", "0", "above 0"},
+    {"failsafe.ground_link_action", "pray", "is pray, must be none, hold or land"},
     {"failsafe.setpoint_timeout_s", "soon", "is soon, must be a number"},
 };
 

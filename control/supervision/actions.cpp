@@ -1,0 +1,98 @@
+#include "control/supervision/actions.hpp"
+
+#include <algorithm>
+
+#include "control/supervision/phases.hpp"
+
+namespace swiftlet::control::act {
+namespace {
+
+constexpr double kApproachSpeed = 0.5;  // m/s, to where a trajectory begins
+
+void take_off(Scene& scene) { start_takeoff(scene, scene.request->position_ned.z(), scene.request->speed); }
+
+void start_mission(Scene& scene) {
+  const Mission& mission = *scene.request->mission;
+  scene.plan.mission = &mission;
+  scene.state.mission = {mission.id, MissionState::kRunning, 0, static_cast<int>(mission.items.size())};
+  start_item(scene, scene.state.now_ns);
+}
+
+void start_trajectory(Scene& scene) {
+  const Trajectory& trajectory = *scene.request->trajectory;
+  scene.plan.trajectory = &trajectory;
+  scene.state.trajectory_id = trajectory.id;
+  scene.state.next_segment = 0;
+  const Reference start = evaluate(trajectory.segments.front(), 0.0);
+  start_move(scene, start.position_ned, false, start.yaw_rad,
+             std::min(kApproachSpeed, scene.settings.limits.max_speed), scene.state.now_ns);
+}
+
+void follow_setpoint(Scene& scene) {
+  const Setpoint& setpoint = *scene.setpoint;
+  Reference reference;
+  reference.position_ned = setpoint.position_ned;
+  reference.velocity_ned = setpoint.velocity_ned;
+  reference.acceleration_ned = setpoint.acceleration_ned;
+  reference.yaw_rad = setpoint.yaw_rad;
+  reference.yaw_rate = setpoint.yaw_rate;
+  scene.state.phase = Phase::kPath;
+  scene.state.path.pin(reference);
+  scene.state.setpoint_ns = scene.state.now_ns;
+}
+
+void move(Scene& scene) {
+  const Request& request = *scene.request;
+  start_move(scene, request.position_ned, request.yaw_free, request.yaw_rad, request.speed,
+             scene.state.now_ns);
+}
+
+void land_at(Scene& scene, double speed) { start_landing(scene, speed, scene.state.now_ns); }
+
+void land(Scene& scene) { land_at(scene, scene.settings.failsafe.descent_speed); }
+
+void begin_at_estimate(Scene& scene) {
+  Reference here = standing_at(scene.estimate());
+  here.velocity_ned = scene.estimate().velocity_ned;
+  scene.state.path.pin(here);
+}
+
+}  // namespace
+
+const Action kNothing{"", [](Scene&) {}};
+const Action kNoteGround{"note where the ground is",
+                         [](Scene& scene) { scene.state.ground_z_ned = scene.estimate().position_ned.z(); }};
+const Action kTakeOff{"spool up, climb", take_off};
+const Action kStartMission{"start its first item", start_mission};
+const Action kStartTrajectory{"go to where it begins", start_trajectory};
+const Action kFollowSetpoint{"follow it", follow_setpoint};
+const Action kMove{"go there", move};
+const Action kStop{"come to rest", start_stop};
+const Action kLandAsAsked{"land at the speed asked for, `descent_speed` at most", [](Scene& scene) {
+                            land_at(scene,
+                                    std::min(scene.request->speed, scene.settings.failsafe.descent_speed));
+                          }};
+const Action kLand{"land at `descent_speed`", land};
+const Action kLandFast{"land at `critical_descent_speed`",
+                       [](Scene& scene) { land_at(scene, scene.settings.failsafe.critical_descent_speed); }};
+const Action kHoldOnReturn{"hold when the pose is back",
+                           [](Scene& scene) { scene.state.land_on_return = false; }};
+const Action kLandOnReturn{"land when the pose is back",
+                           [](Scene& scene) { scene.state.land_on_return = true; }};
+const Action kStopFromEstimate{"come to rest, from the estimate", [](Scene& scene) {
+                                 begin_at_estimate(scene);
+                                 start_stop(scene);
+                               }};
+const Action kLandFromEstimate{"land at `descent_speed`, from the estimate", [](Scene& scene) {
+                                 begin_at_estimate(scene);
+                                 land(scene);
+                               }};
+
+const Action kTakeIntoHold{"come to rest, from the estimate; the ground is at z = 0", [](Scene& scene) {
+                             scene.state.ground_z_ned = 0.0;
+                             scene.state.airborne = true;
+                             begin_at_estimate(scene);
+                             start_stop(scene);
+                           }};
+
+}  // namespace swiftlet::control::act

@@ -1,0 +1,33 @@
+// What a transition does besides changing the mode.
+#pragma once
+
+#include "control/supervision/scene.hpp"
+
+namespace swiftlet::control {
+
+struct Action {
+  const char* text;
+  void (*run)(Scene&);  // in the new mode
+};
+
+namespace act {
+
+extern const Action kNothing;
+extern const Action kNoteGround;  // where it stands, is the ground
+extern const Action kTakeOff;
+extern const Action kStartMission;
+extern const Action kStartTrajectory;
+extern const Action kFollowSetpoint;
+extern const Action kMove;
+extern const Action kStop;
+extern const Action kLandAsAsked;
+extern const Action kLand;
+extern const Action kLandFast;
+extern const Action kHoldOnReturn;  // when the pose is back
+extern const Action kLandOnReturn;
+extern const Action kStopFromEstimate;  // the reference begins anew where the vehicle is
+extern const Action kLandFromEstimate;
+extern const Action kTakeIntoHold;
+
+}  // namespace act
+}  // namespace swiftlet::control

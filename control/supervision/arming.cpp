@@ -1,0 +1,118 @@
+#include "control/supervision/arming.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+#include "control/supervision/checks.hpp"
+#include "control/supervision/conditions.hpp"
+#include "plant/model/vehicle.hpp"
+
+namespace swiftlet::control {
+namespace {
+
+using ArmingCheck = Outcome (*)(const Scene&);
+
+Outcome pose_there(const Scene& scene) {
+  const Situation& situation = scene.situation;
+  const double limit_s = scene.settings.failsafe.mocap_timeout_s;
+  if (!situation.has_estimate) return refuse("no mocap pose has come");
+  if (situation.pose_age_s > limit_s)
+    return refuse("the last mocap pose is %.2f s old, the limit is %.2f s", situation.pose_age_s, limit_s);
+  return accept();
+}
+
+// One that was late or came twice is no fault of motion capture.
+Outcome pose_believed(const Scene& scene) {
+  const PoseFault fault = scene.estimate().pose_fault;
+  if (fault == PoseFault::kNone || fault == PoseFault::kUntimely) return accept();
+  return refuse("the last mocap pose was refused: %s", to_string(fault));
+}
+
+Outcome imu_usable(const Scene& scene) {
+  if (scene.situation.imu_unusable_s > 0.0) return refuse("IMU samples are not usable");
+  return accept();
+}
+
+Outcome battery_there(const Scene& scene) {
+  const Situation& situation = scene.situation;
+  const FailsafeSettings& failsafe = scene.settings.failsafe;
+  if (!situation.has_battery) return refuse("no battery voltage has come");
+  if (situation.battery_age_s > failsafe.battery_timeout_s) {
+    return refuse("the last battery voltage is %.1f s old, the limit is %.1f s", situation.battery_age_s,
+                  failsafe.battery_timeout_s);
+  }
+  if (situation.supply_voltage_v < failsafe.low_battery_voltage) {
+    return refuse("the battery has %.2f V, the limit is %.2f V", situation.supply_voltage_v,
+                  failsafe.low_battery_voltage);
+  }
+  return accept();
+}
+
+Outcome imu_at_rest(const Scene& scene) {
+  const double error = std::abs(scene.situation.specific_force - plant::kGravity);
+  const double limit = scene.settings.arming.max_specific_force_error;
+  if (error <= limit) return accept();
+  return refuse("the accelerometer shows %.2f m/s^2, at rest it is within %.2f of %.2f m/s^2",
+                scene.situation.specific_force, limit, plant::kGravity);
+}
+
+Outcome not_turning(const Scene& scene) {
+  const double rate = scene.estimate().body_rates_frd.norm();
+  const double limit = scene.settings.arming.max_body_rate;
+  if (rate <= limit) return accept();
+  return refuse("turning at %.2f rad/s, the limit is %.2f rad/s", rate, limit);
+}
+
+Outcome rotors_still(const Scene& scene) {
+  const double speed = scene.situation.rotor_speed;
+  const double limit = scene.settings.arming.max_rotor_speed;
+  if (speed <= limit) return accept();
+  return refuse("a rotor turns at %.0f rad/s, the limit is %.0f rad/s", speed, limit);
+}
+
+Outcome level(const Scene& scene) {
+  if (!scene.situation.has_estimate) return accept();
+  const double tilt = std::acos(std::clamp(cosine_of_tilt(scene.estimate().q_ned_from_frd), -1.0, 1.0));
+  const double limit = scene.settings.arming.max_tilt_rad;
+  if (tilt <= limit) return accept();
+  return refuse("tilted by %.2f rad, the limit is %.2f rad", tilt, limit);
+}
+
+Outcome not_moving(const Scene& scene) {
+  const double speed = scene.estimate().velocity_ned.norm();
+  const double limit = scene.settings.arming.max_speed;
+  if (speed <= limit) return accept();
+  return refuse("moving at %.2f m/s, the limit is %.2f m/s", speed, limit);
+}
+
+Outcome inside_fence(const Scene& scene) {
+  if (!scene.situation.has_estimate) return accept();
+  return check_position("the vehicle", scene.estimate().position_ned, scene.settings.limits);
+}
+
+constexpr ArmingCheck kChecks[] = {pose_there,  pose_believed, imu_usable, battery_there, imu_at_rest,
+                                   not_turning, rotors_still,  level,      not_moving,    inside_fence};
+
+// "a; b; c", or the part of it that fits.
+void append(const char* sentence, Outcome& outcome) {
+  const std::size_t used = std::strlen(outcome.reason);
+  const char* const joint = outcome.accepted ? "cannot arm: " : "; ";
+  outcome.accepted = false;
+  if (used + std::strlen(joint) + std::strlen(sentence) >= sizeof outcome.reason) return;
+  std::snprintf(outcome.reason + used, sizeof outcome.reason - used, "%s%s", joint, sentence);
+}
+
+}  // namespace
+
+Outcome check_arming(const Scene& scene) {
+  Outcome outcome = accept();
+  for (const ArmingCheck check : kChecks) {
+    const Outcome one = check(scene);
+    if (!one.accepted) append(one.reason, outcome);
+  }
+  return outcome;
+}
+
+}  // namespace swiftlet::control

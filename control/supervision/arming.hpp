@@ -1,0 +1,12 @@
+// What must hold before the rotors may turn.
+#pragma once
+
+#include "control/request.hpp"
+#include "control/supervision/scene.hpp"
+
+namespace swiftlet::control {
+
+// Accepted, or refused with all that stands against it, each with value and limit, as far as a reason is long.
+Outcome check_arming(const Scene& scene);
+
+}  // namespace swiftlet::control

@@ -1,0 +1,112 @@
+#include "control/supervision/conditions.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "control/supervision/phases.hpp"
+
+namespace swiftlet::control {
+namespace {
+
+constexpr double kContactDepth_m = 0.05;  // reference this far below the vehicle ...
+constexpr double kContactSpeed = 0.05;    // ... which does not move: it stands
+constexpr double kContactTime_s = 0.2;
+constexpr double kContactLift = 1.0;  // m/s^2 of lift that the rotors do not explain, for kBlindContactTime_s
+constexpr double kBlindContactTime_s = 0.3;
+
+// True once `condition` has held for `duration_s`; `since` keeps when it began (0: it does not hold).
+bool held(bool condition, std::int64_t& since, std::int64_t now_ns, double duration_s) {
+  if (!condition) {
+    since = 0;
+    return false;
+  }
+  if (since == 0) since = now_ns;
+  return elapsed_s(since, now_ns) >= duration_s;
+}
+
+bool ground_felt(Scene& scene) {
+  SupervisorState& state = scene.state;
+  if (state.mode == Mode::kDescent) {
+    return held(scene.situation.unexplained_lift > kContactLift, state.contact_since_ns, state.now_ns,
+                kBlindContactTime_s);
+  }
+  if (state.phase != Phase::kSink) return false;
+  const double depth = state.path.at(state.now_ns).position_ned.z() - scene.estimate().position_ned.z();
+  const bool stands = depth > kContactDepth_m && scene.estimate().velocity_ned.norm() < kContactSpeed;
+  return held(stands, state.contact_since_ns, state.now_ns, kContactTime_s);
+}
+
+bool outside_fence(const Scene& scene) {
+  const Limits& limits = scene.settings.limits;
+  const Eigen::Vector3d& at = scene.estimate().position_ned;
+  const double beyond =
+      std::max((at - limits.fence_max_ned).maxCoeff(), (limits.fence_min_ned - at).maxCoeff());
+  return beyond > scene.settings.failsafe.fence_margin_m;
+}
+
+void observe_battery(Scene& scene, EventSet& events) {
+  const FailsafeSettings& failsafe = scene.settings.failsafe;
+  const Situation& situation = scene.situation;
+  SupervisorState& state = scene.state;
+  const auto below = [&](double voltage_v, std::int64_t& since) {
+    return held(situation.has_battery && situation.supply_voltage_v < voltage_v, since, state.now_ns,
+                failsafe.battery_delay_s);
+  };
+  events.add(Event::kBatteryLow, below(failsafe.low_battery_voltage, state.low_battery_since_ns));
+  events.add(Event::kBatteryCritical,
+             below(failsafe.critical_battery_voltage, state.critical_battery_since_ns));
+  events.add(Event::kBatterySilent,
+             !situation.has_battery || situation.battery_age_s > failsafe.battery_timeout_s);
+}
+
+bool is_silent(const GroundLink& link, std::int64_t now_ns, double timeout_s) {
+  return link.client != 0 && elapsed_s(link.heard_ns, now_ns) > timeout_s;
+}
+
+}  // namespace
+
+double cosine_of_tilt(const Eigen::Quaterniond& q) { return 1.0 - 2.0 * (q.x() * q.x() + q.y() * q.y()); }
+
+bool pose_lost(const Situation& situation, const FailsafeSettings& failsafe) {
+  return !situation.has_estimate || situation.pose_age_s > failsafe.mocap_timeout_s;
+}
+
+bool ground_link_lost(const SupervisorState& state, const FailsafeSettings& failsafe) {
+  return std::any_of(state.ground_links.begin(), state.ground_links.end(), [&](const GroundLink& link) {
+    return is_silent(link, state.now_ns, failsafe.ground_link_timeout_s);
+  });
+}
+
+void forget_silent_ground_links(SupervisorState& state, const FailsafeSettings& failsafe) {
+  for (GroundLink& link : state.ground_links) {
+    if (is_silent(link, state.now_ns, failsafe.ground_link_timeout_s)) link = GroundLink();
+  }
+}
+
+EventSet observe(Scene& scene) {
+  const FailsafeSettings& failsafe = scene.settings.failsafe;
+  const Situation& situation = scene.situation;
+  SupervisorState& state = scene.state;
+  const bool lost = pose_lost(situation, failsafe);
+  EventSet events;
+  events.add(Event::kImuUnusable, situation.imu_unusable_s >= failsafe.imu_timeout_s);
+  events.add(Event::kImuGap, situation.imu_gap_s > failsafe.imu_gap_s);
+  events.add(Event::kTippedOver, cosine_of_tilt(scene.estimate().q_ned_from_frd) <
+                                     std::cos(std::min(failsafe.tip_over_tilt_rad, M_PI)));
+  events.add(Event::kPoseLost, lost);
+  events.add(Event::kPoseIsBack, !lost);
+  events.add(Event::kGroundFelt, ground_felt(scene));
+  events.add(Event::kDescentTimedOut,
+             state.mode == Mode::kDescent &&
+                 elapsed_s(state.mode_since_ns, state.now_ns) > failsafe.descent_timeout_s);
+  observe_battery(scene, events);
+  events.add(Event::kOutsideFence, !lost && outside_fence(scene));
+  events.add(Event::kGroundLinkLost, ground_link_lost(state, failsafe));
+  events.add(Event::kSetpointsStopped,
+             state.mode == Mode::kSetpoint &&
+                 elapsed_s(state.setpoint_ns, state.now_ns) > failsafe.setpoint_timeout_s);
+  events.add(Event::kPlanFinished, plan_finished(scene));
+  return events;
+}
+
+}  // namespace swiftlet::control

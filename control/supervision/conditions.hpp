@@ -1,0 +1,20 @@
+// The conditions of a step, each against its threshold.
+#pragma once
+
+#include "control/supervision/events.hpp"
+#include "control/supervision/scene.hpp"
+
+namespace swiftlet::control {
+
+// Which of them hold. Keeps in the state since when those hold that must last for a while.
+EventSet observe(Scene& scene);
+
+// 1 level, -1 upside down.
+double cosine_of_tilt(const Eigen::Quaterniond& q_ned_from_frd);
+bool pose_lost(const Situation& situation, const FailsafeSettings& failsafe);
+// Some ground tool that the flight depends on has been silent for too long.
+bool ground_link_lost(const SupervisorState& state, const FailsafeSettings& failsafe);
+// Those that have been silent for too long are not waited for any more.
+void forget_silent_ground_links(SupervisorState& state, const FailsafeSettings& failsafe);
+
+}  // namespace swiftlet::control

@@ -1,0 +1,96 @@
+#include "control/supervision/events.hpp"
+
+namespace swiftlet::control {
+
+const char* to_string(Event event) {
+  switch (event) {
+    case Event::kImuUnusable:
+      return "IMU samples unusable";
+    case Event::kImuGap:
+      return "IMU samples were missing";
+    case Event::kTippedOver:
+      return "tipped over";
+    case Event::kPoseLost:
+      return "pose lost";
+    case Event::kPoseIsBack:
+      return "pose is there";
+    case Event::kGroundFelt:
+      return "ground felt";
+    case Event::kDescentTimedOut:
+      return "descent timed out";
+    case Event::kBatteryCritical:
+      return "battery critical";
+    case Event::kOutsideFence:
+      return "outside the fence";
+    case Event::kBatteryLow:
+      return "battery low";
+    case Event::kBatterySilent:
+      return "battery silent";
+    case Event::kGroundLinkLost:
+      return "ground link lost";
+    case Event::kSetpointsStopped:
+      return "setpoints stopped";
+    case Event::kPlanFinished:
+      return "plan finished";
+    case Event::kArm:
+      return "arm";
+    case Event::kDisarm:
+      return "disarm";
+    case Event::kTakeoff:
+      return "takeoff";
+    case Event::kMission:
+      return "mission";
+    case Event::kTrajectory:
+      return "trajectory";
+    case Event::kSetpoint:
+      return "setpoint";
+    case Event::kGoTo:
+      return "goto";
+    case Event::kHold:
+      return "hold";
+    case Event::kLand:
+      return "land";
+    case Event::kStop:
+      return "stop";
+    case Event::kPlanUnknown:
+      return "taken over without the plan";
+    case Event::kFoundFlying:
+      return "found flying";
+  }
+  return "unknown";
+}
+
+bool event_of(RequestKind kind, Event& event) {
+  switch (kind) {
+    case RequestKind::kArm:
+      event = Event::kArm;
+      return true;
+    case RequestKind::kDisarm:
+      event = Event::kDisarm;
+      return true;
+    case RequestKind::kTakeoff:
+      event = Event::kTakeoff;
+      return true;
+    case RequestKind::kGoTo:
+      event = Event::kGoTo;
+      return true;
+    case RequestKind::kHold:
+      event = Event::kHold;
+      return true;
+    case RequestKind::kLand:
+      event = Event::kLand;
+      return true;
+    case RequestKind::kStop:
+      event = Event::kStop;
+      return true;
+    case RequestKind::kMission:
+      event = Event::kMission;
+      return true;
+    case RequestKind::kTrajectory:
+      event = Event::kTrajectory;
+      return true;
+  }
+  return false;
+}
+
+}  // namespace swiftlet::control

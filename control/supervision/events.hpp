@@ -1,0 +1,62 @@
+// What can move the vehicle from one mode to another: conditions, which are looked at in every step, and
+// requests.
+#pragma once
+
+#include <cstdint>
+
+#include "control/request.hpp"
+
+namespace swiftlet::control {
+
+enum class Event : std::uint8_t {
+  // Conditions.
+  kImuUnusable = 0,
+  kImuGap,
+  kTippedOver,
+  kPoseLost,
+  kPoseIsBack,
+  kGroundFelt,
+  kDescentTimedOut,
+  kBatteryCritical,
+  kOutsideFence,
+  kBatteryLow,
+  kBatterySilent,
+  kGroundLinkLost,
+  kSetpointsStopped,
+  kPlanFinished,
+  // Requests.
+  kArm,
+  kDisarm,
+  kTakeoff,
+  kMission,
+  kTrajectory,
+  kSetpoint,
+  kGoTo,
+  kHold,
+  kLand,
+  kStop,
+  kPlanUnknown,  // taken over from another controller without the mission or trajectory that it flew
+  kFoundFlying,  // the controller was started while its vehicle flew
+};
+constexpr int kEventCount = static_cast<int>(Event::kFoundFlying) + 1;
+constexpr Event kFirstRequest = Event::kArm;
+inline bool is_request(Event event) { return event >= kFirstRequest; }
+
+const char* to_string(Event event);  // "battery low", "goto"
+
+// By request; anything else than a RequestKind is a kind that nobody knows.
+bool event_of(RequestKind kind, Event& event);
+
+class EventSet {
+ public:
+  void add(Event event, bool happens) { bits_ |= static_cast<std::uint32_t>(happens) << index(event); }
+  bool has(Event event) const { return (bits_ >> index(event) & 1U) != 0; }
+  bool empty() const { return bits_ == 0; }
+
+ private:
+  static unsigned index(Event event) { return static_cast<unsigned>(event); }
+  std::uint32_t bits_ = 0;
+};
+static_assert(kEventCount <= 32);
+
+}  // namespace swiftlet::control

@@ -1,0 +1,158 @@
+#include "control/supervision/guards.hpp"
+
+#include <cmath>
+
+#include "control/supervision/arming.hpp"
+#include "control/supervision/checks.hpp"
+#include "control/supervision/conditions.hpp"
+#include "control/supervision/phases.hpp"
+
+namespace swiftlet::control {
+namespace {
+
+constexpr double kLeastClimb_m = 2.0 * kAirborneHeight_m;
+constexpr double kMaxSetpointStep_m = 1.0;
+
+GroundLinkAction link_action(const Scene& scene) { return scene.settings.failsafe.ground_link_action; }
+
+Outcome battery_lasts(const Scene& scene) {
+  const Situation& situation = scene.situation;
+  const double limit = scene.settings.failsafe.low_battery_voltage;
+  if (situation.supply_voltage_v >= limit) return accept();
+  return refuse("cannot take off: the battery has %.2f V, the limit is %.2f V", situation.supply_voltage_v,
+                limit);
+}
+
+Outcome check_takeoff(const Scene& scene) {
+  const Request& request = *scene.request;
+  const Limits& limits = scene.settings.limits;
+  Outcome outcome = battery_lasts(scene);
+  if (!outcome.accepted) return outcome;
+  outcome = check_speed("takeoff", request.speed, limits);
+  if (!outcome.accepted) return outcome;
+  Eigen::Vector3d top = scene.estimate().position_ned;
+  top.z() = request.position_ned.z();
+  outcome = check_position("takeoff", top, limits);
+  if (!outcome.accepted) return outcome;
+  if (top.z() <= scene.state.ground_z_ned - kLeastClimb_m) return accept();
+  return refuse("takeoff: z is %.3f m, must be above the ground at %.3f m (z points down)", top.z(),
+                scene.state.ground_z_ned);
+}
+
+Outcome check_mission(const Scene& scene) {
+  if (scene.request->mission == nullptr || scene.request->mission->items.empty())
+    return refuse("the mission has no items");
+  return accept();
+}
+
+Outcome check_mission_from_ground(const Scene& scene) {
+  const Outcome sound = check_mission(scene);
+  if (!sound.accepted) return sound;
+  const Outcome battery = battery_lasts(scene);
+  if (!battery.accepted) return battery;
+  const MissionItem& first = scene.request->mission->items.front();
+  if (first.kind != MissionItemKind::kTakeoff)
+    return refuse("the vehicle stands on the ground: the mission must begin with a takeoff");
+  if (first.position_ned.z() <= scene.state.ground_z_ned - kLeastClimb_m) return accept();
+  return refuse("item 1: takeoff to z = %.3f m, must be above the ground at %.3f m (z points down)",
+                first.position_ned.z(), scene.state.ground_z_ned);
+}
+
+Outcome check_trajectory(const Scene& scene) {
+  const Trajectory* trajectory = scene.request->trajectory;
+  if (trajectory == nullptr || trajectory->segments.empty()) return refuse("the trajectory has no segments");
+  const Reference start = evaluate(trajectory->segments.front(), 0.0);
+  return check_position("trajectory", start.position_ned, scene.settings.limits);
+}
+
+Outcome check_setpoint(const Scene& scene) {
+  const Setpoint& setpoint = *scene.setpoint;
+  const Limits& limits = scene.settings.limits;
+  const Outcome position = check_position("setpoint", setpoint.position_ned, limits);
+  if (!position.accepted) return position;
+  if (!setpoint.velocity_ned.allFinite() || !setpoint.acceleration_ned.allFinite() ||
+      !std::isfinite(setpoint.yaw_rad) || !std::isfinite(setpoint.yaw_rate)) {
+    return refuse("setpoint: a value is not a finite number");
+  }
+  const double speed = setpoint.velocity_ned.norm();
+  if (speed > limits.max_speed)
+    return refuse("setpoint: speed is %.2f m/s, the limit is %.2f m/s", speed, limits.max_speed);
+  const double acceleration = setpoint.acceleration_ned.norm();
+  if (acceleration > limits.max_acceleration) {
+    return refuse("setpoint: acceleration is %.2f m/s^2, the limit is %.2f m/s^2", acceleration,
+                  limits.max_acceleration);
+  }
+  // The stream may cease with this one.
+  Reference last;
+  last.position_ned =
+      setpoint.position_ned + scene.settings.failsafe.setpoint_timeout_s * setpoint.velocity_ned;
+  last.velocity_ned = setpoint.velocity_ned;
+  const Outcome at_rest =
+      check_position("setpoint: where it could come to rest", rest_place(limits, last), limits);
+  if (!at_rest.accepted) return at_rest;
+  const double step = (setpoint.position_ned - scene.estimate().position_ned).norm();
+  if (step <= kMaxSetpointStep_m) return accept();
+  return refuse("setpoint: %.2f m away from the vehicle, the limit is %.2f m", step, kMaxSetpointStep_m);
+}
+
+Outcome check_goto(const Scene& scene) {
+  const Request& request = *scene.request;
+  const Outcome position = check_position("goto", request.position_ned, scene.settings.limits);
+  if (!position.accepted) return position;
+  const Outcome speed = check_speed("goto", request.speed, scene.settings.limits);
+  if (!speed.accepted) return speed;
+  if (!request.yaw_free && !std::isfinite(request.yaw_rad)) return refuse("goto: yaw is not a finite number");
+  return accept();
+}
+
+}  // namespace
+
+namespace when {
+
+const Selector kAlways{"", [](const Scene&) { return true; }};
+const Selector kSpoolingUp{"on the ground",
+                           [](const Scene& scene) { return scene.state.phase == Phase::kSpoolUp; }};
+const Selector kLiftedOff{"lifted off",
+                          [](const Scene& scene) { return scene.state.phase != Phase::kSpoolUp; }};
+const Selector kOnLandingItem{"at its landing", on_landing_item};
+const Selector kWasLanding{"was landing", [](const Scene& scene) { return scene.state.land_on_return; }};
+const Selector kNotHurrying{"not for that already", [](const Scene& scene) {
+                              return scene.state.mode != Mode::kLanding ||
+                                     scene.state.reason != Reason::kBatteryCritical;
+                            }};
+const Selector kLinkHolds{"`ground_link_action: hold`",
+                          [](const Scene& scene) { return link_action(scene) == GroundLinkAction::kHold; }};
+const Selector kLinkLands{"`ground_link_action: land`",
+                          [](const Scene& scene) { return link_action(scene) == GroundLinkAction::kLand; }};
+const Selector kLinkMatters{"unless `ground_link_action: none`",
+                            [](const Scene& scene) { return link_action(scene) != GroundLinkAction::kNone; }};
+
+const Selector kLinkMattersOnGround{
+    "on the ground, unless `ground_link_action: none`",
+    [](const Scene& scene) { return kLinkMatters.holds(scene) && kSpoolingUp.holds(scene); }};
+
+}  // namespace when
+
+namespace check_of {
+
+const Check kNone{"", [](const Scene&) { return accept(); }};
+const Check kArming{"all arming checks pass", check_arming};
+const Check kTakeoff{"battery, speed, and a height above the ground and inside the fence", check_takeoff};
+const Check kMissionFromGround{"battery, and it begins with a takeoff to above the ground",
+                               check_mission_from_ground};
+const Check kMission{"it has items", check_mission};
+const Check kTrajectory{"it begins inside the fence", check_trajectory};
+const Check kSetpoint{"inside the fence, from where it can stop inside, within the limits, near the vehicle",
+                      check_setpoint};
+const Check kGoTo{"inside the fence, within the limits", check_goto};
+const Check kLand{"speed", [](const Scene& scene) {
+                    return check_speed("land", scene.request->speed, scene.settings.limits);
+                  }};
+
+const Check kPose{"a pose", [](const Scene& scene) {
+                    if (!pose_lost(scene.situation, scene.settings.failsafe)) return accept();
+                    return refuse("cannot take a flying vehicle over without a mocap pose");
+                  }};
+
+}  // namespace check_of
+}  // namespace swiftlet::control

@@ -1,0 +1,179 @@
+#include "control/supervision/phases.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace swiftlet::control {
+namespace {
+
+constexpr double kSpoolUp_s = 0.8;
+constexpr double kSpoolUpLift = 0.95;    // of the weight, at the end of the spool-up
+constexpr double kFlareHeight_m = 0.08;  // the landing's planned path ends here, then it sinks
+constexpr double kSinkSpeed = 0.15;      // m/s
+constexpr double kSink_s = 60.0;         // at most
+constexpr double kMinMove_s = 0.5;
+
+std::int64_t nanoseconds(double s) { return static_cast<std::int64_t>(std::llround(s * 1e9)); }
+
+double yaw_of(const Eigen::Quaterniond& q) {
+  return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
+}
+
+// The yaw that is `to` plus whole turns, nearest to `from`.
+double nearest_turn(double to, double from) { return from + std::remainder(to - from, 2.0 * M_PI); }
+
+double stopping_time(const Limits& limits, const Reference& from) {
+  return std::max(kMinMove_s, 2.0 * from.velocity_ned.norm() / limits.max_reference_acceleration);
+}
+
+Eigen::Vector3d stopping_place(const Limits& limits, const Reference& from) {
+  return rest_place(limits, from).cwiseMax(limits.fence_min_ned).cwiseMin(limits.fence_max_ned);
+}
+
+void climb(Scene& scene) {
+  SupervisorState& state = scene.state;
+  state.phase = Phase::kPath;
+  Eigen::Vector3d top = state.path.at(state.now_ns).position_ned;
+  top.z() = state.climb_to_z_ned;
+  start_move(scene, top, true, 0.0, state.climb_speed, state.now_ns);
+}
+
+// The planned part of a landing is over: sink until the ground is felt.
+void sink(Scene& scene) {
+  SupervisorState& state = scene.state;
+  state.phase = Phase::kSink;
+  state.contact_since_ns = 0;
+  const Reference end = state.path.at(state.now_ns);
+  PolynomialSegment down;
+  down.duration_s = kSink_s;
+  down.x = {end.position_ned.x()};
+  down.y = {end.position_ned.y()};
+  down.z = {end.position_ned.z(), kSinkSpeed};
+  down.yaw = {end.yaw_rad};
+  state.path.follow(down, state.now_ns);
+}
+
+const MissionItem& item_of(const Scene& scene) {
+  return scene.plan.mission->items[static_cast<std::size_t>(scene.state.mission.item_index)];
+}
+
+void advance_mission(Scene& scene) {
+  SupervisorState& state = scene.state;
+  const MissionItem& item = item_of(scene);
+  if (item.kind == MissionItemKind::kLand) return sink(scene);
+  state.item_end_ns = state.path.end_ns + nanoseconds(item.hold_s);
+  if (state.now_ns < state.item_end_ns || state.mission.item_index + 1 >= state.mission.item_count) return;
+  ++state.mission.item_index;
+  start_item(scene, state.item_end_ns);
+}
+
+void advance_trajectory(Scene& scene) {
+  SupervisorState& state = scene.state;
+  const auto& segments = scene.plan.trajectory->segments;
+  if (state.next_segment < segments.size())
+    state.path.follow(segments[state.next_segment++], state.path.end_ns);
+}
+
+}  // namespace
+
+Reference standing_at(const Estimate& estimate) {
+  Reference reference;
+  reference.position_ned = estimate.position_ned;
+  reference.yaw_rad = yaw_of(estimate.q_ned_from_frd);
+  return reference;
+}
+
+Eigen::Vector3d rest_place(const Limits& limits, const Reference& from) {
+  return from.position_ned + 0.5 * stopping_time(limits, from) * from.velocity_ned;
+}
+
+void start_takeoff(Scene& scene, double to_z_ned, double speed) {
+  SupervisorState& state = scene.state;
+  state.phase = Phase::kSpoolUp;
+  state.phase_since_ns = state.now_ns;
+  state.climb_to_z_ned = to_z_ned;
+  state.climb_speed = speed;
+  state.path.rest(standing_at(scene.estimate()));
+}
+
+void start_move(Scene& scene, const Eigen::Vector3d& to_ned, bool yaw_free, double yaw_rad, double speed,
+                std::int64_t start_ns) {
+  const Limits& limits = scene.settings.limits;
+  const Reference from = scene.state.path.at(start_ns);
+  const double to_yaw = yaw_free ? from.yaw_rad : nearest_turn(yaw_rad, from.yaw_rad);
+  const double distance = (to_ned - from.position_ned).norm();
+  double duration = minimum_jerk_duration(distance, speed, limits.max_reference_acceleration, kMinMove_s);
+  duration = std::max(duration, 15.0 / 8.0 * std::abs(to_yaw - from.yaw_rad) / limits.max_yaw_rate);
+  duration = std::max(duration, stopping_time(limits, from));
+  scene.state.phase = Phase::kPath;
+  scene.state.path.follow(join_to_rest(from, to_ned, to_yaw, duration), start_ns);
+}
+
+void start_stop(Scene& scene) {
+  SupervisorState& state = scene.state;
+  const Limits& limits = scene.settings.limits;
+  const Reference from = state.path.at(state.now_ns);
+  state.phase = Phase::kPath;
+  state.path.follow(
+      join_to_rest(from, stopping_place(limits, from), from.yaw_rad, stopping_time(limits, from)),
+      state.now_ns);
+}
+
+void start_landing(Scene& scene, double speed, std::int64_t start_ns) {
+  Eigen::Vector3d above_ground = stopping_place(scene.settings.limits, scene.state.path.at(start_ns));
+  above_ground.z() = scene.state.ground_z_ned - kFlareHeight_m;
+  start_move(scene, above_ground, true, 0.0, speed, start_ns);
+}
+
+void start_item(Scene& scene, std::int64_t start_ns) {
+  const MissionItem& item = item_of(scene);
+  switch (item.kind) {
+    case MissionItemKind::kTakeoff: {
+      if (!scene.flying()) return start_takeoff(scene, item.position_ned.z(), item.speed);
+      Eigen::Vector3d up = scene.state.path.at(start_ns).position_ned;
+      up.z() = item.position_ned.z();
+      return start_move(scene, up, true, 0.0, item.speed, start_ns);
+    }
+    case MissionItemKind::kWaypoint:
+      return start_move(scene, item.position_ned, item.yaw_free, item.yaw_rad, item.speed, start_ns);
+    case MissionItemKind::kLand:
+      return start_landing(scene, std::min(item.speed, scene.settings.failsafe.descent_speed), start_ns);
+  }
+}
+
+void advance(Scene& scene) {
+  SupervisorState& state = scene.state;
+  if (!scene.flying() || state.mode == Mode::kDescent) return;
+  if (scene.estimate().position_ned.z() < state.ground_z_ned - kAirborneHeight_m) state.airborne = true;
+  if (state.phase == Phase::kSpoolUp && elapsed_s(state.phase_since_ns, state.now_ns) >= kSpoolUp_s)
+    climb(scene);
+  if (state.phase != Phase::kPath || !state.path.finished(state.now_ns)) return;
+  if (state.mode == Mode::kMission) advance_mission(scene);
+  if (state.mode == Mode::kTrajectory) advance_trajectory(scene);
+  if (state.mode == Mode::kLanding) sink(scene);
+}
+
+bool plan_finished(const Scene& scene) {
+  const SupervisorState& state = scene.state;
+  if (state.phase != Phase::kPath || !state.path.finished(state.now_ns)) return false;
+  switch (state.mode) {
+    case Mode::kTakingOff:
+      return true;
+    case Mode::kMission:
+      return state.mission.item_index + 1 == state.mission.item_count && state.now_ns >= state.item_end_ns;
+    case Mode::kTrajectory:
+      return state.next_segment == scene.plan.trajectory->segments.size();
+    default:
+      return false;
+  }
+}
+
+bool on_landing_item(const Scene& scene) {
+  return scene.state.mode == Mode::kMission && item_of(scene).kind == MissionItemKind::kLand;
+}
+
+double spool_up_lift(const SupervisorState& state) {
+  return kSpoolUpLift * std::min(1.0, elapsed_s(state.phase_since_ns, state.now_ns) / kSpoolUp_s);
+}
+
+}  // namespace swiftlet::control

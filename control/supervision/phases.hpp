@@ -1,0 +1,39 @@
+// The reference path of each phase of flight: take-off, moves, stops, landings, and the items and segments of
+// a plan one after another.
+#pragma once
+
+#include "control/supervision/scene.hpp"
+
+namespace swiftlet::control {
+
+constexpr double kAirborneHeight_m = 0.03;  // above the ground
+
+// Where the estimate is, at rest, with its yaw.
+Reference standing_at(const Estimate& estimate);
+
+// Where a reference that moves so can come to rest, as start_stop() would have it without a fence.
+Eigen::Vector3d rest_place(const Limits& limits, const Reference& from);
+
+// Spool up, then climb straight to that height.
+void start_takeoff(Scene& scene, double to_z_ned, double speed);
+// From the reference as it is at start_ns, straight to a place; a vehicle in motion gets there by a quintic.
+void start_move(Scene& scene, const Eigen::Vector3d& to_ned, bool yaw_free, double yaw_rad, double speed,
+                std::int64_t start_ns);
+// Comes to rest along the present velocity, inside the fence.
+void start_stop(Scene& scene);
+// Comes to rest inside the fence on the way down, then sinks until the ground is felt.
+void start_landing(Scene& scene, double speed, std::int64_t start_ns);
+// The item that the mission's progress names.
+void start_item(Scene& scene, std::int64_t start_ns);
+
+// To the phase, item or segment whose time has come.
+void advance(Scene& scene);
+// Nothing is left to fly of a take-off, mission or trajectory.
+bool plan_finished(const Scene& scene);
+// The item being flown is the mission's landing.
+bool on_landing_item(const Scene& scene);
+
+// Of the thrust while spooling up, of the weight.
+double spool_up_lift(const SupervisorState& state);
+
+}  // namespace swiftlet::control

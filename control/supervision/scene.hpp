@@ -1,0 +1,43 @@
+// What the rules of supervision look at, and what their actions change.
+#pragma once
+
+#include <cstdint>
+
+#include "control/mission.hpp"
+#include "control/request.hpp"
+#include "control/settings.hpp"
+#include "control/supervision/situation.hpp"
+#include "control/supervision/state.hpp"
+#include "control/trajectory/polynomial.hpp"
+
+namespace swiftlet::control {
+
+struct SupervisionSettings {
+  Limits limits;
+  ArmingSettings arming;
+  FailsafeSettings failsafe;
+};
+
+// What is being flown, owned by who asked for it; null in other modes.
+struct FlownPlan {
+  const Mission* mission = nullptr;
+  const Trajectory* trajectory = nullptr;
+};
+
+struct Scene {
+  const SupervisionSettings& settings;
+  const Situation& situation;
+  SupervisorState& state;
+  FlownPlan& plan;
+  const Request* request = nullptr;  // to be answered
+  const Setpoint* setpoint = nullptr;
+
+  const Estimate& estimate() const { return *situation.estimate; }
+  bool flying() const { return state.phase != Phase::kGround; }
+};
+
+inline double elapsed_s(std::int64_t from_ns, std::int64_t to_ns) {
+  return static_cast<double>(to_ns - from_ns) * 1e-9;
+}
+
+}  // namespace swiftlet::control

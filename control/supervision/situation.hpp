@@ -1,0 +1,42 @@
+// What the supervisor sees of a step, and what it asks for.
+#pragma once
+
+#include <cstdint>
+
+#include "control/estimation/estimator.hpp"
+#include "control/reference.hpp"
+
+namespace swiftlet::control {
+
+struct Situation {
+  std::int64_t stamp_ns = 0;
+  const Estimate* estimate = nullptr;
+  bool has_estimate = false;  // the estimator has been started by a pose
+  double pose_age_s = 0.0;
+  bool has_battery = false;  // the supply voltage is a measured one
+  double supply_voltage_v = 0.0;
+  double battery_age_s = 0.0;
+  double unexplained_lift = 0.0;  // m/s^2, upward specific force less what the rotors' thrust explains; about
+                                  // g - thrust/m on the ground
+  double specific_force = 0.0;    // m/s^2, length of the last sample's
+  double rotor_speed = 0.0;       // rad/s, of the fastest rotor
+  double imu_unusable_s = 0.0;    // for how long no sample could be used
+  double imu_gap_s = 0.0;         // between this usable sample and the one before
+};
+
+enum class Actuation : std::uint8_t {
+  kOff,
+  kIdle,          // rotors turn at throttle 0
+  kSpoolUp,       // thrust rises to lift_fraction of the weight, level
+  kFly,           // position and attitude control
+  kLevelDescent,  // attitude level, vertical speed by dead reckoning
+};
+
+struct Directive {
+  Actuation actuation = Actuation::kOff;
+  double lift_fraction = 0.0;  // kSpoolUp only
+  bool integrate = false;      // the position integrals may learn
+  Reference reference;
+};
+
+}  // namespace swiftlet::control

@@ -1,0 +1,58 @@
+// All that the supervisor remembers from one step to the next, as plain data: another process that is given it,
+// with the plan being flown, goes on exactly where this one stopped.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include "control/mode.hpp"
+#include "control/trajectory/reference_path.hpp"
+
+namespace swiftlet::control {
+
+// Of a flight, whatever the mode that flies it.
+enum class Phase : std::uint8_t {
+  kGround = 0,
+  kSpoolUp = 1,  // on the ground, thrust rises
+  kPath = 2,     // along the reference path
+  kSink = 3,     // at the end of a landing, until the ground is felt
+};
+
+// A ground tool that the flight depends on.
+struct GroundLink {
+  std::uint64_t client = 0;  // 0: none
+  std::int64_t heard_ns = 0;
+};
+constexpr int kMaxGroundLinks = 4;
+
+// Times are stamps of the vehicle's clock, ns.
+struct SupervisorState {
+  Mode mode = Mode::kDisarmed;
+  Reason reason = Reason::kStarted;
+  Phase phase = Phase::kGround;
+  bool airborne = false;
+  bool land_on_return = false;  // in descent without position: a landing was under way
+  std::int64_t now_ns = 0;      // of the last step
+  std::int64_t mode_since_ns = 0;
+  std::int64_t phase_since_ns = 0;
+
+  ReferencePath path;
+  double climb_to_z_ned = 0.0;  // m, of the take-off under way
+  double climb_speed = 0.5;     // m/s
+  double ground_z_ned = 0.0;    // m, where it stood when it was armed
+
+  MissionProgress mission;          // the item index says where in the mission
+  std::int64_t item_end_ns = 0;     // path and hold of the item being flown
+  std::uint64_t trajectory_id = 0;  // of the one being flown
+  std::uint32_t next_segment = 0;   // of that trajectory, after the one being flown
+
+  std::int64_t setpoint_ns = 0;                // when the last one was taken
+  std::int64_t contact_since_ns = 0;           // 0: the ground is not felt
+  std::int64_t low_battery_since_ns = 0;       // 0: the battery is well
+  std::int64_t critical_battery_since_ns = 0;  // 0: it is not that low
+  std::array<GroundLink, kMaxGroundLinks> ground_links{};
+};
+static_assert(std::is_trivially_copyable_v<SupervisorState>);
+
+}  // namespace swiftlet::control

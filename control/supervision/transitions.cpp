@@ -1,0 +1,126 @@
+#include "control/supervision/transitions.hpp"
+
+#include <iterator>
+
+#include "control/supervision/checks.hpp"
+
+namespace swiftlet::control {
+namespace {
+
+using E = Event;
+using M = Mode;
+using R = Reason;
+
+constexpr ModeSet kAny{M::kDisarmed,   M::kArmed,    M::kTakingOff, M::kHolding, M::kMission,
+                       M::kTrajectory, M::kSetpoint, M::kLanding,   M::kDescent, M::kStopped};
+constexpr ModeSet kRotorsOn{M::kArmed,      M::kTakingOff, M::kHolding, M::kMission,
+                            M::kTrajectory, M::kSetpoint,  M::kLanding, M::kDescent};
+constexpr ModeSet kWithPosition{M::kTakingOff,  M::kHolding,  M::kMission,
+                                M::kTrajectory, M::kSetpoint, M::kLanding};
+constexpr ModeSet kUnderWay{M::kTakingOff, M::kHolding, M::kMission, M::kTrajectory, M::kSetpoint};
+constexpr ModeSet kLeavingGround{M::kTakingOff, M::kMission};
+
+// clang-format off
+const Transition kTransitions[] = {
+  // What stops the rotors at once.
+  {kRotorsOn, E::kImuUnusable, when::kAlways, check_of::kNone, M::kStopped, R::kImuUnusable, act::kNothing},
+  {kRotorsOn, E::kImuGap, when::kAlways, check_of::kNone, M::kStopped, R::kImuGap, act::kNothing},
+  {kRotorsOn, E::kTippedOver, when::kAlways, check_of::kNone, M::kStopped, R::kTippedOver, act::kNothing},
+
+  // On the ground still, it stays there.
+  {{M::kArmed}, E::kPoseLost, when::kAlways, check_of::kNone, M::kDisarmed, R::kNoPose, act::kNothing},
+  {{M::kArmed}, E::kGroundLinkLost, when::kLinkMatters, check_of::kNone, M::kDisarmed, R::kGroundLinkLost, act::kNothing},
+  {kLeavingGround, E::kPoseLost, when::kSpoolingUp, check_of::kNone, M::kDisarmed, R::kNoPose, act::kNothing},
+  {kLeavingGround, E::kBatteryCritical, when::kSpoolingUp, check_of::kNone, M::kDisarmed, R::kBatteryCritical, act::kNothing},
+  {kLeavingGround, E::kOutsideFence, when::kSpoolingUp, check_of::kNone, M::kDisarmed, R::kOutsideFence, act::kNothing},
+  {kLeavingGround, E::kBatteryLow, when::kSpoolingUp, check_of::kNone, M::kDisarmed, R::kBatteryLow, act::kNothing},
+  {kLeavingGround, E::kBatterySilent, when::kSpoolingUp, check_of::kNone, M::kDisarmed, R::kBatterySilent, act::kNothing},
+  {kLeavingGround, E::kGroundLinkLost, when::kLinkMattersOnGround, check_of::kNone, M::kDisarmed, R::kGroundLinkLost, act::kNothing},
+
+  // Without position.
+  {{M::kLanding}, E::kPoseLost, when::kAlways, check_of::kNone, M::kDescent, R::kNoPose, act::kLandOnReturn},
+  {{M::kMission}, E::kPoseLost, when::kOnLandingItem, check_of::kNone, M::kDescent, R::kNoPose, act::kLandOnReturn},
+  {kUnderWay, E::kPoseLost, when::kAlways, check_of::kNone, M::kDescent, R::kNoPose, act::kHoldOnReturn},
+  {{M::kDescent}, E::kGroundFelt, when::kAlways, check_of::kNone, M::kDisarmed, R::kLandedWithoutPosition, act::kNothing},
+  {{M::kDescent}, E::kPoseIsBack, when::kWasLanding, check_of::kNone, M::kLanding, R::kPoseIsBack, act::kLandFromEstimate},
+  {{M::kDescent}, E::kPoseIsBack, when::kAlways, check_of::kNone, M::kHolding, R::kPoseIsBack, act::kStopFromEstimate},
+  {{M::kDescent}, E::kDescentTimedOut, when::kAlways, check_of::kNone, M::kStopped, R::kDescentTimedOut, act::kNothing},
+
+  // What ends a flight early.
+  {kWithPosition, E::kBatteryCritical, when::kNotHurrying, check_of::kNone, M::kLanding, R::kBatteryCritical, act::kLandFast},
+  {kUnderWay, E::kOutsideFence, when::kAlways, check_of::kNone, M::kLanding, R::kOutsideFence, act::kLandFromEstimate},
+  {kUnderWay, E::kBatteryLow, when::kAlways, check_of::kNone, M::kLanding, R::kBatteryLow, act::kLand},
+  {kUnderWay, E::kBatterySilent, when::kAlways, check_of::kNone, M::kLanding, R::kBatterySilent, act::kLand},
+  {kUnderWay, E::kGroundLinkLost, when::kLinkLands, check_of::kNone, M::kLanding, R::kGroundLinkLost, act::kLand},
+  {kUnderWay, E::kGroundLinkLost, when::kLinkHolds, check_of::kNone, M::kHolding, R::kGroundLinkLost, act::kStop},
+  {{M::kSetpoint}, E::kSetpointsStopped, when::kAlways, check_of::kNone, M::kHolding, R::kSetpointsStopped, act::kStop},
+
+  // How a flight goes on.
+  {{M::kLanding, M::kMission}, E::kGroundFelt, when::kAlways, check_of::kNone, M::kDisarmed, R::kLanded, act::kNothing},
+  {{M::kTakingOff}, E::kPlanFinished, when::kAlways, check_of::kNone, M::kHolding, R::kTakeOffCompleted, act::kNothing},
+  {{M::kMission}, E::kPlanFinished, when::kAlways, check_of::kNone, M::kHolding, R::kMissionCompleted, act::kNothing},
+  {{M::kTrajectory}, E::kPlanFinished, when::kAlways, check_of::kNone, M::kHolding, R::kTrajectoryCompleted, act::kNothing},
+
+  // Requests.
+  {kAny, E::kStop, when::kAlways, check_of::kNone, M::kStopped, R::kRequested, act::kNothing},
+  {{M::kDisarmed}, E::kArm, when::kAlways, check_of::kArming, M::kArmed, R::kRequested, act::kNoteGround},
+  {{M::kArmed}, E::kArm, when::kAlways, check_of::kNone, kStay, R::kRequested, act::kNothing},
+  {{M::kDisarmed, M::kArmed, M::kStopped}, E::kDisarm, when::kAlways, check_of::kNone, M::kDisarmed, R::kRequested, act::kNothing},
+  {kLeavingGround, E::kDisarm, when::kSpoolingUp, check_of::kNone, M::kDisarmed, R::kRequested, act::kNothing},
+  {{M::kArmed}, E::kTakeoff, when::kAlways, check_of::kTakeoff, M::kTakingOff, R::kRequested, act::kTakeOff},
+  {{M::kArmed}, E::kMission, when::kAlways, check_of::kMissionFromGround, M::kMission, R::kRequested, act::kStartMission},
+  {{M::kHolding}, E::kMission, when::kAlways, check_of::kMission, M::kMission, R::kRequested, act::kStartMission},
+  {{M::kHolding}, E::kTrajectory, when::kAlways, check_of::kTrajectory, M::kTrajectory, R::kRequested, act::kStartTrajectory},
+  {{M::kHolding}, E::kSetpoint, when::kAlways, check_of::kSetpoint, M::kSetpoint, R::kSetpointsCame, act::kFollowSetpoint},
+  {{M::kSetpoint}, E::kSetpoint, when::kAlways, check_of::kSetpoint, kStay, R::kSetpointsCame, act::kFollowSetpoint},
+  {kWithPosition, E::kGoTo, when::kLiftedOff, check_of::kGoTo, M::kHolding, R::kRequested, act::kMove},
+  {kWithPosition, E::kHold, when::kLiftedOff, check_of::kNone, M::kHolding, R::kRequested, act::kStop},
+  {kLeavingGround, E::kLand, when::kSpoolingUp, check_of::kNone, M::kDisarmed, R::kRequested, act::kNothing},
+  {{M::kLanding}, E::kLand, when::kAlways, check_of::kNone, kStay, R::kRequested, act::kNothing},
+  {{M::kDescent}, E::kLand, when::kAlways, check_of::kNone, kStay, R::kRequested, act::kLandOnReturn},
+  {kUnderWay, E::kLand, when::kAlways, check_of::kLand, M::kLanding, R::kRequested, act::kLandAsAsked},
+  {kLeavingGround, E::kPlanUnknown, when::kSpoolingUp, check_of::kNone, M::kDisarmed, R::kPlanUnknown, act::kNothing},
+  {{M::kMission, M::kTrajectory}, E::kPlanUnknown, when::kAlways, check_of::kNone, M::kHolding, R::kPlanUnknown, act::kStop},
+  {{M::kDisarmed}, E::kFoundFlying, when::kAlways, check_of::kPose, M::kHolding, R::kFoundFlying, act::kTakeIntoHold},
+};
+// clang-format on
+
+}  // namespace
+
+TransitionTable transitions() { return {kTransitions, static_cast<int>(std::size(kTransitions))}; }
+
+const Transition* find(const Scene& scene, const EventSet& conditions) {
+  if (conditions.empty()) return nullptr;
+  for (const Transition& row : transitions()) {
+    if (conditions.has(row.event) && row.from.has(scene.state.mode) && row.when.holds(scene)) return &row;
+  }
+  return nullptr;
+}
+
+const Transition* find(const Scene& scene, Event request) {
+  for (const Transition& row : transitions()) {
+    if (row.event == request && row.from.has(scene.state.mode) && row.when.holds(scene)) return &row;
+  }
+  return nullptr;
+}
+
+Outcome refusal(Event request, Mode mode) {
+  const char* const now = to_string(mode);
+  switch (request) {
+    case Event::kArm:
+      return refuse("cannot arm while %s", now);
+    case Event::kDisarm:
+      return refuse("cannot disarm while %s; land first, or stop", now);
+    case Event::kTakeoff:
+      return refuse("cannot take off while %s; arm first", now);
+    case Event::kMission:
+    case Event::kTrajectory:
+      return refuse("cannot start a %s while %s", to_string(request), now);
+    case Event::kSetpoint:
+      return refuse("setpoints are not followed while %s", now);
+    default:
+      return refuse("cannot do that while %s", now);
+  }
+}
+
+}  // namespace swiftlet::control

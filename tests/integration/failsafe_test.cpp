@@ -1,0 +1,298 @@
+// Faults of processes and of the wire, in real time: one is killed, stopped, started again, or its clock steps.
+// What the vehicle did is told by ground truth, why by control_status.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <fcntl.h>
+#include <string>
+#include <sys/mman.h>
+#include <thread>
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+#include "services/comms/convert.hpp"
+#include "services/runtime/text_file.hpp"
+#include "tests/integration/separate_processes.hpp"
+
+namespace swiftlet::tests {
+namespace {
+
+using namespace std::chrono_literals;
+using control::Mode;
+using ground::TruthRow;
+using ground::View;
+namespace msg = ground::msg;
+
+class Failsafe : public SeparateProcesses {
+ protected:
+  double lowest_m() const {
+    double lowest = 1e9;
+    for (const TruthRow& row : truth()) lowest = std::min(lowest, -row.position_ned[2]);
+    return lowest;
+  }
+  double most_tilt_rad() const {
+    double most = 0.0;
+    for (const TruthRow& row : truth()) most = std::max(most, tilt_rad(row));
+    return most;
+  }
+  double farthest_m() const {
+    double farthest = 0.0;
+    for (const TruthRow& row : truth())
+      farthest = std::max(farthest, std::hypot(row.position_ned[0], row.position_ned[1]));
+    return farthest;
+  }
+  double fastest_sink() const {
+    double fastest = 0.0;
+    for (const TruthRow& row : truth()) fastest = std::max(fastest, row.velocity_ned[2]);
+    return fastest;
+  }
+  bool settles_at(double x, double y, double z) const {
+    return eventually([&] { return distance_m(x, y, z) < 0.05; }, kTimeout);
+  }
+  // A file with the control settings of motor_lag in which `from` is replaced.
+  std::string settings_with(const std::string& from, const std::string& to) const {
+    std::string text = runtime::read_text_file(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml");
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return folder_.write("control.yaml", text.replace(at, from.size(), to));
+  }
+  std::string simulation_with(const std::string& faults) const {
+    return folder_.write("simulation.yaml",
+                         runtime::read_text_file(SWIFTLET_SOURCE_DIR "/config/simulation/default.yaml") +
+                             "faults:\n" + faults);
+  }
+};
+
+TEST_F(Failsafe, MocapIsKilledItDescendsLevelAndStopsOnTheGround) {
+  start_all();
+  hover();
+  mocap_->signal(SIGKILL);
+  ASSERT_TRUE(told(Mode::kDescent, "no mocap pose")) << story();
+  ASSERT_TRUE(told(Mode::kDisarmed, "landed without position")) << story();
+  ASSERT_TRUE(wait_until_rotors_off());
+  EXPECT_TRUE(wait_until_on_ground());
+  EXPECT_LT(most_tilt_rad(), 0.2);
+  EXPECT_LT(fastest_sink(), 0.8);
+  EXPECT_LT(farthest_m(), 1.0);
+}
+
+TEST_F(Failsafe, MocapComesBackItHoldsAgain) {
+  start_all();
+  hover();
+  mocap_->signal(SIGSTOP);
+  ASSERT_TRUE(told(Mode::kDescent, "no mocap pose")) << story();
+  mocap_->signal(SIGCONT);
+  ASSERT_TRUE(told(Mode::kHolding, "position is back")) << story();
+  fly_on(3.0);
+  EXPECT_GT(lowest_m(), 0.3);
+  EXPECT_LT(client_->view().estimate.message.velocity_ned()[2], 0.05);
+}
+
+TEST_F(Failsafe, TheGroundToolIsKilledItLands) {
+  start_all();
+  wait_until_ready();
+  const std::string mission =
+      folder_.write("hover.yaml",
+                    "frame: ned\ntolerance_m: 0.1\nitems:\n"
+                    "  - {kind: takeoff, height_m: 0.8, speed_m_s: 0.8, hold_s: 300}\n"
+                    "  - {kind: land, speed_m_s: 0.4}\n");
+  Program fly("swiftlet",
+              {"fly", mission, "--attach", "--domain", std::to_string(claim_.domain()), "--record",
+               folder_.path() / "record"},
+              folder_.path());
+  ASSERT_TRUE(eventually([&] { return -client_->view().truth.message.position_ned()[2] > 0.7; }, kTimeout))
+      << fly.errors();
+  EXPECT_TRUE(
+      client_->wait(kTimeout, [](const View& view) { return view.control.message.ground_links() == 1; }));
+  forget();
+  fly.signal(SIGKILL);
+  ASSERT_TRUE(told(Mode::kLanding, "ground link lost")) << story();
+  ASSERT_TRUE(told(Mode::kDisarmed, "landed")) << story();
+  EXPECT_TRUE(wait_until_on_ground());
+  EXPECT_LT(most_tilt_rad(), 0.2);
+  EXPECT_FALSE(plant_->exit_code() || mocap_->exit_code() || control_->exit_code());
+}
+
+TEST_F(Failsafe, ToolsThatOnlyAskForSomethingAreNotMissed) {
+  start_all();
+  hover();
+  const Ending end = run_program(
+      "swiftlet", {"goto", "0.3", "0", "-1", "--domain", std::to_string(claim_.domain()), "--localhost-only"},
+      folder_.path());
+  ASSERT_EQ(end.exit_code, 0) << end.errors;
+  fly_on(3.0);
+  EXPECT_EQ(client_->view().control.message.ground_links(), 0);
+  EXPECT_TRUE(settles_at(0.3, 0, -1));
+  EXPECT_EQ(story(), "holding: take-off completed\nholding: requested\n");
+}
+
+TEST_F(Failsafe, ControlIsKilledTheVehicleStopsItsRotorsAndAnotherOneStartsAnew) {
+  start_all();
+  hover();
+  control_->signal(SIGKILL);
+  ASSERT_TRUE(wait_until_rotors_off());
+  ASSERT_TRUE(wait_until_on_ground());
+  EXPECT_NE(std::string(client_->view().vehicle.message.fault().c_str()), "");
+  ASSERT_TRUE(eventually([&] { return distance_m(0, 0, 0) < 2.0 && fastest_rotor(truth().back()) < 10.0; }));
+  control_ = start("swiftlet-control");
+  ASSERT_TRUE(told(Mode::kDisarmed, "started")) << story();
+  if (tilt_rad(truth().back()) > 0.3) return;  // it fell on its side
+  hover();
+}
+
+TEST_F(Failsafe, ControlIsStoppedForTwoTenthsOfASecondItFliesOn) {
+  start_all();
+  hover();
+  control_->signal(SIGSTOP);
+  fly_on(0.2);
+  control_->signal(SIGCONT);
+  fly_on(4.0);
+  EXPECT_EQ(story(), "holding: take-off completed\n");
+  EXPECT_GT(lowest_m(), 0.5);
+  EXPECT_TRUE(settles_at(0, 0, -1));
+}
+
+TEST_F(Failsafe, CommandsCeaseForSecondsTheRotorsStopAndStayOff) {
+  start_all();
+  hover();
+  control_->signal(SIGSTOP);
+  ASSERT_TRUE(wait_until_rotors_off());
+  ASSERT_TRUE(wait_until_on_ground());
+  fly_on(3.0);
+  control_->signal(SIGCONT);
+  ASSERT_TRUE(told(Mode::kStopped, "IMU samples were missing") || told(Mode::kStopped, "tipped over", 1s))
+      << story();
+  ASSERT_TRUE(wait_until_rotors_off());
+  forget();
+  fly_on(1.0);
+  for (const TruthRow& row : truth()) ASSERT_LT(fastest_rotor(row), 100.0);
+}
+
+TEST_F(Failsafe, TheImuFallsSilentTheRotorsStopAndStayOff) {
+  start_all({}, {"--simulation", simulation_with("  - {kind: imu_stop, at_s: 12, for_s: 1.5}\n")});
+  hover();
+  ASSERT_LT(stamp_ns(), 12'000'000'000) << "the take-off took too long for this test";
+  ASSERT_TRUE(wait_until_rotors_off());
+  EXPECT_NEAR(static_cast<double>(client_->view().vehicle.message.stamp_ns()) * 1e-9, 12.2, 0.15)
+      << "by its own time-out of 0.2 s";
+  ASSERT_TRUE(told(Mode::kStopped, "IMU samples were missing") || told(Mode::kStopped, "tipped over", 1s))
+      << story();
+  forget();
+  fly_on(1.0);
+  for (const TruthRow& row : truth()) ASSERT_LT(fastest_rotor(row), 100.0);
+}
+
+TEST_F(Failsafe, ThePlantIsStartedAgainItsRotorsStayOff) {
+  start_all();
+  hover();
+  plant_->signal(SIGKILL);
+  plant_->wait(5s);
+  forget();
+  plant_ = start("swiftlet-plant");
+  ASSERT_TRUE(told(Mode::kStopped, "IMU samples are not usable")) << story();
+  fly_on(1.0);
+  for (const TruthRow& row : truth()) ASSERT_LT(fastest_rotor(row), 20.0);
+  // A new flight, after the pilot has seen it.
+  EXPECT_FALSE(ask(msg::Command_Constants::ARM).accepted());
+  ASSERT_TRUE(ask(msg::Command_Constants::DISARM).accepted());
+  hover();
+}
+
+TEST_F(Failsafe, SetpointsThatLeaveTheFenceAreRefusedAndItHoldsInside) {
+  start_all(
+      {"--control", settings_with("fence_max_ned_m: [3.0, 3.0, 0.2]", "fence_max_ned_m: [0.6, 3.0, 0.2]")});
+  hover();
+  auto setpoints = watcher_->publish(comms::topics::kSetpoint);
+  ASSERT_TRUE(eventually([&] { return setpoints.matched() == 1; }));
+  // By the vehicle's clock: 0.4 m/s northwards, through the fence.
+  const std::int64_t start_ns = stamp_ns();
+  control::Setpoint setpoint;
+  setpoint.position_ned.z() = -1.0;
+  ASSERT_TRUE(eventually(
+      [&] {
+        const double elapsed_s = static_cast<double>(stamp_ns() - start_ns) * 1e-9;
+        setpoint.stamp_ns = stamp_ns();
+        ++setpoint.sequence;
+        setpoint.position_ned.x() = 0.4 * elapsed_s;
+        setpoint.velocity_ned.x() = 0.4;
+        setpoints.publish(comms::to_message(setpoint));
+        return elapsed_s > 4.0;
+      },
+      kTimeout));
+  EXPECT_TRUE(told(Mode::kSetpoint, "setpoints came")) << story();
+  EXPECT_TRUE(told(Mode::kHolding, "setpoints stopped")) << story();
+  fly_on(1.0);
+  double farthest_north = 0.0;
+  for (const TruthRow& row : truth()) farthest_north = std::max(farthest_north, row.position_ned[0]);
+  EXPECT_GT(farthest_north, 0.3);
+  EXPECT_LT(farthest_north, 0.6) << "it follows them as far as it can come to rest inside";
+  EXPECT_EQ(client_->view().control.message.mode(), static_cast<std::uint8_t>(Mode::kHolding));
+}
+
+// CLOCK_REALTIME of the processes, which a test steps.
+class SteppedClock : public Failsafe {
+ protected:
+  SteppedClock() {
+    const std::string file = folder_.write("shift", std::string(sizeof(std::int64_t), '\0'));
+    const int opened = open(file.c_str(), O_RDWR | O_CLOEXEC);
+    shift_s_ = static_cast<std::int64_t*>(
+        mmap(nullptr, sizeof(std::int64_t), PROT_READ | PROT_WRITE, MAP_SHARED, opened, 0));
+    close(opened);
+    setenv("SWIFTLET_CLOCK_SHIFT", file.c_str(), 1);
+    setenv("LD_PRELOAD", SWIFTLET_SHIFTED_CLOCK, 1);
+  }
+  ~SteppedClock() override {
+    forget_clock();
+    munmap(shift_s_, sizeof(std::int64_t));
+  }
+  // Processes that are started from now on have the true one.
+  static void forget_clock() {
+    unsetenv("LD_PRELOAD");
+    unsetenv("SWIFTLET_CLOCK_SHIFT");
+  }
+  void step_clock(std::int64_t seconds) { *shift_s_ = *shift_s_ + seconds; }
+
+  std::int64_t* shift_s_ = nullptr;
+};
+
+TEST_F(SteppedClock, OfAllProcessesForwardsAndBackItFliesOnAndObeys) {
+  start_all();
+  forget_clock();
+  hover();
+  double farthest_m = 0.0;
+  for (const std::int64_t step : {3600, -7200}) {
+    step_clock(step);
+    fly_on(2.0);
+    const ground::Answer answer = ask(msg::Command_Constants::HOLD);
+    EXPECT_TRUE(answer.accepted()) << step << ": " << answer.reason;
+    for (const TruthRow& row : truth()) {
+      farthest_m = std::max(farthest_m,
+                            std::hypot(row.position_ned[0], row.position_ned[1], row.position_ned[2] + 1.0));
+    }
+    EXPECT_LT(client_->view().control.message.pose_age_s(), 0.2) << "after a step of " << step << " s";
+  }
+  EXPECT_LT(farthest_m, 0.05);
+  EXPECT_EQ(story(), "holding: take-off completed\nholding: requested\n");
+}
+
+TEST_F(SteppedClock, OfOneProcessOnlyItFliesOnAndObeys) {
+  control_ = start("swiftlet-control");
+  forget_clock();
+  plant_ = start("swiftlet-plant");
+  mocap_ = start("swiftlet-mocap");
+  hover();
+  for (const std::int64_t step : {3600, -7200}) {
+    step_clock(step);
+    fly_on(2.0);
+    const ground::Answer answer = ask(msg::Command_Constants::HOLD);
+    EXPECT_TRUE(answer.accepted()) << step << ": " << answer.reason;
+  }
+  EXPECT_TRUE(settles_at(0, 0, -1));
+  EXPECT_EQ(story(), "holding: take-off completed\nholding: requested\n");
+}
+
+}  // namespace
+}  // namespace swiftlet::tests

@@ -1,0 +1,127 @@
+#include "tests/integration/separate_processes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace swiftlet::tests {
+namespace {
+
+namespace msg = ground::msg;
+using ground::View;
+
+constexpr std::size_t kRecordCapacity = 200'000;  // of truth: 400 s
+
+}  // namespace
+
+SeparateProcesses::SeparateProcesses()
+    : record_(kRecordCapacity),
+      client_(std::make_unique<ground::Client>(node("ground"), &record_)),
+      watcher_(std::make_unique<comms::Node>(node("watcher"))) {
+  status_ =
+      watcher_->subscribe<msg::ControlStatus>(comms::topics::kControlStatus, [this](const auto& status) {
+        story_.put(std::string(ground::mode_name(status.mode())) + ": " + status.reason().c_str());
+      });
+}
+
+comms::NodeSettings SeparateProcesses::node(const std::string& name) const {
+  comms::NodeSettings settings;
+  settings.name = name;
+  settings.domain = claim_.domain();
+  settings.localhost_only = true;
+  return settings;
+}
+
+std::unique_ptr<Program> SeparateProcesses::start(const std::string& program,
+                                                  std::vector<std::string> arguments) const {
+  arguments.insert(arguments.end(), {"--domain", std::to_string(claim_.domain()), "--localhost-only"});
+  return std::make_unique<Program>(program, std::move(arguments), folder_.path());
+}
+
+void SeparateProcesses::start_all(const std::vector<std::string>& control_arguments,
+                                  const std::vector<std::string>& plant_arguments) {
+  control_ = start("swiftlet-control", control_arguments);
+  plant_ = start("swiftlet-plant", plant_arguments);
+  mocap_ = start("swiftlet-mocap");
+}
+
+void SeparateProcesses::wait_until_ready() {
+  ASSERT_TRUE(client_->wait(kTimeout, [](const View& view) {
+    return view.control.message.has_pose() && view.truth.seen() && view.battery.seen();
+  })) << control_->errors();
+}
+
+void SeparateProcesses::hover() {
+  wait_until_ready();
+  ground::Answer armed;
+  ASSERT_TRUE(eventually([&] { return (armed = ask(msg::Command_Constants::ARM)).accepted(); }, kTimeout))
+      << armed.reason;
+  const ground::Answer off = ask(msg::Command_Constants::TAKEOFF);
+  ASSERT_TRUE(off.accepted()) << off.reason;
+  ASSERT_TRUE(told(control::Mode::kHolding, "take-off completed")) << story() << control_->errors();
+  ASSERT_TRUE(eventually([&] { return distance_m(0, 0, -1) < 0.03; }, kTimeout));
+  forget();
+}
+
+ground::Answer SeparateProcesses::ask(std::uint8_t kind, double z_ned) {
+  msg::Command command;
+  command.kind(kind);
+  command.position_ned({0.0, 0.0, z_ned});
+  command.speed(0.8);
+  return client_->command(command, std::chrono::seconds(5));
+}
+
+bool SeparateProcesses::told(control::Mode mode, const std::string& reason,
+                             std::chrono::milliseconds timeout) {
+  const std::string wanted = std::string(control::to_string(mode)) + ": " + reason;
+  return story_.wait(
+      [&](const auto& told) { return std::find(told.begin(), told.end(), wanted) != told.end(); }, timeout);
+}
+
+void SeparateProcesses::forget() {
+  story_.clear();
+  forgotten_ = record_.truth.size();
+}
+
+std::string SeparateProcesses::story() const {
+  std::string text;
+  std::string last;
+  for (const std::string& line : story_.items()) {
+    if (line != last) text += line + "\n";
+    last = line;
+  }
+  return text;
+}
+
+bool SeparateProcesses::wait_for_truth(const std::function<bool(const msg::GroundTruth&)>& predicate,
+                                       std::chrono::milliseconds timeout) const {
+  return client_->wait(timeout, [&](const View& view) { return predicate(view.truth.message); });
+}
+
+void SeparateProcesses::fly_on(double seconds) const {
+  const std::int64_t end_ns = stamp_ns() + std::llround(seconds * 1e9);
+  ASSERT_TRUE(wait_for_truth([&](const auto& truth) { return truth.stamp_ns() >= end_ns; }));
+}
+
+bool SeparateProcesses::wait_until_rotors_off() const {
+  return client_->wait(kTimeout, [](const View& view) { return !view.vehicle.message.rotors_running(); });
+}
+
+bool SeparateProcesses::wait_until_on_ground() const {
+  return wait_for_truth([](const auto& truth) { return truth.on_ground(); });
+}
+
+double SeparateProcesses::distance_m(double x, double y, double z) const {
+  const auto at = client_->view().truth.message.position_ned();
+  return std::hypot(at[0] - x, at[1] - y, at[2] - z);
+}
+
+double tilt_rad(const ground::TruthRow& row) {
+  const auto& q = row.q_ned_from_frd;
+  return std::acos(std::clamp(1.0 - 2.0 * (q[1] * q[1] + q[2] * q[2]), -1.0, 1.0));
+}
+
+double fastest_rotor(const ground::TruthRow& row) {
+  return *std::max_element(row.rotor_speeds.begin(), row.rotor_speeds.end());
+}
+
+}  // namespace swiftlet::tests

@@ -1,0 +1,89 @@
+// A supervisor whose vehicle is exactly where the reference asks it to be, and never below the ground.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+
+#include "control/supervision/supervisor.hpp"
+#include "plant/model/vehicle.hpp"
+
+namespace swiftlet::tests {
+
+class SupervisedFlight {
+ public:
+  static constexpr std::int64_t kStep_ns = 2'000'000;
+
+  explicit SupervisedFlight(const control::SupervisionSettings& settings = {}) : supervisor_(settings) {
+    situation_.stamp_ns = kStep_ns;
+    situation_.estimate = &estimate_;
+    situation_.has_estimate = true;
+    situation_.has_battery = true;
+    situation_.supply_voltage_v = 3.9;
+    situation_.specific_force = plant::kGravity;
+    step();
+  }
+  SupervisedFlight(const SupervisedFlight&) = delete;
+  SupervisedFlight& operator=(const SupervisedFlight&) = delete;
+
+  void step() {
+    situation_.stamp_ns += kStep_ns;
+    estimate_.stamp_ns = situation_.stamp_ns;
+    directive_ = supervisor_.step(situation_);
+    if (directive_.actuation == control::Actuation::kFly && follows_) {
+      estimate_.position_ned = directive_.reference.position_ned;
+      estimate_.velocity_ned = directive_.reference.velocity_ned;
+      if (estimate_.position_ned.z() > 0.0) {
+        estimate_.position_ned.z() = 0.0;
+        estimate_.velocity_ned.setZero();
+      }
+    }
+  }
+  // Steps until the predicate holds; false if it does not within `limit_s` of flight.
+  bool step_until(const std::function<bool()>& predicate, double limit_s) {
+    const std::int64_t end_ns = situation_.stamp_ns + std::llround(limit_s * 1e9);
+    while (situation_.stamp_ns < end_ns) {
+      if (predicate()) return true;
+      step();
+    }
+    return predicate();
+  }
+  bool step_until(control::Mode mode, double limit_s) {
+    return step_until([&] { return supervisor_.mode() == mode; }, limit_s);
+  }
+
+  control::Outcome ask(control::RequestKind kind, const Eigen::Vector3d& position = Eigen::Vector3d::Zero(),
+                       double speed = 0.5) {
+    control::Request request;
+    request.kind = kind;
+    request.position_ned = position;
+    request.speed = speed;
+    return supervisor_.request(request, situation_);
+  }
+  control::Outcome fly(const control::Mission& mission) {
+    control::Request request;
+    request.kind = control::RequestKind::kMission;
+    request.mission = &mission;
+    return supervisor_.request(request, situation_);
+  }
+  control::Outcome fly(const control::Trajectory& trajectory) {
+    control::Request request;
+    request.kind = control::RequestKind::kTrajectory;
+    request.trajectory = &trajectory;
+    return supervisor_.request(request, situation_);
+  }
+  // Up to 1 m, where it holds.
+  bool take_off() {
+    return ask(control::RequestKind::kArm).accepted &&
+           ask(control::RequestKind::kTakeoff, {0, 0, -1}).accepted &&
+           step_until(control::Mode::kHolding, 10.0);
+  }
+
+  control::Supervisor supervisor_;
+  control::Estimate estimate_;
+  control::Situation situation_;
+  control::Directive directive_;
+  bool follows_ = true;
+};
+
+}  // namespace swiftlet::tests

@@ -1,0 +1,641 @@
+// The table of modes, run: every mode with every event, every guard at its limit, all failsafes at once.
+#include "control/supervision/transitions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/control/supervised_flight.hpp"
+
+namespace swiftlet::control {
+namespace {
+
+using Eigen::Vector3d;
+using tests::SupervisedFlight;
+
+SupervisionSettings settings_of(GroundLinkAction action) {
+  SupervisionSettings settings;
+  settings.failsafe.battery_delay_s = 0.0;
+  settings.failsafe.ground_link_action = action;
+  return settings;
+}
+
+Mission hop() {
+  Mission mission;
+  mission.id = 3;
+  mission.items = {{MissionItemKind::kTakeoff, {0, 0, -1}, 0, true, 0.5, 0.0},
+                   {MissionItemKind::kWaypoint, {2, 0, -1}, 0, true, 0.5, 0.0},
+                   {MissionItemKind::kLand, {0, 0, 0}, 0, true, 0.4, 0.0}};
+  return mission;
+}
+
+Mission to_one_place() {
+  Mission mission;
+  mission.id = 4;
+  mission.items = {{MissionItemKind::kWaypoint, {2, 0, -1}, 0, true, 0.5, 0.0}};
+  return mission;
+}
+
+Trajectory line() {
+  Trajectory trajectory;
+  trajectory.id = 5;
+  trajectory.segments = {minimum_jerk({0, 0, -1}, 0.0, {1, 0, -1}, 0.0, 4.0)};
+  return trajectory;
+}
+
+// A flight that was brought to some place of the state machine.
+class Placed : public SupervisedFlight {
+ public:
+  explicit Placed(GroundLinkAction action) : SupervisedFlight(settings_of(action)) {}
+
+  Mode mode() const { return supervisor_.mode(); }
+  void lose_ground_link() {
+    SupervisorState state = supervisor_.state();
+    state.ground_links[1] = {7, state.now_ns - 2'000'000'000};
+    supervisor_.adopt(state, plan(), &trajectory_);
+  }
+  void forget_plan() {
+    const SupervisorState state = supervisor_.state();
+    supervisor_.adopt(state, nullptr, nullptr);
+  }
+  const Mission* plan() const { return supervisor_.mission().id == mission_.id ? &mission_ : &one_place_; }
+  Outcome stream(const Vector3d& position_ned) {
+    Setpoint setpoint;
+    setpoint.position_ned = position_ned;
+    return supervisor_.setpoint(setpoint, situation_);
+  }
+
+  const Mission mission_ = hop();
+  const Mission one_place_ = to_one_place();
+  const Trajectory trajectory_ = line();
+};
+
+// The columns of the grid below. Small letters: a place within a mode.
+struct Place {
+  char letter;
+  const char* name;
+  Mode mode;
+  std::function<bool(Placed&)> reach;
+};
+
+const std::vector<Place>& places() {
+  static const std::vector<Place> kPlaces = {
+      {'D', "disarmed", Mode::kDisarmed, [](Placed&) { return true; }},
+      {'A', "armed", Mode::kArmed, [](Placed& f) { return f.ask(RequestKind::kArm).accepted; }},
+      {'t', "taking off, on the ground", Mode::kTakingOff,
+       [](Placed& f) {
+         f.ask(RequestKind::kArm);
+         return f.ask(RequestKind::kTakeoff, {0, 0, -1}).accepted;
+       }},
+      {'T', "taking off", Mode::kTakingOff,
+       [](Placed& f) {
+         f.ask(RequestKind::kArm);
+         return f.ask(RequestKind::kTakeoff, {0, 0, -1}).accepted &&
+                f.step_until([&] { return f.supervisor_.airborne(); }, 5.0);
+       }},
+      {'H', "holding", Mode::kHolding, [](Placed& f) { return f.take_off(); }},
+      {'m', "mission, on the ground", Mode::kMission,
+       [](Placed& f) { return f.ask(RequestKind::kArm).accepted && f.fly(f.mission_).accepted; }},
+      {'M', "mission", Mode::kMission,
+       [](Placed& f) { return f.take_off() && f.fly(f.one_place_).accepted; }},
+      {'l', "mission, at its landing", Mode::kMission,
+       [](Placed& f) {
+         return f.ask(RequestKind::kArm).accepted && f.fly(f.mission_).accepted &&
+                f.step_until([&] { return f.supervisor_.mission().item_index == 2; }, 20.0);
+       }},
+      {'J', "trajectory", Mode::kTrajectory,
+       [](Placed& f) { return f.take_off() && f.fly(f.trajectory_).accepted; }},
+      {'S', "setpoint", Mode::kSetpoint,
+       [](Placed& f) {
+         return f.take_off() && f.stream({0, 0, -1}).accepted;
+       }},
+      {'L', "landing", Mode::kLanding,
+       [](Placed& f) { return f.take_off() && f.ask(RequestKind::kLand).accepted; }},
+      {'W', "descent without position", Mode::kDescent,
+       [](Placed& f) {
+         const bool up = f.take_off();
+         f.situation_.pose_age_s = 1.0;
+         f.step();
+         return up;
+       }},
+      {'X', "stopped", Mode::kStopped, [](Placed& f) { return f.ask(RequestKind::kStop).accepted; }},
+  };
+  return kPlaces;
+}
+
+Mode mode_of(char letter) {
+  for (const Place& place : places()) {
+    if (place.letter == letter) return place.mode;
+  }
+  ADD_FAILURE() << "no mode has the letter " << letter;
+  return Mode::kDisarmed;
+}
+
+// Makes an event happen; of a request, the answer.
+using Cause = std::function<std::optional<Outcome>(Placed&)>;
+
+Cause condition(const std::function<void(Placed&)>& change) {
+  return [change](Placed& flight) {
+    change(flight);
+    flight.step();
+    return std::nullopt;
+  };
+}
+Cause lasting(double seconds, const std::function<void(Placed&)>& change) {
+  return [seconds, change](Placed& flight) {
+    change(flight);
+    const Mode before = flight.mode();
+    flight.step_until([&] { return flight.mode() != before; }, seconds);
+    return std::nullopt;
+  };
+}
+Cause request(RequestKind kind) {
+  return [kind](Placed& flight) -> std::optional<Outcome> {
+    if (kind == RequestKind::kMission)
+      return flight.fly(flight.mode() == Mode::kArmed ? flight.mission_ : flight.one_place_);
+    if (kind == RequestKind::kTrajectory) return flight.fly(flight.trajectory_);
+    return flight.ask(kind, {0, 0, -1});
+  };
+}
+
+// A row of the grid: for each place, the mode that follows. ".": nothing happens; "=": accepted, and the mode
+// stays; "x": refused; " ": cannot happen there.
+struct Row {
+  Event event;
+  GroundLinkAction link;
+  const char* next;  // in the order of places()
+  Reason reason;
+  Cause cause;
+};
+void PrintTo(const Row& row, std::ostream* out) { *out << to_string(row.event); }
+
+const GroundLinkAction kLand = GroundLinkAction::kLand;
+
+const Row kGrid[] = {
+    // clang-format off
+    //                              DAtTHmMlJSLWX
+    {Event::kImuUnusable, kLand,   ".XXXXXXXXXXX.", Reason::kImuUnusable, condition([](Placed& f) { f.situation_.imu_unusable_s = 0.1; })},
+    {Event::kImuGap, kLand,        ".XXXXXXXXXXX.", Reason::kImuGap, condition([](Placed& f) { f.situation_.imu_gap_s = 0.4; })},
+    {Event::kTippedOver, kLand,    ".XXXXXXXXXXX.", Reason::kTippedOver, condition([](Placed& f) { f.estimate_.q_ned_from_frd = Eigen::AngleAxisd(1.5, Vector3d::UnitX()); })},
+    {Event::kPoseLost, kLand,      ".DDWWDWWWWW..", Reason::kNoPose, condition([](Placed& f) { f.situation_.pose_age_s = 0.6; })},
+    {Event::kPoseIsBack, kLand,    "...........H.", Reason::kPoseIsBack, condition([](Placed& f) { f.situation_.pose_age_s = 0.0; })},
+    {Event::kGroundFelt, kLand,    "       D  D  ", Reason::kLanded, lasting(20.0, [](Placed&) {})},
+    {Event::kGroundFelt, kLand,    "           D ", Reason::kLandedWithoutPosition, lasting(0.4, [](Placed& f) { f.situation_.unexplained_lift = 2.0; })},
+    {Event::kDescentTimedOut, kLand, "           X ", Reason::kDescentTimedOut, lasting(6.1, [](Placed&) {})},
+    {Event::kBatteryCritical, kLand, "..DLLDLLLLL..", Reason::kBatteryCritical, condition([](Placed& f) { f.situation_.supply_voltage_v = 3.0; })},
+    {Event::kOutsideFence, kLand,  "..DLLDLLLL...", Reason::kOutsideFence, condition([](Placed& f) { f.estimate_.position_ned.x() = 3.3; })},
+    {Event::kBatteryLow, kLand,    "..DLLDLLLL...", Reason::kBatteryLow, condition([](Placed& f) { f.situation_.supply_voltage_v = 3.2; })},
+    {Event::kBatterySilent, kLand, "..DLLDLLLL...", Reason::kBatterySilent, condition([](Placed& f) { f.situation_.battery_age_s = 2.1; })},
+    {Event::kGroundLinkLost, kLand, ".DDLLDLLLL...", Reason::kGroundLinkLost, condition([](Placed& f) { f.lose_ground_link(); })},
+    {Event::kGroundLinkLost, GroundLinkAction::kHold, ".DDHHDHHHH...", Reason::kGroundLinkLost, condition([](Placed& f) { f.lose_ground_link(); })},
+    {Event::kGroundLinkLost, GroundLinkAction::kNone, ".............", Reason::kGroundLinkLost, condition([](Placed& f) { f.lose_ground_link(); })},
+    {Event::kSetpointsStopped, kLand, "         H   ", Reason::kSetpointsStopped, lasting(0.6, [](Placed&) {})},
+    {Event::kPlanFinished, kLand,  "   H         ", Reason::kTakeOffCompleted, lasting(10.0, [](Placed&) {})},
+    {Event::kPlanFinished, kLand,  "      H      ", Reason::kMissionCompleted, lasting(10.0, [](Placed&) {})},
+    {Event::kPlanFinished, kLand,  "        H    ", Reason::kTrajectoryCompleted, lasting(10.0, [](Placed&) {})},
+    {Event::kStop, kLand,          "XXXXXXXXXXXXX", Reason::kRequested, request(RequestKind::kStop)},
+    {Event::kArm, kLand,           "A=xxxxxxxxxxx", Reason::kRequested, request(RequestKind::kArm)},
+    {Event::kDisarm, kLand,        "DDDxxDxxxxxxD", Reason::kRequested, request(RequestKind::kDisarm)},
+    {Event::kTakeoff, kLand,       "xTxxxxxxxxxxx", Reason::kRequested, request(RequestKind::kTakeoff)},
+    {Event::kMission, kLand,       "xMxxMxxxxxxxx", Reason::kRequested, request(RequestKind::kMission)},
+    {Event::kTrajectory, kLand,    "xxxxJxxxxxxxx", Reason::kRequested, request(RequestKind::kTrajectory)},
+    {Event::kSetpoint, kLand,      "xxxxSxxxx=xxx", Reason::kSetpointsCame, [](Placed& f) { return std::optional(f.stream(f.estimate_.position_ned)); }},
+    {Event::kGoTo, kLand,          "xxxHHxHHHHHxx", Reason::kRequested, request(RequestKind::kGoTo)},
+    {Event::kHold, kLand,          "xxxHHxHHHHHxx", Reason::kRequested, request(RequestKind::kHold)},
+    {Event::kLand, kLand,          "xxDLLDLLLL==x", Reason::kRequested, request(RequestKind::kLand)},
+    {Event::kPlanUnknown, kLand,   ".....DHHH....", Reason::kPlanUnknown, [](Placed& f) { f.forget_plan(); return std::optional<Outcome>(); }},
+    {Event::kFoundFlying, kLand,   "Hxxxxxxxxxxxx", Reason::kFoundFlying, [](Placed& f) { return std::optional(f.supervisor_.find_flying(f.situation_)); }},
+    // clang-format on
+};
+
+class Grid : public testing::TestWithParam<Row> {};
+
+TEST_P(Grid, EveryModeAnswersAsItSays) {
+  const Row& row = GetParam();
+  ASSERT_EQ(std::string(row.next).size(), places().size());
+  for (std::size_t i = 0; i < places().size(); ++i) {
+    const Place& place = places()[i];
+    const char next = row.next[i];
+    if (next == ' ') continue;
+    SCOPED_TRACE(std::string(place.name) + ", " + to_string(row.event));
+    Placed flight(row.link);
+    ASSERT_TRUE(place.reach(flight));
+    ASSERT_EQ(flight.mode(), place.mode);
+    const Reason before = flight.supervisor_.reason();
+    const std::optional<Outcome> outcome = row.cause(flight);
+    if (outcome) {
+      EXPECT_EQ(outcome->accepted, next != 'x') << outcome->reason;
+      EXPECT_EQ(outcome->reason[0] == '\0', next != 'x') << "a refusal has a sentence, nothing else has one";
+    }
+    const bool moves = std::string(".=x").find(next) == std::string::npos;
+    EXPECT_EQ(flight.mode(), moves ? mode_of(next) : place.mode)
+        << "went to " << to_string(flight.mode()) << ": " << to_string(flight.supervisor_.reason());
+    EXPECT_EQ(flight.supervisor_.reason(), moves ? row.reason : before);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Events, Grid, testing::ValuesIn(kGrid));
+
+TEST(GridItself, HoldsEveryEventAndEveryMode) {
+  for (int i = 0; i < kEventCount; ++i) {
+    const auto event = static_cast<Event>(i);
+    EXPECT_TRUE(std::any_of(std::begin(kGrid), std::end(kGrid), [&](const Row& row) {
+      return row.event == event;
+    })) << to_string(event);
+  }
+  for (int i = 0; i < kModeCount; ++i) {
+    const auto mode = static_cast<Mode>(i);
+    EXPECT_TRUE(std::any_of(places().begin(), places().end(), [&](const Place& place) {
+      return place.mode == mode;
+    })) << to_string(mode);
+  }
+}
+
+TEST(Transitions, NoRowHidesALaterOne) {
+  const TransitionTable table = transitions();
+  for (int later = 0; later < table.count; ++later) {
+    for (int mode = 0; mode < kModeCount; ++mode) {
+      if (!table.rows[later].from.has(static_cast<Mode>(mode))) continue;
+      for (int earlier = 0; earlier < later; ++earlier) {
+        const Transition& row = table.rows[earlier];
+        const bool hides = row.event == table.rows[later].event && row.from.has(static_cast<Mode>(mode)) &&
+                           &row.when == &when::kAlways;
+        EXPECT_FALSE(hides) << "row " << later + 1 << " is never reached in mode "
+                            << to_string(static_cast<Mode>(mode)) << ": row " << earlier + 1;
+      }
+    }
+  }
+}
+
+// Those that can hold in one step of a flight, the most urgent first.
+struct Urgency {
+  Reason reason;
+  std::function<void(Placed&)> change;
+};
+const std::vector<Urgency>& failsafes() {
+  static const std::vector<Urgency> kFailsafes = {
+      {Reason::kImuUnusable, [](Placed& f) { f.situation_.imu_unusable_s = 0.2; }},
+      {Reason::kImuGap, [](Placed& f) { f.situation_.imu_gap_s = 0.4; }},
+      {Reason::kTippedOver,
+       [](Placed& f) { f.estimate_.q_ned_from_frd = Eigen::AngleAxisd(1.5, Vector3d::UnitY()); }},
+      {Reason::kNoPose, [](Placed& f) { f.situation_.pose_age_s = 0.6; }},
+      {Reason::kBatteryCritical, [](Placed& f) { f.situation_.supply_voltage_v = 3.0; }},
+      {Reason::kOutsideFence, [](Placed& f) { f.estimate_.position_ned.y() = -3.3; }},
+      {Reason::kBatteryLow,
+       [](Placed& f) { f.situation_.supply_voltage_v = std::min(f.situation_.supply_voltage_v, 3.2); }},
+      {Reason::kBatterySilent, [](Placed& f) { f.situation_.battery_age_s = 2.1; }},
+      {Reason::kGroundLinkLost, [](Placed& f) { f.lose_ground_link(); }},
+  };
+  return kFailsafes;
+}
+
+TEST(Priorities, OfAllFailsafesThatHoldTheMostUrgentIsTaken) {
+  const unsigned sets = 1U << failsafes().size();
+  for (const char letter : {'T', 'H', 'M', 'J', 'S'}) {
+    const auto place =
+        std::find_if(places().begin(), places().end(), [&](const Place& p) { return p.letter == letter; });
+    for (unsigned set = 1; set < sets; ++set) {
+      Placed flight(kLand);
+      ASSERT_TRUE(place->reach(flight));
+      std::optional<Reason> most_urgent;
+      for (std::size_t i = 0; i < failsafes().size(); ++i) {
+        if ((set >> i & 1U) == 0) continue;
+        failsafes()[i].change(flight);
+        if (!most_urgent) most_urgent = failsafes()[i].reason;
+      }
+      flight.step();
+      ASSERT_EQ(flight.supervisor_.reason(), *most_urgent)
+          << place->name << ", set " << set << ": " << to_string(flight.supervisor_.reason());
+    }
+  }
+}
+
+// A condition at its limit and just beyond it.
+struct Limit {
+  const char* name;
+  char place;
+  Reason reason;
+  double limit;
+  double beyond;
+  std::function<void(Placed&, double)> set;
+};
+void PrintTo(const Limit& limit, std::ostream* out) { *out << limit.name; }
+
+class Limits_ : public testing::TestWithParam<Limit> {};
+
+TEST_P(Limits_, HoldAtTheLimitAndNotBeyond) {
+  const Limit& limit = GetParam();
+  const auto place =
+      std::find_if(places().begin(), places().end(), [&](const Place& p) { return p.letter == limit.place; });
+  for (const bool beyond : {false, true}) {
+    Placed flight(kLand);
+    ASSERT_TRUE(place->reach(flight));
+    limit.set(flight, beyond ? limit.beyond : limit.limit);
+    flight.step();
+    EXPECT_EQ(flight.supervisor_.reason() == limit.reason, beyond)
+        << to_string(flight.supervisor_.reason()) << " at " << (beyond ? limit.beyond : limit.limit);
+  }
+}
+
+const FailsafeSettings kThresholds;
+const Limit kLimits[] = {
+    {"imu_timeout_s", 'H', Reason::kImuUnusable, kThresholds.imu_timeout_s - 1e-9, kThresholds.imu_timeout_s,
+     [](Placed& f, double v) { f.situation_.imu_unusable_s = v; }},
+    {"imu_gap_s", 'H', Reason::kImuGap, kThresholds.imu_gap_s, kThresholds.imu_gap_s + 1e-9,
+     [](Placed& f, double v) { f.situation_.imu_gap_s = v; }},
+    {"tip_over_tilt_rad", 'H', Reason::kTippedOver, kThresholds.tip_over_tilt_rad - 1e-6,
+     kThresholds.tip_over_tilt_rad + 1e-6,
+     [](Placed& f, double v) { f.estimate_.q_ned_from_frd = Eigen::AngleAxisd(v, Vector3d(0.6, 0.8, 0.0)); }},
+    {"mocap_timeout_s", 'H', Reason::kNoPose, kThresholds.mocap_timeout_s, kThresholds.mocap_timeout_s + 1e-9,
+     [](Placed& f, double v) { f.situation_.pose_age_s = v; }},
+    {"low_battery_voltage", 'H', Reason::kBatteryLow, kThresholds.low_battery_voltage,
+     kThresholds.low_battery_voltage - 1e-9, [](Placed& f, double v) { f.situation_.supply_voltage_v = v; }},
+    {"critical_battery_voltage", 'L', Reason::kBatteryCritical, kThresholds.critical_battery_voltage,
+     kThresholds.critical_battery_voltage - 1e-9,
+     [](Placed& f, double v) { f.situation_.supply_voltage_v = v; }},
+    {"battery_timeout_s", 'H', Reason::kBatterySilent, kThresholds.battery_timeout_s,
+     kThresholds.battery_timeout_s + 1e-9, [](Placed& f, double v) { f.situation_.battery_age_s = v; }},
+    {"fence_margin_m", 'H', Reason::kOutsideFence, 3.0 + kThresholds.fence_margin_m - 1e-9,
+     3.0 + kThresholds.fence_margin_m + 1e-9, [](Placed& f, double v) { f.estimate_.position_ned.x() = v; }},
+    {"fence_margin_m upward", 'H', Reason::kOutsideFence, -2.5 - kThresholds.fence_margin_m + 1e-9,
+     -2.5 - kThresholds.fence_margin_m - 1e-9, [](Placed& f, double v) { f.estimate_.position_ned.z() = v; }},
+};
+INSTANTIATE_TEST_SUITE_P(OfTheFailsafes, Limits_, testing::ValuesIn(kLimits));
+
+TEST(Failsafes, ABatteryMustStayLowForAsLongAsTheSettingsSay) {
+  SupervisionSettings settings;
+  settings.failsafe.battery_delay_s = 0.5;
+  for (const double voltage_v : {3.2, 3.0}) {
+    SupervisedFlight flight(settings);
+    ASSERT_TRUE(flight.take_off());
+    flight.situation_.supply_voltage_v = voltage_v;
+    EXPECT_FALSE(flight.step_until(Mode::kLanding, 0.49));
+    flight.situation_.supply_voltage_v = 3.5;
+    flight.step();
+    flight.situation_.supply_voltage_v = voltage_v;
+    EXPECT_FALSE(flight.step_until(Mode::kLanding, 0.49));
+    EXPECT_TRUE(flight.step_until(Mode::kLanding, 0.03));
+  }
+}
+
+TEST(Failsafes, ACriticalBatteryLandsFasterThanALowOne) {
+  const auto landing_s = [](double voltage_v) {
+    Placed flight(kLand);
+    EXPECT_TRUE(flight.take_off());
+    flight.situation_.supply_voltage_v = voltage_v;
+    const std::int64_t start_ns = flight.situation_.stamp_ns;
+    EXPECT_TRUE(flight.step_until(Mode::kDisarmed, 30.0));
+    return static_cast<double>(flight.situation_.stamp_ns - start_ns) * 1e-9;
+  };
+  EXPECT_LT(landing_s(3.0), 0.8 * landing_s(3.2));
+}
+
+TEST(Failsafes, OutsideTheFenceItComesDownInside) {
+  Placed flight(kLand);
+  ASSERT_TRUE(flight.take_off());
+  ASSERT_TRUE(flight.ask(RequestKind::kGoTo, {2.5, 0, -1}).accepted);
+  ASSERT_TRUE(flight.step_until([&] { return flight.estimate_.position_ned.x() > 2.0; }, 20.0));
+  flight.follows_ = false;
+  flight.estimate_.position_ned.x() = 3.4;
+  flight.step();
+  ASSERT_EQ(flight.mode(), Mode::kLanding);
+  flight.follows_ = true;
+  ASSERT_TRUE(flight.step_until(Mode::kDisarmed, 30.0));
+  EXPECT_LE(flight.estimate_.position_ned.x(), 3.0 + 1e-9);
+}
+
+TEST(Failsafes, ALandingThatLosesThePoseGoesOnWhenItIsBack) {
+  for (const bool of_a_mission : {false, true}) {
+    Placed flight(kLand);
+    if (of_a_mission) {
+      ASSERT_TRUE(flight.ask(RequestKind::kArm).accepted);
+      ASSERT_TRUE(flight.fly(flight.mission_).accepted);
+      ASSERT_TRUE(flight.step_until([&] { return flight.supervisor_.mission().item_index == 2; }, 20.0));
+    } else {
+      ASSERT_TRUE(flight.take_off());
+      ASSERT_TRUE(flight.ask(RequestKind::kLand).accepted);
+    }
+    flight.situation_.pose_age_s = 1.0;
+    ASSERT_TRUE(flight.step_until(Mode::kDescent, 0.1));
+    flight.situation_.pose_age_s = 0.0;
+    flight.step();
+    EXPECT_EQ(flight.mode(), Mode::kLanding);
+    EXPECT_EQ(flight.supervisor_.reason(), Reason::kPoseIsBack);
+    EXPECT_TRUE(flight.step_until(Mode::kDisarmed, 20.0));
+  }
+}
+
+TEST(Failsafes, ALandingAskedForWithoutPositionFollowsWhenItIsBack) {
+  Placed flight(kLand);
+  ASSERT_TRUE(flight.take_off());
+  flight.situation_.pose_age_s = 1.0;
+  flight.step();
+  ASSERT_TRUE(flight.ask(RequestKind::kLand).accepted);
+  EXPECT_EQ(flight.mode(), Mode::kDescent);
+  flight.situation_.pose_age_s = 0.0;
+  flight.step();
+  EXPECT_EQ(flight.mode(), Mode::kLanding);
+}
+
+TEST(FoundFlying, ComesToRestAndHoldsButNotWithoutAPose) {
+  Placed flight(kLand);
+  flight.estimate_.position_ned = {1.0, 0.0, -1.5};
+  flight.estimate_.velocity_ned = {0.8, 0.0, 0.0};
+  flight.situation_.pose_age_s = 0.6;
+  EXPECT_FALSE(flight.supervisor_.find_flying(flight.situation_).accepted);
+  EXPECT_EQ(flight.mode(), Mode::kDisarmed);
+  flight.situation_.pose_age_s = 0.0;
+  ASSERT_TRUE(flight.supervisor_.find_flying(flight.situation_).accepted);
+  flight.step();
+  EXPECT_EQ(flight.directive_.actuation, Actuation::kFly);
+  EXPECT_NEAR(flight.directive_.reference.velocity_ned.x(), 0.8, 0.02);
+  flight.step_until([] { return false; }, 3.0);
+  EXPECT_EQ(flight.directive_.reference.velocity_ned, Vector3d::Zero());
+  ASSERT_TRUE(flight.ask(RequestKind::kLand).accepted);
+  EXPECT_TRUE(flight.step_until(Mode::kDisarmed, 20.0));
+}
+
+class GroundLinks : public testing::Test {
+ protected:
+  // For seconds of flight, with a sign of life each 0.2 s of these clients.
+  void fly_on(double seconds, const std::vector<std::uint64_t>& clients) {
+    const std::int64_t end_ns = flight_.situation_.stamp_ns + std::llround(seconds * 1e9);
+    for (int i = 0; flight_.situation_.stamp_ns < end_ns; ++i) {
+      if (i % 100 == 0) {
+        for (const std::uint64_t client : clients)
+          EXPECT_TRUE(flight_.supervisor_.ground_sign({client, true}));
+      }
+      flight_.step();
+    }
+  }
+  Placed flight_{kLand};
+};
+
+TEST_F(GroundLinks, AFlightThatDependsOnNobodyGoesOn) {
+  ASSERT_TRUE(flight_.take_off());
+  fly_on(5.0, {});
+  EXPECT_EQ(flight_.mode(), Mode::kHolding);
+}
+
+TEST_F(GroundLinks, OneThatFallsSilentIsMissedThoughAnotherTalks) {
+  ASSERT_TRUE(flight_.take_off());
+  fly_on(5.0, {1, 2});
+  EXPECT_EQ(flight_.mode(), Mode::kHolding);
+  fly_on(0.7, {2});
+  EXPECT_EQ(flight_.mode(), Mode::kHolding);
+  fly_on(0.4, {2});
+  EXPECT_EQ(flight_.mode(), Mode::kLanding);
+  EXPECT_EQ(flight_.supervisor_.reason(), Reason::kGroundLinkLost);
+}
+
+TEST_F(GroundLinks, OneThatTakesLeaveIsNotMissed) {
+  ASSERT_TRUE(flight_.take_off());
+  fly_on(1.0, {1});
+  EXPECT_TRUE(flight_.supervisor_.ground_sign({1, false}));
+  fly_on(3.0, {});
+  EXPECT_EQ(flight_.mode(), Mode::kHolding);
+}
+
+TEST_F(GroundLinks, ALostOneIsAnsweredOnceAndThenForgotten) {
+  ASSERT_TRUE(flight_.take_off());
+  fly_on(1.0, {1});
+  ASSERT_TRUE(flight_.step_until(Mode::kLanding, 1.2));
+  ASSERT_TRUE(flight_.ask(RequestKind::kHold).accepted);
+  fly_on(3.0, {});
+  EXPECT_EQ(flight_.mode(), Mode::kHolding);
+}
+
+TEST_F(GroundLinks, OneThatIsLostWithoutPositionIsAnsweredWhenThePoseIsBack) {
+  ASSERT_TRUE(flight_.take_off());
+  fly_on(1.0, {1});
+  flight_.situation_.pose_age_s = 1.0;
+  fly_on(2.0, {});
+  ASSERT_EQ(flight_.mode(), Mode::kDescent);
+  flight_.situation_.pose_age_s = 0.0;
+  flight_.step();
+  EXPECT_EQ(flight_.mode(), Mode::kHolding);
+  flight_.step();
+  EXPECT_EQ(flight_.mode(), Mode::kLanding);
+  EXPECT_EQ(flight_.supervisor_.reason(), Reason::kGroundLinkLost);
+}
+
+TEST_F(GroundLinks, NoMoreThanFitAreTaken) {
+  for (std::uint64_t client = 1; client <= kMaxGroundLinks; ++client)
+    EXPECT_TRUE(flight_.supervisor_.ground_sign({client, true}));
+  EXPECT_FALSE(flight_.supervisor_.ground_sign({99, true}));
+  EXPECT_TRUE(flight_.supervisor_.ground_sign({99, false})) << "it never was depended on";
+  EXPECT_TRUE(flight_.supervisor_.ground_sign({2, true}));
+  EXPECT_TRUE(flight_.supervisor_.ground_sign({3, false}));
+  EXPECT_TRUE(flight_.supervisor_.ground_sign({99, true}));
+}
+
+TEST_F(GroundLinks, OnesThatFellSilentOnTheGroundDoNotEndTheNextFlight) {
+  EXPECT_TRUE(flight_.supervisor_.ground_sign({1, true}));
+  fly_on(3.0, {});
+  ASSERT_TRUE(flight_.take_off());
+  EXPECT_EQ(flight_.mode(), Mode::kHolding);
+}
+
+// An arming check at its limit and just beyond it, and what it then says.
+struct ArmingLimit {
+  const char* name;
+  std::function<void(Placed&)> good;
+  std::function<void(Placed&)> bad;
+  const char* sentence;
+};
+void PrintTo(const ArmingLimit& limit, std::ostream* out) { *out << limit.name; }
+
+class Arming : public testing::TestWithParam<ArmingLimit> {};
+
+TEST_P(Arming, IsRefusedBeyondTheLimitWithValueAndLimit) {
+  const ArmingLimit& limit = GetParam();
+  Placed good(kLand);
+  limit.good(good);
+  const Outcome accepted = good.ask(RequestKind::kArm);
+  EXPECT_TRUE(accepted.accepted) << accepted.reason;
+  Placed bad(kLand);
+  limit.bad(bad);
+  const Outcome refused = bad.ask(RequestKind::kArm);
+  EXPECT_FALSE(refused.accepted);
+  EXPECT_EQ(std::string(refused.reason), std::string("cannot arm: ") + limit.sentence);
+  EXPECT_EQ(bad.mode(), Mode::kDisarmed);
+}
+
+const auto kNothing = [](Placed&) {};
+const ArmingLimit kArmingLimits[] = {
+    {"pose", kNothing, [](Placed& f) { f.situation_.has_estimate = false; }, "no mocap pose has come"},
+    {"pose age", [](Placed& f) { f.situation_.pose_age_s = 0.5; },
+     [](Placed& f) { f.situation_.pose_age_s = 0.51; },
+     "the last mocap pose is 0.51 s old, the limit is 0.50 s"},
+    {"pose fault", [](Placed& f) { f.estimate_.pose_fault = PoseFault::kUntimely; },
+     [](Placed& f) { f.estimate_.pose_fault = PoseFault::kFrozen; },
+     "the last mocap pose was refused: frozen"},
+    {"imu", kNothing, [](Placed& f) { f.situation_.imu_unusable_s = 0.002; }, "IMU samples are not usable"},
+    {"battery", kNothing, [](Placed& f) { f.situation_.has_battery = false; }, "no battery voltage has come"},
+    {"battery age", [](Placed& f) { f.situation_.battery_age_s = 2.0; },
+     [](Placed& f) { f.situation_.battery_age_s = 2.1; },
+     "the last battery voltage is 2.1 s old, the limit is 2.0 s"},
+    {"voltage", [](Placed& f) { f.situation_.supply_voltage_v = 3.3; },
+     [](Placed& f) { f.situation_.supply_voltage_v = 3.29; }, "the battery has 3.29 V, the limit is 3.30 V"},
+    {"specific force", [](Placed& f) { f.situation_.specific_force = plant::kGravity + 1.49; },
+     [](Placed& f) { f.situation_.specific_force = plant::kGravity - 1.51; },
+     "the accelerometer shows 8.30 m/s^2, at rest it is within 1.50 of 9.81 m/s^2"},
+    {"rates",
+     [](Placed& f) {
+       f.estimate_.body_rates_frd = {0.0, 0.2, 0.0};
+     },
+     [](Placed& f) {
+       f.estimate_.body_rates_frd = {0.2, 0.2, 0.1};
+     },
+     "turning at 0.30 rad/s, the limit is 0.20 rad/s"},
+    {"rotors", [](Placed& f) { f.situation_.rotor_speed = 100.0; },
+     [](Placed& f) { f.situation_.rotor_speed = 101.0; },
+     "a rotor turns at 101 rad/s, the limit is 100 rad/s"},
+    {"tilt", [](Placed& f) { f.estimate_.q_ned_from_frd = Eigen::AngleAxisd(0.349, Vector3d::UnitX()); },
+     [](Placed& f) { f.estimate_.q_ned_from_frd = Eigen::AngleAxisd(0.36, Vector3d::UnitX()); },
+     "tilted by 0.36 rad, the limit is 0.35 rad"},
+    {"speed",
+     [](Placed& f) {
+       f.estimate_.velocity_ned = {0.0, 0.0, 0.3};
+     },
+     [](Placed& f) {
+       f.estimate_.velocity_ned = {0.0, 0.0, 0.31};
+     },
+     "moving at 0.31 m/s, the limit is 0.30 m/s"},
+    {"fence", [](Placed& f) { f.estimate_.position_ned.x() = 3.0; },
+     [](Placed& f) { f.estimate_.position_ned.x() = 3.01; },
+     "the vehicle: x is 3.010 m, outside the fence of -3.000 to 3.000 m"},
+};
+INSTANTIATE_TEST_SUITE_P(Checks, Arming, testing::ValuesIn(kArmingLimits));
+
+TEST(ArmingRefusal, NamesAllThatStandsAgainstItAndNeverHalfASentence) {
+  Placed flight(kLand);
+  flight.situation_.has_battery = false;
+  flight.estimate_.velocity_ned.x() = 1.0;
+  EXPECT_STREQ(flight.ask(RequestKind::kArm).reason,
+               "cannot arm: no battery voltage has come; moving at 1.00 m/s, the limit is 0.30 m/s");
+  for (const ArmingLimit& limit : kArmingLimits) limit.bad(flight);
+  const std::string all = flight.ask(RequestKind::kArm).reason;
+  EXPECT_LT(all.size(), sizeof Outcome().reason);
+  std::size_t sentences = 0;
+  std::string rest = all.substr(std::string("cannot arm: ").size());
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find("; "), rest.size());
+    const std::string sentence = rest.substr(0, end);
+    EXPECT_TRUE(std::any_of(std::begin(kArmingLimits), std::end(kArmingLimits),
+                            [&](const ArmingLimit& limit) { return sentence == limit.sentence; }))
+        << sentence;
+    rest = end == rest.size() ? "" : rest.substr(end + 2);
+    ++sentences;
+  }
+  EXPECT_GE(sentences, 3U);
+}
+
+}  // namespace
+}  // namespace swiftlet::control
