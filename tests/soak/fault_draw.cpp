@@ -16,6 +16,7 @@ using plant::FaultKind;
 using plant::RandomStream;
 
 constexpr double kMeanInterval_s = 4.0;
+constexpr double kRecovery_s = 5.0;  // of an estimate, after a fault of the IMU or of motion capture
 
 // How long a fault of a kind lasts: log-uniform between these.
 struct Duration {
@@ -66,15 +67,15 @@ void draw_parameters(Fault& fault, const plant::Vehicle& vehicle, const control:
       fault.delay_s = random.log_uniform(0.005, 0.1);
       return;
     case FaultKind::kImuBias:
-      fault.specific_force_frd = random.log_uniform(0.1, 3.0) * random.on_unit_sphere();
-      fault.body_rates_frd = random.log_uniform(0.01, 0.3) * random.on_unit_sphere();
+      fault.specific_force_frd = random.log_uniform(0.05, 0.5) * random.on_unit_sphere();
+      fault.body_rates_frd = random.log_uniform(0.005, 0.1) * random.on_unit_sphere();
       return;
     case FaultKind::kBatteryDrop:
       fault.voltage_v = random.log_uniform(0.05, 0.8);
       return;
     case FaultKind::kRotorThrust:
       fault.rotor = 1 + static_cast<int>(random.uniform() * vehicle.rotor_count());
-      fault.factor = random.uniform(0.75, 1.0);
+      fault.factor = random.uniform(0.85, 1.0);
       return;
     case FaultKind::kPush:
       fault.force_ned =
@@ -91,6 +92,21 @@ void draw_parameters(Fault& fault, const plant::Vehicle& vehicle, const control:
     default:
       return;  // no parameters
   }
+}
+
+bool hides_attitude(FaultKind kind) {
+  return kind == FaultKind::kMocapStop || kind == FaultKind::kMocapFreeze ||
+         kind == FaultKind::kMocapUntracked || kind == FaultKind::kMocapJump || kind == FaultKind::kMocapSwap;
+}
+bool misleads(FaultKind kind) { return kind == FaultKind::kImuBias || kind == FaultKind::kImuStuck; }
+
+// An IMU that misleads while motion capture is gone: nobody could know.
+bool hidden(const Fault& fault, const std::vector<Fault>& earlier) {
+  return std::any_of(earlier.begin(), earlier.end(), [&](const Fault& other) {
+    const bool together = (misleads(fault.kind) && hides_attitude(other.kind)) ||
+                          (misleads(other.kind) && hides_attitude(fault.kind));
+    return together && fault.at_s < other.at_s + other.for_s + kRecovery_s;
+  });
 }
 
 }  // namespace
@@ -111,6 +127,7 @@ std::vector<Fault> draw_faults(std::uint64_t seed, double first_s, double last_s
     fault.for_s = random.log_uniform(duration.min_s, duration.max_s);
     draw_parameters(fault, vehicle, limits, random);
     if (at_s <= free_from_s[index]) continue;  // one of a kind at a time
+    if (hidden(fault, faults)) continue;
     free_from_s[index] = at_s + fault.for_s;
     faults.push_back(fault);
   }

@@ -80,7 +80,7 @@ class Run {
   void look(Mode before, Mode asked) {
     const Mode mode = loop_.controller.status().mode;
     if (mode != before && log_)
-      tell(std::string("mode: ") + to_string(mode) + ", " + loop_.controller.status().reason);
+      tell(std::string("mode: ") + to_string(mode) + ", " + to_string(loop_.controller.status().reason));
     const double step_s = loop_.time_s() - looked_s_;
     looked_s_ = loop_.time_s();
     if (airborne()) flight_.airborne_s += step_s;
