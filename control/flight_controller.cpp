@@ -25,6 +25,9 @@ using Eigen::Vector3d;
 constexpr double kFirstStep_s = 0.002;  // taken for the first sample, which has none before it
 constexpr double kMaxStep_s = 0.1;
 constexpr int kUnusableToFault = 200;  // IMU samples in a row that cannot be used, whatever their stamps say
+// Of the weight, specific force that the rotors do not explain: something else carries the vehicle, on its legs or on
+// its side.
+constexpr double kStandingLift = 0.5;
 constexpr double kDescentGain = 4.0;   // 1/s, vertical speed to acceleration, in descent without position
 constexpr double kBrakeGain = 2.0;     // 1/s, likewise of the horizontal speed
 constexpr double kDescentLimit = 2.0;  // m/s^2, of that acceleration
@@ -49,7 +52,7 @@ struct FlightController::Loops {
   void act(const Directive& directive, double dt_s);
   void fly(const Directive& directive, double dt_s);
   void spool_up(const Directive& directive);
-  void descend_level();
+  void descend_level(double speed);
   void command_wrench(double thrust_n, const AttitudeReference& attitude_reference);
   plant::ActuatorCommand answer(const plant::ImuSample& sample);
 
@@ -160,7 +163,7 @@ void FlightController::Loops::act(const Directive& directive, double dt_s) {
     case Actuation::kFly:
       return fly(directive, dt_s);
     case Actuation::kLevelDescent:
-      return descend_level();
+      return descend_level(directive.descent_speed);
   }
 }
 
@@ -194,10 +197,10 @@ void FlightController::Loops::spool_up(const Directive& directive) {
   command_wrench(directive.lift_fraction * vehicle.mass_kg * plant::kGravity, level);
 }
 
-void FlightController::Loops::descend_level() {
+void FlightController::Loops::descend_level(double speed) {
   const Estimate& estimate = estimator.estimate();
   Vector3d acceleration_ned = -kBrakeGain * estimate.velocity_ned;
-  acceleration_ned.z() = kDescentGain * (settings.failsafe.descent_speed - estimate.velocity_ned.z());
+  acceleration_ned.z() = kDescentGain * (speed - estimate.velocity_ned.z());
   acceleration_ned = acceleration_ned.cwiseMax(-kDescentLimit).cwiseMin(kDescentLimit);
   const ThrustAttitude outer = thrust_attitude(vehicle.mass_kg, acceleration_ned, max_tilt_tangent);
   AttitudeReference braking;
@@ -293,7 +296,30 @@ Outcome FlightController::request(const Request& request) {
   return loops_->supervisor.request(request, loops_->situation());
 }
 
+FlightState FlightController::state() const {
+  const Loops& l = *loops_;
+  return {l.supervisor.state(), l.position.integral(), l.command.rotor_state, l.command.throttle};
+}
+
+void FlightController::adopt(const FlightState& state, const Mission* mission, const Trajectory* trajectory) {
+  Loops& l = *loops_;
+  l.supervisor.adopt(state.supervisor, mission, trajectory);
+  l.position.adopt(state.position_integral);
+  l.command.rotor_state = state.rotor_state;
+  l.command.throttle = state.throttle;
+}
+
+bool FlightController::feels_airborne() const {
+  const Loops& l = *loops_;
+  const Vector3d lift_frd(0.0, 0.0, -l.rotors.thrust_n() / l.vehicle.mass_kg);
+  const Vector3d unexplained = l.specific_force_frd - l.estimator.estimate().accelerometer_bias - lift_frd;
+  return unexplained.norm() < kStandingLift * plant::kGravity;
+}
+
+bool FlightController::find_flying() { return loops_->supervisor.find_flying(loops_->situation()).accepted; }
+
 const Estimate& FlightController::estimate() const { return loops_->estimator.estimate(); }
+ErrorState FlightController::estimate_deviation() const { return loops_->estimator.standard_deviation(); }
 const Reference& FlightController::reference() const { return loops_->reference; }
 const AttitudeSetpoint& FlightController::attitude_setpoint() const { return loops_->setpoint; }
 const Status& FlightController::status() const { return loops_->status; }

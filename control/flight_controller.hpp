@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "control/estimation/estimator.hpp"
+#include "control/flight_state.hpp"
 #include "control/mode.hpp"
 #include "control/reference.hpp"
 #include "control/request.hpp"
@@ -47,8 +48,18 @@ class FlightController {
   // before.
   Outcome request(const Request& request);
 
+  // The flight, for another controller of the same vehicle and settings to go on with, in its next step. What is
+  // being flown is passed beside it, as in Supervisor::adopt().
+  FlightState state() const;
+  void adopt(const FlightState& state, const Mission* mission, const Trajectory* trajectory);
+  // The air carries the vehicle, as far as accelerometer and rotor speeds tell: it does not stand.
+  bool feels_airborne() const;
+  // Takes a vehicle that flies already into hold; false, and changes nothing, without a pose.
+  bool find_flying();
+
   // As of the last step.
   const Estimate& estimate() const;
+  ErrorState estimate_deviation() const;  // Estimator::standard_deviation()
   const Reference& reference() const;
   const AttitudeSetpoint& attitude_setpoint() const;
   const Status& status() const;

@@ -69,7 +69,7 @@ struct Limits {
 struct EstimatorSettings {
   double accelerometer_noise_density = 4.0e-3;  // m/s^2/sqrt(Hz)
   double gyro_noise_density = 2.0e-4;           // rad/s/sqrt(Hz)
-  double accelerometer_bias_walk = 1.0e-3;      // m/s^2/sqrt(s)
+  double accelerometer_bias_walk = 2.0e-2;      // m/s^2/sqrt(s), with what a misaligned marker body adds
   double gyro_bias_walk = 1.0e-4;               // rad/s/sqrt(s)
   double accelerometer_bias_sigma = 0.2;        // m/s^2, before the first pose
   double gyro_bias_sigma = 0.02;                // rad/s, likewise

@@ -5,6 +5,7 @@
 #include <random>
 #include <utility>
 
+#include "control/estimation/estimator.hpp"
 #include "control/mode.hpp"
 
 namespace swiftlet::ground {
@@ -120,9 +121,12 @@ void Client::subscribe_all() {
       node_.subscribe<msg::Reference>(kReference, [this](const msg::Reference& reference) {
         if (record_ != nullptr) record_->reference.append(row_of(reference));
         keep(&View::reference, reference);
-        const std::lock_guard lock(mutex_);
-        if (grants_) grants_->telemetry(reference.stamp_ns());
-        if (signs_) signs_->telemetry(reference.stamp_ns());
+        std::unique_lock lock(mutex_);
+        const auto grants = grants_;
+        const auto signs = signs_;
+        lock.unlock();
+        if (grants) grants->telemetry(reference.stamp_ns());
+        if (signs) signs->telemetry(reference.stamp_ns());
       }));
   subscriptions_.push_back(
       node_.subscribe<msg::GroundTruth>(kGroundTruth, [this](const msg::GroundTruth& truth) {
@@ -135,10 +139,21 @@ void Client::subscribe_all() {
   node_.on_peer([this](const comms::PeerEvent& peer) {
     {
       const std::lock_guard lock(mutex_);
-      view_.peers[peer.name] = peer.alive;
+      view_.peers[peer.name] += peer.alive ? 1 : -1;
     }
     changed_.notify_all();
   });
+}
+
+void Client::hear_controllers() {
+  subscriptions_.push_back(node_.subscribe<msg::ControllerState>(
+      comms::topics::kControllerState, [this](const msg::ControllerState& state) {
+        const std::lock_guard lock(mutex_);
+        Latest<msg::ControllerState>& latest = view_.controllers[state.controller()];
+        latest.message = state;
+        latest.received = Clock::now();
+        ++latest.count;
+      }));
 }
 
 View Client::view() const {
@@ -147,19 +162,28 @@ View Client::view() const {
 }
 
 TimeGrants& Client::grants() {
-  const std::lock_guard lock(mutex_);
-  if (!grants_) grants_.emplace(node_);
+  std::unique_lock lock(mutex_);
+  if (grants_) return *grants_;
+  lock.unlock();
+  auto grants = std::make_shared<TimeGrants>(node_);
+  lock.lock();
+  grants_ = std::move(grants);
   return *grants_;
 }
 
 void Client::stay() {
-  const std::lock_guard lock(mutex_);
-  if (!signs_) signs_.emplace(node_, client_id_);
+  std::unique_lock lock(mutex_);
+  if (signs_) return;
+  lock.unlock();
+  auto signs = std::make_shared<SignsOfLife>(node_, client_id_);
+  lock.lock();
+  signs_ = std::move(signs);
 }
 
 void Client::leave() {
+  std::shared_ptr<SignsOfLife> signs;
   const std::lock_guard lock(mutex_);
-  signs_.reset();
+  signs_.swap(signs);  // which outlives the lock
 }
 
 bool Client::wait(std::chrono::milliseconds timeout, const std::function<bool(const View&)>& done) const {
@@ -227,8 +251,8 @@ Answer Client::upload(const control::Mission& mission, std::chrono::milliseconds
 
 std::string Client::where() const {
   std::string alive;
-  for (const auto& [name, is_alive] : view().peers) {
-    if (is_alive) alive += (alive.empty() ? "" : ", ") + name;
+  for (const auto& [name, count] : view().peers) {
+    if (count > 0) alive += (alive.empty() ? "" : ", ") + name;
   }
   return "vehicle " + settings_.vehicle + " in domain " + std::to_string(settings_.domain) +
          "; seen there: " + (alive.empty() ? "nothing" : alive);
@@ -238,11 +262,14 @@ std::string Client::no_control() const {
   // Those that keep to the loopback interface are seen, but do not talk to others.
   const auto peers = view().peers;
   const auto control = peers.find("control");
-  const bool seen = control != peers.end() && control->second;
+  const bool seen = control != peers.end() && control->second > 0;
   return "no control service for " + where() +
          (seen && !settings_.localhost_only ? " (try --localhost-only)" : "");
 }
 
+const char* pose_fault_name(std::uint8_t fault) {
+  return control::to_string(static_cast<control::PoseFault>(fault));
+}
 const char* mode_name(std::uint8_t mode) { return control::to_string(static_cast<control::Mode>(mode)); }
 
 const char* mission_state_name(std::uint8_t state) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -42,7 +43,9 @@ struct View {
   Latest<msg::Estimate> estimate;
   Latest<msg::Reference> reference;
   Latest<msg::GroundTruth> truth;
-  std::map<std::string, bool> peers;  // by name: alive
+  std::map<std::string, int> peers;  // by name: how many are alive
+  std::map<std::uint64_t, Latest<msg::ControllerState>>
+      controllers;  // by number; once hear_controllers() was called
 };
 
 // The answer to a request.
@@ -70,11 +73,14 @@ class Client {
 
   View view() const;
 
+  // From now on the view holds what the controllers say of themselves, the standbys too.
+  void hear_controllers();
+
   // For a plant in lockstep that was started paused: from the first call on, this client grants it time.
   TimeGrants& grants();
 
   // From now on the flight depends on this client: if it falls silent, the controller does what its settings
-  // say. Until leave() or the client's end.
+  // say. Until leave() or the client's end. One thread calls these and grants().
   void stay();
   void leave();
 
@@ -109,7 +115,7 @@ class Client {
   std::uint64_t last_id_;  // starts at random: mission ids of two tools must differ
   std::uint64_t mission_id_ = 0;
 
-  mutable std::mutex mutex_;  // guards view_ and ack_; held for copies only
+  mutable std::mutex mutex_;  // guards view_, ack_ and the pointers below; held for copies only
   mutable std::condition_variable changed_;
   View view_;
   std::optional<msg::CommandAck> ack_;  // to the last request
@@ -117,13 +123,15 @@ class Client {
   comms::Node node_;
   comms::Publisher<msg::Command> commands_;
   comms::Publisher<msg::Mission> missions_;
-  std::optional<TimeGrants> grants_;
-  std::optional<SignsOfLife> signs_;
+  // Made, used and destroyed without mutex_: the middleware's threads hold its locks when they ask for that.
+  std::shared_ptr<TimeGrants> grants_;
+  std::shared_ptr<SignsOfLife> signs_;
   std::vector<comms::Subscription> subscriptions_;  // last: their callbacks use all of the above
 };
 
 // Words for the constants of the wire.
 const char* mode_name(std::uint8_t mode);
+const char* pose_fault_name(std::uint8_t fault);  // "none", "frozen" ...
 const char* mission_state_name(std::uint8_t state);
 
 }  // namespace swiftlet::ground

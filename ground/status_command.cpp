@@ -1,4 +1,7 @@
+#include <algorithm>
 #include <cstdio>
+#include <tuple>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -10,6 +13,7 @@ namespace swiftlet::ground {
 namespace {
 
 constexpr std::chrono::milliseconds kRestTimeout{1000};
+constexpr double kControllerSilence_s = 0.5;  // one that was heard and is silent for so long is not listed
 
 struct Options : RequestOptions {
   double watch_s = 1.0;
@@ -39,6 +43,23 @@ nlohmann::ordered_json age_of(const Latest<T>& latest, Clock::time_point now) {
   return latest.age_s(now);
 }
 
+const char* role_name(const msg::ControllerState& state) {
+  return state.role() == msg::ControllerState_Constants::ACTIVE ? "active" : "standby";
+}
+
+// Those that live, the active one first, then by strength.
+std::vector<msg::ControllerState> controllers_of(const View& view, Clock::time_point now) {
+  std::vector<msg::ControllerState> controllers;
+  for (const auto& [number, latest] : view.controllers) {
+    if (latest.age_s(now) < kControllerSilence_s) controllers.push_back(latest.message);
+  }
+  std::sort(controllers.begin(), controllers.end(), [](const auto& a, const auto& b) {
+    return std::tuple(a.role(), a.strength(), a.controller()) >
+           std::tuple(b.role(), b.strength(), b.controller());
+  });
+  return controllers;
+}
+
 nlohmann::ordered_json to_json(const View& view, const Rates& rates, const RequestOptions& options) {
   const auto now = Clock::now();
   const auto& control = view.control.message;
@@ -56,6 +77,10 @@ nlohmann::ordered_json to_json(const View& view, const Rates& rates, const Reque
   if (view.estimate.seen()) {
     json["position_ned_m"] = view.estimate.message.position_ned();
     json["velocity_ned_m_s"] = view.estimate.message.velocity_ned();
+    json["poses"] = {{"fault", pose_fault_name(view.estimate.message.pose_fault())},
+                     {"accepted", view.estimate.message.poses_accepted()},
+                     {"refused", view.estimate.message.poses_refused()},
+                     {"resets", view.estimate.message.resets()}};
   }
   json["battery"] = nullptr;
   if (view.battery.seen()) {
@@ -75,6 +100,14 @@ nlohmann::ordered_json to_json(const View& view, const Rates& rates, const Reque
                      {"deadline_misses", control.deadline_misses()},
                      {"step_time_max_us", control.step_time_max_us()},
                      {"realtime_scheduling", control.realtime_scheduling()}};
+  json["controllers"] = nlohmann::ordered_json::array();
+  for (const msg::ControllerState& controller : controllers_of(view, now)) {
+    json["controllers"].push_back({{"number", controller.controller()},
+                                   {"role", role_name(controller)},
+                                   {"ready", controller.ready()},
+                                   {"strength", controller.strength()},
+                                   {"term", controller.term()}});
+  }
   json["vehicle_info"] = nullptr;
   if (view.vehicle.seen()) {
     const auto& info = view.vehicle.message;
@@ -97,7 +130,7 @@ nlohmann::ordered_json to_json(const View& view, const Rates& rates, const Reque
       {"estimate", age_of(view.estimate, now)},      {"reference", age_of(view.reference, now)},
       {"battery", age_of(view.battery, now)},        {"ground_truth", age_of(view.truth, now)}};
   nlohmann::ordered_json peers = nlohmann::ordered_json::object();
-  for (const auto& [name, alive] : view.peers) peers[name] = alive;
+  for (const auto& [name, count] : view.peers) peers[name] = count > 0;
   json["peers_alive"] = peers;
   return json;
 }
@@ -123,8 +156,16 @@ void print(const View& view, const Rates& rates, const RequestOptions& options) 
     std::printf("  position  %.3f, %.3f, %.3f m   velocity %.2f, %.2f, %.2f m/s   (NED)\n", p[0], p[1], p[2],
                 v[0], v[1], v[2]);
   }
-  std::printf("  pose      %s, %.3f s old\n", control.has_pose() ? "tracked" : "MISSING",
-              control.pose_age_s());
+  std::printf("  pose      %s, %.3f s old", control.has_pose() ? "tracked" : "MISSING", control.pose_age_s());
+  if (view.estimate.seen()) {
+    const auto& estimate = view.estimate.message;
+    std::printf(", %llu used and %llu refused", static_cast<unsigned long long>(estimate.poses_accepted()),
+                static_cast<unsigned long long>(estimate.poses_refused()));
+    if (estimate.pose_fault() != msg::Estimate_Constants::POSE_FAULT_NONE)
+      std::printf(", now as %s", pose_fault_name(estimate.pose_fault()));
+    if (estimate.resets() > 0) std::printf(", %u resets", estimate.resets());
+  }
+  std::printf("\n");
   if (view.battery.seen()) {
     const auto& battery = view.battery.message;
     std::printf("  battery   %.2f V, %.2f A, %.0f %%\n", battery.voltage_v(), battery.current_a(),
@@ -139,6 +180,11 @@ void print(const View& view, const Rates& rates, const RequestOptions& options) 
       control.rate_hz(), static_cast<unsigned long long>(control.deadline_misses()),
       static_cast<unsigned long long>(control.cycles()), control.step_time_max_us(),
       control.realtime_scheduling() ? "" : ", no real-time scheduling");
+  for (const msg::ControllerState& controller : controllers_of(view, now)) {
+    std::printf("  controller %016llx: %s%s, strength %u, term %u\n",
+                static_cast<unsigned long long>(controller.controller()), role_name(controller),
+                controller.ready() ? "" : ", not ready", controller.strength(), controller.term());
+  }
   if (view.vehicle.seen()) {
     const auto& info = view.vehicle.message;
     std::printf(
@@ -156,6 +202,7 @@ void print(const View& view, const Rates& rates, const RequestOptions& options) 
 
 int show_status(const Options& options) {
   Client client(options.network);
+  client.hear_controllers();
   if (!client.wait(milliseconds(options.timeout_s), [](const View& view) { return view.control.seen(); })) {
     std::fprintf(stderr, "swiftlet: status: %s\n", client.no_control().c_str());
     return kFailed;

@@ -30,6 +30,7 @@ constexpr int kPosesToRestart = 5;        // that disagree, of a stream without 
 constexpr double kRestartGyroBias = 0.1;  // rad/s
 constexpr double kRestartAccelerometerBias = 0.5;  // m/s^2
 constexpr double kSwap_rad = 0.35;
+constexpr double kLongFall = 1e3;  // m/s
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
@@ -85,18 +86,23 @@ bool Estimator::predict(const plant::ImuSample& sample) {
   now_.stamp_ns = sample.stamp_ns;
   now_.body_rates_frd = sample.body_rates_frd - now_.gyro_bias;
 
-  if (initialised_) {
-    const Vector3d mean_rates = 0.5 * (before.body_rates_frd + sample.body_rates_frd) - now_.gyro_bias;
-    const Vector3d mean_force =
-        0.5 * (before.specific_force_frd + sample.specific_force_frd) - now_.accelerometer_bias;
-    const Quaterniond half_turn = rotation(0.5 * dt * mean_rates);
-    const Quaterniond q_mid = now_.q_ned_from_frd * half_turn;
-    const Vector3d acceleration = q_mid * mean_force + Vector3d(0.0, 0.0, plant::kGravity);
-    now_.position_ned += dt * now_.velocity_ned + (0.5 * dt * dt) * acceleration;
-    now_.velocity_ned += dt * acceleration;
-    now_.q_ned_from_frd = (q_mid * half_turn).normalized();
-    remember();
+  const Vector3d mean_rates = 0.5 * (before.body_rates_frd + sample.body_rates_frd) - now_.gyro_bias;
+  const Vector3d mean_force =
+      0.5 * (before.specific_force_frd + sample.specific_force_frd) - now_.accelerometer_bias;
+  const Quaterniond half_turn = rotation(0.5 * dt * mean_rates);
+  const Quaterniond q_mid = path_.q_ned_from_frd * half_turn;
+  const Vector3d acceleration = q_mid * mean_force + Vector3d(0.0, 0.0, plant::kGravity);
+  path_.stamp_ns = sample.stamp_ns;
+  path_.position_ned += dt * path_.velocity_ned + (0.5 * dt * dt) * acceleration;
+  path_.velocity_ned += dt * acceleration;
+  path_.q_ned_from_frd = (q_mid * half_turn).normalized();
+  if (!initialised_ && path_.velocity_ned.norm() > kLongFall) {  // anew: the start is arbitrary
+    path_.position_ned.setZero();
+    path_.velocity_ned.setZero();
+    next_ = 0;
   }
+  remember();
+  if (initialised_) show_path();
   last_imu_ = sample;
   return true;
 }
@@ -196,11 +202,8 @@ void Estimator::apply(const ErrorState& step) {
   correction.rate = r * step.segment<3>(9);
   correction.acceleration = r * step.segment<3>(12);
   correction.carry_to(anchor_);
-  Moment moment = now();
-  correction.carry_to(moment);
-  now_.position_ned = moment.position_ned;
-  now_.velocity_ned = moment.velocity_ned;
-  now_.q_ned_from_frd = moment.q_ned_from_frd;
+  correction.carry_to(path_);
+  show_path();
 
   const Vector3d gyro_bias = bounded(now_.gyro_bias + step.segment<3>(9), settings_.gyro_bias_limit);
   now_.body_rates_frd += now_.gyro_bias - gyro_bias;
@@ -232,8 +235,10 @@ void Estimator::catch_up() {
     history_[number % kHistory] = past(number);
 }
 
-Estimator::Moment Estimator::now() const {
-  return {now_.stamp_ns, now_.position_ned, now_.velocity_ned, now_.q_ned_from_frd, corrections_made_};
+void Estimator::show_path() {
+  now_.position_ned = path_.position_ned;
+  now_.velocity_ned = path_.velocity_ned;
+  now_.q_ned_from_frd = path_.q_ned_from_frd;
 }
 
 // Shifts and turns what is remembered onto the pose; velocity and biases are kept.
@@ -247,8 +252,8 @@ void Estimator::jump(const plant::PoseSample& pose, const PoseInnovation& innova
   shift(anchor_);
   for (std::uint64_t number = first_after_anchor_; number < next_; ++number)
     shift(history_[number % kHistory]);
-  now_.position_ned += innovation.position;
-  now_.q_ned_from_frd = (turn * now_.q_ned_from_frd).normalized();
+  shift(path_);
+  show_path();
   Eigen::Matrix<double, 9, 1> sigma;
   sigma << Vector3d::Constant(settings_.mocap_position_sigma), Vector3d::Constant(kJumpSpeed),
       Vector3d::Constant(settings_.mocap_orientation_sigma);
@@ -283,10 +288,31 @@ void Estimator::restart_at(const plant::PoseSample& pose, const PoseInnovation& 
   now_.reset_rotation_ned = innovation.rotation;
 }
 
+// The path that the IMU has drawn since the pose is laid to it. The vehicle is taken to rest there, within
+// kStartSpeed.
 void Estimator::start_at(const plant::PoseSample& pose) {
-  now_.position_ned = pose.position_ned;
-  now_.velocity_ned.setZero();
-  now_.q_ned_from_frd = pose.q_ned_from_frd.normalized();
+  first_after_anchor_ = next_ - std::min<std::uint64_t>(next_, kHistory);
+  anchor_ = remembered(first_after_anchor_);
+  std::uint64_t first_newer = next_;
+  while (first_newer > first_after_anchor_ && remembered(first_newer - 1).stamp_ns > pose.stamp_ns)
+    --first_newer;
+  const bool remembers = pose.stamp_ns > anchor_.stamp_ns;
+  const Moment drawn = remembers ? moment_at(std::min(pose.stamp_ns, path_.stamp_ns), first_newer) : anchor_;
+  const Moment start = {std::min(pose.stamp_ns, path_.stamp_ns), pose.position_ned, Vector3d::Zero(),
+                        pose.q_ned_from_frd.normalized(), 0};
+  const Quaterniond turn = start.q_ned_from_frd * drawn.q_ned_from_frd.conjugate();
+  const auto lay = [&](Moment& moment) {
+    const ErrorInterval since = interval(drawn, moment);
+    const double t = seconds(moment.stamp_ns - start.stamp_ns);
+    const Vector3d fall(0.0, 0.0, t * plant::kGravity);
+    moment.position_ned = start.position_ned + 0.5 * t * fall + turn * since.position_change;
+    moment.velocity_ned = fall + turn * since.velocity_change;
+    moment.q_ned_from_frd = (turn * moment.q_ned_from_frd).normalized();
+  };
+  for (std::uint64_t number = first_newer; number < next_; ++number) lay(history_[number % kHistory]);
+  lay(path_);
+  show_path();
+  anchor_at(start, first_newer);
   initialised_ = true;
   pose_stamp_ns_ = pose.stamp_ns;
   pose_sequence_ = pose.sequence;
@@ -295,26 +321,17 @@ void Estimator::start_at(const plant::PoseSample& pose) {
       Vector3d::Constant(settings_.mocap_orientation_sigma), Vector3d::Constant(settings_.gyro_bias_sigma),
       Vector3d::Constant(settings_.accelerometer_bias_sigma);
   covariance_.reset(sigma);
-  anchor_at(now(), next_);
-  anchor_.stamp_ns = std::min(pose.stamp_ns, now_.stamp_ns);
-  remember();
 }
 
 // The covariance follows before the moments that it has to go through are forgotten.
 void Estimator::remember() {
-  if (next_ - first_after_anchor_ >= kHistory - kIntervalMoments) {
+  if (initialised_ && next_ - first_after_anchor_ >= kHistory - kIntervalMoments) {
     const std::uint64_t number = first_after_anchor_ + kIntervalMoments / 2;
     const Moment moment = past(number);
     advance(covariance_, anchor_, first_after_anchor_, moment);
     anchor_at(moment, number + 1);
   }
-  Moment& moment = history_[next_++ % kHistory];
-  moment.stamp_ns = now_.stamp_ns;
-  moment.position_ned = now_.position_ned;
-  moment.velocity_ned = now_.velocity_ned;
-  moment.q_ned_from_frd = now_.q_ned_from_frd;
-  moment.corrections = corrections_made_;
-  if (now_.stamp_ns <= anchor_.stamp_ns) first_after_anchor_ = next_;
+  history_[next_++ % kHistory] = path_;
 }
 
 void Estimator::anchor_at(const Moment& moment, std::uint64_t first_newer) {
@@ -377,7 +394,7 @@ ErrorCovariance Estimator::covariance() const {
     covariance.reset(ErrorState::Constant(std::numeric_limits<double>::infinity()));
     return covariance;
   }
-  advance(covariance, anchor_, first_after_anchor_, now());
+  advance(covariance, anchor_, first_after_anchor_, path_);
   return covariance;
 }
 

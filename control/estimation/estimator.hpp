@@ -113,8 +113,8 @@ class Estimator {
   static constexpr std::uint64_t kCorrections = 32;
   const Moment& remembered(std::uint64_t number) const { return history_[number % kHistory]; }
   Moment past(std::uint64_t number) const;
-  Moment now() const;
   void start_at(const plant::PoseSample& pose);
+  void show_path();
   void remember();
   PoseFault take_in(const plant::PoseSample& pose, plant::RotorState rotors);
   PoseFault disagree(const plant::PoseSample& pose, const PoseInnovation& innovation,
@@ -135,6 +135,7 @@ class Estimator {
   EstimatorSettings settings_;
   ErrorNoise noise_;
   Estimate now_;
+  Moment path_;  // what the IMU says, of the newest sample; before the first pose from an arbitrary start
   plant::ImuSample last_imu_;
   bool initialised_ = false;
   std::int64_t received_stamp_ns_ = 0;  // of the last pose that came

@@ -28,6 +28,9 @@ class PositionController {
   // Forgets the integral.
   void reset() { integral_.setZero(); }
 
+  // Goes on with the integral of another controller.
+  void adopt(const Eigen::Vector3d& integral) { integral_ = integral; }
+
   // The integral's part of the acceleration, m/s^2.
   const Eigen::Vector3d& integral() const { return integral_; }
 

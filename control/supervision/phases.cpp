@@ -11,6 +11,7 @@ constexpr double kSpoolUpLift = 0.95;    // of the weight, at the end of the spo
 constexpr double kFlareHeight_m = 0.08;  // the landing's planned path ends here, then it sinks
 constexpr double kSinkSpeed = 0.15;      // m/s
 constexpr double kSink_s = 60.0;         // at most
+constexpr double kBlindDepth_m = 0.1;    // below the ground, by dead reckoning
 constexpr double kMinMove_s = 0.5;
 
 std::int64_t nanoseconds(double s) { return static_cast<std::int64_t>(std::llround(s * 1e9)); }
@@ -209,6 +210,12 @@ bool plan_finished(const Scene& scene) {
 
 bool on_landing_item(const Scene& scene) {
   return scene.state.mode == Mode::kMission && item_of(scene).kind == MissionItemKind::kLand;
+}
+
+double blind_descent_speed(const FailsafeSettings& failsafe, const SupervisorState& state,
+                           const Estimate& estimate) {
+  const bool below_ground = estimate.position_ned.z() > state.ground_z_ned + kBlindDepth_m;
+  return (below_ground ? 2.0 : 1.0) * failsafe.descent_speed;
 }
 
 double spool_up_lift(const SupervisorState& state) {

@@ -37,6 +37,11 @@ bool plan_finished(const Scene& scene);
 // The item being flown is the mission's landing.
 bool on_landing_item(const Scene& scene);
 
+// Of the level descent without position. Where dead reckoning says that the vehicle must be standing, twice
+// failsafe.descent_speed: one that stands on thrust that carries its weight feels no ground, less thrust shows it.
+double blind_descent_speed(const FailsafeSettings& failsafe, const SupervisorState& state,
+                           const Estimate& estimate);
+
 // Of the thrust while spooling up, of the weight.
 double spool_up_lift(const SupervisorState& state);
 

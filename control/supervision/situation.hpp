@@ -36,6 +36,7 @@ enum class Actuation : std::uint8_t {
 struct Directive {
   Actuation actuation = Actuation::kOff;
   double lift_fraction = 0.0;  // kSpoolUp only
+  double descent_speed = 0.0;  // m/s; kLevelDescent only
   bool integrate = false;      // the position integrals may learn
   Reference reference;
 };

@@ -64,6 +64,7 @@ Directive Supervisor::directive(const Situation& situation) const {
     directive.actuation = Actuation::kIdle;
   } else if (state_.mode == Mode::kDescent) {
     directive.actuation = Actuation::kLevelDescent;
+    directive.descent_speed = blind_descent_speed(settings_.failsafe, state_, *situation.estimate);
   } else if (state_.phase == Phase::kSpoolUp) {
     directive.actuation = Actuation::kSpoolUp;
     directive.lift_fraction = spool_up_lift(state_);

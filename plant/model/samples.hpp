@@ -58,7 +58,16 @@ struct ActuatorCommand {
   std::uint64_t mocap_sequence = 0;  // the newest mocap frame that had been taken in
   RotorState rotor_state = RotorState::kOff;
   int rotor_count = 0;
-  PerRotor throttle{};  // delta of Eq. (8), 0 .. 1
+  PerRotor throttle{};     // delta of Eq. (8), 0 .. 1
+  std::uint32_t term = 0;  // of the controller: whoever takes over from another begins a higher one
+};
+
+// What the vehicle says of the commands that reach it.
+struct ObeyedCommand {
+  bool told = false;  // it says so at all; else nothing below has a meaning
+  bool any = false;   // it has obeyed a command since it was started; else the rest has no meaning
+  std::uint32_t term = 0;
+  std::int64_t stamp_ns = 0;  // of the IMU sample that the command answered
 };
 
 // What a perfect observer knows of the vehicle. Only the mocap simulation and recorders may look at it.

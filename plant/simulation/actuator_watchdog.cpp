@@ -16,6 +16,8 @@ const char* to_string(CommandFault fault) {
       return "answers an old IMU sample";
     case CommandFault::kFuture:
       return "answers an IMU sample that has not been taken";
+    case CommandFault::kOvertaken:
+      return "another controller has taken over";
   }
   return "";
 }
@@ -37,6 +39,8 @@ CommandFault ActuatorWatchdog::accept(const ActuatorCommand& command, std::int64
   if (command.stamp_ns > now_ns) return CommandFault::kFuture;
   if (last_stamp_ns_ && command.stamp_ns < *last_stamp_ns_) return CommandFault::kStale;
   if (command.stamp_ns < now_ns - timeout_ns_) return CommandFault::kStale;
+  if (command.term < term_ && !expired(now_ns)) return CommandFault::kOvertaken;
+  term_ = command.term;
   last_stamp_ns_ = command.stamp_ns;
   drive_ = drive;
   return CommandFault::kNone;
@@ -44,6 +48,10 @@ CommandFault ActuatorWatchdog::accept(const ActuatorCommand& command, std::int64
 
 bool ActuatorWatchdog::expired(std::int64_t now_ns) const {
   return last_stamp_ns_ && *last_stamp_ns_ < now_ns - timeout_ns_;
+}
+
+ObeyedCommand ActuatorWatchdog::obeyed() const {
+  return {true, last_stamp_ns_.has_value(), term_, last_stamp_ns_.value_or(0)};
 }
 
 RotorDrive ActuatorWatchdog::drive(std::int64_t now_ns) const {

@@ -1,7 +1,8 @@
 // Motion capture, driven by truth stamps alone: it works the same in real time, scaled time and lockstep.
 //
-// Frames are exposed at whole multiples of the period, counted from stamp 0, and delivered a latency later.
-// When truth comes in steps, both happen at the first truth stamp that is not earlier.
+// Frames are exposed at times that the model gives, counted from stamp 0, and delivered a latency later: whole
+// multiples of the period, or intervals drawn one by one (mocap_schedule.hpp). When truth comes in steps, both
+// happen at the first truth stamp that is not earlier.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +13,7 @@
 #include <Eigen/Geometry>
 
 #include "plant/model/samples.hpp"
+#include "plant/simulation/mocap_schedule.hpp"
 #include "plant/simulation/random.hpp"
 #include "plant/simulation/settings.hpp"
 
@@ -28,33 +30,22 @@ class Mocap {
 
  private:
   PoseSample expose(const TruthSample& truth);
+  Eigen::Vector3d error(RandomStream& noise) const;  // of size 1
   bool in_dropout(std::int64_t stamp_ns);
 
   MocapSettings settings_;
-  std::int64_t period_ns_;
-  std::int64_t latency_ns_;
+  MocapSchedule schedule_;
   std::int64_t dropout_length_ns_;
   Eigen::Quaterniond misalignment_;
   RandomStream position_noise_;
   RandomStream orientation_noise_;
   RandomStream dropouts_;
 
-  std::optional<std::int64_t> last_stamp_ns_;
-  std::int64_t last_frame_ = 0;  // period number
   std::optional<std::int64_t> dropout_end_ns_;
   std::uint64_t sequence_ = 0;
   std::vector<PoseSample> in_flight_;  // ring
   std::size_t oldest_ = 0;
   std::size_t count_ = 0;
 };
-
-// Sequence of the newest frame that update() has handed out when it has seen truth at stamps 0,
-// truth_period_ns, ..., stamp_ns; 0 before the first. In lockstep the plant waits for it.
-std::uint64_t newest_mocap_sequence(const MocapSettings& settings, std::int64_t truth_period_ns,
-                                    std::int64_t stamp_ns);
-
-// Whether update() exposes or hands out a frame at this stamp, of those 0, truth_period_ns, ...: in lockstep
-// the others need not be sent.
-bool mocap_needs_truth(const MocapSettings& settings, std::int64_t truth_period_ns, std::int64_t stamp_ns);
 
 }  // namespace swiftlet::plant

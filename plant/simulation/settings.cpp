@@ -52,6 +52,12 @@ std::vector<Violation> validate(const SimulationSettings& settings) {
 
   const MocapSettings& mocap = settings.mocap;
   check.between("mocap.rate_hz", mocap.rate_hz, 1.0, 1000.0);
+  double shortest = 1.0e-4;
+  for (std::size_t i = 0; i < mocap.interval_quantiles_s.size(); ++i) {
+    const std::string key = "mocap.interval_quantiles_s[" + std::to_string(i) + "]";
+    if (!check.between(key, mocap.interval_quantiles_s[i], shortest, 10.0)) break;
+    shortest = mocap.interval_quantiles_s[i];
+  }
   check.between("mocap.latency_s", mocap.latency_s, 0.0, 1.0);
   check.between("mocap.position_error_m", mocap.position_error_m, 0.0, 1.0);
   check.between("mocap.orientation_error_rad", mocap.orientation_error_rad, 0.0, 0.5);

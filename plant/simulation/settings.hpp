@@ -2,6 +2,7 @@
 // holds the same keys.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -29,12 +30,23 @@ struct ImuSettings {
   double gyro_range = 34.9;                      // rad/s
 };
 
-// Errors are bounded, not Gaussian: what a calibrated system shows inside its arena.
+enum class MocapModel {
+  kBounded,  // frames at a steady rate, errors inside a bound: a calibrated system as its maker describes it
+  kOptitrack,  // frames at uneven intervals, Gaussian errors: recorded sessions of such a system
+};
+
 struct MocapSettings {
-  double rate_hz = 100.0;
-  double latency_s = 0.010;               // from exposure to delivery
-  double position_error_m = 1.0e-4;       // radius of the ball that each frame's error lies in
+  MocapModel model = MocapModel::kBounded;
+  double rate_hz = 100.0;    // kBounded
+  double latency_s = 0.010;  // from exposure to delivery
+  // kBounded: radius of the ball that each frame's error lies in. kOptitrack: standard deviation of each axis.
+  double position_error_m = 1.0e-4;
   double orientation_error_rad = 1.4e-3;  // likewise, as a rotation vector: 0.1 mm over an arm of 69.5 mm
+  // kOptitrack: how long the next frame takes, at the probabilities kIntervalProbabilities; uniform between.
+  static constexpr std::array<double, 11> kIntervalProbabilities = {0.0,  0.05, 0.10, 0.25,  0.50, 0.75,
+                                                                    0.90, 0.95, 0.99, 0.999, 1.0};
+  std::array<double, 11> interval_quantiles_s = {0.0003, 0.0012, 0.0097, 0.0100, 0.0199, 0.0203,
+                                                 0.0300, 0.0301, 0.0400, 0.1300, 0.1400};
   double misalignment_rad =
       1.75e-3;  // angle between the marker body's axes and the vehicle's; direction drawn once a run
   double dropout_probability = 0.0;  // that a frame begins a dropout
@@ -66,7 +78,7 @@ struct GroundSettings {
 struct SimulationSettings {
   std::string name = "default";
   std::int64_t step_ns = 1'000'000;    // integration step
-  double command_timeout_s = 0.2;      // rotors off if no valid command has come for so long
+  double command_timeout_s = 0.5;      // rotors off if no valid command has come for so long
   double rotor_speed_rate_hz = 500.0;  // of rotor speed samples; 0: the vehicle does not measure them
   ImuSettings imu;
   MocapSettings mocap;

@@ -15,6 +15,7 @@ constexpr std::uint64_t kMocapPosition = 6;
 constexpr std::uint64_t kMocapOrientation = 7;
 constexpr std::uint64_t kMocapMisalignment = 8;
 constexpr std::uint64_t kMocapDropouts = 9;
+constexpr std::uint64_t kMocapIntervals = 10;
 constexpr std::uint64_t kMocapOtherBody = 20;
 
 // The stream of a parameter that is drawn once a run, by its name: FNV-1a.

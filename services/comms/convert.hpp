@@ -2,8 +2,12 @@
 // enumerations in range, quaternions of unit length. Whether a request can be flown is not judged here.
 #pragma once
 
+#include <array>
+#include <cstdint>
+
 #include "control/estimation/estimator.hpp"
 #include "control/flight_controller.hpp"
+#include "control/flight_state.hpp"
 #include "control/mission.hpp"
 #include "control/request.hpp"
 #include "control/trajectory/polynomial.hpp"
@@ -18,8 +22,30 @@ struct Fault {
   explicit operator bool() const { return text[0] != '\0'; }
 };
 
+// A request, by who asked and the number that it was given there.
+struct RequestKey {
+  std::uint64_t client = 0;
+  std::uint64_t id = 0;
+};
+
+// controller_state: what a controller says of itself to the others.
+struct ControllerReport {
+  std::int64_t stamp_ns = 0;
+  std::uint64_t sequence = 0;
+  std::uint64_t controller = 0;
+  int strength = 0;
+  std::uint32_t term = 0;
+  bool active = false;
+  bool ready = false;  // it can go on with the flight
+  // Of an active one.
+  control::FlightState flight;
+  int rotor_count = 0;
+  std::array<RequestKey, 4> accepted{};  // the newest requests, id 0: none
+};
+
 // Into out, unless there is a fault: then out is not touched. Those of samples do not allocate.
 Fault from_message(const msg::Imu& in, plant::ImuSample& out);
+plant::ObeyedCommand obeyed_command(const msg::Imu& in);
 Fault from_message(const msg::MocapPose& in,
                    plant::PoseSample& out);  // of an untracked one, the pose is not looked at
 Fault from_message(const msg::Battery& in, plant::BatterySample& out);
@@ -31,15 +57,18 @@ Fault from_message(const msg::GroundLink& in, control::GroundSign& out);
 Fault from_message(const msg::Command& in, control::Request& out);
 Fault from_message(const msg::Mission& in, control::Mission& out);
 Fault from_message(const msg::Trajectory& in, control::Trajectory& out);
+Fault from_message(const msg::ControllerState& in, ControllerReport& out);
 
 msg::Imu to_message(const plant::ImuSample& in);
+void tell(const plant::ObeyedCommand& obeyed, msg::Imu& in);  // in an IMU sample
 msg::MocapPose to_message(const plant::PoseSample& in);
 msg::Battery to_message(const plant::BatterySample& in);
 msg::RotorSpeeds to_message(const plant::RotorSpeedSample& in);
 msg::ActuatorCommand to_message(const plant::ActuatorCommand& in);
 msg::GroundTruth to_message(const plant::TruthSample& in);
 msg::Setpoint to_message(const control::Setpoint& in);
-msg::Estimate to_message(const control::Estimate& in,
+msg::ControllerState to_message(const ControllerReport& in);
+msg::Estimate to_message(const control::Estimate& in, const control::ErrorState& standard_deviation,
                          double pose_age_s);  // sequence_number is left to the sender
 msg::Reference to_message(const control::Reference& in, const control::AttitudeSetpoint& setpoint,
                           control::Mode mode);

@@ -26,6 +26,7 @@
 #include "swiftlet_msgs/msg/CommandAckPubSubTypes.h"
 #include "swiftlet_msgs/msg/CommandPubSubTypes.h"
 #include "swiftlet_msgs/msg/ControlStatusPubSubTypes.h"
+#include "swiftlet_msgs/msg/ControllerStatePubSubTypes.h"
 #include "swiftlet_msgs/msg/EstimatePubSubTypes.h"
 #include "swiftlet_msgs/msg/GroundLinkPubSubTypes.h"
 #include "swiftlet_msgs/msg/GroundTruthPubSubTypes.h"
@@ -47,7 +48,7 @@
 // Each message type that is a topic's.
 // clang-format off
 #define SWIFTLET_FOR_EACH_MESSAGE(X)                                      \
-  X(ActuatorCommand) X(Battery) X(Command) X(CommandAck) X(ControlStatus) \
+  X(ActuatorCommand) X(Battery) X(Command) X(CommandAck) X(ControllerState) X(ControlStatus) \
   X(Estimate) X(GroundLink) X(GroundTruth) X(Imu) X(Mission) X(MissionStatus) \
   X(MocapPose) X(Reference) X(RotorSpeeds) X(Setpoint)                    \
   X(SimulationClock) X(Trajectory) X(VehicleInfo)
@@ -217,6 +218,12 @@ class DdsWriter final : public detail::Writer {
            writer_->write(data);
   }
 
+  void set_strength(std::uint32_t strength) override {
+    dds::DataWriterQos qos = writer_->get_qos();
+    qos.ownership_strength().value = strength;
+    writer_->set_qos(qos);
+  }
+
   int matched() const override {
     dds::PublicationMatchedStatus status;
     writer_->get_publication_matched_status(status);
@@ -288,9 +295,7 @@ void Node::on_peer(std::function<void(const PeerEvent&)> callback) {
 }
 
 template <class T>
-Publisher<T> Node::publish(const Topic<T>& topic, int strength) {
-  if (strength < 0)
-    throw std::runtime_error("strength is " + std::to_string(strength) + ", must be at least 0");
+Publisher<T> Node::publish(const Topic<T>& topic, std::uint32_t strength) {
   return Publisher<T>(std::make_unique<DdsWriter<Impl>>(
       impl_, impl_->topic<T>(topic.name),
       writer_qos(topic.qos, impl_->deadline_ms(topic.deadline_ms), strength, impl_->settings.transport)));
@@ -306,7 +311,7 @@ Subscription Node::subscribe(const Topic<T>& topic, std::function<void(const T&)
 }
 
 #define SWIFTLET_INSTANTIATE(Name)                                                                      \
-  template Publisher<msg::Name> Node::publish(const Topic<msg::Name>&, int);                            \
+  template Publisher<msg::Name> Node::publish(const Topic<msg::Name>&, std::uint32_t);                  \
   template Subscription Node::subscribe(const Topic<msg::Name>&, std::function<void(const msg::Name&)>, \
                                         Delivery);
 SWIFTLET_FOR_EACH_MESSAGE(SWIFTLET_INSTANTIATE)

@@ -2,6 +2,8 @@
 // No Fast DDS header is seen through this file.
 #pragma once
 
+#include <chrono>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -26,6 +28,8 @@ struct NodeSettings {
   // Offer and ask for the topics' deadlines. Not in lockstep, where time stands still; who asks for one does
   // not hear who offers none.
   bool deadlines = true;
+  // How often it announces itself: kFixturePeriod for what a controller cannot fly without.
+  std::chrono::milliseconds announcement_period = kLivelinessPeriod;
 };
 
 // Another process of the same vehicle appeared or went away.
@@ -50,6 +54,7 @@ class Writer {
   virtual ~Writer() = default;
   virtual bool write(const void* sample) = 0;
   virtual int matched() const = 0;
+  virtual void set_strength(std::uint32_t strength) = 0;
 };
 class Reader {
  public:
@@ -67,6 +72,8 @@ class Publisher {
   // False if the sample was not handed to the network (no resources, time-out of a reliable writer).
   bool publish(const T& sample) { return writer_->write(&sample); }
   int matched() const { return writer_->matched(); }  // readers that hear it
+  // Of an owned stream, from now on; the readers know it within milliseconds. By any thread.
+  void set_strength(std::uint32_t strength) { writer_->set_strength(strength); }
 
  private:
   std::unique_ptr<detail::Writer> writer_;
@@ -96,7 +103,7 @@ class Node {
 
   // strength: of an owned stream; the strongest living writer is heard. Throws std::runtime_error.
   template <class T>
-  Publisher<T> publish(const Topic<T>& topic, int strength = 0);
+  Publisher<T> publish(const Topic<T>& topic, std::uint32_t strength = 0);
 
   // The callback runs in the thread that received the sample, once for each sample, one at a time, and must
   // not block. Throws std::runtime_error.

@@ -47,7 +47,9 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings) {
 
   auto& builtin = qos.wire_protocol().builtin;
   builtin.discovery_config.leaseDuration = duration(kLivelinessLease);
-  builtin.discovery_config.leaseDuration_announcementperiod = duration(kLivelinessPeriod);
+  builtin.discovery_config.leaseDuration_announcementperiod = duration(settings.announcement_period);
+  builtin.discovery_config.initial_announcements.count = kFirstAnnouncements;
+  builtin.discovery_config.initial_announcements.period = duration(kFirstAnnouncementPeriod);
 
   const auto udp = std::make_shared<UDPv4TransportDescriptor>();
   udp->non_blocking_send = true;  // a full socket buffer loses a sample rather than hold the sender up

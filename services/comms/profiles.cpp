@@ -13,7 +13,11 @@ Duration_t duration(std::chrono::milliseconds time) {
 }
 
 bool is_stream(Qos profile) { return profile == Qos::kStream || profile == Qos::kOwnedStream; }
-bool is_reliable(Qos profile) { return profile == Qos::kState || profile == Qos::kRequest; }
+bool is_reliable(Qos profile) {
+  return profile == Qos::kState || profile == Qos::kDocument || profile == Qos::kRequest;
+}
+bool is_kept(Qos profile) { return profile == Qos::kState || profile == Qos::kDocument; }
+bool is_long(Qos profile) { return profile == Qos::kDocument || profile == Qos::kRequest; }
 
 // What writer and reader state alike, so that they match.
 template <class EndpointQos>
@@ -22,19 +26,20 @@ void set_common(EndpointQos& qos, Qos profile, int deadline_ms, Transport transp
       is_reliable(profile) ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
   qos.reliability().max_blocking_time = duration(kReliableWriteTimeout);
   qos.durability().kind =
-      profile == Qos::kState ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
+      is_kept(profile) ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
   if (deadline_ms > 0) qos.deadline().period = duration(std::chrono::milliseconds(deadline_ms));
   if (profile == Qos::kOwnedStream) qos.ownership().kind = dds::EXCLUSIVE_OWNERSHIP_QOS;
 
   auto& limits = qos.resource_limits();
   limits.max_instances = 1;
+  // A mission can be 3000 times as long as a command: memory is taken as it is needed, and kept.
+  qos.endpoint().history_memory_policy =
+      is_long(profile) ? rtps::DYNAMIC_REUSABLE_MEMORY_MODE : rtps::PREALLOCATED_MEMORY_MODE;
   if (profile == Qos::kRequest) {
-    // A mission can be 3000 times as long as a command: memory is taken as it is needed, and kept.
     qos.history().kind = dds::KEEP_ALL_HISTORY_QOS;
     limits.max_samples = kMaxPendingRequests;
     limits.max_samples_per_instance = kMaxPendingRequests;
     limits.allocated_samples = 1;
-    qos.endpoint().history_memory_policy = rtps::DYNAMIC_REUSABLE_MEMORY_MODE;
   } else {
     // One sample more than the last one may be in hand while the next arrives; the pool never grows.
     qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
@@ -43,7 +48,6 @@ void set_common(EndpointQos& qos, Qos profile, int deadline_ms, Transport transp
     limits.max_samples_per_instance = 1;
     limits.allocated_samples = 2;
     limits.extra_samples = 2;
-    qos.endpoint().history_memory_policy = rtps::PREALLOCATED_MEMORY_MODE;
   }
 
   if (transport == Transport::kDataSharing && is_stream(profile)) {
@@ -55,14 +59,12 @@ void set_common(EndpointQos& qos, Qos profile, int deadline_ms, Transport transp
 
 }  // namespace
 
-dds::DataWriterQos writer_qos(Qos profile, int deadline_ms, int strength, Transport transport) {
+dds::DataWriterQos writer_qos(Qos profile, int deadline_ms, std::uint32_t strength, Transport transport) {
   dds::DataWriterQos qos;
   set_common(qos, profile, deadline_ms, transport);
-  if (profile == Qos::kOwnedStream) qos.ownership_strength().value = static_cast<std::uint32_t>(strength);
-  // A request may be long: its fragments leave from a thread of the middleware. All else leaves from the
-  // caller's.
-  qos.publish_mode().kind =
-      profile == Qos::kRequest ? dds::ASYNCHRONOUS_PUBLISH_MODE : dds::SYNCHRONOUS_PUBLISH_MODE;
+  if (profile == Qos::kOwnedStream) qos.ownership_strength().value = strength;
+  // What may be long leaves in fragments, from a thread of the middleware. All else leaves from the caller's.
+  qos.publish_mode().kind = is_long(profile) ? dds::ASYNCHRONOUS_PUBLISH_MODE : dds::SYNCHRONOUS_PUBLISH_MODE;
   // A lost fragment is asked for again after one heartbeat.
   if (is_reliable(profile)) {
     qos.reliable_writer_qos().times.heartbeatPeriod = duration(std::chrono::milliseconds(100));

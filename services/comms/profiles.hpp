@@ -8,7 +8,7 @@
 
 namespace swiftlet::comms {
 
-eprosima::fastdds::dds::DataWriterQos writer_qos(Qos profile, int deadline_ms, int strength,
+eprosima::fastdds::dds::DataWriterQos writer_qos(Qos profile, int deadline_ms, std::uint32_t strength,
                                                  Transport transport);
 eprosima::fastdds::dds::DataReaderQos reader_qos(Qos profile, int deadline_ms, Transport transport,
                                                  Delivery delivery);

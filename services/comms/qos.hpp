@@ -1,4 +1,4 @@
-// The four ways in which topics are delivered, and their numbers. idl/README.md shows them as a table.
+// The ways in which topics are delivered, and their numbers. idl/README.md shows them as a table.
 #pragma once
 
 #include <chrono>
@@ -10,6 +10,7 @@ enum class Qos {
   kOwnedStream,  // a stream of which the strongest living writer is heard (exclusive ownership)
   kTelemetry,    // best effort, keep last 1, volatile
   kState,        // reliable, transient local, keep last 1
+  kDocument,     // a state that may be long: takes memory as it needs it
   kRequest,      // reliable, volatile, keep all within limits
 };
 
@@ -21,6 +22,11 @@ constexpr std::chrono::milliseconds kReliableWriteTimeout{200};
 // A process says that it lives once in each period; after a lease without it the others take it for dead.
 constexpr std::chrono::milliseconds kLivelinessPeriod{400};
 constexpr std::chrono::milliseconds kLivelinessLease{2000};
+// At its start more often, and vehicle and motion capture always: a controller that is started again in flight must
+// find them at once, and hears of them with their next announcement.
+constexpr std::chrono::milliseconds kFixturePeriod{100};
+constexpr int kFirstAnnouncements = 20;
+constexpr std::chrono::milliseconds kFirstAnnouncementPeriod{25};
 
 // With localhost_only: as many processes of one domain find each other.
 constexpr int kMaxLocalProcesses = 40;

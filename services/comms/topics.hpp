@@ -7,6 +7,7 @@
 #include "swiftlet_msgs/msg/Command.h"
 #include "swiftlet_msgs/msg/CommandAck.h"
 #include "swiftlet_msgs/msg/ControlStatus.h"
+#include "swiftlet_msgs/msg/ControllerState.h"
 #include "swiftlet_msgs/msg/Estimate.h"
 #include "swiftlet_msgs/msg/GroundLink.h"
 #include "swiftlet_msgs/msg/GroundTruth.h"
@@ -38,6 +39,7 @@ struct Topic {
 namespace topics {
 inline constexpr Topic<msg::Imu> kImu{"imu", Qos::kStream};
 inline constexpr Topic<msg::ActuatorCommand> kActuatorCommand{"actuator_command", Qos::kOwnedStream, 50};
+inline constexpr Topic<msg::ControllerState> kControllerState{"controller_state", Qos::kStream};
 inline constexpr Topic<msg::MocapPose> kMocapPose{"mocap_pose", Qos::kStream};
 inline constexpr Topic<msg::RotorSpeeds> kRotorSpeeds{"rotor_speeds", Qos::kStream};
 inline constexpr Topic<msg::Setpoint> kSetpoint{"setpoint", Qos::kStream};
@@ -53,6 +55,8 @@ inline constexpr Topic<msg::SimulationClock> kSimulationClock{"simulation_clock"
 inline constexpr Topic<msg::Command> kCommand{"command", Qos::kRequest};
 inline constexpr Topic<msg::Mission> kMission{"mission", Qos::kRequest};
 inline constexpr Topic<msg::Trajectory> kTrajectory{"trajectory", Qos::kRequest};
+inline constexpr Topic<msg::Mission> kFlownMission{"flown_mission", Qos::kDocument};
+inline constexpr Topic<msg::Trajectory> kFlownTrajectory{"flown_trajectory", Qos::kDocument};
 inline constexpr Topic<msg::CommandAck> kCommandAck{"command_ack", Qos::kRequest};
 }  // namespace topics
 

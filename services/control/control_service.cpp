@@ -1,6 +1,9 @@
 #include "services/control/control_service.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <limits>
+#include <random>
 
 #include "services/runtime/periodic_timer.hpp"
 
@@ -10,17 +13,42 @@ namespace {
 namespace msg = comms::msg;
 namespace topics = comms::topics;
 using comms::Delivery;
+using namespace std::chrono_literals;
+
+// So long after it stepped down a controller leaves its strength as it is: the vehicle, which listens to the
+// strongest, must have heard the other one before.
+constexpr std::int64_t kOldStrengthNs = 200'000'000;
+
+// Without samples and without an active controller for so long, requests are answered, by saying so.
+constexpr std::int64_t kAloneNs = 1'000'000'000;
+
+std::uint64_t random_number() {
+  std::random_device device;
+  return (static_cast<std::uint64_t>(device()) << 32) | device();
+}
 
 }  // namespace
 
 ControlService::ControlService(const plant::Vehicle& vehicle, const control::ControlSettings& settings,
                                int strength, comms::Node& node, const runtime::RealtimeSettings& realtime,
                                runtime::Clock clock)
-    : realtime_(realtime),
+    : controller_(random_number()),
+      strength_(strength),
+      clock_(clock),
+      realtime_(realtime),
       loop_(vehicle, settings),
       desk_(loop_, settings.limits, wake_),
-      telemetry_(loop_, desk_, node, wake_),
-      commands_(node.publish(topics::kActuatorCommand, strength)) {
+      telemetry_(loop_, desk_, node),
+      succession_(controller_, strength),
+      reports_(node.publish(topics::kControllerState)),
+      commands_(node.publish(topics::kActuatorCommand, succession_.next_term())),
+      wanted_strength_(succession_.next_term()),
+      active_heard_ns_(runtime::monotonic_ns()),
+      offered_strength_(succession_.next_term()) {
+  report_.controller = controller_;
+  report_.strength = strength;
+  report_.rotor_count = vehicle.rotor_count();
+  desk_.attend(clock == runtime::Clock::kLockstep);
   subscribe(node, clock);
 }
 
@@ -70,6 +98,17 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
   subscriptions_.push_back(node.subscribe<msg::Trajectory>(
       topics::kTrajectory, [this](const auto& message) { desk_.on_trajectory(message); },
       Delivery::kOwnThread));
+  if (clock == runtime::Clock::kRealtime) {
+    subscriptions_.push_back(node.subscribe<msg::Mission>(
+        topics::kFlownMission, [this](const auto& message) { desk_.on_flown_mission(message); },
+        Delivery::kOwnThread));
+    subscriptions_.push_back(node.subscribe<msg::Trajectory>(
+        topics::kFlownTrajectory, [this](const auto& message) { desk_.on_flown_trajectory(message); },
+        Delivery::kOwnThread));
+    subscriptions_.push_back(node.subscribe<msg::ControllerState>(
+        topics::kControllerState, [this](const auto& message) { on_controller_state(message); },
+        Delivery::kOwnThread));
+  }
   subscriptions_.push_back(node.subscribe<msg::Imu>(topics::kImu, take_imu, delivery));
 }
 
@@ -94,7 +133,7 @@ std::function<void(const Message&)> ControlService::deliver_in_lockstep(runtime:
     const std::lock_guard<std::mutex> lock(gate_mutex_);
     if (!gate_.is_new(stream, message.sequence_number())) return;
     take(message);
-    if (const auto imu = gate_.take()) answer(*imu);
+    if (const auto imu = gate_.take()) answer(*imu, take_role_in_lockstep(*imu));
   };
 }
 
@@ -105,7 +144,56 @@ void ControlService::on_imu(const msg::Imu& message) {
     if (realtime_.enabled) runtime::make_this_thread_realtime(realtime_);
     telemetry_.set_realtime(runtime::this_thread_is_realtime());
   }
-  answer(message);
+  answer(message, take_role(message));
+}
+
+// Whatever the others say reaches the inner loop with the next sample.
+void ControlService::on_controller_state(const msg::ControllerState& message) {
+  if (message.controller() == controller_) return;
+  comms::ControllerReport other;
+  const comms::Fault fault = comms::from_message(message, other);
+  if (fault) return controller_faults_.note(fault);
+  const std::int64_t now_ns = runtime::monotonic_ns();
+  if (other.active) {
+    active_heard_ns_.store(now_ns, std::memory_order_relaxed);
+    if (!active_.load(std::memory_order_relaxed)) {
+      Handover handover;
+      handover.term = other.term;
+      handover.flight = other.flight;
+      handover.accepted = other.accepted;
+      desk_.follow(handover);
+    }
+  }
+  heartbeats_.push(
+      {other.controller, other.strength, other.term, other.active ? Role::kActive : Role::kStandby, now_ns});
+}
+
+Role ControlService::take_role(const msg::Imu& message) {
+  const Role before = succession_.role();
+  heartbeats_.consume_all([this](const Heartbeat& beat) { succession_.heard(beat); });
+  const std::int64_t now_ns = runtime::monotonic_ns();
+  const Role role = succession_.sample(message.stamp_ns(), comms::obeyed_command(message), now_ns);
+  const bool active = role == Role::kActive;
+  desk_.attend(active);
+  active_.store(active, std::memory_order_relaxed);
+  wanted_strength_.store(active ? succession_.term() : succession_.next_term(), std::memory_order_relaxed);
+  if (role != before) {
+    if (!active) stepped_down_ns_.store(now_ns, std::memory_order_relaxed);
+    const bool flew = message.commands() == msg::Imu_Constants::COMMANDS_OBEYED;
+    if (active && flew && !succession_.continues()) loop_.look_for_flight();
+  }
+  return role;
+}
+
+// The first sample is answered at once, by a term that no other controller has.
+Role ControlService::take_role_in_lockstep(const msg::Imu& message) {
+  const plant::ObeyedCommand obeyed = comms::obeyed_command(message);
+  if (obeyed.any && obeyed.term != succession_.next_term()) {
+    rival_.store(true, std::memory_order_relaxed);
+    wake_.post();
+    return Role::kStandby;
+  }
+  return Role::kActive;
 }
 
 // What was answered before comes again while time stands still: requests are then looked at, and the answer
@@ -117,7 +205,7 @@ void ControlService::on_imu_in_lockstep(const msg::Imu& message) {
     commands_.publish(last_answer_);
     if (loop_.finish(runtime::monotonic_ns())) wake_.post();
   } else if (const auto imu = gate_.take()) {
-    answer(*imu);
+    answer(*imu, take_role_in_lockstep(*imu));
   }
 }
 
@@ -129,7 +217,7 @@ void ControlService::on_ground_link(const msg::GroundLink& message) {
   loop_.ground_signs.push(sign);
 }
 
-void ControlService::answer(const msg::Imu& message) {
+void ControlService::answer(const msg::Imu& message, Role role) {
   const std::int64_t arrived_ns = runtime::monotonic_ns();
   plant::ImuSample sample;
   if (comms::from_message(message, sample)) {
@@ -138,11 +226,47 @@ void ControlService::answer(const msg::Imu& message) {
     sample.sequence = message.sequence_number();
     sample.specific_force_frd.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
-  last_answer_ = comms::to_message(loop_.step(sample, arrived_ns));
-  commands_.publish(last_answer_);
+  last_answer_ = comms::to_message(loop_.step(sample, arrived_ns, role, succession_.followed_term()));
+  last_answer_.term(clock_ == runtime::Clock::kLockstep ? succession_.next_term() : succession_.term());
+  if (role == Role::kActive && !loop_.looking()) commands_.publish(last_answer_);
   if (loop_.finish(runtime::monotonic_ns())) wake_.post();
+  if (loop_.report_due()) report(message.stamp_ns());
 }
 
-void ControlService::run(const std::atomic<bool>& stop) { telemetry_.run(stop); }
+void ControlService::report(std::int64_t stamp_ns) {
+  report_.stamp_ns = stamp_ns;
+  ++report_.sequence;
+  report_.term = last_answer_.term();
+  loop_.report(report_);
+  reports_.publish(comms::to_message(report_));
+}
+
+void ControlService::run(const std::atomic<bool>& stop) {
+  while (!stop.load(std::memory_order_relaxed)) {
+    offer_strength();
+    telemetry_.tell();
+    attend_to_those_who_are_alone();
+    wake_.wait_for(50ms);
+  }
+}
+
+// A standby's commands have a strength beyond that of the active one before the first of them is sent: the
+// vehicle listens to it at once.
+void ControlService::offer_strength() {
+  const std::uint32_t wanted = wanted_strength_.load(std::memory_order_relaxed);
+  if (wanted == offered_strength_) return;
+  const bool just_overtaken =
+      !active_.load(std::memory_order_relaxed) &&
+      runtime::monotonic_ns() - stepped_down_ns_.load(std::memory_order_relaxed) < kOldStrengthNs;
+  if (just_overtaken) return;
+  commands_.set_strength(wanted);
+  offered_strength_ = wanted;
+}
+
+void ControlService::attend_to_those_who_are_alone() {
+  const std::int64_t last_ns =
+      std::max(loop_.last_arrival_ns(), active_heard_ns_.load(std::memory_order_relaxed));
+  if (runtime::monotonic_ns() - last_ns > kAloneNs) desk_.attend(true);
+}
 
 }  // namespace swiftlet::services

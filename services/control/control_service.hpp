@@ -7,12 +7,15 @@
 #include <mutex>
 #include <vector>
 
+#include <boost/lockfree/spsc_queue.hpp>
+
 #include "services/comms/convert.hpp"
 #include "services/comms/fault_log.hpp"
 #include "services/comms/node.hpp"
 #include "services/control/inner_loop.hpp"
 #include "services/control/lockstep_gate.hpp"
 #include "services/control/request_desk.hpp"
+#include "services/control/succession.hpp"
 #include "services/control/telemetry.hpp"
 #include "services/runtime/clock.hpp"
 #include "services/runtime/realtime.hpp"
@@ -20,18 +23,24 @@
 
 namespace swiftlet::services {
 
+// Any number of them may fly one vehicle: one acts, the others step along with the same samples, follow the
+// state of its flight and take over when it falls silent (Succession). In lockstep there is one alone.
+//
 // Threads: the IMU's own runs the inner loop and sends the command before it returns; poses, missions and
 // trajectories arrive in their own, all else in one that is shared; run() is telemetry's. In lockstep the
 // inner loop runs in the thread that brings the last of the samples that belong together.
 class ControlService {
  public:
-  // Throws std::invalid_argument as FlightController does, std::runtime_error as Node does. strength: of the
-  // command stream; the vehicle hears the strongest living controller.
+  // Throws std::invalid_argument as FlightController does, std::runtime_error as Node does. strength: of several
+  // standbys the strongest takes over first.
   ControlService(const plant::Vehicle& vehicle, const control::ControlSettings& settings, int strength,
                  comms::Node& node, const runtime::RealtimeSettings& realtime, runtime::Clock clock);
 
   void run(const std::atomic<bool>& stop);
   void wake() { wake_.post(); }
+
+  // In lockstep: another controller answers the vehicle too.
+  bool has_rival() const { return rival_.load(std::memory_order_relaxed); }
 
   const Snapshot& last() const { return telemetry_.last(); }  // once run() has returned
 
@@ -40,7 +49,13 @@ class ControlService {
   void on_imu(const comms::msg::Imu& message);
   void on_imu_in_lockstep(const comms::msg::Imu& message);
   void on_ground_link(const comms::msg::GroundLink& message);
-  void answer(const comms::msg::Imu& message);
+  void on_controller_state(const comms::msg::ControllerState& message);
+  Role take_role(const comms::msg::Imu& message);
+  Role take_role_in_lockstep(const comms::msg::Imu& message);
+  void answer(const comms::msg::Imu& message, Role role);
+  void report(std::int64_t stamp_ns);
+  void attend_to_those_who_are_alone();
+  void offer_strength();
   template <class Message, class Sample>
   std::function<void(const Message&)> deliver(runtime::Mailbox<Sample>& mailbox, comms::FaultLog& faults);
   template <class Message, class Sample>
@@ -48,14 +63,30 @@ class ControlService {
                                                           comms::FaultLog& faults,
                                                           LockstepGate::Stream stream);
 
+  const std::uint64_t controller_;
+  const int strength_;
+  const runtime::Clock clock_;
   runtime::RealtimeSettings realtime_;
   runtime::Semaphore wake_;
   InnerLoop loop_;
   RequestDesk desk_;
   Telemetry telemetry_;
-  comms::Publisher<comms::msg::ActuatorCommand> commands_;
+
+  // By the thread of the inner loop alone.
+  Succession succession_;
+  comms::Publisher<comms::msg::ControllerState> reports_;
+  comms::ControllerReport report_;
   comms::msg::ActuatorCommand last_answer_;
-  bool imu_thread_ready_ = false;  // by the thread of that name alone
+
+  comms::Publisher<comms::msg::ActuatorCommand> commands_;
+  boost::lockfree::spsc_queue<Heartbeat, boost::lockfree::capacity<64>> heartbeats_;
+  std::atomic<bool> active_{false};
+  std::atomic<std::uint32_t> wanted_strength_;    // of the commands
+  std::atomic<std::int64_t> stepped_down_ns_{0};  // monotonic
+  std::atomic<std::int64_t> active_heard_ns_{0};  // another one; monotonic
+  std::atomic<bool> rival_{false};
+  std::uint32_t offered_strength_;  // by the thread of run()
+  bool imu_thread_ready_ = false;   // by the thread of that name alone
   bool pose_thread_ready_ = false;
 
   std::mutex gate_mutex_;  // in lockstep: of the inner loop and all that it takes in
@@ -65,6 +96,7 @@ class ControlService {
   comms::FaultLog battery_faults_{"battery"};
   comms::FaultLog rotor_speed_faults_{"rotor_speeds"};
   comms::FaultLog setpoint_faults_{"setpoint"};
+  comms::FaultLog controller_faults_{"controller_state"};
   comms::FaultLog ground_link_faults_{"ground_link"};
 
   std::vector<comms::Subscription> subscriptions_;  // last: their callbacks use what stands above

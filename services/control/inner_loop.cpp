@@ -1,16 +1,29 @@
 #include "services/control/inner_loop.hpp"
 
+#include <algorithm>
+
 #include "services/runtime/telemetry_rate.hpp"
 
 namespace swiftlet::services {
+namespace {
+
+constexpr int kRotorSamples = 20;  // until the rotor observer has come to the measured speeds
+constexpr std::int64_t kStandbyReportNs = 100'000'000;
+
+}  // namespace
+
 InnerLoop::InnerLoop(const plant::Vehicle& vehicle, const control::ControlSettings& settings)
     : controller_(vehicle, settings) {}
 
-plant::ActuatorCommand InnerLoop::step(const plant::ImuSample& sample, std::int64_t now_ns) {
+plant::ActuatorCommand InnerLoop::step(const plant::ImuSample& sample, std::int64_t now_ns, Role role,
+                                       std::uint32_t followed_term) {
   last_arrival_ns_.store(now_ns, std::memory_order_relaxed);
+  role_ = role;
   take_samples();
   hear_ground();
   judge_requests();
+  if (role == Role::kStandby) follow(followed_term);
+  if (looking()) look(sample);
   const plant::ActuatorCommand command = controller_.on_imu(sample);
   rotors_running_ = command.rotor_state == plant::RotorState::kRunning;
   stamp_ns_ = sample.stamp_ns;
@@ -25,9 +38,40 @@ void InnerLoop::take_samples() {
   plant::BatterySample new_battery;
   if (battery.take(new_battery)) controller_.on_battery(new_battery);
   plant::RotorSpeedSample new_rotor_speeds;
-  if (rotor_speeds.take(new_rotor_speeds)) controller_.on_rotor_speeds(new_rotor_speeds);
+  if (rotor_speeds.take(new_rotor_speeds)) {
+    controller_.on_rotor_speeds(new_rotor_speeds);
+    ++rotor_samples_;
+  }
   control::Setpoint new_setpoint;
-  if (setpoint.take(new_setpoint)) controller_.on_setpoint(new_setpoint);
+  if (setpoint.take(new_setpoint) && role_ == Role::kActive) controller_.on_setpoint(new_setpoint);
+}
+
+void InnerLoop::follow(std::uint32_t term) {
+  Handover newest;
+  if (!handover.take(newest)) return;
+  if (newest.term == term) {
+    controller_.adopt(newest.flight, newest.mission, newest.trajectory);
+    accepted_ = newest.accepted;
+    const control::Mode mode = newest.flight.supervisor.mode;
+    knows_plan_ = (mode != control::Mode::kMission || newest.mission != nullptr) &&
+                  (mode != control::Mode::kTrajectory || newest.trajectory != nullptr);
+    looks_since_ns_ = kLooksNot;
+  }
+  taken_handover_.store(newest.number, std::memory_order_release);
+}
+
+// Judged by the state before this sample, which is why the first one only begins the look.
+void InnerLoop::look(const plant::ImuSample& sample) {
+  if (looks_since_ns_ == kLooksFromNow || sample.stamp_ns < looks_since_ns_) {
+    looks_since_ns_ = sample.stamp_ns;
+    rotor_samples_ = 0;
+    return;
+  }
+  const bool over = sample.stamp_ns - looks_since_ns_ > kLookNs;
+  const bool rotors_known = rotor_samples_ >= kRotorSamples || over;
+  if (!rotors_known) return;
+  const bool stands = !controller_.feels_airborne();
+  if (stands || over || controller_.find_flying()) looks_since_ns_ = kLooksNot;
 }
 
 void InnerLoop::hear_ground() {
@@ -37,11 +81,30 @@ void InnerLoop::hear_ground() {
 void InnerLoop::judge_requests() {
   PendingRequest* pending = nullptr;
   while (requests.pop(pending)) {
-    if (pending->claim(PendingRequest::State::kTaken))
+    // What reached a standby is for the active one, which hears it too.
+    if (role_ == Role::kStandby) {
+      pending->claim(PendingRequest::State::kGivenUp);
+    } else if (pending->claim(PendingRequest::State::kTaken)) {
       pending->outcome = controller_.request(pending->request);
+      if (pending->outcome.accepted) remember(*pending);
+    }
     judged.push(pending);  // fits: no more are under way
     judged_any_ = true;
   }
+}
+
+void InnerLoop::remember(const PendingRequest& accepted) {
+  std::rotate(accepted_.begin(), accepted_.begin() + 1, accepted_.end());
+  accepted_.back() = {accepted.client, accepted.id};
+  accepted_any_ = true;
+}
+
+void InnerLoop::report(comms::ControllerReport& report) const {
+  report.active = role_ == Role::kActive;
+  report.ready = (report.active && !looking()) || (knows_plan_ && controller_.status().has_pose);
+  if (!report.active) return;
+  report.flight = controller_.state();
+  report.accepted = accepted_;
 }
 
 bool InnerLoop::finish(std::int64_t now_ns) {
@@ -51,19 +114,28 @@ bool InnerLoop::finish(std::int64_t now_ns) {
   const bool sampled =
       timing_.period_ns() > 0 && runtime::is_telemetry_sample(imu_sequence_, timing_.period_ns());
   const bool answers = judged_any_;
+  const bool changed = status_changed() || role_ != told_role_;
+  const bool old = stamp_ns_ < reported_ns_ || stamp_ns_ - reported_ns_ >= kStandbyReportNs;
+  report_due_ = (sampled && role_ == Role::kActive) || old || changed || accepted_any_;
+  if (report_due_) reported_ns_ = stamp_ns_;
   judged_any_ = false;
-  if (!sampled && !status_changed()) return answers;
+  accepted_any_ = false;
+  if (!sampled && !changed) return answers;
 
   snapshot_.stamp_ns = stamp_ns_;
   snapshot_.sampled = sampled;
   snapshot_.estimate = controller_.estimate();
+  if (sampled) snapshot_.estimate_deviation = controller_.estimate_deviation();
   snapshot_.reference = controller_.reference();
   snapshot_.setpoint = controller_.attitude_setpoint();
   snapshot_.status = status;
+  snapshot_.trajectory_id = controller_.state().supervisor.trajectory_id;
+  snapshot_.role = role_;
   snapshot_.saturated = saturated_;
   snapshot_.timing = timing_.figures();
   if (snapshots.push(snapshot_)) {
     told_ = status;
+    told_role_ = role_;
     saturated_ = false;
   }
   return true;

@@ -8,8 +8,10 @@
 #include <boost/lockfree/spsc_queue.hpp>
 
 #include "control/flight_controller.hpp"
+#include "services/comms/convert.hpp"
 #include "services/control/pending_request.hpp"
 #include "services/control/step_timing.hpp"
+#include "services/control/succession.hpp"
 #include "services/runtime/mailbox.hpp"
 
 namespace swiftlet::services {
@@ -20,11 +22,26 @@ struct Snapshot {
   bool sampled =
       false;  // one of the 100 a second that telemetry shows; others are there for a change of status
   control::Estimate estimate;
+  control::ErrorState estimate_deviation;  // of a sampled one
   control::Reference reference;
   control::AttitudeSetpoint setpoint;
   control::Status status;
+  std::uint64_t trajectory_id = 0;  // of the one being flown
+  Role role = Role::kStandby;
   bool saturated = false;  // in any step since the last snapshot
   StepTiming::Figures timing;
+};
+
+using AcceptedRequests = decltype(comms::ControllerReport::accepted);
+
+// The active controller's flight, for a standby to follow.
+struct Handover {
+  std::uint64_t number = 0;  // counts up from 1
+  std::uint32_t term = 0;
+  control::FlightState flight;
+  AcceptedRequests accepted{};
+  const control::Mission* mission = nullptr;  // what is flown there; null if it is not known here
+  const control::Trajectory* trajectory = nullptr;
 };
 
 class InnerLoop {
@@ -37,6 +54,7 @@ class InnerLoop {
   runtime::Mailbox<plant::BatterySample> battery;
   runtime::Mailbox<plant::RotorSpeedSample> rotor_speeds;
   runtime::Mailbox<control::Setpoint> setpoint;
+  runtime::Mailbox<Handover> handover;
   boost::lockfree::spsc_queue<PendingRequest*, boost::lockfree::capacity<kMaxPendingRequests>> requests;
 
   boost::lockfree::spsc_queue<control::GroundSign, boost::lockfree::capacity<32>> ground_signs;
@@ -48,8 +66,24 @@ class InnerLoop {
   // By the IMU thread: step() gives the command; once it is sent, finish() does the rest of the step and
   // returns whether there is new output. now_ns: monotonic time of the sample's arrival, or of the command's
   // departure.
-  plant::ActuatorCommand step(const plant::ImuSample& sample, std::int64_t now_ns);
+  // A standby steps as the active one does and follows the flight of that term; its command is not for sending.
+  plant::ActuatorCommand step(const plant::ImuSample& sample, std::int64_t now_ns, Role role = Role::kActive,
+                              std::uint32_t followed_term = 0);
   bool finish(std::int64_t now_ns);
+
+  // Nobody was there to go on from: from the next step on looks whether the vehicle flies, and takes it into hold
+  // if it does. Until that is clear, for at most kLook, there are no commands to be sent: the vehicle goes on
+  // with its last one.
+  void look_for_flight() { looks_since_ns_ = kLooksFromNow; }
+  bool looking() const { return looks_since_ns_ != kLooksNot; }
+  static constexpr std::int64_t kLookNs = 300'000'000;
+
+  // Whether a report to the other controllers is due with this step, and what it says of the flight.
+  bool report_due() const { return report_due_; }
+  void report(comms::ControllerReport& report) const;
+
+  // The newest handover that was gone over to. By any thread.
+  std::uint64_t taken_handover() const { return taken_handover_.load(std::memory_order_acquire); }
 
   // Monotonic; 0 before the first sample. By any thread.
   std::int64_t last_arrival_ns() const { return last_arrival_ns_.load(std::memory_order_relaxed); }
@@ -59,8 +93,14 @@ class InnerLoop {
 
  private:
   void take_samples();
+  void follow(std::uint32_t term);
+  void look(const plant::ImuSample& sample);
+  void remember(const PendingRequest& accepted);
   void hear_ground();
   bool status_changed() const;
+
+  static constexpr std::int64_t kLooksNot = -1;
+  static constexpr std::int64_t kLooksFromNow = -2;
 
   control::FlightController controller_;
   StepTiming timing_;
@@ -69,9 +109,19 @@ class InnerLoop {
   std::int64_t stamp_ns_ = 0;
   std::uint64_t imu_sequence_ = 0;
   std::atomic<std::int64_t> last_arrival_ns_{0};
+  std::atomic<std::uint64_t> taken_handover_{0};
+  Role role_ = Role::kStandby;
+  Role told_role_ = Role::kStandby;
+  AcceptedRequests accepted_{};  // oldest first
+  std::int64_t looks_since_ns_ = kLooksNot;
+  int rotor_samples_ = 0;    // of the rotors' speeds, since it looks
+  bool knows_plan_ = false;  // of the flight that it follows
+  bool report_due_ = false;
+  std::int64_t reported_ns_ = 0;
   bool rotors_running_ = false;
   bool saturated_ = false;
   bool judged_any_ = false;
+  bool accepted_any_ = false;  // since the last report
 };
 
 }  // namespace swiftlet::services

@@ -1,5 +1,7 @@
 // swiftlet-control: the flight controller.
 #include <atomic>
+#include <chrono>
+#include <stdexcept>
 #include <string>
 #include <thread>
 
@@ -21,6 +23,8 @@
 namespace swiftlet::services {
 namespace {
 
+constexpr std::chrono::milliseconds kLook{100};  // how often the main thread looks around
+
 struct Options {
   std::string vehicle = "vehicles/kaylion.yaml";
   std::string control = "control/motor_lag.yaml";
@@ -34,7 +38,7 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--vehicle", options.vehicle, "Vehicle file")->capture_default_str();
   app.add_option("--control", options.control, "Control settings file")->capture_default_str();
   app.add_option("--strength", options.strength,
-                 "Of several controllers, the vehicle obeys the strongest alive")
+                 "Of several controllers one acts; when it fails, the strongest of the others takes over")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
   runtime::add_clock_option(app, options.clock);
@@ -63,10 +67,13 @@ void run(const Options& options) {
 
   std::atomic<bool> telemetry_ends{false};
   std::thread telemetry([&] { service.run(telemetry_ends); });
-  stop.wait();
+  while (!service.has_rival() && !stop.wait_for(kLook)) {
+  }
   telemetry_ends = true;
   service.wake();
   telemetry.join();
+  if (service.has_rival())
+    throw std::runtime_error("lockstep: another controller answers this vehicle; there can be only one");
 
   const Snapshot& last = service.last();
   spdlog::info(

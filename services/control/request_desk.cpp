@@ -38,12 +38,20 @@ const char* name_of(control::RequestKind kind) {
 
 control::Outcome refusal(const comms::Fault& fault) { return control::refuse("%s", fault.text); }
 
+// Into plan, if it can be flown.
+template <class Message, class Plan>
+control::Outcome read(const Message& message, const control::Limits& limits, Plan& plan) {
+  const comms::Fault fault = comms::from_message(message, plan);
+  return fault ? refusal(fault) : control::check(plan, limits);
+}
+
 }  // namespace
 
 RequestDesk::RequestDesk(InnerLoop& loop, const control::Limits& limits, runtime::Semaphore& wake)
     : loop_(loop), limits_(limits), wake_(wake) {}
 
 void RequestDesk::on_command(const comms::msg::Command& message) {
+  if (!attends()) return;
   const Key key{message.client(), message.id()};
   if (is_known(key)) return;
   auto pending = std::make_unique<PendingRequest>();
@@ -54,12 +62,12 @@ void RequestDesk::on_command(const comms::msg::Command& message) {
 }
 
 void RequestDesk::on_mission(const comms::msg::Mission& message) {
+  if (!attends()) return on_flown_mission(message);
   const Key key{message.client(), message.id()};
   if (is_known(key)) return;
   auto pending = std::make_unique<PendingRequest>();
   pending->mission = std::make_unique<control::Mission>();
-  const comms::Fault fault = comms::from_message(message, *pending->mission);
-  const control::Outcome outcome = fault ? refusal(fault) : control::check(*pending->mission, limits_);
+  const control::Outcome outcome = read(message, limits_, *pending->mission);
   if (!outcome.accepted) return refuse(key, control::RequestKind::kMission, outcome);
   std::tie(pending->client, pending->id) = key;
   pending->request.kind = control::RequestKind::kMission;
@@ -68,17 +76,70 @@ void RequestDesk::on_mission(const comms::msg::Mission& message) {
 }
 
 void RequestDesk::on_trajectory(const comms::msg::Trajectory& message) {
+  if (!attends()) return on_flown_trajectory(message);
   const Key key{message.client(), message.id()};
   if (is_known(key)) return;
   auto pending = std::make_unique<PendingRequest>();
   pending->trajectory = std::make_unique<control::Trajectory>();
-  const comms::Fault fault = comms::from_message(message, *pending->trajectory);
-  const control::Outcome outcome = fault ? refusal(fault) : control::check(*pending->trajectory, limits_);
+  const control::Outcome outcome = read(message, limits_, *pending->trajectory);
   if (!outcome.accepted) return refuse(key, control::RequestKind::kTrajectory, outcome);
   std::tie(pending->client, pending->id) = key;
   pending->request.kind = control::RequestKind::kTrajectory;
   pending->request.trajectory = pending->trajectory.get();
   submit(std::move(pending));
+}
+
+// A mission may come by two ways, as it is asked for and as it is flown, and each of them again.
+void RequestDesk::on_flown_mission(const comms::msg::Mission& message) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (missions_.find(message.id()) != nullptr) return;
+  }
+  auto mission = std::make_unique<control::Mission>();
+  if (!read(message, limits_, *mission).accepted) return;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  missions_.put(std::move(mission));
+}
+
+void RequestDesk::on_flown_trajectory(const comms::msg::Trajectory& message) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (trajectories_.find(message.id()) != nullptr) return;
+  }
+  auto trajectory = std::make_unique<control::Trajectory>();
+  if (!read(message, limits_, *trajectory).accepted) return;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  trajectories_.put(std::move(trajectory));
+}
+
+void RequestDesk::follow(Handover handover) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const control::SupervisorState& state = handover.flight.supervisor;
+  handover.number = ++handovers_;
+  if (state.mode == control::Mode::kMission) handover.mission = missions_.find(state.mission.id);
+  if (state.mode == control::Mode::kTrajectory) handover.trajectory = trajectories_.find(state.trajectory_id);
+  missions_.lend(handover.mission, handover.number);
+  trajectories_.lend(handover.trajectory, handover.number);
+  for (const comms::RequestKey& request : handover.accepted) {
+    const Key key{request.client, request.id};
+    if (request.id != 0 && answers_.count(key) == 0)
+      keep_answer(key, {key.first, key.second, "request", control::accept(), false});
+  }
+  loop_.handover.put(handover);
+  missions_.tidy(loop_.taken_handover());
+  trajectories_.tidy(loop_.taken_handover());
+}
+
+comms::msg::Mission RequestDesk::mission(std::uint64_t id) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const control::Mission* const mission = missions_.find(id);
+  return mission != nullptr ? comms::to_message(*mission) : comms::msg::Mission();
+}
+
+comms::msg::Trajectory RequestDesk::trajectory(std::uint64_t id) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const control::Trajectory* const trajectory = trajectories_.find(id);
+  return trajectory != nullptr ? comms::to_message(*trajectory) : comms::msg::Trajectory();
 }
 
 bool RequestDesk::is_known(const Key& key) {
@@ -111,14 +172,18 @@ void RequestDesk::refuse(const Key& key, control::RequestKind kind, const contro
 // With the lock held.
 void RequestDesk::settle(const Key& key, control::RequestKind kind, const control::Outcome& outcome) {
   const RequestAnswer answer{key.first, key.second, name_of(kind), outcome, false};
-  answers_[key] = answer;
-  oldest_.push_back(key);
-  if (oldest_.size() > kRememberedAnswers) {
-    answers_.erase(oldest_.front());
-    oldest_.pop_front();
-  }
+  keep_answer(key, answer);
   outbox_.push_back(answer);
   wake_.post();
+}
+
+// With the lock held.
+void RequestDesk::keep_answer(const Key& key, const RequestAnswer& answer) {
+  answers_[key] = answer;
+  oldest_.push_back(key);
+  if (oldest_.size() <= kRememberedAnswers) return;
+  answers_.erase(oldest_.front());
+  oldest_.pop_front();
 }
 
 std::vector<RequestAnswer> RequestDesk::collect() {
@@ -130,10 +195,12 @@ std::vector<RequestAnswer> RequestDesk::collect() {
     const std::unique_ptr<PendingRequest> done = std::move(entry->second);
     pending_.erase(entry);
     if (done->state == PendingRequest::State::kGivenUp) continue;  // answered before
-    if (done->outcome.accepted && done->mission) mission_ = std::move(done->mission);
-    if (done->outcome.accepted && done->trajectory) trajectory_ = std::move(done->trajectory);
+    if (done->outcome.accepted && done->mission) missions_.put_flown(std::move(done->mission));
+    if (done->outcome.accepted && done->trajectory) trajectories_.put_flown(std::move(done->trajectory));
     settle(key, done->request.kind, done->outcome);
   }
+  missions_.tidy(loop_.taken_handover());
+  trajectories_.tidy(loop_.taken_handover());
   const std::int64_t now_ns = runtime::monotonic_ns();
   for (const auto& [key, pending] : pending_) {
     if (now_ns - pending->asked_ns < kPatienceNs || !pending->claim(PendingRequest::State::kGivenUp))

@@ -1,6 +1,8 @@
-// Takes requests in, has them judged by the inner loop and keeps the answers.
+// Takes requests in, has them judged by the inner loop and keeps the answers. At a standby's desk they are only
+// read: what the active controller accepts and flies is kept, so that it can be gone on with.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -12,6 +14,7 @@
 #include "control/settings.hpp"
 #include "services/comms/topics.hpp"
 #include "services/control/inner_loop.hpp"
+#include "services/control/plan_shelf.hpp"
 #include "services/runtime/semaphore.hpp"
 
 namespace swiftlet::services {
@@ -42,6 +45,19 @@ class RequestDesk {
   // came; lets go of missions and trajectories that the controller has left. By one thread.
   std::vector<RequestAnswer> collect();
 
+  // Whether requests are taken in and answered here; they are at first. By any thread.
+  void attend(bool attends) { attends_.store(attends, std::memory_order_relaxed); }
+  bool attends() const { return attends_.load(std::memory_order_relaxed); }
+
+  // What the active controller says: the mission or trajectory that it flies, and what it accepted. by any thread.
+  void on_flown_mission(const comms::msg::Mission& message);
+  void on_flown_trajectory(const comms::msg::Trajectory& message);
+  void follow(Handover handover);
+
+  // What is flown, for the others to know; id 0 if it is not known here.
+  comms::msg::Mission mission(std::uint64_t id);
+  comms::msg::Trajectory trajectory(std::uint64_t id);
+
  private:
   using Key = std::pair<std::uint64_t, std::uint64_t>;  // client, id
 
@@ -50,7 +66,10 @@ class RequestDesk {
   void refuse(const Key& key, control::RequestKind kind, const control::Outcome& outcome);
   void settle(const Key& key, control::RequestKind kind, const control::Outcome& outcome);
 
+  void keep_answer(const Key& key, const RequestAnswer& answer);
+
   InnerLoop& loop_;
+  std::atomic<bool> attends_{true};
   const control::Limits limits_;
   runtime::Semaphore& wake_;
 
@@ -59,8 +78,9 @@ class RequestDesk {
   std::map<Key, RequestAnswer> answers_;
   std::deque<Key> oldest_;  // of answers_
   std::vector<RequestAnswer> outbox_;
-  std::unique_ptr<control::Mission> mission_;  // the last accepted one: the controller may be flying it
-  std::unique_ptr<control::Trajectory> trajectory_;
+  PlanShelf<control::Mission> missions_;
+  PlanShelf<control::Trajectory> trajectories_;
+  std::uint64_t handovers_ = 0;
 };
 
 }  // namespace swiftlet::services

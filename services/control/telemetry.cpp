@@ -1,7 +1,6 @@
 #include "services/control/telemetry.hpp"
 
 #include <algorithm>
-#include <chrono>
 
 #include <spdlog/spdlog.h>
 
@@ -11,7 +10,6 @@
 namespace swiftlet::services {
 namespace {
 
-using namespace std::chrono_literals;
 namespace topics = comms::topics;
 
 constexpr std::int64_t kStatusPeriodNs = 100'000'000;
@@ -28,29 +26,68 @@ bool is_over(control::MissionState state) {
 
 }  // namespace
 
-Telemetry::Telemetry(InnerLoop& loop, RequestDesk& desk, comms::Node& node, runtime::Semaphore& wake)
+Telemetry::Telemetry(InnerLoop& loop, RequestDesk& desk, comms::Node& node)
     : loop_(loop),
       desk_(desk),
-      wake_(wake),
+      node_(node),
       estimates_(node.publish(topics::kEstimate)),
       references_(node.publish(topics::kReference)),
-      statuses_(node.publish(topics::kControlStatus)),
-      missions_(node.publish(topics::kMissionStatus)),
-      acks_(node.publish(topics::kCommandAck)) {}
+      acks_(node.publish(topics::kCommandAck)) {
+  open();
+}
 
-void Telemetry::run(const std::atomic<bool>& stop) {
-  while (!stop.load(std::memory_order_relaxed)) {
-    loop_.snapshots.consume_all([this](const Snapshot& snapshot) { take(snapshot); });
-    answer_requests();
-    const std::int64_t now_ns = runtime::monotonic_ns();
-    if (watches_imu_) log_imu_silence(now_ns);
-    if (now_ns >= status_due_ns_) publish_status();
-    if (now_ns >= mission_due_ns_) publish_mission();
-    wake_.wait_for(50ms);
+// The states, with nothing said yet.
+void Telemetry::open() {
+  statuses_ = node_.publish(topics::kControlStatus);
+  missions_ = node_.publish(topics::kMissionStatus);
+  flown_missions_ = node_.publish(topics::kFlownMission);
+  flown_trajectories_ = node_.publish(topics::kFlownTrajectory);
+  told_mission_ = 0;
+  told_trajectory_ = 0;
+}
+
+void Telemetry::tell() {
+  loop_.snapshots.consume_all([this](const Snapshot& snapshot) { take(snapshot); });
+  const std::vector<RequestAnswer> answers = desk_.collect();
+  if (last_.role == Role::kActive) publish_plan();  // before its acceptance is told
+  answer_requests(answers);
+  const std::int64_t now_ns = runtime::monotonic_ns();
+  if (watches_imu_) log_imu_silence(now_ns);
+  if (!desk_.attends()) return;
+  if (now_ns >= status_due_ns_) publish_status();
+  if (now_ns >= mission_due_ns_) publish_mission();
+}
+
+// What was said last is not for those who join later: they are to hear the active controller alone.
+void Telemetry::change_role() {
+  spdlog::info("{} now, in {}", to_string(last_.role), control::to_string(last_.status.mode));
+  if (last_.role == Role::kStandby) return open();
+  publish_status();
+  publish_mission();
+}
+
+void Telemetry::publish_plan() {
+  const std::uint64_t mission = last_.status.mode == control::Mode::kMission ? last_.status.mission.id : 0;
+  if (mission != 0 && mission != told_mission_) {
+    const comms::msg::Mission message = desk_.mission(mission);
+    if (message.id() == mission) flown_missions_.publish(message);
+    told_mission_ = mission;
+  }
+  const std::uint64_t trajectory = last_.status.mode == control::Mode::kTrajectory ? last_.trajectory_id : 0;
+  if (trajectory != 0 && trajectory != told_trajectory_) {
+    const comms::msg::Trajectory message = desk_.trajectory(trajectory);
+    if (message.id() == trajectory) flown_trajectories_.publish(message);
+    told_trajectory_ = trajectory;
   }
 }
 
 void Telemetry::take(const Snapshot& snapshot) {
+  const bool role_changed = snapshot.role != last_.role;
+  if (snapshot.role == Role::kStandby) {
+    last_ = snapshot;
+    if (role_changed) change_role();
+    return;
+  }
   const control::Status& before = last_.status;
   const control::Status& now = snapshot.status;
   const bool mode_changed = now.mode != before.mode || now.reason != before.reason;
@@ -69,6 +106,7 @@ void Telemetry::take(const Snapshot& snapshot) {
   if (snapshot.sampled) publish_sampled(snapshot);
   saturated_ = saturated_ || snapshot.saturated;
   last_ = snapshot;
+  if (role_changed) return change_role();
   if (mode_changed) publish_status();
   if (mission_changed) publish_mission();
 }
@@ -82,7 +120,8 @@ void Telemetry::log_imu_silence(std::int64_t now_ns) {
 
 void Telemetry::publish_sampled(const Snapshot& snapshot) {
   ++sampled_count_;
-  comms::msg::Estimate estimate = comms::to_message(snapshot.estimate, snapshot.status.pose_age_s);
+  comms::msg::Estimate estimate =
+      comms::to_message(snapshot.estimate, snapshot.estimate_deviation, snapshot.status.pose_age_s);
   estimate.sequence_number(sampled_count_);
   estimates_.publish(estimate);
   comms::msg::Reference reference =
@@ -132,8 +171,8 @@ void Telemetry::publish_mission() {
   mission_due_ns_ = runtime::monotonic_ns() + kMissionPeriodNs;
 }
 
-void Telemetry::answer_requests() {
-  for (const RequestAnswer& answer : desk_.collect()) {
+void Telemetry::answer_requests(const std::vector<RequestAnswer>& answers) {
+  for (const RequestAnswer& answer : answers) {
     comms::msg::CommandAck ack;
     ack.client(answer.client);
     ack.id(answer.id);

@@ -1,31 +1,34 @@
 // What the control service says of itself: telemetry, status, answers to requests, log lines. Nothing here is
-// in a hurry.
+// in a hurry. A standby says next to nothing: of several controllers one is heard.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
+#include <vector>
 
 #include "services/comms/node.hpp"
 #include "services/control/inner_loop.hpp"
 #include "services/control/request_desk.hpp"
-#include "services/runtime/semaphore.hpp"
 
 namespace swiftlet::services {
 
 class Telemetry {
  public:
-  Telemetry(InnerLoop& loop, RequestDesk& desk, comms::Node& node, runtime::Semaphore& wake);
+  Telemetry(InnerLoop& loop, RequestDesk& desk, comms::Node& node);
 
-  // Until `stop`, in a thread of its own.
-  void run(const std::atomic<bool>& stop);
+  // Says what is new or due. By one thread, again and again.
+  void tell();
 
   void set_realtime(bool granted) { realtime_.store(granted, std::memory_order_relaxed); }  // by any thread
-  void watch_imu() { watches_imu_ = true; }       // before run(): a silence of the samples is worth a warning
-  const Snapshot& last() const { return last_; }  // once run() has returned
+  void watch_imu() { watches_imu_ = true; }  // before tell(): a silence of the samples is worth a warning
+  const Snapshot& last() const { return last_; }  // by the thread of tell(), or after it
 
  private:
+  void open();
   void take(const Snapshot& snapshot);
-  void answer_requests();
+  void change_role();
+  void publish_plan();
+  void answer_requests(const std::vector<RequestAnswer>& answers);
   void log_imu_silence(std::int64_t now_ns);
   void publish_sampled(const Snapshot& snapshot);
   void publish_status();
@@ -33,7 +36,7 @@ class Telemetry {
 
   InnerLoop& loop_;
   RequestDesk& desk_;
-  runtime::Semaphore& wake_;
+  comms::Node& node_;
   std::atomic<bool> realtime_{false};
   bool watches_imu_ = false;
   bool imu_silent_ = false;
@@ -46,11 +49,15 @@ class Telemetry {
   std::uint64_t sampled_count_ = 0;
   std::uint64_t status_count_ = 0;
   std::uint64_t mission_count_ = 0;
+  std::uint64_t told_mission_ = 0;  // of which the others know
+  std::uint64_t told_trajectory_ = 0;
 
   comms::Publisher<comms::msg::Estimate> estimates_;
   comms::Publisher<comms::msg::Reference> references_;
   comms::Publisher<comms::msg::ControlStatus> statuses_;
   comms::Publisher<comms::msg::MissionStatus> missions_;
+  comms::Publisher<comms::msg::Mission> flown_missions_;
+  comms::Publisher<comms::msg::Trajectory> flown_trajectories_;
   comms::Publisher<comms::msg::CommandAck> acks_;
 };
 

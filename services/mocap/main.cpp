@@ -139,6 +139,11 @@ class Camera {
   comms::Subscription truth_;  // last: its callback uses what stands above
 };
 
+std::string pace(const plant::MocapSettings& settings) {
+  if (settings.model == plant::MocapModel::kOptitrack) return "at uneven intervals";
+  return fmt::format("{:g} times a second", settings.rate_hz);
+}
+
 void run(const Options& options) {
   const plant::SimulationSettings settings =
       runtime::load_simulation_settings(runtime::find_config(options.simulation));
@@ -150,12 +155,13 @@ void run(const Options& options) {
 
   comms::NodeSettings node_settings = options.node;
   node_settings.name = "mocap";
+  node_settings.announcement_period = comms::kFixturePeriod;
   node_settings.deadlines = options.clock == runtime::Clock::kRealtime;
   comms::Node node(node_settings);
   comms::log_peers(node);
   const Camera camera(settings, options.seed, node, realtime, options.clock, stop);
-  spdlog::info("watching: vehicle {}, domain {}, {:g} frames a second, seed {}", node_settings.vehicle,
-               node_settings.domain, settings.mocap.rate_hz, options.seed);
+  spdlog::info("watching: vehicle {}, domain {}, frames {}, seed {}", node_settings.vehicle,
+               node_settings.domain, pace(settings.mocap), options.seed);
   stop.wait();
   if (camera.lost_truth()) throw std::runtime_error("lockstep: a sample of ground_truth was lost");
   spdlog::info("ended: {} frames, {} of them untracked", camera.frames(), camera.untracked());

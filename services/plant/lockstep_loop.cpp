@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <thread>
 
-#include "plant/simulation/mocap.hpp"
 #include "services/runtime/periodic_timer.hpp"
 #include "services/runtime/telemetry_rate.hpp"
 
@@ -23,9 +22,10 @@ constexpr double kLongestLookS = 0.1;
 }  // namespace
 
 LockstepLoop::LockstepLoop(SimulatedVehicle& vehicle, const plant::SimulationSettings& settings,
-                           const LockstepSettings& lockstep, int rotor_count, comms::Node& node)
+                           std::uint64_t seed, const LockstepSettings& lockstep, int rotor_count,
+                           comms::Node& node)
     : vehicle_(vehicle),
-      settings_(settings),
+      mocap_(settings.mocap, seed),
       lockstep_(lockstep),
       imu_period_ns_(plant::period_ns(settings.imu.rate_hz)),
       expected_(settings, 0),
@@ -118,8 +118,9 @@ void LockstepLoop::publish() {
   bool truth_needed = false;
   if (simulation.imu_due()) {
     const std::int64_t stamp_ns = simulation.stamp_ns();
-    const bool frame = frame_is_due(stamp_ns);
-    truth_needed = frame || plant::mocap_needs_truth(settings_.mocap, imu_period_ns_, stamp_ns) ||
+    const plant::MocapSchedule::Events events = mocap_.advance(stamp_ns);
+    const bool frame = frame_is_due(stamp_ns, events.delivers);
+    truth_needed = frame || events.exposes || events.delivers ||
                    runtime::is_telemetry_sample(simulation.imu_count(), imu_period_ns_);
     if (truth_needed && !frame) truth_sent_ns_ = stamp_ns;
   }
@@ -127,14 +128,12 @@ void LockstepLoop::publish() {
 }
 
 // Whether a frame comes out of the faults' path at this stamp.
-bool LockstepLoop::frame_is_due(std::int64_t stamp_ns) {
+bool LockstepLoop::frame_is_due(std::int64_t stamp_ns, bool delivered) {
   std::optional<plant::PoseSample> frame;
-  const std::uint64_t newest = plant::newest_mocap_sequence(settings_.mocap, imu_period_ns_, stamp_ns);
-  if (newest > mocap_handed_over_) {
+  if (delivered) {
     frame.emplace();
     frame->stamp_ns = stamp_ns;
-    frame->sequence = newest;
-    mocap_handed_over_ = newest;
+    frame->sequence = mocap_.delivered();
   }
   const auto out = expected_.pass(frame, stamp_ns);
   if (out) mocap_due_ = out->sequence;

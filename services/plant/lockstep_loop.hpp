@@ -13,6 +13,7 @@
 #include <string>
 
 #include "plant/simulation/mocap_path.hpp"
+#include "plant/simulation/mocap_schedule.hpp"
 #include "services/comms/node.hpp"
 #include "services/plant/simulated_vehicle.hpp"
 #include "services/runtime/flight_trace.hpp"
@@ -28,7 +29,8 @@ struct LockstepSettings {
 class LockstepLoop {
  public:
   // Throws std::runtime_error if the trace cannot be written. The vehicle must outlive the loop.
-  LockstepLoop(SimulatedVehicle& vehicle, const plant::SimulationSettings& settings,
+  // Settings and seed are those that motion capture has, too.
+  LockstepLoop(SimulatedVehicle& vehicle, const plant::SimulationSettings& settings, std::uint64_t seed,
                const LockstepSettings& lockstep, int rotor_count, comms::Node& node);
 
   // Until `stop`. Throws std::runtime_error that names the peer whose answer has not come in time, of which
@@ -50,13 +52,13 @@ class LockstepLoop {
   void advance();
   void advance_to_imu_stamp();
   void publish();
-  bool frame_is_due(std::int64_t stamp_ns);
+  bool frame_is_due(std::int64_t stamp_ns, bool delivered);
   void look_after(double awake_s);
   std::string silent_peer() const;
   std::string silent_ground() const;
 
   SimulatedVehicle& vehicle_;
-  const plant::SimulationSettings settings_;
+  plant::MocapSchedule mocap_;  // as motion capture keeps it
   const LockstepSettings lockstep_;
   std::int64_t imu_period_ns_;
 
@@ -70,7 +72,6 @@ class LockstepLoop {
   std::int64_t mocap_seen_ns_ = -1;  // truth up to this stamp, of which there was no frame
   std::int64_t truth_sent_ns_ = -1;  // likewise
   plant::MocapPath expected_;        // carries the numbers of the frames that are due
-  std::uint64_t mocap_handed_over_ = 0;
   std::int64_t granted_ns_ = 0;
   bool clock_heard_ = false;
   double silence_s_ = 0.0;        // since the last progress

@@ -218,6 +218,7 @@ void run(const Options& options) {
 
   comms::NodeSettings node_settings = options.node;
   node_settings.name = "plant";
+  node_settings.announcement_period = comms::kFixturePeriod;
   node_settings.deadlines = options.clock == runtime::Clock::kRealtime;
   comms::Node node(node_settings);
   comms::log_peers(node);
@@ -232,7 +233,7 @@ void run(const Options& options) {
   if (options.clock == runtime::Clock::kRealtime) {
     realtime_loop.emplace(simulated, settings, options.speed, node, realtime);
   } else {
-    lockstep_loop.emplace(simulated, settings, options.lockstep, vehicle.rotor_count(), node);
+    lockstep_loop.emplace(simulated, settings, options.seed, options.lockstep, vehicle.rotor_count(), node);
   }
   const PlantReport last = run_loop(
       [&](const std::atomic<bool>& ends) {

@@ -73,6 +73,7 @@ void SimulatedVehicle::step() {
 void SimulatedVehicle::publish_samples() {
   if (simulation_.imu()) {
     imu_message_ = comms::to_message(*simulation_.imu());
+    comms::tell(watchdog_.obeyed(), imu_message_);
     if (report_.rotors_running) answers_.written(simulation_.imu()->sequence, runtime::monotonic_ns());
     imu_.publish(imu_message_);
   }
@@ -89,6 +90,7 @@ void SimulatedVehicle::publish_samples_in_order(std::uint64_t mocap_sequence, bo
   // The longest way first: motion capture makes a frame of the truth, for which the controller waits.
   const bool frame_due = mocap_sequence > imu_message_.mocap_sequence_number();
   imu_message_ = comms::to_message(*simulation_.imu());
+  comms::tell(watchdog_.obeyed(), imu_message_);
   imu_message_.mocap_sequence_number(mocap_sequence);
   imu_message_.battery_sequence_number(battery_message_.sequence_number());
   imu_message_.rotor_speeds_sequence_number(rotor_speeds_message_.sequence_number());

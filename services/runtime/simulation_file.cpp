@@ -1,5 +1,6 @@
 #include "services/runtime/simulation_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -28,7 +29,15 @@ plant::ImuSettings read_imu(const ConfigNode& node) {
 
 plant::MocapSettings read_mocap(const ConfigNode& node) {
   plant::MocapSettings mocap;
-  mocap.rate_hz = node.at("rate_hz").number();
+  mocap.model = node.at("model").choice<plant::MocapModel>(
+      {{"bounded", plant::MocapModel::kBounded}, {"optitrack", plant::MocapModel::kOptitrack}});
+  if (mocap.model == plant::MocapModel::kBounded) {
+    mocap.rate_hz = node.at("rate_hz").number();
+  } else {
+    const std::size_t count = mocap.interval_quantiles_s.size();
+    const std::vector<double> quantiles = node.at("interval_quantiles_s").numbers(count, count);
+    std::copy(quantiles.begin(), quantiles.end(), mocap.interval_quantiles_s.begin());
+  }
   mocap.latency_s = node.at("latency_s").number();
   mocap.position_error_m = node.at("position_error_m").number();
   mocap.orientation_error_rad = node.at("orientation_error_rad").number();

@@ -155,13 +155,12 @@ TEST_F(Failsafe, ControlIsStoppedForTwoTenthsOfASecondItFliesOn) {
   EXPECT_TRUE(settles_at(0, 0, -1));
 }
 
-TEST_F(Failsafe, CommandsCeaseForSecondsTheRotorsStopAndStayOff) {
+TEST_F(Failsafe, CommandsCeaseTheRotorsStopAndStayOff) {
   start_all();
   hover();
   control_->signal(SIGSTOP);
   ASSERT_TRUE(wait_until_rotors_off());
-  ASSERT_TRUE(wait_until_on_ground());
-  fly_on(3.0);
+  fly_on(1.2);  // short of the lease after which the others take it for dead
   control_->signal(SIGCONT);
   ASSERT_TRUE(told(Mode::kStopped, "IMU samples were missing") || told(Mode::kStopped, "tipped over", 1s))
       << story();
@@ -176,8 +175,8 @@ TEST_F(Failsafe, TheImuFallsSilentTheRotorsStopAndStayOff) {
   hover();
   ASSERT_LT(stamp_ns(), 12'000'000'000) << "the take-off took too long for this test";
   ASSERT_TRUE(wait_until_rotors_off());
-  EXPECT_NEAR(static_cast<double>(client_->view().vehicle.message.stamp_ns()) * 1e-9, 12.2, 0.15)
-      << "by its own time-out of 0.2 s";
+  EXPECT_NEAR(static_cast<double>(client_->view().vehicle.message.stamp_ns()) * 1e-9, 12.5, 0.15)
+      << "by its own time-out of 0.5 s";
   ASSERT_TRUE(told(Mode::kStopped, "IMU samples were missing") || told(Mode::kStopped, "tipped over", 1s))
       << story();
   forget();
@@ -236,6 +235,9 @@ TEST_F(Failsafe, SetpointsThatLeaveTheFenceAreRefusedAndItHoldsInside) {
 class SteppedClock : public Failsafe {
  protected:
   SteppedClock() {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    return;  // a sanitizer has to be loaded first
+#endif
     const std::string file = folder_.write("shift", std::string(sizeof(std::int64_t), '\0'));
     const int opened = open(file.c_str(), O_RDWR | O_CLOEXEC);
     shift_s_ = static_cast<std::int64_t*>(
@@ -246,7 +248,10 @@ class SteppedClock : public Failsafe {
   }
   ~SteppedClock() override {
     forget_clock();
-    munmap(shift_s_, sizeof(std::int64_t));
+    if (shift_s_ != nullptr) munmap(shift_s_, sizeof(std::int64_t));
+  }
+  void SetUp() override {
+    if (shift_s_ == nullptr) GTEST_SKIP() << "not with sanitizers";
   }
   // Processes that are started from now on have the true one.
   static void forget_clock() {

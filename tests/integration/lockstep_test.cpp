@@ -107,6 +107,18 @@ TEST_P(LockstepRate, IsTheFlightOfOneProcess) {
 INSTANTIATE_TEST_SUITE_P(, LockstepRate, testing::Values("500", "1000"),
                          [](const auto& rate) { return std::string(rate.param) + "Hz"; });
 
+// The plant waits for frames whose times are drawn.
+TEST_F(Lockstep, IsTheFlightOfOneProcessAlsoWithUnevenMocap) {
+  const std::vector<std::string> uneven = {"--seed", "7", "--simulation", "simulation/optitrack.yaml"};
+  std::vector<std::string> over_dds = {"fly", "--clock", "lockstep"};
+  std::vector<std::string> in_process = {"sim", "fly"};
+  over_dds.insert(over_dds.end(), uneven.begin(), uneven.end());
+  in_process.insert(in_process.end(), uneven.begin(), uneven.end());
+  const Flight dds = fly(over_dds, "dds");
+  EXPECT_GT(dds.trace.size(), 1'000'000U);
+  EXPECT_TRUE(dds.trace == fly(in_process, "process").trace);
+}
+
 // What a fault keeps back is not waited for, and whatever comes comes at the same stamp.
 TEST_F(Lockstep, FaultsAreTheSameInEveryProcess) {
   std::ifstream world(SWIFTLET_SOURCE_DIR "/config/simulation/default.yaml");

@@ -30,6 +30,7 @@ TEST(Convert, ThereAndBackIsTheSame) {
   expect_same<plant::ActuatorCommand>(example<msg::ActuatorCommand>());
   expect_same<plant::TruthSample>(example<msg::GroundTruth>());
   expect_same<control::Setpoint>(example<msg::Setpoint>());
+  expect_same<ControllerReport>(example<msg::ControllerState>());
   expect_same<control::Request>(to_message(request()));
   expect_same<control::Mission>(to_message(mission(control::kMaxMissionItems)));
   expect_same<control::Trajectory>(to_message(trajectory(control::kMaxTrajectorySegments)));
@@ -66,6 +67,39 @@ void expect_refused(Message message, const char* words, Change change) {
   EXPECT_TRUE(to_message(plain) == to_message(untouched));
 }
 
+// The state is copied byte by byte from one process to another: what was left out would be missing there.
+TEST(Convert, TheStateOfAFlightArrivesWhole) {
+  ControllerReport report;
+  ASSERT_FALSE(from_message(example<msg::ControllerState>(), report));
+  const control::SupervisorState& got = report.flight.supervisor;
+  const control::SupervisorState sent = controller_report().flight.supervisor;
+  EXPECT_EQ(got.mode, sent.mode);
+  EXPECT_EQ(got.now_ns, sent.now_ns);
+  EXPECT_EQ(got.mission.item_index, sent.mission.item_index);
+  EXPECT_EQ(got.path.end_ns, sent.path.end_ns);
+  for (const double since_s : {0.0, 0.7, 1.9}) {
+    const std::int64_t stamp_ns = sent.path.start_ns + static_cast<std::int64_t>(since_s * 1e9);
+    EXPECT_EQ(got.path.at(stamp_ns).position_ned, sent.path.at(stamp_ns).position_ned);
+    EXPECT_EQ(got.path.at(stamp_ns).yaw_rad, sent.path.at(stamp_ns).yaw_rad);
+  }
+  EXPECT_EQ(report.flight.position_integral, controller_report().flight.position_integral);
+  EXPECT_EQ(report.flight.throttle, controller_report().flight.throttle);
+}
+
+TEST(Convert, AnImuSampleSaysWhatTheVehicleObeyed) {
+  for (const plant::ObeyedCommand& obeyed : {plant::ObeyedCommand{}, plant::ObeyedCommand{true, false, 0, 0},
+                                             plant::ObeyedCommand{true, true, 7, 8}}) {
+    msg::Imu message = example<msg::Imu>();
+    tell(obeyed, message);
+    const plant::ObeyedCommand got = obeyed_command(message);
+    EXPECT_EQ(got.told, obeyed.told);
+    EXPECT_EQ(got.any, obeyed.any);
+    EXPECT_EQ(got.term, obeyed.term);
+    EXPECT_EQ(got.stamp_ns, obeyed.stamp_ns);
+  }
+  EXPECT_FALSE(obeyed_command(msg::Imu()).told) << "a vehicle that leaves the fields alone";
+}
+
 TEST(Convert, BrokenSamplesAreRefused) {
   expect_refused<plant::ImuSample>(example<msg::Imu>(), "body_rates_frd[1] is nan, must be finite",
                                    [](msg::Imu& m) { m.body_rates_frd()[1] = kNan; });
@@ -98,6 +132,12 @@ TEST(Convert, BrokenSamplesAreRefused) {
                                          [](msg::ActuatorCommand& m) { m.rotor_state(2); });
   expect_refused<plant::TruthSample>(example<msg::GroundTruth>(), "velocity_ned[2] is nan, must be finite",
                                      [](msg::GroundTruth& m) { m.velocity_ned()[2] = kNan; });
+  expect_refused<ControllerReport>(example<msg::ControllerState>(), "mode is 10, must be at most 9",
+                                   [](msg::ControllerState& m) { m.mode(10); });
+  expect_refused<ControllerReport>(example<msg::ControllerState>(), "path_x[3] is nan, must be finite",
+                                   [](msg::ControllerState& m) { m.path_x()[3] = kNan; });
+  expect_refused<ControllerReport>(example<msg::ControllerState>(), "item_index is 40, must be at most 31",
+                                   [](msg::ControllerState& m) { m.item_index(40); });
   expect_refused<control::Setpoint>(example<msg::Setpoint>(), "yaw_rate is inf, must be finite",
                                     [](msg::Setpoint& m) { m.yaw_rate(kInfinity); });
 }

@@ -18,7 +18,7 @@ inline plant::PoseSample pose_sample() {
 inline plant::BatterySample battery_sample() { return {1003, 13, 3.9, 2.5, 0.75}; }
 inline plant::RotorSpeedSample rotor_speed_sample() { return {1004, 14, 4, four_rotors(1600.0)}; }
 inline plant::ActuatorCommand actuator_command() {
-  return {1005, 15, 11, 12, plant::RotorState::kRunning, 4, four_rotors(0.3)};
+  return {1005, 15, 11, 12, plant::RotorState::kRunning, 4, four_rotors(0.3), 21};
 }
 inline plant::TruthSample truth_sample() {
   return {1006,
@@ -70,6 +70,45 @@ inline control::Trajectory trajectory(std::size_t segments) {
   return trajectory;
 }
 
+inline ControllerReport controller_report() {
+  ControllerReport report;
+  report.stamp_ns = 1010;
+  report.sequence = 22;
+  report.controller = 23;
+  report.strength = 24;
+  report.term = 25;
+  report.active = true;
+  report.ready = true;
+  control::SupervisorState& state = report.flight.supervisor;
+  state.mode = control::Mode::kMission;
+  state.reason = control::Reason::kRequested;
+  state.phase = control::Phase::kPath;
+  state.airborne = true;
+  state.now_ns = report.stamp_ns;
+  state.mode_since_ns = 26;
+  state.phase_since_ns = 27;
+  state.path.follow(trajectory(2).segments[1], 28);
+  state.climb_to_z_ned = -1.5;
+  state.climb_speed = 0.75;
+  state.ground_z_ned = 0.25;
+  state.mission = {29, control::MissionState::kRunning, 30, 31};
+  state.item_end_ns = 32;
+  state.trajectory_id = 33;
+  state.next_segment = 34;
+  state.setpoint_ns = 35;
+  state.contact_since_ns = 36;
+  state.low_battery_since_ns = 37;
+  state.critical_battery_since_ns = 46;
+  state.land_on_return = true;
+  state.ground_links = {{{47, 48}, {49, 50}, {51, 52}, {53, 54}}};
+  report.flight.position_integral = {0.1, -0.2, 0.3};
+  report.flight.rotor_state = plant::RotorState::kRunning;
+  report.rotor_count = 4;
+  report.flight.throttle = four_rotors(0.4);
+  report.accepted = {{{38, 39}, {40, 41}, {42, 43}, {44, 45}}};
+  return report;
+}
+
 template <class T>
 T example();
 template <>
@@ -95,6 +134,10 @@ inline msg::ActuatorCommand example() {
 template <>
 inline msg::GroundTruth example() {
   return to_message(truth_sample());
+}
+template <>
+inline msg::ControllerState example() {
+  return to_message(controller_report());
 }
 template <>
 inline msg::Setpoint example() {
@@ -138,7 +181,13 @@ inline msg::Estimate example() {
   estimate.body_rates_frd = {7.0, 8.0, 9.0};
   estimate.gyro_bias = {0.1, 0.2, 0.3};
   estimate.accelerometer_bias = {0.4, 0.5, 0.6};
-  return to_message(estimate, 0.02);
+  estimate.pose_fault = control::PoseFault::kSwapped;
+  estimate.poses_accepted = 1010;
+  estimate.poses_refused = 11;
+  estimate.resets = 2;
+  estimate.reset_position_ned = {0.7, 0.8, 0.9};
+  estimate.reset_rotation_ned = {-0.1, -0.2, -0.3};
+  return to_message(estimate, control::ErrorState::LinSpaced(0.01, 0.15), 0.02);
 }
 template <>
 inline msg::Reference example() {
@@ -149,7 +198,7 @@ inline msg::Reference example() {
   reference.jerk_ned = {0.4, 0.5, 0.6};
   reference.yaw_rad = 0.7;
   reference.yaw_rate = 0.8;
-  return to_message(reference, {{0.1, -0.2, 0.3}, 0.39, {0.01, 0.02, 0.03}}, control::Mode::kMission);
+  return to_message(reference, {{0.6, 0.0, 0.8}, 0.3, 0.39, {0.01, 0.02, 0.03}}, control::Mode::kMission);
 }
 template <>
 inline msg::ControlStatus example() {

@@ -2,11 +2,10 @@
 
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include <gtest/gtest.h>
 
-#include "plant/model/vehicle.hpp"
+#include "tests/unit/control/estimator_motion.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -14,45 +13,6 @@ namespace {
 using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-
-constexpr std::int64_t kStep_ns = 2'000'000;
-constexpr std::int64_t kFrame_ns = 10'000'000;
-
-// A vehicle that swings about on a known path, with the IMU that it would carry.
-struct Motion {
-  Vector3d gyro_bias = Vector3d::Zero();
-  Vector3d accelerometer_bias = Vector3d::Zero();
-
-  static Vector3d position(double t) {
-    return {std::sin(0.9 * t), 0.5 * std::cos(1.3 * t), -1.0 + 0.2 * std::sin(0.7 * t)};
-  }
-  static Vector3d velocity(double t) {
-    return {0.9 * std::cos(0.9 * t), -0.65 * std::sin(1.3 * t), 0.14 * std::cos(0.7 * t)};
-  }
-  static Vector3d acceleration(double t) {
-    return {-0.81 * std::sin(0.9 * t), -0.845 * std::cos(1.3 * t), -0.098 * std::sin(0.7 * t)};
-  }
-  static Quaterniond attitude(double t) {
-    return AngleAxisd(0.4 * std::sin(0.8 * t), Vector3d::UnitZ()) *
-           AngleAxisd(0.2 * std::sin(1.1 * t), Vector3d::UnitY()) *
-           Quaterniond(AngleAxisd(0.3 * std::sin(1.7 * t), Vector3d::UnitX()));
-  }
-  plant::ImuSample imu(std::int64_t stamp_ns) const {
-    const double t = static_cast<double>(stamp_ns) * 1e-9;
-    const double h = 1e-5;
-    plant::ImuSample sample;
-    sample.stamp_ns = stamp_ns;
-    const Quaterniond change = attitude(t - h).conjugate() * attitude(t + h);
-    sample.body_rates_frd = change.vec() * (change.w() < 0 ? -1.0 : 1.0) / h + gyro_bias;
-    sample.specific_force_frd =
-        attitude(t).conjugate() * (acceleration(t) - Vector3d(0, 0, plant::kGravity)) + accelerometer_bias;
-    return sample;
-  }
-  static plant::PoseSample pose(std::int64_t stamp_ns, std::uint64_t sequence) {
-    const double t = static_cast<double>(stamp_ns) * 1e-9;
-    return {stamp_ns, sequence, true, position(t), attitude(t)};
-  }
-};
 
 double angle_between(const Quaterniond& a, const Quaterniond& b) { return a.angularDistance(b); }
 

@@ -89,6 +89,53 @@ class InFlight : public testing::Test {
   ClosedLoop loop_{kaylion(), plant::SimulationSettings(), settings("motor_lag"), 11};
 };
 
+// One step without a pose is no flight: until then the vehicle goes on as it likes.
+TEST_F(InFlight, AControllerThatIsStartedThereFindsTheVehicleFlyingAndHoldsIt) {
+  loop_.controller = FlightController(kaylion(), settings("motor_lag"));
+  EXPECT_FALSE(loop_.controller.find_flying()) << "it has seen nothing yet";
+  ASSERT_TRUE(loop_.step_until(
+      [&] { return loop_.controller.feels_airborne() && loop_.controller.find_flying(); }, 0.1));
+  double lowest_m = altitude_m();
+  loop_.step_until(
+      [&] {
+        lowest_m = std::min(lowest_m, altitude_m());
+        return false;
+      },
+      3.0);
+  EXPECT_EQ(loop_.controller.status().mode, Mode::kHolding);
+  EXPECT_EQ(loop_.controller.status().reason, Reason::kFoundFlying);
+  EXPECT_GT(lowest_m, 0.6);
+  EXPECT_LT(loop_.plant.state().velocity_ned.norm(), 0.05);
+}
+
+TEST_F(InFlight, OnTheGroundNothingFlies) {
+  ASSERT_TRUE(loop_.controller.feels_airborne());
+  ASSERT_TRUE(loop_.controller.request(request(RequestKind::kLand)).accepted);
+  ASSERT_TRUE(wait_for(Mode::kDisarmed, 20.0));
+  loop_.step_until([] { return false; }, 1.0);
+  EXPECT_FALSE(loop_.controller.feels_airborne());
+}
+
+TEST_F(InFlight, AControllerGoesOnWithTheStateOfAnother) {
+  ASSERT_TRUE(loop_.controller.request(request(RequestKind::kGoTo, {1.0, 0.0, -1.0})).accepted);
+  loop_.step_until([] { return false; }, 1.0);
+  const FlightState handed = loop_.controller.state();
+  const Vector3d place = loop_.plant.state().position_ned;
+  ASSERT_GT(loop_.plant.state().velocity_ned.norm(), 0.3);
+
+  loop_.controller = FlightController(kaylion(), settings("motor_lag"));
+  ASSERT_TRUE(loop_.step_until([&] { return loop_.controller.status().has_pose; }, 0.1));
+  loop_.controller.adopt(handed, nullptr, nullptr);
+  loop_.step_until([] { return false; }, 0.002);
+
+  EXPECT_EQ(loop_.controller.status().mode, Mode::kHolding);
+  EXPECT_EQ(loop_.controller.status().reason, Reason::kRequested);
+  EXPECT_LT((loop_.controller.reference().position_ned - place).norm(), 0.1)
+      << "it goes on where the other one was";
+  loop_.step_until([] { return false; }, 6.0);
+  EXPECT_LT((loop_.plant.state().position_ned - Vector3d(1.0, 0.0, -1.0)).norm(), 0.02);
+}
+
 class Seeds : public testing::TestWithParam<int> {};
 
 TEST_P(Seeds, MotorAwareLoopsFlyTheSquareWithinTenMillimetres) {

@@ -56,6 +56,36 @@ TEST(ActuatorWatchdog, StopsRotorsWhenCommandsCease) {
   EXPECT_EQ(watchdog.drive(1300).state, RotorState::kRunning);
 }
 
+TEST(ActuatorWatchdog, ATermRulesOutLowerOnesUntilItsCommandsCease) {
+  ActuatorWatchdog watchdog(4, kTimeout);
+  const auto of_term = [](std::uint32_t term, std::int64_t stamp_ns) {
+    ActuatorCommand sent = command(stamp_ns);
+    sent.term = term;
+    return sent;
+  };
+  EXPECT_EQ(watchdog.accept(of_term(5, 1000), 1000), CommandFault::kNone);
+  EXPECT_EQ(watchdog.accept(of_term(4, 1100), 1100), CommandFault::kOvertaken);
+  EXPECT_EQ(watchdog.accept(of_term(6, 1150), 1150), CommandFault::kNone);
+  EXPECT_EQ(watchdog.accept(of_term(5, 1350), 1350), CommandFault::kOvertaken);
+  EXPECT_EQ(watchdog.accept(of_term(0, 1351), 1351), CommandFault::kNone)
+      << "nobody of the higher term is left";
+}
+
+TEST(ActuatorWatchdog, SaysWhatItObeyed) {
+  ActuatorWatchdog watchdog(4, kTimeout);
+  EXPECT_TRUE(watchdog.obeyed().told);
+  EXPECT_FALSE(watchdog.obeyed().any);
+  ActuatorCommand sent = command(1000);
+  sent.term = 7;
+  watchdog.accept(sent, 1010);
+  sent.term = 6;
+  sent.stamp_ns = 1020;
+  watchdog.accept(sent, 1020);
+  EXPECT_TRUE(watchdog.obeyed().any);
+  EXPECT_EQ(watchdog.obeyed().term, 7U);
+  EXPECT_EQ(watchdog.obeyed().stamp_ns, 1000);
+}
+
 struct Broken {
   const char* name;
   CommandFault fault;

@@ -14,8 +14,8 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using plant::Mocap;
+using plant::MocapSchedule;
 using plant::MocapSettings;
-using plant::newest_mocap_sequence;
 using plant::PoseSample;
 using plant::TruthSample;
 
@@ -49,6 +49,7 @@ TEST(Mocap, DeliversFramesOnTimeAtEveryRateAndLatency) {
       settings.rate_hz = rate;
       settings.latency_s = latency_s;
       Mocap mocap(settings, 1);
+      MocapSchedule schedule(settings, 1);
       const std::int64_t period = std::llround(1.0e9 / rate);
       const std::int64_t latency = std::llround(1.0e9 * latency_s);
       const auto next_step = [](std::int64_t t) {
@@ -66,7 +67,8 @@ TEST(Mocap, DeliversFramesOnTimeAtEveryRateAndLatency) {
           ASSERT_LT((pose->position_ned - truth_at(exposed).position_ned).norm(), 1.0e-12);
           ASSERT_LT(angle(pose->q_ned_from_frd, truth_at(exposed).q_ned_from_frd), 1.0e-7);
         }
-        ASSERT_EQ(newest_mocap_sequence(settings, kMillisecond, now), count) << now;
+        schedule.advance(now);
+        ASSERT_EQ(schedule.delivered(), count) << now;
       }
       EXPECT_NEAR(static_cast<double>(count), rate * (1.0 - latency_s), 2.0);
     }
@@ -82,10 +84,13 @@ TEST(Mocap, NeedsOnlySomeOfTheTruth) {
       settings.latency_s = latency_s;
       Mocap all(settings, 1);
       Mocap some(settings, 1);
+      MocapSchedule schedule(settings, 1);
       int left_out = 0;
       for (std::int64_t now = 0; now <= 1'000 * kMillisecond; now += 2 * kMillisecond) {
         const auto of_all = all.update(truth_at(now));
-        if (!plant::mocap_needs_truth(settings, 2 * kMillisecond, now)) {
+        const MocapSchedule::Events events = schedule.advance(now);
+        ASSERT_EQ(of_all.has_value(), events.delivers) << now;
+        if (!events.exposes && !events.delivers) {
           ASSERT_FALSE(of_all.has_value()) << now;
           ++left_out;
           continue;
@@ -220,6 +225,39 @@ TEST(Mocap, AGapInTheTruthCostsItsFrames) {
   EXPECT_EQ(poses[1].stamp_ns, 123 * kMillisecond);
   EXPECT_EQ(poses[2].stamp_ns, 130 * kMillisecond);
   EXPECT_EQ(poses[2].sequence, poses[0].sequence + 2);
+}
+
+// Uneven intervals: whoever keeps the same schedule knows each frame, whether all of the truth is looked at or
+// only what is needed; another seed has others.
+TEST(Mocap, UnevenFramesAreAFunctionOfTheSeed) {
+  MocapSettings settings = perfect();
+  settings.model = plant::MocapModel::kOptitrack;
+  Mocap all(settings, 5);
+  Mocap some(settings, 5);
+  MocapSchedule schedule(settings, 5);
+  MocapSchedule other(settings, 6);
+  std::uint64_t handed_out = 0;
+  int differences = 0;
+  int left_out = 0;
+  for (std::int64_t now = 0; now <= 60'000 * kMillisecond; now += 2 * kMillisecond) {
+    const auto of_all = all.update(truth_at(now));
+    const MocapSchedule::Events events = schedule.advance(now);
+    if (of_all) handed_out = of_all->sequence;
+    ASSERT_EQ(schedule.delivered(), handed_out) << now;
+    if (other.advance(now).exposes != events.exposes) ++differences;
+    if (!events.exposes && !events.delivers) {
+      ++left_out;
+      continue;
+    }
+    const auto of_some = some.update(truth_at(now));
+    ASSERT_EQ(of_all.has_value(), of_some.has_value()) << now;
+    if (of_all) {
+      ASSERT_EQ(of_all->stamp_ns, of_some->stamp_ns) << now;
+    }
+  }
+  EXPECT_NEAR(static_cast<double>(handed_out), 60.0 / 0.0183, 200.0);
+  EXPECT_GT(differences, 1000);
+  EXPECT_GT(left_out, 20'000);
 }
 
 }  // namespace

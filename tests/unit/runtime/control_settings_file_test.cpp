@@ -50,10 +50,19 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
       "  fence_min_ned_m: [-31, -32, -33]\n"
       "  fence_max_ned_m: [34, 35, 36]\n"
       "estimator:\n"
-      "  position_bandwidth_rad_s: 37\n"
-      "  attitude_bandwidth_rad_s: 38\n"
+      "  accelerometer_noise_m_s2_per_sqrt_hz: 50\n"
+      "  gyro_noise_rad_s_per_sqrt_hz: 51\n"
+      "  accelerometer_bias_walk_m_s2_per_sqrt_s: 52\n"
+      "  gyro_bias_walk_rad_s_per_sqrt_s: 53\n"
+      "  accelerometer_bias_m_s2: 54\n"
+      "  gyro_bias_rad_s: 55\n"
       "  accelerometer_bias_limit_m_s2: 39\n"
       "  gyro_bias_limit_rad_s: 40\n"
+      "  mocap_position_m: 56\n"
+      "  mocap_orientation_rad: 57\n"
+      "  gate_chi_square: 58\n"
+      "  outlier_position_m: 59\n"
+      "  outlier_orientation_rad: 60\n"
       "arming:\n"
       "  max_tilt_rad: 0.41\n"
       "  max_speed_m_s: 42\n"
@@ -103,10 +112,19 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
   EXPECT_EQ(s.limits.max_yaw_rate, 30);
   EXPECT_EQ(s.limits.fence_min_ned, Eigen::Vector3d(-31, -32, -33));
   EXPECT_EQ(s.limits.fence_max_ned, Eigen::Vector3d(34, 35, 36));
-  EXPECT_EQ(s.estimator.position_bandwidth, 37);
-  EXPECT_EQ(s.estimator.attitude_bandwidth, 38);
+  EXPECT_EQ(s.estimator.accelerometer_noise_density, 50);
+  EXPECT_EQ(s.estimator.gyro_noise_density, 51);
+  EXPECT_EQ(s.estimator.accelerometer_bias_walk, 52);
+  EXPECT_EQ(s.estimator.gyro_bias_walk, 53);
+  EXPECT_EQ(s.estimator.accelerometer_bias_sigma, 54);
+  EXPECT_EQ(s.estimator.gyro_bias_sigma, 55);
   EXPECT_EQ(s.estimator.accelerometer_bias_limit, 39);
   EXPECT_EQ(s.estimator.gyro_bias_limit, 40);
+  EXPECT_EQ(s.estimator.mocap_position_sigma, 56);
+  EXPECT_EQ(s.estimator.mocap_orientation_sigma, 57);
+  EXPECT_EQ(s.estimator.gate_chi_square, 58);
+  EXPECT_EQ(s.estimator.outlier_position_m, 59);
+  EXPECT_EQ(s.estimator.outlier_orientation_rad, 60);
   EXPECT_EQ(s.arming.max_tilt_rad, 0.41);
   EXPECT_EQ(s.arming.max_speed, 42);
   EXPECT_EQ(s.arming.max_body_rate, 43);
@@ -215,8 +233,17 @@ const Fault kFaults[] = {
     {"limits.max_yaw_rate_rad_s", "0", "above 0"},
     {"limits.fence_max_ned_m", "[3, -99, 0.2]", "[1]: is -99, must be above fence_min_ned_m in y, -"},
     {"limits.fence_min_ned_m", "[-3, .nan, -2]", "[1]: is .nan, must be a finite number"},
-    {"estimator.position_bandwidth_rad_s", "0", "above 0"},
-    {"estimator.attitude_bandwidth_rad_s", "0", "above 0"},
+    {"estimator.accelerometer_noise_m_s2_per_sqrt_hz", "0", "above 0"},
+    {"estimator.gyro_noise_rad_s_per_sqrt_hz", "0", "above 0"},
+    {"estimator.accelerometer_bias_walk_m_s2_per_sqrt_s", "-1", "at least 0"},
+    {"estimator.gyro_bias_walk_rad_s_per_sqrt_s", "-1", "at least 0"},
+    {"estimator.accelerometer_bias_m_s2", "-1", "at least 0"},
+    {"estimator.gyro_bias_rad_s", "-1", "at least 0"},
+    {"estimator.mocap_position_m", "0", "above 0"},
+    {"estimator.mocap_orientation_rad", "0", "above 0"},
+    {"estimator.gate_chi_square", "0", "above 0"},
+    {"estimator.outlier_position_m", "0", "above 0"},
+    {"estimator.outlier_orientation_rad", "0", "above 0"},
     {"estimator.accelerometer_bias_limit_m_s2", "-1", "at least 0"},
     {"estimator.gyro_bias_limit_rad_s", "-1", "at least 0"},
     {"failsafe.mocap_timeout_s", "0", "above 0"},

@@ -65,6 +65,18 @@ TEST(SimulationFile, DefaultIsWhatTheStructSays) {
   EXPECT_EQ(file_says.ground.friction, struct_says.ground.friction);
 }
 
+TEST(SimulationFile, OptitrackDrawsItsIntervals) {
+  const SimulationSettings s = parse_simulation_settings(file("optitrack"), "s.yaml");
+  EXPECT_EQ(s.name, "optitrack");
+  EXPECT_EQ(s.mocap.model, plant::MocapModel::kOptitrack);
+  EXPECT_EQ(s.mocap.interval_quantiles_s, plant::MocapSettings().interval_quantiles_s);
+  std::string text = file("optitrack");
+  const std::string falls = "0.0400, 0.1300";
+  text.replace(text.find(falls), falls.size(), "0.1300, 0.0400");
+  EXPECT_NE(refusal([&] { parse_simulation_settings(text, "s.yaml"); }).find("interval_quantiles_s[9]"),
+            std::string::npos);
+}
+
 TEST(SimulationFile, IdealHasNoErrors) {
   const SimulationSettings s = parse_simulation_settings(file("ideal"), "s.yaml");
   EXPECT_EQ(s.name, "ideal");

@@ -38,23 +38,21 @@ class Desk : public testing::Test {
     ++sequence_;
     const auto stamp = static_cast<std::int64_t>(sequence_) * 2'000'000;
     if (sequence_ % 5 == 1) {
-      plant::PoseSample pose;
-      pose.stamp_ns = stamp;
-      pose.sequence = sequence_;
-      pose.tracked = true;
-      loop_.pose.put(pose);
+      last_pose_.stamp_ns = stamp;
+      last_pose_.sequence = sequence_;
+      last_pose_.tracked = true;
+      loop_.pose.put(last_pose_);
     }
-    loop_.battery.put({stamp, sequence_, 4.0, 0.1, 0.9});
-    plant::RotorSpeedSample speeds;
-    speeds.stamp_ns = stamp;
-    speeds.sequence = sequence_;
-    speeds.rotor_count = vehicle_.rotor_count();
-    loop_.rotor_speeds.put(speeds);
-    plant::ImuSample imu;
-    imu.stamp_ns = stamp;
-    imu.sequence = sequence_;
-    imu.specific_force_frd = {0.0, 0.0, -plant::kGravity};
-    const plant::ActuatorCommand command = loop_.step(imu, 1'000'000'000 + stamp);
+    last_battery_ = {stamp, sequence_, 4.0, 0.1, 0.9};
+    loop_.battery.put(last_battery_);
+    last_rotor_speeds_.stamp_ns = stamp;
+    last_rotor_speeds_.sequence = sequence_;
+    last_rotor_speeds_.rotor_count = vehicle_.rotor_count();
+    loop_.rotor_speeds.put(last_rotor_speeds_);
+    last_imu_.stamp_ns = stamp;
+    last_imu_.sequence = sequence_;
+    last_imu_.specific_force_frd = {0.0, 0.0, -plant::kGravity};
+    const plant::ActuatorCommand command = loop_.step(last_imu_, 1'000'000'000 + stamp);
     loop_.finish(1'000'000'000 + stamp + 20'000);
     return command;
   }
@@ -94,6 +92,10 @@ class Desk : public testing::Test {
   InnerLoop loop_;
   RequestDesk desk_;
   std::uint64_t sequence_ = 0;
+  plant::PoseSample last_pose_;
+  plant::BatterySample last_battery_;
+  plant::RotorSpeedSample last_rotor_speeds_;
+  plant::ImuSample last_imu_;
   Snapshot last_;
 };
 
@@ -260,6 +262,160 @@ TEST_F(Desk, TheInnerLoopDoesNotAllocate) {
   }
   EXPECT_EQ(calls, 0U);
   EXPECT_EQ(desk_.collect().size(), 2U);
+}
+
+// A standby beside the fixture's controller, which hears the same samples.
+class DeskOfAStandby : public Desk {
+ protected:
+  DeskOfAStandby()
+      : standby_loop_(vehicle_, settings_), standby_desk_(standby_loop_, settings_.limits, wake_) {
+    standby_desk_.attend(false);
+  }
+  static constexpr std::uint32_t kTerm = 7;
+
+  // What the active one reports after a step, as the network hands it on.
+  void hand_over() {
+    comms::ControllerReport report;
+    loop_.report(report);
+    ASSERT_TRUE(report.active);
+    comms::ControllerReport heard;
+    ASSERT_FALSE(comms::from_message(comms::to_message(report), heard));
+    Handover handover;
+    handover.term = kTerm;
+    handover.flight = heard.flight;
+    handover.accepted = heard.accepted;
+    standby_desk_.follow(handover);
+  }
+  plant::ActuatorCommand step_standby(Role role) {
+    standby_loop_.pose.put(last_pose_);
+    standby_loop_.battery.put(last_battery_);
+    standby_loop_.rotor_speeds.put(last_rotor_speeds_);
+    const std::int64_t now_ns = 1'000'000'000 + last_imu_.stamp_ns;
+    const plant::ActuatorCommand command = standby_loop_.step(last_imu_, now_ns, role, kTerm);
+    standby_loop_.finish(now_ns + 20'000);
+    return command;
+  }
+  void fly_mission() {
+    settle();
+    desk_.on_command(command(Command_Constants::ARM, 1));
+    step();
+    desk_.on_mission(mission(2, 1.0));
+    step();
+    desk_.collect();
+  }
+  void follow(int steps) {
+    for (int i = 0; i < steps; ++i) {
+      step();
+      hand_over();
+      step_standby(Role::kStandby);
+    }
+  }
+  control::SupervisorState standby_state() {
+    comms::ControllerReport report;
+    standby_loop_.step(last_imu_, 0, Role::kActive);
+    standby_loop_.report(report);
+    return report.flight.supervisor;
+  }
+
+  InnerLoop standby_loop_;
+  RequestDesk standby_desk_;
+};
+
+TEST_F(DeskOfAStandby, AnswersNothing) {
+  settle();
+  standby_desk_.on_command(command(Command_Constants::ARM, 1));
+  step();
+  step_standby(Role::kStandby);
+  EXPECT_TRUE(standby_desk_.collect().empty());
+  EXPECT_EQ(standby_state().mode, control::Mode::kDisarmed);
+}
+
+TEST_F(DeskOfAStandby, GoesOnWithTheMissionThatItHeardBeingAskedFor) {
+  fly_mission();
+  standby_desk_.on_mission(mission(2, 1.0));
+  for (int i = 0; i < 1500; ++i) {
+    const plant::ActuatorCommand flown = step();
+    hand_over();
+    const plant::ActuatorCommand followed = step_standby(Role::kStandby);
+    EXPECT_EQ(followed.rotor_state, flown.rotor_state);
+  }
+  ASSERT_EQ(mode(), control::Mode::kMission);
+  comms::ControllerReport active;
+  loop_.report(active);
+  const control::SupervisorState state = standby_state();
+  EXPECT_EQ(state.mode, control::Mode::kMission);
+  EXPECT_EQ(state.mission.id, 2U);
+  EXPECT_EQ(state.phase, active.flight.supervisor.phase);
+  EXPECT_EQ(state.path.segment.z, active.flight.supervisor.path.segment.z);
+  EXPECT_TRUE(standby_desk_.collect().empty());
+}
+
+TEST_F(DeskOfAStandby, GoesOnWithTheMissionThatItHeardBeingFlown) {
+  fly_mission();
+  standby_desk_.on_flown_mission(desk_.mission(2));
+  follow(20);
+  EXPECT_EQ(standby_state().mode, control::Mode::kMission);
+}
+
+TEST_F(DeskOfAStandby, WithoutTheMissionItHolds) {
+  fly_mission();
+  follow(20);
+  const control::SupervisorState state = standby_state();
+  EXPECT_EQ(state.mode, control::Mode::kHolding);
+  EXPECT_EQ(state.reason, control::Reason::kPlanUnknown);
+}
+
+TEST_F(DeskOfAStandby, DoesNotFollowAnotherTerm) {
+  fly_mission();
+  standby_desk_.on_mission(mission(2, 1.0));
+  step();
+  comms::ControllerReport report;
+  loop_.report(report);
+  Handover handover;
+  handover.term = kTerm - 1;
+  handover.flight = report.flight;
+  standby_desk_.follow(handover);
+  step_standby(Role::kStandby);
+  EXPECT_EQ(standby_state().mode, control::Mode::kDisarmed);
+}
+
+// GIVEN a request that was accepted, WHEN its answer is lost with the controller that gave it, THEN whoever takes over
+// gives it again and does not apply it twice.
+TEST_F(DeskOfAStandby, ARequestThatWasAcceptedBeforeIsAnsweredAndNotAppliedAgain) {
+  settle();
+  desk_.on_command(command(Command_Constants::ARM, 1));
+  step();
+  hand_over();
+  step_standby(Role::kStandby);
+
+  standby_desk_.attend(true);
+  step_standby(Role::kActive);
+  standby_desk_.on_command(command(Command_Constants::DISARM, 2));
+  standby_desk_.on_command(command(Command_Constants::ARM, 1));
+  step();
+  step_standby(Role::kActive);
+
+  const std::vector<RequestAnswer> answers = standby_desk_.collect();
+  ASSERT_EQ(answers.size(), 2U);
+  EXPECT_EQ(answers[0].id, 1U);
+  EXPECT_TRUE(answers[0].outcome.accepted);
+  EXPECT_TRUE(answers[0].repeated);
+  EXPECT_EQ(answers[1].id, 2U);
+  EXPECT_EQ(standby_state().mode, control::Mode::kDisarmed);
+}
+
+TEST_F(DeskOfAStandby, FollowingDoesNotAllocateInTheInnerLoop) {
+  fly_mission();
+  standby_desk_.on_mission(mission(2, 1.0));
+  std::size_t calls = 0;
+  for (int i = 0; i < 50; ++i) {
+    step();
+    hand_over();
+    const test::MallocGuard guard;
+    step_standby(Role::kStandby);
+    calls += guard.calls();
+  }
+  EXPECT_EQ(calls, 0U);
 }
 
 }  // namespace

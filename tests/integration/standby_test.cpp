@@ -1,0 +1,177 @@
+// Several control services of one vehicle: who flies it when they die, stop, come back and start at once.
+#include <chrono>
+#include <csignal>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/integration/program.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/support/redundant_flight.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace swiftlet::tests {
+namespace {
+
+namespace msg = comms::msg;
+using namespace std::chrono_literals;
+
+// The machine that tests may be busy: `./dev soak standby` measures against 60 ms.
+constexpr double kLongestGap_ms = 120.0;
+constexpr double kLargestDeviation_m = 0.05;
+constexpr double kReferenceStep_m = 0.01;
+constexpr std::int64_t kSecond = 1'000'000'000;  // ns
+
+class Standby : public testing::Test {
+ protected:
+  // In the air, above the ground by a metre, on the way around a square.
+  void take_off() {
+    flight_.fly(square_laps(0.5, 50));
+    flight_.wait("it flies a side", [&] { return flight_.z_ned() < -0.98 && flight_.speed() > 0.3; });
+  }
+  void hover(double height_m) {
+    flight_.ask(msg::Command_Constants::ARM);
+    flight_.ask(msg::Command_Constants::TAKEOFF, -height_m);
+    flight_.wait("it hovers", [&] { return mode() == "holding" && flight_.z_ned() < 0.02 - height_m; });
+  }
+  std::string mode() { return ground::mode_name(flight_.client().view().control.message.mode()); }
+  std::string reason() { return flight_.client().view().control.message.reason().c_str(); }
+
+  TemporaryFolder folder_;
+  RedundantFlight flight_{folder_.path()};
+};
+
+TEST_F(Standby, AKillInTheMissionIsHardlyFelt) {
+  flight_.start_controller(5);
+  flight_.start_controller(1);
+  flight_.wait_for_roles(1, 1);
+  take_off();
+  for (int kill = 0; kill < 3; ++kill) {
+    const std::int64_t at_ns = flight_.stamp_ns();
+    flight_.kill(flight_.active());
+    const Felt felt = flight_.felt(at_ns, at_ns + kSecond);
+    EXPECT_LT(felt.longest_gap_ms, kLongestGap_ms);
+    EXPECT_GT(felt.longest_gap_ms, 10.0) << "nothing was killed";
+    EXPECT_LT(felt.largest_deviation_m, kLargestDeviation_m);
+    EXPECT_LT(felt.largest_step_m, kReferenceStep_m);
+    EXPECT_EQ(felt.changes_of_controller, 1);
+    EXPECT_EQ(mode(), "mission");
+    // It joins as a standby, however strong, and is the next to go on: with a mission that was uploaded before its
+    // time.
+    flight_.start_controller(1000);
+    flight_.wait_for_roles(1, 1);
+    const std::int64_t joined_ns = flight_.stamp_ns();
+    EXPECT_EQ(flight_.felt(joined_ns - kSecond / 2, joined_ns + kSecond / 2).changes_of_controller, 0);
+  }
+}
+
+TEST_F(Standby, OneThatIsStoppedAndComesBackStartsNoFight) {
+  Controller& first = flight_.start_controller(5);
+  flight_.start_controller(1);
+  flight_.wait_for_roles(1, 1);
+  take_off();
+  ASSERT_EQ(&flight_.active(), &first);
+  const std::int64_t at_ns = flight_.stamp_ns();
+  first.process->signal(SIGSTOP);
+  flight_.wait("200 ms pass", [&] { return flight_.stamp_ns() > at_ns + kSecond / 5; });
+  first.process->signal(SIGCONT);
+
+  const Felt felt = flight_.felt(at_ns, at_ns + 2 * kSecond);
+  EXPECT_LT(felt.longest_gap_ms, kLongestGap_ms);
+  EXPECT_LT(felt.largest_deviation_m, kLargestDeviation_m);
+  EXPECT_EQ(felt.changes_of_controller, 1);
+  flight_.wait_for_roles(1, 1);
+  EXPECT_NE(&flight_.active(), &first);
+
+  // What it has missed it knows again: it goes on when its turn comes.
+  flight_.kill(flight_.active());
+  const std::int64_t again_ns = flight_.stamp_ns();
+  EXPECT_LT(flight_.felt(again_ns, again_ns + kSecond).largest_deviation_m, kLargestDeviation_m);
+  EXPECT_EQ(mode(), "mission");
+}
+
+TEST_F(Standby, OfTwoStartedAtOnceOneActs) {
+  const auto one = flight_.launch_controller(3);
+  const auto two = flight_.launch_controller(3);
+  flight_.wait_for_roles(1, 1);
+  const std::int64_t at_ns = flight_.stamp_ns();
+  const Felt felt = flight_.felt(at_ns, at_ns + kSecond);
+  EXPECT_EQ(felt.changes_of_controller, 0);
+  EXPECT_EQ(flight_.heard().size(), 2U) << "each has a number of its own";
+}
+
+TEST_F(Standby, OfTwoStandbysTheStrongerTakesOver) {
+  flight_.start_controller(5);
+  flight_.start_controller(2);
+  const std::uint64_t strong = flight_.start_controller(9).id;
+  flight_.wait_for_roles(1, 2);
+  take_off();
+  const std::int64_t at_ns = flight_.stamp_ns();
+  flight_.kill(flight_.active());
+  const Felt felt = flight_.felt(at_ns, at_ns + kSecond);
+  EXPECT_EQ(flight_.active().id, strong);
+  EXPECT_EQ(felt.changes_of_controller, 1);
+  EXPECT_LT(felt.longest_gap_ms, kLongestGap_ms);
+}
+
+TEST_F(Standby, ARequestIsAnsweredByTheOneThatActsAndByWhoeverTakesOver) {
+  flight_.start_controller(5);
+  flight_.start_controller(1);
+  flight_.wait_for_roles(1, 1);
+  hover(0.6);
+  flight_.kill(flight_.active());
+  flight_.ask(
+      msg::Command_Constants::LAND);  // asked of whoever is there: it is repeated until it is answered
+  flight_.wait("it has landed", [&] { return mode() == "disarmed"; });
+}
+
+TEST_F(Standby, StatusNamesAllControllers) {
+  flight_.start_controller(5);
+  flight_.start_controller(1);
+  flight_.wait_for_roles(1, 1);
+  std::vector<std::string> words = {"status", "--json"};
+  for (const std::string& word : flight_.network()) words.push_back(word);
+  const Ending end = run_program("swiftlet", words, folder_.path());
+  EXPECT_EQ(end.exit_code, 0) << end.errors;
+  const nlohmann::json status = nlohmann::json::parse(end.output);
+  ASSERT_EQ(status.at("controllers").size(), 2U) << end.output;
+  EXPECT_EQ(status.at("controllers")[0].at("role"), "active");
+  EXPECT_EQ(status.at("controllers")[0].at("strength"), 5);
+  EXPECT_EQ(status.at("controllers")[1].at("role"), "standby");
+  EXPECT_EQ(status.at("controllers")[1].at("strength"), 1);
+}
+
+TEST_F(Standby, OneStartedAloneFindsItsVehicleFlyingAndHoldsIt) {
+  Controller& first = flight_.start_controller(0);
+  flight_.wait_for_roles(1, 0);
+  hover(1.5);
+  const std::int64_t at_ns = flight_.stamp_ns();
+  flight_.kill(first);
+  flight_.start_controller(0);
+  flight_.wait("it holds", [&] { return mode() == "holding" && reason() == "found flying"; });
+  flight_.felt(at_ns, at_ns + 4 * kSecond);
+  const Felt felt = flight_.felt(at_ns, at_ns + 3 * kSecond);
+  EXPECT_LT(felt.lowest_z_ned, -0.3) << "it fell too far; without a command for " << felt.longest_gap_ms
+                                     << " ms";
+  flight_.ask(msg::Command_Constants::LAND);
+  flight_.wait("it has landed", [&] { return mode() == "disarmed"; });
+  EXPECT_EQ(reason(), "landed");
+}
+
+TEST_F(Standby, OneStartedAloneOnTheGroundStaysDisarmed) {
+  Controller& first = flight_.start_controller(0);
+  flight_.wait_for_roles(1, 0);
+  flight_.ask(msg::Command_Constants::ARM);
+  flight_.wait("it is armed", [&] { return mode() == "armed"; });
+  flight_.kill(first);
+  flight_.start_controller(0);
+  flight_.wait_for_roles(1, 0);
+  const std::int64_t at_ns = flight_.stamp_ns();
+  flight_.felt(at_ns, at_ns + kSecond);
+  EXPECT_EQ(mode(), "disarmed");
+  flight_.wait("the rotors are off",
+               [&] { return !flight_.client().view().vehicle.message.rotors_running(); });
+}
+
+}  // namespace
+}  // namespace swiftlet::tests

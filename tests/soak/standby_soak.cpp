@@ -1,0 +1,143 @@
+// Kills the active controller again and again in flight: what the standby's takeover costs, a row for each kill.
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "services/runtime/process.hpp"
+#include "tests/support/redundant_flight.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace swiftlet::tests {
+namespace {
+
+constexpr double kLongestGap_ms = 60.0;
+constexpr double kExtraDeviation_m = 0.05;
+constexpr std::int64_t kWindowNs = 2'000'000'000;  // after a kill
+
+struct Options {
+  int kills = 50;
+  std::uint64_t seed = 1;
+  std::string plant_simulation;  // empty: the default world
+};
+
+// Half of the kills each.
+struct Part {
+  const char* name;
+  double speed;          // m/s, of the mission
+  double kill_at_speed;  // m/s, and no slower
+};
+constexpr Part kParts[] = {{"square at 0.5 m/s", 0.5, 0.1}, {"square at 1.5 m/s", 1.5, 1.45}};
+
+struct Takeover {
+  double gap_ms = 0.0;
+  double deviation_m = 0.0;
+  double extra_m = 0.0;
+  double step_m = 0.0;  // of the reference
+  double speed = 0.0;
+
+  bool in_bounds() const { return gap_ms <= kLongestGap_ms && extra_m <= kExtraDeviation_m; }
+};
+
+void print_header() {
+  std::printf("%4s  %-18s %6s %7s %13s %9s %18s\n", "kill", "", "m/s", "gap ms", "deviation cm", "extra cm",
+              "reference step mm");
+}
+
+void print(int number, const char* part, const Takeover& t) {
+  std::printf("%4d  %-18s %6.2f %7.1f %13.2f %9.2f %18.2f%s\n", number, part, t.speed, t.gap_ms,
+              t.deviation_m * 1e2, t.extra_m * 1e2, t.step_m * 1e3, t.in_bounds() ? "" : "  BEYOND");
+  std::fflush(stdout);
+}
+
+Takeover kill_active(RedundantFlight& flight, const Part& part) {
+  flight.wait("it flies at speed", [&] { return flight.speed() > part.kill_at_speed; });
+  Takeover takeover;
+  takeover.speed = flight.speed();
+  const std::int64_t at_ns = flight.stamp_ns();
+  flight.kill(flight.active());
+  const Felt felt = flight.felt(at_ns, at_ns + kWindowNs, side_ns(part.speed));
+  takeover.gap_ms = felt.longest_gap_ms;
+  takeover.deviation_m = felt.largest_deviation_m;
+  takeover.extra_m = felt.extra_deviation_m;
+  takeover.step_m = felt.largest_step_m;
+  return takeover;
+}
+
+std::vector<Takeover> fly(const Part& part, int kills, int first, std::mt19937_64& random,
+                          const Options& options) {
+  const TemporaryFolder folder;
+  std::vector<std::string> plant;
+  if (!options.plant_simulation.empty()) plant = {"--simulation", options.plant_simulation};
+  RedundantFlight flight(folder.path(), plant);
+  std::uniform_int_distribution<int> strength(0, 1000);
+  std::uniform_real_distribution<double> pause_s(0.0, 3.0);
+  flight.start_controller(strength(random));
+  flight.start_controller(strength(random));
+  flight.wait_for_roles(1, 1);
+  flight.fly(square_laps(part.speed, 400));
+  flight.wait("it has taken off", [&] { return flight.z_ned() < -0.98; });
+  const std::int64_t first_side_ns = flight.stamp_ns() + side_ns(part.speed) + 2'000'000'000;
+  flight.wait("it has flown a side", [&] { return flight.stamp_ns() > first_side_ns; });
+
+  std::vector<Takeover> takeovers;
+  for (int kill = 0; kill < kills; ++kill) {
+    const std::int64_t until_ns = flight.stamp_ns() + static_cast<std::int64_t>(pause_s(random) * 1e9);
+    flight.wait("the vehicle's time passes", [&] { return flight.stamp_ns() > until_ns; });
+    takeovers.push_back(kill_active(flight, part));
+    print(first + kill, part.name, takeovers.back());
+    flight.start_controller(strength(random));
+    flight.wait_for_roles(1, 1);
+  }
+  return takeovers;
+}
+
+int run(const Options& options) {
+  std::mt19937_64 random(options.seed);
+  std::vector<Takeover> all;
+  print_header();
+  for (const Part& part : kParts) {
+    const int kills = &part == &kParts[0] ? options.kills / 2 : options.kills - options.kills / 2;
+    const std::vector<Takeover> some = fly(part, kills, static_cast<int>(all.size()) + 1, random, options);
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  Takeover worst;
+  for (const Takeover& t : all) {
+    worst.gap_ms = std::max(worst.gap_ms, t.gap_ms);
+    worst.step_m = std::max(worst.step_m, t.step_m);
+    worst.extra_m = std::max(worst.extra_m, t.extra_m);
+  }
+  const auto good = std::count_if(all.begin(), all.end(), [](const Takeover& t) { return t.in_bounds(); });
+  std::printf(
+      "%td of %zu kills within %.0f ms without a fresh command and %.0f cm of extra deviation; worst %.1f "
+      "ms, %.2f cm, "
+      "a step of the reference by %.2f mm\n",
+      good, all.size(), kLongestGap_ms, kExtraDeviation_m * 1e2, worst.gap_ms, worst.extra_m * 1e2,
+      worst.step_m * 1e3);
+  return static_cast<std::size_t>(good) == all.size() ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace swiftlet::tests
+
+int main(int argc, char** argv) {
+  using namespace swiftlet;
+  tests::Options options;
+  int exit_code = 0;
+  const int status = runtime::run_process(
+      {"standby_soak", "Kills the active controller in flight, again and again.", "--kills 10 --seed 3"},
+      argc, argv,
+      [&](CLI::App& app) {
+        app.add_option("--kills", options.kills, "how often")
+            ->check(CLI::Range(1, 10000))
+            ->capture_default_str();
+        app.add_option("--seed", options.seed, "of strengths and pauses")->capture_default_str();
+        app.add_option("--simulation", options.plant_simulation, "the plant's simulation file");
+      },
+      [&] { exit_code = tests::run(options); });
+  return status != 0 ? status : exit_code;
+}

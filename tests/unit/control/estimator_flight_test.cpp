@@ -1,0 +1,118 @@
+// The estimator in the closed loop: simulated vehicle, all sensor models, flight controller.
+#include <algorithm>
+#include <cstdint>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "control/flight_controller.hpp"
+#include "ground/simulation/closed_loop.hpp"
+#include "services/runtime/control_settings_file.hpp"
+#include "services/runtime/simulation_file.hpp"
+#include "services/runtime/vehicle_file.hpp"
+
+namespace swiftlet::control {
+namespace {
+
+using Eigen::Vector3d;
+using ground::ClosedLoop;
+
+const std::string kConfig = SWIFTLET_SOURCE_DIR "/config/";
+
+plant::SimulationSettings world(const std::string& name) {
+  return runtime::load_simulation_settings(kConfig + "simulation/" + name + ".yaml");
+}
+
+// Patient enough to dead reckon where it would give up.
+ClosedLoop loop(const plant::SimulationSettings& simulation, std::uint64_t seed) {
+  ControlSettings settings = runtime::load_control_settings(kConfig + "control/motor_lag.yaml");
+  settings.failsafe.mocap_timeout_s = 0.6;
+  return {runtime::load_vehicle(kConfig + "vehicles/kaylion.yaml"), simulation, settings, seed};
+}
+
+Request request(RequestKind kind, const Vector3d& position_ned = Vector3d::Zero()) {
+  Request out;
+  out.kind = kind;
+  out.position_ned = position_ned;
+  out.speed = 0.5;
+  return out;
+}
+
+void pass(ClosedLoop& flown, double time_s) {
+  const double end = flown.time_s() + time_s;
+  flown.step_until([&] { return flown.time_s() >= end; }, 2.0 * time_s);
+}
+
+void hover(ClosedLoop& flown) {
+  pass(flown, 0.5);
+  ASSERT_TRUE(flown.controller.request(request(RequestKind::kArm)).accepted);
+  ASSERT_TRUE(flown.controller.request(request(RequestKind::kTakeoff, {0, 0, -1})).accepted);
+  ASSERT_TRUE(flown.step_until([&] { return flown.controller.status().mode == Mode::kHolding; }, 10.0));
+  pass(flown, 3.0);
+}
+
+TEST(EstimatorInFlight, HalfASecondWithoutPosesCostsLessThanTenCentimetres) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    ClosedLoop flown = loop(world("default"), seed);
+    hover(flown);
+    const Vector3d before = flown.plant.state().position_ned;
+    flown.mocap_connected = false;
+    double estimate_error = 0.0;
+    double drift = 0.0;
+    const double end = flown.time_s() + 0.5;
+    while (flown.time_s() < end) {
+      flown.step();
+      const Vector3d position = flown.plant.state().position_ned;
+      estimate_error = std::max(estimate_error, (flown.controller.estimate().position_ned - position).norm());
+      drift = std::max(drift, (position - before).norm());
+    }
+    EXPECT_LT(estimate_error, 0.10) << "seed " << seed;
+    EXPECT_LT(drift, 0.10) << "seed " << seed;
+    EXPECT_GT(flown.controller.estimate_deviation().head<3>().maxCoeff(), 2e-4) << "seed " << seed;
+    EXPECT_EQ(flown.controller.status().mode, Mode::kHolding);
+    flown.mocap_connected = true;
+    pass(flown, 1.0);
+    EXPECT_EQ(flown.controller.estimate().resets, 0U) << "seed " << seed;
+    EXPECT_LT(flown.tracking_error().norm(), 0.05) << "seed " << seed;
+  }
+}
+
+TEST(EstimatorInFlight, NoPoseOfAnyWorldIsRefused) {
+  for (const char* name : {"default", "ideal", "optitrack"}) {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      ClosedLoop flown = loop(world(name), seed);
+      hover(flown);
+      const std::uint64_t refused = flown.controller.estimate().poses_refused;  // before the first IMU sample
+      ASSERT_TRUE(flown.controller.request(request(RequestKind::kGoTo, {1.5, -1.0, -1.5})).accepted);
+      pass(flown, 8.0);
+      EXPECT_EQ(flown.controller.estimate().poses_refused, refused) << name << ", seed " << seed;
+      EXPECT_LE(refused, 2U) << name << ", seed " << seed;
+      EXPECT_EQ(flown.controller.estimate().resets, 0U);
+      EXPECT_LT(flown.tracking_error().norm(), 0.02) << name << ", seed " << seed;
+    }
+  }
+}
+
+class Latency : public testing::TestWithParam<double> {};
+
+TEST_P(Latency, OfThePosesCostsNoStability) {
+  plant::SimulationSettings simulation = world("default");
+  simulation.mocap.latency_s = GetParam();
+  ClosedLoop flown = loop(simulation, 1);
+  hover(flown);
+  double worst = 0.0;
+  for (const Vector3d& corner : {Vector3d(1, 0, -1), Vector3d(1, 1, -1), Vector3d(0, 1, -1)}) {
+    ASSERT_TRUE(flown.controller.request(request(RequestKind::kGoTo, corner)).accepted);
+    const double end = flown.time_s() + 5.0;
+    while (flown.time_s() < end) {
+      flown.step();
+      worst = std::max(worst, flown.tracking_error().norm());
+    }
+  }
+  EXPECT_LT(worst, 0.02);
+  EXPECT_EQ(flown.controller.status().mode, Mode::kHolding);
+}
+INSTANTIATE_TEST_SUITE_P(Seconds, Latency, testing::Values(0.0, 0.01, 0.03, 0.1));
+
+}  // namespace
+}  // namespace swiftlet::control
