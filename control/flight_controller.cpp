@@ -29,6 +29,7 @@ constexpr int kUnusableToFault = 200;  // IMU samples in a row that cannot be us
 // its side.
 constexpr double kStandingLift = 0.5;
 constexpr double kDescentGain = 4.0;   // 1/s, vertical speed to acceleration, in descent without position
+constexpr double kBrakeGain = 2.0;     // 1/s, likewise of the horizontal speed
 constexpr double kDescentLimit = 2.0;  // m/s^2, of that acceleration
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
@@ -71,7 +72,8 @@ struct FlightController::Loops {
   int unusable_samples = 0;            // in a row
   std::int64_t unusable_since_ns = 0;  // the last stamp before them, or that to which time went back
   double unusable_s = 0.0;
-  double imu_gap_s = 0.0;  // between the last two samples that could be used
+  std::uint32_t resets_seen = 0;  // of the estimate, by the supervisor
+  double imu_gap_s = 0.0;         // between the last two samples that could be used
   Vector3d specific_force_frd = Vector3d::Zero();
   bool has_battery = false;
   std::int64_t battery_stamp_ns = 0;
@@ -107,6 +109,7 @@ void FlightController::Loops::begin_anew_if_clock_went_back(const plant::ImuSamp
   if (sample.stamp_ns >= last_stamp_ns || !rotors_off) return;
   estimator = Estimator(settings.estimator);
   rotors = RotorObserver(vehicle);
+  resets_seen = 0;
   last_stamp_ns = 0;
   has_battery = false;
 }
@@ -129,6 +132,7 @@ Situation FlightController::Loops::situation() const {
   situation.estimate = &estimate;
   situation.has_estimate = estimator.initialised();
   situation.pose_age_s = estimator.pose_age_s();
+  situation.pose_jumped = estimate.resets != resets_seen;
   situation.has_battery = has_battery;
   situation.supply_voltage_v = supply_voltage_v;
   situation.battery_age_s = seconds(estimate.stamp_ns - battery_stamp_ns);
@@ -195,11 +199,14 @@ void FlightController::Loops::spool_up(const Directive& directive) {
 
 void FlightController::Loops::descend_level(double speed) {
   const Estimate& estimate = estimator.estimate();
-  const double acceleration =
-      std::clamp(kDescentGain * (speed - estimate.velocity_ned.z()), -kDescentLimit, kDescentLimit);
-  AttitudeReference level;
-  level.yaw_rad = euler_from_quaternion(estimate.q_ned_from_frd).z();
-  command_wrench(vehicle.mass_kg * (plant::kGravity - acceleration), level);
+  Vector3d acceleration_ned = -kBrakeGain * estimate.velocity_ned;
+  acceleration_ned.z() = kDescentGain * (speed - estimate.velocity_ned.z());
+  acceleration_ned = acceleration_ned.cwiseMax(-kDescentLimit).cwiseMin(kDescentLimit);
+  const ThrustAttitude outer = thrust_attitude(vehicle.mass_kg, acceleration_ned, max_tilt_tangent);
+  AttitudeReference braking;
+  braking.body_z_ned = outer.body_z_ned;
+  braking.yaw_rad = euler_from_quaternion(estimate.q_ned_from_frd).z();
+  command_wrench(outer.thrust_n, braking);
 }
 
 // Of the wanted thrust, the part along the axis on which the rotors can give it: none while upside down.
@@ -248,6 +255,7 @@ plant::ActuatorCommand FlightController::on_imu(const plant::ImuSample& sample) 
   }
   const Situation situation = l.situation();
   const Directive directive = l.supervisor.step(situation);
+  l.resets_seen = situation.estimate->resets;
   l.act(directive, dt_s);
 
   l.status.mode = l.supervisor.mode();

@@ -70,6 +70,10 @@ const char* to_string(Reason reason) {
       return "IMU samples were missing";
     case Reason::kGroundLinkLost:
       return "ground link lost";
+    case Reason::kStruck:
+      return "hit something hard";
+    case Reason::kPoseJumped:
+      return "position jumped";
     case Reason::kPlanUnknown:
       return "taken over without the plan that was flown";
     case Reason::kFoundFlying:

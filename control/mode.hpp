@@ -42,6 +42,8 @@ enum class Reason : std::uint8_t {
   kImuUnusable,
   kImuGap,
   kGroundLinkLost,
+  kStruck,       // the accelerometer felt a blow as of a fall to the ground
+  kPoseJumped,   // motion capture says for long that the vehicle is elsewhere
   kPlanUnknown,  // another controller was taken over from whose mission or trajectory is not known here
   kFoundFlying,  // the controller was started while its vehicle flew
 };

@@ -101,6 +101,7 @@ struct FailsafeSettings {
   double imu_timeout_s = 0.1;             // of samples that cannot be used, in a row: rotors off
   double imu_gap_s = 0.3;                 // between two samples: rotors off
   double tip_over_tilt_rad = 1.4;         // rotors off
+  double blow = 100.0;                    // m/s^2, of the specific force: rotors off
   double mocap_timeout_s = 0.5;           // without a pose: from dead reckoning to level descent
   double descent_speed = 0.4;             // m/s, without position, and of landings at most
   double descent_timeout_s = 6.0;         // without position: rotors off

@@ -23,8 +23,12 @@ constexpr std::uint64_t kIntervalMoments = 32;     // ... nor by more moments of
 constexpr std::int64_t kMaxLead_ns = 20'000'000;   // that a pose may be ahead of the IMU
 constexpr double kStartSpeed = 1.0;                // m/s, standard deviation at the first pose
 constexpr double kJumpSpeed = 0.3;                 // m/s, likewise after a reset
-constexpr double kMaxDrift = 0.3;        // m/s, of a disagreement that leads to a reset in flight ...
-constexpr double kMaxDriftAtRest = 3.0;  // ... and with rotors off
+constexpr double kMaxDrift = 0.3;         // m/s, of a disagreement that leads to a reset in flight ...
+constexpr double kMaxDriftAtRest = 3.0;   // ... and with rotors off
+constexpr double kSuddenly = 2.0;         // times the bound of an outlier
+constexpr int kPosesToRestart = 5;        // that disagree, of a stream without a break: the IMU misled
+constexpr double kRestartGyroBias = 0.1;  // rad/s
+constexpr double kRestartAccelerometerBias = 0.5;  // m/s^2
 constexpr double kSwap_rad = 0.35;
 constexpr double kLongFall = 1e3;  // m/s
 
@@ -120,6 +124,7 @@ PoseFault Estimator::take_in(const plant::PoseSample& pose, plant::RotorState ro
   if (initialised_ && (pose.stamp_ns <= pose_stamp_ns_ || pose.stamp_ns < anchor_.stamp_ns))
     return PoseFault::kUntimely;
   repetition_.look_at(pose, rotors);
+  continuity_.look_at(pose);
   if (!initialised_) {
     start_at(pose);
     return PoseFault::kNone;
@@ -149,6 +154,8 @@ PoseFault Estimator::take_in(const plant::PoseSample& pose, plant::RotorState ro
   }
 
   disagreement_.clear();
+  continuity_.begin();
+  refused_in_a_row_ = 0;
   pose_stamp_ns_ = pose.stamp_ns;
   pose_sequence_ = pose.sequence;
   if (contradicts) {
@@ -165,8 +172,17 @@ PoseFault Estimator::disagree(const plant::PoseSample& pose, const PoseInnovatio
   const bool at_rest = rotors == plant::RotorState::kOff;
   const bool turned = innovation.rotation.norm() > kSwap_rad;
   disagreement_.add(pose.stamp_ns, innovation, at_rest ? kMaxDriftAtRest : kMaxDrift);
-  if (disagreement_.persistent() && (at_rest || !turned)) {
+  // What the IMU misleads to grows from pose to pose; what comes at once is a jump.
+  if (refused_in_a_row_++ == 0 &&
+      (innovation.position.norm() > kSuddenly * settings_.outlier_position_m ||
+       innovation.rotation.norm() > kSuddenly * settings_.outlier_orientation_rad))
+    continuity_.end();
+  if (at_rest && disagreement_.persistent()) {
     jump(pose, innovation);
+    return PoseFault::kNone;
+  }
+  if (continuity_.unbroken() && refused_in_a_row_ >= kPosesToRestart) {
+    restart_at(pose, innovation);
     return PoseFault::kNone;
   }
   return turned ? PoseFault::kSwapped : PoseFault::kOutlier;
@@ -246,6 +262,27 @@ void Estimator::jump(const plant::PoseSample& pose, const PoseInnovation& innova
   pose_stamp_ns_ = pose.stamp_ns;
   pose_sequence_ = pose.sequence;
   disagreement_.clear();
+  ++now_.resets;
+  now_.reset_position_ned = innovation.position;
+  now_.reset_rotation_ned = innovation.rotation;
+}
+
+// Position, velocity and attitude of the poses, which go on without a break: it is the IMU that misled.
+void Estimator::restart_at(const plant::PoseSample& pose, const PoseInnovation& innovation) {
+  ErrorState step = ErrorState::Zero();
+  step.segment<3>(0) = innovation.position;
+  step.segment<3>(3) = continuity_.velocity_ned() - anchor_.velocity_ned;
+  step.segment<3>(6) = innovation.rotation;
+  apply(step);
+  ErrorState sigma;
+  sigma << Vector3d::Constant(settings_.mocap_position_sigma), Vector3d::Constant(kJumpSpeed),
+      Vector3d::Constant(settings_.mocap_orientation_sigma), Vector3d::Constant(kRestartGyroBias),
+      Vector3d::Constant(kRestartAccelerometerBias);
+  covariance_.reset(sigma);
+  pose_stamp_ns_ = pose.stamp_ns;
+  pose_sequence_ = pose.sequence;
+  disagreement_.clear();
+  refused_in_a_row_ = 0;
   ++now_.resets;
   now_.reset_position_ned = innovation.position;
   now_.reset_rotation_ned = innovation.rotation;

@@ -122,6 +122,7 @@ class Estimator {
   void apply(const ErrorState& step);
   void catch_up();
   void jump(const plant::PoseSample& pose, const PoseInnovation& innovation);
+  void restart_at(const plant::PoseSample& pose, const PoseInnovation& innovation);
 
   static ErrorInterval interval(const Moment& from, const Moment& to);
   // The covariance from one moment of the history to another; first is the number of the first after `from`.
@@ -143,6 +144,8 @@ class Estimator {
   double normalised_innovation_ = 0.0;
   RepetitionWatch repetition_;
   Disagreement disagreement_;
+  Continuity continuity_;
+  int refused_in_a_row_ = 0;
 
   // The covariance is that of the anchor: the last pose's moment, or one since.
   ErrorCovariance covariance_;

@@ -1,6 +1,8 @@
 // What can be wrong with a stream of poses that one pose alone does not show: frozen markers, and a jump that stays.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include <Eigen/Core>
@@ -31,6 +33,32 @@ class RepetitionWatch {
   int repetitions_ = 0;
   int distinct_ = 0;  // in a row, with the rotors off
   bool noisy_ = false;
+};
+
+// Whether a stream goes on without a break, as the pose of a body does that moves: not after a jump, nor after a
+// gap in which a jump would not be seen.
+class Continuity {
+ public:
+  void look_at(const plant::PoseSample& pose);
+  // The newest pose agrees with the estimate: from here on.
+  void begin() { unbroken_ = true; }
+  void end() { unbroken_ = false; }
+
+  // Since begin().
+  bool unbroken() const { return unbroken_; }
+  // Between the newest pose and that of kSpan poses before, m/s.
+  Eigen::Vector3d velocity_ned() const;
+
+ private:
+  static constexpr std::size_t kSpan = 4;
+
+  const plant::PoseSample& before(std::uint64_t count) const {
+    return last_[(next_ - 1 - count) % last_.size()];
+  }
+
+  bool unbroken_ = false;
+  std::array<plant::PoseSample, kSpan + 1> last_;
+  std::uint64_t next_ = 0;  // of all that came
 };
 
 // Poses that disagree with the estimate, one after the other. When they agree with each other for long, it is

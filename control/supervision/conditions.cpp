@@ -93,6 +93,8 @@ EventSet observe(Scene& scene) {
   events.add(Event::kImuGap, situation.imu_gap_s > failsafe.imu_gap_s);
   events.add(Event::kTippedOver, cosine_of_tilt(scene.estimate().q_ned_from_frd) <
                                      std::cos(std::min(failsafe.tip_over_tilt_rad, M_PI)));
+  events.add(Event::kStruck, state.phase != Phase::kGround && situation.specific_force > failsafe.blow);
+  events.add(Event::kPoseJumped, situation.pose_jumped);
   events.add(Event::kPoseLost, lost);
   events.add(Event::kPoseIsBack, !lost);
   events.add(Event::kGroundFelt, ground_felt(scene));

@@ -10,6 +10,10 @@ const char* to_string(Event event) {
       return "IMU samples were missing";
     case Event::kTippedOver:
       return "tipped over";
+    case Event::kStruck:
+      return "struck";
+    case Event::kPoseJumped:
+      return "pose jumped";
     case Event::kPoseLost:
       return "pose lost";
     case Event::kPoseIsBack:

@@ -13,6 +13,8 @@ enum class Event : std::uint8_t {
   kImuUnusable = 0,
   kImuGap,
   kTippedOver,
+  kStruck,
+  kPoseJumped,
   kPoseLost,
   kPoseIsBack,
   kGroundFelt,

@@ -31,6 +31,31 @@ Eigen::Vector3d stopping_place(const Limits& limits, const Reference& from) {
   return rest_place(limits, from).cwiseMax(limits.fence_min_ned).cwiseMin(limits.fence_max_ned);
 }
 
+bool leaves_fence(const Limits& limits, const PolynomialSegment& segment) {
+  constexpr int kLooks = 24;
+  for (int i = 1; i < kLooks; ++i) {
+    const Reference at = evaluate(segment, segment.duration_s * i / kLooks);
+    if (kept_inside(limits, at).position_ned != at.position_ned) return true;
+  }
+  return false;
+}
+
+// A quintic that takes long swings out far with the speed that it begins with. Where that would leave the
+// fence, the reference sheds as much of its speed at once as it must; from rest the way is straight.
+PolynomialSegment join_inside(const Limits& limits, Reference from, const Eigen::Vector3d& to_ned,
+                              double to_yaw, double duration_s) {
+  constexpr int kParts = 4;
+  const Reference as_it_is = from;
+  for (int kept = kParts;; --kept) {
+    const double part = static_cast<double>(kept) / kParts;
+    from.velocity_ned = part * as_it_is.velocity_ned;
+    from.acceleration_ned = part * as_it_is.acceleration_ned;
+    const PolynomialSegment segment = join_to_rest(from, to_ned, to_yaw, duration_s);
+    const bool straight = from.velocity_ned.isZero(0.0) && from.acceleration_ned.isZero(0.0);
+    if (straight || !leaves_fence(limits, segment)) return segment;
+  }
+}
+
 void climb(Scene& scene) {
   SupervisorState& state = scene.state;
   state.phase = Phase::kPath;
@@ -77,6 +102,20 @@ void advance_trajectory(Scene& scene) {
 
 }  // namespace
 
+Reference kept_inside(const Limits& limits, const Reference& reference) {
+  Reference inside = reference;
+  for (int i = 0; i < 3; ++i) {
+    double& at = inside.position_ned[i];
+    const bool beyond = at < limits.fence_min_ned[i] || (i < 2 && at > limits.fence_max_ned[i]);
+    if (!beyond) continue;
+    at = at < limits.fence_min_ned[i] ? limits.fence_min_ned[i] : limits.fence_max_ned[i];
+    for (Eigen::Vector3d* const rate :
+         {&inside.velocity_ned, &inside.acceleration_ned, &inside.jerk_ned, &inside.snap_ned})
+      (*rate)[i] = 0.0;
+  }
+  return inside;
+}
+
 Reference standing_at(const Estimate& estimate) {
   Reference reference;
   reference.position_ned = estimate.position_ned;
@@ -107,7 +146,7 @@ void start_move(Scene& scene, const Eigen::Vector3d& to_ned, bool yaw_free, doub
   duration = std::max(duration, 15.0 / 8.0 * std::abs(to_yaw - from.yaw_rad) / limits.max_yaw_rate);
   duration = std::max(duration, stopping_time(limits, from));
   scene.state.phase = Phase::kPath;
-  scene.state.path.follow(join_to_rest(from, to_ned, to_yaw, duration), start_ns);
+  scene.state.path.follow(join_inside(limits, from, to_ned, to_yaw, duration), start_ns);
 }
 
 void start_stop(Scene& scene) {

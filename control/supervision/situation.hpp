@@ -13,6 +13,7 @@ struct Situation {
   const Estimate* estimate = nullptr;
   bool has_estimate = false;  // the estimator has been started by a pose
   double pose_age_s = 0.0;
+  bool pose_jumped = false;  // since the last step the estimate gave in to poses that disagreed for long
   bool has_battery = false;  // the supply voltage is a measured one
   double supply_voltage_v = 0.0;
   double battery_age_s = 0.0;

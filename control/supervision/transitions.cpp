@@ -27,6 +27,12 @@ const Transition kTransitions[] = {
   {kRotorsOn, E::kImuGap, when::kAlways, check_of::kNone, M::kStopped, R::kImuGap, act::kNothing},
   {kRotorsOn, E::kTippedOver, when::kAlways, check_of::kNone, M::kStopped, R::kTippedOver, act::kNothing},
 
+  // A descent that ends hard has ended; any other flight has met the ground or a wall.
+  {{M::kDescent}, E::kStruck, when::kAlways, check_of::kNone, M::kDisarmed, R::kLandedWithoutPosition, act::kNothing},
+  {{M::kLanding}, E::kStruck, when::kAlways, check_of::kNone, M::kDisarmed, R::kLanded, act::kNothing},
+  {{M::kMission}, E::kStruck, when::kOnLandingItem, check_of::kNone, M::kDisarmed, R::kLanded, act::kNothing},
+  {kUnderWay, E::kStruck, when::kAlways, check_of::kNone, M::kStopped, R::kStruck, act::kNothing},
+
   // On the ground still, it stays there.
   {{M::kArmed}, E::kPoseLost, when::kAlways, check_of::kNone, M::kDisarmed, R::kNoPose, act::kNothing},
   {{M::kArmed}, E::kGroundLinkLost, when::kLinkMatters, check_of::kNone, M::kDisarmed, R::kGroundLinkLost, act::kNothing},
@@ -36,6 +42,13 @@ const Transition kTransitions[] = {
   {kLeavingGround, E::kBatteryLow, when::kSpoolingUp, check_of::kNone, M::kDisarmed, R::kBatteryLow, act::kNothing},
   {kLeavingGround, E::kBatterySilent, when::kSpoolingUp, check_of::kNone, M::kDisarmed, R::kBatterySilent, act::kNothing},
   {kLeavingGround, E::kGroundLinkLost, when::kLinkMattersOnGround, check_of::kNone, M::kDisarmed, R::kGroundLinkLost, act::kNothing},
+
+  // It is elsewhere than it was thought to be: straight down, whichever of the two was wrong.
+  {{M::kArmed}, E::kPoseJumped, when::kAlways, check_of::kNone, M::kDisarmed, R::kPoseJumped, act::kNothing},
+  {kLeavingGround, E::kPoseJumped, when::kSpoolingUp, check_of::kNone, M::kDisarmed, R::kPoseJumped, act::kNothing},
+  {kUnderWay, E::kPoseJumped, when::kAlways, check_of::kNone, M::kLanding, R::kPoseJumped, act::kLandFromEstimate},
+  {{M::kDescent}, E::kPoseJumped, when::kAlways, check_of::kNone, M::kLanding, R::kPoseJumped, act::kLandFromEstimate},
+  {{M::kLanding}, E::kPoseJumped, when::kAlways, check_of::kNone, kStay, R::kPoseJumped, act::kLandFromEstimate},
 
   // Without position.
   {{M::kLanding}, E::kPoseLost, when::kAlways, check_of::kNone, M::kDescent, R::kNoPose, act::kLandOnReturn},

@@ -115,6 +115,57 @@ TEST(Estimator, RefusesSamplesThatAreNotFiniteOrNotNewer) {
   EXPECT_EQ(estimator.estimate().stamp_ns, before.stamp_ns);
 }
 
+// Poses as they should be, but `off` by so much, for a second. Returns how many were taken in.
+int run_with_jump(Estimator& estimator, const Motion& motion, const Vector3d& off, plant::RotorState rotors) {
+  std::uint64_t sequence = 10'000;
+  int taken = 0;
+  for (int frame = 0; frame < 100; ++frame) {
+    for (int i = 0; i < 5; ++i) estimator.predict(motion.imu(estimator.estimate().stamp_ns + kStep_ns));
+    plant::PoseSample pose = Motion::pose(estimator.estimate().stamp_ns, ++sequence);
+    pose.position_ned += off;
+    if (estimator.correct(pose, rotors)) ++taken;
+  }
+  return taken;
+}
+
+double position_error(const Estimator& estimator) {
+  const double t = static_cast<double>(estimator.estimate().stamp_ns) * 1e-9;
+  return (estimator.estimate().position_ned - Motion::position(t)).norm();
+}
+
+// Another body, or a world that was shifted: who flies cannot know, and goes by the IMU until it has landed.
+TEST(Estimator, DoesNotBelieveAJumpInFlight) {
+  Estimator estimator{EstimatorSettings{}};
+  Motion motion;
+  run(estimator, motion, 2.0, 0);
+  EXPECT_EQ(run_with_jump(estimator, motion, {2.0, 0.0, 0.0}, plant::RotorState::kRunning), 0);
+  EXPECT_LT(position_error(estimator), 0.05);
+  EXPECT_EQ(run_with_jump(estimator, motion, {0.0, 0.0, 0.0}, plant::RotorState::kRunning), 100);
+}
+
+TEST(Estimator, BelievesAJumpThatLastsWithItsRotorsOff) {
+  Estimator estimator{EstimatorSettings{}};
+  Motion motion;
+  run(estimator, motion, 2.0, 0);
+  EXPECT_EQ(run_with_jump(estimator, motion, {2.0, 0.0, 0.0}, plant::RotorState::kOff), 100 - 20);
+  EXPECT_EQ(estimator.estimate().resets, 1U);
+  EXPECT_NEAR(position_error(estimator), 2.0, 0.01);
+}
+
+// Poses that never broke off have nothing against them: when the IMU says otherwise, it is wrong.
+TEST(Estimator, BelievesPosesThatGoOnWithoutABreakWhenTheImuMisleads) {
+  Estimator estimator{EstimatorSettings{}};
+  Motion motion;
+  run(estimator, motion, 2.0, 0);
+  Motion misled = motion;
+  misled.accelerometer_bias = {20.0, 0.0, 0.0};
+  run_with_jump(estimator, misled, {0.0, 0.0, 0.0}, plant::RotorState::kRunning);
+  EXPECT_GT(estimator.estimate().resets, 0U);
+  EXPECT_LT(position_error(estimator), 0.2);
+  run_with_jump(estimator, motion, {0.0, 0.0, 0.0}, plant::RotorState::kRunning);
+  EXPECT_LT(position_error(estimator), 0.005);
+}
+
 TEST(Estimator, RefusesAPoseThatIsOlderThanItsHistory) {
   Estimator estimator{EstimatorSettings{}};
   Motion motion;
