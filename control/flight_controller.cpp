@@ -247,6 +247,8 @@ plant::ActuatorCommand FlightController::on_imu(const plant::ImuSample& sample) 
 
   double dt_s = 0.0;
   if (usable) {
+    if (!l.has_battery && l.last_stamp_ns == 0)
+      l.battery_stamp_ns = sample.stamp_ns;  // it is awaited from here
     l.imu_gap_s = l.last_stamp_ns == 0 ? kFirstStep_s : seconds(sample.stamp_ns - l.last_stamp_ns);
     dt_s = std::min(l.imu_gap_s, kMaxStep_s);
     l.last_stamp_ns = sample.stamp_ns;

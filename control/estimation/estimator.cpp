@@ -147,7 +147,9 @@ PoseFault Estimator::take_in(const plant::PoseSample& pose, plant::RotorState ro
       innovation, squared(settings_.mocap_position_sigma), squared(settings_.mocap_orientation_sigma));
   normalised_innovation_ = correction.normalised_square();
   const bool contradicts = normalised_innovation_ > settings_.gate_chi_square;
-  if (repetition_.frozen() || (contradicts && repetition_.repeats())) return PoseFault::kFrozen;
+  // Without noise, a vehicle that stands repeats its pose: believed as any other with the rotors off.
+  const bool stuck = contradicts && repetition_.repeats() && rotors != plant::RotorState::kOff;
+  if (repetition_.frozen() || stuck) return PoseFault::kFrozen;
   if (contradicts && (innovation.position.norm() > settings_.outlier_position_m ||
                       innovation.rotation.norm() > settings_.outlier_orientation_rad)) {
     return disagree(pose, innovation, rotors);

@@ -55,8 +55,7 @@ void observe_battery(Scene& scene, EventSet& events) {
   events.add(Event::kBatteryLow, below(failsafe.low_battery_voltage, state.low_battery_since_ns));
   events.add(Event::kBatteryCritical,
              below(failsafe.critical_battery_voltage, state.critical_battery_since_ns));
-  events.add(Event::kBatterySilent,
-             !situation.has_battery || situation.battery_age_s > failsafe.battery_timeout_s);
+  events.add(Event::kBatterySilent, situation.battery_age_s > failsafe.battery_timeout_s);
 }
 
 bool is_silent(const GroundLink& link, std::int64_t now_ns, double timeout_s) {

@@ -9,6 +9,7 @@ namespace swiftlet::tests {
 namespace {
 
 constexpr double kPeriodS = static_cast<double>(FakeVehicle::kPeriodNs) * 1e-9;
+constexpr double kBraking_s = 0.02;
 constexpr std::uint64_t kImuPerFrame = 5;
 constexpr std::uint64_t kImuPerBattery = 50;
 
@@ -61,8 +62,8 @@ void FakeVehicle::move() {
   rotor_speed_ += (wanted_speed - rotor_speed_) * kPeriodS / parameters_.motor.time_constant_s;
   const double lift = parameters_.rotor_count() * plant::thrust_from_speed(parameters_.rotor, rotor_speed_);
   up_acceleration_ = lift / parameters_.mass_kg - plant::kGravity;
-  const bool stands = height_m_ <= 0.0 && up_acceleration_ <= 0.0;
-  if (stands) up_acceleration_ = up_speed_ = 0.0;
+  // The floor brakes it within hundredths of a second, which its accelerometer feels.
+  if (height_m_ <= 0.0) up_acceleration_ = std::max(up_acceleration_, -up_speed_ / kBraking_s);
   up_speed_ += up_acceleration_ * kPeriodS;
   height_m_ = std::max(height_m_ + up_speed_ * kPeriodS, 0.0);
   highest_m_ = std::max(highest_m_.load(), height_m_.load());

@@ -257,7 +257,7 @@ const Fault kFaults[] = {
     {"arming.max_rotor_speed_rad_s", ".nan", "must be a finite number"},
     {"failsafe.imu_timeout_s", "0", "above 0"},
     {"failsafe.imu_gap_s", "0", "above 0"},
-    {"failsafe.blow_m_s2", "9", "above 9.81"},
+    {"failsafe.blow_m_s2", "9", "above 9.80665"},
     {"failsafe.low_battery_voltage_v", "-1", "at least 0"},
     {"failsafe.critical_battery_voltage_v", "3.4", "is 3.4, must be at least 0 and at most 3.3"},
     {"failsafe.battery_delay_s", "-1", "at least 0"},

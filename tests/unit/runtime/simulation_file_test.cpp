@@ -95,20 +95,20 @@ TEST(SimulationFile, IdealHasNoErrors) {
 
 TEST(SimulationFile, FaultsHaveTheirSentence) {
   EXPECT_EQ(refused("  friction: 0.6", "  friction: -1"),
-            "s.yaml:46: ground.friction: is -1, must be at least 0 and at most 10");
+            "s.yaml:49: ground.friction: is -1, must be at least 0 and at most 10");
   EXPECT_EQ(refused("rate_hz: 500  #", "rate_hz: 400  #"),
-            "s.yaml:11: imu.rate_hz: is 400, must have a period that is a whole number of steps of 0.001 s");
+            "s.yaml:13: imu.rate_hz: is 400, must have a period that is a whole number of steps of 0.001 s");
   EXPECT_EQ(refused("wind_ned_m_s: [0, 0, 0]", "wind_ned_m_s: [0, 99, 0]"),
-            "s.yaml:38: air.wind_ned_m_s[1]: is 99, must be at least -30 and at most 30");
+            "s.yaml:41: air.wind_ned_m_s[1]: is 99, must be at least -30 and at most 30");
 }
 
 TEST(SimulationFile, RefusesWhatIsNoSetting) {
-  EXPECT_NE(refused("  drag:", "  drug:").find("s.yaml:36: air.drag: "), std::string::npos);
-  EXPECT_NE(refused("  drag: true", "  drag: true\n  lift: 1").find("s.yaml:38: air.lift: "),
+  EXPECT_NE(refused("  drag:", "  drug:").find("s.yaml:39: air.drag: "), std::string::npos);
+  EXPECT_NE(refused("  drag: true", "  drag: true\n  lift: 1").find("s.yaml:41: air.lift: "),
             std::string::npos);
-  EXPECT_NE(refused("  latency_s: 0.010", "  latency_s: soon").find("s.yaml:24: mocap.latency_s: is soon"),
+  EXPECT_NE(refused("  latency_s: 0.010", "  latency_s: soon").find("s.yaml:27: mocap.latency_s: is soon"),
             std::string::npos);
-  EXPECT_NE(refused("  latency_s: 0.010", "  latency_s: .nan").find("s.yaml:24: mocap.latency_s: "),
+  EXPECT_NE(refused("  latency_s: 0.010", "  latency_s: .nan").find("s.yaml:27: mocap.latency_s: "),
             std::string::npos);
   EXPECT_NE(refused("step_s: 0.001", "step_s: 7").find("s.yaml:5: step_s: is 7"), std::string::npos);
 }
@@ -167,9 +167,9 @@ TEST(SimulationFile, ReadsFaultsOfEveryKind) {
 
 TEST(SimulationFile, FaultsThatCannotBeAreRefused) {
   EXPECT_EQ(refused_faults("  - {kind: imu_stop, at_s: -1, for_s: 1}\n"),
-            "s.yaml:48: faults[0].at_s: is -1, must be at least 0 and at most 86400");
+            "s.yaml:51: faults[0].at_s: is -1, must be at least 0 and at most 86400");
   EXPECT_NE(refused_faults("  - {kind: imu_stopped, at_s: 1, for_s: 1}\n")
-                .find("s.yaml:48: faults[0].kind: is imu_stopped, must be "),
+                .find("s.yaml:51: faults[0].kind: is imu_stopped, must be "),
             std::string::npos);
   EXPECT_NE(refused_faults("  - {kind: mocap_latency, at_s: 1, for_s: 1}\n").find("faults[0].delay_s"),
             std::string::npos);
@@ -178,7 +178,7 @@ TEST(SimulationFile, FaultsThatCannotBeAreRefused) {
   EXPECT_EQ(
       refused_faults("  - {kind: imu_stop, at_s: 1, for_s: 1}\n"
                      "  - {kind: imu_stop, at_s: 1.5, for_s: 1}\n"),
-      "s.yaml:49: faults[1].at_s: is 1.5, but faults[0], imu_stop too, lasts from 1 s to 2 s: faults of "
+      "s.yaml:52: faults[1].at_s: is 1.5, but faults[0], imu_stop too, lasts from 1 s to 2 s: faults of "
       "one kind must not overlap");
 }
 
