@@ -39,11 +39,12 @@ ground::ClosedLoop under_way(const char* settings) {
   return loop;
 }
 
-// Samples of steady flight come again and again with new stamps, a pose every tenth of the IMU's: the
-// controller does all it does in flight, the plant is not timed.
+// Samples of steady flight come again and again with new stamps, a pose with every fifth of the IMU's, the
+// battery's at 10 Hz: the controller does all it does in flight, the plant is not timed.
 void inner_loop_step(benchmark::State& state, const char* settings) {
   ground::ClosedLoop loop = under_way(settings);
   constexpr int kPosePeriod = 5;
+  constexpr int kBatteryPeriod = 50;
   plant::ImuSample imu = *loop.plant.imu();
   imu.specific_force_frd = {0.0, 0.0, -plant::kGravity};
   imu.body_rates_frd.setZero();
@@ -51,6 +52,8 @@ void inner_loop_step(benchmark::State& state, const char* settings) {
   pose.tracked = true;
   pose.position_ned = loop.controller.estimate().position_ned;
   pose.sequence = 1'000'000;
+  plant::BatterySample battery;
+  battery.voltage_v = loop.controller.status().supply_voltage_v;
   for (auto _ : state) {
     imu.stamp_ns += 2'000'000;
     ++imu.sequence;
@@ -60,6 +63,10 @@ void inner_loop_step(benchmark::State& state, const char* settings) {
       pose.position_ned.x() +=
           pose.sequence % 2 == 0 ? 2e-5 : -2e-5;  // noise: the same again would be frozen
       loop.controller.on_pose(pose);
+    }
+    if (imu.sequence % kBatteryPeriod == 0) {
+      battery.stamp_ns = imu.stamp_ns;
+      loop.controller.on_battery(battery);
     }
     benchmark::DoNotOptimize(loop.controller.on_imu(imu));
   }

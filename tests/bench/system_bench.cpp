@@ -353,6 +353,9 @@ json benchmarks(const std::string& name, const std::string& filter) {
                             " --benchmark_report_aggregates_only=true --benchmark_filter='" + filter + "'"));
   json medians;
   for (const json& entry : report.at("benchmarks")) {
+    if (entry.value("error_occurred", false))
+      throw std::runtime_error(entry.at("name").get<std::string>() + ": " +
+                               entry.at("error_message").get<std::string>());
     if (entry.at("aggregate_name") == "median") medians[entry.at("run_name").get<std::string>()] = entry;
   }
   return medians;
