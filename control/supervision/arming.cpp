@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <string_view>
 
 #include "control/supervision/checks.hpp"
 #include "control/supervision/conditions.hpp"
@@ -97,11 +98,13 @@ constexpr ArmingCheck kChecks[] = {pose_there,  pose_believed, imu_usable, batte
 
 // "a; b; c", or the part of it that fits.
 void append(const char* sentence, Outcome& outcome) {
+  const std::string_view joint = outcome.accepted ? "cannot arm: " : "; ";
+  const std::string_view addition = sentence;
   const std::size_t used = std::strlen(outcome.reason);
-  const char* const joint = outcome.accepted ? "cannot arm: " : "; ";
   outcome.accepted = false;
-  if (used + std::strlen(joint) + std::strlen(sentence) >= sizeof outcome.reason) return;
-  std::snprintf(outcome.reason + used, sizeof outcome.reason - used, "%s%s", joint, sentence);
+  if (used + joint.size() + addition.size() >= sizeof outcome.reason) return;
+  char* const end = std::copy(joint.begin(), joint.end(), outcome.reason + used);
+  *std::copy(addition.begin(), addition.end(), end) = '\0';
 }
 
 }  // namespace
