@@ -14,6 +14,7 @@
 #include "services/comms/domain_claim.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/unit/comms/messages.hpp"
+#include "tests/unit/comms/steady_sender.hpp"
 
 namespace swiftlet::comms::tests {
 namespace {
@@ -167,27 +168,14 @@ class OwnedStream : public testing::Test {
     Controller(const DomainClaim& claim, int strength)
         : node_(settings(claim, "control")),
           publisher_(node_.publish(topics::kActuatorCommand, strength)),
-          sender_([this, strength] {
-            msg::ActuatorCommand command = example<msg::ActuatorCommand>();
-            command.sequence_number(static_cast<std::uint64_t>(strength));
-            while (!stop_) {
-              if (!mute_) publisher_.publish(command);
-              std::this_thread::sleep_for(2ms);
-            }
-          }) {}
-    ~Controller() {
-      stop_ = true;
-      sender_.join();
-    }
-    void mute() { mute_ = true; }
+          sender_(publisher_, static_cast<std::uint64_t>(strength)) {}
+    void mute() { sender_.mute(); }
     int matched() const { return publisher_.matched(); }
 
    private:
     Node node_;
     Publisher<msg::ActuatorCommand> publisher_;
-    std::atomic<bool> stop_{false};
-    std::atomic<bool> mute_{false};
-    std::thread sender_;
+    SteadySender sender_;
   };
 
   OwnedStream()

@@ -11,12 +11,12 @@
 #include <string>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
-#include <thread>
 #include <unistd.h>
 
 #include "services/comms/node.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/unit/comms/messages.hpp"
+#include "tests/unit/comms/steady_sender.hpp"
 
 namespace swiftlet::comms::tests {
 namespace {
@@ -64,20 +64,10 @@ int live(int domain, Transport transport) {
   auto state = node.publish(topics::kControlStatus);
   state.publish(example<msg::ControlStatus>());
   auto commands = node.publish(topics::kActuatorCommand, kStrongest);
-  msg::ActuatorCommand command = example<msg::ActuatorCommand>();
-  command.sequence_number(kStrongest);
-  std::atomic<bool> ends{false};
-  std::thread sender([&] {
-    while (!ends) {
-      commands.publish(command);
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
-  });
+  const SteadySender sender(commands, kStrongest);
   char byte = 0;
   while (::read(STDIN_FILENO, &byte, 1) > 0) {
   }
-  ends = true;
-  sender.join();
   return EXIT_SUCCESS;
 }
 

@@ -20,6 +20,7 @@
 #include "services/comms/shared_memory.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/unit/comms/messages.hpp"
+#include "tests/unit/comms/steady_sender.hpp"
 
 namespace swiftlet::comms::tests {
 namespace {
@@ -167,15 +168,7 @@ TEST_F(Peers, ADeadControllersStreamIsTakenOverBeforeItsLeaseEnds) {
   standby_settings.name = "standby";
   Node standby(standby_settings);
   auto commands = standby.publish(topics::kActuatorCommand, 1);
-  std::atomic<bool> ends{false};
-  std::thread sender([&] {
-    msg::ActuatorCommand command = example<msg::ActuatorCommand>();
-    command.sequence_number(1);
-    while (!ends) {
-      commands.publish(command);
-      std::this_thread::sleep_for(2ms);
-    }
-  });
+  const SteadySender sender(commands, 1);
   PeerProcess strong = start();
   const bool obeyed = heard.wait([](const auto& numbers) { return !numbers.empty() && numbers.back() == 9; });
 
@@ -183,8 +176,6 @@ TEST_F(Peers, ADeadControllersStreamIsTakenOverBeforeItsLeaseEnds) {
   const auto died = std::chrono::steady_clock::now();
   const bool taken_over = heard.wait([](const auto& numbers) { return numbers.back() == 1; });
   const auto outage = std::chrono::steady_clock::now() - died;
-  ends = true;
-  sender.join();
 
   EXPECT_TRUE(obeyed);
   EXPECT_TRUE(taken_over);

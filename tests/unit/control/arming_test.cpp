@@ -1,0 +1,109 @@
+// Each arming check at its limit and just beyond it, and what it then says.
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/control/placed_flight.hpp"
+
+namespace swiftlet::control {
+namespace {
+
+// An arming check at its limit and just beyond it, and what it then says.
+struct ArmingLimit {
+  const char* name;
+  std::function<void(Placed&)> good;
+  std::function<void(Placed&)> bad;
+  const char* sentence;
+};
+void PrintTo(const ArmingLimit& limit, std::ostream* out) { *out << limit.name; }
+
+class Arming : public testing::TestWithParam<ArmingLimit> {};
+
+TEST_P(Arming, IsRefusedBeyondTheLimitWithValueAndLimit) {
+  const ArmingLimit& limit = GetParam();
+  Placed good(kLand);
+  limit.good(good);
+  const Outcome accepted = good.ask(RequestKind::kArm);
+  EXPECT_TRUE(accepted.accepted) << accepted.reason;
+  Placed bad(kLand);
+  limit.bad(bad);
+  const Outcome refused = bad.ask(RequestKind::kArm);
+  EXPECT_FALSE(refused.accepted);
+  EXPECT_EQ(std::string(refused.reason), std::string("cannot arm: ") + limit.sentence);
+  EXPECT_EQ(bad.mode(), Mode::kDisarmed);
+}
+
+const auto kNothing = [](Placed&) {};
+const ArmingLimit kArmingLimits[] = {
+    {"pose", kNothing, [](Placed& f) { f.situation_.has_estimate = false; }, "no mocap pose has come"},
+    {"pose age", [](Placed& f) { f.situation_.pose_age_s = 0.5; },
+     [](Placed& f) { f.situation_.pose_age_s = 0.51; },
+     "the last mocap pose is 0.51 s old, the limit is 0.50 s"},
+    {"pose fault", [](Placed& f) { f.estimate_.pose_fault = PoseFault::kUntimely; },
+     [](Placed& f) { f.estimate_.pose_fault = PoseFault::kFrozen; },
+     "the last mocap pose was refused: frozen"},
+    {"imu", kNothing, [](Placed& f) { f.situation_.imu_unusable_s = 0.002; }, "IMU samples are not usable"},
+    {"battery", kNothing, [](Placed& f) { f.situation_.has_battery = false; }, "no battery voltage has come"},
+    {"battery age", [](Placed& f) { f.situation_.battery_age_s = 2.0; },
+     [](Placed& f) { f.situation_.battery_age_s = 2.1; },
+     "the last battery voltage is 2.1 s old, the limit is 2.0 s"},
+    {"voltage", [](Placed& f) { f.situation_.supply_voltage_v = 3.3; },
+     [](Placed& f) { f.situation_.supply_voltage_v = 3.29; }, "the battery has 3.29 V, the limit is 3.30 V"},
+    {"specific force", [](Placed& f) { f.situation_.specific_force = plant::kGravity + 1.49; },
+     [](Placed& f) { f.situation_.specific_force = plant::kGravity - 1.51; },
+     "the accelerometer shows 8.30 m/s^2, at rest it is within 1.50 of 9.81 m/s^2"},
+    {"rates",
+     [](Placed& f) {
+       f.estimate_.body_rates_frd = {0.0, 0.2, 0.0};
+     },
+     [](Placed& f) {
+       f.estimate_.body_rates_frd = {0.2, 0.2, 0.1};
+     },
+     "turning at 0.30 rad/s, the limit is 0.20 rad/s"},
+    {"rotors", [](Placed& f) { f.situation_.rotor_speed = 100.0; },
+     [](Placed& f) { f.situation_.rotor_speed = 101.0; },
+     "a rotor turns at 101 rad/s, the limit is 100 rad/s"},
+    {"tilt", [](Placed& f) { f.estimate_.q_ned_from_frd = Eigen::AngleAxisd(0.349, Vector3d::UnitX()); },
+     [](Placed& f) { f.estimate_.q_ned_from_frd = Eigen::AngleAxisd(0.36, Vector3d::UnitX()); },
+     "tilted by 0.36 rad, the limit is 0.35 rad"},
+    {"speed",
+     [](Placed& f) {
+       f.estimate_.velocity_ned = {0.0, 0.0, 0.3};
+     },
+     [](Placed& f) {
+       f.estimate_.velocity_ned = {0.0, 0.0, 0.31};
+     },
+     "moving at 0.31 m/s, the limit is 0.30 m/s"},
+    {"fence", [](Placed& f) { f.estimate_.position_ned.x() = 3.0; },
+     [](Placed& f) { f.estimate_.position_ned.x() = 3.01; },
+     "the vehicle: x is 3.010 m, outside the fence of -3.000 to 3.000 m"},
+};
+INSTANTIATE_TEST_SUITE_P(Checks, Arming, testing::ValuesIn(kArmingLimits));
+
+TEST(ArmingRefusal, NamesAllThatStandsAgainstItAndNeverHalfASentence) {
+  Placed flight(kLand);
+  flight.situation_.has_battery = false;
+  flight.estimate_.velocity_ned.x() = 1.0;
+  EXPECT_STREQ(flight.ask(RequestKind::kArm).reason,
+               "cannot arm: no battery voltage has come; moving at 1.00 m/s, the limit is 0.30 m/s");
+  for (const ArmingLimit& limit : kArmingLimits) limit.bad(flight);
+  const std::string all = flight.ask(RequestKind::kArm).reason;
+  EXPECT_LT(all.size(), sizeof Outcome().reason);
+  std::size_t sentences = 0;
+  std::string rest = all.substr(std::string("cannot arm: ").size());
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find("; "), rest.size());
+    const std::string sentence = rest.substr(0, end);
+    EXPECT_TRUE(std::any_of(std::begin(kArmingLimits), std::end(kArmingLimits),
+                            [&](const ArmingLimit& limit) { return sentence == limit.sentence; }))
+        << sentence;
+    rest = end == rest.size() ? "" : rest.substr(end + 2);
+    ++sentences;
+  }
+  EXPECT_GE(sentences, 3U);
+}
+
+}  // namespace
+}  // namespace swiftlet::control

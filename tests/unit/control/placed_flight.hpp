@@ -1,0 +1,70 @@
+// A flight to be brought to some place of the state machine, for the tests of its table.
+#pragma once
+
+#include "tests/unit/control/supervised_flight.hpp"
+
+namespace swiftlet::control {
+
+using Eigen::Vector3d;
+using tests::SupervisedFlight;
+
+constexpr GroundLinkAction kLand = GroundLinkAction::kLand;
+
+inline SupervisionSettings settings_of(GroundLinkAction action) {
+  SupervisionSettings settings;
+  settings.failsafe.battery_delay_s = 0.0;
+  settings.failsafe.ground_link_action = action;
+  return settings;
+}
+
+inline Mission hop() {
+  Mission mission;
+  mission.id = 3;
+  mission.items = {{MissionItemKind::kTakeoff, {0, 0, -1}, 0, true, 0.5, 0.0},
+                   {MissionItemKind::kWaypoint, {2, 0, -1}, 0, true, 0.5, 0.0},
+                   {MissionItemKind::kLand, {0, 0, 0}, 0, true, 0.4, 0.0}};
+  return mission;
+}
+
+inline Mission to_one_place() {
+  Mission mission;
+  mission.id = 4;
+  mission.items = {{MissionItemKind::kWaypoint, {2, 0, -1}, 0, true, 0.5, 0.0}};
+  return mission;
+}
+
+inline Trajectory line() {
+  Trajectory trajectory;
+  trajectory.id = 5;
+  trajectory.segments = {minimum_jerk({0, 0, -1}, 0.0, {1, 0, -1}, 0.0, 4.0)};
+  return trajectory;
+}
+
+// A flight that was brought to some place of the state machine.
+class Placed : public SupervisedFlight {
+ public:
+  explicit Placed(GroundLinkAction action) : SupervisedFlight(settings_of(action)) {}
+
+  Mode mode() const { return supervisor_.mode(); }
+  void lose_ground_link() {
+    SupervisorState state = supervisor_.state();
+    state.ground_links[1] = {7, state.now_ns - 2'000'000'000};
+    supervisor_.adopt(state, plan(), &trajectory_);
+  }
+  void forget_plan() {
+    const SupervisorState state = supervisor_.state();
+    supervisor_.adopt(state, nullptr, nullptr);
+  }
+  const Mission* plan() const { return supervisor_.mission().id == mission_.id ? &mission_ : &one_place_; }
+  Outcome stream(const Vector3d& position_ned) {
+    Setpoint setpoint;
+    setpoint.position_ned = position_ned;
+    return supervisor_.setpoint(setpoint, situation_);
+  }
+
+  const Mission mission_ = hop();
+  const Mission one_place_ = to_one_place();
+  const Trajectory trajectory_ = line();
+};
+
+}  // namespace swiftlet::control
