@@ -15,6 +15,8 @@ if(SWIFTLET_SANITIZE)
     -fsanitize=${SWIFTLET_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
     -Wno-maybe-uninitialized)  # GCC takes what the sanitizers insert for uses
   target_link_options(swiftlet_flags INTERFACE -fsanitize=${SWIFTLET_SANITIZE})
+  target_sources(swiftlet_flags INTERFACE
+    $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:${PROJECT_SOURCE_DIR}/cmake/sanitizer_options.cpp>)
 endif()
 
 # For the libraries that are arithmetic and little else. No result depends on these: nobody reads errno after a root, nor the
@@ -56,20 +58,6 @@ function(swiftlet_add_executable name)
   set_property(GLOBAL APPEND PROPERTY SWIFTLET_EXECUTABLES ${name})
 endfunction()
 
-# What the sanitizers' runtimes are told in every test.
-set(SWIFTLET_SANITIZER_OPTIONS "")
-if(SWIFTLET_SANITIZE MATCHES address)
-  # Debian's Fast DDS 2.9 frees with sized deletes of a base class: objects of the library, new and gone within it.
-  list(APPEND SWIFTLET_SANITIZER_OPTIONS ASAN_OPTIONS=set:new_delete_type_mismatch=0)
-endif()
-if(SWIFTLET_SANITIZE MATCHES undefined)
-  list(APPEND SWIFTLET_SANITIZER_OPTIONS UBSAN_OPTIONS=set:print_stacktrace=1)
-endif()
-if(SWIFTLET_SANITIZE MATCHES thread)
-  list(APPEND SWIFTLET_SANITIZER_OPTIONS
-    TSAN_OPTIONS=set:suppressions=${PROJECT_SOURCE_DIR}/tests/tsan.supp)
-endif()
-
 # swiftlet_add_test(NAME SOURCES ... LIBS ... [LABELS ...] [TIMEOUT seconds]): a GoogleTest program whose cases CTest runs one by one.
 function(swiftlet_add_test name)
   cmake_parse_arguments(arg "" "TIMEOUT" "SOURCES;LIBS;LABELS" ${ARGN})
@@ -82,5 +70,5 @@ function(swiftlet_add_test name)
     SWIFTLET_SOURCE_DIR="${PROJECT_SOURCE_DIR}" SWIFTLET_BIN_DIR="${PROJECT_BINARY_DIR}/bin")
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
   gtest_discover_tests(${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST
-    PROPERTIES TIMEOUT ${arg_TIMEOUT} ENVIRONMENT_MODIFICATION "ROS_DOMAIN_ID=unset:;${SWIFTLET_SANITIZER_OPTIONS}" LABELS "${arg_LABELS}")
+    PROPERTIES TIMEOUT ${arg_TIMEOUT} ENVIRONMENT_MODIFICATION "ROS_DOMAIN_ID=unset:" LABELS "${arg_LABELS}")
 endfunction()

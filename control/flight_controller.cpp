@@ -11,6 +11,7 @@
 #include "control/attitude/attitude_controller.hpp"
 #include "control/attitude/euler.hpp"
 #include "control/design/control_design.hpp"
+#include "control/estimation/climb_watch.hpp"
 #include "control/estimation/disturbance_observer.hpp"
 #include "control/estimation/rotor_observer.hpp"
 #include "control/position/position_controller.hpp"
@@ -63,6 +64,7 @@ struct FlightController::Loops {
   Estimator estimator;
   RotorObserver rotors;
   DisturbanceObserver disturbance;
+  ClimbWatch climb;
   PositionController position;
   AttitudeController attitude;
   Allocator allocator;
@@ -138,6 +140,7 @@ Situation FlightController::Loops::situation() const {
   situation.battery_age_s = seconds(estimate.stamp_ns - battery_stamp_ns);
   situation.unexplained_lift =
       -(specific_force_frd.z() - estimate.accelerometer_bias.z()) - rotors.thrust_n() / vehicle.mass_kg;
+  situation.climb_contradicted = climb.contradicted();
   situation.specific_force = specific_force_frd.norm();
   situation.rotor_speed = *std::max_element(rotors.speeds().begin(), rotors.speeds().end());
   situation.imu_unusable_s = unusable_s;
@@ -170,6 +173,7 @@ void FlightController::Loops::act(const Directive& directive, double dt_s) {
 // Eq. (48) outside, Eq. (35)-(40) inside.
 void FlightController::Loops::fly(const Directive& directive, double dt_s) {
   const Estimate& estimate = estimator.estimate();
+  climb.step(dt_s, specific_force_frd, estimate.q_ned_from_frd, estimate.position_ned.z());
   if (directive.integrate) {
     disturbance.step(dt_s, specific_force_frd - estimate.accelerometer_bias, estimate.q_ned_from_frd,
                      rotors.thrust_n() / vehicle.mass_kg);
@@ -192,6 +196,7 @@ void FlightController::Loops::fly(const Directive& directive, double dt_s) {
 }
 
 void FlightController::Loops::spool_up(const Directive& directive) {
+  climb.begin(estimator.estimate().accelerometer_bias, estimator.estimate().position_ned.z());
   AttitudeReference level;
   level.yaw_rad = reference.yaw_rad;
   command_wrench(directive.lift_fraction * vehicle.mass_kg * plant::kGravity, level);

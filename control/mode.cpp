@@ -72,6 +72,8 @@ const char* to_string(Reason reason) {
       return "ground link lost";
     case Reason::kStruck:
       return "hit something hard";
+    case Reason::kClimbNotSeen:
+      return "motion capture does not see the climb";
     case Reason::kPoseJumped:
       return "position jumped";
     case Reason::kPlanUnknown:

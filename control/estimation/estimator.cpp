@@ -23,9 +23,13 @@ constexpr std::uint64_t kIntervalMoments = 32;     // ... nor by more moments of
 constexpr std::int64_t kMaxLead_ns = 20'000'000;   // that a pose may be ahead of the IMU
 constexpr double kStartSpeed = 1.0;                // m/s, standard deviation at the first pose
 constexpr double kJumpSpeed = 0.3;                 // m/s, likewise after a reset
-constexpr double kMaxDrift = 0.3;         // m/s, of a disagreement that leads to a reset in flight ...
-constexpr double kMaxDriftAtRest = 3.0;   // ... and with rotors off
-constexpr double kSuddenly = 2.0;         // times the bound of an outlier
+constexpr double kMaxDrift = 0.3;        // m/s, of a disagreement that leads to a reset in flight ...
+constexpr double kMaxDriftAtRest = 3.0;  // ... and with rotors off
+constexpr double kGyroSlip = 3.0;        // rad/s, of a gyro that misleads
+constexpr double kSmallTurn_rad = 0.01;
+constexpr double kSuddenly = 2.0;  // times the bound of an outlier
+constexpr int kGlitch = 2;         // poses that contradict, in a row; more of them mean something
+constexpr double kGlitchMemory_s = 0.05;
 constexpr int kPosesToRestart = 5;        // that disagree, of a stream without a break: the IMU misled
 constexpr double kRestartGyroBias = 0.1;  // rad/s
 constexpr double kRestartAccelerometerBias = 0.5;  // m/s^2
@@ -82,6 +86,7 @@ bool Estimator::predict(const plant::ImuSample& sample) {
 
   const bool first = last_imu_.stamp_ns == 0;
   const double dt = first ? 0.0 : std::min(seconds(sample.stamp_ns - last_imu_.stamp_ns), kMaxStep_s);
+  unseen_ = unseen_ || dt > kUnseen_s;
   const plant::ImuSample& before = first ? sample : last_imu_;
   now_.stamp_ns = sample.stamp_ns;
   now_.body_rates_frd = sample.body_rates_frd - now_.gyro_bias;
@@ -120,7 +125,11 @@ PoseFault Estimator::take_in(const plant::PoseSample& pose, plant::RotorState ro
   if (!pose.tracked) return PoseFault::kUntracked;
   if (!pose.position_ned.allFinite() || !pose.q_ned_from_frd.coeffs().allFinite()) return PoseFault::kInvalid;
   if (std::abs(pose.q_ned_from_frd.norm() - 1.0) > 0.01) return PoseFault::kInvalid;
-  if (now_.stamp_ns == 0 || pose.stamp_ns > now_.stamp_ns + kMaxLead_ns) return PoseFault::kUntimely;
+  if (now_.stamp_ns == 0) return PoseFault::kUntimely;
+  if (pose.stamp_ns > now_.stamp_ns + kMaxLead_ns) {  // the IMU is silent
+    continuity_.look_at(pose);
+    return PoseFault::kUntimely;
+  }
   if (initialised_ && (pose.stamp_ns <= pose_stamp_ns_ || pose.stamp_ns < anchor_.stamp_ns))
     return PoseFault::kUntimely;
   repetition_.look_at(pose, rotors);
@@ -143,30 +152,53 @@ PoseFault Estimator::take_in(const plant::PoseSample& pose, plant::RotorState ro
   const Quaterniond q_ned_from_frd = moment.q_ned_from_frd * rotation(ahead_s * now_.body_rates_frd);
   innovation.position = pose.position_ned - (moment.position_ned + ahead_s * moment.velocity_ned);
   innovation.rotation = rotation_vector(pose.q_ned_from_frd.normalized() * q_ned_from_frd.conjugate());
-  const ErrorCovariance::Correction correction = covariance_.weigh(
-      innovation, squared(settings_.mocap_position_sigma), squared(settings_.mocap_orientation_sigma));
+  const ErrorCovariance::Correction correction = weigh(innovation);
   normalised_innovation_ = correction.normalised_square();
   const bool contradicts = normalised_innovation_ > settings_.gate_chi_square;
   // Without noise, a vehicle that stands repeats its pose: believed as any other with the rotors off.
   const bool stuck = contradicts && repetition_.repeats() && rotors != plant::RotorState::kOff;
   if (repetition_.frozen() || stuck) return PoseFault::kFrozen;
   if (contradicts && (innovation.position.norm() > settings_.outlier_position_m ||
-                      innovation.rotation.norm() > settings_.outlier_orientation_rad)) {
+                      innovation.rotation.norm() > outlier_rotation())) {
     return disagree(pose, innovation, rotors);
   }
 
   disagreement_.clear();
   continuity_.begin();
+  unseen_ = false;
   refused_in_a_row_ = 0;
   pose_stamp_ns_ = pose.stamp_ns;
   pose_sequence_ = pose.sequence;
-  if (contradicts) {
+  contradictions_ = contradicts ? contradictions_ + 1 : 0;
+  if (contradicts && contradictions_ <= kGlitch) {
     apply(std::sqrt(settings_.gate_chi_square / normalised_innovation_) * correction.step());
   } else {
-    covariance_.reduce(correction);
-    apply(correction.step());
+    agree(innovation, correction);
   }
   return PoseFault::kNone;
+}
+
+void Estimator::agree(const PoseInnovation& innovation, const ErrorCovariance::Correction& correction) {
+  if (contradictions_ == 0) {
+    covariance_.reduce(correction);
+    apply(correction.step());
+    return;
+  }
+  const double step_m2 = innovation.position.squaredNorm();
+  covariance_.add_motion(step_m2, step_m2 / squared(kGlitchMemory_s), innovation.rotation.squaredNorm());
+  const ErrorCovariance::Correction likely = weigh(innovation);
+  covariance_.reduce(likely);
+  apply(likely.step());
+}
+
+ErrorCovariance::Correction Estimator::weigh(const PoseInnovation& innovation) const {
+  return covariance_.weigh(innovation, squared(settings_.mocap_position_sigma),
+                           squared(settings_.mocap_orientation_sigma));
+}
+
+// What turns further from one pose to the next than the gyro ever misleads was not turned.
+double Estimator::outlier_rotation() const {
+  return std::min(settings_.outlier_orientation_rad, kSmallTurn_rad + kGyroSlip * continuity_.interval_s());
 }
 
 PoseFault Estimator::disagree(const plant::PoseSample& pose, const PoseInnovation& innovation,
@@ -174,11 +206,13 @@ PoseFault Estimator::disagree(const plant::PoseSample& pose, const PoseInnovatio
   const bool at_rest = rotors == plant::RotorState::kOff;
   const bool turned = innovation.rotation.norm() > kSwap_rad;
   disagreement_.add(pose.stamp_ns, innovation, at_rest ? kMaxDriftAtRest : kMaxDrift);
-  // What the IMU misleads to grows from pose to pose; what comes at once is a jump.
-  if (refused_in_a_row_++ == 0 &&
-      (innovation.position.norm() > kSuddenly * settings_.outlier_position_m ||
-       innovation.rotation.norm() > kSuddenly * settings_.outlier_orientation_rad))
-    continuity_.end();
+  if (refused_in_a_row_++ == 0) {
+    // What the IMU misleads to grows from pose to pose; what comes at once is a jump, unless the IMU was silent.
+    const bool sudden = innovation.position.norm() > kSuddenly * settings_.outlier_position_m ||
+                        innovation.rotation.norm() > outlier_rotation();
+    if (unseen_ && continuity_.in_reach()) continuity_.begin();
+    if (!unseen_ && sudden) continuity_.end();
+  }
   if (at_rest && disagreement_.persistent()) {
     jump(pose, innovation);
     return PoseFault::kNone;

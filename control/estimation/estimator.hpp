@@ -66,9 +66,10 @@ class Estimator {
   // Takes a pose in. Returns false for one that is refused, and why is told in the estimate, of which nothing
   // else changes. A pose of the last stamp is the last that came again and leaves no trace.
   //
-  // An innovation beyond the chi-square bound is cut to it if it is short of an outlier: what the noise
-  // densities leave out (vibration, stamps that are late) moves the estimate no faster than noise would, and
-  // does not make it surer. Outliers are refused until they persist and agree with each other; then the
+  // An innovation beyond the chi-square bound is cut to it if it is short of an outlier: a glitch moves the estimate no
+  // faster than noise would, and does not make it surer. When the next ones contradict too, there was a motion or a step that
+  // the noise densities leave out: variance of as much is added to position, velocity and attitude, so that these follow the
+  // poses and the biases hardly do. Outliers are refused until they persist and agree with each other; then the
   // estimate jumps to them. In flight, that holds only for a jump of the position: where the gyro and
   // the accelerometer contradict attitude or velocity, they are believed. With rotors off the poses are.
   bool correct(const plant::PoseSample& pose, plant::RotorState rotors = plant::RotorState::kRunning);
@@ -119,6 +120,9 @@ class Estimator {
   PoseFault take_in(const plant::PoseSample& pose, plant::RotorState rotors);
   PoseFault disagree(const plant::PoseSample& pose, const PoseInnovation& innovation,
                      plant::RotorState rotors);
+  void agree(const PoseInnovation& innovation, const ErrorCovariance::Correction& correction);
+  ErrorCovariance::Correction weigh(const PoseInnovation& innovation) const;
+  double outlier_rotation() const;  // rad
   void apply(const ErrorState& step);
   void catch_up();
   void jump(const plant::PoseSample& pose, const PoseInnovation& innovation);
@@ -145,7 +149,9 @@ class Estimator {
   RepetitionWatch repetition_;
   Disagreement disagreement_;
   Continuity continuity_;
+  bool unseen_ = false;  // the IMU was silent since the last pose that was taken in
   int refused_in_a_row_ = 0;
+  int contradictions_ = 0;  // in a row, of poses that were taken in
 
   // The covariance is that of the anchor: the last pose's moment, or one since.
   ErrorCovariance covariance_;

@@ -39,12 +39,11 @@ void RepetitionWatch::look_at(const plant::PoseSample& pose, plant::RotorState r
 void Continuity::look_at(const plant::PoseSample& pose) {
   if (next_ > 0) {
     const plant::PoseSample& last = before(0);
-    const double dt = static_cast<double>(pose.stamp_ns - last.stamp_ns) * 1e-9;
+    const double dt = interval_s_ = static_cast<double>(pose.stamp_ns - last.stamp_ns) * 1e-9;
     const double moved = (pose.position_ned - last.position_ned).norm();
     const double turned = rotation_vector(pose.q_ned_from_frd * last.q_ned_from_frd.conjugate()).norm();
-    if (dt > kLongestGap_s || moved > kFastest * dt + kSmallStep_m ||
-        turned > kFastestTurn * dt + kSmallStep_rad)
-      unbroken_ = false;
+    in_reach_ = moved <= kFastest * dt + kSmallStep_m && turned <= kFastestTurn * dt + kSmallStep_rad;
+    if (dt > kLongestGap_s || !in_reach_) unbroken_ = false;
   }
   last_[next_++ % last_.size()] = pose;
 }

@@ -44,8 +44,11 @@ class Continuity {
   void begin() { unbroken_ = true; }
   void end() { unbroken_ = false; }
 
+  // A body could have come from the pose before to the newest.
+  bool in_reach() const { return in_reach_; }
   // Since begin().
   bool unbroken() const { return unbroken_; }
+  double interval_s() const { return interval_s_; }  // between the newest two
   // Between the newest pose and that of kSpan poses before, m/s.
   Eigen::Vector3d velocity_ned() const;
 
@@ -57,6 +60,8 @@ class Continuity {
   }
 
   bool unbroken_ = false;
+  bool in_reach_ = false;
+  double interval_s_ = 0.0;
   std::array<plant::PoseSample, kSpan + 1> last_;
   std::uint64_t next_ = 0;  // of all that came
 };

@@ -93,6 +93,7 @@ EventSet observe(Scene& scene) {
   events.add(Event::kTippedOver, cosine_of_tilt(scene.estimate().q_ned_from_frd) <
                                      std::cos(std::min(failsafe.tip_over_tilt_rad, M_PI)));
   events.add(Event::kStruck, state.phase != Phase::kGround && situation.specific_force > failsafe.blow);
+  events.add(Event::kClimbNotSeen, situation.climb_contradicted && state.phase == Phase::kPath);
   events.add(Event::kPoseJumped, situation.pose_jumped);
   events.add(Event::kPoseLost, lost);
   events.add(Event::kPoseIsBack, !lost);

@@ -12,6 +12,8 @@ const char* to_string(Event event) {
       return "tipped over";
     case Event::kStruck:
       return "struck";
+    case Event::kClimbNotSeen:
+      return "climb not seen";
     case Event::kPoseJumped:
       return "pose jumped";
     case Event::kPoseLost:

@@ -14,6 +14,7 @@ enum class Event : std::uint8_t {
   kImuGap,
   kTippedOver,
   kStruck,
+  kClimbNotSeen,
   kPoseJumped,
   kPoseLost,
   kPoseIsBack,

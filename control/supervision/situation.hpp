@@ -14,6 +14,8 @@ struct Situation {
   bool has_estimate = false;  // the estimator has been started by a pose
   double pose_age_s = 0.0;
   bool pose_jumped = false;  // since the last step the estimate gave in to poses that disagreed for long
+  bool climb_contradicted =
+      false;  // after the lift-off the pose does not follow the motion (estimation/climb_watch.hpp)
   bool has_battery = false;  // the supply voltage is a measured one
   double supply_voltage_v = 0.0;
   double battery_age_s = 0.0;

@@ -26,6 +26,7 @@ const Transition kTransitions[] = {
   {kRotorsOn, E::kImuUnusable, when::kAlways, check_of::kNone, M::kStopped, R::kImuUnusable, act::kNothing},
   {kRotorsOn, E::kImuGap, when::kAlways, check_of::kNone, M::kStopped, R::kImuGap, act::kNothing},
   {kRotorsOn, E::kTippedOver, when::kAlways, check_of::kNone, M::kStopped, R::kTippedOver, act::kNothing},
+  {kWithPosition, E::kClimbNotSeen, when::kAlways, check_of::kNone, M::kStopped, R::kClimbNotSeen, act::kNothing},
 
   // A descent that ends hard has ended; any other flight has met the ground or a wall.
   {{M::kDescent}, E::kStruck, when::kAlways, check_of::kNone, M::kDisarmed, R::kLandedWithoutPosition, act::kNothing},

@@ -100,10 +100,11 @@ struct Flown {
 class FaultInFlight : public testing::Test {
  protected:
   // parameters: what the fault needs beside its kind, as YAML.
-  Flown fly(const std::string& kind, const std::string& for_s, const std::string& parameters = "") {
+  Flown fly(const std::string& kind, const std::string& for_s, const std::string& parameters = "",
+            double at_s = kFault_s) {
     std::string simulation = runtime::read_text_file(SWIFTLET_SOURCE_DIR "/config/simulation/default.yaml");
-    simulation += "faults:\n  - {kind: " + kind + ", at_s: " + std::to_string(kFault_s) +
-                  ", for_s: " + for_s + (parameters.empty() ? "" : ", " + parameters) + "}\n";
+    simulation += "faults:\n  - {kind: " + kind + ", at_s: " + std::to_string(at_s) + ", for_s: " + for_s +
+                  (parameters.empty() ? "" : ", " + parameters) + "}\n";
     const std::string file = folder_.write("faulty.yaml", simulation);
     const auto record = folder_.path() / "record";
     const Ending ending =
@@ -115,7 +116,7 @@ class FaultInFlight : public testing::Test {
     flown.report = json::parse(ending.output, nullptr, false);
     EXPECT_TRUE(flown.report.is_object()) << ending.errors;
     for (const Moment& moment : read_trace(record / "trace.csv")) {
-      if (moment.time_s >= kFault_s) flown.after.push_back(moment);
+      if (moment.time_s >= at_s) flown.after.push_back(moment);
     }
     return flown;
   }
@@ -172,6 +173,16 @@ TEST_F(FaultInFlight, MocapSeesAnotherBodyForAMomentItFliesOn) {
   const Flown flown = fly("mocap_swap", "0.15", "position_ned_m: [-1, 2, 0], yaw_rad: 2");
   EXPECT_EQ(reason(flown), "completed");
   EXPECT_LT(flown.report.at("peak_3d_m"), 0.05);
+}
+
+TEST_F(FaultInFlight, MocapShowsABodyThatStaysOnTheGroundTheRotorsStopJustAboveIt) {
+  const Flown flown = fly("mocap_swap", "60", "position_ned_m: [1, -1, 0], yaw_rad: 2", 0.1);
+  EXPECT_EQ(reason(flown), "the mission was aborted: motion capture does not see the climb; rotors stopped");
+  EXPECT_FALSE(flown.after.back().commanded);
+  double highest = 0.0;
+  for (const Moment& moment : flown.after) highest = std::max(highest, moment.height_m);
+  EXPECT_GT(highest, 0.05);
+  EXPECT_LT(highest, 0.3);
 }
 
 TEST_F(FaultInFlight, TheImuGivesNoNumbersTheRotorsStop) {

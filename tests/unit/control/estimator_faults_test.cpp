@@ -40,6 +40,8 @@ class EstimatorFaults : public testing::Test {
     return estimator_.estimate().pose_fault;
   }
   double position_error() const { return motion_.error(estimator_.estimate()).head<3>().norm(); }
+  double velocity_error() const { return motion_.error(estimator_.estimate()).segment<3>(3).norm(); }
+  double accelerometer_bias_error() const { return motion_.error(estimator_.estimate()).tail<3>().norm(); }
   double angle_error() const { return motion_.error(estimator_.estimate()).segment<3>(6).norm(); }
 
   EstimatorSettings settings_;
@@ -96,16 +98,68 @@ TEST_F(EstimatorFaults, AJumpThatPersistsIsNotBelievedInFlight) {
   EXPECT_EQ(estimator_.estimate().resets, 0U);
 }
 
-// A blow that the accelerometer cannot follow: the poses go on without a break, so it is the IMU that misled.
-TEST_F(EstimatorFaults, AnUnbrokenStreamIsBelievedAgainstTheImu) {
+// Short of an outlier it is followed, and must not be taken for a motion: the velocity of the dead reckoning that may come next.
+TEST_F(EstimatorFaults, AStepThatStaysLeavesNoVelocityBehind) {
+  fly(3.0);
+  const Change stepped = [](PoseSample& pose) { pose.position_ned.x() += 0.045; };
+  for (const Change& change : {stepped, Change([](PoseSample&) {})}) {
+    EXPECT_EQ(fly(0.1, change), PoseFault::kNone);
+    EXPECT_LT(velocity_error(), 0.05);
+    EXPECT_EQ(fly(1.0, change), PoseFault::kNone);
+    EXPECT_LT(velocity_error(), 0.01);
+    EXPECT_LT(accelerometer_bias_error(), 0.05);
+  }
+  EXPECT_LT(position_error(), 5e-4);
+}
+
+// The gyro knows better: with a wrong tilt, dead reckoning would run off.
+TEST_F(EstimatorFaults, ATurnAtOnceIsNotBelievedInFlight) {
+  fly(3.0);
+  const Change turned = [](PoseSample& pose) {
+    pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(0.08, Vector3d::UnitY());
+  };
+  EXPECT_EQ(fly(0.5, turned), PoseFault::kOutlier);
+  EXPECT_LT(angle_error(), 0.01);
+  EXPECT_EQ(fly(0.5), PoseFault::kNone);
+  EXPECT_LT(angle_error(), 0.005);
+}
+
+// A blow that the accelerometer cannot follow.
+TEST_F(EstimatorFaults, PosesAreFollowedWhereTheImuMisleads) {
   fly(3.0);
   imu_error_ = {60.0, 0.0, 0.0};
-  fly(0.05);
+  EXPECT_EQ(fly(0.05), PoseFault::kNone);
+  imu_error_.setZero();
+  EXPECT_EQ(fly(0.5), PoseFault::kNone);
+  EXPECT_EQ(estimator_.estimate().resets, 0U);
+  EXPECT_LT(position_error(), 0.005);
+  EXPECT_LT(angle_error(), 0.02);
+}
+
+// The same while some poses were missing: they disagree as no noise does, but go on without a break.
+TEST_F(EstimatorFaults, AnUnbrokenStreamIsBelievedAgainstTheImu) {
+  fly(3.0);
+  imu_error_ = {40.0, 0.0, 0.0};
+  fly(0.05, [](PoseSample& pose) { pose.tracked = false; });
   imu_error_.setZero();
   EXPECT_EQ(fly(0.5), PoseFault::kNone);
   EXPECT_GE(estimator_.estimate().resets, 1U);
   EXPECT_LT(position_error(), 0.02);
   EXPECT_LT(angle_error(), 0.02);
+}
+
+// It may have hit the ground meanwhile: what a body could have come to is believed, and nothing farther.
+TEST_F(EstimatorFaults, AfterSilenceOfTheImuPosesInReachAreBelieved) {
+  for (const double off : {0.5, 2.0}) {
+    estimator_ = Estimator(settings_);
+    fly(3.0);
+    time_ns_ += 250'000'000;
+    const PoseFault fault = fly(0.5, [&](PoseSample& pose) { pose.position_ned.x() += off; });
+    const bool believed = off < 1.0;
+    EXPECT_EQ(fault, believed ? PoseFault::kNone : PoseFault::kOutlier) << off;
+    EXPECT_EQ(estimator_.estimate().resets, believed ? 1U : 0U) << off;
+    EXPECT_NEAR(position_error(), believed ? off : 0.0, 0.2);
+  }
 }
 
 TEST_F(EstimatorFaults, SwappedMarkersAreNotBelievedInFlight) {

@@ -1,0 +1,32 @@
+#include "control/estimation/climb_watch.hpp"
+
+#include "plant/model/vehicle.hpp"
+
+namespace swiftlet::control {
+
+void ClimbWatch::Climb::step(double dt_s, double speed_change) {
+  speed += speed_change - dt_s * (2.0 * speed + height_m / kMemory_s) / kMemory_s;
+  height_m += dt_s * speed;
+}
+
+void ClimbWatch::begin(const Eigen::Vector3d& accelerometer_bias_frd, double z_ned) {
+  *this = ClimbWatch();
+  active_ = true;
+  start_z_ned_ = z_ned_ = z_ned;
+  bias_frd_ = accelerometer_bias_frd;
+}
+
+void ClimbWatch::step(double dt_s, const Eigen::Vector3d& specific_force_frd,
+                      const Eigen::Quaterniond& q_ned_from_frd, double z_ned) {
+  if (!active_) return;
+  elapsed_s_ += dt_s;
+  active_ = elapsed_s_ < kLongest_s && start_z_ned_ - z_ned < kClearlySeen_m;
+  const double upward = -(q_ned_from_frd * (specific_force_frd - bias_frd_)).z() - plant::kGravity;
+  felt_.step(dt_s, dt_s * upward);
+  const double speed = (z_ned_ - z_ned) / dt_s;
+  seen_.step(dt_s, speed - speed_);
+  z_ned_ = z_ned;
+  speed_ = speed;
+}
+
+}  // namespace swiftlet::control
