@@ -55,7 +55,7 @@ struct FlightController::Loops {
   void spool_up(const Directive& directive);
   void descend_level(double speed);
   void command_wrench(double thrust_n, const AttitudeReference& attitude_reference);
-  plant::ActuatorCommand answer(const plant::ImuSample& sample);
+  const plant::ActuatorCommand& answer(const plant::ImuSample& sample);
 
   plant::Vehicle vehicle;
   ControlSettings settings;
@@ -228,7 +228,7 @@ void FlightController::Loops::command_wrench(double thrust_n, const AttitudeRefe
   status.saturated = allocation.saturated;
 }
 
-plant::ActuatorCommand FlightController::Loops::answer(const plant::ImuSample& sample) {
+const plant::ActuatorCommand& FlightController::Loops::answer(const plant::ImuSample& sample) {
   command.stamp_ns = sample.stamp_ns;
   command.imu_sequence = sample.sequence;
   command.mocap_sequence = estimator.pose_sequence();
@@ -243,7 +243,7 @@ FlightController::~FlightController() = default;
 FlightController::FlightController(FlightController&&) noexcept = default;
 FlightController& FlightController::operator=(FlightController&&) noexcept = default;
 
-plant::ActuatorCommand FlightController::on_imu(const plant::ImuSample& sample) {
+const plant::ActuatorCommand& FlightController::on_imu(const plant::ImuSample& sample) {
   Loops& l = *loops_;
   l.begin_anew_if_clock_went_back(sample);
   const bool usable = l.estimator.predict(sample);
