@@ -44,8 +44,9 @@ struct Dynamics::Drivetrain {
     const double gain = running ? d.esc_.gain : 0.0;
     const double offset = running ? d.esc_.offset_v2 : 0.0;
     for (std::size_t i = 0; i < kPairs; ++i) {
-      v_a_gain[i] = gain * pair(&drive.throttle[2 * i]);
-      v_a_offset[i] = {offset, 2 * i + 1 < kRotors ? offset : 0.0};
+      const Pair exists(1.0, 2 * i + 1 < kRotors ? 1.0 : 0.0);
+      v_a_gain[i] = gain * exists * pair(&drive.throttle[2 * i]);
+      v_a_offset[i] = offset * exists;
     }
     voltage_per_current =
         open_circuit.slope * d.charge_per_current_ - d.battery_.internal_resistance_ohm * d.inverse_sag_time_;
