@@ -66,7 +66,8 @@ ConfigNode read_json(std::string text, const std::string& file_name) {
   return runtime::parse_config(text, file_name);
 }
 
-bool is_null(const ConfigNode& node) { return node.is_scalar() && node.text() == "null"; }
+// JSON's null.
+bool is_null(const ConfigNode& node) { return !node.is_map() && !node.is_list() && !node.is_scalar(); }
 
 class PlanReader {
  public:
@@ -242,8 +243,7 @@ class PlanReader {
       const double low = limits_.fence_min_ned[axis];
       const double high = limits_.fence_max_ned[axis];
       if (position_ned[axis] >= low && position_ned[axis] <= high) continue;
-      item.fail(format("is %.3f m %s of home, must be inside the fence, %g to %g m", position_ned[axis],
-                       kAxes[axis], low, high));
+      item.fail(format("%s is %.3f m, must be inside the fence, %g to %g m", kAxes[axis], position_ned[axis], low, high));
     }
   }
 

@@ -35,14 +35,15 @@ control::PolynomialSegment ned_segment(const control::PolynomialSegment& segment
 }
 
 double raise_by(double least_height_m, std::vector<std::string>& assumptions) {
+  const double shown_m = std::round(least_height_m * 100.0) / 100.0 + 0.0;  // no -0.00
   if (least_height_m >= kLeastHeight_m) {
-    assumptions.push_back(format("heights are above the ground: it comes down to %.2f m", least_height_m));
+    assumptions.push_back(format("heights are above the ground: it comes down to %.2f m", shown_m));
     return 0.0;
   }
   const double raise_m = kHoverHeight_m - least_height_m;
   assumptions.push_back(
       format("it comes down to %.2f m, so its heights are taken from a hover: raised by %.2f m",
-             least_height_m, raise_m));
+             shown_m, raise_m));
   return raise_m;
 }
 
