@@ -13,7 +13,7 @@ namespace {
 using control::Place;
 using control::PlaceDerivatives;
 
-constexpr double kLeastStep_s = 1e-3;
+constexpr double kLeastStep_s = 1e-4;
 constexpr double kLongestStep_s = 3600.0;
 
 struct Columns {
