@@ -61,7 +61,8 @@ Client::Client(const comms::NodeSettings& settings, FlightRecord* record)
       last_id_(random_id() >> 1),
       node_(settings),
       commands_(node_.publish(comms::topics::kCommand)),
-      missions_(node_.publish(comms::topics::kMission)) {
+      missions_(node_.publish(comms::topics::kMission)),
+      trajectories_(node_.publish(comms::topics::kTrajectory)) {
   subscribe_all();
 }
 
@@ -235,6 +236,17 @@ Answer Client::upload(const control::Mission& mission, std::chrono::milliseconds
   message.id(mission_id_);
   return ask(
       mission_id_, [&] { missions_.publish(message); }, [&] { return missions_.matched() > 0; }, timeout,
+      cancelled);
+}
+
+Answer Client::upload(const control::Trajectory& trajectory, std::chrono::milliseconds timeout,
+                      const Cancelled& cancelled) {
+  msg::Trajectory message = comms::to_message(trajectory);
+  const std::uint64_t id = next_id();
+  message.client(client_id_);
+  message.id(id);
+  return ask(
+      id, [&] { trajectories_.publish(message); }, [&] { return trajectories_.matched() > 0; }, timeout,
       cancelled);
 }
 

@@ -34,16 +34,18 @@ class TrajectoryFlight : public testing::Test, protected SupervisedFlight {
 
   void SetUp() override { ASSERT_TRUE(take_off()); }
 
-  // Steps, and looks that the reference goes on without a step: each derivative changes by no more than the next one
-  // allows, up to the jerk.
+  // Steps, and looks that the reference goes on without a step: each derivative up to the jerk changes by no more
+  // than the next one allows.
   void step_smoothly() {
     const Reference before = directive_.reference;
     step();
     const Reference& after = directive_.reference;
     const double highest_jerk = 60.0;
+    const double highest_snap = 600.0;
     ASSERT_LE((after.position_ned - before.position_ned).norm(), (kFastest + 0.1) * kStep_s);
     ASSERT_LE((after.velocity_ned - before.velocity_ned).norm(), 10.0 * kStep_s);
     ASSERT_LE((after.acceleration_ned - before.acceleration_ned).norm(), highest_jerk * kStep_s);
+    ASSERT_LE((after.jerk_ned - before.jerk_ned).norm(), highest_snap * kStep_s);
     ASSERT_LE(std::abs(after.yaw_rate - before.yaw_rate), 20.0 * kStep_s);
     EXPECT_LE(after.velocity_ned.norm(), Limits().max_speed + 1e-9);
     EXPECT_LE(after.acceleration_ned.norm(), Limits().max_acceleration + 1e-9);
