@@ -7,8 +7,7 @@
 namespace swiftlet::control::act {
 namespace {
 
-constexpr double kApproachSpeed =
-    0.5;  // m/s, to where a trajectory begins, unless the vehicle is faster already
+constexpr double kApproachSpeed = 0.5;  // m/s, from rest to where a trajectory begins
 
 void take_off(Scene& scene) { start_takeoff(scene, scene.request->position_ned.z(), scene.request->speed); }
 
@@ -23,9 +22,7 @@ void start_trajectory(Scene& scene) {
   const Trajectory& trajectory = *scene.request->trajectory;
   scene.plan.trajectory = &trajectory;
   scene.state.trajectory_id = trajectory.id;
-  const double present = scene.state.path.at(scene.state.now_ns).velocity_ned.norm();
-  start_join(scene, trajectory.segments.front(),
-             std::min(std::max(kApproachSpeed, present), scene.settings.limits.max_speed),
+  start_join(scene, trajectory.segments.front(), std::min(kApproachSpeed, scene.settings.limits.max_speed),
              scene.state.now_ns);
 }
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "control/supervision/checks.hpp"
+#include "control/trajectory/waypoint_path.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -15,7 +17,7 @@ constexpr double kSinkSpeed = 0.15;      // m/s
 constexpr double kSink_s = 60.0;         // at most
 constexpr double kBlindDepth_m = 0.1;    // below the ground, by dead reckoning
 constexpr double kMinMove_s = 0.5;
-constexpr int kJoinAttempts = 8;  // to join a trajectory from the motion as it is, each with more time
+constexpr int kJoinAttempts = 16;  // to join a trajectory from the motion as it is, each with more time
 constexpr double kJoinStretch = 1.25;
 
 std::int64_t nanoseconds(double s) { return static_cast<std::int64_t>(std::llround(s * 1e9)); }
@@ -170,15 +172,29 @@ void start_join(Scene& scene, const PolynomialSegment& first, double speed, std:
   to.yaw_rad = nearest_turn(to.yaw_rad, from.yaw_rad);
   state.phase = Phase::kPath;
   state.next_segment = 0;
-  double duration = septic_duration((to.position_ned - from.position_ned).norm(), speed,
-                                    limits.max_reference_acceleration, limits.max_reference_jerk, kMinMove_s);
+  // From rest the way is straight, in the time that it takes. From motion it swings out the further the longer it takes,
+  // and accelerates the more the shorter: the first that is gentle, or else the gentlest.
+  const bool moves = !from.velocity_ned.isZero(0.0) || !from.acceleration_ned.isZero(0.0);
+  const double gentle = (1.0 + 1e-5) * std::max({limits.max_reference_acceleration,
+                                                 from.acceleration_ned.norm(), to.acceleration_ned.norm()});
+  const MotionLimits unit{1.0, 1.0, 1.0, 1.0};
+  PolynomialSegment gentlest;
+  double least = std::numeric_limits<double>::infinity();  // m/s^2, that it peaks at
+  double duration = kMinMove_s;
+  if (!moves) {
+    duration = septic_duration((to.position_ned - from.position_ned).norm(), speed,
+                               limits.max_reference_acceleration, limits.max_reference_jerk, kMinMove_s);
+  }
   duration = std::max(duration, 35.0 / 16.0 * std::abs(to.yaw_rad - from.yaw_rad) / limits.max_yaw_rate);
-  duration = std::max(duration, stopping_time(limits, from));
-  for (int attempt = 0; attempt < kJoinAttempts; ++attempt, duration *= kJoinStretch) {
+  for (int attempt = 0; attempt < kJoinAttempts && least > gentle; ++attempt, duration *= kJoinStretch) {
     const PolynomialSegment way = join(from, to, duration);
     if (!check_motion("join", way, limits).accepted) continue;
-    return state.path.follow(way, start_ns);
+    const double acceleration = limit_use(way, unit).acceleration;
+    if (acceleration >= least) continue;
+    least = acceleration;
+    gentlest = way;
   }
+  if (std::isfinite(least)) return state.path.follow(gentlest, start_ns);
   start_move(scene, to.position_ned, false, to.yaw_rad, speed, start_ns);
 }
 
