@@ -135,8 +135,8 @@ class Survey {
     const double looks = std::max(1.0, std::ceil(segment.duration_s / rotor_step_s_));
     for (double i = 0.0; i <= looks; i += 1.0) {
       const double t_s = segment.duration_s * i / looks;
-      const ReferenceMotion motion =
-          reference_motion(vehicle_.mass_kg, with_drag(evaluate(segment, t_s), drag_per_mass_));
+      const Reference felt = with_drag(evaluate(segment, t_s), drag_per_mass_);
+      const ReferenceMotion motion = reference_motion(vehicle_.mass_kg, felt, felt.yaw_rad);
       // Euler's equation: J omega' + omega x J omega.
       const Vector3d moment = vehicle_.inertia * motion.body_accelerations +
                               motion.body_rates.cross(vehicle_.inertia * motion.body_rates);
