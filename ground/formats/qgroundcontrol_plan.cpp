@@ -243,7 +243,8 @@ class PlanReader {
       const double low = limits_.fence_min_ned[axis];
       const double high = limits_.fence_max_ned[axis];
       if (position_ned[axis] >= low && position_ned[axis] <= high) continue;
-      item.fail(format("%s is %.3f m, must be inside the fence, %g to %g m", kAxes[axis], position_ned[axis], low, high));
+      item.fail(format("%s is %.3f m, must be inside the fence, %g to %g m", kAxes[axis], position_ned[axis],
+                       low, high));
     }
   }
 

@@ -41,9 +41,8 @@ double raise_by(double least_height_m, std::vector<std::string>& assumptions) {
     return 0.0;
   }
   const double raise_m = kHoverHeight_m - least_height_m;
-  assumptions.push_back(
-      format("it comes down to %.2f m, so its heights are taken from a hover: raised by %.2f m",
-             shown_m, raise_m));
+  assumptions.push_back(format(
+      "it comes down to %.2f m, so its heights are taken from a hover: raised by %.2f m", shown_m, raise_m));
   return raise_m;
 }
 
