@@ -31,6 +31,7 @@ void check_limits(const Limits& limits, RuleChecker& check) {
   check.above("limits.max_acceleration_m_s2", limits.max_acceleration, 0.0);
   check.above("limits.max_speed_m_s", limits.max_speed, 0.0);
   check.above("limits.max_reference_acceleration_m_s2", limits.max_reference_acceleration, 0.0);
+  check.above("limits.max_reference_jerk_m_s3", limits.max_reference_jerk, 0.0);
   check.above("limits.max_yaw_rate_rad_s", limits.max_yaw_rate, 0.0);
   for (int i = 0; i < 3; ++i) {
     const std::string index = "[" + std::to_string(i) + "]";

@@ -7,6 +7,7 @@
 
 #include "control/estimation/estimator.hpp"
 #include "control/mode.hpp"
+#include "services/comms/convert.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -51,17 +52,6 @@ MissionRow row_of(const msg::MissionStatus& status) {
   return {status.stamp_ns(), status.mission_id(), status.state(), status.item_index()};
 }
 
-msg::MissionItem message_of(const control::MissionItem& item) {
-  msg::MissionItem message;
-  message.kind(static_cast<std::uint8_t>(item.kind));
-  message.position_ned({item.position_ned.x(), item.position_ned.y(), item.position_ned.z()});
-  message.yaw_free(item.yaw_free);
-  message.yaw(item.yaw_rad);
-  message.speed(item.speed);
-  message.hold_s(item.hold_s);
-  return message;
-}
-
 }  // namespace
 
 Client::Client(const comms::NodeSettings& settings, FlightRecord* record)
@@ -71,7 +61,8 @@ Client::Client(const comms::NodeSettings& settings, FlightRecord* record)
       last_id_(random_id() >> 1),
       node_(settings),
       commands_(node_.publish(comms::topics::kCommand)),
-      missions_(node_.publish(comms::topics::kMission)) {
+      missions_(node_.publish(comms::topics::kMission)),
+      trajectories_(node_.publish(comms::topics::kTrajectory)) {
   subscribe_all();
 }
 
@@ -239,13 +230,23 @@ Answer Client::command(msg::Command command, std::chrono::milliseconds timeout, 
 
 Answer Client::upload(const control::Mission& mission, std::chrono::milliseconds timeout,
                       const Cancelled& cancelled) {
-  msg::Mission message;
+  msg::Mission message = comms::to_message(mission);
   message.client(client_id_);
   mission_id_ = next_id();
   message.id(mission_id_);
-  for (const control::MissionItem& item : mission.items) message.items().push_back(message_of(item));
   return ask(
       mission_id_, [&] { missions_.publish(message); }, [&] { return missions_.matched() > 0; }, timeout,
+      cancelled);
+}
+
+Answer Client::upload(const control::Trajectory& trajectory, std::chrono::milliseconds timeout,
+                      const Cancelled& cancelled) {
+  msg::Trajectory message = comms::to_message(trajectory);
+  const std::uint64_t id = next_id();
+  message.client(client_id_);
+  message.id(id);
+  return ask(
+      id, [&] { trajectories_.publish(message); }, [&] { return trajectories_.matched() > 0; }, timeout,
       cancelled);
 }
 

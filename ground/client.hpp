@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "control/mission.hpp"
+#include "control/trajectory/polynomial.hpp"
 #include "ground/flight_record.hpp"
 #include "ground/signs_of_life.hpp"
 #include "ground/time_grants.hpp"
@@ -93,6 +94,8 @@ class Client {
   Answer command(msg::Command command, std::chrono::milliseconds timeout, const Cancelled& cancelled = {});
   Answer upload(const control::Mission& mission, std::chrono::milliseconds timeout,
                 const Cancelled& cancelled = {});
+  Answer upload(const control::Trajectory& trajectory, std::chrono::milliseconds timeout,
+                const Cancelled& cancelled = {});
   // Of the mission uploaded last: MissionStatus::mission_id.
   std::uint64_t mission_id() const { return mission_id_; }
 
@@ -123,6 +126,7 @@ class Client {
   comms::Node node_;
   comms::Publisher<msg::Command> commands_;
   comms::Publisher<msg::Mission> missions_;
+  comms::Publisher<msg::Trajectory> trajectories_;
   // Made, used and destroyed without mutex_: the middleware's threads hold its locks when they ask for that.
   std::shared_ptr<TimeGrants> grants_;
   std::shared_ptr<SignsOfLife> signs_;

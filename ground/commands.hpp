@@ -17,6 +17,7 @@ Command add_land_command(CLI::App& root);
 Command add_hold_command(CLI::App& root);
 Command add_stop_command(CLI::App& root);
 Command add_mission_command(CLI::App& root);
+Command add_trajectory_command(CLI::App& root);
 Command add_status_command(CLI::App& root);
 
 // What was flown.

@@ -281,7 +281,7 @@ void Flight::show(const View& view) {
   const double time_s = window ? mission_duration_s(record_, client_.mission_id(), *window) : 0.0;
   const std::size_t item = std::min<std::size_t>(mission.item_index(), mission_.mission.items.size() - 1);
   char text[160];
-  std::snprintf(text, sizeof text, "%5.1f s  %zu/%zu %-8s  (%5.2f, %5.2f, %5.2f) m, %5.1f mm off, %.2f V",
+  std::snprintf(text, sizeof text, "%5.1f s  %zu/%zu %-10s  (%5.2f, %5.2f, %5.2f) m, %5.1f mm off, %.2f V",
                 time_s, item + 1, mission_.mission.items.size(), to_string(mission_.mission.items[item].kind),
                 position[0], position[1], position[2], newest_error_m(record_) * 1e3,
                 view.battery.message.voltage_v());

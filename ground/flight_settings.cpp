@@ -13,8 +13,7 @@ namespace fs = std::filesystem;
 
 constexpr std::array kKinds = {"control", "mission", "simulation", "vehicle"};
 
-void keep(const fs::path& file, const fs::path& folder, const std::string& kind) {
-  const fs::path copy = folder / (kind + ".yaml");
+void keep(const fs::path& file, const fs::path& copy) {
   std::error_code error;
   fs::copy_file(file, copy, fs::copy_options::overwrite_existing, error);
   if (error) throw std::runtime_error(copy.string() + " cannot be written: " + error.message());
@@ -23,11 +22,12 @@ void keep(const fs::path& file, const fs::path& folder, const std::string& kind)
 }  // namespace
 
 void keep_settings(const FlightPlan& plan) {
-  keep(plan.mission_file, plan.folder, "mission");
+  // Under its own ending: it may be of another format.
+  keep(plan.mission_file, plan.folder / ("mission" + plan.mission_file.extension().string()));
   if (plan.parties == Parties::kAttached) return;
-  keep(plan.control_file, plan.folder, "control");
-  keep(plan.vehicle_file, plan.folder, "vehicle");
-  keep(plan.simulation_file, plan.folder, "simulation");
+  keep(plan.control_file, plan.folder / "control.yaml");
+  keep(plan.vehicle_file, plan.folder / "vehicle.yaml");
+  keep(plan.simulation_file, plan.folder / "simulation.yaml");
 }
 
 std::vector<std::pair<std::string, std::string>> kept_settings(const fs::path& folder) {

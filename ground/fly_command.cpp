@@ -104,6 +104,8 @@ int fly(const FlyOptions& options) {
   network.domain = claim ? claim->domain() : std::max(options.domain, 0);
 
   ProgressLine progress;
+  for (const std::string& assumption : plan.mission.assumptions)
+    progress.say(plan.mission.name + ": " + assumption);
   progress.say("flying " + plan.mission.name +
                (plan.parties == Parties::kAttached ? "" : " with " + plan.vehicle.name) + ": " +
                network.vehicle + " in domain " + std::to_string(network.domain) +

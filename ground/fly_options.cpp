@@ -8,7 +8,10 @@
 namespace swiftlet::ground {
 
 void add_mission_options(CLI::App& app, FlyOptions& options) {
-  app.add_option("mission", options.mission, "mission file, or the name of one in the configuration")
+  app.add_option(
+         "mission", options.mission,
+         "mission file, or the name of one in the configuration; also a trajectory or waypoints as CSV, or a "
+         "QGroundControl .plan")
       ->capture_default_str();
   app.add_option("--vehicle", options.vehicle, "vehicle file or name")->capture_default_str();
   app.add_option("--control", options.control,

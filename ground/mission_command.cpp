@@ -66,6 +66,8 @@ int fly_mission(const Options& options) {
   const auto settings = runtime::load_control_settings(configuration_file("control", options.control));
   const MissionFile mission =
       load_mission_file(configuration_file("missions", options.file), settings.limits);
+  for (const std::string& assumption : mission.assumptions)
+    std::fprintf(stderr, "%s: %s\n", mission.name.c_str(), assumption.c_str());
   Client client(options.network);
   if (options.link) client.stay();
   const Answer answer = client.upload(mission.mission, milliseconds(options.timeout_s));
@@ -92,7 +94,11 @@ Command add_mission_command(CLI::App& root) {
   CLI::App* const app =
       add_request_subcommand(root, "mission", "Upload a mission file, start it and follow it to its end",
                              "swiftlet mission config/missions/square.yaml", options);
-  app->add_option("file", options->file, "mission file, or the name of one in the configuration")->required();
+  app->add_option(
+         "file", options->file,
+         "mission file, or the name of one in the configuration; also a trajectory or waypoints as CSV, "
+         "or a QGroundControl .plan")
+      ->required();
   app->add_option("--control", options->control,
                   "control settings whose limits and fence the file is checked against")
       ->capture_default_str();

@@ -4,9 +4,12 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <stdexcept>
 
 #include "control/trajectory/polynomial.hpp"
+#include "ground/formats/mission_format.hpp"
 #include "services/runtime/config.hpp"
+#include "services/runtime/text_file.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -104,6 +107,8 @@ MissionItem read_item(const ConfigNode& node, Frame frame, const control::Limits
       return read_waypoint(node, frame, limits);
     case MissionItemKind::kLand:
       return read_land(node, limits);
+    case MissionItemKind::kTrajectory:
+      break;
   }
   node.fail("is of no known kind");
 }
@@ -132,6 +137,10 @@ MissionFile read_mission(const ConfigNode& root, const control::Limits& limits) 
   return file;
 }
 
+Eigen::Vector3d start_of(const control::Mission& mission, const MissionItem& trajectory) {
+  return control::evaluate(mission.segments[trajectory.first_segment], 0.0).position_ned;
+}
+
 }  // namespace
 
 bool MissionFile::takes_off() const {
@@ -143,7 +152,20 @@ bool MissionFile::lands() const {
 }
 
 MissionFile load_mission_file(const std::string& path, const control::Limits& limits) {
-  return read_mission(runtime::load_config(path), limits);
+  const std::string text = runtime::read_text_file(path);
+  switch (detect_format(text, path)) {
+    case MissionFormat::kYaml:
+      return parse_mission_file(text, path, limits);
+    case MissionFormat::kPolynomialCsv:
+      return parse_polynomial_csv(text, path, limits);
+    case MissionFormat::kSampledCsv:
+      return parse_sampled_csv(text, path, limits);
+    case MissionFormat::kWaypointCsv:
+      return parse_waypoint_csv(text, path, limits);
+    case MissionFormat::kQGroundControlPlan:
+      return parse_qgroundcontrol_plan(text, path, limits);
+  }
+  throw std::logic_error("a format that is not read");
 }
 
 MissionFile parse_mission_file(const std::string& text, const std::string& file_name,
@@ -159,8 +181,14 @@ double planned_duration_s(const control::Mission& mission, const control::Limits
     Eigen::Vector3d to = item.position_ned;
     if (item.kind == MissionItemKind::kTakeoff) to = {at.x(), at.y(), item.position_ned.z()};
     if (item.kind == MissionItemKind::kLand) to = {at.x(), at.y(), 0.0};
+    if (item.kind == MissionItemKind::kTrajectory) to = start_of(mission, item);
+    const double distance = (to - at).norm();
     const double move_s =
-        control::minimum_jerk_duration((to - at).norm(), item.speed, limits.max_reference_acceleration);
+        item.kind == MissionItemKind::kTrajectory
+            ? control::septic_duration(distance, item.speed, limits.max_reference_acceleration,
+                                       limits.max_reference_jerk)
+            : control::minimum_jerk_duration(distance, item.speed, limits.max_reference_acceleration,
+                                             limits.max_reference_jerk);
     double turn_s = 0.0;
     if (item.kind == MissionItemKind::kWaypoint && !item.yaw_free) {
       turn_s = 15.0 / 8.0 * std::abs(std::remainder(item.yaw_rad - yaw, 2 * kPi)) / limits.max_yaw_rate;
@@ -168,6 +196,14 @@ double planned_duration_s(const control::Mission& mission, const control::Limits
     }
     duration_s += std::max(move_s, turn_s) + item.hold_s;
     at = to;
+    if (item.kind != MissionItemKind::kTrajectory) continue;
+    for (std::uint32_t i = 0; i < item.segment_count; ++i) {
+      const control::PolynomialSegment& segment = mission.segments[item.first_segment + i];
+      duration_s += segment.duration_s;
+      const control::Reference end = control::evaluate(segment, segment.duration_s);
+      at = end.position_ned;
+      yaw = end.yaw_rad;
+    }
   }
   return duration_s;
 }
@@ -180,6 +216,8 @@ const char* to_string(MissionItemKind kind) {
       return "waypoint";
     case MissionItemKind::kLand:
       return "land";
+    case MissionItemKind::kTrajectory:
+      return "trajectory";
   }
   return "unknown";
 }

@@ -10,10 +10,11 @@
 //     - {kind: land, speed_m_s: 0.3}                               # straight down, rotors off
 //
 // yaw_rad and hold_s may be left out: the yaw is then kept, and the flight goes on at once. A takeoff stands
-// first, a land last.
+// first, a land last. Files of other projects are read as well (formats/mission_format.hpp).
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "control/mission.hpp"
 #include "control/settings.hpp"
@@ -24,14 +25,15 @@ struct MissionFile {
   std::string name;
   std::string description;
   double tolerance_m = 0.0;
-  control::Mission mission;  // in NED; its id is left 0
+  control::Mission mission;              // in NED; its id is left 0
+  std::vector<std::string> assumptions;  // what a file of another project was taken for, as sentences
 
   bool takes_off() const;
   bool lands() const;
 };
 
-// Throws runtime::ConfigError with file, line, key, value and limit for whatever breaks the form, the limits
-// or the fence.
+// Throw runtime::ConfigError with file, line, key, value and limit for whatever breaks the form, the limits
+// or the fence. load: of any format that is known; parse: YAML.
 MissionFile load_mission_file(const std::string& path, const control::Limits& limits);
 MissionFile parse_mission_file(const std::string& text, const std::string& file_name,
                                const control::Limits& limits);

@@ -52,6 +52,8 @@ int sim_batch(const BatchOptions& options) {
   const BatchRunner runner(plan, options.runs);
   make_record_folder(plan.folder, "--out");
   ProgressLine progress;
+  for (const std::string& assumption : plan.mission.assumptions)
+    progress.say(plan.mission.name + ": " + assumption);
   const Interrupts interrupts;
 
   const BatchReport report =

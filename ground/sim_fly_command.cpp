@@ -23,6 +23,8 @@ int sim_fly(const FlyOptions& options) {
   if (!plan.trace_file.empty()) trace.emplace(plan.trace_file, plan.vehicle.rotor_count());
   FlightRecord record(plan.record_capacity());
   ProgressLine progress;
+  for (const std::string& assumption : plan.mission.assumptions)
+    progress.say(plan.mission.name + ": " + assumption);
   const Interrupts interrupts;
 
   const InProcessFlight flight = fly_in_process(loop, plan, plan.seed, record, trace ? &*trace : nullptr,

@@ -7,7 +7,7 @@
 namespace swiftlet::control::act {
 namespace {
 
-constexpr double kApproachSpeed = 0.5;  // m/s, to where a trajectory begins
+constexpr double kApproachSpeed = 0.5;  // m/s, from rest to where a trajectory begins
 
 void take_off(Scene& scene) { start_takeoff(scene, scene.request->position_ned.z(), scene.request->speed); }
 
@@ -22,10 +22,8 @@ void start_trajectory(Scene& scene) {
   const Trajectory& trajectory = *scene.request->trajectory;
   scene.plan.trajectory = &trajectory;
   scene.state.trajectory_id = trajectory.id;
-  scene.state.next_segment = 0;
-  const Reference start = evaluate(trajectory.segments.front(), 0.0);
-  start_move(scene, start.position_ned, false, start.yaw_rad,
-             std::min(kApproachSpeed, scene.settings.limits.max_speed), scene.state.now_ns);
+  start_join(scene, trajectory.segments.front(), std::min(kApproachSpeed, scene.settings.limits.max_speed),
+             scene.state.now_ns);
 }
 
 void follow_setpoint(Scene& scene) {
@@ -64,7 +62,7 @@ const Action kNoteGround{"note where the ground is",
                          [](Scene& scene) { scene.state.ground_z_ned = scene.estimate().position_ned.z(); }};
 const Action kTakeOff{"spool up, climb", take_off};
 const Action kStartMission{"start its first item", start_mission};
-const Action kStartTrajectory{"go to where it begins", start_trajectory};
+const Action kStartTrajectory{"join it where it begins", start_trajectory};
 const Action kFollowSetpoint{"follow it", follow_setpoint};
 const Action kMove{"go there", move};
 const Action kStop{"come to rest", start_stop};

@@ -5,31 +5,76 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "control/trajectory/bernstein.hpp"
+
 namespace swiftlet::control {
 namespace {
 
-constexpr double kJoin_m = 1e-3;    // step in position between segments that is let through
-constexpr double kJoin_m_s = 1e-2;  // and in velocity
-constexpr double kSampleInterval_s = 0.05;
+constexpr double kLongestSegment_s = 3600.0;
+constexpr double kPlaceTolerance_m = 1e-9;  // what sums of coefficients leave
+constexpr double kPlacePrecision_m = 1e-6;  // to which extrema are sought
+constexpr double kPrecision = 1e-6;         // likewise, of squares, relative to the limit's
 
 bool finite(const Polynomial& p) {
   return std::all_of(p.begin(), p.end(), [](double c) { return std::isfinite(c); });
 }
 
-Outcome check_sample(std::size_t segment, const Reference& r, const Limits& limits) {
-  char what[48];
-  std::snprintf(what, sizeof what, "segment %zu", segment + 1);
-  Outcome outcome = check_position(what, r.position_ned, limits);
-  if (!outcome.accepted) return outcome;
-  if (r.velocity_ned.norm() > limits.max_speed) {
-    return refuse("%s reaches %.2f m/s, the limit is %.2f m/s", what, r.velocity_ned.norm(),
-                  limits.max_speed);
-  }
-  if (r.acceleration_ned.norm() > limits.max_acceleration) {
-    return refuse("%s reaches %.2f m/s^2, the limit is %.2f m/s^2", what, r.acceleration_ned.norm(),
-                  limits.max_acceleration);
+struct NamedAxis {
+  char name;
+  int index;
+  const Polynomial& polynomial;
+};
+
+Outcome check_axis(const char* what, const NamedAxis& axis, double duration_s, const Limits& limits) {
+  const double low = limits.fence_min_ned[axis.index];
+  const double high = limits.fence_max_ned[axis.index];
+  const Bernstein way = bernstein(axis.polynomial, duration_s);
+  if (way.least() >= low - kPlaceTolerance_m && way.greatest() <= high + kPlaceTolerance_m) return accept();
+  for (const double reached :
+       {minimum(way, kPlacePrecision_m).value, maximum(way, kPlacePrecision_m).value}) {
+    if (reached >= low - kPlaceTolerance_m && reached <= high + kPlaceTolerance_m) continue;
+    return refuse("%s: %c is %.3f m, outside the fence of %.3f to %.3f m", what, axis.name, reached, low,
+                  high);
   }
   return accept();
+}
+
+Outcome check_length(const char* what, const PolynomialSegment& segment, int derivative, double limit,
+                     const char* unit) {
+  const auto axis = [&](const Polynomial& p) { return bernstein(p, segment.duration_s, derivative); };
+  const Bernstein square = squared_length(axis(segment.x), axis(segment.y), axis(segment.z));
+  const double highest = (1.0 + kPrecision) * limit * limit;
+  if (square.greatest() <= highest) return accept();
+  const double reached = maximum(square, kPrecision * limit * limit).value;
+  if (reached <= highest) return accept();
+  return refuse("%s reaches %.2f %s, the limit is %.2f %s", what, std::sqrt(reached), unit, limit, unit);
+}
+
+Outcome check_segments(const char* of, const PolynomialSegment* segments, std::size_t count,
+                       const Limits& limits) {
+  for (std::size_t i = 0; i < count; ++i) {
+    char what[64];
+    std::snprintf(what, sizeof what, "%ssegment %zu", of, i + 1);
+    Outcome outcome = check_segment(what, segments[i], limits);
+    if (!outcome.accepted) return outcome;
+    outcome =
+        i == 0 ? check_start("the trajectory", segments[i]) : check_joint(what, segments[i - 1], segments[i]);
+    if (!outcome.accepted) return outcome;
+  }
+  return accept();
+}
+
+Outcome check_item_trajectory(const char* what, const Mission& mission, const MissionItem& item,
+                              const Limits& limits) {
+  const std::size_t there = mission.segments.size();
+  const std::size_t end = std::size_t{item.first_segment} + item.segment_count;
+  if (item.segment_count == 0) return refuse("%s: its trajectory has no segments", what);
+  if (end > there) {
+    return refuse("%s: its trajectory ends with segment %zu, the mission has %zu", what, end, there);
+  }
+  char of[40];
+  std::snprintf(of, sizeof of, "%s: ", what);
+  return check_segments(of, mission.segments.data() + item.first_segment, item.segment_count, limits);
 }
 
 }  // namespace
@@ -71,6 +116,10 @@ Outcome check(const Mission& mission, const Limits& limits) {
   if (count == 0) return refuse("the mission has no items");
   if (count > kMaxMissionItems)
     return refuse("the mission has %zu items, at most %d fit", count, kMaxMissionItems);
+  if (mission.segments.size() > kMaxTrajectorySegments) {
+    return refuse("the mission's trajectories have %zu segments, at most %d fit", mission.segments.size(),
+                  kMaxTrajectorySegments);
+  }
   for (std::size_t i = 0; i < count; ++i) {
     const MissionItem& item = mission.items[i];
     char what[32];
@@ -84,6 +133,11 @@ Outcome check(const Mission& mission, const Limits& limits) {
     if (!std::isfinite(item.hold_s) || item.hold_s < 0.0)
       return refuse("%s: hold is %.3f s, must be 0 or more", what, item.hold_s);
     if (item.kind == MissionItemKind::kLand) continue;
+    if (item.kind == MissionItemKind::kTrajectory) {
+      outcome = check_item_trajectory(what, mission, item, limits);
+      if (!outcome.accepted) return outcome;
+      continue;
+    }
     Eigen::Vector3d position = item.position_ned;
     if (item.kind == MissionItemKind::kTakeoff)
       position.head<2>() = 0.5 * (limits.fence_min_ned + limits.fence_max_ned).head<2>();
@@ -100,34 +154,45 @@ Outcome check(const Trajectory& trajectory, const Limits& limits) {
   if (count > kMaxTrajectorySegments) {
     return refuse("the trajectory has %zu segments, at most %d fit", count, kMaxTrajectorySegments);
   }
-  Reference end;  // of the segment before
-  for (std::size_t i = 0; i < count; ++i) {
-    const PolynomialSegment& segment = trajectory.segments[i];
-    if (!std::isfinite(segment.duration_s) || segment.duration_s <= 0.0 || segment.duration_s > 3600.0) {
-      return refuse("segment %zu: duration is %.3f s, must be above 0 and at most 3600 s", i + 1,
-                    segment.duration_s);
-    }
-    if (!finite(segment.x) || !finite(segment.y) || !finite(segment.z) || !finite(segment.yaw)) {
-      return refuse("segment %zu: a coefficient is not a finite number", i + 1);
-    }
-    const Reference start = evaluate(segment, 0.0);
-    if (i == 0 && start.velocity_ned.norm() > kJoin_m_s) {
-      return refuse("the trajectory starts at %.2f m/s, must start at rest", start.velocity_ned.norm());
-    }
-    if (i > 0 && ((start.position_ned - end.position_ned).norm() > kJoin_m ||
-                  (start.velocity_ned - end.velocity_ned).norm() > kJoin_m_s)) {
-      return refuse("segment %zu does not begin where the one before ends: %.3f m and %.3f m/s apart", i + 1,
-                    (start.position_ned - end.position_ned).norm(),
-                    (start.velocity_ned - end.velocity_ned).norm());
-    }
-    const int samples = static_cast<int>(std::ceil(segment.duration_s / kSampleInterval_s));
-    for (int k = 0; k <= samples; ++k) {
-      const Outcome outcome = check_sample(i, evaluate(segment, segment.duration_s * k / samples), limits);
-      if (!outcome.accepted) return outcome;
-    }
-    end = evaluate(segment, segment.duration_s);
+  return check_segments("", trajectory.segments.data(), count, limits);
+}
+
+Outcome check_segment(const char* what, const PolynomialSegment& segment, const Limits& limits) {
+  if (!std::isfinite(segment.duration_s) || segment.duration_s <= 0.0 ||
+      segment.duration_s > kLongestSegment_s) {
+    return refuse("%s: duration is %.3f s, must be above 0 and at most %.0f s", what, segment.duration_s,
+                  kLongestSegment_s);
   }
-  return accept();
+  if (!finite(segment.x) || !finite(segment.y) || !finite(segment.z) || !finite(segment.yaw))
+    return refuse("%s: a coefficient is not a finite number", what);
+  return check_motion(what, segment, limits);
+}
+
+Outcome check_motion(const char* what, const PolynomialSegment& segment, const Limits& limits) {
+  for (const NamedAxis& axis :
+       {NamedAxis{'x', 0, segment.x}, NamedAxis{'y', 1, segment.y}, NamedAxis{'z', 2, segment.z}}) {
+    const Outcome outcome = check_axis(what, axis, segment.duration_s, limits);
+    if (!outcome.accepted) return outcome;
+  }
+  const Outcome outcome = check_length(what, segment, 1, limits.max_speed, "m/s");
+  if (!outcome.accepted) return outcome;
+  return check_length(what, segment, 2, limits.max_acceleration, "m/s^2");
+}
+
+Outcome check_joint(const char* what, const PolynomialSegment& before, const PolynomialSegment& next) {
+  const Reference end = evaluate(before, before.duration_s);
+  const Reference start = evaluate(next, 0.0);
+  const double step_m = (start.position_ned - end.position_ned).norm();
+  const double step_m_s = (start.velocity_ned - end.velocity_ned).norm();
+  if (step_m <= kJoin_m && step_m_s <= kJoin_m_s) return accept();
+  return refuse("%s does not begin where the one before ends: %.3f m and %.3f m/s apart", what, step_m,
+                step_m_s);
+}
+
+Outcome check_start(const char* what, const PolynomialSegment& first) {
+  const double speed = evaluate(first, 0.0).velocity_ned.norm();
+  if (speed <= kJoin_m_s) return accept();
+  return refuse("%s starts at %.2f m/s, must start at rest", what, speed);
 }
 
 }  // namespace swiftlet::control

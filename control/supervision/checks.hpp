@@ -17,11 +17,24 @@ Outcome accept();
 Outcome check_position(const char* what, const Eigen::Vector3d& position_ned, const Limits& limits);
 Outcome check_speed(const char* what, double speed, const Limits& limits);
 
-// 1 to kMaxMissionItems items; a takeoff only first, a landing only last.
+// 1 to kMaxMissionItems items; a takeoff only first, a landing only last. Each of its trajectories as below.
 Outcome check(const Mission& mission, const Limits& limits);
 
-// 1 to kMaxTrajectorySegments segments of positive duration that join without steps in position and velocity,
-// start at rest, and stay inside the fence and under the limits wherever sampled (every 50 ms or finer).
+// 1 to kMaxTrajectorySegments segments as check_segment() has them, that join without steps in position and velocity and
+// start at rest.
 Outcome check(const Trajectory& trajectory, const Limits& limits);
+
+// A positive duration, an hour at most, finite coefficients, and check_motion().
+Outcome check_segment(const char* what, const PolynomialSegment& segment, const Limits& limits);
+
+// Inside the fence and under the limits of speed and acceleration everywhere, as bounds of the polynomials show.
+Outcome check_motion(const char* what, const PolynomialSegment& segment, const Limits& limits);
+
+// That `next` begins where `before` ends, to kJoin_m and kJoin_m_s.
+constexpr double kJoin_m = 1e-3;
+constexpr double kJoin_m_s = 1e-2;
+Outcome check_joint(const char* what, const PolynomialSegment& before, const PolynomialSegment& next);
+// That a trajectory's first segment begins at rest, to kJoin_m_s.
+Outcome check_start(const char* what, const PolynomialSegment& first);
 
 }  // namespace swiftlet::control

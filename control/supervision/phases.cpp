@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "control/supervision/checks.hpp"
+#include "control/trajectory/waypoint_path.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -13,6 +17,8 @@ constexpr double kSinkSpeed = 0.15;      // m/s
 constexpr double kSink_s = 60.0;         // at most
 constexpr double kBlindDepth_m = 0.1;    // below the ground, by dead reckoning
 constexpr double kMinMove_s = 0.5;
+constexpr int kJoinAttempts = 16;  // to join a trajectory from the motion as it is, each with more time
+constexpr double kJoinStretch = 1.25;
 
 std::int64_t nanoseconds(double s) { return static_cast<std::int64_t>(std::llround(s * 1e9)); }
 
@@ -83,10 +89,20 @@ const MissionItem& item_of(const Scene& scene) {
   return scene.plan.mission->items[static_cast<std::size_t>(scene.state.mission.item_index)];
 }
 
+// One segment after another, each from where the last one ended in time.
+void advance_segments(SupervisorState& state, const PolynomialSegment* segments, std::size_t count) {
+  while (state.next_segment < count && state.path.finished(state.now_ns))
+    state.path.follow(segments[state.next_segment++], state.path.end_ns);
+}
+
 void advance_mission(Scene& scene) {
   SupervisorState& state = scene.state;
   const MissionItem& item = item_of(scene);
   if (item.kind == MissionItemKind::kLand) return sink(scene);
+  if (item.kind == MissionItemKind::kTrajectory) {
+    advance_segments(state, scene.plan.mission->segments.data() + item.first_segment, item.segment_count);
+    if (!state.path.finished(state.now_ns)) return;
+  }
   state.item_end_ns = state.path.end_ns + nanoseconds(item.hold_s);
   if (state.now_ns < state.item_end_ns || state.mission.item_index + 1 >= state.mission.item_count) return;
   ++state.mission.item_index;
@@ -94,10 +110,8 @@ void advance_mission(Scene& scene) {
 }
 
 void advance_trajectory(Scene& scene) {
-  SupervisorState& state = scene.state;
   const auto& segments = scene.plan.trajectory->segments;
-  if (state.next_segment < segments.size())
-    state.path.follow(segments[state.next_segment++], state.path.end_ns);
+  advance_segments(scene.state, segments.data(), segments.size());
 }
 
 }  // namespace
@@ -142,11 +156,46 @@ void start_move(Scene& scene, const Eigen::Vector3d& to_ned, bool yaw_free, doub
   const Reference from = scene.state.path.at(start_ns);
   const double to_yaw = yaw_free ? from.yaw_rad : nearest_turn(yaw_rad, from.yaw_rad);
   const double distance = (to_ned - from.position_ned).norm();
-  double duration = minimum_jerk_duration(distance, speed, limits.max_reference_acceleration, kMinMove_s);
+  double duration = minimum_jerk_duration(distance, speed, limits.max_reference_acceleration,
+                                          limits.max_reference_jerk, kMinMove_s);
   duration = std::max(duration, 15.0 / 8.0 * std::abs(to_yaw - from.yaw_rad) / limits.max_yaw_rate);
   duration = std::max(duration, stopping_time(limits, from));
   scene.state.phase = Phase::kPath;
   scene.state.path.follow(join_inside(limits, from, to_ned, to_yaw, duration), start_ns);
+}
+
+void start_join(Scene& scene, const PolynomialSegment& first, double speed, std::int64_t start_ns) {
+  const Limits& limits = scene.settings.limits;
+  SupervisorState& state = scene.state;
+  const Reference from = state.path.at(start_ns);
+  Reference to = evaluate(first, 0.0);
+  to.yaw_rad = nearest_turn(to.yaw_rad, from.yaw_rad);
+  state.phase = Phase::kPath;
+  state.next_segment = 0;
+  // From rest the way is straight, in the time that it takes. From motion it swings out the further the longer it takes,
+  // and accelerates the more the shorter: the first that is gentle, or else the gentlest.
+  const bool moves = !from.velocity_ned.isZero(0.0) || !from.acceleration_ned.isZero(0.0);
+  const double gentle = (1.0 + 1e-5) * std::max({limits.max_reference_acceleration,
+                                                 from.acceleration_ned.norm(), to.acceleration_ned.norm()});
+  const MotionLimits unit{1.0, 1.0, 1.0, 1.0};
+  PolynomialSegment gentlest;
+  double least = std::numeric_limits<double>::infinity();  // m/s^2, that it peaks at
+  double duration = kMinMove_s;
+  if (!moves) {
+    duration = septic_duration((to.position_ned - from.position_ned).norm(), speed,
+                               limits.max_reference_acceleration, limits.max_reference_jerk, kMinMove_s);
+  }
+  duration = std::max(duration, 35.0 / 16.0 * std::abs(to.yaw_rad - from.yaw_rad) / limits.max_yaw_rate);
+  for (int attempt = 0; attempt < kJoinAttempts && least > gentle; ++attempt, duration *= kJoinStretch) {
+    const PolynomialSegment way = join(from, to, duration);
+    if (!check_motion("join", way, limits).accepted) continue;
+    const double acceleration = limit_use(way, unit).acceleration;
+    if (acceleration >= least) continue;
+    least = acceleration;
+    gentlest = way;
+  }
+  if (std::isfinite(least)) return state.path.follow(gentlest, start_ns);
+  start_move(scene, to.position_ned, false, to.yaw_rad, speed, start_ns);
 }
 
 void start_stop(Scene& scene) {
@@ -178,6 +227,8 @@ void start_item(Scene& scene, std::int64_t start_ns) {
       return start_move(scene, item.position_ned, item.yaw_free, item.yaw_rad, item.speed, start_ns);
     case MissionItemKind::kLand:
       return start_landing(scene, std::min(item.speed, scene.settings.failsafe.descent_speed), start_ns);
+    case MissionItemKind::kTrajectory:
+      return start_join(scene, scene.plan.mission->segments[item.first_segment], item.speed, start_ns);
   }
 }
 

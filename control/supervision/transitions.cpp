@@ -86,7 +86,7 @@ const Transition kTransitions[] = {
   {{M::kArmed}, E::kTakeoff, when::kAlways, check_of::kTakeoff, M::kTakingOff, R::kRequested, act::kTakeOff},
   {{M::kArmed}, E::kMission, when::kAlways, check_of::kMissionFromGround, M::kMission, R::kRequested, act::kStartMission},
   {{M::kHolding}, E::kMission, when::kAlways, check_of::kMission, M::kMission, R::kRequested, act::kStartMission},
-  {{M::kHolding}, E::kTrajectory, when::kAlways, check_of::kTrajectory, M::kTrajectory, R::kRequested, act::kStartTrajectory},
+  {{M::kHolding, M::kTrajectory, M::kSetpoint}, E::kTrajectory, when::kAlways, check_of::kTrajectory, M::kTrajectory, R::kRequested, act::kStartTrajectory},
   {{M::kHolding}, E::kSetpoint, when::kAlways, check_of::kSetpoint, M::kSetpoint, R::kSetpointsCame, act::kFollowSetpoint},
   {{M::kSetpoint}, E::kSetpoint, when::kAlways, check_of::kSetpoint, kStay, R::kSetpointsCame, act::kFollowSetpoint},
   {kWithPosition, E::kGoTo, when::kLiftedOff, check_of::kGoTo, M::kHolding, R::kRequested, act::kMove},

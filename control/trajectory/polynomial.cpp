@@ -61,6 +61,27 @@ Polynomial quintic_to_rest(double position, double velocity, double acceleration
           0.0};
 }
 
+// The septic between position, velocity, acceleration and jerk at its two ends.
+Polynomial septic(const std::array<double, 4>& from, const std::array<double, 4>& to, double duration_s) {
+  const double t = duration_s;
+  const double t2 = t * t;
+  const double t3 = t2 * t;
+  // What the cubic through the start lacks at the end, in units of s = t / duration.
+  const double p = to[0] - (from[0] + t * from[1] + t2 / 2.0 * from[2] + t3 / 6.0 * from[3]);
+  const double v = t * (to[1] - (from[1] + t * from[2] + t2 / 2.0 * from[3]));
+  const double a = t2 * (to[2] - (from[2] + t * from[3]));
+  const double j = t3 * (to[3] - from[3]);
+  const double w4 = 1.0 / (t2 * t2);
+  return {from[0],
+          from[1],
+          from[2] / 2.0,
+          from[3] / 6.0,
+          (35.0 * p - 15.0 * v + 2.5 * a - j / 6.0) * w4,
+          (-84.0 * p + 39.0 * v - 7.0 * a + j / 2.0) * w4 / t,
+          (70.0 * p - 34.0 * v + 6.5 * a - j / 2.0) * w4 / t2,
+          (-20.0 * p + 10.0 * v - 2.0 * a + j / 6.0) * w4 / t3};
+}
+
 }  // namespace
 
 Reference evaluate(const PolynomialSegment& segment, double t_s) {
@@ -109,11 +130,34 @@ PolynomialSegment join_to_rest(const Reference& from, const Eigen::Vector3d& to_
   return segment;
 }
 
-double minimum_jerk_duration(double distance, double peak_speed, double peak_acceleration,
+PolynomialSegment join(const Reference& from, const Reference& to, double duration_s) {
+  const auto ends = [](const Reference& r, int i) {
+    return std::array<double, 4>{r.position_ned[i], r.velocity_ned[i], r.acceleration_ned[i], r.jerk_ned[i]};
+  };
+  const auto yaw = [](const Reference& r) {
+    return std::array<double, 4>{r.yaw_rad, r.yaw_rate, r.yaw_acceleration, 0.0};
+  };
+  PolynomialSegment segment;
+  segment.duration_s = duration_s;
+  segment.x = septic(ends(from, 0), ends(to, 0), duration_s);
+  segment.y = septic(ends(from, 1), ends(to, 1), duration_s);
+  segment.z = septic(ends(from, 2), ends(to, 2), duration_s);
+  segment.yaw = septic(yaw(from), yaw(to), duration_s);
+  return segment;
+}
+
+double minimum_jerk_duration(double distance, double peak_speed, double peak_acceleration, double peak_jerk,
                              double min_duration_s) {
-  const double for_speed = 15.0 / 8.0 * distance / peak_speed;
-  const double for_acceleration = std::sqrt(10.0 / std::sqrt(3.0) * distance / peak_acceleration);
-  return std::max({for_speed, for_acceleration, min_duration_s});
+  return std::max({15.0 / 8.0 * distance / peak_speed,
+                   std::sqrt(10.0 / std::sqrt(3.0) * distance / peak_acceleration),
+                   std::cbrt(60.0 * distance / peak_jerk), min_duration_s});
+}
+
+double septic_duration(double distance, double peak_speed, double peak_acceleration, double peak_jerk,
+                       double min_duration_s) {
+  return std::max({35.0 / 16.0 * distance / peak_speed,
+                   std::sqrt(84.0 / 25.0 * std::sqrt(5.0) * distance / peak_acceleration),
+                   std::cbrt(105.0 / 2.0 * distance / peak_jerk), min_duration_s});
 }
 
 }  // namespace swiftlet::control

@@ -39,10 +39,18 @@ PolynomialSegment minimum_jerk(const Eigen::Vector3d& from_ned, double from_yaw,
 PolynomialSegment join_to_rest(const Reference& from, const Eigen::Vector3d& to_ned, double to_yaw,
                                double duration_s);
 
-// The shortest duration for which a minimum-jerk move over `distance` (>= 0) stays within peak speed and peak
-// acceleration (both > 0). 15/8 d/T is the peak speed, 10/sqrt(3) d/T^2 the peak acceleration. At least
-// min_duration_s.
-double minimum_jerk_duration(double distance, double peak_speed, double peak_acceleration,
+// The septic between two references that has position, velocity, acceleration and jerk of both, after duration_s > 0. Of the
+// yaw, whose jerk is taken as zero, likewise.
+PolynomialSegment join(const Reference& from, const Reference& to, double duration_s);
+
+// The shortest duration for which a minimum-jerk move over `distance` (>= 0) stays within peak speed,
+// acceleration and jerk (all > 0). 15/8 d/T is the peak speed, 10/sqrt(3) d/T^2 the peak acceleration, 60 d/T^3 the
+// peak jerk. At least min_duration_s.
+double minimum_jerk_duration(double distance, double peak_speed, double peak_acceleration, double peak_jerk,
                              double min_duration_s = 0.1);
+
+// Likewise of the septic from rest to rest, join(): 35/16 d/T, 84/25 sqrt(5) d/T^2, 105/2 d/T^3.
+double septic_duration(double distance, double peak_speed, double peak_acceleration, double peak_jerk,
+                       double min_duration_s = 0.1);
 
 }  // namespace swiftlet::control

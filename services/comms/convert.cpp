@@ -13,6 +13,42 @@ using namespace wire;
 
 constexpr double kMaxRotorSpeed = 1e5;  // rad/s; none turns as fast
 
+void check_segments(const std::vector<msg::PolynomialSegment>& segments, Check& check) {
+  if (!check.ok()) return;
+  check.of_message();
+  check.at_most("number of segments", segments.size(), control::kMaxTrajectorySegments);
+  for (std::size_t i = 0; check.ok() && i < segments.size(); ++i) {
+    check.of_item("segment", i + 1);
+    check.at_least("duration_s", segments[i].duration_s(), 0.0)
+        .finite("x", segments[i].x())
+        .finite("y", segments[i].y())
+        .finite("z", segments[i].z())
+        .finite("yaw", segments[i].yaw());
+  }
+}
+
+std::vector<control::PolynomialSegment> from_messages(const std::vector<msg::PolynomialSegment>& segments) {
+  std::vector<control::PolynomialSegment> out;
+  out.reserve(segments.size());
+  for (const msg::PolynomialSegment& segment : segments)
+    out.push_back({segment.duration_s(), segment.x(), segment.y(), segment.z(), segment.yaw()});
+  return out;
+}
+
+std::vector<msg::PolynomialSegment> to_messages(const std::vector<control::PolynomialSegment>& segments) {
+  std::vector<msg::PolynomialSegment> out;
+  out.reserve(segments.size());
+  for (const control::PolynomialSegment& segment : segments) {
+    msg::PolynomialSegment& message = out.emplace_back();
+    message.duration_s(segment.duration_s);
+    message.x(segment.x);
+    message.y(segment.y);
+    message.z(segment.z);
+    message.yaw(segment.yaw);
+  }
+  return out;
+}
+
 }  // namespace
 
 Fault from_message(const msg::Imu& in, plant::ImuSample& out) {
@@ -257,20 +293,23 @@ Fault from_message(const msg::Mission& in, control::Mission& out) {
   for (std::size_t i = 0; check.ok() && i < in.items().size(); ++i) {
     const msg::MissionItem& item = in.items()[i];
     check.of_item("item", i + 1);
-    check.at_most("kind", item.kind(), msg::MissionItem_Constants::LAND)
+    check.at_most("kind", item.kind(), msg::MissionItem_Constants::TRAJECTORY)
         .finite("position_ned", item.position_ned())
         .finite("yaw", item.yaw())
         .finite("speed", item.speed())
         .at_least("hold_s", item.hold_s(), 0.0);
   }
+  check_segments(in.segments(), check);
   if (!check.ok()) return check.fault();
   out.id = in.id();
   out.items.clear();
   out.items.reserve(in.items().size());
   for (const msg::MissionItem& item : in.items()) {
     out.items.push_back({static_cast<control::MissionItemKind>(item.kind()), vector(item.position_ned()),
-                         item.yaw(), item.yaw_free(), item.speed(), item.hold_s()});
+                         item.yaw(), item.yaw_free(), item.speed(), item.hold_s(), item.first_segment(),
+                         item.segment_count()});
   }
+  out.segments = from_messages(in.segments());
   return {};
 }
 
@@ -286,46 +325,27 @@ msg::Mission to_message(const control::Mission& in) {
     message.yaw(item.yaw_rad);
     message.speed(item.speed);
     message.hold_s(item.hold_s);
+    message.first_segment(item.first_segment);
+    message.segment_count(item.segment_count);
     out.items().push_back(message);
   }
+  out.segments(to_messages(in.segments));
   return out;
 }
 
 Fault from_message(const msg::Trajectory& in, control::Trajectory& out) {
   Check check;
-  check.at_most("number of segments", in.segments().size(), control::kMaxTrajectorySegments);
-  for (std::size_t i = 0; check.ok() && i < in.segments().size(); ++i) {
-    const msg::PolynomialSegment& segment = in.segments()[i];
-    check.of_item("segment", i + 1);
-    check.at_least("duration_s", segment.duration_s(), 0.0)
-        .finite("x", segment.x())
-        .finite("y", segment.y())
-        .finite("z", segment.z())
-        .finite("yaw", segment.yaw());
-  }
+  check_segments(in.segments(), check);
   if (!check.ok()) return check.fault();
   out.id = in.id();
-  out.segments.clear();
-  out.segments.reserve(in.segments().size());
-  for (const msg::PolynomialSegment& segment : in.segments()) {
-    out.segments.push_back({segment.duration_s(), segment.x(), segment.y(), segment.z(), segment.yaw()});
-  }
+  out.segments = from_messages(in.segments());
   return {};
 }
 
 msg::Trajectory to_message(const control::Trajectory& in) {
   msg::Trajectory out;
   out.id(in.id);
-  out.segments().reserve(in.segments.size());
-  for (const control::PolynomialSegment& segment : in.segments) {
-    msg::PolynomialSegment message;
-    message.duration_s(segment.duration_s);
-    message.x(segment.x);
-    message.y(segment.y);
-    message.z(segment.z);
-    message.yaw(segment.yaw);
-    out.segments().push_back(message);
-  }
+  out.segments(to_messages(in.segments));
   return out;
 }
 

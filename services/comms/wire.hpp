@@ -45,6 +45,7 @@ class Check {
     item_ = item;
     number_ = number;
   }
+  void of_message() { number_ = 0; }
 
   Check& finite(const char* field, double value) {
     if (ok() && !std::isfinite(value)) fail("%s is %g, must be finite", field, value);

@@ -37,6 +37,12 @@ std::vector<std::string_view> fields_of(std::string_view line) {
   }
 }
 
+std::vector<std::string_view> fields_of(std::string_view line, const CsvForm& form) {
+  std::vector<std::string_view> fields = fields_of(line);
+  if (form.may_end_with_comma && fields.size() > 1 && fields.back().empty()) fields.pop_back();
+  return fields;
+}
+
 std::string joined(const std::vector<std::string>& names) {
   std::string out;
   for (const std::string& name : names) out += (out.empty() ? "" : ",") + name;
@@ -48,6 +54,12 @@ bool read_number(std::string_view field, double& number) {
   const char* const end = field.data() + field.size();
   const auto [stop, error] = std::from_chars(field.data(), end, number);
   return error == std::errc() && stop == end && std::isfinite(number);
+}
+
+std::string_view without_byte_order_mark(std::string_view text) {
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark) text.remove_prefix(kByteOrderMark.size());
+  return text;
 }
 
 // Lines of a text, one after the other; a last line that is empty is none.
@@ -72,8 +84,9 @@ class Lines {
   int number_ = 0;
 };
 
-void check_header(std::string_view line, const std::string& file, const std::vector<std::string>& columns) {
-  const std::vector<std::string_view> names = fields_of(line);
+void check_header(std::string_view line, const std::string& file, const std::vector<std::string>& columns,
+                  const CsvForm& form) {
+  const std::vector<std::string_view> names = fields_of(line, form);
   double number = 0.0;
   if (read_number(names.front(), number)) {
     throw ConfigError(file, 1, "", "has no header, the first line must be " + joined(columns));
@@ -107,22 +120,23 @@ void CsvTable::fail(std::size_t row, const std::string& columns, const std::stri
 }
 
 CsvTable parse_csv(std::string_view text, const std::string& file_name,
-                   const std::vector<std::string>& columns, std::size_t min_rows) {
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-  if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark) text.remove_prefix(kByteOrderMark.size());
-
-  Lines lines(text);
+                   const std::vector<std::string>& columns, std::size_t min_rows, const CsvForm& form) {
+  Lines lines(without_byte_order_mark(text));
   std::string_view line;
   if (lines.only_blank_left()) {
-    throw ConfigError(file_name, 0, "", "is empty, must begin with the header " + joined(columns));
+    throw ConfigError(file_name, 0, "",
+                      std::string("is empty, must ") +
+                          (form.has_header ? "begin with the header " : "hold rows of ") + joined(columns));
   }
-  lines.next(line);
-  check_header(line, file_name, columns);
+  if (form.has_header) {
+    lines.next(line);
+    check_header(line, file_name, columns, form);
+  }
 
   CsvTable table(file_name, columns);
   std::vector<double> numbers(columns.size());
   while (!lines.only_blank_left() && lines.next(line)) {
-    const std::vector<std::string_view> fields = fields_of(line);
+    const std::vector<std::string_view> fields = fields_of(line, form);
     if (fields.size() != columns.size()) {
       throw ConfigError(file_name, lines.number(), "",
                         "has " + std::to_string(trimmed(line).empty() ? 0 : fields.size()) +
@@ -139,13 +153,30 @@ CsvTable parse_csv(std::string_view text, const std::string& file_name,
   if (table.row_count() < min_rows) {
     throw ConfigError(file_name, 0, "",
                       "has " + std::to_string(table.row_count()) +
-                          " rows behind the header, must have at least " + std::to_string(min_rows));
+                          (form.has_header ? " rows behind the header" : " rows") + ", must have at least " +
+                          std::to_string(min_rows));
   }
   return table;
 }
 
 CsvTable load_csv(const std::string& path, const std::vector<std::string>& columns, std::size_t min_rows) {
   return parse_csv(read_text_file(path), path, columns, min_rows);
+}
+
+std::vector<std::string> first_csv_line(std::string_view text) {
+  Lines lines(without_byte_order_mark(text));
+  std::string_view line;
+  while (lines.next(line)) {
+    if (trimmed(line).empty()) continue;
+    const std::vector<std::string_view> fields = fields_of(line);
+    return {fields.begin(), fields.end()};
+  }
+  return {};
+}
+
+bool is_number(std::string_view field) {
+  double number = 0.0;
+  return read_number(field, number);
 }
 
 std::string exact(double number) {

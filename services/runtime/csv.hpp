@@ -7,7 +7,7 @@
 //   }
 //
 // Lines end with LF or CRLF, the last one may lack it; blanks around a field are ignored; there are no quotes
-// and no comments.
+// and no comments. Files of others may differ from that as CsvForm says.
 #pragma once
 
 #include <cstddef>
@@ -48,11 +48,21 @@ class CsvTable {
   std::vector<double> numbers_;  // row by row
 };
 
+struct CsvForm {
+  bool has_header = true;
+  bool may_end_with_comma = false;  // each line, the header too
+};
+
 // A table of exactly these columns, in this order, with at least min_rows rows. file_name is for the messages
 // only.
 CsvTable parse_csv(std::string_view text, const std::string& file_name,
-                   const std::vector<std::string>& columns, std::size_t min_rows = 1);
+                   const std::vector<std::string>& columns, std::size_t min_rows = 1,
+                   const CsvForm& form = {});
 CsvTable load_csv(const std::string& path, const std::vector<std::string>& columns, std::size_t min_rows = 1);
+
+// The fields of the first line that is not blank; none of a text without one.
+std::vector<std::string> first_csv_line(std::string_view text);
+bool is_number(std::string_view field);  // finite
 
 // The shortest decimal that reads back as the same number.
 std::string exact(double number);

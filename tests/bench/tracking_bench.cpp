@@ -143,10 +143,8 @@ Path figure_of_eight(const std::string& file, int laps) {
     for (int power = 0; power < control::kPolynomialCoefficients; ++power)
       columns.push_back(std::string(axis) + "^" + std::to_string(power));
   }
-  std::string text = runtime::read_text_file(file);
-  for (std::size_t at = 0; (at = text.find(",\n", at)) != std::string::npos;)
-    text.erase(at, 1);  // as written there
-  const runtime::CsvTable table = runtime::parse_csv(text, file, columns);
+  const runtime::CsvTable table =
+      runtime::parse_csv(runtime::read_text_file(file), file, columns, 1, {true, true});
   Path path{"fig8", {}, {}, 0.0, 0.0};
   for (int lap = 0; lap < laps; ++lap) {
     for (std::size_t row = 0; row < table.row_count(); ++row) {

@@ -152,6 +152,16 @@ TEST_F(Lockstep, FaultsAreTheSameInEveryProcess) {
   }
 }
 
+// Polynomials that came as a file of another project, in one message, evaluated to the last bit.
+TEST_F(Lockstep, ATrajectoryIsTheFlightOfOneProcess) {
+  mission_ = SWIFTLET_SOURCE_DIR "/tests/data/crazyswarm_figure8.csv";
+  const Flight over_dds = fly({"fly", "--clock", "lockstep", "--seed", "8"}, "dds");
+  const Flight in_process = fly({"sim", "fly", "--seed", "8"}, "process");
+  EXPECT_GT(in_process.trace.size(), 1'000'000U);
+  EXPECT_TRUE(over_dds.trace == in_process.trace);
+  EXPECT_EQ(over_dds.report.at("rms_3d_m"), in_process.report.at("rms_3d_m"));
+}
+
 TEST_F(Lockstep, AnotherSeedIsAnotherFlight) {
   EXPECT_FALSE(fly({"sim", "fly", "--seed", "5"}, "five").trace ==
                fly({"sim", "fly", "--seed", "6"}, "six").trace);

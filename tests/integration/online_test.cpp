@@ -154,6 +154,29 @@ TEST_F(OnlineFlight, FollowsAMissionFileToItsEnd) {
   EXPECT_NEAR(now.at("position_ned_m")[1].get<double>(), 0.4, 0.02) << "0.4 m east";
 }
 
+TEST_F(OnlineFlight, ASecondTrajectoryIsJoinedInTheMiddleOfTheFirst) {
+  const std::string tour =
+      folder_.write("tour.csv", "x,y,z\n0,0,1\n0.6,0,1\n0.6,0.6,1\n-0.6,0.6,1.2\n-0.6,-0.6,1\n0,0,1\n");
+  const std::string other = folder_.write("other.csv", "0.3,0.4,0.8\n0.5,0,0.8\n");
+  const std::string mission = folder_.write(
+      "hop.yaml", "frame: ned\ntolerance_m: 0.1\nitems:\n  - {kind: takeoff, height_m: 1, speed_m_s: 0.8}\n");
+  const Ending disarmed = swiftlet({"trajectory", tour});
+  EXPECT_EQ(disarmed.exit_code, 1);
+  EXPECT_NE(disarmed.errors.find("tour: taken as waypoints in ENU"), std::string::npos) << disarmed.errors;
+  EXPECT_NE(disarmed.errors.find("swiftlet: trajectory: cannot start a trajectory while disarmed\n"),
+            std::string::npos)
+      << disarmed.errors;
+  EXPECT_EQ(swiftlet({"trajectory", mission}).exit_code, 2);
+  take_off();
+  expect_accepted({"trajectory", tour});
+  ASSERT_TRUE(reaches_mode("trajectory"));
+  expect_accepted({"trajectory", other});
+  EXPECT_EQ(status().at("mode"), "trajectory");
+  ASSERT_TRUE(reaches_mode("holding"));
+  EXPECT_EQ(status().at("reason"), "trajectory completed");
+  ASSERT_TRUE(reaches_place(0.0, 0.5, -0.8));
+}
+
 TEST_F(OnlineFlight, TellsThatAMissionWasAborted) {
   const std::string file = folder_.write("hover.yaml",
                                          "frame: ned\ntolerance_m: 0.1\nitems:\n"

@@ -153,8 +153,8 @@ void Pilot::fly_trajectory(ground::ClosedLoop& loop) {
   const int segments = 2 + static_cast<int>(random_.uniform() * 3.0);
   for (int i = 0; i < segments; ++i) {
     const Vector3d to = place();
-    const double duration =
-        control::minimum_jerk_duration((to - from).norm(), speed(), limits_.max_reference_acceleration);
+    const double duration = control::minimum_jerk_duration(
+        (to - from).norm(), speed(), limits_.max_reference_acceleration, limits_.max_reference_jerk);
     trajectory.segments.push_back(control::minimum_jerk(from, yaw, to, yaw, duration));
     from = to;
   }

@@ -245,8 +245,9 @@ control::Mission square_laps(double speed, int laps) {
 }
 
 std::int64_t side_ns(double speed) {
-  return std::llround(
-      1e9 * control::minimum_jerk_duration(kSide_m, speed, control::Limits().max_reference_acceleration));
+  return std::llround(1e9 * control::minimum_jerk_duration(kSide_m, speed,
+                                                           control::Limits().max_reference_acceleration,
+                                                           control::Limits().max_reference_jerk));
 }
 
 }  // namespace swiftlet::tests

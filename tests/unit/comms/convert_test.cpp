@@ -32,7 +32,8 @@ TEST(Convert, ThereAndBackIsTheSame) {
   expect_same<control::Setpoint>(example<msg::Setpoint>());
   expect_same<ControllerReport>(example<msg::ControllerState>());
   expect_same<control::Request>(to_message(request()));
-  expect_same<control::Mission>(to_message(mission(control::kMaxMissionItems)));
+  expect_same<control::Mission>(
+      to_message(mission(control::kMaxMissionItems, control::kMaxTrajectorySegments)));
   expect_same<control::Trajectory>(to_message(trajectory(control::kMaxTrajectorySegments)));
 }
 
@@ -149,8 +150,13 @@ TEST(Convert, BrokenRequestsAreRefused) {
                                    [](msg::Command& m) { m.position_ned()[1] = kNan; });
   expect_refused<control::Mission>(example<msg::Mission>(), "item 5: speed is nan, must be finite",
                                    [](msg::Mission& m) { m.items()[4].speed(kNan); });
-  expect_refused<control::Mission>(example<msg::Mission>(), "item 1: kind is 3, must be at most 2",
-                                   [](msg::Mission& m) { m.items()[0].kind(3); });
+  expect_refused<control::Mission>(example<msg::Mission>(), "item 1: kind is 4, must be at most 3",
+                                   [](msg::Mission& m) { m.items()[0].kind(4); });
+  expect_refused<control::Mission>(example<msg::Mission>(), "segment 2: x[3] is nan, must be finite",
+                                   [](msg::Mission& m) { m.segments()[1].x()[3] = kNan; });
+  expect_refused<control::Mission>(example<msg::Mission>(),
+                                   "number of segments is 1025, must be at most 1024",
+                                   [](msg::Mission& m) { m.segments().resize(1025); });
   expect_refused<control::Mission>(example<msg::Mission>(), "item 2: hold_s is -1, must be at least 0",
                                    [](msg::Mission& m) { m.items()[1].hold_s(-1.0); });
   expect_refused<control::Mission>(example<msg::Mission>(), "number of items is 2049, must be at most 2048",

@@ -44,19 +44,10 @@ inline control::Request request() {
   request.speed = 0.4;
   return request;
 }
-inline control::Mission mission(std::size_t items) {
-  control::Mission mission{18, {}};
-  for (std::size_t i = 0; i < items; ++i) {
-    const double x = static_cast<double>(i);
-    mission.items.push_back(
-        {control::MissionItemKind::kWaypoint, {x, -x, -1.0 - x}, 0.001 * x, i % 2 == 0, 0.5, x});
-  }
-  return mission;
-}
-inline control::Trajectory trajectory(std::size_t segments) {
-  control::Trajectory trajectory{19, {}};
-  for (std::size_t i = 0; i < segments; ++i) {
-    control::PolynomialSegment segment;
+inline std::vector<control::PolynomialSegment> polynomials(std::size_t count) {
+  std::vector<control::PolynomialSegment> segments;
+  for (std::size_t i = 0; i < count; ++i) {
+    control::PolynomialSegment& segment = segments.emplace_back();
     segment.duration_s = 1.0 + static_cast<double>(i);
     for (std::size_t k = 0; k < segment.x.size(); ++k) {
       const double c = static_cast<double>(8 * i + k);
@@ -65,9 +56,21 @@ inline control::Trajectory trajectory(std::size_t segments) {
       segment.z[k] = 0.5 * c;
       segment.yaw[k] = 0.25 * c;
     }
-    trajectory.segments.push_back(segment);
   }
-  return trajectory;
+  return segments;
+}
+inline control::Trajectory trajectory(std::size_t segments) { return {19, polynomials(segments)}; }
+inline control::Mission mission(std::size_t items, std::size_t segments = 3) {
+  control::Mission mission{18, {}, polynomials(segments)};
+  for (std::size_t i = 0; i < items; ++i) {
+    const double x = static_cast<double>(i);
+    mission.items.push_back(
+        {control::MissionItemKind::kWaypoint, {x, -x, -1.0 - x}, 0.001 * x, i % 2 == 0, 0.5, x});
+  }
+  mission.items.back().kind = control::MissionItemKind::kTrajectory;
+  mission.items.back().first_segment = 1;
+  mission.items.back().segment_count = 2;
+  return mission;
 }
 
 inline ControllerReport controller_report() {

@@ -103,7 +103,8 @@ TEST_P(LongMission, ArrivesWhole) {
   ASSERT_TRUE(eventually(
       [&] { return trajectory_publisher.matched() == 1 && trajectory_subscription.matched() == 1; }));
 
-  const msg::Mission mission = to_message(tests::mission(control::kMaxMissionItems));
+  const msg::Mission mission =
+      to_message(tests::mission(control::kMaxMissionItems, control::kMaxTrajectorySegments));
   const msg::Trajectory trajectory = to_message(tests::trajectory(control::kMaxTrajectorySegments));
   ASSERT_TRUE(mission_publisher.publish(mission));
   ASSERT_TRUE(trajectory_publisher.publish(trajectory));

@@ -111,15 +111,18 @@ TEST(MinimumJerk, DurationMeetsThePeaks) {
   std::uniform_real_distribution<double> size(0.1, 4.0);
   bool by_speed = false;
   bool by_acceleration = false;
+  bool by_jerk = false;
   for (int trial = 0; trial < 50; ++trial) {
     const double distance = size(generator);
     const double peak_speed = size(generator);
     const double peak_acceleration = size(generator);
-    const double duration = minimum_jerk_duration(distance, peak_speed, peak_acceleration);
+    const double peak_jerk = 10.0 * size(generator);
+    const double duration = minimum_jerk_duration(distance, peak_speed, peak_acceleration, peak_jerk);
     const PolynomialSegment s =
         minimum_jerk(Vector3d::Zero(), 0.0, distance * Vector3d(2.0, -1.0, 2.0) / 3.0, 0.0, duration);
     double speed = 0.0;
     double acceleration = 0.0;
+    const double jerk = evaluate(s, 0.0).jerk_ned.norm();  // greatest at the ends
     for (int i = 0; i <= 4000; ++i) {
       const Reference r = evaluate(s, duration * i / 4000);
       speed = std::max(speed, r.velocity_ned.norm());
@@ -129,13 +132,16 @@ TEST(MinimumJerk, DurationMeetsThePeaks) {
     EXPECT_LE(acceleration, peak_acceleration * (1.0 + 1e-12));
     const bool at_speed = speed > peak_speed * (1.0 - 1e-6);
     const bool at_acceleration = acceleration > peak_acceleration * (1.0 - 1e-6);
-    EXPECT_TRUE(at_speed || at_acceleration) << "longer than it needs to be";
+    EXPECT_LE(jerk, peak_jerk * (1.0 + 1e-12));
+    const bool at_jerk = jerk > peak_jerk * (1.0 - 1e-6);
+    EXPECT_TRUE(at_speed || at_acceleration || at_jerk) << "longer than it needs to be";
+    by_jerk |= at_jerk;
     by_speed |= at_speed;
     by_acceleration |= at_acceleration;
   }
-  EXPECT_TRUE(by_speed && by_acceleration);
-  EXPECT_EQ(minimum_jerk_duration(0.0, 1.0, 1.0), 0.1);
-  EXPECT_EQ(minimum_jerk_duration(0.0, 1.0, 1.0, 0.5), 0.5);
+  EXPECT_TRUE(by_speed && by_acceleration && by_jerk);
+  EXPECT_EQ(minimum_jerk_duration(0.0, 1.0, 1.0, 1.0), 0.1);
+  EXPECT_EQ(minimum_jerk_duration(0.0, 1.0, 1.0, 1.0, 0.5), 0.5);
 }
 
 TEST(JoinToRest, LeavesTheMotionSmoothly) {
@@ -168,6 +174,52 @@ TEST(JoinToRest, FromRestIsMinimumJerk) {
     EXPECT_DOUBLE_EQ(a.x[i], b.x[i]);
     EXPECT_DOUBLE_EQ(a.z[i], b.z[i]);
     EXPECT_DOUBLE_EQ(a.yaw[i], b.yaw[i]);
+  }
+}
+
+TEST(Join, HasAllOfBothReferences) {
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<double> draw(-1.0, 1.0);
+  const auto any = [&] {
+    Reference r;
+    for (Vector3d* const v : {&r.position_ned, &r.velocity_ned, &r.acceleration_ned, &r.jerk_ned})
+      *v = {draw(generator), draw(generator), draw(generator)};
+    r.yaw_rad = draw(generator);
+    r.yaw_rate = draw(generator);
+    r.yaw_acceleration = draw(generator);
+    return r;
+  };
+  for (const double duration : {0.3, 1.0, 4.0}) {
+    const Reference from = any();
+    const Reference to = any();
+    const PolynomialSegment s = join(from, to, duration);
+    for (const auto& [got, wanted] :
+         {std::pair(evaluate(s, 0.0), from), std::pair(evaluate(s, duration), to)}) {
+      EXPECT_LT((got.position_ned - wanted.position_ned).norm(), 1e-12);
+      EXPECT_LT((got.velocity_ned - wanted.velocity_ned).norm(), 1e-11);
+      EXPECT_LT((got.acceleration_ned - wanted.acceleration_ned).norm(), 1e-10);
+      EXPECT_LT((got.jerk_ned - wanted.jerk_ned).norm(), 1e-9);
+      EXPECT_NEAR(got.yaw_rad, wanted.yaw_rad, 1e-12);
+      EXPECT_NEAR(got.yaw_rate, wanted.yaw_rate, 1e-11);
+      EXPECT_NEAR(got.yaw_acceleration, wanted.yaw_acceleration, 1e-10);
+    }
+  }
+}
+
+TEST(Join, FromRestToRestItsDurationMeetsThePeaks) {
+  for (const auto& [speed, acceleration, jerk] :
+       {std::array{0.5, 9.0, 99.0}, std::array{9.0, 0.5, 99.0}, std::array{9.0, 9.0, 0.5}}) {
+    Reference to;
+    to.position_ned = {0.6, 0.0, 0.8};
+    const double duration = septic_duration(1.0, speed, acceleration, jerk);
+    const PolynomialSegment s = join(Reference(), to, duration);
+    double use = 0.0;
+    for (int i = 0; i <= 4000; ++i) {
+      const Reference r = evaluate(s, duration * i / 4000);
+      use = std::max({use, r.velocity_ned.norm() / speed, r.acceleration_ned.norm() / acceleration,
+                      r.jerk_ned.norm() / jerk});
+    }
+    EXPECT_NEAR(use, 1.0, 1e-5);
   }
 }
 

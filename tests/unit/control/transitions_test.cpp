@@ -147,7 +147,7 @@ const Row kGrid[] = {
     {Event::kDisarm, kLand,        "DDDxxDxxxxxxD", Reason::kRequested, request(RequestKind::kDisarm)},
     {Event::kTakeoff, kLand,       "xTxxxxxxxxxxx", Reason::kRequested, request(RequestKind::kTakeoff)},
     {Event::kMission, kLand,       "xMxxMxxxxxxxx", Reason::kRequested, request(RequestKind::kMission)},
-    {Event::kTrajectory, kLand,    "xxxxJxxxxxxxx", Reason::kRequested, request(RequestKind::kTrajectory)},
+    {Event::kTrajectory, kLand,    "xxxxJxxx=Jxxx", Reason::kRequested, request(RequestKind::kTrajectory)},
     {Event::kSetpoint, kLand,      "xxxxSxxxx=xxx", Reason::kSetpointsCame, [](Placed& f) { return std::optional(f.stream(f.estimate_.position_ned)); }},
     {Event::kGoTo, kLand,          "xxxHHxHHHHHxx", Reason::kRequested, request(RequestKind::kGoTo)},
     {Event::kHold, kLand,          "xxxHHxHHHHHxx", Reason::kRequested, request(RequestKind::kHold)},

@@ -46,6 +46,7 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
       "  max_acceleration_m_s2: 27\n"
       "  max_speed_m_s: 28\n"
       "  max_reference_acceleration_m_s2: 29\n"
+      "  max_reference_jerk_m_s3: 29.5\n"
       "  max_yaw_rate_rad_s: 30\n"
       "  fence_min_ned_m: [-31, -32, -33]\n"
       "  fence_max_ned_m: [34, 35, 36]\n"
@@ -109,6 +110,7 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
   EXPECT_EQ(s.limits.max_acceleration, 27);
   EXPECT_EQ(s.limits.max_speed, 28);
   EXPECT_EQ(s.limits.max_reference_acceleration, 29);
+  EXPECT_EQ(s.limits.max_reference_jerk, 29.5);
   EXPECT_EQ(s.limits.max_yaw_rate, 30);
   EXPECT_EQ(s.limits.fence_min_ned, Eigen::Vector3d(-31, -32, -33));
   EXPECT_EQ(s.limits.fence_max_ned, Eigen::Vector3d(34, 35, 36));
@@ -230,6 +232,7 @@ const Fault kFaults[] = {
     {"limits.max_acceleration_m_s2", "0", "above 0"},
     {"limits.max_speed_m_s", "0", "above 0"},
     {"limits.max_reference_acceleration_m_s2", "0", "above 0"},
+    {"limits.max_reference_jerk_m_s3", "-1", "above 0"},
     {"limits.max_yaw_rate_rad_s", "0", "above 0"},
     {"limits.fence_max_ned_m", "[3, -99, 0.2]", "[1]: is -99, must be above fence_min_ned_m in y, -"},
     {"limits.fence_min_ned_m", "[-3, .nan, -2]", "[1]: is .nan, must be a finite number"},

@@ -13,7 +13,7 @@ using control::Mission;
 using Shelf = PlanShelf<Mission>;
 
 std::unique_ptr<Mission> mission(std::uint64_t id) {
-  return std::make_unique<Mission>(Mission{id, {control::MissionItem()}});
+  return std::make_unique<Mission>(Mission{id, {control::MissionItem()}, {}});
 }
 
 TEST(PlanShelf, FindsTheNewestOfAnId) {

@@ -77,7 +77,7 @@ class Desk : public testing::Test {
     return message;
   }
   static msg::Mission mission(std::uint64_t id, double x) {
-    control::Mission mission{id, {}};
+    control::Mission mission{id, {}, {}};
     mission.items.push_back({control::MissionItemKind::kTakeoff, {0.0, 0.0, -1.0}, 0.0, true, 0.5, 0.0});
     mission.items.push_back({control::MissionItemKind::kWaypoint, {x, 0.0, -1.0}, 0.0, true, 0.5, 0.0});
     mission.items.push_back({control::MissionItemKind::kLand, {0.0, 0.0, 0.0}, 0.0, true, 0.5, 0.0});
