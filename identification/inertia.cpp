@@ -32,7 +32,6 @@ Experiment identify(const PeriodLaw& law, const std::vector<double>& periods, co
   };
   FitProblem problem;
   problem.observations = periods.size();
-  problem.bad_leverage = false;
   std::vector<double> single;
   for (std::size_t i = 0; i < periods.size(); ++i)
     single.push_back((periods[i] * periods[i] - law.constant[i]) / law.slope[i]);

@@ -19,7 +19,6 @@ Experiment identify_mass(const std::vector<double>& mass_kg) {
   demand_median_between(mass, kLeastMass, kMostMass, "no vehicle of the kind is lighter or heavier");
   FitProblem problem;
   problem.observations = mass_kg.size();
-  problem.bad_leverage = false;
   problem.start = Eigen::VectorXd::Constant(1, median(mass_kg));
   problem.residuals = [&](const Eigen::VectorXd& p, Eigen::VectorXd& residuals, Eigen::MatrixXd* jacobian) {
     for (std::size_t row = 0; row < mass_kg.size(); ++row)

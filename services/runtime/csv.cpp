@@ -86,40 +86,16 @@ void check_header(std::string_view line, const std::string& file, const std::vec
   throw ConfigError(file, 1, "header", "is " + shown(line) + ", must be " + joined(columns));
 }
 
-}  // namespace
-
-void CsvTable::add_row(int line, const std::vector<double>& numbers) {
-  lines_.push_back(line);
-  numbers_.insert(numbers_.end(), numbers.begin(), numbers.end());
-}
-
-double CsvTable::number(std::size_t row, std::size_t column, const Bounds& bounds, const char* unit) const {
-  const double value = numbers_[row * columns_.size() + column];
-  if (!bounds.contains(value)) {
-    fail(row, columns_[column],
-         "is " + exact(value) + ", must be " + bounds.to_string() + (*unit == '\0' ? "" : " ") + unit);
-  }
-  return value;
-}
-
-void CsvTable::fail(std::size_t row, const std::string& columns, const std::string& message) const {
-  throw ConfigError(file_, lines_[row], columns, message);
-}
-
-CsvTable parse_csv(std::string_view text, const std::string& file_name,
-                   const std::vector<std::string>& columns, std::size_t min_rows) {
+std::string_view without_byte_order_mark(std::string_view text) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark) text.remove_prefix(kByteOrderMark.size());
+  return text;
+}
 
-  Lines lines(text);
-  std::string_view line;
-  if (lines.only_blank_left()) {
-    throw ConfigError(file_name, 0, "", "is empty, must begin with the header " + joined(columns));
-  }
-  lines.next(line);
-  check_header(line, file_name, columns);
-
+CsvTable read_rows(Lines& lines, const std::string& file_name, const std::vector<std::string>& columns,
+                   std::size_t min_rows) {
   CsvTable table(file_name, columns);
+  std::string_view line;
   std::vector<double> numbers(columns.size());
   while (!lines.only_blank_left() && lines.next(line)) {
     const std::vector<std::string_view> fields = fields_of(line);
@@ -142,6 +118,53 @@ CsvTable parse_csv(std::string_view text, const std::string& file_name,
                           " rows behind the header, must have at least " + std::to_string(min_rows));
   }
   return table;
+}
+
+}  // namespace
+
+void CsvTable::add_row(int line, const std::vector<double>& numbers) {
+  lines_.push_back(line);
+  numbers_.insert(numbers_.end(), numbers.begin(), numbers.end());
+}
+
+double CsvTable::number(std::size_t row, std::size_t column, const Bounds& bounds, const char* unit) const {
+  const double value = numbers_[row * columns_.size() + column];
+  if (!bounds.contains(value)) {
+    fail(row, columns_[column],
+         "is " + exact(value) + ", must be " + bounds.to_string() + (*unit == '\0' ? "" : " ") + unit);
+  }
+  return value;
+}
+
+void CsvTable::fail(std::size_t row, const std::string& columns, const std::string& message) const {
+  throw ConfigError(file_, lines_[row], columns, message);
+}
+
+CsvTable parse_csv(std::string_view text, const std::string& file_name,
+                   const std::vector<std::string>& columns, std::size_t min_rows) {
+  Lines lines(without_byte_order_mark(text));
+  std::string_view header;
+  if (lines.only_blank_left()) {
+    throw ConfigError(file_name, 0, "", "is empty, must begin with the header " + joined(columns));
+  }
+  lines.next(header);
+  check_header(header, file_name, columns);
+  return read_rows(lines, file_name, columns, min_rows);
+}
+
+CsvTable parse_csv_as_headed(std::string_view text, const std::string& file_name, std::size_t min_rows) {
+  Lines lines(without_byte_order_mark(text));
+  std::string_view header;
+  if (lines.only_blank_left()) throw ConfigError(file_name, 0, "", "is empty, must begin with a header");
+  lines.next(header);
+  std::vector<std::string> columns;
+  for (const std::string_view name : fields_of(header)) {
+    double number = 0.0;
+    if (name.empty() || read_number(name, number))
+      throw ConfigError(file_name, 1, "header", "is " + shown(header) + ", must name every column");
+    columns.emplace_back(name);
+  }
+  return read_rows(lines, file_name, columns, min_rows);
 }
 
 CsvTable load_csv(const std::string& path, const std::vector<std::string>& columns, std::size_t min_rows) {

@@ -54,6 +54,9 @@ CsvTable parse_csv(std::string_view text, const std::string& file_name,
                    const std::vector<std::string>& columns, std::size_t min_rows = 1);
 CsvTable load_csv(const std::string& path, const std::vector<std::string>& columns, std::size_t min_rows = 1);
 
+// A table of whatever columns its header names, one at least.
+CsvTable parse_csv_as_headed(std::string_view text, const std::string& file_name, std::size_t min_rows = 1);
+
 // The shortest decimal that reads back as the same number.
 std::string exact(double number);
 
