@@ -32,11 +32,11 @@ int run(int argc, char** argv) {
       "example: swiftlet fly square\n`swiftlet COMMAND --help` explains a command.\nExit codes: 0 done, 1 "
       "failed, 2 bad input.");
   const std::vector<ground::Command> commands = {
-      ground::add_fly_command(app),     ground::add_arm_command(app),    ground::add_disarm_command(app),
-      ground::add_takeoff_command(app), ground::add_goto_command(app),   ground::add_land_command(app),
-      ground::add_hold_command(app),    ground::add_stop_command(app),   ground::add_mission_command(app),
-      ground::add_status_command(app),  ground::add_report_command(app), ground::add_gains_command(app),
-      ground::add_sim_command(app),
+      ground::add_fly_command(app),     ground::add_arm_command(app),      ground::add_disarm_command(app),
+      ground::add_takeoff_command(app), ground::add_goto_command(app),     ground::add_land_command(app),
+      ground::add_hold_command(app),    ground::add_stop_command(app),     ground::add_mission_command(app),
+      ground::add_status_command(app),  ground::add_report_command(app),   ground::add_gains_command(app),
+      ground::add_sim_command(app),     ground::add_identify_command(app),
   };
   try {
     app.parse(argc, argv);
