@@ -60,7 +60,7 @@ void add_fit(Figure& figure, const Experiment& fit, const Model& model, double f
              const std::string& label, const std::function<FigurePoint(double x, double y)>& place) {
   FigureSeries line{label, Mark::kLine, kFitColour, {}};
   FigureBand of_readings{"95 % of readings", kBandColour, {}, {}};
-  FigureBand of_line{"95 % interval of the fit", "#6b4a00", {}, {}};
+  FigureBand of_line{"95 % interval of the fit", "#a04000", {}, {}};
   const double factor = interval_factor(fit);
   for (int i = 0; i <= kCurvePoints; ++i) {
     const double x = from + (to - from) * i / kCurvePoints;
@@ -278,21 +278,43 @@ CaptionedFigure throttle_thrust_figure(const identification::ThrottleThrustData&
 
 CaptionedFigure residual_figure(const Experiment& fit) {
   CaptionedFigure out{"What the fit leaves, in the order of the rows", {}};
+  if (!fit.outliers.empty()) out.caption += "; crosses: outliers, at the edge where they lie beyond";
   Figure& figure = out.figure;
   figure.title = out.caption;
   figure.x_label = "row";
-  figure.y_label = "measured - fitted (" + fit.residual_unit + ")";
+  figure.y_label = "measured \xe2\x88\x92 fitted (" + written_unit(fit.residual_unit) + ")";
   figure.zero_line = true;
   figure.height = 260;
-  figure.legend = LegendPlace::kTopRight;
   FigureSeries taken{"", Mark::kDots, kReadingColour, {}};
-  FigureSeries outliers{"outliers, left out", Mark::kCrosses, kOutlierColour, {}};
+  FigureSeries outliers{"", Mark::kCrosses, kOutlierColour, {}};
+  double largest = 0.0;
   for (std::size_t i = 0; i < fit.measured.size(); ++i) {
-    const FigurePoint point{static_cast<double>(i + 1), fit.measured[i] - fit.predicted[i]};
-    (fit.is_outlier(i) ? outliers : taken).points.push_back(point);
+    if (fit.is_outlier(i)) continue;
+    const double residual = fit.measured[i] - fit.predicted[i];
+    largest = std::max(largest, std::abs(residual));
+    taken.points.push_back({static_cast<double>(i + 1), residual});
   }
-  figure.series = {taken};
-  if (!outliers.points.empty()) figure.series.push_back(outliers);
+  for (const std::size_t row : fit.outliers) {
+    const double edge = 1.5 * largest;
+    outliers.points.push_back(
+        {static_cast<double>(row + 1), std::clamp(fit.measured[row] - fit.predicted[row], -edge, edge)});
+  }
+  figure.series = {taken, outliers};
+  return out;
+}
+
+std::string written_unit(const std::string& unit) {
+  std::string out;
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    if (unit.compare(i, 2, "^2") == 0) {
+      out += "\xc2\xb2";
+      ++i;
+    } else if (unit[i] == '*') {
+      out += "\xc2\xb7";
+    } else {
+      out += unit[i];
+    }
+  }
   return out;
 }
 

@@ -31,7 +31,10 @@ CaptionedFigure motor_step_figure(const identification::MotorStepData& data,
 // Thrust over delta for each supply voltage.
 CaptionedFigure throttle_thrust_figure(const identification::ThrottleThrustData& data,
                                        const identification::Experiment& fit, const plant::Vehicle& vehicle);
-// What a fit leaves, in the order of the rows.
+// What a fit leaves, in the order of the rows; outliers that lie far beyond the others stand at the edge.
 CaptionedFigure residual_figure(const identification::Experiment& fit);
+
+// "V*s^2/rad^2" with a raised 2 and a centred dot, in UTF-8.
+std::string written_unit(const std::string& unit);
 
 }  // namespace swiftlet::ground

@@ -1,6 +1,8 @@
 #include "ground/identification_report.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -18,7 +20,10 @@ using identification::Estimate;
 using identification::Experiment;
 using Json = nlohmann::ordered_json;
 
+constexpr std::array<const char*, 3> kInertiaTitles = {"Moment of inertia, roll", "Moment of inertia, pitch",
+                                                       "Moment of inertia, yaw"};
 constexpr std::size_t kMostOutliersShown = 30;
+constexpr std::size_t kFewOutliers = 4;  // that the page shows unasked
 
 // One fit with all that a reader wants to see of it.
 struct Part {
@@ -84,10 +89,15 @@ std::vector<Part> parts_of(const IdentificationReport& report) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (found.inertia[axis])
       parts.push_back(
-          part_of(identification::kInertiaNames[axis], "Moment of inertia", *found.inertia[axis], {}));
+          part_of(identification::kInertiaNames[axis], kInertiaTitles[axis], *found.inertia[axis], {}));
   }
   if (found.mass) parts.push_back(part_of(identification::kMassName, "Mass", *found.mass, {}));
   return parts;
+}
+
+// A constant explains nothing of its readings' spread.
+std::string r_squared_text(const Experiment& fit) {
+  return fit.r_squared > 1e-9 ? format("%8.5f", fit.r_squared) : "       -";
 }
 
 std::vector<int> outlier_lines(const IdentificationReport& report, const Part& part) {
@@ -97,17 +107,8 @@ std::vector<int> outlier_lines(const IdentificationReport& report, const Part& p
   return lines;
 }
 
-std::string replaced_all(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-    text.replace(at, from.size(), to);
-  return text;
-}
-
-// "V*s^2/rad^2" as it is written by hand.
-std::string written(const std::string& unit) {
-  if (unit == "1") return "";
-  return replaced_all(replaced_all(html_escaped(unit), "*", "\xc2\xb7"), "^2", "\xc2\xb2");
-}
+// As it is written by hand; nothing for the unit 1.
+std::string written(const std::string& unit) { return unit == "1" ? "" : html_escaped(written_unit(unit)); }
 
 // A value with as many digits as its interval deserves, and its interval.
 std::string with_interval(const Estimate& estimate) {
@@ -145,8 +146,9 @@ std::string estimates_html(const std::vector<Estimate>& estimates) {
 std::string outliers_html(const IdentificationReport& report, const Part& part) {
   const std::vector<int> lines = outlier_lines(report, part);
   if (lines.empty()) return "";
-  std::string out = format("<p class=\"finding\">%zu of %zu rows are outliers and were left out:</p>\n",
-                           lines.size(), part.fit->measured.size());
+  std::string out =
+      format("<details%s><summary>%zu of %zu rows are outliers and were left out</summary>\n",
+             lines.size() <= kFewOutliers ? " open" : "", lines.size(), part.fit->measured.size());
   out += "<table><tr><th>line of the file</th><th>measured</th><th>fitted</th><th>unit</th></tr>\n";
   for (std::size_t i = 0; i < std::min(lines.size(), kMostOutliersShown); ++i) {
     const std::size_t row = part.fit->outliers[i];
@@ -157,14 +159,14 @@ std::string outliers_html(const IdentificationReport& report, const Part& part) 
   out += "</table>\n";
   if (lines.size() > kMostOutliersShown)
     out += format("<p class=\"quiet\">and %zu more</p>\n", lines.size() - kMostOutliersShown);
-  return out;
+  return out + "</details>\n";
 }
 
 std::string part_html(const IdentificationReport& report, const Part& part) {
   std::string out = "<h2>" + html_escaped(part.title) + "</h2>\n<p class=\"quiet\">" +
                     html_escaped(report.bench.files.at(part.name).file) +
-                    format(": %zu rows; R\xc2\xb2 %.5f; the fit leaves %.3g ", part.fit->measured.size(),
-                           part.fit->r_squared, part.fit->residual_sd) +
+                    format(": %zu rows; R\xc2\xb2 ", part.fit->measured.size()) + r_squared_text(*part.fit) +
+                    format("; the fit leaves %.3g ", part.fit->residual_sd) +
                     written(part.fit->residual_unit) + " (standard deviation)</p>\n" +
                     estimates_html(part.estimates);
   for (const std::string& finding : part.findings)
@@ -216,7 +218,7 @@ std::string identification_html(const IdentificationReport& report) {
   std::string out =
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + html_escaped(title) +
       "</title>\n" + kStyle + "</head><body>\n<h1>" + html_escaped(title) +
-      "</h1>\n<p class=\"quiet\">from the bench " + html_escaped(report.bench_folder) +
+      "</h1>\n<p class=\"quiet\">from the bench data in " + html_escaped(report.bench_folder) +
       "; equations and figures are numbered as in Phang, Li, Wang, Chen, Lee, <i>Explicit Model "
       "Identification and Control of a Micro Aerial Vehicle</i>, ICUAS 2014</p>\n" +
       summary_html(report);
@@ -235,14 +237,14 @@ std::string identification_table(const IdentificationReport& report) {
       const Estimate& e = part.estimates[i];
       out += format("  %-24s %-7s %12.5g  %-10.2g %-12s %-16s", e.parameter.c_str(), e.symbol.c_str(),
                     e.value, e.half_width, e.unit.c_str(), part.name.c_str());
-      out += i == 0 ? format(" %8.5f %8zu\n", part.fit->r_squared, part.fit->outliers.size()) : "\n";
+      out += i == 0 ? " " + r_squared_text(*part.fit) + format(" %8zu\n", part.fit->outliers.size()) : "\n";
     }
-    for (const std::string& finding : part.findings) notes += "  " + part.name + ": " + finding + "\n";
+    for (const std::string& finding : part.findings) notes += "  " + part.title + ": " + finding + "\n";
     for (const std::string& warning : part.fit->warnings)
-      notes += "  warning: " + part.name + ": " + warning + "\n";
+      notes += "  warning: " + part.title + ": " + warning + "\n";
     const std::vector<int> lines = outlier_lines(report, part);
     if (lines.empty()) continue;
-    notes += "  " + part.name + ": outliers, left out: lines";
+    notes += "  " + part.title + ": outliers, left out, of " + part.name + ".csv: lines";
     for (std::size_t i = 0; i < std::min(lines.size(), kMostOutliersShown); ++i)
       notes += " " + std::to_string(lines[i]);
     notes += lines.size() > kMostOutliersShown ? " ...\n" : "\n";

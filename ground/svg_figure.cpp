@@ -102,7 +102,7 @@ class Drawing {
 
   std::string draw() {
     out_ = format(
-               "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" role=\"img\" "
+               "<svg viewBox=\"0 0 %d %d\" role=\"img\" "
                "font-family=\"sans-serif\" font-size=\"13\">",
                kWidth, figure_.height) +
            "<title>" + html_escaped(figure_.title) + "</title>\n" +

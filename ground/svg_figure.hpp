@@ -28,7 +28,7 @@ struct FigureBand {
   std::vector<FigurePoint> high;
 };
 
-enum class LegendPlace { kTopLeft, kTopRight, kBottomRight };
+enum class LegendPlace { kTopLeft, kBottomRight };
 
 struct Figure {
   std::string title;  // for those who cannot see it

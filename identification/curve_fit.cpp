@@ -37,9 +37,11 @@ std::vector<double> predicted(const Readings& readings, const Eigen::VectorXd& p
   return out;
 }
 
-bool asks_for_last(const Fit& fit) {
+bool asks_for_last(const Fit& fit, double full_scale) {
   constexpr double kChance = 1e-4;
+  constexpr double kRounding = 1e-6;
   const Eigen::Index last = fit.parameters.size() - 1;
+  if (std::abs(fit.parameters[last]) < kRounding * std::abs(full_scale)) return false;
   const boost::math::students_t distribution(fit.degrees_of_freedom);
   const double limit = boost::math::quantile(boost::math::complement(distribution, 0.5 * kChance));
   return std::abs(fit.parameters[last]) > limit * fit.standard_error(last);

@@ -34,7 +34,7 @@ std::vector<double> predicted(const Readings& readings, const Eigen::VectorXd& p
                               const Curve& curve);
 
 // Of a fit whose last parameter is a term that the model leaves out: whether the data ask for it, beyond what chance gives
-// in one of 10,000 experiments.
-bool asks_for_last(const Fit& fit);
+// in one of 10,000 experiments, and beyond what rounding gives: a millionth of full_scale, the term's size were it alone.
+bool asks_for_last(const Fit& fit, double full_scale);
 
 }  // namespace swiftlet::identification

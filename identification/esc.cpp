@@ -116,7 +116,7 @@ Experiment identify_esc(const EscData& data, const Instruments& instruments) {
       readings,
       Eigen::Vector3d(line.parameters[0], line.parameters[1], 0.1 * full_square / (full_drive * full_drive)),
       curve);
-  if (asks_for_last(bent)) {
+  if (asks_for_last(bent, full_square / (full_drive * full_drive))) {
     out.warnings.emplace_back(
         "v_a^2 over v_s^2 delta is not quite a straight line: a term in its square is significant, so Eq. "
         "(9) holds for the "

@@ -26,8 +26,14 @@ Experiment identify_mass(const std::vector<double>& mass_kg) {
     if (jacobian != nullptr) jacobian->setConstant(-1.0);
   };
   const Fit found = fit(problem);
-  return conclude(found, {{"mass", "m", "kg"}}, mass_kg,
-                  std::vector<double>(mass_kg.size(), found.parameters[0]), "kg");
+  Experiment out = conclude(found, {{"mass", "m", "kg"}}, mass_kg,
+                            std::vector<double>(mass_kg.size(), found.parameters[0]), "kg");
+  if (out.residual_sd == 0.0) {
+    out.warnings.emplace_back(
+        "all readings are the same: the balance's resolution hides their spread, so that the interval is too "
+        "narrow");
+  }
+  return out;
 }
 
 }  // namespace swiftlet::identification

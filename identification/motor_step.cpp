@@ -20,6 +20,7 @@ constexpr std::size_t kLeastRows = 20;
 constexpr std::size_t kLeastRiseRows = 6;  // between 10 and 90 % of the step
 constexpr std::size_t kLeastRestRows = 3;  // before the step, to tell its time from the speed it starts at
 constexpr double kRise = 0.63212055882855767;  // 1 - 1/e
+constexpr double kLeastStep = 0.1;             // of the final voltage
 constexpr double kSettled = 4.0;               // time constants after which 98 % are reached
 constexpr double kDecisive = 10.0;  // difference of log likelihoods, times 2, that chance does not give
 
@@ -78,6 +79,11 @@ Levels levels_of(const MotorStepData& data) {
   const double high = median(part(cause, rows - rows / 5, rows));
   // Half way where the voltage jumps; at a tenth where only the speed tells.
   const double share = data.motor_voltage_v.empty() ? 0.1 : 0.5;
+  if (!data.motor_voltage_v.empty() && !(high - low > kLeastStep * std::abs(high))) {
+    throw BadData("motor_voltage: begins at " + shown(low) + " and ends at " + shown(high) +
+                  " V, must step up, with at least " + std::to_string(kLeastRestRows) +
+                  " rows before the step");
+  }
   out.step_row = first_above(cause, low + share * (high - low));
   out.initial = out.step_row > 0 && out.step_row < rows ? median(part(data.speed_rad_s, 0, out.step_row))
                                                         : data.speed_rad_s.front();

@@ -49,7 +49,7 @@ Experiment identify_steady_motor(const SteadyMotorData& data, const Instruments&
   }
   const Fit with_friction =
       fit_curve(readings, Eigen::Vector3d(start[0], start[1], 0.1 * voltage), steady_voltage);
-  if (asks_for_last(with_friction)) {
+  if (asks_for_last(with_friction, voltage)) {
     out.warnings.push_back("a constant of " + shown(with_friction.parameters[2]) +
                            " V besides Eq. (22) is significant: Coulomb friction, a tachometer that is off, "
                            "or one curve of two motors");

@@ -32,7 +32,7 @@ Experiment identify_factor(const std::vector<double>& speeds, const Column& read
       conclude(fit, {name}, reading.values, predicted(readings, fit.parameters, square_law), reading.unit);
   const Fit with_offset =
       fit_curve(readings, Eigen::Vector2d(start[0], 0.1 * full_scale(reading.values)), square_law);
-  if (asks_for_last(with_offset)) {
+  if (asks_for_last(with_offset, full_scale(reading.values))) {
     out.warnings.push_back("a constant of " + shown(with_offset.parameters[1]) + " " + reading.unit +
                            " besides " + name.symbol +
                            " Omega^2 is significant: was the sensor zeroed with the rotor still?");
