@@ -1,25 +1,19 @@
 #include "services/comms/node.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cctype>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
+#include <vector>
 
-#include <fastdds/dds/domain/DomainParticipant.hpp>
-#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
-#include <fastdds/dds/log/Log.hpp>
-#include <fastdds/dds/log/StdoutErrConsumer.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
-#include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
-#include <fastdds/dds/subscriber/Subscriber.hpp>
-#include <fastdds/dds/topic/Topic.hpp>
-#include <fastdds/dds/topic/TypeSupport.hpp>
-#include <fastrtps/xmlparser/XMLProfileManager.h>
+#include <spdlog/spdlog.h>
 
 #include "swiftlet_msgs/msg/ActuatorCommandPubSubTypes.h"
 #include "swiftlet_msgs/msg/BatteryPubSubTypes.h"
@@ -41,6 +35,8 @@
 #include "swiftlet_msgs/msg/TrajectoryPubSubTypes.h"
 #include "swiftlet_msgs/msg/VehicleInfoPubSubTypes.h"
 
+#include "services/comms/awakening.hpp"
+#include "services/comms/membership.hpp"
 #include "services/comms/participant_qos.hpp"
 #include "services/comms/profiles.hpp"
 #include "services/comms/shared_memory.hpp"
@@ -71,22 +67,6 @@ struct PubSubTypeOf;
 SWIFTLET_FOR_EACH_MESSAGE(SWIFTLET_PUB_SUB_TYPE)
 #undef SWIFTLET_PUB_SUB_TYPE
 
-// Once in a process, before its first participant.
-void set_up_library() {
-  static const bool done = [] {
-    dds::Log::ClearConsumers();
-    dds::Log::RegisterConsumer(
-        std::make_unique<dds::StdoutErrConsumer>());  // to stderr: stdout is the program's own
-    dds::Log::SetVerbosity(dds::Log::Kind::Error);
-    // Two nodes in one process talk as two processes do: a callback never runs inside the publisher's call.
-    auto settings = eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings();
-    settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
-    eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
-    return true;
-  }();
-  static_cast<void>(done);
-}
-
 void check(const NodeSettings& settings) {
   if (settings.domain < 0 || settings.domain > 232) {
     throw std::runtime_error("DDS domain is " + std::to_string(settings.domain) +
@@ -103,53 +83,66 @@ void check(const NodeSettings& settings) {
 
 }  // namespace
 
+// A process that was stopped for longer than the lease counts as dead with its peers, which forget its endpoints. It may itself
+// remember theirs, and then Fast DDS 2.9 does not always bring them together again. So it joins the domain anew, with all that it
+// publishes and subscribes.
 struct Node::Impl final : public dds::DomainParticipantListener {
   explicit Impl(const NodeSettings& node_settings) : settings(node_settings) {
     check(settings);
-    set_up_library();
     if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
-
-    participant = dds::DomainParticipantFactory::get_instance()->create_participant(
-        static_cast<std::uint32_t>(settings.domain), participant_qos(settings), this,
-        dds::StatusMask::none());
-    if (participant == nullptr) {
-      throw std::runtime_error("cannot join DDS domain " + std::to_string(settings.domain) +
-                               ": no port could be opened or the transport could not be set up");
-    }
-    publisher = participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
-    subscriber = participant->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
-    if (publisher == nullptr || subscriber == nullptr) {
-      participant->delete_contained_entities();
-      dds::DomainParticipantFactory::get_instance()->delete_participant(participant);
-      throw std::runtime_error("cannot set up publishing in DDS domain " + std::to_string(settings.domain));
-    }
+    membership = std::make_unique<Membership>(settings, this);
+    awakening.emplace(kLivelinessLease - kLivelinessPeriod, [this](auto away) { return rejoin(away); });
   }
 
   ~Impl() override {
-    participant->set_listener(nullptr);
-    participant->delete_contained_entities();
-    dds::DomainParticipantFactory::get_instance()->delete_participant(participant);
+    awakening.reset();
+    membership.reset();
     if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
   }
 
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  template <class T>
-  dds::Topic* topic(const char* name) {
-    const std::lock_guard<std::mutex> lock(topics_mutex);
-    dds::Topic*& found = topics[name];
-    if (found == nullptr) {
-      const dds::TypeSupport type(new typename PubSubTypeOf<T>::type());
-      const std::string wire_name = "rt/" + settings.vehicle + "/" + name;
-      if (participant->register_type(type) == ReturnCode_t::RETCODE_OK) {
-        found = participant->create_topic(wire_name, type.get_type_name(), dds::TOPIC_QOS_DEFAULT);
-      }
-      if (found == nullptr) throw std::runtime_error("cannot make DDS topic " + wire_name);
-    }
-    return found;
+  void add(Endpoint* endpoint) {
+    const std::lock_guard<std::mutex> lock(membership_mutex);
+    if (membership != nullptr) endpoint->join(*membership);
+    endpoints.push_back(endpoint);
+  }
+  void remove(Endpoint* endpoint) {
+    const std::lock_guard<std::mutex> lock(membership_mutex);
+    if (membership != nullptr) endpoint->leave(*membership);
+    endpoints.erase(std::remove(endpoints.begin(), endpoints.end(), endpoint), endpoints.end());
   }
 
+  bool rejoin(std::chrono::milliseconds away) {
+    const std::lock_guard<std::mutex> lock(membership_mutex);
+    leave();
+    try {
+      membership = std::make_unique<Membership>(settings, this);
+      for (Endpoint* const endpoint : endpoints) endpoint->join(*membership);
+    } catch (const std::runtime_error& error) {
+      spdlog::error("was stopped for {:.1f} s, and cannot come back to the network yet: {}",
+                    1e-3 * static_cast<double>(away.count()), error.what());
+      leave();
+      return false;
+    }
+    spdlog::warn("was stopped for {:.1f} s: joined the network anew",
+                 1e-3 * static_cast<double>(away.count()));
+    return true;
+  }
+  void leave() {
+    if (membership == nullptr) return;
+    for (Endpoint* const endpoint : endpoints) endpoint->leave(*membership);
+    membership.reset();
+    const std::lock_guard<std::mutex> lock(peers_mutex);
+    peers.clear();
+  }
+
+  template <class T>
+  dds::Topic* topic_in(Membership& in, const char* name) const {
+    return in.topic("rt/" + settings.vehicle + "/" + name,
+                    dds::TypeSupport(new typename PubSubTypeOf<T>::type()));
+  }
   int deadline_ms(int of_topic) const { return settings.deadlines ? of_topic : 0; }
 
   void on_participant_discovery(dds::DomainParticipant*, rtps::ParticipantDiscoveryInfo&& info) override {
@@ -178,16 +171,16 @@ struct Node::Impl final : public dds::DomainParticipantListener {
   }
 
   const NodeSettings settings;
-  dds::DomainParticipant* participant = nullptr;
-  dds::Publisher* publisher = nullptr;
-  dds::Subscriber* subscriber = nullptr;
 
-  std::mutex topics_mutex;
-  std::map<std::string, dds::Topic*> topics;
+  std::mutex membership_mutex;  // of both
+  std::unique_ptr<Membership> membership;
+  std::vector<Endpoint*> endpoints;
 
   std::mutex peers_mutex;
   std::map<rtps::GUID_t, std::string> peers;
   std::function<void(const PeerEvent&)> peer_callback;
+
+  std::optional<Awakening> awakening;
 };
 
 namespace {
@@ -195,90 +188,129 @@ namespace {
 const eprosima::fastrtps::Duration_t kWriteTimeout{0,
                                                    std::chrono::nanoseconds(kReliableWriteTimeout).count()};
 
-// Endpoints share the participant, so that the order in which a process lets go of them does not matter.
-template <class Impl>
-class DdsWriter final : public detail::Writer {
+// Endpoints share the node, so that the order in which a process lets go of them does not matter.
+template <class Impl, class T>
+class DdsWriter final : public detail::Writer, private Endpoint {
  public:
-  DdsWriter(std::shared_ptr<Impl> node, dds::Topic* topic, const dds::DataWriterQos& qos)
-      : node_(std::move(node)),
-        writer_(node_->publisher->create_datawriter(topic, qos)),
-        waits_(qos.history().kind == dds::KEEP_ALL_HISTORY_QOS) {
-    if (writer_ == nullptr) throw std::runtime_error("cannot publish " + topic->get_name());
+  DdsWriter(std::shared_ptr<Impl> node, const Topic<T>& topic, std::uint32_t strength)
+      : node_(std::move(node)), topic_(topic), strength_(strength) {
+    node_->add(this);
   }
-  ~DdsWriter() override { node_->publisher->delete_datawriter(writer_); }
+  ~DdsWriter() override { node_->remove(this); }
   DdsWriter(const DdsWriter&) = delete;
   DdsWriter& operator=(const DdsWriter&) = delete;
 
   bool write(const void* sample) override {
+    if (is_kept(topic_.qos)) {
+      const std::lock_guard<std::mutex> lock(last_mutex_);
+      last_ = *static_cast<const T*>(sample);
+    }
+    const typename Handle<dds::DataWriter>::Use writer(writer_);
+    if (!writer) return false;
     void* const data = const_cast<void*>(sample);  // serialized before write() returns, not altered
-    if (writer_->write(data)) return true;
+    if (writer->write(data)) return true;
     // A full history of requests makes room when they are acknowledged; write() does not always wait for
     // that.
-    return waits_ && writer_->wait_for_acknowledgments(kWriteTimeout) == ReturnCode_t::RETCODE_OK &&
-           writer_->write(data);
+    return topic_.qos == Qos::kRequest &&
+           writer->wait_for_acknowledgments(kWriteTimeout) == ReturnCode_t::RETCODE_OK && writer->write(data);
   }
 
   void set_strength(std::uint32_t strength) override {
-    dds::DataWriterQos qos = writer_->get_qos();
+    strength_ = strength;
+    const typename Handle<dds::DataWriter>::Use writer(writer_);
+    if (!writer) return;
+    dds::DataWriterQos qos = writer->get_qos();
     qos.ownership_strength().value = strength;
-    writer_->set_qos(qos);
+    writer->set_qos(qos);
   }
 
   int matched() const override {
+    const typename Handle<dds::DataWriter>::Use writer(writer_);
     dds::PublicationMatchedStatus status;
-    writer_->get_publication_matched_status(status);
+    if (writer) writer->get_publication_matched_status(status);
     return status.current_count;
   }
 
  private:
+  void join(Membership& membership) override {
+    dds::DataWriter* const writer = membership.publisher->create_datawriter(
+        node_->template topic_in<T>(membership, topic_.name),
+        writer_qos(topic_.qos, node_->deadline_ms(topic_.deadline_ms), strength_, node_->settings.transport));
+    if (writer == nullptr) throw std::runtime_error(std::string("cannot publish ") + topic_.name);
+    const std::lock_guard<std::mutex> lock(last_mutex_);
+    if (last_) writer->write(&*last_);
+    writer_.give(writer);
+  }
+  void leave(Membership& membership) override {
+    if (dds::DataWriter* const writer = writer_.take()) membership.publisher->delete_datawriter(writer);
+  }
+
   std::shared_ptr<Impl> node_;
-  dds::DataWriter* writer_;
-  bool waits_;
+  const Topic<T> topic_;
+  std::atomic<std::uint32_t> strength_;
+  Handle<dds::DataWriter> writer_;
+  std::mutex last_mutex_;
+  std::optional<T> last_;  // of a state, which late joiners are told
 };
 
 template <class Impl, class T>
-class DdsReader final : public detail::Reader, private dds::DataReaderListener {
+class DdsReader final : public detail::Reader, private Endpoint, private dds::DataReaderListener {
  public:
-  DdsReader(std::shared_ptr<Impl> node, dds::Topic* topic, const dds::DataReaderQos& qos,
-            std::function<void(const T&)> callback)
-      : node_(std::move(node)), callback_(std::move(callback)) {
-    reader_ = node_->subscriber->create_datareader(topic, qos, this, dds::StatusMask::data_available());
-    if (reader_ == nullptr) throw std::runtime_error("cannot subscribe to " + topic->get_name());
+  DdsReader(std::shared_ptr<Impl> node, const Topic<T>& topic, std::function<void(const T&)> callback,
+            Delivery delivery)
+      : node_(std::move(node)), topic_(topic), delivery_(delivery), callback_(std::move(callback)) {
+    node_->add(this);
   }
-
-  ~DdsReader() override {
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      closed_ = true;
-    }
-    reader_->set_listener(nullptr);
-    node_->subscriber->delete_datareader(reader_);
-  }
+  ~DdsReader() override { node_->remove(this); }
   DdsReader(const DdsReader&) = delete;
   DdsReader& operator=(const DdsReader&) = delete;
 
   int matched() const override {
+    const typename Handle<dds::DataReader>::Use reader(reader_);
     dds::SubscriptionMatchedStatus status;
-    reader_->get_subscription_matched_status(status);
+    if (reader) reader->get_subscription_matched_status(status);
     return status.current_count;
   }
 
  private:
+  void join(Membership& membership) override {
+    open(true);
+    dds::DataReader* const reader = membership.subscriber->create_datareader(
+        node_->template topic_in<T>(membership, topic_.name),
+        reader_qos(topic_.qos, node_->deadline_ms(topic_.deadline_ms), node_->settings.transport, delivery_),
+        this, dds::StatusMask::data_available());
+    if (reader == nullptr) throw std::runtime_error(std::string("cannot subscribe to ") + topic_.name);
+    reader_.give(reader);
+  }
+  void leave(Membership& membership) override {
+    dds::DataReader* const reader = reader_.take();
+    if (reader == nullptr) return;
+    open(false);
+    reader->set_listener(nullptr);
+    membership.subscriber->delete_datareader(reader);
+  }
+  void open(bool open) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    open_ = open;
+  }
+
   void on_data_available(dds::DataReader* reader) override {
     const std::lock_guard<std::mutex> lock(mutex_);
     dds::SampleInfo info;
-    while (!closed_ && reader->take_next_sample(&sample_, &info) == ReturnCode_t::RETCODE_OK) {
+    while (open_ && reader->take_next_sample(&sample_, &info) == ReturnCode_t::RETCODE_OK) {
       if (!info.valid_data) continue;
       callback_(sample_);
     }
   }
 
   std::shared_ptr<Impl> node_;
-  dds::DataReader* reader_ = nullptr;
+  const Topic<T> topic_;
+  const Delivery delivery_;
+  Handle<dds::DataReader> reader_;
   std::mutex mutex_;  // of all below; held while a callback runs
   std::function<void(const T&)> callback_;
   T sample_;
-  bool closed_ = false;
+  bool open_ = false;
 };
 
 }  // namespace
@@ -296,18 +328,13 @@ void Node::on_peer(std::function<void(const PeerEvent&)> callback) {
 
 template <class T>
 Publisher<T> Node::publish(const Topic<T>& topic, std::uint32_t strength) {
-  return Publisher<T>(std::make_unique<DdsWriter<Impl>>(
-      impl_, impl_->topic<T>(topic.name),
-      writer_qos(topic.qos, impl_->deadline_ms(topic.deadline_ms), strength, impl_->settings.transport)));
+  return Publisher<T>(std::make_unique<DdsWriter<Impl, T>>(impl_, topic, strength));
 }
 
 template <class T>
 Subscription Node::subscribe(const Topic<T>& topic, std::function<void(const T&)> callback,
                              Delivery delivery) {
-  return Subscription(std::make_unique<DdsReader<Impl, T>>(
-      impl_, impl_->topic<T>(topic.name),
-      reader_qos(topic.qos, impl_->deadline_ms(topic.deadline_ms), impl_->settings.transport, delivery),
-      std::move(callback)));
+  return Subscription(std::make_unique<DdsReader<Impl, T>>(impl_, topic, std::move(callback), delivery));
 }
 
 #define SWIFTLET_INSTANTIATE(Name)                                                                      \

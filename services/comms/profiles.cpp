@@ -1,6 +1,9 @@
 #include "services/comms/profiles.hpp"
 
 namespace swiftlet::comms {
+
+bool is_kept(Qos profile) { return profile == Qos::kState || profile == Qos::kDocument; }
+
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
@@ -16,7 +19,6 @@ bool is_stream(Qos profile) { return profile == Qos::kStream || profile == Qos::
 bool is_reliable(Qos profile) {
   return profile == Qos::kState || profile == Qos::kDocument || profile == Qos::kRequest;
 }
-bool is_kept(Qos profile) { return profile == Qos::kState || profile == Qos::kDocument; }
 bool is_long(Qos profile) { return profile == Qos::kDocument || profile == Qos::kRequest; }
 
 // What writer and reader state alike, so that they match.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <stdexcept>
@@ -29,7 +30,8 @@ LockstepLoop::LockstepLoop(SimulatedVehicle& vehicle, const plant::SimulationSet
       lockstep_(lockstep),
       imu_period_ns_(plant::period_ns(settings.imu.rate_hz)),
       expected_(settings, 0),
-      granted_ns_(lockstep.paused ? -1 : std::numeric_limits<std::int64_t>::max()) {
+      granted_ns_(lockstep.paused ? -1 : std::numeric_limits<std::int64_t>::max()),
+      paced_ns_(lockstep.speed > 0.0 ? 0 : std::numeric_limits<std::int64_t>::max()) {
   if (!lockstep.trace.empty()) trace_.emplace(lockstep.trace, rotor_count);
   commands_ = node.subscribe<comms::msg::ActuatorCommand>(
       comms::topics::kActuatorCommand, [this](const auto& message) { on_command(message); });
@@ -83,15 +85,28 @@ void LockstepLoop::on_clock(const comms::msg::SimulationClock& message) {
   advance();
 }
 
+bool LockstepLoop::is_paused() const {
+  return vehicle_.simulation().stamp_ns() + imu_period_ns_ > granted_ns_;
+}
+
 bool LockstepLoop::may_advance() const {
-  return vehicle_.simulation().stamp_ns() + imu_period_ns_ <= granted_ns_;
+  return !is_paused() && vehicle_.simulation().stamp_ns() + imu_period_ns_ <= paced_ns_;
+}
+
+// By the time that this process was awake. What the answers take beyond it is not made good.
+void LockstepLoop::keep_pace(double awake_s) {
+  if (lockstep_.speed == 0.0) return;
+  const double step_ns = 1e9 * awake_s * lockstep_.speed;
+  const std::int64_t next_ns = vehicle_.simulation().stamp_ns() + imu_period_ns_;
+  paced_ns_ = std::min(paced_ns_, next_ns) + std::llround(step_ns);
+  advance();
 }
 
 // In the thread that brought the last of what was waited for; on and on while faults leave nothing to wait
 // for.
 void LockstepLoop::advance() {
   while (failure_.empty() && started_ && answered()) {
-    vehicle_.note_pause(!may_advance());
+    vehicle_.note_pause(is_paused());
     vehicle_.report();
     if (!may_advance()) return;
     silence_s_ = 0.0;
@@ -148,6 +163,7 @@ void LockstepLoop::look_after(double awake_s) {
     publish();
     return;
   }
+  keep_pace(awake_s);
   if (clock_heard_ && (clock_silence_s_ += awake_s) > lockstep_.patience_s)
     throw std::runtime_error(silent_ground());
   if (answered()) {

@@ -22,6 +22,7 @@ namespace swiftlet::services {
 
 struct LockstepSettings {
   bool paused = false;      // time passes only as far as simulation_clock grants it
+  double speed = 0.0;       // of simulated time against real time, at most; 0: as fast as the answers come
   double patience_s = 2.0;  // for an answer
   std::string trace;        // file; empty: none is kept
 };
@@ -48,7 +49,9 @@ class LockstepLoop {
     return !mocap_heard_ || mocap_sequence_ < mocap_due_ || mocap_seen_ns_ < truth_sent_ns_;
   }
   bool answered() const { return !command_due() && !mocap_silent(); }
+  bool is_paused() const;
   bool may_advance() const;
+  void keep_pace(double awake_s);
   void advance();
   void advance_to_imu_stamp();
   void publish();
@@ -73,6 +76,7 @@ class LockstepLoop {
   std::int64_t truth_sent_ns_ = -1;  // likewise
   plant::MocapPath expected_;        // carries the numbers of the frames that are due
   std::int64_t granted_ns_ = 0;
+  std::int64_t paced_ns_;  // up to which time has come at lockstep_.speed
   bool clock_heard_ = false;
   double silence_s_ = 0.0;        // since the last progress
   double clock_silence_s_ = 0.0;  // since simulation_clock was last heard

@@ -40,7 +40,7 @@ struct Options {
   std::uint64_t seed = 1;
   int imu_rate = 0;  // Hz; 0: that of the simulation file
   runtime::Clock clock = runtime::Clock::kRealtime;
-  double speed = 1.0;
+  double speed = 0.0;  // 0: real time, or in lockstep as fast as the answers come
   LockstepSettings lockstep;
   comms::NodeSettings node;
   runtime::ProcessOptions process;
@@ -56,9 +56,11 @@ void add_options(CLI::App& app, Options& options) {
                  "IMU samples a second, 500 or 1000; default: the simulation file's")
       ->check(CLI::IsMember({500, 1000}));
   runtime::add_clock_option(app, options.clock);
-  app.add_option("--speed", options.speed, "Of simulated time against real time")
-      ->check(CLI::Range(0.01, 100.0))
-      ->capture_default_str();
+  app.add_option(
+         "--speed", options.speed,
+         "Of simulated time against real time, 1 unless given; in lockstep at most, unless given as fast "
+         "as the answers come")
+      ->check(CLI::Range(0.01, 100.0));
   app.add_flag("--paused", options.lockstep.paused,
                "Lockstep: let time pass only as far as simulation_clock grants it");
   app.add_option("--trace", options.lockstep.trace,
@@ -70,8 +72,6 @@ void add_options(CLI::App& app, Options& options) {
 // Throws std::invalid_argument for options that do not go together.
 void check(const Options& options) {
   const bool lockstep = options.clock == runtime::Clock::kLockstep;
-  if (lockstep && options.speed != 1.0)
-    throw std::invalid_argument("--speed: lockstep goes as fast as the answers come");
   if (!lockstep && options.lockstep.paused) throw std::invalid_argument("--paused: needs --clock lockstep");
   if (!lockstep && !options.lockstep.trace.empty())
     throw std::invalid_argument("--trace: needs --clock lockstep");
@@ -231,9 +231,12 @@ void run(const Options& options) {
   std::optional<RealtimeLoop> realtime_loop;
   std::optional<LockstepLoop> lockstep_loop;
   if (options.clock == runtime::Clock::kRealtime) {
-    realtime_loop.emplace(simulated, settings, options.speed, node, realtime);
+    const double speed = options.speed > 0.0 ? options.speed : 1.0;
+    realtime_loop.emplace(simulated, settings, speed, node, realtime);
   } else {
-    lockstep_loop.emplace(simulated, settings, options.seed, options.lockstep, vehicle.rotor_count(), node);
+    LockstepSettings lockstep = options.lockstep;
+    lockstep.speed = options.speed;
+    lockstep_loop.emplace(simulated, settings, options.seed, lockstep, vehicle.rotor_count(), node);
   }
   const PlantReport last = run_loop(
       [&](const std::atomic<bool>& ends) {

@@ -31,6 +31,7 @@ expect_file(share/swiftlet/idl/swiftlet_msgs/msg/Imu.idl)
 set(flags "")
 if(SANITIZE)
   set(flags "-fsanitize=${SANITIZE}")
+  set(ENV{ASAN_OPTIONS} new_delete_type_mismatch=0)  # as in cmake/sanitizer_options.cpp
 endif()
 run(${CMAKE_COMMAND} -S ${CONSUMER_DIR} -B ${consumer} -G ${GENERATOR} -DCMAKE_BUILD_TYPE=Debug
   -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -DCMAKE_CXX_FLAGS=${flags}

@@ -247,6 +247,28 @@ TEST_F(LockstepWithout, AnythingElseTimePassesAsFastAsItCan) {
   EXPECT_EQ(plant->wait(20s), 0) << plant->errors();
 }
 
+// Never ahead of the clock; how far behind is up to the machine.
+TEST_F(LockstepWithout, HasteTimePassesAtItsPace) {
+  constexpr double kSpeed = 4.0;
+  comms::NodeSettings settings;
+  settings.name = "watcher";
+  settings.domain = domain_.domain();
+  settings.localhost_only = true;
+  settings.deadlines = false;
+  comms::Node watcher(settings);
+  Inbox<std::int64_t> stamps;
+  const auto subscription = watcher.subscribe<comms::msg::GroundTruth>(
+      comms::topics::kGroundTruth, [&](const auto& truth) { stamps.put(truth.stamp_ns()); });
+  const auto started = std::chrono::steady_clock::now();
+  const auto mocap = start("swiftlet-mocap");
+  const auto control = start("swiftlet-control");
+  const auto plant = start("swiftlet-plant", {"--speed", std::to_string(kSpeed)});
+  ASSERT_TRUE(stamps.wait([](const auto& all) { return !all.empty() && all.back() > 4'000'000'000; }))
+      << plant->errors();
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - started;
+  EXPECT_GE(elapsed.count(), 4.0 / kSpeed);
+}
+
 TEST(LockstepOptions, ThatDoNotGoTogetherAreRefused) {
   const TemporaryFolder folder;
   const auto refused = [&](const std::string& program, const std::vector<std::string>& words) {

@@ -32,12 +32,21 @@ class Online : public testing::Test {
   TemporaryFolder folder_;
 };
 
+// In lockstep at the pace of the clock: the tools wait as they do with a real vehicle, and a machine that is busy slows the flight
+// down instead of failing it.
 class OnlineFlight : public Online {
  protected:
   OnlineFlight()
-      : plant_("swiftlet-plant", network(), folder_.path()),
-        mocap_("swiftlet-mocap", network(), folder_.path()),
-        control_("swiftlet-control", network(), folder_.path()) {}
+      : plant_("swiftlet-plant", lockstep({"--speed", "1"}), folder_.path()),
+        mocap_("swiftlet-mocap", lockstep(), folder_.path()),
+        control_("swiftlet-control", lockstep(), folder_.path()) {}
+
+  std::vector<std::string> lockstep(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = network();
+    words.insert(words.end(), {"--clock", "lockstep"});
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
 
   void SetUp() override {
     ASSERT_TRUE(reaches("has_pose", [](const json& status) { return status.at("has_pose") == true; }));

@@ -60,6 +60,8 @@ class PeerProcess {
   PeerProcess& operator=(const PeerProcess&) = delete;
 
   pid_t pid() const { return pid_; }
+  void stop() const { ::kill(pid_, SIGSTOP); }
+  void go_on() const { ::kill(pid_, SIGCONT); }
   void die() {
     ::kill(pid_, SIGKILL);
     finish();
@@ -180,6 +182,23 @@ TEST_F(Peers, ADeadControllersStreamIsTakenOverBeforeItsLeaseEnds) {
   EXPECT_TRUE(obeyed);
   EXPECT_TRUE(taken_over);
   EXPECT_LT(outage, kLivelinessLease / 2);
+}
+
+TEST_F(Peers, OneThatWasStoppedUntilItCountedAsDeadIsHeardAgain) {
+  Inbox<std::uint64_t> heard;
+  const auto subscription = node_.subscribe<msg::ActuatorCommand>(
+      topics::kActuatorCommand,
+      [&](const msg::ActuatorCommand& command) { heard.put(command.sequence_number()); });
+  const PeerProcess peer = start();
+  ASSERT_TRUE(heard.wait_for_count(1));
+
+  peer.stop();
+  ASSERT_TRUE(events_.wait_for_count(2));
+  ASSERT_FALSE(events_.items()[1].alive);
+  const std::size_t before = heard.size();
+  peer.go_on();
+
+  EXPECT_TRUE(heard.wait_for_count(before + 1500)) << heard.size() - before << " since";
 }
 
 TEST_F(Peers, WithUdpNothingIsSharedThatCouldStay) {

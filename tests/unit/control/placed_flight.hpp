@@ -45,6 +45,18 @@ class Placed : public SupervisedFlight {
  public:
   explicit Placed(GroundLinkAction action) : SupervisedFlight(settings_of(action)) {}
 
+  struct Moment {
+    SupervisorState state;
+    Situation situation;
+    Estimate estimate;
+  };
+  Moment moment() const { return {supervisor_.state(), situation_, estimate_}; }
+  void go_back_to(const Moment& moment) {
+    situation_ = moment.situation;
+    estimate_ = moment.estimate;
+    supervisor_.adopt(moment.state, plan(), &trajectory_);
+  }
+
   Mode mode() const { return supervisor_.mode(); }
   void lose_ground_link() {
     SupervisorState state = supervisor_.state();
