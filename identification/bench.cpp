@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "plant/model/airframe.hpp"
 
@@ -11,6 +12,8 @@ namespace {
 
 constexpr std::array<const char*, 3> kInertiaKeys = {"inertia.xx", "inertia.yy", "inertia.zz"};
 constexpr std::array<const char*, 3> kInertiaSymbols = {"J_x", "J_y", "J_z"};
+constexpr double kSeaLevelDensity = 1.225;    // kg/m^3, standard atmosphere
+constexpr double kCoaxial = 1e-3;             // m, between hubs in the plane of the rotors
 constexpr double kNotableCorrelation = 0.05;  // below it parameters may as well be drawn apart
 
 double& parameter_of(plant::Vehicle& vehicle, const std::string& key) {
@@ -26,6 +29,18 @@ double& parameter_of(plant::Vehicle& vehicle, const std::string& key) {
                                                 {"inertia.yy", &vehicle.inertia(1, 1)},
                                                 {"inertia.zz", &vehicle.inertia(2, 2)}};
   return *known.at(key);
+}
+
+// Half the way to the nearest hub beside it: rotors do not overlap. Coaxial ones are not beside each other.
+double largest_radius(const plant::Vehicle& vehicle) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const plant::RotorMount& a : vehicle.rotors) {
+    for (const plant::RotorMount& b : vehicle.rotors) {
+      const double distance = (a.position_frd - b.position_frd).head<2>().norm();
+      if (distance > kCoaxial) nearest = std::min(nearest, distance);
+    }
+  }
+  return 0.5 * nearest;
 }
 
 double relative_error(const std::optional<Experiment>& experiment) {
@@ -123,7 +138,10 @@ class Bench {
       torque_factor = out_.torque->estimates.front();
       adopt(out_.torque, "Eq. (26)");
     }
-    if (!data_.propeller) return;
+    if (!data_.propeller) {
+      demand_possible_rotor(thrust_factor, torque_factor, {largest_radius(out_.vehicle), kSeaLevelDensity});
+      return;
+    }
     const std::vector<double>& speeds = data_.thrust_torque->speed_rad_s;
     std::vector<double> sorted = speeds;
     std::sort(sorted.begin(), sorted.end());

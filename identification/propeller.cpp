@@ -67,4 +67,25 @@ PropellerCoefficients propeller_coefficients(const std::optional<Estimate>& thru
   return out;
 }
 
+void demand_possible_rotor(const std::optional<Estimate>& thrust_factor,
+                           const std::optional<Estimate>& torque_factor, const Propeller& largest) {
+  const std::string rotor =
+      "the largest propeller between the base vehicle's hubs, of radius " + shown(largest.radius_m) + " m, ";
+  if (!thrust_factor) return;
+  const double c_t =
+      plant::blade_coefficients({thrust_factor->value, 0.0}, largest.radius_m, largest.air_density).thrust;
+  if (c_t > kMostThrustCoefficient) {
+    throw BadData("thrust: asks of " + rotor + "for C_T = " + shown(c_t) + " of Eq. (23), must be at most " +
+                  shown(kMostThrustCoefficient) + "; are the units of speed and thrust right?");
+  }
+  if (!torque_factor) return;
+  const double merit = figure_of_merit(thrust_factor->value, torque_factor->value, largest);
+  if (merit > 1.0) {
+    throw BadData(
+        "thrust: asks of " + rotor + "for a figure of merit of " + shown(merit) +
+        ", must be at most 1: no propeller gives more thrust than momentum theory; are the units of speed, "
+        "thrust and torque right?");
+  }
+}
+
 }  // namespace swiftlet::identification

@@ -25,4 +25,9 @@ PropellerCoefficients propeller_coefficients(const std::optional<Estimate>& thru
                                              const std::optional<Estimate>& torque_factor,
                                              const Propeller& propeller, double top_speed);
 
+// Where the propeller is not known: throws BadData if even the largest that could turn there, of radius_m, cannot do what was found, by
+// C_T and figure of merit.
+void demand_possible_rotor(const std::optional<Estimate>& thrust_factor,
+                           const std::optional<Estimate>& torque_factor, const Propeller& largest);
+
 }  // namespace swiftlet::identification

@@ -85,6 +85,20 @@ TEST(Bench, SeesThatThrustOverThrottleIsOfAnotherSetUp) {
   EXPECT_TRUE(contains(identify_bench(data, kaylion()).throttle_thrust->warnings, "should be within 5 %"));
 }
 
+TEST(Bench, RefusesRadiansTakenForRevolutions) {
+  BenchData data;
+  data.thrust_torque = bench_of(kaylion(), 0.005).thrust_torque;
+  EXPECT_NO_THROW(identify_bench(data, kaylion()));
+  data.thrust_torque->speed_rad_s = tests::times(data.thrust_torque->speed_rad_s, 0.10472);
+  try {
+    identify_bench(data, kaylion());
+    FAIL() << "nothing was refused";
+  } catch (const BenchError& fault) {
+    EXPECT_NE(std::string(fault.what()).find("asks of the largest propeller"), std::string::npos)
+        << fault.what();
+  }
+}
+
 TEST(Bench, NamesTheExperimentAtFault) {
   BenchData data = bench_of(other(), 0.005);
   data.steady_motor->speed_rad_s.resize(3);
