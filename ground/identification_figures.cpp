@@ -235,7 +235,6 @@ CaptionedFigure motor_step_figure(const identification::MotorStepData& data,
   figure.title = out.caption;
   figure.x_label = "time (s)";
   figure.y_label = "rotor speed \xce\xa9 (rad/s)";
-  figure.legend = LegendPlace::kBottomRight;
   const Experiment& better = step.physical_fits_better ? step.physical : step.reduced;
   std::vector<FigurePoint> points;
   FigureSeries reduced{

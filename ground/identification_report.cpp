@@ -124,7 +124,7 @@ body { font: 15px/1.45 sans-serif; color: #1a1a1a; max-width: 1360px; margin: 24
 h1 { font-size: 25px; margin-bottom: 4px; } h2 { font-size: 19px; margin: 34px 0 6px; border-bottom: 1px solid #ccc; }
 table { border-collapse: collapse; margin: 8px 0; } th, td { padding: 3px 14px 3px 0; text-align: left; }
 th { border-bottom: 1px solid #999; font-weight: 600; } td.n { font-variant-numeric: tabular-nums; white-space: nowrap; }
-.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(520px, 1fr)); gap: 14px 22px; align-items: end; }
+.figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(520px, 1fr)); gap: 14px 22px; align-items: end; }
 figure { margin: 0; } figcaption { font-size: 13px; color: #444; padding-left: 48px; } svg { width: 100%; height: auto; display: block; }
 .warning { background: #fff3cd; border-left: 4px solid #e0a800; padding: 4px 10px; margin: 5px 0; }
 .finding { margin: 4px 0; } .quiet { color: #555; font-size: 14px; }

@@ -212,9 +212,7 @@ class Drawing {
     for (const Legend& row : rows) longest = std::max(longest, row.label.size());
     const double width = 40.0 + kCharacter * static_cast<double>(longest);
     const double height = 8.0 + kLegendRow * static_cast<double>(rows.size());
-    const double x = figure_.legend == LegendPlace::kTopLeft ? kLeft + 8.0 : kWidth - kRight - 8.0 - width;
-    const double y =
-        figure_.legend == LegendPlace::kBottomRight ? figure_.height - kBottom - 8.0 - height : kTop + 8.0;
+    const auto [x, y] = emptiest_corner(width, height);
     out_ += format(
         "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#fff\" fill-opacity=\"0.85\" "
         "stroke=\"#ccc\"/>\n",
@@ -225,6 +223,34 @@ class Drawing {
               format("<text x=\"%.1f\" y=\"%.1f\" font-size=\"12\">", x + 33.0, middle + 4.0) +
               html_escaped(rows[i].label) + "</text>\n";
     }
+  }
+
+  // Where a box of this size hides the fewest points: its upper left corner.
+  FigurePoint emptiest_corner(double width, double height) const {
+    constexpr double kGap = 8.0;
+    const double left = kLeft + kGap;
+    const double right = kWidth - kRight - kGap - width;
+    const double top = kTop + kGap;
+    const double bottom = figure_.height - kBottom - kGap - height;
+    FigurePoint best;
+    std::size_t fewest = std::numeric_limits<std::size_t>::max();
+    for (const FigurePoint corner : {FigurePoint{left, top}, FigurePoint{right, bottom},
+                                     FigurePoint{right, top}, FigurePoint{left, bottom}}) {
+      std::size_t hidden = 0;
+      for (const FigureSeries& series : figure_.series) {
+        for (const FigurePoint& point : series.points) {
+          const double from_left = x_.pixel(point.x) - corner.x;
+          const double from_top = y_.pixel(point.y) - corner.y;
+          if (from_left > -kGap && from_left < width + kGap && from_top > -kGap && from_top < height + kGap)
+            ++hidden;
+        }
+      }
+      if (hidden < fewest) {
+        fewest = hidden;
+        best = corner;
+      }
+    }
+    return best;
   }
 
   static std::string legend_mark(const Legend& row, double x, double y) {

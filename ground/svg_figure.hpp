@@ -28,13 +28,10 @@ struct FigureBand {
   std::vector<FigurePoint> high;
 };
 
-enum class LegendPlace { kTopLeft, kBottomRight };
-
 struct Figure {
   std::string title;  // for those who cannot see it
   std::string x_label;
   std::string y_label;
-  LegendPlace legend = LegendPlace::kTopLeft;
   bool zero_line = false;
   int height = 400;  // px of a width of 640
   std::vector<FigureBand> bands;
@@ -42,7 +39,7 @@ struct Figure {
 };
 
 // A whole <svg> element. Axes span what is drawn, crosses (outliers) included; ticks are round numbers, scaled by a power of ten where
-// they would be long, which the label then names.
+// they would be long, which the label then names. The legend stands in the corner where it hides least.
 std::string svg(const Figure& figure);
 
 // For text between tags and in attributes.

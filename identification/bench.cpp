@@ -158,7 +158,8 @@ class Bench {
       return;
     }
     const Estimate& direct = out_.thrust->estimates.front();
-    const Estimate& chain = out_.throttle_thrust->estimates.front();
+    Estimate& chain = out_.throttle_thrust->estimates.front();
+    chain.parameter = "throttle_thrust.thrust_factor";  // to compare; the vehicle's is the direct one
     const double difference = chain.value / direct.value - 1.0;
     const std::string numbers =
         "k_T is " + shown(chain.value) + " by thrust over throttle, through ESC and motor, and " +

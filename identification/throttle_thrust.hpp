@@ -24,7 +24,7 @@ struct KnownParts {
 
 // Estimates what is not known of esc.gain, esc.offset, motor.k2, motor.k3 and rotor.thrust_factor; the rest stays as vehicle has it.
 // Where Eq. (9) or (22) is unknown, thrust without speed leaves a scale open: k_T and, if both are unknown, the gain
-// are then held at the vehicle's too, and a warning says so. Where all is known, rotor.thrust_factor is estimated to compare. Intervals
+// are then held at the vehicle's too, and a warning says so. Where all is known, rotor.thrust_factor is estimated all the same, to compare. Intervals
 // count what is held as exact. measured and predicted are T. Throws BadData.
 Experiment identify_throttle_thrust(const ThrottleThrustData& data, const plant::Vehicle& vehicle,
                                     const KnownParts& known, const Instruments& instruments);

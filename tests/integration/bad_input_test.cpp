@@ -128,8 +128,8 @@ TEST_F(BadInput, OfTheOnlineCommands) {
 }
 
 TEST_F(BadInput, HelpIsNone) {
-  for (const char* command :
-       {"fly", "arm", "disarm", "takeoff", "goto", "land", "hold", "stop", "mission", "status", "gains", "identify"}) {
+  for (const char* command : {"fly", "arm", "disarm", "takeoff", "goto", "land", "hold", "stop", "mission",
+                              "status", "gains", "identify"}) {
     const Ending end = run_program("swiftlet", {command, "--help"}, folder_.path());
     EXPECT_EQ(end.exit_code, 0);
     EXPECT_NE(end.output.find("example: swiftlet " + std::string(command)), std::string::npos) << end.output;

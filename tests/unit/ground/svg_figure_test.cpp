@@ -36,10 +36,23 @@ TEST(SvgFigure, PlacesPointsInProportion) {
 }
 
 TEST(SvgFigure, NamesThePowerOfTenOfItsTicks) {
-  const std::string drawn = svg(line(1e6, 1e-5));
+  const std::string drawn = svg(line(1e6, 1e-7));
   EXPECT_NE(drawn.find(">6</tspan>"), std::string::npos);
   EXPECT_NE(drawn.find(">-6</tspan>"), std::string::npos) << drawn;
   EXPECT_EQ(svg(line(1.0, 1.0)).find("tspan"), std::string::npos);
+}
+
+TEST(SvgFigure, PutsItsLegendWhereItHidesNothing) {
+  const std::regex box(
+      "<rect x=\"([0-9.]+)\" y=\"([0-9.]+)\" width=\"[0-9.]+\" height=\"[0-9.]+\" fill=\"#fff\"");
+  std::smatch rising;
+  std::smatch falling;
+  const std::string up = svg(line(1.0, 1.0));
+  const std::string down = svg(line(1.0, -1.0));
+  ASSERT_TRUE(std::regex_search(up, rising, box));
+  ASSERT_TRUE(std::regex_search(down, falling, box));
+  EXPECT_LT(std::stod(rising[1]), 100.0);  // a rising curve leaves the top left free
+  EXPECT_GT(std::stod(falling[1]) + std::stod(falling[2]), 400.0);
 }
 
 TEST(SvgFigure, EscapesText) {
