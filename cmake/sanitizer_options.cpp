@@ -1,8 +1,41 @@
 // Linked into every program of a build with sanitizers: what their runtimes are told.
+#include <ctime>
+#include <pthread.h>
+
 extern "C" {
 
 // Debian's Fast DDS 2.9 frees with sized deletes of a base class: objects of the library, new and gone within it.
 const char* __asan_default_options() { return "new_delete_type_mismatch=0"; }
 
 const char* __ubsan_default_options() { return "print_stacktrace=1"; }
+
+#ifdef __SANITIZE_THREAD__
+
+// Fast DDS and spdlog are not built with the sanitizer, which sees their locks but not their atomics: the one locks some mutexes
+// again in the thread that holds them, the other counts who shares a logger.
+const char* __tsan_default_suppressions() {
+  return "deadlock:libfastrtps.so\n"
+         "race:libspdlog.so\n";
+}
+
+// The runtime of GCC 12 does not know this way to lock, by which std::timed_mutex waits. It knows the other.
+int pthread_mutex_clocklock(pthread_mutex_t* mutex, clockid_t clock, const timespec* until) noexcept {
+  constexpr long kSecond_ns = 1'000'000'000;
+  timespec now{};
+  timespec real{};
+  clock_gettime(clock, &now);
+  clock_gettime(CLOCK_REALTIME, &real);
+  real.tv_sec += until->tv_sec - now.tv_sec;
+  real.tv_nsec += until->tv_nsec - now.tv_nsec;
+  if (real.tv_nsec < 0) {
+    --real.tv_sec;
+    real.tv_nsec += kSecond_ns;
+  } else if (real.tv_nsec >= kSecond_ns) {
+    ++real.tv_sec;
+    real.tv_nsec -= kSecond_ns;
+  }
+  return pthread_mutex_timedlock(mutex, &real);
+}
+
+#endif
 }

@@ -55,7 +55,7 @@ struct FlightController::Loops {
   void spool_up(const Directive& directive);
   void descend_level(double speed);
   void command_wrench(double thrust_n, const AttitudeReference& attitude_reference);
-  plant::ActuatorCommand answer(const plant::ImuSample& sample);
+  const plant::ActuatorCommand& answer(const plant::ImuSample& sample);
 
   plant::Vehicle vehicle;
   ControlSettings settings;
@@ -183,22 +183,22 @@ void FlightController::Loops::fly(const Directive& directive, double dt_s) {
   const ThrustAttitude outer = thrust_attitude(
       vehicle.mass_kg, wanted.acceleration_ned - disturbance.acceleration_ned(), max_tilt_tangent);
   AttitudeReference inner;
+  inner.body_z_ned = outer.body_z_ned;
+  inner.heading = reference.yaw_rad;
   double thrust_n = outer.thrust_n;
   if (settings.attitude.feed_forward) {
-    const ReferenceMotion on_reference = reference_motion(vehicle.mass_kg, reference);
+    const ReferenceMotion on_reference = reference_motion(vehicle.mass_kg, reference, inner.heading);
     inner.body_rates = on_reference.body_rates;
     inner.body_accelerations = on_reference.body_accelerations;
     thrust_n += rotor_lag_s * on_reference.thrust_rate;  // leads the rotor lag
   }
-  inner.body_z_ned = outer.body_z_ned;
-  inner.yaw_rad = reference.yaw_rad;
   command_wrench(thrust_n, inner);
 }
 
 void FlightController::Loops::spool_up(const Directive& directive) {
   climb.begin(estimator.estimate().accelerometer_bias, estimator.estimate().position_ned.z());
   AttitudeReference level;
-  level.yaw_rad = reference.yaw_rad;
+  level.heading = reference.yaw_rad;
   command_wrench(directive.lift_fraction * vehicle.mass_kg * plant::kGravity, level);
 }
 
@@ -210,7 +210,7 @@ void FlightController::Loops::descend_level(double speed) {
   const ThrustAttitude outer = thrust_attitude(vehicle.mass_kg, acceleration_ned, max_tilt_tangent);
   AttitudeReference braking;
   braking.body_z_ned = outer.body_z_ned;
-  braking.yaw_rad = euler_from_quaternion(estimate.q_ned_from_frd).z();
+  braking.heading = euler_from_quaternion(estimate.q_ned_from_frd).z();
   command_wrench(outer.thrust_n, braking);
 }
 
@@ -224,11 +224,12 @@ void FlightController::Loops::command_wrench(double thrust_n, const AttitudeRefe
                                        attitude_reference);
   const Allocation allocation = allocator.allocate(wrench, supply);
   command.throttle = allocation.throttle;
-  setpoint = {attitude_reference.body_z_ned, attitude_reference.yaw_rad, wrench.thrust_n, wrench.moment_frd};
+  setpoint = {attitude_reference.body_z_ned, attitude_reference.heading.yaw_rad, wrench.thrust_n,
+              wrench.moment_frd};
   status.saturated = allocation.saturated;
 }
 
-plant::ActuatorCommand FlightController::Loops::answer(const plant::ImuSample& sample) {
+const plant::ActuatorCommand& FlightController::Loops::answer(const plant::ImuSample& sample) {
   command.stamp_ns = sample.stamp_ns;
   command.imu_sequence = sample.sequence;
   command.mocap_sequence = estimator.pose_sequence();
@@ -243,7 +244,7 @@ FlightController::~FlightController() = default;
 FlightController::FlightController(FlightController&&) noexcept = default;
 FlightController& FlightController::operator=(FlightController&&) noexcept = default;
 
-plant::ActuatorCommand FlightController::on_imu(const plant::ImuSample& sample) {
+const plant::ActuatorCommand& FlightController::on_imu(const plant::ImuSample& sample) {
   Loops& l = *loops_;
   l.begin_anew_if_clock_went_back(sample);
   const bool usable = l.estimator.predict(sample);

@@ -34,8 +34,8 @@ class FlightController {
   FlightController& operator=(FlightController&&) noexcept;
 
   // One step of the inner loop: the command that answers this sample. A sample that is not finite or not
-  // newer than the last one is not used; the command then repeats the last.
-  plant::ActuatorCommand on_imu(const plant::ImuSample& sample);
+  // newer than the last one is not used; the command then repeats the last. The answer stays until the next.
+  const plant::ActuatorCommand& on_imu(const plant::ImuSample& sample);
 
   void on_pose(const plant::PoseSample& sample);
   void on_battery(const plant::BatterySample& sample);

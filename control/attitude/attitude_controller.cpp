@@ -41,9 +41,9 @@ Eigen::Vector3d AttitudeController::moments(const Eigen::Quaterniond& q_ned_from
     jerks_r = reference.body_jerks;
   }
   if (error_ == AttitudeErrorKind::kEulerAngles) {
-    angle_error = euler_error(q_ned_from_frd, reference.body_z_ned, reference.yaw_rad);
+    angle_error = euler_error(q_ned_from_frd, reference.body_z_ned, reference.heading.yaw_rad);
   } else {
-    const RotationError error = rotation_error(q_ned_from_frd, reference.body_z_ned, reference.yaw_rad);
+    const RotationError error = rotation_error(q_ned_from_frd, reference.body_z_ned, reference.heading);
     angle_error = error.angle;
     rates_r = error.r_frd_from_reference * rates_r;
     accelerations_r = error.r_frd_from_reference * accelerations_r;

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "control/attitude/heading.hpp"
 #include "control/design/control_design.hpp"
 #include "plant/model/vehicle.hpp"
 
@@ -12,7 +13,7 @@ namespace swiftlet::control {
 
 struct AttitudeReference {
   Eigen::Vector3d body_z_ned = Eigen::Vector3d::UnitZ();  // where the body z axis is to point, unit length
-  double yaw_rad = 0.0;
+  Heading heading;
   // Fed forward, in the reference's own body axes; leave zero where they are not known.
   Eigen::Vector3d body_rates = Eigen::Vector3d::Zero();          // rad/s
   Eigen::Vector3d body_accelerations = Eigen::Vector3d::Zero();  // rad/s^2

@@ -21,9 +21,9 @@ double chord(double cosine, double sine) {
 
 }  // namespace
 
-Matrix3d attitude_along(const Vector3d& body_z_ned, double yaw_rad) {
+Matrix3d attitude_along(const Vector3d& body_z_ned, const Heading& heading) {
   // Body x lies in the vertical plane of the heading, Eq. (3): it is at right angles to (-s psi, c psi, 0).
-  const Vector3d across(-std::sin(yaw_rad), std::cos(yaw_rad), 0.0);
+  const Vector3d across(-heading.sine, heading.cosine, 0.0);
   Matrix3d axes;
   axes.col(0) = across.cross(body_z_ned).normalized();
   axes.col(1) = body_z_ned.cross(axes.col(0));
@@ -45,10 +45,10 @@ Vector3d euler_error(const Eigen::Quaterniond& q_ned_from_frd, const Vector3d& b
 }
 
 RotationError rotation_error(const Eigen::Quaterniond& q_ned_from_frd, const Vector3d& body_z_ned,
-                             double yaw_rad) {
+                             const Heading& heading) {
   RotationError error;
   const Matrix3d r_frd_from_ned = q_ned_from_frd.toRotationMatrix().transpose();
-  error.r_frd_from_reference.noalias() = r_frd_from_ned * attitude_along(body_z_ned, yaw_rad);
+  error.r_frd_from_reference.noalias() = r_frd_from_ned * attitude_along(body_z_ned, heading);
   const Vector3d z = error.r_frd_from_reference.col(2);
   const Vector3d x = error.r_frd_from_reference.col(0);
 

@@ -7,11 +7,13 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "control/attitude/heading.hpp"
+
 namespace swiftlet::control {
 
 // The body's axes, as columns in NED, of the attitude whose z axis is body_z_ned, of unit length and less
-// than 90 degrees from straight down, and whose Euler yaw, Eq. (3), is yaw_rad.
-Eigen::Matrix3d attitude_along(const Eigen::Vector3d& body_z_ned, double yaw_rad);
+// than 90 degrees from straight down, and whose Euler yaw, Eq. (3), is the heading.
+Eigen::Matrix3d attitude_along(const Eigen::Vector3d& body_z_ned, const Heading& heading);
 
 // The differences of the Euler angles (phi, theta, psi), each in -pi .. pi. phi and theta point body z along
 // body_z_ned at the present yaw, so that the thrust points right while yaw is still turning:
@@ -30,6 +32,6 @@ struct RotationError {
 // control", ETH 2013). Each counts as 2 sin(angle / 2) about its axis: the angle when it is small, at most 2,
 // and never without a way to go: upside down it turns about the body's x axis.
 RotationError rotation_error(const Eigen::Quaterniond& q_ned_from_frd, const Eigen::Vector3d& body_z_ned,
-                             double yaw_rad);
+                             const Heading& heading);
 
 }  // namespace swiftlet::control

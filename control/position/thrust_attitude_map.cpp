@@ -44,9 +44,9 @@ ThrustAttitude thrust_attitude(double mass_kg, const Vector3d& acceleration_ned,
   return out;
 }
 
-ReferenceMotion reference_motion(double mass_kg, const Reference& reference) {
-  const double cosine = std::cos(reference.yaw_rad);
-  const double sine = std::sin(reference.yaw_rad);
+ReferenceMotion reference_motion(double mass_kg, const Reference& reference, const Heading& heading) {
+  const double cosine = heading.cosine;
+  const double sine = heading.sine;
   const double psi_1 = reference.yaw_rate;
   const double psi_2 = reference.yaw_acceleration;
 

@@ -82,7 +82,11 @@ void forget_silent_ground_links(SupervisorState& state, const FailsafeSettings& 
   }
 }
 
-EventSet observe(Scene& scene) {
+double tip_over_cosine(const FailsafeSettings& failsafe) {
+  return std::cos(std::min(failsafe.tip_over_tilt_rad, M_PI));
+}
+
+EventSet observe(Scene& scene, double tip_over_cosine) {
   const FailsafeSettings& failsafe = scene.settings.failsafe;
   const Situation& situation = scene.situation;
   SupervisorState& state = scene.state;
@@ -90,8 +94,7 @@ EventSet observe(Scene& scene) {
   EventSet events;
   events.add(Event::kImuUnusable, situation.imu_unusable_s >= failsafe.imu_timeout_s);
   events.add(Event::kImuGap, situation.imu_gap_s > failsafe.imu_gap_s);
-  events.add(Event::kTippedOver, cosine_of_tilt(scene.estimate().q_ned_from_frd) <
-                                     std::cos(std::min(failsafe.tip_over_tilt_rad, M_PI)));
+  events.add(Event::kTippedOver, cosine_of_tilt(scene.estimate().q_ned_from_frd) < tip_over_cosine);
   events.add(Event::kStruck, state.phase != Phase::kGround && situation.specific_force > failsafe.blow);
   events.add(Event::kClimbNotSeen, situation.climb_contradicted && state.phase == Phase::kPath);
   events.add(Event::kPoseJumped, situation.pose_jumped);

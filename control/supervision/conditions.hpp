@@ -7,7 +7,11 @@
 namespace swiftlet::control {
 
 // Which of them hold. Keeps in the state since when those hold that must last for a while.
-EventSet observe(Scene& scene);
+// tip_over_cosine: tip_over_cosine() of the settings, which no step works out anew.
+EventSet observe(Scene& scene, double tip_over_cosine);
+
+// Of the tilt at which the vehicle has tipped over.
+double tip_over_cosine(const FailsafeSettings& failsafe);
 
 // 1 level, -1 upside down.
 double cosine_of_tilt(const Eigen::Quaterniond& q_ned_from_frd);

@@ -54,7 +54,7 @@ class EventSet {
  public:
   void add(Event event, bool happens) { bits_ |= static_cast<std::uint32_t>(happens) << index(event); }
   bool has(Event event) const { return (bits_ >> index(event) & 1U) != 0; }
-  bool empty() const { return bits_ == 0; }
+  bool has_any_of(EventSet others) const { return (bits_ & others.bits_) != 0; }
 
  private:
   static unsigned index(Event event) { return static_cast<unsigned>(event); }

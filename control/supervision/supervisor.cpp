@@ -8,7 +8,8 @@
 
 namespace swiftlet::control {
 
-Supervisor::Supervisor(const SupervisionSettings& settings) : settings_(settings) {}
+Supervisor::Supervisor(const SupervisionSettings& settings)
+    : settings_(settings), tip_over_cosine_(tip_over_cosine(settings.failsafe)) {}
 
 Directive Supervisor::step(const Situation& situation) {
   state_.now_ns = situation.stamp_ns;
@@ -18,7 +19,7 @@ Directive Supervisor::step(const Situation& situation) {
     return directive(situation);
   }
   advance(now);
-  const EventSet conditions = observe(now);
+  const EventSet conditions = observe(now, tip_over_cosine_);
   const Transition* const row = find(now, conditions);
   const bool link_answered =
       row == nullptr ? state_.mode != Mode::kDescent : row->event == Event::kGroundLinkLost;

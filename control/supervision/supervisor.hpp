@@ -48,6 +48,7 @@ class Supervisor {
   Directive directive(const Situation& situation) const;
 
   SupervisionSettings settings_;
+  double tip_over_cosine_;
   SupervisorState state_;
   FlownPlan plan_;
 };

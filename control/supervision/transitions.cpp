@@ -1,5 +1,7 @@
 #include "control/supervision/transitions.hpp"
 
+#include <array>
+#include <cstddef>
 #include <iterator>
 
 #include "control/supervision/checks.hpp"
@@ -99,12 +101,26 @@ const Transition kTransitions[] = {
 };
 // clang-format on
 
+using EventsByMode = std::array<EventSet, kModeCount>;
+
+EventsByMode answered() {
+  EventsByMode events;
+  for (int i = 0; i < kModeCount; ++i) {
+    for (const Transition& row : kTransitions)
+      events[static_cast<std::size_t>(i)].add(row.event, row.from.has(static_cast<Mode>(i)));
+  }
+  return events;
+}
+
+// For which events there is a row in the mode: hardly a step sees one of them.
+const EventsByMode kAnswered = answered();
+
 }  // namespace
 
 TransitionTable transitions() { return {kTransitions, static_cast<int>(std::size(kTransitions))}; }
 
 const Transition* find(const Scene& scene, const EventSet& conditions) {
-  if (conditions.empty()) return nullptr;
+  if (!conditions.has_any_of(kAnswered[static_cast<std::size_t>(scene.state.mode)])) return nullptr;
   for (const Transition& row : transitions()) {
     if (conditions.has(row.event) && row.from.has(scene.state.mode) && row.when.holds(scene)) return &row;
   }

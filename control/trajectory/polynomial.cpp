@@ -6,20 +6,33 @@
 namespace swiftlet::control {
 namespace {
 
-// A polynomial and its first four derivatives at one t.
-using Derivatives = std::array<double, 5>;
+// Two axes side by side, as a register takes them.
+using Pair = Eigen::Array2d;
 
-// Horner's scheme for the value and the derivatives at once; dk collects the k-th derivative over k!.
-Derivatives horner(const Polynomial& c, double t) {
-  double d0 = 0.0, d1 = 0.0, d2 = 0.0, d3 = 0.0, d4 = 0.0;
-  for (std::size_t i = c.size(); i-- > 0;) {
+// Two polynomials and their first four derivatives at one t.
+using Derivatives = std::array<Pair, 5>;
+
+// Horner's scheme for the values and the derivatives at once; dk collects the k-th derivative over k!.
+Derivatives horner(const Polynomial& a, const Polynomial& b, std::size_t coefficients, double t) {
+  Pair d0 = Pair::Zero(), d1 = Pair::Zero(), d2 = Pair::Zero(), d3 = Pair::Zero(), d4 = Pair::Zero();
+  for (std::size_t i = coefficients; i-- > 0;) {
     d4 = d4 * t + d3;
     d3 = d3 * t + d2;
     d2 = d2 * t + d1;
     d1 = d1 * t + d0;
-    d0 = d0 * t + c[i];
+    d0 = d0 * t + Pair(a[i], b[i]);
   }
   return {d0, d1, 2.0 * d2, 6.0 * d3, 24.0 * d4};
+}
+
+// Without those at the end that are zero for all axes: rest has one, most moves have six.
+std::size_t coefficients(const PolynomialSegment& segment) {
+  std::size_t count = kPolynomialCoefficients;
+  const auto is_zero = [&](std::size_t i) {
+    return segment.x[i] == 0.0 && segment.y[i] == 0.0 && segment.z[i] == 0.0 && segment.yaw[i] == 0.0;
+  };
+  while (count > 0 && is_zero(count - 1)) --count;
+  return count;
 }
 
 // 10 s^3 - 15 s^4 + 6 s^5 from `from` to `to`, s = t / duration.
@@ -52,19 +65,21 @@ Polynomial quintic_to_rest(double position, double velocity, double acceleration
 
 Reference evaluate(const PolynomialSegment& segment, double t_s) {
   const double t = std::clamp(t_s, 0.0, segment.duration_s);
-  const Derivatives x = horner(segment.x, t);
-  const Derivatives y = horner(segment.y, t);
-  const Derivatives z = horner(segment.z, t);
-  const Derivatives yaw = horner(segment.yaw, t);
+  const std::size_t count = coefficients(segment);
+  const Derivatives xy = horner(segment.x, segment.y, count, t);
+  const Derivatives z_yaw = horner(segment.z, segment.yaw, count, t);
+  const auto ned = [&](std::size_t order) {
+    return Eigen::Vector3d(xy[order][0], xy[order][1], z_yaw[order][0]);
+  };
   Reference reference;
-  reference.position_ned = {x[0], y[0], z[0]};
-  reference.velocity_ned = {x[1], y[1], z[1]};
-  reference.acceleration_ned = {x[2], y[2], z[2]};
-  reference.jerk_ned = {x[3], y[3], z[3]};
-  reference.snap_ned = {x[4], y[4], z[4]};
-  reference.yaw_rad = yaw[0];
-  reference.yaw_rate = yaw[1];
-  reference.yaw_acceleration = yaw[2];
+  reference.position_ned = ned(0);
+  reference.velocity_ned = ned(1);
+  reference.acceleration_ned = ned(2);
+  reference.jerk_ned = ned(3);
+  reference.snap_ned = ned(4);
+  reference.yaw_rad = z_yaw[0][1];
+  reference.yaw_rate = z_yaw[1][1];
+  reference.yaw_acceleration = z_yaw[2][1];
   return reference;
 }
 

@@ -36,7 +36,9 @@ void ClosedLoop::collect() {
 }
 
 void ClosedLoop::answer() {
-  const auto pose = mocap_path.pass(mocap.update(plant.truth()), plant.stamp_ns());
+  const plant::VehicleState& truth = plant.state();
+  const auto pose = mocap_path.pass(mocap.update(plant.stamp_ns(), truth.position_ned, truth.q_ned_from_frd),
+                                    plant.stamp_ns());
   if (pose && mocap_connected) pose_ = pose;
   if (!plant.imu()) return;
   if (pose_) controller.on_pose(*pose_);
@@ -46,11 +48,10 @@ void ClosedLoop::answer() {
   battery_.reset();
   rotor_speeds_.reset();
   command = controller.on_imu(*plant.imu());
-  if (const auto arrived = command_path.send(command, plant.stamp_ns()))
-    watchdog.accept(*arrived, plant.stamp_ns());
+  if (command_path.send(command, plant.stamp_ns())) watchdog.accept(command, plant.stamp_ns());
 }
 
-plant::RotorDrive ClosedLoop::drive() {
+const plant::RotorDrive& ClosedLoop::drive() {
   if (const auto arrived = command_path.arrived(plant.stamp_ns()))
     watchdog.accept(*arrived, plant.stamp_ns());
   return watchdog.drive(plant.stamp_ns());

@@ -53,7 +53,7 @@ class ClosedLoop {
  private:
   void collect();
   void answer();
-  plant::RotorDrive drive();
+  const plant::RotorDrive& drive();
 
   // The newest since the last answer.
   std::optional<plant::PoseSample> pose_;

@@ -30,11 +30,9 @@ CommandFault ActuatorWatchdog::accept(const ActuatorCommand& command, std::int64
   if (command.rotor_state != RotorState::kOff && command.rotor_state != RotorState::kRunning) {
     return CommandFault::kRotorState;
   }
-  RotorDrive drive;
-  drive.state = command.rotor_state;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(rotor_count_); ++i) {
+  const auto count = static_cast<std::size_t>(rotor_count_);
+  for (std::size_t i = 0; i < count; ++i) {
     if (!(command.throttle[i] >= 0.0 && command.throttle[i] <= 1.0)) return CommandFault::kThrottle;
-    drive.throttle[i] = command.throttle[i];
   }
   if (command.stamp_ns > now_ns) return CommandFault::kFuture;
   if (last_stamp_ns_ && command.stamp_ns < *last_stamp_ns_) return CommandFault::kStale;
@@ -42,7 +40,8 @@ CommandFault ActuatorWatchdog::accept(const ActuatorCommand& command, std::int64
   if (command.term < term_ && !expired(now_ns)) return CommandFault::kOvertaken;
   term_ = command.term;
   last_stamp_ns_ = command.stamp_ns;
-  drive_ = drive;
+  drive_.state = command.rotor_state;
+  for (std::size_t i = 0; i < count; ++i) drive_.throttle[i] = command.throttle[i];
   return CommandFault::kNone;
 }
 
@@ -54,8 +53,9 @@ ObeyedCommand ActuatorWatchdog::obeyed() const {
   return {true, last_stamp_ns_.has_value(), term_, last_stamp_ns_.value_or(0)};
 }
 
-RotorDrive ActuatorWatchdog::drive(std::int64_t now_ns) const {
-  return expired(now_ns) ? RotorDrive{} : drive_;
+const RotorDrive& ActuatorWatchdog::drive(std::int64_t now_ns) const {
+  static constexpr RotorDrive kOff;
+  return expired(now_ns) ? kOff : drive_;
 }
 
 }  // namespace swiftlet::plant

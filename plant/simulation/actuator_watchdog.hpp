@@ -31,7 +31,7 @@ class ActuatorWatchdog {
 
   // What the rotors are to do at now_ns: the last command, or off if it answers a sample older than the
   // time-out.
-  RotorDrive drive(std::int64_t now_ns) const;
+  const RotorDrive& drive(std::int64_t now_ns) const;
 
   // A command has been accepted, and it is older than the time-out.
   bool expired(std::int64_t now_ns) const;

@@ -18,15 +18,14 @@ CommandPath::CommandPath(const SimulationSettings& settings)
       faultless_(!faults_.has(FaultKind::kCommandsStop) && !faults_.has(FaultKind::kCommandsDelay)),
       delayed_(commands_under_way(faults_, settings.imu)) {}
 
-std::optional<ActuatorCommand> CommandPath::send_with_faults(const ActuatorCommand& command,
-                                                             std::int64_t now_ns) {
-  if (faults_.active(FaultKind::kCommandsStop, now_ns) != nullptr) return std::nullopt;
+bool CommandPath::send_with_faults(const ActuatorCommand& command, std::int64_t now_ns) {
+  if (faults_.active(FaultKind::kCommandsStop, now_ns) != nullptr) return false;
   if (const Fault* delay = faults_.active(FaultKind::kCommandsDelay, now_ns)) {
     delayed_.put(command, now_ns + std::llround(delay->delay_s * 1.0e9));
-    return std::nullopt;
+    return false;
   }
   delayed_.clear();  // overtaken
-  return command;
+  return true;
 }
 
 }  // namespace swiftlet::plant

@@ -15,10 +15,9 @@ class CommandPath {
  public:
   explicit CommandPath(const SimulationSettings& settings);
 
-  // A command is sent at now_ns. Returns what of it arrives at once: itself or nothing.
-  std::optional<ActuatorCommand> send(const ActuatorCommand& command, std::int64_t now_ns) {
-    if (faultless_) return command;
-    return send_with_faults(command, now_ns);
+  // A command is sent at now_ns. True if it arrives at once.
+  bool send(const ActuatorCommand& command, std::int64_t now_ns) {
+    return faultless_ || send_with_faults(command, now_ns);
   }
 
   // One that was sent before and arrives now.
@@ -28,7 +27,7 @@ class CommandPath {
   }
 
  private:
-  std::optional<ActuatorCommand> send_with_faults(const ActuatorCommand& command, std::int64_t now_ns);
+  bool send_with_faults(const ActuatorCommand& command, std::int64_t now_ns);
 
   FaultSchedule faults_;
   bool faultless_;

@@ -14,106 +14,121 @@ constexpr double kStepPerTimeConstant = 1.0 / 3.0;
 
 double square(double x) { return x * x; }
 
-// y + h k
-template <std::size_t kSize>
-[[gnu::always_inline]] inline std::array<double, kSize> moved(const std::array<double, kSize>& y, double h,
-                                                              const std::array<double, kSize>& k) {
-  std::array<double, kSize> out;
-  for (std::size_t i = 0; i < kSize; ++i) out[i] = y[i] + h * k[i];
-  return out;
-}
-
 }  // namespace
 
 // What battery and rotors do, for kRotors rotors, with what is constant over a step worked out. They do not
 // feel how the body moves.
 template <int kRotors, MotorForm kMotor>
 struct Dynamics::Drivetrain {
-  static constexpr std::size_t kN = kRotors;
-  static constexpr std::size_t kCharge = 0;
-  static constexpr std::size_t kSag = 1;
-  static constexpr std::size_t kSpeeds = 2;
-  static constexpr std::size_t kCurrents = kSpeeds + kN;
-  static constexpr std::size_t kSize = kSpeeds + (kMotor == MotorForm::kInductive ? 2 : 1) * kN;
-
-  // Plain doubles: with an optimiser at -O2 Eigen's small fixed-size arrays take twice the time.
-  using State = std::array<double, kSize>;
+  static constexpr std::size_t kPairs = (kRotors + 1) / 2;
+  using Rotors = std::array<Pair, kPairs>;
+  struct State {
+    double charge;
+    double sag;
+    double voltage;  // at the terminals: follows from charge and sag, but all of the next stage waits for it
+    Rotors speeds;
+    Rotors currents;  // with inductance
+  };
 
   const Dynamics& d;
   OpenCircuit open_circuit;
-  // Eq. (9): v_a^2 = v_a_gain v_s^2 + v_a_offset; a rotor that is off gets no voltage at all.
-  std::array<double, kN> v_a_gain{};
-  double v_a_offset = 0.0;
+  // Eq. (9): v_a^2 = v_a_gain v_s^2 + v_a_offset; a rotor that is off gets no voltage at all, nor does what stands
+  // beside the last of an odd number.
+  Rotors v_a_gain;
+  Rotors v_a_offset;
+  double voltage_per_current;  // V/(A s)
 
   Drivetrain(const Dynamics& dynamics, const RotorDrive& drive, const OpenCircuit& open_circuit_voltage)
       : d(dynamics), open_circuit(open_circuit_voltage) {
-    if (drive.state != RotorState::kRunning) return;
-    for (std::size_t i = 0; i < kN; ++i) v_a_gain[i] = d.esc_.gain * drive.throttle[i];
-    v_a_offset = d.esc_.offset_v2;
+    const bool running = drive.state == RotorState::kRunning;
+    const double gain = running ? d.esc_.gain : 0.0;
+    const double offset = running ? d.esc_.offset_v2 : 0.0;
+    for (std::size_t i = 0; i < kPairs; ++i) {
+      const Pair exists(1.0, 2 * i + 1 < kRotors ? 1.0 : 0.0);
+      v_a_gain[i] = gain * exists * pair(&drive.throttle[2 * i]);
+      v_a_offset[i] = offset * exists;
+    }
+    voltage_per_current =
+        open_circuit.slope * d.charge_per_current_ - d.battery_.internal_resistance_ohm * d.inverse_sag_time_;
   }
 
-  static State pack(const VehicleState& from) {
+  State pack(const VehicleState& from) const {
     State y;
-    y[kCharge] = from.state_of_charge;
-    y[kSag] = from.sag_v;
-    for (std::size_t i = 0; i < kN; ++i) y[kSpeeds + i] = from.rotor_speeds[i];
-    if constexpr (kMotor == MotorForm::kInductive) {
-      for (std::size_t i = 0; i < kN; ++i) y[kCurrents + i] = from.armature_currents[i];
+    y.charge = from.state_of_charge;
+    y.sag = from.sag_v;
+    y.voltage = open_circuit.voltage(y.charge) - y.sag;
+    for (std::size_t i = 0; i < kPairs; ++i) {
+      y.speeds[i] = pair(&from.rotor_speeds[2 * i]);
+      if constexpr (kMotor == MotorForm::kInductive) y.currents[i] = pair(&from.armature_currents[2 * i]);
     }
     return y;
   }
 
   static void unpack(const State& y, VehicleState& to) {
-    to.state_of_charge = std::max(y[kCharge], 0.0);
-    to.sag_v = y[kSag];
-    for (std::size_t i = 0; i < kN; ++i) to.rotor_speeds[i] = y[kSpeeds + i];
-    if constexpr (kMotor == MotorForm::kInductive) {
-      for (std::size_t i = 0; i < kN; ++i) to.armature_currents[i] = y[kCurrents + i];
+    to.state_of_charge = std::max(y.charge, 0.0);
+    to.sag_v = y.sag;
+    for (std::size_t i = 0; i < kPairs; ++i) {
+      store(y.speeds[i], &to.rotor_speeds[2 * i]);
+      if constexpr (kMotor == MotorForm::kInductive) store(y.currents[i], &to.armature_currents[2 * i]);
     }
+  }
+
+  // y + h k
+  [[gnu::always_inline]] static State moved(const State& y, double h, const State& k) {
+    State out;
+    out.charge = y.charge + h * k.charge;
+    out.sag = y.sag + h * k.sag;
+    out.voltage = y.voltage + h * k.voltage;
+    for (std::size_t i = 0; i < kPairs; ++i) {
+      out.speeds[i] = y.speeds[i] + h * k.speeds[i];
+      if constexpr (kMotor == MotorForm::kInductive) out.currents[i] = y.currents[i] + h * k.currents[i];
+    }
+    return out;
   }
 
   // Eq. (9)-(22), all rotors side by side.
   [[gnu::always_inline]] State derivative(const State& y) const {
     State dy;
-    const double v_s = std::max(open_circuit.voltage(y[kCharge]) - y[kSag], 0.0);
+    const double v_s = std::max(y.voltage, 0.0);
     const double inverse_v_s = v_s > 0.0 ? 1.0 / v_s : 0.0;
     const double v_s_squared = v_s * v_s;
-    double power = 0.0;
-    std::array<double, kN> powers;
-    for (std::size_t i = 0; i < kN; ++i) {
-      const double speed = y[kSpeeds + i];
-      const double v_a = std::sqrt(std::max(v_a_gain[i] * v_s_squared + v_a_offset, 0.0));
-      double current = (v_a - d.motor_.torque_constant * speed) * d.motor_.inverse_resistance;
+    Pair power = Pair::Zero();
+    for (std::size_t i = 0; i < kPairs; ++i) {
+      const Pair speed = y.speeds[i];
+      const Pair v_a = (v_a_gain[i] * v_s_squared + v_a_offset[i]).max(0.0).sqrt();
+      Pair current = (v_a - d.motor_.torque_constant * speed) * d.motor_.inverse_resistance;
       if constexpr (kMotor == MotorForm::kInductive) {
-        dy[kCurrents + i] = (current - y[kCurrents + i]) * d.inverse_electrical_time_;
-        current = y[kCurrents + i];
+        dy.currents[i] = (current - y.currents[i]) * d.inverse_electrical_time_;
+        current = y.currents[i];
       }
       if constexpr (kMotor == MotorForm::kReduced) {
-        const double steady = std::sqrt(d.steady_square_ + d.steady_gain_ * v_a) - d.steady_offset_;
-        dy[kSpeeds + i] = (steady - speed) * d.motor_.inverse_time_constant;
+        const Pair steady = (d.steady_square_ + d.steady_gain_ * v_a).sqrt() - d.steady_offset_;
+        dy.speeds[i] = (steady - speed) * d.motor_.inverse_time_constant;
       } else {
-        dy[kSpeeds + i] = speed_rate_from_current(d.motor_, current, speed);
+        dy.speeds[i] = {speed_rate_from_current(d.motor_, current[0], speed[0]),
+                        speed_rate_from_current(d.motor_, current[1], speed[1])};
       }
-      powers[i] = std::max(v_a * current, 0.0);
+      power += (v_a * current).max(0.0);
     }
-    for (std::size_t i = 0; i < kN; ++i) power += powers[i];
 
     // The ESCs pass on all the power that they draw, as in esc_supply_current().
-    const double drawn = d.battery_.electronics_current_a + power * inverse_v_s;
-    dy[kCharge] = drawn * d.charge_per_current_;
-    dy[kSag] = (d.battery_.internal_resistance_ohm * drawn - y[kSag]) * d.inverse_sag_time_;
+    const double idle = d.battery_.electronics_current_a;
+    const double total_power = power[0] + power[1];
+    const double drawn = idle + total_power * inverse_v_s;
+    dy.charge = drawn * d.charge_per_current_;
+    dy.sag = (d.battery_.internal_resistance_ohm * drawn - y.sag) * d.inverse_sag_time_;
+    dy.voltage = total_power * (inverse_v_s * voltage_per_current) +
+                 (idle * voltage_per_current + y.sag * d.inverse_sag_time_);
     return dy;
   }
 
   // Eq. (25)-(28)
   [[gnu::always_inline]] Wrench wrench(const State& y) const {
-    Wrench sum{0.0, d.push_moment_frd_.x(), d.push_moment_frd_.y(), d.push_moment_frd_.z()};
-    for (std::size_t i = 0; i < kN; ++i) {
-      const double speed_squared = square(y[kSpeeds + i]);
-      sum.lift += d.wrenches_[i].lift * speed_squared;
-      sum.roll += d.wrenches_[i].roll * speed_squared;
-      sum.pitch += d.wrenches_[i].pitch * speed_squared;
-      sum.yaw += d.wrenches_[i].yaw * speed_squared;
+    Wrench sum = d.push_;
+    for (std::size_t i = 0; i < kRotors; ++i) {
+      const double speed_squared = square(y.speeds[i / 2][i % 2]);
+      sum.lift_roll += d.wrenches_[i].lift_roll * speed_squared;
+      sum.pitch_yaw += d.wrenches_[i].pitch_yaw * speed_squared;
     }
     return sum;
   }
@@ -121,89 +136,72 @@ struct Dynamics::Drivetrain {
 
 // How the body moves under what the rotors give.
 struct Dynamics::RigidBody {
-  static constexpr std::size_t kPosition = 0;
-  static constexpr std::size_t kVelocity = 3;
-  static constexpr std::size_t kQuaternion = 6;  // w, x, y, z
-  static constexpr std::size_t kRates = 10;
-  static constexpr std::size_t kSize = 13;
-  using State = std::array<double, kSize>;
+  struct State {
+    Triple position_ned;
+    Triple velocity_ned;
+    Pair q_xy;
+    Pair q_zw;
+    Triple rates_frd;
+  };
 
   const Dynamics& d;
-  std::array<double, 3> drift;  // gravity, a push and the wind's part of the drag, m/s^2
+  Triple drift;  // gravity, a push and the wind's part of the drag, m/s^2
 
   RigidBody(const Dynamics& dynamics, const Eigen::Vector3d& wind_ned)
       : d(dynamics),
-        drift{d.drag_over_mass_ * wind_ned.x() + d.push_acceleration_ned_.x(),
-              d.drag_over_mass_ * wind_ned.y() + d.push_acceleration_ned_.y(),
+        drift{d.drag_over_mass_ * Pair(wind_ned.head<2>()) + d.push_acceleration_ned_.head<2>().array(),
               d.drag_over_mass_ * wind_ned.z() + d.push_acceleration_ned_.z() + kGravity} {}
 
   static State pack(const VehicleState& from) {
-    State y;
-    for (int i = 0; i < 3; ++i) {
-      const auto j = static_cast<std::size_t>(i);
-      y[kPosition + j] = from.position_ned[i];
-      y[kVelocity + j] = from.velocity_ned[i];
-      y[kRates + j] = from.body_rates_frd[i];
-    }
-    y[kQuaternion] = from.q_ned_from_frd.w();
-    y[kQuaternion + 1] = from.q_ned_from_frd.x();
-    y[kQuaternion + 2] = from.q_ned_from_frd.y();
-    y[kQuaternion + 3] = from.q_ned_from_frd.z();
-    return y;
+    const Eigen::Quaterniond& q = from.q_ned_from_frd;
+    return {triple(from.position_ned),
+            triple(from.velocity_ned),
+            {q.x(), q.y()},
+            {q.z(), q.w()},
+            triple(from.body_rates_frd)};
   }
 
   static void unpack(const State& y, VehicleState& to) {
-    for (int i = 0; i < 3; ++i) {
-      const auto j = static_cast<std::size_t>(i);
-      to.position_ned[i] = y[kPosition + j];
-      to.velocity_ned[i] = y[kVelocity + j];
-      to.body_rates_frd[i] = y[kRates + j];
-    }
-    const double scale = 1.0 / std::sqrt(square(y[kQuaternion]) + square(y[kQuaternion + 1]) +
-                                         square(y[kQuaternion + 2]) + square(y[kQuaternion + 3]));
-    to.q_ned_from_frd = Eigen::Quaterniond(y[kQuaternion] * scale, y[kQuaternion + 1] * scale,
-                                           y[kQuaternion + 2] * scale, y[kQuaternion + 3] * scale);
+    to.position_ned = vector(y.position_ned);
+    to.velocity_ned = vector(y.velocity_ned);
+    to.body_rates_frd = vector(y.rates_frd);
+    const double scale = 1.0 / std::sqrt((y.q_xy * y.q_xy + y.q_zw * y.q_zw).sum());
+    to.q_ned_from_frd =
+        Eigen::Quaterniond(y.q_zw[1] * scale, y.q_xy[0] * scale, y.q_xy[1] * scale, y.q_zw[0] * scale);
+  }
+
+  // y + h k
+  [[gnu::always_inline]] static State moved(const State& y, double h, const State& k) {
+    return {plant::moved(y.position_ned, h, k.position_ned), plant::moved(y.velocity_ned, h, k.velocity_ned),
+            y.q_xy + h * k.q_xy, y.q_zw + h * k.q_zw, plant::moved(y.rates_frd, h, k.rates_frd)};
   }
 
   [[gnu::always_inline]] State derivative(const State& y, const Wrench& wrench) const {
     State dy;
     // Eq. (1), (5)
-    const double q_w = y[kQuaternion];
-    const double q_x = y[kQuaternion + 1];
-    const double q_y = y[kQuaternion + 2];
-    const double q_z = y[kQuaternion + 3];
-    const double v_x = y[kVelocity];
-    const double v_y = y[kVelocity + 1];
-    const double v_z = y[kVelocity + 2];
-    dy[kPosition] = v_x;
-    dy[kPosition + 1] = v_y;
-    dy[kPosition + 2] = v_z;
-    dy[kVelocity] = drift[0] - d.drag_over_mass_ * v_x - wrench.lift * (2.0 * (q_x * q_z + q_w * q_y));
-    dy[kVelocity + 1] = drift[1] - d.drag_over_mass_ * v_y - wrench.lift * (2.0 * (q_y * q_z - q_w * q_x));
-    dy[kVelocity + 2] =
-        drift[2] - d.drag_over_mass_ * v_z - wrench.lift * (q_w * q_w - q_x * q_x - q_y * q_y + q_z * q_z);
+    dy.position_ned = y.velocity_ned;
+    const double q_z = y.q_zw[0];
+    const double q_w = y.q_zw[1];
+    const double lift = wrench.lift_roll[0];
+    const Pair z_axis_xy = 2.0 * (q_z * y.q_xy + q_w * clockwise(y.q_xy));
+    const Pair squares = y.q_zw * y.q_zw - y.q_xy * y.q_xy;
+    dy.velocity_ned.xy = drift.xy - d.drag_over_mass_ * y.velocity_ned.xy - lift * z_axis_xy;
+    dy.velocity_ned.z = drift.z - d.drag_over_mass_ * y.velocity_ned.z - lift * (squares[0] + squares[1]);
 
     // dq/dt = q (0, w) / 2
-    const double p = y[kRates];
-    const double q = y[kRates + 1];
-    const double r = y[kRates + 2];
-    dy[kQuaternion] = 0.5 * (-q_x * p - q_y * q - q_z * r);
-    dy[kQuaternion + 1] = 0.5 * (q_w * p + q_y * r - q_z * q);
-    dy[kQuaternion + 2] = 0.5 * (q_w * q + q_z * p - q_x * r);
-    dy[kQuaternion + 3] = 0.5 * (q_w * r + q_x * q - q_y * p);
+    const Pair rates_xy = y.rates_frd.xy;
+    const double p = rates_xy[0];
+    const double q = rates_xy[1];
+    const double r = y.rates_frd.z;
+    dy.q_xy = 0.5 * (q_w * rates_xy - q_z * clockwise(rates_xy) + r * clockwise(y.q_xy));
+    dy.q_zw = 0.5 * (y.q_xy[0] * Pair(q, -p) - y.q_xy[1] * rates_xy - r * Pair(-q_w, q_z));
 
     // Eq. (6): dw/dt = J^-1 (M - w x J w)
-    const Eigen::Matrix3d& inertia = d.inertia_;
-    const Eigen::Matrix3d& inverse = d.inverse_inertia_;
-    const double h_x = inertia(0, 0) * p + inertia(0, 1) * q + inertia(0, 2) * r;
-    const double h_y = inertia(1, 0) * p + inertia(1, 1) * q + inertia(1, 2) * r;
-    const double h_z = inertia(2, 0) * p + inertia(2, 1) * q + inertia(2, 2) * r;
-    const double m_x = wrench.roll - (q * h_z - r * h_y);
-    const double m_y = wrench.pitch - (r * h_x - p * h_z);
-    const double m_z = wrench.yaw - (p * h_y - q * h_x);
-    dy[kRates] = inverse(0, 0) * m_x + inverse(0, 1) * m_y + inverse(0, 2) * m_z;
-    dy[kRates + 1] = inverse(1, 0) * m_x + inverse(1, 1) * m_y + inverse(1, 2) * m_z;
-    dy[kRates + 2] = inverse(2, 0) * m_x + inverse(2, 1) * m_y + inverse(2, 2) * m_z;
+    const Triple h = product(d.inertia_, p, q, r);
+    const double m_x = wrench.lift_roll[1] - (q * h.z - r * h.xy[1]);
+    const double m_y = wrench.pitch_yaw[0] - (r * h.xy[0] - p * h.z);
+    const double m_z = wrench.pitch_yaw[1] - (p * h.xy[1] - q * h.xy[0]);
+    dy.rates_frd = product(d.inverse_inertia_, m_x, m_y, m_z);
     return dy;
   }
 };
@@ -213,8 +211,8 @@ Dynamics::Dynamics(const Vehicle& vehicle, const Supply& supply)
       max_step_s_(kStepPerTimeConstant * vehicle.motor.time_constant_s),
       inverse_mass_(1.0 / vehicle.mass_kg),
       drag_over_mass_(vehicle.linear_drag * inverse_mass_),
-      inertia_(vehicle.inertia),
-      inverse_inertia_(vehicle.inertia.inverse()),
+      inertia_(columns(vehicle.inertia)),
+      inverse_inertia_(columns(vehicle.inertia.inverse())),
       esc_(vehicle.esc),
       motor_(motor_dynamics(vehicle)),
       inverse_electrical_time_(motor_.has_current_state() ? vehicle.motor.armature_resistance_ohm /
@@ -231,9 +229,9 @@ Dynamics::Dynamics(const Vehicle& vehicle, const Supply& supply)
   for (std::size_t i = 0; i < vehicle.rotors.size(); ++i) {
     const RotorMount& mount = vehicle.rotors[i];
     const double yaw = mount.spin == Spin::kCounterClockwise ? vehicle.rotor.torque : -vehicle.rotor.torque;
-    sound_wrenches_[i] = {vehicle.rotor.thrust * inverse_mass_,
-                          -mount.position_frd.y() * vehicle.rotor.thrust,
-                          mount.position_frd.x() * vehicle.rotor.thrust, yaw};
+    sound_wrenches_[i] = {
+        {vehicle.rotor.thrust * inverse_mass_, -mount.position_frd.y() * vehicle.rotor.thrust},
+        {mount.position_frd.x() * vehicle.rotor.thrust, yaw}};
   }
   wrenches_ = sound_wrenches_;
   const std::vector<double>& charge = battery_.state_of_charge;
@@ -294,7 +292,7 @@ void Dynamics::advance_as(VehicleState& state, const RotorDrive& drive, const Ei
   const double h = dt / count;
   const std::array<double, 4> ahead = {0.5 * h, 0.5 * h, h, 0.0};  // to where the next stage looks
   const std::array<double, 4> weight = {h / 6.0, h / 3.0, h / 3.0, h / 6.0};
-  typename Rotors::State x = Rotors::pack(state);
+  typename Rotors::State x = rotors.pack(state);
   RigidBody::State y = RigidBody::pack(state);
   for (int i = 0; i < count; ++i) {
     typename Rotors::State x_end = x;
@@ -305,10 +303,10 @@ void Dynamics::advance_as(VehicleState& state, const RotorDrive& drive, const Ei
       const Wrench wrench = rotors.wrench(x_stage);
       const typename Rotors::State x_rate = rotors.derivative(x_stage);
       const RigidBody::State y_rate = body.derivative(y_stage, wrench);
-      x_end = moved(x_end, weight[stage], x_rate);
-      y_end = moved(y_end, weight[stage], y_rate);
-      x_stage = moved(x, ahead[stage], x_rate);
-      y_stage = moved(y, ahead[stage], y_rate);
+      x_end = Rotors::moved(x_end, weight[stage], x_rate);
+      y_end = RigidBody::moved(y_end, weight[stage], y_rate);
+      x_stage = Rotors::moved(x, ahead[stage], x_rate);
+      y_stage = RigidBody::moved(y, ahead[stage], y_rate);
     }
     x = x_end;
     y = y_end;
@@ -319,12 +317,11 @@ void Dynamics::advance_as(VehicleState& state, const RotorDrive& drive, const Ei
 
 void Dynamics::disturb(const Disturbance& disturbance) {
   push_acceleration_ned_ = inverse_mass_ * disturbance.force_ned;
-  push_moment_frd_ = disturbance.moment_frd;
+  push_ = {{0.0, disturbance.moment_frd.x()}, {disturbance.moment_frd.y(), disturbance.moment_frd.z()}};
   supply_drop_v_ = disturbance.supply_drop_v;
   for (std::size_t i = 0; i < wrenches_.size(); ++i) {
     const double factor = disturbance.rotor_factors[i];
-    const Wrench& sound = sound_wrenches_[i];
-    wrenches_[i] = {factor * sound.lift, factor * sound.roll, factor * sound.pitch, factor * sound.yaw};
+    wrenches_[i] = {factor * sound_wrenches_[i].lift_roll, factor * sound_wrenches_[i].pitch_yaw};
   }
 }
 
@@ -374,7 +371,7 @@ Eigen::Vector3d Dynamics::specific_force_frd(const VehicleState& state,
                                              const Eigen::Vector3d& wind_ned) const {
   double lift = 0.0;
   for (std::size_t i = 0; i < wrenches_.size(); ++i)
-    lift += wrenches_[i].lift * square(state.rotor_speeds[i]);
+    lift += wrenches_[i].lift_roll[0] * square(state.rotor_speeds[i]);
   Eigen::Vector3d thrust(0.0, 0.0, -lift);
   if (drag_over_mass_ == 0.0 && push_acceleration_ned_.isZero(0.0)) return thrust;
   const Eigen::Vector3d drag = drag_over_mass_ * (state.velocity_ned - wind_ned) - push_acceleration_ned_;

@@ -18,6 +18,7 @@
 
 #include "plant/model/motor.hpp"
 #include "plant/model/vehicle.hpp"
+#include "plant/simulation/pairs.hpp"
 #include "plant/simulation/vehicle_state.hpp"
 
 namespace swiftlet::plant {
@@ -77,10 +78,8 @@ class Dynamics {
   struct Drivetrain;
   struct RigidBody;
   struct Wrench {
-    double lift = 0.0;  // over the vehicle's mass, m/s^2, against body z
-    double roll = 0.0;  // N m
-    double pitch = 0.0;
-    double yaw = 0.0;
+    Pair lift_roll = Pair::Zero();  // lift over the vehicle's mass, m/s^2, against body z; moment, N m
+    Pair pitch_yaw = Pair::Zero();  // N m
   };
   // Open-circuit voltage as a straight line over the state of charge: that of the table's segment where a
   // step begins.
@@ -107,12 +106,12 @@ class Dynamics {
 
   double inverse_mass_;
   double drag_over_mass_;
-  Eigen::Matrix3d inertia_;
-  Eigen::Matrix3d inverse_inertia_;
+  TripleColumns inertia_;
+  TripleColumns inverse_inertia_;
   std::array<Wrench, kMaxRotors> sound_wrenches_;  // of each rotor, over Omega^2, without a disturbance
   std::array<Wrench, kMaxRotors> wrenches_;
   Eigen::Vector3d push_acceleration_ned_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d push_moment_frd_ = Eigen::Vector3d::Zero();
+  Wrench push_;
   double supply_drop_v_ = 0.0;
 
   Esc esc_;

@@ -32,14 +32,15 @@ Mocap::Mocap(const MocapSettings& settings, std::uint64_t seed)
       dropouts_(seed, streams::kMocapDropouts),
       in_flight_(schedule_.capacity()) {}
 
-std::optional<PoseSample> Mocap::update(const TruthSample& truth) {
-  const MocapSchedule::Events events = schedule_.advance(truth.stamp_ns);
+std::optional<PoseSample> Mocap::update(std::int64_t stamp_ns, const Eigen::Vector3d& position_ned,
+                                        const Eigen::Quaterniond& q_ned_from_frd) {
+  const MocapSchedule::Events events = schedule_.advance(stamp_ns);
   if (events.starts_anew) {
     dropout_end_ns_.reset();
     count_ = 0;
   }
   if (events.exposes) {
-    in_flight_[(oldest_ + count_) % in_flight_.size()] = expose(truth);
+    in_flight_[(oldest_ + count_) % in_flight_.size()] = expose(stamp_ns, position_ned, q_ned_from_frd);
     ++count_;
   }
   if (!events.delivers) return std::nullopt;
@@ -49,17 +50,18 @@ std::optional<PoseSample> Mocap::update(const TruthSample& truth) {
   return due;
 }
 
-PoseSample Mocap::expose(const TruthSample& truth) {
+PoseSample Mocap::expose(std::int64_t stamp_ns, const Eigen::Vector3d& position_ned,
+                         const Eigen::Quaterniond& q_ned_from_frd) {
   PoseSample pose;
-  pose.stamp_ns = truth.stamp_ns;
+  pose.stamp_ns = stamp_ns;
   pose.sequence = ++sequence_;
-  pose.tracked = !in_dropout(truth.stamp_ns);
+  pose.tracked = !in_dropout(stamp_ns);
   // Drawn for untracked frames too: a dropout does not change the frames after it.
   const Eigen::Vector3d position_error = settings_.position_error_m * error(position_noise_);
   const Eigen::Vector3d orientation_error = settings_.orientation_error_rad * error(orientation_noise_);
   if (!pose.tracked) return pose;
-  pose.position_ned = truth.position_ned + position_error;
-  pose.q_ned_from_frd = truth.q_ned_from_frd * misalignment_ * small_rotation(orientation_error);
+  pose.position_ned = position_ned + position_error;
+  pose.q_ned_from_frd = q_ned_from_frd * misalignment_ * small_rotation(orientation_error);
   return pose;
 }
 

@@ -26,10 +26,15 @@ class Mocap {
   // Takes in what is true at a stamp; hands back the oldest frame that is due and has not been handed out.
   // Frames that fall into a gap between truth samples are exposed, once, at its end. A stamp that is not
   // newer than the last starts the schedule anew: the plant has been restarted; sequences go on.
-  std::optional<PoseSample> update(const TruthSample& truth);
+  std::optional<PoseSample> update(std::int64_t stamp_ns, const Eigen::Vector3d& position_ned,
+                                   const Eigen::Quaterniond& q_ned_from_frd);
+  std::optional<PoseSample> update(const TruthSample& truth) {
+    return update(truth.stamp_ns, truth.position_ned, truth.q_ned_from_frd);
+  }
 
  private:
-  PoseSample expose(const TruthSample& truth);
+  PoseSample expose(std::int64_t stamp_ns, const Eigen::Vector3d& position_ned,
+                    const Eigen::Quaterniond& q_ned_from_frd);
   Eigen::Vector3d error(RandomStream& noise) const;  // of size 1
   bool in_dropout(std::int64_t stamp_ns);
 

@@ -63,7 +63,7 @@ void attitude_moments(benchmark::State& state, AttitudeErrorKind error) {
   const AttitudeController controller(vehicle, attitude, design(vehicle, settings()));
   AttitudeReference reference;
   reference.body_z_ned = quaternion_from_euler({0.1, -0.05, 0.3}) * Vector3d::UnitZ();
-  reference.yaw_rad = 0.3;
+  reference.heading = 0.3;
   Eigen::Quaterniond q = quaternion_from_euler({0.12, -0.04, 0.31});
   Vector3d rates(0.2, -0.3, 0.1);
   Vector3d moment(1e-4, -2e-4, 1e-5);
@@ -88,7 +88,7 @@ void outer_loop(benchmark::State& state) {
     const Reference reference = evaluate(segment, t);
     const PositionCommand command = controller.step(position, Vector3d::Zero(), reference, 0.002, false);
     benchmark::DoNotOptimize(thrust_attitude(vehicle.mass_kg, command.acceleration_ned, 0.7));
-    benchmark::DoNotOptimize(reference_motion(vehicle.mass_kg, reference));
+    benchmark::DoNotOptimize(reference_motion(vehicle.mass_kg, reference, reference.yaw_rad));
   }
 }
 BENCHMARK(outer_loop);

@@ -3,17 +3,6 @@
 #include <cerrno>
 #include <cstdlib>
 
-// glibc's own entry points, behind the names that are interposed below.
-// NOLINTBEGIN(bugprone-reserved-identifier)
-extern "C" {
-void* __libc_malloc(std::size_t size);
-void* __libc_calloc(std::size_t count, std::size_t size);
-void* __libc_realloc(void* old, std::size_t size);
-void* __libc_memalign(std::size_t alignment, std::size_t size);
-void __libc_free(void* block);
-}
-// NOLINTEND(bugprone-reserved-identifier)
-
 namespace {
 
 thread_local bool guarded = false;
@@ -24,6 +13,33 @@ void count_call() {
 }
 
 }  // namespace
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+
+// The sanitizer interposes malloc itself, and tells. Debian's GCC brings its runtime without the header.
+// NOLINTNEXTLINE(bugprone-reserved-identifier)
+extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*on_malloc)(const volatile void*, std::size_t),
+                                                         void (*on_free)(const volatile void*));
+
+namespace {
+
+[[maybe_unused]] const int kInstalled = __sanitizer_install_malloc_and_free_hooks(
+    [](const volatile void*, std::size_t) { count_call(); }, [](const volatile void*) { count_call(); });
+
+}  // namespace
+
+#else
+
+// glibc's own entry points, behind the names that are interposed below.
+// NOLINTBEGIN(bugprone-reserved-identifier)
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* old, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+void __libc_free(void* block);
+}
+// NOLINTEND(bugprone-reserved-identifier)
 
 extern "C" {
 
@@ -58,6 +74,8 @@ void free(void* block) {
 }
 
 }  // extern "C"
+
+#endif
 
 namespace swiftlet::test {
 

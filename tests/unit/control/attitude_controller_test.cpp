@@ -53,7 +53,7 @@ struct Loops {
 AttitudeReference reference_at(const Vector3d& euler) {
   AttitudeReference reference;
   reference.body_z_ned = quaternion_from_euler(euler) * Vector3d::UnitZ();
-  reference.yaw_rad = euler.z();
+  reference.heading = euler.z();
   return reference;
 }
 
@@ -83,10 +83,10 @@ TEST_P(AttitudeControllerTest, LinearisesTheDoubleIntegrator) {
     reference.body_rates = any(3.0);
     reference.body_accelerations = any(20.0);
     reference.body_jerks = any(50.0);
-    Vector3d error = euler_error(q, reference.body_z_ned, reference.yaw_rad);
+    Vector3d error = euler_error(q, reference.body_z_ned, reference.heading.yaw_rad);
     Matrix3d turn = Matrix3d::Identity();
     if (GetParam() == AttitudeErrorKind::kRotation) {
-      const RotationError rotation = rotation_error(q, reference.body_z_ned, reference.yaw_rad);
+      const RotationError rotation = rotation_error(q, reference.body_z_ned, reference.heading);
       error = rotation.angle;
       turn = rotation.r_frd_from_reference;
     }

@@ -38,7 +38,7 @@ class Tumble {
     air.ground.present = false;
     plant::PlantSimulation plant(vehicle_, air, 1, start);
     AttitudeReference level;
-    level.yaw_rad = 0.5;
+    level.heading = 0.5;
     double tilted_s = 0.0;
     while (plant.stamp_ns() < static_cast<std::int64_t>(kSpan_s * 1e9)) {
       const plant::TruthSample truth = plant.truth();

@@ -112,7 +112,7 @@ TEST_F(ThrustAttitudeTest, ReferenceThrustIsTheMapOfItsAcceleration) {
     const Reference r = evaluate(lively_segment(generator_), 0.5);
     const ThrustAttitude map = attitude_on(r);
     ASSERT_FALSE(map.limited);
-    EXPECT_NEAR(reference_motion(kMass, r).thrust_n, map.thrust_n, 1e-14);
+    EXPECT_NEAR(reference_motion(kMass, r, r.yaw_rad).thrust_n, map.thrust_n, 1e-14);
   }
 }
 
@@ -121,7 +121,10 @@ TEST_F(ThrustAttitudeTest, ReferenceRatesAgreeWithFiniteDifferences) {
   double fastest = 0.0;
   for (int trial = 0; trial < 100; ++trial) {
     const PolynomialSegment segment = lively_segment(generator_);
-    const auto at = [&](double t) { return reference_motion(kMass, evaluate(segment, t)); };
+    const auto at = [&](double t) {
+      const Reference r = evaluate(segment, t);
+      return reference_motion(kMass, r, r.yaw_rad);
+    };
     const auto q = [&](double t) {
       const Reference r = evaluate(segment, t);
       return Quaterniond(attitude_along(attitude_on(r).body_z_ned, r.yaw_rad));
@@ -149,7 +152,7 @@ TEST_F(ThrustAttitudeTest, ReferenceThatFallsFreelyHasNoDerivatives) {
   r.acceleration_ned = {0.0, 0.0, plant::kGravity};
   r.jerk_ned = {1.0, 2.0, 3.0};
   r.snap_ned = {4.0, 5.0, 6.0};
-  const ReferenceMotion out = reference_motion(kMass, r);
+  const ReferenceMotion out = reference_motion(kMass, r, r.yaw_rad);
   EXPECT_NEAR(out.thrust_n, kMinimumLift * kMass * plant::kGravity, 1e-15);
   EXPECT_EQ(out.body_rates, Vector3d::Zero());
   EXPECT_EQ(out.body_accelerations, Vector3d::Zero());

@@ -1,0 +1,18 @@
+// A yaw angle with its cosine and sine, for the steps that need them more than once.
+#pragma once
+
+#include <cmath>
+
+namespace swiftlet::control {
+
+struct Heading {
+  Heading() = default;
+  Heading(double yaw)  // NOLINT(google-explicit-constructor)
+      : yaw_rad(yaw), cosine(std::cos(yaw)), sine(std::sin(yaw)) {}
+
+  double yaw_rad = 0.0;
+  double cosine = 1.0;
+  double sine = 0.0;
+};
+
+}  // namespace swiftlet::control
