@@ -35,10 +35,11 @@
 #include "swiftlet_msgs/msg/TrajectoryPubSubTypes.h"
 #include "swiftlet_msgs/msg/VehicleInfoPubSubTypes.h"
 
-#include "services/comms/awakening.hpp"
+#include "services/comms/lookout.hpp"
 #include "services/comms/membership.hpp"
 #include "services/comms/participant_qos.hpp"
 #include "services/comms/profiles.hpp"
+#include "services/comms/reunions.hpp"
 #include "services/comms/shared_memory.hpp"
 
 // Each message type that is a topic's.
@@ -83,19 +84,21 @@ void check(const NodeSettings& settings) {
 
 }  // namespace
 
-// A process that was stopped for longer than the lease counts as dead with its peers, which forget its endpoints. It may itself
-// remember theirs, and then Fast DDS 2.9 does not always bring them together again. So it joins the domain anew, with all that it
-// publishes and subscribes.
+constexpr std::chrono::milliseconds kReunionPatience{1000};
+constexpr std::chrono::milliseconds kLookPeriod{250};
+
 struct Node::Impl final : public dds::DomainParticipantListener {
+  using Meetings = Reunions<rtps::GuidPrefix_t>;
+
   explicit Impl(const NodeSettings& node_settings) : settings(node_settings) {
     check(settings);
     if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
     membership = std::make_unique<Membership>(settings, this);
-    awakening.emplace(kLivelinessLease - kLivelinessPeriod, [this](auto away) { return rejoin(away); });
+    lookout.emplace(kLookPeriod, [this] { look_after_reunions(); });
   }
 
   ~Impl() override {
-    awakening.reset();
+    lookout.reset();
     membership.reset();
     if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
   }
@@ -114,21 +117,25 @@ struct Node::Impl final : public dds::DomainParticipantListener {
     endpoints.erase(std::remove(endpoints.begin(), endpoints.end(), endpoint), endpoints.end());
   }
 
-  bool rejoin(std::chrono::milliseconds away) {
+  // Where a peer came back without its endpoints, this process leaves the domain and joins it anew, with all that it publishes and
+  // subscribes; nobody takes it for the one that was there.
+  void look_after_reunions() {
+    {
+      const std::lock_guard<std::mutex> lock(peers_mutex);
+      if (!reunions.failed(std::chrono::steady_clock::now(), kReunionPatience) && !away) return;
+    }
     const std::lock_guard<std::mutex> lock(membership_mutex);
     leave();
     try {
       membership = std::make_unique<Membership>(settings, this);
       for (Endpoint* const endpoint : endpoints) endpoint->join(*membership);
+      if (!away) spdlog::warn("a peer came back and could not be heard: joined the network anew");
+      away = false;
     } catch (const std::runtime_error& error) {
-      spdlog::error("was stopped for {:.1f} s, and cannot come back to the network yet: {}",
-                    1e-3 * static_cast<double>(away.count()), error.what());
+      if (!away) spdlog::error("cannot join the network anew, trying again: {}", error.what());
+      away = true;
       leave();
-      return false;
     }
-    spdlog::warn("was stopped for {:.1f} s: joined the network anew",
-                 1e-3 * static_cast<double>(away.count()));
-    return true;
   }
   void leave() {
     if (membership == nullptr) return;
@@ -136,6 +143,7 @@ struct Node::Impl final : public dds::DomainParticipantListener {
     membership.reset();
     const std::lock_guard<std::mutex> lock(peers_mutex);
     peers.clear();
+    reunions.clear();
   }
 
   template <class T>
@@ -152,6 +160,7 @@ struct Node::Impl final : public dds::DomainParticipantListener {
         if (vehicle_of(info.info.m_userData.dataVec()) != settings.vehicle) return;
         const std::string name = info.info.m_participantName.c_str();
         peers[info.info.m_guid] = name;
+        reunions.came(info.info.m_guid.guidPrefix, std::chrono::steady_clock::now());
         if (peer_callback) peer_callback({name, true, false});
         break;
       }
@@ -161,6 +170,8 @@ struct Node::Impl final : public dds::DomainParticipantListener {
         if (peer == peers.end()) return;
         const PeerEvent event{peer->second, false,
                               info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT};
+        event.said_goodbye ? reunions.gone(info.info.m_guid.guidPrefix)
+                           : reunions.lost(info.info.m_guid.guidPrefix);
         peers.erase(peer);
         if (peer_callback) peer_callback(event);
         break;
@@ -168,6 +179,20 @@ struct Node::Impl final : public dds::DomainParticipantListener {
       case rtps::ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT:
         break;
     }
+  }
+
+  void on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& info) override {
+    if (info.status == rtps::WriterDiscoveryInfo::DISCOVERED_WRITER)
+      note_endpoint(info.info.guid(), Meetings::kWriter);
+  }
+  void on_subscriber_discovery(dds::DomainParticipant*, rtps::ReaderDiscoveryInfo&& info) override {
+    if (info.status == rtps::ReaderDiscoveryInfo::DISCOVERED_READER)
+      note_endpoint(info.info.guid(), Meetings::kReader);
+  }
+  void note_endpoint(const rtps::GUID_t& guid, Meetings::Kind kind) {
+    const std::lock_guard<std::mutex> lock(peers_mutex);
+    const rtps::GUID_t peer(guid.guidPrefix, rtps::c_EntityId_RTPSParticipant);
+    if (peers.count(peer) > 0) reunions.has(guid.guidPrefix, kind);
   }
 
   const NodeSettings settings;
@@ -180,7 +205,10 @@ struct Node::Impl final : public dds::DomainParticipantListener {
   std::map<rtps::GUID_t, std::string> peers;
   std::function<void(const PeerEvent&)> peer_callback;
 
-  std::optional<Awakening> awakening;
+  Meetings reunions;
+
+  bool away = false;  // it could not join anew
+  std::optional<Lookout> lookout;
 };
 
 namespace {
