@@ -76,6 +76,7 @@ class Bench {
       if (data_.inertia[axis]) run(kInertiaNames[axis], [&] { inertia(axis); });
     }
     keep_friction_positive();
+    keep_inertia_possible();
     return std::move(out_);
   }
 
@@ -210,7 +211,39 @@ class Bench {
     out_.sources["motor.armature_resistance"] = "estimate: K2 K3 / k_Q, Eq. (21) without friction";
   }
 
+  // A flat vehicle's largest moment is nearly the sum of the others, which no body exceeds; noise alone may then put it beyond.
+  // The nearest that is possible is taken, by the estimates' variances; moments that were not measured give way first.
+  void keep_inertia_possible() {
+    if (!out_.inertia[0] && !out_.inertia[1] && !out_.inertia[2]) return;
+    Eigen::Vector3d moments = out_.vehicle.inertia.diagonal();
+    Eigen::Index largest = 0;
+    moments.maxCoeff(&largest);
+    const double beyond = 2.0 * moments[largest] - moments.sum();
+    if (beyond <= 0.0) return;
+    const bool all = out_.inertia[0] && out_.inertia[1] && out_.inertia[2];
+    Eigen::Vector3d variances = Eigen::Vector3d::Zero();
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const std::optional<Experiment>& found = out_.inertia[static_cast<std::size_t>(i)];
+      if (all) {
+        variances[i] = found->covariance(0, 0);
+      } else if (!found) {
+        variances[i] = moments[i] * moments[i];
+      }
+    }
+    if (all && beyond > kChanceDeviations * std::sqrt(variances.sum()))
+      return;  // no chance: for validate() to tell
+    for (Eigen::Index i = 0; i < 3; ++i)
+      moments[i] += (i == largest ? -1.0 : 1.0) * beyond * variances[i] / variances.sum();
+    out_.vehicle.inertia.diagonal() = moments;
+    out_.warnings.push_back(std::string(kInertiaSymbols[static_cast<std::size_t>(largest)]) + " came out " +
+                            shown(beyond) +
+                            " kg*m^2 above the sum of the other moments, which no body exceeds: " +
+                            (all ? "the nearest that is possible, within what chance gives, is taken"
+                                 : "those that were not measured are moved"));
+  }
+
   static constexpr double kAgreement = 0.05;
+  static constexpr double kChanceDeviations = 4.0;
 
   const BenchData& data_;
   const BenchProgress& progress_;

@@ -78,6 +78,41 @@ TEST(Bench, LetsAResistanceThatWasNotMeasuredGiveWay) {
   EXPECT_TRUE(plant::validate(found.vehicle).empty());
 }
 
+// KayLion's moments leave 1 % to the limit: noise of the periods alone goes beyond it.
+TEST(Bench, TakesThePossibleInertiaNearest) {
+  int beyond = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    BenchData data;
+    data.inertia = bench_of(kaylion(), 0.01, seed).inertia;
+    const BenchIdentification found = identify_bench(data, kaylion());
+    EXPECT_TRUE(plant::validate(found.vehicle).empty()) << seed;
+    if (!contains(found.warnings, "which no body exceeds")) continue;
+    ++beyond;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto axis = static_cast<Eigen::Index>(i);
+      const Estimate& estimate = found.inertia[i]->estimates.front();
+      EXPECT_NEAR(found.vehicle.inertia(axis, axis), estimate.value, 2.0 * estimate.half_width);
+    }
+  }
+  EXPECT_GT(beyond, 0);
+}
+
+TEST(Bench, LeavesAnImpossibleInertiaToBeRefused) {
+  BenchData data;
+  data.inertia = bench_of(kaylion(), 0.002).inertia;
+  data.inertia[2]->bifilar->period_s = tests::times(data.inertia[2]->bifilar->period_s, 1.2);
+  EXPECT_FALSE(plant::validate(identify_bench(data, kaylion()).vehicle).empty());
+}
+
+TEST(Bench, MovesMomentsThatWereNotMeasured) {
+  BenchData data;
+  data.inertia[2] = bench_of(kaylion(), 0.0).inertia[2];
+  data.inertia[2]->bifilar->period_s = tests::times(data.inertia[2]->bifilar->period_s, 1.2);
+  const BenchIdentification found = identify_bench(data, kaylion());
+  EXPECT_TRUE(plant::validate(found.vehicle).empty());
+  EXPECT_NEAR(found.vehicle.inertia(2, 2), 1.44 * 8.8e-5, 1e-10);
+}
+
 TEST(Bench, SeesThatThrustOverThrottleIsOfAnotherSetUp) {
   BenchData data = bench_of(other(), 0.005);
   EXPECT_TRUE(contains(identify_bench(data, kaylion()).throttle_thrust->findings, "closes"));
