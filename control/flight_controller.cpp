@@ -83,6 +83,7 @@ struct FlightController::Loops {
   Allocator::Supply supply;
   plant::ActuatorCommand command;
   Reference reference;
+  Heading heading;  // of the reference
   AttitudeSetpoint setpoint;
   Status status;
 };
@@ -184,7 +185,8 @@ void FlightController::Loops::fly(const Directive& directive, double dt_s) {
       vehicle.mass_kg, wanted.acceleration_ned - disturbance.acceleration_ned(), max_tilt_tangent);
   AttitudeReference inner;
   inner.body_z_ned = outer.body_z_ned;
-  inner.heading = reference.yaw_rad;
+  if (heading.yaw_rad != reference.yaw_rad) heading = reference.yaw_rad;
+  inner.heading = heading;
   double thrust_n = outer.thrust_n;
   if (settings.attitude.feed_forward) {
     const ReferenceMotion on_reference = reference_motion(vehicle.mass_kg, reference, inner.heading);

@@ -131,6 +131,13 @@ Wrench Allocator::sanitised(const Wrench& wanted, bool& invalid) const {
 }
 
 Allocation Allocator::allocate(const Wrench& wanted, const Supply& supply) const {
+  return count_ == 4 ? allocate_to<4>(wanted, supply) : allocate_to<0>(wanted, supply);
+}
+
+// kCount: of the rotors, known to the compiler; 0: count_.
+template <int kCount>
+Allocation Allocator::allocate_to(const Wrench& wanted, const Supply& supply) const {
+  const int count = kCount > 0 ? kCount : count_;
   Allocation out;
   out.invalid_input = !supply.plausible;
   const Wrench wrench = within_bound(wanted) ? wanted : sanitised(wanted, out.invalid_input);
@@ -138,21 +145,21 @@ Allocation Allocator::allocate(const Wrench& wanted, const Supply& supply) const
 
   const double slack = kFitTolerance * limits.high;
   PerRotor tilt;
-  for (int i = 0; i < count_; ++i) {
+  for (int i = 0; i < count; ++i) {
     const std::size_t k = index(i);
     tilt[k] = for_roll_[k] * wrench.moment_frd.x() + for_pitch_[k] * wrench.moment_frd.y();
     out.thrust_n[k] = tilt[k] + for_thrust_[k] * wrench.thrust_n + for_yaw_[k] * wrench.moment_frd.z();
     out.saturated |= out.thrust_n[k] < limits.low - slack || out.thrust_n[k] > limits.high + slack;
   }
   if (out.saturated) fit(wrench, tilt, limits, out.thrust_n);
-  for (int i = 0; i < count_; ++i) {
+  for (int i = 0; i < count; ++i) {
     const std::size_t k = index(i);
-    const double thrust_n = std::clamp(out.thrust_n[k], limits.low, limits.high);
+    const double thrust_n = std::min(std::max(out.thrust_n[k], limits.low), limits.high);
     const double speed_squared = thrust_n * square_per_thrust_;                           // Eq. (25)
     const double v_a = motor_.k2 * std::sqrt(speed_squared) + motor_.k3 * speed_squared;  // Eq. (22)
     const double throttle = (v_a * v_a - esc_.offset_v2) * supply.throttle_per_square;    // Eq. (9)
     out.thrust_n[k] = thrust_n;
-    out.throttle[k] = std::clamp(throttle, 0.0, 1.0);
+    out.throttle[k] = std::min(std::max(throttle, 0.0), 1.0);
   }
   return out;
 }

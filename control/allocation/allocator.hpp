@@ -71,6 +71,8 @@ class Allocator {
     Interval slope;
   };
 
+  template <int kCount>
+  Allocation allocate_to(const Wrench& wanted, const Supply& supply) const;
   double thrust_at(double supply_voltage_v, double throttle) const;
   bool within_bound(const Wrench& wanted) const;
   Wrench sanitised(const Wrench& wanted, bool& invalid) const;

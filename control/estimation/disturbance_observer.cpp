@@ -1,5 +1,7 @@
 #include "control/estimation/disturbance_observer.hpp"
 
+#include <cmath>
+
 namespace swiftlet::control {
 
 void DisturbanceObserver::step(double dt_s, const Eigen::Vector3d& specific_force_frd,
@@ -9,8 +11,8 @@ void DisturbanceObserver::step(double dt_s, const Eigen::Vector3d& specific_forc
   const Eigen::Vector3d unexplained_ned = q_ned_from_frd * unexplained_frd;
   if (!unexplained_ned.allFinite()) return;
   acceleration_ned_ += turned / (1.0 + turned) * (unexplained_ned - acceleration_ned_);
-  const double length = acceleration_ned_.norm();
-  if (length > settings_.limit) acceleration_ned_ *= settings_.limit / length;
+  const double squared = acceleration_ned_.squaredNorm();
+  if (squared > settings_.limit * settings_.limit) acceleration_ned_ *= settings_.limit / std::sqrt(squared);
 }
 
 }  // namespace swiftlet::control

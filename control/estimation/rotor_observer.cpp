@@ -20,15 +20,31 @@ RotorObserver::RotorObserver(const plant::Vehicle& vehicle)
       count_(vehicle.rotor_count()) {}
 
 void RotorObserver::step(double dt_s, const plant::ActuatorCommand& command, double supply_voltage_v) {
-  const double kept = std::exp(-dt_s / motor_.time_constant_s);
-  const bool running = command.rotor_state == plant::RotorState::kRunning;
-  for (int i = 0; i < count_; ++i) {
-    const auto n = static_cast<std::size_t>(i);
-    const double v_a = running ? plant::motor_voltage(esc_, supply_voltage_v, command.throttle[n]) : 0.0;
-    const double steady = plant::steady_speed_from_voltage(motor_, v_a);
-    speeds_[n] = steady + kept * (speeds_[n] - steady);
+  if (dt_s != kept_for_s_) {
+    kept_for_s_ = dt_s;
+    kept_ = std::exp(-dt_s / motor_.time_constant_s);
   }
-  update_wrench();
+  if (command.rotor_state != plant::RotorState::kRunning) {
+    for (double& speed : speeds_) speed *= kept_;
+    update_wrench<0>();
+  } else if (count_ == 4) {
+    run_on<4>(command, supply_voltage_v);
+  } else {
+    run_on<0>(command, supply_voltage_v);
+  }
+}
+
+// kCount: of the rotors, known to the compiler; 0: count_.
+template <int kCount>
+void RotorObserver::run_on(const plant::ActuatorCommand& command, double supply_voltage_v) {
+  const int count = kCount > 0 ? kCount : count_;
+  for (int i = 0; i < count; ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    const double v_a = plant::motor_voltage(esc_, supply_voltage_v, command.throttle[n]);
+    const double steady = plant::steady_speed_from_voltage(motor_, v_a);
+    speeds_[n] = steady + kept_ * (speeds_[n] - steady);
+  }
+  update_wrench<kCount>();
 }
 
 void RotorObserver::correct(const plant::RotorSpeedSample& sample) {
@@ -41,12 +57,14 @@ void RotorObserver::correct(const plant::RotorSpeedSample& sample) {
     const auto n = static_cast<std::size_t>(i);
     speeds_[n] += kCorrection * (sample.speeds[n] - speeds_[n]);
   }
-  update_wrench();
+  update_wrench<0>();
 }
 
+template <int kCount>
 void RotorObserver::update_wrench() {
+  const int count = kCount > 0 ? kCount : count_;
   wrench_.setZero();
-  for (int i = 0; i < count_; ++i) {
+  for (int i = 0; i < count; ++i) {
     wrench_ += plant::thrust_from_speed(rotor_, speeds_[static_cast<std::size_t>(i)]) * effectiveness_.col(i);
   }
 }

@@ -28,6 +28,9 @@ class RotorObserver {
   Eigen::Vector3d moment_frd() const { return wrench_.tail<3>(); }  // N m, Eq. (28)
 
  private:
+  template <int kCount>
+  void run_on(const plant::ActuatorCommand& command, double supply_voltage_v);
+  template <int kCount>
   void update_wrench();
 
   plant::Esc esc_;
@@ -35,6 +38,9 @@ class RotorObserver {
   plant::RotorCoefficients rotor_;
   plant::Effectiveness effectiveness_;
   int count_ = 0;
+  double kept_for_s_ =
+      0.0;  // period, and the part of a difference from the steady speed that is left after it
+  double kept_ = 1.0;
   plant::PerRotor speeds_{};
   Eigen::Vector4d wrench_ = Eigen::Vector4d::Zero();
 };

@@ -22,10 +22,10 @@ PositionCommand PositionController::step(const Eigen::Vector3d& position_ned,
                                  k_p_.cwiseProduct(error) + integral_;  // Eq. (48)
   PositionCommand command;
   command.acceleration_ned = wanted;
-  const double horizontal = wanted.head<2>().norm();
-  const bool cut_horizontal = horizontal > max_acceleration_;
+  const double horizontal_squared = wanted.head<2>().squaredNorm();
+  const bool cut_horizontal = horizontal_squared > max_acceleration_ * max_acceleration_;
   const bool cut_vertical = std::abs(wanted.z()) > max_acceleration_;
-  if (cut_horizontal) command.acceleration_ned.head<2>() *= max_acceleration_ / horizontal;
+  if (cut_horizontal) command.acceleration_ned.head<2>() *= max_acceleration_ / std::sqrt(horizontal_squared);
   if (cut_vertical) command.acceleration_ned.z() = std::copysign(max_acceleration_, wanted.z());
   command.limited = cut_horizontal || cut_vertical;
 

@@ -33,14 +33,14 @@ ThrustAttitude thrust_attitude(double mass_kg, const Vector3d& acceleration_ned,
     out.limited = true;
   }
   const double longest = b.z() * max_tilt_tangent;
-  const double horizontal = b.head<2>().norm();
-  if (horizontal > longest) {
-    b.head<2>() *= longest / horizontal;
+  const double horizontal_squared = b.head<2>().squaredNorm();
+  if (horizontal_squared > longest * longest) {
+    b.head<2>() *= longest / std::sqrt(horizontal_squared);
     out.limited = true;
   }
   const double length = b.norm();
   out.thrust_n = mass_kg * length;
-  out.body_z_ned = b / length;
+  out.body_z_ned = (1.0 / length) * b;
   return out;
 }
 
@@ -70,24 +70,29 @@ ReferenceMotion reference_motion(double mass_kg, const Reference& reference, con
   // theta = atan2(b_x, b_z), with rho its radius.
   const double rho_squared = b.x() * b.x() + b.z() * b.z();
   const double rho = std::sqrt(rho_squared);
-  const double rho_1 = (b.x() * b_1.x() + b.z() * b_1.z()) / rho;
+  const double per_rho = 1.0 / rho;
+  const double per_rho_squared = per_rho * per_rho;
+  const double rho_1 = (b.x() * b_1.x() + b.z() * b_1.z()) * per_rho;
   const double rho_2 =
-      (b_1.x() * b_1.x() + b_1.z() * b_1.z() + b.x() * b_2.x() + b.z() * b_2.z() - rho_1 * rho_1) / rho;
-  const double theta_1 = (b_1.x() * b.z() - b.x() * b_1.z()) / rho_squared;
-  const double theta_2 = (b_2.x() * b.z() - b.x() * b_2.z()) / rho_squared - 2.0 * theta_1 * rho_1 / rho;
+      (b_1.x() * b_1.x() + b_1.z() * b_1.z() + b.x() * b_2.x() + b.z() * b_2.z() - rho_1 * rho_1) * per_rho;
+  const double theta_1 = (b_1.x() * b.z() - b.x() * b_1.z()) * per_rho_squared;
+  const double theta_2 =
+      (b_2.x() * b.z() - b.x() * b_2.z()) * per_rho_squared - 2.0 * theta_1 * rho_1 * per_rho;
 
   // phi = -atan2(b_y, rho), with |b| its radius.
   const double norm_squared = rho_squared + b.y() * b.y();
   const double norm = std::sqrt(norm_squared);
-  const double norm_1 = b.dot(b_1) / norm;
-  const double phi_1 = -(b_1.y() * rho - b.y() * rho_1) / norm_squared;
-  const double phi_2 = -(b_2.y() * rho - b.y() * rho_2) / norm_squared - 2.0 * phi_1 * norm_1 / norm;
+  const double per_norm = 1.0 / norm;
+  const double per_norm_squared = per_norm * per_norm;
+  const double norm_1 = b.dot(b_1) * per_norm;
+  const double phi_1 = -(b_1.y() * rho - b.y() * rho_1) * per_norm_squared;
+  const double phi_2 = -(b_2.y() * rho - b.y() * rho_2) * per_norm_squared - 2.0 * phi_1 * norm_1 * per_norm;
 
   // omega = S1^-1 Theta', Eq. (29)-(31) backwards, and its derivative.
-  const double sin_phi = -b.y() / norm;
-  const double cos_phi = rho / norm;
-  const double sin_theta = b.x() / rho;
-  const double cos_theta = b.z() / rho;
+  const double sin_phi = -b.y() * per_norm;
+  const double cos_phi = rho * per_norm;
+  const double sin_theta = b.x() * per_rho;
+  const double cos_theta = b.z() * per_rho;
   Matrix3d to_rates;
   to_rates << 1.0, 0.0, -sin_theta,       //
       0.0, cos_phi, sin_phi * cos_theta,  //

@@ -8,13 +8,13 @@ namespace swiftlet::plant {
 
 Imu::Imu(const ImuSettings& settings, std::uint64_t seed)
     : accelerometer_{settings.accelerometer_noise_density * std::sqrt(settings.rate_hz),
-                     settings.accelerometer_bias_walk / std::sqrt(settings.rate_hz),
+                     settings.accelerometer_bias_walk * std::sqrt(kWalkSamples / settings.rate_hz),
                      settings.accelerometer_range,
                      RandomStream(seed, streams::kAccelerometerNoise),
                      RandomStream(seed, streams::kAccelerometerBias),
                      Eigen::Vector3d::Zero()},
       gyro_{settings.gyro_noise_density * std::sqrt(settings.rate_hz),
-            settings.gyro_bias_walk / std::sqrt(settings.rate_hz),
+            settings.gyro_bias_walk * std::sqrt(kWalkSamples / settings.rate_hz),
             settings.gyro_range,
             RandomStream(seed, streams::kGyroNoise),
             RandomStream(seed, streams::kGyroBias),
@@ -23,8 +23,8 @@ Imu::Imu(const ImuSettings& settings, std::uint64_t seed)
   gyro_.bias = settings.gyro_bias_sigma * gyro_.walk.normal3();
 }
 
-Eigen::Vector3d Imu::Sensor::measure(const Eigen::Vector3d& truth) {
-  if (walk_sigma > 0.0) bias += walk_sigma * walk.normal3();
+Eigen::Vector3d Imu::Sensor::measure(const Eigen::Vector3d& truth, bool walks) {
+  if (walks && walk_sigma > 0.0) bias += walk_sigma * walk.normal3();
   Eigen::Vector3d measured = truth + bias;
   if (noise_sigma > 0.0) measured += noise_sigma * noise.normal3();
   return measured.cwiseMax(-range).cwiseMin(range);
@@ -35,8 +35,9 @@ ImuSample Imu::sample(std::int64_t stamp_ns, const Eigen::Vector3d& specific_for
   ImuSample sample;
   sample.stamp_ns = stamp_ns;
   sample.sequence = ++sequence_;
-  sample.specific_force_frd = accelerometer_.measure(specific_force_frd);
-  sample.body_rates_frd = gyro_.measure(body_rates_frd);
+  const bool walks = sequence_ % kWalkSamples == 0;
+  sample.specific_force_frd = accelerometer_.measure(specific_force_frd, walks);
+  sample.body_rates_frd = gyro_.measure(body_rates_frd, walks);
   return sample;
 }
 

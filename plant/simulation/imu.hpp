@@ -1,5 +1,5 @@
 // Inertial measurement unit at the centre of mass, its axes the body's: white noise, a constant bias drawn
-// once a run, a bias that wanders, saturation.
+// once a run, a bias that wanders (in steps of kWalkSamples), saturation.
 #pragma once
 
 #include <cstdint>
@@ -23,16 +23,18 @@ class Imu {
   const Eigen::Vector3d& accelerometer_bias() const { return accelerometer_.bias; }  // of the last sample
   const Eigen::Vector3d& gyro_bias() const { return gyro_.bias; }
 
+  static constexpr int kWalkSamples = 10;  // to draw each time would show nowhere
+
  private:
   struct Sensor {
     double noise_sigma;
-    double walk_sigma;  // of one period
+    double walk_sigma;  // of one step
     double range;
     RandomStream noise;
     RandomStream walk;
     Eigen::Vector3d bias;
 
-    Eigen::Vector3d measure(const Eigen::Vector3d& truth);
+    Eigen::Vector3d measure(const Eigen::Vector3d& truth, bool walks);
   };
 
   Sensor accelerometer_;
