@@ -20,7 +20,7 @@ if(SWIFTLET_LTO)  # only this very compiler could read what link-time optimisati
       COMMAND_ERROR_IS_FATAL ANY)" COMPONENT development)
   endforeach()
 endif()
-foreach(folder plant control services/runtime services/comms ground)
+foreach(folder plant control identification services/runtime services/comms ground)
   cmake_path(GET folder PARENT_PATH parent)
   install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/swiftlet/${parent}
     COMPONENT development FILES_MATCHING PATTERN "*.hpp")

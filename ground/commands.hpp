@@ -23,6 +23,10 @@ Command add_status_command(CLI::App& root);
 // What was flown.
 Command add_report_command(CLI::App& root);
 
+// What is to be flown, from bench data.
+Command add_identify_command(CLI::App& root);
+Command add_identify_simulate_command(CLI::App& identify);
+
 // What will be flown, without flying.
 Command add_gains_command(CLI::App& root);
 Command add_sim_command(CLI::App& root);

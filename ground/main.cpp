@@ -36,7 +36,7 @@ int run(int argc, char** argv) {
       ground::add_takeoff_command(app),    ground::add_goto_command(app),   ground::add_land_command(app),
       ground::add_hold_command(app),       ground::add_stop_command(app),   ground::add_mission_command(app),
       ground::add_trajectory_command(app), ground::add_status_command(app), ground::add_report_command(app),
-      ground::add_gains_command(app),      ground::add_sim_command(app),
+      ground::add_gains_command(app),      ground::add_sim_command(app),    ground::add_identify_command(app),
   };
   try {
     app.parse(argc, argv);

@@ -99,6 +99,35 @@ void check_header(std::string_view line, const std::string& file, const std::vec
   throw ConfigError(file, 1, "header", "is " + shown(line) + ", must be " + joined(columns));
 }
 
+CsvTable read_rows(Lines& lines, const std::string& file_name, const std::vector<std::string>& columns,
+                   std::size_t min_rows, const CsvForm& form) {
+  CsvTable table(file_name, columns);
+  std::string_view line;
+  std::vector<double> numbers(columns.size());
+  while (!lines.only_blank_left() && lines.next(line)) {
+    const std::vector<std::string_view> fields = fields_of(line, form);
+    if (fields.size() != columns.size()) {
+      throw ConfigError(file_name, lines.number(), "",
+                        "has " + std::to_string(trimmed(line).empty() ? 0 : fields.size()) +
+                            " fields, must have " + std::to_string(columns.size()) + ": " + joined(columns));
+    }
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      if (!read_number(fields[i], numbers[i])) {
+        throw ConfigError(file_name, lines.number(), columns[i],
+                          "is " + shown(fields[i]) + ", must be a finite number");
+      }
+    }
+    table.add_row(lines.number(), numbers);
+  }
+  if (table.row_count() < min_rows) {
+    throw ConfigError(file_name, 0, "",
+                      "has " + std::to_string(table.row_count()) +
+                          (form.has_header ? " rows behind the header" : " rows") + ", must have at least " +
+                          std::to_string(min_rows));
+  }
+  return table;
+}
+
 }  // namespace
 
 void CsvTable::add_row(int line, const std::vector<double>& numbers) {
@@ -132,31 +161,22 @@ CsvTable parse_csv(std::string_view text, const std::string& file_name,
     lines.next(line);
     check_header(line, file_name, columns, form);
   }
+  return read_rows(lines, file_name, columns, min_rows, form);
+}
 
-  CsvTable table(file_name, columns);
-  std::vector<double> numbers(columns.size());
-  while (!lines.only_blank_left() && lines.next(line)) {
-    const std::vector<std::string_view> fields = fields_of(line, form);
-    if (fields.size() != columns.size()) {
-      throw ConfigError(file_name, lines.number(), "",
-                        "has " + std::to_string(trimmed(line).empty() ? 0 : fields.size()) +
-                            " fields, must have " + std::to_string(columns.size()) + ": " + joined(columns));
-    }
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-      if (!read_number(fields[i], numbers[i])) {
-        throw ConfigError(file_name, lines.number(), columns[i],
-                          "is " + shown(fields[i]) + ", must be a finite number");
-      }
-    }
-    table.add_row(lines.number(), numbers);
+CsvTable parse_csv_as_headed(std::string_view text, const std::string& file_name, std::size_t min_rows) {
+  Lines lines(without_byte_order_mark(text));
+  std::string_view header;
+  if (lines.only_blank_left()) throw ConfigError(file_name, 0, "", "is empty, must begin with a header");
+  lines.next(header);
+  std::vector<std::string> columns;
+  for (const std::string_view name : fields_of(header)) {
+    double number = 0.0;
+    if (name.empty() || read_number(name, number))
+      throw ConfigError(file_name, 1, "header", "is " + shown(header) + ", must name every column");
+    columns.emplace_back(name);
   }
-  if (table.row_count() < min_rows) {
-    throw ConfigError(file_name, 0, "",
-                      "has " + std::to_string(table.row_count()) +
-                          (form.has_header ? " rows behind the header" : " rows") + ", must have at least " +
-                          std::to_string(min_rows));
-  }
-  return table;
+  return read_rows(lines, file_name, columns, min_rows, {});
 }
 
 CsvTable load_csv(const std::string& path, const std::vector<std::string>& columns, std::size_t min_rows) {

@@ -63,6 +63,8 @@ CsvTable load_csv(const std::string& path, const std::vector<std::string>& colum
 // The fields of the first line that is not blank; none of a text without one.
 std::vector<std::string> first_csv_line(std::string_view text);
 bool is_number(std::string_view field);  // finite
+// A table of whatever columns its header names, one at least.
+CsvTable parse_csv_as_headed(std::string_view text, const std::string& file_name, std::size_t min_rows = 1);
 
 // The shortest decimal that reads back as the same number.
 std::string exact(double number);

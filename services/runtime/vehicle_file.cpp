@@ -1,5 +1,8 @@
 #include "services/runtime/vehicle_file.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include "plant/model/rotor.hpp"
 #include "services/runtime/config.hpp"
 #include "services/runtime/text_file.hpp"
@@ -79,6 +82,61 @@ plant::BatteryParameters read_battery(const ConfigNode& node) {
   return battery;
 }
 
+// A parameter that may be uncertain: a single number of the vehicle.
+std::string read_parameter_key(const ConfigNode& node) {
+  constexpr std::array<const char*, 17> kKeys = {"mass",
+                                                 "linear_drag",
+                                                 "inertia.xx",
+                                                 "inertia.yy",
+                                                 "inertia.zz",
+                                                 "rotor.thrust_factor",
+                                                 "rotor.torque_factor",
+                                                 "motor.time_constant",
+                                                 "motor.k2",
+                                                 "motor.k3",
+                                                 "motor.armature_resistance",
+                                                 "motor.armature_inductance",
+                                                 "esc.gain",
+                                                 "esc.offset",
+                                                 "esc.pulse_min",
+                                                 "esc.pulse_range",
+                                                 "battery.internal_resistance"};
+  const std::string key = node.text();
+  if (std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end()) return key;
+  std::string known;
+  for (const char* name : kKeys) known += std::string(known.empty() ? "" : ", ") + name;
+  node.fail("is " + key + ", must be one of " + known);
+}
+
+plant::VehicleUncertainty read_uncertainty(const ConfigNode& root) {
+  plant::VehicleUncertainty out;
+  const auto section = root.find("uncertainty");
+  if (!section) return out;
+  for (const ConfigNode& item : section->at("parameters").items()) {
+    plant::ParameterUncertainty parameter;
+    parameter.parameter = read_parameter_key(item.at("parameter"));
+    const auto is_same = [&](const plant::ParameterUncertainty& other) {
+      return other.parameter == parameter.parameter;
+    };
+    if (std::any_of(out.parameters.begin(), out.parameters.end(), is_same))
+      item.at("parameter").fail("is " + parameter.parameter + ", which stands there already");
+    parameter.standard_error = item.at("standard_error").number(at_least(0.0));
+    const std::vector<double> interval = item.at("interval_95").numbers(2, 2);
+    parameter.low = interval[0];
+    parameter.high = interval[1];
+    if (!(parameter.low <= parameter.high)) item.at("interval_95").fail("must rise");
+    out.parameters.push_back(parameter);
+  }
+  const auto correlations = section->find("correlations");
+  if (!correlations) return out;
+  for (const ConfigNode& item : correlations->items()) {
+    const std::vector<ConfigNode> between = item.at("between").items(2, 2);
+    out.correlations.push_back({read_parameter_key(between[0]), read_parameter_key(between[1]),
+                                item.at("value").number(runtime::between(-1.0, 1.0))});
+  }
+  return out;
+}
+
 }  // namespace
 
 Vehicle parse_vehicle(std::string_view text, const std::string& file_name) {
@@ -93,11 +151,20 @@ Vehicle parse_vehicle(std::string_view text, const std::string& file_name) {
   vehicle.motor = read_motor(root.at("motor"));
   vehicle.esc = read_esc(root.at("esc"));
   vehicle.battery = read_battery(root.at("battery"));
+  read_uncertainty(root);
   root.reject_unknown_keys();
   reject_violations(root, plant::validate(vehicle));
   return vehicle;
 }
 
 Vehicle load_vehicle(const std::string& path) { return parse_vehicle(read_text_file(path), path); }
+
+plant::VehicleUncertainty parse_vehicle_uncertainty(std::string_view text, const std::string& file_name) {
+  return read_uncertainty(parse_config(text, file_name));
+}
+
+plant::VehicleUncertainty load_vehicle_uncertainty(const std::string& path) {
+  return parse_vehicle_uncertainty(read_text_file(path), path);
+}
 
 }  // namespace swiftlet::runtime

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "plant/model/vehicle.hpp"
+#include "plant/model/vehicle_uncertainty.hpp"
 
 namespace swiftlet::runtime {
 
@@ -14,5 +15,15 @@ namespace swiftlet::runtime {
 // file_name is for the messages only.
 plant::Vehicle parse_vehicle(std::string_view text, const std::string& file_name);
 plant::Vehicle load_vehicle(const std::string& path);
+
+// What the file's section "uncertainty" says of how sure its parameters are; empty where there is none:
+//   uncertainty:
+//     parameters:
+//       - {parameter: motor.k2, standard_error: 1.2e-5, interval_95: [9.9e-4, 1.04e-3]}
+//     correlations:
+//       - {between: [motor.k2, motor.k3], value: -0.97}
+// parse_vehicle() checks it too. Throws ConfigError.
+plant::VehicleUncertainty parse_vehicle_uncertainty(std::string_view text, const std::string& file_name);
+plant::VehicleUncertainty load_vehicle_uncertainty(const std::string& path);
 
 }  // namespace swiftlet::runtime

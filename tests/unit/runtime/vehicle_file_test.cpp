@@ -119,8 +119,8 @@ const Fault kFaults[] = {
      "time_constant:", "motor.time_constant: is 0.0821, must be a map {value, unit, source}"},
     {"Misspelt", "linear_drag:", "linear_darg:", "name:", "linear_drag: is missing, must be given"},
     {"Unknown", "name: kaylion", "name: kaylion\ncolour: red", "colour",
-     "colour: is unknown, must be one of name, mass, inertia, linear_drag, rotors, rotor, motor, esc or "
-     "battery"},
+     "colour: is unknown, must be one of name, mass, inertia, linear_drag, rotors, rotor, motor, esc, "
+     "battery or uncertainty"},
     {"Duplicate", "name: kaylion", "name: kaylion\nname: other", "name: other",
      "name: is given twice, first in line 5"},
     {"Spin", "spin: clockwise", "spin: left", "spin: left",

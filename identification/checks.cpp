@@ -1,0 +1,91 @@
+#include "identification/checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "identification/estimate.hpp"
+
+namespace swiftlet::identification {
+
+namespace {
+
+double quantile(std::vector<double> values, double share) {
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+std::string out_of(const Column& column, const char* what, double value, double min, double max,
+                   const std::string& because) {
+  return std::string(column.name) + ": " + what + shown(value) + " " + column.unit + ", must be " +
+         shown(min) + " to " + shown(max) + ": " + because + "; is the unit right?";
+}
+
+}  // namespace
+
+void demand_rows(const std::vector<Column>& columns, std::size_t least) {
+  const std::size_t rows = columns.front().values.size();
+  if (rows < least) {
+    throw BadData("has " + std::to_string(rows) + " rows, must have at least " + std::to_string(least));
+  }
+  for (const Column& column : columns) {
+    if (column.values.size() != rows) {
+      throw BadData(std::string(column.name) + ": has " + std::to_string(column.values.size()) +
+                    " values, must have " + std::to_string(rows));
+    }
+    for (std::size_t i = 0; i < rows; ++i) {
+      if (!std::isfinite(column.values[i]))
+        throw BadData(std::string(column.name) + ": is not a finite number, must be", i);
+    }
+  }
+}
+
+void demand_variety(const Column& column, std::size_t least) {
+  std::vector<double> sorted = column.values;
+  std::sort(sorted.begin(), sorted.end());
+  const double apart = 1e-3 * (quantile(sorted, 0.95) - quantile(sorted, 0.05));
+  std::size_t distinct = 1;
+  double last = sorted.front();
+  for (const double value : sorted) {
+    if (apart > 0.0 && value - last > apart) {
+      ++distinct;
+      last = value;
+    }
+  }
+  if (distinct >= least) return;
+  const std::string rows = std::to_string(sorted.size());
+  if (distinct == 1) {
+    throw BadData(std::string(column.name) + ": is " + shown(sorted.front()) + " " + column.unit +
+                  " in all " + rows + " rows, must vary");
+  }
+  throw BadData(std::string(column.name) + ": takes " + std::to_string(distinct) +
+                " different values, must take at least " + std::to_string(least));
+}
+
+void demand_each_between(const Column& column, double min, double max, const std::string& because) {
+  for (std::size_t i = 0; i < column.values.size(); ++i) {
+    const double value = column.values[i];
+    if (!(value >= min && value <= max)) throw BadData(out_of(column, "is ", value, min, max, because), i);
+  }
+}
+
+void demand_median_between(const Column& column, double min, double max, const std::string& because) {
+  const double middle = median(column.values);
+  if (!(middle >= min && middle <= max))
+    throw BadData(out_of(column, "is in the middle ", middle, min, max, because));
+}
+
+double median(std::vector<double> values) {
+  const std::size_t half = values.size() / 2;
+  std::sort(values.begin(), values.end());
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+double full_scale(const std::vector<double>& values) {
+  std::vector<double> magnitudes = values;
+  for (double& value : magnitudes) value = std::abs(value);
+  const double most = quantile(magnitudes, 0.9);
+  return most > 0.0 ? most : 1.0;
+}
+
+}  // namespace swiftlet::identification

@@ -1,0 +1,120 @@
+// `swiftlet identify` as a user runs it: bench data in, a vehicle file out that the other commands take.
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "services/runtime/vehicle_file.hpp"
+#include "tests/integration/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace swiftlet::tests {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Identify : public testing::Test {
+ protected:
+  Identify() {
+    const Ending end = run({"identify", "simulate", "--vehicle", "kaylion", "--noise", "0.005", "--seed", "4",
+                            "--out", bench().string()});
+    EXPECT_EQ(end.exit_code, 0) << end.errors;
+  }
+
+  Ending run(std::vector<std::string> words) const {
+    return run_program("swiftlet", std::move(words), folder_.path());
+  }
+  Ending identify(const fs::path& from) const {
+    return run({"identify", from.string(), "--out", vehicle(), "--report", page(), "--json"});
+  }
+  fs::path bench() const { return folder_.path() / "bench"; }
+  std::string vehicle() const { return (folder_.path() / "mine.yaml").string(); }
+  std::string page() const { return (folder_.path() / "report.html").string(); }
+
+  void spoil(const char* name, const std::string& text) const { std::ofstream(bench() / name) << text; }
+  // Column of the steady motor's file, every value by this text.
+  std::string steady_motor(const std::string& header, const std::string& speed, int rows = 20) const {
+    std::string text = header + "\n";
+    for (int i = 0; i < rows; ++i)
+      text +=
+          std::to_string(1.0 + 0.1 * i) + "," + (speed.empty() ? std::to_string(700 + 60 * i) : speed) + "\n";
+    return text;
+  }
+  void expect_refusal(const std::string& sentence) const {
+    const Ending end = identify(bench());
+    EXPECT_EQ(end.exit_code, 2) << end.errors;
+    EXPECT_NE(end.errors.find(sentence), std::string::npos) << end.errors;
+    EXPECT_EQ(end.output, "");
+    EXPECT_FALSE(fs::exists(vehicle()));
+    EXPECT_FALSE(fs::exists(page()));
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Identify, MakesAVehicleThatOtherCommandsTake) {
+  const Ending end = identify(bench());
+  ASSERT_EQ(end.exit_code, 0) << end.errors;
+  const nlohmann::json report = nlohmann::json::parse(end.output);
+  EXPECT_EQ(report["vehicle"], "mine");
+  const plant::Vehicle found = runtime::load_vehicle(vehicle());
+  EXPECT_NEAR(found.motor.k2 / 1.020e-3, 1.0, 0.05);
+  EXPECT_NEAR(found.rotor.thrust / 3.7901e-8, 1.0, 0.01);
+  EXPECT_EQ(runtime::load_vehicle_uncertainty(vehicle()).parameters.size(), 11U);
+  std::ostringstream text;
+  text << std::ifstream(page()).rdbuf();
+  EXPECT_NE(text.str().find("Fig. 7:"), std::string::npos);
+  EXPECT_EQ(text.str().find("http"), std::string::npos);
+
+  const Ending gains = run({"gains", "--vehicle", vehicle(), "--json"});
+  EXPECT_EQ(gains.exit_code, 0) << gains.errors;
+  EXPECT_EQ(nlohmann::json::parse(gains.output)["vehicle"], "mine");
+}
+
+TEST_F(Identify, RefusesAHeaderWithoutAUnit) {
+  spoil("steady_motor.csv", steady_motor("v_a [V],speed", ""));
+  expect_refusal(
+      "steady_motor.csv:1: header: has the column speed without a unit, must be speed [rad/s], speed [rpm]");
+}
+
+TEST_F(Identify, RefusesNumbersThatAreNone) {
+  spoil("steady_motor.csv", steady_motor("v_a [V],speed [rad/s]", "nan"));
+  expect_refusal("steady_motor.csv:2: speed [rad/s]: is nan, must be a finite number");
+}
+
+TEST_F(Identify, RefusesConstantColumns) {
+  spoil("steady_motor.csv", steady_motor("v_a [V],speed [rad/s]", "1500"));
+  expect_refusal("steady_motor.csv: speed: is 1500 rad/s in all 20 rows, must vary");
+}
+
+TEST_F(Identify, RefusesTooFewRows) {
+  spoil("steady_motor.csv", steady_motor("v_a [V],speed [rad/s]", "", 3));
+  expect_refusal("steady_motor.csv: has 3 rows, must have at least 6");
+}
+
+TEST_F(Identify, RefusesUnitsThatPhysicsExcludes) {
+  std::ostringstream esc;
+  esc << std::ifstream(bench() / "esc.csv").rdbuf();
+  std::string text = esc.str();
+  spoil("esc.csv", text.replace(text.find("motor_voltage [V]"), 17, "motor_voltage [mV]"));
+  const Ending end = identify(bench());  // a thousandth of the voltage: no rotor would hover
+  EXPECT_EQ(end.exit_code, 2);
+  EXPECT_NE(end.errors.find("the identified vehicle cannot fly"), std::string::npos) << end.errors;
+  text.replace(text.find("supply_voltage [V]"), 18, "supply_voltage [mV]");
+  spoil("esc.csv", text);
+  expect_refusal("esc.csv");
+}
+
+TEST_F(Identify, RefusesWhatIsNoBench) {
+  const Ending none = identify(folder_.path() / "nowhere");
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_NE(none.errors.find("nowhere: is no folder"), std::string::npos) << none.errors;
+  EXPECT_EQ(run({"identify"}).exit_code, 2);
+  EXPECT_EQ(run({"identify", bench().string()}).exit_code, 2);
+  EXPECT_EQ(run({"identify", "simulate", "--noise", "nan", "--out", vehicle()}).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace swiftlet::tests
