@@ -66,8 +66,9 @@ struct Answer {
 
 class Client {
  public:
-  // record: where every sample of truth, reference, estimate and mission status is kept; may be null. Throws
-  // std::runtime_error if the network cannot be joined.
+  // record: where every sample of truth, reference, estimate and mission status is kept, and, if it has room
+  // for them, what was sensed and commanded; may be null. Throws std::runtime_error if the network cannot be
+  // joined.
   explicit Client(const comms::NodeSettings& settings, FlightRecord* record = nullptr);
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
@@ -108,6 +109,7 @@ class Client {
   template <class T>
   void keep(Latest<T> View::*slot, const T& message);
   void subscribe_all();
+  void subscribe_sensors(SensorRecord& sensors);
   Answer ask(std::uint64_t id, const std::function<void()>& send, const std::function<bool()>& heard,
              std::chrono::milliseconds timeout, const Cancelled& cancelled);
   std::uint64_t next_id() { return ++last_id_; }

@@ -23,8 +23,9 @@ Command add_status_command(CLI::App& root);
 // What was flown.
 Command add_report_command(CLI::App& root);
 
-// What is to be flown, from bench data.
+// What is to be flown, from bench data or from flights.
 Command add_identify_command(CLI::App& root);
+Command add_identify_flight_command(CLI::App& identify);
 Command add_identify_simulate_command(CLI::App& identify);
 
 // What will be flown, without flying.

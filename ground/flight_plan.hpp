@@ -39,8 +39,9 @@ struct FlyOptions {
   std::uint64_t seed = 1;
   int imu_rate_hz = 0;  // 0: as the simulation file says
   comms::NodeSettings network;
-  int domain = -1;     // below 0: a free one, or 0 to attach
-  bool trace = false;  // keep a trace of a lockstep or in-process flight
+  int domain = -1;       // below 0: a free one, or 0 to attach
+  bool trace = false;    // keep a trace of a lockstep or in-process flight
+  bool sensors = false;  // keep what was sensed and commanded, for `swiftlet identify flight`
   bool json = false;
 };
 
@@ -59,6 +60,7 @@ struct FlightPlan {
   std::uint64_t seed = 0;
   std::filesystem::path folder;                                         // of the record; not made yet
   std::filesystem::path trace_file;                                     // empty: none is kept
+  bool sensors = false;                                                 // keep them
   std::filesystem::path plant_program, mocap_program, control_program;  // of kStarted
 
   std::size_t record_capacity() const;  // for each IMU sample of the longest that it may take

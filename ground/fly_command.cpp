@@ -111,6 +111,7 @@ int fly(const FlyOptions& options) {
                network.vehicle + " in domain " + std::to_string(network.domain) +
                (network.localhost_only ? " (--localhost-only)" : "") + ", record in " + plan.folder.string());
   FlightRecord record(plan.record_capacity());
+  if (plan.sensors) record.sensors = std::make_unique<SensorRecord>(plan.record_capacity());
   const Flown flown = fly_mission(plan, network, record, progress);
   keep_record(plan.folder, record, flown.report, flown.window, progress);
   return tell(flown.report, options.json, progress);
