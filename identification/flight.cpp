@@ -105,8 +105,6 @@ std::vector<Derived> derived(const FlightModel& model, Known known) {
                      return x[l.drag] * base.mass_kg / (mass_known ? 1.0 : x[l.thrust]);
                    }});
   }
-  for (int axis = 0; axis < 3; ++axis)
-    out.push_back({std::string("damping.") + kAxisNames[axis], "l", "1/s", at(l.damping[axis])});
   out.push_back({"thrust_centre.x", "r_x", "m", at(l.trim[1])});
   out.push_back({"thrust_centre.y", "r_y", "m", at(l.trim[0])});
   for (std::size_t log = 0; log < l.offset.size(); ++log) {

@@ -72,11 +72,11 @@ void FlightModel::lay_out() {
   FlightLayout& l = layout_;
   l.lag = add({"rotor lag", "s", base_.motor.time_constant_s, 0.01, 2e-3, 1.0});
   if (source() == SpeedSource::kMeasured) {
-    l.motor_delay = add({"delay from command to rotor speed", "s", 2e-3, 2e-3, -0.05, 0.2});
+    l.motor_delay = add({"delay from command to rotor speed", "s", 2e-3, 2e-3, -0.02, 0.05});
     l.speed_scale = add({"rotor speed over the model's", "1", 1.0, 0.05, 0.1, 10.0});
   } else {
-    l.force_delay = add({"delay from command to specific force", "s", 2e-3, 2e-3, -0.05, 0.2});
-    l.rate_delay = add({"delay from command to angular acceleration", "s", 2e-3, 2e-3, -0.05, 0.2});
+    l.force_delay = add({"delay from command to specific force", "s", 2e-3, 2e-3, -0.02, 0.05});
+    l.rate_delay = add({"delay from command to angular acceleration", "s", 2e-3, 2e-3, -0.02, 0.05});
   }
   if (source() == SpeedSource::kCommanded)
     l.command_offset = add({"offset of the command", "1", 0.05, 0.05, -0.5, 2.0});
@@ -85,7 +85,6 @@ void FlightModel::lay_out() {
     const std::string name = kAxes[axis];
     l.gain[axis] = add({"gain about " + name + " over the base's", "1", 1.0, 0.1, -100.0, 100.0});
     l.trim[axis] = add({"offset of the thrust, " + name, "m", 0.0, 1e-3, -0.1, 0.1});
-    l.damping[axis] = add({"damping about " + name, "1/s", 0.0, 0.5, -50.0, 200.0});
   }
   if (std::any_of(flights_.begin(), flights_.end(), has_poses))
     l.drag = add({"drag over mass", "1/s", 0.1, 0.1, -10.0, 50.0});
@@ -176,11 +175,9 @@ FlightModel::Drive FlightModel::drive(const VectorXd& x, std::size_t flight, con
   return out;
 }
 
-Vector3d FlightModel::rate_derivative(const VectorXd& x, const Vector3d& inertia,
-                                      const Vector3d& acceleration, const Vector3d& rates) const {
-  const Vector3d damping(x[layout_.damping[0]], x[layout_.damping[1]], x[layout_.damping[2]]);
-  const Vector3d coupling = -rates.cross(inertia.cwiseProduct(rates)).cwiseQuotient(inertia);
-  return acceleration + coupling - damping.cwiseProduct(rates);
+Vector3d FlightModel::rate_derivative(const Vector3d& inertia, const Vector3d& acceleration,
+                                      const Vector3d& rates) {
+  return acceleration - rates.cross(inertia.cwiseProduct(rates)).cwiseQuotient(inertia);
 }
 
 // Channels, one after the other: specific force x, y, z, rates p, q, r, speed of each rotor, vertical motion,
@@ -264,7 +261,7 @@ void FlightModel::residuals(const VectorXd& x, VectorXd& out) const {
         const Index at = begin + static_cast<Index>(block);
         const Vector3d force = log.specific_force_frd[row] - by_model.specific_force[i] - bias;
         const Vector3d slope =
-            rate_derivative(x, moments_of_inertia, by_model.acceleration[i], log.body_rates_frd[row]);
+            rate_derivative(moments_of_inertia, by_model.acceleration[i], log.body_rates_frd[row]);
         if (row > stretch.first)
           predicted += 0.5 * (log.time_s[row] - log.time_s[row - 1]) * (before + slope);
         before = slope;

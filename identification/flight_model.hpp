@@ -1,7 +1,7 @@
 // The equations that a flight's log is fitted with, and which of their parameters the log can tell.
 //
 //   specific force   f = (0, 0, -s T / m) - (c / m) V_b + b                                Eq. (5), (27)
-//   rates            J_b dw/dt = g o (M - r x T) - J_b (l o w) - coupling of Eq. (6)       Eq. (6), (28)
+//   rates            J_b dw/dt = g o (M - r x T) - coupling of Eq. (6)                     Eq. (6), (28)
 //   rotors           T, M of the speeds as measured, or of steady speeds behind lag and delay, Eq. (18)
 //
 // T and M are those of the base vehicle, which s and g correct: as a log has no force, it tells thrust over
@@ -49,7 +49,6 @@ struct FlightLayout {
   int gain[3] = {kAbsent, kAbsent, kAbsent};  // g about roll, pitch, yaw
   int trim[3] = {kAbsent, kAbsent,
                  kAbsent};  // r: centre of thrust along x, along y; torque over thrust about z, m
-  int damping[3] = {kAbsent, kAbsent, kAbsent};  // l, 1/s
   int drag = kAbsent;                            // c / m, 1/s
   std::vector<int> offset;                       // b along x of each log; y and z follow
   std::vector<bool> has_vertical_offset;         // of each log; else there is no z
@@ -77,15 +76,15 @@ class FlightModel {
   Eigen::Vector3d inertia(const Eigen::VectorXd& parameters) const;
 
   // By these parameters, at rows of one of the flights: specific force without the offset, and moment over
-  // inertia without coupling and damping.
+  // inertia without coupling.
   struct Drive {
     std::vector<Eigen::Vector3d> specific_force;
     std::vector<Eigen::Vector3d> acceleration;  // rad/s^2
   };
   Drive drive(const Eigen::VectorXd& parameters, std::size_t flight, const Rows& rows) const;
   // dw/dt of these rates under that.
-  Eigen::Vector3d rate_derivative(const Eigen::VectorXd& parameters, const Eigen::Vector3d& inertia,
-                                  const Eigen::Vector3d& acceleration, const Eigen::Vector3d& rates) const;
+  static Eigen::Vector3d rate_derivative(const Eigen::Vector3d& inertia, const Eigen::Vector3d& acceleration,
+                                         const Eigen::Vector3d& rates);
   Eigen::Vector3d offset(const Eigen::VectorXd& parameters, std::size_t flight) const;
 
   // Thrust of a rotor over the square of its speed, N s^2; of kCommanded, N, what stands in for it.

@@ -26,9 +26,7 @@ struct Squares {
 class RatePredictor {
  public:
   RatePredictor(const FlightModel& model, const VectorXd& parameters, std::size_t flight)
-      : model_(model),
-        parameters_(parameters),
-        log_(*model.flights()[flight].log),
+      : log_(*model.flights()[flight].log),
         rows_(model.flights()[flight].kept),
         drive_(model.drive(parameters, flight, rows_)),
         inertia_(model.inertia(parameters)) {}
@@ -45,11 +43,9 @@ class RatePredictor {
 
  private:
   Vector3d derivative(std::size_t row, const Vector3d& rates) const {
-    return model_.rate_derivative(parameters_, inertia_, drive_.acceleration[row - rows_.first], rates);
+    return FlightModel::rate_derivative(inertia_, drive_.acceleration[row - rows_.first], rates);
   }
 
-  const FlightModel& model_;
-  const VectorXd& parameters_;
   const FlightLog& log_;
   Rows rows_;
   FlightModel::Drive drive_;
