@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kImaginary = 1e-6;  // real over imaginary part, up to which a zero lies on the axis
+constexpr double kLowest = 1e-4;     // rad/s: zeros below are those at 0, rounded
 constexpr double kHighest = 1e7;     // rad/s: zeros beyond are those at infinity, rounded
 
 }  // namespace
@@ -36,7 +37,7 @@ std::vector<double> phase_crossovers(const Loop& loop) {
     const double beta = zeros.betas()[i];
     if (!(std::abs(alpha) < kHighest * std::abs(beta))) continue;
     const std::complex<double> zero = alpha / beta;
-    if (zero.imag() > 0.0 && std::abs(zero.real()) < kImaginary * (1.0 + zero.imag()))
+    if (zero.imag() > kLowest && std::abs(zero.real()) < kImaginary * (1.0 + zero.imag()))
       found.push_back(zero.imag());
   }
   std::sort(found.begin(), found.end());
