@@ -8,13 +8,14 @@
 #include <fastdds/dds/topic/TypeSupport.hpp>
 #include <gtest/gtest.h>
 
+#include "swiftlet_msgs/msg/CommandPubSubTypes.h"
+#include "swiftlet_msgs/msg/MissionPubSubTypes.h"
+#include "swiftlet_msgs/msg/MocapPosePubSubTypes.h"
+
 #include "services/comms/domain_claim.hpp"
 #include "services/comms/membership.hpp"
 #include "services/comms/node.hpp"
 #include "services/comms/profiles.hpp"
-#include "swiftlet_msgs/msg/CommandPubSubTypes.h"
-#include "swiftlet_msgs/msg/MissionPubSubTypes.h"
-#include "swiftlet_msgs/msg/MocapPosePubSubTypes.h"
 #include "tests/support/eventually.hpp"
 #include "tests/unit/comms/messages.hpp"
 
