@@ -29,13 +29,15 @@ endif()
 run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${prefix})
 expect_file(share/swiftlet/idl/swiftlet_msgs/msg/Imu.idl)
 set(flags "")
+set(linked "")
 if(SANITIZE)
   set(flags "-fsanitize=${SANITIZE}")
-  set(ENV{ASAN_OPTIONS} new_delete_type_mismatch=0)  # as in cmake/sanitizer_options.cpp
+  set(linked ${WORK_DIR}/sanitizer_options.o)  # in every program of such a build
+  run(${CXX} ${flags} -c ${SANITIZER_OPTIONS} -o ${linked})
 endif()
 run(${CMAKE_COMMAND} -S ${CONSUMER_DIR} -B ${consumer} -G ${GENERATOR} -DCMAKE_BUILD_TYPE=Debug
   -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -DCMAKE_CXX_FLAGS=${flags}
-  -DCMAKE_PREFIX_PATH=${prefix})
+  -DCMAKE_EXE_LINKER_FLAGS=${linked} -DCMAKE_PREFIX_PATH=${prefix})
 run(${CMAKE_COMMAND} --build ${consumer})
 run(${consumer}/design_and_step ${prefix}/share/swiftlet/config)
 run(${consumer}/read_mission ${prefix}/share/swiftlet/config)
