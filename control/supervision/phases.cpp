@@ -173,8 +173,8 @@ void start_join(Scene& scene, const PolynomialSegment& first, double speed, std:
   to.yaw_rad = nearest_turn(to.yaw_rad, from.yaw_rad);
   state.phase = Phase::kPath;
   state.next_segment = 0;
-  // From rest the way is straight, in the time that it takes. From motion it swings out the further the longer it takes,
-  // and accelerates the more the shorter: the first that is gentle, or else the gentlest.
+  // From rest the way is straight, in the time that it takes. From motion it swings out the further the
+  // longer it takes, and accelerates the more the shorter: the first that is gentle, or else the gentlest.
   const bool moves = !from.velocity_ned.isZero(0.0) || !from.acceleration_ned.isZero(0.0);
   const double gentle = (1.0 + 1e-5) * std::max({limits.max_reference_acceleration,
                                                  from.acceleration_ned.norm(), to.acceleration_ned.norm()});

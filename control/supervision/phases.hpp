@@ -25,9 +25,9 @@ void start_takeoff(Scene& scene, double to_z_ned, double speed);
 // From the reference as it is at start_ns, straight to a place; a vehicle in motion gets there by a quintic.
 void start_move(Scene& scene, const Eigen::Vector3d& to_ned, bool yaw_free, double yaw_rad, double speed,
                 std::int64_t start_ns);
-// From the reference as it is at start_ns into the start of a trajectory: position, velocity, acceleration and jerk go over
-// without a step. Where no such way stays inside the fence and the limits, as start_move(). Its segments follow from the
-// first on.
+// From the reference as it is at start_ns into the start of a trajectory: position, velocity, acceleration
+// and jerk go over without a step. Where no such way stays inside the fence and the limits, as start_move().
+// Its segments follow from the first on.
 void start_join(Scene& scene, const PolynomialSegment& first, double speed, std::int64_t start_ns);
 // Comes to rest along the present velocity, inside the fence.
 void start_stop(Scene& scene);
@@ -44,7 +44,8 @@ bool plan_finished(const Scene& scene);
 bool on_landing_item(const Scene& scene);
 
 // Of the level descent without position. Where dead reckoning says that the vehicle must be standing, twice
-// failsafe.descent_speed: one that stands on thrust that carries its weight feels no ground, less thrust shows it.
+// failsafe.descent_speed: one that stands on thrust that carries its weight feels no ground, less thrust
+// shows it.
 double blind_descent_speed(const FailsafeSettings& failsafe, const SupervisorState& state,
                            const Estimate& estimate);
 

@@ -36,8 +36,8 @@ class Supervisor {
   // flown there, or null where it is not known here, upon which the vehicle comes to rest and holds; owned by
   // the caller and kept until the controller has left it.
   void adopt(const SupervisorState& state, const Mission* mission, const Trajectory* trajectory);
-  // The vehicle flies, and nobody knows what for: it comes to rest and holds. The ground is taken to be at z = 0.
-  // Refused without a pose, or if this supervisor flies it already.
+  // The vehicle flies, and nobody knows what for: it comes to rest and holds. The ground is taken to be at z
+  // = 0. Refused without a pose, or if this supervisor flies it already.
   Outcome find_flying(const Situation& situation);
 
  private:

@@ -39,13 +39,13 @@ PolynomialSegment minimum_jerk(const Eigen::Vector3d& from_ned, double from_yaw,
 PolynomialSegment join_to_rest(const Reference& from, const Eigen::Vector3d& to_ned, double to_yaw,
                                double duration_s);
 
-// The septic between two references that has position, velocity, acceleration and jerk of both, after duration_s > 0. Of the
-// yaw, whose jerk is taken as zero, likewise.
+// The septic between two references that has position, velocity, acceleration and jerk of both, after
+// duration_s > 0. Of the yaw, whose jerk is taken as zero, likewise.
 PolynomialSegment join(const Reference& from, const Reference& to, double duration_s);
 
 // The shortest duration for which a minimum-jerk move over `distance` (>= 0) stays within peak speed,
-// acceleration and jerk (all > 0). 15/8 d/T is the peak speed, 10/sqrt(3) d/T^2 the peak acceleration, 60 d/T^3 the
-// peak jerk. At least min_duration_s.
+// acceleration and jerk (all > 0). 15/8 d/T is the peak speed, 10/sqrt(3) d/T^2 the peak acceleration, 60
+// d/T^3 the peak jerk. At least min_duration_s.
 double minimum_jerk_duration(double distance, double peak_speed, double peak_acceleration, double peak_jerk,
                              double min_duration_s = 0.1);
 

@@ -268,8 +268,8 @@ class Vehicle {
   VehicleFigures begin_;
 };
 
-// Figures of vehicles that hover side by side, from their take-off on; counts are of the last `seconds`. stalls: what the computer
-// takes meanwhile, in percent of the cycles; null: nobody looks.
+// Figures of vehicles that hover side by side, from their take-off on; counts are of the last `seconds`.
+// stalls: what the computer takes meanwhile, in percent of the cycles; null: nobody looks.
 std::vector<VehicleFigures> hover(int vehicles, int rate_hz, bool realtime, double seconds,
                                   bool loaded = false, double* stalls = nullptr) {
   const tests::TemporaryFolder folder;
