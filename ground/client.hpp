@@ -52,8 +52,8 @@ struct View {
       controllers;  // by number; once hear_controllers() was called
 };
 
-// The wire itself, as messages; a program that flies a vehicle uses Vehicle (ground/vehicle.hpp), which stands on it. Any
-// thread may call it.
+// The wire itself, as messages; a program that flies a vehicle uses Vehicle (ground/vehicle.hpp), which
+// stands on it. Any thread may call it.
 class Client {
  public:
   // record: where every sample of truth, reference, estimate and mission status is kept; may be null. Throws
@@ -86,7 +86,8 @@ class Client {
                 const Cancelled& cancelled = {});
   Answer upload(const control::Trajectory& trajectory, std::chrono::milliseconds timeout,
                 const Cancelled& cancelled = {});
-  // One of a stream, for which there is no answer: stamp and number are filled in. False if nobody is there to take it.
+  // One of a stream, for which there is no answer: stamp and number are filled in. False if nobody is there
+  // to take it.
   bool send(control::Setpoint setpoint);
   // Of the mission uploaded last: MissionStatus::mission_id.
   std::uint64_t mission_id() const { return mission_id_; }

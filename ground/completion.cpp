@@ -1,4 +1,5 @@
-// Completion scripts: both find out which command is being typed by walking the words, and look up what may follow it.
+// Completion scripts: both find out which command is being typed by walking the words, and look up what may
+// follow it.
 #include <functional>
 
 #include "ground/command_text.hpp"

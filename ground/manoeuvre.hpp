@@ -1,4 +1,5 @@
-// What a vehicle was asked to do: first it is answered, then, if it was accepted, it is done or ends otherwise.
+// What a vehicle was asked to do: first it is answered, then, if it was accepted, it is done or ends
+// otherwise.
 #pragma once
 
 #include <chrono>

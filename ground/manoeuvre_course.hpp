@@ -1,4 +1,5 @@
-// How the manoeuvres of a vehicle run: which telemetry says that one is done, and which that it ended otherwise.
+// How the manoeuvres of a vehicle run: which telemetry says that one is done, and which that it ended
+// otherwise.
 #pragma once
 
 #include <cstdint>

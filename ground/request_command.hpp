@@ -38,7 +38,8 @@ CLI::App* add_request_subcommand(CLI::App& root, const std::string& name, const 
 CLI::App* add_ask_subcommand(CLI::App& root, const std::string& name, const std::string& description,
                              const std::string& example, const std::shared_ptr<AskOptions>& options);
 
-// Joins the network, asks, prints the answer, and waits for the end where that was wanted. Returns the exit code.
+// Joins the network, asks, prints the answer, and waits for the end where that was wanted. Returns the exit
+// code.
 int run_request(const AskOptions& options, const std::string& what,
                 const std::function<Manoeuvre(Vehicle&)>& ask);
 

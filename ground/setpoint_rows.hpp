@@ -6,10 +6,11 @@
 //   t [s],roll [rad],pitch [rad],yaw [rad],thrust [m/s^2][,p [rad/s],q ..,r ..] attitudes
 //   t [s],p [rad/s],q [rad/s],r [rad/s],thrust [m/s^2]                          body rates
 //
-// The columns may stand in any order; the first three kinds may have yaw [rad] (else the heading is kept) and yaw_rate [rad/s]. Units
-// that are usual are known too: deg, deg/s, cm, ms, thrust in g. Frames are those of the topics, x north, y east, z down,
-// roll, pitch and yaw as Eq. (3) has them. A header without units, t,x,y,z[,vx,vy,vz[,ax,ay,az]][,yaw], is a sampled trajectory as of
-// others, in ENU, and said to be taken for that.
+// The columns may stand in any order; the first three kinds may have yaw [rad] (else the heading is kept) and
+// yaw_rate [rad/s]. Units that are usual are known too: deg, deg/s, cm, ms, thrust in g. Frames are those of
+// the topics, x north, y east, z down, roll, pitch and yaw as Eq. (3) has them. A header without units,
+// t,x,y,z[,vx,vy,vz[,ax,ay,az]][,yaw], is a sampled trajectory as of others, in ENU, and said to be taken for
+// that.
 #pragma once
 
 #include <functional>
@@ -32,8 +33,8 @@ class SetpointRows {
   // header: the first line. Throws runtime::ConfigError with what cannot be read and what could be.
   SetpointRows(const std::string& header, const std::string& file_name);
 
-  // The next line's; nothing for a blank one. Throws runtime::ConfigError for a row that breaks the form, or whose time is not above that
-  // of the row before.
+  // The next line's; nothing for a blank one. Throws runtime::ConfigError for a row that breaks the form, or
+  // whose time is not above that of the row before.
   std::optional<TimedSetpoint> read(const std::string& line);
 
   control::SetpointKind kind() const { return kind_; }

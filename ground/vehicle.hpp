@@ -1,5 +1,6 @@
-// One vehicle, as a program that flies it sees it: connect, arm, take off, go to places, follow missions and trajectories,
-// stream setpoints, hold, land. The command `swiftlet` stands on it; ground/examples shows it in use.
+// One vehicle, as a program that flies it sees it: connect, arm, take off, go to places, follow missions and
+// trajectories, stream setpoints, hold, land. The command `swiftlet` stands on it; ground/examples shows it
+// in use.
 //
 //   swiftlet::ground::Vehicle vehicle;  // kl1 in domain 0
 //   if (!vehicle.connect().accepted() || !vehicle.arm().wait().done()) return 1;
@@ -7,8 +8,8 @@
 //   vehicle.go_to({{1, 0, -1}}).wait();
 //   vehicle.land().wait();
 //
-// Each request waits for its answer and gives a Manoeuvre, whose wait() returns when it is done. Positions are metres north,
-// east and down of the origin (NED): 1 m up is z = -1.
+// Each request waits for its answer and gives a Manoeuvre, whose wait() returns when it is done. Positions
+// are metres north, east and down of the origin (NED): 1 m up is z = -1.
 #pragma once
 
 #include <chrono>
@@ -66,15 +67,16 @@ class Vehicle {
  public:
   static constexpr std::chrono::milliseconds kAnswerTimeout{5000};
 
-  // The vehicle's name and domain are those of `network`; its `name` is this program's own, as others see it. Throws
-  // std::runtime_error with a sentence if the network cannot be joined.
+  // The vehicle's name and domain are those of `network`; its `name` is this program's own, as others see it.
+  // Throws std::runtime_error with a sentence if the network cannot be joined.
   explicit Vehicle(const comms::NodeSettings& network = {"ground"});
   ~Vehicle();
   Vehicle(const Vehicle&) = delete;
   Vehicle& operator=(const Vehicle&) = delete;
 
-  // Accepted once a controller of the vehicle is heard and answers requests; else the reason says what was seen in the domain.
-  // Requests do without it: they look for the controller themselves, within their time-out.
+  // Accepted once a controller of the vehicle is heard and answers requests; else the reason says what was
+  // seen in the domain. Requests do without it: they look for the controller themselves, within their
+  // time-out.
   Answer connect(std::chrono::milliseconds timeout = kAnswerTimeout) const;
 
   VehicleState state() const;
@@ -101,12 +103,13 @@ class Vehicle {
   // From hold, a setpoint stream or another trajectory; it is joined smoothly from the present motion.
   Manoeuvre follow(const control::Trajectory& trajectory, std::chrono::milliseconds timeout = kAnswerTimeout);
 
-  // The vehicle's own clock, s, which a stream goes by: a simulation may be slower than real time. It stands still 20 ms after the
-  // vehicle fell silent; NaN before it is heard.
+  // The vehicle's own clock, s, which a stream goes by: a simulation may be slower than real time. It stands
+  // still 20 ms after the vehicle fell silent; NaN before it is heard.
   double clock_s() const;
 
-  // One of a stream of setpoints, at 2 Hz or more, followed from hold on (idl/README.md says what each kind does and what is
-  // refused). When the stream stops the vehicle holds. Stamp and sequence are filled in. False if no controller is there.
+  // One of a stream of setpoints, at 2 Hz or more, followed from hold on (idl/README.md says what each kind
+  // does and what is refused). When the stream stops the vehicle holds. Stamp and sequence are filled in.
+  // False if no controller is there.
   bool send(const control::Setpoint& setpoint);
 
  private:

@@ -6,8 +6,8 @@
 
 namespace swiftlet::ground {
 
-// Names of the wire, "rt/<vehicle>/<name>", that a vehicle, its motion capture or its controller publish; what ground tools
-// publish shows no vehicle. Sorted, each once.
+// Names of the wire, "rt/<vehicle>/<name>", that a vehicle, its motion capture or its controller publish;
+// what ground tools publish shows no vehicle. Sorted, each once.
 std::vector<std::string> vehicles_of(const std::vector<std::string>& wire_names);
 
 // The names of one vehicle's topics among them, whoever publishes them.

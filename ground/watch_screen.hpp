@@ -30,8 +30,8 @@ struct WatchFacts {
 // What stands against a quiet flight, worst first, each as a few words: "battery is low: 3.25 V".
 std::vector<std::string> warnings_of(const View& view, Clock::time_point now);
 
-// At most `height` lines of at most `width` characters: what matters most stays when the screen is small. The last line is the
-// keys' or the message.
+// At most `height` lines of at most `width` characters: what matters most stays when the screen is small. The
+// last line is the keys' or the message.
 std::vector<ScreenLine> watch_screen(const View& view, const WatchFacts& facts, Clock::time_point now,
                                      int width, int height);
 

@@ -22,8 +22,8 @@ constexpr double kReaction_s = 0.15;         // to turn the thrust against the m
 constexpr double kPastTimeout_s = 0.1;       // coasting reaches beyond the stream's time-out, which ends it
 constexpr double kSepticPeak = 35.0 / 16.0;  // of the rate of a septic from rest to rest, of its mean
 
-// Where a setpoint is duration_s after it came, if it goes on by itself: at its acceleration until the next is due, then at
-// constant velocity.
+// Where a setpoint is duration_s after it came, if it goes on by itself: at its acceleration until the next
+// is due, then at constant velocity.
 Reference carried_on(const Setpoint& to, double duration_s, double period_s) {
   const double accelerated_s = std::min(duration_s, period_s);
   const double rest_s = duration_s - accelerated_s;
@@ -53,8 +53,8 @@ Polynomial integral(double start, const Polynomial& of) {
   return result;
 }
 
-// The velocity that begins as `from` has it and is `velocity` with acceleration and jerk `acceleration` and 0 after t: a
-// quintic, as of a position.
+// The velocity that begins as `from` has it and is `velocity` with acceleration and jerk `acceleration` and 0
+// after t: a quintic, as of a position.
 Polynomial velocity_blend(double v, double a, double j, double velocity, double acceleration, double t) {
   const double dv = velocity - (v + a * t + 0.5 * j * t * t);
   const double da = (acceleration - (a + j * t)) * t;

@@ -1,6 +1,6 @@
-// Streams of setpoints. Those of position, velocity and acceleration become a reference: from each to the next it moves
-// smoothly, within the limits, however seldom they come. Those of attitude and body rates go past the position loop, and the
-// reference is where the vehicle is.
+// Streams of setpoints. Those of position, velocity and acceleration become a reference: from each to the
+// next it moves smoothly, within the limits, however seldom they come. Those of attitude and body rates go
+// past the position loop, and the reference is where the vehicle is.
 #pragma once
 
 #include "control/request.hpp"
@@ -10,14 +10,15 @@
 
 namespace swiftlet::control {
 
-// From the reference as it is into what the setpoint asks for: position, velocity, acceleration and jerk go over without a step. It takes
-// period_s, the time until the next setpoint, at the end of which the reference is where the setpoint, going on by itself,
-// would be by then; or as much longer as speed, acceleration and jerk need to stay within the limits. Where nothing is
-// gentle and inside the fence, the gentlest that is inside. A heading that cannot be reached in that time at max_yaw_rate is
-// turned to as far as it goes.
+// From the reference as it is into what the setpoint asks for: position, velocity, acceleration and jerk go
+// over without a step. It takes period_s, the time until the next setpoint, at the end of which the reference
+// is where the setpoint, going on by itself, would be by then; or as much longer as speed, acceleration and
+// jerk need to stay within the limits. Where nothing is gentle and inside the fence, the gentlest that is
+// inside. A heading that cannot be reached in that time at max_yaw_rate is turned to as far as it goes.
 PolynomialSegment blend(const Limits& limits, const Reference& from, const Setpoint& to, double period_s);
 
-// The reference after_s after a blend that was begun from there: at its end it goes on with constant acceleration.
+// The reference after_s after a blend that was begun from there: at its end it goes on with constant
+// acceleration.
 Reference after_blend(const PolynomialSegment& blend, double after_s);
 
 // On with constant acceleration and yaw rate.

@@ -1,5 +1,5 @@
-// Flies a circle of 0.5 m with a stream of setpoints, 50 a second: after take-off the vehicle follows whatever comes, and holds
-// when nothing comes any more.
+// Flies a circle of 0.5 m with a stream of setpoints, 50 a second: after take-off the vehicle follows
+// whatever comes, and holds when nothing comes any more.
 //
 //   swiftlet-plant & swiftlet-mocap & swiftlet-control &
 //   example-stream-circle [VEHICLE] [DOMAIN] [--localhost-only]
@@ -38,7 +38,8 @@ void angle_at(double t, double& angle, double& rate, double& acceleration) {
   acceleration = 0.5 * full * M_PI / kSoftStart_s * std::sin(phase);
 }
 
-// A position with its velocity and acceleration, which are fed forward. It begins where the vehicle holds, `start`, going east.
+// A position with its velocity and acceleration, which are fed forward. It begins where the vehicle holds,
+// `start`, going east.
 Setpoint circle(double t, const Eigen::Vector3d& start) {
   double angle, rate, acceleration;
   angle_at(t, angle, rate, acceleration);

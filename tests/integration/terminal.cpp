@@ -23,8 +23,8 @@
 namespace swiftlet::tests {
 namespace {
 
-// As much of an xterm as a full-screen program in plain ASCII needs: ECMA-48 control sequences that move the cursor, erase, insert and
-// delete, and those that are without effect on the text.
+// As much of an xterm as a full-screen program in plain ASCII needs: ECMA-48 control sequences that move the
+// cursor, erase, insert and delete, and those that are without effect on the text.
 class Screen {
  public:
   Screen(int width, int height) { resize(width, height); }
