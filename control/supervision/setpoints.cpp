@@ -20,7 +20,7 @@ constexpr double kStretch = 1.25;
 constexpr double kRounding = 1e-5;
 constexpr double kReaction_s = 0.15;         // to turn the thrust against the motion
 constexpr double kPastTimeout_s = 0.1;       // coasting reaches beyond the stream's time-out, which ends it
-constexpr double kSepticPeak = 35.0 / 16.0;  // of the rate of a septic from rest to rest, of its mean
+constexpr double kQuinticPeak = 15.0 / 8.0;  // of the rate of a quintic from rest to rest, of its mean
 
 // Where a setpoint is duration_s after it came, if it goes on by itself: at its acceleration until the next
 // is due, then at constant velocity.
@@ -40,7 +40,7 @@ void turn(const Limits& limits, const Reference& from, const Setpoint& to, doubl
           Reference& end) {
   const double with_rate = to.yaw_rate * duration_s;
   const double missing = to.yaw_free ? 0.0 : std::remainder(to.yaw_rad - from.yaw_rad, 2.0 * M_PI);
-  const double reach = std::max(limits.max_yaw_rate - std::abs(to.yaw_rate), 0.0) * duration_s / kSepticPeak;
+  const double reach = std::max(limits.max_yaw_rate - std::abs(to.yaw_rate), 0.0) * duration_s / kQuinticPeak;
   end.yaw_rad = from.yaw_rad + with_rate + std::clamp(missing, -reach, reach);
   end.yaw_rate = to.yaw_rate;
 }
@@ -53,19 +53,20 @@ Polynomial integral(double start, const Polynomial& of) {
   return result;
 }
 
-// The velocity that begins as `from` has it and is `velocity` with acceleration and jerk `acceleration` and 0
-// after t: a quintic, as of a position.
-Polynomial velocity_blend(double v, double a, double j, double velocity, double acceleration, double t) {
-  const double dv = velocity - (v + a * t + 0.5 * j * t * t);
-  const double da = (acceleration - (a + j * t)) * t;
-  const double dj = -j * t * t;
+// The quintic that begins with a value and two derivatives and, t later, has another value and rate and nothing
+// more. Taken anew again and again, as by a fast stream, each from where the last has come, it settles: the error
+// then obeys s^3 + 9/t s^2 + 36/t^2 s + 60/t^3.
+Polynomial quintic(double value, double rate, double change, double to_value, double to_rate, double t) {
+  const double dv = to_value - (value + rate * t + 0.5 * change * t * t);
+  const double dr = (to_rate - (rate + change * t)) * t;
+  const double dc = -change * t * t;
   const double t3 = t * t * t;
-  return {v,
-          a,
-          0.5 * j,
-          (10.0 * dv - 4.0 * da + 0.5 * dj) / t3,
-          (-15.0 * dv + 7.0 * da - dj) / (t3 * t),
-          (6.0 * dv - 3.0 * da + 0.5 * dj) / (t3 * t * t)};
+  return {value,
+          rate,
+          0.5 * change,
+          (10.0 * dv - 4.0 * dr + 0.5 * dc) / t3,
+          (-15.0 * dv + 7.0 * dr - dc) / (t3 * t),
+          (6.0 * dv - 3.0 * dr + 0.5 * dc) / (t3 * t * t)};
 }
 
 // The acceleration that goes over into `acceleration`, its derivative into 0: a cubic.
@@ -80,6 +81,8 @@ PolynomialSegment blend_in(const Limits& limits, const Reference& from, const Se
   Reference end = carried_on(to, duration_s, period_s);
   turn(limits, from, to, duration_s, end);
   PolynomialSegment segment = join(from, end, duration_s);
+  segment.yaw =
+      quintic(from.yaw_rad, from.yaw_rate, from.yaw_acceleration, end.yaw_rad, end.yaw_rate, duration_s);
   if (to.kind == SetpointKind::kPosition) return segment;
   const std::array<Polynomial*, 3> axes = {&segment.x, &segment.y, &segment.z};
   for (int i = 0; i < 3; ++i) {
@@ -89,7 +92,7 @@ PolynomialSegment blend_in(const Limits& limits, const Reference& from, const Se
     const double j = from.jerk_ned[i];
     *axes[static_cast<std::size_t>(i)] =
         to.kind == SetpointKind::kVelocity
-            ? integral(p, velocity_blend(v, a, j, to.velocity_ned[i], to.acceleration_ned[i], duration_s))
+            ? integral(p, quintic(v, a, j, to.velocity_ned[i], to.acceleration_ned[i], duration_s))
             : integral(p, integral(v, acceleration_blend(a, j, to.acceleration_ned[i], duration_s)));
   }
   return segment;
