@@ -42,13 +42,14 @@ enum class Reason : std::uint8_t {
   kImuUnusable,
   kImuGap,
   kGroundLinkLost,
-  kStruck,        // the accelerometer felt a blow as of a fall to the ground
-  kClimbNotSeen,  // motion capture did not follow the take-off: another body, or markers that came off
-  kPoseJumped,    // motion capture says for long that the vehicle is elsewhere
-  kPlanUnknown,   // another controller was taken over from whose mission or trajectory is not known here
-  kFoundFlying,   // the controller was started while its vehicle flew
+  kStruck,           // the accelerometer felt a blow as of a fall to the ground
+  kClimbNotSeen,     // motion capture did not follow the take-off: another body, or markers that came off
+  kPoseJumped,       // motion capture says for long that the vehicle is elsewhere
+  kPlanUnknown,      // another controller was taken over from whose mission or trajectory is not known here
+  kFoundFlying,      // the controller was started while its vehicle flew
+  kSetpointsLedOut,  // a stream of attitudes or body rates led out of the fence
 };
-constexpr int kReasonCount = static_cast<int>(Reason::kFoundFlying) + 1;
+constexpr int kReasonCount = static_cast<int>(Reason::kSetpointsLedOut) + 1;
 const char* to_string(Reason reason);
 
 enum class MissionState : std::uint8_t { kNone = 0, kRunning = 1, kCompleted = 2, kAborted = 3 };

@@ -18,7 +18,10 @@ Command add_hold_command(CLI::App& root);
 Command add_stop_command(CLI::App& root);
 Command add_mission_command(CLI::App& root);
 Command add_trajectory_command(CLI::App& root);
+Command add_stream_command(CLI::App& root);
 Command add_status_command(CLI::App& root);
+Command add_watch_command(CLI::App& root);
+Command add_list_command(CLI::App& root);  // of all vehicles
 
 // What was flown.
 Command add_report_command(CLI::App& root);
@@ -26,6 +29,10 @@ Command add_report_command(CLI::App& root);
 // What is to be flown, from bench data.
 Command add_identify_command(CLI::App& root);
 Command add_identify_simulate_command(CLI::App& identify);
+
+// Of this program itself.
+Command add_completion_command(CLI::App& root);
+Command add_manual_command(CLI::App& root);
 
 // What will be flown, without flying.
 Command add_gains_command(CLI::App& root);

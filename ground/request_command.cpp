@@ -9,10 +9,6 @@
 
 namespace swiftlet::ground {
 
-std::chrono::milliseconds milliseconds(double seconds) {
-  return std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1e3));
-}
-
 CLI::App* add_request_subcommand(CLI::App& root, const std::string& name, const std::string& description,
                                  const std::string& example, const std::shared_ptr<RequestOptions>& options) {
   CLI::App* const app = root.add_subcommand(name, description);
@@ -25,32 +21,49 @@ CLI::App* add_request_subcommand(CLI::App& root, const std::string& name, const 
   return app;
 }
 
-int run_request(const RequestOptions& options, const std::string& what,
-                const std::function<Answer(Client&)>& ask) {
-  Client client(options.network);
-  const Answer answer = ask(client);
+CLI::App* add_ask_subcommand(CLI::App& root, const std::string& name, const std::string& description,
+                             const std::string& example, const std::shared_ptr<AskOptions>& options) {
+  CLI::App* const app = add_request_subcommand(root, name, description, example, options);
+  app->add_option("--wait", options->wait_s,
+                  "return when it is done, after so many s at the latest; exit code 1 if it is not")
+      ->check(CLI::Range(0.1, 3600.0));
+  return app;
+}
+
+int run_request(const AskOptions& options, const std::string& what,
+                const std::function<Manoeuvre(Vehicle&)>& ask) {
+  Vehicle vehicle(options.network);
+  const Manoeuvre manoeuvre = ask(vehicle);
+  const Answer& answer = manoeuvre.answer();
+  const bool waits = answer.accepted() && options.wait_s;
+  if (answer.accepted() && !options.json)
+    std::printf("%s: accepted by %s\n", what.c_str(), options.network.vehicle.c_str());
+  std::fflush(stdout);
+  Ending ending = {Ending::Kind::kNotAccepted, answer.reason};
+  if (waits)
+    ending = manoeuvre.wait(std::chrono::milliseconds(static_cast<std::int64_t>(*options.wait_s * 1e3)));
+  const bool failed = waits ? !ending.done() : !answer.accepted();
+
   if (options.json) {
     nlohmann::ordered_json json = {{"accepted", answer.accepted()}};
-    if (!answer.accepted()) json["reason"] = answer.reason;
+    if (waits) json["done"] = ending.done();
+    if (failed) json["reason"] = ending.reason;
     std::printf("%s\n", json.dump().c_str());
-  } else if (answer.accepted()) {
-    std::printf("%s: accepted by %s\n", what.c_str(), options.network.vehicle.c_str());
+  } else if (waits && ending.done()) {
+    std::printf("%s: done\n", what.c_str());
   }
-  if (!answer.accepted()) std::fprintf(stderr, "swiftlet: %s: %s\n", what.c_str(), answer.reason.c_str());
-  return answer.accepted() ? kDone : kFailed;
+  if (failed) std::fprintf(stderr, "swiftlet: %s: %s\n", what.c_str(), ending.reason.c_str());
+  return failed ? kFailed : kDone;
 }
 
 Command add_plain_request_command(CLI::App& root, const std::string& name, const std::string& description,
-                                  std::uint8_t kind) {
-  const auto options = std::make_shared<RequestOptions>();
+                                  Manoeuvre (Vehicle::*ask)(std::chrono::milliseconds)) {
+  const auto options = std::make_shared<AskOptions>();
   CLI::App* const app =
-      add_request_subcommand(root, name, description, "swiftlet " + name + " --domain 7", options);
-  return {app, [options, name, kind] {
-            return run_request(*options, name, [&](Client& client) {
-              msg::Command command;
-              command.kind(kind);
-              return client.command(command, milliseconds(options->timeout_s));
-            });
+      add_ask_subcommand(root, name, description, "swiftlet " + name + " --domain 7", options);
+  return {app, [options, name, ask] {
+            return run_request(*options, name,
+                               [&](Vehicle& vehicle) { return (vehicle.*ask)(options->timeout()); });
           }};
 }
 

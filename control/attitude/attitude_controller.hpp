@@ -39,7 +39,19 @@ class AttitudeController {
                           const Eigen::Vector3d& present_moment_frd,
                           const AttitudeReference& reference) const;
 
+  // Likewise for body rates, of which the attitude is left to itself: u = J k (wanted - rates) + omega x J
+  // omega, with the gains of the rates, and with kMotorLag of the present angular acceleration.
+  Eigen::Vector3d moments_for_rates(const Eigen::Vector3d& body_rates_frd,
+                                    const Eigen::Vector3d& present_moment_frd,
+                                    const Eigen::Vector3d& wanted_rates_frd) const;
+
  private:
+  // Eq. (38)-(40) and (35)-(37), from the commanded moment / inertia as far as attitude and reference make
+  // it.
+  Eigen::Vector3d linearised(const Eigen::Vector3d& command, const Eigen::Vector3d& body_rates_frd,
+                             const Eigen::Vector3d& present_moment_frd,
+                             const Eigen::Vector3d& wanted_acceleration) const;
+
   AttitudeModel model_;
   AttitudeErrorKind error_;
   bool feed_forward_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "control/supervision/phases.hpp"
+#include "control/supervision/setpoints.hpp"
 
 namespace swiftlet::control::act {
 namespace {
@@ -27,15 +28,13 @@ void start_trajectory(Scene& scene) {
 }
 
 void follow_setpoint(Scene& scene) {
-  const Setpoint& setpoint = *scene.setpoint;
-  Reference reference;
-  reference.position_ned = setpoint.position_ned;
-  reference.velocity_ned = setpoint.velocity_ned;
-  reference.acceleration_ned = setpoint.acceleration_ned;
-  reference.yaw_rad = setpoint.yaw_rad;
-  reference.yaw_rate = setpoint.yaw_rate;
-  scene.state.phase = Phase::kPath;
-  scene.state.path.pin(reference);
+  const SetpointKind kind = scene.setpoint->kind;
+  if (goes_past_position(kind)) {
+    take_direct(scene);
+  } else {
+    start_blend(scene);
+  }
+  scene.state.setpoint_kind = kind;
   scene.state.setpoint_ns = scene.state.now_ns;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "control/supervision/phases.hpp"
+#include "control/supervision/setpoints.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -107,6 +108,8 @@ EventSet observe(Scene& scene, double tip_over_cosine) {
   observe_battery(scene, events);
   events.add(Event::kOutsideFence, !lost && outside_fence(scene));
   events.add(Event::kGroundLinkLost, ground_link_lost(state, failsafe));
+  events.add(Event::kSetpointsLeadOut,
+             state.mode == Mode::kSetpoint && goes_past_position(state.setpoint_kind) && leads_out(scene));
   events.add(Event::kSetpointsStopped,
              state.mode == Mode::kSetpoint &&
                  elapsed_s(state.setpoint_ns, state.now_ns) > failsafe.setpoint_timeout_s);

@@ -34,6 +34,8 @@ const char* to_string(Event event) {
       return "battery silent";
     case Event::kGroundLinkLost:
       return "ground link lost";
+    case Event::kSetpointsLeadOut:
+      return "setpoints lead out";
     case Event::kSetpointsStopped:
       return "setpoints stopped";
     case Event::kPlanFinished:

@@ -1,17 +1,21 @@
 #include "control/supervision/guards.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "control/supervision/arming.hpp"
 #include "control/supervision/checks.hpp"
 #include "control/supervision/conditions.hpp"
 #include "control/supervision/phases.hpp"
+#include "control/supervision/setpoints.hpp"
 
 namespace swiftlet::control {
 namespace {
 
 constexpr double kLeastClimb_m = 2.0 * kAirborneHeight_m;
 constexpr double kMaxSetpointStep_m = 1.0;
+constexpr double kUnitTolerance = 1e-3;
+constexpr double kRounding = 1e-9;
 
 GroundLinkAction link_action(const Scene& scene) { return scene.settings.failsafe.ground_link_action; }
 
@@ -65,11 +69,7 @@ Outcome check_trajectory(const Scene& scene) {
   return check_position("trajectory", start.position_ned, scene.settings.limits);
 }
 
-Outcome check_setpoint(const Scene& scene) {
-  const Setpoint& setpoint = *scene.setpoint;
-  const Limits& limits = scene.settings.limits;
-  const Outcome position = check_position("setpoint", setpoint.position_ned, limits);
-  if (!position.accepted) return position;
+Outcome check_feed_forward(const Setpoint& setpoint, const Limits& limits) {
   if (!setpoint.velocity_ned.allFinite() || !setpoint.acceleration_ned.allFinite() ||
       !std::isfinite(setpoint.yaw_rad) || !std::isfinite(setpoint.yaw_rate)) {
     return refuse("setpoint: a value is not a finite number");
@@ -82,17 +82,92 @@ Outcome check_setpoint(const Scene& scene) {
     return refuse("setpoint: acceleration is %.2f m/s^2, the limit is %.2f m/s^2", acceleration,
                   limits.max_acceleration);
   }
-  // The stream may cease with this one.
-  Reference last;
-  last.position_ned =
-      setpoint.position_ned + scene.settings.failsafe.setpoint_timeout_s * setpoint.velocity_ned;
-  last.velocity_ned = setpoint.velocity_ned;
-  const Outcome at_rest =
-      check_position("setpoint: where it could come to rest", rest_place(limits, last), limits);
-  if (!at_rest.accepted) return at_rest;
+  if (std::abs(setpoint.yaw_rate) <= limits.max_yaw_rate) return accept();
+  return refuse("setpoint: yaw rate is %.2f rad/s, the limit is %.2f rad/s", setpoint.yaw_rate,
+                limits.max_yaw_rate);
+}
+
+Outcome check_position_setpoint(const Scene& scene) {
+  const Setpoint& setpoint = *scene.setpoint;
+  const Outcome position = check_position("setpoint", setpoint.position_ned, scene.settings.limits);
+  if (!position.accepted) return position;
   const double step = (setpoint.position_ned - scene.estimate().position_ned).norm();
   if (step <= kMaxSetpointStep_m) return accept();
   return refuse("setpoint: %.2f m away from the vehicle, the limit is %.2f m", step, kMaxSetpointStep_m);
+}
+
+// The stream may cease with this one: then the reference goes on for the time-out, and comes to rest.
+Outcome check_end_of_stream(const Scene& scene) {
+  const Setpoint& setpoint = *scene.setpoint;
+  const Limits& limits = scene.settings.limits;
+  const double timeout_s = scene.settings.failsafe.setpoint_timeout_s;
+  Reference last;
+  if (setpoint.kind == SetpointKind::kPosition) {
+    last.velocity_ned = setpoint.velocity_ned;
+    last.position_ned = setpoint.position_ned + timeout_s * setpoint.velocity_ned;
+  } else {
+    const Reference from = scene.state.path.at(scene.state.now_ns);
+    last = after_blend(blend(limits, from, setpoint, stream_period_s(scene)), timeout_s);
+  }
+  const double speed = last.velocity_ned.norm();
+  if (speed > limits.max_speed + kRounding) {
+    return refuse("setpoint: leads to %.2f m/s within %.2f s, the limit is %.2f m/s", speed, timeout_s,
+                  limits.max_speed);
+  }
+  return check_position("setpoint: where it could come to rest", rest_place(limits, last), limits);
+}
+
+Outcome check_thrust(const Setpoint& setpoint, const Limits& limits) {
+  const double most = plant::kGravity + limits.max_acceleration;
+  if (setpoint.thrust >= 0.0 && setpoint.thrust <= most) return accept();
+  return refuse("setpoint: thrust is %.2f m/s^2, must be at least 0 and at most %.2f m/s^2", setpoint.thrust,
+                most);
+}
+
+Outcome check_rates(const Setpoint& setpoint, const Limits& limits) {
+  const double rate = setpoint.body_rates_frd.norm();
+  if (rate <= limits.max_body_rate) return accept();
+  return refuse("setpoint: body rate is %.2f rad/s, the limit is %.2f rad/s", rate, limits.max_body_rate);
+}
+
+Outcome check_attitude(const Setpoint& setpoint, const Limits& limits) {
+  if (!(std::abs(setpoint.q_ned_from_frd.norm() - 1.0) <= kUnitTolerance))
+    return refuse("setpoint: the attitude is no unit quaternion");
+  const double tilt = std::acos(std::clamp(cosine_of_tilt(setpoint.q_ned_from_frd), -1.0, 1.0));
+  if (tilt <= limits.max_tilt_rad) return accept();
+  return refuse("setpoint: tilt is %.2f rad, the limit is %.2f rad", tilt, limits.max_tilt_rad);
+}
+
+// One that knows no place: the fence is kept by the vehicle's own motion.
+Outcome check_direct_setpoint(const Scene& scene) {
+  const Setpoint& setpoint = *scene.setpoint;
+  const Limits& limits = scene.settings.limits;
+  if (scene.state.mode == Mode::kHolding && scene.state.reason == Reason::kSetpointsLedOut)
+    return refuse(
+        "setpoint: the stream led out of the fence; ask for hold or goto before the next of its kind");
+  const Outcome rates = check_rates(setpoint, limits);
+  if (!rates.accepted) return rates;
+  const Outcome thrust = check_thrust(setpoint, limits);
+  if (!thrust.accepted) return thrust;
+  if (setpoint.kind == SetpointKind::kAttitude) {
+    const Outcome attitude = check_attitude(setpoint, limits);
+    if (!attitude.accepted) return attitude;
+  }
+  return leads_out(scene) ? refuse("setpoint: the vehicle cannot come to rest inside the fence") : accept();
+}
+
+Outcome check_setpoint(const Scene& scene) {
+  const Setpoint& setpoint = *scene.setpoint;
+  if (setpoint.kind > SetpointKind::kBodyRates)
+    return refuse("setpoint: unknown kind %d", static_cast<int>(setpoint.kind));
+  if (goes_past_position(setpoint.kind)) return check_direct_setpoint(scene);
+  const Outcome numbers = check_feed_forward(setpoint, scene.settings.limits);
+  if (!numbers.accepted) return numbers;
+  if (setpoint.kind == SetpointKind::kPosition) {
+    const Outcome position = check_position_setpoint(scene);
+    if (!position.accepted) return position;
+  }
+  return check_end_of_stream(scene);
 }
 
 Outcome check_goto(const Scene& scene) {

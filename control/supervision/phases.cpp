@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "control/supervision/checks.hpp"
+#include "control/supervision/setpoints.hpp"
 #include "control/trajectory/waypoint_path.hpp"
 
 namespace swiftlet::control {
@@ -28,10 +29,6 @@ double yaw_of(const Eigen::Quaterniond& q) {
 
 // The yaw that is `to` plus whole turns, nearest to `from`.
 double nearest_turn(double to, double from) { return from + std::remainder(to - from, 2.0 * M_PI); }
-
-double stopping_time(const Limits& limits, const Reference& from) {
-  return std::max(kMinMove_s, 2.0 * from.velocity_ned.norm() / limits.max_reference_acceleration);
-}
 
 Eigen::Vector3d stopping_place(const Limits& limits, const Reference& from) {
   return rest_place(limits, from).cwiseMax(limits.fence_min_ned).cwiseMin(limits.fence_max_ned);
@@ -137,6 +134,10 @@ Reference standing_at(const Estimate& estimate) {
   return reference;
 }
 
+double stopping_time(const Limits& limits, const Reference& from) {
+  return std::max(kMinMove_s, 2.0 * from.velocity_ned.norm() / limits.max_reference_acceleration);
+}
+
 Eigen::Vector3d rest_place(const Limits& limits, const Reference& from) {
   return from.position_ned + 0.5 * stopping_time(limits, from) * from.velocity_ned;
 }
@@ -236,11 +237,13 @@ void advance(Scene& scene) {
   SupervisorState& state = scene.state;
   if (!scene.flying() || state.mode == Mode::kDescent) return;
   if (scene.estimate().position_ned.z() < state.ground_z_ned - kAirborneHeight_m) state.airborne = true;
+  if (state.mode == Mode::kSetpoint && goes_past_position(state.setpoint_kind)) return follow_estimate(scene);
   if (state.phase == Phase::kSpoolUp && elapsed_s(state.phase_since_ns, state.now_ns) >= kSpoolUp_s)
     climb(scene);
   if (state.phase != Phase::kPath || !state.path.finished(state.now_ns)) return;
   if (state.mode == Mode::kMission) advance_mission(scene);
   if (state.mode == Mode::kTrajectory) advance_trajectory(scene);
+  if (state.mode == Mode::kSetpoint) start_coast(scene);
   if (state.mode == Mode::kLanding) sink(scene);
 }
 

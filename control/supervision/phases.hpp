@@ -15,6 +15,8 @@ Reference kept_inside(const Limits& limits, const Reference& reference);
 // Where the estimate is, at rest, with its yaw.
 Reference standing_at(const Estimate& estimate);
 
+// In which a reference that moves so comes to rest, s.
+double stopping_time(const Limits& limits, const Reference& from);
 // Where a reference that moves so can come to rest, as start_stop() would have it without a fence.
 Eigen::Vector3d rest_place(const Limits& limits, const Reference& from);
 

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "control/mode.hpp"
+#include "control/request.hpp"
 #include "control/trajectory/reference_path.hpp"
 
 namespace swiftlet::control {
@@ -25,6 +26,13 @@ struct GroundLink {
   std::int64_t heard_ns = 0;
 };
 constexpr int kMaxGroundLinks = 4;
+
+// What a stream of attitudes or body rates asks for, by Setpoint's fields.
+struct DirectSetpoint {
+  std::array<double, 4> q_ned_from_frd{1.0, 0.0, 0.0, 0.0};  // w, x, y, z
+  std::array<double, 3> body_rates_frd{};                    // rad/s
+  double thrust = 0.0;                                       // m/s^2
+};
 
 // Times are stamps of the vehicle's clock, ns.
 struct SupervisorState {
@@ -47,7 +55,9 @@ struct SupervisorState {
   std::uint64_t trajectory_id = 0;  // of the one being flown
   std::uint32_t next_segment = 0;   // of that trajectory, after the one being flown
 
-  std::int64_t setpoint_ns = 0;                // when the last one was taken
+  std::int64_t setpoint_ns = 0;  // when the last one was taken
+  SetpointKind setpoint_kind = SetpointKind::kPosition;
+  DirectSetpoint direct;                       // of the kinds that go past the position loop
   std::int64_t contact_since_ns = 0;           // 0: the ground is not felt
   std::int64_t low_battery_since_ns = 0;       // 0: the battery is well
   std::int64_t critical_battery_since_ns = 0;  // 0: it is not that low

@@ -69,6 +69,16 @@ Directive Supervisor::directive(const Situation& situation) const {
   } else if (state_.phase == Phase::kSpoolUp) {
     directive.actuation = Actuation::kSpoolUp;
     directive.lift_fraction = spool_up_lift(state_);
+  } else if (state_.mode == Mode::kSetpoint && goes_past_position(state_.setpoint_kind)) {
+    const DirectSetpoint& direct = state_.direct;
+    const auto& q = direct.q_ned_from_frd;
+    const auto& rates = direct.body_rates_frd;
+    directive.actuation =
+        state_.setpoint_kind == SetpointKind::kAttitude ? Actuation::kAttitude : Actuation::kBodyRates;
+    directive.q_ned_from_frd = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+    directive.body_rates_frd = Eigen::Vector3d(rates[0], rates[1], rates[2]);
+    directive.thrust = direct.thrust;
+    directive.integrate = state_.airborne;
   } else {
     directive.actuation = Actuation::kFly;
     directive.integrate = state_.airborne && state_.phase == Phase::kPath;

@@ -69,6 +69,7 @@ const Transition kTransitions[] = {
   {kUnderWay, E::kBatterySilent, when::kAlways, check_of::kNone, M::kLanding, R::kBatterySilent, act::kLand},
   {kUnderWay, E::kGroundLinkLost, when::kLinkLands, check_of::kNone, M::kLanding, R::kGroundLinkLost, act::kLand},
   {kUnderWay, E::kGroundLinkLost, when::kLinkHolds, check_of::kNone, M::kHolding, R::kGroundLinkLost, act::kStop},
+  {{M::kSetpoint}, E::kSetpointsLeadOut, when::kAlways, check_of::kNone, M::kHolding, R::kSetpointsLedOut, act::kStop},
   {{M::kSetpoint}, E::kSetpointsStopped, when::kAlways, check_of::kNone, M::kHolding, R::kSetpointsStopped, act::kStop},
 
   // How a flight goes on.

@@ -220,21 +220,41 @@ msg::GroundTruth to_message(const plant::TruthSample& in) {
 }
 
 Fault from_message(const msg::Setpoint& in, control::Setpoint& out) {
+  using namespace msg;
   Check check;
-  check.time(in.stamp_ns())
-      .finite("position_ned", in.position_ned())
-      .finite("velocity_ned", in.velocity_ned())
-      .finite("acceleration_ned", in.acceleration_ned())
-      .finite("yaw", in.yaw())
-      .finite("yaw_rate", in.yaw_rate());
+  check.time(in.stamp_ns()).at_most("kind", in.kind(), Setpoint_Constants::BODY_RATES);
+  const auto kind = static_cast<control::SetpointKind>(in.kind());
+  const bool places = kind == control::SetpointKind::kPosition;
+  const bool moves = places || kind == control::SetpointKind::kVelocity;
+  const bool turns = kind == control::SetpointKind::kAttitude;
+  const bool past_position = control::goes_past_position(kind);
+  if (places) check.finite("position_ned", in.position_ned());
+  if (moves) check.finite("velocity_ned", in.velocity_ned());
+  if (turns) check.unit("q_ned_from_frd", in.q_ned_from_frd());
+  if (past_position) {
+    check.finite("body_rates_frd", in.body_rates_frd()).finite("thrust", in.thrust());
+  } else {
+    check.finite("acceleration_ned", in.acceleration_ned())
+        .finite("yaw", in.yaw_free() ? 0.0 : in.yaw())
+        .finite("yaw_rate", in.yaw_rate());
+  }
   if (!check.ok()) return check.fault();
-  out = {in.stamp_ns(),
-         in.sequence_number(),
-         vector(in.position_ned()),
-         vector(in.velocity_ned()),
-         vector(in.acceleration_ned()),
-         in.yaw(),
-         in.yaw_rate()};
+  out = {};
+  out.stamp_ns = in.stamp_ns();
+  out.sequence = in.sequence_number();
+  out.kind = kind;
+  if (places) out.position_ned = vector(in.position_ned());
+  if (moves) out.velocity_ned = vector(in.velocity_ned());
+  if (turns) out.q_ned_from_frd = quaternion(in.q_ned_from_frd());
+  if (past_position) {
+    out.body_rates_frd = vector(in.body_rates_frd());
+    out.thrust = in.thrust();
+    return {};
+  }
+  out.acceleration_ned = vector(in.acceleration_ned());
+  out.yaw_free = in.yaw_free();
+  if (!out.yaw_free) out.yaw_rad = in.yaw();
+  out.yaw_rate = in.yaw_rate();
   return {};
 }
 
@@ -242,11 +262,16 @@ msg::Setpoint to_message(const control::Setpoint& in) {
   msg::Setpoint out;
   out.stamp_ns(in.stamp_ns);
   out.sequence_number(in.sequence);
+  out.kind(static_cast<std::uint8_t>(in.kind));
   out.position_ned(array(in.position_ned));
   out.velocity_ned(array(in.velocity_ned));
   out.acceleration_ned(array(in.acceleration_ned));
+  out.yaw_free(in.yaw_free);
   out.yaw(in.yaw_rad);
   out.yaw_rate(in.yaw_rate);
+  out.q_ned_from_frd(array(in.q_ned_from_frd));
+  out.body_rates_frd(array(in.body_rates_frd));
+  out.thrust(in.thrust);
   return out;
 }
 

@@ -7,7 +7,7 @@ namespace {
 using namespace wire;
 
 constexpr std::uint64_t kMaxStrength = 1000;
-constexpr std::size_t kReplicatedStateBytes = 488;
+constexpr std::size_t kReplicatedStateBytes = 560;
 
 }  // namespace
 
@@ -32,6 +32,10 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
       .at_most("item_count", in.item_count(), control::kMaxMissionItems)
       .at_most("item_index", in.item_index(), in.item_count())
       .at_most("next_segment", in.next_segment(), control::kMaxTrajectorySegments)
+      .at_most("setpoint_kind", in.setpoint_kind(), Setpoint_Constants::BODY_RATES)
+      .finite("setpoint_attitude", in.setpoint_attitude())
+      .finite("setpoint_body_rates", in.setpoint_body_rates())
+      .finite("setpoint_thrust", in.setpoint_thrust())
       .finite("position_integral_ned", in.position_integral_ned())
       .at_most("rotor_state", in.rotor_state(), ActuatorCommand_Constants::ROTORS_RUNNING)
       .per_rotor("throttle", in.rotor_count(), in.throttle(), 0.0, 1.0);
@@ -65,6 +69,8 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
   state.trajectory_id = in.trajectory_id();
   state.next_segment = in.next_segment();
   state.setpoint_ns = in.setpoint_ns();
+  state.setpoint_kind = static_cast<control::SetpointKind>(in.setpoint_kind());
+  state.direct = {in.setpoint_attitude(), in.setpoint_body_rates(), in.setpoint_thrust()};
   state.contact_since_ns = in.contact_since_ns();
   state.low_battery_since_ns = in.low_battery_since_ns();
   state.critical_battery_since_ns = in.critical_battery_since_ns();
@@ -119,6 +125,10 @@ msg::ControllerState to_message(const ControllerReport& in) {
   out.trajectory_id(state.trajectory_id);
   out.next_segment(state.next_segment);
   out.setpoint_ns(state.setpoint_ns);
+  out.setpoint_kind(static_cast<std::uint8_t>(state.setpoint_kind));
+  out.setpoint_attitude(state.direct.q_ned_from_frd);
+  out.setpoint_body_rates(state.direct.body_rates_frd);
+  out.setpoint_thrust(state.direct.thrust);
   out.contact_since_ns(state.contact_since_ns);
   out.low_battery_since_ns(state.low_battery_since_ns);
   out.critical_battery_since_ns(state.critical_battery_since_ns);

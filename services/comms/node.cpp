@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cctype>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <vector>
 
@@ -144,6 +146,7 @@ struct Node::Impl final : public dds::DomainParticipantListener {
     membership.reset();
     const std::lock_guard<std::mutex> lock(peers_mutex);
     peers.clear();
+    writers.clear();
     reunions.clear();
   }
 
@@ -167,6 +170,7 @@ struct Node::Impl final : public dds::DomainParticipantListener {
       }
       case rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT:
       case rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT: {
+        forget_writers(info.info.m_guid.guidPrefix);
         const auto peer = peers.find(info.info.m_guid);
         if (peer == peers.end()) return;
         const PeerEvent event{peer->second, false,
@@ -183,8 +187,19 @@ struct Node::Impl final : public dds::DomainParticipantListener {
   }
 
   void on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& info) override {
-    if (info.status == rtps::WriterDiscoveryInfo::DISCOVERED_WRITER)
+    if (info.status == rtps::WriterDiscoveryInfo::DISCOVERED_WRITER) {
       note_endpoint(info.info.guid(), Meetings::kWriter);
+      const std::lock_guard<std::mutex> lock(peers_mutex);
+      writers[info.info.guid()] = info.info.topicName().c_str();
+    } else if (info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) {
+      const std::lock_guard<std::mutex> lock(peers_mutex);
+      writers.erase(info.info.guid());
+    }
+  }
+  // With the lock held.
+  void forget_writers(const rtps::GuidPrefix_t& participant) {
+    for (auto writer = writers.begin(); writer != writers.end();)
+      writer = writer->first.guidPrefix == participant ? writers.erase(writer) : std::next(writer);
   }
   void on_subscriber_discovery(dds::DomainParticipant*, rtps::ReaderDiscoveryInfo&& info) override {
     if (info.status == rtps::ReaderDiscoveryInfo::DISCOVERED_READER)
@@ -204,6 +219,7 @@ struct Node::Impl final : public dds::DomainParticipantListener {
 
   std::mutex peers_mutex;
   std::map<rtps::GUID_t, std::string> peers;
+  std::map<rtps::GUID_t, std::string> writers;  // of others, of whichever vehicle: their topics
   std::function<void(const PeerEvent&)> peer_callback;
 
   Meetings reunions;
@@ -347,6 +363,13 @@ class DdsReader final : public detail::Reader, private Endpoint, private dds::Da
 Node::Node(const NodeSettings& settings) : impl_(std::make_shared<Impl>(settings)) {}
 
 Node::~Node() { on_peer({}); }
+
+std::vector<std::string> Node::topics_seen() const {
+  const std::lock_guard<std::mutex> lock(impl_->peers_mutex);
+  std::set<std::string> topics;
+  for (const auto& writer : impl_->writers) topics.insert(writer.second);
+  return {topics.begin(), topics.end()};
+}
 
 void Node::on_peer(std::function<void(const PeerEvent&)> callback) {
   const std::lock_guard<std::mutex> lock(impl_->peers_mutex);

@@ -43,7 +43,17 @@ void InnerLoop::take_samples() {
     ++rotor_samples_;
   }
   control::Setpoint new_setpoint;
-  if (setpoint.take(new_setpoint) && role_ == Role::kActive) controller_.on_setpoint(new_setpoint);
+  if (setpoint.take(new_setpoint) && role_ == Role::kActive) take_setpoint(new_setpoint);
+}
+
+void InnerLoop::take_setpoint(const control::Setpoint& new_setpoint) {
+  const control::Outcome outcome = controller_.on_setpoint(new_setpoint);
+  if (outcome.accepted) {
+    ++setpoints_.taken;
+    return;
+  }
+  ++setpoints_.refused;
+  setpoints_.refusal = outcome;
 }
 
 void InnerLoop::follow(std::uint32_t term) {
@@ -133,6 +143,7 @@ bool InnerLoop::finish(std::int64_t now_ns) {
   snapshot_.role = role_;
   snapshot_.saturated = saturated_;
   snapshot_.timing = timing_.figures();
+  snapshot_.setpoints = setpoints_;
   if (snapshots.push(snapshot_)) {
     told_ = status;
     told_role_ = role_;

@@ -16,6 +16,13 @@
 
 namespace swiftlet::services {
 
+// What became of the setpoints that came while this controller was the active one.
+struct SetpointTally {
+  std::uint64_t taken = 0;
+  std::uint64_t refused = 0;
+  control::Outcome refusal;  // the last
+};
+
 // What a step says to the rest of the process.
 struct Snapshot {
   std::int64_t stamp_ns = 0;  // of the IMU sample
@@ -30,6 +37,7 @@ struct Snapshot {
   Role role = Role::kStandby;
   bool saturated = false;  // in any step since the last snapshot
   StepTiming::Figures timing;
+  SetpointTally setpoints;
 };
 
 using AcceptedRequests = decltype(comms::ControllerReport::accepted);
@@ -93,6 +101,7 @@ class InnerLoop {
 
  private:
   void take_samples();
+  void take_setpoint(const control::Setpoint& setpoint);
   void follow(std::uint32_t term);
   void look(const plant::ImuSample& sample);
   void remember(const PendingRequest& accepted);
@@ -113,6 +122,7 @@ class InnerLoop {
   Role role_ = Role::kStandby;
   Role told_role_ = Role::kStandby;
   AcceptedRequests accepted_{};  // oldest first
+  SetpointTally setpoints_;
   std::int64_t looks_since_ns_ = kLooksNot;
   int rotor_samples_ = 0;    // of the rotors' speeds, since it looks
   bool knows_plan_ = false;  // of the flight that it follows

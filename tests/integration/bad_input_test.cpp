@@ -129,7 +129,7 @@ TEST_F(BadInput, OfTheOnlineCommands) {
 
 TEST_F(BadInput, HelpIsNone) {
   for (const char* command : {"fly", "arm", "disarm", "takeoff", "goto", "land", "hold", "stop", "mission",
-                              "trajectory", "status", "gains", "identify"}) {
+                              "trajectory", "stream", "status", "watch", "list", "gains", "identify"}) {
     const Ending end = run_program("swiftlet", {command, "--help"}, folder_.path());
     EXPECT_EQ(end.exit_code, 0);
     EXPECT_NE(end.output.find("example: swiftlet " + std::string(command)), std::string::npos) << end.output;

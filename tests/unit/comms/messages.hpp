@@ -33,7 +33,15 @@ inline plant::TruthSample truth_sample() {
           true};
 }
 inline control::Setpoint setpoint() {
-  return {1007, 17, {1.0, 2.0, -1.0}, {0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}, 0.7, 0.8};
+  control::Setpoint setpoint;
+  setpoint.stamp_ns = 1007;
+  setpoint.sequence = 17;
+  setpoint.position_ned = {1.0, 2.0, -1.0};
+  setpoint.velocity_ned = {0.1, 0.2, 0.3};
+  setpoint.acceleration_ned = {0.4, 0.5, 0.6};
+  setpoint.yaw_rad = 0.7;
+  setpoint.yaw_rate = 0.8;
+  return setpoint;
 }
 inline control::Request request() {
   control::Request request;
@@ -99,6 +107,8 @@ inline ControllerReport controller_report() {
   state.trajectory_id = 33;
   state.next_segment = 34;
   state.setpoint_ns = 35;
+  state.setpoint_kind = control::SetpointKind::kBodyRates;
+  state.direct = {{0.5, -0.5, 0.5, -0.5}, {0.1, 0.2, 0.3}, 9.5};
   state.contact_since_ns = 36;
   state.low_battery_since_ns = 37;
   state.critical_battery_since_ns = 46;

@@ -74,6 +74,13 @@ class Placed : public SupervisedFlight {
     return supervisor_.setpoint(setpoint, situation_);
   }
 
+  Outcome tilt() {
+    Setpoint setpoint;
+    setpoint.kind = SetpointKind::kAttitude;
+    setpoint.thrust = plant::kGravity;
+    return supervisor_.setpoint(setpoint, situation_);
+  }
+
   const Mission mission_ = hop();
   const Mission one_place_ = to_one_place();
   const Trajectory trajectory_ = line();
