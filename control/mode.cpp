@@ -80,6 +80,8 @@ const char* to_string(Reason reason) {
       return "taken over without the plan that was flown";
     case Reason::kFoundFlying:
       return "found flying";
+    case Reason::kMissionPaused:
+      return "mission paused";
   }
   return "unknown";
 }

@@ -96,6 +96,9 @@ class Client {
                 const Cancelled& cancelled = {});
   Answer upload(const control::Trajectory& trajectory, std::chrono::milliseconds timeout,
                 const Cancelled& cancelled = {});
+  // One of Command_Constants::MISSION_*, of the mission of this id; 0: of whichever is there.
+  Answer mission_command(std::uint8_t kind, std::uint64_t mission_id, std::chrono::milliseconds timeout,
+                         const Cancelled& cancelled = {});
   // Of the mission uploaded last: MissionStatus::mission_id.
   std::uint64_t mission_id() const { return mission_id_; }
 
