@@ -12,6 +12,7 @@
 #include <string>
 #include <string_view>
 
+#include "control/trajectory/polynomial.hpp"
 #include "ground/mission_file.hpp"
 
 namespace swiftlet::ground {
@@ -22,7 +23,21 @@ enum class MissionFormat { kYaml, kPolynomialCsv, kSampledCsv, kWaypointCsv, kQG
 // that is none of these.
 MissionFormat detect_format(std::string_view text, const std::string& file_name);
 
-// Throw runtime::ConfigError with file, line, column, value and limit for whatever breaks the form, the limits or the fence.
+// A path in NED that begins at rest, and what it was taken for.
+struct TrajectoryFile {
+  std::vector<control::PolynomialSegment> segments;
+  std::vector<std::string> assumptions;
+};
+
+// All that follow throw runtime::ConfigError with file, line, column, value and limit for whatever breaks the form, the limits or the fence.
+TrajectoryFile read_polynomial_csv(const std::string& text, const std::string& file_name,
+                                   const control::Limits& limits);
+TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file_name,
+                                const control::Limits& limits);
+TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& file_name,
+                                 const control::Limits& limits);
+
+// Whole flights.
 MissionFile parse_polynomial_csv(const std::string& text, const std::string& file_name,
                                  const control::Limits& limits);
 MissionFile parse_sampled_csv(const std::string& text, const std::string& file_name,
