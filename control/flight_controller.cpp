@@ -26,8 +26,8 @@ using Eigen::Vector3d;
 constexpr double kFirstStep_s = 0.002;  // taken for the first sample, which has none before it
 constexpr double kMaxStep_s = 0.1;
 constexpr int kUnusableToFault = 200;  // IMU samples in a row that cannot be used, whatever their stamps say
-// Of the weight, specific force that the rotors do not explain: something else carries the vehicle, on its legs or on
-// its side.
+// Of the weight, specific force that the rotors do not explain: something else carries the vehicle, on its
+// legs or on its side.
 constexpr double kStandingLift = 0.5;
 constexpr double kDescentGain = 4.0;   // 1/s, vertical speed to acceleration, in descent without position
 constexpr double kBrakeGain = 2.0;     // 1/s, likewise of the horizontal speed

@@ -1,4 +1,5 @@
-// A mission as the control service flies it: a list of items, one after another, and the bounds that it sets itself.
+// A mission as the control service flies it: a list of items, one after another, and the bounds that it
+// sets itself.
 #pragma once
 
 #include <cstdint>

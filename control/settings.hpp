@@ -59,7 +59,7 @@ struct Limits {
   double max_acceleration = 5.0;                       // m/s^2, horizontal and vertical feedback command
   double max_speed = 2.0;                              // m/s, of references that are planned here
   double max_reference_acceleration = 2.0;             // m/s^2, of references that are planned here
-  double max_reference_jerk = 20.0;                    // m/s^3, of references that are planned here
+  double max_reference_jerk = 8.0;                     // m/s^3, of references that are planned here
   double max_yaw_rate = 1.5;                           // rad/s, of references that are planned here
   Eigen::Vector3d fence_min_ned = {-3.0, -3.0, -2.5};  // m
   Eigen::Vector3d fence_max_ned = {3.0, 3.0, 0.2};     // m

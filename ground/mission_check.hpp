@@ -30,8 +30,8 @@ struct MissionCheck {
   bool feasible() const;
 };
 
-// At the voltage at which a flight is ended for a low battery, or another one above 0. Limits and fence: the settings', as
-// the mission tightens them.
+// At the voltage at which a flight is ended for a low battery, or another one above 0. Limits and fence:
+// the settings', as the mission tightens them.
 MissionCheck check_mission(const MissionFile& file, const Rehearsal& rehearsal, const plant::Vehicle& vehicle,
                            const control::ControlSettings& settings, double supply_voltage_v);
 

@@ -1,4 +1,5 @@
-// Mission files (YAML). docs/missions.md explains them to their writers, config/missions/mission.schema.json to editors:
+// Mission files (YAML). docs/missions.md explains them to their writers,
+// config/missions/mission.schema.json to editors:
 //
 //   name: square         # optional; the file's name without its ending
 //   description: One lap # optional
@@ -15,8 +16,8 @@
 //     - {kind: wait, duration_s: 3}
 //     - {kind: land, speed_m_s: 0.3}                               # straight down, rotors off
 //
-// Limits and fence can only be tighter than those of the control settings. Files of other projects are read as well
-// (formats/mission_format.hpp).
+// Limits and fence can only be tighter than those of the control settings. Files of other projects are read
+// as well (formats/mission_format.hpp).
 #pragma once
 
 #include <string>
@@ -40,7 +41,8 @@ struct MissionFile {
 };
 
 // Throw runtime::ConfigError with file, line, key, value and limit for whatever breaks the form, the limits
-// or the fence. load: of any format that is known; parse: YAML. file_name: its folder is where trajectories are looked for.
+// or the fence. load: of any format that is known; parse: YAML. file_name: its folder is where trajectories
+// are looked for.
 MissionFile load_mission_file(const std::string& path, const control::Limits& limits);
 MissionFile parse_mission_file(const std::string& text, const std::string& file_name,
                                const control::Limits& limits);

@@ -211,8 +211,8 @@ class Reader {
     return item;
   }
 
-  // A point that gives no yaw has that of the one before, those before the first that does have its. True if no point has
-  // one: the yaw is then free.
+  // A point that gives no yaw has that of the one before, those before the first that does have its. True
+  // if no point has one: the yaw is then free.
   bool read_points(const std::vector<ConfigNode>& nodes, const Yaw& fallback,
                    std::vector<control::PathPoint>& points) const {
     Yaw last = fallback;

@@ -1,5 +1,5 @@
-// A picture of a mission before it is flown: the path from above and in space, height, speed, acceleration and tilt against
-// time, with limits and fence.
+// A picture of a mission before it is flown: the path from above and in space, height, speed, acceleration
+// and tilt against time, with limits and fence.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,6 @@
-// A mission as it will be flown: the control service's own supervision flies it, in no time, with a vehicle that is exactly
-// where it is asked to be. What comes out is the very path, with all that the service plans itself.
+// A mission as it will be flown: the control service's own supervision flies it, in no time, with a vehicle
+// that is exactly where it is asked to be. What comes out is the very path, with all that the service plans
+// itself.
 #pragma once
 
 #include <cstddef>
@@ -28,8 +29,8 @@ struct Rehearsal {
   double duration_s = 0.0;            // to the touch-down, or to the end of the last item
 };
 
-// start_ned: where it stands on the ground at z = 0, heading north; a mission that does not take off begins at
-// kRehearsedHover_m above there.
+// start_ned: where it stands on the ground at z = 0, heading north; a mission that does not take off begins
+// at kRehearsedHover_m above there.
 Rehearsal rehearse(const control::Mission& mission, const control::ControlSettings& settings,
                    const Eigen::Vector2d& start_ned);
 constexpr double kRehearsedHover_m = 1.0;

@@ -28,10 +28,10 @@ class AttitudeController {
 
   // The moments u1 .. u3 to be commanded, N m:
   //   u = J (k (reference - state) + feed forward) + omega x J omega, the last as in Eq. (35)-(37).
-  // The state is (error of attitude.error's kind, body rate), as Eq. (38)-(40) approximate (29)-(31), and with
-  // kMotorLag the present angular acceleration, from present_moment_frd, the moment that the rotors give now
-  // (unused otherwise). Fed forward is alpha_r, with kMotorLag alpha_r + tau d(alpha_r)/dt, so that it arrives
-  // in time behind the lag; with kRotation turned from the reference's axes into the body's.
+  // The state is (error of attitude.error's kind, body rate), as Eq. (38)-(40) approximate (29)-(31), and
+  // with kMotorLag the present angular acceleration, from present_moment_frd, the moment that the rotors give
+  // now (unused otherwise). Fed forward is alpha_r, with kMotorLag alpha_r + tau d(alpha_r)/dt, so that it
+  // arrives in time behind the lag; with kRotation turned from the reference's axes into the body's.
   //
   // Finite at every attitude. An input that is not finite gives moments that are not finite, which Allocator
   // takes.

@@ -162,7 +162,8 @@ void advance_trajectory(Scene& scene) {
   advance_segments(scene.state, segments.data(), segments.size(), false);
 }
 
-// The greatest speed on the way that is passed before a change of the clock is over, as bounds of its segments show.
+// The greatest speed on the way that is passed before a change of the clock is over, as bounds of its
+// segments show.
 double speed_on_way(const Scene& scene) {
   const MotionLimits unit{1.0, 1.0, 1.0, 1.0};
   const SupervisorState& state = scene.state;
@@ -240,8 +241,8 @@ void start_join(Scene& scene, const PolynomialSegment& first, bool keep_yaw, dou
   if (keep_yaw) to.yaw_rate = to.yaw_acceleration = 0.0;
   state.phase = Phase::kPath;
   state.next_segment = 0;
-  // From rest the way is straight, in the time that it takes. From motion it swings out the further the longer it takes,
-  // and accelerates the more the shorter: the first that is gentle, or else the gentlest.
+  // From rest the way is straight, in the time that it takes. From motion it swings out the further the
+  // longer it takes, and accelerates the more the shorter: the first that is gentle, or else the gentlest.
   const bool moves = !from.velocity_ned.isZero(0.0) || !from.acceleration_ned.isZero(0.0);
   const double gentle = (1.0 + 1e-5) * std::max({limits.max_reference_acceleration,
                                                  from.acceleration_ned.norm(), to.acceleration_ned.norm()});

@@ -1,5 +1,5 @@
-// All that the supervisor remembers from one step to the next, as plain data: another process that is given it,
-// with the plan being flown, goes on exactly where this one stopped.
+// All that the supervisor remembers from one step to the next, as plain data: another process that is given
+// it, with the plan being flown, goes on exactly where this one stopped.
 #pragma once
 
 #include <array>

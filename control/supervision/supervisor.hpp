@@ -32,12 +32,13 @@ class Supervisor {
   int ground_links() const;  // ground tools that the flight depends on
 
   const SupervisorState& state() const { return state_; }
-  // Goes on from the state of another controller with the same settings. mission: the one that is there, flown or not;
-  // trajectory: the one that is being flown; null where it is not known here, upon which a vehicle that flies it comes to
-  // rest and holds. Owned by the caller and kept until the controller has left it.
+  // Goes on from the state of another controller with the same settings. mission: the one that is there,
+  // flown or not; trajectory: the one that is being flown; null where it is not known here, upon which a
+  // vehicle that flies it comes to rest and holds. Owned by the caller and kept until the controller has
+  // left it.
   void adopt(const SupervisorState& state, const Mission* mission, const Trajectory* trajectory);
-  // The vehicle flies, and nobody knows what for: it comes to rest and holds. The ground is taken to be at z = 0.
-  // Refused without a pose, or if this supervisor flies it already.
+  // The vehicle flies, and nobody knows what for: it comes to rest and holds. The ground is taken to be at z
+  // = 0. Refused without a pose, or if this supervisor flies it already.
   Outcome find_flying(const Situation& situation);
 
  private:

@@ -25,7 +25,8 @@ constexpr std::array<const char*, 9> kUnits = {"m", "m/s", "m/s^2", "rad/s", "m/
 
 bool is_least(Demand demand) { return demand == Demand::kLift || demand == Demand::kRotorLeast; }
 
-// The path as the rotors feel it: drag acts like an acceleration in proportion to the velocity, and so do its derivatives.
+// The path as the rotors feel it: drag acts like an acceleration in proportion to the velocity, and so do its
+// derivatives.
 Reference with_drag(const Reference& reference, double drag_per_mass) {
   Reference felt = reference;
   felt.acceleration_ned += drag_per_mass * reference.velocity_ned;

@@ -1,5 +1,5 @@
-// How time runs along a path: with the vehicle's, not at all, or smoothly from one to the other. What is slowed down and
-// brought to rest by its clock stays exactly on its path, wherever that leads.
+// How time runs along a path: with the vehicle's, not at all, or smoothly from one to the other. What is
+// slowed down and brought to rest by its clock stays exactly on its path, wherever that leads.
 #pragma once
 
 #include <cstdint>
@@ -41,8 +41,9 @@ struct PathClock {
 };
 static_assert(std::is_trivially_copyable_v<PathClock>);
 
-// The shortest change between running and standing in which a motion at this speed (m/s, >= 0) is slowed by at most
-// acceleration and jerk (m/s^2, m/s^3, > 0): 15/8 v/T and 10/sqrt(3) v/T^2. At least min_duration_s.
+// The shortest change between running and standing in which a motion at this speed (m/s, >= 0) is slowed by
+// at most acceleration and jerk (m/s^2, m/s^3, > 0): 15/8 v/T and 10/sqrt(3) v/T^2. At least
+// min_duration_s.
 double clock_change_duration(double speed, double acceleration, double jerk, double min_duration_s);
 
 // Of what has `reference` at a time of the path's own: what it has by the vehicle's time, by the chain rule.

@@ -25,7 +25,8 @@ struct ReferencePath {
   void follow(const PolynomialSegment& along, std::int64_t from_ns);
   // Follow the segment from where this one ends, by the same clock.
   void follow_on(const PolynomialSegment& along);
-  // Of a clock that runs again: from now on the path's time is the vehicle's. Returns by how much it was behind, ns.
+  // Of a clock that runs again: from now on the path's time is the vehicle's. Returns by how much it was
+  // behind, ns.
   std::int64_t take_vehicle_time(std::int64_t now_ns);
 
   // What follows is asked for by the vehicle's time.

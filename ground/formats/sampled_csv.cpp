@@ -78,7 +78,8 @@ Samples read(const runtime::CsvTable& table, const Columns& columns) {
   return samples;
 }
 
-// Differences over the rows beside each, of what the file does not give and its neighbours do; zero at the ends.
+// Differences over the rows beside each, of what the file does not give and its neighbours do; zero at the
+// ends.
 void difference(Samples& samples, const Columns& columns) {
   const std::size_t last = samples.places.size() - 1;
   for (std::size_t i = 1; i < last; ++i) {

@@ -22,11 +22,12 @@ constexpr double kLeastHeight_m = 0.2;  // a path that comes lower is taken for 
 constexpr double kApproachSpeed =
     0.5;  // m/s, of take-off, to where the path begins, and of the landing at most
 
-// By how much a path must be raised, m; 0 if it stays above kLeastHeight_m. Adds to the assumptions what was decided.
+// By how much a path must be raised, m; 0 if it stays above kLeastHeight_m. Adds to the assumptions what was
+// decided.
 double raise_by(double least_height_m, std::vector<std::string>& assumptions);
 
-// The path, if it can be flown. `where` throws for the segment of this index with a sentence about it, for one that breaks
-// fence, limits or the one before it.
+// The path, if it can be flown. `where` throws for the segment of this index with a sentence about it, for
+// one that breaks fence, limits or the one before it.
 TrajectoryFile checked(TrajectoryFile path, const control::Limits& limits,
                        const std::function<void(std::size_t, const std::string&)>& where);
 

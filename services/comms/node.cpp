@@ -41,6 +41,7 @@
 #include "services/comms/profiles.hpp"
 #include "services/comms/reunions.hpp"
 #include "services/comms/shared_memory.hpp"
+#include "services/comms/tolerant_type.hpp"
 
 // Each message type that is a topic's.
 // clang-format off
@@ -82,10 +83,10 @@ void check(const NodeSettings& settings) {
   }
 }
 
-}  // namespace
-
 constexpr std::chrono::milliseconds kReunionPatience{1000};
 constexpr std::chrono::milliseconds kLookPeriod{250};
+
+}  // namespace
 
 struct Node::Impl final : public dds::DomainParticipantListener {
   using Meetings = Reunions<rtps::GuidPrefix_t>;
@@ -117,8 +118,8 @@ struct Node::Impl final : public dds::DomainParticipantListener {
     endpoints.erase(std::remove(endpoints.begin(), endpoints.end(), endpoint), endpoints.end());
   }
 
-  // Where a peer came back without its endpoints, this process leaves the domain and joins it anew, with all that it publishes and
-  // subscribes; nobody takes it for the one that was there.
+  // Where a peer came back without its endpoints, this process leaves the domain and joins it anew, with all
+  // that it publishes and subscribes; nobody takes it for the one that was there.
   void look_after_reunions() {
     {
       const std::lock_guard<std::mutex> lock(peers_mutex);
@@ -149,7 +150,7 @@ struct Node::Impl final : public dds::DomainParticipantListener {
   template <class T>
   dds::Topic* topic_in(Membership& in, const char* name) const {
     return in.topic("rt/" + settings.vehicle + "/" + name,
-                    dds::TypeSupport(new typename PubSubTypeOf<T>::type()));
+                    dds::TypeSupport(new TolerantType<typename PubSubTypeOf<T>::type>()));
   }
   int deadline_ms(int of_topic) const { return settings.deadlines ? of_topic : 0; }
 

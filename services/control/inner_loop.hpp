@@ -66,15 +66,15 @@ class InnerLoop {
 
   // By the IMU thread: step() gives the command; once it is sent, finish() does the rest of the step and
   // returns whether there is new output. now_ns: monotonic time of the sample's arrival, or of the command's
-  // departure.
-  // A standby steps as the active one does and follows the flight of that term; its command is not for sending.
+  // departure. A standby steps as the active one does and follows the flight of that term; its command is not
+  // for sending.
   plant::ActuatorCommand step(const plant::ImuSample& sample, std::int64_t now_ns, Role role = Role::kActive,
                               std::uint32_t followed_term = 0);
   bool finish(std::int64_t now_ns);
 
-  // Nobody was there to go on from: from the next step on looks whether the vehicle flies, and takes it into hold
-  // if it does. Until that is clear, for at most kLook, there are no commands to be sent: the vehicle goes on
-  // with its last one.
+  // Nobody was there to go on from: from the next step on looks whether the vehicle flies, and takes it into
+  // hold if it does. Until that is clear, for at most kLook, there are no commands to be sent: the vehicle
+  // goes on with its last one.
   void look_for_flight() { looks_since_ns_ = kLooksFromNow; }
   bool looking() const { return looks_since_ns_ != kLooksNot; }
   static constexpr std::int64_t kLookNs = 300'000'000;

@@ -103,7 +103,8 @@ void RequestDesk::on_trajectory(const comms::msg::Trajectory& message) {
   submit(std::move(pending));
 }
 
-// Its id is that of a mission which is known here and says something else. One that says the same is asked for once more.
+// Its id is that of a mission which is known here and says something else. One that says the same is asked
+// for once more.
 bool RequestDesk::is_of_another(const comms::msg::Mission& message) {
   comms::msg::Mission known = mission(message.id());
   if (known.id() != message.id()) return false;

@@ -1,5 +1,5 @@
-// Takes requests in, has them judged by the inner loop and keeps the answers. At a standby's desk they are only
-// read: what the active controller accepts and flies is kept, so that it can be gone on with.
+// Takes requests in, has them judged by the inner loop and keeps the answers. At a standby's desk they are
+// only read: what the active controller accepts and flies is kept, so that it can be gone on with.
 #pragma once
 
 #include <atomic>
@@ -49,8 +49,8 @@ class RequestDesk {
   void attend(bool attends) { attends_.store(attends, std::memory_order_relaxed); }
   bool attends() const { return attends_.load(std::memory_order_relaxed); }
 
-  // What the active controller says: the mission that it keeps, the trajectory that it flies, and what it accepted. By any
-  // thread.
+  // What the active controller says: the mission that it keeps, the trajectory that it flies, and what it
+  // accepted. By any thread.
   void on_flown_mission(const comms::msg::Mission& message);
   void on_flown_trajectory(const comms::msg::Trajectory& message);
   void follow(Handover handover);

@@ -1,6 +1,6 @@
-// Measured data as people keep them: CSV whose header declares each column as `name [unit]`, in the names and units that are
-// usual, "omega [rpm]", "thrust [g]", "pwm [us]". What comes out is in SI units. What could be read in two ways is refused, with the
-// choices.
+// Measured data as people keep them: CSV whose header declares each column as `name [unit]`, in the names and
+// units that are usual, "omega [rpm]", "thrust [g]", "pwm [us]". What comes out is in SI units. What could be
+// read in two ways is refused, with the choices.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@
 
 namespace swiftlet::runtime {
 
-// What a column may hold, and the unit in which it is handed out. Throttle and pulse width share their names: the unit tells
-// which it is.
+// What a column may hold, and the unit in which it is handed out. Throttle and pulse width share their names:
+// the unit tells which it is.
 enum class Quantity {
   kTime,           // s
   kSupplyVoltage,  // v_s, V
@@ -52,8 +52,9 @@ class Measurements {
   std::map<Quantity, std::vector<double>> columns_;
 };
 
-// A table in which these quantities may stand, in any order, each once. Throws ConfigError for a column without a unit, of a name or
-// unit that is not known here, or that says again what another says. file_name is for the messages only.
+// A table in which these quantities may stand, in any order, each once. Throws ConfigError for a column
+// without a unit, of a name or unit that is not known here, or that says again what another says. file_name
+// is for the messages only.
 Measurements parse_measurements(std::string_view text, const std::string& file_name,
                                 const std::vector<Quantity>& allowed);
 Measurements load_measurements(const std::string& path, const std::vector<Quantity>& allowed);

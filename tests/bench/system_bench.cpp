@@ -218,8 +218,8 @@ class Vehicle {
       throw std::runtime_error("a vehicle did not take off");
   }
 
-  // Of a vehicle that hovers: from the upload of a mission of so many waypoints until it says that it flies it; with how
-  // much of that until the upload is answered, s.
+  // Of a vehicle that hovers: from the upload of a mission of so many waypoints until it says that it flies
+  // it; with how much of that until the upload is answered, s.
   struct MissionStart {
     double uploaded_s = 0.0;
     double started_s = 0.0;
@@ -302,8 +302,8 @@ class Vehicle {
   VehicleFigures begin_;
 };
 
-// Figures of vehicles that hover side by side, from their take-off on; counts are of the last `seconds`. stalls: what the computer
-// takes meanwhile, in percent of the cycles; null: nobody looks.
+// Figures of vehicles that hover side by side, from their take-off on; counts are of the last `seconds`.
+// stalls: what the computer takes meanwhile, in percent of the cycles; null: nobody looks.
 std::vector<VehicleFigures> hover(int vehicles, int rate_hz, bool realtime, double seconds,
                                   bool loaded = false, double* stalls = nullptr) {
   const tests::TemporaryFolder folder;

@@ -32,8 +32,8 @@ class Online : public testing::Test {
   TemporaryFolder folder_;
 };
 
-// In lockstep at the pace of the clock: the tools wait as they do with a real vehicle, and a machine that is busy slows the flight
-// down instead of failing it.
+// In lockstep at the pace of the clock: the tools wait as they do with a real vehicle, and a machine that is
+// busy slows the flight down instead of failing it.
 class OnlineFlight : public Online {
  protected:
   OnlineFlight()

@@ -98,7 +98,8 @@ TEST_F(EstimatorFaults, AJumpThatPersistsIsNotBelievedInFlight) {
   EXPECT_EQ(estimator_.estimate().resets, 0U);
 }
 
-// Short of an outlier it is followed, and must not be taken for a motion: the velocity of the dead reckoning that may come next.
+// Short of an outlier it is followed, and must not be taken for a motion: the velocity of the dead reckoning
+// that may come next.
 TEST_F(EstimatorFaults, AStepThatStaysLeavesNoVelocityBehind) {
   fly(3.0);
   const Change stepped = [](PoseSample& pose) { pose.position_ned.x() += 0.045; };

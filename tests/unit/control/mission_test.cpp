@@ -1,4 +1,5 @@
-// Missions as they are kept, started, paused, gone on with, skipped and forgotten, and the bounds that they set themselves.
+// Missions as they are kept, started, paused, gone on with, skipped and forgotten, and the bounds that they
+// set themselves.
 #include <algorithm>
 #include <cmath>
 #include <optional>

@@ -441,8 +441,8 @@ TEST_F(DeskOfAStandby, DoesNotFollowAnotherTerm) {
   EXPECT_EQ(standby_state().mode, control::Mode::kDisarmed);
 }
 
-// GIVEN a request that was accepted, WHEN its answer is lost with the controller that gave it, THEN whoever takes over
-// gives it again and does not apply it twice.
+// GIVEN a request that was accepted, WHEN its answer is lost with the controller that gave it, THEN whoever
+// takes over gives it again and does not apply it twice.
 TEST_F(DeskOfAStandby, ARequestThatWasAcceptedBeforeIsAnsweredAndNotAppliedAgain) {
   settle();
   desk_.on_command(command(Command_Constants::ARM, 1));
