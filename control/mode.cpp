@@ -82,6 +82,8 @@ const char* to_string(Reason reason) {
       return "found flying";
     case Reason::kSetpointsLedOut:
       return "setpoints led out of the fence";
+    case Reason::kMissionPaused:
+      return "mission paused";
   }
   return "unknown";
 }

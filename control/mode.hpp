@@ -48,11 +48,22 @@ enum class Reason : std::uint8_t {
   kPlanUnknown,      // another controller was taken over from whose mission or trajectory is not known here
   kFoundFlying,      // the controller was started while its vehicle flew
   kSetpointsLedOut,  // a stream of attitudes or body rates led out of the fence
+  kMissionPaused,
 };
-constexpr int kReasonCount = static_cast<int>(Reason::kSetpointsLedOut) + 1;
+constexpr int kReasonCount = static_cast<int>(Reason::kMissionPaused) + 1;
 const char* to_string(Reason reason);
 
-enum class MissionState : std::uint8_t { kNone = 0, kRunning = 1, kCompleted = 2, kAborted = 3 };
+enum class MissionState : std::uint8_t {
+  kNone = 0,
+  kRunning = 1,
+  kCompleted = 2,  // it can be started again, as one that was aborted
+  kAborted = 3,
+  kUploaded = 4,  // not started yet
+  kPaused = 5,    // its vehicle holds
+};
+inline bool is_under_way(MissionState state) {
+  return state == MissionState::kRunning || state == MissionState::kPaused;
+}
 
 struct MissionProgress {
   std::uint64_t id = 0;

@@ -19,19 +19,26 @@ enum class RequestKind : std::uint8_t {
   kHold = 4,     // stop where it is
   kLand = 5,
   kStop = 6,  // rotors off at once, wherever it is
-  kMission = 7,
-  kTrajectory = 8,
+  kMissionStart = 7,
+  kMissionPause = 8,   // come to rest on the way, and keep the rest of it
+  kMissionResume = 9,  // back to where it was left, and on
+  kMissionSkip = 10,   // on with the next item
+  kMissionClear = 11,  // forget it
+  // Not by a command, but by messages of their own.
+  kMissionUpload = 64,  // keep it, to be started
+  kTrajectory = 65,
 };
 
 struct Request {
   RequestKind kind = RequestKind::kHold;
   Eigen::Vector3d position_ned = Eigen::Vector3d::Zero();  // m
   double yaw_rad = 0.0;
-  bool yaw_free = true;  // keep the present yaw
-  double speed = 0.5;    // m/s, peak
+  bool yaw_free = true;          // keep the present yaw
+  double speed = 0.5;            // m/s, peak
+  std::uint64_t mission_id = 0;  // kMissionStart .. kMissionClear: of which mission; 0: whichever is there
   const Mission* mission =
-      nullptr;  // kMission; owned by the caller and kept until the controller has left it
-  const Trajectory* trajectory = nullptr;  // kTrajectory; likewise
+      nullptr;  // kMissionUpload; owned by the caller, kept until another one is accepted
+  const Trajectory* trajectory = nullptr;  // kTrajectory; likewise, or until the controller has left it
 };
 
 // Accepted, or refused with one sentence that names the value and the limit. Nothing of a refused request is

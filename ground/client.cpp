@@ -252,6 +252,14 @@ Answer Client::upload(const control::Mission& mission, std::chrono::milliseconds
   return ask(missions_, message, timeout, cancelled);
 }
 
+Answer Client::mission_command(std::uint8_t kind, std::uint64_t mission_id, std::chrono::milliseconds timeout,
+                               const Cancelled& cancelled) {
+  msg::Command request;
+  request.kind(kind);
+  request.mission_id(mission_id);
+  return command(request, timeout, cancelled);
+}
+
 Answer Client::upload(const control::Trajectory& trajectory, std::chrono::milliseconds timeout,
                       const Cancelled& cancelled) {
   msg::Trajectory message = comms::to_message(trajectory);
@@ -309,6 +317,10 @@ const char* mission_state_name(std::uint8_t state) {
       return "completed";
     case msg::MissionStatus_Constants::ABORTED:
       return "aborted";
+    case msg::MissionStatus_Constants::UPLOADED:
+      return "uploaded";
+    case msg::MissionStatus_Constants::PAUSED:
+      return "paused";
     default:
       return "unknown";
   }

@@ -89,6 +89,9 @@ class Client {
   // One of a stream, for which there is no answer: stamp and number are filled in. False if nobody is there
   // to take it.
   bool send(control::Setpoint setpoint);
+  // One of Command_Constants::MISSION_*, of the mission of this id; 0: of whichever is there.
+  Answer mission_command(std::uint8_t kind, std::uint64_t mission_id, std::chrono::milliseconds timeout,
+                         const Cancelled& cancelled = {});
   // Of the mission uploaded last: MissionStatus::mission_id.
   std::uint64_t mission_id() const { return mission_id_; }
   const std::string& vehicle() const { return settings_.vehicle; }

@@ -187,8 +187,12 @@ void Flight::arm() {
 }
 
 void Flight::start_mission() {
-  const Answer answer = client_.upload(mission_.mission, kRequestTimeout,
-                                       [this] { return watch_.casualty() || watch_.interrupts() > 0; });
+  const auto cancelled = [this] { return watch_.casualty() || watch_.interrupts() > 0; };
+  Answer answer = client_.upload(mission_.mission, kRequestTimeout, cancelled);
+  if (answer.accepted()) {
+    answer = client_.mission_command(msg::Command_Constants::MISSION_START, client_.mission_id(),
+                                     kRequestTimeout, cancelled);
+  }
   demand_alive();
   if (watch_.interrupts() > 0) bring_down("interrupted");
   if (!answer.accepted()) throw FlightFailure("the mission was refused: " + answer.reason);

@@ -24,7 +24,7 @@ control::Trajectory trajectory_of(const MissionFile& file, const std::string& pa
   };
   const auto& items = file.mission.items;
   if (std::count_if(items.begin(), items.end(), is_trajectory) != 1) {
-    throw InputError(path + ": holds no trajectory; `swiftlet mission` flies missions");
+    throw InputError(path + ": holds no trajectory; `swiftlet mission fly` flies missions");
   }
   return {0, file.mission.segments};
 }

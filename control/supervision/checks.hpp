@@ -17,8 +17,11 @@ Outcome accept();
 Outcome check_position(const char* what, const Eigen::Vector3d& position_ned, const Limits& limits);
 Outcome check_speed(const char* what, double speed, const Limits& limits);
 
-// 1 to kMaxMissionItems items; a takeoff only first, a landing only last. Each of its trajectories as below.
-Outcome check(const Mission& mission, const Limits& limits);
+// No looser than the limits, and a fence that is one.
+Outcome check(const MissionBounds& bounds, const Limits& limits);
+// 1 to kMaxMissionItems items; a takeoff only first, a landing only last. Each of its trajectories as
+// below. By its own bounds, which check() finds no looser than the settings' limits.
+Outcome check(const Mission& mission, const Limits& settings);
 
 // 1 to kMaxTrajectorySegments segments as check_segment() has them, that join without steps in position and
 // velocity and start at rest.

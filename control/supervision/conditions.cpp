@@ -38,11 +38,7 @@ bool ground_felt(Scene& scene) {
 }
 
 bool outside_fence(const Scene& scene) {
-  const Limits& limits = scene.settings.limits;
-  const Eigen::Vector3d& at = scene.estimate().position_ned;
-  const double beyond =
-      std::max((at - limits.fence_max_ned).maxCoeff(), (limits.fence_min_ned - at).maxCoeff());
-  return beyond > scene.settings.failsafe.fence_margin_m;
+  return beyond_fence(scene.limits, scene.estimate().position_ned) > scene.settings.failsafe.fence_margin_m;
 }
 
 void observe_battery(Scene& scene, EventSet& events) {
@@ -64,6 +60,11 @@ bool is_silent(const GroundLink& link, std::int64_t now_ns, double timeout_s) {
 }
 
 }  // namespace
+
+double beyond_fence(const Limits& limits, const Eigen::Vector3d& position_ned) {
+  return std::max((position_ned - limits.fence_max_ned).maxCoeff(),
+                  (limits.fence_min_ned - position_ned).maxCoeff());
+}
 
 double cosine_of_tilt(const Eigen::Quaterniond& q) { return 1.0 - 2.0 * (q.x() * q.x() + q.y() * q.y()); }
 

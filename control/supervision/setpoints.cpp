@@ -148,7 +148,7 @@ void start_blend(Scene& scene) {
   SupervisorState& state = scene.state;
   const Reference from = state.path.at(state.now_ns);
   state.phase = Phase::kPath;
-  state.path.follow(blend(scene.settings.limits, from, *scene.setpoint, stream_period_s(scene)),
+  state.path.follow(blend(scene.limits, from, *scene.setpoint, stream_period_s(scene)),
                     state.now_ns);
 }
 
@@ -174,14 +174,14 @@ void follow_estimate(Scene& scene) {
   Reference here = standing_at(estimate);
   here.velocity_ned = estimate.velocity_ned;
   const Vector3d thrust_ned = estimate.q_ned_from_frd * Vector3d(0.0, 0.0, -scene.state.direct.thrust);
-  const double limit = scene.settings.limits.max_acceleration;
+  const double limit = scene.limits.max_acceleration;
   here.acceleration_ned = thrust_ned + Vector3d(0.0, 0.0, plant::kGravity);
   here.acceleration_ned *= limit / std::max(limit, here.acceleration_ned.norm());
   scene.state.path.pin(here);
 }
 
 bool leads_out(const Scene& scene) {
-  const Limits& limits = scene.settings.limits;
+  const Limits& limits = scene.limits;
   Reference here;
   here.position_ned = scene.estimate().position_ned + kReaction_s * scene.estimate().velocity_ned;
   here.velocity_ned = scene.estimate().velocity_ned;

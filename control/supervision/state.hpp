@@ -20,6 +20,21 @@ enum class Phase : std::uint8_t {
   kSink = 3,     // at the end of a landing, until the ground is felt
 };
 
+// Of a mission that was paused: whether the vehicle is still on its way.
+enum class Detour : std::uint8_t {
+  kNone = 0,
+  kAway = 1,       // it was sent elsewhere
+  kReturning = 2,  // to where it was left
+};
+
+// A way that was left, and the time of it, to be gone on with.
+struct LeftPath {
+  PolynomialSegment segment;
+  std::int64_t start_ns = 0;
+  std::int64_t end_ns = 0;
+  std::int64_t at_ns = 0;
+};
+
 // A ground tool that the flight depends on.
 struct GroundLink {
   std::uint64_t client = 0;  // 0: none
@@ -51,7 +66,9 @@ struct SupervisorState {
   double ground_z_ned = 0.0;    // m, where it stood when it was armed
 
   MissionProgress mission;          // the item index says where in the mission
-  std::int64_t item_end_ns = 0;     // path and hold of the item being flown
+  std::int64_t item_end_ns = 0;     // of its path and hold, by the path's time; 0: it has not arrived
+  Detour detour = Detour::kNone;    // of a mission that is paused, or returns from that
+  LeftPath left;                    // unless kNone
   std::uint64_t trajectory_id = 0;  // of the one being flown
   std::uint32_t next_segment = 0;   // of that trajectory, after the one being flown
 

@@ -24,6 +24,7 @@ enum class Demand {
   kRotorMost,     // N, of the rotor that gives the most
 };
 const char* to_string(Demand demand);
+const char* unit_of(Demand demand);
 
 // The worst of one demand along a path.
 struct WorstDemand {

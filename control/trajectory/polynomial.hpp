@@ -34,6 +34,10 @@ Reference evaluate(const PolynomialSegment& segment, double t_s);
 PolynomialSegment minimum_jerk(const Eigen::Vector3d& from_ned, double from_yaw,
                                const Eigen::Vector3d& to_ned, double to_yaw, double duration_s);
 
+// The quintic from value, first and second derivative to `to`, where both derivatives are zero, after
+// duration_s > 0.
+Polynomial quintic_to_rest(double value, double first, double second, double to, double duration_s);
+
 // The quintic that leaves `from` with its position, velocity and acceleration and is at rest at `to_ned`,
 // `to_yaw` after duration_s > 0.
 PolynomialSegment join_to_rest(const Reference& from, const Eigen::Vector3d& to_ned, double to_yaw,

@@ -62,9 +62,11 @@ void InnerLoop::follow(std::uint32_t term) {
   if (newest.term == term) {
     controller_.adopt(newest.flight, newest.mission, newest.trajectory);
     accepted_ = newest.accepted;
-    const control::Mode mode = newest.flight.supervisor.mode;
-    knows_plan_ = (mode != control::Mode::kMission || newest.mission != nullptr) &&
-                  (mode != control::Mode::kTrajectory || newest.trajectory != nullptr);
+    const control::SupervisorState& state = newest.flight.supervisor;
+    const bool has_mission =
+        state.mission.state == control::MissionState::kUploaded || control::is_under_way(state.mission.state);
+    knows_plan_ = (!has_mission || newest.mission != nullptr) &&
+                  (state.mode != control::Mode::kTrajectory || newest.trajectory != nullptr);
     looks_since_ns_ = kLooksNot;
   }
   taken_handover_.store(newest.number, std::memory_order_release);

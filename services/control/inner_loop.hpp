@@ -48,7 +48,8 @@ struct Handover {
   std::uint32_t term = 0;
   control::FlightState flight;
   AcceptedRequests accepted{};
-  const control::Mission* mission = nullptr;  // what is flown there; null if it is not known here
+  // What is there or flown; null if it is not known here.
+  const control::Mission* mission = nullptr;
   const control::Trajectory* trajectory = nullptr;
 };
 

@@ -67,7 +67,7 @@ void Telemetry::change_role() {
 }
 
 void Telemetry::publish_plan() {
-  const std::uint64_t mission = last_.status.mode == control::Mode::kMission ? last_.status.mission.id : 0;
+  const std::uint64_t mission = last_.status.mission.id;
   if (mission != 0 && mission != told_mission_) {
     const comms::msg::Mission message = desk_.mission(mission);
     if (message.id() == mission) flown_missions_.publish(message);

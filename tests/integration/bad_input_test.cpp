@@ -69,7 +69,7 @@ TEST_F(BadInput, MissionWithoutATakeoff) {
 TEST_F(BadInput, MissionWithoutALand) {
   const std::string file =
       folder_.write("up.yaml", replaced(kMission, "  - {kind: land, speed_m_s: 0.5}\n", ""));
-  expect_refusal({file}, file + ": items: the last is no land");
+  expect_refusal({file}, file + ":5: items[1]: is the last item, which must be a land");
 }
 
 TEST_F(BadInput, MissionThatTakesTooLong) {
@@ -121,7 +121,7 @@ TEST_F(BadInput, OfTheOnlineCommands) {
   refuses({"goto", "1", "2", "nan"}, "nan is not a finite number");
   refuses({"takeoff", "-1"}, "must be a finite number above 0");
   refuses({"land", "--speed", "0"}, "must be a finite number above 0");
-  refuses({"mission", folder_.write("far.yaml", replaced(kMission, "[1, 0, -1]", "[1, 40, -1]"))},
+  refuses({"mission", "check", folder_.write("far.yaml", replaced(kMission, "[1, 0, -1]", "[1, 40, -1]"))},
           "east is 40 m");
   refuses({"circle"}, "circle");
   refuses({}, "swiftlet: a command is required");

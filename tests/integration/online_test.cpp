@@ -82,11 +82,11 @@ TEST_F(OnlineFlight, FollowsAMissionFileToItsEnd) {
                                          "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.8}\n"
                                          "  - {kind: waypoint, position_m: [0.4, 0, 0.6], speed_m_s: 0.8}\n"
                                          "  - {kind: land, speed_m_s: 0.8}\n");
-  const Ending unarmed = swiftlet({"mission", file});
+  const Ending unarmed = swiftlet({"mission", "fly", file});
   EXPECT_EQ(unarmed.exit_code, 1);
-  EXPECT_EQ(unarmed.errors, "swiftlet: mission hop: cannot start a mission while disarmed\n");
+  EXPECT_EQ(unarmed.errors, "swiftlet: mission hop: cannot start a mission while disarmed; arm first\n");
   expect_accepted({"arm"});
-  const Ending flown = swiftlet({"mission", file, "--json"}, 60s);
+  const Ending flown = swiftlet({"mission", "fly", file, "--json"}, 60s);
   EXPECT_EQ(flown.exit_code, 0) << flown.errors;
   EXPECT_EQ(json::parse(flown.output), json({{"mission", "hop"}, {"accepted", true}, {"completed", true}}));
   EXPECT_NE(flown.errors.find("2/3"), std::string::npos) << "no progress was shown: " << flown.errors;
@@ -96,12 +96,62 @@ TEST_F(OnlineFlight, FollowsAMissionFileToItsEnd) {
   EXPECT_NEAR(now.at("position_ned_m")[1].get<double>(), 0.4, 0.02) << "0.4 m east";
 }
 
+TEST_F(OnlineFlight, AMissionIsUploadedStartedPausedGoneOnWithSkippedAndCleared) {
+  const std::string file =
+      folder_.write("walk.yaml",
+                    "frame: ned\ntolerance_m: 0.1\nends: hovering\nitems:\n"
+                    "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.8}\n"
+                    "  - {kind: waypoint, position_m: [1, 0, -0.6], speed_m_s: 0.1}\n"
+                    "  - {kind: waypoint, position_m: [0.3, 0.2, -0.6], speed_m_s: 0.8}\n");
+  const auto mission_is = [&](const std::string& state) {
+    return reaches(state.c_str(),
+                   [&](const json& status) { return status.at("mission").at("state") == state; });
+  };
+  const auto accepted = [&](const std::string& request) {
+    const Ending end = swiftlet({"mission", request});
+    EXPECT_EQ(end.exit_code, 0) << end.errors;
+    EXPECT_EQ(end.output, "mission " + request + ": accepted by kl7\n");
+  };
+  const auto refused = [&](const std::string& request, const std::string& reason) {
+    const Ending end = swiftlet({"mission", request});
+    EXPECT_EQ(end.exit_code, 1);
+    EXPECT_EQ(end.errors, "swiftlet: mission " + request + ": " + reason + "\n");
+  };
+  accepted("clear");  // of none
+  const Ending uploaded = swiftlet({"mission", "upload", file, "--json"});
+  ASSERT_EQ(uploaded.exit_code, 0) << uploaded.errors;
+  const std::string id = std::to_string(json::parse(uploaded.output).at("mission_id").get<std::uint64_t>());
+  ASSERT_TRUE(mission_is("uploaded"));
+  refused("start", "cannot start a mission while disarmed; arm first");
+  refused("pause", "no mission is being flown");
+  expect_accepted({"arm"});
+  const Ending other = swiftlet({"mission", "start", "--id", "5"});
+  EXPECT_EQ(other.errors,
+            "swiftlet: mission start: mission 5 is not the one that is here: that is " + id + "\n");
+  accepted("start");
+  ASSERT_TRUE(
+      reaches("its second item", [](const json& status) { return status.at("mission").at("item") == 2; }));
+  accepted("pause");
+  ASSERT_TRUE(mission_is("paused"));
+  EXPECT_EQ(status().at("mode"), "holding");
+  refused("start", "mission " + id + " is paused: resume or clear it");
+  accepted("resume");
+  ASSERT_TRUE(mission_is("running"));
+  refused("clear", "mission " + id + " is being flown: hold, goto or land ends that");
+  accepted("skip");
+  ASSERT_TRUE(mission_is("completed"));
+  ASSERT_TRUE(reaches_place(0.3, 0.2, -0.6));
+  accepted("clear");
+  ASSERT_TRUE(mission_is("none"));
+}
+
 TEST_F(OnlineFlight, ASecondTrajectoryIsJoinedInTheMiddleOfTheFirst) {
   const std::string tour =
       folder_.write("tour.csv", "x,y,z\n0,0,1\n0.6,0,1\n0.6,0.6,1\n-0.6,0.6,1.2\n-0.6,-0.6,1\n0,0,1\n");
   const std::string other = folder_.write("other.csv", "0.3,0.4,0.8\n0.5,0,0.8\n");
-  const std::string mission = folder_.write(
-      "hop.yaml", "frame: ned\ntolerance_m: 0.1\nitems:\n  - {kind: takeoff, height_m: 1, speed_m_s: 0.8}\n");
+  const std::string mission = folder_.write("hop.yaml",
+                                            "frame: ned\ntolerance_m: 0.1\nends: hovering\nitems:\n  - "
+                                            "{kind: takeoff, height_m: 1, speed_m_s: 0.8}\n");
   const Ending disarmed = swiftlet({"trajectory", tour});
   EXPECT_EQ(disarmed.exit_code, 1);
   EXPECT_NE(disarmed.errors.find("tour: taken as waypoints in ENU"), std::string::npos) << disarmed.errors;
@@ -125,7 +175,7 @@ TEST_F(OnlineFlight, TellsThatAMissionWasAborted) {
                                          "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.8, hold_s: 100}\n"
                                          "  - {kind: land, speed_m_s: 0.8}\n");
   expect_accepted({"arm"});
-  std::vector<std::string> words = {"mission", file};
+  std::vector<std::string> words = {"mission", "fly", file};
   for (const std::string& word : network()) words.push_back(word);
   Program mission("swiftlet", words, folder_.path());
   ASSERT_TRUE(reaches("in the air", [](const json& status) { return status.at("airborne") == true; }));

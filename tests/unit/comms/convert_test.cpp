@@ -198,14 +198,14 @@ TEST(Convert, OfASetpointItsKindSaysWhatCounts) {
 }
 
 TEST(Convert, BrokenRequestsAreRefused) {
-  expect_refused<control::Request>(example<msg::Command>(), "kind is 7, must be at most 6",
-                                   [](msg::Command& m) { m.kind(7); });
+  expect_refused<control::Request>(example<msg::Command>(), "kind is 12, must be at most 11",
+                                   [](msg::Command& m) { m.kind(12); });
   expect_refused<control::Request>(example<msg::Command>(), "position_ned[1] is nan, must be finite",
                                    [](msg::Command& m) { m.position_ned()[1] = kNan; });
   expect_refused<control::Mission>(example<msg::Mission>(), "item 5: speed is nan, must be finite",
                                    [](msg::Mission& m) { m.items()[4].speed(kNan); });
-  expect_refused<control::Mission>(example<msg::Mission>(), "item 1: kind is 4, must be at most 3",
-                                   [](msg::Mission& m) { m.items()[0].kind(4); });
+  expect_refused<control::Mission>(example<msg::Mission>(), "item 1: kind is 5, must be at most 4",
+                                   [](msg::Mission& m) { m.items()[0].kind(5); });
   expect_refused<control::Mission>(example<msg::Mission>(), "segment 2: x[3] is nan, must be finite",
                                    [](msg::Mission& m) { m.segments()[1].x()[3] = kNan; });
   expect_refused<control::Mission>(example<msg::Mission>(),
