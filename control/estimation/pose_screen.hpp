@@ -42,10 +42,13 @@ class Continuity {
  public:
   void look_at(const plant::PoseSample& pose);
   // The newest pose agrees with the estimate: from here on.
-  void begin() { unbroken_ = true; }
+  void begin() {
+    unbroken_ = true;
+    in_reach_ = true;
+  }
   void end() { unbroken_ = false; }
 
-  // A body could have come from the pose before to the newest.
+  // A body could have gone the way from pose to pose since begin(), also where some are missing.
   bool in_reach() const { return in_reach_; }
   // Since begin().
   bool unbroken() const { return unbroken_; }

@@ -40,7 +40,8 @@ std::size_t row_of(const control::PlannedPath& planned, std::size_t segment) {
 
 MissionFile parse_waypoint_csv(const std::string& text, const std::string& file_name,
                                const control::Limits& limits) {
-  const std::vector<std::string> first = runtime::first_csv_line(text);
+  std::vector<std::string> first = runtime::first_csv_line(text);
+  if (first.empty()) first.emplace_back();  // what parse_csv() refuses
   const bool has_header = !runtime::is_number(first.front());
   std::vector<std::string> columns = {"x", "y", "z"};
   const std::size_t fields = first.back().empty() ? first.size() - 1 : first.size();

@@ -5,6 +5,8 @@
 #include <exception>
 #include <mutex>
 
+#include <fastdds/rtps/common/SerializedPayload.h>
+
 #include "services/comms/fault_log.hpp"
 
 namespace swiftlet::comms {

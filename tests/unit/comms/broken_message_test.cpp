@@ -1,5 +1,5 @@
 // Bytes of a peer that are no message of their topic's type: they are dropped, and what follows is heard.
-#include <cstring>
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -39,7 +39,7 @@ class RawType final : public dds::TopicDataType {
   bool serialize(void* data, rtps::SerializedPayload_t* payload) override {
     const Bytes& bytes = *static_cast<const Bytes*>(data);
     payload->length = static_cast<std::uint32_t>(bytes.size());
-    std::memcpy(payload->data, bytes.data(), bytes.size());
+    std::copy(bytes.begin(), bytes.end(), payload->data);
     return true;
   }
   bool deserialize(rtps::SerializedPayload_t*, void*) override { return false; }

@@ -163,6 +163,24 @@ TEST_F(EstimatorFaults, AfterSilenceOfTheImuPosesInReachAreBelieved) {
   }
 }
 
+// Seen while the IMU was silent, the step tells that what follows is no motion.
+TEST_F(EstimatorFaults, MarkersThatSwapWhileTheImuIsSilentAreNotBelieved) {
+  const Change swap = [](PoseSample& pose) {
+    pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(0.4 * M_PI, Vector3d::UnitZ());
+  };
+  fly(3.0);
+  for (int frame = 1; frame <= 8; ++frame) {
+    time_ns_ += kFrame_ns;
+    PoseSample pose = motion_.pose(time_ns_ - kFrame_ns);
+    if (frame > 6) swap(pose);
+    estimator_.correct(pose);
+  }
+  EXPECT_EQ(fly(0.5, swap), PoseFault::kSwapped);
+  EXPECT_EQ(estimator_.estimate().resets, 0U);
+  EXPECT_LT(angle_error(), 0.1);
+  EXPECT_EQ(fly(0.5), PoseFault::kNone);
+}
+
 TEST_F(EstimatorFaults, SwappedMarkersAreNotBelievedInFlight) {
   fly(2.0);
   for (const double angle : {0.5 * M_PI, M_PI}) {
