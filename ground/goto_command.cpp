@@ -22,7 +22,8 @@ Command add_goto_command(CLI::App& root) {
   const auto options = std::make_shared<Options>();
   CLI::App* const app = add_ask_subcommand(
       root, "goto", "Fly straight to a place, north, east and down of the origin, and hold there",
-      "swiftlet goto -1 0 -1.5 --yaw 1.57    (1 m south of the origin, 1.5 m up, nose to the east)", options);
+      "swiftlet goto -1 0 -1.5 --yaw 1.57    (1 m south of the origin, 1.5 m up, nose to the east)", options,
+      Vehicles::kOne);  // a place has room for one
   constexpr const char* kNames[] = {"x", "y", "z"};
   constexpr const char* kMeanings[] = {"north, m", "east, m", "down, m: negative is up"};
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -10,6 +10,7 @@
 
 #include "ground/command.hpp"
 #include "ground/manoeuvre.hpp"
+#include "ground/network_options.hpp"
 #include "ground/vehicle.hpp"
 #include "services/comms/node.hpp"
 
@@ -34,12 +35,14 @@ struct AskOptions : RequestOptions {
 CLI::App* add_request_subcommand(CLI::App& root, const std::string& name, const std::string& description,
                                  const std::string& example, const std::shared_ptr<RequestOptions>& options);
 
-// Likewise, with --wait.
+// Likewise, with --wait, and for several vehicles unless told.
 CLI::App* add_ask_subcommand(CLI::App& root, const std::string& name, const std::string& description,
-                             const std::string& example, const std::shared_ptr<AskOptions>& options);
+                             const std::string& example, const std::shared_ptr<AskOptions>& options,
+                             Vehicles vehicles = Vehicles::kSeveral);
 
-// Joins the network, asks, prints the answer, and waits for the end where that was wanted. Returns the exit
-// code.
+// Joins the network, asks all vehicles at once, each in a thread of its own, prints the answers, and waits for the
+// end where that was wanted. As JSON the answer of one vehicle, or an object of those of several by name. Returns
+// the exit code: a failure if one of them failed.
 int run_request(const AskOptions& options, const std::string& what,
                 const std::function<Manoeuvre(Vehicle&)>& ask);
 

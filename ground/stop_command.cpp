@@ -21,8 +21,9 @@ void confirm(const Options& options) {
   if (isatty(STDIN_FILENO) == 0 || isatty(STDERR_FILENO) == 0)
     throw InputError(
         "stop: the rotors go off in the air too, and the vehicle falls; without a terminal say --yes");
-  std::fprintf(stderr, "Rotors off at once, wherever %s is: in the air it falls. Type stop to do it: ",
-               options.network.vehicle.c_str());
+  const bool one = split_list(options.network.vehicle).size() == 1;
+  std::fprintf(stderr, "Rotors off at once, wherever %s %s: in the air %s. Type stop to do it: ",
+               options.network.vehicle.c_str(), one ? "is" : "are", one ? "it falls" : "they fall");
   std::string typed;
   std::getline(std::cin, typed);
   if (typed != "stop") throw InputError("stop: not confirmed, nothing was sent");

@@ -48,7 +48,7 @@ Command add_trajectory_command(CLI::App& root) {
       root, "trajectory",
       "Send a trajectory to a vehicle that holds, follows setpoints or flies another: it joins this one from "
       "its present motion",
-      "swiftlet trajectory figure8.csv", options);
+      "swiftlet trajectory figure8.csv", options, Vehicles::kOne);
   app->add_option("file", options->file, "trajectory or waypoints as CSV")->required();
   app->add_option("--control", options->control,
                   "control settings whose limits and fence the file is checked against")
