@@ -55,6 +55,10 @@ Ending rests_elsewhere(const Eigen::Vector3d& at) {
 
 }  // namespace
 
+Judge at_once() {
+  return [](const View&, const Outset&) -> std::optional<Ending> { return kCompleted; };
+}
+
 Judge until_mode(Mode goal, Mode way) {
   return [goal, way](const View& view, const Outset& outset) -> std::optional<Ending> {
     const Mode mode = mode_of(view);
@@ -105,9 +109,9 @@ Judge until_trajectory_flown() {
 }
 
 Judge until_mission_flown(std::uint64_t mission_id) {
-  return [mission_id](const View& view, const Outset&) -> std::optional<Ending> {
+  return [mission_id](const View& view, const Outset& outset) -> std::optional<Ending> {
     const msg::MissionStatus& mission = view.mission.message;
-    if (mission.mission_id() != mission_id) return std::nullopt;
+    if (mission.mission_id() != mission_id || may_be_stale(view, outset)) return std::nullopt;
     if (mission.state() == msg::MissionStatus_Constants::COMPLETED) return kCompleted;
     if (mission.state() != msg::MissionStatus_Constants::ABORTED) return std::nullopt;
     return Ending{Ending::Kind::kInterrupted, std::string("aborted: ") + mission.reason().c_str()};

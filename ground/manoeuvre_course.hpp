@@ -32,6 +32,8 @@ struct Manoeuvre::Course {
   Judge judge;
 };
 
+// Done when it is accepted.
+Judge at_once();
 // Done in the mode `goal`; `way` is the mode that leads there, or the goal itself.
 Judge until_mode(control::Mode goal, control::Mode way);
 Judge until_stopped();

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "ground/client.hpp"
 #include "ground/commands.hpp"
 #include "ground/installation.hpp"
 #include "ground/interrupts.hpp"
@@ -70,10 +71,10 @@ int fly_mission(const Options& options) {
     std::fprintf(stderr, "%s: %s\n", mission.name.c_str(), assumption.c_str());
   Client client(options.network);
   if (options.link) client.stay();
-  Answer answer = client.upload(mission.mission, milliseconds(options.timeout_s));
+  Answer answer = client.upload(mission.mission, options.timeout());
   if (answer.accepted()) {
     answer = client.mission_command(msg::Command_Constants::MISSION_START, client.mission_id(),
-                                    milliseconds(options.timeout_s));
+                                    options.timeout());
   }
   End end = {answer.accepted(), answer.reason};
   if (answer.accepted() && !options.no_wait) end = follow(client, mission);

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "ground/client.hpp"
 #include "ground/commands.hpp"
 #include "ground/installation.hpp"
 #include "ground/mission_file.hpp"
@@ -23,7 +24,7 @@ int upload(const Options& options) {
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
   Client client(options.network);
-  const Answer answer = client.upload(file.mission, milliseconds(options.timeout_s));
+  const Answer answer = client.upload(file.mission, options.timeout());
   if (options.json) {
     nlohmann::ordered_json json = {{"mission", file.name}, {"accepted", answer.accepted()}};
     if (answer.accepted()) json["mission_id"] = client.mission_id();

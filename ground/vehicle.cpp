@@ -157,9 +157,42 @@ Manoeuvre Vehicle::land(double speed, milliseconds timeout) {
 Manoeuvre Vehicle::stop(milliseconds timeout) { return request(of_kind(RequestKind::kStop), timeout); }
 
 Manoeuvre Vehicle::follow(const control::Mission& mission, milliseconds timeout) {
-  return begin(
-      client_, [&](milliseconds within) { return client_->upload(mission, within); }, timeout,
-      [this] { return until_mission_flown(client_->mission_id()); });
+  const auto ask = [&](milliseconds within) {
+    const Answer uploaded = client_->upload(mission, within);
+    if (!uploaded.accepted()) return uploaded;
+    return client_->mission_command(msg::Command_Constants::MISSION_START, client_->mission_id(), within);
+  };
+  return begin(client_, ask, timeout, [this] { return until_mission_flown(client_->mission_id()); });
+}
+
+Manoeuvre Vehicle::request_of_mission(std::uint8_t kind, std::uint64_t id, milliseconds timeout) {
+  const auto ask = [&](milliseconds within) { return client_->mission_command(kind, id, within); };
+  const auto judge = [&]() -> Judge {
+    if (kind == msg::Command_Constants::MISSION_PAUSE) return until_at_rest({});
+    if (kind == msg::Command_Constants::MISSION_CLEAR) return at_once();
+    return until_mission_flown(id != 0 ? id : client_->view().mission.message.mission_id());
+  };
+  return begin(client_, ask, timeout, judge);
+}
+
+Manoeuvre Vehicle::start_mission(std::uint64_t id, milliseconds timeout) {
+  return request_of_mission(msg::Command_Constants::MISSION_START, id, timeout);
+}
+
+Manoeuvre Vehicle::pause_mission(std::uint64_t id, milliseconds timeout) {
+  return request_of_mission(msg::Command_Constants::MISSION_PAUSE, id, timeout);
+}
+
+Manoeuvre Vehicle::resume_mission(std::uint64_t id, milliseconds timeout) {
+  return request_of_mission(msg::Command_Constants::MISSION_RESUME, id, timeout);
+}
+
+Manoeuvre Vehicle::skip_mission_item(std::uint64_t id, milliseconds timeout) {
+  return request_of_mission(msg::Command_Constants::MISSION_SKIP, id, timeout);
+}
+
+Manoeuvre Vehicle::clear_mission(std::uint64_t id, milliseconds timeout) {
+  return request_of_mission(msg::Command_Constants::MISSION_CLEAR, id, timeout);
 }
 
 Manoeuvre Vehicle::follow(const control::Trajectory& trajectory, milliseconds timeout) {

@@ -99,7 +99,15 @@ class Vehicle {
   Manoeuvre hold(std::chrono::milliseconds timeout = kAnswerTimeout);  // done: it has come to rest
   Manoeuvre land(double speed = 0.4, std::chrono::milliseconds timeout = kAnswerTimeout);
   Manoeuvre stop(std::chrono::milliseconds timeout = kAnswerTimeout);  // rotors off at once, wherever it is
+  // Uploads the mission and starts it.
   Manoeuvre follow(const control::Mission& mission, std::chrono::milliseconds timeout = kAnswerTimeout);
+  // Of the mission that the vehicle has; refused if that is not of this id, 0: whichever it is. Starting, resuming
+  // and skipping are done when it has been flown, pausing when the vehicle rests.
+  Manoeuvre start_mission(std::uint64_t id = 0, std::chrono::milliseconds timeout = kAnswerTimeout);
+  Manoeuvre pause_mission(std::uint64_t id = 0, std::chrono::milliseconds timeout = kAnswerTimeout);
+  Manoeuvre resume_mission(std::uint64_t id = 0, std::chrono::milliseconds timeout = kAnswerTimeout);
+  Manoeuvre skip_mission_item(std::uint64_t id = 0, std::chrono::milliseconds timeout = kAnswerTimeout);
+  Manoeuvre clear_mission(std::uint64_t id = 0, std::chrono::milliseconds timeout = kAnswerTimeout);
   // From hold, a setpoint stream or another trajectory; it is joined smoothly from the present motion.
   Manoeuvre follow(const control::Trajectory& trajectory, std::chrono::milliseconds timeout = kAnswerTimeout);
 
@@ -114,6 +122,7 @@ class Vehicle {
 
  private:
   Manoeuvre request(const control::Request& request, std::chrono::milliseconds timeout);
+  Manoeuvre request_of_mission(std::uint8_t kind, std::uint64_t id, std::chrono::milliseconds timeout);
 
   std::shared_ptr<Client> client_;
 };
