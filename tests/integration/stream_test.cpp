@@ -1,6 +1,6 @@
 // Setpoint streams and the examples, against processes that run.
 #include <cmath>
-#include <fstream>
+#include <cstdio>
 
 #include "tests/integration/online_flight.hpp"
 

@@ -1,6 +1,8 @@
 // What the tool says of itself: completion in a shell, manual pages; and how it behaves at a terminal.
 #include <algorithm>
 #include <csignal>
+#include <filesystem>
+#include <sstream>
 
 #include "tests/integration/online_flight.hpp"
 #include "tests/integration/terminal.hpp"
