@@ -37,7 +37,8 @@ MissionCheck check_mission(const MissionFile& file, const Rehearsal& rehearsal, 
 
 // For reading, ending in a newline; as JSON without one:
 //   mission, vehicle, control, feasible, reason, duration_s, supply_voltage_v
-//   items: kind, line, start_s, duration_s, demands: {demand, unit, value, limit, exceeded, time_s, position_ned}
+//   items: kind, line, start_s, duration_s,
+//     demands: demand, unit, value, limit, exceeded, time_s, position_ned
 std::string check_table(const MissionCheck& check, const MissionFile& file, const std::string& vehicle);
 std::string check_json(const MissionCheck& check, const MissionFile& file, const std::string& vehicle,
                        const std::string& control);

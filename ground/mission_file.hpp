@@ -8,10 +8,10 @@
 //   limits: {speed_m_s: 1, acceleration_m_s2: 1.5, jerk_m_s3: 10, yaw_rate_rad_s: 1}   # optional, each
 //   geofence: {min_m: [-1, -1, -2], max_m: [3, 3, 0.2]}                                # optional; corners
 //   items:
-//     - {kind: set, speed_m_s: 0.5, acceptance_radius_m: 0.05}     # for the items after it, where they do not say
+//     - {kind: set, speed_m_s: 0.5, acceptance_radius_m: 0.05}  # for those after it, unless they say
 //     - {kind: takeoff, height_m: 1.0, hold_s: 2}                  # straight up, to this height
 //     - {kind: waypoint, position_m: [2, 0, -1], yaw_rad: 0, speed_m_s: 0.5, hold_s: 1}
-//     - {kind: path, points: [[2, 0, -1], {position_m: [2, 2, -1], yaw_rad: 0}, [0, 0, -1]]}  # without stopping
+//     - {kind: path, points: [[2, 0, -1], {position_m: [2, 2, -1], yaw_rad: 0}, [0, 0, -1]]}
 //     - {kind: trajectory, file: figure8.csv}                      # beside the mission file
 //     - {kind: wait, duration_s: 3}
 //     - {kind: land, speed_m_s: 0.3}                               # straight down, rotors off

@@ -101,20 +101,29 @@ void advance_segments(SupervisorState& state, const PolynomialSegment* segments,
   }
 }
 
-// Of a trajectory, all segments; of any other item, its path is all there is.
-void advance_way(Scene& scene) {
-  const MissionItem& item = item_of(scene);
-  if (item.kind != MissionItemKind::kTrajectory) return;
-  advance_segments(scene.state, scene.plan.mission->segments.data() + item.first_segment, item.segment_count,
-                   item.yaw_free);
-}
-
 // The reference rests at the item's end. So must the vehicle, if the item asks for that.
 bool arrived(const Scene& scene) {
+  const SupervisorState& state = scene.state;
   const MissionItem& item = item_of(scene);
+  if (!state.path.finished(state.now_ns)) return false;
   if (item.acceptance_radius_m <= 0.0) return true;
-  const Eigen::Vector3d end = scene.state.path.at(scene.state.now_ns).position_ned;
+  const Eigen::Vector3d end = state.path.at(state.now_ns).position_ned;
   return (scene.estimate().position_ned - end).norm() <= item.acceptance_radius_m;
+}
+
+// The segments of a trajectory, one after another; any other item's path is all there is. Once it has arrived,
+// when the item ends.
+void advance_way(Scene& scene) {
+  SupervisorState& state = scene.state;
+  const MissionItem& item = item_of(scene);
+  if (item.kind == MissionItemKind::kTrajectory) {
+    advance_segments(state, scene.plan.mission->segments.data() + item.first_segment, item.segment_count,
+                     item.yaw_free);
+  }
+  if (state.item_end_ns != 0 || !arrived(scene)) return;
+  const bool awaited = item.acceptance_radius_m > 0.0;
+  state.item_end_ns =
+      (awaited ? state.path.path_ns(state.now_ns) : state.path.end_ns) + nanoseconds(item.hold_s);
 }
 
 // Back where the mission was left: its way goes on from there, from rest.
@@ -131,24 +140,21 @@ void take_way_up_again(Scene& scene) {
 // Nothing but the way itself goes on while the clock of the path changes its pace.
 void advance_mission(Scene& scene) {
   SupervisorState& state = scene.state;
-  if (state.path.clock.is_changing(state.now_ns)) return advance_way(scene);
+  const bool its_way = state.detour == Detour::kNone;
+  if (state.path.clock.is_changing(state.now_ns)) {
+    if (its_way) advance_way(scene);
+    return;
+  }
   if (!state.path.clock.is_vehicle_time()) {
     const std::int64_t behind_ns = state.path.take_vehicle_time(state.now_ns);
-    const bool its_way = state.detour == Detour::kNone;
     if (its_way && state.item_end_ns != 0)
       state.item_end_ns = std::max(state.item_end_ns + behind_ns, state.now_ns);
   }
   if (!state.path.finished(state.now_ns)) return;
   if (state.detour == Detour::kReturning) return take_way_up_again(scene);
-  const MissionItem& item = item_of(scene);
-  if (item.kind == MissionItemKind::kLand) return sink(scene);
+  if (item_of(scene).kind == MissionItemKind::kLand) return sink(scene);
   advance_way(scene);
-  if (!state.path.finished(state.now_ns)) return;
-  if (state.item_end_ns == 0) {
-    if (!arrived(scene)) return;
-    const bool awaited = item.acceptance_radius_m > 0.0;
-    state.item_end_ns = (awaited ? state.now_ns : state.path.end_ns) + nanoseconds(item.hold_s);
-  }
+  if (state.item_end_ns == 0 || !state.path.finished(state.now_ns)) return;
   if (state.now_ns < state.item_end_ns || state.mission.item_index + 1 >= state.mission.item_count) return;
   ++state.mission.item_index;
   start_item(scene, state.item_end_ns);

@@ -145,9 +145,8 @@ const Transition* find(const Scene& scene, Event request) {
 namespace {
 
 Outcome refuse_for_mission(const Scene& scene) {
-  return refuse(
-      "mission %llu is %s", static_cast<unsigned long long>(scene.state.mission.id),
-      scene.paused() ? "paused: resume or clear it" : "being flown: hold, goto or land ends that");
+  return refuse("mission %llu is %s", static_cast<unsigned long long>(scene.state.mission.id),
+                scene.paused() ? "paused: resume or clear it" : "being flown: hold, goto or land ends that");
 }
 
 // Of what is asked of a mission that is not being flown, or must not be interrupted where it is.
