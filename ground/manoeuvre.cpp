@@ -111,9 +111,11 @@ Judge until_trajectory_flown() {
 Judge until_mission_flown(std::uint64_t mission_id) {
   return [mission_id](const View& view, const Outset& outset) -> std::optional<Ending> {
     const msg::MissionStatus& mission = view.mission.message;
-    if (mission.mission_id() != mission_id || may_be_stale(view, outset)) return std::nullopt;
-    if (mission.state() == msg::MissionStatus_Constants::COMPLETED) return kCompleted;
-    if (mission.state() != msg::MissionStatus_Constants::ABORTED) return std::nullopt;
+    if (mission.mission_id() != mission_id) return std::nullopt;
+    const bool completed = mission.state() == msg::MissionStatus_Constants::COMPLETED;
+    if (!completed && mission.state() != msg::MissionStatus_Constants::ABORTED) return std::nullopt;
+    if (view.mission.count <= outset.missions) return std::nullopt;  // of the time before it was started again
+    if (completed) return kCompleted;
     return Ending{Ending::Kind::kInterrupted, std::string("aborted: ") + mission.reason().c_str()};
   };
 }

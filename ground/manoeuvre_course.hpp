@@ -20,6 +20,7 @@ struct Outset {
   control::Mode mode = control::Mode::kDisarmed;  // before it was asked
   std::uint64_t statuses = 0;                     // that had come when it was answered
   std::uint64_t references = 0;                   // likewise
+  std::uint64_t missions = 0;                     // likewise, states of missions
 };
 
 // By the view: how the manoeuvre ended, or nothing while it is under way.
