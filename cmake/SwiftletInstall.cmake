@@ -6,7 +6,7 @@ include(CMakePackageConfigHelpers)
 get_property(libraries GLOBAL PROPERTY SWIFTLET_LIBRARIES)
 get_property(executables GLOBAL PROPERTY SWIFTLET_EXECUTABLES)
 
-add_custom_target(programs DEPENDS ${executables})  # all that a flight needs, and no test
+add_custom_target(programs DEPENDS ${executables} pages)  # all that a flight needs, and no test
 
 install(TARGETS ${executables} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
 install(DIRECTORY config DESTINATION ${CMAKE_INSTALL_DATADIR}/swiftlet COMPONENT programs)

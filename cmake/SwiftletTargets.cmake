@@ -1,6 +1,7 @@
 # Every target of the project is made here, so that language level, warnings, sanitizers and install rules are one thing.
 
 option(SWIFTLET_WERROR "Treat warnings as errors" ON)
+option(SWIFTLET_FUZZERS "Build nothing but fuzzers, with Clang" OFF)
 set(SWIFTLET_SANITIZE "" CACHE STRING "Sanitizers to build with, as given to -fsanitize=")
 
 add_library(swiftlet_flags INTERFACE)
@@ -13,10 +14,13 @@ if(SWIFTLET_SANITIZE)
   # What a sanitizer finds ends the program, so that the test fails.
   target_compile_options(swiftlet_flags INTERFACE
     -fsanitize=${SWIFTLET_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
-    -Wno-maybe-uninitialized)  # GCC takes what the sanitizers insert for uses
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)  # GCC takes what the sanitizers insert for uses
   target_link_options(swiftlet_flags INTERFACE -fsanitize=${SWIFTLET_SANITIZE})
   target_sources(swiftlet_flags INTERFACE
     $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:${PROJECT_SOURCE_DIR}/cmake/sanitizer_options.cpp>)
+endif()
+if(SWIFTLET_FUZZERS)
+  target_compile_options(swiftlet_flags INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
 # For the libraries that are arithmetic and little else. No result depends on these: nobody reads errno after a root, nor the

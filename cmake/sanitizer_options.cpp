@@ -4,15 +4,16 @@
 
 extern "C" {
 
-// Debian's Fast DDS 2.9 frees with sized deletes of a base class: objects of the library, new and gone within it.
+// Debian's Fast DDS 2.9 frees with sized deletes of a base class: objects of the library, new and gone within
+// it.
 const char* __asan_default_options() { return "new_delete_type_mismatch=0"; }
 
 const char* __ubsan_default_options() { return "print_stacktrace=1"; }
 
 #ifdef __SANITIZE_THREAD__
 
-// Fast DDS and spdlog are not built with the sanitizer, which sees their locks but not their atomics: the one locks some mutexes
-// again in the thread that holds them, the other counts who shares a logger.
+// Fast DDS and spdlog are not built with the sanitizer, which sees their locks but not their atomics: the one
+// locks some mutexes again in the thread that holds them, the other counts who shares a logger.
 const char* __tsan_default_suppressions() {
   return "deadlock:libfastrtps.so\n"
          "race:libspdlog.so\n";

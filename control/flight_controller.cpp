@@ -26,8 +26,8 @@ using Eigen::Vector3d;
 constexpr double kFirstStep_s = 0.002;  // taken for the first sample, which has none before it
 constexpr double kMaxStep_s = 0.1;
 constexpr int kUnusableToFault = 200;  // IMU samples in a row that cannot be used, whatever their stamps say
-// Of the weight, specific force that the rotors do not explain: something else carries the vehicle, on its legs or on
-// its side.
+// Of the weight, specific force that the rotors do not explain: something else carries the vehicle, on its
+// legs or on its side.
 constexpr double kStandingLift = 0.5;
 constexpr double kDescentGain = 4.0;   // 1/s, vertical speed to acceleration, in descent without position
 constexpr double kBrakeGain = 2.0;     // 1/s, likewise of the horizontal speed
@@ -52,9 +52,13 @@ struct FlightController::Loops {
   Situation situation() const;
   void act(const Directive& directive, double dt_s);
   void fly(const Directive& directive, double dt_s);
+  void feel(const Directive& directive, double dt_s);
+  void fly_attitude(const Directive& directive);
+  void fly_body_rates(const Directive& directive);
   void spool_up(const Directive& directive);
   void descend_level(double speed);
-  void command_wrench(double thrust_n, const AttitudeReference& attitude_reference);
+  void command_attitude(double thrust_n, const AttitudeReference& attitude_reference);
+  void command_wrench(const Wrench& wrench, const AttitudeReference& attitude_reference);
   const plant::ActuatorCommand& answer(const plant::ImuSample& sample);
 
   plant::Vehicle vehicle;
@@ -165,20 +169,31 @@ void FlightController::Loops::act(const Directive& directive, double dt_s) {
     case Actuation::kSpoolUp:
       return spool_up(directive);
     case Actuation::kFly:
+      feel(directive, dt_s);
       return fly(directive, dt_s);
+    case Actuation::kAttitude:
+      feel(directive, dt_s);
+      return fly_attitude(directive);
+    case Actuation::kBodyRates:
+      feel(directive, dt_s);
+      return fly_body_rates(directive);
     case Actuation::kLevelDescent:
       return descend_level(directive.descent_speed);
   }
 }
 
+// What is watched in flight, whichever loop flies.
+void FlightController::Loops::feel(const Directive& directive, double dt_s) {
+  const Estimate& estimate = estimator.estimate();
+  climb.step(dt_s, specific_force_frd, estimate.q_ned_from_frd, estimate.position_ned.z());
+  if (!directive.integrate) return;
+  disturbance.step(dt_s, specific_force_frd - estimate.accelerometer_bias, estimate.q_ned_from_frd,
+                   rotors.thrust_n() / vehicle.mass_kg);
+}
+
 // Eq. (48) outside, Eq. (35)-(40) inside.
 void FlightController::Loops::fly(const Directive& directive, double dt_s) {
   const Estimate& estimate = estimator.estimate();
-  climb.step(dt_s, specific_force_frd, estimate.q_ned_from_frd, estimate.position_ned.z());
-  if (directive.integrate) {
-    disturbance.step(dt_s, specific_force_frd - estimate.accelerometer_bias, estimate.q_ned_from_frd,
-                     rotors.thrust_n() / vehicle.mass_kg);
-  }
   const PositionCommand wanted =
       position.step(estimate.position_ned, estimate.velocity_ned, reference, dt_s, !directive.integrate);
   const ThrustAttitude outer = thrust_attitude(
@@ -194,14 +209,34 @@ void FlightController::Loops::fly(const Directive& directive, double dt_s) {
     inner.body_accelerations = on_reference.body_accelerations;
     thrust_n += rotor_lag_s * on_reference.thrust_rate;  // leads the rotor lag
   }
-  command_wrench(thrust_n, inner);
+  command_attitude(thrust_n, inner);
+}
+
+void FlightController::Loops::fly_attitude(const Directive& directive) {
+  AttitudeReference wanted;
+  wanted.body_z_ned = directive.q_ned_from_frd * Vector3d::UnitZ();
+  wanted.heading = euler_from_quaternion(directive.q_ned_from_frd).z();
+  wanted.body_rates = directive.body_rates_frd;
+  command_attitude(directive.thrust * vehicle.mass_kg, wanted);
+}
+
+void FlightController::Loops::fly_body_rates(const Directive& directive) {
+  const Estimate& estimate = estimator.estimate();
+  AttitudeReference as_it_is;
+  as_it_is.body_z_ned = estimate.q_ned_from_frd * Vector3d::UnitZ();
+  as_it_is.heading = euler_from_quaternion(estimate.q_ned_from_frd).z();
+  Wrench wrench;
+  wrench.thrust_n = directive.thrust * vehicle.mass_kg;
+  wrench.moment_frd =
+      attitude.moments_for_rates(estimate.body_rates_frd, rotors.moment_frd(), directive.body_rates_frd);
+  command_wrench(wrench, as_it_is);
 }
 
 void FlightController::Loops::spool_up(const Directive& directive) {
   climb.begin(estimator.estimate().accelerometer_bias, estimator.estimate().position_ned.z());
   AttitudeReference level;
   level.heading = reference.yaw_rad;
-  command_wrench(directive.lift_fraction * vehicle.mass_kg * plant::kGravity, level);
+  command_attitude(directive.lift_fraction * vehicle.mass_kg * plant::kGravity, level);
 }
 
 void FlightController::Loops::descend_level(double speed) {
@@ -213,17 +248,22 @@ void FlightController::Loops::descend_level(double speed) {
   AttitudeReference braking;
   braking.body_z_ned = outer.body_z_ned;
   braking.heading = euler_from_quaternion(estimate.q_ned_from_frd).z();
-  command_wrench(outer.thrust_n, braking);
+  command_attitude(outer.thrust_n, braking);
 }
 
 // Of the wanted thrust, the part along the axis on which the rotors can give it: none while upside down.
-void FlightController::Loops::command_wrench(double thrust_n, const AttitudeReference& attitude_reference) {
+void FlightController::Loops::command_attitude(double thrust_n, const AttitudeReference& attitude_reference) {
   const Estimate& estimate = estimator.estimate();
   const Vector3d body_z_ned = estimate.q_ned_from_frd * Vector3d::UnitZ();
   Wrench wrench;
   wrench.thrust_n = thrust_n * std::max(attitude_reference.body_z_ned.dot(body_z_ned), 0.0);
   wrench.moment_frd = attitude.moments(estimate.q_ned_from_frd, estimate.body_rates_frd, rotors.moment_frd(),
                                        attitude_reference);
+  command_wrench(wrench, attitude_reference);
+}
+
+void FlightController::Loops::command_wrench(const Wrench& wrench,
+                                             const AttitudeReference& attitude_reference) {
   const Allocation allocation = allocator.allocate(wrench, supply);
   command.throttle = allocation.throttle;
   setpoint = {attitude_reference.body_z_ned, attitude_reference.heading.yaw_rad, wrench.thrust_n,

@@ -48,8 +48,8 @@ class FlightController {
   // before.
   Outcome request(const Request& request);
 
-  // The flight, for another controller of the same vehicle and settings to go on with, in its next step. What is
-  // being flown is passed beside it, as in Supervisor::adopt().
+  // The flight, for another controller of the same vehicle and settings to go on with, in its next step. What
+  // is being flown is passed beside it, as in Supervisor::adopt().
   FlightState state() const;
   void adopt(const FlightState& state, const Mission* mission, const Trajectory* trajectory);
   // The air carries the vehicle, as far as accelerometer and rotor speeds tell: it does not stand.

@@ -80,6 +80,10 @@ const char* to_string(Reason reason) {
       return "taken over without the plan that was flown";
     case Reason::kFoundFlying:
       return "found flying";
+    case Reason::kSetpointsLedOut:
+      return "setpoints led out of the fence";
+    case Reason::kMissionPaused:
+      return "mission paused";
   }
   return "unknown";
 }

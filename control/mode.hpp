@@ -42,16 +42,28 @@ enum class Reason : std::uint8_t {
   kImuUnusable,
   kImuGap,
   kGroundLinkLost,
-  kStruck,        // the accelerometer felt a blow as of a fall to the ground
-  kClimbNotSeen,  // motion capture did not follow the take-off: another body, or markers that came off
-  kPoseJumped,    // motion capture says for long that the vehicle is elsewhere
-  kPlanUnknown,   // another controller was taken over from whose mission or trajectory is not known here
-  kFoundFlying,   // the controller was started while its vehicle flew
+  kStruck,           // the accelerometer felt a blow as of a fall to the ground
+  kClimbNotSeen,     // motion capture did not follow the take-off: another body, or markers that came off
+  kPoseJumped,       // motion capture says for long that the vehicle is elsewhere
+  kPlanUnknown,      // another controller was taken over from whose mission or trajectory is not known here
+  kFoundFlying,      // the controller was started while its vehicle flew
+  kSetpointsLedOut,  // a stream of attitudes or body rates led out of the fence
+  kMissionPaused,
 };
-constexpr int kReasonCount = static_cast<int>(Reason::kFoundFlying) + 1;
+constexpr int kReasonCount = static_cast<int>(Reason::kMissionPaused) + 1;
 const char* to_string(Reason reason);
 
-enum class MissionState : std::uint8_t { kNone = 0, kRunning = 1, kCompleted = 2, kAborted = 3 };
+enum class MissionState : std::uint8_t {
+  kNone = 0,
+  kRunning = 1,
+  kCompleted = 2,  // it can be started again, as one that was aborted
+  kAborted = 3,
+  kUploaded = 4,  // not started yet
+  kPaused = 5,    // its vehicle holds
+};
+inline bool is_under_way(MissionState state) {
+  return state == MissionState::kRunning || state == MissionState::kPaused;
+}
 
 struct MissionProgress {
   std::uint64_t id = 0;

@@ -33,6 +33,7 @@ void check_limits(const Limits& limits, RuleChecker& check) {
   check.above("limits.max_reference_acceleration_m_s2", limits.max_reference_acceleration, 0.0);
   check.above("limits.max_reference_jerk_m_s3", limits.max_reference_jerk, 0.0);
   check.above("limits.max_yaw_rate_rad_s", limits.max_yaw_rate, 0.0);
+  check.above("limits.max_body_rate_rad_s", limits.max_body_rate, 0.0);
   for (int i = 0; i < 3; ++i) {
     const std::string index = "[" + std::to_string(i) + "]";
     const bool finite = check.finite("limits.fence_min_ned_m" + index, limits.fence_min_ned[i]);

@@ -59,8 +59,9 @@ struct Limits {
   double max_acceleration = 5.0;                       // m/s^2, horizontal and vertical feedback command
   double max_speed = 2.0;                              // m/s, of references that are planned here
   double max_reference_acceleration = 2.0;             // m/s^2, of references that are planned here
-  double max_reference_jerk = 20.0;                    // m/s^3, of references that are planned here
+  double max_reference_jerk = 8.0;                     // m/s^3, of references that are planned here
   double max_yaw_rate = 1.5;                           // rad/s, of references that are planned here
+  double max_body_rate = 6.0;                          // rad/s, of setpoints of body rates
   Eigen::Vector3d fence_min_ned = {-3.0, -3.0, -2.5};  // m
   Eigen::Vector3d fence_max_ned = {3.0, 3.0, 0.2};     // m
 };
@@ -112,8 +113,8 @@ struct FailsafeSettings {
   double battery_timeout_s = 2.0;         // without a battery sample: land
   double critical_descent_speed = 0.8;    // m/s
   double fence_margin_m = 0.2;            // this far outside the fence: land, inside it
-  double setpoint_timeout_s = 0.5;        // from setpoint stream to hold
-  double ground_link_timeout_s = 1.0;     // without a sign of life
+  double setpoint_timeout_s = 0.75;    // from setpoint stream to hold; a stream of 2 Hz may be late by half
+  double ground_link_timeout_s = 1.0;  // without a sign of life
   GroundLinkAction ground_link_action = GroundLinkAction::kLand;
 };
 

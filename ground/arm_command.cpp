@@ -4,9 +4,8 @@
 namespace swiftlet::ground {
 
 Command add_arm_command(CLI::App& root) {
-  return add_plain_request_command(root, "arm",
-                                   "Start the rotors turning on the ground, once all checks pass",
-                                   msg::Command_Constants::ARM);
+  return add_plain_request_command(
+      root, "arm", "Start the rotors turning on the ground, once all checks pass", &Vehicle::arm);
 }
 
 }  // namespace swiftlet::ground

@@ -9,7 +9,8 @@
 //   inertia_roll.csv, inertia_pitch.csv, inertia_yaw.csv
 //                        length, separation, period (two strings), or arm, period (swung about an axis)
 //
-// All are optional, one at least. Headers declare `name [unit]`, as services/runtime/measurements.hpp reads them. bench.yaml may hold
+// All are optional, one at least. Headers declare `name [unit]`, as services/runtime/measurements.hpp reads
+// them. bench.yaml may hold
 //   base_vehicle: kaylion     what is not measured is from there: a file of this folder, a path, or a name of the configuration
 //   name: kl2                 of the identified vehicle
 //   propeller: {radius: {value: 0.03, unit: m, source: ruler}, air_density: {value: 1.2, unit: kg/m^3, source: barometer}}
@@ -47,12 +48,13 @@ struct Bench {
   std::map<std::string, BenchFile> files;  // by the experiment's name
 };
 
-// Throw runtime::ConfigError or InputError. A CSV of another name is refused, lest a misspelt one go unnoticed. esc turns pulse widths
-// into throttles, Eq. (8).
+// Throw runtime::ConfigError or InputError. A CSV of another name is refused, lest a misspelt one go
+// unnoticed. esc turns pulse widths into throttles, Eq. (8).
 BenchSettings load_bench_settings(const std::filesystem::path& folder);
 Bench load_bench(const std::filesystem::path& folder, const BenchSettings& settings, const plant::Esc& esc);
 
-// Writes the experiments of data into folder, which is made. Two-string tests only. Throws std::runtime_error.
+// Writes the experiments of data into folder, which is made. Two-string tests only. Throws
+// std::runtime_error.
 void write_bench(const std::filesystem::path& folder, const identification::BenchData& data,
                  const std::string& settings_yaml);
 

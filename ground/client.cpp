@@ -7,6 +7,7 @@
 
 #include "control/estimation/estimator.hpp"
 #include "control/mode.hpp"
+#include "ground/vehicles_seen.hpp"
 #include "services/comms/convert.hpp"
 
 namespace swiftlet::ground {
@@ -48,6 +49,11 @@ EstimateRow row_of(const msg::Estimate& estimate) {
   return {estimate.stamp_ns(), estimate.position_ned(), estimate.velocity_ned()};
 }
 
+Answer answer_of(const msg::CommandAck& ack) {
+  if (ack.accepted()) return {Answer::Kind::kAccepted, ""};
+  return {Answer::Kind::kRefused, ack.reason().c_str()};
+}
+
 MissionRow row_of(const msg::MissionStatus& status) {
   return {status.stamp_ns(), status.mission_id(), status.state(), status.item_index()};
 }
@@ -71,7 +77,8 @@ Client::Client(const comms::NodeSettings& settings, FlightRecord* record)
       node_(settings),
       commands_(node_.publish(comms::topics::kCommand)),
       missions_(node_.publish(comms::topics::kMission)),
-      trajectories_(node_.publish(comms::topics::kTrajectory)) {
+      trajectories_(node_.publish(comms::topics::kTrajectory)),
+      setpoints_(node_.publish(comms::topics::kSetpoint)) {
   subscribe_all();
 }
 
@@ -107,7 +114,8 @@ void Client::subscribe_all() {
     if (ack.client() != client_id_) return;
     {
       const std::lock_guard lock(mutex_);
-      ack_ = ack;
+      const auto asked = answers_.find(ack.id());
+      if (asked != answers_.end()) asked->second = answer_of(ack);
     }
     changed_.notify_all();
   }));
@@ -214,84 +222,110 @@ bool Client::wait(std::chrono::milliseconds timeout, const std::function<bool(co
   return true;
 }
 
-Answer Client::ask(std::uint64_t id, const std::function<void()>& send, const std::function<bool()>& heard,
-                   std::chrono::milliseconds timeout, const Cancelled& cancelled) {
+template <class T>
+Answer Client::ask(comms::Publisher<T>& publisher, const T& request, std::chrono::milliseconds timeout,
+                   const Cancelled& cancelled) {
   const auto deadline = Clock::now() + timeout;
   auto next_send = Clock::now();
   bool sent = false;
-  const auto answered = [&] { return ack_ && ack_->id() == id; };
 
   std::unique_lock lock(mutex_);
-  while (!answered()) {
+  const auto asked = answers_.emplace(request.id(), std::nullopt).first;
+  const auto settled = [&](Answer answer) {
+    answers_.erase(asked);
+    return answer;
+  };
+  while (!asked->second) {
     const auto now = Clock::now();
-    if (cancelled && cancelled()) return {Answer::Kind::kCancelled, "it was cancelled"};
+    if (cancelled && cancelled()) return settled({Answer::Kind::kCancelled, "it was cancelled"});
     if (now >= deadline) {
+      settled({});
       lock.unlock();
-      if (sent) return {Answer::Kind::kSilence, "no answer from the control service of " + where()};
+      if (sent) {
+        return {Answer::Kind::kSilence, "no answer from the control service of " + where() +
+                                            "; `swiftlet status` says whether it still runs"};
+      }
       return {Answer::Kind::kNoControl, no_control()};
     }
     if (now >= next_send) {
       lock.unlock();
-      if (heard()) {
-        send();
+      if (publisher.matched() > 0) {
+        const std::lock_guard sending(sending_);
+        publisher.publish(request);
         sent = true;
         next_send = now + kResendPeriod;
       }
       lock.lock();
-      if (answered()) break;
+      if (asked->second) break;
     }
     changed_.wait_until(lock, std::min(deadline, now + kLookPeriod));
   }
-  if (ack_->accepted()) return {Answer::Kind::kAccepted, ""};
-  return {Answer::Kind::kRefused, ack_->reason().c_str()};
+  return settled(*asked->second);
 }
 
 Answer Client::command(msg::Command command, std::chrono::milliseconds timeout, const Cancelled& cancelled) {
-  const std::uint64_t id = next_id();
   command.client(client_id_);
-  command.id(id);
-  return ask(
-      id, [&] { commands_.publish(command); }, [&] { return commands_.matched() > 0; }, timeout, cancelled);
+  command.id(++last_id_);
+  return ask(commands_, command, timeout, cancelled);
 }
 
 Answer Client::upload(const control::Mission& mission, std::chrono::milliseconds timeout,
                       const Cancelled& cancelled) {
   msg::Mission message = comms::to_message(mission);
   message.client(client_id_);
-  mission_id_ = next_id();
-  message.id(mission_id_);
-  return ask(
-      mission_id_, [&] { missions_.publish(message); }, [&] { return missions_.matched() > 0; }, timeout,
-      cancelled);
+  message.id(++last_id_);
+  mission_id_ = message.id();
+  return ask(missions_, message, timeout, cancelled);
+}
+
+Answer Client::mission_command(std::uint8_t kind, std::uint64_t mission_id, std::chrono::milliseconds timeout,
+                               const Cancelled& cancelled) {
+  msg::Command request;
+  request.kind(kind);
+  request.mission_id(mission_id);
+  return command(request, timeout, cancelled);
 }
 
 Answer Client::upload(const control::Trajectory& trajectory, std::chrono::milliseconds timeout,
                       const Cancelled& cancelled) {
   msg::Trajectory message = comms::to_message(trajectory);
-  const std::uint64_t id = next_id();
   message.client(client_id_);
-  message.id(id);
-  return ask(
-      id, [&] { trajectories_.publish(message); }, [&] { return trajectories_.matched() > 0; }, timeout,
-      cancelled);
+  message.id(++last_id_);
+  return ask(trajectories_, message, timeout, cancelled);
+}
+
+bool Client::send(control::Setpoint setpoint) {
+  setpoint.stamp_ns = view().estimate.message.stamp_ns();
+  const std::lock_guard sending(sending_);
+  setpoint.sequence = ++setpoint_count_;
+  return setpoints_.matched() > 0 && setpoints_.publish(comms::to_message(setpoint));
 }
 
 std::string Client::where() const {
-  std::string alive;
+  std::vector<std::string> names;
   for (const auto& [name, count] : view().peers) {
-    if (count > 0) alive += (alive.empty() ? "" : ", ") + name;
+    if (count > 0) names.push_back(name);
   }
+  const std::string alive = listed(names);
   return "vehicle " + settings_.vehicle + " in domain " + std::to_string(settings_.domain) +
          "; seen there: " + (alive.empty() ? "nothing" : alive);
 }
 
 std::string Client::no_control() const {
+  std::string text = "no control service for " + where();
   // Those that keep to the loopback interface are seen, but do not talk to others.
   const auto peers = view().peers;
   const auto control = peers.find("control");
   const bool seen = control != peers.end() && control->second > 0;
-  return "no control service for " + where() +
-         (seen && !settings_.localhost_only ? " (try --localhost-only)" : "");
+  if (seen && !settings_.localhost_only) text += " (try --localhost-only)";
+  const std::vector<std::string> topics = node_.topics_seen();
+  const std::string own = listed(topics_of(settings_.vehicle, topics));
+  if (!own.empty()) text += "; topics seen: " + own;
+  std::vector<std::string> others = vehicles_of(topics);
+  others.erase(std::remove(others.begin(), others.end(), settings_.vehicle), others.end());
+  if (!others.empty()) return text + "; other vehicles there: " + listed(others) + " (--vehicle-name)";
+  if (!seen && own.empty()) text += "; is it started, and in this domain (--domain, ROS_DOMAIN_ID)?";
+  return text;
 }
 
 const char* pose_fault_name(std::uint8_t fault) {
@@ -309,6 +343,10 @@ const char* mission_state_name(std::uint8_t state) {
       return "completed";
     case msg::MissionStatus_Constants::ABORTED:
       return "aborted";
+    case msg::MissionStatus_Constants::UPLOADED:
+      return "uploaded";
+    case msg::MissionStatus_Constants::PAUSED:
+      return "paused";
     default:
       return "unknown";
   }

@@ -1,6 +1,7 @@
 // The ground's end of the wire to one vehicle: hears what it says of itself and asks things of it.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -13,7 +14,9 @@
 #include <vector>
 
 #include "control/mission.hpp"
+#include "control/request.hpp"
 #include "control/trajectory/polynomial.hpp"
+#include "ground/answer.hpp"
 #include "ground/flight_record.hpp"
 #include "ground/signs_of_life.hpp"
 #include "ground/time_grants.hpp"
@@ -49,21 +52,8 @@ struct View {
       controllers;  // by number; once hear_controllers() was called
 };
 
-// The answer to a request.
-struct Answer {
-  enum class Kind {
-    kAccepted,
-    kRefused,    // by the controller, for `reason`
-    kNoControl,  // no controller was there to take it
-    kSilence,    // a controller was there and did not answer
-    kCancelled,
-  };
-  Kind kind = Kind::kSilence;
-  std::string reason;  // a sentence unless accepted
-
-  bool accepted() const { return kind == Kind::kAccepted; }
-};
-
+// The wire itself, as messages; a program that flies a vehicle uses Vehicle (ground/vehicle.hpp), which
+// stands on it. Any thread may call it.
 class Client {
  public:
   // record: where every sample of truth, reference, estimate and mission status is kept, and, if it has room
@@ -75,7 +65,7 @@ class Client {
 
   View view() const;
 
-  // From now on the view holds what the controllers say of themselves, the standbys too.
+  // From now on the view holds what the controllers say of themselves, the standbys too. Once, by one thread.
   void hear_controllers();
 
   // For a plant in lockstep that was started paused: from the first call on, this client grants it time.
@@ -97,12 +87,19 @@ class Client {
                 const Cancelled& cancelled = {});
   Answer upload(const control::Trajectory& trajectory, std::chrono::milliseconds timeout,
                 const Cancelled& cancelled = {});
+  // One of a stream, for which there is no answer: stamp and number are filled in. False if nobody is there
+  // to take it.
+  bool send(control::Setpoint setpoint);
+  // One of Command_Constants::MISSION_*, of the mission of this id; 0: of whichever is there.
+  Answer mission_command(std::uint8_t kind, std::uint64_t mission_id, std::chrono::milliseconds timeout,
+                         const Cancelled& cancelled = {});
   // Of the mission uploaded last: MissionStatus::mission_id.
   std::uint64_t mission_id() const { return mission_id_; }
+  const std::string& vehicle() const { return settings_.vehicle; }
 
   // "vehicle kl1 in domain 0; seen there: plant, mocap"
   std::string where() const;
-  // That none was found there, as half a sentence.
+  // That none was found there, what was, and what to do about it.
   std::string no_control() const;
 
  private:
@@ -110,25 +107,28 @@ class Client {
   void keep(Latest<T> View::*slot, const T& message);
   void subscribe_all();
   void subscribe_sensors(SensorRecord& sensors);
-  Answer ask(std::uint64_t id, const std::function<void()>& send, const std::function<bool()>& heard,
-             std::chrono::milliseconds timeout, const Cancelled& cancelled);
-  std::uint64_t next_id() { return ++last_id_; }
+  template <class T>
+  Answer ask(comms::Publisher<T>& publisher, const T& request, std::chrono::milliseconds timeout,
+             const Cancelled& cancelled);
 
   comms::NodeSettings settings_;
   FlightRecord* record_;
   std::uint64_t client_id_;
-  std::uint64_t last_id_;  // starts at random: mission ids of two tools must differ
-  std::uint64_t mission_id_ = 0;
+  std::atomic<std::uint64_t> last_id_;  // starts at random: mission ids of two tools must differ
+  std::atomic<std::uint64_t> mission_id_{0};
 
-  mutable std::mutex mutex_;  // guards view_, ack_ and the pointers below; held for copies only
+  mutable std::mutex mutex_;  // guards view_, answers_ and the pointers below; held for copies only
   mutable std::condition_variable changed_;
   View view_;
-  std::optional<msg::CommandAck> ack_;  // to the last request
+  std::map<std::uint64_t, std::optional<Answer>> answers_;  // to the requests under way, by id
 
   comms::Node node_;
   comms::Publisher<msg::Command> commands_;
   comms::Publisher<msg::Mission> missions_;
   comms::Publisher<msg::Trajectory> trajectories_;
+  comms::Publisher<msg::Setpoint> setpoints_;
+  std::mutex sending_;  // of all publishers
+  std::uint64_t setpoint_count_ = 0;
   // Made, used and destroyed without mutex_: the middleware's threads hold its locks when they ask for that.
   std::shared_ptr<TimeGrants> grants_;
   std::shared_ptr<SignsOfLife> signs_;

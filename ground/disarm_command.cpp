@@ -4,8 +4,7 @@
 namespace swiftlet::ground {
 
 Command add_disarm_command(CLI::App& root) {
-  return add_plain_request_command(root, "disarm", "Stop the rotors on the ground",
-                                   msg::Command_Constants::DISARM);
+  return add_plain_request_command(root, "disarm", "Stop the rotors on the ground", &Vehicle::disarm);
 }
 
 }  // namespace swiftlet::ground

@@ -100,7 +100,7 @@ double newest_error_m(const FlightRecord& record) {
 }  // namespace
 
 Flight::Flight(Client& client, const FlightRecord& record, const MissionFile& mission,
-               double planned_duration_s, runtime::Clock clock, Watch watch, ProgressLine& progress)
+               double planned_duration_s, runtime::Clock clock, Watch watch, Progress& progress)
     : client_(client),
       record_(record),
       mission_(mission),
@@ -114,6 +114,7 @@ void Flight::run() {
   // In lockstep time stands still without this process, and the plant ends the run.
   if (!lockstep_) client_.stay();
   arm();
+  if (watch_.together != nullptr) wait_for_the_others();
   start_mission();
   if (lockstep_) client_.grants().follow_telemetry(paused_at_ns_);
   follow();
@@ -186,9 +187,26 @@ void Flight::arm() {
   }
 }
 
+void Flight::wait_for_the_others() {
+  watch_.together->ready();
+  while (!watch_.together->wait_for_all(kStep)) {
+    demand_alive();
+    const auto failure = watch_.together->failure();
+    if (failure || watch_.interrupts() > 0) {
+      if (lockstep_) client_.grants().follow_telemetry(paused_at_ns_);  // to disarm takes time
+      bring_down(failure.value_or("interrupted"));
+    }
+    progress_.update(kBeforeFlight, "armed, waiting for the others");
+  }
+}
+
 void Flight::start_mission() {
-  const Answer answer = client_.upload(mission_.mission, kRequestTimeout,
-                                       [this] { return watch_.casualty() || watch_.interrupts() > 0; });
+  const auto cancelled = [this] { return watch_.casualty() || watch_.interrupts() > 0; };
+  Answer answer = client_.upload(mission_.mission, kRequestTimeout, cancelled);
+  if (answer.accepted()) {
+    answer = client_.mission_command(msg::Command_Constants::MISSION_START, client_.mission_id(),
+                                     kRequestTimeout, cancelled);
+  }
   demand_alive();
   if (watch_.interrupts() > 0) bring_down("interrupted");
   if (!answer.accepted()) throw FlightFailure("the mission was refused: " + answer.reason);
@@ -210,6 +228,9 @@ void Flight::follow() {
     const View view = client_.view();
     show(view);
     if (watch_.interrupts() > 0) bring_down("interrupted");
+    if (watch_.together != nullptr) {
+      if (const auto failure = watch_.together->failure()) bring_down(*failure);
+    }
     const ControlMode mode = mode_of(view);
     if (view.mission.message.mission_id() == id) {
       const auto state = view.mission.message.state();

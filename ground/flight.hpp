@@ -9,7 +9,8 @@
 #include "ground/client.hpp"
 #include "ground/flight_record.hpp"
 #include "ground/mission_file.hpp"
-#include "ground/progress_line.hpp"
+#include "ground/progress.hpp"
+#include "ground/together.hpp"
 #include "services/runtime/clock.hpp"
 
 namespace swiftlet::ground {
@@ -25,21 +26,24 @@ class Flight {
   struct Watch {
     std::function<std::optional<std::string>()> casualty;  // a process that died, as a sentence
     std::function<int()> interrupts;                       // how often the user asked to end
+    Together* together = nullptr;                          // with others; null: alone
   };
 
   // In lockstep the plant is one that was started paused.
   Flight(Client& client, const FlightRecord& record, const MissionFile& mission, double planned_duration_s,
-         runtime::Clock clock, Watch watch, ProgressLine& progress);
+         runtime::Clock clock, Watch watch, Progress& progress);
 
   // Until vehicle, pose and control are there, the mission is flown, and the rotors are off. Throws
   // FlightFailure; the vehicle has then been landed where that was possible. The first interrupt lands it,
-  // the second gives up at once.
+  // the second gives up at once. Together with others the mission begins when all are armed, and a failure of
+  // another one lands this one.
   void run();
 
  private:
   void wait_until_ready();
   void wait_until_paused_at(std::int64_t stamp_ns);
   void arm();
+  void wait_for_the_others();
   void start_mission();
   void follow();
   void wait_for_last_figures();
@@ -55,7 +59,7 @@ class Flight {
   bool lockstep_;
   std::int64_t paused_at_ns_ = 0;  // in lockstep, before the mission
   Watch watch_;
-  ProgressLine& progress_;
+  Progress& progress_;
 };
 
 }  // namespace swiftlet::ground

@@ -1,5 +1,6 @@
 #include "ground/flight_conclusion.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -48,7 +49,7 @@ void judge(FlightReport& report, const FlightRecord& record, Window window) {
 }
 
 void keep_record(const std::filesystem::path& folder, const FlightRecord& record, const FlightReport& report,
-                 Window window, ProgressLine& progress) {
+                 Window window, Progress& progress) {
   write_flight_csv(folder / "flight.csv", record, window);
   if (record.sensors) write_flight_log(folder / kSensorsFile, flight_log_of(*record.sensors));
   write_report_json(folder / "report.json", report);
@@ -66,6 +67,28 @@ int tell(const FlightReport& report, bool json, ProgressLine& progress) {
     std::fputs(to_text(report).c_str(), report.completed ? stdout : stderr);
   }
   return report.completed ? kDone : kFailed;
+}
+
+int tell(const std::vector<FlightReport>& reports, bool json, ProgressLine& progress) {
+  progress.close();
+  const auto completed = static_cast<std::size_t>(std::count_if(
+      reports.begin(), reports.end(), [](const FlightReport& report) { return report.completed; }));
+  const bool all = completed == reports.size();
+  if (json) {
+    nlohmann::ordered_json whole = {{"completed", all}, {"vehicles", nlohmann::ordered_json::array()}};
+    for (const FlightReport& report : reports) whole["vehicles"].push_back(to_json(report));
+    std::printf("%s\n", whole.dump().c_str());
+  }
+  for (const FlightReport& report : reports) {
+    if (!json) {
+      const std::string text = report.vehicle_name + ", " + to_text(report);
+      std::fputs(text.c_str(), report.completed ? stdout : stderr);
+    } else if (!report.completed) {
+      progress.say("swiftlet: " + report.vehicle_name + ": " + report.reason);
+    }
+  }
+  if (!json) std::printf("%zu of %zu flights completed\n", completed, reports.size());
+  return all ? kDone : kFailed;
 }
 
 }  // namespace swiftlet::ground

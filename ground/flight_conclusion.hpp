@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "ground/flight_record.hpp"
 #include "ground/flight_report.hpp"
@@ -20,9 +21,11 @@ void judge(FlightReport& report, const FlightRecord& record, Window window);
 // Writes flight.csv, report.json, flight.gp and flight.png. Throws std::runtime_error for what cannot be
 // written; a picture that cannot be drawn is a line of progress only.
 void keep_record(const std::filesystem::path& folder, const FlightRecord& record, const FlightReport& report,
-                 Window window, ProgressLine& progress);
+                 Window window, Progress& progress);
 
 // The report, as JSON on standard output or as text. Returns what the program is to return.
 int tell(const FlightReport& report, bool json, ProgressLine& progress);
+// Those of vehicles that flew together: as JSON one object, {completed, vehicles: [...]}.
+int tell(const std::vector<FlightReport>& reports, bool json, ProgressLine& progress);
 
 }  // namespace swiftlet::ground

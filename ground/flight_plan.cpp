@@ -2,12 +2,15 @@
 
 #include <ctime>
 
+#include "control/supervision/checks.hpp"
 #include "ground/command.hpp"
 #include "ground/flight_schedule.hpp"
+#include "ground/format.hpp"
 #include "ground/installation.hpp"
 #include "ground/network_options.hpp"
 #include "ground/vary_file.hpp"
 #include "services/runtime/control_settings_file.hpp"
+#include "services/runtime/csv.hpp"
 #include "services/runtime/simulation_file.hpp"
 #include "services/runtime/vehicle_file.hpp"
 
@@ -40,6 +43,14 @@ void demand_whole_flight(const MissionFile& mission, const fs::path& file, doubl
   if (duration_s > kLongestMissionS) {
     throw InputError(file.string() + ": items: take " + std::to_string(static_cast<int>(duration_s)) +
                      " s, must be at most " + std::to_string(static_cast<int>(kLongestMissionS)) + " s");
+  }
+}
+
+void displace(control::Mission& mission, const Eigen::Vector2d& by_ned) {
+  for (control::MissionItem& item : mission.items) item.position_ned.head<2>() += by_ned;
+  for (control::PolynomialSegment& segment : mission.segments) {
+    segment.x[0] += by_ned.x();
+    segment.y[0] += by_ned.y();
   }
 }
 
@@ -77,6 +88,12 @@ FlightPlan plan_flight(const FlyOptions& options) {
 
   plan.mission_file = configuration_file("missions", options.mission);
   plan.mission = load_mission_file(plan.mission_file, plan.control.limits);
+  plan.start_ned = options.start_ned;
+  displace(plan.mission.mission, options.start_ned);
+  if (const control::Outcome outcome = control::check(plan.mission.mission, plan.control.limits);
+      !outcome.accepted)
+    throw InputError(format("%s: begun %g m north and %g m east of the origin: %s", plan.mission_file.c_str(),
+                            plan.start_ned.x(), plan.start_ned.y(), outcome.reason));
   plan.planned_duration_s = planned_duration_s(plan.mission.mission, plan.control.limits);
   demand_whole_flight(plan.mission, plan.mission_file, plan.planned_duration_s);
 
@@ -106,6 +123,7 @@ FlightReport report_of(const FlightPlan& plan) {
   report.clock = plan.parties == Parties::kInProcess ? "in process" : runtime::to_string(plan.clock);
   report.mission = plan.mission.name;
   report.vehicle = plan.vehicle.name;
+  report.start_ned = plan.start_ned;
   report.control = plan.control.name;
   report.vary = plan.variation.name;
   report.seed = plan.seed;
@@ -129,7 +147,15 @@ std::vector<ProcessSettings> processes(const FlightPlan& plan, const comms::Node
   const std::string vehicle = absolute_path(plan.vehicle_file);
   const std::string simulation = absolute_path(plan.simulation_file);
   const std::string seed = std::to_string(plan.seed);
-  std::vector<std::string> plant = {"--vehicle", vehicle, "--simulation", simulation, "--seed", seed};
+  std::vector<std::string> plant = {"--vehicle",
+                                    vehicle,
+                                    "--simulation",
+                                    simulation,
+                                    "--seed",
+                                    seed,
+                                    "--start",
+                                    runtime::exact(plan.start_ned.x()),
+                                    runtime::exact(plan.start_ned.y())};
   if (plan.imu_rate_option_hz > 0) {
     plant.insert(plant.end(), {"--imu-rate", std::to_string(plan.imu_rate_option_hz)});
   }

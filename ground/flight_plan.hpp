@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "control/settings.hpp"
 #include "ground/child_process.hpp"
 #include "ground/flight_report.hpp"
@@ -39,9 +41,12 @@ struct FlyOptions {
   std::uint64_t seed = 1;
   int imu_rate_hz = 0;  // 0: as the simulation file says
   comms::NodeSettings network;
-  int domain = -1;       // below 0: a free one, or 0 to attach
-  bool trace = false;    // keep a trace of a lockstep or in-process flight
-  bool sensors = false;  // keep what was sensed and commanded, for `swiftlet identify flight`
+  Eigen::Vector2d start_ned =
+      Eigen::Vector2d::Zero();  // m, where the vehicle stands; the mission lies as far off
+  double spacing_m = 1.0;       // of several vehicles, from one to the next, to the east
+  int domain = -1;              // below 0: a free one, or 0 to attach
+  bool trace = false;           // keep a trace of a lockstep or in-process flight
+  bool sensors = false;          // keep what was sensed and commanded, for `swiftlet identify flight`
   bool json = false;
 };
 
@@ -58,6 +63,7 @@ struct FlightPlan {
   Variation variation;         // of what is flown; without variates unless asked for
   int imu_rate_option_hz = 0;  // as FlyOptions
   std::uint64_t seed = 0;
+  Eigen::Vector2d start_ned = Eigen::Vector2d::Zero();                  // m
   std::filesystem::path folder;                                         // of the record; not made yet
   std::filesystem::path trace_file;                                     // empty: none is kept
   bool sensors = false;                                                 // keep them

@@ -24,6 +24,8 @@ nlohmann::ordered_json to_json(const FlightReport& report) {
   if (!report.completed) json["reason"] = report.reason;
   json["clock"] = report.clock;
   json["mission"] = report.mission;
+  if (!report.vehicle_name.empty()) json["vehicle_name"] = report.vehicle_name;
+  json["start_m"] = {report.start_ned.x(), report.start_ned.y()};
   json["vehicle"] = report.vehicle;
   json["control"] = report.control;
   if (!report.vary.empty()) json["vary"] = report.vary;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include <Eigen/Core>
 #include <nlohmann/json_fwd.hpp>
 
 #include "ground/tracking.hpp"
@@ -23,7 +24,9 @@ struct FlightReport {
 
   std::string clock;  // "realtime", "lockstep" or "in process"
   std::string mission;
-  std::string vehicle;  // names or files, as flown
+  std::string vehicle_name;                             // "kl1"; empty: in process
+  Eigen::Vector2d start_ned = Eigen::Vector2d::Zero();  // m, where it stood; the mission lies as far off
+  std::string vehicle;                                  // names or files, as flown
   std::string control;
   std::string vary;  // empty: what flew is as the files say
   std::uint64_t seed = 0;

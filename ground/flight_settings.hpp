@@ -10,9 +10,9 @@
 
 namespace swiftlet::ground {
 
-// Copies mission.yaml into the record's folder, and control.yaml, vehicle.yaml and simulation.yaml too, unless
-// the flight is one over processes that run already: those know their own. Throws std::runtime_error if it
-// cannot.
+// Copies mission.yaml into the record's folder, and control.yaml, vehicle.yaml and simulation.yaml too,
+// unless the flight is one over processes that run already: those know their own. Throws std::runtime_error
+// if it cannot.
 void keep_settings(const FlightPlan& plan);
 
 // Key and value of every single setting of those files that the folder holds: "control.position.x.omega_n",

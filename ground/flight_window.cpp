@@ -30,8 +30,9 @@ std::optional<Window> mission_window(const FlightRecord& record, std::uint64_t m
 double mission_duration_s(const FlightRecord& record, std::uint64_t mission_id, Window window) {
   std::int64_t end_ns = record.reference.empty() ? window.to_ns : record.reference.back().stamp_ns;
   for (const MissionRow& row : record.mission) {
-    if (row.mission_id != mission_id || row.state == static_cast<int>(control::MissionState::kRunning))
-      continue;
+    const auto state = static_cast<control::MissionState>(row.state);
+    const bool over = state == control::MissionState::kCompleted || state == control::MissionState::kAborted;
+    if (row.mission_id != mission_id || !over) continue;
     end_ns = row.stamp_ns;
     break;
   }

@@ -1,120 +1,123 @@
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <limits>
+#include <deque>
+#include <future>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
-#include "ground/client.hpp"
 #include "ground/commands.hpp"
-#include "ground/fleet.hpp"
-#include "ground/flight.hpp"
+#include "ground/fleet_progress.hpp"
 #include "ground/flight_conclusion.hpp"
 #include "ground/flight_plan.hpp"
-#include "ground/flight_settings.hpp"
-#include "ground/flight_window.hpp"
 #include "ground/fly_options.hpp"
 #include "ground/interrupts.hpp"
 #include "ground/network_options.hpp"
+#include "ground/process_flight.hpp"
 #include "services/comms/domain_claim.hpp"
 #include "services/comms/shared_memory.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
-void take_figures(const View& view, FlightReport& report) {
-  const auto& control = view.control.message;
-  report.control_rate_hz = control.rate_hz();
-  report.cycles = control.cycles();
-  report.deadline_misses = control.deadline_misses();
-  report.step_time_max_us = control.step_time_max_us();
-  report.realtime_scheduling = control.realtime_scheduling();
-  const auto& vehicle = view.vehicle.message;
-  if (vehicle.name().size() > 0) report.vehicle = vehicle.name().c_str();
-  report.imu_rate_hz = vehicle.imu_rate_hz();
-  report.unanswered = vehicle.unanswered();
-  report.sense_to_actuate = {vehicle.sense_to_actuate_p50_us(), vehicle.sense_to_actuate_p99_us(),
-                             vehicle.sense_to_actuate_max_us()};
-}
+constexpr std::size_t kMostVehicles = 12;  // three processes each, and 40 of a host find each other
 
-struct Flown {
-  FlightReport report;
-  Window window;
-};
-
-// Everything between the first process that starts and the last that ends.
-Flown fly_mission(const FlightPlan& plan, const comms::NodeSettings& network, FlightRecord& record,
-                  ProgressLine& progress) {
-  Flown flown;
-  FlightReport& report = flown.report;
-  report = report_of(plan);
-
-  const Interrupts interrupts;
-  Fleet fleet(processes(plan, network));
-  std::optional<Window> window;
-  {
-    Client client(network, &record);
-    const auto start = Clock::now();
-    try {
-      Flight(client, record, plan.mission, plan.planned_duration_s, plan.clock,
-             {[&] { return fleet.casualty(); }, [&] { return interrupts.count(); }}, progress)
-          .run();
-    } catch (const FlightFailure& failure) {
-      report.reason = failure.what();
-    }
-    report.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
-    if (!record.truth.empty()) report.simulated_s = static_cast<double>(record.truth.back().stamp_ns) * 1e-9;
-    take_figures(client.view(), report);
-    window = mission_window(record, client.mission_id(), plan.mission.mission);
-    if (window) report.duration_s = mission_duration_s(record, client.mission_id(), *window);
-  }
-  for (const std::string& complaint : fleet.stop()) {
-    if (report.reason.empty()) report.reason = "after the flight, " + complaint;
-  }
-
-  // What a process that was killed left there.
-  if (network.transport == comms::Transport::kSharedMemory) comms::remove_stale_shared_memory();
-
-  flown.window = window.value_or(Window{});
-  judge(report, record, flown.window);
-  return flown;
-}
-
-void check(const FlyOptions& options) {
+void check(const FlyOptions& options, std::size_t vehicles) {
   const bool lockstep = options.clock == runtime::Clock::kLockstep;
   if (lockstep && options.speed != 1.0)
     throw InputError("--speed: lockstep goes as fast as the answers come");
   if (!lockstep && options.trace) throw InputError("--trace: needs --clock lockstep");
+  if (vehicles > kMostVehicles) {
+    throw InputError("--vehicle-name: names " + std::to_string(vehicles) + " vehicles, at most " +
+                     std::to_string(kMostVehicles) + " fly from one command");
+  }
+}
+
+// One for each vehicle: its mission is the only one, or that of its place in the list.
+std::vector<FlightPlan> plan_flights(const FlyOptions& options, const std::vector<std::string>& vehicles) {
+  const std::vector<std::string> missions = split_list(options.mission);
+  if (missions.size() != 1 && missions.size() != vehicles.size()) {
+    throw InputError("mission: there are " + std::to_string(missions.size()) + " for " +
+                     std::to_string(vehicles.size()) + " vehicles, must be one for all or one for each");
+  }
+  std::vector<FlightPlan> plans;
+  for (std::size_t i = 0; i < vehicles.size(); ++i) {
+    FlyOptions one = options;
+    one.mission = missions[missions.size() == 1 ? 0 : i];
+    one.seed = options.seed + i;
+    one.start_ned = {
+        0.0, options.spacing_m * (static_cast<double>(i) - 0.5 * static_cast<double>(vehicles.size() - 1))};
+    FlightPlan plan = plan_flight(one);
+    if (vehicles.size() > 1) {
+      if (i > 0) plan.folder = plans.front().folder.parent_path();
+      plan.folder /= vehicles[i];
+      if (options.trace) plan.trace_file = plan.folder / "trace.csv";
+    }
+    plans.push_back(std::move(plan));
+  }
+  return plans;
+}
+
+// All at one time, each in a thread of its own.
+void fly_together(std::deque<ProcessFlight>& flights, const Interrupts& interrupts, ProgressLine& progress) {
+  std::vector<std::string> names;
+  for (const ProcessFlight& flight : flights) names.push_back(flight.vehicle_name());
+  FleetProgress shares(progress, names);
+  Together together(flights.size());
+  std::vector<std::future<void>> flying;
+  for (std::size_t i = 0; i < flights.size(); ++i) {
+    flying.push_back(std::async(std::launch::async, [&, i] {
+      try {
+        flights[i].fly(interrupts, &together, shares.of(i));
+      } catch (const std::exception& error) {
+        together.fail(names[i] + " failed: " + error.what());
+        throw;
+      }
+    }));
+  }
+  for (std::future<void>& flight : flying) flight.wait();
+  for (std::future<void>& flight : flying) flight.get();
 }
 
 int fly(const FlyOptions& options) {
-  check(options);
-  const FlightPlan plan = plan_flight(options);
-  make_record_folder(plan.folder);
-  keep_settings(plan);
+  const std::vector<std::string> vehicles = split_list(options.network.vehicle);
+  check(options, vehicles.size());
+  std::vector<FlightPlan> plans = plan_flights(options, vehicles);
 
   std::optional<comms::DomainClaim> claim;
-  if (options.domain < 0 && plan.parties == Parties::kStarted) claim.emplace();
+  if (options.domain < 0 && options.parties == Parties::kStarted) claim.emplace();
   comms::NodeSettings network = options.network;
   network.domain = claim ? claim->domain() : std::max(options.domain, 0);
 
   ProgressLine progress;
-  for (const std::string& assumption : plan.mission.assumptions)
-    progress.say(plan.mission.name + ": " + assumption);
-  progress.say("flying " + plan.mission.name +
-               (plan.parties == Parties::kAttached ? "" : " with " + plan.vehicle.name) + ": " +
-               network.vehicle + " in domain " + std::to_string(network.domain) +
-               (network.localhost_only ? " (--localhost-only)" : "") + ", record in " + plan.folder.string());
-  FlightRecord record(plan.record_capacity());
-  if (plan.sensors) record.sensors = std::make_unique<SensorRecord>(plan.record_capacity());
-  const Flown flown = fly_mission(plan, network, record, progress);
-  keep_record(plan.folder, record, flown.report, flown.window, progress);
-  return tell(flown.report, options.json, progress);
+  std::deque<ProcessFlight> flights;
+  const Interrupts interrupts;
+  for (std::size_t i = 0; i < vehicles.size(); ++i) {
+    const FlightPlan& plan = plans[i];
+    for (const std::string& assumption : plan.mission.assumptions)
+      progress.say(plan.mission.name + ": " + assumption);
+    network.vehicle = vehicles[i];
+    progress.say("flying " + plan.mission.name +
+                 (plan.parties == Parties::kAttached ? "" : " with " + plan.vehicle.name) + ": " +
+                 network.vehicle + " in domain " + std::to_string(network.domain) +
+                 (network.localhost_only ? " (--localhost-only)" : "") + ", record in " +
+                 plan.folder.string());
+    flights.emplace_back(std::move(plans[i]), network);
+  }
+  if (flights.size() == 1) {
+    flights.front().fly(interrupts, nullptr, progress);
+  } else {
+    fly_together(flights, interrupts, progress);
+  }
+  // What a process that was killed left there.
+  if (network.transport == comms::Transport::kSharedMemory) comms::remove_stale_shared_memory();
+
+  if (flights.size() == 1) return tell(flights.front().report(), options.json, progress);
+  std::vector<FlightReport> reports;
+  for (const ProcessFlight& flight : flights) reports.push_back(flight.report());
+  return tell(reports, options.json, progress);
 }
 
 }  // namespace
@@ -125,7 +128,13 @@ Command add_fly_command(CLI::App& root) {
   CLI::App* const app = root.add_subcommand(
       "fly", "Start plant, mocap and control on this computer, fly a mission, and report");
   add_fly_options(*app, *options);
-  add_network_options(*app, options->network);
+  add_network_options(*app, options->network, Vehicles::kSeveral);
+  app->add_option("--spacing", options->spacing_m,
+                  "of several vehicles: they start in a row from west to east about the origin, so many m "
+                  "apart, and their "
+                  "missions lie as far from each other")
+      ->check(CLI::Range(-100.0, 100.0))
+      ->capture_default_str();
   app->remove_option(app->get_option("--localhost-only"));  // it stays there
   app->remove_option(app->get_option("--domain"));          // whose default is not that of a flight
   app->add_option("--domain", options->domain, "DDS domain; a free one unless given")
@@ -147,8 +156,11 @@ Command add_fly_command(CLI::App& root) {
   app->add_flag("--network{false}", options->network.localhost_only, "use all interfaces, not loopback alone")
       ->needs(attach);
   app->footer(
-      "Ctrl-C lands; a second Ctrl-C ends at once.\nexample: swiftlet fly square --record /tmp/square --json "
-      "| jq .rms_3d_m");
+      "Several vehicles (--vehicle-name kl1,kl2) begin at one time; when one fails the others land. Paths "
+      "are not checked "
+      "against each other.\nCtrl-C lands; a second Ctrl-C ends at once.\nexample: swiftlet fly square "
+      "--record /tmp/square "
+      "--json | jq .rms_3d_m\nexample: swiftlet fly square,zigzag --vehicle-name kl1,kl2");
   return {app, [options] { return fly(*options); }};
 }
 

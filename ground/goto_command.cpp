@@ -10,7 +10,7 @@
 namespace swiftlet::ground {
 namespace {
 
-struct Options : RequestOptions {
+struct Options : AskOptions {
   std::array<double, 3> position_ned{};
   std::optional<double> yaw_rad;
   double speed = 0.5;
@@ -20,9 +20,10 @@ struct Options : RequestOptions {
 
 Command add_goto_command(CLI::App& root) {
   const auto options = std::make_shared<Options>();
-  CLI::App* const app = add_request_subcommand(
+  CLI::App* const app = add_ask_subcommand(
       root, "goto", "Fly straight to a place, north, east and down of the origin, and hold there",
-      "swiftlet goto -1 0 -1.5 --yaw 1.57    (1 m south of the origin, 1.5 m up, nose to the east)", options);
+      "swiftlet goto -1 0 -1.5 --yaw 1.57    (1 m south of the origin, 1.5 m up, nose to the east)", options,
+      Vehicles::kOne);  // a place has room for one
   constexpr const char* kNames[] = {"x", "y", "z"};
   constexpr const char* kMeanings[] = {"north, m", "east, m", "down, m: negative is up"};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -37,14 +38,9 @@ Command add_goto_command(CLI::App& root) {
       ->check(positive_number())
       ->capture_default_str();
   return {app, [options] {
-            return run_request(*options, "goto", [&](Client& client) {
-              msg::Command command;
-              command.kind(msg::Command_Constants::GOTO);
-              command.position_ned(options->position_ned);
-              command.yaw_free(!options->yaw_rad);
-              command.yaw(options->yaw_rad.value_or(0.0));
-              command.speed(options->speed);
-              return client.command(command, milliseconds(options->timeout_s));
+            return run_request(*options, "goto", [&](Vehicle& vehicle) {
+              const auto& [x, y, z] = options->position_ned;
+              return vehicle.go_to({{x, y, z}, options->yaw_rad, options->speed}, options->timeout());
             });
           }};
 }

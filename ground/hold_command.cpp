@@ -4,8 +4,7 @@
 namespace swiftlet::ground {
 
 Command add_hold_command(CLI::App& root) {
-  return add_plain_request_command(root, "hold", "Stop where it is and stay there",
-                                   msg::Command_Constants::HOLD);
+  return add_plain_request_command(root, "hold", "Stop where it is and stay there", &Vehicle::hold);
 }
 
 }  // namespace swiftlet::ground

@@ -55,7 +55,8 @@ double interval_factor(const Experiment& fit) {
   return any.standard_error > 0.0 ? any.half_width / any.standard_error : 0.0;
 }
 
-// The model's curve, and the bands in which it and single readings lie in 95 of 100 cases. place makes a point of the figure.
+// The model's curve, and the bands in which it and single readings lie in 95 of 100 cases. place makes a
+// point of the figure.
 void add_fit(Figure& figure, const Experiment& fit, const Model& model, double from, double to,
              const std::string& label, const std::function<FigurePoint(double x, double y)>& place) {
   FigureSeries line{label, Mark::kLine, kFitColour, {}};

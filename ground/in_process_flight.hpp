@@ -17,11 +17,12 @@ struct InProcessFlight {
   Window window;  // that the errors are taken from
 };
 
-// What flies in `world`, under a controller that is designed on the plan's vehicle. Throws as ClosedLoop does.
+// What flies in `world`, under a controller that is designed on the plan's vehicle. Throws as ClosedLoop
+// does.
 ClosedLoop closed_loop(const FlightPlan& plan, const World& world, std::uint64_t seed);
 
-// The plan's mission by a fresh loop of this seed. The record is an empty one of plan.record_capacity(); trace
-// may be null.
+// The plan's mission by a fresh loop of this seed. The record is an empty one of plan.record_capacity();
+// trace may be null.
 InProcessFlight fly_in_process(ClosedLoop& loop, const FlightPlan& plan, std::uint64_t seed,
                                FlightRecord& record, runtime::FlightTrace* trace,
                                const std::function<bool()>& cancelled);

@@ -35,8 +35,10 @@ int run(int argc, char** argv) {
       ground::add_fly_command(app),        ground::add_arm_command(app),    ground::add_disarm_command(app),
       ground::add_takeoff_command(app),    ground::add_goto_command(app),   ground::add_land_command(app),
       ground::add_hold_command(app),       ground::add_stop_command(app),   ground::add_mission_command(app),
-      ground::add_trajectory_command(app), ground::add_status_command(app), ground::add_report_command(app),
+      ground::add_trajectory_command(app), ground::add_stream_command(app), ground::add_status_command(app),
+      ground::add_watch_command(app),      ground::add_list_command(app),   ground::add_report_command(app),
       ground::add_gains_command(app),      ground::add_sim_command(app),    ground::add_identify_command(app),
+      ground::add_completion_command(app), ground::add_manual_command(app),
   };
   try {
     app.parse(argc, argv);

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <stdexcept>
 
+#include "control/supervision/checks.hpp"
 #include "control/trajectory/polynomial.hpp"
+#include "ground/format.hpp"
 #include "ground/formats/mission_format.hpp"
+#include "ground/mission_items.hpp"
 #include "services/runtime/config.hpp"
 #include "services/runtime/text_file.hpp"
 
@@ -19,121 +21,80 @@ using control::MissionItemKind;
 using runtime::ConfigNode;
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kLongestHoldS = 3600.0;
 constexpr double kLargestToleranceM = 10.0;
 constexpr int kMaxName = 64;
 
-enum class Frame { kNed, kEnu };
-
-std::string text_of(double value) {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%g", value);
-  return buffer;
+std::string name_of(const ConfigNode& root) {
+  const auto node = root.find("name");
+  if (!node) return std::filesystem::path(root.file()).stem().string();
+  const std::string name = node->text();
+  if (name.size() > kMaxName || name.find('/') != std::string::npos)
+    node->fail("must be at most " + std::to_string(kMaxName) + " characters and hold no /");
+  return name;
 }
 
-Eigen::Vector3d ned_from(Frame frame, const Eigen::Vector3d& position) {
-  return frame == Frame::kNed ? position : Eigen::Vector3d(position.y(), position.x(), -position.z());
+void read_limits(const ConfigNode& node, const control::Limits& settings, control::MissionBounds& bounds) {
+  node.allow({"speed_m_s", "acceleration_m_s2", "jerk_m_s3", "yaw_rate_rad_s"});
+  const auto read = [&](const char* key, double most, double& bound) {
+    if (const auto limit = node.find(key)) bound = limit->number({0.0, most, true, false});
+  };
+  read("speed_m_s", settings.max_speed, bounds.max_speed);
+  read("acceleration_m_s2", settings.max_acceleration, bounds.max_acceleration);
+  read("jerk_m_s3", settings.max_reference_jerk, bounds.max_jerk);
+  read("yaw_rate_rad_s", settings.max_yaw_rate, bounds.max_yaw_rate);
 }
 
-// ENU yaw is counter-clockwise from east, NED yaw clockwise from north.
-double ned_yaw_from(Frame frame, double yaw) {
-  return frame == Frame::kNed ? yaw : std::remainder(kPi / 2 - yaw, 2 * kPi);
+void read_fence(const ConfigNode& node, MissionFrame frame, const control::Limits& settings,
+                control::MissionBounds& bounds) {
+  node.allow({"min_m", "max_m"});
+  const Eigen::Vector3d least = node.at("min_m").vector3();
+  const Eigen::Vector3d greatest = node.at("max_m").vector3();
+  for (int i = 0; i < 3; ++i) {
+    if (greatest[i] > least[i]) continue;
+    node.at("max_m").fail(
+        format("number %d is %g, must be above that of min_m, %g", i + 1, greatest[i], least[i]));
+  }
+  const Eigen::Vector3d one = ned_from(frame, least);
+  const Eigen::Vector3d other = ned_from(frame, greatest);
+  bounds.fenced = true;
+  bounds.fence_min_ned = one.cwiseMin(other);
+  bounds.fence_max_ned = one.cwiseMax(other);
+  const control::Outcome outcome = control::check(bounds, settings);
+  if (!outcome.accepted) node.fail(outcome.reason);
 }
 
-void demand_inside_fence(const ConfigNode& node, const Eigen::Vector3d& position_ned,
-                         const control::Limits& limits) {
-  constexpr const char* kAxes[] = {"north", "east", "down"};
-  for (int axis = 0; axis < 3; ++axis) {
-    const double value = position_ned[axis];
-    const double low = limits.fence_min_ned[axis];
-    const double high = limits.fence_max_ned[axis];
-    if (value >= low && value <= high) continue;
-    node.fail(std::string(kAxes[axis]) + " is " + text_of(value) + " m, must be inside the fence, " +
-              text_of(low) + " to " + text_of(high) + " m");
+// What comes before the items stands there for a reason: a file that is cut short does not lose it unseen.
+void demand_items_last(const ConfigNode& root, const ConfigNode& items) {
+  for (const char* key : {"name", "description", "frame", "tolerance_m", "limits", "geofence", "ends"}) {
+    const auto node = root.find(key);
+    if (node && node->line() > items.line())
+      node->fail("stands after items, must stand before them: a file that is cut short would lose it unseen");
   }
 }
 
-double read_speed(const ConfigNode& node, const control::Limits& limits) {
-  const ConfigNode speed = node.at("speed_m_s");
-  return speed.number({0.0, limits.max_speed, true, false});
-}
-
-double read_hold(const ConfigNode& node) {
-  const auto hold = node.find("hold_s");
-  return hold ? hold->number(runtime::between(0.0, kLongestHoldS)) : 0.0;
-}
-
-MissionItem read_takeoff(const ConfigNode& node, const control::Limits& limits) {
-  MissionItem item;
-  item.kind = MissionItemKind::kTakeoff;
-  const ConfigNode height = node.at("height_m");
-  item.position_ned.z() = -height.number(runtime::above(0.0));
-  demand_inside_fence(height, item.position_ned, limits);
-  item.speed = read_speed(node, limits);
-  item.hold_s = read_hold(node);
-  return item;
-}
-
-MissionItem read_waypoint(const ConfigNode& node, Frame frame, const control::Limits& limits) {
-  MissionItem item;
-  item.kind = MissionItemKind::kWaypoint;
-  const ConfigNode position = node.at("position_m");
-  item.position_ned = ned_from(frame, position.vector3());
-  demand_inside_fence(position, item.position_ned, limits);
-  if (const auto yaw = node.find("yaw_rad")) {
-    item.yaw_free = false;
-    item.yaw_rad = ned_yaw_from(frame, yaw->number(runtime::between(-kPi, kPi)));
-  }
-  item.speed = read_speed(node, limits);
-  item.hold_s = read_hold(node);
-  return item;
-}
-
-MissionItem read_land(const ConfigNode& node, const control::Limits& limits) {
-  MissionItem item;
-  item.kind = MissionItemKind::kLand;
-  item.speed = read_speed(node, limits);
-  return item;
-}
-
-MissionItem read_item(const ConfigNode& node, Frame frame, const control::Limits& limits) {
-  const auto kind = node.at("kind").choice<MissionItemKind>({{"takeoff", MissionItemKind::kTakeoff},
-                                                             {"waypoint", MissionItemKind::kWaypoint},
-                                                             {"land", MissionItemKind::kLand}});
-  switch (kind) {
-    case MissionItemKind::kTakeoff:
-      return read_takeoff(node, limits);
-    case MissionItemKind::kWaypoint:
-      return read_waypoint(node, frame, limits);
-    case MissionItemKind::kLand:
-      return read_land(node, limits);
-    case MissionItemKind::kTrajectory:
-      break;
-  }
-  node.fail("is of no known kind");
-}
-
-MissionFile read_mission(const ConfigNode& root, const control::Limits& limits) {
+MissionFile read_mission(const ConfigNode& root, const control::Limits& settings) {
+  root.allow({"name", "description", "frame", "tolerance_m", "limits", "geofence", "ends", "items"});
   MissionFile file;
-  const auto name = root.find("name");
-  file.name = name ? name->text() : std::filesystem::path(root.file()).stem().string();
-  if (name && (file.name.size() > kMaxName || file.name.find('/') != std::string::npos)) {
-    name->fail("must be at most " + std::to_string(kMaxName) + " characters and hold no /");
-  }
+  file.name = name_of(root);
   if (const auto description = root.find("description")) file.description = description->text();
-  const Frame frame = root.at("frame").choice<Frame>({{"ned", Frame::kNed}, {"enu", Frame::kEnu}});
+  const MissionFrame frame =
+      root.at("frame").choice<MissionFrame>({{"ned", MissionFrame::kNed}, {"enu", MissionFrame::kEnu}});
   file.tolerance_m = root.at("tolerance_m").number({0.0, kLargestToleranceM, true, false});
+  control::MissionBounds& bounds = file.mission.bounds;
+  if (const auto limits = root.find("limits")) read_limits(*limits, settings, bounds);
+  if (const auto fence = root.find("geofence")) read_fence(*fence, frame, settings, bounds);
+  const auto ends = root.find("ends");
+  const bool hovers = ends && ends->choice<bool>({{"landed", false}, {"hovering", true}});
 
-  const std::vector<ConfigNode> items = root.at("items").items(1, control::kMaxMissionItems);
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    const MissionItem item = read_item(items[i], frame, limits);
-    if (item.kind == MissionItemKind::kTakeoff && i > 0)
-      items[i].fail("is a takeoff, which must be the first item");
-    if (item.kind == MissionItemKind::kLand && i + 1 < items.size())
-      items[i].fail("is a land, which must be the last item");
-    file.mission.items.push_back(item);
+  const ConfigNode items = root.at("items");
+  demand_items_last(root, items);
+  const control::Limits limits = control::tightened(settings, bounds);
+  read_mission_items(items, frame, limits, file);
+  if (hovers && file.lands()) ends->fail("is hovering, must be landed: the last item is a land");
+  if (!hovers && !file.lands()) {
+    const ConfigNode last = items.items().back();
+    last.fail("is the last item, which must be a land, unless the mission says `ends: hovering`");
   }
-  root.reject_unknown_keys();
   return file;
 }
 
@@ -173,7 +134,8 @@ MissionFile parse_mission_file(const std::string& text, const std::string& file_
   return read_mission(runtime::parse_config(text, file_name), limits);
 }
 
-double planned_duration_s(const control::Mission& mission, const control::Limits& limits) {
+double planned_duration_s(const control::Mission& mission, const control::Limits& settings) {
+  const control::Limits limits = control::tightened(settings, mission.bounds);
   double duration_s = 0.0;
   Eigen::Vector3d at = Eigen::Vector3d::Zero();
   double yaw = 0.0;
@@ -182,6 +144,7 @@ double planned_duration_s(const control::Mission& mission, const control::Limits
     if (item.kind == MissionItemKind::kTakeoff) to = {at.x(), at.y(), item.position_ned.z()};
     if (item.kind == MissionItemKind::kLand) to = {at.x(), at.y(), 0.0};
     if (item.kind == MissionItemKind::kTrajectory) to = start_of(mission, item);
+    if (item.kind == MissionItemKind::kWait) to = at;
     const double distance = (to - at).norm();
     const double move_s =
         item.kind == MissionItemKind::kTrajectory
@@ -218,6 +181,8 @@ const char* to_string(MissionItemKind kind) {
       return "land";
     case MissionItemKind::kTrajectory:
       return "trajectory";
+    case MissionItemKind::kWait:
+      return "wait";
   }
   return "unknown";
 }

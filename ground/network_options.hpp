@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "services/comms/node.hpp"
 
@@ -11,9 +12,15 @@ class App;
 
 namespace swiftlet::ground {
 
+// Whom a command asks. The names of several stand in NodeSettings::vehicle as one list: split_list().
+enum class Vehicles { kOne, kSeveral };
+
 // The options of comms::add_node_options, a name that cannot be one refused as bad input. `network` must
 // outlive the parsing.
-void add_network_options(CLI::App& app, comms::NodeSettings& network);
+void add_network_options(CLI::App& app, comms::NodeSettings& network, Vehicles vehicles = Vehicles::kOne);
+
+// What stands between the commas.
+std::vector<std::string> split_list(const std::string& list);
 
 std::string to_string(comms::Transport transport);  // as on the command line
 

@@ -11,18 +11,18 @@ constexpr std::chrono::milliseconds kTerminalPeriod{100};
 constexpr std::chrono::seconds kLinePeriod{10};
 constexpr const char* kClearLine = "\r\x1b[K";
 
-// A line that wrapped could not be written over.
-std::string cut_to_terminal(const std::string& text) {
-  winsize size{};
-  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return text;
-  return text.substr(0, size.ws_col - 1U);
-}
-
 }  // namespace
 
 ProgressLine::ProgressLine() : terminal_(isatty(STDERR_FILENO) != 0) {}
 
 ProgressLine::~ProgressLine() { close(); }
+
+// A line that wrapped could not be written over.
+std::size_t ProgressLine::width() const {
+  winsize size{};
+  if (!terminal_ || ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return 0;
+  return size.ws_col - 1U;
+}
 
 void ProgressLine::close() {
   if (line_open_) std::fputc('\n', stderr);
@@ -35,7 +35,7 @@ void ProgressLine::update(int stage, const std::string& text) {
   stage_ = stage;
   if (terminal_) {
     next_ = now + kTerminalPeriod;
-    std::fprintf(stderr, "%s%s", kClearLine, cut_to_terminal(text).c_str());
+    std::fprintf(stderr, "%s%s", kClearLine, (width() > 0 ? text.substr(0, width()) : text).c_str());
     std::fflush(stderr);
     line_open_ = true;
   } else {

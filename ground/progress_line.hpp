@@ -5,20 +5,22 @@
 #include <limits>
 #include <string>
 
+#include "ground/progress.hpp"
+
 namespace swiftlet::ground {
 
-class ProgressLine {
+class ProgressLine final : public Progress {
  public:
   ProgressLine();
-  ~ProgressLine();
+  ~ProgressLine() override;
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  // What stands now, cut to the terminal's width. stage: a change of it is worth a line of its own where
-  // lines cannot be rewritten.
-  void update(int stage, const std::string& text);
-  // A line that stays.
-  void say(const std::string& text);
+  // Cut to the terminal's width. A change of the stage is a line of its own where lines cannot be rewritten.
+  void update(int stage, const std::string& text) override;
+  void say(const std::string& text) override;
+  // Characters that an update may have; 0: any number, where lines are not rewritten.
+  std::size_t width() const;
   // No more progress for now: what others print begins on a fresh line.
   void close();
 

@@ -1,5 +1,5 @@
-// Tells the vehicle that its flight depends on this tool: when the tool falls silent, the controller does what
-// its settings say (failsafe.ground_link_action).
+// Tells the vehicle that its flight depends on this tool: when the tool falls silent, the controller does
+// what its settings say (failsafe.ground_link_action).
 #pragma once
 
 #include <cstdint>

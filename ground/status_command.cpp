@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "ground/client.hpp"
 #include "ground/commands.hpp"
 #include "ground/request_command.hpp"
 
@@ -203,7 +204,7 @@ void print(const View& view, const Rates& rates, const RequestOptions& options) 
 int show_status(const Options& options) {
   Client client(options.network);
   client.hear_controllers();
-  if (!client.wait(milliseconds(options.timeout_s), [](const View& view) { return view.control.seen(); })) {
+  if (!client.wait(options.timeout(), [](const View& view) { return view.control.seen(); })) {
     std::fprintf(stderr, "swiftlet: status: %s\n", client.no_control().c_str());
     return kFailed;
   }
@@ -212,7 +213,8 @@ int show_status(const Options& options) {
     return view.vehicle.seen() && view.battery.seen() && view.estimate.seen() && view.mission.seen();
   });
   const View before = client.view();
-  client.wait(milliseconds(options.watch_s), [](const View&) { return false; });
+  client.wait(std::chrono::milliseconds(static_cast<std::int64_t>(options.watch_s * 1e3)),
+              [](const View&) { return false; });
   const View after = client.view();
   const Rates rates = rates_between(before, after, options.watch_s);
   if (options.json) {

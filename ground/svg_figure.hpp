@@ -38,8 +38,9 @@ struct Figure {
   std::vector<FigureSeries> series;
 };
 
-// A whole <svg> element. Axes span what is drawn, crosses (outliers) included; ticks are round numbers, scaled by a power of ten where
-// they would be long, which the label then names. The legend stands in the corner where it hides least.
+// A whole <svg> element. Axes span what is drawn, crosses (outliers) included; ticks are round numbers,
+// scaled by a power of ten where they would be long, which the label then names. The legend stands in the
+// corner where it hides least.
 std::string svg(const Figure& figure);
 
 // For text between tags and in attributes.

@@ -7,7 +7,7 @@
 namespace swiftlet::ground {
 namespace {
 
-struct Options : RequestOptions {
+struct Options : AskOptions {
   double height_m = 1.0;
   double speed = 0.5;
 };
@@ -16,8 +16,8 @@ struct Options : RequestOptions {
 
 Command add_takeoff_command(CLI::App& root) {
   const auto options = std::make_shared<Options>();
-  CLI::App* const app = add_request_subcommand(root, "takeoff", "Climb straight up and hold; arm first",
-                                               "swiftlet takeoff 1.2 --speed 0.5", options);
+  CLI::App* const app = add_ask_subcommand(root, "takeoff", "Climb straight up and hold; arm first",
+                                           "swiftlet takeoff 1.2 --speed 0.5", options);
   app->add_option("height", options->height_m, "height above the origin, m")
       ->check(positive_number())
       ->capture_default_str();
@@ -25,12 +25,8 @@ Command add_takeoff_command(CLI::App& root) {
       ->check(positive_number())
       ->capture_default_str();
   return {app, [options] {
-            return run_request(*options, "takeoff", [&](Client& client) {
-              msg::Command command;
-              command.kind(msg::Command_Constants::TAKEOFF);
-              command.position_ned({0.0, 0.0, -options->height_m});
-              command.speed(options->speed);
-              return client.command(command, milliseconds(options->timeout_s));
+            return run_request(*options, "takeoff", [&](Vehicle& vehicle) {
+              return vehicle.take_off(options->height_m, options->speed, options->timeout());
             });
           }};
 }

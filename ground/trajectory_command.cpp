@@ -12,7 +12,7 @@
 namespace swiftlet::ground {
 namespace {
 
-struct Options : RequestOptions {
+struct Options : AskOptions {
   std::string file;
   std::string control = "motor_lag";
 };
@@ -24,7 +24,7 @@ control::Trajectory trajectory_of(const MissionFile& file, const std::string& pa
   };
   const auto& items = file.mission.items;
   if (std::count_if(items.begin(), items.end(), is_trajectory) != 1) {
-    throw InputError(path + ": holds no trajectory; `swiftlet mission` flies missions");
+    throw InputError(path + ": holds no trajectory; `swiftlet mission fly` flies missions");
   }
   return {0, file.mission.segments};
 }
@@ -36,20 +36,19 @@ int send_trajectory(const Options& options) {
   const control::Trajectory trajectory = trajectory_of(file, path);
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
-  return run_request(options, "trajectory", [&](Client& client) {
-    return client.upload(trajectory, milliseconds(options.timeout_s));
-  });
+  return run_request(options, "trajectory",
+                     [&](Vehicle& vehicle) { return vehicle.follow(trajectory, options.timeout()); });
 }
 
 }  // namespace
 
 Command add_trajectory_command(CLI::App& root) {
   const auto options = std::make_shared<Options>();
-  CLI::App* const app = add_request_subcommand(
+  CLI::App* const app = add_ask_subcommand(
       root, "trajectory",
       "Send a trajectory to a vehicle that holds, follows setpoints or flies another: it joins this one from "
       "its present motion",
-      "swiftlet trajectory figure8.csv", options);
+      "swiftlet trajectory figure8.csv", options, Vehicles::kOne);
   app->add_option("file", options->file, "trajectory or waypoints as CSV")->required();
   app->add_option("--control", options->control,
                   "control settings whose limits and fence the file is checked against")

@@ -198,7 +198,8 @@ class Bench {
     adopt(out_.inertia[axis], data.bifilar ? "bifilar pendulum" : "swung about an axis");
   }
 
-  // Eq. (21): F is not negative only for R_a up to K2 K3 / k_Q. A resistance that was taken, not measured, gives way.
+  // Eq. (21): F is not negative only for R_a up to K2 K3 / k_Q. A resistance that was taken, not measured,
+  // gives way.
   void keep_friction_positive() {
     plant::Motor& motor = out_.vehicle.motor;
     const double most = motor.k2 * motor.k3 / out_.vehicle.rotor.torque;
@@ -211,8 +212,9 @@ class Bench {
     out_.sources["motor.armature_resistance"] = "estimate: K2 K3 / k_Q, Eq. (21) without friction";
   }
 
-  // A flat vehicle's largest moment is nearly the sum of the others, which no body exceeds; noise alone may then put it beyond.
-  // The nearest that is possible is taken, by the estimates' variances; moments that were not measured give way first.
+  // A flat vehicle's largest moment is nearly the sum of the others, which no body exceeds; noise alone may
+  // then put it beyond. The nearest that is possible is taken, by the estimates' variances; moments that were
+  // not measured give way first.
   void keep_inertia_possible() {
     if (!out_.inertia[0] && !out_.inertia[1] && !out_.inertia[2]) return;
     Eigen::Vector3d moments = out_.vehicle.inertia.diagonal();

@@ -1,4 +1,5 @@
-// From a whole test bench to a vehicle: every experiment that there are data for, in the order in which they build on each other.
+// From a whole test bench to a vehicle: every experiment that there are data for, in the order in which they
+// build on each other.
 #pragma once
 
 #include <array>
@@ -84,8 +85,8 @@ class BenchError : public std::runtime_error {
 // experiment: the one that begins; done of all are finished. Called again while a long fit goes on.
 using BenchProgress = std::function<void(const std::string& experiment, std::size_t done, std::size_t all)>;
 
-// What is not measured stays as base has it. The vehicle may still break rules of plant::validate(): that is for the caller to
-// tell. Throws BenchError, also where there is no experiment at all.
+// What is not measured stays as base has it. The vehicle may still break rules of plant::validate(): that is
+// for the caller to tell. Throws BenchError, also where there is no experiment at all.
 BenchIdentification identify_bench(const BenchData& data, const plant::Vehicle& base,
                                    const BenchProgress& progress = {});
 

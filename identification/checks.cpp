@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "identification/estimate.hpp"
+#include "identification/limits.hpp"
 
 namespace swiftlet::identification {
 
@@ -73,6 +74,11 @@ void demand_median_between(const Column& column, double min, double max, const s
   const double middle = median(column.values);
   if (!(middle >= min && middle <= max))
     throw BadData(out_of(column, "is in the middle ", middle, min, max, because));
+}
+
+void demand_drive(const Column& supply, const Column& throttle) {
+  demand_each_between(throttle, 0.0, 1.0, "it is the share delta of Eq. (8)");
+  demand_median_between(supply, kLeastSupplyVoltage, kMostSupplyVoltage, "no vehicle flies on less or more");
 }
 
 double median(std::vector<double> values) {

@@ -1,5 +1,5 @@
-// Distance of a measured point from a curve y = f(x; p) where both readings are noisy: orthogonal distance regression. Plain
-// least squares, which takes x for exact, would flatten every curve by the noise of x.
+// Distance of a measured point from a curve y = f(x; p) where both readings are noisy: orthogonal distance
+// regression. Plain least squares, which takes x for exact, would flatten every curve by the noise of x.
 #pragma once
 
 #include <cmath>
@@ -15,9 +15,9 @@ struct CurveValue {
   double slope = 0.0;  // df/dx
 };
 
-// Minimises ((y_read - f(x)) / y_spread)^2 + ((x_read - x) / x_spread)^2 over the true x. curve(x) gives a CurveValue. Returns the
-// root of the minimum with the sign of y_read - f, and in x where it lies. Its derivative by a parameter p of the
-// curve is -df/dp(x) / spread, spread as returned.
+// Minimises ((y_read - f(x)) / y_spread)^2 + ((x_read - x) / x_spread)^2 over the true x. curve(x) gives a
+// CurveValue. Returns the root of the minimum with the sign of y_read - f, and in x where it lies. Its
+// derivative by a parameter p of the curve is -df/dp(x) / spread, spread as returned.
 struct CurveDistance {
   double distance = 0.0;
   double x = 0.0;

@@ -33,8 +33,9 @@ Fit fit_curve(const Readings& readings, const Eigen::VectorXd& start, const Curv
 std::vector<double> predicted(const Readings& readings, const Eigen::VectorXd& parameters,
                               const Curve& curve);
 
-// Of a fit whose last parameter is a term that the model leaves out: whether the data ask for it, beyond what chance gives
-// in one of 10,000 experiments, and beyond what rounding gives: a millionth of full_scale, the term's size were it alone.
+// Of a fit whose last parameter is a term that the model leaves out: whether the data ask for it, beyond what
+// chance gives in one of 10,000 experiments, and beyond what rounding gives: a millionth of full_scale, the
+// term's size were it alone.
 bool asks_for_last(const Fit& fit, double full_scale);
 
 }  // namespace swiftlet::identification

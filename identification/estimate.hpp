@@ -44,8 +44,8 @@ struct Experiment {
   const Estimate& estimate(const std::string& parameter) const;
 };
 
-// Data from which nothing can be identified. what() is a sentence with value and limit, "speed: is 1500 rad/s in all 40
-// rows, must vary".
+// Data from which nothing can be identified. what() is a sentence with value and limit, "speed: is 1500 rad/s
+// in all 40 rows, must vary".
 class BadData : public std::runtime_error {
  public:
   explicit BadData(const std::string& message, std::optional<std::size_t> row = std::nullopt)
@@ -63,8 +63,8 @@ struct ParameterName {
   const char* unit;
 };
 
-// The experiment that a fit makes: estimates, outliers, R^2 and the warnings that hold for any fit. measured and predicted are
-// those of Experiment.
+// The experiment that a fit makes: estimates, outliers, R^2 and the warnings that hold for any fit. measured
+// and predicted are those of Experiment.
 Experiment conclude(const Fit& fit, const std::vector<ParameterName>& names, std::vector<double> measured,
                     std::vector<double> predicted, const std::string& residual_unit);
 

@@ -7,8 +7,8 @@
 
 namespace swiftlet::identification {
 
-// Hung by two parallel strings of a length, separation apart, both at the same distance from the centre of mass, and turned about the
-// vertical body axis: J = m g separation^2 period^2 / (16 pi^2 length).
+// Hung by two parallel strings of a length, separation apart, both at the same distance from the centre of
+// mass, and turned about the vertical body axis: J = m g separation^2 period^2 / (16 pi^2 length).
 struct BifilarData {
   std::vector<double> length_m;
   std::vector<double> separation_m;
@@ -30,7 +30,8 @@ struct InertiaTarget {
   double size_m = 0.0;      // the hubs' distance from the centre, by which results are judged
 };
 
-// Small angles. measured and predicted are periods; lengths and mass count as exact but for mass_error. Throws BadData.
+// Small angles. measured and predicted are periods; lengths and mass count as exact but for mass_error.
+// Throws BadData.
 Experiment identify_inertia(const BifilarData& data, const InertiaTarget& target);
 Experiment identify_inertia(const SwingData& data, const InertiaTarget& target);
 

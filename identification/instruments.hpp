@@ -6,8 +6,8 @@
 
 namespace swiftlet::identification {
 
-// Standard deviations of single readings, where known. For two readings of one row only their ratio matters. Where one of them
-// is not known, each is taken to be off by the same share of its full scale.
+// Standard deviations of single readings, where known. For two readings of one row only their ratio matters.
+// Where one of them is not known, each is taken to be off by the same share of its full scale.
 struct Instruments {
   std::optional<double> supply_voltage_v;
   std::optional<double> motor_voltage_v;

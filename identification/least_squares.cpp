@@ -273,8 +273,8 @@ double serial_correlation(const VectorXd& residuals, const std::vector<bool>& in
   return square > 0.0 ? product / square : 0.0;
 }
 
-// By how much the variance of a mean of correlated deviates exceeds that of independent ones. Correlation that
-// chance alone explains does not count.
+// By how much the variance of a mean of correlated deviates exceeds that of independent ones. Correlation
+// that chance alone explains does not count.
 double variance_inflation(double correlation, Index count) {
   if (correlation < 3.0 / std::sqrt(static_cast<double>(count))) return 1.0;
   const double bounded = std::min(correlation, 0.999);

@@ -1,5 +1,5 @@
-// Robust nonlinear least squares: the fit behind every experiment. Outliers are found, left out and listed, not
-// weighted down in silence; the rest is plain least squares, so that its intervals mean what they say.
+// Robust nonlinear least squares: the fit behind every experiment. Outliers are found, left out and listed,
+// not weighted down in silence; the rest is plain least squares, so that its intervals mean what they say.
 #pragma once
 
 #include <cstddef>
@@ -10,9 +10,9 @@
 
 namespace swiftlet::identification {
 
-// Residual of each observation, in units of the spread that its instruments are taken to have (a common factor does
-// not matter), and, where jacobian is not null, their derivatives: one row an observation, one column a parameter.
-// Both are sized when called. A residual that is not finite ends the fit.
+// Residual of each observation, in units of the spread that its instruments are taken to have (a common
+// factor does not matter), and, where jacobian is not null, their derivatives: one row an observation, one
+// column a parameter. Both are sized when called. A residual that is not finite ends the fit.
 using ResidualFunction = std::function<void(const Eigen::VectorXd& parameters, Eigen::VectorXd& residuals,
                                             Eigen::MatrixXd* jacobian)>;
 
@@ -23,7 +23,8 @@ struct FitProblem {
   // Observations may be wrong in what they were taken at, not only in what was read (a rotor speed counted
   // twice): the fit then starts from the best of many small subsets, where single rows cannot pull it along.
   bool bad_leverage = true;
-  // Observations follow each other in time: if their residuals do too, intervals are widened by the correlation.
+  // Observations follow each other in time: if their residuals do too, intervals are widened by the
+  // correlation.
   bool time_series = false;
   std::function<void()> on_iteration;  // may be empty; for fits that take long
 };
@@ -47,8 +48,8 @@ struct Fit {
   bool is_outlier(std::size_t observation) const;
 };
 
-// At least one more observation than parameters. An observation is an outlier if, judged by the fit to the others, it is
-// further off than the furthest of so many normal deviates would be in 99 of 100 experiments.
+// At least one more observation than parameters. An observation is an outlier if, judged by the fit to the
+// others, it is further off than the furthest of so many normal deviates would be in 99 of 100 experiments.
 Fit fit(const FitProblem& problem);
 
 // Half the length of a 95 % interval over the standard error, by Student's distribution.

@@ -3,6 +3,8 @@
 
 namespace swiftlet::identification {
 
+constexpr double kLeastSupplyVoltage = 0.5;     // V
+constexpr double kMostSupplyVoltage = 1000.0;   // V
 constexpr double kLeastMotorVoltage = 0.05;     // V
 constexpr double kMostMotorVoltage = 1000.0;    // V
 constexpr double kLeastRotorSpeed = 20.0;       // rad/s

@@ -39,8 +39,8 @@ T reduced_answer(const T* p, double time) {
   return p[kFinal] + (p[kInitial] - p[kFinal]) * exp(-p[kRate] * elapsed);
 }
 
-// J_r dOmega/dt = k_Q (s - Omega)(Omega + s'), s' = s + K2 / K3, a Riccati equation: y = (s - Omega) / (Omega + s') decays
-// at the rate (k_Q / J_r) (s + s'), which is the parameter here.
+// J_r dOmega/dt = k_Q (s - Omega)(Omega + s'), s' = s + K2 / K3, a Riccati equation: y = (s - Omega) / (Omega
+// + s') decays at the rate (k_Q / J_r) (s + s'), which is the parameter here.
 template <typename T>
 T physical_answer(const T* p, double time, double k2_over_k3) {
   const T elapsed = time - p[kStepTime];
@@ -195,8 +195,8 @@ double log_likelihood_gain(const Experiment& better, const Experiment& worse) {
   return 2.0 * rows * std::log(worse.residual_sd / better.residual_sd);
 }
 
-// 63.2 % of the way between the levels, where a parabola through the readings around it crosses. Levels and step time are
-// those of the fit that is nearer to the data, as an eye would draw them.
+// 63.2 % of the way between the levels, where a parabola through the readings around it crosses. Levels and
+// step time are those of the fit that is nearer to the data, as an eye would draw them.
 Estimate read_off(const MotorStepData& data, const Fit& fit, const Experiment& model) {
   const double initial = fit.parameters[kInitial];
   const double final_speed = fit.parameters[kFinal];
@@ -285,7 +285,8 @@ MotorStep identify_motor_step(const MotorStepData& data, const plant::Vehicle& v
   check_time(time_from_rate(reduced_fit, 1.0, "motor.time_constant", "tau_m"));
   const Fit physical_fit = fit_answer(shifted, start, physical, on_iteration);
 
-  // J_r from the rate (k_Q / J_r) (s + s'), and the rise time from rest to hover that goes with it: plant/model/motor.cpp backwards.
+  // J_r from the rate (k_Q / J_r) (s + s'), and the rise time from rest to hover that goes with it:
+  // plant/model/motor.cpp backwards.
   const double final_speed = physical_fit.parameters[kFinal];
   const double inertia_rate = vehicle.rotor.torque * (2.0 * final_speed + k2_over_k3);  // J_r times the rate
   const double hover = plant::hover_speed(vehicle);

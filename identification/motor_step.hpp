@@ -1,5 +1,5 @@
-// Motor's answer to a step of its voltage, Eq. (15)-(18): the time constant tau_m, read off at 63.2 % as in the paper and fitted by
-// both models of plant/model/motor.hpp, and the rotor inertia J_r.
+// Motor's answer to a step of its voltage, Eq. (15)-(18): the time constant tau_m, read off at 63.2 % as in
+// the paper and fitted by both models of plant/model/motor.hpp, and the rotor inertia J_r.
 #pragma once
 
 #include <functional>
@@ -30,8 +30,8 @@ struct MotorStep {
   std::vector<std::string> findings;
 };
 
-// k2, k3 and the rotor's torque factor are taken from vehicle, as is the hover speed. torque_factor_error: standard error of k_Q,
-// relative, which J_r shares. on_iteration is called now and then. Throws BadData.
+// k2, k3 and the rotor's torque factor are taken from vehicle, as is the hover speed. torque_factor_error:
+// standard error of k_Q, relative, which J_r shares. on_iteration is called now and then. Throws BadData.
 MotorStep identify_motor_step(const MotorStepData& data, const plant::Vehicle& vehicle,
                               double torque_factor_error, const std::function<void()>& on_iteration = {});
 

@@ -13,8 +13,8 @@ struct SteadyMotorData {
   std::vector<double> speed_rad_s;      // Omega
 };
 
-// Estimates motor.k2 and motor.k3. measured and predicted are v_a. Warns where the data ask for a constant voltage besides: Coulomb
-// friction, which Eq. (15) leaves out. Throws BadData.
+// Estimates motor.k2 and motor.k3. measured and predicted are v_a. Warns where the data ask for a constant
+// voltage besides: Coulomb friction, which Eq. (15) leaves out. Throws BadData.
 Experiment identify_steady_motor(const SteadyMotorData& data, const Instruments& instruments);
 
 }  // namespace swiftlet::identification

@@ -1,4 +1,5 @@
-// Thrust over throttle, without the rotor's speed: the whole chain at once, T = k_T Omega_ss(v_a)^2 by Eq. (9), (22) and (25).
+// Thrust over throttle, without the rotor's speed: the whole chain at once, T = k_T Omega_ss(v_a)^2 by Eq.
+// (9), (22) and (25).
 #pragma once
 
 #include <vector>
@@ -22,10 +23,11 @@ struct KnownParts {
   bool thrust = false;        // rotor.thrust_factor
 };
 
-// Estimates what is not known of esc.gain, esc.offset, motor.k2, motor.k3 and rotor.thrust_factor; the rest stays as vehicle has it.
-// Where Eq. (9) or (22) is unknown, thrust without speed leaves a scale open: k_T and, if both are unknown, the gain
-// are then held at the vehicle's too, and a warning says so. Where all is known, rotor.thrust_factor is estimated all the same, to compare. Intervals
-// count what is held as exact. measured and predicted are T. Throws BadData.
+// Estimates what is not known of esc.gain, esc.offset, motor.k2, motor.k3 and rotor.thrust_factor; the rest
+// stays as vehicle has it. Where Eq. (9) or (22) is unknown, thrust without speed leaves a scale open: k_T
+// and, if both are unknown, the gain are then held at the vehicle's too, and a warning says so. Where all is
+// known, rotor.thrust_factor is estimated all the same, to compare. Intervals count what is held as exact.
+// measured and predicted are T. Throws BadData.
 Experiment identify_throttle_thrust(const ThrottleThrustData& data, const plant::Vehicle& vehicle,
                                     const KnownParts& known, const Instruments& instruments);
 

@@ -1,4 +1,5 @@
-// Rotor on a force and torque sensor, Eq. (25) and (26): T = k_T Omega^2, Q = k_Q Omega^2 (the paper's Figs. 6 and 7).
+// Rotor on a force and torque sensor, Eq. (25) and (26): T = k_T Omega^2, Q = k_Q Omega^2 (the paper's Figs.
+// 6 and 7).
 #pragma once
 
 #include <optional>

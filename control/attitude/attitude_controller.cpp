@@ -49,15 +49,28 @@ Eigen::Vector3d AttitudeController::moments(const Eigen::Quaterniond& q_ned_from
     accelerations_r = error.r_frd_from_reference * accelerations_r;
     jerks_r = error.r_frd_from_reference * jerks_r;
   }
-  const Eigen::Vector3d gyroscopic = body_rates_frd.cross(inertia_ * body_rates_frd);
-
-  // Eq. (38)-(40): commanded moment / inertia.
   Eigen::Vector3d command =
       accelerations_r + k_angle_.cwiseProduct(angle_error) + k_rate_.cwiseProduct(rates_r - body_rates_frd);
+  if (model_ == AttitudeModel::kMotorLag) command += rotor_lag_s_ * jerks_r;
+  return linearised(command, body_rates_frd, present_moment_frd, accelerations_r);
+}
+
+Eigen::Vector3d AttitudeController::moments_for_rates(const Eigen::Vector3d& body_rates_frd,
+                                                      const Eigen::Vector3d& present_moment_frd,
+                                                      const Eigen::Vector3d& wanted_rates_frd) const {
+  const Eigen::Vector3d command = k_rate_.cwiseProduct(wanted_rates_frd - body_rates_frd);
+  return linearised(command, body_rates_frd, present_moment_frd, Eigen::Vector3d::Zero());
+}
+
+Eigen::Vector3d AttitudeController::linearised(const Eigen::Vector3d& from_state,
+                                               const Eigen::Vector3d& body_rates_frd,
+                                               const Eigen::Vector3d& present_moment_frd,
+                                               const Eigen::Vector3d& wanted_acceleration) const {
+  const Eigen::Vector3d gyroscopic = body_rates_frd.cross(inertia_ * body_rates_frd);
+  Eigen::Vector3d command = from_state;
   if (model_ == AttitudeModel::kMotorLag) {
     const Eigen::Vector3d acceleration = inverse_inertia_ * (present_moment_frd - gyroscopic);  // Eq. (6)
-    command += k_acceleration_.cwiseProduct(accelerations_r - acceleration);
-    command += rotor_lag_s_ * jerks_r;
+    command += k_acceleration_.cwiseProduct(wanted_acceleration - acceleration);
   }
   return inertia_ * command + gyroscopic;  // Eq. (35)-(37)
 }

@@ -28,10 +28,10 @@ class AttitudeController {
 
   // The moments u1 .. u3 to be commanded, N m:
   //   u = J (k (reference - state) + feed forward) + omega x J omega, the last as in Eq. (35)-(37).
-  // The state is (error of attitude.error's kind, body rate), as Eq. (38)-(40) approximate (29)-(31), and with
-  // kMotorLag the present angular acceleration, from present_moment_frd, the moment that the rotors give now
-  // (unused otherwise). Fed forward is alpha_r, with kMotorLag alpha_r + tau d(alpha_r)/dt, so that it arrives
-  // in time behind the lag; with kRotation turned from the reference's axes into the body's.
+  // The state is (error of attitude.error's kind, body rate), as Eq. (38)-(40) approximate (29)-(31), and
+  // with kMotorLag the present angular acceleration, from present_moment_frd, the moment that the rotors give
+  // now (unused otherwise). Fed forward is alpha_r, with kMotorLag alpha_r + tau d(alpha_r)/dt, so that it
+  // arrives in time behind the lag; with kRotation turned from the reference's axes into the body's.
   //
   // Finite at every attitude. An input that is not finite gives moments that are not finite, which Allocator
   // takes.
@@ -39,7 +39,19 @@ class AttitudeController {
                           const Eigen::Vector3d& present_moment_frd,
                           const AttitudeReference& reference) const;
 
+  // Likewise for body rates, of which the attitude is left to itself: u = J k (wanted - rates) + omega x J
+  // omega, with the gains of the rates, and with kMotorLag of the present angular acceleration.
+  Eigen::Vector3d moments_for_rates(const Eigen::Vector3d& body_rates_frd,
+                                    const Eigen::Vector3d& present_moment_frd,
+                                    const Eigen::Vector3d& wanted_rates_frd) const;
+
  private:
+  // Eq. (38)-(40) and (35)-(37), from the commanded moment / inertia as far as attitude and reference make
+  // it.
+  Eigen::Vector3d linearised(const Eigen::Vector3d& command, const Eigen::Vector3d& body_rates_frd,
+                             const Eigen::Vector3d& present_moment_frd,
+                             const Eigen::Vector3d& wanted_acceleration) const;
+
   AttitudeModel model_;
   AttitudeErrorKind error_;
   bool feed_forward_;

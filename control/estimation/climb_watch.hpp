@@ -1,6 +1,6 @@
-// Whether motion capture sees the climb that the accelerometer feels. Poses of another body, or of markers that came off, agree
-// with a vehicle that stands; after the lift-off the position loop would push on for good, and the estimator take the
-// contradiction for a bias of the accelerometer.
+// Whether motion capture sees the climb that the accelerometer feels. Poses of another body, or of markers
+// that came off, agree with a vehicle that stands; after the lift-off the position loop would push on for
+// good, and the estimator take the contradiction for a bias of the accelerometer.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,8 +13,9 @@ class ClimbWatch {
   // On the ground: the watch starts with the next step().
   void begin(const Eigen::Vector3d& accelerometer_bias_frd, double z_ned);
 
-  // A step of dt_s > 0 in flight. specific_force_frd: measured, m/s^2, less the bias that was known on the ground; z_ned: of the
-  // estimate, m. Does nothing before begin(), nor once the climb has been seen or kLongest_s are over.
+  // A step of dt_s > 0 in flight. specific_force_frd: measured, m/s^2, less the bias that was known on the
+  // ground; z_ned: of the estimate, m. Does nothing before begin(), nor once the climb has been seen or
+  // kLongest_s are over.
   void step(double dt_s, const Eigen::Vector3d& specific_force_frd, const Eigen::Quaterniond& q_ned_from_frd,
             double z_ned);
 

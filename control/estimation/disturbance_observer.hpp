@@ -1,7 +1,7 @@
 // What pushes the vehicle besides the thrust that is known: wind, drag, a wrong mass, weak rotors. The
 // accelerometer feels all of it at once; what the rotors' thrust explains is taken away (a disturbance
-// observer: Ohnishi 1987; with the accelerometer as here: Smeur, de Croon, Chu, "Cascaded incremental nonlinear
-// dynamic inversion", 2018).
+// observer: Ohnishi 1987; with the accelerometer as here: Smeur, de Croon, Chu, "Cascaded incremental
+// nonlinear dynamic inversion", 2018).
 #pragma once
 
 #include <Eigen/Core>

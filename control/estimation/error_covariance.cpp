@@ -131,8 +131,8 @@ void ErrorCovariance::add_motion(double position_variance, double velocity_varia
   }
 }
 
-// S = H P H' + N = L D L'. The rows are D^-1/2 L^-1 (H P), with D^-1/2 L^-1 innovation as their last column, by
-// forward substitution.
+// S = H P H' + N = L D L'. The rows are D^-1/2 L^-1 (H P), with D^-1/2 L^-1 innovation as their last column,
+// by forward substitution.
 ErrorCovariance::Correction ErrorCovariance::weigh(const PoseInnovation& innovation, double position_variance,
                                                    double rotation_variance) const {
   constexpr std::size_t kRows = Correction::kRows;

@@ -3,8 +3,8 @@
 // globally-defined orientation errors).
 //
 // The error is (position, velocity, rotation vector, gyro bias, accelerometer bias), truth less estimate: the
-// first three in NED, the biases in FRD; the true attitude is rotation(error) * q_ned_from_frd. With R = R_ned_from_frd and
-// f = R * (specific force less bias) it moves by Sola's Eq. (300)-(302),
+// first three in NED, the biases in FRD; the true attitude is rotation(error) * q_ned_from_frd. With R =
+// R_ned_from_frd and f = R * (specific force less bias) it moves by Sola's Eq. (300)-(302),
 //   d position = velocity,  d velocity = -f x rotation - R accelerometer_bias - noise,
 //   d rotation = -R gyro_bias - noise.
 // With a world-frame error, R does not turn the transition of position, velocity and rotation: over an
@@ -62,8 +62,8 @@ class ErrorCovariance {
   // Adds to the variances of position, velocity and rotation: for what was not measured.
   void add_motion(double position_variance, double velocity_variance, double rotation_variance);
 
-  // What a pose says: the innovation's square, normalised by its covariance, and the gains behind it. Holds until the
-  // covariance changes.
+  // What a pose says: the innovation's square, normalised by its covariance, and the gains behind it. Holds
+  // until the covariance changes.
   class Correction {
    public:
     double normalised_square() const { return normalised_square_; }  // chi-square of 6 degrees of freedom

@@ -27,9 +27,9 @@ constexpr double kMaxDrift = 0.3;        // m/s, of a disagreement that leads to
 constexpr double kMaxDriftAtRest = 3.0;  // ... and with rotors off
 constexpr double kGyroSlip = 3.0;        // rad/s, of a gyro that misleads
 constexpr double kSmallTurn_rad = 0.01;
-constexpr double kSuddenly = 2.0;  // times the bound of an outlier
-constexpr int kGlitch = 2;         // poses that contradict, in a row; more of them mean something
-constexpr double kGlitchMemory_s = 0.05;
+constexpr double kSuddenly = 2.0;         // times the bound of an outlier
+constexpr int kGlitch = 2;                // poses that contradict, in a row; more of them mean something
+constexpr double kStepTime_s = 0.05;      // within which a step could have been a motion
 constexpr int kPosesToRestart = 5;        // that disagree, of a stream without a break: the IMU misled
 constexpr double kRestartGyroBias = 0.1;  // rad/s
 constexpr double kRestartAccelerometerBias = 0.5;  // m/s^2
@@ -185,7 +185,7 @@ void Estimator::agree(const PoseInnovation& innovation, const ErrorCovariance::C
     return;
   }
   const double step_m2 = innovation.position.squaredNorm();
-  covariance_.add_motion(step_m2, step_m2 / squared(kGlitchMemory_s), innovation.rotation.squaredNorm());
+  covariance_.add_motion(step_m2, step_m2 / squared(kStepTime_s), innovation.rotation.squaredNorm());
   const ErrorCovariance::Correction likely = weigh(innovation);
   covariance_.reduce(likely);
   apply(likely.step());
@@ -207,7 +207,8 @@ PoseFault Estimator::disagree(const plant::PoseSample& pose, const PoseInnovatio
   const bool turned = innovation.rotation.norm() > kSwap_rad;
   disagreement_.add(pose.stamp_ns, innovation, at_rest ? kMaxDriftAtRest : kMaxDrift);
   if (refused_in_a_row_++ == 0) {
-    // What the IMU misleads to grows from pose to pose; what comes at once is a jump, unless the IMU was silent.
+    // What the IMU misleads to grows from pose to pose; what comes at once is a jump, unless the IMU was
+    // silent.
     const bool sudden = innovation.position.norm() > kSuddenly * settings_.outlier_position_m ||
                         innovation.rotation.norm() > outlier_rotation();
     if (unseen_ && continuity_.in_reach()) continuity_.begin();

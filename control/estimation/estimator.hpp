@@ -2,10 +2,10 @@
 // bias.
 //
 // An error-state Kalman filter on the attitude manifold, its attitude error taken in the world frame (Sola
-// 2017, arXiv:1711.02508; error_covariance.hpp). The nominal state goes on with each IMU sample. The covariance
-// stays at the last pose's stamp; a pose is compared with the estimate at the pose's own stamp, the
-// covariance brought there, and the correction brought forward to now along the kept history, so that latency
-// costs no stability.
+// 2017, arXiv:1711.02508; error_covariance.hpp). The nominal state goes on with each IMU sample. The
+// covariance stays at the last pose's stamp; a pose is compared with the estimate at the pose's own stamp,
+// the covariance brought there, and the correction brought forward to now along the kept history, so that
+// latency costs no stability.
 #pragma once
 
 #include <array>
@@ -66,12 +66,13 @@ class Estimator {
   // Takes a pose in. Returns false for one that is refused, and why is told in the estimate, of which nothing
   // else changes. A pose of the last stamp is the last that came again and leaves no trace.
   //
-  // An innovation beyond the chi-square bound is cut to it if it is short of an outlier: a glitch moves the estimate no
-  // faster than noise would, and does not make it surer. When the next ones contradict too, there was a motion or a step that
-  // the noise densities leave out: variance of as much is added to position, velocity and attitude, so that these follow the
-  // poses and the biases hardly do. Outliers are refused until they persist and agree with each other; then the
-  // estimate jumps to them. In flight, that holds only for a jump of the position: where the gyro and
-  // the accelerometer contradict attitude or velocity, they are believed. With rotors off the poses are.
+  // An innovation beyond the chi-square bound is cut to it if it is short of an outlier: a glitch moves the
+  // estimate no faster than noise would, and does not make it surer. When the next ones contradict too, there
+  // was a motion or a step that the noise densities leave out: variance of as much is added to position,
+  // velocity and attitude, so that these follow the poses and the biases hardly do. Outliers are refused
+  // until they persist and agree with each other; then the estimate jumps to them. In flight, that holds only
+  // for a jump of the position: where the gyro and the accelerometer contradict attitude or velocity, they
+  // are believed. With rotors off the poses are.
   bool correct(const plant::PoseSample& pose, plant::RotorState rotors = plant::RotorState::kRunning);
 
   // A pose has been taken in, so the estimate has a meaning.
@@ -81,8 +82,8 @@ class Estimator {
   double pose_age_s() const;
   std::uint64_t pose_sequence() const { return pose_sequence_; }
 
-  // Of the estimate's error at its stamp; infinite before the first pose. Takes some microseconds at most: for
-  // telemetry.
+  // Of the estimate's error at its stamp; infinite before the first pose. Takes some microseconds at most:
+  // for telemetry.
   ErrorState standard_deviation() const { return covariance().standard_deviation(); }
   ErrorCovariance covariance() const;
   // Innovation of the last pose that was compared, squared and normalised: chi-square of 6 degrees of

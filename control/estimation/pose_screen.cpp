@@ -42,7 +42,8 @@ void Continuity::look_at(const plant::PoseSample& pose) {
     const double dt = interval_s_ = static_cast<double>(pose.stamp_ns - last.stamp_ns) * 1e-9;
     const double moved = (pose.position_ned - last.position_ned).norm();
     const double turned = rotation_vector(pose.q_ned_from_frd * last.q_ned_from_frd.conjugate()).norm();
-    in_reach_ = moved <= kFastest * dt + kSmallStep_m && turned <= kFastestTurn * dt + kSmallStep_rad;
+    if (moved > kFastest * dt + kSmallStep_m || turned > kFastestTurn * dt + kSmallStep_rad)
+      in_reach_ = false;
     if (dt > kLongestGap_s || !in_reach_) unbroken_ = false;
   }
   last_[next_++ % last_.size()] = pose;

@@ -1,4 +1,5 @@
-// What can be wrong with a stream of poses that one pose alone does not show: frozen markers, and a jump that stays.
+// What can be wrong with a stream of poses that one pose alone does not show: frozen markers, and a jump that
+// stays.
 #pragma once
 
 #include <array>
@@ -13,10 +14,10 @@
 
 namespace swiftlet::control {
 
-// Recognises a stream that says the same again and again. A vehicle that moves while its pose does not gives it away, once the
-// innovation contradicts. In hover nothing contradicts, but noise does not repeat: a stream that never did
-// while the vehicle stood with its rotors off is frozen when it does. A stream without noise repeats from the
-// start and is not judged by that.
+// Recognises a stream that says the same again and again. A vehicle that moves while its pose does not gives
+// it away, once the innovation contradicts. In hover nothing contradicts, but noise does not repeat: a stream
+// that never did while the vehicle stood with its rotors off is frozen when it does. A stream without noise
+// repeats from the start and is not judged by that.
 class RepetitionWatch {
  public:
   void look_at(const plant::PoseSample& pose, plant::RotorState rotors);
@@ -35,16 +36,19 @@ class RepetitionWatch {
   bool noisy_ = false;
 };
 
-// Whether a stream goes on without a break, as the pose of a body does that moves: not after a jump, nor after a
-// gap in which a jump would not be seen.
+// Whether a stream goes on without a break, as the pose of a body does that moves: not after a jump, nor
+// after a gap in which a jump would not be seen.
 class Continuity {
  public:
   void look_at(const plant::PoseSample& pose);
   // The newest pose agrees with the estimate: from here on.
-  void begin() { unbroken_ = true; }
+  void begin() {
+    unbroken_ = true;
+    in_reach_ = true;
+  }
   void end() { unbroken_ = false; }
 
-  // A body could have come from the pose before to the newest.
+  // A body could have gone the way from pose to pose since begin(), also where some are missing.
   bool in_reach() const { return in_reach_; }
   // Since begin().
   bool unbroken() const { return unbroken_; }

@@ -34,9 +34,9 @@ struct ReferenceMotion {
 };
 
 // Thrust, body rates and body accelerations of a vehicle that is on the reference, its attitude being
-// attitude_along() what thrust_attitude() gives for the reference's acceleration, at its yaw; from acceleration, jerk, snap and yaw. Where
-// the reference falls so fast that b_z is below kMinimumLift g, b_z is taken as that and all derivatives are
-// zero. heading: that of the reference's yaw.
+// attitude_along() what thrust_attitude() gives for the reference's acceleration, at its yaw; from
+// acceleration, jerk, snap and yaw. Where the reference falls so fast that b_z is below kMinimumLift g, b_z
+// is taken as that and all derivatives are zero. heading: that of the reference's yaw.
 ReferenceMotion reference_motion(double mass_kg, const Reference& reference, const Heading& heading);
 
 }  // namespace swiftlet::control

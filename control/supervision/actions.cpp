@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "control/supervision/phases.hpp"
+#include "control/supervision/setpoints.hpp"
 
 namespace swiftlet::control::act {
 namespace {
@@ -11,35 +12,65 @@ constexpr double kApproachSpeed = 0.5;  // m/s, from rest to where a trajectory 
 
 void take_off(Scene& scene) { start_takeoff(scene, scene.request->position_ned.z(), scene.request->speed); }
 
-void start_mission(Scene& scene) {
+void keep_mission(Scene& scene) {
   const Mission& mission = *scene.request->mission;
   scene.plan.mission = &mission;
-  scene.state.mission = {mission.id, MissionState::kRunning, 0, static_cast<int>(mission.items.size())};
-  start_item(scene, scene.state.now_ns);
+  scene.plan.mission_limits = tightened(scene.settings.limits, mission.bounds);
+  scene.state.mission = {mission.id, MissionState::kUploaded, 0, static_cast<int>(mission.items.size())};
+}
+
+// The scene of a request has the limits of before it: of the mission, from here on.
+void fly_mission(Scene& scene, void (*begin)(Scene&)) {
+  Scene flown{scene.settings, scene.plan.mission_limits, scene.situation, scene.state, scene.plan,
+              scene.request};
+  flown.state.mission.state = MissionState::kRunning;
+  begin(flown);
+}
+
+void start_mission(Scene& scene) {
+  scene.state.mission.item_index = 0;
+  fly_mission(scene, [](Scene& flown) { start_item(flown, flown.state.now_ns); });
+}
+
+void skip_item(Scene& scene) {
+  ++scene.state.mission.item_index;
+  fly_mission(scene, [](Scene& flown) { start_item(flown, flown.state.now_ns); });
+}
+
+void clear_mission(Scene& scene) {
+  const bool moves = scene.paused() && scene.state.detour == Detour::kNone;
+  if (moves) start_stop(scene);  // along its way it could not go on
+  scene.plan.mission = nullptr;
+  scene.state.mission = {};
+  scene.state.detour = Detour::kNone;
+}
+
+// A mission that is paused can be gone on with from elsewhere.
+void leave_way_if_paused(Scene& scene) {
+  if (scene.paused()) leave_way(scene);
 }
 
 void start_trajectory(Scene& scene) {
   const Trajectory& trajectory = *scene.request->trajectory;
   scene.plan.trajectory = &trajectory;
   scene.state.trajectory_id = trajectory.id;
-  start_join(scene, trajectory.segments.front(), std::min(kApproachSpeed, scene.settings.limits.max_speed),
+  start_join(scene, trajectory.segments.front(), false, std::min(kApproachSpeed, scene.limits.max_speed),
              scene.state.now_ns);
 }
 
 void follow_setpoint(Scene& scene) {
-  const Setpoint& setpoint = *scene.setpoint;
-  Reference reference;
-  reference.position_ned = setpoint.position_ned;
-  reference.velocity_ned = setpoint.velocity_ned;
-  reference.acceleration_ned = setpoint.acceleration_ned;
-  reference.yaw_rad = setpoint.yaw_rad;
-  reference.yaw_rate = setpoint.yaw_rate;
-  scene.state.phase = Phase::kPath;
-  scene.state.path.pin(reference);
+  const SetpointKind kind = scene.setpoint->kind;
+  if (goes_past_position(kind)) {
+    take_direct(scene);
+  } else {
+    start_blend(scene);
+  }
+  scene.state.setpoint_kind = kind;
   scene.state.setpoint_ns = scene.state.now_ns;
 }
 
 void move(Scene& scene) {
+  leave_way_if_paused(scene);
   const Request& request = *scene.request;
   start_move(scene, request.position_ned, request.yaw_free, request.yaw_rad, request.speed,
              scene.state.now_ns);
@@ -61,11 +92,19 @@ const Action kNothing{"", [](Scene&) {}};
 const Action kNoteGround{"note where the ground is",
                          [](Scene& scene) { scene.state.ground_z_ned = scene.estimate().position_ned.z(); }};
 const Action kTakeOff{"spool up, climb", take_off};
+const Action kKeepMission{"keep it", keep_mission};
 const Action kStartMission{"start its first item", start_mission};
+const Action kPause{"come to rest on its way", [](Scene& scene) { turn_clock(scene, false); }};
+const Action kResume{"back to where it was left, and on", return_to_way};
+const Action kSkip{"start its next item", skip_item};
+const Action kClearMission{"forget it; come to rest where it was flown", clear_mission};
 const Action kStartTrajectory{"join it where it begins", start_trajectory};
 const Action kFollowSetpoint{"follow it", follow_setpoint};
 const Action kMove{"go there", move};
-const Action kStop{"come to rest", start_stop};
+const Action kStop{"come to rest", [](Scene& scene) {
+                     leave_way_if_paused(scene);
+                     start_stop(scene);
+                   }};
 const Action kLandAsAsked{"land at the speed asked for, `descent_speed` at most", [](Scene& scene) {
                             land_at(scene,
                                     std::min(scene.request->speed, scene.settings.failsafe.descent_speed));

@@ -15,7 +15,12 @@ namespace act {
 extern const Action kNothing;
 extern const Action kNoteGround;  // where it stands, is the ground
 extern const Action kTakeOff;
+extern const Action kKeepMission;
 extern const Action kStartMission;
+extern const Action kPause;
+extern const Action kResume;
+extern const Action kSkip;
+extern const Action kClearMission;
 extern const Action kStartTrajectory;
 extern const Action kFollowSetpoint;
 extern const Action kMove;

@@ -6,7 +6,8 @@
 
 namespace swiftlet::control {
 
-// Accepted, or refused with all that stands against it, each with value and limit, as far as a reason is long.
+// Accepted, or refused with all that stands against it, each with value and limit, as far as a reason is
+// long.
 Outcome check_arming(const Scene& scene);
 
 }  // namespace swiftlet::control

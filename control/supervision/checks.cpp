@@ -64,6 +64,23 @@ Outcome check_segments(const char* of, const PolynomialSegment* segments, std::s
   return accept();
 }
 
+// What only a mission that says so demands of the segments that come ready made.
+Outcome check_own_bounds(const char* item, std::size_t number, const PolynomialSegment& segment,
+                         const MissionBounds& bounds, bool yaw_free) {
+  char what[64];
+  std::snprintf(what, sizeof what, "%s: segment %zu", item, number);
+  if (bounds.max_jerk > 0.0) {
+    const Outcome outcome = check_length(what, segment, 3, bounds.max_jerk, "m/s^3");
+    if (!outcome.accepted) return outcome;
+  }
+  if (bounds.max_yaw_rate <= 0.0 || yaw_free) return accept();
+  const Bernstein rate = bernstein(segment.yaw, segment.duration_s, 1);
+  const double precision = kPrecision * bounds.max_yaw_rate;
+  const double reached = std::max(maximum(rate, precision).value, -minimum(rate, precision).value);
+  if (reached <= bounds.max_yaw_rate + precision) return accept();
+  return refuse("%s reaches %.2f rad/s of yaw, the limit is %.2f rad/s", what, reached, bounds.max_yaw_rate);
+}
+
 Outcome check_item_trajectory(const char* what, const Mission& mission, const MissionItem& item,
                               const Limits& limits) {
   const std::size_t there = mission.segments.size();
@@ -74,7 +91,11 @@ Outcome check_item_trajectory(const char* what, const Mission& mission, const Mi
   }
   char of[40];
   std::snprintf(of, sizeof of, "%s: ", what);
-  return check_segments(of, mission.segments.data() + item.first_segment, item.segment_count, limits);
+  const PolynomialSegment* const first = mission.segments.data() + item.first_segment;
+  Outcome outcome = check_segments(of, first, item.segment_count, limits);
+  for (std::size_t i = 0; outcome.accepted && i < item.segment_count; ++i)
+    outcome = check_own_bounds(what, i + 1, first[i], mission.bounds, item.yaw_free);
+  return outcome;
 }
 
 }  // namespace
@@ -111,7 +132,38 @@ Outcome check_speed(const char* what, double speed, const Limits& limits) {
   return refuse("%s: speed is %.3f m/s, must be above 0 and at most %.3f m/s", what, speed, limits.max_speed);
 }
 
-Outcome check(const Mission& mission, const Limits& limits) {
+Outcome check(const MissionBounds& bounds, const Limits& limits) {
+  struct Bound {
+    const char* name;
+    double value;
+    double limit;
+    const char* unit;
+  };
+  for (const Bound& bound : {Bound{"speed", bounds.max_speed, limits.max_speed, "m/s"},
+                             Bound{"acceleration", bounds.max_acceleration, limits.max_acceleration, "m/s^2"},
+                             Bound{"jerk", bounds.max_jerk, limits.max_reference_jerk, "m/s^3"},
+                             Bound{"yaw rate", bounds.max_yaw_rate, limits.max_yaw_rate, "rad/s"}}) {
+    if (bound.value >= 0.0 && bound.value <= bound.limit) continue;
+    return refuse("the mission's limit of %s is %.3f %s, must be above 0 and at most %.3f %s", bound.name,
+                  bound.value, bound.unit, bound.limit, bound.unit);
+  }
+  if (!bounds.fenced) return accept();
+  Outcome outcome = check_position("the mission's fence, its least corner", bounds.fence_min_ned, limits);
+  if (outcome.accepted)
+    outcome = check_position("the mission's fence, its greatest corner", bounds.fence_max_ned, limits);
+  if (!outcome.accepted) return outcome;
+  for (int i = 0; i < 3; ++i) {
+    if (bounds.fence_max_ned[i] > bounds.fence_min_ned[i]) continue;
+    return refuse("the mission's fence: %c ends at %.3f m, must end above %.3f m, where it begins", "xyz"[i],
+                  bounds.fence_max_ned[i], bounds.fence_min_ned[i]);
+  }
+  return accept();
+}
+
+Outcome check(const Mission& mission, const Limits& settings) {
+  const Outcome bounded = check(mission.bounds, settings);
+  if (!bounded.accepted) return bounded;
+  const Limits limits = tightened(settings, mission.bounds);
   const std::size_t count = mission.items.size();
   if (count == 0) return refuse("the mission has no items");
   if (count > kMaxMissionItems)
@@ -132,7 +184,9 @@ Outcome check(const Mission& mission, const Limits& limits) {
     if (!outcome.accepted) return outcome;
     if (!std::isfinite(item.hold_s) || item.hold_s < 0.0)
       return refuse("%s: hold is %.3f s, must be 0 or more", what, item.hold_s);
-    if (item.kind == MissionItemKind::kLand) continue;
+    if (!(item.acceptance_radius_m >= 0.0))
+      return refuse("%s: acceptance radius is %.3f m, must be 0 or more", what, item.acceptance_radius_m);
+    if (item.kind == MissionItemKind::kLand || item.kind == MissionItemKind::kWait) continue;
     if (item.kind == MissionItemKind::kTrajectory) {
       outcome = check_item_trajectory(what, mission, item, limits);
       if (!outcome.accepted) return outcome;

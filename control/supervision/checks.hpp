@@ -17,17 +17,21 @@ Outcome accept();
 Outcome check_position(const char* what, const Eigen::Vector3d& position_ned, const Limits& limits);
 Outcome check_speed(const char* what, double speed, const Limits& limits);
 
-// 1 to kMaxMissionItems items; a takeoff only first, a landing only last. Each of its trajectories as below.
-Outcome check(const Mission& mission, const Limits& limits);
+// No looser than the limits, and a fence that is one.
+Outcome check(const MissionBounds& bounds, const Limits& limits);
+// 1 to kMaxMissionItems items; a takeoff only first, a landing only last. Each of its trajectories as
+// below. By its own bounds, which check() finds no looser than the settings' limits.
+Outcome check(const Mission& mission, const Limits& settings);
 
-// 1 to kMaxTrajectorySegments segments as check_segment() has them, that join without steps in position and velocity and
-// start at rest.
+// 1 to kMaxTrajectorySegments segments as check_segment() has them, that join without steps in position and
+// velocity and start at rest.
 Outcome check(const Trajectory& trajectory, const Limits& limits);
 
 // A positive duration, an hour at most, finite coefficients, and check_motion().
 Outcome check_segment(const char* what, const PolynomialSegment& segment, const Limits& limits);
 
-// Inside the fence and under the limits of speed and acceleration everywhere, as bounds of the polynomials show.
+// Inside the fence and under the limits of speed and acceleration everywhere, as bounds of the polynomials
+// show.
 Outcome check_motion(const char* what, const PolynomialSegment& segment, const Limits& limits);
 
 // That `next` begins where `before` ends, to kJoin_m and kJoin_m_s.

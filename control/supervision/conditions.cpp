@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "control/supervision/phases.hpp"
+#include "control/supervision/setpoints.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -37,11 +38,7 @@ bool ground_felt(Scene& scene) {
 }
 
 bool outside_fence(const Scene& scene) {
-  const Limits& limits = scene.settings.limits;
-  const Eigen::Vector3d& at = scene.estimate().position_ned;
-  const double beyond =
-      std::max((at - limits.fence_max_ned).maxCoeff(), (limits.fence_min_ned - at).maxCoeff());
-  return beyond > scene.settings.failsafe.fence_margin_m;
+  return beyond_fence(scene.limits, scene.estimate().position_ned) > scene.settings.failsafe.fence_margin_m;
 }
 
 void observe_battery(Scene& scene, EventSet& events) {
@@ -63,6 +60,11 @@ bool is_silent(const GroundLink& link, std::int64_t now_ns, double timeout_s) {
 }
 
 }  // namespace
+
+double beyond_fence(const Limits& limits, const Eigen::Vector3d& position_ned) {
+  return std::max((position_ned - limits.fence_max_ned).maxCoeff(),
+                  (limits.fence_min_ned - position_ned).maxCoeff());
+}
 
 double cosine_of_tilt(const Eigen::Quaterniond& q) { return 1.0 - 2.0 * (q.x() * q.x() + q.y() * q.y()); }
 
@@ -107,6 +109,8 @@ EventSet observe(Scene& scene, double tip_over_cosine) {
   observe_battery(scene, events);
   events.add(Event::kOutsideFence, !lost && outside_fence(scene));
   events.add(Event::kGroundLinkLost, ground_link_lost(state, failsafe));
+  events.add(Event::kSetpointsLeadOut,
+             state.mode == Mode::kSetpoint && goes_past_position(state.setpoint_kind) && leads_out(scene));
   events.add(Event::kSetpointsStopped,
              state.mode == Mode::kSetpoint &&
                  elapsed_s(state.setpoint_ns, state.now_ns) > failsafe.setpoint_timeout_s);

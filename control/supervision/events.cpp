@@ -34,6 +34,8 @@ const char* to_string(Event event) {
       return "battery silent";
     case Event::kGroundLinkLost:
       return "ground link lost";
+    case Event::kSetpointsLeadOut:
+      return "setpoints lead out";
     case Event::kSetpointsStopped:
       return "setpoints stopped";
     case Event::kPlanFinished:
@@ -44,8 +46,18 @@ const char* to_string(Event event) {
       return "disarm";
     case Event::kTakeoff:
       return "takeoff";
-    case Event::kMission:
-      return "mission";
+    case Event::kMissionUpload:
+      return "mission upload";
+    case Event::kMissionStart:
+      return "mission start";
+    case Event::kMissionPause:
+      return "mission pause";
+    case Event::kMissionResume:
+      return "mission resume";
+    case Event::kMissionSkip:
+      return "mission skip";
+    case Event::kMissionClear:
+      return "mission clear";
     case Event::kTrajectory:
       return "trajectory";
     case Event::kSetpoint:
@@ -89,8 +101,23 @@ bool event_of(RequestKind kind, Event& event) {
     case RequestKind::kStop:
       event = Event::kStop;
       return true;
-    case RequestKind::kMission:
-      event = Event::kMission;
+    case RequestKind::kMissionStart:
+      event = Event::kMissionStart;
+      return true;
+    case RequestKind::kMissionPause:
+      event = Event::kMissionPause;
+      return true;
+    case RequestKind::kMissionResume:
+      event = Event::kMissionResume;
+      return true;
+    case RequestKind::kMissionSkip:
+      event = Event::kMissionSkip;
+      return true;
+    case RequestKind::kMissionClear:
+      event = Event::kMissionClear;
+      return true;
+    case RequestKind::kMissionUpload:
+      event = Event::kMissionUpload;
       return true;
     case RequestKind::kTrajectory:
       event = Event::kTrajectory;

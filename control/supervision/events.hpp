@@ -25,13 +25,19 @@ enum class Event : std::uint8_t {
   kBatteryLow,
   kBatterySilent,
   kGroundLinkLost,
+  kSetpointsLeadOut,
   kSetpointsStopped,
   kPlanFinished,
   // Requests.
   kArm,
   kDisarm,
   kTakeoff,
-  kMission,
+  kMissionUpload,
+  kMissionStart,
+  kMissionPause,
+  kMissionResume,
+  kMissionSkip,
+  kMissionClear,
   kTrajectory,
   kSetpoint,
   kGoTo,
@@ -52,14 +58,14 @@ bool event_of(RequestKind kind, Event& event);
 
 class EventSet {
  public:
-  void add(Event event, bool happens) { bits_ |= static_cast<std::uint32_t>(happens) << index(event); }
+  void add(Event event, bool happens) { bits_ |= static_cast<std::uint64_t>(happens) << index(event); }
   bool has(Event event) const { return (bits_ >> index(event) & 1U) != 0; }
   bool has_any_of(EventSet others) const { return (bits_ & others.bits_) != 0; }
 
  private:
   static unsigned index(Event event) { return static_cast<unsigned>(event); }
-  std::uint32_t bits_ = 0;
+  std::uint64_t bits_ = 0;
 };
-static_assert(kEventCount <= 32);
+static_assert(kEventCount <= 64);
 
 }  // namespace swiftlet::control

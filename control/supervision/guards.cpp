@@ -1,17 +1,21 @@
 #include "control/supervision/guards.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "control/supervision/arming.hpp"
 #include "control/supervision/checks.hpp"
 #include "control/supervision/conditions.hpp"
 #include "control/supervision/phases.hpp"
+#include "control/supervision/setpoints.hpp"
 
 namespace swiftlet::control {
 namespace {
 
 constexpr double kLeastClimb_m = 2.0 * kAirborneHeight_m;
 constexpr double kMaxSetpointStep_m = 1.0;
+constexpr double kUnitTolerance = 1e-3;
+constexpr double kRounding = 1e-9;
 
 GroundLinkAction link_action(const Scene& scene) { return scene.settings.failsafe.ground_link_action; }
 
@@ -25,7 +29,7 @@ Outcome battery_lasts(const Scene& scene) {
 
 Outcome check_takeoff(const Scene& scene) {
   const Request& request = *scene.request;
-  const Limits& limits = scene.settings.limits;
+  const Limits& limits = scene.limits;
   Outcome outcome = battery_lasts(scene);
   if (!outcome.accepted) return outcome;
   outcome = check_speed("takeoff", request.speed, limits);
@@ -39,18 +43,45 @@ Outcome check_takeoff(const Scene& scene) {
                 scene.state.ground_z_ned);
 }
 
-Outcome check_mission(const Scene& scene) {
-  if (scene.request->mission == nullptr || scene.request->mission->items.empty())
-    return refuse("the mission has no items");
+Outcome check_upload(const Scene& scene) {
+  const Mission* const mission = scene.request->mission;
+  if (mission == nullptr || mission->items.empty()) return refuse("the mission has no items");
   return accept();
 }
 
-Outcome check_mission_from_ground(const Scene& scene) {
-  const Outcome sound = check_mission(scene);
+// The one that is there is the one that is meant.
+Outcome check_mission_named(const Scene& scene) {
+  const MissionProgress& there = scene.state.mission;
+  const std::uint64_t asked = scene.request->mission_id;
+  if (scene.plan.mission == nullptr) return refuse("no mission is here: upload it first");
+  if (asked == 0 || asked == there.id) return accept();
+  return refuse("mission %llu is not the one that is here: that is %llu",
+                static_cast<unsigned long long>(asked), static_cast<unsigned long long>(there.id));
+}
+
+// Inside the mission's own fence, as far as the failsafe wants it; there it lands, too.
+Outcome check_mission_fence(const Scene& scene) {
+  const Limits& limits = scene.plan.mission_limits;
+  const double margin_m = scene.settings.failsafe.fence_margin_m;
+  Eigen::Vector3d at = scene.estimate().position_ned;
+  if (beyond_fence(limits, at) > margin_m) return check_position("the vehicle", at, limits);
+  if (scene.plan.mission->items.back().kind != MissionItemKind::kLand) return accept();
+  at.z() = scene.state.ground_z_ned;
+  if (beyond_fence(limits, at) > margin_m) return check_position("the ground, on which it lands", at, limits);
+  return accept();
+}
+
+Outcome check_start(const Scene& scene) {
+  const Outcome named = check_mission_named(scene);
+  return named.accepted ? check_mission_fence(scene) : named;
+}
+
+Outcome check_start_from_ground(const Scene& scene) {
+  const Outcome sound = check_start(scene);
   if (!sound.accepted) return sound;
   const Outcome battery = battery_lasts(scene);
   if (!battery.accepted) return battery;
-  const MissionItem& first = scene.request->mission->items.front();
+  const MissionItem& first = scene.plan.mission->items.front();
   if (first.kind != MissionItemKind::kTakeoff)
     return refuse("the vehicle stands on the ground: the mission must begin with a takeoff");
   if (first.position_ned.z() <= scene.state.ground_z_ned - kLeastClimb_m) return accept();
@@ -58,18 +89,28 @@ Outcome check_mission_from_ground(const Scene& scene) {
                 first.position_ned.z(), scene.state.ground_z_ned);
 }
 
+Outcome check_skip(const Scene& scene) {
+  const Outcome named = check_mission_named(scene);
+  if (!named.accepted) return named;
+  const MissionProgress& there = scene.state.mission;
+  if (there.item_index + 1 < there.item_count) return accept();
+  return refuse("item %d is the mission's last: there is none to go on with", there.item_count);
+}
+
+// What is not there need not be cleared.
+Outcome check_clear(const Scene& scene) {
+  return scene.plan.mission == nullptr && scene.request->mission_id == 0 ? accept()
+                                                                         : check_mission_named(scene);
+}
+
 Outcome check_trajectory(const Scene& scene) {
   const Trajectory* trajectory = scene.request->trajectory;
   if (trajectory == nullptr || trajectory->segments.empty()) return refuse("the trajectory has no segments");
   const Reference start = evaluate(trajectory->segments.front(), 0.0);
-  return check_position("trajectory", start.position_ned, scene.settings.limits);
+  return check_position("trajectory", start.position_ned, scene.limits);
 }
 
-Outcome check_setpoint(const Scene& scene) {
-  const Setpoint& setpoint = *scene.setpoint;
-  const Limits& limits = scene.settings.limits;
-  const Outcome position = check_position("setpoint", setpoint.position_ned, limits);
-  if (!position.accepted) return position;
+Outcome check_feed_forward(const Setpoint& setpoint, const Limits& limits) {
   if (!setpoint.velocity_ned.allFinite() || !setpoint.acceleration_ned.allFinite() ||
       !std::isfinite(setpoint.yaw_rad) || !std::isfinite(setpoint.yaw_rate)) {
     return refuse("setpoint: a value is not a finite number");
@@ -82,24 +123,99 @@ Outcome check_setpoint(const Scene& scene) {
     return refuse("setpoint: acceleration is %.2f m/s^2, the limit is %.2f m/s^2", acceleration,
                   limits.max_acceleration);
   }
-  // The stream may cease with this one.
-  Reference last;
-  last.position_ned =
-      setpoint.position_ned + scene.settings.failsafe.setpoint_timeout_s * setpoint.velocity_ned;
-  last.velocity_ned = setpoint.velocity_ned;
-  const Outcome at_rest =
-      check_position("setpoint: where it could come to rest", rest_place(limits, last), limits);
-  if (!at_rest.accepted) return at_rest;
+  if (std::abs(setpoint.yaw_rate) <= limits.max_yaw_rate) return accept();
+  return refuse("setpoint: yaw rate is %.2f rad/s, the limit is %.2f rad/s", setpoint.yaw_rate,
+                limits.max_yaw_rate);
+}
+
+Outcome check_position_setpoint(const Scene& scene) {
+  const Setpoint& setpoint = *scene.setpoint;
+  const Outcome position = check_position("setpoint", setpoint.position_ned, scene.limits);
+  if (!position.accepted) return position;
   const double step = (setpoint.position_ned - scene.estimate().position_ned).norm();
   if (step <= kMaxSetpointStep_m) return accept();
   return refuse("setpoint: %.2f m away from the vehicle, the limit is %.2f m", step, kMaxSetpointStep_m);
 }
 
+// The stream may cease with this one: then the reference goes on for the time-out, and comes to rest.
+Outcome check_end_of_stream(const Scene& scene) {
+  const Setpoint& setpoint = *scene.setpoint;
+  const Limits& limits = scene.limits;
+  const double timeout_s = scene.settings.failsafe.setpoint_timeout_s;
+  Reference last;
+  if (setpoint.kind == SetpointKind::kPosition) {
+    last.velocity_ned = setpoint.velocity_ned;
+    last.position_ned = setpoint.position_ned + timeout_s * setpoint.velocity_ned;
+  } else {
+    const Reference from = scene.state.path.at(scene.state.now_ns);
+    last = after_blend(blend(limits, from, setpoint, stream_period_s(scene)), timeout_s);
+  }
+  const double speed = last.velocity_ned.norm();
+  if (speed > limits.max_speed + kRounding) {
+    return refuse("setpoint: leads to %.2f m/s within %.2f s, the limit is %.2f m/s", speed, timeout_s,
+                  limits.max_speed);
+  }
+  return check_position("setpoint: where it could come to rest", rest_place(limits, last), limits);
+}
+
+Outcome check_thrust(const Setpoint& setpoint, const Limits& limits) {
+  const double most = plant::kGravity + limits.max_acceleration;
+  if (setpoint.thrust >= 0.0 && setpoint.thrust <= most) return accept();
+  return refuse("setpoint: thrust is %.2f m/s^2, must be at least 0 and at most %.2f m/s^2", setpoint.thrust,
+                most);
+}
+
+Outcome check_rates(const Setpoint& setpoint, const Limits& limits) {
+  const double rate = setpoint.body_rates_frd.norm();
+  if (rate <= limits.max_body_rate) return accept();
+  return refuse("setpoint: body rate is %.2f rad/s, the limit is %.2f rad/s", rate, limits.max_body_rate);
+}
+
+Outcome check_attitude(const Setpoint& setpoint, const Limits& limits) {
+  if (!(std::abs(setpoint.q_ned_from_frd.norm() - 1.0) <= kUnitTolerance))
+    return refuse("setpoint: the attitude is no unit quaternion");
+  const double tilt = std::acos(std::clamp(cosine_of_tilt(setpoint.q_ned_from_frd), -1.0, 1.0));
+  if (tilt <= limits.max_tilt_rad) return accept();
+  return refuse("setpoint: tilt is %.2f rad, the limit is %.2f rad", tilt, limits.max_tilt_rad);
+}
+
+// One that knows no place: the fence is kept by the vehicle's own motion.
+Outcome check_direct_setpoint(const Scene& scene) {
+  const Setpoint& setpoint = *scene.setpoint;
+  const Limits& limits = scene.limits;
+  if (scene.state.mode == Mode::kHolding && scene.state.reason == Reason::kSetpointsLedOut)
+    return refuse(
+        "setpoint: the stream led out of the fence; ask for hold or goto before the next of its kind");
+  const Outcome rates = check_rates(setpoint, limits);
+  if (!rates.accepted) return rates;
+  const Outcome thrust = check_thrust(setpoint, limits);
+  if (!thrust.accepted) return thrust;
+  if (setpoint.kind == SetpointKind::kAttitude) {
+    const Outcome attitude = check_attitude(setpoint, limits);
+    if (!attitude.accepted) return attitude;
+  }
+  return leads_out(scene) ? refuse("setpoint: the vehicle cannot come to rest inside the fence") : accept();
+}
+
+Outcome check_setpoint(const Scene& scene) {
+  const Setpoint& setpoint = *scene.setpoint;
+  if (setpoint.kind > SetpointKind::kBodyRates)
+    return refuse("setpoint: unknown kind %d", static_cast<int>(setpoint.kind));
+  if (goes_past_position(setpoint.kind)) return check_direct_setpoint(scene);
+  const Outcome numbers = check_feed_forward(setpoint, scene.limits);
+  if (!numbers.accepted) return numbers;
+  if (setpoint.kind == SetpointKind::kPosition) {
+    const Outcome position = check_position_setpoint(scene);
+    if (!position.accepted) return position;
+  }
+  return check_end_of_stream(scene);
+}
+
 Outcome check_goto(const Scene& scene) {
   const Request& request = *scene.request;
-  const Outcome position = check_position("goto", request.position_ned, scene.settings.limits);
+  const Outcome position = check_position("goto", request.position_ned, scene.limits);
   if (!position.accepted) return position;
-  const Outcome speed = check_speed("goto", request.speed, scene.settings.limits);
+  const Outcome speed = check_speed("goto", request.speed, scene.limits);
   if (!speed.accepted) return speed;
   if (!request.yaw_free && !std::isfinite(request.yaw_rad)) return refuse("goto: yaw is not a finite number");
   return accept();
@@ -115,6 +231,16 @@ const Selector kSpoolingUp{"on the ground",
 const Selector kLiftedOff{"lifted off",
                           [](const Scene& scene) { return scene.state.phase != Phase::kSpoolUp; }};
 const Selector kOnLandingItem{"at its landing", on_landing_item};
+const Selector kPausable{"lifted off, not at its landing", [](const Scene& scene) {
+                           return kLiftedOff.holds(scene) && !on_landing_item(scene);
+                         }};
+const Selector kPaused{"a mission is paused", [](const Scene& scene) { return scene.paused(); }};
+const Selector kNotPaused{"no mission is paused", [](const Scene& scene) { return !scene.paused(); }};
+const Selector kNoneUnderWay{"no mission is flown or paused",
+                             [](const Scene& scene) { return !is_under_way(scene.state.mission.state); }};
+const Selector kNoneFlown{"no mission is flown", [](const Scene& scene) {
+                            return scene.state.mission.state != MissionState::kRunning;
+                          }};
 const Selector kWasLanding{"was landing", [](const Scene& scene) { return scene.state.land_on_return; }};
 const Selector kNotHurrying{"not for that already", [](const Scene& scene) {
                               return scene.state.mode != Mode::kLanding ||
@@ -138,16 +264,20 @@ namespace check_of {
 const Check kNone{"", [](const Scene&) { return accept(); }};
 const Check kArming{"all arming checks pass", check_arming};
 const Check kTakeoff{"battery, speed, and a height above the ground and inside the fence", check_takeoff};
-const Check kMissionFromGround{"battery, and it begins with a takeoff to above the ground",
-                               check_mission_from_ground};
-const Check kMission{"it has items", check_mission};
+const Check kUpload{"it has items", check_upload};
+const Check kStartFromGround{
+    "it is here, battery, inside its fence, and it begins with a takeoff to above the ground",
+    check_start_from_ground};
+const Check kStart{"it is here, inside its fence", check_start};
+const Check kNamed{"it is the one", check_mission_named};
+const Check kSkip{"it is the one, and has another item", check_skip};
+const Check kClear{"it is the one, or there is none", check_clear};
 const Check kTrajectory{"it begins inside the fence", check_trajectory};
 const Check kSetpoint{"inside the fence, from where it can stop inside, within the limits, near the vehicle",
                       check_setpoint};
 const Check kGoTo{"inside the fence, within the limits", check_goto};
-const Check kLand{"speed", [](const Scene& scene) {
-                    return check_speed("land", scene.request->speed, scene.settings.limits);
-                  }};
+const Check kLand{"speed",
+                  [](const Scene& scene) { return check_speed("land", scene.request->speed, scene.limits); }};
 
 const Check kPose{"a pose", [](const Scene& scene) {
                     if (!pose_lost(scene.situation, scene.settings.failsafe)) return accept();

@@ -22,6 +22,11 @@ extern const Selector kAlways;
 extern const Selector kSpoolingUp;  // on the ground still, in take-off
 extern const Selector kLiftedOff;   // not so
 extern const Selector kOnLandingItem;
+extern const Selector kPausable;  // lifted off, and not at the mission's landing
+extern const Selector kPaused;    // a mission is
+extern const Selector kNotPaused;
+extern const Selector kNoneUnderWay;  // no mission is flown or paused
+extern const Selector kNoneFlown;
 extern const Selector kWasLanding;  // when the pose was lost
 extern const Selector kNotHurrying;
 extern const Selector kLinkHolds;    // failsafe.ground_link_action is hold
@@ -36,8 +41,12 @@ namespace check_of {
 extern const Check kNone;
 extern const Check kArming;
 extern const Check kTakeoff;
-extern const Check kMissionFromGround;
-extern const Check kMission;
+extern const Check kUpload;
+extern const Check kStartFromGround;
+extern const Check kStart;
+extern const Check kNamed;
+extern const Check kSkip;
+extern const Check kClear;
 extern const Check kTrajectory;
 extern const Check kSetpoint;
 extern const Check kGoTo;

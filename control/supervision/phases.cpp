@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "control/supervision/checks.hpp"
+#include "control/supervision/setpoints.hpp"
 #include "control/trajectory/waypoint_path.hpp"
 
 namespace swiftlet::control {
@@ -28,10 +29,6 @@ double yaw_of(const Eigen::Quaterniond& q) {
 
 // The yaw that is `to` plus whole turns, nearest to `from`.
 double nearest_turn(double to, double from) { return from + std::remainder(to - from, 2.0 * M_PI); }
-
-double stopping_time(const Limits& limits, const Reference& from) {
-  return std::max(kMinMove_s, 2.0 * from.velocity_ned.norm() / limits.max_reference_acceleration);
-}
 
 Eigen::Vector3d stopping_place(const Limits& limits, const Reference& from) {
   return rest_place(limits, from).cwiseMax(limits.fence_min_ned).cwiseMin(limits.fence_max_ned);
@@ -85,25 +82,79 @@ void sink(Scene& scene) {
   state.path.follow(down, state.now_ns);
 }
 
+double clock_change_s(const Limits& limits, double speed) {
+  return clock_change_duration(speed, limits.max_reference_acceleration, limits.max_reference_jerk,
+                               kMinMove_s);
+}
+
 const MissionItem& item_of(const Scene& scene) {
   return scene.plan.mission->items[static_cast<std::size_t>(scene.state.mission.item_index)];
 }
 
-// One segment after another, each from where the last one ended in time.
-void advance_segments(SupervisorState& state, const PolynomialSegment* segments, std::size_t count) {
-  while (state.next_segment < count && state.path.finished(state.now_ns))
-    state.path.follow(segments[state.next_segment++], state.path.end_ns);
+// One segment after another, each from where the last one ended in time. keep_yaw: theirs is not flown.
+void advance_segments(SupervisorState& state, const PolynomialSegment* segments, std::size_t count,
+                      bool keep_yaw) {
+  while (state.next_segment < count && state.path.finished(state.now_ns)) {
+    PolynomialSegment segment = segments[state.next_segment++];
+    if (keep_yaw) segment.yaw = {state.path.at(state.now_ns).yaw_rad};
+    state.path.follow_on(segment);
+  }
 }
 
-void advance_mission(Scene& scene) {
+// The reference rests at the item's end. So must the vehicle, if the item asks for that.
+bool arrived(const Scene& scene) {
+  const SupervisorState& state = scene.state;
+  const MissionItem& item = item_of(scene);
+  if (!state.path.finished(state.now_ns)) return false;
+  if (item.acceptance_radius_m <= 0.0) return true;
+  const Eigen::Vector3d end = state.path.at(state.now_ns).position_ned;
+  return (scene.estimate().position_ned - end).norm() <= item.acceptance_radius_m;
+}
+
+// The segments of a trajectory, one after another; any other item's path is all there is. Once it has arrived,
+// when the item ends.
+void advance_way(Scene& scene) {
   SupervisorState& state = scene.state;
   const MissionItem& item = item_of(scene);
-  if (item.kind == MissionItemKind::kLand) return sink(scene);
   if (item.kind == MissionItemKind::kTrajectory) {
-    advance_segments(state, scene.plan.mission->segments.data() + item.first_segment, item.segment_count);
-    if (!state.path.finished(state.now_ns)) return;
+    advance_segments(state, scene.plan.mission->segments.data() + item.first_segment, item.segment_count,
+                     item.yaw_free);
   }
-  state.item_end_ns = state.path.end_ns + nanoseconds(item.hold_s);
+  if (state.item_end_ns != 0 || !arrived(scene)) return;
+  const bool awaited = item.acceptance_radius_m > 0.0;
+  state.item_end_ns =
+      (awaited ? state.path.path_ns(state.now_ns) : state.path.end_ns) + nanoseconds(item.hold_s);
+}
+
+// Back where the mission was left: its way goes on from there, from rest.
+void take_way_up_again(Scene& scene) {
+  SupervisorState& state = scene.state;
+  state.path.follow(state.left.segment, state.now_ns);
+  state.path.start_ns = state.left.start_ns;
+  state.path.end_ns = state.left.end_ns;
+  state.path.clock = PathClock::standing_at(state.left.at_ns, state.now_ns);
+  state.detour = Detour::kNone;
+  turn_clock(scene, true);
+}
+
+// Nothing but the way itself goes on while the clock of the path changes its pace.
+void advance_mission(Scene& scene) {
+  SupervisorState& state = scene.state;
+  const bool its_way = state.detour == Detour::kNone;
+  if (state.path.clock.is_changing(state.now_ns)) {
+    if (its_way) advance_way(scene);
+    return;
+  }
+  if (!state.path.clock.is_vehicle_time()) {
+    const std::int64_t behind_ns = state.path.take_vehicle_time(state.now_ns);
+    if (its_way && state.item_end_ns != 0)
+      state.item_end_ns = std::max(state.item_end_ns + behind_ns, state.now_ns);
+  }
+  if (!state.path.finished(state.now_ns)) return;
+  if (state.detour == Detour::kReturning) return take_way_up_again(scene);
+  if (item_of(scene).kind == MissionItemKind::kLand) return sink(scene);
+  advance_way(scene);
+  if (state.item_end_ns == 0 || !state.path.finished(state.now_ns)) return;
   if (state.now_ns < state.item_end_ns || state.mission.item_index + 1 >= state.mission.item_count) return;
   ++state.mission.item_index;
   start_item(scene, state.item_end_ns);
@@ -111,7 +162,26 @@ void advance_mission(Scene& scene) {
 
 void advance_trajectory(Scene& scene) {
   const auto& segments = scene.plan.trajectory->segments;
-  advance_segments(scene.state, segments.data(), segments.size());
+  advance_segments(scene.state, segments.data(), segments.size(), false);
+}
+
+// The greatest speed on the way that is passed before a change of the clock is over, as bounds of its
+// segments show.
+double speed_on_way(const Scene& scene) {
+  const MotionLimits unit{1.0, 1.0, 1.0, 1.0};
+  const SupervisorState& state = scene.state;
+  if (!state.path.moving) return 0.0;
+  double speed = limit_use(state.path.segment, unit).speed;
+  const MissionItem& item = item_of(scene);
+  if (item.kind != MissionItemKind::kTrajectory || state.detour != Detour::kNone) return speed;
+  double ahead_s = elapsed_s(state.path.path_ns(state.now_ns), state.path.end_ns);
+  for (std::uint32_t next = state.next_segment;
+       next < item.segment_count && ahead_s < clock_change_s(scene.limits, speed); ++next) {
+    const PolynomialSegment& segment = scene.plan.mission->segments[item.first_segment + next];
+    speed = std::max(speed, limit_use(segment, unit).speed);
+    ahead_s += segment.duration_s;
+  }
+  return speed;
 }
 
 }  // namespace
@@ -137,6 +207,15 @@ Reference standing_at(const Estimate& estimate) {
   return reference;
 }
 
+double stopping_time(const Limits& limits, const Reference& from) {
+  const double speed = from.velocity_ned.norm();
+  const double acceleration = 9.0 * from.acceleration_ned.norm();
+  const double jerk = limits.max_reference_jerk;
+  // A quintic that rests after T, half of speed T on, begins with a jerk of 6 speed / T^2 + 9 acceleration / T.
+  const double of_jerk = (acceleration + std::sqrt(acceleration * acceleration + 24.0 * speed * jerk)) / (2.0 * jerk);
+  return std::max({kMinMove_s, 2.0 * speed / limits.max_reference_acceleration, of_jerk});
+}
+
 Eigen::Vector3d rest_place(const Limits& limits, const Reference& from) {
   return from.position_ned + 0.5 * stopping_time(limits, from) * from.velocity_ned;
 }
@@ -152,7 +231,7 @@ void start_takeoff(Scene& scene, double to_z_ned, double speed) {
 
 void start_move(Scene& scene, const Eigen::Vector3d& to_ned, bool yaw_free, double yaw_rad, double speed,
                 std::int64_t start_ns) {
-  const Limits& limits = scene.settings.limits;
+  const Limits& limits = scene.limits;
   const Reference from = scene.state.path.at(start_ns);
   const double to_yaw = yaw_free ? from.yaw_rad : nearest_turn(yaw_rad, from.yaw_rad);
   const double distance = (to_ned - from.position_ned).norm();
@@ -164,16 +243,18 @@ void start_move(Scene& scene, const Eigen::Vector3d& to_ned, bool yaw_free, doub
   scene.state.path.follow(join_inside(limits, from, to_ned, to_yaw, duration), start_ns);
 }
 
-void start_join(Scene& scene, const PolynomialSegment& first, double speed, std::int64_t start_ns) {
-  const Limits& limits = scene.settings.limits;
+void start_join(Scene& scene, const PolynomialSegment& first, bool keep_yaw, double speed,
+                std::int64_t start_ns) {
+  const Limits& limits = scene.limits;
   SupervisorState& state = scene.state;
   const Reference from = state.path.at(start_ns);
   Reference to = evaluate(first, 0.0);
-  to.yaw_rad = nearest_turn(to.yaw_rad, from.yaw_rad);
+  to.yaw_rad = keep_yaw ? from.yaw_rad : nearest_turn(to.yaw_rad, from.yaw_rad);
+  if (keep_yaw) to.yaw_rate = to.yaw_acceleration = 0.0;
   state.phase = Phase::kPath;
   state.next_segment = 0;
-  // From rest the way is straight, in the time that it takes. From motion it swings out the further the longer it takes,
-  // and accelerates the more the shorter: the first that is gentle, or else the gentlest.
+  // From rest the way is straight, in the time that it takes. From motion it swings out the further the
+  // longer it takes, and accelerates the more the shorter: the first that is gentle, or else the gentlest.
   const bool moves = !from.velocity_ned.isZero(0.0) || !from.acceleration_ned.isZero(0.0);
   const double gentle = (1.0 + 1e-5) * std::max({limits.max_reference_acceleration,
                                                  from.acceleration_ned.norm(), to.acceleration_ned.norm()});
@@ -200,7 +281,7 @@ void start_join(Scene& scene, const PolynomialSegment& first, double speed, std:
 
 void start_stop(Scene& scene) {
   SupervisorState& state = scene.state;
-  const Limits& limits = scene.settings.limits;
+  const Limits& limits = scene.limits;
   const Reference from = state.path.at(state.now_ns);
   state.phase = Phase::kPath;
   state.path.follow(
@@ -209,13 +290,39 @@ void start_stop(Scene& scene) {
 }
 
 void start_landing(Scene& scene, double speed, std::int64_t start_ns) {
-  Eigen::Vector3d above_ground = stopping_place(scene.settings.limits, scene.state.path.at(start_ns));
+  Eigen::Vector3d above_ground = stopping_place(scene.limits, scene.state.path.at(start_ns));
   above_ground.z() = scene.state.ground_z_ned - kFlareHeight_m;
   start_move(scene, above_ground, true, 0.0, speed, start_ns);
 }
 
+void turn_clock(Scene& scene, bool to_running) {
+  SupervisorState& state = scene.state;
+  state.path.clock.turn(to_running, clock_change_s(scene.limits, speed_on_way(scene)), state.now_ns);
+}
+
+void leave_way(Scene& scene) {
+  SupervisorState& state = scene.state;
+  if (state.detour == Detour::kNone) {
+    const ReferencePath& way = state.path;
+    const std::int64_t at_ns = way.path_ns(state.now_ns);
+    state.left = {way.segment, way.moving ? way.start_ns : at_ns, way.moving ? way.end_ns : at_ns, at_ns};
+  }
+  state.detour = Detour::kAway;
+}
+
+void return_to_way(Scene& scene) {
+  SupervisorState& state = scene.state;
+  if (state.detour != Detour::kAway) return turn_clock(scene, true);
+  const LeftPath& left = state.left;
+  const Reference place = evaluate(left.segment, elapsed_s(left.start_ns, left.at_ns));
+  start_move(scene, place.position_ned, false, place.yaw_rad, item_of(scene).speed, state.now_ns);
+  state.detour = Detour::kReturning;
+}
+
 void start_item(Scene& scene, std::int64_t start_ns) {
   const MissionItem& item = item_of(scene);
+  scene.state.item_end_ns = 0;
+  scene.state.detour = Detour::kNone;
   switch (item.kind) {
     case MissionItemKind::kTakeoff: {
       if (!scene.flying()) return start_takeoff(scene, item.position_ned.z(), item.speed);
@@ -228,7 +335,13 @@ void start_item(Scene& scene, std::int64_t start_ns) {
     case MissionItemKind::kLand:
       return start_landing(scene, std::min(item.speed, scene.settings.failsafe.descent_speed), start_ns);
     case MissionItemKind::kTrajectory:
-      return start_join(scene, scene.plan.mission->segments[item.first_segment], item.speed, start_ns);
+      return start_join(scene, scene.plan.mission->segments[item.first_segment], item.yaw_free, item.speed,
+                        start_ns);
+    case MissionItemKind::kWait:
+      scene.state.phase = Phase::kPath;
+      scene.state.path.rest(scene.state.path.at(start_ns));
+      scene.state.path.start_ns = scene.state.path.end_ns = start_ns;
+      return;
   }
 }
 
@@ -236,11 +349,15 @@ void advance(Scene& scene) {
   SupervisorState& state = scene.state;
   if (!scene.flying() || state.mode == Mode::kDescent) return;
   if (scene.estimate().position_ned.z() < state.ground_z_ned - kAirborneHeight_m) state.airborne = true;
+  if (state.mode == Mode::kSetpoint && goes_past_position(state.setpoint_kind)) return follow_estimate(scene);
   if (state.phase == Phase::kSpoolUp && elapsed_s(state.phase_since_ns, state.now_ns) >= kSpoolUp_s)
     climb(scene);
-  if (state.phase != Phase::kPath || !state.path.finished(state.now_ns)) return;
-  if (state.mode == Mode::kMission) advance_mission(scene);
+  if (state.phase != Phase::kPath) return;
+  if (state.mode == Mode::kMission) return advance_mission(scene);
+  if (scene.paused() && state.detour == Detour::kNone) return advance_way(scene);
+  if (!state.path.finished(state.now_ns)) return;
   if (state.mode == Mode::kTrajectory) advance_trajectory(scene);
+  if (state.mode == Mode::kSetpoint) start_coast(scene);
   if (state.mode == Mode::kLanding) sink(scene);
 }
 
@@ -251,7 +368,8 @@ bool plan_finished(const Scene& scene) {
     case Mode::kTakingOff:
       return true;
     case Mode::kMission:
-      return state.mission.item_index + 1 == state.mission.item_count && state.now_ns >= state.item_end_ns;
+      return state.mission.item_index + 1 == state.mission.item_count && state.item_end_ns != 0 &&
+             state.now_ns >= state.item_end_ns && !state.path.clock.is_changing(state.now_ns);
     case Mode::kTrajectory:
       return state.next_segment == scene.plan.trajectory->segments.size();
     default:

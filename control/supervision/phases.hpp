@@ -15,6 +15,8 @@ Reference kept_inside(const Limits& limits, const Reference& reference);
 // Where the estimate is, at rest, with its yaw.
 Reference standing_at(const Estimate& estimate);
 
+// In which a reference that moves so comes to rest, s.
+double stopping_time(const Limits& limits, const Reference& from);
 // Where a reference that moves so can come to rest, as start_stop() would have it without a fence.
 Eigen::Vector3d rest_place(const Limits& limits, const Reference& from);
 
@@ -23,16 +25,25 @@ void start_takeoff(Scene& scene, double to_z_ned, double speed);
 // From the reference as it is at start_ns, straight to a place; a vehicle in motion gets there by a quintic.
 void start_move(Scene& scene, const Eigen::Vector3d& to_ned, bool yaw_free, double yaw_rad, double speed,
                 std::int64_t start_ns);
-// From the reference as it is at start_ns into the start of a trajectory: position, velocity, acceleration and jerk go over
-// without a step. Where no such way stays inside the fence and the limits, as start_move(). Its segments follow from the
-// first on.
-void start_join(Scene& scene, const PolynomialSegment& first, double speed, std::int64_t start_ns);
+// From the reference as it is at start_ns into the start of a trajectory: position, velocity, acceleration
+// and jerk go over without a step; of the yaw not, with keep_yaw. Where no such way stays inside the fence
+// and the limits, as start_move(). Its segments follow from the first on.
+void start_join(Scene& scene, const PolynomialSegment& first, bool keep_yaw, double speed,
+                std::int64_t start_ns);
 // Comes to rest along the present velocity, inside the fence.
 void start_stop(Scene& scene);
 // Comes to rest inside the fence on the way down, then sinks until the ground is felt.
 void start_landing(Scene& scene, double speed, std::int64_t start_ns);
 // The item that the mission's progress names.
 void start_item(Scene& scene, std::int64_t start_ns);
+
+// Of a mission that is being flown: its time comes to a stand, or runs on again, as smoothly as the limits
+// want it. The vehicle stays on its way.
+void turn_clock(Scene& scene, bool to_running);
+// Before a paused mission's vehicle is sent elsewhere: remembers where it was.
+void leave_way(Scene& scene);
+// To where the paused mission was left, and on from there.
+void return_to_way(Scene& scene);
 
 // To the phase, item or segment whose time has come.
 void advance(Scene& scene);
@@ -42,7 +53,8 @@ bool plan_finished(const Scene& scene);
 bool on_landing_item(const Scene& scene);
 
 // Of the level descent without position. Where dead reckoning says that the vehicle must be standing, twice
-// failsafe.descent_speed: one that stands on thrust that carries its weight feels no ground, less thrust shows it.
+// failsafe.descent_speed: one that stands on thrust that carries its weight feels no ground, less thrust
+// shows it.
 double blind_descent_speed(const FailsafeSettings& failsafe, const SupervisorState& state,
                            const Estimate& estimate);
 

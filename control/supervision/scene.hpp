@@ -18,14 +18,16 @@ struct SupervisionSettings {
   FailsafeSettings failsafe;
 };
 
-// What is being flown, owned by who asked for it; null in other modes.
+// Owned by who asked for it.
 struct FlownPlan {
-  const Mission* mission = nullptr;
-  const Trajectory* trajectory = nullptr;
+  const Mission* mission = nullptr;        // the one that was uploaded, flown or not
+  Limits mission_limits;                   // the settings', as that mission tightens them
+  const Trajectory* trajectory = nullptr;  // the one being flown; null in other modes
 };
 
 struct Scene {
   const SupervisionSettings& settings;
+  const Limits& limits;  // the settings', or while a mission is under way those of the mission
   const Situation& situation;
   SupervisorState& state;
   FlownPlan& plan;
@@ -34,6 +36,7 @@ struct Scene {
 
   const Estimate& estimate() const { return *situation.estimate; }
   bool flying() const { return state.phase != Phase::kGround; }
+  bool paused() const { return state.mission.state == MissionState::kPaused; }
 };
 
 inline double elapsed_s(std::int64_t from_ns, std::int64_t to_ns) {

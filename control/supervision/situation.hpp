@@ -33,6 +33,8 @@ enum class Actuation : std::uint8_t {
   kSpoolUp,       // thrust rises to lift_fraction of the weight, level
   kFly,           // position and attitude control
   kLevelDescent,  // attitude level, vertical speed by dead reckoning
+  kAttitude,      // q_ned_from_frd, with body_rates_frd fed forward, and thrust
+  kBodyRates,     // body_rates_frd and thrust
 };
 
 struct Directive {
@@ -41,6 +43,9 @@ struct Directive {
   double descent_speed = 0.0;  // m/s; kLevelDescent only
   bool integrate = false;      // the position integrals may learn
   Reference reference;
+  Eigen::Quaterniond q_ned_from_frd = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d body_rates_frd = Eigen::Vector3d::Zero();  // rad/s
+  double thrust = 0.0;                                       // m/s^2, of the vehicle's mass
 };
 
 }  // namespace swiftlet::control

@@ -11,6 +11,12 @@ namespace swiftlet::control {
 Supervisor::Supervisor(const SupervisionSettings& settings)
     : settings_(settings), tip_over_cosine_(tip_over_cosine(settings.failsafe)) {}
 
+// A mission that is on its way has bounds of its own.
+const Limits& Supervisor::limits() const {
+  return plan_.mission != nullptr && is_under_way(state_.mission.state) ? plan_.mission_limits
+                                                                        : settings_.limits;
+}
+
 Directive Supervisor::step(const Situation& situation) {
   state_.now_ns = situation.stamp_ns;
   Scene now = scene(situation);
@@ -35,11 +41,21 @@ void Supervisor::take(const Transition& row, Scene& scene) {
   row.action.run(scene);
 }
 
+// What becomes of the mission when that mode is entered.
+MissionState Supervisor::mission_state_in(Mode mode, Reason reason) const {
+  const MissionState before = state_.mission.state;
+  if (!is_under_way(before)) return before;
+  if (mode == Mode::kMission) return MissionState::kRunning;
+  if (reason == Reason::kMissionPaused) return MissionState::kPaused;
+  if (before == MissionState::kPaused && mode == Mode::kHolding && reason != Reason::kPlanUnknown)
+    return before;
+  const bool completed =
+      before == MissionState::kRunning && (reason == Reason::kMissionCompleted || reason == Reason::kLanded);
+  return completed ? MissionState::kCompleted : MissionState::kAborted;
+}
+
 void Supervisor::enter(Mode mode, Reason reason) {
-  if (state_.mission.state == MissionState::kRunning && mode != Mode::kMission) {
-    const bool completed = reason == Reason::kMissionCompleted || reason == Reason::kLanded;
-    state_.mission.state = completed ? MissionState::kCompleted : MissionState::kAborted;
-  }
+  state_.mission.state = mission_state_in(mode, reason);
   state_.mode = mode;
   state_.reason = reason;
   state_.mode_since_ns = state_.now_ns;
@@ -50,15 +66,14 @@ void Supervisor::enter(Mode mode, Reason reason) {
     state_.low_battery_since_ns = 0;
     state_.critical_battery_since_ns = 0;
   }
-  if (mode != Mode::kMission) plan_.mission = nullptr;
   if (mode != Mode::kTrajectory) plan_.trajectory = nullptr;
 }
 
 Directive Supervisor::directive(const Situation& situation) const {
   Directive directive;
   const bool flying = state_.phase != Phase::kGround;
-  directive.reference = flying ? kept_inside(settings_.limits, state_.path.at(state_.now_ns))
-                               : standing_at(*situation.estimate);
+  directive.reference =
+      flying ? kept_inside(limits(), state_.path.at(state_.now_ns)) : standing_at(*situation.estimate);
   if (rotors_off(state_.mode)) {
     directive.actuation = Actuation::kOff;
   } else if (state_.mode == Mode::kArmed) {
@@ -69,6 +84,16 @@ Directive Supervisor::directive(const Situation& situation) const {
   } else if (state_.phase == Phase::kSpoolUp) {
     directive.actuation = Actuation::kSpoolUp;
     directive.lift_fraction = spool_up_lift(state_);
+  } else if (state_.mode == Mode::kSetpoint && goes_past_position(state_.setpoint_kind)) {
+    const DirectSetpoint& direct = state_.direct;
+    const auto& q = direct.q_ned_from_frd;
+    const auto& rates = direct.body_rates_frd;
+    directive.actuation =
+        state_.setpoint_kind == SetpointKind::kAttitude ? Actuation::kAttitude : Actuation::kBodyRates;
+    directive.q_ned_from_frd = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+    directive.body_rates_frd = Eigen::Vector3d(rates[0], rates[1], rates[2]);
+    directive.thrust = direct.thrust;
+    directive.integrate = state_.airborne;
   } else {
     directive.actuation = Actuation::kFly;
     directive.integrate = state_.airborne && state_.phase == Phase::kPath;
@@ -78,7 +103,7 @@ Directive Supervisor::directive(const Situation& situation) const {
 
 Outcome Supervisor::answer(Event request, Scene& scene) {
   const Transition* const row = find(scene, request);
-  if (row == nullptr) return refusal(request, state_.mode);
+  if (row == nullptr) return refusal(request, scene);
   const Outcome outcome = row->provided.judge(scene);
   if (outcome.accepted) take(*row, scene);
   return outcome;
@@ -117,12 +142,9 @@ int Supervisor::ground_links() const {
 void Supervisor::adopt(const SupervisorState& state, const Mission* mission, const Trajectory* trajectory) {
   state_ = state;
   plan_ = FlownPlan();
-  bool known = true;
-  if (state_.mode == Mode::kMission) {
-    const auto count = static_cast<std::size_t>(state_.mission.item_count);
-    known = mission != nullptr && mission->id == state_.mission.id && mission->items.size() == count;
-    if (known) plan_.mission = mission;
-  } else if (state_.mode == Mode::kTrajectory) {
+  adopt_mission(mission);
+  bool known = plan_.mission != nullptr || !is_under_way(state_.mission.state);
+  if (state_.mode == Mode::kTrajectory) {
     known = trajectory != nullptr && trajectory->id == state_.trajectory_id &&
             state_.next_segment <= trajectory->segments.size();
     if (known) plan_.trajectory = trajectory;
@@ -134,6 +156,20 @@ void Supervisor::adopt(const SupervisorState& state, const Mission* mission, con
   situation.estimate = &nowhere;
   Scene now = scene(situation);
   answer(Event::kPlanUnknown, now);
+}
+
+// One that waits to be started and is not known here is forgotten.
+void Supervisor::adopt_mission(const Mission* mission) {
+  MissionProgress& progress = state_.mission;
+  if (progress.state == MissionState::kNone) return;
+  const bool known = mission != nullptr && mission->id == progress.id &&
+                     mission->items.size() == static_cast<std::size_t>(progress.item_count);
+  if (known) {
+    plan_.mission = mission;
+    plan_.mission_limits = tightened(settings_.limits, mission->bounds);
+  } else if (progress.state == MissionState::kUploaded) {
+    progress = {};
+  }
 }
 
 Outcome Supervisor::find_flying(const Situation& situation) {

@@ -32,18 +32,22 @@ class Supervisor {
   int ground_links() const;  // ground tools that the flight depends on
 
   const SupervisorState& state() const { return state_; }
-  // Goes on from the state of another controller with the same settings. mission, trajectory: what is being
-  // flown there, or null where it is not known here, upon which the vehicle comes to rest and holds; owned by
-  // the caller and kept until the controller has left it.
+  // Goes on from the state of another controller with the same settings. mission: the one that is there,
+  // flown or not; trajectory: the one that is being flown; null where it is not known here, upon which a
+  // vehicle that flies it comes to rest and holds. Owned by the caller and kept until the controller has
+  // left it.
   void adopt(const SupervisorState& state, const Mission* mission, const Trajectory* trajectory);
-  // The vehicle flies, and nobody knows what for: it comes to rest and holds. The ground is taken to be at z = 0.
-  // Refused without a pose, or if this supervisor flies it already.
+  // The vehicle flies, and nobody knows what for: it comes to rest and holds. The ground is taken to be at z
+  // = 0. Refused without a pose, or if this supervisor flies it already.
   Outcome find_flying(const Situation& situation);
 
  private:
-  Scene scene(const Situation& situation) { return {settings_, situation, state_, plan_}; }
+  Scene scene(const Situation& situation) { return {settings_, limits(), situation, state_, plan_}; }
+  const Limits& limits() const;
   void take(const Transition& row, Scene& scene);
   void enter(Mode mode, Reason reason);
+  MissionState mission_state_in(Mode mode, Reason reason) const;
+  void adopt_mission(const Mission* mission);
   Outcome answer(Event request, Scene& scene);
   Directive directive(const Situation& situation) const;
 

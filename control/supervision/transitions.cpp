@@ -69,6 +69,7 @@ const Transition kTransitions[] = {
   {kUnderWay, E::kBatterySilent, when::kAlways, check_of::kNone, M::kLanding, R::kBatterySilent, act::kLand},
   {kUnderWay, E::kGroundLinkLost, when::kLinkLands, check_of::kNone, M::kLanding, R::kGroundLinkLost, act::kLand},
   {kUnderWay, E::kGroundLinkLost, when::kLinkHolds, check_of::kNone, M::kHolding, R::kGroundLinkLost, act::kStop},
+  {{M::kSetpoint}, E::kSetpointsLeadOut, when::kAlways, check_of::kNone, M::kHolding, R::kSetpointsLedOut, act::kStop},
   {{M::kSetpoint}, E::kSetpointsStopped, when::kAlways, check_of::kNone, M::kHolding, R::kSetpointsStopped, act::kStop},
 
   // How a flight goes on.
@@ -84,8 +85,14 @@ const Transition kTransitions[] = {
   {{M::kDisarmed, M::kArmed, M::kStopped}, E::kDisarm, when::kAlways, check_of::kNone, M::kDisarmed, R::kRequested, act::kNothing},
   {kLeavingGround, E::kDisarm, when::kSpoolingUp, check_of::kNone, M::kDisarmed, R::kRequested, act::kNothing},
   {{M::kArmed}, E::kTakeoff, when::kAlways, check_of::kTakeoff, M::kTakingOff, R::kRequested, act::kTakeOff},
-  {{M::kArmed}, E::kMission, when::kAlways, check_of::kMissionFromGround, M::kMission, R::kRequested, act::kStartMission},
-  {{M::kHolding}, E::kMission, when::kAlways, check_of::kMission, M::kMission, R::kRequested, act::kStartMission},
+  {kAny, E::kMissionUpload, when::kNoneUnderWay, check_of::kUpload, kStay, R::kRequested, act::kKeepMission},
+  {{M::kArmed}, E::kMissionStart, when::kAlways, check_of::kStartFromGround, M::kMission, R::kRequested, act::kStartMission},
+  {{M::kHolding}, E::kMissionStart, when::kNotPaused, check_of::kStart, M::kMission, R::kRequested, act::kStartMission},
+  {{M::kMission}, E::kMissionPause, when::kPausable, check_of::kNamed, M::kHolding, R::kMissionPaused, act::kPause},
+  {{M::kHolding}, E::kMissionResume, when::kPaused, check_of::kNamed, M::kMission, R::kRequested, act::kResume},
+  {{M::kMission}, E::kMissionSkip, when::kPausable, check_of::kSkip, kStay, R::kRequested, act::kSkip},
+  {{M::kHolding}, E::kMissionSkip, when::kPaused, check_of::kSkip, M::kMission, R::kRequested, act::kSkip},
+  {kAny, E::kMissionClear, when::kNoneFlown, check_of::kClear, kStay, R::kRequested, act::kClearMission},
   {{M::kHolding, M::kTrajectory, M::kSetpoint}, E::kTrajectory, when::kAlways, check_of::kTrajectory, M::kTrajectory, R::kRequested, act::kStartTrajectory},
   {{M::kHolding}, E::kSetpoint, when::kAlways, check_of::kSetpoint, M::kSetpoint, R::kSetpointsCame, act::kFollowSetpoint},
   {{M::kSetpoint}, E::kSetpoint, when::kAlways, check_of::kSetpoint, kStay, R::kSetpointsCame, act::kFollowSetpoint},
@@ -96,6 +103,7 @@ const Transition kTransitions[] = {
   {{M::kDescent}, E::kLand, when::kAlways, check_of::kNone, kStay, R::kRequested, act::kLandOnReturn},
   {kUnderWay, E::kLand, when::kAlways, check_of::kLand, M::kLanding, R::kRequested, act::kLandAsAsked},
   {kLeavingGround, E::kPlanUnknown, when::kSpoolingUp, check_of::kNone, M::kDisarmed, R::kPlanUnknown, act::kNothing},
+  {{M::kHolding}, E::kPlanUnknown, when::kPaused, check_of::kNone, M::kHolding, R::kPlanUnknown, act::kStop},
   {{M::kMission, M::kTrajectory}, E::kPlanUnknown, when::kAlways, check_of::kNone, M::kHolding, R::kPlanUnknown, act::kStop},
   {{M::kDisarmed}, E::kFoundFlying, when::kAlways, check_of::kPose, M::kHolding, R::kFoundFlying, act::kTakeIntoHold},
 };
@@ -134,8 +142,27 @@ const Transition* find(const Scene& scene, Event request) {
   return nullptr;
 }
 
-Outcome refusal(Event request, Mode mode) {
-  const char* const now = to_string(mode);
+namespace {
+
+Outcome refuse_for_mission(const Scene& scene) {
+  return refuse("mission %llu is %s", static_cast<unsigned long long>(scene.state.mission.id),
+                scene.paused() ? "paused: resume or clear it" : "being flown: hold, goto or land ends that");
+}
+
+// Of what is asked of a mission that is not being flown, or must not be interrupted where it is.
+Outcome refuse_to_change_mission(Event request, const Scene& scene) {
+  if (scene.state.mode != Mode::kMission && !scene.paused()) return refuse("no mission is being flown");
+  if (scene.paused())
+    return refuse("mission %llu is paused already", static_cast<unsigned long long>(scene.state.mission.id));
+  if (scene.state.phase == Phase::kSpoolUp) return refuse("the mission's take-off has only begun");
+  if (request == Event::kMissionResume) return refuse("the mission is not paused");
+  return refuse("the mission is at its landing; goto or hold ends that");
+}
+
+}  // namespace
+
+Outcome refusal(Event request, const Scene& scene) {
+  const char* const now = to_string(scene.state.mode);
   switch (request) {
     case Event::kArm:
       return refuse("cannot arm while %s", now);
@@ -143,9 +170,19 @@ Outcome refusal(Event request, Mode mode) {
       return refuse("cannot disarm while %s; land first, or stop", now);
     case Event::kTakeoff:
       return refuse("cannot take off while %s; arm first", now);
-    case Event::kMission:
+    case Event::kMissionUpload:
+    case Event::kMissionClear:
+      return refuse_for_mission(scene);
+    case Event::kMissionStart:
+      if (scene.state.mode == Mode::kMission || scene.paused()) return refuse_for_mission(scene);
+      return refuse("cannot start a mission while %s%s", now,
+                    scene.state.mode == Mode::kDisarmed ? "; arm first" : "");
+    case Event::kMissionPause:
+    case Event::kMissionResume:
+    case Event::kMissionSkip:
+      return refuse_to_change_mission(request, scene);
     case Event::kTrajectory:
-      return refuse("cannot start a %s while %s", to_string(request), now);
+      return refuse("cannot start a trajectory while %s", now);
     case Event::kSetpoint:
       return refuse("setpoints are not followed while %s", now);
     default:

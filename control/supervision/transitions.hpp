@@ -63,6 +63,6 @@ const Transition* find(const Scene& scene, const EventSet& conditions);
 const Transition* find(const Scene& scene, Event request);
 
 // Why a request is refused that no row answers.
-Outcome refusal(Event request, Mode mode);
+Outcome refusal(Event request, const Scene& scene);
 
 }  // namespace swiftlet::control

@@ -25,7 +25,8 @@ constexpr std::array<const char*, 9> kUnits = {"m", "m/s", "m/s^2", "rad/s", "m/
 
 bool is_least(Demand demand) { return demand == Demand::kLift || demand == Demand::kRotorLeast; }
 
-// The path as the rotors feel it: drag acts like an acceleration in proportion to the velocity, and so do its derivatives.
+// The path as the rotors feel it: drag acts like an acceleration in proportion to the velocity, and so do its
+// derivatives.
 Reference with_drag(const Reference& reference, double drag_per_mass) {
   Reference felt = reference;
   felt.acceleration_ned += drag_per_mass * reference.velocity_ned;
@@ -183,6 +184,8 @@ const char* to_string(Demand demand) {
   return "unknown";
 }
 
+const char* unit_of(Demand demand) { return kUnits[static_cast<std::size_t>(demand)]; }
+
 bool WorstDemand::exceeded() const {
   const double tolerance = 2.0 * kPrecision * std::max(std::abs(limit), 1e-3);
   return is_least(demand) ? value < limit - tolerance : value > limit + tolerance;
@@ -190,7 +193,7 @@ bool WorstDemand::exceeded() const {
 
 std::string WorstDemand::sentence() const {
   char text[192];
-  const char* const unit = kUnits[static_cast<std::size_t>(demand)];
+  const char* const unit = unit_of(demand);
   std::snprintf(text, sizeof text,
                 "%s is %.3f %s, the limit is %.3f %s: at %.2f s, segment %zu, (%.2f, %.2f, %.2f) m NED",
                 to_string(demand), value, unit, limit, unit, time_s, segment + 1, position_ned.x(),

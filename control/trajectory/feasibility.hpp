@@ -1,5 +1,5 @@
-// What a path asks of a vehicle that is exactly on it, by the vehicle's model: how fast, how tilted, how much of each rotor,
-// each at its worst with the place where that is.
+// What a path asks of a vehicle that is exactly on it, by the vehicle's model: how fast, how tilted, how much
+// of each rotor, each at its worst with the place where that is.
 #pragma once
 
 #include <cstddef>
@@ -24,6 +24,7 @@ enum class Demand {
   kRotorMost,     // N, of the rotor that gives the most
 };
 const char* to_string(Demand demand);
+const char* unit_of(Demand demand);
 
 // The worst of one demand along a path.
 struct WorstDemand {
@@ -39,11 +40,12 @@ struct WorstDemand {
   std::string sentence() const;
 };
 
-// All demands, in the order of the enumeration. Fence, speed, acceleration, yaw rate, lift and thrust are extrema of
-// polynomials, found everywhere on the path; so is whether the tilt exceeds its limit, and where most. The rotors' thrusts
-// are looked at every kRotorStep_s or finer (a path of more than an hour: at a million places).
-// Drag is included, at rest in the air. Rotors hold their thrusts; that their speed takes time to change is not part of it.
-// supply_voltage_v: at which the rotors must do it, above 0. At least one segment, each as check_segment() has it.
+// All demands, in the order of the enumeration. Fence, speed, acceleration, yaw rate, lift and thrust are
+// extrema of polynomials, found everywhere on the path; so is whether the tilt exceeds its limit, and where
+// most. The rotors' thrusts are looked at every kRotorStep_s or finer (a path of more than an hour: at a
+// million places). Drag is included, at rest in the air. Rotors hold their thrusts; that their speed takes
+// time to change is not part of it. supply_voltage_v: at which the rotors must do it, above 0. At least one
+// segment, each as check_segment() has it.
 std::vector<WorstDemand> worst_demands(const plant::Vehicle& vehicle, const Limits& limits,
                                        double supply_voltage_v,
                                        const std::vector<PolynomialSegment>& segments);

@@ -43,24 +43,6 @@ Polynomial minimum_jerk_axis(double from, double to, double duration_s) {
   return {from, 0.0, 0.0, 10.0 * step * w3, -15.0 * step * w3 * w, 6.0 * step * w3 * w * w, 0.0, 0.0};
 }
 
-// The quintic with the given start and with zero velocity and acceleration at `to`.
-Polynomial quintic_to_rest(double position, double velocity, double acceleration, double to,
-                           double duration_s) {
-  const double w = 1.0 / duration_s;
-  const double w3 = w * w * w;
-  const double d = to - position;
-  const double v = velocity * duration_s;
-  const double a = acceleration * duration_s * duration_s;
-  return {position,
-          velocity,
-          0.5 * acceleration,
-          (10.0 * d - 6.0 * v - 1.5 * a) * w3,
-          (-15.0 * d + 8.0 * v + 1.5 * a) * w3 * w,
-          (6.0 * d - 3.0 * v - 0.5 * a) * w3 * w * w,
-          0.0,
-          0.0};
-}
-
 // The septic between position, velocity, acceleration and jerk at its two ends.
 Polynomial septic(const std::array<double, 4>& from, const std::array<double, 4>& to, double duration_s) {
   const double t = duration_s;
@@ -113,6 +95,22 @@ PolynomialSegment minimum_jerk(const Eigen::Vector3d& from_ned, double from_yaw,
   segment.z = minimum_jerk_axis(from_ned.z(), to_ned.z(), duration_s);
   segment.yaw = minimum_jerk_axis(from_yaw, to_yaw, duration_s);
   return segment;
+}
+
+Polynomial quintic_to_rest(double value, double first, double second, double to, double duration_s) {
+  const double w = 1.0 / duration_s;
+  const double w3 = w * w * w;
+  const double d = to - value;
+  const double v = first * duration_s;
+  const double a = second * duration_s * duration_s;
+  return {value,
+          first,
+          0.5 * second,
+          (10.0 * d - 6.0 * v - 1.5 * a) * w3,
+          (-15.0 * d + 8.0 * v + 1.5 * a) * w3 * w,
+          (6.0 * d - 3.0 * v - 0.5 * a) * w3 * w * w,
+          0.0,
+          0.0};
 }
 
 PolynomialSegment join_to_rest(const Reference& from, const Eigen::Vector3d& to_ned, double to_yaw,

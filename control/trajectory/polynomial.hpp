@@ -34,18 +34,22 @@ Reference evaluate(const PolynomialSegment& segment, double t_s);
 PolynomialSegment minimum_jerk(const Eigen::Vector3d& from_ned, double from_yaw,
                                const Eigen::Vector3d& to_ned, double to_yaw, double duration_s);
 
+// The quintic from value, first and second derivative to `to`, where both derivatives are zero, after
+// duration_s > 0.
+Polynomial quintic_to_rest(double value, double first, double second, double to, double duration_s);
+
 // The quintic that leaves `from` with its position, velocity and acceleration and is at rest at `to_ned`,
 // `to_yaw` after duration_s > 0.
 PolynomialSegment join_to_rest(const Reference& from, const Eigen::Vector3d& to_ned, double to_yaw,
                                double duration_s);
 
-// The septic between two references that has position, velocity, acceleration and jerk of both, after duration_s > 0. Of the
-// yaw, whose jerk is taken as zero, likewise.
+// The septic between two references that has position, velocity, acceleration and jerk of both, after
+// duration_s > 0. Of the yaw, whose jerk is taken as zero, likewise.
 PolynomialSegment join(const Reference& from, const Reference& to, double duration_s);
 
 // The shortest duration for which a minimum-jerk move over `distance` (>= 0) stays within peak speed,
-// acceleration and jerk (all > 0). 15/8 d/T is the peak speed, 10/sqrt(3) d/T^2 the peak acceleration, 60 d/T^3 the
-// peak jerk. At least min_duration_s.
+// acceleration and jerk (all > 0). 15/8 d/T is the peak speed, 10/sqrt(3) d/T^2 the peak acceleration, 60
+// d/T^3 the peak jerk. At least min_duration_s.
 double minimum_jerk_duration(double distance, double peak_speed, double peak_acceleration, double peak_jerk,
                              double min_duration_s = 0.1);
 

@@ -33,6 +33,7 @@ void ReferencePath::rest(const Reference& at) { pin(at_rest(at)); }
 void ReferencePath::pin(const Reference& at) {
   moving = false;
   segment = instant(at);
+  clock = {};
 }
 
 void ReferencePath::follow(const PolynomialSegment& along, std::int64_t from_ns) {
@@ -40,12 +41,29 @@ void ReferencePath::follow(const PolynomialSegment& along, std::int64_t from_ns)
   segment = along;
   start_ns = from_ns;
   end_ns = from_ns + std::llround(along.duration_s * 1e9);
+  clock = {};
+}
+
+void ReferencePath::follow_on(const PolynomialSegment& along) {
+  const PathClock same = clock;
+  follow(along, end_ns);
+  clock = same;
+}
+
+std::int64_t ReferencePath::take_vehicle_time(std::int64_t now_ns) {
+  const std::int64_t behind_ns = now_ns - path_ns(now_ns);
+  start_ns += behind_ns;
+  end_ns += behind_ns;
+  clock = {};
+  return behind_ns;
 }
 
 Reference ReferencePath::at(std::int64_t now_ns) const {
   if (!moving) return evaluate(segment, 0.0);
-  if (finished(now_ns)) return at_rest(evaluate(segment, segment.duration_s));
-  return evaluate(segment, static_cast<double>(now_ns - start_ns) * 1e-9);
+  const PathTime time = clock.at(now_ns);
+  if (time.at_ns >= end_ns) return at_rest(evaluate(segment, segment.duration_s));
+  const Reference reference = evaluate(segment, static_cast<double>(time.at_ns - start_ns) * 1e-9);
+  return clock.is_vehicle_time() ? reference : slowed(reference, time);
 }
 
 }  // namespace swiftlet::control

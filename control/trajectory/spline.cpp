@@ -16,8 +16,8 @@ double falling(int n, int k) {
   return product;
 }
 
-// Of a segment of duration 1, R = 3 for jerk and 4 for snap: its ends' derivatives of order 0 .. R - 1, first those at
-// the start, give the coefficients and the cost.
+// Of a segment of duration 1, R = 3 for jerk and 4 for snap: its ends' derivatives of order 0 .. R - 1, first
+// those at the start, give the coefficients and the cost.
 template <int R>
 struct UnitSegment {
   using Matrix = Eigen::Matrix<double, 2 * R, 2 * R>;
@@ -60,8 +60,8 @@ std::vector<Free<R>> solve(const UnitSegment<R>& unit, const std::vector<Place>&
   derivatives.back() = at_end;
   if (last < 2) return derivatives;
 
-  // The normal equations' diagonal, the block right of it, and their right-hand side. Of a segment of duration T the
-  // k-th derivative counts T^k, and the whole T^(1 - 2R).
+  // The normal equations' diagonal, the block right of it, and their right-hand side. Of a segment of
+  // duration T the k-th derivative counts T^k, and the whole T^(1 - 2R).
   std::vector<Block> diagonal(points.size(), Block::Zero());
   std::vector<Block> next(points.size(), Block::Zero());
   std::vector<Free<R>> right(points.size(), Free<R>::Zero());

@@ -115,8 +115,8 @@ double sum(const std::vector<double>& values) {
   return total;
 }
 
-// Less the derivative of a segment's cost with respect to its duration, while its ends' derivatives are the best ones: of
-// the spline's variational problem, the Hamiltonian, constant along the segment.
+// Less the derivative of a segment's cost with respect to its duration, while its ends' derivatives are the
+// best ones: of the spline's variational problem, the Hamiltonian, constant along the segment.
 double hamiltonian(const PolynomialSegment& segment, Smoothness smoothness) {
   double sum = 0.0;
   for (const Polynomial* const axis : {&segment.x, &segment.y, &segment.z}) {
@@ -133,7 +133,8 @@ double hamiltonian(const PolynomialSegment& segment, Smoothness smoothness) {
   return sum;
 }
 
-// Towards the durations with which, of one sum, the cost is least: there all segments' Hamiltonians are the same.
+// Towards the durations with which, of one sum, the cost is least: there all segments' Hamiltonians are the
+// same.
 void smooth(Knots& knots, Smoothness smoothness) {
   for (int round = 0; round < kSmoothings; ++round) {
     const std::vector<PolynomialSegment> segments = spline(smoothness, knots.places, knots.durations_s);
@@ -150,8 +151,8 @@ void smooth(Knots& knots, Smoothness smoothness) {
   }
 }
 
-// Time goes to where the limits are used most, until the whole does not get shorter. What counts is the duration after all
-// of it is stretched to hold the limits; from rest to rest that changes nothing else.
+// Time goes to where the limits are used most, until the whole does not get shorter. What counts is the
+// duration after all of it is stretched to hold the limits; from rest to rest that changes nothing else.
 void balance(Knots& knots, Smoothness smoothness, const MotionLimits& limits) {
   std::vector<double> durations = knots.durations_s;
   double best_s = std::numeric_limits<double>::infinity();
@@ -189,7 +190,8 @@ void stretch(std::vector<PolynomialSegment>& segments, double factor) {
   }
 }
 
-// A segment's greatest distance from the straight line between its leg's points, which it must not pass either.
+// A segment's greatest distance from the straight line between its leg's points, which it must not pass
+// either.
 double distance_from_leg(const PolynomialSegment& segment, const Vector3d& from, const Vector3d& to) {
   const double length = (to - from).norm();
   const Vector3d along = (to - from) / length;

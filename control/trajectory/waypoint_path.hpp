@@ -40,12 +40,13 @@ struct PlannedPath {
   double duration_s = 0.0;
 };
 
-// The limits hold everywhere on it, as upper bounds of the polynomials show, and some of them is reached between any two
-// stops. Points nearer than 0.1 mm to the one before are places to turn. Throws std::invalid_argument with a sentence for
-// what cannot be planned.
+// The limits hold everywhere on it, as upper bounds of the polynomials show, and some of them is reached
+// between any two stops. Points nearer than 0.1 mm to the one before are places to turn. Throws
+// std::invalid_argument with a sentence for what cannot be planned.
 PlannedPath plan(const WaypointPath& path);
 
-// The extrema of one segment over the limits: 1 is at the limit. By bounds that hold everywhere, good to 1e-6.
+// The extrema of one segment over the limits: 1 is at the limit. By bounds that hold everywhere, good to
+// 1e-6.
 struct LimitUse {
   double speed = 0.0;
   double acceleration = 0.0;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "ground/formats/whole_flight.hpp"
 #include "services/runtime/csv.hpp"
 
 namespace swiftlet::ground {
@@ -44,6 +45,21 @@ MissionFormat detect_format(std::string_view text, const std::string& file_name)
   throw runtime::ConfigError(file_name, 1, "",
                              "has " + std::to_string(fields.size()) + " fields, of which the first is " +
                                  fields.front().substr(0, 40) + "; must begin with " + kKnown);
+}
+
+MissionFile parse_polynomial_csv(const std::string& text, const std::string& file_name,
+                                 const control::Limits& limits) {
+  return whole_flight(file_name, read_polynomial_csv(text, file_name, limits), limits);
+}
+
+MissionFile parse_sampled_csv(const std::string& text, const std::string& file_name,
+                              const control::Limits& limits) {
+  return whole_flight(file_name, read_sampled_csv(text, file_name, limits), limits);
+}
+
+MissionFile parse_waypoint_csv(const std::string& text, const std::string& file_name,
+                               const control::Limits& limits) {
+  return whole_flight(file_name, read_waypoint_csv(text, file_name, limits), limits);
 }
 
 }  // namespace swiftlet::ground

@@ -28,8 +28,8 @@ control::PolynomialSegment read(const runtime::CsvTable& table, std::size_t row)
 
 }  // namespace
 
-MissionFile parse_polynomial_csv(const std::string& text, const std::string& file_name,
-                                 const control::Limits& limits) {
+TrajectoryFile read_polynomial_csv(const std::string& text, const std::string& file_name,
+                                   const control::Limits& limits) {
   const runtime::CsvTable table = runtime::parse_csv(text, file_name, columns(), 1, {true, true});
   if (table.row_count() > control::kMaxTrajectorySegments) {
     table.fail(control::kMaxTrajectorySegments, "duration",
@@ -42,8 +42,8 @@ MissionFile parse_polynomial_csv(const std::string& text, const std::string& fil
       "taken as a polynomial trajectory in ENU: m, rad and s, its origin that of motion capture"};
   const double raise_m = raise_by(least_height(segments), assumptions);
   for (control::PolynomialSegment& segment : segments) segment.z[0] -= raise_m;
-  return whole_flight(file_name, std::move(segments), std::move(assumptions), limits,
-                      [&](std::size_t segment, const std::string& fault) { table.fail(segment, "", fault); });
+  return checked({std::move(segments), std::move(assumptions)}, limits,
+                 [&](std::size_t segment, const std::string& fault) { table.fail(segment, "", fault); });
 }
 
 }  // namespace swiftlet::ground

@@ -78,7 +78,8 @@ Samples read(const runtime::CsvTable& table, const Columns& columns) {
   return samples;
 }
 
-// Differences over the rows beside each, of what the file does not give and its neighbours do; zero at the ends.
+// Differences over the rows beside each, of what the file does not give and its neighbours do; zero at the
+// ends.
 void difference(Samples& samples, const Columns& columns) {
   const std::size_t last = samples.places.size() - 1;
   for (std::size_t i = 1; i < last; ++i) {
@@ -135,8 +136,8 @@ double greatest_deviation(const Samples& samples, const std::vector<std::size_t>
 
 }  // namespace
 
-MissionFile parse_sampled_csv(const std::string& text, const std::string& file_name,
-                              const control::Limits& limits) {
+TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file_name,
+                                const control::Limits& limits) {
   const Columns columns = columns_of(runtime::first_csv_line(text));
   const runtime::CsvTable table = runtime::parse_csv(text, file_name, columns.names, 2, {true, true});
   Samples samples = read(table, columns);
@@ -157,8 +158,8 @@ MissionFile parse_sampled_csv(const std::string& text, const std::string& file_n
                                : columns.velocity   ? "with their velocities"
                                                     : "of least snap, at rest at both ends",
                                greatest_deviation(samples, knots, segments) * 1e3));
-  return whole_flight(
-      file_name, std::move(segments), std::move(assumptions), limits,
+  return checked(
+      {std::move(segments), std::move(assumptions)}, limits,
       [&](std::size_t segment, const std::string& fault) { table.fail(knots[segment], "", fault); });
 }
 

@@ -38,9 +38,10 @@ std::size_t row_of(const control::PlannedPath& planned, std::size_t segment) {
 
 }  // namespace
 
-MissionFile parse_waypoint_csv(const std::string& text, const std::string& file_name,
-                               const control::Limits& limits) {
-  const std::vector<std::string> first = runtime::first_csv_line(text);
+TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& file_name,
+                                 const control::Limits& limits) {
+  std::vector<std::string> first = runtime::first_csv_line(text);
+  if (first.empty()) first.emplace_back();  // what parse_csv() refuses
   const bool has_header = !runtime::is_number(first.front());
   std::vector<std::string> columns = {"x", "y", "z"};
   const std::size_t fields = first.back().empty() ? first.size() - 1 : first.size();
@@ -70,10 +71,10 @@ MissionFile parse_waypoint_csv(const std::string& text, const std::string& file_
   } catch (const std::invalid_argument& fault) {
     throw runtime::ConfigError(file_name, 0, "", fault.what());
   }
-  return whole_flight(file_name, std::move(planned.segments), std::move(assumptions), limits,
-                      [&](std::size_t segment, const std::string& fault) {
-                        table.fail(row_of(planned, segment), "", "the path from here: " + fault);
-                      });
+  return checked({std::move(planned.segments), std::move(assumptions)}, limits,
+                 [&](std::size_t segment, const std::string& fault) {
+                   table.fail(row_of(planned, segment), "", "the path from here: " + fault);
+                 });
 }
 
 }  // namespace swiftlet::ground

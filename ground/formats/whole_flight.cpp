@@ -58,10 +58,9 @@ control::MotionLimits reference_limits(const control::Limits& limits) {
           limits.max_yaw_rate};
 }
 
-MissionFile whole_flight(const std::string& file_name, std::vector<control::PolynomialSegment> segments,
-                         std::vector<std::string> assumptions, const control::Limits& limits,
-                         const std::function<void(std::size_t, const std::string&)>& where) {
-  double duration_s = 0.0;
+TrajectoryFile checked(TrajectoryFile path, const control::Limits& limits,
+                       const std::function<void(std::size_t, const std::string&)>& where) {
+  const std::vector<control::PolynomialSegment>& segments = path.segments;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const std::string what = format("segment %zu in NED", i + 1);
     control::Outcome outcome = control::check_segment(what.c_str(), segments[i], limits);
@@ -70,22 +69,28 @@ MissionFile whole_flight(const std::string& file_name, std::vector<control::Poly
                        : control::check_joint(what.c_str(), segments[i - 1], segments[i]);
     }
     if (!outcome.accepted) where(i, outcome.reason);
-    duration_s += segments[i].duration_s;
   }
+  return path;
+}
+
+MissionFile whole_flight(const std::string& file_name, TrajectoryFile path, const control::Limits& limits) {
   using control::MissionItemKind;
+  std::vector<control::PolynomialSegment>& segments = path.segments;
+  double duration_s = 0.0;
+  for (const control::PolynomialSegment& segment : segments) duration_s += segment.duration_s;
   const double speed = std::min(kApproachSpeed, limits.max_speed);
   MissionFile file;
   file.name = std::filesystem::path(file_name).stem().string();
   file.tolerance_m = kTolerance_m;
   file.mission.items = {{MissionItemKind::kTakeoff, {0.0, 0.0, segments.front().z[0]}, 0.0, true, speed, 0.5},
-                        {MissionItemKind::kTrajectory, Eigen::Vector3d::Zero(), 0.0, true, speed, 0.5, 0,
+                        {MissionItemKind::kTrajectory, Eigen::Vector3d::Zero(), 0.0, false, speed, 0.5, 0,
                          static_cast<std::uint32_t>(segments.size())},
                         {MissionItemKind::kLand, Eigen::Vector3d::Zero(), 0.0, true, speed, 0.0}};
-  assumptions.push_back(
+  path.assumptions.push_back(
       format("take-off to %.2f m and a landing are added; the path takes %.1f s in %zu segments",
              -segments.front().z[0], duration_s, segments.size()));
   file.mission.segments = std::move(segments);
-  file.assumptions = std::move(assumptions);
+  file.assumptions = std::move(path.assumptions);
   return file;
 }
 

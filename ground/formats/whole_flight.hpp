@@ -7,6 +7,7 @@
 
 #include "control/trajectory/polynomial.hpp"
 #include "control/trajectory/waypoint_path.hpp"
+#include "ground/formats/mission_format.hpp"
 #include "ground/mission_file.hpp"
 
 namespace swiftlet::ground {
@@ -21,14 +22,17 @@ constexpr double kLeastHeight_m = 0.2;  // a path that comes lower is taken for 
 constexpr double kApproachSpeed =
     0.5;  // m/s, of take-off, to where the path begins, and of the landing at most
 
-// By how much a path must be raised, m; 0 if it stays above kLeastHeight_m. Adds to the assumptions what was decided.
+// By how much a path must be raised, m; 0 if it stays above kLeastHeight_m. Adds to the assumptions what was
+// decided.
 double raise_by(double least_height_m, std::vector<std::string>& assumptions);
 
-// Take-off to the height where the path begins, the path, the landing. `where` throws for the segment of this index with a
-// sentence about it, for one that breaks fence, limits or the one before it.
-MissionFile whole_flight(const std::string& file_name, std::vector<control::PolynomialSegment> segments,
-                         std::vector<std::string> assumptions, const control::Limits& limits,
-                         const std::function<void(std::size_t, const std::string&)>& where);
+// The path, if it can be flown. `where` throws for the segment of this index with a sentence about it, for
+// one that breaks fence, limits or the one before it.
+TrajectoryFile checked(TrajectoryFile path, const control::Limits& limits,
+                       const std::function<void(std::size_t, const std::string&)>& where);
+
+// Take-off to the height where the path begins, the path, the landing.
+MissionFile whole_flight(const std::string& file_name, TrajectoryFile path, const control::Limits& limits);
 
 // The least height above z = 0 along the path, m.
 double least_height(const std::vector<control::PolynomialSegment>& segments);

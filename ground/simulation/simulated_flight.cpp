@@ -79,9 +79,13 @@ class Run {
 
   bool start() {
     control::Request request;
-    request.kind = control::RequestKind::kMission;
+    request.kind = control::RequestKind::kMissionUpload;
     request.mission = &mission_;
-    const control::Outcome outcome = loop_.controller.request(request);
+    control::Outcome outcome = loop_.controller.request(request);
+    if (outcome.accepted) {
+      request.kind = control::RequestKind::kMissionStart;
+      outcome = loop_.controller.request(request);
+    }
     return outcome.accepted || fail(std::string("the mission was refused: ") + outcome.reason);
   }
 

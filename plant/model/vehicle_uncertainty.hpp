@@ -6,7 +6,8 @@
 
 namespace swiftlet::plant {
 
-// A parameter by its key in the vehicle file, "motor.k2"; the diagonal of the inertia is inertia.xx, inertia.yy, inertia.zz.
+// A parameter by its key in the vehicle file, "motor.k2"; the diagonal of the inertia is inertia.xx,
+// inertia.yy, inertia.zz.
 struct ParameterUncertainty {
   std::string parameter;
   double standard_error = 0.0;  // in the unit of the parameter
@@ -14,8 +15,8 @@ struct ParameterUncertainty {
   double high = 0.0;
 };
 
-// Between the errors of two parameters, -1 .. 1. Those of K2 and K3 nearly cancel: whoever draws them apart draws motors that nobody
-// has measured.
+// Between the errors of two parameters, -1 .. 1. Those of K2 and K3 nearly cancel: whoever draws them apart
+// draws motors that nobody has measured.
 struct ParameterCorrelation {
   std::string first;
   std::string second;

@@ -25,8 +25,8 @@ class ActuatorWatchdog {
  public:
   ActuatorWatchdog(int rotor_count, std::int64_t timeout_ns);
 
-  // A command that arrives at now_ns, the vehicle's clock. One with a fault counts as no command. A term rules
-  // out lower ones until its commands are older than the time-out.
+  // A command that arrives at now_ns, the vehicle's clock. One with a fault counts as no command. A term
+  // rules out lower ones until its commands are older than the time-out.
   CommandFault accept(const ActuatorCommand& command, std::int64_t now_ns);
 
   // What the rotors are to do at now_ns: the last command, or off if it answers a sample older than the

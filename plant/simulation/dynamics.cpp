@@ -32,8 +32,8 @@ struct Dynamics::Drivetrain {
 
   const Dynamics& d;
   OpenCircuit open_circuit;
-  // Eq. (9): v_a^2 = v_a_gain v_s^2 + v_a_offset; a rotor that is off gets no voltage at all, nor does what stands
-  // beside the last of an odd number.
+  // Eq. (9): v_a^2 = v_a_gain v_s^2 + v_a_offset; a rotor that is off gets no voltage at all, nor does what
+  // stands beside the last of an odd number.
   Rotors v_a_gain;
   Rotors v_a_offset;
   double voltage_per_current;  // V/(A s)

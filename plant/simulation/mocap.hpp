@@ -1,8 +1,8 @@
 // Motion capture, driven by truth stamps alone: it works the same in real time, scaled time and lockstep.
 //
-// Frames are exposed at times that the model gives, counted from stamp 0, and delivered a latency later: whole
-// multiples of the period, or intervals drawn one by one (mocap_schedule.hpp). When truth comes in steps, both
-// happen at the first truth stamp that is not earlier.
+// Frames are exposed at times that the model gives, counted from stamp 0, and delivered a latency later:
+// whole multiples of the period, or intervals drawn one by one (mocap_schedule.hpp). When truth comes in
+// steps, both happen at the first truth stamp that is not earlier.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// When motion capture exposes frames and hands them out. A function of settings, seed and the stamps at which it
-// is asked: whoever has these, as the plant in lockstep, knows it as well as the cameras do.
+// When motion capture exposes frames and hands them out. A function of settings, seed and the stamps at which
+// it is asked: whoever has these, as the plant in lockstep, knows it as well as the cameras do.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@ class MocapSchedule {
     bool exposes = false;      // a frame, now
     bool delivers = false;     // the oldest frame that is under way
   };
-  // What happens at this stamp, after the one before. Frames that fall between two stamps are exposed, once, at
-  // the second. A stamp that is not newer than the last starts the schedule anew.
+  // What happens at this stamp, after the one before. Frames that fall between two stamps are exposed, once,
+  // at the second. A stamp that is not newer than the last starts the schedule anew.
   Events advance(std::int64_t stamp_ns);
 
   // That advance() has let out; those of schedules begun before count.

@@ -1,5 +1,5 @@
-// Numbers side by side, two to a register: every processor that this runs on has registers for two doubles, and
-// an optimiser left to itself fills them only here and there.
+// Numbers side by side, two to a register: every processor that this runs on has registers for two doubles,
+// and an optimiser left to itself fills them only here and there.
 #pragma once
 
 #include <array>

@@ -39,7 +39,8 @@ struct MocapSettings {
   MocapModel model = MocapModel::kBounded;
   double rate_hz = 100.0;    // kBounded
   double latency_s = 0.010;  // from exposure to delivery
-  // kBounded: radius of the ball that each frame's error lies in. kOptitrack: standard deviation of each axis.
+  // kBounded: radius of the ball that each frame's error lies in. kOptitrack: standard deviation of each
+  // axis.
   double position_error_m = 1.0e-4;
   double orientation_error_rad = 1.4e-3;  // likewise, as a rotation vector: 0.1 mm over an arm of 69.5 mm
   // kOptitrack: how long the next frame takes, at the probabilities kIntervalProbabilities; uniform between.

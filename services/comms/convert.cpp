@@ -220,21 +220,41 @@ msg::GroundTruth to_message(const plant::TruthSample& in) {
 }
 
 Fault from_message(const msg::Setpoint& in, control::Setpoint& out) {
+  using namespace msg;
   Check check;
-  check.time(in.stamp_ns())
-      .finite("position_ned", in.position_ned())
-      .finite("velocity_ned", in.velocity_ned())
-      .finite("acceleration_ned", in.acceleration_ned())
-      .finite("yaw", in.yaw())
-      .finite("yaw_rate", in.yaw_rate());
+  check.time(in.stamp_ns()).at_most("kind", in.kind(), Setpoint_Constants::BODY_RATES);
+  const auto kind = static_cast<control::SetpointKind>(in.kind());
+  const bool places = kind == control::SetpointKind::kPosition;
+  const bool moves = places || kind == control::SetpointKind::kVelocity;
+  const bool turns = kind == control::SetpointKind::kAttitude;
+  const bool past_position = control::goes_past_position(kind);
+  if (places) check.finite("position_ned", in.position_ned());
+  if (moves) check.finite("velocity_ned", in.velocity_ned());
+  if (turns) check.unit("q_ned_from_frd", in.q_ned_from_frd());
+  if (past_position) {
+    check.finite("body_rates_frd", in.body_rates_frd()).finite("thrust", in.thrust());
+  } else {
+    check.finite("acceleration_ned", in.acceleration_ned())
+        .finite("yaw", in.yaw_free() ? 0.0 : in.yaw())
+        .finite("yaw_rate", in.yaw_rate());
+  }
   if (!check.ok()) return check.fault();
-  out = {in.stamp_ns(),
-         in.sequence_number(),
-         vector(in.position_ned()),
-         vector(in.velocity_ned()),
-         vector(in.acceleration_ned()),
-         in.yaw(),
-         in.yaw_rate()};
+  out = {};
+  out.stamp_ns = in.stamp_ns();
+  out.sequence = in.sequence_number();
+  out.kind = kind;
+  if (places) out.position_ned = vector(in.position_ned());
+  if (moves) out.velocity_ned = vector(in.velocity_ned());
+  if (turns) out.q_ned_from_frd = quaternion(in.q_ned_from_frd());
+  if (past_position) {
+    out.body_rates_frd = vector(in.body_rates_frd());
+    out.thrust = in.thrust();
+    return {};
+  }
+  out.acceleration_ned = vector(in.acceleration_ned());
+  out.yaw_free = in.yaw_free();
+  if (!out.yaw_free) out.yaw_rad = in.yaw();
+  out.yaw_rate = in.yaw_rate();
   return {};
 }
 
@@ -242,11 +262,16 @@ msg::Setpoint to_message(const control::Setpoint& in) {
   msg::Setpoint out;
   out.stamp_ns(in.stamp_ns);
   out.sequence_number(in.sequence);
+  out.kind(static_cast<std::uint8_t>(in.kind));
   out.position_ned(array(in.position_ned));
   out.velocity_ned(array(in.velocity_ned));
   out.acceleration_ned(array(in.acceleration_ned));
+  out.yaw_free(in.yaw_free);
   out.yaw(in.yaw_rad);
   out.yaw_rate(in.yaw_rate);
+  out.q_ned_from_frd(array(in.q_ned_from_frd));
+  out.body_rates_frd(array(in.body_rates_frd));
+  out.thrust(in.thrust);
   return out;
 }
 
@@ -260,7 +285,7 @@ Fault from_message(const msg::GroundLink& in, control::GroundSign& out) {
 
 Fault from_message(const msg::Command& in, control::Request& out) {
   Check check;
-  check.at_most("kind", in.kind(), msg::Command_Constants::STOP);
+  check.at_most("kind", in.kind(), msg::Command_Constants::MISSION_CLEAR);
   const bool placed =
       in.kind() == msg::Command_Constants::GOTO || in.kind() == msg::Command_Constants::TAKEOFF;
   if (placed) check.finite("position_ned", in.position_ned()).finite("yaw", in.yaw());
@@ -274,6 +299,7 @@ Fault from_message(const msg::Command& in, control::Request& out) {
   }
   out.yaw_free = in.yaw_free();
   out.speed = in.speed();
+  out.mission_id = in.mission_id();
   return {};
 }
 
@@ -284,20 +310,29 @@ msg::Command to_message(const control::Request& in) {
   out.yaw_free(in.yaw_free);
   out.yaw(in.yaw_rad);
   out.speed(in.speed);
+  out.mission_id(in.mission_id);
   return out;
 }
 
 Fault from_message(const msg::Mission& in, control::Mission& out) {
   Check check;
+  check.at_least("id", static_cast<double>(in.id()), 1.0)
+      .at_least("max_speed", in.max_speed(), 0.0)
+      .at_least("max_acceleration", in.max_acceleration(), 0.0)
+      .at_least("max_jerk", in.max_jerk(), 0.0)
+      .at_least("max_yaw_rate", in.max_yaw_rate(), 0.0)
+      .finite("fence_min_ned", in.fence_min_ned())
+      .finite("fence_max_ned", in.fence_max_ned());
   check.at_most("number of items", in.items().size(), control::kMaxMissionItems);
   for (std::size_t i = 0; check.ok() && i < in.items().size(); ++i) {
     const msg::MissionItem& item = in.items()[i];
     check.of_item("item", i + 1);
-    check.at_most("kind", item.kind(), msg::MissionItem_Constants::TRAJECTORY)
+    check.at_most("kind", item.kind(), msg::MissionItem_Constants::WAIT)
         .finite("position_ned", item.position_ned())
         .finite("yaw", item.yaw())
         .finite("speed", item.speed())
-        .at_least("hold_s", item.hold_s(), 0.0);
+        .at_least("hold_s", item.hold_s(), 0.0)
+        .at_least("acceptance_radius_m", item.acceptance_radius_m(), 0.0);
   }
   check_segments(in.segments(), check);
   if (!check.ok()) return check.fault();
@@ -307,9 +342,16 @@ Fault from_message(const msg::Mission& in, control::Mission& out) {
   for (const msg::MissionItem& item : in.items()) {
     out.items.push_back({static_cast<control::MissionItemKind>(item.kind()), vector(item.position_ned()),
                          item.yaw(), item.yaw_free(), item.speed(), item.hold_s(), item.first_segment(),
-                         item.segment_count()});
+                         item.segment_count(), item.acceptance_radius_m()});
   }
   out.segments = from_messages(in.segments());
+  out.bounds = {in.max_speed(),
+                in.max_acceleration(),
+                in.max_jerk(),
+                in.max_yaw_rate(),
+                in.fenced(),
+                vector(in.fence_min_ned()),
+                vector(in.fence_max_ned())};
   return {};
 }
 
@@ -327,9 +369,17 @@ msg::Mission to_message(const control::Mission& in) {
     message.hold_s(item.hold_s);
     message.first_segment(item.first_segment);
     message.segment_count(item.segment_count);
+    message.acceptance_radius_m(item.acceptance_radius_m);
     out.items().push_back(message);
   }
   out.segments(to_messages(in.segments));
+  out.max_speed(in.bounds.max_speed);
+  out.max_acceleration(in.bounds.max_acceleration);
+  out.max_jerk(in.bounds.max_jerk);
+  out.max_yaw_rate(in.bounds.max_yaw_rate);
+  out.fenced(in.bounds.fenced);
+  out.fence_min_ned(array(in.bounds.fence_min_ned));
+  out.fence_max_ned(array(in.bounds.fence_max_ned));
   return out;
 }
 

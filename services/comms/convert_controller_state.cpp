@@ -7,7 +7,7 @@ namespace {
 using namespace wire;
 
 constexpr std::uint64_t kMaxStrength = 1000;
-constexpr std::size_t kReplicatedStateBytes = 488;
+constexpr std::size_t kReplicatedStateBytes = 952;
 
 }  // namespace
 
@@ -25,13 +25,25 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
       .finite("path_y", in.path_y())
       .finite("path_z", in.path_z())
       .finite("path_yaw", in.path_yaw())
+      .at_least("clock_change_s", in.clock_change_s(), 0.0)
+      .finite("clock_rate", in.clock_rate())
       .finite("climb_to_z_ned", in.climb_to_z_ned())
       .finite("climb_speed", in.climb_speed())
       .finite("ground_z_ned", in.ground_z_ned())
-      .at_most("mission_state", in.mission_state(), MissionStatus_Constants::ABORTED)
+      .at_most("mission_state", in.mission_state(), MissionStatus_Constants::PAUSED)
       .at_most("item_count", in.item_count(), control::kMaxMissionItems)
       .at_most("item_index", in.item_index(), in.item_count())
+      .at_most("detour", in.detour(), static_cast<std::uint64_t>(control::Detour::kReturning))
+      .at_least("left_duration_s", in.left_duration_s(), 0.0)
+      .finite("left_x", in.left_x())
+      .finite("left_y", in.left_y())
+      .finite("left_z", in.left_z())
+      .finite("left_yaw", in.left_yaw())
       .at_most("next_segment", in.next_segment(), control::kMaxTrajectorySegments)
+      .at_most("setpoint_kind", in.setpoint_kind(), Setpoint_Constants::BODY_RATES)
+      .finite("setpoint_attitude", in.setpoint_attitude())
+      .finite("setpoint_body_rates", in.setpoint_body_rates())
+      .finite("setpoint_thrust", in.setpoint_thrust())
       .finite("position_integral_ned", in.position_integral_ned())
       .at_most("rotor_state", in.rotor_state(), ActuatorCommand_Constants::ROTORS_RUNNING)
       .per_rotor("throttle", in.rotor_count(), in.throttle(), 0.0, 1.0);
@@ -56,15 +68,24 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
   state.path.segment = {in.path_duration_s(), in.path_x(), in.path_y(), in.path_z(), in.path_yaw()};
   state.path.start_ns = in.path_start_ns();
   state.path.end_ns = in.path_end_ns();
+  state.path.clock = {in.clock_runs(), in.clock_change_ns(), in.clock_from_ns(), in.clock_change_s(),
+                      in.clock_rate()};
   state.climb_to_z_ned = in.climb_to_z_ned();
   state.climb_speed = in.climb_speed();
   state.ground_z_ned = in.ground_z_ned();
   state.mission = {in.mission_id(), static_cast<control::MissionState>(in.mission_state()),
                    static_cast<int>(in.item_index()), static_cast<int>(in.item_count())};
   state.item_end_ns = in.item_end_ns();
+  state.detour = static_cast<control::Detour>(in.detour());
+  state.left = {{in.left_duration_s(), in.left_x(), in.left_y(), in.left_z(), in.left_yaw()},
+                in.left_start_ns(),
+                in.left_end_ns(),
+                in.left_at_ns()};
   state.trajectory_id = in.trajectory_id();
   state.next_segment = in.next_segment();
   state.setpoint_ns = in.setpoint_ns();
+  state.setpoint_kind = static_cast<control::SetpointKind>(in.setpoint_kind());
+  state.direct = {in.setpoint_attitude(), in.setpoint_body_rates(), in.setpoint_thrust()};
   state.contact_since_ns = in.contact_since_ns();
   state.low_battery_since_ns = in.low_battery_since_ns();
   state.critical_battery_since_ns = in.critical_battery_since_ns();
@@ -108,6 +129,11 @@ msg::ControllerState to_message(const ControllerReport& in) {
   out.path_y(state.path.segment.y);
   out.path_z(state.path.segment.z);
   out.path_yaw(state.path.segment.yaw);
+  out.clock_runs(state.path.clock.runs);
+  out.clock_change_ns(state.path.clock.change_ns);
+  out.clock_from_ns(state.path.clock.from_ns);
+  out.clock_change_s(state.path.clock.change_s);
+  out.clock_rate(state.path.clock.rate);
   out.climb_to_z_ned(state.climb_to_z_ned);
   out.climb_speed(state.climb_speed);
   out.ground_z_ned(state.ground_z_ned);
@@ -116,9 +142,22 @@ msg::ControllerState to_message(const ControllerReport& in) {
   out.item_index(static_cast<std::uint32_t>(state.mission.item_index));
   out.item_count(static_cast<std::uint32_t>(state.mission.item_count));
   out.item_end_ns(state.item_end_ns);
+  out.detour(static_cast<std::uint8_t>(state.detour));
+  out.left_start_ns(state.left.start_ns);
+  out.left_end_ns(state.left.end_ns);
+  out.left_at_ns(state.left.at_ns);
+  out.left_duration_s(state.left.segment.duration_s);
+  out.left_x(state.left.segment.x);
+  out.left_y(state.left.segment.y);
+  out.left_z(state.left.segment.z);
+  out.left_yaw(state.left.segment.yaw);
   out.trajectory_id(state.trajectory_id);
   out.next_segment(state.next_segment);
   out.setpoint_ns(state.setpoint_ns);
+  out.setpoint_kind(static_cast<std::uint8_t>(state.setpoint_kind));
+  out.setpoint_attitude(state.direct.q_ned_from_frd);
+  out.setpoint_body_rates(state.direct.body_rates_frd);
+  out.setpoint_thrust(state.direct.thrust);
   out.contact_since_ns(state.contact_since_ns);
   out.low_battery_since_ns(state.low_battery_since_ns);
   out.critical_battery_since_ns(state.critical_battery_since_ns);

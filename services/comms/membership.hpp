@@ -1,4 +1,5 @@
-// What a process is to Fast DDS while it belongs to a domain, and what stays of it when that ends and begins anew.
+// What a process is to Fast DDS while it belongs to a domain, and what stays of it when that ends and begins
+// anew.
 #pragma once
 
 #include <atomic>

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cctype>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <vector>
 
@@ -41,6 +43,7 @@
 #include "services/comms/profiles.hpp"
 #include "services/comms/reunions.hpp"
 #include "services/comms/shared_memory.hpp"
+#include "services/comms/tolerant_type.hpp"
 
 // Each message type that is a topic's.
 // clang-format off
@@ -82,10 +85,10 @@ void check(const NodeSettings& settings) {
   }
 }
 
-}  // namespace
-
 constexpr std::chrono::milliseconds kReunionPatience{1000};
 constexpr std::chrono::milliseconds kLookPeriod{250};
+
+}  // namespace
 
 struct Node::Impl final : public dds::DomainParticipantListener {
   using Meetings = Reunions<rtps::GuidPrefix_t>;
@@ -117,8 +120,8 @@ struct Node::Impl final : public dds::DomainParticipantListener {
     endpoints.erase(std::remove(endpoints.begin(), endpoints.end(), endpoint), endpoints.end());
   }
 
-  // Where a peer came back without its endpoints, this process leaves the domain and joins it anew, with all that it publishes and
-  // subscribes; nobody takes it for the one that was there.
+  // Where a peer came back without its endpoints, this process leaves the domain and joins it anew, with all
+  // that it publishes and subscribes; nobody takes it for the one that was there.
   void look_after_reunions() {
     {
       const std::lock_guard<std::mutex> lock(peers_mutex);
@@ -143,13 +146,14 @@ struct Node::Impl final : public dds::DomainParticipantListener {
     membership.reset();
     const std::lock_guard<std::mutex> lock(peers_mutex);
     peers.clear();
+    writers.clear();
     reunions.clear();
   }
 
   template <class T>
   dds::Topic* topic_in(Membership& in, const char* name) const {
     return in.topic("rt/" + settings.vehicle + "/" + name,
-                    dds::TypeSupport(new typename PubSubTypeOf<T>::type()));
+                    dds::TypeSupport(new TolerantType<typename PubSubTypeOf<T>::type>()));
   }
   int deadline_ms(int of_topic) const { return settings.deadlines ? of_topic : 0; }
 
@@ -166,6 +170,7 @@ struct Node::Impl final : public dds::DomainParticipantListener {
       }
       case rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT:
       case rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT: {
+        forget_writers(info.info.m_guid.guidPrefix);
         const auto peer = peers.find(info.info.m_guid);
         if (peer == peers.end()) return;
         const PeerEvent event{peer->second, false,
@@ -182,8 +187,19 @@ struct Node::Impl final : public dds::DomainParticipantListener {
   }
 
   void on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& info) override {
-    if (info.status == rtps::WriterDiscoveryInfo::DISCOVERED_WRITER)
+    if (info.status == rtps::WriterDiscoveryInfo::DISCOVERED_WRITER) {
       note_endpoint(info.info.guid(), Meetings::kWriter);
+      const std::lock_guard<std::mutex> lock(peers_mutex);
+      writers[info.info.guid()] = info.info.topicName().c_str();
+    } else if (info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) {
+      const std::lock_guard<std::mutex> lock(peers_mutex);
+      writers.erase(info.info.guid());
+    }
+  }
+  // With the lock held.
+  void forget_writers(const rtps::GuidPrefix_t& participant) {
+    for (auto writer = writers.begin(); writer != writers.end();)
+      writer = writer->first.guidPrefix == participant ? writers.erase(writer) : std::next(writer);
   }
   void on_subscriber_discovery(dds::DomainParticipant*, rtps::ReaderDiscoveryInfo&& info) override {
     if (info.status == rtps::ReaderDiscoveryInfo::DISCOVERED_READER)
@@ -203,6 +219,7 @@ struct Node::Impl final : public dds::DomainParticipantListener {
 
   std::mutex peers_mutex;
   std::map<rtps::GUID_t, std::string> peers;
+  std::map<rtps::GUID_t, std::string> writers;  // of others, of whichever vehicle: their topics
   std::function<void(const PeerEvent&)> peer_callback;
 
   Meetings reunions;
@@ -346,6 +363,13 @@ class DdsReader final : public detail::Reader, private Endpoint, private dds::Da
 Node::Node(const NodeSettings& settings) : impl_(std::make_shared<Impl>(settings)) {}
 
 Node::~Node() { on_peer({}); }
+
+std::vector<std::string> Node::topics_seen() const {
+  const std::lock_guard<std::mutex> lock(impl_->peers_mutex);
+  std::set<std::string> topics;
+  for (const auto& writer : impl_->writers) topics.insert(writer.second);
+  return {topics.begin(), topics.end()};
+}
 
 void Node::on_peer(std::function<void(const PeerEvent&)> callback) {
   const std::lock_guard<std::mutex> lock(impl_->peers_mutex);

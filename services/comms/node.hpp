@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "services/comms/topics.hpp"
 
@@ -110,6 +111,11 @@ class Node {
   template <class T>
   Subscription subscribe(const Topic<T>& topic, std::function<void(const T&)> callback,
                          Delivery delivery = Delivery::kShared);
+
+  // The topics that others in the domain publish now, whichever vehicle's, by their names on the wire
+  // ("rt/kl1/imu"); sorted, each once. Those of processes that keep to the loopback interface are there only
+  // for who does so too.
+  std::vector<std::string> topics_seen() const;
 
   // Tells of peers that come and go, also of those that were there before the call. Runs in a middleware
   // thread. A later call takes the place of an earlier one; when it returns, the earlier callback runs no

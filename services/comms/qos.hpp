@@ -22,8 +22,8 @@ constexpr std::chrono::milliseconds kReliableWriteTimeout{200};
 // A process says that it lives once in each period; after a lease without it the others take it for dead.
 constexpr std::chrono::milliseconds kLivelinessPeriod{400};
 constexpr std::chrono::milliseconds kLivelinessLease{2000};
-// At its start more often, and vehicle and motion capture always: a controller that is started again in flight must
-// find them at once, and hears of them with their next announcement.
+// At its start more often, and vehicle and motion capture always: a controller that is started again in
+// flight must find them at once, and hears of them with their next announcement.
 constexpr std::chrono::milliseconds kFixturePeriod{100};
 constexpr int kFirstAnnouncements = 20;
 constexpr std::chrono::milliseconds kFirstAnnouncementPeriod{25};

@@ -6,9 +6,10 @@
 
 namespace swiftlet::comms {
 
-// Both sides forget each other when a network is cut. When only one process was away (stopped, or starved of its cores), the
-// others forget it, but it may remember them; then Fast DDS 2.9 does not always tell them its endpoints again, and they do not hear
-// each other for good. Such a peer is known by coming back without the kinds of endpoints that it had.
+// Both sides forget each other when a network is cut. When only one process was away (stopped, or starved of
+// its cores), the others forget it, but it may remember them; then Fast DDS 2.9 does not always tell them its
+// endpoints again, and they do not hear each other for good. Such a peer is known by coming back without the
+// kinds of endpoints that it had.
 template <class Id>
 class Reunions {
  public:

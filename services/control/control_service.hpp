@@ -31,8 +31,8 @@ namespace swiftlet::services {
 // inner loop runs in the thread that brings the last of the samples that belong together.
 class ControlService {
  public:
-  // Throws std::invalid_argument as FlightController does, std::runtime_error as Node does. strength: of several
-  // standbys the strongest takes over first.
+  // Throws std::invalid_argument as FlightController does, std::runtime_error as Node does. strength: of
+  // several standbys the strongest takes over first.
   ControlService(const plant::Vehicle& vehicle, const control::ControlSettings& settings, int strength,
                  comms::Node& node, const runtime::RealtimeSettings& realtime, runtime::Clock clock);
 

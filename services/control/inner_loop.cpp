@@ -43,7 +43,17 @@ void InnerLoop::take_samples() {
     ++rotor_samples_;
   }
   control::Setpoint new_setpoint;
-  if (setpoint.take(new_setpoint) && role_ == Role::kActive) controller_.on_setpoint(new_setpoint);
+  if (setpoint.take(new_setpoint) && role_ == Role::kActive) take_setpoint(new_setpoint);
+}
+
+void InnerLoop::take_setpoint(const control::Setpoint& new_setpoint) {
+  const control::Outcome outcome = controller_.on_setpoint(new_setpoint);
+  if (outcome.accepted) {
+    ++setpoints_.taken;
+    return;
+  }
+  ++setpoints_.refused;
+  setpoints_.refusal = outcome;
 }
 
 void InnerLoop::follow(std::uint32_t term) {
@@ -52,9 +62,11 @@ void InnerLoop::follow(std::uint32_t term) {
   if (newest.term == term) {
     controller_.adopt(newest.flight, newest.mission, newest.trajectory);
     accepted_ = newest.accepted;
-    const control::Mode mode = newest.flight.supervisor.mode;
-    knows_plan_ = (mode != control::Mode::kMission || newest.mission != nullptr) &&
-                  (mode != control::Mode::kTrajectory || newest.trajectory != nullptr);
+    const control::SupervisorState& state = newest.flight.supervisor;
+    const bool has_mission =
+        state.mission.state == control::MissionState::kUploaded || control::is_under_way(state.mission.state);
+    knows_plan_ = (!has_mission || newest.mission != nullptr) &&
+                  (state.mode != control::Mode::kTrajectory || newest.trajectory != nullptr);
     looks_since_ns_ = kLooksNot;
   }
   taken_handover_.store(newest.number, std::memory_order_release);
@@ -133,6 +145,7 @@ bool InnerLoop::finish(std::int64_t now_ns) {
   snapshot_.role = role_;
   snapshot_.saturated = saturated_;
   snapshot_.timing = timing_.figures();
+  snapshot_.setpoints = setpoints_;
   if (snapshots.push(snapshot_)) {
     told_ = status;
     told_role_ = role_;

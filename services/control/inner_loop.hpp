@@ -16,6 +16,13 @@
 
 namespace swiftlet::services {
 
+// What became of the setpoints that came while this controller was the active one.
+struct SetpointTally {
+  std::uint64_t taken = 0;
+  std::uint64_t refused = 0;
+  control::Outcome refusal;  // the last
+};
+
 // What a step says to the rest of the process.
 struct Snapshot {
   std::int64_t stamp_ns = 0;  // of the IMU sample
@@ -30,6 +37,7 @@ struct Snapshot {
   Role role = Role::kStandby;
   bool saturated = false;  // in any step since the last snapshot
   StepTiming::Figures timing;
+  SetpointTally setpoints;
 };
 
 using AcceptedRequests = decltype(comms::ControllerReport::accepted);
@@ -40,7 +48,8 @@ struct Handover {
   std::uint32_t term = 0;
   control::FlightState flight;
   AcceptedRequests accepted{};
-  const control::Mission* mission = nullptr;  // what is flown there; null if it is not known here
+  // What is there or flown; null if it is not known here.
+  const control::Mission* mission = nullptr;
   const control::Trajectory* trajectory = nullptr;
 };
 
@@ -65,15 +74,15 @@ class InnerLoop {
 
   // By the IMU thread: step() gives the command; once it is sent, finish() does the rest of the step and
   // returns whether there is new output. now_ns: monotonic time of the sample's arrival, or of the command's
-  // departure.
-  // A standby steps as the active one does and follows the flight of that term; its command is not for sending.
+  // departure. A standby steps as the active one does and follows the flight of that term; its command is not
+  // for sending.
   plant::ActuatorCommand step(const plant::ImuSample& sample, std::int64_t now_ns, Role role = Role::kActive,
                               std::uint32_t followed_term = 0);
   bool finish(std::int64_t now_ns);
 
-  // Nobody was there to go on from: from the next step on looks whether the vehicle flies, and takes it into hold
-  // if it does. Until that is clear, for at most kLook, there are no commands to be sent: the vehicle goes on
-  // with its last one.
+  // Nobody was there to go on from: from the next step on looks whether the vehicle flies, and takes it into
+  // hold if it does. Until that is clear, for at most kLook, there are no commands to be sent: the vehicle
+  // goes on with its last one.
   void look_for_flight() { looks_since_ns_ = kLooksFromNow; }
   bool looking() const { return looks_since_ns_ != kLooksNot; }
   static constexpr std::int64_t kLookNs = 300'000'000;
@@ -93,6 +102,7 @@ class InnerLoop {
 
  private:
   void take_samples();
+  void take_setpoint(const control::Setpoint& setpoint);
   void follow(std::uint32_t term);
   void look(const plant::ImuSample& sample);
   void remember(const PendingRequest& accepted);
@@ -113,6 +123,7 @@ class InnerLoop {
   Role role_ = Role::kStandby;
   Role told_role_ = Role::kStandby;
   AcceptedRequests accepted_{};  // oldest first
+  SetpointTally setpoints_;
   std::int64_t looks_since_ns_ = kLooksNot;
   int rotor_samples_ = 0;    // of the rotors' speeds, since it looks
   bool knows_plan_ = false;  // of the flight that it follows

@@ -23,7 +23,7 @@ class PlanShelf {
 
   void put(std::unique_ptr<Plan> plan) { entries_.push_back({std::move(plan), 0}); }
 
-  // It was accepted: it is flown until another one is.
+  // It was accepted: it is kept or flown until another one is.
   void put_flown(std::unique_ptr<Plan> plan) {
     flown_ = plan.get();
     put(std::move(plan));

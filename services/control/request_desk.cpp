@@ -28,8 +28,18 @@ const char* name_of(control::RequestKind kind) {
       return "land";
     case control::RequestKind::kStop:
       return "stop";
-    case control::RequestKind::kMission:
+    case control::RequestKind::kMissionUpload:
       return "mission";
+    case control::RequestKind::kMissionStart:
+      return "mission start";
+    case control::RequestKind::kMissionPause:
+      return "mission pause";
+    case control::RequestKind::kMissionResume:
+      return "mission resume";
+    case control::RequestKind::kMissionSkip:
+      return "mission skip";
+    case control::RequestKind::kMissionClear:
+      return "mission clear";
     case control::RequestKind::kTrajectory:
       return "trajectory";
   }
@@ -67,10 +77,14 @@ void RequestDesk::on_mission(const comms::msg::Mission& message) {
   if (is_known(key)) return;
   auto pending = std::make_unique<PendingRequest>();
   pending->mission = std::make_unique<control::Mission>();
-  const control::Outcome outcome = read(message, limits_, *pending->mission);
-  if (!outcome.accepted) return refuse(key, control::RequestKind::kMission, outcome);
+  control::Outcome outcome = read(message, limits_, *pending->mission);
+  if (outcome.accepted && is_of_another(message)) {
+    outcome = control::refuse("another mission has the id %llu: a new one needs a new id",
+                              static_cast<unsigned long long>(message.id()));
+  }
+  if (!outcome.accepted) return refuse(key, control::RequestKind::kMissionUpload, outcome);
   std::tie(pending->client, pending->id) = key;
-  pending->request.kind = control::RequestKind::kMission;
+  pending->request.kind = control::RequestKind::kMissionUpload;
   pending->request.mission = pending->mission.get();
   submit(std::move(pending));
 }
@@ -87,6 +101,15 @@ void RequestDesk::on_trajectory(const comms::msg::Trajectory& message) {
   pending->request.kind = control::RequestKind::kTrajectory;
   pending->request.trajectory = pending->trajectory.get();
   submit(std::move(pending));
+}
+
+// Its id is that of a mission which is known here and says something else. One that says the same is asked
+// for once more.
+bool RequestDesk::is_of_another(const comms::msg::Mission& message) {
+  comms::msg::Mission known = mission(message.id());
+  if (known.id() != message.id()) return false;
+  known.client(message.client());
+  return known != message;
 }
 
 // A mission may come by two ways, as it is asked for and as it is flown, and each of them again.
@@ -116,7 +139,8 @@ void RequestDesk::follow(Handover handover) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const control::SupervisorState& state = handover.flight.supervisor;
   handover.number = ++handovers_;
-  if (state.mode == control::Mode::kMission) handover.mission = missions_.find(state.mission.id);
+  if (state.mission.state != control::MissionState::kNone)
+    handover.mission = missions_.find(state.mission.id);
   if (state.mode == control::Mode::kTrajectory) handover.trajectory = trajectories_.find(state.trajectory_id);
   missions_.lend(handover.mission, handover.number);
   trajectories_.lend(handover.trajectory, handover.number);

@@ -1,5 +1,5 @@
-// Takes requests in, has them judged by the inner loop and keeps the answers. At a standby's desk they are only
-// read: what the active controller accepts and flies is kept, so that it can be gone on with.
+// Takes requests in, has them judged by the inner loop and keeps the answers. At a standby's desk they are
+// only read: what the active controller accepts and flies is kept, so that it can be gone on with.
 #pragma once
 
 #include <atomic>
@@ -49,12 +49,13 @@ class RequestDesk {
   void attend(bool attends) { attends_.store(attends, std::memory_order_relaxed); }
   bool attends() const { return attends_.load(std::memory_order_relaxed); }
 
-  // What the active controller says: the mission or trajectory that it flies, and what it accepted. by any thread.
+  // What the active controller says: the mission that it keeps, the trajectory that it flies, and what it
+  // accepted. By any thread.
   void on_flown_mission(const comms::msg::Mission& message);
   void on_flown_trajectory(const comms::msg::Trajectory& message);
   void follow(Handover handover);
 
-  // What is flown, for the others to know; id 0 if it is not known here.
+  // What is kept or flown, for the others to know; id 0 if it is not known here.
   comms::msg::Mission mission(std::uint64_t id);
   comms::msg::Trajectory trajectory(std::uint64_t id);
 
@@ -62,6 +63,7 @@ class RequestDesk {
   using Key = std::pair<std::uint64_t, std::uint64_t>;  // client, id
 
   bool is_known(const Key& key);
+  bool is_of_another(const comms::msg::Mission& message);
   void submit(std::unique_ptr<PendingRequest> pending);
   void refuse(const Key& key, control::RequestKind kind, const control::Outcome& outcome);
   void settle(const Key& key, control::RequestKind kind, const control::Outcome& outcome);

@@ -27,8 +27,8 @@ struct Heartbeat {
 // The acting controller's commands carry its term; each takeover begins a higher one, so that whoever was
 // overtaken, perhaps while it was stopped, is told from whoever flies. The vehicle says with each IMU sample
 // which term it obeyed last and for which sample: that alone decides whether somebody flies it, in the
-// vehicle's time, so that a controller that was held up itself takes nobody for dead. With a vehicle that says
-// nothing, the heartbeats of the active controller decide.
+// vehicle's time, so that a controller that was held up itself takes nobody for dead. With a vehicle that
+// says nothing, the heartbeats of the active controller decide.
 //
 // One thread calls it. Nothing in it allocates.
 class Succession {
@@ -50,14 +50,15 @@ class Succession {
   bool continues() const { return continues_; }
 
   // Silence of the vehicle's active controller, in the vehicle's time, after which a standby takes over: the
-  // first in rank after kPatience, each after it kPerRank later. One that does not know the flight leaves time
-  // to those that do.
+  // first in rank after kPatience, each after it kPerRank later. One that does not know the flight leaves
+  // time to those that do.
   static constexpr std::int64_t kPatienceNs = 25'000'000;
   static constexpr std::int64_t kPerRankNs = 15'000'000;
   static constexpr std::int64_t kStrangersPatienceNs = 100'000'000;
   // Where the vehicle does not say whom it obeys: time to find an active controller that may be there.
   static constexpr std::int64_t kSearchNs = 1'000'000'000;
-  // The vehicle has not obeyed the last takeover, perhaps nobody: so long the one that took over is left to try.
+  // The vehicle has not obeyed the last takeover, perhaps nobody: so long the one that took over is left to
+  // try.
   static constexpr std::int64_t kTrialNs = 500'000'000;
   // A standby that was not heard for so long has no rank; an active one can no longer be gone on from.
   static constexpr std::int64_t kForgottenNs = 1'000'000'000;

@@ -67,7 +67,7 @@ void Telemetry::change_role() {
 }
 
 void Telemetry::publish_plan() {
-  const std::uint64_t mission = last_.status.mode == control::Mode::kMission ? last_.status.mission.id : 0;
+  const std::uint64_t mission = last_.status.mission.id;
   if (mission != 0 && mission != told_mission_) {
     const comms::msg::Mission message = desk_.mission(mission);
     if (message.id() == mission) flown_missions_.publish(message);
@@ -151,6 +151,9 @@ void Telemetry::publish_status() {
   message.period_jitter_p99_us(static_cast<double>(last_.timing.jitter_p99_ns) * 1e-3);
   message.period_jitter_max_us(static_cast<double>(last_.timing.jitter_max_ns) * 1e-3);
   message.ground_links(static_cast<std::uint8_t>(status.ground_links));
+  message.setpoints_taken(last_.setpoints.taken);
+  message.setpoints_refused(last_.setpoints.refused);
+  message.setpoint_refusal() = last_.setpoints.refusal.reason;
   message.realtime_scheduling(realtime_.load(std::memory_order_relaxed));
   statuses_.publish(message);
   saturated_ = false;

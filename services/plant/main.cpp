@@ -1,4 +1,5 @@
 // swiftlet-plant: the simulated vehicle.
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -38,7 +39,8 @@ struct Options {
   std::string vehicle = "vehicles/kaylion.yaml";
   std::string simulation = "simulation/default.yaml";
   std::uint64_t seed = 1;
-  int imu_rate = 0;  // Hz; 0: that of the simulation file
+  std::array<double, 2> start{};  // m, north and east
+  int imu_rate = 0;               // Hz; 0: that of the simulation file
   runtime::Clock clock = runtime::Clock::kRealtime;
   double speed = 0.0;  // 0: real time, or in lockstep as fast as the answers come
   LockstepSettings lockstep;
@@ -52,6 +54,8 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--seed", options.seed, "Of noise, biases and gusts")
       ->check(CLI::Range(std::numeric_limits<std::int64_t>::max()))
       ->capture_default_str();
+  app.add_option("--start", options.start, "Where it stands at first, m north and east of the origin")
+      ->check(CLI::Range(-1e3, 1e3));
   app.add_option("--imu-rate", options.imu_rate,
                  "IMU samples a second, 500 or 1000; default: the simulation file's")
       ->check(CLI::IsMember({500, 1000}));
@@ -223,7 +227,9 @@ void run(const Options& options) {
   comms::Node node(node_settings);
   comms::log_peers(node);
   Reporter reporter(node, vehicle, settings);
-  SimulatedVehicle simulated(vehicle, settings, options.seed, node);
+  plant::VehicleState initial;
+  initial.position_ned.head<2>() = Eigen::Vector2d(options.start[0], options.start[1]);
+  SimulatedVehicle simulated(vehicle, settings, options.seed, initial, node);
   spdlog::info("{} flies: vehicle {}, domain {}, clock {}, IMU at {:g} Hz, seed {}", vehicle.name,
                node_settings.vehicle, node_settings.domain, runtime::to_string(options.clock),
                settings.imu.rate_hz, options.seed);

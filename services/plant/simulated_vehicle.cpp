@@ -18,8 +18,8 @@ constexpr std::int64_t kReportPeriodNs = 50'000'000;
 }  // namespace
 
 SimulatedVehicle::SimulatedVehicle(const plant::Vehicle& vehicle, const plant::SimulationSettings& settings,
-                                   std::uint64_t seed, comms::Node& node)
-    : simulation_(vehicle, settings, seed),
+                                   std::uint64_t seed, const plant::VehicleState& initial, comms::Node& node)
+    : simulation_(vehicle, settings, seed, initial),
       command_path_(settings),
       watchdog_(vehicle.rotor_count(), std::llround(settings.command_timeout_s * 1e9)),
       answers_(plant::period_ns(settings.imu.rate_hz)),

@@ -50,7 +50,7 @@ struct ReceivedCommand {
 class SimulatedVehicle {
  public:
   SimulatedVehicle(const plant::Vehicle& vehicle, const plant::SimulationSettings& settings,
-                   std::uint64_t seed, comms::Node& node);
+                   std::uint64_t seed, const plant::VehicleState& initial, comms::Node& node);
 
   const plant::PlantSimulation& simulation() const { return simulation_; }
 

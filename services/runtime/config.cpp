@@ -59,6 +59,40 @@ std::string joined(const std::vector<std::string>& names) {
   return out;
 }
 
+// By how many letters that are put in, left out or replaced one becomes the other (Levenshtein 1966).
+std::size_t distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row[b.size()];
+}
+
+// ", nearest is hold_s", if one is near enough to have been meant: it begins alike, or few letters differ.
+std::string nearest_of(const std::vector<std::string>& names, const std::string& wanted) {
+  const auto nearest = std::min_element(names.begin(), names.end(), [&](const auto& a, const auto& b) {
+    return distance(a, wanted) < distance(b, wanted);
+  });
+  if (nearest == names.end()) return "";
+  const std::size_t longer = std::max(nearest->size(), wanted.size());
+  const bool begins_alike = wanted.size() >= 3 && nearest->compare(0, wanted.size(), wanted) == 0;
+  const std::size_t letters = distance(*nearest, wanted);
+  const bool few = 3 * letters <= longer || (letters <= 2 && longer > 3);
+  return begins_alike || few ? "; nearest is " + *nearest : "";
+}
+
+std::string unknown_key(const std::vector<std::string>& known, const std::string& key) {
+  if (known.empty()) return "is unknown, must be left out";
+  return "is unknown, must be one of " + joined(known) + nearest_of(known, key);
+}
+
 // Length of the UTF-8 character that text starts with; 0 if there is none (truncated, overlong, surrogate,
 // beyond U+10FFFF).
 std::size_t utf8_length(std::string_view text) {
@@ -270,9 +304,7 @@ void reject_unknown(const std::string& file, const Value& value) {
     const Value& child = *value.children[i];
     if (value.kind == Kind::kMap && !value.open &&
         std::find(value.asked.begin(), value.asked.end(), value.names[i]) == value.asked.end()) {
-      throw ConfigError(file, child.line, child.key,
-                        value.asked.empty() ? "is unknown, must be left out"
-                                            : "is unknown, must be one of " + joined(value.asked));
+      throw ConfigError(file, child.line, child.key, unknown_key(value.asked, value.names[i]));
     }
     reject_unknown(file, child);
   }
@@ -302,6 +334,17 @@ ConfigNode ConfigNode::at(const std::string& key) const {
   if (const auto child = find(key)) return *child;
   throw ConfigError(tree_->file, value_->line, value_->key.empty() ? key : value_->key + "." + key,
                     "is missing, must be given");
+}
+
+void ConfigNode::allow(std::initializer_list<const char*> keys) const {
+  if (value_->kind != Kind::kMap) fail_type("a map");
+  const std::vector<std::string> known(keys.begin(), keys.end());
+  for (std::size_t i = 0; i < value_->children.size(); ++i) {
+    const std::string& name = value_->names[i];
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    const Value& child = *value_->children[i];
+    throw ConfigError(tree_->file, child.line, child.key, unknown_key(known, name));
+  }
 }
 
 std::vector<std::pair<std::string, ConfigNode>> ConfigNode::entries() const {

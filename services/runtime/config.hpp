@@ -58,6 +58,10 @@ class ConfigNode {
   std::optional<ConfigNode> find(const std::string& key) const;
   std::vector<std::pair<std::string, ConfigNode>> entries() const;
 
+  // Map: throws for the first key that is none of these, with the nearest of them: before any is asked for,
+  // so that a misspelt one is not reported as the right one missing.
+  void allow(std::initializer_list<const char*> keys) const;
+
   // List: its values.
   std::vector<ConfigNode> items() const;
   std::vector<ConfigNode> items(std::size_t min_count, std::size_t max_count) const;

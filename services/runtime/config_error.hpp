@@ -7,12 +7,12 @@
 namespace swiftlet::runtime {
 
 // what() is one sentence: "FILE:LINE: KEY: is VALUE, must be LIMIT". A line of 0 and an empty key are left
-// out.
+// out, control characters shown as "?".
 class ConfigError : public std::runtime_error {
  public:
   ConfigError(const std::string& file, int line, const std::string& key, const std::string& message)
-      : std::runtime_error(file + (line > 0 ? ":" + std::to_string(line) : "") + ": " +
-                           (key.empty() ? "" : key + ": ") + message),
+      : std::runtime_error(printable(file + (line > 0 ? ":" + std::to_string(line) : "") + ": " +
+                                     (key.empty() ? "" : key + ": ") + message)),
         file_(file),
         line_(line),
         key_(key) {}
@@ -22,6 +22,13 @@ class ConfigError : public std::runtime_error {
   const std::string& key() const { return key_; }  // "motor.time_constant", "rotors[2].spin"; may be empty
 
  private:
+  static std::string printable(std::string text) {
+    for (char& c : text) {
+      if ((c >= 0 && c < 0x20 && c != '\n') || c == 0x7f) c = '?';
+    }
+    return text;
+  }
+
   std::string file_;
   int line_;
   std::string key_;

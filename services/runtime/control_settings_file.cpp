@@ -66,6 +66,7 @@ control::Limits read_limits(const ConfigNode& node) {
   limits.max_reference_acceleration = node.at("max_reference_acceleration_m_s2").number();
   limits.max_reference_jerk = node.at("max_reference_jerk_m_s3").number();
   limits.max_yaw_rate = node.at("max_yaw_rate_rad_s").number();
+  limits.max_body_rate = node.at("max_body_rate_rad_s").number();
   limits.fence_min_ned = node.at("fence_min_ned_m").vector3();
   limits.fence_max_ned = node.at("fence_max_ned_m").vector3();
   return limits;

@@ -1,6 +1,6 @@
 // The simulation file: YAML with the keys of plant/simulation/settings.hpp, their units in their names.
-// config/simulation/default.yaml shows all of them but `faults`, the list of faults to inject, which may be left
-// out; faults_example.yaml shows those.
+// config/simulation/default.yaml shows all of them but `faults`, the list of faults to inject, which may be
+// left out; faults_example.yaml shows those.
 #pragma once
 
 #include <string>

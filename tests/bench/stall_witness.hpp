@@ -1,5 +1,6 @@
-// What the computer itself takes from every process: a thread on each core, above all others, that does nothing but look at the
-// clock. Without the right to real-time priorities it sees what other processes take, too. On a virtual machine the host stops cores; nothing that runs on them can answer meanwhile.
+// What the computer itself takes from every process: a thread on each core, above all others, that does
+// nothing but look at the clock. Without the right to real-time priorities it sees what other processes take,
+// too. On a virtual machine the host stops cores; nothing that runs on them can answer meanwhile.
 #pragma once
 
 #include <atomic>
@@ -18,8 +19,8 @@ class StallWitness {
   StallWitness(const StallWitness&) = delete;
   StallWitness& operator=(const StallWitness&) = delete;
 
-  // Of the cycles of the core that lost most, how many could not be answered within a period because the core stood still, in
-  // percent.
+  // Of the cycles of the core that lost most, how many could not be answered within a period because the core
+  // stood still, in percent.
   double lost_percent() const;
 
  private:

@@ -218,6 +218,40 @@ class Vehicle {
       throw std::runtime_error("a vehicle did not take off");
   }
 
+  // Of a vehicle that hovers: from the upload of a mission of so many waypoints until it says that it flies
+  // it; with how much of that until the upload is answered, s.
+  struct MissionStart {
+    double uploaded_s = 0.0;
+    double started_s = 0.0;
+  };
+  MissionStart start_mission(std::size_t waypoints) {
+    ground::Client client(network_);
+    if (!client.wait(10s, [](const ground::View& view) { return view.mission.seen(); }))
+      throw std::runtime_error("a vehicle fell silent");
+    control::Mission mission;
+    mission.items.resize(waypoints);
+    for (std::size_t i = 0; i < waypoints; ++i)
+      mission.items[i].position_ned = {0.5 * static_cast<double>(i % 3), 0.5 * static_cast<double>(i % 2),
+                                       -1.0};
+    MissionStart took;
+    const auto begin = ground::Clock::now();
+    const auto passed_s = [begin] {
+      return std::chrono::duration<double>(ground::Clock::now() - begin).count();
+    };
+    ground::Answer answer = client.upload(mission, 10s);
+    took.uploaded_s = passed_s();
+    if (answer.accepted())
+      answer = client.mission_command(msg::Command_Constants::MISSION_START, client.mission_id(), 10s);
+    if (!answer.accepted()) throw std::runtime_error(answer.reason);
+    const bool runs = client.wait(10s, [&](const ground::View& view) {
+      return view.mission.message.mission_id() == client.mission_id() &&
+             view.mission.message.state() == msg::MissionStatus_Constants::RUNNING;
+    });
+    took.started_s = passed_s();
+    if (!runs) throw std::runtime_error("a mission was not started");
+    return took;
+  }
+
   void begin() { begin_ = read(); }
   VehicleFigures end() {
     VehicleFigures figures = read();
@@ -268,8 +302,8 @@ class Vehicle {
   VehicleFigures begin_;
 };
 
-// Figures of vehicles that hover side by side, from their take-off on; counts are of the last `seconds`. stalls: what the computer
-// takes meanwhile, in percent of the cycles; null: nobody looks.
+// Figures of vehicles that hover side by side, from their take-off on; counts are of the last `seconds`.
+// stalls: what the computer takes meanwhile, in percent of the cycles; null: nobody looks.
 std::vector<VehicleFigures> hover(int vehicles, int rate_hz, bool realtime, double seconds,
                                   bool loaded = false, double* stalls = nullptr) {
   const tests::TemporaryFolder folder;
@@ -411,6 +445,18 @@ void simulated_time(Table& table) {
     table.add({name, cpu_ns(entry), "ns", "the target", 2000.0, ""});
 }
 
+void missions(Table& table) {
+  constexpr std::size_t kWaypoints = 1000;
+  table.section("(f) a mission of 1,000 waypoints, to a vehicle that hovers");
+  const tests::TemporaryFolder folder;
+  Vehicle vehicle(1, 500, true, folder.path());
+  vehicle.take_off();
+  const Vehicle::MissionStart took = vehicle.start_mission(kWaypoints);
+  table.add({"until its upload is answered", 1e3 * took.uploaded_s, "ms", "", 0.0, ""});
+  table.add(
+      {"until the vehicle says that it flies it", 1e3 * took.started_s, "ms", "the target", 1000.0, ""});
+}
+
 constexpr double kFleetShare = 4.0;  // as long again, for counts that are small
 
 void fleets(Table& table, const Options& options) {
@@ -448,6 +494,7 @@ void run(const Options& options) {
   if (wanted("latency")) latency_and_load(table, options);
   if (wanted("jitter")) jitter(table, options);
   if (wanted("simulation")) simulated_time(table);
+  if (wanted("missions")) missions(table);
   if (wanted("fleet")) fleets(table, options);
   table.end();
 }
@@ -456,7 +503,7 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--seconds", options.seconds, "Of each measurement in real time")
       ->check(CLI::Range(1.0, 3600.0));
   app.add_option("--only", options.only, "Of these sections; several may be given")
-      ->check(CLI::IsMember({"latency", "jitter", "simulation", "fleet"}));
+      ->check(CLI::IsMember({"latency", "jitter", "simulation", "missions", "fleet"}));
   app.add_flag("--json", options.json, "Print JSON");
 }
 

@@ -1,6 +1,6 @@
-// The tracking table of the field: five paths flown in one process, the 3-D error against truth, once with perfect state
-// feedback and once with all sensor models. Figures of other projects are those that were measured on such a machine with
-// their own vehicles, gains and perfect state feedback.
+// The tracking table of the field: five paths flown in one process, the 3-D error against truth, once with
+// perfect state feedback and once with all sensor models. Figures of other projects are those that were
+// measured on such a machine with their own vehicles, gains and perfect state feedback.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -97,8 +97,8 @@ std::array<Vector2d, 5> corners(double length) {
   return {Vector2d{0, 0}, Vector2d{length, 0}, Vector2d{length, length}, Vector2d{0, length}, Vector2d{0, 0}};
 }
 
-// Sides at constant speed: the velocity steps at the corners. A vehicle cannot follow a step; the trajectory rounds each off
-// within kBlend before and after it.
+// Sides at constant speed: the velocity steps at the corners. A vehicle cannot follow a step; the trajectory
+// rounds each off within kBlend before and after it.
 Path square(const std::string& name, double length) {
   constexpr double kBlend = 0.22;  // s
   const auto at = corners(length);
@@ -136,7 +136,8 @@ Path minimum_jerk_square() {
   return {"sq2j", {}, trajectory, 0.0, 2.0 * kHold + 4.0 * kSide};
 }
 
-// Laps of a trajectory file of the Crazyswarm form: duration, then eight coefficients each of x, y, z and yaw, in ENU.
+// Laps of a trajectory file of the Crazyswarm form: duration, then eight coefficients each of x, y, z and
+// yaw, in ENU.
 Path figure_of_eight(const std::string& file, int laps) {
   std::vector<std::string> columns{"duration"};
   for (const char* axis : {"x", "y", "z", "yaw"}) {
@@ -163,7 +164,8 @@ Path figure_of_eight(const std::string& file, int laps) {
   return path;
 }
 
-// x = 2 sin(w t), y = sin(2 w t), 10 s a lap, as septics of half a second; 10 s before get up speed from rest.
+// x = 2 sin(w t), y = sin(2 w t), 10 s a lap, as septics of half a second; 10 s before get up speed from
+// rest.
 Path lemniscate() {
   constexpr double kLap = 10.0;
   constexpr double kPiece = 0.5;

@@ -54,6 +54,22 @@ TEST_F(BadInput, MissionOutsideTheFence) {
   expect_refusal({file}, file + ":5: items[1].position_m: east is 40 m, must be inside the fence, -3 to 3 m");
 }
 
+TEST_F(BadInput, SeveralVehicles) {
+  const std::string file = folder_.write("mission.yaml", kMission);
+  expect_refusal({file, "--vehicle-name", "kl1,kl1"}, "names kl1 twice");
+  expect_refusal({file, "--vehicle-name", "kl1,,kl2"}, "each of them must be 1 to 64 letters, digits and _");
+  expect_refusal({file + "," + file, "--vehicle-name", "a,b,c"},
+                 "there are 2 for 3 vehicles, must be one for all or one for each");
+  expect_refusal({file, "--vehicle-name", "a,b,c,d,e,f,g,h,i,j,k,l,m"},
+                 "names 13 vehicles, at most 12 fly from one command");
+  expect_refusal({file, "--vehicle-name", "a,b", "--spacing", "40"},
+                 "mission.yaml: begun 0 m north and -20 m east of the origin: item 2: y is -20.000 m");
+  const Ending sent =
+      run_program("swiftlet", {"goto", "0", "0", "-1", "--vehicle-name", "kl1,kl2"}, folder_.path());
+  EXPECT_EQ(sent.exit_code, 2);
+  EXPECT_NE(sent.errors.find("must be 1 to 64 letters, digits and _"), std::string::npos) << sent.errors;
+}
+
 TEST_F(BadInput, MissionThatIsNotThere) { expect_refusal({"nowhere.yaml"}, "nowhere.yaml: is not found"); }
 
 TEST_F(BadInput, MissionThatIsCutShort) {
@@ -69,7 +85,7 @@ TEST_F(BadInput, MissionWithoutATakeoff) {
 TEST_F(BadInput, MissionWithoutALand) {
   const std::string file =
       folder_.write("up.yaml", replaced(kMission, "  - {kind: land, speed_m_s: 0.5}\n", ""));
-  expect_refusal({file}, file + ": items: the last is no land");
+  expect_refusal({file}, file + ":5: items[1]: is the last item, which must be a land");
 }
 
 TEST_F(BadInput, MissionThatTakesTooLong) {
@@ -121,7 +137,7 @@ TEST_F(BadInput, OfTheOnlineCommands) {
   refuses({"goto", "1", "2", "nan"}, "nan is not a finite number");
   refuses({"takeoff", "-1"}, "must be a finite number above 0");
   refuses({"land", "--speed", "0"}, "must be a finite number above 0");
-  refuses({"mission", folder_.write("far.yaml", replaced(kMission, "[1, 0, -1]", "[1, 40, -1]"))},
+  refuses({"mission", "check", folder_.write("far.yaml", replaced(kMission, "[1, 0, -1]", "[1, 40, -1]"))},
           "east is 40 m");
   refuses({"circle"}, "circle");
   refuses({}, "swiftlet: a command is required");
@@ -129,7 +145,7 @@ TEST_F(BadInput, OfTheOnlineCommands) {
 
 TEST_F(BadInput, HelpIsNone) {
   for (const char* command : {"fly", "arm", "disarm", "takeoff", "goto", "land", "hold", "stop", "mission",
-                              "trajectory", "status", "gains", "identify"}) {
+                              "trajectory", "stream", "status", "watch", "list", "gains", "identify"}) {
     const Ending end = run_program("swiftlet", {command, "--help"}, folder_.path());
     EXPECT_EQ(end.exit_code, 0);
     EXPECT_NE(end.output.find("example: swiftlet " + std::string(command)), std::string::npos) << end.output;

@@ -1,5 +1,5 @@
-// What goes wrong with the sensors and the vehicle, flown by real processes in lockstep: one fault a flight, at
-// the same place in each. What the vehicle did is told by its trace, which is ground truth.
+// What goes wrong with the sensors and the vehicle, flown by real processes in lockstep: one fault a flight,
+// at the same place in each. What the vehicle did is told by its trace, which is ground truth.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -36,7 +36,8 @@ struct Moment {
   bool commanded = false;  // the rotors are told to turn
 };
 
-// The columns of trace.csv: t_ns,px,py,pz,vx,vy,vz,qw,qx,qy,qz,p,q,r,om1..om4,v_s,on_ground,mocap_frame,running,...
+// The columns of trace.csv:
+// t_ns,px,py,pz,vx,vy,vz,qw,qx,qy,qz,p,q,r,om1..om4,v_s,on_ground,mocap_frame,running,...
 std::vector<Moment> read_trace(const std::filesystem::path& file) {
   std::vector<Moment> moments;
   std::ifstream in(file);

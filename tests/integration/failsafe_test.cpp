@@ -1,5 +1,5 @@
-// Faults of processes and of the wire, in real time: one is killed, stopped, started again, or its clock steps.
-// What the vehicle did is told by ground truth, why by control_status.
+// Faults of processes and of the wire, in real time: one is killed, stopped, started again, or its clock
+// steps. What the vehicle did is told by ground truth, why by control_status.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

@@ -5,12 +5,17 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
 
 #include <gtest/gtest.h>
 
 #include "control/mode.hpp"
 #include "ground/client.hpp"
+#include "services/comms/convert.hpp"
 #include "services/comms/domain_claim.hpp"
+#include "services/comms/node.hpp"
 #include "services/runtime/vehicle_file.hpp"
 #include "tests/integration/program.hpp"
 #include "tests/support/eventually.hpp"
@@ -129,7 +134,9 @@ TEST_F(FakeVehicleFlight, FliesAMission) {
   mission.items[0].position_ned = {0.0, 0.0, -0.5};
   mission.items[1].position_ned = {0.0, 0.0, -0.8};
   mission.items[2].kind = control::MissionItemKind::kLand;
-  const ground::Answer answer = client_.upload(mission, kTimeout);
+  ground::Answer answer = client_.upload(mission, kTimeout);
+  ASSERT_TRUE(answer.accepted()) << answer.reason;
+  answer = client_.mission_command(msg::Command_Constants::MISSION_START, client_.mission_id(), kTimeout);
   ASSERT_TRUE(answer.accepted()) << answer.reason;
   ASSERT_TRUE(client_.wait(40s, [&](const View& view) {
     return view.mission.message.mission_id() == client_.mission_id() &&
@@ -171,6 +178,59 @@ TEST_F(FakeVehicleFlight, TheLongestMissionFitsOnTheWire) {
     return view.mission.message.mission_id() == client_.mission_id() &&
            view.mission.message.item_count() == control::kMaxMissionItems;
   }));
+}
+
+// As `./dev bench --only missions` measures it, with room for a busy computer: the target is 1 s.
+TEST_F(FakeVehicleFlight, AMissionOfAThousandWaypointsIsUploadedAndStartedAtOnce) {
+  hover();
+  control::Mission mission;
+  mission.items.resize(1000);
+  for (control::MissionItem& item : mission.items) item.position_ned = {0.0, 0.0, -0.7};
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_TRUE(client_.upload(mission, kTimeout).accepted());
+  ASSERT_TRUE(client_.mission_command(msg::Command_Constants::MISSION_START, client_.mission_id(), kTimeout)
+                  .accepted());
+  ASSERT_TRUE(client_.wait(kTimeout, [&](const View& view) {
+    return view.mission.message.mission_id() == client_.mission_id() &&
+           view.mission.message.state() == msg::MissionStatus_Constants::RUNNING;
+  }));
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 5.0);
+}
+
+TEST_F(FakeVehicleFlight, AnotherMissionOfTheSameIdIsRefused) {
+  start_vehicle();
+  control::Mission mission;
+  mission.items.resize(2);
+  for (control::MissionItem& item : mission.items) item.position_ned = {0.0, 0.0, -0.7};
+  ASSERT_TRUE(client_.upload(mission, kTimeout).accepted());
+  comms::NodeSettings settings;
+  settings.name = "stranger";
+  settings.domain = claim_.domain();
+  settings.localhost_only = true;
+  comms::Node node(settings);
+  const auto missions = node.publish(comms::topics::kMission);
+  std::mutex mutex;
+  std::optional<msg::CommandAck> ack;
+  const auto acks =
+      node.subscribe<msg::CommandAck>(comms::topics::kCommandAck, [&](const msg::CommandAck& got) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        if (got.client() == 77) ack = got;
+      });
+  mission.id = client_.mission_id();
+  mission.items[1].position_ned.x() = 0.5;
+  msg::Mission other = comms::to_message(mission);
+  other.client(77);
+  ASSERT_TRUE(eventually([&] { return missions.matched() > 0; }, kTimeout));
+  ASSERT_TRUE(eventually(
+      [&] {
+        missions.publish(other);
+        const std::lock_guard<std::mutex> lock(mutex);
+        return ack.has_value();
+      },
+      kTimeout));
+  EXPECT_FALSE(ack->accepted());
+  EXPECT_EQ(ack->reason(),
+            "another mission has the id " + std::to_string(mission.id) + ": a new one needs a new id");
 }
 
 }  // namespace

@@ -6,104 +6,13 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "services/comms/domain_claim.hpp"
-#include "tests/integration/program.hpp"
-#include "tests/support/eventually.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/integration/online_flight.hpp"
 
 namespace swiftlet::tests {
 namespace {
 
 using namespace std::chrono_literals;
 using nlohmann::json;
-
-class Online : public testing::Test {
- protected:
-  std::vector<std::string> network() const {
-    return {"--domain", std::to_string(claim_.domain()), "--vehicle-name", "kl7", "--localhost-only"};
-  }
-  // `swiftlet` with the words of a command line.
-  Ending swiftlet(std::vector<std::string> words, std::chrono::milliseconds timeout = 30s) const {
-    for (const std::string& word : network()) words.push_back(word);
-    return run_program("swiftlet", std::move(words), folder_.path(), timeout);
-  }
-
-  comms::DomainClaim claim_;
-  TemporaryFolder folder_;
-};
-
-// In lockstep at the pace of the clock: the tools wait as they do with a real vehicle, and a machine that is busy slows the flight
-// down instead of failing it.
-class OnlineFlight : public Online {
- protected:
-  OnlineFlight()
-      : plant_("swiftlet-plant", lockstep({"--speed", "1"}), folder_.path()),
-        mocap_("swiftlet-mocap", lockstep(), folder_.path()),
-        control_("swiftlet-control", lockstep(), folder_.path()) {}
-
-  std::vector<std::string> lockstep(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> words = network();
-    words.insert(words.end(), {"--clock", "lockstep"});
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-  }
-
-  void SetUp() override {
-    ASSERT_TRUE(reaches("has_pose", [](const json& status) { return status.at("has_pose") == true; }));
-  }
-
-  json status() const {
-    const Ending end = swiftlet({"status", "--json", "--watch", "0.1"});
-    EXPECT_EQ(end.exit_code, 0) << end.errors;
-    return end.exit_code == 0 ? json::parse(end.output) : json();
-  }
-  template <class Predicate>
-  bool reaches(const char* what, const Predicate& predicate) const {
-    json last;
-    const bool reached = eventually([&] { return predicate(last = status()); }, 30s);
-    EXPECT_TRUE(reached) << what << "\n" << last << "\n" << control_.errors();
-    return reached;
-  }
-  bool reaches_mode(const std::string& mode) const {
-    return reaches(mode.c_str(), [&](const json& status) { return status.at("mode") == mode; });
-  }
-  bool reaches_place(double x, double y, double z) const {
-    return reaches("place", [&](const json& status) {
-      const auto& at = status.at("position_ned_m");
-      return std::hypot(at[0].get<double>() - x, at[1].get<double>() - y, at[2].get<double>() - z) < 0.02;
-    });
-  }
-  void expect_accepted(const std::vector<std::string>& words) const {
-    const Ending end = swiftlet(words);
-    EXPECT_EQ(end.exit_code, 0) << words.front() << ": " << end.errors;
-    EXPECT_EQ(end.output, words.front() + ": accepted by kl7\n");
-  }
-  void expect_refused(const std::vector<std::string>& words, const std::string& reason) const {
-    const Ending end = swiftlet(words);
-    EXPECT_EQ(end.exit_code, 1);
-    EXPECT_EQ(end.errors, "swiftlet: " + words.front() + ": " + reason + "\n");
-  }
-  void take_off() const {
-    expect_accepted({"arm"});
-    expect_accepted({"takeoff", "0.6"});
-    ASSERT_TRUE(reaches_mode("holding"));
-  }
-
-  std::vector<std::string> attach(const std::string& mission) const {
-    return {"fly",
-            mission,
-            "--attach",
-            "--domain",
-            std::to_string(claim_.domain()),
-            "--vehicle-name",
-            "kl7",
-            "--json",
-            "--record",
-            folder_.path() / "record"};
-  }
-
-  Program plant_, mocap_, control_;
-};
 
 TEST_F(OnlineFlight, EveryCommandDoesWhatItSays) {
   expect_refused({"takeoff"}, "cannot take off while disarmed; arm first");
@@ -123,9 +32,42 @@ TEST_F(OnlineFlight, EveryCommandDoesWhatItSays) {
   ASSERT_TRUE(reaches_place(-0.4, 0.3, 0.0));
 }
 
+TEST_F(OnlineFlight, WaitsUntilItIsDoneWhereThatIsAsked) {
+  const auto done = [this](std::vector<std::string> words) {
+    const std::string what = words.front();
+    words.insert(words.end(), {"--wait", "60"});
+    const Ending end = swiftlet(words, 70s);
+    EXPECT_EQ(end.exit_code, 0) << end.errors;
+    EXPECT_EQ(end.output, what + ": accepted by kl7\n" + what + ": done\n");
+  };
+  done({"arm"});
+  done({"takeoff", "0.6"});
+  EXPECT_EQ(status().at("mode"), "holding");
+  done({"goto", "0.4", "0", "-0.6", "--speed", "0.8"});
+  EXPECT_NEAR(status().at("position_ned_m")[0].get<double>(), 0.4, 0.05);
+  const Ending early = swiftlet({"goto", "-0.5", "0", "-0.6", "--speed", "0.3", "--wait", "0.3", "--json"});
+  EXPECT_EQ(early.exit_code, 1);
+  EXPECT_EQ(json::parse(early.output),
+            json({{"accepted", true}, {"done", false}, {"reason", "not done after 0.3 s"}}));
+  done({"hold"});
+  done({"land"});
+  EXPECT_EQ(status().at("mode"), "disarmed");
+}
+
+TEST_F(OnlineFlight, TellsWhatEndedItInstead) {
+  take_off();
+  std::vector<std::string> words = {"goto", "2", "0", "-0.6", "--speed", "0.3", "--wait", "60"};
+  for (const std::string& word : network()) words.push_back(word);
+  Program going("swiftlet", words, folder_.path());
+  ASSERT_TRUE(eventually([&] { return going.output() == "goto: accepted by kl7\n"; }, 20s));
+  expect_accepted({"land"});
+  EXPECT_EQ(going.wait(20s), 1);
+  EXPECT_EQ(going.errors(), "swiftlet: goto: it is landing: requested\n");
+}
+
 TEST_F(OnlineFlight, StopTurnsTheRotorsOffInTheAir) {
   take_off();
-  expect_accepted({"stop"});
+  expect_accepted({"stop", "--yes"});
   const json now = status();
   EXPECT_EQ(now.at("mode"), "stopped");
   EXPECT_EQ(now.at("reason"), "requested");
@@ -140,11 +82,11 @@ TEST_F(OnlineFlight, FollowsAMissionFileToItsEnd) {
                                          "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.8}\n"
                                          "  - {kind: waypoint, position_m: [0.4, 0, 0.6], speed_m_s: 0.8}\n"
                                          "  - {kind: land, speed_m_s: 0.8}\n");
-  const Ending unarmed = swiftlet({"mission", file});
+  const Ending unarmed = swiftlet({"mission", "fly", file});
   EXPECT_EQ(unarmed.exit_code, 1);
-  EXPECT_EQ(unarmed.errors, "swiftlet: mission hop: cannot start a mission while disarmed\n");
+  EXPECT_EQ(unarmed.errors, "swiftlet: mission hop: cannot start a mission while disarmed; arm first\n");
   expect_accepted({"arm"});
-  const Ending flown = swiftlet({"mission", file, "--json"}, 60s);
+  const Ending flown = swiftlet({"mission", "fly", file, "--json"}, 60s);
   EXPECT_EQ(flown.exit_code, 0) << flown.errors;
   EXPECT_EQ(json::parse(flown.output), json({{"mission", "hop"}, {"accepted", true}, {"completed", true}}));
   EXPECT_NE(flown.errors.find("2/3"), std::string::npos) << "no progress was shown: " << flown.errors;
@@ -154,12 +96,62 @@ TEST_F(OnlineFlight, FollowsAMissionFileToItsEnd) {
   EXPECT_NEAR(now.at("position_ned_m")[1].get<double>(), 0.4, 0.02) << "0.4 m east";
 }
 
+TEST_F(OnlineFlight, AMissionIsUploadedStartedPausedGoneOnWithSkippedAndCleared) {
+  const std::string file =
+      folder_.write("walk.yaml",
+                    "frame: ned\ntolerance_m: 0.1\nends: hovering\nitems:\n"
+                    "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.8}\n"
+                    "  - {kind: waypoint, position_m: [1, 0, -0.6], speed_m_s: 0.1}\n"
+                    "  - {kind: waypoint, position_m: [0.3, 0.2, -0.6], speed_m_s: 0.8}\n");
+  const auto mission_is = [&](const std::string& state) {
+    return reaches(state.c_str(),
+                   [&](const json& status) { return status.at("mission").at("state") == state; });
+  };
+  const auto accepted = [&](const std::string& request) {
+    const Ending end = swiftlet({"mission", request});
+    EXPECT_EQ(end.exit_code, 0) << end.errors;
+    EXPECT_EQ(end.output, "mission " + request + ": accepted by kl7\n");
+  };
+  const auto refused = [&](const std::string& request, const std::string& reason) {
+    const Ending end = swiftlet({"mission", request});
+    EXPECT_EQ(end.exit_code, 1);
+    EXPECT_EQ(end.errors, "swiftlet: mission " + request + ": " + reason + "\n");
+  };
+  accepted("clear");  // of none
+  const Ending uploaded = swiftlet({"mission", "upload", file, "--json"});
+  ASSERT_EQ(uploaded.exit_code, 0) << uploaded.errors;
+  const std::string id = std::to_string(json::parse(uploaded.output).at("mission_id").get<std::uint64_t>());
+  ASSERT_TRUE(mission_is("uploaded"));
+  refused("start", "cannot start a mission while disarmed; arm first");
+  refused("pause", "no mission is being flown");
+  expect_accepted({"arm"});
+  const Ending other = swiftlet({"mission", "start", "--id", "5"});
+  EXPECT_EQ(other.errors,
+            "swiftlet: mission start: mission 5 is not the one that is here: that is " + id + "\n");
+  accepted("start");
+  ASSERT_TRUE(
+      reaches("its second item", [](const json& status) { return status.at("mission").at("item") == 2; }));
+  accepted("pause");
+  ASSERT_TRUE(mission_is("paused"));
+  EXPECT_EQ(status().at("mode"), "holding");
+  refused("start", "mission " + id + " is paused: resume or clear it");
+  accepted("resume");
+  ASSERT_TRUE(mission_is("running"));
+  refused("clear", "mission " + id + " is being flown: hold, goto or land ends that");
+  accepted("skip");
+  ASSERT_TRUE(mission_is("completed"));
+  ASSERT_TRUE(reaches_place(0.3, 0.2, -0.6));
+  accepted("clear");
+  ASSERT_TRUE(mission_is("none"));
+}
+
 TEST_F(OnlineFlight, ASecondTrajectoryIsJoinedInTheMiddleOfTheFirst) {
   const std::string tour =
       folder_.write("tour.csv", "x,y,z\n0,0,1\n0.6,0,1\n0.6,0.6,1\n-0.6,0.6,1.2\n-0.6,-0.6,1\n0,0,1\n");
   const std::string other = folder_.write("other.csv", "0.3,0.4,0.8\n0.5,0,0.8\n");
-  const std::string mission = folder_.write(
-      "hop.yaml", "frame: ned\ntolerance_m: 0.1\nitems:\n  - {kind: takeoff, height_m: 1, speed_m_s: 0.8}\n");
+  const std::string mission = folder_.write("hop.yaml",
+                                            "frame: ned\ntolerance_m: 0.1\nends: hovering\nitems:\n  - "
+                                            "{kind: takeoff, height_m: 1, speed_m_s: 0.8}\n");
   const Ending disarmed = swiftlet({"trajectory", tour});
   EXPECT_EQ(disarmed.exit_code, 1);
   EXPECT_NE(disarmed.errors.find("tour: taken as waypoints in ENU"), std::string::npos) << disarmed.errors;
@@ -183,7 +175,7 @@ TEST_F(OnlineFlight, TellsThatAMissionWasAborted) {
                                          "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.8, hold_s: 100}\n"
                                          "  - {kind: land, speed_m_s: 0.8}\n");
   expect_accepted({"arm"});
-  std::vector<std::string> words = {"mission", file};
+  std::vector<std::string> words = {"mission", "fly", file};
   for (const std::string& word : network()) words.push_back(word);
   Program mission("swiftlet", words, folder_.path());
   ASSERT_TRUE(reaches("in the air", [](const json& status) { return status.at("airborne") == true; }));
@@ -239,13 +231,57 @@ TEST_F(OnlineFlight, StatusNamesAllThatAPilotAsksFor) {
       << text.output;
 }
 
+TEST_F(OnlineFlight, StopWithoutATerminalNeedsAYes) {
+  expect_accepted({"arm"});
+  const Ending end = swiftlet({"stop"});
+  EXPECT_EQ(end.exit_code, 2);
+  EXPECT_NE(end.errors.find("without a terminal say --yes"), std::string::npos) << end.errors;
+  EXPECT_EQ(status().at("mode"), "armed");
+}
+
+TEST_F(OnlineFlight, TheListShowsIt) {
+  ASSERT_TRUE(eventually(
+      [&] {
+        const Ending end = run_program(
+            "swiftlet", {"list", "--json", "--domain", std::to_string(claim_.domain()), "--localhost-only"},
+            folder_.path());
+        if (end.exit_code != 0) return false;
+        const json list = json::parse(end.output);
+        return list.size() == 1 && list[0].at("vehicle") == "kl7" && list[0].at("mode") == "disarmed" &&
+               list[0].at("model") == "kaylion" && list[0].at("controllers") == 1 &&
+               list[0].at("battery_v") > 4.0 && list[0].at("mocap_hz") > 20.0;
+      },
+      30s));
+  const Ending text = run_program(
+      "swiftlet", {"list", "--domain", std::to_string(claim_.domain()), "--localhost-only"}, folder_.path());
+  EXPECT_EQ(text.output.rfind("vehicle ", 0), 0U) << text.output;
+}
+
+TEST_F(Online, TheListOfNothingFails) {
+  const Ending end = run_program(
+      "swiftlet", {"list", "--time", "0.5", "--domain", std::to_string(claim_.domain()), "--localhost-only"},
+      folder_.path());
+  EXPECT_EQ(end.exit_code, 1);
+  EXPECT_NE(end.errors.find("swiftlet: list: no vehicle in domain " + std::to_string(claim_.domain())),
+            std::string::npos)
+      << end.errors;
+}
+
+TEST_F(OnlineFlight, WatchPrintsLinesWhereThereIsNoTerminal) {
+  const Ending end = swiftlet({"watch", "--duration", "3"});
+  EXPECT_EQ(end.exit_code, 0) << end.errors;
+  EXPECT_NE(end.output.find("kl7: disarmed (started), at ("), std::string::npos) << end.output;
+}
+
 TEST_F(Online, SaysWhereItLookedWhenNothingIsThere) {
   for (const char* command : {"status", "arm"}) {
     const Ending end = swiftlet({command, "--timeout", "0.5"});
     EXPECT_EQ(end.exit_code, 1);
     EXPECT_EQ(end.errors, "swiftlet: " + std::string(command) +
                               ": no control service for vehicle kl7 in domain " +
-                              std::to_string(claim_.domain()) + "; seen there: nothing\n");
+                              std::to_string(claim_.domain()) +
+                              "; seen there: nothing; is it started, and in this domain (--domain, "
+                              "ROS_DOMAIN_ID)?\n");
   }
 }
 
@@ -263,12 +299,29 @@ TEST_F(OnlineFlight, SaysWhenItStandsOnTheWrongNetwork) {
   EXPECT_NE(end.errors.find("control, mocap, plant (try --localhost-only)"), std::string::npos) << end.errors;
 }
 
+TEST_F(Online, NamesTheVehiclesThatAreThereInstead) {
+  Program plant("swiftlet-plant", network(), folder_.path());
+  ASSERT_TRUE(eventually(
+      [&] {
+        const Ending end = run_program("swiftlet",
+                                       {"arm", "--timeout", "1", "--domain", std::to_string(claim_.domain()),
+                                        "--vehicle-name", "kl8", "--localhost-only"},
+                                       folder_.path());
+        return end.exit_code == 1 &&
+               end.errors.find("seen there: nothing; other vehicles there: kl7 (--vehicle-name)") !=
+                   std::string::npos;
+      },
+      20s));
+}
+
 TEST_F(Online, SaysWhatItSawWhenOnlyControlIsMissing) {
   Program plant("swiftlet-plant", network(), folder_.path());
   ASSERT_TRUE(eventually(
       [&] {
         const Ending end = swiftlet({"arm", "--timeout", "1"});
-        return end.exit_code == 1 && end.errors.find("seen there: plant") != std::string::npos;
+        return end.exit_code == 1 &&
+               end.errors.find("seen there: plant; topics seen: battery, ground_truth, imu, ") !=
+                   std::string::npos;
       },
       20s));
 }

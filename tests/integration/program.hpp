@@ -12,8 +12,8 @@ namespace swiftlet::tests {
 
 class Program {
  public:
-  // `name` is that of a program in the build's bin folder. Output goes to files in `folder`. Ends with the
-  // test.
+  // `name` is that of a program in the build's bin folder, or a path from the root. Output goes to files in
+  // `folder`. Ends with the test.
   Program(const std::string& name, std::vector<std::string> arguments, const std::filesystem::path& folder);
   ~Program();
   Program(const Program&) = delete;

@@ -56,8 +56,8 @@ TEST_F(Standby, AKillInTheMissionIsHardlyFelt) {
     EXPECT_LT(felt.largest_step_m, kReferenceStep_m);
     EXPECT_EQ(felt.changes_of_controller, 1);
     EXPECT_EQ(mode(), "mission");
-    // It joins as a standby, however strong, and is the next to go on: with a mission that was uploaded before its
-    // time.
+    // It joins as a standby, however strong, and is the next to go on: with a mission that was uploaded
+    // before its time.
     flight_.start_controller(1000);
     flight_.wait_for_roles(1, 1);
     const std::int64_t joined_ns = flight_.stamp_ns();

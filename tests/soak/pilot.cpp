@@ -140,9 +140,12 @@ void Pilot::fly_mission(ground::ClosedLoop& loop, bool from_ground) {
     return;
   }
   Request request;
-  request.kind = RequestKind::kMission;
+  request.kind = RequestKind::kMissionUpload;
   request.mission = &mission;
   ask(loop, request, "mission of " + std::to_string(mission.items.size()) + " items");
+  request.kind = RequestKind::kMissionStart;
+  request.mission_id = mission.id;
+  ask(loop, request, "mission start");
 }
 
 void Pilot::fly_trajectory(ground::ClosedLoop& loop) {

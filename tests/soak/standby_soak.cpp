@@ -1,4 +1,5 @@
-// Kills the active controller again and again in flight: what the standby's takeover costs, a row for each kill.
+// Kills the active controller again and again in flight: what the standby's takeover costs, a row for each
+// kill.
 #include <algorithm>
 #include <csignal>
 #include <cstdio>

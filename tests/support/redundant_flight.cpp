@@ -172,6 +172,7 @@ void RedundantFlight::fly(const control::Mission& mission) {
   ask(msg::Command_Constants::ARM);
   const ground::Answer answer = client_.upload(mission, 10s);
   if (!answer.accepted()) throw std::runtime_error(answer.reason);
+  ask(msg::Command_Constants::MISSION_START);
 }
 
 std::int64_t RedundantFlight::stamp_ns() const {

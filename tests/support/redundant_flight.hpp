@@ -1,5 +1,5 @@
-// A vehicle that several controllers fly, each a process that can be killed, and an observer of what that does to
-// the flight.
+// A vehicle that several controllers fly, each a process that can be killed, and an observer of what that
+// does to the flight.
 #pragma once
 
 #include <cstdint>
@@ -104,8 +104,8 @@ class RedundantFlight {
   std::vector<comms::Subscription> subscriptions_;  // last: their callbacks use what stands above
 };
 
-// Laps of a square with sides of 2 m at 1 m height, straight up first and down last. One side is flown as the next, in
-// side_ns(speed).
+// Laps of a square with sides of 2 m at 1 m height, straight up first and down last. One side is flown as the
+// next, in side_ns(speed).
 control::Mission square_laps(double speed, int laps);
 std::int64_t side_ns(double speed);
 

@@ -1,5 +1,6 @@
 // Preloaded into a process, this shifts its CLOCK_REALTIME by as many seconds as the file that
-// SWIFTLET_CLOCK_SHIFT names holds (an int64, mapped, so that a test can step the clock while the process runs).
+// SWIFTLET_CLOCK_SHIFT names holds (an int64, mapped, so that a test can step the clock while the process
+// runs).
 #include <cstdint>
 #include <cstdlib>
 #include <ctime>

@@ -143,15 +143,69 @@ TEST(Convert, BrokenSamplesAreRefused) {
                                     [](msg::Setpoint& m) { m.yaw_rate(kInfinity); });
 }
 
+TEST(Convert, OfASetpointItsKindSaysWhatCounts) {
+  using control::SetpointKind;
+  control::Setpoint all = setpoint();
+  all.q_ned_from_frd = Eigen::Quaterniond(0.5, -0.5, 0.5, 0.5);
+  all.body_rates_frd = {0.1, 0.2, 0.3};
+  all.thrust = 9.0;
+  const auto taken = [&all](SetpointKind kind) {
+    all.kind = kind;
+    control::Setpoint out;
+    EXPECT_STREQ(from_message(to_message(all), out).text, "");
+    EXPECT_EQ(out.kind, kind);
+    return out;
+  };
+  const Eigen::Vector3d nothing = Eigen::Vector3d::Zero();
+  for (const SetpointKind kind :
+       {SetpointKind::kPosition, SetpointKind::kVelocity, SetpointKind::kAcceleration}) {
+    const control::Setpoint out = taken(kind);
+    EXPECT_EQ(out.position_ned, kind == SetpointKind::kPosition ? all.position_ned : nothing);
+    EXPECT_EQ(out.velocity_ned, kind == SetpointKind::kAcceleration ? nothing : all.velocity_ned);
+    EXPECT_EQ(out.acceleration_ned, all.acceleration_ned);
+    EXPECT_EQ(out.yaw_rad, all.yaw_rad);
+    EXPECT_EQ(out.yaw_rate, all.yaw_rate);
+    EXPECT_EQ(out.thrust, 0.0);
+  }
+  const control::Setpoint attitude = taken(SetpointKind::kAttitude);
+  EXPECT_EQ(attitude.q_ned_from_frd.coeffs(), all.q_ned_from_frd.coeffs());
+  EXPECT_EQ(attitude.body_rates_frd, all.body_rates_frd);
+  EXPECT_EQ(attitude.thrust, all.thrust);
+  EXPECT_EQ(attitude.acceleration_ned, nothing);
+  const control::Setpoint rates = taken(SetpointKind::kBodyRates);
+  EXPECT_EQ(rates.q_ned_from_frd.coeffs(), Eigen::Quaterniond::Identity().coeffs());
+  EXPECT_EQ(rates.body_rates_frd, all.body_rates_frd);
+
+  all.kind = SetpointKind::kVelocity;
+  msg::Setpoint message = to_message(all);
+  message.position_ned()[0] = kNan;
+  message.thrust(kNan);
+  message.q_ned_from_frd({0.0, 0.0, 0.0, 0.0});
+  control::Setpoint out;
+  EXPECT_STREQ(from_message(message, out).text, "");
+  message.yaw_free(true);
+  message.yaw(kNan);
+  EXPECT_STREQ(from_message(message, out).text, "");
+  expect_refused<control::Setpoint>(to_message(all), "kind is 5, must be at most 4",
+                                    [](msg::Setpoint& m) { m.kind(5); });
+  all.kind = SetpointKind::kAttitude;
+  expect_refused<control::Setpoint>(to_message(all), "thrust is nan, must be finite",
+                                    [](msg::Setpoint& m) { m.thrust(kNan); });
+  expect_refused<control::Setpoint>(
+      to_message(all), "q_ned_from_frd has the length 0, must be 1 within 0.001", [](msg::Setpoint& m) {
+        m.q_ned_from_frd({0.0, 0.0, 0.0, 0.0});
+      });
+}
+
 TEST(Convert, BrokenRequestsAreRefused) {
-  expect_refused<control::Request>(example<msg::Command>(), "kind is 7, must be at most 6",
-                                   [](msg::Command& m) { m.kind(7); });
+  expect_refused<control::Request>(example<msg::Command>(), "kind is 12, must be at most 11",
+                                   [](msg::Command& m) { m.kind(12); });
   expect_refused<control::Request>(example<msg::Command>(), "position_ned[1] is nan, must be finite",
                                    [](msg::Command& m) { m.position_ned()[1] = kNan; });
   expect_refused<control::Mission>(example<msg::Mission>(), "item 5: speed is nan, must be finite",
                                    [](msg::Mission& m) { m.items()[4].speed(kNan); });
-  expect_refused<control::Mission>(example<msg::Mission>(), "item 1: kind is 4, must be at most 3",
-                                   [](msg::Mission& m) { m.items()[0].kind(4); });
+  expect_refused<control::Mission>(example<msg::Mission>(), "item 1: kind is 5, must be at most 4",
+                                   [](msg::Mission& m) { m.items()[0].kind(5); });
   expect_refused<control::Mission>(example<msg::Mission>(), "segment 2: x[3] is nan, must be finite",
                                    [](msg::Mission& m) { m.segments()[1].x()[3] = kNan; });
   expect_refused<control::Mission>(example<msg::Mission>(),

@@ -33,7 +33,15 @@ inline plant::TruthSample truth_sample() {
           true};
 }
 inline control::Setpoint setpoint() {
-  return {1007, 17, {1.0, 2.0, -1.0}, {0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}, 0.7, 0.8};
+  control::Setpoint setpoint;
+  setpoint.stamp_ns = 1007;
+  setpoint.sequence = 17;
+  setpoint.position_ned = {1.0, 2.0, -1.0};
+  setpoint.velocity_ned = {0.1, 0.2, 0.3};
+  setpoint.acceleration_ned = {0.4, 0.5, 0.6};
+  setpoint.yaw_rad = 0.7;
+  setpoint.yaw_rate = 0.8;
+  return setpoint;
 }
 inline control::Request request() {
   control::Request request;
@@ -61,7 +69,8 @@ inline std::vector<control::PolynomialSegment> polynomials(std::size_t count) {
 }
 inline control::Trajectory trajectory(std::size_t segments) { return {19, polynomials(segments)}; }
 inline control::Mission mission(std::size_t items, std::size_t segments = 3) {
-  control::Mission mission{18, {}, polynomials(segments)};
+  control::Mission mission{18, {}, polynomials(segments), {}};
+  mission.bounds = {1.1, 1.2, 1.3, 1.4, true, {-1.5, -1.6, -1.7}, {1.8, 1.9, 0.1}};
   for (std::size_t i = 0; i < items; ++i) {
     const double x = static_cast<double>(i);
     mission.items.push_back(
@@ -70,6 +79,7 @@ inline control::Mission mission(std::size_t items, std::size_t segments = 3) {
   mission.items.back().kind = control::MissionItemKind::kTrajectory;
   mission.items.back().first_segment = 1;
   mission.items.back().segment_count = 2;
+  mission.items.front().acceptance_radius_m = 0.05;
   return mission;
 }
 
@@ -96,9 +106,14 @@ inline ControllerReport controller_report() {
   state.ground_z_ned = 0.25;
   state.mission = {29, control::MissionState::kRunning, 30, 31};
   state.item_end_ns = 32;
+  state.path.clock = {false, 55, 56, 1.5, {1.0, 0.0, 0.0, -2.9, 2.9, -0.8, 0.0, 0.0}};
+  state.detour = control::Detour::kReturning;
+  state.left = {trajectory(3).segments[2], 57, 58, 59};
   state.trajectory_id = 33;
   state.next_segment = 34;
   state.setpoint_ns = 35;
+  state.setpoint_kind = control::SetpointKind::kBodyRates;
+  state.direct = {{0.5, -0.5, 0.5, -0.5}, {0.1, 0.2, 0.3}, 9.5};
   state.contact_since_ns = 36;
   state.low_battery_since_ns = 37;
   state.critical_battery_since_ns = 46;

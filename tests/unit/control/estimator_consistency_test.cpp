@@ -1,5 +1,5 @@
-// Is the filter as sure as it is right? Errors drawn as it assumes, over many seeds; bounds of chi-square sums
-// are mean +- 5 sqrt(2 n), which a good filter leaves once in a million.
+// Is the filter as sure as it is right? Errors drawn as it assumes, over many seeds; bounds of chi-square
+// sums are mean +- 5 sqrt(2 n), which a good filter leaves once in a million.
 #include <array>
 #include <cmath>
 #include <cstdint>

@@ -98,7 +98,8 @@ TEST_F(EstimatorFaults, AJumpThatPersistsIsNotBelievedInFlight) {
   EXPECT_EQ(estimator_.estimate().resets, 0U);
 }
 
-// Short of an outlier it is followed, and must not be taken for a motion: the velocity of the dead reckoning that may come next.
+// Short of an outlier it is followed, and must not be taken for a motion: the velocity of the dead reckoning
+// that may come next.
 TEST_F(EstimatorFaults, AStepThatStaysLeavesNoVelocityBehind) {
   fly(3.0);
   const Change stepped = [](PoseSample& pose) { pose.position_ned.x() += 0.045; };
@@ -160,6 +161,24 @@ TEST_F(EstimatorFaults, AfterSilenceOfTheImuPosesInReachAreBelieved) {
     EXPECT_EQ(estimator_.estimate().resets, believed ? 1U : 0U) << off;
     EXPECT_NEAR(position_error(), believed ? off : 0.0, 0.2);
   }
+}
+
+// Seen while the IMU was silent, the step tells that what follows is no motion.
+TEST_F(EstimatorFaults, MarkersThatSwapWhileTheImuIsSilentAreNotBelieved) {
+  const Change swap = [](PoseSample& pose) {
+    pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(0.4 * M_PI, Vector3d::UnitZ());
+  };
+  fly(3.0);
+  for (int frame = 1; frame <= 8; ++frame) {
+    time_ns_ += kFrame_ns;
+    PoseSample pose = motion_.pose(time_ns_ - kFrame_ns);
+    if (frame > 6) swap(pose);
+    estimator_.correct(pose);
+  }
+  EXPECT_EQ(fly(0.5, swap), PoseFault::kSwapped);
+  EXPECT_EQ(estimator_.estimate().resets, 0U);
+  EXPECT_LT(angle_error(), 0.1);
+  EXPECT_EQ(fly(0.5), PoseFault::kNone);
 }
 
 TEST_F(EstimatorFaults, SwappedMarkersAreNotBelievedInFlight) {

@@ -1,5 +1,5 @@
-// Poses that a real OptiTrack session recorded of a vehicle at rest (tests/data/README.md), with the IMU that it
-// would have carried: nothing moves, so gravity is all that there is to measure.
+// Poses that a real OptiTrack session recorded of a vehicle at rest (tests/data/README.md), with the IMU that
+// it would have carried: nothing moves, so gravity is all that there is to measure.
 #include <cmath>
 #include <cstdint>
 #include <fstream>

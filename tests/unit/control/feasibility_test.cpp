@@ -28,7 +28,8 @@ PolynomialSegment hover() {
   return segment;
 }
 
-// On a circle of radius r at angular rate w about (0, 0, -1), by its Taylor polynomial: exact to 1e-6 over 0.5 rad.
+// On a circle of radius r at angular rate w about (0, 0, -1), by its Taylor polynomial: exact to 1e-6 over
+// 0.5 rad.
 PolynomialSegment arc(double r, double w) {
   PolynomialSegment segment = hover();
   segment.duration_s = 0.5 / w;

@@ -186,8 +186,8 @@ TEST(FlightController, KeepsTheRotorsOffUntilAsked) {
 
 TEST_F(InFlight, OneStepDoesNotTouchTheHeap) {
   const Mission mission = square(0.5);
-  Request start = request(RequestKind::kMission);
-  start.mission = &mission;
+  Request upload = request(RequestKind::kMissionUpload);
+  upload.mission = &mission;
   std::size_t calls = 0;
   const auto flown = [&](int steps) {
     for (int i = 0; i < steps; ++i) {
@@ -204,8 +204,13 @@ TEST_F(InFlight, OneStepDoesNotTouchTheHeap) {
       loop_.watchdog.accept(loop_.command, loop_.plant.stamp_ns());
     }
   };
-  ASSERT_TRUE(loop_.controller.request(start).accepted);
-  flown(5000);
+  ASSERT_TRUE(loop_.controller.request(upload).accepted);
+  ASSERT_TRUE(loop_.controller.request(request(RequestKind::kMissionStart)).accepted);
+  flown(2000);
+  ASSERT_TRUE(loop_.controller.request(request(RequestKind::kMissionPause)).accepted);
+  flown(1000);
+  ASSERT_TRUE(loop_.controller.request(request(RequestKind::kMissionResume)).accepted);
+  flown(2000);
   EXPECT_EQ(loop_.controller.status().mode, Mode::kMission);
   EXPECT_EQ(calls, 0u);
 }

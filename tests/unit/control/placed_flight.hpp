@@ -26,10 +26,11 @@ inline Mission hop() {
   return mission;
 }
 
-inline Mission to_one_place() {
+inline Mission to_two_places() {
   Mission mission;
   mission.id = 4;
-  mission.items = {{MissionItemKind::kWaypoint, {2, 0, -1}, 0, true, 0.5, 0.0}};
+  mission.items = {{MissionItemKind::kWaypoint, {1, 0, -1}, 0, true, 0.5, 0.0},
+                   {MissionItemKind::kWaypoint, {1, 0.5, -1}, 0, true, 0.5, 0.0}};
   return mission;
 }
 
@@ -67,15 +68,22 @@ class Placed : public SupervisedFlight {
     const SupervisorState state = supervisor_.state();
     supervisor_.adopt(state, nullptr, nullptr);
   }
-  const Mission* plan() const { return supervisor_.mission().id == mission_.id ? &mission_ : &one_place_; }
+  const Mission* plan() const { return supervisor_.mission().id == mission_.id ? &mission_ : &two_places_; }
   Outcome stream(const Vector3d& position_ned) {
     Setpoint setpoint;
     setpoint.position_ned = position_ned;
     return supervisor_.setpoint(setpoint, situation_);
   }
 
+  Outcome tilt() {
+    Setpoint setpoint;
+    setpoint.kind = SetpointKind::kAttitude;
+    setpoint.thrust = plant::kGravity;
+    return supervisor_.setpoint(setpoint, situation_);
+  }
+
   const Mission mission_ = hop();
-  const Mission one_place_ = to_one_place();
+  const Mission two_places_ = to_two_places();
   const Trajectory trajectory_ = line();
 };
 

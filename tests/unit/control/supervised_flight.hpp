@@ -60,11 +60,16 @@ class SupervisedFlight {
     request.speed = speed;
     return supervisor_.request(request, situation_);
   }
-  control::Outcome fly(const control::Mission& mission) {
+  control::Outcome upload(const control::Mission& mission) {
     control::Request request;
-    request.kind = control::RequestKind::kMission;
+    request.kind = control::RequestKind::kMissionUpload;
     request.mission = &mission;
     return supervisor_.request(request, situation_);
+  }
+  // Uploads and starts it.
+  control::Outcome fly(const control::Mission& mission) {
+    const control::Outcome kept = upload(mission);
+    return kept.accepted ? ask(control::RequestKind::kMissionStart) : kept;
   }
   control::Outcome fly(const control::Trajectory& trajectory) {
     control::Request request;

@@ -1,5 +1,5 @@
-// Commanded trajectories under supervision: how one is joined, from hold and from another's middle, and flown as an item of
-// a mission.
+// Commanded trajectories under supervision: how one is joined, from hold and from another's middle, and flown
+// as an item of a mission.
 #include <cmath>
 #include <limits>
 #include <string>
@@ -34,8 +34,8 @@ class TrajectoryFlight : public testing::Test, protected SupervisedFlight {
 
   void SetUp() override { ASSERT_TRUE(take_off()); }
 
-  // Steps, and looks that the reference goes on without a step: each derivative up to the jerk changes by no more
-  // than the next one allows.
+  // Steps, and looks that the reference goes on without a step: each derivative up to the jerk changes by no
+  // more than the next one allows.
   void step_smoothly() {
     const Reference before = directive_.reference;
     step();

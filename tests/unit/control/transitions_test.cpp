@@ -43,7 +43,7 @@ const std::vector<Place>& places() {
       {'m', "mission, on the ground", Mode::kMission,
        [](Placed& f) { return f.ask(RequestKind::kArm).accepted && f.fly(f.mission_).accepted; }},
       {'M', "mission", Mode::kMission,
-       [](Placed& f) { return f.take_off() && f.fly(f.one_place_).accepted; }},
+       [](Placed& f) { return f.take_off() && f.fly(f.two_places_).accepted; }},
       {'l', "mission, at its landing", Mode::kMission,
        [](Placed& f) {
          return f.ask(RequestKind::kArm).accepted && f.fly(f.mission_).accepted &&
@@ -65,6 +65,10 @@ const std::vector<Place>& places() {
          return up;
        }},
       {'O', "stopped", Mode::kStopped, [](Placed& f) { return f.ask(RequestKind::kStop).accepted; }},
+      {'P', "mission paused", Mode::kHolding,
+       [](Placed& f) {
+         return f.take_off() && f.fly(f.two_places_).accepted && f.ask(RequestKind::kMissionPause).accepted;
+       }},
   };
   return kPlaces;
 }
@@ -97,8 +101,9 @@ Cause lasting(double seconds, const std::function<void(Placed&)>& change) {
 }
 Cause request(RequestKind kind) {
   return [kind](Placed& flight) -> std::optional<Outcome> {
-    if (kind == RequestKind::kMission)
-      return flight.fly(flight.mode() == Mode::kArmed ? flight.mission_ : flight.one_place_);
+    const Mission& mission = flight.mode() == Mode::kArmed ? flight.mission_ : flight.two_places_;
+    if (kind == RequestKind::kMissionUpload) return flight.upload(mission);
+    if (kind == RequestKind::kMissionStart) flight.upload(mission);
     if (kind == RequestKind::kTrajectory) return flight.fly(flight.trajectory_);
     return flight.ask(kind, {0, 0, -1});
   };
@@ -117,43 +122,49 @@ void PrintTo(const Row& row, std::ostream* out) { *out << to_string(row.event); 
 
 const Row kGrid[] = {
     // clang-format off
-    //                              DAtTHmMlJSLWO
-    {Event::kImuUnusable, kLand,   ".OOOOOOOOOOO.", Reason::kImuUnusable, condition([](Placed& f) { f.situation_.imu_unusable_s = 0.1; })},
-    {Event::kImuGap, kLand,        ".OOOOOOOOOOO.", Reason::kImuGap, condition([](Placed& f) { f.situation_.imu_gap_s = 0.4; })},
-    {Event::kTippedOver, kLand,    ".OOOOOOOOOOO.", Reason::kTippedOver, condition([](Placed& f) { f.estimate_.q_ned_from_frd = Eigen::AngleAxisd(1.5, Vector3d::UnitX()); })},
-    {Event::kStruck, kLand,        "..OOOOO OO  .", Reason::kStruck, condition([](Placed& f) { f.situation_.specific_force = 120.0; })},
-    {Event::kStruck, kLand,        "       D  D  ", Reason::kLanded, condition([](Placed& f) { f.situation_.specific_force = 120.0; })},
-    {Event::kStruck, kLand,        "           D ", Reason::kLandedWithoutPosition, condition([](Placed& f) { f.situation_.specific_force = 120.0; })},
-    {Event::kClimbNotSeen, kLand,  "...OO.OOOOO..", Reason::kClimbNotSeen, condition([](Placed& f) { f.situation_.climb_contradicted = true; })},
-    {Event::kPoseJumped, kLand,    ".DDLLDLLLL.L.", Reason::kPoseJumped, condition([](Placed& f) { f.situation_.pose_jumped = true; })},
-    {Event::kPoseLost, kLand,      ".DDWWDWWWWW..", Reason::kNoPose, condition([](Placed& f) { f.situation_.pose_age_s = 0.6; })},
-    {Event::kPoseIsBack, kLand,    "...........H.", Reason::kPoseIsBack, condition([](Placed& f) { f.situation_.pose_age_s = 0.0; })},
-    {Event::kGroundFelt, kLand,    "       D  D  ", Reason::kLanded, lasting(20.0, [](Placed&) {})},
-    {Event::kGroundFelt, kLand,    "           D ", Reason::kLandedWithoutPosition, lasting(0.4, [](Placed& f) { f.situation_.unexplained_lift = 2.0; })},
-    {Event::kDescentTimedOut, kLand, "           O ", Reason::kDescentTimedOut, lasting(6.1, [](Placed&) {})},
-    {Event::kBatteryCritical, kLand, "..DLLDLLLLL..", Reason::kBatteryCritical, condition([](Placed& f) { f.situation_.supply_voltage_v = 3.0; })},
-    {Event::kOutsideFence, kLand,  "..DLLDLLLL...", Reason::kOutsideFence, condition([](Placed& f) { f.estimate_.position_ned.x() = 3.3; })},
-    {Event::kBatteryLow, kLand,    "..DLLDLLLL...", Reason::kBatteryLow, condition([](Placed& f) { f.situation_.supply_voltage_v = 3.2; })},
-    {Event::kBatterySilent, kLand, "..DLLDLLLL...", Reason::kBatterySilent, condition([](Placed& f) { f.situation_.battery_age_s = 2.1; })},
-    {Event::kGroundLinkLost, kLand, ".DDLLDLLLL...", Reason::kGroundLinkLost, condition([](Placed& f) { f.lose_ground_link(); })},
-    {Event::kGroundLinkLost, GroundLinkAction::kHold, ".DDHHDHHHH...", Reason::kGroundLinkLost, condition([](Placed& f) { f.lose_ground_link(); })},
-    {Event::kGroundLinkLost, GroundLinkAction::kNone, ".............", Reason::kGroundLinkLost, condition([](Placed& f) { f.lose_ground_link(); })},
-    {Event::kSetpointsStopped, kLand, "         H   ", Reason::kSetpointsStopped, lasting(0.6, [](Placed&) {})},
-    {Event::kPlanFinished, kLand,  "   H         ", Reason::kTakeOffCompleted, lasting(10.0, [](Placed&) {})},
-    {Event::kPlanFinished, kLand,  "      H      ", Reason::kMissionCompleted, lasting(10.0, [](Placed&) {})},
-    {Event::kPlanFinished, kLand,  "        H    ", Reason::kTrajectoryCompleted, lasting(10.0, [](Placed&) {})},
-    {Event::kStop, kLand,          "OOOOOOOOOOOOO", Reason::kRequested, request(RequestKind::kStop)},
-    {Event::kArm, kLand,           "A=xxxxxxxxxxx", Reason::kRequested, request(RequestKind::kArm)},
-    {Event::kDisarm, kLand,        "DDDxxDxxxxxxD", Reason::kRequested, request(RequestKind::kDisarm)},
-    {Event::kTakeoff, kLand,       "xTxxxxxxxxxxx", Reason::kRequested, request(RequestKind::kTakeoff)},
-    {Event::kMission, kLand,       "xMxxMxxxxxxxx", Reason::kRequested, request(RequestKind::kMission)},
-    {Event::kTrajectory, kLand,    "xxxxJxxx=Jxxx", Reason::kRequested, request(RequestKind::kTrajectory)},
-    {Event::kSetpoint, kLand,      "xxxxSxxxx=xxx", Reason::kSetpointsCame, [](Placed& f) { return std::optional(f.stream(f.estimate_.position_ned)); }},
-    {Event::kGoTo, kLand,          "xxxHHxHHHHHxx", Reason::kRequested, request(RequestKind::kGoTo)},
-    {Event::kHold, kLand,          "xxxHHxHHHHHxx", Reason::kRequested, request(RequestKind::kHold)},
-    {Event::kLand, kLand,          "xxDLLDLLLL==x", Reason::kRequested, request(RequestKind::kLand)},
-    {Event::kPlanUnknown, kLand,   ".....DHHH....", Reason::kPlanUnknown, [](Placed& f) { f.forget_plan(); return std::optional<Outcome>(); }},
-    {Event::kFoundFlying, kLand,   "Hxxxxxxxxxxxx", Reason::kFoundFlying, [](Placed& f) { return std::optional(f.supervisor_.find_flying(f.situation_)); }},
+    //                              DAtTHmMlJSLWOP
+    {Event::kImuUnusable, kLand,   ".OOOOOOOOOOO.O", Reason::kImuUnusable, condition([](Placed& f) { f.situation_.imu_unusable_s = 0.1; })},
+    {Event::kImuGap, kLand,        ".OOOOOOOOOOO.O", Reason::kImuGap, condition([](Placed& f) { f.situation_.imu_gap_s = 0.4; })},
+    {Event::kTippedOver, kLand,    ".OOOOOOOOOOO.O", Reason::kTippedOver, condition([](Placed& f) { f.estimate_.q_ned_from_frd = Eigen::AngleAxisd(1.5, Vector3d::UnitX()); })},
+    {Event::kStruck, kLand,        "..OOOOO OO  .O", Reason::kStruck, condition([](Placed& f) { f.situation_.specific_force = 120.0; })},
+    {Event::kStruck, kLand,        "       D  D   ", Reason::kLanded, condition([](Placed& f) { f.situation_.specific_force = 120.0; })},
+    {Event::kStruck, kLand,        "           D  ", Reason::kLandedWithoutPosition, condition([](Placed& f) { f.situation_.specific_force = 120.0; })},
+    {Event::kClimbNotSeen, kLand,  "...OO.OOOOO..O", Reason::kClimbNotSeen, condition([](Placed& f) { f.situation_.climb_contradicted = true; })},
+    {Event::kPoseJumped, kLand,    ".DDLLDLLLL.L.L", Reason::kPoseJumped, condition([](Placed& f) { f.situation_.pose_jumped = true; })},
+    {Event::kPoseLost, kLand,      ".DDWWDWWWWW..W", Reason::kNoPose, condition([](Placed& f) { f.situation_.pose_age_s = 0.6; })},
+    {Event::kPoseIsBack, kLand,    "...........H..", Reason::kPoseIsBack, condition([](Placed& f) { f.situation_.pose_age_s = 0.0; })},
+    {Event::kGroundFelt, kLand,    "       D  D   ", Reason::kLanded, lasting(20.0, [](Placed&) {})},
+    {Event::kGroundFelt, kLand,    "           D  ", Reason::kLandedWithoutPosition, lasting(0.4, [](Placed& f) { f.situation_.unexplained_lift = 2.0; })},
+    {Event::kDescentTimedOut, kLand, "           O  ", Reason::kDescentTimedOut, lasting(6.1, [](Placed&) {})},
+    {Event::kBatteryCritical, kLand, "..DLLDLLLLL..L", Reason::kBatteryCritical, condition([](Placed& f) { f.situation_.supply_voltage_v = 3.0; })},
+    {Event::kOutsideFence, kLand,  "..DLLDLLLL...L", Reason::kOutsideFence, condition([](Placed& f) { f.estimate_.position_ned.x() = 3.3; })},
+    {Event::kBatteryLow, kLand,    "..DLLDLLLL...L", Reason::kBatteryLow, condition([](Placed& f) { f.situation_.supply_voltage_v = 3.2; })},
+    {Event::kBatterySilent, kLand, "..DLLDLLLL...L", Reason::kBatterySilent, condition([](Placed& f) { f.situation_.battery_age_s = 2.1; })},
+    {Event::kGroundLinkLost, kLand, ".DDLLDLLLL...L", Reason::kGroundLinkLost, condition([](Placed& f) { f.lose_ground_link(); })},
+    {Event::kGroundLinkLost, GroundLinkAction::kHold, ".DDHHDHHHH...H", Reason::kGroundLinkLost, condition([](Placed& f) { f.lose_ground_link(); })},
+    {Event::kGroundLinkLost, GroundLinkAction::kNone, "..............", Reason::kGroundLinkLost, condition([](Placed& f) { f.lose_ground_link(); })},
+    {Event::kSetpointsStopped, kLand, "         H    ", Reason::kSetpointsStopped, lasting(0.85, [](Placed&) {})},
+    {Event::kSetpointsLeadOut, kLand, "    H    H    ", Reason::kSetpointsLedOut, condition([](Placed& f) { f.tilt(); f.estimate_.position_ned.x() = 2.9; f.estimate_.velocity_ned.x() = 1.0; })},
+    {Event::kPlanFinished, kLand,  "   H          ", Reason::kTakeOffCompleted, lasting(10.0, [](Placed&) {})},
+    {Event::kPlanFinished, kLand,  "      H       ", Reason::kMissionCompleted, lasting(10.0, [](Placed&) {})},
+    {Event::kPlanFinished, kLand,  "        H     ", Reason::kTrajectoryCompleted, lasting(10.0, [](Placed&) {})},
+    {Event::kStop, kLand,          "OOOOOOOOOOOOOO", Reason::kRequested, request(RequestKind::kStop)},
+    {Event::kArm, kLand,           "A=xxxxxxxxxxxx", Reason::kRequested, request(RequestKind::kArm)},
+    {Event::kDisarm, kLand,        "DDDxxDxxxxxxDx", Reason::kRequested, request(RequestKind::kDisarm)},
+    {Event::kTakeoff, kLand,       "xTxxxxxxxxxxxx", Reason::kRequested, request(RequestKind::kTakeoff)},
+    {Event::kMissionUpload, kLand, "=====xxx=====x", Reason::kRequested, request(RequestKind::kMissionUpload)},
+    {Event::kMissionStart, kLand,  "xMxxMxxxxxxxxx", Reason::kRequested, request(RequestKind::kMissionStart)},
+    {Event::kMissionPause, kLand,  "xxxxxxHxxxxxxx", Reason::kMissionPaused, request(RequestKind::kMissionPause)},
+    {Event::kMissionResume, kLand, "xxxxxxxxxxxxxM", Reason::kRequested, request(RequestKind::kMissionResume)},
+    {Event::kMissionSkip, kLand,   "xxxxxx=xxxxxxM", Reason::kRequested, request(RequestKind::kMissionSkip)},
+    {Event::kMissionClear, kLand,  "=====xxx======", Reason::kRequested, request(RequestKind::kMissionClear)},
+    {Event::kTrajectory, kLand,    "xxxxJxxx=JxxxJ", Reason::kRequested, request(RequestKind::kTrajectory)},
+    {Event::kSetpoint, kLand,      "xxxxSxxxx=xxxS", Reason::kSetpointsCame, [](Placed& f) { return std::optional(f.stream(f.estimate_.position_ned)); }},
+    {Event::kGoTo, kLand,          "xxxHHxHHHHHxxH", Reason::kRequested, request(RequestKind::kGoTo)},
+    {Event::kHold, kLand,          "xxxHHxHHHHHxxH", Reason::kRequested, request(RequestKind::kHold)},
+    {Event::kLand, kLand,          "xxDLLDLLLL==xL", Reason::kRequested, request(RequestKind::kLand)},
+    {Event::kPlanUnknown, kLand,   ".....DHHH....H", Reason::kPlanUnknown, [](Placed& f) { f.forget_plan(); return std::optional<Outcome>(); }},
+    {Event::kFoundFlying, kLand,   "Hxxxxxxxxxxxxx", Reason::kFoundFlying, [](Placed& f) { return std::optional(f.supervisor_.find_flying(f.situation_)); }},
     // clang-format on
 };
 
@@ -243,7 +254,7 @@ const std::vector<Urgency>& failsafes() {
 
 TEST(Priorities, OfAllFailsafesThatHoldTheMostUrgentIsTaken) {
   const unsigned sets = 1U << failsafes().size();
-  for (const char letter : {'T', 'H', 'M', 'J', 'S'}) {
+  for (const char letter : {'T', 'H', 'M', 'J', 'S', 'P'}) {
     const auto place =
         std::find_if(places().begin(), places().end(), [&](const Place& p) { return p.letter == letter; });
     Placed flight(kLand);

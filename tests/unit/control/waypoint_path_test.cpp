@@ -154,7 +154,8 @@ TEST_P(Paths, GoThroughTheirPointsWithinTheLimits) {
   }
 }
 
-// Against the time that a spline takes whose durations are those of the legs, stretched alike to hold the limits.
+// Against the time that a spline takes whose durations are those of the legs, stretched alike to hold the
+// limits.
 TEST_P(Paths, TakeLessTimeThanWithDurationsByLength) {
   double by_length_s = 0.0;
   double planned_s = 0.0;

@@ -41,8 +41,10 @@ class ForeignFlight : public testing::Test {
   FlightPlan plan_;
 };
 
-TEST_F(ForeignFlight, CrazyswarmsFigureOfEight) {
-  plan("crazyswarm_figure8.csv");
+class ForeignCsv : public ForeignFlight, public testing::WithParamInterface<const char*> {};
+
+TEST_P(ForeignCsv, IsFeasibleAndFlownClosely) {
+  plan(GetParam());
   expect_feasible();
   const FlightReport report = fly();
   EXPECT_TRUE(report.completed) << report.reason;
@@ -50,14 +52,8 @@ TEST_F(ForeignFlight, CrazyswarmsFigureOfEight) {
   EXPECT_LT(report.errors.peak_3d_m, 0.02);
 }
 
-TEST_F(ForeignFlight, UavTrajectoriesWaypoints) {
-  plan("uav_waypoints.csv");
-  expect_feasible();
-  const FlightReport report = fly();
-  EXPECT_TRUE(report.completed) << report.reason;
-  EXPECT_LT(report.errors.rms_3d_m, 0.005);
-  EXPECT_LT(report.errors.peak_3d_m, 0.02);
-}
+INSTANTIATE_TEST_SUITE_P(Files, ForeignCsv, testing::Values("crazyswarm_figure8.csv", "uav_waypoints.csv"),
+                         [](const auto& file) { return file.index == 0 ? "Crazyswarm" : "UavTrajectories"; });
 
 TEST_F(ForeignFlight, Px4sBox) {
   std::string settings = runtime::read_text_file(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml");

@@ -137,8 +137,12 @@ TEST(OpenLoop, TheWildestTumbleAgreesWithThePaper) {
 }
 
 TEST(OpenLoop, RefusesToSpinBeyondAllBounds) {
-  const auto commands = pulses("0,1039,2039,2039,1039\n60,1039,2039,2039,1039\n");
-  EXPECT_THROW(simulate_open_loop(kaylion(), 4.0, {}, commands), std::runtime_error);
+  plant::VehicleState fast;
+  fast.body_rates_frd.x() = 9990.0;  // of 10,000
+  const auto commands = pulses("0,1039,2039,2039,1039\n1,1039,2039,2039,1039\n");
+  EXPECT_THROW(simulate_open_loop(kaylion(), 4.0, fast, commands), std::runtime_error);
+  const auto coasting = pulses("0,1039,1039,1039,1039\n0.01,1039,1039,1039,1039\n");
+  EXPECT_NO_THROW(simulate_open_loop(kaylion(), 4.0, fast, coasting));
 }
 
 TEST(OpenLoop, TakesTheInitialStateAsItIs) {

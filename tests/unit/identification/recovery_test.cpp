@@ -1,4 +1,5 @@
-// Whether the bench's identification finds what was put in, and knows how well: bias and coverage over many seeds.
+// Whether the bench's identification finds what was put in, and knows how well: bias and coverage over many
+// seeds.
 #include <cmath>
 #include <map>
 #include <string>
@@ -68,8 +69,8 @@ double pooled_coverage(const std::map<std::string, Tally>& tallies) {
   return covered / count;
 }
 
-// Of 200 benches the coverage of one parameter is known to 1.5 %, so each has three of these; all together have the
-// narrow limits.
+// Of 200 benches the coverage of one parameter is known to 1.5 %, so each has three of these; all together
+// have the narrow limits.
 void expect_recovery(double share, double outliers) {
   const std::map<std::string, Tally> tallies = recover(tests::kaylion(), share, outliers, 200, Records::kAll);
   ASSERT_EQ(tallies.size(), 11U);

@@ -227,8 +227,8 @@ TEST(Mocap, AGapInTheTruthCostsItsFrames) {
   EXPECT_EQ(poses[2].sequence, poses[0].sequence + 2);
 }
 
-// Uneven intervals: whoever keeps the same schedule knows each frame, whether all of the truth is looked at or
-// only what is needed; another seed has others.
+// Uneven intervals: whoever keeps the same schedule knows each frame, whether all of the truth is looked at
+// or only what is needed; another seed has others.
 TEST(Mocap, UnevenFramesAreAFunctionOfTheSeed) {
   MocapSettings settings = perfect();
   settings.model = plant::MocapModel::kOptitrack;

@@ -195,7 +195,7 @@ TEST(Config, RefusesKeysThatNobodyAsksFor) {
   root.at("speed").at("limit");
   root.at("speed").find("ramp");
   EXPECT_EQ(refusal([&] { root.reject_unknown_keys(); }),
-            "f.yaml:4: speed.limti: is unknown, must be one of limit or ramp");
+            "f.yaml:4: speed.limti: is unknown, must be one of limit or ramp; nearest is limit");
 }
 
 TEST(Config, NodesOutliveTheRoot) {

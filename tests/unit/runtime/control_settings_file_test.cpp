@@ -48,6 +48,7 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
       "  max_reference_acceleration_m_s2: 29\n"
       "  max_reference_jerk_m_s3: 29.5\n"
       "  max_yaw_rate_rad_s: 30\n"
+      "  max_body_rate_rad_s: 30.5\n"
       "  fence_min_ned_m: [-31, -32, -33]\n"
       "  fence_max_ned_m: [34, 35, 36]\n"
       "estimator:\n"
@@ -112,6 +113,7 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
   EXPECT_EQ(s.limits.max_reference_acceleration, 29);
   EXPECT_EQ(s.limits.max_reference_jerk, 29.5);
   EXPECT_EQ(s.limits.max_yaw_rate, 30);
+  EXPECT_EQ(s.limits.max_body_rate, 30.5);
   EXPECT_EQ(s.limits.fence_min_ned, Eigen::Vector3d(-31, -32, -33));
   EXPECT_EQ(s.limits.fence_max_ned, Eigen::Vector3d(34, 35, 36));
   EXPECT_EQ(s.estimator.accelerometer_noise_density, 50);
@@ -234,6 +236,7 @@ const Fault kFaults[] = {
     {"limits.max_reference_acceleration_m_s2", "0", "above 0"},
     {"limits.max_reference_jerk_m_s3", "-1", "above 0"},
     {"limits.max_yaw_rate_rad_s", "0", "above 0"},
+    {"limits.max_body_rate_rad_s", "0", "above 0"},
     {"limits.fence_max_ned_m", "[3, -99, 0.2]", "[1]: is -99, must be above fence_min_ned_m in y, -"},
     {"limits.fence_min_ned_m", "[-3, .nan, -2]", "[1]: is .nan, must be a finite number"},
     {"estimator.accelerometer_noise_m_s2_per_sqrt_hz", "0", "above 0"},

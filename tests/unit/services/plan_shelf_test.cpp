@@ -13,7 +13,10 @@ using control::Mission;
 using Shelf = PlanShelf<Mission>;
 
 std::unique_ptr<Mission> mission(std::uint64_t id) {
-  return std::make_unique<Mission>(Mission{id, {control::MissionItem()}, {}});
+  auto mission = std::make_unique<Mission>();
+  mission->id = id;
+  mission->items.resize(1);
+  return mission;
 }
 
 TEST(PlanShelf, FindsTheNewestOfAnId) {

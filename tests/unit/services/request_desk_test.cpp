@@ -77,7 +77,8 @@ class Desk : public testing::Test {
     return message;
   }
   static msg::Mission mission(std::uint64_t id, double x) {
-    control::Mission mission{id, {}, {}};
+    control::Mission mission;
+    mission.id = id;
     mission.items.push_back({control::MissionItemKind::kTakeoff, {0.0, 0.0, -1.0}, 0.0, true, 0.5, 0.0});
     mission.items.push_back({control::MissionItemKind::kWaypoint, {x, 0.0, -1.0}, 0.0, true, 0.5, 0.0});
     mission.items.push_back({control::MissionItemKind::kLand, {0.0, 0.0, 0.0}, 0.0, true, 0.5, 0.0});
@@ -197,10 +198,12 @@ TEST_F(Desk, AMissionIsFlownFromTheDesksOwnCopy) {
     const msg::Mission message = mission(2, 1.0);
     desk_.on_mission(message);
   }
+  desk_.on_command(command(Command_Constants::MISSION_START, 3));
   step();
   const std::vector<RequestAnswer> answers = desk_.collect();
-  ASSERT_EQ(answers.size(), 2U);
+  ASSERT_EQ(answers.size(), 3U);
   ASSERT_TRUE(answers[1].outcome.accepted) << answers[1].outcome.reason;
+  ASSERT_TRUE(answers[2].outcome.accepted) << answers[2].outcome.reason;
   for (int i = 0; i < 100; ++i) step();
   EXPECT_EQ(mode(), control::Mode::kMission);
   EXPECT_EQ(last_.status.mission.id, 2U);
@@ -254,6 +257,7 @@ TEST_F(Desk, TheInnerLoopDoesNotAllocate) {
   settle();
   desk_.on_command(command(Command_Constants::ARM, 1));
   desk_.on_mission(mission(2, 1.0));
+  desk_.on_command(command(Command_Constants::MISSION_START, 3));
   std::size_t calls = 0;
   {
     const test::MallocGuard guard;
@@ -261,7 +265,7 @@ TEST_F(Desk, TheInnerLoopDoesNotAllocate) {
     calls = guard.calls();
   }
   EXPECT_EQ(calls, 0U);
-  EXPECT_EQ(desk_.collect().size(), 2U);
+  EXPECT_EQ(desk_.collect().size(), 3U);
 }
 
 // A standby beside the fixture's controller, which hears the same samples.
@@ -300,6 +304,7 @@ class DeskOfAStandby : public Desk {
     desk_.on_command(command(Command_Constants::ARM, 1));
     step();
     desk_.on_mission(mission(2, 1.0));
+    desk_.on_command(command(Command_Constants::MISSION_START, 3));
     step();
     desk_.collect();
   }
@@ -358,6 +363,62 @@ TEST_F(DeskOfAStandby, GoesOnWithTheMissionThatItHeardBeingFlown) {
   EXPECT_EQ(standby_state().mode, control::Mode::kMission);
 }
 
+// GIVEN a mission that was uploaded and waits, WHEN another controller takes over, THEN it starts it.
+TEST_F(DeskOfAStandby, StartsTheMissionThatWasUploadedBeforeItTookOver) {
+  for (const bool heard_asked_for : {true, false}) {
+    SCOPED_TRACE(heard_asked_for);
+    settle();
+    const std::uint64_t id = heard_asked_for ? 12 : 22;
+    desk_.on_command(command(Command_Constants::ARM, id - 1));
+    desk_.on_mission(mission(id, 1.0));
+    step();
+    desk_.collect();
+    if (heard_asked_for) {
+      standby_desk_.on_mission(mission(id, 1.0));
+    } else {
+      standby_desk_.on_flown_mission(desk_.mission(id));
+    }
+    follow(20);
+    control::SupervisorState state = standby_state();
+    EXPECT_EQ(state.mission.id, id);
+    EXPECT_EQ(state.mission.state, control::MissionState::kUploaded);
+    EXPECT_EQ(state.mission.item_count, 3);
+    standby_desk_.attend(true);
+    standby_desk_.on_command(command(Command_Constants::MISSION_START, id + 1));
+    step();
+    step_standby(Role::kActive);
+    const std::vector<RequestAnswer> answers = standby_desk_.collect();
+    ASSERT_EQ(answers.size(), 1U);
+    EXPECT_TRUE(answers[0].outcome.accepted) << answers[0].outcome.reason;
+    state = standby_state();
+    EXPECT_EQ(state.mode, control::Mode::kMission);
+    EXPECT_EQ(state.mission.state, control::MissionState::kRunning);
+    standby_desk_.attend(false);
+    desk_.on_command(command(Command_Constants::DISARM, id + 2));
+    step();
+    desk_.collect();
+  }
+}
+
+TEST_F(Desk, AnotherMissionOfAKnownIdIsRefusedAndTheSameIsNot) {
+  settle();
+  desk_.on_mission(mission(2, 1.0));
+  step();
+  ASSERT_TRUE(desk_.collect().at(0).outcome.accepted);
+  msg::Mission other = mission(2, 1.5);
+  other.client(kClient + 1);
+  desk_.on_mission(other);
+  msg::Mission same = mission(2, 1.0);
+  same.client(kClient + 2);
+  desk_.on_mission(same);
+  step();
+  const std::vector<RequestAnswer> answers = desk_.collect();
+  ASSERT_EQ(answers.size(), 2U);
+  EXPECT_EQ(answers[0].client, kClient + 1);
+  EXPECT_STREQ(answers[0].outcome.reason, "another mission has the id 2: a new one needs a new id");
+  EXPECT_TRUE(answers[1].outcome.accepted) << answers[1].outcome.reason;
+}
+
 TEST_F(DeskOfAStandby, WithoutTheMissionItStaysOnTheGround) {
   fly_mission();
   follow(20);
@@ -380,8 +441,8 @@ TEST_F(DeskOfAStandby, DoesNotFollowAnotherTerm) {
   EXPECT_EQ(standby_state().mode, control::Mode::kDisarmed);
 }
 
-// GIVEN a request that was accepted, WHEN its answer is lost with the controller that gave it, THEN whoever takes over
-// gives it again and does not apply it twice.
+// GIVEN a request that was accepted, WHEN its answer is lost with the controller that gave it, THEN whoever
+// takes over gives it again and does not apply it twice.
 TEST_F(DeskOfAStandby, ARequestThatWasAcceptedBeforeIsAnsweredAndNotAppliedAgain) {
   settle();
   desk_.on_command(command(Command_Constants::ARM, 1));

@@ -1,4 +1,5 @@
-// Who acts, on sequences of samples, commands and heartbeats as several controllers and their vehicle make them.
+// Who acts, on sequences of samples, commands and heartbeats as several controllers and their vehicle make
+// them.
 #include "services/control/succession.hpp"
 
 #include <algorithm>
@@ -16,8 +17,8 @@ constexpr std::int64_t kStartNs = 5'000'000'000;  // of the computers' clock
 
 std::int64_t ms(std::int64_t time) { return time * 1'000'000; }
 
-// A vehicle, and controllers that hear each other: what each would do on a network without delay. Heartbeats of an
-// active controller come with each of its commands, those of standbys too.
+// A vehicle, and controllers that hear each other: what each would do on a network without delay. Heartbeats
+// of an active controller come with each of its commands, those of standbys too.
 class Vehicle {
  public:
   struct Controller {

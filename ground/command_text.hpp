@@ -1,0 +1,41 @@
+// The program's commands and options as data, from which completion scripts and manual pages are written.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace swiftlet::ground {
+
+struct OptionText {
+  std::vector<std::string> names;  // "--json", "-y"; of an argument without dashes, its name
+  bool positional = false;
+  bool required = false;
+  std::string value;                 // what it takes: "TEXT"; empty for a flag
+  std::vector<std::string> choices;  // of which the value is one
+  std::string description;
+  std::vector<std::string> facts;  // "default 0", "INT in [0 - 232]", "environment ROS_DOMAIN_ID"
+};
+
+struct CommandText {
+  std::vector<std::string> words;  // "swiftlet", "sim", "fly"
+  std::string description;
+  std::string footer;  // example and exit codes
+  std::vector<OptionText> options;
+  std::vector<CommandText> commands;
+};
+
+// Of the command and all below it.
+CommandText command_text(const CLI::App& app);
+
+std::string bash_completion(const CommandText& program);
+std::string zsh_completion(const CommandText& program);
+
+// A page of section 1 in man(7) markup.
+std::string manual_page(const CommandText& command);
+std::string manual_page_name(const CommandText& command);  // "swiftlet-sim-fly"
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,56 @@
+// `swiftlet mission start`, `pause`, `resume`, `skip` and `clear`: of the mission that the vehicle has.
+#include <CLI/CLI.hpp>
+
+#include "ground/commands.hpp"
+#include "ground/request_command.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+struct Options : AskOptions {
+  std::uint64_t id = 0;
+};
+
+using Ask = Manoeuvre (Vehicle::*)(std::uint64_t, std::chrono::milliseconds);
+
+Command add_mission_request(CLI::App& mission, const std::string& name, const std::string& description, Ask ask) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* const app = add_ask_subcommand(mission, name, description, "swiftlet mission " + name, options);
+  app->add_option("--id", options->id,
+                  "refuse if the mission there is another one: the number that `mission upload` said");
+  return {app, [options, name, ask] {
+            return run_request(*options, "mission " + name, [&](Vehicle& vehicle) {
+              return (vehicle.*ask)(options->id, options->timeout());
+            });
+          }};
+}
+
+}  // namespace
+
+Command add_mission_start_command(CLI::App& mission) {
+  return add_mission_request(mission, "start",
+                             "Fly the mission that was uploaded, from its first item; again, if it has ended",
+                             &Vehicle::start_mission);
+}
+
+Command add_mission_pause_command(CLI::App& mission) {
+  return add_mission_request(mission, "pause", "Come to rest on the path and hold, to be gone on with",
+                             &Vehicle::pause_mission);
+}
+
+Command add_mission_resume_command(CLI::App& mission) {
+  return add_mission_request(mission, "resume", "Back to where the mission was left, and on",
+                             &Vehicle::resume_mission);
+}
+
+Command add_mission_skip_command(CLI::App& mission) {
+  return add_mission_request(mission, "skip", "Give up the item that is flown or paused, on with the next",
+                             &Vehicle::skip_mission_item);
+}
+
+Command add_mission_clear_command(CLI::App& mission) {
+  return add_mission_request(mission, "clear", "Forget the mission; refused while it is flown",
+                             &Vehicle::clear_mission);
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,58 @@
+#include <cstdio>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "ground/client.hpp"
+#include "ground/commands.hpp"
+#include "ground/installation.hpp"
+#include "ground/mission_file.hpp"
+#include "ground/request_command.hpp"
+#include "services/runtime/control_settings_file.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+struct Options : RequestOptions {
+  std::string file;
+  std::string control = "motor_lag";
+};
+
+int upload(const Options& options) {
+  const auto settings = runtime::load_control_settings(configuration_file("control", options.control));
+  const MissionFile file = load_mission_file(configuration_file("missions", options.file), settings.limits);
+  for (const std::string& assumption : file.assumptions)
+    std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
+  Client client(options.network);
+  const Answer answer = client.upload(file.mission, options.timeout());
+  if (options.json) {
+    nlohmann::ordered_json json = {{"mission", file.name}, {"accepted", answer.accepted()}};
+    if (answer.accepted()) json["mission_id"] = client.mission_id();
+    if (!answer.accepted()) json["reason"] = answer.reason;
+    std::printf("%s\n", json.dump().c_str());
+  } else if (answer.accepted()) {
+    std::printf("%s: %zu items are with %s, as mission %llu\n", file.name.c_str(), file.mission.items.size(),
+                options.network.vehicle.c_str(), static_cast<unsigned long long>(client.mission_id()));
+  }
+  if (!answer.accepted())
+    std::fprintf(stderr, "swiftlet: mission %s: %s\n", file.name.c_str(), answer.reason.c_str());
+  return answer.accepted() ? kDone : kFailed;
+}
+
+}  // namespace
+
+Command add_mission_upload_command(CLI::App& mission) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* const app = add_request_subcommand(
+      mission, "upload", "Hand a mission over to the vehicle, which keeps it until it is started",
+      "swiftlet mission upload square && swiftlet mission start", options);
+  app->add_option("file", options->file,
+                  "mission file, or the name of one in the configuration; also files of others")
+      ->required();
+  app->add_option("--control", options->control,
+                  "control settings whose limits and fence the file is checked against")
+      ->capture_default_str();
+  return {app, [options] { return upload(*options); }};
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,41 @@
+// A flight of one vehicle over DDS: the processes that were started for it, the record, and the report.
+#pragma once
+
+#include <filesystem>
+
+#include "ground/fleet.hpp"
+#include "ground/flight_plan.hpp"
+#include "ground/flight_record.hpp"
+#include "ground/flight_report.hpp"
+#include "ground/interrupts.hpp"
+#include "ground/progress.hpp"
+#include "ground/together.hpp"
+#include "services/comms/node.hpp"
+
+namespace swiftlet::ground {
+
+class ProcessFlight {
+ public:
+  // Makes the record's folder and starts the plan's processes, which end with the calling thread. Throws
+  // InputError or std::runtime_error; nothing then runs.
+  ProcessFlight(FlightPlan plan, comms::NodeSettings network);
+
+  // Flies the mission, ends the processes and keeps the record. together: those that fly at the same time, or
+  // null. By any thread, once. Throws std::runtime_error for a record that cannot be written.
+  void fly(const Interrupts& interrupts, Together* together, Progress& progress);
+
+  const FlightReport& report() const { return report_; }
+  const std::string& vehicle_name() const { return network_.vehicle; }
+
+ private:
+  void fly_mission(const Interrupts& interrupts, Together* together, Progress& progress);
+
+  FlightPlan plan_;
+  comms::NodeSettings network_;
+  FlightRecord record_;
+  FlightReport report_;
+  Window window_;
+  std::optional<Fleet> fleet_;
+};
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,15 @@
+// Files of control settings.
+#include "control/settings.hpp"
+#include "services/runtime/control_settings_file.hpp"
+#include "tests/fuzz/refusal.hpp"
+
+using namespace swiftlet;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  tests::is_read([&] {
+    const control::ControlSettings settings =
+        runtime::parse_control_settings(tests::text_of(data, size), tests::kFuzzedFile);
+    tests::demand(control::validate(settings).empty(), "settings that were read keep the rules");
+  });
+  return 0;
+}

@@ -1,0 +1,61 @@
+// What comes over the network, from its bytes to what the controller is given. The first byte chooses the type.
+#include <algorithm>
+#include <cstring>
+
+#include <spdlog/spdlog.h>
+
+#include "control/supervision/checks.hpp"
+#include "services/comms/tolerant_type.hpp"
+#include "tests/fuzz/message_types.hpp"
+#include "tests/fuzz/refusal.hpp"
+
+using namespace swiftlet;
+
+namespace {
+
+// The plain struct of a message, if the bytes hold one that is sound.
+template <class Type>
+bool is_taken(const std::uint8_t* data, std::size_t size, typename Type::Plain& out) {
+  static comms::TolerantType<typename Type::PubSub> type;
+  tests::Payload payload(static_cast<std::uint32_t>(size));
+  payload.length = static_cast<std::uint32_t>(size);
+  std::copy_n(data, size, payload.data);
+  typename Type::PubSub::type message;
+  if (!type.deserialize(&payload, &message)) return false;
+  const comms::Fault fault = comms::from_message(message, out);
+  if (fault) tests::demand(std::strlen(fault.text) > 8, "a refusal says what is wrong");
+  return !fault;
+}
+
+template <class Type>
+void take(const std::uint8_t* data, std::size_t size) {
+  typename Type::Plain taken;
+  if (!is_taken<Type>(data, size, taken)) return;
+  if constexpr (std::is_same_v<Type, tests::Mission> || std::is_same_v<Type, tests::Trajectory>) {
+    const control::Outcome outcome = control::check(taken, control::Limits());
+    tests::demand(outcome.accepted || std::strlen(outcome.reason) > 8, "a refusal says what is wrong");
+  } else if constexpr (!std::is_same_v<Type, tests::GroundLink>) {
+    typename Type::Plain again;
+    tests::demand(!comms::from_message(comms::to_message(taken), again), "what was taken can be sent");
+  }
+}
+
+template <class... Types>
+void take_chosen(char tag, const std::uint8_t* data, std::size_t size) {
+  (void)((tag == Types::kTag && (take<Types>(data, size), true)) || ...);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerInitialize(int*, char***) {
+  spdlog::set_level(spdlog::level::off);
+  return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  using namespace swiftlet::tests;
+  take_chosen<Imu, MocapPose, Battery, RotorSpeeds, ActuatorCommand, GroundTruth, Setpoint, ControllerState,
+              GroundLink, Command, Mission, Trajectory>(static_cast<char>(*data), data + 1, size - 1);
+  return 0;
+}

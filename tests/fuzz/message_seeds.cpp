@@ -1,0 +1,74 @@
+// Writes messages as the message fuzzer reads them, into a folder: one of each type, and requests at their bounds, past them,
+// empty and not finite.
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include "tests/fuzz/message_types.hpp"
+#include "tests/unit/comms/messages.hpp"
+
+namespace {
+
+using namespace swiftlet;
+using namespace swiftlet::comms::tests;
+using comms::to_message;
+namespace msg = comms::msg;
+
+template <class Type>
+void write(const std::filesystem::path& folder, const char* name, typename Type::PubSub::type message) {
+  typename Type::PubSub type;
+  tests::Payload payload(type.getSerializedSizeProvider(&message)());
+  type.serialize(&message, &payload);
+  std::ofstream file(folder / name, std::ios::binary);
+  file.put(Type::kTag);
+  file.write(reinterpret_cast<const char*>(payload.data), payload.length);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace swiftlet::tests;
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: message_seeds FOLDER\n");
+    return 2;
+  }
+  const std::filesystem::path folder = argv[1];
+  std::filesystem::create_directories(folder);
+  write<Imu>(folder, "imu", to_message(imu_sample()));
+  write<MocapPose>(folder, "mocap_pose", to_message(pose_sample()));
+  write<Battery>(folder, "battery", to_message(battery_sample()));
+  write<RotorSpeeds>(folder, "rotor_speeds", to_message(rotor_speed_sample()));
+  write<ActuatorCommand>(folder, "actuator_command", to_message(actuator_command()));
+  write<GroundTruth>(folder, "ground_truth", to_message(truth_sample()));
+  write<Setpoint>(folder, "setpoint", to_message(setpoint()));
+  write<ControllerState>(folder, "controller_state", to_message(controller_report()));
+  write<Command>(folder, "command", to_message(request()));
+  msg::GroundLink link;
+  link.client(4);
+  link.depends(true);
+  write<GroundLink>(folder, "ground_link", link);
+
+  write<Mission>(folder, "mission", to_message(comms::tests::mission(5)));
+  write<Mission>(folder, "mission_empty", msg::Mission());
+  msg::Mission long_mission = to_message(comms::tests::mission(control::kMaxMissionItems, 0));
+  write<Mission>(folder, "mission_at_its_bound", long_mission);
+  long_mission.items().push_back(long_mission.items().front());
+  write<Mission>(folder, "mission_past_its_bound", long_mission);
+  msg::Mission wrong = to_message(comms::tests::mission(2));
+  wrong.items().front().speed(std::nan(""));
+  write<Mission>(folder, "mission_nan", wrong);
+
+  write<Trajectory>(folder, "trajectory", to_message(comms::tests::trajectory(3)));
+  write<Trajectory>(folder, "trajectory_empty", msg::Trajectory());
+  msg::Trajectory long_trajectory = to_message(comms::tests::trajectory(control::kMaxTrajectorySegments));
+  write<Trajectory>(folder, "trajectory_at_its_bound", long_trajectory);
+  long_trajectory.segments().push_back(long_trajectory.segments().front());
+  write<Trajectory>(folder, "trajectory_past_its_bound", long_trajectory);
+  msg::Trajectory endless = to_message(comms::tests::trajectory(1));
+  endless.segments().front().duration_s(std::numeric_limits<double>::infinity());
+  write<Trajectory>(folder, "trajectory_infinite", endless);
+  return 0;
+}

@@ -1,0 +1,45 @@
+// The messages that the fuzzer feeds, each with the letter that chooses it.
+#pragma once
+
+#include <fastdds/rtps/common/SerializedPayload.h>
+
+#include "swiftlet_msgs/msg/ActuatorCommandPubSubTypes.h"
+#include "swiftlet_msgs/msg/BatteryPubSubTypes.h"
+#include "swiftlet_msgs/msg/CommandPubSubTypes.h"
+#include "swiftlet_msgs/msg/ControllerStatePubSubTypes.h"
+#include "swiftlet_msgs/msg/GroundLinkPubSubTypes.h"
+#include "swiftlet_msgs/msg/GroundTruthPubSubTypes.h"
+#include "swiftlet_msgs/msg/ImuPubSubTypes.h"
+#include "swiftlet_msgs/msg/MissionPubSubTypes.h"
+#include "swiftlet_msgs/msg/MocapPosePubSubTypes.h"
+#include "swiftlet_msgs/msg/RotorSpeedsPubSubTypes.h"
+#include "swiftlet_msgs/msg/SetpointPubSubTypes.h"
+#include "swiftlet_msgs/msg/TrajectoryPubSubTypes.h"
+
+#include "services/comms/convert.hpp"
+
+namespace swiftlet::tests {
+
+using Payload = eprosima::fastrtps::rtps::SerializedPayload_t;
+
+template <char tag, class PubSubType, class PlainStruct>
+struct MessageType {
+  static constexpr char kTag = tag;
+  using PubSub = PubSubType;
+  using Plain = PlainStruct;
+};
+
+using Imu = MessageType<'i', comms::msg::ImuPubSubType, plant::ImuSample>;
+using MocapPose = MessageType<'p', comms::msg::MocapPosePubSubType, plant::PoseSample>;
+using Battery = MessageType<'b', comms::msg::BatteryPubSubType, plant::BatterySample>;
+using RotorSpeeds = MessageType<'r', comms::msg::RotorSpeedsPubSubType, plant::RotorSpeedSample>;
+using ActuatorCommand = MessageType<'a', comms::msg::ActuatorCommandPubSubType, plant::ActuatorCommand>;
+using GroundTruth = MessageType<'g', comms::msg::GroundTruthPubSubType, plant::TruthSample>;
+using Setpoint = MessageType<'s', comms::msg::SetpointPubSubType, control::Setpoint>;
+using ControllerState = MessageType<'c', comms::msg::ControllerStatePubSubType, comms::ControllerReport>;
+using GroundLink = MessageType<'l', comms::msg::GroundLinkPubSubType, control::GroundSign>;
+using Command = MessageType<'q', comms::msg::CommandPubSubType, control::Request>;
+using Mission = MessageType<'m', comms::msg::MissionPubSubType, control::Mission>;
+using Trajectory = MessageType<'t', comms::msg::TrajectoryPubSubType, control::Trajectory>;
+
+}  // namespace swiftlet::tests

@@ -1,0 +1,25 @@
+// Mission files of every form: YAML, polynomials, samples and waypoints as CSV, QGroundControl's plan. One program for each,
+// by SWIFTLET_FUZZED_PARSER.
+#include <cmath>
+
+#include "control/supervision/checks.hpp"
+#include "ground/formats/mission_format.hpp"
+#include "ground/mission_file.hpp"
+#include "tests/fuzz/refusal.hpp"
+
+using namespace swiftlet;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const control::Limits limits;
+  const std::string text(tests::text_of(data, size));
+  tests::is_read([&] { ground::detect_format(text, tests::kFuzzedFile); });
+  tests::is_read([&] {
+    const ground::MissionFile file = ground::SWIFTLET_FUZZED_PARSER(text, tests::kFuzzedFile, limits);
+    const control::Outcome outcome = control::check(file.mission, limits);
+    if (!outcome.accepted) std::fprintf(stderr, "%s\n", outcome.reason);
+    tests::demand(outcome.accepted, "control accepts a mission that was read");
+    const double duration_s = ground::planned_duration_s(file.mission, limits);
+    tests::demand(std::isfinite(duration_s) && duration_s > 0.0, "a mission's duration");
+  });
+  return 0;
+}

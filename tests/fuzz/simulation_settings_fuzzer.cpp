@@ -1,0 +1,15 @@
+// Files of simulation settings.
+#include "plant/simulation/settings.hpp"
+#include "services/runtime/simulation_file.hpp"
+#include "tests/fuzz/refusal.hpp"
+
+using namespace swiftlet;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  tests::is_read([&] {
+    const plant::SimulationSettings settings =
+        runtime::parse_simulation_settings(tests::text_of(data, size), tests::kFuzzedFile);
+    tests::demand(plant::validate(settings).empty(), "settings that were read keep the rules");
+  });
+  return 0;
+}

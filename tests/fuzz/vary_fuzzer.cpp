@@ -1,0 +1,20 @@
+// Vary files, and the draws from them.
+#include "ground/vary_file.hpp"
+#include "services/runtime/simulation_file.hpp"
+#include "services/runtime/vehicle_file.hpp"
+#include "tests/fuzz/refusal.hpp"
+
+using namespace swiftlet;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const ground::World nominal{
+      runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml"),
+      runtime::load_simulation_settings(SWIFTLET_SOURCE_DIR "/config/simulation/default.yaml")};
+  tests::is_read([&] {
+    const ground::Variation variation =
+        ground::parse_vary_file(std::string(tests::text_of(data, size)), tests::kFuzzedFile, nominal);
+    const ground::Draw draw = ground::draw(variation, nominal, 1);
+    tests::demand(ground::validate(draw.world).empty(), "a world that was drawn keeps the rules");
+  });
+  return 0;
+}

@@ -1,0 +1,31 @@
+// Vehicle files, and what is written of them.
+#include "plant/model/vehicle.hpp"
+#include "services/runtime/vehicle_file.hpp"
+#include "services/runtime/vehicle_writer.hpp"
+#include "tests/fuzz/refusal.hpp"
+
+using namespace swiftlet;
+
+namespace {
+
+std::string rewritten(std::string_view text, const plant::Vehicle& vehicle) {
+  return runtime::vehicle_text(vehicle, runtime::parse_vehicle_sources(text, tests::kFuzzedFile),
+                               runtime::parse_vehicle_uncertainty(text, tests::kFuzzedFile), "");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text = tests::text_of(data, size);
+  tests::is_read([&] {
+    const plant::Vehicle vehicle = runtime::parse_vehicle(text, tests::kFuzzedFile);
+    tests::demand(plant::validate(vehicle).empty(), "a vehicle that was read keeps the rules");
+    const std::string once = rewritten(text, vehicle);
+    std::string twice;
+    tests::demand(
+        tests::is_read([&] { twice = rewritten(once, runtime::parse_vehicle(once, tests::kFuzzedFile)); }),
+        "a vehicle that was written can be read");
+    tests::demand(once == twice, "a vehicle that was written is read as it was");
+  });
+  return 0;
+}

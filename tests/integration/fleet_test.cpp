@@ -1,0 +1,156 @@
+// Several vehicles from one command.
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "services/comms/domain_claim.hpp"
+#include "tests/integration/program.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/support/hop_mission.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace swiftlet::tests {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+using nlohmann::json;
+
+std::string command_line_of(pid_t pid) {
+  std::ifstream file("/proc/" + std::to_string(pid) + "/cmdline");
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// The vehicle's control process, of those that a flight has started.
+pid_t control_of(const Program& fly, const std::string& vehicle) {
+  for (const pid_t child : children_of(fly.pid())) {
+    const std::string words = command_line_of(child);
+    if (words.find("swiftlet-control") != std::string::npos && words.find(vehicle) != std::string::npos)
+      return child;
+  }
+  return -1;
+}
+
+double first_east_m(const fs::path& flight_csv) {
+  std::ifstream file(flight_csv);
+  std::string field;
+  std::getline(file, field);  // t,mode,px,py
+  for (int i = 0; i < 4; ++i) std::getline(file, field, ',');
+  return std::stod(field);
+}
+
+class FleetFlight : public testing::Test {
+ protected:
+  std::vector<std::string> arguments(std::vector<std::string> more) const {
+    std::vector<std::string> words = {"fly",
+                                      folder_.write("hop.yaml", kHopMission),
+                                      "--vehicle-name",
+                                      "kl1,kl2",
+                                      "--record",
+                                      record().string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  fs::path record() const { return folder_.path() / "record"; }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(FleetFlight, BeginsTogetherSideBySide) {
+  const Ending end = run_program("swiftlet", arguments({"--clock", "lockstep", "--spacing", "2", "--json"}),
+                                 folder_.path(), 90s);
+  ASSERT_EQ(end.exit_code, 0) << end.errors;
+  const json whole = json::parse(end.output);
+  EXPECT_EQ(whole.at("completed"), true);
+  ASSERT_EQ(whole.at("vehicles").size(), 2U);
+  for (const int i : {0, 1}) {
+    const json& report = whole.at("vehicles")[static_cast<std::size_t>(i)];
+    const std::string name = "kl" + std::to_string(i + 1);
+    EXPECT_EQ(report.at("vehicle_name"), name);
+    EXPECT_EQ(report.at("record_dir"), (record() / name).string());
+    EXPECT_EQ(report.at("start_m"), json({0.0, 2.0 * i - 1.0}));
+    EXPECT_EQ(report.at("seed"), 1 + i);
+    EXPECT_LT(report.at("rms_3d_m"), 0.01);
+    EXPECT_NEAR(first_east_m(record() / name / "flight.csv"), 2.0 * i - 1.0, 0.01);
+    EXPECT_TRUE(fs::exists(record() / name / "flight.png"));
+  }
+}
+
+TEST_F(FleetFlight, WhenOneFailsTheOtherLands) {
+  Program fly("swiftlet", arguments({}), folder_.path());
+  ASSERT_TRUE(
+      eventually([&] { return fly.errors().find("2/") != std::string::npos || fly.exit_code(); }, 60s));
+  const pid_t control = control_of(fly, "kl2");
+  ASSERT_GT(control, 0) << fly.errors();
+  kill(control, SIGKILL);
+  EXPECT_EQ(fly.wait(60s), 1);
+  const std::string errors = fly.errors();
+  EXPECT_NE(errors.find("kl2, hop: NOT completed: swiftlet-control was killed by signal 9"),
+            std::string::npos)
+      << errors;
+  EXPECT_NE(errors.find("kl1, hop: NOT completed: kl2 failed: swiftlet-control was killed by signal 9"),
+            std::string::npos)
+      << errors;
+  EXPECT_NE(errors.find("; landed"), std::string::npos) << errors;
+  EXPECT_NE(fly.output().find("0 of 2 flights completed"), std::string::npos) << fly.output();
+}
+
+class TwoVehicles : public testing::Test {
+ protected:
+  std::vector<std::string> words(const std::string& vehicles, const std::vector<std::string>& more) const {
+    std::vector<std::string> words = more;
+    words.insert(words.end(), {"--domain", std::to_string(claim_.domain()), "--vehicle-name", vehicles,
+                               "--localhost-only"});
+    return words;
+  }
+  std::vector<std::string> lockstep(const std::string& vehicle, std::vector<std::string> more = {}) const {
+    more.insert(more.end(), {"--clock", "lockstep"});
+    return words(vehicle, more);
+  }
+  Ending swiftlet(const std::string& vehicles, const std::vector<std::string>& more) const {
+    return run_program("swiftlet", words(vehicles, more), folder_.path());
+  }
+
+  comms::DomainClaim claim_;
+  TemporaryFolder folder_;
+  Program plant_1_{"swiftlet-plant", lockstep("kl1", {"--speed", "1"}), folder_.path()};
+  Program mocap_1_{"swiftlet-mocap", lockstep("kl1"), folder_.path()};
+  Program control_1_{"swiftlet-control", lockstep("kl1"), folder_.path()};
+  Program plant_2_{"swiftlet-plant", lockstep("kl2", {"--speed", "1"}), folder_.path()};
+  Program mocap_2_{"swiftlet-mocap", lockstep("kl2"), folder_.path()};
+  Program control_2_{"swiftlet-control", lockstep("kl2"), folder_.path()};
+};
+
+TEST_F(TwoVehicles, AreAskedAtOnceAndAnswerEachForItself) {
+  Ending armed;
+  ASSERT_TRUE(eventually([&] {
+    armed = swiftlet("kl1,kl2", {"arm", "--json"});
+    return armed.exit_code == 0;
+  })) << armed.errors;
+  EXPECT_EQ(json::parse(armed.output),
+            json::parse(R"({"kl1": {"accepted": true}, "kl2": {"accepted": true}})"));
+
+  const Ending disarmed = swiftlet("kl2", {"disarm"});
+  EXPECT_EQ(disarmed.exit_code, 0) << disarmed.errors;
+  const Ending taken_off = swiftlet("kl1,kl2", {"takeoff", "0.5", "--wait", "20"});
+  EXPECT_EQ(taken_off.exit_code, 1);
+  EXPECT_EQ(taken_off.output, "takeoff: accepted by kl1\ntakeoff: kl1: done\n");
+  EXPECT_NE(taken_off.errors.find("swiftlet: takeoff: kl2: "), std::string::npos) << taken_off.errors;
+  EXPECT_EQ(taken_off.errors.find("kl1"), std::string::npos) << taken_off.errors;
+}
+
+TEST_F(TwoVehicles, OneThatIsNotThereIsNamed) {
+  const Ending end = swiftlet("kl1,kl9", {"stop", "--yes", "--timeout", "5"});
+  EXPECT_EQ(end.exit_code, 1);
+  EXPECT_EQ(end.output, "stop: accepted by kl1\n");
+  EXPECT_NE(end.errors.find("swiftlet: stop: kl9: "), std::string::npos) << end.errors;
+}
+
+}  // namespace
+}  // namespace swiftlet::tests

@@ -1,0 +1,110 @@
+// The tool's commands against processes that run already, on a domain of their own.
+#pragma once
+
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "services/comms/domain_claim.hpp"
+#include "tests/integration/program.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace swiftlet::tests {
+
+using namespace std::chrono_literals;
+using nlohmann::json;
+
+class Online : public testing::Test {
+ protected:
+  std::vector<std::string> network() const {
+    return {"--domain", std::to_string(claim_.domain()), "--vehicle-name", "kl7", "--localhost-only"};
+  }
+  // `swiftlet` with the words of a command line.
+  Ending swiftlet(std::vector<std::string> words, std::chrono::milliseconds timeout = 30s) const {
+    for (const std::string& word : network()) words.push_back(word);
+    return run_program("swiftlet", std::move(words), folder_.path(), timeout);
+  }
+
+  comms::DomainClaim claim_;
+  TemporaryFolder folder_;
+};
+
+// In lockstep at the pace of the clock: the tools wait as they do with a real vehicle, and a machine that is
+// busy slows the flight down instead of failing it.
+class OnlineFlight : public Online {
+ protected:
+  OnlineFlight()
+      : plant_("swiftlet-plant", lockstep({"--speed", "1"}), folder_.path()),
+        mocap_("swiftlet-mocap", lockstep(), folder_.path()),
+        control_("swiftlet-control", lockstep(), folder_.path()) {}
+
+  std::vector<std::string> lockstep(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = network();
+    words.insert(words.end(), {"--clock", "lockstep"});
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+
+  void SetUp() override {
+    ASSERT_TRUE(reaches("has_pose", [](const json& status) { return status.at("has_pose") == true; }));
+  }
+
+  json status() const {
+    const Ending end = swiftlet({"status", "--json", "--watch", "0.1"});
+    EXPECT_EQ(end.exit_code, 0) << end.errors;
+    return end.exit_code == 0 ? json::parse(end.output) : json();
+  }
+  template <class Predicate>
+  bool reaches(const char* what, const Predicate& predicate) const {
+    json last;
+    const bool reached = eventually([&] { return predicate(last = status()); }, 30s);
+    EXPECT_TRUE(reached) << what << "\n" << last << "\n" << control_.errors();
+    return reached;
+  }
+  bool reaches_mode(const std::string& mode) const {
+    return reaches(mode.c_str(), [&](const json& status) { return status.at("mode") == mode; });
+  }
+  bool reaches_place(double x, double y, double z) const {
+    return reaches("place", [&](const json& status) {
+      const auto& at = status.at("position_ned_m");
+      return std::hypot(at[0].get<double>() - x, at[1].get<double>() - y, at[2].get<double>() - z) < 0.02;
+    });
+  }
+  void expect_accepted(const std::vector<std::string>& words) const {
+    const Ending end = swiftlet(words);
+    EXPECT_EQ(end.exit_code, 0) << words.front() << ": " << end.errors;
+    EXPECT_EQ(end.output, words.front() + ": accepted by kl7\n");
+  }
+  void expect_refused(const std::vector<std::string>& words, const std::string& reason) const {
+    const Ending end = swiftlet(words);
+    EXPECT_EQ(end.exit_code, 1);
+    EXPECT_EQ(end.errors, "swiftlet: " + words.front() + ": " + reason + "\n");
+  }
+  void take_off() const {
+    expect_accepted({"arm"});
+    expect_accepted({"takeoff", "0.6"});
+    ASSERT_TRUE(reaches_mode("holding"));
+  }
+
+  std::vector<std::string> attach(const std::string& mission) const {
+    return {"fly",
+            mission,
+            "--attach",
+            "--domain",
+            std::to_string(claim_.domain()),
+            "--vehicle-name",
+            "kl7",
+            "--json",
+            "--record",
+            folder_.path() / "record"};
+  }
+
+  Program plant_, mocap_, control_;
+};
+
+}  // namespace swiftlet::tests

@@ -1,0 +1,87 @@
+// Setpoint streams and the examples, against processes that run.
+#include <cmath>
+#include <cstdio>
+
+#include "tests/integration/online_flight.hpp"
+
+namespace swiftlet::tests {
+namespace {
+
+class StreamFlight : public OnlineFlight {
+ protected:
+  std::string circle(double rate_hz, double duration_s) const {
+    std::string rows = "t [s],x [m],y [m],z [m],vx [m/s],vy [m/s],vz [m/s]\n";
+    for (int i = 0; i <= static_cast<int>(duration_s * rate_hz); ++i) {
+      const double t = i / rate_hz;
+      const double angle = 0.5 * t;
+      char row[160];
+      std::snprintf(row, sizeof row, "%.3f,%.4f,%.4f,-0.6,%.4f,%.4f,0\n", t, 0.4 * (std::cos(angle) - 1.0),
+                    0.4 * std::sin(angle), -0.2 * std::sin(angle), 0.2 * std::cos(angle));
+      rows += row;
+    }
+    return folder_.write("circle.csv", rows);
+  }
+  Ending example(const std::string& name) const {
+    return run_program(name, {"kl7", std::to_string(claim_.domain()), "--localhost-only"}, folder_.path(),
+                       120s);
+  }
+};
+
+TEST_F(StreamFlight, AFileOfPositionsIsFlownAndItHoldsAfterwards) {
+  take_off();
+  const Ending end = swiftlet({"stream", circle(10.0, 4.0), "--json"}, 60s);
+  ASSERT_EQ(end.exit_code, 0) << end.errors << end.output;
+  const json report = json::parse(end.output);
+  EXPECT_EQ(report.at("sent"), 41);
+  EXPECT_EQ(report.at("refused"), 0);
+  EXPECT_GT(report.at("taken"), 20);
+  EXPECT_EQ(report.at("mode"), "holding");
+  EXPECT_NEAR(report.at("duration_s").get<double>(), 4.0, 0.5);
+  const json now = status();
+  EXPECT_EQ(now.at("reason"), "setpoints stopped");
+  EXPECT_NEAR(now.at("position_ned_m")[1].get<double>(), 0.4 * std::sin(2.0), 0.25);
+}
+
+TEST_F(StreamFlight, AVelocityThatLeadsOutOfTheFenceIsToldSo) {
+  take_off();
+  const std::string file =
+      folder_.write("out.csv", "t [s],vx [cm/s],vy [cm/s],vz [cm/s]\n0,150,0,0\n9,150,0,0\n");
+  const Ending slow = swiftlet({"stream", file});
+  EXPECT_EQ(slow.exit_code, 2);
+  EXPECT_NE(slow.errors.find("at t = 0.000 s the next row is 9.000 s away, must be 0.5 s at most"),
+            std::string::npos)
+      << slow.errors;
+  const Ending end = swiftlet({"stream", file, "--rate", "5", "--land"}, 90s);
+  EXPECT_EQ(end.exit_code, 1);
+  EXPECT_NE(end.errors.find(
+                "the vehicle is holding: setpoints stopped; setpoint: where it could come to rest: x is"),
+            std::string::npos)
+      << end.errors;
+  EXPECT_NE(end.output.find("now disarmed at ("), std::string::npos) << end.output;
+  EXPECT_LT(status().at("position_ned_m")[0].get<double>(), 3.0);
+}
+
+TEST_F(StreamFlight, IsNotFollowedOnTheGround) {
+  const Ending end = swiftlet({"stream", circle(10.0, 4.0)}, 60s);
+  EXPECT_EQ(end.exit_code, 1);
+  EXPECT_NE(end.errors.find("setpoints are not followed while disarmed"), std::string::npos) << end.errors;
+}
+
+TEST_F(StreamFlight, TheExampleFliesASquare) {
+  const Ending end = example("example-fly-square");
+  EXPECT_EQ(end.exit_code, 0) << end.errors << end.output;
+  EXPECT_NE(end.output.find("land: done"), std::string::npos) << end.output;
+  EXPECT_EQ(status().at("mode"), "disarmed");
+}
+
+TEST_F(StreamFlight, TheExampleStreamsACircle) {
+  const Ending end = example("example-stream-circle");
+  EXPECT_EQ(end.exit_code, 0) << end.errors << end.output;
+  const std::size_t at = end.output.find("up to ");
+  ASSERT_NE(at, std::string::npos) << end.output;
+  EXPECT_NEAR(std::stod(end.output.substr(at + 6)), 1.0, 0.05);
+  EXPECT_EQ(status().at("mode"), "disarmed");
+}
+
+}  // namespace
+}  // namespace swiftlet::tests

@@ -1,0 +1,167 @@
+// What the tool says of itself: completion in a shell, manual pages; and how it behaves at a terminal.
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <sstream>
+
+#include "tests/integration/online_flight.hpp"
+#include "tests/integration/terminal.hpp"
+
+namespace swiftlet::tests {
+namespace {
+
+class Tool : public testing::Test {
+ protected:
+  Ending run(std::vector<std::string> words) const {
+    return run_program("swiftlet", std::move(words), folder_.path());
+  }
+
+  // What bash completes the last of the words to.
+  std::vector<std::string> completed(const std::vector<std::string>& words) const {
+    const std::string script = folder_.write("completion.bash", run({"completion", "bash"}).output);
+    std::string array;
+    for (const std::string& word : words) array += " '" + word + "'";
+    const std::string test =
+        folder_.write("complete.bash", "source '" + script + "'\nCOMP_WORDS=(" + array +
+                                           ")\nCOMP_CWORD=" + std::to_string(words.size() - 1) +
+                                           "\n_swiftlet\nprintf '%s\\n' \"${COMPREPLY[@]}\"\n");
+    const Ending end = run_program("/bin/bash", {"--norc", "-u", test}, folder_.path());
+    EXPECT_EQ(end.exit_code, 0) << end.errors;
+    EXPECT_EQ(end.errors, "");
+    std::vector<std::string> found;
+    std::istringstream lines(end.output);
+    for (std::string line; std::getline(lines, line);) {
+      if (!line.empty()) found.push_back(line);
+    }
+    return found;
+  }
+
+  TemporaryFolder folder_;
+};
+
+using Words = std::vector<std::string>;
+
+TEST_F(Tool, BashCompletesCommandsOptionsAndTheirValues) {
+  EXPECT_EQ(completed({"swiftlet", "tak"}), Words({"takeoff"}));
+  EXPECT_EQ(completed({"swiftlet", "sim", "fl"}), Words({"fly"}));
+  EXPECT_EQ(completed({"swiftlet", "stream", "--ra"}), Words({"--rate"}));
+  EXPECT_EQ(completed({"swiftlet", "land", "--transport", ""}), Words({"udp", "shm"}));
+  EXPECT_EQ(completed({"swiftlet", "land", "--transport", "=", "s"}), Words({"shm"}));
+  EXPECT_EQ(completed({"swiftlet", "land", "--transport", "="}), Words({"udp", "shm"}));
+  EXPECT_EQ(completed({"swiftlet", "completion", "z"}), Words({"zsh"}));
+  EXPECT_EQ(completed({"swiftlet", "report", ""}), Words()) << "files, which bash completes itself";
+  EXPECT_EQ(completed({"swiftlet", "fly", "--record", ""}), Words());
+}
+
+TEST_F(Tool, EveryCommandHasACompletionAndAManualPage) {
+  const std::string pages = folder_.path() / "man";
+  ASSERT_EQ(run({"man", "--into", pages}).exit_code, 0);
+  const Words commands = completed({"swiftlet", ""});
+  EXPECT_GT(commands.size(), 15U);
+  const std::string help = run({"--help"}).output;
+  for (const std::string& command : commands) {
+    EXPECT_NE(help.find("\n  " + command + " "), std::string::npos) << command;
+    EXPECT_TRUE(std::filesystem::exists(pages + "/swiftlet-" + command + ".1")) << command;
+  }
+  EXPECT_TRUE(std::filesystem::exists(pages + "/swiftlet.1"));
+  EXPECT_TRUE(std::filesystem::exists(pages + "/swiftlet-sim-fly.1"));
+}
+
+TEST_F(Tool, ManualPagesHaveNoFaultThatGroffFinds) {
+  if (!std::filesystem::exists("/usr/bin/groff")) GTEST_SKIP() << "groff is not installed";
+  const std::string pages = folder_.path() / "man";
+  ASSERT_EQ(run({"man", "--into", pages}).exit_code, 0);
+  int count = 0;
+  for (const auto& page : std::filesystem::directory_iterator(pages)) {
+    const Ending end =
+        run_program("/usr/bin/groff", {"-ww", "-man", "-Tutf8", "-z", page.path()}, folder_.path());
+    EXPECT_EQ(end.exit_code, 0);
+    EXPECT_EQ(end.errors, "") << page.path();
+    ++count;
+  }
+  EXPECT_GT(count, 20);
+}
+
+TEST_F(Tool, AManualPageShowsWhatTheHelpShows) {
+  const Ending page = run({"man", "stream"});
+  EXPECT_EQ(page.exit_code, 0);
+  for (const char* part :
+       {".TH SWIFTLET\\-STREAM 1", "\\fB\\-\\-rate\\fR", "\\fIfile\\fR", ".SH EXIT STATUS"})
+    EXPECT_NE(page.output.find(part), std::string::npos) << part << "\n" << page.output;
+  EXPECT_EQ(run({"man", "fl"}).exit_code, 2);
+  EXPECT_EQ(run({"completion", "fish"}).exit_code, 2);
+}
+
+class AtATerminal : public OnlineFlight {
+ protected:
+  std::vector<std::string> with_network(std::vector<std::string> words) const {
+    for (const std::string& word : network()) words.push_back(word);
+    return words;
+  }
+};
+
+TEST_F(AtATerminal, WatchShowsTheFlightAndItsKeysAct) {
+  take_off();
+  Terminal terminal("swiftlet", with_network({"watch"}), 80, 24);
+  const auto shows = [&](const std::string& text) {
+    return eventually([&] { return terminal.text().find(text) != std::string::npos; }, 20s);
+  };
+  ASSERT_TRUE(shows(": holding (take-off completed), airborne")) << terminal.text();
+  ASSERT_TRUE(shows("position ")) << terminal.text();
+  for (const char* part : {"reference ", "battery ", "latency ", "rates ", "h hold   l land   s stop"})
+    EXPECT_TRUE(shows(part)) << part << "\n" << terminal.text();
+
+  terminal.resize(50, 8);
+  ASSERT_TRUE(eventually([&] { return terminal.line(7).rfind("h hold", 0) == 0; }, 20s)) << terminal.text();
+  EXPECT_EQ(terminal.line(0).rfind("kl7 in domain", 0), 0U) << terminal.text();
+  terminal.resize(120, 40);
+  ASSERT_TRUE(eventually([&] { return terminal.line(39).rfind("h hold", 0) == 0; }, 20s)) << terminal.text();
+
+  terminal.type("l");
+  ASSERT_TRUE(shows("land: straight down? y confirms")) << terminal.text();
+  terminal.type("x");
+  ASSERT_TRUE(shows("land: not confirmed")) << terminal.text();
+  EXPECT_EQ(status().at("mode"), "holding");
+  terminal.type("l");
+  ASSERT_TRUE(shows("land: straight down? y confirms")) << terminal.text();
+  terminal.type("y");
+  ASSERT_TRUE(shows("land: accepted")) << terminal.text();
+  ASSERT_TRUE(shows(": disarmed (landed)")) << terminal.text();
+  terminal.type("q");
+  EXPECT_EQ(terminal.wait(10s), 0);
+  EXPECT_TRUE(terminal.is_as_before());
+}
+
+TEST_F(AtATerminal, WatchLeavesTheTerminalAsItWasWhenItIsInterrupted) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    Terminal terminal("swiftlet", with_network({"watch"}), 80, 24);
+    ASSERT_TRUE(eventually([&] { return terminal.text().find("disarmed") != std::string::npos; }, 20s))
+        << terminal.text();
+    EXPECT_FALSE(terminal.is_as_before());
+    terminal.signal(signal);
+    EXPECT_EQ(terminal.wait(10s), 0) << signal;
+    EXPECT_TRUE(terminal.is_as_before()) << signal;
+  }
+}
+
+TEST_F(AtATerminal, StopIsTypedToBeConfirmed) {
+  expect_accepted({"arm"});
+  {
+    Terminal terminal("swiftlet", with_network({"stop"}), 80, 24);
+    ASSERT_TRUE(
+        eventually([&] { return terminal.text().find("Type stop to do it:") != std::string::npos; }, 20s));
+    terminal.type("y\n");
+    EXPECT_EQ(terminal.wait(10s), 2);
+    EXPECT_NE(terminal.text().find("not confirmed, nothing was sent"), std::string::npos) << terminal.text();
+  }
+  EXPECT_EQ(status().at("mode"), "armed");
+  Terminal terminal("swiftlet", with_network({"stop"}), 80, 24);
+  ASSERT_TRUE(
+      eventually([&] { return terminal.text().find("Type stop to do it:") != std::string::npos; }, 20s));
+  terminal.type("stop\n");
+  EXPECT_EQ(terminal.wait(10s), 0);
+  EXPECT_EQ(status().at("mode"), "stopped");
+}
+
+}  // namespace
+}  // namespace swiftlet::tests

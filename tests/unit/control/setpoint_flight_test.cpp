@@ -1,0 +1,204 @@
+// Setpoint streams on the whole vehicle, with all sensor models on.
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "control/attitude/euler.hpp"
+#include "control/supervision/conditions.hpp"
+#include "ground/simulation/closed_loop.hpp"
+#include "services/runtime/control_settings_file.hpp"
+#include "services/runtime/vehicle_file.hpp"
+#include "tests/support/malloc_guard.hpp"
+
+namespace swiftlet::control {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kPeriod_s = 0.02;
+
+class SetpointFlight : public testing::TestWithParam<const char*> {
+ protected:
+  static ControlSettings settings() {
+    return runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/" + std::string(GetParam()) +
+                                          ".yaml");
+  }
+
+  void SetUp() override {
+    loop_.step_until([&] { return loop_.time_s() > 0.5; }, 1.0);
+    ASSERT_TRUE(ask(RequestKind::kArm));
+    ASSERT_TRUE(ask(RequestKind::kTakeoff, {0, 0, -1.2}));
+    ASSERT_TRUE(loop_.step_until([&] { return mode() == Mode::kHolding; }, 10.0));
+    const double now_s = loop_.time_s();
+    loop_.step_until([&] { return loop_.time_s() > now_s + 2.0; }, 3.0);
+  }
+  bool ask(RequestKind kind, const Vector3d& position = Vector3d::Zero()) {
+    Request request;
+    request.kind = kind;
+    request.position_ned = position;
+    return loop_.controller.request(request).accepted;
+  }
+  Mode mode() const { return loop_.controller.status().mode; }
+  const plant::VehicleState& truth() const { return loop_.plant.state(); }
+  double tilt_rad() const { return std::acos(cosine_of_tilt(truth().q_ned_from_frd)); }
+
+  // For so long, or until it is refused.
+  Outcome stream(const Setpoint& setpoint, double duration_s) {
+    const double end_s = loop_.time_s() + duration_s;
+    Outcome outcome;
+    double next_s = loop_.time_s();
+    while (loop_.time_s() < end_s) {
+      if (loop_.time_s() >= next_s) {
+        next_s += kPeriod_s;
+        outcome = loop_.controller.on_setpoint(setpoint);
+        if (!outcome.accepted) break;
+      }
+      loop_.step();
+    }
+    return outcome;
+  }
+  Setpoint attitude(double roll_rad, double pitch_rad, double yaw_rad) {
+    Setpoint setpoint;
+    setpoint.kind = SetpointKind::kAttitude;
+    setpoint.q_ned_from_frd = quaternion_from_euler({roll_rad, pitch_rad, yaw_rad});
+    setpoint.thrust = plant::kGravity / (std::cos(roll_rad) * std::cos(pitch_rad));
+    return setpoint;
+  }
+  Setpoint body_rates(const Vector3d& rates) {
+    Setpoint setpoint;
+    setpoint.kind = SetpointKind::kBodyRates;
+    setpoint.body_rates_frd = rates;
+    setpoint.thrust = plant::kGravity;
+    return setpoint;
+  }
+
+  ground::ClosedLoop loop_{runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml"),
+                           plant::SimulationSettings(), settings(), 11};
+};
+
+TEST_P(SetpointFlight, AnAttitudeIsTakenAndTheThrustCarriesIt) {
+  ASSERT_TRUE(stream(attitude(0.1, -0.05, 0.0), 0.8).accepted);
+  EXPECT_EQ(mode(), Mode::kSetpoint);
+  const Vector3d euler = euler_from_quaternion(truth().q_ned_from_frd);
+  EXPECT_NEAR(euler.x(), 0.1, 0.02);
+  EXPECT_NEAR(euler.y(), -0.05, 0.02);
+  EXPECT_NEAR(truth().position_ned.z(), -1.2, 0.1);
+  EXPECT_GT(truth().velocity_ned.y(), 0.3) << "rolled right, it flies east";
+  ASSERT_TRUE(loop_.step_until([&] { return mode() == Mode::kHolding; }, 1.0));
+  EXPECT_EQ(loop_.controller.status().reason, Reason::kSetpointsStopped);
+  const auto rests = [&] { return truth().velocity_ned.norm() < 0.02; };
+  EXPECT_TRUE(loop_.step_until(rests, 10.0));
+}
+
+TEST_P(SetpointFlight, BodyRatesAreTaken) {
+  const double before = euler_from_quaternion(truth().q_ned_from_frd).z();
+  ASSERT_TRUE(stream(body_rates({0, 0, 1.0}), 1.5).accepted);
+  EXPECT_NEAR(truth().body_rates_frd.z(), 1.0, 0.1);
+  EXPECT_NEAR(wrap_angle(euler_from_quaternion(truth().q_ned_from_frd).z() - before), 1.5, 0.4);
+  EXPECT_LT(tilt_rad(), 0.1);
+  ASSERT_TRUE(stream(body_rates({0.5, 0, 0}), 0.3).accepted);
+  EXPECT_NEAR(truth().body_rates_frd.x(), 0.5, 0.1);
+}
+
+TEST_P(SetpointFlight, RatesThatTurnItOverStopTheRotors) {
+  stream(body_rates({4.0, 0, 0}), 1.0);
+  EXPECT_EQ(mode(), Mode::kStopped);
+  EXPECT_EQ(loop_.controller.status().reason, Reason::kTippedOver);
+}
+
+TEST_P(SetpointFlight, AnAttitudeTowardsTheFenceEndsInsideAndNeedsAWordBeforeTheNext) {
+  double farthest_m = 0.0;
+  stream(attitude(0.2, 0.0, 0.0), 10.0);
+  EXPECT_EQ(mode(), Mode::kHolding);
+  EXPECT_EQ(loop_.controller.status().reason, Reason::kSetpointsLedOut);
+  loop_.step_until(
+      [&] {
+        farthest_m = std::max(farthest_m, truth().position_ned.y());
+        return false;
+      },
+      5.0);
+  EXPECT_LT(farthest_m, 3.0);
+  EXPECT_GT(farthest_m, 1.5);
+  EXPECT_EQ(mode(), Mode::kHolding);
+  const Setpoint level = attitude(0.0, 0.0, 0.0);
+  EXPECT_STREQ(loop_.controller.on_setpoint(level).reason,
+               "setpoint: the stream led out of the fence; ask for hold or goto before the next of its kind");
+  ASSERT_TRUE(ask(RequestKind::kGoTo, {0, 0, -1.2}));
+  EXPECT_TRUE(loop_.controller.on_setpoint(level).accepted);
+}
+
+// From flying tilted to a velocity: the tilt goes over, it does not jump.
+TEST_P(SetpointFlight, FromAnAttitudeToAVelocityItGoesOver) {
+  ASSERT_TRUE(stream(attitude(0.15, 0.0, 0.0), 0.8).accepted);
+  const Vector3d before = loop_.controller.attitude_setpoint().body_z_ned;
+  Setpoint velocity;
+  velocity.kind = SetpointKind::kVelocity;
+  velocity.velocity_ned = {0, 0.5, 0};
+  velocity.yaw_free = true;
+  ASSERT_TRUE(loop_.controller.on_setpoint(velocity).accepted);
+  loop_.step();
+  const Vector3d after = loop_.controller.attitude_setpoint().body_z_ned;
+  EXPECT_LT(std::acos(std::min(before.dot(after), 1.0)), 0.08);
+  ASSERT_TRUE(stream(velocity, 2.0).accepted);
+  EXPECT_NEAR(truth().velocity_ned.y(), 0.5, 0.05);
+}
+
+TEST_P(SetpointFlight, APositionStreamOf2HzIsFlownWithoutAJerk) {
+  double most_rate = 0.0, most_tilt = 0.0;
+  Setpoint setpoint;
+  setpoint.yaw_free = true;
+  setpoint.position_ned = {0, 0, -1.2};
+  for (int i = 1; i <= 12; ++i) {
+    setpoint.position_ned.x() = 0.15 * std::min(i, 10);
+    ASSERT_TRUE(loop_.controller.on_setpoint(setpoint).accepted);
+    const double end_s = loop_.time_s() + 0.5;
+    while (loop_.time_s() < end_s) {
+      loop_.step();
+      most_rate = std::max(most_rate, truth().body_rates_frd.norm());
+      most_tilt = std::max(most_tilt, tilt_rad());
+    }
+  }
+  EXPECT_EQ(mode(), Mode::kSetpoint);
+  EXPECT_LT(most_tilt, 0.25) << "2 m/s^2 tilt it by 0.2";
+  EXPECT_LT(most_rate, 1.5);
+  loop_.step_until([&] { return mode() == Mode::kHolding; }, 2.0);
+  loop_.step_until([] { return false; }, 3.0);
+  EXPECT_NEAR(truth().position_ned.x(), 1.5, 0.03);
+}
+
+TEST_P(SetpointFlight, NoKindTakesMemory) {
+  std::size_t calls = 0;
+  Setpoint setpoint = attitude(0.02, 0.0, 0.0);
+  setpoint.yaw_free = true;
+  setpoint.position_ned = {0.1, 0.1, -1.2};
+  setpoint.velocity_ned = {0.1, 0.0, 0.0};
+  for (const SetpointKind kind :
+       {SetpointKind::kPosition, SetpointKind::kVelocity, SetpointKind::kAcceleration,
+        SetpointKind::kAttitude, SetpointKind::kBodyRates}) {
+    setpoint.kind = kind;
+    {
+      const test::MallocGuard guard;
+      EXPECT_TRUE(loop_.controller.on_setpoint(setpoint).accepted) << static_cast<int>(kind);
+      calls += guard.calls();
+    }
+    for (int i = 0; i < 20; ++i) {
+      do {
+        loop_.plant.step(loop_.watchdog.drive(loop_.plant.stamp_ns()));
+      } while (!loop_.plant.imu());
+      const auto pose = loop_.mocap.update(loop_.plant.truth());
+      const test::MallocGuard guard;
+      if (pose) loop_.controller.on_pose(*pose);
+      loop_.command = loop_.controller.on_imu(*loop_.plant.imu());
+      calls += guard.calls();
+      loop_.watchdog.accept(loop_.command, loop_.plant.stamp_ns());
+    }
+  }
+  EXPECT_EQ(calls, 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(WithSettings, SetpointFlight, testing::Values("motor_lag", "paper"),
+                         [](const auto& run) { return std::string(run.param); });
+
+}  // namespace
+}  // namespace swiftlet::control
