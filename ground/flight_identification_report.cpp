@@ -10,7 +10,6 @@
 namespace swiftlet::ground {
 namespace {
 
-using identification::CommandLaw;
 using identification::Estimate;
 using identification::FlightIdentification;
 using identification::PredictionError;
@@ -20,33 +19,18 @@ using Json = nlohmann::ordered_json;
 constexpr double kShownS = 8.0;  // of the predictions, in the figures
 
 const char* source_text(SpeedSource source) {
-  switch (source) {
-    case SpeedSource::kMeasured:
-      return "measured rotor speeds";
-    case SpeedSource::kModelled:
-      return "rotor speeds by command and supply voltage";
-    case SpeedSource::kCommanded:
-      break;
-  }
-  return "commands alone";
+  return source == SpeedSource::kMeasured ? "measured rotor speeds"
+                                          : "rotor speeds by command and supply voltage";
 }
 
 const char* source_key(SpeedSource source) {
-  return source == SpeedSource::kMeasured   ? "measured"
-         : source == SpeedSource::kModelled ? "modelled"
-                                            : "commanded";
+  return source == SpeedSource::kMeasured ? "measured" : "modelled";
 }
 
 std::string what_was_fitted(const FlightIdentification& found) {
-  std::string text =
-      format("%.1f s of flight fitted to, the %.1f s that follow predicted; ", found.fitted_s, found.kept_s) +
-      source_text(found.source);
-  if (found.source == SpeedSource::kCommanded) {
-    text += found.law == CommandLaw::kLinear ? ", speeds linear in the command"
-                                             : ", speeds linear in the command's root";
-    text += format("; hover at %.3f of full command", found.hover_command);
-  }
-  return text;
+  return format("%.1f s of flight fitted to, the %.1f s that follow predicted; ", found.fitted_s,
+                found.kept_s) +
+         source_text(found.source);
 }
 
 std::vector<std::pair<std::string, const std::vector<std::string>*>> notes(
@@ -133,10 +117,6 @@ std::string flight_identification_json(const FlightIdentificationReport& report)
               {"fitted_s", found.fitted_s},
               {"kept_s", found.kept_s},
               {"parameters", parameters}};
-  if (found.source == SpeedSource::kCommanded) {
-    out["command_law"] = found.law == CommandLaw::kLinear ? "linear" : "root";
-    out["hover_command"] = found.hover_command;
-  }
   out["prediction"] = prediction;
   out["assumptions"] = report.assumptions;
   out["unexcited"] = found.unexcited;

@@ -46,7 +46,7 @@ struct FlyOptions {
   double spacing_m = 1.0;       // of several vehicles, from one to the next, to the east
   int domain = -1;              // below 0: a free one, or 0 to attach
   bool trace = false;           // keep a trace of a lockstep or in-process flight
-  bool sensors = false;          // keep what was sensed and commanded, for `swiftlet identify flight`
+  bool sensors = false;         // keep what was sensed and commanded, for `swiftlet identify flight`
   bool json = false;
 };
 

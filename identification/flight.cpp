@@ -46,13 +46,9 @@ double lever(const plant::Vehicle& vehicle, int axis) {
 std::vector<Derived> derived(const FlightModel& model, Known known) {
   const FlightLayout& l = model.layout();
   const plant::Vehicle& base = model.base();
-  const bool commanded = model.source() == SpeedSource::kCommanded;
   const bool mass_known = known == Known::kMass;
-  const double k = model.thrust_factor();
+  const double k = base.rotor.thrust;
   const auto at = [](int index) { return [index](const VectorXd& x) { return x[index]; }; };
-  const auto full = [&model, &l](const VectorXd& x) {  // squared speed at full command
-    return std::pow(1.0 + model.value(x, l.command_offset), 2);
-  };
   std::vector<Derived> out;
   out.push_back({"motor.time_constant", "tau_m", "s", at(l.lag)});
   if (l.motor_delay != kAbsent) {
@@ -62,54 +58,42 @@ std::vector<Derived> derived(const FlightModel& model, Known known) {
     out.push_back({"delay.force", "T_f", "s", at(l.force_delay)});
     out.push_back({"delay.rates", "T_w", "s", at(l.rate_delay)});
   }
-  if (commanded) {
-    out.push_back({"command.offset", "u_0", "1", at(l.command_offset)});
-    out.push_back({"thrust_per_mass.full_command", "T/m", "m/s^2", [&l, &base, k, full](const VectorXd& x) {
-                     return x[l.thrust] * base.rotor_count() * k * full(x) / base.mass_kg;
-                   }});
-  } else {
-    out.push_back({"thrust_factor_over_mass", "k_T/m", "N*s^2/kg",
-                   [&l, &base, k](const VectorXd& x) { return x[l.thrust] * k / base.mass_kg; }});
-  }
+  out.push_back({"thrust_factor_over_mass", "k_T/m", "N*s^2/kg",
+                 [&l, &base, k](const VectorXd& x) { return x[l.thrust] * k / base.mass_kg; }});
   for (int axis = 0; axis < 3; ++axis) {
-    const double per_speed = axis == 2 ? k * base.rotor.torque / base.rotor.thrust : k * lever(base, axis);
+    const double per_speed = axis == 2 ? base.rotor.torque : k * lever(base, axis);
     const double over_inertia = per_speed / base.inertia(axis, axis);
     const int gain = l.gain[axis];
     out.push_back({std::string("rotor_to_rate.") + kAxisNames[axis],
                    axis == 2   ? "k_Q/J_zz"
                    : axis == 1 ? "k_T d/J_yy"
                                : "k_T d/J_xx",
-                   commanded ? "rad/s^2" : "1", [gain, over_inertia, commanded, full](const VectorXd& x) {
-                     return x[gain] * over_inertia * (commanded ? full(x) : 1.0);
-                   }});
+                   "1", [gain, over_inertia](const VectorXd& x) { return x[gain] * over_inertia; }});
   }
-  if (mass_known && !commanded) {
+  if (mass_known) {
     out.push_back(
         {"rotor.thrust_factor", "k_T", "N*s^2", [&l, k](const VectorXd& x) { return x[l.thrust] * k; }});
-  } else if (!mass_known && !commanded) {
+  } else {
     out.push_back({"mass", "m", "kg", [&l, &base](const VectorXd& x) { return base.mass_kg / x[l.thrust]; }});
   }
   const char* const inertias[3] = {"inertia.xx", "inertia.yy", "inertia.zz"};
   const char* const symbols[3] = {"J_xx", "J_yy", "J_zz"};
   for (int axis = 0; axis < 3; ++axis) {
     // With the thrust known and the mass told, the moments are the base's.
-    out.push_back({inertias[axis], symbols[axis], "kg*m^2",
-                   [&model, &l, axis, mass_known, commanded](const VectorXd& x) {
-                     const double of_mass = model.inertia(x)[axis];
-                     const bool scales = axis < 2 || commanded;
-                     return mass_known || !scales ? of_mass : of_mass / x[l.thrust];
-                   }});
+    out.push_back(
+        {inertias[axis], symbols[axis], "kg*m^2", [&model, &l, axis, mass_known](const VectorXd& x) {
+           const double of_mass = model.inertia(x)[axis];
+           return mass_known || axis == 2 ? of_mass : of_mass / x[l.thrust];
+         }});
   }
-  if (l.drag != kAbsent) {
-    out.push_back({"linear_drag", "c", "N*s/m", [&l, &base, mass_known](const VectorXd& x) {
-                     return x[l.drag] * base.mass_kg / (mass_known ? 1.0 : x[l.thrust]);
-                   }});
-  }
+  out.push_back({"linear_drag", "c", "N*s/m", [&l, &base, mass_known](const VectorXd& x) {
+                   return x[l.drag] * base.mass_kg / (mass_known ? 1.0 : x[l.thrust]);
+                 }});
   out.push_back({"thrust_centre.x", "r_x", "m", at(l.trim[1])});
   out.push_back({"thrust_centre.y", "r_y", "m", at(l.trim[0])});
   for (std::size_t log = 0; log < l.offset.size(); ++log) {
     const std::string of_log = l.offset.size() > 1 ? "[" + std::to_string(log) + "]" : "";
-    for (int axis = 0; axis < (l.has_vertical_offset[log] ? 3 : 2); ++axis) {
+    for (int axis = 0; axis < 3; ++axis) {
       out.push_back({"accelerometer_offset" + of_log + "." + "xyz"[axis], std::string("b_") + "xyz"[axis],
                      "m/s^2", at(l.offset[log] + axis)});
     }
@@ -145,12 +129,11 @@ DerivedValues evaluate(const std::vector<Derived>& quantities, const FlightModel
   return out;
 }
 
-Fitted fit_with(const std::vector<FlightLog>& logs, const plant::Vehicle& base, const FlightOptions& options,
-                CommandLaw law, const std::string& what) {
+Fitted fit(const std::vector<FlightLog>& logs, const plant::Vehicle& base, const FlightOptions& options) {
   std::vector<FlightSeries> flights;
   for (const FlightLog& log : logs) {
     try {
-      flights.push_back(prepare_flight(log, base, options.bounds, law));
+      flights.push_back(prepare_flight(log, base, options.bounds));
     } catch (const BadData& fault) {
       throw BadData(log.name + ": " + fault.what(), fault.row());
     }
@@ -158,24 +141,9 @@ Fitted fit_with(const std::vector<FlightLog>& logs, const plant::Vehicle& base, 
   Fitted out;
   out.model = std::make_unique<FlightModel>(std::move(flights), base);
   out.fit = fit_series(out.model->problem([&] {
-    if (options.progress) options.progress(what);
+    if (options.progress) options.progress("fitting");
   }));
   return out;
-}
-
-constexpr std::size_t kForceZ = 2;  // channel
-
-// The law of the commands that leaves less of the specific force.
-Fitted best_fit(const std::vector<FlightLog>& logs, const plant::Vehicle& base, const FlightOptions& options,
-                CommandLaw& law) {
-  Fitted linear = fit_with(logs, base, options, CommandLaw::kLinear, "fitting");
-  law = CommandLaw::kLinear;
-  if (linear.model->source() != SpeedSource::kCommanded) return linear;
-  Fitted root =
-      fit_with(logs, base, options, CommandLaw::kRoot, "fitting speeds over the root of the command");
-  if (root.fit.channel_spread[kForceZ] >= linear.fit.channel_spread[kForceZ]) return linear;
-  law = CommandLaw::kRoot;
-  return root;
 }
 
 void refuse_turned_gains(const FlightModel& model, const SeriesFit& fit) {
@@ -220,14 +188,13 @@ Excitation excitation(const FlightModel& model, const VectorXd& x) {
         series[3 + axis].push_back(coupling[axis]);
       }
       series[6].push_back(drive.specific_force[i].z());
-      if (!flight.velocity_ned.empty())
-        series[7].push_back(flight.velocity_ned[flight.fitted.first + i].head<2>().norm());
+      series[7].push_back(flight.velocity_ned[flight.fitted.first + i].head<2>().norm());
     }
   }
   return {{spread(series[0]), spread(series[1]), spread(series[2])},
           {spread(series[3]), spread(series[4]), spread(series[5])},
           spread(series[6]),
-          series[7].empty() ? 0.0 : spread(series[7])};
+          spread(series[7])};
 }
 
 std::string share_text(const Estimate& estimate) {
@@ -308,13 +275,6 @@ void tell_what_no_flight_tells(FlightIdentification& out, const FlightModel& mod
                                Known known) {
   const plant::Vehicle& base = model.base();
   const double s = fit.parameters[model.layout().thrust];
-  if (model.source() == SpeedSource::kCommanded) {
-    out.findings.push_back(
-        "without supply voltage or rotor speeds, commands tell thrust over mass and moments over inertia "
-        "alone; the inertia is that of a vehicle of " +
-        shown(base.mass_kg) + " kg, with the arms and the torque over thrust of " + base.name);
-    return;
-  }
   out.findings.push_back(known == Known::kMass
                              ? "a flight tells thrust over mass: the mass is taken to be " +
                                    shown(base.mass_kg) + " kg; with the thrust factor of " + base.name +
@@ -355,19 +315,7 @@ void warn(FlightIdentification& out, const FlightModel& model, const SeriesFit& 
     if (out.windows[f].ends_in_a_blow)
       out.warnings.push_back(model.flights()[f].log->name + " ends in a blow of more than " + shown(kBlow) +
                              " m/s^2; what follows it is left out");
-    if (!model.layout().has_vertical_offset[f])
-      out.warnings.push_back(model.flights()[f].log->name +
-                             " has neither poses nor rest before the flight: the accelerometer is taken to "
-                             "have no offset along z");
   }
-}
-
-double hover_command(const FlightModel& model, const VectorXd& x, CommandLaw law) {
-  const plant::Vehicle& base = model.base();
-  const double thrust_per_mass =
-      x[model.layout().thrust] * base.rotor_count() * model.thrust_factor() / base.mass_kg;
-  const double command = std::sqrt(plant::kGravity / thrust_per_mass) - x[model.layout().command_offset];
-  return law == CommandLaw::kLinear ? command : command * command;
 }
 
 }  // namespace
@@ -381,7 +329,7 @@ const Estimate* FlightIdentification::find(const std::string& parameter) const {
 FlightIdentification identify_flight(const std::vector<FlightLog>& logs, const plant::Vehicle& base,
                                      const FlightOptions& options) {
   FlightIdentification out;
-  const Fitted fitted = best_fit(logs, base, options, out.law);
+  const Fitted fitted = fit(logs, base, options);
   const FlightModel& model = *fitted.model;
   const SeriesFit& fit = fitted.fit;
   refuse_turned_gains(model, fit);
@@ -408,8 +356,6 @@ FlightIdentification identify_flight(const std::vector<FlightLog>& logs, const p
   tell_what_no_flight_tells(out, model, fit, options.known);
   tell_of_excitation(out, excited);
   warn(out, model, fit);
-  if (out.source == SpeedSource::kCommanded)
-    out.hover_command = hover_command(model, fit.parameters, out.law);
   out.errors = prediction_errors(model, fit.parameters);
   out.trace = prediction_trace(model, fit.parameters);
   return out;

@@ -47,8 +47,7 @@ struct PredictionTrace {
 
 struct FlightIdentification {
   SpeedSource source = SpeedSource::kMeasured;
-  CommandLaw law = CommandLaw::kLinear;  // of kCommanded
-  std::vector<FlightWindow> windows;     // of each log
+  std::vector<FlightWindow> windows;  // of each log
   double fitted_s = 0.0;
   double kept_s = 0.0;
   bool converged = false;
@@ -60,7 +59,6 @@ struct FlightIdentification {
   std::vector<std::string> warnings;
   std::vector<PredictionError> errors;
   PredictionTrace trace;
-  double hover_command = 0.0;  // of kCommanded: command that carries the weight
 
   plant::Vehicle vehicle;  // the base with all that was told well enough
   plant::VehicleUncertainty uncertainty;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "identification/estimate.hpp"
@@ -13,27 +14,11 @@ using Eigen::Index;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double kHoverCommand = 0.6;       // where an unknown vehicle is taken to hover, to begin with
-constexpr double kRestBlockS = 0.5;         // readings of the accelerometer at rest, averaged
-constexpr double kBlockS = 0.01;            // samples in flight, likewise
+constexpr double kBlockS = 0.01;            // samples that are averaged
 constexpr std::size_t kBlocksInWindow = 5;  // over which rates are integrated from a free start
 constexpr std::size_t kKeptForEachFlight = 4;
 
 const char* const kAxes[3] = {"roll", "pitch", "yaw"};
-
-// Blocks of rest before a flight.
-std::vector<Rows> rest_blocks(const FlightSeries& flight) {
-  std::vector<Rows> out;
-  if (!flight.window.rest) return out;
-  const FlightLog& log = *flight.log;
-  std::size_t first = flight.window.rest->first;
-  for (std::size_t i = first; i < flight.window.rest->last; ++i) {
-    if (log.time_s[i] - log.time_s[first] < kRestBlockS) continue;
-    out.push_back({first, i});
-    first = i;
-  }
-  return out;
-}
 
 // Rows that are averaged.
 std::size_t block_of(const FlightSeries& flight) {
@@ -45,7 +30,13 @@ std::size_t block_of(const FlightSeries& flight) {
 
 std::size_t blocks_in(const Rows& stretch, std::size_t block) { return (stretch.size() + block - 1) / block; }
 
-bool has_poses(const FlightSeries& flight) { return !flight.velocity_ned.empty(); }
+plant::PerRotor speed_errors(const plant::PerRotor& measured, const plant::PerRotor& modelled, double scale,
+                             int rotors) {
+  plant::PerRotor out{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(rotors); ++i)
+    out[i] = measured[i] - scale * modelled[i];
+  return out;
+}
 
 }  // namespace
 
@@ -54,11 +45,8 @@ FlightModel::FlightModel(std::vector<FlightSeries> flights, plant::Vehicle base)
   for (const FlightSeries& flight : flights_) {
     if (flight.source == source()) continue;
     throw BadData(flight.log->name + " and " + flights_.front().log->name +
-                  " do not hold the same: supply voltage and rotor speeds must be in all logs or in none");
+                  " do not hold the same: rotor speeds must be in all logs or in none");
   }
-  thrust_factor_ = source() == SpeedSource::kCommanded
-                       ? plant::hover_thrust(base_) / (kHoverCommand * kHoverCommand)
-                       : base_.rotor.thrust;
   for (const FlightSeries& flight : flights_) block_.push_back(block_of(flight));
   lay_out();
 }
@@ -78,21 +66,16 @@ void FlightModel::lay_out() {
     l.force_delay = add({"delay from command to specific force", "s", 2e-3, 2e-3, -0.02, 0.05});
     l.rate_delay = add({"delay from command to angular acceleration", "s", 2e-3, 2e-3, -0.02, 0.05});
   }
-  if (source() == SpeedSource::kCommanded)
-    l.command_offset = add({"offset of the command", "1", 0.05, 0.05, -0.5, 2.0});
   l.thrust = add({"thrust over the base's", "1", 1.0, 0.1, 0.01, 100.0});
   for (int axis = 0; axis < 3; ++axis) {
     const std::string name = kAxes[axis];
     l.gain[axis] = add({"gain about " + name + " over the base's", "1", 1.0, 0.1, -100.0, 100.0});
     l.trim[axis] = add({"offset of the thrust, " + name, "m", 0.0, 1e-3, -0.1, 0.1});
   }
-  if (std::any_of(flights_.begin(), flights_.end(), has_poses))
-    l.drag = add({"drag over mass", "1/s", 0.1, 0.1, -10.0, 50.0});
+  l.drag = add({"drag over mass", "1/s", 0.1, 0.1, -10.0, 50.0});
   for (const FlightSeries& flight : flights_) {
-    const bool vertical = has_poses(flight) || !rest_blocks(flight).empty();
     l.offset.push_back(static_cast<int>(l.parameters.size()));
-    l.has_vertical_offset.push_back(vertical);
-    for (int axis = 0; axis < (vertical ? 3 : 2); ++axis) {
+    for (int axis = 0; axis < 3; ++axis) {
       add({std::string("accelerometer offset ") + "xyz"[axis] +
                (flights_.size() > 1 ? ", " + flight.log->name : ""),
            "m/s^2", 0.0, 0.1, -5.0, 5.0});
@@ -102,27 +85,26 @@ void FlightModel::lay_out() {
 
 Vector3d FlightModel::inertia(const VectorXd& x) const {
   const double s = x[layout_.thrust];
-  const double of_yaw = source() == SpeedSource::kCommanded ? s : 1.0;
   const Vector3d gain(x[layout_.gain[0]], x[layout_.gain[1]], x[layout_.gain[2]]);
-  return Vector3d(s, s, of_yaw).cwiseProduct(base_.inertia.diagonal()).cwiseQuotient(gain);
+  return Vector3d(s, s, 1.0).cwiseProduct(base_.inertia.diagonal()).cwiseQuotient(gain);
 }
 
 Vector3d FlightModel::offset(const VectorXd& x, std::size_t flight) const {
   const int first = layout_.offset[flight];
-  return {x[first], x[first + 1], layout_.has_vertical_offset[flight] ? x[first + 2] : 0.0};
+  return {x[first], x[first + 1], x[first + 2]};
 }
 
 FlightModel::Wrenches FlightModel::computed_wrenches(std::size_t flight, const Rows& rows, double lag_s,
-                                                     double delay_s, double offset) const {
+                                                     double delay_s) const {
   const FlightSeries& series = flights_[flight];
   std::vector<plant::PerRotor> modelled;
-  if (source() != SpeedSource::kMeasured) modelled = lagged_speeds(series, rows, lag_s, delay_s, offset);
+  if (source() != SpeedSource::kMeasured) modelled = lagged_speeds(series, rows, lag_s, delay_s);
   Wrenches out(rows.size(), Eigen::Vector4d::Zero());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const plant::PerRotor& speeds = modelled.empty() ? series.log->rotor_speeds[rows.first + i] : modelled[i];
     for (Index rotor = 0; rotor < effectiveness_.cols(); ++rotor) {
       const double speed = speeds[static_cast<std::size_t>(rotor)];
-      out[i] += effectiveness_.col(rotor) * (thrust_factor_ * speed * speed);
+      out[i] += effectiveness_.col(rotor) * (base_.rotor.thrust * speed * speed);
     }
   }
   return out;
@@ -131,13 +113,12 @@ FlightModel::Wrenches FlightModel::computed_wrenches(std::size_t flight, const R
 std::shared_ptr<const FlightModel::Wrenches> FlightModel::wrenches(const VectorXd& x, std::size_t flight,
                                                                    const Rows& rows, double delay_s) const {
   const bool measured = source() == SpeedSource::kMeasured;
-  Kept wanted{flight, rows.first, measured ? 0.0 : x[layout_.lag], delay_s, value(x, layout_.command_offset),
-              nullptr};
+  Kept wanted{flight, rows.first, measured ? 0.0 : x[layout_.lag], delay_s, nullptr};
   for (const Kept& kept : kept_) {
     if (kept.is_of(wanted) && kept.wrenches->size() == rows.size()) return kept.wrenches;
   }
-  wanted.wrenches = std::make_shared<const Wrenches>(
-      computed_wrenches(flight, rows, wanted.lag_s, wanted.delay_s, wanted.offset));
+  wanted.wrenches =
+      std::make_shared<const Wrenches>(computed_wrenches(flight, rows, wanted.lag_s, wanted.delay_s));
   if (kept_.size() < kKeptForEachFlight * flights_.size()) {
     kept_.push_back(wanted);
   } else {
@@ -164,10 +145,8 @@ FlightModel::Drive FlightModel::drive(const VectorXd& x, std::size_t flight, con
   out.acceleration.reserve(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     Vector3d force(0.0, 0.0, -thrust_over_mass * (*for_force)[i][0]);
-    if (has_poses(series)) {
-      const std::size_t row = rows.first + i;
-      force -= drag * (series.attitude[row].conjugate() * series.velocity_ned[row]);
-    }
+    const std::size_t row = rows.first + i;
+    force -= drag * (series.attitude[row].conjugate() * series.velocity_ned[row]);
     out.specific_force.push_back(force);
     const Eigen::Vector4d& moments = (*for_rates)[i];
     out.acceleration.push_back(gain.cwiseProduct(moments.tail<3>() + moments[0] * trim));
@@ -180,8 +159,8 @@ Vector3d FlightModel::rate_derivative(const Vector3d& inertia, const Vector3d& a
   return acceleration - rates.cross(inertia.cwiseProduct(rates)).cwiseQuotient(inertia);
 }
 
-// Channels, one after the other: specific force x, y, z, rates p, q, r, speed of each rotor, vertical motion,
-// rest.
+// Channels, one after the other: specific force x, y, z, rates p, q, r, speed of each rotor less the mean of
+// all, that mean over each stretch, vertical motion.
 SeriesProblem FlightModel::problem(const std::function<void()>& on_iteration) const {
   SeriesProblem out;
   const auto count = static_cast<Index>(layout_.parameters.size());
@@ -198,17 +177,12 @@ SeriesProblem FlightModel::problem(const std::function<void()>& on_iteration) co
   }
   std::vector<std::size_t> per_row;  // stretch of each block of fitted rows, all flights
   std::vector<std::size_t> per_stretch;
-  std::vector<std::size_t> per_rest;
   for (std::size_t f = 0; f < flights_.size(); ++f) {
     const FlightSeries& flight = flights_[f];
-    const std::size_t first = out.stretch_count;
     for (const Rows& stretch : flight.stretches) {
       per_row.insert(per_row.end(), blocks_in(stretch, block_[f]), out.stretch_count);
-      if (has_poses(flight)) per_stretch.push_back(out.stretch_count);
+      per_stretch.push_back(out.stretch_count);
       ++out.stretch_count;
-    }
-    if (!has_poses(flight)) {
-      for (std::size_t i = 0; i < rest_blocks(flight).size(); ++i) per_rest.push_back(first);
     }
   }
   const auto add_channel = [&](const std::vector<std::size_t>& stretches) {
@@ -218,9 +192,9 @@ SeriesProblem FlightModel::problem(const std::function<void()>& on_iteration) co
   for (int i = 0; i < 6; ++i) add_channel(per_row);
   if (source() == SpeedSource::kMeasured) {
     for (int i = 0; i < base_.rotor_count(); ++i) add_channel(per_row);
+    add_channel(per_stretch);
   }
   add_channel(per_stretch);
-  add_channel(per_rest);
   out.residuals = [this](const VectorXd& x, VectorXd& residuals_out) { residuals(x, residuals_out); };
   out.on_iteration = on_iteration;
   return out;
@@ -247,12 +221,13 @@ void FlightModel::residuals(const VectorXd& x, VectorXd& out) const {
     const Drive by_model = drive(x, f, all);
     const Vector3d bias = offset(x, f);
     std::vector<plant::PerRotor> modelled;
-    if (with_speeds) modelled = lagged_speeds(flight, all, x[layout_.lag], x[layout_.motor_delay], 0.0);
+    if (with_speeds) modelled = lagged_speeds(flight, all, x[layout_.lag], x[layout_.motor_delay]);
 
     for (const Rows& stretch : flight.stretches) {
       const auto blocks = static_cast<Index>(blocks_in(stretch, block_[f]));
       Vector3d predicted = Vector3d::Zero();
       Vector3d before = Vector3d::Zero();
+      double mean_error = 0.0;  // of all rotors' speeds
       for (std::size_t row = stretch.first; row < stretch.last; ++row) {
         const std::size_t i = row - all.first;
         const std::size_t block = (row - stretch.first) / block_[f];
@@ -270,12 +245,17 @@ void FlightModel::residuals(const VectorXd& x, VectorXd& out) const {
           out[axis * rows + at] += share * force[axis];
           out[(3 + axis) * rows + at] += share * rate[axis];
         }
-        for (Index rotor = 0; rotor < rotors; ++rotor) {
-          const auto r = static_cast<std::size_t>(rotor);
-          out[(6 + rotor) * rows + at] +=
-              share * (log.rotor_speeds[row][r] - x[layout_.speed_scale] * modelled[i][r]);
-        }
+        if (!with_speeds) continue;
+        // The supply, which sags with every change of the thrust, is sampled slower than that: it moves all
+        // rotors alike.
+        const plant::PerRotor error =
+            speed_errors(log.rotor_speeds[row], modelled[i], x[layout_.speed_scale], base_.rotor_count());
+        const double common = std::accumulate(error.begin(), error.end(), 0.0) / base_.rotor_count();
+        for (Index rotor = 0; rotor < rotors; ++rotor)
+          out[(6 + rotor) * rows + at] += share * (error[static_cast<std::size_t>(rotor)] - common);
+        mean_error += common / static_cast<double>(stretch.size());
       }
+      if (with_speeds) out[next++] = mean_error;
       const auto window = static_cast<Index>(kBlocksInWindow);
       for (Index from = 0; from < blocks; from += window) {
         for (Index axis = 0; axis < 3; ++axis) {
@@ -289,7 +269,6 @@ void FlightModel::residuals(const VectorXd& x, VectorXd& out) const {
   // dv/dt = R (f - b) + g, the vertical part, over each stretch.
   for (std::size_t f = 0; f < flights_.size(); ++f) {
     const FlightSeries& flight = flights_[f];
-    if (!has_poses(flight)) continue;
     const FlightLog& log = *flight.log;
     const Vector3d bias = offset(x, f);
     const auto vertical = [&](std::size_t row) {
@@ -302,16 +281,6 @@ void FlightModel::residuals(const VectorXd& x, VectorXd& out) const {
       const double length_s = log.time_s[stretch.last - 1] - log.time_s[stretch.first];
       const double flown = flight.velocity_ned[stretch.last - 1].z() - flight.velocity_ned[stretch.first].z();
       out[next++] = (flown - gained) / length_s;
-    }
-  }
-  for (std::size_t f = 0; f < flights_.size(); ++f) {
-    const FlightSeries& flight = flights_[f];
-    if (has_poses(flight)) continue;
-    for (const Rows& block : rest_blocks(flight)) {
-      double sum = 0.0;
-      for (std::size_t row = block.first; row < block.last; ++row)
-        sum += flight.log->specific_force_frd[row].z();
-      out[next++] = sum / static_cast<double>(block.size()) + plant::kGravity - offset(x, f).z();
     }
   }
 }

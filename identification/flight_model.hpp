@@ -7,7 +7,7 @@
 // T and M are those of the base vehicle, which s and g correct: as a log has no force, it tells thrust over
 // mass and moment over inertia alone. Rates are an output error: integrated over 50 ms from a start that is
 // free. Over longer times, what pushes the vehicle would be taken for what its controller commands against
-// it. The accelerometer's offset along z is told from the thrust by the poses, or by rest before the flight.
+// it. The accelerometer's offset along z is told from the thrust by the poses.
 #pragma once
 
 #include <cstddef>
@@ -44,14 +44,12 @@ struct FlightLayout {
   int speed_scale = kAbsent;                  // measured over modelled steady speed, likewise
   int force_delay = kAbsent;                  // from command to specific force
   int rate_delay = kAbsent;                   // from command to angular acceleration
-  int command_offset = kAbsent;               // of kCommanded: speed = command + offset
   int thrust = kAbsent;                       // s
   int gain[3] = {kAbsent, kAbsent, kAbsent};  // g about roll, pitch, yaw
   int trim[3] = {kAbsent, kAbsent,
                  kAbsent};  // r: centre of thrust along x, along y; torque over thrust about z, m
-  int drag = kAbsent;                            // c / m, 1/s
-  std::vector<int> offset;                       // b along x of each log; y and z follow
-  std::vector<bool> has_vertical_offset;         // of each log; else there is no z
+  int drag = kAbsent;       // c / m, 1/s
+  std::vector<int> offset;  // b along x of each log; y and z follow
 };
 
 // One thread at a time: what was computed last is kept for the next call.
@@ -72,7 +70,7 @@ class FlightModel {
     return index == kAbsent ? absent : parameters[index];
   }
   // Moments of inertia about roll, pitch and yaw, kg m^2, if the mass is the base's; yaw with the base's
-  // torque factor, or, of kCommanded, with its torque over thrust.
+  // torque factor.
   Eigen::Vector3d inertia(const Eigen::VectorXd& parameters) const;
 
   // By these parameters, at rows of one of the flights: specific force without the offset, and moment over
@@ -87,9 +85,6 @@ class FlightModel {
                                          const Eigen::Vector3d& rates);
   Eigen::Vector3d offset(const Eigen::VectorXd& parameters, std::size_t flight) const;
 
-  // Thrust of a rotor over the square of its speed, N s^2; of kCommanded, N, what stands in for it.
-  double thrust_factor() const { return thrust_factor_; }
-
  private:
   void lay_out();
   int add(FlightParameter parameter);
@@ -97,13 +92,11 @@ class FlightModel {
   using Wrenches = std::vector<Eigen::Vector4d>;
   std::shared_ptr<const Wrenches> wrenches(const Eigen::VectorXd& parameters, std::size_t flight,
                                            const Rows& rows, double delay_s) const;
-  Wrenches computed_wrenches(std::size_t flight, const Rows& rows, double lag_s, double delay_s,
-                             double offset) const;
+  Wrenches computed_wrenches(std::size_t flight, const Rows& rows, double lag_s, double delay_s) const;
   void residuals(const Eigen::VectorXd& parameters, Eigen::VectorXd& out) const;
 
   std::vector<FlightSeries> flights_;
   plant::Vehicle base_;
-  double thrust_factor_ = 0.0;
   plant::Effectiveness effectiveness_;
   FlightLayout layout_;
   std::vector<std::size_t> block_;  // rows of each flight that make one residual, their mean
@@ -114,12 +107,11 @@ class FlightModel {
     std::size_t first_row = 0;
     double lag_s = 0.0;
     double delay_s = 0.0;
-    double offset = 0.0;
     std::shared_ptr<const Wrenches> wrenches;
 
     bool is_of(const Kept& other) const {
       return flight == other.flight && first_row == other.first_row && lag_s == other.lag_s &&
-             delay_s == other.delay_s && offset == other.offset;
+             delay_s == other.delay_s;
     }
   };
   mutable std::vector<Kept> kept_;

@@ -26,18 +26,12 @@ void demand_whole(const FlightLog& log, const Rows& rows) {
   }
 }
 
-std::vector<plant::PerRotor> steady_speeds(const FlightLog& log, const plant::Vehicle& base,
-                                           SpeedSource source, CommandLaw law) {
+std::vector<plant::PerRotor> steady_speeds(const FlightLog& log, const plant::Vehicle& base) {
   std::vector<plant::PerRotor> out(log.size(), plant::PerRotor{});
   for (std::size_t row = 0; row < log.size(); ++row) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(log.rotor_count); ++i) {
-      const double command = log.command[row][i];
       if (log.running[row] == 0) continue;
-      if (source == SpeedSource::kCommanded) {
-        out[row][i] = law == CommandLaw::kLinear ? command : std::sqrt(std::max(command, 0.0));
-      } else {
-        out[row][i] = plant::steady_speed_from_throttle(base, log.supply_voltage_v[row], command);
-      }
+      out[row][i] = plant::steady_speed_from_throttle(base, log.supply_voltage_v[row], log.command[row][i]);
     }
   }
   return out;
@@ -118,12 +112,19 @@ std::vector<Rows> stretches_of(const FlightLog& log, const Rows& rows) {
 
 }  // namespace
 
-FlightSeries prepare_flight(const FlightLog& log, const plant::Vehicle& base, const FlightBounds& bounds,
-                            CommandLaw law) {
+FlightSeries prepare_flight(const FlightLog& log, const plant::Vehicle& base, const FlightBounds& bounds) {
   if (log.rotor_count != base.rotor_count()) {
     throw BadData("has commands of " + std::to_string(log.rotor_count) + " motors, must have those of the " +
                   std::to_string(base.rotor_count()) + " of " + base.name);
   }
+  if (log.poses.size() <= kLeastPoses) {
+    throw BadData(
+        "has " + std::to_string(log.poses.size()) +
+        " poses, must have them in all of the flight: commands and IMU alone do not tell the rotors' "
+        "lag from a delay");
+  }
+  if (log.supply_voltage_v.empty())
+    throw BadData("has no supply voltage, without which commands tell no rotor speeds");
   FlightSeries out;
   out.log = &log;
   out.window = find_flight(log, bounds);
@@ -132,21 +133,19 @@ FlightSeries prepare_flight(const FlightLog& log, const plant::Vehicle& base, co
   out.fitted = {flight.first,
                 flight.last - static_cast<std::size_t>(kKeptShare * static_cast<double>(flight.size()))};
   out.kept = {out.fitted.last, flight.last};
-  out.source = log.supply_voltage_v.empty() ? SpeedSource::kCommanded
-               : log.rotor_speeds.empty()   ? SpeedSource::kModelled
-                                            : SpeedSource::kMeasured;
-  out.steady_speeds = steady_speeds(log, base, out.source, law);
-  if (log.poses.size() > kLeastPoses) add_motion(out);
+  out.source = log.rotor_speeds.empty() ? SpeedSource::kModelled : SpeedSource::kMeasured;
+  out.steady_speeds = steady_speeds(log, base);
+  add_motion(out);
   out.stretches = stretches_of(log, out.fitted);
   return out;
 }
 
 std::vector<plant::PerRotor> lagged_speeds(const FlightSeries& series, const Rows& rows,
-                                           double time_constant_s, double delay_s, double offset) {
+                                           double time_constant_s, double delay_s) {
   const FlightLog& log = *series.log;
   const auto rotors = static_cast<std::size_t>(log.rotor_count);
   const auto steady = [&](std::size_t row, std::size_t rotor) {
-    return log.running[row] == 0 ? 0.0 : series.steady_speeds[row][rotor] + offset;
+    return log.running[row] == 0 ? 0.0 : series.steady_speeds[row][rotor];
   };
   std::vector<plant::PerRotor> out(rows.size(), plant::PerRotor{});
   plant::PerRotor speed{};

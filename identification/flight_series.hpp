@@ -18,13 +18,7 @@ namespace swiftlet::identification {
 enum class SpeedSource {
   kMeasured,  // by the vehicle
   kModelled,  // from command and supply voltage by Eq. (9), (22) and (18) with the base vehicle's numbers
-  // from the command alone: the voltage was not recorded; "speed" is then that of full command, about 1
-  kCommanded,
 };
-
-// How the speed of kCommanded goes with the command: with a brushed motor's duty cycle, or with delta of Eq.
-// (9).
-enum class CommandLaw { kLinear, kRoot };
 
 // What a channel of residuals is cut into; inside, samples hang together.
 constexpr double kStretchS = 0.5;
@@ -35,21 +29,19 @@ struct FlightSeries {
   Rows fitted;  // the first four fifths of the flight
   Rows kept;    // the last one, for predictions
   SpeedSource source = SpeedSource::kMeasured;
-  std::vector<plant::PerRotor>
-      steady_speeds;  // that the commands ask for, from each row on; rad/s, or of full command
-  std::vector<Eigen::Vector3d> velocity_ned;  // of each row, by the poses; empty without
-  std::vector<Eigen::Quaterniond> attitude;   // NED from FRD, likewise
-  std::vector<Rows> stretches;                // of fitted
+  std::vector<plant::PerRotor> steady_speeds;  // that the commands ask for, from each row on, rad/s
+  std::vector<Eigen::Vector3d> velocity_ned;   // of each row, by the poses
+  std::vector<Eigen::Quaterniond> attitude;    // NED from FRD, likewise
+  std::vector<Rows> stretches;                 // of fitted
 };
 
-// Chooses the best source of speeds that the log has. Throws BadData.
-FlightSeries prepare_flight(const FlightLog& log, const plant::Vehicle& base, const FlightBounds& bounds,
-                            CommandLaw law);
+// Chooses the best source of speeds that the log has; poses and supply voltage it must have. Throws
+// BadData.
+FlightSeries prepare_flight(const FlightLog& log, const plant::Vehicle& base, const FlightBounds& bounds);
 
 // Steady speeds behind the rotors' lag, Eq. (18) in its reduced form, a delay later: at the times of `rows`.
-// The lag is started with the log, at the speeds that are steady there. offset adds to the steady speed of
-// rotors that run.
+// The lag is started with the log, at the speeds that are steady there.
 std::vector<plant::PerRotor> lagged_speeds(const FlightSeries& series, const Rows& rows,
-                                           double time_constant_s, double delay_s, double offset);
+                                           double time_constant_s, double delay_s);
 
 }  // namespace swiftlet::identification

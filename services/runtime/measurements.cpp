@@ -103,7 +103,7 @@ void add_flight(std::vector<Kind>& all) {
 
 std::vector<Kind> all_kinds() {
   std::vector<Kind> all = {
-      {Quantity::kTime, {"time", "t"}, kSeconds},
+      {Quantity::kTime, {"time", "t", "timestamp"}, kSeconds},
       {Quantity::kSupplyVoltage,
        {"supply_voltage", "v_s", "vs", "supply", "battery_voltage", "vbat"},
        kVolts},

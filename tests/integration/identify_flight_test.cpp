@@ -73,9 +73,22 @@ TEST_F(IdentifyFlight, TakesTheRecordOfSeparateProcesses) {
 
 TEST_F(IdentifyFlight, RefusesWhatIsNoFlight) {
   const std::string head =
-      "t [s],acc_x [g],acc_y [g],acc_z [g],p [rad/s],q [rad/s],r [rad/s],m1 [1],m2 [1],m3 [1],m4 [1]\n";
-  std::string still = head;
-  for (int i = 0; i < 200; ++i) still += std::to_string(0.01 * i) + ",0,0,1,0,0,0,0,0,0,0\n";
+      "t [s],acc_x [g],acc_y [g],acc_z [g],p [rad/s],q [rad/s],r [rad/s],m1 [1],m2 [1],m3 [1],m4 [1]";
+  const std::string pose =
+      ",pose_time [s],x_ned [m],y_ned [m],z_ned [m],qw_ned_from_frd [1],qx_ned_from_frd [1],qy_ned_from_frd "
+      "[1],"
+      "qz_ned_from_frd [1]";
+  std::string blind = head + ",vbat [V]\n";
+  std::string still = head + ",vbat [V]" + pose + "\n";
+  for (int i = 0; i < 200; ++i) {
+    const std::string time = std::to_string(0.01 * i);
+    blind += time + ",0,0,1,0,0,0,0,0,0,0,3.8\n";
+    still += time + ",0,0,1,0,0,0,0,0,0,0,3.8," + time + ",0,0,0,1,0,0,0\n";
+  }
+  const Ending without = run({"identify", "flight", folder_.write("blind.csv", blind)});
+  EXPECT_EQ(without.exit_code, 2);
+  EXPECT_NE(without.errors.find("blind.csv: has 0 poses, must have them"), std::string::npos)
+      << without.errors;
   const Ending never = run({"identify", "flight", folder_.write("still.csv", still)});
   EXPECT_EQ(never.exit_code, 2);
   EXPECT_NE(never.errors.find("still.csv: the rotors never ran"), std::string::npos) << never.errors;
