@@ -41,7 +41,7 @@ TEST_F(IdentifyFlight, MakesAVehicleOfARecord) {
   EXPECT_EQ(report["prediction"].size(), 4U);
   const plant::Vehicle found = runtime::load_vehicle(in_folder("mine.yaml"));
   EXPECT_NEAR(found.rotor.thrust / 3.7901e-8, 1.0, 0.01);
-  EXPECT_NEAR(found.motor.time_constant_s / 0.0821, 1.0, 0.02);
+  EXPECT_NEAR(found.motor.time_constant_s / 0.0821, 1.0, 0.001);
   EXPECT_GE(runtime::load_vehicle_uncertainty(in_folder("mine.yaml")).parameters.size(), 5U);
   std::ostringstream page;
   page << std::ifstream(in_folder("report.html")).rdbuf();
@@ -68,7 +68,7 @@ TEST_F(IdentifyFlight, TakesTheRecordOfSeparateProcesses) {
   const Ending end =
       run({"identify", "flight", in_folder("first"), "--out", in_folder("mine.yaml"), "--json"});
   ASSERT_EQ(end.exit_code, 0) << end.errors;
-  EXPECT_NEAR(runtime::load_vehicle(in_folder("mine.yaml")).motor.time_constant_s / 0.0821, 1.0, 0.02);
+  EXPECT_NEAR(runtime::load_vehicle(in_folder("mine.yaml")).motor.time_constant_s / 0.0821, 1.0, 0.001);
 }
 
 TEST_F(IdentifyFlight, RefusesWhatIsNoFlight) {

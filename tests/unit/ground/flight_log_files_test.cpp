@@ -21,7 +21,7 @@ plant::Vehicle kaylion() {
 }
 
 // 8 IMU samples 2 ms apart; poses and battery samples come now and then.
-SensorRecord recorded() {
+FlightLog recorded() {
   SensorRecord record(16);
   for (int i = 0; i < 8; ++i) {
     const std::int64_t stamp_ns = 2'000'000 * i;
@@ -53,7 +53,7 @@ SensorRecord recorded() {
     battery.voltage_v = 4.0 - 0.1 * i;
     record.batteries.append(battery);
   }
-  return record;
+  return flight_log_of(record);
 }
 
 ReadFlightLog read(const std::string& text, BodyAxes axes = BodyAxes::kAsSaid) {
@@ -76,7 +76,7 @@ void expect_contains(const std::string& text, const std::string& part) {
 }
 
 TEST(FlightLogFiles, JoinsSamplesByTheirStamps) {
-  const FlightLog log = flight_log_of(recorded());
+  const FlightLog log = recorded();
   ASSERT_EQ(log.size(), 8U);
   EXPECT_DOUBLE_EQ(log.time_s[3], 0.006);
   EXPECT_DOUBLE_EQ(log.command[3][0], 0.3);
@@ -89,7 +89,7 @@ TEST(FlightLogFiles, JoinsSamplesByTheirStamps) {
 
 TEST(FlightLogFiles, ReadWhatTheyWrote) {
   const tests::TemporaryFolder folder;
-  const FlightLog log = flight_log_of(recorded());
+  const FlightLog log = recorded();
   write_flight_log(folder.path() / kSensorsFile, log);
   const ReadFlightLog again = read_flight_log(folder.path(), kaylion(), BodyAxes::kAsSaid);
   EXPECT_TRUE(again.assumptions.empty());
