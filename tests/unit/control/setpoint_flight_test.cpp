@@ -198,7 +198,7 @@ TEST_P(SetpointFlight, NoKindTakesMemory) {
 }
 
 INSTANTIATE_TEST_SUITE_P(WithSettings, SetpointFlight, testing::Values("motor_lag", "paper"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& settings) { return std::string(settings.param); });
 
 }  // namespace
 }  // namespace swiftlet::control
