@@ -61,7 +61,7 @@ class Stream : public testing::Test, protected SupervisedFlight {
   }
 
   // Coming to rest is a quintic from the acceleration as it is, in the time that the velocity asks for.
-  static constexpr double kStopJerk = 30.0;  // m/s^3
+  static constexpr double kStopJerk = 40.0;  // m/s^3
   const Limits limits_;
   double allowed_acceleration_ = limits_.max_reference_acceleration * (1.0 + 1e-4);
   double allowed_jerk_ = limits_.max_reference_jerk * (1.0 + 1e-4);
