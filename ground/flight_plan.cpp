@@ -46,7 +46,14 @@ void demand_whole_flight(const MissionFile& mission, const fs::path& file, doubl
   }
 }
 
-void displace(control::Mission& mission, const Eigen::Vector2d& by_ned) {
+// Its fence goes along, as far as that of the limits lets it.
+void displace(control::Mission& mission, const Eigen::Vector2d& by_ned, const control::Limits& limits) {
+  if (control::MissionBounds& bounds = mission.bounds; bounds.fenced) {
+    bounds.fence_min_ned.head<2>() += by_ned;
+    bounds.fence_max_ned.head<2>() += by_ned;
+    bounds.fence_min_ned = bounds.fence_min_ned.cwiseMax(limits.fence_min_ned);
+    bounds.fence_max_ned = bounds.fence_max_ned.cwiseMin(limits.fence_max_ned);
+  }
   for (control::MissionItem& item : mission.items) item.position_ned.head<2>() += by_ned;
   for (control::PolynomialSegment& segment : mission.segments) {
     segment.x[0] += by_ned.x();
@@ -89,7 +96,7 @@ FlightPlan plan_flight(const FlyOptions& options) {
   plan.mission_file = configuration_file("missions", options.mission);
   plan.mission = load_mission_file(plan.mission_file, plan.control.limits);
   plan.start_ned = options.start_ned;
-  displace(plan.mission.mission, options.start_ned);
+  displace(plan.mission.mission, options.start_ned, plan.control.limits);
   if (const control::Outcome outcome = control::check(plan.mission.mission, plan.control.limits);
       !outcome.accepted)
     throw InputError(format("%s: begun %g m north and %g m east of the origin: %s", plan.mission_file.c_str(),

@@ -114,7 +114,8 @@ Judge until_mission_flown(std::uint64_t mission_id) {
     if (mission.mission_id() != mission_id) return std::nullopt;
     const bool completed = mission.state() == msg::MissionStatus_Constants::COMPLETED;
     if (!completed && mission.state() != msg::MissionStatus_Constants::ABORTED) return std::nullopt;
-    if (view.mission.count <= outset.missions) return std::nullopt;  // of the time before it was started again
+    if (view.mission.count <= outset.missions)
+      return std::nullopt;  // of the time before it was started again
     if (completed) return kCompleted;
     return Ending{Ending::Kind::kInterrupted, std::string("aborted: ") + mission.reason().c_str()};
   };

@@ -73,8 +73,8 @@ int fly_mission(const Options& options) {
   if (options.link) client.stay();
   Answer answer = client.upload(mission.mission, options.timeout());
   if (answer.accepted()) {
-    answer = client.mission_command(msg::Command_Constants::MISSION_START, client.mission_id(),
-                                    options.timeout());
+    answer =
+        client.mission_command(msg::Command_Constants::MISSION_START, client.mission_id(), options.timeout());
   }
   End end = {answer.accepted(), answer.reason};
   if (answer.accepted() && !options.no_wait) end = follow(client, mission);

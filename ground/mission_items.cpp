@@ -107,7 +107,10 @@ class Reader {
     item.kind = MissionItemKind::kTakeoff;
     const ConfigNode height = node.at("height_m");
     item.position_ned.z() = -height.number(runtime::above(0.0));
-    demand_inside_fence(height, item.position_ned);
+    Eigen::Vector3d top_ned =
+        0.5 * (limits_.fence_min_ned + limits_.fence_max_ned);  // over wherever it stands
+    top_ned.z() = item.position_ned.z();
+    demand_inside_fence(height, top_ned);
     item.speed = speed(node);
     item.hold_s = hold(node);
     return item;

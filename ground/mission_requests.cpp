@@ -13,7 +13,8 @@ struct Options : AskOptions {
 
 using Ask = Manoeuvre (Vehicle::*)(std::uint64_t, std::chrono::milliseconds);
 
-Command add_mission_request(CLI::App& mission, const std::string& name, const std::string& description, Ask ask) {
+Command add_mission_request(CLI::App& mission, const std::string& name, const std::string& description,
+                            Ask ask) {
   const auto options = std::make_shared<Options>();
   CLI::App* const app = add_ask_subcommand(mission, name, description, "swiftlet mission " + name, options);
   app->add_option("--id", options->id,

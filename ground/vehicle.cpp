@@ -51,8 +51,11 @@ Manoeuvre begin(const std::shared_ptr<Client>& client, const Asking& ask, millis
                 const std::function<Judge()>& judge) {
   Answer answer = ask(timeout);
   const View view = client->view();
-  return Manoeuvre(std::make_shared<Manoeuvre::Course>(Manoeuvre::Course{
-      client, std::move(answer), {before, view.control.count, view.reference.count, view.mission.count}, judge()}));
+  return Manoeuvre(std::make_shared<Manoeuvre::Course>(
+      Manoeuvre::Course{client,
+                        std::move(answer),
+                        {before, view.control.count, view.reference.count, view.mission.count},
+                        judge()}));
 }
 
 // Once it is known in which mode the vehicle is asked.

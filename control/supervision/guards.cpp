@@ -149,6 +149,14 @@ Outcome check_end_of_stream(const Scene& scene) {
   } else {
     const Reference from = scene.state.path.at(scene.state.now_ns);
     last = after_blend(blend(limits, from, setpoint, stream_period_s(scene)), timeout_s);
+    // One that was stopped before the fence is not to creep on towards it, a little from rest each time.
+    Reference in_full_motion;
+    in_full_motion.velocity_ned =
+        setpoint.kind == SetpointKind::kVelocity ? setpoint.velocity_ned : last.velocity_ned;
+    in_full_motion.position_ned = from.position_ned + timeout_s * in_full_motion.velocity_ned;
+    const Outcome inside =
+        check_position("setpoint: where it could come to rest", rest_place(limits, in_full_motion), limits);
+    if (!inside.accepted) return inside;
   }
   const double speed = last.velocity_ned.norm();
   if (speed > limits.max_speed + kRounding) {

@@ -208,12 +208,7 @@ Reference standing_at(const Estimate& estimate) {
 }
 
 double stopping_time(const Limits& limits, const Reference& from) {
-  const double speed = from.velocity_ned.norm();
-  const double acceleration = 9.0 * from.acceleration_ned.norm();
-  const double jerk = limits.max_reference_jerk;
-  // A quintic that rests after T, half of speed T on, begins with a jerk of 6 speed / T^2 + 9 acceleration / T.
-  const double of_jerk = (acceleration + std::sqrt(acceleration * acceleration + 24.0 * speed * jerk)) / (2.0 * jerk);
-  return std::max({kMinMove_s, 2.0 * speed / limits.max_reference_acceleration, of_jerk});
+  return std::max(kMinMove_s, 2.0 * from.velocity_ned.norm() / limits.max_reference_acceleration);
 }
 
 Eigen::Vector3d rest_place(const Limits& limits, const Reference& from) {

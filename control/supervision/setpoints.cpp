@@ -148,8 +148,7 @@ void start_blend(Scene& scene) {
   SupervisorState& state = scene.state;
   const Reference from = state.path.at(state.now_ns);
   state.phase = Phase::kPath;
-  state.path.follow(blend(scene.limits, from, *scene.setpoint, stream_period_s(scene)),
-                    state.now_ns);
+  state.path.follow(blend(scene.limits, from, *scene.setpoint, stream_period_s(scene)), state.now_ns);
 }
 
 void start_coast(Scene& scene) {

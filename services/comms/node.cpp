@@ -186,7 +186,8 @@ struct Node::Impl final : public dds::DomainParticipantListener {
     }
   }
 
-  void on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& info) override {
+  void on_publisher_discovery(dds::DomainParticipant* own, rtps::WriterDiscoveryInfo&& info) override {
+    if (info.info.guid().guidPrefix == own->guid().guidPrefix) return;
     if (info.status == rtps::WriterDiscoveryInfo::DISCOVERED_WRITER) {
       note_endpoint(info.info.guid(), Meetings::kWriter);
       const std::lock_guard<std::mutex> lock(peers_mutex);

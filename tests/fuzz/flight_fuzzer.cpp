@@ -88,7 +88,7 @@ class Flight {
  private:
   void act() {
     using Kind = control::RequestKind;
-    switch (input_.byte() % 16) {
+    switch (input_.byte() % 21) {
       case 0:
         return ask(Kind::kArm);
       case 1:
@@ -164,7 +164,7 @@ class Flight {
     const int items = input_.byte() % 8;
     for (int i = 0; i < items; ++i) {
       control::MissionItem& item = mission.items.emplace_back();
-      item.kind = static_cast<control::MissionItemKind>(input_.byte() % 4);
+      item.kind = static_cast<control::MissionItemKind>(input_.byte() % 5);
       item.position_ned = input_.vector();
       item.speed = input_.number();
       item.hold_s = input_.number();
@@ -172,13 +172,14 @@ class Flight {
       item.yaw_free = input_.byte() % 2 == 0;
       item.first_segment = input_.byte() % 4;
       item.segment_count = input_.byte() % 4;
+      item.acceptance_radius_m = input_.number();
     }
     mission.segments = segments();
     if (!control::check(mission, settings().limits).accepted) return;
     control::Request request;
-    request.kind = control::RequestKind::kMission;
+    request.kind = control::RequestKind::kMissionUpload;
     request.mission = &missions_.emplace_back(std::move(mission));
-    answer(request);
+    if (answer(request)) ask(control::RequestKind::kMissionStart);
   }
 
   void fly_trajectory() {
@@ -206,11 +207,16 @@ class Flight {
     control::Setpoint setpoint;
     setpoint.stamp_ns = loop_.plant.stamp_ns();
     setpoint.sequence = ++sequence_;
+    setpoint.kind = static_cast<control::SetpointKind>(input_.byte() % 6);  // one too many
     setpoint.position_ned = input_.vector();
     setpoint.velocity_ned = input_.vector();
     setpoint.acceleration_ned = input_.vector();
     setpoint.yaw_rad = input_.number();
     setpoint.yaw_rate = input_.number();
+    setpoint.yaw_free = input_.byte() % 2 == 0;
+    setpoint.q_ned_from_frd = attitude();
+    setpoint.body_rates_frd = input_.vector();
+    setpoint.thrust = input_.number();
     const control::Outcome outcome = loop_.controller.on_setpoint(setpoint);
     tests::demand(outcome.accepted || std::strlen(outcome.reason) > 4, "a refusal says why");
   }
@@ -222,13 +228,17 @@ class Flight {
     pose.sequence = ++sequence_;
     pose.tracked = input_.byte() % 8 != 0;
     pose.position_ned = input_.vector();
+    pose.q_ned_from_frd = attitude();
+    if (pose.position_ned.allFinite()) loop_.controller.on_pose(pose);
+  }
+
+  // Of unit length, as a message that is taken in has it.
+  Eigen::Quaterniond attitude() {
     const Eigen::Vector3d axis = input_.vector();
-    const double w = input_.number();
-    const Eigen::Quaterniond q(w, axis.x(), axis.y(), axis.z());
-    const double norm = q.norm();
-    if (!pose.position_ned.allFinite() || !(norm > 1e-100 && norm < 1e100)) return;
-    pose.q_ned_from_frd = Eigen::Quaterniond(w / norm, axis.x() / norm, axis.y() / norm, axis.z() / norm);
-    loop_.controller.on_pose(pose);
+    const Eigen::Vector4d wxyz(input_.number(), axis.x(), axis.y(), axis.z());
+    const double norm = wxyz.norm();
+    if (!(norm > 1e-100 && norm < 1e100)) return Eigen::Quaterniond::Identity();
+    return {wxyz[0] / norm, wxyz[1] / norm, wxyz[2] / norm, wxyz[3] / norm};
   }
 
   void send_battery() {

@@ -208,7 +208,7 @@ TEST_F(FakeVehicleFlight, AnotherMissionOfTheSameIdIsRefused) {
   settings.domain = claim_.domain();
   settings.localhost_only = true;
   comms::Node node(settings);
-  const auto missions = node.publish(comms::topics::kMission);
+  auto missions = node.publish(comms::topics::kMission);
   std::mutex mutex;
   std::optional<msg::CommandAck> ack;
   const auto acks =

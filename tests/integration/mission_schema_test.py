@@ -42,7 +42,7 @@ FINE = {
     "set": mission("{kind: set, speed_m_s: 1, yaw_rad: free, acceptance_radius_m: 0.1, hold_s: 1}"),
     "wait": mission("{kind: wait, duration_s: 1}"),
     "limits and fence": mission(head=HEAD + "name: n\ndescription: d\nends: landed\nlimits: {speed_m_s: 1, "
-                                "acceleration_m_s2: 1, jerk_m_s3: 10, yaw_rate_rad_s: 1}\n"
+                                "acceleration_m_s2: 1, jerk_m_s3: 6, yaw_rate_rad_s: 1}\n"
                                 "geofence: {min_m: [-1, -1, -2], max_m: [1, 1, 0.2]}\n"),
 }
 WRONG_IN_FORM = {

@@ -17,6 +17,7 @@
 #include <termios.h>
 #include <thread>
 #include <unistd.h>
+#include <utmp.h>
 
 #include "tests/support/eventually.hpp"
 

@@ -16,7 +16,8 @@ class Told {
   explicit Told(Mode before) { mode(before, Reason::kRequested); }
 
   Outset outset() const {
-    return {static_cast<Mode>(view.control.message.mode()), view.control.count, view.reference.count};
+    return {static_cast<Mode>(view.control.message.mode()), view.control.count, view.reference.count,
+            view.mission.count};
   }
   Told& mode(Mode now, Reason reason) {
     view.control.message.mode(static_cast<std::uint8_t>(now));
@@ -32,6 +33,7 @@ class Told {
     return *this;
   }
   Told& mission(std::uint64_t id, std::uint8_t state) {
+    ++view.mission.count;
     view.mission.message.mission_id(id);
     view.mission.message.state(state);
     view.mission.message.reason() = "battery is low";
