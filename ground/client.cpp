@@ -58,11 +58,13 @@ MissionRow row_of(const msg::MissionStatus& status) {
   return {status.stamp_ns(), status.mission_id(), status.state(), status.item_index()};
 }
 
-// What cannot be, and in lockstep what comes again because its answer is late, is left out.
+// What cannot be is left out, and in lockstep what comes again because its answer is late, and the signs of a
+// motion capture that has no pose yet: they are of number 0.
 template <class Message, class Sample>
 void keep_sample(const Message& message, Track<Sample>& track) {
   Sample sample;
   if (comms::from_message(message, sample)) return;
+  if (sample.sequence == 0) return;
   if (!track.empty() && track.back().stamp_ns >= sample.stamp_ns) return;
   track.append(sample);
 }

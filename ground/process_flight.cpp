@@ -52,7 +52,9 @@ void ProcessFlight::fly(const Interrupts& interrupts, Together* together, Progre
 }
 
 void ProcessFlight::fly_mission(const Interrupts& interrupts, Together* together, Progress& progress) {
-  Client client(network_, &record_);
+  comms::NodeSettings network = network_;
+  network.deadlines = plan_.clock != runtime::Clock::kLockstep;
+  Client client(network, &record_);
   const auto start = Clock::now();
   try {
     const Flight::Watch watch{[this] { return fleet_->casualty(); }, [&] { return interrupts.count(); },
