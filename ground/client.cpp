@@ -58,6 +58,15 @@ MissionRow row_of(const msg::MissionStatus& status) {
   return {status.stamp_ns(), status.mission_id(), status.state(), status.item_index()};
 }
 
+// What cannot be, and in lockstep what comes again because its answer is late, is left out.
+template <class Message, class Sample>
+void keep_sample(const Message& message, Track<Sample>& track) {
+  Sample sample;
+  if (comms::from_message(message, sample)) return;
+  if (!track.empty() && track.back().stamp_ns >= sample.stamp_ns) return;
+  track.append(sample);
+}
+
 }  // namespace
 
 Client::Client(const comms::NodeSettings& settings, FlightRecord* record)
@@ -110,8 +119,11 @@ void Client::subscribe_all() {
     }
     changed_.notify_all();
   }));
-  subscriptions_.push_back(node_.subscribe<msg::Battery>(
-      kBattery, [this](const msg::Battery& battery) { keep(&View::battery, battery); }));
+  subscriptions_.push_back(node_.subscribe<msg::Battery>(kBattery, [this](const msg::Battery& battery) {
+    if (record_ != nullptr && record_->sensors) keep_sample(battery, record_->sensors->batteries);
+    keep(&View::battery, battery);
+  }));
+  if (record_ != nullptr && record_->sensors) subscribe_sensors(*record_->sensors);
   subscriptions_.push_back(node_.subscribe<msg::Estimate>(kEstimate, [this](const msg::Estimate& estimate) {
     if (record_ != nullptr) record_->estimate.append(row_of(estimate));
     keep(&View::estimate, estimate);
@@ -142,6 +154,20 @@ void Client::subscribe_all() {
     }
     changed_.notify_all();
   });
+}
+
+void Client::subscribe_sensors(SensorRecord& sensors) {
+  using namespace comms::topics;
+  subscriptions_.push_back(
+      node_.subscribe<msg::Imu>(kImu, [&sensors](const msg::Imu& imu) { keep_sample(imu, sensors.imu); }));
+  subscriptions_.push_back(node_.subscribe<msg::ActuatorCommand>(
+      kActuatorCommand,
+      [&sensors](const msg::ActuatorCommand& command) { keep_sample(command, sensors.commands); }));
+  subscriptions_.push_back(node_.subscribe<msg::MocapPose>(
+      kMocapPose, [&sensors](const msg::MocapPose& pose) { keep_sample(pose, sensors.poses); }));
+  subscriptions_.push_back(node_.subscribe<msg::RotorSpeeds>(
+      kRotorSpeeds,
+      [&sensors](const msg::RotorSpeeds& speeds) { keep_sample(speeds, sensors.rotor_speeds); }));
 }
 
 void Client::hear_controllers() {

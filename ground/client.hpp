@@ -56,8 +56,9 @@ struct View {
 // stands on it. Any thread may call it.
 class Client {
  public:
-  // record: where every sample of truth, reference, estimate and mission status is kept; may be null. Throws
-  // std::runtime_error if the network cannot be joined.
+  // record: where every sample of truth, reference, estimate and mission status is kept, and, if it has room
+  // for them, what was sensed and commanded; may be null. Throws std::runtime_error if the network cannot be
+  // joined.
   explicit Client(const comms::NodeSettings& settings, FlightRecord* record = nullptr);
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
@@ -105,6 +106,7 @@ class Client {
   template <class T>
   void keep(Latest<T> View::*slot, const T& message);
   void subscribe_all();
+  void subscribe_sensors(SensorRecord& sensors);
   template <class T>
   Answer ask(comms::Publisher<T>& publisher, const T& request, std::chrono::milliseconds timeout,
              const Cancelled& cancelled);

@@ -33,8 +33,9 @@ Command add_list_command(CLI::App& root);  // of all vehicles
 // What was flown.
 Command add_report_command(CLI::App& root);
 
-// What is to be flown, from bench data.
+// What is to be flown, from bench data or from flights.
 Command add_identify_command(CLI::App& root);
+Command add_identify_flight_command(CLI::App& identify);
 Command add_identify_simulate_command(CLI::App& identify);
 
 // Of this program itself.

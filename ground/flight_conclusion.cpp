@@ -8,6 +8,7 @@
 
 #include "ground/command.hpp"
 #include "ground/flight_files.hpp"
+#include "ground/flight_log_files.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -50,6 +51,7 @@ void judge(FlightReport& report, const FlightRecord& record, Window window) {
 void keep_record(const std::filesystem::path& folder, const FlightRecord& record, const FlightReport& report,
                  Window window, Progress& progress) {
   write_flight_csv(folder / "flight.csv", record, window);
+  if (record.sensors) write_flight_log(folder / kSensorsFile, flight_log_of(*record.sensors));
   write_report_json(folder / "report.json", report);
   if (report.errors.matched == 0) return;
   const std::string no_picture = draw_flight(folder, report, window);

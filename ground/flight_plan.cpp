@@ -84,9 +84,13 @@ FlightPlan plan_flight(const FlyOptions& options) {
   for (const plant::Violation& violation : plant::validate_faults(plan.simulation.faults, plan.vehicle)) {
     throw InputError(plan.simulation_file.string() + ": " + violation.key + ": " + violation.message);
   }
-  if (!options.vary.empty())
+  if (options.vary == kUncertainty) {
+    const std::string file = plan.vehicle_file.string();
+    plan.variation = variation_of(runtime::load_vehicle_uncertainty(file), plan.vehicle, file);
+  } else if (!options.vary.empty()) {
     plan.variation =
         load_vary_file(configuration_file("vary", options.vary), {plan.vehicle, plan.simulation});
+  }
   plan.seed = options.seed;
 
   plan.mission_file = configuration_file("missions", options.mission);
@@ -107,6 +111,7 @@ FlightPlan plan_flight(const FlyOptions& options) {
   }
   plan.folder = options.record.empty() ? default_folder(plan.mission.name) : fs::path(options.record);
   if (options.trace) plan.trace_file = plan.folder / "trace.csv";
+  plan.sensors = options.sensors;
   return plan;
 }
 

@@ -46,6 +46,7 @@ struct FlyOptions {
   double spacing_m = 1.0;       // of several vehicles, from one to the next, to the east
   int domain = -1;              // below 0: a free one, or 0 to attach
   bool trace = false;           // keep a trace of a lockstep or in-process flight
+  bool sensors = false;         // keep what was sensed and commanded, for `swiftlet identify flight`
   bool json = false;
 };
 
@@ -65,6 +66,7 @@ struct FlightPlan {
   Eigen::Vector2d start_ned = Eigen::Vector2d::Zero();                  // m
   std::filesystem::path folder;                                         // of the record; not made yet
   std::filesystem::path trace_file;                                     // empty: none is kept
+  bool sensors = false;                                                 // keep them
   std::filesystem::path plant_program, mocap_program, control_program;  // of kStarted
 
   std::size_t record_capacity() const;  // for each IMU sample of the longest that it may take

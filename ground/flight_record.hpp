@@ -3,10 +3,12 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+
+#include "ground/sensor_record.hpp"
+#include "ground/track.hpp"
 
 namespace swiftlet::ground {
 
@@ -43,43 +45,6 @@ struct MissionRow {
   std::uint32_t item_index = 0;
 };
 
-// Rows in the order in which they came: one thread appends and never waits, any thread reads those that are
-// in.
-template <class Row>
-class Track {
- public:
-  explicit Track(std::size_t capacity) : rows_(std::make_unique<Row[]>(capacity)), capacity_(capacity) {}
-
-  void append(const Row& row) noexcept {
-    const std::size_t at = size_.load(std::memory_order_relaxed);
-    if (at == capacity_) {
-      dropped_.fetch_add(1, std::memory_order_relaxed);
-      return;
-    }
-    rows_[at] = row;
-    size_.store(at + 1, std::memory_order_release);
-  }
-
-  void clear() noexcept {  // for another flight; while nobody reads
-    size_.store(0, std::memory_order_release);
-    dropped_.store(0, std::memory_order_relaxed);
-  }
-
-  std::size_t size() const { return size_.load(std::memory_order_acquire); }
-  std::size_t dropped() const { return dropped_.load(std::memory_order_relaxed); }  // came when it was full
-  bool empty() const { return size() == 0; }
-  const Row& operator[](std::size_t i) const { return rows_[i]; }
-  const Row& back() const { return rows_[size() - 1]; }
-  const Row* begin() const { return rows_.get(); }
-  const Row* end() const { return rows_.get() + size(); }
-
- private:
-  std::unique_ptr<Row[]> rows_;
-  std::size_t capacity_;
-  std::atomic<std::size_t> size_{0};
-  std::atomic<std::size_t> dropped_{0};
-};
-
 struct FlightRecord {
   // capacity: of each track
   explicit FlightRecord(std::size_t capacity)
@@ -90,12 +55,14 @@ struct FlightRecord {
     reference.clear();
     estimate.clear();
     mission.clear();
+    if (sensors) sensors->clear();
   }
 
   Track<TruthRow> truth;
   Track<ReferenceRow> reference;
   Track<EstimateRow> estimate;
   Track<MissionRow> mission;
+  std::unique_ptr<SensorRecord> sensors;  // only if they are to be kept
 };
 
 // Stamps from which and up to which (not included) errors are taken.

@@ -32,13 +32,18 @@ void add_fly_options(CLI::App& app, FlyOptions& options) {
   app.add_option(
       "--record", options.record,
       "folder for flight.csv, report.json, flight.png and logs; flights/<date>-<mission> unless given");
+  app.add_flag(
+      "--sensors", options.sensors,
+      "keep sensors.csv in the record, every IMU sample, command, pose, voltage and rotor speed, for "
+      "`swiftlet identify flight`");
   app.add_flag("--json", options.json, "print one JSON object instead of the summary");
 }
 
 CLI::Option* add_vary_option(CLI::App& app, FlyOptions& options) {
   return app.add_option("--vary", options.vary,
                         "vary file, or the name of one in the configuration: what differs from seed to seed "
-                        "in the vehicle that flies and in its world; the controller knows the vehicle file");
+                        "in the vehicle that flies and in its world; the controller knows the vehicle file. "
+                        "Or `uncertainty`: what that file says of how sure its parameters are");
 }
 
 }  // namespace swiftlet::ground

@@ -98,20 +98,74 @@ std::string row(const char* name, const PositionAxisDesign& axis) {
          text_of(axis.poles) + "\n";
 }
 
+double decibels(double factor) { return 20.0 * std::log10(factor); }
+
+Json json_of(const control::LoopMargins& margins) {
+  return {{"phase_deg", json_of_margin(margins.phase_deg)},
+          {"gain_increase_db", json_of_margin(decibels(margins.gain_increase))},
+          {"gain_decrease_db", json_of_margin(decibels(margins.gain_decrease))},
+          {"delay_s", json_of_margin(margins.delay_s)}};
+}
+
+Json json_of(const MarginStudy& study) {
+  Json out = Json::object();
+  for (std::size_t i = 0; i < kLoopNames.size(); ++i) {
+    const MarginStudy::Loop& loop = study.loops[i];
+    out[kLoopNames[i]] = {{"designed", json_of(loop.designed)}};
+    if (study.draws == 0) continue;
+    out[kLoopNames[i]]["most"] = json_of(loop.most);
+    out[kLoopNames[i]]["worst"] = json_of(loop.worst);
+  }
+  return out;
+}
+
+std::string decibels_text(double factor) {
+  return factor > 0.0 && std::isfinite(factor) ? format("%+6.1f", decibels(factor)) : "   any";
+}
+
+std::string margin_text(const control::LoopMargins& m) {
+  return format("%6.1f", m.phase_deg) + " " + decibels_text(m.gain_decrease) + " " +
+         decibels_text(m.gain_increase) + format(" %6.1f", m.delay_s * 1e3);
+}
+
+std::string text_of(const MarginStudy& study) {
+  std::string out =
+      "margins: phase (deg), loss and rise of gain (dB), delay (ms)\n  loop   on this vehicle             ";
+  if (study.draws > 0) {
+    out += format("   kept by 95 %% of %zu draws      worst draw\n", study.draws);
+  } else {
+    out += "   (the vehicle file does not say how sure its parameters are)\n";
+  }
+  for (std::size_t i = 0; i < kLoopNames.size(); ++i) {
+    out += format("  %-6s ", kLoopNames[i]) + margin_text(study.loops[i].designed);
+    if (study.draws > 0)
+      out += "   " + margin_text(study.loops[i].most) + "   " + margin_text(study.loops[i].worst);
+    out += "\n";
+  }
+  if (study.unstable > 0) out += format("  not stable: %zu of %zu draws\n", study.unstable, study.draws);
+  return out;
+}
+
 }  // namespace
 
-std::string gains_json(const ControlDesign& design, const std::string& vehicle, const std::string& control) {
+std::string gains_json(const ControlDesign& design, const MarginStudy& margins, const std::string& vehicle,
+                       const std::string& control) {
   const Json out = {
       {"vehicle", vehicle},
       {"control", control},
       {"rotor_lag_s", design.rotor_lag_s},
       {"attitude",
        {{"roll", json_of(design.roll)}, {"pitch", json_of(design.pitch)}, {"yaw", json_of(design.yaw)}}},
-      {"position", {{"x", json_of(design.x)}, {"y", json_of(design.y)}, {"z", json_of(design.z)}}}};
+      {"position", {{"x", json_of(design.x)}, {"y", json_of(design.y)}, {"z", json_of(design.z)}}},
+      {"margins", json_of(margins)},
+      {"draws", margins.draws},
+      {"seed", margins.seed},
+      {"unstable", margins.unstable}};
   return out.dump(2);
 }
 
-std::string gains_table(const ControlDesign& design, const std::string& vehicle, const std::string& control) {
+std::string gains_table(const ControlDesign& design, const MarginStudy& margins, const std::string& vehicle,
+                        const std::string& control) {
   return format("%s flown with %s; rotor lag %.4g s in every margin and pole (rad/s)\n", vehicle.c_str(),
                 control.c_str(), design.rotor_lag_s) +
          format(
@@ -120,21 +174,26 @@ std::string gains_table(const ControlDesign& design, const std::string& vehicle,
              design.roll.model == AttitudeModel::kDoubleIntegrator ? "" : ", moment / inertia") +
          row("roll", design.roll) + row("pitch", design.pitch) + row("yaw", design.yaw) +
          "position: RPT over the closed inner loop\n" + row("x", design.x) + row("y", design.y) +
-         row("z", design.z);
+         row("z", design.z) + text_of(margins);
 }
 
 int run_gains(const GainsOptions& options) {
-  const plant::Vehicle vehicle = runtime::load_vehicle(configuration_file("vehicles", options.vehicle));
+  const std::string file = configuration_file("vehicles", options.vehicle).string();
+  const plant::Vehicle vehicle = runtime::load_vehicle(file);
   const control::ControlSettings settings =
       runtime::load_control_settings(configuration_file("control", options.control));
   const ControlDesign design = control::design(vehicle, settings);
   for (const plant::Violation& loop : control::unstable_loops(design)) {
     std::fprintf(stderr, "swiftlet: not flyable: %s: %s\n", loop.key.c_str(), loop.message.c_str());
   }
+  const plant::VehicleUncertainty uncertainty = runtime::load_vehicle_uncertainty(file);
+  const Variation variation =
+      uncertainty.parameters.empty() ? Variation{} : variation_of(uncertainty, vehicle, file);
+  const MarginStudy margins = study_margins(design, vehicle, variation, options.draws, options.seed);
   if (options.json) {
-    std::printf("%s\n", gains_json(design, vehicle.name, settings.name).c_str());
+    std::printf("%s\n", gains_json(design, margins, vehicle.name, settings.name).c_str());
   } else {
-    std::printf("%s", gains_table(design, vehicle.name, settings.name).c_str());
+    std::printf("%s", gains_table(design, margins, vehicle.name, settings.name).c_str());
   }
   return kDone;
 }
@@ -148,6 +207,13 @@ Command add_gains_command(CLI::App& root) {
       ->capture_default_str();
   app->add_option("--control", options->control,
                   "control settings file, or the name of one in the configuration")
+      ->capture_default_str();
+  app->add_option(
+         "--draws", options->draws,
+         "vehicles drawn from the uncertainty that the vehicle file states, for the margins over them")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}))
+      ->capture_default_str();
+  app->add_option("--seed", options->seed, "of the first draw; each next one has one more")
       ->capture_default_str();
   app->add_flag("--json", options->json, "print JSON");
   return {app, [options] { return run_gains(*options); }};

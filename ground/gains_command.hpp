@@ -1,16 +1,21 @@
 // `swiftlet gains`: what the controller will fly, computed from a vehicle file and control settings.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include "control/design/control_design.hpp"
 #include "ground/command.hpp"
+#include "ground/margin_study.hpp"
 
 namespace swiftlet::ground {
 
 struct GainsOptions {
   std::string vehicle = "kaylion";    // a file, or the name of one in the configuration
   std::string control = "motor_lag";  // likewise
+  std::size_t draws = 1000;           // of vehicles, where the vehicle file says how sure its parameters are
+  std::uint64_t seed = 1;             // of the first draw
   bool json = false;
 };
 
@@ -30,13 +35,17 @@ struct GainsOptions {
 //       a = a_r + k_v (u_r - u) + k_p (x_r - x) + k_s integral(x_r - x)
 //     poles: of the closed loop over inner loop and rotor lag (x over pitch, y over roll, yaw 0)
 //     phase_margin_deg: cut at the acceleration command, inner loop and rotor lag included
+//   margins.{roll,pitch,yaw,x,y,z}.{designed,most,worst}: on the vehicle, and over draws of its uncertainty,
+//     those that 95 % of the draws keep and the worst; the last two only where there are draws
+//     phase_deg, gain_increase_db, gain_decrease_db, delay_s; null where nothing ends the loop's stability
+//   draws, seed, unstable: of the margins
 // Margins and poles leave out the estimator and the sampling.
-std::string gains_json(const control::ControlDesign& design, const std::string& vehicle,
-                       const std::string& control);
+std::string gains_json(const control::ControlDesign& design, const MarginStudy& margins,
+                       const std::string& vehicle, const std::string& control);
 
 // The same for reading, ending in a newline.
-std::string gains_table(const control::ControlDesign& design, const std::string& vehicle,
-                        const std::string& control);
+std::string gains_table(const control::ControlDesign& design, const MarginStudy& margins,
+                        const std::string& vehicle, const std::string& control);
 
 // Prints one of both; loops that would not be stable are named on stderr. Returns kDone. Throws
 // runtime::ConfigError for a file that is refused.

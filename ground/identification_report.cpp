@@ -10,6 +10,7 @@
 
 #include "ground/format.hpp"
 #include "ground/identification_figures.hpp"
+#include "ground/report_page.hpp"
 #include "ground/svg_figure.hpp"
 
 namespace swiftlet::ground {
@@ -107,42 +108,6 @@ std::vector<int> outlier_lines(const IdentificationReport& report, const Part& p
   return lines;
 }
 
-// As it is written by hand; nothing for the unit 1.
-std::string written(const std::string& unit) { return unit == "1" ? "" : html_escaped(written_unit(unit)); }
-
-// A value with as many digits as its interval deserves, and its interval.
-std::string with_interval(const Estimate& estimate) {
-  return format("%.5g \xc2\xb1 %.2g", estimate.value, estimate.half_width);
-}
-
-double share_percent(const Estimate& estimate) {
-  return estimate.value != 0.0 ? 100.0 * estimate.half_width / std::abs(estimate.value) : 0.0;
-}
-
-constexpr const char* kStyle = R"(<style>
-body { font: 15px/1.45 sans-serif; color: #1a1a1a; max-width: 1360px; margin: 24px auto; padding: 0 20px; }
-h1 { font-size: 25px; margin-bottom: 4px; } h2 { font-size: 19px; margin: 34px 0 6px; border-bottom: 1px solid #ccc; }
-table { border-collapse: collapse; margin: 8px 0; } th, td { padding: 3px 14px 3px 0; text-align: left; }
-th { border-bottom: 1px solid #999; font-weight: 600; } td.n { font-variant-numeric: tabular-nums; white-space: nowrap; }
-.figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(520px, 1fr)); gap: 14px 22px; align-items: end; }
-figure { margin: 0; } figcaption { font-size: 13px; color: #444; padding-left: 48px; } svg { width: 100%; height: auto; display: block; }
-.warning { background: #fff3cd; border-left: 4px solid #e0a800; padding: 4px 10px; margin: 5px 0; }
-.finding { margin: 4px 0; } .quiet { color: #555; font-size: 14px; }
-</style>
-)";
-
-std::string estimates_html(const std::vector<Estimate>& estimates) {
-  std::string out =
-      "<table><tr><th>parameter</th><th></th><th>estimate, 95 % "
-      "interval</th><th>unit</th><th>interval</th></tr>\n";
-  for (const Estimate& estimate : estimates) {
-    out += "<tr><td>" + html_escaped(estimate.parameter) + "</td><td>" + html_escaped(estimate.symbol) +
-           "</td><td class=\"n\">" + with_interval(estimate) + "</td><td>" + written(estimate.unit) +
-           "</td><td class=\"n\">" + format("\xc2\xb1 %.2g %%", share_percent(estimate)) + "</td></tr>\n";
-  }
-  return out + "</table>\n";
-}
-
 std::string outliers_html(const IdentificationReport& report, const Part& part) {
   const std::vector<int> lines = outlier_lines(report, part);
   if (lines.empty()) return "";
@@ -154,7 +119,7 @@ std::string outliers_html(const IdentificationReport& report, const Part& part) 
     const std::size_t row = part.fit->outliers[i];
     out += format("<tr><td class=\"n\">%d</td><td class=\"n\">%.5g</td><td class=\"n\">%.5g</td><td>",
                   lines[i], part.fit->measured[row], part.fit->predicted[row]) +
-           written(part.fit->residual_unit) + "</td></tr>\n";
+           html_unit(part.fit->residual_unit) + "</td></tr>\n";
   }
   out += "</table>\n";
   if (lines.size() > kMostOutliersShown)
@@ -167,7 +132,7 @@ std::string part_html(const IdentificationReport& report, const Part& part) {
                     html_escaped(report.bench.files.at(part.name).file) +
                     format(": %zu rows; R\xc2\xb2 ", part.fit->measured.size()) + r_squared_text(*part.fit) +
                     format("; the fit leaves %.3g ", part.fit->residual_sd) +
-                    written(part.fit->residual_unit) + " (standard deviation)</p>\n" +
+                    html_unit(part.fit->residual_unit) + " (standard deviation)</p>\n" +
                     estimates_html(part.estimates);
   for (const std::string& finding : part.findings)
     out += "<p class=\"finding\">" + html_escaped(finding) + ".</p>\n";
@@ -216,9 +181,7 @@ Json json_of(const Estimate& estimate, const std::string& experiment) {
 std::string identification_html(const IdentificationReport& report) {
   const std::string title = "Identification of " + report.found.vehicle.name;
   std::string out =
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + html_escaped(title) +
-      "</title>\n" + kStyle + "</head><body>\n<h1>" + html_escaped(title) +
-      "</h1>\n<p class=\"quiet\">from the bench data in " + html_escaped(report.bench_folder) +
+      page_head(title) + "<p class=\"quiet\">from the bench data in " + html_escaped(report.bench_folder) +
       "; equations and figures are numbered as in Phang, Li, Wang, Chen, Lee, <i>Explicit Model "
       "Identification and Control of a Micro Aerial Vehicle</i>, ICUAS 2014</p>\n" +
       summary_html(report);

@@ -1,9 +1,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
-#include <stdexcept>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -14,6 +12,7 @@
 #include "ground/identification_report.hpp"
 #include "ground/installation.hpp"
 #include "ground/progress_line.hpp"
+#include "ground/whole_file.hpp"
 #include "services/runtime/config_error.hpp"
 #include "services/runtime/vehicle_file.hpp"
 #include "services/runtime/vehicle_writer.hpp"
@@ -60,19 +59,6 @@ void refuse_unflyable(const plant::Vehicle& vehicle, const std::string& folder, 
   }
 }
 
-// The file appears whole or not at all.
-void write_file(const fs::path& file, const std::string& text) {
-  const fs::path unfinished = file.string() + ".part";
-  std::ofstream out(unfinished, std::ios::binary);
-  out << text;
-  out.close();
-  std::error_code fault;
-  if (out) fs::rename(unfinished, file, fault);
-  if (out && !fault) return;
-  fs::remove(unfinished, fault);
-  throw std::runtime_error(file.string() + ": cannot be written");
-}
-
 int run_identify(const IdentifyOptions& options) {
   const fs::path folder = options.bench;
   IdentificationReport report;
@@ -98,8 +84,8 @@ int run_identify(const IdentifyOptions& options) {
   const std::string text =
       runtime::vehicle_text(report.found.vehicle, sources, report.found.uncertainty, comment);
   runtime::parse_vehicle(text, options.out);
-  if (!options.report.empty()) write_file(options.report, identification_html(report));
-  write_file(options.out, text);
+  if (!options.report.empty()) write_whole_file(options.report, identification_html(report));
+  write_whole_file(options.out, text);
 
   if (options.json) {
     std::printf("%s\n", identification_json(report).c_str());
@@ -116,8 +102,10 @@ int run_identify(const IdentifyOptions& options) {
 
 Command add_identify_command(CLI::App& root) {
   const auto options = std::make_shared<IdentifyOptions>();
-  CLI::App* const app = root.add_subcommand("identify", "Identify a vehicle from test bench data");
+  CLI::App* const app =
+      root.add_subcommand("identify", "Identify a vehicle from test bench data, or from flights");
   const Command simulate = add_identify_simulate_command(*app);
+  const Command flight = add_identify_flight_command(*app);
   app->require_subcommand(0, 1);
   app->add_option("bench", options->bench, "folder of bench data")->type_name("BENCH_DIR");
   app->add_option("--out", options->out, "the vehicle file to write")->type_name("FILE");
@@ -143,8 +131,9 @@ Command add_identify_command(CLI::App& root) {
       "and, if wanted, bench.yaml: base_vehicle, name, propeller, instruments (docs/identification.md).\n\n"
       "example: swiftlet identify bench --out mine.yaml --report report.html\n"
       "         swiftlet identify simulate --vehicle kaylion --noise 0.01 --out bench");
-  return {app, [options, simulate] {
+  return {app, [options, simulate, flight] {
             if (simulate.app->parsed()) return simulate.run();
+            if (flight.app->parsed()) return flight.run();
             if (options->bench.empty()) throw InputError("identify: BENCH_DIR is required");
             if (options->out.empty()) throw InputError("identify: --out is required");
             return run_identify(*options);

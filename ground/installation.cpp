@@ -20,7 +20,8 @@ fs::path program_beside(const std::string& name) {
 
 fs::path configuration_file(const std::string& kind, const std::string& name) {
   const bool bare = name.find('/') == std::string::npos && !fs::path(name).has_extension();
-  const fs::path file = runtime::find_config(bare && !fs::exists(name) ? kind + "/" + name + ".yaml" : name);
+  const bool is_file = fs::exists(name) && !fs::is_directory(name);
+  const fs::path file = runtime::find_config(bare && !is_file ? kind + "/" + name + ".yaml" : name);
   return file.lexically_normal();
 }
 

@@ -1,6 +1,7 @@
 #include "ground/process_flight.hpp"
 
 #include <chrono>
+#include <memory>
 #include <utility>
 
 #include "ground/client.hpp"
@@ -35,6 +36,7 @@ ProcessFlight::ProcessFlight(FlightPlan plan, comms::NodeSettings network)
       record_(plan_.record_capacity()),
       report_(report_of(plan_)) {
   report_.vehicle_name = network_.vehicle;
+  if (plan_.sensors) record_.sensors = std::make_unique<SensorRecord>(plan_.record_capacity());
   make_record_folder(plan_.folder);
   keep_settings(plan_);
   fleet_.emplace(processes(plan_, network_));

@@ -22,6 +22,8 @@ int sim_fly(const FlyOptions& options) {
   std::optional<runtime::FlightTrace> trace;
   if (!plan.trace_file.empty()) trace.emplace(plan.trace_file, plan.vehicle.rotor_count());
   FlightRecord record(plan.record_capacity());
+  if (plan.sensors) record.sensors = std::make_unique<SensorRecord>(plan.record_capacity());
+  loop.sensors = record.sensors.get();
   ProgressLine progress;
   for (const std::string& assumption : plan.mission.assumptions)
     progress.say(plan.mission.name + ": " + assumption);

@@ -41,8 +41,8 @@ double margin_of(const Loop& loop) {
 
 }  // namespace
 
-PhaseMargins margins_on(const ControlDesign& design, const plant::Vehicle& designed,
-                        const plant::Vehicle& flown, double supply_voltage_v) {
+LoopSet loops_on(const ControlDesign& design, const plant::Vehicle& designed, const plant::Vehicle& flown,
+                 double supply_voltage_v) {
   const HoverPoint hover = hover_point(designed, flown, supply_voltage_v);
   const double lag = flown.motor.time_constant_s;
   const double thrust_ratio = flown.rotor.thrust / designed.rotor.thrust;
@@ -61,12 +61,19 @@ PhaseMargins margins_on(const ControlDesign& design, const plant::Vehicle& desig
   const double tilt_gain =
       designed.mass_kg * plant::kGravity / (designed.rotor_count() * hover.commanded_thrust_n);
 
-  return {margin_of(attitude_loop(design.roll.k, roll)),
-          margin_of(attitude_loop(design.pitch.k, pitch)),
-          margin_of(attitude_loop(design.yaw.k, yaw)),
-          margin_of(horizontal_position_loop(design.x.gains, design.pitch.k, pitch, tilt_gain)),
-          margin_of(horizontal_position_loop(design.y.gains, design.roll.k, roll, tilt_gain)),
-          margin_of(vertical_position_loop(design.z.gains, lift))};
+  return {attitude_loop(design.roll.k, roll),
+          attitude_loop(design.pitch.k, pitch),
+          attitude_loop(design.yaw.k, yaw),
+          horizontal_position_loop(design.x.gains, design.pitch.k, pitch, tilt_gain),
+          horizontal_position_loop(design.y.gains, design.roll.k, roll, tilt_gain),
+          vertical_position_loop(design.z.gains, lift)};
+}
+
+PhaseMargins margins_on(const ControlDesign& design, const plant::Vehicle& designed,
+                        const plant::Vehicle& flown, double supply_voltage_v) {
+  const LoopSet loops = loops_on(design, designed, flown, supply_voltage_v);
+  return {margin_of(loops.roll), margin_of(loops.pitch), margin_of(loops.yaw),
+          margin_of(loops.x),    margin_of(loops.y),     margin_of(loops.z)};
 }
 
 }  // namespace swiftlet::control

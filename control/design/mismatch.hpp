@@ -12,10 +12,18 @@ struct PhaseMargins {
   double x = 0.0, y = 0.0, z = 0.0;
 };
 
+// The six loops, cut likewise.
+struct LoopSet {
+  Loop roll, pitch, yaw;
+  Loop x, y, z;
+};
+
 // Gains of `design`, which was made for `designed`, on `flown`: linear about the hover of `flown` at this
 // supply voltage, every rotor with an equal share. What the command becomes on its way through the nominal
 // inverse of Eq. (25), (22), (9) and the vehicle's own Eq. (9), (22), (25) is a gain beside the rotor lag.
 // Estimator, sampling, latency and drag are left out, as in ControlDesign. Both vehicles pass validate().
+LoopSet loops_on(const ControlDesign& design, const plant::Vehicle& designed, const plant::Vehicle& flown,
+                 double supply_voltage_v);
 PhaseMargins margins_on(const ControlDesign& design, const plant::Vehicle& designed,
                         const plant::Vehicle& flown, double supply_voltage_v);
 

@@ -44,11 +44,20 @@ void ClosedLoop::answer() {
   if (pose_) controller.on_pose(*pose_);
   if (battery_) controller.on_battery(*battery_);
   if (rotor_speeds_) controller.on_rotor_speeds(*rotor_speeds_);
+  command = controller.on_imu(*plant.imu());
+  if (sensors != nullptr) keep_sensors();
   pose_.reset();
   battery_.reset();
   rotor_speeds_.reset();
-  command = controller.on_imu(*plant.imu());
   if (command_path.send(command, plant.stamp_ns())) watchdog.accept(command, plant.stamp_ns());
+}
+
+void ClosedLoop::keep_sensors() const {
+  sensors->imu.append(*plant.imu());
+  sensors->commands.append(command);
+  if (pose_) sensors->poses.append(*pose_);
+  if (battery_) sensors->batteries.append(*battery_);
+  if (rotor_speeds_) sensors->rotor_speeds.append(*rotor_speeds_);
 }
 
 const plant::RotorDrive& ClosedLoop::drive() {

@@ -9,6 +9,7 @@
 
 #include "control/flight_controller.hpp"
 #include "control/settings.hpp"
+#include "ground/sensor_record.hpp"
 #include "plant/model/samples.hpp"
 #include "plant/model/vehicle.hpp"
 #include "plant/simulation/actuator_watchdog.hpp"
@@ -49,10 +50,12 @@ class ClosedLoop {
   control::FlightController controller;
   plant::ActuatorCommand command;  // the last answer
   bool mocap_connected = true;
+  SensorRecord* sensors = nullptr;  // where all that the controller gets and answers is kept; may be null
 
  private:
   void collect();
   void answer();
+  void keep_sensors() const;
   const plant::RotorDrive& drive();
 
   // The newest since the last answer.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <Eigen/Eigenvalues>
+
 #include "plant/simulation/random.hpp"
 #include "plant/simulation/streams.hpp"
 #include "services/runtime/config_error.hpp"
@@ -24,6 +26,23 @@ double drawn(const Variate& variate, plant::RandomStream& random) {
       return random.truncated_normal(variate.mean, variate.sigma, variate.min, variate.max);
   }
   return 0.0;
+}
+
+std::vector<double> drawn(const Variation& variation, std::vector<plant::RandomStream>& streams) {
+  std::vector<double> values(streams.size());
+  if (variation.correlation_root.size() == 0) {
+    for (std::size_t i = 0; i < streams.size(); ++i) values[i] = drawn(variation.variates[i], streams[i]);
+    return values;
+  }
+  Eigen::VectorXd deviates(static_cast<Eigen::Index>(streams.size()));
+  for (std::size_t i = 0; i < streams.size(); ++i)
+    deviates[static_cast<Eigen::Index>(i)] = streams[i].normal();
+  const Eigen::VectorXd errors = variation.correlation_root * deviates;
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    const Variate& variate = variation.variates[i];
+    values[i] = variate.mean + variate.sigma * errors[static_cast<Eigen::Index>(i)];
+  }
+  return values;
 }
 
 // K2 K3 / k_Q: the most that R_a may be, Eq. (21).
@@ -142,6 +161,54 @@ double vary(World& world, const Variate& variate, double value) {
   return places.size() == 1 ? *places.front() : value;
 }
 
+Variation variation_of(const plant::VehicleUncertainty& uncertainty, const plant::Vehicle& vehicle,
+                       const std::string& file) {
+  if (uncertainty.parameters.empty()) {
+    throw runtime::ConfigError(
+        file, 0, "uncertainty",
+        "is missing, must say how sure the parameters are; `swiftlet identify` writes it");
+  }
+  Variation out;
+  out.file = file;
+  out.name = kUncertainty;
+  const std::vector<Parameter>& all = parameters();
+  for (const plant::ParameterUncertainty& uncertain : uncertainty.parameters) {
+    const auto found = std::find_if(all.begin(), all.end(), [&](const Parameter& parameter) {
+      return parameter.name == "vehicle." + uncertain.parameter;
+    });
+    if (found == all.end())
+      throw runtime::ConfigError(file, 0, "uncertainty", uncertain.parameter + " cannot be varied");
+    Variate variate;
+    variate.parameter = static_cast<std::size_t>(found - all.begin());
+    variate.distribution = Distribution::kNormal;
+    World world{vehicle, {}};
+    variate.mean = *found->in(world).front();
+    variate.sigma = uncertain.standard_error;
+    variate.min = uncertain.low;
+    variate.max = uncertain.high;
+    out.variates.push_back(variate);
+  }
+  std::sort(out.variates.begin(), out.variates.end(),
+            [](const Variate& a, const Variate& b) { return a.parameter < b.parameter; });
+
+  const auto count = static_cast<Eigen::Index>(out.variates.size());
+  Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(count, count);
+  const auto index_of = [&](const std::string& key) {
+    Eigen::Index i = 0;
+    while (i < count && out.variates[static_cast<std::size_t>(i)].what().name != "vehicle." + key) ++i;
+    return i;
+  };
+  for (const plant::ParameterCorrelation& pair : uncertainty.correlations) {
+    const Eigen::Index i = index_of(pair.first);
+    const Eigen::Index j = index_of(pair.second);
+    if (i < count && j < count && i != j) correlation(i, j) = correlation(j, i) = pair.value;
+  }
+  // Rounded numbers may not be a correlation of anything by a little: what is below 0 counts as 0.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
+  out.correlation_root = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  return out;
+}
+
 Draw draw(const Variation& variation, const World& nominal, std::uint64_t seed) {
   std::vector<plant::RandomStream> streams;
   for (const Variate& variate : variation.variates)
@@ -151,10 +218,9 @@ Draw draw(const Variation& variation, const World& nominal, std::uint64_t seed) 
   std::vector<plant::Violation> violations;
   for (int rejected = 0; rejected < kMostRejected; ++rejected) {
     Draw draw{nominal, {}, rejected};
-    for (std::size_t i = 0; i < streams.size(); ++i) {
-      const Variate& variate = variation.variates[i];
-      draw.values.push_back(vary(draw.world, variate, drawn(variate, streams[i])));
-    }
+    const std::vector<double> values = drawn(variation, streams);
+    for (std::size_t i = 0; i < streams.size(); ++i)
+      draw.values.push_back(vary(draw.world, variation.variates[i], values[i]));
     plant::Vehicle& vehicle = draw.world.vehicle;
     if (resistance_follows)
       vehicle.motor.armature_resistance_ohm *=

@@ -6,7 +6,10 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "plant/model/vehicle.hpp"
+#include "plant/model/vehicle_uncertainty.hpp"
 #include "plant/model/violation.hpp"
 #include "plant/simulation/settings.hpp"
 
@@ -49,7 +52,17 @@ struct Variation {
   std::string file;  // for messages
   std::string name;
   std::vector<Variate> variates;  // in the order of parameters(), none twice
+  // Where it is not empty, all variates are normal ones without limits, and correlated: R R' is the
+  // correlation of their errors.
+  Eigen::MatrixXd correlation_root;
 };
+
+// What the uncertainty of a vehicle's file lets its parameters be: each as far from the file's value as its
+// standard error says, errors correlated as the file says. Throws runtime::ConfigError with `file` for a
+// parameter that cannot be varied, and if there is none.
+Variation variation_of(const plant::VehicleUncertainty& uncertainty, const plant::Vehicle& vehicle,
+                       const std::string& file);
+inline constexpr const char* kUncertainty = "uncertainty";  // its name, and that by which it is asked for
 
 struct Draw {
   World world;

@@ -22,7 +22,7 @@ struct Unit {
 
 struct Kind {
   Quantity quantity;
-  std::vector<const char*> names;  // the first is the one that is written
+  std::vector<std::string> names;  // the first is the one that is written
   std::vector<Unit> units;         // likewise, SI
 };
 
@@ -30,25 +30,87 @@ const std::vector<Unit> kSeconds = {
     {"s", 1.0, {"sec"}}, {"ms", 1e-3, {}}, {"us", 1e-6, {"\xc2\xb5s", "\xce\xbcs"}}};
 const std::vector<Unit> kVolts = {{"V", 1.0, {"volt"}}, {"mV", 1e-3, {}}};
 const std::vector<Unit> kMetres = {{"m", 1.0, {}}, {"cm", 1e-2, {}}, {"mm", 1e-3, {}}};
-const std::vector<const char*> kCommandNames = {"throttle", "delta",       "command",
+const std::vector<std::string> kCommandNames = {"throttle", "delta",       "command",
                                                 "pwm",      "pulse_width", "pulse"};
 
-const std::vector<Kind>& kinds() {
-  static const std::vector<Kind> all = {
-      {Quantity::kTime, {"time", "t"}, kSeconds},
+const std::vector<Unit> kRates = {{"rad/s", 1.0, {"rads/s", "rad s^-1"}},
+                                  {"deg/s", kPi / 180.0, {"dps", "\xc2\xb0/s"}},
+                                  {"mrad/s", 1e-3, {}}};
+const std::vector<Unit> kAccelerations = {{"m/s^2", 1.0, {"m/s2", "m/s\xc2\xb2", "m s^-2"}},
+                                          {"g", kStandardGravity, {"G"}},
+                                          {"mg", 1e-3 * kStandardGravity, {"milli-g"}}};
+const std::vector<Unit> kShares = {{"1", 1.0, {"-", "0..1"}},
+                                   {"%", 1e-2, {"percent"}},
+                                   {"0..65535", 1.0 / 65535.0, {"uint16", "16 bit"}},
+                                   {"0..255", 1.0 / 255.0, {"uint8", "8 bit"}}};
+const std::vector<Unit> kPulses = {{"us", 1.0, {"\xc2\xb5s", "\xce\xbcs"}}, {"ms", 1e3, {}}};
+const std::vector<Unit> kSpeeds = {{"rad/s", 1.0, {"rads/s", "rad s^-1"}},
+                                   {"rpm", 2.0 * kPi / 60.0, {"RPM", "1/min", "rev/min"}},
+                                   {"rev/s", 2.0 * kPi, {"Hz", "rps"}}};
+
+// Each name with each ending: {"acc_x"}, {"_frd", ""} -> acc_x_frd, acc_x.
+std::vector<std::string> with_endings(const std::vector<std::string>& names,
+                                      const std::vector<std::string>& endings) {
+  std::vector<std::string> out;
+  for (const std::string& name : names) {
+    for (const std::string& ending : endings) out.push_back(name + ending);
+  }
+  return out;
+}
+
+std::vector<std::string> numbered(const std::vector<std::string>& names, int number) {
+  return with_endings(names, {std::to_string(number), "_" + std::to_string(number)});
+}
+
+// What a flight's log holds, an axis or a motor at a time.
+void add_flight(std::vector<Kind>& all) {
+  const std::vector<std::string> body = {"_frd", "", "_flu"};
+  const std::vector<std::string> world = {"_ned", "", "_enu"};
+  const std::vector<std::string> attitude = {"_ned_from_frd", "", "_enu_from_flu"};
+  const char* const rates[] = {"p", "q", "r"};
+  for (int i = 0; i < 3; ++i) {
+    const std::string axis(1, static_cast<char>('x' + i));
+    all.push_back({Quantity::kSpecificForceX + i,
+                   with_endings({"specific_force_" + axis, "acc_" + axis, "accel_" + axis, "acc." + axis,
+                                 "acc" + axis, "a" + axis, "accelerometer_" + axis},
+                                body),
+                   kAccelerations});
+    all.push_back({Quantity::kBodyRateX + i,
+                   with_endings({"body_rate_" + axis, "gyro_" + axis, "gyro." + axis, "gyro" + axis,
+                                 "g" + axis, "rate_" + axis, "omega_" + axis, "w" + axis, rates[i]},
+                                body),
+                   kRates});
+    all.push_back({Quantity::kPositionX + i,
+                   with_endings({"position_" + axis, "pos_" + axis, "p" + axis, axis}, world), kMetres});
+  }
+  for (int i = 0; i < 4; ++i) {
+    const std::string part(1, "wxyz"[i]);
+    all.push_back({Quantity::kOrientationW + i,
+                   with_endings({"orientation_" + part, "q" + part, "q_" + part}, attitude),
+                   {{"1", 1.0, {"-"}}}});
+  }
+  all.push_back({Quantity::kPoseTime, {"pose_time", "t_pose"}, kSeconds});
+  all.push_back({Quantity::kRunning, {"running", "armed"}, {{"1", 1.0, {"-"}}}});
+  for (int i = 0; i < 8; ++i) {
+    all.push_back({Quantity::kMotorCommand + i,
+                   numbered({"throttle", "motor", "m", "delta", "command", "pwm", "duty"}, i + 1), kShares});
+    all.push_back({Quantity::kMotorPulse + i,
+                   numbered({"pulse_width", "motor", "m", "command", "pwm", "pulse"}, i + 1), kPulses});
+    all.push_back({Quantity::kMotorSpeed + i,
+                   numbered({"rotor_speed", "motor_speed", "om", "speed", "omega", "rpm"}, i + 1), kSpeeds});
+  }
+}
+
+std::vector<Kind> all_kinds() {
+  std::vector<Kind> all = {
+      {Quantity::kTime, {"time", "t", "timestamp"}, kSeconds},
       {Quantity::kSupplyVoltage,
        {"supply_voltage", "v_s", "vs", "supply", "battery_voltage", "vbat"},
        kVolts},
       {Quantity::kMotorVoltage, {"motor_voltage", "v_a", "va", "esc_voltage"}, kVolts},
       {Quantity::kThrottle, kCommandNames, {{"1", 1.0, {"-"}}, {"%", 1e-2, {"percent"}}}},
-      {Quantity::kPulseWidth,
-       {"pulse_width", "pwm", "pulse", "throttle", "command"},
-       {{"us", 1.0, {"\xc2\xb5s", "\xce\xbcs"}}, {"ms", 1e3, {}}}},
-      {Quantity::kSpeed,
-       {"speed", "omega", "rotor_speed", "motor_speed", "rpm"},
-       {{"rad/s", 1.0, {"rads/s", "rad s^-1"}},
-        {"rpm", 2.0 * kPi / 60.0, {"RPM", "1/min", "rev/min"}},
-        {"rev/s", 2.0 * kPi, {"Hz", "rps"}}}},
+      {Quantity::kPulseWidth, {"pulse_width", "pwm", "pulse", "throttle", "command"}, kPulses},
+      {Quantity::kSpeed, {"speed", "omega", "rotor_speed", "motor_speed", "rpm"}, kSpeeds},
       {Quantity::kThrust,
        {"thrust", "force"},
        {{"N", 1.0, {}},
@@ -67,6 +129,12 @@ const std::vector<Kind>& kinds() {
       {Quantity::kArm, {"arm"}, kMetres},
       {Quantity::kPeriod, {"period"}, kSeconds},
   };
+  add_flight(all);
+  return all;
+}
+
+const std::vector<Kind>& kinds() {
+  static const std::vector<Kind> all = all_kinds();
   return all;
 }
 
@@ -75,8 +143,9 @@ const Kind& kind_of(Quantity quantity) {
                        [&](const Kind& kind) { return kind.quantity == quantity; });
 }
 
-bool is_one_of(const std::string& text, const std::vector<const char*>& names) {
-  return std::any_of(names.begin(), names.end(), [&](const char* name) { return text == name; });
+template <typename Names>
+bool is_one_of(const std::string& text, const Names& names) {
+  return std::any_of(names.begin(), names.end(), [&](const auto& name) { return text == name; });
 }
 
 std::optional<double> factor_of(const Kind& kind, const std::string& unit) {
@@ -157,10 +226,10 @@ Column resolve(const std::string& header, const std::string& file, const std::ve
 
 std::string header_of(Quantity quantity) {
   const Kind& kind = kind_of(quantity);
-  return std::string(kind.names.front()) + " [" + kind.units.front().name + "]";
+  return kind.names.front() + " [" + kind.units.front().name + "]";
 }
 
-const char* name_of(Quantity quantity) { return kind_of(quantity).names.front(); }
+const std::string& name_of(Quantity quantity) { return kind_of(quantity).names.front(); }
 
 const std::vector<double>& Measurements::column(Quantity quantity) const {
   const auto found = columns_.find(quantity);
@@ -169,16 +238,20 @@ const std::vector<double>& Measurements::column(Quantity quantity) const {
   return found->second;
 }
 
+const std::string& Measurements::header(Quantity quantity) const {
+  (void)column(quantity);
+  return headers_.at(quantity);
+}
+
 Measurements parse_measurements(std::string_view text, const std::string& file_name,
                                 const std::vector<Quantity>& allowed) {
   const CsvTable table = parse_csv_as_headed(text, file_name);
   Measurements out;
   out.file_ = file_name;
   for (std::size_t row = 0; row < table.row_count(); ++row) out.lines_.push_back(table.line(row));
-  std::map<Quantity, std::string> headers;
   for (std::size_t i = 0; i < table.column_count(); ++i) {
     const Column column = resolve(table.column(i), file_name, allowed);
-    if (const auto [other, is_new] = headers.emplace(column.quantity, table.column(i)); !is_new) {
+    if (const auto [other, is_new] = out.headers_.emplace(column.quantity, table.column(i)); !is_new) {
       throw ConfigError(file_name, 1, "header",
                         "has the columns " + other->second + " and " + table.column(i) +
                             ", must have one of them: both are " + name_of(column.quantity));

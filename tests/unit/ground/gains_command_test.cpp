@@ -33,7 +33,7 @@ TEST(GainsJson, GivesEveryAttitudeAxisOnItsModel) {
        {control::AttitudeModel::kDoubleIntegrator, control::AttitudeModel::kMotorLag}) {
     const bool lag = model == control::AttitudeModel::kMotorLag;
     const control::ControlDesign d = design(model, 0.0);
-    const Json out = Json::parse(gains_json(d, "kaylion", "test"));
+    const Json out = Json::parse(gains_json(d, {}, "kaylion", "test"));
     EXPECT_EQ(out["vehicle"], "kaylion");
     EXPECT_EQ(out["control"], "test");
     for (const char* name : {"roll", "pitch", "yaw"}) {
@@ -57,7 +57,7 @@ TEST(GainsJson, GivesEveryAttitudeAxisOnItsModel) {
 
 TEST(GainsJson, GivesEq49AndTheIntegralFormBesideIt) {
   for (const double k_i : {0.0, 0.4}) {
-    const Json out = Json::parse(gains_json(design(control::AttitudeModel::kMotorLag, k_i), "v", "c"));
+    const Json out = Json::parse(gains_json(design(control::AttitudeModel::kMotorLag, k_i), {}, "v", "c"));
     for (const char* name : {"x", "y", "z"}) {
       const Json& axis = out["position"][name];
       EXPECT_EQ(axis["omega_n"], 1.5);
@@ -78,7 +78,8 @@ TEST(GainsJson, GivesEq49AndTheIntegralFormBesideIt) {
 }
 
 TEST(GainsTable, HasARowForEveryAxis) {
-  const std::string table = gains_table(design(control::AttitudeModel::kMotorLag, 0.0), "kaylion", "test");
+  const std::string table =
+      gains_table(design(control::AttitudeModel::kMotorLag, 0.0), {}, "kaylion", "test");
   for (const char* axis : {"\n  roll ", "\n  pitch ", "\n  yaw ", "\n  x ", "\n  y ", "\n  z "}) {
     EXPECT_NE(table.find(axis), std::string::npos) << axis;
   }

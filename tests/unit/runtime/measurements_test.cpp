@@ -79,6 +79,59 @@ TEST(Measurements, RefusesColumnsThatHaveNoPlace) {
   EXPECT_EQ(refused("1,2"), "f.csv:1: header: is 1,2, must name every column");
 }
 
+const std::vector<Quantity> kOfFlights = {Quantity::kTime,
+                                          Quantity::kSpecificForceX,
+                                          Quantity::kSpecificForceZ,
+                                          Quantity::kBodyRateX,
+                                          Quantity::kBodyRateX + 1,
+                                          Quantity::kMotorCommand,
+                                          Quantity::kMotorCommand + 3,
+                                          Quantity::kMotorPulse,
+                                          Quantity::kMotorPulse + 3,
+                                          Quantity::kMotorSpeed,
+                                          Quantity::kMotorSpeed + 7,
+                                          Quantity::kPositionX + 1,
+                                          Quantity::kOrientationW,
+                                          Quantity::kOrientationX};
+
+double of_flight(const std::string& header, Quantity quantity) {
+  return parse_measurements(header + "\n2\n", "f.csv", kOfFlights).column(quantity).front();
+}
+
+TEST(Measurements, TakesThePeoplesNamesAndUnitsOfFlights) {
+  constexpr double kPi = 3.14159265358979323846;
+  EXPECT_DOUBLE_EQ(of_flight("acc_z [g]", Quantity::kSpecificForceZ), 2.0 * 9.80665);
+  EXPECT_DOUBLE_EQ(of_flight("specific_force_x_frd [m/s^2]", Quantity::kSpecificForceX), 2.0);
+  EXPECT_DOUBLE_EQ(of_flight("ax [mg]", Quantity::kSpecificForceX), 2e-3 * 9.80665);
+  EXPECT_DOUBLE_EQ(of_flight("gyro_x [deg/s]", Quantity::kBodyRateX), kPi / 90.0);
+  EXPECT_DOUBLE_EQ(of_flight("q [rad/s]", Quantity::kBodyRateX + 1), 2.0);
+  EXPECT_DOUBLE_EQ(of_flight("motor4 [0..65535]", Quantity::kMotorCommand + 3), 2.0 / 65535.0);
+  EXPECT_DOUBLE_EQ(of_flight("m1 [%]", Quantity::kMotorCommand), 0.02);
+  EXPECT_DOUBLE_EQ(of_flight("motor_4 [us]", Quantity::kMotorPulse + 3), 2.0);
+  EXPECT_DOUBLE_EQ(of_flight("rpm8 [rpm]", Quantity::kMotorSpeed + 7), kPi / 15.0);
+  EXPECT_DOUBLE_EQ(of_flight("py_enu [mm]", Quantity::kPositionX + 1), 2e-3);
+  EXPECT_DOUBLE_EQ(of_flight("qw_ned_from_frd [1]", Quantity::kOrientationW), 2.0);
+}
+
+TEST(Measurements, RefusesFlightsThatCouldBeReadInTwoWays) {
+  EXPECT_EQ(refused("motor1,time [s]", kOfFlights),
+            "f.csv:1: header: has the column motor1 without a unit, must be motor1 [1], motor1 [%], motor1 "
+            "[0..65535], "
+            "motor1 [0..255], motor1 [us] or motor1 [ms]");
+  EXPECT_EQ(refused("gyro_x,time [s]", kOfFlights),
+            "f.csv:1: header: has the column gyro_x without a unit, must be gyro_x [rad/s], gyro_x [deg/s] "
+            "or gyro_x "
+            "[mrad/s]");
+  EXPECT_EQ(refused("acc_x [g],ax_frd [g]", kOfFlights),
+            "f.csv:1: header: has the columns acc_x [g] and ax_frd [g], must have one of them: both are "
+            "specific_force_x_frd");
+}
+
+TEST(Measurements, KeepsTheHeader) {
+  const Measurements table = parse_measurements("acc_x_flu [g]\n1\n", "f.csv", kOfFlights);
+  EXPECT_EQ(table.header(Quantity::kSpecificForceX), "acc_x_flu [g]");
+}
+
 TEST(Measurements, NamesAColumnThatIsMissing) {
   const Measurements table = parse_measurements("rpm\n1\n", "f.csv", {Quantity::kSpeed, Quantity::kThrust});
   EXPECT_EQ(refusal([&] { (void)table.column(Quantity::kThrust); }),

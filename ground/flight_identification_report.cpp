@@ -1,0 +1,165 @@
+#include "ground/flight_identification_report.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "ground/format.hpp"
+#include "ground/identification_figures.hpp"
+#include "ground/report_page.hpp"
+#include "ground/svg_figure.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using identification::Estimate;
+using identification::FlightIdentification;
+using identification::PredictionError;
+using identification::SpeedSource;
+using Json = nlohmann::ordered_json;
+
+constexpr double kShownS = 8.0;  // of the predictions, in the figures
+
+const char* source_text(SpeedSource source) {
+  return source == SpeedSource::kMeasured ? "measured rotor speeds"
+                                          : "rotor speeds by command and supply voltage";
+}
+
+const char* source_key(SpeedSource source) {
+  return source == SpeedSource::kMeasured ? "measured" : "modelled";
+}
+
+std::string what_was_fitted(const FlightIdentification& found) {
+  return format("%.1f s of flight fitted to, the %.1f s that follow predicted; ", found.fitted_s,
+                found.kept_s) +
+         source_text(found.source);
+}
+
+std::vector<std::pair<std::string, const std::vector<std::string>*>> notes(
+    const FlightIdentificationReport& report) {
+  return {{"assumed", &report.assumptions},
+          {"not excited", &report.found.unexcited},
+          {"note", &report.found.findings},
+          {"warning", &report.found.warnings}};
+}
+
+CaptionedFigure prediction_figure(const FlightIdentification& found, int quantity, const char* label) {
+  FigureSeries measured{"measured", Mark::kLine, "#1f6fb4", {}};
+  FigureSeries predicted{"predicted", Mark::kLine, "#c0392b", {}};
+  const std::vector<double>& time = found.trace.time_s;
+  for (std::size_t i = 0; i < time.size() && time[i] < kShownS; ++i) {
+    measured.points.push_back({time[i], found.trace.measured[quantity][i]});
+    predicted.points.push_back({time[i], found.trace.predicted[quantity][i]});
+  }
+  Figure figure;
+  figure.title = std::string(label) + " over time, measured and predicted";
+  figure.x_label = "time from the first row that was not fitted to (s)";
+  figure.y_label = label;
+  figure.height = 300;
+  figure.series = {measured, predicted};
+  return {quantity < 3 ? "Integrated from the measured rate every half second, by the commands alone"
+                       : "By the commands alone",
+          figure};
+}
+
+}  // namespace
+
+std::string flight_identification_table(const FlightIdentificationReport& report) {
+  const FlightIdentification& found = report.found;
+  std::string out = found.vehicle.name + ", identified from";
+  for (const std::string& log : report.logs) out += " " + log;
+  out += "; what is not named is from " + report.base_vehicle + "\n  " + what_was_fitted(found) + "\n";
+  out += format("  %-30s %-10s %12s  %-10s %s\n", "parameter", "symbol", "value", "+- (95 %)", "unit");
+  for (const Estimate& e : found.estimates) {
+    out += format("  %-30s %-10s %12.5g  %-10.2g %s\n", e.parameter.c_str(), e.symbol.c_str(), e.value,
+                  e.half_width, e.unit.c_str());
+  }
+  out += format("  %-30s %12s %12s %12s %12s  %s\n", "prediction error, RMS", "one step", "unchanged",
+                "0.5 s", "unchanged", "unit");
+  for (const PredictionError& e : found.errors) {
+    out += format("  %-30s %12.4g %12.4g %12.4g %12.4g  %s\n", e.quantity.c_str(), e.one_step,
+                  e.idle_one_step, e.half_second, e.idle_half_second, e.unit.c_str());
+  }
+  for (const auto& [kind, sentences] : notes(report)) {
+    for (const std::string& sentence : *sentences) out += "  " + kind + ": " + sentence + "\n";
+  }
+  return out;
+}
+
+std::string flight_identification_json(const FlightIdentificationReport& report) {
+  const FlightIdentification& found = report.found;
+  Json logs = Json::array();
+  for (std::size_t i = 0; i < report.logs.size(); ++i) {
+    logs.push_back({{"file", report.logs[i]},
+                    {"from_row", found.windows[i].flight.first},
+                    {"to_row", found.windows[i].flight.last}});
+  }
+  Json parameters = Json::array();
+  for (const Estimate& e : found.estimates) {
+    parameters.push_back({{"parameter", e.parameter},
+                          {"symbol", e.symbol},
+                          {"value", e.value},
+                          {"standard_error", e.standard_error},
+                          {"interval_95", {e.low(), e.high()}},
+                          {"unit", e.unit}});
+  }
+  Json prediction = Json::array();
+  for (const PredictionError& e : found.errors) {
+    prediction.push_back({{"quantity", e.quantity},
+                          {"unit", e.unit},
+                          {"one_step", e.one_step},
+                          {"idle_one_step", e.idle_one_step},
+                          {"half_second", e.half_second},
+                          {"idle_half_second", e.idle_half_second}});
+  }
+  Json out = {{"vehicle", found.vehicle.name},
+              {"base_vehicle", report.base_vehicle},
+              {"logs", logs},
+              {"source", source_key(found.source)},
+              {"fitted_s", found.fitted_s},
+              {"kept_s", found.kept_s},
+              {"parameters", parameters}};
+  out["prediction"] = prediction;
+  out["assumptions"] = report.assumptions;
+  out["unexcited"] = found.unexcited;
+  out["findings"] = found.findings;
+  out["warnings"] = found.warnings;
+  return out.dump();
+}
+
+std::string flight_identification_html(const FlightIdentificationReport& report) {
+  const FlightIdentification& found = report.found;
+  std::string out =
+      page_head("Identification of " + found.vehicle.name + " from flights") + "<p class=\"quiet\">from";
+  for (const std::string& log : report.logs) out += " " + html_escaped(log);
+  out += "; " + html_escaped(what_was_fitted(found)) + "; what is not named is from " +
+         html_escaped(report.base_vehicle) +
+         "</p>\n<p class=\"quiet\">Intervals are those of 95 in 100 such flights: Student's t, residuals "
+         "correlated inside each half "
+         "second as the data show it</p>\n" +
+         estimates_html(found.estimates);
+  for (const auto& [kind, sentences] : notes(report)) {
+    const bool loud = kind == "warning" || kind == "not excited";
+    for (const std::string& sentence : *sentences)
+      out += std::string("<p class=\"") + (loud ? "warning" : "finding") + "\">" + kind + ": " +
+             html_escaped(sentence) + ".</p>\n";
+  }
+  out +=
+      "<h2>Prediction of flight that was not fitted to</h2>\n<table><tr><th>RMS error of</th><th>one "
+      "step</th><th>if unchanged</th>"
+      "<th>0.5 s</th><th>if unchanged</th><th>unit</th></tr>\n";
+  for (const PredictionError& e : found.errors) {
+    out += "<tr><td>" + html_escaped(e.quantity) + "</td>";
+    for (const double value : {e.one_step, e.idle_one_step, e.half_second, e.idle_half_second})
+      out += format("<td class=\"n\">%.4g</td>", value);
+    out += "<td>" + html_unit(e.unit) + "</td></tr>\n";
+  }
+  out += "</table>\n<div class=\"figures\">\n";
+  const char* const labels[4] = {"p (rad/s)", "q (rad/s)", "r (rad/s)", "specific force along z (m/s^2)"};
+  for (int i = 0; i < 4; ++i) {
+    const CaptionedFigure figure = prediction_figure(found, i, labels[i]);
+    out += "<figure>" + svg(figure.figure) + "<figcaption>" + html_escaped(figure.caption) +
+           "</figcaption></figure>\n";
+  }
+  return out + "</div>\n</body></html>\n";
+}
+
+}  // namespace swiftlet::ground

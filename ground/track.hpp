@@ -1,0 +1,47 @@
+// A record that one thread writes while others read.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <memory>
+
+namespace swiftlet::ground {
+
+// Rows in the order in which they came: one thread appends and never waits, any thread reads those that are
+// in.
+template <class Row>
+class Track {
+ public:
+  explicit Track(std::size_t capacity) : rows_(std::make_unique<Row[]>(capacity)), capacity_(capacity) {}
+
+  void append(const Row& row) noexcept {
+    const std::size_t at = size_.load(std::memory_order_relaxed);
+    if (at == capacity_) {
+      dropped_.fetch_add(1, std::memory_order_relaxed);
+      return;
+    }
+    rows_[at] = row;
+    size_.store(at + 1, std::memory_order_release);
+  }
+
+  void clear() noexcept {  // for another flight; while nobody reads
+    size_.store(0, std::memory_order_release);
+    dropped_.store(0, std::memory_order_relaxed);
+  }
+
+  std::size_t size() const { return size_.load(std::memory_order_acquire); }
+  std::size_t dropped() const { return dropped_.load(std::memory_order_relaxed); }  // came when it was full
+  bool empty() const { return size() == 0; }
+  const Row& operator[](std::size_t i) const { return rows_[i]; }
+  const Row& back() const { return rows_[size() - 1]; }
+  const Row* begin() const { return rows_.get(); }
+  const Row* end() const { return rows_.get() + size(); }
+
+ private:
+  std::unique_ptr<Row[]> rows_;
+  std::size_t capacity_;
+  std::atomic<std::size_t> size_{0};
+  std::atomic<std::size_t> dropped_{0};
+};
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,47 @@
+// A log made ready for fits: steady speeds that its commands ask of the rotors, motion by its poses,
+// stretches of time.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "identification/flight_log.hpp"
+#include "identification/flight_window.hpp"
+#include "plant/model/vehicle.hpp"
+
+namespace swiftlet::identification {
+
+// Where the rotors' speeds are from.
+enum class SpeedSource {
+  kMeasured,  // by the vehicle
+  kModelled,  // from command and supply voltage by Eq. (9), (22) and (18) with the base vehicle's numbers
+};
+
+// What a channel of residuals is cut into; inside, samples hang together.
+constexpr double kStretchS = 0.5;
+
+struct FlightSeries {
+  const FlightLog* log = nullptr;
+  FlightWindow window;
+  Rows fitted;  // the first four fifths of the flight
+  Rows kept;    // the last one, for predictions
+  SpeedSource source = SpeedSource::kMeasured;
+  std::vector<plant::PerRotor> steady_speeds;  // that the commands ask for, from each row on, rad/s
+  std::vector<Eigen::Vector3d> velocity_ned;   // of each row, by the poses
+  std::vector<Eigen::Quaterniond> attitude;    // NED from FRD, likewise
+  std::vector<Rows> stretches;                 // of fitted
+};
+
+// Chooses the best source of speeds that the log has; poses and supply voltage it must have. Throws
+// BadData.
+FlightSeries prepare_flight(const FlightLog& log, const plant::Vehicle& base, const FlightBounds& bounds);
+
+// Steady speeds behind the rotors' lag, Eq. (18) in its reduced form, a delay later: at the times of `rows`.
+// The lag is started with the log, at the speeds that are steady there.
+std::vector<plant::PerRotor> lagged_speeds(const FlightSeries& series, const Rows& rows,
+                                           double time_constant_s, double delay_s);
+
+}  // namespace swiftlet::identification

@@ -1,0 +1,176 @@
+#include "identification/series_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/QR>
+#include <ceres/ceres.h>
+
+namespace swiftlet::identification {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kStep = 1e-3;        // of central differences, over a parameter's scale
+constexpr int kMostReweightings = 4;  // spreads of the channels, then a fit with them
+constexpr double kSettled = 0.01;     // of the spreads, relative
+constexpr double kLeastSpread = 1e-9;
+
+// Residuals over their channels' spreads, in parameters over their scales.
+class WeighedProblem final : public ceres::CostFunction {
+ public:
+  explicit WeighedProblem(const SeriesProblem& problem)
+      : problem_(problem),
+        rows_(static_cast<Index>(problem.stretches.size())),
+        spread_(VectorXd::Ones(static_cast<Index>(problem.channels.size()))),
+        above_(rows_),
+        below_(rows_) {
+    set_num_residuals(static_cast<int>(rows_));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(problem.start.size()));
+  }
+
+  bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
+    const Eigen::Map<const VectorXd> x(parameters[0], problem_.start.size());
+    Eigen::Map<VectorXd> out(residuals, rows_);
+    out = residuals_at(x);
+    if (jacobians != nullptr && jacobians[0] != nullptr) {
+      Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> rows(
+          jacobians[0], rows_, x.size());
+      rows = jacobian_at(x);
+    }
+    return out.allFinite();
+  }
+
+  VectorXd residuals_at(const VectorXd& x) const {
+    VectorXd out(rows_);
+    problem_.residuals(x.cwiseProduct(problem_.scale), out);
+    for_each_channel(
+        [&](Index channel, Index first, Index size) { out.segment(first, size) /= spread_[channel]; });
+    return out;
+  }
+
+  MatrixXd jacobian_at(const VectorXd& x) const {
+    MatrixXd out(rows_, x.size());
+    VectorXd at = x;
+    for (Index i = 0; i < x.size(); ++i) {
+      const double high = std::min(x[i] + kStep, problem_.high[i] / problem_.scale[i]);
+      const double low = std::max(x[i] - kStep, problem_.low[i] / problem_.scale[i]);
+      at[i] = high;
+      above_ = residuals_at(at);
+      at[i] = low;
+      below_ = residuals_at(at);
+      at[i] = x[i];
+      out.col(i) = (above_ - below_) / (high - low);
+    }
+    return out;
+  }
+
+  // From residuals without weights. Returns the largest relative change.
+  double weigh(const VectorXd& residuals) {
+    double change = 0.0;
+    for_each_channel([&](Index channel, Index first, Index size) {
+      const double square = residuals.segment(first, size).squaredNorm();
+      const double spread = std::max(std::sqrt(square / static_cast<double>(size)), kLeastSpread);
+      change = std::max(change, std::abs(spread / spread_[channel] - 1.0));
+      spread_[channel] = spread;
+    });
+    return change;
+  }
+
+  const VectorXd& spread() const { return spread_; }
+
+ private:
+  template <typename Work>
+  void for_each_channel(const Work& work) const {
+    for (std::size_t i = 0; i < problem_.channels.size(); ++i) {
+      const Channel& channel = problem_.channels[i];
+      if (channel.size > 0)
+        work(static_cast<Index>(i), static_cast<Index>(channel.first), static_cast<Index>(channel.size));
+    }
+  }
+
+  const SeriesProblem& problem_;
+  Index rows_;
+  VectorXd spread_;
+  mutable VectorXd above_;
+  mutable VectorXd below_;
+};
+
+class CallOnIteration final : public ceres::IterationCallback {
+ public:
+  explicit CallOnIteration(const std::function<void()>& call) : call_(call) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
+    if (call_) call_();
+    return ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const std::function<void()>& call_;
+};
+
+bool minimise(WeighedProblem& cost, const SeriesProblem& problem, VectorXd& x) {
+  ceres::Problem::Options ownership;
+  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem ceres_problem(ownership);
+  ceres_problem.AddResidualBlock(&cost, nullptr, x.data());
+  for (Index i = 0; i < x.size(); ++i) {
+    ceres_problem.SetParameterLowerBound(x.data(), static_cast<int>(i), problem.low[i] / problem.scale[i]);
+    ceres_problem.SetParameterUpperBound(x.data(), static_cast<int>(i), problem.high[i] / problem.scale[i]);
+  }
+  CallOnIteration callback(problem.on_iteration);
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  options.logging_type = ceres::SILENT;
+  options.num_threads = 1;
+  options.max_num_iterations = 50;
+  options.function_tolerance = 1e-7;
+  options.parameter_tolerance = 1e-5;
+  options.callbacks.push_back(&callback);
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &ceres_problem, &summary);
+  return summary.termination_type == ceres::CONVERGENCE && x.allFinite();
+}
+
+}  // namespace
+
+double SeriesFit::standard_error(Index i) const { return std::sqrt(std::max(covariance(i, i), 0.0)); }
+
+double SeriesFit::correlation(Index i, Index j) const {
+  const double scale = standard_error(i) * standard_error(j);
+  return scale > 0.0 ? std::clamp(covariance(i, j) / scale, -1.0, 1.0) : 0.0;
+}
+
+SeriesFit fit_series(const SeriesProblem& problem) {
+  WeighedProblem cost(problem);
+  VectorXd x = problem.start.cwiseQuotient(problem.scale);
+  SeriesFit out;
+  out.residuals.resize(static_cast<Index>(problem.stretches.size()));
+  problem.residuals(problem.start, out.residuals);
+  cost.weigh(out.residuals);
+  for (int round = 0; round < kMostReweightings; ++round) {
+    out.converged = minimise(cost, problem, x);
+    problem.residuals(x.cwiseProduct(problem.scale), out.residuals);
+    if (cost.weigh(out.residuals) < kSettled) break;
+  }
+
+  const VectorXd residuals = cost.residuals_at(x);
+  const MatrixXd jacobian = cost.jacobian_at(x);
+  MatrixXd scores = MatrixXd::Zero(static_cast<Index>(problem.stretch_count), x.size());
+  for (Index i = 0; i < residuals.size(); ++i)
+    scores.row(static_cast<Index>(problem.stretches[static_cast<std::size_t>(i)])) +=
+        residuals[i] * jacobian.row(i);
+  const MatrixXd inverse =
+      (jacobian.transpose() * jacobian).completeOrthogonalDecomposition().pseudoInverse();
+  const auto stretches = static_cast<double>(problem.stretch_count);
+  out.degrees_of_freedom = std::max(1, static_cast<int>(problem.stretch_count) - static_cast<int>(x.size()));
+  const double correction = stretches / static_cast<double>(out.degrees_of_freedom);
+  const MatrixXd covariance = correction * inverse * (scores.transpose() * scores) * inverse;
+  out.parameters = x.cwiseProduct(problem.scale);
+  out.covariance = problem.scale.asDiagonal() * covariance * problem.scale.asDiagonal();
+  out.channel_spread.assign(cost.spread().data(), cost.spread().data() + cost.spread().size());
+  return out;
+}
+
+}  // namespace swiftlet::identification

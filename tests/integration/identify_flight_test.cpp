@@ -1,0 +1,104 @@
+// `swiftlet identify flight` as a user runs it: a flight's record in, a vehicle file out that the other
+// commands take.
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "services/runtime/vehicle_file.hpp"
+#include "tests/integration/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace swiftlet::tests {
+namespace {
+
+namespace fs = std::filesystem;
+
+class IdentifyFlight : public testing::Test {
+ protected:
+  Ending run(std::vector<std::string> words) const {
+    return run_program("swiftlet", std::move(words), folder_.path());
+  }
+  std::string in_folder(const char* name) const { return (folder_.path() / name).string(); }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(IdentifyFlight, MakesAVehicleOfARecord) {
+  const Ending flight =
+      run({"sim", "fly", "identification", "--sensors", "--record", in_folder("first"), "--json"});
+  ASSERT_EQ(flight.exit_code, 0) << flight.errors;
+  const Ending end = run({"identify", "flight", in_folder("first"), "--out", in_folder("mine.yaml"),
+                          "--report", in_folder("report.html"), "--json"});
+  ASSERT_EQ(end.exit_code, 0) << end.errors;
+  const nlohmann::json report = nlohmann::json::parse(end.output);
+  EXPECT_EQ(report["vehicle"], "mine");
+  EXPECT_EQ(report["source"], "measured");
+  EXPECT_EQ(report["prediction"].size(), 4U);
+  const plant::Vehicle found = runtime::load_vehicle(in_folder("mine.yaml"));
+  EXPECT_NEAR(found.rotor.thrust / 3.7901e-8, 1.0, 0.01);
+  EXPECT_NEAR(found.motor.time_constant_s / 0.0821, 1.0, 0.001);
+  EXPECT_GE(runtime::load_vehicle_uncertainty(in_folder("mine.yaml")).parameters.size(), 5U);
+  std::ostringstream page;
+  page << std::ifstream(in_folder("report.html")).rdbuf();
+  EXPECT_NE(page.str().find("<svg"), std::string::npos);
+  EXPECT_EQ(page.str().find("http"), std::string::npos);
+
+  const Ending gains = run({"gains", "--vehicle", in_folder("mine.yaml"), "--draws", "50", "--json"});
+  ASSERT_EQ(gains.exit_code, 0) << gains.errors;
+  const nlohmann::json margins = nlohmann::json::parse(gains.output);
+  EXPECT_EQ(margins["draws"], 50);
+  EXPECT_LE(margins["margins"]["roll"]["worst"]["phase_deg"],
+            margins["margins"]["roll"]["designed"]["phase_deg"]);
+
+  const Ending batch = run({"sim", "batch", "square", "--vehicle", in_folder("mine.yaml"), "--vary",
+                            "uncertainty", "--runs", "10", "--out", in_folder("batch"), "--json"});
+  EXPECT_EQ(batch.exit_code, 0) << batch.errors;
+}
+
+// What comes over the network is what identifies the vehicle, not what the plant keeps to itself.
+TEST_F(IdentifyFlight, TakesTheRecordOfSeparateProcesses) {
+  const Ending flight = run({"fly", "identification", "--clock", "lockstep", "--sensors", "--record",
+                             in_folder("first"), "--json"});
+  ASSERT_EQ(flight.exit_code, 0) << flight.errors;
+  const Ending end =
+      run({"identify", "flight", in_folder("first"), "--out", in_folder("mine.yaml"), "--json"});
+  ASSERT_EQ(end.exit_code, 0) << end.errors;
+  EXPECT_NEAR(runtime::load_vehicle(in_folder("mine.yaml")).motor.time_constant_s / 0.0821, 1.0, 0.001);
+}
+
+TEST_F(IdentifyFlight, RefusesWhatIsNoFlight) {
+  const std::string head =
+      "t [s],acc_x [g],acc_y [g],acc_z [g],p [rad/s],q [rad/s],r [rad/s],m1 [1],m2 [1],m3 [1],m4 [1]";
+  const std::string pose =
+      ",pose_time [s],x_ned [m],y_ned [m],z_ned [m],qw_ned_from_frd [1],qx_ned_from_frd [1],qy_ned_from_frd "
+      "[1],"
+      "qz_ned_from_frd [1]";
+  std::string blind = head + ",vbat [V]\n";
+  std::string still = head + ",vbat [V]" + pose + "\n";
+  for (int i = 0; i < 200; ++i) {
+    const std::string time = std::to_string(0.01 * i);
+    blind += time + ",0,0,1,0,0,0,0,0,0,0,3.8\n";
+    still += time + ",0,0,1,0,0,0,0,0,0,0,3.8," + time + ",0,0,0,1,0,0,0\n";
+  }
+  const Ending without = run({"identify", "flight", folder_.write("blind.csv", blind)});
+  EXPECT_EQ(without.exit_code, 2);
+  EXPECT_NE(without.errors.find("blind.csv: has 0 poses, must have them"), std::string::npos)
+      << without.errors;
+  const Ending never = run({"identify", "flight", folder_.write("still.csv", still)});
+  EXPECT_EQ(never.exit_code, 2);
+  EXPECT_NE(never.errors.find("still.csv: the rotors never ran"), std::string::npos) << never.errors;
+  const Ending none = run({"identify", "flight", in_folder("nowhere.csv")});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_NE(none.errors.find("nowhere.csv: cannot be read"), std::string::npos) << none.errors;
+  const Ending unit = run({"identify", "flight", folder_.write("unit.csv", "t,acc_x [g]\n0,0\n")});
+  EXPECT_EQ(unit.exit_code, 2);
+  EXPECT_NE(unit.errors.find("has the column t without a unit"), std::string::npos) << unit.errors;
+}
+
+}  // namespace
+}  // namespace swiftlet::tests
