@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "ground/client.hpp"
 #include "ground/commands.hpp"
 #include "ground/installation.hpp"
 #include "ground/interrupts.hpp"
@@ -18,7 +17,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kStep = 50ms;
-constexpr double kSilenceS = 3.0;
 
 struct Options : RequestOptions {
   std::string file;
@@ -27,40 +25,25 @@ struct Options : RequestOptions {
   bool link = false;
 };
 
-// How a mission ended, as far as it was followed.
-struct End {
-  bool completed = false;
-  std::string reason;
-};
-
-void show(const View& view, const MissionFile& mission, ProgressLine& progress) {
-  const auto& status = view.mission.message;
-  const auto& position = view.estimate.message.position_ned();
+void show(const VehicleState& state, ProgressLine& progress) {
+  const Eigen::Vector3d& position = state.position_ned;
   char text[160];
-  std::snprintf(text, sizeof text, "%u/%zu  %s  (%5.2f, %5.2f, %5.2f) m, %.2f V", status.item_index() + 1,
-                mission.mission.items.size(), mode_name(view.control.message.mode()), position[0],
-                position[1], position[2], view.battery.message.voltage_v());
-  progress.update(static_cast<int>(status.item_index()), text);
+  std::snprintf(text, sizeof text, "%d/%d  %s  (%5.2f, %5.2f, %5.2f) m, %.2f V", state.mission.item,
+                state.mission.items, control::to_string(state.mode), position.x(), position.y(), position.z(),
+                state.battery_voltage_v);
+  progress.update(state.mission.item, text);
 }
 
-End follow(Client& client, const MissionFile& mission) {
+Ending follow(const Vehicle& vehicle, const Manoeuvre& flight) {
   const Interrupts interrupts;
   ProgressLine progress;
-  const std::uint64_t id = client.mission_id();
-  const auto ended = [id](const View& view) {
-    const auto state = view.mission.message.state();
-    return view.mission.message.mission_id() == id && (state == msg::MissionStatus_Constants::COMPLETED ||
-                                                       state == msg::MissionStatus_Constants::ABORTED);
-  };
-  while (!client.wait(kStep, ended)) {
-    const View view = client.view();
-    show(view, mission, progress);
-    if (interrupts.count() > 0) return {false, "no longer followed; the vehicle flies on"};
-    if (view.control.age_s(Clock::now()) > kSilenceS) return {false, "control has said nothing for 3 s"};
+  while (true) {
+    const Ending ending = flight.wait(kStep);
+    if (ending.kind != Ending::Kind::kTimedOut) return ending;
+    show(vehicle.state(), progress);
+    if (interrupts.count() > 0)
+      return {Ending::Kind::kInterrupted, "no longer followed; the vehicle flies on"};
   }
-  const View view = client.view();
-  if (view.mission.message.state() == msg::MissionStatus_Constants::COMPLETED) return {true, ""};
-  return {false, "aborted: " + std::string(view.mission.message.reason().c_str())};
 }
 
 int fly_mission(const Options& options) {
@@ -69,27 +52,24 @@ int fly_mission(const Options& options) {
       load_mission_file(configuration_file("missions", options.file), settings.limits);
   for (const std::string& assumption : mission.assumptions)
     std::fprintf(stderr, "%s: %s\n", mission.name.c_str(), assumption.c_str());
-  Client client(options.network);
-  if (options.link) client.stay();
-  Answer answer = client.upload(mission.mission, options.timeout());
-  if (answer.accepted()) {
-    answer =
-        client.mission_command(msg::Command_Constants::MISSION_START, client.mission_id(), options.timeout());
-  }
-  End end = {answer.accepted(), answer.reason};
-  if (answer.accepted() && !options.no_wait) end = follow(client, mission);
+  Vehicle vehicle(options.network);
+  if (options.link) vehicle.stay();
+  const Manoeuvre flight = vehicle.follow(mission.mission, options.timeout());
+  Ending end = {Ending::Kind::kNotAccepted, flight.answer().reason};
+  if (flight.accepted())
+    end = options.no_wait ? Ending{Ending::Kind::kCompleted, ""} : follow(vehicle, flight);
 
   if (options.json) {
-    nlohmann::ordered_json json = {{"mission", mission.name}, {"accepted", answer.accepted()}};
-    if (!options.no_wait) json["completed"] = end.completed;
-    if (!end.completed) json["reason"] = end.reason;
+    nlohmann::ordered_json json = {{"mission", mission.name}, {"accepted", flight.accepted()}};
+    if (!options.no_wait) json["completed"] = end.done();
+    if (!end.done()) json["reason"] = end.reason;
     std::printf("%s\n", json.dump().c_str());
-  } else if (end.completed) {
+  } else if (end.done()) {
     std::printf("%s: %s\n", mission.name.c_str(), options.no_wait ? "started" : "completed");
   }
-  if (!end.completed)
+  if (!end.done())
     std::fprintf(stderr, "swiftlet: mission %s: %s\n", mission.name.c_str(), end.reason.c_str());
-  return end.completed ? kDone : kFailed;
+  return end.done() ? kDone : kFailed;
 }
 
 }  // namespace

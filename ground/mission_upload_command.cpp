@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "ground/client.hpp"
 #include "ground/commands.hpp"
 #include "ground/installation.hpp"
 #include "ground/mission_file.hpp"
@@ -23,16 +22,16 @@ int upload(const Options& options) {
   const MissionFile file = load_mission_file(configuration_file("missions", options.file), settings.limits);
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
-  Client client(options.network);
-  const Answer answer = client.upload(file.mission, options.timeout());
+  Vehicle vehicle(options.network);
+  const Answer answer = vehicle.upload(file.mission, options.timeout()).answer();
   if (options.json) {
     nlohmann::ordered_json json = {{"mission", file.name}, {"accepted", answer.accepted()}};
-    if (answer.accepted()) json["mission_id"] = client.mission_id();
+    if (answer.accepted()) json["mission_id"] = vehicle.uploaded_id();
     if (!answer.accepted()) json["reason"] = answer.reason;
     std::printf("%s\n", json.dump().c_str());
   } else if (answer.accepted()) {
     std::printf("%s: %zu items are with %s, as mission %llu\n", file.name.c_str(), file.mission.items.size(),
-                options.network.vehicle.c_str(), static_cast<unsigned long long>(client.mission_id()));
+                options.network.vehicle.c_str(), static_cast<unsigned long long>(vehicle.uploaded_id()));
   }
   if (!answer.accepted())
     std::fprintf(stderr, "swiftlet: mission %s: %s\n", file.name.c_str(), answer.reason.c_str());

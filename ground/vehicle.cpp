@@ -96,6 +96,14 @@ VehicleState state_of(const View& view) {
     state.body_rates_frd = vector(estimate.body_rates_frd());
   }
   if (view.reference.seen()) state.reference_ned = vector(view.reference.message.position_ned());
+  if (view.mission.seen()) {
+    const msg::MissionStatus& mission = view.mission.message;
+    state.mission.id = mission.mission_id();
+    state.mission.state = static_cast<control::MissionState>(mission.state());
+    state.mission.items = static_cast<int>(mission.item_count());
+    state.mission.item = state.mission.items > 0 ? static_cast<int>(mission.item_index()) + 1 : 0;
+    state.mission.reason = mission.reason().c_str();
+  }
   if (view.battery.seen()) {
     state.battery_voltage_v = view.battery.message.voltage_v();
     state.battery_charge = view.battery.message.state_of_charge();
@@ -159,6 +167,13 @@ Manoeuvre Vehicle::land(double speed, milliseconds timeout) {
 
 Manoeuvre Vehicle::stop(milliseconds timeout) { return request(of_kind(RequestKind::kStop), timeout); }
 
+Manoeuvre Vehicle::upload(const control::Mission& mission, milliseconds timeout) {
+  return begin(
+      client_, [&](milliseconds within) { return client_->upload(mission, within); }, timeout, at_once);
+}
+
+std::uint64_t Vehicle::uploaded_id() const { return client_->mission_id(); }
+
 Manoeuvre Vehicle::follow(const control::Mission& mission, milliseconds timeout) {
   const auto ask = [&](milliseconds within) {
     const Answer uploaded = client_->upload(mission, within);
@@ -203,6 +218,10 @@ Manoeuvre Vehicle::follow(const control::Trajectory& trajectory, milliseconds ti
       client_, [&](milliseconds within) { return client_->upload(trajectory, within); }, timeout,
       until_trajectory_flown);
 }
+
+void Vehicle::stay() { client_->stay(); }
+
+void Vehicle::leave() { client_->leave(); }
 
 double Vehicle::clock_s() const {
   const View view = client_->view();

@@ -42,6 +42,15 @@ struct SetpointTally {
   std::string refusal;  // of the last that was refused: a sentence
 };
 
+// Of the mission that the vehicle has.
+struct MissionProgress {
+  std::uint64_t id = 0;
+  control::MissionState state = control::MissionState::kNone;
+  int item = 0;  // that is flown, from 1; 0 without a mission
+  int items = 0;
+  std::string reason;  // why it was aborted
+};
+
 // The newest of all that the vehicle and its controller have said. NaN where nothing came yet.
 struct VehicleState {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -59,6 +68,7 @@ struct VehicleState {
   Eigen::Vector3d reference_ned = Eigen::Vector3d::Constant(kUnknown);   // m, where it is to be
   double battery_voltage_v = kUnknown;
   double battery_charge = kUnknown;  // 0 empty .. 1 full
+  MissionProgress mission;
   SetpointTally setpoints;
 };
 
@@ -99,6 +109,9 @@ class Vehicle {
   Manoeuvre hold(std::chrono::milliseconds timeout = kAnswerTimeout);  // done: it has come to rest
   Manoeuvre land(double speed = 0.4, std::chrono::milliseconds timeout = kAnswerTimeout);
   Manoeuvre stop(std::chrono::milliseconds timeout = kAnswerTimeout);  // rotors off at once, wherever it is
+  // The vehicle keeps it, to be started: as mission uploaded_id().
+  Manoeuvre upload(const control::Mission& mission, std::chrono::milliseconds timeout = kAnswerTimeout);
+  std::uint64_t uploaded_id() const;
   // Uploads the mission and starts it.
   Manoeuvre follow(const control::Mission& mission, std::chrono::milliseconds timeout = kAnswerTimeout);
   // Of the mission that the vehicle has; refused if that is not of this id, 0: whichever it is. Starting, resuming
@@ -110,6 +123,11 @@ class Vehicle {
   Manoeuvre clear_mission(std::uint64_t id = 0, std::chrono::milliseconds timeout = kAnswerTimeout);
   // From hold, a setpoint stream or another trajectory; it is joined smoothly from the present motion.
   Manoeuvre follow(const control::Trajectory& trajectory, std::chrono::milliseconds timeout = kAnswerTimeout);
+
+  // From now on the flight depends on this program: if it falls silent, the controller does what its settings say
+  // (failsafe.ground_link_action). Until leave() or the end of this object. By one thread.
+  void stay();
+  void leave();
 
   // The vehicle's own clock, s, which a stream goes by: a simulation may be slower than real time. It stands
   // still 20 ms after the vehicle fell silent; NaN before it is heard.
