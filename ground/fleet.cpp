@@ -5,7 +5,7 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr std::chrono::milliseconds kGrace{3000};
+constexpr std::chrono::seconds kGrace{10};  // a busy machine may hold a process up for some seconds
 
 }  // namespace
 
