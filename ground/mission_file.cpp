@@ -20,7 +20,6 @@ using control::MissionItem;
 using control::MissionItemKind;
 using runtime::ConfigNode;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kLargestToleranceM = 10.0;
 constexpr int kMaxName = 64;
 
@@ -154,7 +153,7 @@ double planned_duration_s(const control::Mission& mission, const control::Limits
                                              limits.max_reference_jerk);
     double turn_s = 0.0;
     if (item.kind == MissionItemKind::kWaypoint && !item.yaw_free) {
-      turn_s = 15.0 / 8.0 * std::abs(std::remainder(item.yaw_rad - yaw, 2 * kPi)) / limits.max_yaw_rate;
+      turn_s = 15.0 / 8.0 * std::abs(std::remainder(item.yaw_rad - yaw, 2 * M_PI)) / limits.max_yaw_rate;
       yaw = item.yaw_rad;
     }
     duration_s += std::max(move_s, turn_s) + item.hold_s;

@@ -20,7 +20,6 @@ using control::MissionItem;
 using control::MissionItemKind;
 using runtime::ConfigNode;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kLongestHoldS = 3600.0;
 constexpr double kLargestRadiusM = 10.0;
 constexpr double kLeastCorridorM = 1e-3;  // half the width, as control/trajectory/waypoint_path.hpp has it
@@ -229,8 +228,8 @@ class Reader {
         point.position_ned = position(node.at("position_m"));
         if (const auto stop = node.find("stop")) point.stop = stop->boolean();
         if (const auto yaw = node.find("yaw_rad")) {
-          const double to = ned_yaw_from(frame_, yaw->number(runtime::between(-kPi, kPi)));
-          last = {false, last.free ? to : last.rad + std::remainder(to - last.rad, 2.0 * kPi)};
+          const double to = ned_yaw_from(frame_, yaw->number(runtime::between(-M_PI, M_PI)));
+          last = {false, last.free ? to : last.rad + std::remainder(to - last.rad, 2.0 * M_PI)};
         }
       }
       point.yaw_rad = last.rad;
@@ -303,7 +302,7 @@ class Reader {
   // A number of rad, or the word free.
   Yaw yaw_of(const ConfigNode& node) const {
     if (node.is_scalar() && node.text() == "free") return {};
-    return {false, ned_yaw_from(frame_, node.number(runtime::between(-kPi, kPi)))};
+    return {false, ned_yaw_from(frame_, node.number(runtime::between(-M_PI, M_PI)))};
   }
   Yaw yaw_or_default(const ConfigNode& node) const {
     const auto given = node.find("yaw_rad");
@@ -323,7 +322,7 @@ Eigen::Vector3d ned_from(MissionFrame frame, const Eigen::Vector3d& position) {
 }
 
 double ned_yaw_from(MissionFrame frame, double yaw) {
-  return frame == MissionFrame::kNed ? yaw : std::remainder(ned_yaw(yaw), 2 * kPi);
+  return frame == MissionFrame::kNed ? yaw : std::remainder(ned_yaw(yaw), 2 * M_PI);
 }
 
 void read_mission_items(const ConfigNode& list, MissionFrame frame, const control::Limits& limits,

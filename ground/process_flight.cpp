@@ -39,12 +39,12 @@ ProcessFlight::ProcessFlight(FlightPlan plan, comms::NodeSettings network)
   if (plan_.sensors) record_.sensors = std::make_unique<SensorRecord>(plan_.record_capacity());
   make_record_folder(plan_.folder);
   keep_settings(plan_);
-  fleet_.emplace(processes(plan_, network_));
+  processes_.emplace(processes(plan_, network_));
 }
 
 void ProcessFlight::fly(const Interrupts& interrupts, Together* together, Progress& progress) {
   fly_mission(interrupts, together, progress);
-  for (const std::string& complaint : fleet_->stop()) {
+  for (const std::string& complaint : processes_->stop()) {
     if (report_.reason.empty()) report_.reason = "after the flight, " + complaint;
   }
   judge(report_, record_, window_);
@@ -57,7 +57,7 @@ void ProcessFlight::fly_mission(const Interrupts& interrupts, Together* together
   Client client(network, &record_);
   const auto start = Clock::now();
   try {
-    const Flight::Watch watch{[this] { return fleet_->casualty(); }, [&] { return interrupts.count(); },
+    const Flight::Watch watch{[this] { return processes_->casualty(); }, [&] { return interrupts.count(); },
                               together};
     Flight(client, record_, plan_.mission, plan_.planned_duration_s, plan_.clock, watch, progress).run();
   } catch (const FlightFailure& failure) {

@@ -3,11 +3,11 @@
 
 #include <filesystem>
 
-#include "ground/fleet.hpp"
 #include "ground/flight_plan.hpp"
 #include "ground/flight_record.hpp"
 #include "ground/flight_report.hpp"
 #include "ground/interrupts.hpp"
+#include "ground/process_group.hpp"
 #include "ground/progress.hpp"
 #include "ground/together.hpp"
 #include "services/comms/node.hpp"
@@ -35,7 +35,7 @@ class ProcessFlight {
   FlightRecord record_;
   FlightReport report_;
   Window window_;
-  std::optional<Fleet> fleet_;
+  std::optional<ProcessGroup> processes_;
 };
 
 }  // namespace swiftlet::ground

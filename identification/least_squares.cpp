@@ -10,6 +10,8 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <ceres/ceres.h>
 
+#include "identification/minimise.hpp"
+
 namespace swiftlet::identification {
 
 namespace {
@@ -96,39 +98,10 @@ class WeightedCost final : public ceres::CostFunction {
   const VectorXd& root_weights_;
 };
 
-class CallOnIteration final : public ceres::IterationCallback {
- public:
-  explicit CallOnIteration(const std::function<void()>& call) : call_(call) {}
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
-    if (call_) call_();
-    return ceres::SOLVER_CONTINUE;
-  }
-
- private:
-  const std::function<void()>& call_;
-};
-
 // Least squares with these weights, from x on; returns whether it converged.
 bool minimise(ScaledProblem& problem, const VectorXd& root_weights, VectorXd& x) {
   WeightedCost cost(problem, root_weights);
-  ceres::Problem::Options ownership;
-  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::Problem ceres_problem(ownership);
-  ceres_problem.AddResidualBlock(&cost, nullptr, x.data());
-
-  CallOnIteration callback(problem.problem().on_iteration);
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.logging_type = ceres::SILENT;
-  options.num_threads = 1;
-  options.max_num_iterations = 100;
-  options.function_tolerance = 1e-14;
-  options.parameter_tolerance = 1e-11;
-  options.gradient_tolerance = 1e-14;
-  options.callbacks.push_back(&callback);
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &ceres_problem, &summary);
-  return summary.termination_type == ceres::CONVERGENCE && x.allFinite();
+  return identification::minimise(cost, Minimisation(), problem.problem().on_iteration, x);
 }
 
 // Gauss-Newton on as many rows as there are parameters, from the start on. False where it leads nowhere.
@@ -303,13 +276,6 @@ double condition_of(MatrixXd jacobian, const VectorXd& weights) {
 }
 
 }  // namespace
-
-double Fit::standard_error(Index i) const { return std::sqrt(std::max(covariance(i, i), 0.0)); }
-
-double Fit::correlation(Index i, Index j) const {
-  const double scale = standard_error(i) * standard_error(j);
-  return scale > 0.0 ? std::clamp(covariance(i, j) / scale, -1.0, 1.0) : 0.0;
-}
 
 bool Fit::is_outlier(std::size_t observation) const {
   return std::binary_search(outliers.begin(), outliers.end(), observation);

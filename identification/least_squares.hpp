@@ -8,6 +8,8 @@
 
 #include <Eigen/Core>
 
+#include "identification/estimated_parameters.hpp"
+
 namespace swiftlet::identification {
 
 // Residual of each observation, in units of the spread that its instruments are taken to have (a common
@@ -29,22 +31,17 @@ struct FitProblem {
   std::function<void()> on_iteration;  // may be empty; for fits that take long
 };
 
-struct Fit {
-  Eigen::VectorXd parameters;
-  // Heteroscedasticity-consistent (MacKinnon, White 1985, HC3): holds also where the spread is not the same
-  // everywhere.
-  Eigen::MatrixXd covariance;
+// The covariance is heteroscedasticity-consistent (MacKinnon, White 1985, HC3): it holds also where the spread is
+// not the same everywhere.
+struct Fit : EstimatedParameters {
   std::vector<double> residuals;      // of all observations, as the problem defines them
   std::vector<std::size_t> outliers;  // observations left out, rising
-  int degrees_of_freedom = 0;
-  double sigma = 0.0;  // standard deviation of the residuals without outliers
+  double sigma = 0.0;                 // standard deviation of the residuals without outliers
   double condition =
       0.0;  // of the Jacobian with columns of length 1; 1: parameters act apart, above 30: hardly
   double serial_correlation = 0.0;  // of neighbouring residuals, for time series
   bool converged = false;
 
-  double standard_error(Eigen::Index i) const;
-  double correlation(Eigen::Index i, Eigen::Index j) const;
   bool is_outlier(std::size_t observation) const;
 };
 

@@ -6,6 +6,8 @@
 #include <Eigen/QR>
 #include <ceres/ceres.h>
 
+#include "identification/minimise.hpp"
+
 namespace swiftlet::identification {
 namespace {
 
@@ -98,49 +100,19 @@ class WeighedProblem final : public ceres::CostFunction {
   mutable VectorXd below_;
 };
 
-class CallOnIteration final : public ceres::IterationCallback {
- public:
-  explicit CallOnIteration(const std::function<void()>& call) : call_(call) {}
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
-    if (call_) call_();
-    return ceres::SOLVER_CONTINUE;
-  }
-
- private:
-  const std::function<void()>& call_;
-};
-
-bool minimise(WeighedProblem& cost, const SeriesProblem& problem, VectorXd& x) {
-  ceres::Problem::Options ownership;
-  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::Problem ceres_problem(ownership);
-  ceres_problem.AddResidualBlock(&cost, nullptr, x.data());
-  for (Index i = 0; i < x.size(); ++i) {
-    ceres_problem.SetParameterLowerBound(x.data(), static_cast<int>(i), problem.low[i] / problem.scale[i]);
-    ceres_problem.SetParameterUpperBound(x.data(), static_cast<int>(i), problem.high[i] / problem.scale[i]);
-  }
-  CallOnIteration callback(problem.on_iteration);
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-  options.logging_type = ceres::SILENT;
-  options.num_threads = 1;
-  options.max_num_iterations = 50;
-  options.function_tolerance = 1e-7;
-  options.parameter_tolerance = 1e-5;
-  options.callbacks.push_back(&callback);
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &ceres_problem, &summary);
-  return summary.termination_type == ceres::CONVERGENCE && x.allFinite();
+Minimisation minimisation_of(const SeriesProblem& problem) {
+  Minimisation settings;
+  settings.linear_solver = ceres::DENSE_NORMAL_CHOLESKY;
+  settings.most_iterations = 50;
+  settings.function_tolerance = 1e-7;
+  settings.parameter_tolerance = 1e-5;
+  settings.gradient_tolerance = 1e-10;
+  settings.low = problem.low.cwiseQuotient(problem.scale);
+  settings.high = problem.high.cwiseQuotient(problem.scale);
+  return settings;
 }
 
 }  // namespace
-
-double SeriesFit::standard_error(Index i) const { return std::sqrt(std::max(covariance(i, i), 0.0)); }
-
-double SeriesFit::correlation(Index i, Index j) const {
-  const double scale = standard_error(i) * standard_error(j);
-  return scale > 0.0 ? std::clamp(covariance(i, j) / scale, -1.0, 1.0) : 0.0;
-}
 
 SeriesFit fit_series(const SeriesProblem& problem) {
   WeighedProblem cost(problem);
@@ -150,7 +122,7 @@ SeriesFit fit_series(const SeriesProblem& problem) {
   problem.residuals(problem.start, out.residuals);
   cost.weigh(out.residuals);
   for (int round = 0; round < kMostReweightings; ++round) {
-    out.converged = minimise(cost, problem, x);
+    out.converged = minimise(cost, minimisation_of(problem), problem.on_iteration, x);
     problem.residuals(x.cwiseProduct(problem.scale), out.residuals);
     if (cost.weigh(out.residuals) < kSettled) break;
   }

@@ -8,6 +8,8 @@
 
 #include <Eigen/Core>
 
+#include "identification/estimated_parameters.hpp"
+
 namespace swiftlet::identification {
 
 // A residual series: rows of one kind, as of one axis of the gyro.
@@ -29,18 +31,12 @@ struct SeriesProblem {
   std::function<void()> on_iteration;  // may be empty
 };
 
-struct SeriesFit {
-  Eigen::VectorXd parameters;
-  // Robust against correlation inside a stretch, between all channels (Liang, Zeger 1986), with the
-  // correction for few stretches.
-  Eigen::MatrixXd covariance;
-  int degrees_of_freedom = 0;          // stretches less parameters
+// The covariance is robust against correlation inside a stretch, between all channels (Liang, Zeger 1986), with
+// the correction for few stretches; the degrees of freedom are stretches less parameters.
+struct SeriesFit : EstimatedParameters {
   Eigen::VectorXd residuals;           // in the channels' units
   std::vector<double> channel_spread;  // standard deviation of each channel's residuals
   bool converged = false;
-
-  double standard_error(Eigen::Index i) const;
-  double correlation(Eigen::Index i, Eigen::Index j) const;
 };
 
 SeriesFit fit_series(const SeriesProblem& problem);

@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ground/fleet.hpp"
+#include "ground/process_group.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::ground {
@@ -104,10 +104,10 @@ TEST_F(ChildProcessTest, FleetNamesTheOneThatDied) {
   well.log_file = folder_ / "well.log";
   ProcessSettings ill = shell("echo out of luck; kill -SEGV $$");
   ill.name = "ill";
-  Fleet fleet({well, ill});
+  ProcessGroup processes({well, ill});
   const auto deadline = std::chrono::steady_clock::now() + 10s;
   std::optional<std::string> casualty;
-  while (!casualty && std::chrono::steady_clock::now() < deadline) casualty = fleet.casualty();
+  while (!casualty && std::chrono::steady_clock::now() < deadline) casualty = processes.casualty();
   EXPECT_EQ(casualty.value_or("none"),
             "ill was killed by signal 11 (Segmentation fault); it said last: out of luck");
 }
@@ -115,10 +115,10 @@ TEST_F(ChildProcessTest, FleetNamesTheOneThatDied) {
 TEST_F(ChildProcessTest, FleetSaysWhoDidNotEndCleanly) {
   ProcessSettings fails = shell("exit 3");
   fails.name = "fails";
-  Fleet fleet({fails});
+  ProcessGroup processes({fails});
   const auto deadline = std::chrono::steady_clock::now() + 10s;
-  while (!fleet.casualty() && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
-  const auto complaints = fleet.stop();
+  while (!processes.casualty() && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+  const auto complaints = processes.stop();
   ASSERT_EQ(complaints.size(), 1U);
   EXPECT_EQ(complaints.front(), "fails ended with exit status 3");
 }

@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 
 #include "control/supervision/checks.hpp"
-#include "ground/child_process.hpp"
 #include "ground/mission_plot.hpp"
 #include "services/runtime/control_settings_file.hpp"
 #include "services/runtime/vehicle_file.hpp"
@@ -154,7 +153,6 @@ TEST_F(MissionChecked, TheRehearsalFliesEverySegmentOfATrajectory) {
 }
 
 TEST_F(MissionChecked, IsDrawn) {
-  if (find_program("gnuplot").empty()) GTEST_SKIP() << "gnuplot is not installed";
   const tests::TemporaryFolder folder;
   const MissionFile file = load_mission_file(kConfig + "missions/tour.yaml", settings_.limits);
   const std::filesystem::path png = folder.path() / "tour.png";

@@ -1,4 +1,4 @@
-#include "ground/fleet.hpp"
+#include "ground/process_group.hpp"
 
 #include <csignal>
 
@@ -9,14 +9,14 @@ constexpr std::chrono::seconds kGrace{10};  // a busy machine may hold a process
 
 }  // namespace
 
-Fleet::Fleet(const std::vector<ProcessSettings>& processes) {
+ProcessGroup::ProcessGroup(const std::vector<ProcessSettings>& processes) {
   children_.reserve(processes.size());
   for (const ProcessSettings& process : processes) children_.emplace_back(process);
 }
 
-Fleet::~Fleet() { stop(); }
+ProcessGroup::~ProcessGroup() { stop(); }
 
-std::optional<std::string> Fleet::casualty() {
+std::optional<std::string> ProcessGroup::casualty() {
   for (ChildProcess& child : children_) {
     const auto end = child.poll();
     if (!end) continue;
@@ -26,7 +26,7 @@ std::optional<std::string> Fleet::casualty() {
   return std::nullopt;
 }
 
-std::vector<std::string> Fleet::stop() {
+std::vector<std::string> ProcessGroup::stop() {
   std::vector<std::string> complaints;
   for (ChildProcess& child : children_) child.signal(SIGTERM);
   const auto deadline = std::chrono::steady_clock::now() + kGrace;

@@ -10,14 +10,14 @@
 
 namespace swiftlet::ground {
 
-class Fleet {
+class ProcessGroup {
  public:
   // Starts them in this order. Throws std::runtime_error if one cannot be started; those before it are ended.
-  explicit Fleet(const std::vector<ProcessSettings>& processes);
+  explicit ProcessGroup(const std::vector<ProcessSettings>& processes);
   // Ends what still runs: SIGTERM to all, SIGKILL to those that do not end in time.
-  ~Fleet();
-  Fleet(const Fleet&) = delete;
-  Fleet& operator=(const Fleet&) = delete;
+  ~ProcessGroup();
+  ProcessGroup(const ProcessGroup&) = delete;
+  ProcessGroup& operator=(const ProcessGroup&) = delete;
 
   // The first that has ended, as a sentence: who, how, and what it said last.
   std::optional<std::string> casualty();
