@@ -62,6 +62,7 @@ int run_process(const ProgramText& text, int argc, char** argv,
     } catch (const CLI::ParseError& error) {
       return app.exit(error) == 0 ? 0 : kBadInput;
     }
+    limit_thread_stacks();
     body();
     return 0;
   } catch (const ConfigError& error) {

@@ -29,6 +29,14 @@ void add(std::string& refusals, const std::string& refusal) {
 
 }  // namespace
 
+void limit_thread_stacks() {
+  constexpr std::size_t kStackBytes = std::size_t{1} << 20;
+  pthread_attr_t attributes;
+  if (pthread_getattr_default_np(&attributes) != 0) return;
+  if (pthread_attr_setstacksize(&attributes, kStackBytes) == 0) pthread_setattr_default_np(&attributes);
+  pthread_attr_destroy(&attributes);
+}
+
 std::string lock_memory() {
   if (!may_lock_without_limit()) return "memory is not locked (RLIMIT_MEMLOCK is limited)";
   if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0)
