@@ -9,6 +9,9 @@
 namespace swiftlet::identification {
 namespace {
 
+constexpr double kLift = 1.5;  // m/s^2 by which the specific force differs from g, smoothed, in a lift-off
+constexpr double kSmoothingS = 0.05;
+constexpr double kAfterLiftS = 0.3;  // until the legs are well off the ground
 constexpr double kBeforeBlowS = 0.3;
 constexpr double kLongestPauseS =
     1.0;  // of rotors without command that is still flight: a fall between two pushes
@@ -34,6 +37,17 @@ Rows running_rows(const FlightLog& log) {
   return best;
 }
 
+// Where the vehicle is well off the ground it rose from, by the specific force alone.
+std::size_t lift_off(const FlightLog& log, const Rows& running) {
+  double smoothed = plant::kGravity;
+  for (std::size_t i = running.first + 1; i < running.last; ++i) {
+    const double h = log.time_s[i] - log.time_s[i - 1];
+    smoothed += std::min(h / kSmoothingS, 1.0) * (log.specific_force_frd[i].norm() - smoothed);
+    if (std::abs(smoothed - plant::kGravity) > kLift) return row_at(log, log.time_s[i] + kAfterLiftS);
+  }
+  return running.last;
+}
+
 Rows above_ground(const FlightLog& log, const Rows& running) {
   const double start_s = log.time_s[running.first];
   const auto first = std::lower_bound(log.poses.begin(), log.poses.end(), start_s,
@@ -52,13 +66,19 @@ Rows above_ground(const FlightLog& log, const Rows& running) {
   return rows;
 }
 
+Rows airborne(const FlightLog& log, const Rows& running) {
+  if (!log.poses.empty()) return above_ground(log, running);
+  const Rows rows{lift_off(log, running), row_at(log, log.time_s[running.last - 1] - kLandingS)};
+  return {std::min(rows.first, rows.last), rows.last};
+}
+
 }  // namespace
 
 FlightWindow find_flight(const FlightLog& log, const FlightBounds& bounds) {
   const Rows running = running_rows(log);
   if (running.size() == 0) throw BadData("the rotors never ran");
   FlightWindow out;
-  out.flight = above_ground(log, running);
+  out.flight = airborne(log, running);
   if (bounds.from_s) out.flight.first = row_at(log, *bounds.from_s);
   if (bounds.until_s) out.flight.last = row_at(log, *bounds.until_s);
   for (std::size_t i = out.flight.first; i < out.flight.last; ++i) {
