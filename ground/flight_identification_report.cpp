@@ -67,10 +67,11 @@ CaptionedFigure prediction_figure(const FlightIdentification& found, int quantit
   figure.height = 300;
   figure.series = {measured, predicted};
   const bool by_noise_too = found.source == SpeedSource::kCommanded;
-  return {quantity < 3 || by_noise_too
-              ? format("From what was measured, anew every %g s, by the commands alone", found.trace.restart_s)
-              : "By the commands alone",
-          figure};
+  return {
+      quantity < 3 || by_noise_too
+          ? format("From what was measured, anew every %g s, by the commands alone", found.trace.restart_s)
+          : "By the commands alone",
+      figure};
 }
 
 CaptionedFigure thrust_figure(const FlightIdentification& found) {
@@ -126,11 +127,11 @@ std::string comparison_table(const FlightIdentification& found) {
 
 std::string horizon_table(const FlightIdentification& found) {
   if (found.horizons.empty()) return "";
-  std::string out =
-      format("  %-30s %12s %12s %12s  %s\n", "by the commands alone, RMS", "ahead, s", "error", "unchanged", "unit");
+  std::string out = format("  %-30s %12s %12s %12s  %s\n", "by the commands alone, RMS", "ahead, s", "error",
+                           "unchanged", "unit");
   for (const HorizonError& e : found.horizons) {
-    out += format("  %-30s %12.4g %12.4g %12.4g  %s\n", e.quantity.c_str(), e.horizon_s, e.by_commands, e.idle,
-                  e.unit.c_str());
+    out += format("  %-30s %12.4g %12.4g %12.4g  %s\n", e.quantity.c_str(), e.horizon_s, e.by_commands,
+                  e.idle, e.unit.c_str());
   }
   return out;
 }
@@ -141,7 +142,8 @@ std::string comparison_html(const FlightIdentification& found) {
       "<h2>Beside the vehicle file</h2>\n<table><tr><th>parameter</th><th>symbol</th><th>by the log</th>"
       "<th>&plusmn; (95 %)</th><th>file</th><th>ratio</th><th>unit</th></tr>\n";
   for (const FileComparison& row : found.comparisons) {
-    out += "<tr><td>" + html_escaped(row.told.parameter) + "</td><td>" + html_escaped(row.told.symbol) + "</td>";
+    out +=
+        "<tr><td>" + html_escaped(row.told.parameter) + "</td><td>" + html_escaped(row.told.symbol) + "</td>";
     for (const double value : {row.told.value, row.told.half_width, row.file, row.ratio()})
       out += format("<td class=\"n\">%.4g</td>", value);
     out += "<td>" + html_unit(row.told.unit) + "</td></tr>\n";
@@ -217,7 +219,10 @@ std::string flight_identification_json(const FlightIdentificationReport& report)
   if (found.source == SpeedSource::kCommanded) {
     Json lags = Json::array();
     for (const Estimate& e : found.lags)
-      lags.push_back({{"response", e.parameter}, {"value", e.value}, {"interval_95", {e.low(), e.high()}}, {"unit", e.unit}});
+      lags.push_back({{"response", e.parameter},
+                      {"value", e.value},
+                      {"interval_95", {e.low(), e.high()}},
+                      {"unit", e.unit}});
     Json comparisons = Json::array();
     for (const FileComparison& row : found.comparisons) {
       comparisons.push_back({{"parameter", row.told.parameter},
@@ -279,7 +284,13 @@ std::string flight_identification_html(const FlightIdentificationReport& report)
       out += format("<td class=\"n\">%.4g</td>", value);
     out += "<td>" + html_unit(e.unit) + "</td></tr>\n";
   }
-  out += "</table>\n<div class=\"figures\">\n";
+  out += "</table>\n";
+  if (found.step_s > 0.0)
+    out += format(
+        "<p class=\"quiet\">One step is %.4g s; half a second ahead: the best sum, by the fitted part, of "
+        "what the commands ask for, the value at the start and the mean</p>\n",
+        found.step_s);
+  out += "<div class=\"figures\">\n";
   const char* const labels[4] = {"p (rad/s)", "q (rad/s)", "r (rad/s)", "specific force along z (m/s^2)"};
   for (int i = 0; i < 4; ++i) {
     const CaptionedFigure figure = prediction_figure(found, i, labels[i]);

@@ -32,7 +32,7 @@ std::vector<double> innovations(const ColouredNoise& noise, const std::vector<do
 std::vector<double> expected_noise(const ColouredNoise& noise, const std::vector<double>& series,
                                    const std::vector<double>& innovations, std::size_t known,
                                    std::size_t ahead) {
-  std::array<double, kNoiseOrder> past{};     // of the series, the newest first
+  std::array<double, kNoiseOrder> past{};      // of the series, the newest first
   std::array<double, kNoiseOrder> surprise{};  // of the innovations, likewise
   for (std::size_t i = 0; i < kNoiseOrder; ++i) {
     past[i] = before(series, known, i + 1);

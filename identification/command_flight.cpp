@@ -31,7 +31,8 @@ struct CommandFit {
 
 CommandFit fit_responses(const std::vector<FlightSeries>& flights, const plant::Vehicle& base,
                          std::vector<Response> responses, std::optional<ThrustCurve> curve,
-                         const std::vector<const CommandFit*>& before, const std::function<void()>& progress) {
+                         const std::vector<const CommandFit*>& before,
+                         const std::function<void()>& progress) {
   CommandFit out;
   out.model = std::make_unique<CommandModel>(flights, base, std::move(responses), curve);
   SeriesProblem problem = out.model->problem(progress);
@@ -55,7 +56,7 @@ std::vector<CommandFit> fit_alone(const std::vector<FlightSeries>& flights, cons
 Estimate lag_of(const CommandFit& alone) {
   const Index lag = alone.model->layout().lag;
   const double error = alone.fit.standard_error(lag);
-  return {response_name(alone.model->responses().front()), "tau_m", "s", alone.x()[lag], error,
+  return {response_name(alone.model->responses().front()),      "tau_m", "s", alone.x()[lag], error,
           interval_factor(alone.fit.degrees_of_freedom) * error};
 }
 
@@ -140,12 +141,10 @@ std::vector<Derived> derived(const CommandModel& model) {
                    [gain, lever, &base](const VectorXd& x) { return base.mass_kg * lever / x[gain]; }});
   }
   // A thrust T through (x, y) gives the moment (-y T, x T).
-  out.push_back({"thrust_centre.x", "r_x", "m", [&l, &model](const VectorXd& x) {
-                   return x[l.trim[1]] / x[l.gain[1]] * model.lever(1);
-                 }});
-  out.push_back({"thrust_centre.y", "r_y", "m", [&l, &model](const VectorXd& x) {
-                   return -x[l.trim[0]] / x[l.gain[0]] * model.lever(0);
-                 }});
+  out.push_back({"thrust_centre.x", "r_x", "m",
+                 [&l, &model](const VectorXd& x) { return x[l.trim[1]] / x[l.gain[1]] * model.lever(1); }});
+  out.push_back({"thrust_centre.y", "r_y", "m",
+                 [&l, &model](const VectorXd& x) { return -x[l.trim[0]] / x[l.gain[0]] * model.lever(0); }});
   return out;
 }
 
@@ -153,7 +152,9 @@ const Estimate& named(const FlightIdentification& found, const std::string& para
   return *found.find(parameter);
 }
 
-std::string with_interval(const Estimate& e) { return shown(e.value) + " +- " + shown(e.half_width) + " " + e.unit; }
+std::string with_interval(const Estimate& e) {
+  return shown(e.value) + " +- " + shown(e.half_width) + " " + e.unit;
+}
 
 void compare_with_file(FlightIdentification& out, const CommandModel& model) {
   const plant::Vehicle& base = model.base();
@@ -202,10 +203,11 @@ void tell_of_lags(FlightIdentification& out, const Agreement& lags) {
   for (const Estimate& lag : out.lags)
     sentence += (&lag == &out.lags.front() ? "" : ", ") + with_interval(lag) + " by " + lag.parameter;
   if (lags.ratio > kAtOdds) {
-    out.warnings.push_back(sentence + "; they differ " + shown(lags.ratio) +
-                           " times as much as their intervals allow: rotors with one lag do not describe this "
-                           "flight, and the interval of tau_m, with those of all that hangs together with it, is "
-                           "widened to that");
+    out.warnings.push_back(
+        sentence + "; they differ " + shown(lags.ratio) +
+        " times as much as their intervals allow: rotors with one lag do not describe this "
+        "flight, and the interval of tau_m, with those of all that hangs together with it, is "
+        "widened to that");
   } else {
     out.findings.push_back(sentence);
   }
@@ -220,13 +222,19 @@ void tell_of_delays(FlightIdentification& out, const CommandFit& all) {
 }
 
 void tell_of_forecasts(FlightIdentification& out, const CommandPredictions& predictions) {
+  std::string quantities;
+  std::string weights;
   for (std::size_t i = 0; i < predictions.errors.size(); ++i) {
-    if (predictions.weight_of_commands[i] > kOfLittleUse) continue;
-    out.findings.push_back("half a second ahead the commands say little of " + predictions.errors[i].quantity +
-                           ": what disturbs the vehicle, and its controller's answer to it, weigh more; the "
-                           "forecast takes " +
-                           shown(predictions.weight_of_commands[i]) + " of the change that they ask for");
+    const double weight = predictions.weight_of_commands[i];
+    if (weight > kOfLittleUse) continue;
+    quantities += (quantities.empty() ? "" : ", ") + predictions.errors[i].quantity;
+    weights += (weights.empty() ? "" : ", ") + shown(weight);
   }
+  if (quantities.empty()) return;
+  out.findings.push_back("half a second ahead the commands say little of " + quantities +
+                         ": what disturbs the vehicle, and its controller's answer to it, weigh more; the "
+                         "forecast takes " +
+                         weights + " of the change that they ask for");
 }
 
 }  // namespace
@@ -250,8 +258,10 @@ void identify_commands(FlightIdentification& out, std::vector<FlightSeries> flig
   out.estimates = estimates_of(quantities, values, all.fit.degrees_of_freedom);
   conclude_vehicle(out, values, base, advice);
   out.unexcited.emplace_back(
-      "mass, rotor.thrust_factor, rotor.torque_factor, linear_drag and the accelerometer's offset: a log without "
-      "poses and supply voltage does not tell them; moments of inertia are those that the mass and levers of " +
+      "mass, rotor.thrust_factor, rotor.torque_factor, linear_drag and the accelerometer's offset: a log "
+      "without "
+      "poses and supply voltage does not tell them; moments of inertia are those that the mass and levers "
+      "of " +
       base.name + " make of m d/J");
   compare_with_file(out, *all.model);
   draw_thrust(out, all);

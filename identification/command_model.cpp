@@ -11,8 +11,8 @@ using Eigen::Index;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double kSettlingS = 0.3;      // of the noise's filters, whose past is not known
-constexpr double kLeastThrust = 1e-3;   // m/s^2 of one rotor, where the curve falls below
+constexpr double kSettlingS = 0.3;     // of the noise's filters, whose past is not known
+constexpr double kLeastThrust = 1e-3;  // m/s^2 of one rotor, where the curve falls below
 constexpr double kMostReflection = 0.9995;
 // What wanders slower than about half a second is left to the curve and its drift.
 constexpr double kMostForceReflection = 0.99;
@@ -28,8 +28,8 @@ Rows rows_of(const FlightSeries& series) { return {series.fitted.first, series.k
 
 std::size_t rows_in_block(const FlightSeries& series) {
   const std::vector<double>& time = series.log->time_s;
-  const double step = (time[series.fitted.last - 1] - time[series.fitted.first]) /
-                      static_cast<double>(series.fitted.size());
+  const double step =
+      (time[series.fitted.last - 1] - time[series.fitted.first]) / static_cast<double>(series.fitted.size());
   return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kSampleS / step)));
 }
 
@@ -134,10 +134,12 @@ void CommandModel::lay_out() {
     const int axis = axis_of(response);
     const std::string name = response_name(response);
     const double by_base = base_.mass_kg * lever(axis) / base_.inertia(axis, axis);
-    l.gain[axis] = add({"gain about " + name, "1/m", by_base, 0.1 * by_base, -100.0 * by_base, 100.0 * by_base});
+    l.gain[axis] =
+        add({"gain about " + name, "1/m", by_base, 0.1 * by_base, -100.0 * by_base, 100.0 * by_base});
     l.trim[axis] = add({"offset of the thrust, " + name, "1/m", 0.0, 0.02 * by_base, -by_base, by_base});
     if (response == Response::kYaw)
-      l.spin_up = add({"spin-up about yaw", "(s^2/m)^(1/2)/s", 0.0, 0.03 * by_base, -10.0 * by_base, 10.0 * by_base});
+      l.spin_up =
+          add({"spin-up about yaw", "(s^2/m)^(1/2)/s", 0.0, 0.03 * by_base, -10.0 * by_base, 10.0 * by_base});
   }
   for (const Response response : responses_) add_noise(response);
 }
@@ -158,7 +160,8 @@ BlockedFlight CommandModel::blocked(const FlightSeries& series) const {
     out.means[i + 1] =
         block_means(out, [&](std::size_t row) { return log.body_rates_frd[rows.first + row][axis]; });
     out.coupling[i] = block_gains(out, log.time_s.data() + rows.first, [&](std::size_t row) {
-      return FlightModel::rate_derivative(inertia, Vector3d::Zero(), log.body_rates_frd[rows.first + row])[axis];
+      return FlightModel::rate_derivative(inertia, Vector3d::Zero(),
+                                          log.body_rates_frd[rows.first + row])[axis];
     });
   }
   return out;
@@ -215,8 +218,8 @@ CommandModel::Rotors CommandModel::computed_rotors(std::size_t flight, const Thr
   out.thrust = block_means(blocks, [&](std::size_t row) { return sums[row][0]; });
   out.gained = block_gains(blocks, time, [&](std::size_t row) { return sums[row][0]; });
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    out.turn[axis] = block_gains(
-        blocks, time, [&](std::size_t row) { return sums[row][static_cast<Index>(axis) + 1]; });
+    out.turn[axis] =
+        block_gains(blocks, time, [&](std::size_t row) { return sums[row][static_cast<Index>(axis) + 1]; });
   }
   out.spin_up = block_means(blocks, [&](std::size_t row) { return signed_speed[row]; });
   make_gains(out.spin_up);
@@ -256,7 +259,8 @@ std::vector<double> CommandModel::modelled(const VectorXd& x, std::size_t flight
   return out;
 }
 
-std::vector<double> CommandModel::unexplained(const VectorXd& x, std::size_t flight, Response response) const {
+std::vector<double> CommandModel::unexplained(const VectorXd& x, std::size_t flight,
+                                              Response response) const {
   std::vector<double> out = blocks_[flight].means[index_of(response)];
   if (response != Response::kForce) make_gains(out);
   const std::vector<double> by_model = modelled(x, flight, response);
@@ -311,12 +315,14 @@ void CommandModel::residuals(const VectorXd& x, VectorXd& out) const {
   }
 }
 
-VectorXd started_from(const CommandModel& from, const VectorXd& values, const CommandModel& to, VectorXd start) {
+VectorXd started_from(const CommandModel& from, const VectorXd& values, const CommandModel& to,
+                      VectorXd start) {
   const std::vector<FlightParameter>& theirs = from.layout().parameters;
   const std::vector<FlightParameter>& ours = to.layout().parameters;
   for (std::size_t i = 0; i < ours.size(); ++i) {
-    const auto same = std::find_if(theirs.begin(), theirs.end(),
-                                   [&](const FlightParameter& parameter) { return parameter.name == ours[i].name; });
+    const auto same = std::find_if(theirs.begin(), theirs.end(), [&](const FlightParameter& parameter) {
+      return parameter.name == ours[i].name;
+    });
     if (same != theirs.end()) start[static_cast<Index>(i)] = values[same - theirs.begin()];
   }
   return start;

@@ -103,7 +103,8 @@ class CommandModel {
   double lever(int axis) const { return lever_[static_cast<std::size_t>(axis)]; }
 
   // What the model has of each block: of the force its value, of a rate what it gains since the block before.
-  std::vector<double> modelled(const Eigen::VectorXd& parameters, std::size_t flight, Response response) const;
+  std::vector<double> modelled(const Eigen::VectorXd& parameters, std::size_t flight,
+                               Response response) const;
   // What was measured, in the same sense, less that: the noise.
   std::vector<double> unexplained(const Eigen::VectorXd& parameters, std::size_t flight,
                                   Response response) const;

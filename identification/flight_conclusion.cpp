@@ -75,8 +75,8 @@ std::vector<Estimate> estimates_of(const std::vector<Derived>& quantities, const
   for (std::size_t i = 0; i < quantities.size(); ++i) {
     const auto at = static_cast<Index>(i);
     const double error = std::sqrt(std::max(values.covariance(at, at), 0.0));
-    out.push_back({quantities[i].parameter, quantities[i].symbol, quantities[i].unit, values.values[at], error,
-                   factor * error});
+    out.push_back({quantities[i].parameter, quantities[i].symbol, quantities[i].unit, values.values[at],
+                   error, factor * error});
   }
   return out;
 }
@@ -109,7 +109,8 @@ void conclude_vehicle(FlightIdentification& out, const DerivedValues& values, co
     out.uncertainty.parameters.push_back(
         {estimate.parameter, estimate.standard_error, estimate.low(), estimate.high()});
     out.sources[estimate.parameter] = "identified from " + std::to_string(out.windows.size()) +
-                                      (out.windows.size() == 1 ? " flight" : " flights") + ", +- " + share_text(estimate);
+                                      (out.windows.size() == 1 ? " flight" : " flights") + ", +- " +
+                                      share_text(estimate);
     written.push_back(static_cast<Index>(i));
   }
   for (std::size_t a = 0; a < written.size(); ++a) {

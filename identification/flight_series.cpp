@@ -148,8 +148,9 @@ std::vector<FlightSeries> prepare_flights(const std::vector<FlightLog>& logs, co
       throw BadData(log.name + ": " + fault.what(), fault.row());
     }
     if (out.back().source == out.front().source) continue;
-    throw BadData(log.name + " and " + logs.front().name +
-                  " do not hold the same: poses, supply voltage and rotor speeds must each be in all logs or in none");
+    throw BadData(
+        log.name + " and " + logs.front().name +
+        " do not hold the same: poses, supply voltage and rotor speeds must each be in all logs or in none");
   }
   return out;
 }

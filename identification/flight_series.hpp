@@ -16,8 +16,8 @@ namespace swiftlet::identification {
 
 // Where the rotors' speeds are from.
 enum class SpeedSource {
-  kMeasured,  // by the vehicle
-  kModelled,  // from command and supply voltage by Eq. (9), (22) and (18) with the base vehicle's numbers
+  kMeasured,   // by the vehicle
+  kModelled,   // from command and supply voltage by Eq. (9), (22) and (18) with the base vehicle's numbers
   kCommanded,  // neither: poses or supply voltage were not recorded, and the command is all there is
 };
 

@@ -38,7 +38,8 @@ inline plant::Vehicle another(const plant::Vehicle& nominal, std::uint64_t seed)
   return out;
 }
 
-inline identification::FlightLog flown(const FlightPlan& plan, const plant::Vehicle& truth, std::uint64_t seed) {
+inline identification::FlightLog flown(const FlightPlan& plan, const plant::Vehicle& truth,
+                                       std::uint64_t seed) {
   ClosedLoop loop(truth, plan.vehicle, plan.simulation, plan.control, seed);
   SensorRecord record(plan.record_capacity());
   loop.sensors = &record;

@@ -42,7 +42,8 @@ TEST(ColouredNoise, IsStableForAllReflectionsBelowOne) {
   for (double first = -0.99; first < 1.0; first += 0.06) {
     for (double second = -0.99; second < 1.0; second += 0.06) {
       const double reflection[kNoiseParameters] = {first, second, second, first};
-      for (const auto& polynomial : {coloured_noise(reflection).numerator, coloured_noise(reflection).denominator}) {
+      for (const auto& polynomial :
+           {coloured_noise(reflection).numerator, coloured_noise(reflection).denominator}) {
         EXPECT_LT(std::abs(polynomial[1]), 1.0);
         EXPECT_LT(std::abs(polynomial[0]), 1.0 + polynomial[1]);
       }
