@@ -124,8 +124,8 @@ TEST(CommandFlight, OfARealVehicle) {
     EXPECT_LT(found.find(gain)->half_width, 0.3 * found.find(gain)->value) << gain;
   }
   const Estimate& hover = *found.find("thrust_per_mass.hover_command");
-  EXPECT_NEAR(hover.value, 0.6, 0.06);
-  EXPECT_LT(hover.half_width, 0.05);
+  EXPECT_NEAR(hover.value, 0.64, 0.02);
+  EXPECT_LT(hover.half_width, 0.02);
   for (const identification::PredictionError& error : found.errors) {
     EXPECT_LT(error.half_second, 0.75 * error.idle_half_second) << error.quantity;
     EXPECT_LT(error.one_step,
