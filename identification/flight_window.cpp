@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "identification/estimate.hpp"
 #include "plant/model/vehicle.hpp"
@@ -9,7 +10,7 @@
 namespace swiftlet::identification {
 namespace {
 
-constexpr double kLift = 1.5;  // m/s^2 by which the specific force differs from g, smoothed, in a lift-off
+constexpr double kCarrying = 0.9;  // of the median command: what lifts the vehicle
 constexpr double kSmoothingS = 0.05;
 constexpr double kAfterLiftS = 0.3;  // until the legs are well off the ground
 constexpr double kBeforeBlowS = 0.3;
@@ -37,15 +38,35 @@ Rows running_rows(const FlightLog& log) {
   return best;
 }
 
-// Where the vehicle is well off the ground it rose from, by the specific force alone.
-std::size_t lift_off(const FlightLog& log, const Rows& running) {
-  double smoothed = plant::kGravity;
-  for (std::size_t i = running.first + 1; i < running.last; ++i) {
-    const double h = log.time_s[i] - log.time_s[i - 1];
-    smoothed += std::min(h / kSmoothingS, 1.0) * (log.specific_force_frd[i].norm() - smoothed);
-    if (std::abs(smoothed - plant::kGravity) > kLift) return row_at(log, log.time_s[i] + kAfterLiftS);
+// Mean command of the rotors, smoothed.
+std::vector<double> smoothed_commands(const FlightLog& log, const Rows& rows) {
+  std::vector<double> out(rows.size(), 0.0);
+  double smoothed = 0.0;
+  for (std::size_t i = 1; i < out.size(); ++i) {
+    const std::size_t row = rows.first + i;
+    double mean = 0.0;
+    for (int rotor = 0; rotor < log.rotor_count; ++rotor)
+      mean += log.command[row][static_cast<std::size_t>(rotor)] / log.rotor_count;
+    const double h = log.time_s[row] - log.time_s[row - 1];
+    out[i] = smoothed += std::min(h / kSmoothingS, 1.0) * (mean - smoothed);
   }
-  return running.last;
+  return out;
+}
+
+// Between the first and the last command that carries the vehicle; most of the time it is carried.
+Rows carried(const FlightLog& log, const Rows& running) {
+  const std::vector<double> commands = smoothed_commands(log, running);
+  std::vector<double> sorted = commands;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double carrying = kCarrying * *middle;
+  const auto carries = [&](double command) { return command >= carrying; };
+  const auto first = std::find_if(commands.begin(), commands.end(), carries);
+  const auto last = std::find_if(commands.rbegin(), commands.rend(), carries);
+  const auto row = [&](std::ptrdiff_t i) { return running.first + static_cast<std::size_t>(i); };
+  const Rows rows{row_at(log, log.time_s[row(first - commands.begin())] + kAfterLiftS),
+                  row_at(log, log.time_s[row(commands.rend() - last - 1)] - kLandingS)};
+  return {rows.first, std::max(rows.first, rows.last)};
 }
 
 Rows above_ground(const FlightLog& log, const Rows& running) {
@@ -67,9 +88,7 @@ Rows above_ground(const FlightLog& log, const Rows& running) {
 }
 
 Rows airborne(const FlightLog& log, const Rows& running) {
-  if (!log.poses.empty()) return above_ground(log, running);
-  const Rows rows{lift_off(log, running), row_at(log, log.time_s[running.last - 1] - kLandingS)};
-  return {std::min(rows.first, rows.last), rows.last};
+  return log.poses.empty() ? carried(log, running) : above_ground(log, running);
 }
 
 }  // namespace

@@ -28,8 +28,8 @@ struct FlightBounds {
 };
 
 // In the air is, with poses, what is more than kAirborneHeightM above where the rotors were started; without,
-// what follows the first lift after their start, up to kLandingS before they stop. A blow of more than kBlow
-// ends the flight before it. Throws BadData if less than kShortestFlightS is left.
+// what lies between the first and the last command that is about the median one, less kLandingS. A blow of
+// more than kBlow ends the flight before it. Throws BadData if less than kShortestFlightS is left.
 FlightWindow find_flight(const FlightLog& log, const FlightBounds& bounds);
 
 constexpr double kAirborneHeightM = 0.1;
