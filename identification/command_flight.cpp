@@ -132,14 +132,6 @@ std::vector<Derived> derived(const CommandModel& model) {
   out.push_back({"lead.yaw", "T_z", "s", [&l, rotors](const VectorXd& x) {
                    return 0.5 * x[l.spin_up] / (x[l.gain[2]] * std::sqrt(plant::kGravity / rotors));
                  }});
-  const char* const inertias[3] = {"inertia.xx", "inertia.yy", "inertia.zz"};
-  const char* const symbols[3] = {"J_xx", "J_yy", "J_zz"};
-  for (int axis = 0; axis < 3; ++axis) {
-    const int gain = l.gain[axis];
-    const double lever = model.lever(axis);
-    out.push_back({inertias[axis], symbols[axis], "kg*m^2",
-                   [gain, lever, &base](const VectorXd& x) { return base.mass_kg * lever / x[gain]; }});
-  }
   // A thrust T through (x, y) gives the moment (-y T, x T).
   out.push_back({"thrust_centre.x", "r_x", "m",
                  [&l, &model](const VectorXd& x) { return x[l.trim[1]] / x[l.gain[1]] * model.lever(1); }});
@@ -190,13 +182,7 @@ void draw_thrust(FlightIdentification& out, const CommandFit& all) {
   }
 }
 
-// What would tell it.
-std::string advice(const std::string& parameter) {
-  if (parameter == "inertia.xx") return "fly quick moves sideways";
-  if (parameter == "inertia.yy") return "fly quick moves forward and back";
-  if (parameter == "inertia.zz") return "turn about yaw, quickly";
-  return "fly quick moves, up and down too";
-}
+std::string advice(const std::string& /*parameter*/) { return "fly quick moves, up and down too"; }
 
 void tell_of_lags(FlightIdentification& out, const Agreement& lags) {
   std::string sentence = "the rotors' lag by itself: ";
@@ -258,11 +244,14 @@ void identify_commands(FlightIdentification& out, std::vector<FlightSeries> flig
   out.estimates = estimates_of(quantities, values, all.fit.degrees_of_freedom);
   conclude_vehicle(out, values, base, advice);
   out.unexcited.emplace_back(
-      "mass, rotor.thrust_factor, rotor.torque_factor, linear_drag and the accelerometer's offset: a log "
-      "without "
-      "poses and supply voltage does not tell them; moments of inertia are those that the mass and levers "
-      "of " +
-      base.name + " make of m d/J");
+      "mass, inertia, rotor.thrust_factor, rotor.torque_factor, linear_drag and the accelerometer's offset: "
+      "a log "
+      "without poses and supply voltage does not tell them");
+  out.findings.emplace_back(
+      "thrust by command is that of all rotors together, under which the supply sags; turning it does not, "
+      "so that "
+      "m d/J comes out too large by the ratio of the two, about a tenth on one cell, which its interval does "
+      "not hold");
   compare_with_file(out, *all.model);
   draw_thrust(out, all);
   tell_of_lags(out, lags);
