@@ -181,6 +181,31 @@ TEST_F(EstimatorFaults, MarkersThatSwapWhileTheImuIsSilentAreNotBelieved) {
   EXPECT_EQ(fly(0.5), PoseFault::kNone);
 }
 
+// The silence is no excuse: by what it may hide, the turn alone would pass for a motion.
+TEST_F(EstimatorFaults, ATurnOfThePosesInASilenceOfTheImuIsNotBelieved) {
+  const Change turned = [](PoseSample& pose) {
+    pose.position_ned.x() += 0.03;
+    pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(0.2, Vector3d(0.6, 0.8, 0.0));
+  };
+  for (const int last_true_frame : {0, 12, 23}) {
+    estimator_ = Estimator(settings_);
+    fly(3.0);
+    for (int frame = 1; frame <= 24; ++frame) {
+      time_ns_ += kFrame_ns;
+      PoseSample pose = motion_.pose(time_ns_ - kFrame_ns);
+      if (frame > last_true_frame) turned(pose);
+      estimator_.correct(pose);
+    }
+    EXPECT_EQ(fly(0.4, turned), PoseFault::kOutlier) << last_true_frame;
+    EXPECT_LT(angle_error(), 0.1) << last_true_frame;
+    // What steps back to where the body can be is believed again, though the IMU has missed a motion.
+    EXPECT_EQ(fly(0.1), PoseFault::kNone) << last_true_frame;
+    EXPECT_EQ(fly(0.5), PoseFault::kNone) << last_true_frame;
+    EXPECT_LT(position_error(), 2e-3) << last_true_frame;
+    EXPECT_LT(angle_error(), 0.005) << last_true_frame;
+  }
+}
+
 TEST_F(EstimatorFaults, SwappedMarkersAreNotBelievedInFlight) {
   fly(2.0);
   for (const double angle : {0.5 * M_PI, M_PI}) {
@@ -206,6 +231,29 @@ TEST_F(EstimatorFaults, WithRotorsOffTheyAre) {
             PoseFault::kNone);
   EXPECT_LT(angle_error(), 0.02);
   EXPECT_GE(estimator_.estimate().resets, 1U);
+}
+
+// A blow, as of a fall, leaves a speed behind that the vehicle does not have.
+TEST_F(EstimatorFaults, WithRotorsOffAnEstimateThatRunsAwayComesBack) {
+  fly(3.0);
+  imu_error_ = {400.0, -300.0, 200.0};
+  fly(
+      0.02, [](PoseSample& pose) { pose.tracked = false; }, RotorState::kOff);
+  imu_error_.setZero();
+  EXPECT_GT(velocity_error(), 8.0);
+  EXPECT_EQ(fly(
+                0.01,
+                [](PoseSample& pose) {
+                  pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(0.3, Vector3d::UnitX());
+                },
+                RotorState::kOff),
+            PoseFault::kOutlier)
+      << "no stream without a break";
+  EXPECT_EQ(fly(
+                1.0, [](PoseSample&) {}, RotorState::kOff),
+            PoseFault::kNone);
+  EXPECT_LT(velocity_error(), 0.05);
+  EXPECT_LT(position_error(), 2e-3);
 }
 
 TEST_F(EstimatorFaults, AnotherVehicleThatMovesIsNotTakenForThisOne) {
