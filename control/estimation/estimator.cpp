@@ -16,8 +16,10 @@ using Eigen::Vector3d;
 constexpr double kMaxStep_s = 0.25;  // longer gaps between IMU samples are not integrated over
 // A gap longer than the first may hide accelerations and rates of the others.
 constexpr double kUnseen_s = 0.02;
-constexpr double kUnseenAcceleration = 2.0;        // m/s^2
-constexpr double kUnseenRate = 0.5;                // rad/s
+constexpr double kUnseenAcceleration = 2.0;  // m/s^2
+constexpr double kUnseenRate = 0.5;          // rad/s
+constexpr double kUnseenTurn_rad = 0.025;    // more, and the poses are on trial
+constexpr double kSigmas = 4.0;
 constexpr std::int64_t kInterval_ns = 20'000'000;  // the covariance goes by no longer ones ...
 constexpr std::uint64_t kIntervalMoments = 32;     // ... nor by more moments of the history
 constexpr std::int64_t kMaxLead_ns = 20'000'000;   // that a pose may be ahead of the IMU
@@ -84,7 +86,11 @@ bool Estimator::predict(const plant::ImuSample& sample) {
 
   const bool first = last_imu_.stamp_ns == 0;
   const double dt = first ? 0.0 : std::min(seconds(sample.stamp_ns - last_imu_.stamp_ns), kMaxStep_s);
-  unseen_ = unseen_ || dt > kUnseen_s;
+  if (dt > kUnseen_s) {
+    unseen_ = true;
+    seen_again_ns_ = sample.stamp_ns;
+    trial_.begin();
+  }
   const plant::ImuSample& before = first ? sample : last_imu_;
   now_.stamp_ns = sample.stamp_ns;
   now_.body_rates_frd = sample.body_rates_frd - now_.gyro_bias;
@@ -156,12 +162,10 @@ PoseFault Estimator::take_in(const plant::PoseSample& pose, plant::RotorState ro
   // Without noise, a vehicle that stands repeats its pose: believed as any other with the rotors off.
   const bool stuck = contradicts && repetition_.repeats() && rotors != plant::RotorState::kOff;
   if (repetition_.frozen() || stuck) return PoseFault::kFrozen;
-  // What the IMU did not see explains much, but no step of the poses.
-  const bool stepped = unseen_ && !continuity_.in_reach();
-  if ((contradicts || stepped) && (innovation.position.norm() > settings_.outlier_position_m ||
-                                   innovation.rotation.norm() > outlier_rotation())) {
-    return disagree(pose, innovation, rotors);
-  }
+  const bool believed = rotors == plant::RotorState::kOff || believed_after_silence(pose, innovation);
+  const bool far_off = innovation.position.norm() > settings_.outlier_position_m ||
+                       innovation.rotation.norm() > outlier_rotation();
+  if (!believed || (contradicts && far_off)) return disagree(pose, innovation, rotors, believed);
 
   trust(pose);
   contradictions_ = contradicts ? contradictions_ + 1 : 0;
@@ -204,8 +208,22 @@ double Estimator::outlier_rotation() const {
   return std::min(settings_.outlier_orientation_rad, kSmallTurn_rad + kGyroSlip * continuity_.interval_s());
 }
 
+// What only a motion explains that the IMU did not see: the poses must go on in reach, and as the IMU has it
+// since.
+bool Estimator::believed_after_silence(const plant::PoseSample& pose, const PoseInnovation& innovation) {
+  const double turn = std::max(kUnseenTurn_rad, kSigmas * settings_.mocap_orientation_sigma);
+  if (!unseen_ ||
+      (innovation.position.norm() < settings_.outlier_position_m && innovation.rotation.norm() < turn))
+    return true;
+  if (pose.stamp_ns < seen_again_ns_) return false;
+  if (continuity_.poses() == 1) trial_.begin();
+  const MotionTrial::Verdict verdict = trial_.look_at(pose, innovation, settings_);
+  if (verdict == MotionTrial::Verdict::kDisagree && continuity_.in_reach()) continuity_.disown();
+  return verdict == MotionTrial::Verdict::kAgree && continuity_.in_reach();
+}
+
 PoseFault Estimator::disagree(const plant::PoseSample& pose, const PoseInnovation& innovation,
-                              plant::RotorState rotors) {
+                              plant::RotorState rotors, bool believed) {
   if (refused_in_a_row_++ == 0) {
     // What the IMU misleads to grows from pose to pose; what comes at once is a jump, unless the IMU was
     // silent.
@@ -214,7 +232,7 @@ PoseFault Estimator::disagree(const plant::PoseSample& pose, const PoseInnovatio
     if (unseen_ && continuity_.in_reach()) continuity_.begin();
     if (!unseen_ && sudden) continuity_.end();
   }
-  const bool goes_on = continuity_.unbroken() && continuity_.poses() >= kPosesToRestart;
+  const bool goes_on = believed && continuity_.unbroken() && continuity_.poses() >= kPosesToRestart;
   const bool at_rest = rotors == plant::RotorState::kOff && continuity_.lasting();
   if (refused_in_a_row_ >= kPosesToRestart && (goes_on || at_rest)) {
     restart_at(pose, innovation);

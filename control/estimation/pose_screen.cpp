@@ -44,7 +44,12 @@ void Continuity::look_at(const plant::PoseSample& pose) {
     const double reach_m = kFastest * interval_s_ + kSmallStep_m;
     const double reach_rad = kFastestTurn * interval_s_ + kSmallStep_rad;
     stepped = moved_ned.norm() > reach_m || rotation_vector(turned_frd).norm() > reach_rad;
-    if (stepped) {
+    if (stepped && disowned_) {
+      disowned_ = false;
+      in_reach_ = true;
+      stepped_ned_.setZero();
+      turned_frd_.setIdentity();
+    } else if (stepped) {
       stepped_ned_ += moved_ned;
       turned_frd_ = (turned_frd_ * turned_frd).normalized();
       // Within what the body has moved by itself, in the step away and in the step back.

@@ -44,10 +44,17 @@ class Continuity {
   void begin() {
     unbroken_ = true;
     in_reach_ = true;
+    disowned_ = false;
     stepped_ned_.setZero();
     turned_frd_.setIdentity();
   }
   void end() { unbroken_ = false; }
+  // The stream shows something else, and a gap has hidden how it came to that: with the next step it may show
+  // the body again.
+  void disown() {
+    disowned_ = true;
+    unbroken_ = false;
+  }
 
   // The steps since begin() have led back, or there were none: a body could have gone the way, also where
   // poses are missing.
@@ -73,6 +80,7 @@ class Continuity {
 
   bool unbroken_ = false;
   bool in_reach_ = false;
+  bool disowned_ = false;
   // All steps since begin(), one after the other.
   Eigen::Vector3d stepped_ned_ = Eigen::Vector3d::Zero();  // m
   Eigen::Quaterniond turned_frd_ = Eigen::Quaterniond::Identity();

@@ -206,6 +206,48 @@ TEST_F(EstimatorFaults, ATurnOfThePosesInASilenceOfTheImuIsNotBelieved) {
   }
 }
 
+// Poses were missing with the IMU's samples, so that no step shows: they contradict the IMU afterwards.
+TEST_F(EstimatorFaults, ATurnThatASilenceHasHiddenIsNotBelieved) {
+  for (const double angle : {0.1, 0.2, 0.4}) {
+    const Change turned = [&](PoseSample& pose) {
+      pose.position_ned.x() += 0.03;
+      pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(angle, Vector3d(0.6, 0.8, 0.0));
+    };
+    estimator_ = Estimator(settings_);
+    fly(3.0);
+    time_ns_ += 250'000'000;
+    fly(1.0, turned);
+    EXPECT_GT(estimator_.pose_age_s(), 1.0) << angle;
+    EXPECT_LT(angle_error(), 0.05) << angle;
+    EXPECT_EQ(fly(0.2), PoseFault::kNone) << angle;
+    EXPECT_EQ(fly(0.5), PoseFault::kNone) << angle;
+    EXPECT_LT(position_error(), 2e-3) << angle;
+    EXPECT_LT(angle_error(), 0.005) << angle;
+  }
+}
+
+// What the vehicle has really done in the silence is believed as soon as the IMU bears it out.
+TEST_F(EstimatorFaults, AMotionThatASilenceHasHiddenIsBelieved) {
+  fly(3.0);
+  const Quaterniond unseen(AngleAxisd(0.2, Vector3d(0.6, 0.8, 0.0)));
+  time_ns_ += 200'000'000;
+  for (int step = 0; step < 125; ++step) {
+    time_ns_ += kStep_ns;
+    plant::ImuSample imu = motion_.imu(time_ns_);
+    imu.specific_force_frd = unseen.conjugate() * imu.specific_force_frd;
+    imu.body_rates_frd = unseen.conjugate() * imu.body_rates_frd;
+    ASSERT_TRUE(estimator_.predict(imu));
+    if (time_ns_ % kFrame_ns != 0) continue;
+    PoseSample pose = motion_.pose(time_ns_ - kFrame_ns);
+    pose.q_ned_from_frd = pose.q_ned_from_frd * unseen;
+    estimator_.correct(pose);
+  }
+  EXPECT_EQ(estimator_.estimate().pose_fault, PoseFault::kNone);
+  EXPECT_LT(estimator_.pose_age_s(), 0.02);
+  EXPECT_NEAR(angle_error(), 0.2, 0.01);
+  EXPECT_LT(position_error(), 2e-3);
+}
+
 TEST_F(EstimatorFaults, SwappedMarkersAreNotBelievedInFlight) {
   fly(2.0);
   for (const double angle : {0.5 * M_PI, M_PI}) {
