@@ -30,8 +30,12 @@ double yaw_of(const Eigen::Quaterniond& q) {
 // The yaw that is `to` plus whole turns, nearest to `from`.
 double nearest_turn(double to, double from) { return from + std::remainder(to - from, 2.0 * M_PI); }
 
-Eigen::Vector3d stopping_place(const Limits& limits, const Reference& from) {
-  return rest_place(limits, from).cwiseMax(limits.fence_min_ned).cwiseMin(limits.fence_max_ned);
+// Of the reference as it is at that time, inside the fence.
+Stop stop_inside(const Scene& scene, const Reference& from) {
+  const Limits& limits = scene.limits;
+  Stop stop = scene.state.path.moving ? reference_stop(limits, from) : vehicle_stop(limits, from);
+  stop.place_ned = stop.place_ned.cwiseMax(limits.fence_min_ned).cwiseMin(limits.fence_max_ned);
+  return stop;
 }
 
 bool leaves_fence(const Limits& limits, const PolynomialSegment& segment) {
@@ -207,12 +211,14 @@ Reference standing_at(const Estimate& estimate) {
   return reference;
 }
 
-double stopping_time(const Limits& limits, const Reference& from) {
-  return std::max(kMinMove_s, 2.0 * from.velocity_ned.norm() / limits.max_reference_acceleration);
+Stop reference_stop(const Limits& limits, const Reference& from) {
+  return limited_stop(from, limits.max_reference_acceleration, limits.max_reference_jerk, kMinMove_s);
 }
 
-Eigen::Vector3d rest_place(const Limits& limits, const Reference& from) {
-  return from.position_ned + 0.5 * stopping_time(limits, from) * from.velocity_ned;
+Stop vehicle_stop(const Limits& limits, const Reference& from) {
+  const double duration_s =
+      std::max(kMinMove_s, 2.0 * from.velocity_ned.norm() / limits.max_reference_acceleration);
+  return {duration_s, from.position_ned + 0.5 * duration_s * from.velocity_ned};
 }
 
 void start_takeoff(Scene& scene, double to_z_ned, double speed) {
@@ -233,7 +239,7 @@ void start_move(Scene& scene, const Eigen::Vector3d& to_ned, bool yaw_free, doub
   double duration = minimum_jerk_duration(distance, speed, limits.max_reference_acceleration,
                                           limits.max_reference_jerk, kMinMove_s);
   duration = std::max(duration, 15.0 / 8.0 * std::abs(to_yaw - from.yaw_rad) / limits.max_yaw_rate);
-  duration = std::max(duration, stopping_time(limits, from));
+  duration = std::max(duration, stop_inside(scene, from).duration_s);
   scene.state.phase = Phase::kPath;
   scene.state.path.follow(join_inside(limits, from, to_ned, to_yaw, duration), start_ns);
 }
@@ -276,16 +282,14 @@ void start_join(Scene& scene, const PolynomialSegment& first, bool keep_yaw, dou
 
 void start_stop(Scene& scene) {
   SupervisorState& state = scene.state;
-  const Limits& limits = scene.limits;
   const Reference from = state.path.at(state.now_ns);
+  const Stop stop = stop_inside(scene, from);
   state.phase = Phase::kPath;
-  state.path.follow(
-      join_to_rest(from, stopping_place(limits, from), from.yaw_rad, stopping_time(limits, from)),
-      state.now_ns);
+  state.path.follow(join_to_rest(from, stop.place_ned, from.yaw_rad, stop.duration_s), state.now_ns);
 }
 
 void start_landing(Scene& scene, double speed, std::int64_t start_ns) {
-  Eigen::Vector3d above_ground = stopping_place(scene.limits, scene.state.path.at(start_ns));
+  Eigen::Vector3d above_ground = stop_inside(scene, scene.state.path.at(start_ns)).place_ned;
   above_ground.z() = scene.state.ground_z_ned - kFlareHeight_m;
   start_move(scene, above_ground, true, 0.0, speed, start_ns);
 }

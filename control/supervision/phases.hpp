@@ -3,6 +3,7 @@
 #pragma once
 
 #include "control/supervision/scene.hpp"
+#include "control/trajectory/stop.hpp"
 
 namespace swiftlet::control {
 
@@ -15,10 +16,12 @@ Reference kept_inside(const Limits& limits, const Reference& reference);
 // Where the estimate is, at rest, with its yaw.
 Reference standing_at(const Estimate& estimate);
 
-// In which a reference that moves so comes to rest, s.
-double stopping_time(const Limits& limits, const Reference& from);
-// Where a reference that moves so can come to rest, as start_stop() would have it without a fence.
-Eigen::Vector3d rest_place(const Limits& limits, const Reference& from);
+// How a reference that moves so comes to rest within the limits of references, as start_stop() would have it
+// without a fence.
+Stop reference_stop(const Limits& limits, const Reference& from);
+// Likewise a reference that has been put where the vehicle is, as it moves: it leaves the loops twice the time
+// that the braking takes, and its acceleration is what the vehicle happens to have, not what it goes on with.
+Stop vehicle_stop(const Limits& limits, const Reference& from);
 
 // Spool up, then climb straight to that height.
 void start_takeoff(Scene& scene, double to_z_ned, double speed);

@@ -223,7 +223,7 @@ TEST_F(Flight, FollowsSetpointsAndHoldsWhenTheyStop) {
   estimate_.position_ned = setpoint.position_ned;
   const Outcome outcome = supervisor_.setpoint(setpoint, situation_);
   EXPECT_STREQ(outcome.reason,
-               "setpoint: where it could come to rest: x is 3.200 m, outside the fence of -3.000 to 3.000 m");
+               "setpoint: where it could come to rest: x is 3.203 m, outside the fence of -3.000 to 3.000 m");
   ASSERT_TRUE(step_until(Mode::kHolding, 0.85));
   EXPECT_EQ(supervisor_.reason(), Reason::kSetpointsStopped);
 }
