@@ -146,7 +146,7 @@ Situation FlightController::Loops::situation() const {
   situation.unexplained_lift =
       -(specific_force_frd.z() - estimate.accelerometer_bias.z()) - rotors.thrust_n() / vehicle.mass_kg;
   situation.climb_contradicted = climb.contradicted();
-  situation.specific_force = specific_force_frd.norm();
+  situation.specific_force_frd = specific_force_frd;
   situation.rotor_speed = *std::max_element(rotors.speeds().begin(), rotors.speeds().end());
   situation.imu_unusable_s = unusable_s;
   situation.imu_gap_s = imu_gap_s;
