@@ -18,8 +18,8 @@ constexpr double kMaxStep_s = 0.25;  // longer gaps between IMU samples are not 
 constexpr double kUnseen_s = 0.02;
 constexpr double kUnseenAcceleration = 2.0;  // m/s^2
 constexpr double kUnseenRate = 0.5;          // rad/s
-constexpr double kUnseenTurn_rad = 0.025;    // more, and the poses are on trial
-constexpr double kSigmas = 4.0;
+constexpr double kUnseenTurn_rad = 0.025;    // that needs no trial (motion_trial.hpp) ...
+constexpr double kUnseenTurnSigmas = 4.0;    // ... nor do so many standard deviations of the orientation
 constexpr std::int64_t kInterval_ns = 20'000'000;  // the covariance goes by no longer ones ...
 constexpr std::uint64_t kIntervalMoments = 32;     // ... nor by more moments of the history
 constexpr std::int64_t kMaxLead_ns = 20'000'000;   // that a pose may be ahead of the IMU
@@ -211,7 +211,7 @@ double Estimator::outlier_rotation() const {
 // What only a motion explains that the IMU did not see: the poses must go on in reach, and as the IMU has it
 // since.
 bool Estimator::believed_after_silence(const plant::PoseSample& pose, const PoseInnovation& innovation) {
-  const double turn = std::max(kUnseenTurn_rad, kSigmas * settings_.mocap_orientation_sigma);
+  const double turn = std::max(kUnseenTurn_rad, kUnseenTurnSigmas * settings_.mocap_orientation_sigma);
   if (!unseen_ ||
       (innovation.position.norm() < settings_.outlier_position_m && innovation.rotation.norm() < turn))
     return true;

@@ -27,9 +27,9 @@ MotionTrial::Verdict MotionTrial::look_at(const plant::PoseSample& pose, const P
   return verdict;
 }
 
-// The path is p + t v + t^2/2 g + S, S being the double integral of the specific force; the poses' motion is the
-// same with turn * S, from another p and with another v. So what is left of the poses without g and turn * S is
-// straight and even.
+// The path is p + t v + t^2/2 g + S, S being the double integral of the specific force; the poses' motion is
+// the same with turn * S, from another p and with another v. So what is left of the poses without g and
+// turn * S is straight and even.
 bool MotionTrial::agree(const EstimatorSettings& settings) const {
   const Eigen::Quaterniond& turn = points_[1].turn_ned;
   const double turn_limit = kTurn_rad + kSigmas * std::sqrt(2.0) * settings.mocap_orientation_sigma;

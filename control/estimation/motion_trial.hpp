@@ -21,8 +21,8 @@ class MotionTrial {
   enum class Verdict : std::uint8_t { kNone, kAgree, kDisagree };
 
   // The next pose, and what it differs by from the path that the IMU alone has drawn since the trial began: a
-  // verdict over the last two intervals of kInterval_ns, each time that one is over. Of the settings, the noise
-  // of the poses counts.
+  // verdict over the last two intervals of kInterval_ns, each time that one is over. Of the settings, the
+  // noise of the poses counts.
   Verdict look_at(const plant::PoseSample& pose, const PoseInnovation& innovation,
                   const EstimatorSettings& settings);
   void begin() { count_ = 0; }

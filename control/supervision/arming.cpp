@@ -51,8 +51,8 @@ Outcome battery_there(const Scene& scene) {
   return accept();
 }
 
-// With an attitude that is turned wrong, what the accelerometer has more than gravity passes for a bias; what is
-// too much for one makes dead reckoning run off.
+// With an attitude that is turned wrong, what the accelerometer has more than gravity passes for a bias; what
+// is too much for one makes dead reckoning run off.
 Outcome imu_at_rest(const Scene& scene) {
   if (!scene.situation.has_estimate) return accept();
   const Eigen::Vector3d up_ned(0.0, 0.0, -plant::kGravity);

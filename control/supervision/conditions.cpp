@@ -97,7 +97,8 @@ EventSet observe(Scene& scene, double tip_over_cosine) {
   events.add(Event::kImuUnusable, situation.imu_unusable_s >= failsafe.imu_timeout_s);
   events.add(Event::kImuGap, situation.imu_gap_s > failsafe.imu_gap_s);
   events.add(Event::kTippedOver, cosine_of_tilt(scene.estimate().q_ned_from_frd) < tip_over_cosine);
-  events.add(Event::kStruck, state.phase != Phase::kGround && situation.specific_force_frd.norm() > failsafe.blow);
+  events.add(Event::kStruck,
+             state.phase != Phase::kGround && situation.specific_force_frd.norm() > failsafe.blow);
   events.add(Event::kClimbNotSeen, situation.climb_contradicted && state.phase == Phase::kPath);
   events.add(Event::kPoseJumped, situation.pose_jumped);
   events.add(Event::kPoseLost, lost);

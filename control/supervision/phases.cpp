@@ -30,7 +30,8 @@ double yaw_of(const Eigen::Quaterniond& q) {
 // The yaw that is `to` plus whole turns, nearest to `from`.
 double nearest_turn(double to, double from) { return from + std::remainder(to - from, 2.0 * M_PI); }
 
-// Of the reference as it is at that time, inside the fence.
+// How the reference comes to rest inside the fence, being `from` by then. One that follows no path was put
+// where the vehicle is.
 Stop stop_inside(const Scene& scene, const Reference& from) {
   const Limits& limits = scene.limits;
   Stop stop = scene.state.path.moving ? reference_stop(limits, from) : vehicle_stop(limits, from);

@@ -19,8 +19,8 @@ Reference standing_at(const Estimate& estimate);
 // How a reference that moves so comes to rest within the limits of references, as start_stop() would have it
 // without a fence.
 Stop reference_stop(const Limits& limits, const Reference& from);
-// Likewise a reference that has been put where the vehicle is, as it moves: it leaves the loops twice the time
-// that the braking takes, and its acceleration is what the vehicle happens to have, not what it goes on with.
+// Likewise one that was put where the vehicle is, as it moves: braked by three quarters of the limit at most,
+// since the loops must follow first. Its acceleration is what the thrust gives now, and goes with the attitude.
 Stop vehicle_stop(const Limits& limits, const Reference& from);
 
 // Spool up, then climb straight to that height.

@@ -12,9 +12,9 @@ struct Stop {
   Eigen::Vector3d place_ned = Eigen::Vector3d::Zero();  // m
 };
 
-// So that neither acceleration nor jerk are beyond their peaks (> 0), in min_duration_s (> 0) at least. A motion
-// that begins with more acceleration than that keeps to what it begins with, and to as much more jerk. Closed
-// form: the shortest where the motion is straight and does not brake yet, somewhat longer elsewhere.
+// So that neither acceleration nor jerk are beyond their peaks (> 0), in min_duration_s (> 0) at least. A
+// motion that begins with more acceleration than that keeps to what it begins with, and to as much more jerk.
+// Closed form: the shortest where the motion is straight and does not brake yet, somewhat longer elsewhere.
 Stop limited_stop(const Reference& from, double peak_acceleration, double peak_jerk, double min_duration_s);
 
 }  // namespace swiftlet::control
