@@ -290,8 +290,9 @@ void start_stop(Scene& scene) {
 }
 
 void start_landing(Scene& scene, double speed, std::int64_t start_ns) {
-  Eigen::Vector3d above_ground = stop_inside(scene, scene.state.path.at(start_ns)).place_ned;
-  above_ground.z() = scene.state.ground_z_ned - kFlareHeight_m;
+  const Reference from = scene.state.path.at(start_ns);
+  Eigen::Vector3d above_ground = stop_inside(scene, from).place_ned;
+  above_ground.z() = std::max(scene.state.ground_z_ned - kFlareHeight_m, from.position_ned.z());
   start_move(scene, above_ground, true, 0.0, speed, start_ns);
 }
 

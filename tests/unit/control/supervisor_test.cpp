@@ -43,6 +43,34 @@ TEST_F(Flight, TakesOffHoldsAndLands) {
   EXPECT_FALSE(supervisor_.airborne());
 }
 
+// A push at the end of a landing, with rotors that carry nearly the weight still.
+TEST_F(Flight, SlidingOnTheGroundItHasLanded) {
+  for (const double height_m : {0.0, 0.3}) {
+    SupervisedFlight flight;
+    ASSERT_TRUE(flight.take_off());
+    ASSERT_TRUE(flight.ask(RequestKind::kLand).accepted);
+    ASSERT_TRUE(
+        flight.step_until([&] { return flight.estimate_.position_ned.z() > -height_m - 0.02; }, 10.0));
+    flight.follows_ = false;
+    flight.estimate_.velocity_ned = {0.3, 0.0, 0.0};
+    EXPECT_EQ(flight.step_until(Mode::kDisarmed, 3.0), height_m == 0.0) << height_m;
+  }
+}
+
+TEST_F(Flight, ALandingAskedForOnTheGroundDoesNotRise) {
+  hover();
+  ASSERT_TRUE(ask(RequestKind::kLand).accepted);
+  ASSERT_TRUE(step_until([&] { return estimate_.position_ned.z() > -0.01; }, 10.0));
+  ASSERT_TRUE(ask(RequestKind::kGoTo, estimate_.position_ned).accepted);
+  const double before_z = directive_.reference.position_ned.z();
+  ASSERT_TRUE(ask(RequestKind::kLand).accepted);
+  while (supervisor_.mode() == Mode::kLanding) {
+    step();
+    ASSERT_GT(directive_.reference.position_ned.z(), before_z - 0.02);
+  }
+  EXPECT_EQ(supervisor_.reason(), Reason::kLanded);
+}
+
 TEST_F(Flight, FliesTheItemsOfAMissionInOrderAndCompletesIt) {
   Mission mission;
   mission.id = 7;
