@@ -167,6 +167,33 @@ TEST_P(SetpointFlight, APositionStreamOf2HzIsFlownWithoutAJerk) {
   EXPECT_NEAR(truth().position_ned.x(), 1.5, 0.03);
 }
 
+// Positions that run on through the fence: the last that is taken lets it come to rest inside.
+TEST_P(SetpointFlight, APositionStreamThatLeavesTheFenceEndsBeforeIt) {
+  double farthest_reference_m = 0.0, farthest_m = 0.0;
+  Setpoint setpoint;
+  setpoint.yaw_free = true;
+  setpoint.position_ned = {0, 0, -1.2};
+  setpoint.velocity_ned = {0, 0.4, 0};
+  const double start_s = loop_.time_s();
+  const double start_y = loop_.controller.reference().position_ned.y();
+  double next_s = start_s;
+  while (loop_.time_s() < start_s + 12.0) {
+    if (loop_.time_s() >= next_s) {
+      next_s += kPeriod_s;
+      setpoint.position_ned.y() = start_y + 0.4 * (loop_.time_s() - start_s);
+      loop_.controller.on_setpoint(setpoint);
+    }
+    loop_.step();
+    farthest_m = std::max(farthest_m, truth().position_ned.y());
+    farthest_reference_m = std::max(farthest_reference_m, loop_.controller.reference().position_ned.y());
+  }
+  EXPECT_EQ(mode(), Mode::kHolding);
+  EXPECT_LE(farthest_reference_m, 3.0);
+  EXPECT_GT(farthest_reference_m, 2.9);
+  const double lag_m = std::string(GetParam()) == "paper" ? 0.07 : 0.03;  // of the loops, to the stop's jerk
+  EXPECT_LT(farthest_m, 3.0 + lag_m);
+}
+
 TEST_P(SetpointFlight, NoKindTakesMemory) {
   std::size_t calls = 0;
   Setpoint setpoint = attitude(0.02, 0.0, 0.0);
