@@ -104,7 +104,7 @@ bool Estimator::predict(const plant::ImuSample& sample) {
   path_.stamp_ns = sample.stamp_ns;
   path_.position_ned += dt * path_.velocity_ned + (0.5 * dt * dt) * acceleration;
   path_.velocity_ned += dt * acceleration;
-  path_.q_ned_from_frd = (q_mid * half_turn).normalized();
+  path_.q_ned_from_frd = renormalised(q_mid * half_turn);
   if (!initialised_ && path_.velocity_ned.norm() > kLongFall) {  // anew: the start is arbitrary
     path_.position_ned.setZero();
     path_.velocity_ned.setZero();

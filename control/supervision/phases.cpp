@@ -42,8 +42,10 @@ Stop stop_inside(const Scene& scene, const Reference& from) {
 bool leaves_fence(const Limits& limits, const PolynomialSegment& segment) {
   constexpr int kLooks = 24;
   for (int i = 1; i < kLooks; ++i) {
-    const Reference at = evaluate(segment, segment.duration_s * i / kLooks);
-    if (kept_inside(limits, at).position_ned != at.position_ned) return true;
+    Reference at = evaluate(segment, segment.duration_s * i / kLooks);
+    const Eigen::Vector3d position_ned = at.position_ned;
+    keep_inside(limits, at);
+    if (at.position_ned != position_ned) return true;
   }
   return false;
 }
@@ -191,18 +193,16 @@ double speed_on_way(const Scene& scene) {
 
 }  // namespace
 
-Reference kept_inside(const Limits& limits, const Reference& reference) {
-  Reference inside = reference;
+void keep_inside(const Limits& limits, Reference& reference) {
   for (int i = 0; i < 3; ++i) {
-    double& at = inside.position_ned[i];
+    double& at = reference.position_ned[i];
     const bool beyond = at < limits.fence_min_ned[i] || (i < 2 && at > limits.fence_max_ned[i]);
     if (!beyond) continue;
     at = at < limits.fence_min_ned[i] ? limits.fence_min_ned[i] : limits.fence_max_ned[i];
     for (Eigen::Vector3d* const rate :
-         {&inside.velocity_ned, &inside.acceleration_ned, &inside.jerk_ned, &inside.snap_ned})
+         {&reference.velocity_ned, &reference.acceleration_ned, &reference.jerk_ned, &reference.snap_ned})
       (*rate)[i] = 0.0;
   }
-  return inside;
 }
 
 Reference standing_at(const Estimate& estimate) {

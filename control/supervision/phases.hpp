@@ -9,9 +9,9 @@ namespace swiftlet::control {
 
 constexpr double kAirborneHeight_m = 0.03;  // above the ground
 
-// The reference, or the nearest to it inside the fence: what joins one motion to another may swing out. Down
+// Moves the reference to the nearest place inside the fence: what joins one motion to another may swing out. Down
 // to the ground the fence does not matter.
-Reference kept_inside(const Limits& limits, const Reference& reference);
+void keep_inside(const Limits& limits, Reference& reference);
 
 // Where the estimate is, at rest, with its yaw.
 Reference standing_at(const Estimate& estimate);

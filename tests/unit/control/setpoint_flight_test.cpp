@@ -80,7 +80,7 @@ class SetpointFlight : public testing::TestWithParam<const char*> {
 TEST_P(SetpointFlight, AnAttitudeIsTakenAndTheThrustCarriesIt) {
   ASSERT_TRUE(stream(attitude(0.1, -0.05, 0.0), 0.8).accepted);
   EXPECT_EQ(mode(), Mode::kSetpoint);
-  const Vector3d euler = euler_from_quaternion(truth().q_ned_from_frd);
+  const Vector3d euler = euler_angles(truth().q_ned_from_frd).vector();
   EXPECT_NEAR(euler.x(), 0.1, 0.02);
   EXPECT_NEAR(euler.y(), -0.05, 0.02);
   EXPECT_NEAR(truth().position_ned.z(), -1.2, 0.1);
@@ -92,10 +92,10 @@ TEST_P(SetpointFlight, AnAttitudeIsTakenAndTheThrustCarriesIt) {
 }
 
 TEST_P(SetpointFlight, BodyRatesAreTaken) {
-  const double before = euler_from_quaternion(truth().q_ned_from_frd).z();
+  const double before = euler_angles(truth().q_ned_from_frd).vector().z();
   ASSERT_TRUE(stream(body_rates({0, 0, 1.0}), 1.5).accepted);
   EXPECT_NEAR(truth().body_rates_frd.z(), 1.0, 0.1);
-  EXPECT_NEAR(wrap_angle(euler_from_quaternion(truth().q_ned_from_frd).z() - before), 1.5, 0.4);
+  EXPECT_NEAR(wrap_angle(euler_angles(truth().q_ned_from_frd).vector().z() - before), 1.5, 0.4);
   EXPECT_LT(tilt_rad(), 0.1);
   ASSERT_TRUE(stream(body_rates({0.5, 0, 0}), 0.3).accepted);
   EXPECT_NEAR(truth().body_rates_frd.x(), 0.5, 0.1);
