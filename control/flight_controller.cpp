@@ -146,7 +146,7 @@ Situation FlightController::Loops::situation() const {
   situation.unexplained_lift =
       -(specific_force_frd.z() - estimate.accelerometer_bias.z()) - rotors.thrust_n() / vehicle.mass_kg;
   situation.climb_contradicted = climb.contradicted();
-  situation.specific_force = specific_force_frd.norm();
+  situation.specific_force_frd = specific_force_frd;
   situation.rotor_speed = *std::max_element(rotors.speeds().begin(), rotors.speeds().end());
   situation.imu_unusable_s = unusable_s;
   situation.imu_gap_s = imu_gap_s;
@@ -214,8 +214,8 @@ void FlightController::Loops::fly(const Directive& directive, double dt_s) {
 
 void FlightController::Loops::fly_attitude(const Directive& directive) {
   AttitudeReference wanted;
-  wanted.body_z_ned = directive.q_ned_from_frd * Vector3d::UnitZ();
-  wanted.heading = euler_from_quaternion(directive.q_ned_from_frd).z();
+  wanted.body_z_ned = body_z(directive.q_ned_from_frd);
+  wanted.heading = euler_angles(directive.q_ned_from_frd).heading;
   wanted.body_rates = directive.body_rates_frd;
   command_attitude(directive.thrust * vehicle.mass_kg, wanted);
 }
@@ -223,8 +223,8 @@ void FlightController::Loops::fly_attitude(const Directive& directive) {
 void FlightController::Loops::fly_body_rates(const Directive& directive) {
   const Estimate& estimate = estimator.estimate();
   AttitudeReference as_it_is;
-  as_it_is.body_z_ned = estimate.q_ned_from_frd * Vector3d::UnitZ();
-  as_it_is.heading = euler_from_quaternion(estimate.q_ned_from_frd).z();
+  as_it_is.body_z_ned = body_z(estimate.q_ned_from_frd);
+  as_it_is.heading = euler_angles(estimate.q_ned_from_frd).heading;
   Wrench wrench;
   wrench.thrust_n = directive.thrust * vehicle.mass_kg;
   wrench.moment_frd =
@@ -247,14 +247,14 @@ void FlightController::Loops::descend_level(double speed) {
   const ThrustAttitude outer = thrust_attitude(vehicle.mass_kg, acceleration_ned, max_tilt_tangent);
   AttitudeReference braking;
   braking.body_z_ned = outer.body_z_ned;
-  braking.heading = euler_from_quaternion(estimate.q_ned_from_frd).z();
+  braking.heading = euler_angles(estimate.q_ned_from_frd).heading;
   command_attitude(outer.thrust_n, braking);
 }
 
 // Of the wanted thrust, the part along the axis on which the rotors can give it: none while upside down.
 void FlightController::Loops::command_attitude(double thrust_n, const AttitudeReference& attitude_reference) {
   const Estimate& estimate = estimator.estimate();
-  const Vector3d body_z_ned = estimate.q_ned_from_frd * Vector3d::UnitZ();
+  const Vector3d body_z_ned = body_z(estimate.q_ned_from_frd);
   Wrench wrench;
   wrench.thrust_n = thrust_n * std::max(attitude_reference.body_z_ned.dot(body_z_ned), 0.0);
   wrench.moment_frd = attitude.moments(estimate.q_ned_from_frd, estimate.body_rates_frd, rotors.moment_frd(),

@@ -91,7 +91,7 @@ struct ArmingSettings {
   double max_tilt_rad = 0.35;
   double max_speed = 0.3;                 // m/s, by the estimate
   double max_body_rate = 0.2;             // rad/s, bias removed
-  double max_specific_force_error = 1.5;  // m/s^2, of its length against g
+  double max_specific_force_error = 1.0;  // m/s^2, against gravity in the attitude of the pose
   double max_rotor_speed = 100.0;         // rad/s, of any rotor
 };
 

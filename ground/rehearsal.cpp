@@ -32,7 +32,7 @@ class Run {
     situation_.has_estimate = true;
     situation_.has_battery = true;
     situation_.supply_voltage_v = kFullBattery_v;
-    situation_.specific_force = plant::kGravity;
+    situation_.specific_force_frd.z() = -plant::kGravity;
     estimate_.position_ned.head<2>() = start_ned;
     end_s_ = 2.0 * planned_duration_s(mission, settings.limits) + kSpare_s;
     step();

@@ -131,52 +131,59 @@ Wrench Allocator::sanitised(const Wrench& wanted, bool& invalid) const {
 }
 
 Allocation Allocator::allocate(const Wrench& wanted, const Supply& supply) const {
-  return count_ == 4 ? allocate_to<4>(wanted, supply) : allocate_to<0>(wanted, supply);
+  return count_ == plant::kMinRotors ? allocate_to<plant::kMinRotors>(wanted, supply)
+                                     : allocate_to<plant::kMaxRotors>(wanted, supply);
 }
 
-// kCount: of the rotors, known to the compiler; 0: count_.
+// kCount: of the values that are worked out side by side; those beyond count_ are of no rotor.
 template <int kCount>
 Allocation Allocator::allocate_to(const Wrench& wanted, const Supply& supply) const {
-  const int count = kCount > 0 ? kCount : count_;
+  using Values = Eigen::Array<double, kCount, 1>;
+  const auto values = [](const PerRotor& of) { return Eigen::Map<const Values>(of.data()); };
   Allocation out;
   out.invalid_input = !supply.plausible;
   const Wrench wrench = within_bound(wanted) ? wanted : sanitised(wanted, out.invalid_input);
   const Interval limits{idle_thrust_n_, supply.highest_thrust_n};
 
   const double slack = kFitTolerance * limits.high;
-  PerRotor tilt;
-  for (int i = 0; i < count; ++i) {
-    const std::size_t k = index(i);
-    tilt[k] = for_roll_[k] * wrench.moment_frd.x() + for_pitch_[k] * wrench.moment_frd.y();
-    out.thrust_n[k] = tilt[k] + for_thrust_[k] * wrench.thrust_n + for_yaw_[k] * wrench.moment_frd.z();
-    out.saturated |= out.thrust_n[k] < limits.low - slack || out.thrust_n[k] > limits.high + slack;
+  const Values tilt = values(for_roll_) * wrench.moment_frd.x() + values(for_pitch_) * wrench.moment_frd.y();
+  Values thrust_n = tilt + values(for_thrust_) * wrench.thrust_n + values(for_yaw_) * wrench.moment_frd.z();
+  const auto exists =
+      thrust_n.template head < kCount == plant::kMinRotors ? kCount : Eigen::Dynamic > (count_);
+  out.saturated = exists.minCoeff() < limits.low - slack || exists.maxCoeff() > limits.high + slack;
+  if (out.saturated) {
+    PerRotor tilts{};
+    Eigen::Map<Values>(tilts.data()) = tilt;
+    thrust_n = values(fitted(wrench, tilts, limits));
   }
-  if (out.saturated) fit(wrench, tilt, limits, out.thrust_n);
-  for (int i = 0; i < count; ++i) {
-    const std::size_t k = index(i);
-    const double thrust_n = std::min(std::max(out.thrust_n[k], limits.low), limits.high);
-    const double speed_squared = thrust_n * square_per_thrust_;                           // Eq. (25)
-    const double v_a = motor_.k2 * std::sqrt(speed_squared) + motor_.k3 * speed_squared;  // Eq. (22)
-    const double throttle = (v_a * v_a - esc_.offset_v2) * supply.throttle_per_square;    // Eq. (9)
-    out.thrust_n[k] = thrust_n;
-    out.throttle[k] = std::min(std::max(throttle, 0.0), 1.0);
+  thrust_n = thrust_n.max(limits.low).min(limits.high);
+  const Values speed_squared = thrust_n * square_per_thrust_;                       // Eq. (25)
+  const Values v_a = motor_.k2 * speed_squared.sqrt() + motor_.k3 * speed_squared;  // Eq. (22)
+  Values throttle = (v_a.square() - esc_.offset_v2) * supply.throttle_per_square;   // Eq. (9)
+  throttle = throttle.max(0.0).min(1.0);
+  if constexpr (kCount > plant::kMinRotors) {
+    thrust_n.tail(kCount - count_).setZero();
+    throttle.tail(kCount - count_).setZero();
   }
+  Eigen::Map<Values>(out.thrust_n.data()) = thrust_n;
+  Eigen::Map<Values>(out.throttle.data()) = throttle;
   return out;
 }
 
 // With roll and pitch scaled by s, rotor i holds t_i = s tilt_i + for_thrust_i T + for_yaw_i Y, and low <=
 // t_i <= high for all i is a convex region of (s, T, Y). Its shadow on (s, T), then on s, is found by
 // elimination (Fourier-Motzkin), and s, T, Y are chosen one after the other.
-void Allocator::fit(const Wrench& wanted, const PerRotor& tilt, const Interval& limits,
-                    PerRotor& thrusts) const {
+PerRotor Allocator::fitted(const Wrench& wanted, const PerRotor& tilt, const Interval& limits) const {
   const double scale = largest_scale(tilt, limits);
   const Interval thrust_range = thrust_interval(scale, tilt, limits).at;
   const double thrust = nearest(wanted.thrust_n, thrust_range);
   const double yaw = nearest(wanted.moment_frd.z(), yaw_interval(scale, thrust, tilt, limits));
+  PerRotor thrusts{};
   for (int i = 0; i < count_; ++i) {
     const std::size_t k = index(i);
     thrusts[k] = scale * tilt[k] + for_thrust_[k] * thrust + for_yaw_[k] * yaw;
   }
+  return thrusts;
 }
 
 double Allocator::nearest(double wanted, const Interval& interval) {

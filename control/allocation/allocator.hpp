@@ -76,8 +76,7 @@ class Allocator {
   double thrust_at(double supply_voltage_v, double throttle) const;
   bool within_bound(const Wrench& wanted) const;
   Wrench sanitised(const Wrench& wanted, bool& invalid) const;
-  void fit(const Wrench& wanted, const plant::PerRotor& tilt, const Interval& limits,
-           plant::PerRotor& thrusts) const;
+  plant::PerRotor fitted(const Wrench& wanted, const plant::PerRotor& tilt, const Interval& limits) const;
   template <typename Visit>
   void visit_thrust_bounds(const plant::PerRotor& tilt, const Interval& limits, Visit&& visit) const;
   ThrustInterval thrust_interval(double scale, const plant::PerRotor& tilt, const Interval& limits) const;

@@ -32,14 +32,14 @@ Matrix3d attitude_along(const Vector3d& body_z_ned, const Heading& heading) {
 }
 
 Vector3d euler_error(const Eigen::Quaterniond& q_ned_from_frd, const Vector3d& body_z_ned, double yaw_rad) {
-  const Vector3d euler = euler_from_quaternion(q_ned_from_frd);
-  const double cosine = std::cos(euler.z());
-  const double sine = std::sin(euler.z());
+  const EulerAngles euler = euler_angles(q_ned_from_frd);
+  const double cosine = euler.heading.cosine;
+  const double sine = euler.heading.sine;
   const Vector3d b(cosine * body_z_ned.x() + sine * body_z_ned.y(),
                    -sine * body_z_ned.x() + cosine * body_z_ned.y(), body_z_ned.z());
   const Vector3d wanted(-std::atan2(b.y(), std::sqrt(b.x() * b.x() + b.z() * b.z())),
                         std::atan2(b.x(), b.z()), yaw_rad);
-  Vector3d error = wanted - euler;
+  Vector3d error = wanted - euler.vector();
   for (double& angle : error) angle = wrap_angle(angle);
   return error;
 }

@@ -13,14 +13,20 @@ double wrap_angle(double angle_rad) {
   return std::abs(angle_rad) <= M_PI ? angle_rad : std::remainder(angle_rad, 2.0 * M_PI);
 }
 
-Eigen::Vector3d euler_from_quaternion(const Eigen::Quaterniond& q_ned_from_frd) {
+EulerAngles euler_angles(const Eigen::Quaterniond& q_ned_from_frd) {
   const Eigen::Matrix3d r = q_ned_from_frd.toRotationMatrix();
   const double cosine = std::sqrt(r(2, 1) * r(2, 1) + r(2, 2) * r(2, 2));
-  const double theta = std::atan2(-r(2, 0), cosine);
+  EulerAngles out;
+  out.pitch_rad = std::atan2(-r(2, 0), cosine);
   if (cosine < kGimbalCosine) {
-    return {theta > 0.0 ? std::atan2(r(0, 1), r(1, 1)) : std::atan2(-r(0, 1), r(1, 1)), theta, 0.0};
+    out.roll_rad = out.pitch_rad > 0.0 ? std::atan2(r(0, 1), r(1, 1)) : std::atan2(-r(0, 1), r(1, 1));
+    return out;
   }
-  return {std::atan2(r(2, 1), r(2, 2)), theta, std::atan2(r(1, 0), r(0, 0))};
+  out.roll_rad = std::atan2(r(2, 1), r(2, 2));
+  out.heading.yaw_rad = std::atan2(r(1, 0), r(0, 0));
+  out.heading.cosine = r(0, 0) / cosine;
+  out.heading.sine = r(1, 0) / cosine;
+  return out;
 }
 
 Eigen::Quaterniond quaternion_from_euler(const Eigen::Vector3d& euler_rad) {

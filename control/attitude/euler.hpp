@@ -4,12 +4,29 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "control/attitude/heading.hpp"
+
 namespace swiftlet::control {
 
-// (phi, theta, psi) of Eq. (3): phi and psi in -pi .. pi, theta in -pi/2 .. pi/2. At theta = +-pi/2, where
-// phi and psi are one angle, psi is 0.
-Eigen::Vector3d euler_from_quaternion(const Eigen::Quaterniond& q_ned_from_frd);
+struct EulerAngles {
+  double roll_rad = 0.0;   // phi, -pi .. pi
+  double pitch_rad = 0.0;  // theta, -pi/2 .. pi/2
+  Heading heading;         // psi, -pi .. pi
+
+  // (phi, theta, psi)
+  Eigen::Vector3d vector() const { return {roll_rad, pitch_rad, heading.yaw_rad}; }
+};
+
+// Those of Eq. (3). At theta = +-pi/2, where phi and psi are one angle, psi is 0.
+EulerAngles euler_angles(const Eigen::Quaterniond& q_ned_from_frd);
 Eigen::Quaterniond quaternion_from_euler(const Eigen::Vector3d& euler_rad);
+
+// Third column of the rotation matrix.
+inline Eigen::Vector3d body_z(const Eigen::Quaterniond& q_ned_from_frd) {
+  const Eigen::Quaterniond& q = q_ned_from_frd;
+  return {2.0 * (q.x() * q.z() + q.w() * q.y()), 2.0 * (q.y() * q.z() - q.w() * q.x()),
+          1.0 - 2.0 * (q.x() * q.x() + q.y() * q.y())};
+}
 
 // The same angle in -pi .. pi.
 double wrap_angle(double angle_rad);

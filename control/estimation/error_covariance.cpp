@@ -83,18 +83,6 @@ void ErrorCovariance::reset(const ErrorState& standard_deviation) {
   }
 }
 
-void ErrorCovariance::reset_motion(const Eigen::Matrix<double, 9, 1>& standard_deviation) {
-  for (std::size_t i = 0; i < kErrorStates; ++i) {
-    for (std::size_t j = 0; j < kErrorStates; ++j) {
-      if (std::min(i, j) < kGyroBias) p_[i][j] = 0.0;
-    }
-  }
-  for (std::size_t i = 0; i < kGyroBias; ++i) {
-    const double sigma = standard_deviation[static_cast<Eigen::Index>(i)];
-    p_[i][i] = sigma * sigma;
-  }
-}
-
 // From the left to all columns; then from the right to the rows that it changes, as columns of their
 // transpose. What comes out of the upper triangle is written to both.
 void ErrorCovariance::advance(const ErrorInterval& interval, const ErrorNoise& noise) {

@@ -55,8 +55,6 @@ class ErrorCovariance {
 
   // Uncorrelated, from standard deviations.
   void reset(const ErrorState& standard_deviation);
-  // The same for position, velocity and rotation alone: what is known of the biases is kept.
-  void reset_motion(const Eigen::Matrix<double, 9, 1>& standard_deviation);
 
   void advance(const ErrorInterval& interval, const ErrorNoise& noise);
   // Adds to the variances of position, velocity and rotation: for what was not measured.

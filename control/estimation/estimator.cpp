@@ -16,16 +16,16 @@ using Eigen::Vector3d;
 constexpr double kMaxStep_s = 0.25;  // longer gaps between IMU samples are not integrated over
 // A gap longer than the first may hide accelerations and rates of the others.
 constexpr double kUnseen_s = 0.02;
-constexpr double kUnseenAcceleration = 2.0;        // m/s^2
-constexpr double kUnseenRate = 0.5;                // rad/s
+constexpr double kUnseenAcceleration = 2.0;  // m/s^2
+constexpr double kUnseenRate = 0.5;          // rad/s
+constexpr double kUnseenTurn_rad = 0.025;    // that needs no trial (motion_trial.hpp) ...
+constexpr double kUnseenTurnSigmas = 4.0;    // ... nor do so many standard deviations of the orientation
 constexpr std::int64_t kInterval_ns = 20'000'000;  // the covariance goes by no longer ones ...
 constexpr std::uint64_t kIntervalMoments = 32;     // ... nor by more moments of the history
 constexpr std::int64_t kMaxLead_ns = 20'000'000;   // that a pose may be ahead of the IMU
 constexpr double kStartSpeed = 1.0;                // m/s, standard deviation at the first pose
-constexpr double kJumpSpeed = 0.3;                 // m/s, likewise after a reset
-constexpr double kMaxDrift = 0.3;        // m/s, of a disagreement that leads to a reset in flight ...
-constexpr double kMaxDriftAtRest = 3.0;  // ... and with rotors off
-constexpr double kGyroSlip = 3.0;        // rad/s, of a gyro that misleads
+constexpr double kResetSpeed = 0.3;                // m/s, likewise after a reset
+constexpr double kGyroSlip = 3.0;                  // rad/s, of a gyro that misleads
 constexpr double kSmallTurn_rad = 0.01;
 constexpr double kSuddenly = 2.0;         // times the bound of an outlier
 constexpr int kGlitch = 2;                // poses that contradict, in a row; more of them mean something
@@ -86,7 +86,11 @@ bool Estimator::predict(const plant::ImuSample& sample) {
 
   const bool first = last_imu_.stamp_ns == 0;
   const double dt = first ? 0.0 : std::min(seconds(sample.stamp_ns - last_imu_.stamp_ns), kMaxStep_s);
-  unseen_ = unseen_ || dt > kUnseen_s;
+  if (dt > kUnseen_s) {
+    unseen_ = true;
+    seen_again_ns_ = sample.stamp_ns;
+    trial_.begin();
+  }
   const plant::ImuSample& before = first ? sample : last_imu_;
   now_.stamp_ns = sample.stamp_ns;
   now_.body_rates_frd = sample.body_rates_frd - now_.gyro_bias;
@@ -100,7 +104,7 @@ bool Estimator::predict(const plant::ImuSample& sample) {
   path_.stamp_ns = sample.stamp_ns;
   path_.position_ned += dt * path_.velocity_ned + (0.5 * dt * dt) * acceleration;
   path_.velocity_ned += dt * acceleration;
-  path_.q_ned_from_frd = (q_mid * half_turn).normalized();
+  path_.q_ned_from_frd = renormalised(q_mid * half_turn);
   if (!initialised_ && path_.velocity_ned.norm() > kLongFall) {  // anew: the start is arbitrary
     path_.position_ned.setZero();
     path_.velocity_ned.setZero();
@@ -158,17 +162,12 @@ PoseFault Estimator::take_in(const plant::PoseSample& pose, plant::RotorState ro
   // Without noise, a vehicle that stands repeats its pose: believed as any other with the rotors off.
   const bool stuck = contradicts && repetition_.repeats() && rotors != plant::RotorState::kOff;
   if (repetition_.frozen() || stuck) return PoseFault::kFrozen;
-  if (contradicts && (innovation.position.norm() > settings_.outlier_position_m ||
-                      innovation.rotation.norm() > outlier_rotation())) {
-    return disagree(pose, innovation, rotors);
-  }
+  const bool believed = rotors == plant::RotorState::kOff || believed_after_silence(pose, innovation);
+  const bool far_off = innovation.position.norm() > settings_.outlier_position_m ||
+                       innovation.rotation.norm() > outlier_rotation();
+  if (!believed || (contradicts && far_off)) return disagree(pose, innovation, rotors, believed);
 
-  disagreement_.clear();
-  continuity_.begin();
-  unseen_ = false;
-  refused_in_a_row_ = 0;
-  pose_stamp_ns_ = pose.stamp_ns;
-  pose_sequence_ = pose.sequence;
+  trust(pose);
   contradictions_ = contradicts ? contradictions_ + 1 : 0;
   if (contradicts && contradictions_ <= kGlitch) {
     apply(std::sqrt(settings_.gate_chi_square / normalised_innovation_) * correction.step());
@@ -176,6 +175,14 @@ PoseFault Estimator::take_in(const plant::PoseSample& pose, plant::RotorState ro
     agree(innovation, correction);
   }
   return PoseFault::kNone;
+}
+
+void Estimator::trust(const plant::PoseSample& pose) {
+  continuity_.begin();
+  unseen_ = false;
+  refused_in_a_row_ = 0;
+  pose_stamp_ns_ = pose.stamp_ns;
+  pose_sequence_ = pose.sequence;
 }
 
 void Estimator::agree(const PoseInnovation& innovation, const ErrorCovariance::Correction& correction) {
@@ -201,11 +208,22 @@ double Estimator::outlier_rotation() const {
   return std::min(settings_.outlier_orientation_rad, kSmallTurn_rad + kGyroSlip * continuity_.interval_s());
 }
 
+// What only a motion explains that the IMU did not see: the poses must go on in reach, and as the IMU has it
+// since.
+bool Estimator::believed_after_silence(const plant::PoseSample& pose, const PoseInnovation& innovation) {
+  const double turn = std::max(kUnseenTurn_rad, kUnseenTurnSigmas * settings_.mocap_orientation_sigma);
+  if (!unseen_ ||
+      (innovation.position.norm() < settings_.outlier_position_m && innovation.rotation.norm() < turn))
+    return true;
+  if (pose.stamp_ns < seen_again_ns_) return false;
+  if (continuity_.poses() == 1) trial_.begin();
+  const MotionTrial::Verdict verdict = trial_.look_at(pose, innovation, settings_);
+  if (verdict == MotionTrial::Verdict::kDisagree && continuity_.in_reach()) continuity_.disown();
+  return verdict == MotionTrial::Verdict::kAgree && continuity_.in_reach();
+}
+
 PoseFault Estimator::disagree(const plant::PoseSample& pose, const PoseInnovation& innovation,
-                              plant::RotorState rotors) {
-  const bool at_rest = rotors == plant::RotorState::kOff;
-  const bool turned = innovation.rotation.norm() > kSwap_rad;
-  disagreement_.add(pose.stamp_ns, innovation, at_rest ? kMaxDriftAtRest : kMaxDrift);
+                              plant::RotorState rotors, bool believed) {
   if (refused_in_a_row_++ == 0) {
     // What the IMU misleads to grows from pose to pose; what comes at once is a jump, unless the IMU was
     // silent.
@@ -214,15 +232,13 @@ PoseFault Estimator::disagree(const plant::PoseSample& pose, const PoseInnovatio
     if (unseen_ && continuity_.in_reach()) continuity_.begin();
     if (!unseen_ && sudden) continuity_.end();
   }
-  if (at_rest && disagreement_.persistent()) {
-    jump(pose, innovation);
-    return PoseFault::kNone;
-  }
-  if (continuity_.unbroken() && refused_in_a_row_ >= kPosesToRestart) {
+  const bool goes_on = believed && continuity_.unbroken() && continuity_.poses() >= kPosesToRestart;
+  const bool at_rest = rotors == plant::RotorState::kOff && continuity_.lasting();
+  if (refused_in_a_row_ >= kPosesToRestart && (goes_on || at_rest)) {
     restart_at(pose, innovation);
     return PoseFault::kNone;
   }
-  return turned ? PoseFault::kSwapped : PoseFault::kOutlier;
+  return innovation.rotation.norm() > kSwap_rad ? PoseFault::kSwapped : PoseFault::kOutlier;
 }
 
 // Takes a step of the error state at the anchor into the nominal state, there and since.
@@ -278,33 +294,7 @@ void Estimator::show_path() {
   now_.q_ned_from_frd = path_.q_ned_from_frd;
 }
 
-// Shifts and turns what is remembered onto the pose; velocity and biases are kept.
-void Estimator::jump(const plant::PoseSample& pose, const PoseInnovation& innovation) {
-  const Quaterniond turn = rotation(innovation.rotation);
-  const auto shift = [&](Moment& moment) {
-    moment.position_ned += innovation.position;
-    moment.q_ned_from_frd = (turn * moment.q_ned_from_frd).normalized();
-  };
-  catch_up();
-  shift(anchor_);
-  for (std::uint64_t number = first_after_anchor_; number < next_; ++number)
-    shift(history_[number % kHistory]);
-  shift(path_);
-  show_path();
-  Eigen::Matrix<double, 9, 1> sigma;
-  sigma << Vector3d::Constant(settings_.mocap_position_sigma), Vector3d::Constant(kJumpSpeed),
-      Vector3d::Constant(settings_.mocap_orientation_sigma);
-  covariance_.reset_motion(sigma);
-
-  pose_stamp_ns_ = pose.stamp_ns;
-  pose_sequence_ = pose.sequence;
-  disagreement_.clear();
-  ++now_.resets;
-  now_.reset_position_ned = innovation.position;
-  now_.reset_rotation_ned = innovation.rotation;
-}
-
-// Position, velocity and attitude of the poses, which go on without a break: it is the IMU that misled.
+// Position, velocity and attitude of the poses, which go on from one to the next.
 void Estimator::restart_at(const plant::PoseSample& pose, const PoseInnovation& innovation) {
   ErrorState step = ErrorState::Zero();
   step.segment<3>(0) = innovation.position;
@@ -312,14 +302,11 @@ void Estimator::restart_at(const plant::PoseSample& pose, const PoseInnovation& 
   step.segment<3>(6) = innovation.rotation;
   apply(step);
   ErrorState sigma;
-  sigma << Vector3d::Constant(settings_.mocap_position_sigma), Vector3d::Constant(kJumpSpeed),
+  sigma << Vector3d::Constant(settings_.mocap_position_sigma), Vector3d::Constant(kResetSpeed),
       Vector3d::Constant(settings_.mocap_orientation_sigma), Vector3d::Constant(kRestartGyroBias),
       Vector3d::Constant(kRestartAccelerometerBias);
   covariance_.reset(sigma);
-  pose_stamp_ns_ = pose.stamp_ns;
-  pose_sequence_ = pose.sequence;
-  disagreement_.clear();
-  refused_in_a_row_ = 0;
+  trust(pose);
   ++now_.resets;
   now_.reset_position_ned = innovation.position;
   now_.reset_rotation_ned = innovation.rotation;
@@ -351,8 +338,7 @@ void Estimator::start_at(const plant::PoseSample& pose) {
   show_path();
   anchor_at(start, first_newer);
   initialised_ = true;
-  pose_stamp_ns_ = pose.stamp_ns;
-  pose_sequence_ = pose.sequence;
+  trust(pose);
   ErrorState sigma;
   sigma << Vector3d::Constant(settings_.mocap_position_sigma), Vector3d::Constant(kStartSpeed),
       Vector3d::Constant(settings_.mocap_orientation_sigma), Vector3d::Constant(settings_.gyro_bias_sigma),

@@ -15,6 +15,7 @@
 #include <Eigen/Geometry>
 
 #include "control/estimation/error_covariance.hpp"
+#include "control/estimation/motion_trial.hpp"
 #include "control/estimation/pose_screen.hpp"
 #include "control/settings.hpp"
 #include "plant/model/samples.hpp"
@@ -69,10 +70,12 @@ class Estimator {
   // An innovation beyond the chi-square bound is cut to it if it is short of an outlier: a glitch moves the
   // estimate no faster than noise would, and does not make it surer. When the next ones contradict too, there
   // was a motion or a step that the noise densities leave out: variance of as much is added to position,
-  // velocity and attitude, so that these follow the poses and the biases hardly do. Outliers are refused
-  // until they persist and agree with each other; then the estimate jumps to them. In flight, that holds only
-  // for a jump of the position: where the gyro and the accelerometer contradict attitude or velocity, they
-  // are believed. With rotors off the poses are.
+  // velocity and attitude, so that these follow the poses and the biases hardly do. Outliers are refused. In
+  // flight they are believed in the end, and the estimate starts anew from them, where their stream has gone
+  // on without a break since it agreed: then it is the IMU that misled, or was silent. A stream that has
+  // stepped as no body moves is another one until it steps back. What only a motion explains that the IMU did
+  // not see is believed when the IMU agrees with the poses' own motion since. With rotors off any stream is
+  // believed that goes on for long.
   bool correct(const plant::PoseSample& pose, plant::RotorState rotors = plant::RotorState::kRunning);
 
   // A pose has been taken in, so the estimate has a meaning.
@@ -120,13 +123,14 @@ class Estimator {
   void remember();
   PoseFault take_in(const plant::PoseSample& pose, plant::RotorState rotors);
   PoseFault disagree(const plant::PoseSample& pose, const PoseInnovation& innovation,
-                     plant::RotorState rotors);
+                     plant::RotorState rotors, bool believed);
+  void trust(const plant::PoseSample& pose);  // from it on the stream is followed
   void agree(const PoseInnovation& innovation, const ErrorCovariance::Correction& correction);
   ErrorCovariance::Correction weigh(const PoseInnovation& innovation) const;
   double outlier_rotation() const;  // rad
+  bool believed_after_silence(const plant::PoseSample& pose, const PoseInnovation& innovation);
   void apply(const ErrorState& step);
   void catch_up();
-  void jump(const plant::PoseSample& pose, const PoseInnovation& innovation);
   void restart_at(const plant::PoseSample& pose, const PoseInnovation& innovation);
 
   static ErrorInterval interval(const Moment& from, const Moment& to);
@@ -148,9 +152,10 @@ class Estimator {
   std::uint64_t pose_sequence_ = 0;
   double normalised_innovation_ = 0.0;
   RepetitionWatch repetition_;
-  Disagreement disagreement_;
   Continuity continuity_;
-  bool unseen_ = false;  // the IMU was silent since the last pose that was taken in
+  bool unseen_ = false;             // the IMU was silent since the last pose that was taken in ...
+  std::int64_t seen_again_ns_ = 0;  // ... until then
+  MotionTrial trial_;
   int refused_in_a_row_ = 0;
   int contradictions_ = 0;  // in a row, of poses that were taken in
 

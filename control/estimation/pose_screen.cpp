@@ -15,8 +15,6 @@ constexpr double kFastest = 4.0;       // m/s, of a vehicle between two poses ..
 constexpr double kFastestTurn = 6.0;   // rad/s
 constexpr double kSmallStep_m = 0.01;  // ... and what noise may add
 constexpr double kSmallStep_rad = 0.01;
-constexpr double kScatter_m = 0.03;
-constexpr double kScatter_rad = 0.1;
 
 // No component differs by as much, of the position in m or of the quaternion.
 bool closer(const plant::PoseSample& a, const plant::PoseSample& b, double distance) {
@@ -37,15 +35,31 @@ void RepetitionWatch::look_at(const plant::PoseSample& pose, plant::RotorState r
 }
 
 void Continuity::look_at(const plant::PoseSample& pose) {
+  bool stepped = next_ == 0;
   if (next_ > 0) {
     const plant::PoseSample& last = before(0);
-    const double dt = interval_s_ = static_cast<double>(pose.stamp_ns - last.stamp_ns) * 1e-9;
-    const double moved = (pose.position_ned - last.position_ned).norm();
-    const double turned = rotation_vector(pose.q_ned_from_frd * last.q_ned_from_frd.conjugate()).norm();
-    if (moved > kFastest * dt + kSmallStep_m || turned > kFastestTurn * dt + kSmallStep_rad)
-      in_reach_ = false;
-    if (dt > kLongestGap_s || !in_reach_) unbroken_ = false;
+    interval_s_ = static_cast<double>(pose.stamp_ns - last.stamp_ns) * 1e-9;
+    const Eigen::Vector3d moved_ned = pose.position_ned - last.position_ned;
+    const Eigen::Quaterniond turned_frd = last.q_ned_from_frd.conjugate() * pose.q_ned_from_frd;
+    const double reach_m = kFastest * interval_s_ + kSmallStep_m;
+    const double reach_rad = kFastestTurn * interval_s_ + kSmallStep_rad;
+    stepped = moved_ned.norm() > reach_m || rotation_vector(turned_frd).norm() > reach_rad;
+    if (stepped && disowned_) {
+      disowned_ = false;
+      in_reach_ = true;
+      stepped_ned_.setZero();
+      turned_frd_.setIdentity();
+    } else if (stepped) {
+      stepped_ned_ += moved_ned;
+      turned_frd_ = (turned_frd_ * turned_frd).normalized();
+      // Within what the body has moved by itself, in the step away and in the step back.
+      in_reach_ =
+          stepped_ned_.norm() < 2.0 * reach_m && rotation_vector(turned_frd_).norm() < 2.0 * reach_rad;
+    }
+    if (interval_s_ > kLongestGap_s) unbroken_ = false;
   }
+  poses_ = stepped ? 1 : poses_ + 1;
+  if (stepped) since_ns_ = pose.stamp_ns;
   last_[next_++ % last_.size()] = pose;
 }
 
@@ -54,22 +68,6 @@ Eigen::Vector3d Continuity::velocity_ned() const {
   const plant::PoseSample& from = before(kSpan);
   const double dt = static_cast<double>(before(0).stamp_ns - from.stamp_ns) * 1e-9;
   return (before(0).position_ned - from.position_ned) / dt;
-}
-
-void Disagreement::add(std::int64_t stamp_ns, const PoseInnovation& innovation, double max_drift) {
-  const double elapsed_s = static_cast<double>(stamp_ns - first_stamp_ns_) * 1e-9;
-  const bool goes_on =
-      count_ > 0 && (innovation.position - first_.position).norm() < kScatter_m + max_drift * elapsed_s &&
-      rotation_vector(rotation(innovation.rotation) * rotation(first_.rotation).conjugate()).norm() <
-          kScatter_rad;
-  stamp_ns_ = stamp_ns;
-  if (goes_on) {
-    ++count_;
-    return;
-  }
-  count_ = 1;
-  first_stamp_ns_ = stamp_ns;
-  first_ = innovation;
 }
 
 }  // namespace swiftlet::control

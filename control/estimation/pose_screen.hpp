@@ -1,5 +1,4 @@
-// What can be wrong with a stream of poses that one pose alone does not show: frozen markers, and a jump that
-// stays.
+// What can be wrong with a stream of poses that one pose alone does not show: frozen markers, and steps.
 #pragma once
 
 #include <array>
@@ -9,7 +8,6 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "control/estimation/error_covariance.hpp"
 #include "plant/model/samples.hpp"
 
 namespace swiftlet::control {
@@ -36,8 +34,9 @@ class RepetitionWatch {
   bool noisy_ = false;
 };
 
-// Whether a stream goes on without a break, as the pose of a body does that moves: not after a jump, nor
-// after a gap in which a jump would not be seen.
+// Whether a stream goes on without a break, as the pose of a body does that moves. What leads from a pose to
+// the next faster than a body moves is a step: from there on the stream shows something else, until the way
+// back leads to where the body can be again.
 class Continuity {
  public:
   void look_at(const plant::PoseSample& pose);
@@ -45,50 +44,51 @@ class Continuity {
   void begin() {
     unbroken_ = true;
     in_reach_ = true;
+    disowned_ = false;
+    stepped_ned_.setZero();
+    turned_frd_.setIdentity();
   }
   void end() { unbroken_ = false; }
+  // The stream shows something else, and a gap has hidden how it came to that: with the next step it may show
+  // the body again.
+  void disown() {
+    disowned_ = true;
+    unbroken_ = false;
+  }
 
-  // A body could have gone the way from pose to pose since begin(), also where some are missing.
+  // The steps since begin() have led back, or there were none: a body could have gone the way, also where
+  // poses are missing.
   bool in_reach() const { return in_reach_; }
-  // Since begin().
-  bool unbroken() const { return unbroken_; }
+  // In reach since begin(), steps that led away and back left out, and without a gap in which one would not
+  // be seen.
+  bool unbroken() const { return unbroken_ && in_reach_; }
+  // The newest poses go on from one to the next: kPoses of them at least, and for kTime_ns.
+  bool lasting() const { return poses_ >= kPoses && before(0).stamp_ns - since_ns_ >= kTime_ns; }
+  int poses() const { return poses_; }               // in a row that do
   double interval_s() const { return interval_s_; }  // between the newest two
   // Between the newest pose and that of kSpan poses before, m/s.
   Eigen::Vector3d velocity_ned() const;
 
- private:
+  static constexpr int kPoses = 8;
+  static constexpr std::int64_t kTime_ns = 200'000'000;
   static constexpr std::size_t kSpan = 4;
 
+ private:
   const plant::PoseSample& before(std::uint64_t count) const {
     return last_[(next_ - 1 - count) % last_.size()];
   }
 
   bool unbroken_ = false;
   bool in_reach_ = false;
+  bool disowned_ = false;
+  // All steps since begin(), one after the other.
+  Eigen::Vector3d stepped_ned_ = Eigen::Vector3d::Zero();  // m
+  Eigen::Quaterniond turned_frd_ = Eigen::Quaterniond::Identity();
+  int poses_ = 0;
+  std::int64_t since_ns_ = 0;
   double interval_s_ = 0.0;
   std::array<plant::PoseSample, kSpan + 1> last_;
   std::uint64_t next_ = 0;  // of all that came
-};
-
-// Poses that disagree with the estimate, one after the other. When they agree with each other for long, it is
-// the world that has jumped, or the estimate that is wrong.
-class Disagreement {
- public:
-  // The innovation of a pose that was refused for it. The disagreement may wander by max_drift, in m/s, and
-  // still be the same.
-  void add(std::int64_t stamp_ns, const PoseInnovation& innovation, double max_drift);
-  void clear() { count_ = 0; }
-
-  bool persistent() const { return count_ >= kPoses && stamp_ns_ - first_stamp_ns_ >= kTime_ns; }
-
-  static constexpr int kPoses = 8;
-  static constexpr std::int64_t kTime_ns = 200'000'000;
-
- private:
-  int count_ = 0;
-  std::int64_t first_stamp_ns_ = 0;
-  std::int64_t stamp_ns_ = 0;
-  PoseInnovation first_;
 };
 
 }  // namespace swiftlet::control

@@ -26,6 +26,11 @@ inline Eigen::Quaterniond rotation(const Eigen::Vector3d& vector) {
   return {cosine, sine_over_h * half.x(), sine_over_h * half.y(), sine_over_h * half.z()};
 }
 
+// Of a product of unit quaternions, which is off by rounding only: of length 1.
+inline Eigen::Quaterniond renormalised(const Eigen::Quaterniond& q) {
+  return Eigen::Quaterniond((0.5 * (3.0 - q.squaredNorm())) * q.coeffs());
+}
+
 // The rotation vector of a unit quaternion, at most pi long. Off by less than 1e-9 of itself.
 inline Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q) {
   constexpr double kLargestForSeries = 1e-3;  // s^2

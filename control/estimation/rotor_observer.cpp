@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "plant/model/esc.hpp"
-#include "plant/model/rotor.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -13,11 +12,10 @@ constexpr double kCorrection = 0.2;  // share of the difference that a measured 
 }  // namespace
 
 RotorObserver::RotorObserver(const plant::Vehicle& vehicle)
-    : esc_(vehicle.esc),
-      motor_(vehicle.motor),
-      rotor_(vehicle.rotor),
-      effectiveness_(plant::effectiveness(vehicle)),
-      count_(vehicle.rotor_count()) {}
+    : esc_(vehicle.esc), motor_(vehicle.motor), count_(vehicle.rotor_count()) {
+  wrench_per_square_.setZero();
+  wrench_per_square_.leftCols(count_) = vehicle.rotor.thrust * plant::effectiveness(vehicle);  // Eq. (25)
+}
 
 void RotorObserver::step(double dt_s, const plant::ActuatorCommand& command, double supply_voltage_v) {
   if (dt_s != kept_for_s_) {
@@ -26,24 +24,23 @@ void RotorObserver::step(double dt_s, const plant::ActuatorCommand& command, dou
   }
   if (command.rotor_state != plant::RotorState::kRunning) {
     for (double& speed : speeds_) speed *= kept_;
-    update_wrench<0>();
-  } else if (count_ == 4) {
-    run_on<4>(command, supply_voltage_v);
+    update_wrench<plant::kMaxRotors>();
+  } else if (count_ == plant::kMinRotors) {
+    run_on<plant::kMinRotors>(command, supply_voltage_v);
   } else {
-    run_on<0>(command, supply_voltage_v);
+    run_on<plant::kMaxRotors>(command, supply_voltage_v);
   }
 }
 
-// kCount: of the rotors, known to the compiler; 0: count_.
+// kCount: of the values that are worked out side by side; those beyond count_ are of no rotor.
 template <int kCount>
 void RotorObserver::run_on(const plant::ActuatorCommand& command, double supply_voltage_v) {
-  const int count = kCount > 0 ? kCount : count_;
-  for (int i = 0; i < count; ++i) {
-    const auto n = static_cast<std::size_t>(i);
-    const double v_a = plant::motor_voltage(esc_, supply_voltage_v, command.throttle[n]);
-    const double steady = plant::steady_speed_from_voltage(motor_, v_a);
-    speeds_[n] = steady + kept_ * (speeds_[n] - steady);
-  }
+  using Values = Eigen::Array<double, kCount, 1>;
+  const Values v_a = plant::motor_voltages(esc_, supply_voltage_v, Values(command.throttle.data()));
+  const Values steady = plant::steady_speeds_from_voltages(motor_, v_a);
+  Eigen::Map<Values> speeds(speeds_.data());
+  speeds = steady + kept_ * (speeds - steady);
+  if constexpr (kCount > plant::kMinRotors) speeds.tail(kCount - count_).setZero();
   update_wrench<kCount>();
 }
 
@@ -57,16 +54,13 @@ void RotorObserver::correct(const plant::RotorSpeedSample& sample) {
     const auto n = static_cast<std::size_t>(i);
     speeds_[n] += kCorrection * (sample.speeds[n] - speeds_[n]);
   }
-  update_wrench<0>();
+  update_wrench<plant::kMaxRotors>();
 }
 
 template <int kCount>
 void RotorObserver::update_wrench() {
-  const int count = kCount > 0 ? kCount : count_;
-  wrench_.setZero();
-  for (int i = 0; i < count; ++i) {
-    wrench_ += plant::thrust_from_speed(rotor_, speeds_[static_cast<std::size_t>(i)]) * effectiveness_.col(i);
-  }
+  const Eigen::Map<const Eigen::Array<double, kCount, 1>> speeds(speeds_.data());
+  wrench_.noalias() = wrench_per_square_.leftCols<kCount>() * speeds.square().matrix();
 }
 
 }  // namespace swiftlet::control

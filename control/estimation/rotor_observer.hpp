@@ -35,8 +35,7 @@ class RotorObserver {
 
   plant::Esc esc_;
   plant::Motor motor_;
-  plant::RotorCoefficients rotor_;
-  plant::Effectiveness effectiveness_;
+  Eigen::Matrix<double, 4, plant::kMaxRotors> wrench_per_square_;  // of each speed; columns of no rotor: 0
   int count_ = 0;
   double kept_for_s_ =
       0.0;  // period, and the part of a difference from the steady speed that is left after it

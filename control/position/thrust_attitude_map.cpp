@@ -8,7 +8,6 @@
 namespace swiftlet::control {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kLeastLift = kMinimumLift * plant::kGravity;  // m/s^2
@@ -93,19 +92,14 @@ ReferenceMotion reference_motion(double mass_kg, const Reference& reference, con
   const double cos_phi = rho * per_norm;
   const double sin_theta = b.x() * per_rho;
   const double cos_theta = b.z() * per_rho;
-  Matrix3d to_rates;
-  to_rates << 1.0, 0.0, -sin_theta,       //
-      0.0, cos_phi, sin_phi * cos_theta,  //
-      0.0, -sin_phi, cos_phi * cos_theta;
-  Matrix3d to_rates_1;
-  to_rates_1 << 0.0, 0.0, -theta_1 * cos_theta,                                            //
-      0.0, -phi_1 * sin_phi, phi_1 * cos_phi * cos_theta - theta_1 * sin_phi * sin_theta,  //
-      0.0, -phi_1 * cos_phi, -phi_1 * sin_phi * cos_theta - theta_1 * cos_phi * sin_theta;
-  const Vector3d euler_1(phi_1, theta_1, psi_1);
-  const Vector3d euler_2(phi_2, theta_2, psi_2);
-
-  out.body_rates = to_rates * euler_1;
-  out.body_accelerations = to_rates * euler_2 + to_rates_1 * euler_1;
+  const double q = cos_phi * theta_1 + sin_phi * cos_theta * psi_1;
+  const double r = cos_phi * cos_theta * psi_1 - sin_phi * theta_1;
+  const double psi_1_turned = psi_1 * theta_1 * sin_theta;
+  out.body_rates = {phi_1 - sin_theta * psi_1, q, r};
+  out.body_accelerations = {
+      phi_2 - sin_theta * psi_2 - theta_1 * cos_theta * psi_1,
+      cos_phi * theta_2 + sin_phi * cos_theta * psi_2 + phi_1 * r - sin_phi * psi_1_turned,
+      cos_phi * cos_theta * psi_2 - sin_phi * theta_2 - phi_1 * q - cos_phi * psi_1_turned};
   out.thrust_n = mass_kg * norm;
   out.thrust_rate = mass_kg * norm_1;
   return out;

@@ -51,12 +51,17 @@ Outcome battery_there(const Scene& scene) {
   return accept();
 }
 
+// With an attitude that is turned wrong, what the accelerometer has more than gravity passes for a bias; what
+// is too much for one makes dead reckoning run off.
 Outcome imu_at_rest(const Scene& scene) {
-  const double error = std::abs(scene.situation.specific_force - plant::kGravity);
+  if (!scene.situation.has_estimate) return accept();
+  const Eigen::Vector3d up_ned(0.0, 0.0, -plant::kGravity);
+  const double error = (scene.estimate().q_ned_from_frd * scene.situation.specific_force_frd - up_ned).norm();
   const double limit = scene.settings.arming.max_specific_force_error;
   if (error <= limit) return accept();
-  return refuse("the accelerometer shows %.2f m/s^2, at rest it is within %.2f of %.2f m/s^2",
-                scene.situation.specific_force, limit, plant::kGravity);
+  return refuse(
+      "the accelerometer is %.2f m/s^2 off gravity in the attitude of the pose, the limit is %.2f m/s^2",
+      error, limit);
 }
 
 Outcome not_turning(const Scene& scene) {

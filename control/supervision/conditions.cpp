@@ -10,7 +10,7 @@ namespace swiftlet::control {
 namespace {
 
 constexpr double kContactDepth_m = 0.05;  // reference this far below the vehicle ...
-constexpr double kContactSpeed = 0.05;    // ... which does not move: it stands
+constexpr double kContactSpeed = 0.05;    // ... which does not move, or slides at the ground's height
 constexpr double kContactTime_s = 0.2;
 constexpr double kContactLift = 1.0;  // m/s^2 of lift that the rotors do not explain, for kBlindContactTime_s
 constexpr double kBlindContactTime_s = 0.3;
@@ -32,9 +32,12 @@ bool ground_felt(Scene& scene) {
                 kBlindContactTime_s);
   }
   if (state.phase != Phase::kSink) return false;
-  const double depth = state.path.at(state.now_ns).position_ned.z() - scene.estimate().position_ned.z();
-  const bool stands = depth > kContactDepth_m && scene.estimate().velocity_ned.norm() < kContactSpeed;
-  return held(stands, state.contact_since_ns, state.now_ns, kContactTime_s);
+  const Estimate& estimate = scene.estimate();
+  const double depth = state.path.at(state.now_ns).position_ned.z() - estimate.position_ned.z();
+  const bool at_ground = estimate.position_ned.z() > state.ground_z_ned - kAirborneHeight_m;
+  const double speed = at_ground ? std::abs(estimate.velocity_ned.z()) : estimate.velocity_ned.norm();
+  return held(depth > kContactDepth_m && speed < kContactSpeed, state.contact_since_ns, state.now_ns,
+              kContactTime_s);
 }
 
 bool outside_fence(const Scene& scene) {
@@ -97,7 +100,8 @@ EventSet observe(Scene& scene, double tip_over_cosine) {
   events.add(Event::kImuUnusable, situation.imu_unusable_s >= failsafe.imu_timeout_s);
   events.add(Event::kImuGap, situation.imu_gap_s > failsafe.imu_gap_s);
   events.add(Event::kTippedOver, cosine_of_tilt(scene.estimate().q_ned_from_frd) < tip_over_cosine);
-  events.add(Event::kStruck, state.phase != Phase::kGround && situation.specific_force > failsafe.blow);
+  events.add(Event::kStruck,
+             state.phase != Phase::kGround && situation.specific_force_frd.norm() > failsafe.blow);
   events.add(Event::kClimbNotSeen, situation.climb_contradicted && state.phase == Phase::kPath);
   events.add(Event::kPoseJumped, situation.pose_jumped);
   events.add(Event::kPoseLost, lost);

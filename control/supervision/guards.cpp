@@ -15,6 +15,7 @@ namespace {
 constexpr double kLeastClimb_m = 2.0 * kAirborneHeight_m;
 constexpr double kMaxSetpointStep_m = 1.0;
 constexpr double kUnitTolerance = 1e-3;
+constexpr double kNoticed_s = 0.01;  // after a stream has timed out: with the next IMU sample
 constexpr double kRounding = 1e-9;
 
 GroundLinkAction link_action(const Scene& scene) { return scene.settings.failsafe.ground_link_action; }
@@ -141,7 +142,7 @@ Outcome check_position_setpoint(const Scene& scene) {
 Outcome check_end_of_stream(const Scene& scene) {
   const Setpoint& setpoint = *scene.setpoint;
   const Limits& limits = scene.limits;
-  const double timeout_s = scene.settings.failsafe.setpoint_timeout_s;
+  const double timeout_s = scene.settings.failsafe.setpoint_timeout_s + kNoticed_s;
   Reference last;
   if (setpoint.kind == SetpointKind::kPosition) {
     last.velocity_ned = setpoint.velocity_ned;
@@ -154,8 +155,8 @@ Outcome check_end_of_stream(const Scene& scene) {
     in_full_motion.velocity_ned =
         setpoint.kind == SetpointKind::kVelocity ? setpoint.velocity_ned : last.velocity_ned;
     in_full_motion.position_ned = from.position_ned + timeout_s * in_full_motion.velocity_ned;
-    const Outcome inside =
-        check_position("setpoint: where it could come to rest", rest_place(limits, in_full_motion), limits);
+    const Outcome inside = check_position("setpoint: where it could come to rest",
+                                          reference_stop(limits, in_full_motion).place_ned, limits);
     if (!inside.accepted) return inside;
   }
   const double speed = last.velocity_ned.norm();
@@ -163,7 +164,8 @@ Outcome check_end_of_stream(const Scene& scene) {
     return refuse("setpoint: leads to %.2f m/s within %.2f s, the limit is %.2f m/s", speed, timeout_s,
                   limits.max_speed);
   }
-  return check_position("setpoint: where it could come to rest", rest_place(limits, last), limits);
+  return check_position("setpoint: where it could come to rest", reference_stop(limits, last).place_ned,
+                        limits);
 }
 
 Outcome check_thrust(const Setpoint& setpoint, const Limits& limits) {

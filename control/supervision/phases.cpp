@@ -30,15 +30,22 @@ double yaw_of(const Eigen::Quaterniond& q) {
 // The yaw that is `to` plus whole turns, nearest to `from`.
 double nearest_turn(double to, double from) { return from + std::remainder(to - from, 2.0 * M_PI); }
 
-Eigen::Vector3d stopping_place(const Limits& limits, const Reference& from) {
-  return rest_place(limits, from).cwiseMax(limits.fence_min_ned).cwiseMin(limits.fence_max_ned);
+// How the reference comes to rest inside the fence, being `from` by then. One that follows no path was put
+// where the vehicle is.
+Stop stop_inside(const Scene& scene, const Reference& from) {
+  const Limits& limits = scene.limits;
+  Stop stop = scene.state.path.moving ? reference_stop(limits, from) : vehicle_stop(limits, from);
+  stop.place_ned = stop.place_ned.cwiseMax(limits.fence_min_ned).cwiseMin(limits.fence_max_ned);
+  return stop;
 }
 
 bool leaves_fence(const Limits& limits, const PolynomialSegment& segment) {
   constexpr int kLooks = 24;
   for (int i = 1; i < kLooks; ++i) {
-    const Reference at = evaluate(segment, segment.duration_s * i / kLooks);
-    if (kept_inside(limits, at).position_ned != at.position_ned) return true;
+    Reference at = evaluate(segment, segment.duration_s * i / kLooks);
+    const Eigen::Vector3d position_ned = at.position_ned;
+    keep_inside(limits, at);
+    if (at.position_ned != position_ned) return true;
   }
   return false;
 }
@@ -186,18 +193,16 @@ double speed_on_way(const Scene& scene) {
 
 }  // namespace
 
-Reference kept_inside(const Limits& limits, const Reference& reference) {
-  Reference inside = reference;
+void keep_inside(const Limits& limits, Reference& reference) {
   for (int i = 0; i < 3; ++i) {
-    double& at = inside.position_ned[i];
+    double& at = reference.position_ned[i];
     const bool beyond = at < limits.fence_min_ned[i] || (i < 2 && at > limits.fence_max_ned[i]);
     if (!beyond) continue;
     at = at < limits.fence_min_ned[i] ? limits.fence_min_ned[i] : limits.fence_max_ned[i];
     for (Eigen::Vector3d* const rate :
-         {&inside.velocity_ned, &inside.acceleration_ned, &inside.jerk_ned, &inside.snap_ned})
+         {&reference.velocity_ned, &reference.acceleration_ned, &reference.jerk_ned, &reference.snap_ned})
       (*rate)[i] = 0.0;
   }
-  return inside;
 }
 
 Reference standing_at(const Estimate& estimate) {
@@ -207,12 +212,14 @@ Reference standing_at(const Estimate& estimate) {
   return reference;
 }
 
-double stopping_time(const Limits& limits, const Reference& from) {
-  return std::max(kMinMove_s, 2.0 * from.velocity_ned.norm() / limits.max_reference_acceleration);
+Stop reference_stop(const Limits& limits, const Reference& from) {
+  return limited_stop(from, limits.max_reference_acceleration, limits.max_reference_jerk, kMinMove_s);
 }
 
-Eigen::Vector3d rest_place(const Limits& limits, const Reference& from) {
-  return from.position_ned + 0.5 * stopping_time(limits, from) * from.velocity_ned;
+Stop vehicle_stop(const Limits& limits, const Reference& from) {
+  const double duration_s =
+      std::max(kMinMove_s, 2.0 * from.velocity_ned.norm() / limits.max_reference_acceleration);
+  return {duration_s, from.position_ned + 0.5 * duration_s * from.velocity_ned};
 }
 
 void start_takeoff(Scene& scene, double to_z_ned, double speed) {
@@ -233,7 +240,7 @@ void start_move(Scene& scene, const Eigen::Vector3d& to_ned, bool yaw_free, doub
   double duration = minimum_jerk_duration(distance, speed, limits.max_reference_acceleration,
                                           limits.max_reference_jerk, kMinMove_s);
   duration = std::max(duration, 15.0 / 8.0 * std::abs(to_yaw - from.yaw_rad) / limits.max_yaw_rate);
-  duration = std::max(duration, stopping_time(limits, from));
+  duration = std::max(duration, stop_inside(scene, from).duration_s);
   scene.state.phase = Phase::kPath;
   scene.state.path.follow(join_inside(limits, from, to_ned, to_yaw, duration), start_ns);
 }
@@ -276,17 +283,16 @@ void start_join(Scene& scene, const PolynomialSegment& first, bool keep_yaw, dou
 
 void start_stop(Scene& scene) {
   SupervisorState& state = scene.state;
-  const Limits& limits = scene.limits;
   const Reference from = state.path.at(state.now_ns);
+  const Stop stop = stop_inside(scene, from);
   state.phase = Phase::kPath;
-  state.path.follow(
-      join_to_rest(from, stopping_place(limits, from), from.yaw_rad, stopping_time(limits, from)),
-      state.now_ns);
+  state.path.follow(join_to_rest(from, stop.place_ned, from.yaw_rad, stop.duration_s), state.now_ns);
 }
 
 void start_landing(Scene& scene, double speed, std::int64_t start_ns) {
-  Eigen::Vector3d above_ground = stopping_place(scene.limits, scene.state.path.at(start_ns));
-  above_ground.z() = scene.state.ground_z_ned - kFlareHeight_m;
+  const Reference from = scene.state.path.at(start_ns);
+  Eigen::Vector3d above_ground = stop_inside(scene, from).place_ned;
+  above_ground.z() = std::max(scene.state.ground_z_ned - kFlareHeight_m, from.position_ned.z());
   start_move(scene, above_ground, true, 0.0, speed, start_ns);
 }
 

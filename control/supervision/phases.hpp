@@ -3,22 +3,25 @@
 #pragma once
 
 #include "control/supervision/scene.hpp"
+#include "control/trajectory/stop.hpp"
 
 namespace swiftlet::control {
 
 constexpr double kAirborneHeight_m = 0.03;  // above the ground
 
-// The reference, or the nearest to it inside the fence: what joins one motion to another may swing out. Down
+// Moves the reference to the nearest place inside the fence: what joins one motion to another may swing out. Down
 // to the ground the fence does not matter.
-Reference kept_inside(const Limits& limits, const Reference& reference);
+void keep_inside(const Limits& limits, Reference& reference);
 
 // Where the estimate is, at rest, with its yaw.
 Reference standing_at(const Estimate& estimate);
 
-// In which a reference that moves so comes to rest, s.
-double stopping_time(const Limits& limits, const Reference& from);
-// Where a reference that moves so can come to rest, as start_stop() would have it without a fence.
-Eigen::Vector3d rest_place(const Limits& limits, const Reference& from);
+// How a reference that moves so comes to rest within the limits of references, as start_stop() would have it
+// without a fence.
+Stop reference_stop(const Limits& limits, const Reference& from);
+// Likewise one that was put where the vehicle is, as it moves: braked by three quarters of the limit at most,
+// since the loops must follow first. Its acceleration is what the thrust gives now, and goes with the attitude.
+Stop vehicle_stop(const Limits& limits, const Reference& from);
 
 // Spool up, then climb straight to that height.
 void start_takeoff(Scene& scene, double to_z_ned, double speed);

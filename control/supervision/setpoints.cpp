@@ -118,9 +118,9 @@ PolynomialSegment blend(const Limits& limits, const Reference& from, const Setpo
   }
   if (std::isfinite(least)) return gentlest;
   // From outside the fence, or faster than is allowed: to rest, as fast as that may be.
-  return join_to_rest(from,
-                      rest_place(limits, from).cwiseMax(limits.fence_min_ned).cwiseMin(limits.fence_max_ned),
-                      from.yaw_rad, stopping_time(limits, from));
+  const Stop stop = reference_stop(limits, from);
+  const Vector3d inside = stop.place_ned.cwiseMax(limits.fence_min_ned).cwiseMin(limits.fence_max_ned);
+  return join_to_rest(from, inside, from.yaw_rad, stop.duration_s);
 }
 
 Reference after_blend(const PolynomialSegment& blend, double after_s) {
@@ -184,7 +184,7 @@ bool leads_out(const Scene& scene) {
   Reference here;
   here.position_ned = scene.estimate().position_ned + kReaction_s * scene.estimate().velocity_ned;
   here.velocity_ned = scene.estimate().velocity_ned;
-  const Vector3d rest = rest_place(limits, here);
+  const Vector3d rest = vehicle_stop(limits, here).place_ned;
   return (rest.array() < limits.fence_min_ned.array()).any() ||
          (rest.array() > limits.fence_max_ned.array()).any();
 }

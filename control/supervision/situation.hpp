@@ -21,10 +21,10 @@ struct Situation {
   double battery_age_s = 0.0;
   double unexplained_lift = 0.0;  // m/s^2, upward specific force less what the rotors' thrust explains; about
                                   // g - thrust/m on the ground
-  double specific_force = 0.0;    // m/s^2, length of the last sample's
-  double rotor_speed = 0.0;       // rad/s, of the fastest rotor
-  double imu_unusable_s = 0.0;    // for how long no sample could be used
-  double imu_gap_s = 0.0;         // between this usable sample and the one before
+  Eigen::Vector3d specific_force_frd = Eigen::Vector3d::Zero();  // m/s^2, of the last sample
+  double rotor_speed = 0.0;                                      // rad/s, of the fastest rotor
+  double imu_unusable_s = 0.0;                                   // for how long no sample could be used
+  double imu_gap_s = 0.0;  // between this usable sample and the one before
 };
 
 enum class Actuation : std::uint8_t {

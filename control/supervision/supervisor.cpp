@@ -72,8 +72,8 @@ void Supervisor::enter(Mode mode, Reason reason) {
 Directive Supervisor::directive(const Situation& situation) const {
   Directive directive;
   const bool flying = state_.phase != Phase::kGround;
-  directive.reference =
-      flying ? kept_inside(limits(), state_.path.at(state_.now_ns)) : standing_at(*situation.estimate);
+  directive.reference = flying ? state_.path.at(state_.now_ns) : standing_at(*situation.estimate);
+  if (flying) keep_inside(limits(), directive.reference);
   if (rotors_off(state_.mode)) {
     directive.actuation = Actuation::kOff;
   } else if (state_.mode == Mode::kArmed) {

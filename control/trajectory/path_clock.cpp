@@ -36,7 +36,7 @@ PathClock PathClock::standing_at(std::int64_t path_ns, std::int64_t now_ns) {
   return clock;
 }
 
-PathTime PathClock::at(std::int64_t now_ns) const {
+PathTime PathClock::at_own_pace(std::int64_t now_ns) const {
   if (!is_changing(now_ns)) {
     const std::int64_t run_ns = runs ? now_ns - change_end_ns() : 0;
     const std::int64_t changed_ns = change_s > 0.0 ? nanoseconds(integral(rate, change_s)) : 0;

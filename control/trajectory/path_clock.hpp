@@ -32,12 +32,15 @@ struct PathClock {
   // Stands at this time of the path.
   static PathClock standing_at(std::int64_t path_ns, std::int64_t now_ns);
 
-  PathTime at(std::int64_t now_ns) const;
+  PathTime at(std::int64_t now_ns) const {
+    return is_vehicle_time() ? PathTime{now_ns} : at_own_pace(now_ns);
+  }
   bool is_changing(std::int64_t now_ns) const { return change_s > 0.0 && now_ns < change_end_ns(); }
   bool is_vehicle_time() const { return runs && change_s == 0.0 && from_ns == change_ns; }
 
  private:
   std::int64_t change_end_ns() const;
+  PathTime at_own_pace(std::int64_t now_ns) const;
 };
 static_assert(std::is_trivially_copyable_v<PathClock>);
 

@@ -197,22 +197,21 @@ struct Dynamics::RigidBody {
     dy.q_zw = 0.5 * (y.q_xy[0] * Pair(q, -p) - y.q_xy[1] * rates_xy - r * Pair(-q_w, q_z));
 
     // Eq. (6): dw/dt = J^-1 (M - w x J w)
-    const Triple h = product(d.inertia_, p, q, r);
-    const double m_x = wrench.lift_roll[1] - (q * h.z - r * h.xy[1]);
-    const double m_y = wrench.pitch_yaw[0] - (r * h.xy[0] - p * h.z);
+    const Triple h = product(d.inertia_, y.rates_frd);
+    const Pair m_xy(wrench.lift_roll[1], wrench.pitch_yaw[0]);
     const double m_z = wrench.pitch_yaw[1] - (p * h.xy[1] - q * h.xy[0]);
-    dy.rates_frd = product(d.inverse_inertia_, m_x, m_y, m_z);
+    dy.rates_frd = product(d.inverse_inertia_, {m_xy - h.z * clockwise(rates_xy) + r * clockwise(h.xy), m_z});
     return dy;
   }
 };
 
-Dynamics::Dynamics(const Vehicle& vehicle, const Supply& supply)
+Dynamics::Dynamics(const Vehicle& vehicle, const Supply& supply, Instructions instructions)
     : rotor_count_(vehicle.rotor_count()),
       max_step_s_(kStepPerTimeConstant * vehicle.motor.time_constant_s),
       inverse_mass_(1.0 / vehicle.mass_kg),
       drag_over_mass_(vehicle.linear_drag * inverse_mass_),
-      inertia_(columns(vehicle.inertia)),
-      inverse_inertia_(columns(vehicle.inertia.inverse())),
+      inertia_(symmetric(vehicle.inertia)),
+      inverse_inertia_(symmetric(vehicle.inertia.inverse())),
       esc_(vehicle.esc),
       motor_(motor_dynamics(vehicle)),
       inverse_electrical_time_(motor_.has_current_state() ? vehicle.motor.armature_resistance_ohm /
@@ -250,28 +249,37 @@ Dynamics::Dynamics(const Vehicle& vehicle, const Supply& supply)
   if (motor_.has_current_state()) {
     const double electrical_time_s = motor.armature_inductance_h / motor.armature_resistance_ohm;
     max_step_s_ = std::min(max_step_s_, kStepPerTimeConstant * electrical_time_s);
-    advance_ = choose<MotorForm::kInductive>(rotor_count_);
+    advance_ = choose<MotorForm::kInductive>(rotor_count_, instructions);
   } else if (motor.model == MotorModel::kPhysical) {
-    advance_ = choose<MotorForm::kPhysical>(rotor_count_);
+    advance_ = choose<MotorForm::kPhysical>(rotor_count_, instructions);
   } else {
-    advance_ = choose<MotorForm::kReduced>(rotor_count_);
+    advance_ = choose<MotorForm::kReduced>(rotor_count_, instructions);
   }
 }
 
+template <int kRotors, MotorForm kMotor>
+Dynamics::Advance Dynamics::choose(Instructions instructions) {
+#ifdef __x86_64__
+  if (instructions == Instructions::kBest && __builtin_cpu_supports("avx"))
+    return &Dynamics::advance_by_avx<kRotors, kMotor>;
+#endif
+  return &Dynamics::advance_as<kRotors, kMotor>;
+}
+
 template <MotorForm kMotor>
-Dynamics::Advance Dynamics::choose(int rotor_count) {
+Dynamics::Advance Dynamics::choose(int rotor_count, Instructions instructions) {
   static_assert(kMinRotors == 4 && kMaxRotors == 8);
   switch (rotor_count) {
     case 5:
-      return &Dynamics::advance_as<5, kMotor>;
+      return choose<5, kMotor>(instructions);
     case 6:
-      return &Dynamics::advance_as<6, kMotor>;
+      return choose<6, kMotor>(instructions);
     case 7:
-      return &Dynamics::advance_as<7, kMotor>;
+      return choose<7, kMotor>(instructions);
     case 8:
-      return &Dynamics::advance_as<8, kMotor>;
+      return choose<8, kMotor>(instructions);
     default:
-      return &Dynamics::advance_as<4, kMotor>;
+      return choose<4, kMotor>(instructions);
   }
 }
 
@@ -283,8 +291,8 @@ void Dynamics::advance(VehicleState& state, const RotorDrive& drive, const Eigen
 // The classical Runge-Kutta step of both systems as one, its stages as a loop: the code stays small, so that
 // plant and controller fit into the processor's first cache together.
 template <int kRotors, MotorForm kMotor>
-void Dynamics::advance_as(VehicleState& state, const RotorDrive& drive, const Eigen::Vector3d& wind_ned,
-                          double dt) const {
+[[gnu::always_inline]] inline void Dynamics::runge_kutta(VehicleState& state, const RotorDrive& drive,
+                                                         const Eigen::Vector3d& wind_ned, double dt) const {
   using Rotors = Drivetrain<kRotors, kMotor>;
   const Rotors rotors(*this, drive, open_circuit(state.state_of_charge));
   const RigidBody body(*this, wind_ned);
@@ -314,6 +322,21 @@ void Dynamics::advance_as(VehicleState& state, const RotorDrive& drive, const Ei
   Rotors::unpack(x, state);
   RigidBody::unpack(y, state);
 }
+
+template <int kRotors, MotorForm kMotor>
+void Dynamics::advance_as(VehicleState& state, const RotorDrive& drive, const Eigen::Vector3d& wind_ned,
+                          double dt) const {
+  runge_kutta<kRotors, kMotor>(state, drive, wind_ned, dt);
+}
+
+#ifdef __x86_64__
+// Instructions with three operands: a fifth fewer of them.
+template <int kRotors, MotorForm kMotor>
+[[gnu::target("avx")]] void Dynamics::advance_by_avx(VehicleState& state, const RotorDrive& drive,
+                                                     const Eigen::Vector3d& wind_ned, double dt) const {
+  runge_kutta<kRotors, kMotor>(state, drive, wind_ned, dt);
+}
+#endif
 
 void Dynamics::disturb(const Disturbance& disturbance) {
   push_acceleration_ned_ = inverse_mass_ * disturbance.force_ned;

@@ -43,10 +43,14 @@ struct Disturbance {
 // The forms that the motor's equations take: Eq. (18); Eq. (15) with the current at once; Eq. (10) and (15).
 enum class MotorForm { kReduced, kPhysical, kInductive };
 
+// The instructions that steps are made of: the best that the processor has, or those that all processors have. Results
+// are the same to the last bit.
+enum class Instructions { kBest, kBaseline };
+
 class Dynamics {
  public:
   // The vehicle is one that validate() finds no fault with.
-  Dynamics(const Vehicle& vehicle, const Supply& supply);
+  Dynamics(const Vehicle& vehicle, const Supply& supply, Instructions instructions = Instructions::kBest);
 
   // From now on, until another is given.
   void disturb(const Disturbance& disturbance);
@@ -93,12 +97,20 @@ class Dynamics {
   template <int kRotors, MotorForm kMotor>
   void advance_as(VehicleState& state, const RotorDrive& drive, const Eigen::Vector3d& wind_ned,
                   double dt) const;
+  template <int kRotors, MotorForm kMotor>
+  void advance_by_avx(VehicleState& state, const RotorDrive& drive, const Eigen::Vector3d& wind_ned,
+                      double dt) const;
+  template <int kRotors, MotorForm kMotor>
+  void runge_kutta(VehicleState& state, const RotorDrive& drive, const Eigen::Vector3d& wind_ned,
+                   double dt) const;
   OpenCircuit open_circuit(double state_of_charge) const;
   double armature_voltage(double supply_voltage_v, const RotorDrive& drive, std::size_t rotor) const;
 
   using Advance = void (Dynamics::*)(VehicleState&, const RotorDrive&, const Eigen::Vector3d&, double) const;
+  template <int kRotors, MotorForm kMotor>
+  static Advance choose(Instructions instructions);
   template <MotorForm kMotor>
-  static Advance choose(int rotor_count);
+  static Advance choose(int rotor_count, Instructions instructions);
 
   Advance advance_;
   int rotor_count_;
@@ -106,8 +118,8 @@ class Dynamics {
 
   double inverse_mass_;
   double drag_over_mass_;
-  TripleColumns inertia_;
-  TripleColumns inverse_inertia_;
+  Symmetric inertia_;
+  Symmetric inverse_inertia_;
   std::array<Wrench, kMaxRotors> sound_wrenches_;  // of each rotor, over Omega^2, without a disturbance
   std::array<Wrench, kMaxRotors> wrenches_;
   Eigen::Vector3d push_acceleration_ned_ = Eigen::Vector3d::Zero();

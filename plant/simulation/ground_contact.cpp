@@ -9,7 +9,7 @@ namespace swiftlet::plant {
 namespace {
 
 constexpr int kMaxSweeps = 60;
-constexpr double kConverged = 1.0e-10;  // m/s, change of a point's velocity in one sweep
+constexpr double kConverged = 1.0e-7;  // m/s, change of a point's velocity in one sweep
 constexpr double kRest = 1.0e-5;  // m/s; a body that bears on the floor and is slower than this stands still
 
 Eigen::Quaterniond turned(const Eigen::Quaterniond& q, const Eigen::Vector3d& body_rates_frd, double dt) {
@@ -46,7 +46,7 @@ double GroundContact::clearance(const VehicleState& state) const {
   return floor_z_ - state.position_ned.z() - lowest;
 }
 
-bool GroundContact::resolve(const VehicleState& before, VehicleState& after, double dt,
+bool GroundContact::resolve(const Place& before, VehicleState& after, double dt,
                             Eigen::Vector3d& acceleration_ned) {
   const auto count = static_cast<std::size_t>(point_count_);
   const Eigen::Matrix3d rotation = before.q_ned_from_frd.toRotationMatrix();

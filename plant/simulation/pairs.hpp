@@ -2,8 +2,6 @@
 // and an optimiser left to itself fills them only here and there.
 #pragma once
 
-#include <array>
-
 #include <Eigen/Core>
 
 namespace swiftlet::plant {
@@ -30,17 +28,28 @@ inline Eigen::Vector3d vector(const Triple& v) { return {v.xy[0], v.xy[1], v.z};
   return {v.xy + h * k.xy, v.z + h * k.z};
 }
 
-// A matrix by its columns.
-using TripleColumns = std::array<Triple, 3>;
+// A symmetric matrix, by its diagonal and what stands beside that: xy, xz, yz. Mostly nothing does.
+struct Symmetric {
+  Triple diagonal;
+  Triple beside;
+  bool is_diagonal;
+};
 
-inline TripleColumns columns(const Eigen::Matrix3d& matrix) {
-  return {triple(matrix.col(0)), triple(matrix.col(1)), triple(matrix.col(2))};
+inline Symmetric symmetric(const Eigen::Matrix3d& m) {
+  const Eigen::Vector3d beside(m(0, 1), m(0, 2), m(1, 2));
+  return {triple(m.diagonal()), triple(beside), beside.isZero(0.0)};
 }
 
-// The matrix times (x, y, z).
-[[gnu::always_inline]] inline Triple product(const TripleColumns& columns, double x, double y, double z) {
-  return {columns[0].xy * x + columns[1].xy * y + columns[2].xy * z,
-          columns[0].z * x + columns[1].z * y + columns[2].z * z};
+// The matrix times v.
+[[gnu::always_inline]] inline Triple product(const Symmetric& m, const Triple& v) {
+  Triple out = {m.diagonal.xy * v.xy, m.diagonal.z * v.z};
+  if (m.is_diagonal) return out;
+  const double xy = m.beside.xy[0];
+  const double xz = m.beside.xy[1];
+  const double yz = m.beside.z;
+  out.xy += Pair(xy * v.xy[1] + xz * v.z, xy * v.xy[0] + yz * v.z);
+  out.z += xz * v.xy[0] + yz * v.xy[1];
+  return out;
 }
 
 }  // namespace swiftlet::plant

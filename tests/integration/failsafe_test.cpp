@@ -227,8 +227,8 @@ TEST_F(Failsafe, SetpointsThatLeaveTheFenceAreRefusedAndItHoldsInside) {
   double farthest_north = 0.0;
   for (const TruthRow& row : truth()) farthest_north = std::max(farthest_north, row.position_ned[0]);
   EXPECT_GT(farthest_north, 0.3);
-  // Its reference comes to rest on the fence; a stop within half a second costs the vehicle 4 cm.
-  EXPECT_LT(farthest_north, 0.65) << "it follows them as far as it can come to rest inside";
+  // Its reference comes to rest before the fence; to the jerk of the stop the vehicle lags by up to 3 cm.
+  EXPECT_LT(farthest_north, 0.635) << "it follows them as far as it can come to rest inside";
   EXPECT_EQ(client_->view().control.message.mode(), static_cast<std::uint8_t>(Mode::kHolding));
 }
 

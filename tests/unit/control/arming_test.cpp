@@ -36,6 +36,11 @@ TEST_P(Arming, IsRefusedBeyondTheLimitWithValueAndLimit) {
 }
 
 const auto kNothing = [](Placed&) {};
+void tilt(Placed& flight, double angle_rad) {
+  flight.estimate_.q_ned_from_frd = Eigen::AngleAxisd(angle_rad, Vector3d::UnitX());
+  flight.situation_.specific_force_frd =
+      flight.estimate_.q_ned_from_frd.conjugate() * Vector3d(0.0, 0.0, -plant::kGravity);
+}
 const ArmingLimit kArmingLimits[] = {
     {"pose", kNothing, [](Placed& f) { f.situation_.has_estimate = false; }, "no mocap pose has come"},
     {"pose age", [](Placed& f) { f.situation_.pose_age_s = 0.5; },
@@ -51,9 +56,17 @@ const ArmingLimit kArmingLimits[] = {
      "the last battery voltage is 2.1 s old, the limit is 2.0 s"},
     {"voltage", [](Placed& f) { f.situation_.supply_voltage_v = 3.3; },
      [](Placed& f) { f.situation_.supply_voltage_v = 3.29; }, "the battery has 3.29 V, the limit is 3.30 V"},
-    {"specific force", [](Placed& f) { f.situation_.specific_force = plant::kGravity + 1.49; },
-     [](Placed& f) { f.situation_.specific_force = plant::kGravity - 1.51; },
-     "the accelerometer shows 8.30 m/s^2, at rest it is within 1.50 of 9.81 m/s^2"},
+    {"specific force",
+     [](Placed& f) {
+       f.situation_.specific_force_frd = {0.6, 0.0, -plant::kGravity - 0.79};
+     },
+     [](Placed& f) {
+       f.situation_.specific_force_frd = {0.0, 0.0, -plant::kGravity + 1.01};
+     },
+     "the accelerometer is 1.01 m/s^2 off gravity in the attitude of the pose, the limit is 1.00 m/s^2"},
+    {"tilt of the pose alone", kNothing,
+     [](Placed& f) { f.estimate_.q_ned_from_frd = Eigen::AngleAxisd(0.15, Vector3d::UnitX()); },
+     "the accelerometer is 1.47 m/s^2 off gravity in the attitude of the pose, the limit is 1.00 m/s^2"},
     {"rates",
      [](Placed& f) {
        f.estimate_.body_rates_frd = {0.0, 0.2, 0.0};
@@ -65,8 +78,7 @@ const ArmingLimit kArmingLimits[] = {
     {"rotors", [](Placed& f) { f.situation_.rotor_speed = 100.0; },
      [](Placed& f) { f.situation_.rotor_speed = 101.0; },
      "a rotor turns at 101 rad/s, the limit is 100 rad/s"},
-    {"tilt", [](Placed& f) { f.estimate_.q_ned_from_frd = Eigen::AngleAxisd(0.349, Vector3d::UnitX()); },
-     [](Placed& f) { f.estimate_.q_ned_from_frd = Eigen::AngleAxisd(0.36, Vector3d::UnitX()); },
+    {"tilt", [](Placed& f) { tilt(f, 0.349); }, [](Placed& f) { tilt(f, 0.36); },
      "tilted by 0.36 rad, the limit is 0.35 rad"},
     {"speed",
      [](Placed& f) {

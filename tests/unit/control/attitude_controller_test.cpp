@@ -199,7 +199,7 @@ TEST_P(AttitudeControllerTest, FeedForwardWithItsDerivativeLeadsTheLag) {
       reference.body_rates.y() = kOmega * c;
       reference.body_accelerations.y() = -kOmega * kOmega * s;
       if (lead) reference.body_jerks.y() = -kOmega * kOmega * kOmega * c;
-      if (i > 6000) error = std::max(error, std::abs(euler_from_quaternion(body.q).y() - s));
+      if (i > 6000) error = std::max(error, std::abs(euler_angles(body.q).vector().y() - s));
       body.step(loops, loops.controller->moments(body.q, body.rates, body.moment, reference), kStep);
     }
     return error;

@@ -30,24 +30,34 @@ class EstimatorFaults : public testing::Test {
     while (time_ns_ < end) {
       time_ns_ += kStep_ns;
       plant::ImuSample imu = motion_.imu(time_ns_);
-      imu.specific_force_frd += imu_error_;
+      imu.specific_force_frd = hidden_turn_.conjugate() * imu.specific_force_frd + imu_error_;
+      imu.body_rates_frd = hidden_turn_.conjugate() * imu.body_rates_frd;
       EXPECT_TRUE(estimator_.predict(imu));
       if (time_ns_ % kFrame_ns != 0 || time_ns_ < 2 * kFrame_ns) continue;
-      PoseSample pose = motion_.pose(time_ns_ - kFrame_ns);
+      PoseSample pose = pose_now();
       change(pose);
       estimator_.correct(pose, rotors);
     }
     return estimator_.estimate().pose_fault;
   }
+  PoseSample pose_now() {
+    PoseSample pose = motion_.pose(time_ns_ - kFrame_ns);
+    pose.q_ned_from_frd = pose.q_ned_from_frd * hidden_turn_;
+    return pose;
+  }
   double position_error() const { return motion_.error(estimator_.estimate()).head<3>().norm(); }
   double velocity_error() const { return motion_.error(estimator_.estimate()).segment<3>(3).norm(); }
   double accelerometer_bias_error() const { return motion_.error(estimator_.estimate()).tail<3>().norm(); }
-  double angle_error() const { return motion_.error(estimator_.estimate()).segment<3>(6).norm(); }
+  double angle_error() const {
+    const double t = static_cast<double>(estimator_.estimate().stamp_ns) * 1e-9;
+    return (Motion::attitude(t) * hidden_turn_).angularDistance(estimator_.estimate().q_ned_from_frd);
+  }
 
   EstimatorSettings settings_;
   Estimator estimator_{settings_};
   NoisyMotion motion_{settings_, 1};
-  Vector3d imu_error_ = Vector3d::Zero();  // m/s^2
+  Vector3d imu_error_ = Vector3d::Zero();              // m/s^2
+  Quaterniond hidden_turn_ = Quaterniond::Identity();  // of the body, that no IMU sample has seen
   std::int64_t time_ns_ = 0;
 };
 
@@ -181,6 +191,67 @@ TEST_F(EstimatorFaults, MarkersThatSwapWhileTheImuIsSilentAreNotBelieved) {
   EXPECT_EQ(fly(0.5), PoseFault::kNone);
 }
 
+// The silence is no excuse: by what it may hide, the turn alone would pass for a motion.
+TEST_F(EstimatorFaults, ATurnOfThePosesInASilenceOfTheImuIsNotBelieved) {
+  const Change turned = [](PoseSample& pose) {
+    pose.position_ned.x() += 0.03;
+    pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(0.2, Vector3d(0.6, 0.8, 0.0));
+  };
+  for (const int last_true_frame : {0, 12, 23}) {
+    estimator_ = Estimator(settings_);
+    hidden_turn_.setIdentity();
+    fly(3.0);
+    hidden_turn_ = AngleAxisd(0.05, Vector3d(0.8, -0.6, 0.0));
+    for (int frame = 1; frame <= 24; ++frame) {
+      time_ns_ += kFrame_ns;
+      PoseSample pose = pose_now();
+      if (frame > last_true_frame) turned(pose);
+      estimator_.correct(pose);
+    }
+    EXPECT_EQ(fly(0.4, turned), PoseFault::kOutlier) << last_true_frame;
+    EXPECT_LT(angle_error(), 0.1) << last_true_frame;
+    // What steps back to where the body can be is believed again, though the IMU has missed a motion.
+    EXPECT_EQ(fly(0.2), PoseFault::kNone) << last_true_frame;
+    EXPECT_EQ(fly(0.5), PoseFault::kNone) << last_true_frame;
+    EXPECT_LT(position_error(), 2e-3) << last_true_frame;
+    EXPECT_LT(angle_error(), 0.005) << last_true_frame;
+  }
+}
+
+// Poses were missing with the IMU's samples, so that no step shows: they contradict the IMU afterwards.
+TEST_F(EstimatorFaults, ATurnThatASilenceHasHiddenIsNotBelieved) {
+  for (const double angle : {0.1, 0.2, 0.4}) {
+    const Change turned = [&](PoseSample& pose) {
+      pose.position_ned.x() += 0.03;
+      pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(angle, Vector3d(0.6, 0.8, 0.0));
+    };
+    estimator_ = Estimator(settings_);
+    hidden_turn_.setIdentity();
+    fly(3.0);
+    hidden_turn_ = AngleAxisd(0.05, Vector3d(0.8, -0.6, 0.0));
+    time_ns_ += 250'000'000;
+    fly(1.0, turned);
+    EXPECT_GT(estimator_.pose_age_s(), 1.0) << angle;
+    EXPECT_LT(angle_error(), 0.1) << angle;
+    EXPECT_EQ(fly(0.2), PoseFault::kNone) << angle;
+    EXPECT_EQ(fly(0.5), PoseFault::kNone) << angle;
+    EXPECT_LT(position_error(), 2e-3) << angle;
+    EXPECT_LT(angle_error(), 0.005) << angle;
+  }
+}
+
+// What the vehicle has really done in the silence is believed as soon as the IMU bears it out.
+TEST_F(EstimatorFaults, AMotionThatASilenceHasHiddenIsBelieved) {
+  fly(3.0);
+  hidden_turn_ = AngleAxisd(0.2, Vector3d(0.6, 0.8, 0.0));
+  time_ns_ += 200'000'000;
+  EXPECT_EQ(fly(0.1), PoseFault::kOutlier) << "on trial";
+  EXPECT_EQ(fly(0.1), PoseFault::kNone);
+  EXPECT_EQ(fly(0.5), PoseFault::kNone);
+  EXPECT_LT(angle_error(), 0.005);
+  EXPECT_LT(position_error(), 2e-3);
+}
+
 TEST_F(EstimatorFaults, SwappedMarkersAreNotBelievedInFlight) {
   fly(2.0);
   for (const double angle : {0.5 * M_PI, M_PI}) {
@@ -206,6 +277,29 @@ TEST_F(EstimatorFaults, WithRotorsOffTheyAre) {
             PoseFault::kNone);
   EXPECT_LT(angle_error(), 0.02);
   EXPECT_GE(estimator_.estimate().resets, 1U);
+}
+
+// A blow, as of a fall, leaves a speed behind that the vehicle does not have.
+TEST_F(EstimatorFaults, WithRotorsOffAnEstimateThatRunsAwayComesBack) {
+  fly(3.0);
+  imu_error_ = {400.0, -300.0, 200.0};
+  fly(
+      0.02, [](PoseSample& pose) { pose.tracked = false; }, RotorState::kOff);
+  imu_error_.setZero();
+  EXPECT_GT(velocity_error(), 8.0);
+  EXPECT_EQ(fly(
+                0.01,
+                [](PoseSample& pose) {
+                  pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(0.3, Vector3d::UnitX());
+                },
+                RotorState::kOff),
+            PoseFault::kOutlier)
+      << "no stream without a break";
+  EXPECT_EQ(fly(
+                1.0, [](PoseSample&) {}, RotorState::kOff),
+            PoseFault::kNone);
+  EXPECT_LT(velocity_error(), 0.05);
+  EXPECT_LT(position_error(), 2e-3);
 }
 
 TEST_F(EstimatorFaults, AnotherVehicleThatMovesIsNotTakenForThisOne) {

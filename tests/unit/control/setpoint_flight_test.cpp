@@ -80,7 +80,7 @@ class SetpointFlight : public testing::TestWithParam<const char*> {
 TEST_P(SetpointFlight, AnAttitudeIsTakenAndTheThrustCarriesIt) {
   ASSERT_TRUE(stream(attitude(0.1, -0.05, 0.0), 0.8).accepted);
   EXPECT_EQ(mode(), Mode::kSetpoint);
-  const Vector3d euler = euler_from_quaternion(truth().q_ned_from_frd);
+  const Vector3d euler = euler_angles(truth().q_ned_from_frd).vector();
   EXPECT_NEAR(euler.x(), 0.1, 0.02);
   EXPECT_NEAR(euler.y(), -0.05, 0.02);
   EXPECT_NEAR(truth().position_ned.z(), -1.2, 0.1);
@@ -92,10 +92,10 @@ TEST_P(SetpointFlight, AnAttitudeIsTakenAndTheThrustCarriesIt) {
 }
 
 TEST_P(SetpointFlight, BodyRatesAreTaken) {
-  const double before = euler_from_quaternion(truth().q_ned_from_frd).z();
+  const double before = euler_angles(truth().q_ned_from_frd).vector().z();
   ASSERT_TRUE(stream(body_rates({0, 0, 1.0}), 1.5).accepted);
   EXPECT_NEAR(truth().body_rates_frd.z(), 1.0, 0.1);
-  EXPECT_NEAR(wrap_angle(euler_from_quaternion(truth().q_ned_from_frd).z() - before), 1.5, 0.4);
+  EXPECT_NEAR(wrap_angle(euler_angles(truth().q_ned_from_frd).vector().z() - before), 1.5, 0.4);
   EXPECT_LT(tilt_rad(), 0.1);
   ASSERT_TRUE(stream(body_rates({0.5, 0, 0}), 0.3).accepted);
   EXPECT_NEAR(truth().body_rates_frd.x(), 0.5, 0.1);
@@ -165,6 +165,33 @@ TEST_P(SetpointFlight, APositionStreamOf2HzIsFlownWithoutAJerk) {
   loop_.step_until([&] { return mode() == Mode::kHolding; }, 2.0);
   loop_.step_until([] { return false; }, 3.0);
   EXPECT_NEAR(truth().position_ned.x(), 1.5, 0.03);
+}
+
+// Positions that run on through the fence: the last that is taken lets it come to rest inside.
+TEST_P(SetpointFlight, APositionStreamThatLeavesTheFenceEndsBeforeIt) {
+  double farthest_reference_m = 0.0, farthest_m = 0.0;
+  Setpoint setpoint;
+  setpoint.yaw_free = true;
+  setpoint.position_ned = {0, 0, -1.2};
+  setpoint.velocity_ned = {0, 0.4, 0};
+  const double start_s = loop_.time_s();
+  const double start_y = loop_.controller.reference().position_ned.y();
+  double next_s = start_s;
+  while (loop_.time_s() < start_s + 12.0) {
+    if (loop_.time_s() >= next_s) {
+      next_s += kPeriod_s;
+      setpoint.position_ned.y() = start_y + 0.4 * (loop_.time_s() - start_s);
+      loop_.controller.on_setpoint(setpoint);
+    }
+    loop_.step();
+    farthest_m = std::max(farthest_m, truth().position_ned.y());
+    farthest_reference_m = std::max(farthest_reference_m, loop_.controller.reference().position_ned.y());
+  }
+  EXPECT_EQ(mode(), Mode::kHolding);
+  EXPECT_LE(farthest_reference_m, 3.0);
+  EXPECT_GT(farthest_reference_m, 2.9);
+  const double lag_m = std::string(GetParam()) == "paper" ? 0.07 : 0.03;  // of the loops, to the stop's jerk
+  EXPECT_LT(farthest_m, 3.0 + lag_m);
 }
 
 TEST_P(SetpointFlight, NoKindTakesMemory) {

@@ -60,8 +60,6 @@ class Stream : public testing::Test, protected SupervisedFlight {
     return outcome.accepted ? "accepted" : outcome.reason;
   }
 
-  // Coming to rest is a quintic from the acceleration as it is, in the time that the velocity asks for.
-  static constexpr double kStopJerk = 40.0;  // m/s^3
   const Limits limits_;
   double allowed_acceleration_ = limits_.max_reference_acceleration * (1.0 + 1e-4);
   double allowed_jerk_ = limits_.max_reference_jerk * (1.0 + 1e-4);
@@ -152,7 +150,6 @@ TEST_P(Rates, AnAccelerationIsReachedSmoothlyAndKept) {
 TEST_P(Rates, AVelocityTowardsTheFenceStopsBeforeIt) {
   Setpoint setpoint = of_kind(SetpointKind::kVelocity);
   setpoint.velocity_ned = {0.8, 0.0, 0.0};
-  allowed_jerk_ = kStopJerk;
   ASSERT_NO_FATAL_FAILURE(stream(12.0, GetParam(), [&](double) { return setpoint; }));
   EXPECT_EQ(supervisor_.mode(), Mode::kHolding);
   EXPECT_FALSE(last_.accepted);
@@ -162,7 +159,6 @@ TEST_P(Rates, AVelocityTowardsTheFenceStopsBeforeIt) {
 TEST_P(Rates, AnAccelerationEndsAtTheSpeedThatIsAllowed) {
   Setpoint setpoint = of_kind(SetpointKind::kAcceleration);
   setpoint.acceleration_ned = {1.2, 0.0, 0.0};
-  allowed_jerk_ = kStopJerk;
   ASSERT_NO_FATAL_FAILURE(stream(6.0, GetParam(), [&](double) { return setpoint; }));
   EXPECT_FALSE(last_.accepted) << "either for the speed or for the fence";
   EXPECT_LT(directive_.reference.velocity_ned.norm(), limits_.max_speed);

@@ -20,7 +20,7 @@ class SupervisedFlight {
     situation_.has_estimate = true;
     situation_.has_battery = true;
     situation_.supply_voltage_v = 3.9;
-    situation_.specific_force = plant::kGravity;
+    situation_.specific_force_frd.z() = -plant::kGravity;
     step();
   }
   SupervisedFlight(const SupervisedFlight&) = delete;
