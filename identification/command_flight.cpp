@@ -20,6 +20,7 @@ using Eigen::VectorXd;
 constexpr std::size_t kCurvePoints = 41;
 constexpr double kRareCommands = 0.01;  // share of commands that lie outside the figure, at each end
 constexpr double kAtOdds = 1.5;         // of what responses tell of the lag, over what they may differ
+constexpr double kBatteryKnown = 0.25;  // standard error of the sag, over the sag
 constexpr double kOfLittleUse = 0.1;    // weight of the commands in a forecast
 
 struct CommandFit {
@@ -91,6 +92,14 @@ void widen(EstimatedParameters& fit, Index parameter, double standard_error) {
   fit.covariance += (wanted - variance) * follows * follows.transpose();
 }
 
+// The sag that stands in the gains is the base's.
+void allow_for_battery(const CommandModel& model, EstimatedParameters& fit) {
+  const double relative = kBatteryKnown * (1.0 / model.shared_over_single() - 1.0);
+  VectorXd moved = VectorXd::Zero(fit.parameters.size());
+  for (const int gain : model.layout().gain) moved[gain] = relative * fit.parameters[gain];
+  fit.covariance += moved * moved.transpose();
+}
+
 // The command of which all rotors carry the weight.
 double hover_command(const ThrustCurve& curve) {
   const double missing = plant::kGravity - curve.value;
@@ -126,12 +135,22 @@ std::vector<Derived> derived(const CommandModel& model) {
   for (int axis = 0; axis < 3; ++axis) {
     const int gain = l.gain[axis];
     out.push_back({std::string("command_to_rate.") + axis_name(axis), responses[axis], "rad/s^2",
-                   [gain, slope](const VectorXd& x) { return x[gain] * slope(x); }});
+                   [gain, slope, &model](const VectorXd& x) {
+                     return x[gain] * slope(x) / model.shared_over_single();
+                   }});
   }
   const double rotors = base.rotor_count();
   out.push_back({"lead.yaw", "T_z", "s", [&l, rotors](const VectorXd& x) {
                    return 0.5 * x[l.spin_up] / (x[l.gain[2]] * std::sqrt(plant::kGravity / rotors));
                  }});
+  const char* const inertias[3] = {"inertia.xx", "inertia.yy", "inertia.zz"};
+  const char* const symbols[3] = {"J_xx", "J_yy", "J_zz"};
+  for (int axis = 0; axis < 3; ++axis) {
+    const int gain = l.gain[axis];
+    const double lever = model.lever(axis);
+    out.push_back({inertias[axis], symbols[axis], "kg*m^2",
+                   [gain, lever, &base](const VectorXd& x) { return base.mass_kg * lever / x[gain]; }});
+  }
   // A thrust T through (x, y) gives the moment (-y T, x T).
   out.push_back({"thrust_centre.x", "r_x", "m",
                  [&l, &model](const VectorXd& x) { return x[l.trim[1]] / x[l.gain[1]] * model.lever(1); }});
@@ -182,7 +201,13 @@ void draw_thrust(FlightIdentification& out, const CommandFit& all) {
   }
 }
 
-std::string advice(const std::string& /*parameter*/) { return "fly quick moves, up and down too"; }
+// What would tell it.
+std::string advice(const std::string& parameter) {
+  if (parameter == "inertia.xx") return "fly quick moves sideways";
+  if (parameter == "inertia.yy") return "fly quick moves forward and back";
+  if (parameter == "inertia.zz") return "turn about yaw, quickly";
+  return "fly quick moves, up and down too";
+}
 
 void tell_of_lags(FlightIdentification& out, const Agreement& lags) {
   std::string sentence = "the rotors' lag by itself: ";
@@ -236,6 +261,7 @@ void identify_commands(FlightIdentification& out, std::vector<FlightSeries> flig
   for (const CommandFit& fit : alone) out.lags.push_back(lag_of(fit));
   const Agreement lags = agreement(out.lags);
   if (lags.ratio > 1.0) widen(all.fit, all.model->layout().lag, lags.standard_error);
+  allow_for_battery(*all.model, all.fit);
   refuse_turned_gains(all.model->layout().gain, base, all.fit);
 
   out.converged = all.fit.converged;
@@ -244,14 +270,15 @@ void identify_commands(FlightIdentification& out, std::vector<FlightSeries> flig
   out.estimates = estimates_of(quantities, values, all.fit.degrees_of_freedom);
   conclude_vehicle(out, values, base, advice);
   out.unexcited.emplace_back(
-      "mass, inertia, rotor.thrust_factor, rotor.torque_factor, linear_drag and the accelerometer's offset: "
-      "a log "
-      "without poses and supply voltage does not tell them");
-  out.findings.emplace_back(
-      "thrust by command is that of all rotors together, under which the supply sags; turning it does not, "
-      "so that "
-      "m d/J comes out too large by the ratio of the two, about a tenth on one cell, which its interval does "
-      "not hold");
+      "mass, rotor.thrust_factor, rotor.torque_factor, linear_drag and the accelerometer's offset: a log "
+      "without poses and supply voltage does not tell them; moments of inertia are those that the mass and "
+      "levers of " +
+      base.name + " make of m d/J");
+  out.findings.push_back("a command that all rotors share makes " +
+                         shown(all.model->shared_over_single()) +
+                         " times the thrust of one rotor's alone, as the supply sags under it: by the battery "
+                         "of " +
+                         base.name + ", and allowed for in m d/J");
   compare_with_file(out, *all.model);
   draw_thrust(out, all);
   tell_of_lags(out, lags);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "identification/supply_sag.hpp"
+
 namespace swiftlet::identification {
 namespace {
 
@@ -84,7 +86,8 @@ CommandModel::CommandModel(std::vector<FlightSeries> flights, plant::Vehicle bas
       base_(std::move(base)),
       responses_(std::move(responses)),
       given_curve_(curve),
-      middle_command_(curve ? curve->middle : mean_command(flights_)) {
+      middle_command_(curve ? curve->middle : mean_command(flights_)),
+      shared_over_single_(identification::shared_over_single(base_)) {
   const plant::Effectiveness effectiveness = plant::effectiveness(base_);
   signs_.resize(3, effectiveness.cols());
   for (int axis = 0; axis < 3; ++axis) {
@@ -198,8 +201,13 @@ CommandModel::Rotors CommandModel::computed_rotors(std::size_t flight, const Thr
   std::vector<plant::PerRotor> steady(rows.last, plant::PerRotor{});
   for (std::size_t row = 0; row < rows.last; ++row) {
     const double drift = 1.0 + drift_per_s * (log.time_s[row] - middle_s);
-    for (std::size_t i = 0; i < count; ++i)
-      steady[row][i] = std::sqrt(std::max(share * drift * curve.at(log.command[row][i]), kLeastThrust));
+    double mean = 0.0;
+    for (std::size_t i = 0; i < count; ++i) mean += share * log.command[row][i];
+    const double shared = curve.at(mean);
+    for (std::size_t i = 0; i < count; ++i) {
+      const double own = (curve.at(log.command[row][i]) - shared) / shared_over_single_;
+      steady[row][i] = std::sqrt(std::max(share * drift * (shared + own), kLeastThrust));
+    }
   }
   const std::vector<plant::PerRotor> speeds = lagged_speeds(log, steady, rows, lag_s, delay_s);
   std::vector<Eigen::Vector4d> sums(rows.size(), Eigen::Vector4d::Zero());  // sum s^2, L s^2

@@ -5,7 +5,8 @@
 //   rates            dw/dt = g o (L s^2) + r sum s_i^2 + l (L_z ds/dt) - coupling of Eq. (6) + v_w
 //
 // a(u) is the thrust over mass of all N rotors, m/s^2, at a command u that all have, a polynomial of second
-// order times a drift in time, as the supply sinks; s_i goes with the speed of a rotor, which has the lag.
+// order times a drift in time, as the supply sinks; what a command differs by from the mean of all counts more,
+// as supply_sag.hpp has it of the base. s_i goes with the speed of a rotor, which has the lag.
 // L has the signs of the moments that the rotors make, over their lever d, and g = m d / J: the thrust
 // factor times lever over inertia, over the thrust factor over mass. r is an offset of the thrust's centre,
 // l what the rotors' own inertia does about yaw. The log tells no ratios of inertias: those of the base go
@@ -101,6 +102,7 @@ class CommandModel {
   ColouredNoise noise(const Eigen::VectorXd& parameters, Response response) const;
   // d of the axes about which a response turns, m; for yaw, torque over thrust.
   double lever(int axis) const { return lever_[static_cast<std::size_t>(axis)]; }
+  double shared_over_single() const { return shared_over_single_; }  // of the base, supply_sag.hpp
 
   // What the model has of each block: of the force its value, of a rate what it gains since the block before.
   std::vector<double> modelled(const Eigen::VectorXd& parameters, std::size_t flight,
@@ -136,6 +138,7 @@ class CommandModel {
   double middle_command_ = 0.5;  // mean of the fitted rows
   Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, plant::kMaxRotors> signs_;  // L
   std::array<double, 3> lever_{};
+  double shared_over_single_ = 1.0;
   std::vector<BlockedFlight> blocks_;
   CommandLayout layout_;
 
