@@ -1,5 +1,6 @@
 // `swiftlet identify flight` as a user runs it: a flight's record in, a vehicle file out that the other
 // commands take.
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -18,10 +19,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// A fit takes some seconds, and ten times that with sanitizers.
+constexpr std::chrono::seconds kPatience{120};
+
 class IdentifyFlight : public testing::Test {
  protected:
   Ending run(std::vector<std::string> words) const {
-    return run_program("swiftlet", std::move(words), folder_.path());
+    return run_program("swiftlet", std::move(words), folder_.path(), kPatience);
   }
   std::string in_folder(const char* name) const { return (folder_.path() / name).string(); }
 
