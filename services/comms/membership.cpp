@@ -1,6 +1,7 @@
 #include "services/comms/membership.hpp"
 
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -39,13 +40,21 @@ void end(dds::DomainParticipant* participant) {
   dds::DomainParticipantFactory::get_instance()->delete_participant(participant);
 }
 
+// One at a time: Fast DDS 2.9 asks getpwuid() for the user's name, which keeps it in one place for all threads.
+dds::DomainParticipant* create_participant(const NodeSettings& settings,
+                                           dds::DomainParticipantListener* listener) {
+  static std::mutex mutex;
+  const std::lock_guard<std::mutex> lock(mutex);
+  return dds::DomainParticipantFactory::get_instance()->create_participant(
+      static_cast<std::uint32_t>(settings.domain), participant_qos(settings), listener,
+      dds::StatusMask::none());
+}
+
 }  // namespace
 
 Membership::Membership(const NodeSettings& settings, dds::DomainParticipantListener* listener) {
   set_up_library();
-  participant = dds::DomainParticipantFactory::get_instance()->create_participant(
-      static_cast<std::uint32_t>(settings.domain), participant_qos(settings), listener,
-      dds::StatusMask::none());
+  participant = create_participant(settings, listener);
   if (participant == nullptr) {
     throw std::runtime_error("cannot join DDS domain " + std::to_string(settings.domain) +
                              ": no port could be opened or the transport could not be set up");
