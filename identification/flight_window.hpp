@@ -27,8 +27,8 @@ struct FlightBounds {
   std::optional<double> until_s;
 };
 
-// In the air is what is more than kAirborneHeightM above where the rotors were started, by the poses. A blow of
-// more than kBlow ends the flight before it. Throws BadData if less than kShortestFlightS is left.
+// In the air is what is more than kAirborneHeightM above where the rotors were started, by the poses. A
+// blow of more than kBlow ends the flight before it. Throws BadData if less than kShortestFlightS is left.
 FlightWindow find_flight(const FlightLog& log, const FlightBounds& bounds);
 
 constexpr double kAirborneHeightM = 0.1;
