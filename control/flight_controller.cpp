@@ -9,6 +9,7 @@
 
 #include "control/allocation/allocator.hpp"
 #include "control/attitude/attitude_controller.hpp"
+#include "control/attitude/attitude_error.hpp"
 #include "control/attitude/euler.hpp"
 #include "control/design/control_design.hpp"
 #include "control/estimation/climb_watch.hpp"

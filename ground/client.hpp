@@ -107,6 +107,7 @@ class Client {
   void keep(Latest<T> View::*slot, const T& message);
   void subscribe_all();
   void subscribe_sensors(SensorRecord& sensors);
+  void grant_after(std::int64_t stamp_ns);
   template <class T>
   Answer ask(comms::Publisher<T>& publisher, const T& request, std::chrono::milliseconds timeout,
              const Cancelled& cancelled);

@@ -116,7 +116,7 @@ void Flight::run() {
   arm();
   if (watch_.together != nullptr) wait_for_the_others();
   start_mission();
-  if (lockstep_) client_.grants().follow_telemetry(paused_at_ns_);
+  if (lockstep_) client_.grants().without_end();
   follow();
   client_.leave();
   wait_for_last_figures();
@@ -193,7 +193,7 @@ void Flight::wait_for_the_others() {
     demand_alive();
     const auto failure = watch_.together->failure();
     if (failure || watch_.interrupts() > 0) {
-      if (lockstep_) client_.grants().follow_telemetry(paused_at_ns_);  // to disarm takes time
+      if (lockstep_) client_.grants().without_end();  // to disarm takes time
       bring_down(failure.value_or("interrupted"));
     }
     progress_.update(kBeforeFlight, "armed, waiting for the others");

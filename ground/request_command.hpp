@@ -40,9 +40,9 @@ CLI::App* add_ask_subcommand(CLI::App& root, const std::string& name, const std:
                              const std::string& example, const std::shared_ptr<AskOptions>& options,
                              Vehicles vehicles = Vehicles::kSeveral);
 
-// Joins the network, asks all vehicles at once, each in a thread of its own, prints the answers, and waits for the
-// end where that was wanted. As JSON the answer of one vehicle, or an object of those of several by name. Returns
-// the exit code: a failure if one of them failed.
+// Joins the network, asks all vehicles at once, each in a thread of its own, prints the answers, and waits
+// for the end where that was wanted. As JSON the answer of one vehicle, or an object of those of several by
+// name. Returns the exit code: a failure if one of them failed.
 int run_request(const AskOptions& options, const std::string& what,
                 const std::function<Manoeuvre(Vehicle&)>& ask);
 

@@ -1,18 +1,19 @@
 #include "ground/time_grants.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 namespace swiftlet::ground {
 namespace {
 
 constexpr std::chrono::milliseconds kRepeatPeriod{200};
-// 50 samples of ground truth at 500 Hz, which a socket's default buffer holds three times over.
-constexpr std::int64_t kWindowNs = 100'000'000;
 
 }  // namespace
 
-TimeGrants::TimeGrants(comms::Node& node)
-    : publisher_(node.publish(comms::topics::kSimulationClock)), repeater_([this] { repeat(); }) {}
+TimeGrants::TimeGrants(comms::Node& node, std::int64_t window_ns)
+    : window_ns_(window_ns),
+      publisher_(node.publish(comms::topics::kSimulationClock)),
+      repeater_([this] { repeat(); }) {}
 
 TimeGrants::~TimeGrants() {
   {
@@ -25,23 +26,22 @@ TimeGrants::~TimeGrants() {
 
 void TimeGrants::up_to(std::int64_t stamp_ns) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (stamp_ns <= clock_.advance_to_ns()) return;
-  clock_.advance_to_ns(stamp_ns);
-  publish();
+  goal_ns_ = std::max(goal_ns_, stamp_ns);
+  grant();
 }
 
-void TimeGrants::follow_telemetry(std::int64_t now_ns) {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    follows_ = true;
-  }
-  telemetry(now_ns);
-}
-
-void TimeGrants::telemetry(std::int64_t stamp_ns) {
+void TimeGrants::has_come(std::int64_t stamp_ns) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const std::int64_t wanted_ns = stamp_ns + kWindowNs;
-  if (!follows_ || wanted_ns < clock_.advance_to_ns() + kWindowNs / 4) return;
+  come_ns_ = std::max(come_ns_, stamp_ns);
+  grant();
+}
+
+// Not with every sample: a quarter of the window at once, or what remains to the goal.
+void TimeGrants::grant() {
+  const std::int64_t granted_ns = clock_.advance_to_ns();
+  const std::int64_t wanted_ns = std::min(goal_ns_, come_ns_ + window_ns_);
+  const std::int64_t least_ns = wanted_ns == goal_ns_ ? granted_ns + 1 : granted_ns + window_ns_ / 4;
+  if (wanted_ns < least_ns) return;
   clock_.advance_to_ns(wanted_ns);
   publish();
 }

@@ -3,6 +3,7 @@
 
 #include <condition_variable>
 #include <cstdint>
+#include <limits>
 #include <mutex>
 #include <thread>
 
@@ -10,31 +11,35 @@
 
 namespace swiftlet::ground {
 
-// A plant that was started with --paused goes as far as it is granted. The last grant is said again and
-// again: the plant ends the run when it hears nothing more. Any thread may call it.
+// A plant that was started with --paused goes as far as it is granted: to a goal, but never further than a
+// window beyond what has come from it, few enough samples under way that a socket's buffer holds them all.
+// The last grant is said again and again: the plant ends the run when it hears nothing more. Any thread may
+// call it.
 class TimeGrants {
  public:
-  explicit TimeGrants(comms::Node& node);
+  TimeGrants(comms::Node& node, std::int64_t window_ns);
   ~TimeGrants();
   TimeGrants(const TimeGrants&) = delete;
   TimeGrants& operator=(const TimeGrants&) = delete;
 
-  // Up to this stamp, if it is later than the last.
+  // The goal; not before the last one.
   void up_to(std::int64_t stamp_ns);
+  void without_end() { up_to(std::numeric_limits<std::int64_t>::max()); }
 
-  // From now on a little more than what telemetry() has told: few enough samples under way that none is lost.
-  void follow_telemetry(std::int64_t now_ns);
-  // Telemetry of this stamp has come.
-  void telemetry(std::int64_t stamp_ns);
+  // What the vehicle was or did at this stamp has come.
+  void has_come(std::int64_t stamp_ns);
 
  private:
-  void publish();  // with the lock held
+  void grant();  // with the lock held, as publish()
+  void publish();
   void repeat();
 
+  const std::int64_t window_ns_;
   std::mutex mutex_;
   std::condition_variable ends_;
   bool end_ = false;
-  bool follows_ = false;
+  std::int64_t goal_ns_ = 0;
+  std::int64_t come_ns_ = 0;
   comms::msg::SimulationClock clock_;
   comms::Publisher<comms::msg::SimulationClock> publisher_;
   std::thread repeater_;

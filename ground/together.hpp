@@ -17,7 +17,8 @@ class Together {
 
   // One more is ready to begin.
   void ready();
-  // True as soon as all are ready and none has failed; false if it is not so within the time, or one has failed.
+  // True as soon as all are ready and none has failed; false if it is not so within the time, or one has
+  // failed.
   bool wait_for_all(std::chrono::milliseconds timeout);
 
   // A flight has failed: a sentence that names the vehicle. The first is kept.

@@ -114,8 +114,8 @@ class Vehicle {
   std::uint64_t uploaded_id() const;
   // Uploads the mission and starts it.
   Manoeuvre follow(const control::Mission& mission, std::chrono::milliseconds timeout = kAnswerTimeout);
-  // Of the mission that the vehicle has; refused if that is not of this id, 0: whichever it is. Starting, resuming
-  // and skipping are done when it has been flown, pausing when the vehicle rests.
+  // Of the mission that the vehicle has; refused if that is not of this id, 0: whichever it is. Starting,
+  // resuming and skipping are done when it has been flown, pausing when the vehicle rests.
   Manoeuvre start_mission(std::uint64_t id = 0, std::chrono::milliseconds timeout = kAnswerTimeout);
   Manoeuvre pause_mission(std::uint64_t id = 0, std::chrono::milliseconds timeout = kAnswerTimeout);
   Manoeuvre resume_mission(std::uint64_t id = 0, std::chrono::milliseconds timeout = kAnswerTimeout);
@@ -124,8 +124,8 @@ class Vehicle {
   // From hold, a setpoint stream or another trajectory; it is joined smoothly from the present motion.
   Manoeuvre follow(const control::Trajectory& trajectory, std::chrono::milliseconds timeout = kAnswerTimeout);
 
-  // From now on the flight depends on this program: if it falls silent, the controller does what its settings say
-  // (failsafe.ground_link_action). Until leave() or the end of this object. By one thread.
+  // From now on the flight depends on this program: if it falls silent, the controller does what its
+  // settings say (failsafe.ground_link_action). Until leave() or the end of this object. By one thread.
   void stay();
   void leave();
 

@@ -31,8 +31,8 @@ struct FitProblem {
   std::function<void()> on_iteration;  // may be empty; for fits that take long
 };
 
-// The covariance is heteroscedasticity-consistent (MacKinnon, White 1985, HC3): it holds also where the spread is
-// not the same everywhere.
+// The covariance is heteroscedasticity-consistent (MacKinnon, White 1985, HC3): it holds also where the
+// spread is not the same everywhere.
 struct Fit : EstimatedParameters {
   std::vector<double> residuals;      // of all observations, as the problem defines them
   std::vector<std::size_t> outliers;  // observations left out, rising

@@ -1,5 +1,5 @@
-// One block of parameters and one of residuals, handed to Ceres. For the sources of this library alone: its other
-// headers name no Ceres.
+// One block of parameters and one of residuals, handed to Ceres. For the sources of this library alone: its
+// other headers name no Ceres.
 #pragma once
 
 #include <functional>

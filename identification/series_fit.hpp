@@ -31,8 +31,8 @@ struct SeriesProblem {
   std::function<void()> on_iteration;  // may be empty
 };
 
-// The covariance is robust against correlation inside a stretch, between all channels (Liang, Zeger 1986), with
-// the correction for few stretches; the degrees of freedom are stretches less parameters.
+// The covariance is robust against correlation inside a stretch, between all channels (Liang, Zeger 1986),
+// with the correction for few stretches; the degrees of freedom are stretches less parameters.
 struct SeriesFit : EstimatedParameters {
   Eigen::VectorXd residuals;           // in the channels' units
   std::vector<double> channel_spread;  // standard deviation of each channel's residuals

@@ -148,8 +148,8 @@ Allocation Allocator::allocate_to(const Wrench& wanted, const Supply& supply) co
   const double slack = kFitTolerance * limits.high;
   const Values tilt = values(for_roll_) * wrench.moment_frd.x() + values(for_pitch_) * wrench.moment_frd.y();
   Values thrust_n = tilt + values(for_thrust_) * wrench.thrust_n + values(for_yaw_) * wrench.moment_frd.z();
-  const auto exists =
-      thrust_n.template head < kCount == plant::kMinRotors ? kCount : Eigen::Dynamic > (count_);
+  constexpr int kExisting = kCount == plant::kMinRotors ? kCount : Eigen::Dynamic;
+  const auto exists = thrust_n.template head<kExisting>(count_);
   out.saturated = exists.minCoeff() < limits.low - slack || exists.maxCoeff() > limits.high + slack;
   if (out.saturated) {
     PerRotor tilts{};

@@ -11,6 +11,18 @@
 
 namespace swiftlet::control {
 
+// Of the angle between the body z axis and straight down: 1 upright, -1 upside down.
+inline double cosine_of_tilt(const Eigen::Quaterniond& q_ned_from_frd) {
+  const Eigen::Quaterniond& q = q_ned_from_frd;
+  return 1.0 - 2.0 * (q.x() * q.x() + q.y() * q.y());
+}
+
+// The body z axis in NED: third column of the rotation matrix.
+inline Eigen::Vector3d body_z(const Eigen::Quaterniond& q_ned_from_frd) {
+  const Eigen::Quaterniond& q = q_ned_from_frd;
+  return {2.0 * (q.x() * q.z() + q.w() * q.y()), 2.0 * (q.y() * q.z() - q.w() * q.x()), cosine_of_tilt(q)};
+}
+
 // The body's axes, as columns in NED, of the attitude whose z axis is body_z_ned, of unit length and less
 // than 90 degrees from straight down, and whose Euler yaw, Eq. (3), is the heading.
 Eigen::Matrix3d attitude_along(const Eigen::Vector3d& body_z_ned, const Heading& heading);

@@ -21,13 +21,6 @@ struct EulerAngles {
 EulerAngles euler_angles(const Eigen::Quaterniond& q_ned_from_frd);
 Eigen::Quaterniond quaternion_from_euler(const Eigen::Vector3d& euler_rad);
 
-// Third column of the rotation matrix.
-inline Eigen::Vector3d body_z(const Eigen::Quaterniond& q_ned_from_frd) {
-  const Eigen::Quaterniond& q = q_ned_from_frd;
-  return {2.0 * (q.x() * q.z() + q.w() * q.y()), 2.0 * (q.y() * q.z() - q.w() * q.x()),
-          1.0 - 2.0 * (q.x() * q.x() + q.y() * q.y())};
-}
-
 // The same angle in -pi .. pi.
 double wrap_angle(double angle_rad);
 

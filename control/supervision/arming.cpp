@@ -6,6 +6,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "control/attitude/attitude_error.hpp"
 #include "control/supervision/checks.hpp"
 #include "control/supervision/conditions.hpp"
 #include "plant/model/vehicle.hpp"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "control/attitude/attitude_error.hpp"
 #include "control/supervision/phases.hpp"
 #include "control/supervision/setpoints.hpp"
 
@@ -68,8 +69,6 @@ double beyond_fence(const Limits& limits, const Eigen::Vector3d& position_ned) {
   return std::max((position_ned - limits.fence_max_ned).maxCoeff(),
                   (limits.fence_min_ned - position_ned).maxCoeff());
 }
-
-double cosine_of_tilt(const Eigen::Quaterniond& q) { return 1.0 - 2.0 * (q.x() * q.x() + q.y() * q.y()); }
 
 bool pose_lost(const Situation& situation, const FailsafeSettings& failsafe) {
   return !situation.has_estimate || situation.pose_age_s > failsafe.mocap_timeout_s;

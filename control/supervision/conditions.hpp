@@ -16,8 +16,6 @@ double tip_over_cosine(const FailsafeSettings& failsafe);
 // How far outside the fence, along the axis where it is farthest, m; negative inside.
 double beyond_fence(const Limits& limits, const Eigen::Vector3d& position_ned);
 
-// 1 level, -1 upside down.
-double cosine_of_tilt(const Eigen::Quaterniond& q_ned_from_frd);
 bool pose_lost(const Situation& situation, const FailsafeSettings& failsafe);
 // Some ground tool that the flight depends on has been silent for too long.
 bool ground_link_lost(const SupervisorState& state, const FailsafeSettings& failsafe);

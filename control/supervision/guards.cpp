@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "control/attitude/attitude_error.hpp"
 #include "control/supervision/arming.hpp"
 #include "control/supervision/checks.hpp"
 #include "control/supervision/conditions.hpp"

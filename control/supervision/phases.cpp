@@ -118,8 +118,8 @@ bool arrived(const Scene& scene) {
   return (scene.estimate().position_ned - end).norm() <= item.acceptance_radius_m;
 }
 
-// The segments of a trajectory, one after another; any other item's path is all there is. Once it has arrived,
-// when the item ends.
+// The segments of a trajectory, one after another; any other item's path is all there is. Once it has
+// arrived, when the item ends.
 void advance_way(Scene& scene) {
   SupervisorState& state = scene.state;
   const MissionItem& item = item_of(scene);

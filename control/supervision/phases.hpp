@@ -9,8 +9,8 @@ namespace swiftlet::control {
 
 constexpr double kAirborneHeight_m = 0.03;  // above the ground
 
-// Moves the reference to the nearest place inside the fence: what joins one motion to another may swing out. Down
-// to the ground the fence does not matter.
+// Moves the reference to the nearest place inside the fence: what joins one motion to another may swing
+// out. Down to the ground the fence does not matter.
 void keep_inside(const Limits& limits, Reference& reference);
 
 // Where the estimate is, at rest, with its yaw.
@@ -20,7 +20,8 @@ Reference standing_at(const Estimate& estimate);
 // without a fence.
 Stop reference_stop(const Limits& limits, const Reference& from);
 // Likewise one that was put where the vehicle is, as it moves: braked by three quarters of the limit at most,
-// since the loops must follow first. Its acceleration is what the thrust gives now, and goes with the attitude.
+// since the loops must follow first. Its acceleration is what the thrust gives now, and goes with the
+// attitude.
 Stop vehicle_stop(const Limits& limits, const Reference& from);
 
 // Spool up, then climb straight to that height.

@@ -53,9 +53,9 @@ Polynomial integral(double start, const Polynomial& of) {
   return result;
 }
 
-// The quintic that begins with a value and two derivatives and, t later, has another value and rate and nothing
-// more. Taken anew again and again, as by a fast stream, each from where the last has come, it settles: the error
-// then obeys s^3 + 9/t s^2 + 36/t^2 s + 60/t^3.
+// The quintic that begins with a value and two derivatives and, t later, has another value and rate and
+// nothing more. Taken anew again and again, as by a fast stream, each from where the last has come, it
+// settles: the error then obeys s^3 + 9/t s^2 + 36/t^2 s + 60/t^3.
 Polynomial quintic(double value, double rate, double change, double to_value, double to_rate, double t) {
   const double dv = to_value - (value + rate * t + 0.5 * change * t * t);
   const double dr = (to_rate - (rate + change * t)) * t;

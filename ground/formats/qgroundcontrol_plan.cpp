@@ -1,5 +1,5 @@
-// The form: https://docs.qgroundcontrol.com/master/en/qgc-dev-guide/file_formats/plan.html, the commands and frames:
-// https://mavlink.io/en/messages/common.html.
+// The form: https://docs.qgroundcontrol.com/master/en/qgc-dev-guide/file_formats/plan.html, the commands
+// and frames: https://mavlink.io/en/messages/common.html.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>

@@ -330,7 +330,7 @@ void Dynamics::advance_as(VehicleState& state, const RotorDrive& drive, const Ei
 }
 
 #ifdef __x86_64__
-// Instructions with three operands: a fifth fewer of them.
+// Instructions with three operands: fewer of them.
 template <int kRotors, MotorForm kMotor>
 [[gnu::target("avx")]] void Dynamics::advance_by_avx(VehicleState& state, const RotorDrive& drive,
                                                      const Eigen::Vector3d& wind_ned, double dt) const {

@@ -43,8 +43,8 @@ struct Disturbance {
 // The forms that the motor's equations take: Eq. (18); Eq. (15) with the current at once; Eq. (10) and (15).
 enum class MotorForm { kReduced, kPhysical, kInductive };
 
-// The instructions that steps are made of: the best that the processor has, or those that all processors have. Results
-// are the same to the last bit.
+// The instructions that steps are made of: the best that the processor has, or those that all processors
+// have. Results are the same to the last bit.
 enum class Instructions { kBest, kBaseline };
 
 class Dynamics {

@@ -27,8 +27,9 @@ class GroundContact {
   // Nothing of the vehicle can be on the floor with its origin at this height: no need to ask further.
   bool out_of_reach(double position_z_ned) const { return position_z_ned + reach_ < floor_z_; }
 
-  // Corrects a step of free flight to after that took dt, from where the vehicle was before. Returns true if the
-  // floor bore load; then acceleration_ned is what it added to the body's acceleration over the step, m/s^2.
+  // Corrects a step of free flight to after that took dt, from where the vehicle was before. Returns true
+  // if the floor bore load; then acceleration_ned is what it added to the body's acceleration over the
+  // step, m/s^2.
   bool resolve(const Place& before, VehicleState& after, double dt, Eigen::Vector3d& acceleration_ned);
 
   // m NED, of the floor, down from the origin: the leg height.

@@ -40,7 +40,8 @@ void end(dds::DomainParticipant* participant) {
   dds::DomainParticipantFactory::get_instance()->delete_participant(participant);
 }
 
-// One at a time: Fast DDS 2.9 asks getpwuid() for the user's name, which keeps it in one place for all threads.
+// One at a time: Fast DDS 2.9 asks getpwuid() for the user's name, which keeps it in one place for all
+// threads.
 dds::DomainParticipant* create_participant(const NodeSettings& settings,
                                            dds::DomainParticipantListener* listener) {
   static std::mutex mutex;

@@ -35,8 +35,9 @@ struct ProgramText {
   const char* example;  // arguments
 };
 
-// Reads the command line, limits the stacks of threads, then runs body. Exit code: 0 done (also --help); 2 wrong usage or bad input
-// (ConfigError, std::invalid_argument); 1 any other exception. A fault is one line on stderr.
+// Reads the command line, limits the stacks of threads, then runs body. Exit code: 0 done (also --help); 2
+// wrong usage or bad input (ConfigError, std::invalid_argument); 1 any other exception. A fault is one line
+// on stderr.
 int run_process(const ProgramText& text, int argc, char** argv,
                 const std::function<void(CLI::App&)>& add_options, const std::function<void()>& body);
 

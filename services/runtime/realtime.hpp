@@ -11,8 +11,8 @@ struct RealtimeSettings {
   int cpu = -1;      // core of the thread that counts; -1: any
 };
 
-// Gives threads that start from now on a stack of 1 MiB instead of the system's 8 MiB, of which locked memory would
-// take every page: some 100 MiB for the threads of one Fast DDS participant, and 50 ms to fill them with zeros.
+// Gives threads that start from now on a stack of 1 MiB instead of the system's 8 MiB, of which locked memory
+// would take every page and fill it with zeros before the thread runs.
 void limit_thread_stacks();
 
 // Locks all memory of the process, present and future, if that can be done without a limit that would make

@@ -1,5 +1,6 @@
-// Requests, setpoints and samples of motion capture in any order, some while others are under way, and what the controller
-// makes of them in flight. Each byte of the input is an operation, or a number that it takes.
+// Requests, setpoints and samples of motion capture in any order, some while others are under way, and what
+// the controller makes of them in flight. Each byte of the input is an operation, or a number that it
+// takes.
 #include <cmath>
 #include <cstring>
 #include <deque>

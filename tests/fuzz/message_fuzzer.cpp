@@ -1,4 +1,5 @@
-// What comes over the network, from its bytes to what the controller is given. The first byte chooses the type.
+// What comes over the network, from its bytes to what the controller is given. The first byte chooses the
+// type.
 #include <algorithm>
 #include <cstring>
 

@@ -1,5 +1,5 @@
-// Writes messages as the message fuzzer reads them, into a folder: one of each type, and requests at their bounds, past them,
-// empty and not finite.
+// Writes messages as the message fuzzer reads them, into a folder: one of each type, and requests at their
+// bounds, past them, empty and not finite.
 #include <cmath>
 #include <cstdio>
 #include <filesystem>

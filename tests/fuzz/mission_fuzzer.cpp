@@ -1,5 +1,5 @@
-// Mission files of every form: YAML, polynomials, samples and waypoints as CSV, QGroundControl's plan. One program for each,
-// by SWIFTLET_FUZZED_PARSER.
+// Mission files of every form: YAML, polynomials, samples and waypoints as CSV, QGroundControl's plan. One
+// program for each, by SWIFTLET_FUZZED_PARSER.
 #include <cmath>
 
 #include "control/supervision/checks.hpp"

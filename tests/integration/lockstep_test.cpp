@@ -1,7 +1,9 @@
 // Lockstep: runs that repeat exactly, and what becomes of them when a peer falls silent.
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <cstddef>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
@@ -160,6 +162,33 @@ TEST_F(Lockstep, ATrajectoryIsTheFlightOfOneProcess) {
   EXPECT_GT(in_process.trace.size(), 1'000'000U);
   EXPECT_TRUE(over_dds.trace == in_process.trace);
   EXPECT_EQ(over_dds.report.at("rms_3d_m"), in_process.report.at("rms_3d_m"));
+}
+
+std::vector<std::string> lines_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+// Nothing is lost on the way to the ground, whatever else the machine does.
+TEST_F(Lockstep, RecordsEverySampleThatOneProcessRecordsAlsoBesideOtherWork) {
+  const OtherLoad load;
+  fly({"fly", "--clock", "lockstep", "--seed", "5", "--sensors"}, "dds");
+  fly({"sim", "fly", "--seed", "5", "--sensors"}, "process");
+  const std::vector<std::string> over_dds = lines_of(folder_.path() / "dds/sensors.csv");
+  const std::vector<std::string> in_process = lines_of(folder_.path() / "process/sensors.csv");
+  ASSERT_GT(in_process.size(), 2'000U);
+  ASSERT_GE(over_dds.size(), in_process.size());
+  EXPECT_EQ(over_dds[0], in_process[0]);
+  // One process keeps nothing of its very first sample, and ends before the next voltage, towards which those of
+  // the last rows go.
+  constexpr std::size_t kLastRows = 60;
+  const auto first = std::find(over_dds.begin(), over_dds.end(), in_process[1]);
+  ASSERT_NE(first, over_dds.end());
+  const auto compared = static_cast<std::ptrdiff_t>(in_process.size() - 1 - kLastRows);
+  ASSERT_GE(over_dds.end() - first, compared);
+  EXPECT_TRUE(std::equal(first, first + compared, in_process.begin() + 1));
 }
 
 TEST_F(Lockstep, AnotherSeedIsAnotherFlight) {

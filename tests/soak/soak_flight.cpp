@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "control/attitude/attitude_error.hpp"
 #include "ground/installation.hpp"
 #include "ground/simulation/closed_loop.hpp"
 #include "ground/vary_file.hpp"
@@ -15,6 +16,7 @@
 namespace swiftlet::soak {
 namespace {
 
+using control::cosine_of_tilt;
 using control::Mode;
 using Eigen::Vector3d;
 using plant::Fault;
@@ -24,8 +26,6 @@ constexpr double kFirstFault_s = 3.0;
 constexpr double kAftermath_s = 1.0;
 constexpr double kLyingCosine = 0.5;  // of the tilt: 60 degrees
 constexpr double kLies_s = 3.0;       // on the ground, tilted, rotors off
-
-double cosine_of_tilt(const Eigen::Quaterniond& q) { return 1.0 - 2.0 * (q.x() * q.x() + q.y() * q.y()); }
 
 template <typename... Values>
 std::string text(const char* format, Values... values) {

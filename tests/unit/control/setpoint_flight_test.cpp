@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "control/attitude/attitude_error.hpp"
 #include "control/attitude/euler.hpp"
-#include "control/supervision/conditions.hpp"
 #include "ground/simulation/closed_loop.hpp"
 #include "services/runtime/control_settings_file.hpp"
 #include "services/runtime/vehicle_file.hpp"

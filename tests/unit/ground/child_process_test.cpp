@@ -98,7 +98,7 @@ TEST_F(ChildProcessTest, SaysThatAProgramCannotBeStarted) {
   }
 }
 
-TEST_F(ChildProcessTest, FleetNamesTheOneThatDied) {
+TEST_F(ChildProcessTest, GroupNamesTheOneThatDied) {
   ProcessSettings well = shell("exec sleep 100");
   well.name = "well";
   well.log_file = folder_ / "well.log";
@@ -112,7 +112,7 @@ TEST_F(ChildProcessTest, FleetNamesTheOneThatDied) {
             "ill was killed by signal 11 (Segmentation fault); it said last: out of luck");
 }
 
-TEST_F(ChildProcessTest, FleetSaysWhoDidNotEndCleanly) {
+TEST_F(ChildProcessTest, GroupSaysWhoDidNotEndCleanly) {
   ProcessSettings fails = shell("exit 3");
   fails.name = "fails";
   ProcessGroup processes({fails});

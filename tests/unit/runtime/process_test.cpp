@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <pthread.h>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -71,6 +72,23 @@ int in_child(const std::function<int()>& body) {
   int status = 0;
   ::waitpid(pid, &status, 0);
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+// 8 MiB for each thread would all be resident once memory is locked.
+TEST(RunProcess, ItsThreadsHaveStacksOfOneMebibyte) {
+  EXPECT_EQ(in_child([] {
+              std::size_t bytes = 0;
+              run({}, [&bytes] {
+                std::thread([&bytes] {
+                  pthread_attr_t attributes;
+                  if (pthread_getattr_np(pthread_self(), &attributes) != 0) return;
+                  pthread_attr_getstacksize(&attributes, &bytes);
+                  pthread_attr_destroy(&attributes);
+                }).join();
+              });
+              return static_cast<int>(bytes >> 10) == 1024 ? 0 : 1;
+            }),
+            0);
 }
 
 TEST(StopSignal, SignalsAreRequestsToEnd) {
