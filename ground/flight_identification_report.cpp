@@ -163,9 +163,9 @@ std::string flight_identification_table(const FlightIdentificationReport& report
   std::string out = found.vehicle.name + ", identified from";
   for (const std::string& log : report.logs) out += " " + log;
   out += "; what is not named is from " + report.base_vehicle + "\n  " + what_was_fitted(found) + "\n";
-  out += format("  %-30s %-10s %12s  %-10s %s\n", "parameter", "symbol", "value", "+- (95 %)", "unit");
+  out += format("  %-30s %-17s %12s  %-10s %s\n", "parameter", "symbol", "value", "+- (95 %)", "unit");
   for (const Estimate& e : found.estimates) {
-    out += format("  %-30s %-10s %12.5g  %-10.2g %s\n", e.parameter.c_str(), e.symbol.c_str(), e.value,
+    out += format("  %-30s %-17s %12.5g  %-10.2g %s\n", e.parameter.c_str(), e.symbol.c_str(), e.value,
                   e.half_width, e.unit.c_str());
   }
   out += comparison_table(found);

@@ -17,6 +17,8 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
+constexpr double kWellStampedS = 0.002;  // delay of poses that is not worth a sentence
+
 struct Fitted {
   std::unique_ptr<FlightModel> model;
   SeriesFit fit;
@@ -184,6 +186,28 @@ void tell_of_excitation(FlightIdentification& out, const Excitation& excited) {
   }
 }
 
+void tell_of_poses(FlightIdentification& out, const std::vector<FlightSeries>& flights) {
+  for (std::size_t f = 0; f < flights.size(); ++f) {
+    const PoseTiming& timing = flights[f].pose_timing;
+    const std::string of_log = flights.size() > 1 ? "[" + std::to_string(f) + "]" : "";
+    const std::string name = timing.delay.parameter + of_log;
+    if (!timing.told) {
+      out.unexcited.push_back(name +
+                              ": the poses are taken to be stamped as the IMU is; tilt and turn quickly");
+      continue;
+    }
+    out.estimates.push_back(timing.delay);
+    out.estimates.back().parameter = name;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      out.estimates.push_back(timing.gyro_offset[axis]);
+      out.estimates.back().parameter = "gyro_offset" + of_log + "." + "xyz"[axis];
+    }
+    if (std::abs(timing.delay.value) < kWellStampedS) continue;
+    out.findings.push_back(flights[f].log->name + ": poses are stamped " + shown(1e3 * timing.delay.value) +
+                           " ms after what the IMU felt; they are taken to be as much older");
+  }
+}
+
 }  // namespace
 
 const Estimate* FlightIdentification::find(const std::string& parameter) const {
@@ -214,6 +238,7 @@ FlightIdentification identify_flight(const std::vector<FlightLog>& logs, const p
                    [&](const std::string& parameter) { return advice(parameter, excited); });
   tell_what_no_flight_tells(out, model, fit, options.known);
   tell_of_excitation(out, excited);
+  tell_of_poses(out, model.flights());
   warn_of_fit(out, model.layout().parameters, fit);
   warn_of_windows(out, logs);
   out.errors = prediction_errors(model, fit.parameters);

@@ -96,7 +96,11 @@ void add_motion(FlightSeries& series) {
   const FlightLog& log = *series.log;
   series.velocity_ned.resize(log.size(), Eigen::Vector3d::Zero());
   series.attitude.resize(log.size(), Eigen::Quaterniond::Identity());
-  PoseMotion motion(log.poses);
+  std::vector<FlightPose> poses = log.poses;
+  if (series.pose_timing.told) {
+    for (FlightPose& pose : poses) pose.time_s -= series.pose_timing.delay.value;
+  }
+  PoseMotion motion(poses);
   for (std::size_t row = series.window.flight.first; row < series.window.flight.last; ++row) {
     const Motion now = motion.at(log.time_s[row]);
     series.velocity_ned[row] = now.velocity_ned;
@@ -131,8 +135,9 @@ FlightSeries prepare_flight(const FlightLog& log, const plant::Vehicle& base, co
   out.source = source_of(log);
   if (out.source == SpeedSource::kCommanded) return out;
   out.steady_speeds = steady_speeds(log, base);
-  add_motion(out);
   out.stretches = stretches_of(log, out.fitted);
+  out.pose_timing = find_pose_timing(log, out.stretches);
+  add_motion(out);
   return out;
 }
 

@@ -10,6 +10,7 @@
 
 #include "identification/flight_log.hpp"
 #include "identification/flight_window.hpp"
+#include "identification/pose_timing.hpp"
 #include "plant/model/vehicle.hpp"
 
 namespace swiftlet::identification {
@@ -32,6 +33,7 @@ struct FlightSeries {
   SpeedSource source = SpeedSource::kMeasured;
   // None of the following of kCommanded.
   std::vector<plant::PerRotor> steady_speeds;  // that the commands ask for, from each row on, rad/s
+  PoseTiming pose_timing;                      // motion and attitude are of poses with its delay taken off
   std::vector<Eigen::Vector3d> velocity_ned;   // of each row, by the poses
   std::vector<Eigen::Quaterniond> attitude;    // NED from FRD, likewise
   std::vector<Rows> stretches;                 // of fitted

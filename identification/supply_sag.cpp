@@ -10,8 +10,8 @@ namespace swiftlet::identification {
 namespace {
 
 constexpr double kCharge = 0.5;
-constexpr double kStep = 1e-3;     // of the command
-constexpr int kIterations = 60;    // each leaves a small part of the error: the part of the voltage that sags
+constexpr double kStep = 1e-3;   // of the command
+constexpr int kIterations = 60;  // each leaves a small part of the error: the part of the voltage that sags
 
 // That the battery settles at when all rotors have this command, V.
 double settled_voltage(const plant::Vehicle& vehicle, const plant::MotorDynamics& motor, double command) {
@@ -20,7 +20,8 @@ double settled_voltage(const plant::Vehicle& vehicle, const plant::MotorDynamics
   double voltage = open_circuit;
   for (int i = 0; i < kIterations; ++i) {
     const double v_a = plant::motor_voltage(vehicle.esc, voltage, command);
-    const double current = plant::motor_current(motor, v_a, plant::steady_speed_from_voltage(vehicle.motor, v_a));
+    const double current =
+        plant::motor_current(motor, v_a, plant::steady_speed_from_voltage(vehicle.motor, v_a));
     const double drawn = battery.electronics_current_a +
                          vehicle.rotor_count() * plant::esc_supply_current(voltage, v_a, current);
     voltage = std::max(open_circuit - battery.internal_resistance_ohm * drawn, 0.0);

@@ -144,6 +144,25 @@ TEST(FlightIdentification, TellsADelayOfTheCommands) {
   EXPECT_NEAR(found.find("delay.rates")->value, 0.006, 0.0015);
 }
 
+TEST(FlightIdentification, FindsPosesThatAreStampedLateAndSetsThemRight) {
+  const FlightPlan plan = plan_of("identification");
+  const plant::Vehicle truth = another(plan.vehicle, 6);
+  FlightLog log = flown(plan, truth, 6);
+  const FlightIdentification right = identification::identify_flight({log}, plan.vehicle, {});
+  for (identification::FlightPose& pose : log.poses) pose.time_s += 0.03;
+  const FlightIdentification late = identification::identify_flight({log}, plan.vehicle, {});
+  EXPECT_NEAR(right.find("delay.poses")->value, 0.0, 3e-4);
+  EXPECT_NEAR(late.find("delay.poses")->value, 0.03, 3e-4);
+  EXPECT_NEAR(right.find("linear_drag")->value / truth.linear_drag, 1.0, 0.03);
+  for (const char* const same : {"linear_drag", "inertia.xx", "accelerometer_offset.z"})
+    EXPECT_NEAR(late.find(same)->value / right.find(same)->value, 1.0, 1e-3) << same;
+  std::string all;
+  for (const std::string& sentence : late.findings) all += sentence + "\n";
+  EXPECT_NE(all.find("poses are stamped"), std::string::npos) << all;
+  for (const std::string& sentence : right.findings)
+    EXPECT_EQ(sentence.find("poses are stamped"), std::string::npos) << sentence;
+}
+
 TEST(FlightIdentification, SaysWhatAHoverDoesNotTell) {
   const FlightPlan plan = plan_of(tests::TemporaryFolder().write("hover.yaml", R"(name: hover
 frame: ned
