@@ -5,12 +5,12 @@
 //   rates            dw/dt = g o (L s^2) + r sum s_i^2 + l (L_z ds/dt) - coupling of Eq. (6) + v_w
 //
 // a(u) is the thrust over mass of all N rotors, m/s^2, at a command u that all have, a polynomial of second
-// order times a drift in time, as the supply sinks; what a command differs by from the mean of all counts more,
-// as supply_sag.hpp has it of the base. s_i goes with the speed of a rotor, which has the lag.
-// L has the signs of the moments that the rotors make, over their lever d, and g = m d / J: the thrust
-// factor times lever over inertia, over the thrust factor over mass. r is an offset of the thrust's centre,
-// l what the rotors' own inertia does about yaw. The log tells no ratios of inertias: those of the base go
-// into the coupling.
+// order times a drift in time, as the supply sinks; what a command differs by from the mean of all counts
+// more, as supply_sag.hpp has it of the base. s_i goes with the speed of a rotor, which has the lag. L has
+// the signs of the moments that the rotors make, over their lever d, and g = m d / J: the thrust factor
+// times lever over inertia, over the thrust factor over mass. r is an offset of the thrust's centre, l what
+// the rotors' own inertia does about yaw. The log tells no ratios of inertias: those of the base go into
+// the coupling.
 //
 // v is coloured noise, and its innovations are what is made small: gusts, thrusts that are not quite the
 // commanded ones, the gyro's noise. Samples are averaged over blocks of kSampleS.
