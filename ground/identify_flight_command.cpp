@@ -145,12 +145,13 @@ Command add_identify_flight_command(CLI::App& identify) {
   app->footer(
       "Columns of a log, each headed `name [unit]`: time; specific_force_x, body_rate_x, likewise y and z; "
       "throttle1, or "
-      "pulse_width1, for each\nmotor in the order of the vehicle's rotors; supply_voltage; pose_time with "
-      "position_x_ned and "
-      "orientation_w_ned_from_frd and so on.\nIf there: running, rotor_speed1 and so on "
-      "(docs/identification.md).\n\n"
+      "pulse_width1, for each\nmotor in the order of the vehicle's rotors. If there: supply_voltage; "
+      "pose_time with position_x_ned and "
+      "orientation_w_ned_from_frd and so on;\nrunning; rotor_speed1 and so on. What a log without poses or "
+      "voltage tells is less (docs/identification.md).\n\n"
       "example: swiftlet sim fly identification --sensors --record first && swiftlet identify flight first "
-      "--out mine.yaml");
+      "--out mine.yaml\n"
+      "         swiftlet identify flight tests/data/crazyflie_flight.csv.gz --base crazyflie2");
   return {app, [options] { return run_identify_flight(*options); }};
 }
 

@@ -5,6 +5,8 @@
 #include <memory>
 #include <utility>
 
+#include "identification/command_flight.hpp"
+#include "identification/flight_conclusion.hpp"
 #include "identification/flight_prediction.hpp"
 
 namespace swiftlet::identification {
@@ -15,20 +17,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double kTold = 0.25;     // half an interval over its value, up to which a parameter counts as told
-constexpr double kToldDrag = 0.1;  // 1/s, half an interval of drag over mass, likewise
-constexpr double kSmallStep = 1e-4;  // of differences, over a parameter's scale
-constexpr double kTurned = 3.0;      // standard errors below 0 at which a gain is negative for certain
-
-const char* const kAxisNames[3] = {"roll", "pitch", "yaw"};
-
-// A quantity that follows from the parameters of the fit.
-struct Derived {
-  std::string parameter;
-  std::string symbol;
-  std::string unit;
-  std::function<double(const VectorXd&)> of;
-};
+constexpr double kWellStampedS = 0.002;  // delay of poses that is not worth a sentence
 
 struct Fitted {
   std::unique_ptr<FlightModel> model;
@@ -64,7 +53,7 @@ std::vector<Derived> derived(const FlightModel& model, Known known) {
     const double per_speed = axis == 2 ? base.rotor.torque : k * lever(base, axis);
     const double over_inertia = per_speed / base.inertia(axis, axis);
     const int gain = l.gain[axis];
-    out.push_back({std::string("rotor_to_rate.") + kAxisNames[axis],
+    out.push_back({std::string("rotor_to_rate.") + axis_name(axis),
                    axis == 2   ? "k_Q/J_zz"
                    : axis == 1 ? "k_T d/J_yy"
                                : "k_T d/J_xx",
@@ -101,60 +90,13 @@ std::vector<Derived> derived(const FlightModel& model, Known known) {
   return out;
 }
 
-struct DerivedValues {
-  VectorXd values;
-  MatrixXd covariance;
-};
-
-DerivedValues evaluate(const std::vector<Derived>& quantities, const FlightModel& model,
-                       const SeriesFit& fit) {
-  const auto count = static_cast<Index>(quantities.size());
-  const Index parameters = fit.parameters.size();
-  DerivedValues out{VectorXd(count), MatrixXd()};
-  MatrixXd gradient(count, parameters);
-  for (Index i = 0; i < count; ++i) {
-    const Derived& quantity = quantities[static_cast<std::size_t>(i)];
-    out.values[i] = quantity.of(fit.parameters);
-    VectorXd x = fit.parameters;
-    for (Index p = 0; p < parameters; ++p) {
-      const double step = kSmallStep * model.layout().parameters[static_cast<std::size_t>(p)].scale;
-      x[p] = fit.parameters[p] + step;
-      const double above = quantity.of(x);
-      x[p] = fit.parameters[p] - step;
-      gradient(i, p) = (above - quantity.of(x)) / (2.0 * step);
-      x[p] = fit.parameters[p];
-    }
-  }
-  out.covariance = gradient * fit.covariance * gradient.transpose();
-  return out;
-}
-
-Fitted fit(const std::vector<FlightLog>& logs, const plant::Vehicle& base, const FlightOptions& options) {
-  std::vector<FlightSeries> flights;
-  for (const FlightLog& log : logs) {
-    try {
-      flights.push_back(prepare_flight(log, base, options.bounds));
-    } catch (const BadData& fault) {
-      throw BadData(log.name + ": " + fault.what(), fault.row());
-    }
-  }
+Fitted fit(std::vector<FlightSeries> flights, const plant::Vehicle& base, const FlightOptions& options) {
   Fitted out;
   out.model = std::make_unique<FlightModel>(std::move(flights), base);
   out.fit = fit_series(out.model->problem([&] {
     if (options.progress) options.progress("fitting");
   }));
   return out;
-}
-
-void refuse_turned_gains(const FlightModel& model, const SeriesFit& fit) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const Index gain = model.layout().gain[axis];
-    if (fit.parameters[gain] > -kTurned * fit.standard_error(gain)) continue;
-    throw BadData("the vehicle turns about " + std::string(kAxisNames[axis]) +
-                  " against what the rotors of " + model.base().name +
-                  " ask for; are the motors in its order, and are the axes forward-right-down or "
-                  "forward-left-up as said?");
-  }
 }
 
 // Root mean square about the mean.
@@ -197,15 +139,6 @@ Excitation excitation(const FlightModel& model, const VectorXd& x) {
           spread(series[7])};
 }
 
-std::string share_text(const Estimate& estimate) {
-  return shown(100.0 * estimate.half_width / std::max(std::abs(estimate.value), 1e-300)) + " %";
-}
-
-bool is_told(const Estimate& estimate, const plant::Vehicle& base) {
-  if (estimate.parameter == "linear_drag") return estimate.half_width < kToldDrag * base.mass_kg;
-  return estimate.value > 0.0 && estimate.half_width < kTold * estimate.value;
-}
-
 // What would tell it.
 std::string advice(const std::string& parameter, const Excitation& excited) {
   if (parameter == "inertia.xx")
@@ -221,54 +154,6 @@ std::string advice(const std::string& parameter, const Excitation& excited) {
   if (parameter == "motor.time_constant")
     return "the commands changed too slowly or too little; fly quick moves, up and down too";
   return "the thrust varied by " + shown(excited.thrust) + " m/s^2 only; climb and sink quickly";
-}
-
-void put(plant::Vehicle& vehicle, const std::string& parameter, double value) {
-  if (parameter == "motor.time_constant") vehicle.motor.time_constant_s = value;
-  if (parameter == "rotor.thrust_factor") vehicle.rotor.thrust = value;
-  if (parameter == "mass") vehicle.mass_kg = value;
-  if (parameter == "inertia.xx") vehicle.inertia(0, 0) = value;
-  if (parameter == "inertia.yy") vehicle.inertia(1, 1) = value;
-  if (parameter == "inertia.zz") vehicle.inertia(2, 2) = value;
-  if (parameter == "linear_drag") vehicle.linear_drag = std::max(value, 0.0);
-}
-
-bool stands_in_file(const std::string& parameter) {
-  return parameter == "motor.time_constant" || parameter == "rotor.thrust_factor" || parameter == "mass" ||
-         parameter == "linear_drag" || parameter.rfind("inertia.", 0) == 0;
-}
-
-void conclude_vehicle(FlightIdentification& out, const std::vector<Derived>& quantities,
-                      const DerivedValues& values, const plant::Vehicle& base, const Excitation& excited,
-                      std::size_t logs) {
-  out.vehicle = base;
-  std::vector<Index> written;
-  for (std::size_t i = 0; i < quantities.size(); ++i) {
-    const Estimate& estimate = out.estimates[i];
-    if (!stands_in_file(estimate.parameter)) continue;
-    if (!is_told(estimate, base)) {
-      out.unexcited.push_back(estimate.parameter + ": the interval is +- " + share_text(estimate) +
-                              " of the value: " + advice(estimate.parameter, excited));
-      continue;
-    }
-    put(out.vehicle, estimate.parameter, estimate.value);
-    out.uncertainty.parameters.push_back(
-        {estimate.parameter, estimate.standard_error, estimate.low(), estimate.high()});
-    out.sources[estimate.parameter] = "identified from " + std::to_string(logs) +
-                                      (logs == 1 ? " flight" : " flights") + ", +- " + share_text(estimate);
-    written.push_back(static_cast<Index>(i));
-  }
-  for (std::size_t a = 0; a < written.size(); ++a) {
-    for (std::size_t b = a + 1; b < written.size(); ++b) {
-      const double scale =
-          std::sqrt(values.covariance(written[a], written[a]) * values.covariance(written[b], written[b]));
-      const double correlation = scale > 0.0 ? values.covariance(written[a], written[b]) / scale : 0.0;
-      if (std::abs(correlation) < 0.05) continue;
-      out.uncertainty.correlations.push_back({quantities[static_cast<std::size_t>(written[a])].parameter,
-                                              quantities[static_cast<std::size_t>(written[b])].parameter,
-                                              std::clamp(correlation, -1.0, 1.0)});
-    }
-  }
 }
 
 void tell_what_no_flight_tells(FlightIdentification& out, const FlightModel& model, const SeriesFit& fit,
@@ -294,27 +179,32 @@ void tell_what_no_flight_tells(FlightIdentification& out, const FlightModel& mod
 void tell_of_excitation(FlightIdentification& out, const Excitation& excited) {
   for (int axis = 0; axis < 3; ++axis) {
     if (excited.coupling[axis] > 0.1 * excited.acceleration[axis]) continue;
-    out.unexcited.push_back("coupling about " + std::string(kAxisNames[axis]) + ", Eq. (6): it made " +
+    out.unexcited.push_back("coupling about " + std::string(axis_name(axis)) + ", Eq. (6): it made " +
                             shown(excited.coupling[axis]) + " rad/s^2 beside the rotors' " +
                             shown(excited.acceleration[axis]) +
                             "; the ratios of the moments of inertia are not told by it");
   }
 }
 
-void warn(FlightIdentification& out, const FlightModel& model, const SeriesFit& fit) {
-  if (!fit.converged) out.warnings.emplace_back("the fit did not converge; do not trust its numbers");
-  const std::vector<FlightParameter>& parameters = model.layout().parameters;
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const double value = fit.parameters[static_cast<Index>(i)];
-    const double margin = 1e-6 * (parameters[i].high - parameters[i].low);
-    if (value - parameters[i].low > margin && parameters[i].high - value > margin) continue;
-    out.warnings.push_back(parameters[i].name + " is " + shown(value) + " " + parameters[i].unit +
-                           ", where the search ends; the model does not describe this flight");
-  }
-  for (std::size_t f = 0; f < out.windows.size(); ++f) {
-    if (out.windows[f].ends_in_a_blow)
-      out.warnings.push_back(model.flights()[f].log->name + " ends in a blow of more than " + shown(kBlow) +
-                             " m/s^2; what follows it is left out");
+void tell_of_poses(FlightIdentification& out, const std::vector<FlightSeries>& flights) {
+  for (std::size_t f = 0; f < flights.size(); ++f) {
+    const PoseTiming& timing = flights[f].pose_timing;
+    const std::string of_log = flights.size() > 1 ? "[" + std::to_string(f) + "]" : "";
+    const std::string name = timing.delay.parameter + of_log;
+    if (!timing.told) {
+      out.unexcited.push_back(name +
+                              ": the poses are taken to be stamped as the IMU is; tilt and turn quickly");
+      continue;
+    }
+    out.estimates.push_back(timing.delay);
+    out.estimates.back().parameter = name;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      out.estimates.push_back(timing.gyro_offset[axis]);
+      out.estimates.back().parameter = "gyro_offset" + of_log + "." + "xyz"[axis];
+    }
+    if (std::abs(timing.delay.value) < kWellStampedS) continue;
+    out.findings.push_back(flights[f].log->name + ": poses are stamped " + shown(1e3 * timing.delay.value) +
+                           " ms after what the IMU felt; they are taken to be as much older");
   }
 }
 
@@ -328,34 +218,29 @@ const Estimate* FlightIdentification::find(const std::string& parameter) const {
 
 FlightIdentification identify_flight(const std::vector<FlightLog>& logs, const plant::Vehicle& base,
                                      const FlightOptions& options) {
-  FlightIdentification out;
-  const Fitted fitted = fit(logs, base, options);
+  std::vector<FlightSeries> flights = prepare_flights(logs, base, options.bounds);
+  FlightIdentification out = begun_with(flights);
+  if (out.source == SpeedSource::kCommanded) {
+    identify_commands(out, std::move(flights), base, options);
+    warn_of_windows(out, logs);
+    return out;
+  }
+  const Fitted fitted = fit(std::move(flights), base, options);
   const FlightModel& model = *fitted.model;
   const SeriesFit& fit = fitted.fit;
-  refuse_turned_gains(model, fit);
-  out.source = model.source();
+  refuse_turned_gains(model.layout().gain, base, fit);
   out.converged = fit.converged;
-  for (const FlightSeries& flight : model.flights()) {
-    const std::vector<double>& time = flight.log->time_s;
-    out.windows.push_back(flight.window);
-    out.fitted_s += time[flight.fitted.last - 1] - time[flight.fitted.first];
-    out.kept_s += time[flight.kept.last - 1] - time[flight.kept.first];
-  }
-
   const std::vector<Derived> quantities = derived(model, options.known);
-  const DerivedValues values = evaluate(quantities, model, fit);
-  const double factor = interval_factor(fit.degrees_of_freedom);
-  for (std::size_t i = 0; i < quantities.size(); ++i) {
-    const auto at = static_cast<Index>(i);
-    const double error = std::sqrt(std::max(values.covariance(at, at), 0.0));
-    out.estimates.push_back({quantities[i].parameter, quantities[i].symbol, quantities[i].unit,
-                             values.values[at], error, factor * error});
-  }
+  const DerivedValues values = evaluate(quantities, model.layout().parameters, fit);
+  out.estimates = estimates_of(quantities, values, fit.degrees_of_freedom);
   const Excitation excited = excitation(model, fit.parameters);
-  conclude_vehicle(out, quantities, values, base, excited, logs.size());
+  conclude_vehicle(out, values, base,
+                   [&](const std::string& parameter) { return advice(parameter, excited); });
   tell_what_no_flight_tells(out, model, fit, options.known);
   tell_of_excitation(out, excited);
-  warn(out, model, fit);
+  tell_of_poses(out, model.flights());
+  warn_of_fit(out, model.layout().parameters, fit);
+  warn_of_windows(out, logs);
   out.errors = prediction_errors(model, fit.parameters);
   out.trace = prediction_trace(model, fit.parameters);
   return out;

@@ -42,11 +42,6 @@ plant::PerRotor speed_errors(const plant::PerRotor& measured, const plant::PerRo
 
 FlightModel::FlightModel(std::vector<FlightSeries> flights, plant::Vehicle base)
     : flights_(std::move(flights)), base_(std::move(base)), effectiveness_(plant::effectiveness(base_)) {
-  for (const FlightSeries& flight : flights_) {
-    if (flight.source == source()) continue;
-    throw BadData(flight.log->name + " and " + flights_.front().log->name +
-                  " do not hold the same: rotor speeds must be in all logs or in none");
-  }
   for (const FlightSeries& flight : flights_) block_.push_back(block_of(flight));
   lay_out();
 }
@@ -98,7 +93,8 @@ FlightModel::Wrenches FlightModel::computed_wrenches(std::size_t flight, const R
                                                      double delay_s) const {
   const FlightSeries& series = flights_[flight];
   std::vector<plant::PerRotor> modelled;
-  if (source() != SpeedSource::kMeasured) modelled = lagged_speeds(series, rows, lag_s, delay_s);
+  if (source() != SpeedSource::kMeasured)
+    modelled = lagged_speeds(*series.log, series.steady_speeds, rows, lag_s, delay_s);
   Wrenches out(rows.size(), Eigen::Vector4d::Zero());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const plant::PerRotor& speeds = modelled.empty() ? series.log->rotor_speeds[rows.first + i] : modelled[i];
@@ -221,7 +217,8 @@ void FlightModel::residuals(const VectorXd& x, VectorXd& out) const {
     const Drive by_model = drive(x, f, all);
     const Vector3d bias = offset(x, f);
     std::vector<plant::PerRotor> modelled;
-    if (with_speeds) modelled = lagged_speeds(flight, all, x[layout_.lag], x[layout_.motor_delay]);
+    if (with_speeds)
+      modelled = lagged_speeds(log, flight.steady_speeds, all, x[layout_.lag], x[layout_.motor_delay]);
 
     for (const Rows& stretch : flight.stretches) {
       const auto blocks = static_cast<Index>(blocks_in(stretch, block_[f]));

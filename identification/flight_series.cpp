@@ -26,6 +26,11 @@ void demand_whole(const FlightLog& log, const Rows& rows) {
   }
 }
 
+SpeedSource source_of(const FlightLog& log) {
+  if (log.poses.size() <= kLeastPoses || log.supply_voltage_v.empty()) return SpeedSource::kCommanded;
+  return log.rotor_speeds.empty() ? SpeedSource::kModelled : SpeedSource::kMeasured;
+}
+
 std::vector<plant::PerRotor> steady_speeds(const FlightLog& log, const plant::Vehicle& base) {
   std::vector<plant::PerRotor> out(log.size(), plant::PerRotor{});
   for (std::size_t row = 0; row < log.size(); ++row) {
@@ -91,7 +96,11 @@ void add_motion(FlightSeries& series) {
   const FlightLog& log = *series.log;
   series.velocity_ned.resize(log.size(), Eigen::Vector3d::Zero());
   series.attitude.resize(log.size(), Eigen::Quaterniond::Identity());
-  PoseMotion motion(log.poses);
+  std::vector<FlightPose> poses = log.poses;
+  if (series.pose_timing.told) {
+    for (FlightPose& pose : poses) pose.time_s -= series.pose_timing.delay.value;
+  }
+  PoseMotion motion(poses);
   for (std::size_t row = series.window.flight.first; row < series.window.flight.last; ++row) {
     const Motion now = motion.at(log.time_s[row]);
     series.velocity_ned[row] = now.velocity_ned;
@@ -110,21 +119,11 @@ std::vector<Rows> stretches_of(const FlightLog& log, const Rows& rows) {
   return out;
 }
 
-}  // namespace
-
 FlightSeries prepare_flight(const FlightLog& log, const plant::Vehicle& base, const FlightBounds& bounds) {
   if (log.rotor_count != base.rotor_count()) {
     throw BadData("has commands of " + std::to_string(log.rotor_count) + " motors, must have those of the " +
                   std::to_string(base.rotor_count()) + " of " + base.name);
   }
-  if (log.poses.size() <= kLeastPoses) {
-    throw BadData(
-        "has " + std::to_string(log.poses.size()) +
-        " poses, must have them in all of the flight: commands and IMU alone do not tell the rotors' "
-        "lag from a delay");
-  }
-  if (log.supply_voltage_v.empty())
-    throw BadData("has no supply voltage, without which commands tell no rotor speeds");
   FlightSeries out;
   out.log = &log;
   out.window = find_flight(log, bounds);
@@ -133,35 +132,51 @@ FlightSeries prepare_flight(const FlightLog& log, const plant::Vehicle& base, co
   out.fitted = {flight.first,
                 flight.last - static_cast<std::size_t>(kKeptShare * static_cast<double>(flight.size()))};
   out.kept = {out.fitted.last, flight.last};
-  out.source = log.rotor_speeds.empty() ? SpeedSource::kModelled : SpeedSource::kMeasured;
+  out.source = source_of(log);
+  if (out.source == SpeedSource::kCommanded) return out;
   out.steady_speeds = steady_speeds(log, base);
-  add_motion(out);
   out.stretches = stretches_of(log, out.fitted);
+  out.pose_timing = find_pose_timing(log, out.stretches);
+  add_motion(out);
   return out;
 }
 
-std::vector<plant::PerRotor> lagged_speeds(const FlightSeries& series, const Rows& rows,
-                                           double time_constant_s, double delay_s) {
-  const FlightLog& log = *series.log;
+}  // namespace
+
+std::vector<FlightSeries> prepare_flights(const std::vector<FlightLog>& logs, const plant::Vehicle& base,
+                                          const FlightBounds& bounds) {
+  std::vector<FlightSeries> out;
+  for (const FlightLog& log : logs) {
+    try {
+      out.push_back(prepare_flight(log, base, bounds));
+    } catch (const BadData& fault) {
+      throw BadData(log.name + ": " + fault.what(), fault.row());
+    }
+    if (out.back().source == out.front().source) continue;
+    throw BadData(
+        log.name + " and " + logs.front().name +
+        " do not hold the same: poses, supply voltage and rotor speeds must each be in all logs or in none");
+  }
+  return out;
+}
+
+std::vector<plant::PerRotor> lagged_speeds(const FlightLog& log, const std::vector<plant::PerRotor>& steady,
+                                           const Rows& rows, double time_constant_s, double delay_s) {
   const auto rotors = static_cast<std::size_t>(log.rotor_count);
-  const auto steady = [&](std::size_t row, std::size_t rotor) {
-    return log.running[row] == 0 ? 0.0 : series.steady_speeds[row][rotor];
-  };
   std::vector<plant::PerRotor> out(rows.size(), plant::PerRotor{});
-  plant::PerRotor speed{};
-  for (std::size_t i = 0; i < rotors; ++i) speed[i] = steady(0, i);
+  plant::PerRotor speed = steady.front();
   std::size_t to = rows.first;
-  for (std::size_t row = 0; row < log.size() && to < rows.last; ++row) {
-    const bool is_last = row + 1 == log.size();
+  for (std::size_t row = 0; row < steady.size() && to < rows.last; ++row) {
+    const bool is_last = row + 1 == steady.size();
     for (; to < rows.last && (is_last || log.time_s[to] - delay_s < log.time_s[row + 1]); ++to) {
       const double ahead = std::max(log.time_s[to] - delay_s - log.time_s[row], 0.0);
       const double left = std::exp(-ahead / time_constant_s);
       for (std::size_t i = 0; i < rotors; ++i)
-        out[to - rows.first][i] = steady(row, i) + (speed[i] - steady(row, i)) * left;
+        out[to - rows.first][i] = steady[row][i] + (speed[i] - steady[row][i]) * left;
     }
     if (is_last) break;
     const double left = std::exp(-(log.time_s[row + 1] - log.time_s[row]) / time_constant_s);
-    for (std::size_t i = 0; i < rotors; ++i) speed[i] = steady(row, i) + (speed[i] - steady(row, i)) * left;
+    for (std::size_t i = 0; i < rotors; ++i) speed[i] = steady[row][i] + (speed[i] - steady[row][i]) * left;
   }
   return out;
 }

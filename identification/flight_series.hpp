@@ -10,14 +10,16 @@
 
 #include "identification/flight_log.hpp"
 #include "identification/flight_window.hpp"
+#include "identification/pose_timing.hpp"
 #include "plant/model/vehicle.hpp"
 
 namespace swiftlet::identification {
 
 // Where the rotors' speeds are from.
 enum class SpeedSource {
-  kMeasured,  // by the vehicle
-  kModelled,  // from command and supply voltage by Eq. (9), (22) and (18) with the base vehicle's numbers
+  kMeasured,   // by the vehicle
+  kModelled,   // from command and supply voltage by Eq. (9), (22) and (18) with the base vehicle's numbers
+  kCommanded,  // neither: poses or supply voltage were not recorded, and the command is all there is
 };
 
 // What a channel of residuals is cut into; inside, samples hang together.
@@ -29,19 +31,23 @@ struct FlightSeries {
   Rows fitted;  // the first four fifths of the flight
   Rows kept;    // the last one, for predictions
   SpeedSource source = SpeedSource::kMeasured;
+  // None of the following of kCommanded.
   std::vector<plant::PerRotor> steady_speeds;  // that the commands ask for, from each row on, rad/s
+  PoseTiming pose_timing;                      // motion and attitude are of poses with its delay taken off
   std::vector<Eigen::Vector3d> velocity_ned;   // of each row, by the poses
   std::vector<Eigen::Quaterniond> attitude;    // NED from FRD, likewise
   std::vector<Rows> stretches;                 // of fitted
 };
 
-// Chooses the best source of speeds that the log has; poses and supply voltage it must have. Throws
-// BadData.
-FlightSeries prepare_flight(const FlightLog& log, const plant::Vehicle& base, const FlightBounds& bounds);
+// Chooses the best source of speeds that the logs have, which must be the same of all. They must outlive what
+// is returned. Throws BadData.
+std::vector<FlightSeries> prepare_flights(const std::vector<FlightLog>& logs, const plant::Vehicle& base,
+                                          const FlightBounds& bounds);
 
-// Steady speeds behind the rotors' lag, Eq. (18) in its reduced form, a delay later: at the times of `rows`.
-// The lag is started with the log, at the speeds that are steady there.
-std::vector<plant::PerRotor> lagged_speeds(const FlightSeries& series, const Rows& rows,
-                                           double time_constant_s, double delay_s);
+// Steady speeds, each from its row on, behind the rotors' lag, Eq. (18) in its reduced form, a delay later:
+// at the times of `rows`. The lag is started with the log, at the speeds
+// that are steady there.
+std::vector<plant::PerRotor> lagged_speeds(const FlightLog& log, const std::vector<plant::PerRotor>& steady,
+                                           const Rows& rows, double time_constant_s, double delay_s);
 
 }  // namespace swiftlet::identification

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "identification/estimate.hpp"
 #include "plant/model/vehicle.hpp"
@@ -9,6 +10,9 @@
 namespace swiftlet::identification {
 namespace {
 
+constexpr double kCarrying = 0.9;  // of the median command: what lifts the vehicle
+constexpr double kSmoothingS = 0.05;
+constexpr double kAfterLiftS = 0.3;  // until the legs are well off the ground
 constexpr double kBeforeBlowS = 0.3;
 constexpr double kLongestPauseS =
     1.0;  // of rotors without command that is still flight: a fall between two pushes
@@ -34,6 +38,37 @@ Rows running_rows(const FlightLog& log) {
   return best;
 }
 
+// Mean command of the rotors, smoothed.
+std::vector<double> smoothed_commands(const FlightLog& log, const Rows& rows) {
+  std::vector<double> out(rows.size(), 0.0);
+  double smoothed = 0.0;
+  for (std::size_t i = 1; i < out.size(); ++i) {
+    const std::size_t row = rows.first + i;
+    double mean = 0.0;
+    for (int rotor = 0; rotor < log.rotor_count; ++rotor)
+      mean += log.command[row][static_cast<std::size_t>(rotor)] / log.rotor_count;
+    const double h = log.time_s[row] - log.time_s[row - 1];
+    out[i] = smoothed += std::min(h / kSmoothingS, 1.0) * (mean - smoothed);
+  }
+  return out;
+}
+
+// Between the first and the last command that carries the vehicle; most of the time it is carried.
+Rows carried(const FlightLog& log, const Rows& running) {
+  const std::vector<double> commands = smoothed_commands(log, running);
+  std::vector<double> sorted = commands;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double carrying = kCarrying * *middle;
+  const auto carries = [&](double command) { return command >= carrying; };
+  const auto first = std::find_if(commands.begin(), commands.end(), carries);
+  const auto last = std::find_if(commands.rbegin(), commands.rend(), carries);
+  const auto row = [&](std::ptrdiff_t i) { return running.first + static_cast<std::size_t>(i); };
+  const Rows rows{row_at(log, log.time_s[row(first - commands.begin())] + kAfterLiftS),
+                  row_at(log, log.time_s[row(commands.rend() - last - 1)] - kLandingS)};
+  return {rows.first, std::max(rows.first, rows.last)};
+}
+
 Rows above_ground(const FlightLog& log, const Rows& running) {
   const double start_s = log.time_s[running.first];
   const auto first = std::lower_bound(log.poses.begin(), log.poses.end(), start_s,
@@ -52,13 +87,17 @@ Rows above_ground(const FlightLog& log, const Rows& running) {
   return rows;
 }
 
+Rows airborne(const FlightLog& log, const Rows& running) {
+  return log.poses.empty() ? carried(log, running) : above_ground(log, running);
+}
+
 }  // namespace
 
 FlightWindow find_flight(const FlightLog& log, const FlightBounds& bounds) {
   const Rows running = running_rows(log);
   if (running.size() == 0) throw BadData("the rotors never ran");
   FlightWindow out;
-  out.flight = above_ground(log, running);
+  out.flight = airborne(log, running);
   if (bounds.from_s) out.flight.first = row_at(log, *bounds.from_s);
   if (bounds.until_s) out.flight.last = row_at(log, *bounds.until_s);
   for (std::size_t i = out.flight.first; i < out.flight.last; ++i) {

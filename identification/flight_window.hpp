@@ -27,11 +27,13 @@ struct FlightBounds {
   std::optional<double> until_s;
 };
 
-// In the air is what is more than kAirborneHeightM above where the rotors were started, by the poses. A
-// blow of more than kBlow ends the flight before it. Throws BadData if less than kShortestFlightS is left.
+// In the air is, with poses, what is more than kAirborneHeightM above where the rotors were started; without,
+// what lies between the first and the last command that is about the median one, less kLandingS. A blow of
+// more than kBlow ends the flight before it. Throws BadData if less than kShortestFlightS is left.
 FlightWindow find_flight(const FlightLog& log, const FlightBounds& bounds);
 
 constexpr double kAirborneHeightM = 0.1;
+constexpr double kLandingS = 1.0;
 constexpr double kBlow = 40.0;  // m/s^2
 constexpr double kShortestFlightS = 5.0;
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "control/estimation/rotation_vector.hpp"
+#include "plant/model/rotation_vector.hpp"
 #include "plant/model/vehicle.hpp"
 
 namespace swiftlet::control {
@@ -98,13 +98,13 @@ bool Estimator::predict(const plant::ImuSample& sample) {
   const Vector3d mean_rates = 0.5 * (before.body_rates_frd + sample.body_rates_frd) - now_.gyro_bias;
   const Vector3d mean_force =
       0.5 * (before.specific_force_frd + sample.specific_force_frd) - now_.accelerometer_bias;
-  const Quaterniond half_turn = rotation(0.5 * dt * mean_rates);
+  const Quaterniond half_turn = plant::rotation(0.5 * dt * mean_rates);
   const Quaterniond q_mid = path_.q_ned_from_frd * half_turn;
   const Vector3d acceleration = q_mid * mean_force + Vector3d(0.0, 0.0, plant::kGravity);
   path_.stamp_ns = sample.stamp_ns;
   path_.position_ned += dt * path_.velocity_ned + (0.5 * dt * dt) * acceleration;
   path_.velocity_ned += dt * acceleration;
-  path_.q_ned_from_frd = renormalised(q_mid * half_turn);
+  path_.q_ned_from_frd = plant::renormalised(q_mid * half_turn);
   if (!initialised_ && path_.velocity_ned.norm() > kLongFall) {  // anew: the start is arbitrary
     path_.position_ned.setZero();
     path_.velocity_ned.setZero();
@@ -153,9 +153,9 @@ PoseFault Estimator::take_in(const plant::PoseSample& pose, plant::RotorState ro
   PoseInnovation innovation;
   // A pose that is ahead of the IMU is compared with where the estimate goes.
   const double ahead_s = seconds(pose.stamp_ns - moment.stamp_ns);
-  const Quaterniond q_ned_from_frd = moment.q_ned_from_frd * rotation(ahead_s * now_.body_rates_frd);
+  const Quaterniond q_ned_from_frd = moment.q_ned_from_frd * plant::rotation(ahead_s * now_.body_rates_frd);
   innovation.position = pose.position_ned - (moment.position_ned + ahead_s * moment.velocity_ned);
-  innovation.rotation = rotation_vector(pose.q_ned_from_frd.normalized() * q_ned_from_frd.conjugate());
+  innovation.rotation = plant::rotation_vector(pose.q_ned_from_frd.normalized() * q_ned_from_frd.conjugate());
   const ErrorCovariance::Correction correction = weigh(innovation);
   normalised_innovation_ = correction.normalised_square();
   const bool contradicts = normalised_innovation_ > settings_.gate_chi_square;
@@ -272,7 +272,7 @@ void Estimator::Correction::carry_to(Moment& moment) const {
   moment.position_ned += position + t * velocity - since.position_change.cross(rotation - (t / 3) * rate) -
                          (t * t / 2) * acceleration;
   moment.velocity_ned += velocity - since.velocity_change.cross(rotation - (t / 2) * rate) - t * acceleration;
-  moment.q_ned_from_frd = (control::rotation(rotation - t * rate) * moment.q_ned_from_frd).normalized();
+  moment.q_ned_from_frd = (plant::rotation(rotation - t * rate) * moment.q_ned_from_frd).normalized();
   ++moment.corrections;
 }
 

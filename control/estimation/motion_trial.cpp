@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "control/estimation/rotation_vector.hpp"
+#include "plant/model/rotation_vector.hpp"
 #include "plant/model/vehicle.hpp"
 
 namespace swiftlet::control {
@@ -18,7 +18,7 @@ MotionTrial::Verdict MotionTrial::look_at(const plant::PoseSample& pose, const P
                                           const EstimatorSettings& settings) {
   if (count_ > 0 && pose.stamp_ns - points_[count_ - 1].stamp_ns < kInterval_ns) return Verdict::kNone;
   points_[count_++] = {pose.stamp_ns, pose.position_ned, pose.position_ned - innovation.position,
-                       rotation(innovation.rotation)};
+                       plant::rotation(innovation.rotation)};
   if (count_ < points_.size()) return Verdict::kNone;
   const Verdict verdict = agree(settings) ? Verdict::kAgree : Verdict::kDisagree;
   points_[0] = points_[1];
@@ -34,7 +34,7 @@ bool MotionTrial::agree(const EstimatorSettings& settings) const {
   const Eigen::Quaterniond& turn = points_[1].turn_ned;
   const double turn_limit = kTurn_rad + kSigmas * std::sqrt(2.0) * settings.mocap_orientation_sigma;
   for (const Point& point : points_) {
-    if (rotation_vector(point.turn_ned * turn.conjugate()).norm() > turn_limit) return false;
+    if (plant::rotation_vector(point.turn_ned * turn.conjugate()).norm() > turn_limit) return false;
   }
   const auto left = [&](const Point& point) -> Eigen::Vector3d {
     const double t = seconds(point.stamp_ns - points_[0].stamp_ns);

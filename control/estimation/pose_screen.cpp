@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "control/estimation/rotation_vector.hpp"
+#include "plant/model/rotation_vector.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -43,7 +43,7 @@ void Continuity::look_at(const plant::PoseSample& pose) {
     const Eigen::Quaterniond turned_frd = last.q_ned_from_frd.conjugate() * pose.q_ned_from_frd;
     const double reach_m = kFastest * interval_s_ + kSmallStep_m;
     const double reach_rad = kFastestTurn * interval_s_ + kSmallStep_rad;
-    stepped = moved_ned.norm() > reach_m || rotation_vector(turned_frd).norm() > reach_rad;
+    stepped = moved_ned.norm() > reach_m || plant::rotation_vector(turned_frd).norm() > reach_rad;
     if (stepped && disowned_) {
       disowned_ = false;
       in_reach_ = true;
@@ -54,7 +54,7 @@ void Continuity::look_at(const plant::PoseSample& pose) {
       turned_frd_ = (turned_frd_ * turned_frd).normalized();
       // Within what the body has moved by itself, in the step away and in the step back.
       in_reach_ =
-          stepped_ned_.norm() < 2.0 * reach_m && rotation_vector(turned_frd_).norm() < 2.0 * reach_rad;
+          stepped_ned_.norm() < 2.0 * reach_m && plant::rotation_vector(turned_frd_).norm() < 2.0 * reach_rad;
     }
     if (interval_s_ > kLongestGap_s) unbroken_ = false;
   }

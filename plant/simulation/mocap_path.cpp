@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plant/model/rotation_vector.hpp"
 #include "plant/simulation/streams.hpp"
 
 namespace swiftlet::plant {
@@ -13,12 +14,6 @@ constexpr FaultKind kOfMocap[] = {FaultKind::kMocapStop, FaultKind::kMocapFreeze
                                   FaultKind::kMocapJump, FaultKind::kMocapSwap,   FaultKind::kMocapLatency};
 
 std::int64_t nanoseconds(double seconds) { return std::llround(seconds * 1.0e9); }
-
-Eigen::Quaterniond rotation(const Eigen::Vector3d& vector) {
-  const double angle = vector.norm();
-  if (angle == 0.0) return Eigen::Quaterniond::Identity();
-  return Eigen::Quaterniond(Eigen::AngleAxisd(angle, vector / angle));
-}
 
 std::size_t frames_under_way(const FaultSchedule& faults, const MocapSettings& mocap) {
   const double longest_s = faults.longest_delay_s(FaultKind::kMocapLatency);

@@ -181,8 +181,8 @@ TEST_F(Lockstep, RecordsEverySampleThatOneProcessRecordsAlsoBesideOtherWork) {
   ASSERT_GT(in_process.size(), 2'000U);
   ASSERT_GE(over_dds.size(), in_process.size());
   EXPECT_EQ(over_dds[0], in_process[0]);
-  // One process keeps nothing of its very first sample, and ends before the next voltage, towards which those of
-  // the last rows go.
+  // One process keeps nothing of its very first sample, and ends before the next voltage, towards which
+  // those of the last rows go.
   constexpr std::size_t kLastRows = 60;
   const auto first = std::find(over_dds.begin(), over_dds.end(), in_process[1]);
   ASSERT_NE(first, over_dds.end());

@@ -8,12 +8,15 @@
 #include <Eigen/Geometry>
 
 #include "control/estimation/estimator.hpp"
-#include "control/estimation/rotation_vector.hpp"
+#include "plant/model/rotation_vector.hpp"
 #include "plant/model/samples.hpp"
 #include "plant/model/vehicle.hpp"
 #include "plant/simulation/random.hpp"
 
 namespace swiftlet::control {
+
+using plant::rotation;
+using plant::rotation_vector;
 
 constexpr std::int64_t kStep_ns = 2'000'000;
 constexpr std::int64_t kFrame_ns = 10'000'000;

@@ -6,52 +6,15 @@
 
 #include <gtest/gtest.h>
 
-#include "ground/flight_log_files.hpp"
-#include "ground/flight_plan.hpp"
-#include "ground/in_process_flight.hpp"
-#include "ground/simulation/simulated_flight.hpp"
 #include "identification/flight.hpp"
-#include "plant/simulation/random.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/unit/ground/identified_flights.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
 using identification::FlightIdentification;
 using identification::FlightLog;
-
-FlightPlan plan_of(const std::string& mission) {
-  const tests::TemporaryFolder folder;
-  FlyOptions options;
-  options.parties = Parties::kInProcess;
-  options.mission = mission;
-  options.record = folder.path().string();
-  return plan_flight(options);
-}
-
-// What may have come off the workbench in place of the plan's vehicle, of a weight that is known.
-plant::Vehicle another(const plant::Vehicle& nominal, std::uint64_t seed) {
-  plant::RandomStream random(seed, 20250919);
-  plant::Vehicle out = nominal;
-  out.rotor.thrust *= random.uniform(0.9, 1.1);
-  out.motor.time_constant_s *= random.uniform(0.8, 1.2);
-  const double size = random.uniform(0.8, 1.2);
-  for (int axis = 0; axis < 3; ++axis) out.inertia(axis, axis) *= size * random.uniform(0.95, 1.05);
-  out.inertia(2, 2) = std::min(out.inertia(2, 2), 0.98 * (out.inertia(0, 0) + out.inertia(1, 1)));
-  out.linear_drag = random.uniform(0.002, 0.01);
-  return out;
-}
-
-FlightLog flown(const FlightPlan& plan, const plant::Vehicle& truth, std::uint64_t seed) {
-  ClosedLoop loop(truth, plan.vehicle, plan.simulation, plan.control, seed);
-  SensorRecord record(plan.record_capacity());
-  loop.sensors = &record;
-  control::Mission mission = plan.mission.mission;
-  mission.id = 1;
-  const SimulatedFlight flight = fly(loop, mission, plan.planned_duration_s, {});
-  EXPECT_TRUE(flight.completed) << flight.reason;
-  return flight_log_of(record);
-}
 
 std::map<std::string, double> truth_of(const plant::Vehicle& v) {
   return {{"motor.time_constant", v.motor.time_constant_s},
@@ -154,23 +117,17 @@ TEST(FlightIdentification, TellsMassInsteadWhereTheThrustIsKnown) {
   EXPECT_EQ(found.find("rotor.thrust_factor"), nullptr);
 }
 
-TEST(FlightIdentification, RefusesLogsWithoutPosesOrVoltage) {
+TEST(FlightIdentification, RefusesLogsThatDoNotHoldTheSame) {
   const FlightPlan plan = plan_of("identification");
   const FlightLog log = flown(plan, plan.vehicle, 5);
-  const auto refusal = [&](const FlightLog& without) -> std::string {
-    try {
-      identification::identify_flight({without}, plan.vehicle, {});
-    } catch (const identification::BadData& fault) {
-      return fault.what();
-    }
-    return "";
-  };
   FlightLog blind = log;
   blind.poses.clear();
-  EXPECT_NE(refusal(blind).find("has 0 poses"), std::string::npos) << refusal(blind);
-  FlightLog powerless = log;
-  powerless.supply_voltage_v.clear();
-  EXPECT_NE(refusal(powerless).find("has no supply voltage"), std::string::npos) << refusal(powerless);
+  try {
+    identification::identify_flight({log, blind}, plan.vehicle, {});
+    ADD_FAILURE() << "was not refused";
+  } catch (const identification::BadData& fault) {
+    EXPECT_NE(std::string(fault.what()).find("do not hold the same"), std::string::npos) << fault.what();
+  }
 }
 
 TEST(FlightIdentification, TellsADelayOfTheCommands) {
@@ -185,6 +142,25 @@ TEST(FlightIdentification, TellsADelayOfTheCommands) {
   const FlightIdentification found =
       identification::identify_flight({flown(plan, plan.vehicle, 7)}, plan.vehicle, {});
   EXPECT_NEAR(found.find("delay.rates")->value, 0.006, 0.0015);
+}
+
+TEST(FlightIdentification, FindsPosesThatAreStampedLateAndSetsThemRight) {
+  const FlightPlan plan = plan_of("identification");
+  const plant::Vehicle truth = another(plan.vehicle, 6);
+  FlightLog log = flown(plan, truth, 6);
+  const FlightIdentification right = identification::identify_flight({log}, plan.vehicle, {});
+  for (identification::FlightPose& pose : log.poses) pose.time_s += 0.03;
+  const FlightIdentification late = identification::identify_flight({log}, plan.vehicle, {});
+  EXPECT_NEAR(right.find("delay.poses")->value, 0.0, 3e-4);
+  EXPECT_NEAR(late.find("delay.poses")->value, 0.03, 3e-4);
+  EXPECT_NEAR(right.find("linear_drag")->value / truth.linear_drag, 1.0, 0.03);
+  for (const char* const same : {"linear_drag", "inertia.xx", "accelerometer_offset.z"})
+    EXPECT_NEAR(late.find(same)->value / right.find(same)->value, 1.0, 1e-3) << same;
+  std::string all;
+  for (const std::string& sentence : late.findings) all += sentence + "\n";
+  EXPECT_NE(all.find("poses are stamped"), std::string::npos) << all;
+  for (const std::string& sentence : right.findings)
+    EXPECT_EQ(sentence.find("poses are stamped"), std::string::npos) << sentence;
 }
 
 TEST(FlightIdentification, SaysWhatAHoverDoesNotTell) {

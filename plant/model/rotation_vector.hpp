@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-namespace swiftlet::control {
+namespace swiftlet::plant {
 
 // The unit quaternion of a rotation vector: (cos h, sin(h) / h * half), h being the length of half the
 // vector. Small ones, as of every step, by series whose first term left out is below 1e-16.
@@ -43,4 +43,4 @@ inline Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q) {
   return (q.w() < 0.0 ? -angle_over_s : angle_over_s) * q.vec();
 }
 
-}  // namespace swiftlet::control
+}  // namespace swiftlet::plant

@@ -1,0 +1,23 @@
+// How well a model of commands alone predicts flight that it was not fitted to.
+#pragma once
+
+#include <vector>
+
+#include "identification/command_model.hpp"
+#include "identification/flight.hpp"
+
+namespace swiftlet::identification {
+
+struct CommandPredictions {
+  std::vector<PredictionError> errors;  // p, q, r, f_z; one step is a block
+  // Of the forecast half a second ahead, in the same order: what it takes of the change by the commands and
+  // of the deviation from the mean at its start.
+  std::vector<double> weight_of_commands;
+  std::vector<double> weight_of_start;
+  std::vector<HorizonError> horizons;
+  PredictionTrace trace;
+};
+
+CommandPredictions command_predictions(const CommandModel& model, const Eigen::VectorXd& parameters);
+
+}  // namespace swiftlet::identification

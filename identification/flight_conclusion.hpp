@@ -1,0 +1,55 @@
+// What follows from a fit to flights: quantities with intervals, a vehicle file's numbers, warnings.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "identification/flight.hpp"
+#include "identification/flight_model.hpp"
+#include "identification/flight_series.hpp"
+
+namespace swiftlet::identification {
+
+// A quantity that follows from the parameters of the fit.
+struct Derived {
+  std::string parameter;
+  std::string symbol;
+  std::string unit;
+  std::function<double(const Eigen::VectorXd&)> of;
+};
+
+struct DerivedValues {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd covariance;
+};
+
+DerivedValues evaluate(const std::vector<Derived>& quantities, const std::vector<FlightParameter>& parameters,
+                       const EstimatedParameters& fit);
+
+std::vector<Estimate> estimates_of(const std::vector<Derived>& quantities, const DerivedValues& values,
+                                   int degrees_of_freedom);
+
+// Windows, source and lengths of time.
+FlightIdentification begun_with(const std::vector<FlightSeries>& flights);
+
+// Puts what out.estimates tell well enough into the vehicle, and says of the rest what would tell it. values
+// are those of out.estimates.
+void conclude_vehicle(FlightIdentification& out, const DerivedValues& values, const plant::Vehicle& base,
+                      const std::function<std::string(const std::string& parameter)>& advice);
+
+// Throws BadData where a gain, by its place among the parameters, is negative for certain.
+void refuse_turned_gains(const int (&gain)[3], const plant::Vehicle& base, const EstimatedParameters& fit);
+
+// Of fits that did not converge, or that ended where the search ends.
+void warn_of_fit(FlightIdentification& out, const std::vector<FlightParameter>& parameters,
+                 const SeriesFit& fit);
+
+void warn_of_windows(FlightIdentification& out, const std::vector<FlightLog>& logs);
+
+// "roll", "pitch", "yaw".
+const char* axis_name(int axis);
+
+}  // namespace swiftlet::identification

@@ -1,0 +1,53 @@
+// Flights in the plant, whose truth is known, for identifications.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "ground/flight_log_files.hpp"
+#include "ground/flight_plan.hpp"
+#include "ground/in_process_flight.hpp"
+#include "ground/simulation/simulated_flight.hpp"
+#include "plant/simulation/random.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace swiftlet::ground {
+
+inline FlightPlan plan_of(const std::string& mission) {
+  const tests::TemporaryFolder folder;
+  FlyOptions options;
+  options.parties = Parties::kInProcess;
+  options.mission = mission;
+  options.record = folder.path().string();
+  return plan_flight(options);
+}
+
+// What may have come off the workbench in place of the plan's vehicle, of a weight that is known.
+inline plant::Vehicle another(const plant::Vehicle& nominal, std::uint64_t seed) {
+  plant::RandomStream random(seed, 20250919);
+  plant::Vehicle out = nominal;
+  out.rotor.thrust *= random.uniform(0.9, 1.1);
+  out.motor.time_constant_s *= random.uniform(0.8, 1.2);
+  const double size = random.uniform(0.8, 1.2);
+  for (int axis = 0; axis < 3; ++axis) out.inertia(axis, axis) *= size * random.uniform(0.95, 1.05);
+  out.inertia(2, 2) = std::min(out.inertia(2, 2), 0.98 * (out.inertia(0, 0) + out.inertia(1, 1)));
+  out.linear_drag = random.uniform(0.002, 0.01);
+  return out;
+}
+
+inline identification::FlightLog flown(const FlightPlan& plan, const plant::Vehicle& truth,
+                                       std::uint64_t seed) {
+  ClosedLoop loop(truth, plan.vehicle, plan.simulation, plan.control, seed);
+  SensorRecord record(plan.record_capacity());
+  loop.sensors = &record;
+  control::Mission mission = plan.mission.mission;
+  mission.id = 1;
+  const SimulatedFlight flight = fly(loop, mission, plan.planned_duration_s, {});
+  EXPECT_TRUE(flight.completed) << flight.reason;
+  return flight_log_of(record);
+}
+
+}  // namespace swiftlet::ground
