@@ -276,8 +276,7 @@ void identify_commands(FlightIdentification& out, std::vector<FlightSeries> flig
       base.name + " make of m d/J");
   out.findings.push_back(
       "a command that all rotors share makes " + shown(all.model->shared_over_single()) +
-      " times the thrust of one rotor's alone, as the supply sags under it: by the battery "
-      "of " +
+      " times the thrust of one by which they differ, as the supply sags under it: by the battery of " +
       base.name + ", and allowed for in m d/J");
   compare_with_file(out, *all.model);
   draw_thrust(out, all);
