@@ -256,6 +256,7 @@ void identify_commands(FlightIdentification& out, std::vector<FlightSeries> flig
     if (options.progress) options.progress("fitting");
   };
   const std::vector<CommandFit> alone = fit_alone(flights, base, progress);
+  for (const CommandFit& fit : alone) refuse_turned_gains(fit.model->layout().gain, base, fit.fit);
   CommandFit all = fit_responses(flights, base, {kAllResponses.begin(), kAllResponses.end()}, std::nullopt,
                                  {&alone[2], &alone[1], &alone[0]}, progress);
   for (const CommandFit& fit : alone) out.lags.push_back(lag_of(fit));

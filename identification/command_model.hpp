@@ -27,8 +27,9 @@
 #include <Eigen/Core>
 
 #include "identification/coloured_noise.hpp"
-#include "identification/flight_model.hpp"
+#include "identification/flight_parameter.hpp"
 #include "identification/flight_series.hpp"
+#include "identification/recent_results.hpp"
 #include "identification/series_fit.hpp"
 #include "plant/model/airframe.hpp"
 #include "plant/model/vehicle.hpp"
@@ -114,7 +115,6 @@ class CommandModel {
  private:
   bool has(Response response) const;
   void lay_out();
-  int add(FlightParameter parameter);
   void add_noise(Response response);
   BlockedFlight blocked(const FlightSeries& series) const;
 
@@ -142,13 +142,8 @@ class CommandModel {
   std::vector<BlockedFlight> blocks_;
   CommandLayout layout_;
 
-  // Most parameters do not move the rotors.
-  struct Kept {
-    std::array<double, 7> key{};
-    std::shared_ptr<const Rotors> rotors;
-  };
-  mutable std::vector<Kept> kept_;
-  mutable std::size_t oldest_kept_ = 0;
+  // By flight, curve, drift, lag and delay: most parameters do not move the rotors.
+  mutable RecentResults<std::array<double, 7>, Rotors> rotors_;
 };
 
 // Values of one model's parameters where another has them too, by their names; the rest as it is in `start`.

@@ -128,6 +128,7 @@ void conclude_vehicle(FlightIdentification& out, const DerivedValues& values, co
 
 void refuse_turned_gains(const int (&gain)[3], const plant::Vehicle& base, const EstimatedParameters& fit) {
   for (int axis = 0; axis < 3; ++axis) {
+    if (gain[axis] == kAbsent) continue;
     if (fit.parameters[gain[axis]] > -kTurned * fit.standard_error(gain[axis])) continue;
     throw BadData("the vehicle turns about " + std::string(kAxisNames[axis]) +
                   " against what the rotors of " + base.name +

@@ -41,18 +41,19 @@ plant::PerRotor speed_errors(const plant::PerRotor& measured, const plant::PerRo
 }  // namespace
 
 FlightModel::FlightModel(std::vector<FlightSeries> flights, plant::Vehicle base)
-    : flights_(std::move(flights)), base_(std::move(base)), effectiveness_(plant::effectiveness(base_)) {
+    : flights_(std::move(flights)),
+      base_(std::move(base)),
+      effectiveness_(plant::effectiveness(base_)),
+      wrenches_(kKeptForEachFlight * flights_.size()) {
   for (const FlightSeries& flight : flights_) block_.push_back(block_of(flight));
   lay_out();
 }
 
-int FlightModel::add(FlightParameter parameter) {
-  layout_.parameters.push_back(std::move(parameter));
-  return static_cast<int>(layout_.parameters.size()) - 1;
-}
-
 void FlightModel::lay_out() {
   FlightLayout& l = layout_;
+  const auto add = [&l](FlightParameter parameter) {
+    return identification::add(std::move(parameter), l.parameters);
+  };
   l.lag = add({"rotor lag", "s", base_.motor.time_constant_s, 0.01, 2e-3, 1.0});
   if (source() == SpeedSource::kMeasured) {
     l.motor_delay = add({"delay from command to rotor speed", "s", 2e-3, 2e-3, -0.02, 0.05});
@@ -108,20 +109,9 @@ FlightModel::Wrenches FlightModel::computed_wrenches(std::size_t flight, const R
 
 std::shared_ptr<const FlightModel::Wrenches> FlightModel::wrenches(const VectorXd& x, std::size_t flight,
                                                                    const Rows& rows, double delay_s) const {
-  const bool measured = source() == SpeedSource::kMeasured;
-  Kept wanted{flight, rows.first, measured ? 0.0 : x[layout_.lag], delay_s, nullptr};
-  for (const Kept& kept : kept_) {
-    if (kept.is_of(wanted) && kept.wrenches->size() == rows.size()) return kept.wrenches;
-  }
-  wanted.wrenches =
-      std::make_shared<const Wrenches>(computed_wrenches(flight, rows, wanted.lag_s, wanted.delay_s));
-  if (kept_.size() < kKeptForEachFlight * flights_.size()) {
-    kept_.push_back(wanted);
-  } else {
-    kept_[oldest_kept_] = wanted;
-    oldest_kept_ = (oldest_kept_ + 1) % kept_.size();
-  }
-  return wanted.wrenches;
+  const double lag_s = source() == SpeedSource::kMeasured ? 0.0 : x[layout_.lag];
+  return wrenches_.of({flight, rows.first, rows.last, lag_s, delay_s},
+                      [&] { return computed_wrenches(flight, rows, lag_s, delay_s); });
 }
 
 FlightModel::Drive FlightModel::drive(const VectorXd& x, std::size_t flight, const Rows& rows) const {
@@ -158,19 +148,7 @@ Vector3d FlightModel::rate_derivative(const Vector3d& inertia, const Vector3d& a
 // Channels, one after the other: specific force x, y, z, rates p, q, r, speed of each rotor less the mean of
 // all, that mean over each stretch, vertical motion.
 SeriesProblem FlightModel::problem(const std::function<void()>& on_iteration) const {
-  SeriesProblem out;
-  const auto count = static_cast<Index>(layout_.parameters.size());
-  out.start.resize(count);
-  out.scale.resize(count);
-  out.low.resize(count);
-  out.high.resize(count);
-  for (Index i = 0; i < count; ++i) {
-    const FlightParameter& parameter = layout_.parameters[static_cast<std::size_t>(i)];
-    out.start[i] = parameter.start;
-    out.scale[i] = parameter.scale;
-    out.low[i] = parameter.low;
-    out.high[i] = parameter.high;
-  }
+  SeriesProblem out = problem_of(layout_.parameters);
   std::vector<std::size_t> per_row;  // stretch of each block of fitted rows, all flights
   std::vector<std::size_t> per_stretch;
   for (std::size_t f = 0; f < flights_.size(); ++f) {
