@@ -86,6 +86,12 @@ std::vector<Eigen::Vector3d> vectors(const Measurements& table, Quantity x) {
 int motors(const Measurements& table, Quantity first) {
   int count = 0;
   while (count < plant::kMaxRotors && table.has(first + count)) ++count;
+  for (int later = count + 1; later < plant::kMaxRotors; ++later) {
+    if (!table.has(first + later)) continue;
+    throw ConfigError(table.file(), 1, "header",
+                      "has " + table.header(first + later) + " and none of motor " +
+                          std::to_string(count + 1) + "; must number motors from 1 on");
+  }
   return count;
 }
 
@@ -143,6 +149,18 @@ bool is_frd(const Measurements& table, const std::vector<Eigen::Vector3d>& speci
   return mean < 0.0;
 }
 
+// Some more than what the ESC obeys are sent to it, to start or stop it for certain.
+void demand_pulse(const Measurements& table, std::size_t row, Quantity which, const plant::Vehicle& base) {
+  const double pulse_us = table.column(which)[row];
+  const double least_us = base.esc.pulse_min_us - 0.5 * base.esc.pulse_range_us;
+  const double most_us = base.esc.pulse_min_us + 1.5 * base.esc.pulse_range_us;
+  if (pulse_us == 0.0 || (pulse_us >= least_us && pulse_us <= most_us)) return;
+  throw ConfigError(table.file(), table.line(row), table.header(which),
+                    "is " + std::to_string(pulse_us) + " us, must be 0 or between " +
+                        std::to_string(least_us) + " and " + std::to_string(most_us) +
+                        " us, by half the range of " + base.name + "'s ESC at most beyond it");
+}
+
 void read_commands(const Measurements& table, const plant::Vehicle& base, FlightLog& log,
                    std::vector<std::string>& assumptions) {
   const int shares = motors(table, Quantity::kMotorCommand);
@@ -157,6 +175,7 @@ void read_commands(const Measurements& table, const plant::Vehicle& base, Flight
     const std::vector<double>& column =
         table.column((shares > 0 ? Quantity::kMotorCommand : Quantity::kMotorPulse) + i);
     for (std::size_t row = 0; row < column.size(); ++row) {
+      if (shares == 0) demand_pulse(table, row, Quantity::kMotorPulse + i, base);
       const double command =
           shares > 0 ? column[row] : plant::throttle_from_pulse_width(base.esc, column[row]);
       if (!(command >= 0.0 && command <= 1.0)) {

@@ -78,6 +78,16 @@ int run_identify_flight(IdentifyFlightOptions options) {
   if (!options.out.empty())
     vehicle.name = options.name.empty() ? fs::path(options.out).stem().string() : options.name;
 
+  if (options.json) {
+    std::printf("%s\n", flight_identification_json(report).c_str());
+  } else {
+    std::printf("%s", flight_identification_table(report).c_str());
+  }
+  if (!options.report.empty()) write_whole_file(options.report, flight_identification_html(report));
+  if (!report.found.converged)
+    throw std::runtime_error(options.out.empty()
+                                 ? "the fit is not to be trusted"
+                                 : "the fit is not to be trusted: " + options.out + " is not written");
   if (!options.out.empty()) {
     for (const plant::Violation& broken : plant::validate(vehicle)) {
       throw InputError("the identified vehicle cannot fly: " + broken.key + ": " + broken.message +
@@ -92,12 +102,6 @@ int run_identify_flight(IdentifyFlightOptions options) {
     runtime::parse_vehicle(text, options.out);
     write_whole_file(options.out, text);
   }
-  if (!options.report.empty()) write_whole_file(options.report, flight_identification_html(report));
-  if (options.json) {
-    std::printf("%s\n", flight_identification_json(report).c_str());
-  } else {
-    std::printf("%s", flight_identification_table(report).c_str());
-  }
   std::string wrote;
   for (const std::string& file : {options.out, options.report}) {
     if (!file.empty()) wrote += (wrote.empty() ? "; wrote " : " and ") + file;
@@ -105,7 +109,7 @@ int run_identify_flight(IdentifyFlightOptions options) {
   std::fprintf(stderr, "swiftlet: %zu parameters of the vehicle told by %zu %s%s\n",
                report.found.uncertainty.parameters.size(), logs.size(),
                logs.size() == 1 ? "flight" : "flights", wrote.c_str());
-  return report.found.converged ? kDone : kFailed;
+  return kDone;
 }
 
 }  // namespace

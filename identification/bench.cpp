@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "identification/possible_inertia.hpp"
 #include "plant/model/airframe.hpp"
 
 namespace swiftlet::identification {
@@ -212,16 +213,10 @@ class Bench {
     out_.sources["motor.armature_resistance"] = "estimate: K2 K3 / k_Q, Eq. (21) without friction";
   }
 
-  // A flat vehicle's largest moment is nearly the sum of the others, which no body exceeds; noise alone may
-  // then put it beyond. The nearest that is possible is taken, by the estimates' variances; moments that were
-  // not measured give way first.
+  // Moments that were not measured give way first.
   void keep_inertia_possible() {
     if (!out_.inertia[0] && !out_.inertia[1] && !out_.inertia[2]) return;
     Eigen::Vector3d moments = out_.vehicle.inertia.diagonal();
-    Eigen::Index largest = 0;
-    moments.maxCoeff(&largest);
-    const double beyond = 2.0 * moments[largest] - moments.sum();
-    if (beyond <= 0.0) return;
     const bool all = out_.inertia[0] && out_.inertia[1] && out_.inertia[2];
     Eigen::Vector3d variances = Eigen::Vector3d::Zero();
     for (Eigen::Index i = 0; i < 3; ++i) {
@@ -232,16 +227,11 @@ class Bench {
         variances[i] = moments[i] * moments[i];
       }
     }
-    if (all && beyond > kChanceDeviations * std::sqrt(variances.sum()))
-      return;  // no chance: for validate() to tell
-    for (Eigen::Index i = 0; i < 3; ++i)
-      moments[i] += (i == largest ? -1.0 : 1.0) * beyond * variances[i] / variances.sum();
+    const double deviations = all ? kChanceDeviations : std::numeric_limits<double>::infinity();
+    const std::optional<std::string> moved = keep_possible(moments, variances, deviations, all);
+    if (!moved) return;
     out_.vehicle.inertia.diagonal() = moments;
-    out_.warnings.push_back(std::string(kInertiaSymbols[static_cast<std::size_t>(largest)]) + " came out " +
-                            shown(beyond) +
-                            " kg*m^2 above the sum of the other moments, which no body exceeds: " +
-                            (all ? "the nearest that is possible, within what chance gives, is taken"
-                                 : "those that were not measured are moved"));
+    out_.warnings.push_back(*moved);
   }
 
   static constexpr double kAgreement = 0.05;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Core>
+
 #include "identification/estimate.hpp"
 #include "identification/limits.hpp"
 
@@ -85,6 +87,20 @@ double median(std::vector<double> values) {
   const std::size_t half = values.size() / 2;
   std::sort(values.begin(), values.end());
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+Comparison compared(const std::vector<double>& first, const std::vector<double>& second) {
+  const auto count = static_cast<Eigen::Index>(first.size());
+  Eigen::ArrayXd a = Eigen::Map<const Eigen::ArrayXd>(first.data(), count);
+  Eigen::ArrayXd b = Eigen::Map<const Eigen::ArrayXd>(second.data(), count);
+  a -= a.mean();
+  b -= b.mean();
+  constexpr double kNone = 1e-300;
+  const double product = (a * b).sum();
+  const double square_a = a.square().sum();
+  const double square_b = b.square().sum();
+  return {product / std::max(std::sqrt(square_a * square_b), kNone), product / std::max(square_b, kNone),
+          std::sqrt(std::max(square_a, square_b) / static_cast<double>(count))};
 }
 
 double full_scale(const std::vector<double>& values) {

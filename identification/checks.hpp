@@ -33,6 +33,14 @@ void demand_drive(const Column& supply, const Column& throttle);
 
 double median(std::vector<double> values);
 
+// Two measures of one thing, about their means.
+struct Comparison {
+  double correlation = 0.0;
+  double ratio = 0.0;   // of the first over the second, where they go together
+  double spread = 0.0;  // root mean square, the larger of both
+};
+Comparison compared(const std::vector<double>& first, const std::vector<double>& second);
+
 // The magnitude that nine in ten readings do not exceed; 1 for a column of zeros.
 double full_scale(const std::vector<double>& values);
 

@@ -101,8 +101,7 @@ class CommandModel {
   SeriesProblem problem(const std::function<void()>& on_iteration) const;
   ThrustCurve curve(const Eigen::VectorXd& parameters) const;
   ColouredNoise noise(const Eigen::VectorXd& parameters, Response response) const;
-  // d of the axes about which a response turns, m; for yaw, torque over thrust.
-  double lever(int axis) const { return lever_[static_cast<std::size_t>(axis)]; }
+  double lever(int axis) const { return lever_[static_cast<std::size_t>(axis)]; }  // d, by the base
   double shared_over_single() const { return shared_over_single_; }  // of the base, supply_sag.hpp
 
   // What the model has of each block: of the force its value, of a rate what it gains since the block before.

@@ -24,14 +24,6 @@ struct Fitted {
   SeriesFit fit;
 };
 
-// Distance of the rotors from the axis about which they turn the body, m; 1 for yaw.
-double lever(const plant::Vehicle& vehicle, int axis) {
-  if (axis == 2) return 1.0;
-  double sum = 0.0;
-  for (const plant::RotorMount& rotor : vehicle.rotors) sum += std::abs(rotor.position_frd[1 - axis]);
-  return sum / vehicle.rotor_count();
-}
-
 std::vector<Derived> derived(const FlightModel& model, Known known) {
   const FlightLayout& l = model.layout();
   const plant::Vehicle& base = model.base();
@@ -50,8 +42,7 @@ std::vector<Derived> derived(const FlightModel& model, Known known) {
   out.push_back({"thrust_factor_over_mass", "k_T/m", "N*s^2/kg",
                  [&l, &base, k](const VectorXd& x) { return x[l.thrust] * k / base.mass_kg; }});
   for (int axis = 0; axis < 3; ++axis) {
-    const double per_speed = axis == 2 ? base.rotor.torque : k * lever(base, axis);
-    const double over_inertia = per_speed / base.inertia(axis, axis);
+    const double over_inertia = k * mean_lever(base, axis) / base.inertia(axis, axis);
     const int gain = l.gain[axis];
     out.push_back({std::string("rotor_to_rate.") + axis_name(axis),
                    axis == 2   ? "k_Q/J_zz"
@@ -229,7 +220,7 @@ FlightIdentification identify_flight(const std::vector<FlightLog>& logs, const p
   const FlightModel& model = *fitted.model;
   const SeriesFit& fit = fitted.fit;
   refuse_turned_gains(model.layout().gain, base, fit);
-  out.converged = fit.converged;
+  out.converged = fit.converged && within_bounds(model.layout().parameters, fit);
   const std::vector<Derived> quantities = derived(model, options.known);
   const DerivedValues values = evaluate(quantities, model.layout().parameters, fit);
   out.estimates = estimates_of(quantities, values, fit.degrees_of_freedom);

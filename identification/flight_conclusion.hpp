@@ -35,8 +35,14 @@ std::vector<Estimate> estimates_of(const std::vector<Derived>& quantities, const
 // Windows, source and lengths of time.
 FlightIdentification begun_with(const std::vector<FlightSeries>& flights);
 
-// Puts what out.estimates tell well enough into the vehicle, and says of the rest what would tell it. values
-// are those of out.estimates.
+// Whether the search ended inside its bounds.
+bool within_bounds(const std::vector<FlightParameter>& parameters, const EstimatedParameters& fit);
+
+// Of a vehicle's rotors from the axis about which they turn the body, the mean, m; for yaw, torque over thrust.
+double mean_lever(const plant::Vehicle& vehicle, int axis);
+
+// Puts what out.estimates tell well enough into the vehicle, if the fit converged within its bounds, and says
+// of the rest what would tell it. values are those of out.estimates. Throws BadData for what no body is.
 void conclude_vehicle(FlightIdentification& out, const DerivedValues& values, const plant::Vehicle& base,
                       const std::function<std::string(const std::string& parameter)>& advice);
 

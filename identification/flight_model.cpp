@@ -90,21 +90,25 @@ Vector3d FlightModel::offset(const VectorXd& x, std::size_t flight) const {
   return {x[first], x[first + 1], x[first + 2]};
 }
 
-FlightModel::Wrenches FlightModel::computed_wrenches(std::size_t flight, const Rows& rows, double lag_s,
-                                                     double delay_s) const {
-  const FlightSeries& series = flights_[flight];
-  std::vector<plant::PerRotor> modelled;
-  if (source() != SpeedSource::kMeasured)
-    modelled = lagged_speeds(*series.log, series.steady_speeds, rows, lag_s, delay_s);
-  Wrenches out(rows.size(), Eigen::Vector4d::Zero());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const plant::PerRotor& speeds = modelled.empty() ? series.log->rotor_speeds[rows.first + i] : modelled[i];
+FlightModel::Wrenches FlightModel::wrenches_of(const std::vector<plant::PerRotor>& speeds) const {
+  Wrenches out(speeds.size(), Eigen::Vector4d::Zero());
+  for (std::size_t i = 0; i < speeds.size(); ++i) {
     for (Index rotor = 0; rotor < effectiveness_.cols(); ++rotor) {
-      const double speed = speeds[static_cast<std::size_t>(rotor)];
+      const double speed = speeds[i][static_cast<std::size_t>(rotor)];
       out[i] += effectiveness_.col(rotor) * (base_.rotor.thrust * speed * speed);
     }
   }
   return out;
+}
+
+FlightModel::Wrenches FlightModel::computed_wrenches(std::size_t flight, const Rows& rows, double lag_s,
+                                                     double delay_s) const {
+  const FlightSeries& series = flights_[flight];
+  if (source() != SpeedSource::kMeasured)
+    return wrenches_of(lagged_speeds(*series.log, series.steady_speeds, rows, lag_s, delay_s));
+  const auto measured = series.log->rotor_speeds.begin();
+  return wrenches_of({measured + static_cast<std::ptrdiff_t>(rows.first),
+                      measured + static_cast<std::ptrdiff_t>(rows.last)});
 }
 
 std::shared_ptr<const FlightModel::Wrenches> FlightModel::wrenches(const VectorXd& x, std::size_t flight,
@@ -115,11 +119,27 @@ std::shared_ptr<const FlightModel::Wrenches> FlightModel::wrenches(const VectorX
 }
 
 FlightModel::Drive FlightModel::drive(const VectorXd& x, std::size_t flight, const Rows& rows) const {
+  const auto for_force = wrenches(x, flight, rows, value(x, layout_.force_delay));
+  const auto for_rates = wrenches(x, flight, rows, value(x, layout_.rate_delay));
+  return drive_by(x, flight, rows, *for_force, *for_rates);
+}
+
+FlightModel::Drive FlightModel::drive_by_commands(const VectorXd& x, std::size_t flight,
+                                                  const Rows& rows) const {
+  if (source() != SpeedSource::kMeasured) return drive(x, flight, rows);
   const FlightSeries& series = flights_[flight];
-  const double force_delay = value(x, layout_.force_delay);
-  const double rate_delay = value(x, layout_.rate_delay);
-  const auto for_force = wrenches(x, flight, rows, force_delay);
-  const auto for_rates = wrenches(x, flight, rows, rate_delay);
+  std::vector<plant::PerRotor> speeds =
+      lagged_speeds(*series.log, series.steady_speeds, rows, x[layout_.lag], x[layout_.motor_delay]);
+  for (plant::PerRotor& of_row : speeds) {
+    for (double& speed : of_row) speed *= x[layout_.speed_scale];
+  }
+  const Wrenches by_commands = wrenches_of(speeds);
+  return drive_by(x, flight, rows, by_commands, by_commands);
+}
+
+FlightModel::Drive FlightModel::drive_by(const VectorXd& x, std::size_t flight, const Rows& rows,
+                                         const Wrenches& for_force, const Wrenches& for_rates) const {
+  const FlightSeries& series = flights_[flight];
   const double thrust_over_mass = x[layout_.thrust] / base_.mass_kg;
   const double drag = value(x, layout_.drag);
   const Vector3d gain = Vector3d(x[layout_.gain[0]], x[layout_.gain[1]], x[layout_.gain[2]])
@@ -130,11 +150,11 @@ FlightModel::Drive FlightModel::drive(const VectorXd& x, std::size_t flight, con
   out.specific_force.reserve(rows.size());
   out.acceleration.reserve(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    Vector3d force(0.0, 0.0, -thrust_over_mass * (*for_force)[i][0]);
+    Vector3d force(0.0, 0.0, -thrust_over_mass * for_force[i][0]);
     const std::size_t row = rows.first + i;
     force -= drag * (series.attitude[row].conjugate() * series.velocity_ned[row]);
     out.specific_force.push_back(force);
-    const Eigen::Vector4d& moments = (*for_rates)[i];
+    const Eigen::Vector4d& moments = for_rates[i];
     out.acceleration.push_back(gain.cwiseProduct(moments.tail<3>() + moments[0] * trim));
   }
   return out;

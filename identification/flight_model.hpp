@@ -72,6 +72,8 @@ class FlightModel {
     std::vector<Eigen::Vector3d> acceleration;  // rad/s^2
   };
   Drive drive(const Eigen::VectorXd& parameters, std::size_t flight, const Rows& rows) const;
+  // The same by the speeds that the commands ask for, measured or not.
+  Drive drive_by_commands(const Eigen::VectorXd& parameters, std::size_t flight, const Rows& rows) const;
   // dw/dt of these rates under that.
   static Eigen::Vector3d rate_derivative(const Eigen::Vector3d& inertia, const Eigen::Vector3d& acceleration,
                                          const Eigen::Vector3d& rates);
@@ -84,6 +86,9 @@ class FlightModel {
   std::shared_ptr<const Wrenches> wrenches(const Eigen::VectorXd& parameters, std::size_t flight,
                                            const Rows& rows, double delay_s) const;
   Wrenches computed_wrenches(std::size_t flight, const Rows& rows, double lag_s, double delay_s) const;
+  Wrenches wrenches_of(const std::vector<plant::PerRotor>& speeds) const;
+  Drive drive_by(const Eigen::VectorXd& parameters, std::size_t flight, const Rows& rows,
+                 const Wrenches& for_force, const Wrenches& for_rates) const;
   void residuals(const Eigen::VectorXd& parameters, Eigen::VectorXd& out) const;
 
   std::vector<FlightSeries> flights_;

@@ -22,13 +22,13 @@ struct Squares {
   double rms(int axis) const { return count > 0.0 ? std::sqrt(sum[axis] / count) : 0.0; }
 };
 
-// Rates, from the measured ones of a row on, under the drives of the rows that follow.
+// Rates, from the measured ones of a row on, by what the commands of the rows that follow make the rotors do.
 class RatePredictor {
  public:
   RatePredictor(const FlightModel& model, const VectorXd& parameters, std::size_t flight)
       : log_(*model.flights()[flight].log),
         rows_(model.flights()[flight].kept),
-        drive_(model.drive(parameters, flight, rows_)),
+        drive_(model.drive_by_commands(parameters, flight, rows_)),
         inertia_(model.inertia(parameters)) {}
 
   const Rows& rows() const { return rows_; }
