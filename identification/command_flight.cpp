@@ -308,7 +308,7 @@ void identify_commands(FlightIdentification& out, std::vector<FlightSeries> flig
   allow_for_battery(*all.model, quantities, values);
   out.estimates = estimates_of(quantities, values, all.fit.degrees_of_freedom);
   demand_possible_hover(*out.find("thrust_per_mass.hover_command"));
-  conclude_vehicle(out, values, base, [&](const std::string& parameter) {
+  conclude_vehicle(out, values, base, {}, [&](const std::string& parameter) {
     return advice(parameter, *out.find(parameter), by_flight, base);
   });
   out.unexcited.emplace_back(

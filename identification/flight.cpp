@@ -17,6 +17,9 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
+// Change of a rate in half a second over the error of one step, root mean squares. The moment of inertia comes
+// out too small by about one over its square.
+constexpr double kOverNoise = 8.0;
 constexpr double kWellStampedS = 0.002;  // delay of poses that is not worth a sentence
 
 struct Fitted {
@@ -147,6 +150,24 @@ std::string advice(const std::string& parameter, const Excitation& excited) {
   return "the thrust varied by " + shown(excited.thrust) + " m/s^2 only; climb and sink quickly";
 }
 
+// Moments of inertia that the gyro's noise would make smaller than they are: the controller answers the noise,
+// and what it answers would be taken for what its answer does.
+std::map<std::string, std::string> too_calm(const FlightModel& model, const VectorXd& x) {
+  const char* const inertias[3] = {"inertia.xx", "inertia.yy", "inertia.zz"};
+  const char* const moves[3] = {"fly quick moves sideways", "fly quick moves forward and back",
+                                "turn about yaw, quickly"};
+  const std::vector<PredictionError> errors = prediction_errors(model, x, Part::kFitted);
+  std::map<std::string, std::string> out;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const PredictionError& error = errors[axis];
+    if (error.idle_half_second > kOverNoise * error.one_step) continue;
+    out[inertias[axis]] = error.quantity + " changes by " + shown(error.idle_half_second) +
+                          " rad/s in half a second, must by " + shown(kOverNoise) +
+                          " times the gyro's noise, " + shown(error.one_step) + " rad/s; " + moves[axis];
+  }
+  return out;
+}
+
 void tell_what_no_flight_tells(FlightIdentification& out, const FlightModel& model, const SeriesFit& fit,
                                Known known) {
   const plant::Vehicle& base = model.base();
@@ -225,14 +246,14 @@ FlightIdentification identify_flight(const std::vector<FlightLog>& logs, const p
   const DerivedValues values = evaluate(quantities, model.layout().parameters, fit);
   out.estimates = estimates_of(quantities, values, fit.degrees_of_freedom);
   const Excitation excited = excitation(model, fit.parameters);
-  conclude_vehicle(out, values, base,
+  conclude_vehicle(out, values, base, too_calm(model, fit.parameters),
                    [&](const std::string& parameter) { return advice(parameter, excited); });
   tell_what_no_flight_tells(out, model, fit, options.known);
   tell_of_excitation(out, excited);
   tell_of_poses(out, model.flights());
   warn_of_fit(out, model.layout().parameters, fit);
   warn_of_windows(out, logs);
-  out.errors = prediction_errors(model, fit.parameters);
+  out.errors = prediction_errors(model, fit.parameters, Part::kKept);
   out.trace = prediction_trace(model, fit.parameters);
   return out;
 }

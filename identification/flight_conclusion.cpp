@@ -140,6 +140,7 @@ double mean_lever(const plant::Vehicle& vehicle, int axis) {
 }
 
 void conclude_vehicle(FlightIdentification& out, const DerivedValues& values, const plant::Vehicle& base,
+                      const std::map<std::string, std::string>& untold,
                       const std::function<std::string(const std::string& parameter)>& advice) {
   out.vehicle = base;
   for (const char* const inertia : {"inertia.xx", "inertia.yy"}) {
@@ -156,6 +157,10 @@ void conclude_vehicle(FlightIdentification& out, const DerivedValues& values, co
   for (std::size_t i = 0; i < out.estimates.size(); ++i) {
     const Estimate& estimate = out.estimates[i];
     if (!stands_in_file(estimate.parameter)) continue;
+    if (const auto reason = untold.find(estimate.parameter); reason != untold.end()) {
+      out.unexcited.push_back(estimate.parameter + ": " + reason->second);
+      continue;
+    }
     if (!is_told(estimate, base)) {
       if (estimate.parameter == "linear_drag" && estimate.high() <= 0.0) {
         out.warnings.push_back("linear_drag is negative for certain, " + shown(estimate.value) + " +- " +
