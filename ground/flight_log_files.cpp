@@ -123,25 +123,35 @@ bool is_frd(const Measurements& table, const std::vector<Eigen::Vector3d>& speci
   std::vector<Quantity> columns;
   for (int i = 0; i < 3; ++i)
     columns.insert(columns.end(), {Quantity::kSpecificForceX + i, Quantity::kBodyRateX + i});
-  const std::optional<bool> said = says(table, columns, "_frd", "_flu");
+  std::optional<bool> said = says(table, columns, "_frd", "_flu");
   if (axes != BodyAxes::kAsSaid) {
     const bool frd = axes == BodyAxes::kFrd;
     if (said && *said != frd)
       throw ConfigError(table.file(), 1, "header",
                         std::string("names ") + (*said ? "_frd" : "_flu") + " axes, --axes others");
-    return frd;
+    said = frd;
   }
-  if (said) return *said;
   double mean = 0.0;
   // At its begin a log has the vehicle upright; at its end it may lie on its back.
   const std::size_t upright = std::max<std::size_t>(specific_force.size() / 2, 1);
   for (std::size_t row = 0; row < upright; ++row)
     mean += specific_force[row].z() / static_cast<double>(upright);
-  if (std::abs(mean) < kNearGravity * plant::kGravity) {
+  const bool is_told = std::abs(mean) > kNearGravity * plant::kGravity;
+  if (said && is_told && *said != (mean < 0.0)) {
+    throw ConfigError(
+        table.file(), 1, "specific_force_z",
+        "is " + std::to_string(mean) + " m/s^2 in the mean, must be " +
+            (*said ? "negative in forward-right-down axes" : "positive in forward-left-up axes") +
+            "; are the axes right?");
+  }
+  if (said) return *said;
+  if (!is_told) {
     throw ConfigError(
         table.file(), 1, "header",
-        "does not say its body axes, and gravity does not tell them (the specific force along z is " +
-            std::to_string(mean) + " m/s^2 in the mean): say --axes frd or --axes flu");
+        "does not say its body axes, and gravity does not tell them: the specific force along z is " +
+            std::to_string(mean) +
+            " m/s^2 in the mean, about 9.8 in hover; is its unit right? If it is, say " +
+            "--axes frd or --axes flu");
   }
   assumptions.push_back(
       mean < 0.0 ? "body axes are taken for forward-right-down: the specific force along z is negative"

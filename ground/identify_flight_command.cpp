@@ -15,6 +15,7 @@
 #include "ground/format.hpp"
 #include "ground/installation.hpp"
 #include "ground/numbers.hpp"
+#include "ground/output_files.hpp"
 #include "ground/progress_line.hpp"
 #include "ground/whole_file.hpp"
 #include "services/runtime/vehicle_file.hpp"
@@ -46,12 +47,27 @@ fs::path base_file(const IdentifyFlightOptions& options) {
   return fs::is_regular_file(kept) ? kept : configuration_file("vehicles", "kaylion");
 }
 
+// Neither named nor that of a record.
+bool is_assumed(const IdentifyFlightOptions& options, const fs::path& base) {
+  return options.base.empty() && base.filename() != "vehicle.yaml";
+}
+
 int run_identify_flight(IdentifyFlightOptions options) {
+  std::vector<fs::path> inputs;
+  for (const std::string& log : options.logs) {
+    for (const fs::path& file : files_of(log)) inputs.push_back(file);
+  }
   const fs::path base_path = base_file(options);
+  inputs.push_back(base_path);
+  refuse_overwriting({{"--out", options.out}, {"--report", options.report}}, inputs);
   const plant::Vehicle base = runtime::load_vehicle(base_path.string());
   FlightIdentificationReport report;
   report.logs = options.logs;
   report.base_vehicle = options.base.empty() ? base_path.string() : options.base;
+
+  if (is_assumed(options, base_path))
+    report.assumptions.push_back("the vehicle is taken to be like " + base.name +
+                                 ", there being no --base and no record around the log");
 
   ProgressLine progress;
   const auto started = std::chrono::steady_clock::now();
@@ -89,6 +105,9 @@ int run_identify_flight(IdentifyFlightOptions options) {
                                  ? "the fit is not to be trusted"
                                  : "the fit is not to be trusted: " + options.out + " is not written");
   if (!options.out.empty()) {
+    if (report.found.uncertainty.parameters.empty())
+      throw std::runtime_error("nothing of the vehicle was told, see above: " + options.out +
+                               " is not written");
     for (const plant::Violation& broken : plant::validate(vehicle)) {
       throw InputError("the identified vehicle cannot fly: " + broken.key + ": " + broken.message +
                        "; what no flight tells is from " + report.base_vehicle);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "identification/limits.hpp"
 #include "identification/possible_inertia.hpp"
 #include "plant/model/airframe.hpp"
 
@@ -140,6 +141,7 @@ class Bench {
       torque_factor = out_.torque->estimates.front();
       adopt(out_.torque, "Eq. (26)");
     }
+    if (out_.thrust.has_value() != out_.torque.has_value()) demand_torque_of_thrust();
     if (!data_.propeller) {
       demand_possible_rotor(thrust_factor, torque_factor, {largest_radius(out_.vehicle), kSeaLevelDensity});
       return;
@@ -149,6 +151,16 @@ class Bench {
     std::sort(sorted.begin(), sorted.end());
     const double top = sorted[(sorted.size() - 1) * 9 / 10];
     out_.propeller = propeller_coefficients(thrust_factor, torque_factor, *data_.propeller, top);
+  }
+
+  // One of them is the base vehicle's.
+  void demand_torque_of_thrust() const {
+    const double ratio_m = out_.vehicle.rotor.torque / out_.vehicle.rotor.thrust;
+    if (ratio_m >= kLeastTorquePerThrust && ratio_m <= kMostTorquePerThrust) return;
+    throw BadData(std::string(out_.thrust ? "thrust" : "torque") + ": makes torque over thrust " +
+                  shown(ratio_m) + " m with the " + (out_.thrust ? "torque" : "thrust") +
+                  " factor of the base vehicle, must be " + shown(kLeastTorquePerThrust) + " to " +
+                  shown(kMostTorquePerThrust) + " m; are the units right, and is the base vehicle alike?");
   }
 
   void throttle_thrust() {

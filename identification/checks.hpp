@@ -31,6 +31,11 @@ void demand_median_between(const Column& column, double min, double max, const s
 // What drives an ESC: its supply, of a vehicle, and the throttle, a share.
 void demand_drive(const Column& supply, const Column& throttle);
 
+// A moment of inertia, kg m^2, against the hubs' distance from the centre: of no mass far beyond the hubs, nor
+// all of it near the centre. column is what led to it.
+struct Estimate;
+void demand_gyration(const char* column, const Estimate& inertia, double mass_kg, double hub_distance_m);
+
 double median(std::vector<double> values);
 
 // Two measures of one thing, about their means.

@@ -45,7 +45,7 @@ std::vector<Derived> derived(const FlightModel& model, Known known) {
   out.push_back({"thrust_factor_over_mass", "k_T/m", "N*s^2/kg",
                  [&l, &base, k](const VectorXd& x) { return x[l.thrust] * k / base.mass_kg; }});
   for (int axis = 0; axis < 3; ++axis) {
-    const double over_inertia = k * mean_lever(base, axis) / base.inertia(axis, axis);
+    const double over_inertia = k * plant::mean_lever(base, axis) / base.inertia(axis, axis);
     const int gain = l.gain[axis];
     out.push_back({std::string("rotor_to_rate.") + axis_name(axis),
                    axis == 2   ? "k_Q/J_zz"

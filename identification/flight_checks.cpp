@@ -19,13 +19,11 @@ using Eigen::Vector3d;
 
 constexpr double kLeastWeight = 0.5;  // median of the specific force, over g
 constexpr double kMostWeight = 2.0;
-constexpr double kMostOfMotors = 3.0;         // of rotor speeds, over the motors' and the other way round
-constexpr double kMoved = 0.15;               // m/s that is gained or lost in a stretch, RMS, to compare by
-constexpr double kLeastCorrelation = 0.5;     // of speeds gained
-constexpr double kMostOfFelt = 2.0;           // of their ratio, and the other way round
-constexpr double kLeastGyrationRadius = 0.2;  // over the lever
-constexpr double kMostGyrationRadius = 4.0;
-constexpr double kTelling = 0.5;  // half an interval over its value
+constexpr double kMostOfMotors = 3.0;      // of rotor speeds, over the motors' and the other way round
+constexpr double kMoved = 0.15;            // m/s that is gained or lost in a stretch, RMS, to compare by
+constexpr double kLeastCorrelation = 0.5;  // of speeds gained
+constexpr double kMostOfFelt = 2.0;        // of their ratio, and the other way round
+constexpr double kLeastPeriodS = 2e-5;     // of the IMU
 
 template <typename Value>
 std::vector<double> column(const Rows& rows, const Value& value) {
@@ -59,6 +57,16 @@ void demand_gained_as_felt(const std::vector<double>& gained, const std::vector<
 }
 
 }  // namespace
+
+void demand_times(const FlightLog& log) {
+  std::vector<double> periods;
+  for (std::size_t row = 1; row < log.size(); ++row) periods.push_back(log.time_s[row] - log.time_s[row - 1]);
+  if (periods.empty()) throw BadData("has one row, must have a flight");
+  const double period_s = median(periods);
+  if (period_s > kLeastPeriodS && period_s <= kLongestRowGapS) return;
+  throw BadData("time: has a sample every " + shown(period_s) + " s in the middle, must have one every " +
+                shown(kLeastPeriodS) + " to " + shown(kLongestRowGapS) + " s; is the unit right?");
+}
 
 void demand_readings(const FlightLog& log, const Rows& flight) {
   const std::string of_axis[3] = {" x", " y", " z"};
@@ -137,15 +145,6 @@ void demand_positions_as_felt(const FlightSeries& series) {
   demand_gained_as_felt(gained[0], felt[0], "to the north");
   demand_gained_as_felt(gained[1], felt[1], "to the east");
   demand_gained_as_felt(gained[2], felt[2], "up and down");
-}
-
-void demand_inertia_of_a_body(const Estimate& inertia, double mass_kg, double lever_m) {
-  if (!(inertia.half_width < kTelling * inertia.value)) return;
-  const double radius = std::sqrt(inertia.value / mass_kg) / lever_m;
-  if (radius > kLeastGyrationRadius && radius < kMostGyrationRadius) return;
-  throw BadData("body rates: make " + inertia.symbol + " = " + shown(inertia.value) + " kg*m^2, a mass " +
-                shown(radius) + " times as far out as the rotors, must be " + shown(kLeastGyrationRadius) +
-                " to " + shown(kMostGyrationRadius) + "; are the units and the base vehicle right?");
 }
 
 }  // namespace swiftlet::identification

@@ -11,6 +11,9 @@ namespace swiftlet::identification {
 
 struct FlightSeries;
 
+// Sampled at a rate that holds the motion of a small vehicle, and that such a vehicle's IMU has.
+void demand_times(const FlightLog& log);
+
 // What was sensed and commanded in the flight.
 void demand_readings(const FlightLog& log, const Rows& flight);
 
@@ -19,9 +22,5 @@ void demand_speeds_like_the_motors(const FlightSeries& series, const plant::Vehi
 
 // Positions against the specific force: what the one gains of speed over a stretch, the other asks for.
 void demand_positions_as_felt(const FlightSeries& series);
-
-// A moment of inertia about roll or pitch against the rotors' lever: of no mass as far out as several levers,
-// nor all of it near the centre. Not of estimates that tell nothing.
-void demand_inertia_of_a_body(const Estimate& inertia, double mass_kg, double lever_m);
 
 }  // namespace swiftlet::identification

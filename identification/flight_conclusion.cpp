@@ -5,9 +5,8 @@
 #include <limits>
 #include <optional>
 
-#include "identification/flight_checks.hpp"
+#include "identification/checks.hpp"
 #include "identification/possible_inertia.hpp"
-#include "plant/model/airframe.hpp"
 
 namespace swiftlet::identification {
 namespace {
@@ -18,6 +17,7 @@ using Eigen::VectorXd;
 
 constexpr double kTold = 0.25;     // half an interval over its value, up to which a parameter counts as told
 constexpr double kToldDrag = 0.1;  // 1/s, half an interval of drag over mass, likewise
+constexpr double kTelling = 0.5;   // half an interval over its value, to judge the value by
 constexpr double kSmallStep = 1e-4;        // of differences, over a parameter's scale
 constexpr double kChanceDeviations = 4.0;  // of moments beyond what a body can have
 constexpr double kTurned = 3.0;            // standard errors below 0 at which a gain is negative for certain
@@ -135,19 +135,14 @@ bool within_bounds(const std::vector<FlightParameter>& parameters, const Estimat
   return true;
 }
 
-double mean_lever(const plant::Vehicle& vehicle, int axis) {
-  return plant::effectiveness(vehicle).row(1 + axis).cwiseAbs().mean();
-}
-
 void conclude_vehicle(FlightIdentification& out, const DerivedValues& values, const plant::Vehicle& base,
                       const std::map<std::string, std::string>& untold,
                       const std::function<std::string(const std::string& parameter)>& advice) {
   out.vehicle = base;
   for (const char* const inertia : {"inertia.xx", "inertia.yy"}) {
     const Estimate* const found = out.find(inertia);
-    if (found != nullptr)
-      demand_inertia_of_a_body(*found, base.mass_kg,
-                               mean_lever(base, inertia == std::string("inertia.xx") ? 0 : 1));
+    if (found != nullptr && found->half_width < kTelling * found->value)
+      demand_gyration("body rates", *found, base.mass_kg, base.rotors.front().position_frd.norm());
   }
   if (!out.converged) {
     out.warnings.emplace_back("nothing of the fit goes into the vehicle");

@@ -39,9 +39,6 @@ FlightIdentification begun_with(const std::vector<FlightSeries>& flights);
 // Whether the search ended inside its bounds.
 bool within_bounds(const std::vector<FlightParameter>& parameters, const EstimatedParameters& fit);
 
-// Of a vehicle's rotors from the axis about which they turn the body, the mean, m; for yaw, torque over thrust.
-double mean_lever(const plant::Vehicle& vehicle, int axis);
-
 // Puts what out.estimates tell well enough into the vehicle, if the fit converged within its bounds, and says
 // of the rest what would tell it. values are those of out.estimates; untold are parameters that are not to be
 // believed whatever their intervals, with the reason. Throws BadData for what no body is.

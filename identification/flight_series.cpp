@@ -16,7 +16,6 @@ constexpr double kKeptShare = 0.2;
 constexpr double kHalfSmoothingS = 0.06;   // of the polynomial through neighbouring poses
 constexpr std::size_t kLeastPoses = 5;     // through which one is laid
 constexpr double kLongestPoseGapS = 0.25;  // that is bridged
-constexpr double kLongestRowGapS = 0.05;
 
 void demand_whole(const FlightLog& log, const Rows& rows) {
   for (std::size_t i = rows.first + 1; i < rows.last; ++i) {
@@ -131,6 +130,7 @@ FlightSeries prepare_flight(const FlightLog& log, const plant::Vehicle& base, co
   }
   FlightSeries out;
   out.log = &log;
+  demand_times(log);
   out.window = find_flight(log, bounds);
   demand_whole(log, out.window.flight);
   demand_readings(log, out.window.flight);
