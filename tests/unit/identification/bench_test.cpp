@@ -134,6 +134,23 @@ TEST(Bench, RefusesRadiansTakenForRevolutions) {
   }
 }
 
+TEST(Bench, HoldsATorqueAloneAgainstTheThrustOfTheBase) {
+  for (const double unit : {1e-3, 1e3}) {
+    BenchData data;
+    data.thrust_torque = bench_of(kaylion(), 0.005).thrust_torque;
+    data.thrust_torque->thrust_n.clear();
+    EXPECT_NO_THROW(identify_bench(data, kaylion()));
+    data.thrust_torque->torque_n_m = tests::times(data.thrust_torque->torque_n_m, unit);
+    try {
+      identify_bench(data, kaylion());
+      ADD_FAILURE() << "nothing was refused";
+    } catch (const BenchError& fault) {
+      EXPECT_NE(std::string(fault.what()).find("torque: makes torque over thrust"), std::string::npos)
+          << fault.what();
+    }
+  }
+}
+
 TEST(Bench, NamesTheExperimentAtFault) {
   BenchData data = bench_of(other(), 0.005);
   data.steady_motor->speed_rad_s.resize(3);
