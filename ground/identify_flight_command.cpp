@@ -147,13 +147,16 @@ Command add_identify_flight_command(CLI::App& identify) {
       ->type_name("VEHICLE");
   app->add_option("--known", options->fit.known,
                   "a flight tells thrust over mass alone: which of them the base vehicle has right")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, identification::Known>{
-          {"mass", identification::Known::kMass}, {"thrust", identification::Known::kThrust}}))
+      ->transform(CLI::CheckedTransformer(
+                      std::map<std::string, identification::Known>{
+                          {"mass", identification::Known::kMass}, {"thrust", identification::Known::kThrust}})
+                      .description("{mass,thrust}"))
       ->default_str("mass");
   app->add_option("--axes", options->axes,
                   "body axes of the IMU, where the names of the columns do not say them: frd or flu")
       ->transform(CLI::CheckedTransformer(
-          std::map<std::string, BodyAxes>{{"frd", BodyAxes::kFrd}, {"flu", BodyAxes::kFlu}}));
+                      std::map<std::string, BodyAxes>{{"frd", BodyAxes::kFrd}, {"flu", BodyAxes::kFlu}})
+                      .description("{frd,flu}"));
   app->add_option("--from", options->fit.bounds.from_s,
                   "time by the log at which the flight begins, s; found unless given")
       ->check(finite_number());

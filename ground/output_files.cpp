@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 
 fs::path whole(const fs::path& path) {
   std::error_code fault;
-  const fs::path out = fs::weakly_canonical(path, fault);
+  const fs::path out = fs::weakly_canonical(fs::absolute(path), fault);
   return fault ? path : out;
 }
 

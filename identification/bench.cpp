@@ -79,6 +79,7 @@ class Bench {
     }
     keep_friction_positive();
     keep_inertia_possible();
+    correlate_inertia_with_mass();
     return std::move(out_);
   }
 
@@ -209,6 +210,28 @@ class Bench {
     out_.inertia[axis] =
         data.bifilar ? identify_inertia(*data.bifilar, target) : identify_inertia(*data.swing, target);
     adopt(out_.inertia[axis], data.bifilar ? "bifilar pendulum" : "swung about an axis");
+  }
+
+  // Moments are proportional to the mass, and share its error.
+  void correlate_inertia_with_mass() {
+    if (!out_.mass) return;
+    std::vector<std::pair<std::string, double>> with_mass;
+    for (std::size_t axis = 0; axis < out_.inertia.size(); ++axis) {
+      if (!out_.inertia[axis]) continue;
+      const Estimate& inertia = out_.inertia[axis]->estimates.front();
+      if (!(inertia.standard_error > 0.0)) continue;
+      with_mass.emplace_back(kInertiaKeys[axis],
+                             relative_error(out_.mass) * inertia.value / inertia.standard_error);
+    }
+    const auto note = [this](const std::string& a, const std::string& b, double correlation) {
+      if (std::abs(correlation) > kNotableCorrelation)
+        out_.uncertainty.correlations.push_back({a, b, std::clamp(correlation, -1.0, 1.0)});
+    };
+    for (std::size_t i = 0; i < with_mass.size(); ++i) {
+      note("mass", with_mass[i].first, with_mass[i].second);
+      for (std::size_t k = 0; k < i; ++k)
+        note(with_mass[k].first, with_mass[i].first, with_mass[k].second * with_mass[i].second);
+    }
   }
 
   // Eq. (21): F is not negative only for R_a up to K2 K3 / k_Q. A resistance that was taken, not measured,
