@@ -1,6 +1,7 @@
 #include "ground/bench_files.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <set>
 
@@ -38,11 +39,15 @@ void refuse_unknown_tables(const fs::path& folder) {
   std::set<fs::path> tables;
   std::error_code fault;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, fault)) {
-    if (entry.path().extension() == ".csv") tables.insert(entry.path());
+    std::string extension = entry.path().extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension == ".csv") tables.insert(entry.path());
   }
   if (fault) throw InputError(folder.string() + ": cannot be read: " + fault.message());
   for (const fs::path& table : tables) {
-    if (std::find(known.begin(), known.end(), table.stem().string()) == known.end())
+    if (table.extension() != ".csv" ||
+        std::find(known.begin(), known.end(), table.stem().string()) == known.end())
       throw InputError(table.string() + ": is no experiment that is known, must be one of " + joined(known));
   }
   if (tables.empty())

@@ -86,6 +86,12 @@ std::vector<Eigen::Vector3d> vectors(const Measurements& table, Quantity x) {
 int motors(const Measurements& table, Quantity first) {
   int count = 0;
   while (count < plant::kMaxRotors && table.has(first + count)) ++count;
+  for (int later = count + 1; later < plant::kMaxRotors; ++later) {
+    if (!table.has(first + later)) continue;
+    throw ConfigError(table.file(), 1, "header",
+                      "has " + table.header(first + later) + " and none of motor " +
+                          std::to_string(count + 1) + "; must number motors from 1 on");
+  }
   return count;
 }
 
@@ -117,30 +123,52 @@ bool is_frd(const Measurements& table, const std::vector<Eigen::Vector3d>& speci
   std::vector<Quantity> columns;
   for (int i = 0; i < 3; ++i)
     columns.insert(columns.end(), {Quantity::kSpecificForceX + i, Quantity::kBodyRateX + i});
-  const std::optional<bool> said = says(table, columns, "_frd", "_flu");
+  std::optional<bool> said = says(table, columns, "_frd", "_flu");
   if (axes != BodyAxes::kAsSaid) {
     const bool frd = axes == BodyAxes::kFrd;
     if (said && *said != frd)
       throw ConfigError(table.file(), 1, "header",
                         std::string("names ") + (*said ? "_frd" : "_flu") + " axes, --axes others");
-    return frd;
+    said = frd;
   }
-  if (said) return *said;
   double mean = 0.0;
   // At its begin a log has the vehicle upright; at its end it may lie on its back.
   const std::size_t upright = std::max<std::size_t>(specific_force.size() / 2, 1);
   for (std::size_t row = 0; row < upright; ++row)
     mean += specific_force[row].z() / static_cast<double>(upright);
-  if (std::abs(mean) < kNearGravity * plant::kGravity) {
+  const bool is_told = std::abs(mean) > kNearGravity * plant::kGravity;
+  if (said && is_told && *said != (mean < 0.0)) {
+    throw ConfigError(
+        table.file(), 1, "specific_force_z",
+        "is " + std::to_string(mean) + " m/s^2 in the mean, must be " +
+            (*said ? "negative in forward-right-down axes" : "positive in forward-left-up axes") +
+            "; are the axes right?");
+  }
+  if (said) return *said;
+  if (!is_told) {
     throw ConfigError(
         table.file(), 1, "header",
-        "does not say its body axes, and gravity does not tell them (the specific force along z is " +
-            std::to_string(mean) + " m/s^2 in the mean): say --axes frd or --axes flu");
+        "does not say its body axes, and gravity does not tell them: the specific force along z is " +
+            std::to_string(mean) +
+            " m/s^2 in the mean, about 9.8 in hover; is its unit right? If it is, say " +
+            "--axes frd or --axes flu");
   }
   assumptions.push_back(
       mean < 0.0 ? "body axes are taken for forward-right-down: the specific force along z is negative"
                  : "body axes are taken for forward-left-up: the specific force along z is positive");
   return mean < 0.0;
+}
+
+// Some more than what the ESC obeys are sent to it, to start or stop it for certain.
+void demand_pulse(const Measurements& table, std::size_t row, Quantity which, const plant::Vehicle& base) {
+  const double pulse_us = table.column(which)[row];
+  const double least_us = base.esc.pulse_min_us - 0.5 * base.esc.pulse_range_us;
+  const double most_us = base.esc.pulse_min_us + 1.5 * base.esc.pulse_range_us;
+  if (pulse_us == 0.0 || (pulse_us >= least_us && pulse_us <= most_us)) return;
+  throw ConfigError(table.file(), table.line(row), table.header(which),
+                    "is " + std::to_string(pulse_us) + " us, must be 0 or between " +
+                        std::to_string(least_us) + " and " + std::to_string(most_us) +
+                        " us, by half the range of " + base.name + "'s ESC at most beyond it");
 }
 
 void read_commands(const Measurements& table, const plant::Vehicle& base, FlightLog& log,
@@ -157,6 +185,7 @@ void read_commands(const Measurements& table, const plant::Vehicle& base, Flight
     const std::vector<double>& column =
         table.column((shares > 0 ? Quantity::kMotorCommand : Quantity::kMotorPulse) + i);
     for (std::size_t row = 0; row < column.size(); ++row) {
+      if (shares == 0) demand_pulse(table, row, Quantity::kMotorPulse + i, base);
       const double command =
           shares > 0 ? column[row] : plant::throttle_from_pulse_width(base.esc, column[row]);
       if (!(command >= 0.0 && command <= 1.0)) {

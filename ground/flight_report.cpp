@@ -68,7 +68,8 @@ std::string to_text(const FlightReport& report) {
     text += format("    peak        mm  %8.2f%8.2f%8.2f%8.2f   (tolerance %.0f)\n", errors.peak_m[0] * kMm,
                    errors.peak_m[1] * kMm, errors.peak_m[2] * kMm, errors.peak_3d_m * kMm,
                    report.tolerance_m * kMm);
-    text += format("    from %zu samples, takeoff to landing\n", errors.matched);
+    text += format("    from %zu samples, takeoff to %s\n", errors.matched,
+                   report.completed ? "landing" : "where it ended");
   }
   if (report.clock != kRealtime && report.wall_s > 0.0) {
     text += format("  simulated         %.1f s in %.2f s, %s: %.0f times real time\n", report.simulated_s,

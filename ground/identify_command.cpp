@@ -11,6 +11,7 @@
 #include "ground/format.hpp"
 #include "ground/identification_report.hpp"
 #include "ground/installation.hpp"
+#include "ground/output_files.hpp"
 #include "ground/progress_line.hpp"
 #include "ground/whole_file.hpp"
 #include "services/runtime/config_error.hpp"
@@ -61,6 +62,8 @@ void refuse_unflyable(const plant::Vehicle& vehicle, const std::string& folder, 
 
 int run_identify(const IdentifyOptions& options) {
   const fs::path folder = options.bench;
+  if (fs::is_directory(folder))
+    refuse_overwriting({{"--out", options.out}, {"--report", options.report}}, files_of(folder));
   IdentificationReport report;
   const BenchSettings settings = load_bench_settings(folder);
   report.bench_folder = options.bench;

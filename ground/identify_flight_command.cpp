@@ -15,6 +15,7 @@
 #include "ground/format.hpp"
 #include "ground/installation.hpp"
 #include "ground/numbers.hpp"
+#include "ground/output_files.hpp"
 #include "ground/progress_line.hpp"
 #include "ground/whole_file.hpp"
 #include "services/runtime/vehicle_file.hpp"
@@ -46,12 +47,27 @@ fs::path base_file(const IdentifyFlightOptions& options) {
   return fs::is_regular_file(kept) ? kept : configuration_file("vehicles", "kaylion");
 }
 
+// Neither named nor that of a record.
+bool is_assumed(const IdentifyFlightOptions& options, const fs::path& base) {
+  return options.base.empty() && base.filename() != "vehicle.yaml";
+}
+
 int run_identify_flight(IdentifyFlightOptions options) {
+  std::vector<fs::path> inputs;
+  for (const std::string& log : options.logs) {
+    for (const fs::path& file : files_of(log)) inputs.push_back(file);
+  }
   const fs::path base_path = base_file(options);
+  inputs.push_back(base_path);
+  refuse_overwriting({{"--out", options.out}, {"--report", options.report}}, inputs);
   const plant::Vehicle base = runtime::load_vehicle(base_path.string());
   FlightIdentificationReport report;
   report.logs = options.logs;
   report.base_vehicle = options.base.empty() ? base_path.string() : options.base;
+
+  if (is_assumed(options, base_path))
+    report.assumptions.push_back("the vehicle is taken to be like " + base.name +
+                                 ", there being no --base and no record around the log");
 
   ProgressLine progress;
   const auto started = std::chrono::steady_clock::now();
@@ -78,7 +94,20 @@ int run_identify_flight(IdentifyFlightOptions options) {
   if (!options.out.empty())
     vehicle.name = options.name.empty() ? fs::path(options.out).stem().string() : options.name;
 
+  if (options.json) {
+    std::printf("%s\n", flight_identification_json(report).c_str());
+  } else {
+    std::printf("%s", flight_identification_table(report).c_str());
+  }
+  if (!options.report.empty()) write_whole_file(options.report, flight_identification_html(report));
+  if (!report.found.converged)
+    throw std::runtime_error(options.out.empty()
+                                 ? "the fit is not to be trusted"
+                                 : "the fit is not to be trusted: " + options.out + " is not written");
   if (!options.out.empty()) {
+    if (report.found.uncertainty.parameters.empty())
+      throw std::runtime_error("nothing of the vehicle was told, see above: " + options.out +
+                               " is not written");
     for (const plant::Violation& broken : plant::validate(vehicle)) {
       throw InputError("the identified vehicle cannot fly: " + broken.key + ": " + broken.message +
                        "; what no flight tells is from " + report.base_vehicle);
@@ -92,12 +121,6 @@ int run_identify_flight(IdentifyFlightOptions options) {
     runtime::parse_vehicle(text, options.out);
     write_whole_file(options.out, text);
   }
-  if (!options.report.empty()) write_whole_file(options.report, flight_identification_html(report));
-  if (options.json) {
-    std::printf("%s\n", flight_identification_json(report).c_str());
-  } else {
-    std::printf("%s", flight_identification_table(report).c_str());
-  }
   std::string wrote;
   for (const std::string& file : {options.out, options.report}) {
     if (!file.empty()) wrote += (wrote.empty() ? "; wrote " : " and ") + file;
@@ -105,7 +128,7 @@ int run_identify_flight(IdentifyFlightOptions options) {
   std::fprintf(stderr, "swiftlet: %zu parameters of the vehicle told by %zu %s%s\n",
                report.found.uncertainty.parameters.size(), logs.size(),
                logs.size() == 1 ? "flight" : "flights", wrote.c_str());
-  return report.found.converged ? kDone : kFailed;
+  return kDone;
 }
 
 }  // namespace
@@ -124,13 +147,16 @@ Command add_identify_flight_command(CLI::App& identify) {
       ->type_name("VEHICLE");
   app->add_option("--known", options->fit.known,
                   "a flight tells thrust over mass alone: which of them the base vehicle has right")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, identification::Known>{
-          {"mass", identification::Known::kMass}, {"thrust", identification::Known::kThrust}}))
+      ->transform(CLI::CheckedTransformer(
+                      std::map<std::string, identification::Known>{
+                          {"mass", identification::Known::kMass}, {"thrust", identification::Known::kThrust}})
+                      .description("{mass,thrust}"))
       ->default_str("mass");
   app->add_option("--axes", options->axes,
                   "body axes of the IMU, where the names of the columns do not say them: frd or flu")
       ->transform(CLI::CheckedTransformer(
-          std::map<std::string, BodyAxes>{{"frd", BodyAxes::kFrd}, {"flu", BodyAxes::kFlu}}));
+                      std::map<std::string, BodyAxes>{{"frd", BodyAxes::kFrd}, {"flu", BodyAxes::kFlu}})
+                      .description("{frd,flu}"));
   app->add_option("--from", options->fit.bounds.from_s,
                   "time by the log at which the flight begins, s; found unless given")
       ->check(finite_number());

@@ -38,6 +38,9 @@ int run_simulate(const SimulateOptions& options) {
   const fs::path folder = options.out;
   if (fs::exists(folder) && !fs::is_directory(folder))
     throw InputError("--out: " + options.out + " is no folder, must be one or not be there");
+  if (fs::exists(folder) && !fs::is_empty(folder) && !fs::exists(folder / kTruth))
+    throw InputError("--out: " + options.out +
+                     " holds files that this command has not made, must be empty or not be there");
   write_bench(folder, identification::simulate_bench(vehicle, options.noise, options.seed),
               "# Simulated: " + vehicle.name + ", noise " + runtime::exact(options.noise.share) +
                   ", outliers " + runtime::exact(options.noise.outliers) + ", seed " +

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "identification/limits.hpp"
+#include "identification/possible_inertia.hpp"
 #include "plant/model/airframe.hpp"
 
 namespace swiftlet::identification {
@@ -77,6 +79,7 @@ class Bench {
     }
     keep_friction_positive();
     keep_inertia_possible();
+    correlate_inertia_with_mass();
     return std::move(out_);
   }
 
@@ -139,6 +142,7 @@ class Bench {
       torque_factor = out_.torque->estimates.front();
       adopt(out_.torque, "Eq. (26)");
     }
+    if (out_.thrust.has_value() != out_.torque.has_value()) demand_torque_of_thrust();
     if (!data_.propeller) {
       demand_possible_rotor(thrust_factor, torque_factor, {largest_radius(out_.vehicle), kSeaLevelDensity});
       return;
@@ -148,6 +152,16 @@ class Bench {
     std::sort(sorted.begin(), sorted.end());
     const double top = sorted[(sorted.size() - 1) * 9 / 10];
     out_.propeller = propeller_coefficients(thrust_factor, torque_factor, *data_.propeller, top);
+  }
+
+  // One of them is the base vehicle's.
+  void demand_torque_of_thrust() const {
+    const double ratio_m = out_.vehicle.rotor.torque / out_.vehicle.rotor.thrust;
+    if (ratio_m >= kLeastTorquePerThrust && ratio_m <= kMostTorquePerThrust) return;
+    throw BadData(std::string(out_.thrust ? "thrust" : "torque") + ": makes torque over thrust " +
+                  shown(ratio_m) + " m with the " + (out_.thrust ? "torque" : "thrust") +
+                  " factor of the base vehicle, must be " + shown(kLeastTorquePerThrust) + " to " +
+                  shown(kMostTorquePerThrust) + " m; are the units right, and is the base vehicle alike?");
   }
 
   void throttle_thrust() {
@@ -198,6 +212,28 @@ class Bench {
     adopt(out_.inertia[axis], data.bifilar ? "bifilar pendulum" : "swung about an axis");
   }
 
+  // Moments are proportional to the mass, and share its error.
+  void correlate_inertia_with_mass() {
+    if (!out_.mass) return;
+    std::vector<std::pair<std::string, double>> with_mass;
+    for (std::size_t axis = 0; axis < out_.inertia.size(); ++axis) {
+      if (!out_.inertia[axis]) continue;
+      const Estimate& inertia = out_.inertia[axis]->estimates.front();
+      if (!(inertia.standard_error > 0.0)) continue;
+      with_mass.emplace_back(kInertiaKeys[axis],
+                             relative_error(out_.mass) * inertia.value / inertia.standard_error);
+    }
+    const auto note = [this](const std::string& a, const std::string& b, double correlation) {
+      if (std::abs(correlation) > kNotableCorrelation)
+        out_.uncertainty.correlations.push_back({a, b, std::clamp(correlation, -1.0, 1.0)});
+    };
+    for (std::size_t i = 0; i < with_mass.size(); ++i) {
+      note("mass", with_mass[i].first, with_mass[i].second);
+      for (std::size_t k = 0; k < i; ++k)
+        note(with_mass[k].first, with_mass[i].first, with_mass[k].second * with_mass[i].second);
+    }
+  }
+
   // Eq. (21): F is not negative only for R_a up to K2 K3 / k_Q. A resistance that was taken, not measured,
   // gives way.
   void keep_friction_positive() {
@@ -212,16 +248,10 @@ class Bench {
     out_.sources["motor.armature_resistance"] = "estimate: K2 K3 / k_Q, Eq. (21) without friction";
   }
 
-  // A flat vehicle's largest moment is nearly the sum of the others, which no body exceeds; noise alone may
-  // then put it beyond. The nearest that is possible is taken, by the estimates' variances; moments that were
-  // not measured give way first.
+  // Moments that were not measured give way first.
   void keep_inertia_possible() {
     if (!out_.inertia[0] && !out_.inertia[1] && !out_.inertia[2]) return;
     Eigen::Vector3d moments = out_.vehicle.inertia.diagonal();
-    Eigen::Index largest = 0;
-    moments.maxCoeff(&largest);
-    const double beyond = 2.0 * moments[largest] - moments.sum();
-    if (beyond <= 0.0) return;
     const bool all = out_.inertia[0] && out_.inertia[1] && out_.inertia[2];
     Eigen::Vector3d variances = Eigen::Vector3d::Zero();
     for (Eigen::Index i = 0; i < 3; ++i) {
@@ -232,16 +262,11 @@ class Bench {
         variances[i] = moments[i] * moments[i];
       }
     }
-    if (all && beyond > kChanceDeviations * std::sqrt(variances.sum()))
-      return;  // no chance: for validate() to tell
-    for (Eigen::Index i = 0; i < 3; ++i)
-      moments[i] += (i == largest ? -1.0 : 1.0) * beyond * variances[i] / variances.sum();
+    const double deviations = all ? kChanceDeviations : std::numeric_limits<double>::infinity();
+    const std::optional<std::string> moved = keep_possible(moments, variances, deviations, all);
+    if (!moved) return;
     out_.vehicle.inertia.diagonal() = moments;
-    out_.warnings.push_back(std::string(kInertiaSymbols[static_cast<std::size_t>(largest)]) + " came out " +
-                            shown(beyond) +
-                            " kg*m^2 above the sum of the other moments, which no body exceeds: " +
-                            (all ? "the nearest that is possible, within what chance gives, is taken"
-                                 : "those that were not measured are moved"));
+    out_.warnings.push_back(*moved);
   }
 
   static constexpr double kAgreement = 0.05;

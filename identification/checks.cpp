@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Core>
+
 #include "identification/estimate.hpp"
 #include "identification/limits.hpp"
 
@@ -16,10 +18,14 @@ double quantile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(at)];
 }
 
+std::string with_unit(double value, const Column& column) {
+  return *column.unit == '\0' ? shown(value) : shown(value) + " " + column.unit;
+}
+
 std::string out_of(const Column& column, const char* what, double value, double min, double max,
                    const std::string& because) {
-  return std::string(column.name) + ": " + what + shown(value) + " " + column.unit + ", must be " +
-         shown(min) + " to " + shown(max) + ": " + because + "; is the unit right?";
+  return std::string(column.name) + ": " + what + with_unit(value, column) + ", must be " + shown(min) +
+         " to " + shown(max) + ": " + because + "; is the unit right?";
 }
 
 }  // namespace
@@ -27,7 +33,8 @@ std::string out_of(const Column& column, const char* what, double value, double 
 void demand_rows(const std::vector<Column>& columns, std::size_t least) {
   const std::size_t rows = columns.front().values.size();
   if (rows < least) {
-    throw BadData("has " + std::to_string(rows) + " rows, must have at least " + std::to_string(least));
+    throw BadData("has " + std::to_string(rows) + (rows == 1 ? " row" : " rows") + ", must have at least " +
+                  std::to_string(least));
   }
   for (const Column& column : columns) {
     if (column.values.size() != rows) {
@@ -56,8 +63,8 @@ void demand_variety(const Column& column, std::size_t least) {
   if (distinct >= least) return;
   const std::string rows = std::to_string(sorted.size());
   if (distinct == 1) {
-    throw BadData(std::string(column.name) + ": is " + shown(sorted.front()) + " " + column.unit +
-                  " in all " + rows + " rows, must vary");
+    throw BadData(std::string(column.name) + ": is " + with_unit(sorted.front(), column) + " in all " + rows +
+                  " rows, must vary");
   }
   throw BadData(std::string(column.name) + ": takes " + std::to_string(distinct) +
                 " different values, must take at least " + std::to_string(least));
@@ -81,10 +88,33 @@ void demand_drive(const Column& supply, const Column& throttle) {
   demand_median_between(supply, kLeastSupplyVoltage, kMostSupplyVoltage, "no vehicle flies on less or more");
 }
 
+void demand_gyration(const char* column, const Estimate& inertia, double mass_kg, double hub_distance_m) {
+  const double gyration = std::sqrt(std::max(inertia.value, 0.0) / mass_kg) / hub_distance_m;
+  if (gyration >= kLeastGyration && gyration <= kMostGyration) return;
+  throw BadData(std::string(column) + ": leads to " + inertia.symbol + " = " + shown(inertia.value) +
+                " kg*m^2, a radius of gyration of " + shown(gyration) +
+                " times the hubs' distance from the centre, must be " + shown(kLeastGyration) + " to " +
+                shown(kMostGyration) + "; are the units right?");
+}
+
 double median(std::vector<double> values) {
   const std::size_t half = values.size() / 2;
   std::sort(values.begin(), values.end());
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+Comparison compared(const std::vector<double>& first, const std::vector<double>& second) {
+  const auto count = static_cast<Eigen::Index>(first.size());
+  Eigen::ArrayXd a = Eigen::Map<const Eigen::ArrayXd>(first.data(), count);
+  Eigen::ArrayXd b = Eigen::Map<const Eigen::ArrayXd>(second.data(), count);
+  a -= a.mean();
+  b -= b.mean();
+  constexpr double kNone = 1e-300;
+  const double product = (a * b).sum();
+  const double square_a = a.square().sum();
+  const double square_b = b.square().sum();
+  return {product / std::max(std::sqrt(square_a * square_b), kNone), product / std::max(square_b, kNone),
+          std::sqrt(std::max(square_a, square_b) / static_cast<double>(count))};
 }
 
 double full_scale(const std::vector<double>& values) {

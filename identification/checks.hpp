@@ -31,7 +31,20 @@ void demand_median_between(const Column& column, double min, double max, const s
 // What drives an ESC: its supply, of a vehicle, and the throttle, a share.
 void demand_drive(const Column& supply, const Column& throttle);
 
+// A moment of inertia, kg m^2, against the hubs' distance from the centre: of no mass far beyond the hubs, nor
+// all of it near the centre. column is what led to it.
+struct Estimate;
+void demand_gyration(const char* column, const Estimate& inertia, double mass_kg, double hub_distance_m);
+
 double median(std::vector<double> values);
+
+// Two measures of one thing, about their means.
+struct Comparison {
+  double correlation = 0.0;
+  double ratio = 0.0;   // of the first over the second, where they go together
+  double spread = 0.0;  // root mean square, the larger of both
+};
+Comparison compared(const std::vector<double>& first, const std::vector<double>& second);
 
 // The magnitude that nine in ten readings do not exceed; 1 for a column of zeros.
 double full_scale(const std::vector<double>& values);

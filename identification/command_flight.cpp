@@ -21,6 +21,7 @@ constexpr std::size_t kCurvePoints = 41;
 constexpr double kRareCommands = 0.01;  // share of commands that lie outside the figure, at each end
 constexpr double kAtOdds = 1.5;         // of what responses tell of the lag, over what they may differ
 constexpr double kBatteryKnown = 0.25;  // standard error of the sag, over the sag
+constexpr double kOneRate = 0.1;        // of logs fitted together: how much their periods may differ
 constexpr double kOfLittleUse = 0.1;    // weight of the commands in a forecast
 
 struct CommandFit {
@@ -92,12 +93,19 @@ void widen(EstimatedParameters& fit, Index parameter, double standard_error) {
   fit.covariance += (wanted - variance) * follows * follows.transpose();
 }
 
-// The sag that stands in the gains is the base's.
-void allow_for_battery(const CommandModel& model, EstimatedParameters& fit) {
+// The sag that stands in the gains, and in what follows from them, is the base's.
+void allow_for_battery(const CommandModel& model, const std::vector<Derived>& quantities,
+                       DerivedValues& values) {
   const double relative = kBatteryKnown * (1.0 / model.shared_over_single() - 1.0);
-  VectorXd moved = VectorXd::Zero(fit.parameters.size());
-  for (const int gain : model.layout().gain) moved[gain] = relative * fit.parameters[gain];
-  fit.covariance += moved * moved.transpose();
+  VectorXd moved = VectorXd::Zero(values.values.size());
+  for (std::size_t i = 0; i < quantities.size(); ++i) {
+    const std::string& name = quantities[i].parameter;
+    const auto at = static_cast<Index>(i);
+    if (name.rfind("thrust_to_rate.", 0) == 0) moved[at] = relative * values.values[at];
+    if (name.rfind("inertia.", 0) == 0 || name.rfind("thrust_centre.", 0) == 0)
+      moved[at] = -relative * values.values[at];
+  }
+  values.covariance += moved * moved.transpose();
 }
 
 // The command of which all rotors carry the weight.
@@ -201,8 +209,36 @@ void draw_thrust(FlightIdentification& out, const CommandFit& all) {
   }
 }
 
-// What would tell it.
-std::string advice(const std::string& parameter) {
+// One description of the noise is fitted to all logs, sample by sample.
+void demand_one_rate(const std::vector<FlightSeries>& flights) {
+  const auto period_s = [](const FlightSeries& flight) {
+    const std::vector<double>& time = flight.log->time_s;
+    return (time[flight.fitted.last - 1] - time[flight.fitted.first]) /
+           static_cast<double>(flight.fitted.size() - 1);
+  };
+  const double first_s = period_s(flights.front());
+  for (const FlightSeries& flight : flights) {
+    const double this_s = period_s(flight);
+    if (std::abs(this_s / first_s - 1.0) < kOneRate) continue;
+    throw BadData(flight.log->name + " has a sample every " + shown(1e3 * this_s) + " ms and " +
+                  flights.front().log->name + " every " + shown(1e3 * first_s) +
+                  " ms: without poses and supply voltage, logs must be of one rate");
+  }
+}
+
+void demand_possible_hover(const Estimate& command) {
+  if (command.low() < 1.0 && command.high() > 0.0) return;
+  throw BadData("commands: " + shown(command.value) +
+                " of full command would carry the weight, must be 0 to 1; are the units right?");
+}
+
+// What would tell it. by_flight: with what the flight leaves open alone.
+std::string advice(const std::string& parameter, const Estimate& estimate,
+                   const std::vector<Estimate>& by_flight, const plant::Vehicle& base) {
+  for (const Estimate& alone : by_flight) {
+    if (alone.parameter == parameter && alone.half_width < 0.7 * estimate.half_width)
+      return "most of it is the battery's: measure the internal resistance of " + base.name + "'s";
+  }
   if (parameter == "inertia.xx") return "fly quick moves sideways";
   if (parameter == "inertia.yy") return "fly quick moves forward and back";
   if (parameter == "inertia.zz") return "turn about yaw, quickly";
@@ -255,20 +291,26 @@ void identify_commands(FlightIdentification& out, std::vector<FlightSeries> flig
   const auto progress = [&] {
     if (options.progress) options.progress("fitting");
   };
+  demand_one_rate(flights);
   const std::vector<CommandFit> alone = fit_alone(flights, base, progress);
+  for (const CommandFit& fit : alone) refuse_turned_gains(fit.model->layout().gain, base, fit.fit);
   CommandFit all = fit_responses(flights, base, {kAllResponses.begin(), kAllResponses.end()}, std::nullopt,
                                  {&alone[2], &alone[1], &alone[0]}, progress);
   for (const CommandFit& fit : alone) out.lags.push_back(lag_of(fit));
   const Agreement lags = agreement(out.lags);
   if (lags.ratio > 1.0) widen(all.fit, all.model->layout().lag, lags.standard_error);
-  allow_for_battery(*all.model, all.fit);
   refuse_turned_gains(all.model->layout().gain, base, all.fit);
 
-  out.converged = all.fit.converged;
+  out.converged = all.fit.converged && within_bounds(all.model->physical_parameters(), all.fit);
   const std::vector<Derived> quantities = derived(*all.model);
-  const DerivedValues values = evaluate(quantities, all.model->layout().parameters, all.fit);
+  DerivedValues values = evaluate(quantities, all.model->layout().parameters, all.fit);
+  const std::vector<Estimate> by_flight = estimates_of(quantities, values, all.fit.degrees_of_freedom);
+  allow_for_battery(*all.model, quantities, values);
   out.estimates = estimates_of(quantities, values, all.fit.degrees_of_freedom);
-  conclude_vehicle(out, values, base, advice);
+  demand_possible_hover(*out.find("thrust_per_mass.hover_command"));
+  conclude_vehicle(out, values, base, {}, [&](const std::string& parameter) {
+    return advice(parameter, *out.find(parameter), by_flight, base);
+  });
   out.unexcited.emplace_back(
       "mass, rotor.thrust_factor, rotor.torque_factor, linear_drag and the accelerometer's offset: a log "
       "without poses and supply voltage does not tell them; moments of inertia are those that the mass and "

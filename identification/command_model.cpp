@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "identification/flight_model.hpp"
 #include "identification/supply_sag.hpp"
 
 namespace swiftlet::identification {
@@ -87,7 +88,8 @@ CommandModel::CommandModel(std::vector<FlightSeries> flights, plant::Vehicle bas
       responses_(std::move(responses)),
       given_curve_(curve),
       middle_command_(curve ? curve->middle : mean_command(flights_)),
-      shared_over_single_(identification::shared_over_single(base_)) {
+      shared_over_single_(identification::shared_over_single(base_)),
+      rotors_(kKeptForEachFlight * flights_.size()) {
   const plant::Effectiveness effectiveness = plant::effectiveness(base_);
   signs_.resize(3, effectiveness.cols());
   for (int axis = 0; axis < 3; ++axis) {
@@ -103,24 +105,23 @@ bool CommandModel::has(Response response) const {
   return std::find(responses_.begin(), responses_.end(), response) != responses_.end();
 }
 
-int CommandModel::add(FlightParameter parameter) {
-  layout_.parameters.push_back(std::move(parameter));
-  return static_cast<int>(layout_.parameters.size()) - 1;
-}
-
 void CommandModel::add_noise(Response response) {
   const char* const parts[] = {"numerator 1", "numerator 2", "denominator 1", "denominator 2"};
   const double starts[] = {0.0, 0.0, -0.5, 0.0};
   const double most = response == Response::kForce ? kMostForceReflection : kMostReflection;
   for (std::size_t i = 0; i < kNoiseParameters; ++i) {
     const int at = add({std::string("noise of ") + response_name(response) + ", " + parts[i], "1", starts[i],
-                        0.1, -most, most});
+                        0.1, -most, most},
+                       layout_.parameters);
     if (i == 0) layout_.noise[index_of(response)] = at;
   }
 }
 
 void CommandModel::lay_out() {
   CommandLayout& l = layout_;
+  const auto add = [&l](FlightParameter parameter) {
+    return identification::add(std::move(parameter), l.parameters);
+  };
   l.lag = add({"rotor lag", "s", base_.motor.time_constant_s, 0.01, 2e-3, 1.0});
   if (has(Response::kForce)) {
     l.force_delay = add({"delay from command to specific force", "s", 0.01, 2e-3, -0.02, 0.1});
@@ -240,17 +241,7 @@ std::shared_ptr<const CommandModel::Rotors> CommandModel::rotors(const VectorXd&
   const double drift = layout_.drift.empty() ? 0.0 : x[layout_.drift[flight]];
   const std::array<double, 7> key = {
       static_cast<double>(flight), c.value, c.slope, c.curvature, drift, x[layout_.lag], delay_s};
-  for (const Kept& kept : kept_) {
-    if (kept.key == key) return kept.rotors;
-  }
-  Kept made{key, std::make_shared<const Rotors>(computed_rotors(flight, c, drift, x[layout_.lag], delay_s))};
-  if (kept_.size() < kKeptForEachFlight * flights_.size()) {
-    kept_.push_back(made);
-  } else {
-    kept_[oldest_kept_] = made;
-    oldest_kept_ = (oldest_kept_ + 1) % kept_.size();
-  }
-  return made.rotors;
+  return rotors_.of(key, [&] { return computed_rotors(flight, c, drift, x[layout_.lag], delay_s); });
 }
 
 std::vector<double> CommandModel::modelled(const VectorXd& x, std::size_t flight, Response response) const {
@@ -278,19 +269,7 @@ std::vector<double> CommandModel::unexplained(const VectorXd& x, std::size_t fli
 
 // A channel for each response: the fitted blocks of all flights, one after the other.
 SeriesProblem CommandModel::problem(const std::function<void()>& on_iteration) const {
-  SeriesProblem out;
-  const auto count = static_cast<Index>(layout_.parameters.size());
-  out.start.resize(count);
-  out.scale.resize(count);
-  out.low.resize(count);
-  out.high.resize(count);
-  for (Index i = 0; i < count; ++i) {
-    const FlightParameter& parameter = layout_.parameters[static_cast<std::size_t>(i)];
-    out.start[i] = parameter.start;
-    out.scale[i] = parameter.scale;
-    out.low[i] = parameter.low;
-    out.high[i] = parameter.high;
-  }
+  SeriesProblem out = problem_of(layout_.parameters);
   std::vector<std::size_t> stretches;  // of each block
   for (const BlockedFlight& flight : blocks_) {
     std::size_t last = 0;

@@ -27,8 +27,9 @@
 #include <Eigen/Core>
 
 #include "identification/coloured_noise.hpp"
-#include "identification/flight_model.hpp"
+#include "identification/flight_parameter.hpp"
 #include "identification/flight_series.hpp"
+#include "identification/recent_results.hpp"
 #include "identification/series_fit.hpp"
 #include "plant/model/airframe.hpp"
 #include "plant/model/vehicle.hpp"
@@ -100,8 +101,7 @@ class CommandModel {
   SeriesProblem problem(const std::function<void()>& on_iteration) const;
   ThrustCurve curve(const Eigen::VectorXd& parameters) const;
   ColouredNoise noise(const Eigen::VectorXd& parameters, Response response) const;
-  // d of the axes about which a response turns, m; for yaw, torque over thrust.
-  double lever(int axis) const { return lever_[static_cast<std::size_t>(axis)]; }
+  double lever(int axis) const { return lever_[static_cast<std::size_t>(axis)]; }  // d, by the base
   double shared_over_single() const { return shared_over_single_; }  // of the base, supply_sag.hpp
 
   // What the model has of each block: of the force its value, of a rate what it gains since the block before.
@@ -114,7 +114,6 @@ class CommandModel {
  private:
   bool has(Response response) const;
   void lay_out();
-  int add(FlightParameter parameter);
   void add_noise(Response response);
   BlockedFlight blocked(const FlightSeries& series) const;
 
@@ -142,13 +141,8 @@ class CommandModel {
   std::vector<BlockedFlight> blocks_;
   CommandLayout layout_;
 
-  // Most parameters do not move the rotors.
-  struct Kept {
-    std::array<double, 7> key{};
-    std::shared_ptr<const Rotors> rotors;
-  };
-  mutable std::vector<Kept> kept_;
-  mutable std::size_t oldest_kept_ = 0;
+  // By flight, curve, drift, lag and delay: most parameters do not move the rotors.
+  mutable RecentResults<std::array<double, 7>, Rotors> rotors_;
 };
 
 // Values of one model's parameters where another has them too, by their names; the rest as it is in `start`.

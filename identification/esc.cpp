@@ -5,6 +5,7 @@
 
 #include "identification/checks.hpp"
 #include "identification/curve_fit.hpp"
+#include "identification/limits.hpp"
 
 namespace swiftlet::identification {
 
@@ -118,6 +119,14 @@ Experiment identify_esc(const EscData& data, const Instruments& instruments) {
         "v_a^2 over v_s^2 delta is not quite a straight line: a term in its square is significant, so Eq. "
         "(9) holds for the "
         "range of these data only");
+  }
+  const double supply_v = median(data.supply_voltage_v);
+  const double full_share =
+      std::sqrt(std::max(line.parameters[0] + line.parameters[1] / (supply_v * supply_v), 0.0));
+  if (full_share > kMostOfSupply) {
+    throw BadData("throttle: at full throttle the ESC would give " + shown(full_share) +
+                  " times its supply, must be at most " + shown(kMostOfSupply) +
+                  "; is the unit of throttle right?");
   }
   if (!(line.parameters[0] > 0.0)) {
     throw BadData("motor_voltage: does not rise with v_s^2 delta: gain is " + shown(line.parameters[0]) +

@@ -17,20 +17,15 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
+// Change of a rate in half a second over the error of one step, root mean squares. The moment of inertia comes
+// out too small by about one over its square.
+constexpr double kOverNoise = 8.0;
 constexpr double kWellStampedS = 0.002;  // delay of poses that is not worth a sentence
 
 struct Fitted {
   std::unique_ptr<FlightModel> model;
   SeriesFit fit;
 };
-
-// Distance of the rotors from the axis about which they turn the body, m; 1 for yaw.
-double lever(const plant::Vehicle& vehicle, int axis) {
-  if (axis == 2) return 1.0;
-  double sum = 0.0;
-  for (const plant::RotorMount& rotor : vehicle.rotors) sum += std::abs(rotor.position_frd[1 - axis]);
-  return sum / vehicle.rotor_count();
-}
 
 std::vector<Derived> derived(const FlightModel& model, Known known) {
   const FlightLayout& l = model.layout();
@@ -50,8 +45,7 @@ std::vector<Derived> derived(const FlightModel& model, Known known) {
   out.push_back({"thrust_factor_over_mass", "k_T/m", "N*s^2/kg",
                  [&l, &base, k](const VectorXd& x) { return x[l.thrust] * k / base.mass_kg; }});
   for (int axis = 0; axis < 3; ++axis) {
-    const double per_speed = axis == 2 ? base.rotor.torque : k * lever(base, axis);
-    const double over_inertia = per_speed / base.inertia(axis, axis);
+    const double over_inertia = k * plant::mean_lever(base, axis) / base.inertia(axis, axis);
     const int gain = l.gain[axis];
     out.push_back({std::string("rotor_to_rate.") + axis_name(axis),
                    axis == 2   ? "k_Q/J_zz"
@@ -156,6 +150,24 @@ std::string advice(const std::string& parameter, const Excitation& excited) {
   return "the thrust varied by " + shown(excited.thrust) + " m/s^2 only; climb and sink quickly";
 }
 
+// Moments of inertia that the gyro's noise would make smaller than they are: the controller answers the noise,
+// and what it answers would be taken for what its answer does.
+std::map<std::string, std::string> too_calm(const FlightModel& model, const VectorXd& x) {
+  const char* const inertias[3] = {"inertia.xx", "inertia.yy", "inertia.zz"};
+  const char* const moves[3] = {"fly quick moves sideways", "fly quick moves forward and back",
+                                "turn about yaw, quickly"};
+  const std::vector<PredictionError> errors = prediction_errors(model, x, Part::kFitted);
+  std::map<std::string, std::string> out;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const PredictionError& error = errors[axis];
+    if (error.idle_half_second > kOverNoise * error.one_step) continue;
+    out[inertias[axis]] = error.quantity + " changes by " + shown(error.idle_half_second) +
+                          " rad/s in half a second, must by " + shown(kOverNoise) +
+                          " times the gyro's noise, " + shown(error.one_step) + " rad/s; " + moves[axis];
+  }
+  return out;
+}
+
 void tell_what_no_flight_tells(FlightIdentification& out, const FlightModel& model, const SeriesFit& fit,
                                Known known) {
   const plant::Vehicle& base = model.base();
@@ -229,19 +241,19 @@ FlightIdentification identify_flight(const std::vector<FlightLog>& logs, const p
   const FlightModel& model = *fitted.model;
   const SeriesFit& fit = fitted.fit;
   refuse_turned_gains(model.layout().gain, base, fit);
-  out.converged = fit.converged;
+  out.converged = fit.converged && within_bounds(model.layout().parameters, fit);
   const std::vector<Derived> quantities = derived(model, options.known);
   const DerivedValues values = evaluate(quantities, model.layout().parameters, fit);
   out.estimates = estimates_of(quantities, values, fit.degrees_of_freedom);
   const Excitation excited = excitation(model, fit.parameters);
-  conclude_vehicle(out, values, base,
+  conclude_vehicle(out, values, base, too_calm(model, fit.parameters),
                    [&](const std::string& parameter) { return advice(parameter, excited); });
   tell_what_no_flight_tells(out, model, fit, options.known);
   tell_of_excitation(out, excited);
   tell_of_poses(out, model.flights());
   warn_of_fit(out, model.layout().parameters, fit);
   warn_of_windows(out, logs);
-  out.errors = prediction_errors(model, fit.parameters);
+  out.errors = prediction_errors(model, fit.parameters, Part::kKept);
   out.trace = prediction_trace(model, fit.parameters);
   return out;
 }

@@ -2,6 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
+
+#include "identification/checks.hpp"
+#include "identification/possible_inertia.hpp"
 
 namespace swiftlet::identification {
 namespace {
@@ -12,8 +17,10 @@ using Eigen::VectorXd;
 
 constexpr double kTold = 0.25;     // half an interval over its value, up to which a parameter counts as told
 constexpr double kToldDrag = 0.1;  // 1/s, half an interval of drag over mass, likewise
-constexpr double kSmallStep = 1e-4;  // of differences, over a parameter's scale
-constexpr double kTurned = 3.0;      // standard errors below 0 at which a gain is negative for certain
+constexpr double kTelling = 0.5;   // half an interval over its value, to judge the value by
+constexpr double kSmallStep = 1e-4;        // of differences, over a parameter's scale
+constexpr double kChanceDeviations = 4.0;  // of moments beyond what a body can have
+constexpr double kTurned = 3.0;            // standard errors below 0 at which a gain is negative for certain
 
 const char* const kAxisNames[3] = {"roll", "pitch", "yaw"};
 
@@ -22,7 +29,8 @@ std::string share_text(const Estimate& estimate) {
 }
 
 bool is_told(const Estimate& estimate, const plant::Vehicle& base) {
-  if (estimate.parameter == "linear_drag") return estimate.half_width < kToldDrag * base.mass_kg;
+  if (estimate.parameter == "linear_drag")
+    return estimate.half_width < kToldDrag * base.mass_kg && estimate.high() > 0.0;
   return estimate.value > 0.0 && estimate.half_width < kTold * estimate.value;
 }
 
@@ -34,6 +42,33 @@ void put(plant::Vehicle& vehicle, const std::string& parameter, double value) {
   if (parameter == "inertia.yy") vehicle.inertia(1, 1) = value;
   if (parameter == "inertia.zz") vehicle.inertia(2, 2) = value;
   if (parameter == "linear_drag") vehicle.linear_drag = std::max(value, 0.0);
+}
+
+bool at_bound(const FlightParameter& parameter, double value) {
+  const double margin = 1e-6 * (parameter.high - parameter.low);
+  return value - parameter.low <= margin || parameter.high - value <= margin;
+}
+
+// Moments that the flights did not tell give way first.
+void keep_inertia_possible(FlightIdentification& out) {
+  Eigen::Vector3d moments = out.vehicle.inertia.diagonal();
+  Eigen::Vector3d variances = Eigen::Vector3d::Zero();
+  const char* const names[3] = {"inertia.xx", "inertia.yy", "inertia.zz"};
+  bool all = true;
+  for (const char* const name : names) all = all && out.sources.count(name) > 0;
+  for (Index i = 0; i < 3; ++i) {
+    const Estimate* const found = out.find(names[i]);
+    if (all) {
+      variances[i] = found->standard_error * found->standard_error;
+    } else if (out.sources.count(names[i]) == 0) {
+      variances[i] = moments[i] * moments[i];
+    }
+  }
+  const double deviations = all ? kChanceDeviations : std::numeric_limits<double>::infinity();
+  const std::optional<std::string> moved = keep_possible(moments, variances, deviations, all);
+  if (!moved) return;
+  out.vehicle.inertia.diagonal() = moments;
+  out.warnings.push_back(*moved);
 }
 
 bool stands_in_file(const std::string& parameter) {
@@ -93,26 +128,55 @@ FlightIdentification begun_with(const std::vector<FlightSeries>& flights) {
   return out;
 }
 
+bool within_bounds(const std::vector<FlightParameter>& parameters, const EstimatedParameters& fit) {
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (at_bound(parameters[i], fit.parameters[static_cast<Index>(i)])) return false;
+  }
+  return true;
+}
+
 void conclude_vehicle(FlightIdentification& out, const DerivedValues& values, const plant::Vehicle& base,
+                      const std::map<std::string, std::string>& untold,
                       const std::function<std::string(const std::string& parameter)>& advice) {
   out.vehicle = base;
+  for (const char* const inertia : {"inertia.xx", "inertia.yy"}) {
+    const Estimate* const found = out.find(inertia);
+    if (found != nullptr && found->half_width < kTelling * found->value)
+      demand_gyration("body rates", *found, base.mass_kg, base.rotors.front().position_frd.norm());
+  }
+  if (!out.converged) {
+    out.warnings.emplace_back("nothing of the fit goes into the vehicle");
+    return;
+  }
   std::vector<Index> written;
   for (std::size_t i = 0; i < out.estimates.size(); ++i) {
     const Estimate& estimate = out.estimates[i];
     if (!stands_in_file(estimate.parameter)) continue;
+    if (const auto reason = untold.find(estimate.parameter); reason != untold.end()) {
+      out.unexcited.push_back(estimate.parameter + ": " + reason->second);
+      continue;
+    }
     if (!is_told(estimate, base)) {
+      if (estimate.parameter == "linear_drag" && estimate.high() <= 0.0) {
+        out.warnings.push_back("linear_drag is negative for certain, " + shown(estimate.value) + " +- " +
+                               shown(estimate.half_width) +
+                               " N*s/m, and not written; are the frames of poses and IMU right?");
+        continue;
+      }
       out.unexcited.push_back(estimate.parameter + ": the interval is +- " + share_text(estimate) +
                               " of the value: " + advice(estimate.parameter));
       continue;
     }
     put(out.vehicle, estimate.parameter, estimate.value);
+    const double least = estimate.parameter == "linear_drag" ? 0.0 : -std::numeric_limits<double>::infinity();
     out.uncertainty.parameters.push_back(
-        {estimate.parameter, estimate.standard_error, estimate.low(), estimate.high()});
+        {estimate.parameter, estimate.standard_error, std::max(estimate.low(), least), estimate.high()});
     out.sources[estimate.parameter] = "identified from " + std::to_string(out.windows.size()) +
                                       (out.windows.size() == 1 ? " flight" : " flights") + ", +- " +
                                       share_text(estimate);
     written.push_back(static_cast<Index>(i));
   }
+  keep_inertia_possible(out);
   for (std::size_t a = 0; a < written.size(); ++a) {
     for (std::size_t b = a + 1; b < written.size(); ++b) {
       const double scale =
@@ -128,6 +192,7 @@ void conclude_vehicle(FlightIdentification& out, const DerivedValues& values, co
 
 void refuse_turned_gains(const int (&gain)[3], const plant::Vehicle& base, const EstimatedParameters& fit) {
   for (int axis = 0; axis < 3; ++axis) {
+    if (gain[axis] == kAbsent) continue;
     if (fit.parameters[gain[axis]] > -kTurned * fit.standard_error(gain[axis])) continue;
     throw BadData("the vehicle turns about " + std::string(kAxisNames[axis]) +
                   " against what the rotors of " + base.name +
@@ -141,8 +206,7 @@ void warn_of_fit(FlightIdentification& out, const std::vector<FlightParameter>& 
   if (!fit.converged) out.warnings.emplace_back("the fit did not converge; do not trust its numbers");
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const double value = fit.parameters[static_cast<Index>(i)];
-    const double margin = 1e-6 * (parameters[i].high - parameters[i].low);
-    if (value - parameters[i].low > margin && parameters[i].high - value > margin) continue;
+    if (!at_bound(parameters[i], value)) continue;
     out.warnings.push_back(parameters[i].name + " is " + shown(value) + " " + parameters[i].unit +
                            ", where the search ends; the model does not describe this flight");
   }
@@ -150,6 +214,8 @@ void warn_of_fit(FlightIdentification& out, const std::vector<FlightParameter>& 
 
 void warn_of_windows(FlightIdentification& out, const std::vector<FlightLog>& logs) {
   for (std::size_t f = 0; f < out.windows.size(); ++f) {
+    for (const std::string& sentence : out.windows[f].left_out)
+      out.warnings.push_back(logs[f].name + ": " + sentence);
     if (out.windows[f].ends_in_a_blow)
       out.warnings.push_back(logs[f].name + " ends in a blow of more than " + shown(kBlow) +
                              " m/s^2; what follows it is left out");

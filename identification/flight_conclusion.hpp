@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -35,9 +36,14 @@ std::vector<Estimate> estimates_of(const std::vector<Derived>& quantities, const
 // Windows, source and lengths of time.
 FlightIdentification begun_with(const std::vector<FlightSeries>& flights);
 
-// Puts what out.estimates tell well enough into the vehicle, and says of the rest what would tell it. values
-// are those of out.estimates.
+// Whether the search ended inside its bounds.
+bool within_bounds(const std::vector<FlightParameter>& parameters, const EstimatedParameters& fit);
+
+// Puts what out.estimates tell well enough into the vehicle, if the fit converged within its bounds, and says
+// of the rest what would tell it. values are those of out.estimates; untold are parameters that are not to be
+// believed whatever their intervals, with the reason. Throws BadData for what no body is.
 void conclude_vehicle(FlightIdentification& out, const DerivedValues& values, const plant::Vehicle& base,
+                      const std::map<std::string, std::string>& untold,
                       const std::function<std::string(const std::string& parameter)>& advice);
 
 // Throws BadData where a gain, by its place among the parameters, is negative for certain.

@@ -41,18 +41,19 @@ plant::PerRotor speed_errors(const plant::PerRotor& measured, const plant::PerRo
 }  // namespace
 
 FlightModel::FlightModel(std::vector<FlightSeries> flights, plant::Vehicle base)
-    : flights_(std::move(flights)), base_(std::move(base)), effectiveness_(plant::effectiveness(base_)) {
+    : flights_(std::move(flights)),
+      base_(std::move(base)),
+      effectiveness_(plant::effectiveness(base_)),
+      wrenches_(kKeptForEachFlight * flights_.size()) {
   for (const FlightSeries& flight : flights_) block_.push_back(block_of(flight));
   lay_out();
 }
 
-int FlightModel::add(FlightParameter parameter) {
-  layout_.parameters.push_back(std::move(parameter));
-  return static_cast<int>(layout_.parameters.size()) - 1;
-}
-
 void FlightModel::lay_out() {
   FlightLayout& l = layout_;
+  const auto add = [&l](FlightParameter parameter) {
+    return identification::add(std::move(parameter), l.parameters);
+  };
   l.lag = add({"rotor lag", "s", base_.motor.time_constant_s, 0.01, 2e-3, 1.0});
   if (source() == SpeedSource::kMeasured) {
     l.motor_delay = add({"delay from command to rotor speed", "s", 2e-3, 2e-3, -0.02, 0.05});
@@ -89,47 +90,56 @@ Vector3d FlightModel::offset(const VectorXd& x, std::size_t flight) const {
   return {x[first], x[first + 1], x[first + 2]};
 }
 
-FlightModel::Wrenches FlightModel::computed_wrenches(std::size_t flight, const Rows& rows, double lag_s,
-                                                     double delay_s) const {
-  const FlightSeries& series = flights_[flight];
-  std::vector<plant::PerRotor> modelled;
-  if (source() != SpeedSource::kMeasured)
-    modelled = lagged_speeds(*series.log, series.steady_speeds, rows, lag_s, delay_s);
-  Wrenches out(rows.size(), Eigen::Vector4d::Zero());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const plant::PerRotor& speeds = modelled.empty() ? series.log->rotor_speeds[rows.first + i] : modelled[i];
+FlightModel::Wrenches FlightModel::wrenches_of(const std::vector<plant::PerRotor>& speeds) const {
+  Wrenches out(speeds.size(), Eigen::Vector4d::Zero());
+  for (std::size_t i = 0; i < speeds.size(); ++i) {
     for (Index rotor = 0; rotor < effectiveness_.cols(); ++rotor) {
-      const double speed = speeds[static_cast<std::size_t>(rotor)];
+      const double speed = speeds[i][static_cast<std::size_t>(rotor)];
       out[i] += effectiveness_.col(rotor) * (base_.rotor.thrust * speed * speed);
     }
   }
   return out;
 }
 
+FlightModel::Wrenches FlightModel::computed_wrenches(std::size_t flight, const Rows& rows, double lag_s,
+                                                     double delay_s) const {
+  const FlightSeries& series = flights_[flight];
+  if (source() != SpeedSource::kMeasured)
+    return wrenches_of(lagged_speeds(*series.log, series.steady_speeds, rows, lag_s, delay_s));
+  const auto measured = series.log->rotor_speeds.begin();
+  return wrenches_of({measured + static_cast<std::ptrdiff_t>(rows.first),
+                      measured + static_cast<std::ptrdiff_t>(rows.last)});
+}
+
 std::shared_ptr<const FlightModel::Wrenches> FlightModel::wrenches(const VectorXd& x, std::size_t flight,
                                                                    const Rows& rows, double delay_s) const {
-  const bool measured = source() == SpeedSource::kMeasured;
-  Kept wanted{flight, rows.first, measured ? 0.0 : x[layout_.lag], delay_s, nullptr};
-  for (const Kept& kept : kept_) {
-    if (kept.is_of(wanted) && kept.wrenches->size() == rows.size()) return kept.wrenches;
-  }
-  wanted.wrenches =
-      std::make_shared<const Wrenches>(computed_wrenches(flight, rows, wanted.lag_s, wanted.delay_s));
-  if (kept_.size() < kKeptForEachFlight * flights_.size()) {
-    kept_.push_back(wanted);
-  } else {
-    kept_[oldest_kept_] = wanted;
-    oldest_kept_ = (oldest_kept_ + 1) % kept_.size();
-  }
-  return wanted.wrenches;
+  const double lag_s = source() == SpeedSource::kMeasured ? 0.0 : x[layout_.lag];
+  return wrenches_.of({flight, rows.first, rows.last, lag_s, delay_s},
+                      [&] { return computed_wrenches(flight, rows, lag_s, delay_s); });
 }
 
 FlightModel::Drive FlightModel::drive(const VectorXd& x, std::size_t flight, const Rows& rows) const {
+  const auto for_force = wrenches(x, flight, rows, value(x, layout_.force_delay));
+  const auto for_rates = wrenches(x, flight, rows, value(x, layout_.rate_delay));
+  return drive_by(x, flight, rows, *for_force, *for_rates);
+}
+
+FlightModel::Drive FlightModel::drive_by_commands(const VectorXd& x, std::size_t flight,
+                                                  const Rows& rows) const {
+  if (source() != SpeedSource::kMeasured) return drive(x, flight, rows);
   const FlightSeries& series = flights_[flight];
-  const double force_delay = value(x, layout_.force_delay);
-  const double rate_delay = value(x, layout_.rate_delay);
-  const auto for_force = wrenches(x, flight, rows, force_delay);
-  const auto for_rates = wrenches(x, flight, rows, rate_delay);
+  std::vector<plant::PerRotor> speeds =
+      lagged_speeds(*series.log, series.steady_speeds, rows, x[layout_.lag], x[layout_.motor_delay]);
+  for (plant::PerRotor& of_row : speeds) {
+    for (double& speed : of_row) speed *= x[layout_.speed_scale];
+  }
+  const Wrenches by_commands = wrenches_of(speeds);
+  return drive_by(x, flight, rows, by_commands, by_commands);
+}
+
+FlightModel::Drive FlightModel::drive_by(const VectorXd& x, std::size_t flight, const Rows& rows,
+                                         const Wrenches& for_force, const Wrenches& for_rates) const {
+  const FlightSeries& series = flights_[flight];
   const double thrust_over_mass = x[layout_.thrust] / base_.mass_kg;
   const double drag = value(x, layout_.drag);
   const Vector3d gain = Vector3d(x[layout_.gain[0]], x[layout_.gain[1]], x[layout_.gain[2]])
@@ -140,11 +150,11 @@ FlightModel::Drive FlightModel::drive(const VectorXd& x, std::size_t flight, con
   out.specific_force.reserve(rows.size());
   out.acceleration.reserve(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    Vector3d force(0.0, 0.0, -thrust_over_mass * (*for_force)[i][0]);
+    Vector3d force(0.0, 0.0, -thrust_over_mass * for_force[i][0]);
     const std::size_t row = rows.first + i;
     force -= drag * (series.attitude[row].conjugate() * series.velocity_ned[row]);
     out.specific_force.push_back(force);
-    const Eigen::Vector4d& moments = (*for_rates)[i];
+    const Eigen::Vector4d& moments = for_rates[i];
     out.acceleration.push_back(gain.cwiseProduct(moments.tail<3>() + moments[0] * trim));
   }
   return out;
@@ -158,19 +168,7 @@ Vector3d FlightModel::rate_derivative(const Vector3d& inertia, const Vector3d& a
 // Channels, one after the other: specific force x, y, z, rates p, q, r, speed of each rotor less the mean of
 // all, that mean over each stretch, vertical motion.
 SeriesProblem FlightModel::problem(const std::function<void()>& on_iteration) const {
-  SeriesProblem out;
-  const auto count = static_cast<Index>(layout_.parameters.size());
-  out.start.resize(count);
-  out.scale.resize(count);
-  out.low.resize(count);
-  out.high.resize(count);
-  for (Index i = 0; i < count; ++i) {
-    const FlightParameter& parameter = layout_.parameters[static_cast<std::size_t>(i)];
-    out.start[i] = parameter.start;
-    out.scale[i] = parameter.scale;
-    out.low[i] = parameter.low;
-    out.high[i] = parameter.high;
-  }
+  SeriesProblem out = problem_of(layout_.parameters);
   std::vector<std::size_t> per_row;  // stretch of each block of fitted rows, all flights
   std::vector<std::size_t> per_stretch;
   for (std::size_t f = 0; f < flights_.size(); ++f) {

@@ -14,29 +14,21 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "identification/flight_parameter.hpp"
 #include "identification/flight_series.hpp"
+#include "identification/recent_results.hpp"
 #include "identification/series_fit.hpp"
 #include "plant/model/airframe.hpp"
 #include "plant/model/vehicle.hpp"
 
 namespace swiftlet::identification {
 
-// One parameter of the fit.
-struct FlightParameter {
-  std::string name;
-  std::string unit;
-  double start = 0.0;
-  double scale = 1.0;
-  double low = 0.0;
-  double high = 0.0;
-};
-
-// Where parameters stand in the vector; kAbsent: the logs cannot tell them and they stay at 0 (gains at 1).
-constexpr int kAbsent = -1;
+// Where parameters stand in the vector; those that are absent stay at 0 (gains at 1).
 struct FlightLayout {
   std::vector<FlightParameter> parameters;
   int lag = kAbsent;                          // tau_m
@@ -80,6 +72,8 @@ class FlightModel {
     std::vector<Eigen::Vector3d> acceleration;  // rad/s^2
   };
   Drive drive(const Eigen::VectorXd& parameters, std::size_t flight, const Rows& rows) const;
+  // The same by the speeds that the commands ask for, measured or not.
+  Drive drive_by_commands(const Eigen::VectorXd& parameters, std::size_t flight, const Rows& rows) const;
   // dw/dt of these rates under that.
   static Eigen::Vector3d rate_derivative(const Eigen::Vector3d& inertia, const Eigen::Vector3d& acceleration,
                                          const Eigen::Vector3d& rates);
@@ -87,12 +81,14 @@ class FlightModel {
 
  private:
   void lay_out();
-  int add(FlightParameter parameter);
   // Thrust and moments by the base vehicle's numbers, at each of the rows.
   using Wrenches = std::vector<Eigen::Vector4d>;
   std::shared_ptr<const Wrenches> wrenches(const Eigen::VectorXd& parameters, std::size_t flight,
                                            const Rows& rows, double delay_s) const;
   Wrenches computed_wrenches(std::size_t flight, const Rows& rows, double lag_s, double delay_s) const;
+  Wrenches wrenches_of(const std::vector<plant::PerRotor>& speeds) const;
+  Drive drive_by(const Eigen::VectorXd& parameters, std::size_t flight, const Rows& rows,
+                 const Wrenches& for_force, const Wrenches& for_rates) const;
   void residuals(const Eigen::VectorXd& parameters, Eigen::VectorXd& out) const;
 
   std::vector<FlightSeries> flights_;
@@ -101,21 +97,9 @@ class FlightModel {
   FlightLayout layout_;
   std::vector<std::size_t> block_;  // rows of each flight that make one residual, their mean
 
-  // Most parameters do not move the rotors.
-  struct Kept {
-    std::size_t flight = 0;
-    std::size_t first_row = 0;
-    double lag_s = 0.0;
-    double delay_s = 0.0;
-    std::shared_ptr<const Wrenches> wrenches;
-
-    bool is_of(const Kept& other) const {
-      return flight == other.flight && first_row == other.first_row && lag_s == other.lag_s &&
-             delay_s == other.delay_s;
-    }
-  };
-  mutable std::vector<Kept> kept_;
-  mutable std::size_t oldest_kept_ = 0;
+  // By flight, first and last row, lag and delay: most parameters do not move the rotors.
+  using WrenchKey = std::tuple<std::size_t, std::size_t, std::size_t, double, double>;
+  mutable RecentResults<WrenchKey, Wrenches> wrenches_;
 };
 
 }  // namespace swiftlet::identification

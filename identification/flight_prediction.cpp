@@ -22,13 +22,13 @@ struct Squares {
   double rms(int axis) const { return count > 0.0 ? std::sqrt(sum[axis] / count) : 0.0; }
 };
 
-// Rates, from the measured ones of a row on, under the drives of the rows that follow.
+// Rates, from the measured ones of a row on, by what the commands of the rows that follow make the rotors do.
 class RatePredictor {
  public:
-  RatePredictor(const FlightModel& model, const VectorXd& parameters, std::size_t flight)
+  RatePredictor(const FlightModel& model, const VectorXd& parameters, std::size_t flight, Part part)
       : log_(*model.flights()[flight].log),
-        rows_(model.flights()[flight].kept),
-        drive_(model.drive(parameters, flight, rows_)),
+        rows_(part == Part::kKept ? model.flights()[flight].kept : model.flights()[flight].fitted),
+        drive_(model.drive_by_commands(parameters, flight, rows_)),
         inertia_(model.inertia(parameters)) {}
 
   const Rows& rows() const { return rows_; }
@@ -54,7 +54,8 @@ class RatePredictor {
 
 }  // namespace
 
-std::vector<PredictionError> prediction_errors(const FlightModel& model, const VectorXd& parameters) {
+std::vector<PredictionError> prediction_errors(const FlightModel& model, const VectorXd& parameters,
+                                               Part part) {
   Squares one_step;
   Squares idle_one_step;
   Squares ahead;
@@ -63,7 +64,7 @@ std::vector<PredictionError> prediction_errors(const FlightModel& model, const V
   Squares idle_force;
   for (std::size_t f = 0; f < model.flights().size(); ++f) {
     const FlightLog& log = *model.flights()[f].log;
-    const RatePredictor predictor(model, parameters, f);
+    const RatePredictor predictor(model, parameters, f, part);
     const Rows rows = predictor.rows();
     Vector3d mean = Vector3d::Zero();
     for (std::size_t row = rows.first; row < rows.last; ++row)
@@ -103,7 +104,7 @@ std::vector<PredictionError> prediction_errors(const FlightModel& model, const V
 
 PredictionTrace prediction_trace(const FlightModel& model, const VectorXd& parameters) {
   const FlightLog& log = *model.flights().front().log;
-  const RatePredictor predictor(model, parameters, 0);
+  const RatePredictor predictor(model, parameters, 0, Part::kKept);
   const Rows rows = predictor.rows();
   PredictionTrace out;
   Vector3d rates = log.body_rates_frd[rows.first];

@@ -1,4 +1,4 @@
-// How well a fitted model predicts flight that it was not fitted to.
+// How well a fitted model predicts flight by its commands.
 #pragma once
 
 #include <vector>
@@ -7,8 +7,12 @@
 
 namespace swiftlet::identification {
 
-std::vector<PredictionError> prediction_errors(const FlightModel& model, const Eigen::VectorXd& parameters);
+enum class Part { kFitted, kKept };
 
+std::vector<PredictionError> prediction_errors(const FlightModel& model, const Eigen::VectorXd& parameters,
+                                               Part part);
+
+// Of the kept rows of the first flight.
 PredictionTrace prediction_trace(const FlightModel& model, const Eigen::VectorXd& parameters);
 
 }  // namespace swiftlet::identification

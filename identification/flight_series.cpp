@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 
 #include "identification/estimate.hpp"
+#include "identification/flight_checks.hpp"
 #include "plant/model/propulsion.hpp"
 
 namespace swiftlet::identification {
@@ -15,14 +16,13 @@ constexpr double kKeptShare = 0.2;
 constexpr double kHalfSmoothingS = 0.06;   // of the polynomial through neighbouring poses
 constexpr std::size_t kLeastPoses = 5;     // through which one is laid
 constexpr double kLongestPoseGapS = 0.25;  // that is bridged
-constexpr double kLongestRowGapS = 0.05;
 
 void demand_whole(const FlightLog& log, const Rows& rows) {
   for (std::size_t i = rows.first + 1; i < rows.last; ++i) {
     if (log.time_s[i] - log.time_s[i - 1] <= kLongestRowGapS) continue;
     throw BadData("has no sample for " + shown(log.time_s[i] - log.time_s[i - 1]) +
-                      " s in the flight, must have one every " + shown(kLongestRowGapS) + " s",
-                  i);
+                  " s in the flight, after " + shown(log.time_s[i - 1]) + " s, must have one every " +
+                  shown(kLongestRowGapS) + " s");
   }
 }
 
@@ -58,9 +58,13 @@ class PoseMotion {
     if (next_ == 0) next_ = 1;
     const FlightPose& before = poses_[next_ - 1];
     const FlightPose& after = poses_[next_];
+    if (time_s < before.time_s - kLongestPoseGapS || time_s > after.time_s + kLongestPoseGapS) {
+      throw BadData("has poses from " + shown(poses_.front().time_s) + " to " + shown(poses_.back().time_s) +
+                    " s alone, and flight at " + shown(time_s) + " s; must have them all through the flight");
+    }
     if (after.time_s - before.time_s > kLongestPoseGapS) {
-      throw BadData("has no pose for " + shown(after.time_s - before.time_s) +
-                    " s in the flight, must have one every " + shown(kLongestPoseGapS) + " s");
+      throw BadData("has no pose for " + shown(after.time_s - before.time_s) + " s in the flight, after " +
+                    shown(before.time_s) + " s, must have one every " + shown(kLongestPoseGapS) + " s");
     }
     const double share = std::clamp((time_s - before.time_s) / (after.time_s - before.time_s), 0.0, 1.0);
     return {velocity(time_s), before.q_ned_from_frd.slerp(share, after.q_ned_from_frd)};
@@ -126,8 +130,10 @@ FlightSeries prepare_flight(const FlightLog& log, const plant::Vehicle& base, co
   }
   FlightSeries out;
   out.log = &log;
+  demand_times(log);
   out.window = find_flight(log, bounds);
   demand_whole(log, out.window.flight);
+  demand_readings(log, out.window.flight);
   const Rows& flight = out.window.flight;
   out.fitted = {flight.first,
                 flight.last - static_cast<std::size_t>(kKeptShare * static_cast<double>(flight.size()))};
@@ -135,9 +141,11 @@ FlightSeries prepare_flight(const FlightLog& log, const plant::Vehicle& base, co
   out.source = source_of(log);
   if (out.source == SpeedSource::kCommanded) return out;
   out.steady_speeds = steady_speeds(log, base);
+  demand_speeds_like_the_motors(out, base);
   out.stretches = stretches_of(log, out.fitted);
   out.pose_timing = find_pose_timing(log, out.stretches);
   add_motion(out);
+  demand_positions_as_felt(out);
   return out;
 }
 

@@ -25,6 +25,8 @@ enum class SpeedSource {
 // What a channel of residuals is cut into; inside, samples hang together.
 constexpr double kStretchS = 0.5;
 
+constexpr double kLongestRowGapS = 0.05;  // between samples of a flight
+
 struct FlightSeries {
   const FlightLog* log = nullptr;
   FlightWindow window;

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "identification/flight_log.hpp"
 
@@ -19,6 +21,7 @@ struct Rows {
 struct FlightWindow {
   Rows flight;  // in the air, rotors running, between the first and the last of it
   bool ends_in_a_blow = false;
+  std::vector<std::string> left_out;  // of what was flown, and why; sentences
 };
 
 // What the user knows better; seconds of the log's own clock.

@@ -14,11 +14,9 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr std::size_t kLeastRows = 4;
-constexpr double kLeastLength = 0.005;   // m
-constexpr double kMostLength = 20.0;     // m
-constexpr double kLeastGyration = 0.05;  // radius of gyration over the hubs' distance from the centre
-constexpr double kMostGyration = 3.0;
-constexpr double kSwingShare = 0.1;  // J over m arm^2 below which the arm hides J
+constexpr double kLeastLength = 0.005;  // m
+constexpr double kMostLength = 20.0;    // m
+constexpr double kSwingShare = 0.1;     // J over m arm^2 below which the arm hides J
 
 // period^2 = slope J + constant for each row.
 struct PeriodLaw {
@@ -60,13 +58,7 @@ Experiment identify(const PeriodLaw& law, const std::vector<double>& periods, co
   inertia.standard_error = std::hypot(inertia.standard_error, inertia.value * target.mass_error);
   inertia.half_width = interval_factor(found.degrees_of_freedom) * inertia.standard_error;
   out.covariance(0, 0) = inertia.standard_error * inertia.standard_error;
-  const double gyration = std::sqrt(std::max(inertia.value, 0.0) / target.mass_kg) / target.size_m;
-  if (!(gyration >= kLeastGyration && gyration <= kMostGyration)) {
-    throw BadData("period: leads to " + inertia.symbol + " = " + shown(inertia.value) +
-                  " kg*m^2, a radius of gyration of " + shown(gyration) +
-                  " times the hubs' distance from the centre, must be " + shown(kLeastGyration) + " to " +
-                  shown(kMostGyration) + "; are the units right?");
-  }
+  demand_gyration("period", inertia, target.mass_kg, target.size_m);
   return out;
 }
 

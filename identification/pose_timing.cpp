@@ -1,12 +1,14 @@
 #include "identification/pose_timing.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <string>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "identification/checks.hpp"
 #include "identification/series_fit.hpp"
 #include "plant/model/rotation_vector.hpp"
 
@@ -20,8 +22,14 @@ using Eigen::VectorXd;
 
 constexpr std::size_t kLeastPoses = 3;  // of a stretch
 constexpr std::size_t kLeastStretches = 8;
-constexpr double kLongestDelayS = 0.2;
-constexpr double kToldS = 0.002;  // half an interval of the delay up to which it counts as told
+constexpr double kLongestDelayS = 1.0;
+constexpr double kLagStepS = 0.01;  // of the first search
+constexpr double kLagOffS = 0.05;   // that the first search may be off by
+constexpr double kSpanS = 0.05;     // over which it compares turns
+constexpr double kTurning = 0.25;   // rad/s, RMS over such spans, to compare by
+constexpr double kLeastCorrelation = 0.5;
+constexpr double kMostOfGyro = 1.25;  // of the poses' turns over the gyro's, and the other way round
+constexpr double kToldS = 0.002;      // half an interval of the delay up to which it counts as told
 
 // What the body has turned, by the gyro less its offset, since about a time.
 class Turned {
@@ -79,6 +87,84 @@ std::vector<Poses> poses_of(const FlightLog& log, const std::vector<Rows>& stret
   return out;
 }
 
+// The integral of the gyro's rates, at any time of a log.
+class GyroIntegral {
+ public:
+  explicit GyroIntegral(const FlightLog& log) : time_s_(log.time_s), integral_(log.size(), Vector3d::Zero()) {
+    for (std::size_t i = 1; i < integral_.size(); ++i) {
+      integral_[i] = integral_[i - 1] + 0.5 * (time_s_[i] - time_s_[i - 1]) *
+                                            (log.body_rates_frd[i] + log.body_rates_frd[i - 1]);
+    }
+  }
+
+  Vector3d at(double time_s) const {
+    const auto next = std::upper_bound(time_s_.begin(), time_s_.end(), time_s) - time_s_.begin();
+    if (next == 0) return integral_.front();
+    const auto after = static_cast<std::size_t>(next);
+    if (after == integral_.size()) return integral_.back();
+    const double share = (time_s - time_s_[after - 1]) / (time_s_[after] - time_s_[after - 1]);
+    return integral_[after - 1] + share * (integral_[after] - integral_[after - 1]);
+  }
+
+ private:
+  const std::vector<double>& time_s_;
+  std::vector<Vector3d> integral_;
+};
+
+// The lag at which poses turn most as the gyro does.
+double rough_delay(const FlightLog& log, const std::vector<Poses>& stretches) {
+  struct Span {
+    double from_s;
+    double to_s;
+  };
+  std::vector<Span> spans;
+  std::vector<double> by_poses;  // rad/s, x, y, z of each span
+  for (const Poses& stretch : stretches) {
+    std::size_t from = stretch.first;
+    for (std::size_t to = from + 1; to < stretch.last; ++to) {
+      const double length_s = log.poses[to].time_s - log.poses[from].time_s;
+      if (length_s < kSpanS) continue;
+      const Vector3d rates =
+          plant::rotation_vector(log.poses[from].q_ned_from_frd.conjugate() * log.poses[to].q_ned_from_frd) /
+          length_s;
+      spans.push_back({log.poses[from].time_s, log.poses[to].time_s});
+      by_poses.insert(by_poses.end(), rates.begin(), rates.end());
+      from = to;
+    }
+  }
+  if (spans.empty()) return 0.0;
+  const GyroIntegral integral(log);
+  double best_s = 0.0;
+  Comparison best;
+  best.correlation = -2.0;
+  const int most = static_cast<int>(std::lround(kLongestDelayS / kLagStepS));
+  for (int i = -most; i <= most; ++i) {
+    const double lag_s = i * kLagStepS;
+    std::vector<double> by_gyro;
+    by_gyro.reserve(by_poses.size());
+    for (const Span& span : spans) {
+      const Vector3d rates =
+          (integral.at(span.to_s - lag_s) - integral.at(span.from_s - lag_s)) / (span.to_s - span.from_s);
+      by_gyro.insert(by_gyro.end(), rates.begin(), rates.end());
+    }
+    const Comparison found = compared(by_poses, by_gyro);
+    if (found.correlation <= best.correlation) continue;
+    best = found;
+    best_s = lag_s;
+  }
+  if (best.spread < kTurning) return 0.0;
+  if (best.correlation < kLeastCorrelation) {
+    throw BadData("poses: do not turn as the gyro does, at any delay up to " + shown(kLongestDelayS) +
+                  " s (correlation " + shown(best.correlation) + ", must be above " +
+                  shown(kLeastCorrelation) + "); are the frames of both, and their clocks, right?");
+  }
+  if (best.ratio > kMostOfGyro || best.ratio < 1.0 / kMostOfGyro) {
+    throw BadData("body rates: the poses turn " + shown(best.ratio) + " times as far, must be " +
+                  shown(1.0 / kMostOfGyro) + " to " + shown(kMostOfGyro) + "; is the unit right?");
+  }
+  return best_s;
+}
+
 // Channels x, y, z: of each pose what it has turned beyond the gyro, rad, less the mean of its stretch.
 void residuals(const FlightLog& log, const std::vector<Poses>& stretches, const VectorXd& x, VectorXd& out) {
   const Index rows = out.size() / 3;
@@ -114,10 +200,11 @@ PoseTiming find_pose_timing(const FlightLog& log, const std::vector<Rows>& stret
   if (poses.size() < kLeastStretches) return out;
 
   SeriesProblem problem;
-  problem.start = VectorXd::Zero(4);
+  const double delay_s = rough_delay(log, poses);
+  problem.start = Eigen::Vector4d(delay_s, 0.0, 0.0, 0.0);
   problem.scale = Eigen::Vector4d(2e-3, 0.01, 0.01, 0.01);
-  problem.low = Eigen::Vector4d(-kLongestDelayS, -1.0, -1.0, -1.0);
-  problem.high = -problem.low;
+  problem.low = Eigen::Vector4d(delay_s - kLagOffS, -1.0, -1.0, -1.0);
+  problem.high = Eigen::Vector4d(delay_s + kLagOffS, 1.0, 1.0, 1.0);
   problem.stretch_count = poses.size();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::size_t first = problem.stretches.size();

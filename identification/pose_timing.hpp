@@ -2,7 +2,8 @@
 //
 // A pose turns between two stamps as the gyro says between two times, each a delay before the stamp:
 //   q(t)* q(t + s) = exp of the gyro's rate, less its offset, from t - T to t + s - T.
-// As an output error: integrated over each stretch from a start that is free.
+// First by the lag at which the rates of both go together best, then as an output error: integrated over each
+// stretch from a start that is free.
 #pragma once
 
 #include <array>
@@ -20,7 +21,8 @@ struct PoseTiming {
   std::array<Estimate, 3> gyro_offset;  // rad/s
 };
 
-// By stretches of one flight.
+// By stretches of one flight. Throws BadData where poses turn otherwise than the gyro, whatever the delay: by
+// another unit, or frame, or clock.
 PoseTiming find_pose_timing(const FlightLog& log, const std::vector<Rows>& stretches);
 
 }  // namespace swiftlet::identification

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/QR>
+#include <Eigen/Eigenvalues>
 #include <ceres/ceres.h>
 
 #include "identification/minimise.hpp"
@@ -19,6 +19,8 @@ constexpr double kStep = 1e-3;        // of central differences, over a paramete
 constexpr int kMostReweightings = 4;  // spreads of the channels, then a fit with them
 constexpr double kSettled = 0.01;     // of the spreads, relative
 constexpr double kLeastSpread = 1e-9;
+constexpr double kUnseen = 1e-14;         // of the largest eigenvalue of the normal equations
+constexpr double kUnseenDeviation = 1e4;  // standard deviation along what is not seen, in scales
 
 // Residuals over their channels' spreads, in parameters over their scales.
 class WeighedProblem final : public ceres::CostFunction {
@@ -100,6 +102,28 @@ class WeighedProblem final : public ceres::CostFunction {
   mutable VectorXd below_;
 };
 
+// Of a matrix of normal equations, in parameters over their scales.
+struct Information {
+  MatrixXd inverse;  // along what the residuals see
+  MatrixXd unseen;   // the covariance of the rest: directions in which no residual changes
+};
+
+Information inverted(const MatrixXd& normal) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(normal);
+  const VectorXd& values = solver.eigenvalues();
+  const double least = kUnseen * std::max(values.maxCoeff(), 0.0);
+  Information out{MatrixXd::Zero(normal.rows(), normal.cols()), MatrixXd::Zero(normal.rows(), normal.cols())};
+  for (Index i = 0; i < values.size(); ++i) {
+    const auto direction = solver.eigenvectors().col(i);
+    if (values[i] > least) {
+      out.inverse += direction * direction.transpose() / values[i];
+    } else {
+      out.unseen += kUnseenDeviation * kUnseenDeviation * direction * direction.transpose();
+    }
+  }
+  return out;
+}
+
 Minimisation minimisation_of(const SeriesProblem& problem) {
   Minimisation settings;
   settings.linear_solver = ceres::DENSE_NORMAL_CHOLESKY;
@@ -133,12 +157,13 @@ SeriesFit fit_series(const SeriesProblem& problem) {
   for (Index i = 0; i < residuals.size(); ++i)
     scores.row(static_cast<Index>(problem.stretches[static_cast<std::size_t>(i)])) +=
         residuals[i] * jacobian.row(i);
-  const MatrixXd inverse =
-      (jacobian.transpose() * jacobian).completeOrthogonalDecomposition().pseudoInverse();
+  const Information information = inverted(jacobian.transpose() * jacobian);
+  const MatrixXd& inverse = information.inverse;
   const auto stretches = static_cast<double>(problem.stretch_count);
   out.degrees_of_freedom = std::max(1, static_cast<int>(problem.stretch_count) - static_cast<int>(x.size()));
   const double correction = stretches / static_cast<double>(out.degrees_of_freedom);
-  const MatrixXd covariance = correction * inverse * (scores.transpose() * scores) * inverse;
+  const MatrixXd covariance =
+      correction * inverse * (scores.transpose() * scores) * inverse + information.unseen;
   out.parameters = x.cwiseProduct(problem.scale);
   out.covariance = problem.scale.asDiagonal() * covariance * problem.scale.asDiagonal();
   out.channel_spread.assign(cost.spread().data(), cost.spread().data() + cost.spread().size());

@@ -32,7 +32,8 @@ struct SeriesProblem {
 };
 
 // The covariance is robust against correlation inside a stretch, between all channels (Liang, Zeger 1986),
-// with the correction for few stretches; the degrees of freedom are stretches less parameters.
+// with the correction for few stretches; the degrees of freedom are stretches less parameters. What no residual
+// depends on has a standard error of 1e4 of the parameters' scales.
 struct SeriesFit : EstimatedParameters {
   Eigen::VectorXd residuals;           // in the channels' units
   std::vector<double> channel_spread;  // standard deviation of each channel's residuals

@@ -22,6 +22,12 @@ using RotorThrusts = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, k
 // torque Q = (k_Q / k_T) T about z, positive if it turns counter-clockwise seen from above.
 Effectiveness effectiveness(const Vehicle& vehicle);
 
+// The mean lever, m, by which the rotors' thrusts turn the body about an axis, 0 roll .. 2 yaw; about yaw torque
+// over thrust.
+inline double mean_lever(const Vehicle& vehicle, int axis) {
+  return effectiveness(vehicle).row(1 + axis).cwiseAbs().mean();
+}
+
 // Thrust of each rotor, N, and its speed, rad/s, when all share the weight evenly.
 inline double hover_thrust(const Vehicle& vehicle) {
   return vehicle.mass_kg * kGravity / vehicle.rotor_count();

@@ -74,6 +74,8 @@ TEST_F(BenchFolder, RefusesFilesThatItDoesNotKnow) {
             std::string::npos);
   folder_.write("stedy_motor.csv", "x\n1\n");
   EXPECT_EQ(refused().find(at("stedy_motor.csv") + ": is no experiment that is known"), 0U);
+  std::filesystem::rename(at("stedy_motor.csv"), at("mass.CSV"));
+  EXPECT_EQ(refused().find(at("mass.CSV") + ": is no experiment that is known"), 0U);
 }
 
 TEST_F(BenchFolder, ReadsEitherSetUpForInertia) {

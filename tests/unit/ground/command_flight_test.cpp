@@ -153,17 +153,8 @@ TEST(CommandFlight, OfARealVehicle) {
 TEST(CommandFlight, RefusesMotorsInAnotherOrder) {
   const FlightPlan plan = delayed_plan();
   FlightLog log = blinded(flown(plan, plan.vehicle, 4));
-  for (plant::PerRotor& command : log.command) {
-    std::swap(command[0], command[1]);
-    std::swap(command[2], command[3]);
-  }
-  try {
-    identification::identify_flight({log}, plan.vehicle, {});
-    ADD_FAILURE() << "was not refused";
-  } catch (const identification::BadData& fault) {
-    EXPECT_NE(std::string(fault.what()).find("are the motors in its order"), std::string::npos)
-        << fault.what();
-  }
+  swap_motors(log);
+  expect_refused({log}, plan.vehicle, "are the motors in its order");
 }
 
 }  // namespace

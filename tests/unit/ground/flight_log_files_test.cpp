@@ -126,7 +126,19 @@ TEST(FlightLogFiles, BelievesNamesThatSayTheirAxes) {
   const std::string header =
       "t [s],acc_x_frd [m/s^2],acc_y_frd [m/s^2],acc_z_frd [m/s^2],p_frd [rad/s],q_frd [rad/s],r_frd "
       "[rad/s],motor1 [1]\n";
-  EXPECT_TRUE(read(header + kRow).log.specific_force_frd[0].isApprox(Eigen::Vector3d(1.0, 2.0, 9.8)));
+  const std::string row = "0,1,2,-9.8,0.1,0.2,0.3,0.5\n";
+  EXPECT_TRUE(read(header + row).log.specific_force_frd[0].isApprox(Eigen::Vector3d(1.0, 2.0, -9.8)));
+}
+
+TEST(FlightLogFiles, RefuseAxesThatGravityContradicts) {
+  const std::string values =
+      "acc_x [m/s^2],acc_y [m/s^2],acc_z [m/s^2],p [rad/s],q [rad/s],r [rad/s],m1 [1]\n";
+  expect_contains(refused("t [s],acc_x_frd [m/s^2],acc_y_frd [m/s^2],acc_z_frd [m/s^2],p_frd [rad/s],q_frd "
+                          "[rad/s],r_frd [rad/s],m1 [1]\n" +
+                          kRow),
+                  "must be negative in forward-right-down axes");
+  EXPECT_NO_THROW(read("t [s]," + values + kRow, BodyAxes::kFlu));
+  EXPECT_THROW(read("t [s]," + values + kRow, BodyAxes::kFrd), runtime::ConfigError);
 }
 
 TEST(FlightLogFiles, TakesPosesEastNorthUp) {
@@ -149,6 +161,10 @@ TEST(FlightLogFiles, MakesThrottlesOfPulses) {
       "t [s],acc_x [g],acc_y [g],acc_z [g],gyro_x [deg/s],gyro_y [deg/s],gyro_z [deg/s],pwm1 [us]\n"
       "0,0,0,1,0,0,0,1539\n0.01,0,0,1,0,0,0,1039\n");
   EXPECT_DOUBLE_EQ(log.log.command[0][0], 0.5);
+  expect_contains(
+      refused("t [s],acc_x [g],acc_y [g],acc_z [g],gyro_x [deg/s],gyro_y [deg/s],gyro_z [deg/s],pwm1 "
+              "[us]\n0,0,0,1,0,0,0,15390\n"),
+      "log.csv:2: pwm1 [us]: is 15390.000000 us, must be 0 or between 539.000000 and 2539.000000 us");
 }
 
 TEST(FlightLogFiles, RefuseWhatTheyCannotTell) {
@@ -168,6 +184,9 @@ TEST(FlightLogFiles, RefuseWhatTheyCannotTell) {
   expect_contains(
       refused("t [s],acc_x [g],acc_y [g],acc_z [g],p [rad/s],q [rad/s],r [rad/s]\n0,0,0,1,0,0,0\n"),
       "has no column throttle1 [1]");
+  expect_contains(refused("t [s],acc_x [g],acc_y [g],acc_z [g],p [rad/s],q [rad/s],r [rad/s],m1 [1],m3 "
+                          "[1]\n0,0,0,1,0,0,0,1,1\n"),
+                  "has m3 [1] and none of motor 2");
 }
 
 TEST(FlightLogFiles, UnpackGzipAndSayIfTheyCannot) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -11,6 +13,7 @@
 #include "ground/flight_plan.hpp"
 #include "ground/in_process_flight.hpp"
 #include "ground/simulation/simulated_flight.hpp"
+#include "identification/flight.hpp"
 #include "plant/simulation/random.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -48,6 +51,26 @@ inline identification::FlightLog flown(const FlightPlan& plan, const plant::Vehi
   const SimulatedFlight flight = fly(loop, mission, plan.planned_duration_s, {});
   EXPECT_TRUE(flight.completed) << flight.reason;
   return flight_log_of(record);
+}
+
+// As if the motors of each side were plugged in the wrong way round.
+inline void swap_motors(identification::FlightLog& log) {
+  const auto swap = [](plant::PerRotor& of) {
+    std::swap(of[0], of[1]);
+    std::swap(of[2], of[3]);
+  };
+  for (plant::PerRotor& command : log.command) swap(command);
+  for (plant::PerRotor& speeds : log.rotor_speeds) swap(speeds);
+}
+
+inline void expect_refused(const std::vector<identification::FlightLog>& logs, const plant::Vehicle& base,
+                           const std::string& part_of_sentence) {
+  try {
+    identification::identify_flight(logs, base, {});
+    ADD_FAILURE() << "was not refused";
+  } catch (const identification::BadData& fault) {
+    EXPECT_NE(std::string(fault.what()).find(part_of_sentence), std::string::npos) << fault.what();
+  }
 }
 
 }  // namespace swiftlet::ground

@@ -1,6 +1,8 @@
 #include "identification/bench.hpp"
 
 #include <algorithm>
+#include <map>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -69,6 +71,25 @@ TEST(Bench, TellsThatK2AndK3ErrTogether) {
   EXPECT_LT(it->value, -0.9);
 }
 
+TEST(Bench, TellsThatMomentsOfInertiaErrWithTheMass) {
+  BenchData data = bench_of(kaylion(), 0.001);
+  data.mass_kg->front() *= 1.02;  // a spread of a percent
+  const BenchIdentification found = identify_bench(data, kaylion());
+  std::map<std::string, double> correlations;
+  for (const plant::ParameterCorrelation& c : found.uncertainty.correlations)
+    correlations[c.first + " " + c.second] = c.value;
+  const auto relative = [](const std::optional<Experiment>& of) {
+    return of->estimates.front().standard_error / of->estimates.front().value;
+  };
+  const char* const inertias[3] = {"mass inertia.xx", "mass inertia.yy", "mass inertia.zz"};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    EXPECT_GT(correlations[inertias[axis]], 0.2) << axis;
+    EXPECT_NEAR(correlations[inertias[axis]], relative(found.mass) / relative(found.inertia[axis]), 1e-9);
+  }
+  EXPECT_NEAR(correlations["inertia.xx inertia.yy"],
+              correlations["mass inertia.xx"] * correlations["mass inertia.yy"], 1e-9);
+}
+
 TEST(Bench, LetsAResistanceThatWasNotMeasuredGiveWay) {
   plant::Vehicle base = kaylion();
   base.motor.armature_resistance_ohm = 1.5;
@@ -131,6 +152,23 @@ TEST(Bench, RefusesRadiansTakenForRevolutions) {
   } catch (const BenchError& fault) {
     EXPECT_NE(std::string(fault.what()).find("asks of the largest propeller"), std::string::npos)
         << fault.what();
+  }
+}
+
+TEST(Bench, HoldsATorqueAloneAgainstTheThrustOfTheBase) {
+  for (const double unit : {1e-3, 1e3}) {
+    BenchData data;
+    data.thrust_torque = bench_of(kaylion(), 0.005).thrust_torque;
+    data.thrust_torque->thrust_n.clear();
+    EXPECT_NO_THROW(identify_bench(data, kaylion()));
+    data.thrust_torque->torque_n_m = tests::times(data.thrust_torque->torque_n_m, unit);
+    try {
+      identify_bench(data, kaylion());
+      ADD_FAILURE() << "nothing was refused";
+    } catch (const BenchError& fault) {
+      EXPECT_NE(std::string(fault.what()).find("torque: makes torque over thrust"), std::string::npos)
+          << fault.what();
+    }
   }
 }
 

@@ -54,12 +54,17 @@ TEST(EscExperiment, RefusesWhatNoEscDoes) {
             std::string::npos);
   bad = good;
   bad.throttle = tests::times(good.throttle, 100.0);  // percent taken for shares
-  EXPECT_NE(refused([&] { identify_esc(bad, {}); }).find("throttle: is 10 , must be 0 to 1"),
+  EXPECT_NE(refused([&] { identify_esc(bad, {}); }).find("throttle: is 10, must be 0 to 1"),
+            std::string::npos)
+      << refused([&] { identify_esc(bad, {}); });
+  bad = good;
+  bad.throttle = tests::times(good.throttle, 0.01);  // shares taken for percent
+  EXPECT_NE(refused([&] { identify_esc(bad, {}); }).find("throttle: at full throttle the ESC would give 9.6"),
             std::string::npos)
       << refused([&] { identify_esc(bad, {}); });
   bad = good;
   bad.throttle.assign(good.throttle.size(), 0.5);
-  EXPECT_EQ(refused([&] { identify_esc(bad, {}); }), "throttle: is 0.5  in all 45 rows, must vary");
+  EXPECT_EQ(refused([&] { identify_esc(bad, {}); }), "throttle: is 0.5 in all 45 rows, must vary");
 }
 
 }  // namespace

@@ -44,6 +44,16 @@ TEST(Csv, RefusesBadHeaders) {
   EXPECT_EQ(refused("t\n1\n"), "f.csv:1: header: is t, must be t,a");
 }
 
+TEST(Csv, SaysThatCommasSeparateColumns) {
+  const auto refused_with = [](std::string_view text) {
+    return refusal([&] { parse_csv_as_headed(text, "f.csv"); });
+  };
+  for (const std::string_view text : {"t;a\n0;1\n", "t\ta\n0\t1\n"})
+    EXPECT_EQ(refused_with(text),
+              "f.csv:1: header: has semicolons or tabs between its columns, must have commas, and points in "
+              "numbers");
+}
+
 TEST(Csv, RefusesBadRows) {
   EXPECT_EQ(refused("t,a\n0,1\n1\n"), "f.csv:3: has 1 fields, must have 2: t,a");
   EXPECT_EQ(refused("t,a\n0,1,2\n"), "f.csv:2: has 3 fields, must have 2: t,a");
