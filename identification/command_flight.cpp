@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -209,6 +210,21 @@ void draw_thrust(FlightIdentification& out, const CommandFit& all) {
   }
 }
 
+// The lag is told by roll and pitch as well.
+std::map<std::string, std::string> untold_of_calm_axes(FlightIdentification& out,
+                                                       const CommandPredictions& predictions) {
+  const char* const inertias[3] = {"inertia.xx", "inertia.yy", "inertia.zz"};
+  std::map<std::string, std::string> untold;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto reason = too_calm(predictions.excitations[static_cast<std::size_t>(axis)], axis);
+    if (!reason) continue;
+    untold[inertias[axis]] = *reason;
+    if (axis < 2) untold["motor.time_constant"] = *reason;
+    out.unexcited.push_back(std::string("thrust_to_rate.") + axis_name(axis) + ": " + *reason);
+  }
+  return untold;
+}
+
 // One description of the noise is fitted to all logs, sample by sample.
 void demand_one_rate(const std::vector<FlightSeries>& flights) {
   const auto period_s = [](const FlightSeries& flight) {
@@ -308,9 +324,10 @@ void identify_commands(FlightIdentification& out, std::vector<FlightSeries> flig
   allow_for_battery(*all.model, quantities, values);
   out.estimates = estimates_of(quantities, values, all.fit.degrees_of_freedom);
   demand_possible_hover(*out.find("thrust_per_mass.hover_command"));
-  conclude_vehicle(out, values, base, {}, [&](const std::string& parameter) {
-    return advice(parameter, *out.find(parameter), by_flight, base);
-  });
+  CommandPredictions predictions = command_predictions(*all.model, all.x());
+  conclude_vehicle(
+      out, values, base, untold_of_calm_axes(out, predictions),
+      [&](const std::string& parameter) { return advice(parameter, *out.find(parameter), by_flight, base); });
   out.unexcited.emplace_back(
       "mass, rotor.thrust_factor, rotor.torque_factor, linear_drag and the accelerometer's offset: a log "
       "without poses and supply voltage does not tell them; moments of inertia are those that the mass and "
@@ -325,7 +342,6 @@ void identify_commands(FlightIdentification& out, std::vector<FlightSeries> flig
   tell_of_lags(out, lags);
   tell_of_delays(out, all);
   warn_of_fit(out, all.model->physical_parameters(), all.fit);
-  CommandPredictions predictions = command_predictions(*all.model, all.x());
   tell_of_forecasts(out, predictions);
   out.step_s = all.model->sample_s();
   out.errors = std::move(predictions.errors);

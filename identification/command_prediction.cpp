@@ -115,8 +115,11 @@ void predict(const CommandModel& model, const VectorXd& x, std::size_t quantity,
   error.unit = response == Response::kForce ? "m/s^2" : "rad/s";
   Squares one_step;
   Squares idle_one_step;
+  Squares fitted_one_step;
   for (std::size_t flight = 0; flight < forecasts.size(); ++flight) {
     const std::vector<double>& measured = forecasts[flight].measured();
+    for (std::size_t block = between; block < model.blocks()[flight].fitted; ++block)
+      fitted_one_step.add(forecasts[flight].one_step_error(block));
     for (std::size_t block = model.blocks()[flight].fitted; block < measured.size(); ++block) {
       one_step.add(forecasts[flight].one_step_error(block));
       idle_one_step.add(measured[block] - measured[block - 1]);
@@ -139,6 +142,11 @@ void predict(const CommandModel& model, const VectorXd& x, std::size_t quantity,
           starts(forecasts[flight], blocks.fitted, blocks.size(), ahead, between);
       fitted.insert(fitted.end(), before.begin(), before.end());
       kept.insert(kept.end(), after.begin(), after.end());
+    }
+    if (horizon_s == kAheadS && response != Response::kForce) {
+      Squares change;
+      for (const Start& start : fitted) change.add(start.then - start.now);
+      out.excitations.push_back({error.quantity, change.rms(), fitted_one_step.rms()});
     }
     const Eigen::Vector3d weights = best_weights(fitted);
     for (const Start& start : kept) {

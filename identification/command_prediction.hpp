@@ -5,6 +5,7 @@
 
 #include "identification/command_model.hpp"
 #include "identification/flight.hpp"
+#include "identification/flight_conclusion.hpp"
 
 namespace swiftlet::identification {
 
@@ -12,6 +13,7 @@ struct CommandPredictions {
   std::vector<PredictionError> errors;  // p, q, r, f_z; one step is a block
   // Of the forecast half a second ahead, in the same order: what it takes of the change by the commands and
   // of the deviation from the mean at its start.
+  std::vector<RateExcitation> excitations;  // of p, q, r on the fitted rows
   std::vector<double> weight_of_commands;
   std::vector<double> weight_of_start;
   std::vector<HorizonError> horizons;

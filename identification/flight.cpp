@@ -17,9 +17,6 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-// Change of a rate in half a second over the error of one step, root mean squares. The moment of inertia comes
-// out too small by about one over its square.
-constexpr double kOverNoise = 8.0;
 constexpr double kWellStampedS = 0.002;  // delay of poses that is not worth a sentence
 
 struct Fitted {
@@ -150,20 +147,14 @@ std::string advice(const std::string& parameter, const Excitation& excited) {
   return "the thrust varied by " + shown(excited.thrust) + " m/s^2 only; climb and sink quickly";
 }
 
-// Moments of inertia that the gyro's noise would make smaller than they are: the controller answers the noise,
-// and what it answers would be taken for what its answer does.
-std::map<std::string, std::string> too_calm(const FlightModel& model, const VectorXd& x) {
+std::map<std::string, std::string> untold_of_calm_axes(const FlightModel& model, const VectorXd& x) {
   const char* const inertias[3] = {"inertia.xx", "inertia.yy", "inertia.zz"};
-  const char* const moves[3] = {"fly quick moves sideways", "fly quick moves forward and back",
-                                "turn about yaw, quickly"};
   const std::vector<PredictionError> errors = prediction_errors(model, x, Part::kFitted);
   std::map<std::string, std::string> out;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const PredictionError& error = errors[axis];
-    if (error.idle_half_second > kOverNoise * error.one_step) continue;
-    out[inertias[axis]] = error.quantity + " changes by " + shown(error.idle_half_second) +
-                          " rad/s in half a second, must by " + shown(kOverNoise) +
-                          " times the gyro's noise, " + shown(error.one_step) + " rad/s; " + moves[axis];
+  for (int axis = 0; axis < 3; ++axis) {
+    const PredictionError& error = errors[static_cast<std::size_t>(axis)];
+    if (const auto reason = too_calm({error.quantity, error.idle_half_second, error.one_step}, axis))
+      out[inertias[axis]] = *reason;
   }
   return out;
 }
@@ -246,7 +237,7 @@ FlightIdentification identify_flight(const std::vector<FlightLog>& logs, const p
   const DerivedValues values = evaluate(quantities, model.layout().parameters, fit);
   out.estimates = estimates_of(quantities, values, fit.degrees_of_freedom);
   const Excitation excited = excitation(model, fit.parameters);
-  conclude_vehicle(out, values, base, too_calm(model, fit.parameters),
+  conclude_vehicle(out, values, base, untold_of_calm_axes(model, fit.parameters),
                    [&](const std::string& parameter) { return advice(parameter, excited); });
   tell_what_no_flight_tells(out, model, fit, options.known);
   tell_of_excitation(out, excited);

@@ -20,6 +20,7 @@ constexpr double kToldDrag = 0.1;  // 1/s, half an interval of drag over mass, l
 constexpr double kTelling = 0.5;   // half an interval over its value, to judge the value by
 constexpr double kSmallStep = 1e-4;        // of differences, over a parameter's scale
 constexpr double kChanceDeviations = 4.0;  // of moments beyond what a body can have
+constexpr double kOverNoise = 20.0;        // of what a rate changes by in half a second
 constexpr double kTurned = 3.0;            // standard errors below 0 at which a gain is negative for certain
 
 const char* const kAxisNames[3] = {"roll", "pitch", "yaw"};
@@ -126,6 +127,15 @@ FlightIdentification begun_with(const std::vector<FlightSeries>& flights) {
     out.kept_s += time[flight.kept.last - 1] - time[flight.kept.first];
   }
   return out;
+}
+
+std::optional<std::string> too_calm(const RateExcitation& excitation, int axis) {
+  if (excitation.in_half_second > kOverNoise * excitation.noise) return std::nullopt;
+  const char* const moves[3] = {"fly quick moves sideways", "fly quick moves forward and back",
+                                "turn about yaw, quickly"};
+  return excitation.quantity + " changes by " + shown(excitation.in_half_second) +
+         " rad/s in half a second, must by " + shown(kOverNoise) + " times the noise, " +
+         shown(excitation.noise) + " rad/s; " + moves[axis];
 }
 
 bool within_bounds(const std::vector<FlightParameter>& parameters, const EstimatedParameters& fit) {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,18 @@ std::vector<Estimate> estimates_of(const std::vector<Derived>& quantities, const
 
 // Windows, source and lengths of time.
 FlightIdentification begun_with(const std::vector<FlightSeries>& flights);
+
+// How much a rate changes, and by how much its next sample cannot be told: root mean squares, rad/s.
+struct RateExcitation {
+  std::string quantity;  // "p"
+  double in_half_second = 0.0;
+  double noise = 0.0;
+};
+
+// Why a rate that changes so little tells nothing of its axis, or nothing if it changes enough. The controller
+// answers the gyro's noise, and what it answers would be taken for what its answer does: moments of inertia
+// come out too small, by about one over the square of the ratio.
+std::optional<std::string> too_calm(const RateExcitation& excitation, int axis);
 
 // Whether the search ended inside its bounds.
 bool within_bounds(const std::vector<FlightParameter>& parameters, const EstimatedParameters& fit);

@@ -26,12 +26,7 @@ constexpr double kDelayS = 0.006;  // that is added to the commands of simulated
 FlightPlan delayed_plan() {
   FlightPlan plan = plan_of("identification");
   plan.simulation.rotor_speed_rate_hz = 0.0;
-  plant::Fault late;
-  late.kind = plant::FaultKind::kCommandsDelay;
-  late.at_s = 0.0;
-  late.for_s = 1000.0;
-  late.delay_s = kDelayS;
-  plan.simulation.faults = {late};
+  delay_commands(plan, kDelayS);
   return plan;
 }
 

@@ -188,5 +188,17 @@ TEST(CalmFlight, DoesNotTellMomentsOfInertia) {
   EXPECT_EQ(found.sources.count("inertia.zz"), 0U);
 }
 
+TEST(CalmFlight, WithoutPosesDoesNotTellThemEither) {
+  const FlightPlan plan = plan_of("square");
+  FlightLog log = flown(plan, plan.vehicle, 2);
+  log.poses.clear();
+  const FlightIdentification found = identification::identify_flight({log}, plan.vehicle, {});
+  EXPECT_EQ(found.vehicle.inertia, plan.vehicle.inertia);
+  EXPECT_EQ(found.vehicle.motor.time_constant_s, plan.vehicle.motor.time_constant_s);
+  std::string all;
+  for (const std::string& sentence : found.unexcited) all += sentence + "\n";
+  EXPECT_NE(all.find("thrust_to_rate.yaw: r changes by"), std::string::npos) << all;
+}
+
 }  // namespace
 }  // namespace swiftlet::ground

@@ -130,12 +130,7 @@ TEST(FlightIdentification, RefusesLogsThatDoNotHoldTheSame) {
 TEST(FlightIdentification, TellsADelayOfTheCommands) {
   FlightPlan plan = plan_of("identification");
   plan.simulation.rotor_speed_rate_hz = 0.0;
-  plant::Fault late;
-  late.kind = plant::FaultKind::kCommandsDelay;
-  late.at_s = 0.0;
-  late.for_s = 1000.0;
-  late.delay_s = 0.006;
-  plan.simulation.faults = {late};
+  delay_commands(plan, 0.006);
   const FlightIdentification found =
       identification::identify_flight({flown(plan, plan.vehicle, 7)}, plan.vehicle, {});
   EXPECT_NEAR(found.find("delay.rates")->value, 0.006, 0.0015);

@@ -53,6 +53,16 @@ inline identification::FlightLog flown(const FlightPlan& plan, const plant::Vehi
   return flight_log_of(record);
 }
 
+// Commands come to the motors later.
+inline void delay_commands(FlightPlan& plan, double delay_s) {
+  plant::Fault late;
+  late.kind = plant::FaultKind::kCommandsDelay;
+  late.at_s = 0.0;
+  late.for_s = 1000.0;
+  late.delay_s = delay_s;
+  plan.simulation.faults = {late};
+}
+
 // As if the motors of each side were plugged in the wrong way round.
 inline void swap_motors(identification::FlightLog& log) {
   const auto swap = [](plant::PerRotor& of) {
