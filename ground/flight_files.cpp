@@ -49,6 +49,14 @@ set terminal pngcairo size 1600,1150 font 'DejaVu Sans,12' noenhanced
 set output 'flight.png'
 set datafile separator ','
 csv = 'flight.csv'
+stats csv using 'px' name 'north' nooutput
+stats csv using 'py' name 'east' nooutput
+stats csv using 'pz' name 'down' nooutput
+larger(a, b) = a > b ? a : b
+north_middle = 0.5 * (north_min + north_max)
+east_middle = 0.5 * (east_min + east_max)
+plan_reach = larger(0.5 * larger(north_max - north_min, east_max - east_min) + 0.25, 0.5)
+view_reach = larger(plan_reach - 0.05, larger(-down_min, 0))  # a tall flight in a box as wide as it is tall
 
 set multiplot title headline font 'DejaVu Sans,15'
 set style line 1 lc rgb '#5b9bd5' lw 3.2            # flown
@@ -94,9 +102,9 @@ plot csv using (column('t')):(in_window(column('t')) * mm(column('px'), column('
      csv using (column('t')):(in_window(column('t')) * sqrt(mm(column('px'), column('ref_px'))**2 + mm(column('py'), column('ref_py'))**2 + mm(column('pz'), column('ref_pz'))**2)) with lines ls 6 title '3-D'
 
 unset key
-set offsets 0.25,0.25,0.25,0.25
-set autoscale x
-set autoscale y
+set offsets 0,0,0,0
+set xrange [east_middle - plan_reach:east_middle + plan_reach]
+set yrange [north_middle - plan_reach:north_middle + plan_reach]
 set xlabel 'east y (m)' offset 0,0.4
 set ylabel 'north x (m)' offset 1
 set lmargin at screen 0.590; set rmargin at screen 0.975
@@ -106,7 +114,8 @@ set label 1 'plan view' at graph 0.03,0.95 front
 plot csv using 'py':'px' with lines ls 1, csv using 'ref_py':'ref_px' with lines ls 2
 unset label 1
 
-set offsets 0.2,0.2,0.2,0.2
+set xrange [east_middle - view_reach:east_middle + view_reach]
+set yrange [north_middle - view_reach:north_middle + view_reach]
 set size noratio
 set lmargin at screen 0.600; set rmargin at screen 0.960
 set tmargin at screen 0.430; set bmargin at screen 0.060
@@ -129,7 +138,9 @@ void write_script(const std::filesystem::path& file, const FlightReport& report,
   std::snprintf(figures, sizeof figures, ": 3-D error RMS %.1f mm, peak %.1f mm over %.0f s",
                 report.errors.rms_3d_m * 1e3, report.errors.peak_3d_m * 1e3, land_s);
   script << "headline = "
-         << gnuplot_quoted(report.mission + " - " + report.vehicle + ", " + report.control + figures) << "\n"
+         << gnuplot_quoted(report.mission + " - " + report.vehicle + ", " + report.control + figures +
+                           (report.completed ? "" : " - NOT completed"))
+         << "\n"
          << "t_from = 0\nt_land = " << number(land_s)
          << "\nt_to = " << number(std::max(report.duration_s, 1.0) + 0.5) << "\n"
          << kPlot;
