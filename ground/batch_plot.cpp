@@ -133,8 +133,8 @@ void write_script(const std::filesystem::path& file, const BatchReport& report) 
   std::ofstream script(file);
   script << "headline = "
          << gnuplot_quoted(report.mission + " - " + report.vehicle + ", " + report.control + ", varied by " +
-                           report.vary + format(": %zu runs, %zu failed", batch.runs.size(), batch.failed()) +
-                           (batch.failed() > 0 ? " (red)" : ""))
+                           report.vary + ": " + counted(batch.runs.size(), "run") +
+                           format(", %zu failed", batch.failed()) + (batch.failed() > 0 ? " (red)" : ""))
          << "\nruns = " << report.rms_3d_m.count << format("\ntolerance = %.6g", report.tolerance_m * 1e3)
          << format("\nerror_from = %.6g", 0.8e3 * report.rms_3d_m.min)
          << format("\nerror_to = %.6g", 1.25e3 * std::max(report.tolerance_m, report.peak_3d_m.max))

@@ -81,11 +81,11 @@ std::string row_of(const char* name, const char* unit, const Spread& spread, dou
 std::string headline_of(const BatchReport& report) {
   const Batch& batch = report.batch;
   const std::uint64_t first = report.first_seed;
-  std::string text =
-      report.mission + ", " + report.vehicle + " flown with " + report.control + ", varied by " +
-      report.vary +
-      format(": %zu runs, seeds %llu to %llu\n", batch.asked, static_cast<unsigned long long>(first),
-             static_cast<unsigned long long>(first + batch.asked - 1));
+  std::string text = report.mission + ", " + report.vehicle + " flown with " + report.control +
+                     ", varied by " + report.vary +
+                     format(": %s, seeds %llu to %llu\n", counted(batch.asked, "run").c_str(),
+                            static_cast<unsigned long long>(first),
+                            static_cast<unsigned long long>(first + batch.asked - 1));
   text += format("  %zu completed, %zu failed", batch.runs.size() - batch.failed(), batch.failed());
   if (report.interrupted())
     text += format(", %zu NOT flown: it was cancelled", batch.asked - batch.runs.size());
@@ -200,7 +200,7 @@ std::string to_text(const BatchReport& report) {
   constexpr double kMm = 1e3;
   std::string text = headline_of(report);
   if (report.batch.rejected > 0)
-    text += format("  %zu draws broke a rule and were drawn anew\n", report.batch.rejected);
+    text += "  drawn anew: " + counted(report.batch.rejected, "draw") + " that broke a rule\n";
   text += format("\n  %-22s %3s %6s %8s %8s %8s %8s %8s %9s\n", "", "", "runs", "min", "p5", "median", "p95",
                  "max", "designed");
   text += row_of("tracking error, RMS", "mm", report.rms_3d_m, kMm) + "\n";

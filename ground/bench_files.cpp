@@ -18,8 +18,6 @@ using identification::BenchData;
 using runtime::Measurements;
 using runtime::Quantity;
 
-constexpr const char* kSettingsFile = "bench.yaml";
-
 std::vector<std::string> experiment_names() {
   std::vector<std::string> names = {identification::kMassName,         identification::kEscName,
                                     identification::kThrustTorqueName, identification::kSteadyMotorName,
@@ -179,12 +177,13 @@ BenchSettings load_bench_settings(const fs::path& folder) {
   if (!fs::is_directory(folder))
     throw InputError(folder.string() + ": is no folder, must be one of bench data");
   BenchSettings out;
-  const fs::path file = folder / kSettingsFile;
+  const fs::path file = folder / kBenchSettingsFile;
   if (!fs::exists(file)) return out;
   const runtime::ConfigNode root = runtime::load_config(file.string());
   if (const auto base = root.find("base_vehicle")) {
     const fs::path inside = folder / base->text();
     out.base_vehicle = fs::is_regular_file(inside) ? inside.string() : base->text();
+    out.base_vehicle_line = base->line();
   }
   if (const auto name = root.find("name")) out.name = name->text();
   if (const auto propeller = root.find("propeller")) {
@@ -250,9 +249,10 @@ void write_bench(const fs::path& folder, const BenchData& data, const std::strin
                                                             {Quantity::kSeparation, &strings.separation_m},
                                                             {Quantity::kPeriod, &strings.period_s}});
   }
-  std::ofstream settings(folder / kSettingsFile);
+  std::ofstream settings(folder / kBenchSettingsFile);
   settings << settings_yaml;
-  if (!settings.flush()) throw std::runtime_error((folder / kSettingsFile).string() + " cannot be written");
+  if (!settings.flush())
+    throw std::runtime_error((folder / kBenchSettingsFile).string() + " cannot be written");
 }
 
 }  // namespace swiftlet::ground

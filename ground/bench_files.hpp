@@ -29,9 +29,12 @@
 
 namespace swiftlet::ground {
 
+inline constexpr const char* kBenchSettingsFile = "bench.yaml";
+
 // What bench.yaml says; empty texts where it says nothing.
 struct BenchSettings {
   std::string base_vehicle;  // a path, if it is a file of the folder
+  int base_vehicle_line = 0;
   std::string name;
   std::optional<identification::Propeller> propeller;
   identification::Instruments instruments;

@@ -14,4 +14,8 @@ std::string format(const char* pattern, ...) {
   return buffer;
 }
 
+std::string counted(std::size_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
 }  // namespace swiftlet::ground

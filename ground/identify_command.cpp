@@ -53,6 +53,18 @@ identification::BenchIdentification identify(const Bench& bench, const std::stri
   }
 }
 
+// A name that bench.yaml gives is refused with its line.
+fs::path base_file_of(const std::string& base, const IdentifyOptions& options,
+                      const BenchSettings& settings) {
+  try {
+    return configuration_file("vehicles", base);
+  } catch (const runtime::ConfigError& fault) {
+    if (!options.base.empty() || settings.base_vehicle.empty()) throw;
+    throw runtime::ConfigError((fs::path(options.bench) / kBenchSettingsFile).string(),
+                               settings.base_vehicle_line, "base_vehicle", fault.what());
+  }
+}
+
 void refuse_unflyable(const plant::Vehicle& vehicle, const std::string& folder, const std::string& base) {
   for (const plant::Violation& broken : plant::validate(vehicle)) {
     throw InputError(folder + ": the identified vehicle cannot fly: " + broken.key + ": " + broken.message +
@@ -70,7 +82,7 @@ int run_identify(const IdentifyOptions& options) {
   report.base_vehicle = !options.base.empty()            ? options.base
                         : !settings.base_vehicle.empty() ? settings.base_vehicle
                                                          : "kaylion";
-  const fs::path base_file = configuration_file("vehicles", report.base_vehicle);
+  const fs::path base_file = base_file_of(report.base_vehicle, options, settings);
   report.base = runtime::load_vehicle(base_file.string());
   report.bench = load_bench(folder, settings, report.base.esc);
   report.found = identify(report.bench, options.bench, report.base);
@@ -95,8 +107,8 @@ int run_identify(const IdentifyOptions& options) {
   } else {
     std::printf("%s", identification_table(report).c_str());
   }
-  std::fprintf(stderr, "swiftlet: %zu parameters identified; wrote %s%s\n",
-               report.found.uncertainty.parameters.size(), options.out.c_str(),
+  std::fprintf(stderr, "swiftlet: %s identified; wrote %s%s\n",
+               counted(report.found.uncertainty.parameters.size(), "parameter").c_str(), options.out.c_str(),
                options.report.empty() ? "" : (" and " + options.report).c_str());
   return kDone;
 }

@@ -125,9 +125,9 @@ int run_identify_flight(IdentifyFlightOptions options) {
   for (const std::string& file : {options.out, options.report}) {
     if (!file.empty()) wrote += (wrote.empty() ? "; wrote " : " and ") + file;
   }
-  std::fprintf(stderr, "swiftlet: %zu parameters of the vehicle told by %zu %s%s\n",
-               report.found.uncertainty.parameters.size(), logs.size(),
-               logs.size() == 1 ? "flight" : "flights", wrote.c_str());
+  std::fprintf(stderr, "swiftlet: %s of the vehicle told by %s%s\n",
+               counted(report.found.uncertainty.parameters.size(), "parameter").c_str(),
+               counted(logs.size(), "flight").c_str(), wrote.c_str());
   return kDone;
 }
 

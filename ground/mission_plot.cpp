@@ -202,7 +202,8 @@ void write_script(const fs::path& path, const MissionFile& file, const Rehearsal
                   std::max(a, b) + margin);
   };
   const std::string title = file.name + (file.description.empty() ? "" : " - " + file.description) +
-                            format(": %.1f s, %zu items", rehearsal.duration_s, file.mission.items.size());
+                            format(": %.1f s, ", rehearsal.duration_s) +
+                            counted(file.mission.items.size(), "item");
   std::ofstream script(path);
   script << "headline = " << gnuplot_quoted(title) << "\n"
          << format("t_end = %.4f\n", rehearsal.duration_s) << range("north", 0, 1.0) << range("east", 1, 1.0)

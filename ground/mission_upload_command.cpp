@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ground/commands.hpp"
+#include "ground/format.hpp"
 #include "ground/installation.hpp"
 #include "ground/mission_file.hpp"
 #include "ground/request_command.hpp"
@@ -30,8 +31,9 @@ int upload(const Options& options) {
     if (!answer.accepted()) json["reason"] = answer.reason;
     std::printf("%s\n", json.dump().c_str());
   } else if (answer.accepted()) {
-    std::printf("%s: %zu items are with %s, as mission %llu\n", file.name.c_str(), file.mission.items.size(),
-                options.network.vehicle.c_str(), static_cast<unsigned long long>(vehicle.uploaded_id()));
+    std::printf("%s: taken by %s as mission %llu, %s\n", file.name.c_str(), options.network.vehicle.c_str(),
+                static_cast<unsigned long long>(vehicle.uploaded_id()),
+                counted(file.mission.items.size(), "item").c_str());
   }
   if (!answer.accepted())
     std::fprintf(stderr, "swiftlet: mission %s: %s\n", file.name.c_str(), answer.reason.c_str());

@@ -107,6 +107,12 @@ TEST_F(Identify, RefusesUnitsThatPhysicsExcludes) {
   expect_refusal("esc.csv");
 }
 
+TEST_F(Identify, SaysWhichLineNamesABaseThatIsNotThere) {
+  spoil("bench.yaml", "name: mine\nbase_vehicle: krazyflie\n");
+  expect_refusal("bench.yaml:2: base_vehicle: vehicles/krazyflie.yaml: is not found");
+  EXPECT_EQ(run({"identify", bench().string(), "--base", "kaylion", "--out", vehicle()}).exit_code, 0);
+}
+
 TEST_F(Identify, RefusesWhatIsNoBench) {
   const Ending none = identify(folder_.path() / "nowhere");
   EXPECT_EQ(none.exit_code, 2);
