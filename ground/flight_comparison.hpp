@@ -10,7 +10,7 @@
 
 namespace swiftlet::ground {
 
-struct RecordedFlight {
+struct RecordedFlight {  // NOLINT(bugprone-exception-escape): ordered_json is moved without one
   std::filesystem::path folder;
   nlohmann::ordered_json report;  // report.json
   std::vector<std::pair<std::string, std::string>> settings;

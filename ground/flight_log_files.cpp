@@ -227,6 +227,7 @@ void read_rotor_speeds(const Measurements& table, FlightLog& log) {
 void read_poses(const Measurements& table, FlightLog& log) {
   if (!table.has(Quantity::kPoseTime) && !table.has(Quantity::kPositionX)) return;
   std::vector<Quantity> columns;
+  columns.reserve(7);
   for (int i = 0; i < 3; ++i) columns.push_back(Quantity::kPositionX + i);
   for (int i = 0; i < 4; ++i) columns.push_back(Quantity::kOrientationW + i);
   const std::optional<bool> ned = says(table, columns, "_ned", "_enu");

@@ -63,6 +63,7 @@ std::vector<FlightPlan> plan_flights(const FlyOptions& options, const std::vecto
 // All at one time, each in a thread of its own.
 void fly_together(std::deque<ProcessFlight>& flights, const Interrupts& interrupts, ProgressLine& progress) {
   std::vector<std::string> names;
+  names.reserve(flights.size());
   for (const ProcessFlight& flight : flights) names.push_back(flight.vehicle_name());
   FleetProgress shares(progress, names);
   Together together(flights.size());
@@ -116,6 +117,7 @@ int fly(const FlyOptions& options) {
 
   if (flights.size() == 1) return tell(flights.front().report(), options.json, progress);
   std::vector<FlightReport> reports;
+  reports.reserve(flights.size());
   for (const ProcessFlight& flight : flights) reports.push_back(flight.report());
   return tell(reports, options.json, progress);
 }

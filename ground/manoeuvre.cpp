@@ -84,7 +84,7 @@ Judge until_landed() {
   };
 }
 
-Judge until_at_rest(std::optional<Eigen::Vector3d> place_ned) {
+Judge until_at_rest(const std::optional<Eigen::Vector3d>& place_ned) {
   return [place_ned](const View& view, const Outset& outset) -> std::optional<Ending> {
     if (mode_of(view) != Mode::kHolding) {
       if (may_be_stale(view, outset)) return std::nullopt;

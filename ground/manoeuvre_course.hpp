@@ -41,7 +41,7 @@ Judge until_stopped();
 // Done on the ground, by way of landing or of the descent without position.
 Judge until_landed();
 // Done when the vehicle rests at the place, or, without one, wherever its reference rests.
-Judge until_at_rest(std::optional<Eigen::Vector3d> place_ned);
+Judge until_at_rest(const std::optional<Eigen::Vector3d>& place_ned);
 Judge until_trajectory_flown();
 Judge until_mission_flown(std::uint64_t mission_id);
 

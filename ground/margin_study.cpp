@@ -33,6 +33,7 @@ double kept_by(std::vector<double> values, double share) {
 LoopMargins kept_by(const std::vector<LoopMargins>& all, double share) {
   const auto least = [&](double LoopMargins::*margin, double sign) {
     std::vector<double> values;
+    values.reserve(all.size());
     for (const LoopMargins& one : all) values.push_back(sign * one.*margin);
     return sign * kept_by(std::move(values), share);
   };

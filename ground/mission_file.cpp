@@ -26,7 +26,7 @@ constexpr int kMaxName = 64;
 std::string name_of(const ConfigNode& root) {
   const auto node = root.find("name");
   if (!node) return std::filesystem::path(root.file()).stem().string();
-  const std::string name = node->text();
+  std::string name = node->text();
   if (name.size() > kMaxName || name.find('/') != std::string::npos)
     node->fail("must be at most " + std::to_string(kMaxName) + " characters and hold no /");
   return name;

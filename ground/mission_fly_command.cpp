@@ -38,7 +38,7 @@ Ending follow(const Vehicle& vehicle, const Manoeuvre& flight) {
   const Interrupts interrupts;
   ProgressLine progress;
   while (true) {
-    const Ending ending = flight.wait(kStep);
+    Ending ending = flight.wait(kStep);
     if (ending.kind != Ending::Kind::kTimedOut) return ending;
     show(vehicle.state(), progress);
     if (interrupts.count() > 0)

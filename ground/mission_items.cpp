@@ -279,7 +279,7 @@ class Reader {
   }
 
   Eigen::Vector3d position(const ConfigNode& node) const {
-    const Eigen::Vector3d position_ned = ned_from(frame_, node.vector3());
+    Eigen::Vector3d position_ned = ned_from(frame_, node.vector3());
     demand_inside_fence(node, position_ned);
     return position_ned;
   }

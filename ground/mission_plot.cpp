@@ -223,7 +223,7 @@ std::string draw_mission(const fs::path& png, const MissionFile& file, const Reh
   const Workshop workshop;
   write_csv(workshop.folder() / "mission.csv", rehearsal);
   write_script(workshop.folder() / "mission.gp", file, rehearsal, limits);
-  const std::string fault = run_gnuplot(workshop.folder(), "mission");
+  std::string fault = run_gnuplot(workshop.folder(), "mission");
   if (!fault.empty()) return fault;
   std::error_code error;
   fs::copy_file(workshop.folder() / "mission.png", png, fs::copy_options::overwrite_existing, error);

@@ -81,8 +81,10 @@ int run_request(const AskOptions& options, const std::string& what,
     return asked;
   };
   std::vector<std::future<Asked>> asking;
+  asking.reserve(names.size());
   for (const std::string& name : names) asking.push_back(std::async(std::launch::async, ask_one, name));
   std::vector<Asked> all;
+  all.reserve(names.size());
   for (std::future<Asked>& one : asking) all.push_back(one.get());
 
   const bool alone = all.size() == 1;

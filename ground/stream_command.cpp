@@ -101,7 +101,8 @@ SetpointSource open(const Options& options) {
     if (!options.rate_hz) demand_rate(rows, name);
     source = each_of(std::move(rows));
   }
-  return options.rate_hz ? resampled(std::move(source), *options.rate_hz) : source;
+  if (!options.rate_hz) return source;
+  return resampled(std::move(source), *options.rate_hz);
 }
 
 // Streams of positions begin where the vehicle is.

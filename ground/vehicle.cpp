@@ -68,9 +68,10 @@ Manoeuvre begin(const std::shared_ptr<Client>& client, const Asking& ask, millis
     return view.control.seen();
   });
   if (!seen) {
-    const Answer nobody{Answer::Kind::kNoControl, client->no_control()};
-    return begin(
-        client, [&nobody](milliseconds) { return nobody; }, timeout, mode, judge);
+    const auto nobody = [&client](milliseconds) {
+      return Answer{Answer::Kind::kNoControl, client->no_control()};
+    };
+    return begin(client, nobody, timeout, mode, judge);
   }
   const auto passed = std::chrono::duration_cast<milliseconds>(Clock::now() - start);
   return begin(client, ask, std::max(timeout - passed, kLeastTimeout), mode, judge);
@@ -176,7 +177,7 @@ std::uint64_t Vehicle::uploaded_id() const { return client_->mission_id(); }
 
 Manoeuvre Vehicle::follow(const control::Mission& mission, milliseconds timeout) {
   const auto ask = [&](milliseconds within) {
-    const Answer uploaded = client_->upload(mission, within);
+    Answer uploaded = client_->upload(mission, within);
     if (!uploaded.accepted()) return uploaded;
     return client_->mission_command(msg::Command_Constants::MISSION_START, client_->mission_id(), within);
   };

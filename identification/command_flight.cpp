@@ -302,7 +302,7 @@ void tell_of_forecasts(FlightIdentification& out, const CommandPredictions& pred
 
 }  // namespace
 
-void identify_commands(FlightIdentification& out, std::vector<FlightSeries> flights,
+void identify_commands(FlightIdentification& out, const std::vector<FlightSeries>& flights,
                        const plant::Vehicle& base, const FlightOptions& options) {
   const auto progress = [&] {
     if (options.progress) options.progress("fitting");

@@ -13,7 +13,7 @@ namespace swiftlet::identification {
 // alone, then to all; where the three differ by more than their intervals allow, the interval of the lag is
 // widened to what they leave open (Birge 1932), and with it those of all that hangs together with it. Moments
 // of inertia are those that the base's mass and levers make of the gains. Throws BadData.
-void identify_commands(FlightIdentification& out, std::vector<FlightSeries> flights,
+void identify_commands(FlightIdentification& out, const std::vector<FlightSeries>& flights,
                        const plant::Vehicle& base, const FlightOptions& options);
 
 }  // namespace swiftlet::identification

@@ -224,7 +224,7 @@ FlightIdentification identify_flight(const std::vector<FlightLog>& logs, const p
   std::vector<FlightSeries> flights = prepare_flights(logs, base, options.bounds);
   FlightIdentification out = begun_with(flights);
   if (out.source == SpeedSource::kCommanded) {
-    identify_commands(out, std::move(flights), base, options);
+    identify_commands(out, flights, base, options);
     warn_of_windows(out, logs);
     return out;
   }

@@ -1,6 +1,7 @@
 // From logs of flights to the parameters of the vehicle that flew.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <map>
@@ -67,10 +68,10 @@ struct CommandedThrust {
 // For figures: what was measured of the kept rows of the first log, and what was predicted of it by the
 // commands alone.
 struct PredictionTrace {
-  double restart_s = 0.5;           // after which a prediction begins anew from what was measured
-  std::vector<double> time_s;       // from the beginning of the kept rows
-  std::vector<double> measured[4];  // p, q, r in rad/s, f_z in m/s^2
-  std::vector<double> predicted[4];
+  double restart_s = 0.5;                       // after which a prediction begins anew from what was measured
+  std::vector<double> time_s;                   // from the beginning of the kept rows
+  std::array<std::vector<double>, 4> measured;  // p, q, r in rad/s, f_z in m/s^2
+  std::array<std::vector<double>, 4> predicted;
 };
 
 struct FlightIdentification {

@@ -94,6 +94,7 @@ std::vector<PredictionError> prediction_errors(const FlightModel& model, const V
   }
   std::vector<PredictionError> out;
   const char* const rates[] = {"p", "q", "r"};
+  out.reserve(4);
   for (int axis = 0; axis < 3; ++axis) {
     out.push_back({rates[axis], "rad/s", one_step.rms(axis), idle_one_step.rms(axis), ahead.rms(axis),
                    idle_ahead.rms(axis)});

@@ -364,8 +364,8 @@ void Estimator::anchor_at(const Moment& moment, std::uint64_t first_newer) {
 
 Estimator::Moment Estimator::moment_at(std::int64_t stamp_ns, std::uint64_t first_newer) const {
   const Moment before = first_newer > first_after_anchor_ ? past(first_newer - 1) : anchor_;
-  if (before.stamp_ns == stamp_ns) return before;
   Moment moment = before;
+  if (before.stamp_ns == stamp_ns) return moment;
   moment.stamp_ns = stamp_ns;
   const Moment after = past(first_newer);
   const double part = seconds(stamp_ns - before.stamp_ns) / seconds(after.stamp_ns - before.stamp_ns);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <limits>
 
@@ -133,9 +134,10 @@ class Survey {
   }
 
   void look_at_rotors(const PolynomialSegment& segment) {
-    const double looks = std::max(1.0, std::ceil(segment.duration_s / rotor_step_s_));
-    for (double i = 0.0; i <= looks; i += 1.0) {
-      const double t_s = segment.duration_s * i / looks;
+    const auto looks =
+        static_cast<std::int64_t>(std::max(1.0, std::ceil(segment.duration_s / rotor_step_s_)));
+    for (std::int64_t i = 0; i <= looks; ++i) {
+      const double t_s = segment.duration_s * static_cast<double>(i) / static_cast<double>(looks);
       const Reference felt = with_drag(evaluate(segment, t_s), drag_per_mass_);
       const ReferenceMotion motion = reference_motion(vehicle_.mass_kg, felt, felt.yaw_rad);
       // Euler's equation: J omega' + omega x J omega.

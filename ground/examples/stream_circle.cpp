@@ -23,33 +23,33 @@ constexpr double kTurn_s = 8.0;  // for once around
 constexpr std::chrono::milliseconds kPeriod{20};
 constexpr double kSoftStart_s = 2.0;
 
-// Angle along the circle and its rate: from rest to its full rate within kSoftStart_s, by a cosine.
-void angle_at(double t, double& angle, double& rate, double& acceleration) {
+// Along the circle, in rad and its derivatives by time.
+struct Turn {
+  double angle;
+  double rate;
+  double acceleration;
+};
+
+// From rest to the full rate within kSoftStart_s, by a cosine.
+Turn turn_at(double t) {
   const double full = 2.0 * M_PI / kTurn_s;
-  if (t >= kSoftStart_s) {
-    rate = full;
-    angle = full * (t - 0.5 * kSoftStart_s);
-    acceleration = 0.0;
-    return;
-  }
+  if (t >= kSoftStart_s) return {full * (t - 0.5 * kSoftStart_s), full, 0.0};
   const double phase = M_PI * t / kSoftStart_s;
-  rate = 0.5 * full * (1.0 - std::cos(phase));
-  angle = 0.5 * full * (t - std::sin(phase) * kSoftStart_s / M_PI);
-  acceleration = 0.5 * full * M_PI / kSoftStart_s * std::sin(phase);
+  return {0.5 * full * (t - std::sin(phase) * kSoftStart_s / M_PI), 0.5 * full * (1.0 - std::cos(phase)),
+          0.5 * full * M_PI / kSoftStart_s * std::sin(phase)};
 }
 
 // A position with its velocity and acceleration, which are fed forward. It begins where the vehicle holds,
 // `start`, going east.
 Setpoint circle(double t, const Eigen::Vector3d& start) {
-  double angle, rate, acceleration;
-  angle_at(t, angle, rate, acceleration);
-  const Eigen::Vector3d outward(std::cos(angle), std::sin(angle), 0.0);
-  const Eigen::Vector3d along(-std::sin(angle), std::cos(angle), 0.0);
+  const Turn turn = turn_at(t);
+  const Eigen::Vector3d outward(std::cos(turn.angle), std::sin(turn.angle), 0.0);
+  const Eigen::Vector3d along(-std::sin(turn.angle), std::cos(turn.angle), 0.0);
   Setpoint setpoint;
   setpoint.kind = SetpointKind::kPosition;
   setpoint.position_ned = start + kRadius * (outward - Eigen::Vector3d::UnitX());
-  setpoint.velocity_ned = kRadius * rate * along;
-  setpoint.acceleration_ned = kRadius * (acceleration * along - rate * rate * outward);
+  setpoint.velocity_ned = kRadius * turn.rate * along;
+  setpoint.acceleration_ned = kRadius * (turn.acceleration * along - turn.rate * turn.rate * outward);
   setpoint.yaw_free = true;
   return setpoint;
 }
@@ -59,10 +59,12 @@ bool fly_circle(Vehicle& vehicle) {
   const Eigen::Vector3d start = before.reference_ned;
   const double begin_s = vehicle.clock_s();  // the vehicle's time: a simulation may be slower than real time
   double farthest_m = 0.0;
-  for (double t = 0.0; t < kTurn_s + 0.5 * kSoftStart_s; t = vehicle.clock_s() - begin_s) {
+  double t = 0.0;
+  while (t < kTurn_s + 0.5 * kSoftStart_s) {
     vehicle.send(circle(t, start));
     farthest_m = std::max(farthest_m, (vehicle.state().position_ned - start).norm());
     std::this_thread::sleep_for(kPeriod);
+    t = vehicle.clock_s() - begin_s;
   }
   std::printf("once around, up to %.2f m from its start\n", farthest_m);
   // No setpoint comes any more: it holds.

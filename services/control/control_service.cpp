@@ -33,7 +33,6 @@ ControlService::ControlService(const plant::Vehicle& vehicle, const control::Con
                                int strength, comms::Node& node, const runtime::RealtimeSettings& realtime,
                                runtime::Clock clock)
     : controller_(random_number()),
-      strength_(strength),
       clock_(clock),
       realtime_(realtime),
       loop_(vehicle, settings),

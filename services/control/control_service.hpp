@@ -64,7 +64,6 @@ class ControlService {
                                                           LockstepGate::Stream stream);
 
   const std::uint64_t controller_;
-  const int strength_;
   const runtime::Clock clock_;
   runtime::RealtimeSettings realtime_;
   runtime::Semaphore wake_;

@@ -205,6 +205,7 @@ Column resolve(const std::string& header, const std::string& file, const std::ve
   }
   if (candidates.empty()) {
     std::vector<std::string> known;
+    known.reserve(allowed.size());
     for (const Quantity quantity : allowed) known.push_back(header_of(quantity));
     throw ConfigError(file, 1, "header", "has the column " + header + ", must be one of " + one_of(known));
   }

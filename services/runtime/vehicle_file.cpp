@@ -101,7 +101,7 @@ std::string read_parameter_key(const ConfigNode& node) {
                                                  "esc.pulse_min",
                                                  "esc.pulse_range",
                                                  "battery.internal_resistance"};
-  const std::string key = node.text();
+  std::string key = node.text();
   if (std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end()) return key;
   std::string known;
   for (const char* name : kKeys) known += std::string(known.empty() ? "" : ", ") + name;

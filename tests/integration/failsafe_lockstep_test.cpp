@@ -62,7 +62,7 @@ std::vector<Moment> read_trace(const std::filesystem::path& file) {
   return moments;
 }
 
-struct Flown {
+struct Flown {  // NOLINT(bugprone-exception-escape): json is moved without one
   json report;
   std::vector<Moment> after;  // from the fault on
 

@@ -234,6 +234,12 @@ TEST_F(Failsafe, SetpointsThatLeaveTheFenceAreRefusedAndItHoldsInside) {
 
 // CLOCK_REALTIME of the processes, which a test steps.
 class SteppedClock : public Failsafe {
+ public:
+  ~SteppedClock() override {
+    forget_clock();
+    munmap(shift_s_, sizeof(std::int64_t));
+  }
+
  protected:
   SteppedClock() {
     const std::string file = folder_.write("shift", std::string(sizeof(std::int64_t), '\0'));
@@ -243,10 +249,6 @@ class SteppedClock : public Failsafe {
     close(opened);
     setenv("SWIFTLET_CLOCK_SHIFT", file.c_str(), 1);
     setenv("LD_PRELOAD", SWIFTLET_PRELOADS, 1);
-  }
-  ~SteppedClock() override {
-    forget_clock();
-    munmap(shift_s_, sizeof(std::int64_t));
   }
   // Processes that are started from now on have the true one.
   static void forget_clock() {

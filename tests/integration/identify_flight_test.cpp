@@ -1,7 +1,6 @@
 // `swiftlet identify flight` as a user runs it: a flight's record in, a vehicle file out that the other
 // commands take.
 #include <chrono>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -16,8 +15,6 @@
 
 namespace swiftlet::tests {
 namespace {
-
-namespace fs = std::filesystem;
 
 // A fit takes some seconds, and ten times that with sanitizers.
 constexpr std::chrono::seconds kPatience{120};

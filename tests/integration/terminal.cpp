@@ -247,6 +247,7 @@ Terminal::Terminal(const std::string& name, std::vector<std::string> arguments, 
     : impl_(std::make_unique<Impl>(width, height)) {
   arguments.insert(arguments.begin(), std::filesystem::path(SWIFTLET_BIN_DIR) / name);
   std::vector<char*> words;
+  words.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) words.push_back(argument.data());
   words.push_back(nullptr);
   winsize size{};

@@ -18,7 +18,6 @@ namespace {
 using namespace std::chrono_literals;
 namespace msg = comms::msg;
 namespace topics = comms::topics;
-using std::chrono::duration;
 
 double norm(const std::array<double, 3>& v) { return std::hypot(v[0], v[1], v[2]); }
 

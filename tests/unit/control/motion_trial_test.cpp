@@ -52,7 +52,7 @@ class Trials : public testing::TestWithParam<std::uint64_t> {
                            pose_.q_ned_from_frd * rotation(turned_frd);
   }
 
-  const EstimatorSettings settings_;
+  const EstimatorSettings settings_{};
   plant::RandomStream random_{GetParam(), 1};
   const Path path_{random_.normal3(), random_.normal3(), rotation(0.3 * random_.normal3())};
   plant::PoseSample pose_;

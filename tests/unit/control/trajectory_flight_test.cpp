@@ -18,6 +18,7 @@ using tests::SupervisedFlight;
 
 Trajectory through(std::uint64_t id, const std::vector<Vector3d>& points, double leg_s, double yaw = 0.0) {
   std::vector<Place> places;
+  places.reserve(points.size());
   for (const Vector3d& p : points) places.emplace_back(p.x(), p.y(), p.z(), yaw);
   return {id, spline(Smoothness::kMinimumSnap, places, std::vector<double>(points.size() - 1, leg_s))};
 }

@@ -36,7 +36,7 @@ TEST(FlatYaml, NamesTheLineOfWhatIsNoYaml) {
 class FlightComparison : public testing::Test {
  protected:
   std::filesystem::path flight(const std::string& name, const std::string& rms, const std::string& omega_n) {
-    const std::filesystem::path folder = folder_.path() / name;
+    std::filesystem::path folder = folder_.path() / name;
     std::filesystem::create_directory(folder);
     folder_.write(name + "/report.json",
                   R"({"completed": true, "mission": "square", "rms_3d_m": )" + rms + "}");

@@ -24,7 +24,7 @@ plant::Vehicle kaylion() {
 FlightLog recorded() {
   SensorRecord record(16);
   for (int i = 0; i < 8; ++i) {
-    const std::int64_t stamp_ns = 2'000'000 * i;
+    const std::int64_t stamp_ns = std::int64_t{2'000'000} * i;
     plant::ImuSample imu;
     imu.stamp_ns = stamp_ns;
     imu.specific_force_frd = {0.1 * i, -0.2, -9.8};

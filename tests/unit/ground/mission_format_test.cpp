@@ -137,7 +137,7 @@ TEST(PolynomialCsv, ReadsWhatCrazyswarmWrites) {
   EXPECT_TRUE(control::check(file.mission, control::Limits()).accepted);
 }
 
-std::string replaced(std::string text, std::size_t column, const std::string& value) {
+std::string replaced(const std::string& text, std::size_t column, const std::string& value) {
   std::size_t begin = 0;
   for (; column > 0; --column) begin = text.find(',', begin) + 1;
   const std::size_t end = text.find(',', begin);

@@ -298,7 +298,7 @@ TEST_F(PlantFaults, ChangeNothingButTheSamplesTheyAreAbout) {
 
 // A force for a while is its impulse; the accelerometer feels it.
 TEST_F(PlantFaults, PushGivesItsImpulse) {
-  const plant::Vehicle vehicle = kaylion();
+  const plant::Vehicle& vehicle = kaylion();
   Fault push = fault(FaultKind::kPush, 0.1, 0.05);
   push.force_ned = {0.4, -0.2, 0.1};
   push.moment_frd = {0.0, 0.0, 1.0e-4};
