@@ -74,8 +74,6 @@ void refuse_unflyable(const plant::Vehicle& vehicle, const std::string& folder, 
 
 int run_identify(const IdentifyOptions& options) {
   const fs::path folder = options.bench;
-  if (fs::is_directory(folder))
-    refuse_overwriting({{"--out", options.out}, {"--report", options.report}}, files_of(folder));
   IdentificationReport report;
   const BenchSettings settings = load_bench_settings(folder);
   report.bench_folder = options.bench;
@@ -83,6 +81,9 @@ int run_identify(const IdentifyOptions& options) {
                         : !settings.base_vehicle.empty() ? settings.base_vehicle
                                                          : "kaylion";
   const fs::path base_file = base_file_of(report.base_vehicle, options, settings);
+  std::vector<fs::path> inputs = files_of(folder);
+  inputs.push_back(base_file);
+  refuse_overwriting({{"--out", options.out}, {"--report", options.report}}, inputs);
   report.base = runtime::load_vehicle(base_file.string());
   report.bench = load_bench(folder, settings, report.base.esc);
   report.found = identify(report.bench, options.bench, report.base);

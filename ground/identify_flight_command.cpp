@@ -39,17 +39,18 @@ struct IdentifyFlightOptions {
   bool json = false;
 };
 
-// The vehicle of a record's settings, where the log is part of one.
-fs::path base_file(const IdentifyFlightOptions& options) {
-  if (!options.base.empty()) return configuration_file("vehicles", options.base);
+struct Base {
+  fs::path file;
+  bool assumed;  // neither named nor that of a record
+};
+
+// By --base, or from the record that the log is part of.
+Base base_of(const IdentifyFlightOptions& options) {
+  if (!options.base.empty()) return {configuration_file("vehicles", options.base), false};
   const fs::path log = options.logs.front();
   const fs::path kept = (fs::is_directory(log) ? log : log.parent_path()) / "vehicle.yaml";
-  return fs::is_regular_file(kept) ? kept : configuration_file("vehicles", "kaylion");
-}
-
-// Neither named nor that of a record.
-bool is_assumed(const IdentifyFlightOptions& options, const fs::path& base) {
-  return options.base.empty() && base.filename() != "vehicle.yaml";
+  if (fs::is_regular_file(kept)) return {kept, false};
+  return {configuration_file("vehicles", "kaylion"), true};
 }
 
 int run_identify_flight(IdentifyFlightOptions options) {
@@ -57,15 +58,14 @@ int run_identify_flight(IdentifyFlightOptions options) {
   for (const std::string& log : options.logs) {
     for (const fs::path& file : files_of(log)) inputs.push_back(file);
   }
-  const fs::path base_path = base_file(options);
+  const auto [base_path, is_assumed] = base_of(options);
   inputs.push_back(base_path);
   refuse_overwriting({{"--out", options.out}, {"--report", options.report}}, inputs);
   const plant::Vehicle base = runtime::load_vehicle(base_path.string());
   FlightIdentificationReport report;
   report.logs = options.logs;
   report.base_vehicle = options.base.empty() ? base_path.string() : options.base;
-
-  if (is_assumed(options, base_path))
+  if (is_assumed)
     report.assumptions.push_back("the vehicle is taken to be like " + base.name +
                                  ", there being no --base and no record around the log");
 

@@ -12,7 +12,6 @@ namespace swiftlet::identification {
 
 namespace {
 
-constexpr std::array<const char*, 3> kInertiaKeys = {"inertia.xx", "inertia.yy", "inertia.zz"};
 constexpr std::array<const char*, 3> kInertiaSymbols = {"J_x", "J_y", "J_z"};
 constexpr double kSeaLevelDensity = 1.225;    // kg/m^3, standard atmosphere
 constexpr double kCoaxial = 1e-3;             // m, between hubs in the plane of the rotors
@@ -201,11 +200,11 @@ class Bench {
 
   void inertia(std::size_t axis) {
     InertiaTarget target;
-    target.parameter = kInertiaKeys[axis];
+    target.parameter = plant::kInertiaKeys[axis];
     target.symbol = kInertiaSymbols[axis];
     target.mass_kg = out_.vehicle.mass_kg;
     target.mass_error = relative_error(out_.mass);
-    target.size_m = out_.vehicle.rotors.front().position_frd.norm();
+    target.size_m = plant::hub_distance(out_.vehicle);
     const InertiaData& data = *data_.inertia[axis];
     out_.inertia[axis] =
         data.bifilar ? identify_inertia(*data.bifilar, target) : identify_inertia(*data.swing, target);
@@ -220,7 +219,7 @@ class Bench {
       if (!out_.inertia[axis]) continue;
       const Estimate& inertia = out_.inertia[axis]->estimates.front();
       if (!(inertia.standard_error > 0.0)) continue;
-      with_mass.emplace_back(kInertiaKeys[axis],
+      with_mass.emplace_back(plant::kInertiaKeys[axis],
                              relative_error(out_.mass) * inertia.value / inertia.standard_error);
     }
     const auto note = [this](const std::string& a, const std::string& b, double correlation) {
@@ -248,29 +247,15 @@ class Bench {
     out_.sources["motor.armature_resistance"] = "estimate: K2 K3 / k_Q, Eq. (21) without friction";
   }
 
-  // Moments that were not measured give way first.
   void keep_inertia_possible() {
-    if (!out_.inertia[0] && !out_.inertia[1] && !out_.inertia[2]) return;
-    Eigen::Vector3d moments = out_.vehicle.inertia.diagonal();
-    const bool all = out_.inertia[0] && out_.inertia[1] && out_.inertia[2];
-    Eigen::Vector3d variances = Eigen::Vector3d::Zero();
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      const std::optional<Experiment>& found = out_.inertia[static_cast<std::size_t>(i)];
-      if (all) {
-        variances[i] = found->covariance(0, 0);
-      } else if (!found) {
-        variances[i] = moments[i] * moments[i];
-      }
+    std::array<std::optional<double>, 3> variances;
+    for (std::size_t axis = 0; axis < variances.size(); ++axis) {
+      if (out_.inertia[axis]) variances[axis] = out_.inertia[axis]->covariance(0, 0);
     }
-    const double deviations = all ? kChanceDeviations : std::numeric_limits<double>::infinity();
-    const std::optional<std::string> moved = keep_possible(moments, variances, deviations, all);
-    if (!moved) return;
-    out_.vehicle.inertia.diagonal() = moments;
-    out_.warnings.push_back(*moved);
+    if (const auto moved = keep_possible(out_.vehicle.inertia, variances)) out_.warnings.push_back(*moved);
   }
 
   static constexpr double kAgreement = 0.05;
-  static constexpr double kChanceDeviations = 4.0;
 
   const BenchData& data_;
   const BenchProgress& progress_;

@@ -183,7 +183,7 @@ ThrottleThrustData throttle_thrust_data(const plant::Vehicle& vehicle, Reader re
 
 BifilarData bifilar_data(const plant::Vehicle& vehicle, double inertia, Reader reader) {
   BifilarData out;
-  const double separation = 2.0 * vehicle.rotors.front().position_frd.norm();
+  const double separation = 2.0 * plant::hub_distance(vehicle);
   for (const double length : kStringLengths) {
     for (int i = 0; i < kSwings; ++i) {
       out.length_m.push_back(length);

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "identification/estimate.hpp"
+
 namespace swiftlet::identification {
 
 // A column of readings, as the checks name it.
@@ -33,7 +35,6 @@ void demand_drive(const Column& supply, const Column& throttle);
 
 // A moment of inertia, kg m^2, against the hubs' distance from the centre: of no mass far beyond the hubs, nor
 // all of it near the centre. column is what led to it.
-struct Estimate;
 void demand_gyration(const char* column, const Estimate& inertia, double mass_kg, double hub_distance_m);
 
 double median(std::vector<double> values);

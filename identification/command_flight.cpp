@@ -152,12 +152,11 @@ std::vector<Derived> derived(const CommandModel& model) {
   out.push_back({"lead.yaw", "T_z", "s", [&l, rotors](const VectorXd& x) {
                    return 0.5 * x[l.spin_up] / (x[l.gain[2]] * std::sqrt(plant::kGravity / rotors));
                  }});
-  const char* const inertias[3] = {"inertia.xx", "inertia.yy", "inertia.zz"};
   const char* const symbols[3] = {"J_xx", "J_yy", "J_zz"};
   for (int axis = 0; axis < 3; ++axis) {
     const int gain = l.gain[axis];
     const double lever = model.lever(axis);
-    out.push_back({inertias[axis], symbols[axis], "kg*m^2",
+    out.push_back({plant::kInertiaKeys[static_cast<std::size_t>(axis)], symbols[axis], "kg*m^2",
                    [gain, lever, &base](const VectorXd& x) { return base.mass_kg * lever / x[gain]; }});
   }
   // A thrust T through (x, y) gives the moment (-y T, x T).
@@ -210,17 +209,15 @@ void draw_thrust(FlightIdentification& out, const CommandFit& all) {
   }
 }
 
-// The lag is told by roll and pitch as well.
-std::map<std::string, std::string> untold_of_calm_axes(FlightIdentification& out,
-                                                       const CommandPredictions& predictions) {
-  const char* const inertias[3] = {"inertia.xx", "inertia.yy", "inertia.zz"};
-  std::map<std::string, std::string> untold;
+// The lag is told by roll and pitch as well, and gains are what moments are made of.
+std::map<std::string, std::string> untold_parameters(FlightIdentification& out,
+                                                     const CommandPredictions& predictions) {
+  std::map<std::string, std::string> untold = untold_of_calm_axes(predictions.excitations);
   for (int axis = 0; axis < 3; ++axis) {
-    const auto reason = too_calm(predictions.excitations[static_cast<std::size_t>(axis)], axis);
-    if (!reason) continue;
-    untold[inertias[axis]] = *reason;
-    if (axis < 2) untold["motor.time_constant"] = *reason;
-    out.unexcited.push_back(std::string("thrust_to_rate.") + axis_name(axis) + ": " + *reason);
+    const auto calm = untold.find(plant::kInertiaKeys[static_cast<std::size_t>(axis)]);
+    if (calm == untold.end()) continue;
+    if (axis < 2) untold["motor.time_constant"] = calm->second;
+    out.unexcited.push_back(std::string("thrust_to_rate.") + axis_name(axis) + ": " + calm->second);
   }
   return untold;
 }
@@ -255,9 +252,9 @@ std::string advice(const std::string& parameter, const Estimate& estimate,
     if (alone.parameter == parameter && alone.half_width < 0.7 * estimate.half_width)
       return "most of it is the battery's: measure the internal resistance of " + base.name + "'s";
   }
-  if (parameter == "inertia.xx") return "fly quick moves sideways";
-  if (parameter == "inertia.yy") return "fly quick moves forward and back";
-  if (parameter == "inertia.zz") return "turn about yaw, quickly";
+  for (std::size_t axis = 0; axis < plant::kInertiaKeys.size(); ++axis) {
+    if (parameter == plant::kInertiaKeys[axis]) return moves_that_tell(axis);
+  }
   return "fly quick moves, up and down too";
 }
 
@@ -325,9 +322,9 @@ void identify_commands(FlightIdentification& out, const std::vector<FlightSeries
   out.estimates = estimates_of(quantities, values, all.fit.degrees_of_freedom);
   demand_possible_hover(*out.find("thrust_per_mass.hover_command"));
   CommandPredictions predictions = command_predictions(*all.model, all.x());
-  conclude_vehicle(
-      out, values, base, untold_of_calm_axes(out, predictions),
-      [&](const std::string& parameter) { return advice(parameter, *out.find(parameter), by_flight, base); });
+  conclude_vehicle(out, values, base, untold_parameters(out, predictions), [&](const std::string& parameter) {
+    return advice(parameter, *out.find(parameter), by_flight, base);
+  });
   out.unexcited.emplace_back(
       "mass, rotor.thrust_factor, rotor.torque_factor, linear_drag and the accelerometer's offset: a log "
       "without poses and supply voltage does not tell them; moments of inertia are those that the mass and "

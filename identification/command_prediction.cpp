@@ -146,7 +146,7 @@ void predict(const CommandModel& model, const VectorXd& x, std::size_t quantity,
     if (horizon_s == kAheadS && response != Response::kForce) {
       Squares change;
       for (const Start& start : fitted) change.add(start.then - start.now);
-      out.excitations.push_back({error.quantity, change.rms(), fitted_one_step.rms()});
+      out.excitations[quantity] = {error.quantity, change.rms(), fitted_one_step.rms()};
     }
     const Eigen::Vector3d weights = best_weights(fitted);
     for (const Start& start : kept) {

@@ -1,6 +1,7 @@
 // How well a model of commands alone predicts flight that it was not fitted to.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "identification/command_model.hpp"
@@ -10,10 +11,10 @@
 namespace swiftlet::identification {
 
 struct CommandPredictions {
-  std::vector<PredictionError> errors;  // p, q, r, f_z; one step is a block
+  std::vector<PredictionError> errors;        // p, q, r, f_z; one step is a block
+  std::array<RateExcitation, 3> excitations;  // of p, q, r on the fitted rows
   // Of the forecast half a second ahead, in the same order: what it takes of the change by the commands and
   // of the deviation from the mean at its start.
-  std::vector<RateExcitation> excitations;  // of p, q, r on the fitted rows
   std::vector<double> weight_of_commands;
   std::vector<double> weight_of_start;
   std::vector<HorizonError> horizons;

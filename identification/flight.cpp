@@ -1,6 +1,7 @@
 #include "identification/flight.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -56,15 +57,14 @@ std::vector<Derived> derived(const FlightModel& model, Known known) {
   } else {
     out.push_back({"mass", "m", "kg", [&l, &base](const VectorXd& x) { return base.mass_kg / x[l.thrust]; }});
   }
-  const char* const inertias[3] = {"inertia.xx", "inertia.yy", "inertia.zz"};
   const char* const symbols[3] = {"J_xx", "J_yy", "J_zz"};
   for (int axis = 0; axis < 3; ++axis) {
     // With the thrust known and the mass told, the moments are the base's.
-    out.push_back(
-        {inertias[axis], symbols[axis], "kg*m^2", [&model, &l, axis, mass_known](const VectorXd& x) {
-           const double of_mass = model.inertia(x)[axis];
-           return mass_known || axis == 2 ? of_mass : of_mass / x[l.thrust];
-         }});
+    out.push_back({plant::kInertiaKeys[static_cast<std::size_t>(axis)], symbols[axis], "kg*m^2",
+                   [&model, &l, axis, mass_known](const VectorXd& x) {
+                     const double of_mass = model.inertia(x)[axis];
+                     return mass_known || axis == 2 ? of_mass : of_mass / x[l.thrust];
+                   }});
   }
   out.push_back({"linear_drag", "c", "N*s/m", [&l, &base, mass_known](const VectorXd& x) {
                    return x[l.drag] * base.mass_kg / (mass_known ? 1.0 : x[l.thrust]);
@@ -132,30 +132,23 @@ Excitation excitation(const FlightModel& model, const VectorXd& x) {
 
 // What would tell it.
 std::string advice(const std::string& parameter, const Excitation& excited) {
-  if (parameter == "inertia.xx")
-    return "moments about roll varied by " + shown(excited.acceleration.x()) +
-           " rad/s^2 only; fly quick moves sideways";
-  if (parameter == "inertia.yy")
-    return "moments about pitch varied by " + shown(excited.acceleration.y()) +
-           " rad/s^2 only; fly quick moves forward and back";
-  if (parameter == "inertia.zz")
-    return "moments about yaw varied by " + shown(excited.acceleration.z()) +
-           " rad/s^2 only; turn about yaw, quickly";
+  for (std::size_t axis = 0; axis < plant::kInertiaKeys.size(); ++axis) {
+    if (parameter == plant::kInertiaKeys[axis])
+      return std::string("moments about ") + axis_name(static_cast<int>(axis)) + " varied by " +
+             shown(excited.acceleration[static_cast<Index>(axis)]) + " rad/s^2 only; " +
+             moves_that_tell(axis);
+  }
   if (parameter == "linear_drag") return "speeds varied by " + shown(excited.speed) + " m/s only; fly faster";
   if (parameter == "motor.time_constant")
     return "the commands changed too slowly or too little; fly quick moves, up and down too";
   return "the thrust varied by " + shown(excited.thrust) + " m/s^2 only; climb and sink quickly";
 }
 
-std::map<std::string, std::string> untold_of_calm_axes(const FlightModel& model, const VectorXd& x) {
-  const char* const inertias[3] = {"inertia.xx", "inertia.yy", "inertia.zz"};
+std::array<RateExcitation, 3> rate_excitations(const FlightModel& model, const VectorXd& x) {
   const std::vector<PredictionError> errors = prediction_errors(model, x, Part::kFitted);
-  std::map<std::string, std::string> out;
-  for (int axis = 0; axis < 3; ++axis) {
-    const PredictionError& error = errors[static_cast<std::size_t>(axis)];
-    if (const auto reason = too_calm({error.quantity, error.idle_half_second, error.one_step}, axis))
-      out[inertias[axis]] = *reason;
-  }
+  std::array<RateExcitation, 3> out;
+  for (std::size_t axis = 0; axis < out.size(); ++axis)
+    out[axis] = {errors[axis].quantity, errors[axis].idle_half_second, errors[axis].one_step};
   return out;
 }
 
@@ -237,7 +230,7 @@ FlightIdentification identify_flight(const std::vector<FlightLog>& logs, const p
   const DerivedValues values = evaluate(quantities, model.layout().parameters, fit);
   out.estimates = estimates_of(quantities, values, fit.degrees_of_freedom);
   const Excitation excited = excitation(model, fit.parameters);
-  conclude_vehicle(out, values, base, untold_of_calm_axes(model, fit.parameters),
+  conclude_vehicle(out, values, base, untold_of_calm_axes(rate_excitations(model, fit.parameters)),
                    [&](const std::string& parameter) { return advice(parameter, excited); });
   tell_what_no_flight_tells(out, model, fit, options.known);
   tell_of_excitation(out, excited);

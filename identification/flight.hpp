@@ -79,7 +79,7 @@ struct FlightIdentification {
   std::vector<FlightWindow> windows;  // of each log
   double fitted_s = 0.0;
   double kept_s = 0.0;
-  bool converged = false;
+  bool converged = false;  // inside the bounds of the search
 
   std::vector<Estimate>
       estimates;  // all that the logs tell; `parameter` is the vehicle file's key where it has one

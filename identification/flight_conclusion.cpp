@@ -1,12 +1,15 @@
 #include "identification/flight_conclusion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "identification/checks.hpp"
 #include "identification/possible_inertia.hpp"
+#include "plant/model/airframe.hpp"
+#include "plant/model/vehicle_uncertainty.hpp"
 
 namespace swiftlet::identification {
 namespace {
@@ -18,10 +21,9 @@ using Eigen::VectorXd;
 constexpr double kTold = 0.25;     // half an interval over its value, up to which a parameter counts as told
 constexpr double kToldDrag = 0.1;  // 1/s, half an interval of drag over mass, likewise
 constexpr double kTelling = 0.5;   // half an interval over its value, to judge the value by
-constexpr double kSmallStep = 1e-4;        // of differences, over a parameter's scale
-constexpr double kChanceDeviations = 4.0;  // of moments beyond what a body can have
-constexpr double kOverNoise = 20.0;        // of what a rate changes by in half a second
-constexpr double kTurned = 3.0;            // standard errors below 0 at which a gain is negative for certain
+constexpr double kSmallStep = 1e-4;  // of differences, over a parameter's scale
+constexpr double kOverNoise = 20.0;  // of what a rate changes by in half a second
+constexpr double kTurned = 3.0;      // standard errors below 0 at which a gain is negative for certain
 
 const char* const kAxisNames[3] = {"roll", "pitch", "yaw"};
 
@@ -50,26 +52,13 @@ bool at_bound(const FlightParameter& parameter, double value) {
   return value - parameter.low <= margin || parameter.high - value <= margin;
 }
 
-// Moments that the flights did not tell give way first.
 void keep_inertia_possible(FlightIdentification& out) {
-  Eigen::Vector3d moments = out.vehicle.inertia.diagonal();
-  Eigen::Vector3d variances = Eigen::Vector3d::Zero();
-  const char* const names[3] = {"inertia.xx", "inertia.yy", "inertia.zz"};
-  bool all = true;
-  for (const char* const name : names) all = all && out.sources.count(name) > 0;
-  for (Index i = 0; i < 3; ++i) {
-    const Estimate* const found = out.find(names[i]);
-    if (all) {
-      variances[i] = found->standard_error * found->standard_error;
-    } else if (out.sources.count(names[i]) == 0) {
-      variances[i] = moments[i] * moments[i];
-    }
+  std::array<std::optional<double>, 3> variances;
+  for (std::size_t axis = 0; axis < variances.size(); ++axis) {
+    const char* const key = plant::kInertiaKeys[axis];
+    if (out.sources.count(key) > 0) variances[axis] = std::pow(out.find(key)->standard_error, 2);
   }
-  const double deviations = all ? kChanceDeviations : std::numeric_limits<double>::infinity();
-  const std::optional<std::string> moved = keep_possible(moments, variances, deviations, all);
-  if (!moved) return;
-  out.vehicle.inertia.diagonal() = moments;
-  out.warnings.push_back(*moved);
+  if (const auto moved = keep_possible(out.vehicle.inertia, variances)) out.warnings.push_back(*moved);
 }
 
 bool stands_in_file(const std::string& parameter) {
@@ -129,13 +118,22 @@ FlightIdentification begun_with(const std::vector<FlightSeries>& flights) {
   return out;
 }
 
-std::optional<std::string> too_calm(const RateExcitation& excitation, int axis) {
-  if (excitation.in_half_second > kOverNoise * excitation.noise) return std::nullopt;
-  const char* const moves[3] = {"fly quick moves sideways", "fly quick moves forward and back",
-                                "turn about yaw, quickly"};
-  return excitation.quantity + " changes by " + shown(excitation.in_half_second) +
-         " rad/s in half a second, must by " + shown(kOverNoise) + " times the noise, " +
-         shown(excitation.noise) + " rad/s; " + moves[axis];
+std::string moves_that_tell(std::size_t axis) {
+  constexpr std::array<const char*, 3> kMoves = {
+      "fly quick moves sideways", "fly quick moves forward and back", "turn about yaw, quickly"};
+  return kMoves[axis];
+}
+
+std::map<std::string, std::string> untold_of_calm_axes(const std::array<RateExcitation, 3>& excitations) {
+  std::map<std::string, std::string> out;
+  for (std::size_t axis = 0; axis < excitations.size(); ++axis) {
+    const RateExcitation& of = excitations[axis];
+    if (of.in_half_second > kOverNoise * of.noise) continue;
+    out[plant::kInertiaKeys[axis]] =
+        of.quantity + " changes by " + shown(of.in_half_second) + " rad/s in half a second, must by " +
+        shown(kOverNoise) + " times the noise, " + shown(of.noise) + " rad/s; " + moves_that_tell(axis);
+  }
+  return out;
 }
 
 bool within_bounds(const std::vector<FlightParameter>& parameters, const EstimatedParameters& fit) {
@@ -149,10 +147,10 @@ void conclude_vehicle(FlightIdentification& out, const DerivedValues& values, co
                       const std::map<std::string, std::string>& untold,
                       const std::function<std::string(const std::string& parameter)>& advice) {
   out.vehicle = base;
-  for (const char* const inertia : {"inertia.xx", "inertia.yy"}) {
-    const Estimate* const found = out.find(inertia);
+  for (const std::size_t axis : {0, 1}) {
+    const Estimate* const found = out.find(plant::kInertiaKeys[axis]);
     if (found != nullptr && found->half_width < kTelling * found->value)
-      demand_gyration("body rates", *found, base.mass_kg, base.rotors.front().position_frd.norm());
+      demand_gyration("body rates", *found, base.mass_kg, plant::hub_distance(base));
   }
   if (!out.converged) {
     out.warnings.emplace_back("nothing of the fit goes into the vehicle");

@@ -1,9 +1,10 @@
 // What follows from a fit to flights: quantities with intervals, a vehicle file's numbers, warnings.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <functional>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,10 +45,13 @@ struct RateExcitation {
   double noise = 0.0;
 };
 
-// Why a rate that changes so little tells nothing of its axis, or nothing if it changes enough. The controller
-// answers the gyro's noise, and what it answers would be taken for what its answer does: moments of inertia
-// come out too small, by about one over the square of the ratio.
-std::optional<std::string> too_calm(const RateExcitation& excitation, int axis);
+// Moments of inertia, by their keys, about axes that move too little to tell them, with the reason. excitations
+// are of p, q, r. The controller answers the gyro's noise, and what it answers would be taken for what its answer
+// does: moments come out too small, by about one over the square of the ratio.
+std::map<std::string, std::string> untold_of_calm_axes(const std::array<RateExcitation, 3>& excitations);
+
+// What to fly for an axis, 0 roll .. 2 yaw.
+std::string moves_that_tell(std::size_t axis);
 
 // Whether the search ended inside its bounds.
 bool within_bounds(const std::vector<FlightParameter>& parameters, const EstimatedParameters& fit);

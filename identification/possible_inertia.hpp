@@ -1,6 +1,7 @@
 // Moments of inertia that a body can have.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 
@@ -9,10 +10,10 @@
 namespace swiftlet::identification {
 
 // A flat vehicle's largest moment is nearly the sum of the others, which no body exceeds; noise alone may then
-// put it beyond. Moves the moments, kg m^2, to the nearest that are possible, by their variances, and says so;
-// those of variance 0 stay. Leaves alone what is more than `deviations` standard deviations beyond: no chance.
-// measured: whether all three were, for the sentence.
-std::optional<std::string> keep_possible(Eigen::Vector3d& moments, const Eigen::Vector3d& variances,
-                                         double deviations, bool measured);
+// put it beyond. Moves the diagonal of inertia, kg m^2, to the nearest that is possible, and says so. variances
+// are of the moments that were identified: the others give way first, by any length; where all were, each gives
+// way by its variance, within what chance gives.
+std::optional<std::string> keep_possible(Eigen::Matrix3d& inertia,
+                                         const std::array<std::optional<double>, 3>& variances);
 
 }  // namespace swiftlet::identification

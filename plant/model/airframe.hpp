@@ -28,6 +28,9 @@ inline double mean_lever(const Vehicle& vehicle, int axis) {
   return effectiveness(vehicle).row(1 + axis).cwiseAbs().mean();
 }
 
+// From the centre of mass to a hub, m.
+inline double hub_distance(const Vehicle& vehicle) { return vehicle.rotors.front().position_frd.norm(); }
+
 // Thrust of each rotor, N, and its speed, rad/s, when all share the weight evenly.
 inline double hover_thrust(const Vehicle& vehicle) {
   return vehicle.mass_kg * kGravity / vehicle.rotor_count();

@@ -1,13 +1,16 @@
 // How sure the parameters of a vehicle are.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
 namespace swiftlet::plant {
 
-// A parameter by its key in the vehicle file, "motor.k2"; the diagonal of the inertia is inertia.xx,
-// inertia.yy, inertia.zz.
+// The diagonal of the inertia, x, y, z.
+inline constexpr std::array<const char*, 3> kInertiaKeys = {"inertia.xx", "inertia.yy", "inertia.zz"};
+
+// A parameter by its key in the vehicle file, "motor.k2", or one of kInertiaKeys.
 struct ParameterUncertainty {
   std::string parameter;
   double standard_error = 0.0;  // in the unit of the parameter

@@ -101,16 +101,15 @@ void check_header(std::string_view line, const std::string& file, const std::vec
 
 CsvTable read_rows(Lines& lines, const std::string& file_name, const std::vector<std::string>& columns,
                    std::size_t min_rows, const CsvForm& form) {
+  if (columns.size() == 1 && columns.front().find_first_of(";\t") != std::string::npos) {
+    throw ConfigError(file_name, 1, "header",
+                      "has semicolons or tabs between its columns, must have commas, and points in numbers");
+  }
   CsvTable table(file_name, columns);
   std::string_view line;
   std::vector<double> numbers(columns.size());
   while (!lines.only_blank_left() && lines.next(line)) {
     const std::vector<std::string_view> fields = fields_of(line, form);
-    if (columns.size() == 1 && columns.front().find_first_of(";\t") != std::string::npos) {
-      throw ConfigError(
-          file_name, 1, "header",
-          "has semicolons or tabs between its columns, must have commas, and points in numbers");
-    }
     if (fields.size() != columns.size()) {
       throw ConfigError(file_name, lines.number(), "",
                         "has " + std::to_string(trimmed(line).empty() ? 0 : fields.size()) +

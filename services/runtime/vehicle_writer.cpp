@@ -11,8 +11,6 @@ namespace swiftlet::runtime {
 
 namespace {
 
-constexpr std::array<const char*, 3> kInertiaKeys = {"inertia.xx", "inertia.yy", "inertia.zz"};
-
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -47,7 +45,7 @@ class Writer {
 
   std::string inertia_source() const {
     std::string joined;
-    for (const char* key : kInertiaKeys) {
+    for (const char* key : plant::kInertiaKeys) {
       const auto found = sources_.find(key);
       if (found != sources_.end())
         joined += std::string(joined.empty() ? "" : "; ") + key + " " + found->second;

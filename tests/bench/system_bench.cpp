@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -262,6 +263,12 @@ class Vehicle {
     return figures;
   }
 
+  // Whether one of its processes has.
+  bool has_ended() {
+    return std::any_of(processes_.begin(), processes_.end(),
+                       [](ground::ChildProcess& process) { return process.poll().has_value(); });
+  }
+
   std::array<Usage, 3> usage() const {
     std::array<Usage, 3> now;
     for (std::size_t i = 0; i < now.size(); ++i) now[i] = usage_of(processes_[i].pid());
@@ -302,6 +309,8 @@ class Vehicle {
   VehicleFigures begin_;
 };
 
+constexpr std::chrono::milliseconds kLook{100};  // at the processes while they are measured
+
 // Figures of vehicles that hover side by side, from their take-off on; counts are of the last `seconds`.
 // stalls: what the computer takes meanwhile, in percent of the cycles; null: nobody looks.
 std::vector<VehicleFigures> hover(int vehicles, int rate_hz, bool realtime, double seconds,
@@ -324,7 +333,14 @@ std::vector<VehicleFigures> hover(int vehicles, int rate_hz, bool realtime, doub
   const auto before = usage();
   std::optional<bench::StallWitness> witness;
   if (stalls != nullptr) witness.emplace(1'000'000'000 / rate_hz);
-  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+  const auto window = std::chrono::milliseconds(std::lround(1e3 * seconds));
+  if (tests::eventually(
+          [&] {
+            return std::any_of(fleet.begin(), fleet.end(),
+                               [](const auto& vehicle) { return vehicle->has_ended(); });
+          },
+          window, kLook))
+    throw std::runtime_error("a process of a vehicle ended while it was measured");
   if (witness) *stalls = witness->lost_percent();
   witness.reset();
   const auto after = usage();

@@ -113,6 +113,16 @@ TEST_F(Identify, SaysWhichLineNamesABaseThatIsNotThere) {
   EXPECT_EQ(run({"identify", bench().string(), "--base", "kaylion", "--out", vehicle()}).exit_code, 0);
 }
 
+TEST_F(Identify, WritesOverNothingThatItReads) {
+  const std::string base = (folder_.path() / "base.yaml").string();
+  fs::copy_file(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml", base);
+  const Ending end = run({"identify", bench().string(), "--base", base, "--out", base});
+  EXPECT_EQ(end.exit_code, 2);
+  EXPECT_NE(end.errors.find("--out: " + base + " is one of the files that are read"), std::string::npos)
+      << end.errors;
+  EXPECT_EQ(runtime::load_vehicle(base).name, "kaylion");
+}
+
 TEST_F(Identify, RefusesWhatIsNoBench) {
   const Ending none = identify(folder_.path() / "nowhere");
   EXPECT_EQ(none.exit_code, 2);

@@ -11,13 +11,15 @@
 
 namespace swiftlet::tests {
 
-// True as soon as the predicate holds; false if it has not within the time.
+// True as soon as the predicate holds; false if it has not within the time. For what cannot notify, as another
+// process: looks at it every `period`, and once more after the time, however long this thread was kept waiting.
 inline bool eventually(const std::function<bool()>& predicate,
-                       std::chrono::milliseconds timeout = std::chrono::seconds(10)) {
+                       std::chrono::milliseconds timeout = std::chrono::seconds(10),
+                       std::chrono::milliseconds period = std::chrono::milliseconds(1)) {
   const auto give_up = std::chrono::steady_clock::now() + timeout;
-  while (!predicate()) {
-    if (std::chrono::steady_clock::now() > give_up) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  for (bool is_last = false; !predicate(); is_last = std::chrono::steady_clock::now() > give_up) {
+    if (is_last) return false;
+    std::this_thread::sleep_for(period);
   }
   return true;
 }
