@@ -13,13 +13,6 @@ install(DIRECTORY config DESTINATION ${CMAKE_INSTALL_DATADIR}/swiftlet COMPONENT
 
 install(TARGETS ${libraries} EXPORT swiftletTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
-if(SWIFTLET_LTO)  # only this very compiler could read what link-time optimisation needs
-  foreach(library ${libraries})
-    install(CODE "execute_process(COMMAND ${CMAKE_OBJCOPY} -p -R .gnu.lto_* -R .gnu.debuglto_*
-      \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/$<TARGET_FILE_NAME:${library}>
-      COMMAND_ERROR_IS_FATAL ANY)" COMPONENT development)
-  endforeach()
-endif()
 foreach(folder plant control identification services/runtime services/comms ground)
   cmake_path(GET folder PARENT_PATH parent)
   install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/swiftlet/${parent}

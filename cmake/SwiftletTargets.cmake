@@ -1,6 +1,6 @@
 # Every target of the project is made here, so that language level, warnings, sanitizers and install rules are one thing.
 
-option(SWIFTLET_WERROR "Treat warnings as errors" ON)
+option(SWIFTLET_WERROR "Treat warnings as errors" ${PROJECT_IS_TOP_LEVEL})
 option(SWIFTLET_FUZZERS "Build nothing but fuzzers, with Clang" OFF)
 set(SWIFTLET_SANITIZE "" CACHE STRING "Sanitizers to build with, as given to -fsanitize=")
 
@@ -9,6 +9,7 @@ target_compile_features(swiftlet_flags INTERFACE cxx_std_17)
 target_compile_options(swiftlet_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual -Wcast-qual
   -ffp-contract=off  # one result on every machine: lockstep runs are compared bit by bit
+  -fno-math-errno -fno-trapping-math  # nobody reads errno after a root, nor the floating-point exception flags
   $<$<BOOL:${SWIFTLET_WERROR}>:-Werror>)
 if(SWIFTLET_SANITIZE)
   # What a sanitizer finds ends the program, so that the test fails.
@@ -23,20 +24,20 @@ if(SWIFTLET_FUZZERS)
   target_compile_options(swiftlet_flags INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
-# For the libraries that are arithmetic and little else. No result depends on these: nobody reads errno after a root, nor the
-# floating-point exception flags.
-add_library(swiftlet_numeric_flags INTERFACE)
-target_compile_options(swiftlet_numeric_flags INTERFACE
-  $<$<NOT:$<CONFIG:Debug>>:-O3> -fno-math-errno -fno-trapping-math)
+# Headers of the standard library and of Eigen, read once for all files of the libraries and, with GoogleTest, once for those of
+# the tests. A file includes what it needs all the same: ./dev lint compiles without them.
+option(SWIFTLET_PRECOMPILED_HEADERS "Precompile the headers of the standard library, Eigen and GoogleTest" ${PROJECT_IS_TOP_LEVEL})
 
-# A program that runs plant and controller in one process gains by optimisation across their files: a target with the property
-# LINK_TIME_OPTIMISED. The objects hold plain code too, for all other programs and for the installed libraries. No result
-# depends on it.
-if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_BUILD_TYPE MATCHES "Rel" AND NOT SWIFTLET_SANITIZE)
-  set(SWIFTLET_LTO ON)
-  target_compile_options(swiftlet_numeric_flags INTERFACE -flto -ffat-lto-objects)
-  target_link_options(swiftlet_flags INTERFACE
-    $<IF:$<BOOL:$<TARGET_PROPERTY:LINK_TIME_OPTIMISED>>,-flto=auto,-fno-lto>)
+# swiftlet_add_precompiled_headers(NAME LIBS ...): the target swiftlet_NAME holds cmake/NAME.hpp, compiled for all that reuse it.
+function(swiftlet_add_precompiled_headers name)
+  add_library(swiftlet_${name} OBJECT ${PROJECT_SOURCE_DIR}/cmake/${name}.cpp)
+  target_precompile_headers(swiftlet_${name} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/${name}.hpp)
+  target_link_libraries(swiftlet_${name} PRIVATE ${ARGN} swiftlet_flags)
+endfunction()
+
+if(SWIFTLET_PRECOMPILED_HEADERS)
+  swiftlet_add_precompiled_headers(library_headers Eigen3::Eigen)
+  set_target_properties(swiftlet_library_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
 endif()
 
 # swiftlet_add_library(NAME [SOURCES ...] [PUBLIC ...] [PRIVATE ...]): a static library swiftlet_NAME, alias swiftlet::NAME,
@@ -51,6 +52,9 @@ function(swiftlet_add_library name)
   target_include_directories(${target} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/swiftlet>)
   target_link_libraries(${target} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:swiftlet_flags>)
+  if(SWIFTLET_PRECOMPILED_HEADERS)
+    target_precompile_headers(${target} REUSE_FROM swiftlet_library_headers)
+  endif()
   set_property(GLOBAL APPEND PROPERTY SWIFTLET_LIBRARIES ${target})
 endfunction()
 
@@ -70,6 +74,10 @@ function(swiftlet_add_test name)
   endif()
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${arg_LIBS} GTest::gtest GTest::gtest_main swiftlet_flags)
+  target_compile_options(${name} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O1>)  # what is tested is optimised, its tests need not be
+  if(SWIFTLET_PRECOMPILED_HEADERS)
+    target_precompile_headers(${name} REUSE_FROM swiftlet_test_headers)
+  endif()
   target_compile_definitions(${name} PRIVATE
     SWIFTLET_SOURCE_DIR="${PROJECT_SOURCE_DIR}" SWIFTLET_BIN_DIR="${PROJECT_BINARY_DIR}/bin")
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")

@@ -6,9 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace CLI {
-class App;
-}
+#include "services/runtime/command_line.hpp"
 
 namespace swiftlet::ground {
 
@@ -18,9 +16,8 @@ constexpr int kFailed = 1;    // it ran and failed
 constexpr int kBadInput = 2;  // wrong usage or bad input; nothing was started or moved
 
 struct Command {
-  CLI::App* app = nullptr;  // the subcommand; run is called if it was parsed
-  std::function<int()>
-      run;  // returns kDone, kFailed or kBadInput, or throws: InputError is bad input, any other a failure
+  runtime::CommandLine app;  // the subcommand; run is called if it was parsed
+  std::function<int()> run;  // returns kDone, kFailed or kBadInput, or throws: InputError is bad input, any other a failure
 };
 
 // Input that was refused. what() is one sentence for the user.

@@ -52,6 +52,6 @@ CommandText text_of(const CLI::App& app, const std::vector<std::string>& above) 
 
 }  // namespace
 
-CommandText command_text(const CLI::App& app) { return text_of(app, {}); }
+CommandText command_text(runtime::CommandLine command) { return text_of(command.app(), {}); }
 
 }  // namespace swiftlet::ground

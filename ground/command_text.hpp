@@ -4,9 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace CLI {
-class App;
-}
+#include "services/runtime/command_line.hpp"
 
 namespace swiftlet::ground {
 
@@ -29,7 +27,7 @@ struct CommandText {
 };
 
 // Of the command and all below it.
-CommandText command_text(const CLI::App& app);
+CommandText command_text(runtime::CommandLine command);
 
 std::string bash_completion(const CommandText& program);
 std::string zsh_completion(const CommandText& program);

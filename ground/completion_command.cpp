@@ -1,19 +1,18 @@
 #include <cstdio>
 
-#include <CLI/CLI.hpp>
 
 #include "ground/command_text.hpp"
 #include "ground/commands.hpp"
 
 namespace swiftlet::ground {
 
-Command add_completion_command(CLI::App& root) {
+Command add_completion_command(runtime::CommandLine root) {
   const auto shell = std::make_shared<std::string>();
-  CLI::App* const app =
+  const runtime::CommandLine app =
       root.add_subcommand("completion", "Print the script that completes this command in a shell");
-  app->add_option("shell", *shell, "for which shell")->required()->check(CLI::IsMember({"bash", "zsh"}));
-  app->footer("example: source <(swiftlet completion bash)");
-  return {app, [&root, shell] {
+  app.add_option("shell", *shell, "for which shell").required().one_of({"bash", "zsh"});
+  app.footer("example: source <(swiftlet completion bash)");
+  return {app, [root, shell] {
             const CommandText program = command_text(root);
             std::fputs((*shell == "zsh" ? zsh_completion(program) : bash_completion(program)).c_str(),
                        stdout);

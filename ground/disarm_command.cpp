@@ -3,7 +3,7 @@
 
 namespace swiftlet::ground {
 
-Command add_disarm_command(CLI::App& root) {
+Command add_disarm_command(runtime::CommandLine root) {
   return add_plain_request_command(root, "disarm", "Stop the rotors on the ground", &Vehicle::disarm);
 }
 

@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 
 #include "ground/commands.hpp"
 #include "ground/fleet_progress.hpp"
@@ -124,40 +123,40 @@ int fly(const FlyOptions& options) {
 
 }  // namespace
 
-Command add_fly_command(CLI::App& root) {
+Command add_fly_command(runtime::CommandLine root) {
   const auto options = std::make_shared<FlyOptions>();
   options->network.localhost_only = true;
-  CLI::App* const app = root.add_subcommand(
+  const runtime::CommandLine app = root.add_subcommand(
       "fly", "Start plant, mocap and control on this computer, fly a mission, and report");
-  add_fly_options(*app, *options);
-  add_network_options(*app, options->network, Vehicles::kSeveral);
-  app->add_option("--spacing", options->spacing_m,
+  add_fly_options(app, *options);
+  add_network_options(app, options->network, Vehicles::kSeveral);
+  app.add_option("--spacing", options->spacing_m,
                   "of several vehicles: they start in a row from west to east about the origin, so many m "
                   "apart, and their "
                   "missions lie as far from each other")
-      ->check(CLI::Range(-100.0, 100.0))
-      ->capture_default_str();
-  app->remove_option(app->get_option("--localhost-only"));  // it stays there
-  app->remove_option(app->get_option("--domain"));          // whose default is not that of a flight
-  app->add_option("--domain", options->domain, "DDS domain; a free one unless given")
-      ->envname("ROS_DOMAIN_ID")
-      ->check(CLI::Range(0, 232));
-  CLI::Option* const attach = app->add_flag_function(
-      "--attach", [options](std::int64_t) { options->parties = Parties::kAttached; },
+      .range(-100.0, 100.0)
+      .show_default();
+  app.remove_option("--localhost-only");  // it stays there
+  app.remove_option("--domain");          // whose default is not that of a flight
+  app.add_option("--domain", options->domain, "DDS domain; a free one unless given")
+      .environment("ROS_DOMAIN_ID")
+      .range(0, 232);
+  runtime::Option attach = app.add_flag(
+      "--attach", [options] { options->parties = Parties::kAttached; },
       "start nothing: fly with the plant, mocap and control that run in the domain (0 unless given)");
-  runtime::add_clock_option(*app, options->clock);
-  app->add_option("--speed", options->speed, "of simulated time against real time")
-      ->check(CLI::Range(0.01, 100.0))
-      ->capture_default_str();
-  app->add_flag("--trace", options->trace,
+  runtime::add_clock_option(app, options->clock);
+  app.add_option("--speed", options->speed, "of simulated time against real time")
+      .range(0.01, 100.0)
+      .show_default();
+  app.add_flag("--trace", options->trace,
                 "lockstep: keep trace.csv in the record, every sample and command to the last bit");
   for (const char* of_the_started :
        {"--vehicle", "--simulation", "--seed", "--imu-rate", "--clock", "--speed"}) {
-    attach->excludes(app->get_option(of_the_started));
+    attach.excludes(app.option(of_the_started));
   }
-  app->add_flag("--network{false}", options->network.localhost_only, "use all interfaces, not loopback alone")
-      ->needs(attach);
-  app->footer(
+  app.add_flag("--network{false}", options->network.localhost_only, "use all interfaces, not loopback alone")
+      .needs(attach);
+  app.footer(
       "Several vehicles (--vehicle-name kl1,kl2) begin at one time; when one fails the others land. Paths "
       "are not checked "
       "against each other.\nCtrl-C lands; a second Ctrl-C ends at once.\nexample: swiftlet fly square "

@@ -3,31 +3,30 @@
 #include <cstdint>
 #include <limits>
 
-#include <CLI/CLI.hpp>
 
 namespace swiftlet::ground {
 
-void add_mission_options(CLI::App& app, FlyOptions& options) {
+void add_mission_options(runtime::CommandLine app, FlyOptions& options) {
   app.add_option(
          "mission", options.mission,
          "mission file, or the name of one in the configuration; also a trajectory or waypoints as CSV, or a "
          "QGroundControl .plan")
-      ->capture_default_str();
-  app.add_option("--vehicle", options.vehicle, "vehicle file or name")->capture_default_str();
+      .show_default();
+  app.add_option("--vehicle", options.vehicle, "vehicle file or name").show_default();
   app.add_option("--control", options.control,
                  "control settings, file or name: motor_lag, or paper for the paper's own loops")
-      ->capture_default_str();
+      .show_default();
   app.add_option("--simulation", options.simulation, "simulation settings, file or name")
-      ->capture_default_str();
+      .show_default();
   app.add_option("--seed", options.seed, "of all that is random in the simulation")
-      ->check(CLI::Range(std::numeric_limits<std::int64_t>::max()))
-      ->capture_default_str();
+      .range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max())
+      .show_default();
   app.add_option("--imu-rate", options.imu_rate_hz,
                  "IMU and inner-loop rate, Hz; as the simulation file says unless given")
-      ->check(CLI::IsMember({500, 1000}));
+      .one_of({500, 1000});
 }
 
-void add_fly_options(CLI::App& app, FlyOptions& options) {
+void add_fly_options(runtime::CommandLine app, FlyOptions& options) {
   add_mission_options(app, options);
   app.add_option(
       "--record", options.record,
@@ -39,7 +38,7 @@ void add_fly_options(CLI::App& app, FlyOptions& options) {
   app.add_flag("--json", options.json, "print one JSON object instead of the summary");
 }
 
-CLI::Option* add_vary_option(CLI::App& app, FlyOptions& options) {
+runtime::Option add_vary_option(runtime::CommandLine app, FlyOptions& options) {
   return app.add_option("--vary", options.vary,
                         "vary file, or the name of one in the configuration: what differs from seed to seed "
                         "in the vehicle that flies and in its world; the controller knows the vehicle file. "

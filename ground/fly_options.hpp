@@ -2,20 +2,16 @@
 #pragma once
 
 #include "ground/flight_plan.hpp"
-
-namespace CLI {
-class App;
-class Option;
-}  // namespace CLI
+#include "services/runtime/command_line.hpp"
 
 namespace swiftlet::ground {
 
 // `options` must outlive the parsing.
 // Mission, vehicle, control, simulation, seed, imu-rate.
-void add_mission_options(CLI::App& app, FlyOptions& options);
+void add_mission_options(runtime::CommandLine app, FlyOptions& options);
 // These, record and json.
-void add_fly_options(CLI::App& app, FlyOptions& options);
+void add_fly_options(runtime::CommandLine app, FlyOptions& options);
 // vary
-CLI::Option* add_vary_option(CLI::App& app, FlyOptions& options);
+runtime::Option add_vary_option(runtime::CommandLine app, FlyOptions& options);
 
 }  // namespace swiftlet::ground

@@ -7,7 +7,6 @@
 #include <memory>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "ground/commands.hpp"
@@ -198,24 +197,24 @@ int run_gains(const GainsOptions& options) {
   return kDone;
 }
 
-Command add_gains_command(CLI::App& root) {
+Command add_gains_command(runtime::CommandLine root) {
   const auto options = std::make_shared<GainsOptions>();
-  CLI::App* const app =
+  const runtime::CommandLine app =
       root.add_subcommand("gains", "Print the gains that a vehicle and control settings lead to");
-  app->footer("example: swiftlet gains --vehicle config/vehicles/kaylion.yaml --json");
-  app->add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in the configuration")
-      ->capture_default_str();
-  app->add_option("--control", options->control,
+  app.footer("example: swiftlet gains --vehicle config/vehicles/kaylion.yaml --json");
+  app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in the configuration")
+      .show_default();
+  app.add_option("--control", options->control,
                   "control settings file, or the name of one in the configuration")
-      ->capture_default_str();
-  app->add_option(
+      .show_default();
+  app.add_option(
          "--draws", options->draws,
          "vehicles drawn from the uncertainty that the vehicle file states, for the margins over them")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}))
-      ->capture_default_str();
-  app->add_option("--seed", options->seed, "of the first draw; each next one has one more")
-      ->capture_default_str();
-  app->add_flag("--json", options->json, "print JSON");
+      .range(std::size_t{1}, std::size_t{1'000'000})
+      .show_default();
+  app.add_option("--seed", options->seed, "of the first draw; each next one has one more")
+      .show_default();
+  app.add_flag("--json", options->json, "print JSON");
   return {app, [options] { return run_gains(*options); }};
 }
 

@@ -3,7 +3,7 @@
 
 namespace swiftlet::ground {
 
-Command add_hold_command(CLI::App& root) {
+Command add_hold_command(runtime::CommandLine root) {
   return add_plain_request_command(root, "hold", "Stop where it is and stay there", &Vehicle::hold);
 }
 

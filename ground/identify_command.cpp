@@ -1,159 +1,22 @@
-#include <chrono>
-#include <cstdio>
-#include <filesystem>
-#include <memory>
+#include <cerrno>
 #include <string>
+#include <system_error>
+#include <unistd.h>
 
-#include <CLI/CLI.hpp>
-
-#include "ground/bench_files.hpp"
 #include "ground/commands.hpp"
-#include "ground/format.hpp"
-#include "ground/identification_report.hpp"
+#include "ground/identify_options.hpp"
 #include "ground/installation.hpp"
-#include "ground/output_files.hpp"
-#include "ground/progress_line.hpp"
-#include "ground/whole_file.hpp"
-#include "services/runtime/config_error.hpp"
-#include "services/runtime/vehicle_file.hpp"
-#include "services/runtime/vehicle_writer.hpp"
 
 namespace swiftlet::ground {
-namespace {
 
-namespace fs = std::filesystem;
-
-constexpr std::chrono::milliseconds kQuickEnough{500};  // without progress
-
-struct IdentifyOptions {
-  std::string bench;
-  std::string out;
-  std::string report;
-  std::string base;
-  std::string name;
-  bool json = false;
-};
-
-identification::BenchIdentification identify(const Bench& bench, const std::string& folder,
-                                             const plant::Vehicle& base) {
-  ProgressLine progress;
-  const auto started = std::chrono::steady_clock::now();
-  try {
-    return identification::identify_bench(
-        bench.data, base, [&](const std::string& experiment, std::size_t done, std::size_t all) {
-          if (std::chrono::steady_clock::now() - started < kQuickEnough) return;
-          progress.update(static_cast<int>(done),
-                          format("fitting %s, %zu of %zu", experiment.c_str(), done + 1, all));
-        });
-  } catch (const identification::BenchError& fault) {
-    const auto file = bench.files.find(fault.experiment());
-    if (file == bench.files.end()) throw InputError(folder + ": " + fault.what());
-    throw runtime::ConfigError(file->second.file, fault.row() ? file->second.lines[*fault.row()] : 0, "",
-                               fault.what());
-  }
-}
-
-// A name that bench.yaml gives is refused with its line.
-fs::path base_file_of(const std::string& base, const IdentifyOptions& options,
-                      const BenchSettings& settings) {
-  try {
-    return configuration_file("vehicles", base);
-  } catch (const runtime::ConfigError& fault) {
-    if (!options.base.empty() || settings.base_vehicle.empty()) throw;
-    throw runtime::ConfigError((fs::path(options.bench) / kBenchSettingsFile).string(),
-                               settings.base_vehicle_line, "base_vehicle", fault.what());
-  }
-}
-
-void refuse_unflyable(const plant::Vehicle& vehicle, const std::string& folder, const std::string& base) {
-  for (const plant::Violation& broken : plant::validate(vehicle)) {
-    throw InputError(folder + ": the identified vehicle cannot fly: " + broken.key + ": " + broken.message +
-                     "; are the units right, and what is not measured and therefore from " + base + "?");
-  }
-}
-
-int run_identify(const IdentifyOptions& options) {
-  const fs::path folder = options.bench;
-  IdentificationReport report;
-  const BenchSettings settings = load_bench_settings(folder);
-  report.bench_folder = options.bench;
-  report.base_vehicle = !options.base.empty()            ? options.base
-                        : !settings.base_vehicle.empty() ? settings.base_vehicle
-                                                         : "kaylion";
-  const fs::path base_file = base_file_of(report.base_vehicle, options, settings);
-  std::vector<fs::path> inputs = files_of(folder);
-  inputs.push_back(base_file);
-  refuse_overwriting({{"--out", options.out}, {"--report", options.report}}, inputs);
-  report.base = runtime::load_vehicle(base_file.string());
-  report.bench = load_bench(folder, settings, report.base.esc);
-  report.found = identify(report.bench, options.bench, report.base);
-  report.found.vehicle.name = !options.name.empty()    ? options.name
-                              : !settings.name.empty() ? settings.name
-                                                       : fs::path(options.out).stem().string();
-  refuse_unflyable(report.found.vehicle, options.bench, report.base_vehicle);
-
-  runtime::VehicleSources sources = runtime::load_vehicle_sources(base_file.string());
-  for (const auto& [key, source] : report.found.sources) sources[key] = source;
-  const std::string comment = "Identified by `swiftlet identify` from the bench " +
-                              folder.filename().string() + ";\nwhat was not measured is from the vehicle " +
-                              report.base.name + ". Frame: Forward-Right-Down, origin at the centre of mass.";
-  const std::string text =
-      runtime::vehicle_text(report.found.vehicle, sources, report.found.uncertainty, comment);
-  runtime::parse_vehicle(text, options.out);
-  if (!options.report.empty()) write_whole_file(options.report, identification_html(report));
-  write_whole_file(options.out, text);
-
-  if (options.json) {
-    std::printf("%s\n", identification_json(report).c_str());
-  } else {
-    std::printf("%s", identification_table(report).c_str());
-  }
-  std::fprintf(stderr, "swiftlet: %s identified; wrote %s%s\n",
-               counted(report.found.uncertainty.parameters.size(), "parameter").c_str(), options.out.c_str(),
-               options.report.empty() ? "" : (" and " + options.report).c_str());
-  return kDone;
-}
-
-}  // namespace
-
-Command add_identify_command(CLI::App& root) {
-  const auto options = std::make_shared<IdentifyOptions>();
-  CLI::App* const app =
-      root.add_subcommand("identify", "Identify a vehicle from test bench data, or from flights");
-  const Command simulate = add_identify_simulate_command(*app);
-  const Command flight = add_identify_flight_command(*app);
-  app->require_subcommand(0, 1);
-  app->add_option("bench", options->bench, "folder of bench data")->type_name("BENCH_DIR");
-  app->add_option("--out", options->out, "the vehicle file to write")->type_name("FILE");
-  app->add_option("--report", options->report, "a page with figures, fits and intervals; one HTML file")
-      ->type_name("FILE");
-  app->add_option(
-         "--base", options->base,
-         "vehicle file, or the name of one in the configuration, for all that was not measured; what "
-         "bench.yaml says, or kaylion, unless given")
-      ->type_name("VEHICLE");
-  app->add_option("--name", options->name, "name of the vehicle; that of --out unless given");
-  app->add_flag("--json", options->json, "print one JSON object instead of the table");
-  app->footer(
-      "BENCH_DIR holds one CSV an experiment, any of them, each column headed `name [unit]`:\n"
-      "  esc.csv              supply_voltage, throttle or pulse_width, motor_voltage\n"
-      "  motor_step.csv       time, speed, motor_voltage if recorded\n"
-      "  steady_motor.csv     motor_voltage, speed\n"
-      "  thrust_torque.csv    speed, thrust and/or torque\n"
-      "  throttle_thrust.csv  supply_voltage, throttle or pulse_width, thrust of one rotor\n"
-      "  inertia_roll.csv, inertia_pitch.csv, inertia_yaw.csv\n"
-      "                       length, separation, period (two strings), or arm, period (swung)\n"
-      "  mass.csv             mass\n"
-      "and, if wanted, bench.yaml: base_vehicle, name, propeller, instruments (docs/identification.md).\n\n"
-      "example: swiftlet identify bench --out mine.yaml --report report.html\n"
-      "         swiftlet identify simulate --vehicle kaylion --noise 0.01 --out bench");
-  return {app, [options, simulate, flight] {
-            if (simulate.app->parsed()) return simulate.run();
-            if (flight.app->parsed()) return flight.run();
-            if (options->bench.empty()) throw InputError("identify: BENCH_DIR is required");
-            if (options->out.empty()) throw InputError("identify: --out is required");
-            return run_identify(*options);
-          }};
+Command add_identify_command(runtime::CommandLine root, char** argv) {
+  const auto hand_over = [argv](const auto&) -> int {
+    const std::string program = program_beside("swiftlet-identify").string();
+    execv(program.c_str(), argv + 1);  // from the command's name on, which stands for the program's
+    throw std::system_error(errno, std::generic_category(), program);
+  };
+  const runtime::CommandLine app = root.add_subcommand("identify", kIdentifyPurpose);
+  return add_identify_options(app, {hand_over, hand_over, hand_over});
 }
 
 }  // namespace swiftlet::ground

@@ -1,7 +1,5 @@
-#include <CLI/CLI.hpp>
 
 #include "ground/commands.hpp"
-#include "ground/numbers.hpp"
 #include "ground/request_command.hpp"
 
 namespace swiftlet::ground {
@@ -13,13 +11,13 @@ struct Options : AskOptions {
 
 }  // namespace
 
-Command add_land_command(CLI::App& root) {
+Command add_land_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
-  CLI::App* const app = add_ask_subcommand(root, "land", "Descend straight down and stop the rotors",
+  const runtime::CommandLine app = add_ask_subcommand(root, "land", "Descend straight down and stop the rotors",
                                            "swiftlet land --speed 0.3", options);
-  app->add_option("--speed", options->speed, "peak speed, m/s")
-      ->check(positive_number())
-      ->capture_default_str();
+  app.add_option("--speed", options->speed, "peak speed, m/s")
+      .positive()
+      .show_default();
   return {app, [options] {
             return run_request(*options, "land", [&](Vehicle& vehicle) {
               return vehicle.land(options->speed, options->timeout());

@@ -4,7 +4,6 @@
 #include <thread>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "ground/client.hpp"
@@ -114,17 +113,17 @@ int list(const Options& options) {
 
 }  // namespace
 
-Command add_list_command(CLI::App& root) {
+Command add_list_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
-  CLI::App* const app = root.add_subcommand(
+  const runtime::CommandLine app = root.add_subcommand(
       "list", "Say which vehicles are on the network: mode, battery, controllers, poses a second");
-  add_network_options(*app, options->network);
-  app->remove_option(app->get_option("--vehicle-name"));
-  app->add_option("--time", options->look_s, "how long to look, s")
-      ->check(CLI::Range(0.4, 60.0))
-      ->capture_default_str();
-  app->add_flag("--json", options->json, "print the list as JSON");
-  app->footer("example: swiftlet list --json | jq -r .[].vehicle");
+  add_network_options(app, options->network);
+  app.remove_option("--vehicle-name");
+  app.add_option("--time", options->look_s, "how long to look, s")
+      .range(0.4, 60.0)
+      .show_default();
+  app.add_flag("--json", options->json, "print the list as JSON");
+  app.footer("example: swiftlet list --json | jq -r .[].vehicle");
   return {app, [options] { return list(*options); }};
 }
 

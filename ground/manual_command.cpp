@@ -4,7 +4,6 @@
 #include <fstream>
 #include <stdexcept>
 
-#include <CLI/CLI.hpp>
 
 #include "ground/command_text.hpp"
 #include "ground/commands.hpp"
@@ -39,7 +38,7 @@ const CommandText& find(const CommandText& program, const std::vector<std::strin
   return *found;
 }
 
-int run(const CLI::App& root, const Options& options) {
+int run(runtime::CommandLine root, const Options& options) {
   const CommandText program = command_text(root);
   if (options.folder.empty()) {
     std::fputs(manual_page(find(program, options.command)).c_str(), stdout);
@@ -52,13 +51,13 @@ int run(const CLI::App& root, const Options& options) {
 
 }  // namespace
 
-Command add_manual_command(CLI::App& root) {
+Command add_manual_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
-  CLI::App* const app = root.add_subcommand("man", "Print the manual page of this program or of a command");
-  app->add_option("command", options->command, "the command's words; none: the program");
-  app->add_option("--into", options->folder, "write the pages of all commands into this folder");
-  app->footer("example: swiftlet man sim fly | man -l -");
-  return {app, [&root, options] { return run(root, *options); }};
+  const runtime::CommandLine app = root.add_subcommand("man", "Print the manual page of this program or of a command");
+  app.add_option("command", options->command, "the command's words; none: the program");
+  app.add_option("--into", options->folder, "write the pages of all commands into this folder");
+  app.footer("example: swiftlet man sim fly | man -l -");
+  return {app, [root, options] { return run(root, *options); }};
 }
 
 }  // namespace swiftlet::ground

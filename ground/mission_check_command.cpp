@@ -1,7 +1,6 @@
 #include <cstdio>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 
 #include "ground/commands.hpp"
 #include "ground/installation.hpp"
@@ -41,27 +40,27 @@ int run(const Options& options) {
 
 }  // namespace
 
-Command add_mission_check_command(CLI::App& mission) {
+Command add_mission_check_command(runtime::CommandLine mission) {
   const auto options = std::make_shared<Options>();
-  CLI::App* const app = mission.add_subcommand(
+  const runtime::CommandLine app = mission.add_subcommand(
       "check", "Whether a mission file is sound, and whether the vehicle can fly it everywhere on its path");
-  app->footer(
+  app.footer(
       "example: swiftlet mission check square --vehicle kaylion\nExit codes: 0 it can be flown, 1 it cannot, "
       "2 "
       "the file is wrong.");
-  app->add_option("file", options->file,
+  app.add_option("file", options->file,
                   "mission file, or the name of one in the configuration; also files of others")
-      ->required();
-  app->add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in the configuration")
-      ->capture_default_str();
-  app->add_option("--control", options->control,
+      .required();
+  app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in the configuration")
+      .show_default();
+  app.add_option("--control", options->control,
                   "control settings whose limits and fence hold, likewise a file or a name")
-      ->capture_default_str();
-  app->add_option("--start", options->start, "where the vehicle stands: north and east, m")->expected(2);
-  app->add_option("--supply", options->supply_voltage_v,
+      .show_default();
+  app.add_option("--start", options->start, "where the vehicle stands: north and east, m").expected(2);
+  app.add_option("--supply", options->supply_voltage_v,
                   "battery voltage at which it must be possible, V; the low-battery threshold unless told")
-      ->check(CLI::Range(0.1, 100.0));
-  app->add_flag("--json", options->json, "print JSON");
+      .range(0.1, 100.0);
+  app.add_flag("--json", options->json, "print JSON");
   return {app, [options] { return run(*options); }};
 }
 

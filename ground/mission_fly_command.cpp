@@ -1,6 +1,5 @@
 #include <cstdio>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "ground/commands.hpp"
@@ -74,26 +73,26 @@ int fly_mission(const Options& options) {
 
 }  // namespace
 
-Command add_mission_fly_command(CLI::App& mission) {
+Command add_mission_fly_command(runtime::CommandLine mission) {
   const auto options = std::make_shared<Options>();
-  CLI::App* const app =
+  const runtime::CommandLine app =
       add_request_subcommand(mission, "fly", "Upload a mission file, start it and follow it to its end",
                              "swiftlet mission fly config/missions/square.yaml", options);
-  app->add_option(
+  app.add_option(
          "file", options->file,
          "mission file, or the name of one in the configuration; also a trajectory or waypoints as CSV, "
          "or a QGroundControl .plan")
-      ->required();
-  app->add_option("--control", options->control,
+      .required();
+  app.add_option("--control", options->control,
                   "control settings whose limits and fence the file is checked against")
-      ->capture_default_str();
-  CLI::Option* const no_wait =
-      app->add_flag("--no-wait", options->no_wait, "return once it has been started");
-  app->add_flag(
+      .show_default();
+  runtime::Option no_wait =
+      app.add_flag("--no-wait", options->no_wait, "return once it has been started");
+  app.add_flag(
          "--link", options->link,
          "the flight depends on this command: if it falls silent, the vehicle does what ground_link_action "
          "of its control settings says")
-      ->excludes(no_wait);
+      .excludes(no_wait);
   return {app, [options] { return fly_mission(*options); }};
 }
 

@@ -1,7 +1,6 @@
 #include <cstdio>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 
 #include "ground/commands.hpp"
 #include "ground/installation.hpp"
@@ -37,19 +36,19 @@ int run(const Options& options) {
 
 }  // namespace
 
-Command add_mission_plot_command(CLI::App& mission) {
+Command add_mission_plot_command(runtime::CommandLine mission) {
   const auto options = std::make_shared<Options>();
-  CLI::App* const app =
+  const runtime::CommandLine app =
       mission.add_subcommand("plot", "Draw the path of a mission file, with its limits and its fence");
-  app->footer("example: swiftlet mission plot square -o square.png");
-  app->add_option("file", options->file,
+  app.footer("example: swiftlet mission plot square -o square.png");
+  app.add_option("file", options->file,
                   "mission file, or the name of one in the configuration; also files of others")
-      ->required();
-  app->add_option("-o,--out", options->output, "the picture, PNG")->capture_default_str();
-  app->add_option("--control", options->control,
+      .required();
+  app.add_option("-o,--out", options->output, "the picture, PNG").show_default();
+  app.add_option("--control", options->control,
                   "control settings whose limits and fence hold, a file or a name")
-      ->capture_default_str();
-  app->add_option("--start", options->start, "where the vehicle stands: north and east, m")->expected(2);
+      .show_default();
+  app.add_option("--start", options->start, "where the vehicle stands: north and east, m").expected(2);
   return {app, [options] { return run(*options); }};
 }
 

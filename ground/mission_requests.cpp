@@ -1,5 +1,4 @@
 // `swiftlet mission start`, `pause`, `resume`, `skip` and `clear`: of the mission that the vehicle has.
-#include <CLI/CLI.hpp>
 
 #include "ground/commands.hpp"
 #include "ground/request_command.hpp"
@@ -13,11 +12,11 @@ struct Options : AskOptions {
 
 using Ask = Manoeuvre (Vehicle::*)(std::uint64_t, std::chrono::milliseconds);
 
-Command add_mission_request(CLI::App& mission, const std::string& name, const std::string& description,
+Command add_mission_request(runtime::CommandLine mission, const std::string& name, const std::string& description,
                             Ask ask) {
   const auto options = std::make_shared<Options>();
-  CLI::App* const app = add_ask_subcommand(mission, name, description, "swiftlet mission " + name, options);
-  app->add_option("--id", options->id,
+  const runtime::CommandLine app = add_ask_subcommand(mission, name, description, "swiftlet mission " + name, options);
+  app.add_option("--id", options->id,
                   "refuse if the mission there is another one: the number that `mission upload` said");
   return {app, [options, name, ask] {
             return run_request(*options, "mission " + name, [&](Vehicle& vehicle) {
@@ -28,28 +27,28 @@ Command add_mission_request(CLI::App& mission, const std::string& name, const st
 
 }  // namespace
 
-Command add_mission_start_command(CLI::App& mission) {
+Command add_mission_start_command(runtime::CommandLine mission) {
   return add_mission_request(mission, "start",
                              "Fly the mission that was uploaded, from its first item; again, if it has ended",
                              &Vehicle::start_mission);
 }
 
-Command add_mission_pause_command(CLI::App& mission) {
+Command add_mission_pause_command(runtime::CommandLine mission) {
   return add_mission_request(mission, "pause", "Come to rest on the path and hold, to be gone on with",
                              &Vehicle::pause_mission);
 }
 
-Command add_mission_resume_command(CLI::App& mission) {
+Command add_mission_resume_command(runtime::CommandLine mission) {
   return add_mission_request(mission, "resume", "Back to where the mission was left, and on",
                              &Vehicle::resume_mission);
 }
 
-Command add_mission_skip_command(CLI::App& mission) {
+Command add_mission_skip_command(runtime::CommandLine mission) {
   return add_mission_request(mission, "skip", "Give up the item that is flown or paused, on with the next",
                              &Vehicle::skip_mission_item);
 }
 
-Command add_mission_clear_command(CLI::App& mission) {
+Command add_mission_clear_command(runtime::CommandLine mission) {
   return add_mission_request(mission, "clear", "Forget the mission; refused while it is flown",
                              &Vehicle::clear_mission);
 }

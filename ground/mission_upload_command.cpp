@@ -1,6 +1,5 @@
 #include <cstdio>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "ground/commands.hpp"
@@ -42,17 +41,17 @@ int upload(const Options& options) {
 
 }  // namespace
 
-Command add_mission_upload_command(CLI::App& mission) {
+Command add_mission_upload_command(runtime::CommandLine mission) {
   const auto options = std::make_shared<Options>();
-  CLI::App* const app = add_request_subcommand(
+  const runtime::CommandLine app = add_request_subcommand(
       mission, "upload", "Hand a mission over to the vehicle, which keeps it until it is started",
       "swiftlet mission upload square && swiftlet mission start", options);
-  app->add_option("file", options->file,
+  app.add_option("file", options->file,
                   "mission file, or the name of one in the configuration; also files of others")
-      ->required();
-  app->add_option("--control", options->control,
+      .required();
+  app.add_option("--control", options->control,
                   "control settings whose limits and fence the file is checked against")
-      ->capture_default_str();
+      .show_default();
   return {app, [options] { return upload(*options); }};
 }
 

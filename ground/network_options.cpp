@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include <CLI/CLI.hpp>
 
 #include "services/comms/node_options.hpp"
 
@@ -28,15 +27,15 @@ std::string fault_of_names(const std::string& list) {
 
 }  // namespace
 
-void add_network_options(CLI::App& app, comms::NodeSettings& network, Vehicles vehicles) {
+void add_network_options(runtime::CommandLine app, comms::NodeSettings& network, Vehicles vehicles) {
   network.name = "ground";
   comms::add_node_options(app, network);
-  CLI::Option* const name = app.get_option("--vehicle-name");
+  runtime::Option name = app.option("--vehicle-name");
   if (vehicles == Vehicles::kOne) {
-    name->check(CLI::Validator(fault_of_name, "NAME"));
+    name.check(fault_of_name, "NAME");
   } else {
-    name->check(CLI::Validator(fault_of_names, "NAME[,NAME...]"));
-    name->description(name->get_description() + "; several are separated by commas");
+    name.check(fault_of_names, "NAME[,NAME...]");
+    name.describe(name.description() + "; several are separated by commas");
   }
 }
 

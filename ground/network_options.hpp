@@ -5,10 +5,7 @@
 #include <vector>
 
 #include "services/comms/node.hpp"
-
-namespace CLI {
-class App;
-}
+#include "services/runtime/command_line.hpp"
 
 namespace swiftlet::ground {
 
@@ -17,7 +14,7 @@ enum class Vehicles { kOne, kSeveral };
 
 // The options of comms::add_node_options, a name that cannot be one refused as bad input. `network` must
 // outlive the parsing.
-void add_network_options(CLI::App& app, comms::NodeSettings& network, Vehicles vehicles = Vehicles::kOne);
+void add_network_options(runtime::CommandLine app, comms::NodeSettings& network, Vehicles vehicles = Vehicles::kOne);
 
 // What stands between the commas.
 std::vector<std::string> split_list(const std::string& list);

@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "ground/commands.hpp"
@@ -28,13 +27,13 @@ int report(const ReportOptions& options) {
 
 }  // namespace
 
-Command add_report_command(CLI::App& root) {
+Command add_report_command(runtime::CommandLine root) {
   const auto options = std::make_shared<ReportOptions>();
-  CLI::App* const app =
+  const runtime::CommandLine app =
       root.add_subcommand("report", "What recorded flights came to, and which settings made the difference");
-  app->add_option("FOLDER", options->folders, "records of flights; the newest below flights/ unless given");
-  app->add_flag("--json", options->json, "for scripts");
-  app->footer("example: swiftlet report flights/20261121-093909-square flights/20261121-093910-square");
+  app.add_option("FOLDER", options->folders, "records of flights; the newest below flights/ unless given");
+  app.add_flag("--json", options->json, "for scripts");
+  app.footer("example: swiftlet report flights/20261121-093909-square flights/20261121-093910-square");
   return {app, [options] { return report(*options); }};
 }
 

@@ -5,7 +5,6 @@
 #include <mutex>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "ground/network_options.hpp"
@@ -30,33 +29,33 @@ nlohmann::ordered_json to_json(const Asked& asked) {
   return json;
 }
 
-CLI::App* add_subcommand(CLI::App& root, const std::string& name, const std::string& description,
+runtime::CommandLine add_subcommand(runtime::CommandLine root, const std::string& name, const std::string& description,
                          const std::string& example, const std::shared_ptr<RequestOptions>& options,
                          Vehicles vehicles) {
-  CLI::App* const app = root.add_subcommand(name, description);
-  add_network_options(*app, options->network, vehicles);
-  app->add_option("--timeout", options->timeout_s, "longest wait for an answer, s")
-      ->check(CLI::Range(0.1, 3600.0))
-      ->capture_default_str();
-  app->add_flag("--json", options->json, "print the answer as JSON");
-  app->footer("example: " + example);
+  const runtime::CommandLine app = root.add_subcommand(name, description);
+  add_network_options(app, options->network, vehicles);
+  app.add_option("--timeout", options->timeout_s, "longest wait for an answer, s")
+      .range(0.1, 3600.0)
+      .show_default();
+  app.add_flag("--json", options->json, "print the answer as JSON");
+  app.footer("example: " + example);
   return app;
 }
 
 }  // namespace
 
-CLI::App* add_request_subcommand(CLI::App& root, const std::string& name, const std::string& description,
+runtime::CommandLine add_request_subcommand(runtime::CommandLine root, const std::string& name, const std::string& description,
                                  const std::string& example, const std::shared_ptr<RequestOptions>& options) {
   return add_subcommand(root, name, description, example, options, Vehicles::kOne);
 }
 
-CLI::App* add_ask_subcommand(CLI::App& root, const std::string& name, const std::string& description,
+runtime::CommandLine add_ask_subcommand(runtime::CommandLine root, const std::string& name, const std::string& description,
                              const std::string& example, const std::shared_ptr<AskOptions>& options,
                              Vehicles vehicles) {
-  CLI::App* const app = add_subcommand(root, name, description, example, options, vehicles);
-  app->add_option("--wait", options->wait_s,
+  const runtime::CommandLine app = add_subcommand(root, name, description, example, options, vehicles);
+  app.add_option("--wait", options->wait_s,
                   "return when it is done, after so many s at the latest; exit code 1 if it is not")
-      ->check(CLI::Range(0.1, 3600.0));
+      .range(0.1, 3600.0);
   return app;
 }
 
@@ -103,10 +102,10 @@ int run_request(const AskOptions& options, const std::string& what,
   return failed ? kFailed : kDone;
 }
 
-Command add_plain_request_command(CLI::App& root, const std::string& name, const std::string& description,
+Command add_plain_request_command(runtime::CommandLine root, const std::string& name, const std::string& description,
                                   Manoeuvre (Vehicle::*ask)(std::chrono::milliseconds)) {
   const auto options = std::make_shared<AskOptions>();
-  CLI::App* const app =
+  const runtime::CommandLine app =
       add_ask_subcommand(root, name, description, "swiftlet " + name + " --vehicle-name kl1,kl2", options);
   return {app, [options, name, ask] {
             return run_request(*options, name,

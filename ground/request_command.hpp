@@ -32,11 +32,11 @@ struct AskOptions : RequestOptions {
 };
 
 // A subcommand with the network's options, --timeout and --json; `options` is kept by what run captures.
-CLI::App* add_request_subcommand(CLI::App& root, const std::string& name, const std::string& description,
+runtime::CommandLine add_request_subcommand(runtime::CommandLine root, const std::string& name, const std::string& description,
                                  const std::string& example, const std::shared_ptr<RequestOptions>& options);
 
 // Likewise, with --wait, and for several vehicles unless told.
-CLI::App* add_ask_subcommand(CLI::App& root, const std::string& name, const std::string& description,
+runtime::CommandLine add_ask_subcommand(runtime::CommandLine root, const std::string& name, const std::string& description,
                              const std::string& example, const std::shared_ptr<AskOptions>& options,
                              Vehicles vehicles = Vehicles::kSeveral);
 
@@ -47,7 +47,7 @@ int run_request(const AskOptions& options, const std::string& what,
                 const std::function<Manoeuvre(Vehicle&)>& ask);
 
 // A subcommand that asks for something without arguments.
-Command add_plain_request_command(CLI::App& root, const std::string& name, const std::string& description,
+Command add_plain_request_command(runtime::CommandLine root, const std::string& name, const std::string& description,
                                   Manoeuvre (Vehicle::*ask)(std::chrono::milliseconds));
 
 }  // namespace swiftlet::ground

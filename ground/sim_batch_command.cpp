@@ -5,7 +5,6 @@
 #include <string>
 #include <thread>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "ground/batch.hpp"
@@ -77,23 +76,23 @@ int sim_batch(const BatchOptions& options) {
 
 }  // namespace
 
-Command add_sim_batch_command(CLI::App& sim) {
+Command add_sim_batch_command(runtime::CommandLine sim) {
   const auto options = std::make_shared<BatchOptions>();
   FlyOptions& flight = options->flight;
   flight.parties = Parties::kInProcess;
-  CLI::App* const app = sim.add_subcommand(
+  const runtime::CommandLine app = sim.add_subcommand(
       "batch", "Fly a mission many times, each in a vehicle and a world drawn anew: Monte Carlo");
-  add_mission_options(*app, flight);
-  add_vary_option(*app, flight)->required();
-  app->add_option("--runs", options->runs, "number of flights; the first has --seed, each next one more")
-      ->check(CLI::Range(std::size_t{1}, kMostRuns))
-      ->capture_default_str();
-  app->add_option("--jobs", options->jobs, "flights at the same time; all cores unless given")
-      ->check(CLI::Range(std::size_t{1}, kMostJobs));
-  app->add_option("--out", flight.record,
+  add_mission_options(app, flight);
+  add_vary_option(app, flight).required();
+  app.add_option("--runs", options->runs, "number of flights; the first has --seed, each next one more")
+      .range(std::size_t{1}, kMostRuns)
+      .show_default();
+  app.add_option("--jobs", options->jobs, "flights at the same time; all cores unless given")
+      .range(std::size_t{1}, kMostJobs);
+  app.add_option("--out", flight.record,
                   "folder for batch.csv and batch.png; flights/<date>-<mission> unless given");
-  app->add_flag("--json", flight.json, "print one JSON object instead of the table");
-  app->footer(
+  app.add_flag("--json", flight.json, "print one JSON object instead of the table");
+  app.footer(
       "The controller is designed on --vehicle; what flies is drawn around it. `swiftlet sim fly` with the "
       "seed of one of\nthe runs and the same files flies it again, to the last bit.\n\n"
       "example: swiftlet sim batch square --runs 200 --seed 1 --vary kaylion --out batches/first");

@@ -1,7 +1,6 @@
 #include <memory>
 #include <optional>
 
-#include <CLI/CLI.hpp>
 
 #include "ground/commands.hpp"
 #include "ground/flight_conclusion.hpp"
@@ -38,17 +37,17 @@ int sim_fly(const FlyOptions& options) {
 
 }  // namespace
 
-Command add_sim_fly_command(CLI::App& sim) {
+Command add_sim_fly_command(runtime::CommandLine sim) {
   const auto options = std::make_shared<FlyOptions>();
   options->parties = Parties::kInProcess;
-  CLI::App* const app = sim.add_subcommand(
+  const runtime::CommandLine app = sim.add_subcommand(
       "fly", "Fly a mission in this process, as fast as it goes; the same flight as in lockstep");
-  add_fly_options(*app, *options);
-  add_vary_option(*app, *options);
-  app->add_flag(
+  add_fly_options(app, *options);
+  add_vary_option(app, *options);
+  app.add_flag(
       "--trace", options->trace,
       "keep trace.csv in the record: every sample and command to the last bit, to compare flights by");
-  app->footer("example: swiftlet sim fly square --seed 7 --json | jq .rms_3d_m");
+  app.footer("example: swiftlet sim fly square --seed 7 --json | jq .rms_3d_m");
   return {app, [options] { return sim_fly(*options); }};
 }
 

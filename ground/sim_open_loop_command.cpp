@@ -3,11 +3,9 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 
 #include "ground/commands.hpp"
 #include "ground/installation.hpp"
-#include "ground/numbers.hpp"
 #include "ground/open_loop.hpp"
 #include "services/runtime/csv.hpp"
 #include "services/runtime/vehicle_file.hpp"
@@ -42,12 +40,12 @@ int run_open_loop(const OpenLoopOptions& options) {
 
 }  // namespace
 
-Command add_sim_open_loop_command(CLI::App& sim) {
+Command add_sim_open_loop_command(runtime::CommandLine sim) {
   const auto options = std::make_shared<OpenLoopOptions>();
-  CLI::App* const open_loop = sim.add_subcommand(
+  const runtime::CommandLine open_loop = sim.add_subcommand(
       "open-loop",
       "Integrate given pulse widths: no ground, drag or noise, an ideal supply; a row for each millisecond");
-  open_loop->footer(
+  open_loop.footer(
       "FILE.csv of --pwm has the columns t,pwm1,pwm2,...: seconds and microseconds, held until the next row; "
       "the last row's\n"
       "time ends the run. --initial has one row px,py,pz,vx,vy,vz,qw,qx,qy,qz,p,q,r,om1,...: position and "
@@ -55,16 +53,16 @@ Command add_sim_open_loop_command(CLI::App& sim) {
       "quaternion NED from FRD, body rates and rotor speeds (rad/s). --out has the same columns behind t.\n\n"
       "example: swiftlet sim open-loop --vehicle kaylion --pwm pulses.csv --supply 3.7 --out motion.csv");
   open_loop
-      ->add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in the configuration")
-      ->required();
-  open_loop->add_option("--pwm", options->pulses, "pulse widths, CSV")->required();
-  open_loop->add_option("--supply", options->supply_voltage_v, "supply voltage v_s of Eq. (9), V")
-      ->required()
-      ->check(finite_number())
-      ->check(CLI::Range(0.1, 100.0));
-  open_loop->add_option("--initial", options->initial,
+      .add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in the configuration")
+      .required();
+  open_loop.add_option("--pwm", options->pulses, "pulse widths, CSV").required();
+  open_loop.add_option("--supply", options->supply_voltage_v, "supply voltage v_s of Eq. (9), V")
+      .required()
+      .finite()
+      .range(0.1, 100.0);
+  open_loop.add_option("--initial", options->initial,
                         "initial state, CSV; at rest at the origin, rotors still, unless given");
-  open_loop->add_option("--out", options->out, "the motion, CSV")->required();
+  open_loop.add_option("--out", options->out, "the motion, CSV").required();
   return {open_loop, [options] { return run_open_loop(*options); }};
 }
 

@@ -3,7 +3,6 @@
 #include <tuple>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "ground/client.hpp"
@@ -227,14 +226,14 @@ int show_status(const Options& options) {
 
 }  // namespace
 
-Command add_status_command(CLI::App& root) {
+Command add_status_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
-  CLI::App* const app =
+  const runtime::CommandLine app =
       add_request_subcommand(root, "status", "Say mode, position, battery, rates, ages and mission",
                              "swiftlet status --json | jq .battery.voltage_v", options);
-  app->add_option("--watch", options->watch_s, "how long rates are counted, s")
-      ->check(CLI::Range(0.1, 60.0))
-      ->capture_default_str();
+  app.add_option("--watch", options->watch_s, "how long rates are counted, s")
+      .range(0.1, 60.0)
+      .show_default();
   return {app, [options] { return show_status(*options); }};
 }
 

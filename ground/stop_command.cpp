@@ -3,7 +3,6 @@
 #include <string>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 
 #include "ground/commands.hpp"
 #include "ground/request_command.hpp"
@@ -31,11 +30,11 @@ void confirm(const Options& options) {
 
 }  // namespace
 
-Command add_stop_command(CLI::App& root) {
+Command add_stop_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
-  CLI::App* const app = add_ask_subcommand(root, "stop", "Emergency: rotors off at once, wherever it is",
+  const runtime::CommandLine app = add_ask_subcommand(root, "stop", "Emergency: rotors off at once, wherever it is",
                                            "swiftlet stop --yes", options);
-  app->add_flag("--yes,-y", options->yes, "do not ask for confirmation");
+  app.add_flag("--yes,-y", options->yes, "do not ask for confirmation");
   return {app, [options] {
             confirm(*options);
             return run_request(*options, "stop",

@@ -5,7 +5,6 @@
 #include <thread>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "ground/commands.hpp"
@@ -255,23 +254,23 @@ int stream(const Options& options) {
 
 }  // namespace
 
-Command add_stream_command(CLI::App& root) {
+Command add_stream_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
-  CLI::App* const app = add_request_subcommand(
+  const runtime::CommandLine app = add_request_subcommand(
       root, "stream",
       "Stream setpoints from a CSV file, by the vehicle's own clock: positions, velocities, accelerations, "
       "attitudes "
       "and thrust, or body rates and thrust. The vehicle must hold; afterwards it holds again, or lands",
       "swiftlet stream circle.csv --rate 50    (header: t [s],x [m],y [m],z [m])", options);
-  app->add_option("file", options->file,
+  app.add_option("file", options->file,
                   "CSV whose header names the columns with their units (NED), or "
                   "t,x,y,z[,vx,vy,vz[,ax,ay,az]][,yaw] (ENU); "
                   "- reads standard input as it comes")
-      ->required();
-  app->add_option("--rate", options->rate_hz,
+      .required();
+  app.add_option("--rate", options->rate_hz,
                   "send so many a second, between the rows, Hz; else each row at its time")
-      ->check(CLI::Range(kLeastRate_hz, 1000.0));
-  app->add_flag("--land", options->land, "land at the end, also where the stream ended early");
+      .range(kLeastRate_hz, 1000.0);
+  app.add_flag("--land", options->land, "land at the end, also where the stream ended early");
   return {app, [options] { return stream(*options); }};
 }
 

@@ -1,7 +1,5 @@
-#include <CLI/CLI.hpp>
 
 #include "ground/commands.hpp"
-#include "ground/numbers.hpp"
 #include "ground/request_command.hpp"
 
 namespace swiftlet::ground {
@@ -14,16 +12,16 @@ struct Options : AskOptions {
 
 }  // namespace
 
-Command add_takeoff_command(CLI::App& root) {
+Command add_takeoff_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
-  CLI::App* const app = add_ask_subcommand(root, "takeoff", "Climb straight up and hold; arm first",
+  const runtime::CommandLine app = add_ask_subcommand(root, "takeoff", "Climb straight up and hold; arm first",
                                            "swiftlet takeoff 1.2 --speed 0.5", options);
-  app->add_option("height", options->height_m, "height above the origin, m")
-      ->check(positive_number())
-      ->capture_default_str();
-  app->add_option("--speed", options->speed, "peak speed, m/s")
-      ->check(positive_number())
-      ->capture_default_str();
+  app.add_option("height", options->height_m, "height above the origin, m")
+      .positive()
+      .show_default();
+  app.add_option("--speed", options->speed, "peak speed, m/s")
+      .positive()
+      .show_default();
   return {app, [options] {
             return run_request(*options, "takeoff", [&](Vehicle& vehicle) {
               return vehicle.take_off(options->height_m, options->speed, options->timeout());

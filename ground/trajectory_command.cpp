@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cstdio>
 
-#include <CLI/CLI.hpp>
 
 #include "ground/commands.hpp"
 #include "ground/installation.hpp"
@@ -42,17 +41,17 @@ int send_trajectory(const Options& options) {
 
 }  // namespace
 
-Command add_trajectory_command(CLI::App& root) {
+Command add_trajectory_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
-  CLI::App* const app = add_ask_subcommand(
+  const runtime::CommandLine app = add_ask_subcommand(
       root, "trajectory",
       "Send a trajectory to a vehicle that holds, follows setpoints or flies another: it joins this one from "
       "its present motion",
       "swiftlet trajectory figure8.csv", options, Vehicles::kOne);
-  app->add_option("file", options->file, "trajectory or waypoints as CSV")->required();
-  app->add_option("--control", options->control,
+  app.add_option("file", options->file, "trajectory or waypoints as CSV").required();
+  app.add_option("--control", options->control,
                   "control settings whose limits and fence the file is checked against")
-      ->capture_default_str();
+      .show_default();
   return {app, [options] { return send_trajectory(*options); }};
 }
 

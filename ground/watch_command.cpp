@@ -3,7 +3,6 @@
 #include <optional>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 
 #include "ground/commands.hpp"
 #include "ground/interrupts.hpp"
@@ -160,18 +159,18 @@ int watch(const Options& options) {
 
 }  // namespace
 
-Command add_watch_command(CLI::App& root) {
+Command add_watch_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
-  CLI::App* const app =
+  const runtime::CommandLine app =
       root.add_subcommand("watch",
                           "Show a vehicle on the whole terminal: state, position against reference, battery, "
                           "rates, latencies, warnings; "
                           "keys hold, land and stop it. Without a terminal, a line a second");
-  add_network_options(*app, options->network);
-  app->add_flag("--plain", options->plain, "print a line a second, also at a terminal");
-  app->add_option("--duration", options->duration_s, "end after so many s; else with q or an interrupt")
-      ->check(CLI::Range(0.1, 86400.0));
-  app->footer("example: swiftlet watch --vehicle-name kl2");
+  add_network_options(app, options->network);
+  app.add_flag("--plain", options->plain, "print a line a second, also at a terminal");
+  app.add_option("--duration", options->duration_s, "end after so many s; else with q or an interrupt")
+      .range(0.1, 86400.0);
+  app.footer("example: swiftlet watch --vehicle-name kl2");
   return {app, [options] { return watch(*options); }};
 }
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/QR>
+#include "math/linear_algebra.hpp"
 
 namespace swiftlet::identification {
 namespace {
@@ -95,7 +95,7 @@ Eigen::Vector3d best_weights(const std::vector<Start>& starts) {
     rows.row(i) << 1.0, start.by_commands - start.now, start.now;
     then[i] = start.then;
   }
-  return rows.colPivHouseholderQr().solve(then);
+  return math::least_squares(rows, then);
 }
 
 double combined(const Eigen::Vector3d& weights, const Start& start) {

@@ -6,11 +6,11 @@
 #include <random>
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <boost/math/distributions/students_t.hpp>
 #include <ceres/ceres.h>
 
 #include "identification/minimise.hpp"
+#include "math/linear_algebra.hpp"
 
 namespace swiftlet::identification {
 
@@ -117,7 +117,7 @@ bool solve_subset(ScaledProblem& problem, const std::vector<Index>& rows, Vector
       jacobian.row(i) = problem.jacobian().row(rows[static_cast<std::size_t>(i)]);
     }
     if (!residuals.allFinite() || !jacobian.allFinite()) return false;
-    x -= jacobian.colPivHouseholderQr().solve(residuals);
+    x -= math::least_squares(jacobian, residuals);
     if (!x.allFinite()) return false;
   }
   return problem.residuals(x).allFinite();
@@ -161,9 +161,8 @@ void reweight(ScaledProblem& problem, VectorXd& x) {
       const double ratio = residuals[i] / limit;
       root_weights[i] = std::abs(ratio) < 1.0 ? 1.0 - ratio * ratio : 0.0;
     }
-    const VectorXd step = (root_weights.asDiagonal() * problem.jacobian())
-                              .colPivHouseholderQr()
-                              .solve((root_weights.asDiagonal() * residuals).eval());
+    const VectorXd step = math::least_squares(root_weights.asDiagonal() * problem.jacobian(),
+                                              root_weights.asDiagonal() * residuals);
     if (!step.allFinite()) return;
     const VectorXd before = x;
     x -= step;
@@ -271,7 +270,7 @@ double condition_of(MatrixXd jacobian, const VectorXd& weights) {
     if (!(length > 0.0)) return std::numeric_limits<double>::infinity();
     jacobian.col(i) /= length;
   }
-  const VectorXd values = Eigen::JacobiSVD<MatrixXd>(jacobian).singularValues();
+  const VectorXd values = math::singular_values(jacobian);
   return values[0] / values[values.size() - 1];
 }
 

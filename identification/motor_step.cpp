@@ -4,12 +4,14 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+#include <Eigen/LU>
 #include <ceres/jet.h>
 
 #include "identification/checks.hpp"
 #include "identification/least_squares.hpp"
 #include "identification/limits.hpp"
+#include "math/linear_algebra.hpp"
 #include "plant/model/airframe.hpp"
 
 namespace swiftlet::identification {
@@ -221,7 +223,7 @@ Estimate read_off(const MotorStepData& data, const Fit& fit, const Experiment& m
     powers.row(i) << 1.0, u, u * u;
     speeds[i] = data.speed_rad_s[rows[static_cast<std::size_t>(i)]];
   }
-  const Eigen::Vector3d c = powers.colPivHouseholderQr().solve(speeds);
+  const Eigen::Vector3d c = math::least_squares(powers, speeds);
   const double sigma = (speeds - powers * c).norm() / std::sqrt(static_cast<double>(count - 3));
   double u = 0.0;
   for (int i = 0; i < 20; ++i) u -= (c[0] + c[1] * u + c[2] * u * u - level) / (c[1] + 2.0 * c[2] * u);

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
 #include <ceres/ceres.h>
 
 #include "identification/minimise.hpp"
+#include "math/linear_algebra.hpp"
 
 namespace swiftlet::identification {
 namespace {
@@ -109,12 +109,11 @@ struct Information {
 };
 
 Information inverted(const MatrixXd& normal) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(normal);
-  const VectorXd& values = solver.eigenvalues();
+  const auto [values, vectors] = math::symmetric_eigen(normal);
   const double least = kUnseen * std::max(values.maxCoeff(), 0.0);
   Information out{MatrixXd::Zero(normal.rows(), normal.cols()), MatrixXd::Zero(normal.rows(), normal.cols())};
   for (Index i = 0; i < values.size(); ++i) {
-    const auto direction = solver.eigenvectors().col(i);
+    const auto direction = vectors.col(i);
     if (values[i] > least) {
       out.inverse += direction * direction.transpose() / values[i];
     } else {

@@ -7,8 +7,6 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/LU>
-
 #include "plant/model/esc.hpp"
 #include "plant/model/motor.hpp"
 #include "plant/model/rotor.hpp"
@@ -21,6 +19,7 @@ using plant::PerRotor;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFitTolerance = 1e-12;         // of the highest thrust: how far beyond a limit is rounding
 constexpr double kCoefficientTolerance = 1e-9;  // of the largest of its kind: smaller counts as 0
+constexpr double kLeastAuthority = 1e-6;         // of plant::least_authority: below it the rank counts as 3
 constexpr double kLargestMoment = 1e100;        // N m, so that no quotient of moments overflows
 constexpr int kScaleSteps = 64;
 
@@ -46,16 +45,10 @@ Allocator::Allocator(const plant::Vehicle& vehicle)
   }
   effectiveness_ = plant::effectiveness(vehicle);
 
-  // Rows of one size, so that rank and inverse are well judged.
-  const Eigen::Vector4d row_size = effectiveness_.rowwise().norm();
-  const bool finite = effectiveness_.allFinite() && row_size.minCoeff() > 0.0;
-  const plant::Effectiveness scaled = row_size.cwiseInverse().asDiagonal() * effectiveness_;
-  const Eigen::FullPivLU<Eigen::Matrix4d> gram(scaled * scaled.transpose());
-  if (!finite || gram.rank() < 4) {
+  if (!effectiveness_.allFinite() || plant::least_authority(effectiveness_) < kLeastAuthority) {
     throw std::invalid_argument("rotors: their places and spins cannot give thrust and all three moments");
   }
-  const Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::ColMajor, plant::kMaxRotors, 4> inverse =
-      scaled.transpose() * gram.inverse() * row_size.cwiseInverse().asDiagonal();
+  const plant::Allocation inverse = plant::pseudo_inverse(effectiveness_);
   for (int i = 0; i < count_; ++i) {
     for_thrust_[index(i)] = inverse(i, 0);
     for_roll_[index(i)] = inverse(i, 1);

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include "control/design/refine_zero.hpp"
+#include "math/linear_algebra.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -19,33 +19,15 @@ double log_gain(const Loop& loop, double omega) {
   return std::log(std::abs(frequency_response(loop, omega)));
 }
 
-// Secant steps on log |L| over log omega from a start that is nearly right.
-double refine_crossover(const Loop& loop, double omega) {
-  double x0 = std::log(omega);
-  double f0 = log_gain(loop, omega);
-  double x1 = x0 + 1e-6;
-  for (int i = 0; i < 20; ++i) {
-    const double f1 = log_gain(loop, std::exp(x1));
-    if (f1 == f0 || !std::isfinite(f1)) break;
-    const double x2 = x1 - f1 * (x1 - x0) / (f1 - f0);
-    if (!(std::abs(x2 - x1) < 0.1)) break;
-    x0 = x1;
-    f0 = f1;
-    x1 = x2;
-    if (std::abs(x1 - x0) < 1e-14) break;
-  }
-  return std::exp(x1);
-}
-
 }  // namespace
 
 std::complex<double> frequency_response(const Loop& loop, double omega) {
   const Eigen::Index n = loop.a.rows();
   Eigen::MatrixXcd resolvent = -loop.a.cast<std::complex<double>>();
   resolvent.diagonal().array() += std::complex<double>(0.0, omega);
-  const Eigen::VectorXcd x = resolvent.partialPivLu().solve(loop.b.cast<std::complex<double>>());
+  const Eigen::MatrixXcd x = math::solve(resolvent, Eigen::MatrixXcd(loop.b.cast<std::complex<double>>()));
   std::complex<double> y = 0.0;
-  for (Eigen::Index i = 0; i < n; ++i) y += loop.c[i] * x[i];
+  for (Eigen::Index i = 0; i < n; ++i) y += loop.c[i] * x(i, 0);
   return y;
 }
 
@@ -53,12 +35,14 @@ std::vector<double> crossovers(const Loop& loop) {
   const Eigen::Index n = loop.a.rows();
   Eigen::MatrixXd hamiltonian(2 * n, 2 * n);
   hamiltonian << loop.a, loop.b * loop.b.transpose(), -loop.c.transpose() * loop.c, -loop.a.transpose();
-  const Eigen::VectorXcd eigenvalues = hamiltonian.eigenvalues();
+  const Eigen::VectorXcd eigenvalues = math::eigenvalues(hamiltonian);
   std::vector<double> found;
   for (const std::complex<double>& lambda : eigenvalues) {
     const double omega = lambda.imag();
     if (!(omega > 0.0) || std::abs(lambda.real()) > 1e-3 * omega) continue;
-    if (std::abs(log_gain(loop, omega)) < kGainTolerance) found.push_back(refine_crossover(loop, omega));
+    if (std::abs(log_gain(loop, omega)) < kGainTolerance) {
+      found.push_back(std::exp(refine_zero([&](double x) { return log_gain(loop, std::exp(x)); }, std::log(omega))));
+    }
   }
   std::sort(found.begin(), found.end());
   return found;
@@ -74,7 +58,7 @@ double phase_margin_deg(const Loop& loop) {
 }
 
 std::vector<std::complex<double>> closed_loop_poles(const Loop& loop) {
-  const Eigen::VectorXcd eigenvalues = (loop.a - loop.b * loop.c).eigenvalues();
+  const Eigen::VectorXcd eigenvalues = math::eigenvalues(loop.a - loop.b * loop.c);
   std::vector<std::complex<double>> poles(eigenvalues.begin(), eigenvalues.end());
   std::sort(poles.begin(), poles.end(), [](const std::complex<double>& l, const std::complex<double>& r) {
     return l.real() != r.real() ? l.real() < r.real() : l.imag() < r.imag();

@@ -5,40 +5,53 @@
 #include <complex>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
+#include "control/design/refine_zero.hpp"
+#include "math/linear_algebra.hpp"
 
 namespace swiftlet::control {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kImaginary = 1e-6;  // real over imaginary part, up to which a zero lies on the axis
-constexpr double kLowest = 1e-4;     // rad/s: zeros below are those at 0, rounded
-constexpr double kHighest = 1e7;     // rad/s: zeros beyond are those at infinity, rounded
+constexpr double kNearAxis = 1e-3;     // real over imaginary part of a zero that may lie on the axis
+constexpr double kRealResponse = 1e-9;  // imaginary over real part of the response, up to which it is real
+constexpr double kLowest = 1e-4;        // rad/s: zeros below are those at 0, rounded
+constexpr double kShift = 0.37;         // of the norm of A: the pencil is not singular there
+
+// Secant steps on the phase of -L over log omega from a start that is nearly right.
+double refine_phase_crossover(const Loop& loop, double omega) {
+  const auto phase = [&](double log_omega) {
+    const std::complex<double> response = frequency_response(loop, std::exp(log_omega));
+    return std::atan(response.imag() / response.real());
+  };
+  return std::exp(refine_zero(phase, std::log(omega)));
+}
 
 }  // namespace
 
-// L(s) - L(-s) = c (sI - A)^-1 b + c (sI + A)^-1 b, whose zeros are the generalized eigenvalues of its system
-// matrix.
+// Of the 2n + 1 zeros of L(s) - L(-s) = c (sI - A)^-1 b + c (sI + A)^-1 b those on the imaginary axis. The zeros are
+// the s at which the pencil S - s E is singular; as E is singular too, they come from the eigenvalues 1 / (s - shift) of
+// (S - shift E)^-1 E, and each is then made exact.
 std::vector<double> phase_crossovers(const Loop& loop) {
   const Eigen::Index n = loop.a.rows();
-  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(2 * n + 1, 2 * n + 1);
+  const Eigen::Index size = 2 * n + 1;
+  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(size, size);
   system.topLeftCorner(n, n) = loop.a;
   system.block(n, n, n, n) = -loop.a;
   system.block(0, 2 * n, n, 1) = loop.b;
   system.block(n, 2 * n, n, 1) = loop.b;
   system.block(2 * n, 0, 1, n) = loop.c;
   system.block(2 * n, n, 1, n) = loop.c;
-  Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(2 * n + 1, 2 * n + 1);
-  identity(2 * n, 2 * n) = 0.0;
-  const Eigen::GeneralizedEigenSolver<Eigen::MatrixXd> zeros(system, identity, false);
+  Eigen::MatrixXd e = Eigen::MatrixXd::Identity(size, size);
+  e(2 * n, 2 * n) = 0.0;
+
+  const double shift = kShift * loop.a.norm();
   std::vector<double> found;
-  for (Eigen::Index i = 0; i < 2 * n + 1; ++i) {
-    const std::complex<double> alpha = zeros.alphas()[i];
-    const double beta = zeros.betas()[i];
-    if (!(std::abs(alpha) < kHighest * std::abs(beta))) continue;
-    const std::complex<double> zero = alpha / beta;
-    if (zero.imag() > kLowest && std::abs(zero.real()) < kImaginary * (1.0 + zero.imag()))
-      found.push_back(zero.imag());
+  for (const std::complex<double>& mu : math::eigenvalues(math::solve(system - shift * e, e))) {
+    const std::complex<double> zero = shift + 1.0 / mu;
+    if (!(zero.imag() > kLowest) || std::abs(zero.real()) > kNearAxis * zero.imag()) continue;
+    const double omega = refine_phase_crossover(loop, zero.imag());
+    const std::complex<double> response = frequency_response(loop, omega);
+    if (std::abs(response.imag()) < kRealResponse * std::abs(response.real())) found.push_back(omega);
   }
   std::sort(found.begin(), found.end());
   return found;

@@ -6,11 +6,9 @@
 #include <stdexcept>
 #include <string>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Jacobi>
-#include <Eigen/LU>
-#include <Eigen/SVD>
+
+#include "math/linear_algebra.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -52,24 +50,27 @@ void check_problem(const MatrixXd& a, const MatrixXd& b, const MatrixXd& q, cons
   }
   if (!is_symmetric(q)) refuse("Q must be symmetric");
   if (!is_symmetric(r)) refuse("R must be symmetric");
-  const double least_q = Eigen::SelfAdjointEigenSolver<MatrixXd>(q, Eigen::EigenvaluesOnly).eigenvalues()[0];
+  const double least_q = math::symmetric_eigen(q).values[0];
   if (least_q < -kSymmetryTolerance * largest_entry(q)) {
     refuse("Q has the eigenvalue " + std::to_string(least_q) + ", must be positive semidefinite");
   }
-  if (Eigen::LLT<MatrixXd>(r).info() != Eigen::Success) refuse("R must be positive definite");
+  if (!math::is_positive_definite(r)) refuse("R must be positive definite");
 }
 
 // Popov-Belevitch-Hautus: every mode that is not stable must be reached, rank [A - lambda I, B] = n.
 void check_stabilisable(const MatrixXd& a, const MatrixXd& b) {
   const Eigen::Index n = a.rows();
-  const VectorXcd modes = a.eigenvalues();
+  const VectorXcd modes = math::eigenvalues(a);
   for (const std::complex<double>& mode : modes) {
     if (mode.real() < 0.0) continue;
-    MatrixXcd pencil(n, n + b.cols());
-    pencil << a.cast<std::complex<double>>() - mode * MatrixXcd::Identity(n, n),
-        b.cast<std::complex<double>>();
-    const Eigen::VectorXd s = Eigen::JacobiSVD<MatrixXcd>(pencil).singularValues();
-    if (s[n - 1] <= kRankTolerance * s[0]) {
+    // [A - lambda I, B] in real numbers, which doubles its rank.
+    const MatrixXd real = a - mode.real() * MatrixXd::Identity(n, n);
+    const MatrixXd imaginary = mode.imag() * MatrixXd::Identity(n, n);
+    const MatrixXd none = MatrixXd::Zero(n, b.cols());
+    MatrixXd pencil(2 * n, 2 * (n + b.cols()));
+    pencil << real, imaginary, b, none, -imaginary, real, none, b;
+    const Eigen::VectorXd s = math::singular_values(pencil);
+    if (s[2 * n - 1] <= kRankTolerance * s[0]) {
       refuse("(A, B) is not stabilisable: the mode at " + std::to_string(mode.real()) + " + " +
              std::to_string(std::abs(mode.imag())) + "i cannot be reached by the input");
     }
@@ -95,9 +96,7 @@ MatrixXd solution_by_schur(const MatrixXd& a, const MatrixXd& g, const MatrixXd&
   const double size = q.norm() > 0.0 && g.norm() > 0.0 ? std::sqrt(q.norm() / g.norm()) : 1.0;
   MatrixXd hamiltonian(2 * n, 2 * n);
   hamiltonian << a, -size * g, -q / size, -a.transpose();
-  const Eigen::ComplexSchur<MatrixXd> schur(hamiltonian);
-  MatrixXcd t = schur.matrixT();
-  MatrixXcd u = schur.matrixU();
+  auto [t, u] = math::complex_schur(hamiltonian);
   Eigen::Index stable = 0;
   for (Eigen::Index i = 0; i < 2 * n; ++i) {
     if (t(i, i).real() >= 0.0) continue;
@@ -106,12 +105,12 @@ MatrixXd solution_by_schur(const MatrixXd& a, const MatrixXd& g, const MatrixXd&
   }
   if (stable != n) return MatrixXd::Constant(n, n, std::nan(""));
   // X = U21 U11^-1.
-  const MatrixXcd x =
-      u.topLeftCorner(n, n).transpose().fullPivLu().solve(u.bottomLeftCorner(n, n).transpose());
+  const MatrixXcd x = math::solve(MatrixXcd(u.topLeftCorner(n, n).transpose()),
+                                  MatrixXcd(u.bottomLeftCorner(n, n).transpose()));
   return size * symmetric_part(x.real());
 }
 
-bool is_stable(const MatrixXd& a) { return a.allFinite() && a.eigenvalues().real().maxCoeff() < 0.0; }
+bool is_stable(const MatrixXd& a) { return a.allFinite() && math::eigenvalues(a).real().maxCoeff() < 0.0; }
 
 }  // namespace
 
@@ -125,14 +124,14 @@ MatrixXd solve_lyapunov(const MatrixXd& a, const MatrixXd& q) {
       kronecker.block(i * n, j * n, n, n).diagonal().array() += a(j, i);
     }
   }
-  const Eigen::VectorXd x = kronecker.partialPivLu().solve(-q.reshaped());
+  const MatrixXd x = math::solve(kronecker, -q.reshaped());
   return symmetric_part(x.reshaped(n, n));
 }
 
 double care_residual(const MatrixXd& a, const MatrixXd& b, const MatrixXd& q, const MatrixXd& r,
                      const MatrixXd& x) {
   const MatrixXd ax = a.transpose() * x;
-  const MatrixXd g = b * r.llt().solve(b.transpose());
+  const MatrixXd g = b * math::solve_positive_definite(r, b.transpose());
   const double scale = 2.0 * a.norm() * x.norm() + x.norm() * g.norm() * x.norm() + q.norm();
   return scale > 0.0 ? (ax + ax.transpose() - x * g * x + q).norm() / scale : 0.0;
 }
@@ -140,7 +139,7 @@ double care_residual(const MatrixXd& a, const MatrixXd& b, const MatrixXd& q, co
 MatrixXd solve_care(const MatrixXd& a, const MatrixXd& b, const MatrixXd& q, const MatrixXd& r) {
   check_problem(a, b, q, r);
   check_stabilisable(a, b);
-  const MatrixXd g = b * r.llt().solve(b.transpose());
+  const MatrixXd g = b * math::solve_positive_definite(r, b.transpose());
   MatrixXd x = solution_by_schur(a, g, q);
   // Kleinman: (A - G X)' X+ + X+ (A - G X) + Q + X G X = 0, for as long as it gains.
   double residual = x.allFinite() ? care_residual(a, b, q, r, x) : 0.0;
@@ -160,7 +159,7 @@ MatrixXd solve_care(const MatrixXd& a, const MatrixXd& b, const MatrixXd& q, con
 }
 
 MatrixXd lqr(const MatrixXd& a, const MatrixXd& b, const MatrixXd& q, const MatrixXd& r) {
-  return r.llt().solve(b.transpose() * solve_care(a, b, q, r));
+  return math::solve_positive_definite(r, b.transpose() * solve_care(a, b, q, r));
 }
 
 }  // namespace swiftlet::control

@@ -7,8 +7,6 @@
 #include <cstdio>
 #include <limits>
 
-#include <Eigen/LU>
-
 #include "control/position/thrust_attitude_map.hpp"
 #include "control/trajectory/bernstein.hpp"
 #include "plant/model/airframe.hpp"
@@ -43,9 +41,7 @@ class Survey {
         limits_(limits),
         drag_per_mass_(vehicle.linear_drag / vehicle.mass_kg),
         rotor_step_s_(std::max(kRotorStep_s, duration_s / kMostLooks)) {
-    const plant::Effectiveness effect = plant::effectiveness(vehicle);
-    const Eigen::Matrix4d square = effect * effect.transpose();
-    for_wrench_ = effect.transpose() * square.inverse();
+    for_wrench_ = plant::pseudo_inverse(plant::effectiveness(vehicle));
     const plant::ThrustRange rotor = plant::steady_thrust_range(vehicle, supply_voltage_v);
     begin(Demand::kFence, 0.0);
     begin(Demand::kSpeed, limits.max_speed);
@@ -154,7 +150,7 @@ class Survey {
   const Limits& limits_;
   double drag_per_mass_;  // 1/s
   double rotor_step_s_;
-  Eigen::Matrix<double, Eigen::Dynamic, 4> for_wrench_;  // the pseudo-inverse of the effectiveness
+  plant::Allocation for_wrench_;
   std::vector<WorstDemand> worst_;
   std::size_t index_ = 0;
   double start_s_ = 0.0;  // of the segment

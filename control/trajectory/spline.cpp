@@ -4,7 +4,8 @@
 #include <cstddef>
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
+
+#include "math/linear_algebra.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -34,7 +35,7 @@ struct UnitSegment {
     for (int i = R; i < 2 * R; ++i) {
       for (int j = R; j < 2 * R; ++j) integral(i, j) = falling(i, R) * falling(j, R) / (i + j - 2 * R + 1);
     }
-    coefficients = ends.inverse();
+    coefficients = math::solve(Eigen::MatrixXd(ends), Matrix::Identity());
     cost = coefficients.transpose() * integral * coefficients;
   }
 };

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include <Eigen/Eigenvalues>
-
+#include "math/linear_algebra.hpp"
 #include "plant/simulation/random.hpp"
 #include "plant/simulation/streams.hpp"
 #include "services/runtime/config_error.hpp"
@@ -204,8 +203,8 @@ Variation variation_of(const plant::VehicleUncertainty& uncertainty, const plant
     if (i < count && j < count && i != j) correlation(i, j) = correlation(j, i) = pair.value;
   }
   // Rounded numbers may not be a correlation of anything by a little: what is below 0 counts as 0.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
-  out.correlation_root = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const math::SymmetricEigen eigen = math::symmetric_eigen(correlation);
+  out.correlation_root = eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
   return out;
 }
 

@@ -1,6 +1,6 @@
 #include "plant/model/airframe.hpp"
 
-#include <Eigen/LU>
+#include "math/linear_algebra.hpp"
 
 namespace swiftlet::plant {
 
@@ -15,14 +15,23 @@ Effectiveness effectiveness(const Vehicle& vehicle) {
   return out;
 }
 
+Allocation pseudo_inverse(const Effectiveness& effectiveness) {
+  const Eigen::Vector4d scale = effectiveness.rowwise().norm().cwiseInverse();
+  const Effectiveness scaled = scale.asDiagonal() * effectiveness;
+  return math::solve_positive_definite(scaled * scaled.transpose(), scaled).transpose() * scale.asDiagonal();
+}
+
+double least_authority(const Effectiveness& effectiveness) {
+  Effectiveness rows = effectiveness;
+  for (int i = 0; i < rows.rows(); ++i) {
+    const double length = rows.row(i).norm();
+    if (length > 0.0) rows.row(i) /= length;
+  }
+  return math::singular_values(rows)[3];
+}
+
 RotorThrusts trim_thrusts(const Vehicle& vehicle) {
-  const Effectiveness e = effectiveness(vehicle);
-  // Rows of one size, so that the inverse of e e^T is accurate.
-  const Eigen::Vector4d scale = e.rowwise().norm().cwiseInverse();
-  const Effectiveness scaled = scale.asDiagonal() * e;
-  const Eigen::Vector4d wrench(scale[0] * vehicle.mass_kg * kGravity, 0.0, 0.0, 0.0);
-  const Eigen::Matrix4d gram = scaled * scaled.transpose();
-  return scaled.transpose() * gram.inverse() * wrench;
+  return pseudo_inverse(effectiveness(vehicle)) * Eigen::Vector4d(vehicle.mass_kg * kGravity, 0.0, 0.0, 0.0);
 }
 
 }  // namespace swiftlet::plant

@@ -22,6 +22,15 @@ using RotorThrusts = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, k
 // torque Q = (k_Q / k_T) T about z, positive if it turns counter-clockwise seen from above.
 Effectiveness effectiveness(const Vehicle& vehicle);
 
+// N x 4, on the stack: the pseudo-inverse of an effectiveness of rank 4. Of all thrusts that give a wrench, those
+// with the least sum of squares. Its rows are scaled first, so that it is accurate for any size of vehicle.
+using Allocation = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::ColMajor, kMaxRotors, 4>;
+Allocation pseudo_inverse(const Effectiveness& effectiveness);
+
+// The least singular value of an effectiveness whose rows are scaled to length 1; 0 where a row is. At rank 4 thrust
+// and moments can be commanded one by one.
+double least_authority(const Effectiveness& effectiveness);
+
 // The mean lever, m, by which the rotors' thrusts turn the body about an axis, 0 roll .. 2 yaw; about yaw torque
 // over thrust.
 inline double mean_lever(const Vehicle& vehicle, int axis) {

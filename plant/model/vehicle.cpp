@@ -4,9 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
-
+#include "math/linear_algebra.hpp"
 #include "plant/model/airframe.hpp"
 #include "plant/model/propulsion.hpp"
 
@@ -34,8 +32,7 @@ bool check_inertia(const Eigen::Matrix3d& inertia, RuleChecker& check) {
     check.add(key, "is not symmetric, must be");
     return false;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia, Eigen::EigenvaluesOnly);
-  const Eigen::Vector3d& principal = solver.eigenvalues();  // rising
+  const Eigen::Vector3d principal = math::symmetric_eigen(inertia).values;  // rising
   if (!(principal[0] > 0.0)) {
     check.add(key, "has the principal moment ", principal[0], ", must be above 0");
     return false;
@@ -139,13 +136,7 @@ bool check_battery(const BatteryParameters& battery, RuleChecker& check) {
 
 // Whether thrust, roll, pitch and yaw can be commanded one by one.
 bool check_authority(const Vehicle& vehicle, RuleChecker& check) {
-  Effectiveness rows = effectiveness(vehicle);
-  for (int i = 0; i < rows.rows(); ++i) {
-    const double length = rows.row(i).norm();
-    if (length > 0.0) rows.row(i) /= length;
-  }
-  const double smallest = Eigen::JacobiSVD<Effectiveness>(rows).singularValues().minCoeff();
-  if (smallest > kMinSingularValue) return true;
+  if (least_authority(effectiveness(vehicle)) > kMinSingularValue) return true;
   check.add(
       "rotors",
       "cannot produce thrust, roll, pitch and yaw one by one, must: Eq. (27) and (28) have rank below 4");

@@ -2,14 +2,11 @@
 #pragma once
 
 #include "services/comms/node.hpp"
-
-namespace CLI {
-class App;
-}
+#include "services/runtime/command_line.hpp"
 
 namespace swiftlet::comms {
 
 // --domain (default $ROS_DOMAIN_ID or 0), --vehicle-name, --transport udp|shm, --localhost-only.
-void add_node_options(CLI::App& app, NodeSettings& settings);
+void add_node_options(runtime::CommandLine app, NodeSettings& settings);
 
 }  // namespace swiftlet::comms

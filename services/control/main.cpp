@@ -5,7 +5,6 @@
 #include <string>
 #include <thread>
 
-#include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 
 #include "services/comms/node.hpp"
@@ -34,13 +33,13 @@ struct Options {
   runtime::ProcessOptions process;
 };
 
-void add_options(CLI::App& app, Options& options) {
-  app.add_option("--vehicle", options.vehicle, "Vehicle file")->capture_default_str();
-  app.add_option("--control", options.control, "Control settings file")->capture_default_str();
+void add_options(runtime::CommandLine app, Options& options) {
+  app.add_option("--vehicle", options.vehicle, "Vehicle file").show_default();
+  app.add_option("--control", options.control, "Control settings file").show_default();
   app.add_option("--strength", options.strength,
                  "Of several controllers one acts; when it fails, the strongest of the others takes over")
-      ->check(CLI::Range(0, 1000))
-      ->capture_default_str();
+      .range(0, 1000)
+      .show_default();
   runtime::add_clock_option(app, options.clock);
   comms::add_node_options(app, options.node);
   runtime::add_process_options(app, options.process);
@@ -94,6 +93,6 @@ int main(int argc, char** argv) {
       {"swiftlet-control",
        "The flight controller: answers every IMU sample with an actuator command, flies what it is asked to.",
        "--control config/control/motor_lag.yaml --localhost-only"},
-      argc, argv, [&](CLI::App& app) { services::add_options(app, options); },
+      argc, argv, [&](runtime::CommandLine app) { services::add_options(app, options); },
       [&] { services::run(options); });
 }

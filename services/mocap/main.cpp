@@ -5,7 +5,6 @@
 #include <stdexcept>
 #include <string>
 
-#include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 
 #include "plant/simulation/mocap.hpp"
@@ -32,11 +31,11 @@ struct Options {
   runtime::ProcessOptions process;
 };
 
-void add_options(CLI::App& app, Options& options) {
-  app.add_option("--simulation", options.simulation, "Simulation file")->capture_default_str();
+void add_options(runtime::CommandLine app, Options& options) {
+  app.add_option("--simulation", options.simulation, "Simulation file").show_default();
   app.add_option("--seed", options.seed, "Of errors and dropouts")
-      ->check(CLI::Range(std::numeric_limits<std::int64_t>::max()))
-      ->capture_default_str();
+      .range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max())
+      .show_default();
   runtime::add_clock_option(app, options.clock);
   comms::add_node_options(app, options.node);
   runtime::add_process_options(app, options.process);
@@ -178,6 +177,6 @@ int main(int argc, char** argv) {
       {"swiftlet-mocap",
        "Simulated motion capture: sees the ground truth of a simulated vehicle, publishes its pose.",
        "--seed 7 --localhost-only"},
-      argc, argv, [&](CLI::App& app) { services::add_options(app, options); },
+      argc, argv, [&](runtime::CommandLine app) { services::add_options(app, options); },
       [&] { services::run(options); });
 }

@@ -12,7 +12,6 @@
 #include <string>
 #include <thread>
 
-#include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 
 #include "services/comms/node.hpp"
@@ -48,23 +47,23 @@ struct Options {
   runtime::ProcessOptions process;
 };
 
-void add_options(CLI::App& app, Options& options) {
-  app.add_option("--vehicle", options.vehicle, "Vehicle file")->capture_default_str();
-  app.add_option("--simulation", options.simulation, "Simulation file")->capture_default_str();
+void add_options(runtime::CommandLine app, Options& options) {
+  app.add_option("--vehicle", options.vehicle, "Vehicle file").show_default();
+  app.add_option("--simulation", options.simulation, "Simulation file").show_default();
   app.add_option("--seed", options.seed, "Of noise, biases and gusts")
-      ->check(CLI::Range(std::numeric_limits<std::int64_t>::max()))
-      ->capture_default_str();
+      .range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max())
+      .show_default();
   app.add_option("--start", options.start, "Where it stands at first, m north and east of the origin")
-      ->check(CLI::Range(-1e3, 1e3));
+      .range(-1e3, 1e3);
   app.add_option("--imu-rate", options.imu_rate,
                  "IMU samples a second, 500 or 1000; default: the simulation file's")
-      ->check(CLI::IsMember({500, 1000}));
+      .one_of({500, 1000});
   runtime::add_clock_option(app, options.clock);
   app.add_option(
          "--speed", options.speed,
          "Of simulated time against real time, 1 unless given; in lockstep at most, unless given as fast "
          "as the answers come")
-      ->check(CLI::Range(0.01, 100.0));
+      .range(0.01, 100.0);
   app.add_flag("--paused", options.lockstep.paused,
                "Lockstep: let time pass only as far as simulation_clock grants it");
   app.add_option("--trace", options.lockstep.trace,
@@ -272,6 +271,6 @@ int main(int argc, char** argv) {
       {"swiftlet-plant",
        "A simulated quadrotor on the network: publishes what it senses, obeys actuator commands.",
        "--vehicle config/vehicles/kaylion.yaml --seed 7 --localhost-only"},
-      argc, argv, [&](CLI::App& app) { services::add_options(app, options); },
+      argc, argv, [&](runtime::CommandLine app) { services::add_options(app, options); },
       [&] { services::run(options); });
 }

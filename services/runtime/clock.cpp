@@ -1,19 +1,12 @@
 #include "services/runtime/clock.hpp"
 
-#include <map>
-#include <string>
-
-#include <CLI/CLI.hpp>
 
 namespace swiftlet::runtime {
 
-void add_clock_option(CLI::App& app, Clock& clock) {
-  static const std::map<std::string, Clock> kClocks{{"realtime", Clock::kRealtime},
-                                                    {"lockstep", Clock::kLockstep}};
-  app.add_option("--clock", clock,
+void add_clock_option(CommandLine app, Clock& clock) {
+  app.add_choice("--clock", clock, {{"realtime", Clock::kRealtime}, {"lockstep", Clock::kLockstep}},
                  "realtime, or lockstep: simulated time waits for the answers to its samples")
-      ->transform(CLI::CheckedTransformer(kClocks).description("{realtime,lockstep}"))
-      ->default_str("realtime");
+      .show_default("realtime");
 }
 
 const char* to_string(Clock clock) { return clock == Clock::kRealtime ? "realtime" : "lockstep"; }

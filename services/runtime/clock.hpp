@@ -1,9 +1,7 @@
 // What makes simulated time pass.
 #pragma once
 
-namespace CLI {
-class App;
-}
+#include "services/runtime/command_line.hpp"
 
 namespace swiftlet::runtime {
 
@@ -13,7 +11,7 @@ enum class Clock {
 };
 
 // --clock realtime|lockstep. `clock` must outlive the parsing.
-void add_clock_option(CLI::App& app, Clock& clock);
+void add_clock_option(CommandLine app, Clock& clock);
 
 const char* to_string(Clock clock);  // as on the command line
 

@@ -6,7 +6,6 @@
 #include <string>
 #include <thread>
 
-#include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 
 #include "services/runtime/config_error.hpp"
@@ -24,18 +23,18 @@ int fail(const ProgramText& text, const std::exception& error, int code) {
 
 }  // namespace
 
-void add_process_options(CLI::App& app, ProcessOptions& options) {
+void add_process_options(CommandLine app, ProcessOptions& options) {
   app.add_option("--log-level", options.log.level, "Least severe lines to log")
-      ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
-      ->capture_default_str();
+      .one_of({"trace", "debug", "info", "warning", "error", "off"})
+      .show_default();
   app.add_option("--log-file", options.log.file, "Log to this file as well as to stderr");
   app.add_flag("!--no-realtime", options.realtime.enabled, "Neither lock memory nor ask for SCHED_FIFO");
   app.add_option("--priority", options.realtime.priority, "SCHED_FIFO priority of the thread that counts")
-      ->check(CLI::Range(1, 99))
-      ->capture_default_str();
+      .range(1, 99)
+      .show_default();
   app.add_option("--cpu", options.realtime.cpu, "Core of that thread; -1: any")
-      ->check(CLI::Range(-1, 1023))
-      ->capture_default_str();
+      .range(-1, 1023)
+      .show_default();
 }
 
 RealtimeSettings prepare_realtime(RealtimeSettings settings, Clock clock) {
@@ -52,16 +51,14 @@ RealtimeSettings prepare_realtime(RealtimeSettings settings, Clock clock) {
 }
 
 int run_process(const ProgramText& text, int argc, char** argv,
-                const std::function<void(CLI::App&)>& add_options, const std::function<void()>& body) {
+                const std::function<void(CommandLine)>& add_options, const std::function<void()>& body) {
   try {
-    CLI::App app(text.purpose, text.name);
+    Program program(text.name, text.purpose);
+    const CommandLine app = program.command_line();
     app.footer(std::string("Example: ") + text.name + ' ' + text.example);
     add_options(app);
-    try {
-      app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      return app.exit(error) == 0 ? 0 : kBadInput;
-    }
+    const Program::Parsed parsed = program.parse(argc, argv);
+    if (parsed != Program::Parsed::kRun) return parsed == Program::Parsed::kHelp ? 0 : kBadInput;
     limit_thread_stacks();
     body();
     return 0;

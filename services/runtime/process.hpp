@@ -4,12 +4,9 @@
 #include <functional>
 
 #include "services/runtime/clock.hpp"
+#include "services/runtime/command_line.hpp"
 #include "services/runtime/log.hpp"
 #include "services/runtime/realtime.hpp"
-
-namespace CLI {
-class App;
-}
 
 namespace swiftlet::runtime {
 
@@ -19,7 +16,7 @@ struct ProcessOptions {
 };
 
 // --log-level, --log-file, --no-realtime, --priority, --cpu. The priority in options is the default.
-void add_process_options(CLI::App& app, ProcessOptions& options);
+void add_process_options(CommandLine app, ProcessOptions& options);
 
 // Locks memory and tries what make_this_thread_realtime() will do. What the system refuses is one line of
 // warning.
@@ -39,6 +36,6 @@ struct ProgramText {
 // wrong usage or bad input (ConfigError, std::invalid_argument); 1 any other exception. A fault is one line
 // on stderr.
 int run_process(const ProgramText& text, int argc, char** argv,
-                const std::function<void(CLI::App&)>& add_options, const std::function<void()>& body);
+                const std::function<void(CommandLine)>& add_options, const std::function<void()>& body);
 
 }  // namespace swiftlet::runtime

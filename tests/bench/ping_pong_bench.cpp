@@ -14,7 +14,6 @@
 #include <unistd.h>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
@@ -365,17 +364,17 @@ void run(Options options) {
   if (options.json) std::printf("%s\n", rows.dump().c_str());
 }
 
-void add_options(CLI::App& app, Options& options) {
-  app.add_option("--seconds", options.seconds, "Of each measurement")->check(CLI::Range(0.1, 3600.0));
+void add_options(runtime::CommandLine app, Options& options) {
+  app.add_option("--seconds", options.seconds, "Of each measurement").range(0.1, 3600.0);
   app.add_option("--rate", options.rates_hz, "Samples a second; several may be given")
-      ->check(CLI::Range(1, 10'000));
+      .range(1, 10'000);
   app.add_option("--transport", options.transports, "Of these alone; several may be given")
-      ->check(CLI::IsMember({"udp", "shm", "data-sharing", kSocket}));
+      .one_of({"udp", "shm", "data-sharing", kSocket});
   app.add_flag("--json", options.json, "Print JSON");
   app.add_flag("--no-deadline", options.no_deadline, "Leave out the deadline QoS");
-  app.add_option("--echo-domain", options.echo_domain)->group("");
-  app.add_option("--echo-transport", options.echo_transport)->group("");
-  app.add_option("--echo-socket", options.echo_socket)->group("");
+  app.add_option("--echo-domain", options.echo_domain).hidden();
+  app.add_option("--echo-transport", options.echo_transport).hidden();
+  app.add_option("--echo-socket", options.echo_socket).hidden();
   runtime::add_process_options(app, options.process);
 }
 
@@ -390,5 +389,5 @@ int main(int argc, char** argv) {
       {"ping_pong_bench",
        "Round trip of an IMU sample and its actuator command between two processes that do nothing else.",
        "--seconds 10 --transport udp --json"},
-      argc, argv, [&](CLI::App& app) { add_options(app, options); }, [&] { run(options); });
+      argc, argv, [&](runtime::CommandLine app) { add_options(app, options); }, [&] { run(options); });
 }

@@ -20,7 +20,6 @@
 #include <unistd.h>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "ground/child_process.hpp"
@@ -515,11 +514,11 @@ void run(const Options& options) {
   table.end();
 }
 
-void add_options(CLI::App& app, Options& options) {
+void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--seconds", options.seconds, "Of each measurement in real time")
-      ->check(CLI::Range(1.0, 3600.0));
+      .range(1.0, 3600.0);
   app.add_option("--only", options.only, "Of these sections; several may be given")
-      ->check(CLI::IsMember({"latency", "jitter", "simulation", "missions", "fleet"}));
+      .one_of({"latency", "jitter", "simulation", "missions", "fleet"});
   app.add_flag("--json", options.json, "Print JSON");
 }
 
@@ -532,5 +531,5 @@ int main(int argc, char** argv) {
   return runtime::run_process(
       {"system_bench", "The system's figures, each beside its limit as measured in the same run.",
        "--only latency --seconds 10"},
-      argc, argv, [&](CLI::App& app) { add_options(app, options); }, [&] { run(options); });
+      argc, argv, [&](runtime::CommandLine app) { add_options(app, options); }, [&] { run(options); });
 }

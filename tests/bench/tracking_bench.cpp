@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "control/supervision/checks.hpp"
@@ -337,10 +336,10 @@ void run(const Options& options) {
       "sagging.\n");
 }
 
-void add_options(CLI::App& app, Options& options) {
+void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--figure-of-eight", options.figure_of_eight, "Crazyswarm trajectory file")
-      ->capture_default_str();
-  app.add_option("--seed", options.seed, "Of the sensors' errors")->capture_default_str();
+      .show_default();
+  app.add_option("--seed", options.seed, "Of the sensors' errors").show_default();
   app.add_flag("--json", options.json, "Print JSON instead of the table");
 }
 
@@ -352,5 +351,5 @@ int main(int argc, char** argv) {
   Options options;
   return runtime::run_process(
       {"tracking_bench", "Tracking errors of five paths, beside those of other projects.", "--json"}, argc,
-      argv, [&](CLI::App& app) { add_options(app, options); }, [&] { run(options); });
+      argv, [&](runtime::CommandLine app) { add_options(app, options); }, [&] { run(options); });
 }

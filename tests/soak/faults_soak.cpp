@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "services/runtime/process.hpp"
@@ -146,15 +145,15 @@ int main(int argc, char** argv) {
        "Fly for long with random faults, and see that the vehicle stays inside the fence and on its feet.",
        "--minutes 30 --seed 1"},
       argc, argv,
-      [&](CLI::App& app) {
+      [&](runtime::CommandLine app) {
         app.add_option("--minutes", options.minutes, "Of simulated time")
-            ->check(CLI::Range(0.1, 1e5))
-            ->capture_default_str();
+            .range(0.1, 1e5)
+            .show_default();
         app.add_option("--seed", options.seed, "Of the first flight; the next has the next")
-            ->capture_default_str();
+            .show_default();
         app.add_option("--flight", options.flight,
                        "Fly the flight of this seed alone, and tell what happens");
-        app.add_option("--control", options.control, "Control settings")->capture_default_str();
+        app.add_option("--control", options.control, "Control settings").show_default();
         app.add_flag("--json", options.json, "For scripts");
       },
       [&] { sound = soak::soak(options); });

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 
 #include "services/runtime/process.hpp"
 #include "tests/support/redundant_flight.hpp"
@@ -132,11 +131,11 @@ int main(int argc, char** argv) {
   const int status = runtime::run_process(
       {"standby_soak", "Kills the active controller in flight, again and again.", "--kills 10 --seed 3"},
       argc, argv,
-      [&](CLI::App& app) {
+      [&](runtime::CommandLine app) {
         app.add_option("--kills", options.kills, "how often")
-            ->check(CLI::Range(1, 10000))
-            ->capture_default_str();
-        app.add_option("--seed", options.seed, "of strengths and pauses")->capture_default_str();
+            .range(1, 10000)
+            .show_default();
+        app.add_option("--seed", options.seed, "of strengths and pauses").show_default();
         app.add_option("--simulation", options.plant_simulation, "the plant's simulation file");
       },
       [&] { exit_code = tests::run(options); });

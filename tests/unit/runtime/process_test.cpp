@@ -16,7 +16,6 @@
 #include <unistd.h>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <gtest/gtest.h>
 #include <spdlog/spdlog.h>
 
@@ -37,7 +36,7 @@ int run(std::vector<std::string> words, const std::function<void()>& body) {
   for (std::string& word : words) arguments.push_back(word.data());
   return run_process(
       {"prog", "Test", ""}, static_cast<int>(arguments.size()), arguments.data(),
-      [&](CLI::App& app) { add_process_options(app, options); }, body);
+      [&](CommandLine app) { add_process_options(app, options); }, body);
 }
 
 TEST(RunProcess, ExitCodesTellHowItEnded) {

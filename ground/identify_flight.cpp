@@ -1,20 +1,16 @@
+#include "ground/identify_actions.hpp"
+
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
-#include "ground/commands.hpp"
 #include "ground/flight_identification_report.hpp"
 #include "ground/flight_log_files.hpp"
 #include "ground/format.hpp"
 #include "ground/installation.hpp"
-#include "ground/numbers.hpp"
 #include "ground/output_files.hpp"
 #include "ground/progress_line.hpp"
 #include "ground/whole_file.hpp"
@@ -27,17 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::milliseconds kQuickEnough{500};  // without progress
-
-struct IdentifyFlightOptions {
-  std::vector<std::string> logs;
-  std::string base;
-  std::string out;
-  std::string report;
-  std::string name;
-  identification::FlightOptions fit;
-  BodyAxes axes = BodyAxes::kAsSaid;
-  bool json = false;
-};
 
 struct Base {
   fs::path file;
@@ -53,7 +38,9 @@ Base base_of(const IdentifyFlightOptions& options) {
   return {configuration_file("vehicles", "kaylion"), true};
 }
 
-int run_identify_flight(IdentifyFlightOptions options) {
+}  // namespace
+
+int identify_flight(IdentifyFlightOptions options) {
   std::vector<fs::path> inputs;
   for (const std::string& log : options.logs) {
     for (const fs::path& file : files_of(log)) inputs.push_back(file);
@@ -129,56 +116,6 @@ int run_identify_flight(IdentifyFlightOptions options) {
                counted(report.found.uncertainty.parameters.size(), "parameter").c_str(),
                counted(logs.size(), "flight").c_str(), wrote.c_str());
   return kDone;
-}
-
-}  // namespace
-
-Command add_identify_flight_command(CLI::App& identify) {
-  const auto options = std::make_shared<IdentifyFlightOptions>();
-  CLI::App* const app = identify.add_subcommand("flight", "Identify a vehicle from logs of its flights");
-  app->add_option("logs", options->logs,
-                  "records of `swiftlet fly --sensors`, or CSV files, gzip or not, of one vehicle")
-      ->required()
-      ->type_name("LOG...");
-  app->add_option("--base", options->base,
-                  "vehicle file, or the name of one in the configuration, for all that flights do not tell; "
-                  "the record's "
-                  "vehicle, else kaylion, unless given")
-      ->type_name("VEHICLE");
-  app->add_option("--known", options->fit.known,
-                  "a flight tells thrust over mass alone: which of them the base vehicle has right")
-      ->transform(CLI::CheckedTransformer(
-                      std::map<std::string, identification::Known>{
-                          {"mass", identification::Known::kMass}, {"thrust", identification::Known::kThrust}})
-                      .description("{mass,thrust}"))
-      ->default_str("mass");
-  app->add_option("--axes", options->axes,
-                  "body axes of the IMU, where the names of the columns do not say them: frd or flu")
-      ->transform(CLI::CheckedTransformer(
-                      std::map<std::string, BodyAxes>{{"frd", BodyAxes::kFrd}, {"flu", BodyAxes::kFlu}})
-                      .description("{frd,flu}"));
-  app->add_option("--from", options->fit.bounds.from_s,
-                  "time by the log at which the flight begins, s; found unless given")
-      ->check(finite_number());
-  app->add_option("--until", options->fit.bounds.until_s,
-                  "time by the log at which it ends, s; found unless given")
-      ->check(finite_number());
-  app->add_option("--out", options->out, "the vehicle file to write")->type_name("FILE");
-  app->add_option("--report", options->report, "a page with estimates and predictions; one HTML file")
-      ->type_name("FILE");
-  app->add_option("--name", options->name, "name of the vehicle; that of --out unless given");
-  app->add_flag("--json", options->json, "print one JSON object instead of the table");
-  app->footer(
-      "Columns of a log, each headed `name [unit]`: time; specific_force_x, body_rate_x, likewise y and z; "
-      "throttle1, or "
-      "pulse_width1, for each\nmotor in the order of the vehicle's rotors. If there: supply_voltage; "
-      "pose_time with position_x_ned and "
-      "orientation_w_ned_from_frd and so on;\nrunning; rotor_speed1 and so on. What a log without poses or "
-      "voltage tells is less (docs/identification.md).\n\n"
-      "example: swiftlet sim fly identification --sensors --record first && swiftlet identify flight first "
-      "--out mine.yaml\n"
-      "         swiftlet identify flight tests/data/crazyflie_flight.csv.gz --base crazyflie2");
-  return {app, [options] { return run_identify_flight(*options); }};
 }
 
 }  // namespace swiftlet::ground

@@ -1,0 +1,1 @@
+// Nothing but its precompiled headers: library_headers.hpp.

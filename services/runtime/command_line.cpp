@@ -1,0 +1,179 @@
+#include "services/runtime/command_line.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+
+namespace swiftlet::runtime {
+namespace {
+
+// CLI11's own checks let "nan" through.
+std::optional<double> finite_number(const std::string& text) {
+  double value = 0.0;
+  if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+Option& Option::required() {
+  option_->required();
+  return *this;
+}
+Option& Option::expected(int values) {
+  option_->expected(values);
+  return *this;
+}
+Option& Option::show_default() {
+  option_->capture_default_str();
+  return *this;
+}
+Option& Option::show_default(const std::string& text) {
+  option_->default_str(text);
+  return *this;
+}
+Option& Option::type_name(const std::string& name) {
+  option_->type_name(name);
+  return *this;
+}
+Option& Option::environment(const std::string& variable) {
+  option_->envname(variable);
+  return *this;
+}
+Option& Option::hidden() {
+  option_->group("");
+  return *this;
+}
+Option& Option::excludes(Option other) {
+  option_->excludes(other.option_);
+  return *this;
+}
+Option& Option::needs(Option other) {
+  option_->needs(other.option_);
+  return *this;
+}
+
+template <class Number>
+Option& Option::range(Number least, Number most) {
+  option_->check(CLI::Range(least, most));
+  return *this;
+}
+template Option& Option::range(int, int);
+template Option& Option::range(std::int64_t, std::int64_t);
+template Option& Option::range(std::size_t, std::size_t);
+template Option& Option::range(double, double);
+
+Option& Option::finite() {
+  return check(
+      [](const std::string& text) { return finite_number(text) ? "" : text + " is not a finite number"; },
+      "NUMBER");
+}
+Option& Option::positive() {
+  return check(
+      [](const std::string& text) {
+        return finite_number(text).value_or(0.0) > 0.0 ? "" : text + " must be a finite number above 0";
+      },
+      "NUMBER > 0");
+}
+Option& Option::one_of(std::initializer_list<const char*> texts) {
+  option_->check(CLI::IsMember(std::vector<std::string>(texts.begin(), texts.end())));
+  return *this;
+}
+Option& Option::one_of(std::initializer_list<int> numbers) {
+  option_->check(CLI::IsMember(numbers));
+  return *this;
+}
+Option& Option::check(std::function<std::string(const std::string&)> fault_of,
+                      const std::string& value_name) {
+  option_->check(CLI::Validator([fault_of](std::string& text) { return fault_of(text); }, value_name));
+  return *this;
+}
+
+std::string Option::description() const { return option_->get_description(); }
+void Option::describe(const std::string& description) { option_->description(description); }
+
+CommandLine CommandLine::add_subcommand(const std::string& name, const std::string& description) const {
+  return CommandLine(*app_->add_subcommand(name, description));
+}
+void CommandLine::require_subcommand(std::size_t least, std::size_t most) const {
+  app_->require_subcommand(least, most);
+}
+void CommandLine::footer(const std::string& text) const { app_->footer(text); }
+
+template <class Value>
+Option CommandLine::add_option(const std::string& name, Value& value, const std::string& description) const {
+  return Option(*app_->add_option(name, value, description));
+}
+#define SWIFTLET_OPTION_OF(...) \
+  template Option CommandLine::add_option(const std::string&, __VA_ARGS__&, const std::string&) const
+SWIFTLET_OPTION_OF(int);
+SWIFTLET_OPTION_OF(unsigned);
+SWIFTLET_OPTION_OF(std::int64_t);
+SWIFTLET_OPTION_OF(std::uint64_t);
+SWIFTLET_OPTION_OF(double);
+SWIFTLET_OPTION_OF(std::string);
+SWIFTLET_OPTION_OF(std::optional<int>);
+SWIFTLET_OPTION_OF(std::optional<std::uint64_t>);
+SWIFTLET_OPTION_OF(std::optional<double>);
+SWIFTLET_OPTION_OF(std::array<double, 2>);
+SWIFTLET_OPTION_OF(std::vector<int>);
+SWIFTLET_OPTION_OF(std::vector<double>);
+SWIFTLET_OPTION_OF(std::vector<std::string>);
+#undef SWIFTLET_OPTION_OF
+
+Option CommandLine::add_choice(const std::string& name, const std::vector<std::string>& choices,
+                               const std::string& description,
+                               std::function<void(std::size_t)> choose) const {
+  CLI::Option* const option = app_->add_option_function<std::string>(
+      name,
+      [choices, choose](const std::string& chosen) {
+        choose(static_cast<std::size_t>(std::find(choices.begin(), choices.end(), chosen) - choices.begin()));
+      },
+      description);
+  option->check(CLI::IsMember(choices));
+  return Option(*option);
+}
+Option CommandLine::add_flag(const std::string& name, bool& value, const std::string& description) const {
+  return Option(*app_->add_flag(name, value, description));
+}
+Option CommandLine::add_flag(const std::string& name, std::function<void()> is_set,
+                             const std::string& description) const {
+  return Option(*app_->add_flag_function(
+      name, [is_set](std::int64_t) { is_set(); }, description));
+}
+Option CommandLine::option(const std::string& name) const { return Option(*app_->get_option(name)); }
+void CommandLine::remove_option(const std::string& name) const {
+  app_->remove_option(app_->get_option(name));
+}
+
+std::string CommandLine::name() const { return app_->get_name(); }
+std::string CommandLine::help() const { return app_->help(); }
+bool CommandLine::parsed() const { return app_->parsed(); }
+
+Program::Program(const std::string& name, const std::string& purpose)
+    : app_(std::make_unique<CLI::App>(purpose, name)) {}
+Program::~Program() = default;
+
+Program::Parsed Program::parse(int argc, const char* const* argv) {
+  try {
+    app_->parse(argc, argv);
+    return Parsed::kRun;
+  } catch (const CLI::ParseError& stop) {
+    return app_->exit(stop) == 0 ? Parsed::kHelp : Parsed::kWrongUsage;
+  }
+}
+Program::Parsed Program::parse(const std::string& line) {
+  try {
+    app_->parse(line);
+    return Parsed::kRun;
+  } catch (const CLI::ParseError& stop) {
+    return stop.get_exit_code() == 0 ? Parsed::kHelp : Parsed::kWrongUsage;
+  }
+}
+
+}  // namespace swiftlet::runtime

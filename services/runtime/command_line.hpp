@@ -1,0 +1,112 @@
+// Options and subcommands of a program's command line: CLI11 behind a header that costs the compiler nothing.
+//
+// CommandLine and Option are handles on what CLI11 holds; they are copied freely and live as long as the Program does.
+// An invalid definition, such as a name that is taken, throws CLI11's exception at start.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <initializer_list>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace swiftlet::runtime {
+
+class Option {
+ public:
+  explicit Option(CLI::Option& option) : option_(&option) {}
+
+  Option& required();
+  Option& expected(int values);
+  Option& show_default();  // in --help: what the variable holds now
+  Option& show_default(const std::string& text);
+  Option& type_name(const std::string& name);
+  Option& environment(const std::string& variable);  // gives the value where the command line does not
+  Option& hidden();                                  // from --help
+  Option& excludes(Option other);
+  Option& needs(Option other);
+
+  // Number is int, std::int64_t, std::size_t or double. Ends are allowed.
+  template <class Number>
+  Option& range(Number least, Number most);
+  Option& finite();    // a number, neither infinite nor NaN
+  Option& positive();  // likewise, and above 0
+  Option& one_of(std::initializer_list<const char*> texts);
+  Option& one_of(std::initializer_list<int> numbers);
+  // fault_of gives the sentence why a text is refused, or "". value_name stands in --help.
+  Option& check(std::function<std::string(const std::string&)> fault_of, const std::string& value_name);
+
+  std::string description() const;
+  void describe(const std::string& description);
+
+ private:
+  CLI::Option* option_;
+};
+
+class CommandLine {
+ public:
+  explicit CommandLine(CLI::App& app) : app_(&app) {}
+
+  CommandLine add_subcommand(const std::string& name, const std::string& description) const;
+  void require_subcommand(std::size_t least, std::size_t most) const;
+  void footer(const std::string& text) const;
+
+  // "--name", "-n,--name", or "name" for an argument by its place. `value` outlives the parsing; its content is the
+  // default. For Value: command_line.cpp has the list.
+  template <class Value>
+  Option add_option(const std::string& name, Value& value, const std::string& description) const;
+  // A value of an enumeration by its name on the command line.
+  template <class Value>
+  Option add_choice(const std::string& name, Value& value,
+                    std::vector<std::pair<const char*, Value>> choices,
+                    const std::string& description) const {
+    std::vector<std::string> names;
+    for (const auto& choice : choices) names.emplace_back(choice.first);
+    return add_choice(name, names, description,
+                      [choices, &value](std::size_t chosen) { value = choices[chosen].second; });
+  }
+  Option add_flag(const std::string& name, bool& value, const std::string& description) const;
+  Option add_flag(const std::string& name, std::function<void()> is_set, const std::string& description) const;
+  Option option(const std::string& name) const;
+  void remove_option(const std::string& name) const;
+
+  std::string name() const;
+  std::string help() const;
+  bool parsed() const;  // this subcommand stood on the command line
+
+  CLI::App& app() const { return *app_; }
+
+ private:
+  Option add_choice(const std::string& name, const std::vector<std::string>& choices,
+                    const std::string& description, std::function<void(std::size_t)> choose) const;
+
+  CLI::App* app_;
+};
+
+class Program {
+ public:
+  Program(const std::string& name, const std::string& purpose);
+  ~Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  CommandLine command_line() const { return CommandLine(*app_); }
+
+  enum class Parsed { kRun, kHelp, kWrongUsage };
+  // kHelp and kWrongUsage have been printed, to stdout and stderr.
+  Parsed parse(int argc, const char* const* argv);
+  // As above, of one line without the program's name; prints nothing.
+  Parsed parse(const std::string& line);
+
+ private:
+  std::unique_ptr<CLI::App> app_;
+};
+
+}  // namespace swiftlet::runtime
