@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include <Eigen/Eigenvalues>
+#include "math/linear_algebra.hpp"
 #include <gtest/gtest.h>
 
 namespace swiftlet::control {
@@ -27,10 +27,10 @@ class Random {
   std::normal_distribution<double> normal_;
 };
 
-double largest_real_part(const MatrixXd& a) { return a.eigenvalues().real().maxCoeff(); }
+double largest_real_part(const MatrixXd& a) { return math::eigenvalues(a).real().maxCoeff(); }
 
 double least_eigenvalue(const MatrixXd& x) {
-  return Eigen::SelfAdjointEigenSolver<MatrixXd>(x, Eigen::EigenvaluesOnly).eigenvalues()[0];
+  return math::symmetric_eigen(x).values[0];
 }
 
 struct Problem {

@@ -1,3 +1,4 @@
+#include <CLI/CLI.hpp>
 #include <gtest/gtest.h>
 
 #include "ground/commands.hpp"
@@ -9,10 +10,11 @@ class CommandLine : public testing::Test {
  protected:
   CommandLine() {
     app_.require_subcommand(1);
-    commands_ = {add_fly_command(app_),     add_arm_command(app_),  add_disarm_command(app_),
-                 add_takeoff_command(app_), add_goto_command(app_), add_land_command(app_),
-                 add_hold_command(app_),    add_stop_command(app_), add_mission_command(app_),
-                 add_status_command(app_),  add_gains_command(app_)};
+    const runtime::CommandLine root(app_);
+    commands_ = {add_fly_command(root),     add_arm_command(root),  add_disarm_command(root),
+                 add_takeoff_command(root), add_goto_command(root), add_land_command(root),
+                 add_hold_command(root),    add_stop_command(root), add_mission_command(root),
+                 add_status_command(root),  add_gains_command(root)};
   }
 
   bool parses(const std::string& line) {
@@ -89,8 +91,8 @@ TEST_F(CommandLine, DomainsAndNamesThatCannotBeAreRefused) {
 
 TEST_F(CommandLine, EveryCommandShowsAnExample) {
   for (const Command& command : commands_) {
-    EXPECT_NE(command.app->help().find("example: swiftlet " + command.app->get_name()), std::string::npos)
-        << command.app->get_name();
+    EXPECT_NE(command.app.help().find("example: swiftlet " + command.app.name()), std::string::npos)
+        << command.app.name();
   }
 }
 

@@ -8,7 +8,9 @@
 #include <cmath>
 #include <vector>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <boost/numeric/odeint.hpp>
 
 #include "plant/simulation/vehicle_state.hpp"
@@ -88,7 +90,7 @@ struct Equations {
     cross << 0.0, -rates.z(), rates.y(), rates.z(), 0.0, -rates.x(), -rates.y(), rates.x(), 0.0;
     const Matrix3d rotation_rate = rotation * cross;
     // Eq. (6)
-    const Vector3d angular_acceleration = inertia.ldlt().solve(moment - rates.cross(inertia * rates));
+    const Vector3d angular_acceleration = inertia.inverse() * (moment - rates.cross(inertia * rates));
 
     for (std::size_t i = 0; i < 3; ++i) {
       const auto j = static_cast<Eigen::Index>(i);

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <string>
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include "plant/simulation/plant_simulation.hpp"
