@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <fcntl.h>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -101,8 +102,12 @@ int main(int argc, char** argv) {
   const fs::path kept = fs::absolute(name + ".input");
   std::printf("the input under way is in %s\n", kept.c_str());
   std::fflush(stdout);
+  const int file =
+      open(kept.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);  // once: that costs more than to write
   const auto feed = [&](const std::string& input) {
-    std::ofstream(kept, std::ios::binary) << input;
+    if (pwrite(file, input.data(), input.size(), 0) < 0 ||
+        ftruncate(file, static_cast<off_t>(input.size())) != 0)
+      std::perror(kept.c_str());
     alarm(kLongest_s);
     LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(input.data()), input.size());
   };
