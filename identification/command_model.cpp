@@ -19,7 +19,7 @@ constexpr double kLeastThrust = 1e-3;  // m/s^2 of one rotor, where the curve fa
 constexpr double kMostReflection = 0.9995;
 // What wanders slower than about half a second is left to the curve and its drift.
 constexpr double kMostForceReflection = 0.99;
-constexpr std::size_t kKeptForEachFlight = 6;
+constexpr std::size_t kKeptForEachFlight = 4;
 
 const char* const kNames[kResponses] = {"specific force", "roll", "pitch", "yaw"};
 
@@ -89,7 +89,9 @@ CommandModel::CommandModel(std::vector<FlightSeries> flights, plant::Vehicle bas
       given_curve_(curve),
       middle_command_(curve ? curve->middle : mean_command(flights_)),
       shared_over_single_(identification::shared_over_single(base_)),
-      rotors_(kKeptForEachFlight * flights_.size()) {
+      steady_speeds_(kKeptForEachFlight * flights_.size()),
+      thrust_(kKeptForEachFlight * flights_.size()),
+      moments_(kKeptForEachFlight * flights_.size()) {
   const plant::Effectiveness effectiveness = plant::effectiveness(base_);
   signs_.resize(3, effectiveness.cols());
   for (int axis = 0; axis < 3; ++axis) {
@@ -190,41 +192,72 @@ ColouredNoise CommandModel::noise(const VectorXd& x, Response response) const {
   return coloured_noise(x.data() + layout_.noise[index_of(response)]);
 }
 
-CommandModel::Rotors CommandModel::computed_rotors(std::size_t flight, const ThrustCurve& curve,
-                                                   double drift_per_s, double lag_s, double delay_s) const {
-  const FlightSeries& series = flights_[flight];
-  const FlightLog& log = *series.log;
-  const BlockedFlight& blocks = blocks_[flight];
-  const Rows rows = rows_of(series);
-  const auto count = static_cast<std::size_t>(log.rotor_count);
-  const double share = 1.0 / static_cast<double>(count);
-  const double middle_s = log.time_s[rows.first + rows.size() / 2];
-  std::vector<plant::PerRotor> steady(rows.last, plant::PerRotor{});
-  for (std::size_t row = 0; row < rows.last; ++row) {
-    const double drift = 1.0 + drift_per_s * (log.time_s[row] - middle_s);
-    double mean = 0.0;
-    for (std::size_t i = 0; i < count; ++i) mean += share * log.command[row][i];
-    const double shared = curve.at(mean);
-    for (std::size_t i = 0; i < count; ++i) {
-      const double own = (curve.at(log.command[row][i]) - shared) / shared_over_single_;
-      steady[row][i] = std::sqrt(std::max(share * drift * (shared + own), kLeastThrust));
+CommandModel::SteadyKey CommandModel::steady_key(const VectorXd& x, std::size_t flight) const {
+  const ThrustCurve c = curve(x);
+  const double drift = layout_.drift.empty() ? 0.0 : x[layout_.drift[flight]];
+  return {static_cast<double>(flight), c.value, c.slope, c.curvature, drift};
+}
+
+CommandModel::RotorsKey CommandModel::rotors_key(const VectorXd& x, std::size_t flight,
+                                                 double delay_s) const {
+  const auto [index, value, slope, curvature, drift] = steady_key(x, flight);
+  return {index, value, slope, curvature, drift, x[layout_.lag], delay_s};
+}
+
+std::shared_ptr<const CommandModel::Speeds> CommandModel::steady_speeds(const VectorXd& x,
+                                                                        std::size_t flight) const {
+  return steady_speeds_.of(steady_key(x, flight), [&] {
+    const FlightLog& log = *flights_[flight].log;
+    const Rows rows = rows_of(flights_[flight]);
+    const ThrustCurve thrust_curve = curve(x);
+    const double drift_per_s = layout_.drift.empty() ? 0.0 : x[layout_.drift[flight]];
+    const auto count = static_cast<std::size_t>(log.rotor_count);
+    const double share = 1.0 / static_cast<double>(count);
+    const double middle_s = log.time_s[rows.first + rows.size() / 2];
+    Speeds steady(rows.last, plant::PerRotor{});
+    for (std::size_t row = 0; row < rows.last; ++row) {
+      const double drift = 1.0 + drift_per_s * (log.time_s[row] - middle_s);
+      double mean = 0.0;
+      for (std::size_t i = 0; i < count; ++i) mean += share * log.command[row][i];
+      const double shared = thrust_curve.at(mean);
+      for (std::size_t i = 0; i < count; ++i) {
+        const double own = (thrust_curve.at(log.command[row][i]) - shared) / shared_over_single_;
+        steady[row][i] = std::sqrt(std::max(share * drift * (shared + own), kLeastThrust));
+      }
     }
-  }
-  const std::vector<plant::PerRotor> speeds = lagged_speeds(log, steady, rows, lag_s, delay_s);
-  std::vector<Eigen::Vector4d> sums(rows.size(), Eigen::Vector4d::Zero());  // sum s^2, L s^2
-  std::vector<double> signed_speed(rows.size(), 0.0);
+    return steady;
+  });
+}
+
+CommandModel::Speeds CommandModel::speeds(const VectorXd& x, std::size_t flight, double delay_s) const {
+  const FlightSeries& series = flights_[flight];
+  return lagged_speeds(*series.log, *steady_speeds(x, flight), rows_of(series), x[layout_.lag], delay_s);
+}
+
+CommandModel::Thrust CommandModel::thrust_of(std::size_t flight, const Speeds& speeds) const {
+  return {block_means(blocks_[flight], [&](std::size_t row) {
+    double sum = 0.0;
+    for (const double speed : speeds[row]) sum += speed * speed;
+    return sum;
+  })};
+}
+
+CommandModel::Moments CommandModel::moments_of(std::size_t flight, const Speeds& speeds) const {
+  const BlockedFlight& blocks = blocks_[flight];
+  std::vector<Eigen::Vector4d> sums(speeds.size(), Eigen::Vector4d::Zero());  // sum s^2, L s^2
+  std::vector<double> signed_speed(speeds.size(), 0.0);
   for (std::size_t row = 0; row < sums.size(); ++row) {
-    for (std::size_t i = 0; i < count; ++i) {
-      const double speed = speeds[row][i];
-      const auto signs = signs_.col(static_cast<Index>(i));
+    for (Index i = 0; i < signs_.cols(); ++i) {
+      const double speed = speeds[row][static_cast<std::size_t>(i)];
+      const auto signs = signs_.col(i);
       sums[row][0] += speed * speed;
       sums[row].tail<3>() += speed * speed * signs;
       signed_speed[row] += signs[2] * speed;
     }
   }
-  const double* const time = log.time_s.data() + rows.first;
-  Rotors out;
-  out.thrust = block_means(blocks, [&](std::size_t row) { return sums[row][0]; });
+  const FlightSeries& series = flights_[flight];
+  const double* const time = series.log->time_s.data() + rows_of(series).first;
+  Moments out;
   out.gained = block_gains(blocks, time, [&](std::size_t row) { return sums[row][0]; });
   for (std::size_t axis = 0; axis < 3; ++axis) {
     out.turn[axis] =
@@ -235,25 +268,30 @@ CommandModel::Rotors CommandModel::computed_rotors(std::size_t flight, const Thr
   return out;
 }
 
-std::shared_ptr<const CommandModel::Rotors> CommandModel::rotors(const VectorXd& x, std::size_t flight,
-                                                                 double delay_s) const {
-  const ThrustCurve c = curve(x);
-  const double drift = layout_.drift.empty() ? 0.0 : x[layout_.drift[flight]];
-  const std::array<double, 7> key = {
-      static_cast<double>(flight), c.value, c.slope, c.curvature, drift, x[layout_.lag], delay_s};
-  return rotors_.of(key, [&] { return computed_rotors(flight, c, drift, x[layout_.lag], delay_s); });
+std::shared_ptr<const CommandModel::Thrust> CommandModel::thrust(const VectorXd& x,
+                                                                 std::size_t flight) const {
+  const double delay_s = x[layout_.force_delay];
+  return thrust_.of(rotors_key(x, flight, delay_s),
+                    [&] { return thrust_of(flight, speeds(x, flight, delay_s)); });
+}
+
+std::shared_ptr<const CommandModel::Moments> CommandModel::moments(const VectorXd& x,
+                                                                   std::size_t flight) const {
+  const double delay_s = x[layout_.rate_delay];
+  return moments_.of(rotors_key(x, flight, delay_s),
+                     [&] { return moments_of(flight, speeds(x, flight, delay_s)); });
 }
 
 std::vector<double> CommandModel::modelled(const VectorXd& x, std::size_t flight, Response response) const {
-  if (response == Response::kForce) return rotors(x, flight, x[layout_.force_delay])->thrust;
-  const auto of_rotors = rotors(x, flight, x[layout_.rate_delay]);
+  if (response == Response::kForce) return thrust(x, flight)->mean;
+  const auto by_rotors = moments(x, flight);
   const int axis = axis_of(response);
   const auto i = static_cast<std::size_t>(axis);
   const double spin_up = response == Response::kYaw ? x[layout_.spin_up] : 0.0;
   std::vector<double> out = blocks_[flight].coupling[i];
   for (std::size_t block = 0; block < out.size(); ++block) {
-    out[block] += x[layout_.gain[axis]] * of_rotors->turn[i][block] +
-                  x[layout_.trim[axis]] * of_rotors->gained[block] + spin_up * of_rotors->spin_up[block];
+    out[block] += x[layout_.gain[axis]] * by_rotors->turn[i][block] +
+                  x[layout_.trim[axis]] * by_rotors->gained[block] + spin_up * by_rotors->spin_up[block];
   }
   return out;
 }

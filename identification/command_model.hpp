@@ -117,17 +117,24 @@ class CommandModel {
   void add_noise(Response response);
   BlockedFlight blocked(const FlightSeries& series) const;
 
-  // Sums over the rotors, of each block: their mean, or their gain since the block before.
-  struct Rotors {
-    std::vector<double> thrust;               // sum s^2, m/s^2: the mean
-    std::vector<double> gained;               // its integral: m/s
-    std::array<std::vector<double>, 3> turn;  // that of L s^2
-    std::vector<double> spin_up;              // L_z s, (m/s^2)^(1/2)
+  using Speeds = std::vector<plant::PerRotor>;  // s_i of each row
+  // Where s_i tends to by the commands of each row up to the last of a flight's.
+  std::shared_ptr<const Speeds> steady_speeds(const Eigen::VectorXd& parameters, std::size_t flight) const;
+  Speeds speeds(const Eigen::VectorXd& parameters, std::size_t flight, double delay_s) const;
+
+  // Sums over the rotors, of each block.
+  struct Thrust {
+    std::vector<double> mean;  // of sum s^2, m/s^2
   };
-  std::shared_ptr<const Rotors> rotors(const Eigen::VectorXd& parameters, std::size_t flight,
-                                       double delay_s) const;
-  Rotors computed_rotors(std::size_t flight, const ThrustCurve& curve, double drift_per_s, double lag_s,
-                         double delay_s) const;
+  struct Moments {                            // gains since the block before
+    std::vector<double> gained;               // of the integral of sum s^2: m/s
+    std::array<std::vector<double>, 3> turn;  // of that of L s^2
+    std::vector<double> spin_up;              // of L_z s, (m/s^2)^(1/2)
+  };
+  std::shared_ptr<const Thrust> thrust(const Eigen::VectorXd& parameters, std::size_t flight) const;
+  std::shared_ptr<const Moments> moments(const Eigen::VectorXd& parameters, std::size_t flight) const;
+  Thrust thrust_of(std::size_t flight, const Speeds& speeds) const;
+  Moments moments_of(std::size_t flight, const Speeds& speeds) const;
   void residuals(const Eigen::VectorXd& parameters, Eigen::VectorXd& out) const;
 
   std::vector<FlightSeries> flights_;
@@ -141,8 +148,14 @@ class CommandModel {
   std::vector<BlockedFlight> blocks_;
   CommandLayout layout_;
 
-  // By flight, curve, drift, lag and delay: most parameters do not move the rotors.
-  mutable RecentResults<std::array<double, 7>, Rotors> rotors_;
+  // Most parameters move none of these, and lag and delays not what the speeds tend to.
+  using SteadyKey = std::array<double, 5>;  // flight, curve and drift
+  using RotorsKey = std::array<double, 7>;  // lag and delay as well
+  SteadyKey steady_key(const Eigen::VectorXd& parameters, std::size_t flight) const;
+  RotorsKey rotors_key(const Eigen::VectorXd& parameters, std::size_t flight, double delay_s) const;
+  mutable RecentResults<SteadyKey, Speeds> steady_speeds_;
+  mutable RecentResults<RotorsKey, Thrust> thrust_;
+  mutable RecentResults<RotorsKey, Moments> moments_;
 };
 
 // Values of one model's parameters where another has them too, by their names; the rest as it is in `start`.

@@ -51,6 +51,8 @@ struct Home {
 ConfigNode read_json(std::string text, const std::string& file_name) {
   try {
     [[maybe_unused]] const auto valid = nlohmann::json::parse(text);
+  } catch (const nlohmann::json::out_of_range&) {  // of 1e309; it does not tell where
+    throw runtime::ConfigError(file_name, 0, "", "holds a number beyond 1.8e308, must hold smaller ones");
   } catch (const nlohmann::json::parse_error& error) {
     const std::size_t at = std::min(error.byte, text.size());
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(at);

@@ -22,11 +22,6 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using nlohmann::json;
 
-std::string command_line_of(pid_t pid) {
-  std::ifstream file("/proc/" + std::to_string(pid) + "/cmdline");
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 // The vehicle's control process, of those that a flight has started.
 pid_t control_of(const Program& fly, const std::string& vehicle) {
   for (const pid_t child : children_of(fly.pid())) {

@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <fcntl.h>
 #include <fstream>
-#include <iterator>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -23,9 +22,12 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
+// As far as it can be read: a file of /proc may fail halfway, when its process ends. An iterator over the stream
+// buffer would throw then.
 std::string text_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
 }
 
 // State and parent of a process, from /proc/PID/stat; state 0 if it is gone.
@@ -128,6 +130,8 @@ pid_t child_of(pid_t parent, const std::string& program) {
   }
   return -1;
 }
+
+std::string command_line_of(pid_t pid) { return text_of("/proc/" + std::to_string(pid) + "/cmdline"); }
 
 bool is_running(pid_t pid) {
   const char state = stat_of(pid).state;

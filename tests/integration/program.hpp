@@ -46,10 +46,13 @@ Ending run_program(const std::string& name, std::vector<std::string> arguments,
                    const std::filesystem::path& folder,
                    std::chrono::milliseconds timeout = std::chrono::seconds(30));
 
+// What the kernel tells of processes, which may end at any moment: nothing is told then.
+
 // The child of a process whose program has this name; -1 if there is none.
 pid_t child_of(pid_t parent, const std::string& program);
 std::vector<pid_t> children_of(pid_t parent);
-bool is_running(pid_t pid);  // false for one that has ended and was not reaped
+std::string command_line_of(pid_t pid);  // words, each ended by a NUL
+bool is_running(pid_t pid);              // false for one that has ended and was not reaped
 
 // The files in /dev/shm that a process has open or mapped.
 std::vector<std::string> shared_memory_of(pid_t pid);

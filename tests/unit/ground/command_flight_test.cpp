@@ -10,6 +10,7 @@
 #include "identification/flight.hpp"
 #include "plant/model/airframe.hpp"
 #include "services/runtime/vehicle_file.hpp"
+#include "tests/support/campaign.hpp"
 #include "tests/unit/ground/identified_flights.hpp"
 
 namespace swiftlet::ground {
@@ -90,10 +91,11 @@ std::map<std::string, Tally> recover(const FlightPlan& plan, const char* what, i
 
 // Bounds are twice the worst of 8 seeds.
 TEST(CommandFlight, RecoversLagAndGains) {
-  for (const auto& [name, tally] : recover(delayed_plan(), "calm", 3)) {
-    EXPECT_EQ(tally.covered, tally.count) << name;
-    EXPECT_LT(tally.worst, name == "motor.time_constant" ? 0.002 : 0.05) << name;
-    EXPECT_LT(std::abs(tally.bias) / tally.count, name == "motor.time_constant" ? 0.001 : 0.02) << name;
+  for (const auto& [name, tally] : recover(delayed_plan(), "calm", tests::draws(1, 8))) {
+    const double bound = name == "motor.time_constant" ? 0.002 : 0.05;
+    EXPECT_GE(tally.covered, tests::least_covered(tally.count)) << name;
+    EXPECT_LT(tally.worst, bound) << name;
+    EXPECT_LT(std::abs(tally.bias) / tally.count, tests::bound_of_mean(bound, tally.count)) << name;
   }
 }
 
@@ -101,8 +103,8 @@ TEST(CommandFlight, RecoversThemInGusts) {
   FlightPlan plan = delayed_plan();
   plan.simulation.air.wind_ned = {1.0, -0.7, 0.0};
   plan.simulation.air.gust_sigma_ned = {0.7, 0.7, 0.3};
-  for (const auto& [name, tally] : recover(plan, "gusts", 2)) {
-    EXPECT_EQ(tally.covered, tally.count) << name;
+  for (const auto& [name, tally] : recover(plan, "gusts", tests::draws(1, 8))) {
+    EXPECT_GE(tally.covered, tests::least_covered(tally.count)) << name;
     EXPECT_LT(tally.worst, name == "motor.time_constant" ? 0.002 : 0.08) << name;
   }
 }

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "identification/flight.hpp"
+#include "tests/support/campaign.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/ground/identified_flights.hpp"
 
@@ -74,8 +75,8 @@ void expect_unbiased(const std::map<std::string, Tally>& tallies,
 }
 
 TEST(FlightIdentification, RecoversAVehicleWithItsIntervals) {
-  constexpr int kSeeds = 12;
-  const auto tallies = recover(Left::kAll, kSeeds);
+  const int seeds = tests::draws(3, 30);
+  const auto tallies = recover(Left::kAll, seeds);
   expect_unbiased(tallies, {{"motor.time_constant", 1e-4},
                             {"rotor.thrust_factor", 1e-4},
                             {"inertia.xx", 2e-3},
@@ -85,7 +86,7 @@ TEST(FlightIdentification, RecoversAVehicleWithItsIntervals) {
   int covered = 0;
   int count = 0;
   for (const auto& [name, tally] : tallies) {
-    EXPECT_EQ(tally.count, kSeeds) << name;
+    EXPECT_EQ(tally.count, seeds) << name;
     covered += tally.covered;
     count += tally.count;
   }
@@ -93,9 +94,9 @@ TEST(FlightIdentification, RecoversAVehicleWithItsIntervals) {
 }
 
 TEST(FlightIdentification, RecoversAVehicleThatDoesNotTellItsRotorSpeeds) {
-  constexpr int kSeeds = 5;
-  const auto tallies = recover(Left::kNoSpeeds, kSeeds);
-  for (const auto& [name, tally] : tallies) EXPECT_GE(tally.covered, kSeeds - 1) << name;
+  const auto tallies = recover(Left::kNoSpeeds, tests::draws(2, 30));
+  for (const auto& [name, tally] : tallies)
+    EXPECT_GE(tally.covered, tests::least_covered(tally.count)) << name;
   expect_unbiased(tallies, {{"motor.time_constant", 5e-3},
                             {"rotor.thrust_factor", 1e-3},
                             {"inertia.xx", 3e-3},

@@ -440,6 +440,8 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"empty", "", "q.plan:1: column 1: the file is empty, must be a JSON document"},
         Fault{"cut_short", "{\n \"fileType\": \"Plan\",\n \"mission",
               "q.plan:3: column 9: is where the file ceases to be JSON"},
+        Fault{"a_number_beyond_all", plan(item(16, 1, "0,0,0,null,1e309,1,-1")),
+              "q.plan: holds a number beyond 1.8e308, must hold smaller ones"},
         Fault{"of_another_kind", "{\"fileType\": \"Fence\"}", "q.plan:1: fileType: is Fence, must be Plan"},
         Fault{"without_items", plan(""),
               "q.plan:4: mission.items: is a list of 0, must be a list of 1 to 2048"},
