@@ -4,21 +4,18 @@
 include(CMakePackageConfigHelpers)
 
 get_property(libraries GLOBAL PROPERTY SWIFTLET_LIBRARIES)
-get_property(executables GLOBAL PROPERTY SWIFTLET_EXECUTABLES)
-
-add_custom_target(programs DEPENDS ${executables} pages)  # all that a flight needs, and no test
 
 install(TARGETS ${executables} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
 install(DIRECTORY config DESTINATION ${CMAKE_INSTALL_DATADIR}/swiftlet COMPONENT programs)
 
 install(TARGETS ${libraries} EXPORT swiftletTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
-foreach(folder plant control identification services/runtime services/comms ground)
-  cmake_path(GET folder PARENT_PATH parent)
-  install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/swiftlet/${parent}
-    COMPONENT development FILES_MATCHING PATTERN "*.hpp")
+foreach(folder IN LISTS SWIFTLET_HEADER_FOLDERS)
+  install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/swiftlet COMPONENT development
+    FILES_MATCHING PATTERN "*.hpp")
 endforeach()
 
+get_property(components GLOBAL PROPERTY SWIFTLET_COMPONENTS)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/swiftlet)
 configure_package_config_file(cmake/swiftletConfig.cmake.in ${PROJECT_BINARY_DIR}/swiftletConfig.cmake
   INSTALL_DESTINATION ${package_dir} NO_SET_AND_CHECK_MACRO)

@@ -36,9 +36,18 @@ function(swiftlet_add_precompiled_headers name)
 endfunction()
 
 if(SWIFTLET_PRECOMPILED_HEADERS)
+  target_compile_options(swiftlet_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)  # what ccache needs
   swiftlet_add_precompiled_headers(library_headers Eigen3::Eigen)
   set_target_properties(swiftlet_library_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
 endif()
+
+# Headers are included as <swiftlet/FOLDER/...> here as by those who use the installed ones.
+set(SWIFTLET_HEADER_FOLDERS math plant control identification services ground)
+set(SWIFTLET_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
+foreach(folder IN LISTS SWIFTLET_HEADER_FOLDERS)
+  file(MAKE_DIRECTORY ${SWIFTLET_INCLUDE_DIR}/swiftlet)
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${folder} ${SWIFTLET_INCLUDE_DIR}/swiftlet/${folder} SYMBOLIC)
+endforeach()
 
 # swiftlet_add_library(NAME [SOURCES ...] [PUBLIC ...] [PRIVATE ...]): a static library swiftlet_NAME, alias swiftlet::NAME,
 # installed and exported. PUBLIC and PRIVATE are link libraries.
@@ -50,12 +59,30 @@ function(swiftlet_add_library name)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
   target_compile_features(${target} PUBLIC cxx_std_17)
   target_include_directories(${target} PUBLIC
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/swiftlet>)
+    $<BUILD_INTERFACE:${SWIFTLET_INCLUDE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(${target} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:swiftlet_flags>)
   if(SWIFTLET_PRECOMPILED_HEADERS)
     target_precompile_headers(${target} REUSE_FROM swiftlet_library_headers)
   endif()
-  set_property(GLOBAL APPEND PROPERTY SWIFTLET_LIBRARIES ${target})
+  swiftlet_export(${name} ${arg_PUBLIC} ${arg_PRIVATE})
+endfunction()
+
+# swiftlet_export(NAME LIBS ...): the library swiftlet_NAME is a component of the installed package, which looks for what it links.
+function(swiftlet_export name)
+  set(components "")
+  set(packages "")
+  foreach(library IN LISTS ARGN)
+    if(library MATCHES "^swiftlet::(.+)$")
+      list(APPEND components ${CMAKE_MATCH_1})
+    elseif(library MATCHES "^([A-Za-z0-9_-]+)(::.+)?$")
+      list(APPEND packages ${CMAKE_MATCH_1})
+    endif()
+  endforeach()
+  set_property(GLOBAL APPEND PROPERTY SWIFTLET_LIBRARIES swiftlet_${name})
+  set_property(GLOBAL APPEND_STRING PROPERTY SWIFTLET_COMPONENTS
+    "list(APPEND swiftlet_components ${name})\n"
+    "set(swiftlet_${name}_uses ${components})\n"
+    "set(swiftlet_${name}_needs ${packages})\n")
 endfunction()
 
 # swiftlet_add_executable(NAME SOURCES ... LIBS ...): an installed program bin/NAME.
@@ -67,12 +94,19 @@ function(swiftlet_add_executable name)
 endfunction()
 
 # swiftlet_add_test(NAME SOURCES ... LIBS ... [LABELS ...] [TIMEOUT seconds]): a GoogleTest program whose cases CTest runs one by one.
+# Labelled `unit`, and part of the target unit_tests, unless told.
 function(swiftlet_add_test name)
   cmake_parse_arguments(arg "" "TIMEOUT" "SOURCES;LIBS;LABELS" ${ARGN})
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 60)
   endif()
+  if(NOT arg_LABELS)
+    set(arg_LABELS unit)
+  endif()
   add_executable(${name} ${arg_SOURCES})
+  if(arg_LABELS STREQUAL unit)
+    add_dependencies(unit_tests ${name})
+  endif()
   target_link_libraries(${name} PRIVATE ${arg_LIBS} GTest::gtest GTest::gtest_main swiftlet_flags)
   target_compile_options(${name} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O1>)  # what is tested is optimised, its tests need not be
   if(SWIFTLET_PRECOMPILED_HEADERS)

@@ -1,0 +1,18 @@
+# Builds a project of its own against the installed package, and runs it.
+include(${CMAKE_CURRENT_LIST_DIR}/common.cmake)
+set(consumer ${WORK_DIR}/consumer)
+file(REMOVE_RECURSE ${consumer})
+set(flags "")
+if(SANITIZE)
+  set(flags "-fsanitize=${SANITIZE}")
+  run(${CXX} ${flags} -c ${SOURCE_DIR}/cmake/sanitizer_options.cpp -o ${linked})
+endif()
+run(${CMAKE_COMMAND} -S ${TEST_DIR}/consumer -B ${consumer} ${configuration} -DCMAKE_CXX_FLAGS=${flags}
+  -DCMAKE_EXE_LINKER_FLAGS=${linked} -DCMAKE_PREFIX_PATH=${prefix})
+run(${CMAKE_COMMAND} --build ${consumer})
+run(${consumer}/design_and_step ${prefix}/share/swiftlet/config)
+run(${consumer}/read_mission ${prefix}/share/swiftlet/config)
+execute_process(COMMAND ${consumer}/fly_square nobody 229 --localhost-only RESULT_VARIABLE alone ERROR_VARIABLE said)
+if(NOT alone EQUAL 1 OR NOT said MATCHES "no control service for vehicle nobody in domain 229")
+  message(FATAL_ERROR "the example said: ${said}")
+endif()
