@@ -93,18 +93,22 @@ function(swiftlet_add_executable name)
   set_property(GLOBAL APPEND PROPERTY SWIFTLET_EXECUTABLES ${name})
 endfunction()
 
-# swiftlet_add_test(NAME SOURCES ... LIBS ... [LABELS ...] [TIMEOUT seconds]): a GoogleTest program whose cases CTest runs one by one.
-# Labelled `unit`, and part of the target unit_tests, unless told.
+# Seconds after which a test is stuck, not slow: twenty times what the slowest takes alone. Sanitizers make tests ten times slower.
+set(SWIFTLET_TEST_TIMEOUT 200)
+if(SWIFTLET_SANITIZE)
+  set(SWIFTLET_TEST_TIMEOUT 1000)
+endif()
+
+# swiftlet_add_test(NAME SOURCES ... LIBS ... [LABEL label] [CASES_APART] [ALONE filter]): a GoogleTest program. It is one test of
+# CTest; with CASES_APART each case is, as is worth a process where cases take seconds. ALONE: those of them that judge what real
+# time passes, beside which nothing else runs. Labelled `unit`, and part of the target unit_tests, unless told.
 function(swiftlet_add_test name)
-  cmake_parse_arguments(arg "" "TIMEOUT" "SOURCES;LIBS;LABELS" ${ARGN})
-  if(NOT arg_TIMEOUT)
-    set(arg_TIMEOUT 60)
-  endif()
-  if(NOT arg_LABELS)
-    set(arg_LABELS unit)
+  cmake_parse_arguments(arg "CASES_APART" "LABEL;ALONE" "SOURCES;LIBS" ${ARGN})
+  if(NOT arg_LABEL)
+    set(arg_LABEL unit)
   endif()
   add_executable(${name} ${arg_SOURCES})
-  if(arg_LABELS STREQUAL unit)
+  if(arg_LABEL STREQUAL unit)
     add_dependencies(unit_tests ${name})
   endif()
   target_link_libraries(${name} PRIVATE ${arg_LIBS} GTest::gtest GTest::gtest_main swiftlet_flags)
@@ -115,6 +119,15 @@ function(swiftlet_add_test name)
   target_compile_definitions(${name} PRIVATE
     SWIFTLET_SOURCE_DIR="${PROJECT_SOURCE_DIR}" SWIFTLET_BIN_DIR="${PROJECT_BINARY_DIR}/bin")
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
-  gtest_discover_tests(${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST
-    PROPERTIES TIMEOUT ${arg_TIMEOUT} ENVIRONMENT_MODIFICATION "ROS_DOMAIN_ID=unset:" LABELS "${arg_LABELS}")
+  set(properties LABELS ${arg_LABEL} TIMEOUT ${SWIFTLET_TEST_TIMEOUT} ENVIRONMENT_MODIFICATION "ROS_DOMAIN_ID=unset:")
+  if(NOT arg_CASES_APART)
+    add_test(NAME ${name} COMMAND ${name})
+    set_tests_properties(${name} PROPERTIES ${properties})
+    return()
+  endif()
+  set(cases TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST)
+  gtest_discover_tests(${name} ${cases} TEST_FILTER "-${arg_ALONE}" PROPERTIES ${properties})
+  if(arg_ALONE)
+    gtest_discover_tests(${name} ${cases} TEST_FILTER "${arg_ALONE}" PROPERTIES ${properties} RUN_SERIAL ON)
+  endif()
 endfunction()

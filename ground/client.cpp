@@ -162,20 +162,32 @@ void Client::subscribe_all() {
   });
 }
 
+// That of the IMU comes last of the plant's: who sends it has got to know the others before.
 void Client::subscribe_sensors(SensorRecord& sensors) {
   using namespace comms::topics;
-  subscriptions_.push_back(node_.subscribe<msg::Imu>(kImu, [this, &sensors](const msg::Imu& imu) {
-    keep_sample(imu, sensors.imu);
-    grant_after(imu.stamp_ns());
-  }));
-  subscriptions_.push_back(node_.subscribe<msg::ActuatorCommand>(
-      kActuatorCommand,
-      [&sensors](const msg::ActuatorCommand& command) { keep_sample(command, sensors.commands); }));
-  subscriptions_.push_back(node_.subscribe<msg::MocapPose>(
-      kMocapPose, [&sensors](const msg::MocapPose& pose) { keep_sample(pose, sensors.poses); }));
   subscriptions_.push_back(node_.subscribe<msg::RotorSpeeds>(
       kRotorSpeeds,
       [&sensors](const msg::RotorSpeeds& speeds) { keep_sample(speeds, sensors.rotor_speeds); }));
+  subscriptions_.push_back(
+      node_.subscribe<msg::MocapPose>(kMocapPose, [this, &sensors](const msg::MocapPose& pose) {
+        keep_sample(pose, sensors.poses);
+        note_heard(&HeardSamples::pose);
+      }));
+  subscriptions_.push_back(node_.subscribe<msg::ActuatorCommand>(
+      kActuatorCommand, [this, &sensors](const msg::ActuatorCommand& command) {
+        keep_sample(command, sensors.commands);
+        note_heard(&HeardSamples::command);
+      }));
+  subscriptions_.push_back(node_.subscribe<msg::Imu>(kImu, [this, &sensors](const msg::Imu& imu) {
+    keep_sample(imu, sensors.imu);
+    note_heard(&HeardSamples::imu);
+    grant_after(imu.stamp_ns());
+  }));
+}
+
+void Client::note_heard(bool HeardSamples::*kind) {
+  const std::lock_guard lock(mutex_);
+  view_.samples.*kind = true;
 }
 
 void Client::hear_controllers() {

@@ -38,6 +38,15 @@ struct Latest {
   double age_s(Clock::time_point now) const { return std::chrono::duration<double>(now - received).count(); }
 };
 
+// What has come of the samples, where they are recorded.
+struct HeardSamples {
+  bool imu = false;
+  bool command = false;
+  bool pose = false;  // or the sign of motion capture that it is there
+
+  bool all() const { return imu && command && pose; }
+};
+
 // What the vehicle and its controller have said.
 struct View {
   Latest<msg::ControlStatus> control;
@@ -47,6 +56,7 @@ struct View {
   Latest<msg::Estimate> estimate;
   Latest<msg::Reference> reference;
   Latest<msg::GroundTruth> truth;
+  HeardSamples samples;
   std::map<std::string, int> peers;  // by name: how many are alive
   std::map<std::uint64_t, Latest<msg::ControllerState>>
       controllers;  // by number; once hear_controllers() was called
@@ -107,6 +117,7 @@ class Client {
   void keep(Latest<T> View::*slot, const T& message);
   void subscribe_all();
   void subscribe_sensors(SensorRecord& sensors);
+  void note_heard(bool HeardSamples::*kind);
   void grant_after(std::int64_t stamp_ns);
   template <class T>
   Answer ask(comms::Publisher<T>& publisher, const T& request, std::chrono::milliseconds timeout,

@@ -146,7 +146,26 @@ void Flight::wait_until_ready() {
     }
     progress_.update(kBeforeFlight, "waiting for " + absent);
   }
-  if (lockstep_) wait_until_paused_at(FlightSchedule::kFirstRequestNs);
+  if (!lockstep_) return;
+  if (record_.sensors) wait_until_samples_come();
+  wait_until_paused_at(FlightSchedule::kFirstRequestNs);
+}
+
+void Flight::wait_until(const std::function<bool(const View&)>& holds, const std::string& what_not) {
+  const auto start = Clock::now();
+  while (!client_.wait(kStep, holds)) {
+    demand_alive();
+    demand_no_interrupt();
+    if (Clock::now() - start > kReadyTimeout) throw FlightFailure("after 20 s " + what_not);
+  }
+}
+
+// Before time passes. A peer may be known that does not know yet who is to hear its samples, which it sends once:
+// only the first come again and again while time stands still.
+void Flight::wait_until_samples_come() {
+  client_.grants().up_to(0);
+  wait_until([](const View& view) { return view.samples.all(); },
+             "the first samples of plant, mocap and control have not come");
 }
 
 // Grants the time up to there, and waits until it has passed and all samples are answered.
@@ -156,13 +175,7 @@ void Flight::wait_until_paused_at(std::int64_t stamp_ns) {
   const auto paused = [stamp_ns](const View& view) {
     return view.vehicle.message.paused() && view.vehicle.message.stamp_ns() >= stamp_ns;
   };
-  const auto start = Clock::now();
-  while (!client_.wait(kStep, paused)) {
-    demand_alive();
-    demand_no_interrupt();
-    if (Clock::now() - start > kReadyTimeout)
-      throw FlightFailure("after 20 s simulated time has not come to " + std::to_string(stamp_ns) + " ns");
-  }
+  wait_until(paused, "simulated time has not come to " + std::to_string(stamp_ns) + " ns");
 }
 
 void Flight::arm() {

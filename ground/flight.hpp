@@ -41,6 +41,8 @@ class Flight {
 
  private:
   void wait_until_ready();
+  void wait_until(const std::function<bool(const View&)>& holds, const std::string& what_not);
+  void wait_until_samples_come();
   void wait_until_paused_at(std::int64_t stamp_ns);
   void arm();
   void wait_for_the_others();

@@ -41,7 +41,7 @@ void TimeGrants::grant() {
   const std::int64_t granted_ns = clock_.advance_to_ns();
   const std::int64_t wanted_ns = std::min(goal_ns_, come_ns_ + window_ns_);
   const std::int64_t least_ns = wanted_ns == goal_ns_ ? granted_ns + 1 : granted_ns + window_ns_ / 4;
-  if (wanted_ns < least_ns) return;
+  if (wanted_ns < least_ns && clock_.sequence_number() > 0) return;  // the first one lets it begin
   clock_.advance_to_ns(wanted_ns);
   publish();
 }

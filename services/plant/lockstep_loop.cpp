@@ -167,7 +167,9 @@ void LockstepLoop::look_after(double awake_s) {
   if (clock_heard_ && (clock_silence_s_ += awake_s) > lockstep_.patience_s)
     throw std::runtime_error(silent_ground());
   if (answered()) {
-    // The controller looks at requests with each sample, also with one that it has answered.
+    // The controller looks at requests with each sample, also with one that it has answered. The first samples all
+    // come again until time passes: whoever records them may not have been known when they were sent.
+    if (vehicle_.simulation().stamp_ns() == 0) return vehicle_.publish_again();
     vehicle_.publish_imu_again();
     return;
   }

@@ -55,6 +55,7 @@ class Fly : public testing::Test {
   TemporaryFolder folder_;
 };
 
+// This and the next judge the rate and the latency that a flight in real time has: nothing runs beside them.
 TEST_F(Fly, FliesReportsAndRecordsAMission) {
   Program fly("swiftlet", arguments(folder_.write("hop.yaml", kHopMission), {"--seed", "7"}), folder_.path());
   ASSERT_EQ(fly.wait(90s), 0) << told(fly);

@@ -322,7 +322,7 @@ TEST(LockstepOptions, ThatDoNotGoTogetherAreRefused) {
   EXPECT_NE(refused("swiftlet-plant", {"--paused"}).find("--paused"), std::string::npos);
 }
 
-// Real time, scaled.
+// Real time, scaled: it judges the rate, and nothing runs beside it.
 TEST_F(Lockstep, SpeedScalesRealTime) {
   const auto record = folder_.path() / "record";
   const Ending ending =

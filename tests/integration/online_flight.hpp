@@ -34,12 +34,12 @@ class Online : public testing::Test {
   TemporaryFolder folder_;
 };
 
-// In lockstep at the pace of the clock: the tools wait as they do with a real vehicle, and a machine that is
-// busy slows the flight down instead of failing it.
+// In lockstep at twice the pace of the clock: the tools go by the vehicle's and wait as they do with a real one, and a
+// machine that is busy slows the flight down instead of failing it.
 class OnlineFlight : public Online {
  protected:
   OnlineFlight()
-      : plant_("swiftlet-plant", lockstep({"--speed", "1"}), folder_.path()),
+      : plant_("swiftlet-plant", lockstep({"--speed", "2"}), folder_.path()),
         mocap_("swiftlet-mocap", lockstep(), folder_.path()),
         control_("swiftlet-control", lockstep(), folder_.path()) {}
 

@@ -56,7 +56,7 @@ TEST_F(OnlineFlight, WaitsUntilItIsDoneWhereThatIsAsked) {
 
 TEST_F(OnlineFlight, TellsWhatEndedItInstead) {
   take_off();
-  std::vector<std::string> words = {"goto", "2", "0", "-0.6", "--speed", "0.3", "--wait", "60"};
+  std::vector<std::string> words = {"goto", "2", "0", "-0.6", "--speed", "0.15", "--wait", "60"};
   for (const std::string& word : network()) words.push_back(word);
   Program going("swiftlet", words, folder_.path());
   ASSERT_TRUE(eventually([&] { return going.output() == "goto: accepted by kl7\n"; }, 20s));
@@ -101,7 +101,7 @@ TEST_F(OnlineFlight, AMissionIsUploadedStartedPausedGoneOnWithSkippedAndCleared)
       folder_.write("walk.yaml",
                     "frame: ned\ntolerance_m: 0.1\nends: hovering\nitems:\n"
                     "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.8}\n"
-                    "  - {kind: waypoint, position_m: [1, 0, -0.6], speed_m_s: 0.1}\n"
+                    "  - {kind: waypoint, position_m: [2, 0, -0.6], speed_m_s: 0.1}\n"
                     "  - {kind: waypoint, position_m: [0.3, 0.2, -0.6], speed_m_s: 0.8}\n");
   const auto mission_is = [&](const std::string& state) {
     return reaches(state.c_str(),

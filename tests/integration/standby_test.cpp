@@ -46,7 +46,7 @@ TEST_F(Standby, AKillInTheMissionIsHardlyFelt) {
   flight_.start_controller(1);
   flight_.wait_for_roles(1, 1);
   take_off();
-  for (int kill = 0; kill < 3; ++kill) {
+  for (int kill = 0; kill < 2; ++kill) {
     const std::int64_t at_ns = flight_.stamp_ns();
     flight_.kill(flight_.active());
     const Felt felt = flight_.felt(at_ns, at_ns + kSecond);
@@ -149,7 +149,6 @@ TEST_F(Standby, OneStartedAloneFindsItsVehicleFlyingAndHoldsIt) {
   flight_.kill(first);
   flight_.start_controller(0);
   flight_.wait("it holds", [&] { return mode() == "holding" && reason() == "found flying"; });
-  flight_.felt(at_ns, at_ns + 4 * kSecond);
   const Felt felt = flight_.felt(at_ns, at_ns + 3 * kSecond);
   EXPECT_LT(felt.lowest_z_ned, -0.3) << "it fell too far; without a command for " << felt.longest_gap_ms
                                      << " ms";

@@ -21,10 +21,6 @@ class StreamFlight : public OnlineFlight {
     }
     return folder_.write("circle.csv", rows);
   }
-  Ending example(const std::string& name) const {
-    return run_program(name, {"kl7", std::to_string(claim_.domain()), "--localhost-only"}, folder_.path(),
-                       120s);
-  }
 };
 
 TEST_F(StreamFlight, AFileOfPositionsIsFlownAndItHoldsAfterwards) {
@@ -67,15 +63,20 @@ TEST_F(StreamFlight, IsNotFollowedOnTheGround) {
   EXPECT_NE(end.errors.find("setpoints are not followed while disarmed"), std::string::npos) << end.errors;
 }
 
-TEST_F(StreamFlight, TheExampleFliesASquare) {
-  const Ending end = example("example-fly-square");
+Ending example(const std::string& name, int domain) {
+  const TemporaryFolder folder;
+  return run_program(name, {"kl7", std::to_string(domain), "--localhost-only"}, folder.path(), 120s);
+}
+
+TEST_F(OnlineFlight, TheExampleFliesASquare) {
+  const Ending end = example("example-fly-square", claim_.domain());
   EXPECT_EQ(end.exit_code, 0) << end.errors << end.output;
   EXPECT_NE(end.output.find("land: done"), std::string::npos) << end.output;
   EXPECT_EQ(status().at("mode"), "disarmed");
 }
 
-TEST_F(StreamFlight, TheExampleStreamsACircle) {
-  const Ending end = example("example-stream-circle");
+TEST_F(OnlineFlight, TheExampleStreamsACircle) {
+  const Ending end = example("example-stream-circle", claim_.domain());
   EXPECT_EQ(end.exit_code, 0) << end.errors << end.output;
   const std::size_t at = end.output.find("up to ");
   ASSERT_NE(at, std::string::npos) << end.output;

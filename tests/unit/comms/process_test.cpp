@@ -126,6 +126,7 @@ TEST_F(Peers, OneThatLeavesIsNamed) {
   EXPECT_TRUE(events_.items()[1].said_goodbye);
 }
 
+// This and ADeadControllersStream... judge how long it takes: nothing runs beside them.
 TEST_F(Peers, OneThatDiesIsNamedWithinTheLease) {
   PeerProcess peer = start();
   ASSERT_TRUE(events_.wait_for_count(1));
