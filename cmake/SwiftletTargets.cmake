@@ -72,11 +72,12 @@ if(SWIFTLET_SANITIZE)
   set(SWIFTLET_TEST_TIMEOUT 1000)
 endif()
 
-# swiftlet_add_test(NAME SOURCES ... LIBS ... [LABEL label] [CASES_APART] [ALONE filter]): a GoogleTest program. It is one test of
-# CTest; with CASES_APART each case is, as is worth a process where cases take seconds. ALONE: those of them that judge what real
-# time passes, beside which nothing else runs.
+# swiftlet_add_test(NAME SOURCES ... LIBS ... [LABEL label] [CASES_APART] [WAITS] [ALONE filter]): a GoogleTest program. It is one
+# test of CTest; with CASES_APART each case is, as is worth a process where cases take seconds. It keeps a core busy, and counts for
+# two of `ctest --parallel`; with WAITS it waits for clocks most of the time, and counts for one. ALONE: those cases that judge what
+# real time passes, beside which nothing else runs.
 function(swiftlet_add_test name)
-  cmake_parse_arguments(arg "CASES_APART" "LABEL;ALONE" "SOURCES;LIBS" ${ARGN})
+  cmake_parse_arguments(arg "CASES_APART;WAITS" "LABEL;ALONE" "SOURCES;LIBS" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${arg_LIBS} GTest::gtest GTest::gtest_main swiftlet_flags)
   target_compile_options(${name} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O1>)  # what is tested is optimised, its tests need not be
@@ -87,6 +88,9 @@ function(swiftlet_add_test name)
     SWIFTLET_SOURCE_DIR="${PROJECT_SOURCE_DIR}" SWIFTLET_BIN_DIR="${PROJECT_BINARY_DIR}/bin")
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
   set(properties TIMEOUT ${SWIFTLET_TEST_TIMEOUT} ENVIRONMENT_MODIFICATION "ROS_DOMAIN_ID=unset:")
+  if(NOT arg_WAITS)
+    list(APPEND properties PROCESSORS 2)
+  endif()
   if(arg_LABEL)
     list(APPEND properties LABELS ${arg_LABEL})
   endif()
