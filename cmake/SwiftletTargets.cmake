@@ -99,11 +99,12 @@ if(SWIFTLET_SANITIZE)
   set(SWIFTLET_TEST_TIMEOUT 1000)
 endif()
 
-# swiftlet_add_test(NAME SOURCES ... LIBS ... [LABEL label] [CASES_APART] [ALONE filter]): a GoogleTest program. It is one test of
-# CTest; with CASES_APART each case is, as is worth a process where cases take seconds. ALONE: those of them that judge what real
-# time passes, beside which nothing else runs. Labelled `unit`, and part of the target unit_tests, unless told.
+# swiftlet_add_test(NAME SOURCES ... LIBS ... [LABEL label] [CASES_APART] [WAITS] [ALONE filter]): a GoogleTest program. It is one
+# test of CTest; with CASES_APART each case is, as is worth a process where cases take seconds. It keeps a core busy, and counts for
+# two of `ctest --parallel`; with WAITS it waits for clocks most of the time, and counts for one. ALONE: those cases that judge what
+# real time passes, beside which nothing else runs. Labelled `unit`, and part of the target unit_tests, unless told.
 function(swiftlet_add_test name)
-  cmake_parse_arguments(arg "CASES_APART" "LABEL;ALONE" "SOURCES;LIBS" ${ARGN})
+  cmake_parse_arguments(arg "CASES_APART;WAITS" "LABEL;ALONE" "SOURCES;LIBS" ${ARGN})
   if(NOT arg_LABEL)
     set(arg_LABEL unit)
   endif()
@@ -120,6 +121,9 @@ function(swiftlet_add_test name)
     SWIFTLET_SOURCE_DIR="${PROJECT_SOURCE_DIR}" SWIFTLET_BIN_DIR="${PROJECT_BINARY_DIR}/bin")
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
   set(properties LABELS ${arg_LABEL} TIMEOUT ${SWIFTLET_TEST_TIMEOUT} ENVIRONMENT_MODIFICATION "ROS_DOMAIN_ID=unset:")
+  if(NOT arg_WAITS)
+    list(APPEND properties PROCESSORS 2)
+  endif()
   if(NOT arg_CASES_APART)
     add_test(NAME ${name} COMMAND ${name})
     set_tests_properties(${name} PROPERTIES ${properties})

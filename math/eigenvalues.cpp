@@ -33,10 +33,12 @@ SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a) {
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
-// The eigenvalues of [0 A; A' 0] are the singular values of A, these with the other sign, and zeros.
+// The eigenvalues of [0 A; A' 0] are the singular values of A, these with the other sign, and zeros. A of many rows has
+// those of its R: the cost goes with the cube of all rows and columns.
 Eigen::VectorXd singular_values(const Eigen::MatrixXd& a) {
   const Eigen::Index m = a.rows();
   const Eigen::Index n = a.cols();
+  if (m > n) return singular_values(triangular_factor(a));
   Eigen::MatrixXd both = Eigen::MatrixXd::Zero(m + n, m + n);
   both.bottomLeftCorner(n, m) = a.transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(both, Eigen::EigenvaluesOnly);

@@ -37,4 +37,7 @@ bool is_positive_definite(const Eigen::MatrixXd& a);
 // The x, a column for each of B, that makes |A X - B| least, by Householder's QR with column pivoting.
 Eigen::MatrixXd least_squares(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
+// The square R of the same, A P = Q R, of an A with at least as many rows as columns.
+Eigen::MatrixXd triangular_factor(const Eigen::MatrixXd& a);
+
 }  // namespace swiftlet::math

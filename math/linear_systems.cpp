@@ -36,4 +36,8 @@ Eigen::MatrixXd least_squares(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b
   return a.colPivHouseholderQr().solve(b);
 }
 
+Eigen::MatrixXd triangular_factor(const Eigen::MatrixXd& a) {
+  return a.colPivHouseholderQr().matrixR().topRows(a.cols()).triangularView<Eigen::Upper>();
+}
+
 }  // namespace swiftlet::math

@@ -157,7 +157,7 @@ void RedundantFlight::ask(std::uint8_t kind, double z_ned) {
   command.kind(kind);
   command.position_ned({0.0, 0.0, z_ned});
   command.yaw_free(true);
-  command.speed(0.8);
+  command.speed(1.2);
   const auto give_up = ground::Clock::now() + 20s;
   ground::Answer answer;
   do {
