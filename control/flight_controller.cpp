@@ -1,4 +1,4 @@
-#include "control/flight_controller.hpp"
+#include "swiftlet/control/flight_controller.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,17 +7,17 @@
 #include <string>
 #include <vector>
 
-#include "control/allocation/allocator.hpp"
-#include "control/attitude/attitude_controller.hpp"
-#include "control/attitude/attitude_error.hpp"
-#include "control/attitude/euler.hpp"
-#include "control/design/control_design.hpp"
-#include "control/estimation/climb_watch.hpp"
-#include "control/estimation/disturbance_observer.hpp"
-#include "control/estimation/rotor_observer.hpp"
-#include "control/position/position_controller.hpp"
-#include "control/position/thrust_attitude_map.hpp"
-#include "control/supervision/supervisor.hpp"
+#include "swiftlet/control/allocation/allocator.hpp"
+#include "swiftlet/control/attitude/attitude_controller.hpp"
+#include "swiftlet/control/attitude/attitude_error.hpp"
+#include "swiftlet/control/attitude/euler.hpp"
+#include "swiftlet/control/design/control_design.hpp"
+#include "swiftlet/control/estimation/climb_watch.hpp"
+#include "swiftlet/control/estimation/disturbance_observer.hpp"
+#include "swiftlet/control/estimation/rotor_observer.hpp"
+#include "swiftlet/control/position/position_controller.hpp"
+#include "swiftlet/control/position/thrust_attitude_map.hpp"
+#include "swiftlet/control/supervision/supervisor.hpp"
 
 namespace swiftlet::control {
 namespace {

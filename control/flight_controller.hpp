@@ -5,14 +5,14 @@
 #include <cstdint>
 #include <memory>
 
-#include "control/estimation/estimator.hpp"
-#include "control/flight_state.hpp"
-#include "control/mode.hpp"
-#include "control/reference.hpp"
-#include "control/request.hpp"
-#include "control/settings.hpp"
-#include "plant/model/samples.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/control/estimation/estimator.hpp"
+#include "swiftlet/control/flight_state.hpp"
+#include "swiftlet/control/mode.hpp"
+#include "swiftlet/control/reference.hpp"
+#include "swiftlet/control/request.hpp"
+#include "swiftlet/control/settings.hpp"
+#include "swiftlet/plant/model/samples.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::control {
 

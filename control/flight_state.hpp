@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 
-#include "control/supervision/state.hpp"
-#include "plant/model/samples.hpp"
+#include "swiftlet/control/supervision/state.hpp"
+#include "swiftlet/plant/model/samples.hpp"
 
 namespace swiftlet::control {
 

@@ -1,4 +1,4 @@
-#include "control/mission.hpp"
+#include "swiftlet/control/mission.hpp"
 
 #include <algorithm>
 

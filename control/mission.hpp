@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include "control/settings.hpp"
-#include "control/trajectory/polynomial.hpp"
+#include "swiftlet/control/settings.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
 
 namespace swiftlet::control {
 

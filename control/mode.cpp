@@ -1,4 +1,4 @@
-#include "control/mode.hpp"
+#include "swiftlet/control/mode.hpp"
 
 namespace swiftlet::control {
 

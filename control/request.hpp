@@ -6,8 +6,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "control/mission.hpp"
-#include "control/trajectory/polynomial.hpp"
+#include "swiftlet/control/mission.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
 
 namespace swiftlet::control {
 

@@ -1,4 +1,4 @@
-#include "control/settings.hpp"
+#include "swiftlet/control/settings.hpp"
 
 #include <string>
 

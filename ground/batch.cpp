@@ -1,4 +1,4 @@
-#include "ground/batch.hpp"
+#include "swiftlet/ground/batch.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -10,9 +10,9 @@
 #include <thread>
 #include <utility>
 
-#include "control/flight_controller.hpp"
-#include "ground/in_process_flight.hpp"
-#include "plant/model/battery.hpp"
+#include "swiftlet/control/flight_controller.hpp"
+#include "swiftlet/ground/in_process_flight.hpp"
+#include "swiftlet/plant/model/battery.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "control/design/mismatch.hpp"
-#include "ground/flight_plan.hpp"
+#include "swiftlet/control/design/mismatch.hpp"
+#include "swiftlet/ground/flight_plan.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,12 +1,12 @@
-#include "ground/batch_plot.hpp"
+#include "swiftlet/ground/batch_plot.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <stdexcept>
 
-#include "ground/format.hpp"
-#include "ground/gnuplot.hpp"
+#include "swiftlet/ground/format.hpp"
+#include "swiftlet/ground/gnuplot.hpp"
 
 namespace swiftlet::ground {
 namespace {

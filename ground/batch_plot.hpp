@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "ground/batch_report.hpp"
+#include "swiftlet/ground/batch_report.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,4 +1,4 @@
-#include "ground/batch_report.hpp"
+#include "swiftlet/ground/batch_report.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ground/format.hpp"
-#include "services/runtime/csv.hpp"
+#include "swiftlet/ground/format.hpp"
+#include "swiftlet/services/runtime/csv.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -8,9 +8,9 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "ground/batch.hpp"
-#include "ground/flight_plan.hpp"
-#include "ground/statistics.hpp"
+#include "swiftlet/ground/batch.hpp"
+#include "swiftlet/ground/flight_plan.hpp"
+#include "swiftlet/ground/statistics.hpp"
 
 namespace swiftlet::ground {
 

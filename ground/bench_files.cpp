@@ -1,14 +1,14 @@
-#include "ground/bench_files.hpp"
+#include "swiftlet/ground/bench_files.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <fstream>
 #include <set>
 
-#include "ground/command.hpp"
-#include "services/runtime/config.hpp"
-#include "services/runtime/csv.hpp"
-#include "services/runtime/measurements.hpp"
+#include "swiftlet/ground/command.hpp"
+#include "swiftlet/services/runtime/config.hpp"
+#include "swiftlet/services/runtime/csv.hpp"
+#include "swiftlet/services/runtime/measurements.hpp"
 
 namespace swiftlet::ground {
 namespace {

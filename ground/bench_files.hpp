@@ -24,8 +24,8 @@
 #include <string>
 #include <vector>
 
-#include "identification/bench.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/identification/bench.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::ground {
 

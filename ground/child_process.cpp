@@ -1,4 +1,4 @@
-#include "ground/child_process.hpp"
+#include "swiftlet/ground/child_process.hpp"
 
 #include <cerrno>
 #include <csignal>

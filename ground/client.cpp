@@ -1,14 +1,14 @@
-#include "ground/client.hpp"
+#include "swiftlet/ground/client.hpp"
 
 #include <algorithm>
 #include <array>
 #include <random>
 #include <utility>
 
-#include "control/estimation/estimator.hpp"
-#include "control/mode.hpp"
-#include "ground/vehicles_seen.hpp"
-#include "services/comms/convert.hpp"
+#include "swiftlet/control/estimation/estimator.hpp"
+#include "swiftlet/control/mode.hpp"
+#include "swiftlet/ground/vehicles_seen.hpp"
+#include "swiftlet/services/comms/convert.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -13,14 +13,14 @@
 #include <string>
 #include <vector>
 
-#include "control/mission.hpp"
-#include "control/request.hpp"
-#include "control/trajectory/polynomial.hpp"
-#include "ground/answer.hpp"
-#include "ground/flight_record.hpp"
-#include "ground/signs_of_life.hpp"
-#include "ground/time_grants.hpp"
-#include "services/comms/node.hpp"
+#include "swiftlet/control/mission.hpp"
+#include "swiftlet/control/request.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
+#include "swiftlet/ground/answer.hpp"
+#include "swiftlet/ground/flight_record.hpp"
+#include "swiftlet/ground/signs_of_life.hpp"
+#include "swiftlet/ground/time_grants.hpp"
+#include "swiftlet/services/comms/node.hpp"
 
 namespace swiftlet::ground {
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "services/runtime/command_line.hpp"
+#include "swiftlet/services/runtime/command_line.hpp"
 
 namespace swiftlet::ground {
 
@@ -17,7 +17,8 @@ constexpr int kBadInput = 2;  // wrong usage or bad input; nothing was started o
 
 struct Command {
   runtime::CommandLine app;  // the subcommand; run is called if it was parsed
-  std::function<int()> run;  // returns kDone, kFailed or kBadInput, or throws: InputError is bad input, any other a failure
+  std::function<int()>
+      run;  // returns kDone, kFailed or kBadInput, or throws: InputError is bad input, any other a failure
 };
 
 // Input that was refused. what() is one sentence for the user.

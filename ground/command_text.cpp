@@ -1,4 +1,4 @@
-#include "ground/command_text.hpp"
+#include "swiftlet/ground/command_text.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "services/runtime/command_line.hpp"
+#include "swiftlet/services/runtime/command_line.hpp"
 
 namespace swiftlet::ground {
 

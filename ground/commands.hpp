@@ -1,7 +1,7 @@
 // The subcommands of `swiftlet`, one file each.
 #pragma once
 
-#include "ground/command.hpp"
+#include "swiftlet/ground/command.hpp"
 
 namespace swiftlet::ground {
 

@@ -2,7 +2,7 @@
 // follow it.
 #include <functional>
 
-#include "ground/command_text.hpp"
+#include "swiftlet/ground/command_text.hpp"
 
 namespace swiftlet::ground {
 namespace {

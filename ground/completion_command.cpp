@@ -1,8 +1,7 @@
 #include <cstdio>
 
-
-#include "ground/command_text.hpp"
-#include "ground/commands.hpp"
+#include "swiftlet/ground/command_text.hpp"
+#include "swiftlet/ground/commands.hpp"
 
 namespace swiftlet::ground {
 

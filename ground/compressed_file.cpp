@@ -1,12 +1,12 @@
-#include "ground/compressed_file.hpp"
+#include "swiftlet/ground/compressed_file.hpp"
 
 #include <array>
 #include <cstddef>
 #include <memory>
 #include <zlib.h>
 
-#include "services/runtime/config_error.hpp"
-#include "services/runtime/text_file.hpp"
+#include "swiftlet/services/runtime/config_error.hpp"
+#include "swiftlet/services/runtime/text_file.hpp"
 
 namespace swiftlet::ground {
 namespace {

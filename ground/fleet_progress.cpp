@@ -1,4 +1,4 @@
-#include "ground/fleet_progress.hpp"
+#include "swiftlet/ground/fleet_progress.hpp"
 
 #include <algorithm>
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "ground/progress.hpp"
-#include "ground/progress_line.hpp"
+#include "swiftlet/ground/progress.hpp"
+#include "swiftlet/ground/progress_line.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,4 +1,4 @@
-#include "ground/flight.hpp"
+#include "swiftlet/ground/flight.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <limits>
 #include <utility>
 
-#include "control/mode.hpp"
-#include "ground/flight_schedule.hpp"
-#include "ground/flight_window.hpp"
+#include "swiftlet/control/mode.hpp"
+#include "swiftlet/ground/flight_schedule.hpp"
+#include "swiftlet/ground/flight_window.hpp"
 
 namespace swiftlet::ground {
 namespace {

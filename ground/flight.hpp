@@ -6,12 +6,12 @@
 #include <stdexcept>
 #include <string>
 
-#include "ground/client.hpp"
-#include "ground/flight_record.hpp"
-#include "ground/mission_file.hpp"
-#include "ground/progress.hpp"
-#include "ground/together.hpp"
-#include "services/runtime/clock.hpp"
+#include "swiftlet/ground/client.hpp"
+#include "swiftlet/ground/flight_record.hpp"
+#include "swiftlet/ground/mission_file.hpp"
+#include "swiftlet/ground/progress.hpp"
+#include "swiftlet/ground/together.hpp"
+#include "swiftlet/services/runtime/clock.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,14 +1,14 @@
-#include "ground/flight_comparison.hpp"
+#include "swiftlet/ground/flight_comparison.hpp"
 
 #include <algorithm>
 #include <optional>
 #include <set>
 
-#include "ground/command.hpp"
-#include "ground/flight_settings.hpp"
-#include "ground/format.hpp"
-#include "services/runtime/config_error.hpp"
-#include "services/runtime/text_file.hpp"
+#include "swiftlet/ground/command.hpp"
+#include "swiftlet/ground/flight_settings.hpp"
+#include "swiftlet/ground/format.hpp"
+#include "swiftlet/services/runtime/config_error.hpp"
+#include "swiftlet/services/runtime/text_file.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -1,4 +1,4 @@
-#include "ground/flight_conclusion.hpp"
+#include "swiftlet/ground/flight_conclusion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ground/command.hpp"
-#include "ground/flight_files.hpp"
-#include "ground/flight_log_files.hpp"
+#include "swiftlet/ground/command.hpp"
+#include "swiftlet/ground/flight_files.hpp"
+#include "swiftlet/ground/flight_log_files.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "ground/flight_record.hpp"
-#include "ground/flight_report.hpp"
-#include "ground/progress_line.hpp"
+#include "swiftlet/ground/flight_record.hpp"
+#include "swiftlet/ground/flight_report.hpp"
+#include "swiftlet/ground/progress_line.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,4 +1,4 @@
-#include "ground/flight_files.hpp"
+#include "swiftlet/ground/flight_files.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ground/gnuplot.hpp"
+#include "swiftlet/ground/gnuplot.hpp"
 
 namespace swiftlet::ground {
 namespace {

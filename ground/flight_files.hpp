@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
-#include "ground/flight_record.hpp"
-#include "ground/flight_report.hpp"
+#include "swiftlet/ground/flight_record.hpp"
+#include "swiftlet/ground/flight_report.hpp"
 
 namespace swiftlet::ground {
 

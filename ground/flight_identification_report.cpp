@@ -1,11 +1,11 @@
-#include "ground/flight_identification_report.hpp"
+#include "swiftlet/ground/flight_identification_report.hpp"
 
 #include <nlohmann/json.hpp>
 
-#include "ground/format.hpp"
-#include "ground/identification_figures.hpp"
-#include "ground/report_page.hpp"
-#include "ground/svg_figure.hpp"
+#include "swiftlet/ground/format.hpp"
+#include "swiftlet/ground/identification_figures.hpp"
+#include "swiftlet/ground/report_page.hpp"
+#include "swiftlet/ground/svg_figure.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "identification/flight.hpp"
+#include "swiftlet/identification/flight.hpp"
 
 namespace swiftlet::ground {
 

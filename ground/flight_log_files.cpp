@@ -1,4 +1,4 @@
-#include "ground/flight_log_files.hpp"
+#include "swiftlet/ground/flight_log_files.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,10 +9,10 @@
 #include <optional>
 #include <stdexcept>
 
-#include "ground/compressed_file.hpp"
-#include "plant/model/esc.hpp"
-#include "services/runtime/config_error.hpp"
-#include "services/runtime/measurements.hpp"
+#include "swiftlet/ground/compressed_file.hpp"
+#include "swiftlet/plant/model/esc.hpp"
+#include "swiftlet/services/runtime/config_error.hpp"
+#include "swiftlet/services/runtime/measurements.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "ground/sensor_record.hpp"
-#include "identification/flight_log.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/ground/sensor_record.hpp"
+#include "swiftlet/identification/flight_log.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,18 +1,18 @@
-#include "ground/flight_plan.hpp"
+#include "swiftlet/ground/flight_plan.hpp"
 
 #include <ctime>
 
-#include "control/supervision/checks.hpp"
-#include "ground/command.hpp"
-#include "ground/flight_schedule.hpp"
-#include "ground/format.hpp"
-#include "ground/installation.hpp"
-#include "ground/network_options.hpp"
-#include "ground/vary_file.hpp"
-#include "services/runtime/control_settings_file.hpp"
-#include "services/runtime/csv.hpp"
-#include "services/runtime/simulation_file.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/ground/command.hpp"
+#include "swiftlet/ground/flight_schedule.hpp"
+#include "swiftlet/ground/format.hpp"
+#include "swiftlet/ground/installation.hpp"
+#include "swiftlet/ground/network_options.hpp"
+#include "swiftlet/ground/vary_file.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
+#include "swiftlet/services/runtime/csv.hpp"
+#include "swiftlet/services/runtime/simulation_file.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -9,15 +9,15 @@
 
 #include <Eigen/Core>
 
-#include "control/settings.hpp"
-#include "ground/child_process.hpp"
-#include "ground/flight_report.hpp"
-#include "ground/mission_file.hpp"
-#include "ground/simulation/variation.hpp"
-#include "plant/model/vehicle.hpp"
-#include "plant/simulation/settings.hpp"
-#include "services/comms/node.hpp"
-#include "services/runtime/clock.hpp"
+#include "swiftlet/control/settings.hpp"
+#include "swiftlet/ground/child_process.hpp"
+#include "swiftlet/ground/flight_report.hpp"
+#include "swiftlet/ground/mission_file.hpp"
+#include "swiftlet/ground/simulation/variation.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
+#include "swiftlet/plant/simulation/settings.hpp"
+#include "swiftlet/services/comms/node.hpp"
+#include "swiftlet/services/runtime/clock.hpp"
 
 namespace swiftlet::ground {
 

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <memory>
 
-#include "ground/sensor_record.hpp"
-#include "ground/track.hpp"
+#include "swiftlet/ground/sensor_record.hpp"
+#include "swiftlet/ground/track.hpp"
 
 namespace swiftlet::ground {
 

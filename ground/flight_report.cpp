@@ -1,11 +1,11 @@
-#include "ground/flight_report.hpp"
+#include "swiftlet/ground/flight_report.hpp"
 
 #include <cmath>
 
 #include <nlohmann/json.hpp>
 
-#include "ground/format.hpp"
-#include "services/runtime/clock.hpp"
+#include "swiftlet/ground/format.hpp"
+#include "swiftlet/services/runtime/clock.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 #include <nlohmann/json_fwd.hpp>
 
-#include "ground/tracking.hpp"
+#include "swiftlet/ground/tracking.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,10 +1,10 @@
-#include "ground/flight_settings.hpp"
+#include "swiftlet/ground/flight_settings.hpp"
 
 #include <array>
 #include <stdexcept>
 
-#include "services/runtime/flat_yaml.hpp"
-#include "services/runtime/text_file.hpp"
+#include "swiftlet/services/runtime/flat_yaml.hpp"
+#include "swiftlet/services/runtime/text_file.hpp"
 
 namespace swiftlet::ground {
 namespace {

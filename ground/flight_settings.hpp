@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "ground/flight_plan.hpp"
+#include "swiftlet/ground/flight_plan.hpp"
 
 namespace swiftlet::ground {
 

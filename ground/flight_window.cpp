@@ -1,8 +1,8 @@
-#include "ground/flight_window.hpp"
+#include "swiftlet/ground/flight_window.hpp"
 
 #include <algorithm>
 
-#include "control/mode.hpp"
+#include "swiftlet/control/mode.hpp"
 
 namespace swiftlet::ground {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "control/mission.hpp"
-#include "ground/flight_record.hpp"
+#include "swiftlet/control/mission.hpp"
+#include "swiftlet/ground/flight_record.hpp"
 
 namespace swiftlet::ground {
 

@@ -6,17 +6,16 @@
 #include <optional>
 #include <vector>
 
-
-#include "ground/commands.hpp"
-#include "ground/fleet_progress.hpp"
-#include "ground/flight_conclusion.hpp"
-#include "ground/flight_plan.hpp"
-#include "ground/fly_options.hpp"
-#include "ground/interrupts.hpp"
-#include "ground/network_options.hpp"
-#include "ground/process_flight.hpp"
-#include "services/comms/domain_claim.hpp"
-#include "services/comms/shared_memory.hpp"
+#include "swiftlet/ground/commands.hpp"
+#include "swiftlet/ground/fleet_progress.hpp"
+#include "swiftlet/ground/flight_conclusion.hpp"
+#include "swiftlet/ground/flight_plan.hpp"
+#include "swiftlet/ground/fly_options.hpp"
+#include "swiftlet/ground/interrupts.hpp"
+#include "swiftlet/ground/network_options.hpp"
+#include "swiftlet/ground/process_flight.hpp"
+#include "swiftlet/services/comms/domain_claim.hpp"
+#include "swiftlet/services/comms/shared_memory.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -131,9 +130,9 @@ Command add_fly_command(runtime::CommandLine root) {
   add_fly_options(app, *options);
   add_network_options(app, options->network, Vehicles::kSeveral);
   app.add_option("--spacing", options->spacing_m,
-                  "of several vehicles: they start in a row from west to east about the origin, so many m "
-                  "apart, and their "
-                  "missions lie as far from each other")
+                 "of several vehicles: they start in a row from west to east about the origin, so many m "
+                 "apart, and their "
+                 "missions lie as far from each other")
       .range(-100.0, 100.0)
       .show_default();
   app.remove_option("--localhost-only");  // it stays there
@@ -149,7 +148,7 @@ Command add_fly_command(runtime::CommandLine root) {
       .range(0.01, 100.0)
       .show_default();
   app.add_flag("--trace", options->trace,
-                "lockstep: keep trace.csv in the record, every sample and command to the last bit");
+               "lockstep: keep trace.csv in the record, every sample and command to the last bit");
   for (const char* of_the_started :
        {"--vehicle", "--simulation", "--seed", "--imu-rate", "--clock", "--speed"}) {
     attach.excludes(app.option(of_the_started));

@@ -1,8 +1,7 @@
-#include "ground/fly_options.hpp"
+#include "swiftlet/ground/fly_options.hpp"
 
 #include <cstdint>
 #include <limits>
-
 
 namespace swiftlet::ground {
 
@@ -16,8 +15,7 @@ void add_mission_options(runtime::CommandLine app, FlyOptions& options) {
   app.add_option("--control", options.control,
                  "control settings, file or name: motor_lag, or paper for the paper's own loops")
       .show_default();
-  app.add_option("--simulation", options.simulation, "simulation settings, file or name")
-      .show_default();
+  app.add_option("--simulation", options.simulation, "simulation settings, file or name").show_default();
   app.add_option("--seed", options.seed, "of all that is random in the simulation")
       .range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max())
       .show_default();

@@ -1,8 +1,8 @@
 // The options that the ways to fly a mission share.
 #pragma once
 
-#include "ground/flight_plan.hpp"
-#include "services/runtime/command_line.hpp"
+#include "swiftlet/ground/flight_plan.hpp"
+#include "swiftlet/services/runtime/command_line.hpp"
 
 namespace swiftlet::ground {
 

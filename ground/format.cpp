@@ -1,4 +1,4 @@
-#include "ground/format.hpp"
+#include "swiftlet/ground/format.hpp"
 
 #include <cstdarg>
 #include <cstdio>

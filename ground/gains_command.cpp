@@ -1,4 +1,4 @@
-#include "ground/gains_command.hpp"
+#include "swiftlet/ground/gains_command.hpp"
 
 #include <array>
 #include <cmath>
@@ -9,11 +9,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ground/commands.hpp"
-#include "ground/format.hpp"
-#include "ground/installation.hpp"
-#include "services/runtime/control_settings_file.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/ground/commands.hpp"
+#include "swiftlet/ground/format.hpp"
+#include "swiftlet/ground/installation.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -205,15 +205,14 @@ Command add_gains_command(runtime::CommandLine root) {
   app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in the configuration")
       .show_default();
   app.add_option("--control", options->control,
-                  "control settings file, or the name of one in the configuration")
+                 "control settings file, or the name of one in the configuration")
       .show_default();
   app.add_option(
          "--draws", options->draws,
          "vehicles drawn from the uncertainty that the vehicle file states, for the margins over them")
       .range(std::size_t{1}, std::size_t{1'000'000})
       .show_default();
-  app.add_option("--seed", options->seed, "of the first draw; each next one has one more")
-      .show_default();
+  app.add_option("--seed", options->seed, "of the first draw; each next one has one more").show_default();
   app.add_flag("--json", options->json, "print JSON");
   return {app, [options] { return run_gains(*options); }};
 }

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <string>
 
-#include "control/design/control_design.hpp"
-#include "ground/command.hpp"
-#include "ground/margin_study.hpp"
+#include "swiftlet/control/design/control_design.hpp"
+#include "swiftlet/ground/command.hpp"
+#include "swiftlet/ground/margin_study.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,8 +1,8 @@
-#include "ground/gnuplot.hpp"
+#include "swiftlet/ground/gnuplot.hpp"
 
 #include <chrono>
 
-#include "ground/child_process.hpp"
+#include "swiftlet/ground/child_process.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -1,9 +1,8 @@
 #include <array>
 #include <optional>
 
-
-#include "ground/commands.hpp"
-#include "ground/request_command.hpp"
+#include "swiftlet/ground/commands.hpp"
+#include "swiftlet/ground/request_command.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -25,16 +24,12 @@ Command add_goto_command(runtime::CommandLine root) {
   constexpr const char* kNames[] = {"x", "y", "z"};
   constexpr const char* kMeanings[] = {"north, m", "east, m", "down, m: negative is up"};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    app.add_option(kNames[axis], options->position_ned[axis], kMeanings[axis])
-        .required()
-        .finite();
+    app.add_option(kNames[axis], options->position_ned[axis], kMeanings[axis]).required().finite();
   }
   app.add_option("--yaw", options->yaw_rad,
-                  "heading to be reached with the place, rad from north to the east; kept unless given")
+                 "heading to be reached with the place, rad from north to the east; kept unless given")
       .finite();
-  app.add_option("--speed", options->speed, "peak speed, m/s")
-      .positive()
-      .show_default();
+  app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
   return {app, [options] {
             return run_request(*options, "goto", [&](Vehicle& vehicle) {
               const auto& [x, y, z] = options->position_ned;

@@ -1,5 +1,5 @@
-#include "ground/commands.hpp"
-#include "ground/request_command.hpp"
+#include "swiftlet/ground/commands.hpp"
+#include "swiftlet/ground/request_command.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,4 +1,4 @@
-#include "ground/identification_figures.hpp"
+#include "swiftlet/ground/identification_figures.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,9 +6,9 @@
 #include <functional>
 #include <numeric>
 
-#include "ground/format.hpp"
-#include "identification/checks.hpp"
-#include "plant/model/propulsion.hpp"
+#include "swiftlet/ground/format.hpp"
+#include "swiftlet/identification/checks.hpp"
+#include "swiftlet/plant/model/propulsion.hpp"
 
 namespace swiftlet::ground {
 namespace {

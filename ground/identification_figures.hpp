@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "ground/svg_figure.hpp"
-#include "identification/bench.hpp"
+#include "swiftlet/ground/svg_figure.hpp"
+#include "swiftlet/identification/bench.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,4 +1,4 @@
-#include "ground/identification_report.hpp"
+#include "swiftlet/ground/identification_report.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,10 +8,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ground/format.hpp"
-#include "ground/identification_figures.hpp"
-#include "ground/report_page.hpp"
-#include "ground/svg_figure.hpp"
+#include "swiftlet/ground/format.hpp"
+#include "swiftlet/ground/identification_figures.hpp"
+#include "swiftlet/ground/report_page.hpp"
+#include "swiftlet/ground/svg_figure.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "ground/bench_files.hpp"
-#include "identification/bench.hpp"
+#include "swiftlet/ground/bench_files.hpp"
+#include "swiftlet/identification/bench.hpp"
 
 namespace swiftlet::ground {
 

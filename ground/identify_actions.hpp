@@ -1,7 +1,7 @@
 // What `swiftlet identify` does: reads, fits, prints, writes. Each returns the exit code, or throws as a Command does.
 #pragma once
 
-#include "ground/identify_options.hpp"
+#include "swiftlet/ground/identify_options.hpp"
 
 namespace swiftlet::ground {
 

@@ -3,9 +3,9 @@
 #include <system_error>
 #include <unistd.h>
 
-#include "ground/commands.hpp"
-#include "ground/identify_options.hpp"
-#include "ground/installation.hpp"
+#include "swiftlet/ground/commands.hpp"
+#include "swiftlet/ground/identify_options.hpp"
+#include "swiftlet/ground/installation.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,5 +1,3 @@
-#include "ground/identify_actions.hpp"
-
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -7,15 +5,16 @@
 #include <string>
 #include <vector>
 
-#include "ground/flight_identification_report.hpp"
-#include "ground/flight_log_files.hpp"
-#include "ground/format.hpp"
-#include "ground/installation.hpp"
-#include "ground/output_files.hpp"
-#include "ground/progress_line.hpp"
-#include "ground/whole_file.hpp"
-#include "services/runtime/vehicle_file.hpp"
-#include "services/runtime/vehicle_writer.hpp"
+#include "swiftlet/ground/flight_identification_report.hpp"
+#include "swiftlet/ground/flight_log_files.hpp"
+#include "swiftlet/ground/format.hpp"
+#include "swiftlet/ground/identify_actions.hpp"
+#include "swiftlet/ground/installation.hpp"
+#include "swiftlet/ground/output_files.hpp"
+#include "swiftlet/ground/progress_line.hpp"
+#include "swiftlet/ground/whole_file.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
+#include "swiftlet/services/runtime/vehicle_writer.hpp"
 
 namespace swiftlet::ground {
 namespace {

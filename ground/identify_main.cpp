@@ -1,6 +1,6 @@
 // swiftlet-identify: what `swiftlet identify` runs.
-#include "ground/identify_actions.hpp"
-#include "ground/run_command_line.hpp"
+#include "swiftlet/ground/identify_actions.hpp"
+#include "swiftlet/ground/run_command_line.hpp"
 
 int main(int argc, char** argv) {
   using namespace swiftlet;

@@ -1,4 +1,4 @@
-#include "ground/identify_options.hpp"
+#include "swiftlet/ground/identify_options.hpp"
 
 #include <memory>
 
@@ -7,15 +7,16 @@ namespace {
 
 Command add_flight_command(runtime::CommandLine identify, const IdentifyActions& actions) {
   const auto options = std::make_shared<IdentifyFlightOptions>();
-  const runtime::CommandLine app = identify.add_subcommand("flight", "Identify a vehicle from logs of its flights");
+  const runtime::CommandLine app =
+      identify.add_subcommand("flight", "Identify a vehicle from logs of its flights");
   app.add_option("logs", options->logs,
-                  "records of `swiftlet fly --sensors`, or CSV files, gzip or not, of one vehicle")
+                 "records of `swiftlet fly --sensors`, or CSV files, gzip or not, of one vehicle")
       .required()
       .type_name("LOG...");
   app.add_option("--base", options->base,
-                  "vehicle file, or the name of one in the configuration, for all that flights do not tell; "
-                  "the record's "
-                  "vehicle, else kaylion, unless given")
+                 "vehicle file, or the name of one in the configuration, for all that flights do not tell; "
+                 "the record's "
+                 "vehicle, else kaylion, unless given")
       .type_name("VEHICLE");
   app.add_choice("--known", options->fit.known,
                  {{"mass", identification::Known::kMass}, {"thrust", identification::Known::kThrust}},
@@ -24,10 +25,10 @@ Command add_flight_command(runtime::CommandLine identify, const IdentifyActions&
   app.add_choice("--axes", options->axes, {{"frd", BodyAxes::kFrd}, {"flu", BodyAxes::kFlu}},
                  "body axes of the IMU, where the names of the columns do not say them: frd or flu");
   app.add_option("--from", options->fit.bounds.from_s,
-                  "time by the log at which the flight begins, s; found unless given")
+                 "time by the log at which the flight begins, s; found unless given")
       .finite();
   app.add_option("--until", options->fit.bounds.until_s,
-                  "time by the log at which it ends, s; found unless given")
+                 "time by the log at which it ends, s; found unless given")
       .finite();
   app.add_option("--out", options->out, "the vehicle file to write").type_name("FILE");
   app.add_option("--report", options->report, "a page with estimates and predictions; one HTML file")
@@ -54,12 +55,11 @@ Command add_simulate_command(runtime::CommandLine identify, const IdentifyAction
   app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in the configuration")
       .show_default();
   app.add_option("--noise", options->noise.share,
-                  "standard deviation of every reading, as a share of the largest of its column")
+                 "standard deviation of every reading, as a share of the largest of its column")
       .finite()
       .range(0.0, 0.5)
       .show_default();
-  app.add_option("--outliers", options->noise.outliers,
-                  "share of the rows in which a reading is badly wrong")
+  app.add_option("--outliers", options->noise.outliers, "share of the rows in which a reading is badly wrong")
       .finite()
       .range(0.0, 0.4)
       .show_default();
@@ -81,10 +81,9 @@ Command add_identify_options(runtime::CommandLine app, const IdentifyActions& ac
   app.add_option("--out", options->out, "the vehicle file to write").type_name("FILE");
   app.add_option("--report", options->report, "a page with figures, fits and intervals; one HTML file")
       .type_name("FILE");
-  app.add_option(
-         "--base", options->base,
-         "vehicle file, or the name of one in the configuration, for all that was not measured; what "
-         "bench.yaml says, or kaylion, unless given")
+  app.add_option("--base", options->base,
+                 "vehicle file, or the name of one in the configuration, for all that was not measured; what "
+                 "bench.yaml says, or kaylion, unless given")
       .type_name("VEHICLE");
   app.add_option("--name", options->name, "name of the vehicle; that of --out unless given");
   app.add_flag("--json", options->json, "print one JSON object instead of the table");

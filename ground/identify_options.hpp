@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "ground/command.hpp"
-#include "ground/flight_log_files.hpp"
-#include "identification/bench_simulation.hpp"
-#include "identification/flight.hpp"
+#include "swiftlet/ground/command.hpp"
+#include "swiftlet/ground/flight_log_files.hpp"
+#include "swiftlet/identification/bench_simulation.hpp"
+#include "swiftlet/identification/flight.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,5 +1,3 @@
-#include "ground/identify_actions.hpp"
-
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -7,12 +5,13 @@
 #include <stdexcept>
 #include <string>
 
-#include "ground/bench_files.hpp"
-#include "ground/installation.hpp"
-#include "identification/bench_simulation.hpp"
-#include "services/runtime/csv.hpp"
-#include "services/runtime/text_file.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/ground/bench_files.hpp"
+#include "swiftlet/ground/identify_actions.hpp"
+#include "swiftlet/ground/installation.hpp"
+#include "swiftlet/identification/bench_simulation.hpp"
+#include "swiftlet/services/runtime/csv.hpp"
+#include "swiftlet/services/runtime/text_file.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 
 namespace swiftlet::ground {
 namespace {

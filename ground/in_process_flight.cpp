@@ -1,10 +1,10 @@
-#include "ground/in_process_flight.hpp"
+#include "swiftlet/ground/in_process_flight.hpp"
 
 #include <chrono>
 
-#include "ground/flight_conclusion.hpp"
-#include "ground/flight_window.hpp"
-#include "ground/simulation/simulated_flight.hpp"
+#include "swiftlet/ground/flight_conclusion.hpp"
+#include "swiftlet/ground/flight_window.hpp"
+#include "swiftlet/ground/simulation/simulated_flight.hpp"
 
 namespace swiftlet::ground {
 

@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <functional>
 
-#include "ground/flight_plan.hpp"
-#include "ground/flight_record.hpp"
-#include "ground/flight_report.hpp"
-#include "ground/simulation/closed_loop.hpp"
-#include "services/runtime/flight_trace.hpp"
+#include "swiftlet/ground/flight_plan.hpp"
+#include "swiftlet/ground/flight_record.hpp"
+#include "swiftlet/ground/flight_report.hpp"
+#include "swiftlet/ground/simulation/closed_loop.hpp"
+#include "swiftlet/services/runtime/flight_trace.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,9 +1,9 @@
-#include "ground/installation.hpp"
+#include "swiftlet/ground/installation.hpp"
 
 #include <stdexcept>
 #include <unistd.h>
 
-#include "services/runtime/find_config.hpp"
+#include "swiftlet/services/runtime/find_config.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,4 +1,4 @@
-#include "ground/interrupts.hpp"
+#include "swiftlet/ground/interrupts.hpp"
 
 #include <array>
 #include <atomic>

@@ -1,6 +1,6 @@
 
-#include "ground/commands.hpp"
-#include "ground/request_command.hpp"
+#include "swiftlet/ground/commands.hpp"
+#include "swiftlet/ground/request_command.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -13,11 +13,9 @@ struct Options : AskOptions {
 
 Command add_land_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
-  const runtime::CommandLine app = add_ask_subcommand(root, "land", "Descend straight down and stop the rotors",
-                                           "swiftlet land --speed 0.3", options);
-  app.add_option("--speed", options->speed, "peak speed, m/s")
-      .positive()
-      .show_default();
+  const runtime::CommandLine app = add_ask_subcommand(
+      root, "land", "Descend straight down and stop the rotors", "swiftlet land --speed 0.3", options);
+  app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
   return {app, [options] {
             return run_request(*options, "land", [&](Vehicle& vehicle) {
               return vehicle.land(options->speed, options->timeout());

@@ -6,10 +6,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ground/client.hpp"
-#include "ground/commands.hpp"
-#include "ground/network_options.hpp"
-#include "ground/vehicles_seen.hpp"
+#include "swiftlet/ground/client.hpp"
+#include "swiftlet/ground/commands.hpp"
+#include "swiftlet/ground/network_options.hpp"
+#include "swiftlet/ground/vehicles_seen.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -119,9 +119,7 @@ Command add_list_command(runtime::CommandLine root) {
       "list", "Say which vehicles are on the network: mode, battery, controllers, poses a second");
   add_network_options(app, options->network);
   app.remove_option("--vehicle-name");
-  app.add_option("--time", options->look_s, "how long to look, s")
-      .range(0.4, 60.0)
-      .show_default();
+  app.add_option("--time", options->look_s, "how long to look, s").range(0.4, 60.0).show_default();
   app.add_flag("--json", options->json, "print the list as JSON");
   app.footer("example: swiftlet list --json | jq -r .[].vehicle");
   return {app, [options] { return list(*options); }};

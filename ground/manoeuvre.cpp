@@ -1,11 +1,11 @@
-#include "ground/manoeuvre.hpp"
+#include "swiftlet/ground/manoeuvre.hpp"
 
 #include <algorithm>
 #include <cstdio>
 #include <utility>
 
-#include "ground/manoeuvre_course.hpp"
-#include "services/comms/wire.hpp"
+#include "swiftlet/ground/manoeuvre_course.hpp"
+#include "swiftlet/services/comms/wire.hpp"
 
 namespace swiftlet::ground {
 namespace {

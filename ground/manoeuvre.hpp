@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "ground/answer.hpp"
+#include "swiftlet/ground/answer.hpp"
 
 namespace swiftlet::ground {
 

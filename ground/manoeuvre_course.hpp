@@ -9,9 +9,9 @@
 
 #include <Eigen/Core>
 
-#include "control/mode.hpp"
-#include "ground/client.hpp"
-#include "ground/manoeuvre.hpp"
+#include "swiftlet/control/mode.hpp"
+#include "swiftlet/ground/client.hpp"
+#include "swiftlet/ground/manoeuvre.hpp"
 
 namespace swiftlet::ground {
 

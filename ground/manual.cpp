@@ -3,7 +3,7 @@
 #include <cctype>
 #include <sstream>
 
-#include "ground/command_text.hpp"
+#include "swiftlet/ground/command_text.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -4,9 +4,8 @@
 #include <fstream>
 #include <stdexcept>
 
-
-#include "ground/command_text.hpp"
-#include "ground/commands.hpp"
+#include "swiftlet/ground/command_text.hpp"
+#include "swiftlet/ground/commands.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -53,7 +52,8 @@ int run(runtime::CommandLine root, const Options& options) {
 
 Command add_manual_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
-  const runtime::CommandLine app = root.add_subcommand("man", "Print the manual page of this program or of a command");
+  const runtime::CommandLine app =
+      root.add_subcommand("man", "Print the manual page of this program or of a command");
   app.add_option("command", options->command, "the command's words; none: the program");
   app.add_option("--into", options->folder, "write the pages of all commands into this folder");
   app.footer("example: swiftlet man sim fly | man -l -");

@@ -1,11 +1,11 @@
-#include "ground/margin_study.hpp"
+#include "swiftlet/ground/margin_study.hpp"
 
 #include <algorithm>
 #include <utility>
 #include <vector>
 
-#include "control/design/mismatch.hpp"
-#include "plant/model/battery.hpp"
+#include "swiftlet/control/design/mismatch.hpp"
+#include "swiftlet/plant/model/battery.hpp"
 
 namespace swiftlet::ground {
 namespace {

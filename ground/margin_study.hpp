@@ -5,10 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "control/design/control_design.hpp"
-#include "control/design/margins.hpp"
-#include "ground/simulation/variation.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/control/design/control_design.hpp"
+#include "swiftlet/control/design/margins.hpp"
+#include "swiftlet/ground/simulation/variation.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,4 +1,4 @@
-#include "ground/mission_check.hpp"
+#include "swiftlet/ground/mission_check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ground/format.hpp"
+#include "swiftlet/ground/format.hpp"
 
 namespace swiftlet::ground {
 namespace {

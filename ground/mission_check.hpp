@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "control/settings.hpp"
-#include "control/trajectory/feasibility.hpp"
-#include "ground/mission_file.hpp"
-#include "ground/rehearsal.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/control/settings.hpp"
+#include "swiftlet/control/trajectory/feasibility.hpp"
+#include "swiftlet/ground/mission_file.hpp"
+#include "swiftlet/ground/rehearsal.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,12 +1,11 @@
 #include <cstdio>
 #include <vector>
 
-
-#include "ground/commands.hpp"
-#include "ground/installation.hpp"
-#include "ground/mission_check.hpp"
-#include "services/runtime/control_settings_file.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/ground/commands.hpp"
+#include "swiftlet/ground/installation.hpp"
+#include "swiftlet/ground/mission_check.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -49,16 +48,16 @@ Command add_mission_check_command(runtime::CommandLine mission) {
       "2 "
       "the file is wrong.");
   app.add_option("file", options->file,
-                  "mission file, or the name of one in the configuration; also files of others")
+                 "mission file, or the name of one in the configuration; also files of others")
       .required();
   app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in the configuration")
       .show_default();
   app.add_option("--control", options->control,
-                  "control settings whose limits and fence hold, likewise a file or a name")
+                 "control settings whose limits and fence hold, likewise a file or a name")
       .show_default();
   app.add_option("--start", options->start, "where the vehicle stands: north and east, m").expected(2);
   app.add_option("--supply", options->supply_voltage_v,
-                  "battery voltage at which it must be possible, V; the low-battery threshold unless told")
+                 "battery voltage at which it must be possible, V; the low-battery threshold unless told")
       .range(0.1, 100.0);
   app.add_flag("--json", options->json, "print JSON");
   return {app, [options] { return run(*options); }};

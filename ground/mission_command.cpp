@@ -1,8 +1,7 @@
 #include <vector>
 
-
-#include "ground/client.hpp"
-#include "ground/commands.hpp"
+#include "swiftlet/ground/client.hpp"
+#include "swiftlet/ground/commands.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,17 +1,17 @@
-#include "ground/mission_file.hpp"
+#include "swiftlet/ground/mission_file.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
 
-#include "control/supervision/checks.hpp"
-#include "control/trajectory/polynomial.hpp"
-#include "ground/format.hpp"
-#include "ground/formats/mission_format.hpp"
-#include "ground/mission_items.hpp"
-#include "services/runtime/config.hpp"
-#include "services/runtime/text_file.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
+#include "swiftlet/ground/format.hpp"
+#include "swiftlet/ground/formats/mission_format.hpp"
+#include "swiftlet/ground/mission_items.hpp"
+#include "swiftlet/services/runtime/config.hpp"
+#include "swiftlet/services/runtime/text_file.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -23,8 +23,8 @@
 #include <string>
 #include <vector>
 
-#include "control/mission.hpp"
-#include "control/settings.hpp"
+#include "swiftlet/control/mission.hpp"
+#include "swiftlet/control/settings.hpp"
 
 namespace swiftlet::ground {
 

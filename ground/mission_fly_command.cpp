@@ -2,13 +2,13 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ground/commands.hpp"
-#include "ground/installation.hpp"
-#include "ground/interrupts.hpp"
-#include "ground/mission_file.hpp"
-#include "ground/progress_line.hpp"
-#include "ground/request_command.hpp"
-#include "services/runtime/control_settings_file.hpp"
+#include "swiftlet/ground/commands.hpp"
+#include "swiftlet/ground/installation.hpp"
+#include "swiftlet/ground/interrupts.hpp"
+#include "swiftlet/ground/mission_file.hpp"
+#include "swiftlet/ground/progress_line.hpp"
+#include "swiftlet/ground/request_command.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -84,10 +84,9 @@ Command add_mission_fly_command(runtime::CommandLine mission) {
          "or a QGroundControl .plan")
       .required();
   app.add_option("--control", options->control,
-                  "control settings whose limits and fence the file is checked against")
+                 "control settings whose limits and fence the file is checked against")
       .show_default();
-  runtime::Option no_wait =
-      app.add_flag("--no-wait", options->no_wait, "return once it has been started");
+  runtime::Option no_wait = app.add_flag("--no-wait", options->no_wait, "return once it has been started");
   app.add_flag(
          "--link", options->link,
          "the flight depends on this command: if it falls silent, the vehicle does what ground_link_action "

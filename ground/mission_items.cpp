@@ -1,4 +1,4 @@
-#include "ground/mission_items.hpp"
+#include "swiftlet/ground/mission_items.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,12 +6,12 @@
 #include <optional>
 #include <stdexcept>
 
-#include "control/supervision/checks.hpp"
-#include "control/trajectory/waypoint_path.hpp"
-#include "ground/format.hpp"
-#include "ground/formats/mission_format.hpp"
-#include "ground/formats/whole_flight.hpp"
-#include "services/runtime/text_file.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/control/trajectory/waypoint_path.hpp"
+#include "swiftlet/ground/format.hpp"
+#include "swiftlet/ground/formats/mission_format.hpp"
+#include "swiftlet/ground/formats/whole_flight.hpp"
+#include "swiftlet/services/runtime/text_file.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "control/settings.hpp"
-#include "ground/mission_file.hpp"
-#include "services/runtime/config.hpp"
+#include "swiftlet/control/settings.hpp"
+#include "swiftlet/ground/mission_file.hpp"
+#include "swiftlet/services/runtime/config.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,4 +1,4 @@
-#include "ground/mission_plot.hpp"
+#include "swiftlet/ground/mission_plot.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "ground/format.hpp"
-#include "ground/gnuplot.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/ground/format.hpp"
+#include "swiftlet/ground/gnuplot.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <string>
 
-#include "control/settings.hpp"
-#include "ground/mission_file.hpp"
-#include "ground/rehearsal.hpp"
+#include "swiftlet/control/settings.hpp"
+#include "swiftlet/ground/mission_file.hpp"
+#include "swiftlet/ground/rehearsal.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,11 +1,10 @@
 #include <cstdio>
 #include <vector>
 
-
-#include "ground/commands.hpp"
-#include "ground/installation.hpp"
-#include "ground/mission_plot.hpp"
-#include "services/runtime/control_settings_file.hpp"
+#include "swiftlet/ground/commands.hpp"
+#include "swiftlet/ground/installation.hpp"
+#include "swiftlet/ground/mission_plot.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -42,11 +41,11 @@ Command add_mission_plot_command(runtime::CommandLine mission) {
       mission.add_subcommand("plot", "Draw the path of a mission file, with its limits and its fence");
   app.footer("example: swiftlet mission plot square -o square.png");
   app.add_option("file", options->file,
-                  "mission file, or the name of one in the configuration; also files of others")
+                 "mission file, or the name of one in the configuration; also files of others")
       .required();
   app.add_option("-o,--out", options->output, "the picture, PNG").show_default();
   app.add_option("--control", options->control,
-                  "control settings whose limits and fence hold, a file or a name")
+                 "control settings whose limits and fence hold, a file or a name")
       .show_default();
   app.add_option("--start", options->start, "where the vehicle stands: north and east, m").expected(2);
   return {app, [options] { return run(*options); }};

@@ -1,7 +1,7 @@
 // `swiftlet mission start`, `pause`, `resume`, `skip` and `clear`: of the mission that the vehicle has.
 
-#include "ground/commands.hpp"
-#include "ground/request_command.hpp"
+#include "swiftlet/ground/commands.hpp"
+#include "swiftlet/ground/request_command.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -12,12 +12,13 @@ struct Options : AskOptions {
 
 using Ask = Manoeuvre (Vehicle::*)(std::uint64_t, std::chrono::milliseconds);
 
-Command add_mission_request(runtime::CommandLine mission, const std::string& name, const std::string& description,
-                            Ask ask) {
+Command add_mission_request(runtime::CommandLine mission, const std::string& name,
+                            const std::string& description, Ask ask) {
   const auto options = std::make_shared<Options>();
-  const runtime::CommandLine app = add_ask_subcommand(mission, name, description, "swiftlet mission " + name, options);
+  const runtime::CommandLine app =
+      add_ask_subcommand(mission, name, description, "swiftlet mission " + name, options);
   app.add_option("--id", options->id,
-                  "refuse if the mission there is another one: the number that `mission upload` said");
+                 "refuse if the mission there is another one: the number that `mission upload` said");
   return {app, [options, name, ask] {
             return run_request(*options, "mission " + name, [&](Vehicle& vehicle) {
               return (vehicle.*ask)(options->id, options->timeout());

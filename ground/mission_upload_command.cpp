@@ -2,12 +2,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ground/commands.hpp"
-#include "ground/format.hpp"
-#include "ground/installation.hpp"
-#include "ground/mission_file.hpp"
-#include "ground/request_command.hpp"
-#include "services/runtime/control_settings_file.hpp"
+#include "swiftlet/ground/commands.hpp"
+#include "swiftlet/ground/format.hpp"
+#include "swiftlet/ground/installation.hpp"
+#include "swiftlet/ground/mission_file.hpp"
+#include "swiftlet/ground/request_command.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -47,10 +47,10 @@ Command add_mission_upload_command(runtime::CommandLine mission) {
       mission, "upload", "Hand a mission over to the vehicle, which keeps it until it is started",
       "swiftlet mission upload square && swiftlet mission start", options);
   app.add_option("file", options->file,
-                  "mission file, or the name of one in the configuration; also files of others")
+                 "mission file, or the name of one in the configuration; also files of others")
       .required();
   app.add_option("--control", options->control,
-                  "control settings whose limits and fence the file is checked against")
+                 "control settings whose limits and fence the file is checked against")
       .show_default();
   return {app, [options] { return upload(*options); }};
 }

@@ -1,9 +1,8 @@
-#include "ground/network_options.hpp"
+#include "swiftlet/ground/network_options.hpp"
 
 #include <algorithm>
 
-
-#include "services/comms/node_options.hpp"
+#include "swiftlet/services/comms/node_options.hpp"
 
 namespace swiftlet::ground {
 namespace {

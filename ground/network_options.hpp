@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "services/comms/node.hpp"
-#include "services/runtime/command_line.hpp"
+#include "swiftlet/services/comms/node.hpp"
+#include "swiftlet/services/runtime/command_line.hpp"
 
 namespace swiftlet::ground {
 
@@ -14,7 +14,8 @@ enum class Vehicles { kOne, kSeveral };
 
 // The options of comms::add_node_options, a name that cannot be one refused as bad input. `network` must
 // outlive the parsing.
-void add_network_options(runtime::CommandLine app, comms::NodeSettings& network, Vehicles vehicles = Vehicles::kOne);
+void add_network_options(runtime::CommandLine app, comms::NodeSettings& network,
+                         Vehicles vehicles = Vehicles::kOne);
 
 // What stands between the commas.
 std::vector<std::string> split_list(const std::string& list);

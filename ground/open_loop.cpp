@@ -1,4 +1,4 @@
-#include "ground/open_loop.hpp"
+#include "swiftlet/ground/open_loop.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "plant/model/esc.hpp"
-#include "plant/simulation/dynamics.hpp"
+#include "swiftlet/plant/model/esc.hpp"
+#include "swiftlet/plant/simulation/dynamics.hpp"
 
 namespace swiftlet::ground {
 namespace {

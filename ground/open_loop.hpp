@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "plant/model/vehicle.hpp"
-#include "plant/simulation/vehicle_state.hpp"
-#include "services/runtime/csv.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
+#include "swiftlet/plant/simulation/vehicle_state.hpp"
+#include "swiftlet/services/runtime/csv.hpp"
 
 namespace swiftlet::ground {
 

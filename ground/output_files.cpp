@@ -1,8 +1,8 @@
-#include "ground/output_files.hpp"
+#include "swiftlet/ground/output_files.hpp"
 
 #include <system_error>
 
-#include "ground/command.hpp"
+#include "swiftlet/ground/command.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -1,14 +1,14 @@
-#include "ground/process_flight.hpp"
+#include "swiftlet/ground/process_flight.hpp"
 
 #include <chrono>
 #include <memory>
 #include <utility>
 
-#include "ground/client.hpp"
-#include "ground/flight.hpp"
-#include "ground/flight_conclusion.hpp"
-#include "ground/flight_settings.hpp"
-#include "ground/flight_window.hpp"
+#include "swiftlet/ground/client.hpp"
+#include "swiftlet/ground/flight.hpp"
+#include "swiftlet/ground/flight_conclusion.hpp"
+#include "swiftlet/ground/flight_settings.hpp"
+#include "swiftlet/ground/flight_window.hpp"
 
 namespace swiftlet::ground {
 namespace {

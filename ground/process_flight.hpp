@@ -3,14 +3,14 @@
 
 #include <filesystem>
 
-#include "ground/flight_plan.hpp"
-#include "ground/flight_record.hpp"
-#include "ground/flight_report.hpp"
-#include "ground/interrupts.hpp"
-#include "ground/process_group.hpp"
-#include "ground/progress.hpp"
-#include "ground/together.hpp"
-#include "services/comms/node.hpp"
+#include "swiftlet/ground/flight_plan.hpp"
+#include "swiftlet/ground/flight_record.hpp"
+#include "swiftlet/ground/flight_report.hpp"
+#include "swiftlet/ground/interrupts.hpp"
+#include "swiftlet/ground/process_group.hpp"
+#include "swiftlet/ground/progress.hpp"
+#include "swiftlet/ground/together.hpp"
+#include "swiftlet/services/comms/node.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,4 +1,4 @@
-#include "ground/process_group.hpp"
+#include "swiftlet/ground/process_group.hpp"
 
 #include <csignal>
 

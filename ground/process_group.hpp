@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "ground/child_process.hpp"
+#include "swiftlet/ground/child_process.hpp"
 
 namespace swiftlet::ground {
 

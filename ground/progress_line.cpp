@@ -1,4 +1,4 @@
-#include "ground/progress_line.hpp"
+#include "swiftlet/ground/progress_line.hpp"
 
 #include <cstdio>
 #include <sys/ioctl.h>

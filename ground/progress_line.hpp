@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-#include "ground/progress.hpp"
+#include "swiftlet/ground/progress.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,12 +1,12 @@
-#include "ground/rehearsal.hpp"
+#include "swiftlet/ground/rehearsal.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "control/supervision/supervisor.hpp"
-#include "ground/mission_file.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/control/supervision/supervisor.hpp"
+#include "swiftlet/ground/mission_file.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -9,9 +9,9 @@
 
 #include <Eigen/Core>
 
-#include "control/mission.hpp"
-#include "control/settings.hpp"
-#include "control/trajectory/polynomial.hpp"
+#include "swiftlet/control/mission.hpp"
+#include "swiftlet/control/settings.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
 
 namespace swiftlet::ground {
 

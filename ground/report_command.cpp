@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ground/commands.hpp"
-#include "ground/flight_comparison.hpp"
+#include "swiftlet/ground/commands.hpp"
+#include "swiftlet/ground/flight_comparison.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -1,10 +1,10 @@
-#include "ground/report_page.hpp"
+#include "swiftlet/ground/report_page.hpp"
 
 #include <cmath>
 
-#include "ground/format.hpp"
-#include "ground/identification_figures.hpp"
-#include "ground/svg_figure.hpp"
+#include "swiftlet/ground/format.hpp"
+#include "swiftlet/ground/identification_figures.hpp"
+#include "swiftlet/ground/svg_figure.hpp"
 
 namespace swiftlet::ground {
 namespace {

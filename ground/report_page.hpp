@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "identification/estimate.hpp"
+#include "swiftlet/identification/estimate.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,4 +1,4 @@
-#include "ground/request_command.hpp"
+#include "swiftlet/ground/request_command.hpp"
 
 #include <cstdio>
 #include <future>
@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ground/network_options.hpp"
+#include "swiftlet/ground/network_options.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -29,9 +29,9 @@ nlohmann::ordered_json to_json(const Asked& asked) {
   return json;
 }
 
-runtime::CommandLine add_subcommand(runtime::CommandLine root, const std::string& name, const std::string& description,
-                         const std::string& example, const std::shared_ptr<RequestOptions>& options,
-                         Vehicles vehicles) {
+runtime::CommandLine add_subcommand(runtime::CommandLine root, const std::string& name,
+                                    const std::string& description, const std::string& example,
+                                    const std::shared_ptr<RequestOptions>& options, Vehicles vehicles) {
   const runtime::CommandLine app = root.add_subcommand(name, description);
   add_network_options(app, options->network, vehicles);
   app.add_option("--timeout", options->timeout_s, "longest wait for an answer, s")
@@ -44,17 +44,18 @@ runtime::CommandLine add_subcommand(runtime::CommandLine root, const std::string
 
 }  // namespace
 
-runtime::CommandLine add_request_subcommand(runtime::CommandLine root, const std::string& name, const std::string& description,
-                                 const std::string& example, const std::shared_ptr<RequestOptions>& options) {
+runtime::CommandLine add_request_subcommand(runtime::CommandLine root, const std::string& name,
+                                            const std::string& description, const std::string& example,
+                                            const std::shared_ptr<RequestOptions>& options) {
   return add_subcommand(root, name, description, example, options, Vehicles::kOne);
 }
 
-runtime::CommandLine add_ask_subcommand(runtime::CommandLine root, const std::string& name, const std::string& description,
-                             const std::string& example, const std::shared_ptr<AskOptions>& options,
-                             Vehicles vehicles) {
+runtime::CommandLine add_ask_subcommand(runtime::CommandLine root, const std::string& name,
+                                        const std::string& description, const std::string& example,
+                                        const std::shared_ptr<AskOptions>& options, Vehicles vehicles) {
   const runtime::CommandLine app = add_subcommand(root, name, description, example, options, vehicles);
   app.add_option("--wait", options->wait_s,
-                  "return when it is done, after so many s at the latest; exit code 1 if it is not")
+                 "return when it is done, after so many s at the latest; exit code 1 if it is not")
       .range(0.1, 3600.0);
   return app;
 }
@@ -102,7 +103,8 @@ int run_request(const AskOptions& options, const std::string& what,
   return failed ? kFailed : kDone;
 }
 
-Command add_plain_request_command(runtime::CommandLine root, const std::string& name, const std::string& description,
+Command add_plain_request_command(runtime::CommandLine root, const std::string& name,
+                                  const std::string& description,
                                   Manoeuvre (Vehicle::*ask)(std::chrono::milliseconds)) {
   const auto options = std::make_shared<AskOptions>();
   const runtime::CommandLine app =

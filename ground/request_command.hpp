@@ -8,11 +8,11 @@
 #include <optional>
 #include <string>
 
-#include "ground/command.hpp"
-#include "ground/manoeuvre.hpp"
-#include "ground/network_options.hpp"
-#include "ground/vehicle.hpp"
-#include "services/comms/node.hpp"
+#include "swiftlet/ground/command.hpp"
+#include "swiftlet/ground/manoeuvre.hpp"
+#include "swiftlet/ground/network_options.hpp"
+#include "swiftlet/ground/vehicle.hpp"
+#include "swiftlet/services/comms/node.hpp"
 
 namespace swiftlet::ground {
 
@@ -32,13 +32,15 @@ struct AskOptions : RequestOptions {
 };
 
 // A subcommand with the network's options, --timeout and --json; `options` is kept by what run captures.
-runtime::CommandLine add_request_subcommand(runtime::CommandLine root, const std::string& name, const std::string& description,
-                                 const std::string& example, const std::shared_ptr<RequestOptions>& options);
+runtime::CommandLine add_request_subcommand(runtime::CommandLine root, const std::string& name,
+                                            const std::string& description, const std::string& example,
+                                            const std::shared_ptr<RequestOptions>& options);
 
 // Likewise, with --wait, and for several vehicles unless told.
-runtime::CommandLine add_ask_subcommand(runtime::CommandLine root, const std::string& name, const std::string& description,
-                             const std::string& example, const std::shared_ptr<AskOptions>& options,
-                             Vehicles vehicles = Vehicles::kSeveral);
+runtime::CommandLine add_ask_subcommand(runtime::CommandLine root, const std::string& name,
+                                        const std::string& description, const std::string& example,
+                                        const std::shared_ptr<AskOptions>& options,
+                                        Vehicles vehicles = Vehicles::kSeveral);
 
 // Joins the network, asks all vehicles at once, each in a thread of its own, prints the answers, and waits
 // for the end where that was wanted. As JSON the answer of one vehicle, or an object of those of several by
@@ -47,7 +49,8 @@ int run_request(const AskOptions& options, const std::string& what,
                 const std::function<Manoeuvre(Vehicle&)>& ask);
 
 // A subcommand that asks for something without arguments.
-Command add_plain_request_command(runtime::CommandLine root, const std::string& name, const std::string& description,
+Command add_plain_request_command(runtime::CommandLine root, const std::string& name,
+                                  const std::string& description,
                                   Manoeuvre (Vehicle::*ask)(std::chrono::milliseconds));
 
 }  // namespace swiftlet::ground

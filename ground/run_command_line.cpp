@@ -1,10 +1,10 @@
-#include "ground/run_command_line.hpp"
+#include "swiftlet/ground/run_command_line.hpp"
 
 #include <cstdio>
 #include <exception>
 
-#include "ground/command.hpp"
-#include "services/runtime/config_error.hpp"
+#include "swiftlet/ground/command.hpp"
+#include "swiftlet/services/runtime/config_error.hpp"
 
 namespace swiftlet::ground {
 namespace {

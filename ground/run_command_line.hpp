@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "services/runtime/command_line.hpp"
+#include "swiftlet/services/runtime/command_line.hpp"
 
 namespace swiftlet::ground {
 

@@ -4,8 +4,8 @@
 
 #include <cstddef>
 
-#include "ground/track.hpp"
-#include "plant/model/samples.hpp"
+#include "swiftlet/ground/track.hpp"
+#include "swiftlet/plant/model/samples.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,4 +1,4 @@
-#include "ground/setpoint_rows.hpp"
+#include "swiftlet/ground/setpoint_rows.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,10 +7,10 @@
 #include <memory>
 #include <utility>
 
-#include "control/attitude/euler.hpp"
-#include "ground/formats/whole_flight.hpp"
-#include "services/runtime/config_error.hpp"
-#include "services/runtime/csv.hpp"
+#include "swiftlet/control/attitude/euler.hpp"
+#include "swiftlet/ground/formats/whole_flight.hpp"
+#include "swiftlet/services/runtime/config_error.hpp"
+#include "swiftlet/services/runtime/csv.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "control/request.hpp"
+#include "swiftlet/control/request.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,4 +1,4 @@
-#include "ground/signs_of_life.hpp"
+#include "swiftlet/ground/signs_of_life.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "services/comms/node.hpp"
+#include "swiftlet/services/comms/node.hpp"
 
 namespace swiftlet::ground {
 

@@ -7,15 +7,15 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ground/batch.hpp"
-#include "ground/batch_plot.hpp"
-#include "ground/batch_report.hpp"
-#include "ground/commands.hpp"
-#include "ground/flight_conclusion.hpp"
-#include "ground/fly_options.hpp"
-#include "ground/format.hpp"
-#include "ground/interrupts.hpp"
-#include "ground/progress_line.hpp"
+#include "swiftlet/ground/batch.hpp"
+#include "swiftlet/ground/batch_plot.hpp"
+#include "swiftlet/ground/batch_report.hpp"
+#include "swiftlet/ground/commands.hpp"
+#include "swiftlet/ground/flight_conclusion.hpp"
+#include "swiftlet/ground/fly_options.hpp"
+#include "swiftlet/ground/format.hpp"
+#include "swiftlet/ground/interrupts.hpp"
+#include "swiftlet/ground/progress_line.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -90,7 +90,7 @@ Command add_sim_batch_command(runtime::CommandLine sim) {
   app.add_option("--jobs", options->jobs, "flights at the same time; all cores unless given")
       .range(std::size_t{1}, kMostJobs);
   app.add_option("--out", flight.record,
-                  "folder for batch.csv and batch.png; flights/<date>-<mission> unless given");
+                 "folder for batch.csv and batch.png; flights/<date>-<mission> unless given");
   app.add_flag("--json", flight.json, "print one JSON object instead of the table");
   app.footer(
       "The controller is designed on --vehicle; what flies is drawn around it. `swiftlet sim fly` with the "

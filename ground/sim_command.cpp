@@ -1,7 +1,6 @@
 #include <vector>
 
-
-#include "ground/commands.hpp"
+#include "swiftlet/ground/commands.hpp"
 
 namespace swiftlet::ground {
 

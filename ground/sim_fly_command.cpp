@@ -1,14 +1,13 @@
 #include <memory>
 #include <optional>
 
-
-#include "ground/commands.hpp"
-#include "ground/flight_conclusion.hpp"
-#include "ground/flight_plan.hpp"
-#include "ground/flight_settings.hpp"
-#include "ground/fly_options.hpp"
-#include "ground/in_process_flight.hpp"
-#include "ground/interrupts.hpp"
+#include "swiftlet/ground/commands.hpp"
+#include "swiftlet/ground/flight_conclusion.hpp"
+#include "swiftlet/ground/flight_plan.hpp"
+#include "swiftlet/ground/flight_settings.hpp"
+#include "swiftlet/ground/fly_options.hpp"
+#include "swiftlet/ground/in_process_flight.hpp"
+#include "swiftlet/ground/interrupts.hpp"
 
 namespace swiftlet::ground {
 namespace {

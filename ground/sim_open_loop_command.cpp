@@ -3,12 +3,11 @@
 #include <string>
 #include <vector>
 
-
-#include "ground/commands.hpp"
-#include "ground/installation.hpp"
-#include "ground/open_loop.hpp"
-#include "services/runtime/csv.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/ground/commands.hpp"
+#include "swiftlet/ground/installation.hpp"
+#include "swiftlet/ground/open_loop.hpp"
+#include "swiftlet/services/runtime/csv.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -52,8 +51,7 @@ Command add_sim_open_loop_command(runtime::CommandLine sim) {
       "velocity in NED (m, m/s),\n"
       "quaternion NED from FRD, body rates and rotor speeds (rad/s). --out has the same columns behind t.\n\n"
       "example: swiftlet sim open-loop --vehicle kaylion --pwm pulses.csv --supply 3.7 --out motion.csv");
-  open_loop
-      .add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in the configuration")
+  open_loop.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in the configuration")
       .required();
   open_loop.add_option("--pwm", options->pulses, "pulse widths, CSV").required();
   open_loop.add_option("--supply", options->supply_voltage_v, "supply voltage v_s of Eq. (9), V")
@@ -61,7 +59,7 @@ Command add_sim_open_loop_command(runtime::CommandLine sim) {
       .finite()
       .range(0.1, 100.0);
   open_loop.add_option("--initial", options->initial,
-                        "initial state, CSV; at rest at the origin, rotors still, unless given");
+                       "initial state, CSV; at rest at the origin, rotors still, unless given");
   open_loop.add_option("--out", options->out, "the motion, CSV").required();
   return {open_loop, [options] { return run_open_loop(*options); }};
 }

@@ -1,4 +1,4 @@
-#include "ground/statistics.hpp"
+#include "swiftlet/ground/statistics.hpp"
 
 #include <algorithm>
 #include <cmath>

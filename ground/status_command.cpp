@@ -5,9 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ground/client.hpp"
-#include "ground/commands.hpp"
-#include "ground/request_command.hpp"
+#include "swiftlet/ground/client.hpp"
+#include "swiftlet/ground/commands.hpp"
+#include "swiftlet/ground/request_command.hpp"
 
 namespace swiftlet::ground {
 namespace {

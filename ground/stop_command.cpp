@@ -3,9 +3,8 @@
 #include <string>
 #include <unistd.h>
 
-
-#include "ground/commands.hpp"
-#include "ground/request_command.hpp"
+#include "swiftlet/ground/commands.hpp"
+#include "swiftlet/ground/request_command.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -32,8 +31,8 @@ void confirm(const Options& options) {
 
 Command add_stop_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
-  const runtime::CommandLine app = add_ask_subcommand(root, "stop", "Emergency: rotors off at once, wherever it is",
-                                           "swiftlet stop --yes", options);
+  const runtime::CommandLine app = add_ask_subcommand(
+      root, "stop", "Emergency: rotors off at once, wherever it is", "swiftlet stop --yes", options);
   app.add_flag("--yes,-y", options->yes, "do not ask for confirmation");
   return {app, [options] {
             confirm(*options);

@@ -7,15 +7,15 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ground/commands.hpp"
-#include "ground/format.hpp"
-#include "ground/interrupts.hpp"
-#include "ground/progress_line.hpp"
-#include "ground/request_command.hpp"
-#include "ground/setpoint_rows.hpp"
-#include "services/runtime/config_error.hpp"
-#include "services/runtime/csv.hpp"
-#include "services/runtime/text_file.hpp"
+#include "swiftlet/ground/commands.hpp"
+#include "swiftlet/ground/format.hpp"
+#include "swiftlet/ground/interrupts.hpp"
+#include "swiftlet/ground/progress_line.hpp"
+#include "swiftlet/ground/request_command.hpp"
+#include "swiftlet/ground/setpoint_rows.hpp"
+#include "swiftlet/services/runtime/config_error.hpp"
+#include "swiftlet/services/runtime/csv.hpp"
+#include "swiftlet/services/runtime/text_file.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -263,12 +263,12 @@ Command add_stream_command(runtime::CommandLine root) {
       "and thrust, or body rates and thrust. The vehicle must hold; afterwards it holds again, or lands",
       "swiftlet stream circle.csv --rate 50    (header: t [s],x [m],y [m],z [m])", options);
   app.add_option("file", options->file,
-                  "CSV whose header names the columns with their units (NED), or "
-                  "t,x,y,z[,vx,vy,vz[,ax,ay,az]][,yaw] (ENU); "
-                  "- reads standard input as it comes")
+                 "CSV whose header names the columns with their units (NED), or "
+                 "t,x,y,z[,vx,vy,vz[,ax,ay,az]][,yaw] (ENU); "
+                 "- reads standard input as it comes")
       .required();
   app.add_option("--rate", options->rate_hz,
-                  "send so many a second, between the rows, Hz; else each row at its time")
+                 "send so many a second, between the rows, Hz; else each row at its time")
       .range(kLeastRate_hz, 1000.0);
   app.add_flag("--land", options->land, "land at the end, also where the stream ended early");
   return {app, [options] { return stream(*options); }};

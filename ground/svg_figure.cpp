@@ -1,11 +1,11 @@
-#include "ground/svg_figure.hpp"
+#include "swiftlet/ground/svg_figure.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "ground/format.hpp"
+#include "swiftlet/ground/format.hpp"
 
 namespace swiftlet::ground {
 namespace {

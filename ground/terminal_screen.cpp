@@ -1,4 +1,4 @@
-#include "ground/terminal_screen.hpp"
+#include "swiftlet/ground/terminal_screen.hpp"
 
 #include <clocale>
 #include <cstdio>

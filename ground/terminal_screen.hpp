@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "ground/watch_screen.hpp"
+#include "swiftlet/ground/watch_screen.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,4 +1,4 @@
-#include "ground/time_grants.hpp"
+#include "swiftlet/ground/time_grants.hpp"
 
 #include <algorithm>
 #include <chrono>

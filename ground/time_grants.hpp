@@ -7,7 +7,7 @@
 #include <mutex>
 #include <thread>
 
-#include "services/comms/node.hpp"
+#include "swiftlet/services/comms/node.hpp"
 
 namespace swiftlet::ground {
 

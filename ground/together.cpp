@@ -1,4 +1,4 @@
-#include "ground/together.hpp"
+#include "swiftlet/ground/together.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,4 +1,4 @@
-#include "ground/tracking.hpp"
+#include "swiftlet/ground/tracking.hpp"
 
 #include <algorithm>
 #include <cmath>

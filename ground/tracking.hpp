@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "ground/flight_record.hpp"
+#include "swiftlet/ground/flight_record.hpp"
 
 namespace swiftlet::ground {
 

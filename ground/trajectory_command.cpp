@@ -1,12 +1,11 @@
 #include <algorithm>
 #include <cstdio>
 
-
-#include "ground/commands.hpp"
-#include "ground/installation.hpp"
-#include "ground/mission_file.hpp"
-#include "ground/request_command.hpp"
-#include "services/runtime/control_settings_file.hpp"
+#include "swiftlet/ground/commands.hpp"
+#include "swiftlet/ground/installation.hpp"
+#include "swiftlet/ground/mission_file.hpp"
+#include "swiftlet/ground/request_command.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -50,7 +49,7 @@ Command add_trajectory_command(runtime::CommandLine root) {
       "swiftlet trajectory figure8.csv", options, Vehicles::kOne);
   app.add_option("file", options->file, "trajectory or waypoints as CSV").required();
   app.add_option("--control", options->control,
-                  "control settings whose limits and fence the file is checked against")
+                 "control settings whose limits and fence the file is checked against")
       .show_default();
   return {app, [options] { return send_trajectory(*options); }};
 }

@@ -1,9 +1,9 @@
-#include "ground/vary_file.hpp"
+#include "swiftlet/ground/vary_file.hpp"
 
 #include <algorithm>
 #include <filesystem>
 
-#include "services/runtime/config.hpp"
+#include "swiftlet/services/runtime/config.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -20,7 +20,7 @@
 
 #include <string>
 
-#include "ground/simulation/variation.hpp"
+#include "swiftlet/ground/simulation/variation.hpp"
 
 namespace swiftlet::ground {
 

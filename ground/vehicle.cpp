@@ -1,12 +1,12 @@
-#include "ground/vehicle.hpp"
+#include "swiftlet/ground/vehicle.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "ground/client.hpp"
-#include "ground/manoeuvre_course.hpp"
-#include "services/comms/convert.hpp"
-#include "services/comms/wire.hpp"
+#include "swiftlet/ground/client.hpp"
+#include "swiftlet/ground/manoeuvre_course.hpp"
+#include "swiftlet/services/comms/convert.hpp"
+#include "swiftlet/services/comms/wire.hpp"
 
 namespace swiftlet::ground {
 namespace {

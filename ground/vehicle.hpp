@@ -23,13 +23,13 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "control/mission.hpp"
-#include "control/mode.hpp"
-#include "control/request.hpp"
-#include "control/trajectory/polynomial.hpp"
-#include "ground/answer.hpp"
-#include "ground/manoeuvre.hpp"
-#include "services/comms/node.hpp"
+#include "swiftlet/control/mission.hpp"
+#include "swiftlet/control/mode.hpp"
+#include "swiftlet/control/request.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
+#include "swiftlet/ground/answer.hpp"
+#include "swiftlet/ground/manoeuvre.hpp"
+#include "swiftlet/services/comms/node.hpp"
 
 namespace swiftlet::ground {
 

@@ -3,12 +3,11 @@
 #include <optional>
 #include <unistd.h>
 
-
-#include "ground/commands.hpp"
-#include "ground/interrupts.hpp"
-#include "ground/network_options.hpp"
-#include "ground/terminal_screen.hpp"
-#include "ground/watch_screen.hpp"
+#include "swiftlet/ground/commands.hpp"
+#include "swiftlet/ground/interrupts.hpp"
+#include "swiftlet/ground/network_options.hpp"
+#include "swiftlet/ground/terminal_screen.hpp"
+#include "swiftlet/ground/watch_screen.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -1,12 +1,12 @@
-#include "ground/watch_screen.hpp"
+#include "swiftlet/ground/watch_screen.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "control/mode.hpp"
-#include "control/settings.hpp"
-#include "ground/format.hpp"
-#include "services/comms/wire.hpp"
+#include "swiftlet/control/mode.hpp"
+#include "swiftlet/control/settings.hpp"
+#include "swiftlet/ground/format.hpp"
+#include "swiftlet/services/comms/wire.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "ground/client.hpp"
+#include "swiftlet/ground/client.hpp"
 
 namespace swiftlet::ground {
 

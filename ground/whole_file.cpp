@@ -1,4 +1,4 @@
-#include "ground/whole_file.hpp"
+#include "swiftlet/ground/whole_file.hpp"
 
 #include <fstream>
 #include <stdexcept>

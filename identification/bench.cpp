@@ -1,12 +1,12 @@
-#include "identification/bench.hpp"
+#include "swiftlet/identification/bench.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "identification/limits.hpp"
-#include "identification/possible_inertia.hpp"
-#include "plant/model/airframe.hpp"
+#include "swiftlet/identification/limits.hpp"
+#include "swiftlet/identification/possible_inertia.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
 
 namespace swiftlet::identification {
 

@@ -10,17 +10,17 @@
 #include <string>
 #include <vector>
 
-#include "identification/esc.hpp"
-#include "identification/inertia.hpp"
-#include "identification/instruments.hpp"
-#include "identification/mass.hpp"
-#include "identification/motor_step.hpp"
-#include "identification/propeller.hpp"
-#include "identification/steady_motor.hpp"
-#include "identification/throttle_thrust.hpp"
-#include "identification/thrust_torque.hpp"
-#include "plant/model/vehicle.hpp"
-#include "plant/model/vehicle_uncertainty.hpp"
+#include "swiftlet/identification/esc.hpp"
+#include "swiftlet/identification/inertia.hpp"
+#include "swiftlet/identification/instruments.hpp"
+#include "swiftlet/identification/mass.hpp"
+#include "swiftlet/identification/motor_step.hpp"
+#include "swiftlet/identification/propeller.hpp"
+#include "swiftlet/identification/steady_motor.hpp"
+#include "swiftlet/identification/throttle_thrust.hpp"
+#include "swiftlet/identification/thrust_torque.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
+#include "swiftlet/plant/model/vehicle_uncertainty.hpp"
 
 namespace swiftlet::identification {
 

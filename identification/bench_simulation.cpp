@@ -1,12 +1,12 @@
-#include "identification/bench_simulation.hpp"
+#include "swiftlet/identification/bench_simulation.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "identification/checks.hpp"
-#include "plant/model/airframe.hpp"
-#include "plant/model/propulsion.hpp"
-#include "plant/simulation/random.hpp"
+#include "swiftlet/identification/checks.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
+#include "swiftlet/plant/model/propulsion.hpp"
+#include "swiftlet/plant/simulation/random.hpp"
 
 namespace swiftlet::identification {
 

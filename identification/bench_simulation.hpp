@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "identification/bench.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/identification/bench.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::identification {
 

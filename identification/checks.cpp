@@ -1,12 +1,12 @@
-#include "identification/checks.hpp"
+#include "swiftlet/identification/checks.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/Core>
 
-#include "identification/estimate.hpp"
-#include "identification/limits.hpp"
+#include "swiftlet/identification/estimate.hpp"
+#include "swiftlet/identification/limits.hpp"
 
 namespace swiftlet::identification {
 

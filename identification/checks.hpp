@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "identification/estimate.hpp"
+#include "swiftlet/identification/estimate.hpp"
 
 namespace swiftlet::identification {
 

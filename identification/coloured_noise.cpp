@@ -1,4 +1,4 @@
-#include "identification/coloured_noise.hpp"
+#include "swiftlet/identification/coloured_noise.hpp"
 
 namespace swiftlet::identification {
 namespace {

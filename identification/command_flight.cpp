@@ -1,4 +1,4 @@
-#include "identification/command_flight.hpp"
+#include "swiftlet/identification/command_flight.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <optional>
 #include <utility>
 
-#include "identification/command_model.hpp"
-#include "identification/command_prediction.hpp"
-#include "identification/flight_conclusion.hpp"
+#include "swiftlet/identification/command_model.hpp"
+#include "swiftlet/identification/command_prediction.hpp"
+#include "swiftlet/identification/flight_conclusion.hpp"
 
 namespace swiftlet::identification {
 namespace {

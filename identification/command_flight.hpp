@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "identification/flight.hpp"
-#include "identification/flight_series.hpp"
+#include "swiftlet/identification/flight.hpp"
+#include "swiftlet/identification/flight_series.hpp"
 
 namespace swiftlet::identification {
 

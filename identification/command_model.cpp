@@ -1,11 +1,11 @@
-#include "identification/command_model.hpp"
+#include "swiftlet/identification/command_model.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "identification/flight_model.hpp"
-#include "identification/supply_sag.hpp"
+#include "swiftlet/identification/flight_model.hpp"
+#include "swiftlet/identification/supply_sag.hpp"
 
 namespace swiftlet::identification {
 namespace {

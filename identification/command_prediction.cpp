@@ -1,9 +1,9 @@
-#include "identification/command_prediction.hpp"
+#include "swiftlet/identification/command_prediction.hpp"
 
 #include <array>
 #include <cmath>
 
-#include "math/linear_algebra.hpp"
+#include "swiftlet/math/linear_algebra.hpp"
 
 namespace swiftlet::identification {
 namespace {

@@ -4,9 +4,9 @@
 #include <array>
 #include <vector>
 
-#include "identification/command_model.hpp"
-#include "identification/flight.hpp"
-#include "identification/flight_conclusion.hpp"
+#include "swiftlet/identification/command_model.hpp"
+#include "swiftlet/identification/flight.hpp"
+#include "swiftlet/identification/flight_conclusion.hpp"
 
 namespace swiftlet::identification {
 

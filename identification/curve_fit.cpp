@@ -1,4 +1,4 @@
-#include "identification/curve_fit.hpp"
+#include "swiftlet/identification/curve_fit.hpp"
 
 #include <cmath>
 

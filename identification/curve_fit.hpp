@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include "identification/curve_distance.hpp"
-#include "identification/least_squares.hpp"
+#include "swiftlet/identification/curve_distance.hpp"
+#include "swiftlet/identification/least_squares.hpp"
 
 namespace swiftlet::identification {
 

@@ -1,11 +1,11 @@
-#include "identification/esc.hpp"
+#include "swiftlet/identification/esc.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "identification/checks.hpp"
-#include "identification/curve_fit.hpp"
-#include "identification/limits.hpp"
+#include "swiftlet/identification/checks.hpp"
+#include "swiftlet/identification/curve_fit.hpp"
+#include "swiftlet/identification/limits.hpp"
 
 namespace swiftlet::identification {
 

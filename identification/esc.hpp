@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "identification/estimate.hpp"
-#include "identification/instruments.hpp"
+#include "swiftlet/identification/estimate.hpp"
+#include "swiftlet/identification/instruments.hpp"
 
 namespace swiftlet::identification {
 

@@ -1,4 +1,4 @@
-#include "identification/estimate.hpp"
+#include "swiftlet/identification/estimate.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "identification/least_squares.hpp"
+#include "swiftlet/identification/least_squares.hpp"
 
 namespace swiftlet::identification {
 

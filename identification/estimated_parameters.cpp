@@ -1,4 +1,4 @@
-#include "identification/estimated_parameters.hpp"
+#include "swiftlet/identification/estimated_parameters.hpp"
 
 #include <algorithm>
 #include <cmath>

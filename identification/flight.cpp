@@ -1,4 +1,4 @@
-#include "identification/flight.hpp"
+#include "swiftlet/identification/flight.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,9 +6,9 @@
 #include <memory>
 #include <utility>
 
-#include "identification/command_flight.hpp"
-#include "identification/flight_conclusion.hpp"
-#include "identification/flight_prediction.hpp"
+#include "swiftlet/identification/command_flight.hpp"
+#include "swiftlet/identification/flight_conclusion.hpp"
+#include "swiftlet/identification/flight_prediction.hpp"
 
 namespace swiftlet::identification {
 namespace {

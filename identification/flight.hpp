@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "identification/estimate.hpp"
-#include "identification/flight_log.hpp"
-#include "identification/flight_model.hpp"
-#include "identification/flight_window.hpp"
-#include "plant/model/vehicle.hpp"
-#include "plant/model/vehicle_uncertainty.hpp"
+#include "swiftlet/identification/estimate.hpp"
+#include "swiftlet/identification/flight_log.hpp"
+#include "swiftlet/identification/flight_model.hpp"
+#include "swiftlet/identification/flight_window.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
+#include "swiftlet/plant/model/vehicle_uncertainty.hpp"
 
 namespace swiftlet::identification {
 

@@ -1,4 +1,4 @@
-#include "identification/flight_checks.hpp"
+#include "swiftlet/identification/flight_checks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 
 #include <Eigen/Core>
 
-#include "identification/checks.hpp"
-#include "identification/flight_series.hpp"
-#include "identification/limits.hpp"
+#include "swiftlet/identification/checks.hpp"
+#include "swiftlet/identification/flight_series.hpp"
+#include "swiftlet/identification/limits.hpp"
 
 namespace swiftlet::identification {
 namespace {

@@ -2,10 +2,10 @@
 // allows, and that agree with each other. All throw BadData.
 #pragma once
 
-#include "identification/estimate.hpp"
-#include "identification/flight_log.hpp"
-#include "identification/flight_window.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/identification/estimate.hpp"
+#include "swiftlet/identification/flight_log.hpp"
+#include "swiftlet/identification/flight_window.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::identification {
 

@@ -1,4 +1,4 @@
-#include "identification/flight_conclusion.hpp"
+#include "swiftlet/identification/flight_conclusion.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,10 +6,10 @@
 #include <limits>
 #include <optional>
 
-#include "identification/checks.hpp"
-#include "identification/possible_inertia.hpp"
-#include "plant/model/airframe.hpp"
-#include "plant/model/vehicle_uncertainty.hpp"
+#include "swiftlet/identification/checks.hpp"
+#include "swiftlet/identification/possible_inertia.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
+#include "swiftlet/plant/model/vehicle_uncertainty.hpp"
 
 namespace swiftlet::identification {
 namespace {

@@ -10,9 +10,9 @@
 
 #include <Eigen/Core>
 
-#include "identification/flight.hpp"
-#include "identification/flight_model.hpp"
-#include "identification/flight_series.hpp"
+#include "swiftlet/identification/flight.hpp"
+#include "swiftlet/identification/flight_model.hpp"
+#include "swiftlet/identification/flight_series.hpp"
 
 namespace swiftlet::identification {
 

@@ -1,11 +1,11 @@
-#include "identification/flight_model.hpp"
+#include "swiftlet/identification/flight_model.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
-#include "identification/estimate.hpp"
+#include "swiftlet/identification/estimate.hpp"
 
 namespace swiftlet::identification {
 namespace {

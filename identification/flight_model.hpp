@@ -19,12 +19,12 @@
 
 #include <Eigen/Core>
 
-#include "identification/flight_parameter.hpp"
-#include "identification/flight_series.hpp"
-#include "identification/recent_results.hpp"
-#include "identification/series_fit.hpp"
-#include "plant/model/airframe.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/identification/flight_parameter.hpp"
+#include "swiftlet/identification/flight_series.hpp"
+#include "swiftlet/identification/recent_results.hpp"
+#include "swiftlet/identification/series_fit.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::identification {
 

@@ -1,4 +1,4 @@
-#include "identification/flight_parameter.hpp"
+#include "swiftlet/identification/flight_parameter.hpp"
 
 #include <utility>
 

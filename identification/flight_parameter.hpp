@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "identification/series_fit.hpp"
+#include "swiftlet/identification/series_fit.hpp"
 
 namespace swiftlet::identification {
 

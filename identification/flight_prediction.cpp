@@ -1,4 +1,4 @@
-#include "identification/flight_prediction.hpp"
+#include "swiftlet/identification/flight_prediction.hpp"
 
 #include <cmath>
 

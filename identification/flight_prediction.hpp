@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "identification/flight.hpp"
+#include "swiftlet/identification/flight.hpp"
 
 namespace swiftlet::identification {
 

@@ -1,13 +1,13 @@
-#include "identification/flight_series.hpp"
+#include "swiftlet/identification/flight_series.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/Cholesky>
 
-#include "identification/estimate.hpp"
-#include "identification/flight_checks.hpp"
-#include "plant/model/propulsion.hpp"
+#include "swiftlet/identification/estimate.hpp"
+#include "swiftlet/identification/flight_checks.hpp"
+#include "swiftlet/plant/model/propulsion.hpp"
 
 namespace swiftlet::identification {
 namespace {

@@ -8,10 +8,10 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "identification/flight_log.hpp"
-#include "identification/flight_window.hpp"
-#include "identification/pose_timing.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/identification/flight_log.hpp"
+#include "swiftlet/identification/flight_window.hpp"
+#include "swiftlet/identification/pose_timing.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::identification {
 

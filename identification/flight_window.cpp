@@ -1,4 +1,4 @@
-#include "identification/flight_window.hpp"
+#include "swiftlet/identification/flight_window.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "identification/estimate.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/identification/estimate.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::identification {
 namespace {

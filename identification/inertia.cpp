@@ -1,12 +1,12 @@
-#include "identification/inertia.hpp"
+#include "swiftlet/identification/inertia.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
-#include "identification/checks.hpp"
-#include "identification/least_squares.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/identification/checks.hpp"
+#include "swiftlet/identification/least_squares.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::identification {
 

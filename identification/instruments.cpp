@@ -1,6 +1,6 @@
-#include "identification/instruments.hpp"
+#include "swiftlet/identification/instruments.hpp"
 
-#include "identification/checks.hpp"
+#include "swiftlet/identification/checks.hpp"
 
 namespace swiftlet::identification {
 

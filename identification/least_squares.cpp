@@ -1,4 +1,4 @@
-#include "identification/least_squares.hpp"
+#include "swiftlet/identification/least_squares.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <ceres/ceres.h>
 
-#include "identification/minimise.hpp"
-#include "math/linear_algebra.hpp"
+#include "swiftlet/identification/minimise.hpp"
+#include "swiftlet/math/linear_algebra.hpp"
 
 namespace swiftlet::identification {
 

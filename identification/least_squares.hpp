@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "identification/estimated_parameters.hpp"
+#include "swiftlet/identification/estimated_parameters.hpp"
 
 namespace swiftlet::identification {
 

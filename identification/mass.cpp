@@ -1,7 +1,7 @@
-#include "identification/mass.hpp"
+#include "swiftlet/identification/mass.hpp"
 
-#include "identification/checks.hpp"
-#include "identification/least_squares.hpp"
+#include "swiftlet/identification/checks.hpp"
+#include "swiftlet/identification/least_squares.hpp"
 
 namespace swiftlet::identification {
 

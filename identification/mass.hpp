@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "identification/estimate.hpp"
+#include "swiftlet/identification/estimate.hpp"
 
 namespace swiftlet::identification {
 

@@ -1,4 +1,4 @@
-#include "identification/minimise.hpp"
+#include "swiftlet/identification/minimise.hpp"
 
 namespace swiftlet::identification {
 namespace {

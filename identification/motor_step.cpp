@@ -1,4 +1,4 @@
-#include "identification/motor_step.hpp"
+#include "swiftlet/identification/motor_step.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,11 +8,11 @@
 #include <Eigen/LU>
 #include <ceres/jet.h>
 
-#include "identification/checks.hpp"
-#include "identification/least_squares.hpp"
-#include "identification/limits.hpp"
-#include "math/linear_algebra.hpp"
-#include "plant/model/airframe.hpp"
+#include "swiftlet/identification/checks.hpp"
+#include "swiftlet/identification/least_squares.hpp"
+#include "swiftlet/identification/limits.hpp"
+#include "swiftlet/math/linear_algebra.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
 
 namespace swiftlet::identification {
 

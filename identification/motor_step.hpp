@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "identification/estimate.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/identification/estimate.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::identification {
 

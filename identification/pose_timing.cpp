@@ -1,4 +1,4 @@
-#include "identification/pose_timing.hpp"
+#include "swiftlet/identification/pose_timing.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "identification/checks.hpp"
-#include "identification/series_fit.hpp"
-#include "plant/model/rotation_vector.hpp"
+#include "swiftlet/identification/checks.hpp"
+#include "swiftlet/identification/series_fit.hpp"
+#include "swiftlet/plant/model/rotation_vector.hpp"
 
 namespace swiftlet::identification {
 namespace {

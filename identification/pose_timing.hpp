@@ -9,9 +9,9 @@
 #include <array>
 #include <vector>
 
-#include "identification/estimate.hpp"
-#include "identification/flight_log.hpp"
-#include "identification/flight_window.hpp"
+#include "swiftlet/identification/estimate.hpp"
+#include "swiftlet/identification/flight_log.hpp"
+#include "swiftlet/identification/flight_window.hpp"
 
 namespace swiftlet::identification {
 

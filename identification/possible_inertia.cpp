@@ -1,10 +1,10 @@
-#include "identification/possible_inertia.hpp"
+#include "swiftlet/identification/possible_inertia.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "identification/estimate.hpp"
-#include "plant/model/vehicle_uncertainty.hpp"
+#include "swiftlet/identification/estimate.hpp"
+#include "swiftlet/plant/model/vehicle_uncertainty.hpp"
 
 namespace swiftlet::identification {
 namespace {

@@ -1,9 +1,9 @@
-#include "identification/propeller.hpp"
+#include "swiftlet/identification/propeller.hpp"
 
 #include <cmath>
 
-#include "identification/limits.hpp"
-#include "plant/model/rotor.hpp"
+#include "swiftlet/identification/limits.hpp"
+#include "swiftlet/plant/model/rotor.hpp"
 
 namespace swiftlet::identification {
 

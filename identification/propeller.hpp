@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "identification/estimate.hpp"
+#include "swiftlet/identification/estimate.hpp"
 
 namespace swiftlet::identification {
 

@@ -1,12 +1,12 @@
-#include "identification/series_fit.hpp"
+#include "swiftlet/identification/series_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <ceres/ceres.h>
 
-#include "identification/minimise.hpp"
-#include "math/linear_algebra.hpp"
+#include "swiftlet/identification/minimise.hpp"
+#include "swiftlet/math/linear_algebra.hpp"
 
 namespace swiftlet::identification {
 namespace {

@@ -1,8 +1,8 @@
-#include "identification/steady_motor.hpp"
+#include "swiftlet/identification/steady_motor.hpp"
 
-#include "identification/checks.hpp"
-#include "identification/curve_fit.hpp"
-#include "identification/limits.hpp"
+#include "swiftlet/identification/checks.hpp"
+#include "swiftlet/identification/curve_fit.hpp"
+#include "swiftlet/identification/limits.hpp"
 
 namespace swiftlet::identification {
 

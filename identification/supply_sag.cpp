@@ -1,10 +1,10 @@
-#include "identification/supply_sag.hpp"
+#include "swiftlet/identification/supply_sag.hpp"
 
 #include <algorithm>
 
-#include "plant/model/airframe.hpp"
-#include "plant/model/battery.hpp"
-#include "plant/model/propulsion.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
+#include "swiftlet/plant/model/battery.hpp"
+#include "swiftlet/plant/model/propulsion.hpp"
 
 namespace swiftlet::identification {
 namespace {

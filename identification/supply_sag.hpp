@@ -1,7 +1,7 @@
 // How the supply's sag bears on what commands do.
 #pragma once
 
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::identification {
 

@@ -1,12 +1,12 @@
-#include "identification/throttle_thrust.hpp"
+#include "swiftlet/identification/throttle_thrust.hpp"
 
 #include <array>
 #include <cmath>
 
 #include <ceres/jet.h>
 
-#include "identification/checks.hpp"
-#include "identification/curve_fit.hpp"
+#include "swiftlet/identification/checks.hpp"
+#include "swiftlet/identification/curve_fit.hpp"
 
 namespace swiftlet::identification {
 

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "identification/estimate.hpp"
-#include "identification/instruments.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/identification/estimate.hpp"
+#include "swiftlet/identification/instruments.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::identification {
 

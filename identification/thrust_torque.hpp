@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "identification/estimate.hpp"
-#include "identification/instruments.hpp"
+#include "swiftlet/identification/estimate.hpp"
+#include "swiftlet/identification/instruments.hpp"
 
 namespace swiftlet::identification {
 

@@ -4,7 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "math/linear_algebra.hpp"
+#include "swiftlet/math/linear_algebra.hpp"
 
 namespace swiftlet::math {
 

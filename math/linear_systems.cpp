@@ -2,7 +2,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 
-#include "math/linear_algebra.hpp"
+#include "swiftlet/math/linear_algebra.hpp"
 
 namespace swiftlet::math {
 

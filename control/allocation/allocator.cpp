@@ -1,4 +1,4 @@
-#include "control/allocation/allocator.hpp"
+#include "swiftlet/control/allocation/allocator.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "plant/model/esc.hpp"
-#include "plant/model/motor.hpp"
-#include "plant/model/rotor.hpp"
+#include "swiftlet/plant/model/esc.hpp"
+#include "swiftlet/plant/model/motor.hpp"
+#include "swiftlet/plant/model/rotor.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -19,7 +19,7 @@ using plant::PerRotor;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFitTolerance = 1e-12;         // of the highest thrust: how far beyond a limit is rounding
 constexpr double kCoefficientTolerance = 1e-9;  // of the largest of its kind: smaller counts as 0
-constexpr double kLeastAuthority = 1e-6;         // of plant::least_authority: below it the rank counts as 3
+constexpr double kLeastAuthority = 1e-6;        // of plant::least_authority: below it the rank counts as 3
 constexpr double kLargestMoment = 1e100;        // N m, so that no quotient of moments overflows
 constexpr int kScaleSteps = 64;
 

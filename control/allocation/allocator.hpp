@@ -4,9 +4,9 @@
 
 #include <Eigen/Core>
 
-#include "plant/model/airframe.hpp"
-#include "plant/model/samples.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
+#include "swiftlet/plant/model/samples.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::control {
 

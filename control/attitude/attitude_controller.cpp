@@ -1,11 +1,11 @@
-#include "control/attitude/attitude_controller.hpp"
+#include "swiftlet/control/attitude/attitude_controller.hpp"
 
 #include <stdexcept>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "control/attitude/attitude_error.hpp"
+#include "swiftlet/control/attitude/attitude_error.hpp"
 
 namespace swiftlet::control {
 

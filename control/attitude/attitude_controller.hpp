@@ -5,9 +5,9 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "control/attitude/heading.hpp"
-#include "control/design/control_design.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/control/attitude/heading.hpp"
+#include "swiftlet/control/design/control_design.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::control {
 

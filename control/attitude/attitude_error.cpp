@@ -1,9 +1,9 @@
-#include "control/attitude/attitude_error.hpp"
+#include "swiftlet/control/attitude/attitude_error.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "control/attitude/euler.hpp"
+#include "swiftlet/control/attitude/euler.hpp"
 
 namespace swiftlet::control {
 namespace {

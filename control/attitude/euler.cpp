@@ -1,4 +1,4 @@
-#include "control/attitude/euler.hpp"
+#include "swiftlet/control/attitude/euler.hpp"
 
 #include <cmath>
 

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "control/attitude/heading.hpp"
+#include "swiftlet/control/attitude/heading.hpp"
 
 namespace swiftlet::control {
 

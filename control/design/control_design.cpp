@@ -1,10 +1,10 @@
-#include "control/design/control_design.hpp"
+#include "swiftlet/control/design/control_design.hpp"
 
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
 
-#include "control/design/riccati.hpp"
+#include "swiftlet/control/design/riccati.hpp"
 
 namespace swiftlet::control {
 namespace {

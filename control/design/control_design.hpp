@@ -9,9 +9,9 @@
 
 #include <Eigen/Core>
 
-#include "control/design/loop.hpp"
-#include "control/settings.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/control/design/loop.hpp"
+#include "swiftlet/control/settings.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::control {
 

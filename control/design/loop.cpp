@@ -1,11 +1,11 @@
-#include "control/design/loop.hpp"
+#include "swiftlet/control/design/loop.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "control/design/refine_zero.hpp"
-#include "math/linear_algebra.hpp"
+#include "swiftlet/control/design/refine_zero.hpp"
+#include "swiftlet/math/linear_algebra.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -41,7 +41,8 @@ std::vector<double> crossovers(const Loop& loop) {
     const double omega = lambda.imag();
     if (!(omega > 0.0) || std::abs(lambda.real()) > 1e-3 * omega) continue;
     if (std::abs(log_gain(loop, omega)) < kGainTolerance) {
-      found.push_back(std::exp(refine_zero([&](double x) { return log_gain(loop, std::exp(x)); }, std::log(omega))));
+      found.push_back(
+          std::exp(refine_zero([&](double x) { return log_gain(loop, std::exp(x)); }, std::log(omega))));
     }
   }
   std::sort(found.begin(), found.end());

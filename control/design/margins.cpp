@@ -1,18 +1,18 @@
-#include "control/design/margins.hpp"
+#include "swiftlet/control/design/margins.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <limits>
 
-#include "control/design/refine_zero.hpp"
-#include "math/linear_algebra.hpp"
+#include "swiftlet/control/design/refine_zero.hpp"
+#include "swiftlet/math/linear_algebra.hpp"
 
 namespace swiftlet::control {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kNearAxis = 1e-3;     // real over imaginary part of a zero that may lie on the axis
+constexpr double kNearAxis = 1e-3;      // real over imaginary part of a zero that may lie on the axis
 constexpr double kRealResponse = 1e-9;  // imaginary over real part of the response, up to which it is real
 constexpr double kLowest = 1e-4;        // rad/s: zeros below are those at 0, rounded
 constexpr double kShift = 0.37;         // of the norm of A: the pencil is not singular there

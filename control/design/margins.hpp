@@ -1,7 +1,7 @@
 // How far a closed loop is from the end of its stability.
 #pragma once
 
-#include "control/design/loop.hpp"
+#include "swiftlet/control/design/loop.hpp"
 
 namespace swiftlet::control {
 

@@ -1,10 +1,10 @@
-#include "control/design/mismatch.hpp"
+#include "swiftlet/control/design/mismatch.hpp"
 
 #include <algorithm>
 
-#include "plant/model/esc.hpp"
-#include "plant/model/motor.hpp"
-#include "plant/model/rotor.hpp"
+#include "swiftlet/plant/model/esc.hpp"
+#include "swiftlet/plant/model/motor.hpp"
+#include "swiftlet/plant/model/rotor.hpp"
 
 namespace swiftlet::control {
 namespace {

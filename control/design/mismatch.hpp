@@ -1,8 +1,8 @@
 // The loops as they are when the vehicle that flies is not the one that they were designed on.
 #pragma once
 
-#include "control/design/control_design.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/control/design/control_design.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::control {
 

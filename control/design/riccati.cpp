@@ -1,4 +1,4 @@
-#include "control/design/riccati.hpp"
+#include "swiftlet/control/design/riccati.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include <Eigen/Jacobi>
 
-#include "math/linear_algebra.hpp"
+#include "swiftlet/math/linear_algebra.hpp"
 
 namespace swiftlet::control {
 namespace {

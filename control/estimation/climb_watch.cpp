@@ -1,6 +1,6 @@
-#include "control/estimation/climb_watch.hpp"
+#include "swiftlet/control/estimation/climb_watch.hpp"
 
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::control {
 

@@ -1,4 +1,4 @@
-#include "control/estimation/disturbance_observer.hpp"
+#include "swiftlet/control/estimation/disturbance_observer.hpp"
 
 #include <cmath>
 

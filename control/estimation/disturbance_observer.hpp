@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "control/settings.hpp"
+#include "swiftlet/control/settings.hpp"
 
 namespace swiftlet::control {
 

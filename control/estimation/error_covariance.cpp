@@ -1,4 +1,4 @@
-#include "control/estimation/error_covariance.hpp"
+#include "swiftlet/control/estimation/error_covariance.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
-#include "control/estimation/estimator.hpp"
+#include "swiftlet/control/estimation/estimator.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "plant/model/rotation_vector.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/plant/model/rotation_vector.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::control {
 namespace {

@@ -14,11 +14,11 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "control/estimation/error_covariance.hpp"
-#include "control/estimation/motion_trial.hpp"
-#include "control/estimation/pose_screen.hpp"
-#include "control/settings.hpp"
-#include "plant/model/samples.hpp"
+#include "swiftlet/control/estimation/error_covariance.hpp"
+#include "swiftlet/control/estimation/motion_trial.hpp"
+#include "swiftlet/control/estimation/pose_screen.hpp"
+#include "swiftlet/control/settings.hpp"
+#include "swiftlet/plant/model/samples.hpp"
 
 namespace swiftlet::control {
 

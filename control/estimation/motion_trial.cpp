@@ -1,9 +1,9 @@
-#include "control/estimation/motion_trial.hpp"
+#include "swiftlet/control/estimation/motion_trial.hpp"
 
 #include <cmath>
 
-#include "plant/model/rotation_vector.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/plant/model/rotation_vector.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::control {
 namespace {

@@ -10,9 +10,9 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "control/estimation/error_covariance.hpp"
-#include "control/settings.hpp"
-#include "plant/model/samples.hpp"
+#include "swiftlet/control/estimation/error_covariance.hpp"
+#include "swiftlet/control/settings.hpp"
+#include "swiftlet/plant/model/samples.hpp"
 
 namespace swiftlet::control {
 

@@ -1,8 +1,8 @@
-#include "control/estimation/pose_screen.hpp"
+#include "swiftlet/control/estimation/pose_screen.hpp"
 
 #include <algorithm>
 
-#include "plant/model/rotation_vector.hpp"
+#include "swiftlet/plant/model/rotation_vector.hpp"
 
 namespace swiftlet::control {
 namespace {

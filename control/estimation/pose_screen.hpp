@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "plant/model/samples.hpp"
+#include "swiftlet/plant/model/samples.hpp"
 
 namespace swiftlet::control {
 

@@ -1,8 +1,8 @@
-#include "control/estimation/rotor_observer.hpp"
+#include "swiftlet/control/estimation/rotor_observer.hpp"
 
 #include <cmath>
 
-#include "plant/model/esc.hpp"
+#include "swiftlet/plant/model/esc.hpp"
 
 namespace swiftlet::control {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <Eigen/Core>
 
-#include "plant/model/airframe.hpp"
-#include "plant/model/motor.hpp"
-#include "plant/model/samples.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
+#include "swiftlet/plant/model/motor.hpp"
+#include "swiftlet/plant/model/samples.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::control {
 

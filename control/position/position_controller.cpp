@@ -1,4 +1,4 @@
-#include "control/position/position_controller.hpp"
+#include "swiftlet/control/position/position_controller.hpp"
 
 #include <algorithm>
 #include <cmath>

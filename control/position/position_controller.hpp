@@ -3,9 +3,9 @@
 
 #include <Eigen/Core>
 
-#include "control/design/control_design.hpp"
-#include "control/reference.hpp"
-#include "control/settings.hpp"
+#include "swiftlet/control/design/control_design.hpp"
+#include "swiftlet/control/reference.hpp"
+#include "swiftlet/control/settings.hpp"
 
 namespace swiftlet::control {
 

@@ -1,9 +1,9 @@
-#include "control/position/thrust_attitude_map.hpp"
+#include "swiftlet/control/position/thrust_attitude_map.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::control {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <Eigen/Core>
 
-#include "control/attitude/heading.hpp"
-#include "control/reference.hpp"
+#include "swiftlet/control/attitude/heading.hpp"
+#include "swiftlet/control/reference.hpp"
 
 namespace swiftlet::control {
 

@@ -1,9 +1,9 @@
-#include "control/supervision/actions.hpp"
+#include "swiftlet/control/supervision/actions.hpp"
 
 #include <algorithm>
 
-#include "control/supervision/phases.hpp"
-#include "control/supervision/setpoints.hpp"
+#include "swiftlet/control/supervision/phases.hpp"
+#include "swiftlet/control/supervision/setpoints.hpp"
 
 namespace swiftlet::control::act {
 namespace {

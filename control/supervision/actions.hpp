@@ -1,7 +1,7 @@
 // What a transition does besides changing the mode.
 #pragma once
 
-#include "control/supervision/scene.hpp"
+#include "swiftlet/control/supervision/scene.hpp"
 
 namespace swiftlet::control {
 

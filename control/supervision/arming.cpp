@@ -1,4 +1,4 @@
-#include "control/supervision/arming.hpp"
+#include "swiftlet/control/supervision/arming.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,10 @@
 #include <cstring>
 #include <string_view>
 
-#include "control/attitude/attitude_error.hpp"
-#include "control/supervision/checks.hpp"
-#include "control/supervision/conditions.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/control/attitude/attitude_error.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/control/supervision/conditions.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::control {
 namespace {

@@ -1,11 +1,11 @@
-#include "control/supervision/checks.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
 
-#include "control/trajectory/bernstein.hpp"
+#include "swiftlet/control/trajectory/bernstein.hpp"
 
 namespace swiftlet::control {
 namespace {

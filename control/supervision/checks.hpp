@@ -2,10 +2,10 @@
 // flight controller.
 #pragma once
 
-#include "control/mission.hpp"
-#include "control/request.hpp"
-#include "control/settings.hpp"
-#include "control/trajectory/polynomial.hpp"
+#include "swiftlet/control/mission.hpp"
+#include "swiftlet/control/request.hpp"
+#include "swiftlet/control/settings.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
 
 namespace swiftlet::control {
 

@@ -1,11 +1,11 @@
-#include "control/supervision/conditions.hpp"
+#include "swiftlet/control/supervision/conditions.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "control/attitude/attitude_error.hpp"
-#include "control/supervision/phases.hpp"
-#include "control/supervision/setpoints.hpp"
+#include "swiftlet/control/attitude/attitude_error.hpp"
+#include "swiftlet/control/supervision/phases.hpp"
+#include "swiftlet/control/supervision/setpoints.hpp"
 
 namespace swiftlet::control {
 namespace {

@@ -1,8 +1,8 @@
 // The conditions of a step, each against its threshold.
 #pragma once
 
-#include "control/supervision/events.hpp"
-#include "control/supervision/scene.hpp"
+#include "swiftlet/control/supervision/events.hpp"
+#include "swiftlet/control/supervision/scene.hpp"
 
 namespace swiftlet::control {
 

@@ -1,4 +1,4 @@
-#include "control/supervision/events.hpp"
+#include "swiftlet/control/supervision/events.hpp"
 
 namespace swiftlet::control {
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "control/request.hpp"
+#include "swiftlet/control/request.hpp"
 
 namespace swiftlet::control {
 

@@ -1,14 +1,14 @@
-#include "control/supervision/guards.hpp"
+#include "swiftlet/control/supervision/guards.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "control/attitude/attitude_error.hpp"
-#include "control/supervision/arming.hpp"
-#include "control/supervision/checks.hpp"
-#include "control/supervision/conditions.hpp"
-#include "control/supervision/phases.hpp"
-#include "control/supervision/setpoints.hpp"
+#include "swiftlet/control/attitude/attitude_error.hpp"
+#include "swiftlet/control/supervision/arming.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/control/supervision/conditions.hpp"
+#include "swiftlet/control/supervision/phases.hpp"
+#include "swiftlet/control/supervision/setpoints.hpp"
 
 namespace swiftlet::control {
 namespace {

@@ -2,7 +2,7 @@
 // request asks is allowed, and if not, why.
 #pragma once
 
-#include "control/supervision/scene.hpp"
+#include "swiftlet/control/supervision/scene.hpp"
 
 namespace swiftlet::control {
 

@@ -1,12 +1,12 @@
-#include "control/supervision/phases.hpp"
+#include "swiftlet/control/supervision/phases.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "control/supervision/checks.hpp"
-#include "control/supervision/setpoints.hpp"
-#include "control/trajectory/waypoint_path.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/control/supervision/setpoints.hpp"
+#include "swiftlet/control/trajectory/waypoint_path.hpp"
 
 namespace swiftlet::control {
 namespace {

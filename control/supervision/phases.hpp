@@ -2,8 +2,8 @@
 // a plan one after another.
 #pragma once
 
-#include "control/supervision/scene.hpp"
-#include "control/trajectory/stop.hpp"
+#include "swiftlet/control/supervision/scene.hpp"
+#include "swiftlet/control/trajectory/stop.hpp"
 
 namespace swiftlet::control {
 

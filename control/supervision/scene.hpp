@@ -3,12 +3,12 @@
 
 #include <cstdint>
 
-#include "control/mission.hpp"
-#include "control/request.hpp"
-#include "control/settings.hpp"
-#include "control/supervision/situation.hpp"
-#include "control/supervision/state.hpp"
-#include "control/trajectory/polynomial.hpp"
+#include "swiftlet/control/mission.hpp"
+#include "swiftlet/control/request.hpp"
+#include "swiftlet/control/settings.hpp"
+#include "swiftlet/control/supervision/situation.hpp"
+#include "swiftlet/control/supervision/state.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
 
 namespace swiftlet::control {
 

@@ -1,13 +1,13 @@
-#include "control/supervision/setpoints.hpp"
+#include "swiftlet/control/supervision/setpoints.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "control/supervision/checks.hpp"
-#include "control/supervision/phases.hpp"
-#include "control/trajectory/waypoint_path.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/control/supervision/phases.hpp"
+#include "swiftlet/control/trajectory/waypoint_path.hpp"
 
 namespace swiftlet::control {
 namespace {

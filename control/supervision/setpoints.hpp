@@ -3,10 +3,10 @@
 // past the position loop, and the reference is where the vehicle is.
 #pragma once
 
-#include "control/request.hpp"
-#include "control/settings.hpp"
-#include "control/supervision/scene.hpp"
-#include "control/trajectory/polynomial.hpp"
+#include "swiftlet/control/request.hpp"
+#include "swiftlet/control/settings.hpp"
+#include "swiftlet/control/supervision/scene.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
 
 namespace swiftlet::control {
 

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "control/estimation/estimator.hpp"
-#include "control/reference.hpp"
+#include "swiftlet/control/estimation/estimator.hpp"
+#include "swiftlet/control/reference.hpp"
 
 namespace swiftlet::control {
 

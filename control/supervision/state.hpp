@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "control/mode.hpp"
-#include "control/request.hpp"
-#include "control/trajectory/reference_path.hpp"
+#include "swiftlet/control/mode.hpp"
+#include "swiftlet/control/request.hpp"
+#include "swiftlet/control/trajectory/reference_path.hpp"
 
 namespace swiftlet::control {
 

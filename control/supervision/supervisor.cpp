@@ -1,10 +1,10 @@
-#include "control/supervision/supervisor.hpp"
+#include "swiftlet/control/supervision/supervisor.hpp"
 
 #include <algorithm>
 
-#include "control/supervision/checks.hpp"
-#include "control/supervision/conditions.hpp"
-#include "control/supervision/phases.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/control/supervision/conditions.hpp"
+#include "swiftlet/control/supervision/phases.hpp"
 
 namespace swiftlet::control {
 

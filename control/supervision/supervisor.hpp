@@ -4,13 +4,13 @@
 
 #include <cstdint>
 
-#include "control/mode.hpp"
-#include "control/request.hpp"
-#include "control/settings.hpp"
-#include "control/supervision/scene.hpp"
-#include "control/supervision/situation.hpp"
-#include "control/supervision/state.hpp"
-#include "control/supervision/transitions.hpp"
+#include "swiftlet/control/mode.hpp"
+#include "swiftlet/control/request.hpp"
+#include "swiftlet/control/settings.hpp"
+#include "swiftlet/control/supervision/scene.hpp"
+#include "swiftlet/control/supervision/situation.hpp"
+#include "swiftlet/control/supervision/state.hpp"
+#include "swiftlet/control/supervision/transitions.hpp"
 
 namespace swiftlet::control {
 

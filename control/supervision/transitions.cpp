@@ -1,10 +1,10 @@
-#include "control/supervision/transitions.hpp"
+#include "swiftlet/control/supervision/transitions.hpp"
 
 #include <array>
 #include <cstddef>
 #include <iterator>
 
-#include "control/supervision/checks.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
 
 namespace swiftlet::control {
 namespace {

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <initializer_list>
 
-#include "control/mode.hpp"
-#include "control/supervision/actions.hpp"
-#include "control/supervision/events.hpp"
-#include "control/supervision/guards.hpp"
+#include "swiftlet/control/mode.hpp"
+#include "swiftlet/control/supervision/actions.hpp"
+#include "swiftlet/control/supervision/events.hpp"
+#include "swiftlet/control/supervision/guards.hpp"
 
 namespace swiftlet::control {
 

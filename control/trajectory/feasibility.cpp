@@ -1,4 +1,4 @@
-#include "control/trajectory/feasibility.hpp"
+#include "swiftlet/control/trajectory/feasibility.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,10 +7,10 @@
 #include <cstdio>
 #include <limits>
 
-#include "control/position/thrust_attitude_map.hpp"
-#include "control/trajectory/bernstein.hpp"
-#include "plant/model/airframe.hpp"
-#include "plant/model/propulsion.hpp"
+#include "swiftlet/control/position/thrust_attitude_map.hpp"
+#include "swiftlet/control/trajectory/bernstein.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
+#include "swiftlet/plant/model/propulsion.hpp"
 
 namespace swiftlet::control {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "control/settings.hpp"
-#include "control/trajectory/polynomial.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/control/settings.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::control {
 

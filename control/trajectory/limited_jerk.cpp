@@ -1,4 +1,4 @@
-#include "control/trajectory/limited_jerk.hpp"
+#include "swiftlet/control/trajectory/limited_jerk.hpp"
 
 #include <algorithm>
 #include <array>

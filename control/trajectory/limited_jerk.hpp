@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "control/trajectory/polynomial.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
 
 namespace swiftlet::control {
 

@@ -1,4 +1,4 @@
-#include "control/trajectory/path_clock.hpp"
+#include "swiftlet/control/trajectory/path_clock.hpp"
 
 #include <algorithm>
 #include <cmath>

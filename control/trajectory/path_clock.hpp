@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "control/reference.hpp"
-#include "control/trajectory/polynomial.hpp"
+#include "swiftlet/control/reference.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
 
 namespace swiftlet::control {
 

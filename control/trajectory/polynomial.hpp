@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "control/reference.hpp"
+#include "swiftlet/control/reference.hpp"
 
 namespace swiftlet::control {
 

@@ -1,4 +1,4 @@
-#include "control/trajectory/reference_path.hpp"
+#include "swiftlet/control/trajectory/reference_path.hpp"
 
 #include <cmath>
 

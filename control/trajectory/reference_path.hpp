@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "control/trajectory/path_clock.hpp"
-#include "control/trajectory/polynomial.hpp"
+#include "swiftlet/control/trajectory/path_clock.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
 
 namespace swiftlet::control {
 

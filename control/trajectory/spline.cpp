@@ -1,11 +1,11 @@
-#include "control/trajectory/spline.hpp"
+#include "swiftlet/control/trajectory/spline.hpp"
 
 #include <array>
 #include <cstddef>
 
 #include <Eigen/Cholesky>
 
-#include "math/linear_algebra.hpp"
+#include "swiftlet/math/linear_algebra.hpp"
 
 namespace swiftlet::control {
 namespace {

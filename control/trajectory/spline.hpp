@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "control/trajectory/polynomial.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
 
 namespace swiftlet::control {
 

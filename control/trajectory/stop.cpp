@@ -1,4 +1,4 @@
-#include "control/trajectory/stop.hpp"
+#include "swiftlet/control/trajectory/stop.hpp"
 
 #include <algorithm>
 #include <cmath>

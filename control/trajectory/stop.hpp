@@ -2,7 +2,7 @@
 // zero, and the acceleration with it. Of all ways to come to rest in a time it has the least jerk squared.
 #pragma once
 
-#include "control/reference.hpp"
+#include "swiftlet/control/reference.hpp"
 
 namespace swiftlet::control {
 

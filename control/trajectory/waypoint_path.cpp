@@ -1,4 +1,4 @@
-#include "control/trajectory/waypoint_path.hpp"
+#include "swiftlet/control/trajectory/waypoint_path.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 #include <Eigen/Geometry>
 
-#include "control/trajectory/bernstein.hpp"
+#include "swiftlet/control/trajectory/bernstein.hpp"
 
 namespace swiftlet::control {
 namespace {

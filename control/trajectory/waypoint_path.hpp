@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "control/trajectory/limited_jerk.hpp"
-#include "control/trajectory/spline.hpp"
+#include "swiftlet/control/trajectory/limited_jerk.hpp"
+#include "swiftlet/control/trajectory/spline.hpp"
 
 namespace swiftlet::control {
 

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string>
 
-#include <services/comms/node.hpp>
+#include <swiftlet/services/comms/node.hpp>
 
 namespace swiftlet::examples {
 

@@ -9,8 +9,8 @@
 #include <cstdio>
 #include <thread>
 
-#include <ground/examples/arguments.hpp>
-#include <ground/vehicle.hpp>
+#include <swiftlet/ground/examples/arguments.hpp>
+#include <swiftlet/ground/vehicle.hpp>
 
 namespace {
 

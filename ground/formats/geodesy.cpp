@@ -1,4 +1,4 @@
-#include "ground/formats/geodesy.hpp"
+#include "swiftlet/ground/formats/geodesy.hpp"
 
 #include <cmath>
 

@@ -1,11 +1,11 @@
-#include "ground/formats/mission_format.hpp"
+#include "swiftlet/ground/formats/mission_format.hpp"
 
 #include <algorithm>
 #include <filesystem>
 #include <vector>
 
-#include "ground/formats/whole_flight.hpp"
-#include "services/runtime/csv.hpp"
+#include "swiftlet/ground/formats/whole_flight.hpp"
+#include "swiftlet/services/runtime/csv.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -12,8 +12,8 @@
 #include <string>
 #include <string_view>
 
-#include "control/trajectory/polynomial.hpp"
-#include "ground/mission_file.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
+#include "swiftlet/ground/mission_file.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,6 +1,6 @@
-#include "ground/formats/mission_format.hpp"
-#include "ground/formats/whole_flight.hpp"
-#include "services/runtime/csv.hpp"
+#include "swiftlet/ground/formats/mission_format.hpp"
+#include "swiftlet/ground/formats/whole_flight.hpp"
+#include "swiftlet/services/runtime/csv.hpp"
 
 namespace swiftlet::ground {
 namespace {

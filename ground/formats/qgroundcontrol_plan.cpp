@@ -7,11 +7,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ground/format.hpp"
-#include "ground/formats/geodesy.hpp"
-#include "ground/formats/mission_format.hpp"
-#include "ground/formats/whole_flight.hpp"
-#include "services/runtime/config.hpp"
+#include "swiftlet/ground/format.hpp"
+#include "swiftlet/ground/formats/geodesy.hpp"
+#include "swiftlet/ground/formats/mission_format.hpp"
+#include "swiftlet/ground/formats/whole_flight.hpp"
+#include "swiftlet/services/runtime/config.hpp"
 
 namespace swiftlet::ground {
 namespace {

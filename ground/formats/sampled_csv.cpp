@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "control/trajectory/spline.hpp"
-#include "ground/format.hpp"
-#include "ground/formats/mission_format.hpp"
-#include "ground/formats/whole_flight.hpp"
-#include "services/runtime/csv.hpp"
+#include "swiftlet/control/trajectory/spline.hpp"
+#include "swiftlet/ground/format.hpp"
+#include "swiftlet/ground/formats/mission_format.hpp"
+#include "swiftlet/ground/formats/whole_flight.hpp"
+#include "swiftlet/services/runtime/csv.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -1,12 +1,12 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "control/supervision/checks.hpp"
-#include "control/trajectory/waypoint_path.hpp"
-#include "ground/format.hpp"
-#include "ground/formats/mission_format.hpp"
-#include "ground/formats/whole_flight.hpp"
-#include "services/runtime/csv.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/control/trajectory/waypoint_path.hpp"
+#include "swiftlet/ground/format.hpp"
+#include "swiftlet/ground/formats/mission_format.hpp"
+#include "swiftlet/ground/formats/whole_flight.hpp"
+#include "swiftlet/services/runtime/csv.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -1,13 +1,13 @@
-#include "ground/formats/whole_flight.hpp"
+#include "swiftlet/ground/formats/whole_flight.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 
-#include "control/supervision/checks.hpp"
-#include "control/trajectory/bernstein.hpp"
-#include "ground/format.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/control/trajectory/bernstein.hpp"
+#include "swiftlet/ground/format.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "control/trajectory/polynomial.hpp"
-#include "control/trajectory/waypoint_path.hpp"
-#include "ground/formats/mission_format.hpp"
-#include "ground/mission_file.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
+#include "swiftlet/control/trajectory/waypoint_path.hpp"
+#include "swiftlet/ground/formats/mission_format.hpp"
+#include "swiftlet/ground/mission_file.hpp"
 
 namespace swiftlet::ground {
 

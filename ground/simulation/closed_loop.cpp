@@ -1,4 +1,4 @@
-#include "ground/simulation/closed_loop.hpp"
+#include "swiftlet/ground/simulation/closed_loop.hpp"
 
 #include <cmath>
 

@@ -7,17 +7,17 @@
 #include <functional>
 #include <optional>
 
-#include "control/flight_controller.hpp"
-#include "control/settings.hpp"
-#include "ground/sensor_record.hpp"
-#include "plant/model/samples.hpp"
-#include "plant/model/vehicle.hpp"
-#include "plant/simulation/actuator_watchdog.hpp"
-#include "plant/simulation/command_path.hpp"
-#include "plant/simulation/mocap.hpp"
-#include "plant/simulation/mocap_path.hpp"
-#include "plant/simulation/plant_simulation.hpp"
-#include "plant/simulation/settings.hpp"
+#include "swiftlet/control/flight_controller.hpp"
+#include "swiftlet/control/settings.hpp"
+#include "swiftlet/ground/sensor_record.hpp"
+#include "swiftlet/plant/model/samples.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
+#include "swiftlet/plant/simulation/actuator_watchdog.hpp"
+#include "swiftlet/plant/simulation/command_path.hpp"
+#include "swiftlet/plant/simulation/mocap.hpp"
+#include "swiftlet/plant/simulation/mocap_path.hpp"
+#include "swiftlet/plant/simulation/plant_simulation.hpp"
+#include "swiftlet/plant/simulation/settings.hpp"
 
 namespace swiftlet::ground {
 

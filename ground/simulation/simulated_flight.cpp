@@ -1,13 +1,13 @@
-#include "ground/simulation/simulated_flight.hpp"
+#include "swiftlet/ground/simulation/simulated_flight.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 
-#include "control/mode.hpp"
-#include "ground/flight_schedule.hpp"
-#include "services/runtime/telemetry_rate.hpp"
+#include "swiftlet/control/mode.hpp"
+#include "swiftlet/ground/flight_schedule.hpp"
+#include "swiftlet/services/runtime/telemetry_rate.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -5,10 +5,10 @@
 #include <functional>
 #include <string>
 
-#include "control/mission.hpp"
-#include "ground/flight_record.hpp"
-#include "ground/simulation/closed_loop.hpp"
-#include "services/runtime/flight_trace.hpp"
+#include "swiftlet/control/mission.hpp"
+#include "swiftlet/ground/flight_record.hpp"
+#include "swiftlet/ground/simulation/closed_loop.hpp"
+#include "swiftlet/services/runtime/flight_trace.hpp"
 
 namespace swiftlet::ground {
 

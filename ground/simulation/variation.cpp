@@ -1,11 +1,11 @@
-#include "ground/simulation/variation.hpp"
+#include "swiftlet/ground/simulation/variation.hpp"
 
 #include <algorithm>
 
-#include "math/linear_algebra.hpp"
-#include "plant/simulation/random.hpp"
-#include "plant/simulation/streams.hpp"
-#include "services/runtime/config_error.hpp"
+#include "swiftlet/math/linear_algebra.hpp"
+#include "swiftlet/plant/simulation/random.hpp"
+#include "swiftlet/plant/simulation/streams.hpp"
+#include "swiftlet/services/runtime/config_error.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -8,10 +8,10 @@
 
 #include <Eigen/Core>
 
-#include "plant/model/vehicle.hpp"
-#include "plant/model/vehicle_uncertainty.hpp"
-#include "plant/model/violation.hpp"
-#include "plant/simulation/settings.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
+#include "swiftlet/plant/model/vehicle_uncertainty.hpp"
+#include "swiftlet/plant/model/violation.hpp"
+#include "swiftlet/plant/simulation/settings.hpp"
 
 namespace swiftlet::ground {
 

@@ -1,6 +1,6 @@
-#include "plant/model/airframe.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
 
-#include "math/linear_algebra.hpp"
+#include "swiftlet/math/linear_algebra.hpp"
 
 namespace swiftlet::plant {
 

@@ -5,8 +5,8 @@
 
 #include <Eigen/Core>
 
-#include "plant/model/rotor.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/plant/model/rotor.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::plant {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::plant {
 

@@ -1,6 +1,6 @@
-#include "plant/model/motor.hpp"
+#include "swiftlet/plant/model/motor.hpp"
 
-#include "plant/model/airframe.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
 
 namespace swiftlet::plant {
 

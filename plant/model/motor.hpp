@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::plant {
 

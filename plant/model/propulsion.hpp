@@ -2,10 +2,10 @@
 // steady state, and back.
 #pragma once
 
-#include "plant/model/esc.hpp"
-#include "plant/model/motor.hpp"
-#include "plant/model/rotor.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/plant/model/esc.hpp"
+#include "swiftlet/plant/model/motor.hpp"
+#include "swiftlet/plant/model/rotor.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::plant {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::plant {
 

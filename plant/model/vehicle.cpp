@@ -1,12 +1,12 @@
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include "math/linear_algebra.hpp"
-#include "plant/model/airframe.hpp"
-#include "plant/model/propulsion.hpp"
+#include "swiftlet/math/linear_algebra.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
+#include "swiftlet/plant/model/propulsion.hpp"
 
 namespace swiftlet::plant {
 

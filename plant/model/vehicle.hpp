@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include "plant/model/samples.hpp"
-#include "plant/model/violation.hpp"
+#include "swiftlet/plant/model/samples.hpp"
+#include "swiftlet/plant/model/violation.hpp"
 
 namespace swiftlet::plant {
 

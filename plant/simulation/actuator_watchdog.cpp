@@ -1,4 +1,4 @@
-#include "plant/simulation/actuator_watchdog.hpp"
+#include "swiftlet/plant/simulation/actuator_watchdog.hpp"
 
 namespace swiftlet::plant {
 

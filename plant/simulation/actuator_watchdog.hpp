@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "plant/model/samples.hpp"
-#include "plant/simulation/vehicle_state.hpp"
+#include "swiftlet/plant/model/samples.hpp"
+#include "swiftlet/plant/simulation/vehicle_state.hpp"
 
 namespace swiftlet::plant {
 

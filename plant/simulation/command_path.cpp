@@ -1,4 +1,4 @@
-#include "plant/simulation/command_path.hpp"
+#include "swiftlet/plant/simulation/command_path.hpp"
 
 #include <cmath>
 

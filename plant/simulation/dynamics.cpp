@@ -1,10 +1,10 @@
-#include "plant/simulation/dynamics.hpp"
+#include "swiftlet/plant/simulation/dynamics.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "plant/model/battery.hpp"
-#include "plant/model/esc.hpp"
+#include "swiftlet/plant/model/battery.hpp"
+#include "swiftlet/plant/model/esc.hpp"
 
 namespace swiftlet::plant {
 

@@ -16,10 +16,10 @@
 
 #include <Eigen/Core>
 
-#include "plant/model/motor.hpp"
-#include "plant/model/vehicle.hpp"
-#include "plant/simulation/pairs.hpp"
-#include "plant/simulation/vehicle_state.hpp"
+#include "swiftlet/plant/model/motor.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
+#include "swiftlet/plant/simulation/pairs.hpp"
+#include "swiftlet/plant/simulation/vehicle_state.hpp"
 
 namespace swiftlet::plant {
 

@@ -1,4 +1,4 @@
-#include "plant/simulation/faults.hpp"
+#include "swiftlet/plant/simulation/faults.hpp"
 
 #include <algorithm>
 #include <cmath>

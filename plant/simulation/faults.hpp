@@ -12,8 +12,8 @@
 
 #include <Eigen/Core>
 
-#include "plant/model/vehicle.hpp"
-#include "plant/model/violation.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
+#include "swiftlet/plant/model/violation.hpp"
 
 namespace swiftlet::plant {
 

@@ -1,4 +1,4 @@
-#include "plant/simulation/ground_contact.hpp"
+#include "swiftlet/plant/simulation/ground_contact.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,9 +9,9 @@
 
 #include <Eigen/Core>
 
-#include "plant/model/vehicle.hpp"
-#include "plant/simulation/settings.hpp"
-#include "plant/simulation/vehicle_state.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
+#include "swiftlet/plant/simulation/settings.hpp"
+#include "swiftlet/plant/simulation/vehicle_state.hpp"
 
 namespace swiftlet::plant {
 

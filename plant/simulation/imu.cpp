@@ -1,8 +1,8 @@
-#include "plant/simulation/imu.hpp"
+#include "swiftlet/plant/simulation/imu.hpp"
 
 #include <cmath>
 
-#include "plant/simulation/streams.hpp"
+#include "swiftlet/plant/simulation/streams.hpp"
 
 namespace swiftlet::plant {
 

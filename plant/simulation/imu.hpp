@@ -6,9 +6,9 @@
 
 #include <Eigen/Core>
 
-#include "plant/model/samples.hpp"
-#include "plant/simulation/random.hpp"
-#include "plant/simulation/settings.hpp"
+#include "swiftlet/plant/model/samples.hpp"
+#include "swiftlet/plant/simulation/random.hpp"
+#include "swiftlet/plant/simulation/settings.hpp"
 
 namespace swiftlet::plant {
 

@@ -1,8 +1,8 @@
-#include "plant/simulation/mocap.hpp"
+#include "swiftlet/plant/simulation/mocap.hpp"
 
 #include <cmath>
 
-#include "plant/simulation/streams.hpp"
+#include "swiftlet/plant/simulation/streams.hpp"
 
 namespace swiftlet::plant {
 

@@ -12,10 +12,10 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "plant/model/samples.hpp"
-#include "plant/simulation/mocap_schedule.hpp"
-#include "plant/simulation/random.hpp"
-#include "plant/simulation/settings.hpp"
+#include "swiftlet/plant/model/samples.hpp"
+#include "swiftlet/plant/simulation/mocap_schedule.hpp"
+#include "swiftlet/plant/simulation/random.hpp"
+#include "swiftlet/plant/simulation/settings.hpp"
 
 namespace swiftlet::plant {
 

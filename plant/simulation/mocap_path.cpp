@@ -1,10 +1,10 @@
-#include "plant/simulation/mocap_path.hpp"
+#include "swiftlet/plant/simulation/mocap_path.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "plant/model/rotation_vector.hpp"
-#include "plant/simulation/streams.hpp"
+#include "swiftlet/plant/model/rotation_vector.hpp"
+#include "swiftlet/plant/simulation/streams.hpp"
 
 namespace swiftlet::plant {
 

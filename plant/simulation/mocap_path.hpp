@@ -7,11 +7,11 @@
 #include <cstdint>
 #include <optional>
 
-#include "plant/model/samples.hpp"
-#include "plant/simulation/delay_line.hpp"
-#include "plant/simulation/faults.hpp"
-#include "plant/simulation/random.hpp"
-#include "plant/simulation/settings.hpp"
+#include "swiftlet/plant/model/samples.hpp"
+#include "swiftlet/plant/simulation/delay_line.hpp"
+#include "swiftlet/plant/simulation/faults.hpp"
+#include "swiftlet/plant/simulation/random.hpp"
+#include "swiftlet/plant/simulation/settings.hpp"
 
 namespace swiftlet::plant {
 

@@ -1,9 +1,9 @@
-#include "plant/simulation/mocap_schedule.hpp"
+#include "swiftlet/plant/simulation/mocap_schedule.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "plant/simulation/streams.hpp"
+#include "swiftlet/plant/simulation/streams.hpp"
 
 namespace swiftlet::plant {
 

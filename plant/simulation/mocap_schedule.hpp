@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "plant/simulation/random.hpp"
-#include "plant/simulation/settings.hpp"
+#include "swiftlet/plant/simulation/random.hpp"
+#include "swiftlet/plant/simulation/settings.hpp"
 
 namespace swiftlet::plant {
 

@@ -1,8 +1,8 @@
-#include "plant/simulation/plant_simulation.hpp"
+#include "swiftlet/plant/simulation/plant_simulation.hpp"
 
 #include <limits>
 
-#include "plant/model/battery.hpp"
+#include "swiftlet/plant/model/battery.hpp"
 
 namespace swiftlet::plant {
 

@@ -14,15 +14,15 @@
 
 #include <Eigen/Core>
 
-#include "plant/model/samples.hpp"
-#include "plant/model/vehicle.hpp"
-#include "plant/simulation/air.hpp"
-#include "plant/simulation/dynamics.hpp"
-#include "plant/simulation/faults.hpp"
-#include "plant/simulation/ground_contact.hpp"
-#include "plant/simulation/imu.hpp"
-#include "plant/simulation/settings.hpp"
-#include "plant/simulation/vehicle_state.hpp"
+#include "swiftlet/plant/model/samples.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
+#include "swiftlet/plant/simulation/air.hpp"
+#include "swiftlet/plant/simulation/dynamics.hpp"
+#include "swiftlet/plant/simulation/faults.hpp"
+#include "swiftlet/plant/simulation/ground_contact.hpp"
+#include "swiftlet/plant/simulation/imu.hpp"
+#include "swiftlet/plant/simulation/settings.hpp"
+#include "swiftlet/plant/simulation/vehicle_state.hpp"
 
 namespace swiftlet::plant {
 

@@ -1,4 +1,4 @@
-#include "plant/simulation/random.hpp"
+#include "swiftlet/plant/simulation/random.hpp"
 
 #include <algorithm>
 #include <cmath>

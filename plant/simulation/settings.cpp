@@ -1,4 +1,4 @@
-#include "plant/simulation/settings.hpp"
+#include "swiftlet/plant/simulation/settings.hpp"
 
 #include <cmath>
 

@@ -9,9 +9,9 @@
 
 #include <Eigen/Core>
 
-#include "plant/model/vehicle.hpp"
-#include "plant/model/violation.hpp"
-#include "plant/simulation/faults.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
+#include "swiftlet/plant/model/violation.hpp"
+#include "swiftlet/plant/simulation/faults.hpp"
 
 namespace swiftlet::plant {
 

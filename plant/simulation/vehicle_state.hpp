@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "plant/model/samples.hpp"
+#include "swiftlet/plant/model/samples.hpp"
 
 namespace swiftlet::plant {
 

@@ -1,10 +1,10 @@
-#include "services/comms/convert.hpp"
+#include "swiftlet/services/comms/convert.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "control/attitude/attitude_error.hpp"
-#include "services/comms/wire.hpp"
+#include "swiftlet/control/attitude/attitude_error.hpp"
+#include "swiftlet/services/comms/wire.hpp"
 
 namespace swiftlet::comms {
 namespace {

@@ -5,14 +5,14 @@
 #include <array>
 #include <cstdint>
 
-#include "control/estimation/estimator.hpp"
-#include "control/flight_controller.hpp"
-#include "control/flight_state.hpp"
-#include "control/mission.hpp"
-#include "control/request.hpp"
-#include "control/trajectory/polynomial.hpp"
-#include "plant/model/samples.hpp"
-#include "services/comms/topics.hpp"
+#include "swiftlet/control/estimation/estimator.hpp"
+#include "swiftlet/control/flight_controller.hpp"
+#include "swiftlet/control/flight_state.hpp"
+#include "swiftlet/control/mission.hpp"
+#include "swiftlet/control/request.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
+#include "swiftlet/plant/model/samples.hpp"
+#include "swiftlet/services/comms/topics.hpp"
 
 namespace swiftlet::comms {
 

@@ -1,5 +1,5 @@
-#include "services/comms/convert.hpp"
-#include "services/comms/wire.hpp"
+#include "swiftlet/services/comms/convert.hpp"
+#include "swiftlet/services/comms/wire.hpp"
 
 namespace swiftlet::comms {
 namespace {

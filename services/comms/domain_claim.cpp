@@ -1,4 +1,4 @@
-#include "services/comms/domain_claim.hpp"
+#include "swiftlet/services/comms/domain_claim.hpp"
 
 #include <cerrno>
 #include <fcntl.h>

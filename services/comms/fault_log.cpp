@@ -1,4 +1,4 @@
-#include "services/comms/fault_log.hpp"
+#include "swiftlet/services/comms/fault_log.hpp"
 
 #include <chrono>
 

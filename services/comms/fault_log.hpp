@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "services/comms/convert.hpp"
+#include "swiftlet/services/comms/convert.hpp"
 
 namespace swiftlet::comms {
 

@@ -1,4 +1,4 @@
-#include "services/comms/membership.hpp"
+#include "swiftlet/services/comms/membership.hpp"
 
 #include <memory>
 #include <mutex>
@@ -9,8 +9,8 @@
 #include <fastdds/dds/log/StdoutErrConsumer.hpp>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 
-#include "services/comms/participant_qos.hpp"
-#include "services/comms/shared_memory.hpp"
+#include "swiftlet/services/comms/participant_qos.hpp"
+#include "swiftlet/services/comms/shared_memory.hpp"
 
 namespace swiftlet::comms {
 namespace {

@@ -15,7 +15,7 @@
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
 
-#include "services/comms/node.hpp"
+#include "swiftlet/services/comms/node.hpp"
 
 namespace swiftlet::comms {
 

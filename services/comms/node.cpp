@@ -1,4 +1,4 @@
-#include "services/comms/node.hpp"
+#include "swiftlet/services/comms/node.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -37,13 +37,13 @@
 #include "swiftlet_msgs/msg/TrajectoryPubSubTypes.h"
 #include "swiftlet_msgs/msg/VehicleInfoPubSubTypes.h"
 
-#include "services/comms/lookout.hpp"
-#include "services/comms/membership.hpp"
-#include "services/comms/participant_qos.hpp"
-#include "services/comms/profiles.hpp"
-#include "services/comms/reunions.hpp"
-#include "services/comms/shared_memory.hpp"
-#include "services/comms/tolerant_type.hpp"
+#include "swiftlet/services/comms/lookout.hpp"
+#include "swiftlet/services/comms/membership.hpp"
+#include "swiftlet/services/comms/participant_qos.hpp"
+#include "swiftlet/services/comms/profiles.hpp"
+#include "swiftlet/services/comms/reunions.hpp"
+#include "swiftlet/services/comms/shared_memory.hpp"
+#include "swiftlet/services/comms/tolerant_type.hpp"
 
 // Each message type that is a topic's.
 // clang-format off

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "services/comms/topics.hpp"
+#include "swiftlet/services/comms/topics.hpp"
 
 namespace swiftlet::comms {
 

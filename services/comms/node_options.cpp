@@ -1,5 +1,4 @@
-#include "services/comms/node_options.hpp"
-
+#include "swiftlet/services/comms/node_options.hpp"
 
 namespace swiftlet::comms {
 

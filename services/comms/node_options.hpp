@@ -1,8 +1,8 @@
 // The command-line options of every program that joins the network.
 #pragma once
 
-#include "services/comms/node.hpp"
-#include "services/runtime/command_line.hpp"
+#include "swiftlet/services/comms/node.hpp"
+#include "swiftlet/services/runtime/command_line.hpp"
 
 namespace swiftlet::comms {
 

@@ -1,4 +1,4 @@
-#include "services/comms/participant_qos.hpp"
+#include "swiftlet/services/comms/participant_qos.hpp"
 
 #include <memory>
 

@@ -6,7 +6,7 @@
 
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 
-#include "services/comms/node.hpp"
+#include "swiftlet/services/comms/node.hpp"
 
 namespace swiftlet::comms {
 

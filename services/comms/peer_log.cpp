@@ -1,4 +1,4 @@
-#include "services/comms/peer_log.hpp"
+#include "swiftlet/services/comms/peer_log.hpp"
 
 #include <spdlog/spdlog.h>
 

@@ -1,7 +1,7 @@
 // Peers that come and go, told in the process's log.
 #pragma once
 
-#include "services/comms/node.hpp"
+#include "swiftlet/services/comms/node.hpp"
 
 namespace swiftlet::comms {
 

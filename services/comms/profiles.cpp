@@ -1,4 +1,4 @@
-#include "services/comms/profiles.hpp"
+#include "swiftlet/services/comms/profiles.hpp"
 
 namespace swiftlet::comms {
 

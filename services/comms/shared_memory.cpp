@@ -1,4 +1,4 @@
-#include "services/comms/shared_memory.hpp"
+#include "swiftlet/services/comms/shared_memory.hpp"
 
 #include <cerrno>
 #include <chrono>

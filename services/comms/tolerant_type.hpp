@@ -7,7 +7,7 @@
 
 #include <fastdds/rtps/common/SerializedPayload.h>
 
-#include "services/comms/fault_log.hpp"
+#include "swiftlet/services/comms/fault_log.hpp"
 
 namespace swiftlet::comms {
 

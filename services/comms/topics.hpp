@@ -22,7 +22,7 @@
 #include "swiftlet_msgs/msg/Trajectory.h"
 #include "swiftlet_msgs/msg/VehicleInfo.h"
 
-#include "services/comms/qos.hpp"
+#include "swiftlet/services/comms/qos.hpp"
 
 namespace swiftlet::comms {
 

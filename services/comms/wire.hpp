@@ -12,8 +12,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "plant/model/samples.hpp"
-#include "services/comms/convert.hpp"
+#include "swiftlet/plant/model/samples.hpp"
+#include "swiftlet/services/comms/convert.hpp"
 
 namespace swiftlet::comms::wire {
 

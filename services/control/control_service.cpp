@@ -1,11 +1,11 @@
-#include "services/control/control_service.hpp"
+#include "swiftlet/services/control/control_service.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <limits>
 #include <random>
 
-#include "services/runtime/periodic_timer.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {
 namespace {

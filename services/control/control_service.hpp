@@ -9,17 +9,17 @@
 
 #include <boost/lockfree/spsc_queue.hpp>
 
-#include "services/comms/convert.hpp"
-#include "services/comms/fault_log.hpp"
-#include "services/comms/node.hpp"
-#include "services/control/inner_loop.hpp"
-#include "services/control/lockstep_gate.hpp"
-#include "services/control/request_desk.hpp"
-#include "services/control/succession.hpp"
-#include "services/control/telemetry.hpp"
-#include "services/runtime/clock.hpp"
-#include "services/runtime/realtime.hpp"
-#include "services/runtime/semaphore.hpp"
+#include "swiftlet/services/comms/convert.hpp"
+#include "swiftlet/services/comms/fault_log.hpp"
+#include "swiftlet/services/comms/node.hpp"
+#include "swiftlet/services/control/inner_loop.hpp"
+#include "swiftlet/services/control/lockstep_gate.hpp"
+#include "swiftlet/services/control/request_desk.hpp"
+#include "swiftlet/services/control/succession.hpp"
+#include "swiftlet/services/control/telemetry.hpp"
+#include "swiftlet/services/runtime/clock.hpp"
+#include "swiftlet/services/runtime/realtime.hpp"
+#include "swiftlet/services/runtime/semaphore.hpp"
 
 namespace swiftlet::services {
 

@@ -1,8 +1,8 @@
-#include "services/control/inner_loop.hpp"
+#include "swiftlet/services/control/inner_loop.hpp"
 
 #include <algorithm>
 
-#include "services/runtime/telemetry_rate.hpp"
+#include "swiftlet/services/runtime/telemetry_rate.hpp"
 
 namespace swiftlet::services {
 namespace {

@@ -7,12 +7,12 @@
 
 #include <boost/lockfree/spsc_queue.hpp>
 
-#include "control/flight_controller.hpp"
-#include "services/comms/convert.hpp"
-#include "services/control/pending_request.hpp"
-#include "services/control/step_timing.hpp"
-#include "services/control/succession.hpp"
-#include "services/runtime/mailbox.hpp"
+#include "swiftlet/control/flight_controller.hpp"
+#include "swiftlet/services/comms/convert.hpp"
+#include "swiftlet/services/control/pending_request.hpp"
+#include "swiftlet/services/control/step_timing.hpp"
+#include "swiftlet/services/control/succession.hpp"
+#include "swiftlet/services/runtime/mailbox.hpp"
 
 namespace swiftlet::services {
 

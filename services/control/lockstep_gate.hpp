@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "services/comms/topics.hpp"
+#include "swiftlet/services/comms/topics.hpp"
 
 namespace swiftlet::services {
 

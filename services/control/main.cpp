@@ -7,17 +7,17 @@
 
 #include <spdlog/spdlog.h>
 
-#include "services/comms/node.hpp"
-#include "services/comms/node_options.hpp"
-#include "services/comms/peer_log.hpp"
-#include "services/control/control_service.hpp"
-#include "services/runtime/clock.hpp"
-#include "services/runtime/control_settings_file.hpp"
-#include "services/runtime/find_config.hpp"
-#include "services/runtime/log.hpp"
-#include "services/runtime/process.hpp"
-#include "services/runtime/stop_signal.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/services/comms/node.hpp"
+#include "swiftlet/services/comms/node_options.hpp"
+#include "swiftlet/services/comms/peer_log.hpp"
+#include "swiftlet/services/control/control_service.hpp"
+#include "swiftlet/services/runtime/clock.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
+#include "swiftlet/services/runtime/find_config.hpp"
+#include "swiftlet/services/runtime/log.hpp"
+#include "swiftlet/services/runtime/process.hpp"
+#include "swiftlet/services/runtime/stop_signal.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 
 namespace swiftlet::services {
 namespace {

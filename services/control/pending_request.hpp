@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "control/request.hpp"
+#include "swiftlet/control/request.hpp"
 
 namespace swiftlet::services {
 

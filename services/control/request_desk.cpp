@@ -1,10 +1,10 @@
-#include "services/control/request_desk.hpp"
+#include "swiftlet/services/control/request_desk.hpp"
 
 #include <tuple>
 
-#include "control/supervision/checks.hpp"
-#include "services/comms/convert.hpp"
-#include "services/runtime/periodic_timer.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/services/comms/convert.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {
 namespace {

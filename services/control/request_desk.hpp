@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
-#include "control/settings.hpp"
-#include "services/comms/topics.hpp"
-#include "services/control/inner_loop.hpp"
-#include "services/control/plan_shelf.hpp"
-#include "services/runtime/semaphore.hpp"
+#include "swiftlet/control/settings.hpp"
+#include "swiftlet/services/comms/topics.hpp"
+#include "swiftlet/services/control/inner_loop.hpp"
+#include "swiftlet/services/control/plan_shelf.hpp"
+#include "swiftlet/services/runtime/semaphore.hpp"
 
 namespace swiftlet::services {
 

@@ -1,4 +1,4 @@
-#include "services/control/step_timing.hpp"
+#include "swiftlet/services/control/step_timing.hpp"
 
 #include <algorithm>
 #include <cstdlib>

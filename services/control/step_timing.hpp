@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "services/runtime/latency_histogram.hpp"
+#include "swiftlet/services/runtime/latency_histogram.hpp"
 
 namespace swiftlet::services {
 

@@ -1,4 +1,4 @@
-#include "services/control/succession.hpp"
+#include "swiftlet/services/control/succession.hpp"
 
 #include <algorithm>
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "plant/model/samples.hpp"
+#include "swiftlet/plant/model/samples.hpp"
 
 namespace swiftlet::services {
 

@@ -1,11 +1,11 @@
-#include "services/control/telemetry.hpp"
+#include "swiftlet/services/control/telemetry.hpp"
 
 #include <algorithm>
 
 #include <spdlog/spdlog.h>
 
-#include "services/comms/convert.hpp"
-#include "services/runtime/periodic_timer.hpp"
+#include "swiftlet/services/comms/convert.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {
 namespace {

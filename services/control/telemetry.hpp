@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "services/comms/node.hpp"
-#include "services/control/inner_loop.hpp"
-#include "services/control/request_desk.hpp"
+#include "swiftlet/services/comms/node.hpp"
+#include "swiftlet/services/control/inner_loop.hpp"
+#include "swiftlet/services/control/request_desk.hpp"
 
 namespace swiftlet::services {
 

@@ -7,18 +7,18 @@
 
 #include <spdlog/spdlog.h>
 
-#include "plant/simulation/mocap.hpp"
-#include "plant/simulation/mocap_path.hpp"
-#include "services/comms/convert.hpp"
-#include "services/comms/node.hpp"
-#include "services/comms/node_options.hpp"
-#include "services/comms/peer_log.hpp"
-#include "services/runtime/clock.hpp"
-#include "services/runtime/find_config.hpp"
-#include "services/runtime/log.hpp"
-#include "services/runtime/process.hpp"
-#include "services/runtime/simulation_file.hpp"
-#include "services/runtime/stop_signal.hpp"
+#include "swiftlet/plant/simulation/mocap.hpp"
+#include "swiftlet/plant/simulation/mocap_path.hpp"
+#include "swiftlet/services/comms/convert.hpp"
+#include "swiftlet/services/comms/node.hpp"
+#include "swiftlet/services/comms/node_options.hpp"
+#include "swiftlet/services/comms/peer_log.hpp"
+#include "swiftlet/services/runtime/clock.hpp"
+#include "swiftlet/services/runtime/find_config.hpp"
+#include "swiftlet/services/runtime/log.hpp"
+#include "swiftlet/services/runtime/process.hpp"
+#include "swiftlet/services/runtime/simulation_file.hpp"
+#include "swiftlet/services/runtime/stop_signal.hpp"
 
 namespace swiftlet::services {
 namespace {

@@ -1,4 +1,4 @@
-#include "services/plant/answer_times.hpp"
+#include "swiftlet/services/plant/answer_times.hpp"
 
 namespace swiftlet::services {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "services/runtime/latency_histogram.hpp"
+#include "swiftlet/services/runtime/latency_histogram.hpp"
 
 namespace swiftlet::services {
 

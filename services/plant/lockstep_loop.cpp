@@ -1,4 +1,4 @@
-#include "services/plant/lockstep_loop.hpp"
+#include "swiftlet/services/plant/lockstep_loop.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "services/runtime/periodic_timer.hpp"
-#include "services/runtime/telemetry_rate.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
+#include "swiftlet/services/runtime/telemetry_rate.hpp"
 
 namespace swiftlet::services {
 namespace {

@@ -12,11 +12,11 @@
 #include <optional>
 #include <string>
 
-#include "plant/simulation/mocap_path.hpp"
-#include "plant/simulation/mocap_schedule.hpp"
-#include "services/comms/node.hpp"
-#include "services/plant/simulated_vehicle.hpp"
-#include "services/runtime/flight_trace.hpp"
+#include "swiftlet/plant/simulation/mocap_path.hpp"
+#include "swiftlet/plant/simulation/mocap_schedule.hpp"
+#include "swiftlet/services/comms/node.hpp"
+#include "swiftlet/services/plant/simulated_vehicle.hpp"
+#include "swiftlet/services/runtime/flight_trace.hpp"
 
 namespace swiftlet::services {
 

@@ -14,20 +14,20 @@
 
 #include <spdlog/spdlog.h>
 
-#include "services/comms/node.hpp"
-#include "services/comms/node_options.hpp"
-#include "services/comms/peer_log.hpp"
-#include "services/plant/lockstep_loop.hpp"
-#include "services/plant/realtime_loop.hpp"
-#include "services/plant/simulated_vehicle.hpp"
-#include "services/runtime/clock.hpp"
-#include "services/runtime/find_config.hpp"
-#include "services/runtime/log.hpp"
-#include "services/runtime/periodic_timer.hpp"
-#include "services/runtime/process.hpp"
-#include "services/runtime/simulation_file.hpp"
-#include "services/runtime/stop_signal.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/services/comms/node.hpp"
+#include "swiftlet/services/comms/node_options.hpp"
+#include "swiftlet/services/comms/peer_log.hpp"
+#include "swiftlet/services/plant/lockstep_loop.hpp"
+#include "swiftlet/services/plant/realtime_loop.hpp"
+#include "swiftlet/services/plant/simulated_vehicle.hpp"
+#include "swiftlet/services/runtime/clock.hpp"
+#include "swiftlet/services/runtime/find_config.hpp"
+#include "swiftlet/services/runtime/log.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
+#include "swiftlet/services/runtime/process.hpp"
+#include "swiftlet/services/runtime/simulation_file.hpp"
+#include "swiftlet/services/runtime/stop_signal.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 
 namespace swiftlet::services {
 namespace {

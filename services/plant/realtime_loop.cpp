@@ -1,8 +1,8 @@
-#include "services/plant/realtime_loop.hpp"
+#include "swiftlet/services/plant/realtime_loop.hpp"
 
 #include <cmath>
 
-#include "services/runtime/periodic_timer.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {
 namespace {

@@ -6,9 +6,9 @@
 
 #include <boost/lockfree/spsc_queue.hpp>
 
-#include "services/comms/node.hpp"
-#include "services/plant/simulated_vehicle.hpp"
-#include "services/runtime/realtime.hpp"
+#include "swiftlet/services/comms/node.hpp"
+#include "swiftlet/services/plant/simulated_vehicle.hpp"
+#include "swiftlet/services/runtime/realtime.hpp"
 
 namespace swiftlet::services {
 

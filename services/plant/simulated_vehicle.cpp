@@ -1,9 +1,9 @@
-#include "services/plant/simulated_vehicle.hpp"
+#include "swiftlet/services/plant/simulated_vehicle.hpp"
 
 #include <cmath>
 #include <cstdio>
 
-#include "services/runtime/periodic_timer.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {
 namespace {

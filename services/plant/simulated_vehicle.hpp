@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <optional>
 
-#include "plant/simulation/actuator_watchdog.hpp"
-#include "plant/simulation/command_path.hpp"
-#include "plant/simulation/plant_simulation.hpp"
-#include "services/comms/convert.hpp"
-#include "services/comms/node.hpp"
-#include "services/plant/answer_times.hpp"
-#include "services/runtime/mailbox.hpp"
+#include "swiftlet/plant/simulation/actuator_watchdog.hpp"
+#include "swiftlet/plant/simulation/command_path.hpp"
+#include "swiftlet/plant/simulation/plant_simulation.hpp"
+#include "swiftlet/services/comms/convert.hpp"
+#include "swiftlet/services/comms/node.hpp"
+#include "swiftlet/services/plant/answer_times.hpp"
+#include "swiftlet/services/runtime/mailbox.hpp"
 
 namespace swiftlet::services {
 

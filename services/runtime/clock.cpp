@@ -1,5 +1,4 @@
-#include "services/runtime/clock.hpp"
-
+#include "swiftlet/services/runtime/clock.hpp"
 
 namespace swiftlet::runtime {
 

@@ -1,7 +1,7 @@
 // What makes simulated time pass.
 #pragma once
 
-#include "services/runtime/command_line.hpp"
+#include "swiftlet/services/runtime/command_line.hpp"
 
 namespace swiftlet::runtime {
 

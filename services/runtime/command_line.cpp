@@ -1,4 +1,4 @@
-#include "services/runtime/command_line.hpp"
+#include "swiftlet/services/runtime/command_line.hpp"
 
 #include <algorithm>
 #include <array>

@@ -64,8 +64,7 @@ class CommandLine {
   Option add_option(const std::string& name, Value& value, const std::string& description) const;
   // A value of an enumeration by its name on the command line.
   template <class Value>
-  Option add_choice(const std::string& name, Value& value,
-                    std::vector<std::pair<const char*, Value>> choices,
+  Option add_choice(const std::string& name, Value& value, std::vector<std::pair<const char*, Value>> choices,
                     const std::string& description) const {
     std::vector<std::string> names;
     for (const auto& choice : choices) names.emplace_back(choice.first);
@@ -73,7 +72,8 @@ class CommandLine {
                       [choices, &value](std::size_t chosen) { value = choices[chosen].second; });
   }
   Option add_flag(const std::string& name, bool& value, const std::string& description) const;
-  Option add_flag(const std::string& name, std::function<void()> is_set, const std::string& description) const;
+  Option add_flag(const std::string& name, std::function<void()> is_set,
+                  const std::string& description) const;
   Option option(const std::string& name) const;
   void remove_option(const std::string& name) const;
 

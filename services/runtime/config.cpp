@@ -1,4 +1,4 @@
-#include "services/runtime/config.hpp"
+#include "swiftlet/services/runtime/config.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -11,7 +11,7 @@
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
-#include "services/runtime/text_file.hpp"
+#include "swiftlet/services/runtime/text_file.hpp"
 
 namespace swiftlet::runtime {
 

@@ -22,7 +22,7 @@
 
 #include <Eigen/Core>
 
-#include "services/runtime/config_error.hpp"
+#include "swiftlet/services/runtime/config_error.hpp"
 
 namespace swiftlet::runtime {
 

@@ -1,8 +1,8 @@
-#include "services/runtime/control_settings_file.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
 
-#include "services/runtime/config.hpp"
-#include "services/runtime/text_file.hpp"
-#include "services/runtime/violations.hpp"
+#include "swiftlet/services/runtime/config.hpp"
+#include "swiftlet/services/runtime/text_file.hpp"
+#include "swiftlet/services/runtime/violations.hpp"
 
 namespace swiftlet::runtime {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "control/settings.hpp"
+#include "swiftlet/control/settings.hpp"
 
 namespace swiftlet::runtime {
 

@@ -1,11 +1,11 @@
-#include "services/runtime/csv.hpp"
+#include "swiftlet/services/runtime/csv.hpp"
 
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <system_error>
 
-#include "services/runtime/text_file.hpp"
+#include "swiftlet/services/runtime/text_file.hpp"
 
 namespace swiftlet::runtime {
 

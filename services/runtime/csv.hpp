@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "services/runtime/config.hpp"
+#include "swiftlet/services/runtime/config.hpp"
 
 namespace swiftlet::runtime {
 

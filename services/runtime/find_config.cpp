@@ -1,10 +1,10 @@
-#include "services/runtime/find_config.hpp"
+#include "swiftlet/services/runtime/find_config.hpp"
 
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
 
-#include "services/runtime/config_error.hpp"
+#include "swiftlet/services/runtime/config_error.hpp"
 
 namespace swiftlet::runtime {
 

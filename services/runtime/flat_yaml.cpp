@@ -1,10 +1,10 @@
-#include "services/runtime/flat_yaml.hpp"
+#include "swiftlet/services/runtime/flat_yaml.hpp"
 
 #include <algorithm>
 
 #include <yaml-cpp/yaml.h>
 
-#include "services/runtime/config_error.hpp"
+#include "swiftlet/services/runtime/config_error.hpp"
 
 namespace swiftlet::runtime {
 namespace {

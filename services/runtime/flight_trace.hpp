@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "plant/model/samples.hpp"
+#include "swiftlet/plant/model/samples.hpp"
 
 namespace swiftlet::runtime {
 

@@ -1,4 +1,4 @@
-#include "services/runtime/log.hpp"
+#include "swiftlet/services/runtime/log.hpp"
 
 #include <memory>
 #include <stdexcept>

@@ -1,11 +1,11 @@
-#include "services/runtime/measurements.hpp"
+#include "swiftlet/services/runtime/measurements.hpp"
 
 #include <algorithm>
 #include <optional>
 
-#include "services/runtime/config_error.hpp"
-#include "services/runtime/csv.hpp"
-#include "services/runtime/text_file.hpp"
+#include "swiftlet/services/runtime/config_error.hpp"
+#include "swiftlet/services/runtime/csv.hpp"
+#include "swiftlet/services/runtime/text_file.hpp"
 
 namespace swiftlet::runtime {
 

@@ -1,4 +1,4 @@
-#include "services/runtime/periodic_timer.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
 
 #include <cerrno>
 #include <ctime>

@@ -1,4 +1,4 @@
-#include "services/runtime/process.hpp"
+#include "swiftlet/services/runtime/process.hpp"
 
 #include <cstdio>
 #include <exception>
@@ -8,7 +8,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include "services/runtime/config_error.hpp"
+#include "swiftlet/services/runtime/config_error.hpp"
 
 namespace swiftlet::runtime {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <functional>
 
-#include "services/runtime/clock.hpp"
-#include "services/runtime/command_line.hpp"
-#include "services/runtime/log.hpp"
-#include "services/runtime/realtime.hpp"
+#include "swiftlet/services/runtime/clock.hpp"
+#include "swiftlet/services/runtime/command_line.hpp"
+#include "swiftlet/services/runtime/log.hpp"
+#include "swiftlet/services/runtime/realtime.hpp"
 
 namespace swiftlet::runtime {
 

@@ -1,4 +1,4 @@
-#include "services/runtime/realtime.hpp"
+#include "swiftlet/services/runtime/realtime.hpp"
 
 #include <cerrno>
 #include <cstring>

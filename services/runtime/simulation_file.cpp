@@ -1,13 +1,13 @@
-#include "services/runtime/simulation_file.hpp"
+#include "swiftlet/services/runtime/simulation_file.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
-#include "services/runtime/config.hpp"
-#include "services/runtime/text_file.hpp"
-#include "services/runtime/violations.hpp"
+#include "swiftlet/services/runtime/config.hpp"
+#include "swiftlet/services/runtime/text_file.hpp"
+#include "swiftlet/services/runtime/violations.hpp"
 
 namespace swiftlet::runtime {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "plant/simulation/settings.hpp"
+#include "swiftlet/plant/simulation/settings.hpp"
 
 namespace swiftlet::runtime {
 

@@ -1,4 +1,4 @@
-#include "services/runtime/stop_signal.hpp"
+#include "swiftlet/services/runtime/stop_signal.hpp"
 
 #include <cerrno>
 #include <csignal>

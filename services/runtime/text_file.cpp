@@ -1,4 +1,4 @@
-#include "services/runtime/text_file.hpp"
+#include "swiftlet/services/runtime/text_file.hpp"
 
 #include <array>
 #include <cerrno>
@@ -6,7 +6,7 @@
 #include <memory>
 #include <system_error>
 
-#include "services/runtime/config_error.hpp"
+#include "swiftlet/services/runtime/config_error.hpp"
 
 namespace swiftlet::runtime {
 

@@ -1,12 +1,12 @@
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 
 #include <algorithm>
 #include <array>
 
-#include "plant/model/rotor.hpp"
-#include "services/runtime/config.hpp"
-#include "services/runtime/text_file.hpp"
-#include "services/runtime/violations.hpp"
+#include "swiftlet/plant/model/rotor.hpp"
+#include "swiftlet/services/runtime/config.hpp"
+#include "swiftlet/services/runtime/text_file.hpp"
+#include "swiftlet/services/runtime/violations.hpp"
 
 namespace swiftlet::runtime {
 

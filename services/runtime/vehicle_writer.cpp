@@ -1,11 +1,11 @@
-#include "services/runtime/vehicle_writer.hpp"
+#include "swiftlet/services/runtime/vehicle_writer.hpp"
 
 #include <array>
 #include <sstream>
 
-#include "services/runtime/csv.hpp"
-#include "services/runtime/flat_yaml.hpp"
-#include "services/runtime/text_file.hpp"
+#include "swiftlet/services/runtime/csv.hpp"
+#include "swiftlet/services/runtime/flat_yaml.hpp"
+#include "swiftlet/services/runtime/text_file.hpp"
 
 namespace swiftlet::runtime {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "plant/model/vehicle.hpp"
-#include "plant/model/vehicle_uncertainty.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
+#include "swiftlet/plant/model/vehicle_uncertainty.hpp"
 
 namespace swiftlet::runtime {
 

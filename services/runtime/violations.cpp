@@ -1,4 +1,4 @@
-#include "services/runtime/violations.hpp"
+#include "swiftlet/services/runtime/violations.hpp"
 
 namespace swiftlet::runtime {
 

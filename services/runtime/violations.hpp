@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "plant/model/violation.hpp"
-#include "services/runtime/config.hpp"
+#include "swiftlet/plant/model/violation.hpp"
+#include "swiftlet/services/runtime/config.hpp"
 
 namespace swiftlet::runtime {
 

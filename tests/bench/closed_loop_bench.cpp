@@ -4,12 +4,12 @@
 
 #include <benchmark/benchmark.h>
 
-#include "ground/mission_file.hpp"
-#include "ground/simulation/simulated_flight.hpp"
-#include "services/runtime/control_settings_file.hpp"
-#include "services/runtime/find_config.hpp"
-#include "services/runtime/simulation_file.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/ground/mission_file.hpp"
+#include "swiftlet/ground/simulation/simulated_flight.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
+#include "swiftlet/services/runtime/find_config.hpp"
+#include "swiftlet/services/runtime/simulation_file.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 
 namespace swiftlet {
 namespace {

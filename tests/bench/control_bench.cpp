@@ -4,14 +4,14 @@
 
 #include <benchmark/benchmark.h>
 
-#include "control/allocation/allocator.hpp"
-#include "control/attitude/attitude_controller.hpp"
-#include "control/attitude/euler.hpp"
-#include "control/design/control_design.hpp"
-#include "control/position/position_controller.hpp"
-#include "control/position/thrust_attitude_map.hpp"
-#include "control/trajectory/polynomial.hpp"
-#include "services/runtime/control_settings_file.hpp"
+#include "swiftlet/control/allocation/allocator.hpp"
+#include "swiftlet/control/attitude/attitude_controller.hpp"
+#include "swiftlet/control/attitude/euler.hpp"
+#include "swiftlet/control/design/control_design.hpp"
+#include "swiftlet/control/position/position_controller.hpp"
+#include "swiftlet/control/position/thrust_attitude_map.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
 #include "tests/unit/plant_model/vehicles.hpp"
 
 namespace swiftlet::control {

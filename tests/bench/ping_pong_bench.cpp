@@ -29,12 +29,12 @@
 #include "swiftlet_msgs/msg/ActuatorCommandPubSubTypes.h"
 #include "swiftlet_msgs/msg/ImuPubSubTypes.h"
 
-#include "services/comms/domain_claim.hpp"
-#include "services/comms/participant_qos.hpp"
-#include "services/comms/profiles.hpp"
-#include "services/runtime/latency_histogram.hpp"
-#include "services/runtime/periodic_timer.hpp"
-#include "services/runtime/process.hpp"
+#include "swiftlet/services/comms/domain_claim.hpp"
+#include "swiftlet/services/comms/participant_qos.hpp"
+#include "swiftlet/services/comms/profiles.hpp"
+#include "swiftlet/services/runtime/latency_histogram.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
+#include "swiftlet/services/runtime/process.hpp"
 #include "tests/support/eventually.hpp"
 
 namespace swiftlet {
@@ -366,8 +366,7 @@ void run(Options options) {
 
 void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--seconds", options.seconds, "Of each measurement").range(0.1, 3600.0);
-  app.add_option("--rate", options.rates_hz, "Samples a second; several may be given")
-      .range(1, 10'000);
+  app.add_option("--rate", options.rates_hz, "Samples a second; several may be given").range(1, 10'000);
   app.add_option("--transport", options.transports, "Of these alone; several may be given")
       .one_of({"udp", "shm", "data-sharing", kSocket});
   app.add_flag("--json", options.json, "Print JSON");

@@ -1,8 +1,8 @@
 // One integration step of the simulated vehicle in flight: rigid body, four rotors, battery.
 #include <benchmark/benchmark.h>
 
-#include "plant/model/airframe.hpp"
-#include "plant/simulation/plant_simulation.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
+#include "swiftlet/plant/simulation/plant_simulation.hpp"
 #include "tests/unit/plant_model/vehicles.hpp"
 
 namespace swiftlet::plant {

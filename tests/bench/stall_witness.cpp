@@ -4,8 +4,8 @@
 #include <ctime>
 #include <sched.h>
 
-#include "services/runtime/periodic_timer.hpp"
-#include "services/runtime/realtime.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
+#include "swiftlet/services/runtime/realtime.hpp"
 
 namespace swiftlet::bench {
 namespace {

@@ -22,10 +22,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ground/child_process.hpp"
-#include "ground/client.hpp"
-#include "services/comms/domain_claim.hpp"
-#include "services/runtime/process.hpp"
+#include "swiftlet/ground/child_process.hpp"
+#include "swiftlet/ground/client.hpp"
+#include "swiftlet/services/comms/domain_claim.hpp"
+#include "swiftlet/services/runtime/process.hpp"
 #include "tests/bench/stall_witness.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -515,8 +515,7 @@ void run(const Options& options) {
 }
 
 void add_options(runtime::CommandLine app, Options& options) {
-  app.add_option("--seconds", options.seconds, "Of each measurement in real time")
-      .range(1.0, 3600.0);
+  app.add_option("--seconds", options.seconds, "Of each measurement in real time").range(1.0, 3600.0);
   app.add_option("--only", options.only, "Of these sections; several may be given")
       .one_of({"latency", "jitter", "simulation", "missions", "fleet"});
   app.add_flag("--json", options.json, "Print JSON");

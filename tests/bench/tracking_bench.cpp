@@ -13,15 +13,15 @@
 
 #include <nlohmann/json.hpp>
 
-#include "control/supervision/checks.hpp"
-#include "ground/simulation/closed_loop.hpp"
-#include "services/runtime/control_settings_file.hpp"
-#include "services/runtime/csv.hpp"
-#include "services/runtime/find_config.hpp"
-#include "services/runtime/process.hpp"
-#include "services/runtime/simulation_file.hpp"
-#include "services/runtime/text_file.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/ground/simulation/closed_loop.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
+#include "swiftlet/services/runtime/csv.hpp"
+#include "swiftlet/services/runtime/find_config.hpp"
+#include "swiftlet/services/runtime/process.hpp"
+#include "swiftlet/services/runtime/simulation_file.hpp"
+#include "swiftlet/services/runtime/text_file.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 
 namespace swiftlet {
 namespace {
@@ -337,8 +337,7 @@ void run(const Options& options) {
 }
 
 void add_options(runtime::CommandLine app, Options& options) {
-  app.add_option("--figure-of-eight", options.figure_of_eight, "Crazyswarm trajectory file")
-      .show_default();
+  app.add_option("--figure-of-eight", options.figure_of_eight, "Crazyswarm trajectory file").show_default();
   app.add_option("--seed", options.seed, "Of the sensors' errors").show_default();
   app.add_flag("--json", options.json, "Print JSON instead of the table");
 }

@@ -3,9 +3,9 @@
 
 #include <benchmark/benchmark.h>
 
-#include "control/supervision/checks.hpp"
-#include "control/trajectory/feasibility.hpp"
-#include "control/trajectory/waypoint_path.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/control/trajectory/feasibility.hpp"
+#include "swiftlet/control/trajectory/waypoint_path.hpp"
 #include "tests/unit/plant_model/vehicles.hpp"
 
 namespace swiftlet::control {

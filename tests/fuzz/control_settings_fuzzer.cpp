@@ -1,6 +1,6 @@
 // Files of control settings.
-#include "control/settings.hpp"
-#include "services/runtime/control_settings_file.hpp"
+#include "swiftlet/control/settings.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
 #include "tests/fuzz/refusal.hpp"
 
 using namespace swiftlet;

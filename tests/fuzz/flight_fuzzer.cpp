@@ -6,11 +6,11 @@
 #include <deque>
 #include <limits>
 
-#include "control/supervision/checks.hpp"
-#include "ground/simulation/closed_loop.hpp"
-#include "services/runtime/control_settings_file.hpp"
-#include "services/runtime/simulation_file.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/ground/simulation/closed_loop.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
+#include "swiftlet/services/runtime/simulation_file.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 #include "tests/fuzz/refusal.hpp"
 
 using namespace swiftlet;

@@ -2,9 +2,9 @@
 // program for each, by SWIFTLET_FUZZED_PARSER.
 #include <cmath>
 
-#include "control/supervision/checks.hpp"
-#include "ground/formats/mission_format.hpp"
-#include "ground/mission_file.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/ground/formats/mission_format.hpp"
+#include "swiftlet/ground/mission_file.hpp"
 #include "tests/fuzz/refusal.hpp"
 
 using namespace swiftlet;

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "services/runtime/config_error.hpp"
+#include "swiftlet/services/runtime/config_error.hpp"
 
 namespace swiftlet::tests {
 

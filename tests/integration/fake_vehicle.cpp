@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "plant/model/propulsion.hpp"
+#include "swiftlet/plant/model/propulsion.hpp"
 
 namespace swiftlet::tests {
 namespace {

@@ -10,8 +10,8 @@
 #include <thread>
 #include <vector>
 
-#include "plant/model/vehicle.hpp"
-#include "services/comms/node.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
+#include "swiftlet/services/comms/node.hpp"
 
 namespace swiftlet::tests {
 

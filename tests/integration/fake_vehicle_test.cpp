@@ -11,12 +11,12 @@
 
 #include <gtest/gtest.h>
 
-#include "control/mode.hpp"
-#include "ground/client.hpp"
-#include "services/comms/convert.hpp"
-#include "services/comms/domain_claim.hpp"
-#include "services/comms/node.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/control/mode.hpp"
+#include "swiftlet/ground/client.hpp"
+#include "swiftlet/services/comms/convert.hpp"
+#include "swiftlet/services/comms/domain_claim.hpp"
+#include "swiftlet/services/comms/node.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 #include "tests/integration/program.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"

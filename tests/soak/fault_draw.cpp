@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "plant/simulation/random.hpp"
-#include "plant/simulation/streams.hpp"
+#include "swiftlet/plant/simulation/random.hpp"
+#include "swiftlet/plant/simulation/streams.hpp"
 
 namespace swiftlet::soak {
 namespace {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "control/settings.hpp"
-#include "plant/simulation/faults.hpp"
+#include "swiftlet/control/settings.hpp"
+#include "swiftlet/plant/simulation/faults.hpp"
 
 namespace swiftlet::soak {
 

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "services/runtime/process.hpp"
+#include "swiftlet/services/runtime/process.hpp"
 #include "tests/soak/soak_flight.hpp"
 
 namespace swiftlet::soak {
@@ -146,11 +146,8 @@ int main(int argc, char** argv) {
        "--minutes 30 --seed 1"},
       argc, argv,
       [&](runtime::CommandLine app) {
-        app.add_option("--minutes", options.minutes, "Of simulated time")
-            .range(0.1, 1e5)
-            .show_default();
-        app.add_option("--seed", options.seed, "Of the first flight; the next has the next")
-            .show_default();
+        app.add_option("--minutes", options.minutes, "Of simulated time").range(0.1, 1e5).show_default();
+        app.add_option("--seed", options.seed, "Of the first flight; the next has the next").show_default();
         app.add_option("--flight", options.flight,
                        "Fly the flight of this seed alone, and tell what happens");
         app.add_option("--control", options.control, "Control settings").show_default();

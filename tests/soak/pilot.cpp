@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "control/supervision/checks.hpp"
-#include "plant/simulation/streams.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/plant/simulation/streams.hpp"
 
 namespace swiftlet::soak {
 namespace {

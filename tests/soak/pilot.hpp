@@ -8,12 +8,12 @@
 #include <functional>
 #include <string>
 
-#include "control/mission.hpp"
-#include "control/request.hpp"
-#include "control/settings.hpp"
-#include "control/trajectory/polynomial.hpp"
-#include "ground/simulation/closed_loop.hpp"
-#include "plant/simulation/random.hpp"
+#include "swiftlet/control/mission.hpp"
+#include "swiftlet/control/request.hpp"
+#include "swiftlet/control/settings.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
+#include "swiftlet/ground/simulation/closed_loop.hpp"
+#include "swiftlet/plant/simulation/random.hpp"
 
 namespace swiftlet::soak {
 

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <cstdio>
 
-#include "control/attitude/attitude_error.hpp"
-#include "ground/installation.hpp"
-#include "ground/simulation/closed_loop.hpp"
-#include "ground/vary_file.hpp"
-#include "services/runtime/control_settings_file.hpp"
-#include "services/runtime/simulation_file.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/control/attitude/attitude_error.hpp"
+#include "swiftlet/ground/installation.hpp"
+#include "swiftlet/ground/simulation/closed_loop.hpp"
+#include "swiftlet/ground/vary_file.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
+#include "swiftlet/services/runtime/simulation_file.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 #include "tests/soak/fault_draw.hpp"
 
 namespace swiftlet::soak {

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "control/mode.hpp"
-#include "control/settings.hpp"
-#include "ground/simulation/variation.hpp"
-#include "plant/simulation/faults.hpp"
+#include "swiftlet/control/mode.hpp"
+#include "swiftlet/control/settings.hpp"
+#include "swiftlet/ground/simulation/variation.hpp"
+#include "swiftlet/plant/simulation/faults.hpp"
 #include "tests/soak/pilot.hpp"
 
 namespace swiftlet::soak {

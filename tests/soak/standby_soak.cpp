@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-
-#include "services/runtime/process.hpp"
+#include "swiftlet/services/runtime/process.hpp"
 #include "tests/support/redundant_flight.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -132,9 +131,7 @@ int main(int argc, char** argv) {
       {"standby_soak", "Kills the active controller in flight, again and again.", "--kills 10 --seed 3"},
       argc, argv,
       [&](runtime::CommandLine app) {
-        app.add_option("--kills", options.kills, "how often")
-            .range(1, 10000)
-            .show_default();
+        app.add_option("--kills", options.kills, "how often").range(1, 10000).show_default();
         app.add_option("--seed", options.seed, "of strengths and pauses").show_default();
         app.add_option("--simulation", options.plant_simulation, "the plant's simulation file");
       },

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "control/settings.hpp"
-#include "control/trajectory/polynomial.hpp"
+#include "swiftlet/control/settings.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
 #include "tests/support/eventually.hpp"
 
 namespace swiftlet::tests {

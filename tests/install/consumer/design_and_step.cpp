@@ -3,10 +3,10 @@
 #include <cstdio>
 #include <string>
 
-#include <control/design/control_design.hpp>
-#include <plant/simulation/dynamics.hpp>
-#include <services/runtime/control_settings_file.hpp>
-#include <services/runtime/vehicle_file.hpp>
+#include <swiftlet/control/design/control_design.hpp>
+#include <swiftlet/plant/simulation/dynamics.hpp>
+#include <swiftlet/services/runtime/control_settings_file.hpp>
+#include <swiftlet/services/runtime/vehicle_file.hpp>
 
 int main(int argc, char** argv) {
   using namespace swiftlet;

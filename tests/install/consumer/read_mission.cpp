@@ -2,9 +2,9 @@
 #include <cstdio>
 #include <string>
 
-#include <control/settings.hpp>
-#include <ground/mission_file.hpp>
-#include <services/comms/node.hpp>
+#include <swiftlet/control/settings.hpp>
+#include <swiftlet/ground/mission_file.hpp>
+#include <swiftlet/services/comms/node.hpp>
 
 int main(int argc, char** argv) {
   using namespace swiftlet;

@@ -12,10 +12,10 @@
 #include "swiftlet_msgs/msg/MissionPubSubTypes.h"
 #include "swiftlet_msgs/msg/MocapPosePubSubTypes.h"
 
-#include "services/comms/domain_claim.hpp"
-#include "services/comms/membership.hpp"
-#include "services/comms/node.hpp"
-#include "services/comms/profiles.hpp"
+#include "swiftlet/services/comms/domain_claim.hpp"
+#include "swiftlet/services/comms/membership.hpp"
+#include "swiftlet/services/comms/node.hpp"
+#include "swiftlet/services/comms/profiles.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/unit/comms/messages.hpp"
 

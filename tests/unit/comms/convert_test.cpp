@@ -1,4 +1,4 @@
-#include "services/comms/convert.hpp"
+#include "swiftlet/services/comms/convert.hpp"
 
 #include <limits>
 #include <string>

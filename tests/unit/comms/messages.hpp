@@ -4,8 +4,8 @@
 #include <array>
 #include <cstddef>
 
-#include "services/comms/convert.hpp"
-#include "services/comms/topics.hpp"
+#include "swiftlet/services/comms/convert.hpp"
+#include "swiftlet/services/comms/topics.hpp"
 
 namespace swiftlet::comms::tests {
 

@@ -1,6 +1,6 @@
 // Topics between participants, each with its own sockets: in one process delivery takes the same way as
 // between two.
-#include "services/comms/node.hpp"
+#include "swiftlet/services/comms/node.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "services/comms/domain_claim.hpp"
+#include "swiftlet/services/comms/domain_claim.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/unit/comms/messages.hpp"
 #include "tests/unit/comms/steady_sender.hpp"

@@ -13,7 +13,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "services/comms/node.hpp"
+#include "swiftlet/services/comms/node.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/unit/comms/messages.hpp"
 #include "tests/unit/comms/steady_sender.hpp"

@@ -15,9 +15,9 @@
 
 #include <gtest/gtest.h>
 
-#include "services/comms/domain_claim.hpp"
-#include "services/comms/node.hpp"
-#include "services/comms/shared_memory.hpp"
+#include "swiftlet/services/comms/domain_claim.hpp"
+#include "swiftlet/services/comms/node.hpp"
+#include "swiftlet/services/comms/shared_memory.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/unit/comms/messages.hpp"
 #include "tests/unit/comms/steady_sender.hpp"

@@ -1,4 +1,4 @@
-#include "services/comms/reunions.hpp"
+#include "swiftlet/services/comms/reunions.hpp"
 
 #include <chrono>
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <thread>
 
-#include "services/comms/node.hpp"
-#include "services/runtime/periodic_timer.hpp"
+#include "swiftlet/services/comms/node.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
 #include "tests/unit/comms/messages.hpp"
 
 namespace swiftlet::comms::tests {

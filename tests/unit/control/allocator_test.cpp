@@ -1,4 +1,4 @@
-#include "control/allocation/allocator.hpp"
+#include "swiftlet/control/allocation/allocator.hpp"
 
 #include <cmath>
 #include <limits>
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "plant/model/propulsion.hpp"
+#include "swiftlet/plant/model/propulsion.hpp"
 #include "tests/unit/plant_model/vehicles.hpp"
 
 namespace swiftlet::control {

@@ -1,4 +1,4 @@
-#include "control/attitude/attitude_controller.hpp"
+#include "swiftlet/control/attitude/attitude_controller.hpp"
 
 #include <cmath>
 #include <optional>
@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "control/attitude/attitude_error.hpp"
-#include "control/attitude/euler.hpp"
+#include "swiftlet/control/attitude/attitude_error.hpp"
+#include "swiftlet/control/attitude/euler.hpp"
 #include "tests/unit/plant_model/vehicles.hpp"
 
 namespace swiftlet::control {

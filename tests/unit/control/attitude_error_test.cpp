@@ -1,11 +1,11 @@
-#include "control/attitude/attitude_error.hpp"
+#include "swiftlet/control/attitude/attitude_error.hpp"
 
 #include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
 
-#include "control/attitude/euler.hpp"
+#include "swiftlet/control/attitude/euler.hpp"
 
 namespace swiftlet::control {
 namespace {

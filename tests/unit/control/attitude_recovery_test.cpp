@@ -6,12 +6,12 @@
 
 #include <gtest/gtest.h>
 
-#include "control/allocation/allocator.hpp"
-#include "control/attitude/attitude_controller.hpp"
-#include "plant/model/airframe.hpp"
-#include "plant/simulation/plant_simulation.hpp"
-#include "services/runtime/control_settings_file.hpp"
-#include "services/runtime/find_config.hpp"
+#include "swiftlet/control/allocation/allocator.hpp"
+#include "swiftlet/control/attitude/attitude_controller.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
+#include "swiftlet/plant/simulation/plant_simulation.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
+#include "swiftlet/services/runtime/find_config.hpp"
 #include "tests/unit/plant_model/vehicles.hpp"
 
 namespace swiftlet::control {

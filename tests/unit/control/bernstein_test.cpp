@@ -1,4 +1,4 @@
-#include "control/trajectory/bernstein.hpp"
+#include "swiftlet/control/trajectory/bernstein.hpp"
 
 #include <cmath>
 #include <random>

@@ -1,10 +1,10 @@
-#include "control/estimation/climb_watch.hpp"
+#include "swiftlet/control/estimation/climb_watch.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::control {
 namespace {

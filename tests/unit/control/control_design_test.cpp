@@ -1,4 +1,4 @@
-#include "control/design/control_design.hpp"
+#include "swiftlet/control/design/control_design.hpp"
 
 #include <cmath>
 #include <limits>

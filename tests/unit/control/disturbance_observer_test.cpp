@@ -1,12 +1,12 @@
-#include "control/estimation/disturbance_observer.hpp"
+#include "swiftlet/control/estimation/disturbance_observer.hpp"
 
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
 
-#include "control/attitude/euler.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/control/attitude/euler.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::control {
 namespace {

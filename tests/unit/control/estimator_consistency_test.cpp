@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstdint>
 
-#include "math/linear_algebra.hpp"
 #include <gtest/gtest.h>
 
-#include "control/estimation/estimator.hpp"
+#include "swiftlet/control/estimation/estimator.hpp"
+#include "swiftlet/math/linear_algebra.hpp"
 #include "tests/support/malloc_guard.hpp"
 #include "tests/unit/control/estimator_motion.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "control/estimation/estimator.hpp"
+#include "swiftlet/control/estimation/estimator.hpp"
 #include "tests/unit/control/estimator_motion.hpp"
 
 namespace swiftlet::control {

@@ -5,11 +5,11 @@
 
 #include <gtest/gtest.h>
 
-#include "control/flight_controller.hpp"
-#include "ground/simulation/closed_loop.hpp"
-#include "services/runtime/control_settings_file.hpp"
-#include "services/runtime/simulation_file.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/control/flight_controller.hpp"
+#include "swiftlet/ground/simulation/closed_loop.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
+#include "swiftlet/services/runtime/simulation_file.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 
 namespace swiftlet::control {
 namespace {

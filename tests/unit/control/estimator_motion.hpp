@@ -7,11 +7,11 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "control/estimation/estimator.hpp"
-#include "plant/model/rotation_vector.hpp"
-#include "plant/model/samples.hpp"
-#include "plant/model/vehicle.hpp"
-#include "plant/simulation/random.hpp"
+#include "swiftlet/control/estimation/estimator.hpp"
+#include "swiftlet/plant/model/rotation_vector.hpp"
+#include "swiftlet/plant/model/samples.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
+#include "swiftlet/plant/simulation/random.hpp"
 
 namespace swiftlet::control {
 

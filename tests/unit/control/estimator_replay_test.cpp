@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "control/estimation/estimator.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/control/estimation/estimator.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::control {
 namespace {

@@ -1,4 +1,4 @@
-#include "control/estimation/estimator.hpp"
+#include "swiftlet/control/estimation/estimator.hpp"
 
 #include <cmath>
 #include <limits>

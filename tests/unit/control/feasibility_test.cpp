@@ -1,11 +1,11 @@
-#include "control/trajectory/feasibility.hpp"
+#include "swiftlet/control/trajectory/feasibility.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "plant/model/airframe.hpp"
-#include "plant/model/propulsion.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
+#include "swiftlet/plant/model/propulsion.hpp"
 #include "tests/unit/plant_model/vehicles.hpp"
 
 namespace swiftlet::control {

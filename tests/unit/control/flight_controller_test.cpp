@@ -1,4 +1,4 @@
-#include "control/flight_controller.hpp"
+#include "swiftlet/control/flight_controller.hpp"
 
 #include <cmath>
 #include <limits>
@@ -7,12 +7,12 @@
 
 #include <gtest/gtest.h>
 
-#include "control/supervision/checks.hpp"
-#include "ground/flight_window.hpp"
-#include "ground/simulation/simulated_flight.hpp"
-#include "ground/tracking.hpp"
-#include "services/runtime/control_settings_file.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/ground/flight_window.hpp"
+#include "swiftlet/ground/simulation/simulated_flight.hpp"
+#include "swiftlet/ground/tracking.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 #include "tests/support/malloc_guard.hpp"
 
 namespace swiftlet::control {

@@ -1,13 +1,13 @@
 // Gain, phase and delay margins against closed forms and against the loop that they leave at the end of its
 // stability.
-#include "control/design/margins.hpp"
+#include "swiftlet/control/design/margins.hpp"
 
 #include <cmath>
 #include <complex>
 
 #include <gtest/gtest.h>
 
-#include "control/design/control_design.hpp"
+#include "swiftlet/control/design/control_design.hpp"
 
 namespace swiftlet::control {
 namespace {

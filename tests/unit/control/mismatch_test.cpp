@@ -1,4 +1,4 @@
-#include "control/design/mismatch.hpp"
+#include "swiftlet/control/design/mismatch.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "plant/model/esc.hpp"
-#include "plant/model/motor.hpp"
-#include "plant/model/rotor.hpp"
-#include "services/runtime/control_settings_file.hpp"
+#include "swiftlet/plant/model/esc.hpp"
+#include "swiftlet/plant/model/motor.hpp"
+#include "swiftlet/plant/model/rotor.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
 #include "tests/unit/plant_model/vehicles.hpp"
 
 namespace swiftlet::control {

@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "control/supervision/checks.hpp"
-#include "control/trajectory/waypoint_path.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/control/trajectory/waypoint_path.hpp"
 #include "tests/unit/control/supervised_flight.hpp"
 
 namespace swiftlet::control {

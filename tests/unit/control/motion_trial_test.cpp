@@ -1,5 +1,5 @@
 // Poses against the path that the IMU draws: which of their differences the trial takes for a contradiction.
-#include "control/estimation/motion_trial.hpp"
+#include "swiftlet/control/estimation/motion_trial.hpp"
 
 #include <cstdint>
 

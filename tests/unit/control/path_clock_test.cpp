@@ -1,11 +1,11 @@
-#include "control/trajectory/path_clock.hpp"
+#include "swiftlet/control/trajectory/path_clock.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "control/trajectory/reference_path.hpp"
+#include "swiftlet/control/trajectory/reference_path.hpp"
 
 namespace swiftlet::control {
 namespace {

@@ -1,4 +1,4 @@
-#include "control/trajectory/polynomial.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
 
 #include <cmath>
 #include <random>

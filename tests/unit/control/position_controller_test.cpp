@@ -1,4 +1,4 @@
-#include "control/position/position_controller.hpp"
+#include "swiftlet/control/position/position_controller.hpp"
 
 #include <cmath>
 #include <limits>
@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "control/trajectory/polynomial.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
 #include "tests/unit/plant_model/vehicles.hpp"
 
 namespace swiftlet::control {

@@ -1,12 +1,13 @@
-#include "control/design/riccati.hpp"
+#include "swiftlet/control/design/riccati.hpp"
 
 #include <cmath>
 #include <random>
 #include <stdexcept>
 #include <string>
 
-#include "math/linear_algebra.hpp"
 #include <gtest/gtest.h>
+
+#include "swiftlet/math/linear_algebra.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -29,9 +30,7 @@ class Random {
 
 double largest_real_part(const MatrixXd& a) { return math::eigenvalues(a).real().maxCoeff(); }
 
-double least_eigenvalue(const MatrixXd& x) {
-  return math::symmetric_eigen(x).values[0];
-}
+double least_eigenvalue(const MatrixXd& x) { return math::symmetric_eigen(x).values[0]; }
 
 struct Problem {
   MatrixXd a, b, q, r;

@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include "control/attitude/attitude_error.hpp"
-#include "control/attitude/euler.hpp"
-#include "ground/simulation/closed_loop.hpp"
-#include "services/runtime/control_settings_file.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/control/attitude/attitude_error.hpp"
+#include "swiftlet/control/attitude/euler.hpp"
+#include "swiftlet/ground/simulation/closed_loop.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 #include "tests/support/malloc_guard.hpp"
 
 namespace swiftlet::control {

@@ -1,5 +1,5 @@
 // Streams of setpoints: each kind, at every rate, within limits and fence.
-#include "control/supervision/setpoints.hpp"
+#include "swiftlet/control/supervision/setpoints.hpp"
 
 #include <cmath>
 #include <string>

@@ -1,4 +1,4 @@
-#include "control/trajectory/spline.hpp"
+#include "swiftlet/control/trajectory/spline.hpp"
 
 #include <cmath>
 #include <random>

@@ -1,13 +1,13 @@
 // Coming to rest: within the limits from any motion that is, and no slower than they ask for.
-#include "control/trajectory/stop.hpp"
+#include "swiftlet/control/trajectory/stop.hpp"
 
 #include <algorithm>
 #include <cstdint>
 
 #include <gtest/gtest.h>
 
-#include "control/trajectory/polynomial.hpp"
-#include "plant/simulation/random.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
+#include "swiftlet/plant/simulation/random.hpp"
 #include "tests/support/malloc_guard.hpp"
 
 namespace swiftlet::control {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <functional>
 
-#include "control/supervision/supervisor.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/control/supervision/supervisor.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::tests {
 

@@ -1,4 +1,4 @@
-#include "control/supervision/supervisor.hpp"
+#include "swiftlet/control/supervision/supervisor.hpp"
 
 #include <cmath>
 #include <functional>
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "control/supervision/checks.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
 #include "tests/unit/control/supervised_flight.hpp"
 
 namespace swiftlet::control {

@@ -1,4 +1,4 @@
-#include "control/position/thrust_attitude_map.hpp"
+#include "swiftlet/control/position/thrust_attitude_map.hpp"
 
 #include <cmath>
 #include <limits>
@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "control/attitude/attitude_error.hpp"
-#include "control/trajectory/polynomial.hpp"
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/control/attitude/attitude_error.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::control {
 namespace {

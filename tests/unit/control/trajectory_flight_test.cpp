@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "control/supervision/checks.hpp"
-#include "control/trajectory/spline.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/control/trajectory/spline.hpp"
 #include "tests/unit/control/supervised_flight.hpp"
 
 namespace swiftlet::control {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "control/supervision/transitions.hpp"
+#include "swiftlet/control/supervision/transitions.hpp"
 
 namespace swiftlet::control {
 namespace {

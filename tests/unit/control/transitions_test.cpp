@@ -1,5 +1,5 @@
 // The table of modes, run: every mode with every event, every guard at its limit, all failsafes at once.
-#include "control/supervision/transitions.hpp"
+#include "swiftlet/control/supervision/transitions.hpp"
 
 #include <algorithm>
 #include <cmath>

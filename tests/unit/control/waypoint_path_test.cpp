@@ -1,4 +1,4 @@
-#include "control/trajectory/waypoint_path.hpp"
+#include "swiftlet/control/trajectory/waypoint_path.hpp"
 
 #include <cmath>
 #include <random>

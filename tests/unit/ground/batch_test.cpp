@@ -1,4 +1,4 @@
-#include "ground/batch.hpp"
+#include "swiftlet/ground/batch.hpp"
 
 #include <atomic>
 #include <cmath>
@@ -9,12 +9,12 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "ground/batch_plot.hpp"
-#include "ground/batch_report.hpp"
-#include "ground/child_process.hpp"
-#include "ground/in_process_flight.hpp"
-#include "services/runtime/config_error.hpp"
-#include "services/runtime/csv.hpp"
+#include "swiftlet/ground/batch_plot.hpp"
+#include "swiftlet/ground/batch_report.hpp"
+#include "swiftlet/ground/child_process.hpp"
+#include "swiftlet/ground/in_process_flight.hpp"
+#include "swiftlet/services/runtime/config_error.hpp"
+#include "swiftlet/services/runtime/csv.hpp"
 #include "tests/support/hop_mission.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -1,12 +1,12 @@
-#include "ground/bench_files.hpp"
+#include "swiftlet/ground/bench_files.hpp"
 
 #include <fstream>
 
 #include <gtest/gtest.h>
 
-#include "ground/command.hpp"
-#include "identification/bench_simulation.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/ground/command.hpp"
+#include "swiftlet/identification/bench_simulation.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/runtime/config_error_check.hpp"
 

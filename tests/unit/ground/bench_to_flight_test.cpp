@@ -5,15 +5,15 @@
 
 #include <gtest/gtest.h>
 
-#include "control/design/control_design.hpp"
-#include "ground/flight_plan.hpp"
-#include "ground/in_process_flight.hpp"
-#include "ground/margin_study.hpp"
-#include "identification/bench.hpp"
-#include "identification/bench_simulation.hpp"
-#include "plant/simulation/random.hpp"
-#include "services/runtime/vehicle_file.hpp"
-#include "services/runtime/vehicle_writer.hpp"
+#include "swiftlet/control/design/control_design.hpp"
+#include "swiftlet/ground/flight_plan.hpp"
+#include "swiftlet/ground/in_process_flight.hpp"
+#include "swiftlet/ground/margin_study.hpp"
+#include "swiftlet/identification/bench.hpp"
+#include "swiftlet/identification/bench_simulation.hpp"
+#include "swiftlet/plant/simulation/random.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
+#include "swiftlet/services/runtime/vehicle_writer.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::ground {

@@ -1,4 +1,4 @@
-#include "ground/child_process.hpp"
+#include "swiftlet/ground/child_process.hpp"
 
 #include <cerrno>
 #include <chrono>
@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ground/process_group.hpp"
+#include "swiftlet/ground/process_group.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::ground {

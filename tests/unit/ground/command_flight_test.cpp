@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "identification/flight.hpp"
-#include "plant/model/airframe.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/identification/flight.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 #include "tests/support/campaign.hpp"
 #include "tests/unit/ground/identified_flights.hpp"
 

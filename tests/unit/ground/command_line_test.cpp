@@ -1,7 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <gtest/gtest.h>
 
-#include "ground/commands.hpp"
+#include "swiftlet/ground/commands.hpp"
 
 namespace swiftlet::ground {
 namespace {

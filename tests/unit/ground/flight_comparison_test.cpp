@@ -1,10 +1,10 @@
-#include "ground/flight_comparison.hpp"
+#include "swiftlet/ground/flight_comparison.hpp"
 
 #include <gtest/gtest.h>
 
-#include "ground/command.hpp"
-#include "services/runtime/config_error.hpp"
-#include "services/runtime/flat_yaml.hpp"
+#include "swiftlet/ground/command.hpp"
+#include "swiftlet/services/runtime/config_error.hpp"
+#include "swiftlet/services/runtime/flat_yaml.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::ground {

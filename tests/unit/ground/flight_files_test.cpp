@@ -1,4 +1,4 @@
-#include "ground/flight_files.hpp"
+#include "swiftlet/ground/flight_files.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ground/child_process.hpp"
+#include "swiftlet/ground/child_process.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::ground {

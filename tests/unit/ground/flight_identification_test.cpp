@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "identification/flight.hpp"
+#include "swiftlet/identification/flight.hpp"
 #include "tests/support/campaign.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/ground/identified_flights.hpp"

@@ -1,4 +1,4 @@
-#include "ground/flight_log_files.hpp"
+#include "swiftlet/ground/flight_log_files.hpp"
 
 #include <cmath>
 #include <string>
@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "services/runtime/config_error.hpp"
-#include "services/runtime/text_file.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/services/runtime/config_error.hpp"
+#include "swiftlet/services/runtime/text_file.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::ground {

@@ -1,4 +1,4 @@
-#include "ground/flight_report.hpp"
+#include "swiftlet/ground/flight_report.hpp"
 
 #include <limits>
 

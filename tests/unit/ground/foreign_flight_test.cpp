@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "control/trajectory/feasibility.hpp"
-#include "ground/in_process_flight.hpp"
-#include "services/runtime/text_file.hpp"
+#include "swiftlet/control/trajectory/feasibility.hpp"
+#include "swiftlet/ground/in_process_flight.hpp"
+#include "swiftlet/services/runtime/text_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::ground {

@@ -1,4 +1,4 @@
-#include "ground/gains_command.hpp"
+#include "swiftlet/ground/gains_command.hpp"
 
 #include <complex>
 #include <string>
@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "services/runtime/control_settings_file.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 
 namespace swiftlet::ground {
 namespace {

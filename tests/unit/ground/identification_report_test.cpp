@@ -1,10 +1,10 @@
-#include "ground/identification_report.hpp"
+#include "swiftlet/ground/identification_report.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "identification/bench_simulation.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/identification/bench_simulation.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 
 namespace swiftlet::ground {
 namespace {

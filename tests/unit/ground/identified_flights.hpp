@@ -9,12 +9,12 @@
 
 #include <gtest/gtest.h>
 
-#include "ground/flight_log_files.hpp"
-#include "ground/flight_plan.hpp"
-#include "ground/in_process_flight.hpp"
-#include "ground/simulation/simulated_flight.hpp"
-#include "identification/flight.hpp"
-#include "plant/simulation/random.hpp"
+#include "swiftlet/ground/flight_log_files.hpp"
+#include "swiftlet/ground/flight_plan.hpp"
+#include "swiftlet/ground/in_process_flight.hpp"
+#include "swiftlet/ground/simulation/simulated_flight.hpp"
+#include "swiftlet/identification/flight.hpp"
+#include "swiftlet/plant/simulation/random.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/identification/sentences.hpp"
 

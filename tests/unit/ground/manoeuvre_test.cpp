@@ -1,7 +1,7 @@
 // Which telemetry ends a manoeuvre, and how.
 #include <gtest/gtest.h>
 
-#include "ground/manoeuvre_course.hpp"
+#include "swiftlet/ground/manoeuvre_course.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -1,4 +1,4 @@
-#include "ground/mission_check.hpp"
+#include "swiftlet/ground/mission_check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,10 +9,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "control/supervision/checks.hpp"
-#include "ground/mission_plot.hpp"
-#include "services/runtime/control_settings_file.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/ground/mission_plot.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::ground {

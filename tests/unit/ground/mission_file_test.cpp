@@ -1,4 +1,4 @@
-#include "ground/mission_file.hpp"
+#include "swiftlet/ground/mission_file.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "control/supervision/checks.hpp"
-#include "control/trajectory/waypoint_path.hpp"
-#include "services/runtime/config_error.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/control/trajectory/waypoint_path.hpp"
+#include "swiftlet/services/runtime/config_error.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/ground/fault.hpp"
 

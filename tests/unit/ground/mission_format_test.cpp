@@ -1,4 +1,4 @@
-#include "ground/formats/mission_format.hpp"
+#include "swiftlet/ground/formats/mission_format.hpp"
 
 #include <cmath>
 #include <limits>
@@ -6,11 +6,11 @@
 
 #include <gtest/gtest.h>
 
-#include "control/supervision/checks.hpp"
-#include "control/trajectory/polynomial.hpp"
-#include "ground/formats/geodesy.hpp"
-#include "services/runtime/config_error.hpp"
-#include "services/runtime/csv.hpp"
+#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/control/trajectory/polynomial.hpp"
+#include "swiftlet/ground/formats/geodesy.hpp"
+#include "swiftlet/services/runtime/config_error.hpp"
+#include "swiftlet/services/runtime/csv.hpp"
 #include "tests/unit/ground/fault.hpp"
 
 namespace swiftlet::ground {

@@ -1,9 +1,9 @@
 // What variations start from in the tests.
 #pragma once
 
-#include "ground/simulation/variation.hpp"
-#include "services/runtime/simulation_file.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/ground/simulation/variation.hpp"
+#include "swiftlet/services/runtime/simulation_file.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 
 namespace swiftlet::ground {
 

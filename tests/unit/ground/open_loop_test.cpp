@@ -1,4 +1,4 @@
-#include "ground/open_loop.hpp"
+#include "swiftlet/ground/open_loop.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 
 #include <gtest/gtest.h>
 
-#include "plant/model/airframe.hpp"
-#include "plant/model/propulsion.hpp"
-#include "services/runtime/config_error.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
+#include "swiftlet/plant/model/propulsion.hpp"
+#include "swiftlet/services/runtime/config_error.hpp"
 #include "tests/unit/plant_model/vehicles.hpp"
 #include "tests/unit/plant_simulation/paper_equations.hpp"
 

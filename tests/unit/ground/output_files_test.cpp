@@ -1,10 +1,10 @@
-#include "ground/output_files.hpp"
+#include "swiftlet/ground/output_files.hpp"
 
 #include <filesystem>
 
 #include <gtest/gtest.h>
 
-#include "ground/command.hpp"
+#include "swiftlet/ground/command.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::ground {

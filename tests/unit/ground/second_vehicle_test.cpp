@@ -4,14 +4,14 @@
 
 #include <gtest/gtest.h>
 
-#include "control/design/control_design.hpp"
-#include "ground/bench_files.hpp"
-#include "ground/in_process_flight.hpp"
-#include "identification/bench.hpp"
-#include "plant/model/airframe.hpp"
-#include "plant/model/propulsion.hpp"
-#include "services/runtime/control_settings_file.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/control/design/control_design.hpp"
+#include "swiftlet/ground/bench_files.hpp"
+#include "swiftlet/ground/in_process_flight.hpp"
+#include "swiftlet/identification/bench.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
+#include "swiftlet/plant/model/propulsion.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::ground {

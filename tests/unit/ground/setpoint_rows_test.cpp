@@ -1,11 +1,11 @@
-#include "ground/setpoint_rows.hpp"
+#include "swiftlet/ground/setpoint_rows.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "control/attitude/euler.hpp"
-#include "services/runtime/config_error.hpp"
+#include "swiftlet/control/attitude/euler.hpp"
+#include "swiftlet/services/runtime/config_error.hpp"
 
 namespace swiftlet::ground {
 namespace {

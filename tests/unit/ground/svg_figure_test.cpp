@@ -1,4 +1,4 @@
-#include "ground/svg_figure.hpp"
+#include "swiftlet/ground/svg_figure.hpp"
 
 #include <cmath>
 #include <regex>

@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "ground/simulation/variation.hpp"
-#include "services/runtime/config_error.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/ground/simulation/variation.hpp"
+#include "swiftlet/services/runtime/config_error.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 
 namespace swiftlet::ground {
 namespace {

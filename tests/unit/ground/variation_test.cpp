@@ -1,4 +1,4 @@
-#include "ground/simulation/variation.hpp"
+#include "swiftlet/ground/simulation/variation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "ground/vary_file.hpp"
-#include "plant/simulation/streams.hpp"
+#include "swiftlet/ground/vary_file.hpp"
+#include "swiftlet/plant/simulation/streams.hpp"
 #include "tests/unit/ground/nominal_world.hpp"
 #include "tests/unit/runtime/config_error_check.hpp"
 

@@ -1,4 +1,4 @@
-#include "ground/vary_file.hpp"
+#include "swiftlet/ground/vary_file.hpp"
 
 #include <string>
 

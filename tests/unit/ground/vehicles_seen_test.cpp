@@ -1,4 +1,4 @@
-#include "ground/vehicles_seen.hpp"
+#include "swiftlet/ground/vehicles_seen.hpp"
 
 #include <gtest/gtest.h>
 

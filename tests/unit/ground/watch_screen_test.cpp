@@ -1,4 +1,4 @@
-#include "ground/watch_screen.hpp"
+#include "swiftlet/ground/watch_screen.hpp"
 
 #include <algorithm>
 

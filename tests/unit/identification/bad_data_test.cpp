@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "identification/checks.hpp"
-#include "identification/steady_motor.hpp"
+#include "swiftlet/identification/checks.hpp"
+#include "swiftlet/identification/steady_motor.hpp"
 #include "tests/unit/identification/benches.hpp"
 
 namespace swiftlet::identification {

@@ -1,4 +1,4 @@
-#include "identification/bench.hpp"
+#include "swiftlet/identification/bench.hpp"
 
 #include <algorithm>
 #include <map>

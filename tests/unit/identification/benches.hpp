@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "identification/bench_simulation.hpp"
+#include "swiftlet/identification/bench_simulation.hpp"
 #include "tests/unit/identification/sentences.hpp"
 #include "tests/unit/plant_model/vehicles.hpp"
 

@@ -1,10 +1,10 @@
-#include "identification/coloured_noise.hpp"
+#include "swiftlet/identification/coloured_noise.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "plant/simulation/random.hpp"
+#include "swiftlet/plant/simulation/random.hpp"
 
 namespace swiftlet::identification {
 namespace {

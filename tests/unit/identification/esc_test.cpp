@@ -1,4 +1,4 @@
-#include "identification/esc.hpp"
+#include "swiftlet/identification/esc.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "identification/inertia.hpp"
+#include "swiftlet/identification/inertia.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "identification/mass.hpp"
+#include "swiftlet/identification/mass.hpp"
 #include "tests/unit/identification/benches.hpp"
 
 namespace swiftlet::identification {

@@ -1,4 +1,4 @@
-#include "identification/least_squares.hpp"
+#include "swiftlet/identification/least_squares.hpp"
 
 #include <cmath>
 
@@ -7,7 +7,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-#include "plant/simulation/random.hpp"
+#include "swiftlet/plant/simulation/random.hpp"
 
 namespace swiftlet::identification {
 namespace {

@@ -1,10 +1,10 @@
-#include "identification/motor_step.hpp"
+#include "swiftlet/identification/motor_step.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "plant/model/motor.hpp"
+#include "swiftlet/plant/model/motor.hpp"
 #include "tests/unit/identification/benches.hpp"
 
 namespace swiftlet::identification {

@@ -1,13 +1,13 @@
 // Poses that are stamped late, of a body whose motion is known.
-#include "identification/pose_timing.hpp"
+#include "swiftlet/identification/pose_timing.hpp"
 
 #include <cmath>
 #include <cstdint>
 
 #include <gtest/gtest.h>
 
-#include "plant/model/rotation_vector.hpp"
-#include "plant/simulation/random.hpp"
+#include "swiftlet/plant/model/rotation_vector.hpp"
+#include "swiftlet/plant/simulation/random.hpp"
 #include "tests/support/campaign.hpp"
 
 namespace swiftlet::identification {

@@ -1,8 +1,8 @@
-#include "identification/propeller.hpp"
+#include "swiftlet/identification/propeller.hpp"
 
 #include <gtest/gtest.h>
 
-#include "plant/model/rotor.hpp"
+#include "swiftlet/plant/model/rotor.hpp"
 #include "tests/unit/identification/benches.hpp"
 
 namespace swiftlet::identification {

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "identification/estimate.hpp"
+#include "swiftlet/identification/estimate.hpp"
 
 namespace swiftlet::tests {
 

@@ -1,11 +1,11 @@
-#include "identification/steady_motor.hpp"
+#include "swiftlet/identification/steady_motor.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "plant/model/motor.hpp"
-#include "plant/simulation/random.hpp"
+#include "swiftlet/plant/model/motor.hpp"
+#include "swiftlet/plant/simulation/random.hpp"
 #include "tests/unit/identification/benches.hpp"
 
 namespace swiftlet::identification {

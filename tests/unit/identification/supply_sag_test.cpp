@@ -1,14 +1,14 @@
 // The sag's ratio, beside that of the simulated vehicle.
-#include "identification/supply_sag.hpp"
+#include "swiftlet/identification/supply_sag.hpp"
 
 #include <cmath>
 #include <string>
 
 #include <gtest/gtest.h>
 
-#include "plant/model/airframe.hpp"
-#include "plant/simulation/dynamics.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
+#include "swiftlet/plant/simulation/dynamics.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 
 namespace swiftlet::identification {
 namespace {

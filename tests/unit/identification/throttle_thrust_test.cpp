@@ -1,8 +1,8 @@
-#include "identification/throttle_thrust.hpp"
+#include "swiftlet/identification/throttle_thrust.hpp"
 
 #include <gtest/gtest.h>
 
-#include "plant/model/propulsion.hpp"
+#include "swiftlet/plant/model/propulsion.hpp"
 #include "tests/unit/identification/benches.hpp"
 
 namespace swiftlet::identification {

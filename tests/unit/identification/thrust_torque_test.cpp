@@ -1,4 +1,4 @@
-#include "identification/thrust_torque.hpp"
+#include "swiftlet/identification/thrust_torque.hpp"
 
 #include <gtest/gtest.h>
 

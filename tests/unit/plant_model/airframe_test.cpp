@@ -1,4 +1,4 @@
-#include "plant/model/airframe.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "plant/model/battery.hpp"
+#include "swiftlet/plant/model/battery.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "plant/model/esc.hpp"
+#include "swiftlet/plant/model/esc.hpp"
 
 #include <limits>
 

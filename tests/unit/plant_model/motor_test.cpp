@@ -1,11 +1,11 @@
-#include "plant/model/motor.hpp"
+#include "swiftlet/plant/model/motor.hpp"
 
 #include <algorithm>
 #include <limits>
 
 #include <gtest/gtest.h>
 
-#include "plant/model/airframe.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
 #include "tests/unit/plant_model/vehicles.hpp"
 
 namespace swiftlet::plant {

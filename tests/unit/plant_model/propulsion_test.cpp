@@ -1,10 +1,10 @@
-#include "plant/model/propulsion.hpp"
+#include "swiftlet/plant/model/propulsion.hpp"
 
 #include <ostream>
 
 #include <gtest/gtest.h>
 
-#include "plant/model/airframe.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
 #include "tests/unit/plant_model/vehicles.hpp"
 
 namespace swiftlet::plant {

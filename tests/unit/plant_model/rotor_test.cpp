@@ -1,4 +1,4 @@
-#include "plant/model/rotor.hpp"
+#include "swiftlet/plant/model/rotor.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "plant/model/vehicle.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
 
 #include <functional>
 #include <limits>

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include "plant/model/vehicle.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 
 namespace swiftlet::tests {
 

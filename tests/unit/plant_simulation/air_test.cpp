@@ -1,4 +1,4 @@
-#include "plant/simulation/air.hpp"
+#include "swiftlet/plant/simulation/air.hpp"
 
 #include <cmath>
 #include <vector>

@@ -1,5 +1,5 @@
 // Dynamics by its properties: order, invariants, equilibria, time constants.
-#include "plant/simulation/dynamics.hpp"
+#include "swiftlet/plant/simulation/dynamics.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-#include "plant/model/airframe.hpp"
-#include "plant/model/battery.hpp"
-#include "plant/simulation/plant_simulation.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
+#include "swiftlet/plant/model/battery.hpp"
+#include "swiftlet/plant/simulation/plant_simulation.hpp"
 #include "tests/unit/plant_model/vehicles.hpp"
 #include "tests/unit/plant_simulation/worlds.hpp"
 

@@ -1,4 +1,4 @@
-#include "plant/simulation/faults.hpp"
+#include "swiftlet/plant/simulation/faults.hpp"
 
 #include <cmath>
 #include <optional>
@@ -7,10 +7,10 @@
 
 #include <gtest/gtest.h>
 
-#include "plant/simulation/command_path.hpp"
-#include "plant/simulation/mocap.hpp"
-#include "plant/simulation/mocap_path.hpp"
-#include "plant/simulation/plant_simulation.hpp"
+#include "swiftlet/plant/simulation/command_path.hpp"
+#include "swiftlet/plant/simulation/mocap.hpp"
+#include "swiftlet/plant/simulation/mocap_path.hpp"
+#include "swiftlet/plant/simulation/plant_simulation.hpp"
 #include "tests/unit/plant_model/vehicles.hpp"
 #include "tests/unit/plant_simulation/worlds.hpp"
 

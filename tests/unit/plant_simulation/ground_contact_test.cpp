@@ -1,12 +1,12 @@
 // The floor under the whole simulated vehicle: standing, landing, dropping, slipping, taking off.
-#include "plant/simulation/ground_contact.hpp"
+#include "swiftlet/plant/simulation/ground_contact.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "plant/simulation/plant_simulation.hpp"
+#include "swiftlet/plant/simulation/plant_simulation.hpp"
 #include "tests/unit/plant_model/vehicles.hpp"
 #include "tests/unit/plant_simulation/worlds.hpp"
 

@@ -1,10 +1,10 @@
-#include "plant/simulation/imu.hpp"
+#include "swiftlet/plant/simulation/imu.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "plant/simulation/plant_simulation.hpp"
+#include "swiftlet/plant/simulation/plant_simulation.hpp"
 #include "tests/unit/plant_model/vehicles.hpp"
 #include "tests/unit/plant_simulation/worlds.hpp"
 

@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "plant/simulation/mocap.hpp"
-#include "services/runtime/simulation_file.hpp"
-#include "services/runtime/text_file.hpp"
+#include "swiftlet/plant/simulation/mocap.hpp"
+#include "swiftlet/services/runtime/simulation_file.hpp"
+#include "swiftlet/services/runtime/text_file.hpp"
 
 namespace swiftlet::tests {
 namespace {

@@ -1,4 +1,4 @@
-#include "plant/simulation/mocap.hpp"
+#include "swiftlet/plant/simulation/mocap.hpp"
 
 #include <algorithm>
 #include <cmath>

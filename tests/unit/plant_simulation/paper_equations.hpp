@@ -13,7 +13,7 @@
 #include <Eigen/LU>
 #include <boost/numeric/odeint.hpp>
 
-#include "plant/simulation/vehicle_state.hpp"
+#include "swiftlet/plant/simulation/vehicle_state.hpp"
 
 namespace swiftlet::tests::paper {
 

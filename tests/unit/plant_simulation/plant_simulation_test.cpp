@@ -1,12 +1,12 @@
 // Runs that repeat bit by bit, and noise that keeps to itself.
-#include "plant/simulation/plant_simulation.hpp"
+#include "swiftlet/plant/simulation/plant_simulation.hpp"
 
 #include <cstring>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "plant/simulation/mocap.hpp"
+#include "swiftlet/plant/simulation/mocap.hpp"
 #include "tests/unit/plant_model/vehicles.hpp"
 #include "tests/unit/plant_simulation/worlds.hpp"
 

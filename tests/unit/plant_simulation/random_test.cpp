@@ -1,4 +1,4 @@
-#include "plant/simulation/random.hpp"
+#include "swiftlet/plant/simulation/random.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "plant/simulation/streams.hpp"
+#include "swiftlet/plant/simulation/streams.hpp"
 
 namespace swiftlet::tests {
 namespace {

@@ -7,7 +7,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-#include "plant/simulation/plant_simulation.hpp"
+#include "swiftlet/plant/simulation/plant_simulation.hpp"
 #include "tests/unit/plant_model/vehicles.hpp"
 #include "tests/unit/plant_simulation/paper_equations.hpp"
 #include "tests/unit/plant_simulation/worlds.hpp"

@@ -1,8 +1,8 @@
 // Simulation settings and drives that the tests of plant/simulation share.
 #pragma once
 
-#include "plant/simulation/settings.hpp"
-#include "plant/simulation/vehicle_state.hpp"
+#include "swiftlet/plant/simulation/settings.hpp"
+#include "swiftlet/plant/simulation/vehicle_state.hpp"
 
 namespace swiftlet::tests {
 

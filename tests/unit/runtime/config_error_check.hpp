@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "services/runtime/config_error.hpp"
+#include "swiftlet/services/runtime/config_error.hpp"
 
 namespace swiftlet::tests {
 

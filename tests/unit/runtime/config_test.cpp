@@ -1,4 +1,4 @@
-#include "services/runtime/config.hpp"
+#include "swiftlet/services/runtime/config.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "services/runtime/text_file.hpp"
+#include "swiftlet/services/runtime/text_file.hpp"
 #include "tests/unit/runtime/config_error_check.hpp"
 
 namespace swiftlet::runtime {

@@ -1,10 +1,10 @@
-#include "services/runtime/control_settings_file.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
 
 #include <algorithm>
 
 #include <gtest/gtest.h>
 
-#include "services/runtime/text_file.hpp"
+#include "swiftlet/services/runtime/text_file.hpp"
 #include "tests/unit/runtime/config_error_check.hpp"
 
 namespace swiftlet::runtime {

@@ -1,4 +1,4 @@
-#include "services/runtime/csv.hpp"
+#include "swiftlet/services/runtime/csv.hpp"
 
 #include <string>
 #include <string_view>

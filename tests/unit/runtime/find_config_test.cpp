@@ -1,4 +1,4 @@
-#include "services/runtime/find_config.hpp"
+#include "swiftlet/services/runtime/find_config.hpp"
 
 #include <cstdlib>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "services/runtime/flight_trace.hpp"
+#include "swiftlet/services/runtime/flight_trace.hpp"
 
 #include <algorithm>
 #include <fstream>

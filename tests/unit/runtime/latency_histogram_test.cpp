@@ -1,4 +1,4 @@
-#include "services/runtime/latency_histogram.hpp"
+#include "swiftlet/services/runtime/latency_histogram.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "services/runtime/mailbox.hpp"
+#include "swiftlet/services/runtime/mailbox.hpp"
 
 #include <array>
 #include <atomic>

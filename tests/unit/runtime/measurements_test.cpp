@@ -1,4 +1,4 @@
-#include "services/runtime/measurements.hpp"
+#include "swiftlet/services/runtime/measurements.hpp"
 
 #include <string>
 

@@ -1,5 +1,5 @@
 // What the services' mains rest on: exit codes, stop signals, log, real-time rights.
-#include "services/runtime/process.hpp"
+#include "swiftlet/services/runtime/process.hpp"
 
 #include <chrono>
 #include <csignal>
@@ -19,8 +19,8 @@
 #include <gtest/gtest.h>
 #include <spdlog/spdlog.h>
 
-#include "services/runtime/config_error.hpp"
-#include "services/runtime/stop_signal.hpp"
+#include "swiftlet/services/runtime/config_error.hpp"
+#include "swiftlet/services/runtime/stop_signal.hpp"
 
 namespace swiftlet::runtime {
 namespace {

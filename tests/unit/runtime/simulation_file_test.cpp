@@ -1,8 +1,8 @@
-#include "services/runtime/simulation_file.hpp"
+#include "swiftlet/services/runtime/simulation_file.hpp"
 
 #include <gtest/gtest.h>
 
-#include "services/runtime/text_file.hpp"
+#include "swiftlet/services/runtime/text_file.hpp"
 #include "tests/unit/runtime/config_error_check.hpp"
 
 namespace swiftlet::runtime {

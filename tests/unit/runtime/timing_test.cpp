@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "services/runtime/periodic_timer.hpp"
-#include "services/runtime/semaphore.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
+#include "swiftlet/services/runtime/semaphore.hpp"
 
 namespace swiftlet::runtime {
 namespace {

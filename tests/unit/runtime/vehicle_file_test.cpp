@@ -1,4 +1,4 @@
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 
 #include <algorithm>
 #include <random>
@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "plant/model/rotor.hpp"
-#include "services/runtime/text_file.hpp"
+#include "swiftlet/plant/model/rotor.hpp"
+#include "swiftlet/services/runtime/text_file.hpp"
 #include "tests/unit/runtime/config_error_check.hpp"
 
 namespace swiftlet::runtime {

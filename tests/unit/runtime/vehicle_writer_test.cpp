@@ -1,9 +1,9 @@
-#include "services/runtime/vehicle_writer.hpp"
+#include "swiftlet/services/runtime/vehicle_writer.hpp"
 
 #include <gtest/gtest.h>
 
-#include "services/runtime/text_file.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/services/runtime/text_file.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 #include "tests/unit/runtime/config_error_check.hpp"
 
 namespace swiftlet::runtime {

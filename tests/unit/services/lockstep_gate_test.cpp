@@ -1,4 +1,4 @@
-#include "services/control/lockstep_gate.hpp"
+#include "swiftlet/services/control/lockstep_gate.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "services/control/plan_shelf.hpp"
+#include "swiftlet/services/control/plan_shelf.hpp"
 
 #include <memory>
 
 #include <gtest/gtest.h>
 
-#include "control/mission.hpp"
+#include "swiftlet/control/mission.hpp"
 
 namespace swiftlet::services {
 namespace {

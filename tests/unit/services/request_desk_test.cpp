@@ -1,5 +1,5 @@
 // Requests through the desk and the inner loop, and what the inner loop costs.
-#include "services/control/request_desk.hpp"
+#include "swiftlet/services/control/request_desk.hpp"
 
 #include <chrono>
 #include <cstdint>
@@ -9,10 +9,10 @@
 
 #include <gtest/gtest.h>
 
-#include "services/comms/convert.hpp"
-#include "services/control/inner_loop.hpp"
-#include "services/runtime/control_settings_file.hpp"
-#include "services/runtime/vehicle_file.hpp"
+#include "swiftlet/services/comms/convert.hpp"
+#include "swiftlet/services/control/inner_loop.hpp"
+#include "swiftlet/services/runtime/control_settings_file.hpp"
+#include "swiftlet/services/runtime/vehicle_file.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/malloc_guard.hpp"
 

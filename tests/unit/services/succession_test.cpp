@@ -1,6 +1,6 @@
 // Who acts, on sequences of samples, commands and heartbeats as several controllers and their vehicle make
 // them.
-#include "services/control/succession.hpp"
+#include "swiftlet/services/control/succession.hpp"
 
 #include <algorithm>
 #include <deque>

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "services/control/step_timing.hpp"
-#include "services/plant/answer_times.hpp"
+#include "swiftlet/services/control/step_timing.hpp"
+#include "swiftlet/services/plant/answer_times.hpp"
 
 namespace swiftlet::services {
 namespace {
