@@ -79,10 +79,11 @@ function(swiftlet_export name)
     endif()
   endforeach()
   set_property(GLOBAL APPEND PROPERTY SWIFTLET_LIBRARIES swiftlet_${name})
-  set_property(GLOBAL APPEND_STRING PROPERTY SWIFTLET_COMPONENTS
+  string(CONCAT component
     "list(APPEND swiftlet_components ${name})\n"
     "set(swiftlet_${name}_uses ${components})\n"
     "set(swiftlet_${name}_needs ${packages})\n")
+  set_property(GLOBAL APPEND_STRING PROPERTY SWIFTLET_COMPONENTS "${component}")
 endfunction()
 
 # swiftlet_add_executable(NAME SOURCES ... LIBS ...): an installed program bin/NAME.

@@ -15,7 +15,20 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kNearAxis = 1e-3;      // real over imaginary part of a zero that may lie on the axis
 constexpr double kRealResponse = 1e-9;  // imaginary over real part of the response, up to which it is real
 constexpr double kLowest = 1e-4;        // rad/s: zeros below are those at 0, rounded
-constexpr double kShift = 0.37;         // of the norm of A: the pencil is not singular there
+constexpr double kShift = 1.1;          // over the mean pole: the pencil is not singular there
+
+// The geometric mean of the sizes of the poles that are not at 0, rad/s: about as fast as the zeros to be found, so that
+// slow ones keep their digits.
+double mean_pole(const Loop& loop) {
+  double log_sum = 0.0;
+  int count = 0;
+  for (const std::complex<double>& pole : math::eigenvalues(loop.a)) {
+    if (std::abs(pole) < kLowest) continue;
+    log_sum += std::log(std::abs(pole));
+    ++count;
+  }
+  return count > 0 ? std::exp(log_sum / count) : 1.0;
+}
 
 // Secant steps on the phase of -L over log omega from a start that is nearly right.
 double refine_phase_crossover(const Loop& loop, double omega) {
@@ -44,7 +57,7 @@ std::vector<double> phase_crossovers(const Loop& loop) {
   Eigen::MatrixXd e = Eigen::MatrixXd::Identity(size, size);
   e(2 * n, 2 * n) = 0.0;
 
-  const double shift = kShift * loop.a.norm();
+  const double shift = kShift * mean_pole(loop);
   std::vector<double> found;
   for (const std::complex<double>& mu : math::eigenvalues(math::solve(system - shift * e, e))) {
     const std::complex<double> zero = shift + 1.0 / mu;

@@ -10,4 +10,5 @@ set(linked "")
 if(SANITIZE)
   set(linked ${WORK_DIR}/sanitizer_options.o)  # in every program of such a build
 endif()
-set(configuration -G ${GENERATOR} -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_COMPILER=${CXX} "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}")
+set(configuration -G ${GENERATOR} -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_COMPILER=${CXX})
+set(ENV{CMAKE_CXX_COMPILER_LAUNCHER} "${LAUNCHER}")
