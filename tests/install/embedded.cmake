@@ -1,15 +1,5 @@
-# Builds a project that has this one as a subdirectory. Only what it links is built; the project's own rules for warnings and its
-# tests stay out of it.
+# Builds and runs the program of the project that embedding.cmake has configured: only what it links is built.
 include(${CMAKE_CURRENT_LIST_DIR}/common.cmake)
 set(embedding ${WORK_DIR}/embedding)
-file(REMOVE_RECURSE ${embedding})
-run(${CMAKE_COMMAND} -S ${TEST_DIR}/embedded -B ${embedding} ${configuration} -DSWIFTLET_DIR=${SOURCE_DIR}
-  -DCMAKE_EXPORT_COMPILE_COMMANDS=ON)
-file(STRINGS ${embedding}/compile_commands.json commands REGEX "\"command\"")
-foreach(command IN LISTS commands)
-  if(command MATCHES "-Werror|gtest|cmake_pch")
-    message(FATAL_ERROR "compiled with what is for the project alone: ${command}")
-  endif()
-endforeach()
 run(${CMAKE_COMMAND} --build ${embedding} --target hover)
 run(${embedding}/hover)

@@ -1,0 +1,14 @@
+# Configures a project that has this one as a subdirectory, into which the rules for warnings and the tests of this one do not come,
+# and builds what takes longest.
+include(${CMAKE_CURRENT_LIST_DIR}/common.cmake)
+set(embedding ${WORK_DIR}/embedding)
+file(REMOVE_RECURSE ${embedding})
+run(${CMAKE_COMMAND} -S ${TEST_DIR}/embedded -B ${embedding} ${configuration} -DSWIFTLET_DIR=${SOURCE_DIR}
+  -DCMAKE_EXPORT_COMPILE_COMMANDS=ON)
+file(STRINGS ${embedding}/compile_commands.json commands REGEX "\"command\"")
+foreach(command IN LISTS commands)
+  if(command MATCHES "-Werror|gtest|cmake_pch")
+    message(FATAL_ERROR "compiled with what is for the project alone: ${command}")
+  endif()
+endforeach()
+run(${CMAKE_COMMAND} --build ${embedding} --target swiftlet_math)
