@@ -448,7 +448,7 @@ void simulated_time(Table& table) {
   for (const auto& [name, entry] : loop.items()) {
     if (entry.contains("real_time_factor"))
       table.add({name, entry.at("real_time_factor").get<double>(), "x", "plant steps alone", 1e6 / plant_ns,
-                 "at least 2000"});
+                 "at least 1000"});
   }
 
   table.section("(e) steps, CPU time, median of 5");
