@@ -1,9 +1,9 @@
 # Configures a project that has this one as a subdirectory, into which the rules for warnings and the tests of this one do not come,
-# and builds what takes longest.
+# and builds what takes longest. Without a type of build, as a project is configured that does not care.
 include(${CMAKE_CURRENT_LIST_DIR}/common.cmake)
 set(embedding ${WORK_DIR}/embedding)
 file(REMOVE_RECURSE ${embedding})
-run(${CMAKE_COMMAND} -S ${TEST_DIR}/embedded -B ${embedding} ${configuration} -DSWIFTLET_DIR=${SOURCE_DIR}
+run(${CMAKE_COMMAND} -S ${TEST_DIR}/embedded -B ${embedding} ${configuration} -DCMAKE_BUILD_TYPE= -DSWIFTLET_DIR=${SOURCE_DIR}
   -DCMAKE_EXPORT_COMPILE_COMMANDS=ON)
 file(STRINGS ${embedding}/compile_commands.json commands REGEX "\"command\"")
 foreach(command IN LISTS commands)

@@ -42,6 +42,25 @@ class Fly : public testing::Test {
   }
   fs::path record() const { return folder_.path() / "record"; }
 
+  // Flies in real time. A computer that stands still, as one whose disk is busy may for half a second, flies another
+  // flight than was asked for: that one is flown again, twice at most.
+  void fly_in_real_time(const std::vector<std::string>& words) {
+    for (int attempt = 0; attempt < 3; ++attempt) {
+      Program fly("swiftlet", words, folder_.path());
+      exit_code_ = fly.wait(90s);
+      told_ = told(fly);
+      output_ = fly.output();
+      errors_ = fly.errors();
+      if (stood_still_ms() < 100.0) return;
+    }
+  }
+  // How long the plant was behind real time, as its last line says.
+  double stood_still_ms() const {
+    const std::size_t at = told_.rfind("behind real time ");
+    const std::size_t comma = told_.find(", ", at);
+    return at == std::string::npos || comma == std::string::npos ? 0.0 : std::stod(told_.substr(comma + 2));
+  }
+
   // All that was said, for a message of a failed expectation.
   std::string told(const Program& fly) const {
     std::string text = fly.output() + fly.errors();
@@ -53,6 +72,10 @@ class Fly : public testing::Test {
   }
 
   TemporaryFolder folder_;
+  int exit_code_ = -1;  // of fly_in_real_time(), and what was said there
+  std::string told_;
+  std::string output_;
+  std::string errors_;
 };
 
 // A step of control for each sample of the flight, by the vehicle's clock: a computer that stalls slows both down, and
@@ -67,10 +90,10 @@ void expect_control_rate(const json& report, double rate_hz) {
 
 // This and the next judge latencies and errors in real time: nothing runs beside them.
 TEST_F(Fly, FliesReportsAndRecordsAMission) {
-  Program fly("swiftlet", arguments(folder_.write("hop.yaml", kHopMission), {"--seed", "7"}), folder_.path());
-  ASSERT_EQ(fly.wait(90s), 0) << told(fly);
+  fly_in_real_time(arguments(folder_.write("hop.yaml", kHopMission), {"--seed", "7"}));
+  ASSERT_EQ(exit_code_, 0) << told_;
 
-  const json report = json::parse(fly.output());
+  const json report = json::parse(output_);
   EXPECT_EQ(report.at("completed"), true);
   EXPECT_FALSE(report.contains("reason"));
   EXPECT_EQ(report.at("mission"), "hop");
@@ -92,22 +115,19 @@ TEST_F(Fly, FliesReportsAndRecordsAMission) {
   EXPECT_EQ(json::parse(kept), report);
   EXPECT_GT(fs::file_size(record() / "flight.csv"), 50'000U);
   EXPECT_GT(fs::file_size(record() / "flight.png"), 20'000U);
-  EXPECT_NE(fly.errors().find("2/3 waypoint"), std::string::npos)
-      << "no progress was shown: " << fly.errors();
+  EXPECT_NE(errors_.find("2/3 waypoint"), std::string::npos) << "no progress was shown: " << errors_;
 }
 
 TEST_F(Fly, FliesAtOneKilohertz) {
-  Program fly("swiftlet", arguments(folder_.write("hop.yaml", kHopMission), {"--imu-rate", "1000"}),
-              folder_.path());
-  ASSERT_EQ(fly.wait(90s), 0) << told(fly);
-  const json report = json::parse(fly.output());
+  fly_in_real_time(arguments(folder_.write("hop.yaml", kHopMission), {"--imu-rate", "1000"}));
+  ASSERT_EQ(exit_code_, 0) << told_;
+  const json report = json::parse(output_);
   expect_control_rate(report, 1000.0);
   EXPECT_LT(report.at("rms_3d_m"), 0.010);
 }
 
 TEST_F(Fly, FliesOverSharedMemoryAndLeavesNothingThere) {
-  Program fly("swiftlet", arguments(folder_.write("hop.yaml", kHopMission), {"--transport", "shm"}),
-              folder_.path());
+  Program fly("swiftlet", arguments("square", {"--transport", "shm", "--clock", "lockstep"}), folder_.path());
   const auto children = [&] { return children_of(fly.pid()); };
   std::vector<std::string> files;
   EXPECT_TRUE(eventually(
@@ -115,7 +135,7 @@ TEST_F(Fly, FliesOverSharedMemoryAndLeavesNothingThere) {
         for (const pid_t child : children()) {
           for (const std::string& file : shared_memory_of(child)) files.push_back(file);
         }
-        return fly.errors().find("2/3 waypoint") != std::string::npos;
+        return fly.errors().find("2/6 waypoint") != std::string::npos;
       },
       kStartTimeout))
       << told(fly);
@@ -141,8 +161,9 @@ class FlyTwoAtOnce : public Fly, public testing::WithParamInterface<const char*>
 TEST_P(FlyTwoAtOnce, DoNotDisturbEachOther) {
   const std::string mission = folder_.write("hop.yaml", kHopMission);
   const auto words = [&](const char* name) {
-    return std::vector<std::string>{
-        "fly", mission, "--json", "--transport", GetParam(), "--record", folder_.path() / name};
+    return std::vector<std::string>{"fly",      mission,    "--json",
+                                    "--clock",  "lockstep", "--transport",
+                                    GetParam(), "--record", folder_.path() / name};
   };
   Program first("swiftlet", words("a"), folder_.path());
   Program second("swiftlet", words("b"), folder_.path());
