@@ -10,7 +10,6 @@
 #include "swiftlet/control/allocation/allocator.hpp"
 #include "swiftlet/control/attitude/attitude_controller.hpp"
 #include "swiftlet/control/attitude/attitude_error.hpp"
-#include "swiftlet/control/attitude/euler.hpp"
 #include "swiftlet/control/design/control_design.hpp"
 #include "swiftlet/control/estimation/climb_watch.hpp"
 #include "swiftlet/control/estimation/disturbance_observer.hpp"
@@ -18,6 +17,7 @@
 #include "swiftlet/control/position/position_controller.hpp"
 #include "swiftlet/control/position/thrust_attitude_map.hpp"
 #include "swiftlet/control/supervision/supervisor.hpp"
+#include "swiftlet/math/euler.hpp"
 
 namespace swiftlet::control {
 namespace {

@@ -7,10 +7,10 @@
 
 #include "swiftlet/control/estimation/estimator.hpp"
 #include "swiftlet/control/flight_state.hpp"
-#include "swiftlet/control/mode.hpp"
-#include "swiftlet/control/reference.hpp"
-#include "swiftlet/control/request.hpp"
-#include "swiftlet/control/settings.hpp"
+#include "swiftlet/control/types/mode.hpp"
+#include "swiftlet/control/types/reference.hpp"
+#include "swiftlet/control/types/request.hpp"
+#include "swiftlet/control/types/settings.hpp"
 #include "swiftlet/plant/model/samples.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
@@ -44,7 +44,7 @@ class FlightController {
   Outcome on_setpoint(const Setpoint& setpoint);
   // A sign of life of a ground tool. False if the flight depends on too many others already.
   bool on_ground_sign(const GroundSign& sign);
-  // Answers by the present mode. A mission or trajectory must have passed check() of supervision/checks.hpp
+  // Answers by the present mode. A mission or trajectory must have passed check() of planning/checks.hpp
   // before.
   Outcome request(const Request& request);
 

@@ -5,8 +5,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "swiftlet/control/attitude/heading.hpp"
 #include "swiftlet/control/design/control_design.hpp"
+#include "swiftlet/math/heading.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::control {

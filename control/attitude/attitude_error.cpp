@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "swiftlet/control/attitude/euler.hpp"
+#include "swiftlet/math/euler.hpp"
 
 namespace swiftlet::control {
 namespace {

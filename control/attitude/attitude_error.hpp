@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "swiftlet/control/attitude/heading.hpp"
+#include "swiftlet/math/heading.hpp"
 
 namespace swiftlet::control {
 

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "swiftlet/control/design/riccati.hpp"
+#include "swiftlet/math/riccati.hpp"
 
 namespace swiftlet::control {
 namespace {

@@ -10,7 +10,7 @@
 #include <Eigen/Core>
 
 #include "swiftlet/control/design/loop.hpp"
-#include "swiftlet/control/settings.hpp"
+#include "swiftlet/control/types/settings.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::control {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "swiftlet/control/design/refine_zero.hpp"
 #include "swiftlet/math/linear_algebra.hpp"
+#include "swiftlet/math/refine_zero.hpp"
 
 namespace swiftlet::control {
 namespace {

@@ -5,8 +5,8 @@
 #include <complex>
 #include <limits>
 
-#include "swiftlet/control/design/refine_zero.hpp"
 #include "swiftlet/math/linear_algebra.hpp"
+#include "swiftlet/math/refine_zero.hpp"
 
 namespace swiftlet::control {
 namespace {

@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "swiftlet/control/settings.hpp"
+#include "swiftlet/control/types/settings.hpp"
 
 namespace swiftlet::control {
 

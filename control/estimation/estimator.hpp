@@ -17,7 +17,7 @@
 #include "swiftlet/control/estimation/error_covariance.hpp"
 #include "swiftlet/control/estimation/motion_trial.hpp"
 #include "swiftlet/control/estimation/pose_screen.hpp"
-#include "swiftlet/control/settings.hpp"
+#include "swiftlet/control/types/settings.hpp"
 #include "swiftlet/plant/model/samples.hpp"
 
 namespace swiftlet::control {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "swiftlet/plant/model/rotation_vector.hpp"
+#include "swiftlet/math/rotation_vector.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::control {

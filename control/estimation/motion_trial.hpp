@@ -11,7 +11,7 @@
 #include <Eigen/Geometry>
 
 #include "swiftlet/control/estimation/error_covariance.hpp"
-#include "swiftlet/control/settings.hpp"
+#include "swiftlet/control/types/settings.hpp"
 #include "swiftlet/plant/model/samples.hpp"
 
 namespace swiftlet::control {

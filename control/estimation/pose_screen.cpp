@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "swiftlet/plant/model/rotation_vector.hpp"
+#include "swiftlet/math/rotation_vector.hpp"
 
 namespace swiftlet::control {
 namespace {

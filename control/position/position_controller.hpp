@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 
 #include "swiftlet/control/design/control_design.hpp"
-#include "swiftlet/control/reference.hpp"
-#include "swiftlet/control/settings.hpp"
+#include "swiftlet/control/types/reference.hpp"
+#include "swiftlet/control/types/settings.hpp"
 
 namespace swiftlet::control {
 

@@ -5,8 +5,8 @@
 
 #include <Eigen/Core>
 
-#include "swiftlet/control/attitude/heading.hpp"
-#include "swiftlet/control/reference.hpp"
+#include "swiftlet/control/types/reference.hpp"
+#include "swiftlet/math/heading.hpp"
 
 namespace swiftlet::control {
 

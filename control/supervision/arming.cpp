@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "swiftlet/control/attitude/attitude_error.hpp"
-#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/supervision/conditions.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 

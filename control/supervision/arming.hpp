@@ -1,8 +1,8 @@
 // What must hold before the rotors may turn.
 #pragma once
 
-#include "swiftlet/control/request.hpp"
 #include "swiftlet/control/supervision/scene.hpp"
+#include "swiftlet/control/types/request.hpp"
 
 namespace swiftlet::control {
 

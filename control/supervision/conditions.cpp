@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "swiftlet/control/attitude/attitude_error.hpp"
-#include "swiftlet/control/supervision/phases.hpp"
-#include "swiftlet/control/supervision/setpoints.hpp"
+#include "swiftlet/control/guidance/manoeuvres.hpp"
+#include "swiftlet/control/guidance/setpoint_stream.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -32,10 +32,13 @@ bool ground_felt(Scene& scene) {
     return held(scene.situation.unexplained_lift > kContactLift, state.contact_since_ns, state.now_ns,
                 kBlindContactTime_s);
   }
-  if (state.phase != Phase::kSink) return false;
+  if (state.guidance.phase != Phase::kSink) {
+    state.contact_since_ns = 0;
+    return false;
+  }
   const Estimate& estimate = scene.estimate();
-  const double depth = state.path.at(state.now_ns).position_ned.z() - estimate.position_ned.z();
-  const bool at_ground = estimate.position_ned.z() > state.ground_z_ned - kAirborneHeight_m;
+  const double depth = state.guidance.path.at(state.now_ns).position_ned.z() - estimate.position_ned.z();
+  const bool at_ground = estimate.position_ned.z() > state.guidance.ground_z_ned - kAirborneHeight_m;
   const double speed = at_ground ? std::abs(estimate.velocity_ned.z()) : estimate.velocity_ned.norm();
   return held(depth > kContactDepth_m && speed < kContactSpeed, state.contact_since_ns, state.now_ns,
               kContactTime_s);
@@ -100,8 +103,8 @@ EventSet observe(Scene& scene, double tip_over_cosine) {
   events.add(Event::kImuGap, situation.imu_gap_s > failsafe.imu_gap_s);
   events.add(Event::kTippedOver, cosine_of_tilt(scene.estimate().q_ned_from_frd) < tip_over_cosine);
   events.add(Event::kStruck,
-             state.phase != Phase::kGround && situation.specific_force_frd.norm() > failsafe.blow);
-  events.add(Event::kClimbNotSeen, situation.climb_contradicted && state.phase == Phase::kPath);
+             state.guidance.phase != Phase::kGround && situation.specific_force_frd.norm() > failsafe.blow);
+  events.add(Event::kClimbNotSeen, situation.climb_contradicted && state.guidance.phase == Phase::kPath);
   events.add(Event::kPoseJumped, situation.pose_jumped);
   events.add(Event::kPoseLost, lost);
   events.add(Event::kPoseIsBack, !lost);
@@ -112,12 +115,13 @@ EventSet observe(Scene& scene, double tip_over_cosine) {
   observe_battery(scene, events);
   events.add(Event::kOutsideFence, !lost && outside_fence(scene));
   events.add(Event::kGroundLinkLost, ground_link_lost(state, failsafe));
-  events.add(Event::kSetpointsLeadOut,
-             state.mode == Mode::kSetpoint && goes_past_position(state.setpoint_kind) && leads_out(scene));
+  events.add(Event::kSetpointsLeadOut, state.mode == Mode::kSetpoint &&
+                                           goes_past_position(state.guidance.setpoint_kind) &&
+                                           leads_out(scene.guidance()));
   events.add(Event::kSetpointsStopped,
              state.mode == Mode::kSetpoint &&
-                 elapsed_s(state.setpoint_ns, state.now_ns) > failsafe.setpoint_timeout_s);
-  events.add(Event::kPlanFinished, plan_finished(scene));
+                 elapsed_s(state.guidance.setpoint_ns, state.now_ns) > failsafe.setpoint_timeout_s);
+  events.add(Event::kPlanFinished, plan_finished(scene.guidance()));
   return events;
 }
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "swiftlet/control/request.hpp"
+#include "swiftlet/control/types/request.hpp"
 
 namespace swiftlet::control {
 

@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "swiftlet/control/attitude/attitude_error.hpp"
+#include "swiftlet/control/guidance/manoeuvres.hpp"
+#include "swiftlet/control/guidance/setpoint_stream.hpp"
+#include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/supervision/arming.hpp"
-#include "swiftlet/control/supervision/checks.hpp"
 #include "swiftlet/control/supervision/conditions.hpp"
-#include "swiftlet/control/supervision/phases.hpp"
-#include "swiftlet/control/supervision/setpoints.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -40,9 +40,9 @@ Outcome check_takeoff(const Scene& scene) {
   top.z() = request.position_ned.z();
   outcome = check_position("takeoff", top, limits);
   if (!outcome.accepted) return outcome;
-  if (top.z() <= scene.state.ground_z_ned - kLeastClimb_m) return accept();
+  if (top.z() <= scene.state.guidance.ground_z_ned - kLeastClimb_m) return accept();
   return refuse("takeoff: z is %.3f m, must be above the ground at %.3f m (z points down)", top.z(),
-                scene.state.ground_z_ned);
+                scene.state.guidance.ground_z_ned);
 }
 
 Outcome check_upload(const Scene& scene) {
@@ -53,7 +53,7 @@ Outcome check_upload(const Scene& scene) {
 
 // The one that is there is the one that is meant.
 Outcome check_mission_named(const Scene& scene) {
-  const MissionProgress& there = scene.state.mission;
+  const MissionProgress& there = scene.state.guidance.mission;
   const std::uint64_t asked = scene.request->mission_id;
   if (scene.plan.mission == nullptr) return refuse("no mission is here: upload it first");
   if (asked == 0 || asked == there.id) return accept();
@@ -68,7 +68,7 @@ Outcome check_mission_fence(const Scene& scene) {
   Eigen::Vector3d at = scene.estimate().position_ned;
   if (beyond_fence(limits, at) > margin_m) return check_position("the vehicle", at, limits);
   if (scene.plan.mission->items.back().kind != MissionItemKind::kLand) return accept();
-  at.z() = scene.state.ground_z_ned;
+  at.z() = scene.state.guidance.ground_z_ned;
   if (beyond_fence(limits, at) > margin_m) return check_position("the ground, on which it lands", at, limits);
   return accept();
 }
@@ -86,15 +86,15 @@ Outcome check_start_from_ground(const Scene& scene) {
   const MissionItem& first = scene.plan.mission->items.front();
   if (first.kind != MissionItemKind::kTakeoff)
     return refuse("the vehicle stands on the ground: the mission must begin with a takeoff");
-  if (first.position_ned.z() <= scene.state.ground_z_ned - kLeastClimb_m) return accept();
+  if (first.position_ned.z() <= scene.state.guidance.ground_z_ned - kLeastClimb_m) return accept();
   return refuse("item 1: takeoff to z = %.3f m, must be above the ground at %.3f m (z points down)",
-                first.position_ned.z(), scene.state.ground_z_ned);
+                first.position_ned.z(), scene.state.guidance.ground_z_ned);
 }
 
 Outcome check_skip(const Scene& scene) {
   const Outcome named = check_mission_named(scene);
   if (!named.accepted) return named;
-  const MissionProgress& there = scene.state.mission;
+  const MissionProgress& there = scene.state.guidance.mission;
   if (there.item_index + 1 < there.item_count) return accept();
   return refuse("item %d is the mission's last: there is none to go on with", there.item_count);
 }
@@ -149,8 +149,8 @@ Outcome check_end_of_stream(const Scene& scene) {
     last.velocity_ned = setpoint.velocity_ned;
     last.position_ned = setpoint.position_ned + timeout_s * setpoint.velocity_ned;
   } else {
-    const Reference from = scene.state.path.at(scene.state.now_ns);
-    last = after_blend(blend(limits, from, setpoint, stream_period_s(scene)), timeout_s);
+    const Reference from = scene.state.guidance.path.at(scene.state.now_ns);
+    last = after_blend(blend(limits, from, setpoint, stream_period_s(scene.guidance())), timeout_s);
     // One that was stopped before the fence is not to creep on towards it, a little from rest each time.
     Reference in_full_motion;
     in_full_motion.velocity_ned =
@@ -205,7 +205,8 @@ Outcome check_direct_setpoint(const Scene& scene) {
     const Outcome attitude = check_attitude(setpoint, limits);
     if (!attitude.accepted) return attitude;
   }
-  return leads_out(scene) ? refuse("setpoint: the vehicle cannot come to rest inside the fence") : accept();
+  return leads_out(scene.guidance()) ? refuse("setpoint: the vehicle cannot come to rest inside the fence")
+                                     : accept();
 }
 
 Outcome check_setpoint(const Scene& scene) {
@@ -238,19 +239,21 @@ namespace when {
 
 const Selector kAlways{"", [](const Scene&) { return true; }};
 const Selector kSpoolingUp{"on the ground",
-                           [](const Scene& scene) { return scene.state.phase == Phase::kSpoolUp; }};
+                           [](const Scene& scene) { return scene.state.guidance.phase == Phase::kSpoolUp; }};
 const Selector kLiftedOff{"lifted off",
-                          [](const Scene& scene) { return scene.state.phase != Phase::kSpoolUp; }};
-const Selector kOnLandingItem{"at its landing", on_landing_item};
+                          [](const Scene& scene) { return scene.state.guidance.phase != Phase::kSpoolUp; }};
+const Selector kOnLandingItem{"at its landing",
+                              [](const Scene& scene) { return on_landing_item(scene.guidance()); }};
 const Selector kPausable{"lifted off, not at its landing", [](const Scene& scene) {
-                           return kLiftedOff.holds(scene) && !on_landing_item(scene);
+                           return kLiftedOff.holds(scene) && !on_landing_item(scene.guidance());
                          }};
 const Selector kPaused{"a mission is paused", [](const Scene& scene) { return scene.paused(); }};
 const Selector kNotPaused{"no mission is paused", [](const Scene& scene) { return !scene.paused(); }};
-const Selector kNoneUnderWay{"no mission is flown or paused",
-                             [](const Scene& scene) { return !is_under_way(scene.state.mission.state); }};
+const Selector kNoneUnderWay{"no mission is flown or paused", [](const Scene& scene) {
+                               return !is_under_way(scene.state.guidance.mission.state);
+                             }};
 const Selector kNoneFlown{"no mission is flown", [](const Scene& scene) {
-                            return scene.state.mission.state != MissionState::kRunning;
+                            return scene.state.guidance.mission.state != MissionState::kRunning;
                           }};
 const Selector kWasLanding{"was landing", [](const Scene& scene) { return scene.state.land_on_return; }};
 const Selector kNotHurrying{"not for that already", [](const Scene& scene) {

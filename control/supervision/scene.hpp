@@ -1,14 +1,11 @@
 // What the rules of supervision look at, and what their actions change.
 #pragma once
 
-#include <cstdint>
-
-#include "swiftlet/control/mission.hpp"
-#include "swiftlet/control/request.hpp"
-#include "swiftlet/control/settings.hpp"
+#include "swiftlet/control/guidance/guidance_context.hpp"
 #include "swiftlet/control/supervision/situation.hpp"
 #include "swiftlet/control/supervision/state.hpp"
-#include "swiftlet/control/trajectory/polynomial.hpp"
+#include "swiftlet/control/types/request.hpp"
+#include "swiftlet/control/types/settings.hpp"
 
 namespace swiftlet::control {
 
@@ -16,13 +13,6 @@ struct SupervisionSettings {
   Limits limits;
   ArmingSettings arming;
   FailsafeSettings failsafe;
-};
-
-// Owned by who asked for it.
-struct FlownPlan {
-  const Mission* mission = nullptr;        // the one that was uploaded, flown or not
-  Limits mission_limits;                   // the settings', as that mission tightens them
-  const Trajectory* trajectory = nullptr;  // the one being flown; null in other modes
 };
 
 struct Scene {
@@ -35,12 +25,11 @@ struct Scene {
   const Setpoint* setpoint = nullptr;
 
   const Estimate& estimate() const { return *situation.estimate; }
-  bool flying() const { return state.phase != Phase::kGround; }
-  bool paused() const { return state.mission.state == MissionState::kPaused; }
+  bool flying() const { return state.guidance.flying(); }
+  bool paused() const { return state.guidance.mission_paused(); }
+  GuidanceContext guidance() const {
+    return {limits, settings.failsafe, estimate(), plan, state.mode, state.now_ns, state.guidance};
+  }
 };
-
-inline double elapsed_s(std::int64_t from_ns, std::int64_t to_ns) {
-  return static_cast<double>(to_ns - from_ns) * 1e-9;
-}
 
 }  // namespace swiftlet::control

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "swiftlet/control/estimation/estimator.hpp"
-#include "swiftlet/control/reference.hpp"
+#include "swiftlet/control/types/reference.hpp"
 
 namespace swiftlet::control {
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/control/guidance/manoeuvres.hpp"
+#include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/supervision/conditions.hpp"
-#include "swiftlet/control/supervision/phases.hpp"
 
 namespace swiftlet::control {
 
@@ -13,8 +13,8 @@ Supervisor::Supervisor(const SupervisionSettings& settings)
 
 // A mission that is on its way has bounds of its own.
 const Limits& Supervisor::limits() const {
-  return plan_.mission != nullptr && is_under_way(state_.mission.state) ? plan_.mission_limits
-                                                                        : settings_.limits;
+  return plan_.mission != nullptr && is_under_way(state_.guidance.mission.state) ? plan_.mission_limits
+                                                                                 : settings_.limits;
 }
 
 Directive Supervisor::step(const Situation& situation) {
@@ -24,7 +24,7 @@ Directive Supervisor::step(const Situation& situation) {
     forget_silent_ground_links(state_, settings_.failsafe);
     return directive(situation);
   }
-  advance(now);
+  advance(now.guidance());
   const EventSet conditions = observe(now, tip_over_cosine_);
   const Transition* const row = find(now, conditions);
   const bool link_answered =
@@ -43,7 +43,7 @@ void Supervisor::take(const Transition& row, Scene& scene) {
 
 // What becomes of the mission when that mode is entered.
 MissionState Supervisor::mission_state_in(Mode mode, Reason reason) const {
-  const MissionState before = state_.mission.state;
+  const MissionState before = state_.guidance.mission.state;
   if (!is_under_way(before)) return before;
   if (mode == Mode::kMission) return MissionState::kRunning;
   if (reason == Reason::kMissionPaused) return MissionState::kPaused;
@@ -55,48 +55,47 @@ MissionState Supervisor::mission_state_in(Mode mode, Reason reason) const {
 }
 
 void Supervisor::enter(Mode mode, Reason reason) {
-  state_.mission.state = mission_state_in(mode, reason);
+  state_.guidance.mission.state = mission_state_in(mode, reason);
   state_.mode = mode;
   state_.reason = reason;
   state_.mode_since_ns = state_.now_ns;
   state_.contact_since_ns = 0;
   if (rotors_off(mode) || mode == Mode::kArmed) {
-    state_.phase = Phase::kGround;
-    state_.airborne = false;
+    state_.guidance.phase = Phase::kGround;
+    state_.guidance.airborne = false;
     state_.low_battery_since_ns = 0;
     state_.critical_battery_since_ns = 0;
   }
   if (mode != Mode::kTrajectory) plan_.trajectory = nullptr;
 }
 
-Directive Supervisor::directive(const Situation& situation) const {
+Directive Supervisor::directive(const Situation& situation) {
+  const GuidanceContext guidance = scene(situation).guidance();
   Directive directive;
-  const bool flying = state_.phase != Phase::kGround;
-  directive.reference = flying ? state_.path.at(state_.now_ns) : standing_at(*situation.estimate);
-  if (flying) keep_inside(limits(), directive.reference);
+  directive.reference = reference(guidance);
   if (rotors_off(state_.mode)) {
     directive.actuation = Actuation::kOff;
   } else if (state_.mode == Mode::kArmed) {
     directive.actuation = Actuation::kIdle;
   } else if (state_.mode == Mode::kDescent) {
     directive.actuation = Actuation::kLevelDescent;
-    directive.descent_speed = blind_descent_speed(settings_.failsafe, state_, *situation.estimate);
-  } else if (state_.phase == Phase::kSpoolUp) {
+    directive.descent_speed = blind_descent_speed(guidance);
+  } else if (state_.guidance.phase == Phase::kSpoolUp) {
     directive.actuation = Actuation::kSpoolUp;
-    directive.lift_fraction = spool_up_lift(state_);
-  } else if (state_.mode == Mode::kSetpoint && goes_past_position(state_.setpoint_kind)) {
-    const DirectSetpoint& direct = state_.direct;
+    directive.lift_fraction = spool_up_lift(guidance);
+  } else if (state_.mode == Mode::kSetpoint && goes_past_position(state_.guidance.setpoint_kind)) {
+    const DirectSetpoint& direct = state_.guidance.direct;
     const auto& q = direct.q_ned_from_frd;
     const auto& rates = direct.body_rates_frd;
-    directive.actuation =
-        state_.setpoint_kind == SetpointKind::kAttitude ? Actuation::kAttitude : Actuation::kBodyRates;
+    directive.actuation = state_.guidance.setpoint_kind == SetpointKind::kAttitude ? Actuation::kAttitude
+                                                                                   : Actuation::kBodyRates;
     directive.q_ned_from_frd = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
     directive.body_rates_frd = Eigen::Vector3d(rates[0], rates[1], rates[2]);
     directive.thrust = direct.thrust;
-    directive.integrate = state_.airborne;
+    directive.integrate = state_.guidance.airborne;
   } else {
     directive.actuation = Actuation::kFly;
-    directive.integrate = state_.airborne && state_.phase == Phase::kPath;
+    directive.integrate = state_.guidance.airborne && state_.guidance.phase == Phase::kPath;
   }
   return directive;
 }
@@ -143,10 +142,10 @@ void Supervisor::adopt(const SupervisorState& state, const Mission* mission, con
   state_ = state;
   plan_ = FlownPlan();
   adopt_mission(mission);
-  bool known = plan_.mission != nullptr || !is_under_way(state_.mission.state);
+  bool known = plan_.mission != nullptr || !is_under_way(state_.guidance.mission.state);
   if (state_.mode == Mode::kTrajectory) {
-    known = trajectory != nullptr && trajectory->id == state_.trajectory_id &&
-            state_.next_segment <= trajectory->segments.size();
+    known = trajectory != nullptr && trajectory->id == state_.guidance.trajectory_id &&
+            state_.guidance.next_segment <= trajectory->segments.size();
     if (known) plan_.trajectory = trajectory;
   }
   if (known) return;
@@ -160,7 +159,7 @@ void Supervisor::adopt(const SupervisorState& state, const Mission* mission, con
 
 // One that waits to be started and is not known here is forgotten.
 void Supervisor::adopt_mission(const Mission* mission) {
-  MissionProgress& progress = state_.mission;
+  MissionProgress& progress = state_.guidance.mission;
   if (progress.state == MissionState::kNone) return;
   const bool known = mission != nullptr && mission->id == progress.id &&
                      mission->items.size() == static_cast<std::size_t>(progress.item_count);

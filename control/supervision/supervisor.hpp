@@ -4,13 +4,13 @@
 
 #include <cstdint>
 
-#include "swiftlet/control/mode.hpp"
-#include "swiftlet/control/request.hpp"
-#include "swiftlet/control/settings.hpp"
 #include "swiftlet/control/supervision/scene.hpp"
 #include "swiftlet/control/supervision/situation.hpp"
 #include "swiftlet/control/supervision/state.hpp"
 #include "swiftlet/control/supervision/transitions.hpp"
+#include "swiftlet/control/types/mode.hpp"
+#include "swiftlet/control/types/request.hpp"
+#include "swiftlet/control/types/settings.hpp"
 
 namespace swiftlet::control {
 
@@ -27,8 +27,8 @@ class Supervisor {
 
   Mode mode() const { return state_.mode; }
   Reason reason() const { return state_.reason; }
-  const MissionProgress& mission() const { return state_.mission; }
-  bool airborne() const { return state_.airborne; }
+  const MissionProgress& mission() const { return state_.guidance.mission; }
+  bool airborne() const { return state_.guidance.airborne; }
   int ground_links() const;  // ground tools that the flight depends on
 
   const SupervisorState& state() const { return state_; }
@@ -49,7 +49,7 @@ class Supervisor {
   MissionState mission_state_in(Mode mode, Reason reason) const;
   void adopt_mission(const Mission* mission);
   Outcome answer(Event request, Scene& scene);
-  Directive directive(const Situation& situation) const;
+  Directive directive(const Situation& situation);
 
   SupervisionSettings settings_;
   double tip_over_cosine_;

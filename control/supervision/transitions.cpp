@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <iterator>
 
-#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/control/planning/checks.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -145,7 +145,7 @@ const Transition* find(const Scene& scene, Event request) {
 namespace {
 
 Outcome refuse_for_mission(const Scene& scene) {
-  return refuse("mission %llu is %s", static_cast<unsigned long long>(scene.state.mission.id),
+  return refuse("mission %llu is %s", static_cast<unsigned long long>(scene.state.guidance.mission.id),
                 scene.paused() ? "paused: resume or clear it" : "being flown: hold, goto or land ends that");
 }
 
@@ -153,8 +153,9 @@ Outcome refuse_for_mission(const Scene& scene) {
 Outcome refuse_to_change_mission(Event request, const Scene& scene) {
   if (scene.state.mode != Mode::kMission && !scene.paused()) return refuse("no mission is being flown");
   if (scene.paused())
-    return refuse("mission %llu is paused already", static_cast<unsigned long long>(scene.state.mission.id));
-  if (scene.state.phase == Phase::kSpoolUp) return refuse("the mission's take-off has only begun");
+    return refuse("mission %llu is paused already",
+                  static_cast<unsigned long long>(scene.state.guidance.mission.id));
+  if (scene.state.guidance.phase == Phase::kSpoolUp) return refuse("the mission's take-off has only begun");
   if (request == Event::kMissionResume) return refuse("the mission is not paused");
   return refuse("the mission is at its landing; goto or hold ends that");
 }

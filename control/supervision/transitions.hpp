@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <initializer_list>
 
-#include "swiftlet/control/mode.hpp"
 #include "swiftlet/control/supervision/actions.hpp"
 #include "swiftlet/control/supervision/events.hpp"
 #include "swiftlet/control/supervision/guards.hpp"
+#include "swiftlet/control/types/mode.hpp"
 
 namespace swiftlet::control {
 

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string>
 
-#include <swiftlet/services/comms/node.hpp>
+#include <swiftlet/services/dds/node.hpp>
 
 namespace swiftlet::examples {
 

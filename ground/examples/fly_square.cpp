@@ -4,8 +4,8 @@
 //   example-fly-square [VEHICLE] [DOMAIN] [--localhost-only]
 #include <cstdio>
 
+#include <swiftlet/ground/client/vehicle.hpp>
 #include <swiftlet/ground/examples/arguments.hpp>
-#include <swiftlet/ground/vehicle.hpp>
 
 namespace {
 

@@ -9,8 +9,8 @@
 #include <cstdio>
 #include <thread>
 
+#include <swiftlet/ground/client/vehicle.hpp>
 #include <swiftlet/ground/examples/arguments.hpp>
-#include <swiftlet/ground/vehicle.hpp>
 
 namespace {
 

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "swiftlet/plant/simulation/random.hpp"
+#include "swiftlet/math/random.hpp"
 #include "swiftlet/plant/simulation/settings.hpp"
 
 namespace swiftlet::plant {

@@ -6,8 +6,8 @@
 
 #include <Eigen/Core>
 
+#include "swiftlet/math/random.hpp"
 #include "swiftlet/plant/model/samples.hpp"
-#include "swiftlet/plant/simulation/random.hpp"
 #include "swiftlet/plant/simulation/settings.hpp"
 
 namespace swiftlet::plant {

@@ -12,9 +12,9 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "swiftlet/math/random.hpp"
 #include "swiftlet/plant/model/samples.hpp"
 #include "swiftlet/plant/simulation/mocap_schedule.hpp"
-#include "swiftlet/plant/simulation/random.hpp"
 #include "swiftlet/plant/simulation/settings.hpp"
 
 namespace swiftlet::plant {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "swiftlet/plant/simulation/random.hpp"
+#include "swiftlet/math/random.hpp"
 #include "swiftlet/plant/simulation/settings.hpp"
 
 namespace swiftlet::plant {

@@ -18,9 +18,9 @@
 #include "swiftlet/plant/model/vehicle.hpp"
 #include "swiftlet/plant/simulation/air.hpp"
 #include "swiftlet/plant/simulation/dynamics.hpp"
-#include "swiftlet/plant/simulation/faults.hpp"
 #include "swiftlet/plant/simulation/ground_contact.hpp"
 #include "swiftlet/plant/simulation/imu.hpp"
+#include "swiftlet/plant/simulation/links/faults.hpp"
 #include "swiftlet/plant/simulation/settings.hpp"
 #include "swiftlet/plant/simulation/vehicle_state.hpp"
 

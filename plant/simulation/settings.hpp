@@ -11,7 +11,7 @@
 
 #include "swiftlet/plant/model/vehicle.hpp"
 #include "swiftlet/plant/model/violation.hpp"
-#include "swiftlet/plant/simulation/faults.hpp"
+#include "swiftlet/plant/simulation/links/faults.hpp"
 
 namespace swiftlet::plant {
 

@@ -9,14 +9,14 @@
 
 #include <boost/lockfree/spsc_queue.hpp>
 
-#include "swiftlet/services/comms/convert.hpp"
-#include "swiftlet/services/comms/fault_log.hpp"
-#include "swiftlet/services/comms/node.hpp"
 #include "swiftlet/services/control/inner_loop.hpp"
 #include "swiftlet/services/control/lockstep_gate.hpp"
 #include "swiftlet/services/control/request_desk.hpp"
 #include "swiftlet/services/control/succession.hpp"
 #include "swiftlet/services/control/telemetry.hpp"
+#include "swiftlet/services/dds/fault_log.hpp"
+#include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/runtime/clock.hpp"
 #include "swiftlet/services/runtime/realtime.hpp"
 #include "swiftlet/services/runtime/semaphore.hpp"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "swiftlet/services/runtime/telemetry_rate.hpp"
+#include "swiftlet/recording/telemetry_rate.hpp"
 
 namespace swiftlet::services {
 namespace {
@@ -63,8 +63,8 @@ void InnerLoop::follow(std::uint32_t term) {
     controller_.adopt(newest.flight, newest.mission, newest.trajectory);
     accepted_ = newest.accepted;
     const control::SupervisorState& state = newest.flight.supervisor;
-    const bool has_mission =
-        state.mission.state == control::MissionState::kUploaded || control::is_under_way(state.mission.state);
+    const bool has_mission = state.guidance.mission.state == control::MissionState::kUploaded ||
+                             control::is_under_way(state.guidance.mission.state);
     knows_plan_ = (!has_mission || newest.mission != nullptr) &&
                   (state.mode != control::Mode::kTrajectory || newest.trajectory != nullptr);
     looks_since_ns_ = kLooksNot;
@@ -141,7 +141,7 @@ bool InnerLoop::finish(std::int64_t now_ns) {
   snapshot_.reference = controller_.reference();
   snapshot_.setpoint = controller_.attitude_setpoint();
   snapshot_.status = status;
-  snapshot_.trajectory_id = controller_.state().supervisor.trajectory_id;
+  snapshot_.trajectory_id = controller_.state().supervisor.guidance.trajectory_id;
   snapshot_.role = role_;
   snapshot_.saturated = saturated_;
   snapshot_.timing = timing_.figures();

@@ -8,10 +8,10 @@
 #include <boost/lockfree/spsc_queue.hpp>
 
 #include "swiftlet/control/flight_controller.hpp"
-#include "swiftlet/services/comms/convert.hpp"
 #include "swiftlet/services/control/pending_request.hpp"
 #include "swiftlet/services/control/step_timing.hpp"
 #include "swiftlet/services/control/succession.hpp"
+#include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/runtime/mailbox.hpp"
 
 namespace swiftlet::services {

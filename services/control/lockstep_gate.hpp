@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "swiftlet/services/comms/topics.hpp"
+#include "swiftlet/services/messages/topics.hpp"
 
 namespace swiftlet::services {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "swiftlet/control/request.hpp"
+#include "swiftlet/control/types/request.hpp"
 
 namespace swiftlet::services {
 

@@ -2,8 +2,8 @@
 
 #include <tuple>
 
-#include "swiftlet/control/supervision/checks.hpp"
-#include "swiftlet/services/comms/convert.hpp"
+#include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {
@@ -139,9 +139,10 @@ void RequestDesk::follow(Handover handover) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const control::SupervisorState& state = handover.flight.supervisor;
   handover.number = ++handovers_;
-  if (state.mission.state != control::MissionState::kNone)
-    handover.mission = missions_.find(state.mission.id);
-  if (state.mode == control::Mode::kTrajectory) handover.trajectory = trajectories_.find(state.trajectory_id);
+  if (state.guidance.mission.state != control::MissionState::kNone)
+    handover.mission = missions_.find(state.guidance.mission.id);
+  if (state.mode == control::Mode::kTrajectory)
+    handover.trajectory = trajectories_.find(state.guidance.trajectory_id);
   missions_.lend(handover.mission, handover.number);
   trajectories_.lend(handover.trajectory, handover.number);
   for (const comms::RequestKey& request : handover.accepted) {

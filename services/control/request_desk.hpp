@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "swiftlet/control/settings.hpp"
-#include "swiftlet/services/comms/topics.hpp"
+#include "swiftlet/control/types/settings.hpp"
 #include "swiftlet/services/control/inner_loop.hpp"
 #include "swiftlet/services/control/plan_shelf.hpp"
+#include "swiftlet/services/messages/topics.hpp"
 #include "swiftlet/services/runtime/semaphore.hpp"
 
 namespace swiftlet::services {

@@ -4,7 +4,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include "swiftlet/services/comms/convert.hpp"
+#include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
 namespace swiftlet::services {

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "swiftlet/services/comms/node.hpp"
 #include "swiftlet/services/control/inner_loop.hpp"
 #include "swiftlet/services/control/request_desk.hpp"
+#include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::services {
 

@@ -7,17 +7,17 @@
 
 #include <spdlog/spdlog.h>
 
+#include "swiftlet/io/find_config.hpp"
+#include "swiftlet/io/settings/simulation_file.hpp"
+#include "swiftlet/plant/simulation/links/mocap_path.hpp"
 #include "swiftlet/plant/simulation/mocap.hpp"
-#include "swiftlet/plant/simulation/mocap_path.hpp"
-#include "swiftlet/services/comms/convert.hpp"
-#include "swiftlet/services/comms/node.hpp"
-#include "swiftlet/services/comms/node_options.hpp"
-#include "swiftlet/services/comms/peer_log.hpp"
+#include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/dds/node_options.hpp"
+#include "swiftlet/services/dds/peer_log.hpp"
+#include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/runtime/clock.hpp"
-#include "swiftlet/services/runtime/find_config.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/process.hpp"
-#include "swiftlet/services/runtime/simulation_file.hpp"
 #include "swiftlet/services/runtime/stop_signal.hpp"
 
 namespace swiftlet::services {

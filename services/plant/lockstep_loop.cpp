@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "swiftlet/recording/telemetry_rate.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
-#include "swiftlet/services/runtime/telemetry_rate.hpp"
 
 namespace swiftlet::services {
 namespace {

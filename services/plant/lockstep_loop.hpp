@@ -12,11 +12,11 @@
 #include <optional>
 #include <string>
 
-#include "swiftlet/plant/simulation/mocap_path.hpp"
+#include "swiftlet/plant/simulation/links/mocap_path.hpp"
 #include "swiftlet/plant/simulation/mocap_schedule.hpp"
-#include "swiftlet/services/comms/node.hpp"
+#include "swiftlet/recording/flight_trace.hpp"
+#include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/plant/simulated_vehicle.hpp"
-#include "swiftlet/services/runtime/flight_trace.hpp"
 
 namespace swiftlet::services {
 

@@ -14,20 +14,20 @@
 
 #include <spdlog/spdlog.h>
 
-#include "swiftlet/services/comms/node.hpp"
-#include "swiftlet/services/comms/node_options.hpp"
-#include "swiftlet/services/comms/peer_log.hpp"
+#include "swiftlet/io/find_config.hpp"
+#include "swiftlet/io/settings/simulation_file.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/dds/node_options.hpp"
+#include "swiftlet/services/dds/peer_log.hpp"
 #include "swiftlet/services/plant/lockstep_loop.hpp"
 #include "swiftlet/services/plant/realtime_loop.hpp"
 #include "swiftlet/services/plant/simulated_vehicle.hpp"
 #include "swiftlet/services/runtime/clock.hpp"
-#include "swiftlet/services/runtime/find_config.hpp"
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 #include "swiftlet/services/runtime/process.hpp"
-#include "swiftlet/services/runtime/simulation_file.hpp"
 #include "swiftlet/services/runtime/stop_signal.hpp"
-#include "swiftlet/services/runtime/vehicle_file.hpp"
 
 namespace swiftlet::services {
 namespace {

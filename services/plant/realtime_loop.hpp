@@ -6,7 +6,7 @@
 
 #include <boost/lockfree/spsc_queue.hpp>
 
-#include "swiftlet/services/comms/node.hpp"
+#include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/plant/simulated_vehicle.hpp"
 #include "swiftlet/services/runtime/realtime.hpp"
 

@@ -6,10 +6,10 @@
 #include <optional>
 
 #include "swiftlet/plant/simulation/actuator_watchdog.hpp"
-#include "swiftlet/plant/simulation/command_path.hpp"
+#include "swiftlet/plant/simulation/links/command_path.hpp"
 #include "swiftlet/plant/simulation/plant_simulation.hpp"
-#include "swiftlet/services/comms/convert.hpp"
-#include "swiftlet/services/comms/node.hpp"
+#include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/plant/answer_times.hpp"
 #include "swiftlet/services/runtime/mailbox.hpp"
 

@@ -8,7 +8,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include "swiftlet/services/runtime/config_error.hpp"
+#include "swiftlet/io/config_error.hpp"
 
 namespace swiftlet::runtime {
 namespace {

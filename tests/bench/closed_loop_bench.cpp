@@ -4,12 +4,12 @@
 
 #include <benchmark/benchmark.h>
 
-#include "swiftlet/ground/mission_file.hpp"
-#include "swiftlet/ground/simulation/simulated_flight.hpp"
-#include "swiftlet/services/runtime/control_settings_file.hpp"
-#include "swiftlet/services/runtime/find_config.hpp"
-#include "swiftlet/services/runtime/simulation_file.hpp"
-#include "swiftlet/services/runtime/vehicle_file.hpp"
+#include "swiftlet/io/find_config.hpp"
+#include "swiftlet/io/missions/mission_file.hpp"
+#include "swiftlet/io/settings/control_settings_file.hpp"
+#include "swiftlet/io/settings/simulation_file.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/simulation/simulated_flight.hpp"
 
 namespace swiftlet {
 namespace {

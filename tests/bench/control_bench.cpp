@@ -6,13 +6,13 @@
 
 #include "swiftlet/control/allocation/allocator.hpp"
 #include "swiftlet/control/attitude/attitude_controller.hpp"
-#include "swiftlet/control/attitude/euler.hpp"
 #include "swiftlet/control/design/control_design.hpp"
 #include "swiftlet/control/position/position_controller.hpp"
 #include "swiftlet/control/position/thrust_attitude_map.hpp"
-#include "swiftlet/control/trajectory/polynomial.hpp"
-#include "swiftlet/services/runtime/control_settings_file.hpp"
-#include "tests/unit/plant_model/vehicles.hpp"
+#include "swiftlet/control/types/polynomial.hpp"
+#include "swiftlet/io/settings/control_settings_file.hpp"
+#include "swiftlet/math/euler.hpp"
+#include "tests/unit/plant/model/vehicles.hpp"
 
 namespace swiftlet::control {
 namespace {

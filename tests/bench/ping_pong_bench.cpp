@@ -29,9 +29,9 @@
 #include "swiftlet_msgs/msg/ActuatorCommandPubSubTypes.h"
 #include "swiftlet_msgs/msg/ImuPubSubTypes.h"
 
-#include "swiftlet/services/comms/domain_claim.hpp"
-#include "swiftlet/services/comms/participant_qos.hpp"
-#include "swiftlet/services/comms/profiles.hpp"
+#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/participant_qos.hpp"
+#include "swiftlet/services/dds/profiles.hpp"
 #include "swiftlet/services/runtime/latency_histogram.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 #include "swiftlet/services/runtime/process.hpp"

@@ -3,7 +3,7 @@
 
 #include "swiftlet/plant/model/airframe.hpp"
 #include "swiftlet/plant/simulation/plant_simulation.hpp"
-#include "tests/unit/plant_model/vehicles.hpp"
+#include "tests/unit/plant/model/vehicles.hpp"
 
 namespace swiftlet::plant {
 namespace {

@@ -22,9 +22,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "swiftlet/ground/child_process.hpp"
-#include "swiftlet/ground/client.hpp"
-#include "swiftlet/services/comms/domain_claim.hpp"
+#include "swiftlet/ground/client/client.hpp"
+#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/runtime/child_process.hpp"
 #include "swiftlet/services/runtime/process.hpp"
 #include "tests/bench/stall_witness.hpp"
 #include "tests/support/eventually.hpp"

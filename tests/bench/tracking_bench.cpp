@@ -13,15 +13,15 @@
 
 #include <nlohmann/json.hpp>
 
-#include "swiftlet/control/supervision/checks.hpp"
-#include "swiftlet/ground/simulation/closed_loop.hpp"
-#include "swiftlet/services/runtime/control_settings_file.hpp"
-#include "swiftlet/services/runtime/csv.hpp"
-#include "swiftlet/services/runtime/find_config.hpp"
+#include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/io/csv.hpp"
+#include "swiftlet/io/find_config.hpp"
+#include "swiftlet/io/settings/control_settings_file.hpp"
+#include "swiftlet/io/settings/simulation_file.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/runtime/process.hpp"
-#include "swiftlet/services/runtime/simulation_file.hpp"
-#include "swiftlet/services/runtime/text_file.hpp"
-#include "swiftlet/services/runtime/vehicle_file.hpp"
+#include "swiftlet/simulation/closed_loop.hpp"
 
 namespace swiftlet {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <benchmark/benchmark.h>
 
-#include "swiftlet/control/supervision/checks.hpp"
-#include "swiftlet/control/trajectory/feasibility.hpp"
-#include "swiftlet/control/trajectory/waypoint_path.hpp"
-#include "tests/unit/plant_model/vehicles.hpp"
+#include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/control/planning/feasibility.hpp"
+#include "swiftlet/control/planning/waypoint_path.hpp"
+#include "tests/unit/plant/model/vehicles.hpp"
 
 namespace swiftlet::control {
 namespace {

@@ -1,6 +1,6 @@
 // Files of control settings.
-#include "swiftlet/control/settings.hpp"
-#include "swiftlet/services/runtime/control_settings_file.hpp"
+#include "swiftlet/control/types/settings.hpp"
+#include "swiftlet/io/settings/control_settings_file.hpp"
 #include "tests/fuzz/refusal.hpp"
 
 using namespace swiftlet;

@@ -6,11 +6,11 @@
 #include <deque>
 #include <limits>
 
-#include "swiftlet/control/supervision/checks.hpp"
-#include "swiftlet/ground/simulation/closed_loop.hpp"
-#include "swiftlet/services/runtime/control_settings_file.hpp"
-#include "swiftlet/services/runtime/simulation_file.hpp"
-#include "swiftlet/services/runtime/vehicle_file.hpp"
+#include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/io/settings/control_settings_file.hpp"
+#include "swiftlet/io/settings/simulation_file.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/simulation/closed_loop.hpp"
 #include "tests/fuzz/refusal.hpp"
 
 using namespace swiftlet;

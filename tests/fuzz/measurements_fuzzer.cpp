@@ -1,7 +1,7 @@
 // CSV files of a test bench.
 #include <cmath>
 
-#include "swiftlet/services/runtime/measurements.hpp"
+#include "swiftlet/io/measurements.hpp"
 #include "tests/fuzz/refusal.hpp"
 
 using namespace swiftlet;

@@ -5,8 +5,8 @@
 
 #include <spdlog/spdlog.h>
 
-#include "swiftlet/control/supervision/checks.hpp"
-#include "swiftlet/services/comms/tolerant_type.hpp"
+#include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/services/dds/tolerant_type.hpp"
 #include "tests/fuzz/message_types.hpp"
 #include "tests/fuzz/refusal.hpp"
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "tests/fuzz/message_types.hpp"
-#include "tests/unit/comms/messages.hpp"
+#include "tests/unit/services/messages/messages.hpp"
 
 namespace {
 

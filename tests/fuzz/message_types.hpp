@@ -16,7 +16,7 @@
 #include "swiftlet_msgs/msg/SetpointPubSubTypes.h"
 #include "swiftlet_msgs/msg/TrajectoryPubSubTypes.h"
 
-#include "swiftlet/services/comms/convert.hpp"
+#include "swiftlet/services/messages/convert.hpp"
 
 namespace swiftlet::tests {
 

@@ -2,9 +2,9 @@
 // program for each, by SWIFTLET_FUZZED_PARSER.
 #include <cmath>
 
-#include "swiftlet/control/supervision/checks.hpp"
-#include "swiftlet/ground/formats/mission_format.hpp"
-#include "swiftlet/ground/mission_file.hpp"
+#include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/io/missions/mission_file.hpp"
+#include "swiftlet/io/missions/mission_format.hpp"
 #include "tests/fuzz/refusal.hpp"
 
 using namespace swiftlet;

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "swiftlet/services/runtime/config_error.hpp"
+#include "swiftlet/io/config_error.hpp"
 
 namespace swiftlet::tests {
 

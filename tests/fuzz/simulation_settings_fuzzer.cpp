@@ -1,6 +1,6 @@
 // Files of simulation settings.
+#include "swiftlet/io/settings/simulation_file.hpp"
 #include "swiftlet/plant/simulation/settings.hpp"
-#include "swiftlet/services/runtime/simulation_file.hpp"
 #include "tests/fuzz/refusal.hpp"
 
 using namespace swiftlet;

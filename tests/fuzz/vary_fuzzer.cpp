@@ -1,7 +1,7 @@
 // Vary files, and the draws from them.
-#include "swiftlet/ground/vary_file.hpp"
-#include "swiftlet/services/runtime/simulation_file.hpp"
-#include "swiftlet/services/runtime/vehicle_file.hpp"
+#include "swiftlet/io/settings/simulation_file.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/simulation/vary_file.hpp"
 #include "tests/fuzz/refusal.hpp"
 
 using namespace swiftlet;

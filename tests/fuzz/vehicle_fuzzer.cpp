@@ -1,7 +1,7 @@
 // Vehicle files, and what is written of them.
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/io/settings/vehicle_writer.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
-#include "swiftlet/services/runtime/vehicle_file.hpp"
-#include "swiftlet/services/runtime/vehicle_writer.hpp"
 #include "tests/fuzz/refusal.hpp"
 
 using namespace swiftlet;

@@ -13,8 +13,8 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/services/comms/convert.hpp"
-#include "swiftlet/services/runtime/text_file.hpp"
+#include "swiftlet/io/text_file.hpp"
+#include "swiftlet/services/messages/convert.hpp"
 #include "tests/integration/separate_processes.hpp"
 
 namespace swiftlet::tests {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "swiftlet/plant/model/vehicle.hpp"
-#include "swiftlet/services/comms/node.hpp"
+#include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::tests {
 

@@ -11,12 +11,12 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/control/mode.hpp"
-#include "swiftlet/ground/client.hpp"
-#include "swiftlet/services/comms/convert.hpp"
-#include "swiftlet/services/comms/domain_claim.hpp"
-#include "swiftlet/services/comms/node.hpp"
-#include "swiftlet/services/runtime/vehicle_file.hpp"
+#include "swiftlet/control/types/mode.hpp"
+#include "swiftlet/ground/client/client.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/messages/convert.hpp"
 #include "tests/integration/program.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"

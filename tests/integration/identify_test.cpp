@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "swiftlet/services/runtime/vehicle_file.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
 #include "tests/integration/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 

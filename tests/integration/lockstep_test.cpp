@@ -15,8 +15,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "swiftlet/services/comms/domain_claim.hpp"
-#include "swiftlet/services/comms/node.hpp"
+#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/node.hpp"
 #include "tests/integration/program.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"

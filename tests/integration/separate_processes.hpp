@@ -10,9 +10,9 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/control/mode.hpp"
-#include "swiftlet/ground/client.hpp"
-#include "swiftlet/services/comms/domain_claim.hpp"
+#include "swiftlet/control/types/mode.hpp"
+#include "swiftlet/ground/client/client.hpp"
+#include "swiftlet/services/dds/domain_claim.hpp"
 #include "tests/integration/program.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"

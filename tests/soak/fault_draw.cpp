@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "swiftlet/plant/simulation/random.hpp"
+#include "swiftlet/math/random.hpp"
 #include "swiftlet/plant/simulation/streams.hpp"
 
 namespace swiftlet::soak {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "swiftlet/control/settings.hpp"
-#include "swiftlet/plant/simulation/faults.hpp"
+#include "swiftlet/control/types/settings.hpp"
+#include "swiftlet/plant/simulation/links/faults.hpp"
 
 namespace swiftlet::soak {
 

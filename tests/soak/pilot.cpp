@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "swiftlet/control/supervision/checks.hpp"
+#include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/plant/simulation/streams.hpp"
 
 namespace swiftlet::soak {

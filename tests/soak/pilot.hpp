@@ -8,12 +8,12 @@
 #include <functional>
 #include <string>
 
-#include "swiftlet/control/mission.hpp"
-#include "swiftlet/control/request.hpp"
-#include "swiftlet/control/settings.hpp"
-#include "swiftlet/control/trajectory/polynomial.hpp"
-#include "swiftlet/ground/simulation/closed_loop.hpp"
-#include "swiftlet/plant/simulation/random.hpp"
+#include "swiftlet/control/types/mission.hpp"
+#include "swiftlet/control/types/polynomial.hpp"
+#include "swiftlet/control/types/request.hpp"
+#include "swiftlet/control/types/settings.hpp"
+#include "swiftlet/math/random.hpp"
+#include "swiftlet/simulation/closed_loop.hpp"
 
 namespace swiftlet::soak {
 

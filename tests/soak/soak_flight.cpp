@@ -5,12 +5,12 @@
 #include <cstdio>
 
 #include "swiftlet/control/attitude/attitude_error.hpp"
-#include "swiftlet/ground/installation.hpp"
-#include "swiftlet/ground/simulation/closed_loop.hpp"
-#include "swiftlet/ground/vary_file.hpp"
-#include "swiftlet/services/runtime/control_settings_file.hpp"
-#include "swiftlet/services/runtime/simulation_file.hpp"
-#include "swiftlet/services/runtime/vehicle_file.hpp"
+#include "swiftlet/ground/command_line/installation.hpp"
+#include "swiftlet/io/settings/control_settings_file.hpp"
+#include "swiftlet/io/settings/simulation_file.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/simulation/closed_loop.hpp"
+#include "swiftlet/simulation/vary_file.hpp"
 #include "tests/soak/fault_draw.hpp"
 
 namespace swiftlet::soak {

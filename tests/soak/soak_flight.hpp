@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "swiftlet/control/mode.hpp"
-#include "swiftlet/control/settings.hpp"
-#include "swiftlet/ground/simulation/variation.hpp"
-#include "swiftlet/plant/simulation/faults.hpp"
+#include "swiftlet/control/types/mode.hpp"
+#include "swiftlet/control/types/settings.hpp"
+#include "swiftlet/plant/simulation/links/faults.hpp"
+#include "swiftlet/simulation/variation.hpp"
 #include "tests/soak/pilot.hpp"
 
 namespace swiftlet::soak {

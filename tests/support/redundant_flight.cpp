@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "swiftlet/control/settings.hpp"
-#include "swiftlet/control/trajectory/polynomial.hpp"
+#include "swiftlet/control/types/polynomial.hpp"
+#include "swiftlet/control/types/settings.hpp"
 #include "tests/support/eventually.hpp"
 
 namespace swiftlet::tests {

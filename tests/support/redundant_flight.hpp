@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "swiftlet/ground/client.hpp"
-#include "swiftlet/services/comms/domain_claim.hpp"
-#include "swiftlet/services/comms/node.hpp"
+#include "swiftlet/ground/client/client.hpp"
+#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/node.hpp"
 #include "tests/integration/program.hpp"
 
 namespace swiftlet::tests {

@@ -4,9 +4,9 @@
 #include <string>
 
 #include <swiftlet/control/design/control_design.hpp>
+#include <swiftlet/io/settings/control_settings_file.hpp>
+#include <swiftlet/io/settings/vehicle_file.hpp>
 #include <swiftlet/plant/simulation/dynamics.hpp>
-#include <swiftlet/services/runtime/control_settings_file.hpp>
-#include <swiftlet/services/runtime/vehicle_file.hpp>
 
 int main(int argc, char** argv) {
   using namespace swiftlet;

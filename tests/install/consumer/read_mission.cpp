@@ -2,9 +2,9 @@
 #include <cstdio>
 #include <string>
 
-#include <swiftlet/control/settings.hpp>
-#include <swiftlet/ground/mission_file.hpp>
-#include <swiftlet/services/comms/node.hpp>
+#include <swiftlet/control/types/settings.hpp>
+#include <swiftlet/io/missions/mission_file.hpp>
+#include <swiftlet/services/dds/node.hpp>
 
 int main(int argc, char** argv) {
   using namespace swiftlet;

@@ -8,11 +8,11 @@
 
 #include "swiftlet/control/allocation/allocator.hpp"
 #include "swiftlet/control/attitude/attitude_controller.hpp"
+#include "swiftlet/io/find_config.hpp"
+#include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/plant/model/airframe.hpp"
 #include "swiftlet/plant/simulation/plant_simulation.hpp"
-#include "swiftlet/services/runtime/control_settings_file.hpp"
-#include "swiftlet/services/runtime/find_config.hpp"
-#include "tests/unit/plant_model/vehicles.hpp"
+#include "tests/unit/plant/model/vehicles.hpp"
 
 namespace swiftlet::control {
 namespace {

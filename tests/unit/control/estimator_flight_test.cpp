@@ -6,10 +6,10 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/control/flight_controller.hpp"
-#include "swiftlet/ground/simulation/closed_loop.hpp"
-#include "swiftlet/services/runtime/control_settings_file.hpp"
-#include "swiftlet/services/runtime/simulation_file.hpp"
-#include "swiftlet/services/runtime/vehicle_file.hpp"
+#include "swiftlet/io/settings/control_settings_file.hpp"
+#include "swiftlet/io/settings/simulation_file.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/simulation/closed_loop.hpp"
 
 namespace swiftlet::control {
 namespace {

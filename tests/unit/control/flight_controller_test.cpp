@@ -7,12 +7,12 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/control/supervision/checks.hpp"
-#include "swiftlet/ground/flight_window.hpp"
-#include "swiftlet/ground/simulation/simulated_flight.hpp"
-#include "swiftlet/ground/tracking.hpp"
-#include "swiftlet/services/runtime/control_settings_file.hpp"
-#include "swiftlet/services/runtime/vehicle_file.hpp"
+#include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/io/settings/control_settings_file.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/recording/flight_window.hpp"
+#include "swiftlet/recording/tracking.hpp"
+#include "swiftlet/simulation/simulated_flight.hpp"
 #include "tests/support/malloc_guard.hpp"
 
 namespace swiftlet::control {

@@ -1,7 +1,7 @@
 // A flight to be brought to some place of the state machine, for the tests of its table.
 #pragma once
 
-#include "tests/unit/control/supervised_flight.hpp"
+#include "tests/unit/control/supervision/supervised_flight.hpp"
 
 namespace swiftlet::control {
 

@@ -5,10 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/control/attitude/attitude_error.hpp"
-#include "swiftlet/control/attitude/euler.hpp"
-#include "swiftlet/ground/simulation/closed_loop.hpp"
-#include "swiftlet/services/runtime/control_settings_file.hpp"
-#include "swiftlet/services/runtime/vehicle_file.hpp"
+#include "swiftlet/io/settings/control_settings_file.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/math/euler.hpp"
+#include "swiftlet/simulation/closed_loop.hpp"
 #include "tests/support/malloc_guard.hpp"
 
 namespace swiftlet::control {

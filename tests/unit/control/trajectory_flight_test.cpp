@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/control/supervision/checks.hpp"
-#include "swiftlet/control/trajectory/spline.hpp"
-#include "tests/unit/control/supervised_flight.hpp"
+#include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/control/planning/spline.hpp"
+#include "tests/unit/control/supervision/supervised_flight.hpp"
 
 namespace swiftlet::control {
 namespace {

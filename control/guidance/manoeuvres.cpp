@@ -1,0 +1,402 @@
+#include "swiftlet/control/guidance/manoeuvres.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "swiftlet/control/guidance/setpoint_stream.hpp"
+#include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/control/planning/waypoint_path.hpp"
+
+namespace swiftlet::control {
+namespace {
+
+constexpr double kSpoolUp_s = 0.8;
+constexpr double kSpoolUpLift = 0.95;    // of the weight, at the end of the spool-up
+constexpr double kFlareHeight_m = 0.08;  // the landing's planned path ends here, then it sinks
+constexpr double kSinkSpeed = 0.15;      // m/s
+constexpr double kSink_s = 60.0;         // at most
+constexpr double kBlindDepth_m = 0.1;    // below the ground, by dead reckoning
+constexpr double kMinMove_s = 0.5;
+constexpr int kJoinAttempts = 16;  // to join a trajectory from the motion as it is, each with more time
+constexpr double kJoinStretch = 1.25;
+
+std::int64_t nanoseconds(double s) { return static_cast<std::int64_t>(std::llround(s * 1e9)); }
+
+double yaw_of(const Eigen::Quaterniond& q) {
+  return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
+}
+
+// The yaw that is `to` plus whole turns, nearest to `from`.
+double nearest_turn(double to, double from) { return from + std::remainder(to - from, 2.0 * M_PI); }
+
+// How the reference comes to rest inside the fence, being `from` by then. One that follows no path was put
+// where the vehicle is.
+Stop stop_inside(const GuidanceContext& context, const Reference& from) {
+  const Limits& limits = context.limits;
+  Stop stop = context.state.path.moving ? reference_stop(limits, from) : vehicle_stop(limits, from);
+  stop.place_ned = stop.place_ned.cwiseMax(limits.fence_min_ned).cwiseMin(limits.fence_max_ned);
+  return stop;
+}
+
+bool leaves_fence(const Limits& limits, const PolynomialSegment& segment) {
+  constexpr int kLooks = 24;
+  for (int i = 1; i < kLooks; ++i) {
+    Reference at = evaluate(segment, segment.duration_s * i / kLooks);
+    const Eigen::Vector3d position_ned = at.position_ned;
+    keep_inside(limits, at);
+    if (at.position_ned != position_ned) return true;
+  }
+  return false;
+}
+
+// A quintic that takes long swings out far with the speed that it begins with. Where that would leave the
+// fence, the reference sheds as much of its speed at once as it must; from rest the way is straight.
+PolynomialSegment join_inside(const Limits& limits, Reference from, const Eigen::Vector3d& to_ned,
+                              double to_yaw, double duration_s) {
+  constexpr int kParts = 4;
+  const Reference as_it_is = from;
+  for (int kept = kParts;; --kept) {
+    const double part = static_cast<double>(kept) / kParts;
+    from.velocity_ned = part * as_it_is.velocity_ned;
+    from.acceleration_ned = part * as_it_is.acceleration_ned;
+    const PolynomialSegment segment = join_to_rest(from, to_ned, to_yaw, duration_s);
+    const bool straight = from.velocity_ned.isZero(0.0) && from.acceleration_ned.isZero(0.0);
+    if (straight || !leaves_fence(limits, segment)) return segment;
+  }
+}
+
+void climb(const GuidanceContext& context) {
+  GuidanceState& state = context.state;
+  state.phase = Phase::kPath;
+  Eigen::Vector3d top = state.path.at(context.now_ns).position_ned;
+  top.z() = state.climb_to_z_ned;
+  start_move(context, top, true, 0.0, state.climb_speed, context.now_ns);
+}
+
+// The planned part of a landing is over: sink until the ground is felt.
+void sink(const GuidanceContext& context) {
+  GuidanceState& state = context.state;
+  state.phase = Phase::kSink;
+  const Reference end = state.path.at(context.now_ns);
+  PolynomialSegment down;
+  down.duration_s = kSink_s;
+  down.x = {end.position_ned.x()};
+  down.y = {end.position_ned.y()};
+  down.z = {end.position_ned.z(), kSinkSpeed};
+  down.yaw = {end.yaw_rad};
+  state.path.follow(down, context.now_ns);
+}
+
+double clock_change_s(const Limits& limits, double speed) {
+  return clock_change_duration(speed, limits.max_reference_acceleration, limits.max_reference_jerk,
+                               kMinMove_s);
+}
+
+const MissionItem& item_of(const GuidanceContext& context) {
+  return context.plan.mission->items[static_cast<std::size_t>(context.state.mission.item_index)];
+}
+
+// One segment after another, each from where the last one ended in time. keep_yaw: theirs is not flown.
+void advance_segments(const GuidanceContext& context, const PolynomialSegment* segments, std::size_t count,
+                      bool keep_yaw) {
+  GuidanceState& state = context.state;
+  while (state.next_segment < count && state.path.finished(context.now_ns)) {
+    PolynomialSegment segment = segments[state.next_segment++];
+    if (keep_yaw) segment.yaw = {state.path.at(context.now_ns).yaw_rad};
+    state.path.follow_on(segment);
+  }
+}
+
+// The reference rests at the item's end. So must the vehicle, if the item asks for that.
+bool arrived(const GuidanceContext& context) {
+  const GuidanceState& state = context.state;
+  const MissionItem& item = item_of(context);
+  if (!state.path.finished(context.now_ns)) return false;
+  if (item.acceptance_radius_m <= 0.0) return true;
+  const Eigen::Vector3d end = state.path.at(context.now_ns).position_ned;
+  return (context.estimate.position_ned - end).norm() <= item.acceptance_radius_m;
+}
+
+// The segments of a trajectory, one after another; any other item's path is all there is. Once it has
+// arrived, when the item ends.
+void advance_way(const GuidanceContext& context) {
+  GuidanceState& state = context.state;
+  const MissionItem& item = item_of(context);
+  if (item.kind == MissionItemKind::kTrajectory) {
+    advance_segments(context, context.plan.mission->segments.data() + item.first_segment, item.segment_count,
+                     item.yaw_free);
+  }
+  if (state.item_end_ns != 0 || !arrived(context)) return;
+  const bool awaited = item.acceptance_radius_m > 0.0;
+  state.item_end_ns =
+      (awaited ? state.path.path_ns(context.now_ns) : state.path.end_ns) + nanoseconds(item.hold_s);
+}
+
+// Back where the mission was left: its way goes on from there, from rest.
+void take_way_up_again(const GuidanceContext& context) {
+  GuidanceState& state = context.state;
+  state.path.follow(state.left.segment, context.now_ns);
+  state.path.start_ns = state.left.start_ns;
+  state.path.end_ns = state.left.end_ns;
+  state.path.clock = PathClock::standing_at(state.left.at_ns, context.now_ns);
+  state.detour = Detour::kNone;
+  turn_clock(context, true);
+}
+
+// Nothing but the way itself goes on while the clock of the path changes its pace.
+void advance_mission(const GuidanceContext& context) {
+  GuidanceState& state = context.state;
+  const bool its_way = state.detour == Detour::kNone;
+  if (state.path.clock.is_changing(context.now_ns)) {
+    if (its_way) advance_way(context);
+    return;
+  }
+  if (!state.path.clock.is_vehicle_time()) {
+    const std::int64_t behind_ns = state.path.take_vehicle_time(context.now_ns);
+    if (its_way && state.item_end_ns != 0)
+      state.item_end_ns = std::max(state.item_end_ns + behind_ns, context.now_ns);
+  }
+  if (!state.path.finished(context.now_ns)) return;
+  if (state.detour == Detour::kReturning) return take_way_up_again(context);
+  if (item_of(context).kind == MissionItemKind::kLand) return sink(context);
+  advance_way(context);
+  if (state.item_end_ns == 0 || !state.path.finished(context.now_ns)) return;
+  if (context.now_ns < state.item_end_ns || state.mission.item_index + 1 >= state.mission.item_count) return;
+  ++state.mission.item_index;
+  start_item(context, state.item_end_ns);
+}
+
+void advance_trajectory(const GuidanceContext& context) {
+  const auto& segments = context.plan.trajectory->segments;
+  advance_segments(context, segments.data(), segments.size(), false);
+}
+
+// The greatest speed on the way that is passed before a change of the clock is over, as bounds of its
+// segments show.
+double speed_on_way(const GuidanceContext& context) {
+  const MotionLimits unit{1.0, 1.0, 1.0, 1.0};
+  const GuidanceState& state = context.state;
+  if (!state.path.moving) return 0.0;
+  double speed = limit_use(state.path.segment, unit).speed;
+  const MissionItem& item = item_of(context);
+  if (item.kind != MissionItemKind::kTrajectory || state.detour != Detour::kNone) return speed;
+  double ahead_s = elapsed_s(state.path.path_ns(context.now_ns), state.path.end_ns);
+  for (std::uint32_t next = state.next_segment;
+       next < item.segment_count && ahead_s < clock_change_s(context.limits, speed); ++next) {
+    const PolynomialSegment& segment = context.plan.mission->segments[item.first_segment + next];
+    speed = std::max(speed, limit_use(segment, unit).speed);
+    ahead_s += segment.duration_s;
+  }
+  return speed;
+}
+
+}  // namespace
+
+void keep_inside(const Limits& limits, Reference& reference) {
+  for (int i = 0; i < 3; ++i) {
+    double& at = reference.position_ned[i];
+    const bool beyond = at < limits.fence_min_ned[i] || (i < 2 && at > limits.fence_max_ned[i]);
+    if (!beyond) continue;
+    at = at < limits.fence_min_ned[i] ? limits.fence_min_ned[i] : limits.fence_max_ned[i];
+    for (Eigen::Vector3d* const rate :
+         {&reference.velocity_ned, &reference.acceleration_ned, &reference.jerk_ned, &reference.snap_ned})
+      (*rate)[i] = 0.0;
+  }
+}
+
+Reference standing_at(const Estimate& estimate) {
+  Reference reference;
+  reference.position_ned = estimate.position_ned;
+  reference.yaw_rad = yaw_of(estimate.q_ned_from_frd);
+  return reference;
+}
+
+Stop reference_stop(const Limits& limits, const Reference& from) {
+  return limited_stop(from, limits.max_reference_acceleration, limits.max_reference_jerk, kMinMove_s);
+}
+
+Stop vehicle_stop(const Limits& limits, const Reference& from) {
+  const double duration_s =
+      std::max(kMinMove_s, 2.0 * from.velocity_ned.norm() / limits.max_reference_acceleration);
+  return {duration_s, from.position_ned + 0.5 * duration_s * from.velocity_ned};
+}
+
+void start_takeoff(const GuidanceContext& context, double to_z_ned, double speed) {
+  GuidanceState& state = context.state;
+  state.phase = Phase::kSpoolUp;
+  state.phase_since_ns = context.now_ns;
+  state.climb_to_z_ned = to_z_ned;
+  state.climb_speed = speed;
+  state.path.rest(standing_at(context.estimate));
+}
+
+void start_move(const GuidanceContext& context, const Eigen::Vector3d& to_ned, bool yaw_free, double yaw_rad,
+                double speed, std::int64_t start_ns) {
+  const Limits& limits = context.limits;
+  const Reference from = context.state.path.at(start_ns);
+  const double to_yaw = yaw_free ? from.yaw_rad : nearest_turn(yaw_rad, from.yaw_rad);
+  const double distance = (to_ned - from.position_ned).norm();
+  double duration = minimum_jerk_duration(distance, speed, limits.max_reference_acceleration,
+                                          limits.max_reference_jerk, kMinMove_s);
+  duration = std::max(duration, 15.0 / 8.0 * std::abs(to_yaw - from.yaw_rad) / limits.max_yaw_rate);
+  duration = std::max(duration, stop_inside(context, from).duration_s);
+  context.state.phase = Phase::kPath;
+  context.state.path.follow(join_inside(limits, from, to_ned, to_yaw, duration), start_ns);
+}
+
+void start_join(const GuidanceContext& context, const PolynomialSegment& first, bool keep_yaw, double speed,
+                std::int64_t start_ns) {
+  const Limits& limits = context.limits;
+  GuidanceState& state = context.state;
+  const Reference from = state.path.at(start_ns);
+  Reference to = evaluate(first, 0.0);
+  to.yaw_rad = keep_yaw ? from.yaw_rad : nearest_turn(to.yaw_rad, from.yaw_rad);
+  if (keep_yaw) to.yaw_rate = to.yaw_acceleration = 0.0;
+  state.phase = Phase::kPath;
+  state.next_segment = 0;
+  // From rest the way is straight, in the time that it takes. From motion it swings out the further the
+  // longer it takes, and accelerates the more the shorter: the first that is gentle, or else the gentlest.
+  const bool moves = !from.velocity_ned.isZero(0.0) || !from.acceleration_ned.isZero(0.0);
+  const double gentle = (1.0 + 1e-5) * std::max({limits.max_reference_acceleration,
+                                                 from.acceleration_ned.norm(), to.acceleration_ned.norm()});
+  const MotionLimits unit{1.0, 1.0, 1.0, 1.0};
+  PolynomialSegment gentlest;
+  double least = std::numeric_limits<double>::infinity();  // m/s^2, that it peaks at
+  double duration = kMinMove_s;
+  if (!moves) {
+    duration = septic_duration((to.position_ned - from.position_ned).norm(), speed,
+                               limits.max_reference_acceleration, limits.max_reference_jerk, kMinMove_s);
+  }
+  duration = std::max(duration, 35.0 / 16.0 * std::abs(to.yaw_rad - from.yaw_rad) / limits.max_yaw_rate);
+  for (int attempt = 0; attempt < kJoinAttempts && least > gentle; ++attempt, duration *= kJoinStretch) {
+    const PolynomialSegment way = join(from, to, duration);
+    if (!check_motion("join", way, limits).accepted) continue;
+    const double acceleration = limit_use(way, unit).acceleration;
+    if (acceleration >= least) continue;
+    least = acceleration;
+    gentlest = way;
+  }
+  if (std::isfinite(least)) return state.path.follow(gentlest, start_ns);
+  start_move(context, to.position_ned, false, to.yaw_rad, speed, start_ns);
+}
+
+void start_stop(const GuidanceContext& context) {
+  GuidanceState& state = context.state;
+  const Reference from = state.path.at(context.now_ns);
+  const Stop stop = stop_inside(context, from);
+  state.phase = Phase::kPath;
+  state.path.follow(join_to_rest(from, stop.place_ned, from.yaw_rad, stop.duration_s), context.now_ns);
+}
+
+void start_landing(const GuidanceContext& context, double speed, std::int64_t start_ns) {
+  const Reference from = context.state.path.at(start_ns);
+  Eigen::Vector3d above_ground = stop_inside(context, from).place_ned;
+  above_ground.z() = std::max(context.state.ground_z_ned - kFlareHeight_m, from.position_ned.z());
+  start_move(context, above_ground, true, 0.0, speed, start_ns);
+}
+
+void turn_clock(const GuidanceContext& context, bool to_running) {
+  GuidanceState& state = context.state;
+  state.path.clock.turn(to_running, clock_change_s(context.limits, speed_on_way(context)), context.now_ns);
+}
+
+void leave_way(const GuidanceContext& context) {
+  GuidanceState& state = context.state;
+  if (state.detour == Detour::kNone) {
+    const ReferencePath& way = state.path;
+    const std::int64_t at_ns = way.path_ns(context.now_ns);
+    state.left = {way.segment, way.moving ? way.start_ns : at_ns, way.moving ? way.end_ns : at_ns, at_ns};
+  }
+  state.detour = Detour::kAway;
+}
+
+void return_to_way(const GuidanceContext& context) {
+  GuidanceState& state = context.state;
+  if (state.detour != Detour::kAway) return turn_clock(context, true);
+  const LeftPath& left = state.left;
+  const Reference place = evaluate(left.segment, elapsed_s(left.start_ns, left.at_ns));
+  start_move(context, place.position_ned, false, place.yaw_rad, item_of(context).speed, context.now_ns);
+  state.detour = Detour::kReturning;
+}
+
+void start_item(const GuidanceContext& context, std::int64_t start_ns) {
+  const MissionItem& item = item_of(context);
+  context.state.item_end_ns = 0;
+  context.state.detour = Detour::kNone;
+  switch (item.kind) {
+    case MissionItemKind::kTakeoff: {
+      if (!context.state.flying()) return start_takeoff(context, item.position_ned.z(), item.speed);
+      Eigen::Vector3d up = context.state.path.at(start_ns).position_ned;
+      up.z() = item.position_ned.z();
+      return start_move(context, up, true, 0.0, item.speed, start_ns);
+    }
+    case MissionItemKind::kWaypoint:
+      return start_move(context, item.position_ned, item.yaw_free, item.yaw_rad, item.speed, start_ns);
+    case MissionItemKind::kLand:
+      return start_landing(context, std::min(item.speed, context.failsafe.descent_speed), start_ns);
+    case MissionItemKind::kTrajectory:
+      return start_join(context, context.plan.mission->segments[item.first_segment], item.yaw_free,
+                        item.speed, start_ns);
+    case MissionItemKind::kWait:
+      context.state.phase = Phase::kPath;
+      context.state.path.rest(context.state.path.at(start_ns));
+      context.state.path.start_ns = context.state.path.end_ns = start_ns;
+      return;
+  }
+}
+
+void advance(const GuidanceContext& context) {
+  GuidanceState& state = context.state;
+  if (!context.state.flying() || context.mode == Mode::kDescent) return;
+  if (context.estimate.position_ned.z() < state.ground_z_ned - kAirborneHeight_m) state.airborne = true;
+  if (context.mode == Mode::kSetpoint && goes_past_position(state.setpoint_kind))
+    return follow_estimate(context);
+  if (state.phase == Phase::kSpoolUp && elapsed_s(state.phase_since_ns, context.now_ns) >= kSpoolUp_s)
+    climb(context);
+  if (state.phase != Phase::kPath) return;
+  if (context.mode == Mode::kMission) return advance_mission(context);
+  if (context.state.mission_paused() && state.detour == Detour::kNone) return advance_way(context);
+  if (!state.path.finished(context.now_ns)) return;
+  if (context.mode == Mode::kTrajectory) advance_trajectory(context);
+  if (context.mode == Mode::kSetpoint) start_coast(context);
+  if (context.mode == Mode::kLanding) sink(context);
+}
+
+Reference reference(const GuidanceContext& context) {
+  if (!context.state.flying()) return standing_at(context.estimate);
+  Reference now = context.state.path.at(context.now_ns);
+  keep_inside(context.limits, now);
+  return now;
+}
+
+bool plan_finished(const GuidanceContext& context) {
+  const GuidanceState& state = context.state;
+  if (state.phase != Phase::kPath || !state.path.finished(context.now_ns)) return false;
+  switch (context.mode) {
+    case Mode::kTakingOff:
+      return true;
+    case Mode::kMission:
+      return state.mission.item_index + 1 == state.mission.item_count && state.item_end_ns != 0 &&
+             context.now_ns >= state.item_end_ns && !state.path.clock.is_changing(context.now_ns);
+    case Mode::kTrajectory:
+      return state.next_segment == context.plan.trajectory->segments.size();
+    default:
+      return false;
+  }
+}
+
+bool on_landing_item(const GuidanceContext& context) {
+  return context.mode == Mode::kMission && item_of(context).kind == MissionItemKind::kLand;
+}
+
+double blind_descent_speed(const GuidanceContext& context) {
+  const bool below_ground = context.estimate.position_ned.z() > context.state.ground_z_ned + kBlindDepth_m;
+  return (below_ground ? 2.0 : 1.0) * context.failsafe.descent_speed;
+}
+
+double spool_up_lift(const GuidanceContext& context) {
+  return kSpoolUpLift * std::min(1.0, elapsed_s(context.state.phase_since_ns, context.now_ns) / kSpoolUp_s);
+}
+
+}  // namespace swiftlet::control

@@ -1,0 +1,190 @@
+#include "swiftlet/control/guidance/setpoint_stream.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "swiftlet/control/guidance/manoeuvres.hpp"
+#include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/control/planning/waypoint_path.hpp"
+
+namespace swiftlet::control {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kLeastPeriod_s = 0.1;  // a stream that comes faster is blended into over this time
+constexpr int kAttempts = 16;           // to blend, each with more time
+constexpr double kStretch = 1.25;
+constexpr double kRounding = 1e-5;
+constexpr double kReaction_s = 0.15;         // to turn the thrust against the motion
+constexpr double kPastTimeout_s = 0.1;       // coasting reaches beyond the stream's time-out, which ends it
+constexpr double kQuinticPeak = 15.0 / 8.0;  // of the rate of a quintic from rest to rest, of its mean
+
+// Where a setpoint is duration_s after it came, if it goes on by itself: at its acceleration until the next
+// is due, then at constant velocity.
+Reference carried_on(const Setpoint& to, double duration_s, double period_s) {
+  const double accelerated_s = std::min(duration_s, period_s);
+  const double rest_s = duration_s - accelerated_s;
+  Reference end;
+  end.velocity_ned = to.velocity_ned + accelerated_s * to.acceleration_ned;
+  end.position_ned = to.position_ned + accelerated_s * to.velocity_ned +
+                     0.5 * accelerated_s * accelerated_s * to.acceleration_ned + rest_s * end.velocity_ned;
+  if (rest_s <= 0.0) end.acceleration_ned = to.acceleration_ned;
+  return end;
+}
+
+// The yaw that the reference has then, and its rate.
+void turn(const Limits& limits, const Reference& from, const Setpoint& to, double duration_s,
+          Reference& end) {
+  const double with_rate = to.yaw_rate * duration_s;
+  const double missing = to.yaw_free ? 0.0 : std::remainder(to.yaw_rad - from.yaw_rad, 2.0 * M_PI);
+  const double reach = std::max(limits.max_yaw_rate - std::abs(to.yaw_rate), 0.0) * duration_s / kQuinticPeak;
+  end.yaw_rad = from.yaw_rad + with_rate + std::clamp(missing, -reach, reach);
+  end.yaw_rate = to.yaw_rate;
+}
+
+// a + b t + c t^2 + .. of an axis, by its derivative's: the integral that begins at `start`.
+Polynomial integral(double start, const Polynomial& of) {
+  Polynomial result{};
+  result[0] = start;
+  for (std::size_t i = 0; i + 1 < result.size(); ++i) result[i + 1] = of[i] / static_cast<double>(i + 1);
+  return result;
+}
+
+// The quintic that begins with a value and two derivatives and, t later, has another value and rate and
+// nothing more. Taken anew again and again, as by a fast stream, each from where the last has come, it
+// settles: the error then obeys s^3 + 9/t s^2 + 36/t^2 s + 60/t^3.
+Polynomial quintic(double value, double rate, double change, double to_value, double to_rate, double t) {
+  const double dv = to_value - (value + rate * t + 0.5 * change * t * t);
+  const double dr = (to_rate - (rate + change * t)) * t;
+  const double dc = -change * t * t;
+  const double t3 = t * t * t;
+  return {value,
+          rate,
+          0.5 * change,
+          (10.0 * dv - 4.0 * dr + 0.5 * dc) / t3,
+          (-15.0 * dv + 7.0 * dr - dc) / (t3 * t),
+          (6.0 * dv - 3.0 * dr + 0.5 * dc) / (t3 * t * t)};
+}
+
+// The acceleration that goes over into `acceleration`, its derivative into 0: a cubic.
+Polynomial acceleration_blend(double a, double j, double acceleration, double t) {
+  const double da = acceleration - (a + j * t);
+  const double dj = -j * t;
+  return {a, j, (3.0 * da - dj) / (t * t), (-2.0 * da + dj) / (t * t * t)};
+}
+
+PolynomialSegment blend_in(const Limits& limits, const Reference& from, const Setpoint& to, double duration_s,
+                           double period_s) {
+  Reference end = carried_on(to, duration_s, period_s);
+  turn(limits, from, to, duration_s, end);
+  PolynomialSegment segment = join(from, end, duration_s);
+  segment.yaw =
+      quintic(from.yaw_rad, from.yaw_rate, from.yaw_acceleration, end.yaw_rad, end.yaw_rate, duration_s);
+  if (to.kind == SetpointKind::kPosition) return segment;
+  const std::array<Polynomial*, 3> axes = {&segment.x, &segment.y, &segment.z};
+  for (int i = 0; i < 3; ++i) {
+    const double p = from.position_ned[i];
+    const double v = from.velocity_ned[i];
+    const double a = from.acceleration_ned[i];
+    const double j = from.jerk_ned[i];
+    *axes[static_cast<std::size_t>(i)] =
+        to.kind == SetpointKind::kVelocity
+            ? integral(p, quintic(v, a, j, to.velocity_ned[i], to.acceleration_ned[i], duration_s))
+            : integral(p, integral(v, acceleration_blend(a, j, to.acceleration_ned[i], duration_s)));
+  }
+  return segment;
+}
+
+}  // namespace
+
+PolynomialSegment blend(const Limits& limits, const Reference& from, const Setpoint& to, double period_s) {
+  const MotionLimits unit{1.0, 1.0, 1.0, 1.0};
+  const double acceleration =
+      std::max({limits.max_reference_acceleration, from.acceleration_ned.norm(), to.acceleration_ned.norm()});
+  const double jerk = std::max(limits.max_reference_jerk, from.jerk_ned.norm());
+  PolynomialSegment gentlest;
+  double least = std::numeric_limits<double>::infinity();  // of the limits, that it uses
+  double duration = period_s;
+  for (int attempt = 0; attempt < kAttempts && least > 1.0 + kRounding; ++attempt, duration *= kStretch) {
+    const PolynomialSegment way = blend_in(limits, from, to, duration, period_s);
+    const LimitUse use = limit_use(way, unit);
+    const double most = std::max(use.acceleration / acceleration, use.jerk / jerk);
+    if (most >= least || !check_motion("setpoint", way, limits).accepted) continue;
+    least = most;
+    gentlest = way;
+  }
+  if (std::isfinite(least)) return gentlest;
+  // From outside the fence, or faster than is allowed: to rest, as fast as that may be.
+  const Stop stop = reference_stop(limits, from);
+  const Vector3d inside = stop.place_ned.cwiseMax(limits.fence_min_ned).cwiseMin(limits.fence_max_ned);
+  return join_to_rest(from, inside, from.yaw_rad, stop.duration_s);
+}
+
+Reference after_blend(const PolynomialSegment& blend, double after_s) {
+  const Reference at = evaluate(blend, std::min(after_s, blend.duration_s));
+  const double beyond_s = after_s - blend.duration_s;
+  return beyond_s > 0.0 ? evaluate(coast(at, beyond_s), beyond_s) : at;
+}
+
+PolynomialSegment coast(const Reference& from, double duration_s) {
+  const auto axis = [&](int i) {
+    return Polynomial{from.position_ned[i], from.velocity_ned[i], 0.5 * from.acceleration_ned[i]};
+  };
+  return {duration_s, axis(0), axis(1), axis(2), {from.yaw_rad, from.yaw_rate}};
+}
+
+double stream_period_s(const GuidanceContext& context) {
+  const GuidanceState& state = context.state;
+  if (context.mode != Mode::kSetpoint) return kLeastPeriod_s;
+  const double since_s = elapsed_s(state.setpoint_ns, context.now_ns);
+  return std::clamp(since_s, kLeastPeriod_s, std::max(kLeastPeriod_s, context.failsafe.setpoint_timeout_s));
+}
+
+void start_blend(const GuidanceContext& context, const Setpoint& setpoint) {
+  GuidanceState& state = context.state;
+  const Reference from = state.path.at(context.now_ns);
+  state.phase = Phase::kPath;
+  state.path.follow(blend(context.limits, from, setpoint, stream_period_s(context)), context.now_ns);
+}
+
+void start_coast(const GuidanceContext& context) {
+  GuidanceState& state = context.state;
+  const PolynomialSegment& blended = state.path.segment;
+  state.path.follow(
+      coast(evaluate(blended, blended.duration_s), context.failsafe.setpoint_timeout_s + kPastTimeout_s),
+      state.path.end_ns);
+}
+
+void take_direct(const GuidanceContext& context, const Setpoint& setpoint) {
+  const Eigen::Quaterniond& q = setpoint.q_ned_from_frd;
+  const Vector3d& rates = setpoint.body_rates_frd;
+  context.state.phase = Phase::kPath;
+  context.state.direct = {{q.w(), q.x(), q.y(), q.z()}, {rates.x(), rates.y(), rates.z()}, setpoint.thrust};
+  follow_estimate(context);
+}
+
+void follow_estimate(const GuidanceContext& context) {
+  const Estimate& estimate = context.estimate;
+  Reference here = standing_at(estimate);
+  here.velocity_ned = estimate.velocity_ned;
+  const Vector3d thrust_ned = estimate.q_ned_from_frd * Vector3d(0.0, 0.0, -context.state.direct.thrust);
+  const double limit = context.limits.max_acceleration;
+  here.acceleration_ned = thrust_ned + Vector3d(0.0, 0.0, plant::kGravity);
+  here.acceleration_ned *= limit / std::max(limit, here.acceleration_ned.norm());
+  context.state.path.pin(here);
+}
+
+bool leads_out(const GuidanceContext& context) {
+  const Limits& limits = context.limits;
+  Reference here;
+  here.position_ned = context.estimate.position_ned + kReaction_s * context.estimate.velocity_ned;
+  here.velocity_ned = context.estimate.velocity_ned;
+  const Vector3d rest = vehicle_stop(limits, here).place_ned;
+  return (rest.array() < limits.fence_min_ned.array()).any() ||
+         (rest.array() > limits.fence_max_ned.array()).any();
+}
+
+}  // namespace swiftlet::control

@@ -1,0 +1,137 @@
+#include "swiftlet/control/planning/bernstein.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace swiftlet::control {
+namespace {
+
+constexpr std::size_t kSize = kMaxBernsteinDegree + 1;
+constexpr int kMaxHalvings = 40;
+
+constexpr std::array<std::array<double, kSize>, kSize> pascal() {
+  std::array<std::array<double, kSize>, kSize> rows{};
+  for (std::size_t n = 0; n < kSize; ++n) {
+    rows[n][0] = 1.0;
+    for (std::size_t k = 1; k <= n; ++k) rows[n][k] = rows[n - 1][k - 1] + (k < n ? rows[n - 1][k] : 0.0);
+  }
+  return rows;
+}
+constexpr auto kChoose = pascal();  // kChoose[n][k] = n over k
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+// The same polynomial with one more coefficient.
+Bernstein raised(const Bernstein& a) {
+  Bernstein out;
+  out.degree = a.degree + 1;
+  const double n = out.degree;
+  out.c[0] = a.c[0];
+  for (int i = 1; i < out.degree; ++i)
+    out.c[index(i)] = (i / n) * a.c[index(i - 1)] + (1.0 - i / n) * a.c[index(i)];
+  out.c[index(out.degree)] = a.c[index(a.degree)];
+  return out;
+}
+
+Bernstein sum(Bernstein a, Bernstein b, double factor) {
+  while (a.degree < b.degree) a = raised(a);
+  while (b.degree < a.degree) b = raised(b);
+  for (int i = 0; i <= a.degree; ++i) a.c[index(i)] += factor * b.c[index(i)];
+  return a;
+}
+
+// Leaves the right half in `a`.
+Bernstein split_off_left(Bernstein& a) {
+  Bernstein left;
+  left.degree = a.degree;
+  for (int k = 0; k <= a.degree; ++k) {
+    left.c[index(k)] = a.c[0];
+    for (int i = 0; i < a.degree - k; ++i) a.c[index(i)] = 0.5 * (a.c[index(i)] + a.c[index(i + 1)]);
+  }
+  return left;
+}
+
+void look(double value, double at, Extremum& best) {
+  if (value > best.value) best = {value, at};
+}
+
+void search(Bernstein part, double from, double width, double tolerance, int halvings, Extremum& best) {
+  look(part.c[0], from, best);
+  look(part.c[index(part.degree)], from + width, best);
+  if (halvings == 0 || !(part.greatest() > best.value + tolerance)) return;
+  const Bernstein left = split_off_left(part);
+  const double half = 0.5 * width;
+  if (left.greatest() > part.greatest()) {
+    search(left, from, half, tolerance, halvings - 1, best);
+    search(part, from + half, half, tolerance, halvings - 1, best);
+  } else {
+    search(part, from + half, half, tolerance, halvings - 1, best);
+    search(left, from, half, tolerance, halvings - 1, best);
+  }
+}
+
+}  // namespace
+
+double Bernstein::greatest() const { return *std::max_element(c.begin(), c.begin() + degree + 1); }
+double Bernstein::least() const { return *std::min_element(c.begin(), c.begin() + degree + 1); }
+
+Bernstein bernstein(const Polynomial& polynomial, double duration_s, int derivative) {
+  // Coefficients of the derivative in powers of u.
+  Polynomial a{};
+  const int degree = kPolynomialCoefficients - 1 - derivative;
+  double scale = 1.0;
+  for (int i = 0; i <= degree; ++i) {
+    double factor = scale;
+    for (int j = 1; j <= derivative; ++j) factor *= i + j;
+    a[index(i)] = factor * polynomial[index(i + derivative)];
+    scale *= duration_s;
+  }
+  Bernstein out;
+  out.degree = degree;
+  for (int k = 0; k <= degree; ++k) {
+    for (int i = 0; i <= k; ++i)
+      out.c[index(k)] += kChoose[index(k)][index(i)] / kChoose[index(degree)][index(i)] * a[index(i)];
+  }
+  return out;
+}
+
+Bernstein constant(double value) {
+  Bernstein out;
+  out.c[0] = value;
+  return out;
+}
+
+Bernstein operator+(const Bernstein& a, const Bernstein& b) { return sum(a, b, 1.0); }
+Bernstein operator-(const Bernstein& a, const Bernstein& b) { return sum(a, b, -1.0); }
+
+Bernstein operator*(double factor, const Bernstein& a) {
+  Bernstein out = a;
+  for (int i = 0; i <= out.degree; ++i) out.c[index(i)] *= factor;
+  return out;
+}
+
+Bernstein operator*(const Bernstein& a, const Bernstein& b) {
+  Bernstein out;
+  out.degree = a.degree + b.degree;
+  for (int i = 0; i <= a.degree; ++i) {
+    for (int j = 0; j <= b.degree; ++j) {
+      out.c[index(i + j)] += kChoose[index(a.degree)][index(i)] * kChoose[index(b.degree)][index(j)] *
+                             a.c[index(i)] * b.c[index(j)];
+    }
+  }
+  for (int k = 0; k <= out.degree; ++k) out.c[index(k)] /= kChoose[index(out.degree)][index(k)];
+  return out;
+}
+
+Extremum maximum(const Bernstein& polynomial, double tolerance) {
+  Extremum best{polynomial.c[0], 0.0};
+  search(polynomial, 0.0, 1.0, tolerance, kMaxHalvings, best);
+  return best;
+}
+
+Extremum minimum(const Bernstein& polynomial, double tolerance) {
+  const Extremum of_negative = maximum(-1.0 * polynomial, tolerance);
+  return {-of_negative.value, of_negative.at};
+}
+
+}  // namespace swiftlet::control

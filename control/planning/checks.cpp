@@ -1,0 +1,252 @@
+#include "swiftlet/control/planning/checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+
+#include "swiftlet/control/planning/bernstein.hpp"
+
+namespace swiftlet::control {
+namespace {
+
+constexpr double kLongestSegment_s = 3600.0;
+constexpr double kPlaceTolerance_m = 1e-9;  // what sums of coefficients leave
+constexpr double kPlacePrecision_m = 1e-6;  // to which extrema are sought
+constexpr double kPrecision = 1e-6;         // likewise, of squares, relative to the limit's
+
+bool finite(const Polynomial& p) {
+  return std::all_of(p.begin(), p.end(), [](double c) { return std::isfinite(c); });
+}
+
+struct NamedAxis {
+  char name;
+  int index;
+  const Polynomial& polynomial;
+};
+
+Outcome check_axis(const char* what, const NamedAxis& axis, double duration_s, const Limits& limits) {
+  const double low = limits.fence_min_ned[axis.index];
+  const double high = limits.fence_max_ned[axis.index];
+  const Bernstein way = bernstein(axis.polynomial, duration_s);
+  if (way.least() >= low - kPlaceTolerance_m && way.greatest() <= high + kPlaceTolerance_m) return accept();
+  for (const double reached :
+       {minimum(way, kPlacePrecision_m).value, maximum(way, kPlacePrecision_m).value}) {
+    if (reached >= low - kPlaceTolerance_m && reached <= high + kPlaceTolerance_m) continue;
+    return refuse("%s: %c is %.3f m, outside the fence of %.3f to %.3f m", what, axis.name, reached, low,
+                  high);
+  }
+  return accept();
+}
+
+Outcome check_length(const char* what, const PolynomialSegment& segment, int derivative, double limit,
+                     const char* unit) {
+  const auto axis = [&](const Polynomial& p) { return bernstein(p, segment.duration_s, derivative); };
+  const Bernstein square = squared_length(axis(segment.x), axis(segment.y), axis(segment.z));
+  const double highest = (1.0 + kPrecision) * limit * limit;
+  if (square.greatest() <= highest) return accept();
+  const double reached = maximum(square, kPrecision * limit * limit).value;
+  if (reached <= highest) return accept();
+  return refuse("%s reaches %.2f %s, the limit is %.2f %s", what, std::sqrt(reached), unit, limit, unit);
+}
+
+Outcome check_segments(const char* of, const PolynomialSegment* segments, std::size_t count,
+                       const Limits& limits) {
+  for (std::size_t i = 0; i < count; ++i) {
+    char what[64];
+    std::snprintf(what, sizeof what, "%ssegment %zu", of, i + 1);
+    Outcome outcome = check_segment(what, segments[i], limits);
+    if (!outcome.accepted) return outcome;
+    outcome =
+        i == 0 ? check_start("the trajectory", segments[i]) : check_joint(what, segments[i - 1], segments[i]);
+    if (!outcome.accepted) return outcome;
+  }
+  return accept();
+}
+
+// What only a mission that says so demands of the segments that come ready made.
+Outcome check_own_bounds(const char* item, std::size_t number, const PolynomialSegment& segment,
+                         const MissionBounds& bounds, bool yaw_free) {
+  char what[64];
+  std::snprintf(what, sizeof what, "%s: segment %zu", item, number);
+  if (bounds.max_jerk > 0.0) {
+    const Outcome outcome = check_length(what, segment, 3, bounds.max_jerk, "m/s^3");
+    if (!outcome.accepted) return outcome;
+  }
+  if (bounds.max_yaw_rate <= 0.0 || yaw_free) return accept();
+  const Bernstein rate = bernstein(segment.yaw, segment.duration_s, 1);
+  const double precision = kPrecision * bounds.max_yaw_rate;
+  const double reached = std::max(maximum(rate, precision).value, -minimum(rate, precision).value);
+  if (reached <= bounds.max_yaw_rate + precision) return accept();
+  return refuse("%s reaches %.2f rad/s of yaw, the limit is %.2f rad/s", what, reached, bounds.max_yaw_rate);
+}
+
+Outcome check_item_trajectory(const char* what, const Mission& mission, const MissionItem& item,
+                              const Limits& limits) {
+  const std::size_t there = mission.segments.size();
+  const std::size_t end = std::size_t{item.first_segment} + item.segment_count;
+  if (item.segment_count == 0) return refuse("%s: its trajectory has no segments", what);
+  if (end > there) {
+    return refuse("%s: its trajectory ends with segment %zu, the mission has %zu", what, end, there);
+  }
+  char of[40];
+  std::snprintf(of, sizeof of, "%s: ", what);
+  const PolynomialSegment* const first = mission.segments.data() + item.first_segment;
+  Outcome outcome = check_segments(of, first, item.segment_count, limits);
+  for (std::size_t i = 0; outcome.accepted && i < item.segment_count; ++i)
+    outcome = check_own_bounds(what, i + 1, first[i], mission.bounds, item.yaw_free);
+  return outcome;
+}
+
+}  // namespace
+
+Outcome accept() {
+  Outcome outcome;
+  outcome.accepted = true;
+  return outcome;
+}
+
+Outcome refuse(const char* format, ...) {
+  Outcome outcome;
+  std::va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(outcome.reason, sizeof outcome.reason, format, arguments);
+  va_end(arguments);
+  return outcome;
+}
+
+Outcome check_position(const char* what, const Eigen::Vector3d& position_ned, const Limits& limits) {
+  constexpr char kAxis[] = "xyz";
+  for (int i = 0; i < 3; ++i) {
+    if (!std::isfinite(position_ned[i])) return refuse("%s: %c is not a finite number", what, kAxis[i]);
+    if (position_ned[i] < limits.fence_min_ned[i] || position_ned[i] > limits.fence_max_ned[i]) {
+      return refuse("%s: %c is %.3f m, outside the fence of %.3f to %.3f m", what, kAxis[i], position_ned[i],
+                    limits.fence_min_ned[i], limits.fence_max_ned[i]);
+    }
+  }
+  return accept();
+}
+
+Outcome check_speed(const char* what, double speed, const Limits& limits) {
+  if (std::isfinite(speed) && speed > 0.0 && speed <= limits.max_speed) return accept();
+  return refuse("%s: speed is %.3f m/s, must be above 0 and at most %.3f m/s", what, speed, limits.max_speed);
+}
+
+Outcome check(const MissionBounds& bounds, const Limits& limits) {
+  struct Bound {
+    const char* name;
+    double value;
+    double limit;
+    const char* unit;
+  };
+  for (const Bound& bound : {Bound{"speed", bounds.max_speed, limits.max_speed, "m/s"},
+                             Bound{"acceleration", bounds.max_acceleration, limits.max_acceleration, "m/s^2"},
+                             Bound{"jerk", bounds.max_jerk, limits.max_reference_jerk, "m/s^3"},
+                             Bound{"yaw rate", bounds.max_yaw_rate, limits.max_yaw_rate, "rad/s"}}) {
+    if (bound.value >= 0.0 && bound.value <= bound.limit) continue;
+    return refuse("the mission's limit of %s is %.3f %s, must be above 0 and at most %.3f %s", bound.name,
+                  bound.value, bound.unit, bound.limit, bound.unit);
+  }
+  if (!bounds.fenced) return accept();
+  Outcome outcome = check_position("the mission's fence, its least corner", bounds.fence_min_ned, limits);
+  if (outcome.accepted)
+    outcome = check_position("the mission's fence, its greatest corner", bounds.fence_max_ned, limits);
+  if (!outcome.accepted) return outcome;
+  for (int i = 0; i < 3; ++i) {
+    if (bounds.fence_max_ned[i] > bounds.fence_min_ned[i]) continue;
+    return refuse("the mission's fence: %c ends at %.3f m, must end above %.3f m, where it begins", "xyz"[i],
+                  bounds.fence_max_ned[i], bounds.fence_min_ned[i]);
+  }
+  return accept();
+}
+
+Outcome check(const Mission& mission, const Limits& settings) {
+  const Outcome bounded = check(mission.bounds, settings);
+  if (!bounded.accepted) return bounded;
+  const Limits limits = tightened(settings, mission.bounds);
+  const std::size_t count = mission.items.size();
+  if (count == 0) return refuse("the mission has no items");
+  if (count > kMaxMissionItems)
+    return refuse("the mission has %zu items, at most %d fit", count, kMaxMissionItems);
+  if (mission.segments.size() > kMaxTrajectorySegments) {
+    return refuse("the mission's trajectories have %zu segments, at most %d fit", mission.segments.size(),
+                  kMaxTrajectorySegments);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const MissionItem& item = mission.items[i];
+    char what[32];
+    std::snprintf(what, sizeof what, "item %zu", i + 1);
+    if (item.kind == MissionItemKind::kTakeoff && i != 0)
+      return refuse("%s: a takeoff can only be the first item", what);
+    if (item.kind == MissionItemKind::kLand && i + 1 != count)
+      return refuse("%s: a landing can only be the last item", what);
+    Outcome outcome = check_speed(what, item.speed, limits);
+    if (!outcome.accepted) return outcome;
+    if (!std::isfinite(item.hold_s) || item.hold_s < 0.0)
+      return refuse("%s: hold is %.3f s, must be 0 or more", what, item.hold_s);
+    if (!(item.acceptance_radius_m >= 0.0))
+      return refuse("%s: acceptance radius is %.3f m, must be 0 or more", what, item.acceptance_radius_m);
+    if (item.kind == MissionItemKind::kLand || item.kind == MissionItemKind::kWait) continue;
+    if (item.kind == MissionItemKind::kTrajectory) {
+      outcome = check_item_trajectory(what, mission, item, limits);
+      if (!outcome.accepted) return outcome;
+      continue;
+    }
+    Eigen::Vector3d position = item.position_ned;
+    if (item.kind == MissionItemKind::kTakeoff)
+      position.head<2>() = 0.5 * (limits.fence_min_ned + limits.fence_max_ned).head<2>();
+    outcome = check_position(what, position, limits);
+    if (!outcome.accepted) return outcome;
+    if (!item.yaw_free && !std::isfinite(item.yaw_rad)) return refuse("%s: yaw is not a finite number", what);
+  }
+  return accept();
+}
+
+Outcome check(const Trajectory& trajectory, const Limits& limits) {
+  const std::size_t count = trajectory.segments.size();
+  if (count == 0) return refuse("the trajectory has no segments");
+  if (count > kMaxTrajectorySegments) {
+    return refuse("the trajectory has %zu segments, at most %d fit", count, kMaxTrajectorySegments);
+  }
+  return check_segments("", trajectory.segments.data(), count, limits);
+}
+
+Outcome check_segment(const char* what, const PolynomialSegment& segment, const Limits& limits) {
+  if (!std::isfinite(segment.duration_s) || segment.duration_s <= 0.0 ||
+      segment.duration_s > kLongestSegment_s) {
+    return refuse("%s: duration is %.3f s, must be above 0 and at most %.0f s", what, segment.duration_s,
+                  kLongestSegment_s);
+  }
+  if (!finite(segment.x) || !finite(segment.y) || !finite(segment.z) || !finite(segment.yaw))
+    return refuse("%s: a coefficient is not a finite number", what);
+  return check_motion(what, segment, limits);
+}
+
+Outcome check_motion(const char* what, const PolynomialSegment& segment, const Limits& limits) {
+  for (const NamedAxis& axis :
+       {NamedAxis{'x', 0, segment.x}, NamedAxis{'y', 1, segment.y}, NamedAxis{'z', 2, segment.z}}) {
+    const Outcome outcome = check_axis(what, axis, segment.duration_s, limits);
+    if (!outcome.accepted) return outcome;
+  }
+  const Outcome outcome = check_length(what, segment, 1, limits.max_speed, "m/s");
+  if (!outcome.accepted) return outcome;
+  return check_length(what, segment, 2, limits.max_acceleration, "m/s^2");
+}
+
+Outcome check_joint(const char* what, const PolynomialSegment& before, const PolynomialSegment& next) {
+  const Reference end = evaluate(before, before.duration_s);
+  const Reference start = evaluate(next, 0.0);
+  const double step_m = (start.position_ned - end.position_ned).norm();
+  const double step_m_s = (start.velocity_ned - end.velocity_ned).norm();
+  if (step_m <= kJoin_m && step_m_s <= kJoin_m_s) return accept();
+  return refuse("%s does not begin where the one before ends: %.3f m and %.3f m/s apart", what, step_m,
+                step_m_s);
+}
+
+Outcome check_start(const char* what, const PolynomialSegment& first) {
+  const double speed = evaluate(first, 0.0).velocity_ned.norm();
+  if (speed <= kJoin_m_s) return accept();
+  return refuse("%s starts at %.2f m/s, must start at rest", what, speed);
+}
+
+}  // namespace swiftlet::control

@@ -1,0 +1,116 @@
+#include "swiftlet/control/types/settings.hpp"
+
+#include <string>
+
+namespace swiftlet::control {
+
+namespace {
+
+using plant::RuleChecker;
+
+constexpr double kMaxTilt = 1.5;  // rad; thrust along the vertical must remain
+constexpr char kAxis[] = {'x', 'y', 'z'};
+
+void check_weights(const std::string& key, const LqrWeights& weights, RuleChecker& check) {
+  check.above(key + ".q[0]", weights.q[0], 0.0);
+  check.at_least(key + ".q[1]", weights.q[1], 0.0);
+  check.at_least(key + ".q[2]", weights.q[2], 0.0);
+  check.above(key + ".r", weights.r, 0.0);
+}
+
+void check_rpt(const std::string& key, const RptSettings& rpt, RuleChecker& check) {
+  check.above(key + ".omega_n", rpt.omega_n, 0.0);
+  check.above(key + ".zeta", rpt.zeta, 0.0);
+  check.above(key + ".epsilon", rpt.epsilon, 0.0);
+  check.at_least(key + ".k_i", rpt.k_i, 0.0);
+}
+
+void check_limits(const Limits& limits, RuleChecker& check) {
+  check.above("limits.max_tilt_rad", limits.max_tilt_rad, 0.0);
+  check.between("limits.max_tilt_rad", limits.max_tilt_rad, 0.0, kMaxTilt);
+  check.above("limits.max_acceleration_m_s2", limits.max_acceleration, 0.0);
+  check.above("limits.max_speed_m_s", limits.max_speed, 0.0);
+  check.above("limits.max_reference_acceleration_m_s2", limits.max_reference_acceleration, 0.0);
+  check.above("limits.max_reference_jerk_m_s3", limits.max_reference_jerk, 0.0);
+  check.above("limits.max_yaw_rate_rad_s", limits.max_yaw_rate, 0.0);
+  check.above("limits.max_body_rate_rad_s", limits.max_body_rate, 0.0);
+  for (int i = 0; i < 3; ++i) {
+    const std::string index = "[" + std::to_string(i) + "]";
+    const bool finite = check.finite("limits.fence_min_ned_m" + index, limits.fence_min_ned[i]);
+    if (!check.finite("limits.fence_max_ned_m" + index, limits.fence_max_ned[i]) || !finite) continue;
+    if (limits.fence_max_ned[i] > limits.fence_min_ned[i]) continue;
+    check.add("limits.fence_max_ned_m" + index, "is ", limits.fence_max_ned[i],
+              ", must be above fence_min_ned_m in ", kAxis[i], ", ", limits.fence_min_ned[i]);
+  }
+}
+
+void check_estimator(const EstimatorSettings& estimator, RuleChecker& check) {
+  check.above("estimator.accelerometer_noise_m_s2_per_sqrt_hz", estimator.accelerometer_noise_density, 0.0);
+  check.above("estimator.gyro_noise_rad_s_per_sqrt_hz", estimator.gyro_noise_density, 0.0);
+  check.at_least("estimator.accelerometer_bias_walk_m_s2_per_sqrt_s", estimator.accelerometer_bias_walk, 0.0);
+  check.at_least("estimator.gyro_bias_walk_rad_s_per_sqrt_s", estimator.gyro_bias_walk, 0.0);
+  check.at_least("estimator.accelerometer_bias_m_s2", estimator.accelerometer_bias_sigma, 0.0);
+  check.at_least("estimator.gyro_bias_rad_s", estimator.gyro_bias_sigma, 0.0);
+  check.at_least("estimator.accelerometer_bias_limit_m_s2", estimator.accelerometer_bias_limit, 0.0);
+  check.at_least("estimator.gyro_bias_limit_rad_s", estimator.gyro_bias_limit, 0.0);
+  check.above("estimator.mocap_position_m", estimator.mocap_position_sigma, 0.0);
+  check.above("estimator.mocap_orientation_rad", estimator.mocap_orientation_sigma, 0.0);
+  check.above("estimator.gate_chi_square", estimator.gate_chi_square, 0.0);
+  check.above("estimator.outlier_position_m", estimator.outlier_position_m, 0.0);
+  check.above("estimator.outlier_orientation_rad", estimator.outlier_orientation_rad, 0.0);
+}
+
+void check_arming(const ArmingSettings& arming, RuleChecker& check) {
+  check.above("arming.max_tilt_rad", arming.max_tilt_rad, 0.0);
+  check.above("arming.max_speed_m_s", arming.max_speed, 0.0);
+  check.above("arming.max_body_rate_rad_s", arming.max_body_rate, 0.0);
+  check.above("arming.max_specific_force_error_m_s2", arming.max_specific_force_error, 0.0);
+  check.above("arming.max_rotor_speed_rad_s", arming.max_rotor_speed, 0.0);
+}
+
+void check_failsafe(const FailsafeSettings& failsafe, const Limits& limits, RuleChecker& check) {
+  check.above("failsafe.imu_timeout_s", failsafe.imu_timeout_s, 0.0);
+  check.above("failsafe.imu_gap_s", failsafe.imu_gap_s, 0.0);
+  check.above("failsafe.blow_m_s2", failsafe.blow, plant::kGravity);
+  check.above("failsafe.mocap_timeout_s", failsafe.mocap_timeout_s, 0.0);
+  check.above("failsafe.descent_speed_m_s", failsafe.descent_speed, 0.0);
+  check.above("failsafe.descent_timeout_s", failsafe.descent_timeout_s, 0.0);
+  if (check.above("failsafe.tip_over_tilt_rad", failsafe.tip_over_tilt_rad, 0.0) &&
+      failsafe.tip_over_tilt_rad <= limits.max_tilt_rad) {
+    check.add("failsafe.tip_over_tilt_rad", "is ", failsafe.tip_over_tilt_rad,
+              ", must be above limits.max_tilt_rad, ", limits.max_tilt_rad);
+  }
+  if (check.at_least("failsafe.low_battery_voltage_v", failsafe.low_battery_voltage, 0.0)) {
+    check.between("failsafe.critical_battery_voltage_v", failsafe.critical_battery_voltage, 0.0,
+                  failsafe.low_battery_voltage);
+  }
+  check.at_least("failsafe.battery_delay_s", failsafe.battery_delay_s, 0.0);
+  check.above("failsafe.battery_timeout_s", failsafe.battery_timeout_s, 0.0);
+  check.above("failsafe.critical_descent_speed_m_s", failsafe.critical_descent_speed, 0.0);
+  check.at_least("failsafe.fence_margin_m", failsafe.fence_margin_m, 0.0);
+  check.above("failsafe.setpoint_timeout_s", failsafe.setpoint_timeout_s, 0.0);
+  check.above("failsafe.ground_link_timeout_s", failsafe.ground_link_timeout_s, 0.0);
+}
+
+}  // namespace
+
+std::vector<plant::Violation> validate(const ControlSettings& settings) {
+  RuleChecker check;
+  if (settings.name.empty()) check.add("name", "is empty, must be given");
+  check_weights("attitude.roll", settings.attitude.roll, check);
+  check_weights("attitude.pitch", settings.attitude.pitch, check);
+  check_weights("attitude.yaw", settings.attitude.yaw, check);
+  check_rpt("position.x", settings.position.x, check);
+  check_rpt("position.y", settings.position.y, check);
+  check_rpt("position.z", settings.position.z, check);
+  check.at_least("position.integral_limit_m_s2", settings.position.integral_limit, 0.0);
+  check.at_least("disturbance.bandwidth_rad_s", settings.disturbance.bandwidth, 0.0);
+  check.at_least("disturbance.limit_m_s2", settings.disturbance.limit, 0.0);
+  check_limits(settings.limits, check);
+  check_estimator(settings.estimator, check);
+  check_arming(settings.arming, check);
+  check_failsafe(settings.failsafe, settings.limits, check);
+  return check.take();
+}
+
+}  // namespace swiftlet::control

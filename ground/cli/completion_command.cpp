@@ -1,0 +1,22 @@
+#include <cstdio>
+
+#include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/command_line/command_text.hpp"
+
+namespace swiftlet::ground {
+
+Command add_completion_command(runtime::CommandLine root) {
+  const auto shell = std::make_shared<std::string>();
+  const runtime::CommandLine app =
+      root.add_subcommand("completion", "Print the script that completes this command in a shell");
+  app.add_option("shell", *shell, "for which shell").required().one_of({"bash", "zsh"});
+  app.footer("example: source <(swiftlet completion bash)");
+  return {app, [root, shell] {
+            const CommandText program = command_text(root);
+            std::fputs((*shell == "zsh" ? zsh_completion(program) : bash_completion(program)).c_str(),
+                       stdout);
+            return kDone;
+          }};
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,167 @@
+#include <algorithm>
+#include <cstdint>
+#include <deque>
+#include <future>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/cli/fly_options.hpp"
+#include "swiftlet/ground/command_line/network_options.hpp"
+#include "swiftlet/ground/flight/flight_conclusion.hpp"
+#include "swiftlet/ground/flight/flight_plan.hpp"
+#include "swiftlet/ground/flight/interrupts.hpp"
+#include "swiftlet/ground/flight/process_flight.hpp"
+#include "swiftlet/ground/terminal/fleet_progress.hpp"
+#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/shared_memory.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+constexpr std::size_t kMostVehicles = 12;  // three processes each, and 40 of a host find each other
+
+void check(const FlyOptions& options, std::size_t vehicles) {
+  const bool lockstep = options.clock == runtime::Clock::kLockstep;
+  if (lockstep && options.speed != 1.0)
+    throw InputError("--speed: lockstep goes as fast as the answers come");
+  if (!lockstep && options.trace) throw InputError("--trace: needs --clock lockstep");
+  if (vehicles > kMostVehicles) {
+    throw InputError("--vehicle-name: names " + std::to_string(vehicles) + " vehicles, at most " +
+                     std::to_string(kMostVehicles) + " fly from one command");
+  }
+}
+
+// One for each vehicle: its mission is the only one, or that of its place in the list.
+std::vector<FlightPlan> plan_flights(const FlyOptions& options, const std::vector<std::string>& vehicles) {
+  const std::vector<std::string> missions = split_list(options.mission);
+  if (missions.size() != 1 && missions.size() != vehicles.size()) {
+    throw InputError("mission: there are " + std::to_string(missions.size()) + " for " +
+                     std::to_string(vehicles.size()) + " vehicles, must be one for all or one for each");
+  }
+  std::vector<FlightPlan> plans;
+  for (std::size_t i = 0; i < vehicles.size(); ++i) {
+    FlyOptions one = options;
+    one.mission = missions[missions.size() == 1 ? 0 : i];
+    one.seed = options.seed + i;
+    one.start_ned = {
+        0.0, options.spacing_m * (static_cast<double>(i) - 0.5 * static_cast<double>(vehicles.size() - 1))};
+    FlightPlan plan = plan_flight(one);
+    if (vehicles.size() > 1) {
+      if (i > 0) plan.folder = plans.front().folder.parent_path();
+      plan.folder /= vehicles[i];
+      if (options.trace) plan.trace_file = plan.folder / "trace.csv";
+    }
+    plans.push_back(std::move(plan));
+  }
+  return plans;
+}
+
+// All at one time, each in a thread of its own.
+void fly_together(std::deque<ProcessFlight>& flights, const Interrupts& interrupts, ProgressLine& progress) {
+  std::vector<std::string> names;
+  names.reserve(flights.size());
+  for (const ProcessFlight& flight : flights) names.push_back(flight.vehicle_name());
+  FleetProgress shares(progress, names);
+  Together together(flights.size());
+  std::vector<std::future<void>> flying;
+  for (std::size_t i = 0; i < flights.size(); ++i) {
+    flying.push_back(std::async(std::launch::async, [&, i] {
+      try {
+        flights[i].fly(interrupts, &together, shares.of(i));
+      } catch (const std::exception& error) {
+        together.fail(names[i] + " failed: " + error.what());
+        throw;
+      }
+    }));
+  }
+  for (std::future<void>& flight : flying) flight.wait();
+  for (std::future<void>& flight : flying) flight.get();
+}
+
+int fly(const FlyOptions& options) {
+  const std::vector<std::string> vehicles = split_list(options.network.vehicle);
+  check(options, vehicles.size());
+  std::vector<FlightPlan> plans = plan_flights(options, vehicles);
+
+  std::optional<comms::DomainClaim> claim;
+  if (options.domain < 0 && options.parties == Parties::kStarted) claim.emplace();
+  comms::NodeSettings network = options.network;
+  network.domain = claim ? claim->domain() : std::max(options.domain, 0);
+
+  ProgressLine progress;
+  std::deque<ProcessFlight> flights;
+  const Interrupts interrupts;
+  for (std::size_t i = 0; i < vehicles.size(); ++i) {
+    const FlightPlan& plan = plans[i];
+    for (const std::string& assumption : plan.mission.assumptions)
+      progress.say(plan.mission.name + ": " + assumption);
+    network.vehicle = vehicles[i];
+    progress.say("flying " + plan.mission.name +
+                 (plan.parties == Parties::kAttached ? "" : " with " + plan.vehicle.name) + ": " +
+                 network.vehicle + " in domain " + std::to_string(network.domain) +
+                 (network.localhost_only ? " (--localhost-only)" : "") + ", record in " +
+                 plan.folder.string());
+    flights.emplace_back(std::move(plans[i]), network);
+  }
+  if (flights.size() == 1) {
+    flights.front().fly(interrupts, nullptr, progress);
+  } else {
+    fly_together(flights, interrupts, progress);
+  }
+  // What a process that was killed left there.
+  if (network.transport == comms::Transport::kSharedMemory) comms::remove_stale_shared_memory();
+
+  if (flights.size() == 1) return tell(flights.front().report(), options.json, progress);
+  std::vector<FlightReport> reports;
+  reports.reserve(flights.size());
+  for (const ProcessFlight& flight : flights) reports.push_back(flight.report());
+  return tell(reports, options.json, progress);
+}
+
+}  // namespace
+
+Command add_fly_command(runtime::CommandLine root) {
+  const auto options = std::make_shared<FlyOptions>();
+  options->network.localhost_only = true;
+  const runtime::CommandLine app = root.add_subcommand(
+      "fly", "Start plant, mocap and control on this computer, fly a mission, and report");
+  add_fly_options(app, *options);
+  add_network_options(app, options->network, Vehicles::kSeveral);
+  app.add_option("--spacing", options->spacing_m,
+                 "of several vehicles: they start in a row from west to east about the origin, so many m "
+                 "apart, and their "
+                 "missions lie as far from each other")
+      .range(-100.0, 100.0)
+      .show_default();
+  app.remove_option("--localhost-only");  // it stays there
+  app.remove_option("--domain");          // whose default is not that of a flight
+  app.add_option("--domain", options->domain, "DDS domain; a free one unless given")
+      .environment("ROS_DOMAIN_ID")
+      .range(0, 232);
+  runtime::Option attach = app.add_flag(
+      "--attach", [options] { options->parties = Parties::kAttached; },
+      "start nothing: fly with the plant, mocap and control that run in the domain (0 unless given)");
+  runtime::add_clock_option(app, options->clock);
+  app.add_option("--speed", options->speed, "of simulated time against real time")
+      .range(0.01, 100.0)
+      .show_default();
+  app.add_flag("--trace", options->trace,
+               "lockstep: keep trace.csv in the record, every sample and command to the last bit");
+  for (const char* of_the_started :
+       {"--vehicle", "--simulation", "--seed", "--imu-rate", "--clock", "--speed"}) {
+    attach.excludes(app.option(of_the_started));
+  }
+  app.add_flag("--network{false}", options->network.localhost_only, "use all interfaces, not loopback alone")
+      .needs(attach);
+  app.footer(
+      "Several vehicles (--vehicle-name kl1,kl2) begin at one time; when one fails the others land. Paths "
+      "are not checked "
+      "against each other.\nCtrl-C lands; a second Ctrl-C ends at once.\nexample: swiftlet fly square "
+      "--record /tmp/square "
+      "--json | jq .rms_3d_m\nexample: swiftlet fly square,zigzag --vehicle-name kl1,kl2");
+  return {app, [options] { return fly(*options); }};
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,22 @@
+#include <cerrno>
+#include <string>
+#include <system_error>
+#include <unistd.h>
+
+#include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/command_line/installation.hpp"
+#include "swiftlet/ground/identify/identify_options.hpp"
+
+namespace swiftlet::ground {
+
+Command add_identify_command(runtime::CommandLine root, char** argv) {
+  const auto hand_over = [argv](const auto&) -> int {
+    const std::string program = program_beside("swiftlet-identify").string();
+    execv(program.c_str(), argv + 1);  // from the command's name on, which stands for the program's
+    throw std::system_error(errno, std::generic_category(), program);
+  };
+  const runtime::CommandLine app = root.add_subcommand("identify", kIdentifyPurpose);
+  return add_identify_options(app, {hand_over, hand_over, hand_over});
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,128 @@
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/client/client.hpp"
+#include "swiftlet/ground/client/vehicles_seen.hpp"
+#include "swiftlet/ground/command_line/network_options.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+struct Options {
+  comms::NodeSettings network;
+  double look_s = 2.0;
+  bool json = false;
+};
+
+// A vehicle that was found.
+struct Found {
+  std::string name;
+  View view;
+  double mocap_hz = 0.0;  // poses that were used
+  int controllers = 0;
+};
+
+std::chrono::milliseconds part(double seconds) {
+  return std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1e3));
+}
+
+std::uint64_t poses(const View& view) {
+  return view.estimate.message.poses_accepted() + view.estimate.message.poses_refused();
+}
+
+// Half of the time goes into finding names, the other into hearing each of them.
+std::vector<Found> look(const Options& options) {
+  const comms::Node lookout(options.network);
+  std::this_thread::sleep_for(part(0.5 * options.look_s));
+  std::map<std::string, std::unique_ptr<Client>> clients;
+  for (const std::string& name : vehicles_of(lookout.topics_seen())) {
+    comms::NodeSettings network = options.network;
+    network.vehicle = name;
+    clients[name] = std::make_unique<Client>(network);
+    clients[name]->hear_controllers();
+  }
+  std::map<std::string, View> before;
+  const double listen_s = 0.25 * options.look_s;
+  std::this_thread::sleep_for(part(listen_s));
+  for (const auto& [name, client] : clients) before[name] = client->view();
+  const auto start = Clock::now();
+  std::this_thread::sleep_for(part(listen_s));
+  const double time_s = std::chrono::duration<double>(Clock::now() - start).count();
+  std::vector<Found> found;
+  for (const auto& [name, client] : clients) {
+    Found vehicle{name, client->view()};
+    vehicle.controllers = static_cast<int>(vehicle.view.controllers.size());
+    if (before[name].estimate.seen())
+      vehicle.mocap_hz = static_cast<double>(poses(vehicle.view) - poses(before[name])) / time_s;
+    found.push_back(std::move(vehicle));
+  }
+  return found;
+}
+
+nlohmann::ordered_json to_json(const Found& vehicle) {
+  nlohmann::ordered_json json = {{"vehicle", vehicle.name}, {"mode", nullptr}};
+  if (vehicle.view.control.seen()) json["mode"] = mode_name(vehicle.view.control.message.mode());
+  json["model"] = nullptr;
+  if (vehicle.view.vehicle.seen()) json["model"] = vehicle.view.vehicle.message.name().c_str();
+  json["battery_v"] = nullptr;
+  if (vehicle.view.battery.seen()) json["battery_v"] = vehicle.view.battery.message.voltage_v();
+  json["controllers"] = vehicle.controllers;
+  json["mocap_hz"] = vehicle.mocap_hz;
+  return json;
+}
+
+void print(const std::vector<Found>& vehicles) {
+  std::printf("%-16s %-12s %-12s %9s %11s %8s\n", "vehicle", "model", "mode", "battery", "controllers",
+              "mocap");
+  for (const Found& vehicle : vehicles) {
+    const View& view = vehicle.view;
+    char battery[16] = "-";
+    if (view.battery.seen())
+      std::snprintf(battery, sizeof battery, "%.2f V", view.battery.message.voltage_v());
+    std::printf("%-16s %-12s %-12s %9s %11d %5.0f Hz\n", vehicle.name.c_str(),
+                view.vehicle.seen() ? view.vehicle.message.name().c_str() : "-",
+                view.control.seen() ? mode_name(view.control.message.mode()) : "no control", battery,
+                vehicle.controllers, vehicle.mocap_hz);
+  }
+}
+
+int list(const Options& options) {
+  const std::vector<Found> vehicles = look(options);
+  if (options.json) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    for (const Found& vehicle : vehicles) json.push_back(to_json(vehicle));
+    std::printf("%s\n", json.dump(2).c_str());
+  } else if (!vehicles.empty()) {
+    print(vehicles);
+  }
+  if (!vehicles.empty()) return kDone;
+  std::fprintf(
+      stderr,
+      "swiftlet: list: no vehicle in domain %d within %.1f s%s; is it started, and in this domain (--domain, "
+      "ROS_DOMAIN_ID)?\n",
+      options.network.domain, options.look_s,
+      options.network.localhost_only ? " on the loopback interface" : "");
+  return kFailed;
+}
+
+}  // namespace
+
+Command add_list_command(runtime::CommandLine root) {
+  const auto options = std::make_shared<Options>();
+  const runtime::CommandLine app = root.add_subcommand(
+      "list", "Say which vehicles are on the network: mode, battery, controllers, poses a second");
+  add_network_options(app, options->network);
+  app.remove_option("--vehicle-name");
+  app.add_option("--time", options->look_s, "how long to look, s").range(0.4, 60.0).show_default();
+  app.add_flag("--json", options->json, "print the list as JSON");
+  app.footer("example: swiftlet list --json | jq -r .[].vehicle");
+  return {app, [options] { return list(*options); }};
+}
+
+}  // namespace swiftlet::ground

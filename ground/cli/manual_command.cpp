@@ -1,0 +1,63 @@
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/command_line/command_text.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+struct Options {
+  std::vector<std::string> command;
+  std::string folder;
+};
+
+void write_all(const CommandText& command, const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / (manual_page_name(command) + ".1");
+  std::ofstream out(file);
+  out << manual_page(command);
+  out.close();
+  if (!out) throw std::runtime_error(file.string() + ": cannot be written");
+  for (const CommandText& sub : command.commands) write_all(sub, folder);
+}
+
+const CommandText& find(const CommandText& program, const std::vector<std::string>& words) {
+  const CommandText* found = &program;
+  for (const std::string& word : words) {
+    const auto sub =
+        std::find_if(found->commands.begin(), found->commands.end(),
+                     [&](const CommandText& candidate) { return candidate.words.back() == word; });
+    if (sub == found->commands.end())
+      throw InputError("man: " + word + " is no command of " + manual_page_name(*found));
+    found = &*sub;
+  }
+  return *found;
+}
+
+int run(runtime::CommandLine root, const Options& options) {
+  const CommandText program = command_text(root);
+  if (options.folder.empty()) {
+    std::fputs(manual_page(find(program, options.command)).c_str(), stdout);
+    return kDone;
+  }
+  std::filesystem::create_directories(options.folder);
+  write_all(program, options.folder);
+  return kDone;
+}
+
+}  // namespace
+
+Command add_manual_command(runtime::CommandLine root) {
+  const auto options = std::make_shared<Options>();
+  const runtime::CommandLine app =
+      root.add_subcommand("man", "Print the manual page of this program or of a command");
+  app.add_option("command", options->command, "the command's words; none: the program");
+  app.add_option("--into", options->folder, "write the pages of all commands into this folder");
+  app.footer("example: swiftlet man sim fly | man -l -");
+  return {app, [root, options] { return run(root, *options); }};
+}
+
+}  // namespace swiftlet::ground

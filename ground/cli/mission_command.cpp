@@ -1,0 +1,79 @@
+// `swiftlet mission`, and of its subcommands those that ask something of the mission that the vehicle has: `start`, `pause`,
+// `resume`, `skip` and `clear`.
+#include <vector>
+
+#include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/cli/request_command.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+struct Options : AskOptions {
+  std::uint64_t id = 0;
+};
+
+using Ask = Manoeuvre (Vehicle::*)(std::uint64_t, std::chrono::milliseconds);
+
+Command add_mission_request(runtime::CommandLine mission, const std::string& name,
+                            const std::string& description, Ask ask) {
+  const auto options = std::make_shared<Options>();
+  const runtime::CommandLine app =
+      add_ask_subcommand(mission, name, description, "swiftlet mission " + name, options);
+  app.add_option("--id", options->id,
+                 "refuse if the mission there is another one: the number that `mission upload` said");
+  return {app, [options, name, ask] {
+            return run_request(*options, "mission " + name, [&](Vehicle& vehicle) {
+              return (vehicle.*ask)(options->id, options->timeout());
+            });
+          }};
+}
+
+}  // namespace
+
+Command add_mission_start_command(runtime::CommandLine mission) {
+  return add_mission_request(mission, "start",
+                             "Fly the mission that was uploaded, from its first item; again, if it has ended",
+                             &Vehicle::start_mission);
+}
+
+Command add_mission_pause_command(runtime::CommandLine mission) {
+  return add_mission_request(mission, "pause", "Come to rest on the path and hold, to be gone on with",
+                             &Vehicle::pause_mission);
+}
+
+Command add_mission_resume_command(runtime::CommandLine mission) {
+  return add_mission_request(mission, "resume", "Back to where the mission was left, and on",
+                             &Vehicle::resume_mission);
+}
+
+Command add_mission_skip_command(runtime::CommandLine mission) {
+  return add_mission_request(mission, "skip", "Give up the item that is flown or paused, on with the next",
+                             &Vehicle::skip_mission_item);
+}
+
+Command add_mission_clear_command(runtime::CommandLine mission) {
+  return add_mission_request(mission, "clear", "Forget the mission; refused while it is flown",
+                             &Vehicle::clear_mission);
+}
+
+Command add_mission_command(runtime::CommandLine root) {
+  const runtime::CommandLine mission =
+      root.add_subcommand("mission", "Check a mission file, draw it, and fly it with a running vehicle");
+  mission.require_subcommand(1, 1);
+  mission.footer("example: swiftlet mission check square && swiftlet mission fly square");
+  const std::vector<Command> commands = {
+      add_mission_check_command(mission),  add_mission_plot_command(mission),
+      add_mission_fly_command(mission),    add_mission_upload_command(mission),
+      add_mission_start_command(mission),  add_mission_pause_command(mission),
+      add_mission_resume_command(mission), add_mission_skip_command(mission),
+      add_mission_clear_command(mission),
+  };
+  return {mission, [commands] {
+            for (const Command& command : commands) {
+              if (command.app.parsed()) return command.run();
+            }
+            return kBadInput;
+          }};
+}
+
+}  // namespace swiftlet::ground

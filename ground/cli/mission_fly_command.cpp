@@ -1,0 +1,98 @@
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+
+#include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/cli/request_command.hpp"
+#include "swiftlet/ground/command_line/installation.hpp"
+#include "swiftlet/ground/flight/interrupts.hpp"
+#include "swiftlet/ground/terminal/progress_line.hpp"
+#include "swiftlet/io/missions/mission_file.hpp"
+#include "swiftlet/io/settings/control_settings_file.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kStep = 50ms;
+
+struct Options : RequestOptions {
+  std::string file;
+  std::string control = "motor_lag";
+  bool no_wait = false;
+  bool link = false;
+};
+
+void show(const VehicleState& state, ProgressLine& progress) {
+  const Eigen::Vector3d& position = state.position_ned;
+  char text[160];
+  std::snprintf(text, sizeof text, "%d/%d  %s  (%5.2f, %5.2f, %5.2f) m, %.2f V", state.mission.item,
+                state.mission.items, control::to_string(state.mode), position.x(), position.y(), position.z(),
+                state.battery_voltage_v);
+  progress.update(state.mission.item, text);
+}
+
+Ending follow(const Vehicle& vehicle, const Manoeuvre& flight) {
+  const Interrupts interrupts;
+  ProgressLine progress;
+  while (true) {
+    Ending ending = flight.wait(kStep);
+    if (ending.kind != Ending::Kind::kTimedOut) return ending;
+    show(vehicle.state(), progress);
+    if (interrupts.count() > 0)
+      return {Ending::Kind::kInterrupted, "no longer followed; the vehicle flies on"};
+  }
+}
+
+int fly_mission(const Options& options) {
+  const auto settings = runtime::load_control_settings(configuration_file("control", options.control));
+  const MissionFile mission =
+      load_mission_file(configuration_file("missions", options.file), settings.limits);
+  for (const std::string& assumption : mission.assumptions)
+    std::fprintf(stderr, "%s: %s\n", mission.name.c_str(), assumption.c_str());
+  Vehicle vehicle(options.network);
+  if (options.link) vehicle.stay();
+  const Manoeuvre flight = vehicle.follow(mission.mission, options.timeout());
+  Ending end = {Ending::Kind::kNotAccepted, flight.answer().reason};
+  if (flight.accepted())
+    end = options.no_wait ? Ending{Ending::Kind::kCompleted, ""} : follow(vehicle, flight);
+
+  if (options.json) {
+    nlohmann::ordered_json json = {{"mission", mission.name}, {"accepted", flight.accepted()}};
+    if (!options.no_wait) json["completed"] = end.done();
+    if (!end.done()) json["reason"] = end.reason;
+    std::printf("%s\n", json.dump().c_str());
+  } else if (end.done()) {
+    std::printf("%s: %s\n", mission.name.c_str(), options.no_wait ? "started" : "completed");
+  }
+  if (!end.done())
+    std::fprintf(stderr, "swiftlet: mission %s: %s\n", mission.name.c_str(), end.reason.c_str());
+  return end.done() ? kDone : kFailed;
+}
+
+}  // namespace
+
+Command add_mission_fly_command(runtime::CommandLine mission) {
+  const auto options = std::make_shared<Options>();
+  const runtime::CommandLine app =
+      add_request_subcommand(mission, "fly", "Upload a mission file, start it and follow it to its end",
+                             "swiftlet mission fly config/missions/square.yaml", options);
+  app.add_option(
+         "file", options->file,
+         "mission file, or the name of one in the configuration; also a trajectory or waypoints as CSV, "
+         "or a QGroundControl .plan")
+      .required();
+  app.add_option("--control", options->control,
+                 "control settings whose limits and fence the file is checked against")
+      .show_default();
+  runtime::Option no_wait = app.add_flag("--no-wait", options->no_wait, "return once it has been started");
+  app.add_flag(
+         "--link", options->link,
+         "the flight depends on this command: if it falls silent, the vehicle does what ground_link_action "
+         "of its control settings says")
+      .excludes(no_wait);
+  return {app, [options] { return fly_mission(*options); }};
+}
+
+}  // namespace swiftlet::ground

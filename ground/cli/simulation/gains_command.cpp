@@ -1,0 +1,220 @@
+#include "swiftlet/ground/cli/simulation/gains_command.hpp"
+
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstdio>
+#include <memory>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/command_line/installation.hpp"
+#include "swiftlet/io/format.hpp"
+#include "swiftlet/io/settings/control_settings_file.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using control::AttitudeAxisDesign;
+using control::AttitudeModel;
+using control::ControlDesign;
+using control::PositionAxisDesign;
+using Poles = std::vector<std::complex<double>>;
+
+const char* to_string(AttitudeModel model) {
+  return model == AttitudeModel::kDoubleIntegrator ? "double_integrator" : "motor_lag";
+}
+
+Eigen::Index state_count(AttitudeModel model) { return model == AttitudeModel::kDoubleIntegrator ? 2 : 3; }
+
+template <typename Vector>
+Json json_of(const Vector& values) {
+  Json out = Json::array();
+  for (const double value : values) out.push_back(value);
+  return out;
+}
+
+Json json_of_poles(const Poles& poles) {
+  Json out = Json::array();
+  for (const std::complex<double>& pole : poles) out.push_back({pole.real(), pole.imag()});
+  return out;
+}
+
+// An infinite margin is null.
+Json json_of_margin(double degrees) { return std::isfinite(degrees) ? Json(degrees) : Json(nullptr); }
+
+Json json_of(const AttitudeAxisDesign& axis) {
+  const Eigen::Index n = state_count(axis.model);
+  return {{"model", to_string(axis.model)},
+          {"q", json_of(axis.weights.q.head(n))},
+          {"r", axis.weights.r},
+          {"k", json_of(axis.k.head(n))},
+          {"poles", json_of_poles(axis.poles)},
+          {"poles_with_motor_lag", json_of_poles(axis.poles_with_lag)},
+          {"phase_margin_deg", json_of_margin(axis.phase_margin_deg)}};
+}
+
+Json json_of(const PositionAxisDesign& axis) {
+  Json out = {{"omega_n", axis.settings.omega_n},
+              {"zeta", axis.settings.zeta},
+              {"epsilon", axis.settings.epsilon},
+              {"k_i", axis.settings.k_i},
+              {"f", json_of(axis.f)}};
+  if (axis.settings.k_i > 0.0) {
+    out["integral_form"] = {{"k_p", axis.gains.k_p}, {"k_v", axis.gains.k_v}, {"k_s", axis.gains.k_s}};
+  }
+  out["poles"] = json_of_poles(axis.poles);
+  out["phase_margin_deg"] = json_of_margin(axis.phase_margin_deg);
+  return out;
+}
+
+// Each conjugate pair once: "-5.5 +- 3.2i, -12".
+std::string text_of(const Poles& poles) {
+  std::string out;
+  for (const std::complex<double>& pole : poles) {
+    if (pole.imag() < 0.0) continue;
+    if (!out.empty()) out += ", ";
+    out +=
+        pole.imag() > 0.0 ? format("%.3g +- %.3gi", pole.real(), pole.imag()) : format("%.3g", pole.real());
+  }
+  return out;
+}
+
+std::string row(const char* name, const AttitudeAxisDesign& axis) {
+  std::string k;
+  for (Eigen::Index i = 0; i < state_count(axis.model); ++i) k += format(" %9.4g", axis.k[i]);
+  return format("  %-6s k =%-30s  margin %5.1f deg  poles ", name, k.c_str(), axis.phase_margin_deg) +
+         text_of(axis.poles_with_lag) + "\n";
+}
+
+std::string row(const char* name, const PositionAxisDesign& axis) {
+  return format("  %-6s k_p =%7.3f  k_v =%7.3f  k_s =%7.3f  margin %5.1f deg  poles ", name, axis.gains.k_p,
+                axis.gains.k_v, axis.gains.k_s, axis.phase_margin_deg) +
+         text_of(axis.poles) + "\n";
+}
+
+double decibels(double factor) { return 20.0 * std::log10(factor); }
+
+Json json_of(const control::LoopMargins& margins) {
+  return {{"phase_deg", json_of_margin(margins.phase_deg)},
+          {"gain_increase_db", json_of_margin(decibels(margins.gain_increase))},
+          {"gain_decrease_db", json_of_margin(decibels(margins.gain_decrease))},
+          {"delay_s", json_of_margin(margins.delay_s)}};
+}
+
+Json json_of(const MarginStudy& study) {
+  Json out = Json::object();
+  for (std::size_t i = 0; i < kLoopNames.size(); ++i) {
+    const MarginStudy::Loop& loop = study.loops[i];
+    out[kLoopNames[i]] = {{"designed", json_of(loop.designed)}};
+    if (study.draws == 0) continue;
+    out[kLoopNames[i]]["most"] = json_of(loop.most);
+    out[kLoopNames[i]]["worst"] = json_of(loop.worst);
+  }
+  return out;
+}
+
+std::string decibels_text(double factor) {
+  return factor > 0.0 && std::isfinite(factor) ? format("%+6.1f", decibels(factor)) : "   any";
+}
+
+std::string margin_text(const control::LoopMargins& m) {
+  return format("%6.1f", m.phase_deg) + " " + decibels_text(m.gain_decrease) + " " +
+         decibels_text(m.gain_increase) + format(" %6.1f", m.delay_s * 1e3);
+}
+
+std::string text_of(const MarginStudy& study) {
+  std::string out =
+      "margins: phase (deg), loss and rise of gain (dB), delay (ms)\n  loop   on this vehicle             ";
+  if (study.draws > 0) {
+    out += format("   kept by 95 %% of %zu draws      worst draw\n", study.draws);
+  } else {
+    out += "   (the vehicle file does not say how sure its parameters are)\n";
+  }
+  for (std::size_t i = 0; i < kLoopNames.size(); ++i) {
+    out += format("  %-6s ", kLoopNames[i]) + margin_text(study.loops[i].designed);
+    if (study.draws > 0)
+      out += "   " + margin_text(study.loops[i].most) + "   " + margin_text(study.loops[i].worst);
+    out += "\n";
+  }
+  if (study.unstable > 0) out += format("  not stable: %zu of %zu draws\n", study.unstable, study.draws);
+  return out;
+}
+
+}  // namespace
+
+std::string gains_json(const ControlDesign& design, const MarginStudy& margins, const std::string& vehicle,
+                       const std::string& control) {
+  const Json out = {
+      {"vehicle", vehicle},
+      {"control", control},
+      {"rotor_lag_s", design.rotor_lag_s},
+      {"attitude",
+       {{"roll", json_of(design.roll)}, {"pitch", json_of(design.pitch)}, {"yaw", json_of(design.yaw)}}},
+      {"position", {{"x", json_of(design.x)}, {"y", json_of(design.y)}, {"z", json_of(design.z)}}},
+      {"margins", json_of(margins)},
+      {"draws", margins.draws},
+      {"seed", margins.seed},
+      {"unstable", margins.unstable}};
+  return out.dump(2);
+}
+
+std::string gains_table(const ControlDesign& design, const MarginStudy& margins, const std::string& vehicle,
+                        const std::string& control) {
+  return format("%s flown with %s; rotor lag %.4g s in every margin and pole (rad/s)\n", vehicle.c_str(),
+                control.c_str(), design.rotor_lag_s) +
+         format(
+             "attitude: LQR on %s, u = -k (angle, rate%s)\n",
+             design.roll.model == AttitudeModel::kDoubleIntegrator ? "double integrators" : "the rotor lag",
+             design.roll.model == AttitudeModel::kDoubleIntegrator ? "" : ", moment / inertia") +
+         row("roll", design.roll) + row("pitch", design.pitch) + row("yaw", design.yaw) +
+         "position: RPT over the closed inner loop\n" + row("x", design.x) + row("y", design.y) +
+         row("z", design.z) + text_of(margins);
+}
+
+int run_gains(const GainsOptions& options) {
+  const std::string file = configuration_file("vehicles", options.vehicle).string();
+  const plant::Vehicle vehicle = runtime::load_vehicle(file);
+  const control::ControlSettings settings =
+      runtime::load_control_settings(configuration_file("control", options.control));
+  const ControlDesign design = control::design(vehicle, settings);
+  for (const plant::Violation& loop : control::unstable_loops(design)) {
+    std::fprintf(stderr, "swiftlet: not flyable: %s: %s\n", loop.key.c_str(), loop.message.c_str());
+  }
+  const plant::VehicleUncertainty uncertainty = runtime::load_vehicle_uncertainty(file);
+  const Variation variation =
+      uncertainty.parameters.empty() ? Variation{} : variation_of(uncertainty, vehicle, file);
+  const MarginStudy margins = study_margins(design, vehicle, variation, options.draws, options.seed);
+  if (options.json) {
+    std::printf("%s\n", gains_json(design, margins, vehicle.name, settings.name).c_str());
+  } else {
+    std::printf("%s", gains_table(design, margins, vehicle.name, settings.name).c_str());
+  }
+  return kDone;
+}
+
+Command add_gains_command(runtime::CommandLine root) {
+  const auto options = std::make_shared<GainsOptions>();
+  const runtime::CommandLine app =
+      root.add_subcommand("gains", "Print the gains that a vehicle and control settings lead to");
+  app.footer("example: swiftlet gains --vehicle config/vehicles/kaylion.yaml --json");
+  app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in the configuration")
+      .show_default();
+  app.add_option("--control", options->control,
+                 "control settings file, or the name of one in the configuration")
+      .show_default();
+  app.add_option(
+         "--draws", options->draws,
+         "vehicles drawn from the uncertainty that the vehicle file states, for the margins over them")
+      .range(std::size_t{1}, std::size_t{1'000'000})
+      .show_default();
+  app.add_option("--seed", options->seed, "of the first draw; each next one has one more").show_default();
+  app.add_flag("--json", options->json, "print JSON");
+  return {app, [options] { return run_gains(*options); }};
+}
+
+}  // namespace swiftlet::ground

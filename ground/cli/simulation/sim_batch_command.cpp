@@ -1,0 +1,102 @@
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+
+#include "swiftlet/ground/batch/batch.hpp"
+#include "swiftlet/ground/batch/batch_plot.hpp"
+#include "swiftlet/ground/batch/batch_report.hpp"
+#include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/cli/fly_options.hpp"
+#include "swiftlet/ground/flight/flight_conclusion.hpp"
+#include "swiftlet/ground/flight/interrupts.hpp"
+#include "swiftlet/ground/terminal/progress_line.hpp"
+#include "swiftlet/io/format.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+constexpr std::size_t kMostRuns = 1'000'000;
+constexpr std::size_t kMostJobs = 1024;
+constexpr std::size_t kBarLength = 30;
+constexpr std::size_t kStages = 5;  // lines where a line cannot be rewritten
+
+struct BatchOptions {
+  FlyOptions flight;
+  std::size_t runs = 100;
+  std::size_t jobs = std::max(1U, std::thread::hardware_concurrency());
+};
+
+std::string bar(const BatchProgress& progress) {
+  const std::size_t filled = kBarLength * progress.done / progress.asked;
+  std::string text = "[" + std::string(filled, '#') + std::string(kBarLength - filled, '.') + "] " +
+                     format("%zu/%zu runs, %zu failed", progress.done, progress.asked, progress.failed);
+  if (progress.done > 0 && progress.done < progress.asked) {
+    const double left_s = progress.elapsed_s * static_cast<double>(progress.asked - progress.done) /
+                          static_cast<double>(progress.done);
+    text += format(", %.0f s left", left_s);
+  }
+  return text;
+}
+
+int sim_batch(const BatchOptions& options) {
+  const FlightPlan plan = plan_flight(options.flight);
+  if (plan.seed > std::numeric_limits<std::uint64_t>::max() - options.runs)
+    throw InputError("--seed " + std::to_string(plan.seed) + ": is too large for " +
+                     std::to_string(options.runs) + " runs");
+  const BatchRunner runner(plan, options.runs);
+  make_record_folder(plan.folder, "--out");
+  ProgressLine progress;
+  for (const std::string& assumption : plan.mission.assumptions)
+    progress.say(plan.mission.name + ": " + assumption);
+  const Interrupts interrupts;
+
+  const BatchReport report =
+      report_of(plan, options.flight,
+                runner.fly(
+                    options.jobs, [&] { return interrupts.count() > 0; },
+                    [&](const BatchProgress& now) {
+                      progress.update(static_cast<int>(kStages * now.done / now.asked), bar(now));
+                    }));
+  write_batch_csv(plan.folder / "batch.csv", report);
+  const std::string no_picture = draw_batch(plan.folder, report);
+  if (!no_picture.empty()) progress.say(no_picture);
+
+  progress.close();
+  std::printf("%s", options.flight.json ? (to_json(report).dump() + "\n").c_str() : to_text(report).c_str());
+  if (report.interrupted())
+    progress.say(format("swiftlet: it was cancelled after %zu of %zu runs", report.batch.runs.size(),
+                        report.batch.asked));
+  return report.completed() ? kDone : kFailed;
+}
+
+}  // namespace
+
+Command add_sim_batch_command(runtime::CommandLine sim) {
+  const auto options = std::make_shared<BatchOptions>();
+  FlyOptions& flight = options->flight;
+  flight.parties = Parties::kInProcess;
+  const runtime::CommandLine app = sim.add_subcommand(
+      "batch", "Fly a mission many times, each in a vehicle and a world drawn anew: Monte Carlo");
+  add_mission_options(app, flight);
+  add_vary_option(app, flight).required();
+  app.add_option("--runs", options->runs, "number of flights; the first has --seed, each next one more")
+      .range(std::size_t{1}, kMostRuns)
+      .show_default();
+  app.add_option("--jobs", options->jobs, "flights at the same time; all cores unless given")
+      .range(std::size_t{1}, kMostJobs);
+  app.add_option("--out", flight.record,
+                 "folder for batch.csv and batch.png; flights/<date>-<mission> unless given");
+  app.add_flag("--json", flight.json, "print one JSON object instead of the table");
+  app.footer(
+      "The controller is designed on --vehicle; what flies is drawn around it. `swiftlet sim fly` with the "
+      "seed of one of\nthe runs and the same files flies it again, to the last bit.\n\n"
+      "example: swiftlet sim batch square --runs 200 --seed 1 --vary kaylion --out batches/first");
+  return {app, [options] { return sim_batch(*options); }};
+}
+
+}  // namespace swiftlet::ground

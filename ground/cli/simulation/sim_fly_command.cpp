@@ -1,0 +1,53 @@
+#include <memory>
+#include <optional>
+
+#include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/cli/fly_options.hpp"
+#include "swiftlet/ground/flight/flight_conclusion.hpp"
+#include "swiftlet/ground/flight/flight_plan.hpp"
+#include "swiftlet/ground/flight/flight_settings.hpp"
+#include "swiftlet/ground/flight/in_process_flight.hpp"
+#include "swiftlet/ground/flight/interrupts.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+int sim_fly(const FlyOptions& options) {
+  const FlightPlan plan = plan_flight(options);
+  ClosedLoop loop = closed_loop(plan, draw(plan, plan.seed).world, plan.seed);
+  make_record_folder(plan.folder);
+  keep_settings(plan);
+  std::optional<runtime::FlightTrace> trace;
+  if (!plan.trace_file.empty()) trace.emplace(plan.trace_file, plan.vehicle.rotor_count());
+  FlightRecord record(plan.record_capacity());
+  if (plan.sensors) record.sensors = std::make_unique<SensorRecord>(plan.record_capacity());
+  loop.sensors = record.sensors.get();
+  ProgressLine progress;
+  for (const std::string& assumption : plan.mission.assumptions)
+    progress.say(plan.mission.name + ": " + assumption);
+  const Interrupts interrupts;
+
+  const InProcessFlight flight = fly_in_process(loop, plan, plan.seed, record, trace ? &*trace : nullptr,
+                                                [&] { return interrupts.count() > 0; });
+  if (trace) trace->close();
+  keep_record(plan.folder, record, flight.report, flight.window, progress);
+  return tell(flight.report, options.json, progress);
+}
+
+}  // namespace
+
+Command add_sim_fly_command(runtime::CommandLine sim) {
+  const auto options = std::make_shared<FlyOptions>();
+  options->parties = Parties::kInProcess;
+  const runtime::CommandLine app = sim.add_subcommand(
+      "fly", "Fly a mission in this process, as fast as it goes; the same flight as in lockstep");
+  add_fly_options(app, *options);
+  add_vary_option(app, *options);
+  app.add_flag(
+      "--trace", options->trace,
+      "keep trace.csv in the record: every sample and command to the last bit, to compare flights by");
+  app.footer("example: swiftlet sim fly square --seed 7 --json | jq .rms_3d_m");
+  return {app, [options] { return sim_fly(*options); }};
+}
+
+}  // namespace swiftlet::ground

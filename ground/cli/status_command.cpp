@@ -1,0 +1,240 @@
+#include <algorithm>
+#include <cstdio>
+#include <tuple>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/cli/request_command.hpp"
+#include "swiftlet/ground/client/client.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+constexpr std::chrono::milliseconds kRestTimeout{1000};
+constexpr double kControllerSilence_s = 0.5;  // one that was heard and is silent for so long is not listed
+
+struct Options : RequestOptions {
+  double watch_s = 1.0;
+};
+
+struct Rates {
+  double estimate_hz = 0.0;
+  double reference_hz = 0.0;
+  double battery_hz = 0.0;
+  double ground_truth_hz = 0.0;
+};
+
+template <class T>
+double rate_hz(const Latest<T>& before, const Latest<T>& after, double time_s) {
+  return static_cast<double>(after.count - before.count) / time_s;
+}
+
+Rates rates_between(const View& before, const View& after, double time_s) {
+  return {rate_hz(before.estimate, after.estimate, time_s),
+          rate_hz(before.reference, after.reference, time_s), rate_hz(before.battery, after.battery, time_s),
+          rate_hz(before.truth, after.truth, time_s)};
+}
+
+template <class T>
+nlohmann::ordered_json age_of(const Latest<T>& latest, Clock::time_point now) {
+  if (!latest.seen()) return nullptr;
+  return latest.age_s(now);
+}
+
+const char* role_name(const msg::ControllerState& state) {
+  return state.role() == msg::ControllerState_Constants::ACTIVE ? "active" : "standby";
+}
+
+// Those that live, the active one first, then by strength.
+std::vector<msg::ControllerState> controllers_of(const View& view, Clock::time_point now) {
+  std::vector<msg::ControllerState> controllers;
+  for (const auto& [number, latest] : view.controllers) {
+    if (latest.age_s(now) < kControllerSilence_s) controllers.push_back(latest.message);
+  }
+  std::sort(controllers.begin(), controllers.end(), [](const auto& a, const auto& b) {
+    return std::tuple(a.role(), a.strength(), a.controller()) >
+           std::tuple(b.role(), b.strength(), b.controller());
+  });
+  return controllers;
+}
+
+nlohmann::ordered_json to_json(const View& view, const Rates& rates, const RequestOptions& options) {
+  const auto now = Clock::now();
+  const auto& control = view.control.message;
+  const auto& mission = view.mission.message;
+  nlohmann::ordered_json json;
+  json["vehicle"] = options.network.vehicle;
+  json["domain"] = options.network.domain;
+  json["mode"] = mode_name(control.mode());
+  json["reason"] = control.reason().c_str();
+  json["airborne"] = control.airborne();
+  json["has_pose"] = control.has_pose();
+  json["pose_age_s"] = control.pose_age_s();
+  json["position_ned_m"] = nullptr;
+  json["velocity_ned_m_s"] = nullptr;
+  if (view.estimate.seen()) {
+    json["position_ned_m"] = view.estimate.message.position_ned();
+    json["velocity_ned_m_s"] = view.estimate.message.velocity_ned();
+    json["poses"] = {{"fault", pose_fault_name(view.estimate.message.pose_fault())},
+                     {"accepted", view.estimate.message.poses_accepted()},
+                     {"refused", view.estimate.message.poses_refused()},
+                     {"resets", view.estimate.message.resets()}};
+  }
+  json["battery"] = nullptr;
+  if (view.battery.seen()) {
+    const auto& battery = view.battery.message;
+    json["battery"] = {{"voltage_v", battery.voltage_v()},
+                       {"current_a", battery.current_a()},
+                       {"charge", battery.state_of_charge()}};
+  }
+  json["mission"] = {
+      {"id", mission.mission_id()},
+      {"state", mission_state_name(mission.state())},
+      {"item", mission.state() == msg::MissionStatus_Constants::NONE ? 0 : mission.item_index() + 1},
+      {"items", mission.item_count()},
+      {"reason", mission.reason().c_str()}};
+  json["control"] = {{"rate_hz", control.rate_hz()},
+                     {"cycles", control.cycles()},
+                     {"deadline_misses", control.deadline_misses()},
+                     {"step_time_max_us", control.step_time_max_us()},
+                     {"realtime_scheduling", control.realtime_scheduling()}};
+  json["controllers"] = nlohmann::ordered_json::array();
+  for (const msg::ControllerState& controller : controllers_of(view, now)) {
+    json["controllers"].push_back({{"number", controller.controller()},
+                                   {"role", role_name(controller)},
+                                   {"ready", controller.ready()},
+                                   {"strength", controller.strength()},
+                                   {"term", controller.term()}});
+  }
+  json["vehicle_info"] = nullptr;
+  if (view.vehicle.seen()) {
+    const auto& info = view.vehicle.message;
+    json["vehicle_info"] = {{"name", info.name().c_str()},
+                            {"simulated", info.simulated()},
+                            {"imu_rate_hz", info.imu_rate_hz()},
+                            {"rotors_running", info.rotors_running()},
+                            {"fault", info.fault().c_str()},
+                            {"sense_to_actuate_us",
+                             {{"p50", info.sense_to_actuate_p50_us()},
+                              {"p99", info.sense_to_actuate_p99_us()},
+                              {"max", info.sense_to_actuate_max_us()}}}};
+  }
+  json["rates_hz"] = {{"estimate", rates.estimate_hz},
+                      {"reference", rates.reference_hz},
+                      {"battery", rates.battery_hz},
+                      {"ground_truth", rates.ground_truth_hz}};
+  json["ages_s"] = {
+      {"control_status", age_of(view.control, now)}, {"vehicle_info", age_of(view.vehicle, now)},
+      {"estimate", age_of(view.estimate, now)},      {"reference", age_of(view.reference, now)},
+      {"battery", age_of(view.battery, now)},        {"ground_truth", age_of(view.truth, now)}};
+  nlohmann::ordered_json peers = nlohmann::ordered_json::object();
+  for (const auto& [name, count] : view.peers) peers[name] = count > 0;
+  json["peers_alive"] = peers;
+  return json;
+}
+
+template <class T>
+std::string age_text(const Latest<T>& latest, Clock::time_point now) {
+  if (!latest.seen()) return "never came";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f s old", latest.age_s(now));
+  return text;
+}
+
+void print(const View& view, const Rates& rates, const RequestOptions& options) {
+  const auto now = Clock::now();
+  const auto& control = view.control.message;
+  const auto& mission = view.mission.message;
+  std::printf("%s in domain %d: %s (%s), %s\n", options.network.vehicle.c_str(), options.network.domain,
+              mode_name(control.mode()), control.reason().c_str(),
+              control.airborne() ? "airborne" : "on the ground");
+  if (view.estimate.seen()) {
+    const auto& p = view.estimate.message.position_ned();
+    const auto& v = view.estimate.message.velocity_ned();
+    std::printf("  position  %.3f, %.3f, %.3f m   velocity %.2f, %.2f, %.2f m/s   (NED)\n", p[0], p[1], p[2],
+                v[0], v[1], v[2]);
+  }
+  std::printf("  pose      %s, %.3f s old", control.has_pose() ? "tracked" : "MISSING", control.pose_age_s());
+  if (view.estimate.seen()) {
+    const auto& estimate = view.estimate.message;
+    std::printf(", %llu used and %llu refused", static_cast<unsigned long long>(estimate.poses_accepted()),
+                static_cast<unsigned long long>(estimate.poses_refused()));
+    if (estimate.pose_fault() != msg::Estimate_Constants::POSE_FAULT_NONE)
+      std::printf(", now as %s", pose_fault_name(estimate.pose_fault()));
+    if (estimate.resets() > 0) std::printf(", %u resets", estimate.resets());
+  }
+  std::printf("\n");
+  if (view.battery.seen()) {
+    const auto& battery = view.battery.message;
+    std::printf("  battery   %.2f V, %.2f A, %.0f %%\n", battery.voltage_v(), battery.current_a(),
+                battery.state_of_charge() * 100.0);
+  }
+  if (mission.state() != msg::MissionStatus_Constants::NONE) {
+    std::printf("  mission   %s, item %u of %u\n", mission_state_name(mission.state()),
+                mission.item_index() + 1, mission.item_count());
+  }
+  std::printf(
+      "  control   %.1f Hz since the rotors were started, %llu of %llu steps late, longest step %.0f us%s\n",
+      control.rate_hz(), static_cast<unsigned long long>(control.deadline_misses()),
+      static_cast<unsigned long long>(control.cycles()), control.step_time_max_us(),
+      control.realtime_scheduling() ? "" : ", no real-time scheduling");
+  for (const msg::ControllerState& controller : controllers_of(view, now)) {
+    std::printf("  controller %016llx: %s%s, strength %u, term %u\n",
+                static_cast<unsigned long long>(controller.controller()), role_name(controller),
+                controller.ready() ? "" : ", not ready", controller.strength(), controller.term());
+  }
+  if (view.vehicle.seen()) {
+    const auto& info = view.vehicle.message;
+    std::printf(
+        "  vehicle   %s%s, IMU at %.0f Hz, sense to actuate p50 %.0f us, p99 %.0f us, max %.0f us%s%s\n",
+        info.name().c_str(), info.simulated() ? " (simulated)" : "", info.imu_rate_hz(),
+        info.sense_to_actuate_p50_us(), info.sense_to_actuate_p99_us(), info.sense_to_actuate_max_us(),
+        info.fault().size() > 0 ? "; FAULT: " : "", info.fault().c_str());
+  }
+  std::printf("  rates     estimate %.0f Hz, reference %.0f Hz, battery %.0f Hz, ground truth %.0f Hz\n",
+              rates.estimate_hz, rates.reference_hz, rates.battery_hz, rates.ground_truth_hz);
+  std::printf("  ages      control status %s, vehicle info %s, estimate %s, battery %s\n",
+              age_text(view.control, now).c_str(), age_text(view.vehicle, now).c_str(),
+              age_text(view.estimate, now).c_str(), age_text(view.battery, now).c_str());
+}
+
+int show_status(const Options& options) {
+  Client client(options.network);
+  client.hear_controllers();
+  if (!client.wait(options.timeout(), [](const View& view) { return view.control.seen(); })) {
+    std::fprintf(stderr, "swiftlet: status: %s\n", client.no_control().c_str());
+    return kFailed;
+  }
+  // What is there comes within moments; what does not is shown as missing.
+  client.wait(kRestTimeout, [](const View& view) {
+    return view.vehicle.seen() && view.battery.seen() && view.estimate.seen() && view.mission.seen();
+  });
+  const View before = client.view();
+  client.wait(std::chrono::milliseconds(static_cast<std::int64_t>(options.watch_s * 1e3)),
+              [](const View&) { return false; });
+  const View after = client.view();
+  const Rates rates = rates_between(before, after, options.watch_s);
+  if (options.json) {
+    std::printf("%s\n", to_json(after, rates, options).dump(2).c_str());
+  } else {
+    print(after, rates, options);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+Command add_status_command(runtime::CommandLine root) {
+  const auto options = std::make_shared<Options>();
+  const runtime::CommandLine app =
+      add_request_subcommand(root, "status", "Say mode, position, battery, rates, ages and mission",
+                             "swiftlet status --json | jq .battery.voltage_v", options);
+  app.add_option("--watch", options->watch_s, "how long rates are counted, s")
+      .range(0.1, 60.0)
+      .show_default();
+  return {app, [options] { return show_status(*options); }};
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,57 @@
+#include <algorithm>
+#include <cstdio>
+
+#include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/cli/request_command.hpp"
+#include "swiftlet/ground/command_line/installation.hpp"
+#include "swiftlet/io/missions/mission_file.hpp"
+#include "swiftlet/io/settings/control_settings_file.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+struct Options : AskOptions {
+  std::string file;
+  std::string control = "motor_lag";
+};
+
+// Of a file that holds one trajectory; take-off and landing around it are left out.
+control::Trajectory trajectory_of(const MissionFile& file, const std::string& path) {
+  const auto is_trajectory = [](const control::MissionItem& item) {
+    return item.kind == control::MissionItemKind::kTrajectory;
+  };
+  const auto& items = file.mission.items;
+  if (std::count_if(items.begin(), items.end(), is_trajectory) != 1) {
+    throw InputError(path + ": holds no trajectory; `swiftlet mission fly` flies missions");
+  }
+  return {0, file.mission.segments};
+}
+
+int send_trajectory(const Options& options) {
+  const auto settings = runtime::load_control_settings(configuration_file("control", options.control));
+  const std::string path = configuration_file("missions", options.file);
+  const MissionFile file = load_mission_file(path, settings.limits);
+  const control::Trajectory trajectory = trajectory_of(file, path);
+  for (const std::string& assumption : file.assumptions)
+    std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
+  return run_request(options, "trajectory",
+                     [&](Vehicle& vehicle) { return vehicle.follow(trajectory, options.timeout()); });
+}
+
+}  // namespace
+
+Command add_trajectory_command(runtime::CommandLine root) {
+  const auto options = std::make_shared<Options>();
+  const runtime::CommandLine app = add_ask_subcommand(
+      root, "trajectory",
+      "Send a trajectory to a vehicle that holds, follows setpoints or flies another: it joins this one from "
+      "its present motion",
+      "swiftlet trajectory figure8.csv", options, Vehicles::kOne);
+  app.add_option("file", options->file, "trajectory or waypoints as CSV").required();
+  app.add_option("--control", options->control,
+                 "control settings whose limits and fence the file is checked against")
+      .show_default();
+  return {app, [options] { return send_trajectory(*options); }};
+}
+
+}  // namespace swiftlet::ground

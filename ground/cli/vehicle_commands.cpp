@@ -1,0 +1,123 @@
+// `swiftlet arm`, `disarm`, `takeoff`, `goto`, `hold`, `land` and `stop`: one action of a running vehicle each.
+#include <array>
+#include <cstdio>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <unistd.h>
+
+#include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/cli/request_command.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+struct TakeoffOptions : AskOptions {
+  double height_m = 1.0;
+  double speed = 0.5;
+};
+
+struct GotoOptions : AskOptions {
+  std::array<double, 3> position_ned{};
+  std::optional<double> yaw_rad;
+  double speed = 0.5;
+};
+
+struct LandOptions : AskOptions {
+  double speed = 0.4;
+};
+
+struct StopOptions : AskOptions {
+  bool yes = false;
+};
+
+// At a terminal only: a script says --yes.
+void confirm(const StopOptions& options) {
+  if (options.yes) return;
+  if (isatty(STDIN_FILENO) == 0 || isatty(STDERR_FILENO) == 0)
+    throw InputError(
+        "stop: the rotors go off in the air too, and the vehicle falls; without a terminal say --yes");
+  const bool one = split_list(options.network.vehicle).size() == 1;
+  std::fprintf(stderr, "Rotors off at once, wherever %s %s: in the air %s. Type stop to do it: ",
+               options.network.vehicle.c_str(), one ? "is" : "are", one ? "it falls" : "they fall");
+  std::string typed;
+  std::getline(std::cin, typed);
+  if (typed != "stop") throw InputError("stop: not confirmed, nothing was sent");
+}
+
+}  // namespace
+
+Command add_arm_command(runtime::CommandLine root) {
+  return add_plain_request_command(
+      root, "arm", "Start the rotors turning on the ground, once all checks pass", &Vehicle::arm);
+}
+
+Command add_disarm_command(runtime::CommandLine root) {
+  return add_plain_request_command(root, "disarm", "Stop the rotors on the ground", &Vehicle::disarm);
+}
+
+Command add_takeoff_command(runtime::CommandLine root) {
+  const auto options = std::make_shared<TakeoffOptions>();
+  const runtime::CommandLine app = add_ask_subcommand(
+      root, "takeoff", "Climb straight up and hold; arm first", "swiftlet takeoff 1.2 --speed 0.5", options);
+  app.add_option("height", options->height_m, "height above the origin, m").positive().show_default();
+  app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
+  return {app, [options] {
+            return run_request(*options, "takeoff", [&](Vehicle& vehicle) {
+              return vehicle.take_off(options->height_m, options->speed, options->timeout());
+            });
+          }};
+}
+
+Command add_goto_command(runtime::CommandLine root) {
+  const auto options = std::make_shared<GotoOptions>();
+  const runtime::CommandLine app = add_ask_subcommand(
+      root, "goto", "Fly straight to a place, north, east and down of the origin, and hold there",
+      "swiftlet goto -1 0 -1.5 --yaw 1.57    (1 m south of the origin, 1.5 m up, nose to the east)", options,
+      Vehicles::kOne);  // a place has room for one
+  constexpr const char* kNames[] = {"x", "y", "z"};
+  constexpr const char* kMeanings[] = {"north, m", "east, m", "down, m: negative is up"};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    app.add_option(kNames[axis], options->position_ned[axis], kMeanings[axis]).required().finite();
+  }
+  app.add_option("--yaw", options->yaw_rad,
+                 "heading to be reached with the place, rad from north to the east; kept unless given")
+      .finite();
+  app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
+  return {app, [options] {
+            return run_request(*options, "goto", [&](Vehicle& vehicle) {
+              const auto& [x, y, z] = options->position_ned;
+              return vehicle.go_to({{x, y, z}, options->yaw_rad, options->speed}, options->timeout());
+            });
+          }};
+}
+
+Command add_hold_command(runtime::CommandLine root) {
+  return add_plain_request_command(root, "hold", "Stop where it is and stay there", &Vehicle::hold);
+}
+
+Command add_land_command(runtime::CommandLine root) {
+  const auto options = std::make_shared<LandOptions>();
+  const runtime::CommandLine app = add_ask_subcommand(
+      root, "land", "Descend straight down and stop the rotors", "swiftlet land --speed 0.3", options);
+  app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
+  return {app, [options] {
+            return run_request(*options, "land", [&](Vehicle& vehicle) {
+              return vehicle.land(options->speed, options->timeout());
+            });
+          }};
+}
+
+Command add_stop_command(runtime::CommandLine root) {
+  const auto options = std::make_shared<StopOptions>();
+  const runtime::CommandLine app = add_ask_subcommand(
+      root, "stop", "Emergency: rotors off at once, wherever it is", "swiftlet stop --yes", options);
+  app.add_flag("--yes,-y", options->yes, "do not ask for confirmation");
+  return {app, [options] {
+            confirm(*options);
+            return run_request(*options, "stop",
+                               [&](Vehicle& vehicle) { return vehicle.stop(options->timeout()); });
+          }};
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,176 @@
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <unistd.h>
+
+#include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/command_line/network_options.hpp"
+#include "swiftlet/ground/flight/interrupts.hpp"
+#include "swiftlet/ground/terminal/terminal_screen.hpp"
+#include "swiftlet/ground/terminal/watch_screen.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int kFrame_ms = 100;
+constexpr auto kRateTime = 1s;
+constexpr auto kAnswerTimeout = 2s;
+
+struct Options {
+  comms::NodeSettings network;
+  bool plain = false;
+  std::optional<double> duration_s;
+};
+
+// Rates, of what came within the last second.
+class Rates {
+ public:
+  void look(const View& view, WatchFacts& facts) {
+    const auto now = Clock::now();
+    if (!begun_) {
+      begun_ = now;
+      before_ = view;
+    }
+    const double time_s = std::chrono::duration<double>(now - *begun_).count();
+    if (now - *begun_ < kRateTime) return;
+    const auto rate = [time_s](std::uint64_t before, std::uint64_t after) {
+      return after >= before ? static_cast<double>(after - before) / time_s : 0.0;
+    };
+    facts.estimate_hz = rate(before_.estimate.count, view.estimate.count);
+    facts.battery_hz = rate(before_.battery.count, view.battery.count);
+    facts.pose_hz = rate(poses(before_), poses(view));
+    begun_ = now;
+    before_ = view;
+  }
+
+ private:
+  static std::uint64_t poses(const View& view) {
+    return view.estimate.message.poses_accepted() + view.estimate.message.poses_refused();
+  }
+  std::optional<Clock::time_point> begun_;
+  View before_;
+};
+
+// The keys: a letter names what is to be asked, y confirms it.
+class Keys {
+ public:
+  explicit Keys(Client& client) : client_(client) {}
+
+  // False: to quit.
+  bool press(int key, std::string& message) {
+    if (asked_ != nullptr) {
+      message = key == 'y' || key == 'Y' ? answer_of(*asked_) : std::string(asked_->name) + ": not confirmed";
+      asked_ = nullptr;
+      return true;
+    }
+    if (key == 'q' || key == 'Q' || key == TerminalScreen::kEscape) return false;
+    message.clear();
+    for (const Action& action : kActions) {
+      if (key != action.key) continue;
+      asked_ = &action;
+      message = action.question;
+    }
+    return true;
+  }
+
+ private:
+  struct Action {
+    char key;
+    const char* name;
+    const char* question;
+    std::uint8_t kind;
+  };
+  static constexpr Action kActions[] = {
+      {'h', "hold", "hold: stop where it is? y confirms, any other key does not",
+       msg::Command_Constants::HOLD},
+      {'l', "land", "land: straight down? y confirms, any other key does not", msg::Command_Constants::LAND},
+      {'s', "stop", "STOP: ROTORS OFF, IN THE AIR IT FALLS? y confirms, any other key does not",
+       msg::Command_Constants::STOP}};
+
+  std::string answer_of(const Action& action) {
+    msg::Command command;
+    command.kind(action.kind);
+    command.speed(kLandingSpeed_m_s);
+    const Answer answer = client_.command(command, kAnswerTimeout);
+    return std::string(action.name) + ": " + (answer.accepted() ? "accepted" : answer.reason);
+  }
+
+  static constexpr double kLandingSpeed_m_s = 0.4;
+  Client& client_;
+  const Action* asked_ = nullptr;
+};
+
+class Watch {
+ public:
+  explicit Watch(const Options& options) : client_(options.network) {
+    client_.hear_controllers();
+    facts_.vehicle = options.network.vehicle;
+    facts_.domain = options.network.domain;
+    if (options.duration_s) {
+      end_ = Clock::now() + std::chrono::milliseconds(static_cast<std::int64_t>(*options.duration_s * 1e3));
+    }
+  }
+
+  int on_screen() {
+    TerminalScreen screen;
+    Keys keys(client_);
+    while (goes_on()) {
+      screen.show(watch_screen(look(), facts_, Clock::now(), screen.width(), screen.height()));
+      const std::optional<int> key = screen.key(kFrame_ms);
+      if (key && *key != TerminalScreen::kResized && !keys.press(*key, facts_.message)) break;
+    }
+    return kDone;
+  }
+
+  int in_lines() {
+    while (goes_on()) {
+      client_.wait(kRateTime, [this](const View&) { return !goes_on(); });
+      std::printf("%s\n", watch_line(look(), facts_, Clock::now()).c_str());
+      std::fflush(stdout);
+    }
+    return client_.view().control.seen() ? kDone : kFailed;
+  }
+
+ private:
+  bool goes_on() const { return interrupts_.count() == 0 && !(end_ && Clock::now() >= *end_); }
+
+  View look() {
+    View view = client_.view();
+    rates_.look(view, facts_);
+    if (!view.control.seen()) facts_.where = client_.no_control();
+    return view;
+  }
+
+  const Interrupts interrupts_;
+  Client client_;
+  WatchFacts facts_;
+  Rates rates_;
+  std::optional<Clock::time_point> end_;
+};
+
+int watch(const Options& options) {
+  Watch watch(options);
+  const bool terminal = isatty(STDOUT_FILENO) != 0 && isatty(STDIN_FILENO) != 0;
+  return terminal && !options.plain ? watch.on_screen() : watch.in_lines();
+}
+
+}  // namespace
+
+Command add_watch_command(runtime::CommandLine root) {
+  const auto options = std::make_shared<Options>();
+  const runtime::CommandLine app =
+      root.add_subcommand("watch",
+                          "Show a vehicle on the whole terminal: state, position against reference, battery, "
+                          "rates, latencies, warnings; "
+                          "keys hold, land and stop it. Without a terminal, a line a second");
+  add_network_options(app, options->network);
+  app.add_flag("--plain", options->plain, "print a line a second, also at a terminal");
+  app.add_option("--duration", options->duration_s, "end after so many s; else with q or an interrupt")
+      .range(0.1, 86400.0);
+  app.footer("example: swiftlet watch --vehicle-name kl2");
+  return {app, [options] { return watch(*options); }};
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,383 @@
+#include "swiftlet/ground/client/client.hpp"
+
+#include <algorithm>
+#include <array>
+#include <random>
+#include <utility>
+
+#include "swiftlet/control/estimation/estimator.hpp"
+#include "swiftlet/control/types/mode.hpp"
+#include "swiftlet/ground/client/vehicles_seen.hpp"
+#include "swiftlet/services/messages/convert.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+constexpr std::chrono::milliseconds kResendPeriod{200};
+constexpr std::chrono::milliseconds kLookPeriod{20};  // how often a wait looks at what makes no noise
+// In lockstep: of telemetry, 50 samples at 100 Hz; of what is sensed and commanded besides, 30 samples with
+// an IMU at 500 Hz and 50 at 1000 Hz.
+constexpr std::int64_t kTelemetryWindowNs = 100'000'000;
+constexpr std::int64_t kSensorWindowNs = 20'000'000;
+
+std::uint64_t random_id() {
+  std::random_device device;
+  return (static_cast<std::uint64_t>(device()) << 32) | device();
+}
+
+TruthRow row_of(const msg::GroundTruth& truth) {
+  TruthRow row;
+  row.stamp_ns = truth.stamp_ns();
+  row.position_ned = truth.position_ned();
+  row.velocity_ned = truth.velocity_ned();
+  row.q_ned_from_frd = truth.q_ned_from_frd();
+  row.body_rates_frd = truth.body_rates_frd();
+  row.rotor_speeds = truth.rotor_speeds();
+  row.rotor_count = std::min<int>(truth.rotor_count(), static_cast<int>(row.rotor_speeds.size()));
+  row.supply_voltage_v = truth.supply_voltage_v();
+  row.on_ground = truth.on_ground();
+  return row;
+}
+
+ReferenceRow row_of(const msg::Reference& reference) {
+  ReferenceRow row;
+  row.stamp_ns = reference.stamp_ns();
+  row.mode = reference.mode();
+  row.position_ned = reference.position_ned();
+  row.velocity_ned = reference.velocity_ned();
+  row.yaw_rad = reference.yaw();
+  return row;
+}
+
+EstimateRow row_of(const msg::Estimate& estimate) {
+  return {estimate.stamp_ns(), estimate.position_ned(), estimate.velocity_ned()};
+}
+
+Answer answer_of(const msg::CommandAck& ack) {
+  if (ack.accepted()) return {Answer::Kind::kAccepted, ""};
+  return {Answer::Kind::kRefused, ack.reason().c_str()};
+}
+
+MissionRow row_of(const msg::MissionStatus& status) {
+  return {status.stamp_ns(), status.mission_id(), status.state(), status.item_index()};
+}
+
+// What cannot be is left out, and in lockstep what comes again because its answer is late, and the signs of a
+// motion capture that has no pose yet: they are of number 0.
+template <class Message, class Sample>
+void keep_sample(const Message& message, Track<Sample>& track) {
+  Sample sample;
+  if (comms::from_message(message, sample)) return;
+  if (sample.sequence == 0) return;
+  if (!track.empty() && track.back().stamp_ns >= sample.stamp_ns) return;
+  track.append(sample);
+}
+
+}  // namespace
+
+Client::Client(const comms::NodeSettings& settings, FlightRecord* record)
+    : settings_(settings),
+      record_(record),
+      client_id_(random_id()),
+      last_id_(random_id() >> 1),
+      node_(settings),
+      commands_(node_.publish(comms::topics::kCommand)),
+      missions_(node_.publish(comms::topics::kMission)),
+      trajectories_(node_.publish(comms::topics::kTrajectory)),
+      setpoints_(node_.publish(comms::topics::kSetpoint)) {
+  subscribe_all();
+}
+
+template <class T>
+void Client::keep(Latest<T> View::*slot, const T& message) {
+  const std::lock_guard lock(mutex_);
+  Latest<T>& latest = view_.*slot;
+  latest.message = message;
+  latest.received = Clock::now();
+  ++latest.count;
+}
+
+void Client::subscribe_all() {
+  using namespace comms::topics;
+  // States, answers and peers wake whoever waits; telemetry comes too often for that.
+  subscriptions_.push_back(
+      node_.subscribe<msg::ControlStatus>(kControlStatus, [this](const msg::ControlStatus& status) {
+        keep(&View::control, status);
+        changed_.notify_all();
+      }));
+  subscriptions_.push_back(
+      node_.subscribe<msg::MissionStatus>(kMissionStatus, [this](const msg::MissionStatus& status) {
+        if (record_ != nullptr) record_->mission.append(row_of(status));
+        keep(&View::mission, status);
+        changed_.notify_all();
+      }));
+  subscriptions_.push_back(
+      node_.subscribe<msg::VehicleInfo>(kVehicleInfo, [this](const msg::VehicleInfo& info) {
+        keep(&View::vehicle, info);
+        grant_after(info.stamp_ns());
+        changed_.notify_all();
+      }));
+  subscriptions_.push_back(node_.subscribe<msg::CommandAck>(kCommandAck, [this](const msg::CommandAck& ack) {
+    if (ack.client() != client_id_) return;
+    {
+      const std::lock_guard lock(mutex_);
+      const auto asked = answers_.find(ack.id());
+      if (asked != answers_.end()) asked->second = answer_of(ack);
+    }
+    changed_.notify_all();
+  }));
+  subscriptions_.push_back(node_.subscribe<msg::Battery>(kBattery, [this](const msg::Battery& battery) {
+    if (record_ != nullptr && record_->sensors) keep_sample(battery, record_->sensors->batteries);
+    keep(&View::battery, battery);
+  }));
+  if (record_ != nullptr && record_->sensors) subscribe_sensors(*record_->sensors);
+  subscriptions_.push_back(node_.subscribe<msg::Estimate>(kEstimate, [this](const msg::Estimate& estimate) {
+    if (record_ != nullptr) record_->estimate.append(row_of(estimate));
+    keep(&View::estimate, estimate);
+  }));
+  subscriptions_.push_back(
+      node_.subscribe<msg::Reference>(kReference, [this](const msg::Reference& reference) {
+        if (record_ != nullptr) record_->reference.append(row_of(reference));
+        keep(&View::reference, reference);
+        grant_after(reference.stamp_ns());
+        std::unique_lock lock(mutex_);
+        const auto signs = signs_;
+        lock.unlock();
+        if (signs) signs->telemetry(reference.stamp_ns());
+      }));
+  subscriptions_.push_back(
+      node_.subscribe<msg::GroundTruth>(kGroundTruth, [this](const msg::GroundTruth& truth) {
+        // In lockstep a sample comes again when its answer is late.
+        const bool again = record_ != nullptr && !record_->truth.empty() &&
+                           record_->truth.back().stamp_ns == truth.stamp_ns();
+        if (record_ != nullptr && !again) record_->truth.append(row_of(truth));
+        keep(&View::truth, truth);
+      }));
+  node_.on_peer([this](const comms::PeerEvent& peer) {
+    {
+      const std::lock_guard lock(mutex_);
+      view_.peers[peer.name] += peer.alive ? 1 : -1;
+    }
+    changed_.notify_all();
+  });
+}
+
+// That of the IMU comes last of the plant's: who sends it has got to know the others before.
+void Client::subscribe_sensors(SensorRecord& sensors) {
+  using namespace comms::topics;
+  subscriptions_.push_back(node_.subscribe<msg::RotorSpeeds>(
+      kRotorSpeeds,
+      [&sensors](const msg::RotorSpeeds& speeds) { keep_sample(speeds, sensors.rotor_speeds); }));
+  subscriptions_.push_back(
+      node_.subscribe<msg::MocapPose>(kMocapPose, [this, &sensors](const msg::MocapPose& pose) {
+        keep_sample(pose, sensors.poses);
+        note_heard(&HeardSamples::pose);
+      }));
+  subscriptions_.push_back(node_.subscribe<msg::ActuatorCommand>(
+      kActuatorCommand, [this, &sensors](const msg::ActuatorCommand& command) {
+        keep_sample(command, sensors.commands);
+        note_heard(&HeardSamples::command);
+      }));
+  subscriptions_.push_back(node_.subscribe<msg::Imu>(kImu, [this, &sensors](const msg::Imu& imu) {
+    keep_sample(imu, sensors.imu);
+    note_heard(&HeardSamples::imu);
+    grant_after(imu.stamp_ns());
+  }));
+}
+
+void Client::note_heard(bool HeardSamples::*kind) {
+  const std::lock_guard lock(mutex_);
+  view_.samples.*kind = true;
+}
+
+void Client::hear_controllers() {
+  subscriptions_.push_back(node_.subscribe<msg::ControllerState>(
+      comms::topics::kControllerState, [this](const msg::ControllerState& state) {
+        const std::lock_guard lock(mutex_);
+        Latest<msg::ControllerState>& latest = view_.controllers[state.controller()];
+        latest.message = state;
+        latest.received = Clock::now();
+        ++latest.count;
+      }));
+}
+
+View Client::view() const {
+  const std::lock_guard lock(mutex_);
+  return view_;
+}
+
+TimeGrants& Client::grants() {
+  std::unique_lock lock(mutex_);
+  if (grants_) return *grants_;
+  lock.unlock();
+  const bool every_sample = record_ != nullptr && record_->sensors;
+  auto grants = std::make_shared<TimeGrants>(node_, every_sample ? kSensorWindowNs : kTelemetryWindowNs);
+  lock.lock();
+  grants_ = std::move(grants);
+  return *grants_;
+}
+
+void Client::grant_after(std::int64_t stamp_ns) {
+  std::unique_lock lock(mutex_);
+  const auto grants = grants_;
+  lock.unlock();
+  if (grants) grants->has_come(stamp_ns);
+}
+
+void Client::stay() {
+  std::unique_lock lock(mutex_);
+  if (signs_) return;
+  lock.unlock();
+  auto signs = std::make_shared<SignsOfLife>(node_, client_id_);
+  lock.lock();
+  signs_ = std::move(signs);
+}
+
+void Client::leave() {
+  std::shared_ptr<SignsOfLife> signs;
+  const std::lock_guard lock(mutex_);
+  signs_.swap(signs);  // which outlives the lock
+}
+
+bool Client::wait(std::chrono::milliseconds timeout, const std::function<bool(const View&)>& done) const {
+  const auto deadline = Clock::now() + timeout;
+  std::unique_lock lock(mutex_);
+  while (!done(view_)) {
+    const auto now = Clock::now();
+    if (now >= deadline) return false;
+    changed_.wait_until(lock, std::min(deadline, now + kLookPeriod));
+  }
+  return true;
+}
+
+template <class T>
+Answer Client::ask(comms::Publisher<T>& publisher, const T& request, std::chrono::milliseconds timeout,
+                   const Cancelled& cancelled) {
+  const auto deadline = Clock::now() + timeout;
+  auto next_send = Clock::now();
+  bool sent = false;
+
+  std::unique_lock lock(mutex_);
+  const auto asked = answers_.emplace(request.id(), std::nullopt).first;
+  const auto settled = [&](Answer answer) {
+    answers_.erase(asked);
+    return answer;
+  };
+  while (!asked->second) {
+    const auto now = Clock::now();
+    if (cancelled && cancelled()) return settled({Answer::Kind::kCancelled, "it was cancelled"});
+    if (now >= deadline) {
+      settled({});
+      lock.unlock();
+      if (sent) {
+        return {Answer::Kind::kSilence, "no answer from the control service of " + where() +
+                                            "; `swiftlet status` says whether it still runs"};
+      }
+      return {Answer::Kind::kNoControl, no_control()};
+    }
+    if (now >= next_send) {
+      lock.unlock();
+      if (publisher.matched() > 0) {
+        const std::lock_guard sending(sending_);
+        publisher.publish(request);
+        sent = true;
+        next_send = now + kResendPeriod;
+      }
+      lock.lock();
+      if (asked->second) break;
+    }
+    changed_.wait_until(lock, std::min(deadline, now + kLookPeriod));
+  }
+  return settled(*asked->second);
+}
+
+Answer Client::command(msg::Command command, std::chrono::milliseconds timeout, const Cancelled& cancelled) {
+  command.client(client_id_);
+  command.id(++last_id_);
+  return ask(commands_, command, timeout, cancelled);
+}
+
+Answer Client::upload(const control::Mission& mission, std::chrono::milliseconds timeout,
+                      const Cancelled& cancelled) {
+  msg::Mission message = comms::to_message(mission);
+  message.client(client_id_);
+  message.id(++last_id_);
+  mission_id_ = message.id();
+  return ask(missions_, message, timeout, cancelled);
+}
+
+Answer Client::mission_command(std::uint8_t kind, std::uint64_t mission_id, std::chrono::milliseconds timeout,
+                               const Cancelled& cancelled) {
+  msg::Command request;
+  request.kind(kind);
+  request.mission_id(mission_id);
+  return command(request, timeout, cancelled);
+}
+
+Answer Client::upload(const control::Trajectory& trajectory, std::chrono::milliseconds timeout,
+                      const Cancelled& cancelled) {
+  msg::Trajectory message = comms::to_message(trajectory);
+  message.client(client_id_);
+  message.id(++last_id_);
+  return ask(trajectories_, message, timeout, cancelled);
+}
+
+bool Client::send(control::Setpoint setpoint) {
+  setpoint.stamp_ns = view().estimate.message.stamp_ns();
+  const std::lock_guard sending(sending_);
+  setpoint.sequence = ++setpoint_count_;
+  return setpoints_.matched() > 0 && setpoints_.publish(comms::to_message(setpoint));
+}
+
+std::string Client::where() const {
+  std::vector<std::string> names;
+  for (const auto& [name, count] : view().peers) {
+    if (count > 0) names.push_back(name);
+  }
+  const std::string alive = listed(names);
+  return "vehicle " + settings_.vehicle + " in domain " + std::to_string(settings_.domain) +
+         "; seen there: " + (alive.empty() ? "nothing" : alive);
+}
+
+std::string Client::no_control() const {
+  std::string text = "no control service for " + where();
+  // Those that keep to the loopback interface are seen, but do not talk to others.
+  const auto peers = view().peers;
+  const auto control = peers.find("control");
+  const bool seen = control != peers.end() && control->second > 0;
+  if (seen && !settings_.localhost_only) text += " (try --localhost-only)";
+  const std::vector<std::string> topics = node_.topics_seen();
+  const std::string own = listed(topics_of(settings_.vehicle, topics));
+  if (!own.empty()) text += "; topics seen: " + own;
+  std::vector<std::string> others = vehicles_of(topics);
+  others.erase(std::remove(others.begin(), others.end(), settings_.vehicle), others.end());
+  if (!others.empty()) return text + "; other vehicles there: " + listed(others) + " (--vehicle-name)";
+  if (!seen && own.empty()) text += "; is it started, and in this domain (--domain, ROS_DOMAIN_ID)?";
+  return text;
+}
+
+const char* pose_fault_name(std::uint8_t fault) {
+  return control::to_string(static_cast<control::PoseFault>(fault));
+}
+const char* mode_name(std::uint8_t mode) { return control::to_string(static_cast<control::Mode>(mode)); }
+
+const char* mission_state_name(std::uint8_t state) {
+  switch (state) {
+    case msg::MissionStatus_Constants::NONE:
+      return "none";
+    case msg::MissionStatus_Constants::RUNNING:
+      return "running";
+    case msg::MissionStatus_Constants::COMPLETED:
+      return "completed";
+    case msg::MissionStatus_Constants::ABORTED:
+      return "aborted";
+    case msg::MissionStatus_Constants::UPLOADED:
+      return "uploaded";
+    case msg::MissionStatus_Constants::PAUSED:
+      return "paused";
+    default:
+      return "unknown";
+  }
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,236 @@
+#include "swiftlet/ground/client/vehicle.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "swiftlet/ground/client/client.hpp"
+#include "swiftlet/ground/client/manoeuvre_course.hpp"
+#include "swiftlet/services/messages/convert.hpp"
+#include "swiftlet/services/messages/wire.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using comms::wire::quaternion;
+using comms::wire::vector;
+using control::Mode;
+using control::RequestKind;
+using std::chrono::milliseconds;
+
+constexpr double kClockGoesOn_s = 0.02;
+constexpr milliseconds kLeastTimeout{100};
+
+Judge judge_of(const control::Request& request) {
+  switch (request.kind) {
+    case RequestKind::kArm:
+      return until_mode(Mode::kArmed, Mode::kArmed);
+    case RequestKind::kDisarm:
+      return until_mode(Mode::kDisarmed, Mode::kDisarmed);
+    case RequestKind::kTakeoff:
+      return until_mode(Mode::kHolding, Mode::kTakingOff);
+    case RequestKind::kGoTo:
+      return until_at_rest(request.position_ned);
+    case RequestKind::kLand:
+      return until_landed();
+    case RequestKind::kStop:
+      return until_stopped();
+    default:
+      return until_at_rest(std::nullopt);
+  }
+}
+
+control::Request of_kind(RequestKind kind) {
+  control::Request request;
+  request.kind = kind;
+  return request;
+}
+
+using Asking = std::function<Answer(milliseconds timeout)>;
+
+Manoeuvre begin(const std::shared_ptr<Client>& client, const Asking& ask, milliseconds timeout, Mode before,
+                const std::function<Judge()>& judge) {
+  Answer answer = ask(timeout);
+  const View view = client->view();
+  return Manoeuvre(std::make_shared<Manoeuvre::Course>(
+      Manoeuvre::Course{client,
+                        std::move(answer),
+                        {before, view.control.count, view.reference.count, view.mission.count},
+                        judge()}));
+}
+
+// Once it is known in which mode the vehicle is asked.
+Manoeuvre begin(const std::shared_ptr<Client>& client, const Asking& ask, milliseconds timeout,
+                const std::function<Judge()>& judge) {
+  const auto start = Clock::now();
+  Mode mode = Mode::kDisarmed;
+  const bool seen = client->wait(timeout, [&mode](const View& view) {
+    mode = static_cast<Mode>(view.control.message.mode());
+    return view.control.seen();
+  });
+  if (!seen) {
+    const auto nobody = [&client](milliseconds) {
+      return Answer{Answer::Kind::kNoControl, client->no_control()};
+    };
+    return begin(client, nobody, timeout, mode, judge);
+  }
+  const auto passed = std::chrono::duration_cast<milliseconds>(Clock::now() - start);
+  return begin(client, ask, std::max(timeout - passed, kLeastTimeout), mode, judge);
+}
+
+VehicleState state_of(const View& view) {
+  VehicleState state;
+  if (view.control.seen()) {
+    state.mode = static_cast<Mode>(view.control.message.mode());
+    state.mode_reason = view.control.message.reason().c_str();
+    state.airborne = view.control.message.airborne();
+    state.has_pose = view.control.message.has_pose();
+    state.age_s = view.control.age_s(Clock::now());
+    state.setpoints = {view.control.message.setpoints_taken(), view.control.message.setpoints_refused(),
+                       view.control.message.setpoint_refusal().c_str()};
+  }
+  if (view.estimate.seen()) {
+    const msg::Estimate& estimate = view.estimate.message;
+    state.stamp_ns = estimate.stamp_ns();
+    state.position_ned = vector(estimate.position_ned());
+    state.velocity_ned = vector(estimate.velocity_ned());
+    state.q_ned_from_frd = quaternion(estimate.q_ned_from_frd());
+    state.body_rates_frd = vector(estimate.body_rates_frd());
+  }
+  if (view.reference.seen()) state.reference_ned = vector(view.reference.message.position_ned());
+  if (view.mission.seen()) {
+    const msg::MissionStatus& mission = view.mission.message;
+    state.mission.id = mission.mission_id();
+    state.mission.state = static_cast<control::MissionState>(mission.state());
+    state.mission.items = static_cast<int>(mission.item_count());
+    state.mission.item = state.mission.items > 0 ? static_cast<int>(mission.item_index()) + 1 : 0;
+    state.mission.reason = mission.reason().c_str();
+  }
+  if (view.battery.seen()) {
+    state.battery_voltage_v = view.battery.message.voltage_v();
+    state.battery_charge = view.battery.message.state_of_charge();
+  }
+  return state;
+}
+
+}  // namespace
+
+Vehicle::Vehicle(const comms::NodeSettings& network) : client_(std::make_shared<Client>(network)) {}
+
+Vehicle::~Vehicle() = default;
+
+Answer Vehicle::connect(milliseconds timeout) const {
+  if (client_->wait(timeout, [](const View& view) { return view.control.seen(); }))
+    return {Answer::Kind::kAccepted, ""};
+  return {Answer::Kind::kNoControl, client_->no_control()};
+}
+
+VehicleState Vehicle::state() const { return state_of(client_->view()); }
+
+bool Vehicle::wait_until(const std::function<bool(const VehicleState&)>& holds, milliseconds timeout) const {
+  return client_->wait(timeout, [&holds](const View& view) { return holds(state_of(view)); });
+}
+
+Manoeuvre Vehicle::request(const control::Request& request, milliseconds timeout) {
+  const auto ask = [&](milliseconds within) { return client_->command(comms::to_message(request), within); };
+  const auto judge = [&] { return judge_of(request); };
+  // To stop it, nothing else has to be known.
+  if (request.kind == RequestKind::kStop) return begin(client_, ask, timeout, Mode::kStopped, judge);
+  return begin(client_, ask, timeout, judge);
+}
+
+Manoeuvre Vehicle::arm(milliseconds timeout) { return request(of_kind(RequestKind::kArm), timeout); }
+
+Manoeuvre Vehicle::disarm(milliseconds timeout) { return request(of_kind(RequestKind::kDisarm), timeout); }
+
+Manoeuvre Vehicle::take_off(double height_m, double speed, milliseconds timeout) {
+  control::Request takeoff = of_kind(RequestKind::kTakeoff);
+  takeoff.position_ned.z() = -height_m;
+  takeoff.speed = speed;
+  return request(takeoff, timeout);
+}
+
+Manoeuvre Vehicle::go_to(const Place& place, milliseconds timeout) {
+  control::Request go_to = of_kind(RequestKind::kGoTo);
+  go_to.position_ned = place.position_ned;
+  go_to.yaw_free = !place.yaw_rad;
+  go_to.yaw_rad = place.yaw_rad.value_or(0.0);
+  go_to.speed = place.speed;
+  return request(go_to, timeout);
+}
+
+Manoeuvre Vehicle::hold(milliseconds timeout) { return request(of_kind(RequestKind::kHold), timeout); }
+
+Manoeuvre Vehicle::land(double speed, milliseconds timeout) {
+  control::Request land = of_kind(RequestKind::kLand);
+  land.speed = speed;
+  return request(land, timeout);
+}
+
+Manoeuvre Vehicle::stop(milliseconds timeout) { return request(of_kind(RequestKind::kStop), timeout); }
+
+Manoeuvre Vehicle::upload(const control::Mission& mission, milliseconds timeout) {
+  return begin(
+      client_, [&](milliseconds within) { return client_->upload(mission, within); }, timeout, at_once);
+}
+
+std::uint64_t Vehicle::uploaded_id() const { return client_->mission_id(); }
+
+Manoeuvre Vehicle::follow(const control::Mission& mission, milliseconds timeout) {
+  const auto ask = [&](milliseconds within) {
+    Answer uploaded = client_->upload(mission, within);
+    if (!uploaded.accepted()) return uploaded;
+    return client_->mission_command(msg::Command_Constants::MISSION_START, client_->mission_id(), within);
+  };
+  return begin(client_, ask, timeout, [this] { return until_mission_flown(client_->mission_id()); });
+}
+
+Manoeuvre Vehicle::request_of_mission(std::uint8_t kind, std::uint64_t id, milliseconds timeout) {
+  const auto ask = [&](milliseconds within) { return client_->mission_command(kind, id, within); };
+  const auto judge = [&]() -> Judge {
+    if (kind == msg::Command_Constants::MISSION_PAUSE) return until_at_rest({});
+    if (kind == msg::Command_Constants::MISSION_CLEAR) return at_once();
+    return until_mission_flown(id != 0 ? id : client_->view().mission.message.mission_id());
+  };
+  return begin(client_, ask, timeout, judge);
+}
+
+Manoeuvre Vehicle::start_mission(std::uint64_t id, milliseconds timeout) {
+  return request_of_mission(msg::Command_Constants::MISSION_START, id, timeout);
+}
+
+Manoeuvre Vehicle::pause_mission(std::uint64_t id, milliseconds timeout) {
+  return request_of_mission(msg::Command_Constants::MISSION_PAUSE, id, timeout);
+}
+
+Manoeuvre Vehicle::resume_mission(std::uint64_t id, milliseconds timeout) {
+  return request_of_mission(msg::Command_Constants::MISSION_RESUME, id, timeout);
+}
+
+Manoeuvre Vehicle::skip_mission_item(std::uint64_t id, milliseconds timeout) {
+  return request_of_mission(msg::Command_Constants::MISSION_SKIP, id, timeout);
+}
+
+Manoeuvre Vehicle::clear_mission(std::uint64_t id, milliseconds timeout) {
+  return request_of_mission(msg::Command_Constants::MISSION_CLEAR, id, timeout);
+}
+
+Manoeuvre Vehicle::follow(const control::Trajectory& trajectory, milliseconds timeout) {
+  return begin(
+      client_, [&](milliseconds within) { return client_->upload(trajectory, within); }, timeout,
+      until_trajectory_flown);
+}
+
+void Vehicle::stay() { client_->stay(); }
+
+void Vehicle::leave() { client_->leave(); }
+
+double Vehicle::clock_s() const {
+  const View view = client_->view();
+  if (!view.estimate.seen()) return VehicleState::kUnknown;
+  return 1e-9 * static_cast<double>(view.estimate.message.stamp_ns()) +
+         std::min(view.estimate.age_s(Clock::now()), kClockGoesOn_s);
+}
+
+bool Vehicle::send(const control::Setpoint& setpoint) { return client_->send(setpoint); }
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,328 @@
+#include "swiftlet/ground/flight/flight.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <utility>
+
+#include "swiftlet/control/types/mode.hpp"
+#include "swiftlet/recording/flight_window.hpp"
+#include "swiftlet/simulation/flight_schedule.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using namespace std::chrono_literals;
+using ControlMode = control::Mode;
+
+constexpr auto kReadyTimeout = 20s;
+constexpr auto kRequestTimeout = 3s;
+constexpr auto kArmTimeout = 5s;  // the estimator may need a moment for the first checks to pass
+constexpr auto kRetryPeriod = 200ms;
+constexpr auto kStep = 50ms;
+constexpr auto kLastFiguresTimeout = 1500ms;
+constexpr double kSilenceS = 3.0;  // without control_status or ground_truth
+constexpr double kLandingTimeoutS = 30.0;
+constexpr double kLandingSpeed = 0.4;  // m/s
+constexpr int kBeforeFlight = -1;      // stage of the progress; later ones are the mission's items
+
+ControlMode mode_of(const View& view) { return static_cast<ControlMode>(view.control.message.mode()); }
+
+// What is not there yet; empty when all is.
+std::string missing(const View& view) {
+  std::string list;
+  const auto need = [&list](bool there, const char* what) {
+    if (!there) list += (list.empty() ? "" : ", ") + std::string(what);
+  };
+  need(view.vehicle.seen(), "vehicle_info");
+  need(view.battery.seen(), "battery");
+  need(view.truth.seen(), "ground_truth");
+  need(view.control.seen(), "control_status");
+  need(view.reference.seen(), "reference");
+  need(view.control.message.has_pose(), "a mocap_pose that control has taken in");
+  return list;
+}
+
+// Who is not there yet; empty when all are. Samples come only when time passes.
+std::string missing_peer(const View& view) {
+  for (const char* name : {"plant", "mocap", "control"}) {
+    const auto peer = view.peers.find(name);
+    if (peer == view.peers.end() || !peer->second) return name;
+  }
+  return {};
+}
+
+// Since a stamp of the vehicle's clock, which a flight's time limits are about.
+double simulated_s(const View& view, std::int64_t since_ns) {
+  return static_cast<double>(view.truth.message.stamp_ns() - since_ns) * 1e-9;
+}
+
+// No new sample for kSilenceS, of which only what this process was awake for counts: when the computer
+// stalls, nobody is to blame.
+class Silence {
+ public:
+  bool lasts(std::uint64_t sample_count) {
+    const auto now = Clock::now();
+    const double step_s = std::min(std::chrono::duration<double>(now - looked_).count(), kLongestStepS);
+    looked_ = now;
+    lasted_s_ = sample_count == count_ ? lasted_s_ + step_s : 0.0;
+    count_ = sample_count;
+    return lasted_s_ > kSilenceS;
+  }
+
+ private:
+  static constexpr double kLongestStepS = 0.2;
+  Clock::time_point looked_ = Clock::now();
+  std::uint64_t count_ = 0;
+  double lasted_s_ = 0.0;
+};
+
+// The newest tracking error of which truth and reference are both in; NaN if there is none among the last
+// rows.
+double newest_error_m(const FlightRecord& record) {
+  constexpr std::size_t kLookBack = 64;
+  const std::size_t truths = record.truth.size();
+  const std::size_t references = record.reference.size();
+  for (std::size_t i = 0; i < std::min(truths, kLookBack); ++i) {
+    const TruthRow& truth = record.truth[truths - 1 - i];
+    for (std::size_t k = 0; k < std::min(references, kLookBack); ++k) {
+      const ReferenceRow& reference = record.reference[references - 1 - k];
+      if (reference.stamp_ns != truth.stamp_ns) continue;
+      return std::hypot(truth.position_ned[0] - reference.position_ned[0],
+                        truth.position_ned[1] - reference.position_ned[1],
+                        truth.position_ned[2] - reference.position_ned[2]);
+    }
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+Flight::Flight(Client& client, const FlightRecord& record, const MissionFile& mission,
+               double planned_duration_s, runtime::Clock clock, Watch watch, Progress& progress)
+    : client_(client),
+      record_(record),
+      mission_(mission),
+      planned_duration_s_(planned_duration_s),
+      lockstep_(clock == runtime::Clock::kLockstep),
+      watch_(std::move(watch)),
+      progress_(progress) {}
+
+void Flight::run() {
+  wait_until_ready();
+  // In lockstep time stands still without this process, and the plant ends the run.
+  if (!lockstep_) client_.stay();
+  arm();
+  if (watch_.together != nullptr) wait_for_the_others();
+  start_mission();
+  if (lockstep_) client_.grants().without_end();
+  follow();
+  client_.leave();
+  wait_for_last_figures();
+}
+
+void Flight::demand_alive() const {
+  if (const auto casualty = watch_.casualty()) throw FlightFailure(*casualty);
+}
+
+void Flight::demand_no_interrupt() const {
+  if (watch_.interrupts() > 0) throw FlightFailure("interrupted before take-off");
+}
+
+void Flight::wait_until_ready() {
+  const auto start = Clock::now();
+  while (true) {
+    std::string absent;
+    const bool ready = client_.wait(kStep, [&](const View& view) {
+      absent = lockstep_ ? missing_peer(view) : missing(view);
+      return absent.empty();
+    });
+    if (ready) break;
+    demand_alive();
+    demand_no_interrupt();
+    if (Clock::now() - start > kReadyTimeout) {
+      throw FlightFailure("after 20 s there is still missing: " + absent + "; looked for " + client_.where());
+    }
+    progress_.update(kBeforeFlight, "waiting for " + absent);
+  }
+  if (!lockstep_) return;
+  if (record_.sensors) wait_until_samples_come();
+  wait_until_paused_at(FlightSchedule::kFirstRequestNs);
+}
+
+void Flight::wait_until(const std::function<bool(const View&)>& holds, const std::string& what_not) {
+  const auto start = Clock::now();
+  while (!client_.wait(kStep, holds)) {
+    demand_alive();
+    demand_no_interrupt();
+    if (Clock::now() - start > kReadyTimeout) throw FlightFailure("after 20 s " + what_not);
+  }
+}
+
+// Before time passes. A peer may be known that does not know yet who is to hear its samples, which it sends once:
+// only the first come again and again while time stands still.
+void Flight::wait_until_samples_come() {
+  client_.grants().up_to(0);
+  wait_until([](const View& view) { return view.samples.all(); },
+             "the first samples of plant, mocap and control have not come");
+}
+
+// Grants the time up to there, and waits until it has passed and all samples are answered.
+void Flight::wait_until_paused_at(std::int64_t stamp_ns) {
+  client_.grants().up_to(stamp_ns);
+  paused_at_ns_ = stamp_ns;
+  const auto paused = [stamp_ns](const View& view) {
+    return view.vehicle.message.paused() && view.vehicle.message.stamp_ns() >= stamp_ns;
+  };
+  wait_until(paused, "simulated time has not come to " + std::to_string(stamp_ns) + " ns");
+}
+
+void Flight::arm() {
+  msg::Command command;
+  command.kind(msg::Command_Constants::ARM);
+  const auto deadline = Clock::now() + kArmTimeout;
+  while (true) {
+    const Answer answer = client_.command(command, kRequestTimeout,
+                                          [this] { return watch_.casualty() || watch_.interrupts() > 0; });
+    demand_alive();
+    demand_no_interrupt();
+    if (answer.accepted()) return;
+    const bool late = lockstep_ ? paused_at_ns_ + FlightSchedule::kRetryNs > FlightSchedule::kLastArmingNs
+                                : Clock::now() > deadline;
+    if (answer.kind != Answer::Kind::kRefused || late) throw FlightFailure("arming: " + answer.reason);
+    progress_.update(kBeforeFlight, "arming: " + answer.reason);
+    if (lockstep_) {
+      wait_until_paused_at(paused_at_ns_ + FlightSchedule::kRetryNs);
+      continue;
+    }
+    client_.wait(kRetryPeriod, [this](const View&) { return watch_.interrupts() > 0; });
+  }
+}
+
+void Flight::wait_for_the_others() {
+  watch_.together->ready();
+  while (!watch_.together->wait_for_all(kStep)) {
+    demand_alive();
+    const auto failure = watch_.together->failure();
+    if (failure || watch_.interrupts() > 0) {
+      if (lockstep_) client_.grants().without_end();  // to disarm takes time
+      bring_down(failure.value_or("interrupted"));
+    }
+    progress_.update(kBeforeFlight, "armed, waiting for the others");
+  }
+}
+
+void Flight::start_mission() {
+  const auto cancelled = [this] { return watch_.casualty() || watch_.interrupts() > 0; };
+  Answer answer = client_.upload(mission_.mission, kRequestTimeout, cancelled);
+  if (answer.accepted()) {
+    answer = client_.mission_command(msg::Command_Constants::MISSION_START, client_.mission_id(),
+                                     kRequestTimeout, cancelled);
+  }
+  demand_alive();
+  if (watch_.interrupts() > 0) bring_down("interrupted");
+  if (!answer.accepted()) throw FlightFailure("the mission was refused: " + answer.reason);
+}
+
+void Flight::follow() {
+  const std::uint64_t id = client_.mission_id();
+  const double time_limit_s = FlightSchedule::time_limit_s(planned_duration_s_);
+  const std::int64_t start_ns = client_.view().truth.message.stamp_ns();
+  Silence control_silence;
+  Silence vehicle_silence;
+  while (true) {
+    // Wakes for the end; looks around at every step besides.
+    client_.wait(kStep, [id](const View& view) {
+      return view.mission.message.mission_id() == id &&
+             view.mission.message.state() == msg::MissionStatus_Constants::COMPLETED;
+    });
+    demand_alive();
+    const View view = client_.view();
+    show(view);
+    if (watch_.interrupts() > 0) bring_down("interrupted");
+    if (watch_.together != nullptr) {
+      if (const auto failure = watch_.together->failure()) bring_down(*failure);
+    }
+    const ControlMode mode = mode_of(view);
+    if (view.mission.message.mission_id() == id) {
+      const auto state = view.mission.message.state();
+      if (state == msg::MissionStatus_Constants::COMPLETED && rotors_off(mode)) return;
+      if (state == msg::MissionStatus_Constants::ABORTED) {
+        bring_down(std::string("the mission was aborted: ") + view.mission.message.reason().c_str());
+      }
+    }
+    if (control_silence.lasts(view.control.count)) throw FlightFailure("control has said nothing for 3 s");
+    if (vehicle_silence.lasts(view.truth.count)) throw FlightFailure("the vehicle has said nothing for 3 s");
+    if (simulated_s(view, start_ns) > time_limit_s) {
+      char reason[96];
+      std::snprintf(reason, sizeof reason,
+                    "the mission took longer than %.0f s, of which %.0f s were planned", time_limit_s,
+                    planned_duration_s_);
+      bring_down(reason);
+    }
+  }
+}
+
+// Plant and control give their figures of the flight with their next status after it.
+void Flight::wait_for_last_figures() {
+  const auto landed = Clock::now();
+  client_.wait(kLastFiguresTimeout, [landed](const View& view) {
+    return !view.vehicle.message.rotors_running() && view.vehicle.received > landed &&
+           view.control.received > landed;
+  });
+}
+
+void Flight::bring_down(const std::string& reason) {
+  const int interrupts_before = watch_.interrupts();
+  progress_.say(reason +
+                (interrupts_before > 0 ? "; landing (interrupt again to end at once)" : "; landing"));
+  msg::Command land;
+  land.kind(msg::Command_Constants::LAND);
+  land.speed(kLandingSpeed);
+  const std::int64_t start_ns = client_.view().truth.message.stamp_ns();
+  Silence silence;
+  bool descending = false;
+  while (!rotors_off(mode_of(client_.view()))) {
+    if (const auto casualty = watch_.casualty())
+      throw FlightFailure(reason + "; while landing, " + *casualty);
+    if (watch_.interrupts() > std::max(1, interrupts_before))
+      throw FlightFailure(reason + "; ended in flight");
+    if (silence.lasts(client_.view().truth.count))
+      throw FlightFailure(reason + "; while landing, the vehicle has said nothing for 3 s");
+    if (simulated_s(client_.view(), start_ns) > kLandingTimeoutS)
+      throw FlightFailure(reason + "; it did not land within 30 s");
+    if (mode_of(client_.view()) == ControlMode::kArmed) {
+      msg::Command disarm;
+      disarm.kind(msg::Command_Constants::DISARM);
+      client_.command(disarm, kRetryPeriod);
+    } else if (!descending) {
+      // Refused while the rotors spool up or the descent is already on: asked again.
+      descending = client_.command(land, kRetryPeriod).accepted();
+    }
+    show(client_.view());
+    client_.wait(kRetryPeriod, [](const View& view) { return rotors_off(mode_of(view)); });
+  }
+  wait_for_last_figures();
+  throw FlightFailure(reason +
+                      (mode_of(client_.view()) == ControlMode::kStopped ? "; rotors stopped" : "; landed"));
+}
+
+void Flight::show(const View& view) {
+  const auto& mission = view.mission.message;
+  const auto& position = view.truth.message.position_ned();
+  const auto window = mission_window(record_, client_.mission_id(), mission_.mission);
+  const double time_s = window ? mission_duration_s(record_, client_.mission_id(), *window) : 0.0;
+  const std::size_t item = std::min<std::size_t>(mission.item_index(), mission_.mission.items.size() - 1);
+  char text[160];
+  std::snprintf(text, sizeof text, "%5.1f s  %zu/%zu %-10s  (%5.2f, %5.2f, %5.2f) m, %5.1f mm off, %.2f V",
+                time_s, item + 1, mission_.mission.items.size(), to_string(mission_.mission.items[item].kind),
+                position[0], position[1], position[2], newest_error_m(record_) * 1e3,
+                view.battery.message.voltage_v());
+  std::string line = text;
+  if (mode_of(view) != ControlMode::kMission)
+    line += std::string(", ") + mode_name(view.control.message.mode());
+  progress_.update(static_cast<int>(item), line);
+}
+
+}  // namespace swiftlet::ground

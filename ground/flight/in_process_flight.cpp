@@ -1,0 +1,40 @@
+#include "swiftlet/ground/flight/in_process_flight.hpp"
+
+#include <chrono>
+
+#include "swiftlet/ground/flight/flight_conclusion.hpp"
+#include "swiftlet/recording/flight_window.hpp"
+#include "swiftlet/simulation/simulated_flight.hpp"
+
+namespace swiftlet::ground {
+
+ClosedLoop closed_loop(const FlightPlan& plan, const World& world, std::uint64_t seed) {
+  return {world.vehicle, plan.vehicle, world.simulation, plan.control, seed};
+}
+
+InProcessFlight fly_in_process(ClosedLoop& loop, const FlightPlan& plan, std::uint64_t seed,
+                               FlightRecord& record, runtime::FlightTrace* trace,
+                               const std::function<bool()>& cancelled) {
+  control::Mission mission = plan.mission.mission;
+  mission.id = 1;
+  InProcessFlight done;
+  FlightReport& report = done.report;
+  report = report_of(plan);
+  report.seed = seed;
+
+  const auto start = std::chrono::steady_clock::now();
+  const SimulatedFlight flight = fly(loop, mission, plan.planned_duration_s, {&record, trace, cancelled});
+  report.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+  report.simulated_s = flight.simulated_s;
+  report.reason = flight.reason;
+  const auto window = mission_window(record, mission.id, mission);
+  if (window) {
+    done.window = *window;
+    report.duration_s = mission_duration_s(record, mission.id, *window);
+  }
+  judge(report, record, done.window);
+  return done;
+}
+
+}  // namespace swiftlet::ground

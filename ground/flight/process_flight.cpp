@@ -1,0 +1,75 @@
+#include "swiftlet/ground/flight/process_flight.hpp"
+
+#include <chrono>
+#include <memory>
+#include <utility>
+
+#include "swiftlet/ground/client/client.hpp"
+#include "swiftlet/ground/flight/flight.hpp"
+#include "swiftlet/ground/flight/flight_conclusion.hpp"
+#include "swiftlet/ground/flight/flight_settings.hpp"
+#include "swiftlet/recording/flight_window.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+void take_figures(const View& view, FlightReport& report) {
+  const auto& control = view.control.message;
+  report.control_rate_hz = control.rate_hz();
+  report.cycles = control.cycles();
+  report.deadline_misses = control.deadline_misses();
+  report.step_time_max_us = control.step_time_max_us();
+  report.realtime_scheduling = control.realtime_scheduling();
+  const auto& vehicle = view.vehicle.message;
+  if (vehicle.name().size() > 0) report.vehicle = vehicle.name().c_str();
+  report.imu_rate_hz = vehicle.imu_rate_hz();
+  report.unanswered = vehicle.unanswered();
+  report.sense_to_actuate = {vehicle.sense_to_actuate_p50_us(), vehicle.sense_to_actuate_p99_us(),
+                             vehicle.sense_to_actuate_max_us()};
+}
+
+}  // namespace
+
+ProcessFlight::ProcessFlight(FlightPlan plan, comms::NodeSettings network)
+    : plan_(std::move(plan)),
+      network_(std::move(network)),
+      record_(plan_.record_capacity()),
+      report_(report_of(plan_)) {
+  report_.vehicle_name = network_.vehicle;
+  if (plan_.sensors) record_.sensors = std::make_unique<SensorRecord>(plan_.record_capacity());
+  make_record_folder(plan_.folder);
+  keep_settings(plan_);
+  processes_.emplace(processes(plan_, network_));
+}
+
+void ProcessFlight::fly(const Interrupts& interrupts, Together* together, Progress& progress) {
+  fly_mission(interrupts, together, progress);
+  for (const std::string& complaint : processes_->stop()) {
+    if (report_.reason.empty()) report_.reason = "after the flight, " + complaint;
+  }
+  judge(report_, record_, window_);
+  keep_record(plan_.folder, record_, report_, window_, progress);
+}
+
+void ProcessFlight::fly_mission(const Interrupts& interrupts, Together* together, Progress& progress) {
+  comms::NodeSettings network = network_;
+  network.deadlines = plan_.clock != runtime::Clock::kLockstep;
+  Client client(network, &record_);
+  const auto start = Clock::now();
+  try {
+    const Flight::Watch watch{[this] { return processes_->casualty(); }, [&] { return interrupts.count(); },
+                              together};
+    Flight(client, record_, plan_.mission, plan_.planned_duration_s, plan_.clock, watch, progress).run();
+  } catch (const FlightFailure& failure) {
+    report_.reason = failure.what();
+    if (together != nullptr) together->fail(network_.vehicle + " failed: " + report_.reason);
+  }
+  report_.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
+  if (!record_.truth.empty()) report_.simulated_s = static_cast<double>(record_.truth.back().stamp_ns) * 1e-9;
+  take_figures(client.view(), report_);
+  const auto window = mission_window(record_, client.mission_id(), plan_.mission.mission);
+  if (window) report_.duration_s = mission_duration_s(record_, client.mission_id(), *window);
+  window_ = window.value_or(Window{});
+}
+
+}  // namespace swiftlet::ground

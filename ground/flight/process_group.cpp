@@ -1,0 +1,48 @@
+#include "swiftlet/ground/flight/process_group.hpp"
+
+#include <csignal>
+
+namespace swiftlet::ground {
+namespace {
+
+constexpr std::chrono::seconds kGrace{10};  // a busy machine may hold a process up for some seconds
+
+}  // namespace
+
+ProcessGroup::ProcessGroup(const std::vector<ProcessSettings>& processes) {
+  children_.reserve(processes.size());
+  for (const ProcessSettings& process : processes) children_.emplace_back(process);
+}
+
+ProcessGroup::~ProcessGroup() { stop(); }
+
+std::optional<std::string> ProcessGroup::casualty() {
+  for (ChildProcess& child : children_) {
+    const auto end = child.poll();
+    if (!end) continue;
+    const std::string last_line = child.last_log_line();
+    return child.name() + " " + end->to_string() + (last_line.empty() ? "" : "; it said last: " + last_line);
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> ProcessGroup::stop() {
+  std::vector<std::string> complaints;
+  for (ChildProcess& child : children_) child.signal(SIGTERM);
+  const auto deadline = std::chrono::steady_clock::now() + kGrace;
+  for (ChildProcess& child : children_) {
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+    const bool ended = child.wait(left).has_value();
+    const ProcessEnd end = child.stop(std::chrono::milliseconds::zero());
+    if (!ended) {
+      complaints.push_back(child.name() + " did not end by itself and was killed");
+    } else if (end.by_signal || end.code != 0) {
+      complaints.push_back(child.name() + " " + end.to_string());
+    }
+  }
+  children_.clear();
+  return complaints;
+}
+
+}  // namespace swiftlet::ground

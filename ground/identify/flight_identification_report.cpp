@@ -1,0 +1,306 @@
+#include "swiftlet/ground/identify/flight_identification_report.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "swiftlet/ground/identify/identification_figures.hpp"
+#include "swiftlet/ground/identify/report_page.hpp"
+#include "swiftlet/ground/report/svg_figure.hpp"
+#include "swiftlet/io/format.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using identification::Estimate;
+using identification::FileComparison;
+using identification::FlightIdentification;
+using identification::HorizonError;
+using identification::PredictionError;
+using identification::SpeedSource;
+using Json = nlohmann::ordered_json;
+
+constexpr double kShownS = 8.0;  // of the predictions, in the figures
+
+const char* source_text(SpeedSource source) {
+  switch (source) {
+    case SpeedSource::kMeasured:
+      return "measured rotor speeds";
+    case SpeedSource::kModelled:
+      return "rotor speeds by command and supply voltage";
+    case SpeedSource::kCommanded:
+      break;
+  }
+  return "commands and IMU alone";
+}
+
+const char* source_key(SpeedSource source) {
+  return source == SpeedSource::kMeasured   ? "measured"
+         : source == SpeedSource::kModelled ? "modelled"
+                                            : "commanded";
+}
+
+std::string what_was_fitted(const FlightIdentification& found) {
+  return format("%.1f s of flight fitted to, the %.1f s that follow predicted; ", found.fitted_s,
+                found.kept_s) +
+         source_text(found.source);
+}
+
+std::vector<std::pair<std::string, const std::vector<std::string>*>> notes(
+    const FlightIdentificationReport& report) {
+  return {{"assumed", &report.assumptions},
+          {"not excited", &report.found.unexcited},
+          {"note", &report.found.findings},
+          {"warning", &report.found.warnings}};
+}
+
+CaptionedFigure prediction_figure(const FlightIdentification& found, int quantity, const char* label) {
+  FigureSeries measured{"measured", Mark::kLine, "#1f6fb4", {}};
+  FigureSeries predicted{"predicted", Mark::kLine, "#c0392b", {}};
+  const std::vector<double>& time = found.trace.time_s;
+  for (std::size_t i = 0; i < time.size() && time[i] < kShownS; ++i) {
+    measured.points.push_back({time[i], found.trace.measured[quantity][i]});
+    predicted.points.push_back({time[i], found.trace.predicted[quantity][i]});
+  }
+  Figure figure;
+  figure.title = std::string(label) + " over time, measured and predicted";
+  figure.x_label = "time from the first row that was not fitted to (s)";
+  figure.y_label = label;
+  figure.height = 300;
+  figure.series = {measured, predicted};
+  const bool by_noise_too = found.source == SpeedSource::kCommanded;
+  return {
+      quantity < 3 || by_noise_too
+          ? format("From what was measured, anew every %g s, by the commands alone", found.trace.restart_s)
+          : "By the commands alone",
+      figure};
+}
+
+CaptionedFigure thrust_figure(const FlightIdentification& found) {
+  FigureBand band{"95 % interval", "#c0392b", {}, {}};
+  FigureSeries curve{"thrust over mass", Mark::kLine, "#c0392b", {}};
+  FigureSeries weight{"weight", Mark::kDashes, "#555555", {}};
+  const identification::CommandedThrust& thrust = found.thrust;
+  for (std::size_t i = 0; i < thrust.command.size(); ++i) {
+    const double command = thrust.command[i];
+    band.low.push_back({command, thrust.over_mass[i] - thrust.half_width[i]});
+    band.high.push_back({command, thrust.over_mass[i] + thrust.half_width[i]});
+    curve.points.push_back({command, thrust.over_mass[i]});
+    weight.points.push_back({command, plant::kGravity});
+  }
+  Figure figure;
+  figure.title = "Thrust over mass by command";
+  figure.x_label = "command of all motors (share of full command)";
+  figure.y_label = "thrust over mass (m/s^2)";
+  figure.height = 300;
+  figure.bands = {band};
+  figure.series = {curve, weight};
+  return {"Steady, of all rotors together, over the commands of this flight", figure};
+}
+
+CaptionedFigure horizon_figure(const FlightIdentification& found, const std::string& quantity) {
+  FigureSeries by_commands{"by the commands alone", Mark::kLine, "#c0392b", {}};
+  FigureSeries idle{"nothing changes", Mark::kDashes, "#1f6fb4", {}};
+  Figure figure;
+  for (const HorizonError& e : found.horizons) {
+    if (e.quantity != quantity) continue;
+    by_commands.points.push_back({e.horizon_s, e.by_commands});
+    idle.points.push_back({e.horizon_s, e.idle});
+    figure.y_label = "RMS error of " + quantity + " (" + e.unit + ")";
+  }
+  figure.title = figure.y_label + " over the time ahead";
+  figure.x_label = "time ahead (s)";
+  figure.zero_line = true;
+  figure.height = 300;
+  figure.series = {by_commands, idle};
+  return {"How far ahead the commands alone tell " + quantity, figure};
+}
+
+std::string comparison_table(const FlightIdentification& found) {
+  if (found.comparisons.empty()) return "";
+  std::string out = format("  %-30s %12s  %-10s %12s %8s  %s\n", "beside the vehicle file", "by the log",
+                           "+- (95 %)", "file", "ratio", "unit");
+  for (const FileComparison& row : found.comparisons) {
+    out += format("  %-30s %12.5g  %-10.2g %12.5g %8.3f  %s\n", row.told.parameter.c_str(), row.told.value,
+                  row.told.half_width, row.file, row.ratio(), row.told.unit.c_str());
+  }
+  return out;
+}
+
+std::string horizon_table(const FlightIdentification& found) {
+  if (found.horizons.empty()) return "";
+  std::string out = format("  %-30s %12s %12s %12s  %s\n", "by the commands alone, RMS", "ahead, s", "error",
+                           "unchanged", "unit");
+  for (const HorizonError& e : found.horizons) {
+    out += format("  %-30s %12.4g %12.4g %12.4g  %s\n", e.quantity.c_str(), e.horizon_s, e.by_commands,
+                  e.idle, e.unit.c_str());
+  }
+  return out;
+}
+
+std::string comparison_html(const FlightIdentification& found) {
+  if (found.comparisons.empty()) return "";
+  std::string out =
+      "<h2>Beside the vehicle file</h2>\n<table><tr><th>parameter</th><th>symbol</th><th>by the log</th>"
+      "<th>&plusmn; (95 %)</th><th>file</th><th>ratio</th><th>unit</th></tr>\n";
+  for (const FileComparison& row : found.comparisons) {
+    out +=
+        "<tr><td>" + html_escaped(row.told.parameter) + "</td><td>" + html_escaped(row.told.symbol) + "</td>";
+    for (const double value : {row.told.value, row.told.half_width, row.file, row.ratio()})
+      out += format("<td class=\"n\">%.4g</td>", value);
+    out += "<td>" + html_unit(row.told.unit) + "</td></tr>\n";
+  }
+  return out + "</table>\n";
+}
+
+std::string figure_html(const CaptionedFigure& figure) {
+  return "<figure>" + svg(figure.figure) + "<figcaption>" + html_escaped(figure.caption) +
+         "</figcaption></figure>\n";
+}
+
+}  // namespace
+
+std::string flight_identification_table(const FlightIdentificationReport& report) {
+  const FlightIdentification& found = report.found;
+  std::string out = found.vehicle.name + ", identified from";
+  for (const std::string& log : report.logs) out += " " + log;
+  out += "; what is not named is from " + report.base_vehicle + "\n  " + what_was_fitted(found) + "\n";
+  out += format("  %-30s %-17s %12s  %-10s %s\n", "parameter", "symbol", "value", "+- (95 %)", "unit");
+  for (const Estimate& e : found.estimates) {
+    out += format("  %-30s %-17s %12.5g  %-10.2g %s\n", e.parameter.c_str(), e.symbol.c_str(), e.value,
+                  e.half_width, e.unit.c_str());
+  }
+  out += comparison_table(found);
+  if (found.step_s > 0.0) out += format("  one step of the predictions is %.4g s\n", found.step_s);
+  out += format("  %-30s %12s %12s %12s %12s  %s\n", "prediction error, RMS", "one step", "unchanged",
+                "0.5 s", "unchanged", "unit");
+  for (const PredictionError& e : found.errors) {
+    out += format("  %-30s %12.4g %12.4g %12.4g %12.4g  %s\n", e.quantity.c_str(), e.one_step,
+                  e.idle_one_step, e.half_second, e.idle_half_second, e.unit.c_str());
+  }
+  out += horizon_table(found);
+  for (const auto& [kind, sentences] : notes(report)) {
+    for (const std::string& sentence : *sentences) out += "  " + kind + ": " + sentence + "\n";
+  }
+  return out;
+}
+
+std::string flight_identification_json(const FlightIdentificationReport& report) {
+  const FlightIdentification& found = report.found;
+  Json logs = Json::array();
+  for (std::size_t i = 0; i < report.logs.size(); ++i) {
+    logs.push_back({{"file", report.logs[i]},
+                    {"from_row", found.windows[i].flight.first},
+                    {"to_row", found.windows[i].flight.last}});
+  }
+  Json parameters = Json::array();
+  for (const Estimate& e : found.estimates) {
+    parameters.push_back({{"parameter", e.parameter},
+                          {"symbol", e.symbol},
+                          {"value", e.value},
+                          {"standard_error", e.standard_error},
+                          {"interval_95", {e.low(), e.high()}},
+                          {"unit", e.unit}});
+  }
+  Json prediction = Json::array();
+  for (const PredictionError& e : found.errors) {
+    prediction.push_back({{"quantity", e.quantity},
+                          {"unit", e.unit},
+                          {"one_step", e.one_step},
+                          {"idle_one_step", e.idle_one_step},
+                          {"half_second", e.half_second},
+                          {"idle_half_second", e.idle_half_second}});
+  }
+  Json out = {{"vehicle", found.vehicle.name},
+              {"base_vehicle", report.base_vehicle},
+              {"logs", logs},
+              {"source", source_key(found.source)},
+              {"fitted_s", found.fitted_s},
+              {"kept_s", found.kept_s},
+              {"parameters", parameters}};
+  if (found.source == SpeedSource::kCommanded) {
+    Json lags = Json::array();
+    for (const Estimate& e : found.lags)
+      lags.push_back({{"response", e.parameter},
+                      {"value", e.value},
+                      {"interval_95", {e.low(), e.high()}},
+                      {"unit", e.unit}});
+    Json comparisons = Json::array();
+    for (const FileComparison& row : found.comparisons) {
+      comparisons.push_back({{"parameter", row.told.parameter},
+                             {"value", row.told.value},
+                             {"interval_95", {row.told.low(), row.told.high()}},
+                             {"file", row.file},
+                             {"ratio", row.ratio()},
+                             {"unit", row.told.unit}});
+    }
+    Json horizons = Json::array();
+    for (const HorizonError& e : found.horizons) {
+      horizons.push_back({{"quantity", e.quantity},
+                          {"unit", e.unit},
+                          {"horizon_s", e.horizon_s},
+                          {"by_commands", e.by_commands},
+                          {"idle", e.idle}});
+    }
+    out["lags"] = lags;
+    out["beside_file"] = comparisons;
+    out["step_s"] = found.step_s;
+    out["horizons"] = horizons;
+    out["thrust_per_mass"] = {{"command", found.thrust.command},
+                              {"value", found.thrust.over_mass},
+                              {"half_width_95", found.thrust.half_width}};
+  }
+  out["prediction"] = prediction;
+  out["assumptions"] = report.assumptions;
+  out["unexcited"] = found.unexcited;
+  out["findings"] = found.findings;
+  out["warnings"] = found.warnings;
+  return out.dump();
+}
+
+std::string flight_identification_html(const FlightIdentificationReport& report) {
+  const FlightIdentification& found = report.found;
+  std::string out =
+      page_head("Identification of " + found.vehicle.name + " from flights") + "<p class=\"quiet\">from";
+  for (const std::string& log : report.logs) out += " " + html_escaped(log);
+  out += "; " + html_escaped(what_was_fitted(found)) + "; what is not named is from " +
+         html_escaped(report.base_vehicle) +
+         "</p>\n<p class=\"quiet\">Intervals are those of 95 in 100 such flights: Student's t, residuals "
+         "correlated inside each half "
+         "second as the data show it</p>\n" +
+         estimates_html(found.estimates);
+  for (const auto& [kind, sentences] : notes(report)) {
+    const bool loud = kind == "warning" || kind == "not excited";
+    for (const std::string& sentence : *sentences)
+      out += std::string("<p class=\"") + (loud ? "warning" : "finding") + "\">" + kind + ": " +
+             html_escaped(sentence) + ".</p>\n";
+  }
+  out += comparison_html(found);
+  out +=
+      "<h2>Prediction of flight that was not fitted to</h2>\n<table><tr><th>RMS error of</th><th>one "
+      "step</th><th>if unchanged</th>"
+      "<th>0.5 s</th><th>if unchanged</th><th>unit</th></tr>\n";
+  for (const PredictionError& e : found.errors) {
+    out += "<tr><td>" + html_escaped(e.quantity) + "</td>";
+    for (const double value : {e.one_step, e.idle_one_step, e.half_second, e.idle_half_second})
+      out += format("<td class=\"n\">%.4g</td>", value);
+    out += "<td>" + html_unit(e.unit) + "</td></tr>\n";
+  }
+  out += "</table>\n";
+  if (found.step_s > 0.0)
+    out += format(
+        "<p class=\"quiet\">One step is %.4g s; half a second ahead: the best sum, by the fitted part, of "
+        "what the commands ask for, the value at the start and the mean</p>\n",
+        found.step_s);
+  out += "<div class=\"figures\">\n";
+  const char* const labels[4] = {"p (rad/s)", "q (rad/s)", "r (rad/s)", "specific force along z (m/s^2)"};
+  for (int i = 0; i < 4; ++i) {
+    const CaptionedFigure figure = prediction_figure(found, i, labels[i]);
+    out += figure_html(figure);
+  }
+  if (found.source == SpeedSource::kCommanded) {
+    out += figure_html(thrust_figure(found));
+    for (const char* const quantity : {"p", "q", "r"}) out += figure_html(horizon_figure(found, quantity));
+  }
+  return out + "</div>\n</body></html>\n";
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,242 @@
+#include "swiftlet/ground/identify/identification_report.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "swiftlet/ground/identify/identification_figures.hpp"
+#include "swiftlet/ground/identify/report_page.hpp"
+#include "swiftlet/ground/report/svg_figure.hpp"
+#include "swiftlet/io/format.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using identification::BenchIdentification;
+using identification::Estimate;
+using identification::Experiment;
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<const char*, 3> kInertiaTitles = {"Moment of inertia, roll", "Moment of inertia, pitch",
+                                                       "Moment of inertia, yaw"};
+constexpr std::size_t kMostOutliersShown = 30;
+constexpr std::size_t kFewOutliers = 4;  // that the page shows unasked
+
+// One fit with all that a reader wants to see of it.
+struct Part {
+  std::string name;  // of the file, without its ending
+  std::string title;
+  const Experiment* fit = nullptr;
+  std::vector<Estimate> estimates;
+  std::vector<std::string> findings;
+  std::vector<CaptionedFigure> figures;
+};
+
+Part part_of(const char* name, const char* title, const Experiment& fit,
+             std::vector<CaptionedFigure> figures) {
+  figures.push_back(residual_figure(fit));
+  return {name, title, &fit, fit.estimates, fit.findings, std::move(figures)};
+}
+
+void add_propeller(Part& part, const std::optional<Estimate>& coefficient) {
+  if (coefficient) part.estimates.push_back(*coefficient);
+}
+
+Part motor_step_part(const identification::MotorStepData& data, const BenchIdentification& found) {
+  const identification::MotorStep& step = *found.motor_step;
+  const bool physical = found.vehicle.motor.model == plant::MotorModel::kPhysical;
+  Part part = part_of(identification::kMotorStepName, "Motor step, Eq. (15)-(18)",
+                      physical ? step.physical : step.reduced, {motor_step_figure(data, step)});
+  Estimate other = physical ? step.reduced.estimates[0] : step.physical.estimates[0];
+  other.parameter = physical ? "motor_step.reduced" : "motor_step.physical";
+  part.estimates.insert(part.estimates.end(), {other, step.reading, step.rotor_inertia});
+  part.findings = step.findings;
+  return part;
+}
+
+std::vector<Part> parts_of(const IdentificationReport& report) {
+  const identification::BenchData& data = report.bench.data;
+  const BenchIdentification& found = report.found;
+  std::vector<Part> parts;
+  if (found.esc)
+    parts.push_back(part_of(identification::kEscName, "ESC, Eq. (7)-(9)", *found.esc,
+                            esc_figures(*data.esc, *found.esc)));
+  if (found.motor_step) parts.push_back(motor_step_part(*data.motor_step, found));
+  if (found.steady_motor)
+    parts.push_back(part_of(identification::kSteadyMotorName, "Motor in the steady state, Eq. (19)-(22)",
+                            *found.steady_motor,
+                            {steady_motor_figure(*data.steady_motor, *found.steady_motor)}));
+  if (found.thrust) {
+    parts.push_back(part_of(identification::kThrustTorqueName, "Thrust, Eq. (23) and (25)", *found.thrust,
+                            {thrust_figure(*data.thrust_torque, *found.thrust)}));
+    add_propeller(parts.back(), found.propeller.thrust);
+  }
+  if (found.torque) {
+    parts.push_back(part_of(identification::kThrustTorqueName, "Torque, Eq. (24) and (26)", *found.torque,
+                            {torque_figure(*data.thrust_torque, *found.torque)}));
+    add_propeller(parts.back(), found.propeller.torque);
+    if (found.propeller.figure_of_merit)
+      parts.back().findings.push_back(format("figure of merit %.2f (ideal over real power, momentum theory)",
+                                             *found.propeller.figure_of_merit));
+  }
+  if (found.throttle_thrust)
+    parts.push_back(
+        part_of(identification::kThrottleThrustName, "Thrust over throttle", *found.throttle_thrust,
+                {throttle_thrust_figure(*data.throttle_thrust, *found.throttle_thrust, found.vehicle)}));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (found.inertia[axis])
+      parts.push_back(
+          part_of(identification::kInertiaNames[axis], kInertiaTitles[axis], *found.inertia[axis], {}));
+  }
+  if (found.mass) parts.push_back(part_of(identification::kMassName, "Mass", *found.mass, {}));
+  return parts;
+}
+
+// A constant explains nothing of its readings' spread.
+std::string r_squared_text(const Experiment& fit) {
+  return fit.r_squared > 1e-9 ? format("%8.5f", fit.r_squared) : "       -";
+}
+
+std::vector<int> outlier_lines(const IdentificationReport& report, const Part& part) {
+  std::vector<int> lines;
+  for (const std::size_t row : part.fit->outliers)
+    lines.push_back(report.bench.files.at(part.name).lines[row]);
+  return lines;
+}
+
+std::string outliers_html(const IdentificationReport& report, const Part& part) {
+  const std::vector<int> lines = outlier_lines(report, part);
+  if (lines.empty()) return "";
+  std::string out =
+      format("<details%s><summary>%zu of %zu rows are outliers and were left out</summary>\n",
+             lines.size() <= kFewOutliers ? " open" : "", lines.size(), part.fit->measured.size());
+  out += "<table><tr><th>line of the file</th><th>measured</th><th>fitted</th><th>unit</th></tr>\n";
+  for (std::size_t i = 0; i < std::min(lines.size(), kMostOutliersShown); ++i) {
+    const std::size_t row = part.fit->outliers[i];
+    out += format("<tr><td class=\"n\">%d</td><td class=\"n\">%.5g</td><td class=\"n\">%.5g</td><td>",
+                  lines[i], part.fit->measured[row], part.fit->predicted[row]) +
+           html_unit(part.fit->residual_unit) + "</td></tr>\n";
+  }
+  out += "</table>\n";
+  if (lines.size() > kMostOutliersShown)
+    out += format("<p class=\"quiet\">and %zu more</p>\n", lines.size() - kMostOutliersShown);
+  return out + "</details>\n";
+}
+
+std::string part_html(const IdentificationReport& report, const Part& part) {
+  std::string out = "<h2>" + html_escaped(part.title) + "</h2>\n<p class=\"quiet\">" +
+                    html_escaped(report.bench.files.at(part.name).file) +
+                    format(": %zu rows; R\xc2\xb2 ", part.fit->measured.size()) + r_squared_text(*part.fit) +
+                    format("; the fit leaves %.3g ", part.fit->residual_sd) +
+                    html_unit(part.fit->residual_unit) + " (standard deviation)</p>\n" +
+                    estimates_html(part.estimates);
+  for (const std::string& finding : part.findings)
+    out += "<p class=\"finding\">" + html_escaped(finding) + ".</p>\n";
+  for (const std::string& warning : part.fit->warnings)
+    out += "<p class=\"warning\">" + html_escaped(warning) + ".</p>\n";
+  out += outliers_html(report, part) + "<div class=\"figures\">\n";
+  for (const CaptionedFigure& figure : part.figures) {
+    out += "<figure>" + svg(figure.figure) + "<figcaption>" + html_escaped(figure.caption) +
+           "</figcaption></figure>\n";
+  }
+  return out + "</div>\n";
+}
+
+std::string summary_html(const IdentificationReport& report) {
+  const std::map<std::string, std::string>& sources = report.found.sources;
+  std::string out =
+      "<p class=\"quiet\">Intervals hold in 95 of 100 benches of this kind (Student's t, spread of the "
+      "readings as "
+      "the data show it). What is not named below was not measured and is from the base vehicle " +
+      html_escaped(report.base_vehicle) + ".</p>\n";
+  out += "<table><tr><th>in the vehicle file</th><th>value</th><th>95 % interval</th><th>source</th></tr>\n";
+  for (const plant::ParameterUncertainty& p : report.found.uncertainty.parameters) {
+    out += "<tr><td>" + html_escaped(p.parameter) + "</td>" +
+           format("<td class=\"n\">%.5g</td><td class=\"n\">%.5g to %.5g</td><td>", 0.5 * (p.low + p.high),
+                  p.low, p.high) +
+           html_escaped(sources.at(p.parameter)) + "</td></tr>\n";
+  }
+  out += "</table>\n";
+  for (const std::string& warning : report.found.warnings)
+    out += "<p class=\"warning\">" + html_escaped(warning) + ".</p>\n";
+  return out;
+}
+
+Json json_of(const Estimate& estimate, const std::string& experiment) {
+  return {{"parameter", estimate.parameter},
+          {"symbol", estimate.symbol},
+          {"value", estimate.value},
+          {"standard_error", estimate.standard_error},
+          {"interval_95", {estimate.low(), estimate.high()}},
+          {"unit", estimate.unit},
+          {"experiment", experiment}};
+}
+
+}  // namespace
+
+std::string identification_html(const IdentificationReport& report) {
+  const std::string title = "Identification of " + report.found.vehicle.name;
+  std::string out =
+      page_head(title) + "<p class=\"quiet\">from the bench data in " + html_escaped(report.bench_folder) +
+      "; equations and figures are numbered as in Phang, Li, Wang, Chen, Lee, <i>Explicit Model "
+      "Identification and Control of a Micro Aerial Vehicle</i>, ICUAS 2014</p>\n" +
+      summary_html(report);
+  for (const Part& part : parts_of(report)) out += part_html(report, part);
+  return out + "</body></html>\n";
+}
+
+std::string identification_table(const IdentificationReport& report) {
+  std::string out = report.found.vehicle.name + ", identified from " + report.bench_folder +
+                    "; what is not named is from " + report.base_vehicle + "\n" +
+                    format("  %-24s %-7s %12s  %-10s %-12s %-16s %8s %8s\n", "parameter", "symbol", "value",
+                           "+- (95 %)", "unit", "from", "R^2", "outliers");
+  std::string notes;
+  for (const Part& part : parts_of(report)) {
+    for (std::size_t i = 0; i < part.estimates.size(); ++i) {
+      const Estimate& e = part.estimates[i];
+      out += format("  %-24s %-7s %12.5g  %-10.2g %-12s %-16s", e.parameter.c_str(), e.symbol.c_str(),
+                    e.value, e.half_width, e.unit.c_str(), part.name.c_str());
+      out += i == 0 ? " " + r_squared_text(*part.fit) + format(" %8zu\n", part.fit->outliers.size()) : "\n";
+    }
+    for (const std::string& finding : part.findings) notes += "  " + part.title + ": " + finding + "\n";
+    for (const std::string& warning : part.fit->warnings)
+      notes += "  warning: " + part.title + ": " + warning + "\n";
+    const std::vector<int> lines = outlier_lines(report, part);
+    if (lines.empty()) continue;
+    notes += "  " + part.title + ": outliers, left out, of " + part.name + ".csv: lines";
+    for (std::size_t i = 0; i < std::min(lines.size(), kMostOutliersShown); ++i)
+      notes += " " + std::to_string(lines[i]);
+    notes += lines.size() > kMostOutliersShown ? " ...\n" : "\n";
+  }
+  for (const std::string& warning : report.found.warnings) notes += "  warning: " + warning + "\n";
+  return out + notes;
+}
+
+std::string identification_json(const IdentificationReport& report) {
+  Json parameters = Json::array();
+  Json experiments = Json::array();
+  for (const Part& part : parts_of(report)) {
+    for (const Estimate& estimate : part.estimates) parameters.push_back(json_of(estimate, part.name));
+    experiments.push_back({{"name", part.name},
+                           {"title", part.title},
+                           {"rows", part.fit->measured.size()},
+                           {"r_squared", part.fit->r_squared},
+                           {"residual_sd", part.fit->residual_sd},
+                           {"residual_unit", part.fit->residual_unit},
+                           {"outlier_lines", outlier_lines(report, part)},
+                           {"findings", part.findings},
+                           {"warnings", part.fit->warnings}});
+  }
+  const Json out = {{"vehicle", report.found.vehicle.name},
+                    {"base_vehicle", report.base_vehicle},
+                    {"parameters", parameters},
+                    {"experiments", experiments},
+                    {"warnings", report.found.warnings}};
+  return out.dump();
+}
+
+}  // namespace swiftlet::ground

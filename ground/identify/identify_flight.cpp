@@ -1,0 +1,120 @@
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "swiftlet/ground/command_line/installation.hpp"
+#include "swiftlet/ground/command_line/output_files.hpp"
+#include "swiftlet/ground/identify/flight_identification_report.hpp"
+#include "swiftlet/ground/identify/identify_actions.hpp"
+#include "swiftlet/ground/terminal/progress_line.hpp"
+#include "swiftlet/io/flight_log_files.hpp"
+#include "swiftlet/io/format.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/io/settings/vehicle_writer.hpp"
+#include "swiftlet/io/whole_file.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::chrono::milliseconds kQuickEnough{500};  // without progress
+
+struct Base {
+  fs::path file;
+  bool assumed;  // neither named nor that of a record
+};
+
+// By --base, or from the record that the log is part of.
+Base base_of(const IdentifyFlightOptions& options) {
+  if (!options.base.empty()) return {configuration_file("vehicles", options.base), false};
+  const fs::path log = options.logs.front();
+  const fs::path kept = (fs::is_directory(log) ? log : log.parent_path()) / "vehicle.yaml";
+  if (fs::is_regular_file(kept)) return {kept, false};
+  return {configuration_file("vehicles", "kaylion"), true};
+}
+
+}  // namespace
+
+int identify_flight(IdentifyFlightOptions options) {
+  std::vector<fs::path> inputs;
+  for (const std::string& log : options.logs) {
+    for (const fs::path& file : files_of(log)) inputs.push_back(file);
+  }
+  const auto [base_path, is_assumed] = base_of(options);
+  inputs.push_back(base_path);
+  refuse_overwriting({{"--out", options.out}, {"--report", options.report}}, inputs);
+  const plant::Vehicle base = runtime::load_vehicle(base_path.string());
+  FlightIdentificationReport report;
+  report.logs = options.logs;
+  report.base_vehicle = options.base.empty() ? base_path.string() : options.base;
+  if (is_assumed)
+    report.assumptions.push_back("the vehicle is taken to be like " + base.name +
+                                 ", there being no --base and no record around the log");
+
+  ProgressLine progress;
+  const auto started = std::chrono::steady_clock::now();
+  int iterations = 0;
+  options.fit.progress = [&](const std::string& what) {
+    ++iterations;
+    if (std::chrono::steady_clock::now() - started > kQuickEnough)
+      progress.update(0, format("%s, iteration %d", what.c_str(), iterations));
+  };
+  std::vector<identification::FlightLog> logs;
+  for (const std::string& file : options.logs) {
+    ReadFlightLog read = read_flight_log(file, base, options.axes);
+    for (const std::string& assumption : read.assumptions)
+      report.assumptions.push_back(options.logs.size() > 1 ? file + ": " + assumption : assumption);
+    logs.push_back(std::move(read.log));
+  }
+  try {
+    report.found = identification::identify_flight(logs, base, options.fit);
+  } catch (const identification::BadData& fault) {
+    throw InputError(fault.what());
+  }
+  progress.close();
+  plant::Vehicle& vehicle = report.found.vehicle;
+  if (!options.out.empty())
+    vehicle.name = options.name.empty() ? fs::path(options.out).stem().string() : options.name;
+
+  if (options.json) {
+    std::printf("%s\n", flight_identification_json(report).c_str());
+  } else {
+    std::printf("%s", flight_identification_table(report).c_str());
+  }
+  if (!options.report.empty()) write_whole_file(options.report, flight_identification_html(report));
+  if (!report.found.converged)
+    throw std::runtime_error(options.out.empty()
+                                 ? "the fit is not to be trusted"
+                                 : "the fit is not to be trusted: " + options.out + " is not written");
+  if (!options.out.empty()) {
+    if (report.found.uncertainty.parameters.empty())
+      throw std::runtime_error("nothing of the vehicle was told, see above: " + options.out +
+                               " is not written");
+    for (const plant::Violation& broken : plant::validate(vehicle)) {
+      throw InputError("the identified vehicle cannot fly: " + broken.key + ": " + broken.message +
+                       "; what no flight tells is from " + report.base_vehicle);
+    }
+    runtime::VehicleSources sources = runtime::load_vehicle_sources(base_path.string());
+    for (const auto& [key, source] : report.found.sources) sources[key] = source;
+    const std::string text = runtime::vehicle_text(
+        vehicle, sources, report.found.uncertainty,
+        "Identified by `swiftlet identify flight`; what flights did not tell is from the vehicle " +
+            base.name + ". Frame: Forward-Right-Down, origin at the centre of mass.");
+    runtime::parse_vehicle(text, options.out);
+    write_whole_file(options.out, text);
+  }
+  std::string wrote;
+  for (const std::string& file : {options.out, options.report}) {
+    if (!file.empty()) wrote += (wrote.empty() ? "; wrote " : " and ") + file;
+  }
+  std::fprintf(stderr, "swiftlet: %s of the vehicle told by %s%s\n",
+               counted(report.found.uncertainty.parameters.size(), "parameter").c_str(),
+               counted(logs.size(), "flight").c_str(), wrote.c_str());
+  return kDone;
+}
+
+}  // namespace swiftlet::ground

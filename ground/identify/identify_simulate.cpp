@@ -1,0 +1,46 @@
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+
+#include "swiftlet/ground/command_line/installation.hpp"
+#include "swiftlet/ground/identify/bench_files.hpp"
+#include "swiftlet/ground/identify/identify_actions.hpp"
+#include "swiftlet/identification/bench/bench_simulation.hpp"
+#include "swiftlet/io/csv.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/io/text_file.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kTruth = "truth.yaml";
+
+}  // namespace
+
+int identify_simulate(const IdentifySimulateOptions& options) {
+  const fs::path vehicle_file = configuration_file("vehicles", options.vehicle);
+  const std::string vehicle_text = runtime::read_text_file(vehicle_file.string());
+  const plant::Vehicle vehicle = runtime::parse_vehicle(vehicle_text, vehicle_file.string());
+  const fs::path folder = options.out;
+  if (fs::exists(folder) && !fs::is_directory(folder))
+    throw InputError("--out: " + options.out + " is no folder, must be one or not be there");
+  if (fs::exists(folder) && !fs::is_empty(folder) && !fs::exists(folder / kTruth))
+    throw InputError("--out: " + options.out +
+                     " holds files that this command has not made, must be empty or not be there");
+  write_bench(folder, identification::simulate_bench(vehicle, options.noise, options.seed),
+              "# Simulated: " + vehicle.name + ", noise " + runtime::exact(options.noise.share) +
+                  ", outliers " + runtime::exact(options.noise.outliers) + ", seed " +
+                  std::to_string(options.seed) + ".\nbase_vehicle: " + kTruth + "\n");
+  std::ofstream truth(folder / kTruth);
+  truth << vehicle_text;
+  if (!truth.flush()) throw std::runtime_error((folder / kTruth).string() + " cannot be written");
+  std::fprintf(stderr, "swiftlet: wrote a bench of %s to %s\n", vehicle.name.c_str(), options.out.c_str());
+  return kDone;
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,194 @@
+#include "swiftlet/ground/mission/mission_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "swiftlet/io/format.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using control::Demand;
+using control::WorstDemand;
+
+constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+constexpr int kMostFaults = 20;  // that are told one by one
+
+const WorstDemand* find(const ItemCheck& item, Demand demand) {
+  const auto found = std::find_if(item.demands.begin(), item.demands.end(),
+                                  [demand](const WorstDemand& worst) { return worst.demand == demand; });
+  return found == item.demands.end() ? nullptr : &*found;
+}
+
+// Of its own items' time into that of the mission, which holds and waits as well.
+std::vector<WorstDemand> demands_on(const std::vector<RehearsedLeg>& legs, const plant::Vehicle& vehicle,
+                                    const control::Limits& limits, double supply_voltage_v) {
+  if (legs.empty()) return {};
+  std::vector<control::PolynomialSegment> segments;
+  std::vector<double> begins_s;
+  double at_s = 0.0;
+  for (const RehearsedLeg& leg : legs) {
+    segments.push_back(leg.segment);
+    begins_s.push_back(at_s);
+    at_s += leg.segment.duration_s;
+  }
+  std::vector<WorstDemand> demands = control::worst_demands(vehicle, limits, supply_voltage_v, segments);
+  for (WorstDemand& worst : demands) worst.time_s += legs[worst.segment].start_s - begins_s[worst.segment];
+  return demands;
+}
+
+// 1 is at the limit.
+double use_of(const WorstDemand& worst) {
+  const bool least = worst.demand == Demand::kLift || worst.demand == Demand::kRotorLeast;
+  return least ? worst.limit / std::max(worst.value, 1e-9) : worst.value / worst.limit;
+}
+
+std::string place_of(const WorstDemand& worst) {
+  const Eigen::Vector3d& p = worst.position_ned;
+  return format("at %.2f s, (%.2f, %.2f, %.2f) m NED", worst.time_s, p.x(), p.y(), p.z());
+}
+
+std::string value_of(const WorstDemand& worst) {
+  if (worst.demand == Demand::kFence) return format("%.3f m beyond the fence", worst.value);
+  const bool least = worst.demand == Demand::kLift || worst.demand == Demand::kRotorLeast;
+  const char* const unit = control::unit_of(worst.demand);
+  return format("%s is %.3f %s, the limit is %s%.3f %s", control::to_string(worst.demand), worst.value, unit,
+                least ? "at least " : "", worst.limit, unit);
+}
+
+std::string name_of(const ItemCheck& item, std::size_t index) {
+  const std::string line = item.line > 0 ? format(", line %d", item.line) : "";
+  return format("item %zu (%s%s)", index + 1, to_string(item.kind), line.c_str());
+}
+
+std::string row_of(const ItemCheck& item, std::size_t index) {
+  std::string row =
+      format("%5zu  %-10s %5s %9.2f %8.2f", index + 1, to_string(item.kind),
+             item.line > 0 ? std::to_string(item.line).c_str() : "", item.start_s, item.duration_s);
+  if (item.demands.empty()) return row + "\n";
+  const bool exceeded = std::any_of(item.demands.begin(), item.demands.end(),
+                                    [](const WorstDemand& worst) { return worst.exceeded(); });
+  const WorstDemand& rotor = *find(item, Demand::kRotorMost);
+  return row + format(" %9.2f %9.2f %9.1f %9.1f%s\n", find(item, Demand::kSpeed)->value,
+                      find(item, Demand::kAcceleration)->value, find(item, Demand::kTilt)->value * kDegrees,
+                      100.0 * use_of(rotor), exceeded ? "  !" : "");
+}
+
+std::string limits_row(const ItemCheck& item) {
+  return format("%-42s %9.2f %9.2f %9.1f %9.1f\n", "       limit", find(item, Demand::kSpeed)->limit,
+                find(item, Demand::kAcceleration)->limit, find(item, Demand::kTilt)->limit * kDegrees, 100.0);
+}
+
+// Which of all comes nearest to its limit. The fence has none that could be a share.
+std::string nearest_to_a_limit(const MissionCheck& check) {
+  const WorstDemand* nearest = nullptr;
+  std::string where;
+  for (std::size_t i = 0; i < check.items.size(); ++i) {
+    for (const WorstDemand& worst : check.items[i].demands) {
+      if (worst.demand == Demand::kFence || (nearest != nullptr && use_of(worst) <= use_of(*nearest)))
+        continue;
+      nearest = &worst;
+      where = name_of(check.items[i], i);
+    }
+  }
+  if (nearest == nullptr) return "";
+  return "nearest to its limit: " + where + ": " + value_of(*nearest) + ": " + place_of(*nearest) + "\n";
+}
+
+std::string faults_of(const MissionCheck& check) {
+  std::string text;
+  int count = 0;
+  for (std::size_t i = 0; i < check.items.size(); ++i) {
+    for (const WorstDemand& worst : check.items[i].demands) {
+      if (!worst.exceeded()) continue;
+      if (++count <= kMostFaults)
+        text += name_of(check.items[i], i) + ": " + value_of(worst) + ": " + place_of(worst) + "\n";
+    }
+  }
+  if (count > kMostFaults) text += format("and %d more\n", count - kMostFaults);
+  return text;
+}
+
+nlohmann::ordered_json json_of(const WorstDemand& worst) {
+  const Eigen::Vector3d& p = worst.position_ned;
+  return {{"demand", control::to_string(worst.demand)},
+          {"unit", control::unit_of(worst.demand)},
+          {"value", worst.value},
+          {"limit", worst.limit},
+          {"exceeded", worst.exceeded()},
+          {"time_s", worst.time_s},
+          {"position_ned", {p.x(), p.y(), p.z()}}};
+}
+
+}  // namespace
+
+bool MissionCheck::feasible() const {
+  return reason.empty() && std::all_of(items.begin(), items.end(), [](const ItemCheck& item) {
+           return std::none_of(item.demands.begin(), item.demands.end(),
+                               [](const WorstDemand& worst) { return worst.exceeded(); });
+         });
+}
+
+MissionCheck check_mission(const MissionFile& file, const Rehearsal& rehearsal, const plant::Vehicle& vehicle,
+                           const control::ControlSettings& settings, double supply_voltage_v) {
+  const control::Limits limits = control::tightened(settings.limits, file.mission.bounds);
+  MissionCheck check;
+  check.reason = rehearsal.completed ? "" : rehearsal.reason;
+  check.duration_s = rehearsal.duration_s;
+  check.supply_voltage_v = supply_voltage_v;
+  for (std::size_t i = 0; i < rehearsal.item_starts_s.size(); ++i) {
+    const bool last = i + 1 == rehearsal.item_starts_s.size();
+    const double end_s = last ? rehearsal.duration_s : rehearsal.item_starts_s[i + 1];
+    std::vector<RehearsedLeg> legs;
+    std::copy_if(rehearsal.legs.begin(), rehearsal.legs.end(), std::back_inserter(legs),
+                 [i](const RehearsedLeg& leg) { return leg.item == i; });
+    check.items.push_back({file.mission.items[i].kind, i < file.lines.size() ? file.lines[i] : 0,
+                           rehearsal.item_starts_s[i], end_s - rehearsal.item_starts_s[i],
+                           demands_on(legs, vehicle, limits, supply_voltage_v)});
+  }
+  return check;
+}
+
+std::string check_table(const MissionCheck& check, const MissionFile& file, const std::string& vehicle) {
+  std::string text = file.name + (file.description.empty() ? "" : ": " + file.description) + "\n\n" +
+                     format("%5s  %-10s %5s %9s %8s %9s %9s %9s %9s\n", "item", "kind", "line", "from s",
+                            "lasts s", "m/s", "m/s^2", "tilt deg", "rotor %");
+  const ItemCheck* moving = nullptr;
+  for (std::size_t i = 0; i < check.items.size(); ++i) {
+    text += row_of(check.items[i], i);
+    if (!check.items[i].demands.empty()) moving = &check.items[i];
+  }
+  if (moving != nullptr) text += limits_row(*moving);
+  text += "\n" + nearest_to_a_limit(check) + faults_of(check);
+  if (!check.reason.empty()) return text + "the control service would not fly it: " + check.reason + "\n";
+  return text + format("%s %s fly it: %.1f s, with a battery down to %.2f V\n", vehicle.c_str(),
+                       check.feasible() ? "can" : "cannot", check.duration_s, check.supply_voltage_v);
+}
+
+std::string check_json(const MissionCheck& check, const MissionFile& file, const std::string& vehicle,
+                       const std::string& control) {
+  nlohmann::ordered_json json = {{"mission", file.name},
+                                 {"vehicle", vehicle},
+                                 {"control", control},
+                                 {"feasible", check.feasible()},
+                                 {"reason", check.reason},
+                                 {"duration_s", check.duration_s},
+                                 {"supply_voltage_v", check.supply_voltage_v}};
+  json["items"] = nlohmann::ordered_json::array();
+  for (const ItemCheck& item : check.items) {
+    nlohmann::ordered_json demands = nlohmann::ordered_json::array();
+    for (const WorstDemand& worst : item.demands) demands.push_back(json_of(worst));
+    json["items"].push_back({{"kind", to_string(item.kind)},
+                             {"line", item.line},
+                             {"start_s", item.start_s},
+                             {"duration_s", item.duration_s},
+                             {"demands", std::move(demands)}});
+  }
+  return json.dump(2);
+}
+
+}  // namespace swiftlet::ground

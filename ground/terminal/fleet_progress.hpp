@@ -1,0 +1,43 @@
+// The progress of several vehicles that fly at once, on one line of a terminal.
+#pragma once
+
+#include <deque>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "swiftlet/ground/terminal/progress.hpp"
+#include "swiftlet/ground/terminal/progress_line.hpp"
+
+namespace swiftlet::ground {
+
+class FleetProgress {
+ public:
+  FleetProgress(ProgressLine& line, const std::vector<std::string>& vehicles);
+  FleetProgress(const FleetProgress&) = delete;
+  FleetProgress& operator=(const FleetProgress&) = delete;
+
+  // Of the vehicle of this index; each may be used by a thread of its own.
+  Progress& of(std::size_t vehicle) { return shares_[vehicle]; }
+
+ private:
+  class Share final : public Progress {
+   public:
+    Share(FleetProgress& all, std::string vehicle) : all_(all), vehicle_(std::move(vehicle)) {}
+    void update(int stage, const std::string& text) override;
+    void say(const std::string& text) override;
+
+   private:
+    friend class FleetProgress;
+    FleetProgress& all_;
+    std::string vehicle_;
+    std::string text_;
+    int stage_ = 0;
+  };
+
+  ProgressLine& line_;
+  std::mutex mutex_;  // of the line and of all shares
+  std::deque<Share> shares_;
+};
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,89 @@
+#include "swiftlet/ground/terminal/terminal_screen.hpp"
+
+#include <clocale>
+#include <cstdio>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+
+#define NCURSES_NOMACROS  // whose names are common words
+#include <ncurses.h>
+
+namespace swiftlet::ground {
+namespace {
+
+constexpr short kWarningColours = 1;
+constexpr short kGoodColours = 2;
+
+attr_t attributes_of(Emphasis emphasis, bool colours) {
+  switch (emphasis) {
+    case Emphasis::kHeading:
+      return A_BOLD;
+    case Emphasis::kGood:
+      return colours ? COLOR_PAIR(kGoodColours) : A_NORMAL;
+    case Emphasis::kWarning:
+      return A_BOLD | (colours ? COLOR_PAIR(kWarningColours) : A_REVERSE);
+    case Emphasis::kPlain:
+      break;
+  }
+  return A_NORMAL;
+}
+
+}  // namespace
+
+struct TerminalScreen::Impl {
+  SCREEN* screen = nullptr;
+  bool colours = false;
+};
+
+TerminalScreen::TerminalScreen() : impl_(new Impl) {
+  std::setlocale(LC_CTYPE, "");
+  impl_->screen = newterm(nullptr, stdout, stdin);
+  if (impl_->screen == nullptr) {
+    delete impl_;
+    const char* const kind = std::getenv("TERM");
+    throw std::runtime_error(std::string("a terminal of the kind '") + (kind != nullptr ? kind : "") +
+                             "' cannot show a screen; `swiftlet watch --plain` prints lines");
+  }
+  set_term(impl_->screen);
+  cbreak();
+  noecho();
+  keypad(stdscr, TRUE);
+  set_escdelay(25);
+  curs_set(0);
+  impl_->colours = has_colors();
+  if (!impl_->colours) return;
+  start_color();
+  use_default_colors();
+  init_pair(kWarningColours, COLOR_RED, -1);
+  init_pair(kGoodColours, COLOR_GREEN, -1);
+}
+
+TerminalScreen::~TerminalScreen() {
+  endwin();
+  delscreen(impl_->screen);
+  delete impl_;
+}
+
+int TerminalScreen::width() const { return getmaxx(stdscr); }
+int TerminalScreen::height() const { return getmaxy(stdscr); }
+
+void TerminalScreen::show(const std::vector<ScreenLine>& lines) {
+  werase(stdscr);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const attr_t attributes = attributes_of(lines[i].emphasis, impl_->colours);
+    wattron(stdscr, static_cast<int>(attributes));
+    mvwaddnstr(stdscr, static_cast<int>(i), 0, lines[i].text.c_str(), width());
+    wattroff(stdscr, static_cast<int>(attributes));
+  }
+  wrefresh(stdscr);
+}
+
+std::optional<int> TerminalScreen::key(int within_ms) {
+  wtimeout(stdscr, within_ms);
+  const int key = wgetch(stdscr);
+  if (key == ERR) return std::nullopt;
+  return key == KEY_RESIZE ? kResized : key;
+}
+
+}  // namespace swiftlet::ground

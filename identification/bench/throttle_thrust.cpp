@@ -1,0 +1,110 @@
+#include "swiftlet/identification/bench/throttle_thrust.hpp"
+
+#include <array>
+#include <cmath>
+
+#include <ceres/jet.h>
+
+#include "swiftlet/identification/fitting/checks.hpp"
+#include "swiftlet/identification/fitting/curve_fit.hpp"
+
+namespace swiftlet::identification {
+
+namespace {
+
+constexpr std::size_t kLeastRows = 8;
+
+enum Part : std::size_t { kGain, kOffset, kK2, kK3, kThrustFactor, kParts };
+constexpr std::array<ParameterName, kParts> kNames = {{{"esc.gain", "gain", "1"},
+                                                       {"esc.offset", "offset", "V^2"},
+                                                       {"motor.k2", "K2", "V*s/rad"},
+                                                       {"motor.k3", "K3", "V*s^2/rad^2"},
+                                                       {"rotor.thrust_factor", "k_T", "N*s^2"}}};
+using Jet = ceres::Jet<double, kParts + 1>;  // the parts, and v_s
+constexpr double kLeastSquare = 1e-9;        // V^2, keeps the root away from 0
+
+Jet thrust(const std::array<Jet, kParts>& part, const Jet& supply, double throttle) {
+  const Jet square = part[kGain] * supply * supply * throttle + part[kOffset];
+  if (square < Jet(kLeastSquare)) return Jet(0.0);
+  const Jet voltage = sqrt(square);
+  const Jet speed = 2.0 * voltage / (part[kK2] + sqrt(part[kK2] * part[kK2] + 4.0 * part[kK3] * voltage));
+  return part[kThrustFactor] * speed * speed;
+}
+
+std::array<double, kParts> parts_of(const plant::Vehicle& vehicle) {
+  return {vehicle.esc.gain, vehicle.esc.offset_v2, vehicle.motor.k2, vehicle.motor.k3, vehicle.rotor.thrust};
+}
+
+std::vector<Part> free_parts(const KnownParts& known) {
+  std::vector<Part> free;
+  if (!known.esc) {
+    if (known.steady_motor) free.push_back(kGain);
+    free.push_back(kOffset);
+  }
+  if (!known.steady_motor) {
+    free.push_back(kK2);
+    free.push_back(kK3);
+  }
+  if (known.esc && known.steady_motor) free.push_back(kThrustFactor);
+  return free;
+}
+
+void check(const ThrottleThrustData& data) {
+  const Column supply{"supply_voltage", "V", data.supply_voltage_v};
+  const Column throttle{"throttle", "", data.throttle};
+  const Column reading{"thrust", "N", data.thrust_n};
+  demand_rows({supply, throttle, reading}, kLeastRows);
+  demand_drive(supply, throttle);
+  demand_variety(throttle, 4);
+  demand_variety(reading, 4);
+}
+
+void say_what_is_held(const KnownParts& known, Experiment& out) {
+  if (known.esc && known.steady_motor) return;
+  std::string held = known.thrust ? "k_T as its own experiment found it" : "k_T as the base vehicle has it";
+  if (!known.esc && !known.steady_motor) held += " and the ESC's gain as the base vehicle has it";
+  out.warnings.push_back(
+      "thrust without speed cannot tell K2, K3, k_T and the ESC's gain apart: " + held +
+      (known.esc || known.steady_motor ? ", is held" : ", are held") +
+      "; the chain from throttle to thrust is right, each of its parts only as far as that");
+}
+
+}  // namespace
+
+Experiment identify_throttle_thrust(const ThrottleThrustData& data, const plant::Vehicle& vehicle,
+                                    const KnownParts& known, const Instruments& instruments) {
+  check(data);
+  const std::vector<Part> free = free_parts(known);
+  const std::array<double, kParts> held = parts_of(vehicle);
+  const Curve curve = [&](std::size_t row, double supply, const Eigen::VectorXd& p, Gradient& by) {
+    std::array<Jet, kParts> part;
+    for (std::size_t i = 0; i < kParts; ++i) part[i] = Jet(held[i]);
+    for (std::size_t i = 0; i < free.size(); ++i)
+      part[free[i]] = Jet(p[static_cast<Eigen::Index>(i)], static_cast<int>(free[i]));
+    const Jet value = thrust(part, Jet(supply, kParts), data.throttle[row]);
+    for (std::size_t i = 0; i < free.size(); ++i)
+      by[static_cast<Eigen::Index>(i)] = value.v[static_cast<Eigen::Index>(free[i])];
+    return CurveValue{value.a, value.v[kParts]};
+  };
+
+  Eigen::VectorXd start(static_cast<Eigen::Index>(free.size()));
+  std::vector<ParameterName> names;
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    start[static_cast<Eigen::Index>(i)] = held[free[i]] != 0.0 ? held[free[i]] : 1e-2;
+    names.push_back(kNames[free[i]]);
+  }
+  const SpreadRatio spread =
+      spreads(instruments.supply_voltage_v, data.supply_voltage_v, instruments.thrust_n, data.thrust_n);
+  const Readings readings{data.supply_voltage_v, data.thrust_n, spread.x_spread, spread.y_spread};
+  const Fit fit = fit_curve(readings, start, curve);
+  Experiment out = conclude(fit, names, data.thrust_n, predicted(readings, fit.parameters, curve), "N");
+  for (const Estimate& estimate : out.estimates) {
+    if (estimate.value > 0.0 || estimate.parameter == "esc.offset") continue;
+    throw BadData("thrust: leads to " + estimate.symbol + " = " + shown(estimate.value) + " " +
+                  estimate.unit + ", must be above 0; is the thrust that of one rotor, and its unit right?");
+  }
+  say_what_is_held(known, out);
+  return out;
+}
+
+}  // namespace swiftlet::identification

@@ -1,0 +1,120 @@
+#include "swiftlet/identification/fitting/estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace swiftlet::identification {
+
+namespace {
+
+constexpr double kIllConditioned = 30.0;  // Belsley, Kuh, Welsch 1980: collinearity begins to harm
+constexpr double kManyOutliers = 0.2;     // share of the rows
+
+void warn_of_collinearity(const Fit& fit, Experiment& experiment) {
+  const auto count = static_cast<Eigen::Index>(experiment.estimates.size());
+  if (count < 2 || fit.condition < kIllConditioned) return;
+  Eigen::Index first = 0;
+  Eigen::Index second = 1;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = i + 1; j < count; ++j) {
+      if (std::abs(fit.correlation(i, j)) > std::abs(fit.correlation(first, second))) {
+        first = i;
+        second = j;
+      }
+    }
+  }
+  const auto symbol = [&](Eigen::Index i) {
+    return experiment.estimates[static_cast<std::size_t>(i)].symbol;
+  };
+  experiment.warnings.push_back("these data can hardly tell " + symbol(first) + " and " + symbol(second) +
+                                " apart: correlation " + shown(fit.correlation(first, second)) +
+                                ", condition number " + shown(fit.condition) + ", should be below " +
+                                shown(kIllConditioned) + "; readings over a wider range would");
+}
+
+void warn_of_wide_intervals(Experiment& experiment) {
+  for (const Estimate& estimate : experiment.estimates) {
+    if (std::abs(estimate.value) > estimate.half_width) continue;
+    experiment.warnings.push_back(estimate.symbol + " is " + shown(estimate.value) + " +- " +
+                                  shown(estimate.half_width) + " " + estimate.unit +
+                                  ": these data cannot tell it from 0");
+  }
+}
+
+double r_squared(const Experiment& experiment) {
+  double mean = 0.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i < experiment.measured.size(); ++i) {
+    if (experiment.is_outlier(i)) continue;
+    mean += experiment.measured[i];
+    count += 1.0;
+  }
+  mean /= count;
+  double rest = 0.0;
+  double all = 0.0;
+  for (std::size_t i = 0; i < experiment.measured.size(); ++i) {
+    if (experiment.is_outlier(i)) continue;
+    rest += std::pow(experiment.measured[i] - experiment.predicted[i], 2);
+    all += std::pow(experiment.measured[i] - mean, 2);
+  }
+  return all > 0.0 ? 1.0 - rest / all : 0.0;
+}
+
+double residual_sd(const Experiment& experiment, int degrees_of_freedom) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < experiment.measured.size(); ++i) {
+    if (!experiment.is_outlier(i)) sum += std::pow(experiment.measured[i] - experiment.predicted[i], 2);
+  }
+  return std::sqrt(sum / degrees_of_freedom);
+}
+
+}  // namespace
+
+bool Experiment::is_outlier(std::size_t row) const {
+  return std::binary_search(outliers.begin(), outliers.end(), row);
+}
+
+const Estimate& Experiment::estimate(const std::string& parameter) const {
+  for (const Estimate& candidate : estimates) {
+    if (candidate.parameter == parameter) return candidate;
+  }
+  throw std::out_of_range(parameter + " was not estimated");
+}
+
+Experiment conclude(const Fit& fit, const std::vector<ParameterName>& names, std::vector<double> measured,
+                    std::vector<double> predicted, const std::string& residual_unit) {
+  Experiment out;
+  const double factor = interval_factor(fit.degrees_of_freedom);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    const double error = fit.standard_error(at);
+    out.estimates.push_back(
+        {names[i].parameter, names[i].symbol, names[i].unit, fit.parameters[at], error, factor * error});
+  }
+  out.covariance = fit.covariance;
+  out.measured = std::move(measured);
+  out.predicted = std::move(predicted);
+  out.outliers = fit.outliers;
+  out.residual_unit = residual_unit;
+  out.r_squared = r_squared(out);
+  out.residual_sd = residual_sd(out, fit.degrees_of_freedom);
+  if (!fit.converged) out.warnings.emplace_back("the fit did not converge; do not trust its numbers");
+  const auto rows = static_cast<double>(out.measured.size());
+  if (static_cast<double>(out.outliers.size()) > kManyOutliers * rows) {
+    out.warnings.push_back(
+        std::to_string(out.outliers.size()) + " of " + std::to_string(out.measured.size()) +
+        " rows are outliers: the model does not describe these data, or they come from two set-ups");
+  }
+  warn_of_collinearity(fit, out);
+  warn_of_wide_intervals(out);
+  return out;
+}
+
+std::string shown(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", number);
+  return text;
+}
+
+}  // namespace swiftlet::identification

@@ -1,0 +1,349 @@
+#include "swiftlet/identification/flight/command_flight.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "swiftlet/identification/flight/command_model.hpp"
+#include "swiftlet/identification/flight/command_prediction.hpp"
+#include "swiftlet/identification/flight/flight_conclusion.hpp"
+
+namespace swiftlet::identification {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr std::size_t kCurvePoints = 41;
+constexpr double kRareCommands = 0.01;  // share of commands that lie outside the figure, at each end
+constexpr double kAtOdds = 1.5;         // of what responses tell of the lag, over what they may differ
+constexpr double kBatteryKnown = 0.25;  // standard error of the sag, over the sag
+constexpr double kOneRate = 0.1;        // of logs fitted together: how much their periods may differ
+constexpr double kOfLittleUse = 0.1;    // weight of the commands in a forecast
+
+struct CommandFit {
+  std::unique_ptr<CommandModel> model;
+  SeriesFit fit;
+
+  const VectorXd& x() const { return fit.parameters; }
+};
+
+CommandFit fit_responses(const std::vector<FlightSeries>& flights, const plant::Vehicle& base,
+                         std::vector<Response> responses, std::optional<ThrustCurve> curve,
+                         const std::vector<const CommandFit*>& before,
+                         const std::function<void()>& progress) {
+  CommandFit out;
+  out.model = std::make_unique<CommandModel>(flights, base, std::move(responses), curve);
+  SeriesProblem problem = out.model->problem(progress);
+  for (const CommandFit* const fit : before)
+    problem.start = started_from(*fit->model, fit->x(), *out.model, problem.start);
+  out.fit = fit_series(problem);
+  return out;
+}
+
+// Specific force, roll and pitch, each alone. Yaw tells no lag: the rotors' own inertia does as much there.
+std::vector<CommandFit> fit_alone(const std::vector<FlightSeries>& flights, const plant::Vehicle& base,
+                                  const std::function<void()>& progress) {
+  std::vector<CommandFit> out;
+  out.push_back(fit_responses(flights, base, {Response::kForce}, std::nullopt, {}, progress));
+  const ThrustCurve curve = out[0].model->curve(out[0].x());
+  for (const Response response : {Response::kRoll, Response::kPitch})
+    out.push_back(fit_responses(flights, base, {response}, curve, {}, progress));
+  return out;
+}
+
+Estimate lag_of(const CommandFit& alone) {
+  const Index lag = alone.model->layout().lag;
+  const double error = alone.fit.standard_error(lag);
+  return {response_name(alone.model->responses().front()),      "tau_m", "s", alone.x()[lag], error,
+          interval_factor(alone.fit.degrees_of_freedom) * error};
+}
+
+// Of several estimates of one quantity.
+struct Agreement {
+  double standard_error = 0.0;  // of their weighted mean, by how they differ
+  double ratio = 0.0;           // how much they differ over how much they may: Birge's ratio
+};
+
+Agreement agreement(const std::vector<Estimate>& estimates) {
+  double weight = 0.0;
+  double mean = 0.0;
+  for (const Estimate& estimate : estimates) {
+    const double w = 1.0 / (estimate.standard_error * estimate.standard_error);
+    weight += w;
+    mean += w * estimate.value;
+  }
+  mean /= weight;
+  double chi_squared = 0.0;
+  for (const Estimate& estimate : estimates)
+    chi_squared += std::pow((estimate.value - mean) / estimate.standard_error, 2);
+  const double ratio = std::sqrt(chi_squared / static_cast<double>(estimates.size() - 1));
+  return {ratio / std::sqrt(weight), ratio};
+}
+
+// Lets a parameter vary as much as `standard_error` says, and all others with it as they hang together.
+void widen(EstimatedParameters& fit, Index parameter, double standard_error) {
+  const double variance = fit.covariance(parameter, parameter);
+  const double wanted = standard_error * standard_error;
+  if (wanted <= variance) return;
+  const VectorXd follows = fit.covariance.col(parameter) / variance;
+  fit.covariance += (wanted - variance) * follows * follows.transpose();
+}
+
+// The sag that stands in the gains, and in what follows from them, is the base's.
+void allow_for_battery(const CommandModel& model, const std::vector<Derived>& quantities,
+                       DerivedValues& values) {
+  const double relative = kBatteryKnown * (1.0 / model.shared_over_single() - 1.0);
+  VectorXd moved = VectorXd::Zero(values.values.size());
+  for (std::size_t i = 0; i < quantities.size(); ++i) {
+    const std::string& name = quantities[i].parameter;
+    const auto at = static_cast<Index>(i);
+    if (name.rfind("thrust_to_rate.", 0) == 0) moved[at] = relative * values.values[at];
+    if (name.rfind("inertia.", 0) == 0 || name.rfind("thrust_centre.", 0) == 0)
+      moved[at] = -relative * values.values[at];
+  }
+  values.covariance += moved * moved.transpose();
+}
+
+// The command of which all rotors carry the weight.
+double hover_command(const ThrustCurve& curve) {
+  const double missing = plant::kGravity - curve.value;
+  const double root = std::sqrt(std::max(curve.slope * curve.slope + 4.0 * curve.curvature * missing, 0.0));
+  return curve.middle + 2.0 * missing / (curve.slope + root);
+}
+
+std::vector<Derived> derived(const CommandModel& model) {
+  const CommandLayout& l = model.layout();
+  const plant::Vehicle& base = model.base();
+  const auto at = [](int index) { return [index](const VectorXd& x) { return x[index]; }; };
+  const auto hover = [&model](const VectorXd& x) { return hover_command(model.curve(x)); };
+  const auto slope = [&model, hover](const VectorXd& x) { return model.curve(x).slope_at(hover(x)); };
+  std::vector<Derived> out;
+  out.push_back({"motor.time_constant", "tau_m", "s", at(l.lag)});
+  out.push_back({"delay.force", "T_f", "s", at(l.force_delay)});
+  out.push_back({"delay.rates", "T_w", "s", at(l.rate_delay)});
+  out.push_back({"lag_and_delay.force", "tau_m + T_f", "s",
+                 [&l](const VectorXd& x) { return x[l.lag] + x[l.force_delay]; }});
+  out.push_back({"lag_and_delay.rates", "tau_m + T_w", "s",
+                 [&l](const VectorXd& x) { return x[l.lag] + x[l.rate_delay]; }});
+  out.push_back({"thrust_per_mass.hover_command", "u_h", "1", hover});
+  out.push_back({"thrust_per_mass.slope", "a'(u_h)", "m/s^2", slope});
+  out.push_back({"thrust_per_mass.curvature", "a''(u_h)/2", "m/s^2", at(l.curve + 2)});
+  for (std::size_t log = 0; log < l.drift.size(); ++log) {
+    const std::string of_log = l.drift.size() > 1 ? "[" + std::to_string(log) + "]" : "";
+    out.push_back({"thrust_per_mass.drift" + of_log, "da/dt/a", "1/s", at(l.drift[log])});
+  }
+  const char* const gains[3] = {"m d/J_xx", "m d/J_yy", "m k_Q/(k_T J_zz)"};
+  for (int axis = 0; axis < 3; ++axis)
+    out.push_back({std::string("thrust_to_rate.") + axis_name(axis), gains[axis], "1/m", at(l.gain[axis])});
+  const char* const responses[3] = {"dp/dt/u", "dq/dt/u", "dr/dt/u"};
+  for (int axis = 0; axis < 3; ++axis) {
+    const int gain = l.gain[axis];
+    out.push_back({std::string("command_to_rate.") + axis_name(axis), responses[axis], "rad/s^2",
+                   [gain, slope, &model](const VectorXd& x) {
+                     return x[gain] * slope(x) / model.shared_over_single();
+                   }});
+  }
+  const double rotors = base.rotor_count();
+  out.push_back({"lead.yaw", "T_z", "s", [&l, rotors](const VectorXd& x) {
+                   return 0.5 * x[l.spin_up] / (x[l.gain[2]] * std::sqrt(plant::kGravity / rotors));
+                 }});
+  const char* const symbols[3] = {"J_xx", "J_yy", "J_zz"};
+  for (int axis = 0; axis < 3; ++axis) {
+    const int gain = l.gain[axis];
+    const double lever = model.lever(axis);
+    out.push_back({plant::kInertiaKeys[static_cast<std::size_t>(axis)], symbols[axis], "kg*m^2",
+                   [gain, lever, &base](const VectorXd& x) { return base.mass_kg * lever / x[gain]; }});
+  }
+  // A thrust T through (x, y) gives the moment (-y T, x T).
+  out.push_back({"thrust_centre.x", "r_x", "m",
+                 [&l, &model](const VectorXd& x) { return x[l.trim[1]] / x[l.gain[1]] * model.lever(1); }});
+  out.push_back({"thrust_centre.y", "r_y", "m",
+                 [&l, &model](const VectorXd& x) { return -x[l.trim[0]] / x[l.gain[0]] * model.lever(0); }});
+  return out;
+}
+
+const Estimate& named(const FlightIdentification& found, const std::string& parameter) {
+  return *found.find(parameter);
+}
+
+std::string with_interval(const Estimate& e) {
+  return shown(e.value) + " +- " + shown(e.half_width) + " " + e.unit;
+}
+
+void compare_with_file(FlightIdentification& out, const CommandModel& model) {
+  const plant::Vehicle& base = model.base();
+  out.comparisons.push_back({named(out, "motor.time_constant"), base.motor.time_constant_s});
+  for (int axis = 0; axis < 3; ++axis) {
+    out.comparisons.push_back({named(out, std::string("thrust_to_rate.") + axis_name(axis)),
+                               base.mass_kg * model.lever(axis) / base.inertia(axis, axis)});
+  }
+}
+
+void draw_thrust(FlightIdentification& out, const CommandFit& all) {
+  std::vector<double> commands;
+  for (const FlightSeries& flight : all.model->flights()) {
+    for (std::size_t row = flight.fitted.first; row < flight.fitted.last; ++row)
+      commands.insert(commands.end(), flight.log->command[row].begin(),
+                      flight.log->command[row].begin() + flight.log->rotor_count);
+  }
+  std::sort(commands.begin(), commands.end());
+  const auto rare = static_cast<std::size_t>(kRareCommands * static_cast<double>(commands.size()));
+  const double low = commands[rare];
+  const double high = commands[commands.size() - 1 - rare];
+  const ThrustCurve curve = all.model->curve(all.x());
+  const Index first = all.model->layout().curve;
+  const Eigen::Matrix3d covariance = all.fit.covariance.block<3, 3>(first, first);
+  const double factor = interval_factor(all.fit.degrees_of_freedom);
+  for (std::size_t i = 0; i < kCurvePoints; ++i) {
+    const double command = low + (high - low) * static_cast<double>(i) / (kCurvePoints - 1);
+    const double off = command - curve.middle;
+    const Eigen::Vector3d gradient(1.0, off, off * off);
+    out.thrust.command.push_back(command);
+    out.thrust.over_mass.push_back(curve.at(command));
+    out.thrust.half_width.push_back(factor * std::sqrt(std::max(gradient.dot(covariance * gradient), 0.0)));
+  }
+}
+
+// The lag is told by roll and pitch as well, and gains are what moments are made of.
+std::map<std::string, std::string> untold_parameters(FlightIdentification& out,
+                                                     const CommandPredictions& predictions) {
+  std::map<std::string, std::string> untold = untold_of_calm_axes(predictions.excitations);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto calm = untold.find(plant::kInertiaKeys[static_cast<std::size_t>(axis)]);
+    if (calm == untold.end()) continue;
+    if (axis < 2) untold["motor.time_constant"] = calm->second;
+    out.unexcited.push_back(std::string("thrust_to_rate.") + axis_name(axis) + ": " + calm->second);
+  }
+  return untold;
+}
+
+// One description of the noise is fitted to all logs, sample by sample.
+void demand_one_rate(const std::vector<FlightSeries>& flights) {
+  const auto period_s = [](const FlightSeries& flight) {
+    const std::vector<double>& time = flight.log->time_s;
+    return (time[flight.fitted.last - 1] - time[flight.fitted.first]) /
+           static_cast<double>(flight.fitted.size() - 1);
+  };
+  const double first_s = period_s(flights.front());
+  for (const FlightSeries& flight : flights) {
+    const double this_s = period_s(flight);
+    if (std::abs(this_s / first_s - 1.0) < kOneRate) continue;
+    throw BadData(flight.log->name + " has a sample every " + shown(1e3 * this_s) + " ms and " +
+                  flights.front().log->name + " every " + shown(1e3 * first_s) +
+                  " ms: without poses and supply voltage, logs must be of one rate");
+  }
+}
+
+void demand_possible_hover(const Estimate& command) {
+  if (command.low() < 1.0 && command.high() > 0.0) return;
+  throw BadData("commands: " + shown(command.value) +
+                " of full command would carry the weight, must be 0 to 1; are the units right?");
+}
+
+// What would tell it. by_flight: with what the flight leaves open alone.
+std::string advice(const std::string& parameter, const Estimate& estimate,
+                   const std::vector<Estimate>& by_flight, const plant::Vehicle& base) {
+  for (const Estimate& alone : by_flight) {
+    if (alone.parameter == parameter && alone.half_width < 0.7 * estimate.half_width)
+      return "most of it is the battery's: measure the internal resistance of " + base.name + "'s";
+  }
+  for (std::size_t axis = 0; axis < plant::kInertiaKeys.size(); ++axis) {
+    if (parameter == plant::kInertiaKeys[axis]) return moves_that_tell(axis);
+  }
+  return "fly quick moves, up and down too";
+}
+
+void tell_of_lags(FlightIdentification& out, const Agreement& lags) {
+  std::string sentence = "the rotors' lag by itself: ";
+  for (const Estimate& lag : out.lags)
+    sentence += (&lag == &out.lags.front() ? "" : ", ") + with_interval(lag) + " by " + lag.parameter;
+  if (lags.ratio > kAtOdds) {
+    out.warnings.push_back(
+        sentence + "; they differ " + shown(lags.ratio) +
+        " times as much as their intervals allow: rotors with one lag do not describe this "
+        "flight, and the interval of tau_m, with those of all that hangs together with it, is "
+        "widened to that");
+  } else {
+    out.findings.push_back(sentence);
+  }
+}
+
+void tell_of_delays(FlightIdentification& out, const CommandFit& all) {
+  const CommandLayout& l = all.model->layout();
+  out.findings.push_back("correlation of the lag with the delay of the force " +
+                         shown(all.fit.correlation(l.lag, l.force_delay)) + ", with that of the rates " +
+                         shown(all.fit.correlation(l.lag, l.rate_delay)) +
+                         "; delays hold the filters of the sensors too");
+}
+
+void tell_of_forecasts(FlightIdentification& out, const CommandPredictions& predictions) {
+  std::string quantities;
+  std::string weights;
+  for (std::size_t i = 0; i < predictions.errors.size(); ++i) {
+    const double weight = predictions.weight_of_commands[i];
+    if (weight > kOfLittleUse) continue;
+    quantities += (quantities.empty() ? "" : ", ") + predictions.errors[i].quantity;
+    weights += (weights.empty() ? "" : ", ") + shown(weight);
+  }
+  if (quantities.empty()) return;
+  out.findings.push_back("half a second ahead the commands say little of " + quantities +
+                         ": what disturbs the vehicle, and its controller's answer to it, weigh more; the "
+                         "forecast takes " +
+                         weights + " of the change that they ask for");
+}
+
+}  // namespace
+
+void identify_commands(FlightIdentification& out, const std::vector<FlightSeries>& flights,
+                       const plant::Vehicle& base, const FlightOptions& options) {
+  const auto progress = [&] {
+    if (options.progress) options.progress("fitting");
+  };
+  demand_one_rate(flights);
+  const std::vector<CommandFit> alone = fit_alone(flights, base, progress);
+  for (const CommandFit& fit : alone) refuse_turned_gains(fit.model->layout().gain, base, fit.fit);
+  CommandFit all = fit_responses(flights, base, {kAllResponses.begin(), kAllResponses.end()}, std::nullopt,
+                                 {&alone[2], &alone[1], &alone[0]}, progress);
+  for (const CommandFit& fit : alone) out.lags.push_back(lag_of(fit));
+  const Agreement lags = agreement(out.lags);
+  if (lags.ratio > 1.0) widen(all.fit, all.model->layout().lag, lags.standard_error);
+  refuse_turned_gains(all.model->layout().gain, base, all.fit);
+
+  out.converged = all.fit.converged && within_bounds(all.model->physical_parameters(), all.fit);
+  const std::vector<Derived> quantities = derived(*all.model);
+  DerivedValues values = evaluate(quantities, all.model->layout().parameters, all.fit);
+  const std::vector<Estimate> by_flight = estimates_of(quantities, values, all.fit.degrees_of_freedom);
+  allow_for_battery(*all.model, quantities, values);
+  out.estimates = estimates_of(quantities, values, all.fit.degrees_of_freedom);
+  demand_possible_hover(*out.find("thrust_per_mass.hover_command"));
+  CommandPredictions predictions = command_predictions(*all.model, all.x());
+  conclude_vehicle(out, values, base, untold_parameters(out, predictions), [&](const std::string& parameter) {
+    return advice(parameter, *out.find(parameter), by_flight, base);
+  });
+  out.unexcited.emplace_back(
+      "mass, rotor.thrust_factor, rotor.torque_factor, linear_drag and the accelerometer's offset: a log "
+      "without poses and supply voltage does not tell them; moments of inertia are those that the mass and "
+      "levers of " +
+      base.name + " make of m d/J");
+  out.findings.push_back(
+      "a command that all rotors share makes " + shown(all.model->shared_over_single()) +
+      " times the thrust of one by which they differ, as the supply sags under it: by the battery of " +
+      base.name + ", and allowed for in m d/J");
+  compare_with_file(out, *all.model);
+  draw_thrust(out, all);
+  tell_of_lags(out, lags);
+  tell_of_delays(out, all);
+  warn_of_fit(out, all.model->physical_parameters(), all.fit);
+  tell_of_forecasts(out, predictions);
+  out.step_s = all.model->sample_s();
+  out.errors = std::move(predictions.errors);
+  out.horizons = std::move(predictions.horizons);
+  out.trace = std::move(predictions.trace);
+}
+
+}  // namespace swiftlet::identification

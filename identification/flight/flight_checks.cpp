@@ -1,0 +1,150 @@
+#include "swiftlet/identification/flight/flight_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "swiftlet/identification/fitting/checks.hpp"
+#include "swiftlet/identification/fitting/limits.hpp"
+#include "swiftlet/identification/flight/flight_series.hpp"
+
+namespace swiftlet::identification {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kLeastWeight = 0.5;  // median of the specific force, over g
+constexpr double kMostWeight = 2.0;
+constexpr double kMostOfMotors = 3.0;      // of rotor speeds, over the motors' and the other way round
+constexpr double kMoved = 0.15;            // m/s that is gained or lost in a stretch, RMS, to compare by
+constexpr double kLeastCorrelation = 0.5;  // of speeds gained
+constexpr double kMostOfFelt = 2.0;        // of their ratio, and the other way round
+constexpr double kLeastPeriodS = 2e-5;     // of the IMU
+
+template <typename Value>
+std::vector<double> column(const Rows& rows, const Value& value) {
+  std::vector<double> out;
+  out.reserve(rows.size());
+  for (std::size_t row = rows.first; row < rows.last; ++row) out.push_back(value(row));
+  return out;
+}
+
+void demand_change(const std::vector<double>& values, const std::string& name, const char* unit) {
+  if (std::any_of(values.begin(), values.end(), [&](double value) { return value != values.front(); }))
+    return;
+  throw BadData(name + ": is " + shown(values.front()) + " " + unit + " all through the flight, must vary");
+}
+
+void demand_gained_as_felt(const std::vector<double>& gained, const std::vector<double>& felt,
+                           const char* direction) {
+  const Comparison found = compared(gained, felt);
+  if (found.spread < kMoved) return;
+  if (found.correlation < kLeastCorrelation) {
+    throw BadData(std::string("positions: ") + direction +
+                  " they do not move as the specific force asks (correlation of speeds gained " +
+                  shown(found.correlation) + ", must be above " + shown(kLeastCorrelation) +
+                  "); are the frames of poses and IMU right?");
+  }
+  if (found.ratio > kMostOfFelt || found.ratio < 1.0 / kMostOfFelt) {
+    throw BadData(std::string("positions: ") + direction + " they gain " + shown(found.ratio) +
+                  " times the speed that the specific force asks for, must be " + shown(1.0 / kMostOfFelt) +
+                  " to " + shown(kMostOfFelt) + "; is the unit right?");
+  }
+}
+
+}  // namespace
+
+void demand_times(const FlightLog& log) {
+  std::vector<double> periods;
+  for (std::size_t row = 1; row < log.size(); ++row) periods.push_back(log.time_s[row] - log.time_s[row - 1]);
+  if (periods.empty()) throw BadData("has one row, must have a flight");
+  const double period_s = median(periods);
+  if (period_s > kLeastPeriodS && period_s <= kLongestRowGapS) return;
+  throw BadData("time: has a sample every " + shown(period_s) + " s in the middle, must have one every " +
+                shown(kLeastPeriodS) + " to " + shown(kLongestRowGapS) + " s; is the unit right?");
+}
+
+void demand_readings(const FlightLog& log, const Rows& flight) {
+  const std::string of_axis[3] = {" x", " y", " z"};
+  for (int axis = 0; axis < 3; ++axis) {
+    demand_change(column(flight, [&](std::size_t row) { return log.specific_force_frd[row][axis]; }),
+                  "specific force" + of_axis[axis], "m/s^2");
+    demand_change(column(flight, [&](std::size_t row) { return log.body_rates_frd[row][axis]; }),
+                  "body rate" + of_axis[axis], "rad/s");
+  }
+  const std::vector<double> force =
+      column(flight, [&](std::size_t row) { return log.specific_force_frd[row].norm(); });
+  demand_median_between({"specific force", "m/s^2", force}, kLeastWeight * plant::kGravity,
+                        kMostWeight * plant::kGravity, "what flies carries its weight");
+  for (std::size_t rotor = 0; rotor < static_cast<std::size_t>(log.rotor_count); ++rotor) {
+    const std::string number = std::to_string(rotor + 1);
+    demand_change(column(flight, [&](std::size_t row) { return log.command[row][rotor]; }),
+                  "command of motor " + number, "of full command");
+    if (log.rotor_speeds.empty()) continue;
+    const std::vector<double> speeds =
+        column(flight, [&](std::size_t row) { return log.rotor_speeds[row][rotor]; });
+    demand_change(speeds, "speed of rotor " + number, "rad/s");
+    demand_median_between({"rotor speed", "rad/s", speeds}, kLeastRotorSpeed, kMostRotorSpeed,
+                          "no rotor flies a vehicle at less or more");
+  }
+  if (log.supply_voltage_v.empty()) return;
+  const std::vector<double> supply =
+      column(flight, [&](std::size_t row) { return log.supply_voltage_v[row]; });
+  demand_median_between({"supply voltage", "V", supply}, kLeastSupplyVoltage, kMostSupplyVoltage,
+                        "no vehicle flies on less or more");
+}
+
+void demand_speeds_like_the_motors(const FlightSeries& series, const plant::Vehicle& base) {
+  const auto mean = [](const plant::PerRotor& speeds, int count) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) sum += speeds[i] / count;
+    return sum;
+  };
+  const FlightLog& log = *series.log;
+  const Rows& flight = series.window.flight;
+  const double steady = median(
+      column(flight, [&](std::size_t row) { return mean(series.steady_speeds[row], log.rotor_count); }));
+  const std::string at = " at these commands and this voltage";
+  if (steady < kLeastRotorSpeed || steady > kMostRotorSpeed) {
+    throw BadData("rotors: the motors of " + base.name + " do " + shown(steady) + " rad/s" + at +
+                  ", must be " + shown(kLeastRotorSpeed) + " to " + shown(kMostRotorSpeed) +
+                  "; are the units and the base vehicle right?");
+  }
+  if (log.rotor_speeds.empty()) return;
+  const double ratio =
+      median(column(flight, [&](std::size_t row) { return mean(log.rotor_speeds[row], log.rotor_count); })) /
+      steady;
+  if (ratio < kMostOfMotors && ratio > 1.0 / kMostOfMotors) return;
+  throw BadData("rotor speeds: are " + shown(ratio) + " times what the motors of " + base.name + " do" + at +
+                ", must be " + shown(1.0 / kMostOfMotors) + " to " + shown(kMostOfMotors) +
+                "; are the units and the base vehicle right?");
+}
+
+void demand_positions_as_felt(const FlightSeries& series) {
+  const FlightLog& log = *series.log;
+  const Vector3d gravity_ned(0.0, 0.0, plant::kGravity);
+  std::vector<double> gained[3];
+  std::vector<double> felt[3];
+  for (const Rows& stretch : series.stretches) {
+    Vector3d asked = Vector3d::Zero();
+    for (std::size_t row = stretch.first + 1; row < stretch.last; ++row) {
+      const double h = log.time_s[row] - log.time_s[row - 1];
+      asked += h * (series.attitude[row] * log.specific_force_frd[row] + gravity_ned);
+    }
+    const Vector3d speed = series.velocity_ned[stretch.last - 1] - series.velocity_ned[stretch.first];
+    for (int axis = 0; axis < 3; ++axis) {
+      gained[axis].push_back(speed[axis]);
+      felt[axis].push_back(asked[axis]);
+    }
+  }
+  if (gained[0].empty()) return;
+  demand_gained_as_felt(gained[0], felt[0], "to the north");
+  demand_gained_as_felt(gained[1], felt[1], "to the east");
+  demand_gained_as_felt(gained[2], felt[2], "up and down");
+}
+
+}  // namespace swiftlet::identification

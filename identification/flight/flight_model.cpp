@@ -1,0 +1,283 @@
+#include "swiftlet/identification/flight/flight_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "swiftlet/identification/fitting/estimate.hpp"
+
+namespace swiftlet::identification {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr double kBlockS = 0.01;            // samples that are averaged
+constexpr std::size_t kBlocksInWindow = 5;  // over which rates are integrated from a free start
+constexpr std::size_t kKeptForEachFlight = 4;
+
+const char* const kAxes[3] = {"roll", "pitch", "yaw"};
+
+// Rows that are averaged.
+std::size_t block_of(const FlightSeries& flight) {
+  const std::vector<double>& time = flight.log->time_s;
+  const double step =
+      (time[flight.fitted.last - 1] - time[flight.fitted.first]) / static_cast<double>(flight.fitted.size());
+  return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kBlockS / step)));
+}
+
+std::size_t blocks_in(const Rows& stretch, std::size_t block) { return (stretch.size() + block - 1) / block; }
+
+plant::PerRotor speed_errors(const plant::PerRotor& measured, const plant::PerRotor& modelled, double scale,
+                             int rotors) {
+  plant::PerRotor out{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(rotors); ++i)
+    out[i] = measured[i] - scale * modelled[i];
+  return out;
+}
+
+}  // namespace
+
+FlightModel::FlightModel(std::vector<FlightSeries> flights, plant::Vehicle base)
+    : flights_(std::move(flights)),
+      base_(std::move(base)),
+      effectiveness_(plant::effectiveness(base_)),
+      wrenches_(kKeptForEachFlight * flights_.size()) {
+  for (const FlightSeries& flight : flights_) block_.push_back(block_of(flight));
+  lay_out();
+}
+
+void FlightModel::lay_out() {
+  FlightLayout& l = layout_;
+  const auto add = [&l](FlightParameter parameter) {
+    return identification::add(std::move(parameter), l.parameters);
+  };
+  l.lag = add({"rotor lag", "s", base_.motor.time_constant_s, 0.01, 2e-3, 1.0});
+  if (source() == SpeedSource::kMeasured) {
+    l.motor_delay = add({"delay from command to rotor speed", "s", 2e-3, 2e-3, -0.02, 0.05});
+    l.speed_scale = add({"rotor speed over the model's", "1", 1.0, 0.05, 0.1, 10.0});
+  } else {
+    l.force_delay = add({"delay from command to specific force", "s", 2e-3, 2e-3, -0.02, 0.05});
+    l.rate_delay = add({"delay from command to angular acceleration", "s", 2e-3, 2e-3, -0.02, 0.05});
+  }
+  l.thrust = add({"thrust over the base's", "1", 1.0, 0.1, 0.01, 100.0});
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string name = kAxes[axis];
+    l.gain[axis] = add({"gain about " + name + " over the base's", "1", 1.0, 0.1, -100.0, 100.0});
+    l.trim[axis] = add({"offset of the thrust, " + name, "m", 0.0, 1e-3, -0.1, 0.1});
+  }
+  l.drag = add({"drag over mass", "1/s", 0.1, 0.1, -10.0, 50.0});
+  for (const FlightSeries& flight : flights_) {
+    l.offset.push_back(static_cast<int>(l.parameters.size()));
+    for (int axis = 0; axis < 3; ++axis) {
+      add({std::string("accelerometer offset ") + "xyz"[axis] +
+               (flights_.size() > 1 ? ", " + flight.log->name : ""),
+           "m/s^2", 0.0, 0.1, -5.0, 5.0});
+    }
+  }
+}
+
+Vector3d FlightModel::inertia(const VectorXd& x) const {
+  const double s = x[layout_.thrust];
+  const Vector3d gain(x[layout_.gain[0]], x[layout_.gain[1]], x[layout_.gain[2]]);
+  return Vector3d(s, s, 1.0).cwiseProduct(base_.inertia.diagonal()).cwiseQuotient(gain);
+}
+
+Vector3d FlightModel::offset(const VectorXd& x, std::size_t flight) const {
+  const int first = layout_.offset[flight];
+  return {x[first], x[first + 1], x[first + 2]};
+}
+
+FlightModel::Wrenches FlightModel::wrenches_of(const std::vector<plant::PerRotor>& speeds) const {
+  Wrenches out(speeds.size(), Eigen::Vector4d::Zero());
+  for (std::size_t i = 0; i < speeds.size(); ++i) {
+    for (Index rotor = 0; rotor < effectiveness_.cols(); ++rotor) {
+      const double speed = speeds[i][static_cast<std::size_t>(rotor)];
+      out[i] += effectiveness_.col(rotor) * (base_.rotor.thrust * speed * speed);
+    }
+  }
+  return out;
+}
+
+FlightModel::Wrenches FlightModel::computed_wrenches(std::size_t flight, const Rows& rows, double lag_s,
+                                                     double delay_s) const {
+  const FlightSeries& series = flights_[flight];
+  if (source() != SpeedSource::kMeasured)
+    return wrenches_of(lagged_speeds(*series.log, series.steady_speeds, rows, lag_s, delay_s));
+  const auto measured = series.log->rotor_speeds.begin();
+  return wrenches_of({measured + static_cast<std::ptrdiff_t>(rows.first),
+                      measured + static_cast<std::ptrdiff_t>(rows.last)});
+}
+
+std::shared_ptr<const FlightModel::Wrenches> FlightModel::wrenches(const VectorXd& x, std::size_t flight,
+                                                                   const Rows& rows, double delay_s) const {
+  const double lag_s = source() == SpeedSource::kMeasured ? 0.0 : x[layout_.lag];
+  return wrenches_.of({flight, rows.first, rows.last, lag_s, delay_s},
+                      [&] { return computed_wrenches(flight, rows, lag_s, delay_s); });
+}
+
+FlightModel::Drive FlightModel::drive(const VectorXd& x, std::size_t flight, const Rows& rows) const {
+  const auto for_force = wrenches(x, flight, rows, value(x, layout_.force_delay));
+  const auto for_rates = wrenches(x, flight, rows, value(x, layout_.rate_delay));
+  return drive_by(x, flight, rows, *for_force, *for_rates);
+}
+
+FlightModel::Drive FlightModel::drive_by_commands(const VectorXd& x, std::size_t flight,
+                                                  const Rows& rows) const {
+  if (source() != SpeedSource::kMeasured) return drive(x, flight, rows);
+  const FlightSeries& series = flights_[flight];
+  std::vector<plant::PerRotor> speeds =
+      lagged_speeds(*series.log, series.steady_speeds, rows, x[layout_.lag], x[layout_.motor_delay]);
+  for (plant::PerRotor& of_row : speeds) {
+    for (double& speed : of_row) speed *= x[layout_.speed_scale];
+  }
+  const Wrenches by_commands = wrenches_of(speeds);
+  return drive_by(x, flight, rows, by_commands, by_commands);
+}
+
+FlightModel::Drive FlightModel::drive_by(const VectorXd& x, std::size_t flight, const Rows& rows,
+                                         const Wrenches& for_force, const Wrenches& for_rates) const {
+  const FlightSeries& series = flights_[flight];
+  const double thrust_over_mass = x[layout_.thrust] / base_.mass_kg;
+  const double drag = value(x, layout_.drag);
+  const Vector3d gain = Vector3d(x[layout_.gain[0]], x[layout_.gain[1]], x[layout_.gain[2]])
+                            .cwiseQuotient(base_.inertia.diagonal());
+  // A thrust T through (x, y) gives the moment (-y T, x T).
+  const Vector3d trim(-x[layout_.trim[0]], x[layout_.trim[1]], x[layout_.trim[2]]);
+  Drive out;
+  out.specific_force.reserve(rows.size());
+  out.acceleration.reserve(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    Vector3d force(0.0, 0.0, -thrust_over_mass * for_force[i][0]);
+    const std::size_t row = rows.first + i;
+    force -= drag * (series.attitude[row].conjugate() * series.velocity_ned[row]);
+    out.specific_force.push_back(force);
+    const Eigen::Vector4d& moments = for_rates[i];
+    out.acceleration.push_back(gain.cwiseProduct(moments.tail<3>() + moments[0] * trim));
+  }
+  return out;
+}
+
+Vector3d FlightModel::rate_derivative(const Vector3d& inertia, const Vector3d& acceleration,
+                                      const Vector3d& rates) {
+  return acceleration - rates.cross(inertia.cwiseProduct(rates)).cwiseQuotient(inertia);
+}
+
+// Channels, one after the other: specific force x, y, z, rates p, q, r, speed of each rotor less the mean of
+// all, that mean over each stretch, vertical motion.
+SeriesProblem FlightModel::problem(const std::function<void()>& on_iteration) const {
+  SeriesProblem out = problem_of(layout_.parameters);
+  std::vector<std::size_t> per_row;  // stretch of each block of fitted rows, all flights
+  std::vector<std::size_t> per_stretch;
+  for (std::size_t f = 0; f < flights_.size(); ++f) {
+    const FlightSeries& flight = flights_[f];
+    for (const Rows& stretch : flight.stretches) {
+      per_row.insert(per_row.end(), blocks_in(stretch, block_[f]), out.stretch_count);
+      per_stretch.push_back(out.stretch_count);
+      ++out.stretch_count;
+    }
+  }
+  const auto add_channel = [&](const std::vector<std::size_t>& stretches) {
+    out.channels.push_back({out.stretches.size(), stretches.size()});
+    out.stretches.insert(out.stretches.end(), stretches.begin(), stretches.end());
+  };
+  for (int i = 0; i < 6; ++i) add_channel(per_row);
+  if (source() == SpeedSource::kMeasured) {
+    for (int i = 0; i < base_.rotor_count(); ++i) add_channel(per_row);
+    add_channel(per_stretch);
+  }
+  add_channel(per_stretch);
+  out.residuals = [this](const VectorXd& x, VectorXd& residuals_out) { residuals(x, residuals_out); };
+  out.on_iteration = on_iteration;
+  return out;
+}
+
+void FlightModel::residuals(const VectorXd& x, VectorXd& out) const {
+  Index rows = 0;  // blocks of them, in all
+  for (std::size_t f = 0; f < flights_.size(); ++f) {
+    for (const Rows& stretch : flights_[f].stretches)
+      rows += static_cast<Index>(blocks_in(stretch, block_[f]));
+  }
+  const bool with_speeds = source() == SpeedSource::kMeasured;
+  const Index rotors = with_speeds ? base_.rotor_count() : 0;
+  Index begin = 0;  // of the stretch, among the blocks
+  Index next = (6 + rotors) * rows;
+  const Vector3d moments_of_inertia = inertia(x);
+  out.head(next).setZero();
+
+  for (std::size_t f = 0; f < flights_.size(); ++f) {
+    const FlightSeries& flight = flights_[f];
+    const FlightLog& log = *flight.log;
+    if (flight.stretches.empty()) continue;
+    const Rows all{flight.stretches.front().first, flight.stretches.back().last};
+    const Drive by_model = drive(x, f, all);
+    const Vector3d bias = offset(x, f);
+    std::vector<plant::PerRotor> modelled;
+    if (with_speeds)
+      modelled = lagged_speeds(log, flight.steady_speeds, all, x[layout_.lag], x[layout_.motor_delay]);
+
+    for (const Rows& stretch : flight.stretches) {
+      const auto blocks = static_cast<Index>(blocks_in(stretch, block_[f]));
+      Vector3d predicted = Vector3d::Zero();
+      Vector3d before = Vector3d::Zero();
+      double mean_error = 0.0;  // of all rotors' speeds
+      for (std::size_t row = stretch.first; row < stretch.last; ++row) {
+        const std::size_t i = row - all.first;
+        const std::size_t block = (row - stretch.first) / block_[f];
+        const std::size_t in_block = std::min(block_[f], stretch.size() - block * block_[f]);
+        const double share = 1.0 / static_cast<double>(in_block);
+        const Index at = begin + static_cast<Index>(block);
+        const Vector3d force = log.specific_force_frd[row] - by_model.specific_force[i] - bias;
+        const Vector3d slope =
+            rate_derivative(moments_of_inertia, by_model.acceleration[i], log.body_rates_frd[row]);
+        if (row > stretch.first)
+          predicted += 0.5 * (log.time_s[row] - log.time_s[row - 1]) * (before + slope);
+        before = slope;
+        const Vector3d rate = log.body_rates_frd[row] - predicted;
+        for (Index axis = 0; axis < 3; ++axis) {
+          out[axis * rows + at] += share * force[axis];
+          out[(3 + axis) * rows + at] += share * rate[axis];
+        }
+        if (!with_speeds) continue;
+        // The supply, which sags with every change of the thrust, is sampled slower than that: it moves all
+        // rotors alike.
+        const plant::PerRotor error =
+            speed_errors(log.rotor_speeds[row], modelled[i], x[layout_.speed_scale], base_.rotor_count());
+        const double common = std::accumulate(error.begin(), error.end(), 0.0) / base_.rotor_count();
+        for (Index rotor = 0; rotor < rotors; ++rotor)
+          out[(6 + rotor) * rows + at] += share * (error[static_cast<std::size_t>(rotor)] - common);
+        mean_error += common / static_cast<double>(stretch.size());
+      }
+      if (with_speeds) out[next++] = mean_error;
+      const auto window = static_cast<Index>(kBlocksInWindow);
+      for (Index from = 0; from < blocks; from += window) {
+        for (Index axis = 0; axis < 3; ++axis) {
+          auto rates = out.segment((3 + axis) * rows + begin + from, std::min(window, blocks - from));
+          rates.array() -= rates.mean();
+        }
+      }
+      begin += blocks;
+    }
+  }
+  // dv/dt = R (f - b) + g, the vertical part, over each stretch.
+  for (std::size_t f = 0; f < flights_.size(); ++f) {
+    const FlightSeries& flight = flights_[f];
+    const FlightLog& log = *flight.log;
+    const Vector3d bias = offset(x, f);
+    const auto vertical = [&](std::size_t row) {
+      return (flight.attitude[row] * (log.specific_force_frd[row] - bias)).z() + plant::kGravity;
+    };
+    for (const Rows& stretch : flight.stretches) {
+      double gained = 0.0;
+      for (std::size_t row = stretch.first + 1; row < stretch.last; ++row)
+        gained += 0.5 * (log.time_s[row] - log.time_s[row - 1]) * (vertical(row) + vertical(row - 1));
+      const double length_s = log.time_s[stretch.last - 1] - log.time_s[stretch.first];
+      const double flown = flight.velocity_ned[stretch.last - 1].z() - flight.velocity_ned[stretch.first].z();
+      out[next++] = (flown - gained) / length_s;
+    }
+  }
+}
+
+}  // namespace swiftlet::identification

@@ -1,0 +1,192 @@
+#include "swiftlet/identification/flight/flight_series.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "swiftlet/identification/fitting/estimate.hpp"
+#include "swiftlet/identification/flight/flight_checks.hpp"
+#include "swiftlet/plant/model/propulsion.hpp"
+
+namespace swiftlet::identification {
+namespace {
+
+constexpr double kKeptShare = 0.2;
+constexpr double kHalfSmoothingS = 0.06;   // of the polynomial through neighbouring poses
+constexpr std::size_t kLeastPoses = 5;     // through which one is laid
+constexpr double kLongestPoseGapS = 0.25;  // that is bridged
+
+void demand_whole(const FlightLog& log, const Rows& rows) {
+  for (std::size_t i = rows.first + 1; i < rows.last; ++i) {
+    if (log.time_s[i] - log.time_s[i - 1] <= kLongestRowGapS) continue;
+    throw BadData("has no sample for " + shown(log.time_s[i] - log.time_s[i - 1]) +
+                  " s in the flight, after " + shown(log.time_s[i - 1]) + " s, must have one every " +
+                  shown(kLongestRowGapS) + " s");
+  }
+}
+
+SpeedSource source_of(const FlightLog& log) {
+  if (log.poses.size() <= kLeastPoses || log.supply_voltage_v.empty()) return SpeedSource::kCommanded;
+  return log.rotor_speeds.empty() ? SpeedSource::kModelled : SpeedSource::kMeasured;
+}
+
+std::vector<plant::PerRotor> steady_speeds(const FlightLog& log, const plant::Vehicle& base) {
+  std::vector<plant::PerRotor> out(log.size(), plant::PerRotor{});
+  for (std::size_t row = 0; row < log.size(); ++row) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(log.rotor_count); ++i) {
+      if (log.running[row] == 0) continue;
+      out[row][i] = plant::steady_speed_from_throttle(base, log.supply_voltage_v[row], log.command[row][i]);
+    }
+  }
+  return out;
+}
+
+struct Motion {
+  Eigen::Vector3d velocity_ned = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond attitude = Eigen::Quaterniond::Identity();
+};
+
+// Through the poses near a time: positions by a cubic, the attitude between the two neighbours.
+class PoseMotion {
+ public:
+  explicit PoseMotion(const std::vector<FlightPose>& poses) : poses_(poses) {}
+
+  // Times must rise from call to call.
+  Motion at(double time_s) {
+    while (next_ + 1 < poses_.size() && poses_[next_].time_s <= time_s) ++next_;
+    if (next_ == 0) next_ = 1;
+    const FlightPose& before = poses_[next_ - 1];
+    const FlightPose& after = poses_[next_];
+    if (time_s < before.time_s - kLongestPoseGapS || time_s > after.time_s + kLongestPoseGapS) {
+      throw BadData("has poses from " + shown(poses_.front().time_s) + " to " + shown(poses_.back().time_s) +
+                    " s alone, and flight at " + shown(time_s) + " s; must have them all through the flight");
+    }
+    if (after.time_s - before.time_s > kLongestPoseGapS) {
+      throw BadData("has no pose for " + shown(after.time_s - before.time_s) + " s in the flight, after " +
+                    shown(before.time_s) + " s, must have one every " + shown(kLongestPoseGapS) + " s");
+    }
+    const double share = std::clamp((time_s - before.time_s) / (after.time_s - before.time_s), 0.0, 1.0);
+    return {velocity(time_s), before.q_ned_from_frd.slerp(share, after.q_ned_from_frd)};
+  }
+
+ private:
+  Eigen::Vector3d velocity(double time_s) const {
+    std::size_t first = next_;
+    std::size_t last = next_;
+    while (first > 0 &&
+           (time_s - poses_[first - 1].time_s < kHalfSmoothingS || last - first < kLeastPoses / 2 + 1))
+      --first;
+    while (last < poses_.size() &&
+           (poses_[last].time_s - time_s < kHalfSmoothingS || last - first < kLeastPoses))
+      ++last;
+    Eigen::Matrix<double, Eigen::Dynamic, 4> powers(static_cast<Eigen::Index>(last - first), 4);
+    Eigen::Matrix<double, Eigen::Dynamic, 3> positions(powers.rows(), 3);
+    for (std::size_t i = first; i < last; ++i) {
+      const double t = poses_[i].time_s - time_s;
+      powers.row(static_cast<Eigen::Index>(i - first)) << 1.0, t, t * t, t * t * t;
+      positions.row(static_cast<Eigen::Index>(i - first)) = poses_[i].position_ned.transpose();
+    }
+    const Eigen::Matrix<double, 4, 3> fit =
+        (powers.transpose() * powers).ldlt().solve(powers.transpose() * positions);
+    return fit.row(1).transpose();
+  }
+
+  const std::vector<FlightPose>& poses_;
+  std::size_t next_ = 0;
+};
+
+void add_motion(FlightSeries& series) {
+  const FlightLog& log = *series.log;
+  series.velocity_ned.resize(log.size(), Eigen::Vector3d::Zero());
+  series.attitude.resize(log.size(), Eigen::Quaterniond::Identity());
+  std::vector<FlightPose> poses = log.poses;
+  if (series.pose_timing.told) {
+    for (FlightPose& pose : poses) pose.time_s -= series.pose_timing.delay.value;
+  }
+  PoseMotion motion(poses);
+  for (std::size_t row = series.window.flight.first; row < series.window.flight.last; ++row) {
+    const Motion now = motion.at(log.time_s[row]);
+    series.velocity_ned[row] = now.velocity_ned;
+    series.attitude[row] = now.attitude;
+  }
+}
+
+std::vector<Rows> stretches_of(const FlightLog& log, const Rows& rows) {
+  std::vector<Rows> out;
+  std::size_t first = rows.first;
+  for (std::size_t i = rows.first; i < rows.last; ++i) {
+    if (log.time_s[i] - log.time_s[first] < kStretchS) continue;
+    out.push_back({first, i});
+    first = i;
+  }
+  return out;
+}
+
+FlightSeries prepare_flight(const FlightLog& log, const plant::Vehicle& base, const FlightBounds& bounds) {
+  if (log.rotor_count != base.rotor_count()) {
+    throw BadData("has commands of " + std::to_string(log.rotor_count) + " motors, must have those of the " +
+                  std::to_string(base.rotor_count()) + " of " + base.name);
+  }
+  FlightSeries out;
+  out.log = &log;
+  demand_times(log);
+  out.window = find_flight(log, bounds);
+  demand_whole(log, out.window.flight);
+  demand_readings(log, out.window.flight);
+  const Rows& flight = out.window.flight;
+  out.fitted = {flight.first,
+                flight.last - static_cast<std::size_t>(kKeptShare * static_cast<double>(flight.size()))};
+  out.kept = {out.fitted.last, flight.last};
+  out.source = source_of(log);
+  if (out.source == SpeedSource::kCommanded) return out;
+  out.steady_speeds = steady_speeds(log, base);
+  demand_speeds_like_the_motors(out, base);
+  out.stretches = stretches_of(log, out.fitted);
+  out.pose_timing = find_pose_timing(log, out.stretches);
+  add_motion(out);
+  demand_positions_as_felt(out);
+  return out;
+}
+
+}  // namespace
+
+std::vector<FlightSeries> prepare_flights(const std::vector<FlightLog>& logs, const plant::Vehicle& base,
+                                          const FlightBounds& bounds) {
+  std::vector<FlightSeries> out;
+  for (const FlightLog& log : logs) {
+    try {
+      out.push_back(prepare_flight(log, base, bounds));
+    } catch (const BadData& fault) {
+      throw BadData(log.name + ": " + fault.what(), fault.row());
+    }
+    if (out.back().source == out.front().source) continue;
+    throw BadData(
+        log.name + " and " + logs.front().name +
+        " do not hold the same: poses, supply voltage and rotor speeds must each be in all logs or in none");
+  }
+  return out;
+}
+
+std::vector<plant::PerRotor> lagged_speeds(const FlightLog& log, const std::vector<plant::PerRotor>& steady,
+                                           const Rows& rows, double time_constant_s, double delay_s) {
+  const auto rotors = static_cast<std::size_t>(log.rotor_count);
+  std::vector<plant::PerRotor> out(rows.size(), plant::PerRotor{});
+  plant::PerRotor speed = steady.front();
+  std::size_t to = rows.first;
+  for (std::size_t row = 0; row < steady.size() && to < rows.last; ++row) {
+    const bool is_last = row + 1 == steady.size();
+    for (; to < rows.last && (is_last || log.time_s[to] - delay_s < log.time_s[row + 1]); ++to) {
+      const double ahead = std::max(log.time_s[to] - delay_s - log.time_s[row], 0.0);
+      const double left = std::exp(-ahead / time_constant_s);
+      for (std::size_t i = 0; i < rotors; ++i)
+        out[to - rows.first][i] = steady[row][i] + (speed[i] - steady[row][i]) * left;
+    }
+    if (is_last) break;
+    const double left = std::exp(-(log.time_s[row + 1] - log.time_s[row]) / time_constant_s);
+    for (std::size_t i = 0; i < rotors; ++i) speed[i] = steady[row][i] + (speed[i] - steady[row][i]) * left;
+  }
+  return out;
+}
+
+}  // namespace swiftlet::identification

@@ -1,0 +1,176 @@
+#include "swiftlet/identification/flight/flight_window.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "swiftlet/identification/fitting/estimate.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
+
+namespace swiftlet::identification {
+namespace {
+
+constexpr double kCarrying = 0.9;  // of the median command: what lifts the vehicle
+constexpr double kSmoothingS = 0.05;
+constexpr double kAfterLiftS = 0.3;  // until the legs are well off the ground
+constexpr double kBeforeBlowS = 0.3;
+constexpr double kWorthTellingS = 1.0;  // of flight that is left out
+constexpr double kLongestPauseS =
+    1.0;  // of rotors without command that is still flight: a fall between two pushes
+
+std::size_t row_at(const FlightLog& log, double time_s) {
+  return static_cast<std::size_t>(std::lower_bound(log.time_s.begin(), log.time_s.end(), time_s) -
+                                  log.time_s.begin());
+}
+
+// The longest stretch of running rotors, short pauses included.
+Rows running_rows(const FlightLog& log) {
+  Rows best;
+  Rows now;
+  bool inside = false;
+  for (std::size_t i = 0; i < log.size(); ++i) {
+    if (log.running[i] == 0) continue;
+    if (inside && log.time_s[i] - log.time_s[now.last - 1] > kLongestPauseS) inside = false;
+    if (!inside) now = {i, i};
+    inside = true;
+    now.last = i + 1;
+    if (now.size() > best.size()) best = now;
+  }
+  return best;
+}
+
+// Mean command of the rotors, smoothed.
+std::vector<double> smoothed_commands(const FlightLog& log, const Rows& rows) {
+  std::vector<double> out(rows.size(), 0.0);
+  double smoothed = 0.0;
+  for (std::size_t i = 1; i < out.size(); ++i) {
+    const std::size_t row = rows.first + i;
+    double mean = 0.0;
+    for (int rotor = 0; rotor < log.rotor_count; ++rotor)
+      mean += log.command[row][static_cast<std::size_t>(rotor)] / log.rotor_count;
+    const double h = log.time_s[row] - log.time_s[row - 1];
+    out[i] = smoothed += std::min(h / kSmoothingS, 1.0) * (mean - smoothed);
+  }
+  return out;
+}
+
+// Between the first and the last command that carries the vehicle; most of the time it is carried.
+Rows carried(const FlightLog& log, const Rows& running) {
+  const std::vector<double> commands = smoothed_commands(log, running);
+  std::vector<double> sorted = commands;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double carrying = kCarrying * *middle;
+  const auto carries = [&](double command) { return command >= carrying; };
+  const auto first = std::find_if(commands.begin(), commands.end(), carries);
+  const auto last = std::find_if(commands.rbegin(), commands.rend(), carries);
+  const auto row = [&](std::ptrdiff_t i) { return running.first + static_cast<std::size_t>(i); };
+  const Rows rows{row_at(log, log.time_s[row(first - commands.begin())] + kAfterLiftS),
+                  row_at(log, log.time_s[row(commands.rend() - last - 1)] - kLandingS)};
+  return {rows.first, std::max(rows.first, rows.last)};
+}
+
+Rows above_ground(const FlightLog& log, const Rows& running) {
+  const double start_s = log.time_s[running.first];
+  const auto first = std::lower_bound(log.poses.begin(), log.poses.end(), start_s,
+                                      [](const FlightPose& pose, double t) { return pose.time_s < t; });
+  if (first == log.poses.end()) return {running.last, running.last};
+  const double floor = first->position_ned.z();
+  Rows rows{running.last, running.last};
+  for (auto pose = first; pose != log.poses.end(); ++pose) {
+    if (floor - pose->position_ned.z() < kAirborneHeightM) continue;
+    const std::size_t row = row_at(log, pose->time_s);
+    if (row >= running.last) break;
+    rows.first = std::min(rows.first, row);
+    rows.last = row + 1;
+  }
+  rows.last = std::max(rows.first, rows.last);
+  return rows;
+}
+
+std::string seconds(double time_s) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f", time_s);
+  return text;
+}
+
+Rows airborne(const FlightLog& log, const Rows& running) {
+  return log.poses.empty() ? carried(log, running) : above_ground(log, running);
+}
+
+// Poses that are of another clock, or that never leave the ground, hold no flight.
+void demand_flight_in_poses(const FlightLog& log, const Rows& running) {
+  if (log.poses.empty()) return;
+  const double from_s = log.time_s[running.first];
+  const double to_s = log.time_s[running.last - 1];
+  if (log.poses.back().time_s < from_s || log.poses.front().time_s > to_s) {
+    throw BadData("has poses from " + seconds(log.poses.front().time_s) + " to " +
+                  seconds(log.poses.back().time_s) + " s and rotors that run from " + seconds(from_s) +
+                  " to " + seconds(to_s) + " s; must have both on one clock");
+  }
+  if (above_ground(log, running).size() == 0) {
+    throw BadData(
+        "has no pose more than " + shown(kAirborneHeightM) +
+        " m above where the rotors were started, must have flight in it; are the unit and the frame "
+        "of positions right?");
+  }
+}
+
+// Of rotors that run, before, between and after what is taken.
+void tell_what_is_left_out(const FlightLog& log, const Rows& running, FlightWindow& out) {
+  double elsewhere_s = 0.0;
+  for (std::size_t row = 1; row < log.size(); ++row) {
+    const bool taken = row >= running.first && row < running.last;
+    const double h = log.time_s[row] - log.time_s[row - 1];
+    if (!taken && log.running[row] != 0 && log.running[row - 1] != 0 && h < kLongestPauseS) elsewhere_s += h;
+  }
+  if (elsewhere_s > kWorthTellingS) {
+    out.left_out.push_back("flight is looked for from " + seconds(log.time_s[running.first]) + " to " +
+                           seconds(log.time_s[running.last - 1]) +
+                           " s, the longest time without a pause or a gap of more than " +
+                           shown(kLongestPauseS) + " s; rotors ran for another " + shown(elsewhere_s) +
+                           " s outside, which --from and --until can choose");
+  }
+  if (log.poses.empty()) return;
+  const double unseen_s = log.time_s[running.last - 1] - log.poses.back().time_s;
+  if (unseen_s > kWorthTellingS) {
+    out.left_out.push_back("poses end at " + seconds(log.poses.back().time_s) + " s; the rotors ran on for " +
+                           shown(unseen_s) + " s, which are left out");
+  }
+}
+
+}  // namespace
+
+FlightWindow find_flight(const FlightLog& log, const FlightBounds& bounds) {
+  const Rows running = running_rows(log);
+  if (running.size() == 0) throw BadData("the rotors never ran");
+  const bool all_known = bounds.from_s && bounds.until_s;
+  if (!all_known) demand_flight_in_poses(log, running);
+  FlightWindow out;
+  out.flight = airborne(log, running);
+  if (!all_known) tell_what_is_left_out(log, running, out);
+  if (bounds.from_s) out.flight.first = row_at(log, *bounds.from_s);
+  if (bounds.until_s) out.flight.last = row_at(log, *bounds.until_s);
+  double blow_s = 0.0;
+  for (std::size_t i = out.flight.first; i < out.flight.last; ++i) {
+    if (log.specific_force_frd[i].norm() < kBlow) continue;
+    out.flight.last = row_at(log, log.time_s[i] - kBeforeBlowS);
+    out.ends_in_a_blow = true;
+    blow_s = log.time_s[i];
+  }
+  const double length_s = out.flight.first < out.flight.last
+                              ? log.time_s[out.flight.last - 1] - log.time_s[out.flight.first]
+                              : 0.0;
+  if (length_s < kShortestFlightS) {
+    throw BadData("holds " + shown(length_s) + " s of flight, must hold at least " + shown(kShortestFlightS) +
+                  " s" +
+                  (out.ends_in_a_blow ? "; a specific force of more than " + shown(kBlow) + " m/s^2 at " +
+                                            seconds(blow_s) + " s ends it: is the unit right?"
+                                      : ""));
+  }
+  return out;
+}
+
+}  // namespace swiftlet::identification

@@ -1,0 +1,230 @@
+#include "swiftlet/identification/flight/pose_timing.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "swiftlet/identification/fitting/checks.hpp"
+#include "swiftlet/identification/fitting/series_fit.hpp"
+#include "swiftlet/math/rotation_vector.hpp"
+
+namespace swiftlet::identification {
+namespace {
+
+using Eigen::Index;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr std::size_t kLeastPoses = 3;  // of a stretch
+constexpr std::size_t kLeastStretches = 8;
+constexpr double kLongestDelayS = 1.0;
+constexpr double kLagStepS = 0.01;  // of the first search
+constexpr double kLagOffS = 0.05;   // that the first search may be off by
+constexpr double kSpanS = 0.05;     // over which it compares turns
+constexpr double kTurning = 0.25;   // rad/s, RMS over such spans, to compare by
+constexpr double kLeastCorrelation = 0.5;
+constexpr double kMostOfGyro = 1.25;  // of the poses' turns over the gyro's, and the other way round
+constexpr double kToldS = 0.002;      // half an interval of the delay up to which it counts as told
+
+// What the body has turned, by the gyro less its offset, since about a time.
+class Turned {
+ public:
+  Turned(const FlightLog& log, const Vector3d& offset, double since_s) : log_(log), offset_(offset) {
+    const auto next = std::upper_bound(log.time_s.begin(), log.time_s.end(), since_s);
+    row_ = static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - log.time_s.begin() - 1, 0));
+  }
+
+  // Times must rise from call to call.
+  Quaterniond at(double time_s) {
+    while (row_ + 1 < log_.size() && log_.time_s[row_ + 1] <= time_s) {
+      turned_ = plant::renormalised(turned_ * step(log_.time_s[row_ + 1]));
+      ++row_;
+    }
+    return turned_ * step(time_s);
+  }
+
+ private:
+  // From the present row to a time that is not after the next row. Between rows, rates go straight.
+  Quaterniond step(double to_s) const {
+    const double passed_s = std::max(to_s - log_.time_s[row_], 0.0);
+    Vector3d rates = log_.body_rates_frd[row_];
+    if (row_ + 1 < log_.size()) {
+      const double share = passed_s / (log_.time_s[row_ + 1] - log_.time_s[row_]);
+      rates += 0.5 * std::min(share, 1.0) * (log_.body_rates_frd[row_ + 1] - log_.body_rates_frd[row_]);
+    }
+    return plant::rotation(passed_s * (rates - offset_));
+  }
+
+  const FlightLog& log_;
+  Vector3d offset_;
+  std::size_t row_ = 0;
+  Quaterniond turned_ = Quaterniond::Identity();
+};
+
+// Poses of one stretch.
+struct Poses {
+  std::size_t first = 0;
+  std::size_t last = 0;  // not included
+};
+
+std::vector<Poses> poses_of(const FlightLog& log, const std::vector<Rows>& stretches) {
+  const auto at = [&](double time_s) {
+    return static_cast<std::size_t>(
+        std::lower_bound(log.poses.begin(), log.poses.end(), time_s,
+                         [](const FlightPose& pose, double t) { return pose.time_s < t; }) -
+        log.poses.begin());
+  };
+  std::vector<Poses> out;
+  for (const Rows& stretch : stretches) {
+    const Poses poses{at(log.time_s[stretch.first]), at(log.time_s[stretch.last - 1])};
+    if (poses.last - poses.first >= kLeastPoses) out.push_back(poses);
+  }
+  return out;
+}
+
+// The integral of the gyro's rates, at any time of a log.
+class GyroIntegral {
+ public:
+  explicit GyroIntegral(const FlightLog& log) : time_s_(log.time_s), integral_(log.size(), Vector3d::Zero()) {
+    for (std::size_t i = 1; i < integral_.size(); ++i) {
+      integral_[i] = integral_[i - 1] + 0.5 * (time_s_[i] - time_s_[i - 1]) *
+                                            (log.body_rates_frd[i] + log.body_rates_frd[i - 1]);
+    }
+  }
+
+  Vector3d at(double time_s) const {
+    const auto next = std::upper_bound(time_s_.begin(), time_s_.end(), time_s) - time_s_.begin();
+    if (next == 0) return integral_.front();
+    const auto after = static_cast<std::size_t>(next);
+    if (after == integral_.size()) return integral_.back();
+    const double share = (time_s - time_s_[after - 1]) / (time_s_[after] - time_s_[after - 1]);
+    return integral_[after - 1] + share * (integral_[after] - integral_[after - 1]);
+  }
+
+ private:
+  const std::vector<double>& time_s_;
+  std::vector<Vector3d> integral_;
+};
+
+// The lag at which poses turn most as the gyro does.
+double rough_delay(const FlightLog& log, const std::vector<Poses>& stretches) {
+  struct Span {
+    double from_s;
+    double to_s;
+  };
+  std::vector<Span> spans;
+  std::vector<double> by_poses;  // rad/s, x, y, z of each span
+  for (const Poses& stretch : stretches) {
+    std::size_t from = stretch.first;
+    for (std::size_t to = from + 1; to < stretch.last; ++to) {
+      const double length_s = log.poses[to].time_s - log.poses[from].time_s;
+      if (length_s < kSpanS) continue;
+      const Vector3d rates =
+          plant::rotation_vector(log.poses[from].q_ned_from_frd.conjugate() * log.poses[to].q_ned_from_frd) /
+          length_s;
+      spans.push_back({log.poses[from].time_s, log.poses[to].time_s});
+      by_poses.insert(by_poses.end(), rates.begin(), rates.end());
+      from = to;
+    }
+  }
+  if (spans.empty()) return 0.0;
+  const GyroIntegral integral(log);
+  double best_s = 0.0;
+  Comparison best;
+  best.correlation = -2.0;
+  const int most = static_cast<int>(std::lround(kLongestDelayS / kLagStepS));
+  for (int i = -most; i <= most; ++i) {
+    const double lag_s = i * kLagStepS;
+    std::vector<double> by_gyro;
+    by_gyro.reserve(by_poses.size());
+    for (const Span& span : spans) {
+      const Vector3d rates =
+          (integral.at(span.to_s - lag_s) - integral.at(span.from_s - lag_s)) / (span.to_s - span.from_s);
+      by_gyro.insert(by_gyro.end(), rates.begin(), rates.end());
+    }
+    const Comparison found = compared(by_poses, by_gyro);
+    if (found.correlation <= best.correlation) continue;
+    best = found;
+    best_s = lag_s;
+  }
+  if (best.spread < kTurning) return 0.0;
+  if (best.correlation < kLeastCorrelation) {
+    throw BadData("poses: do not turn as the gyro does, at any delay up to " + shown(kLongestDelayS) +
+                  " s (correlation " + shown(best.correlation) + ", must be above " +
+                  shown(kLeastCorrelation) + "); are the frames of both, and their clocks, right?");
+  }
+  if (best.ratio > kMostOfGyro || best.ratio < 1.0 / kMostOfGyro) {
+    throw BadData("body rates: the poses turn " + shown(best.ratio) + " times as far, must be " +
+                  shown(1.0 / kMostOfGyro) + " to " + shown(kMostOfGyro) + "; is the unit right?");
+  }
+  return best_s;
+}
+
+// Channels x, y, z: of each pose what it has turned beyond the gyro, rad, less the mean of its stretch.
+void residuals(const FlightLog& log, const std::vector<Poses>& stretches, const VectorXd& x, VectorXd& out) {
+  const Index rows = out.size() / 3;
+  Index begin = 0;
+  for (const Poses& stretch : stretches) {
+    const double start_s = log.poses[stretch.first].time_s - x[0];
+    Turned turned(log, x.tail<3>(), start_s);
+    const auto count = static_cast<Index>(stretch.last - stretch.first);
+    Quaterniond start;
+    for (Index i = 0; i < count; ++i) {
+      const FlightPose& pose = log.poses[stretch.first + static_cast<std::size_t>(i)];
+      const Quaterniond begun = pose.q_ned_from_frd * turned.at(pose.time_s - x[0]).conjugate();
+      if (i == 0) start = begun;
+      const Vector3d apart = plant::rotation_vector(start.conjugate() * begun);
+      for (Index axis = 0; axis < 3; ++axis) out[axis * rows + begin + i] = apart[axis];
+    }
+    for (Index axis = 0; axis < 3; ++axis) {
+      auto channel = out.segment(axis * rows + begin, count);
+      channel.array() -= channel.mean();
+    }
+    begin += count;
+  }
+}
+
+}  // namespace
+
+PoseTiming find_pose_timing(const FlightLog& log, const std::vector<Rows>& stretches) {
+  const std::vector<Poses> poses = poses_of(log, stretches);
+  PoseTiming out;
+  out.delay = {"delay.poses", "T_p", "s"};
+  for (std::size_t i = 0; i < 3; ++i)
+    out.gyro_offset[i] = {std::string("gyro_offset.") + "xyz"[i], std::string("b_w") + "xyz"[i], "rad/s"};
+  if (poses.size() < kLeastStretches) return out;
+
+  SeriesProblem problem;
+  const double delay_s = rough_delay(log, poses);
+  problem.start = Eigen::Vector4d(delay_s, 0.0, 0.0, 0.0);
+  problem.scale = Eigen::Vector4d(2e-3, 0.01, 0.01, 0.01);
+  problem.low = Eigen::Vector4d(delay_s - kLagOffS, -1.0, -1.0, -1.0);
+  problem.high = Eigen::Vector4d(delay_s + kLagOffS, 1.0, 1.0, 1.0);
+  problem.stretch_count = poses.size();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t first = problem.stretches.size();
+    for (std::size_t stretch = 0; stretch < poses.size(); ++stretch)
+      problem.stretches.insert(problem.stretches.end(), poses[stretch].last - poses[stretch].first, stretch);
+    problem.channels.push_back({first, problem.stretches.size() - first});
+  }
+  problem.residuals = [&](const VectorXd& x, VectorXd& at) { residuals(log, poses, x, at); };
+
+  const SeriesFit fit = fit_series(problem);
+  const double factor = interval_factor(fit.degrees_of_freedom);
+  const auto tell = [&](Estimate& estimate, Index i) {
+    estimate.value = fit.parameters[i];
+    estimate.standard_error = fit.standard_error(i);
+    estimate.half_width = factor * estimate.standard_error;
+  };
+  tell(out.delay, 0);
+  for (std::size_t i = 0; i < 3; ++i) tell(out.gyro_offset[i], static_cast<Index>(i) + 1);
+  out.told = fit.converged && out.delay.half_width < kToldS;
+  return out;
+}
+
+}  // namespace swiftlet::identification

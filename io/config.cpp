@@ -1,0 +1,513 @@
+#include "swiftlet/io/config.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <exception>
+#include <sstream>
+#include <utility>
+
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/yaml.h>
+
+#include "swiftlet/io/text_file.hpp"
+
+namespace swiftlet::runtime {
+
+namespace {
+
+constexpr std::size_t kMaxBytes = std::size_t{4} << 20;
+constexpr std::size_t kMaxDepth = 24;
+constexpr std::size_t kMaxKeys = 1000;  // of one map
+constexpr std::size_t kMaxShownLength = 60;
+
+// Ends the document: without it yaml-cpp takes a quote that is never closed for a text that ends with the
+// file.
+constexpr const char* kDocumentEnd = "...\n";
+
+enum class Kind { kNull, kScalar, kList, kMap };
+
+// A number as a person would write it: 0.1, not 0.10000000000000001.
+std::string shown(double number) {
+  std::ostringstream out;
+  out << number;
+  return out.str();
+}
+
+bool is_printable(char c) { return static_cast<unsigned char>(c) >= 0x20 && c != 0x7f; }
+
+// A text from the file as it may stand in a message.
+std::string shown(std::string_view text) {
+  std::string out;
+  for (const char c : text.substr(0, kMaxShownLength)) out += is_printable(c) ? c : '?';
+  if (text.size() > kMaxShownLength) {
+    while (!out.empty() && (static_cast<unsigned char>(out.back()) & 0xc0) == 0x80)
+      out.pop_back();  // half a UTF-8 character
+    if (!out.empty() && (static_cast<unsigned char>(out.back()) & 0x80) != 0) out.pop_back();
+    out += "...";
+  }
+  return out;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string out;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) out += i + 1 == names.size() ? " or " : ", ";
+    out += names[i];
+  }
+  return out;
+}
+
+// By how many letters that are put in, left out or replaced one becomes the other (Levenshtein 1966).
+std::size_t distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row[b.size()];
+}
+
+// ", nearest is hold_s", if one is near enough to have been meant: it begins alike, or few letters differ.
+std::string nearest_of(const std::vector<std::string>& names, const std::string& wanted) {
+  const auto nearest = std::min_element(names.begin(), names.end(), [&](const auto& a, const auto& b) {
+    return distance(a, wanted) < distance(b, wanted);
+  });
+  if (nearest == names.end()) return "";
+  const std::size_t longer = std::max(nearest->size(), wanted.size());
+  const bool begins_alike = wanted.size() >= 3 && nearest->compare(0, wanted.size(), wanted) == 0;
+  const std::size_t letters = distance(*nearest, wanted);
+  const bool few = 3 * letters <= longer || (letters <= 2 && longer > 3);
+  return begins_alike || few ? "; nearest is " + *nearest : "";
+}
+
+std::string unknown_key(const std::vector<std::string>& known, const std::string& key) {
+  if (known.empty()) return "is unknown, must be left out";
+  return "is unknown, must be one of " + joined(known) + nearest_of(known, key);
+}
+
+// Length of the UTF-8 character that text starts with; 0 if there is none (truncated, overlong, surrogate,
+// beyond U+10FFFF).
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned>(static_cast<unsigned char>(text[i])); };
+  const unsigned lead = byte(0);
+  if (lead < 0x80) return 1;
+  const std::size_t length = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
+  if (lead < 0xc2 || lead > 0xf4 || text.size() < length) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xc0U) != 0x80U) return 0;
+  }
+  const bool overlong = (lead == 0xe0 && byte(1) < 0xa0) || (lead == 0xf0 && byte(1) < 0x90);
+  const bool no_character = (lead == 0xed && byte(1) > 0x9f) || (lead == 0xf4 && byte(1) > 0x8f);
+  return overlong || no_character ? 0 : length;
+}
+
+// What no text file holds is refused before the YAML parser sees it.
+void check_text(std::string_view text, const std::string& file) {
+  if (text.size() > kMaxBytes) {
+    throw ConfigError(file, 0, "", "is too large, must hold at most " + std::to_string(kMaxBytes) + " bytes");
+  }
+  if (text.empty()) throw ConfigError(file, 0, "", "is empty, must be a YAML map");
+  int line = 1;
+  for (std::size_t i = 0; i < text.size();) {
+    const char c = text[i];
+    const std::size_t length = utf8_length(text.substr(i));
+    if (length == 0 || (length == 1 && !is_printable(c) && c != '\n' && c != '\r' && c != '\t')) {
+      throw ConfigError(file, line, "", "is not a text file, must be UTF-8 without control characters");
+    }
+    if (c == '\n') ++line;
+    i += length;
+  }
+  if (text.back() != '\n') {
+    throw ConfigError(file, line, "", "is truncated: the last line must end with a newline");
+  }
+}
+
+}  // namespace
+
+bool Bounds::contains(double value) const {
+  return (min_open ? value > min : value >= min) && (max_open ? value < max : value <= max);
+}
+
+std::string Bounds::to_string() const {
+  std::string out;
+  if (std::isfinite(min)) out = (min_open ? "above " : "at least ") + shown(min);
+  if (std::isfinite(max))
+    out += (out.empty() ? "" : " and ") + std::string(max_open ? "below " : "at most ") + shown(max);
+  return out.empty() ? "a finite number" : out;
+}
+
+struct ConfigNode::Value {
+  Kind kind = Kind::kNull;
+  int line = 0;
+  std::string key;  // from the root
+  std::string scalar;
+  bool quoted = false;
+  std::vector<std::unique_ptr<Value>> children;
+  std::vector<std::string> names;  // of the children of a map
+  std::vector<std::string> asked;  // keys that the program knows here
+  bool open = false;               // all keys are known here
+
+  std::string shown_value() const {
+    switch (kind) {
+      case Kind::kNull:
+        return "empty";
+      case Kind::kScalar:
+        return quoted ? '"' + shown(std::string_view(scalar)) + '"' : shown(std::string_view(scalar));
+      case Kind::kList:
+        return "a list";
+      case Kind::kMap:
+        return "a map";
+    }
+    return "";
+  }
+
+  Value* child(const std::string& name) const {
+    const auto it = std::find(names.begin(), names.end(), name);
+    return it == names.end() ? nullptr : children[static_cast<std::size_t>(it - names.begin())].get();
+  }
+
+  void ask(const std::string& name) {
+    if (std::find(asked.begin(), asked.end(), name) == asked.end()) asked.push_back(name);
+  }
+};
+
+struct ConfigNode::Tree {
+  std::string file;
+  std::unique_ptr<Value> root;
+};
+
+namespace {
+
+using Value = ConfigNode::Value;
+
+// Builds the tree from the parser's events, and refuses what is not wanted as soon as it is seen.
+class TreeBuilder final : public YAML::EventHandler {
+ public:
+  explicit TreeBuilder(std::string file) : file_(std::move(file)) {}
+
+  std::unique_ptr<Value> take_root() { return std::move(root_); }
+
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (root_) fail(mark, "starts a second document, must be one");
+  }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    add(mark, "?", anchor, Kind::kNull, "");
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
+    fail(mark, "is an alias, must be written out");
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
+    const bool null = tag == "?" && (value.empty() || value == "~" || value == "null");
+    add(mark, tag, anchor, null ? Kind::kNull : Kind::kScalar, value);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    open(mark, add(mark, tag, anchor, Kind::kList, ""));
+  }
+  void OnSequenceEnd() override { stack_.pop_back(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    open(mark, add(mark, tag, anchor, Kind::kMap, ""));
+  }
+  void OnMapEnd() override { stack_.pop_back(); }
+
+ private:
+  struct Frame {
+    Value* value = nullptr;
+    bool has_name = false;  // of a map: the key has come, its value is next
+    int name_line = 0;
+  };
+
+  [[noreturn]] void fail(const YAML::Mark& mark, const std::string& message) const {
+    throw ConfigError(file_, mark.line + 1, stack_.empty() ? "" : stack_.back().value->key, message);
+  }
+
+  void open(const YAML::Mark& mark, Value* value) {
+    if (stack_.size() == kMaxDepth) {
+      fail(mark, "is nested too deeply, must be at most " + std::to_string(kMaxDepth) + " levels");
+    }
+    stack_.push_back({value, false});
+  }
+
+  // Returns null for what was taken as a key.
+  Value* add(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, Kind kind,
+             const std::string& text) {
+    if (anchor != 0) fail(mark, "has an anchor, must be without");
+    if (!tag.empty() && tag != "?" && tag != "!") {
+      fail(mark, "has the tag " + shown(std::string_view(tag)) + ", must be without");
+    }
+    if (!stack_.empty() && stack_.back().value->kind == Kind::kMap && !stack_.back().has_name) {
+      if (kind != Kind::kScalar) fail(mark, "has a key that is not a text, must be a plain name");
+      add_name(mark, text);
+      return nullptr;
+    }
+    auto value = std::make_unique<Value>();
+    value->kind = kind;
+    value->line = mark.line + 1;
+    value->scalar = text;
+    value->quoted = tag == "!";
+    Value* const raw = value.get();
+    if (stack_.empty()) {
+      if (root_) fail(mark, "starts a second document, must be one");
+      root_ = std::move(value);
+      return raw;
+    }
+    Frame& frame = stack_.back();
+    if (frame.value->kind == Kind::kMap) {
+      const std::string& name = frame.value->names.back();
+      raw->key = frame.value->key.empty() ? name : frame.value->key + "." + name;
+      raw->line = frame.name_line;
+      frame.has_name = false;
+    } else {
+      raw->key = frame.value->key + "[" + std::to_string(frame.value->children.size()) + "]";
+    }
+    frame.value->children.push_back(std::move(value));
+    return raw;
+  }
+
+  void add_name(const YAML::Mark& mark, const std::string& name) {
+    Frame& frame = stack_.back();
+    if (const Value* const first = frame.value->child(name)) {
+      throw ConfigError(file_, mark.line + 1, first->key,
+                        "is given twice, first in line " + std::to_string(first->line));
+    }
+    if (name.empty() || name.size() > kMaxShownLength ||
+        !std::all_of(name.begin(), name.end(), is_printable)) {
+      fail(mark, "has the key \"" + shown(std::string_view(name)) + "\", must be one line of 1 to " +
+                     std::to_string(kMaxShownLength) + " bytes");
+    }
+    if (frame.value->names.size() == kMaxKeys) {
+      fail(mark, "is a map of too many keys, must be at most " + std::to_string(kMaxKeys));
+    }
+    frame.value->names.push_back(name);
+    frame.has_name = true;
+    frame.name_line = mark.line + 1;
+  }
+
+  std::string file_;
+  std::unique_ptr<Value> root_;
+  std::vector<Frame> stack_;
+};
+
+void reject_unknown(const std::string& file, const Value& value) {
+  for (std::size_t i = 0; i < value.children.size(); ++i) {
+    const Value& child = *value.children[i];
+    if (value.kind == Kind::kMap && !value.open &&
+        std::find(value.asked.begin(), value.asked.end(), value.names[i]) == value.asked.end()) {
+      throw ConfigError(file, child.line, child.key, unknown_key(value.asked, value.names[i]));
+    }
+    reject_unknown(file, child);
+  }
+}
+
+}  // namespace
+
+ConfigNode::ConfigNode(std::shared_ptr<Tree> tree, Value* value) : tree_(std::move(tree)), value_(value) {}
+
+void ConfigNode::fail(const std::string& message) const {
+  throw ConfigError(tree_->file, value_->line, value_->key, message);
+}
+
+void ConfigNode::fail_type(const std::string& wanted) const {
+  fail("is " + value_->shown_value() + ", must be " + wanted);
+}
+
+std::optional<ConfigNode> ConfigNode::find(const std::string& key) const {
+  if (value_->kind != Kind::kMap) fail_type("a map");
+  value_->ask(key);
+  Value* const child = value_->child(key);
+  if (child == nullptr) return std::nullopt;
+  return ConfigNode(tree_, child);
+}
+
+ConfigNode ConfigNode::at(const std::string& key) const {
+  if (const auto child = find(key)) return *child;
+  throw ConfigError(tree_->file, value_->line, value_->key.empty() ? key : value_->key + "." + key,
+                    "is missing, must be given");
+}
+
+void ConfigNode::allow(std::initializer_list<const char*> keys) const {
+  if (value_->kind != Kind::kMap) fail_type("a map");
+  const std::vector<std::string> known(keys.begin(), keys.end());
+  for (std::size_t i = 0; i < value_->children.size(); ++i) {
+    const std::string& name = value_->names[i];
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    const Value& child = *value_->children[i];
+    throw ConfigError(tree_->file, child.line, child.key, unknown_key(known, name));
+  }
+}
+
+std::vector<std::pair<std::string, ConfigNode>> ConfigNode::entries() const {
+  if (value_->kind != Kind::kMap) fail_type("a map");
+  value_->open = true;
+  std::vector<std::pair<std::string, ConfigNode>> out;
+  for (std::size_t i = 0; i < value_->children.size(); ++i) {
+    out.emplace_back(value_->names[i], ConfigNode(tree_, value_->children[i].get()));
+  }
+  return out;
+}
+
+std::vector<ConfigNode> ConfigNode::items() const {
+  return items(0, std::numeric_limits<std::size_t>::max());
+}
+
+std::vector<ConfigNode> ConfigNode::items(std::size_t min_count, std::size_t max_count) const {
+  const bool bounded = max_count != std::numeric_limits<std::size_t>::max();
+  std::string wanted = "a list";
+  if (min_count == max_count) {
+    wanted += " of " + std::to_string(min_count);
+  } else if (bounded) {
+    wanted += " of " + std::to_string(min_count) + " to " + std::to_string(max_count);
+  } else if (min_count > 0) {
+    wanted += " of at least " + std::to_string(min_count);
+  }
+  if (value_->kind != Kind::kList) fail_type(wanted);
+  if (value_->children.size() < min_count || value_->children.size() > max_count) {
+    fail("is a list of " + std::to_string(value_->children.size()) + ", must be " + wanted);
+  }
+  std::vector<ConfigNode> out;
+  out.reserve(value_->children.size());
+  for (const auto& child : value_->children) out.emplace_back(tree_, child.get());
+  return out;
+}
+
+double ConfigNode::number(const Bounds& bounds) const {
+  if (value_->kind != Kind::kScalar || value_->quoted) fail_type("a number");
+  std::string_view text = value_->scalar;
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool special = text == ".nan" || text == ".inf" || text == "-.inf" || text == ".NaN" ||
+                       text == ".Inf" || text == "-.Inf";
+  if (special || (end == text.data() + text.size() &&
+                  (error == std::errc::result_out_of_range || !std::isfinite(number)))) {
+    fail_type("a finite number");
+  }
+  if (error != std::errc() || end != text.data() + text.size()) fail_type("a number");
+  if (!bounds.contains(number)) fail_type(bounds.to_string());
+  return number;
+}
+
+std::int64_t ConfigNode::integer(std::int64_t min, std::int64_t max) const {
+  if (value_->kind != Kind::kScalar || value_->quoted) fail_type("a whole number");
+  const std::string& text = value_->scalar;
+  std::int64_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool whole = end == text.data() + text.size();
+  if (!whole || error == std::errc::invalid_argument) fail_type("a whole number");
+  if (error == std::errc::result_out_of_range || number < min || number > max) {
+    fail_type("a whole number from " + std::to_string(min) + " to " + std::to_string(max));
+  }
+  return number;
+}
+
+bool ConfigNode::boolean() const {
+  if (value_->kind != Kind::kScalar || value_->quoted ||
+      (value_->scalar != "true" && value_->scalar != "false")) {
+    fail_type("true or false");
+  }
+  return value_->scalar == "true";
+}
+
+std::string ConfigNode::text() const {
+  if (value_->kind != Kind::kScalar || value_->scalar.empty()) fail_type("a text");
+  if (!std::all_of(value_->scalar.begin(), value_->scalar.end(), is_printable))
+    fail_type("a text of one line");
+  return value_->scalar;
+}
+
+std::ptrdiff_t ConfigNode::choice_index(const std::vector<std::string>& names) const {
+  const auto it =
+      value_->kind == Kind::kScalar ? std::find(names.begin(), names.end(), value_->scalar) : names.end();
+  if (it == names.end()) fail_type(joined(names));
+  return it - names.begin();
+}
+
+std::vector<double> ConfigNode::numbers(std::size_t min_count, std::size_t max_count,
+                                        const Bounds& bounds) const {
+  std::vector<double> out;
+  for (const ConfigNode& item : items(min_count, max_count)) out.push_back(item.number(bounds));
+  return out;
+}
+
+Eigen::Vector3d ConfigNode::vector3(const Bounds& bounds) const {
+  const std::vector<double> values = numbers(3, 3, bounds);
+  return {values[0], values[1], values[2]};
+}
+
+ConfigNode ConfigNode::quantity(const std::string& unit) const {
+  if (value_->kind != Kind::kMap) fail_type("a map {value, unit, source}");
+  ConfigNode value = at("value");
+  at("unit").choice<int>({{unit.c_str(), 0}});
+  at("source").text();
+  return value;
+}
+
+bool ConfigNode::is_map() const { return value_->kind == Kind::kMap; }
+bool ConfigNode::is_list() const { return value_->kind == Kind::kList; }
+bool ConfigNode::is_scalar() const { return value_->kind == Kind::kScalar; }
+
+void ConfigNode::reject_unknown_keys() const { reject_unknown(tree_->file, *value_); }
+
+ConfigNode ConfigNode::nearest(const std::string& key) const {
+  const std::string path = value_->key.empty() ? key : value_->key + "." + key;
+  const auto leads_to_path = [&path](const std::unique_ptr<Value>& child) {
+    const std::size_t length = child->key.size();
+    return path.compare(0, length, child->key) == 0 &&
+           (path.size() == length || path[length] == '.' || path[length] == '[');
+  };
+  Value* value = value_;
+  while (true) {
+    const auto it = std::find_if(value->children.begin(), value->children.end(), leads_to_path);
+    if (it == value->children.end()) return {tree_, value};
+    value = it->get();
+  }
+}
+
+const std::string& ConfigNode::file() const { return tree_->file; }
+const std::string& ConfigNode::key() const { return value_->key; }
+int ConfigNode::line() const { return value_->line; }
+
+ConfigNode parse_config(std::string_view text, const std::string& file_name) {
+  check_text(text, file_name);
+  TreeBuilder builder(file_name);
+  try {
+    std::istringstream stream{std::string(text) + kDocumentEnd};
+    YAML::Parser parser(stream);
+    while (parser.HandleNextDocument(builder)) {
+    }
+  } catch (const ConfigError&) {
+    throw;
+  } catch (const YAML::Exception& e) {
+    throw ConfigError(file_name, e.mark.is_null() ? 0 : e.mark.line + 1, "", "is not valid YAML: " + e.msg);
+  } catch (const std::exception& e) {
+    throw ConfigError(file_name, 0, "", std::string("cannot be read: ") + e.what());
+  }
+  auto tree = std::make_shared<ConfigNode::Tree>();
+  tree->file = file_name;
+  tree->root = builder.take_root();
+  if (!tree->root || tree->root->kind == Kind::kNull)
+    throw ConfigError(file_name, 0, "", "is empty, must be a YAML map");
+  if (tree->root->kind != Kind::kMap) {
+    throw ConfigError(file_name, tree->root->line, "",
+                      "is " + tree->root->shown_value() + ", must be a YAML map");
+  }
+  ConfigNode::Value* const root = tree->root.get();
+  return {std::move(tree), root};
+}
+
+ConfigNode load_config(const std::string& path) {
+  return parse_config(read_text_file(path, kMaxBytes), path);
+}
+
+}  // namespace swiftlet::runtime

@@ -1,0 +1,121 @@
+// Strict reader of YAML configuration. Every fault, from a missing file to a misspelt key, is a ConfigError
+// with file, line, key, value and limit; no input, however broken, does anything else.
+//
+//   const ConfigNode root = load_config("square.yaml");
+//   const double speed = root.at("speed_m_s").number(above(0.0));
+//   for (const ConfigNode& item : root.at("items").items()) add(item.at("position_ned_m").vector3());
+//   root.reject_unknown_keys();
+//
+// What is read: one document, of block or flow style, UTF-8, that ends with a newline (a last line without
+// one is taken for a truncated file). Anchors, aliases and tags are refused.
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "swiftlet/io/config_error.hpp"
+
+namespace swiftlet::runtime {
+
+// Where a number may lie. An open end excludes the bound itself.
+struct Bounds {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool min_open = false;
+  bool max_open = false;
+
+  bool contains(double value) const;  // false for a NaN
+  std::string to_string() const;      // "above 0 and at most 2"
+};
+
+inline Bounds any_number() { return {}; }
+inline Bounds above(double min) { return {min, std::numeric_limits<double>::infinity(), true, false}; }
+inline Bounds at_least(double min) { return {min, std::numeric_limits<double>::infinity(), false, false}; }
+inline Bounds at_most(double max) { return {-std::numeric_limits<double>::infinity(), max, false, false}; }
+inline Bounds between(double min, double max) { return {min, max, false, false}; }
+
+// A value in a document: scalar, list or map. Cheap to copy; keeps the document alive. Reading is not
+// thread-safe: a document notes which keys have been asked for. All members throw ConfigError if the value is
+// not what is asked for.
+class ConfigNode {
+ public:
+  struct Tree;
+  struct Value;
+  ConfigNode(std::shared_ptr<Tree> tree, Value* value);
+
+  // Map: the value of a key. at() demands it, find() does not. entries() gives all, in the file's order,
+  // where keys are free.
+  ConfigNode at(const std::string& key) const;
+  std::optional<ConfigNode> find(const std::string& key) const;
+  std::vector<std::pair<std::string, ConfigNode>> entries() const;
+
+  // Map: throws for the first key that is none of these, with the nearest of them: before any is asked for,
+  // so that a misspelt one is not reported as the right one missing.
+  void allow(std::initializer_list<const char*> keys) const;
+
+  // List: its values.
+  std::vector<ConfigNode> items() const;
+  std::vector<ConfigNode> items(std::size_t min_count, std::size_t max_count) const;
+
+  // Scalars. A number is plain decimal and finite: quotes, hexadecimal, .inf and .nan are refused.
+  double number(const Bounds& bounds = any_number()) const;
+  std::int64_t integer(std::int64_t min = std::numeric_limits<std::int64_t>::min(),
+                       std::int64_t max = std::numeric_limits<std::int64_t>::max()) const;
+  bool boolean() const;      // true or false
+  std::string text() const;  // not empty, no control characters
+  template <typename T>
+  T choice(std::initializer_list<std::pair<const char*, T>> options) const {
+    std::vector<std::string> names;
+    for (const auto& option : options) names.emplace_back(option.first);
+    return (options.begin() + choice_index(names))->second;
+  }
+
+  // Lists of numbers, each within bounds.
+  std::vector<double> numbers(std::size_t min_count, std::size_t max_count,
+                              const Bounds& bounds = any_number()) const;
+  Eigen::Vector3d vector3(const Bounds& bounds = any_number()) const;
+
+  // A quantity is a map {value, unit, source}: returns value once the unit is found to be this one, the
+  // source a text and nothing else to stand there.
+  ConfigNode quantity(const std::string& unit) const;
+
+  bool is_map() const;
+  bool is_list() const;
+  bool is_scalar() const;
+
+  // Throws for the first key, here or below, that nobody has asked for. Call it on the root when all is read.
+  void reject_unknown_keys() const;
+
+  // The deepest value on the way along key ("rotors[1].spin"), seen from here: this node itself if nothing of
+  // it is there.
+  ConfigNode nearest(const std::string& key) const;
+
+  // Throws ConfigError for this value; message is "is 3, must be below 2" or the like.
+  [[noreturn]] void fail(const std::string& message) const;
+
+  const std::string& file() const;
+  const std::string& key() const;  // from the root: "rotors[1].spin"; empty for the root
+  int line() const;                // from 1
+
+ private:
+  std::ptrdiff_t choice_index(const std::vector<std::string>& names) const;
+  [[noreturn]] void fail_type(const std::string& wanted) const;
+
+  std::shared_ptr<Tree> tree_;
+  Value* value_;
+};
+
+// The root, which is a map. file_name is for the messages only.
+ConfigNode parse_config(std::string_view text, const std::string& file_name);
+ConfigNode load_config(const std::string& path);
+
+}  // namespace swiftlet::runtime

@@ -1,0 +1,212 @@
+#include "swiftlet/io/csv.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <system_error>
+
+#include "swiftlet/io/text_file.hpp"
+
+namespace swiftlet::runtime {
+
+namespace {
+
+constexpr std::size_t kMaxShownLength = 60;
+
+std::string shown(std::string_view text) {
+  if (text.empty()) return "empty";
+  std::string out;
+  for (const char c : text.substr(0, kMaxShownLength)) out += c >= 0x20 && c < 0x7f ? c : '?';
+  if (text.size() > kMaxShownLength) out += "...";
+  return out;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+std::vector<std::string_view> fields_of(std::string_view line) {
+  std::vector<std::string_view> fields;
+  for (;;) {
+    const std::size_t comma = line.find(',');
+    fields.push_back(trimmed(line.substr(0, comma)));
+    if (comma == std::string_view::npos) return fields;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+std::vector<std::string_view> fields_of(std::string_view line, const CsvForm& form) {
+  std::vector<std::string_view> fields = fields_of(line);
+  if (form.may_end_with_comma && fields.size() > 1 && fields.back().empty()) fields.pop_back();
+  return fields;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ",") + name;
+  return out;
+}
+
+bool read_number(std::string_view field, double& number) {
+  if (!field.empty() && field.front() == '+') field.remove_prefix(1);
+  const char* const end = field.data() + field.size();
+  const auto [stop, error] = std::from_chars(field.data(), end, number);
+  return error == std::errc() && stop == end && std::isfinite(number);
+}
+
+std::string_view without_byte_order_mark(std::string_view text) {
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark) text.remove_prefix(kByteOrderMark.size());
+  return text;
+}
+
+// Lines of a text, one after the other; a last line that is empty is none.
+class Lines {
+ public:
+  explicit Lines(std::string_view text) : rest_(text) {}
+
+  bool next(std::string_view& line) {
+    if (rest_.empty()) return false;
+    const std::size_t end = rest_.find('\n');
+    line = rest_.substr(0, end);
+    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    ++number_;
+    return true;
+  }
+  int number() const { return number_; }
+  bool only_blank_left() const { return rest_.find_first_not_of(" \t\r\n") == std::string_view::npos; }
+
+ private:
+  std::string_view rest_;
+  int number_ = 0;
+};
+
+void check_header(std::string_view line, const std::string& file, const std::vector<std::string>& columns,
+                  const CsvForm& form) {
+  const std::vector<std::string_view> names = fields_of(line, form);
+  double number = 0.0;
+  if (read_number(names.front(), number)) {
+    throw ConfigError(file, 1, "", "has no header, the first line must be " + joined(columns));
+  }
+  if (names.size() == columns.size()) {
+    std::size_t i = 0;
+    while (i < names.size() && names[i] == columns[i]) ++i;
+    if (i == names.size()) return;
+  }
+  throw ConfigError(file, 1, "header", "is " + shown(line) + ", must be " + joined(columns));
+}
+
+CsvTable read_rows(Lines& lines, const std::string& file_name, const std::vector<std::string>& columns,
+                   std::size_t min_rows, const CsvForm& form) {
+  if (columns.size() == 1 && columns.front().find_first_of(";\t") != std::string::npos) {
+    throw ConfigError(file_name, 1, "header",
+                      "has semicolons or tabs between its columns, must have commas, and points in numbers");
+  }
+  CsvTable table(file_name, columns);
+  std::string_view line;
+  std::vector<double> numbers(columns.size());
+  while (!lines.only_blank_left() && lines.next(line)) {
+    const std::vector<std::string_view> fields = fields_of(line, form);
+    if (fields.size() != columns.size()) {
+      throw ConfigError(file_name, lines.number(), "",
+                        "has " + std::to_string(trimmed(line).empty() ? 0 : fields.size()) +
+                            " fields, must have " + std::to_string(columns.size()) + ": " + joined(columns));
+    }
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      if (!read_number(fields[i], numbers[i])) {
+        throw ConfigError(file_name, lines.number(), columns[i],
+                          "is " + shown(fields[i]) + ", must be a finite number");
+      }
+    }
+    table.add_row(lines.number(), numbers);
+  }
+  if (table.row_count() < min_rows) {
+    throw ConfigError(file_name, 0, "",
+                      "has " + std::to_string(table.row_count()) +
+                          (form.has_header ? " rows behind the header" : " rows") + ", must have at least " +
+                          std::to_string(min_rows));
+  }
+  return table;
+}
+
+}  // namespace
+
+void CsvTable::add_row(int line, const std::vector<double>& numbers) {
+  lines_.push_back(line);
+  numbers_.insert(numbers_.end(), numbers.begin(), numbers.end());
+}
+
+double CsvTable::number(std::size_t row, std::size_t column, const Bounds& bounds, const char* unit) const {
+  const double value = numbers_[row * columns_.size() + column];
+  if (!bounds.contains(value)) {
+    fail(row, columns_[column],
+         "is " + exact(value) + ", must be " + bounds.to_string() + (*unit == '\0' ? "" : " ") + unit);
+  }
+  return value;
+}
+
+void CsvTable::fail(std::size_t row, const std::string& columns, const std::string& message) const {
+  throw ConfigError(file_, lines_[row], columns, message);
+}
+
+CsvTable parse_csv(std::string_view text, const std::string& file_name,
+                   const std::vector<std::string>& columns, std::size_t min_rows, const CsvForm& form) {
+  Lines lines(without_byte_order_mark(text));
+  std::string_view line;
+  if (lines.only_blank_left()) {
+    throw ConfigError(file_name, 0, "",
+                      std::string("is empty, must ") +
+                          (form.has_header ? "begin with the header " : "hold rows of ") + joined(columns));
+  }
+  if (form.has_header) {
+    lines.next(line);
+    check_header(line, file_name, columns, form);
+  }
+  return read_rows(lines, file_name, columns, min_rows, form);
+}
+
+CsvTable parse_csv_as_headed(std::string_view text, const std::string& file_name, std::size_t min_rows) {
+  Lines lines(without_byte_order_mark(text));
+  std::string_view header;
+  if (lines.only_blank_left()) throw ConfigError(file_name, 0, "", "is empty, must begin with a header");
+  lines.next(header);
+  std::vector<std::string> columns;
+  for (const std::string_view name : fields_of(header)) {
+    double number = 0.0;
+    if (name.empty() || read_number(name, number))
+      throw ConfigError(file_name, 1, "header", "is " + shown(header) + ", must name every column");
+    columns.emplace_back(name);
+  }
+  return read_rows(lines, file_name, columns, min_rows, {});
+}
+
+CsvTable load_csv(const std::string& path, const std::vector<std::string>& columns, std::size_t min_rows) {
+  return parse_csv(read_text_file(path), path, columns, min_rows);
+}
+
+std::vector<std::string> first_csv_line(std::string_view text) {
+  Lines lines(without_byte_order_mark(text));
+  std::string_view line;
+  while (lines.next(line)) {
+    if (trimmed(line).empty()) continue;
+    const std::vector<std::string_view> fields = fields_of(line);
+    return {fields.begin(), fields.end()};
+  }
+  return {};
+}
+
+bool is_number(std::string_view field) {
+  double number = 0.0;
+  return read_number(field, number);
+}
+
+std::string exact(double number) {
+  std::array<char, 32> buffer;
+  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number);
+  return {buffer.data(), result.ptr};
+}
+
+}  // namespace swiftlet::runtime

@@ -1,0 +1,72 @@
+// Strict reader of CSV tables of numbers: one header line that names every column, then rows of finite
+// numbers. Anything else is a ConfigError with file, line, column, value and limit.
+//
+//   const CsvTable table = load_csv("pwm.csv", {"t", "pwm1", "pwm2"});
+//   for (std::size_t row = 0; row < table.row_count(); ++row) {
+//     use(table.number(row, 0), table.number(row, 1, between(1000, 2000)));
+//   }
+//
+// Lines end with LF or CRLF, the last one may lack it; blanks around a field are ignored; there are no quotes
+// and no comments. Files of others may differ from that as CsvForm says.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "swiftlet/io/config.hpp"
+
+namespace swiftlet::runtime {
+
+class CsvTable {
+ public:
+  CsvTable(std::string file, std::vector<std::string> columns)
+      : file_(std::move(file)), columns_(std::move(columns)) {}
+
+  std::size_t row_count() const { return lines_.size(); }
+  std::size_t column_count() const { return columns_.size(); }
+
+  // Throws ConfigError if the number does not lie within bounds. unit is for the message only.
+  double number(std::size_t row, std::size_t column, const Bounds& bounds = any_number(),
+                const char* unit = "") const;
+
+  // Throws ConfigError for a row's value; message is "is 3, must be below 2" or the like. columns names what
+  // it is about.
+  [[noreturn]] void fail(std::size_t row, const std::string& columns, const std::string& message) const;
+
+  const std::string& file() const { return file_; }
+  const std::string& column(std::size_t column) const { return columns_[column]; }
+  int line(std::size_t row) const { return lines_[row]; }  // from 1, the header's
+
+  void add_row(int line, const std::vector<double>& numbers);
+
+ private:
+  std::string file_;
+  std::vector<std::string> columns_;
+  std::vector<int> lines_;
+  std::vector<double> numbers_;  // row by row
+};
+
+struct CsvForm {
+  bool has_header = true;
+  bool may_end_with_comma = false;  // each line, the header too
+};
+
+// A table of exactly these columns, in this order, with at least min_rows rows. file_name is for the messages
+// only.
+CsvTable parse_csv(std::string_view text, const std::string& file_name,
+                   const std::vector<std::string>& columns, std::size_t min_rows = 1,
+                   const CsvForm& form = {});
+CsvTable load_csv(const std::string& path, const std::vector<std::string>& columns, std::size_t min_rows = 1);
+
+// The fields of the first line that is not blank; none of a text without one.
+std::vector<std::string> first_csv_line(std::string_view text);
+bool is_number(std::string_view field);  // finite
+// A table of whatever columns its header names, one at least.
+CsvTable parse_csv_as_headed(std::string_view text, const std::string& file_name, std::size_t min_rows = 1);
+
+// The shortest decimal that reads back as the same number.
+std::string exact(double number);
+
+}  // namespace swiftlet::runtime

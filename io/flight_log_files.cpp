@@ -1,0 +1,370 @@
+#include "swiftlet/io/flight_log_files.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+
+#include "swiftlet/io/compressed_file.hpp"
+#include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/measurements.hpp"
+#include "swiftlet/plant/model/esc.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+namespace fs = std::filesystem;
+using identification::FlightLog;
+using identification::FlightPose;
+using runtime::ConfigError;
+using runtime::Measurements;
+using runtime::Quantity;
+
+constexpr double kLongestTimeGap = 3600.0;  // s
+constexpr double kNearGravity =
+    0.5;  // of g: a mean of the specific force along z beyond it tells up from down
+
+double seconds(std::int64_t stamp_ns) { return static_cast<double>(stamp_ns) * 1e-9; }
+
+// The newest row of a track up to a stamp; calls come with rising stamps.
+template <class Row>
+class Newest {
+ public:
+  explicit Newest(const Track<Row>& track) : track_(track) {}
+
+  bool none() const { return track_.empty(); }
+  const Row* at(std::int64_t stamp_ns) {
+    while (next_ < track_.size() && track_[next_].stamp_ns <= stamp_ns) ++next_;
+    return next_ == 0 ? nullptr : &track_[next_ - 1];
+  }
+  const Row* following() const { return next_ < track_.size() ? &track_[next_] : nullptr; }
+
+ private:
+  const Track<Row>& track_;
+  std::size_t next_ = 0;
+};
+
+double voltage_at(const plant::BatterySample& before, const plant::BatterySample* after,
+                  std::int64_t stamp_ns) {
+  if (after == nullptr) return before.voltage_v;
+  const double share = static_cast<double>(stamp_ns - before.stamp_ns) /
+                       static_cast<double>(after->stamp_ns - before.stamp_ns);
+  return before.voltage_v + share * (after->voltage_v - before.voltage_v);
+}
+
+struct Closer {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+std::vector<Quantity> flight_quantities() {
+  std::vector<Quantity> all = {Quantity::kTime};
+  for (int i = 0; i < 3; ++i) all.push_back(Quantity::kSpecificForceX + i);
+  for (int i = 0; i < 3; ++i) all.push_back(Quantity::kBodyRateX + i);
+  for (int i = 0; i < plant::kMaxRotors; ++i) all.push_back(Quantity::kMotorCommand + i);
+  for (int i = 0; i < plant::kMaxRotors; ++i) all.push_back(Quantity::kMotorPulse + i);
+  all.insert(all.end(), {Quantity::kRunning, Quantity::kSupplyVoltage});
+  for (int i = 0; i < plant::kMaxRotors; ++i) all.push_back(Quantity::kMotorSpeed + i);
+  all.push_back(Quantity::kPoseTime);
+  for (int i = 0; i < 3; ++i) all.push_back(Quantity::kPositionX + i);
+  for (int i = 0; i < 4; ++i) all.push_back(Quantity::kOrientationW + i);
+  return all;
+}
+
+std::vector<Eigen::Vector3d> vectors(const Measurements& table, Quantity x) {
+  std::vector<Eigen::Vector3d> out(table.row_count());
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::vector<double>& column = table.column(x + axis);
+    for (std::size_t row = 0; row < out.size(); ++row) out[row][axis] = column[row];
+  }
+  return out;
+}
+
+int motors(const Measurements& table, Quantity first) {
+  int count = 0;
+  while (count < plant::kMaxRotors && table.has(first + count)) ++count;
+  for (int later = count + 1; later < plant::kMaxRotors; ++later) {
+    if (!table.has(first + later)) continue;
+    throw ConfigError(table.file(), 1, "header",
+                      "has " + table.header(first + later) + " and none of motor " +
+                          std::to_string(count + 1) + "; must number motors from 1 on");
+  }
+  return count;
+}
+
+// Which of two endings the columns' names have; all the same one, or none of them any.
+std::optional<bool> says(const Measurements& table, const std::vector<Quantity>& columns,
+                         const std::string& first, const std::string& second) {
+  std::optional<bool> said;
+  bool any_silent = false;
+  for (const Quantity column : columns) {
+    const std::string& header = table.header(column);
+    const bool is_first = header.find(first) != std::string::npos;
+    const bool is_second = header.find(second) != std::string::npos;
+    any_silent = any_silent || !(is_first || is_second);
+    if (!(is_first || is_second)) continue;
+    if ((said && *said != is_first))
+      throw ConfigError(table.file(), 1, "header", "mixes " + first + " and " + second);
+    said = is_first;
+  }
+  if (said && any_silent)
+    throw ConfigError(
+        table.file(), 1, "header",
+        "names axes in some columns only; must end all names in " + first + " or all in " + second);
+  return said;
+}
+
+// Whether the body's axes are forward-right-down; else they are forward-left-up.
+bool is_frd(const Measurements& table, const std::vector<Eigen::Vector3d>& specific_force, BodyAxes axes,
+            std::vector<std::string>& assumptions) {
+  std::vector<Quantity> columns;
+  for (int i = 0; i < 3; ++i)
+    columns.insert(columns.end(), {Quantity::kSpecificForceX + i, Quantity::kBodyRateX + i});
+  std::optional<bool> said = says(table, columns, "_frd", "_flu");
+  if (axes != BodyAxes::kAsSaid) {
+    const bool frd = axes == BodyAxes::kFrd;
+    if (said && *said != frd)
+      throw ConfigError(table.file(), 1, "header",
+                        std::string("names ") + (*said ? "_frd" : "_flu") + " axes, --axes others");
+    said = frd;
+  }
+  double mean = 0.0;
+  // At its begin a log has the vehicle upright; at its end it may lie on its back.
+  const std::size_t upright = std::max<std::size_t>(specific_force.size() / 2, 1);
+  for (std::size_t row = 0; row < upright; ++row)
+    mean += specific_force[row].z() / static_cast<double>(upright);
+  const bool is_told = std::abs(mean) > kNearGravity * plant::kGravity;
+  if (said && is_told && *said != (mean < 0.0)) {
+    throw ConfigError(
+        table.file(), 1, "specific_force_z",
+        "is " + std::to_string(mean) + " m/s^2 in the mean, must be " +
+            (*said ? "negative in forward-right-down axes" : "positive in forward-left-up axes") +
+            "; are the axes right?");
+  }
+  if (said) return *said;
+  if (!is_told) {
+    throw ConfigError(
+        table.file(), 1, "header",
+        "does not say its body axes, and gravity does not tell them: the specific force along z is " +
+            std::to_string(mean) +
+            " m/s^2 in the mean, about 9.8 in hover; is its unit right? If it is, say " +
+            "--axes frd or --axes flu");
+  }
+  assumptions.push_back(
+      mean < 0.0 ? "body axes are taken for forward-right-down: the specific force along z is negative"
+                 : "body axes are taken for forward-left-up: the specific force along z is positive");
+  return mean < 0.0;
+}
+
+// Some more than what the ESC obeys are sent to it, to start or stop it for certain.
+void demand_pulse(const Measurements& table, std::size_t row, Quantity which, const plant::Vehicle& base) {
+  const double pulse_us = table.column(which)[row];
+  const double least_us = base.esc.pulse_min_us - 0.5 * base.esc.pulse_range_us;
+  const double most_us = base.esc.pulse_min_us + 1.5 * base.esc.pulse_range_us;
+  if (pulse_us == 0.0 || (pulse_us >= least_us && pulse_us <= most_us)) return;
+  throw ConfigError(table.file(), table.line(row), table.header(which),
+                    "is " + std::to_string(pulse_us) + " us, must be 0 or between " +
+                        std::to_string(least_us) + " and " + std::to_string(most_us) +
+                        " us, by half the range of " + base.name + "'s ESC at most beyond it");
+}
+
+void read_commands(const Measurements& table, const plant::Vehicle& base, FlightLog& log,
+                   std::vector<std::string>& assumptions) {
+  const int shares = motors(table, Quantity::kMotorCommand);
+  const int pulses = motors(table, Quantity::kMotorPulse);
+  if (shares > 0 && pulses > 0)
+    throw ConfigError(table.file(), 1, "header",
+                      "has commands and pulse widths of motors, must have one of them");
+  log.rotor_count = std::max(shares, pulses);
+  if (log.rotor_count == 0) (void)table.column(Quantity::kMotorCommand);
+  log.command.assign(table.row_count(), plant::PerRotor{});
+  for (int i = 0; i < log.rotor_count; ++i) {
+    const std::vector<double>& column =
+        table.column((shares > 0 ? Quantity::kMotorCommand : Quantity::kMotorPulse) + i);
+    for (std::size_t row = 0; row < column.size(); ++row) {
+      if (shares == 0) demand_pulse(table, row, Quantity::kMotorPulse + i, base);
+      const double command =
+          shares > 0 ? column[row] : plant::throttle_from_pulse_width(base.esc, column[row]);
+      if (!(command >= 0.0 && command <= 1.0)) {
+        throw ConfigError(table.file(), table.line(row), table.header(Quantity::kMotorCommand + i),
+                          "is " + std::to_string(command) + " of full command, must be between 0 and 1");
+      }
+      log.command[row][static_cast<std::size_t>(i)] = command;
+    }
+  }
+  log.running.assign(table.row_count(), 0);
+  const bool says_running = table.has(Quantity::kRunning);
+  for (std::size_t row = 0; row < log.running.size(); ++row) {
+    const plant::PerRotor& command = log.command[row];
+    log.running[row] = says_running
+                           ? table.column(Quantity::kRunning)[row] != 0.0
+                           : std::any_of(command.begin(), command.end(), [](double c) { return c > 0.0; });
+  }
+  if (!says_running)
+    assumptions.emplace_back(
+        "rotors are taken to be off where all commands are 0, there being no column running");
+}
+
+void read_rotor_speeds(const Measurements& table, FlightLog& log) {
+  const int count = motors(table, Quantity::kMotorSpeed);
+  if (count == 0) return;
+  if (count != log.rotor_count) {
+    throw ConfigError(table.file(), 1, "header",
+                      "has speeds of " + std::to_string(count) + " rotors and commands of " +
+                          std::to_string(log.rotor_count) + ", must have as many");
+  }
+  log.rotor_speeds.assign(table.row_count(), plant::PerRotor{});
+  for (int i = 0; i < count; ++i) {
+    const std::vector<double>& column = table.column(Quantity::kMotorSpeed + i);
+    for (std::size_t row = 0; row < column.size(); ++row)
+      log.rotor_speeds[row][static_cast<std::size_t>(i)] = column[row];
+  }
+}
+
+void read_poses(const Measurements& table, FlightLog& log) {
+  if (!table.has(Quantity::kPoseTime) && !table.has(Quantity::kPositionX)) return;
+  std::vector<Quantity> columns;
+  columns.reserve(7);
+  for (int i = 0; i < 3; ++i) columns.push_back(Quantity::kPositionX + i);
+  for (int i = 0; i < 4; ++i) columns.push_back(Quantity::kOrientationW + i);
+  const std::optional<bool> ned = says(table, columns, "_ned", "_enu");
+  if (!ned) {
+    throw ConfigError(table.file(), 1, "header",
+                      "does not say the frame of its poses: end position_x and the like in _ned or _enu, "
+                      "orientation_w and the like in "
+                      "_ned_from_frd or _enu_from_flu");
+  }
+  const std::vector<double>& time = table.column(Quantity::kPoseTime);
+  const std::vector<Eigen::Vector3d> position = vectors(table, Quantity::kPositionX);
+  const Eigen::Quaterniond ned_from_enu(0.0, std::sqrt(0.5), std::sqrt(0.5), 0.0);
+  const Eigen::Quaterniond flu_from_frd(0.0, 1.0, 0.0, 0.0);
+  for (std::size_t row = 0; row < time.size(); ++row) {
+    if (!log.poses.empty() && time[row] <= log.poses.back().time_s) continue;
+    Eigen::Quaterniond q(
+        table.column(Quantity::kOrientationW)[row], table.column(Quantity::kOrientationX)[row],
+        table.column(Quantity::kOrientationY)[row], table.column(Quantity::kOrientationZ)[row]);
+    if (std::abs(q.norm() - 1.0) > 0.01) {
+      throw ConfigError(table.file(), table.line(row), "orientation",
+                        "has the length " + std::to_string(q.norm()) + ", must be 1");
+    }
+    q.normalize();
+    const Eigen::Vector3d& p = position[row];
+    log.poses.push_back(*ned
+                            ? FlightPose{time[row], p, q}
+                            : FlightPose{time[row], {p.y(), p.x(), -p.z()}, ned_from_enu * q * flu_from_frd});
+  }
+}
+
+}  // namespace
+
+FlightLog flight_log_of(const SensorRecord& record) {
+  FlightLog log;
+  log.name = kSensorsFile;
+  Newest commands(record.commands);
+  Newest batteries(record.batteries);
+  Newest speeds(record.rotor_speeds);
+  for (const plant::ImuSample& imu : record.imu) {
+    const plant::ActuatorCommand* const command = commands.at(imu.stamp_ns);
+    const plant::BatterySample* const battery = batteries.at(imu.stamp_ns);
+    const plant::RotorSpeedSample* const speed = speeds.at(imu.stamp_ns);
+    if (command == nullptr || (battery == nullptr && !batteries.none()) ||
+        (speed == nullptr && !speeds.none()))
+      continue;
+    log.time_s.push_back(seconds(imu.stamp_ns));
+    log.specific_force_frd.push_back(imu.specific_force_frd);
+    log.body_rates_frd.push_back(imu.body_rates_frd);
+    log.command.push_back(command->throttle);
+    log.running.push_back(command->rotor_state == plant::RotorState::kRunning ? 1 : 0);
+    log.rotor_count = std::max(log.rotor_count, command->rotor_count);
+    if (battery != nullptr)
+      log.supply_voltage_v.push_back(voltage_at(*battery, batteries.following(), imu.stamp_ns));
+    if (speed != nullptr) log.rotor_speeds.push_back(speed->speeds);
+  }
+  for (const plant::PoseSample& pose : record.poses) {
+    if (pose.tracked) log.poses.push_back({seconds(pose.stamp_ns), pose.position_ned, pose.q_ned_from_frd});
+  }
+  return log;
+}
+
+void write_flight_log(const fs::path& file, const FlightLog& log) {
+  const std::unique_ptr<std::FILE, Closer> csv(std::fopen(file.c_str(), "w"));
+  if (!csv) throw std::runtime_error(file.string() + " cannot be written");
+  std::FILE* const out = csv.get();
+  const auto rotors = static_cast<std::size_t>(log.rotor_count);
+  std::string header = runtime::header_of(Quantity::kTime);
+  const auto add = [&](Quantity first, int count) {
+    for (int i = 0; i < count; ++i) header += "," + runtime::header_of(first + i);
+  };
+  add(Quantity::kSpecificForceX, 3);
+  add(Quantity::kBodyRateX, 3);
+  add(Quantity::kRunning, 1);
+  add(Quantity::kMotorCommand, log.rotor_count);
+  if (!log.supply_voltage_v.empty()) add(Quantity::kSupplyVoltage, 1);
+  if (!log.rotor_speeds.empty()) add(Quantity::kMotorSpeed, log.rotor_count);
+  if (!log.poses.empty()) {
+    add(Quantity::kPoseTime, 1);
+    add(Quantity::kPositionX, 3);
+    add(Quantity::kOrientationW, 4);
+  }
+  std::fprintf(out, "%s\n", header.c_str());
+
+  std::size_t pose = 0;
+  for (std::size_t row = 0; row < log.size(); ++row) {
+    while (pose + 1 < log.poses.size() && log.poses[pose + 1].time_s <= log.time_s[row]) ++pose;
+    if (!log.poses.empty() && log.poses[pose].time_s > log.time_s[row]) continue;
+    std::fprintf(out, "%.6f", log.time_s[row]);
+    const auto number = [&](double value) { std::fprintf(out, ",%.9g", value); };
+    for (const double value : log.specific_force_frd[row]) number(value);
+    for (const double value : log.body_rates_frd[row]) number(value);
+    number(log.running[row]);
+    for (std::size_t i = 0; i < rotors; ++i) number(log.command[row][i]);
+    if (!log.supply_voltage_v.empty()) number(log.supply_voltage_v[row]);
+    if (!log.rotor_speeds.empty()) {
+      for (std::size_t i = 0; i < rotors; ++i) number(log.rotor_speeds[row][i]);
+    }
+    if (!log.poses.empty()) {
+      const FlightPose& now = log.poses[pose];
+      std::fprintf(out, ",%.6f", now.time_s);
+      for (const double value : now.position_ned) number(value);
+      const Eigen::Quaterniond& q = now.q_ned_from_frd;
+      for (const double value : {q.w(), q.x(), q.y(), q.z()}) number(value);
+    }
+    std::fputc('\n', out);
+  }
+  if (std::fflush(out) != 0 || std::ferror(out) != 0)
+    throw std::runtime_error(file.string() + " cannot be written");
+}
+
+ReadFlightLog read_flight_log(const fs::path& path, const plant::Vehicle& base, BodyAxes axes) {
+  const fs::path file = fs::is_directory(path) ? path / kSensorsFile : path;
+  const Measurements table =
+      runtime::parse_measurements(read_unpacked(file.string()), file.string(), flight_quantities());
+  ReadFlightLog out;
+  FlightLog& log = out.log;
+  log.name = file.string();
+  log.time_s = table.column(Quantity::kTime);
+  for (std::size_t row = 1; row < log.time_s.size(); ++row) {
+    const double step = log.time_s[row] - log.time_s[row - 1];
+    if (step > 0.0 && step < kLongestTimeGap) continue;
+    throw ConfigError(
+        file.string(), table.line(row), table.header(Quantity::kTime),
+        "is " + std::to_string(step) + " s after the row before, must be above 0 and below an hour");
+  }
+  log.specific_force_frd = vectors(table, Quantity::kSpecificForceX);
+  log.body_rates_frd = vectors(table, Quantity::kBodyRateX);
+  if (!is_frd(table, log.specific_force_frd, axes, out.assumptions)) {
+    const Eigen::Vector3d frd_from_flu(1.0, -1.0, -1.0);
+    for (Eigen::Vector3d& force : log.specific_force_frd) force = force.cwiseProduct(frd_from_flu);
+    for (Eigen::Vector3d& rate : log.body_rates_frd) rate = rate.cwiseProduct(frd_from_flu);
+  }
+  read_commands(table, base, log, out.assumptions);
+  if (table.has(Quantity::kSupplyVoltage)) log.supply_voltage_v = table.column(Quantity::kSupplyVoltage);
+  read_rotor_speeds(table, log);
+  read_poses(table, log);
+  return out;
+}
+
+}  // namespace swiftlet::ground

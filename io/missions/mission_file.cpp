@@ -1,0 +1,189 @@
+#include "swiftlet/io/missions/mission_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+
+#include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/control/types/polynomial.hpp"
+#include "swiftlet/io/config.hpp"
+#include "swiftlet/io/format.hpp"
+#include "swiftlet/io/missions/mission_format.hpp"
+#include "swiftlet/io/missions/mission_items.hpp"
+#include "swiftlet/io/text_file.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using control::MissionItem;
+using control::MissionItemKind;
+using runtime::ConfigNode;
+
+constexpr double kLargestToleranceM = 10.0;
+constexpr int kMaxName = 64;
+
+std::string name_of(const ConfigNode& root) {
+  const auto node = root.find("name");
+  if (!node) return std::filesystem::path(root.file()).stem().string();
+  std::string name = node->text();
+  if (name.size() > kMaxName || name.find('/') != std::string::npos)
+    node->fail("must be at most " + std::to_string(kMaxName) + " characters and hold no /");
+  return name;
+}
+
+void read_limits(const ConfigNode& node, const control::Limits& settings, control::MissionBounds& bounds) {
+  node.allow({"speed_m_s", "acceleration_m_s2", "jerk_m_s3", "yaw_rate_rad_s"});
+  const auto read = [&](const char* key, double most, double& bound) {
+    if (const auto limit = node.find(key)) bound = limit->number({0.0, most, true, false});
+  };
+  read("speed_m_s", settings.max_speed, bounds.max_speed);
+  read("acceleration_m_s2", settings.max_acceleration, bounds.max_acceleration);
+  read("jerk_m_s3", settings.max_reference_jerk, bounds.max_jerk);
+  read("yaw_rate_rad_s", settings.max_yaw_rate, bounds.max_yaw_rate);
+}
+
+void read_fence(const ConfigNode& node, MissionFrame frame, const control::Limits& settings,
+                control::MissionBounds& bounds) {
+  node.allow({"min_m", "max_m"});
+  const Eigen::Vector3d least = node.at("min_m").vector3();
+  const Eigen::Vector3d greatest = node.at("max_m").vector3();
+  for (int i = 0; i < 3; ++i) {
+    if (greatest[i] > least[i]) continue;
+    node.at("max_m").fail(
+        format("number %d is %g, must be above that of min_m, %g", i + 1, greatest[i], least[i]));
+  }
+  const Eigen::Vector3d one = ned_from(frame, least);
+  const Eigen::Vector3d other = ned_from(frame, greatest);
+  bounds.fenced = true;
+  bounds.fence_min_ned = one.cwiseMin(other);
+  bounds.fence_max_ned = one.cwiseMax(other);
+  const control::Outcome outcome = control::check(bounds, settings);
+  if (!outcome.accepted) node.fail(outcome.reason);
+}
+
+// What comes before the items stands there for a reason: a file that is cut short does not lose it unseen.
+void demand_items_last(const ConfigNode& root, const ConfigNode& items) {
+  for (const char* key : {"name", "description", "frame", "tolerance_m", "limits", "geofence", "ends"}) {
+    const auto node = root.find(key);
+    if (node && node->line() > items.line())
+      node->fail("stands after items, must stand before them: a file that is cut short would lose it unseen");
+  }
+}
+
+MissionFile read_mission(const ConfigNode& root, const control::Limits& settings) {
+  root.allow({"name", "description", "frame", "tolerance_m", "limits", "geofence", "ends", "items"});
+  MissionFile file;
+  file.name = name_of(root);
+  if (const auto description = root.find("description")) file.description = description->text();
+  const MissionFrame frame =
+      root.at("frame").choice<MissionFrame>({{"ned", MissionFrame::kNed}, {"enu", MissionFrame::kEnu}});
+  file.tolerance_m = root.at("tolerance_m").number({0.0, kLargestToleranceM, true, false});
+  control::MissionBounds& bounds = file.mission.bounds;
+  if (const auto limits = root.find("limits")) read_limits(*limits, settings, bounds);
+  if (const auto fence = root.find("geofence")) read_fence(*fence, frame, settings, bounds);
+  const auto ends = root.find("ends");
+  const bool hovers = ends && ends->choice<bool>({{"landed", false}, {"hovering", true}});
+
+  const ConfigNode items = root.at("items");
+  demand_items_last(root, items);
+  const control::Limits limits = control::tightened(settings, bounds);
+  read_mission_items(items, frame, limits, file);
+  if (hovers && file.lands()) ends->fail("is hovering, must be landed: the last item is a land");
+  if (!hovers && !file.lands()) {
+    const ConfigNode last = items.items().back();
+    last.fail("is the last item, which must be a land, unless the mission says `ends: hovering`");
+  }
+  return file;
+}
+
+Eigen::Vector3d start_of(const control::Mission& mission, const MissionItem& trajectory) {
+  return control::evaluate(mission.segments[trajectory.first_segment], 0.0).position_ned;
+}
+
+}  // namespace
+
+bool MissionFile::takes_off() const {
+  return !mission.items.empty() && mission.items.front().kind == MissionItemKind::kTakeoff;
+}
+
+bool MissionFile::lands() const {
+  return !mission.items.empty() && mission.items.back().kind == MissionItemKind::kLand;
+}
+
+MissionFile load_mission_file(const std::string& path, const control::Limits& limits) {
+  const std::string text = runtime::read_text_file(path);
+  switch (detect_format(text, path)) {
+    case MissionFormat::kYaml:
+      return parse_mission_file(text, path, limits);
+    case MissionFormat::kPolynomialCsv:
+      return parse_polynomial_csv(text, path, limits);
+    case MissionFormat::kSampledCsv:
+      return parse_sampled_csv(text, path, limits);
+    case MissionFormat::kWaypointCsv:
+      return parse_waypoint_csv(text, path, limits);
+    case MissionFormat::kQGroundControlPlan:
+      return parse_qgroundcontrol_plan(text, path, limits);
+  }
+  throw std::logic_error("a format that is not read");
+}
+
+MissionFile parse_mission_file(const std::string& text, const std::string& file_name,
+                               const control::Limits& limits) {
+  return read_mission(runtime::parse_config(text, file_name), limits);
+}
+
+double planned_duration_s(const control::Mission& mission, const control::Limits& settings) {
+  const control::Limits limits = control::tightened(settings, mission.bounds);
+  double duration_s = 0.0;
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();
+  double yaw = 0.0;
+  for (const MissionItem& item : mission.items) {
+    Eigen::Vector3d to = item.position_ned;
+    if (item.kind == MissionItemKind::kTakeoff) to = {at.x(), at.y(), item.position_ned.z()};
+    if (item.kind == MissionItemKind::kLand) to = {at.x(), at.y(), 0.0};
+    if (item.kind == MissionItemKind::kTrajectory) to = start_of(mission, item);
+    if (item.kind == MissionItemKind::kWait) to = at;
+    const double distance = (to - at).norm();
+    const double move_s =
+        item.kind == MissionItemKind::kTrajectory
+            ? control::septic_duration(distance, item.speed, limits.max_reference_acceleration,
+                                       limits.max_reference_jerk)
+            : control::minimum_jerk_duration(distance, item.speed, limits.max_reference_acceleration,
+                                             limits.max_reference_jerk);
+    double turn_s = 0.0;
+    if (item.kind == MissionItemKind::kWaypoint && !item.yaw_free) {
+      turn_s = 15.0 / 8.0 * std::abs(std::remainder(item.yaw_rad - yaw, 2 * M_PI)) / limits.max_yaw_rate;
+      yaw = item.yaw_rad;
+    }
+    duration_s += std::max(move_s, turn_s) + item.hold_s;
+    at = to;
+    if (item.kind != MissionItemKind::kTrajectory) continue;
+    for (std::uint32_t i = 0; i < item.segment_count; ++i) {
+      const control::PolynomialSegment& segment = mission.segments[item.first_segment + i];
+      duration_s += segment.duration_s;
+      const control::Reference end = control::evaluate(segment, segment.duration_s);
+      at = end.position_ned;
+      yaw = end.yaw_rad;
+    }
+  }
+  return duration_s;
+}
+
+const char* to_string(MissionItemKind kind) {
+  switch (kind) {
+    case MissionItemKind::kTakeoff:
+      return "takeoff";
+    case MissionItemKind::kWaypoint:
+      return "waypoint";
+    case MissionItemKind::kLand:
+      return "land";
+    case MissionItemKind::kTrajectory:
+      return "trajectory";
+    case MissionItemKind::kWait:
+      return "wait";
+  }
+  return "unknown";
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,335 @@
+#include "swiftlet/io/missions/mission_items.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+
+#include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/control/planning/waypoint_path.hpp"
+#include "swiftlet/io/format.hpp"
+#include "swiftlet/io/missions/mission_format.hpp"
+#include "swiftlet/io/missions/whole_flight.hpp"
+#include "swiftlet/io/text_file.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using control::MissionItem;
+using control::MissionItemKind;
+using runtime::ConfigNode;
+
+constexpr double kLongestHoldS = 3600.0;
+constexpr double kLargestRadiusM = 10.0;
+constexpr double kLeastCorridorM = 1e-3;  // half the width, as control/planning/waypoint_path.hpp has it
+constexpr double kLargestCorridorM = 10.0;
+constexpr std::size_t kMaxPoints = control::kMaxTrajectorySegments + 1;
+
+enum class FileItem { kTakeoff, kWaypoint, kPath, kTrajectory, kSet, kWait, kLand };
+
+// In NED; free: the yaw is kept.
+struct Yaw {
+  bool free = true;
+  double rad = 0.0;
+};
+
+// What `set` said last.
+struct Defaults {
+  std::optional<double> speed;
+  double acceptance_radius_m = 0.0;
+  double hold_s = 0.0;
+  Yaw yaw;
+};
+
+class Reader {
+ public:
+  Reader(MissionFrame frame, const control::Limits& limits, MissionFile& file)
+      : frame_(frame), limits_(limits), file_(file) {}
+
+  void read(const ConfigNode& node) {
+    node.allow({"kind", "height_m", "position_m", "points", "file", "duration_s", "yaw_rad", "speed_m_s",
+                "acceptance_radius_m", "hold_s", "straight", "corridor_m", "smoothness"});
+    const auto kind = node.at("kind").choice<FileItem>({{"takeoff", FileItem::kTakeoff},
+                                                        {"waypoint", FileItem::kWaypoint},
+                                                        {"path", FileItem::kPath},
+                                                        {"trajectory", FileItem::kTrajectory},
+                                                        {"set", FileItem::kSet},
+                                                        {"wait", FileItem::kWait},
+                                                        {"land", FileItem::kLand}});
+    if (kind == FileItem::kSet) return read_set(node);
+    if (!file_.mission.items.empty() && kind == FileItem::kTakeoff)
+      node.fail("is a takeoff, which must be the first item");
+    if (file_.lands()) node.fail("comes after a land, which must be the last item");
+    file_.mission.items.push_back(item(kind, node));
+    file_.lines.push_back(node.line());
+  }
+
+ private:
+  MissionItem item(FileItem kind, const ConfigNode& node) {
+    switch (kind) {
+      case FileItem::kTakeoff:
+        return takeoff(node);
+      case FileItem::kWaypoint:
+        return waypoint(node);
+      case FileItem::kPath:
+        return path(node);
+      case FileItem::kTrajectory:
+        return trajectory(node);
+      case FileItem::kWait:
+        return wait(node);
+      case FileItem::kLand:
+        return land(node);
+      case FileItem::kSet:
+        break;
+    }
+    throw std::logic_error("an item that is not flown");
+  }
+
+  void read_set(const ConfigNode& node) {
+    node.allow({"kind", "speed_m_s", "yaw_rad", "acceptance_radius_m", "hold_s"});
+    const auto speed = node.find("speed_m_s");
+    const auto yaw = node.find("yaw_rad");
+    const auto radius = node.find("acceptance_radius_m");
+    const auto hold = node.find("hold_s");
+    if (!speed && !yaw && !radius && !hold)
+      node.fail("sets nothing, must give one of speed_m_s, yaw_rad, acceptance_radius_m or hold_s");
+    if (speed) defaults_.speed = speed_of(*speed);
+    if (yaw) defaults_.yaw = yaw_of(*yaw);
+    if (radius) defaults_.acceptance_radius_m = radius->number(runtime::between(0.0, kLargestRadiusM));
+    if (hold) defaults_.hold_s = hold->number(runtime::between(0.0, kLongestHoldS));
+  }
+
+  MissionItem takeoff(const ConfigNode& node) const {
+    node.allow({"kind", "height_m", "speed_m_s", "hold_s"});
+    MissionItem item;
+    item.kind = MissionItemKind::kTakeoff;
+    const ConfigNode height = node.at("height_m");
+    item.position_ned.z() = -height.number(runtime::above(0.0));
+    Eigen::Vector3d top_ned =
+        0.5 * (limits_.fence_min_ned + limits_.fence_max_ned);  // over wherever it stands
+    top_ned.z() = item.position_ned.z();
+    demand_inside_fence(height, top_ned);
+    item.speed = speed(node);
+    item.hold_s = hold(node);
+    return item;
+  }
+
+  MissionItem waypoint(const ConfigNode& node) const {
+    node.allow({"kind", "position_m", "yaw_rad", "speed_m_s", "acceptance_radius_m", "hold_s"});
+    MissionItem item;
+    item.kind = MissionItemKind::kWaypoint;
+    item.position_ned = position(node.at("position_m"));
+    const Yaw yaw = yaw_or_default(node);
+    item.yaw_free = yaw.free;
+    item.yaw_rad = yaw.rad;
+    item.speed = speed(node);
+    item.hold_s = hold(node);
+    item.acceptance_radius_m = radius(node);
+    return item;
+  }
+
+  MissionItem wait(const ConfigNode& node) const {
+    node.allow({"kind", "duration_s"});
+    MissionItem item;
+    item.kind = MissionItemKind::kWait;
+    item.speed = limits_.max_speed;
+    item.hold_s = node.at("duration_s").number({0.0, kLongestHoldS, true, false});
+    return item;
+  }
+
+  MissionItem land(const ConfigNode& node) const {
+    node.allow({"kind", "speed_m_s"});
+    MissionItem item;
+    item.kind = MissionItemKind::kLand;
+    item.speed = speed(node);
+    return item;
+  }
+
+  MissionItem path(const ConfigNode& node) {
+    node.allow({"kind", "points", "yaw_rad", "speed_m_s", "acceptance_radius_m", "hold_s", "straight",
+                "corridor_m", "smoothness"});
+    const std::vector<ConfigNode> points = node.at("points").items(2, kMaxPoints);
+    control::WaypointPath path;
+    const bool yaw_free = read_points(points, yaw_or_default(node), path.points);
+    read_shape(node, path);
+    path.limits = reference_limits(limits_);
+    path.limits.speed = speed(node);
+    control::PlannedPath planned;
+    try {
+      planned = control::plan(path);
+    } catch (const std::invalid_argument& fault) {
+      node.fail(std::string("cannot be planned: ") + fault.what());
+    }
+    demand_flyable(planned, points);
+    return flown(node, std::move(planned.segments), yaw_free, path.limits.speed);
+  }
+
+  MissionItem trajectory(const ConfigNode& node) {
+    node.allow({"kind", "file", "yaw_rad", "speed_m_s", "acceptance_radius_m", "hold_s"});
+    const ConfigNode name = node.at("file");
+    const std::filesystem::path path = std::filesystem::path(node.file()).parent_path() / name.text();
+    if (!std::filesystem::is_regular_file(path)) {
+      name.fail("is " + name.text() + ", must be a file that is there: looked for " +
+                path.lexically_normal().string());
+    }
+    const auto yaw = node.find("yaw_rad");
+    if (yaw && !yaw_of(*yaw).free) yaw->fail("is a number, must be free: else the file's own yaw is flown");
+    TrajectoryFile read = load_trajectory_file(path.string(), name);
+    for (const std::string& assumption : read.assumptions)
+      file_.assumptions.push_back(name.text() + ": " + assumption);
+    return flown(node, std::move(read.segments), yaw.has_value(), speed(node));
+  }
+
+  TrajectoryFile load_trajectory_file(const std::string& path, const ConfigNode& name) const {
+    const std::string text = runtime::read_text_file(path);
+    switch (detect_format(text, path)) {
+      case MissionFormat::kPolynomialCsv:
+        return read_polynomial_csv(text, path, limits_);
+      case MissionFormat::kSampledCsv:
+        return read_sampled_csv(text, path, limits_);
+      default:
+        name.fail("is " + name.text() + ", must be a trajectory: polynomials or samples as CSV");
+    }
+  }
+
+  // Adds the segments to the mission's.
+  MissionItem flown(const ConfigNode& node, std::vector<control::PolynomialSegment> segments, bool yaw_free,
+                    double speed) {
+    std::vector<control::PolynomialSegment>& all = file_.mission.segments;
+    MissionItem item;
+    item.kind = MissionItemKind::kTrajectory;
+    item.yaw_free = yaw_free;
+    item.speed = speed;
+    item.hold_s = hold(node);
+    item.acceptance_radius_m = radius(node);
+    item.first_segment = static_cast<std::uint32_t>(all.size());
+    item.segment_count = static_cast<std::uint32_t>(segments.size());
+    all.insert(all.end(), segments.begin(), segments.end());
+    if (all.size() > control::kMaxTrajectorySegments) {
+      node.fail(format("needs %zu segments, %zu with those before it, at most %d fit in a mission",
+                       segments.size(), all.size(), control::kMaxTrajectorySegments));
+    }
+    return item;
+  }
+
+  // A point that gives no yaw has that of the one before, those before the first that does have its. True
+  // if no point has one: the yaw is then free.
+  bool read_points(const std::vector<ConfigNode>& nodes, const Yaw& fallback,
+                   std::vector<control::PathPoint>& points) const {
+    Yaw last = fallback;
+    std::size_t without = 0;  // at the beginning
+    for (const ConfigNode& node : nodes) {
+      control::PathPoint& point = points.emplace_back();
+      if (node.is_list()) {
+        point.position_ned = position(node);
+      } else {
+        node.allow({"position_m", "yaw_rad", "stop"});
+        point.position_ned = position(node.at("position_m"));
+        if (const auto stop = node.find("stop")) point.stop = stop->boolean();
+        if (const auto yaw = node.find("yaw_rad")) {
+          const double to = ned_yaw_from(frame_, yaw->number(runtime::between(-M_PI, M_PI)));
+          last = {false, last.free ? to : last.rad + std::remainder(to - last.rad, 2.0 * M_PI)};
+        }
+      }
+      point.yaw_rad = last.rad;
+      if (last.free) without = points.size();
+    }
+    for (std::size_t i = 0; i < without && !last.free; ++i) points[i].yaw_rad = points[without].yaw_rad;
+    return last.free;
+  }
+
+  static void read_shape(const ConfigNode& node, control::WaypointPath& path) {
+    if (const auto smoothness = node.find("smoothness")) {
+      path.smoothness = smoothness->choice<control::Smoothness>(
+          {{"snap", control::Smoothness::kMinimumSnap}, {"jerk", control::Smoothness::kMinimumJerk}});
+    }
+    const auto straight = node.find("straight");
+    const auto corridor = node.find("corridor_m");
+    control::Leg leg;
+    if (straight && straight->boolean()) {
+      if (corridor) corridor->fail("is given for a path of straight legs, must be left out");
+      leg.shape = control::LegShape::kStraight;
+    } else if (corridor) {
+      leg.shape = control::LegShape::kCorridor;
+      leg.corridor_m = corridor->number(runtime::between(kLeastCorridorM, kLargestCorridorM));
+    }
+    path.legs.assign(path.points.size() - 1, leg);
+  }
+
+  // Between its points, too.
+  void demand_flyable(const control::PlannedPath& planned, const std::vector<ConfigNode>& points) const {
+    std::size_t leg = 0;
+    for (std::size_t i = 0; i < planned.segments.size(); ++i) {
+      while (leg + 1 < planned.leg_begins.size() && planned.leg_begins[leg + 1] <= i) ++leg;
+      const control::Outcome outcome = control::check_segment("in NED", planned.segments[i], limits_);
+      if (!outcome.accepted) points[leg].fail(std::string("the path from here, ") + outcome.reason);
+    }
+  }
+
+  void demand_inside_fence(const ConfigNode& node, const Eigen::Vector3d& position_ned) const {
+    constexpr const char* kAxes[] = {"north", "east", "down"};
+    for (int axis = 0; axis < 3; ++axis) {
+      const double value = position_ned[axis];
+      const double low = limits_.fence_min_ned[axis];
+      const double high = limits_.fence_max_ned[axis];
+      if (value >= low && value <= high) continue;
+      node.fail(format("%s is %g m, must be inside the fence, %g to %g m", kAxes[axis], value, low, high));
+    }
+  }
+
+  Eigen::Vector3d position(const ConfigNode& node) const {
+    Eigen::Vector3d position_ned = ned_from(frame_, node.vector3());
+    demand_inside_fence(node, position_ned);
+    return position_ned;
+  }
+
+  double speed_of(const ConfigNode& node) const { return node.number({0.0, limits_.max_speed, true, false}); }
+  double speed(const ConfigNode& node) const {
+    const auto given = node.find("speed_m_s");
+    if (given || !defaults_.speed) return speed_of(node.at("speed_m_s"));
+    return *defaults_.speed;
+  }
+  double hold(const ConfigNode& node) const {
+    const auto given = node.find("hold_s");
+    return given ? given->number(runtime::between(0.0, kLongestHoldS)) : defaults_.hold_s;
+  }
+  double radius(const ConfigNode& node) const {
+    const auto given = node.find("acceptance_radius_m");
+    return given ? given->number(runtime::between(0.0, kLargestRadiusM)) : defaults_.acceptance_radius_m;
+  }
+
+  // A number of rad, or the word free.
+  Yaw yaw_of(const ConfigNode& node) const {
+    if (node.is_scalar() && node.text() == "free") return {};
+    return {false, ned_yaw_from(frame_, node.number(runtime::between(-M_PI, M_PI)))};
+  }
+  Yaw yaw_or_default(const ConfigNode& node) const {
+    const auto given = node.find("yaw_rad");
+    return given ? yaw_of(*given) : defaults_.yaw;
+  }
+
+  const MissionFrame frame_;
+  const control::Limits& limits_;
+  MissionFile& file_;
+  Defaults defaults_;
+};
+
+}  // namespace
+
+Eigen::Vector3d ned_from(MissionFrame frame, const Eigen::Vector3d& position) {
+  return frame == MissionFrame::kNed ? position : ned_position(position);
+}
+
+double ned_yaw_from(MissionFrame frame, double yaw) {
+  return frame == MissionFrame::kNed ? yaw : std::remainder(ned_yaw(yaw), 2 * M_PI);
+}
+
+void read_mission_items(const ConfigNode& list, MissionFrame frame, const control::Limits& limits,
+                        MissionFile& file) {
+  Reader reader(frame, limits, file);
+  for (const ConfigNode& node : list.items(1, control::kMaxMissionItems)) reader.read(node);
+  if (file.mission.items.empty()) list.fail("holds nothing to be flown");
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,25 @@
+// The items of a mission file, one after another.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "swiftlet/control/types/settings.hpp"
+#include "swiftlet/io/config.hpp"
+#include "swiftlet/io/missions/mission_file.hpp"
+
+namespace swiftlet::ground {
+
+// Of positions and yaws in the file: north, east, down with yaw clockwise from north, or east, north, up
+// with yaw counter-clockwise from east.
+enum class MissionFrame { kNed, kEnu };
+
+Eigen::Vector3d ned_from(MissionFrame frame, const Eigen::Vector3d& position);
+double ned_yaw_from(MissionFrame frame, double yaw);
+
+// Into file.mission and its lines and assumptions. limits: those of the control settings as the mission
+// tightens them. Throws runtime::ConfigError.
+void read_mission_items(const runtime::ConfigNode& list, MissionFrame frame, const control::Limits& limits,
+                        MissionFile& file);
+
+}  // namespace swiftlet::ground

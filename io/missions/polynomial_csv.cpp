@@ -1,0 +1,49 @@
+#include "swiftlet/io/csv.hpp"
+#include "swiftlet/io/missions/mission_format.hpp"
+#include "swiftlet/io/missions/whole_flight.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+constexpr double kLongestSegment_s = 3600.0;
+
+std::vector<std::string> columns() {
+  std::vector<std::string> names{"duration"};
+  for (const char* axis : {"x", "y", "z", "yaw"}) {
+    for (int power = 0; power < control::kPolynomialCoefficients; ++power)
+      names.push_back(std::string(axis) + "^" + std::to_string(power));
+  }
+  return names;
+}
+
+control::PolynomialSegment read(const runtime::CsvTable& table, std::size_t row) {
+  control::PolynomialSegment segment;
+  segment.duration_s = table.number(row, 0, {0.0, kLongestSegment_s, true, false}, "s");
+  std::size_t column = 1;
+  for (control::Polynomial* const axis : {&segment.x, &segment.y, &segment.z, &segment.yaw}) {
+    for (double& c : *axis) c = table.number(row, column++);
+  }
+  return segment;
+}
+
+}  // namespace
+
+TrajectoryFile read_polynomial_csv(const std::string& text, const std::string& file_name,
+                                   const control::Limits& limits) {
+  const runtime::CsvTable table = runtime::parse_csv(text, file_name, columns(), 1, {true, true});
+  if (table.row_count() > control::kMaxTrajectorySegments) {
+    table.fail(control::kMaxTrajectorySegments, "duration",
+               "is segment " + std::to_string(control::kMaxTrajectorySegments + 1) + ", at most " +
+                   std::to_string(control::kMaxTrajectorySegments) + " fit");
+  }
+  std::vector<control::PolynomialSegment> segments;
+  for (std::size_t row = 0; row < table.row_count(); ++row) segments.push_back(ned_segment(read(table, row)));
+  std::vector<std::string> assumptions = {
+      "taken as a polynomial trajectory in ENU: m, rad and s, its origin that of motion capture"};
+  const double raise_m = raise_by(least_height(segments), assumptions);
+  for (control::PolynomialSegment& segment : segments) segment.z[0] -= raise_m;
+  return checked({std::move(segments), std::move(assumptions)}, limits,
+                 [&](std::size_t segment, const std::string& fault) { table.fail(segment, "", fault); });
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,80 @@
+#include <cmath>
+#include <stdexcept>
+
+#include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/control/planning/waypoint_path.hpp"
+#include "swiftlet/io/csv.hpp"
+#include "swiftlet/io/format.hpp"
+#include "swiftlet/io/missions/mission_format.hpp"
+#include "swiftlet/io/missions/whole_flight.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+constexpr std::size_t kMaxPoints = control::kMaxTrajectorySegments + 1;
+
+control::WaypointPath read(const runtime::CsvTable& table) {
+  control::WaypointPath path;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    if (row == kMaxPoints)
+      table.fail(row, "x,y,z", format("is waypoint %zu, at most %zu fit", row + 1, kMaxPoints));
+    control::PathPoint& point = path.points.emplace_back();
+    point.position_ned = ned_position({table.number(row, 0), table.number(row, 1), table.number(row, 2)});
+    if (table.column_count() < 4) continue;
+    point.yaw_rad = ned_yaw(table.number(row, 3));
+    if (row == 0) continue;
+    const double before = path.points[row - 1].yaw_rad;  // no whole turns from one to the next
+    point.yaw_rad = before + std::remainder(point.yaw_rad - before, 2.0 * M_PI);
+  }
+  return path;
+}
+
+// Of the path's segments, the row whose waypoint they begin at or follow.
+std::size_t row_of(const control::PlannedPath& planned, std::size_t segment) {
+  std::size_t row = 0;
+  while (row + 1 < planned.leg_begins.size() && planned.leg_begins[row + 1] <= segment) ++row;
+  return row;
+}
+
+}  // namespace
+
+TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& file_name,
+                                 const control::Limits& limits) {
+  std::vector<std::string> first = runtime::first_csv_line(text);
+  if (first.empty()) first.emplace_back();  // what parse_csv() refuses
+  const bool has_header = !runtime::is_number(first.front());
+  std::vector<std::string> columns = {"x", "y", "z"};
+  const std::size_t fields = first.back().empty() ? first.size() - 1 : first.size();
+  if (fields > 3) columns.emplace_back("yaw");
+  const runtime::CsvTable table = runtime::parse_csv(text, file_name, columns, 2, {has_header, true});
+  control::WaypointPath path = read(table);
+  path.limits = reference_limits(limits);
+
+  std::vector<std::string> assumptions = {
+      "taken as waypoints in ENU: m and rad, their origin that of motion capture"};
+  if (columns.size() < 4) assumptions.emplace_back("they give no yaw: north");
+  double least_m = -path.points.front().position_ned.z();
+  for (const control::PathPoint& point : path.points) least_m = std::min(least_m, -point.position_ned.z());
+  const double raise_m = raise_by(least_m, assumptions);
+  for (std::size_t row = 0; row < path.points.size(); ++row) {
+    Eigen::Vector3d& position_ned = path.points[row].position_ned;
+    position_ned.z() -= raise_m;
+    const control::Outcome inside = control::check_position("in NED", position_ned, limits);
+    if (!inside.accepted) table.fail(row, "x,y,z", inside.reason);
+  }
+  assumptions.push_back(
+      format("flown through without stopping on a path of least snap, at up to %g m/s, %g m/s^2 and %g m/s^3",
+             path.limits.speed, path.limits.acceleration, path.limits.jerk));
+  control::PlannedPath planned;
+  try {
+    planned = control::plan(path);
+  } catch (const std::invalid_argument& fault) {
+    throw runtime::ConfigError(file_name, 0, "", fault.what());
+  }
+  return checked({std::move(planned.segments), std::move(assumptions)}, limits,
+                 [&](std::size_t segment, const std::string& fault) {
+                   table.fail(row_of(planned, segment), "", "the path from here: " + fault);
+                 });
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,97 @@
+#include "swiftlet/io/missions/whole_flight.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "swiftlet/control/planning/bernstein.hpp"
+#include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/io/format.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+constexpr double kTolerance_m = 0.1;  // of the tracking error, as in the missions of the configuration
+
+control::Polynomial negative(control::Polynomial polynomial) {
+  for (double& c : polynomial) c = -c;
+  return polynomial;
+}
+
+}  // namespace
+
+Eigen::Vector3d ned_position(const Eigen::Vector3d& position_enu) {
+  return {position_enu.y(), position_enu.x(), -position_enu.z()};
+}
+
+double ned_yaw(double yaw_enu) { return M_PI / 2 - yaw_enu; }
+
+control::PolynomialSegment ned_segment(const control::PolynomialSegment& segment_enu) {
+  control::PolynomialSegment ned{segment_enu.duration_s, segment_enu.y, segment_enu.x,
+                                 negative(segment_enu.z), negative(segment_enu.yaw)};
+  ned.yaw[0] = ned_yaw(segment_enu.yaw[0]);
+  return ned;
+}
+
+double raise_by(double least_height_m, std::vector<std::string>& assumptions) {
+  const double shown_m = std::round(least_height_m * 100.0) / 100.0 + 0.0;  // no -0.00
+  if (least_height_m >= kLeastHeight_m) {
+    assumptions.push_back(format("heights are above the ground: it comes down to %.2f m", shown_m));
+    return 0.0;
+  }
+  const double raise_m = kHoverHeight_m - least_height_m;
+  assumptions.push_back(format(
+      "it comes down to %.2f m, so its heights are taken from a hover: raised by %.2f m", shown_m, raise_m));
+  return raise_m;
+}
+
+double least_height(const std::vector<control::PolynomialSegment>& segments) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const control::PolynomialSegment& segment : segments)
+    least = std::min(least, -control::maximum(control::bernstein(segment.z, segment.duration_s), 1e-6).value);
+  return least;
+}
+
+control::MotionLimits reference_limits(const control::Limits& limits) {
+  return {limits.max_speed, limits.max_reference_acceleration, limits.max_reference_jerk,
+          limits.max_yaw_rate};
+}
+
+TrajectoryFile checked(TrajectoryFile path, const control::Limits& limits,
+                       const std::function<void(std::size_t, const std::string&)>& where) {
+  const std::vector<control::PolynomialSegment>& segments = path.segments;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const std::string what = format("segment %zu in NED", i + 1);
+    control::Outcome outcome = control::check_segment(what.c_str(), segments[i], limits);
+    if (outcome.accepted) {
+      outcome = i == 0 ? control::check_start(what.c_str(), segments[i])
+                       : control::check_joint(what.c_str(), segments[i - 1], segments[i]);
+    }
+    if (!outcome.accepted) where(i, outcome.reason);
+  }
+  return path;
+}
+
+MissionFile whole_flight(const std::string& file_name, TrajectoryFile path, const control::Limits& limits) {
+  using control::MissionItemKind;
+  std::vector<control::PolynomialSegment>& segments = path.segments;
+  double duration_s = 0.0;
+  for (const control::PolynomialSegment& segment : segments) duration_s += segment.duration_s;
+  const double speed = std::min(kApproachSpeed, limits.max_speed);
+  MissionFile file;
+  file.name = std::filesystem::path(file_name).stem().string();
+  file.tolerance_m = kTolerance_m;
+  file.mission.items = {{MissionItemKind::kTakeoff, {0.0, 0.0, segments.front().z[0]}, 0.0, true, speed, 0.5},
+                        {MissionItemKind::kTrajectory, Eigen::Vector3d::Zero(), 0.0, false, speed, 0.5, 0,
+                         static_cast<std::uint32_t>(segments.size())},
+                        {MissionItemKind::kLand, Eigen::Vector3d::Zero(), 0.0, true, speed, 0.0}};
+  path.assumptions.push_back(
+      format("take-off to %.2f m and a landing are added; the path takes %.1f s in %zu segments",
+             -segments.front().z[0], duration_s, segments.size()));
+  file.mission.segments = std::move(segments);
+  file.assumptions = std::move(path.assumptions);
+  return file;
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,150 @@
+#include "swiftlet/io/settings/control_settings_file.hpp"
+
+#include "swiftlet/io/config.hpp"
+#include "swiftlet/io/settings/violations.hpp"
+#include "swiftlet/io/text_file.hpp"
+
+namespace swiftlet::runtime {
+
+namespace {
+
+// As many weights as the model has states.
+control::LqrWeights read_weights(const ConfigNode& node, control::AttitudeModel model) {
+  const std::size_t states = model == control::AttitudeModel::kMotorLag ? 3 : 2;
+  const std::vector<double> q = node.at("q").numbers(states, states);
+  control::LqrWeights weights;
+  for (std::size_t i = 0; i < states; ++i) weights.q[static_cast<Eigen::Index>(i)] = q[i];
+  weights.r = node.at("r").number();
+  return weights;
+}
+
+control::AttitudeSettings read_attitude(const ConfigNode& node) {
+  control::AttitudeSettings attitude;
+  attitude.model = node.at("model").choice<control::AttitudeModel>(
+      {{"double_integrator", control::AttitudeModel::kDoubleIntegrator},
+       {"motor_lag", control::AttitudeModel::kMotorLag}});
+  attitude.error = node.at("error").choice<control::AttitudeErrorKind>(
+      {{"euler_angles", control::AttitudeErrorKind::kEulerAngles},
+       {"rotation", control::AttitudeErrorKind::kRotation}});
+  attitude.roll = read_weights(node.at("roll"), attitude.model);
+  attitude.pitch = read_weights(node.at("pitch"), attitude.model);
+  attitude.yaw = read_weights(node.at("yaw"), attitude.model);
+  attitude.feed_forward = node.at("feed_forward").boolean();
+  return attitude;
+}
+
+control::RptSettings read_rpt(const ConfigNode& node) {
+  control::RptSettings rpt;
+  rpt.omega_n = node.at("omega_n").number();
+  rpt.zeta = node.at("zeta").number();
+  rpt.epsilon = node.at("epsilon").number();
+  rpt.k_i = node.at("k_i").number();
+  return rpt;
+}
+
+control::PositionSettings read_position(const ConfigNode& node) {
+  control::PositionSettings position;
+  position.x = read_rpt(node.at("x"));
+  position.y = read_rpt(node.at("y"));
+  position.z = read_rpt(node.at("z"));
+  position.integral_limit = node.at("integral_limit_m_s2").number();
+  return position;
+}
+
+control::DisturbanceSettings read_disturbance(const ConfigNode& node) {
+  control::DisturbanceSettings disturbance;
+  disturbance.bandwidth = node.at("bandwidth_rad_s").number();
+  disturbance.limit = node.at("limit_m_s2").number();
+  return disturbance;
+}
+
+control::Limits read_limits(const ConfigNode& node) {
+  control::Limits limits;
+  limits.max_tilt_rad = node.at("max_tilt_rad").number();
+  limits.max_acceleration = node.at("max_acceleration_m_s2").number();
+  limits.max_speed = node.at("max_speed_m_s").number();
+  limits.max_reference_acceleration = node.at("max_reference_acceleration_m_s2").number();
+  limits.max_reference_jerk = node.at("max_reference_jerk_m_s3").number();
+  limits.max_yaw_rate = node.at("max_yaw_rate_rad_s").number();
+  limits.max_body_rate = node.at("max_body_rate_rad_s").number();
+  limits.fence_min_ned = node.at("fence_min_ned_m").vector3();
+  limits.fence_max_ned = node.at("fence_max_ned_m").vector3();
+  return limits;
+}
+
+control::EstimatorSettings read_estimator(const ConfigNode& node) {
+  control::EstimatorSettings estimator;
+  estimator.accelerometer_noise_density = node.at("accelerometer_noise_m_s2_per_sqrt_hz").number();
+  estimator.gyro_noise_density = node.at("gyro_noise_rad_s_per_sqrt_hz").number();
+  estimator.accelerometer_bias_walk = node.at("accelerometer_bias_walk_m_s2_per_sqrt_s").number();
+  estimator.gyro_bias_walk = node.at("gyro_bias_walk_rad_s_per_sqrt_s").number();
+  estimator.accelerometer_bias_sigma = node.at("accelerometer_bias_m_s2").number();
+  estimator.gyro_bias_sigma = node.at("gyro_bias_rad_s").number();
+  estimator.accelerometer_bias_limit = node.at("accelerometer_bias_limit_m_s2").number();
+  estimator.gyro_bias_limit = node.at("gyro_bias_limit_rad_s").number();
+  estimator.mocap_position_sigma = node.at("mocap_position_m").number();
+  estimator.mocap_orientation_sigma = node.at("mocap_orientation_rad").number();
+  estimator.gate_chi_square = node.at("gate_chi_square").number();
+  estimator.outlier_position_m = node.at("outlier_position_m").number();
+  estimator.outlier_orientation_rad = node.at("outlier_orientation_rad").number();
+  return estimator;
+}
+
+control::ArmingSettings read_arming(const ConfigNode& node) {
+  control::ArmingSettings arming;
+  arming.max_tilt_rad = node.at("max_tilt_rad").number();
+  arming.max_speed = node.at("max_speed_m_s").number();
+  arming.max_body_rate = node.at("max_body_rate_rad_s").number();
+  arming.max_specific_force_error = node.at("max_specific_force_error_m_s2").number();
+  arming.max_rotor_speed = node.at("max_rotor_speed_rad_s").number();
+  return arming;
+}
+
+control::FailsafeSettings read_failsafe(const ConfigNode& node) {
+  control::FailsafeSettings failsafe;
+  failsafe.imu_timeout_s = node.at("imu_timeout_s").number();
+  failsafe.imu_gap_s = node.at("imu_gap_s").number();
+  failsafe.blow = node.at("blow_m_s2").number();
+  failsafe.mocap_timeout_s = node.at("mocap_timeout_s").number();
+  failsafe.descent_speed = node.at("descent_speed_m_s").number();
+  failsafe.descent_timeout_s = node.at("descent_timeout_s").number();
+  failsafe.tip_over_tilt_rad = node.at("tip_over_tilt_rad").number();
+  failsafe.low_battery_voltage = node.at("low_battery_voltage_v").number();
+  failsafe.critical_battery_voltage = node.at("critical_battery_voltage_v").number();
+  failsafe.battery_delay_s = node.at("battery_delay_s").number();
+  failsafe.battery_timeout_s = node.at("battery_timeout_s").number();
+  failsafe.critical_descent_speed = node.at("critical_descent_speed_m_s").number();
+  failsafe.fence_margin_m = node.at("fence_margin_m").number();
+  failsafe.setpoint_timeout_s = node.at("setpoint_timeout_s").number();
+  failsafe.ground_link_timeout_s = node.at("ground_link_timeout_s").number();
+  failsafe.ground_link_action =
+      node.at("ground_link_action")
+          .choice<control::GroundLinkAction>({{"none", control::GroundLinkAction::kNone},
+                                              {"hold", control::GroundLinkAction::kHold},
+                                              {"land", control::GroundLinkAction::kLand}});
+  return failsafe;
+}
+
+}  // namespace
+
+control::ControlSettings parse_control_settings(std::string_view text, const std::string& file_name) {
+  const ConfigNode root = parse_config(text, file_name);
+  control::ControlSettings settings;
+  settings.name = root.at("name").text();
+  settings.attitude = read_attitude(root.at("attitude"));
+  settings.position = read_position(root.at("position"));
+  settings.disturbance = read_disturbance(root.at("disturbance"));
+  settings.limits = read_limits(root.at("limits"));
+  settings.estimator = read_estimator(root.at("estimator"));
+  settings.arming = read_arming(root.at("arming"));
+  settings.failsafe = read_failsafe(root.at("failsafe"));
+  root.reject_unknown_keys();
+  reject_violations(root, control::validate(settings));
+  return settings;
+}
+
+control::ControlSettings load_control_settings(const std::string& path) {
+  return parse_control_settings(read_text_file(path), path);
+}
+
+}  // namespace swiftlet::runtime

@@ -1,0 +1,27 @@
+// The paper's Euler angles, Eq. (3): yaw psi, then pitch theta, then roll phi.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "swiftlet/math/heading.hpp"
+
+namespace swiftlet::control {
+
+struct EulerAngles {
+  double roll_rad = 0.0;   // phi, -pi .. pi
+  double pitch_rad = 0.0;  // theta, -pi/2 .. pi/2
+  Heading heading;         // psi, -pi .. pi
+
+  // (phi, theta, psi)
+  Eigen::Vector3d vector() const { return {roll_rad, pitch_rad, heading.yaw_rad}; }
+};
+
+// Those of Eq. (3). At theta = +-pi/2, where phi and psi are one angle, psi is 0.
+EulerAngles euler_angles(const Eigen::Quaterniond& q_ned_from_frd);
+Eigen::Quaterniond quaternion_from_euler(const Eigen::Vector3d& euler_rad);
+
+// The same angle in -pi .. pi.
+double wrap_angle(double angle_rad);
+
+}  // namespace swiftlet::control

@@ -1,0 +1,37 @@
+// The way of the actuator commands to the vehicle, with the faults that befall them there.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "swiftlet/plant/model/samples.hpp"
+#include "swiftlet/plant/simulation/links/delay_line.hpp"
+#include "swiftlet/plant/simulation/links/faults.hpp"
+#include "swiftlet/plant/simulation/settings.hpp"
+
+namespace swiftlet::plant {
+
+class CommandPath {
+ public:
+  explicit CommandPath(const SimulationSettings& settings);
+
+  // A command is sent at now_ns. True if it arrives at once.
+  bool send(const ActuatorCommand& command, std::int64_t now_ns) {
+    return faultless_ || send_with_faults(command, now_ns);
+  }
+
+  // One that was sent before and arrives now.
+  std::optional<ActuatorCommand> arrived(std::int64_t now_ns) {
+    if (delayed_.empty()) return std::nullopt;
+    return delayed_.take(now_ns);
+  }
+
+ private:
+  bool send_with_faults(const ActuatorCommand& command, std::int64_t now_ns);
+
+  FaultSchedule faults_;
+  bool faultless_;
+  DelayLine<ActuatorCommand> delayed_;
+};
+
+}  // namespace swiftlet::plant

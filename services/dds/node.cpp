@@ -1,0 +1,400 @@
+#include "swiftlet/services/dds/node.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cctype>
+#include <iterator>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <vector>
+
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
+#include <spdlog/spdlog.h>
+
+#include "swiftlet_msgs/msg/ActuatorCommandPubSubTypes.h"
+#include "swiftlet_msgs/msg/BatteryPubSubTypes.h"
+#include "swiftlet_msgs/msg/CommandAckPubSubTypes.h"
+#include "swiftlet_msgs/msg/CommandPubSubTypes.h"
+#include "swiftlet_msgs/msg/ControlStatusPubSubTypes.h"
+#include "swiftlet_msgs/msg/ControllerStatePubSubTypes.h"
+#include "swiftlet_msgs/msg/EstimatePubSubTypes.h"
+#include "swiftlet_msgs/msg/GroundLinkPubSubTypes.h"
+#include "swiftlet_msgs/msg/GroundTruthPubSubTypes.h"
+#include "swiftlet_msgs/msg/ImuPubSubTypes.h"
+#include "swiftlet_msgs/msg/MissionPubSubTypes.h"
+#include "swiftlet_msgs/msg/MissionStatusPubSubTypes.h"
+#include "swiftlet_msgs/msg/MocapPosePubSubTypes.h"
+#include "swiftlet_msgs/msg/ReferencePubSubTypes.h"
+#include "swiftlet_msgs/msg/RotorSpeedsPubSubTypes.h"
+#include "swiftlet_msgs/msg/SetpointPubSubTypes.h"
+#include "swiftlet_msgs/msg/SimulationClockPubSubTypes.h"
+#include "swiftlet_msgs/msg/TrajectoryPubSubTypes.h"
+#include "swiftlet_msgs/msg/VehicleInfoPubSubTypes.h"
+
+#include "swiftlet/services/dds/lookout.hpp"
+#include "swiftlet/services/dds/membership.hpp"
+#include "swiftlet/services/dds/participant_qos.hpp"
+#include "swiftlet/services/dds/profiles.hpp"
+#include "swiftlet/services/dds/reunions.hpp"
+#include "swiftlet/services/dds/shared_memory.hpp"
+#include "swiftlet/services/dds/tolerant_type.hpp"
+
+// Each message type that is a topic's.
+// clang-format off
+#define SWIFTLET_FOR_EACH_MESSAGE(X)                                      \
+  X(ActuatorCommand) X(Battery) X(Command) X(CommandAck) X(ControllerState) X(ControlStatus) \
+  X(Estimate) X(GroundLink) X(GroundTruth) X(Imu) X(Mission) X(MissionStatus) \
+  X(MocapPose) X(Reference) X(RotorSpeeds) X(Setpoint)                    \
+  X(SimulationClock) X(Trajectory) X(VehicleInfo)
+// clang-format on
+
+namespace swiftlet::comms {
+namespace {
+
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+using eprosima::fastrtps::types::ReturnCode_t;
+
+template <class T>
+struct PubSubTypeOf;
+#define SWIFTLET_PUB_SUB_TYPE(Name)     \
+  template <>                           \
+  struct PubSubTypeOf<msg::Name> {      \
+    using type = msg::Name##PubSubType; \
+  };
+SWIFTLET_FOR_EACH_MESSAGE(SWIFTLET_PUB_SUB_TYPE)
+#undef SWIFTLET_PUB_SUB_TYPE
+
+void check(const NodeSettings& settings) {
+  if (settings.domain < 0 || settings.domain > 232) {
+    throw std::runtime_error("DDS domain is " + std::to_string(settings.domain) +
+                             ", must be between 0 and 232");
+  }
+  if (settings.name.empty()) throw std::runtime_error("the node has no name");
+  const bool plain = std::all_of(settings.vehicle.begin(), settings.vehicle.end(),
+                                 [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
+  if (settings.vehicle.empty() || settings.vehicle.size() > 64 || !plain) {
+    throw std::runtime_error("vehicle name is '" + settings.vehicle +
+                             "', must be 1 to 64 letters, digits and underscores");
+  }
+}
+
+constexpr std::chrono::milliseconds kReunionPatience{1000};
+constexpr std::chrono::milliseconds kLookPeriod{250};
+
+}  // namespace
+
+struct Node::Impl final : public dds::DomainParticipantListener {
+  using Meetings = Reunions<rtps::GuidPrefix_t>;
+
+  explicit Impl(const NodeSettings& node_settings) : settings(node_settings) {
+    check(settings);
+    if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
+    membership = std::make_unique<Membership>(settings, this);
+    lookout.emplace(kLookPeriod, [this] { look_after_reunions(); });
+  }
+
+  ~Impl() override {
+    lookout.reset();
+    membership.reset();
+    if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
+  }
+
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  void add(Endpoint* endpoint) {
+    const std::lock_guard<std::mutex> lock(membership_mutex);
+    if (membership != nullptr) endpoint->join(*membership);
+    endpoints.push_back(endpoint);
+  }
+  void remove(Endpoint* endpoint) {
+    const std::lock_guard<std::mutex> lock(membership_mutex);
+    if (membership != nullptr) endpoint->leave(*membership);
+    endpoints.erase(std::remove(endpoints.begin(), endpoints.end(), endpoint), endpoints.end());
+  }
+
+  // Where a peer came back without its endpoints, this process leaves the domain and joins it anew, with all
+  // that it publishes and subscribes; nobody takes it for the one that was there.
+  void look_after_reunions() {
+    {
+      const std::lock_guard<std::mutex> lock(peers_mutex);
+      if (!reunions.failed(std::chrono::steady_clock::now(), kReunionPatience) && !away) return;
+    }
+    const std::lock_guard<std::mutex> lock(membership_mutex);
+    leave();
+    try {
+      membership = std::make_unique<Membership>(settings, this);
+      for (Endpoint* const endpoint : endpoints) endpoint->join(*membership);
+      if (!away) spdlog::warn("a peer came back and could not be heard: joined the network anew");
+      away = false;
+    } catch (const std::runtime_error& error) {
+      if (!away) spdlog::error("cannot join the network anew, trying again: {}", error.what());
+      away = true;
+      leave();
+    }
+  }
+  void leave() {
+    if (membership == nullptr) return;
+    for (Endpoint* const endpoint : endpoints) endpoint->leave(*membership);
+    membership.reset();
+    const std::lock_guard<std::mutex> lock(peers_mutex);
+    peers.clear();
+    writers.clear();
+    reunions.clear();
+  }
+
+  template <class T>
+  dds::Topic* topic_in(Membership& in, const char* name) const {
+    return in.topic("rt/" + settings.vehicle + "/" + name,
+                    dds::TypeSupport(new TolerantType<typename PubSubTypeOf<T>::type>()));
+  }
+  int deadline_ms(int of_topic) const { return settings.deadlines ? of_topic : 0; }
+
+  void on_participant_discovery(dds::DomainParticipant*, rtps::ParticipantDiscoveryInfo&& info) override {
+    const std::lock_guard<std::mutex> lock(peers_mutex);
+    switch (info.status) {
+      case rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT: {
+        if (vehicle_of(info.info.m_userData.dataVec()) != settings.vehicle) return;
+        const std::string name = info.info.m_participantName.c_str();
+        peers[info.info.m_guid] = name;
+        reunions.came(info.info.m_guid.guidPrefix, std::chrono::steady_clock::now());
+        if (peer_callback) peer_callback({name, true, false});
+        break;
+      }
+      case rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT:
+      case rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT: {
+        forget_writers(info.info.m_guid.guidPrefix);
+        const auto peer = peers.find(info.info.m_guid);
+        if (peer == peers.end()) return;
+        const PeerEvent event{peer->second, false,
+                              info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT};
+        event.said_goodbye ? reunions.gone(info.info.m_guid.guidPrefix)
+                           : reunions.lost(info.info.m_guid.guidPrefix);
+        peers.erase(peer);
+        if (peer_callback) peer_callback(event);
+        break;
+      }
+      case rtps::ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT:
+        break;
+    }
+  }
+
+  void on_publisher_discovery(dds::DomainParticipant* own, rtps::WriterDiscoveryInfo&& info) override {
+    if (info.info.guid().guidPrefix == own->guid().guidPrefix) return;
+    if (info.status == rtps::WriterDiscoveryInfo::DISCOVERED_WRITER) {
+      note_endpoint(info.info.guid(), Meetings::kWriter);
+      const std::lock_guard<std::mutex> lock(peers_mutex);
+      writers[info.info.guid()] = info.info.topicName().c_str();
+    } else if (info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) {
+      const std::lock_guard<std::mutex> lock(peers_mutex);
+      writers.erase(info.info.guid());
+    }
+  }
+  // With the lock held.
+  void forget_writers(const rtps::GuidPrefix_t& participant) {
+    for (auto writer = writers.begin(); writer != writers.end();)
+      writer = writer->first.guidPrefix == participant ? writers.erase(writer) : std::next(writer);
+  }
+  void on_subscriber_discovery(dds::DomainParticipant*, rtps::ReaderDiscoveryInfo&& info) override {
+    if (info.status == rtps::ReaderDiscoveryInfo::DISCOVERED_READER)
+      note_endpoint(info.info.guid(), Meetings::kReader);
+  }
+  void note_endpoint(const rtps::GUID_t& guid, Meetings::Kind kind) {
+    const std::lock_guard<std::mutex> lock(peers_mutex);
+    const rtps::GUID_t peer(guid.guidPrefix, rtps::c_EntityId_RTPSParticipant);
+    if (peers.count(peer) > 0) reunions.has(guid.guidPrefix, kind);
+  }
+
+  const NodeSettings settings;
+
+  std::mutex membership_mutex;  // of both
+  std::unique_ptr<Membership> membership;
+  std::vector<Endpoint*> endpoints;
+
+  std::mutex peers_mutex;
+  std::map<rtps::GUID_t, std::string> peers;
+  std::map<rtps::GUID_t, std::string> writers;  // of others, of whichever vehicle: their topics
+  std::function<void(const PeerEvent&)> peer_callback;
+
+  Meetings reunions;
+
+  bool away = false;  // it could not join anew
+  std::optional<Lookout> lookout;
+};
+
+namespace {
+
+const eprosima::fastrtps::Duration_t kWriteTimeout{0,
+                                                   std::chrono::nanoseconds(kReliableWriteTimeout).count()};
+
+// Endpoints share the node, so that the order in which a process lets go of them does not matter.
+template <class Impl, class T>
+class DdsWriter final : public detail::Writer, private Endpoint {
+ public:
+  DdsWriter(std::shared_ptr<Impl> node, const Topic<T>& topic, std::uint32_t strength)
+      : node_(std::move(node)), topic_(topic), strength_(strength) {
+    node_->add(this);
+  }
+  ~DdsWriter() override { node_->remove(this); }
+  DdsWriter(const DdsWriter&) = delete;
+  DdsWriter& operator=(const DdsWriter&) = delete;
+
+  bool write(const void* sample) override {
+    if (is_kept(topic_.qos)) {
+      const std::lock_guard<std::mutex> lock(last_mutex_);
+      last_ = *static_cast<const T*>(sample);
+    }
+    const typename Handle<dds::DataWriter>::Use writer(writer_);
+    if (!writer) return false;
+    void* const data = const_cast<void*>(sample);  // serialized before write() returns, not altered
+    if (writer->write(data)) return true;
+    // A full history of requests makes room when they are acknowledged; write() does not always wait for
+    // that.
+    return topic_.qos == Qos::kRequest &&
+           writer->wait_for_acknowledgments(kWriteTimeout) == ReturnCode_t::RETCODE_OK && writer->write(data);
+  }
+
+  void set_strength(std::uint32_t strength) override {
+    strength_ = strength;
+    const typename Handle<dds::DataWriter>::Use writer(writer_);
+    if (!writer) return;
+    dds::DataWriterQos qos = writer->get_qos();
+    qos.ownership_strength().value = strength;
+    writer->set_qos(qos);
+  }
+
+  int matched() const override {
+    const typename Handle<dds::DataWriter>::Use writer(writer_);
+    dds::PublicationMatchedStatus status;
+    if (writer) writer->get_publication_matched_status(status);
+    return status.current_count;
+  }
+
+ private:
+  void join(Membership& membership) override {
+    dds::DataWriter* const writer = membership.publisher->create_datawriter(
+        node_->template topic_in<T>(membership, topic_.name),
+        writer_qos(topic_.qos, node_->deadline_ms(topic_.deadline_ms), strength_, node_->settings.transport));
+    if (writer == nullptr) throw std::runtime_error(std::string("cannot publish ") + topic_.name);
+    const std::lock_guard<std::mutex> lock(last_mutex_);
+    if (last_) writer->write(&*last_);
+    writer_.give(writer);
+  }
+  void leave(Membership& membership) override {
+    if (dds::DataWriter* const writer = writer_.take()) membership.publisher->delete_datawriter(writer);
+  }
+
+  std::shared_ptr<Impl> node_;
+  const Topic<T> topic_;
+  std::atomic<std::uint32_t> strength_;
+  Handle<dds::DataWriter> writer_;
+  std::mutex last_mutex_;
+  std::optional<T> last_;  // of a state, which late joiners are told
+};
+
+template <class Impl, class T>
+class DdsReader final : public detail::Reader, private Endpoint, private dds::DataReaderListener {
+ public:
+  DdsReader(std::shared_ptr<Impl> node, const Topic<T>& topic, std::function<void(const T&)> callback,
+            Delivery delivery)
+      : node_(std::move(node)), topic_(topic), delivery_(delivery), callback_(std::move(callback)) {
+    node_->add(this);
+  }
+  ~DdsReader() override { node_->remove(this); }
+  DdsReader(const DdsReader&) = delete;
+  DdsReader& operator=(const DdsReader&) = delete;
+
+  int matched() const override {
+    const typename Handle<dds::DataReader>::Use reader(reader_);
+    dds::SubscriptionMatchedStatus status;
+    if (reader) reader->get_subscription_matched_status(status);
+    return status.current_count;
+  }
+
+ private:
+  void join(Membership& membership) override {
+    open(true);
+    dds::DataReader* const reader = membership.subscriber->create_datareader(
+        node_->template topic_in<T>(membership, topic_.name),
+        reader_qos(topic_.qos, node_->deadline_ms(topic_.deadline_ms), node_->settings.transport, delivery_),
+        this, dds::StatusMask::data_available());
+    if (reader == nullptr) throw std::runtime_error(std::string("cannot subscribe to ") + topic_.name);
+    reader_.give(reader);
+  }
+  void leave(Membership& membership) override {
+    dds::DataReader* const reader = reader_.take();
+    if (reader == nullptr) return;
+    open(false);
+    reader->set_listener(nullptr);
+    membership.subscriber->delete_datareader(reader);
+  }
+  void open(bool open) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    open_ = open;
+  }
+
+  void on_data_available(dds::DataReader* reader) override {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    dds::SampleInfo info;
+    while (open_ && reader->take_next_sample(&sample_, &info) == ReturnCode_t::RETCODE_OK) {
+      if (!info.valid_data) continue;
+      callback_(sample_);
+    }
+  }
+
+  std::shared_ptr<Impl> node_;
+  const Topic<T> topic_;
+  const Delivery delivery_;
+  Handle<dds::DataReader> reader_;
+  std::mutex mutex_;  // of all below; held while a callback runs
+  std::function<void(const T&)> callback_;
+  T sample_;
+  bool open_ = false;
+};
+
+}  // namespace
+
+Node::Node(const NodeSettings& settings) : impl_(std::make_shared<Impl>(settings)) {}
+
+Node::~Node() { on_peer({}); }
+
+std::vector<std::string> Node::topics_seen() const {
+  const std::lock_guard<std::mutex> lock(impl_->peers_mutex);
+  std::set<std::string> topics;
+  for (const auto& writer : impl_->writers) topics.insert(writer.second);
+  return {topics.begin(), topics.end()};
+}
+
+void Node::on_peer(std::function<void(const PeerEvent&)> callback) {
+  const std::lock_guard<std::mutex> lock(impl_->peers_mutex);
+  impl_->peer_callback = std::move(callback);
+  if (!impl_->peer_callback) return;
+  for (const auto& peer : impl_->peers) impl_->peer_callback({peer.second, true, false});
+}
+
+template <class T>
+Publisher<T> Node::publish(const Topic<T>& topic, std::uint32_t strength) {
+  return Publisher<T>(std::make_unique<DdsWriter<Impl, T>>(impl_, topic, strength));
+}
+
+template <class T>
+Subscription Node::subscribe(const Topic<T>& topic, std::function<void(const T&)> callback,
+                             Delivery delivery) {
+  return Subscription(std::make_unique<DdsReader<Impl, T>>(impl_, topic, std::move(callback), delivery));
+}
+
+#define SWIFTLET_INSTANTIATE(Name)                                                                      \
+  template Publisher<msg::Name> Node::publish(const Topic<msg::Name>&, std::uint32_t);                  \
+  template Subscription Node::subscribe(const Topic<msg::Name>&, std::function<void(const msg::Name&)>, \
+                                        Delivery);
+SWIFTLET_FOR_EACH_MESSAGE(SWIFTLET_INSTANTIATE)
+#undef SWIFTLET_INSTANTIATE
+
+}  // namespace swiftlet::comms

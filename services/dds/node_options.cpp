@@ -1,0 +1,19 @@
+#include "swiftlet/services/dds/node_options.hpp"
+
+namespace swiftlet::comms {
+
+void add_node_options(runtime::CommandLine app, NodeSettings& settings) {
+  app.add_option("--domain", settings.domain, "DDS domain")
+      .environment("ROS_DOMAIN_ID")
+      .range(0, 232)
+      .show_default();
+  app.add_option("--vehicle-name", settings.vehicle, "Namespace of the topics").show_default();
+  app.add_choice("--transport", settings.transport,
+                 {{"udp", Transport::kUdp}, {"shm", Transport::kSharedMemory}},
+                 "udp, or shm: shared memory between processes of this host")
+      .show_default("udp");
+  app.add_flag("--localhost-only", settings.localhost_only,
+               "Use the loopback interface only, without multicast");
+}
+
+}  // namespace swiftlet::comms

@@ -1,0 +1,86 @@
+#include "swiftlet/services/dds/participant_qos.hpp"
+
+#include <memory>
+
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+
+namespace swiftlet::comms {
+namespace {
+
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+using eprosima::fastdds::rtps::SharedMemTransportDescriptor;
+using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
+using eprosima::fastrtps::Duration_t;
+
+constexpr const char* kLoopback = "127.0.0.1";
+constexpr const char* kVehicleKey = "vehicle=";
+constexpr std::uint32_t kSegmentBytes = 1 << 20;  // of shared memory: seven missions of the greatest length
+
+Duration_t duration(std::chrono::milliseconds time) {
+  return {static_cast<std::int32_t>(time.count() / 1000),
+          static_cast<std::uint32_t>(time.count() % 1000 * 1'000'000)};
+}
+
+rtps::Locator_t loopback_locator(std::uint32_t port) {
+  rtps::Locator_t locator;
+  locator.kind = LOCATOR_KIND_UDPv4;
+  rtps::IPLocator::setIPv4(locator, kLoopback);
+  locator.port = port;
+  return locator;
+}
+
+std::vector<rtps::octet> user_data(const std::string& vehicle) {
+  const std::string text =
+      "enclave=/;" + std::string(kVehicleKey) + vehicle + ";";  // ROS 2 looks for the enclave
+  return {text.begin(), text.end()};
+}
+
+}  // namespace
+
+dds::DomainParticipantQos participant_qos(const NodeSettings& settings) {
+  dds::DomainParticipantQos qos;
+  qos.name(settings.name);
+  qos.user_data().data_vec(user_data(settings.vehicle));
+
+  auto& builtin = qos.wire_protocol().builtin;
+  builtin.discovery_config.leaseDuration = duration(kLivelinessLease);
+  builtin.discovery_config.leaseDuration_announcementperiod = duration(settings.announcement_period);
+  builtin.discovery_config.initial_announcements.count = kFirstAnnouncements;
+  builtin.discovery_config.initial_announcements.period = duration(kFirstAnnouncementPeriod);
+
+  const auto udp = std::make_shared<UDPv4TransportDescriptor>();
+  udp->non_blocking_send = true;  // a full socket buffer loses a sample rather than hold the sender up
+  if (settings.localhost_only) {
+    udp->interfaceWhiteList = {kLoopback};
+    udp->maxInitialPeersRange = kMaxLocalProcesses;
+    // The first of the domain's ports that is free, whatever number the middleware gives the participant;
+    // none for multicast. Of the peers (port 0), the middleware tries as many ports as maxInitialPeersRange.
+    const auto first_port =
+        qos.wire_protocol().port.getUnicastPort(static_cast<std::uint32_t>(settings.domain), 0);
+    builtin.metatrafficUnicastLocatorList.push_back(loopback_locator(first_port));
+    builtin.initialPeersList.push_back(loopback_locator(0));
+  }
+  qos.transport().use_builtin_transports = false;
+  qos.transport().user_transports.push_back(udp);
+
+  if (settings.transport == Transport::kSharedMemory) {
+    const auto shared_memory = std::make_shared<SharedMemTransportDescriptor>();
+    shared_memory->segment_size(kSegmentBytes);
+    qos.transport().user_transports.push_back(shared_memory);
+  }
+  return qos;
+}
+
+std::string vehicle_of(const std::vector<rtps::octet>& user_data) {
+  const std::string text(user_data.begin(), user_data.end());
+  const std::string key(kVehicleKey);
+  const auto begin = text.find(key);
+  if (begin == std::string::npos) return {};
+  const auto end = text.find(';', begin);
+  return text.substr(begin + key.size(), end == std::string::npos ? end : end - begin - key.size());
+}
+
+}  // namespace swiftlet::comms

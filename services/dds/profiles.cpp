@@ -1,0 +1,87 @@
+#include "swiftlet/services/dds/profiles.hpp"
+
+namespace swiftlet::comms {
+
+bool is_kept(Qos profile) { return profile == Qos::kState || profile == Qos::kDocument; }
+
+namespace {
+
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+using eprosima::fastrtps::Duration_t;
+
+Duration_t duration(std::chrono::milliseconds time) {
+  return {static_cast<std::int32_t>(time.count() / 1000),
+          static_cast<std::uint32_t>(time.count() % 1000 * 1'000'000)};
+}
+
+bool is_stream(Qos profile) { return profile == Qos::kStream || profile == Qos::kOwnedStream; }
+bool is_reliable(Qos profile) {
+  return profile == Qos::kState || profile == Qos::kDocument || profile == Qos::kRequest;
+}
+bool is_long(Qos profile) { return profile == Qos::kDocument || profile == Qos::kRequest; }
+
+// What writer and reader state alike, so that they match.
+template <class EndpointQos>
+void set_common(EndpointQos& qos, Qos profile, int deadline_ms, Transport transport) {
+  qos.reliability().kind =
+      is_reliable(profile) ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
+  qos.reliability().max_blocking_time = duration(kReliableWriteTimeout);
+  qos.durability().kind =
+      is_kept(profile) ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
+  if (deadline_ms > 0) qos.deadline().period = duration(std::chrono::milliseconds(deadline_ms));
+  if (profile == Qos::kOwnedStream) qos.ownership().kind = dds::EXCLUSIVE_OWNERSHIP_QOS;
+
+  auto& limits = qos.resource_limits();
+  limits.max_instances = 1;
+  // A mission can be 3000 times as long as a command: memory is taken as it is needed, and kept.
+  qos.endpoint().history_memory_policy =
+      is_long(profile) ? rtps::DYNAMIC_REUSABLE_MEMORY_MODE : rtps::PREALLOCATED_MEMORY_MODE;
+  if (profile == Qos::kRequest) {
+    qos.history().kind = dds::KEEP_ALL_HISTORY_QOS;
+    limits.max_samples = kMaxPendingRequests;
+    limits.max_samples_per_instance = kMaxPendingRequests;
+    limits.allocated_samples = 1;
+  } else {
+    // One sample more than the last one may be in hand while the next arrives; the pool never grows.
+    qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
+    qos.history().depth = 1;
+    limits.max_samples = 2;
+    limits.max_samples_per_instance = 1;
+    limits.allocated_samples = 2;
+    limits.extra_samples = 2;
+  }
+
+  if (transport == Transport::kDataSharing && is_stream(profile)) {
+    qos.data_sharing().automatic();
+  } else {
+    qos.data_sharing().off();
+  }
+}
+
+}  // namespace
+
+dds::DataWriterQos writer_qos(Qos profile, int deadline_ms, std::uint32_t strength, Transport transport) {
+  dds::DataWriterQos qos;
+  set_common(qos, profile, deadline_ms, transport);
+  if (profile == Qos::kOwnedStream) qos.ownership_strength().value = strength;
+  // What may be long leaves in fragments, from a thread of the middleware. All else leaves from the caller's.
+  qos.publish_mode().kind = is_long(profile) ? dds::ASYNCHRONOUS_PUBLISH_MODE : dds::SYNCHRONOUS_PUBLISH_MODE;
+  // A lost fragment is asked for again after one heartbeat.
+  if (is_reliable(profile)) {
+    qos.reliable_writer_qos().times.heartbeatPeriod = duration(std::chrono::milliseconds(100));
+  }
+  return qos;
+}
+
+dds::DataReaderQos reader_qos(Qos profile, int deadline_ms, Transport transport, Delivery delivery) {
+  dds::DataReaderQos qos;
+  set_common(qos, profile, deadline_ms, transport);
+  // Not over shared memory: there two processes can be given the same port, and one hears nothing.
+  if (delivery == Delivery::kOwnThread && transport != Transport::kSharedMemory) {
+    qos.properties().properties().emplace_back("fastdds.unique_network_flows", "");
+  }
+  return qos;
+}
+
+}  // namespace swiftlet::comms

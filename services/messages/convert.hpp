@@ -1,0 +1,80 @@
+// Messages <-> the plain structs of plant and control. What comes in is checked: numbers finite, counts and
+// enumerations in range, quaternions of unit length. Whether a request can be flown is not judged here.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "swiftlet/control/estimation/estimator.hpp"
+#include "swiftlet/control/flight_controller.hpp"
+#include "swiftlet/control/flight_state.hpp"
+#include "swiftlet/control/types/mission.hpp"
+#include "swiftlet/control/types/polynomial.hpp"
+#include "swiftlet/control/types/request.hpp"
+#include "swiftlet/plant/model/samples.hpp"
+#include "swiftlet/services/messages/topics.hpp"
+
+namespace swiftlet::comms {
+
+// What is wrong with a message: a sentence with field, value and limit, or nothing. Without heap.
+struct Fault {
+  char text[160] = {};
+  explicit operator bool() const { return text[0] != '\0'; }
+};
+
+// A request, by who asked and the number that it was given there.
+struct RequestKey {
+  std::uint64_t client = 0;
+  std::uint64_t id = 0;
+};
+
+// controller_state: what a controller says of itself to the others.
+struct ControllerReport {
+  std::int64_t stamp_ns = 0;
+  std::uint64_t sequence = 0;
+  std::uint64_t controller = 0;
+  int strength = 0;
+  std::uint32_t term = 0;
+  bool active = false;
+  bool ready = false;  // it can go on with the flight
+  // Of an active one.
+  control::FlightState flight;
+  int rotor_count = 0;
+  std::array<RequestKey, 4> accepted{};  // the newest requests, id 0: none
+};
+
+// Into out, unless there is a fault: then out is not touched. Those of samples do not allocate.
+Fault from_message(const msg::Imu& in, plant::ImuSample& out);
+plant::ObeyedCommand obeyed_command(const msg::Imu& in);
+Fault from_message(const msg::MocapPose& in,
+                   plant::PoseSample& out);  // of an untracked one, the pose is not looked at
+Fault from_message(const msg::Battery& in, plant::BatterySample& out);
+Fault from_message(const msg::RotorSpeeds& in, plant::RotorSpeedSample& out);
+Fault from_message(const msg::ActuatorCommand& in, plant::ActuatorCommand& out);
+Fault from_message(const msg::GroundTruth& in, plant::TruthSample& out);
+Fault from_message(const msg::Setpoint& in, control::Setpoint& out);
+Fault from_message(const msg::GroundLink& in, control::GroundSign& out);
+Fault from_message(const msg::Command& in, control::Request& out);
+Fault from_message(const msg::Mission& in, control::Mission& out);
+Fault from_message(const msg::Trajectory& in, control::Trajectory& out);
+Fault from_message(const msg::ControllerState& in, ControllerReport& out);
+
+msg::Imu to_message(const plant::ImuSample& in);
+void tell(const plant::ObeyedCommand& obeyed, msg::Imu& in);  // in an IMU sample
+msg::MocapPose to_message(const plant::PoseSample& in);
+msg::Battery to_message(const plant::BatterySample& in);
+msg::RotorSpeeds to_message(const plant::RotorSpeedSample& in);
+msg::ActuatorCommand to_message(const plant::ActuatorCommand& in);
+msg::GroundTruth to_message(const plant::TruthSample& in);
+msg::Setpoint to_message(const control::Setpoint& in);
+msg::ControllerState to_message(const ControllerReport& in);
+msg::Estimate to_message(const control::Estimate& in, const control::ErrorState& standard_deviation,
+                         double pose_age_s);  // sequence_number is left to the sender
+msg::Reference to_message(const control::Reference& in, const control::AttitudeSetpoint& setpoint,
+                          control::Mode mode);
+// client and id are left to the sender; of a command, kind is not that of a mission or trajectory.
+msg::Command to_message(const control::Request& in);
+msg::Mission to_message(const control::Mission& in);
+msg::Trajectory to_message(const control::Trajectory& in);
+
+}  // namespace swiftlet::comms

@@ -1,0 +1,180 @@
+#include "swiftlet/services/messages/convert.hpp"
+#include "swiftlet/services/messages/wire.hpp"
+
+namespace swiftlet::comms {
+namespace {
+
+using namespace wire;
+
+constexpr std::uint64_t kMaxStrength = 1000;
+constexpr std::size_t kReplicatedStateBytes = 952;
+
+}  // namespace
+
+Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
+  using namespace msg;
+  Check check;
+  check.time(in.stamp_ns())
+      .at_most("strength", in.strength(), kMaxStrength)
+      .at_most("role", in.role(), ControllerState_Constants::ACTIVE)
+      .at_most("mode", in.mode(), ControlStatus_Constants::MODE_STOPPED)
+      .at_most("reason", in.reason(), control::kReasonCount - 1)
+      .at_most("phase", in.phase(), static_cast<std::uint64_t>(control::Phase::kSink))
+      .at_least("path_duration_s", in.path_duration_s(), 0.0)
+      .finite("path_x", in.path_x())
+      .finite("path_y", in.path_y())
+      .finite("path_z", in.path_z())
+      .finite("path_yaw", in.path_yaw())
+      .at_least("clock_change_s", in.clock_change_s(), 0.0)
+      .finite("clock_rate", in.clock_rate())
+      .finite("climb_to_z_ned", in.climb_to_z_ned())
+      .finite("climb_speed", in.climb_speed())
+      .finite("ground_z_ned", in.ground_z_ned())
+      .at_most("mission_state", in.mission_state(), MissionStatus_Constants::PAUSED)
+      .at_most("item_count", in.item_count(), control::kMaxMissionItems)
+      .at_most("item_index", in.item_index(), in.item_count())
+      .at_most("detour", in.detour(), static_cast<std::uint64_t>(control::Detour::kReturning))
+      .at_least("left_duration_s", in.left_duration_s(), 0.0)
+      .finite("left_x", in.left_x())
+      .finite("left_y", in.left_y())
+      .finite("left_z", in.left_z())
+      .finite("left_yaw", in.left_yaw())
+      .at_most("next_segment", in.next_segment(), control::kMaxTrajectorySegments)
+      .at_most("setpoint_kind", in.setpoint_kind(), Setpoint_Constants::BODY_RATES)
+      .finite("setpoint_attitude", in.setpoint_attitude())
+      .finite("setpoint_body_rates", in.setpoint_body_rates())
+      .finite("setpoint_thrust", in.setpoint_thrust())
+      .finite("position_integral_ned", in.position_integral_ned())
+      .at_most("rotor_state", in.rotor_state(), ActuatorCommand_Constants::ROTORS_RUNNING)
+      .per_rotor("throttle", in.rotor_count(), in.throttle(), 0.0, 1.0);
+  if (!check.ok()) return check.fault();
+  out.stamp_ns = in.stamp_ns();
+  out.sequence = in.sequence_number();
+  out.controller = in.controller();
+  out.strength = static_cast<int>(in.strength());
+  out.term = in.term();
+  out.active = in.role() == ControllerState_Constants::ACTIVE;
+  out.ready = in.ready();
+
+  control::SupervisorState& state = out.flight.supervisor;
+  state.mode = static_cast<control::Mode>(in.mode());
+  state.reason = static_cast<control::Reason>(in.reason());
+  state.guidance.phase = static_cast<control::Phase>(in.phase());
+  state.guidance.airborne = in.airborne();
+  state.now_ns = in.stamp_ns();
+  state.mode_since_ns = in.mode_since_ns();
+  state.guidance.phase_since_ns = in.phase_since_ns();
+  state.guidance.path.moving = in.path_moving();
+  state.guidance.path.segment = {in.path_duration_s(), in.path_x(), in.path_y(), in.path_z(), in.path_yaw()};
+  state.guidance.path.start_ns = in.path_start_ns();
+  state.guidance.path.end_ns = in.path_end_ns();
+  state.guidance.path.clock = {in.clock_runs(), in.clock_change_ns(), in.clock_from_ns(), in.clock_change_s(),
+                               in.clock_rate()};
+  state.guidance.climb_to_z_ned = in.climb_to_z_ned();
+  state.guidance.climb_speed = in.climb_speed();
+  state.guidance.ground_z_ned = in.ground_z_ned();
+  state.guidance.mission = {in.mission_id(), static_cast<control::MissionState>(in.mission_state()),
+                            static_cast<int>(in.item_index()), static_cast<int>(in.item_count())};
+  state.guidance.item_end_ns = in.item_end_ns();
+  state.guidance.detour = static_cast<control::Detour>(in.detour());
+  state.guidance.left = {{in.left_duration_s(), in.left_x(), in.left_y(), in.left_z(), in.left_yaw()},
+                         in.left_start_ns(),
+                         in.left_end_ns(),
+                         in.left_at_ns()};
+  state.guidance.trajectory_id = in.trajectory_id();
+  state.guidance.next_segment = in.next_segment();
+  state.guidance.setpoint_ns = in.setpoint_ns();
+  state.guidance.setpoint_kind = static_cast<control::SetpointKind>(in.setpoint_kind());
+  state.guidance.direct = {in.setpoint_attitude(), in.setpoint_body_rates(), in.setpoint_thrust()};
+  state.contact_since_ns = in.contact_since_ns();
+  state.low_battery_since_ns = in.low_battery_since_ns();
+  state.critical_battery_since_ns = in.critical_battery_since_ns();
+  state.land_on_return = in.land_on_return();
+  for (std::size_t i = 0; i < state.ground_links.size(); ++i)
+    state.ground_links[i] = {in.ground_link_clients()[i], in.ground_link_heard_ns()[i]};
+  out.flight.position_integral = vector(in.position_integral_ned());
+  out.flight.rotor_state = static_cast<plant::RotorState>(in.rotor_state());
+  out.rotor_count = in.rotor_count();
+  copy_rotors(out.rotor_count, in.throttle(), out.flight.throttle);
+  for (std::size_t i = 0; i < out.accepted.size(); ++i)
+    out.accepted[i] = {in.accepted_clients()[i], in.accepted_ids()[i]};
+  return {};
+}
+
+// Whoever adds to the state adds to the message: else a standby would go on without it.
+static_assert(sizeof(control::SupervisorState) == kReplicatedStateBytes,
+              "controller_state does not carry all of SupervisorState");
+
+msg::ControllerState to_message(const ControllerReport& in) {
+  const control::SupervisorState& state = in.flight.supervisor;
+  msg::ControllerState out;
+  out.stamp_ns(in.stamp_ns);
+  out.sequence_number(in.sequence);
+  out.controller(in.controller);
+  out.strength(static_cast<std::uint32_t>(in.strength));
+  out.term(in.term);
+  out.role(in.active ? msg::ControllerState_Constants::ACTIVE : msg::ControllerState_Constants::STANDBY);
+  out.ready(in.ready);
+  out.mode(static_cast<std::uint8_t>(state.mode));
+  out.reason(static_cast<std::uint8_t>(state.reason));
+  out.phase(static_cast<std::uint8_t>(state.guidance.phase));
+  out.airborne(state.guidance.airborne);
+  out.mode_since_ns(state.mode_since_ns);
+  out.phase_since_ns(state.guidance.phase_since_ns);
+  out.path_moving(state.guidance.path.moving);
+  out.path_start_ns(state.guidance.path.start_ns);
+  out.path_end_ns(state.guidance.path.end_ns);
+  out.path_duration_s(state.guidance.path.segment.duration_s);
+  out.path_x(state.guidance.path.segment.x);
+  out.path_y(state.guidance.path.segment.y);
+  out.path_z(state.guidance.path.segment.z);
+  out.path_yaw(state.guidance.path.segment.yaw);
+  out.clock_runs(state.guidance.path.clock.runs);
+  out.clock_change_ns(state.guidance.path.clock.change_ns);
+  out.clock_from_ns(state.guidance.path.clock.from_ns);
+  out.clock_change_s(state.guidance.path.clock.change_s);
+  out.clock_rate(state.guidance.path.clock.rate);
+  out.climb_to_z_ned(state.guidance.climb_to_z_ned);
+  out.climb_speed(state.guidance.climb_speed);
+  out.ground_z_ned(state.guidance.ground_z_ned);
+  out.mission_id(state.guidance.mission.id);
+  out.mission_state(static_cast<std::uint8_t>(state.guidance.mission.state));
+  out.item_index(static_cast<std::uint32_t>(state.guidance.mission.item_index));
+  out.item_count(static_cast<std::uint32_t>(state.guidance.mission.item_count));
+  out.item_end_ns(state.guidance.item_end_ns);
+  out.detour(static_cast<std::uint8_t>(state.guidance.detour));
+  out.left_start_ns(state.guidance.left.start_ns);
+  out.left_end_ns(state.guidance.left.end_ns);
+  out.left_at_ns(state.guidance.left.at_ns);
+  out.left_duration_s(state.guidance.left.segment.duration_s);
+  out.left_x(state.guidance.left.segment.x);
+  out.left_y(state.guidance.left.segment.y);
+  out.left_z(state.guidance.left.segment.z);
+  out.left_yaw(state.guidance.left.segment.yaw);
+  out.trajectory_id(state.guidance.trajectory_id);
+  out.next_segment(state.guidance.next_segment);
+  out.setpoint_ns(state.guidance.setpoint_ns);
+  out.setpoint_kind(static_cast<std::uint8_t>(state.guidance.setpoint_kind));
+  out.setpoint_attitude(state.guidance.direct.q_ned_from_frd);
+  out.setpoint_body_rates(state.guidance.direct.body_rates_frd);
+  out.setpoint_thrust(state.guidance.direct.thrust);
+  out.contact_since_ns(state.contact_since_ns);
+  out.low_battery_since_ns(state.low_battery_since_ns);
+  out.critical_battery_since_ns(state.critical_battery_since_ns);
+  out.land_on_return(state.land_on_return);
+  for (std::size_t i = 0; i < state.ground_links.size(); ++i) {
+    out.ground_link_clients()[i] = state.ground_links[i].client;
+    out.ground_link_heard_ns()[i] = state.ground_links[i].heard_ns;
+  }
+  out.position_integral_ned(array(in.flight.position_integral));
+  out.rotor_state(static_cast<std::uint8_t>(in.flight.rotor_state));
+  out.rotor_count(static_cast<std::uint8_t>(in.rotor_count));
+  out.throttle(in.flight.throttle);
+  for (std::size_t i = 0; i < in.accepted.size(); ++i) {
+    out.accepted_clients()[i] = in.accepted[i].client;
+    out.accepted_ids()[i] = in.accepted[i].id;
+  }
+  return out;
+}
+
+}  // namespace swiftlet::comms

@@ -1,0 +1,63 @@
+// The topics of a vehicle: name, type and QoS profile of each, as in idl/README.md. The wire name is
+// rt/<vehicle>/<name>.
+#pragma once
+
+#include "swiftlet_msgs/msg/ActuatorCommand.h"
+#include "swiftlet_msgs/msg/Battery.h"
+#include "swiftlet_msgs/msg/Command.h"
+#include "swiftlet_msgs/msg/CommandAck.h"
+#include "swiftlet_msgs/msg/ControlStatus.h"
+#include "swiftlet_msgs/msg/ControllerState.h"
+#include "swiftlet_msgs/msg/Estimate.h"
+#include "swiftlet_msgs/msg/GroundLink.h"
+#include "swiftlet_msgs/msg/GroundTruth.h"
+#include "swiftlet_msgs/msg/Imu.h"
+#include "swiftlet_msgs/msg/Mission.h"
+#include "swiftlet_msgs/msg/MissionStatus.h"
+#include "swiftlet_msgs/msg/MocapPose.h"
+#include "swiftlet_msgs/msg/Reference.h"
+#include "swiftlet_msgs/msg/RotorSpeeds.h"
+#include "swiftlet_msgs/msg/Setpoint.h"
+#include "swiftlet_msgs/msg/SimulationClock.h"
+#include "swiftlet_msgs/msg/Trajectory.h"
+#include "swiftlet_msgs/msg/VehicleInfo.h"
+
+#include "swiftlet/services/messages/qos.hpp"
+
+namespace swiftlet::comms {
+
+namespace msg = swiftlet_msgs::msg;
+
+template <class T>
+struct Topic {
+  using Message = T;
+  const char* name;
+  Qos qos;
+  int deadline_ms = 0;  // of owned streams: silence after which the next strongest writer is heard
+};
+
+namespace topics {
+inline constexpr Topic<msg::Imu> kImu{"imu", Qos::kStream};
+inline constexpr Topic<msg::ActuatorCommand> kActuatorCommand{"actuator_command", Qos::kOwnedStream, 50};
+inline constexpr Topic<msg::ControllerState> kControllerState{"controller_state", Qos::kStream};
+inline constexpr Topic<msg::MocapPose> kMocapPose{"mocap_pose", Qos::kStream};
+inline constexpr Topic<msg::RotorSpeeds> kRotorSpeeds{"rotor_speeds", Qos::kStream};
+inline constexpr Topic<msg::Setpoint> kSetpoint{"setpoint", Qos::kStream};
+inline constexpr Topic<msg::Battery> kBattery{"battery", Qos::kTelemetry};
+inline constexpr Topic<msg::Estimate> kEstimate{"estimate", Qos::kTelemetry};
+inline constexpr Topic<msg::Reference> kReference{"reference", Qos::kTelemetry};
+inline constexpr Topic<msg::GroundTruth> kGroundTruth{"ground_truth", Qos::kTelemetry};
+inline constexpr Topic<msg::ControlStatus> kControlStatus{"control_status", Qos::kState};
+inline constexpr Topic<msg::MissionStatus> kMissionStatus{"mission_status", Qos::kState};
+inline constexpr Topic<msg::VehicleInfo> kVehicleInfo{"vehicle_info", Qos::kState};
+inline constexpr Topic<msg::GroundLink> kGroundLink{"ground_link", Qos::kState};
+inline constexpr Topic<msg::SimulationClock> kSimulationClock{"simulation_clock", Qos::kState};
+inline constexpr Topic<msg::Command> kCommand{"command", Qos::kRequest};
+inline constexpr Topic<msg::Mission> kMission{"mission", Qos::kRequest};
+inline constexpr Topic<msg::Trajectory> kTrajectory{"trajectory", Qos::kRequest};
+inline constexpr Topic<msg::Mission> kFlownMission{"flown_mission", Qos::kDocument};
+inline constexpr Topic<msg::Trajectory> kFlownTrajectory{"flown_trajectory", Qos::kDocument};
+inline constexpr Topic<msg::CommandAck> kCommandAck{"command_ack", Qos::kRequest};
+}  // namespace topics
+
+}  // namespace swiftlet::comms

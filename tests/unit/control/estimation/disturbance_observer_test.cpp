@@ -1,0 +1,73 @@
+#include "swiftlet/control/estimation/disturbance_observer.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/math/euler.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
+
+namespace swiftlet::control {
+namespace {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+constexpr double kStep_s = 0.002;
+constexpr double kLift = plant::kGravity;
+const Vector3d kWind(0.8, -0.5, 0.3);  // m/s^2
+const Quaterniond kTilted = quaternion_from_euler({0.2, -0.3, 2.0});
+
+// What an accelerometer feels under this lift and that push.
+Vector3d specific_force(const Quaterniond& q, double lift, const Vector3d& push_ned) {
+  return q.conjugate() * push_ned - lift * Vector3d::UnitZ();
+}
+
+TEST(DisturbanceObserver, FindsASteadyPushAtAnyAttitude) {
+  DisturbanceObserver observer({10.0, 3.0});
+  for (int i = 0; i < 1000; ++i)
+    observer.step(kStep_s, specific_force(kTilted, kLift, kWind), kTilted, kLift);
+  EXPECT_LT((observer.acceleration_ned() - kWind).norm(), 1e-6);
+}
+
+TEST(DisturbanceObserver, FollowsWithItsBandwidth) {
+  constexpr double kBandwidth = 10.0;
+  DisturbanceObserver observer({kBandwidth, 3.0});
+  const int steps = static_cast<int>(std::lround(1.0 / kBandwidth / kStep_s));
+  for (int i = 0; i < steps; ++i)
+    observer.step(kStep_s, specific_force(kTilted, kLift, kWind), kTilted, kLift);
+  EXPECT_NEAR(observer.acceleration_ned().norm() / kWind.norm(), 1.0 - std::exp(-1.0), 0.02);
+}
+
+TEST(DisturbanceObserver, TooMuchMassIsAPushDown) {
+  DisturbanceObserver observer({10.0, 3.0});
+  const double felt = kLift / 1.1;  // the same thrust on 10 % more mass
+  for (int i = 0; i < 1000; ++i) observer.step(kStep_s, {0.0, 0.0, -felt}, Quaterniond::Identity(), kLift);
+  EXPECT_LT((observer.acceleration_ned() - Vector3d(0.0, 0.0, kLift - felt)).norm(), 1e-6);
+}
+
+TEST(DisturbanceObserver, StaysWithinItsLimitAndTakesNoNonsense) {
+  DisturbanceObserver observer({10.0, 0.5});
+  for (int i = 0; i < 1000; ++i)
+    observer.step(kStep_s, specific_force(kTilted, kLift, kWind), kTilted, kLift);
+  EXPECT_NEAR(observer.acceleration_ned().norm(), 0.5, 1e-12);
+  EXPECT_LT(observer.acceleration_ned().cross(kWind).norm(), 1e-6) << "the direction is kept";
+
+  const Vector3d before = observer.acceleration_ned();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  observer.step(kStep_s, {nan, 0.0, 0.0}, kTilted, kLift);
+  observer.step(kStep_s, {0.0, 0.0, -kLift}, kTilted, nan);
+  EXPECT_EQ(observer.acceleration_ned(), before);
+  observer.reset();
+  EXPECT_EQ(observer.acceleration_ned(), Vector3d::Zero());
+}
+
+TEST(DisturbanceObserver, WithoutBandwidthSeesNothing) {
+  DisturbanceObserver observer({0.0, 3.0});
+  for (int i = 0; i < 100; ++i) observer.step(kStep_s, specific_force(kTilted, kLift, kWind), kTilted, kLift);
+  EXPECT_EQ(observer.acceleration_ned(), Vector3d::Zero());
+}
+
+}  // namespace
+}  // namespace swiftlet::control

@@ -1,0 +1,403 @@
+// Poses that are wrong: what is refused, how it is called, and when the estimate gives in.
+#include <cmath>
+#include <cstdint>
+#include <functional>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/control/estimation/estimator.hpp"
+#include "tests/unit/control/estimation/estimator_motion.hpp"
+
+namespace swiftlet::control {
+namespace {
+
+using Eigen::AngleAxisd;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+using plant::PoseSample;
+using plant::RotorState;
+
+// Poses at 100 Hz, 10 ms late, from a vehicle that swings about or stands.
+class EstimatorFaults : public testing::Test {
+ protected:
+  using Change = std::function<void(PoseSample&)>;
+
+  // What the estimator says of the last pose.
+  PoseFault fly(
+      double duration_s, const Change& change = [](PoseSample&) {},
+      RotorState rotors = RotorState::kRunning) {
+    const std::int64_t end = time_ns_ + static_cast<std::int64_t>(duration_s * 1e9);
+    while (time_ns_ < end) {
+      time_ns_ += kStep_ns;
+      plant::ImuSample imu = motion_.imu(time_ns_);
+      imu.specific_force_frd = hidden_turn_.conjugate() * imu.specific_force_frd + imu_error_;
+      imu.body_rates_frd = hidden_turn_.conjugate() * imu.body_rates_frd;
+      EXPECT_TRUE(estimator_.predict(imu));
+      if (time_ns_ % kFrame_ns != 0 || time_ns_ < 2 * kFrame_ns) continue;
+      PoseSample pose = pose_now();
+      change(pose);
+      estimator_.correct(pose, rotors);
+    }
+    return estimator_.estimate().pose_fault;
+  }
+  PoseSample pose_now() {
+    PoseSample pose = motion_.pose(time_ns_ - kFrame_ns);
+    pose.q_ned_from_frd = pose.q_ned_from_frd * hidden_turn_;
+    return pose;
+  }
+  double position_error() const { return motion_.error(estimator_.estimate()).head<3>().norm(); }
+  double velocity_error() const { return motion_.error(estimator_.estimate()).segment<3>(3).norm(); }
+  double accelerometer_bias_error() const { return motion_.error(estimator_.estimate()).tail<3>().norm(); }
+  double angle_error() const {
+    const double t = static_cast<double>(estimator_.estimate().stamp_ns) * 1e-9;
+    return (Motion::attitude(t) * hidden_turn_).angularDistance(estimator_.estimate().q_ned_from_frd);
+  }
+
+  EstimatorSettings settings_;
+  Estimator estimator_{settings_};
+  NoisyMotion motion_{settings_, 1};
+  Vector3d imu_error_ = Vector3d::Zero();              // m/s^2
+  Quaterniond hidden_turn_ = Quaterniond::Identity();  // of the body, that no IMU sample has seen
+  std::int64_t time_ns_ = 0;
+};
+
+TEST_F(EstimatorFaults, EachGoodPoseIsUsed) {
+  EXPECT_EQ(fly(20.0), PoseFault::kNone);
+  EXPECT_EQ(estimator_.estimate().poses_refused, 0U);
+  EXPECT_EQ(estimator_.estimate().poses_accepted, 1999U);
+  EXPECT_EQ(estimator_.estimate().resets, 0U);
+}
+
+TEST_F(EstimatorFaults, SingleOutliersAreRefusedAndCostNothing) {
+  fly(2.0);
+  for (int i = 0; i < 50; ++i) {
+    const double angle = 2.4 * i;
+    const Vector3d away(std::cos(angle), std::sin(angle), 0.3);
+    EXPECT_EQ(fly(0.01, [&](PoseSample& pose) { pose.position_ned += (0.06 + 0.05 * i) * away; }),
+              PoseFault::kOutlier);
+    EXPECT_EQ(fly(0.03), PoseFault::kNone);
+    EXPECT_LT(position_error(), 5e-4);
+  }
+  EXPECT_EQ(estimator_.estimate().poses_refused, 50U);
+}
+
+// Below what counts as an outlier, a pose moves the estimate by no more than the gate lets it.
+TEST_F(EstimatorFaults, ASmallJumpMovesTheEstimateLittle) {
+  fly(2.0);
+  EXPECT_EQ(fly(0.01, [](PoseSample& pose) { pose.position_ned.x() += 0.04; }), PoseFault::kNone);
+  EXPECT_LT(position_error(), 1e-3);
+  EXPECT_EQ(fly(1.0), PoseFault::kNone);
+  EXPECT_LT(position_error(), 5e-4);
+}
+
+TEST_F(EstimatorFaults, ScatteredOutliersNeverMoveIt) {
+  fly(2.0);
+  int i = 0;
+  fly(0.4, [&](PoseSample& pose) { pose.position_ned.x() += ++i % 2 == 0 ? 1.0 : -0.5; });
+  EXPECT_EQ(estimator_.estimate().resets, 0U);
+  EXPECT_LT(position_error(), 0.02);
+}
+
+TEST_F(EstimatorFaults, AJumpThatPersistsIsNotBelievedInFlight) {
+  fly(3.0);
+  const Change jumped = [](PoseSample& pose) { pose.position_ned += Vector3d(1.0, -0.4, 0.2); };
+  EXPECT_EQ(fly(1.0, jumped), PoseFault::kOutlier);
+  EXPECT_LT(position_error(), 0.2) << "it goes by the IMU alone";
+  EXPECT_EQ(fly(0.5), PoseFault::kNone);
+  EXPECT_LT(position_error(), 5e-3);
+  EXPECT_EQ(estimator_.estimate().resets, 0U);
+}
+
+// Short of an outlier it is followed, and must not be taken for a motion: the velocity of the dead reckoning
+// that may come next.
+TEST_F(EstimatorFaults, AStepThatStaysLeavesNoVelocityBehind) {
+  fly(3.0);
+  const Change stepped = [](PoseSample& pose) { pose.position_ned.x() += 0.045; };
+  for (const Change& change : {stepped, Change([](PoseSample&) {})}) {
+    EXPECT_EQ(fly(0.1, change), PoseFault::kNone);
+    EXPECT_LT(velocity_error(), 0.05);
+    EXPECT_EQ(fly(1.0, change), PoseFault::kNone);
+    EXPECT_LT(velocity_error(), 0.01);
+    EXPECT_LT(accelerometer_bias_error(), 0.05);
+  }
+  EXPECT_LT(position_error(), 5e-4);
+}
+
+// The gyro knows better: with a wrong tilt, dead reckoning would run off.
+TEST_F(EstimatorFaults, ATurnAtOnceIsNotBelievedInFlight) {
+  fly(3.0);
+  const Change turned = [](PoseSample& pose) {
+    pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(0.08, Vector3d::UnitY());
+  };
+  EXPECT_EQ(fly(0.5, turned), PoseFault::kOutlier);
+  EXPECT_LT(angle_error(), 0.01);
+  EXPECT_EQ(fly(0.5), PoseFault::kNone);
+  EXPECT_LT(angle_error(), 0.005);
+}
+
+// A blow that the accelerometer cannot follow.
+TEST_F(EstimatorFaults, PosesAreFollowedWhereTheImuMisleads) {
+  fly(3.0);
+  imu_error_ = {60.0, 0.0, 0.0};
+  EXPECT_EQ(fly(0.05), PoseFault::kNone);
+  imu_error_.setZero();
+  EXPECT_EQ(fly(0.5), PoseFault::kNone);
+  EXPECT_EQ(estimator_.estimate().resets, 0U);
+  EXPECT_LT(position_error(), 0.005);
+  EXPECT_LT(angle_error(), 0.02);
+}
+
+// The same while some poses were missing: they disagree as no noise does, but go on without a break.
+TEST_F(EstimatorFaults, AnUnbrokenStreamIsBelievedAgainstTheImu) {
+  fly(3.0);
+  imu_error_ = {40.0, 0.0, 0.0};
+  fly(0.05, [](PoseSample& pose) { pose.tracked = false; });
+  imu_error_.setZero();
+  EXPECT_EQ(fly(0.5), PoseFault::kNone);
+  EXPECT_GE(estimator_.estimate().resets, 1U);
+  EXPECT_LT(position_error(), 0.02);
+  EXPECT_LT(angle_error(), 0.02);
+}
+
+// It may have hit the ground meanwhile: what a body could have come to is believed, and nothing farther.
+TEST_F(EstimatorFaults, AfterSilenceOfTheImuPosesInReachAreBelieved) {
+  for (const double off : {0.5, 2.0}) {
+    estimator_ = Estimator(settings_);
+    fly(3.0);
+    time_ns_ += 250'000'000;
+    const PoseFault fault = fly(0.5, [&](PoseSample& pose) { pose.position_ned.x() += off; });
+    const bool believed = off < 1.0;
+    EXPECT_EQ(fault, believed ? PoseFault::kNone : PoseFault::kOutlier) << off;
+    EXPECT_EQ(estimator_.estimate().resets, believed ? 1U : 0U) << off;
+    EXPECT_NEAR(position_error(), believed ? off : 0.0, 0.2);
+  }
+}
+
+// Seen while the IMU was silent, the step tells that what follows is no motion.
+TEST_F(EstimatorFaults, MarkersThatSwapWhileTheImuIsSilentAreNotBelieved) {
+  const Change swap = [](PoseSample& pose) {
+    pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(0.4 * M_PI, Vector3d::UnitZ());
+  };
+  fly(3.0);
+  for (int frame = 1; frame <= 8; ++frame) {
+    time_ns_ += kFrame_ns;
+    PoseSample pose = motion_.pose(time_ns_ - kFrame_ns);
+    if (frame > 6) swap(pose);
+    estimator_.correct(pose);
+  }
+  EXPECT_EQ(fly(0.5, swap), PoseFault::kSwapped);
+  EXPECT_EQ(estimator_.estimate().resets, 0U);
+  EXPECT_LT(angle_error(), 0.1);
+  EXPECT_EQ(fly(0.5), PoseFault::kNone);
+}
+
+// The silence is no excuse: by what it may hide, the turn alone would pass for a motion.
+TEST_F(EstimatorFaults, ATurnOfThePosesInASilenceOfTheImuIsNotBelieved) {
+  const Change turned = [](PoseSample& pose) {
+    pose.position_ned.x() += 0.03;
+    pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(0.2, Vector3d(0.6, 0.8, 0.0));
+  };
+  for (const int last_true_frame : {0, 12, 23}) {
+    estimator_ = Estimator(settings_);
+    hidden_turn_.setIdentity();
+    fly(3.0);
+    hidden_turn_ = AngleAxisd(0.05, Vector3d(0.8, -0.6, 0.0));
+    for (int frame = 1; frame <= 24; ++frame) {
+      time_ns_ += kFrame_ns;
+      PoseSample pose = pose_now();
+      if (frame > last_true_frame) turned(pose);
+      estimator_.correct(pose);
+    }
+    EXPECT_EQ(fly(0.4, turned), PoseFault::kOutlier) << last_true_frame;
+    EXPECT_LT(angle_error(), 0.1) << last_true_frame;
+    // What steps back to where the body can be is believed again, though the IMU has missed a motion.
+    EXPECT_EQ(fly(0.2), PoseFault::kNone) << last_true_frame;
+    EXPECT_EQ(fly(0.5), PoseFault::kNone) << last_true_frame;
+    EXPECT_LT(position_error(), 2e-3) << last_true_frame;
+    EXPECT_LT(angle_error(), 0.005) << last_true_frame;
+  }
+}
+
+// Poses were missing with the IMU's samples, so that no step shows: they contradict the IMU afterwards.
+TEST_F(EstimatorFaults, ATurnThatASilenceHasHiddenIsNotBelieved) {
+  for (const double angle : {0.1, 0.2, 0.4}) {
+    const Change turned = [&](PoseSample& pose) {
+      pose.position_ned.x() += 0.03;
+      pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(angle, Vector3d(0.6, 0.8, 0.0));
+    };
+    estimator_ = Estimator(settings_);
+    hidden_turn_.setIdentity();
+    fly(3.0);
+    hidden_turn_ = AngleAxisd(0.05, Vector3d(0.8, -0.6, 0.0));
+    time_ns_ += 250'000'000;
+    fly(1.0, turned);
+    EXPECT_GT(estimator_.pose_age_s(), 1.0) << angle;
+    EXPECT_LT(angle_error(), 0.1) << angle;
+    EXPECT_EQ(fly(0.2), PoseFault::kNone) << angle;
+    EXPECT_EQ(fly(0.5), PoseFault::kNone) << angle;
+    EXPECT_LT(position_error(), 2e-3) << angle;
+    EXPECT_LT(angle_error(), 0.005) << angle;
+  }
+}
+
+// What the vehicle has really done in the silence is believed as soon as the IMU bears it out.
+TEST_F(EstimatorFaults, AMotionThatASilenceHasHiddenIsBelieved) {
+  fly(3.0);
+  hidden_turn_ = AngleAxisd(0.2, Vector3d(0.6, 0.8, 0.0));
+  time_ns_ += 200'000'000;
+  EXPECT_EQ(fly(0.1), PoseFault::kOutlier) << "on trial";
+  EXPECT_EQ(fly(0.1), PoseFault::kNone);
+  EXPECT_EQ(fly(0.5), PoseFault::kNone);
+  EXPECT_LT(angle_error(), 0.005);
+  EXPECT_LT(position_error(), 2e-3);
+}
+
+TEST_F(EstimatorFaults, SwappedMarkersAreNotBelievedInFlight) {
+  fly(2.0);
+  for (const double angle : {0.5 * M_PI, M_PI}) {
+    EXPECT_EQ(fly(0.5,
+                  [&](PoseSample& pose) {
+                    pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(angle, Vector3d::UnitZ());
+                  }),
+              PoseFault::kSwapped);
+    EXPECT_LT(angle_error(), 0.01);
+    EXPECT_EQ(fly(0.5), PoseFault::kNone);
+  }
+  EXPECT_EQ(estimator_.estimate().resets, 0U);
+}
+
+TEST_F(EstimatorFaults, WithRotorsOffTheyAre) {
+  const Change turned = [](PoseSample& pose) {
+    pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(M_PI, Vector3d::UnitZ());
+  };
+  fly(1.0, turned, RotorState::kOff);
+  EXPECT_GT(angle_error(), 3.0);
+  EXPECT_EQ(fly(
+                0.5, [](PoseSample&) {}, RotorState::kOff),
+            PoseFault::kNone);
+  EXPECT_LT(angle_error(), 0.02);
+  EXPECT_GE(estimator_.estimate().resets, 1U);
+}
+
+// A blow, as of a fall, leaves a speed behind that the vehicle does not have.
+TEST_F(EstimatorFaults, WithRotorsOffAnEstimateThatRunsAwayComesBack) {
+  fly(3.0);
+  imu_error_ = {400.0, -300.0, 200.0};
+  fly(
+      0.02, [](PoseSample& pose) { pose.tracked = false; }, RotorState::kOff);
+  imu_error_.setZero();
+  EXPECT_GT(velocity_error(), 8.0);
+  EXPECT_EQ(fly(
+                0.01,
+                [](PoseSample& pose) {
+                  pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(0.3, Vector3d::UnitX());
+                },
+                RotorState::kOff),
+            PoseFault::kOutlier)
+      << "no stream without a break";
+  EXPECT_EQ(fly(
+                1.0, [](PoseSample&) {}, RotorState::kOff),
+            PoseFault::kNone);
+  EXPECT_LT(velocity_error(), 0.05);
+  EXPECT_LT(position_error(), 2e-3);
+}
+
+TEST_F(EstimatorFaults, AnotherVehicleThatMovesIsNotTakenForThisOne) {
+  fly(2.0);
+  const double start = static_cast<double>(time_ns_) * 1e-9;
+  EXPECT_EQ(fly(0.6,
+                [&](PoseSample& pose) {
+                  const double t = static_cast<double>(pose.stamp_ns) * 1e-9;
+                  pose.position_ned = Vector3d(1.5 + (t - start), 0.3, -1.2);
+                }),
+            PoseFault::kOutlier);
+  EXPECT_EQ(estimator_.estimate().resets, 0U);
+}
+
+TEST_F(EstimatorFaults, FrozenMarkersAreRecognisedInMotionAtOnce) {
+  fly(2.0);
+  PoseSample frozen;
+  fly(0.01, [&](PoseSample& pose) { frozen = pose; });
+  const auto freeze = [&](PoseSample& pose) {
+    pose.position_ned = frozen.position_ned;
+    pose.q_ned_from_frd = frozen.q_ned_from_frd;
+  };
+  EXPECT_EQ(fly(0.01, freeze), PoseFault::kFrozen);
+  EXPECT_EQ(fly(0.4, freeze), PoseFault::kFrozen);
+  EXPECT_LT(position_error(), 0.02);
+  EXPECT_EQ(fly(0.05), PoseFault::kNone);
+  EXPECT_LT(position_error(), 1e-3);
+}
+
+// Standing or hovering: nothing contradicts a pose that stays.
+class EstimatorAtRest : public testing::TestWithParam<bool> {};
+
+TEST_P(EstimatorAtRest, NoiseThatStopsIsAFrozenStreamAndNoNoiseIsNone) {
+  const bool noisy = GetParam();
+  const EstimatorSettings settings;
+  Estimator estimator(settings);
+  plant::RandomStream noise(1, 1);
+  std::uint64_t sequence = 0;
+  PoseSample last;
+  const auto rest = [&](double duration_s, bool frozen, RotorState rotors) {
+    const std::int64_t end = estimator.estimate().stamp_ns + static_cast<std::int64_t>(duration_s * 1e9);
+    while (estimator.estimate().stamp_ns < end) {
+      plant::ImuSample imu;
+      imu.stamp_ns = estimator.estimate().stamp_ns + kStep_ns;
+      imu.specific_force_frd = Vector3d(0, 0, -plant::kGravity) + 0.05 * noise.normal3();
+      imu.body_rates_frd = 3e-3 * noise.normal3();
+      estimator.predict(imu);
+      if (imu.stamp_ns % kFrame_ns != 0) continue;
+      last.stamp_ns = imu.stamp_ns;
+      last.sequence = ++sequence;
+      last.tracked = true;
+      if (noisy && !frozen) last.position_ned = settings.mocap_position_sigma * noise.normal3();
+      estimator.correct(last, rotors);
+    }
+    return estimator.estimate().pose_fault;
+  };
+  EXPECT_EQ(rest(1.0, false, RotorState::kOff), PoseFault::kNone);
+  EXPECT_EQ(rest(1.0, false, RotorState::kRunning), PoseFault::kNone);
+  EXPECT_EQ(rest(0.2, true, RotorState::kRunning), noisy ? PoseFault::kFrozen : PoseFault::kNone);
+  EXPECT_NEAR(estimator.pose_age_s(), noisy ? 0.16 : 0.0, 0.02);
+  EXPECT_EQ(rest(0.1, false, RotorState::kRunning), PoseFault::kNone);
+}
+INSTANTIATE_TEST_SUITE_P(Noisy, EstimatorAtRest, testing::Bool());
+
+TEST_F(EstimatorFaults, UntimelyAndInvalidPosesAreNamed) {
+  fly(1.0);
+  const Estimate before = estimator_.estimate();
+  PoseSample pose = motion_.pose(time_ns_ - 2 * kFrame_ns);
+  EXPECT_FALSE(estimator_.correct(pose));
+  EXPECT_EQ(estimator_.estimate().pose_fault, PoseFault::kUntimely);
+  EXPECT_FALSE(estimator_.correct(pose));  // the same once more
+  EXPECT_EQ(estimator_.estimate().poses_refused, before.poses_refused + 1);
+  pose = motion_.pose(time_ns_ + 100'000'000);
+  EXPECT_FALSE(estimator_.correct(pose));
+  EXPECT_EQ(estimator_.estimate().pose_fault, PoseFault::kUntimely);
+  pose = motion_.pose(time_ns_ - 1);
+  pose.tracked = false;
+  EXPECT_FALSE(estimator_.correct(pose));
+  EXPECT_EQ(estimator_.estimate().pose_fault, PoseFault::kUntracked);
+  pose = motion_.pose(time_ns_);
+  pose.q_ned_from_frd.coeffs() *= 1.02;
+  EXPECT_FALSE(estimator_.correct(pose));
+  EXPECT_EQ(estimator_.estimate().pose_fault, PoseFault::kInvalid);
+  EXPECT_EQ(estimator_.estimate().position_ned, before.position_ned);
+  EXPECT_EQ(estimator_.estimate().velocity_ned, before.velocity_ned);
+}
+
+// A process that was stopped for 0.2 s at 1 m/s finds its way without a reset.
+TEST_F(EstimatorFaults, AGapOfTheImuIsWrittenIntoTheCovariance) {
+  fly(2.0);
+  const double before = estimator_.standard_deviation()[0];
+  time_ns_ += 200'000'000;
+  estimator_.predict(motion_.imu(time_ns_));
+  EXPECT_GT(estimator_.standard_deviation()[0], 100.0 * before);
+  EXPECT_EQ(fly(0.3), PoseFault::kNone);
+  EXPECT_EQ(estimator_.estimate().resets, 0U);
+  EXPECT_LT(position_error(), 2e-3);
+}
+
+}  // namespace
+}  // namespace swiftlet::control

@@ -1,0 +1,178 @@
+#include "swiftlet/control/estimation/estimator.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/control/estimation/estimator_motion.hpp"
+
+namespace swiftlet::control {
+namespace {
+
+using Eigen::AngleAxisd;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+double angle_between(const Quaterniond& a, const Quaterniond& b) { return a.angularDistance(b); }
+
+// Runs to `end_s` with poses that come `latency_ns` after their exposure.
+void run(Estimator& estimator, const Motion& motion, double end_s, std::int64_t latency_ns) {
+  std::uint64_t sequence = 0;
+  for (std::int64_t t = kStep_ns; static_cast<double>(t) * 1e-9 <= end_s; t += kStep_ns) {
+    ASSERT_TRUE(estimator.predict(motion.imu(t)));
+    const std::int64_t exposed = t - latency_ns;
+    if (exposed > 0 && exposed % kFrame_ns == 0) estimator.correct(Motion::pose(exposed, ++sequence));
+  }
+}
+
+class EstimatorLatency : public testing::TestWithParam<int> {};
+
+TEST_P(EstimatorLatency, FollowsTheMotionWhateverTheLatencyOfThePoses) {
+  Estimator estimator{EstimatorSettings{}};
+  Motion motion;
+  run(estimator, motion, 8.0, std::int64_t{GetParam()} * 1'000'000);
+  const Estimate& e = estimator.estimate();
+  const double t = static_cast<double>(e.stamp_ns) * 1e-9;
+  EXPECT_LT((e.position_ned - Motion::position(t)).norm(), 2e-4);
+  EXPECT_LT((e.velocity_ned - Motion::velocity(t)).norm(), 2e-3);
+  EXPECT_LT(angle_between(e.q_ned_from_frd, Motion::attitude(t)), 1e-3);
+}
+INSTANTIATE_TEST_SUITE_P(Milliseconds, EstimatorLatency, testing::Values(0, 10, 30, 100));
+
+// A constant rate is integrated without error, however long the steps.
+TEST(Estimator, TurnsByTheMeasuredRate) {
+  for (const std::int64_t step_ns : {100'000, 1'000'000, 10'000'000, 100'000'000}) {
+    Estimator estimator{EstimatorSettings{}};
+    plant::ImuSample imu;
+    imu.stamp_ns = 1;
+    imu.body_rates_frd = {7.0, -20.0, 15.0};
+    ASSERT_TRUE(estimator.predict(imu));
+    ASSERT_TRUE(estimator.correct({1, 1, true, Vector3d::Zero(), Quaterniond::Identity()}));
+    while (imu.stamp_ns < 300'000'000) {
+      imu.stamp_ns += step_ns;
+      ASSERT_TRUE(estimator.predict(imu));
+    }
+    const double angle = 0.3 * imu.body_rates_frd.norm();
+    const Quaterniond expected(AngleAxisd(angle, imu.body_rates_frd.normalized()));
+    EXPECT_LT(angle_between(estimator.estimate().q_ned_from_frd, expected), 1e-12) << step_ns;
+  }
+}
+
+TEST(Estimator, FindsTheBiasesOfGyroAndAccelerometer) {
+  Estimator estimator{EstimatorSettings{}};
+  Motion motion;
+  motion.gyro_bias = {0.02, -0.03, 0.01};
+  motion.accelerometer_bias = {0.15, -0.1, 0.2};
+  run(estimator, motion, 12.0, 10'000'000);
+  EXPECT_LT((estimator.estimate().gyro_bias - motion.gyro_bias).norm(), 2e-3);
+  EXPECT_LT((estimator.estimate().accelerometer_bias - motion.accelerometer_bias).norm(), 2e-2);
+  const double t = static_cast<double>(estimator.estimate().stamp_ns) * 1e-9;
+  EXPECT_LT((estimator.estimate().velocity_ned - Motion::velocity(t)).norm(), 1e-2);
+}
+
+TEST(Estimator, DeadReckonsThroughHalfASecondWithoutPoses) {
+  Estimator estimator{EstimatorSettings{}};
+  Motion motion;
+  motion.accelerometer_bias = {0.05, -0.05, 0.05};
+  run(estimator, motion, 10.0, 10'000'000);
+  for (int i = 0; i < 250; ++i) {
+    ASSERT_TRUE(estimator.predict(motion.imu(estimator.estimate().stamp_ns + kStep_ns)));
+  }
+  const double t = static_cast<double>(estimator.estimate().stamp_ns) * 1e-9;
+  EXPECT_LT((estimator.estimate().position_ned - Motion::position(t)).norm(), 0.02);
+  EXPECT_NEAR(estimator.pose_age_s(), 0.51, 0.011);
+}
+
+TEST(Estimator, HasNoMeaningBeforeTheFirstPose) {
+  Estimator estimator{EstimatorSettings{}};
+  EXPECT_TRUE(estimator.predict(Motion().imu(kStep_ns)));
+  EXPECT_FALSE(estimator.initialised());
+  EXPECT_TRUE(std::isinf(estimator.pose_age_s()));
+}
+
+TEST(Estimator, RefusesSamplesThatAreNotFiniteOrNotNewer) {
+  Estimator estimator{EstimatorSettings{}};
+  Motion motion;
+  run(estimator, motion, 1.0, 0);
+  const Estimate before = estimator.estimate();
+  plant::ImuSample imu = motion.imu(before.stamp_ns + kStep_ns);
+  imu.body_rates_frd.y() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(estimator.predict(imu));
+  EXPECT_FALSE(estimator.predict(motion.imu(before.stamp_ns)));
+  plant::PoseSample pose = Motion::pose(before.stamp_ns, 1000);
+  EXPECT_FALSE(estimator.correct(pose));  // its stamp has been used
+  pose = Motion::pose(before.stamp_ns + 1, 1001);
+  pose.tracked = false;
+  EXPECT_FALSE(estimator.correct(pose));
+  pose.tracked = true;
+  pose.position_ned.x() = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(estimator.correct(pose));
+  pose = Motion::pose(before.stamp_ns + 1, 1001);
+  pose.q_ned_from_frd.coeffs() *= 1.5;
+  EXPECT_FALSE(estimator.correct(pose));
+  EXPECT_EQ(estimator.estimate().position_ned, before.position_ned);
+  EXPECT_EQ(estimator.estimate().stamp_ns, before.stamp_ns);
+}
+
+// Poses as they should be, but `off` by so much, for a second. Returns how many were taken in.
+int run_with_jump(Estimator& estimator, const Motion& motion, const Vector3d& off, plant::RotorState rotors) {
+  std::uint64_t sequence = 10'000;
+  int taken = 0;
+  for (int frame = 0; frame < 100; ++frame) {
+    for (int i = 0; i < 5; ++i) estimator.predict(motion.imu(estimator.estimate().stamp_ns + kStep_ns));
+    plant::PoseSample pose = Motion::pose(estimator.estimate().stamp_ns, ++sequence);
+    pose.position_ned += off;
+    if (estimator.correct(pose, rotors)) ++taken;
+  }
+  return taken;
+}
+
+double position_error(const Estimator& estimator) {
+  const double t = static_cast<double>(estimator.estimate().stamp_ns) * 1e-9;
+  return (estimator.estimate().position_ned - Motion::position(t)).norm();
+}
+
+// Another body, or a world that was shifted: who flies cannot know, and goes by the IMU until it has landed.
+TEST(Estimator, DoesNotBelieveAJumpInFlight) {
+  Estimator estimator{EstimatorSettings{}};
+  Motion motion;
+  run(estimator, motion, 2.0, 0);
+  EXPECT_EQ(run_with_jump(estimator, motion, {2.0, 0.0, 0.0}, plant::RotorState::kRunning), 0);
+  EXPECT_LT(position_error(estimator), 0.05);
+  EXPECT_EQ(run_with_jump(estimator, motion, {0.0, 0.0, 0.0}, plant::RotorState::kRunning), 100);
+}
+
+TEST(Estimator, BelievesAJumpThatLastsWithItsRotorsOff) {
+  Estimator estimator{EstimatorSettings{}};
+  Motion motion;
+  run(estimator, motion, 2.0, 0);
+  EXPECT_EQ(run_with_jump(estimator, motion, {2.0, 0.0, 0.0}, plant::RotorState::kOff), 100 - 20);
+  EXPECT_EQ(estimator.estimate().resets, 1U);
+  EXPECT_NEAR(position_error(estimator), 2.0, 0.01);
+}
+
+TEST(Estimator, FollowsThePosesWhenTheImuMisleads) {
+  Estimator estimator{EstimatorSettings{}};
+  Motion motion;
+  run(estimator, motion, 2.0, 0);
+  Motion misled = motion;
+  misled.accelerometer_bias = {20.0, 0.0, 0.0};
+  EXPECT_EQ(run_with_jump(estimator, misled, {0.0, 0.0, 0.0}, plant::RotorState::kRunning), 100);
+  EXPECT_LT(position_error(estimator), 0.01);
+  run_with_jump(estimator, motion, {0.0, 0.0, 0.0}, plant::RotorState::kRunning);
+  EXPECT_LT(position_error(estimator), 0.005);
+}
+
+TEST(Estimator, RefusesAPoseThatIsOlderThanItsHistory) {
+  Estimator estimator{EstimatorSettings{}};
+  Motion motion;
+  ASSERT_TRUE(estimator.predict(motion.imu(kStep_ns)));
+  ASSERT_TRUE(estimator.correct(Motion::pose(kStep_ns, 1)));
+  for (int i = 0; i < 2 * Estimator::kHistory; ++i)
+    estimator.predict(motion.imu(estimator.estimate().stamp_ns + kStep_ns));
+  EXPECT_FALSE(estimator.correct(Motion::pose(3 * kStep_ns, 2)));
+}
+
+}  // namespace
+}  // namespace swiftlet::control

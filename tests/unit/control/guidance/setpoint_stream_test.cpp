@@ -1,0 +1,276 @@
+// Streams of setpoints: each kind, at every rate, within limits and fence.
+#include "swiftlet/control/guidance/setpoint_stream.hpp"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/control/supervision/supervised_flight.hpp"
+
+namespace swiftlet::control {
+namespace {
+
+using Eigen::Vector3d;
+using tests::SupervisedFlight;
+
+constexpr double kStep_s = 1e-9 * static_cast<double>(SupervisedFlight::kStep_ns);
+constexpr double kRounding = 1e-6;
+
+class Stream : public testing::Test, protected SupervisedFlight {
+ protected:
+  Stream() {
+    EXPECT_TRUE(take_off());
+    before_ = directive_.reference;
+  }
+
+  // One step, in which position, velocity and acceleration of the reference go on as their derivatives say.
+  void step_smoothly() {
+    step();
+    const Reference& now = directive_.reference;
+    const double acceleration = std::max(allowed_acceleration_, 1e-9);
+    ASSERT_LE((now.position_ned - before_.position_ned - kStep_s * before_.velocity_ned).norm(),
+              acceleration * kStep_s * kStep_s + kRounding);
+    ASSERT_LE((now.velocity_ned - before_.velocity_ned).norm(), acceleration * kStep_s + kRounding);
+    ASSERT_LE((now.acceleration_ned - before_.acceleration_ned).norm(), allowed_jerk_ * kStep_s + kRounding)
+        << "at " << 1e-9 * static_cast<double>(situation_.stamp_ns);
+    ASSERT_LE(now.acceleration_ned.norm(), allowed_acceleration_ + kRounding);
+    ASSERT_LE(now.velocity_ned.norm(), limits_.max_speed + kRounding);
+    ASSERT_LE(std::abs(now.yaw_rate), limits_.max_yaw_rate + kRounding);
+    for (int i = 0; i < 3; ++i) {
+      ASSERT_GE(now.position_ned[i], limits_.fence_min_ned[i]);
+      ASSERT_LE(now.position_ned[i], limits_.fence_max_ned[i]);
+    }
+    before_ = now;
+  }
+  // For so long, with a setpoint of time t each 1/rate_hz.
+  template <class Setpoints>
+  void stream(double duration_s, double rate_hz, const Setpoints& setpoint_at) {
+    const auto steps = static_cast<int>(std::lround(duration_s / kStep_s));
+    const auto period = static_cast<int>(std::lround(1.0 / rate_hz / kStep_s));
+    for (int i = 0; i < steps; ++i) {
+      if (i % period == 0) last_ = supervisor_.setpoint(setpoint_at(i * kStep_s), situation_);
+      ASSERT_NO_FATAL_FAILURE(step_smoothly());
+    }
+  }
+  Outcome send(const Setpoint& setpoint) { return supervisor_.setpoint(setpoint, situation_); }
+  std::string refusal(const Setpoint& setpoint) {
+    const Outcome outcome = send(setpoint);
+    return outcome.accepted ? "accepted" : outcome.reason;
+  }
+
+  const Limits limits_;
+  double allowed_acceleration_ = limits_.max_reference_acceleration * (1.0 + 1e-4);
+  double allowed_jerk_ = limits_.max_reference_jerk * (1.0 + 1e-4);
+  Reference before_;
+  Outcome last_;
+};
+
+Setpoint of_kind(SetpointKind kind) {
+  Setpoint setpoint;
+  setpoint.kind = kind;
+  setpoint.yaw_free = true;
+  setpoint.thrust = plant::kGravity;
+  return setpoint;
+}
+
+// A circle of 0.5 m, begun slowly: 8 s for once around.
+struct Circle {
+  static constexpr double kRadius = 0.5, kRate = 2.0 * M_PI / 8.0, kStart_s = 4.0;
+  bool velocity = true;
+  bool acceleration = true;
+
+  Setpoint operator()(double t) const {
+    // The rate rises as (1 - cos) / 2.
+    const double phase = M_PI * std::min(t, kStart_s) / kStart_s;
+    const double rate = 0.5 * kRate * (1.0 - std::cos(phase));
+    const double angle = 0.5 * kRate * (std::min(t, kStart_s) - std::sin(phase) * kStart_s / M_PI) +
+                         kRate * std::max(t - kStart_s, 0.0);
+    const double rate_change = t < kStart_s ? 0.5 * kRate * M_PI / kStart_s * std::sin(phase) : 0.0;
+    const Vector3d out(std::cos(angle), std::sin(angle), 0.0), along(-std::sin(angle), std::cos(angle), 0.0);
+    Setpoint setpoint = of_kind(SetpointKind::kPosition);
+    setpoint.position_ned = kRadius * (out - Vector3d::UnitX()) - Vector3d::UnitZ();
+    if (velocity) setpoint.velocity_ned = kRadius * rate * along;
+    if (acceleration) setpoint.acceleration_ned = kRadius * (rate_change * along - rate * rate * out);
+    return setpoint;
+  }
+};
+
+class Rates : public Stream, public testing::WithParamInterface<double> {};
+
+TEST_P(Rates, PositionsWithTheirDerivativesAreFollowedOnTheSpot) {
+  const Circle circle;
+  double farthest_m = 0.0;
+  const auto next = [&](double t) {
+    if (t > 1.0) {
+      farthest_m = std::max(farthest_m, (directive_.reference.position_ned - circle(t).position_ned).norm());
+    }
+    return circle(t);
+  };
+  ASSERT_NO_FATAL_FAILURE(stream(14.0, GetParam(), next));
+  EXPECT_EQ(supervisor_.mode(), Mode::kSetpoint);
+  EXPECT_LT(farthest_m, GetParam() < 5.0 ? 0.03 : 0.003);
+}
+
+TEST_P(Rates, PositionsAloneAreFollowedSmoothly) {
+  const Circle circle{false, false};
+  ASSERT_NO_FATAL_FAILURE(stream(14.0, GetParam(), circle));
+  EXPECT_EQ(supervisor_.mode(), Mode::kSetpoint);
+  EXPECT_LT((directive_.reference.position_ned - circle(14.0).position_ned).norm(), 0.6);
+  ASSERT_TRUE(step_until(Mode::kHolding, 1.0));
+  EXPECT_EQ(supervisor_.reason(), Reason::kSetpointsStopped);
+}
+
+TEST_P(Rates, AStepOfThePositionBecomesASmoothMove) {
+  Setpoint setpoint = of_kind(SetpointKind::kPosition);
+  setpoint.position_ned = {0.6, -0.4, -1.3};
+  ASSERT_NO_FATAL_FAILURE(stream(5.0, GetParam(), [&](double) { return setpoint; }));
+  EXPECT_LT((directive_.reference.position_ned - setpoint.position_ned).norm(), 1e-3);
+  EXPECT_LT(directive_.reference.velocity_ned.norm(), 1e-3);
+}
+
+TEST_P(Rates, AVelocityIsReachedSmoothlyAndKept) {
+  Setpoint setpoint = of_kind(SetpointKind::kVelocity);
+  setpoint.velocity_ned = {0.3, -0.2, -0.1};
+  ASSERT_NO_FATAL_FAILURE(stream(3.0, GetParam(), [&](double) { return setpoint; }));
+  EXPECT_LT((directive_.reference.velocity_ned - setpoint.velocity_ned).norm(), 1e-3);
+  EXPECT_LT((directive_.reference.position_ned - 3.0 * setpoint.velocity_ned + Vector3d::UnitZ()).norm(),
+            0.3);
+}
+
+TEST_P(Rates, AnAccelerationIsReachedSmoothlyAndKept) {
+  Setpoint setpoint = of_kind(SetpointKind::kAcceleration);
+  setpoint.acceleration_ned = {0.0, 0.5, 0.0};
+  ASSERT_NO_FATAL_FAILURE(stream(1.5, GetParam(), [&](double) { return setpoint; }));
+  EXPECT_LT((directive_.reference.acceleration_ned - setpoint.acceleration_ned).norm(), 1e-2);
+  EXPECT_NEAR(directive_.reference.velocity_ned.y(), 0.5 * 1.5, 0.2);
+}
+
+TEST_P(Rates, AVelocityTowardsTheFenceStopsBeforeIt) {
+  Setpoint setpoint = of_kind(SetpointKind::kVelocity);
+  setpoint.velocity_ned = {0.8, 0.0, 0.0};
+  ASSERT_NO_FATAL_FAILURE(stream(12.0, GetParam(), [&](double) { return setpoint; }));
+  EXPECT_EQ(supervisor_.mode(), Mode::kHolding);
+  EXPECT_FALSE(last_.accepted);
+  EXPECT_GT(directive_.reference.position_ned.x(), 1.8);
+}
+
+TEST_P(Rates, AnAccelerationEndsAtTheSpeedThatIsAllowed) {
+  Setpoint setpoint = of_kind(SetpointKind::kAcceleration);
+  setpoint.acceleration_ned = {1.2, 0.0, 0.0};
+  ASSERT_NO_FATAL_FAILURE(stream(6.0, GetParam(), [&](double) { return setpoint; }));
+  EXPECT_FALSE(last_.accepted) << "either for the speed or for the fence";
+  EXPECT_LT(directive_.reference.velocity_ned.norm(), limits_.max_speed);
+}
+
+TEST_P(Rates, AHeadingIsTurnedToWithinItsRate) {
+  Setpoint setpoint = of_kind(SetpointKind::kPosition);
+  setpoint.position_ned = {0, 0, -1};
+  setpoint.yaw_free = false;
+  setpoint.yaw_rad = 3.0;
+  ASSERT_NO_FATAL_FAILURE(stream(9.0, GetParam(), [&](double) { return setpoint; }));
+  EXPECT_NEAR(std::remainder(directive_.reference.yaw_rad - 3.0, 2.0 * M_PI), 0.0, 1e-3);
+  setpoint.yaw_free = true;
+  setpoint.yaw_rate = -0.5;
+  const double before = directive_.reference.yaw_rad;
+  ASSERT_NO_FATAL_FAILURE(stream(2.0, GetParam(), [&](double) { return setpoint; }));
+  EXPECT_NEAR(directive_.reference.yaw_rad - before, -1.0, 0.3);
+}
+
+INSTANTIATE_TEST_SUITE_P(OfStreams, Rates, testing::Values(2.0, 5.0, 20.0, 100.0, 500.0));
+
+TEST_F(Stream, FromOneKindToTheNextTheReferenceGoesOnSmoothly) {
+  Setpoint velocity = of_kind(SetpointKind::kVelocity);
+  velocity.velocity_ned = {0.4, 0, 0};
+  Setpoint acceleration = of_kind(SetpointKind::kAcceleration);
+  acceleration.acceleration_ned = {0, 0.4, 0};
+  ASSERT_NO_FATAL_FAILURE(stream(1.0, 20.0, [&](double) { return velocity; }));
+  ASSERT_NO_FATAL_FAILURE(stream(0.6, 20.0, [&](double) { return acceleration; }));
+  Setpoint place = of_kind(SetpointKind::kPosition);
+  place.position_ned = directive_.reference.position_ned;
+  ASSERT_NO_FATAL_FAILURE(stream(4.0, 20.0, [&](double) { return place; }));
+  EXPECT_LT((directive_.reference.position_ned - place.position_ned).norm(), 1e-3);
+}
+
+TEST_F(Stream, AnotherControllerGoesOnWithIt) {
+  for (const SetpointKind kind :
+       {SetpointKind::kPosition, SetpointKind::kVelocity, SetpointKind::kAcceleration,
+        SetpointKind::kAttitude, SetpointKind::kBodyRates}) {
+    SCOPED_TRACE(static_cast<int>(kind));
+    SupervisedFlight flight;
+    ASSERT_TRUE(flight.take_off());
+    Setpoint setpoint = of_kind(kind);
+    setpoint.position_ned = {0.2, 0, -1};
+    setpoint.velocity_ned = {0.2, 0, 0};
+    setpoint.acceleration_ned = {0.1, 0, 0};
+    setpoint.q_ned_from_frd = Eigen::AngleAxisd(0.1, Vector3d::UnitX());
+    setpoint.body_rates_frd = {0.1, 0.2, 0.3};
+    ASSERT_TRUE(flight.supervisor_.setpoint(setpoint, flight.situation_).accepted);
+    for (int i = 0; i < 100; ++i) flight.step();
+    Supervisor standby({});
+    standby.adopt(flight.supervisor_.state(), nullptr, nullptr);
+    for (int i = 0; i < 400; ++i) {
+      flight.step();
+      const Directive theirs = standby.step(flight.situation_);
+      ASSERT_EQ(theirs.actuation, flight.directive_.actuation);
+      ASSERT_EQ(theirs.reference.position_ned, flight.directive_.reference.position_ned);
+      ASSERT_EQ(theirs.q_ned_from_frd.coeffs(), flight.directive_.q_ned_from_frd.coeffs());
+      ASSERT_EQ(theirs.body_rates_frd, flight.directive_.body_rates_frd);
+      ASSERT_EQ(theirs.thrust, flight.directive_.thrust);
+    }
+    EXPECT_EQ(standby.reason(), Reason::kSetpointsStopped);
+  }
+}
+
+TEST_F(Stream, RefusesWhatIsBeyondALimitWithTheValueAndTheLimit) {
+  const double nan = std::nan("");
+  Setpoint setpoint = of_kind(SetpointKind::kPosition);
+  setpoint.position_ned = {0, 0, -2.6};
+  EXPECT_EQ(refusal(setpoint), "setpoint: z is -2.600 m, outside the fence of -2.500 to 0.200 m");
+  setpoint.position_ned = {1.5, 0, -1};
+  EXPECT_EQ(refusal(setpoint), "setpoint: 1.50 m away from the vehicle, the limit is 1.00 m");
+  setpoint = of_kind(SetpointKind::kVelocity);
+  setpoint.velocity_ned = {2.5, 0, 0};
+  EXPECT_EQ(refusal(setpoint), "setpoint: speed is 2.50 m/s, the limit is 2.00 m/s");
+  setpoint.velocity_ned = {nan, 0, 0};
+  EXPECT_EQ(refusal(setpoint), "setpoint: a value is not a finite number");
+  setpoint = of_kind(SetpointKind::kVelocity);
+  setpoint.yaw_rate = -1.6;
+  EXPECT_EQ(refusal(setpoint), "setpoint: yaw rate is -1.60 rad/s, the limit is 1.50 rad/s");
+  setpoint = of_kind(SetpointKind::kAcceleration);
+  setpoint.acceleration_ned = {0, 6, 0};
+  EXPECT_EQ(refusal(setpoint), "setpoint: acceleration is 6.00 m/s^2, the limit is 5.00 m/s^2");
+  setpoint = of_kind(SetpointKind::kAttitude);
+  setpoint.q_ned_from_frd = Eigen::AngleAxisd(0.7, Vector3d::UnitY());
+  EXPECT_EQ(refusal(setpoint), "setpoint: tilt is 0.70 rad, the limit is 0.60 rad");
+  setpoint.q_ned_from_frd = Eigen::Quaterniond(0.9, 0, 0, 0);
+  EXPECT_EQ(refusal(setpoint), "setpoint: the attitude is no unit quaternion");
+  setpoint = of_kind(SetpointKind::kAttitude);
+  setpoint.thrust = 15.0;
+  EXPECT_EQ(refusal(setpoint), "setpoint: thrust is 15.00 m/s^2, must be at least 0 and at most 14.81 m/s^2");
+  setpoint.thrust = nan;
+  EXPECT_NE(refusal(setpoint), "accepted");
+  setpoint = of_kind(SetpointKind::kBodyRates);
+  setpoint.body_rates_frd = {0, 0, 6.5};
+  EXPECT_EQ(refusal(setpoint), "setpoint: body rate is 6.50 rad/s, the limit is 6.00 rad/s");
+  setpoint.body_rates_frd = {nan, 0, 0};
+  EXPECT_NE(refusal(setpoint), "accepted");
+  setpoint.kind = static_cast<SetpointKind>(9);
+  EXPECT_EQ(refusal(setpoint), "setpoint: unknown kind 9");
+  EXPECT_EQ(supervisor_.mode(), Mode::kHolding) << "nothing of it was applied";
+}
+
+TEST_F(Stream, WhatAKindDoesNotNameIsNotLookedAt) {
+  Setpoint setpoint = of_kind(SetpointKind::kAttitude);
+  setpoint.position_ned = {99, 99, 99};
+  setpoint.velocity_ned = {99, 99, 99};
+  EXPECT_EQ(refusal(setpoint), "accepted");
+  setpoint = of_kind(SetpointKind::kVelocity);
+  setpoint.position_ned = {99, 99, 99};
+  setpoint.thrust = -1.0;
+  EXPECT_EQ(refusal(setpoint), "accepted");
+}
+
+}  // namespace
+}  // namespace swiftlet::control

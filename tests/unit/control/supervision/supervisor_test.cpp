@@ -1,0 +1,387 @@
+#include "swiftlet/control/supervision/supervisor.hpp"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/control/planning/checks.hpp"
+#include "tests/unit/control/supervision/supervised_flight.hpp"
+
+namespace swiftlet::control {
+namespace {
+
+using Eigen::Vector3d;
+using tests::SupervisedFlight;
+
+class Flight : public testing::Test, protected SupervisedFlight {
+ protected:
+  void hover() { ASSERT_TRUE(take_off()); }
+};
+
+TEST_F(Flight, StartsDisarmedWithRotorsOff) {
+  EXPECT_EQ(supervisor_.mode(), Mode::kDisarmed);
+  EXPECT_EQ(directive_.actuation, Actuation::kOff);
+}
+
+TEST_F(Flight, TakesOffHoldsAndLands) {
+  ASSERT_TRUE(ask(RequestKind::kArm).accepted);
+  step();
+  EXPECT_EQ(directive_.actuation, Actuation::kIdle);
+  ASSERT_TRUE(ask(RequestKind::kTakeoff, {0, 0, -1}).accepted);
+  step();
+  EXPECT_EQ(directive_.actuation, Actuation::kSpoolUp);
+  ASSERT_TRUE(step_until(Mode::kHolding, 10.0));
+  EXPECT_NEAR(estimate_.position_ned.z(), -1.0, 1e-9);
+  EXPECT_TRUE(supervisor_.airborne());
+  ASSERT_TRUE(ask(RequestKind::kLand).accepted);
+  ASSERT_TRUE(step_until(Mode::kDisarmed, 10.0));
+  EXPECT_EQ(supervisor_.reason(), Reason::kLanded);
+  EXPECT_EQ(directive_.actuation, Actuation::kOff);
+  EXPECT_FALSE(supervisor_.airborne());
+}
+
+// A push at the end of a landing, with rotors that carry nearly the weight still.
+TEST_F(Flight, SlidingOnTheGroundItHasLanded) {
+  for (const double height_m : {0.0, 0.3}) {
+    SupervisedFlight flight;
+    ASSERT_TRUE(flight.take_off());
+    ASSERT_TRUE(flight.ask(RequestKind::kLand).accepted);
+    ASSERT_TRUE(
+        flight.step_until([&] { return flight.estimate_.position_ned.z() > -height_m - 0.02; }, 10.0));
+    flight.follows_ = false;
+    flight.estimate_.velocity_ned = {0.3, 0.0, 0.0};
+    EXPECT_EQ(flight.step_until(Mode::kDisarmed, 3.0), height_m == 0.0) << height_m;
+  }
+}
+
+TEST_F(Flight, ALandingAskedForOnTheGroundDoesNotRise) {
+  hover();
+  ASSERT_TRUE(ask(RequestKind::kLand).accepted);
+  ASSERT_TRUE(step_until([&] { return estimate_.position_ned.z() > -0.01; }, 10.0));
+  ASSERT_TRUE(ask(RequestKind::kGoTo, estimate_.position_ned).accepted);
+  const double before_z = directive_.reference.position_ned.z();
+  ASSERT_TRUE(ask(RequestKind::kLand).accepted);
+  while (supervisor_.mode() == Mode::kLanding) {
+    step();
+    ASSERT_GT(directive_.reference.position_ned.z(), before_z - 0.02);
+  }
+  EXPECT_EQ(supervisor_.reason(), Reason::kLanded);
+}
+
+TEST_F(Flight, FliesTheItemsOfAMissionInOrderAndCompletesIt) {
+  Mission mission;
+  mission.id = 7;
+  mission.items = {{MissionItemKind::kTakeoff, {0, 0, -1}, 0, true, 0.5, 0.5},
+                   {MissionItemKind::kWaypoint, {1, 0, -1}, 0, true, 0.5, 0.25},
+                   {MissionItemKind::kWaypoint, {1, 1, -1.5}, 1.0, false, 0.5, 0.0},
+                   {MissionItemKind::kLand, {0, 0, 0}, 0, true, 0.4, 0.0}};
+  ASSERT_TRUE(check(mission, Limits{}).accepted);
+  ASSERT_TRUE(ask(RequestKind::kArm).accepted);
+  ASSERT_TRUE(fly(mission).accepted);
+  ASSERT_TRUE(step_until([&] { return supervisor_.mission().item_index == 1; }, 10.0));
+  EXPECT_NEAR(estimate_.position_ned.z(), -1.0, 1e-3);
+  ASSERT_TRUE(step_until([&] { return supervisor_.mission().item_index == 2; }, 10.0));
+  EXPECT_NEAR((estimate_.position_ned - Vector3d(1, 0, -1)).norm(), 0.0, 1e-3);
+  ASSERT_TRUE(step_until([&] { return supervisor_.mission().item_index == 3; }, 10.0));
+  EXPECT_NEAR((estimate_.position_ned - Vector3d(1, 1, -1.5)).norm(), 0.0, 1e-3);
+  EXPECT_NEAR(directive_.reference.yaw_rad, 1.0, 1e-3);
+  ASSERT_TRUE(step_until(Mode::kDisarmed, 20.0));
+  EXPECT_EQ(supervisor_.mission().state, MissionState::kCompleted);
+  EXPECT_EQ(supervisor_.mission().id, 7u);
+}
+
+TEST_F(Flight, ReferenceNeverJumpsWhateverIsAskedInFlight) {
+  hover();
+  Vector3d last = directive_.reference.position_ned;
+  Vector3d last_velocity = directive_.reference.velocity_ned;
+  const auto smooth = [&] {
+    const Reference& r = directive_.reference;
+    EXPECT_LT((r.position_ned - last).norm(), 0.006);
+    EXPECT_LT((r.velocity_ned - last_velocity).norm(), 0.06);
+    last = r.position_ned;
+    last_velocity = r.velocity_ned;
+  };
+  ASSERT_TRUE(ask(RequestKind::kGoTo, {2, 0, -1}, 1.0).accepted);
+  for (int i = 0; i < 900; ++i) {
+    step();
+    smooth();
+  }
+  ASSERT_TRUE(ask(RequestKind::kGoTo, {0, 2, -2}, 1.0).accepted);
+  for (int i = 0; i < 700; ++i) {
+    step();
+    smooth();
+  }
+  ASSERT_TRUE(ask(RequestKind::kHold).accepted);
+  for (int i = 0; i < 300; ++i) {
+    step();
+    smooth();
+  }
+  ASSERT_TRUE(ask(RequestKind::kGoTo, {-2, 0, -1}, 1.0).accepted);
+  for (int i = 0; i < 700; ++i) {
+    step();
+    smooth();
+  }
+  ASSERT_TRUE(ask(RequestKind::kLand).accepted);
+  for (int i = 0; i < 500; ++i) {
+    step();
+    smooth();
+  }
+}
+
+TEST_F(Flight, RefusesToArmWithoutPoseBatteryOrLevel) {
+  situation_.has_estimate = false;
+  EXPECT_NE(std::string(ask(RequestKind::kArm).reason).find("no mocap pose"), std::string::npos);
+  situation_.has_estimate = true;
+  situation_.pose_age_s = 2.0;
+  EXPECT_NE(std::string(ask(RequestKind::kArm).reason).find("2.00 s old"), std::string::npos);
+  situation_.pose_age_s = 0.0;
+  situation_.has_battery = false;
+  EXPECT_NE(std::string(ask(RequestKind::kArm).reason).find("no battery voltage"), std::string::npos);
+  situation_.has_battery = true;
+  situation_.supply_voltage_v = 3.1;
+  EXPECT_NE(std::string(ask(RequestKind::kArm).reason).find("3.10 V"), std::string::npos);
+  situation_.supply_voltage_v = 3.9;
+  estimate_.q_ned_from_frd = Eigen::AngleAxisd(0.6, Vector3d::UnitX());
+  EXPECT_NE(std::string(ask(RequestKind::kArm).reason).find("tilted"), std::string::npos);
+  estimate_.q_ned_from_frd.setIdentity();
+  estimate_.position_ned.x() = 5.0;
+  EXPECT_NE(std::string(ask(RequestKind::kArm).reason).find("outside the fence"), std::string::npos);
+  EXPECT_EQ(supervisor_.mode(), Mode::kDisarmed);
+}
+
+TEST_F(Flight, RefusesWhatTheModeDoesNotAllow) {
+  EXPECT_FALSE(ask(RequestKind::kTakeoff, {0, 0, -1}).accepted);
+  EXPECT_FALSE(ask(RequestKind::kGoTo, {0, 0, -1}).accepted);
+  EXPECT_FALSE(ask(RequestKind::kLand).accepted);
+  ASSERT_TRUE(ask(RequestKind::kArm).accepted);
+  EXPECT_FALSE(ask(RequestKind::kTakeoff, {0, 0, 0.1}).accepted);
+  EXPECT_FALSE(ask(RequestKind::kTakeoff, {0, 0, -9}).accepted);
+  ASSERT_TRUE(ask(RequestKind::kTakeoff, {0, 0, -1}).accepted);
+  ASSERT_TRUE(step_until(Mode::kHolding, 10.0));
+  EXPECT_FALSE(ask(RequestKind::kArm).accepted);
+  EXPECT_FALSE(ask(RequestKind::kDisarm).accepted);
+  EXPECT_FALSE(ask(RequestKind::kGoTo, {9, 0, -1}).accepted);
+  EXPECT_FALSE(ask(RequestKind::kGoTo, {1, 0, std::numeric_limits<double>::quiet_NaN()}).accepted);
+  EXPECT_FALSE(ask(RequestKind::kGoTo, {1, 0, -1}, 50.0).accepted);
+  EXPECT_EQ(supervisor_.mode(), Mode::kHolding);
+}
+
+TEST_F(Flight, LosingThePoseLeadsToLevelDescentAndItsReturnToHold) {
+  hover();
+  situation_.pose_age_s = 0.4;
+  step();
+  EXPECT_EQ(supervisor_.mode(), Mode::kHolding);
+  situation_.pose_age_s = 0.6;
+  step();
+  EXPECT_EQ(supervisor_.mode(), Mode::kDescent);
+  EXPECT_EQ(directive_.actuation, Actuation::kLevelDescent);
+  situation_.pose_age_s = 0.0;
+  step();
+  EXPECT_EQ(supervisor_.mode(), Mode::kHolding);
+}
+
+TEST_F(Flight, DescentWithoutPositionEndsAtTheGroundOrByTimeOut) {
+  hover();
+  situation_.pose_age_s = 1.0;
+  ASSERT_TRUE(step_until(Mode::kDescent, 0.1));
+  situation_.unexplained_lift = 2.0;
+  ASSERT_TRUE(step_until(Mode::kDisarmed, 1.0));
+  situation_ = Situation{situation_};
+  situation_.unexplained_lift = 0.0;
+  situation_.pose_age_s = 0.0;
+  estimate_ = Estimate();
+  hover();
+  situation_.pose_age_s = 1.0;
+  ASSERT_TRUE(step_until(Mode::kStopped, 8.0));
+  EXPECT_EQ(supervisor_.reason(), Reason::kDescentTimedOut);
+}
+
+TEST_F(Flight, TippingOverStopsTheRotors) {
+  hover();
+  estimate_.q_ned_from_frd = Eigen::AngleAxisd(1.6, Vector3d::UnitY());
+  step();
+  EXPECT_EQ(supervisor_.mode(), Mode::kStopped);
+  EXPECT_EQ(directive_.actuation, Actuation::kOff);
+  ASSERT_TRUE(ask(RequestKind::kDisarm).accepted);
+  EXPECT_EQ(supervisor_.mode(), Mode::kDisarmed);
+}
+
+TEST_F(Flight, ALowBatteryLandsOnlyIfItStaysLow) {
+  hover();
+  situation_.supply_voltage_v = 3.2;
+  for (int i = 0; i < 250; ++i) step();
+  EXPECT_EQ(supervisor_.mode(), Mode::kHolding);
+  situation_.supply_voltage_v = 3.5;
+  step();
+  situation_.supply_voltage_v = 3.2;
+  ASSERT_TRUE(step_until(Mode::kLanding, 1.5));
+  EXPECT_EQ(supervisor_.reason(), Reason::kBatteryLow);
+}
+
+TEST_F(Flight, AMissionThatIsInterruptedIsAborted) {
+  Mission mission;
+  mission.id = 3;
+  mission.items = {{MissionItemKind::kTakeoff, {0, 0, -1}, 0, true, 0.5, 0.0},
+                   {MissionItemKind::kWaypoint, {2, 0, -1}, 0, true, 0.5, 0.0}};
+  ASSERT_TRUE(ask(RequestKind::kArm).accepted);
+  ASSERT_TRUE(fly(mission).accepted);
+  ASSERT_TRUE(step_until([&] { return supervisor_.mission().item_index == 1; }, 10.0));
+  ASSERT_TRUE(ask(RequestKind::kLand).accepted);
+  EXPECT_EQ(supervisor_.mission().state, MissionState::kAborted);
+  ASSERT_TRUE(step_until(Mode::kDisarmed, 20.0));
+  EXPECT_EQ(supervisor_.mission().state, MissionState::kAborted);
+}
+
+TEST_F(Flight, FollowsSetpointsAndHoldsWhenTheyStop) {
+  hover();
+  Setpoint setpoint;
+  setpoint.position_ned = {0.2, 0, -1};
+  setpoint.velocity_ned = {0.3, 0, 0};
+  ASSERT_TRUE(supervisor_.setpoint(setpoint, situation_).accepted);
+  step();
+  EXPECT_EQ(supervisor_.mode(), Mode::kSetpoint);
+  EXPECT_GT(directive_.reference.jerk_ned.x(), 0.0) << "it begins to move";
+  EXPECT_LT(directive_.reference.velocity_ned.norm(), 0.01) << "from rest";
+  setpoint.position_ned = {0.2, 9.0, -1};
+  EXPECT_FALSE(supervisor_.setpoint(setpoint, situation_).accepted);
+  setpoint.position_ned = {2.9, 0, -1};
+  estimate_.position_ned = setpoint.position_ned;
+  const Outcome outcome = supervisor_.setpoint(setpoint, situation_);
+  EXPECT_STREQ(outcome.reason,
+               "setpoint: where it could come to rest: x is 3.203 m, outside the fence of -3.000 to 3.000 m");
+  ASSERT_TRUE(step_until(Mode::kHolding, 0.85));
+  EXPECT_EQ(supervisor_.reason(), Reason::kSetpointsStopped);
+}
+
+TEST_F(Flight, FliesATrajectoryFromItsStartToItsEnd) {
+  hover();
+  Trajectory trajectory;
+  trajectory.segments = {minimum_jerk({0.5, 0, -1}, 0.0, {0.5, 1, -1}, 0.0, 4.0),
+                         minimum_jerk({0.5, 1, -1}, 0.0, {0, 1, -1.5}, 0.0, 3.0)};
+  ASSERT_TRUE(check(trajectory, Limits{}).accepted) << check(trajectory, Limits{}).reason;
+  Request request;
+  request.kind = RequestKind::kTrajectory;
+  request.trajectory = &trajectory;
+  ASSERT_TRUE(supervisor_.request(request, situation_).accepted);
+  EXPECT_EQ(supervisor_.mode(), Mode::kTrajectory);
+  ASSERT_TRUE(step_until(Mode::kHolding, 12.0));
+  EXPECT_NEAR((estimate_.position_ned - Vector3d(0, 1, -1.5)).norm(), 0.0, 1e-3);
+}
+
+bool same(const Directive& a, const Directive& b) {
+  return a.actuation == b.actuation && a.lift_fraction == b.lift_fraction && a.integrate == b.integrate &&
+         a.reference.position_ned == b.reference.position_ned &&
+         a.reference.velocity_ned == b.reference.velocity_ned &&
+         a.reference.acceleration_ned == b.reference.acceleration_ned &&
+         a.reference.jerk_ned == b.reference.jerk_ned && a.reference.snap_ned == b.reference.snap_ned &&
+         a.reference.yaw_rad == b.reference.yaw_rad && a.reference.yaw_rate == b.reference.yaw_rate;
+}
+
+TEST_F(Flight, AnotherGoesOnFromItsStateAtEveryStep) {
+  Mission mission;
+  mission.id = 5;
+  mission.items = {{MissionItemKind::kTakeoff, {0, 0, -1}, 0, true, 0.5, 0.2},
+                   {MissionItemKind::kWaypoint, {1, 0, -1}, 1.0, false, 1.0, 0.2},
+                   {MissionItemKind::kLand, {0, 0, 0}, 0, true, 0.4, 0.0}};
+  ASSERT_TRUE(ask(RequestKind::kArm).accepted);
+  ASSERT_TRUE(fly(mission).accepted);
+  Supervisor follower{SupervisionSettings()};
+  int steps = 0;
+  while (supervisor_.mode() == Mode::kMission) {
+    if (++steps % 7 == 0) {
+      const SupervisorState state = supervisor_.state();
+      follower.adopt(state, &mission, nullptr);
+    }
+    Situation seen = situation_;
+    const Estimate before = estimate_;
+    step();
+    if (steps < 7) continue;
+    seen.stamp_ns = situation_.stamp_ns;
+    seen.estimate = &before;
+    ASSERT_TRUE(same(follower.step(seen), directive_)) << "at step " << steps;
+    ASSERT_EQ(follower.mode(), supervisor_.mode());
+  }
+  EXPECT_EQ(supervisor_.reason(), Reason::kLanded);
+  EXPECT_EQ(follower.mission().state, MissionState::kCompleted);
+}
+
+TEST_F(Flight, AMissionThatIsNotKnownToWhoTakesOverEndsInHold) {
+  hover();
+  Mission mission;
+  mission.id = 5;
+  mission.items = {{MissionItemKind::kWaypoint, {2, 0, -1}, 0, true, 1.0, 0.0}};
+  ASSERT_TRUE(fly(mission).accepted);
+  for (int i = 0; i < 500; ++i) step();
+  const Reference before = directive_.reference;
+  ASSERT_GT(before.velocity_ned.x(), 0.3);
+  Mission other = mission;
+  other.id = 6;
+  const SupervisorState state = supervisor_.state();
+  supervisor_.adopt(state, &other, nullptr);
+  EXPECT_EQ(supervisor_.mode(), Mode::kHolding);
+  EXPECT_EQ(supervisor_.reason(), Reason::kPlanUnknown);
+  EXPECT_EQ(supervisor_.mission().state, MissionState::kAborted);
+  step();
+  EXPECT_NEAR(directive_.reference.velocity_ned.x(), before.velocity_ned.x(), 0.02);
+  for (int i = 0; i < 1000; ++i) step();
+  EXPECT_EQ(directive_.reference.velocity_ned, Vector3d::Zero());
+}
+
+TEST(Checks, RefuseMissionsWithTheItemTheValueAndTheLimit) {
+  const Limits limits;
+  Mission mission;
+  EXPECT_FALSE(check(mission, limits).accepted);
+  const MissionItem good{MissionItemKind::kWaypoint, {1, 0, -1}, 0, true, 0.5, 0.0};
+  const auto reason_of = [&](const MissionItem& item) {
+    mission.items = {good, item, good};
+    return std::string(check(mission, limits).reason);
+  };
+  MissionItem bad = good;
+  bad.position_ned.x() = 7.0;
+  EXPECT_NE(reason_of(bad).find("item 2: x is 7.000 m, outside the fence"), std::string::npos);
+  bad = good;
+  bad.speed = 9.0;
+  EXPECT_NE(reason_of(bad).find("item 2: speed is 9.000 m/s"), std::string::npos);
+  bad = good;
+  bad.hold_s = -1.0;
+  EXPECT_NE(reason_of(bad).find("item 2: hold"), std::string::npos);
+  bad = good;
+  bad.yaw_free = false;
+  bad.yaw_rad = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(reason_of(bad).find("item 2: yaw"), std::string::npos);
+  bad = good;
+  bad.kind = MissionItemKind::kLand;
+  EXPECT_NE(reason_of(bad).find("last item"), std::string::npos);
+  bad.kind = MissionItemKind::kTakeoff;
+  EXPECT_NE(reason_of(bad).find("first item"), std::string::npos);
+  mission.items.assign(kMaxMissionItems, good);
+  EXPECT_TRUE(check(mission, limits).accepted);
+  mission.items.push_back(good);
+  EXPECT_NE(std::string(check(mission, limits).reason).find("2049 items"), std::string::npos);
+}
+
+TEST(Checks, RefuseTrajectoriesThatStepLeaveTheFenceOrAreTooFast) {
+  const Limits limits;
+  Trajectory trajectory;
+  EXPECT_FALSE(check(trajectory, limits).accepted);
+  trajectory.segments = {minimum_jerk({0, 0, -1}, 0, {1, 0, -1}, 0, 3.0),
+                         minimum_jerk({1.1, 0, -1}, 0, {0, 0, -1}, 0, 3.0)};
+  EXPECT_NE(std::string(check(trajectory, limits).reason).find("segment 2 does not begin"),
+            std::string::npos);
+  trajectory.segments = {minimum_jerk({0, 0, -1}, 0, {8, 0, -1}, 0, 30.0)};
+  EXPECT_NE(std::string(check(trajectory, limits).reason).find("outside the fence"), std::string::npos);
+  trajectory.segments = {minimum_jerk({0, 0, -1}, 0, {2, 0, -1}, 0, 1.6)};
+  EXPECT_NE(std::string(check(trajectory, limits).reason).find("m/s, the limit"), std::string::npos);
+  trajectory.segments = {minimum_jerk({0, 0, -1}, 0, {2, 0, -1}, 0, 5.0)};
+  trajectory.segments[0].y[3] = std::numeric_limits<double>::infinity();
+  EXPECT_NE(std::string(check(trajectory, limits).reason).find("not a finite"), std::string::npos);
+  trajectory.segments[0].y[3] = 0.0;
+  trajectory.segments[0].duration_s = 0.0;
+  EXPECT_NE(std::string(check(trajectory, limits).reason).find("duration"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace swiftlet::control

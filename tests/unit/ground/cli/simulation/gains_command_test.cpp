@@ -1,0 +1,89 @@
+#include "swiftlet/ground/cli/simulation/gains_command.hpp"
+
+#include <complex>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "swiftlet/io/settings/control_settings_file.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using Json = nlohmann::json;
+
+control::ControlSettings settings(control::AttitudeModel model, double k_i) {
+  control::ControlSettings s =
+      runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml");
+  s.attitude.model = model;
+  s.attitude.roll = s.attitude.pitch = s.attitude.yaw = {Eigen::Vector3d(625.0, 2.0, 0.5), 4.0};
+  s.position.x = s.position.y = s.position.z = {1.5, 0.8, 0.5, k_i};
+  return s;
+}
+
+control::ControlDesign design(control::AttitudeModel model, double k_i) {
+  const plant::Vehicle vehicle = runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
+  return control::design(vehicle, settings(model, k_i));
+}
+
+TEST(GainsJson, GivesEveryAttitudeAxisOnItsModel) {
+  for (const control::AttitudeModel model :
+       {control::AttitudeModel::kDoubleIntegrator, control::AttitudeModel::kMotorLag}) {
+    const bool lag = model == control::AttitudeModel::kMotorLag;
+    const control::ControlDesign d = design(model, 0.0);
+    const Json out = Json::parse(gains_json(d, {}, "kaylion", "test"));
+    EXPECT_EQ(out["vehicle"], "kaylion");
+    EXPECT_EQ(out["control"], "test");
+    for (const char* name : {"roll", "pitch", "yaw"}) {
+      const Json& axis = out["attitude"][name];
+      EXPECT_EQ(axis["model"], lag ? "motor_lag" : "double_integrator");
+      EXPECT_EQ(axis["q"], lag ? Json({625.0, 2.0, 0.5}) : Json({625.0, 2.0}));
+      EXPECT_EQ(axis["r"], 4.0);
+      ASSERT_EQ(axis["k"].size(), lag ? 3U : 2U);
+      for (std::size_t i = 0; i < axis["k"].size(); ++i) {
+        EXPECT_EQ(axis["k"][i], d.roll.k[static_cast<Eigen::Index>(i)]);
+      }
+      ASSERT_EQ(axis["poles"].size(), axis["k"].size());
+      for (std::size_t i = 0; i < axis["poles"].size(); ++i) {
+        EXPECT_EQ(axis["poles"][i], Json({d.roll.poles[i].real(), d.roll.poles[i].imag()}));
+      }
+      EXPECT_EQ(axis["poles_with_motor_lag"].size(), 3U);
+      EXPECT_EQ(axis["phase_margin_deg"], d.roll.phase_margin_deg);
+    }
+  }
+}
+
+TEST(GainsJson, GivesEq49AndTheIntegralFormBesideIt) {
+  for (const double k_i : {0.0, 0.4}) {
+    const Json out = Json::parse(gains_json(design(control::AttitudeModel::kMotorLag, k_i), {}, "v", "c"));
+    for (const char* name : {"x", "y", "z"}) {
+      const Json& axis = out["position"][name];
+      EXPECT_EQ(axis["omega_n"], 1.5);
+      EXPECT_EQ(axis["zeta"], 0.8);
+      EXPECT_EQ(axis["epsilon"], 0.5);
+      EXPECT_EQ(axis["k_i"], k_i);
+      ASSERT_EQ(axis["f"].size(), 5U);
+      const double expected[] = {9.0, 4.8, 1.0, -9.0, -4.8};
+      for (std::size_t i = 0; i < 5; ++i) EXPECT_DOUBLE_EQ(axis["f"][i], expected[i]);
+      ASSERT_EQ(axis.contains("integral_form"), k_i > 0.0);
+      if (k_i > 0.0) {
+        EXPECT_DOUBLE_EQ(axis["integral_form"]["k_v"], (2.0 * 0.8 * 1.5 + 0.4) / 0.5);
+        EXPECT_DOUBLE_EQ(axis["integral_form"]["k_p"], (2.25 + 2.0 * 0.8 * 1.5 * 0.4) / 0.25);
+        EXPECT_DOUBLE_EQ(axis["integral_form"]["k_s"], 0.4 * 2.25 / 0.125);
+      }
+    }
+  }
+}
+
+TEST(GainsTable, HasARowForEveryAxis) {
+  const std::string table =
+      gains_table(design(control::AttitudeModel::kMotorLag, 0.0), {}, "kaylion", "test");
+  for (const char* axis : {"\n  roll ", "\n  pitch ", "\n  yaw ", "\n  x ", "\n  y ", "\n  z "}) {
+    EXPECT_NE(table.find(axis), std::string::npos) << axis;
+  }
+}
+
+}  // namespace
+}  // namespace swiftlet::ground

@@ -1,0 +1,109 @@
+// From a bench to a flight: an unknown vehicle is measured, identified, designed for, and flown.
+#include <algorithm>
+#include <cstdint>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/control/design/control_design.hpp"
+#include "swiftlet/ground/batch/margin_study.hpp"
+#include "swiftlet/ground/flight/flight_plan.hpp"
+#include "swiftlet/ground/flight/in_process_flight.hpp"
+#include "swiftlet/identification/bench/bench.hpp"
+#include "swiftlet/identification/bench/bench_simulation.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/io/settings/vehicle_writer.hpp"
+#include "swiftlet/math/random.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+// A vehicle of which nobody knows but that it is of KayLion's make.
+plant::Vehicle unknown(const plant::Vehicle& like, std::uint64_t seed) {
+  plant::RandomStream random(seed, 20250920);
+  plant::Vehicle out = like;
+  const auto vary = [&](double& value, double by) { value *= random.uniform(1.0 - by, 1.0 + by); };
+  vary(out.mass_kg, 0.1);
+  for (int axis = 0; axis < 3; ++axis) vary(out.inertia(axis, axis), 0.1);
+  out.inertia *= random.uniform(0.8, 1.2);
+  out.inertia(2, 2) = std::min(out.inertia(2, 2), 0.98 * (out.inertia(0, 0) + out.inertia(1, 1)));
+  vary(out.rotor.thrust, 0.1);
+  vary(out.rotor.torque, 0.1);
+  vary(out.motor.time_constant_s, 0.2);
+  vary(out.motor.k2, 0.1);
+  vary(out.motor.k3, 0.1);
+  out.motor.armature_resistance_ohm = 0.99 * out.motor.k2 * out.motor.k3 / out.rotor.torque;
+  vary(out.esc.gain, 0.05);
+  vary(out.esc.offset_v2, 0.1);
+  return out;
+}
+
+// The identified vehicle's file, as `swiftlet identify --out` writes it.
+std::string identified_file(const tests::TemporaryFolder& folder, const plant::Vehicle& truth,
+                            const plant::Vehicle& base, std::uint64_t seed) {
+  identification::BenchNoise noise;
+  noise.share = 0.005;
+  const identification::BenchData bench = identification::simulate_bench(truth, noise, seed);
+  identification::BenchIdentification found = identification::identify_bench(bench, base);
+  found.vehicle.name = "identified";
+  return folder.write("identified.yaml",
+                      runtime::vehicle_text(found.vehicle, found.sources, found.uncertainty, ""));
+}
+
+FlightPlan plan_of(const std::string& vehicle, const tests::TemporaryFolder& folder,
+                   const std::string& vary = "") {
+  FlyOptions options;
+  options.parties = Parties::kInProcess;
+  options.vehicle = vehicle;
+  options.vary = vary;
+  options.record = folder.path().string();
+  return plan_flight(options);
+}
+
+FlightReport fly(const FlightPlan& plan, const plant::Vehicle& truth, std::uint64_t seed) {
+  ClosedLoop loop(truth, plan.vehicle, plan.simulation, plan.control, seed);
+  FlightRecord record(plan.record_capacity());
+  return fly_in_process(loop, plan, seed, record, nullptr, {}).report;
+}
+
+class BenchToFlight : public testing::TestWithParam<std::uint64_t> {
+ protected:
+  tests::TemporaryFolder folder_;
+  plant::Vehicle kaylion_ = runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
+  plant::Vehicle truth_ = unknown(kaylion_, GetParam());
+};
+
+TEST_P(BenchToFlight, TheSquareOnTheTruePlant) {
+  ASSERT_TRUE(plant::validate(truth_).empty());
+  const FlightPlan plan = plan_of(identified_file(folder_, truth_, kaylion_, GetParam()), folder_);
+  const FlightReport report = fly(plan, truth_, GetParam());
+  EXPECT_TRUE(report.completed) << report.reason;
+  EXPECT_LT(report.errors.rms_3d_m, 0.004);
+  EXPECT_LT(report.errors.peak_3d_m, 0.02);
+}
+
+TEST_P(BenchToFlight, KeepsItsMarginsOverWhatTheBenchLeftOpen) {
+  const std::string file = identified_file(folder_, truth_, kaylion_, GetParam());
+  const FlightPlan plan = plan_of(file, folder_, kUncertainty);
+  ASSERT_EQ(plan.variation.name, kUncertainty);
+  const MarginStudy study = study_margins(control::design(plan.vehicle, plan.control), plan.vehicle,
+                                          plan.variation, 300, GetParam());
+  EXPECT_EQ(study.draws, 300U);
+  EXPECT_EQ(study.unstable, 0U);
+  for (std::size_t i = 0; i < kLoopNames.size(); ++i) {
+    const MarginStudy::Loop& loop = study.loops[i];
+    EXPECT_GT(loop.worst.phase_deg, 20.0) << kLoopNames[i];
+    EXPECT_GT(loop.worst.delay_s, 0.01) << kLoopNames[i];
+    EXPECT_LE(loop.worst.phase_deg, loop.most.phase_deg) << kLoopNames[i];
+    EXPECT_LE(loop.worst.delay_s, loop.most.delay_s) << kLoopNames[i];
+    EXPECT_GE(loop.worst.gain_decrease, loop.most.gain_decrease) << kLoopNames[i];
+    // A bench of half a percent leaves margins about where they are.
+    EXPECT_NEAR(loop.most.phase_deg, loop.designed.phase_deg, 3.0) << kLoopNames[i];
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, BenchToFlight, testing::Values(1, 2, 3, 4, 5));
+
+}  // namespace
+}  // namespace swiftlet::ground

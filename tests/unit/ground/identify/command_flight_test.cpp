@@ -1,0 +1,158 @@
+// What a flight's commands and IMU alone tell: of flights in the plant, whose truth is known, and of a real
+// vehicle.
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/identification/flight/flight.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
+#include "tests/support/campaign.hpp"
+#include "tests/unit/ground/identify/identified_flights.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using identification::Estimate;
+using identification::FlightIdentification;
+using identification::FlightLog;
+using identification::SpeedSource;
+
+const std::string kSource = SWIFTLET_SOURCE_DIR;
+constexpr double kDelayS = 0.006;  // that is added to the commands of simulated flights
+
+FlightPlan delayed_plan() {
+  FlightPlan plan = plan_of("identification");
+  plan.simulation.rotor_speed_rate_hz = 0.0;
+  delay_commands(plan, kDelayS);
+  return plan;
+}
+
+FlightLog blinded(FlightLog log) {
+  log.poses.clear();
+  log.supply_voltage_v.clear();
+  log.rotor_speeds.clear();
+  return log;
+}
+
+std::map<std::string, double> truth_of(const plant::Vehicle& v) {
+  const plant::Effectiveness effectiveness = plant::effectiveness(v);
+  std::map<std::string, double> out = {{"motor.time_constant", v.motor.time_constant_s}};
+  const char* const names[3] = {"thrust_to_rate.roll", "thrust_to_rate.pitch", "thrust_to_rate.yaw"};
+  for (int axis = 0; axis < 3; ++axis)
+    out[names[axis]] = v.mass_kg * effectiveness.row(1 + axis).cwiseAbs().mean() / v.inertia(axis, axis);
+  return out;
+}
+
+// Of several flights of vehicles unlike the plan's, whose batteries are not quite the plan's either.
+struct Tally {
+  int count = 0;
+  int covered = 0;
+  double bias = 0.0;   // sum of relative errors
+  double worst = 0.0;  // of their magnitudes
+};
+
+std::map<std::string, Tally> recover(const FlightPlan& plan, const char* what, int seeds) {
+  std::map<std::string, Tally> tallies;
+  for (int i = 1; i <= seeds; ++i) {
+    const auto seed = static_cast<std::uint64_t>(i);
+    plant::Vehicle truth = another(plan.vehicle, seed);
+    truth.battery.internal_resistance_ohm *= i % 2 == 0 ? 1.2 : 0.8;
+    const FlightIdentification found =
+        identification::identify_flight({blinded(flown(plan, truth, seed))}, plan.vehicle, {});
+    EXPECT_EQ(found.source, SpeedSource::kCommanded);
+    EXPECT_TRUE(found.converged) << seed;
+    for (const auto& [name, value] : truth_of(truth)) {
+      const Estimate& estimate = *found.find(name);
+      Tally& tally = tallies[name];
+      ++tally.count;
+      tally.covered += estimate.low() <= value && value <= estimate.high() ? 1 : 0;
+      tally.bias += estimate.value / value - 1.0;
+      tally.worst = std::max(tally.worst, std::abs(estimate.value / value - 1.0));
+      std::printf("%s %d %-22s %9.5g +- %.2g, truth %9.5g\n", what, i, name.c_str(), estimate.value,
+                  estimate.half_width, value);
+    }
+    std::printf("%s %d delay of rates %.5f +- %.5f\n", what, i, found.find("delay.rates")->value,
+                found.find("delay.rates")->half_width);
+    for (const identification::PredictionError& error : found.errors) {
+      EXPECT_LT(error.one_step, error.idle_one_step) << error.quantity;
+      EXPECT_LT(error.half_second, error.idle_half_second) << error.quantity;
+    }
+  }
+  for (const auto& [name, tally] : tallies) {
+    std::printf("%-10s %-22s covered %d of %d, bias %+.2f %%, worst %.2f %%\n", what, name.c_str(),
+                tally.covered, tally.count, 100.0 * tally.bias / tally.count, 100.0 * tally.worst);
+  }
+  return tallies;
+}
+
+// Bounds are twice the worst of 8 seeds.
+TEST(CommandFlight, RecoversLagAndGains) {
+  for (const auto& [name, tally] : recover(delayed_plan(), "calm", tests::draws(1, 8))) {
+    const double bound = name == "motor.time_constant" ? 0.002 : 0.05;
+    EXPECT_GE(tally.covered, tests::least_covered(tally.count)) << name;
+    EXPECT_LT(tally.worst, bound) << name;
+    EXPECT_LT(std::abs(tally.bias) / tally.count, tests::bound_of_mean(bound, tally.count)) << name;
+  }
+}
+
+TEST(CommandFlight, RecoversThemInGusts) {
+  FlightPlan plan = delayed_plan();
+  plan.simulation.air.wind_ned = {1.0, -0.7, 0.0};
+  plan.simulation.air.gust_sigma_ned = {0.7, 0.7, 0.3};
+  for (const auto& [name, tally] : recover(plan, "gusts", tests::draws(1, 8))) {
+    EXPECT_GE(tally.covered, tests::least_covered(tally.count)) << name;
+    EXPECT_LT(tally.worst, name == "motor.time_constant" ? 0.002 : 0.08) << name;
+  }
+}
+
+// The log of a real Crazyflie: what others have published of its kind, and of this log, lies near.
+TEST(CommandFlight, OfARealVehicle) {
+  const plant::Vehicle base = runtime::load_vehicle(kSource + "/config/vehicles/crazyflie2.yaml");
+  const ReadFlightLog read =
+      read_flight_log(kSource + "/tests/data/crazyflie_flight.csv.gz", base, BodyAxes::kAsSaid);
+  ASSERT_EQ(read.log.size(), 50496U);
+  const FlightIdentification found = identification::identify_flight({read.log}, base, {});
+  EXPECT_EQ(found.source, SpeedSource::kCommanded);
+  EXPECT_TRUE(found.converged);
+  ASSERT_EQ(found.lags.size(), 3U);
+  EXPECT_NEAR(found.lags[0].value, 0.072, 0.006) << "Eschmann, from the specific force";
+  const Estimate& lag = *found.find("motor.time_constant");
+  EXPECT_LT(lag.low(), base.motor.time_constant_s);
+  EXPECT_GT(lag.high(), base.motor.time_constant_s);
+  EXPECT_LT(lag.half_width, 0.02);
+  ASSERT_EQ(found.comparisons.size(), 4U);
+  for (const identification::FileComparison& comparison : found.comparisons) {
+    if (comparison.told.parameter == "thrust_to_rate.yaw") continue;
+    EXPECT_LT(comparison.told.low(), comparison.file) << comparison.told.parameter;
+    EXPECT_GT(comparison.told.high(), comparison.file) << comparison.told.parameter;
+    EXPECT_NEAR(comparison.ratio(), 1.0, 0.2) << comparison.told.parameter;
+    EXPECT_LT(comparison.told.half_width, 0.3 * comparison.told.value) << comparison.told.parameter;
+  }
+  const Estimate& hover = *found.find("thrust_per_mass.hover_command");
+  EXPECT_NEAR(hover.value, 0.64, 0.02);
+  EXPECT_LT(hover.half_width, 0.02);
+  for (const identification::PredictionError& error : found.errors) {
+    EXPECT_LT(error.half_second, 0.75 * error.idle_half_second) << error.quantity;
+    EXPECT_LT(error.one_step,
+              (error.quantity == "p" || error.quantity == "q" ? 0.3 : 0.85) * error.idle_one_step)
+        << error.quantity;
+  }
+  for (const identification::HorizonError& error : found.horizons) {
+    if (error.horizon_s > 0.15) continue;
+    EXPECT_LT(error.by_commands, error.idle) << error.quantity << error.horizon_s;
+  }
+}
+
+TEST(CommandFlight, RefusesMotorsInAnotherOrder) {
+  const FlightPlan plan = delayed_plan();
+  FlightLog log = blinded(flown(plan, plan.vehicle, 4));
+  swap_motors(log);
+  expect_refused({log}, plan.vehicle, "are the motors in its order");
+}
+
+}  // namespace
+}  // namespace swiftlet::ground

@@ -1,0 +1,82 @@
+#include "swiftlet/ground/report/flight_comparison.hpp"
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/ground/command_line/command.hpp"
+#include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/flat_yaml.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
+TEST(FlatYaml, EverySettingHasItsKey) {
+  EXPECT_EQ(runtime::flatten_yaml("name: n\nposition:\n  x: {omega_n: 2.0, k: [1, 2]}\n"
+                                  "items:\n  - {kind: land}\n  - {kind: wait, at: ~}\n",
+                                  "a.yaml"),
+            (Settings{{"name", "n"},
+                      {"position.x.omega_n", "2.0"},
+                      {"position.x.k", "[1, 2]"},
+                      {"items[0].kind", "land"},
+                      {"items[1].kind", "wait"},
+                      {"items[1].at", ""}}));
+}
+
+TEST(FlatYaml, NamesTheLineOfWhatIsNoYaml) {
+  try {
+    runtime::flatten_yaml("a: 1\nb: [1, 2\n", "a.yaml");
+    FAIL();
+  } catch (const runtime::ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find("a.yaml:"), std::string::npos) << error.what();
+  }
+}
+
+class FlightComparison : public testing::Test {
+ protected:
+  std::filesystem::path flight(const std::string& name, const std::string& rms, const std::string& omega_n) {
+    std::filesystem::path folder = folder_.path() / name;
+    std::filesystem::create_directory(folder);
+    folder_.write(name + "/report.json",
+                  R"({"completed": true, "mission": "square", "rms_3d_m": )" + rms + "}");
+    folder_.write(name + "/control.yaml", "position: {omega_n: " + omega_n + ", zeta: 1}\n");
+    return folder;
+  }
+  tests::TemporaryFolder folder_;
+};
+
+TEST_F(FlightComparison, OneFlightShowsItsFiguresAndLoops) {
+  const std::string table = comparison_table({load_recorded_flight(flight("a", "0.001234", "2.0"))});
+  EXPECT_NE(table.find("RMS 3-D, mm   1.23\n"), std::string::npos) << table;
+  EXPECT_NE(table.find("control.position.omega_n  2.0\n"), std::string::npos) << table;
+  EXPECT_NE(table.find("peak 3-D, mm  -\n"), std::string::npos) << "not in its report";
+}
+
+TEST_F(FlightComparison, SeveralShowWhereTheyDiffer) {
+  const std::vector<RecordedFlight> flights = {load_recorded_flight(flight("a", "0.001", "2.0")),
+                                               load_recorded_flight(flight("b", "0.010", "1.3"))};
+  const std::string table = comparison_table(flights);
+  EXPECT_NE(table.find("control.position.omega_n  2.0  1.3\n"), std::string::npos) << table;
+  EXPECT_EQ(table.find("zeta"), std::string::npos) << "is the same in both";
+  EXPECT_EQ(comparison_json(flights)["differ"], nlohmann::ordered_json::array({"control.position.omega_n"}));
+}
+
+TEST_F(FlightComparison, TheNewestIsTheOneWithTheLastReport) {
+  const std::filesystem::path old_one = flight("b", "0.001", "2.0");
+  const std::filesystem::path new_one = flight("a", "0.001", "2.0");
+  std::filesystem::last_write_time(
+      old_one / "report.json",
+      std::filesystem::last_write_time(new_one / "report.json") - std::chrono::hours(1));
+  EXPECT_EQ(newest_flight(folder_.path()), new_one);
+}
+
+TEST_F(FlightComparison, SaysWhatIsNoFlight) {
+  EXPECT_THROW(load_recorded_flight(folder_.path()), InputError);
+  EXPECT_THROW(newest_flight(folder_.path() / "none"), InputError);
+  folder_.write("report.json", "{\"completed\": tr");
+  EXPECT_THROW(load_recorded_flight(folder_.path()), runtime::ConfigError);
+}
+
+}  // namespace
+}  // namespace swiftlet::ground

@@ -1,0 +1,112 @@
+#include "swiftlet/ground/terminal/watch_screen.hpp"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+namespace swiftlet::ground {
+namespace {
+
+const Clock::time_point kNow = Clock::time_point() + std::chrono::hours(1);
+
+template <class T>
+void hear(Latest<T>& latest, const T& message) {
+  latest = {message, kNow, 1};
+}
+
+// Holding at 1 m, all well.
+View in_flight() {
+  View view;
+  msg::ControlStatus control;
+  control.mode(msg::ControlStatus_Constants::MODE_HOLDING);
+  control.reason() = "take-off completed";
+  control.airborne(true);
+  control.has_pose(true);
+  control.cycles(1000);
+  hear(view.control, control);
+  msg::Estimate estimate;
+  estimate.position_ned({0.001, 0.0, -1.0});
+  hear(view.estimate, estimate);
+  msg::Reference reference;
+  reference.position_ned({0.0, 0.0, -1.0});
+  hear(view.reference, reference);
+  msg::Battery battery;
+  battery.voltage_v(3.9);
+  battery.state_of_charge(0.5);
+  hear(view.battery, battery);
+  msg::VehicleInfo vehicle;
+  hear(view.vehicle, vehicle);
+  return view;
+}
+
+WatchFacts facts() {
+  WatchFacts facts;
+  facts.vehicle = "kl1";
+  return facts;
+}
+
+std::string text_of(const std::vector<ScreenLine>& lines) {
+  std::string text;
+  for (const ScreenLine& line : lines) text += line.text + "\n";
+  return text;
+}
+
+TEST(WatchScreen, FitsEveryScreenAndKeepsTheKeysAtItsEnd) {
+  View view = in_flight();
+  view.battery.message.voltage_v(3.0);
+  for (const int width : {1, 10, 40, 80, 200}) {
+    for (const int height : {1, 2, 5, 24, 60}) {
+      const auto lines = watch_screen(view, facts(), kNow, width, height);
+      ASSERT_EQ(lines.size(), static_cast<std::size_t>(height));
+      for (const ScreenLine& line : lines) ASSERT_LE(line.text.size(), static_cast<std::size_t>(width));
+      EXPECT_EQ(lines.back().text, std::string("h hold   l land   s stop (rotors off)   q quit")
+                                       .substr(0, static_cast<std::size_t>(width)));
+    }
+  }
+  const auto small = watch_screen(view, facts(), kNow, 80, 3);
+  EXPECT_EQ(small[0].text, "kl1 in domain 0: holding (take-off completed), airborne");
+  EXPECT_EQ(small[1].text, "! battery is low: 3.00 V") << "what matters most stays";
+  EXPECT_EQ(small[1].emphasis, Emphasis::kWarning);
+}
+
+TEST(WatchScreen, ShowsPositionAgainstReference) {
+  const std::string text = text_of(watch_screen(in_flight(), facts(), kNow, 100, 40));
+  EXPECT_NE(text.find("no warnings\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("position       0.001    0.000   -1.000 m\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("off by           1.0      0.0      0.0 mm   1.0 mm in all\n"), std::string::npos)
+      << text;
+}
+
+TEST(WatchScreen, SaysWhatItWaitsFor) {
+  WatchFacts waiting = facts();
+  waiting.where = "no control service for vehicle kl1 in domain 0";
+  const std::string text = text_of(watch_screen(View(), waiting, kNow, 100, 10));
+  EXPECT_NE(text.find("waiting: no control service for vehicle kl1"), std::string::npos) << text;
+  EXPECT_EQ(watch_line(View(), waiting, kNow),
+            "kl1: waiting: no control service for vehicle kl1 in domain 0");
+}
+
+TEST(Warnings, NameWhatStandsAgainstAQuietFlight) {
+  EXPECT_TRUE(warnings_of(in_flight(), kNow).empty());
+  const auto warns = [](const std::function<void(View&)>& change, const std::string& sentence) {
+    View view = in_flight();
+    change(view);
+    const auto warnings = warnings_of(view, kNow);
+    EXPECT_TRUE(std::find(warnings.begin(), warnings.end(), sentence) != warnings.end()) << sentence;
+  };
+  warns([](View& v) { v.control.received -= std::chrono::seconds(3); }, "control has said nothing for 3 s");
+  warns([](View& v) { v.control.message.mode(msg::ControlStatus_Constants::MODE_STOPPED); },
+        "rotors stopped: take-off completed");
+  warns([](View& v) { v.control.message.has_pose(false); }, "no pose for 0.0 s");
+  warns([](View& v) { v.battery.message.voltage_v(3.2); }, "battery is low: 3.20 V");
+  warns([](View& v) { v.estimate.message.position_ned({0.5, 0, -1}); }, "0.50 m off the reference");
+  warns([](View& v) { v.control.message.saturated(true); }, "the rotors' limits cut commands");
+  warns([](View& v) { v.control.message.deadline_misses(50); }, "5.0 % of the steps are late");
+  warns([](View& v) { v.vehicle.message.fault() = "no commands"; }, "vehicle: no commands");
+  warns([](View& v) { v.estimate.message.pose_fault(msg::Estimate_Constants::POSE_FAULT_FROZEN); },
+        "poses are refused as frozen");
+  EXPECT_EQ(warnings_of(View(), kNow), std::vector<std::string>({"no control service"}));
+}
+
+}  // namespace
+}  // namespace swiftlet::ground

@@ -1,0 +1,84 @@
+// The sag's ratio, beside that of the simulated vehicle.
+#include "swiftlet/identification/flight/supply_sag.hpp"
+
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
+#include "swiftlet/plant/simulation/dynamics.hpp"
+
+namespace swiftlet::identification {
+namespace {
+
+constexpr double kStep = 2e-3;  // of the command
+
+plant::Vehicle vehicle_named(const std::string& name) {
+  return runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/" + name + ".yaml");
+}
+
+// Thrusts of all rotors, N, once they have settled at half the charge.
+plant::PerRotor settled_thrusts(const plant::Vehicle& vehicle, const plant::PerRotor& commands) {
+  const plant::Dynamics dynamics(vehicle, plant::Supply::battery());
+  plant::RotorDrive drive;
+  drive.state = plant::RotorState::kRunning;
+  drive.throttle = commands;
+  plant::VehicleState state;
+  state.rotor_speeds.fill(1000.0);
+  for (int i = 0; i < 3000; ++i) {
+    plant::VehicleState next = state;
+    next.state_of_charge = 0.5;
+    dynamics.advance(next, drive, Eigen::Vector3d::Zero(), 1e-3);
+    state.rotor_speeds = next.rotor_speeds;
+    state.armature_currents = next.armature_currents;
+    state.sag_v = next.sag_v;
+  }
+  plant::PerRotor out{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(vehicle.rotor_count()); ++i)
+    out[i] = vehicle.rotor.thrust * state.rotor_speeds[i] * state.rotor_speeds[i];
+  return out;
+}
+
+plant::PerRotor all(double command) {
+  plant::PerRotor out;
+  out.fill(command);
+  return out;
+}
+
+// By what the rotors do when all go up, and when the first goes up as the second goes down.
+double simulated_ratio(const plant::Vehicle& vehicle) {
+  double low = 0.05;
+  double high = 1.0;
+  for (int i = 0; i < 25; ++i) {
+    const double middle = 0.5 * (low + high);
+    (settled_thrusts(vehicle, all(middle))[0] < plant::hover_thrust(vehicle) ? low : high) = middle;
+  }
+  plant::PerRotor apart = all(low);
+  apart[0] += kStep;
+  apart[1] -= kStep;
+  const plant::PerRotor moment = settled_thrusts(vehicle, apart);
+  const double shared =
+      settled_thrusts(vehicle, all(low + kStep))[0] - settled_thrusts(vehicle, all(low - kStep))[0];
+  return shared / (moment[0] - moment[1]);
+}
+
+TEST(SupplySag, IsThatOfTheSimulatedVehicle) {
+  for (const char* const name : {"kaylion", "crazyflie2"}) {
+    const plant::Vehicle vehicle = vehicle_named(name);
+    const double ratio = shared_over_single(vehicle);
+    std::printf("%s: %.4f\n", name, ratio);
+    EXPECT_LT(ratio, 0.97) << name;
+    EXPECT_NEAR(ratio, simulated_ratio(vehicle), 0.002) << name;
+  }
+}
+
+TEST(SupplySag, IsNoneWithoutResistance) {
+  plant::Vehicle vehicle = vehicle_named("kaylion");
+  vehicle.battery.internal_resistance_ohm = 0.0;
+  EXPECT_NEAR(shared_over_single(vehicle), 1.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace swiftlet::identification

@@ -1,0 +1,24 @@
+// What a refusal must look like.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/io/config_error.hpp"
+
+namespace swiftlet::tests {
+
+// The whole sentence of the ConfigError that work throws; fails the test if it throws none.
+inline std::string refusal(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const runtime::ConfigError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "nothing was refused";
+  return "";
+}
+
+}  // namespace swiftlet::tests

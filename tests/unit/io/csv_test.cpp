@@ -1,0 +1,101 @@
+#include "swiftlet/io/csv.hpp"
+
+#include <string>
+#include <string_view>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/io/config_error_check.hpp"
+
+namespace swiftlet::runtime {
+namespace {
+
+using tests::refusal;
+
+CsvTable read(std::string_view text, std::size_t min_rows = 1) {
+  return parse_csv(text, "f.csv", {"t", "a"}, min_rows);
+}
+
+std::string refused(std::string_view text, std::size_t min_rows = 1) {
+  return refusal([&] { read(text, min_rows); });
+}
+
+TEST(Csv, ReadsRowsOfNumbers) {
+  for (const std::string_view text :
+       {"t,a\n0,1.5\n+1e-3,-2\n", "t,a\r\n0,1.5\r\n+1e-3,-2\r\n", "t,a\n0,1.5\n+1e-3,-2",
+        " t ,\ta\n 0 , 1.5\t\n+1e-3,-2\n\n \n", "\xef\xbb\xbft,a\n0,1.5\n+1e-3,-2\n"}) {
+    const CsvTable table = read(text);
+    ASSERT_EQ(table.row_count(), 2U) << text;
+    EXPECT_EQ(table.column_count(), 2U);
+    EXPECT_EQ(table.number(0, 0), 0.0);
+    EXPECT_EQ(table.number(0, 1), 1.5);
+    EXPECT_EQ(table.number(1, 0), 1.0e-3);
+    EXPECT_EQ(table.number(1, 1), -2.0);
+    EXPECT_EQ(table.line(1), 3);
+  }
+}
+
+TEST(Csv, RefusesBadHeaders) {
+  EXPECT_EQ(refused(""), "f.csv: is empty, must begin with the header t,a");
+  EXPECT_EQ(refused(" \n\n"), "f.csv: is empty, must begin with the header t,a");
+  EXPECT_EQ(refused("0,1\n1,2\n"), "f.csv:1: has no header, the first line must be t,a");
+  EXPECT_EQ(refused("a,t\n1,2\n"), "f.csv:1: header: is a,t, must be t,a");
+  EXPECT_EQ(refused("t,a,b\n1,2,3\n"), "f.csv:1: header: is t,a,b, must be t,a");
+  EXPECT_EQ(refused("t\n1\n"), "f.csv:1: header: is t, must be t,a");
+}
+
+TEST(Csv, SaysThatCommasSeparateColumns) {
+  const auto refused_with = [](std::string_view text) {
+    return refusal([&] { parse_csv_as_headed(text, "f.csv"); });
+  };
+  for (const std::string_view text : {"t;a\n0;1\n", "t\ta\n0\t1\n"})
+    EXPECT_EQ(refused_with(text),
+              "f.csv:1: header: has semicolons or tabs between its columns, must have commas, and points in "
+              "numbers");
+}
+
+TEST(Csv, RefusesBadRows) {
+  EXPECT_EQ(refused("t,a\n0,1\n1\n"), "f.csv:3: has 1 fields, must have 2: t,a");
+  EXPECT_EQ(refused("t,a\n0,1,2\n"), "f.csv:2: has 3 fields, must have 2: t,a");
+  EXPECT_EQ(refused("t,a\n0,1\n\n2,3\n"), "f.csv:3: has 0 fields, must have 2: t,a");
+  EXPECT_EQ(refused("t,a\n0,1\n1,\n"), "f.csv:3: a: is empty, must be a finite number");
+  for (const std::string bad :
+       {"x", "1.0.0", "1 2", "nan", "inf", "-inf", "1e999", "0x10", "\"1\"", "++1", "1;2"})
+    EXPECT_EQ(refused("t,a\n0," + bad + "\n"), "f.csv:2: a: is " + bad + ", must be a finite number");
+}
+
+TEST(Csv, ShowsBrokenTextInAsciiAndShort) {
+  EXPECT_EQ(refused("t,a\n0,\xff\x01z\n"), "f.csv:2: a: is ??z, must be a finite number");
+  EXPECT_EQ(refused("t,a\n0," + std::string(100, 'x') + "\n"),
+            "f.csv:2: a: is " + std::string(60, 'x') + "..., must be a finite number");
+}
+
+TEST(Csv, DemandsRows) {
+  EXPECT_EQ(refused("t,a\n"), "f.csv: has 0 rows behind the header, must have at least 1");
+  EXPECT_EQ(refused("t,a\n0,1\n", 2), "f.csv: has 1 rows behind the header, must have at least 2");
+  EXPECT_EQ(read("t,a\n", 0).row_count(), 0U);
+}
+
+TEST(Csv, ChecksBounds) {
+  const CsvTable table = read("t,a\n0,1\n1,2000.5\n");
+  EXPECT_EQ(table.number(1, 1, between(1000, 2001), "us"), 2000.5);
+  EXPECT_EQ(refusal([&] { table.number(1, 1, between(1000, 2000), "us"); }),
+            "f.csv:3: a: is 2000.5, must be at least 1000 and at most 2000 us");
+  EXPECT_EQ(refusal([&] { table.number(0, 0, above(0)); }), "f.csv:2: t: is 0, must be above 0");
+  EXPECT_EQ(refusal([&] { table.fail(1, "t", "is 1, must be below 0.5"); }),
+            "f.csv:3: t: is 1, must be below 0.5");
+}
+
+TEST(Csv, NamesAFileThatIsNotThere) {
+  EXPECT_NE(refusal([] { load_csv("/nowhere/f.csv", {"t"}); }).find("/nowhere/f.csv: "), std::string::npos);
+}
+
+TEST(Csv, WritesNumbersThatReadBack) {
+  EXPECT_EQ(exact(0.1), "0.1");
+  EXPECT_EQ(exact(1.0), "1");
+  EXPECT_EQ(exact(-2.5e-7), "-2.5e-07");
+  EXPECT_EQ(std::stod(exact(1.0 / 3.0)), 1.0 / 3.0);
+}
+
+}  // namespace
+}  // namespace swiftlet::runtime

@@ -1,0 +1,72 @@
+#include "swiftlet/io/find_config.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/io/config_error_check.hpp"
+
+namespace swiftlet::runtime {
+namespace {
+
+namespace fs = std::filesystem;
+using tests::refusal;
+
+// A folder of one's own with a file in it, named by the environment while the test runs.
+class FindConfig : public testing::Test {
+ protected:
+  FindConfig() : folder_(fs::temp_directory_path() / ("swiftlet-find-config-" + std::to_string(::getpid()))) {
+    fs::create_directories(folder_ / "vehicles");
+    std::ofstream(folder_ / "vehicles" / "own.yaml") << "a: 1\n";
+    ::setenv("SWIFTLET_CONFIG_DIR", folder_.c_str(), 1);
+  }
+  void TearDown() override {
+    ::unsetenv("SWIFTLET_CONFIG_DIR");
+    fs::remove_all(folder_);
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(FindConfig, TakesAPathAsGiven) {
+  const std::string path = (folder_ / "vehicles" / "own.yaml").string();
+  EXPECT_EQ(find_config(path), path);
+}
+
+TEST_F(FindConfig, LooksInTheFolderOfTheEnvironment) {
+  EXPECT_EQ(find_config("vehicles/own.yaml"), (folder_ / "vehicles" / "own.yaml").string());
+}
+
+TEST_F(FindConfig, AFolderIsNoFile) {
+  EXPECT_NE(refusal([] { find_config("vehicles"); }).find("is not found"), std::string::npos);
+}
+
+TEST_F(FindConfig, LooksBesideTheExecutable) {
+  ::unsetenv("SWIFTLET_CONFIG_DIR");
+  const std::vector<std::string> directories = config_directories();
+  ASSERT_EQ(directories.size(), 2U);
+  const fs::path executable = fs::read_symlink("/proc/self/exe");
+  EXPECT_EQ(directories[0], (executable.parent_path().parent_path() / "share/swiftlet/config").string());
+  EXPECT_EQ(directories[1], (executable.parent_path().parent_path().parent_path() / "config").string());
+}
+
+TEST_F(FindConfig, SaysWhereItLooked) {
+  const std::string sentence = refusal([] { find_config("vehicles/none.yaml"); });
+  EXPECT_EQ(sentence.rfind("vehicles/none.yaml: is not found, looked for vehicles/none.yaml, " +
+                               (folder_ / "vehicles/none.yaml").string() + ", ",
+                           0),
+            0U)
+      << sentence;
+  EXPECT_NE(sentence.find("/share/swiftlet/config/vehicles/none.yaml"), std::string::npos);
+}
+
+TEST_F(FindConfig, AnAbsolutePathIsLookedForOnce) {
+  EXPECT_EQ(refusal([] { find_config("/nonexistent.yaml"); }),
+            "/nonexistent.yaml: is not found, looked for /nonexistent.yaml");
+}
+
+}  // namespace
+}  // namespace swiftlet::runtime

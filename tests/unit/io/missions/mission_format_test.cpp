@@ -1,0 +1,503 @@
+#include "swiftlet/io/missions/mission_format.hpp"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/control/types/polynomial.hpp"
+#include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/csv.hpp"
+#include "swiftlet/io/missions/geodesy.hpp"
+#include "tests/unit/ground/fault.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using control::MissionItemKind;
+using Eigen::Vector3d;
+
+const std::string kData = SWIFTLET_SOURCE_DIR "/tests/data/";
+
+control::Limits field() {
+  control::Limits limits;
+  limits.fence_min_ned = {-30, -30, -12};
+  limits.fence_max_ned = {30, 30, 0.2};
+  return limits;
+}
+
+template <class Parse>
+std::string refusal(Parse&& parse) {
+  try {
+    parse();
+  } catch (const runtime::ConfigError& error) {
+    return error.what();
+  }
+  return "it was accepted";
+}
+
+bool assumes(const MissionFile& file, const std::string& part) {
+  for (const std::string& assumption : file.assumptions) {
+    if (assumption.find(part) != std::string::npos) return true;
+  }
+  return false;
+}
+
+control::Reference at_path_start(const MissionFile& file) {
+  return control::evaluate(file.mission.segments.front(), 0.0);
+}
+
+TEST(DetectFormat, LooksAtTheContent) {
+  EXPECT_EQ(detect_format("duration,x^0\n", "a.csv"), MissionFormat::kPolynomialCsv);
+  EXPECT_EQ(detect_format("t,x,y,z\n", "a.csv"), MissionFormat::kSampledCsv);
+  EXPECT_EQ(detect_format("t,x,y,z\n", "a.txt"), MissionFormat::kSampledCsv);
+  EXPECT_EQ(detect_format("x,y,z\n", "a.csv"), MissionFormat::kWaypointCsv);
+  EXPECT_EQ(detect_format("\xef\xbb\xbf"
+                          "0.0, 1.5,2e-1\r\n",
+                          "a.csv"),
+            MissionFormat::kWaypointCsv);
+  EXPECT_EQ(detect_format("0,1,2,0.5\n", "a"), MissionFormat::kWaypointCsv);
+  EXPECT_EQ(detect_format("\n  {\"fileType\": \"Plan\"}", "a.json"), MissionFormat::kQGroundControlPlan);
+  EXPECT_EQ(detect_format("", "a.plan"), MissionFormat::kQGroundControlPlan);
+  EXPECT_EQ(detect_format("frame: ned\n", "a.yaml"), MissionFormat::kYaml);
+  EXPECT_EQ(detect_format("frame: ned\n", "a"), MissionFormat::kYaml);
+}
+
+TEST(DetectFormat, SaysWhatACsvFileMustBeginWith) {
+  const std::string known =
+      "duration,x^0,... (polynomials), t,x,y,z,... (samples) or x,y,z[,yaw] (waypoints, also without a "
+      "header)";
+  EXPECT_EQ(refusal([] { detect_format("", "a.csv"); }), "a.csv: is empty, must hold " + known);
+  EXPECT_EQ(refusal([] { detect_format("1,2,3,4,5\n", "a.csv"); }),
+            "a.csv:1: has 5 fields, of which the first is 1; must begin with " + known);
+  EXPECT_EQ(refusal([] { detect_format("north,east\n", "a.CSV"); }),
+            "a.CSV:1: has 2 fields, of which the first is north; must begin with " + known);
+}
+
+// Polynomials
+
+std::string header() {
+  std::string text = "duration";
+  for (const char* axis : {"x", "y", "z", "yaw"}) {
+    for (int k = 0; k < 8; ++k) text += std::string(",") + axis + "^" + std::to_string(k);
+  }
+  return text;
+}
+const std::string kHeader = header();
+
+// Rest to rest from x to x + way east, at a height, by minimum jerk.
+std::string row(double duration_s, double x, double way, double height, double yaw = 0.0) {
+  const control::PolynomialSegment s =
+      control::minimum_jerk({x, 0, height}, yaw, {x + way, 0, height}, yaw, duration_s);
+  std::string text = runtime::exact(duration_s);
+  for (const control::Polynomial* const axis : {&s.x, &s.y, &s.z, &s.yaw}) {
+    for (const double c : *axis) text += "," + runtime::exact(c);
+  }
+  return text;
+}
+
+MissionFile polynomials(const std::string& text) {
+  return parse_polynomial_csv(text, "p.csv", control::Limits());
+}
+
+TEST(PolynomialCsv, TurnsEnuIntoNed) {
+  const MissionFile file = polynomials(kHeader + "\n" + row(4.0, 0.5, 1.0, 1.5, 0.3) + "\n");
+  EXPECT_EQ(file.name, "p");
+  ASSERT_EQ(file.mission.items.size(), 3U);
+  EXPECT_EQ(file.mission.items[0].kind, MissionItemKind::kTakeoff);
+  EXPECT_NEAR(file.mission.items[0].position_ned.z(), -1.5, 1e-9);
+  EXPECT_EQ(file.mission.items[1].kind, MissionItemKind::kTrajectory);
+  EXPECT_EQ(file.mission.items[1].segment_count, 1U);
+  EXPECT_EQ(file.mission.items[2].kind, MissionItemKind::kLand);
+  const control::PolynomialSegment& segment = file.mission.segments.front();
+  const control::Reference start = at_path_start(file);
+  EXPECT_LT((start.position_ned - Vector3d(0, 0.5, -1.5)).norm(), 1e-6);
+  EXPECT_NEAR(start.yaw_rad, M_PI / 2 - 0.3, 1e-6);
+  EXPECT_LT((control::evaluate(segment, 4.0).position_ned - Vector3d(0, 1.5, -1.5)).norm(), 1e-3);
+  EXPECT_TRUE(assumes(file, "ENU"));
+  EXPECT_TRUE(assumes(file, "above the ground: it comes down to 1.50 m"));
+  EXPECT_TRUE(assumes(file, "take-off to 1.50 m and a landing are added"));
+}
+
+TEST(PolynomialCsv, OnTheGroundItIsTakenFromAHover) {
+  const MissionFile file = polynomials(kHeader + "\n" + row(4.0, 0.5, 1.0, 0.1));
+  EXPECT_NEAR(at_path_start(file).position_ned.z(), -1.0, 1e-9);
+  EXPECT_TRUE(assumes(file, "raised by 0.90 m"));
+}
+
+TEST(PolynomialCsv, ReadsWhatCrazyswarmWrites) {
+  const MissionFile file = load_mission_file(kData + "crazyswarm_figure8.csv", control::Limits());
+  EXPECT_EQ(file.name, "crazyswarm_figure8");
+  EXPECT_EQ(file.mission.segments.size(), 10U);
+  const control::Reference end =
+      control::evaluate(file.mission.segments.back(), file.mission.segments.back().duration_s);
+  EXPECT_LT((end.position_ned - Vector3d(0, 0, -1)).norm(), 1e-3);
+  EXPECT_TRUE(control::check(file.mission, control::Limits()).accepted);
+}
+
+std::string replaced(const std::string& text, std::size_t column, const std::string& value) {
+  std::size_t begin = 0;
+  for (; column > 0; --column) begin = text.find(',', begin) + 1;
+  const std::size_t end = text.find(',', begin);
+  return text.substr(0, begin) + value + (end == std::string::npos ? "" : text.substr(end));
+}
+const std::string kRow = row(4.0, 0.0, 1.0, 1.0);
+
+class BadPolynomialCsv : public testing::TestWithParam<Fault> {};
+TEST_P(BadPolynomialCsv, IsRefusedWithASentence) {
+  EXPECT_EQ(refusal([] { polynomials(GetParam().text); }), GetParam().sentence);
+}
+
+std::string repeated_hover(int rows) {
+  std::string text = kHeader + "\n";
+  for (int i = 0; i < rows; ++i) text += row(0.5, 0.0, 0.0, 1.0) + "\n";
+  return text;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    , BadPolynomialCsv,
+    testing::Values(
+        Fault{"empty", "", "p.csv: is empty, must begin with the header " + kHeader},
+        Fault{"no_rows", kHeader + "\n", "p.csv: has 0 rows behind the header, must have at least 1"},
+        Fault{"a_column_is_missing", kHeader + "\n" + kRow.substr(0, kRow.rfind(',')) + "\n",
+              "p.csv:2: has 32 fields, must have 33: " + kHeader},
+        Fault{"a_column_too_many", kHeader + "\n" + kRow + "\n" + kRow + ",1\n",
+              "p.csv:3: has 34 fields, must have 33: " + kHeader},
+        Fault{"two_commas_at_the_end", kHeader + "\n" + kRow + ",,\n",
+              "p.csv:2: has 34 fields, must have 33: " + kHeader},
+        Fault{"nan", kHeader + "\n" + replaced(kRow, 4, "nan"),
+              "p.csv:2: x^3: is nan, must be a finite number"},
+        Fault{"infinity", kHeader + "\n" + replaced(kRow, 32, "-inf"),
+              "p.csv:2: yaw^7: is -inf, must be a finite number"},
+        Fault{"a_word", kHeader + "\n" + replaced(kRow, 9, "north"),
+              "p.csv:2: y^0: is north, must be a finite number"},
+        Fault{"duration_0", kHeader + "\n" + replaced(kRow, 0, "0"),
+              "p.csv:2: duration: is 0, must be above 0 and at most 3600 s"},
+        Fault{"duration_beyond", kHeader + "\n" + replaced(kRow, 0, "3600.1"),
+              "p.csv:2: duration: is 3600.1, must be above 0 and at most 3600 s"},
+        Fault{"too_many", repeated_hover(1025), "p.csv:1026: duration: is segment 1025, at most 1024 fit"},
+        Fault{"outside_the_fence", kHeader + "\n" + row(9.0, 0.0, 3.01, 1.0),
+              "p.csv:2: segment 1 in NED: y is 3.010 m, outside the fence of -3.000 to 3.000 m"},
+        Fault{"too_fast", kHeader + "\n" + row(1.8, 0.0, 2.0, 1.0),
+              "p.csv:2: segment 1 in NED reaches 2.08 m/s, the limit is 2.00 m/s"},
+        Fault{"a_step", kHeader + "\n" + row(4.0, 0.0, 1.0, 1.0) + "\n" + row(4.0, 1.1, 1.0, 1.0),
+              "p.csv:3: segment 2 in NED does not begin where the one before ends: 0.100 m and 0.000 m/s "
+              "apart"},
+        Fault{"in_motion", kHeader + "\n" + replaced(kRow, 2, "0.5"),
+              "p.csv:2: segment 1 in NED starts at 0.50 m/s, must start at rest"}),
+    name_of);
+
+TEST(PolynomialCsv, TakesAsManySegmentsAsFit) {
+  EXPECT_EQ(polynomials(repeated_hover(1024)).mission.segments.size(), 1024U);
+}
+
+// Samples
+
+MissionFile samples(const std::string& text) { return parse_sampled_csv(text, "s.csv", control::Limits()); }
+
+// Minimum jerk from (0, 0, 1) by 1 m east in 4 s, at a rate.
+std::string sampled(double rate_hz, const std::string& columns, bool yaw = false) {
+  const control::PolynomialSegment s = control::minimum_jerk({0, 0, 1}, 0, {1, 0, 1}, 0, 4.0);
+  std::string text = columns + "\n";
+  const int rows = static_cast<int>(4.0 * rate_hz);
+  const auto add = [&](const Vector3d& v) {
+    for (int i = 0; i < 3; ++i) text += "," + std::to_string(v[i]);
+  };
+  for (int i = 0; i <= rows; ++i) {
+    const control::Reference r = control::evaluate(s, i / rate_hz);
+    text += std::to_string(i / rate_hz);
+    add(r.position_ned);  // the frame is what the file says it is
+    if (columns.find("vx") != std::string::npos) add(r.velocity_ned);
+    if (columns.find("ax") != std::string::npos) add(r.acceleration_ned);
+    if (yaw)
+      text += "," + std::to_string(3.0 + 0.5 * i / rate_hz > M_PI ? 3.0 + 0.5 * i / rate_hz - 2 * M_PI
+                                                                  : 3.0 + 0.5 * i / rate_hz);
+    text += "\n";
+  }
+  return text;
+}
+
+double furthest_from_truth(const MissionFile& file) {
+  const control::PolynomialSegment s = control::minimum_jerk({0, 0, -1}, 0, {0, 1, -1}, 0, 4.0);
+  double furthest = 0.0;
+  double start_s = 0.0;
+  for (const control::PolynomialSegment& segment : file.mission.segments) {
+    for (int i = 0; i <= 10; ++i) {
+      const double t = segment.duration_s * i / 10;
+      furthest = std::max(furthest, (control::evaluate(segment, t).position_ned -
+                                     control::evaluate(s, start_s + t).position_ned)
+                                        .norm());
+    }
+    start_s += segment.duration_s;
+  }
+  EXPECT_NEAR(start_s, 4.0, 1e-9);
+  return furthest;
+}
+
+TEST(SampledCsv, IsFollowedBetweenItsSamples) {
+  EXPECT_LT(furthest_from_truth(samples(sampled(10.0, "t,x,y,z"))), 1e-4);
+  EXPECT_LT(furthest_from_truth(samples(sampled(10.0, "t,x,y,z,vx,vy,vz"))), 1e-3);
+  EXPECT_LT(furthest_from_truth(samples(sampled(10.0, "t,x,y,z,vx,vy,vz,ax,ay,az"))), 1e-5);
+  const MissionFile file = samples(sampled(10.0, "t,x,y,z"));
+  EXPECT_TRUE(assumes(file, "41 samples became 40 segments of least snap"));
+  EXPECT_TRUE(assumes(file, "no yaw"));
+}
+
+TEST(SampledCsv, ThinsOutWhatDoesNotFitAndSaysHowFarThatIsOff) {
+  const MissionFile file = samples(sampled(1000.0, "t,x,y,z,vx,vy,vz,ax,ay,az"));
+  EXPECT_EQ(file.mission.segments.size(), 1024U);
+  EXPECT_LT(furthest_from_truth(file), 1e-4);
+  EXPECT_TRUE(assumes(file, "4001 samples became 1024 segments"));
+  EXPECT_TRUE(assumes(file, "0.0 mm off"));
+}
+
+TEST(SampledCsv, YawGoesOnWithoutWholeTurns) {
+  const MissionFile file = samples(sampled(10.0, "t,x,y,z,yaw", true));
+  double before = at_path_start(file).yaw_rad;
+  EXPECT_NEAR(before, M_PI / 2 - 3.0, 1e-6);
+  for (const control::PolynomialSegment& segment : file.mission.segments) {
+    EXPECT_NEAR(segment.yaw[0], before, 0.1);
+    before = control::evaluate(segment, segment.duration_s).yaw_rad;
+  }
+  EXPECT_NEAR(before, M_PI / 2 - 5.0, 1e-3);
+}
+
+class BadSampledCsv : public testing::TestWithParam<Fault> {};
+TEST_P(BadSampledCsv, IsRefusedWithASentence) {
+  EXPECT_EQ(refusal([] { samples(GetParam().text); }), GetParam().sentence);
+}
+INSTANTIATE_TEST_SUITE_P(
+    , BadSampledCsv,
+    testing::Values(
+        Fault{"one_row", "t,x,y,z\n0,0,0,1\n", "s.csv: has 1 rows behind the header, must have at least 2"},
+        Fault{"time_stands_still", "t,x,y,z\n0,0,0,1\n1,0,0,1\n1,0,0,1\n",
+              "s.csv:4: t: is 1, must be at least 1.0001 and at most 3601 s"},
+        Fault{"time_goes_back", "t,x,y,z\n5,0,0,1\n4,0,0,1\n",
+              "s.csv:3: t: is 4, must be at least 5.0001 and at most 3605 s"},
+        Fault{"nan", "t,x,y,z\n0,0,0,1\n1,0,nan,1\n", "s.csv:3: y: is nan, must be a finite number"},
+        Fault{"a_gap_in_the_columns", "t,x,y,z,ax,ay,az\n0,0,0,1,0,0,0\n",
+              "s.csv:1: header: is t,x,y,z,ax,ay,az, must be t,x,y,z,vx,vy,vz,ax,ay,az"},
+        Fault{"an_unknown_column", "t,x,y,z,roll\n0,0,0,1,0\n",
+              "s.csv:1: header: is t,x,y,z,roll, must be t,x,y,z"},
+        Fault{"a_field_is_missing", "t,x,y,z\n0,0,0,1\n1,0,0\n",
+              "s.csv:3: has 3 fields, must have 4: t,x,y,z"},
+        Fault{"it_begins_in_motion", "t,x,y,z,vx,vy,vz\n0,0,0,1,0.5,0,0\n1,0.5,0,1,0.5,0,0\n2,1,0,1,0,0,0\n",
+              "s.csv:2: segment 1 in NED starts at 0.50 m/s, must start at rest"}),
+    name_of);
+
+// Waypoints
+
+MissionFile waypoints(const std::string& text) {
+  return parse_waypoint_csv(text, "w.csv", control::Limits());
+}
+
+TEST(WaypointCsv, IsFlownThrough) {
+  const MissionFile with_header = waypoints("x,y,z,yaw\n0,0,1,1.57\n1,0,1,1.57\n1,1,1.5,0\n");
+  const MissionFile without = waypoints("0,0,1,1.57\n1,0,1,1.57\n1,1,1.5,0");
+  ASSERT_EQ(with_header.mission.segments.size(), 2U);
+  ASSERT_EQ(without.mission.segments.size(), 2U);
+  EXPECT_EQ(with_header.mission.segments[1].x, without.mission.segments[1].x);
+  const control::Reference middle = control::evaluate(without.mission.segments[1], 0.0);
+  EXPECT_LT((middle.position_ned - Vector3d(0, 1, -1)).norm(), 1e-9);
+  EXPECT_GT(middle.velocity_ned.norm(), 0.1);
+  EXPECT_NEAR(middle.yaw_rad, M_PI / 2 - 1.57, 1e-9);
+  EXPECT_TRUE(control::check(without.mission, control::Limits()).accepted);
+}
+
+TEST(WaypointCsv, ReadsWhatUavTrajectoriesHas) {
+  const MissionFile file = load_mission_file(kData + "uav_waypoints.csv", control::Limits());
+  EXPECT_EQ(file.mission.segments.size(), 17U);
+  EXPECT_LT((at_path_start(file).position_ned - Vector3d(0.453548997641, 0, -1.4156037569)).norm(), 1e-12);
+  EXPECT_TRUE(assumes(file, "above the ground: it comes down to 1.39 m"));
+  EXPECT_TRUE(control::check(file.mission, control::Limits()).accepted);
+}
+
+class BadWaypointCsv : public testing::TestWithParam<Fault> {};
+TEST_P(BadWaypointCsv, IsRefusedWithASentence) {
+  EXPECT_EQ(refusal([] { waypoints(GetParam().text); }), GetParam().sentence);
+}
+std::string hover_points(int rows) {
+  std::string text;
+  for (int i = 0; i < rows; ++i) text += std::to_string(0.1 * (i % 10)) + ",0,1\n";
+  return text;
+}
+INSTANTIATE_TEST_SUITE_P(
+    , BadWaypointCsv,
+    testing::Values(
+        Fault{"one_point", "0,0,1\n", "w.csv: has 1 rows, must have at least 2"},
+        Fault{"two_columns_later", "0,0,1\n1,0\n", "w.csv:2: has 2 fields, must have 3: x,y,z"},
+        Fault{"infinite", "0,0,1\n1,inf,1\n", "w.csv:2: y: is inf, must be a finite number"},
+        Fault{"outside", "0,0,1\n3.1,0,1\n",
+              "w.csv:2: x,y,z: in NED: y is 3.100 m, outside the fence of -3.000 to 3.000 m"},
+        Fault{"one_place", "0,0,1\n0,0,1\n", "w.csv: the path goes nowhere: all its points are one place"},
+        Fault{"too_many", hover_points(1026), "w.csv:1026: x,y,z: is waypoint 1026, at most 1025 fit"}),
+    name_of);
+
+TEST(WaypointCsv, APathThatSwingsOutsideIsRefusedWithTheWaypointBeforeIt) {
+  const std::string sentence = refusal([] { waypoints("0,0,1\n3,0,1\n3,2.9,1\n0,0,1\n"); });
+  EXPECT_EQ(sentence.find("w.csv:2: the path from here: segment 2 in NED: y is "), 0U) << sentence;
+  EXPECT_NE(sentence.find("outside the fence of -3.000 to 3.000 m"), std::string::npos) << sentence;
+}
+
+TEST(WaypointCsv, TakesAsManyPointsAsFit) {
+  EXPECT_EQ(waypoints(hover_points(1025)).mission.segments.size(), 1024U);
+}
+
+// QGroundControl
+
+std::string item(int command, int frame, const std::string& params) {
+  return "{\"type\": \"SimpleItem\", \"command\": " + std::to_string(command) +
+         ", \"frame\": " + std::to_string(frame) + ", \"params\": [" + params + "], \"autoContinue\": true}";
+}
+std::string plan(const std::string& items, const std::string& home = "47.4, 8.5, 488") {
+  return "{\n\"fileType\": \"Plan\", \"version\": 1,\n\"mission\": {\"hoverSpeed\": 0.8, "
+         "\"plannedHomePosition\": [" +
+         home + "],\n\"items\": [\n" + items + "\n]}}\n";
+}
+MissionFile qgc(const std::string& text, const control::Limits& limits = control::Limits()) {
+  return parse_qgroundcontrol_plan(text, "q.plan", limits);
+}
+
+TEST(QGroundControlPlan, ReadsPx4sBox) {
+  const MissionFile file = load_mission_file(kData + "px4_mission_box.plan", field());
+  const auto& items = file.mission.items;
+  ASSERT_EQ(items.size(), 7U);
+  EXPECT_EQ(items[0].kind, MissionItemKind::kTakeoff);
+  EXPECT_EQ(items[0].position_ned.z(), -5.0);
+  EXPECT_EQ(items[1].kind, MissionItemKind::kWaypoint);
+  // 1.3088e-4 deg of latitude are 14.55 m at 47.4 deg; of longitude, 2.5e-4 deg are 19.0 m.
+  EXPECT_NEAR(items[1].position_ned.x(), 14.55, 0.02);
+  EXPECT_NEAR(items[2].position_ned.y(), -19.05, 0.05);
+  EXPECT_EQ(items[2].position_ned.z(), -10.0);
+  EXPECT_TRUE(items[1].yaw_free);
+  EXPECT_EQ(items[1].speed, 2.0);
+  EXPECT_LT((items[5].position_ned - items[4].position_ned).norm(), 0.1);  // above where it lands
+  EXPECT_EQ(items[6].kind, MissionItemKind::kLand);
+  EXPECT_TRUE(assumes(file, "home, 47.3977420, 8.5455940 deg and 488.0 m, is the origin"));
+  EXPECT_TRUE(assumes(file, "the plan wants 5 m/s"));
+  EXPECT_TRUE(assumes(file, "not 0.40 m aside"));
+  EXPECT_TRUE(control::check(file.mission, field()).accepted) << control::check(file.mission, field()).reason;
+}
+
+TEST(QGroundControlPlan, ReadsLocalCoordinatesInBothFrames) {
+  const MissionFile file =
+      qgc(plan(item(22, 1, "0,0,0,null,null,null,-1") + "," + item(16, 1, "2.5,0,0,90,1,2,-1.5") + "," +
+               item(178, 2, "1,0.4,-1,0,0,0,0") + "," + item(16, 4, "0,0,0,null,1,2,1.5") + "," +
+               item(19, 4, "3,0,0,null,0,0,1.5")));
+  const auto& items = file.mission.items;
+  ASSERT_EQ(items.size(), 5U);
+  EXPECT_EQ(items[1].position_ned, Vector3d(1, 2, -1.5));
+  EXPECT_EQ(items[1].hold_s, 2.5);
+  EXPECT_FALSE(items[1].yaw_free);
+  EXPECT_NEAR(items[1].yaw_rad, M_PI / 2, 1e-12);
+  EXPECT_EQ(items[1].speed, 0.8);
+  EXPECT_EQ(items[2].position_ned, Vector3d(2, 1, -1.5));
+  EXPECT_EQ(items[2].speed, 0.4);
+  EXPECT_EQ(items[3].hold_s, 3.0);
+  EXPECT_EQ(items[4].kind, MissionItemKind::kLand);
+  EXPECT_TRUE(assumes(file, "local coordinates"));
+  EXPECT_TRUE(assumes(file, "a landing is added"));
+}
+
+TEST(QGroundControlPlan, AltitudesAboveTheSeaAreTakenFromHome) {
+  const MissionFile file = qgc(plan(item(16, 0, "0,0,0,null,47.4,8.50001,489.5")));
+  ASSERT_EQ(file.mission.items.size(), 3U);  // take-off and landing are added
+  EXPECT_EQ(file.mission.items[0].kind, MissionItemKind::kTakeoff);
+  EXPECT_NEAR(file.mission.items[1].position_ned.z(), -1.5, 1e-9);
+  EXPECT_NEAR(file.mission.items[1].position_ned.y(), 0.755, 0.002);
+}
+
+TEST(QGroundControlPlan, ReturnsToLaunch) {
+  const MissionFile file = qgc(plan(item(22, 1, "0,0,0,null,null,null,-1") + "," +
+                                    item(16, 1, "0,0,0,null,1,1,-1") + "," + item(20, 2, "0,0,0,0,0,0,0")));
+  ASSERT_EQ(file.mission.items.size(), 4U);
+  EXPECT_EQ(file.mission.items[2].position_ned, Vector3d(0, 0, -1));
+  EXPECT_EQ(file.mission.items[3].kind, MissionItemKind::kLand);
+}
+
+TEST(QGroundControlPlan, IsReadWithoutWhiteSpaceAndWithTabs) {
+  std::string text = plan(item(16, 1, "0,0,0,null,1,1,-1"));
+  std::string tight;
+  for (const char c : text) {
+    if (c != ' ' && c != '\n') tight += c;
+  }
+  EXPECT_EQ(qgc(tight).mission.items.size(), 3U);
+  for (char& c : text) c = c == ' ' ? '\t' : c;
+  EXPECT_EQ(qgc(text).mission.items.size(), 3U);
+}
+
+const std::string kUp = item(22, 1, "0,0,0,null,null,null,-1");
+
+class BadPlan : public testing::TestWithParam<Fault> {};
+TEST_P(BadPlan, IsRefusedWithASentence) {
+  EXPECT_EQ(refusal([] { qgc(GetParam().text); }), GetParam().sentence);
+}
+INSTANTIATE_TEST_SUITE_P(
+    , BadPlan,
+    testing::Values(
+        Fault{"empty", "", "q.plan:1: column 1: the file is empty, must be a JSON document"},
+        Fault{"cut_short", "{\n \"fileType\": \"Plan\",\n \"mission",
+              "q.plan:3: column 9: is where the file ceases to be JSON"},
+        Fault{"a_number_beyond_all", plan(item(16, 1, "0,0,0,null,1e309,1,-1")),
+              "q.plan: holds a number beyond 1.8e308, must hold smaller ones"},
+        Fault{"of_another_kind", "{\"fileType\": \"Fence\"}", "q.plan:1: fileType: is Fence, must be Plan"},
+        Fault{"without_items", plan(""),
+              "q.plan:4: mission.items: is a list of 0, must be a list of 1 to 2048"},
+        Fault{"a_command_that_is_not_flown", plan(kUp + ",\n" + item(206, 2, "1,2,3,4,5,6,7")),
+              "q.plan:6: mission.items[1].command: is 206, must be 16 (waypoint), 19 (loiter for a time), 20 "
+              "(return to "
+              "launch), 21 (land), 22 (take-off) or 178 (change speed)"},
+        Fault{"a_pattern", plan("{\"type\": \"ComplexItem\"}"),
+              "q.plan:5: mission.items[0].type: is ComplexItem, must be SimpleItem: draw the pattern as "
+              "waypoints"},
+        Fault{"a_frame_that_is_not_known", plan(item(16, 10, "0,0,0,null,1,1,1")),
+              "q.plan:5: mission.items[0].frame: is 10, must be 0 or 3 (global, altitude above the sea or "
+              "above home), 1 (local "
+              "NED) or 4 (local ENU)"},
+        Fault{"six_parameters", plan(item(16, 1, "0,0,0,null,1,1")),
+              "q.plan:5: mission.items[0].params: is a list of 6, must be a list of 7"},
+        Fault{"no_latitude", plan(item(16, 3, "0,0,0,null,null,8.5,1")),
+              "q.plan:5: mission.items[0].params[4]: is empty, must be a number"},
+        Fault{"a_latitude_beyond", plan(item(16, 3, "0,0,0,null,90.5,8.5,1")),
+              "q.plan:5: mission.items[0].params[4]: is 90.5, must be at least -90 and at most 90"},
+        Fault{"home_beyond", plan(kUp, "47, 181, 0"),
+              "q.plan:3: mission.plannedHomePosition[1]: is 181, must be at least -180 and at most 180"},
+        Fault{"outside_the_fence", plan(kUp + ",\n" + item(16, 1, "0,0,0,null,3.5,1,-1")),
+              "q.plan:6: mission.items[1]: north is 3.500 m, must be inside the fence, -3 to 3 m"},
+        Fault{
+            "takes_off_elsewhere", plan(item(22, 1, "0,0,0,null,2,0,-1")),
+            "q.plan:5: mission.items[0]: takes off 2.0 m from home, must be at most 1 m: the vehicle stands "
+            "at home"},
+        Fault{"lands_first", plan(item(21, 1, "0,0,0,null,0,0,0")),
+              "q.plan:5: mission.items[0]: is the first item, must follow a take-off or a waypoint"},
+        Fault{"goes_on_after_landing",
+              plan(kUp + ",\n" + item(21, 1, "0,0,0,null,0,0,0") + ",\n" + item(16, 1, "0,0,0,null,0,0,-1")),
+              "q.plan:7: mission.items[2]: follows a landing, which must be the last item"},
+        Fault{"a_hold_beyond", plan(item(16, 1, "3601,0,0,null,1,1,-1")),
+              "q.plan:5: mission.items[0].params[0]: is 3601, must be at least 0 and at most 3600"},
+        Fault{"a_speed_of_0", plan(item(178, 2, "1,0,-1,0,0,0,0")),
+              "q.plan:5: mission.items[0].params[1]: is 0, must be above 0"},
+        Fault{"only_a_speed", plan(item(178, 2, "1,1,-1,0,0,0,0")),
+              "q.plan:4: mission.items: hold nothing to fly, must hold a take-off or a waypoint"}),
+    name_of);
+
+TEST(QGroundControlPlan, GeographicItemsNeedAHome) {
+  std::string text = plan(item(16, 3, "0,0,0,null,47,8,1"));
+  const std::size_t begin = text.find("\"plannedHomePosition\"");
+  text.erase(begin, text.find("],", begin) + 2 - begin);
+  EXPECT_EQ(refusal([&] { qgc(text); }),
+            "q.plan:3: mission: has items with geographic coordinates, must have a plannedHomePosition");
+}
+
+TEST(Geodesy, IsThatOfTheEllipsoid) {
+  // A degree of latitude and of longitude at 45 deg north, WGS 84: 111,132 m and 78,847 m.
+  const GeographicPosition home{45.0, 179.9999};
+  EXPECT_NEAR(north_east_of(home, {45.01, 179.9999}).x(), 1111.32, 0.05);
+  EXPECT_NEAR(north_east_of(home, {45.0, -179.9901}).y(), 788.47, 0.05);  // across the date line
+  EXPECT_NEAR(north_east_of(home, {44.99, 179.9999}).x(), -1111.32, 0.05);
+}
+
+}  // namespace
+}  // namespace swiftlet::ground

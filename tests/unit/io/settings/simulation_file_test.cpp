@@ -1,0 +1,199 @@
+#include "swiftlet/io/settings/simulation_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/io/text_file.hpp"
+#include "tests/unit/io/config_error_check.hpp"
+
+namespace swiftlet::runtime {
+namespace {
+
+using plant::SimulationSettings;
+using tests::refusal;
+
+std::string file(const std::string& name) {
+  return read_text_file(SWIFTLET_SOURCE_DIR "/config/simulation/" + name + ".yaml");
+}
+
+// default.yaml with one text in place of another.
+std::string changed(const std::string& from, const std::string& to) {
+  std::string text = file("default");
+  const std::size_t at = text.find(from);
+  if (at == std::string::npos) {
+    ADD_FAILURE() << from << " is not in the file";
+    return text;
+  }
+  return text.replace(at, from.size(), to);
+}
+
+std::string refused(const std::string& from, const std::string& to) {
+  return refusal([&] { parse_simulation_settings(changed(from, to), "s.yaml"); });
+}
+
+TEST(SimulationFile, DefaultIsWhatTheStructSays) {
+  const SimulationSettings file_says = parse_simulation_settings(file("default"), "s.yaml");
+  const SimulationSettings struct_says;
+  EXPECT_EQ(file_says.name, struct_says.name);
+  EXPECT_EQ(file_says.step_ns, struct_says.step_ns);
+  EXPECT_EQ(file_says.command_timeout_s, struct_says.command_timeout_s);
+  EXPECT_EQ(file_says.rotor_speed_rate_hz, struct_says.rotor_speed_rate_hz);
+  EXPECT_EQ(file_says.imu.rate_hz, struct_says.imu.rate_hz);
+  EXPECT_EQ(file_says.imu.accelerometer_noise_density, struct_says.imu.accelerometer_noise_density);
+  EXPECT_EQ(file_says.imu.gyro_noise_density, struct_says.imu.gyro_noise_density);
+  EXPECT_EQ(file_says.imu.accelerometer_bias_sigma, struct_says.imu.accelerometer_bias_sigma);
+  EXPECT_EQ(file_says.imu.gyro_bias_sigma, struct_says.imu.gyro_bias_sigma);
+  EXPECT_EQ(file_says.imu.accelerometer_bias_walk, struct_says.imu.accelerometer_bias_walk);
+  EXPECT_EQ(file_says.imu.gyro_bias_walk, struct_says.imu.gyro_bias_walk);
+  EXPECT_NEAR(file_says.imu.accelerometer_range, struct_says.imu.accelerometer_range, 0.01);
+  EXPECT_EQ(file_says.imu.gyro_range, struct_says.imu.gyro_range);
+  EXPECT_EQ(file_says.mocap.rate_hz, struct_says.mocap.rate_hz);
+  EXPECT_EQ(file_says.mocap.latency_s, struct_says.mocap.latency_s);
+  EXPECT_EQ(file_says.mocap.position_error_m, struct_says.mocap.position_error_m);
+  EXPECT_EQ(file_says.mocap.orientation_error_rad, struct_says.mocap.orientation_error_rad);
+  EXPECT_EQ(file_says.mocap.misalignment_rad, struct_says.mocap.misalignment_rad);
+  EXPECT_EQ(file_says.mocap.dropout_probability, struct_says.mocap.dropout_probability);
+  EXPECT_EQ(file_says.mocap.dropout_length_s, struct_says.mocap.dropout_length_s);
+  EXPECT_EQ(file_says.supply.ideal, struct_says.supply.ideal);
+  EXPECT_EQ(file_says.supply.initial_state_of_charge, struct_says.supply.initial_state_of_charge);
+  EXPECT_EQ(file_says.supply.rate_hz, struct_says.supply.rate_hz);
+  EXPECT_EQ(file_says.air.drag, struct_says.air.drag);
+  EXPECT_EQ(file_says.air.wind_ned, struct_says.air.wind_ned);
+  EXPECT_EQ(file_says.air.gust_sigma_ned, struct_says.air.gust_sigma_ned);
+  EXPECT_EQ(file_says.air.gust_time_constant_s, struct_says.air.gust_time_constant_s);
+  EXPECT_EQ(file_says.ground.present, struct_says.ground.present);
+  EXPECT_EQ(file_says.ground.leg_height_m, struct_says.ground.leg_height_m);
+  EXPECT_EQ(file_says.ground.friction, struct_says.ground.friction);
+}
+
+TEST(SimulationFile, OptitrackDrawsItsIntervals) {
+  const SimulationSettings s = parse_simulation_settings(file("optitrack"), "s.yaml");
+  EXPECT_EQ(s.name, "optitrack");
+  EXPECT_EQ(s.mocap.model, plant::MocapModel::kOptitrack);
+  EXPECT_EQ(s.mocap.interval_quantiles_s, plant::MocapSettings().interval_quantiles_s);
+  std::string text = file("optitrack");
+  const std::string falls = "0.0400, 0.1300";
+  text.replace(text.find(falls), falls.size(), "0.1300, 0.0400");
+  EXPECT_NE(refusal([&] { parse_simulation_settings(text, "s.yaml"); }).find("interval_quantiles_s[9]"),
+            std::string::npos);
+}
+
+TEST(SimulationFile, IdealHasNoErrors) {
+  const SimulationSettings s = parse_simulation_settings(file("ideal"), "s.yaml");
+  EXPECT_EQ(s.name, "ideal");
+  for (const double error :
+       {s.imu.accelerometer_noise_density, s.imu.gyro_noise_density, s.imu.accelerometer_bias_sigma,
+        s.imu.gyro_bias_sigma, s.imu.accelerometer_bias_walk, s.imu.gyro_bias_walk, s.mocap.latency_s,
+        s.mocap.position_error_m, s.mocap.orientation_error_rad, s.mocap.misalignment_rad,
+        s.mocap.dropout_probability}) {
+    EXPECT_EQ(error, 0.0);
+  }
+  EXPECT_TRUE(s.supply.ideal);
+  EXPECT_FALSE(s.air.drag);
+  EXPECT_TRUE(s.air.wind_ned.isZero(0.0));
+  EXPECT_TRUE(s.air.gust_sigma_ned.isZero(0.0));
+}
+
+TEST(SimulationFile, FaultsHaveTheirSentence) {
+  EXPECT_EQ(refused("  friction: 0.6", "  friction: -1"),
+            "s.yaml:49: ground.friction: is -1, must be at least 0 and at most 10");
+  EXPECT_EQ(refused("rate_hz: 500  #", "rate_hz: 400  #"),
+            "s.yaml:13: imu.rate_hz: is 400, must have a period that is a whole number of steps of 0.001 s");
+  EXPECT_EQ(refused("wind_ned_m_s: [0, 0, 0]", "wind_ned_m_s: [0, 99, 0]"),
+            "s.yaml:41: air.wind_ned_m_s[1]: is 99, must be at least -30 and at most 30");
+}
+
+TEST(SimulationFile, RefusesWhatIsNoSetting) {
+  EXPECT_NE(refused("  drag:", "  drug:").find("s.yaml:39: air.drag: "), std::string::npos);
+  EXPECT_NE(refused("  drag: true", "  drag: true\n  lift: 1").find("s.yaml:41: air.lift: "),
+            std::string::npos);
+  EXPECT_NE(refused("  latency_s: 0.010", "  latency_s: soon").find("s.yaml:27: mocap.latency_s: is soon"),
+            std::string::npos);
+  EXPECT_NE(refused("  latency_s: 0.010", "  latency_s: .nan").find("s.yaml:27: mocap.latency_s: "),
+            std::string::npos);
+  EXPECT_NE(refused("step_s: 0.001", "step_s: 7").find("s.yaml:5: step_s: is 7"), std::string::npos);
+}
+
+std::string with_faults(const std::string& faults) { return file("default") + "faults:\n" + faults; }
+
+std::string refused_faults(const std::string& faults) {
+  return refusal([&] { parse_simulation_settings(with_faults(faults), "s.yaml"); });
+}
+
+TEST(SimulationFile, ReadsFaultsOfEveryKind) {
+  EXPECT_TRUE(parse_simulation_settings(file("default"), "s.yaml").faults.empty());
+  const SimulationSettings s = parse_simulation_settings(
+      with_faults(
+          "  - {kind: mocap_stop, at_s: 1, for_s: 0.5}\n"
+          "  - {kind: mocap_freeze, at_s: 1, for_s: 0.5}\n"
+          "  - {kind: mocap_untracked, at_s: 1, for_s: 0.5}\n"
+          "  - {kind: mocap_jump, at_s: 1, for_s: 0.5, position_ned_m: [1, 2, 3], rotation_frd_rad: [0, 0, "
+          "3]}\n"
+          "  - {kind: mocap_swap, at_s: 1, for_s: 0.5, position_ned_m: [1, 2, 3], yaw_rad: 0.5}\n"
+          "  - {kind: mocap_latency, at_s: 1, for_s: 0.5, delay_s: 0.1}\n"
+          "  - {kind: imu_stop, at_s: 1, for_s: 0.5}\n"
+          "  - {kind: imu_nan, at_s: 1, for_s: 0.5}\n"
+          "  - {kind: imu_stuck, at_s: 1, for_s: 0.5}\n"
+          "  - {kind: imu_bias, at_s: 1, for_s: 0.5, accelerometer_m_s2: [1, 2, 3], gyro_rad_s: [4, 5, 6]}\n"
+          "  - {kind: battery_stop, at_s: 1, for_s: 0.5}\n"
+          "  - {kind: rotor_speeds_stop, at_s: 1, for_s: 0.5}\n"
+          "  - {kind: battery_drop, at_s: 1, for_s: 0.5, voltage_v: 0.25}\n"
+          "  - {kind: rotor_thrust, at_s: 1, for_s: 0.5, rotor: 3, factor: 0.75}\n"
+          "  - {kind: push, at_s: 1, for_s: 0.5, force_ned_n: [1, 2, 3], moment_frd_n_m: [4, 5, 6]}\n"
+          "  - {kind: wind, at_s: 1, for_s: 0.5, wind_ned_m_s: [1, 2, 3]}\n"
+          "  - {kind: commands_stop, at_s: 1, for_s: 0.5}\n"
+          "  - {kind: commands_delay, at_s: 1, for_s: 0.5, delay_s: 0.05}\n"),
+      "s.yaml");
+  ASSERT_EQ(s.faults.size(), plant::kFaultKinds);
+  for (std::size_t i = 0; i < s.faults.size(); ++i) {
+    EXPECT_EQ(static_cast<std::size_t>(s.faults[i].kind), i);
+    EXPECT_EQ(s.faults[i].at_s, 1.0);
+    EXPECT_EQ(s.faults[i].for_s, 0.5);
+  }
+  EXPECT_EQ(s.faults[3].position_ned, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(s.faults[3].rotation_frd, Eigen::Vector3d(0, 0, 3));
+  EXPECT_EQ(s.faults[4].position_ned, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(s.faults[4].yaw_rad, 0.5);
+  EXPECT_EQ(s.faults[5].delay_s, 0.1);
+  EXPECT_EQ(s.faults[9].specific_force_frd, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(s.faults[9].body_rates_frd, Eigen::Vector3d(4, 5, 6));
+  EXPECT_EQ(s.faults[12].voltage_v, 0.25);
+  EXPECT_EQ(s.faults[13].rotor, 3);
+  EXPECT_EQ(s.faults[13].factor, 0.75);
+  EXPECT_EQ(s.faults[14].force_ned, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(s.faults[14].moment_frd, Eigen::Vector3d(4, 5, 6));
+  EXPECT_EQ(s.faults[15].wind_ned, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(s.faults[17].delay_s, 0.05);
+}
+
+TEST(SimulationFile, FaultsThatCannotBeAreRefused) {
+  EXPECT_EQ(refused_faults("  - {kind: imu_stop, at_s: -1, for_s: 1}\n"),
+            "s.yaml:51: faults[0].at_s: is -1, must be at least 0 and at most 86400");
+  EXPECT_NE(refused_faults("  - {kind: imu_stopped, at_s: 1, for_s: 1}\n")
+                .find("s.yaml:51: faults[0].kind: is imu_stopped, must be "),
+            std::string::npos);
+  EXPECT_NE(refused_faults("  - {kind: mocap_latency, at_s: 1, for_s: 1}\n").find("faults[0].delay_s"),
+            std::string::npos);
+  EXPECT_NE(refused_faults("  - {kind: imu_stop, at_s: 1, for_s: 1, delay_s: 1}\n").find("faults[0].delay_s"),
+            std::string::npos);
+  EXPECT_EQ(
+      refused_faults("  - {kind: imu_stop, at_s: 1, for_s: 1}\n"
+                     "  - {kind: imu_stop, at_s: 1.5, for_s: 1}\n"),
+      "s.yaml:52: faults[1].at_s: is 1.5, but faults[0], imu_stop too, lasts from 1 s to 2 s: faults of "
+      "one kind must not overlap");
+}
+
+TEST(SimulationFile, TheExampleOfFaultsIsTheDefaultWithThem) {
+  const std::string example = file("faults_example");
+  EXPECT_GT(parse_simulation_settings(example, "s.yaml").faults.size(), 10U);
+  const std::string world = file("default");
+  const std::string settings = world.substr(world.find("step_s:"));
+  EXPECT_NE(example.find(settings), std::string::npos);
+}
+
+TEST(SimulationFile, NamesAFileThatIsNotThere) {
+  EXPECT_NE(refusal([] { load_simulation_settings("/nowhere/s.yaml"); }).find("/nowhere/s.yaml: "),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace swiftlet::runtime

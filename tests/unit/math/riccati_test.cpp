@@ -1,0 +1,172 @@
+#include "swiftlet/math/riccati.hpp"
+
+#include <cmath>
+#include <random>
+#include <stdexcept>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/math/linear_algebra.hpp"
+
+namespace swiftlet::control {
+namespace {
+
+using Eigen::MatrixXd;
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : generator_(seed) {}
+  MatrixXd matrix(int rows, int columns) {
+    return MatrixXd::NullaryExpr(rows, columns, [this] { return normal_(generator_); });
+  }
+  int integer(int low, int high) { return std::uniform_int_distribution<int>(low, high)(generator_); }
+  double scale() { return std::pow(10.0, std::uniform_real_distribution<double>(-2.0, 2.0)(generator_)); }
+
+ private:
+  std::mt19937 generator_;
+  std::normal_distribution<double> normal_;
+};
+
+double largest_real_part(const MatrixXd& a) { return math::eigenvalues(a).real().maxCoeff(); }
+
+double least_eigenvalue(const MatrixXd& x) { return math::symmetric_eigen(x).values[0]; }
+
+struct Problem {
+  MatrixXd a, b, q, r;
+};
+
+// Random systems, stable or not, with weights of any size; Q positive definite.
+Problem random_problem(Random& random) {
+  const int n = random.integer(1, 8);
+  const int m = random.integer(1, n);
+  const MatrixXd half_q = random.matrix(n, n);
+  const MatrixXd half_r = random.matrix(m, m);
+  return {random.scale() * random.matrix(n, n), random.matrix(n, m),
+          random.scale() * (half_q * half_q.transpose() + 0.01 * MatrixXd::Identity(n, n)),
+          random.scale() * (half_r * half_r.transpose() + 0.01 * MatrixXd::Identity(m, m))};
+}
+
+std::string refusal(const Problem& p) {
+  try {
+    solve_care(p.a, p.b, p.q, p.r);
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Riccati, SolvesRandomSystems) {
+  Random random(1);
+  for (int trial = 0; trial < 200; ++trial) {
+    const Problem p = random_problem(random);
+    const MatrixXd x = solve_care(p.a, p.b, p.q, p.r);
+    EXPECT_LT(care_residual(p.a, p.b, p.q, p.r, x), 1e-14) << "trial " << trial << ", n = " << p.a.rows();
+    EXPECT_EQ(x, x.transpose());
+    EXPECT_GT(least_eigenvalue(x), 0.0) << "trial " << trial;
+    EXPECT_LT(largest_real_part(p.a - p.b * lqr(p.a, p.b, p.q, p.r)), 0.0) << "trial " << trial;
+  }
+}
+
+TEST(Riccati, GainIsTheCheapest) {
+  // The cost from x0 is x0' P x0 with (A-BK)' P + P (A-BK) + Q + K'RK = 0: any other gain costs more.
+  Random random(2);
+  int compared = 0;
+  while (compared < 40) {
+    const Problem p = random_problem(random);
+    const MatrixXd x = solve_care(p.a, p.b, p.q, p.r);
+    const MatrixXd best = lqr(p.a, p.b, p.q, p.r);
+    const MatrixXd other =
+        best +
+        0.05 * best.norm() * random.matrix(static_cast<int>(best.rows()), static_cast<int>(best.cols()));
+    const MatrixXd closed = p.a - p.b * other;
+    if (largest_real_part(closed) >= 0.0) continue;
+    const MatrixXd cost = solve_lyapunov(closed, p.q + other.transpose() * p.r * other);
+    EXPECT_GT(least_eigenvalue(cost - x), -1e-9 * cost.norm());
+    EXPECT_GT((cost - x).trace(), 0.0);
+    ++compared;
+  }
+}
+
+TEST(Riccati, DoubleIntegratorInClosedForm) {
+  MatrixXd a(2, 2);
+  a << 0.0, 1.0, 0.0, 0.0;
+  const MatrixXd b = Eigen::Vector2d(0.0, 1.0);
+  for (const double q1 : {1e-2, 1.0, 625.0, 1e4, 1e6}) {
+    for (const double q2 : {0.0, 1.0, 300.0}) {
+      for (const double r : {1e-3, 1.0, 50.0}) {
+        const MatrixXd k = lqr(a, b, Eigen::Vector2d(q1, q2).asDiagonal(), MatrixXd::Constant(1, 1, r));
+        const double k1 = std::sqrt(q1 / r);
+        const double k2 = std::sqrt(q2 / r + 2.0 * k1);
+        EXPECT_NEAR(k(0, 0), k1, 1e-11 * k1);
+        EXPECT_NEAR(k(0, 1), k2, 1e-11 * k2);
+      }
+    }
+  }
+}
+
+TEST(Riccati, ScalarInClosedForm) {
+  for (const double a : {-3.0, 0.0, 2.0}) {
+    const auto one = [](double v) { return MatrixXd::Constant(1, 1, v); };
+    const MatrixXd x = solve_care(one(a), one(2.0), one(5.0), one(0.5));
+    const double g = 2.0 * 2.0 / 0.5;
+    EXPECT_NEAR(x(0, 0), (a + std::sqrt(a * a + g * 5.0)) / g, 1e-14);
+  }
+}
+
+TEST(Riccati, AcceptsSemidefiniteWeightsAndUncontrollableStableModes) {
+  MatrixXd a(3, 3);
+  a << 0.0, 1.0, 0.3, 0.0, 0.0, 0.2, 0.0, 0.0, -2.0;
+  const MatrixXd b = Eigen::Vector3d(0.0, 1.0, 0.0);
+  const MatrixXd q = Eigen::Vector3d(1.0, 0.0, 0.0).asDiagonal();
+  const MatrixXd r = MatrixXd::Identity(1, 1);
+  const MatrixXd x = solve_care(a, b, q, r);
+  EXPECT_LT(care_residual(a, b, q, r, x), 1e-12);
+  EXPECT_GT(least_eigenvalue(x), -1e-12);
+  EXPECT_LT(largest_real_part(a - b * lqr(a, b, q, r)), 0.0);
+}
+
+TEST(Riccati, SolvesLyapunovEquations) {
+  Random random(3);
+  for (int trial = 0; trial < 100; ++trial) {
+    const int n = random.integer(1, 8);
+    MatrixXd a = random.matrix(n, n);
+    a -= (largest_real_part(a) + 0.1) * MatrixXd::Identity(n, n);
+    const MatrixXd half = random.matrix(n, n);
+    const MatrixXd q = half * half.transpose();
+    const MatrixXd x = solve_lyapunov(a, q);
+    EXPECT_LT((a.transpose() * x + x * a + q).norm(), 1e-10 * (x.norm() * a.norm() + q.norm()));
+  }
+}
+
+TEST(Riccati, RefusesWhatHasNoSolution) {
+  const MatrixXd i1 = MatrixXd::Identity(1, 1);
+  const MatrixXd i2 = MatrixXd::Identity(2, 2);
+  MatrixXd integrators(2, 2);
+  integrators << 0.0, 1.0, 0.0, 0.0;
+  const MatrixXd force = Eigen::Vector2d(0.0, 1.0);
+
+  MatrixXd unreached(2, 2);
+  unreached << 1.0, 0.0, 0.0, -1.0;
+  EXPECT_NE(refusal({unreached, force, i2, i1}).find("not stabilisable"), std::string::npos);
+  EXPECT_NE(refusal({integrators, Eigen::Vector2d(1.0, 0.0), i2, i1}).find("not stabilisable"),
+            std::string::npos);
+
+  const MatrixXd only_rate = Eigen::Vector2d(0.0, 1.0).asDiagonal();
+  EXPECT_NE(refusal({integrators, force, only_rate, i1}).find("imaginary axis"), std::string::npos);
+  EXPECT_NE(refusal({integrators, force, MatrixXd::Zero(2, 2), i1}).find("imaginary axis"),
+            std::string::npos);
+
+  EXPECT_NE(refusal({integrators, force, -i2, i1}).find("positive semidefinite"), std::string::npos);
+  EXPECT_NE(refusal({integrators, force, i2, -i1}).find("positive definite"), std::string::npos);
+  EXPECT_NE(refusal({integrators, force, i2, 0.0 * i1}).find("positive definite"), std::string::npos);
+  EXPECT_NE(refusal({integrators, force, integrators, i1}).find("symmetric"), std::string::npos);
+  EXPECT_NE(refusal({MatrixXd::Zero(2, 3), force, i2, i1}).find("square"), std::string::npos);
+  EXPECT_NE(refusal({integrators, i1, i2, i1}).find("B is 1 x 1"), std::string::npos);
+  EXPECT_NE(refusal({integrators, force, i1, i1}).find("Q is 1 x 1"), std::string::npos);
+  EXPECT_NE(refusal({integrators, force, i2, i2}).find("R is 2 x 2"), std::string::npos);
+  EXPECT_NE(refusal({integrators, force, i2 * std::nan(""), i1}).find("finite"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace swiftlet::control

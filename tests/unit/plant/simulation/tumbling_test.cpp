@@ -1,0 +1,106 @@
+// The simulated vehicle against the paper's equations as another method integrates them.
+#include <algorithm>
+#include <string>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+#include "swiftlet/plant/simulation/plant_simulation.hpp"
+#include "tests/unit/plant/model/vehicles.hpp"
+#include "tests/unit/plant/simulation/paper_equations.hpp"
+#include "tests/unit/plant/simulation/worlds.hpp"
+
+namespace swiftlet::tests {
+namespace {
+
+using Eigen::Vector3d;
+using paper::Motor;
+
+Vector3d random_vector(Draw& draw, double length) {
+  Vector3d v;
+  do {
+    v = Vector3d(draw(-1, 1), draw(-1, 1), draw(-1, 1));
+  } while (v.norm() > 1.0);
+  return length * v;
+}
+
+plant::VehicleState random_tumble(Draw& draw) {
+  plant::VehicleState state;
+  state.position_ned = random_vector(draw, 2.0);
+  state.velocity_ned = random_vector(draw, 3.0);
+  state.q_ned_from_frd = Eigen::Quaterniond(draw(-1, 1), draw(-1, 1), draw(-1, 1), draw(-1, 1)).normalized();
+  state.body_rates_frd = random_vector(draw, 15.0);
+  for (std::size_t i = 0; i < 4; ++i) state.rotor_speeds[i] = draw(0.0, 2300.0);
+  return state;
+}
+
+constexpr double kSupplyVoltage = 4.19;  // of a full battery
+
+// Flies 2 s with commands that change every 3 .. 80 ms, and compares at each change. Every quantity must
+// agree within tolerance of the largest value that it takes in the flight.
+void compare(const plant::Vehicle& vehicle, Motor motor, Draw& draw, double tolerance) {
+  constexpr int kSteps = 2000;
+
+  const plant::VehicleState initial = random_tumble(draw);
+  plant::PlantSimulation plant(vehicle, empty_space(), 1, initial);
+  paper::Equations equations{vehicle.inertia, motor, kSupplyVoltage};
+  paper::State reference = paper::state_of(initial);
+
+  paper::Comparison comparison;
+  double fastest = 0.0;
+  for (int now = 0; now < kSteps;) {
+    const int until = std::min(now + static_cast<int>(draw(3, 80)), kSteps);
+    plant::RotorDrive drive;
+    equations.running = draw(0, 1) > 0.1;
+    drive.state = equations.running ? plant::RotorState::kRunning : plant::RotorState::kOff;
+    for (std::size_t i = 0; i < 4; ++i) {
+      equations.throttle[i] = std::clamp(draw(-0.2, 0.9), 0.0, 1.0);
+      drive.throttle[i] = equations.throttle[i];
+    }
+    paper::integrate(equations, reference, now * 1.0e-3, until * 1.0e-3);
+    for (; now < until; ++now) plant.step(drive);
+
+    comparison.add(reference, paper::state_of(plant.state()));
+    fastest = std::max(fastest, plant.state().body_rates_frd.norm());
+  }
+  EXPECT_EQ(plant.stamp_ns(), 2'000'000'000);
+  EXPECT_GT(fastest, 3.0) << "not much of a tumble";
+  for (std::size_t i = 0; i < paper::kNames.size(); ++i) {
+    EXPECT_LT(comparison.worst[i], tolerance * comparison.peak[i])
+        << paper::kNames[i] << " reaches " << comparison.peak[i];
+  }
+}
+
+TEST(Tumbling, AgreesWithThePaperReducedMotor) {
+  Draw draw;
+  for (int flight = 0; flight < 10; ++flight) {
+    SCOPED_TRACE("flight " + std::to_string(flight));
+    compare(kaylion(), Motor::kReduced, draw, 1.0e-5);
+  }
+}
+
+TEST(Tumbling, AgreesWithThePaperPhysicalMotor) {
+  plant::Vehicle vehicle = kaylion();
+  vehicle.motor.model = plant::MotorModel::kPhysical;
+  Draw draw;
+  for (int flight = 0; flight < 10; ++flight) {
+    SCOPED_TRACE("flight " + std::to_string(flight));
+    compare(vehicle, Motor::kPhysical, draw, 1.0e-5);
+  }
+}
+
+TEST(Tumbling, AgreesWithThePaperProductsOfInertia) {
+  plant::Vehicle vehicle = kaylion();
+  vehicle.inertia << 4.4e-5, 3.0e-6, -2.0e-6, 3.0e-6, 5.5e-5, 4.0e-6, -2.0e-6, 4.0e-6, 8.8e-5;
+  ASSERT_TRUE(plant::validate(vehicle).empty());
+  Draw draw;
+  for (int flight = 0; flight < 10; ++flight) {
+    SCOPED_TRACE("flight " + std::to_string(flight));
+    compare(vehicle, Motor::kReduced, draw, 1.0e-5);
+  }
+}
+
+}  // namespace
+}  // namespace swiftlet::tests

@@ -1,0 +1,143 @@
+#include "swiftlet/recording/tracking.hpp"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace swiftlet::ground {
+namespace {
+
+constexpr std::int64_t kStep = 2'000'000;  // ns
+
+// A flight of `count` samples whose truth is the reference plus error(i); reference and truth are thinned out
+// by what says to keep them.
+struct SyntheticFlight {
+  Track<TruthRow> truth{2000};
+  Track<ReferenceRow> reference{2000};
+
+  using Keep = std::function<bool(int)>;
+  using Error = std::function<std::array<double, 3>(int)>;
+  SyntheticFlight(
+      int count, const Error& error, const Keep& keep_truth = [](int) { return true; },
+      const Keep& keep_reference = [](int) { return true; }) {
+    for (int i = 0; i < count; ++i) {
+      const std::array<double, 3> at = {0.01 * i, std::sin(0.1 * i), -1.0};
+      const auto e = error(i);
+      TruthRow flown;
+      flown.stamp_ns = i * kStep;
+      flown.position_ned = {at[0] + e[0], at[1] + e[1], at[2] + e[2]};
+      ReferenceRow asked;
+      asked.stamp_ns = i * kStep;
+      asked.position_ned = at;
+      if (keep_truth(i)) truth.append(flown);
+      if (keep_reference(i)) reference.append(asked);
+    }
+  }
+};
+
+TEST(TrackingErrors, OfAConstantErrorAreThatError) {
+  const SyntheticFlight flight(1000, [](int) { return std::array<double, 3>{0.003, -0.004, 0.012}; });
+  const TrackingErrors errors = tracking_errors(flight.truth, flight.reference, {0, 1000 * kStep});
+  EXPECT_EQ(errors.matched, 1000U);
+  EXPECT_NEAR(errors.rms_m[0], 0.003, 1e-12);
+  EXPECT_NEAR(errors.rms_m[1], 0.004, 1e-12);
+  EXPECT_NEAR(errors.rms_m[2], 0.012, 1e-12);
+  EXPECT_NEAR(errors.peak_m[1], 0.004, 1e-12);
+  EXPECT_NEAR(errors.rms_3d_m, 0.013, 1e-12);
+  EXPECT_NEAR(errors.peak_3d_m, 0.013, 1e-12);
+}
+
+TEST(TrackingErrors, OfASineAreItsAmplitudeOverRootTwo) {
+  const SyntheticFlight flight(1000, [](int i) {
+    return std::array<double, 3>{0.02 * std::sin(2 * M_PI * i / 100.0), 0.0, 0.0};
+  });
+  const TrackingErrors errors = tracking_errors(flight.truth, flight.reference, {0, 1000 * kStep});
+  EXPECT_NEAR(errors.rms_m[0], 0.02 / std::sqrt(2.0), 1e-9);
+  EXPECT_NEAR(errors.peak_m[0], 0.02, 1e-9);
+  EXPECT_NEAR(errors.rms_3d_m, errors.rms_m[0], 1e-12);
+}
+
+TEST(TrackingErrors, ThePeakIsThatOfOneInstantNotOfTheAxesTogether) {
+  const SyntheticFlight flight(100, [](int i) {
+    return std::array<double, 3>{i == 10 ? 0.03 : 0.0, i == 20 ? 0.04 : 0.0, 0.0};
+  });
+  const TrackingErrors errors = tracking_errors(flight.truth, flight.reference, {0, 100 * kStep});
+  EXPECT_NEAR(errors.peak_3d_m, 0.04, 1e-12);
+}
+
+TEST(TrackingErrors, CountOnlyWhatLiesInTheWindow) {
+  const SyntheticFlight flight(1000, [](int i) {
+    return std::array<double, 3>{i < 100 || i >= 900 ? 1.0 : 0.001, 0.0, 0.0};
+  });
+  const TrackingErrors errors = tracking_errors(flight.truth, flight.reference, {100 * kStep, 900 * kStep});
+  EXPECT_EQ(errors.matched, 800U);
+  EXPECT_NEAR(errors.peak_3d_m, 0.001, 1e-12);
+}
+
+TEST(TrackingErrors, AreTakenAtEqualStampsOnly) {
+  const SyntheticFlight flight(
+      1000,
+      [](int) {
+        return std::array<double, 3>{0.001, 0.0, 0.0};
+      },
+      [](int i) { return i % 3 != 0; }, [](int i) { return i % 5 != 0; });
+  const TrackingErrors errors = tracking_errors(flight.truth, flight.reference, {0, 1000 * kStep});
+  EXPECT_EQ(errors.matched, 533U) << "of 1000, those that neither 3 nor 5 divides";
+  EXPECT_NEAR(errors.peak_3d_m, 0.001, 1e-12) << "a sample was compared with a neighbour";
+}
+
+TEST(TrackingErrors, AreNotANumberWithoutAMatch) {
+  const SyntheticFlight flight(
+      100, [](int) { return std::array<double, 3>{}; }, [](int i) { return i % 2 == 0; },
+      [](int i) { return i % 2 == 1; });
+  const TrackingErrors errors = tracking_errors(flight.truth, flight.reference, {0, 100 * kStep});
+  EXPECT_EQ(errors.matched, 0U);
+  EXPECT_TRUE(std::isnan(errors.rms_3d_m));
+  EXPECT_TRUE(std::isnan(errors.peak_3d_m));
+  EXPECT_FALSE(enough_samples(errors, {0, 100 * kStep}, 500.0));
+}
+
+TEST(TrackingErrors, OfATruthThatIsNotANumberAreNotOneEither) {
+  const SyntheticFlight flight(100, [](int i) {
+    return std::array<double, 3>{i == 50 ? std::numeric_limits<double>::quiet_NaN() : 0.0, 0.0, 0.0};
+  });
+  EXPECT_TRUE(std::isnan(tracking_errors(flight.truth, flight.reference, {0, 100 * kStep}).rms_3d_m));
+}
+
+TEST(EnoughSamples, WantsHalfOfThem) {
+  const Window window = {0, 1000 * kStep};
+  const auto none = [](int) { return std::array<double, 3>{}; };
+  const SyntheticFlight two_in_three(1000, none, [](int i) { return i % 3 != 0; });
+  const SyntheticFlight one_in_three(1000, none, [](int i) { return i % 3 == 0; });
+  EXPECT_TRUE(
+      enough_samples(tracking_errors(two_in_three.truth, two_in_three.reference, window), window, 500.0));
+  EXPECT_FALSE(
+      enough_samples(tracking_errors(one_in_three.truth, one_in_three.reference, window), window, 500.0));
+}
+
+TEST(EnoughSamples, WantsNoLongGap) {
+  const Window window = {0, 1000 * kStep};
+  const auto none = [](int) { return std::array<double, 3>{}; };
+  const auto gap_at = [&](int from, int length) {
+    const SyntheticFlight flight(1000, none, [=](int i) { return i < from || i >= from + length; });
+    return tracking_errors(flight.truth, flight.reference, window);
+  };
+  EXPECT_NEAR(gap_at(400, 200).longest_gap_s, 0.402, 1e-9);
+  EXPECT_TRUE(enough_samples(gap_at(400, 100), window, 500.0));
+  EXPECT_FALSE(enough_samples(gap_at(400, 200), window, 500.0));
+  EXPECT_FALSE(enough_samples(gap_at(0, 200), window, 500.0)) << "at the window's start";
+  EXPECT_FALSE(enough_samples(gap_at(800, 200), window, 500.0)) << "at the window's end";
+}
+
+TEST(Track, KeepsWhatFitsAndCountsTheRest) {
+  Track<MissionRow> track(3);
+  for (int i = 0; i < 5; ++i) track.append({i, 0, 0, 0});
+  ASSERT_EQ(track.size(), 3U);
+  EXPECT_EQ(track.back().stamp_ns, 2);
+  EXPECT_EQ(track.dropped(), 2U);
+}
+
+}  // namespace
+}  // namespace swiftlet::ground

@@ -1,0 +1,347 @@
+// Topics between participants, each with its own sockets: in one process delivery takes the same way as
+// between two.
+#include "swiftlet/services/dds/node.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/services/dds/domain_claim.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/unit/services/dds/steady_sender.hpp"
+#include "tests/unit/services/messages/messages.hpp"
+
+namespace swiftlet::comms::tests {
+namespace {
+
+using swiftlet::comms::DomainClaim;
+using swiftlet::tests::eventually;
+using swiftlet::tests::Inbox;
+using namespace std::chrono_literals;
+
+NodeSettings settings(const DomainClaim& claim, const char* name, Transport transport = Transport::kUdp) {
+  NodeSettings settings;
+  settings.name = name;
+  settings.domain = claim.domain();
+  settings.transport = transport;
+  settings.localhost_only = true;
+  return settings;
+}
+
+template <class T>
+struct TopicOf;
+#define SWIFTLET_TOPIC_OF(Name)                                           \
+  template <>                                                             \
+  struct TopicOf<msg::Name> {                                             \
+    static constexpr Topic<msg::Name> topic() { return topics::k##Name; } \
+  };
+SWIFTLET_TOPIC_OF(Imu)
+SWIFTLET_TOPIC_OF(ActuatorCommand)
+SWIFTLET_TOPIC_OF(MocapPose)
+SWIFTLET_TOPIC_OF(RotorSpeeds)
+SWIFTLET_TOPIC_OF(Setpoint)
+SWIFTLET_TOPIC_OF(Battery)
+SWIFTLET_TOPIC_OF(Estimate)
+SWIFTLET_TOPIC_OF(Reference)
+SWIFTLET_TOPIC_OF(GroundTruth)
+SWIFTLET_TOPIC_OF(ControlStatus)
+SWIFTLET_TOPIC_OF(MissionStatus)
+SWIFTLET_TOPIC_OF(VehicleInfo)
+SWIFTLET_TOPIC_OF(GroundLink)
+SWIFTLET_TOPIC_OF(Command)
+SWIFTLET_TOPIC_OF(Mission)
+SWIFTLET_TOPIC_OF(Trajectory)
+SWIFTLET_TOPIC_OF(CommandAck)
+#undef SWIFTLET_TOPIC_OF
+
+template <class T>
+class EachTopic : public testing::Test {};
+using Messages = testing::Types<msg::Imu, msg::ActuatorCommand, msg::MocapPose, msg::RotorSpeeds,
+                                msg::Setpoint, msg::Battery, msg::Estimate, msg::Reference, msg::GroundTruth,
+                                msg::ControlStatus, msg::MissionStatus, msg::VehicleInfo, msg::GroundLink,
+                                msg::Command, msg::Mission, msg::Trajectory, msg::CommandAck>;
+TYPED_TEST_SUITE(EachTopic, Messages);
+
+TYPED_TEST(EachTopic, ArrivesAsItWasSent) {
+  const DomainClaim claim;
+  Node here(settings(claim, "here"));
+  Node there(settings(claim, "there"));
+  Inbox<TypeParam> inbox;
+  const auto subscription = there.subscribe<TypeParam>(TopicOf<TypeParam>::topic(),
+                                                       [&](const TypeParam& message) { inbox.put(message); });
+  auto publisher = here.publish(TopicOf<TypeParam>::topic());
+  ASSERT_TRUE(eventually([&] { return publisher.matched() == 1 && subscription.matched() == 1; }));
+
+  const TypeParam sent = example<TypeParam>();
+  ASSERT_TRUE(publisher.publish(sent));
+
+  ASSERT_TRUE(inbox.wait_for_count(1));
+  EXPECT_TRUE(inbox.items().front() == sent);
+}
+
+class LongMission : public testing::TestWithParam<Transport> {};
+
+TEST_P(LongMission, ArrivesWhole) {
+  const DomainClaim claim;
+  Node ground(settings(claim, "ground", GetParam()));
+  Node control(settings(claim, "control", GetParam()));
+  Inbox<msg::Mission> missions;
+  Inbox<msg::Trajectory> trajectories;
+  const auto mission_subscription =
+      control.subscribe<msg::Mission>(topics::kMission, [&](const msg::Mission& m) { missions.put(m); });
+  const auto trajectory_subscription = control.subscribe<msg::Trajectory>(
+      topics::kTrajectory, [&](const msg::Trajectory& t) { trajectories.put(t); });
+  auto mission_publisher = ground.publish(topics::kMission);
+  auto trajectory_publisher = ground.publish(topics::kTrajectory);
+  ASSERT_TRUE(
+      eventually([&] { return mission_publisher.matched() == 1 && mission_subscription.matched() == 1; }));
+  ASSERT_TRUE(eventually(
+      [&] { return trajectory_publisher.matched() == 1 && trajectory_subscription.matched() == 1; }));
+
+  const msg::Mission mission =
+      to_message(tests::mission(control::kMaxMissionItems, control::kMaxTrajectorySegments));
+  const msg::Trajectory trajectory = to_message(tests::trajectory(control::kMaxTrajectorySegments));
+  ASSERT_TRUE(mission_publisher.publish(mission));
+  ASSERT_TRUE(trajectory_publisher.publish(trajectory));
+
+  ASSERT_TRUE(missions.wait_for_count(1));
+  ASSERT_TRUE(trajectories.wait_for_count(1));
+  EXPECT_TRUE(missions.items().front() == mission);
+  EXPECT_TRUE(trajectories.items().front() == trajectory);
+}
+
+INSTANTIATE_TEST_SUITE_P(Transports, LongMission, testing::Values(Transport::kUdp, Transport::kSharedMemory),
+                         [](const auto& run) {
+                           return run.param == Transport::kUdp ? "Udp" : "SharedMemory";
+                         });
+
+TEST(Requests, AllArriveInOrder) {
+  const DomainClaim claim;
+  Node ground(settings(claim, "ground"));
+  Node control(settings(claim, "control"));
+  Inbox<std::uint64_t> ids;
+  const auto subscription =
+      control.subscribe<msg::Command>(topics::kCommand, [&](const msg::Command& c) { ids.put(c.id()); });
+  auto publisher = ground.publish(topics::kCommand);
+  ASSERT_TRUE(eventually([&] { return publisher.matched() == 1 && subscription.matched() == 1; }));
+
+  constexpr std::uint64_t kCount = std::uint64_t{3} * kMaxPendingRequests;
+  msg::Command command;
+  for (std::uint64_t id = 1; id <= kCount; ++id) {
+    command.id(id);
+    ASSERT_TRUE(publisher.publish(command)) << id;
+  }
+
+  ASSERT_TRUE(ids.wait_for_count(kCount));
+  std::uint64_t expected = 0;
+  for (const std::uint64_t id : ids.items()) EXPECT_EQ(id, ++expected);
+}
+
+TEST(State, ReachesLateJoiners) {
+  const DomainClaim claim;
+  Node control(settings(claim, "control"));
+  auto publisher = control.publish(topics::kControlStatus);
+  msg::ControlStatus status = example<msg::ControlStatus>();
+  status.sequence_number(1);
+  ASSERT_TRUE(publisher.publish(status));
+  status.sequence_number(2);
+  ASSERT_TRUE(publisher.publish(status));
+
+  Node ground(settings(claim, "ground"));
+  Inbox<msg::ControlStatus> inbox;
+  const auto subscription = ground.subscribe<msg::ControlStatus>(
+      topics::kControlStatus, [&](const msg::ControlStatus& message) { inbox.put(message); });
+
+  ASSERT_TRUE(inbox.wait_for_count(1));
+  EXPECT_TRUE(inbox.items().front() == status);
+}
+
+// Two controllers of one vehicle that both send all the time, numbered by their strength.
+class OwnedStream : public testing::Test {
+ protected:
+  class Controller {
+   public:
+    Controller(const DomainClaim& claim, int strength)
+        : node_(settings(claim, "control")),
+          publisher_(node_.publish(topics::kActuatorCommand, strength)),
+          sender_(publisher_, static_cast<std::uint64_t>(strength)) {}
+    void mute() { sender_.mute(); }
+    int matched() const { return publisher_.matched(); }
+
+   private:
+    Node node_;
+    Publisher<msg::ActuatorCommand> publisher_;
+    SteadySender sender_;
+  };
+
+  OwnedStream()
+      : plant_(settings(claim_, "plant")),
+        subscription_(plant_.subscribe<msg::ActuatorCommand>(
+            topics::kActuatorCommand,
+            [this](const msg::ActuatorCommand& command) { heard_.put(command.sequence_number()); })) {}
+
+  // Twenty in a row of this strength.
+  bool hears_only(std::uint64_t strength) {
+    return heard_.wait([&](const std::vector<std::uint64_t>& heard) {
+      if (heard.size() < 20) return false;
+      return std::all_of(heard.end() - 20, heard.end(), [&](std::uint64_t s) { return s == strength; });
+    });
+  }
+
+  DomainClaim claim_;
+  Inbox<std::uint64_t> heard_;
+  Node plant_;
+  Subscription subscription_;
+};
+
+TEST_F(OwnedStream, TheStrongestIsHeard) {
+  Controller weak(claim_, 1);
+  ASSERT_TRUE(hears_only(1));
+  Controller strong(claim_, 2);
+  ASSERT_TRUE(hears_only(2));
+  ASSERT_TRUE(eventually([&] { return weak.matched() == 1 && subscription_.matched() == 2; }));
+  const std::size_t before = heard_.size();
+  ASSERT_TRUE(heard_.wait_for_count(before + 100));
+  const auto heard = heard_.items();
+  EXPECT_TRUE(std::all_of(heard.begin() + static_cast<std::ptrdiff_t>(before), heard.end(),
+                          [](std::uint64_t s) { return s == 2; }));
+}
+
+TEST_F(OwnedStream, TheOtherTakesOverWhenTheStrongestLeaves) {
+  Controller weak(claim_, 1);
+  {
+    Controller strong(claim_, 2);
+    ASSERT_TRUE(hears_only(2));
+    ASSERT_TRUE(eventually([&] { return weak.matched() == 1 && subscription_.matched() == 2; }));
+  }
+  EXPECT_TRUE(hears_only(1));
+}
+
+TEST_F(OwnedStream, TheOtherTakesOverWithinTheDeadlineWhenTheStrongestFallsSilent) {
+  Controller weak(claim_, 1);
+  Controller strong(claim_, 2);
+  ASSERT_TRUE(hears_only(2));
+  ASSERT_TRUE(eventually([&] { return weak.matched() == 1 && subscription_.matched() == 2; }));
+  const auto silent_since = std::chrono::steady_clock::now();
+  strong.mute();
+  ASSERT_TRUE(heard_.wait([](const std::vector<std::uint64_t>& heard) { return heard.back() == 1; }));
+  // Far less than the lease of a participant, which a loaded machine may stretch the deadline to.
+  EXPECT_LT(std::chrono::steady_clock::now() - silent_since, kLivelinessLease / 2);
+  EXPECT_TRUE(hears_only(1));
+}
+
+TEST(Delivery, OwnThreadIsOfThatSubscriptionAlone) {
+  const DomainClaim claim;
+  Node plant(settings(claim, "plant"));
+  Node control(settings(claim, "control"));
+  Inbox<std::thread::id> own;
+  Inbox<std::thread::id> shared;
+  const auto imu_subscription = control.subscribe<msg::Imu>(
+      topics::kImu, [&](const msg::Imu&) { own.put(std::this_thread::get_id()); },
+      comms::Delivery::kOwnThread);
+  const auto pose_subscription = control.subscribe<msg::MocapPose>(
+      topics::kMocapPose, [&](const msg::MocapPose&) { shared.put(std::this_thread::get_id()); });
+  const auto battery_subscription = control.subscribe<msg::Battery>(
+      topics::kBattery, [&](const msg::Battery&) { shared.put(std::this_thread::get_id()); });
+  auto imu = plant.publish(topics::kImu);
+  auto pose = plant.publish(topics::kMocapPose);
+  auto battery = plant.publish(topics::kBattery);
+  ASSERT_TRUE(eventually([&] { return imu.matched() + pose.matched() + battery.matched() == 3; }));
+  ASSERT_TRUE(eventually([&] {
+    return imu_subscription.matched() + pose_subscription.matched() + battery_subscription.matched() == 3;
+  }));
+
+  imu.publish(example<msg::Imu>());
+  pose.publish(example<msg::MocapPose>());
+  battery.publish(example<msg::Battery>());
+
+  ASSERT_TRUE(own.wait_for_count(1));
+  ASSERT_TRUE(shared.wait_for_count(2));
+  EXPECT_EQ(shared.items()[0], shared.items()[1]);
+  EXPECT_NE(own.items()[0], shared.items()[0]);
+}
+
+TEST(Vehicles, DoNotHearEachOther) {
+  const DomainClaim claim;
+  NodeSettings first = settings(claim, "plant");
+  NodeSettings second = first;
+  second.vehicle = "kl2";
+  Node plant1(first);
+  Node plant2(second);
+  first.name = second.name = "control";
+  Node control1(first);
+  Inbox<std::string> peers;
+  control1.on_peer([&](const PeerEvent& event) { peers.put(event.name); });
+  Inbox<std::uint64_t> heard;
+  const auto subscription = control1.subscribe<msg::Imu>(
+      topics::kImu, [&](const msg::Imu& imu) { heard.put(imu.sequence_number()); });
+  Node control2(second);
+  const auto other = control2.subscribe<msg::Imu>(topics::kImu, [](const msg::Imu&) {});
+  auto imu1 = plant1.publish(topics::kImu);
+  auto imu2 = plant2.publish(topics::kImu);
+  ASSERT_TRUE(
+      eventually([&] { return imu1.matched() == 1 && imu2.matched() == 1 && subscription.matched() == 1; }));
+
+  msg::Imu imu;
+  imu.sequence_number(2);
+  imu2.publish(imu);
+  imu.sequence_number(1);
+  imu1.publish(imu);
+
+  ASSERT_TRUE(heard.wait_for_count(1));
+  EXPECT_EQ(heard.items().front(), 1U);
+  ASSERT_TRUE(peers.wait_for_count(1));
+  EXPECT_EQ(peers.items(), std::vector<std::string>{"plant"});
+}
+
+TEST(Subscription, DeliversNothingOnceItIsGone) {
+  const DomainClaim claim;
+  Node plant(settings(claim, "plant"));
+  Node control(settings(claim, "control"));
+  auto publisher = plant.publish(topics::kImu);
+  for (int round = 0; round < 20; ++round) {
+    std::atomic<bool> gone{false};
+    std::atomic<int> heard{0};
+    std::atomic<int> heard_when_gone{0};
+    auto subscription = control.subscribe<msg::Imu>(topics::kImu, [&](const msg::Imu&) {
+      if (gone) ++heard_when_gone;
+      ++heard;
+    });
+    ASSERT_TRUE(eventually([&] {
+      publisher.publish(example<msg::Imu>());
+      return heard > 0;
+    }));
+    subscription = {};
+    gone = true;
+    publisher.publish(example<msg::Imu>());
+    EXPECT_EQ(heard_when_gone, 0);
+  }
+}
+
+TEST(NodeSettings, BadOnesAreRefusedInWords) {
+  NodeSettings settings;
+  settings.name = "plant";
+  settings.domain = 233;
+  try {
+    const Node node(settings);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "DDS domain is 233, must be between 0 and 232");
+  }
+  settings.domain = 1;
+  settings.vehicle = "kl/1";
+  try {
+    const Node node(settings);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "vehicle name is 'kl/1', must be 1 to 64 letters, digits and underscores");
+  }
+}
+
+}  // namespace
+}  // namespace swiftlet::comms::tests

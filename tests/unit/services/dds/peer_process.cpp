@@ -1,0 +1,84 @@
+// A process of its own for the tests: joins a domain as "peer", publishes its state and the strongest
+// actuator commands until its standard input is closed, then leaves.
+//   comms_peer DOMAIN udp|shm
+// With "isolated" for the domain, it enters a fresh network namespace instead, checks that two nodes find
+// each other there, and exits with 0, or 77 if it may not.
+#include <atomic>
+#include <cstdlib>
+#include <cstring>
+#include <net/if.h>
+#include <sched.h>
+#include <string>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "swiftlet/services/dds/node.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/unit/services/dds/steady_sender.hpp"
+#include "tests/unit/services/messages/messages.hpp"
+
+namespace swiftlet::comms::tests {
+namespace {
+
+constexpr int kNotPermitted = 77;
+constexpr int kStrongest = 9;
+
+bool enter_fresh_network() {
+  if (::unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0 && ::unshare(CLONE_NEWNET) != 0) return false;
+  const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
+  ifreq request{};
+  std::strcpy(request.ifr_name, "lo");
+  const bool up = ::ioctl(socket, SIOCGIFFLAGS, &request) == 0 &&
+                  (request.ifr_flags = static_cast<short>(request.ifr_flags | IFF_UP),
+                   ::ioctl(socket, SIOCSIFFLAGS, &request) == 0);
+  ::close(socket);
+  return up;
+}
+
+int talk_in_isolation() {
+  if (!enter_fresh_network()) return kNotPermitted;
+  NodeSettings settings;
+  settings.localhost_only = true;
+  settings.name = "here";
+  Node here(settings);
+  settings.name = "there";
+  Node there(settings);
+  std::atomic<bool> heard{false};
+  const auto subscription = there.subscribe<msg::Imu>(topics::kImu, [&](const msg::Imu&) { heard = true; });
+  auto publisher = here.publish(topics::kImu);
+  const bool done = swiftlet::tests::eventually([&] {
+    publisher.publish(example<msg::Imu>());
+    return heard.load();
+  });
+  return done ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+int live(int domain, Transport transport) {
+  NodeSettings settings;
+  settings.localhost_only = true;
+  settings.name = "peer";
+  settings.domain = domain;
+  settings.transport = transport;
+  Node node(settings);
+  auto state = node.publish(topics::kControlStatus);
+  state.publish(example<msg::ControlStatus>());
+  auto commands = node.publish(topics::kActuatorCommand, kStrongest);
+  const SteadySender sender(commands, kStrongest);
+  char byte = 0;
+  while (::read(STDIN_FILENO, &byte, 1) > 0) {
+  }
+  return EXIT_SUCCESS;
+}
+
+}  // namespace
+}  // namespace swiftlet::comms::tests
+
+int main(int argc, char** argv) {
+  using namespace swiftlet::comms;
+  if (argc < 2) return EXIT_FAILURE;
+  const std::string domain = argv[1];
+  if (domain == "isolated") return tests::talk_in_isolation();
+  const bool shared_memory = argc > 2 && std::string(argv[2]) == "shm";
+  return tests::live(std::stoi(domain), shared_memory ? Transport::kSharedMemory : Transport::kUdp);
+}

@@ -1,0 +1,262 @@
+// What other processes leave behind: peers that come, go and die, their streams, their shared memory.
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/dds/shared_memory.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/unit/services/dds/steady_sender.hpp"
+#include "tests/unit/services/messages/messages.hpp"
+
+namespace swiftlet::comms::tests {
+namespace {
+
+using swiftlet::comms::DomainClaim;
+using swiftlet::tests::eventually;
+using swiftlet::tests::Inbox;
+using namespace std::chrono_literals;
+
+// comms_peer, ended by force at the latest when this is destroyed.
+class PeerProcess {
+ public:
+  explicit PeerProcess(const std::vector<std::string>& words) {
+    int ends[2];
+    if (::pipe(ends) != 0) throw std::runtime_error("cannot make a pipe");
+    std::vector<std::string> arguments{SWIFTLET_DDS_PEER};
+    arguments.insert(arguments.end(), words.begin(), words.end());
+    std::vector<char*> pointers;
+    pointers.reserve(arguments.size() + 1);
+    for (std::string& argument : arguments) pointers.push_back(argument.data());
+    pointers.push_back(nullptr);
+    pid_ = ::fork();
+    if (pid_ == 0) {
+      ::dup2(ends[0], STDIN_FILENO);
+      ::close(ends[0]);
+      ::close(ends[1]);
+      ::execv(pointers[0], pointers.data());
+      ::_exit(127);
+    }
+    ::close(ends[0]);
+    input_ = ends[1];
+  }
+  ~PeerProcess() {
+    if (pid_ > 0) die();
+  }
+  PeerProcess(const PeerProcess&) = delete;
+  PeerProcess& operator=(const PeerProcess&) = delete;
+
+  pid_t pid() const { return pid_; }
+  void stop() const { ::kill(pid_, SIGSTOP); }
+  void go_on() const { ::kill(pid_, SIGCONT); }
+  void die() {
+    ::kill(pid_, SIGKILL);
+    finish();
+  }
+  int finish() {
+    ::close(input_);
+    int status = 0;
+    ::waitpid(pid_, &status, 0);
+    pid_ = -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+  // Files in /dev/shm that it has mapped.
+  std::vector<std::string> shared_memory() const {
+    std::vector<std::string> files;
+    std::ifstream maps("/proc/" + std::to_string(pid_) + "/maps");
+    for (std::string line; std::getline(maps, line);) {
+      const auto place = line.find("/dev/shm/");
+      if (place != std::string::npos) files.push_back(line.substr(place));
+    }
+    return files;
+  }
+
+ private:
+  pid_t pid_ = -1;
+  int input_ = -1;
+};
+
+class Peers : public testing::Test {
+ protected:
+  Peers() : node_(settings()) {
+    node_.on_peer([this](const PeerEvent& event) { events_.put(event); });
+  }
+
+  NodeSettings settings() const {
+    NodeSettings settings;
+    settings.name = "observer";
+    settings.domain = claim_.domain();
+    settings.localhost_only = true;
+    return settings;
+  }
+  PeerProcess start(const char* transport = "udp") const {
+    return PeerProcess({std::to_string(claim_.domain()), transport});
+  }
+
+  DomainClaim claim_;
+  Inbox<PeerEvent> events_;
+  Node node_;
+};
+
+TEST_F(Peers, OneThatLeavesIsNamed) {
+  PeerProcess peer = start();
+  ASSERT_TRUE(events_.wait_for_count(1));
+  EXPECT_EQ(events_.items()[0].name, "peer");
+  EXPECT_TRUE(events_.items()[0].alive);
+
+  EXPECT_EQ(peer.finish(), 0);
+
+  ASSERT_TRUE(events_.wait_for_count(2));
+  EXPECT_EQ(events_.items()[1].name, "peer");
+  EXPECT_FALSE(events_.items()[1].alive);
+  EXPECT_TRUE(events_.items()[1].said_goodbye);
+}
+
+// This and ADeadControllersStream... judge how long it takes: nothing runs beside them.
+TEST_F(Peers, OneThatDiesIsNamedWithinTheLease) {
+  PeerProcess peer = start();
+  ASSERT_TRUE(events_.wait_for_count(1));
+
+  peer.die();
+  const auto died = std::chrono::steady_clock::now();
+
+  ASSERT_TRUE(events_.wait_for_count(2));
+  EXPECT_LT(std::chrono::steady_clock::now() - died, kLivelinessLease + 1s);
+  EXPECT_EQ(events_.items()[1].name, "peer");
+  EXPECT_FALSE(events_.items()[1].alive);
+  EXPECT_FALSE(events_.items()[1].said_goodbye);
+}
+
+TEST_F(Peers, ThoseThatWereThereBeforeAreTold) {
+  const PeerProcess peer = start();
+  ASSERT_TRUE(events_.wait_for_count(1));
+  Inbox<PeerEvent> late;
+  node_.on_peer([&](const PeerEvent& event) { late.put(event); });
+  ASSERT_EQ(late.size(), 1U);
+  EXPECT_EQ(late.items()[0].name, "peer");
+  EXPECT_TRUE(late.items()[0].alive);
+  node_.on_peer({});
+}
+
+TEST_F(Peers, StateOfAnotherProcessReachesALateJoiner) {
+  const PeerProcess peer = start();
+  ASSERT_TRUE(events_.wait_for_count(1));
+  Inbox<msg::ControlStatus> states;
+  const auto subscription = node_.subscribe<msg::ControlStatus>(
+      topics::kControlStatus, [&](const msg::ControlStatus& message) { states.put(message); });
+  ASSERT_TRUE(states.wait_for_count(1));
+  EXPECT_TRUE(states.items()[0] == example<msg::ControlStatus>());
+}
+
+TEST_F(Peers, ADeadControllersStreamIsTakenOverBeforeItsLeaseEnds) {
+  Inbox<std::uint64_t> heard;
+  const auto subscription = node_.subscribe<msg::ActuatorCommand>(
+      topics::kActuatorCommand,
+      [&](const msg::ActuatorCommand& command) { heard.put(command.sequence_number()); });
+  NodeSettings standby_settings = settings();
+  standby_settings.name = "standby";
+  Node standby(standby_settings);
+  auto commands = standby.publish(topics::kActuatorCommand, 1);
+  const SteadySender sender(commands, 1);
+  PeerProcess strong = start();
+  const bool obeyed = heard.wait([](const auto& numbers) { return !numbers.empty() && numbers.back() == 9; });
+
+  strong.die();
+  const auto died = std::chrono::steady_clock::now();
+  const bool taken_over = heard.wait([](const auto& numbers) { return numbers.back() == 1; });
+  const auto outage = std::chrono::steady_clock::now() - died;
+
+  EXPECT_TRUE(obeyed);
+  EXPECT_TRUE(taken_over);
+  EXPECT_LT(outage, kLivelinessLease / 2);
+}
+
+TEST_F(Peers, OneThatWasStoppedUntilItCountedAsDeadIsHeardAgain) {
+  Inbox<std::uint64_t> heard;
+  const auto subscription = node_.subscribe<msg::ActuatorCommand>(
+      topics::kActuatorCommand,
+      [&](const msg::ActuatorCommand& command) { heard.put(command.sequence_number()); });
+  const PeerProcess peer = start();
+  ASSERT_TRUE(heard.wait_for_count(1));
+
+  peer.stop();
+  ASSERT_TRUE(events_.wait_for_count(2));
+  ASSERT_FALSE(events_.items()[1].alive);
+  const std::size_t before = heard.size();
+  peer.go_on();
+
+  EXPECT_TRUE(heard.wait_for_count(before + 1500)) << heard.size() - before << " since";
+}
+
+TEST_F(Peers, WithUdpNothingIsSharedThatCouldStay) {
+  PeerProcess peer = start("udp");
+  ASSERT_TRUE(events_.wait_for_count(1));
+  EXPECT_EQ(peer.shared_memory(), std::vector<std::string>{});
+}
+
+TEST_F(Peers, SharedMemoryOfTheDeadIsRemovedAndThatOfTheLivingIsNot) {
+  PeerProcess dead = start("shm");
+  ASSERT_TRUE(events_.wait_for_count(1));
+  PeerProcess alive = start("shm");
+  ASSERT_TRUE(events_.wait_for_count(2));
+  const auto exist = [](const std::vector<std::string>& files) {
+    return std::any_of(files.begin(), files.end(),
+                       [](const std::string& file) { return std::filesystem::exists(file); });
+  };
+  const std::vector<std::string> left_over = dead.shared_memory();
+  const std::vector<std::string> in_use = alive.shared_memory();
+  ASSERT_FALSE(left_over.empty());
+  ASSERT_FALSE(in_use.empty());
+
+  dead.die();
+  ASSERT_TRUE(exist(left_over));
+
+  EXPECT_TRUE(eventually([&] {
+    remove_stale_shared_memory();
+    return !std::any_of(left_over.begin(), left_over.end(), [&](const std::string& file) {
+      const bool shared_with_living = std::find(in_use.begin(), in_use.end(), file) != in_use.end();
+      return !shared_with_living && std::filesystem::exists(file);
+    });
+  }));
+  for (const std::string& file : in_use) EXPECT_TRUE(std::filesystem::exists(file)) << file;
+  EXPECT_EQ(alive.finish(), 0);
+}
+
+TEST(Isolation, NodesFindEachOtherInAFreshNetworkNamespace) {
+  PeerProcess process({"isolated"});
+  const int code = process.finish();
+  if (code == 77) GTEST_SKIP() << "a network namespace of its own is not permitted here";
+  EXPECT_EQ(code, 0);
+}
+
+TEST(Domain, HoldsThirtyTwoProcesses) {
+  const DomainClaim claim;
+  NodeSettings settings;
+  settings.domain = claim.domain();
+  settings.localhost_only = true;
+  settings.name = "first";
+  Node first(settings);
+  Inbox<PeerEvent> events;
+  first.on_peer([&](const PeerEvent& event) { events.put(event); });
+  settings.name = "other";
+  std::vector<std::unique_ptr<Node>> others;
+  for (int i = 1; i < 32; ++i) others.push_back(std::make_unique<Node>(settings));
+  EXPECT_TRUE(events.wait_for_count(31));
+}
+
+}  // namespace
+}  // namespace swiftlet::comms::tests

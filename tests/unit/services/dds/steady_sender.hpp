@@ -1,0 +1,42 @@
+// A stream of actuator commands at 500 Hz, from a thread of its own.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <thread>
+
+#include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
+#include "tests/unit/services/messages/messages.hpp"
+
+namespace swiftlet::comms::tests {
+
+class SteadySender {
+ public:
+  // The commands bear this sequence number; the publisher outlives the sender.
+  SteadySender(Publisher<msg::ActuatorCommand>& publisher, std::uint64_t sequence_number)
+      : thread_([this, &publisher, sequence_number] {
+          msg::ActuatorCommand command = example<msg::ActuatorCommand>();
+          command.sequence_number(sequence_number);
+          runtime::PeriodicTimer timer(2'000'000, 2'000'000);
+          while (!stop_) {
+            if (!mute_) publisher.publish(command);
+            timer.wait();
+          }
+        }) {}
+  ~SteadySender() {
+    stop_ = true;
+    thread_.join();
+  }
+  SteadySender(const SteadySender&) = delete;
+  SteadySender& operator=(const SteadySender&) = delete;
+
+  void mute() { mute_ = true; }
+
+ private:
+  std::atomic<bool> stop_{false};
+  std::atomic<bool> mute_{false};
+  std::thread thread_;
+};
+
+}  // namespace swiftlet::comms::tests

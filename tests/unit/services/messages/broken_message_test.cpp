@@ -1,0 +1,140 @@
+// Bytes of a peer that are no message of their topic's type: they are dropped, and what follows is heard.
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/topic/TopicDataType.hpp>
+#include <fastdds/dds/topic/TypeSupport.hpp>
+#include <gtest/gtest.h>
+
+#include "swiftlet_msgs/msg/CommandPubSubTypes.h"
+#include "swiftlet_msgs/msg/MissionPubSubTypes.h"
+#include "swiftlet_msgs/msg/MocapPosePubSubTypes.h"
+
+#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/membership.hpp"
+#include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/dds/profiles.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/unit/services/messages/messages.hpp"
+
+namespace swiftlet::comms::tests {
+namespace {
+
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+using swiftlet::tests::eventually;
+using swiftlet::tests::Inbox;
+
+using Bytes = std::vector<unsigned char>;
+
+// Goes by the name of another type and sends the bytes that it is given.
+class RawType final : public dds::TopicDataType {
+ public:
+  explicit RawType(const std::string& name) {
+    setName(name.c_str());
+    m_typeSize = 65000;
+  }
+  bool serialize(void* data, rtps::SerializedPayload_t* payload) override {
+    const Bytes& bytes = *static_cast<const Bytes*>(data);
+    payload->length = static_cast<std::uint32_t>(bytes.size());
+    std::copy(bytes.begin(), bytes.end(), payload->data);
+    return true;
+  }
+  bool deserialize(rtps::SerializedPayload_t*, void*) override { return false; }
+  std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
+    return [data] { return static_cast<std::uint32_t>(static_cast<const Bytes*>(data)->size()); };
+  }
+  void* createData() override { return new Bytes; }
+  void deleteData(void* data) override { delete static_cast<Bytes*>(data); }
+  bool getKey(void*, rtps::InstanceHandle_t*, bool) override { return false; }
+};
+
+template <class Type>
+Bytes bytes_of(typename Type::type message) {
+  Type type;
+  rtps::SerializedPayload_t payload(type.getSerializedSizeProvider(&message)());
+  type.serialize(&message, &payload);
+  return {payload.data, payload.data + payload.length};
+}
+
+Bytes changed(Bytes bytes, std::size_t at, unsigned char value) {
+  bytes.at(at) = value;
+  return bytes;
+}
+Bytes cut(Bytes bytes, std::size_t size) {
+  bytes.resize(size);
+  return bytes;
+}
+
+NodeSettings settings(const DomainClaim& claim, const char* name) {
+  NodeSettings settings;
+  settings.name = name;
+  settings.domain = claim.domain();
+  settings.localhost_only = true;
+  return settings;
+}
+
+// A peer that publishes bytes on one topic.
+class RawPeer {
+ public:
+  RawPeer(const DomainClaim& claim, const std::string& topic, const std::string& type, Qos qos)
+      : membership_(settings(claim, "raw"), nullptr) {
+    dds::Topic* const wire = membership_.topic("rt/kl1/" + topic, dds::TypeSupport(new RawType(type)));
+    writer_ = membership_.publisher->create_datawriter(wire, writer_qos(qos, 0, 0, Transport::kUdp));
+  }
+  bool send(Bytes bytes) { return writer_->write(&bytes); }
+  bool is_heard() const {
+    dds::PublicationMatchedStatus status;
+    writer_->get_publication_matched_status(status);
+    return status.current_count == 1;
+  }
+
+ private:
+  Membership membership_;
+  dds::DataWriter* writer_;
+};
+
+template <class Type>
+void expect_dropped(const Topic<typename Type::type>& topic, const typename Type::type& whole,
+                    const std::vector<Bytes>& broken) {
+  const DomainClaim claim;
+  Node node(settings(claim, "node"));
+  Inbox<typename Type::type> inbox;
+  const auto subscription =
+      node.subscribe<typename Type::type>(topic, [&](const auto& message) { inbox.put(message); });
+  RawPeer peer(claim, topic.name, Type().getName(), topic.qos);
+  ASSERT_TRUE(eventually([&] { return subscription.matched() == 1 && peer.is_heard(); }));
+
+  std::size_t heard = 0;
+  for (const Bytes& bytes : broken) {
+    ASSERT_TRUE(peer.send(bytes));
+    ASSERT_TRUE(peer.send(bytes_of<Type>(whole)));
+    ASSERT_TRUE(inbox.wait_for_count(++heard));
+  }
+  for (const auto& message : inbox.items()) EXPECT_TRUE(message == whole);
+}
+
+constexpr std::size_t kEncapsulation = 4;
+
+TEST(BrokenMessage, OfAStreamIsDropped) {
+  const msg::MocapPose pose = to_message(pose_sample());
+  const Bytes whole = bytes_of<msg::MocapPosePubSubType>(pose);
+  expect_dropped<msg::MocapPosePubSubType>(
+      topics::kMocapPose, pose,
+      {changed(whole, kEncapsulation + 16, 2), changed(whole, 0, 0x5a), changed(whole, 1, 0x5a),
+       cut(whole, whole.size() - 9), cut(whole, kEncapsulation), cut(whole, 3), cut(whole, 0)});
+}
+
+TEST(BrokenMessage, OfARequestIsDropped) {
+  const msg::Mission mission = to_message(tests::mission(3, 2));
+  const Bytes whole = bytes_of<msg::MissionPubSubType>(mission);
+  Bytes endless = whole;
+  for (std::size_t i = 0; i < 4; ++i) endless.at(kEncapsulation + 16 + i) = 0xff;  // the number of its items
+  expect_dropped<msg::MissionPubSubType>(topics::kMission, mission,
+                                         {endless, cut(whole, whole.size() / 2), changed(whole, 0, 1)});
+}
+
+}  // namespace
+}  // namespace swiftlet::comms::tests

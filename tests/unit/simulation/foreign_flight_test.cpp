@@ -1,0 +1,73 @@
+// Files of other projects, read as they are and flown in one process with all sensor models.
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/control/planning/feasibility.hpp"
+#include "swiftlet/ground/flight/in_process_flight.hpp"
+#include "swiftlet/io/text_file.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+const std::string kData = SWIFTLET_SOURCE_DIR "/tests/data/";
+
+class ForeignFlight : public testing::Test {
+ protected:
+  void plan(const std::string& file, const std::string& control = "motor_lag") {
+    FlyOptions options;
+    options.parties = Parties::kInProcess;
+    options.mission = kData + file;
+    options.control = control;
+    options.record = folder_.path().string();
+    plan_ = plan_flight(options);
+  }
+  FlightReport fly() {
+    ClosedLoop loop = closed_loop(plan_, draw(plan_, plan_.seed).world, plan_.seed);
+    FlightRecord record(plan_.record_capacity());
+    return fly_in_process(loop, plan_, plan_.seed, record, nullptr, {}).report;
+  }
+  // The vehicle can do what the path asks, down to the voltage at which it would land.
+  void expect_feasible() const {
+    for (const control::WorstDemand& worst :
+         control::worst_demands(plan_.vehicle, plan_.control.limits,
+                                plan_.control.failsafe.low_battery_voltage, plan_.mission.mission.segments)) {
+      EXPECT_FALSE(worst.exceeded()) << worst.sentence();
+    }
+  }
+
+  tests::TemporaryFolder folder_;
+  FlightPlan plan_;
+};
+
+class ForeignCsv : public ForeignFlight, public testing::WithParamInterface<const char*> {};
+
+TEST_P(ForeignCsv, IsFeasibleAndFlownClosely) {
+  plan(GetParam());
+  expect_feasible();
+  const FlightReport report = fly();
+  EXPECT_TRUE(report.completed) << report.reason;
+  EXPECT_LT(report.errors.rms_3d_m, 0.005);
+  EXPECT_LT(report.errors.peak_3d_m, 0.02);
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, ForeignCsv, testing::Values("crazyswarm_figure8.csv", "uav_waypoints.csv"),
+                         [](const auto& file) { return file.index == 0 ? "Crazyswarm" : "UavTrajectories"; });
+
+TEST_F(ForeignFlight, Px4sBox) {
+  std::string settings = runtime::read_text_file(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml");
+  const auto set = [&](const std::string& key, const std::string& value) {
+    const std::size_t begin = settings.find(key + ":");
+    settings.replace(begin, settings.find('\n', begin) - begin, key + ": " + value);
+  };
+  set("fence_min_ned_m", "[-30, -30, -12]");  // a field, not a room
+  set("fence_max_ned_m", "[30, 30, 0.2]");
+  plan("px4_mission_box.plan", folder_.write("field.yaml", settings));
+  const FlightReport report = fly();
+  EXPECT_TRUE(report.completed) << report.reason;
+  EXPECT_LT(report.errors.rms_3d_m, 0.01);
+}
+
+}  // namespace
+}  // namespace swiftlet::ground
