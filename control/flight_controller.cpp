@@ -43,24 +43,36 @@ ControlDesign flyable_design(const plant::Vehicle& vehicle, const ControlSetting
   throw std::invalid_argument(settings.name + ": " + unstable.front().key + " " + unstable.front().message);
 }
 
+// What the outer loop asks of the inner one.
+struct AttitudeDemand {
+  double thrust_n = 0.0;
+  AttitudeReference attitude;
+  bool rates_alone = false;  // the attitude is as it is
+};
+
 }  // namespace
 
-struct FlightController::Loops {
-  Loops(const plant::Vehicle& vehicle_in, const ControlSettings& settings_in, const ControlDesign& design_in);
+struct FlightController::Impl {
+  Impl(const plant::Vehicle& vehicle_in, const ControlSettings& settings_in, const ControlDesign& design_in);
 
-  void count_unusable(bool usable, std::int64_t stamp_ns);
+  // The stages of a step, in their order.
   void begin_anew_if_clock_went_back(const plant::ImuSample& sample);
+  void count_unusable(bool usable, std::int64_t stamp_ns);
+  double take(const plant::ImuSample& sample);
   Situation situation() const;
-  void act(const Directive& directive, double dt_s);
-  void fly(const Directive& directive, double dt_s);
-  void feel(const Directive& directive, double dt_s);
-  void fly_attitude(const Directive& directive);
-  void fly_body_rates(const Directive& directive);
-  void spool_up(const Directive& directive);
-  void descend_level(double speed);
-  void command_attitude(double thrust_n, const AttitudeReference& attitude_reference);
-  void command_wrench(const Wrench& wrench, const AttitudeReference& attitude_reference);
+  void observe(const Directive& directive, double dt_s);
+  AttitudeDemand outer_loop(const Directive& directive, double dt_s);
+  Wrench inner_loop(const AttitudeDemand& demand) const;
+  void allocate(const AttitudeDemand& demand, const Wrench& wrench);
+  void idle_rotors(plant::RotorState rotor_state);
+  void report(const Situation& situation);
   const plant::ActuatorCommand& answer(const plant::ImuSample& sample);
+
+  // The outer loop, by what is asked for.
+  AttitudeDemand follow_reference(bool integrate, double dt_s);
+  AttitudeDemand spool_up(double lift_fraction) const;
+  AttitudeDemand descend_level(double speed) const;
+  AttitudeDemand as_asked(const Directive& directive) const;
 
   plant::Vehicle vehicle;
   ControlSettings settings;
@@ -93,8 +105,8 @@ struct FlightController::Loops {
   Status status;
 };
 
-FlightController::Loops::Loops(const plant::Vehicle& vehicle_in, const ControlSettings& settings_in,
-                               const ControlDesign& design_in)
+FlightController::Impl::Impl(const plant::Vehicle& vehicle_in, const ControlSettings& settings_in,
+                             const ControlDesign& design_in)
     : vehicle(vehicle_in),
       settings(settings_in),
       rotor_lag_s(design_in.rotor_lag_s),
@@ -112,7 +124,7 @@ FlightController::Loops::Loops(const plant::Vehicle& vehicle_in, const ControlSe
 }
 
 // A vehicle that was started again counts its time anew; that is believed while the rotors are off.
-void FlightController::Loops::begin_anew_if_clock_went_back(const plant::ImuSample& sample) {
+void FlightController::Impl::begin_anew_if_clock_went_back(const plant::ImuSample& sample) {
   const bool rotors_off = command.rotor_state == plant::RotorState::kOff;
   if (sample.stamp_ns >= last_stamp_ns || !rotors_off) return;
   estimator = Estimator(settings.estimator);
@@ -124,7 +136,7 @@ void FlightController::Loops::begin_anew_if_clock_went_back(const plant::ImuSamp
 
 // For how long no sample could be used, by their stamps. A clock that stands still does not hide it, and one
 // that goes far back is that of a vehicle which was started again: it must not hear the flight's commands.
-void FlightController::Loops::count_unusable(bool usable, std::int64_t stamp_ns) {
+void FlightController::Impl::count_unusable(bool usable, std::int64_t stamp_ns) {
   unusable_samples = usable ? 0 : unusable_samples + 1;
   if (unusable_samples == 1) unusable_since_ns = std::min(stamp_ns, last_stamp_ns);
   unusable_s = usable ? 0.0 : seconds(stamp_ns - unusable_since_ns);
@@ -133,7 +145,7 @@ void FlightController::Loops::count_unusable(bool usable, std::int64_t stamp_ns)
     unusable_s = std::numeric_limits<double>::infinity();
 }
 
-Situation FlightController::Loops::situation() const {
+Situation FlightController::Impl::situation() const {
   Situation situation;
   const Estimate& estimate = estimator.estimate();
   situation.stamp_ns = estimate.stamp_ns;
@@ -154,125 +166,156 @@ Situation FlightController::Loops::situation() const {
   return situation;
 }
 
-void FlightController::Loops::act(const Directive& directive, double dt_s) {
-  reference = directive.reference;
-  command.rotor_state =
-      directive.actuation == Actuation::kOff ? plant::RotorState::kOff : plant::RotorState::kRunning;
+// Takes a sample that can be used, and runs the rotors' model up to it. Returns the time since the one before, s.
+double FlightController::Impl::take(const plant::ImuSample& sample) {
+  if (!has_battery && last_stamp_ns == 0) battery_stamp_ns = sample.stamp_ns;  // it is awaited from here
+  imu_gap_s = last_stamp_ns == 0 ? kFirstStep_s : seconds(sample.stamp_ns - last_stamp_ns);
+  const double dt_s = std::min(imu_gap_s, kMaxStep_s);
+  last_stamp_ns = sample.stamp_ns;
+  specific_force_frd = sample.specific_force_frd;
+  rotors.step(dt_s, command, supply_voltage_v);
+  return dt_s;
+}
+
+// What is watched in flight, whichever loop flies.
+void FlightController::Impl::observe(const Directive& directive, double dt_s) {
+  const Estimate& estimate = estimator.estimate();
   switch (directive.actuation) {
     case Actuation::kOff:
     case Actuation::kIdle:
       position.reset();
       disturbance.reset();
-      setpoint = AttitudeSetpoint();
-      command.throttle = plant::PerRotor{};
-      status.saturated = false;
       return;
     case Actuation::kSpoolUp:
-      return spool_up(directive);
+      climb.begin(estimate.accelerometer_bias, estimate.position_ned.z());
+      return;
+    case Actuation::kLevelDescent:
+      return;
     case Actuation::kFly:
-      feel(directive, dt_s);
-      return fly(directive, dt_s);
     case Actuation::kAttitude:
-      feel(directive, dt_s);
-      return fly_attitude(directive);
     case Actuation::kBodyRates:
-      feel(directive, dt_s);
-      return fly_body_rates(directive);
+      climb.step(dt_s, specific_force_frd, estimate.q_ned_from_frd, estimate.position_ned.z());
+      if (!directive.integrate) return;
+      disturbance.step(dt_s, specific_force_frd - estimate.accelerometer_bias, estimate.q_ned_from_frd,
+                       rotors.thrust_n() / vehicle.mass_kg);
+      return;
+  }
+}
+
+AttitudeDemand FlightController::Impl::outer_loop(const Directive& directive, double dt_s) {
+  switch (directive.actuation) {
+    case Actuation::kSpoolUp:
+      return spool_up(directive.lift_fraction);
     case Actuation::kLevelDescent:
       return descend_level(directive.descent_speed);
+    case Actuation::kAttitude:
+    case Actuation::kBodyRates:
+      return as_asked(directive);
+    default:
+      return follow_reference(directive.integrate, dt_s);
   }
 }
 
-// What is watched in flight, whichever loop flies.
-void FlightController::Loops::feel(const Directive& directive, double dt_s) {
-  const Estimate& estimate = estimator.estimate();
-  climb.step(dt_s, specific_force_frd, estimate.q_ned_from_frd, estimate.position_ned.z());
-  if (!directive.integrate) return;
-  disturbance.step(dt_s, specific_force_frd - estimate.accelerometer_bias, estimate.q_ned_from_frd,
-                   rotors.thrust_n() / vehicle.mass_kg);
-}
-
-// Eq. (48) outside, Eq. (35)-(40) inside.
-void FlightController::Loops::fly(const Directive& directive, double dt_s) {
+// Eq. (48), and the way from its acceleration to a thrust and an attitude.
+AttitudeDemand FlightController::Impl::follow_reference(bool integrate, double dt_s) {
   const Estimate& estimate = estimator.estimate();
   const PositionCommand wanted =
-      position.step(estimate.position_ned, estimate.velocity_ned, reference, dt_s, !directive.integrate);
+      position.step(estimate.position_ned, estimate.velocity_ned, reference, dt_s, !integrate);
   const ThrustAttitude outer = thrust_attitude(
       vehicle.mass_kg, wanted.acceleration_ned - disturbance.acceleration_ned(), max_tilt_tangent);
-  AttitudeReference inner;
-  inner.body_z_ned = outer.body_z_ned;
   if (heading.yaw_rad != reference.yaw_rad) heading = reference.yaw_rad;
-  inner.heading = heading;
-  double thrust_n = outer.thrust_n;
+  AttitudeDemand demand;
+  demand.thrust_n = outer.thrust_n;
+  demand.attitude.body_z_ned = outer.body_z_ned;
+  demand.attitude.heading = heading;
   if (settings.attitude.feed_forward) {
-    const ReferenceMotion on_reference = reference_motion(vehicle.mass_kg, reference, inner.heading);
-    inner.body_rates = on_reference.body_rates;
-    inner.body_accelerations = on_reference.body_accelerations;
-    thrust_n += rotor_lag_s * on_reference.thrust_rate;  // leads the rotor lag
+    const ReferenceMotion on_reference = reference_motion(vehicle.mass_kg, reference, heading);
+    demand.attitude.body_rates = on_reference.body_rates;
+    demand.attitude.body_accelerations = on_reference.body_accelerations;
+    demand.thrust_n += rotor_lag_s * on_reference.thrust_rate;  // leads the rotor lag
   }
-  command_attitude(thrust_n, inner);
+  return demand;
 }
 
-void FlightController::Loops::fly_attitude(const Directive& directive) {
-  AttitudeReference wanted;
-  wanted.body_z_ned = body_z(directive.q_ned_from_frd);
-  wanted.heading = euler_angles(directive.q_ned_from_frd).heading;
-  wanted.body_rates = directive.body_rates_frd;
-  command_attitude(directive.thrust * vehicle.mass_kg, wanted);
+AttitudeDemand FlightController::Impl::spool_up(double lift_fraction) const {
+  AttitudeDemand level;
+  level.thrust_n = lift_fraction * vehicle.mass_kg * plant::kGravity;
+  level.attitude.heading = reference.yaw_rad;
+  return level;
 }
 
-void FlightController::Loops::fly_body_rates(const Directive& directive) {
-  const Estimate& estimate = estimator.estimate();
-  AttitudeReference as_it_is;
-  as_it_is.body_z_ned = body_z(estimate.q_ned_from_frd);
-  as_it_is.heading = euler_angles(estimate.q_ned_from_frd).heading;
-  Wrench wrench;
-  wrench.thrust_n = directive.thrust * vehicle.mass_kg;
-  wrench.moment_frd =
-      attitude.moments_for_rates(estimate.body_rates_frd, rotors.moment_frd(), directive.body_rates_frd);
-  command_wrench(wrench, as_it_is);
-}
-
-void FlightController::Loops::spool_up(const Directive& directive) {
-  climb.begin(estimator.estimate().accelerometer_bias, estimator.estimate().position_ned.z());
-  AttitudeReference level;
-  level.heading = reference.yaw_rad;
-  command_attitude(directive.lift_fraction * vehicle.mass_kg * plant::kGravity, level);
-}
-
-void FlightController::Loops::descend_level(double speed) {
+AttitudeDemand FlightController::Impl::descend_level(double speed) const {
   const Estimate& estimate = estimator.estimate();
   Vector3d acceleration_ned = -kBrakeGain * estimate.velocity_ned;
   acceleration_ned.z() = kDescentGain * (speed - estimate.velocity_ned.z());
   acceleration_ned = acceleration_ned.cwiseMax(-kDescentLimit).cwiseMin(kDescentLimit);
   const ThrustAttitude outer = thrust_attitude(vehicle.mass_kg, acceleration_ned, max_tilt_tangent);
-  AttitudeReference braking;
-  braking.body_z_ned = outer.body_z_ned;
-  braking.heading = euler_angles(estimate.q_ned_from_frd).heading;
-  command_attitude(outer.thrust_n, braking);
+  AttitudeDemand braking;
+  braking.thrust_n = outer.thrust_n;
+  braking.attitude.body_z_ned = outer.body_z_ned;
+  braking.attitude.heading = euler_angles(estimate.q_ned_from_frd).heading;
+  return braking;
 }
 
-// Of the wanted thrust, the part along the axis on which the rotors can give it: none while upside down.
-void FlightController::Loops::command_attitude(double thrust_n, const AttitudeReference& attitude_reference) {
+// An attitude, or body rates and the attitude as it is.
+AttitudeDemand FlightController::Impl::as_asked(const Directive& directive) const {
+  AttitudeDemand demand;
+  demand.rates_alone = directive.actuation == Actuation::kBodyRates;
+  const Eigen::Quaterniond& q =
+      demand.rates_alone ? estimator.estimate().q_ned_from_frd : directive.q_ned_from_frd;
+  demand.thrust_n = directive.thrust * vehicle.mass_kg;
+  demand.attitude.body_z_ned = body_z(q);
+  demand.attitude.heading = euler_angles(q).heading;
+  demand.attitude.body_rates = directive.body_rates_frd;
+  return demand;
+}
+
+// Eq. (35)-(40). Of the wanted thrust, the part along the axis on which the rotors can give it: none while upside down.
+Wrench FlightController::Impl::inner_loop(const AttitudeDemand& demand) const {
   const Estimate& estimate = estimator.estimate();
-  const Vector3d body_z_ned = body_z(estimate.q_ned_from_frd);
   Wrench wrench;
-  wrench.thrust_n = thrust_n * std::max(attitude_reference.body_z_ned.dot(body_z_ned), 0.0);
+  if (demand.rates_alone) {
+    wrench.thrust_n = demand.thrust_n;
+    wrench.moment_frd =
+        attitude.moments_for_rates(estimate.body_rates_frd, rotors.moment_frd(), demand.attitude.body_rates);
+    return wrench;
+  }
+  const Vector3d body_z_ned = body_z(estimate.q_ned_from_frd);
+  wrench.thrust_n = demand.thrust_n * std::max(demand.attitude.body_z_ned.dot(body_z_ned), 0.0);
   wrench.moment_frd = attitude.moments(estimate.q_ned_from_frd, estimate.body_rates_frd, rotors.moment_frd(),
-                                       attitude_reference);
-  command_wrench(wrench, attitude_reference);
+                                       demand.attitude);
+  return wrench;
 }
 
-void FlightController::Loops::command_wrench(const Wrench& wrench,
-                                             const AttitudeReference& attitude_reference) {
+void FlightController::Impl::allocate(const AttitudeDemand& demand, const Wrench& wrench) {
   const Allocation allocation = allocator.allocate(wrench, supply);
+  command.rotor_state = plant::RotorState::kRunning;
   command.throttle = allocation.throttle;
-  setpoint = {attitude_reference.body_z_ned, attitude_reference.heading.yaw_rad, wrench.thrust_n,
+  setpoint = {demand.attitude.body_z_ned, demand.attitude.heading.yaw_rad, wrench.thrust_n,
               wrench.moment_frd};
   status.saturated = allocation.saturated;
 }
 
-const plant::ActuatorCommand& FlightController::Loops::answer(const plant::ImuSample& sample) {
+// Off, or idle: they turn at no throttle.
+void FlightController::Impl::idle_rotors(plant::RotorState rotor_state) {
+  command.rotor_state = rotor_state;
+  command.throttle = plant::PerRotor{};
+  setpoint = AttitudeSetpoint();
+  status.saturated = false;
+}
+
+void FlightController::Impl::report(const Situation& situation) {
+  status.mode = supervisor.mode();
+  status.reason = supervisor.reason();
+  status.has_pose = situation.has_estimate && situation.pose_age_s <= settings.failsafe.mocap_timeout_s;
+  status.pose_age_s = situation.pose_age_s;
+  status.airborne = supervisor.airborne();
+  status.ground_links = supervisor.ground_links();
+  status.supply_voltage_v = supply_voltage_v;
+  status.mission = supervisor.mission();
+}
+
+const plant::ActuatorCommand& FlightController::Impl::answer(const plant::ImuSample& sample) {
   command.stamp_ns = sample.stamp_ns;
   command.imu_sequence = sample.sequence;
   command.mocap_sequence = estimator.pose_sequence();
@@ -281,79 +324,74 @@ const plant::ActuatorCommand& FlightController::Loops::answer(const plant::ImuSa
 }
 
 FlightController::FlightController(const plant::Vehicle& vehicle, const ControlSettings& settings)
-    : loops_(std::make_unique<Loops>(vehicle, settings, flyable_design(vehicle, settings))) {}
+    : impl_(std::make_unique<Impl>(vehicle, settings, flyable_design(vehicle, settings))) {}
 
 FlightController::~FlightController() = default;
 FlightController::FlightController(FlightController&&) noexcept = default;
 FlightController& FlightController::operator=(FlightController&&) noexcept = default;
 
 const plant::ActuatorCommand& FlightController::on_imu(const plant::ImuSample& sample) {
-  Loops& l = *loops_;
-  l.begin_anew_if_clock_went_back(sample);
-  const bool usable = l.estimator.predict(sample);
-  l.count_unusable(usable, sample.stamp_ns);
-  if (!usable && l.unusable_s < l.settings.failsafe.imu_timeout_s) return l.answer(sample);
+  Impl& c = *impl_;
+  // The estimate.
+  c.begin_anew_if_clock_went_back(sample);
+  const bool usable = c.estimator.predict(sample);
+  c.count_unusable(usable, sample.stamp_ns);
+  if (!usable && c.unusable_s < c.settings.failsafe.imu_timeout_s) return c.answer(sample);
+  const double dt_s = usable ? c.take(sample) : 0.0;
 
-  double dt_s = 0.0;
-  if (usable) {
-    if (!l.has_battery && l.last_stamp_ns == 0)
-      l.battery_stamp_ns = sample.stamp_ns;  // it is awaited from here
-    l.imu_gap_s = l.last_stamp_ns == 0 ? kFirstStep_s : seconds(sample.stamp_ns - l.last_stamp_ns);
-    dt_s = std::min(l.imu_gap_s, kMaxStep_s);
-    l.last_stamp_ns = sample.stamp_ns;
-    l.specific_force_frd = sample.specific_force_frd;
-    l.rotors.step(dt_s, l.command, l.supply_voltage_v);
+  // Supervision decides, guidance gives the reference.
+  const Situation situation = c.situation();
+  const Directive directive = c.supervisor.step(situation);
+  c.resets_seen = situation.estimate->resets;
+  c.reference = directive.reference;
+
+  // The laws, and the command.
+  c.observe(directive, dt_s);
+  if (directive.actuation == Actuation::kOff || directive.actuation == Actuation::kIdle) {
+    c.idle_rotors(directive.actuation == Actuation::kOff ? plant::RotorState::kOff
+                                                         : plant::RotorState::kRunning);
+  } else {
+    const AttitudeDemand demand = c.outer_loop(directive, dt_s);
+    c.allocate(demand, c.inner_loop(demand));
   }
-  const Situation situation = l.situation();
-  const Directive directive = l.supervisor.step(situation);
-  l.resets_seen = situation.estimate->resets;
-  l.act(directive, dt_s);
-
-  l.status.mode = l.supervisor.mode();
-  l.status.reason = l.supervisor.reason();
-  l.status.has_pose = situation.has_estimate && situation.pose_age_s <= l.settings.failsafe.mocap_timeout_s;
-  l.status.pose_age_s = situation.pose_age_s;
-  l.status.airborne = l.supervisor.airborne();
-  l.status.ground_links = l.supervisor.ground_links();
-  l.status.supply_voltage_v = l.supply_voltage_v;
-  l.status.mission = l.supervisor.mission();
-  return l.answer(sample);
+  c.report(situation);
+  return c.answer(sample);
 }
 
 void FlightController::on_pose(const plant::PoseSample& sample) {
-  loops_->estimator.correct(sample, loops_->command.rotor_state);
+  impl_->estimator.correct(sample, impl_->command.rotor_state);
 }
 
 void FlightController::on_battery(const plant::BatterySample& sample) {
-  const Allocator::Supply supply = loops_->allocator.supply_at(sample.voltage_v);
+  const Allocator::Supply supply = impl_->allocator.supply_at(sample.voltage_v);
   if (!supply.plausible) return;
-  loops_->has_battery = true;
-  loops_->battery_stamp_ns = sample.stamp_ns;
-  loops_->supply_voltage_v = sample.voltage_v;
-  loops_->supply = supply;
+  impl_->has_battery = true;
+  impl_->battery_stamp_ns = sample.stamp_ns;
+  impl_->supply_voltage_v = sample.voltage_v;
+  impl_->supply = supply;
 }
 
 void FlightController::on_rotor_speeds(const plant::RotorSpeedSample& sample) {
-  loops_->rotors.correct(sample);
+  impl_->rotors.correct(sample);
 }
 
 Outcome FlightController::on_setpoint(const Setpoint& setpoint) {
-  return loops_->supervisor.setpoint(setpoint, loops_->situation());
+  return impl_->supervisor.setpoint(setpoint, impl_->situation());
 }
 
-bool FlightController::on_ground_sign(const GroundSign& sign) { return loops_->supervisor.ground_sign(sign); }
+bool FlightController::on_ground_sign(const GroundSign& sign) { return impl_->supervisor.ground_sign(sign); }
 
 Outcome FlightController::request(const Request& request) {
-  return loops_->supervisor.request(request, loops_->situation());
+  return impl_->supervisor.request(request, impl_->situation());
 }
 
 FlightState FlightController::state() const {
-  const Loops& l = *loops_;
+  const Impl& l = *impl_;
   return {l.supervisor.state(), l.position.integral(), l.command.rotor_state, l.command.throttle};
 }
 
 void FlightController::adopt(const FlightState& state, const Mission* mission, const Trajectory* trajectory) {
-  Loops& l = *loops_;
+  Impl& l = *impl_;
   l.supervisor.adopt(state.supervisor, mission, trajectory);
   l.position.adopt(state.position_integral);
   l.command.rotor_state = state.rotor_state;
@@ -361,18 +399,18 @@ void FlightController::adopt(const FlightState& state, const Mission* mission, c
 }
 
 bool FlightController::feels_airborne() const {
-  const Loops& l = *loops_;
+  const Impl& l = *impl_;
   const Vector3d lift_frd(0.0, 0.0, -l.rotors.thrust_n() / l.vehicle.mass_kg);
   const Vector3d unexplained = l.specific_force_frd - l.estimator.estimate().accelerometer_bias - lift_frd;
   return unexplained.norm() < kStandingLift * plant::kGravity;
 }
 
-bool FlightController::find_flying() { return loops_->supervisor.find_flying(loops_->situation()).accepted; }
+bool FlightController::find_flying() { return impl_->supervisor.find_flying(impl_->situation()).accepted; }
 
-const Estimate& FlightController::estimate() const { return loops_->estimator.estimate(); }
-ErrorState FlightController::estimate_deviation() const { return loops_->estimator.standard_deviation(); }
-const Reference& FlightController::reference() const { return loops_->reference; }
-const AttitudeSetpoint& FlightController::attitude_setpoint() const { return loops_->setpoint; }
-const Status& FlightController::status() const { return loops_->status; }
+const Estimate& FlightController::estimate() const { return impl_->estimator.estimate(); }
+ErrorState FlightController::estimate_deviation() const { return impl_->estimator.standard_deviation(); }
+const Reference& FlightController::reference() const { return impl_->reference; }
+const AttitudeSetpoint& FlightController::attitude_setpoint() const { return impl_->setpoint; }
+const Status& FlightController::status() const { return impl_->status; }
 
 }  // namespace swiftlet::control

@@ -65,8 +65,8 @@ class FlightController {
   const Status& status() const;
 
  private:
-  struct Loops;
-  std::unique_ptr<Loops> loops_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace swiftlet::control
