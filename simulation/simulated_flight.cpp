@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
+
+#include <fmt/core.h>
 
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/recording/telemetry_rate.hpp"
@@ -99,8 +100,7 @@ class Run {
       if (is_over && status_.mission.state == control::MissionState::kAborted)
         return fail(std::string("the mission was aborted: ") + control::to_string(status_.reason));
       if (loop_.time_s() > end_s) {
-        char reason[96];
-        std::snprintf(reason, sizeof reason, "the mission took longer than %.0f s", time_limit_s);
+        const std::string reason = fmt::format("the mission took longer than {:.0f} s", time_limit_s);
         return fail(reason);
       }
     }

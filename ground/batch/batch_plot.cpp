@@ -5,6 +5,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include <fmt/core.h>
+
 #include "swiftlet/ground/report/gnuplot.hpp"
 #include "swiftlet/io/format.hpp"
 
@@ -101,7 +103,7 @@ std::string axis_label(const std::string& name, double scale) {
       std::find_if(known.begin(), known.end(), [&](const Parameter& p) { return p.name == name; });
   std::string unit = found == known.end() || found->unit == "1" ? "" : found->unit;
   if (found != known.end() && found->unit.empty()) unit = "times nominal";
-  if (scale != 1.0) unit = format("%g ", scale) + unit;
+  if (scale != 1.0) unit = fmt::format("{:g} ", scale) + unit;
   return unit.empty() ? name : name + " (" + unit + ")";
 }
 
@@ -109,7 +111,8 @@ void write_scatters(std::ostream& script, const BatchReport& report) {
   const bool long_tail = report.rms_3d_m.max > kLongTail * report.rms_3d_m.median;
   if (long_tail)
     script << "set logscale y\nset offsets graph 0.03, graph 0.03, 0, 0\n"
-           << format("set yrange [%.6g:%.6g]\n", 0.8e3 * report.rms_3d_m.min, 3e3 * report.rms_3d_m.max);
+           << fmt::format("set yrange [{:.6g}:{:.6g}]\n", 0.8e3 * report.rms_3d_m.min,
+                          3e3 * report.rms_3d_m.max);
   else
     script << "set yrange [0:*]\n";
   const std::size_t count = std::min(kMostScatters, report.effects.size());
@@ -118,13 +121,15 @@ void write_scatters(std::ostream& script, const BatchReport& report) {
     if (effect.strength() < 0.0) break;
     const double scale = axis_scale(report, effect.name);
     const double left = 0.060 + 0.3225 * static_cast<double>(i);
-    script << format("set lmargin at screen %.4f; set rmargin at screen %.4f\n", left, left + 0.260)
-           << "set xlabel " << gnuplot_quoted(axis_label(effect.name, scale)) << "\n"
-           << (i == 0 ? "set ylabel 'tracking error, RMS (mm)' offset 1\n" : "unset ylabel\n")
-           << format("set label 1 'rank correlation %+.2f, of the distance %+.2f' at graph 0.03,0.95 front\n",
-                     effect.of_value, effect.of_distance)
-           << "name = '" << effect.name << "'\nscale = " << format("%g", scale) << "\n"
-           << kScatter;
+    script
+        << fmt::format("set lmargin at screen {:.4f}; set rmargin at screen {:.4f}\n", left, left + 0.260)
+        << "set xlabel " << gnuplot_quoted(axis_label(effect.name, scale)) << "\n"
+        << (i == 0 ? "set ylabel 'tracking error, RMS (mm)' offset 1\n" : "unset ylabel\n")
+        << fmt::format(
+               "set label 1 'rank correlation {:+.2f}, of the distance {:+.2f}' at graph 0.03,0.95 front\n",
+               effect.of_value, effect.of_distance)
+        << "name = '" << effect.name << "'\nscale = " << fmt::format("{:g}", scale) << "\n"
+        << kScatter;
   }
 }
 
@@ -134,14 +139,15 @@ void write_script(const std::filesystem::path& file, const BatchReport& report) 
   script << "headline = "
          << gnuplot_quoted(report.mission + " - " + report.vehicle + ", " + report.control + ", varied by " +
                            report.vary + ": " + counted(batch.runs.size(), "run") +
-                           format(", %zu failed", batch.failed()) + (batch.failed() > 0 ? " (red)" : ""))
-         << "\nruns = " << report.rms_3d_m.count << format("\ntolerance = %.6g", report.tolerance_m * 1e3)
-         << format("\nerror_from = %.6g", 0.8e3 * report.rms_3d_m.min)
-         << format("\nerror_to = %.6g", 1.25e3 * std::max(report.tolerance_m, report.peak_3d_m.max))
+                           fmt::format(", {} failed", batch.failed()) + (batch.failed() > 0 ? " (red)" : ""))
+         << "\nruns = " << report.rms_3d_m.count
+         << fmt::format("\ntolerance = {:.6g}", report.tolerance_m * 1e3)
+         << fmt::format("\nerror_from = {:.6g}", 0.8e3 * report.rms_3d_m.min)
+         << fmt::format("\nerror_to = {:.6g}", 1.25e3 * std::max(report.tolerance_m, report.peak_3d_m.max))
          << "\n$designed << EOD\n";
   const std::array<double, 6> designed = as_array(batch.designed_deg);
   for (std::size_t i = 0; i < designed.size(); ++i)
-    if (std::isfinite(designed[i])) script << format("%zu,%.4f\n", i + 1, designed[i]);
+    if (std::isfinite(designed[i])) script << fmt::format("{},{:.4f}\n", i + 1, designed[i]);
   script << "EOD\ndesigned = '$designed'\n" << kPlot;
   write_scatters(script, report);
   script << "unset multiplot\n";

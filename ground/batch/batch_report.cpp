@@ -5,6 +5,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/io/csv.hpp"
@@ -73,9 +74,9 @@ Json json_of(const Spread& spread) {
 }
 
 std::string row_of(const char* name, const char* unit, const Spread& spread, double scale) {
-  return format("  %-22s %3s %6zu", name, unit, spread.count) +
-         format(" %8.2f %8.2f %8.2f %8.2f %8.2f", spread.min * scale, spread.p5 * scale,
-                spread.median * scale, spread.p95 * scale, spread.max * scale);
+  return fmt::format("  {:<22} {:>3} {:6}", name, unit, spread.count) +
+         fmt::format(" {:8.2f} {:8.2f} {:8.2f} {:8.2f} {:8.2f}", spread.min * scale, spread.p5 * scale,
+                     spread.median * scale, spread.p95 * scale, spread.max * scale);
 }
 
 std::string headline_of(const BatchReport& report) {
@@ -83,24 +84,24 @@ std::string headline_of(const BatchReport& report) {
   const std::uint64_t first = report.first_seed;
   std::string text = report.mission + ", " + report.vehicle + " flown with " + report.control +
                      ", varied by " + report.vary +
-                     format(": %s, seeds %llu to %llu\n", counted(batch.asked, "run").c_str(),
-                            static_cast<unsigned long long>(first),
-                            static_cast<unsigned long long>(first + batch.asked - 1));
-  text += format("  %zu completed, %zu failed", batch.runs.size() - batch.failed(), batch.failed());
+                     fmt::format(": {}, seeds {} to {}\n", counted(batch.asked, "run").c_str(),
+                                 static_cast<unsigned long long>(first),
+                                 static_cast<unsigned long long>(first + batch.asked - 1));
+  text += fmt::format("  {} completed, {} failed", batch.runs.size() - batch.failed(), batch.failed());
   if (report.interrupted())
-    text += format(", %zu NOT flown: it was cancelled", batch.asked - batch.runs.size());
-  return text + format("; %.1f s\n", batch.wall_s);
+    text += fmt::format(", {} NOT flown: it was cancelled", batch.asked - batch.runs.size());
+  return text + fmt::format("; {:.1f} s\n", batch.wall_s);
 }
 
 std::string effect_cell(double correlation) {
-  return std::isfinite(correlation) ? format(" %+9.2f", correlation) : format(" %9s", "-");
+  return std::isfinite(correlation) ? fmt::format(" {:+9.2f}", correlation) : fmt::format(" {:>9}", "-");
 }
 
 std::string effects_text(const BatchReport& report) {
   std::string text =
-      format("\nrank correlation with the RMS error (chance alone: within +-%.2f in 95 %% of cases)\n",
-             chance_correlation(report.rms_3d_m.count)) +
-      format(" %9s %9s  distance: from the median\n", "value", "distance");
+      fmt::format("\nrank correlation with the RMS error (chance alone: within +-{:.2f} in 95 % of cases)\n",
+                  chance_correlation(report.rms_3d_m.count)) +
+      fmt::format(" {:>9} {:>9}  distance: from the median\n", "value", "distance");
   for (const ParameterEffect& effect : report.effects)
     text += effect_cell(effect.of_value) + effect_cell(effect.of_distance) + "  " + effect.name + "\n";
   return text;
@@ -201,15 +202,15 @@ std::string to_text(const BatchReport& report) {
   std::string text = headline_of(report);
   if (report.batch.rejected > 0)
     text += "  drawn anew: " + counted(report.batch.rejected, "draw") + " that broke a rule\n";
-  text += format("\n  %-22s %3s %6s %8s %8s %8s %8s %8s %9s\n", "", "", "runs", "min", "p5", "median", "p95",
-                 "max", "designed");
+  text += fmt::format("\n  {:<22} {:>3} {:>6} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9}\n", "", "", "runs", "min",
+                      "p5", "median", "p95", "max", "designed");
   text += row_of("tracking error, RMS", "mm", report.rms_3d_m, kMm) + "\n";
   text += row_of("tracking error, peak", "mm", report.peak_3d_m, kMm) +
-          format("   (tolerance %.0f)\n", report.tolerance_m * kMm);
+          fmt::format("   (tolerance {:.0f})\n", report.tolerance_m * kMm);
   const std::array<double, 6> designed = as_array(report.batch.designed_deg);
   for (std::size_t i = 0; i < kMarginNames.size(); ++i) {
     const std::string name = std::string("phase margin, ") + kMarginNames[i];
-    text += row_of(name.c_str(), "deg", report.margins_deg[i], 1.0) + format(" %9.2f\n", designed[i]);
+    text += row_of(name.c_str(), "deg", report.margins_deg[i], 1.0) + fmt::format(" {:9.2f}\n", designed[i]);
   }
   text += effects_text(report);
   if (report.batch.failed() > 0) text += failures_text(report);

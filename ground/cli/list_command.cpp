@@ -4,6 +4,7 @@
 #include <thread>
 #include <vector>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/cli/commands.hpp"
@@ -82,12 +83,11 @@ void print(const std::vector<Found>& vehicles) {
               "mocap");
   for (const Found& vehicle : vehicles) {
     const View& view = vehicle.view;
-    char battery[16] = "-";
-    if (view.battery.seen())
-      std::snprintf(battery, sizeof battery, "%.2f V", view.battery.message.voltage_v());
+    const std::string battery =
+        view.battery.seen() ? fmt::format("{:.2f} V", view.battery.message.voltage_v()) : "-";
     std::printf("%-16s %-12s %-12s %9s %11d %5.0f Hz\n", vehicle.name.c_str(),
                 view.vehicle.seen() ? view.vehicle.message.name().c_str() : "-",
-                view.control.seen() ? mode_name(view.control.message.mode()) : "no control", battery,
+                view.control.seen() ? mode_name(view.control.message.mode()) : "no control", battery.c_str(),
                 vehicle.controllers, vehicle.mocap_hz);
   }
 }

@@ -1,5 +1,6 @@
 #include <cstdio>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/cli/commands.hpp"
@@ -26,10 +27,9 @@ struct Options : RequestOptions {
 
 void show(const VehicleState& state, ProgressLine& progress) {
   const Eigen::Vector3d& position = state.position_ned;
-  char text[160];
-  std::snprintf(text, sizeof text, "%d/%d  %s  (%5.2f, %5.2f, %5.2f) m, %.2f V", state.mission.item,
-                state.mission.items, control::to_string(state.mode), position.x(), position.y(), position.z(),
-                state.battery_voltage_v);
+  const std::string text = fmt::format(
+      "{}/{}  {}  ({:5.2f}, {:5.2f}, {:5.2f}) m, {:.2f} V", state.mission.item, state.mission.items,
+      control::to_string(state.mode), position.x(), position.y(), position.z(), state.battery_voltage_v);
   progress.update(state.mission.item, text);
 }
 

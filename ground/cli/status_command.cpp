@@ -3,6 +3,7 @@
 #include <tuple>
 #include <vector>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/cli/commands.hpp"
@@ -138,9 +139,7 @@ nlohmann::ordered_json to_json(const View& view, const Rates& rates, const Reque
 template <class T>
 std::string age_text(const Latest<T>& latest, Clock::time_point now) {
   if (!latest.seen()) return "never came";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f s old", latest.age_s(now));
-  return text;
+  return fmt::format("{:.2f} s old", latest.age_s(now));
 }
 
 void print(const View& view, const Rates& rates, const RequestOptions& options) {

@@ -5,6 +5,7 @@
 #include <thread>
 #include <vector>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/cli/commands.hpp"
@@ -13,7 +14,6 @@
 #include "swiftlet/ground/terminal/progress_line.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/csv.hpp"
-#include "swiftlet/io/format.hpp"
 #include "swiftlet/io/missions/setpoint_rows.hpp"
 #include "swiftlet/io/text_file.hpp"
 
@@ -60,10 +60,11 @@ void demand_rate(const std::vector<TimedSetpoint>& rows, const std::string& file
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const double gap_s = rows[i].time_s - rows[i - 1].time_s;
     if (gap_s <= (1.0 + kRateTolerance) / kLeastRate_hz) continue;
-    throw InputError(file + ": " +
-                     format("at t = %.3f s the next row is %.3f s away, must be %.1f s at most: with --rate "
-                            "the rows are filled in",
-                            rows[i - 1].time_s, gap_s, 1.0 / kLeastRate_hz));
+    throw InputError(
+        file + ": " +
+        fmt::format("at t = {:.3f} s the next row is {:.3f} s away, must be {:.1f} s at most: with --rate "
+                    "the rows are filled in",
+                    rows[i - 1].time_s, gap_s, 1.0 / kLeastRate_hz));
   }
 }
 
@@ -178,7 +179,7 @@ class Streamer {
     const double since_s = vehicle_.clock_s() - begin_s_;
     followed_ = followed_ || state.mode == Mode::kSetpoint;
     if (state.mode == Mode::kSetpoint || (!followed_ && since_s < kSlack_s)) return true;
-    course_.fault = format("after %.1f s the vehicle is %s", since_s, control::to_string(state.mode));
+    course_.fault = fmt::format("after {:.1f} s the vehicle is {}", since_s, control::to_string(state.mode));
     if (followed_) course_.fault += ": " + state.mode_reason;
     return false;
   }

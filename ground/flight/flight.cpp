@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <utility>
+
+#include <fmt/core.h>
 
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/recording/flight_window.hpp"
@@ -255,10 +256,9 @@ void Flight::follow() {
     if (control_silence.lasts(view.control.count)) throw FlightFailure("control has said nothing for 3 s");
     if (vehicle_silence.lasts(view.truth.count)) throw FlightFailure("the vehicle has said nothing for 3 s");
     if (simulated_s(view, start_ns) > time_limit_s) {
-      char reason[96];
-      std::snprintf(reason, sizeof reason,
-                    "the mission took longer than %.0f s, of which %.0f s were planned", time_limit_s,
-                    planned_duration_s_);
+      const std::string reason =
+          fmt::format("the mission took longer than {:.0f} s, of which {:.0f} s were planned", time_limit_s,
+                      planned_duration_s_);
       bring_down(reason);
     }
   }
@@ -314,11 +314,10 @@ void Flight::show(const View& view) {
   const auto window = mission_window(record_, client_.mission_id(), mission_.mission);
   const double time_s = window ? mission_duration_s(record_, client_.mission_id(), *window) : 0.0;
   const std::size_t item = std::min<std::size_t>(mission.item_index(), mission_.mission.items.size() - 1);
-  char text[160];
-  std::snprintf(text, sizeof text, "%5.1f s  %zu/%zu %-10s  (%5.2f, %5.2f, %5.2f) m, %5.1f mm off, %.2f V",
-                time_s, item + 1, mission_.mission.items.size(), to_string(mission_.mission.items[item].kind),
-                position[0], position[1], position[2], newest_error_m(record_) * 1e3,
-                view.battery.message.voltage_v());
+  const std::string text = fmt::format(
+      "{:5.1f} s  {}/{} {:<10}  ({:5.2f}, {:5.2f}, {:5.2f}) m, {:5.1f} mm off, {:.2f} V", time_s, item + 1,
+      mission_.mission.items.size(), to_string(mission_.mission.items[item].kind), position[0], position[1],
+      position[2], newest_error_m(record_) * 1e3, view.battery.message.voltage_v());
   std::string line = text;
   if (mode_of(view) != ControlMode::kMission)
     line += std::string(", ") + mode_name(view.control.message.mode());

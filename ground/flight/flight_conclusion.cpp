@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/command_line/command.hpp"
@@ -15,20 +16,17 @@ namespace {
 
 // Why a mission that was flown to its end does not count as completed; empty if it does.
 std::string shortfall(const FlightReport& report, Window window) {
-  char text[160];
   if (!enough_samples(report.errors, window)) {
-    std::snprintf(text, sizeof text,
-                  "too little telemetry to judge it: %zu samples matched of %.0f, longest gap %.2f s (at "
-                  "least %.0f %%, at most %.2f s)",
-                  report.errors.matched, window.duration_s() * kTelemetryRateHz, report.errors.longest_gap_s,
-                  kLeastMatchedFraction * 100.0, kLongestGapS);
-    return text;
+    return fmt::format(
+        "too little telemetry to judge it: {} samples matched of {:.0f}, longest gap {:.2f} s (at "
+        "least {:.0f} %, at most {:.2f} s)",
+        report.errors.matched, window.duration_s() * kTelemetryRateHz, report.errors.longest_gap_s,
+        kLeastMatchedFraction * 100.0, kLongestGapS);
   }
   if (!std::isfinite(report.errors.rms_3d_m)) return "the ground truth is not finite";
   if (report.errors.peak_3d_m > report.tolerance_m) {
-    std::snprintf(text, sizeof text, "the peak tracking error was %.3f m, the tolerance is %.3f m",
-                  report.errors.peak_3d_m, report.tolerance_m);
-    return text;
+    return fmt::format("the peak tracking error was {:.3f} m, the tolerance is {:.3f} m",
+                       report.errors.peak_3d_m, report.tolerance_m);
   }
   return {};
 }

@@ -2,12 +2,13 @@
 
 #include <ctime>
 
+#include <fmt/core.h>
+
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/ground/command_line/command.hpp"
 #include "swiftlet/ground/command_line/installation.hpp"
 #include "swiftlet/ground/command_line/network_options.hpp"
 #include "swiftlet/io/csv.hpp"
-#include "swiftlet/io/format.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/simulation_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
@@ -99,8 +100,9 @@ FlightPlan plan_flight(const FlyOptions& options) {
   displace(plan.mission.mission, options.start_ned, plan.control.limits);
   if (const control::Outcome outcome = control::check(plan.mission.mission, plan.control.limits);
       !outcome.accepted)
-    throw InputError(format("%s: begun %g m north and %g m east of the origin: %s", plan.mission_file.c_str(),
-                            plan.start_ned.x(), plan.start_ned.y(), outcome.reason));
+    throw InputError(fmt::format("{}: begun {:g} m north and {:g} m east of the origin: {}",
+                                 plan.mission_file.c_str(), plan.start_ned.x(), plan.start_ned.y(),
+                                 outcome.reason));
   plan.planned_duration_s = planned_duration_s(plan.mission.mission, plan.control.limits);
   demand_whole_flight(plan.mission, plan.mission_file, plan.planned_duration_s);
 

@@ -1,11 +1,11 @@
 #include "swiftlet/ground/identify/flight_identification_report.hpp"
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/identify/identification_figures.hpp"
 #include "swiftlet/ground/identify/report_page.hpp"
 #include "swiftlet/ground/report/svg_figure.hpp"
-#include "swiftlet/io/format.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -39,8 +39,8 @@ const char* source_key(SpeedSource source) {
 }
 
 std::string what_was_fitted(const FlightIdentification& found) {
-  return format("%.1f s of flight fitted to, the %.1f s that follow predicted; ", found.fitted_s,
-                found.kept_s) +
+  return fmt::format("{:.1f} s of flight fitted to, the {:.1f} s that follow predicted; ", found.fitted_s,
+                     found.kept_s) +
          source_text(found.source);
 }
 
@@ -67,11 +67,11 @@ CaptionedFigure prediction_figure(const FlightIdentification& found, int quantit
   figure.height = 300;
   figure.series = {measured, predicted};
   const bool by_noise_too = found.source == SpeedSource::kCommanded;
-  return {
-      quantity < 3 || by_noise_too
-          ? format("From what was measured, anew every %g s, by the commands alone", found.trace.restart_s)
-          : "By the commands alone",
-      figure};
+  return {quantity < 3 || by_noise_too
+              ? fmt::format("From what was measured, anew every {:g} s, by the commands alone",
+                            found.trace.restart_s)
+              : "By the commands alone",
+          figure};
 }
 
 CaptionedFigure thrust_figure(const FlightIdentification& found) {
@@ -116,22 +116,22 @@ CaptionedFigure horizon_figure(const FlightIdentification& found, const std::str
 
 std::string comparison_table(const FlightIdentification& found) {
   if (found.comparisons.empty()) return "";
-  std::string out = format("  %-30s %12s  %-10s %12s %8s  %s\n", "beside the vehicle file", "by the log",
-                           "+- (95 %)", "file", "ratio", "unit");
+  std::string out = fmt::format("  {:<30} {:>12}  {:<10} {:>12} {:>8}  {}\n", "beside the vehicle file",
+                                "by the log", "+- (95 %)", "file", "ratio", "unit");
   for (const FileComparison& row : found.comparisons) {
-    out += format("  %-30s %12.5g  %-10.2g %12.5g %8.3f  %s\n", row.told.parameter.c_str(), row.told.value,
-                  row.told.half_width, row.file, row.ratio(), row.told.unit.c_str());
+    out += fmt::format("  {:<30} {:12.5g}  {:<10.2g} {:12.5g} {:8.3f}  {}\n", row.told.parameter.c_str(),
+                       row.told.value, row.told.half_width, row.file, row.ratio(), row.told.unit.c_str());
   }
   return out;
 }
 
 std::string horizon_table(const FlightIdentification& found) {
   if (found.horizons.empty()) return "";
-  std::string out = format("  %-30s %12s %12s %12s  %s\n", "by the commands alone, RMS", "ahead, s", "error",
-                           "unchanged", "unit");
+  std::string out = fmt::format("  {:<30} {:>12} {:>12} {:>12}  {}\n", "by the commands alone, RMS",
+                                "ahead, s", "error", "unchanged", "unit");
   for (const HorizonError& e : found.horizons) {
-    out += format("  %-30s %12.4g %12.4g %12.4g  %s\n", e.quantity.c_str(), e.horizon_s, e.by_commands,
-                  e.idle, e.unit.c_str());
+    out += fmt::format("  {:<30} {:12.4g} {:12.4g} {:12.4g}  {}\n", e.quantity.c_str(), e.horizon_s,
+                       e.by_commands, e.idle, e.unit.c_str());
   }
   return out;
 }
@@ -145,7 +145,7 @@ std::string comparison_html(const FlightIdentification& found) {
     out +=
         "<tr><td>" + html_escaped(row.told.parameter) + "</td><td>" + html_escaped(row.told.symbol) + "</td>";
     for (const double value : {row.told.value, row.told.half_width, row.file, row.ratio()})
-      out += format("<td class=\"n\">%.4g</td>", value);
+      out += fmt::format("<td class=\"n\">{:.4g}</td>", value);
     out += "<td>" + html_unit(row.told.unit) + "</td></tr>\n";
   }
   return out + "</table>\n";
@@ -163,18 +163,19 @@ std::string flight_identification_table(const FlightIdentificationReport& report
   std::string out = found.vehicle.name + ", identified from";
   for (const std::string& log : report.logs) out += " " + log;
   out += "; what is not named is from " + report.base_vehicle + "\n  " + what_was_fitted(found) + "\n";
-  out += format("  %-30s %-17s %12s  %-10s %s\n", "parameter", "symbol", "value", "+- (95 %)", "unit");
+  out +=
+      fmt::format("  {:<30} {:<17} {:>12}  {:<10} {}\n", "parameter", "symbol", "value", "+- (95 %)", "unit");
   for (const Estimate& e : found.estimates) {
-    out += format("  %-30s %-17s %12.5g  %-10.2g %s\n", e.parameter.c_str(), e.symbol.c_str(), e.value,
-                  e.half_width, e.unit.c_str());
+    out += fmt::format("  {:<30} {:<17} {:12.5g}  {:<10.2g} {}\n", e.parameter.c_str(), e.symbol.c_str(),
+                       e.value, e.half_width, e.unit.c_str());
   }
   out += comparison_table(found);
-  if (found.step_s > 0.0) out += format("  one step of the predictions is %.4g s\n", found.step_s);
-  out += format("  %-30s %12s %12s %12s %12s  %s\n", "prediction error, RMS", "one step", "unchanged",
-                "0.5 s", "unchanged", "unit");
+  if (found.step_s > 0.0) out += fmt::format("  one step of the predictions is {:.4g} s\n", found.step_s);
+  out += fmt::format("  {:<30} {:>12} {:>12} {:>12} {:>12}  {}\n", "prediction error, RMS", "one step",
+                     "unchanged", "0.5 s", "unchanged", "unit");
   for (const PredictionError& e : found.errors) {
-    out += format("  %-30s %12.4g %12.4g %12.4g %12.4g  %s\n", e.quantity.c_str(), e.one_step,
-                  e.idle_one_step, e.half_second, e.idle_half_second, e.unit.c_str());
+    out += fmt::format("  {:<30} {:12.4g} {:12.4g} {:12.4g} {:12.4g}  {}\n", e.quantity.c_str(), e.one_step,
+                       e.idle_one_step, e.half_second, e.idle_half_second, e.unit.c_str());
   }
   out += horizon_table(found);
   for (const auto& [kind, sentences] : notes(report)) {
@@ -281,13 +282,13 @@ std::string flight_identification_html(const FlightIdentificationReport& report)
   for (const PredictionError& e : found.errors) {
     out += "<tr><td>" + html_escaped(e.quantity) + "</td>";
     for (const double value : {e.one_step, e.idle_one_step, e.half_second, e.idle_half_second})
-      out += format("<td class=\"n\">%.4g</td>", value);
+      out += fmt::format("<td class=\"n\">{:.4g}</td>", value);
     out += "<td>" + html_unit(e.unit) + "</td></tr>\n";
   }
   out += "</table>\n";
   if (found.step_s > 0.0)
-    out += format(
-        "<p class=\"quiet\">One step is %.4g s; half a second ahead: the best sum, by the fitted part, of "
+    out += fmt::format(
+        "<p class=\"quiet\">One step is {:.4g} s; half a second ahead: the best sum, by the fitted part, of "
         "what the commands ask for, the value at the start and the mean</p>\n",
         found.step_s);
   out += "<div class=\"figures\">\n";

@@ -6,8 +6,9 @@
 #include <functional>
 #include <numeric>
 
+#include <fmt/core.h>
+
 #include "swiftlet/identification/fitting/checks.hpp"
-#include "swiftlet/io/format.hpp"
 #include "swiftlet/plant/model/propulsion.hpp"
 
 namespace swiftlet::ground {
@@ -130,7 +131,7 @@ void add_groups(Figure& figure, const Experiment& fit, const std::vector<double>
       (fit.is_outlier(row) ? outliers : dots).points.push_back({throttle[row], reading[row]});
     }
     const double middle = identification::median(supplies);
-    dots.label = format("%.3f V", middle);
+    dots.label = fmt::format("{:.3f} V", middle);
     FigureSeries line{"", Mark::kLine, kGroupColours[g], {}};
     for (int i = 0; i <= kCurvePoints; ++i) {
       const double delta = throttles[0] + (throttles[1] - throttles[0]) * i / kCurvePoints;
@@ -190,7 +191,7 @@ std::vector<CaptionedFigure> esc_figures(const identification::EscData& data, co
   }
   const Model model = [](const Parameters& p, double drive) { return p[0] * drive + p[1]; };
   add_fit(line.figure, fit, model, 0.0, range_of(drives)[1],
-          format("%.4f v_s\xc2\xb2\xce\xb4 %+.4f", gain, offset), [](double x, double y) {
+          fmt::format("{:.4f} v_s\xc2\xb2\xce\xb4 {:+.4f}", gain, offset), [](double x, double y) {
             return FigurePoint{x, y};
           });
   add_readings(line.figure, fit, points, "readings");
@@ -207,12 +208,12 @@ CaptionedFigure steady_motor_figure(const identification::SteadyMotorData& data,
   for (std::size_t i = 0; i < data.speed_rad_s.size(); ++i)
     points.push_back({data.motor_voltage_v[i], data.speed_rad_s[i]});
   const std::array<double, 2> speeds = range_of(data.speed_rad_s);
-  add_fit(
-      out.figure, fit, model, std::max(0.0, speeds[0]), speeds[1],
-      format("v_a = %.4g \xce\xa9 + %.4g \xce\xa9\xc2\xb2", fit.estimates[0].value, fit.estimates[1].value),
-      [](double speed, double voltage) {
-        return FigurePoint{voltage, speed};
-      });
+  add_fit(out.figure, fit, model, std::max(0.0, speeds[0]), speeds[1],
+          fmt::format("v_a = {:.4g} \xce\xa9 + {:.4g} \xce\xa9\xc2\xb2", fit.estimates[0].value,
+                      fit.estimates[1].value),
+          [](double speed, double voltage) {
+            return FigurePoint{voltage, speed};
+          });
   add_readings(out.figure, fit, points, "readings");
   return out;
 }
@@ -220,13 +221,13 @@ CaptionedFigure steady_motor_figure(const identification::SteadyMotorData& data,
 CaptionedFigure thrust_figure(const identification::ThrustTorqueData& data, const Experiment& fit) {
   return square_law_figure(data.speed_rad_s, fit, "Fig. 6: thrust over speed squared, with Eq. (25)",
                            "thrust T (N)",
-                           format("T = %.5g \xce\xa9\xc2\xb2", fit.estimates[0].value).c_str());
+                           fmt::format("T = {:.5g} \xce\xa9\xc2\xb2", fit.estimates[0].value).c_str());
 }
 
 CaptionedFigure torque_figure(const identification::ThrustTorqueData& data, const Experiment& fit) {
   return square_law_figure(data.speed_rad_s, fit, "Fig. 7: torque over speed squared, with Eq. (26)",
                            "torque Q (N\xc2\xb7m)",
-                           format("Q = %.5g \xce\xa9\xc2\xb2", fit.estimates[0].value).c_str());
+                           fmt::format("Q = {:.5g} \xce\xa9\xc2\xb2", fit.estimates[0].value).c_str());
 }
 
 CaptionedFigure motor_step_figure(const identification::MotorStepData& data,
@@ -239,8 +240,8 @@ CaptionedFigure motor_step_figure(const identification::MotorStepData& data,
   const Experiment& better = step.physical_fits_better ? step.physical : step.reduced;
   std::vector<FigurePoint> points;
   FigureSeries reduced{
-      format("reduced, tau_m %.4f s", step.reduced.estimates[0].value), Mark::kLine, kFitColour, {}};
-  FigureSeries physical{format("physical, tau_m %.4f s at hover", step.physical.estimates[0].value),
+      fmt::format("reduced, tau_m {:.4f} s", step.reduced.estimates[0].value), Mark::kLine, kFitColour, {}};
+  FigureSeries physical{fmt::format("physical, tau_m {:.4f} s at hover", step.physical.estimates[0].value),
                         Mark::kDashes,
                         "#e67e22",
                         {}};
@@ -252,7 +253,7 @@ CaptionedFigure motor_step_figure(const identification::MotorStepData& data,
   const std::array<double, 2> speeds = range_of(better.predicted);
   const double read_at = step.step_time_s + step.reading.value;
   figure.series = {reduced, physical};
-  figure.series.push_back({format("63.2 %% after %.4f s", step.reading.value),
+  figure.series.push_back({fmt::format("63.2 % after {:.4f} s", step.reading.value),
                            Mark::kDashes,
                            "#2e8b57",
                            {{read_at, speeds[0]},

@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/identify/identification_figures.hpp"
 #include "swiftlet/ground/identify/report_page.hpp"
 #include "swiftlet/ground/report/svg_figure.hpp"
-#include "swiftlet/io/format.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -80,8 +80,9 @@ std::vector<Part> parts_of(const IdentificationReport& report) {
                             {torque_figure(*data.thrust_torque, *found.torque)}));
     add_propeller(parts.back(), found.propeller.torque);
     if (found.propeller.figure_of_merit)
-      parts.back().findings.push_back(format("figure of merit %.2f (ideal over real power, momentum theory)",
-                                             *found.propeller.figure_of_merit));
+      parts.back().findings.push_back(
+          fmt::format("figure of merit {:.2f} (ideal over real power, momentum theory)",
+                      *found.propeller.figure_of_merit));
   }
   if (found.throttle_thrust)
     parts.push_back(
@@ -98,7 +99,7 @@ std::vector<Part> parts_of(const IdentificationReport& report) {
 
 // A constant explains nothing of its readings' spread.
 std::string r_squared_text(const Experiment& fit) {
-  return fit.r_squared > 1e-9 ? format("%8.5f", fit.r_squared) : "       -";
+  return fit.r_squared > 1e-9 ? fmt::format("{:8.5f}", fit.r_squared) : "       -";
 }
 
 std::vector<int> outlier_lines(const IdentificationReport& report, const Part& part) {
@@ -112,28 +113,29 @@ std::string outliers_html(const IdentificationReport& report, const Part& part) 
   const std::vector<int> lines = outlier_lines(report, part);
   if (lines.empty()) return "";
   std::string out =
-      format("<details%s><summary>%zu of %zu rows are outliers and were left out</summary>\n",
-             lines.size() <= kFewOutliers ? " open" : "", lines.size(), part.fit->measured.size());
+      fmt::format("<details{}><summary>{} of {} rows are outliers and were left out</summary>\n",
+                  lines.size() <= kFewOutliers ? " open" : "", lines.size(), part.fit->measured.size());
   out += "<table><tr><th>line of the file</th><th>measured</th><th>fitted</th><th>unit</th></tr>\n";
   for (std::size_t i = 0; i < std::min(lines.size(), kMostOutliersShown); ++i) {
     const std::size_t row = part.fit->outliers[i];
-    out += format("<tr><td class=\"n\">%d</td><td class=\"n\">%.5g</td><td class=\"n\">%.5g</td><td>",
-                  lines[i], part.fit->measured[row], part.fit->predicted[row]) +
-           html_unit(part.fit->residual_unit) + "</td></tr>\n";
+    out +=
+        fmt::format("<tr><td class=\"n\">{}</td><td class=\"n\">{:.5g}</td><td class=\"n\">{:.5g}</td><td>",
+                    lines[i], part.fit->measured[row], part.fit->predicted[row]) +
+        html_unit(part.fit->residual_unit) + "</td></tr>\n";
   }
   out += "</table>\n";
   if (lines.size() > kMostOutliersShown)
-    out += format("<p class=\"quiet\">and %zu more</p>\n", lines.size() - kMostOutliersShown);
+    out += fmt::format("<p class=\"quiet\">and {} more</p>\n", lines.size() - kMostOutliersShown);
   return out + "</details>\n";
 }
 
 std::string part_html(const IdentificationReport& report, const Part& part) {
-  std::string out = "<h2>" + html_escaped(part.title) + "</h2>\n<p class=\"quiet\">" +
-                    html_escaped(report.bench.files.at(part.name).file) +
-                    format(": %zu rows; R\xc2\xb2 ", part.fit->measured.size()) + r_squared_text(*part.fit) +
-                    format("; the fit leaves %.3g ", part.fit->residual_sd) +
-                    html_unit(part.fit->residual_unit) + " (standard deviation)</p>\n" +
-                    estimates_html(part.estimates);
+  std::string out =
+      "<h2>" + html_escaped(part.title) + "</h2>\n<p class=\"quiet\">" +
+      html_escaped(report.bench.files.at(part.name).file) +
+      fmt::format(": {} rows; R\xc2\xb2 ", part.fit->measured.size()) + r_squared_text(*part.fit) +
+      fmt::format("; the fit leaves {:.3g} ", part.fit->residual_sd) + html_unit(part.fit->residual_unit) +
+      " (standard deviation)</p>\n" + estimates_html(part.estimates);
   for (const std::string& finding : part.findings)
     out += "<p class=\"finding\">" + html_escaped(finding) + ".</p>\n";
   for (const std::string& warning : part.fit->warnings)
@@ -156,8 +158,8 @@ std::string summary_html(const IdentificationReport& report) {
   out += "<table><tr><th>in the vehicle file</th><th>value</th><th>95 % interval</th><th>source</th></tr>\n";
   for (const plant::ParameterUncertainty& p : report.found.uncertainty.parameters) {
     out += "<tr><td>" + html_escaped(p.parameter) + "</td>" +
-           format("<td class=\"n\">%.5g</td><td class=\"n\">%.5g to %.5g</td><td>", 0.5 * (p.low + p.high),
-                  p.low, p.high) +
+           fmt::format("<td class=\"n\">{:.5g}</td><td class=\"n\">{:.5g} to {:.5g}</td><td>",
+                       0.5 * (p.low + p.high), p.low, p.high) +
            html_escaped(sources.at(p.parameter)) + "</td></tr>\n";
   }
   out += "</table>\n";
@@ -192,15 +194,16 @@ std::string identification_html(const IdentificationReport& report) {
 std::string identification_table(const IdentificationReport& report) {
   std::string out = report.found.vehicle.name + ", identified from " + report.bench_folder +
                     "; what is not named is from " + report.base_vehicle + "\n" +
-                    format("  %-24s %-7s %12s  %-10s %-12s %-16s %8s %8s\n", "parameter", "symbol", "value",
-                           "+- (95 %)", "unit", "from", "R^2", "outliers");
+                    fmt::format("  {:<24} {:<7} {:>12}  {:<10} {:<12} {:<16} {:>8} {:>8}\n", "parameter",
+                                "symbol", "value", "+- (95 %)", "unit", "from", "R^2", "outliers");
   std::string notes;
   for (const Part& part : parts_of(report)) {
     for (std::size_t i = 0; i < part.estimates.size(); ++i) {
       const Estimate& e = part.estimates[i];
-      out += format("  %-24s %-7s %12.5g  %-10.2g %-12s %-16s", e.parameter.c_str(), e.symbol.c_str(),
-                    e.value, e.half_width, e.unit.c_str(), part.name.c_str());
-      out += i == 0 ? " " + r_squared_text(*part.fit) + format(" %8zu\n", part.fit->outliers.size()) : "\n";
+      out += fmt::format("  {:<24} {:<7} {:12.5g}  {:<10.2g} {:<12} {:<16}", e.parameter.c_str(),
+                         e.symbol.c_str(), e.value, e.half_width, e.unit.c_str(), part.name.c_str());
+      out +=
+          i == 0 ? " " + r_squared_text(*part.fit) + fmt::format(" {:8}\n", part.fit->outliers.size()) : "\n";
     }
     for (const std::string& finding : part.findings) notes += "  " + part.title + ": " + finding + "\n";
     for (const std::string& warning : part.fit->warnings)

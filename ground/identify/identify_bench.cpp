@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <string>
 
+#include <fmt/core.h>
+
 #include "swiftlet/ground/command_line/installation.hpp"
 #include "swiftlet/ground/command_line/output_files.hpp"
 #include "swiftlet/ground/identify/bench_files.hpp"
@@ -31,7 +33,7 @@ identification::BenchIdentification identify(const Bench& bench, const std::stri
         bench.data, base, [&](const std::string& experiment, std::size_t done, std::size_t all) {
           if (std::chrono::steady_clock::now() - started < kQuickEnough) return;
           progress.update(static_cast<int>(done),
-                          format("fitting %s, %zu of %zu", experiment.c_str(), done + 1, all));
+                          fmt::format("fitting {}, {} of {}", experiment.c_str(), done + 1, all));
         });
   } catch (const identification::BenchError& fault) {
     const auto file = bench.files.find(fault.experiment());

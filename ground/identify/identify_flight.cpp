@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "swiftlet/ground/command_line/installation.hpp"
 #include "swiftlet/ground/command_line/output_files.hpp"
 #include "swiftlet/ground/identify/flight_identification_report.hpp"
@@ -61,7 +63,7 @@ int identify_flight(IdentifyFlightOptions options) {
   options.fit.progress = [&](const std::string& what) {
     ++iterations;
     if (std::chrono::steady_clock::now() - started > kQuickEnough)
-      progress.update(0, format("%s, iteration %d", what.c_str(), iterations));
+      progress.update(0, fmt::format("{}, iteration {}", what.c_str(), iterations));
   };
   std::vector<identification::FlightLog> logs;
   for (const std::string& file : options.logs) {

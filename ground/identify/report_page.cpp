@@ -2,9 +2,10 @@
 
 #include <cmath>
 
+#include <fmt/core.h>
+
 #include "swiftlet/ground/identify/identification_figures.hpp"
 #include "swiftlet/ground/report/svg_figure.hpp"
-#include "swiftlet/io/format.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -13,7 +14,7 @@ using identification::Estimate;
 
 // A value with as many digits as its interval deserves, and its interval.
 std::string with_interval(const Estimate& estimate) {
-  return format("%.5g \xc2\xb1 %.2g", estimate.value, estimate.half_width);
+  return fmt::format("{:.5g} \xc2\xb1 {:.2g}", estimate.value, estimate.half_width);
 }
 
 double share_percent(const Estimate& estimate) {
@@ -48,7 +49,8 @@ std::string estimates_html(const std::vector<Estimate>& estimates) {
   for (const Estimate& estimate : estimates) {
     out += "<tr><td>" + html_escaped(estimate.parameter) + "</td><td>" + html_escaped(estimate.symbol) +
            "</td><td class=\"n\">" + with_interval(estimate) + "</td><td>" + html_unit(estimate.unit) +
-           "</td><td class=\"n\">" + format("\xc2\xb1 %.2g %%", share_percent(estimate)) + "</td></tr>\n";
+           "</td><td class=\"n\">" + fmt::format("\xc2\xb1 {:.2g} %", share_percent(estimate)) +
+           "</td></tr>\n";
   }
   return out + "</table>\n";
 }

@@ -5,9 +5,8 @@
 #include <iterator>
 #include <utility>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
-
-#include "swiftlet/io/format.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -49,38 +48,40 @@ double use_of(const WorstDemand& worst) {
 
 std::string place_of(const WorstDemand& worst) {
   const Eigen::Vector3d& p = worst.position_ned;
-  return format("at %.2f s, (%.2f, %.2f, %.2f) m NED", worst.time_s, p.x(), p.y(), p.z());
+  return fmt::format("at {:.2f} s, ({:.2f}, {:.2f}, {:.2f}) m NED", worst.time_s, p.x(), p.y(), p.z());
 }
 
 std::string value_of(const WorstDemand& worst) {
-  if (worst.demand == Demand::kFence) return format("%.3f m beyond the fence", worst.value);
+  if (worst.demand == Demand::kFence) return fmt::format("{:.3f} m beyond the fence", worst.value);
   const bool least = worst.demand == Demand::kLift || worst.demand == Demand::kRotorLeast;
   const char* const unit = control::unit_of(worst.demand);
-  return format("%s is %.3f %s, the limit is %s%.3f %s", control::to_string(worst.demand), worst.value, unit,
-                least ? "at least " : "", worst.limit, unit);
+  return fmt::format("{} is {:.3f} {}, the limit is {}{:.3f} {}", control::to_string(worst.demand),
+                     worst.value, unit, least ? "at least " : "", worst.limit, unit);
 }
 
 std::string name_of(const ItemCheck& item, std::size_t index) {
-  const std::string line = item.line > 0 ? format(", line %d", item.line) : "";
-  return format("item %zu (%s%s)", index + 1, to_string(item.kind), line.c_str());
+  const std::string line = item.line > 0 ? fmt::format(", line {}", item.line) : "";
+  return fmt::format("item {} ({}{})", index + 1, to_string(item.kind), line.c_str());
 }
 
 std::string row_of(const ItemCheck& item, std::size_t index) {
   std::string row =
-      format("%5zu  %-10s %5s %9.2f %8.2f", index + 1, to_string(item.kind),
-             item.line > 0 ? std::to_string(item.line).c_str() : "", item.start_s, item.duration_s);
+      fmt::format("{:5}  {:<10} {:>5} {:9.2f} {:8.2f}", index + 1, to_string(item.kind),
+                  item.line > 0 ? std::to_string(item.line).c_str() : "", item.start_s, item.duration_s);
   if (item.demands.empty()) return row + "\n";
   const bool exceeded = std::any_of(item.demands.begin(), item.demands.end(),
                                     [](const WorstDemand& worst) { return worst.exceeded(); });
   const WorstDemand& rotor = *find(item, Demand::kRotorMost);
-  return row + format(" %9.2f %9.2f %9.1f %9.1f%s\n", find(item, Demand::kSpeed)->value,
-                      find(item, Demand::kAcceleration)->value, find(item, Demand::kTilt)->value * kDegrees,
-                      100.0 * use_of(rotor), exceeded ? "  !" : "");
+  return row + fmt::format(" {:9.2f} {:9.2f} {:9.1f} {:9.1f}{}\n", find(item, Demand::kSpeed)->value,
+                           find(item, Demand::kAcceleration)->value,
+                           find(item, Demand::kTilt)->value * kDegrees, 100.0 * use_of(rotor),
+                           exceeded ? "  !" : "");
 }
 
 std::string limits_row(const ItemCheck& item) {
-  return format("%-42s %9.2f %9.2f %9.1f %9.1f\n", "       limit", find(item, Demand::kSpeed)->limit,
-                find(item, Demand::kAcceleration)->limit, find(item, Demand::kTilt)->limit * kDegrees, 100.0);
+  return fmt::format("{:<42} {:9.2f} {:9.2f} {:9.1f} {:9.1f}\n", "       limit",
+                     find(item, Demand::kSpeed)->limit, find(item, Demand::kAcceleration)->limit,
+                     find(item, Demand::kTilt)->limit * kDegrees, 100.0);
 }
 
 // Which of all comes nearest to its limit. The fence has none that could be a share.
@@ -109,7 +110,7 @@ std::string faults_of(const MissionCheck& check) {
         text += name_of(check.items[i], i) + ": " + value_of(worst) + ": " + place_of(worst) + "\n";
     }
   }
-  if (count > kMostFaults) text += format("and %d more\n", count - kMostFaults);
+  if (count > kMostFaults) text += fmt::format("and {} more\n", count - kMostFaults);
   return text;
 }
 
@@ -155,8 +156,8 @@ MissionCheck check_mission(const MissionFile& file, const Rehearsal& rehearsal, 
 
 std::string check_table(const MissionCheck& check, const MissionFile& file, const std::string& vehicle) {
   std::string text = file.name + (file.description.empty() ? "" : ": " + file.description) + "\n\n" +
-                     format("%5s  %-10s %5s %9s %8s %9s %9s %9s %9s\n", "item", "kind", "line", "from s",
-                            "lasts s", "m/s", "m/s^2", "tilt deg", "rotor %");
+                     fmt::format("{:>5}  {:<10} {:>5} {:>9} {:>8} {:>9} {:>9} {:>9} {:>9}\n", "item", "kind",
+                                 "line", "from s", "lasts s", "m/s", "m/s^2", "tilt deg", "rotor %");
   const ItemCheck* moving = nullptr;
   for (std::size_t i = 0; i < check.items.size(); ++i) {
     text += row_of(check.items[i], i);
@@ -165,8 +166,8 @@ std::string check_table(const MissionCheck& check, const MissionFile& file, cons
   if (moving != nullptr) text += limits_row(*moving);
   text += "\n" + nearest_to_a_limit(check) + faults_of(check);
   if (!check.reason.empty()) return text + "the control service would not fly it: " + check.reason + "\n";
-  return text + format("%s %s fly it: %.1f s, with a battery down to %.2f V\n", vehicle.c_str(),
-                       check.feasible() ? "can" : "cannot", check.duration_s, check.supply_voltage_v);
+  return text + fmt::format("{} {} fly it: {:.1f} s, with a battery down to {:.2f} V\n", vehicle.c_str(),
+                            check.feasible() ? "can" : "cannot", check.duration_s, check.supply_voltage_v);
 }
 
 std::string check_json(const MissionCheck& check, const MissionFile& file, const std::string& vehicle,

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "swiftlet/ground/report/gnuplot.hpp"
 #include "swiftlet/io/format.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
@@ -116,8 +118,9 @@ class Workshop {
 std::string row_of(double time_s, const control::Reference& at) {
   const Eigen::Vector3d thrust = at.acceleration_ned - Eigen::Vector3d(0.0, 0.0, plant::kGravity);
   const double tilt = std::atan2(thrust.head<2>().norm(), -thrust.z()) * kDegrees;
-  return format("%.4f,%.5f,%.5f,%.5f,%.5f,%.5f,%.4f\n", time_s, at.position_ned.x(), at.position_ned.y(),
-                at.position_ned.z(), at.velocity_ned.norm(), at.acceleration_ned.norm(), tilt);
+  return fmt::format("{:.4f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.4f}\n", time_s, at.position_ned.x(),
+                     at.position_ned.y(), at.position_ned.z(), at.velocity_ned.norm(),
+                     at.acceleration_ned.norm(), tilt);
 }
 
 void write_csv(const fs::path& path, const Rehearsal& rehearsal) {
@@ -164,8 +167,8 @@ std::string block(const std::string& name, const std::string& rows) {
 }
 
 std::string corner(const control::Limits& limits, bool north, bool east, double height_m) {
-  return format("%.4f,%.4f,%.4f\n", (north ? limits.fence_max_ned : limits.fence_min_ned).x(),
-                (east ? limits.fence_max_ned : limits.fence_min_ned).y(), height_m);
+  return fmt::format("{:.4f},{:.4f},{:.4f}\n", (north ? limits.fence_max_ned : limits.fence_min_ned).x(),
+                     (east ? limits.fence_max_ned : limits.fence_min_ned).y(), height_m);
 }
 
 std::string fence_blocks(const control::Limits& limits) {
@@ -189,29 +192,29 @@ void write_script(const fs::path& path, const MissionFile& file, const Rehearsal
   std::string place_rows;
   for (const Place& place : places) {
     const Eigen::Vector3d& p = place.position_ned;
-    place_rows += format("%.4f,%.4f,%.4f,\"%s\"\n", p.x(), p.y(), -p.z(),
-                         places.size() <= kMostNumbers ? place.items.c_str() : "");
+    place_rows += fmt::format("{:.4f},{:.4f},{:.4f},\"{}\"\n", p.x(), p.y(), -p.z(),
+                              places.size() <= kMostNumbers ? place.items.c_str() : "");
   }
   std::string starts;
-  for (const double start_s : rehearsal.item_starts_s) starts += format("%.4f\n", start_s);
+  for (const double start_s : rehearsal.item_starts_s) starts += fmt::format("{:.4f}\n", start_s);
   const auto range = [&](const char* name, int axis, double sign) {
     const double a = sign * limits.fence_min_ned[axis];
     const double b = sign * limits.fence_max_ned[axis];
     const double margin = 0.04 * std::abs(b - a);
-    return format("%s_from = %.4f\n%s_to = %.4f\n", name, std::min(a, b) - margin, name,
-                  std::max(a, b) + margin);
+    return fmt::format("{}_from = {:.4f}\n{}_to = {:.4f}\n", name, std::min(a, b) - margin, name,
+                       std::max(a, b) + margin);
   };
   const std::string title = file.name + (file.description.empty() ? "" : " - " + file.description) +
-                            format(": %.1f s, ", rehearsal.duration_s) +
+                            fmt::format(": {:.1f} s, ", rehearsal.duration_s) +
                             counted(file.mission.items.size(), "item");
   std::ofstream script(path);
   script << "headline = " << gnuplot_quoted(title) << "\n"
-         << format("t_end = %.4f\n", rehearsal.duration_s) << range("north", 0, 1.0) << range("east", 1, 1.0)
-         << range("height", 2, -1.0)
-         << format("fence_top = %.4f\nfence_bottom = %.4f\n", -limits.fence_min_ned.z(),
-                   -limits.fence_max_ned.z())
-         << format("speed_limit = %.4f\nacceleration_limit = %.4f\ntilt_limit = %.4f\n", limits.max_speed,
-                   limits.max_acceleration, limits.max_tilt_rad * kDegrees)
+         << fmt::format("t_end = {:.4f}\n", rehearsal.duration_s) << range("north", 0, 1.0)
+         << range("east", 1, 1.0) << range("height", 2, -1.0)
+         << fmt::format("fence_top = {:.4f}\nfence_bottom = {:.4f}\n", -limits.fence_min_ned.z(),
+                        -limits.fence_max_ned.z())
+         << fmt::format("speed_limit = {:.4f}\nacceleration_limit = {:.4f}\ntilt_limit = {:.4f}\n",
+                        limits.max_speed, limits.max_acceleration, limits.max_tilt_rad * kDegrees)
          << block("places", place_rows) << block("items", starts) << fence_blocks(limits) << kPlot;
 }
 

@@ -4,10 +4,11 @@
 #include <optional>
 #include <set>
 
+#include <fmt/core.h>
+
 #include "swiftlet/ground/command_line/command.hpp"
 #include "swiftlet/ground/report/kept_settings.hpp"
 #include "swiftlet/io/config_error.hpp"
-#include "swiftlet/io/format.hpp"
 #include "swiftlet/io/text_file.hpp"
 
 namespace swiftlet::ground {
@@ -50,7 +51,7 @@ std::vector<std::string> differing_keys(const std::vector<RecordedFlight>& fligh
 std::string millimetres(const nlohmann::ordered_json& report, const char* key) {
   const auto found = report.find(key);
   if (found == report.end() || !found->is_number()) return kMissing;
-  return format("%.2f", found->get<double>() * 1e3);
+  return fmt::format("{:.2f}", found->get<double>() * 1e3);
 }
 
 std::string text(const nlohmann::ordered_json& report, const char* key) {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/report/gnuplot.hpp"
@@ -37,11 +38,7 @@ const Row* row_at(const Row*& at, const Row* end, std::int64_t stamp_ns) {
   return at != end && at->stamp_ns == stamp_ns ? at : nullptr;
 }
 
-std::string number(double value) {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.4g", value);
-  return buffer;
-}
+std::string number(double value) { return fmt::format("{:.4g}", value); }
 
 constexpr const char* kPlot = R"(
 # Draws flight.png from flight.csv: run `gnuplot flight.gp` in this folder.
@@ -134,9 +131,9 @@ unset multiplot
 void write_script(const std::filesystem::path& file, const FlightReport& report, Window window) {
   std::ofstream script(file);
   const double land_s = window.duration_s();
-  char figures[160];
-  std::snprintf(figures, sizeof figures, ": 3-D error RMS %.1f mm, peak %.1f mm over %.0f s",
-                report.errors.rms_3d_m * 1e3, report.errors.peak_3d_m * 1e3, land_s);
+  const std::string figures =
+      fmt::format(": 3-D error RMS {:.1f} mm, peak {:.1f} mm over {:.0f} s", report.errors.rms_3d_m * 1e3,
+                  report.errors.peak_3d_m * 1e3, land_s);
   script << "headline = "
          << gnuplot_quoted(report.mission + " - " + report.vehicle + ", " + report.control + figures +
                            (report.completed ? "" : " - NOT completed"))

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "swiftlet/io/format.hpp"
 #include "swiftlet/services/runtime/clock.hpp"
 
 namespace swiftlet::ground {
@@ -60,32 +60,33 @@ std::string to_text(const FlightReport& report) {
   const auto& errors = report.errors;
   std::string text =
       report.mission + (report.completed ? ": completed" : ": NOT completed: " + report.reason);
-  text += format("\n  duration          %.1f s\n", report.duration_s);
+  text += fmt::format("\n  duration          {:.1f} s\n", report.duration_s);
   if (errors.matched > 0) {
     text += "  tracking error       north    east    down     3-D\n";
-    text += format("    RMS         mm  %8.2f%8.2f%8.2f%8.2f\n", errors.rms_m[0] * kMm, errors.rms_m[1] * kMm,
-                   errors.rms_m[2] * kMm, errors.rms_3d_m * kMm);
-    text += format("    peak        mm  %8.2f%8.2f%8.2f%8.2f   (tolerance %.0f)\n", errors.peak_m[0] * kMm,
-                   errors.peak_m[1] * kMm, errors.peak_m[2] * kMm, errors.peak_3d_m * kMm,
-                   report.tolerance_m * kMm);
-    text += format("    from %zu samples, takeoff to %s\n", errors.matched,
-                   report.completed ? "landing" : "where it ended");
+    text += fmt::format("    RMS         mm  {:8.2f}{:8.2f}{:8.2f}{:8.2f}\n", errors.rms_m[0] * kMm,
+                        errors.rms_m[1] * kMm, errors.rms_m[2] * kMm, errors.rms_3d_m * kMm);
+    text += fmt::format("    peak        mm  {:8.2f}{:8.2f}{:8.2f}{:8.2f}   (tolerance {:.0f})\n",
+                        errors.peak_m[0] * kMm, errors.peak_m[1] * kMm, errors.peak_m[2] * kMm,
+                        errors.peak_3d_m * kMm, report.tolerance_m * kMm);
+    text += fmt::format("    from {} samples, takeoff to {}\n", errors.matched,
+                        report.completed ? "landing" : "where it ended");
   }
   if (report.clock != kRealtime && report.wall_s > 0.0) {
-    text += format("  simulated         %.1f s in %.2f s, %s: %.0f times real time\n", report.simulated_s,
-                   report.wall_s, report.clock.c_str(), report.simulated_s / report.wall_s);
+    text += fmt::format("  simulated         {:.1f} s in {:.2f} s, {}: {:.0f} times real time\n",
+                        report.simulated_s, report.wall_s, report.clock.c_str(),
+                        report.simulated_s / report.wall_s);
   } else if (report.cycles > 0) {
-    text += format("  control rate      %.1f Hz, %llu of %llu steps late by more than half a period%s\n",
-                   report.control_rate_hz, static_cast<unsigned long long>(report.deadline_misses),
-                   static_cast<unsigned long long>(report.cycles),
-                   report.realtime_scheduling ? "" : " (no real-time scheduling)");
-    text +=
-        format("  sense to actuate  p50 %.0f us, p99 %.0f us, max %.0f us\n", report.sense_to_actuate.p50_us,
-               report.sense_to_actuate.p99_us, report.sense_to_actuate.max_us);
+    text += fmt::format("  control rate      {:.1f} Hz, {} of {} steps late by more than half a period{}\n",
+                        report.control_rate_hz, static_cast<unsigned long long>(report.deadline_misses),
+                        static_cast<unsigned long long>(report.cycles),
+                        report.realtime_scheduling ? "" : " (no real-time scheduling)");
+    text += fmt::format("  sense to actuate  p50 {:.0f} us, p99 {:.0f} us, max {:.0f} us\n",
+                        report.sense_to_actuate.p50_us, report.sense_to_actuate.p99_us,
+                        report.sense_to_actuate.max_us);
   }
   if (!report.vary.empty())
-    text += format("  varied by         %s, seed %llu\n", report.vary.c_str(),
-                   static_cast<unsigned long long>(report.seed));
+    text += fmt::format("  varied by         {}, seed {}\n", report.vary.c_str(),
+                        static_cast<unsigned long long>(report.seed));
   if (!report.record_dir.empty()) text += "  record            " + report.record_dir + "\n";
   return text;
 }

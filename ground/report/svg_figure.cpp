@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "swiftlet/io/format.hpp"
+#include <fmt/core.h>
 
 namespace swiftlet::ground {
 namespace {
@@ -48,14 +48,14 @@ class Axis {
   std::string tick_text(double value) const {
     const double scale = std::pow(10.0, exponent_);
     const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step_ / scale) + 1e-9)));
-    const std::string text = format("%.*f", decimals, value / scale);
+    const std::string text = fmt::format("{:.{}f}", value / scale, decimals);
     return std::abs(value) < 1e-9 * step_ ? "0" : text;
   }
   // "thrust (N)" -> "thrust (10^-3 N)"
   std::string label(const std::string& text) const {
     if (exponent_ == 0) return html_escaped(text);
     const std::string power =
-        format("10<tspan dy=\"-5\" font-size=\"10\">%d</tspan><tspan dy=\"5\"> </tspan>", exponent_);
+        fmt::format("10<tspan dy=\"-5\" font-size=\"10\">{}</tspan><tspan dy=\"5\"> </tspan>", exponent_);
     const std::size_t open = text.rfind('(');
     if (open == std::string::npos) return html_escaped(text) + " (" + power + ")";
     return html_escaped(text.substr(0, open + 1)) + power + html_escaped(text.substr(open + 1));
@@ -101,12 +101,12 @@ class Drawing {
         y_(extents_[1].min, extents_[1].max, figure.height - kBottom, kTop) {}
 
   std::string draw() {
-    out_ = format(
-               "<svg viewBox=\"0 0 %d %d\" role=\"img\" "
+    out_ = fmt::format(
+               "<svg viewBox=\"0 0 {} {}\" role=\"img\" "
                "font-family=\"sans-serif\" font-size=\"13\">",
                kWidth, figure_.height) +
            "<title>" + html_escaped(figure_.title) + "</title>\n" +
-           format("<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n", kWidth, figure_.height);
+           fmt::format("<rect width=\"{}\" height=\"{}\" fill=\"#fff\"/>\n", kWidth, figure_.height);
     axes();
     for (const FigureBand& band : figure_.bands) draw_band(band);
     // Readings above the curves through them, or they would hide under the line.
@@ -144,32 +144,36 @@ class Drawing {
   void axes() {
     const int bottom = figure_.height - kBottom;
     for (const double tick : x_.ticks()) {
-      out_ += format("<path d=\"M%.1f %d V%d\" stroke=\"#e3e3e3\"/>", x_.pixel(tick), kTop, bottom) +
-              format("<text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\">", x_.pixel(tick), bottom + 18) +
-              x_.tick_text(tick) + "</text>\n";
+      out_ +=
+          fmt::format("<path d=\"M{:.1f} {} V{}\" stroke=\"#e3e3e3\"/>", x_.pixel(tick), kTop, bottom) +
+          fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">", x_.pixel(tick), bottom + 18) +
+          x_.tick_text(tick) + "</text>\n";
     }
     for (const double tick : y_.ticks()) {
       out_ +=
-          format("<path d=\"M%d %.1f H%d\" stroke=\"#e3e3e3\"/>", kLeft, y_.pixel(tick), kWidth - kRight) +
-          format("<text x=\"%d\" y=\"%.1f\" text-anchor=\"end\">", kLeft - 7, y_.pixel(tick) + 4.5) +
+          fmt::format("<path d=\"M{} {:.1f} H{}\" stroke=\"#e3e3e3\"/>", kLeft, y_.pixel(tick),
+                      kWidth - kRight) +
+          fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">", kLeft - 7, y_.pixel(tick) + 4.5) +
           y_.tick_text(tick) + "</text>\n";
     }
     if (figure_.zero_line)
-      out_ += format("<path d=\"M%d %.1f H%d\" stroke=\"#777\"/>\n", kLeft, y_.pixel(0.0), kWidth - kRight);
-    out_ += format("<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" fill=\"none\" stroke=\"#555\"/>\n",
-                   kLeft, kTop, kWidth - kRight - kLeft, bottom - kTop);
-    out_ += format("<text x=\"%d\" y=\"%d\" text-anchor=\"middle\">", (kLeft + kWidth - kRight) / 2,
-                   figure_.height - 12) +
+      out_ += fmt::format("<path d=\"M{} {:.1f} H{}\" stroke=\"#777\"/>\n", kLeft, y_.pixel(0.0),
+                          kWidth - kRight);
+    out_ +=
+        fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#555\"/>\n",
+                    kLeft, kTop, kWidth - kRight - kLeft, bottom - kTop);
+    out_ += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">", (kLeft + kWidth - kRight) / 2,
+                        figure_.height - 12) +
             x_.label(figure_.x_label) + "</text>\n";
-    out_ += format("<text transform=\"translate(18 %d) rotate(-90)\" text-anchor=\"middle\">",
-                   (kTop + bottom) / 2) +
+    out_ += fmt::format("<text transform=\"translate(18 {}) rotate(-90)\" text-anchor=\"middle\">",
+                        (kTop + bottom) / 2) +
             y_.label(figure_.y_label) + "</text>\n";
   }
 
   std::string path_of(const std::vector<FigurePoint>& points) const {
     std::string out;
     for (const FigurePoint& point : points)
-      out += format("%s%.1f %.1f", out.empty() ? "M" : "L", x_.pixel(point.x), y_.pixel(point.y));
+      out += fmt::format("{}{:.1f} {:.1f}", out.empty() ? "M" : "L", x_.pixel(point.x), y_.pixel(point.y));
     return out;
   }
 
@@ -191,12 +195,12 @@ class Drawing {
     for (const FigurePoint& point : series.points) {
       const double x = x_.pixel(point.x);
       const double y = y_.pixel(point.y);
-      d += series.mark == Mark::kDots ? format("M%.1f %.1fh0", x, y)
-                                      : format("M%.1f %.1fl8 8m0-8l-8 8", x - 4.0, y - 4.0);
+      d += series.mark == Mark::kDots ? fmt::format("M{:.1f} {:.1f}h0", x, y)
+                                      : fmt::format("M{:.1f} {:.1f}l8 8m0-8l-8 8", x - 4.0, y - 4.0);
     }
     const double width = series.mark == Mark::kCrosses ? 2.0 : series.points.size() > 200 ? 2.6 : 5.0;
     out_ += "<path d=\"" + d + "\" fill=\"none\" stroke=\"" + series.colour +
-            format("\" stroke-width=\"%.1f\" stroke-linecap=\"round\"/>\n", width);
+            fmt::format("\" stroke-width=\"{:.1f}\" stroke-linecap=\"round\"/>\n", width);
   }
 
   void legend() {
@@ -213,14 +217,15 @@ class Drawing {
     const double width = 40.0 + kCharacter * static_cast<double>(longest);
     const double height = 8.0 + kLegendRow * static_cast<double>(rows.size());
     const auto [x, y] = emptiest_corner(width, height);
-    out_ += format(
-        "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#fff\" fill-opacity=\"0.85\" "
+    out_ += fmt::format(
+        "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"#fff\" "
+        "fill-opacity=\"0.85\" "
         "stroke=\"#ccc\"/>\n",
         x, y, width, height);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const double middle = y + 4.0 + kLegendRow * (static_cast<double>(i) + 0.5);
       out_ += legend_mark(rows[i], x + 6.0, middle) +
-              format("<text x=\"%.1f\" y=\"%.1f\" font-size=\"12\">", x + 33.0, middle + 4.0) +
+              fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"12\">", x + 33.0, middle + 4.0) +
               html_escaped(rows[i].label) + "</text>\n";
     }
   }
@@ -255,22 +260,23 @@ class Drawing {
 
   static std::string legend_mark(const Legend& row, double x, double y) {
     if (row.series == nullptr)
-      return format(
-          "<rect x=\"%.1f\" y=\"%.1f\" width=\"22\" height=\"10\" fill=\"%s\" fill-opacity=\"0.25\"/>", x,
+      return fmt::format(
+          "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"22\" height=\"10\" fill=\"{}\" fill-opacity=\"0.25\"/>", x,
           y - 5.0, row.colour.c_str());
     switch (row.series->mark) {
       case Mark::kDots:
-        return format("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"2.6\" fill=\"%s\"/>", x + 11.0, y,
-                      row.colour.c_str());
+        return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.6\" fill=\"{}\"/>", x + 11.0, y,
+                           row.colour.c_str());
       case Mark::kCrosses:
-        return format("<path d=\"M%.1f %.1fl8 8m0-8l-8 8\" stroke=\"%s\" stroke-width=\"2\"/>", x + 7.0,
-                      y - 4.0, row.colour.c_str());
+        return fmt::format("<path d=\"M{:.1f} {:.1f}l8 8m0-8l-8 8\" stroke=\"{}\" stroke-width=\"2\"/>",
+                           x + 7.0, y - 4.0, row.colour.c_str());
       case Mark::kLine:
       case Mark::kDashes:
         break;
     }
-    return format("<path d=\"M%.1f %.1fh22\" stroke=\"%s\" stroke-width=\"1.8\"%s/>", x, y,
-                  row.colour.c_str(), row.series->mark == Mark::kDashes ? " stroke-dasharray=\"7 5\"" : "");
+    return fmt::format("<path d=\"M{:.1f} {:.1f}h22\" stroke=\"{}\" stroke-width=\"1.8\"{}/>", x, y,
+                       row.colour.c_str(),
+                       row.series->mark == Mark::kDashes ? " stroke-dasharray=\"7 5\"" : "");
   }
 
   const Figure& figure_;

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/core.h>
+
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/control/types/settings.hpp"
-#include "swiftlet/io/format.hpp"
 #include "swiftlet/services/messages/wire.hpp"
 
 namespace swiftlet::ground {
@@ -30,7 +31,7 @@ double off_reference_m(const View& view) {
 }
 
 std::string of_vector(const char* name, const Vector3d& v, const char* unit) {
-  return format("%-11s %8.3f %8.3f %8.3f %s", name, v.x(), v.y(), v.z(), unit);
+  return fmt::format("{:<11} {:8.3f} {:8.3f} {:8.3f} {}", name, v.x(), v.y(), v.z(), unit);
 }
 
 // -.....|..... from -limit to limit.
@@ -81,15 +82,15 @@ void show_motion(const View& view, Screen& screen) {
     const Vector3d reference = vector(view.reference.message.position_ned());
     const Vector3d off_mm = 1e3 * (position - reference);
     screen.add(of_vector("reference", reference, "m"));
-    screen.add(format("%-11s %8.1f %8.1f %8.1f mm   %.1f mm in all", "off by", off_mm.x(), off_mm.y(),
-                      off_mm.z(), off_mm.norm()),
+    screen.add(fmt::format("{:<11} {:8.1f} {:8.1f} {:8.1f} mm   {:.1f} mm in all", "off by", off_mm.x(),
+                           off_mm.y(), off_mm.z(), off_mm.norm()),
                off_mm.norm() > 1e3 * kFarOff_m && flies(view) ? Emphasis::kWarning : Emphasis::kPlain);
     for (int i = 0; i < 3; ++i)
-      screen.add(format("  %-9s [%s] 100 mm",
-                        i == 0   ? "north"
-                        : i == 1 ? "east"
-                                 : "down",
-                        bar(off_mm[i], 100.0, 41).c_str()));
+      screen.add(fmt::format("  {:<9} [{}] 100 mm",
+                             i == 0   ? "north"
+                             : i == 1 ? "east"
+                                      : "down",
+                             bar(off_mm[i], 100.0, 41).c_str()));
   }
   screen.add(of_vector("velocity", vector(estimate.velocity_ned()), "m/s"));
 }
@@ -97,28 +98,28 @@ void show_motion(const View& view, Screen& screen) {
 void show_power(const View& view, Screen& screen) {
   if (!view.battery.seen()) return;
   const msg::Battery& battery = view.battery.message;
-  screen.add(format("%-11s %5.2f V  %5.2f A  [%s] %3.0f %%", "battery", battery.voltage_v(),
-                    battery.current_a(), gauge(battery.state_of_charge(), 20).c_str(),
-                    100.0 * battery.state_of_charge()));
+  screen.add(fmt::format("{:<11} {:5.2f} V  {:5.2f} A  [{}] {:3.0f} %", "battery", battery.voltage_v(),
+                         battery.current_a(), gauge(battery.state_of_charge(), 20).c_str(),
+                         100.0 * battery.state_of_charge()));
 }
 
 void show_timing(const View& view, const WatchFacts& facts, Clock::time_point now, Screen& screen) {
   const msg::ControlStatus& control = view.control.message;
-  screen.add(format("%-11s estimate %.0f Hz, poses %.0f Hz, battery %.0f Hz; pose %.3f s old", "rates",
-                    facts.estimate_hz, facts.pose_hz, facts.battery_hz, control.pose_age_s()));
+  screen.add(fmt::format("{:<11} estimate {:.0f} Hz, poses {:.0f} Hz, battery {:.0f} Hz; pose {:.3f} s old",
+                         "rates", facts.estimate_hz, facts.pose_hz, facts.battery_hz, control.pose_age_s()));
   if (view.vehicle.seen()) {
     const msg::VehicleInfo& vehicle = view.vehicle.message;
-    screen.add(format("%-11s sense to actuate p50 %.0f, p99 %.0f, max %.0f us; IMU %.0f Hz", "latency",
-                      vehicle.sense_to_actuate_p50_us(), vehicle.sense_to_actuate_p99_us(),
-                      vehicle.sense_to_actuate_max_us(), vehicle.imu_rate_hz()));
+    screen.add(fmt::format("{:<11} sense to actuate p50 {:.0f}, p99 {:.0f}, max {:.0f} us; IMU {:.0f} Hz",
+                           "latency", vehicle.sense_to_actuate_p50_us(), vehicle.sense_to_actuate_p99_us(),
+                           vehicle.sense_to_actuate_max_us(), vehicle.imu_rate_hz()));
   }
-  screen.add(format("%-11s %.1f Hz, %llu of %llu steps late, longest %.0f us", "control", control.rate_hz(),
-                    static_cast<unsigned long long>(control.deadline_misses()),
-                    static_cast<unsigned long long>(control.cycles()), control.step_time_max_us()));
+  screen.add(fmt::format("{:<11} {:.1f} Hz, {} of {} steps late, longest {:.0f} us", "control",
+                         control.rate_hz(), static_cast<unsigned long long>(control.deadline_misses()),
+                         static_cast<unsigned long long>(control.cycles()), control.step_time_max_us()));
   int controllers = 0;
   for (const auto& [number, latest] : view.controllers) controllers += latest.age_s(now) < kSilence_s ? 1 : 0;
-  screen.add(format("%-11s %d, of which %d would take over", "controllers", controllers,
-                    std::max(controllers - 1, 0)));
+  screen.add(fmt::format("{:<11} {}, of which {} would take over", "controllers", controllers,
+                         std::max(controllers - 1, 0)));
 }
 
 }  // namespace
@@ -129,23 +130,23 @@ std::vector<std::string> warnings_of(const View& view, Clock::time_point now) {
   const control::FailsafeSettings thresholds;
   const msg::ControlStatus& control = view.control.message;
   if (view.control.age_s(now) > kSilence_s)
-    warnings.push_back(format("control has said nothing for %.0f s", view.control.age_s(now)));
+    warnings.push_back(fmt::format("control has said nothing for {:.0f} s", view.control.age_s(now)));
   if (mode_of(view) == Mode::kStopped)
     warnings.push_back("rotors stopped: " + std::string(control.reason().c_str()));
   if (view.vehicle.seen() && view.vehicle.message.fault().size() > 0)
     warnings.push_back("vehicle: " + std::string(view.vehicle.message.fault().c_str()));
-  if (!control.has_pose()) warnings.push_back(format("no pose for %.1f s", control.pose_age_s()));
+  if (!control.has_pose()) warnings.push_back(fmt::format("no pose for {:.1f} s", control.pose_age_s()));
   if (view.estimate.seen() && view.estimate.message.pose_fault() != msg::Estimate_Constants::POSE_FAULT_NONE)
     warnings.push_back(std::string("poses are refused as ") +
                        pose_fault_name(view.estimate.message.pose_fault()));
   if (view.battery.seen() && view.battery.message.voltage_v() < thresholds.low_battery_voltage)
-    warnings.push_back(format("battery is low: %.2f V", view.battery.message.voltage_v()));
+    warnings.push_back(fmt::format("battery is low: {:.2f} V", view.battery.message.voltage_v()));
   if (flies(view) && view.estimate.seen() && view.reference.seen() && off_reference_m(view) > kFarOff_m)
-    warnings.push_back(format("%.2f m off the reference", off_reference_m(view)));
+    warnings.push_back(fmt::format("{:.2f} m off the reference", off_reference_m(view)));
   if (control.saturated()) warnings.emplace_back("the rotors' limits cut commands");
   if (static_cast<double>(control.deadline_misses()) > kLateSteps * static_cast<double>(control.cycles()))
-    warnings.push_back(format(
-        "%.1f %% of the steps are late",
+    warnings.push_back(fmt::format(
+        "{:.1f} % of the steps are late",
         100.0 * static_cast<double>(control.deadline_misses()) / static_cast<double>(control.cycles())));
   if (mode_of(view) == Mode::kSetpoint && control.setpoint_refusal().size() > 0)
     warnings.emplace_back(control.setpoint_refusal().c_str());
@@ -159,14 +160,14 @@ std::vector<ScreenLine> watch_screen(const View& view, const WatchFacts& facts, 
   const std::string last = facts.message.empty() ? kKeys : facts.message;
   const Emphasis emphasis = facts.message.empty() ? Emphasis::kPlain : Emphasis::kHeading;
   if (!view.control.seen()) {
-    screen.add(format("%s in domain %d", facts.vehicle.c_str(), facts.domain), Emphasis::kHeading);
+    screen.add(fmt::format("{} in domain {}", facts.vehicle.c_str(), facts.domain), Emphasis::kHeading);
     screen.add("waiting: " + facts.where, Emphasis::kWarning);
     return screen.close(last, emphasis);
   }
-  screen.add(
-      format("%s in domain %d: %s (%s), %s", facts.vehicle.c_str(), facts.domain, mode_name(control.mode()),
-             control.reason().c_str(), control.airborne() ? "airborne" : "on the ground"),
-      Emphasis::kHeading);
+  screen.add(fmt::format("{} in domain {}: {} ({}), {}", facts.vehicle.c_str(), facts.domain,
+                         mode_name(control.mode()), control.reason().c_str(),
+                         control.airborne() ? "airborne" : "on the ground"),
+             Emphasis::kHeading);
   const std::vector<std::string> warnings = warnings_of(view, now);
   for (const std::string& warning : warnings) screen.add("! " + warning, Emphasis::kWarning);
   if (warnings.empty()) screen.add("no warnings", Emphasis::kGood);
@@ -174,8 +175,8 @@ std::vector<ScreenLine> watch_screen(const View& view, const WatchFacts& facts, 
   show_power(view, screen);
   const msg::MissionStatus& mission = view.mission.message;
   if (mission.state() != msg::MissionStatus_Constants::NONE) {
-    screen.add(format("%-11s %s, item %u of %u", "mission", mission_state_name(mission.state()),
-                      mission.item_index() + 1, mission.item_count()));
+    screen.add(fmt::format("{:<11} {}, item {} of {}", "mission", mission_state_name(mission.state()),
+                           mission.item_index() + 1, mission.item_count()));
   }
   show_timing(view, facts, now, screen);
   return screen.close(last, emphasis);
@@ -185,15 +186,16 @@ std::string watch_line(const View& view, const WatchFacts& facts, Clock::time_po
   std::string line;
   if (view.control.seen()) {
     const msg::ControlStatus& control = view.control.message;
-    line = format("%s: %s (%s)", facts.vehicle.c_str(), mode_name(control.mode()), control.reason().c_str());
+    line = fmt::format("{}: {} ({})", facts.vehicle.c_str(), mode_name(control.mode()),
+                       control.reason().c_str());
     if (view.estimate.seen()) {
       const auto& p = view.estimate.message.position_ned();
-      line += format(", at (%.3f, %.3f, %.3f) m", p[0], p[1], p[2]);
+      line += fmt::format(", at ({:.3f}, {:.3f}, {:.3f}) m", p[0], p[1], p[2]);
     }
     if (view.reference.seen() && view.estimate.seen())
-      line += format(", %.1f mm off", 1e3 * off_reference_m(view));
-    if (view.battery.seen()) line += format(", %.2f V", view.battery.message.voltage_v());
-    line += format(", poses %.0f Hz", facts.pose_hz);
+      line += fmt::format(", {:.1f} mm off", 1e3 * off_reference_m(view));
+    if (view.battery.seen()) line += fmt::format(", {:.2f} V", view.battery.message.voltage_v());
+    line += fmt::format(", poses {:.0f} Hz", facts.pose_hz);
     for (const std::string& warning : warnings_of(view, now)) line += "; ! " + warning;
     return line;
   }

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include <fmt/core.h>
 
 namespace swiftlet::identification {
 
@@ -111,10 +112,6 @@ Experiment conclude(const Fit& fit, const std::vector<ParameterName>& names, std
   return out;
 }
 
-std::string shown(double number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", number);
-  return text;
-}
+std::string shown(double number) { return fmt::format("{:.4g}", number); }
 
 }  // namespace swiftlet::identification

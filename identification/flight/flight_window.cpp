@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <vector>
+
+#include <fmt/core.h>
 
 #include "swiftlet/identification/fitting/estimate.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
@@ -90,11 +91,7 @@ Rows above_ground(const FlightLog& log, const Rows& running) {
   return rows;
 }
 
-std::string seconds(double time_s) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f", time_s);
-  return text;
-}
+std::string seconds(double time_s) { return fmt::format("{:.2f}", time_s); }
 
 Rows airborne(const FlightLog& log, const Rows& running) {
   return log.poses.empty() ? carried(log, running) : above_ground(log, running);

@@ -5,10 +5,11 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include <fmt/core.h>
+
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/types/polynomial.hpp"
 #include "swiftlet/io/config.hpp"
-#include "swiftlet/io/format.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
 #include "swiftlet/io/missions/mission_items.hpp"
 #include "swiftlet/io/text_file.hpp"
@@ -51,7 +52,7 @@ void read_fence(const ConfigNode& node, MissionFrame frame, const control::Limit
   for (int i = 0; i < 3; ++i) {
     if (greatest[i] > least[i]) continue;
     node.at("max_m").fail(
-        format("number %d is %g, must be above that of min_m, %g", i + 1, greatest[i], least[i]));
+        fmt::format("number {} is {:g}, must be above that of min_m, {:g}", i + 1, greatest[i], least[i]));
   }
   const Eigen::Vector3d one = ned_from(frame, least);
   const Eigen::Vector3d other = ned_from(frame, greatest);

@@ -6,9 +6,10 @@
 #include <optional>
 #include <stdexcept>
 
+#include <fmt/core.h>
+
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/planning/waypoint_path.hpp"
-#include "swiftlet/io/format.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
 #include "swiftlet/io/missions/whole_flight.hpp"
 #include "swiftlet/io/text_file.hpp"
@@ -207,8 +208,8 @@ class Reader {
     item.segment_count = static_cast<std::uint32_t>(segments.size());
     all.insert(all.end(), segments.begin(), segments.end());
     if (all.size() > control::kMaxTrajectorySegments) {
-      node.fail(format("needs %zu segments, %zu with those before it, at most %d fit in a mission",
-                       segments.size(), all.size(), control::kMaxTrajectorySegments));
+      node.fail(fmt::format("needs {} segments, {} with those before it, at most {} fit in a mission",
+                            segments.size(), all.size(), control::kMaxTrajectorySegments));
     }
     return item;
   }
@@ -274,7 +275,8 @@ class Reader {
       const double low = limits_.fence_min_ned[axis];
       const double high = limits_.fence_max_ned[axis];
       if (value >= low && value <= high) continue;
-      node.fail(format("%s is %g m, must be inside the fence, %g to %g m", kAxes[axis], value, low, high));
+      node.fail(fmt::format("{} is {:g} m, must be inside the fence, {:g} to {:g} m", kAxes[axis], value, low,
+                            high));
     }
   }
 

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <optional>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/io/config.hpp"
-#include "swiftlet/io/format.hpp"
 #include "swiftlet/io/missions/geodesy.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
 #include "swiftlet/io/missions/whole_flight.hpp"
@@ -139,8 +139,9 @@ class PlanReader {
     const Eigen::Vector3d place = position(item, params, true);
     const double aside_m = place.head<2>().norm();
     if (aside_m > kTakeoffPlace_m) {
-      item.fail(format("takes off %.1f m from home, must be at most %.0f m: the vehicle stands at home",
-                       aside_m, kTakeoffPlace_m));
+      item.fail(
+          fmt::format("takes off {:.1f} m from home, must be at most {:.0f} m: the vehicle stands at home",
+                      aside_m, kTakeoffPlace_m));
     }
     demand_inside(item, {0.0, 0.0, place.z()});
     takeoff_aside_m_ = aside_m;
@@ -196,7 +197,8 @@ class PlanReader {
 
   void add(const MissionItem& item) {
     if (items_.size() == control::kMaxMissionItems)
-      root_.at("mission").at("items").fail(format("become more than %d items", control::kMaxMissionItems));
+      root_.at("mission").at("items").fail(
+          fmt::format("become more than {} items", control::kMaxMissionItems));
     items_.push_back(item);
     if (item.kind != MissionItemKind::kLand) at_ = item.position_ned;
   }
@@ -245,18 +247,19 @@ class PlanReader {
       const double low = limits_.fence_min_ned[axis];
       const double high = limits_.fence_max_ned[axis];
       if (position_ned[axis] >= low && position_ned[axis] <= high) continue;
-      item.fail(format("%s is %.3f m, must be inside the fence, %g to %g m", kAxes[axis], position_ned[axis],
-                       low, high));
+      item.fail(fmt::format("{} is {:.3f} m, must be inside the fence, {:g} to {:g} m", kAxes[axis],
+                            position_ned[axis], low, high));
     }
   }
 
   std::vector<std::string> assumptions() const {
     std::vector<std::string> all;
     if (global_) {
-      all.push_back(format(
-          "taken as a QGroundControl plan with geographic coordinates: home, %.7f, %.7f deg and %.1f m, is "
-          "the origin of motion capture, north and east on its tangent plane",
-          home_->position.latitude_deg, home_->position.longitude_deg, home_->altitude_m));
+      all.push_back(
+          fmt::format("taken as a QGroundControl plan with geographic coordinates: home, {:.7f}, {:.7f} deg "
+                      "and {:.1f} m, is "
+                      "the origin of motion capture, north and east on its tangent plane",
+                      home_->position.latitude_deg, home_->position.longitude_deg, home_->altitude_m));
     }
     if (local_)
       all.emplace_back(
@@ -265,10 +268,10 @@ class PlanReader {
               : "taken as a QGroundControl plan with local coordinates: m from the origin of motion capture");
     if (takeoff_aside_m_ > kSamePlace_m)
       all.push_back(
-          format("it takes off where it stands, not %.2f m aside as the plan says", takeoff_aside_m_));
+          fmt::format("it takes off where it stands, not {:.2f} m aside as the plan says", takeoff_aside_m_));
     if (fastest_wanted_ > 0.0)
-      all.push_back(format("flown at up to %g m/s, as the limits say; the plan wants %g m/s",
-                           limits_.max_speed, fastest_wanted_));
+      all.push_back(fmt::format("flown at up to {:g} m/s, as the limits say; the plan wants {:g} m/s",
+                                limits_.max_speed, fastest_wanted_));
     if (takeoff_added_) all.emplace_back("a take-off to the height of the first waypoint is added");
     if (landing_added_) all.emplace_back("a landing is added");
     all.emplace_back(

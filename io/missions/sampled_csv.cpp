@@ -1,9 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/core.h>
+
 #include "swiftlet/control/planning/spline.hpp"
 #include "swiftlet/io/csv.hpp"
-#include "swiftlet/io/format.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
 #include "swiftlet/io/missions/whole_flight.hpp"
 
@@ -152,12 +153,12 @@ TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file
   if (columns.velocity) difference(samples, columns);
   const std::vector<std::size_t> knots = knots_of(table.row_count());
   std::vector<control::PolynomialSegment> segments = through(samples, knots, columns.velocity);
-  assumptions.push_back(format("%zu samples became %zu segments %s; the furthest sample is %.1f mm off",
-                               table.row_count(), segments.size(),
-                               columns.acceleration ? "with their velocities and accelerations"
-                               : columns.velocity   ? "with their velocities"
-                                                    : "of least snap, at rest at both ends",
-                               greatest_deviation(samples, knots, segments) * 1e3));
+  assumptions.push_back(fmt::format("{} samples became {} segments {}; the furthest sample is {:.1f} mm off",
+                                    table.row_count(), segments.size(),
+                                    columns.acceleration ? "with their velocities and accelerations"
+                                    : columns.velocity   ? "with their velocities"
+                                                         : "of least snap, at rest at both ends",
+                                    greatest_deviation(samples, knots, segments) * 1e3));
   return checked(
       {std::move(segments), std::move(assumptions)}, limits,
       [&](std::size_t segment, const std::string& fault) { table.fail(knots[segment], "", fault); });

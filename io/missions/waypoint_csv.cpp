@@ -1,10 +1,11 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <fmt/core.h>
+
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/planning/waypoint_path.hpp"
 #include "swiftlet/io/csv.hpp"
-#include "swiftlet/io/format.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
 #include "swiftlet/io/missions/whole_flight.hpp"
 
@@ -17,7 +18,7 @@ control::WaypointPath read(const runtime::CsvTable& table) {
   control::WaypointPath path;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     if (row == kMaxPoints)
-      table.fail(row, "x,y,z", format("is waypoint %zu, at most %zu fit", row + 1, kMaxPoints));
+      table.fail(row, "x,y,z", fmt::format("is waypoint {}, at most {} fit", row + 1, kMaxPoints));
     control::PathPoint& point = path.points.emplace_back();
     point.position_ned = ned_position({table.number(row, 0), table.number(row, 1), table.number(row, 2)});
     if (table.column_count() < 4) continue;
@@ -62,9 +63,9 @@ TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& fil
     const control::Outcome inside = control::check_position("in NED", position_ned, limits);
     if (!inside.accepted) table.fail(row, "x,y,z", inside.reason);
   }
-  assumptions.push_back(
-      format("flown through without stopping on a path of least snap, at up to %g m/s, %g m/s^2 and %g m/s^3",
-             path.limits.speed, path.limits.acceleration, path.limits.jerk));
+  assumptions.push_back(fmt::format(
+      "flown through without stopping on a path of least snap, at up to {:g} m/s, {:g} m/s^2 and {:g} m/s^3",
+      path.limits.speed, path.limits.acceleration, path.limits.jerk));
   control::PlannedPath planned;
   try {
     planned = control::plan(path);

@@ -5,9 +5,10 @@
 #include <filesystem>
 #include <limits>
 
+#include <fmt/core.h>
+
 #include "swiftlet/control/planning/bernstein.hpp"
 #include "swiftlet/control/planning/checks.hpp"
-#include "swiftlet/io/format.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -37,12 +38,13 @@ control::PolynomialSegment ned_segment(const control::PolynomialSegment& segment
 double raise_by(double least_height_m, std::vector<std::string>& assumptions) {
   const double shown_m = std::round(least_height_m * 100.0) / 100.0 + 0.0;  // no -0.00
   if (least_height_m >= kLeastHeight_m) {
-    assumptions.push_back(format("heights are above the ground: it comes down to %.2f m", shown_m));
+    assumptions.push_back(fmt::format("heights are above the ground: it comes down to {:.2f} m", shown_m));
     return 0.0;
   }
   const double raise_m = kHoverHeight_m - least_height_m;
-  assumptions.push_back(format(
-      "it comes down to %.2f m, so its heights are taken from a hover: raised by %.2f m", shown_m, raise_m));
+  assumptions.push_back(
+      fmt::format("it comes down to {:.2f} m, so its heights are taken from a hover: raised by {:.2f} m",
+                  shown_m, raise_m));
   return raise_m;
 }
 
@@ -62,7 +64,7 @@ TrajectoryFile checked(TrajectoryFile path, const control::Limits& limits,
                        const std::function<void(std::size_t, const std::string&)>& where) {
   const std::vector<control::PolynomialSegment>& segments = path.segments;
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    const std::string what = format("segment %zu in NED", i + 1);
+    const std::string what = fmt::format("segment {} in NED", i + 1);
     control::Outcome outcome = control::check_segment(what.c_str(), segments[i], limits);
     if (outcome.accepted) {
       outcome = i == 0 ? control::check_start(what.c_str(), segments[i])
@@ -87,8 +89,8 @@ MissionFile whole_flight(const std::string& file_name, TrajectoryFile path, cons
                          static_cast<std::uint32_t>(segments.size())},
                         {MissionItemKind::kLand, Eigen::Vector3d::Zero(), 0.0, true, speed, 0.0}};
   path.assumptions.push_back(
-      format("take-off to %.2f m and a landing are added; the path takes %.1f s in %zu segments",
-             -segments.front().z[0], duration_s, segments.size()));
+      fmt::format("take-off to {:.2f} m and a landing are added; the path takes {:.1f} s in {} segments",
+                  -segments.front().z[0], duration_s, segments.size()));
   file.mission.segments = std::move(segments);
   file.assumptions = std::move(path.assumptions);
   return file;

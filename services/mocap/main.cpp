@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
 #include "swiftlet/io/find_config.hpp"

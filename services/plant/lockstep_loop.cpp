@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <stdexcept>
 #include <thread>
+
+#include <fmt/core.h>
 
 #include "swiftlet/recording/telemetry_rate.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
@@ -178,30 +179,22 @@ void LockstepLoop::look_after(double awake_s) {
 }
 
 std::string LockstepLoop::silent_ground() const {
-  char text[96];
-  std::snprintf(text, sizeof text, "lockstep: ground is silent: no simulation_clock has come for %g s",
-                lockstep_.patience_s);
-  return text;
+  return fmt::format("lockstep: ground is silent: no simulation_clock has come for {:g} s",
+                     lockstep_.patience_s);
 }
 
 std::string LockstepLoop::silent_peer() const {
   const double time_s = static_cast<double>(vehicle_.simulation().stamp_ns()) * 1e-9;
-  char text[192];
   if (mocap_heard_ && mocap_sequence_ >= mocap_due_ && mocap_silent()) {
-    std::snprintf(text, sizeof text,
-                  "lockstep: mocap is silent: the truth of t = %.3f s has no answer for %g s",
-                  static_cast<double>(truth_sent_ns_) * 1e-9, lockstep_.patience_s);
-  } else if (mocap_silent()) {
-    std::snprintf(text, sizeof text,
-                  "lockstep: mocap is silent: frame %llu, due at t = %.3f s, has not come for %g s",
-                  static_cast<unsigned long long>(mocap_due_), time_s, lockstep_.patience_s);
-  } else {
-    std::snprintf(text, sizeof text,
-                  "lockstep: control is silent: IMU sample %llu of t = %.3f s has no answer for %g s",
-                  static_cast<unsigned long long>(vehicle_.simulation().imu()->sequence), time_s,
-                  lockstep_.patience_s);
+    return fmt::format("lockstep: mocap is silent: the truth of t = {:.3f} s has no answer for {:g} s",
+                       static_cast<double>(truth_sent_ns_) * 1e-9, lockstep_.patience_s);
   }
-  return text;
+  if (mocap_silent()) {
+    return fmt::format("lockstep: mocap is silent: frame {}, due at t = {:.3f} s, has not come for {:g} s",
+                       mocap_due_, time_s, lockstep_.patience_s);
+  }
+  return fmt::format("lockstep: control is silent: IMU sample {} of t = {:.3f} s has no answer for {:g} s",
+                     vehicle_.simulation().imu()->sequence, time_s, lockstep_.patience_s);
 }
 
 }  // namespace swiftlet::services

@@ -3,7 +3,6 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
-#include <cstdio>
 #include <exception>
 #include <functional>
 #include <limits>
@@ -12,6 +11,7 @@
 #include <string>
 #include <thread>
 
+#include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
 #include "swiftlet/io/find_config.hpp"
@@ -112,8 +112,7 @@ class Reporter {
   Reporter(comms::Node& node, const plant::Vehicle& vehicle, const plant::SimulationSettings& settings)
       : publisher_(node.publish(comms::topics::kVehicleInfo)),
         info_(describe(vehicle, settings.imu.rate_hz)) {
-    char text[96];
-    std::snprintf(text, sizeof text, "no actuator command for %g s", settings.command_timeout_s);
+    const std::string text = fmt::format("no actuator command for {:g} s", settings.command_timeout_s);
     timeout_fault_ = text;
   }
 

@@ -7,11 +7,11 @@
 #include <memory>
 #include <vector>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/command_line/installation.hpp"
-#include "swiftlet/io/format.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 
@@ -78,22 +78,23 @@ std::string text_of(const Poles& poles) {
   for (const std::complex<double>& pole : poles) {
     if (pole.imag() < 0.0) continue;
     if (!out.empty()) out += ", ";
-    out +=
-        pole.imag() > 0.0 ? format("%.3g +- %.3gi", pole.real(), pole.imag()) : format("%.3g", pole.real());
+    out += pole.imag() > 0.0 ? fmt::format("{:.3g} +- {:.3g}i", pole.real(), pole.imag())
+                             : fmt::format("{:.3g}", pole.real());
   }
   return out;
 }
 
 std::string row(const char* name, const AttitudeAxisDesign& axis) {
   std::string k;
-  for (Eigen::Index i = 0; i < state_count(axis.model); ++i) k += format(" %9.4g", axis.k[i]);
-  return format("  %-6s k =%-30s  margin %5.1f deg  poles ", name, k.c_str(), axis.phase_margin_deg) +
+  for (Eigen::Index i = 0; i < state_count(axis.model); ++i) k += fmt::format(" {:9.4g}", axis.k[i]);
+  return fmt::format("  {:<6} k ={:<30}  margin {:5.1f} deg  poles ", name, k.c_str(),
+                     axis.phase_margin_deg) +
          text_of(axis.poles_with_lag) + "\n";
 }
 
 std::string row(const char* name, const PositionAxisDesign& axis) {
-  return format("  %-6s k_p =%7.3f  k_v =%7.3f  k_s =%7.3f  margin %5.1f deg  poles ", name, axis.gains.k_p,
-                axis.gains.k_v, axis.gains.k_s, axis.phase_margin_deg) +
+  return fmt::format("  {:<6} k_p ={:7.3f}  k_v ={:7.3f}  k_s ={:7.3f}  margin {:5.1f} deg  poles ", name,
+                     axis.gains.k_p, axis.gains.k_v, axis.gains.k_s, axis.phase_margin_deg) +
          text_of(axis.poles) + "\n";
 }
 
@@ -119,29 +120,29 @@ Json json_of(const MarginStudy& study) {
 }
 
 std::string decibels_text(double factor) {
-  return factor > 0.0 && std::isfinite(factor) ? format("%+6.1f", decibels(factor)) : "   any";
+  return factor > 0.0 && std::isfinite(factor) ? fmt::format("{:+6.1f}", decibels(factor)) : "   any";
 }
 
 std::string margin_text(const control::LoopMargins& m) {
-  return format("%6.1f", m.phase_deg) + " " + decibels_text(m.gain_decrease) + " " +
-         decibels_text(m.gain_increase) + format(" %6.1f", m.delay_s * 1e3);
+  return fmt::format("{:6.1f}", m.phase_deg) + " " + decibels_text(m.gain_decrease) + " " +
+         decibels_text(m.gain_increase) + fmt::format(" {:6.1f}", m.delay_s * 1e3);
 }
 
 std::string text_of(const MarginStudy& study) {
   std::string out =
       "margins: phase (deg), loss and rise of gain (dB), delay (ms)\n  loop   on this vehicle             ";
   if (study.draws > 0) {
-    out += format("   kept by 95 %% of %zu draws      worst draw\n", study.draws);
+    out += fmt::format("   kept by 95 % of {} draws      worst draw\n", study.draws);
   } else {
     out += "   (the vehicle file does not say how sure its parameters are)\n";
   }
   for (std::size_t i = 0; i < kLoopNames.size(); ++i) {
-    out += format("  %-6s ", kLoopNames[i]) + margin_text(study.loops[i].designed);
+    out += fmt::format("  {:<6} ", kLoopNames[i]) + margin_text(study.loops[i].designed);
     if (study.draws > 0)
       out += "   " + margin_text(study.loops[i].most) + "   " + margin_text(study.loops[i].worst);
     out += "\n";
   }
-  if (study.unstable > 0) out += format("  not stable: %zu of %zu draws\n", study.unstable, study.draws);
+  if (study.unstable > 0) out += fmt::format("  not stable: {} of {} draws\n", study.unstable, study.draws);
   return out;
 }
 
@@ -165,10 +166,10 @@ std::string gains_json(const ControlDesign& design, const MarginStudy& margins, 
 
 std::string gains_table(const ControlDesign& design, const MarginStudy& margins, const std::string& vehicle,
                         const std::string& control) {
-  return format("%s flown with %s; rotor lag %.4g s in every margin and pole (rad/s)\n", vehicle.c_str(),
-                control.c_str(), design.rotor_lag_s) +
-         format(
-             "attitude: LQR on %s, u = -k (angle, rate%s)\n",
+  return fmt::format("{} flown with {}; rotor lag {:.4g} s in every margin and pole (rad/s)\n",
+                     vehicle.c_str(), control.c_str(), design.rotor_lag_s) +
+         fmt::format(
+             "attitude: LQR on {}, u = -k (angle, rate{})\n",
              design.roll.model == AttitudeModel::kDoubleIntegrator ? "double integrators" : "the rotor lag",
              design.roll.model == AttitudeModel::kDoubleIntegrator ? "" : ", moment / inertia") +
          row("roll", design.roll) + row("pitch", design.pitch) + row("yaw", design.yaw) +

@@ -5,6 +5,7 @@
 #include <string>
 #include <thread>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/batch/batch.hpp"
@@ -15,7 +16,6 @@
 #include "swiftlet/ground/flight/flight_conclusion.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/terminal/progress_line.hpp"
-#include "swiftlet/io/format.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -34,11 +34,11 @@ struct BatchOptions {
 std::string bar(const BatchProgress& progress) {
   const std::size_t filled = kBarLength * progress.done / progress.asked;
   std::string text = "[" + std::string(filled, '#') + std::string(kBarLength - filled, '.') + "] " +
-                     format("%zu/%zu runs, %zu failed", progress.done, progress.asked, progress.failed);
+                     fmt::format("{}/{} runs, {} failed", progress.done, progress.asked, progress.failed);
   if (progress.done > 0 && progress.done < progress.asked) {
     const double left_s = progress.elapsed_s * static_cast<double>(progress.asked - progress.done) /
                           static_cast<double>(progress.done);
-    text += format(", %.0f s left", left_s);
+    text += fmt::format(", {:.0f} s left", left_s);
   }
   return text;
 }
@@ -69,8 +69,8 @@ int sim_batch(const BatchOptions& options) {
   progress.close();
   std::printf("%s", options.flight.json ? (to_json(report).dump() + "\n").c_str() : to_text(report).c_str());
   if (report.interrupted())
-    progress.say(format("swiftlet: it was cancelled after %zu of %zu runs", report.batch.runs.size(),
-                        report.batch.asked));
+    progress.say(fmt::format("swiftlet: it was cancelled after {} of {} runs", report.batch.runs.size(),
+                             report.batch.asked));
   return report.completed() ? kDone : kFailed;
 }
 
