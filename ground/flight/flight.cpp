@@ -23,6 +23,7 @@ constexpr auto kArmTimeout = 5s;  // the estimator may need a moment for the fir
 constexpr auto kRetryPeriod = 200ms;
 constexpr auto kStep = 50ms;
 constexpr auto kLastFiguresTimeout = 1500ms;
+constexpr auto kEndTimeout = 2s;
 constexpr double kSilenceS = 3.0;  // without control_status or ground_truth
 constexpr double kLandingTimeoutS = 30.0;
 constexpr double kLandingSpeed = 0.4;  // m/s
@@ -253,8 +254,8 @@ void Flight::follow() {
         bring_down(std::string("the mission was aborted: ") + view.mission.message.reason().c_str());
       }
     }
-    if (control_silence.lasts(view.control.count)) throw FlightFailure("control has said nothing for 3 s");
-    if (vehicle_silence.lasts(view.truth.count)) throw FlightFailure("the vehicle has said nothing for 3 s");
+    if (control_silence.lasts(view.control.count)) fail_of_silence("control");
+    if (vehicle_silence.lasts(view.truth.count)) fail_of_silence("the vehicle");
     if (simulated_s(view, start_ns) > time_limit_s) {
       const std::string reason =
           fmt::format("the mission took longer than {:.0f} s, of which {:.0f} s were planned", time_limit_s,
@@ -262,6 +263,16 @@ void Flight::follow() {
       bring_down(reason);
     }
   }
+}
+
+// A process that was killed is silent before it has ended, on a busy computer for seconds.
+void Flight::fail_of_silence(const std::string& who) {
+  const auto deadline = Clock::now() + kEndTimeout;
+  while (Clock::now() < deadline) {
+    demand_alive();
+    client_.wait(kStep, [](const View&) { return false; });
+  }
+  throw FlightFailure(who + " has said nothing for 3 s");
 }
 
 // Plant and control give their figures of the flight with their next status after it.

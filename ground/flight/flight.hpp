@@ -48,6 +48,7 @@ class Flight {
   void wait_for_the_others();
   void start_mission();
   void follow();
+  [[noreturn]] void fail_of_silence(const std::string& who);
   void wait_for_last_figures();
   [[noreturn]] void bring_down(const std::string& reason);
   void demand_alive() const;
