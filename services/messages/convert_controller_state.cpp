@@ -7,7 +7,7 @@ namespace {
 using namespace wire;
 
 constexpr std::uint64_t kMaxStrength = 1000;
-constexpr std::size_t kReplicatedStateBytes = 952;
+constexpr std::size_t kReplicatedStateBytes = 968;
 
 }  // namespace
 
