@@ -93,17 +93,19 @@ TEST_F(TrajectoryFlight, ANewOneJoinsTheMotionOfThePresentOne) {
   for (const double at_s : {0.2, 0.9, 2.0, 2.9, 4.1}) {
     SCOPED_TRACE(at_s);
     ASSERT_TRUE(fly(tour_).accepted);
-    while (supervisor_.state().next_segment == 0 && !HasFatalFailure()) step_smoothly();  // the way there
+    while (supervisor_.state().guidance.next_segment == 0 && !HasFatalFailure())
+      step_smoothly();  // the way there
     fly_smoothly(at_s);
     EXPECT_GT(directive_.reference.velocity_ned.norm(), 0.01);
     ASSERT_TRUE(fly(other_).accepted);
     EXPECT_EQ(supervisor_.mode(), Mode::kTrajectory);
-    EXPECT_EQ(supervisor_.state().trajectory_id, 2U);
+    EXPECT_EQ(supervisor_.state().guidance.trajectory_id, 2U);
     land_smoothly_in(Mode::kHolding, 60.0);
     EXPECT_EQ(supervisor_.reason(), Reason::kTrajectoryCompleted);
     EXPECT_LT((directive_.reference.position_ned - Vector3d(1.0, 0.5, -1.5)).norm(), 1e-9);
     ASSERT_TRUE(ask(RequestKind::kGoTo, {0, 0, -1}, 1.0).accepted);
-    ASSERT_TRUE(step_until([&] { return supervisor_.state().path.finished(situation_.stamp_ns); }, 20.0));
+    ASSERT_TRUE(
+        step_until([&] { return supervisor_.state().guidance.path.finished(situation_.stamp_ns); }, 20.0));
   }
 }
 
@@ -135,7 +137,8 @@ TEST_F(TrajectoryFlight, TheWayToANewOneStaysInsideTheFence) {
       ASSERT_LE(directive_.reference.velocity_ned.norm(), Limits().max_speed + 0.1);
     }
     ASSERT_TRUE(ask(RequestKind::kGoTo, {0, 0, -1}, 1.0).accepted);
-    ASSERT_TRUE(step_until([&] { return supervisor_.state().path.finished(situation_.stamp_ns); }, 20.0));
+    ASSERT_TRUE(
+        step_until([&] { return supervisor_.state().guidance.path.finished(situation_.stamp_ns); }, 20.0));
   }
 }
 
@@ -145,7 +148,7 @@ TEST_F(TrajectoryFlight, ARefusedOneLeavesThePresentOneAsItIs) {
   Trajectory outside = other_;
   outside.segments.front().x[0] = 9.0;
   EXPECT_FALSE(fly(outside).accepted);
-  EXPECT_EQ(supervisor_.state().trajectory_id, 1U);
+  EXPECT_EQ(supervisor_.state().guidance.trajectory_id, 1U);
   land_smoothly_in(Mode::kHolding, 20.0);
   EXPECT_LT((directive_.reference.position_ned - Vector3d(0, -0.5, -1)).norm(), 1e-9);
 }
@@ -222,7 +225,7 @@ TEST_F(TrajectoryFlight, AMissionThatEndsWithATrajectoryHoldsThere) {
 TEST_F(TrajectoryFlight, AnotherGoesOnInTheMiddleOfAMissionsTrajectory) {
   const Mission mission = with_trajectory(tour_, other_);
   ASSERT_TRUE(fly(mission).accepted);
-  ASSERT_TRUE(step_until([&] { return supervisor_.state().next_segment == 2; }, 30.0));
+  ASSERT_TRUE(step_until([&] { return supervisor_.state().guidance.next_segment == 2; }, 30.0));
   Supervisor another{SupervisionSettings()};
   another.adopt(supervisor_.state(), &mission, nullptr);
   for (int i = 0; i < 5000; ++i) {

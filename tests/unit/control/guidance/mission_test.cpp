@@ -246,7 +246,7 @@ TEST_F(MissionFlight, AReturnIsPausedAndGoneOnWith) {
 TEST_F(MissionFlight, TheRestOfAHoldIsKeptInAPause) {
   const Mission mission = mission_of({waypoint({0.5, 0, -1}, 0.5, 4.0), waypoint({0, 0, -1})});
   ASSERT_TRUE(fly(mission).accepted);
-  ASSERT_TRUE(step_until([&] { return supervisor_.state().item_end_ns != 0; }, 10.0));
+  ASSERT_TRUE(step_until([&] { return supervisor_.state().guidance.item_end_ns != 0; }, 10.0));
   fly_on(1.0);
   ASSERT_TRUE(pause().accepted);
   fly_on(30.0);

@@ -350,9 +350,9 @@ TEST_F(DeskOfAStandby, GoesOnWithTheMissionThatItHeardBeingAskedFor) {
   loop_.report(active);
   const control::SupervisorState state = standby_state();
   EXPECT_EQ(state.mode, control::Mode::kMission);
-  EXPECT_EQ(state.mission.id, 2U);
-  EXPECT_EQ(state.phase, active.flight.supervisor.phase);
-  EXPECT_EQ(state.path.segment.z, active.flight.supervisor.path.segment.z);
+  EXPECT_EQ(state.guidance.mission.id, 2U);
+  EXPECT_EQ(state.guidance.phase, active.flight.supervisor.guidance.phase);
+  EXPECT_EQ(state.guidance.path.segment.z, active.flight.supervisor.guidance.path.segment.z);
   EXPECT_TRUE(standby_desk_.collect().empty());
 }
 
@@ -380,9 +380,9 @@ TEST_F(DeskOfAStandby, StartsTheMissionThatWasUploadedBeforeItTookOver) {
     }
     follow(20);
     control::SupervisorState state = standby_state();
-    EXPECT_EQ(state.mission.id, id);
-    EXPECT_EQ(state.mission.state, control::MissionState::kUploaded);
-    EXPECT_EQ(state.mission.item_count, 3);
+    EXPECT_EQ(state.guidance.mission.id, id);
+    EXPECT_EQ(state.guidance.mission.state, control::MissionState::kUploaded);
+    EXPECT_EQ(state.guidance.mission.item_count, 3);
     standby_desk_.attend(true);
     standby_desk_.on_command(command(Command_Constants::MISSION_START, id + 1));
     step();
@@ -392,7 +392,7 @@ TEST_F(DeskOfAStandby, StartsTheMissionThatWasUploadedBeforeItTookOver) {
     EXPECT_TRUE(answers[0].outcome.accepted) << answers[0].outcome.reason;
     state = standby_state();
     EXPECT_EQ(state.mode, control::Mode::kMission);
-    EXPECT_EQ(state.mission.state, control::MissionState::kRunning);
+    EXPECT_EQ(state.guidance.mission.state, control::MissionState::kRunning);
     standby_desk_.attend(false);
     desk_.on_command(command(Command_Constants::DISARM, id + 2));
     step();
