@@ -16,10 +16,11 @@ constexpr double kFastestTurn = 6.0;   // rad/s
 constexpr double kSmallStep_m = 0.01;  // ... and what noise may add
 constexpr double kSmallStep_rad = 0.01;
 
-// No component differs by as much, of the position in m or of the quaternion.
+// No component differs by as much, of the position in m or of the quaternion, of which q and -q are the same.
 bool closer(const plant::PoseSample& a, const plant::PoseSample& b, double distance) {
+  const double sign = a.q_ned_from_frd.dot(b.q_ned_from_frd) < 0.0 ? -1.0 : 1.0;
   return (a.position_ned - b.position_ned).cwiseAbs().maxCoeff() < distance &&
-         (a.q_ned_from_frd.coeffs() - b.q_ned_from_frd.coeffs()).cwiseAbs().maxCoeff() < distance;
+         (a.q_ned_from_frd.coeffs() - sign * b.q_ned_from_frd.coeffs()).cwiseAbs().maxCoeff() < distance;
 }
 
 }  // namespace

@@ -5,6 +5,9 @@
 #include <stdexcept>
 #include <string>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include "swiftlet/math/linear_algebra.hpp"
@@ -36,6 +39,34 @@ struct Problem {
   MatrixXd a, b, q, r;
 };
 
+// |A'X + XA - XBR^-1B'X + Q|, over the sizes of its terms.
+double residual(const Problem& p, const MatrixXd& x) {
+  const MatrixXd g = p.b * p.r.ldlt().solve(p.b.transpose());
+  const MatrixXd left = p.a.transpose() * x + x * p.a - x * g * x + p.q;
+  return left.norm() / (2.0 * p.a.norm() * x.norm() + x.norm() * x.norm() * g.norm() + p.q.norm());
+}
+
+// X = V2 V1^-1, where [V1; V2] are the eigenvectors of the Hamiltonian [A, -BR^-1B'; -Q, -A'] left of the imaginary
+// axis (MacFarlane 1963, Potter 1966): another way than the code's, and less exact.
+MatrixXd by_eigenvectors(const Problem& p) {
+  const Eigen::Index n = p.a.rows();
+  MatrixXd hamiltonian(2 * n, 2 * n);
+  hamiltonian << p.a, -p.b * p.r.ldlt().solve(p.b.transpose()), -p.q, -p.a.transpose();
+  const Eigen::EigenSolver<MatrixXd> eigen(hamiltonian);
+  Eigen::MatrixXcd stable(2 * n, n);
+  Eigen::Index found = 0;
+  for (Eigen::Index i = 0; i < 2 * n && found < n; ++i) {
+    if (eigen.eigenvalues()[i].real() < 0.0) stable.col(found++) = eigen.eigenvectors().col(i);
+  }
+  const Eigen::MatrixXcd upper = stable.topRows(n);
+  const Eigen::MatrixXcd lower = stable.bottomRows(n);
+  return upper.transpose().fullPivLu().solve(lower.transpose()).transpose().real();
+}
+
+Eigen::Matrix2d two_by_two(double a, double b, double c, double d) {
+  return (Eigen::Matrix2d() << a, b, c, d).finished();
+}
+
 // Random systems, stable or not, with weights of any size; Q positive definite.
 Problem random_problem(Random& random) {
   const int n = random.integer(1, 8);
@@ -61,11 +92,69 @@ TEST(Riccati, SolvesRandomSystems) {
   for (int trial = 0; trial < 200; ++trial) {
     const Problem p = random_problem(random);
     const MatrixXd x = solve_care(p.a, p.b, p.q, p.r);
-    EXPECT_LT(care_residual(p.a, p.b, p.q, p.r, x), 1e-14) << "trial " << trial << ", n = " << p.a.rows();
+    EXPECT_LT(residual(p, x), 1e-13) << "trial " << trial << ", n = " << p.a.rows();
+    EXPECT_LT(care_residual(p.a, p.b, p.q, p.r, x), 1e-14) << "trial " << trial;
     EXPECT_EQ(x, x.transpose());
     EXPECT_GT(least_eigenvalue(x), 0.0) << "trial " << trial;
     EXPECT_LT(largest_real_part(p.a - p.b * lqr(p.a, p.b, p.q, p.r)), 0.0) << "trial " << trial;
   }
+}
+
+TEST(Riccati, IsWhatTheHamiltoniansEigenvectorsSay) {
+  Random random(4);
+  for (int trial = 0; trial < 50; ++trial) {
+    const Problem p = random_problem(random);
+    const MatrixXd expected = by_eigenvectors(p);
+    EXPECT_LT((solve_care(p.a, p.b, p.q, p.r) - expected).norm(), 1e-6 * expected.norm())
+        << "trial " << trial;
+  }
+}
+
+// A residual that were 0 whatever X is would say nothing.
+TEST(Riccati, ResidualIsThatOfTheEquation) {
+  Random random(5);
+  for (int trial = 0; trial < 50; ++trial) {
+    const Problem p = random_problem(random);
+    const int n = static_cast<int>(p.a.rows());
+    const MatrixXd half = random.matrix(n, n);
+    const MatrixXd x = half * half.transpose();
+    const double expected = residual(p, x);
+    EXPECT_NEAR(care_residual(p.a, p.b, p.q, p.r, x), expected, 1e-9 * expected) << "trial " << trial;
+  }
+}
+
+// Benner, Laub, Mehrmann, "A collection of benchmark examples for the numerical solution of algebraic Riccati
+// equations I: continuous-time case" (1995), those with a solution in closed form.
+TEST(Riccati, PublishedExamplesInClosedForm) {
+  const MatrixXd one = MatrixXd::Identity(1, 1);
+  const auto expect = [](const Problem& p, const Eigen::Matrix2d& x) {
+    EXPECT_LT((solve_care(p.a, p.b, p.q, p.r) - x).norm(), 1e-9 * x.norm());
+  };
+  expect({two_by_two(0, 1, 0, 0), Eigen::Vector2d(0, 1), two_by_two(1, 0, 0, 2), one},
+         two_by_two(2, 1, 1, 2));
+  const double s = 1.0 + std::sqrt(2.0);
+  expect({two_by_two(4, 3, -4.5, -3.5), Eigen::Vector2d(1, -1), two_by_two(9, 6, 6, 4), one},
+         s * two_by_two(9, 6, 6, 4));
+  for (const double e : {1.0, 1e-2, 1e-4}) {
+    const double root = std::sqrt(1.0 + e * e);
+    const double x12 = 1.0 / (2.0 + root);
+    expect({two_by_two(1, 0, 0, -2), Eigen::Vector2d(e, 0), two_by_two(1, 1, 1, 1), one},
+           two_by_two((1.0 + root) / (e * e), x12, x12, 0.25 * (1.0 - e * e * x12 * x12)));
+    const double x22 = std::sqrt(1.0 + 2.0 * e);
+    expect({two_by_two(0, e, 0, 0), Eigen::Vector2d(0, 1), two_by_two(1, 0, 0, 1), one},
+           two_by_two(x22 / e, 1.0, 1.0, x22));
+  }
+}
+
+// The cost that it stands for, X = integral e^A't Q e^At dt.
+TEST(Riccati, LyapunovsSolutionIsTheIntegralOfTheCost) {
+  const MatrixXd a = two_by_two(-1.0, 2.0, 0.0, -3.0);
+  const MatrixXd q = two_by_two(4.0, 1.0, 1.0, 2.0);
+  // e^At = [e^-t, e^-t - e^-3t; 0, e^-3t].
+  const double x11 = 4.0 / 2.0;
+  const double x12 = 4.0 / 2.0 + (1.0 - 4.0) / 4.0;
+  const double x22 = 4.0 / 2.0 + 2.0 * (1.0 - 4.0) / 4.0 + (4.0 - 2.0 + 2.0) / 6.0;
+  EXPECT_LT((solve_lyapunov(a, q) - two_by_two(x11, x12, x12, x22)).norm(), 1e-13);
 }
 
 TEST(Riccati, GainIsTheCheapest) {
@@ -121,7 +210,7 @@ TEST(Riccati, AcceptsSemidefiniteWeightsAndUncontrollableStableModes) {
   const MatrixXd q = Eigen::Vector3d(1.0, 0.0, 0.0).asDiagonal();
   const MatrixXd r = MatrixXd::Identity(1, 1);
   const MatrixXd x = solve_care(a, b, q, r);
-  EXPECT_LT(care_residual(a, b, q, r, x), 1e-12);
+  EXPECT_LT(residual({a, b, q, r}, x), 1e-12);
   EXPECT_GT(least_eigenvalue(x), -1e-12);
   EXPECT_LT(largest_real_part(a - b * lqr(a, b, q, r)), 0.0);
 }

@@ -5,9 +5,9 @@
 #include <random>
 #include <stdexcept>
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
-#include "swiftlet/control/attitude/attitude_error.hpp"
 #include "swiftlet/math/euler.hpp"
 #include "tests/unit/plant/model/vehicles.hpp"
 
@@ -72,43 +72,130 @@ INSTANTIATE_TEST_SUITE_P(Errors, AttitudeControllerTest,
                            return kind.param == AttitudeErrorKind::kRotation ? "Rotation" : "EulerAngles";
                          });
 
-TEST_P(AttitudeControllerTest, LinearisesTheDoubleIntegrator) {
-  const Loops loops(AttitudeModel::kDoubleIntegrator, GetParam());
-  const Vector3d k1(loops.gains.roll.k[0], loops.gains.pitch.k[0], loops.gains.yaw.k[0]);
-  const Vector3d k2(loops.gains.roll.k[1], loops.gains.pitch.k[1], loops.gains.yaw.k[1]);
-  for (int trial = 0; trial < 1000; ++trial) {
-    const Quaterniond q = quaternion_from_euler(any(1.0));
-    const Vector3d rates = any(10.0);
-    AttitudeReference reference = reference_at(any(1.0));
-    reference.body_rates = any(3.0);
-    reference.body_accelerations = any(20.0);
-    reference.body_jerks = any(50.0);
-    Vector3d error = euler_error(q, reference.body_z_ned, reference.heading.yaw_rad);
-    Matrix3d turn = Matrix3d::Identity();
-    if (GetParam() == AttitudeErrorKind::kRotation) {
-      const RotationError rotation = rotation_error(q, reference.body_z_ned, reference.heading);
-      error = rotation.angle;
-      turn = rotation.r_frd_from_reference;
+// The control law by itself, from rotation matrices, Eq. (3), and half angles: nothing of the code's own error functions.
+struct Law {
+  AttitudeModel model;
+  AttitudeErrorKind error;
+  Matrix3d inertia;
+  double lag_s;
+  Vector3d k_angle, k_rate, k_acceleration;
+
+  // Euler angles of the rotation matrix: r31 = -s theta, r32 / r33 = t phi, r21 / r11 = t psi.
+  static Vector3d euler_of(const Matrix3d& r) {
+    return {std::atan2(r(2, 1), r(2, 2)), -std::asin(r(2, 0)), std::atan2(r(1, 0), r(0, 0))};
+  }
+  Vector3d angle_error(const Matrix3d& r_ned_from_frd, const Vector3d& euler_r) const {
+    const Matrix3d r_ned_from_reference = matrix_of(euler_r);
+    if (error == AttitudeErrorKind::kEulerAngles) {
+      // b points where the reference's z axis does, seen from the present heading.
+      const Vector3d euler = euler_of(r_ned_from_frd);
+      const Vector3d b = Eigen::AngleAxisd(-euler.z(), Vector3d::UnitZ()) * r_ned_from_reference.col(2);
+      const Vector3d wanted(-std::asin(b.y()), std::atan2(b.x(), b.z()), euler_r.z());
+      return (wanted - euler).unaryExpr([](double angle) { return std::remainder(angle, 2.0 * M_PI); });
     }
-    const Vector3d moment = loops.controller->moments(q, rates, any(1.0), reference);
-    const Vector3d expected = turn * reference.body_accelerations + k1.cwiseProduct(error) +
-                              k2.cwiseProduct(turn * reference.body_rates - rates);
-    EXPECT_LT((loops.accelerations(moment, rates) - expected).norm(), 1e-9 * (1.0 + expected.norm()));
+    const Matrix3d missing = r_ned_from_frd.transpose() * r_ned_from_reference;
+    const Vector3d z = missing.col(2);
+    const Vector3d across = Vector3d::UnitZ().cross(z);
+    const double tilt = std::atan2(across.norm(), z.z());
+    const Vector3d axis = across.normalized();
+    const Matrix3d after_tilt = Eigen::AngleAxisd(-tilt, axis).toRotationMatrix() * missing;  // about z alone
+    const double yaw = std::atan2(after_tilt(1, 0), after_tilt(0, 0));
+    return 2.0 * std::sin(0.5 * tilt) * axis + 2.0 * std::sin(0.5 * yaw) * Vector3d::UnitZ();
+  }
+  // What the moment commanded is to make of the angular acceleration by Eq. (6), and that moment.
+  Vector3d moment(const Vector3d& command, const Vector3d& rates, const Vector3d& present_moment,
+                  const Vector3d& accelerations_r) const {
+    const Vector3d gyroscopic = rates.cross(inertia * rates);
+    Vector3d wanted = command;
+    if (model == AttitudeModel::kMotorLag)
+      wanted += k_acceleration.asDiagonal() *
+                (accelerations_r - inertia.fullPivLu().solve(present_moment - gyroscopic)).eval();
+    return inertia * wanted + gyroscopic;
+  }
+  static Matrix3d matrix_of(const Vector3d& euler) {
+    return (Eigen::AngleAxisd(euler.z(), Vector3d::UnitZ()) *
+            Eigen::AngleAxisd(euler.y(), Vector3d::UnitY()) * Eigen::AngleAxisd(euler.x(), Vector3d::UnitX()))
+        .toRotationMatrix();
+  }
+};
+
+Law law_of(const Loops& loops, AttitudeModel model, AttitudeErrorKind error) {
+  const ControlDesign& g = loops.gains;
+  return {model,
+          error,
+          loops.vehicle.inertia,
+          0.0821,  // tau_m
+          {g.roll.k[0], g.pitch.k[0], g.yaw.k[0]},
+          {g.roll.k[1], g.pitch.k[1], g.yaw.k[1]},
+          {g.roll.k[2], g.pitch.k[2], g.yaw.k[2]}};
+}
+
+// Far from each other and from level, turning, with a moment under way and all that can be fed forward.
+TEST_P(AttitudeControllerTest, MomentsAreTheLaw) {
+  for (const AttitudeModel model : {AttitudeModel::kDoubleIntegrator, AttitudeModel::kMotorLag}) {
+    const Loops loops(model, GetParam());
+    const Law law = law_of(loops, model, GetParam());
+    for (int trial = 0; trial < 1000; ++trial) {
+      const Vector3d euler = any(1.0).cwiseProduct(Vector3d(1.0, 1.0, 3.0));
+      const Vector3d euler_r = any(1.0).cwiseProduct(Vector3d(1.0, 1.0, 3.0));
+      const Vector3d rates = any(10.0);
+      const Vector3d present = any(2e-3);
+      AttitudeReference reference;
+      reference.body_z_ned = Law::matrix_of(euler_r).col(2);
+      reference.heading = euler_r.z();
+      reference.body_rates = any(3.0);
+      reference.body_accelerations = any(20.0);
+      reference.body_jerks = any(300.0);
+
+      const Matrix3d r = Law::matrix_of(euler);
+      const bool turns = GetParam() == AttitudeErrorKind::kRotation;
+      const Matrix3d turn = turns ? Matrix3d(r.transpose() * Law::matrix_of(euler_r)) : Matrix3d::Identity();
+      const Vector3d accelerations_r = turn * reference.body_accelerations;
+      Vector3d command = accelerations_r + law.k_angle.cwiseProduct(law.angle_error(r, euler_r)) +
+                         law.k_rate.cwiseProduct(turn * reference.body_rates - rates);
+      if (model == AttitudeModel::kMotorLag) command += law.lag_s * (turn * reference.body_jerks);
+      const Vector3d expected = law.moment(command, rates, present, accelerations_r);
+      const Vector3d found = loops.controller->moments(Quaterniond(r), rates, present, reference);
+      ASSERT_LT((found - expected).norm(), 1e-7 * expected.norm()) << "trial " << trial;
+    }
   }
 }
 
-TEST_P(AttitudeControllerTest, ClosesTheThirdStateOnThePresentMoment) {
-  const Loops loops(AttitudeModel::kMotorLag, GetParam());
-  const Vector3d k3(loops.gains.roll.k[2], loops.gains.pitch.k[2], loops.gains.yaw.k[2]);
-  EXPECT_GT(k3.minCoeff(), 0.0);
-  const Quaterniond q = quaternion_from_euler({0.1, 0.2, 0.3});
-  const Vector3d rates = any(2.0);
-  const Vector3d change(1e-4, -2e-4, 5e-5);
-  const Vector3d one = loops.controller->moments(q, rates, Vector3d::Zero(), {});
-  const Vector3d other = loops.controller->moments(q, rates, change, {});
-  const Vector3d expected =
-      -loops.vehicle.inertia * k3.cwiseProduct(loops.vehicle.inertia.inverse() * change);
-  EXPECT_LT((other - one - expected).norm(), 1e-15);
+TEST_P(AttitudeControllerTest, MomentsForRatesAreTheLawWithoutAttitude) {
+  for (const AttitudeModel model : {AttitudeModel::kDoubleIntegrator, AttitudeModel::kMotorLag}) {
+    const Loops loops(model, GetParam());
+    const Law law = law_of(loops, model, GetParam());
+    for (int trial = 0; trial < 100; ++trial) {
+      const Vector3d rates = any(10.0);
+      const Vector3d wanted = any(10.0);
+      const Vector3d present = any(2e-3);
+      const Vector3d expected =
+          law.moment(law.k_rate.cwiseProduct(wanted - rates), rates, present, Vector3d::Zero());
+      ASSERT_LT((loops.controller->moments_for_rates(rates, present, wanted) - expected).norm(),
+                1e-12 * expected.norm());
+    }
+  }
+}
+
+// The double integrator's LQR in closed form, Q = diag(q1, q2) and R = 1: K = [sqrt(q1), sqrt(q2 + 2 sqrt(q1))].
+TEST_P(AttitudeControllerTest, ASmallTurnOfEachAxisIsAnsweredByItsGain) {
+  const Loops loops(AttitudeModel::kDoubleIntegrator, GetParam());
+  const Vector3d k_angle(25.0, 30.0, 5.0);
+  const Vector3d k_rate(std::sqrt(50.0), std::sqrt(61.0), std::sqrt(10.0));
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vector3d unit = Vector3d::Unit(axis);
+    const Quaterniond turned(Eigen::AngleAxisd(1e-5, unit));
+    const Vector3d angle_answer =
+        loops.controller->moments(turned, Vector3d::Zero(), Vector3d::Zero(), reference_at(Vector3d::Zero()));
+    EXPECT_LT((angle_answer + loops.vehicle.inertia * (1e-5 * k_angle[axis] * unit)).norm(),
+              1e-9 * angle_answer.norm())
+        << axis;
+    const Vector3d rate_answer = loops.controller->moments(Quaterniond::Identity(), 1e-5 * unit,
+                                                           Vector3d::Zero(), reference_at(Vector3d::Zero()));
+    EXPECT_LT((rate_answer + loops.vehicle.inertia * (1e-5 * k_rate[axis] * unit)).norm(),
+              1e-4 * rate_answer.norm())
+        << axis;
+  }
 }
 
 TEST_P(AttitudeControllerTest, FeedForwardIsLeftOutWhenNotWanted) {

@@ -159,6 +159,22 @@ TEST_F(EstimatorFaults, AnUnbrokenStreamIsBelievedAgainstTheImu) {
   EXPECT_LT(angle_error(), 0.02);
 }
 
+// A fifth of a second without poses, after which they show the vehicle 8 cm from where the IMU has it: a body could
+// have gone there, but nobody has seen whether the stream did. The IMU, which was there all the time, is believed.
+TEST_F(EstimatorFaults, AStreamThatWasInterruptedIsNotBelievedAgainstTheImu) {
+  for (const Vector3d& off :
+       {Vector3d(0.08, 0.0, 0.0), Vector3d(0.0, -0.08, 0.0), Vector3d(0.0, 0.0, 0.08)}) {
+    estimator_ = Estimator(settings_);
+    fly(3.0);
+    fly(0.2, [](PoseSample& pose) { pose.tracked = false; });
+    EXPECT_EQ(fly(0.5, [&](PoseSample& pose) { pose.position_ned += off; }), PoseFault::kOutlier);
+    EXPECT_EQ(estimator_.estimate().resets, 0U);
+    EXPECT_LT(position_error(), 0.06);
+    EXPECT_EQ(fly(0.5), PoseFault::kNone);
+    EXPECT_LT(position_error(), 2e-3);
+  }
+}
+
 // It may have hit the ground meanwhile: what a body could have come to is believed, and nothing farther.
 TEST_F(EstimatorFaults, AfterSilenceOfTheImuPosesInReachAreBelieved) {
   for (const double off : {0.5, 2.0}) {

@@ -40,6 +40,28 @@ TEST_P(EstimatorLatency, FollowsTheMotionWhateverTheLatencyOfThePoses) {
 }
 INSTANTIATE_TEST_SUITE_P(Milliseconds, EstimatorLatency, testing::Values(0, 10, 30, 100));
 
+// As many corrections as the filter keeps, and more, are made between the stamp of a pose and its arrival.
+TEST(Estimator, FollowsPosesOfEachSampleThatComeATenthOfASecondLate) {
+  Estimator estimator{EstimatorSettings{}};
+  Motion motion;
+  motion.gyro_bias = {0.02, -0.03, 0.01};
+  motion.accelerometer_bias = {0.15, -0.1, 0.2};
+  std::uint64_t sequence = 0;
+  for (std::int64_t t = kStep_ns; t <= 6'000'000'000; t += kStep_ns) {
+    ASSERT_TRUE(estimator.predict(motion.imu(t)));
+    const std::int64_t exposed = t - 50 * kStep_ns;
+    if (exposed <= 0) continue;
+    estimator.correct(Motion::pose(exposed, ++sequence));
+    if (t < 500'000'000) continue;
+    const double s = static_cast<double>(t) * 1e-9;
+    ASSERT_LT((estimator.estimate().position_ned - Motion::position(s)).norm(), 5e-3) << s;
+    ASSERT_LT((estimator.estimate().velocity_ned - Motion::velocity(s)).norm(), 0.05) << s;
+    ASSERT_LT(angle_between(estimator.estimate().q_ned_from_frd, Motion::attitude(s)), 0.01) << s;
+  }
+  EXPECT_EQ(estimator.estimate().poses_refused, 0U);
+  EXPECT_LT((estimator.estimate().gyro_bias - motion.gyro_bias).norm(), 2e-3);
+}
+
 // A constant rate is integrated without error, however long the steps.
 TEST(Estimator, TurnsByTheMeasuredRate) {
   for (const std::int64_t step_ns : {100'000, 1'000'000, 10'000'000, 100'000'000}) {
@@ -133,6 +155,57 @@ double position_error(const Estimator& estimator) {
   return (estimator.estimate().position_ned - Motion::position(t)).norm();
 }
 
+// Of a gap of 10 s, it goes on through 0.25 s with the last rates and specific force: what it would integrate over all of it
+// is nowhere.
+TEST(Estimator, DoesNotIntegrateThroughALongGap) {
+  Estimator estimator{EstimatorSettings{}};
+  plant::ImuSample imu;
+  imu.specific_force_frd = {0.0, 0.0, -plant::kGravity};
+  std::uint64_t sequence = 0;
+  const auto fly_for = [&](std::int64_t duration_ns) {
+    const std::int64_t end_ns = imu.stamp_ns + duration_ns;
+    while (imu.stamp_ns < end_ns) {
+      imu.stamp_ns += kStep_ns;
+      ASSERT_TRUE(estimator.predict(imu));
+      if (imu.stamp_ns % kFrame_ns != 0) continue;
+      const double t = static_cast<double>(imu.stamp_ns) * 1e-9;
+      ASSERT_TRUE(estimator.correct(
+          {imu.stamp_ns, ++sequence, true, Vector3d(0.0, t, -1.0), Quaterniond::Identity()}));
+    }
+  };
+  fly_for(2'000'000'000);  // east at 1 m/s
+  const Estimate before = estimator.estimate();
+  imu.stamp_ns += 10'000'000'000;
+  imu.body_rates_frd.z() = 0.8;  // at its end; in the mean of the gap, half as much
+  ASSERT_TRUE(estimator.predict(imu));
+  const Estimate& after = estimator.estimate();
+  EXPECT_EQ(after.stamp_ns, imu.stamp_ns);
+  EXPECT_LT((after.position_ned - before.position_ned - Vector3d(0.0, 0.25, 0.0)).norm(), 1e-3);
+  EXPECT_LT((after.velocity_ned - before.velocity_ned).norm(), 1e-3);
+  EXPECT_NEAR(angle_between(after.q_ned_from_frd, before.q_ned_from_frd), 0.25 * 0.4, 1e-3);
+  EXPECT_GT(estimator.standard_deviation()[0], 10.0) << "and does not claim to know";
+}
+
+// Each second pose of the same motion as -q, which is the same attitude.
+TEST(Estimator, TheSignOfAPosesQuaternionChangesNothing) {
+  Estimator one{EstimatorSettings{}};
+  Estimator other{EstimatorSettings{}};
+  const Motion motion;
+  std::uint64_t sequence = 0;
+  for (std::int64_t t = kStep_ns; t <= 5'000'000'000; t += kStep_ns) {
+    ASSERT_TRUE(one.predict(motion.imu(t)));
+    ASSERT_TRUE(other.predict(motion.imu(t)));
+    if (t % kFrame_ns != 0) continue;
+    plant::PoseSample pose = Motion::pose(t, ++sequence);
+    ASSERT_TRUE(one.correct(pose));
+    if (sequence % 2 == 0) pose.q_ned_from_frd.coeffs() *= -1.0;
+    ASSERT_TRUE(other.correct(pose)) << to_string(other.estimate().pose_fault);
+    ASSERT_LT((one.estimate().position_ned - other.estimate().position_ned).norm(), 1e-12);
+    ASSERT_LT((one.estimate().velocity_ned - other.estimate().velocity_ned).norm(), 1e-12);
+    ASSERT_LT(angle_between(one.estimate().q_ned_from_frd, other.estimate().q_ned_from_frd), 1e-7);
+  }
+}
+
 // Another body, or a world that was shifted: who flies cannot know, and goes by the IMU until it has landed.
 TEST(Estimator, DoesNotBelieveAJumpInFlight) {
   Estimator estimator{EstimatorSettings{}};
@@ -150,6 +223,33 @@ TEST(Estimator, BelievesAJumpThatLastsWithItsRotorsOff) {
   EXPECT_EQ(run_with_jump(estimator, motion, {2.0, 0.0, 0.0}, plant::RotorState::kOff), 100 - 20);
   EXPECT_EQ(estimator.estimate().resets, 1U);
   EXPECT_NEAR(position_error(estimator), 2.0, 0.01);
+}
+
+// Carried away while it stood, turned and tilted against north: the jump is the rotation that is to be made in NED,
+// q_new = rotation(jump) * q_old, not one about the body's axes.
+TEST(Estimator, TellsAJumpInTheWorldsAxes) {
+  Estimator estimator{EstimatorSettings{}};
+  const Quaterniond stood =
+      Quaterniond(AngleAxisd(1.2, Vector3d::UnitZ()) * AngleAxisd(0.2, Vector3d::UnitY()));
+  const Vector3d jump_ned(0.0, 0.1, 0.5);
+  const Quaterniond carried = Quaterniond(AngleAxisd(jump_ned.norm(), jump_ned.normalized())) * stood;
+  std::uint64_t sequence = 0;
+  const auto stand = [&](const Vector3d& at_ned, const Quaterniond& q) {
+    plant::ImuSample imu;
+    for (int i = 0; i < 500; ++i) {
+      imu.stamp_ns = estimator.estimate().stamp_ns + kStep_ns;
+      imu.specific_force_frd = q.conjugate() * Vector3d(0.0, 0.0, -plant::kGravity);
+      estimator.predict(imu);
+      if (i % 5 == 0) estimator.correct({imu.stamp_ns, ++sequence, true, at_ned, q}, plant::RotorState::kOff);
+    }
+  };
+  stand({1.0, 2.0, 0.0}, stood);
+  stand({1.5, 2.0, -0.3}, carried);
+  ASSERT_EQ(estimator.estimate().resets, 1U);
+  EXPECT_LT(angle_between(estimator.estimate().q_ned_from_frd, carried), 5e-3);
+  EXPECT_LT((estimator.estimate().reset_rotation_ned - jump_ned).norm(), 0.03)
+      << estimator.estimate().reset_rotation_ned.transpose();
+  EXPECT_LT((estimator.estimate().reset_position_ned - Vector3d(0.5, 0.0, -0.3)).norm(), 0.2);
 }
 
 TEST(Estimator, FollowsThePosesWhenTheImuMisleads) {

@@ -199,6 +199,61 @@ TEST_F(Flight, DescentWithoutPositionEndsAtTheGroundOrByTimeOut) {
   EXPECT_EQ(supervisor_.reason(), Reason::kDescentTimedOut);
 }
 
+// The ground was felt for a moment, in a landing that was called off. When the pose is lost later, a gust that
+// lasts for two samples must not be taken for the rest of that contact: it flies at 1 m.
+TEST_F(Flight, AContactBeforeALandingWasCalledOffIsForgotten) {
+  hover();
+  ASSERT_TRUE(ask(RequestKind::kLand).accepted);
+  ASSERT_TRUE(step_until([&] { return supervisor_.state().contact_since_ns != 0; }, 20.0)) << "it sinks";
+  ASSERT_EQ(supervisor_.mode(), Mode::kLanding);
+  ASSERT_TRUE(ask(RequestKind::kGoTo, {0, 0, -1}).accepted);
+  ASSERT_TRUE(step_until([&] { return estimate_.position_ned.z() < -0.99; }, 20.0));
+  situation_.pose_age_s = 1.0;
+  ASSERT_TRUE(step_until(Mode::kDescent, 0.1));
+  situation_.unexplained_lift = 2.0;
+  step();
+  step();
+  EXPECT_EQ(supervisor_.mode(), Mode::kDescent);
+  EXPECT_EQ(directive_.actuation, Actuation::kLevelDescent);
+}
+
+TEST_F(Flight, AContactBeforeThePoseCameBackIsForgotten) {
+  hover();
+  situation_.pose_age_s = 1.0;
+  ASSERT_TRUE(step_until(Mode::kDescent, 0.1));
+  situation_.unexplained_lift = 2.0;
+  for (int i = 0; i < 50; ++i) step();
+  situation_.pose_age_s = 0.0;
+  ASSERT_TRUE(step_until(Mode::kHolding, 0.1));
+  situation_.unexplained_lift = 0.0;
+  for (int i = 0; i < 500; ++i) step();
+  situation_.pose_age_s = 1.0;
+  situation_.unexplained_lift = 2.0;
+  for (int i = 0; i < 10; ++i) step();
+  EXPECT_EQ(supervisor_.mode(), Mode::kDescent);
+}
+
+// A battery that was low at the end of one flight says nothing of the one that it was exchanged for, whose
+// voltage sags for a moment as its rotors start.
+TEST_F(Flight, ABatteryThatWasLowIsForgottenOnTheGround) {
+  for (const double voltage_v : {3.2, 2.9}) {
+    SupervisedFlight flight;
+    ASSERT_TRUE(flight.take_off());
+    flight.situation_.supply_voltage_v = voltage_v;
+    for (int i = 0; i < 20; ++i) flight.step();
+    ASSERT_TRUE(flight.ask(RequestKind::kStop).accepted);
+    ASSERT_TRUE(flight.ask(RequestKind::kDisarm).accepted);
+    flight.estimate_ = Estimate();
+    flight.situation_.supply_voltage_v = 4.0;
+    for (int i = 0; i < 2500; ++i) flight.step();
+    ASSERT_TRUE(flight.ask(RequestKind::kArm).accepted);
+    ASSERT_TRUE(flight.ask(RequestKind::kTakeoff, {0, 0, -1}).accepted);
+    flight.situation_.supply_voltage_v = voltage_v;
+    for (int i = 0; i < 5; ++i) flight.step();
+    EXPECT_EQ(flight.supervisor_.mode(), Mode::kTakingOff) << voltage_v;
+  }
+}
+
 TEST_F(Flight, TippingOverStopsTheRotors) {
   hover();
   estimate_.q_ned_from_frd = Eigen::AngleAxisd(1.6, Vector3d::UnitY());

@@ -51,8 +51,9 @@ std::map<std::string, double> truth_of(const plant::Vehicle& v) {
 struct Tally {
   int count = 0;
   int covered = 0;
-  double bias = 0.0;   // sum of relative errors
-  double worst = 0.0;  // of their magnitudes
+  double bias = 0.0;    // sum of errors, each in half widths of its own interval
+  double worst = 0.0;   // of their magnitudes
+  double widest = 0.0;  // half width of an interval, relative
 };
 
 std::map<std::string, Tally> recover(const FlightPlan& plan, const char* what, int seeds) {
@@ -70,8 +71,10 @@ std::map<std::string, Tally> recover(const FlightPlan& plan, const char* what, i
       Tally& tally = tallies[name];
       ++tally.count;
       tally.covered += estimate.low() <= value && value <= estimate.high() ? 1 : 0;
-      tally.bias += estimate.value / value - 1.0;
-      tally.worst = std::max(tally.worst, std::abs(estimate.value / value - 1.0));
+      const double error = (estimate.value - value) / estimate.half_width;
+      tally.bias += error;
+      tally.worst = std::max(tally.worst, std::abs(error));
+      tally.widest = std::max(tally.widest, estimate.half_width / value);
       std::printf("%s %d %-22s %9.5g +- %.2g, truth %9.5g\n", what, i, name.c_str(), estimate.value,
                   estimate.half_width, value);
     }
@@ -83,30 +86,35 @@ std::map<std::string, Tally> recover(const FlightPlan& plan, const char* what, i
     }
   }
   for (const auto& [name, tally] : tallies) {
-    std::printf("%-10s %-22s covered %d of %d, bias %+.2f %%, worst %.2f %%\n", what, name.c_str(),
-                tally.covered, tally.count, 100.0 * tally.bias / tally.count, 100.0 * tally.worst);
+    std::printf("%-10s %-22s covered %d of %d; in half widths bias %+.2f, worst %.2f; widest %.2f %%\n", what,
+                name.c_str(), tally.covered, tally.count, tally.bias / tally.count, tally.worst,
+                100.0 * tally.widest);
   }
   return tallies;
 }
 
-// Bounds are twice the worst of 8 seeds.
-TEST(CommandFlight, RecoversLagAndGains) {
-  for (const auto& [name, tally] : recover(delayed_plan(), "calm", tests::draws(1, 8))) {
-    const double bound = name == "motor.time_constant" ? 0.002 : 0.05;
+// What the intervals say has to be true, and to be of use. The half width of one is two standard deviations of its error,
+// so that one error of ten thousand exceeds two half widths, and one mean of n errors of three hundred 1.5 over root n.
+// The vehicle files give moments of inertia to 25 %: what a flight tells of the gains is narrower, and of the lag narrower
+// by far.
+void expect_true_and_narrow(const std::map<std::string, Tally>& tallies) {
+  for (const auto& [name, tally] : tallies) {
     EXPECT_GE(tally.covered, tests::least_covered(tally.count)) << name;
-    EXPECT_LT(tally.worst, bound) << name;
-    EXPECT_LT(std::abs(tally.bias) / tally.count, tests::bound_of_mean(bound, tally.count)) << name;
+    EXPECT_LT(tally.worst, 2.0) << name;
+    EXPECT_LT(std::abs(tally.bias) / tally.count, tests::bound_of_mean(1.5, tally.count)) << name;
+    EXPECT_LT(tally.widest, name == "motor.time_constant" ? 0.05 : 0.25) << name;
   }
+}
+
+TEST(CommandFlight, RecoversLagAndGains) {
+  expect_true_and_narrow(recover(delayed_plan(), "calm", tests::draws(1, 8)));
 }
 
 TEST(CommandFlight, RecoversThemInGusts) {
   FlightPlan plan = delayed_plan();
   plan.simulation.air.wind_ned = {1.0, -0.7, 0.0};
   plan.simulation.air.gust_sigma_ned = {0.7, 0.7, 0.3};
-  for (const auto& [name, tally] : recover(plan, "gusts", tests::draws(1, 8))) {
-    EXPECT_GE(tally.covered, tests::least_covered(tally.count)) << name;
-    EXPECT_LT(tally.worst, name == "motor.time_constant" ? 0.002 : 0.08) << name;
-  }
+  expect_true_and_narrow(recover(plan, "gusts", tests::draws(1, 8)));
 }
 
 // The log of a real Crazyflie: what others have published of its kind, and of this log, lies near.

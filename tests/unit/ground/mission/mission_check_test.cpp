@@ -92,6 +92,35 @@ TEST_F(MissionChecked, AVehicleThatIsTooHeavyCannotAndIsToldWhereAndWhy) {
   EXPECT_DOUBLE_EQ(demand.at("value").get<double>(), rotor.value);
 }
 
+// A trajectory of two segments after the way to its start, and one after a wait: the worst of each leg is told by the
+// mission's time, of which the legs before it, holds and waits are part.
+TEST_F(MissionChecked, TellsTheTimeOfTheWorstInALaterLeg) {
+  MissionFile file = parse(kHead +
+                           "  - {kind: takeoff, height_m: 1, speed_m_s: 0.5, hold_s: 1}\n"
+                           "  - {kind: waypoint, position_m: [0.5, 0, -1], speed_m_s: 0.5}\n"
+                           "  - {kind: wait, duration_s: 2}\n"
+                           "  - {kind: waypoint, position_m: [0.5, 1, -1], speed_m_s: 0.4}\n"
+                           "  - {kind: land, speed_m_s: 0.4}\n");
+  file.mission.segments = {control::minimum_jerk({0.5, 0, -1}, 0.0, {1.0, 0, -1}, 0.0, 4.0),
+                           control::minimum_jerk({1.0, 0, -1}, 0.0, {-0.5, 0, -1}, 0.0, 4.0)};
+  control::MissionItem& item = file.mission.items[1];
+  item.kind = control::MissionItemKind::kTrajectory;
+  item.segment_count = 2;
+  const MissionCheck check = checked(file);
+  ASSERT_TRUE(check.feasible()) << check_table(check, file, vehicle_.name);
+  ASSERT_EQ(check.items.size(), 5U);
+  // The second segment is the faster one: 15/8 of 1.5 m in 4 s, in its middle.
+  const ItemCheck& way = check.items[1];
+  const WorstDemand& speed = worst(way, Demand::kSpeed);
+  EXPECT_NEAR(speed.value, 15.0 / 8.0 * 1.5 / 4.0, 1e-3);
+  EXPECT_NEAR(speed.time_s, way.start_s + way.duration_s - 2.0, 0.05);
+  EXPECT_NEAR(speed.position_ned.x(), 0.25, 0.02);
+  const ItemCheck& last = check.items[3];
+  EXPECT_NEAR(worst(last, Demand::kSpeed).value, 0.4, 1e-3);
+  EXPECT_NEAR(worst(last, Demand::kSpeed).time_s, last.start_s + 0.5 * last.duration_s, 0.05);
+  EXPECT_NEAR(last.start_s, way.start_s + way.duration_s + 2.0, 0.02) << "the wait";
+}
+
 // What passes the checks of speed and acceleration may still tilt too far: sideways while it sinks away.
 TEST_F(MissionChecked, ATrajectoryThatTiltsTooFarIsFoundInTheMiddleOfTheMission) {
   MissionFile file = parse(kHead +

@@ -80,6 +80,7 @@ TEST_P(EveryMotor, HalvingTheStepDividesTheErrorBySixteen) {
 }
 
 TEST_P(EveryMotor, TheProcessorsInstructionsChangeNoBit) {
+  if (!__builtin_cpu_supports("avx")) GTEST_SKIP() << "without AVX there is one set of instructions only";
   for (int rotors = plant::kMinRotors; rotors <= plant::kMaxRotors; ++rotors) {
     for (const double inductance_h : {0.0, 2.0e-4}) {
       Vehicle vehicle = multirotor(rotors);

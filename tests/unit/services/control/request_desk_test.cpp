@@ -335,6 +335,33 @@ TEST_F(DeskOfAStandby, AnswersNothing) {
   EXPECT_EQ(standby_state().mode, control::Mode::kDisarmed);
 }
 
+// Setpoints reach all controllers; the active one judges them. A standby that does too would count them, and tell of
+// refusals that nobody is to act on.
+TEST_F(DeskOfAStandby, JudgesNoSetpoints) {
+  settle();
+  const control::Setpoint setpoint;  // refused on the ground
+  const auto tally = [&] {
+    Snapshot snapshot;
+    SetpointTally newest;
+    while (standby_loop_.snapshots.pop(snapshot)) newest = snapshot.setpoints;
+    return newest;
+  };
+  for (int i = 0; i < 20; ++i) {
+    step();
+    standby_loop_.setpoint.put(setpoint);
+    step_standby(Role::kStandby);
+  }
+  EXPECT_EQ(tally().refused, 0U);
+  for (int i = 0; i < 20; ++i) {
+    step();
+    standby_loop_.setpoint.put(setpoint);
+    step_standby(Role::kActive);
+  }
+  const SetpointTally active = tally();
+  EXPECT_GT(active.refused, 10U) << "the same, of the active one";
+  EXPECT_NE(std::string(active.refusal.reason), "");
+}
+
 TEST_F(DeskOfAStandby, GoesOnWithTheMissionThatItHeardBeingAskedFor) {
   fly_mission();
   standby_desk_.on_mission(mission(2, 1.0));

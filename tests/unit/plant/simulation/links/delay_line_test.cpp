@@ -1,0 +1,67 @@
+#include "swiftlet/plant/simulation/links/delay_line.hpp"
+
+#include <gtest/gtest.h>
+
+namespace swiftlet::plant {
+namespace {
+
+TEST(DelayLine, HoldsEachItemUntilItIsDue) {
+  DelayLine<int> line(4);
+  EXPECT_TRUE(line.empty());
+  line.put(1, 100);
+  line.put(2, 200);
+  EXPECT_FALSE(line.take(99).has_value());
+  EXPECT_EQ(line.take(100), 1);
+  EXPECT_FALSE(line.take(199).has_value());
+  EXPECT_FALSE(line.empty());
+  EXPECT_EQ(line.take(1000), 2);
+  EXPECT_TRUE(line.empty());
+}
+
+TEST(DelayLine, GivesTheNewestOfThoseThatHaveArrivedTogether) {
+  DelayLine<int> line(4);
+  line.put(1, 100);
+  line.put(2, 110);
+  line.put(3, 120);
+  EXPECT_EQ(line.take(115), 2);
+  EXPECT_EQ(line.take(120), 3);
+}
+
+// A delay that grows shorter: nothing overtakes what is under way.
+TEST(DelayLine, KeepsTheOrder) {
+  DelayLine<int> line(4);
+  line.put(1, 300);
+  line.put(2, 200);
+  EXPECT_FALSE(line.take(299).has_value());
+  EXPECT_EQ(line.take(300), 2);
+}
+
+TEST(DelayLine, LosesTheOldestWhenItIsFull) {
+  for (const int capacity : {1, 2, 3}) {
+    DelayLine<int> line(static_cast<std::size_t>(capacity));
+    for (int i = 1; i <= 7; ++i) line.put(i, 10 * i);
+    for (int i = 1; i <= 7; ++i) {
+      const auto found = line.take(10 * i);
+      if (i <= 7 - capacity) {
+        EXPECT_FALSE(found.has_value()) << i << " of " << capacity;
+      } else {
+        EXPECT_EQ(found, i) << capacity;
+      }
+    }
+  }
+  DelayLine<int> none(0);
+  none.put(5, 10);
+  EXPECT_EQ(none.take(10), 5) << "one is the least";
+}
+
+TEST(DelayLine, ForgetsWhatIsUnderWay) {
+  DelayLine<int> line(2);
+  line.put(1, 500);
+  line.clear();
+  EXPECT_TRUE(line.empty());
+  line.put(2, 100);
+  EXPECT_EQ(line.take(100), 2) << "not held back by what was forgotten";
+}
+
+}  // namespace
+}  // namespace swiftlet::plant

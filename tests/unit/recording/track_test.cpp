@@ -1,0 +1,53 @@
+#include "swiftlet/recording/track.hpp"
+
+#include <array>
+#include <cstddef>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+namespace swiftlet::ground {
+namespace {
+
+TEST(Track, KeepsRowsInOrderAndCountsThoseThatDidNotFit) {
+  Track<int> track(3);
+  EXPECT_TRUE(track.empty());
+  for (int i = 1; i <= 5; ++i) track.append(i);
+  EXPECT_EQ(track.size(), 3U);
+  EXPECT_EQ(track.dropped(), 2U);
+  EXPECT_EQ(track[0], 1);
+  EXPECT_EQ(track.back(), 3);
+  EXPECT_EQ(track.end() - track.begin(), 3);
+  track.clear();
+  EXPECT_TRUE(track.empty());
+  EXPECT_EQ(track.dropped(), 0U);
+  track.append(7);
+  EXPECT_EQ(track.back(), 7);
+}
+
+// A row that is in is whole, while others are appended.
+TEST(Track, IsReadWhileItIsWritten) {
+  constexpr std::size_t kRows = 50'000;
+  using Row = std::array<std::size_t, 8>;
+  Track<Row> track(kRows);
+  std::thread writer([&] {
+    Row row;
+    for (std::size_t i = 0; i < kRows; ++i) {
+      row.fill(i);
+      track.append(row);
+    }
+  });
+  bool whole = true;
+  std::size_t seen = 0;
+  while (seen < kRows) {
+    const std::size_t size = track.size();
+    for (; seen < size; ++seen) {
+      for (const std::size_t part : track[seen]) whole = whole && part == seen;
+    }
+  }
+  writer.join();
+  EXPECT_TRUE(whole);
+}
+
+}  // namespace
+}  // namespace swiftlet::ground

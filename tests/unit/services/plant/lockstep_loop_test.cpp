@@ -1,0 +1,255 @@
+// The loop of simulated time against a controller and motion capture on the network that answer, or do not.
+#include "swiftlet/services/plant/lockstep_loop.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/plant/simulation/mocap.hpp"
+#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/messages/convert.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/unit/plant/model/vehicles.hpp"
+
+namespace swiftlet::services {
+namespace {
+
+namespace msg = comms::msg;
+using namespace std::chrono_literals;
+using tests::eventually;
+using tests::Inbox;
+using Samples = std::vector<msg::Imu>;
+
+constexpr std::int64_t kPeriod_ns = 2'000'000;  // of the IMU
+constexpr std::uint64_t kSeed = 3;
+
+class Lockstep : public testing::Test {
+ protected:
+  static comms::NodeSettings node_settings(const comms::DomainClaim& claim, const char* name) {
+    comms::NodeSettings settings;
+    settings.name = name;
+    settings.domain = claim.domain();
+    settings.localhost_only = true;
+    settings.deadlines = false;
+    return settings;
+  }
+
+  Lockstep() {
+    settings_.imu.rate_hz = 500.0;
+    truth_ = peer_node_.subscribe<msg::GroundTruth>(comms::topics::kGroundTruth,
+                                                    [this](const auto& message) { on_truth(message); });
+    imu_ = peer_node_.subscribe<msg::Imu>(comms::topics::kImu, [this](const msg::Imu& message) {
+      samples_.put(message);
+      if (answers_) answer(message);
+    });
+  }
+  ~Lockstep() override { stop(); }
+
+  void start(const LockstepSettings& lockstep) {
+    vehicle_.emplace(tests::kaylion(), settings_, kSeed, plant::VehicleState(), plant_node_);
+    loop_.emplace(*vehicle_, settings_, kSeed, lockstep, 4, plant_node_);
+    ASSERT_TRUE(eventually([&] {
+      return commands_.matched() == 1 && poses_.matched() == 1 && imu_.matched() == 1 &&
+             truth_.matched() == 1 && (!lockstep.paused || clock_.matched() == 1);
+    }));
+    began_ns_ = runtime::monotonic_ns();
+    thread_ = std::thread([this] {
+      try {
+        loop_->run(stop_);
+      } catch (const std::runtime_error& error) {
+        failure_.put(error.what());
+      }
+    });
+  }
+  void stop() {
+    stop_ = true;
+    if (thread_.joinable()) thread_.join();
+    answers_ = false;
+  }
+
+  void answer(const msg::Imu& sample) {
+    const std::lock_guard<std::mutex> lock(sending_);
+    plant::ActuatorCommand command;
+    command.stamp_ns = sample.stamp_ns();
+    command.sequence = ++command_sequence_;
+    command.imu_sequence = sample.sequence_number();
+    command.rotor_count = 4;
+    commands_.publish(comms::to_message(command));
+  }
+  void grant(std::int64_t stamp_ns) {
+    msg::SimulationClock clock;
+    clock.advance_to_ns(stamp_ns);
+    clock_.publish(clock);
+  }
+  // That this sample is the newest, and has come so often: what is due comes again while time stands still.
+  bool comes_again(std::int64_t stamp_ns, std::size_t times = 4) const {
+    return samples_.wait([=](const Samples& samples) {
+      std::size_t found = 0;
+      for (const msg::Imu& sample : samples) found += sample.stamp_ns() == stamp_ns ? 1 : 0;
+      return found >= times && samples.back().stamp_ns() == stamp_ns;
+    });
+  }
+  std::string failure() const {
+    return failure_.wait_for_count(1) ? failure_.items().front() : std::string("none came");
+  }
+
+  plant::SimulationSettings settings_;
+  Inbox<msg::Imu> samples_;
+  std::atomic<bool> answers_{false};  // each sample at once
+  std::atomic<bool> mocap_answers_{true};
+  std::int64_t began_ns_ = 0;
+  comms::DomainClaim claim_;
+  comms::Node plant_node_{node_settings(claim_, "plant")};
+  comms::Node peer_node_{node_settings(claim_, "peer")};
+  std::optional<SimulatedVehicle> vehicle_;
+  std::optional<LockstepLoop> loop_;
+
+ private:
+  // As motion capture does: a frame of the truth, or a sign that there is none.
+  void on_truth(const msg::GroundTruth& message) {
+    if (!mocap_answers_) return;
+    plant::TruthSample truth;
+    if (comms::from_message(message, truth)) return;
+    if (truth.sequence > truth_sequence_) {
+      truth_sequence_ = truth.sequence;
+      const auto pose = mocap_.update(truth);
+      last_pose_ = pose ? comms::to_message(*pose) : msg::MocapPose();
+      if (!pose) last_pose_.stamp_ns(truth.stamp_ns);
+    }
+    poses_.publish(last_pose_);
+  }
+
+  plant::Mocap mocap_{settings_.mocap, kSeed};
+  std::uint64_t truth_sequence_ = 0;
+  msg::MocapPose last_pose_;
+  std::uint64_t command_sequence_ = 0;
+  std::mutex sending_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+  Inbox<std::string> failure_;
+  comms::Publisher<msg::SimulationClock> clock_ = peer_node_.publish(comms::topics::kSimulationClock);
+  comms::Publisher<msg::ActuatorCommand> commands_ = peer_node_.publish(comms::topics::kActuatorCommand);
+  comms::Publisher<msg::MocapPose> poses_ = peer_node_.publish(comms::topics::kMocapPose);
+  comms::Subscription truth_;  // last: their callbacks use what stands above
+  comms::Subscription imu_;
+};
+
+LockstepSettings patient() {
+  LockstepSettings settings;
+  settings.patience_s = 60.0;
+  return settings;
+}
+
+TEST_F(Lockstep, TimeWaitsForTheCommandThatAnswersTheNewestSample) {
+  start(patient());
+  ASSERT_TRUE(comes_again(0)) << "it is sent again until it is answered";
+  const msg::Imu first = samples_.items().front();
+  answer(first);
+  ASSERT_TRUE(comes_again(kPeriod_ns));
+  answer(first);  // an answer that came again
+  samples_.clear();
+  ASSERT_TRUE(comes_again(kPeriod_ns, 3));
+  const msg::Imu second = samples_.items().back();
+  EXPECT_EQ(second.sequence_number(), first.sequence_number() + 1);
+  answer(second);
+  ASSERT_TRUE(comes_again(2 * kPeriod_ns));
+}
+
+TEST_F(Lockstep, NoSampleIsLeftOut) {
+  answers_ = true;
+  start(patient());
+  ASSERT_TRUE(samples_.wait([](const Samples& samples) {
+    return !samples.empty() && samples.back().stamp_ns() >= 200 * kPeriod_ns;
+  }));
+  stop();
+  std::int64_t newest_ns = 0;
+  std::uint64_t frames = 0;
+  for (const msg::Imu& sample : samples_.items()) {
+    EXPECT_LE(sample.stamp_ns(), newest_ns + kPeriod_ns);
+    EXPECT_EQ(sample.stamp_ns(), static_cast<std::int64_t>(sample.sequence_number() - 1) * kPeriod_ns);
+    EXPECT_GE(sample.mocap_sequence_number(), frames);
+    newest_ns = std::max(newest_ns, sample.stamp_ns());
+    frames = sample.mocap_sequence_number();
+  }
+  EXPECT_NEAR(static_cast<double>(frames), 1e-9 * static_cast<double>(newest_ns) * settings_.mocap.rate_hz,
+              2.0);
+}
+
+TEST_F(Lockstep, NamesAControllerThatIsSilent) {
+  LockstepSettings settings;
+  settings.patience_s = 0.3;
+  start(settings);
+  EXPECT_EQ(failure(), "lockstep: control is silent: IMU sample 1 of t = 0.000 s has no answer for 0.3 s");
+}
+
+TEST_F(Lockstep, NamesMotionCaptureThatIsSilent) {
+  answers_ = true;
+  mocap_answers_ = false;
+  LockstepSettings settings;
+  settings.patience_s = 0.3;
+  start(settings);
+  EXPECT_EQ(failure().rfind("lockstep: mocap is silent: ", 0), 0U) << failure();
+  EXPECT_EQ(samples_.items().back().stamp_ns(), 0) << "time has not passed";
+}
+
+// Time passes as far as it is granted, and a smaller grant takes nothing back.
+TEST_F(Lockstep, PausedTimePassesAsFarAsItIsGranted) {
+  answers_ = true;
+  LockstepSettings settings = patient();
+  settings.paused = true;
+  start(settings);
+  grant(0);
+  ASSERT_TRUE(comes_again(0));
+  grant(3 * kPeriod_ns + kPeriod_ns / 2);
+  ASSERT_TRUE(comes_again(3 * kPeriod_ns));
+  grant(kPeriod_ns);
+  samples_.clear();
+  ASSERT_TRUE(comes_again(3 * kPeriod_ns));
+  grant(10 * kPeriod_ns);
+  ASSERT_TRUE(comes_again(10 * kPeriod_ns));
+}
+
+TEST_F(Lockstep, NamesAGroundThatGrantsNoMore) {
+  answers_ = true;
+  LockstepSettings settings;
+  settings.paused = true;
+  settings.patience_s = 0.3;
+  start(settings);
+  grant(5 * kPeriod_ns);
+  EXPECT_EQ(failure(), "lockstep: ground is silent: no simulation_clock has come for 0.3 s");
+}
+
+// However fast the answers come, at half the speed of the clock at most.
+TEST_F(Lockstep, KeepsToItsSpeed) {
+  answers_ = true;
+  LockstepSettings settings = patient();
+  settings.speed = 0.5;
+  start(settings);
+  std::int64_t newest_ns = 0;
+  ASSERT_TRUE(eventually([&] {
+    if (samples_.size() > 0) newest_ns = samples_.items().back().stamp_ns();
+    const std::int64_t passed_ns = runtime::monotonic_ns() - began_ns_;
+    EXPECT_LE(newest_ns, passed_ns / 2 + kPeriod_ns);
+    return newest_ns > 200'000'000;
+  }));
+}
+
+TEST_F(Lockstep, RefusesATraceThatCannotBeWritten) {
+  LockstepSettings settings = patient();
+  settings.trace = "/proc/none/trace.csv";
+  vehicle_.emplace(tests::kaylion(), settings_, kSeed, plant::VehicleState(), plant_node_);
+  EXPECT_THROW(LockstepLoop(*vehicle_, settings_, kSeed, settings, 4, plant_node_), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace swiftlet::services
