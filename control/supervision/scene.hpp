@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "swiftlet/control/mission.hpp"
 #include "swiftlet/control/request.hpp"
@@ -33,6 +34,8 @@ struct Scene {
   FlownPlan& plan;
   const Request* request = nullptr;  // to be answered
   const Setpoint* setpoint = nullptr;
+  double setpoint_period_s = 0.0;                           // until the next one, by that since the last
+  mutable std::optional<PolynomialSegment> way_taken = {};  // into the setpoint, once it was worked out
 
   const Estimate& estimate() const { return *situation.estimate; }
   bool flying() const { return state.phase != Phase::kGround; }

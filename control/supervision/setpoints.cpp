@@ -144,11 +144,18 @@ double stream_period_s(const Scene& scene) {
                     std::max(kLeastPeriod_s, scene.settings.failsafe.setpoint_timeout_s));
 }
 
+const PolynomialSegment& way_into_setpoint(const Scene& scene) {
+  if (!scene.way_taken) {
+    const Reference from = scene.state.path.at(scene.state.now_ns);
+    scene.way_taken = blend(scene.limits, from, *scene.setpoint, scene.setpoint_period_s);
+  }
+  return *scene.way_taken;
+}
+
 void start_blend(Scene& scene) {
-  SupervisorState& state = scene.state;
-  const Reference from = state.path.at(state.now_ns);
-  state.phase = Phase::kPath;
-  state.path.follow(blend(scene.limits, from, *scene.setpoint, stream_period_s(scene)), state.now_ns);
+  const PolynomialSegment& way = way_into_setpoint(scene);
+  scene.state.phase = Phase::kPath;
+  scene.state.path.follow(way, scene.state.now_ns);
 }
 
 void start_coast(Scene& scene) {

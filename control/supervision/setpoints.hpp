@@ -24,6 +24,9 @@ Reference after_blend(const PolynomialSegment& blend, double after_s);
 // On with constant acceleration and yaw rate.
 PolynomialSegment coast(const Reference& from, double duration_s);
 
+// blend() from the reference into the newest setpoint: what is checked is what is flown.
+const PolynomialSegment& way_into_setpoint(const Scene& scene);
+
 // Into the newest setpoint; its kind is one of position, velocity and acceleration.
 void start_blend(Scene& scene);
 // After a blend, while the next setpoint is awaited.
@@ -33,7 +36,7 @@ void take_direct(Scene& scene);
 // Pins the reference where the vehicle is, with its velocity and the acceleration that its thrust gives it.
 void follow_estimate(Scene& scene);
 
-// The time to the next setpoint, by that since the last.
+// The time to the next setpoint, by that since the last, of those that the mode of now follows.
 double stream_period_s(const Scene& scene);
 
 // Where the estimated vehicle could come to rest lies outside the fence.

@@ -5,6 +5,7 @@
 #include "swiftlet/control/supervision/checks.hpp"
 #include "swiftlet/control/supervision/conditions.hpp"
 #include "swiftlet/control/supervision/phases.hpp"
+#include "swiftlet/control/supervision/setpoints.hpp"
 
 namespace swiftlet::control {
 
@@ -120,6 +121,7 @@ Outcome Supervisor::request(const Request& request, const Situation& situation) 
 Outcome Supervisor::setpoint(const Setpoint& setpoint, const Situation& situation) {
   Scene now = scene(situation);
   now.setpoint = &setpoint;
+  now.setpoint_period_s = stream_period_s(now);
   return answer(Event::kSetpoint, now);
 }
 
