@@ -143,11 +143,9 @@ double stream_period_s(const GuidanceContext& context) {
   return std::clamp(since_s, kLeastPeriod_s, std::max(kLeastPeriod_s, context.failsafe.setpoint_timeout_s));
 }
 
-void start_blend(const GuidanceContext& context, const Setpoint& setpoint) {
-  GuidanceState& state = context.state;
-  const Reference from = state.path.at(context.now_ns);
-  state.phase = Phase::kPath;
-  state.path.follow(blend(context.limits, from, setpoint, stream_period_s(context)), context.now_ns);
+void follow_way(const GuidanceContext& context, const PolynomialSegment& way) {
+  context.state.phase = Phase::kPath;
+  context.state.path.follow(way, context.now_ns);
 }
 
 void start_coast(const GuidanceContext& context) {

@@ -24,8 +24,8 @@ Reference after_blend(const PolynomialSegment& blend, double after_s);
 // On with constant acceleration and yaw rate.
 PolynomialSegment coast(const Reference& from, double duration_s);
 
-// Into the setpoint; its kind is one of position, velocity and acceleration.
-void start_blend(const GuidanceContext& context, const Setpoint& setpoint);
+// A way from the reference as it is, as of blend().
+void follow_way(const GuidanceContext& context, const PolynomialSegment& way);
 // After a blend, while the next setpoint is awaited.
 void start_coast(const GuidanceContext& context);
 // Takes an attitude or body rates, which directive() then asks for.
@@ -33,7 +33,7 @@ void take_direct(const GuidanceContext& context, const Setpoint& setpoint);
 // Pins the reference where the vehicle is, with its velocity and the acceleration that its thrust gives it.
 void follow_estimate(const GuidanceContext& context);
 
-// The time to the next setpoint, by that since the last.
+// The time to the next setpoint, by that since the last, of those that the mode of now follows.
 double stream_period_s(const GuidanceContext& context);
 
 // Where the estimated vehicle could come to rest lies outside the fence.

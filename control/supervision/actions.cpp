@@ -4,6 +4,7 @@
 
 #include "swiftlet/control/guidance/manoeuvres.hpp"
 #include "swiftlet/control/guidance/setpoint_stream.hpp"
+#include "swiftlet/control/supervision/setpoint_way.hpp"
 
 namespace swiftlet::control::act {
 namespace {
@@ -66,7 +67,7 @@ void follow_setpoint(Scene& scene) {
   if (goes_past_position(kind)) {
     take_direct(scene.guidance(), *scene.setpoint);
   } else {
-    start_blend(scene.guidance(), *scene.setpoint);
+    follow_way(scene.guidance(), way_into_setpoint(scene));
   }
   scene.state.guidance.setpoint_kind = kind;
   scene.state.guidance.setpoint_ns = scene.state.now_ns;

@@ -9,6 +9,7 @@
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/supervision/arming.hpp"
 #include "swiftlet/control/supervision/conditions.hpp"
+#include "swiftlet/control/supervision/setpoint_way.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -150,7 +151,7 @@ Outcome check_end_of_stream(const Scene& scene) {
     last.position_ned = setpoint.position_ned + timeout_s * setpoint.velocity_ned;
   } else {
     const Reference from = scene.state.guidance.path.at(scene.state.now_ns);
-    last = after_blend(blend(limits, from, setpoint, stream_period_s(scene.guidance())), timeout_s);
+    last = after_blend(way_into_setpoint(scene), timeout_s);
     // One that was stopped before the fence is not to creep on towards it, a little from rest each time.
     Reference in_full_motion;
     in_full_motion.velocity_ned =

@@ -1,6 +1,8 @@
 // What the rules of supervision look at, and what their actions change.
 #pragma once
 
+#include <optional>
+
 #include "swiftlet/control/guidance/guidance_context.hpp"
 #include "swiftlet/control/supervision/situation.hpp"
 #include "swiftlet/control/supervision/state.hpp"
@@ -23,6 +25,8 @@ struct Scene {
   FlownPlan& plan;
   const Request* request = nullptr;  // to be answered
   const Setpoint* setpoint = nullptr;
+  double setpoint_period_s = 0.0;                           // until the next one, by that since the last
+  mutable std::optional<PolynomialSegment> way_taken = {};  // into the setpoint, once it was worked out
 
   const Estimate& estimate() const { return *situation.estimate; }
   bool flying() const { return state.guidance.flying(); }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "swiftlet/control/guidance/manoeuvres.hpp"
+#include "swiftlet/control/guidance/setpoint_stream.hpp"
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/supervision/conditions.hpp"
 
@@ -119,6 +120,7 @@ Outcome Supervisor::request(const Request& request, const Situation& situation) 
 Outcome Supervisor::setpoint(const Setpoint& setpoint, const Situation& situation) {
   Scene now = scene(situation);
   now.setpoint = &setpoint;
+  now.setpoint_period_s = stream_period_s(now.guidance());
   return answer(Event::kSetpoint, now);
 }
 

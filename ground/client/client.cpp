@@ -13,8 +13,8 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr std::chrono::milliseconds kResendPeriod{200};
-constexpr std::chrono::milliseconds kLookPeriod{20};  // how often a wait looks at what makes no noise
+constexpr std::chrono::milliseconds kLongSilence{2000};  // after which a request is sent again
+constexpr std::chrono::milliseconds kLookPeriod{20};     // how often a wait looks at what makes no noise
 // In lockstep: of telemetry, 50 samples at 100 Hz; of what is sensed and commanded besides, 30 samples with
 // an IMU at 500 Hz and 50 at 1000 Hz.
 constexpr std::int64_t kTelemetryWindowNs = 100'000'000;
@@ -102,6 +102,11 @@ void Client::subscribe_all() {
   // States, answers and peers wake whoever waits; telemetry comes too often for that.
   subscriptions_.push_back(
       node_.subscribe<msg::ControlStatus>(kControlStatus, [this](const msg::ControlStatus& status) {
+        {
+          // Each controller counts its own.
+          const std::lock_guard lock(mutex_);
+          if (status.sequence_number() <= view_.control.message.sequence_number()) ++takeovers_;
+        }
         keep(&View::control, status);
         changed_.notify_all();
       }));
@@ -250,12 +255,26 @@ bool Client::wait(std::chrono::milliseconds timeout, const std::function<bool(co
   return true;
 }
 
+namespace {
+
+// When a request was sent, and what was so then: where it changes, others may have to answer.
+struct Sending {
+  Clock::time_point at;
+  std::uint64_t reader_changes = 0;
+  std::uint64_t takeovers = 0;
+
+  bool reached_all(const Sending& now) const {
+    return now.reader_changes == reader_changes && now.takeovers == takeovers && now.at < at + kLongSilence;
+  }
+};
+
+}  // namespace
+
 template <class T>
 Answer Client::ask(comms::Publisher<T>& publisher, const T& request, std::chrono::milliseconds timeout,
                    const Cancelled& cancelled) {
   const auto deadline = Clock::now() + timeout;
-  auto next_send = Clock::now();
-  bool sent = false;
+  std::optional<Sending> sent;
 
   std::unique_lock lock(mutex_);
   const auto asked = answers_.emplace(request.id(), std::nullopt).first;
@@ -275,17 +294,16 @@ Answer Client::ask(comms::Publisher<T>& publisher, const T& request, std::chrono
       }
       return {Answer::Kind::kNoControl, no_control()};
     }
-    if (now >= next_send) {
-      lock.unlock();
-      if (publisher.matched() > 0) {
-        const std::lock_guard sending(sending_);
-        publisher.publish(request);
-        sent = true;
-        next_send = now + kResendPeriod;
-      }
-      lock.lock();
-      if (asked->second) break;
+    Sending sending{now, 0, takeovers_};
+    lock.unlock();
+    sending.reader_changes = publisher.changes();
+    if (publisher.matched() > 0 && !(sent && sent->reached_all(sending))) {
+      const std::lock_guard one_at_a_time(sending_);
+      publisher.publish(request);
+      sent = sending;
     }
+    lock.lock();
+    if (asked->second) break;
     changed_.wait_until(lock, std::min(deadline, now + kLookPeriod));
   }
   return settled(*asked->second);

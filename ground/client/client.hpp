@@ -90,7 +90,8 @@ class Client {
   // client.
   bool wait(std::chrono::milliseconds timeout, const std::function<bool(const View&)>& done) const;
 
-  // Sends until it is answered, the time is over, or `cancelled` says so.
+  // Waits until it is answered, the time is over, or `cancelled` says so. Delivery is the network's task: it
+  // is sent again where another controller may have to answer, and after 2 s without an answer.
   using Cancelled = std::function<bool()>;
   Answer command(msg::Command command, std::chrono::milliseconds timeout, const Cancelled& cancelled = {});
   Answer upload(const control::Mission& mission, std::chrono::milliseconds timeout,
@@ -133,6 +134,7 @@ class Client {
   mutable std::condition_variable changed_;
   View view_;
   std::map<std::uint64_t, std::optional<Answer>> answers_;  // to the requests under way, by id
+  std::uint64_t takeovers_ = 0;                             // that control_status told of
 
   comms::Node node_;
   comms::Publisher<msg::Command> commands_;

@@ -25,6 +25,40 @@ Mode mode_of(const View& view) { return static_cast<Mode>(view.control.message.m
 
 bool flies(const View& view) { return !control::rotors_off(mode_of(view)) && mode_of(view) != Mode::kArmed; }
 
+// At which voltage the vehicle acts, and whether it has said so itself: one that says 0 leaves it to what
+// control settings have unless told.
+struct Threshold {
+  double voltage_v = 0.0;
+  bool assumed = false;
+};
+
+Threshold threshold(double told_v, double default_v) {
+  return told_v > 0.0 ? Threshold{told_v, false} : Threshold{default_v, true};
+}
+Threshold low_battery(const View& view) {
+  return threshold(view.control.message.low_battery_voltage_v(),
+                   control::FailsafeSettings().low_battery_voltage);
+}
+Threshold critical_battery(const View& view) {
+  return threshold(view.control.message.critical_battery_voltage_v(),
+                   control::FailsafeSettings().critical_battery_voltage);
+}
+
+std::string below(const Threshold& threshold) {
+  return fmt::format("below {:.2f} V{}", threshold.voltage_v, threshold.assumed ? " (assumed)" : "");
+}
+
+void warn_of_battery(const View& view, std::vector<std::string>& warnings) {
+  if (!view.battery.seen()) return;
+  const double voltage_v = view.battery.message.voltage_v();
+  const Threshold low = low_battery(view), critical = critical_battery(view);
+  if (voltage_v < critical.voltage_v) {
+    warnings.push_back(fmt::format("battery is critical: {:.2f} V, ", voltage_v) + below(critical));
+  } else if (voltage_v < low.voltage_v) {
+    warnings.push_back(fmt::format("battery is low: {:.2f} V, ", voltage_v) + below(low));
+  }
+}
+
 double off_reference_m(const View& view) {
   return (vector(view.estimate.message.position_ned()) - vector(view.reference.message.position_ned()))
       .norm();
@@ -98,9 +132,10 @@ void show_motion(const View& view, Screen& screen) {
 void show_power(const View& view, Screen& screen) {
   if (!view.battery.seen()) return;
   const msg::Battery& battery = view.battery.message;
-  screen.add(fmt::format("{:<11} {:5.2f} V  {:5.2f} A  [{}] {:3.0f} %", "battery", battery.voltage_v(),
-                         battery.current_a(), gauge(battery.state_of_charge(), 20).c_str(),
-                         100.0 * battery.state_of_charge()));
+  screen.add(fmt::format("{:<11} {:5.2f} V  {:5.2f} A  [{}] {:3.0f} %   lands {}", "battery",
+                         battery.voltage_v(), battery.current_a(),
+                         gauge(battery.state_of_charge(), 20).c_str(), 100.0 * battery.state_of_charge(),
+                         below(low_battery(view)).c_str()));
 }
 
 void show_timing(const View& view, const WatchFacts& facts, Clock::time_point now, Screen& screen) {
@@ -127,7 +162,6 @@ void show_timing(const View& view, const WatchFacts& facts, Clock::time_point no
 std::vector<std::string> warnings_of(const View& view, Clock::time_point now) {
   std::vector<std::string> warnings;
   if (!view.control.seen()) return {"no control service"};
-  const control::FailsafeSettings thresholds;
   const msg::ControlStatus& control = view.control.message;
   if (view.control.age_s(now) > kSilence_s)
     warnings.push_back(fmt::format("control has said nothing for {:.0f} s", view.control.age_s(now)));
@@ -139,8 +173,7 @@ std::vector<std::string> warnings_of(const View& view, Clock::time_point now) {
   if (view.estimate.seen() && view.estimate.message.pose_fault() != msg::Estimate_Constants::POSE_FAULT_NONE)
     warnings.push_back(std::string("poses are refused as ") +
                        pose_fault_name(view.estimate.message.pose_fault()));
-  if (view.battery.seen() && view.battery.message.voltage_v() < thresholds.low_battery_voltage)
-    warnings.push_back(fmt::format("battery is low: {:.2f} V", view.battery.message.voltage_v()));
+  warn_of_battery(view, warnings);
   if (flies(view) && view.estimate.seen() && view.reference.seen() && off_reference_m(view) > kFarOff_m)
     warnings.push_back(fmt::format("{:.2f} m off the reference", off_reference_m(view)));
   if (control.saturated()) warnings.emplace_back("the rotors' limits cut commands");

@@ -27,7 +27,8 @@ struct WatchFacts {
   std::string message;  // the answer to the last key, or what a key asks
 };
 
-// What stands against a quiet flight, worst first, each as a few words: "battery is low: 3.25 V".
+// What stands against a quiet flight, worst first, each as a few words: "battery is low: 3.25 V, below 3.30 V".
+// Of what the battery must have, the vehicle's own control settings say; "(assumed)" if they have not been told.
 std::vector<std::string> warnings_of(const View& view, Clock::time_point now);
 
 // At most `height` lines of at most `width` characters: what matters most stays when the screen is small. The

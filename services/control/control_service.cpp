@@ -37,7 +37,7 @@ ControlService::ControlService(const plant::Vehicle& vehicle, const control::Con
       realtime_(realtime),
       loop_(vehicle, settings),
       desk_(loop_, settings.limits, wake_),
-      telemetry_(loop_, desk_, node),
+      telemetry_(loop_, desk_, settings.failsafe, node),
       succession_(controller_, strength),
       reports_(node.publish(topics::kControllerState)),
       commands_(node.publish(topics::kActuatorCommand, succession_.next_term())),
@@ -77,10 +77,7 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
   subscriptions_.push_back(node.subscribe<msg::MocapPose>(
       topics::kMocapPose,
       [this, take_pose](const auto& message) {
-        if (!pose_thread_ready_) {
-          pose_thread_ready_ = true;
-          if (realtime_.enabled) runtime::make_this_thread_realtime(realtime_);
-        }
+        pose_thread_.enter(realtime_);
         take_pose(message);
       },
       delivery));
@@ -138,11 +135,7 @@ std::function<void(const Message&)> ControlService::deliver_in_lockstep(runtime:
 
 // The hot path: from the sample to its command.
 void ControlService::on_imu(const msg::Imu& message) {
-  if (!imu_thread_ready_) {
-    imu_thread_ready_ = true;
-    if (realtime_.enabled) runtime::make_this_thread_realtime(realtime_);
-    telemetry_.set_realtime(runtime::this_thread_is_realtime());
-  }
+  imu_thread_.enter(realtime_);
   answer(message, take_role(message));
 }
 
@@ -243,10 +236,15 @@ void ControlService::report(std::int64_t stamp_ns) {
 void ControlService::run(const std::atomic<bool>& stop) {
   while (!stop.load(std::memory_order_relaxed)) {
     offer_strength();
+    telemetry_.set_realtime(is_realtime());
     telemetry_.tell();
     attend_to_those_who_are_alone();
     wake_.wait_for(50ms);
   }
+}
+
+bool ControlService::is_realtime() const {
+  return imu_thread_.is_realtime() && (pose_thread_.is_realtime() || !pose_thread_.has_entered());
 }
 
 // A standby's commands have a strength beyond that of the active one before the first of them is sent: the

@@ -56,6 +56,7 @@ class ControlService {
   void report(std::int64_t stamp_ns);
   void attend_to_those_who_are_alone();
   void offer_strength();
+  bool is_realtime() const;
   template <class Message, class Sample>
   std::function<void(const Message&)> deliver(runtime::Mailbox<Sample>& mailbox, comms::FaultLog& faults);
   template <class Message, class Sample>
@@ -85,8 +86,8 @@ class ControlService {
   std::atomic<std::int64_t> active_heard_ns_{0};  // another one; monotonic
   std::atomic<bool> rival_{false};
   std::uint32_t offered_strength_;  // by the thread of run()
-  bool imu_thread_ready_ = false;   // by the thread of that name alone
-  bool pose_thread_ready_ = false;
+
+  runtime::RealtimeThread imu_thread_, pose_thread_;
 
   std::mutex gate_mutex_;  // in lockstep: of the inner loop and all that it takes in
   LockstepGate gate_;

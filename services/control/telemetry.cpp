@@ -26,9 +26,11 @@ bool is_over(control::MissionState state) {
 
 }  // namespace
 
-Telemetry::Telemetry(InnerLoop& loop, RequestDesk& desk, comms::Node& node)
+Telemetry::Telemetry(InnerLoop& loop, RequestDesk& desk, const control::FailsafeSettings& thresholds,
+                     comms::Node& node)
     : loop_(loop),
       desk_(desk),
+      thresholds_(thresholds),
       node_(node),
       estimates_(node.publish(topics::kEstimate)),
       references_(node.publish(topics::kReference)),
@@ -142,6 +144,8 @@ void Telemetry::publish_status() {
   message.has_pose(status.has_pose);
   message.pose_age_s(status.pose_age_s);
   message.supply_voltage_v(status.supply_voltage_v);
+  message.low_battery_voltage_v(thresholds_.low_battery_voltage);
+  message.critical_battery_voltage_v(thresholds_.critical_battery_voltage);
   message.saturated(saturated_);
   message.cycles(last_.timing.cycles);
   message.deadline_misses(last_.timing.deadline_misses);
@@ -154,7 +158,7 @@ void Telemetry::publish_status() {
   message.setpoints_taken(last_.setpoints.taken);
   message.setpoints_refused(last_.setpoints.refused);
   message.setpoint_refusal() = last_.setpoints.refusal.reason;
-  message.realtime_scheduling(realtime_.load(std::memory_order_relaxed));
+  message.realtime_scheduling(realtime_);
   statuses_.publish(message);
   saturated_ = false;
   status_due_ns_ = runtime::monotonic_ns() + kStatusPeriodNs;

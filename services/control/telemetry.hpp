@@ -2,7 +2,6 @@
 // in a hurry. A standby says next to nothing: of several controllers one is heard.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -14,12 +13,14 @@ namespace swiftlet::services {
 
 class Telemetry {
  public:
-  Telemetry(InnerLoop& loop, RequestDesk& desk, comms::Node& node);
+  // thresholds: which others are told.
+  Telemetry(InnerLoop& loop, RequestDesk& desk, const control::FailsafeSettings& thresholds,
+            comms::Node& node);
 
   // Says what is new or due. By one thread, again and again.
   void tell();
 
-  void set_realtime(bool granted) { realtime_.store(granted, std::memory_order_relaxed); }  // by any thread
+  void set_realtime(bool realtime) { realtime_ = realtime; }  // of the threads that fly, now
   void watch_imu() { watches_imu_ = true; }  // before tell(): a silence of the samples is worth a warning
   const Snapshot& last() const { return last_; }  // by the thread of tell(), or after it
 
@@ -36,8 +37,9 @@ class Telemetry {
 
   InnerLoop& loop_;
   RequestDesk& desk_;
+  const control::FailsafeSettings thresholds_;
   comms::Node& node_;
-  std::atomic<bool> realtime_{false};
+  bool realtime_ = false;
   bool watches_imu_ = false;
   bool imu_silent_ = false;
 

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <vector>
 
@@ -41,6 +42,7 @@
 #include "swiftlet/services/dds/membership.hpp"
 #include "swiftlet/services/dds/participant_qos.hpp"
 #include "swiftlet/services/dds/profiles.hpp"
+#include "swiftlet/services/dds/qos_conflicts.hpp"
 #include "swiftlet/services/dds/reunions.hpp"
 #include "swiftlet/services/dds/shared_memory.hpp"
 #include "swiftlet/services/dds/tolerant_type.hpp"
@@ -88,16 +90,30 @@ void check(const NodeSettings& settings) {
 constexpr std::chrono::milliseconds kReunionPatience{1000};
 constexpr std::chrono::milliseconds kLookPeriod{250};
 
+std::string named(const std::string& name, const rtps::GuidPrefix_t& participant) {
+  std::ostringstream text;
+  text << "'" << name << "' (" << participant << ")";
+  return text.str();
+}
+
 }  // namespace
 
 struct Node::Impl final : public dds::DomainParticipantListener {
   using Meetings = Reunions<rtps::GuidPrefix_t>;
+  struct RemoteEndpoint {
+    std::string topic;
+    EndpointQos qos;
+  };
+  using RemoteEndpoints = std::map<rtps::GUID_t, RemoteEndpoint>;
 
   explicit Impl(const NodeSettings& node_settings) : settings(node_settings) {
     check(settings);
     if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
     membership = std::make_unique<Membership>(settings, this);
-    lookout.emplace(kLookPeriod, [this] { look_after_reunions(); });
+    lookout.emplace(kLookPeriod, [this] {
+      look_after_reunions();
+      tell_conflicts_due();
+    });
   }
 
   ~Impl() override {
@@ -127,17 +143,21 @@ struct Node::Impl final : public dds::DomainParticipantListener {
       const std::lock_guard<std::mutex> lock(peers_mutex);
       if (!reunions.failed(std::chrono::steady_clock::now(), kReunionPatience) && !away) return;
     }
+    if (rejoin()) spdlog::warn("a peer came back and could not be heard: joined the network anew");
+  }
+  // False if it is away now, or was.
+  bool rejoin() {
     const std::lock_guard<std::mutex> lock(membership_mutex);
     leave();
     try {
       membership = std::make_unique<Membership>(settings, this);
       for (Endpoint* const endpoint : endpoints) endpoint->join(*membership);
-      if (!away) spdlog::warn("a peer came back and could not be heard: joined the network anew");
-      away = false;
+      return !away.exchange(false);
     } catch (const std::runtime_error& error) {
       if (!away) spdlog::error("cannot join the network anew, trying again: {}", error.what());
       away = true;
       leave();
+      return false;
     }
   }
   void leave() {
@@ -146,7 +166,10 @@ struct Node::Impl final : public dds::DomainParticipantListener {
     membership.reset();
     const std::lock_guard<std::mutex> lock(peers_mutex);
     peers.clear();
+    names.clear();
     writers.clear();
+    readers.clear();
+    told_conflicts.clear();
     reunions.clear();
   }
 
@@ -161,8 +184,9 @@ struct Node::Impl final : public dds::DomainParticipantListener {
     const std::lock_guard<std::mutex> lock(peers_mutex);
     switch (info.status) {
       case rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT: {
-        if (vehicle_of(info.info.m_userData.dataVec()) != settings.vehicle) return;
         const std::string name = info.info.m_participantName.c_str();
+        names[info.info.m_guid.guidPrefix] = name;
+        if (vehicle_of(info.info.m_userData.dataVec()) != settings.vehicle) return;
         peers[info.info.m_guid] = name;
         reunions.came(info.info.m_guid.guidPrefix, std::chrono::steady_clock::now());
         if (peer_callback) peer_callback({name, true, false});
@@ -170,7 +194,7 @@ struct Node::Impl final : public dds::DomainParticipantListener {
       }
       case rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT:
       case rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT: {
-        forget_writers(info.info.m_guid.guidPrefix);
+        forget(info.info.m_guid.guidPrefix);
         const auto peer = peers.find(info.info.m_guid);
         if (peer == peers.end()) return;
         const PeerEvent event{peer->second, false,
@@ -191,21 +215,69 @@ struct Node::Impl final : public dds::DomainParticipantListener {
     if (info.status == rtps::WriterDiscoveryInfo::DISCOVERED_WRITER) {
       note_endpoint(info.info.guid(), Meetings::kWriter);
       const std::lock_guard<std::mutex> lock(peers_mutex);
-      writers[info.info.guid()] = info.info.topicName().c_str();
+      writers[info.info.guid()] = {info.info.topicName().c_str(), endpoint_qos(info.info.m_qos)};
     } else if (info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) {
       const std::lock_guard<std::mutex> lock(peers_mutex);
       writers.erase(info.info.guid());
     }
   }
-  // With the lock held.
-  void forget_writers(const rtps::GuidPrefix_t& participant) {
-    for (auto writer = writers.begin(); writer != writers.end();)
-      writer = writer->first.guidPrefix == participant ? writers.erase(writer) : std::next(writer);
-  }
-  void on_subscriber_discovery(dds::DomainParticipant*, rtps::ReaderDiscoveryInfo&& info) override {
-    if (info.status == rtps::ReaderDiscoveryInfo::DISCOVERED_READER)
+  void on_subscriber_discovery(dds::DomainParticipant* own, rtps::ReaderDiscoveryInfo&& info) override {
+    if (info.info.guid().guidPrefix == own->guid().guidPrefix) return;
+    if (info.status == rtps::ReaderDiscoveryInfo::DISCOVERED_READER) {
       note_endpoint(info.info.guid(), Meetings::kReader);
+      const std::lock_guard<std::mutex> lock(peers_mutex);
+      readers[info.info.guid()] = {info.info.topicName().c_str(), endpoint_qos(info.info.m_qos)};
+    } else if (info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER) {
+      const std::lock_guard<std::mutex> lock(peers_mutex);
+      readers.erase(info.info.guid());
+    }
   }
+  // With the lock held.
+  void forget(const rtps::GuidPrefix_t& participant) {
+    names.erase(participant);
+    for (RemoteEndpoints* const remote : {&writers, &readers}) {
+      for (auto it = remote->begin(); it != remote->end();)
+        it = it->first.guidPrefix == participant ? remote->erase(it) : std::next(it);
+    }
+    for (auto it = told_conflicts.begin(); it != told_conflicts.end();)
+      it = it->second.guidPrefix == participant ? told_conflicts.erase(it) : std::next(it);
+  }
+
+  // Fast DDS says of which reader or writer of ours, but not with whom: with each that it knows of the topic
+  // and that does not match.
+  void on_requested_incompatible_qos(dds::DataReader* reader,
+                                     const dds::RequestedIncompatibleQosStatus&) override {
+    const EndpointQos requested = endpoint_qos(reader->get_qos().get_readerqos(dds::SUBSCRIBER_QOS_DEFAULT));
+    tell_conflicts(reader->guid(), reader->get_topicdescription()->get_name(), writers, "is not heard",
+                   [&](const EndpointQos& offered) { return conflicts(offered, requested); });
+  }
+  void on_offered_incompatible_qos(dds::DataWriter* writer,
+                                   const dds::OfferedIncompatibleQosStatus&) override {
+    const EndpointQos offered =
+        endpoint_qos(writer->get_qos().get_writerqos(dds::PUBLISHER_QOS_DEFAULT, dds::TOPIC_QOS_DEFAULT));
+    tell_conflicts(writer->guid(), writer->get_topic()->get_name(), readers, "does not hear this process",
+                   [&](const EndpointQos& requested) { return conflicts(offered, requested); });
+  }
+  template <class ConflictsWith>
+  void tell_conflicts(const rtps::GUID_t& own, const std::string& topic, const RemoteEndpoints& others,
+                      const char* consequence, const ConflictsWith& conflicts_with) {
+    const std::lock_guard<std::mutex> lock(peers_mutex);
+    for (const auto& [guid, other] : others) {
+      if (other.topic != topic) continue;
+      const std::string policies = conflicts_with(other.qos);
+      if (policies.empty() || !told_conflicts.emplace(own, guid).second) continue;
+      const auto line =
+          conflict_lines.offer(topic + ": " + named(names[guid.guidPrefix], guid.guidPrefix) + " " +
+                                   consequence + ", their QoS is incompatible: " + policies,
+                               std::chrono::steady_clock::now());
+      if (line) spdlog::warn(*line);
+    }
+  }
+  void tell_conflicts_due() {
+    const std::lock_guard<std::mutex> lock(peers_mutex);
+    if (const auto line = conflict_lines.due(std::chrono::steady_clock::now())) spdlog::warn(*line);
+  }
+
   void note_endpoint(const rtps::GUID_t& guid, Meetings::Kind kind) {
     const std::lock_guard<std::mutex> lock(peers_mutex);
     const rtps::GUID_t peer(guid.guidPrefix, rtps::c_EntityId_RTPSParticipant);
@@ -220,12 +292,16 @@ struct Node::Impl final : public dds::DomainParticipantListener {
 
   std::mutex peers_mutex;
   std::map<rtps::GUID_t, std::string> peers;
-  std::map<rtps::GUID_t, std::string> writers;  // of others, of whichever vehicle: their topics
+  std::map<rtps::GuidPrefix_t, std::string> names;  // of participants, of whichever vehicle
+  RemoteEndpoints writers;                          // of others, of whichever vehicle
+  RemoteEndpoints readers;
+  std::set<std::pair<rtps::GUID_t, rtps::GUID_t>> told_conflicts;  // of our own endpoints with others
+  LineLimit conflict_lines;
   std::function<void(const PeerEvent&)> peer_callback;
 
   Meetings reunions;
 
-  bool away = false;  // it could not join anew
+  std::atomic<bool> away{false};  // it could not join anew
   std::optional<Lookout> lookout;
 };
 
@@ -270,11 +346,10 @@ class DdsWriter final : public detail::Writer, private Endpoint {
     writer->set_qos(qos);
   }
 
-  int matched() const override {
-    const typename Handle<dds::DataWriter>::Use writer(writer_);
-    dds::PublicationMatchedStatus status;
-    if (writer) writer->get_publication_matched_status(status);
-    return status.current_count;
+  int matched() const override { return readers().current_count; }
+  std::uint64_t changes() const override {
+    const dds::PublicationMatchedStatus now = readers();
+    return changes_before_ + static_cast<std::uint64_t>(2 * now.total_count - now.current_count);
   }
 
  private:
@@ -288,13 +363,25 @@ class DdsWriter final : public detail::Writer, private Endpoint {
     writer_.give(writer);
   }
   void leave(Membership& membership) override {
-    if (dds::DataWriter* const writer = writer_.take()) membership.publisher->delete_datawriter(writer);
+    dds::DataWriter* const writer = writer_.take();
+    if (writer == nullptr) return;
+    dds::PublicationMatchedStatus last;
+    writer->get_publication_matched_status(last);
+    changes_before_ += static_cast<std::uint64_t>(2 * last.total_count);  // all have gone
+    membership.publisher->delete_datawriter(writer);
+  }
+  dds::PublicationMatchedStatus readers() const {
+    const typename Handle<dds::DataWriter>::Use writer(writer_);
+    dds::PublicationMatchedStatus status;
+    if (writer) writer->get_publication_matched_status(status);
+    return status;
   }
 
   std::shared_ptr<Impl> node_;
   const Topic<T> topic_;
   std::atomic<std::uint32_t> strength_;
   Handle<dds::DataWriter> writer_;
+  std::atomic<std::uint64_t> changes_before_{0};  // in memberships that have ended
   std::mutex last_mutex_;
   std::optional<T> last_;  // of a state, which late joiners are told
 };
@@ -368,7 +455,7 @@ Node::~Node() { on_peer({}); }
 std::vector<std::string> Node::topics_seen() const {
   const std::lock_guard<std::mutex> lock(impl_->peers_mutex);
   std::set<std::string> topics;
-  for (const auto& writer : impl_->writers) topics.insert(writer.second);
+  for (const auto& writer : impl_->writers) topics.insert(writer.second.topic);
   return {topics.begin(), topics.end()};
 }
 
@@ -378,6 +465,8 @@ void Node::on_peer(std::function<void(const PeerEvent&)> callback) {
   if (!impl_->peer_callback) return;
   for (const auto& peer : impl_->peers) impl_->peer_callback({peer.second, true, false});
 }
+
+void Node::rejoin() { impl_->rejoin(); }
 
 template <class T>
 Publisher<T> Node::publish(const Topic<T>& topic, std::uint32_t strength) {

@@ -55,6 +55,7 @@ class Writer {
   virtual ~Writer() = default;
   virtual bool write(const void* sample) = 0;
   virtual int matched() const = 0;
+  virtual std::uint64_t changes() const = 0;
   virtual void set_strength(std::uint32_t strength) = 0;
 };
 class Reader {
@@ -73,6 +74,8 @@ class Publisher {
   // False if the sample was not handed to the network (no resources, time-out of a reliable writer).
   bool publish(const T& sample) { return writer_->write(&sample); }
   int matched() const { return writer_->matched(); }  // readers that hear it
+  // How often one of these has come or gone: what was sent before the last change may not have reached all.
+  std::uint64_t changes() const { return writer_->changes(); }
   // Of an owned stream, from now on; the readers know it within milliseconds. By any thread.
   void set_strength(std::uint32_t strength) { writer_->set_strength(strength); }
 
@@ -121,6 +124,11 @@ class Node {
   // thread. A later call takes the place of an earlier one; when it returns, the earlier callback runs no
   // more.
   void on_peer(std::function<void(const PeerEvent&)> callback);
+
+  // Leaves the domain and joins it anew, with all that it publishes and subscribes: others take it for a new
+  // process. Callbacks run in new threads from then on. It does so by itself where a peer came back and
+  // cannot be heard. Not from a callback.
+  void rejoin();
 
  private:
   struct Impl;

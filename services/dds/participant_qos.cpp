@@ -6,6 +6,8 @@
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 
+#include "swiftlet/services/dds/discovery_ports.hpp"
+
 namespace swiftlet::comms {
 namespace {
 
@@ -51,16 +53,18 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings) {
   builtin.discovery_config.initial_announcements.count = kFirstAnnouncements;
   builtin.discovery_config.initial_announcements.period = duration(kFirstAnnouncementPeriod);
 
+  // A port that is taken is passed over for the next one of the domain, and not for one beyond.
+  const DiscoveryPorts ports = discovery_ports(settings.domain);
+  builtin.mutation_tries = ports.count - 1;
+
   const auto udp = std::make_shared<UDPv4TransportDescriptor>();
   udp->non_blocking_send = true;  // a full socket buffer loses a sample rather than hold the sender up
   if (settings.localhost_only) {
     udp->interfaceWhiteList = {kLoopback};
-    udp->maxInitialPeersRange = kMaxLocalProcesses;
+    udp->maxInitialPeersRange = ports.count;
     // The first of the domain's ports that is free, whatever number the middleware gives the participant;
     // none for multicast. Of the peers (port 0), the middleware tries as many ports as maxInitialPeersRange.
-    const auto first_port =
-        qos.wire_protocol().port.getUnicastPort(static_cast<std::uint32_t>(settings.domain), 0);
-    builtin.metatrafficUnicastLocatorList.push_back(loopback_locator(first_port));
+    builtin.metatrafficUnicastLocatorList.push_back(loopback_locator(ports.first));
     builtin.initialPeersList.push_back(loopback_locator(0));
   }
   qos.transport().use_builtin_transports = false;

@@ -28,7 +28,4 @@ constexpr std::chrono::milliseconds kFixturePeriod{100};
 constexpr int kFirstAnnouncements = 20;
 constexpr std::chrono::milliseconds kFirstAnnouncementPeriod{25};
 
-// With localhost_only: as many processes of one domain find each other.
-constexpr int kMaxLocalProcesses = 40;
-
 }  // namespace swiftlet::comms

@@ -64,10 +64,7 @@ class Camera {
 
  private:
   void on_truth(const comms::msg::GroundTruth& message) {
-    if (!scheduled_) {
-      scheduled_ = true;
-      if (realtime_.enabled) runtime::make_this_thread_realtime(realtime_);
-    }
+    thread_.enter(realtime_);
     plant::TruthSample truth;
     const comms::Fault fault = comms::from_message(message, truth);
     if (fault) {
@@ -131,7 +128,7 @@ class Camera {
   bool made_frame_ = false;          // of the newest truth
   bool sign_is_next_ = false;
   std::atomic<bool> lost_truth_{false};
-  bool scheduled_ = false;
+  runtime::RealtimeThread thread_;
   bool told_fault_ = false;
   std::atomic<std::uint64_t> frames_{0};
   std::atomic<std::uint64_t> untracked_{0};

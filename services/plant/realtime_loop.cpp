@@ -39,10 +39,7 @@ void RealtimeLoop::run(const std::atomic<bool>& stop) {
 
 // In the thread that received it.
 void RealtimeLoop::on_command(const comms::msg::ActuatorCommand& message) {
-  if (!listener_scheduled_) {
-    listener_scheduled_ = true;
-    if (realtime_.enabled) runtime::make_this_thread_realtime(realtime_);
-  }
+  listener_.enter(realtime_);
   received_.push(ReceivedCommand(message, runtime::monotonic_ns()));
 }
 

@@ -31,7 +31,7 @@ class RealtimeLoop {
   runtime::RealtimeSettings realtime_;
 
   boost::lockfree::spsc_queue<ReceivedCommand, boost::lockfree::capacity<64>> received_;
-  bool listener_scheduled_ = false;
+  runtime::RealtimeThread listener_;
   comms::Subscription commands_;  // last: its callback uses what stands above
 };
 

@@ -7,6 +7,7 @@
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 namespace swiftlet::runtime {
 namespace {
@@ -70,6 +71,19 @@ bool this_thread_is_realtime() {
   int policy = SCHED_OTHER;
   sched_param parameters{};
   return pthread_getschedparam(pthread_self(), &policy, &parameters) == 0 && policy == SCHED_FIFO;
+}
+
+// By the kernel's number: a new thread often has the pthread_t of one that has ended.
+void RealtimeThread::enter(const RealtimeSettings& settings) {
+  static thread_local const pid_t this_thread = ::gettid();
+  if (thread_.load(std::memory_order_relaxed) == this_thread) return;
+  if (settings.enabled) make_this_thread_realtime(settings);
+  thread_.store(this_thread, std::memory_order_relaxed);
+}
+
+bool RealtimeThread::is_realtime() const {
+  const pid_t thread = thread_.load(std::memory_order_relaxed);
+  return thread != 0 && ::sched_getscheduler(thread) == SCHED_FIFO;
 }
 
 }  // namespace swiftlet::runtime

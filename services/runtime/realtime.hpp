@@ -1,7 +1,9 @@
 // Locked memory, SCHED_FIFO and the choice of a core, where the system permits them.
 #pragma once
 
+#include <atomic>
 #include <string>
+#include <sys/types.h>
 
 namespace swiftlet::runtime {
 
@@ -26,5 +28,20 @@ std::string make_this_thread_realtime(const RealtimeSettings& settings);
 
 // Whether the calling thread has SCHED_FIFO.
 bool this_thread_is_realtime();
+
+// The thread that does what counts, whichever it is: the middleware may end it and begin another in its place.
+class RealtimeThread {
+ public:
+  // By that thread, before each of its steps: the first call of each thread makes it real-time, if that is
+  // enabled. Later ones cost a comparison.
+  void enter(const RealtimeSettings& settings);
+
+  // Whether the one that entered last has SCHED_FIFO at this moment; false if none has, or if it has ended.
+  bool is_realtime() const;
+  bool has_entered() const { return thread_.load(std::memory_order_relaxed) != 0; }
+
+ private:
+  std::atomic<pid_t> thread_{0};
+};
 
 }  // namespace swiftlet::runtime

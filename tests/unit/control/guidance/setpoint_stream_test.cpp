@@ -180,6 +180,59 @@ TEST_P(Rates, AHeadingIsTurnedToWithinItsRate) {
 
 INSTANTIATE_TEST_SUITE_P(OfStreams, Rates, testing::Values(2.0, 5.0, 20.0, 100.0, 500.0));
 
+// Over the least time, 0.1 s: there is none before it that the time could be counted from. What the check of
+// the fence looks at is the same way.
+TEST_F(Stream, TheFirstSetpointIsGoneOverIntoWithoutDelay) {
+  Setpoint setpoint = of_kind(SetpointKind::kVelocity);
+  setpoint.velocity_ned = {0.005, 0.0, 0.0};
+  ASSERT_TRUE(send(setpoint).accepted);
+  const auto steps = static_cast<int>(std::lround(0.1 / kStep_s));
+  for (int i = 0; i < steps; ++i) ASSERT_NO_FATAL_FAILURE(step_smoothly());
+  EXPECT_NEAR(directive_.reference.velocity_ned.x(), 0.005, 1e-6);
+}
+
+TEST_F(Stream, TheFirstSetpointAfterAPauseIsGoneOverIntoWithoutDelay) {
+  Setpoint setpoint = of_kind(SetpointKind::kPosition);
+  setpoint.position_ned = directive_.reference.position_ned;
+  ASSERT_TRUE(send(setpoint).accepted);
+  ASSERT_TRUE(step_until(Mode::kHolding, 2.0));
+  setpoint.position_ned = directive_.reference.position_ned + Vector3d(2e-5, 0.0, 0.0);
+  before_ = directive_.reference;
+  ASSERT_TRUE(send(setpoint).accepted);
+  const auto steps = static_cast<int>(std::lround(0.1 / kStep_s));
+  for (int i = 0; i < steps; ++i) ASSERT_NO_FATAL_FAILURE(step_smoothly());
+  EXPECT_NEAR(directive_.reference.position_ned.x(), setpoint.position_ned.x(), 1e-7);
+}
+
+// A slow sine in x, 500 times a second, so small that no blend takes longer for the sake of the limits.
+class Sine : public Stream {
+ protected:
+  static constexpr double kAmplitude = 0.002, kRate = 2.0 * M_PI / 10.0;
+
+  // By the first harmonic of the reference, over the second turn.
+  double lag_s(bool with_derivatives) {
+    double in_phase = 0.0, behind = 0.0;
+    const auto next = [&](double t) {
+      const double x = directive_.reference.position_ned.x();
+      if (t >= 10.0) in_phase += x * std::sin(kRate * t), behind -= x * std::cos(kRate * t);
+      Setpoint setpoint = of_kind(SetpointKind::kPosition);
+      setpoint.position_ned = {kAmplitude * std::sin(kRate * t), 0.0, -1.0};
+      if (with_derivatives) {
+        setpoint.velocity_ned.x() = kAmplitude * kRate * std::cos(kRate * t);
+        setpoint.acceleration_ned.x() = -kAmplitude * kRate * kRate * std::sin(kRate * t);
+      }
+      return setpoint;
+    };
+    stream(20.0, 1.0 / kStep_s, next);
+    return std::atan2(behind, in_phase) / kRate;
+  }
+};
+
+// Blended into once: the error obeys s^3 + 9/t s^2 + 36/t^2 s + 60/t^3, which lags by 36/60 t.
+TEST_F(Sine, OfPositionsAloneLagsByThreeFifthsOfTheTimeOfABlend) { EXPECT_NEAR(lag_s(false), 0.06, 0.003); }
+
+TEST_F(Sine, OfPositionsWithTheirDerivativesDoesNotLag) { EXPECT_NEAR(lag_s(true), 0.0, 0.003); }
+
 TEST_F(Stream, FromOneKindToTheNextTheReferenceGoesOnSmoothly) {
   Setpoint velocity = of_kind(SetpointKind::kVelocity);
   velocity.velocity_ned = {0.4, 0, 0};

@@ -23,6 +23,8 @@ View in_flight() {
   control.airborne(true);
   control.has_pose(true);
   control.cycles(1000);
+  control.low_battery_voltage_v(3.5);
+  control.critical_battery_voltage_v(3.3);
   hear(view.control, control);
   msg::Estimate estimate;
   estimate.position_ned({0.001, 0.0, -1.0});
@@ -65,7 +67,7 @@ TEST(WatchScreen, FitsEveryScreenAndKeepsTheKeysAtItsEnd) {
   }
   const auto small = watch_screen(view, facts(), kNow, 80, 3);
   EXPECT_EQ(small[0].text, "kl1 in domain 0: holding (take-off completed), airborne");
-  EXPECT_EQ(small[1].text, "! battery is low: 3.00 V") << "what matters most stays";
+  EXPECT_EQ(small[1].text, "! battery is critical: 3.00 V, below 3.30 V") << "what matters most stays";
   EXPECT_EQ(small[1].emphasis, Emphasis::kWarning);
 }
 
@@ -98,7 +100,8 @@ TEST(Warnings, NameWhatStandsAgainstAQuietFlight) {
   warns([](View& v) { v.control.message.mode(msg::ControlStatus_Constants::MODE_STOPPED); },
         "rotors stopped: take-off completed");
   warns([](View& v) { v.control.message.has_pose(false); }, "no pose for 0.0 s");
-  warns([](View& v) { v.battery.message.voltage_v(3.2); }, "battery is low: 3.20 V");
+  warns([](View& v) { v.battery.message.voltage_v(3.4); }, "battery is low: 3.40 V, below 3.50 V");
+  warns([](View& v) { v.battery.message.voltage_v(3.2); }, "battery is critical: 3.20 V, below 3.30 V");
   warns([](View& v) { v.estimate.message.position_ned({0.5, 0, -1}); }, "0.50 m off the reference");
   warns([](View& v) { v.control.message.saturated(true); }, "the rotors' limits cut commands");
   warns([](View& v) { v.control.message.deadline_misses(50); }, "5.0 % of the steps are late");
@@ -106,6 +109,33 @@ TEST(Warnings, NameWhatStandsAgainstAQuietFlight) {
   warns([](View& v) { v.estimate.message.pose_fault(msg::Estimate_Constants::POSE_FAULT_FROZEN); },
         "poses are refused as frozen");
   EXPECT_EQ(warnings_of(View(), kNow), std::vector<std::string>({"no control service"}));
+}
+
+// The vehicle's settings say when it lands, not the defaults of this program.
+TEST(Warnings, OfTheBatteryGoByTheVehiclesOwnSettings) {
+  View view = in_flight();
+  view.control.message.low_battery_voltage_v(6.8);  // of two cells
+  view.control.message.critical_battery_voltage_v(6.4);
+  view.battery.message.voltage_v(6.7);
+  EXPECT_EQ(warnings_of(view, kNow), std::vector<std::string>({"battery is low: 6.70 V, below 6.80 V"}));
+  EXPECT_NE(text_of(watch_screen(view, facts(), kNow, 100, 40)).find("lands below 6.80 V\n"),
+            std::string::npos);
+
+  view.control.message.low_battery_voltage_v(3.0);
+  view.control.message.critical_battery_voltage_v(2.8);
+  view.battery.message.voltage_v(3.2);
+  EXPECT_EQ(warnings_of(view, kNow), std::vector<std::string>());
+}
+
+TEST(Warnings, SayWhichThresholdIsAssumed) {
+  View view = in_flight();
+  view.control.message.low_battery_voltage_v(0.0);
+  view.control.message.critical_battery_voltage_v(0.0);
+  view.battery.message.voltage_v(3.2);
+  EXPECT_EQ(warnings_of(view, kNow),
+            std::vector<std::string>({"battery is low: 3.20 V, below 3.30 V (assumed)"}));
+  EXPECT_NE(text_of(watch_screen(view, facts(), kNow, 100, 40)).find("lands below 3.30 V (assumed)\n"),
+            std::string::npos);
 }
 
 }  // namespace

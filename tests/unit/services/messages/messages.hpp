@@ -235,6 +235,8 @@ inline msg::ControlStatus example() {
   message.rate_hz(499.5);
   message.step_time_max_us(80.0);
   message.realtime_scheduling(true);
+  message.low_battery_voltage_v(3.4);
+  message.critical_battery_voltage_v(3.2);
   return message;
 }
 template <>

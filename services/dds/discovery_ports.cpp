@@ -1,0 +1,55 @@
+#include "swiftlet/services/dds/discovery_ports.hpp"
+
+#include <algorithm>
+#include <arpa/inet.h>
+#include <limits>
+#include <netinet/in.h>
+#include <stdexcept>
+#include <string>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <fastdds/rtps/common/PortParameters.h>
+
+namespace swiftlet::comms {
+namespace {
+
+bool is_free(std::uint32_t port, bool localhost_only) {
+  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (socket < 0) return true;  // not for us to say why
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  address.sin_addr.s_addr = htonl(localhost_only ? INADDR_LOOPBACK : INADDR_ANY);
+  const bool free = ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  ::close(socket);
+  return free;
+}
+
+}  // namespace
+
+DiscoveryPorts discovery_ports(int domain) {
+  const eprosima::fastrtps::rtps::PortParameters rtps;
+  DiscoveryPorts ports;
+  ports.first = rtps.getUnicastPort(static_cast<std::uint32_t>(domain), 0);
+  ports.gap = rtps.participantIDGain;
+  // The port for a process's data lies behind its port for discovery.
+  const std::uint32_t data_offset = rtps.offsetd3 - rtps.offsetd1;
+  const std::uint32_t end = std::min<std::uint32_t>(ports.first - rtps.offsetd1 + rtps.domainIDGain,
+                                                    std::numeric_limits<std::uint16_t>::max() + 1U);
+  ports.count = (end - data_offset - ports.first + ports.gap - 1) / ports.gap;
+  return ports;
+}
+
+void demand_discovery_port(int domain, bool localhost_only) {
+  const DiscoveryPorts ports = discovery_ports(domain);
+  for (std::uint32_t port = ports.first; port <= ports.last(); port += ports.gap) {
+    if (is_free(port, localhost_only)) return;
+  }
+  throw std::runtime_error("DDS domain " + std::to_string(domain) + " is full: all of its " +
+                           std::to_string(ports.count) + " ports for discovery on this host, UDP " +
+                           std::to_string(ports.first) + " to " + std::to_string(ports.last()) +
+                           ", are taken; choose another with --domain");
+}
+
+}  // namespace swiftlet::comms

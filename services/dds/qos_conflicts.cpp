@@ -1,0 +1,104 @@
+#include "swiftlet/services/dds/qos_conflicts.hpp"
+
+#include <cstdio>
+
+namespace swiftlet::comms {
+namespace {
+
+namespace dds = eprosima::fastdds::dds;
+using eprosima::fastrtps::Duration_t;
+
+constexpr std::chrono::seconds kLinePeriod{1};
+
+const char* name_of(dds::ReliabilityQosPolicyKind kind) {
+  return kind == dds::RELIABLE_RELIABILITY_QOS ? "reliable" : "best effort";
+}
+
+const char* name_of(dds::DurabilityQosPolicyKind kind) {
+  switch (kind) {
+    case dds::VOLATILE_DURABILITY_QOS:
+      return "volatile";
+    case dds::TRANSIENT_LOCAL_DURABILITY_QOS:
+      return "transient local";
+    case dds::TRANSIENT_DURABILITY_QOS:
+      return "transient";
+    case dds::PERSISTENT_DURABILITY_QOS:
+      return "persistent";
+  }
+  return "unknown";
+}
+
+const char* name_of(dds::OwnershipQosPolicyKind kind) {
+  return kind == dds::EXCLUSIVE_OWNERSHIP_QOS ? "exclusive" : "shared";
+}
+
+const char* name_of(dds::LivelinessQosPolicyKind kind) {
+  switch (kind) {
+    case dds::AUTOMATIC_LIVELINESS_QOS:
+      return "automatic";
+    case dds::MANUAL_BY_PARTICIPANT_LIVELINESS_QOS:
+      return "manual by participant";
+    case dds::MANUAL_BY_TOPIC_LIVELINESS_QOS:
+      return "manual by topic";
+  }
+  return "unknown";
+}
+
+std::string name_of(const Duration_t& time) {
+  if (time == eprosima::fastrtps::c_TimeInfinite) return "none";
+  char text[32];
+  std::snprintf(text, sizeof text, "%g ms", 1e-6 * static_cast<double>(time.to_ns()));
+  return text;
+}
+
+void add(std::string& list, const char* policy, const std::string& offered, const std::string& requested) {
+  if (!list.empty()) list += ", ";
+  list.append(policy)
+      .append(" (offered ")
+      .append(offered)
+      .append(", asked for ")
+      .append(requested)
+      .append(")");
+}
+
+}  // namespace
+
+// As Fast DDS 2.9 decides, in EDP::valid_matching().
+std::string conflicts(const EndpointQos& offered, const EndpointQos& requested) {
+  std::string list;
+  if (offered.reliability < requested.reliability)
+    add(list, "reliability", name_of(offered.reliability), name_of(requested.reliability));
+  if (offered.durability < requested.durability)
+    add(list, "durability", name_of(offered.durability), name_of(requested.durability));
+  if (offered.ownership != requested.ownership)
+    add(list, "ownership", name_of(offered.ownership), name_of(requested.ownership));
+  if (offered.deadline > requested.deadline)
+    add(list, "deadline", name_of(offered.deadline), name_of(requested.deadline));
+  if (offered.liveliness < requested.liveliness)
+    add(list, "liveliness", name_of(offered.liveliness), name_of(requested.liveliness));
+  if (offered.lease > requested.lease)
+    add(list, "liveliness lease", name_of(offered.lease), name_of(requested.lease));
+  if (!offered.without_positive_acks && requested.without_positive_acks)
+    add(list, "disabled positive acknowledgements", "no", "yes");
+  return list;
+}
+
+std::optional<std::string> LineLimit::offer(std::string line, Time now) {
+  if (!written_ || now - *written_ >= kLinePeriod) {
+    written_ = now;
+    return line;
+  }
+  kept_ = std::move(line);
+  ++kept_count_;
+  return std::nullopt;
+}
+
+std::optional<std::string> LineLimit::due(Time now) {
+  if (kept_count_ == 0 || now - *written_ < kLinePeriod) return std::nullopt;
+  if (kept_count_ > 1) kept_ += " (and " + std::to_string(kept_count_ - 1) + " more of the last second)";
+  written_ = now;
+  kept_count_ = 0;
+  return std::move(kept_);
+}
+
+}  // namespace swiftlet::comms

@@ -1,0 +1,168 @@
+// How long it takes until the processes of one host have found each other with --localhost-only, and what
+// that costs once they have. Each process is one of a fleet: of every four, two announce themselves as
+// vehicle and motion capture do.
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <sys/select.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/runtime/process.hpp"
+
+namespace swiftlet {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Options {
+  std::vector<int> processes{4, 40, 80};
+  double seconds = 5.0;
+  double patience_s = 120.0;
+  bool json = false;
+};
+
+// Ends when its standard input does; writes a byte when it knows all others.
+[[noreturn]] void live(int number, int count, int domain, int input, int output) {
+  comms::NodeSettings settings;
+  settings.name = "process" + std::to_string(number);
+  settings.domain = domain;
+  settings.localhost_only = true;
+  if (number % 4 < 2) settings.announcement_period = comms::kFixturePeriod;
+  comms::Node node(settings);
+  const auto imu = node.publish(comms::topics::kImu);
+  const auto status = node.publish(comms::topics::kVehicleInfo);
+  const auto battery = node.subscribe<comms::msg::Battery>(comms::topics::kBattery, [](const auto&) {});
+  const auto pose = node.subscribe<comms::msg::MocapPose>(comms::topics::kMocapPose, [](const auto&) {});
+  int known = 1;
+  node.on_peer([&](const comms::PeerEvent& peer) {
+    known += peer.alive ? 1 : -1;
+    if (known == count && ::write(output, "k", 1) != 1) std::_Exit(1);
+  });
+  char byte = 0;
+  while (::read(input, &byte, 1) > 0) {
+  }
+  std::_Exit(0);  // all at once: nobody is to hear of it
+}
+
+class Fleet {
+ public:
+  Fleet(int count, int domain) {
+    if (::pipe(input_.data()) != 0 || ::pipe(output_.data()) != 0) throw std::runtime_error("no pipe");
+    for (int i = 0; i < count; ++i) {
+      const pid_t pid = ::fork();
+      if (pid == 0) {
+        ::close(input_[1]);
+        live(i, count, domain, input_[0], output_[1]);
+      }
+      processes_.push_back(pid);
+    }
+    ::close(input_[0]);
+    ::close(output_[1]);
+  }
+  ~Fleet() {
+    ::close(input_[1]);
+    for (const pid_t pid : processes_) ::waitpid(pid, nullptr, 0);
+    ::close(output_[0]);
+  }
+  Fleet(const Fleet&) = delete;
+  Fleet& operator=(const Fleet&) = delete;
+
+  // Of those that know all others, once so many do or the time is over.
+  int wait_until_known(std::chrono::duration<double> patience) const {
+    const auto deadline = Clock::now() + patience;
+    int known = 0;
+    while (known < static_cast<int>(processes_.size()) && Clock::now() < deadline) {
+      fd_set waiting;
+      FD_ZERO(&waiting);
+      FD_SET(output_[0], &waiting);
+      timeval second{1, 0};
+      char byte = 0;
+      if (::select(output_[0] + 1, &waiting, nullptr, nullptr, &second) > 0 &&
+          ::read(output_[0], &byte, 1) == 1)
+        ++known;
+    }
+    return known;
+  }
+
+  // Of the processor, by all of them so far.
+  double time_s() const {
+    double ticks = 0.0;
+    for (const pid_t pid : processes_) {
+      std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
+      std::string word;
+      for (int i = 1; i <= 15 && file >> word; ++i) {
+        if (i >= 14) ticks += std::stod(word);  // user, system
+      }
+    }
+    return ticks / static_cast<double>(::sysconf(_SC_CLK_TCK));
+  }
+
+ private:
+  std::array<int, 2> input_{}, output_{};
+  std::vector<pid_t> processes_;
+};
+
+nlohmann::ordered_json measure(int count, const Options& options) {
+  const comms::DomainClaim claim;
+  const auto start = Clock::now();
+  const Fleet fleet(count, claim.domain());
+  const int known = fleet.wait_until_known(std::chrono::duration<double>(options.patience_s));
+  const double found_s = std::chrono::duration<double>(Clock::now() - start).count();
+  const double finding_s = fleet.time_s();
+  const auto rest = Clock::now();
+  std::this_thread::sleep_for(std::chrono::duration<double>(options.seconds));
+  const double rest_s = std::chrono::duration<double>(Clock::now() - rest).count();
+  return {{"processes", count},
+          {"know_all", known},
+          {"until_s", found_s},
+          {"cpu_until_s", finding_s},
+          {"cpu_at_rest_percent", 100.0 * (fleet.time_s() - finding_s) / rest_s}};
+}
+
+void run(const Options& options) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  if (!options.json) {
+    std::printf("%9s %9s %10s %18s %22s\n", "processes", "know all", "after, s", "CPU until then, s",
+                "CPU at rest, % of 1 core");
+  }
+  for (const int count : options.processes) {
+    const nlohmann::ordered_json row = measure(count, options);
+    rows.push_back(row);
+    if (options.json) continue;
+    std::printf("%9d %9d %10.2f %18.2f %22.1f\n", count, row["know_all"].get<int>(),
+                row["until_s"].get<double>(), row["cpu_until_s"].get<double>(),
+                row["cpu_at_rest_percent"].get<double>());
+    std::fflush(stdout);
+  }
+  if (options.json) std::printf("%s\n", rows.dump().c_str());
+}
+
+}  // namespace
+}  // namespace swiftlet
+
+int main(int argc, char** argv) {
+  using namespace swiftlet;
+  Options options;
+  return runtime::run_process(
+      {"discovery_bench", "How long processes of one host take to find each other, and what it costs.",
+       "--processes 4 --processes 80"},
+      argc, argv,
+      [&](runtime::CommandLine app) {
+        app.add_option("--processes", options.processes, "Several may be given").range(2, 120);
+        app.add_option("--seconds", options.seconds, "Of the measurement at rest").range(1.0, 60.0);
+        app.add_option("--patience", options.patience_s, "Longest wait until all know each other, s")
+            .range(1.0, 600.0);
+        app.add_flag("--json", options.json, "Print JSON");
+      },
+      [&] { run(options); });
+}

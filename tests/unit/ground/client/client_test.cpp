@@ -1,0 +1,154 @@
+// How often a request goes out, and that whoever acts answers it. The control service is the test.
+#include "swiftlet/ground/client/client.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <memory>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/services/dds/domain_claim.hpp"
+#include "tests/support/eventually.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using comms::DomainClaim;
+using tests::eventually;
+using tests::Inbox;
+using namespace std::chrono_literals;
+
+comms::NodeSettings settings_of(const char* name, const DomainClaim& claim) {
+  comms::NodeSettings settings;
+  settings.name = name;
+  settings.domain = claim.domain();
+  settings.localhost_only = true;
+  return settings;
+}
+
+// Hears requests, and answers if it is to.
+class Control {
+ public:
+  explicit Control(const DomainClaim& claim, bool answers = false)
+      : answers_(answers),
+        node_(settings_of("control", claim)),
+        acks_(node_.publish(comms::topics::kCommandAck)),
+        statuses_(node_.publish(comms::topics::kControlStatus)) {
+    commands_ = node_.subscribe<msg::Command>(comms::topics::kCommand, [this](const msg::Command& command) {
+      heard_.put(command.id());
+      if (answers_) answer(command.client(), command.id());
+    });
+    missions_ = node_.subscribe<msg::Mission>(
+        comms::topics::kMission, [this](const msg::Mission& mission) { heard_.put(mission.id()); });
+  }
+  void say(std::uint64_t sequence_number) {
+    msg::ControlStatus status;
+    status.sequence_number(sequence_number);
+    statuses_.publish(status);
+  }
+  void fall_silent() {
+    answers_ = false;
+    heard_.clear();
+  }
+  Inbox<std::uint64_t> heard_;  // ids of requests
+
+ private:
+  void answer(std::uint64_t client, std::uint64_t id) {
+    msg::CommandAck ack;
+    ack.client(client);
+    ack.id(id);
+    ack.accepted(true);
+    acks_.publish(ack);
+  }
+  std::atomic<bool> answers_;
+  comms::Node node_;
+  comms::Publisher<msg::CommandAck> acks_;
+  comms::Publisher<msg::ControlStatus> statuses_;
+  comms::Subscription commands_, missions_;
+};
+
+class Requests : public testing::Test {
+ protected:
+  std::future<Answer> ask(std::chrono::milliseconds timeout) {
+    return std::async(std::launch::async, [this, timeout] {
+      msg::Command hold;
+      hold.kind(msg::Command_Constants::HOLD);
+      return client_.command(hold, timeout);
+    });
+  }
+  bool is_silence(std::future<Answer> answer) { return answer.get().kind == Answer::Kind::kSilence; }
+
+  DomainClaim claim_;
+  Client client_{settings_of("ground", claim_)};
+};
+
+TEST_F(Requests, GoOutOnceWhileNobodyAnswers) {
+  Control control(claim_);
+  EXPECT_TRUE(is_silence(ask(1500ms)));
+  EXPECT_EQ(control.heard_.size(), 1U);
+}
+
+TEST_F(Requests, ALongMissionGoesOutOnce) {
+  Control control(claim_);
+  control::Mission mission;
+  mission.items.resize(control::kMaxMissionItems);
+  EXPECT_EQ(client_.upload(mission, 1900ms).kind, Answer::Kind::kSilence);
+  EXPECT_EQ(control.heard_.size(), 1U);
+}
+
+TEST_F(Requests, GoOutAgainAfterALongSilence) {
+  Control control(claim_);
+  EXPECT_TRUE(is_silence(ask(3500ms)));
+  EXPECT_EQ(control.heard_.size(), 2U);
+  const auto ids = control.heard_.items();
+  EXPECT_EQ(ids.front(), ids.back());
+}
+
+// Well before the silence is long: a controller that was started again, a standby that took over.
+TEST_F(Requests, AreAnsweredByAControllerThatIsStartedMeanwhile) {
+  auto first = std::make_unique<Control>(claim_);
+  std::future<Answer> answer = ask(10s);
+  ASSERT_TRUE(first->heard_.wait_for_count(1));
+  const auto since = Clock::now();
+  first.reset();
+  Control second(claim_, true);
+  EXPECT_TRUE(answer.get().accepted());
+  EXPECT_LT(Clock::now() - since, 1500ms);
+}
+
+TEST_F(Requests, GoOutAgainWhenAnotherControllerTakesOver) {
+  Control active(claim_, true);
+  Control standby(claim_, true);
+  std::uint64_t sequence = 1000;
+  ASSERT_TRUE(eventually([&] {
+    active.say(++sequence);
+    return ask(10s).get().accepted() && active.heard_.size() > 0 && standby.heard_.size() > 0 &&
+           client_.view().control.seen();
+  })) << "they all know each other";
+  active.fall_silent();
+  standby.fall_silent();
+  std::future<Answer> answer = ask(1900ms);
+  ASSERT_TRUE(active.heard_.wait_for_count(1));
+  ASSERT_TRUE(standby.heard_.wait_for_count(1));
+  active.say(++sequence);
+  standby.say(1);
+  EXPECT_TRUE(standby.heard_.wait_for_count(2));
+  EXPECT_TRUE(is_silence(std::move(answer)));
+  EXPECT_EQ(standby.heard_.size(), 2U);
+}
+
+// A reader may be known to the one before the writer is known to the other: what is sent then must not wait
+// for the long silence.
+TEST_F(Requests, ReachAControllerThatWasJustFound) {
+  for (int round = 0; round < 10; ++round) {
+    Control control(claim_, true);
+    const auto since = Clock::now();
+    ASSERT_TRUE(ask(10s).get().accepted()) << round;
+    EXPECT_LT(Clock::now() - since, 1500ms) << round;
+  }
+}
+
+}  // namespace
+}  // namespace swiftlet::ground

@@ -1,0 +1,131 @@
+// The control service on a network of its own: what the kernel says of its threads, and what it says itself.
+#include "swiftlet/services/control/control_service.hpp"
+
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <sched.h>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/io/settings/control_settings_file.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/services/dds/domain_claim.hpp"
+#include "tests/support/eventually.hpp"
+
+namespace swiftlet::services {
+namespace {
+
+namespace msg = comms::msg;
+namespace topics = comms::topics;
+using swiftlet::tests::eventually;
+
+std::vector<pid_t> realtime_threads() {
+  std::vector<pid_t> threads;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+    const pid_t thread = std::stoi(task.path().filename());
+    if (::sched_getscheduler(thread) == SCHED_FIFO) threads.push_back(thread);
+  }
+  return threads;
+}
+
+bool may_be_realtime() {
+  bool granted = false;
+  std::thread([&] {
+    runtime::RealtimeSettings settings;
+    settings.priority = 10;
+    granted = runtime::make_this_thread_realtime(settings).empty();
+  }).join();
+  return granted;
+}
+
+comms::NodeSettings settings_of(const char* name, const comms::DomainClaim& claim) {
+  comms::NodeSettings settings;
+  settings.name = name;
+  settings.domain = claim.domain();
+  settings.localhost_only = true;
+  return settings;
+}
+
+// A service whose vehicle, at rest, and motion capture are the test.
+class RealtimeService : public testing::Test {
+ protected:
+  RealtimeService() {
+    runtime::RealtimeSettings realtime;
+    realtime.priority = 10;
+    service_ = std::make_unique<ControlService>(
+        runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml"),
+        runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml"), 0,
+        control_node_, realtime, runtime::Clock::kRealtime);
+    telemetry_ = std::thread([this] { service_->run(ends_); });
+  }
+  ~RealtimeService() override {
+    ends_ = true;
+    service_->wake();
+    telemetry_.join();
+  }
+
+  void send_samples() {
+    ++sequence_;
+    msg::Imu imu;
+    imu.stamp_ns(static_cast<std::int64_t>(sequence_) * 2'000'000);
+    imu.sequence_number(sequence_);
+    imu.specific_force_frd({0.0, 0.0, -9.81});
+    imu_.publish(imu);
+    msg::MocapPose pose;
+    pose.stamp_ns(imu.stamp_ns());
+    pose.sequence_number(sequence_);
+    pose.tracked(true);
+    pose.q_ned_from_frd({1.0, 0.0, 0.0, 0.0});
+    pose_.publish(pose);
+  }
+  // While samples come: so many threads have SCHED_FIFO, and a status that was made since says this.
+  bool becomes(std::size_t threads, bool said) {
+    return eventually([&] {
+      send_samples();
+      return realtime_threads().size() == threads && said_ == static_cast<int>(said);
+    });
+  }
+  void forget_what_was_said() { said_ = -1; }
+
+  comms::DomainClaim claim_;
+  comms::Node vehicle_node_{settings_of("plant", claim_)};
+  comms::Node control_node_{settings_of("control", claim_)};
+  std::atomic<int> said_{-1};
+  comms::Subscription status_ = vehicle_node_.subscribe<msg::ControlStatus>(
+      topics::kControlStatus,
+      [this](const msg::ControlStatus& status) { said_ = static_cast<int>(status.realtime_scheduling()); });
+  comms::Publisher<msg::Imu> imu_ = vehicle_node_.publish(topics::kImu);
+  comms::Publisher<msg::MocapPose> pose_ = vehicle_node_.publish(topics::kMocapPose);
+  std::uint64_t sequence_ = 0;
+  std::atomic<bool> ends_{false};
+  std::unique_ptr<ControlService> service_;
+  std::thread telemetry_;
+};
+
+TEST_F(RealtimeService, ThreadsThatARejoinBeginsAreRealtimeToo) {
+  if (!may_be_realtime()) GTEST_SKIP() << "SCHED_FIFO is not permitted here";
+  ASSERT_TRUE(becomes(2, true)) << "the threads of the IMU and of poses";
+  const std::vector<pid_t> before = realtime_threads();
+
+  control_node_.rejoin();
+  EXPECT_EQ(realtime_threads().size(), 0U) << "those threads have ended";
+  forget_what_was_said();
+
+  EXPECT_TRUE(becomes(2, true));
+  EXPECT_NE(realtime_threads(), before);
+}
+
+TEST_F(RealtimeService, SaysWhatIsTrueOfItsThreadsNow) {
+  if (!may_be_realtime()) GTEST_SKIP() << "SCHED_FIFO is not permitted here";
+  ASSERT_TRUE(becomes(2, true));
+  const sched_param none{};
+  ASSERT_EQ(::sched_setscheduler(realtime_threads().back(), SCHED_OTHER, &none), 0);
+  EXPECT_TRUE(becomes(1, false));
+}
+
+}  // namespace
+}  // namespace swiftlet::services

@@ -1,0 +1,115 @@
+// How many processes of a host find each other. Ports that are taken stand in for processes.
+#include "swiftlet/services/dds/discovery_ports.hpp"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <stdexcept>
+#include <string>
+#include <sys/socket.h>
+#include <unistd.h>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/node.hpp"
+#include "tests/support/eventually.hpp"
+
+namespace swiftlet::comms::tests {
+namespace {
+
+using swiftlet::tests::Inbox;
+
+// Takes the first ports of a domain.
+class TakenPorts {
+ public:
+  TakenPorts(int domain, std::uint32_t count) {
+    const DiscoveryPorts ports = discovery_ports(domain);
+    for (std::uint32_t i = 0; i < count; ++i) take(ports.first + i * ports.gap);
+  }
+  ~TakenPorts() {
+    for (const int socket : sockets_) ::close(socket);
+  }
+  TakenPorts(const TakenPorts&) = delete;
+  TakenPorts& operator=(const TakenPorts&) = delete;
+
+ private:
+  void take(std::uint32_t port) {
+    const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    if (::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+      throw std::runtime_error("port " + std::to_string(port) + " is taken already");
+    sockets_.push_back(socket);
+  }
+  std::vector<int> sockets_;
+};
+
+NodeSettings settings(const DomainClaim& claim, const char* name) {
+  NodeSettings settings;
+  settings.name = name;
+  settings.domain = claim.domain();
+  settings.localhost_only = true;
+  return settings;
+}
+
+TEST(DiscoveryPorts, OfADomainEndBeforeTheNextOnes) {
+  for (int domain = 0; domain < 232; ++domain) {
+    const DiscoveryPorts ports = discovery_ports(domain);
+    ASSERT_EQ(ports.count, 120U) << domain;
+    ASSERT_EQ(ports.first, 7410U + 250U * static_cast<std::uint32_t>(domain));
+    ASSERT_LT(ports.last() + 1, discovery_ports(domain + 1).first - 10) << domain;
+  }
+  const DiscoveryPorts last = discovery_ports(232);
+  EXPECT_EQ(last.count, 63U);
+  EXPECT_EQ(last.last() + 1, 65535U);
+}
+
+// The one takes the first port that is free, the other the last of the domain.
+TEST(DiscoveryPorts, TheFirstAndTheLastProcessFindEachOther) {
+  const DomainClaim claim;
+  const std::uint32_t count = discovery_ports(claim.domain()).count;
+  const TakenPorts but_the_last(claim.domain(), count - 2);
+  Node first(settings(claim, "first"));
+  Inbox<std::string> found_by_first;
+  first.on_peer([&](const PeerEvent& peer) { found_by_first.put(peer.name); });
+  Node last(settings(claim, "last"));
+  Inbox<std::string> found_by_last;
+  last.on_peer([&](const PeerEvent& peer) { found_by_last.put(peer.name); });
+
+  ASSERT_TRUE(found_by_first.wait_for_count(1));
+  ASSERT_TRUE(found_by_last.wait_for_count(1));
+  EXPECT_EQ(found_by_first.items()[0], "last");
+  EXPECT_EQ(found_by_last.items()[0], "first");
+  last.on_peer({});
+  first.on_peer({});
+}
+
+TEST(DiscoveryPorts, AProcessThatWouldNotBeFoundIsRefusedInWords) {
+  const DomainClaim claim;
+  const DiscoveryPorts ports = discovery_ports(claim.domain());
+  const TakenPorts all(claim.domain(), ports.count);
+  try {
+    const Node node(settings(claim, "one too many"));
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(error.what(), "DDS domain " + std::to_string(claim.domain()) +
+                                " is full: all of its 120 ports for discovery on this host, UDP " +
+                                std::to_string(ports.first) + " to " + std::to_string(ports.last()) +
+                                ", are taken; choose another with --domain");
+  }
+}
+
+// Its ports end with those of UDP, before 120 processes have one.
+TEST(DiscoveryPorts, TheLastDomainCanBeJoined) {
+  NodeSettings settings;
+  settings.name = "here";
+  settings.domain = 232;
+  settings.localhost_only = true;
+  EXPECT_NO_THROW(Node node(settings));
+}
+
+}  // namespace
+}  // namespace swiftlet::comms::tests

@@ -1,0 +1,202 @@
+// What is said of endpoints of one topic that do not match.
+#include "swiftlet/services/dds/qos_conflicts.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include <fastdds/dds/publisher/qos/WriterQos.hpp>
+#include <fastdds/dds/subscriber/qos/ReaderQos.hpp>
+#include <gtest/gtest.h>
+#include <spdlog/sinks/base_sink.h>
+#include <spdlog/spdlog.h>
+
+#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/node.hpp"
+#include "tests/support/eventually.hpp"
+
+namespace swiftlet::comms::tests {
+namespace {
+
+namespace dds = eprosima::fastdds::dds;
+using swiftlet::tests::eventually;
+using swiftlet::tests::Inbox;
+using namespace std::chrono_literals;
+
+EndpointQos offer() { return endpoint_qos(dds::WriterQos()); }
+EndpointQos demand() { return endpoint_qos(dds::ReaderQos()); }
+
+TEST(QosConflicts, DefaultsMatch) { EXPECT_EQ(conflicts(offer(), demand()), ""); }
+
+TEST(QosConflicts, EachPolicyIsNamedWithBothValues) {
+  EndpointQos offered = offer();
+  offered.reliability = dds::BEST_EFFORT_RELIABILITY_QOS;
+  EndpointQos requested = demand();
+  requested.reliability = dds::RELIABLE_RELIABILITY_QOS;
+  EXPECT_EQ(conflicts(offered, requested), "reliability (offered best effort, asked for reliable)");
+
+  offered.durability = dds::VOLATILE_DURABILITY_QOS;
+  requested.durability = dds::TRANSIENT_LOCAL_DURABILITY_QOS;
+  requested.ownership = dds::EXCLUSIVE_OWNERSHIP_QOS;
+  requested.deadline = {0, 50'000'000U};
+  requested.liveliness = dds::MANUAL_BY_TOPIC_LIVELINESS_QOS;
+  requested.lease = {2, 0U};
+  requested.without_positive_acks = true;
+  EXPECT_EQ(conflicts(offered, requested),
+            "reliability (offered best effort, asked for reliable), "
+            "durability (offered volatile, asked for transient local), "
+            "ownership (offered shared, asked for exclusive), "
+            "deadline (offered none, asked for 50 ms), "
+            "liveliness (offered automatic, asked for manual by topic), "
+            "liveliness lease (offered none, asked for 2000 ms), "
+            "disabled positive acknowledgements (offered no, asked for yes)");
+}
+
+TEST(QosConflicts, MoreThanWasAskedForMatches) {
+  EndpointQos offered = offer();
+  offered.reliability = dds::RELIABLE_RELIABILITY_QOS;
+  offered.durability = dds::TRANSIENT_LOCAL_DURABILITY_QOS;
+  offered.deadline = {0, 10'000'000U};
+  EndpointQos requested = demand();
+  requested.reliability = dds::BEST_EFFORT_RELIABILITY_QOS;
+  requested.durability = dds::VOLATILE_DURABILITY_QOS;
+  requested.deadline = {0, 50'000'000U};
+  EXPECT_EQ(conflicts(offered, requested), "");
+}
+
+TEST(LineLimit, WritesOneASecondAndLosesNoneUncounted) {
+  const LineLimit::Time begin{};
+  LineLimit limit;
+  EXPECT_EQ(limit.offer("a", begin), "a");
+  EXPECT_EQ(limit.due(begin + 2s), std::nullopt);
+
+  EXPECT_EQ(limit.offer("b", begin + 10s), "b");
+  EXPECT_EQ(limit.offer("c", begin + 10s), std::nullopt);
+  EXPECT_EQ(limit.due(begin + 10900ms), std::nullopt);
+  EXPECT_EQ(limit.due(begin + 11s), "c");
+
+  EXPECT_EQ(limit.offer("d", begin + 11100ms), std::nullopt);
+  EXPECT_EQ(limit.offer("e", begin + 11200ms), std::nullopt);
+  EXPECT_EQ(limit.offer("f", begin + 11300ms), std::nullopt);
+  EXPECT_EQ(limit.due(begin + 12s), "f (and 2 more of the last second)");
+  EXPECT_EQ(limit.due(begin + 20s), std::nullopt);
+}
+
+class LineSink final : public spdlog::sinks::base_sink<std::mutex> {
+ public:
+  explicit LineSink(Inbox<std::string>& lines) : lines_(lines) {}
+
+ private:
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    lines_.put(std::string(message.payload.data(), message.payload.size()));
+  }
+  void flush_() override {}
+  Inbox<std::string>& lines_;
+};
+
+// Collects what is logged while it lives; no other thread logs when that begins or ends.
+class CollectedLog {
+ public:
+  explicit CollectedLog(Inbox<std::string>& lines) : before_(spdlog::default_logger()) {
+    spdlog::set_default_logger(std::make_shared<spdlog::logger>("test", std::make_shared<LineSink>(lines)));
+  }
+  ~CollectedLog() { spdlog::set_default_logger(before_); }
+  CollectedLog(const CollectedLog&) = delete;
+  CollectedLog& operator=(const CollectedLog&) = delete;
+
+ private:
+  std::shared_ptr<spdlog::logger> before_;
+};
+
+// Two processes, "talker" and "listener", whose log lines are collected.
+class Conflict : public testing::Test {
+ protected:
+  NodeSettings settings(const char* name) const {
+    NodeSettings settings;
+    settings.name = name;
+    settings.domain = claim_.domain();
+    settings.localhost_only = true;
+    return settings;
+  }
+
+  // How many lines hold all of these words.
+  static long count(const std::vector<std::string>& lines, const std::vector<std::string>& words) {
+    return std::count_if(lines.begin(), lines.end(), [&](const std::string& line) {
+      return std::all_of(words.begin(), words.end(),
+                         [&](const std::string& word) { return line.find(word) != std::string::npos; });
+    });
+  }
+  bool is_said(const std::vector<std::string>& words) const {
+    return lines_.wait([&](const auto& lines) { return count(lines, words) > 0; });
+  }
+  std::string all_lines() const {
+    std::string text;
+    for (const std::string& line : lines_.items()) text += line + "\n";
+    return text;
+  }
+
+  DomainClaim claim_;
+  Inbox<std::string> lines_;
+  const CollectedLog log_{lines_};
+  Node talker_{settings("talker")};
+  Node listener_{settings("listener")};
+};
+
+constexpr Topic<msg::Imu> kReliableImu{"imu", Qos::kRequest};
+constexpr Topic<msg::ActuatorCommand> kUnownedCommand{"actuator_command", Qos::kStream};
+
+TEST_F(Conflict, BothSidesNameTopicPolicyAndPeer) {
+  const auto publisher = talker_.publish(topics::kImu);
+  const auto subscription = listener_.subscribe<msg::Imu>(kReliableImu, [](const msg::Imu&) {});
+
+  EXPECT_TRUE(is_said({"rt/kl1/imu: 'talker' (",
+                       ") is not heard, their QoS is incompatible: "
+                       "reliability (offered best effort, asked for reliable)"}))
+      << all_lines();
+  EXPECT_TRUE(is_said({"rt/kl1/imu: 'listener' (",
+                       ") does not hear this process, their QoS is incompatible: "
+                       "reliability (offered best effort, asked for reliable)"}))
+      << all_lines();
+  EXPECT_EQ(publisher.matched(), 0);
+  EXPECT_EQ(subscription.matched(), 0);
+}
+
+TEST_F(Conflict, IsToldAlsoByWhoComesLater) {
+  const auto publisher = talker_.publish(kUnownedCommand);
+  ASSERT_TRUE(eventually([&] { return !listener_.topics_seen().empty(); }));
+  const auto subscription =
+      listener_.subscribe<msg::ActuatorCommand>(topics::kActuatorCommand, [](const msg::ActuatorCommand&) {});
+
+  const std::string policies =
+      "ownership (offered shared, asked for exclusive), deadline (offered none, asked for 50 ms)";
+  EXPECT_TRUE(is_said({"rt/kl1/actuator_command: 'talker' (", "is not heard", policies})) << all_lines();
+  EXPECT_TRUE(is_said({"rt/kl1/actuator_command: 'listener' (", "does not hear", policies})) << all_lines();
+}
+
+TEST_F(Conflict, ManyMakeOneLineASecond) {
+  const auto publisher = talker_.publish(topics::kImu);
+  std::vector<Subscription> subscriptions;
+  subscriptions.reserve(5);
+  for (int i = 0; i < 5; ++i)
+    subscriptions.push_back(listener_.subscribe<msg::Imu>(kReliableImu, [](const msg::Imu&) {}));
+
+  EXPECT_TRUE(is_said({"does not hear this process", "(and 3 more of the last second)"})) << all_lines();
+  EXPECT_EQ(count(lines_.items(), {"does not hear this process"}), 2) << all_lines();
+}
+
+TEST_F(Conflict, OnesThatMatchAreNotMentioned) {
+  const auto good = talker_.publish(topics::kImu);
+  const auto bad = talker_.publish(topics::kMocapPose);
+  const auto heard = listener_.subscribe<msg::Imu>(topics::kImu, [](const msg::Imu&) {});
+  const auto unheard =
+      listener_.subscribe<msg::MocapPose>({"mocap_pose", Qos::kRequest}, [](const msg::MocapPose&) {});
+
+  ASSERT_TRUE(eventually([&] { return good.matched() == 1 && heard.matched() == 1; }));
+  ASSERT_TRUE(is_said({"rt/kl1/mocap_pose", "is not heard"})) << all_lines();
+  EXPECT_EQ(count(lines_.items(), {"rt/kl1/imu"}), 0) << all_lines();
+}
+
+}  // namespace
+}  // namespace swiftlet::comms::tests
