@@ -76,12 +76,12 @@ TEST(Convert, TheStateOfAFlightArrivesWhole) {
   const control::SupervisorState sent = controller_report().flight.supervisor;
   EXPECT_EQ(got.mode, sent.mode);
   EXPECT_EQ(got.now_ns, sent.now_ns);
-  EXPECT_EQ(got.mission.item_index, sent.mission.item_index);
-  EXPECT_EQ(got.path.end_ns, sent.path.end_ns);
+  EXPECT_EQ(got.guidance.mission.item_index, sent.guidance.mission.item_index);
+  EXPECT_EQ(got.guidance.path.end_ns, sent.guidance.path.end_ns);
   for (const double since_s : {0.0, 0.7, 1.9}) {
-    const std::int64_t stamp_ns = sent.path.start_ns + static_cast<std::int64_t>(since_s * 1e9);
-    EXPECT_EQ(got.path.at(stamp_ns).position_ned, sent.path.at(stamp_ns).position_ned);
-    EXPECT_EQ(got.path.at(stamp_ns).yaw_rad, sent.path.at(stamp_ns).yaw_rad);
+    const std::int64_t stamp_ns = sent.guidance.path.start_ns + static_cast<std::int64_t>(since_s * 1e9);
+    EXPECT_EQ(got.guidance.path.at(stamp_ns).position_ned, sent.guidance.path.at(stamp_ns).position_ned);
+    EXPECT_EQ(got.guidance.path.at(stamp_ns).yaw_rad, sent.guidance.path.at(stamp_ns).yaw_rad);
   }
   EXPECT_EQ(report.flight.position_integral, controller_report().flight.position_integral);
   EXPECT_EQ(report.flight.throttle, controller_report().flight.throttle);
