@@ -1,5 +1,5 @@
-# Configures a project that has this one as a subdirectory, into which the rules for warnings and the tests of this one do not come,
-# and builds what takes longest. Without a type of build, as a project is configured that does not care.
+# Configures a project that has this one as a subdirectory, into which the rules for warnings and the tests of this one do not come. Without
+# a type of build, as a project is configured that does not care.
 include(${CMAKE_CURRENT_LIST_DIR}/common.cmake)
 set(embedding ${WORK_DIR}/embedding)
 file(REMOVE_RECURSE ${embedding})
@@ -11,4 +11,3 @@ foreach(command IN LISTS commands)
     message(FATAL_ERROR "compiled with what is for the project alone: ${command}")
   endif()
 endforeach()
-run(${CMAKE_COMMAND} --build ${embedding} --target swiftlet_math)
