@@ -374,5 +374,6 @@ ErrorState FlightController::estimate_deviation() const { return loops_->estimat
 const Reference& FlightController::reference() const { return loops_->reference; }
 const AttitudeSetpoint& FlightController::attitude_setpoint() const { return loops_->setpoint; }
 const Status& FlightController::status() const { return loops_->status; }
+const RequestStatuses& FlightController::requests() const { return loops_->supervisor.requests(); }
 
 }  // namespace swiftlet::control

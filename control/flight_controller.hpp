@@ -11,6 +11,7 @@
 #include "swiftlet/control/reference.hpp"
 #include "swiftlet/control/request.hpp"
 #include "swiftlet/control/settings.hpp"
+#include "swiftlet/control/supervision/request_status.hpp"
 #include "swiftlet/plant/model/samples.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
@@ -63,6 +64,8 @@ class FlightController {
   const Reference& reference() const;
   const AttitudeSetpoint& attitude_setpoint() const;
   const Status& status() const;
+  // As of now: what has become of the requests that were accepted last.
+  const RequestStatuses& requests() const;
 
  private:
   struct Loops;

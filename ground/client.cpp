@@ -54,8 +54,9 @@ EstimateRow row_of(const msg::Estimate& estimate) {
 }
 
 Answer answer_of(const msg::CommandAck& ack) {
-  if (ack.accepted()) return {Answer::Kind::kAccepted, ""};
-  return {Answer::Kind::kRefused, ack.reason().c_str()};
+  const control::RequestKey key{ack.client(), ack.id()};
+  if (ack.accepted()) return {Answer::Kind::kAccepted, "", key, ack.stamp_ns()};
+  return {Answer::Kind::kRefused, ack.reason().c_str(), key};
 }
 
 MissionRow row_of(const msg::MissionStatus& status) {

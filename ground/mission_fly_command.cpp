@@ -40,8 +40,7 @@ Ending follow(const Vehicle& vehicle, const Manoeuvre& flight) {
     Ending ending = flight.wait(kStep);
     if (ending.kind != Ending::Kind::kTimedOut) return ending;
     show(vehicle.state(), progress);
-    if (interrupts.count() > 0)
-      return {Ending::Kind::kInterrupted, "no longer followed; the vehicle flies on"};
+    if (interrupts.count() > 0) return {Ending::Kind::kTimedOut, "no longer followed; the vehicle flies on"};
   }
 }
 

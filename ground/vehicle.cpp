@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "swiftlet/ground/client.hpp"
-#include "swiftlet/ground/manoeuvre_course.hpp"
 #include "swiftlet/services/comms/convert.hpp"
 #include "swiftlet/services/comms/wire.hpp"
 
@@ -18,63 +17,11 @@ using control::RequestKind;
 using std::chrono::milliseconds;
 
 constexpr double kClockGoesOn_s = 0.02;
-constexpr milliseconds kLeastTimeout{100};
-
-Judge judge_of(const control::Request& request) {
-  switch (request.kind) {
-    case RequestKind::kArm:
-      return until_mode(Mode::kArmed, Mode::kArmed);
-    case RequestKind::kDisarm:
-      return until_mode(Mode::kDisarmed, Mode::kDisarmed);
-    case RequestKind::kTakeoff:
-      return until_mode(Mode::kHolding, Mode::kTakingOff);
-    case RequestKind::kGoTo:
-      return until_at_rest(request.position_ned);
-    case RequestKind::kLand:
-      return until_landed();
-    case RequestKind::kStop:
-      return until_stopped();
-    default:
-      return until_at_rest(std::nullopt);
-  }
-}
 
 control::Request of_kind(RequestKind kind) {
   control::Request request;
   request.kind = kind;
   return request;
-}
-
-using Asking = std::function<Answer(milliseconds timeout)>;
-
-Manoeuvre begin(const std::shared_ptr<Client>& client, const Asking& ask, milliseconds timeout, Mode before,
-                const std::function<Judge()>& judge) {
-  Answer answer = ask(timeout);
-  const View view = client->view();
-  return Manoeuvre(std::make_shared<Manoeuvre::Course>(
-      Manoeuvre::Course{client,
-                        std::move(answer),
-                        {before, view.control.count, view.reference.count, view.mission.count},
-                        judge()}));
-}
-
-// Once it is known in which mode the vehicle is asked.
-Manoeuvre begin(const std::shared_ptr<Client>& client, const Asking& ask, milliseconds timeout,
-                const std::function<Judge()>& judge) {
-  const auto start = Clock::now();
-  Mode mode = Mode::kDisarmed;
-  const bool seen = client->wait(timeout, [&mode](const View& view) {
-    mode = static_cast<Mode>(view.control.message.mode());
-    return view.control.seen();
-  });
-  if (!seen) {
-    const auto nobody = [&client](milliseconds) {
-      return Answer{Answer::Kind::kNoControl, client->no_control()};
-    };
-    return begin(client, nobody, timeout, mode, judge);
-  }
-  const auto passed = std::chrono::duration_cast<milliseconds>(Clock::now() - start);
-  return begin(client, ask, std::max(timeout - passed, kLeastTimeout), mode, judge);
 }
 
 VehicleState state_of(const View& view) {
@@ -131,11 +78,7 @@ bool Vehicle::wait_until(const std::function<bool(const VehicleState&)>& holds, 
 }
 
 Manoeuvre Vehicle::request(const control::Request& request, milliseconds timeout) {
-  const auto ask = [&](milliseconds within) { return client_->command(comms::to_message(request), within); };
-  const auto judge = [&] { return judge_of(request); };
-  // To stop it, nothing else has to be known.
-  if (request.kind == RequestKind::kStop) return begin(client_, ask, timeout, Mode::kStopped, judge);
-  return begin(client_, ask, timeout, judge);
+  return {client_, client_->command(comms::to_message(request), timeout)};
 }
 
 Manoeuvre Vehicle::arm(milliseconds timeout) { return request(of_kind(RequestKind::kArm), timeout); }
@@ -169,29 +112,19 @@ Manoeuvre Vehicle::land(double speed, milliseconds timeout) {
 Manoeuvre Vehicle::stop(milliseconds timeout) { return request(of_kind(RequestKind::kStop), timeout); }
 
 Manoeuvre Vehicle::upload(const control::Mission& mission, milliseconds timeout) {
-  return begin(
-      client_, [&](milliseconds within) { return client_->upload(mission, within); }, timeout, at_once);
+  return {client_, client_->upload(mission, timeout)};
 }
 
 std::uint64_t Vehicle::uploaded_id() const { return client_->mission_id(); }
 
 Manoeuvre Vehicle::follow(const control::Mission& mission, milliseconds timeout) {
-  const auto ask = [&](milliseconds within) {
-    Answer uploaded = client_->upload(mission, within);
-    if (!uploaded.accepted()) return uploaded;
-    return client_->mission_command(msg::Command_Constants::MISSION_START, client_->mission_id(), within);
-  };
-  return begin(client_, ask, timeout, [this] { return until_mission_flown(client_->mission_id()); });
+  Answer uploaded = client_->upload(mission, timeout);
+  if (!uploaded.accepted()) return {client_, std::move(uploaded)};
+  return start_mission(client_->mission_id(), timeout);
 }
 
 Manoeuvre Vehicle::request_of_mission(std::uint8_t kind, std::uint64_t id, milliseconds timeout) {
-  const auto ask = [&](milliseconds within) { return client_->mission_command(kind, id, within); };
-  const auto judge = [&]() -> Judge {
-    if (kind == msg::Command_Constants::MISSION_PAUSE) return until_at_rest({});
-    if (kind == msg::Command_Constants::MISSION_CLEAR) return at_once();
-    return until_mission_flown(id != 0 ? id : client_->view().mission.message.mission_id());
-  };
-  return begin(client_, ask, timeout, judge);
+  return {client_, client_->mission_command(kind, id, timeout)};
 }
 
 Manoeuvre Vehicle::start_mission(std::uint64_t id, milliseconds timeout) {
@@ -215,9 +148,7 @@ Manoeuvre Vehicle::clear_mission(std::uint64_t id, milliseconds timeout) {
 }
 
 Manoeuvre Vehicle::follow(const control::Trajectory& trajectory, milliseconds timeout) {
-  return begin(
-      client_, [&](milliseconds within) { return client_->upload(trajectory, within); }, timeout,
-      until_trajectory_flown);
+  return {client_, client_->upload(trajectory, timeout)};
 }
 
 void Vehicle::stay() { client_->stay(); }

@@ -8,6 +8,7 @@
 
 #include "swiftlet/control/mode.hpp"
 #include "swiftlet/control/request.hpp"
+#include "swiftlet/control/supervision/request_status.hpp"
 #include "swiftlet/control/trajectory/reference_path.hpp"
 
 namespace swiftlet::control {
@@ -79,6 +80,7 @@ struct SupervisorState {
   std::int64_t low_battery_since_ns = 0;       // 0: the battery is well
   std::int64_t critical_battery_since_ns = 0;  // 0: it is not that low
   std::array<GroundLink, kMaxGroundLinks> ground_links{};
+  RequestStatuses requests{};
 };
 static_assert(std::is_trivially_copyable_v<SupervisorState>);
 

@@ -14,7 +14,8 @@ namespace swiftlet::services {
 
 class Telemetry {
  public:
-  Telemetry(InnerLoop& loop, RequestDesk& desk, comms::Node& node);
+  // controller: the random number of this one.
+  Telemetry(InnerLoop& loop, RequestDesk& desk, comms::Node& node, std::uint64_t controller);
 
   // Says what is new or due. By one thread, again and again.
   void tell();
@@ -37,6 +38,7 @@ class Telemetry {
   InnerLoop& loop_;
   RequestDesk& desk_;
   comms::Node& node_;
+  const std::uint64_t controller_;
   std::atomic<bool> realtime_{false};
   bool watches_imu_ = false;
   bool imu_silent_ = false;
