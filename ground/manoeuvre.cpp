@@ -27,37 +27,40 @@ const msg::RequestStatus* find_request(const msg::ControlStatus& status, const c
   return found == earlier.end() ? nullptr : &*found;
 }
 
-std::optional<Ending> ending_by(const msg::ControlStatus& status, const Answer& answer) {
-  const msg::RequestStatus* const request = find_request(status, answer.key);
-  if (request == nullptr) {
-    if (status.stamp_ns() <= answer.stamp_ns) return std::nullopt;
-    return Ending{Ending::Kind::kLost,
-                  "the controller knows nothing of it any more: it was started again, or too many newer "
-                  "requests came"};
-  }
-  switch (request->state()) {
+std::optional<Ending> ending_of(const msg::RequestStatus& request) {
+  switch (request.state()) {
     case msg::RequestStatus_Constants::SUCCEEDED:
       return Ending{Ending::Kind::kCompleted, ""};
     case msg::RequestStatus_Constants::CANCELED:
-      return Ending{Ending::Kind::kCanceled, request->result().c_str()};
+      return Ending{Ending::Kind::kCanceled, request.result().c_str()};
     case msg::RequestStatus_Constants::ABORTED:
-      return Ending{Ending::Kind::kAborted, request->result().c_str()};
+      return Ending{Ending::Kind::kAborted, request.result().c_str()};
     default:
       return std::nullopt;
   }
+}
+
+std::optional<Ending> ending_by(const msg::ControlStatus& status, const Answer& answer) {
+  if (const msg::RequestStatus* const request = find_request(status, answer.key)) return ending_of(*request);
+  if (status.stamp_ns() <= answer.stamp_ns) return std::nullopt;
+  return Ending{
+      Ending::Kind::kLost,
+      "the controller knows nothing of it any more: it was started again, or too many newer requests came"};
 }
 
 Manoeuvre::Manoeuvre(std::shared_ptr<const Client> client, Answer answer)
     : client_(std::move(client)), answer_(std::move(answer)) {}
 
 double Manoeuvre::progress() const {
-  const View view = client_->view();
-  const msg::RequestStatus* const request = find_request(view.control.message, answer_.key);
-  return request == nullptr ? 0.0 : request->progress();
+  const std::optional<msg::RequestStatus> told = client_->told_of(answer_.key);
+  return told ? told->progress() : 0.0;
 }
 
 Ending Manoeuvre::wait(std::chrono::milliseconds timeout) const {
   if (!accepted()) return {Ending::Kind::kNotAccepted, answer_.reason};
+  if (const auto told = client_->told_of(answer_.key)) {
+    if (const auto ending = ending_of(*told)) return *ending;
+  }
   const auto begin = Clock::now();
   const auto deadline = begin + timeout;
   while (true) {

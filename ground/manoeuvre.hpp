@@ -8,9 +8,12 @@
 #include <optional>
 #include <string>
 
-#include "swiftlet_msgs/msg/ControlStatus.h"
-
 #include "swiftlet/ground/answer.hpp"
+
+namespace swiftlet_msgs::msg {
+class ControlStatus;
+class RequestStatus;
+}  // namespace swiftlet_msgs::msg
 
 namespace swiftlet::ground {
 
@@ -35,6 +38,9 @@ struct Ending {
 // The request's place in a status; null if it is not there.
 const swiftlet_msgs::msg::RequestStatus* find_request(const swiftlet_msgs::msg::ControlStatus& status,
                                                       const control::RequestKey& key);
+
+// How it ended; nothing while it is under way.
+std::optional<Ending> ending_of(const swiftlet_msgs::msg::RequestStatus& request);
 
 // How an accepted request ended, by a status; nothing while it is under way, or where the status is older than
 // its answer.

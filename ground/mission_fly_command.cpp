@@ -25,7 +25,7 @@ struct Options : RequestOptions {
 };
 
 void show(const VehicleState& state, ProgressLine& progress) {
-  const Eigen::Vector3d& position = state.position_ned;
+  const Eigen::Vector3d& position = state.position_ned_m;
   char text[160];
   std::snprintf(text, sizeof text, "%d/%d  %s  (%5.2f, %5.2f, %5.2f) m, %.2f V", state.mission.item,
                 state.mission.items, control::to_string(state.mode), position.x(), position.y(), position.z(),
@@ -51,6 +51,7 @@ int fly_mission(const Options& options) {
   for (const std::string& assumption : mission.assumptions)
     std::fprintf(stderr, "%s: %s\n", mission.name.c_str(), assumption.c_str());
   Vehicle vehicle(options.network);
+  tell_of_connection(vehicle, "mission " + mission.name);
   if (options.link) vehicle.stay();
   const Manoeuvre flight = vehicle.follow(mission.mission, options.timeout());
   Ending end = {Ending::Kind::kNotAccepted, flight.answer().reason};

@@ -4,7 +4,9 @@
 #include <utility>
 
 #include "swiftlet/ground/client.hpp"
+#include "swiftlet/ground/connection_watch.hpp"
 #include "swiftlet/services/comms/convert.hpp"
+#include "swiftlet/services/comms/lookout.hpp"
 #include "swiftlet/services/comms/wire.hpp"
 
 namespace swiftlet::ground {
@@ -17,6 +19,12 @@ using control::RequestKind;
 using std::chrono::milliseconds;
 
 constexpr double kClockGoesOn_s = 0.02;
+constexpr milliseconds kConnectionLookPeriod{50};
+
+comms::NodeSettings of_vehicle(comms::NodeSettings network, const std::string& name) {
+  network.vehicle = name;
+  return network;
+}
 
 control::Request of_kind(RequestKind kind) {
   control::Request request;
@@ -38,12 +46,12 @@ VehicleState state_of(const View& view) {
   if (view.estimate.seen()) {
     const msg::Estimate& estimate = view.estimate.message;
     state.stamp_ns = estimate.stamp_ns();
-    state.position_ned = vector(estimate.position_ned());
-    state.velocity_ned = vector(estimate.velocity_ned());
+    state.position_ned_m = vector(estimate.position_ned());
+    state.velocity_ned_m_s = vector(estimate.velocity_ned());
     state.q_ned_from_frd = quaternion(estimate.q_ned_from_frd());
-    state.body_rates_frd = vector(estimate.body_rates_frd());
+    state.body_rates_frd_rad_s = vector(estimate.body_rates_frd());
   }
-  if (view.reference.seen()) state.reference_ned = vector(view.reference.message.position_ned());
+  if (view.reference.seen()) state.reference_position_ned_m = vector(view.reference.message.position_ned());
   if (view.mission.seen()) {
     const msg::MissionStatus& mission = view.mission.message;
     state.mission.id = mission.mission_id();
@@ -63,7 +71,24 @@ VehicleState state_of(const View& view) {
 
 Vehicle::Vehicle(const comms::NodeSettings& network) : client_(std::make_shared<Client>(network)) {}
 
+Vehicle::Vehicle(const Context& context, const std::string& name)
+    : client_(std::make_shared<Client>(context.participant(), of_vehicle(context.network(), name))) {}
+
 Vehicle::~Vehicle() = default;
+
+const std::string& Vehicle::name() const { return client_->vehicle(); }
+
+bool Vehicle::connected() const { return is_connected(client_->view(), Clock::now()); }
+
+void Vehicle::on_connection(std::function<void(const ConnectionEvent&)> callback) {
+  lookout_.reset();
+  if (!callback) return;
+  const auto look = [client = client_, watch = std::make_shared<ConnectionWatch>(),
+                     tell = std::move(callback)] {
+    if (const auto event = watch->look(client->view(), Clock::now())) tell(*event);
+  };
+  lookout_ = std::make_unique<comms::Lookout>(kConnectionLookPeriod, look);
+}
 
 Answer Vehicle::connect(milliseconds timeout) const {
   if (client_->wait(timeout, [](const View& view) { return view.control.seen(); }))
@@ -85,27 +110,27 @@ Manoeuvre Vehicle::arm(milliseconds timeout) { return request(of_kind(RequestKin
 
 Manoeuvre Vehicle::disarm(milliseconds timeout) { return request(of_kind(RequestKind::kDisarm), timeout); }
 
-Manoeuvre Vehicle::take_off(double height_m, double speed, milliseconds timeout) {
+Manoeuvre Vehicle::take_off(double height_m, double speed_m_s, milliseconds timeout) {
   control::Request takeoff = of_kind(RequestKind::kTakeoff);
   takeoff.position_ned.z() = -height_m;
-  takeoff.speed = speed;
+  takeoff.speed = speed_m_s;
   return request(takeoff, timeout);
 }
 
 Manoeuvre Vehicle::go_to(const Place& place, milliseconds timeout) {
   control::Request go_to = of_kind(RequestKind::kGoTo);
-  go_to.position_ned = place.position_ned;
+  go_to.position_ned = place.position_ned_m;
   go_to.yaw_free = !place.yaw_rad;
   go_to.yaw_rad = place.yaw_rad.value_or(0.0);
-  go_to.speed = place.speed;
+  go_to.speed = place.speed_m_s;
   return request(go_to, timeout);
 }
 
 Manoeuvre Vehicle::hold(milliseconds timeout) { return request(of_kind(RequestKind::kHold), timeout); }
 
-Manoeuvre Vehicle::land(double speed, milliseconds timeout) {
+Manoeuvre Vehicle::land(double speed_m_s, milliseconds timeout) {
   control::Request land = of_kind(RequestKind::kLand);
-  land.speed = speed;
+  land.speed = speed_m_s;
   return request(land, timeout);
 }
 
