@@ -412,5 +412,6 @@ ErrorState FlightController::estimate_deviation() const { return impl_->estimato
 const Reference& FlightController::reference() const { return impl_->reference; }
 const AttitudeSetpoint& FlightController::attitude_setpoint() const { return impl_->setpoint; }
 const Status& FlightController::status() const { return impl_->status; }
+const RequestStatuses& FlightController::requests() const { return impl_->supervisor.requests(); }
 
 }  // namespace swiftlet::control

@@ -7,6 +7,7 @@
 
 #include "swiftlet/control/estimation/estimator.hpp"
 #include "swiftlet/control/flight_state.hpp"
+#include "swiftlet/control/supervision/request_status.hpp"
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/control/types/reference.hpp"
 #include "swiftlet/control/types/request.hpp"
@@ -63,6 +64,8 @@ class FlightController {
   const Reference& reference() const;
   const AttitudeSetpoint& attitude_setpoint() const;
   const Status& status() const;
+  // As of now: what has become of the requests that were accepted last.
+  const RequestStatuses& requests() const;
 
  private:
   struct Impl;

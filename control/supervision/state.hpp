@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "swiftlet/control/guidance/guidance_state.hpp"
+#include "swiftlet/control/supervision/request_status.hpp"
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/control/types/request.hpp"
 
@@ -33,6 +34,7 @@ struct SupervisorState {
   std::int64_t low_battery_since_ns = 0;       // 0: the battery is well
   std::int64_t critical_battery_since_ns = 0;  // 0: it is not that low
   std::array<GroundLink, kMaxGroundLinks> ground_links{};
+  RequestStatuses requests{};
 };
 static_assert(std::is_trivially_copyable_v<SupervisorState>);
 

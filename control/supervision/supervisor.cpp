@@ -6,6 +6,7 @@
 #include "swiftlet/control/guidance/setpoint_stream.hpp"
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/supervision/conditions.hpp"
+#include "swiftlet/control/supervision/request_course.hpp"
 
 namespace swiftlet::control {
 
@@ -34,12 +35,15 @@ Directive Supervisor::step(const Situation& situation) {
   // A lost link is answered once, but only where nothing more urgent comes first.
   if (link_answered && conditions.has(Event::kGroundLinkLost))
     forget_silent_ground_links(state_, settings_.failsafe);
-  return directive(situation);
+  const Directive wanted = directive(situation);
+  follow_requests(now, wanted.reference);
+  return wanted;
 }
 
 void Supervisor::take(const Transition& row, Scene& scene) {
   if (!row.to.stays) enter(row.to.mode, row.reason);
   row.action.run(scene);
+  end_requests(scene, row);
 }
 
 // What becomes of the mission when that mode is entered.
@@ -114,7 +118,9 @@ Outcome Supervisor::request(const Request& request, const Situation& situation) 
   if (!event_of(request.kind, event)) return refuse("unknown request %d", static_cast<int>(request.kind));
   Scene now = scene(situation);
   now.request = &request;
-  return answer(event, now);
+  const Outcome outcome = answer(event, now);
+  if (outcome.accepted) note_accepted(now);
+  return outcome;
 }
 
 Outcome Supervisor::setpoint(const Setpoint& setpoint, const Situation& situation) {

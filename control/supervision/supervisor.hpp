@@ -30,6 +30,7 @@ class Supervisor {
   const MissionProgress& mission() const { return state_.guidance.mission; }
   bool airborne() const { return state_.guidance.airborne; }
   int ground_links() const;  // ground tools that the flight depends on
+  const RequestStatuses& requests() const { return state_.requests; }
 
   const SupervisorState& state() const { return state_; }
   // Goes on from the state of another controller with the same settings. mission: the one that is there,

@@ -29,7 +29,16 @@ enum class RequestKind : std::uint8_t {
   kTrajectory = 65,
 };
 
+// A request, by who asked and the number that it was given there.
+struct RequestKey {
+  std::uint64_t client = 0;
+  std::uint64_t id = 0;  // 0: none
+
+  bool operator==(const RequestKey& other) const { return client == other.client && id == other.id; }
+};
+
 struct Request {
+  RequestKey key;
   RequestKind kind = RequestKind::kHold;
   Eigen::Vector3d position_ned = Eigen::Vector3d::Zero();  // m
   double yaw_rad = 0.0;

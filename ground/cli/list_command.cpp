@@ -9,7 +9,7 @@
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/client/client.hpp"
-#include "swiftlet/ground/client/vehicles_seen.hpp"
+#include "swiftlet/ground/client/context.hpp"
 #include "swiftlet/ground/command_line/network_options.hpp"
 
 namespace swiftlet::ground {
@@ -39,13 +39,13 @@ std::uint64_t poses(const View& view) {
 
 // Half of the time goes into finding names, the other into hearing each of them.
 std::vector<Found> look(const Options& options) {
-  const comms::Node lookout(options.network);
+  const Context context(options.network);
   std::this_thread::sleep_for(part(0.5 * options.look_s));
   std::map<std::string, std::unique_ptr<Client>> clients;
-  for (const std::string& name : vehicles_of(lookout.topics_seen())) {
+  for (const std::string& name : context.vehicles_seen()) {
     comms::NodeSettings network = options.network;
     network.vehicle = name;
-    clients[name] = std::make_unique<Client>(network);
+    clients[name] = std::make_unique<Client>(context.participant(), network);
     clients[name]->hear_controllers();
   }
   std::map<std::string, View> before;

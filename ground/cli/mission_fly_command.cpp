@@ -26,7 +26,7 @@ struct Options : RequestOptions {
 };
 
 void show(const VehicleState& state, ProgressLine& progress) {
-  const Eigen::Vector3d& position = state.position_ned;
+  const Eigen::Vector3d& position = state.position_ned_m;
   const std::string text = fmt::format(
       "{}/{}  {}  ({:5.2f}, {:5.2f}, {:5.2f}) m, {:.2f} V", state.mission.item, state.mission.items,
       control::to_string(state.mode), position.x(), position.y(), position.z(), state.battery_voltage_v);
@@ -40,8 +40,7 @@ Ending follow(const Vehicle& vehicle, const Manoeuvre& flight) {
     Ending ending = flight.wait(kStep);
     if (ending.kind != Ending::Kind::kTimedOut) return ending;
     show(vehicle.state(), progress);
-    if (interrupts.count() > 0)
-      return {Ending::Kind::kInterrupted, "no longer followed; the vehicle flies on"};
+    if (interrupts.count() > 0) return {Ending::Kind::kTimedOut, "no longer followed; the vehicle flies on"};
   }
 }
 
@@ -52,6 +51,7 @@ int fly_mission(const Options& options) {
   for (const std::string& assumption : mission.assumptions)
     std::fprintf(stderr, "%s: %s\n", mission.name.c_str(), assumption.c_str());
   Vehicle vehicle(options.network);
+  tell_of_connection(vehicle, "mission " + mission.name);
   if (options.link) vehicle.stay();
   const Manoeuvre flight = vehicle.follow(mission.mission, options.timeout());
   Ending end = {Ending::Kind::kNotAccepted, flight.answer().reason};

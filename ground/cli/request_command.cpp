@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <future>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -63,11 +64,10 @@ runtime::CommandLine add_ask_subcommand(runtime::CommandLine root, const std::st
 int run_request(const AskOptions& options, const std::string& what,
                 const std::function<Manoeuvre(Vehicle&)>& ask) {
   const std::vector<std::string> names = split_list(options.network.vehicle);
+  const Context context(options.network);
   std::mutex printing;
   const auto ask_one = [&](const std::string& name) {
-    comms::NodeSettings network = options.network;
-    network.vehicle = name;
-    Vehicle vehicle(network);
+    Vehicle vehicle(context, name);
     const Manoeuvre manoeuvre = ask(vehicle);
     Asked asked{name, manoeuvre.answer(), std::nullopt};
     if (asked.answer.accepted() && !options.json) {
@@ -101,6 +101,12 @@ int run_request(const AskOptions& options, const std::string& what,
     failed = failed || asked.failed();
   }
   return failed ? kFailed : kDone;
+}
+
+void tell_of_connection(Vehicle& vehicle, const std::string& command) {
+  vehicle.on_connection([command, first = true](const ConnectionEvent& event) mutable {
+    if (!std::exchange(first, false)) std::fprintf(stderr, "%s: %s\n", command.c_str(), event.text.c_str());
+  });
 }
 
 Command add_plain_request_command(runtime::CommandLine root, const std::string& name,

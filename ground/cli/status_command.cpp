@@ -6,6 +6,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/control/supervision/events.hpp"
+#include "swiftlet/control/supervision/request_status.hpp"
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/request_command.hpp"
 #include "swiftlet/ground/client/client.hpp"
@@ -46,6 +48,17 @@ nlohmann::ordered_json age_of(const Latest<T>& latest, Clock::time_point now) {
 
 const char* role_name(const msg::ControllerState& state) {
   return state.role() == msg::ControllerState_Constants::ACTIVE ? "active" : "standby";
+}
+
+const char* kind_name(const msg::RequestStatus& request) {
+  control::Event event{};
+  return control::event_of(static_cast<control::RequestKind>(request.kind()), event)
+             ? control::to_string(event)
+             : "unknown";
+}
+
+const char* state_name(const msg::RequestStatus& request) {
+  return control::to_string(static_cast<control::RequestState>(request.state()));
 }
 
 // Those that live, the active one first, then by strength.
@@ -96,6 +109,13 @@ nlohmann::ordered_json to_json(const View& view, const Rates& rates, const Reque
       {"item", mission.state() == msg::MissionStatus_Constants::NONE ? 0 : mission.item_index() + 1},
       {"items", mission.item_count()},
       {"reason", mission.reason().c_str()}};
+  json["request"] = nullptr;
+  if (control.request().state() != msg::RequestStatus_Constants::UNKNOWN) {
+    json["request"] = {{"kind", kind_name(control.request())},
+                       {"state", state_name(control.request())},
+                       {"progress", control.request().progress()},
+                       {"result", control.request().result().c_str()}};
+  }
   json["control"] = {{"rate_hz", control.rate_hz()},
                      {"cycles", control.cycles()},
                      {"deadline_misses", control.deadline_misses()},
@@ -173,6 +193,11 @@ void print(const View& view, const Rates& rates, const RequestOptions& options) 
   if (mission.state() != msg::MissionStatus_Constants::NONE) {
     std::printf("  mission   %s, item %u of %u\n", mission_state_name(mission.state()),
                 mission.item_index() + 1, mission.item_count());
+  }
+  if (const msg::RequestStatus& request = control.request();
+      request.state() != msg::RequestStatus_Constants::UNKNOWN) {
+    const char* const result = request.result().size() > 0 ? request.result().c_str() : state_name(request);
+    std::printf("  request   %s: %s, %.0f %%\n", kind_name(request), result, 100.0 * request.progress());
   }
   std::printf(
       "  control   %.1f Hz since the rotors were started, %llu of %llu steps late, longest step %.0f us%s\n",

@@ -110,11 +110,12 @@ std::optional<std::string> go_to_start(Vehicle& vehicle, const control::Setpoint
                                        const Options& options) {
   if (first.kind != control::SetpointKind::kPosition) return std::nullopt;
   const VehicleState state = vehicle.state();
-  if (state.mode != Mode::kHolding || (state.reference_ned - first.position_ned).norm() <= kThere_m)
+  if (state.mode != Mode::kHolding ||
+      (state.reference_position_ned_m - first.position_ned).norm() <= kThere_m)
     return std::nullopt;
   std::fprintf(stderr, "stream: going to where it begins\n");
   Vehicle::Place place;
-  place.position_ned = first.position_ned;
+  place.position_ned_m = first.position_ned;
   if (!first.yaw_free) place.yaw_rad = first.yaw_rad;
   const Manoeuvre going = vehicle.go_to(place, options.timeout());
   const Ending ending = going.wait(kManoeuvreTimeout);
@@ -220,7 +221,7 @@ void print(const Course& course, const VehicleState& end, bool json) {
         static_cast<unsigned long long>(course.sent), course.duration_s,
         static_cast<unsigned long long>(course.tally.taken),
         static_cast<unsigned long long>(course.tally.refused), control::to_string(end.mode),
-        end.position_ned.x(), end.position_ned.y(), end.position_ned.z());
+        end.position_ned_m.x(), end.position_ned_m.y(), end.position_ned_m.z());
   }
   if (!course.fault.empty()) std::fprintf(stderr, "swiftlet: stream: %s\n", course.fault.c_str());
 }
@@ -234,9 +235,10 @@ int stream(const Options& options) {
     std::fprintf(stderr, "swiftlet: stream: %s\n", there.reason.c_str());
     return kFailed;
   }
+  tell_of_connection(vehicle, "stream");
   vehicle.wait_until(
       [](const VehicleState& state) {
-        return state.reference_ned.allFinite() && state.position_ned.allFinite();
+        return state.reference_position_ned_m.allFinite() && state.position_ned_m.allFinite();
       },
       options.timeout());
   const std::optional<TimedSetpoint> first = source();

@@ -2,8 +2,10 @@
 #include <memory>
 #include <optional>
 #include <unistd.h>
+#include <utility>
 
 #include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/client/connection_watch.hpp"
 #include "swiftlet/ground/command_line/network_options.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/terminal/terminal_screen.hpp"
@@ -127,7 +129,9 @@ class Watch {
   int in_lines() {
     while (goes_on()) {
       client_.wait(kRateTime, [this](const View&) { return !goes_on(); });
-      std::printf("%s\n", watch_line(look(), facts_, Clock::now()).c_str());
+      const View view = look();
+      if (!facts_.message.empty()) std::printf("%s\n", std::exchange(facts_.message, {}).c_str());
+      std::printf("%s\n", watch_line(view, facts_, Clock::now()).c_str());
       std::fflush(stdout);
     }
     return client_.view().control.seen() ? kDone : kFailed;
@@ -139,6 +143,8 @@ class Watch {
   View look() {
     View view = client_.view();
     rates_.look(view, facts_);
+    const std::optional<ConnectionEvent> event = connection_.look(view, Clock::now());
+    if (event && event->kind != ConnectionEvent::Kind::kConnected) facts_.message = event->text;
     if (!view.control.seen()) facts_.where = client_.no_control();
     return view;
   }
@@ -147,6 +153,7 @@ class Watch {
   Client client_;
   WatchFacts facts_;
   Rates rates_;
+  ConnectionWatch connection_;
   std::optional<Clock::time_point> end_;
 };
 

@@ -1,7 +1,11 @@
 // The answer to a request.
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <utility>
+
+#include "swiftlet/control/types/request.hpp"
 
 namespace swiftlet::ground {
 
@@ -13,8 +17,15 @@ struct Answer {
     kSilence,    // a controller was there and did not answer
     kCancelled,
   };
+  Answer() = default;
+  Answer(Kind kind_in, std::string reason_in, const control::RequestKey& key_in = {},
+         std::int64_t stamp_ns_in = 0)
+      : kind(kind_in), reason(std::move(reason_in)), key(key_in), stamp_ns(stamp_ns_in) {}
+
   Kind kind = Kind::kSilence;
-  std::string reason;  // a sentence unless accepted
+  std::string reason;         // a sentence unless accepted
+  control::RequestKey key;    // of the request, if the controller answered it
+  std::int64_t stamp_ns = 0;  // of an accepted one: each control_status of a later stamp knows it
 
   bool accepted() const { return kind == Kind::kAccepted; }
 };

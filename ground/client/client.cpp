@@ -14,7 +14,8 @@ namespace swiftlet::ground {
 namespace {
 
 constexpr std::chrono::milliseconds kLongSilence{2000};  // after which a request is sent again
-constexpr std::chrono::milliseconds kLookPeriod{20};     // how often a wait looks at what makes no noise
+constexpr std::size_t kToldRequests = 64;
+constexpr std::chrono::milliseconds kLookPeriod{20};  // how often a wait looks at what makes no noise
 // In lockstep: of telemetry, 50 samples at 100 Hz; of what is sensed and commanded besides, 30 samples with
 // an IMU at 500 Hz and 50 at 1000 Hz.
 constexpr std::int64_t kTelemetryWindowNs = 100'000'000;
@@ -54,8 +55,9 @@ EstimateRow row_of(const msg::Estimate& estimate) {
 }
 
 Answer answer_of(const msg::CommandAck& ack) {
-  if (ack.accepted()) return {Answer::Kind::kAccepted, ""};
-  return {Answer::Kind::kRefused, ack.reason().c_str()};
+  const control::RequestKey key{ack.client(), ack.id()};
+  if (ack.accepted()) return {Answer::Kind::kAccepted, "", key, ack.stamp_ns()};
+  return {Answer::Kind::kRefused, ack.reason().c_str(), key};
 }
 
 MissionRow row_of(const msg::MissionStatus& status) {
@@ -76,11 +78,17 @@ void keep_sample(const Message& message, Track<Sample>& track) {
 }  // namespace
 
 Client::Client(const comms::NodeSettings& settings, FlightRecord* record)
+    : Client(nullptr, settings, record) {}
+
+Client::Client(const comms::Participant& participant, const comms::NodeSettings& settings)
+    : Client(&participant, settings, nullptr) {}
+
+Client::Client(const comms::Participant* shared, const comms::NodeSettings& settings, FlightRecord* record)
     : settings_(settings),
       record_(record),
       client_id_(random_id()),
       last_id_(random_id() >> 1),
-      node_(settings),
+      node_(shared != nullptr ? comms::Node(*shared, settings.vehicle) : comms::Node(settings)),
       commands_(node_.publish(comms::topics::kCommand)),
       missions_(node_.publish(comms::topics::kMission)),
       trajectories_(node_.publish(comms::topics::kTrajectory)),
@@ -97,6 +105,23 @@ void Client::keep(Latest<T> View::*slot, const T& message) {
   ++latest.count;
 }
 
+void Client::note_requests(const msg::ControlStatus& status) {
+  const std::lock_guard lock(mutex_);
+  const auto note = [this](const msg::RequestStatus& request) {
+    if (request.client() == client_id_) told_[request.id()] = request;
+  };
+  for (const msg::RequestStatus& request : status.earlier_requests()) note(request);
+  note(status.request());
+  while (told_.size() > kToldRequests) told_.erase(told_.begin());
+}
+
+std::optional<msg::RequestStatus> Client::told_of(const control::RequestKey& request) const {
+  const std::lock_guard lock(mutex_);
+  const auto told = told_.find(request.id);
+  if (request.client != client_id_ || told == told_.end()) return std::nullopt;
+  return told->second;
+}
+
 void Client::subscribe_all() {
   using namespace comms::topics;
   // States, answers and peers wake whoever waits; telemetry comes too often for that.
@@ -107,6 +132,7 @@ void Client::subscribe_all() {
           const std::lock_guard lock(mutex_);
           if (status.sequence_number() <= view_.control.message.sequence_number()) ++takeovers_;
         }
+        note_requests(status);
         keep(&View::control, status);
         changed_.notify_all();
       }));

@@ -70,6 +70,8 @@ class Client {
   // for them, what was sensed and commanded; may be null. Throws std::runtime_error if the network cannot be
   // joined.
   explicit Client(const comms::NodeSettings& settings, FlightRecord* record = nullptr);
+  // One of those that share the participant; settings.vehicle says which.
+  Client(const comms::Participant& participant, const comms::NodeSettings& settings);
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 
@@ -108,12 +110,18 @@ class Client {
   std::uint64_t mission_id() const { return mission_id_; }
   const std::string& vehicle() const { return settings_.vehicle; }
 
+  // What was told last of a request of this client, also of one that newer requests have pushed out of the status:
+  // of the last 64.
+  std::optional<msg::RequestStatus> told_of(const control::RequestKey& request) const;
+
   // "vehicle kl1 in domain 0; seen there: plant, mocap"
   std::string where() const;
   // That none was found there, what was, and what to do about it.
   std::string no_control() const;
 
  private:
+  void note_requests(const msg::ControlStatus& status);
+  Client(const comms::Participant* shared, const comms::NodeSettings& settings, FlightRecord* record);
   template <class T>
   void keep(Latest<T> View::*slot, const T& message);
   void subscribe_all();
@@ -130,11 +138,12 @@ class Client {
   std::atomic<std::uint64_t> last_id_;  // starts at random: mission ids of two tools must differ
   std::atomic<std::uint64_t> mission_id_{0};
 
-  mutable std::mutex mutex_;  // guards view_, answers_ and the pointers below; held for copies only
+  mutable std::mutex mutex_;  // guards view_, answers_, told_ and the pointers below; held for copies only
   mutable std::condition_variable changed_;
   View view_;
   std::map<std::uint64_t, std::optional<Answer>> answers_;  // to the requests under way, by id
   std::uint64_t takeovers_ = 0;                             // that control_status told of
+  std::map<std::uint64_t, msg::RequestStatus> told_;        // of this client's requests, by id
 
   comms::Node node_;
   comms::Publisher<msg::Command> commands_;

@@ -4,7 +4,8 @@
 #include <utility>
 
 #include "swiftlet/ground/client/client.hpp"
-#include "swiftlet/ground/client/manoeuvre_course.hpp"
+#include "swiftlet/ground/client/connection_watch.hpp"
+#include "swiftlet/services/dds/lookout.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/messages/wire.hpp"
 
@@ -18,63 +19,17 @@ using control::RequestKind;
 using std::chrono::milliseconds;
 
 constexpr double kClockGoesOn_s = 0.02;
-constexpr milliseconds kLeastTimeout{100};
+constexpr milliseconds kConnectionLookPeriod{50};
 
-Judge judge_of(const control::Request& request) {
-  switch (request.kind) {
-    case RequestKind::kArm:
-      return until_mode(Mode::kArmed, Mode::kArmed);
-    case RequestKind::kDisarm:
-      return until_mode(Mode::kDisarmed, Mode::kDisarmed);
-    case RequestKind::kTakeoff:
-      return until_mode(Mode::kHolding, Mode::kTakingOff);
-    case RequestKind::kGoTo:
-      return until_at_rest(request.position_ned);
-    case RequestKind::kLand:
-      return until_landed();
-    case RequestKind::kStop:
-      return until_stopped();
-    default:
-      return until_at_rest(std::nullopt);
-  }
+comms::NodeSettings of_vehicle(comms::NodeSettings network, const std::string& name) {
+  network.vehicle = name;
+  return network;
 }
 
 control::Request of_kind(RequestKind kind) {
   control::Request request;
   request.kind = kind;
   return request;
-}
-
-using Asking = std::function<Answer(milliseconds timeout)>;
-
-Manoeuvre begin(const std::shared_ptr<Client>& client, const Asking& ask, milliseconds timeout, Mode before,
-                const std::function<Judge()>& judge) {
-  Answer answer = ask(timeout);
-  const View view = client->view();
-  return Manoeuvre(std::make_shared<Manoeuvre::Course>(
-      Manoeuvre::Course{client,
-                        std::move(answer),
-                        {before, view.control.count, view.reference.count, view.mission.count},
-                        judge()}));
-}
-
-// Once it is known in which mode the vehicle is asked.
-Manoeuvre begin(const std::shared_ptr<Client>& client, const Asking& ask, milliseconds timeout,
-                const std::function<Judge()>& judge) {
-  const auto start = Clock::now();
-  Mode mode = Mode::kDisarmed;
-  const bool seen = client->wait(timeout, [&mode](const View& view) {
-    mode = static_cast<Mode>(view.control.message.mode());
-    return view.control.seen();
-  });
-  if (!seen) {
-    const auto nobody = [&client](milliseconds) {
-      return Answer{Answer::Kind::kNoControl, client->no_control()};
-    };
-    return begin(client, nobody, timeout, mode, judge);
-  }
-  const auto passed = std::chrono::duration_cast<milliseconds>(Clock::now() - start);
-  return begin(client, ask, std::max(timeout - passed, kLeastTimeout), mode, judge);
 }
 
 VehicleState state_of(const View& view) {
@@ -91,12 +46,12 @@ VehicleState state_of(const View& view) {
   if (view.estimate.seen()) {
     const msg::Estimate& estimate = view.estimate.message;
     state.stamp_ns = estimate.stamp_ns();
-    state.position_ned = vector(estimate.position_ned());
-    state.velocity_ned = vector(estimate.velocity_ned());
+    state.position_ned_m = vector(estimate.position_ned());
+    state.velocity_ned_m_s = vector(estimate.velocity_ned());
     state.q_ned_from_frd = quaternion(estimate.q_ned_from_frd());
-    state.body_rates_frd = vector(estimate.body_rates_frd());
+    state.body_rates_frd_rad_s = vector(estimate.body_rates_frd());
   }
-  if (view.reference.seen()) state.reference_ned = vector(view.reference.message.position_ned());
+  if (view.reference.seen()) state.reference_position_ned_m = vector(view.reference.message.position_ned());
   if (view.mission.seen()) {
     const msg::MissionStatus& mission = view.mission.message;
     state.mission.id = mission.mission_id();
@@ -116,7 +71,24 @@ VehicleState state_of(const View& view) {
 
 Vehicle::Vehicle(const comms::NodeSettings& network) : client_(std::make_shared<Client>(network)) {}
 
+Vehicle::Vehicle(const Context& context, const std::string& name)
+    : client_(std::make_shared<Client>(context.participant(), of_vehicle(context.network(), name))) {}
+
 Vehicle::~Vehicle() = default;
+
+const std::string& Vehicle::name() const { return client_->vehicle(); }
+
+bool Vehicle::connected() const { return is_connected(client_->view(), Clock::now()); }
+
+void Vehicle::on_connection(std::function<void(const ConnectionEvent&)> callback) {
+  lookout_.reset();
+  if (!callback) return;
+  const auto look = [client = client_, watch = std::make_shared<ConnectionWatch>(),
+                     tell = std::move(callback)] {
+    if (const auto event = watch->look(client->view(), Clock::now())) tell(*event);
+  };
+  lookout_ = std::make_unique<comms::Lookout>(kConnectionLookPeriod, look);
+}
 
 Answer Vehicle::connect(milliseconds timeout) const {
   if (client_->wait(timeout, [](const View& view) { return view.control.seen(); }))
@@ -131,67 +103,53 @@ bool Vehicle::wait_until(const std::function<bool(const VehicleState&)>& holds, 
 }
 
 Manoeuvre Vehicle::request(const control::Request& request, milliseconds timeout) {
-  const auto ask = [&](milliseconds within) { return client_->command(comms::to_message(request), within); };
-  const auto judge = [&] { return judge_of(request); };
-  // To stop it, nothing else has to be known.
-  if (request.kind == RequestKind::kStop) return begin(client_, ask, timeout, Mode::kStopped, judge);
-  return begin(client_, ask, timeout, judge);
+  return {client_, client_->command(comms::to_message(request), timeout)};
 }
 
 Manoeuvre Vehicle::arm(milliseconds timeout) { return request(of_kind(RequestKind::kArm), timeout); }
 
 Manoeuvre Vehicle::disarm(milliseconds timeout) { return request(of_kind(RequestKind::kDisarm), timeout); }
 
-Manoeuvre Vehicle::take_off(double height_m, double speed, milliseconds timeout) {
+Manoeuvre Vehicle::take_off(double height_m, double speed_m_s, milliseconds timeout) {
   control::Request takeoff = of_kind(RequestKind::kTakeoff);
   takeoff.position_ned.z() = -height_m;
-  takeoff.speed = speed;
+  takeoff.speed = speed_m_s;
   return request(takeoff, timeout);
 }
 
 Manoeuvre Vehicle::go_to(const Place& place, milliseconds timeout) {
   control::Request go_to = of_kind(RequestKind::kGoTo);
-  go_to.position_ned = place.position_ned;
+  go_to.position_ned = place.position_ned_m;
   go_to.yaw_free = !place.yaw_rad;
   go_to.yaw_rad = place.yaw_rad.value_or(0.0);
-  go_to.speed = place.speed;
+  go_to.speed = place.speed_m_s;
   return request(go_to, timeout);
 }
 
 Manoeuvre Vehicle::hold(milliseconds timeout) { return request(of_kind(RequestKind::kHold), timeout); }
 
-Manoeuvre Vehicle::land(double speed, milliseconds timeout) {
+Manoeuvre Vehicle::land(double speed_m_s, milliseconds timeout) {
   control::Request land = of_kind(RequestKind::kLand);
-  land.speed = speed;
+  land.speed = speed_m_s;
   return request(land, timeout);
 }
 
 Manoeuvre Vehicle::stop(milliseconds timeout) { return request(of_kind(RequestKind::kStop), timeout); }
 
 Manoeuvre Vehicle::upload(const control::Mission& mission, milliseconds timeout) {
-  return begin(
-      client_, [&](milliseconds within) { return client_->upload(mission, within); }, timeout, at_once);
+  return {client_, client_->upload(mission, timeout)};
 }
 
 std::uint64_t Vehicle::uploaded_id() const { return client_->mission_id(); }
 
 Manoeuvre Vehicle::follow(const control::Mission& mission, milliseconds timeout) {
-  const auto ask = [&](milliseconds within) {
-    Answer uploaded = client_->upload(mission, within);
-    if (!uploaded.accepted()) return uploaded;
-    return client_->mission_command(msg::Command_Constants::MISSION_START, client_->mission_id(), within);
-  };
-  return begin(client_, ask, timeout, [this] { return until_mission_flown(client_->mission_id()); });
+  Answer uploaded = client_->upload(mission, timeout);
+  if (!uploaded.accepted()) return {client_, std::move(uploaded)};
+  return start_mission(client_->mission_id(), timeout);
 }
 
 Manoeuvre Vehicle::request_of_mission(std::uint8_t kind, std::uint64_t id, milliseconds timeout) {
-  const auto ask = [&](milliseconds within) { return client_->mission_command(kind, id, within); };
-  const auto judge = [&]() -> Judge {
-    if (kind == msg::Command_Constants::MISSION_PAUSE) return until_at_rest({});
-    if (kind == msg::Command_Constants::MISSION_CLEAR) return at_once();
-    return until_mission_flown(id != 0 ? id : client_->view().mission.message.mission_id());
-  };
-  return begin(client_, ask, timeout, judge);
+  return {client_, client_->mission_command(kind, id, timeout)};
 }
 
 Manoeuvre Vehicle::start_mission(std::uint64_t id, milliseconds timeout) {
@@ -215,9 +173,7 @@ Manoeuvre Vehicle::clear_mission(std::uint64_t id, milliseconds timeout) {
 }
 
 Manoeuvre Vehicle::follow(const control::Trajectory& trajectory, milliseconds timeout) {
-  return begin(
-      client_, [&](milliseconds within) { return client_->upload(trajectory, within); }, timeout,
-      until_trajectory_flown);
+  return {client_, client_->upload(trajectory, timeout)};
 }
 
 void Vehicle::stay() { client_->stay(); }

@@ -5,11 +5,12 @@
 //   swiftlet::ground::Vehicle vehicle;  // kl1 in domain 0
 //   if (!vehicle.connect().accepted() || !vehicle.arm().wait().done()) return 1;
 //   vehicle.take_off(1.0).wait();
-//   vehicle.go_to({{1, 0, -1}}).wait();
+//   vehicle.go_to({{1, 0, -1}}).wait();  // m, NED
 //   vehicle.land().wait();
 //
 // Each request waits for its answer and gives a Manoeuvre, whose wait() returns when it is done. Positions
-// are metres north, east and down of the origin (NED): 1 m up is z = -1.
+// are metres north, east and down of the origin (NED): 1 m up is z = -1. Several vehicles share one Context
+// (ground/context.hpp). A control process that is started again, or one that takes over, is gone on with.
 #pragma once
 
 #include <chrono>
@@ -28,8 +29,15 @@
 #include "swiftlet/control/types/polynomial.hpp"
 #include "swiftlet/control/types/request.hpp"
 #include "swiftlet/ground/client/answer.hpp"
+#include "swiftlet/ground/client/connection.hpp"
+#include "swiftlet/ground/client/context.hpp"
 #include "swiftlet/ground/client/manoeuvre.hpp"
+#include "swiftlet/ground/client/vehicle_setpoints.hpp"
 #include "swiftlet/services/dds/node.hpp"
+
+namespace swiftlet::comms {
+class Lookout;
+}
 
 namespace swiftlet::ground {
 
@@ -61,11 +69,11 @@ struct VehicleState {
   bool has_pose = false;      // motion capture sees it
   double age_s = kUnknown;    // since the controller was heard last
   std::int64_t stamp_ns = 0;  // of the estimate, on the vehicle's clock
-  Eigen::Vector3d position_ned = Eigen::Vector3d::Constant(kUnknown);  // m, estimated
-  Eigen::Vector3d velocity_ned = Eigen::Vector3d::Constant(kUnknown);  // m/s
+  Eigen::Vector3d position_ned_m = Eigen::Vector3d::Constant(kUnknown);  // estimated
+  Eigen::Vector3d velocity_ned_m_s = Eigen::Vector3d::Constant(kUnknown);
   Eigen::Quaterniond q_ned_from_frd{kUnknown, kUnknown, kUnknown, kUnknown};
-  Eigen::Vector3d body_rates_frd = Eigen::Vector3d::Constant(kUnknown);  // rad/s
-  Eigen::Vector3d reference_ned = Eigen::Vector3d::Constant(kUnknown);   // m, where it is to be
+  Eigen::Vector3d body_rates_frd_rad_s = Eigen::Vector3d::Constant(kUnknown);
+  Eigen::Vector3d reference_position_ned_m = Eigen::Vector3d::Constant(kUnknown);  // where it is to be
   double battery_voltage_v = kUnknown;
   double battery_charge = kUnknown;  // 0 empty .. 1 full
   MissionProgress mission;
@@ -80,6 +88,9 @@ class Vehicle {
   // The vehicle's name and domain are those of `network`; its `name` is this program's own, as others see it.
   // Throws std::runtime_error with a sentence if the network cannot be joined.
   explicit Vehicle(const comms::NodeSettings& network = {"ground"});
+  // One of those that share the context, which may end before it. Throws std::runtime_error for a name that
+  // cannot be one.
+  Vehicle(const Context& context, const std::string& name);
   ~Vehicle();
   Vehicle(const Vehicle&) = delete;
   Vehicle& operator=(const Vehicle&) = delete;
@@ -89,6 +100,16 @@ class Vehicle {
   // time-out.
   Answer connect(std::chrono::milliseconds timeout = kAnswerTimeout) const;
 
+  // The name on the network.
+  const std::string& name() const;
+
+  // The control process was heard within the last second.
+  bool connected() const;
+  // Tells from now on, and at once of one that is heard, when the control process is heard, falls silent, or is
+  // another one; which request it knows of is for its Manoeuvre to say. The callback runs in a thread of its own
+  // and may call all but this. A later call takes the place of an earlier one.
+  void on_connection(std::function<void(const ConnectionEvent&)> callback);
+
   VehicleState state() const;
   // Until `holds` is true of the state; false if it is not within the time-out.
   bool wait_until(const std::function<bool(const VehicleState&)>& holds,
@@ -97,17 +118,18 @@ class Vehicle {
   // Requests. `timeout` is that of the answer.
   Manoeuvre arm(std::chrono::milliseconds timeout = kAnswerTimeout);     // done: the rotors turn
   Manoeuvre disarm(std::chrono::milliseconds timeout = kAnswerTimeout);  // on the ground
-  // Straight up to height_m above the origin, and hold there. speed: m/s, peak.
-  Manoeuvre take_off(double height_m, double speed = 0.5, std::chrono::milliseconds timeout = kAnswerTimeout);
+  // Straight up to height_m above the origin, and hold there. speed_m_s: peak.
+  Manoeuvre take_off(double height_m, double speed_m_s = 0.5,
+                     std::chrono::milliseconds timeout = kAnswerTimeout);
   struct Place {
-    Eigen::Vector3d position_ned;
-    std::optional<double> yaw_rad;  // from north to the east; kept if not given
-    double speed = 0.5;             // m/s, peak
+    Eigen::Vector3d position_ned_m;
+    std::optional<double> yaw_rad{};  // from north to the east; kept if not given
+    double speed_m_s = 0.5;           // peak
   };
   // Straight there, and hold.
   Manoeuvre go_to(const Place& place, std::chrono::milliseconds timeout = kAnswerTimeout);
   Manoeuvre hold(std::chrono::milliseconds timeout = kAnswerTimeout);  // done: it has come to rest
-  Manoeuvre land(double speed = 0.4, std::chrono::milliseconds timeout = kAnswerTimeout);
+  Manoeuvre land(double speed_m_s = 0.4, std::chrono::milliseconds timeout = kAnswerTimeout);
   Manoeuvre stop(std::chrono::milliseconds timeout = kAnswerTimeout);  // rotors off at once, wherever it is
   // The vehicle keeps it, to be started: as mission uploaded_id().
   Manoeuvre upload(const control::Mission& mission, std::chrono::milliseconds timeout = kAnswerTimeout);
@@ -136,6 +158,11 @@ class Vehicle {
   // One of a stream of setpoints, at 2 Hz or more, followed from hold on (idl/README.md says what each kind
   // does and what is refused). When the stream stops the vehicle holds. Stamp and sequence are filled in.
   // False if no controller is there.
+  bool send(const PositionSetpoint& setpoint) { return send(to_setpoint(setpoint)); }
+  bool send(const VelocitySetpoint& setpoint) { return send(to_setpoint(setpoint)); }
+  bool send(const AccelerationSetpoint& setpoint) { return send(to_setpoint(setpoint)); }
+  bool send(const AttitudeSetpoint& setpoint) { return send(to_setpoint(setpoint)); }
+  bool send(const BodyRatesSetpoint& setpoint) { return send(to_setpoint(setpoint)); }
   bool send(const control::Setpoint& setpoint);
 
  private:
@@ -143,6 +170,7 @@ class Vehicle {
   Manoeuvre request_of_mission(std::uint8_t kind, std::uint64_t id, std::chrono::milliseconds timeout);
 
   std::shared_ptr<Client> client_;
+  std::unique_ptr<comms::Lookout> lookout_;  // last: it looks at the client
 };
 
 }  // namespace swiftlet::ground

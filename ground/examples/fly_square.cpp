@@ -31,11 +31,11 @@ bool fly(Vehicle& vehicle) {
   const Eigen::Vector3d corners[] = {{1, 0, -1}, {1, 1, -1}, {0, 1, -1}, {0, 0, -1}};
   for (const Eigen::Vector3d& corner : corners) {
     Vehicle::Place place;
-    place.position_ned = corner;
-    place.speed = 0.8;
+    place.position_ned_m = corner;
+    place.speed_m_s = 0.8;
     if (!completed("go to", vehicle.go_to(place))) return false;
-    std::printf("at (%.2f, %.2f, %.2f) m\n", vehicle.state().position_ned.x(),
-                vehicle.state().position_ned.y(), vehicle.state().position_ned.z());
+    std::printf("at (%.2f, %.2f, %.2f) m\n", vehicle.state().position_ned_m.x(),
+                vehicle.state().position_ned_m.y(), vehicle.state().position_ned_m.z());
   }
   return completed("land", vehicle.land());
 }

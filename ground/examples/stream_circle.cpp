@@ -14,11 +14,10 @@
 
 namespace {
 
-using swiftlet::control::Setpoint;
-using swiftlet::control::SetpointKind;
+using swiftlet::ground::PositionSetpoint;
 using swiftlet::ground::Vehicle;
 
-constexpr double kRadius = 0.5;  // m
+constexpr double kRadius_m = 0.5;
 constexpr double kTurn_s = 8.0;  // for once around
 constexpr std::chrono::milliseconds kPeriod{20};
 constexpr double kSoftStart_s = 2.0;
@@ -41,28 +40,26 @@ Turn turn_at(double t) {
 
 // A position with its velocity and acceleration, which are fed forward. It begins where the vehicle holds,
 // `start`, going east.
-Setpoint circle(double t, const Eigen::Vector3d& start) {
+PositionSetpoint circle(double t, const Eigen::Vector3d& start) {
   const Turn turn = turn_at(t);
   const Eigen::Vector3d outward(std::cos(turn.angle), std::sin(turn.angle), 0.0);
   const Eigen::Vector3d along(-std::sin(turn.angle), std::cos(turn.angle), 0.0);
-  Setpoint setpoint;
-  setpoint.kind = SetpointKind::kPosition;
-  setpoint.position_ned = start + kRadius * (outward - Eigen::Vector3d::UnitX());
-  setpoint.velocity_ned = kRadius * turn.rate * along;
-  setpoint.acceleration_ned = kRadius * (turn.acceleration * along - turn.rate * turn.rate * outward);
-  setpoint.yaw_free = true;
+  PositionSetpoint setpoint;
+  setpoint.position_ned_m = start + kRadius_m * (outward - Eigen::Vector3d::UnitX());
+  setpoint.velocity_ned_m_s = kRadius_m * turn.rate * along;
+  setpoint.acceleration_ned_m_s2 = kRadius_m * (turn.acceleration * along - turn.rate * turn.rate * outward);
   return setpoint;
 }
 
 bool fly_circle(Vehicle& vehicle) {
   const auto before = vehicle.state();
-  const Eigen::Vector3d start = before.reference_ned;
+  const Eigen::Vector3d start = before.reference_position_ned_m;
   const double begin_s = vehicle.clock_s();  // the vehicle's time: a simulation may be slower than real time
   double farthest_m = 0.0;
   double t = 0.0;
   while (t < kTurn_s + 0.5 * kSoftStart_s) {
     vehicle.send(circle(t, start));
-    farthest_m = std::max(farthest_m, (vehicle.state().position_ned - start).norm());
+    farthest_m = std::max(farthest_m, (vehicle.state().position_ned_m - start).norm());
     std::this_thread::sleep_for(kPeriod);
     t = vehicle.clock_s() - begin_s;
   }

@@ -9,7 +9,7 @@
 
 #include "swiftlet/ground/command_line/command.hpp"
 #include "swiftlet/ground/report/flight_files.hpp"
-#include "swiftlet/io/flight_log_files.hpp"
+#include "swiftlet/io/logs/flight_log_files.hpp"
 
 namespace swiftlet::ground {
 namespace {

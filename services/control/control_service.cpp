@@ -37,7 +37,7 @@ ControlService::ControlService(const plant::Vehicle& vehicle, const control::Con
       realtime_(realtime),
       loop_(vehicle, settings),
       desk_(loop_, settings.limits, wake_),
-      telemetry_(loop_, desk_, settings.failsafe, node),
+      telemetry_(loop_, desk_, settings.failsafe, node, controller_),
       succession_(controller_, strength),
       reports_(node.publish(topics::kControllerState)),
       commands_(node.publish(topics::kActuatorCommand, succession_.next_term())),
@@ -152,7 +152,6 @@ void ControlService::on_controller_state(const msg::ControllerState& message) {
       Handover handover;
       handover.term = other.term;
       handover.flight = other.flight;
-      handover.accepted = other.accepted;
       desk_.follow(handover);
     }
   }

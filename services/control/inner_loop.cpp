@@ -61,7 +61,6 @@ void InnerLoop::follow(std::uint32_t term) {
   if (!handover.take(newest)) return;
   if (newest.term == term) {
     controller_.adopt(newest.flight, newest.mission, newest.trajectory);
-    accepted_ = newest.accepted;
     const control::SupervisorState& state = newest.flight.supervisor;
     const bool has_mission = state.guidance.mission.state == control::MissionState::kUploaded ||
                              control::is_under_way(state.guidance.mission.state);
@@ -98,17 +97,12 @@ void InnerLoop::judge_requests() {
       pending->claim(PendingRequest::State::kGivenUp);
     } else if (pending->claim(PendingRequest::State::kTaken)) {
       pending->outcome = controller_.request(pending->request);
-      if (pending->outcome.accepted) remember(*pending);
+      pending->stamp_ns = stamp_ns_;
+      accepted_any_ = accepted_any_ || pending->outcome.accepted;
     }
     judged.push(pending);  // fits: no more are under way
     judged_any_ = true;
   }
-}
-
-void InnerLoop::remember(const PendingRequest& accepted) {
-  std::rotate(accepted_.begin(), accepted_.begin() + 1, accepted_.end());
-  accepted_.back() = {accepted.client, accepted.id};
-  accepted_any_ = true;
 }
 
 void InnerLoop::report(comms::ControllerReport& report) const {
@@ -116,7 +110,6 @@ void InnerLoop::report(comms::ControllerReport& report) const {
   report.ready = (report.active && !looking()) || (knows_plan_ && controller_.status().has_pose);
   if (!report.active) return;
   report.flight = controller_.state();
-  report.accepted = accepted_;
 }
 
 bool InnerLoop::finish(std::int64_t now_ns) {
@@ -141,6 +134,7 @@ bool InnerLoop::finish(std::int64_t now_ns) {
   snapshot_.reference = controller_.reference();
   snapshot_.setpoint = controller_.attitude_setpoint();
   snapshot_.status = status;
+  snapshot_.requests = controller_.requests();
   snapshot_.trajectory_id = controller_.state().supervisor.guidance.trajectory_id;
   snapshot_.role = role_;
   snapshot_.saturated = saturated_;
@@ -148,6 +142,7 @@ bool InnerLoop::finish(std::int64_t now_ns) {
   snapshot_.setpoints = setpoints_;
   if (snapshots.push(snapshot_)) {
     told_ = status;
+    told_requests_ = snapshot_.requests;
     told_role_ = role_;
     saturated_ = false;
   }
@@ -159,7 +154,8 @@ bool InnerLoop::status_changed() const {
   return now.mode != told_.mode || now.reason != told_.reason || now.has_pose != told_.has_pose ||
          now.airborne != told_.airborne || now.ground_links != told_.ground_links ||
          now.mission.id != told_.mission.id || now.mission.state != told_.mission.state ||
-         now.mission.item_index != told_.mission.item_index;
+         now.mission.item_index != told_.mission.item_index ||
+         differ_in_state(controller_.requests(), told_requests_);
 }
 
 }  // namespace swiftlet::services

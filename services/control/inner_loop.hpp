@@ -33,6 +33,7 @@ struct Snapshot {
   control::Reference reference;
   control::AttitudeSetpoint setpoint;
   control::Status status;
+  control::RequestStatuses requests;
   std::uint64_t trajectory_id = 0;  // of the one being flown
   Role role = Role::kStandby;
   bool saturated = false;  // in any step since the last snapshot
@@ -40,14 +41,11 @@ struct Snapshot {
   SetpointTally setpoints;
 };
 
-using AcceptedRequests = decltype(comms::ControllerReport::accepted);
-
 // The active controller's flight, for a standby to follow.
 struct Handover {
   std::uint64_t number = 0;  // counts up from 1
   std::uint32_t term = 0;
   control::FlightState flight;
-  AcceptedRequests accepted{};
   // What is there or flown; null if it is not known here.
   const control::Mission* mission = nullptr;
   const control::Trajectory* trajectory = nullptr;
@@ -105,7 +103,6 @@ class InnerLoop {
   void take_setpoint(const control::Setpoint& setpoint);
   void follow(std::uint32_t term);
   void look(const plant::ImuSample& sample);
-  void remember(const PendingRequest& accepted);
   void hear_ground();
   bool status_changed() const;
 
@@ -116,13 +113,13 @@ class InnerLoop {
   StepTiming timing_;
   Snapshot snapshot_;
   control::Status told_;  // in the last snapshot
+  control::RequestStatuses told_requests_{};
   std::int64_t stamp_ns_ = 0;
   std::uint64_t imu_sequence_ = 0;
   std::atomic<std::int64_t> last_arrival_ns_{0};
   std::atomic<std::uint64_t> taken_handover_{0};
   Role role_ = Role::kStandby;
   Role told_role_ = Role::kStandby;
-  AcceptedRequests accepted_{};  // oldest first
   SetpointTally setpoints_;
   std::int64_t looks_since_ns_ = kLooksNot;
   int rotor_samples_ = 0;    // of the rotors' speeds, since it looks

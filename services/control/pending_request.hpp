@@ -23,7 +23,8 @@ struct PendingRequest {
   std::int64_t asked_ns = 0;  // monotonic
 
   std::atomic<State> state{State::kWaiting};
-  control::Outcome outcome;  // of a taken one, written by the inner loop
+  control::Outcome outcome;   // of a taken one, written by the inner loop
+  std::int64_t stamp_ns = 0;  // likewise: of the last sample before
 
   // True for one of those who call it.
   bool claim(State as) noexcept {

@@ -145,10 +145,10 @@ void RequestDesk::follow(Handover handover) {
     handover.trajectory = trajectories_.find(state.guidance.trajectory_id);
   missions_.lend(handover.mission, handover.number);
   trajectories_.lend(handover.trajectory, handover.number);
-  for (const comms::RequestKey& request : handover.accepted) {
-    const Key key{request.client, request.id};
-    if (request.id != 0 && answers_.count(key) == 0)
-      keep_answer(key, {key.first, key.second, "request", control::accept(), false});
+  for (const control::RequestStatus& request : state.requests) {
+    const Key key{request.key.client, request.key.id};
+    if (request.key.id != 0 && answers_.count(key) == 0)
+      keep_answer(key, {key.first, key.second, "request", control::accept(), false, state.now_ns});
   }
   loop_.handover.put(handover);
   missions_.tidy(loop_.taken_handover());
@@ -184,6 +184,7 @@ void RequestDesk::submit(std::unique_ptr<PendingRequest> pending) {
     return settle(key, pending->request.kind,
                   control::refuse("%d requests are under way, no more fit", kMaxPendingRequests));
   }
+  pending->request.key = {pending->client, pending->id};
   pending->asked_ns = runtime::monotonic_ns();
   loop_.requests.push(pending.get());  // fits: no more are under way
   pending_[key] = std::move(pending);
@@ -195,8 +196,9 @@ void RequestDesk::refuse(const Key& key, control::RequestKind kind, const contro
 }
 
 // With the lock held.
-void RequestDesk::settle(const Key& key, control::RequestKind kind, const control::Outcome& outcome) {
-  const RequestAnswer answer{key.first, key.second, name_of(kind), outcome, false};
+void RequestDesk::settle(const Key& key, control::RequestKind kind, const control::Outcome& outcome,
+                         std::int64_t stamp_ns) {
+  const RequestAnswer answer{key.first, key.second, name_of(kind), outcome, false, stamp_ns};
   keep_answer(key, answer);
   outbox_.push_back(answer);
   wake_.post();
@@ -222,7 +224,7 @@ std::vector<RequestAnswer> RequestDesk::collect() {
     if (done->state == PendingRequest::State::kGivenUp) continue;  // answered before
     if (done->outcome.accepted && done->mission) missions_.put_flown(std::move(done->mission));
     if (done->outcome.accepted && done->trajectory) trajectories_.put_flown(std::move(done->trajectory));
-    settle(key, done->request.kind, done->outcome);
+    settle(key, done->request.kind, done->outcome, done->stamp_ns);
   }
   missions_.tidy(loop_.taken_handover());
   trajectories_.tidy(loop_.taken_handover());

@@ -25,7 +25,8 @@ struct RequestAnswer {
   std::uint64_t id = 0;
   const char* kind = "";  // "mission", "arm"
   control::Outcome outcome;
-  bool repeated = false;  // it was given before
+  bool repeated = false;      // it was given before
+  std::int64_t stamp_ns = 0;  // of an accepted one: as CommandAck's
 };
 
 // Requests are known by client and id: one that was answered is answered alike again and not applied twice;
@@ -66,7 +67,8 @@ class RequestDesk {
   bool is_of_another(const comms::msg::Mission& message);
   void submit(std::unique_ptr<PendingRequest> pending);
   void refuse(const Key& key, control::RequestKind kind, const control::Outcome& outcome);
-  void settle(const Key& key, control::RequestKind kind, const control::Outcome& outcome);
+  void settle(const Key& key, control::RequestKind kind, const control::Outcome& outcome,
+              std::int64_t stamp_ns = 0);
 
   void keep_answer(const Key& key, const RequestAnswer& answer);
 

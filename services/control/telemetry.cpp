@@ -27,11 +27,12 @@ bool is_over(control::MissionState state) {
 }  // namespace
 
 Telemetry::Telemetry(InnerLoop& loop, RequestDesk& desk, const control::FailsafeSettings& thresholds,
-                     comms::Node& node)
+                     comms::Node& node, std::uint64_t controller)
     : loop_(loop),
       desk_(desk),
       thresholds_(thresholds),
       node_(node),
+      controller_(controller),
       estimates_(node.publish(topics::kEstimate)),
       references_(node.publish(topics::kReference)),
       acks_(node.publish(topics::kCommandAck)) {
@@ -93,6 +94,7 @@ void Telemetry::take(const Snapshot& snapshot) {
   const control::Status& before = last_.status;
   const control::Status& now = snapshot.status;
   const bool mode_changed = now.mode != before.mode || now.reason != before.reason;
+  const bool requests_changed = control::differ_in_state(snapshot.requests, last_.requests);
   const bool mission_changed = differ(now.mission, before.mission);
   if (mission_changed) mission_end_ = is_over(now.mission.state) ? control::to_string(now.reason) : "";
   if (mode_changed) spdlog::info("{}: {}", control::to_string(now.mode), control::to_string(now.reason));
@@ -109,7 +111,7 @@ void Telemetry::take(const Snapshot& snapshot) {
   saturated_ = saturated_ || snapshot.saturated;
   last_ = snapshot;
   if (role_changed) return change_role();
-  if (mode_changed) publish_status();
+  if (mode_changed || requests_changed) publish_status();
   if (mission_changed) publish_mission();
 }
 
@@ -159,6 +161,11 @@ void Telemetry::publish_status() {
   message.setpoints_refused(last_.setpoints.refused);
   message.setpoint_refusal() = last_.setpoints.refusal.reason;
   message.realtime_scheduling(realtime_);
+  message.controller(controller_);
+  const control::RequestStatuses& requests = last_.requests;
+  message.request() = comms::to_message(requests.back());
+  for (std::size_t i = 0; i < message.earlier_requests().size(); ++i)
+    message.earlier_requests()[i] = comms::to_message(requests[requests.size() - 2 - i]);
   statuses_.publish(message);
   saturated_ = false;
   status_due_ns_ = runtime::monotonic_ns() + kStatusPeriodNs;
@@ -185,6 +192,7 @@ void Telemetry::answer_requests(const std::vector<RequestAnswer>& answers) {
     ack.id(answer.id);
     ack.accepted(answer.outcome.accepted);
     ack.reason() = answer.outcome.reason;
+    ack.stamp_ns(answer.stamp_ns);
     acks_.publish(ack);
     if (answer.repeated) {
       spdlog::debug("{} {} was answered before: answered again", answer.kind, answer.id);

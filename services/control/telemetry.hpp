@@ -13,9 +13,9 @@ namespace swiftlet::services {
 
 class Telemetry {
  public:
-  // thresholds: which others are told.
+  // thresholds: which others are told; controller: the random number of this one.
   Telemetry(InnerLoop& loop, RequestDesk& desk, const control::FailsafeSettings& thresholds,
-            comms::Node& node);
+            comms::Node& node, std::uint64_t controller);
 
   // Says what is new or due. By one thread, again and again.
   void tell();
@@ -39,6 +39,7 @@ class Telemetry {
   RequestDesk& desk_;
   const control::FailsafeSettings thresholds_;
   comms::Node& node_;
+  const std::uint64_t controller_;
   bool realtime_ = false;
   bool watches_imu_ = false;
   bool imu_silent_ = false;

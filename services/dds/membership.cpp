@@ -72,6 +72,12 @@ Membership::Membership(const NodeSettings& settings, dds::DomainParticipantListe
 
 Membership::~Membership() { end(participant); }
 
+void Membership::tell_vehicles(const NodeSettings& settings) {
+  dds::DomainParticipantQos qos = participant->get_qos();
+  qos.user_data() = participant_qos(settings).user_data();
+  participant->set_qos(qos);
+}
+
 dds::Topic* Membership::topic(const std::string& wire_name, const dds::TypeSupport& type) {
   dds::Topic*& found = topics_[wire_name];
   if (found == nullptr && participant->register_type(type) == ReturnCode_t::RETCODE_OK)

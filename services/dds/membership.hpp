@@ -32,6 +32,9 @@ class Membership {
   eprosima::fastdds::dds::Topic* topic(const std::string& wire_name,
                                        const eprosima::fastdds::dds::TypeSupport& type);
 
+  // That it serves those that the settings name now.
+  void tell_vehicles(const NodeSettings& settings);
+
   eprosima::fastdds::dds::DomainParticipant* participant = nullptr;
   eprosima::fastdds::dds::Publisher* publisher = nullptr;
   eprosima::fastdds::dds::Subscriber* subscriber = nullptr;

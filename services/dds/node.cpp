@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <fastdds/dds/publisher/DataWriter.hpp>
@@ -79,12 +80,21 @@ void check(const NodeSettings& settings) {
                              ", must be between 0 and 232");
   }
   if (settings.name.empty()) throw std::runtime_error("the node has no name");
-  const bool plain = std::all_of(settings.vehicle.begin(), settings.vehicle.end(),
+}
+
+const std::string& checked(const std::string& vehicle) {
+  const bool plain = std::all_of(vehicle.begin(), vehicle.end(),
                                  [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
-  if (settings.vehicle.empty() || settings.vehicle.size() > 64 || !plain) {
-    throw std::runtime_error("vehicle name is '" + settings.vehicle +
+  if (vehicle.empty() || vehicle.size() > 64 || !plain) {
+    throw std::runtime_error("vehicle name is '" + vehicle +
                              "', must be 1 to 64 letters, digits and underscores");
   }
+  return vehicle;
+}
+
+// Of names as they stand in a participant's user data: "kl1,kl2".
+bool lists(const std::string& names, const std::string& vehicle) {
+  return ("," + names + ",").find("," + vehicle + ",") != std::string::npos;
 }
 
 constexpr std::chrono::milliseconds kReunionPatience{1000};
@@ -98,15 +108,26 @@ std::string named(const std::string& name, const rtps::GuidPrefix_t& participant
 
 }  // namespace
 
-struct Node::Impl final : public dds::DomainParticipantListener {
+struct Participant::Impl final : public dds::DomainParticipantListener {
   using Meetings = Reunions<rtps::GuidPrefix_t>;
   struct RemoteEndpoint {
     std::string topic;
     EndpointQos qos;
   };
   using RemoteEndpoints = std::map<rtps::GUID_t, RemoteEndpoint>;
+  struct Peer {
+    std::string name;
+    std::string vehicles;
+  };
+  struct Ear {
+    std::string vehicle;
+    std::function<void(const PeerEvent&)> callback;
+  };
 
-  explicit Impl(const NodeSettings& node_settings) : settings(node_settings) {
+  // vehicles: one, or none yet
+  Impl(const NodeSettings& node_settings, const std::string& vehicle)
+      : settings(node_settings), served(vehicle) {
+    settings.vehicle = vehicle;
     check(settings);
     if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
     membership = std::make_unique<Membership>(settings, this);
@@ -124,6 +145,22 @@ struct Node::Impl final : public dds::DomainParticipantListener {
 
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
+
+  // From now on it is one of this vehicle's processes, too.
+  void serve(const std::string& vehicle) {
+    const std::lock_guard<std::mutex> lock(membership_mutex);
+    if (lists(settings.vehicle, vehicle)) return;
+    settings.vehicle += (settings.vehicle.empty() ? "" : ",") + vehicle;
+    {
+      const std::lock_guard<std::mutex> peers_lock(peers_mutex);
+      for (const auto& [guid, peer] : peers) {
+        if (!is_own(peer) && lists(peer.vehicles, vehicle))
+          reunions.came(guid.guidPrefix, std::chrono::steady_clock::now());
+      }
+      served = settings.vehicle;
+    }
+    if (membership != nullptr) membership->tell_vehicles(settings);
+  }
 
   void add(Endpoint* endpoint) {
     const std::lock_guard<std::mutex> lock(membership_mutex);
@@ -166,7 +203,6 @@ struct Node::Impl final : public dds::DomainParticipantListener {
     membership.reset();
     const std::lock_guard<std::mutex> lock(peers_mutex);
     peers.clear();
-    names.clear();
     writers.clear();
     readers.clear();
     told_conflicts.clear();
@@ -174,8 +210,8 @@ struct Node::Impl final : public dds::DomainParticipantListener {
   }
 
   template <class T>
-  dds::Topic* topic_in(Membership& in, const char* name) const {
-    return in.topic("rt/" + settings.vehicle + "/" + name,
+  dds::Topic* topic_in(Membership& in, const std::string& vehicle, const char* name) const {
+    return in.topic("rt/" + vehicle + "/" + name,
                     dds::TypeSupport(new TolerantType<typename PubSubTypeOf<T>::type>()));
   }
   int deadline_ms(int of_topic) const { return settings.deadlines ? of_topic : 0; }
@@ -183,31 +219,49 @@ struct Node::Impl final : public dds::DomainParticipantListener {
   void on_participant_discovery(dds::DomainParticipant*, rtps::ParticipantDiscoveryInfo&& info) override {
     const std::lock_guard<std::mutex> lock(peers_mutex);
     switch (info.status) {
-      case rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT: {
-        const std::string name = info.info.m_participantName.c_str();
-        names[info.info.m_guid.guidPrefix] = name;
-        if (vehicle_of(info.info.m_userData.dataVec()) != settings.vehicle) return;
-        peers[info.info.m_guid] = name;
-        reunions.came(info.info.m_guid.guidPrefix, std::chrono::steady_clock::now());
-        if (peer_callback) peer_callback({name, true, false});
+      case rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT:
+      case rtps::ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT:
+        meet(info.info.m_guid,
+             {info.info.m_participantName.c_str(), vehicle_of(info.info.m_userData.dataVec())});
         break;
-      }
       case rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT:
       case rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT: {
         forget(info.info.m_guid.guidPrefix);
         const auto peer = peers.find(info.info.m_guid);
         if (peer == peers.end()) return;
-        const PeerEvent event{peer->second, false,
+        const PeerEvent event{peer->second.name, false,
                               info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT};
+        const Peer gone = peer->second;
+        peers.erase(peer);
+        if (!is_own(gone)) return;
         event.said_goodbye ? reunions.gone(info.info.m_guid.guidPrefix)
                            : reunions.lost(info.info.m_guid.guidPrefix);
-        peers.erase(peer);
-        if (peer_callback) peer_callback(event);
+        for (const auto& [node, ear] : ears) {
+          if (lists(gone.vehicles, ear.vehicle)) ear.callback(event);
+        }
         break;
       }
-      case rtps::ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT:
-        break;
     }
+  }
+  // With the lock held. One that is known may serve more vehicles now.
+  void meet(const rtps::GUID_t& guid, const Peer& peer) {
+    Peer& known = peers[guid];
+    const Peer before = std::exchange(known, peer);
+    if (is_own(peer) && !is_own(before)) reunions.came(guid.guidPrefix, std::chrono::steady_clock::now());
+    for (const auto& [node, ear] : ears) {
+      if (lists(peer.vehicles, ear.vehicle) && !lists(before.vehicles, ear.vehicle))
+        ear.callback({peer.name, true, false});
+    }
+  }
+  // With the lock held: it serves one of the vehicles that this process does.
+  bool is_own(const Peer& peer) const {
+    std::size_t begin = 0;
+    while (begin < served.size()) {
+      const std::size_t end = std::min(served.find(',', begin), served.size());
+      if (lists(peer.vehicles, served.substr(begin, end - begin))) return true;
+      begin = end + 1;
+    }
+    return false;
   }
 
   void on_publisher_discovery(dds::DomainParticipant* own, rtps::WriterDiscoveryInfo&& info) override {
@@ -234,7 +288,6 @@ struct Node::Impl final : public dds::DomainParticipantListener {
   }
   // With the lock held.
   void forget(const rtps::GuidPrefix_t& participant) {
-    names.erase(participant);
     for (RemoteEndpoints* const remote : {&writers, &readers}) {
       for (auto it = remote->begin(); it != remote->end();)
         it = it->first.guidPrefix == participant ? remote->erase(it) : std::next(it);
@@ -267,7 +320,7 @@ struct Node::Impl final : public dds::DomainParticipantListener {
       const std::string policies = conflicts_with(other.qos);
       if (policies.empty() || !told_conflicts.emplace(own, guid).second) continue;
       const auto line =
-          conflict_lines.offer(topic + ": " + named(names[guid.guidPrefix], guid.guidPrefix) + " " +
+          conflict_lines.offer(topic + ": " + named(name_of(guid.guidPrefix), guid.guidPrefix) + " " +
                                    consequence + ", their QoS is incompatible: " + policies,
                                std::chrono::steady_clock::now());
       if (line) spdlog::warn(*line);
@@ -278,26 +331,32 @@ struct Node::Impl final : public dds::DomainParticipantListener {
     if (const auto line = conflict_lines.due(std::chrono::steady_clock::now())) spdlog::warn(*line);
   }
 
+  // With the lock held.
+  std::string name_of(const rtps::GuidPrefix_t& participant) const {
+    const auto peer = peers.find(rtps::GUID_t(participant, rtps::c_EntityId_RTPSParticipant));
+    return peer == peers.end() ? "" : peer->second.name;
+  }
+
   void note_endpoint(const rtps::GUID_t& guid, Meetings::Kind kind) {
     const std::lock_guard<std::mutex> lock(peers_mutex);
     const rtps::GUID_t peer(guid.guidPrefix, rtps::c_EntityId_RTPSParticipant);
-    if (peers.count(peer) > 0) reunions.has(guid.guidPrefix, kind);
+    const auto known = peers.find(peer);
+    if (known != peers.end() && is_own(known->second)) reunions.has(guid.guidPrefix, kind);
   }
 
-  const NodeSettings settings;
-
-  std::mutex membership_mutex;  // of both
+  std::mutex membership_mutex;  // of these, but what never changes in the settings
+  NodeSettings settings;        // vehicle: the names of all that are served
   std::unique_ptr<Membership> membership;
   std::vector<Endpoint*> endpoints;
 
   std::mutex peers_mutex;
-  std::map<rtps::GUID_t, std::string> peers;
-  std::map<rtps::GuidPrefix_t, std::string> names;  // of participants, of whichever vehicle
-  RemoteEndpoints writers;                          // of others, of whichever vehicle
+  std::string served;                  // as settings.vehicle
+  std::map<rtps::GUID_t, Peer> peers;  // of whichever vehicle
+  RemoteEndpoints writers;             // of others, of whichever vehicle
   RemoteEndpoints readers;
   std::set<std::pair<rtps::GUID_t, rtps::GUID_t>> told_conflicts;  // of our own endpoints with others
   LineLimit conflict_lines;
-  std::function<void(const PeerEvent&)> peer_callback;
+  std::map<const Node*, Ear> ears;
 
   Meetings reunions;
 
@@ -314,8 +373,8 @@ const eprosima::fastrtps::Duration_t kWriteTimeout{0,
 template <class Impl, class T>
 class DdsWriter final : public detail::Writer, private Endpoint {
  public:
-  DdsWriter(std::shared_ptr<Impl> node, const Topic<T>& topic, std::uint32_t strength)
-      : node_(std::move(node)), topic_(topic), strength_(strength) {
+  DdsWriter(std::shared_ptr<Impl> node, std::string vehicle, const Topic<T>& topic, std::uint32_t strength)
+      : node_(std::move(node)), vehicle_(std::move(vehicle)), topic_(topic), strength_(strength) {
     node_->add(this);
   }
   ~DdsWriter() override { node_->remove(this); }
@@ -355,7 +414,7 @@ class DdsWriter final : public detail::Writer, private Endpoint {
  private:
   void join(Membership& membership) override {
     dds::DataWriter* const writer = membership.publisher->create_datawriter(
-        node_->template topic_in<T>(membership, topic_.name),
+        node_->template topic_in<T>(membership, vehicle_, topic_.name),
         writer_qos(topic_.qos, node_->deadline_ms(topic_.deadline_ms), strength_, node_->settings.transport));
     if (writer == nullptr) throw std::runtime_error(std::string("cannot publish ") + topic_.name);
     const std::lock_guard<std::mutex> lock(last_mutex_);
@@ -378,6 +437,7 @@ class DdsWriter final : public detail::Writer, private Endpoint {
   }
 
   std::shared_ptr<Impl> node_;
+  const std::string vehicle_;
   const Topic<T> topic_;
   std::atomic<std::uint32_t> strength_;
   Handle<dds::DataWriter> writer_;
@@ -389,9 +449,13 @@ class DdsWriter final : public detail::Writer, private Endpoint {
 template <class Impl, class T>
 class DdsReader final : public detail::Reader, private Endpoint, private dds::DataReaderListener {
  public:
-  DdsReader(std::shared_ptr<Impl> node, const Topic<T>& topic, std::function<void(const T&)> callback,
-            Delivery delivery)
-      : node_(std::move(node)), topic_(topic), delivery_(delivery), callback_(std::move(callback)) {
+  DdsReader(std::shared_ptr<Impl> node, std::string vehicle, const Topic<T>& topic,
+            std::function<void(const T&)> callback, Delivery delivery)
+      : node_(std::move(node)),
+        vehicle_(std::move(vehicle)),
+        topic_(topic),
+        delivery_(delivery),
+        callback_(std::move(callback)) {
     node_->add(this);
   }
   ~DdsReader() override { node_->remove(this); }
@@ -409,7 +473,7 @@ class DdsReader final : public detail::Reader, private Endpoint, private dds::Da
   void join(Membership& membership) override {
     open(true);
     dds::DataReader* const reader = membership.subscriber->create_datareader(
-        node_->template topic_in<T>(membership, topic_.name),
+        node_->template topic_in<T>(membership, vehicle_, topic_.name),
         reader_qos(topic_.qos, node_->deadline_ms(topic_.deadline_ms), node_->settings.transport, delivery_),
         this, dds::StatusMask::data_available());
     if (reader == nullptr) throw std::runtime_error(std::string("cannot subscribe to ") + topic_.name);
@@ -437,6 +501,7 @@ class DdsReader final : public detail::Reader, private Endpoint, private dds::Da
   }
 
   std::shared_ptr<Impl> node_;
+  const std::string vehicle_;
   const Topic<T> topic_;
   const Delivery delivery_;
   Handle<dds::DataReader> reader_;
@@ -448,11 +513,20 @@ class DdsReader final : public detail::Reader, private Endpoint, private dds::Da
 
 }  // namespace
 
-Node::Node(const NodeSettings& settings) : impl_(std::make_shared<Impl>(settings)) {}
+Participant::Participant(const NodeSettings& settings) : impl_(std::make_shared<Impl>(settings, "")) {}
+
+Node::Node(const NodeSettings& settings)
+    : participant_(std::make_shared<Participant::Impl>(settings, checked(settings.vehicle))),
+      vehicle_(settings.vehicle) {}
+
+Node::Node(const Participant& participant, const std::string& vehicle)
+    : participant_(participant), vehicle_(checked(vehicle)) {
+  participant_.impl_->serve(vehicle_);
+}
 
 Node::~Node() { on_peer({}); }
 
-std::vector<std::string> Node::topics_seen() const {
+std::vector<std::string> Participant::topics_seen() const {
   const std::lock_guard<std::mutex> lock(impl_->peers_mutex);
   std::set<std::string> topics;
   for (const auto& writer : impl_->writers) topics.insert(writer.second.topic);
@@ -460,23 +534,29 @@ std::vector<std::string> Node::topics_seen() const {
 }
 
 void Node::on_peer(std::function<void(const PeerEvent&)> callback) {
-  const std::lock_guard<std::mutex> lock(impl_->peers_mutex);
-  impl_->peer_callback = std::move(callback);
-  if (!impl_->peer_callback) return;
-  for (const auto& peer : impl_->peers) impl_->peer_callback({peer.second, true, false});
+  Participant::Impl& impl = *participant_.impl_;
+  const std::lock_guard<std::mutex> lock(impl.peers_mutex);
+  impl.ears.erase(this);
+  if (!callback) return;
+  for (const auto& [guid, peer] : impl.peers) {
+    if (lists(peer.vehicles, vehicle_)) callback({peer.name, true, false});
+  }
+  impl.ears[this] = {vehicle_, std::move(callback)};
 }
 
-void Node::rejoin() { impl_->rejoin(); }
+void Node::rejoin() { participant_.impl_->rejoin(); }
 
 template <class T>
 Publisher<T> Node::publish(const Topic<T>& topic, std::uint32_t strength) {
-  return Publisher<T>(std::make_unique<DdsWriter<Impl, T>>(impl_, topic, strength));
+  return Publisher<T>(
+      std::make_unique<DdsWriter<Participant::Impl, T>>(participant_.impl_, vehicle_, topic, strength));
 }
 
 template <class T>
 Subscription Node::subscribe(const Topic<T>& topic, std::function<void(const T&)> callback,
                              Delivery delivery) {
-  return Subscription(std::make_unique<DdsReader<Impl, T>>(impl_, topic, std::move(callback), delivery));
+  return Subscription(std::make_unique<DdsReader<Participant::Impl, T>>(participant_.impl_, vehicle_, topic,
+                                                                        std::move(callback), delivery));
 }
 
 #define SWIFTLET_INSTANTIATE(Name)                                                                      \

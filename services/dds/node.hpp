@@ -1,5 +1,5 @@
-// One process on the network: a DDS participant that publishes and subscribes the topics of one vehicle.
-// No Fast DDS header is seen through this file.
+// One process on the network: a DDS participant, and nodes that publish and subscribe the topics of one vehicle
+// each. No Fast DDS header is seen through this file.
 #pragma once
 
 #include <chrono>
@@ -95,12 +95,33 @@ class Subscription {
   std::unique_ptr<detail::Reader> reader_;
 };
 
+// A process's place in a domain, which the nodes of any number of vehicles share: one set of sockets, threads and
+// discoveries for all of them.
+class Participant {
+ public:
+  // Of no vehicle at first: that of the settings is not looked at. Throws std::runtime_error with a sentence if it
+  // cannot be made. Its threads have the scheduling of the thread that makes it. With kSharedMemory, what dead
+  // processes of this user left in /dev/shm is removed at its start and its end.
+  explicit Participant(const NodeSettings& settings);
+
+  // The topics that others in the domain publish now, whichever vehicle's, by their names on the wire
+  // ("rt/kl1/imu"); sorted, each once. Those of processes that keep to the loopback interface are there only
+  // for who does so too.
+  std::vector<std::string> topics_seen() const;
+
+ private:
+  friend class Node;
+  struct Impl;
+  explicit Participant(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
+  std::shared_ptr<Impl> impl_;
+};
+
 class Node {
  public:
-  // Throws std::runtime_error with a sentence if the participant cannot be made. The node's threads have the
-  // scheduling of the thread that makes it. With kSharedMemory, what dead processes of this user left
-  // in /dev/shm is removed at its start and its end.
+  // With a participant of its own. Throws as Participant does, and for a vehicle's name that cannot be one.
   explicit Node(const NodeSettings& settings);
+  // One of those that share the participant.
+  Node(const Participant& participant, const std::string& vehicle);
   ~Node();
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
@@ -115,12 +136,9 @@ class Node {
   Subscription subscribe(const Topic<T>& topic, std::function<void(const T&)> callback,
                          Delivery delivery = Delivery::kShared);
 
-  // The topics that others in the domain publish now, whichever vehicle's, by their names on the wire
-  // ("rt/kl1/imu"); sorted, each once. Those of processes that keep to the loopback interface are there only
-  // for who does so too.
-  std::vector<std::string> topics_seen() const;
+  std::vector<std::string> topics_seen() const { return participant_.topics_seen(); }
 
-  // Tells of peers that come and go, also of those that were there before the call. Runs in a middleware
+  // Tells of the vehicle's peers that come and go, also of those that were there before the call. Runs in a middleware
   // thread. A later call takes the place of an earlier one; when it returns, the earlier callback runs no
   // more.
   void on_peer(std::function<void(const PeerEvent&)> callback);
@@ -131,8 +149,8 @@ class Node {
   void rejoin();
 
  private:
-  struct Impl;
-  std::shared_ptr<Impl> impl_;
+  Participant participant_;
+  const std::string vehicle_;
 };
 
 }  // namespace swiftlet::comms

@@ -437,4 +437,15 @@ msg::Reference to_message(const control::Reference& in, const control::AttitudeS
   return out;
 }
 
+msg::RequestStatus to_message(const control::RequestStatus& in) {
+  msg::RequestStatus out;
+  out.client(in.key.client);
+  out.id(in.key.id);
+  out.kind(static_cast<std::uint8_t>(in.kind));
+  out.state(static_cast<std::uint8_t>(in.state));
+  out.progress(in.progress);
+  out.result() = control::result_of(in);
+  return out;
+}
+
 }  // namespace swiftlet::comms

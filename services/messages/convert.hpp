@@ -22,12 +22,6 @@ struct Fault {
   explicit operator bool() const { return text[0] != '\0'; }
 };
 
-// A request, by who asked and the number that it was given there.
-struct RequestKey {
-  std::uint64_t client = 0;
-  std::uint64_t id = 0;
-};
-
 // controller_state: what a controller says of itself to the others.
 struct ControllerReport {
   std::int64_t stamp_ns = 0;
@@ -40,7 +34,6 @@ struct ControllerReport {
   // Of an active one.
   control::FlightState flight;
   int rotor_count = 0;
-  std::array<RequestKey, 4> accepted{};  // the newest requests, id 0: none
 };
 
 // Into out, unless there is a fault: then out is not touched. Those of samples do not allocate.
@@ -76,5 +69,6 @@ msg::Reference to_message(const control::Reference& in, const control::AttitudeS
 msg::Command to_message(const control::Request& in);
 msg::Mission to_message(const control::Mission& in);
 msg::Trajectory to_message(const control::Trajectory& in);
+msg::RequestStatus to_message(const control::RequestStatus& in);
 
 }  // namespace swiftlet::comms

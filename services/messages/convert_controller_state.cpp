@@ -7,7 +7,7 @@ namespace {
 using namespace wire;
 
 constexpr std::uint64_t kMaxStrength = 1000;
-constexpr std::size_t kReplicatedStateBytes = 968;
+constexpr std::size_t kReplicatedStateBytes = 1080;
 
 }  // namespace
 
@@ -47,6 +47,12 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
       .finite("position_integral_ned", in.position_integral_ned())
       .at_most("rotor_state", in.rotor_state(), ActuatorCommand_Constants::ROTORS_RUNNING)
       .per_rotor("throttle", in.rotor_count(), in.throttle(), 0.0, 1.0);
+  for (std::size_t i = 0; i < control::kRememberedRequests; ++i) {
+    check.at_most("request_states", in.request_states()[i], RequestStatus_Constants::ABORTED)
+        .at_most("request_ended_by", in.request_ended_by()[i], control::kEventCount - 1)
+        .at_most("request_reasons", in.request_reasons()[i], control::kReasonCount - 1)
+        .within("request_progress", in.request_progress()[i], 0.0, 1.0);
+  }
   if (!check.ok()) return check.fault();
   out.stamp_ns = in.stamp_ns();
   out.sequence = in.sequence_number();
@@ -92,12 +98,18 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
   state.land_on_return = in.land_on_return();
   for (std::size_t i = 0; i < state.ground_links.size(); ++i)
     state.ground_links[i] = {in.ground_link_clients()[i], in.ground_link_heard_ns()[i]};
+  for (std::size_t i = 0; i < state.requests.size(); ++i) {
+    state.requests[i] = {{in.request_clients()[i], in.request_ids()[i]},
+                         static_cast<control::RequestKind>(in.request_kinds()[i]),
+                         static_cast<control::RequestState>(in.request_states()[i]),
+                         static_cast<control::Event>(in.request_ended_by()[i]),
+                         static_cast<control::Reason>(in.request_reasons()[i]),
+                         in.request_progress()[i]};
+  }
   out.flight.position_integral = vector(in.position_integral_ned());
   out.flight.rotor_state = static_cast<plant::RotorState>(in.rotor_state());
   out.rotor_count = in.rotor_count();
   copy_rotors(out.rotor_count, in.throttle(), out.flight.throttle);
-  for (std::size_t i = 0; i < out.accepted.size(); ++i)
-    out.accepted[i] = {in.accepted_clients()[i], in.accepted_ids()[i]};
   return {};
 }
 
@@ -170,9 +182,15 @@ msg::ControllerState to_message(const ControllerReport& in) {
   out.rotor_state(static_cast<std::uint8_t>(in.flight.rotor_state));
   out.rotor_count(static_cast<std::uint8_t>(in.rotor_count));
   out.throttle(in.flight.throttle);
-  for (std::size_t i = 0; i < in.accepted.size(); ++i) {
-    out.accepted_clients()[i] = in.accepted[i].client;
-    out.accepted_ids()[i] = in.accepted[i].id;
+  for (std::size_t i = 0; i < state.requests.size(); ++i) {
+    const control::RequestStatus& request = state.requests[i];
+    out.request_clients()[i] = request.key.client;
+    out.request_ids()[i] = request.key.id;
+    out.request_kinds()[i] = static_cast<std::uint8_t>(request.kind);
+    out.request_states()[i] = static_cast<std::uint8_t>(request.state);
+    out.request_ended_by()[i] = static_cast<std::uint8_t>(request.ended_by);
+    out.request_reasons()[i] = static_cast<std::uint8_t>(request.reason);
+    out.request_progress()[i] = request.progress;
   }
   return out;
 }

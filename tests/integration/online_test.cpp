@@ -29,6 +29,8 @@ TEST_F(OnlineFlight, EveryCommandDoesWhatItSays) {
   expect_accepted({"hold"});
   expect_accepted({"land"});
   ASSERT_TRUE(reaches_mode("disarmed"));
+  EXPECT_EQ(status().at("request"),
+            json({{"kind", "land"}, {"state", "succeeded"}, {"progress", 1.0}, {"result", ""}}));
   ASSERT_TRUE(reaches_place(-0.4, 0.3, 0.0));
 }
 
@@ -62,7 +64,7 @@ TEST_F(OnlineFlight, TellsWhatEndedItInstead) {
   ASSERT_TRUE(eventually([&] { return going.output() == "goto: accepted by kl7\n"; }, 20s));
   expect_accepted({"land"});
   EXPECT_EQ(going.wait(20s), 1);
-  EXPECT_EQ(going.errors(), "swiftlet: goto: it is landing: requested\n");
+  EXPECT_EQ(going.errors(), "swiftlet: goto: canceled by a newer request: land\n");
 }
 
 TEST_F(OnlineFlight, StopTurnsTheRotorsOffInTheAir) {
@@ -181,7 +183,8 @@ TEST_F(OnlineFlight, TellsThatAMissionWasAborted) {
   ASSERT_TRUE(reaches("in the air", [](const json& status) { return status.at("airborne") == true; }));
   expect_accepted({"land"});
   EXPECT_EQ(mission.wait(20s), 1);
-  EXPECT_NE(mission.errors().find("swiftlet: mission hover: aborted: requested"), std::string::npos)
+  EXPECT_NE(mission.errors().find("swiftlet: mission hover: canceled by a newer request: land"),
+            std::string::npos)
       << mission.errors();
   ASSERT_TRUE(reaches_mode("disarmed"));
 }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/ground/client/vehicle.hpp"
 #include "tests/integration/program.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/redundant_flight.hpp"
@@ -170,6 +171,70 @@ TEST_F(Standby, OneStartedAloneOnTheGroundStaysDisarmed) {
   EXPECT_EQ(mode(), "disarmed");
   flight_.wait("the rotors are off",
                [&] { return !flight_.client().view().vehicle.message.rotors_running(); });
+}
+
+// GIVEN a take-off that is under way, WHEN its controller dies, THEN the standby follows the request to its end, and
+// the program that asked is told of both.
+TEST_F(Standby, ARequestIsFollowedToItsEndByWhoeverTakesOver) {
+  flight_.start_controller(5);
+  flight_.start_controller(1);
+  flight_.wait_for_roles(1, 1);
+  ground::Vehicle vehicle(flight_.node_settings("program"));
+  Inbox<ground::ConnectionEvent> events;
+  vehicle.on_connection([&](const ground::ConnectionEvent& event) { events.put(event); });
+  ASSERT_TRUE(vehicle.connect(10s).accepted());
+  ASSERT_TRUE(vehicle.arm().accepted());
+  const ground::Manoeuvre climb = vehicle.take_off(1.0, 0.4);
+  ASSERT_TRUE(climb.accepted()) << climb.answer().reason;
+  ASSERT_TRUE(eventually([&] { return climb.progress() > 0.2; }, 10s));
+  ASSERT_LT(climb.progress(), 1.0);
+  flight_.kill(flight_.active());
+  const ground::Ending ending = climb.wait(20s);
+  EXPECT_TRUE(ending.done()) << ending.reason;
+  EXPECT_NEAR(vehicle.state().position_ned_m.z(), -1.0, 0.06);
+  EXPECT_TRUE(events.wait(
+      [](const auto& all) { return all.back().kind == ground::ConnectionEvent::Kind::kReplaced; }));
+  EXPECT_TRUE(vehicle.connected());
+  EXPECT_TRUE(vehicle.land().wait(20s).done());
+}
+
+// GIVEN a control process that dies with a request under way, WHEN it is started again, THEN the program is told that
+// it fell silent, that another one is there, and that the request is lost; and goes on with that one.
+TEST_F(Standby, AProgramGoesOnWithAControlProcessThatIsStartedAgain) {
+  using Kind = ground::ConnectionEvent::Kind;
+  Controller& first = flight_.start_controller(0);
+  flight_.wait_for_roles(1, 0);
+  ground::Vehicle vehicle(flight_.node_settings("program"));
+  Inbox<ground::ConnectionEvent> events;
+  vehicle.on_connection([&](const ground::ConnectionEvent& event) { events.put(event); });
+  ASSERT_TRUE(events.wait_for_count(1));
+  EXPECT_EQ(events.items()[0].kind, Kind::kConnected);
+  EXPECT_EQ(events.items()[0].controller, first.id);
+  ASSERT_TRUE(vehicle.arm().accepted());
+  const ground::Manoeuvre climb = vehicle.take_off(0.5);
+  ASSERT_TRUE(climb.accepted()) << climb.answer().reason;
+  flight_.kill(first);
+  ASSERT_TRUE(events.wait_for_count(2));
+  EXPECT_EQ(events.items()[1].kind, Kind::kLost);
+  EXPECT_FALSE(vehicle.connected());
+
+  const Controller& second = flight_.start_controller(0);
+  ASSERT_TRUE(events.wait_for_count(3));
+  EXPECT_EQ(events.items()[2].kind, Kind::kReplaced);
+  EXPECT_EQ(events.items()[2].controller, second.id);
+  EXPECT_TRUE(vehicle.connected());
+  const ground::Ending lost = climb.wait(10s);
+  EXPECT_EQ(lost.kind, ground::Ending::Kind::kLost) << lost.reason;
+  std::string refusal;
+  EXPECT_TRUE(eventually(
+      [&] {
+        const ground::Answer answer = vehicle.arm().answer();
+        refusal = answer.reason;
+        return answer.accepted();
+      },
+      20s))
+      << refusal;
+  EXPECT_TRUE(vehicle.disarm().wait(5s).done());
 }
 
 }  // namespace

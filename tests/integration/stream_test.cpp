@@ -84,5 +84,23 @@ TEST_F(OnlineFlight, TheExampleStreamsACircle) {
   EXPECT_EQ(status().at("mode"), "disarmed");
 }
 
+TEST_F(OnlineFlight, TheExampleFliesAMissionFileAndStreams) {
+  const std::string file =
+      folder_.write("there.yaml",
+                    "frame: ned\ntolerance_m: 0.1\nends: hovering\nitems:\n"
+                    "  - {kind: takeoff, height_m: 0.8, speed_m_s: 0.8}\n"
+                    "  - {kind: waypoint, position_m: [-0.5, 0, -0.6], speed_m_s: 0.8}\n");
+  const Ending end =
+      run_program("example-fly-mission", {file, "kl7", std::to_string(claim_.domain()), "--localhost-only"},
+                  folder_.path(), 120s);
+  EXPECT_EQ(end.exit_code, 0) << end.errors << end.output;
+  for (const char* line : {"the control process is heard: ", "arm: done\n", "take off: done\n",
+                           "mission: done\n", "land: done\n"})
+    EXPECT_NE(end.output.find(line), std::string::npos) << line << "\n" << end.output;
+  const json now = status();
+  EXPECT_EQ(now.at("mode"), "disarmed");
+  EXPECT_NEAR(now.at("position_ned_m")[0].get<double>(), -0.1, 0.2) << "0.2 m/s north for 2 s";
+}
+
 }  // namespace
 }  // namespace swiftlet::tests

@@ -64,6 +64,7 @@ class RedundantFlight {
   void ask(std::uint8_t kind, double z_ned = 0.0);
   ground::Client& client() { return client_; }
   std::vector<std::string> network() const;  // as words of a command line
+  comms::NodeSettings node_settings(const char* name) const;
 
   // The newest of the vehicle's samples.
   std::int64_t stamp_ns() const;
@@ -84,7 +85,6 @@ class RedundantFlight {
     ground::Clock::time_point at;
   };
 
-  comms::NodeSettings node_settings(const char* name) const;
   int count(std::uint8_t role) const;
   std::optional<double> deviation_m(std::int64_t stamp_ns) const;  // with the lock held
 

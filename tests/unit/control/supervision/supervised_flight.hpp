@@ -54,17 +54,22 @@ class SupervisedFlight {
 
   control::Outcome ask(control::RequestKind kind, const Eigen::Vector3d& position = Eigen::Vector3d::Zero(),
                        double speed = 0.5) {
-    control::Request request;
-    request.kind = kind;
+    control::Request request = next_request(kind);
     request.position_ned = position;
     request.speed = speed;
     return supervisor_.request(request, situation_);
   }
   control::Outcome upload(const control::Mission& mission) {
-    control::Request request;
-    request.kind = control::RequestKind::kMissionUpload;
+    control::Request request = next_request(control::RequestKind::kMissionUpload);
     request.mission = &mission;
     return supervisor_.request(request, situation_);
+  }
+  // With the next number of client 1.
+  control::Request next_request(control::RequestKind kind) {
+    control::Request request;
+    request.key = {1, ++asked_};
+    request.kind = kind;
+    return request;
   }
   // Uploads and starts it.
   control::Outcome fly(const control::Mission& mission) {
@@ -72,8 +77,7 @@ class SupervisedFlight {
     return kept.accepted ? ask(control::RequestKind::kMissionStart) : kept;
   }
   control::Outcome fly(const control::Trajectory& trajectory) {
-    control::Request request;
-    request.kind = control::RequestKind::kTrajectory;
+    control::Request request = next_request(control::RequestKind::kTrajectory);
     request.trajectory = &trajectory;
     return supervisor_.request(request, situation_);
   }
@@ -89,6 +93,7 @@ class SupervisedFlight {
   control::Situation situation_;
   control::Directive directive_;
   bool follows_ = true;
+  std::uint64_t asked_ = 0;  // so many requests
 };
 
 }  // namespace swiftlet::tests

@@ -12,7 +12,7 @@
 #include "swiftlet/ground/flight/flight_plan.hpp"
 #include "swiftlet/ground/flight/in_process_flight.hpp"
 #include "swiftlet/identification/flight/flight.hpp"
-#include "swiftlet/io/flight_log_files.hpp"
+#include "swiftlet/io/logs/flight_log_files.hpp"
 #include "swiftlet/math/random.hpp"
 #include "swiftlet/simulation/simulated_flight.hpp"
 #include "tests/support/temporary_folder.hpp"

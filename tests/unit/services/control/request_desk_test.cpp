@@ -117,6 +117,30 @@ TEST_F(Desk, ARequestIsJudgedInTheNextStepAndAnswered) {
   EXPECT_EQ(mode(), control::Mode::kArmed);
 }
 
+// GIVEN an answer with its stamp, THEN whatever is told of a later stamp knows the request, from its first step on.
+TEST_F(Desk, WhatIsToldAfterAnAcceptanceKnowsTheRequest) {
+  settle();
+  desk_.on_command(command(Command_Constants::ARM, 1));
+  step();
+  desk_.on_command(command(Command_Constants::TAKEOFF, 2));
+  const std::int64_t before_ns = last_imu_.stamp_ns;
+  step();
+  for (const RequestAnswer& answer : desk_.collect()) EXPECT_GT(answer.stamp_ns, 0) << answer.kind;
+  desk_.on_command(command(Command_Constants::TAKEOFF, 2));
+  const std::vector<RequestAnswer> again = desk_.collect();
+  ASSERT_EQ(again.size(), 1U);
+  EXPECT_EQ(again[0].stamp_ns, before_ns);
+  for (int i = 0; i < 20; ++i) step();
+  int told = 0;
+  Snapshot snapshot;
+  while (loop_.snapshots.pop(snapshot)) {
+    if (snapshot.stamp_ns <= before_ns) continue;
+    ++told;
+    EXPECT_EQ(snapshot.requests.back().key, (control::RequestKey{kClient, 2})) << snapshot.stamp_ns;
+  }
+  EXPECT_GT(told, 2);
+}
+
 TEST_F(Desk, ARefusalOfTheControllerIsAnsweredWithItsReason) {
   settle();
   desk_.on_command(command(Command_Constants::LAND, 1));
@@ -287,7 +311,6 @@ class DeskOfAStandby : public Desk {
     Handover handover;
     handover.term = kTerm;
     handover.flight = heard.flight;
-    handover.accepted = heard.accepted;
     standby_desk_.follow(handover);
   }
   plant::ActuatorCommand step_standby(Role role) {
@@ -491,6 +514,25 @@ TEST_F(DeskOfAStandby, ARequestThatWasAcceptedBeforeIsAnsweredAndNotAppliedAgain
   EXPECT_TRUE(answers[0].repeated);
   EXPECT_EQ(answers[1].id, 2U);
   EXPECT_EQ(standby_state().mode, control::Mode::kDisarmed);
+}
+
+// GIVEN a mission that is executed, WHEN a standby takes over, THEN it says so of the request, and that it is canceled
+// by what it is asked for itself.
+TEST_F(DeskOfAStandby, TheRequestUnderWayIsGoneOnWith) {
+  fly_mission();
+  follow(600);
+  const control::RequestStatus taken = standby_state().requests.back();
+  EXPECT_EQ(taken.key, (control::RequestKey{kClient, 3}));
+  EXPECT_EQ(taken.state, control::RequestState::kExecuting);
+
+  standby_desk_.attend(true);
+  standby_desk_.on_command(command(Command_Constants::STOP, 4));
+  step();
+  step_standby(Role::kActive);
+  const control::RequestStatuses after = standby_state().requests;
+  EXPECT_EQ(after[after.size() - 2].key, taken.key);
+  EXPECT_EQ(result_of(after[after.size() - 2]), "canceled by a newer request: stop");
+  EXPECT_EQ(after.back().state, control::RequestState::kSucceeded);
 }
 
 TEST_F(DeskOfAStandby, FollowingDoesNotAllocateInTheInnerLoop) {

@@ -299,6 +299,54 @@ TEST(Vehicles, DoNotHearEachOther) {
   EXPECT_EQ(peers.items(), std::vector<std::string>{"plant"});
 }
 
+// GIVEN the processes of two vehicles, WHEN one participant serves both, one after the other, THEN its nodes hear and
+// are heard by their own, and each side knows the other as its peer.
+TEST(Vehicles, ShareAParticipant) {
+  const DomainClaim claim;
+  NodeSettings plant = settings(claim, "plant");
+  Node plant1(plant);
+  plant.vehicle = "kl2";
+  Node plant2(plant);
+  Inbox<std::string> peers_of_plant2;
+  plant2.on_peer([&](const PeerEvent& event) { peers_of_plant2.put(event.name); });
+
+  const Participant shared(settings(claim, "ground"));
+  Node ground1(shared, "kl1");
+  auto imu1 = plant1.publish(topics::kImu);
+  auto imu2 = plant2.publish(topics::kImu);
+  Inbox<std::uint64_t> heard1;
+  const auto first = ground1.subscribe<msg::Imu>(
+      topics::kImu, [&](const msg::Imu& imu) { heard1.put(imu.sequence_number()); });
+  ASSERT_TRUE(eventually([&] { return first.matched() == 1; }));
+
+  Node ground2(shared, "kl2");
+  Inbox<std::string> peers_of_ground2;
+  ground2.on_peer([&](const PeerEvent& event) { peers_of_ground2.put(event.name); });
+  Inbox<std::uint64_t> heard2;
+  const auto second = ground2.subscribe<msg::Imu>(
+      topics::kImu, [&](const msg::Imu& imu) { heard2.put(imu.sequence_number()); });
+  auto command1 = ground1.publish(topics::kCommand);
+  auto command2 = ground2.publish(topics::kCommand);
+  ASSERT_TRUE(
+      eventually([&] { return second.matched() == 1 && imu1.matched() == 1 && imu2.matched() == 1; }));
+  EXPECT_EQ(first.matched(), 1);
+  EXPECT_EQ(command1.matched() + command2.matched(), 0);
+
+  msg::Imu imu;
+  imu.sequence_number(1);
+  imu1.publish(imu);
+  imu.sequence_number(2);
+  imu2.publish(imu);
+  ASSERT_TRUE(heard1.wait_for_count(1));
+  ASSERT_TRUE(heard2.wait_for_count(1));
+  EXPECT_EQ(heard1.items(), std::vector<std::uint64_t>{1});
+  EXPECT_EQ(heard2.items(), std::vector<std::uint64_t>{2});
+  ASSERT_TRUE(peers_of_ground2.wait_for_count(1));
+  EXPECT_EQ(peers_of_ground2.items(), std::vector<std::string>{"plant"});
+  ASSERT_TRUE(peers_of_plant2.wait_for_count(1));
+  EXPECT_EQ(peers_of_plant2.items(), std::vector<std::string>{"ground"});
+}
+
 TEST(Subscription, DeliversNothingOnceItIsGone) {
   const DomainClaim claim;
   Node plant(settings(claim, "plant"));

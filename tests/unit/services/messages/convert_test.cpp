@@ -83,8 +83,28 @@ TEST(Convert, TheStateOfAFlightArrivesWhole) {
     EXPECT_EQ(got.guidance.path.at(stamp_ns).position_ned, sent.guidance.path.at(stamp_ns).position_ned);
     EXPECT_EQ(got.guidance.path.at(stamp_ns).yaw_rad, sent.guidance.path.at(stamp_ns).yaw_rad);
   }
+  EXPECT_FALSE(differ_in_state(got.requests, sent.requests));
+  for (std::size_t i = 0; i < got.requests.size(); ++i) {
+    EXPECT_EQ(got.requests[i].progress, sent.requests[i].progress);
+    EXPECT_EQ(result_of(got.requests[i]), result_of(sent.requests[i]));
+  }
   EXPECT_EQ(report.flight.position_integral, controller_report().flight.position_integral);
   EXPECT_EQ(report.flight.throttle, controller_report().flight.throttle);
+}
+
+TEST(Convert, WhatBecameOfARequestIsToldWithItsReason) {
+  const control::RequestStatuses requests = controller_report().flight.supervisor.requests;
+  const msg::RequestStatus executing = to_message(requests[1]);
+  EXPECT_EQ(executing.client(), 40U);
+  EXPECT_EQ(executing.id(), 41U);
+  EXPECT_EQ(executing.kind(), msg::Command_Constants::MISSION_START);
+  EXPECT_EQ(executing.state(), msg::RequestStatus_Constants::EXECUTING);
+  EXPECT_EQ(executing.progress(), 0.4);
+  EXPECT_STREQ(executing.result().c_str(), "");
+  EXPECT_EQ(to_message(requests[2]).state(), msg::RequestStatus_Constants::CANCELED);
+  EXPECT_STREQ(to_message(requests[2]).result().c_str(), "canceled by a newer request: hold");
+  EXPECT_EQ(to_message(requests[3]).state(), msg::RequestStatus_Constants::ABORTED);
+  EXPECT_STREQ(to_message(requests[3]).result().c_str(), "aborted: tipped over");
 }
 
 TEST(Convert, AnImuSampleSaysWhatTheVehicleObeyed) {
@@ -139,6 +159,11 @@ TEST(Convert, BrokenSamplesAreRefused) {
                                    [](msg::ControllerState& m) { m.path_x()[3] = kNan; });
   expect_refused<ControllerReport>(example<msg::ControllerState>(), "item_index is 40, must be at most 31",
                                    [](msg::ControllerState& m) { m.item_index(40); });
+  expect_refused<ControllerReport>(example<msg::ControllerState>(), "request_states is 7, must be at most 6",
+                                   [](msg::ControllerState& m) { m.request_states()[2] = 7; });
+  expect_refused<ControllerReport>(example<msg::ControllerState>(),
+                                   "request_progress is nan, must be between 0 and 1",
+                                   [](msg::ControllerState& m) { m.request_progress()[3] = kNan; });
   expect_refused<control::Setpoint>(example<msg::Setpoint>(), "yaw_rate is inf, must be finite",
                                     [](msg::Setpoint& m) { m.yaw_rate(kInfinity); });
 }

@@ -119,11 +119,19 @@ inline ControllerReport controller_report() {
   state.critical_battery_since_ns = 46;
   state.land_on_return = true;
   state.ground_links = {{{47, 48}, {49, 50}, {51, 52}, {53, 54}}};
+  using control::Event;
+  using control::Reason;
+  using control::RequestKind;
+  using control::RequestState;
+  state.requests = {
+      {{{38, 39}, RequestKind::kMissionUpload, RequestState::kSucceeded, Event::kArm, Reason::kStarted, 1.0},
+       {{40, 41}, RequestKind::kMissionStart, RequestState::kExecuting, Event::kArm, Reason::kStarted, 0.4},
+       {{42, 43}, RequestKind::kGoTo, RequestState::kCanceled, Event::kHold, Reason::kRequested, 0.3},
+       {{44, 45}, RequestKind::kLand, RequestState::kAborted, Event::kTippedOver, Reason::kTippedOver, 0.2}}};
   report.flight.position_integral = {0.1, -0.2, 0.3};
   report.flight.rotor_state = plant::RotorState::kRunning;
   report.rotor_count = 4;
   report.flight.throttle = four_rotors(0.4);
-  report.accepted = {{{38, 39}, {40, 41}, {42, 43}, {44, 45}}};
   return report;
 }
 

@@ -1,4 +1,4 @@
-#include "swiftlet/io/flight_log_files.hpp"
+#include "swiftlet/io/logs/flight_log_files.hpp"
 
 #include <cmath>
 #include <string>

@@ -1,4 +1,4 @@
-#include "swiftlet/io/flight_log_files.hpp"
+#include "swiftlet/io/logs/flight_log_files.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,8 +9,8 @@
 #include <optional>
 #include <stdexcept>
 
-#include "swiftlet/io/compressed_file.hpp"
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/logs/compressed_file.hpp"
 #include "swiftlet/io/measurements.hpp"
 #include "swiftlet/plant/model/esc.hpp"
 

@@ -1,4 +1,4 @@
-#include "swiftlet/io/compressed_file.hpp"
+#include "swiftlet/io/logs/compressed_file.hpp"
 
 #include <array>
 #include <cstddef>

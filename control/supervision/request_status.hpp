@@ -1,0 +1,47 @@
+// What has become of the requests that were accepted last, as plain data.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+
+#include "swiftlet/control/supervision/events.hpp"
+#include "swiftlet/control/types/mode.hpp"
+#include "swiftlet/control/types/request.hpp"
+
+namespace swiftlet::control {
+
+// Names and numbers are those of ROS 2's action_msgs/msg/GoalStatus.
+enum class RequestState : std::uint8_t {
+  kUnknown = 0,    // there is no such request
+  kAccepted = 1,   // it begins with the next step
+  kExecuting = 2,  // the vehicle does it
+  kSucceeded = 4,
+  kCanceled = 5,  // by a newer request
+  kAborted = 6,   // by a failsafe
+};
+const char* to_string(RequestState state);  // "executing"
+inline bool is_over(RequestState state) { return state >= RequestState::kSucceeded; }
+
+struct RequestStatus {
+  RequestKey key;
+  RequestKind kind = RequestKind::kArm;
+  RequestState state = RequestState::kUnknown;
+  Event ended_by = Event::kArm;      // of a canceled or aborted one
+  Reason reason = Reason::kStarted;  // likewise
+  double progress = 0.0;  // 0 .. 1, never falls: of a take-off's or landing's height, of the time of any
+                          // other way, of a mission's items, of a trajectory's segments
+};
+
+constexpr int kRememberedRequests = 4;
+using RequestStatuses = std::array<RequestStatus, kRememberedRequests>;  // oldest first
+static_assert(std::is_trivially_copyable_v<RequestStatuses>);
+
+// Whether there is another request, or another state of one; progress is not looked at.
+bool differ_in_state(const RequestStatuses& a, const RequestStatuses& b);
+
+// "canceled by a newer request: land", "aborted: battery is low"; empty unless it ended so.
+std::string result_of(const RequestStatus& request);
+
+}  // namespace swiftlet::control

@@ -1,0 +1,28 @@
+// Arms, takes off, flies a mission file, streams setpoints and lands: example-fly-mission FILE [VEHICLE] [DOMAIN]
+#include <cstdio>
+#include <thread>
+
+#include <swiftlet/ground/client/vehicle.hpp>
+#include <swiftlet/ground/examples/arguments.hpp>
+#include <swiftlet/io/missions/mission_file.hpp>
+
+using namespace swiftlet::ground;
+
+bool done(const char* what, const Manoeuvre& manoeuvre) {
+  const Ending ending = manoeuvre.wait();
+  std::printf("%s: %s\n", what, ending.done() ? "done" : ending.reason.c_str());
+  return ending.done();
+}
+
+int main(int argc, char** argv) {
+  const auto mission = load_mission_file(argc > 1 ? argv[1] : "mission.yaml", {}).mission;
+  Vehicle vehicle(swiftlet::examples::network(argc - 1, argv + 1));
+  vehicle.on_connection([](const ConnectionEvent& event) { std::printf("%s\n", event.text.c_str()); });
+  bool flown = done("arm", vehicle.arm()) && done("take off", vehicle.take_off(0.8)) &&
+               done("mission", vehicle.follow(mission));
+  for (const double start_s = vehicle.clock_s(); flown && vehicle.clock_s() - start_s < 2.0;) {
+    flown = vehicle.send(VelocitySetpoint{{0.2, 0.0, 0.0}});  // m/s north
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return done("land", vehicle.land()) && flown ? 0 : 1;
+}

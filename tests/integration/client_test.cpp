@@ -1,0 +1,105 @@
+// Programs that fly several vehicles from one context.
+#include <array>
+#include <future>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/ground/client/context.hpp"
+#include "swiftlet/ground/client/vehicle.hpp"
+#include "swiftlet/services/dds/domain_claim.hpp"
+#include "tests/integration/program.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace swiftlet::tests {
+namespace {
+
+using namespace std::chrono_literals;
+using ground::Ending;
+using ground::Vehicle;
+
+class OneContext : public testing::Test {
+ protected:
+  // The processes of one vehicle, in lockstep at twice the pace of the clock.
+  struct Processes {
+    Processes(const OneContext& test, const std::string& vehicle)
+        : plant("swiftlet-plant", test.words(vehicle, {"--speed", "2"}), test.folder_.path()),
+          mocap("swiftlet-mocap", test.words(vehicle), test.folder_.path()),
+          control("swiftlet-control", test.words(vehicle), test.folder_.path()) {}
+    Program plant, mocap, control;
+  };
+
+  std::vector<std::string> words(const std::string& vehicle,
+                                 const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = {
+        "--domain", std::to_string(claim_.domain()), "--vehicle-name", vehicle, "--localhost-only", "--clock",
+        "lockstep"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  comms::NodeSettings network() const {
+    comms::NodeSettings network;
+    network.name = "test";
+    network.domain = claim_.domain();
+    network.localhost_only = true;
+    return network;
+  }
+
+  comms::DomainClaim claim_;
+  TemporaryFolder folder_;
+};
+
+// GIVEN two vehicles of one participant, WHEN each is asked for something else at the same time, THEN each does its
+// own, and says so.
+TEST_F(OneContext, FliesTwoVehiclesAtOnce) {
+  const Processes first_processes(*this, "kl1");
+  const Processes second_processes(*this, "kl2");
+  const ground::Context context(network());
+  ASSERT_TRUE(eventually(
+      [&] {
+        return context.vehicles_seen() == std::vector<std::string>{"kl1", "kl2"};
+      },
+      20s));
+  Vehicle first(context, "kl1");
+  Vehicle second(context, "kl2");
+  for (Vehicle* const vehicle : {&first, &second}) {
+    ASSERT_TRUE(vehicle->connect(20s).accepted());
+    ASSERT_TRUE(vehicle->wait_until([](const auto& state) { return state.has_pose; }, 20s));
+    EXPECT_TRUE(vehicle->connected());
+    ASSERT_TRUE(eventually([&] { return vehicle->arm().accepted(); }, 20s));
+  }
+  EXPECT_EQ(first.name(), "kl1");
+
+  const ground::Manoeuvre lower = first.take_off(0.5, 0.8);
+  const ground::Manoeuvre higher = second.take_off(0.9, 0.8);
+  EXPECT_TRUE(lower.accepted()) << lower.answer().reason;
+  EXPECT_TRUE(higher.accepted()) << higher.answer().reason;
+  for (const ground::Manoeuvre& manoeuvre : {lower, higher}) {
+    const Ending ending = manoeuvre.wait(60s);
+    EXPECT_TRUE(ending.done()) << ending.reason;
+    EXPECT_EQ(manoeuvre.progress(), 1.0);
+  }
+  EXPECT_NEAR(first.state().position_ned_m.z(), -0.5, 0.06);
+  EXPECT_NEAR(second.state().position_ned_m.z(), -0.9, 0.06);
+
+  const ground::Manoeuvre away = first.go_to({{0.8, 0.0, -0.5}});
+  const ground::Manoeuvre landing = second.land();
+  EXPECT_TRUE(landing.wait(60s).done());
+  EXPECT_EQ(second.state().mode, control::Mode::kDisarmed);
+  EXPECT_TRUE(away.wait(60s).done());
+  EXPECT_NEAR(first.state().position_ned_m.x(), 0.8, 0.06);
+
+  // More newer requests than the controller remembers.
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(first.hold().accepted());
+  EXPECT_TRUE(lower.wait(0ms).done());
+  EXPECT_TRUE(away.wait(0ms).done());
+}
+
+TEST_F(OneContext, NamesThatCannotBeOneAreRefused) {
+  const ground::Context context(network());
+  EXPECT_THROW(Vehicle(context, "kl 1"), std::runtime_error);
+  EXPECT_THROW(Vehicle(context, ""), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace swiftlet::tests
