@@ -14,6 +14,9 @@
 namespace swiftlet::comms {
 namespace {
 
+// More than processes that start at once take from each other between the look and the use of a port.
+constexpr std::uint32_t kPortsAbove = 16;
+
 bool is_free(std::uint32_t port, bool localhost_only) {
   const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (socket < 0) return true;  // not for us to say why
@@ -41,15 +44,19 @@ DiscoveryPorts discovery_ports(int domain) {
   return ports;
 }
 
-void demand_discovery_port(int domain, bool localhost_only) {
+std::uint32_t free_discovery_port(int domain, bool localhost_only) {
   const DiscoveryPorts ports = discovery_ports(domain);
-  for (std::uint32_t port = ports.first; port <= ports.last(); port += ports.gap) {
-    if (is_free(port, localhost_only)) return;
+  for (std::uint32_t i = 0; i < ports.count; ++i) {
+    if (is_free(ports.first + i * ports.gap, localhost_only)) return i;
   }
   throw std::runtime_error("DDS domain " + std::to_string(domain) + " is full: all of its " +
                            std::to_string(ports.count) + " ports for discovery on this host, UDP " +
                            std::to_string(ports.first) + " to " + std::to_string(ports.last()) +
                            ", are taken; choose another with --domain");
+}
+
+std::uint32_t announced_ports(const DiscoveryPorts& ports, std::uint32_t own) {
+  return std::min(own + 1 + kPortsAbove, ports.count);
 }
 
 }  // namespace swiftlet::comms

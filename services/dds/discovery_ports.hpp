@@ -17,8 +17,13 @@ struct DiscoveryPorts {
 // 120 ports; 63 in domain 232, whose ports end with those of UDP.
 DiscoveryPorts discovery_ports(int domain);
 
-// Throws std::runtime_error with a sentence if all of the domain's ports are taken: a process more would be
-// found by none of the others.
-void demand_discovery_port(int domain, bool localhost_only);
+// The first of the domain's ports that is free now, counted from 0. Throws std::runtime_error with a sentence
+// if all are taken: a process more would be found by none of the others.
+std::uint32_t free_discovery_port(int domain, bool localhost_only);
+
+// To how many of the domain's ports a process announces itself that has the port of this number: to those
+// below its own and some above. So of two processes, the one above always calls the one below, which then
+// answers; in a domain of few processes each calls all others, and few ports that nobody has.
+std::uint32_t announced_ports(const DiscoveryPorts& ports, std::uint32_t own);
 
 }  // namespace swiftlet::comms

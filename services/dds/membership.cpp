@@ -9,7 +9,6 @@
 #include <fastdds/dds/log/StdoutErrConsumer.hpp>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 
-#include "swiftlet/services/dds/discovery_ports.hpp"
 #include "swiftlet/services/dds/participant_qos.hpp"
 #include "swiftlet/services/dds/shared_memory.hpp"
 
@@ -42,12 +41,11 @@ void end(dds::DomainParticipant* participant) {
 }
 
 // One at a time: Fast DDS 2.9 asks getpwuid() for the user's name, which keeps it in one place for all
-// threads. It does not say when it found no port.
+// threads.
 dds::DomainParticipant* create_participant(const NodeSettings& settings,
                                            dds::DomainParticipantListener* listener) {
   static std::mutex mutex;
   const std::lock_guard<std::mutex> lock(mutex);
-  demand_discovery_port(settings.domain, settings.localhost_only);
   return dds::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<std::uint32_t>(settings.domain), participant_qos(settings), listener,
       dds::StatusMask::requested_incompatible_qos() << dds::StatusMask::offered_incompatible_qos());

@@ -56,12 +56,14 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings) {
   // A port that is taken is passed over for the next one of the domain, and not for one beyond.
   const DiscoveryPorts ports = discovery_ports(settings.domain);
   builtin.mutation_tries = ports.count - 1;
+  // Here and not by the middleware, which would not say when it found none.
+  const std::uint32_t own_port = free_discovery_port(settings.domain, settings.localhost_only);
 
   const auto udp = std::make_shared<UDPv4TransportDescriptor>();
   udp->non_blocking_send = true;  // a full socket buffer loses a sample rather than hold the sender up
   if (settings.localhost_only) {
     udp->interfaceWhiteList = {kLoopback};
-    udp->maxInitialPeersRange = ports.count;
+    udp->maxInitialPeersRange = announced_ports(ports, own_port);
     // The first of the domain's ports that is free, whatever number the middleware gives the participant;
     // none for multicast. Of the peers (port 0), the middleware tries as many ports as maxInitialPeersRange.
     builtin.metatrafficUnicastLocatorList.push_back(loopback_locator(ports.first));

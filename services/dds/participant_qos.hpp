@@ -10,6 +10,7 @@
 
 namespace swiftlet::comms {
 
+// Of a process that joins now. Throws std::runtime_error with a sentence if the domain is full.
 eprosima::fastdds::dds::DomainParticipantQos participant_qos(const NodeSettings& settings);
 
 // The vehicle that a participant's user data names; empty if it names none.

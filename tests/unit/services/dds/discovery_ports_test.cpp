@@ -3,6 +3,7 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <sys/socket.h>
@@ -85,6 +86,33 @@ TEST(DiscoveryPorts, TheFirstAndTheLastProcessFindEachOther) {
   EXPECT_EQ(found_by_last.items()[0], "first");
   last.on_peer({});
   first.on_peer({});
+}
+
+// The one with the last port was there before; the other takes the first, and announces itself to few.
+TEST(DiscoveryPorts, OneThatComesLaterWithALowerPortIsFoundByTheHigherOne) {
+  const DomainClaim claim;
+  const DiscoveryPorts ports = discovery_ports(claim.domain());
+  std::optional<TakenPorts> but_the_last(std::in_place, claim.domain(), ports.count - 1);
+  Node high(settings(claim, "high"));
+  but_the_last.reset();
+  Inbox<std::string> found_by_high;
+  high.on_peer([&](const PeerEvent& peer) { found_by_high.put(peer.name); });
+  Node low(settings(claim, "low"));
+  Inbox<std::string> found_by_low;
+  low.on_peer([&](const PeerEvent& peer) { found_by_low.put(peer.name); });
+
+  ASSERT_LT(announced_ports(ports, 0), ports.count);
+  EXPECT_TRUE(found_by_low.wait_for_count(1));
+  EXPECT_TRUE(found_by_high.wait_for_count(1));
+  low.on_peer({});
+  high.on_peer({});
+}
+
+TEST(DiscoveryPorts, EachIsAnnouncedToFromAllAbove) {
+  const DiscoveryPorts ports = discovery_ports(0);
+  for (std::uint32_t own = 0; own < ports.count; ++own) ASSERT_GT(announced_ports(ports, own), own);
+  EXPECT_EQ(announced_ports(ports, 0), 17U);
+  EXPECT_EQ(announced_ports(ports, ports.count - 1), ports.count);
 }
 
 TEST(DiscoveryPorts, AProcessThatWouldNotBeFoundIsRefusedInWords) {
