@@ -14,7 +14,7 @@
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/flight/process_flight.hpp"
 #include "swiftlet/ground/terminal/fleet_progress.hpp"
-#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_claim.hpp"
 #include "swiftlet/services/dds/shared_memory.hpp"
 
 namespace swiftlet::ground {

@@ -39,12 +39,12 @@
 #include "swiftlet_msgs/msg/TrajectoryPubSubTypes.h"
 #include "swiftlet_msgs/msg/VehicleInfoPubSubTypes.h"
 
+#include "swiftlet/services/dds/discovery/reunions.hpp"
 #include "swiftlet/services/dds/lookout.hpp"
 #include "swiftlet/services/dds/membership.hpp"
 #include "swiftlet/services/dds/participant_qos.hpp"
 #include "swiftlet/services/dds/profiles.hpp"
 #include "swiftlet/services/dds/qos_conflicts.hpp"
-#include "swiftlet/services/dds/reunions.hpp"
 #include "swiftlet/services/dds/shared_memory.hpp"
 #include "swiftlet/services/dds/tolerant_type.hpp"
 

@@ -6,7 +6,7 @@
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 
-#include "swiftlet/services/dds/discovery_ports.hpp"
+#include "swiftlet/services/dds/discovery/discovery_ports.hpp"
 
 namespace swiftlet::comms {
 namespace {

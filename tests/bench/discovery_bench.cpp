@@ -16,7 +16,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_claim.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/runtime/process.hpp"
 

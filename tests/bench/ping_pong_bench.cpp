@@ -29,7 +29,7 @@
 #include "swiftlet_msgs/msg/ActuatorCommandPubSubTypes.h"
 #include "swiftlet_msgs/msg/ImuPubSubTypes.h"
 
-#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_claim.hpp"
 #include "swiftlet/services/dds/participant_qos.hpp"
 #include "swiftlet/services/dds/profiles.hpp"
 #include "swiftlet/services/runtime/latency_histogram.hpp"

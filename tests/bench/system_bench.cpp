@@ -23,7 +23,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/client/client.hpp"
-#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_claim.hpp"
 #include "swiftlet/services/runtime/child_process.hpp"
 #include "swiftlet/services/runtime/process.hpp"
 #include "tests/bench/stall_witness.hpp"

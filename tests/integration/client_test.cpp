@@ -6,7 +6,7 @@
 
 #include "swiftlet/ground/client/context.hpp"
 #include "swiftlet/ground/client/vehicle.hpp"
-#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_claim.hpp"
 #include "tests/integration/program.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -14,7 +14,7 @@
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
-#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_claim.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "tests/integration/program.hpp"

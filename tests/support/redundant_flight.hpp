@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "swiftlet/ground/client/client.hpp"
-#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_claim.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "tests/integration/program.hpp"
 

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_claim.hpp"
 #include "tests/support/eventually.hpp"
 
 namespace swiftlet::ground {

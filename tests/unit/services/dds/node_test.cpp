@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_claim.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/unit/services/dds/steady_sender.hpp"
 #include "tests/unit/services/messages/messages.hpp"

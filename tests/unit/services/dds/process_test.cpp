@@ -15,7 +15,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_claim.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/shared_memory.hpp"
 #include "tests/support/eventually.hpp"

@@ -12,7 +12,7 @@
 #include "swiftlet_msgs/msg/MissionPubSubTypes.h"
 #include "swiftlet_msgs/msg/MocapPosePubSubTypes.h"
 
-#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_claim.hpp"
 #include "swiftlet/services/dds/membership.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/profiles.hpp"

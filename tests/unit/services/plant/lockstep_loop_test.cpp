@@ -15,7 +15,7 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/plant/simulation/mocap.hpp"
-#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_claim.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 #include "tests/support/eventually.hpp"

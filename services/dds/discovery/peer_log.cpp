@@ -1,4 +1,4 @@
-#include "swiftlet/services/dds/peer_log.hpp"
+#include "swiftlet/services/dds/discovery/peer_log.hpp"
 
 #include <spdlog/spdlog.h>
 

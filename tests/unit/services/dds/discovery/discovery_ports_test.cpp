@@ -1,5 +1,5 @@
 // How many processes of a host find each other. Ports that are taken stand in for processes.
-#include "swiftlet/services/dds/discovery_ports.hpp"
+#include "swiftlet/services/dds/discovery/discovery_ports.hpp"
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_claim.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "tests/support/eventually.hpp"
 

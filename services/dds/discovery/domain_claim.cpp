@@ -1,4 +1,4 @@
-#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_claim.hpp"
 
 #include <cerrno>
 #include <fcntl.h>

@@ -1,4 +1,4 @@
-#include "swiftlet/services/dds/reunions.hpp"
+#include "swiftlet/services/dds/discovery/reunions.hpp"
 
 #include <chrono>
 

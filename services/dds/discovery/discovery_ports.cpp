@@ -1,4 +1,4 @@
-#include "swiftlet/services/dds/discovery_ports.hpp"
+#include "swiftlet/services/dds/discovery/discovery_ports.hpp"
 
 #include <algorithm>
 #include <arpa/inet.h>
