@@ -1,6 +1,6 @@
 // The plant swapped: the control service against a vehicle that the test makes. Whatever publishes imu and
 // battery and obeys actuator_command is a vehicle.
-#include "tests/integration/fake_vehicle.hpp"
+#include "tests/support/fake_vehicle.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -1,4 +1,4 @@
-#include "tests/integration/fake_vehicle.hpp"
+#include "tests/support/fake_vehicle.hpp"
 
 #include <algorithm>
 #include <chrono>
