@@ -71,7 +71,8 @@ double physical_rise(const Truth& truth, double t) {
 // noise: standard deviation of what is read, over the largest of its column.
 BenchData bench_by_formulas(const Truth& truth, double noise, unsigned seed,
                             const std::function<double(const Truth&, double)>& rise = reduced_rise) {
-  std::mt19937_64 generator(seed);
+  std::seed_seq seeds{seed, 9u};
+  std::mt19937_64 generator(seeds);
   std::normal_distribution<double> normal;
   const auto read = [&](std::vector<double>& column) {
     const double full = *std::max_element(column.begin(), column.end());
