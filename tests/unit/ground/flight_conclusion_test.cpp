@@ -1,8 +1,7 @@
 #include "swiftlet/ground/flight_conclusion.hpp"
 
-#include <array>
-#include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <string>
 
@@ -14,11 +13,11 @@ namespace {
 constexpr std::int64_t kSample_ns = 10'000'000;  // as telemetry comes
 constexpr int kSamples = 1000;
 
-// A flight of 10 s whose truth is off its reference by error(i) m to the north.
-template <class Error>
-FlightRecord flown(const Error& error, int from = 0, int to = kSamples) {
+// The report of a flight of 10 s whose truth is off its reference by error(i) m to the north, of which so many samples came.
+FlightReport judged(const std::function<double(int)>& error, int samples = kSamples,
+                    const std::string& reason = "") {
   FlightRecord record(kSamples);
-  for (int i = from; i < to; ++i) {
+  for (int i = 0; i < samples; ++i) {
     ReferenceRow asked;
     asked.stamp_ns = i * kSample_ns;
     asked.position_ned = {0.01 * i, 0.5, -1.0};
@@ -28,10 +27,6 @@ FlightRecord flown(const Error& error, int from = 0, int to = kSamples) {
     record.reference.append(asked);
     record.truth.append(truth);
   }
-  return record;
-}
-
-FlightReport judged(const FlightRecord& record, const std::string& reason = "") {
   FlightReport report;
   report.tolerance_m = 0.1;
   report.reason = reason;
@@ -40,7 +35,7 @@ FlightReport judged(const FlightRecord& record, const std::string& reason = "") 
 }
 
 TEST(Judge, AFlightWithinTheToleranceIsCompleted) {
-  const FlightReport report = judged(flown([](int) { return 0.099; }));
+  const FlightReport report = judged([](int) { return 0.099; });
   EXPECT_TRUE(report.completed);
   EXPECT_EQ(report.reason, "");
   EXPECT_NEAR(report.errors.peak_3d_m, 0.099, 1e-12);
@@ -48,29 +43,29 @@ TEST(Judge, AFlightWithinTheToleranceIsCompleted) {
 
 // One sample of 0.2 m among a thousand of 0.01 m: an RMS of 0.012 m, far below the tolerance.
 TEST(Judge, OneSampleBeyondTheToleranceIsEnough) {
-  const FlightReport report = judged(flown([](int i) { return i == 700 ? -0.2 : 0.01; }));
+  const FlightReport report = judged([](int i) { return i == 700 ? -0.2 : 0.01; });
   EXPECT_LT(report.errors.rms_3d_m, 0.02);
   EXPECT_FALSE(report.completed);
   EXPECT_EQ(report.reason, "the peak tracking error was 0.200 m, the tolerance is 0.100 m");
 }
 
 TEST(Judge, WhatEndedTheFlightIsTheReason) {
-  const FlightReport report = judged(flown([](int) { return 0.5; }), "the vehicle is silent");
+  const FlightReport report = judged([](int) { return 0.5; }, kSamples, "the vehicle is silent");
   EXPECT_FALSE(report.completed);
   EXPECT_EQ(report.reason, "the vehicle is silent");
   EXPECT_NEAR(report.errors.peak_3d_m, 0.5, 1e-12) << "the errors are taken all the same";
 }
 
 TEST(Judge, WithoutTelemetryToTheEndNothingIsCompleted) {
-  const FlightReport report = judged(flown([](int) { return 0.0; }, 0, kSamples - 30));
+  const FlightReport report = judged([](int) { return 0.0; }, kSamples - 30);
   EXPECT_FALSE(report.completed);
   EXPECT_NE(report.reason.find("too little telemetry"), std::string::npos) << report.reason;
-  EXPECT_FALSE(judged(FlightRecord(1)).completed);
+  EXPECT_FALSE(judged([](int) { return 0.0; }, 0).completed);
 }
 
 TEST(Judge, ATruthThatIsNotFiniteIsNoTruth) {
   const FlightReport report =
-      judged(flown([](int i) { return i == 5 ? std::numeric_limits<double>::quiet_NaN() : 0.0; }));
+      judged([](int i) { return i == 5 ? std::numeric_limits<double>::quiet_NaN() : 0.0; });
   EXPECT_FALSE(report.completed);
   EXPECT_EQ(report.reason, "the ground truth is not finite");
 }
