@@ -199,6 +199,19 @@ TEST_F(Flight, DescentWithoutPositionEndsAtTheGroundOrByTimeOut) {
   EXPECT_EQ(supervisor_.reason(), Reason::kDescentTimedOut);
 }
 
+// Each descent has its own time: two of 4 s are none of 8 s.
+TEST_F(Flight, TheTimeOfADescentBeginsWithIt) {
+  hover();
+  for (int descent = 0; descent < 3; ++descent) {
+    situation_.pose_age_s = 1.0;
+    ASSERT_TRUE(step_until(Mode::kDescent, 0.1));
+    ASSERT_FALSE(step_until(Mode::kStopped, 4.0)) << descent;
+    situation_.pose_age_s = 0.0;
+    ASSERT_TRUE(step_until(Mode::kHolding, 0.1));
+    for (int i = 0; i < 50; ++i) step();
+  }
+}
+
 // The ground was felt for a moment, in a landing that was called off. When the pose is lost later, a gust that
 // lasts for two samples must not be taken for the rest of that contact: it flies at 1 m.
 TEST_F(Flight, AContactBeforeALandingWasCalledOffIsForgotten) {

@@ -1,0 +1,94 @@
+// What the ground tells a vehicle beside requests: that it is there, and how far simulated time may pass.
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/ground/client/signs_of_life.hpp"
+#include "swiftlet/ground/client/time_grants.hpp"
+#include "swiftlet/services/dds/domain_claim.hpp"
+#include "tests/support/eventually.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+namespace msg = comms::msg;
+using tests::eventually;
+using tests::Inbox;
+
+constexpr std::int64_t kMs = 1'000'000;
+
+class GroundSignals : public testing::Test {
+ protected:
+  static comms::NodeSettings settings(const comms::DomainClaim& claim, const char* name) {
+    comms::NodeSettings settings;
+    settings.name = name;
+    settings.domain = claim.domain();
+    settings.localhost_only = true;
+    settings.deadlines = false;
+    return settings;
+  }
+  comms::DomainClaim claim_;
+  comms::Node ground_{settings(claim_, "ground")};
+  comms::Node vehicle_{settings(claim_, "vehicle")};
+};
+
+TEST_F(GroundSignals, ASignOfLifeGoesOutEveryFifthOfASecondOfTheVehiclesClock) {
+  Inbox<msg::GroundLink> inbox;
+  const auto subscription = vehicle_.subscribe<msg::GroundLink>(
+      comms::topics::kGroundLink, [&](const msg::GroundLink& sign) { inbox.put(sign); });
+  std::optional<SignsOfLife> signs;
+  signs.emplace(ground_, 42);
+  ASSERT_TRUE(eventually([&] { return subscription.matched() == 1; }));
+  signs->telemetry(5'000 * kMs);
+  ASSERT_TRUE(
+      inbox.wait([](const auto& all) { return !all.empty() && all.back().stamp_ns() == 5'000 * kMs; }));
+  inbox.clear();
+  for (std::int64_t t = 5'010; t <= 6'000; t += 10) signs->telemetry(t * kMs);
+  signs->telemetry(100 * kMs);  // the vehicle was started again
+  signs.reset();
+  ASSERT_TRUE(inbox.wait([](const auto& all) { return !all.empty() && !all.back().depends(); }))
+      << "it takes leave";
+  std::vector<std::int64_t> stamps;
+  for (const msg::GroundLink& sign : inbox.items()) {
+    EXPECT_EQ(sign.client(), 42U);
+    if (sign.depends()) stamps.push_back(sign.stamp_ns() / kMs);
+  }
+  EXPECT_EQ(stamps, (std::vector<std::int64_t>{5'200, 5'400, 5'600, 5'800, 6'000, 100}));
+}
+
+// A tenth of a second ahead of what has come, in steps of a quarter of that, and never beyond the goal.
+TEST_F(GroundSignals, TimeIsGrantedAWindowAheadUpToTheGoal) {
+  Inbox<std::int64_t> grants;
+  const auto subscription = vehicle_.subscribe<msg::SimulationClock>(
+      comms::topics::kSimulationClock,
+      [&](const msg::SimulationClock& clock) { grants.put(clock.advance_to_ns() / kMs); });
+  TimeGrants clock(ground_, 100 * kMs);
+  ASSERT_TRUE(eventually([&] { return subscription.matched() == 1; }));
+  const auto comes = [&](std::int64_t ms) {
+    return grants.wait([=](const auto& all) { return std::find(all.begin(), all.end(), ms) != all.end(); });
+  };
+  clock.up_to(1'000 * kMs);
+  ASSERT_TRUE(comes(100));
+  clock.has_come(10 * kMs);  // not worth a message
+  clock.has_come(30 * kMs);
+  ASSERT_TRUE(comes(130));
+  const std::vector<std::int64_t> so_far = grants.items();
+  EXPECT_EQ(std::count(so_far.begin(), so_far.end(), 110), 0);
+  clock.has_come(20 * kMs);  // late
+  clock.up_to(500 * kMs);    // the goal does not go back
+  clock.has_come(950 * kMs);
+  ASSERT_TRUE(comes(1'000));
+  clock.has_come(3'000 * kMs);
+  grants.clear();
+  ASSERT_TRUE(grants.wait_for_count(2)) << "the last grant comes again, for who missed it";
+  const std::vector<std::int64_t> again = grants.items();
+  EXPECT_EQ(std::count(again.begin(), again.end(), 1'000), static_cast<std::ptrdiff_t>(again.size()));
+  clock.without_end();
+  ASSERT_TRUE(comes(3'100));
+}
+
+}  // namespace
+}  // namespace swiftlet::ground
