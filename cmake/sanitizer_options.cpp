@@ -1,6 +1,7 @@
 // Linked into every program of a build with sanitizers: what their runtimes are told.
 #include <ctime>
 #include <pthread.h>
+#include <semaphore.h>
 
 extern "C" {
 
@@ -19,8 +20,8 @@ const char* __tsan_default_suppressions() {
          "race:libspdlog.so\n";
 }
 
-// The runtime of GCC 12 does not know this way to lock, by which std::timed_mutex waits. It knows the other.
-int pthread_mutex_clocklock(pthread_mutex_t* mutex, clockid_t clock, const timespec* until) noexcept {
+// The same time by the clock that the sanitizer's functions wait by.
+static timespec by_real_time(clockid_t clock, const timespec* until) {
   constexpr long kSecond_ns = 1'000'000'000;
   timespec now{};
   timespec real{};
@@ -35,7 +36,17 @@ int pthread_mutex_clocklock(pthread_mutex_t* mutex, clockid_t clock, const times
     ++real.tv_sec;
     real.tv_nsec -= kSecond_ns;
   }
+  return real;
+}
+
+// The runtime of GCC 12 does not know these ways to wait, of std::timed_mutex and runtime::Semaphore. It knows others.
+int pthread_mutex_clocklock(pthread_mutex_t* mutex, clockid_t clock, const timespec* until) noexcept {
+  const timespec real = by_real_time(clock, until);
   return pthread_mutex_timedlock(mutex, &real);
+}
+int sem_clockwait(sem_t* semaphore, clockid_t clock, const timespec* until) {
+  const timespec real = by_real_time(clock, until);
+  return sem_timedwait(semaphore, &real);
 }
 
 #endif
