@@ -7,7 +7,7 @@ namespace {
 using namespace wire;
 
 constexpr std::uint64_t kMaxStrength = 1000;
-constexpr std::size_t kReplicatedStateBytes = 1080;
+constexpr std::size_t kReplicatedStateBytes = 1096;
 
 }  // namespace
 
