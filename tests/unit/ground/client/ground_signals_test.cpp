@@ -8,7 +8,7 @@
 
 #include "swiftlet/ground/client/signs_of_life.hpp"
 #include "swiftlet/ground/client/time_grants.hpp"
-#include "swiftlet/services/dds/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_claim.hpp"
 #include "tests/support/eventually.hpp"
 
 namespace swiftlet::ground {
