@@ -74,6 +74,7 @@ class Desk : public testing::Test {
     message.id(id);
     message.kind(kind);
     message.speed(0.5);
+    message.position_ned({0.0, 0.0, -1.0});
     return message;
   }
   static msg::Mission mission(std::uint64_t id, double x) {
@@ -519,6 +520,7 @@ TEST_F(DeskOfAStandby, ARequestThatWasAcceptedBeforeIsAnsweredAndNotAppliedAgain
 // GIVEN a mission that is executed, WHEN a standby takes over, THEN it says so of the request, and that it is canceled
 // by what it is asked for itself.
 TEST_F(DeskOfAStandby, TheRequestUnderWayIsGoneOnWith) {
+  standby_desk_.on_mission(mission(2, 1.0));
   fly_mission();
   follow(600);
   const control::RequestStatus taken = standby_state().requests.back();
