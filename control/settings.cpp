@@ -58,6 +58,7 @@ void check_estimator(const EstimatorSettings& estimator, RuleChecker& check) {
   check.above("estimator.gate_chi_square", estimator.gate_chi_square, 0.0);
   check.above("estimator.outlier_position_m", estimator.outlier_position_m, 0.0);
   check.above("estimator.outlier_orientation_rad", estimator.outlier_orientation_rad, 0.0);
+  check.above("estimator.rotor_speed_bandwidth_rad_s", estimator.rotor_speed_bandwidth, 0.0);
 }
 
 void check_arming(const ArmingSettings& arming, RuleChecker& check) {

@@ -84,6 +84,7 @@ struct EstimatorSettings {
   double gate_chi_square = 30.0;
   double outlier_position_m = 0.05;      // beyond the bound and this far off: refused
   double outlier_orientation_rad = 0.1;  // likewise
+  double rotor_speed_bandwidth = 112.0;  // rad/s, at which measured rotor speeds correct the motor model
 };
 
 // What a vehicle may show on the ground and still be armed.

@@ -87,6 +87,7 @@ control::EstimatorSettings read_estimator(const ConfigNode& node) {
   estimator.gate_chi_square = node.at("gate_chi_square").number();
   estimator.outlier_position_m = node.at("outlier_position_m").number();
   estimator.outlier_orientation_rad = node.at("outlier_orientation_rad").number();
+  estimator.rotor_speed_bandwidth = node.at("rotor_speed_bandwidth_rad_s").number();
   return estimator;
 }
 

@@ -65,6 +65,7 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
       "  gate_chi_square: 58\n"
       "  outlier_position_m: 59\n"
       "  outlier_orientation_rad: 60\n"
+      "  rotor_speed_bandwidth_rad_s: 64\n"
       "arming:\n"
       "  max_tilt_rad: 0.41\n"
       "  max_speed_m_s: 42\n"
@@ -129,6 +130,7 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
   EXPECT_EQ(s.estimator.gate_chi_square, 58);
   EXPECT_EQ(s.estimator.outlier_position_m, 59);
   EXPECT_EQ(s.estimator.outlier_orientation_rad, 60);
+  EXPECT_EQ(s.estimator.rotor_speed_bandwidth, 64);
   EXPECT_EQ(s.arming.max_tilt_rad, 0.41);
   EXPECT_EQ(s.arming.max_speed, 42);
   EXPECT_EQ(s.arming.max_body_rate, 43);
@@ -250,6 +252,7 @@ const Fault kFaults[] = {
     {"estimator.gate_chi_square", "0", "above 0"},
     {"estimator.outlier_position_m", "0", "above 0"},
     {"estimator.outlier_orientation_rad", "0", "above 0"},
+    {"estimator.rotor_speed_bandwidth_rad_s", "0", "above 0"},
     {"estimator.accelerometer_bias_limit_m_s2", "-1", "at least 0"},
     {"estimator.gyro_bias_limit_rad_s", "-1", "at least 0"},
     {"failsafe.mocap_timeout_s", "0", "above 0"},
