@@ -102,6 +102,7 @@ FlightController::Loops::Loops(const plant::Vehicle& vehicle_in, const ControlSe
       estimator(settings_in.estimator),
       rotors(vehicle_in, settings_in.estimator.rotor_speed_bandwidth),
       disturbance(settings_in.disturbance),
+      climb(settings_in.estimator.detectors.climb_watch),
       position(settings_in.position, settings_in.limits, design_in),
       attitude(vehicle_in, settings_in.attitude, design_in),
       allocator(vehicle_in),

@@ -19,12 +19,15 @@
 // velocity and rotation, and the nominal state knows u and s already. So the covariance P waits at the last
 // pose and is brought to the next in one step, P <- F P F' + Q, and not with each IMU sample.
 //
-// A pose measures z = H error + noise of covariance V, H = | I 0 0 0 0 |. With S = H P H' + V (Sola's 6.1,
-//                                                          | 0 0 I 0 0 |
-// "Observation of the error state via filter correction"): K = P H' S^-1, error = K z, P <- P - K S K'. This
-// symmetric form equals Joseph's, (I - K H) P (I - K H)' + K V K', for this K, at a quarter of its cost, and no
-// other K is used with it. It subtracts what is known to be smaller than P: V is far above the rounding of
-// H P H', so that P stays positive definite (estimator_consistency_test.cpp).
+// A pose measures z = H error + noise of covariance V (Sola's 6.1, "Observation of the error state via filter
+// correction"),
+//
+//   H = | I 0 0 0 0 |,   S = H P H' + V,   K = P H' S^-1,   error = K z,   P <- P - K S K'.
+//       | 0 0 I 0 0 |
+//
+// The last is the symmetric form of (I - K H) P. It equals Joseph's, (I - K H) P (I - K H)' + K V K', for this K,
+// and no other K is used with it; V is far above the rounding of H P H', so that P stays positive definite
+// (estimator_consistency_test.cpp has both).
 #pragma once
 
 #include <Eigen/Core>
