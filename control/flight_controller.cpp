@@ -112,8 +112,9 @@ FlightController::Impl::Impl(const plant::Vehicle& vehicle_in, const ControlSett
       rotor_lag_s(design_in.rotor_lag_s),
       max_tilt_tangent(std::tan(settings_in.limits.max_tilt_rad)),
       estimator(settings_in.estimator),
-      rotors(vehicle_in),
+      rotors(vehicle_in, settings_in.estimator.rotor_speed_bandwidth),
       disturbance(settings_in.disturbance),
+      climb(settings_in.estimator.detectors.climb_watch),
       position(settings_in.position, settings_in.limits, design_in),
       attitude(vehicle_in, settings_in.attitude, design_in),
       allocator(vehicle_in),
@@ -128,7 +129,7 @@ void FlightController::Impl::begin_anew_if_clock_went_back(const plant::ImuSampl
   const bool rotors_off = command.rotor_state == plant::RotorState::kOff;
   if (sample.stamp_ns >= last_stamp_ns || !rotors_off) return;
   estimator = Estimator(settings.estimator);
-  rotors = RotorObserver(vehicle);
+  rotors = RotorObserver(vehicle, settings.estimator.rotor_speed_bandwidth);
   resets_seen = 0;
   last_stamp_ns = 0;
   has_battery = false;

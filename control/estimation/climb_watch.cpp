@@ -4,13 +4,13 @@
 
 namespace swiftlet::control {
 
-void ClimbWatch::Climb::step(double dt_s, double speed_change) {
-  speed += speed_change - dt_s * (2.0 * speed + height_m / kMemory_s) / kMemory_s;
+void ClimbWatch::Climb::step(double dt_s, double speed_change, double memory_s) {
+  speed += speed_change - dt_s * (2.0 * speed + height_m / memory_s) / memory_s;
   height_m += dt_s * speed;
 }
 
 void ClimbWatch::begin(const Eigen::Vector3d& accelerometer_bias_frd, double z_ned) {
-  *this = ClimbWatch();
+  *this = ClimbWatch(settings_);
   active_ = true;
   start_z_ned_ = z_ned_ = z_ned;
   bias_frd_ = accelerometer_bias_frd;
@@ -20,11 +20,11 @@ void ClimbWatch::step(double dt_s, const Eigen::Vector3d& specific_force_frd,
                       const Eigen::Quaterniond& q_ned_from_frd, double z_ned) {
   if (!active_) return;
   elapsed_s_ += dt_s;
-  active_ = elapsed_s_ < kLongest_s && start_z_ned_ - z_ned < kClearlySeen_m;
+  active_ = elapsed_s_ < settings_.longest_s && start_z_ned_ - z_ned < settings_.clearly_seen_m;
   const double upward = -(q_ned_from_frd * (specific_force_frd - bias_frd_)).z() - plant::kGravity;
-  felt_.step(dt_s, dt_s * upward);
+  felt_.step(dt_s, dt_s * upward, settings_.memory_s);
   const double speed = (z_ned_ - z_ned) / dt_s;
-  seen_.step(dt_s, speed - speed_);
+  seen_.step(dt_s, speed - speed_, settings_.memory_s);
   z_ned_ = z_ned;
   speed_ = speed;
 }

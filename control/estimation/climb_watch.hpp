@@ -6,38 +6,38 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "swiftlet/control/types/settings.hpp"
+
 namespace swiftlet::control {
 
 class ClimbWatch {
  public:
+  explicit ClimbWatch(const ClimbWatchSettings& settings = {}) : settings_(settings) {}
+
   // On the ground: the watch starts with the next step().
   void begin(const Eigen::Vector3d& accelerometer_bias_frd, double z_ned);
 
   // A step of dt_s > 0 in flight. specific_force_frd: measured, m/s^2, less the bias that was known on the
   // ground; z_ned: of the estimate, m. Does nothing before begin(), nor once the climb has been seen or
-  // kLongest_s are over.
+  // settings.longest_s are over.
   void step(double dt_s, const Eigen::Vector3d& specific_force_frd, const Eigen::Quaterniond& q_ned_from_frd,
             double z_ned);
 
   // The vehicle climbs and its pose does not.
   bool contradicted() const {
-    return active_ && felt_.height_m > kFelt_m && seen_.height_m < kSeenPart * felt_.height_m;
+    return active_ && felt_.height_m > settings_.felt_m &&
+           seen_.height_m < settings_.seen_part * felt_.height_m;
   }
 
-  static constexpr double kMemory_s = 0.7;  // a bias does not grow to a climb: below 0.2 m/s^2, it is none
-  static constexpr double kFelt_m = 0.1;
-  static constexpr double kSeenPart = 1.0 / 3.0;
-  static constexpr double kClearlySeen_m = 0.3;
-  static constexpr double kLongest_s = 4.0;
-
  private:
-  // A height behind the high pass s^2 / (s + 1 / kMemory_s)^2.
+  // A height behind the high pass s^2 / (s + 1 / memory_s)^2.
   struct Climb {
     double height_m = 0.0;
     double speed = 0.0;  // m/s
-    void step(double dt_s, double speed_change);
+    void step(double dt_s, double speed_change, double memory_s);
   };
 
+  ClimbWatchSettings settings_;
   bool active_ = false;
   double elapsed_s_ = 0.0;
   double start_z_ned_ = 0.0;

@@ -1,19 +1,34 @@
 // Covariance of the error state of an error-state Kalman filter whose attitude error is taken in the world
-// frame (Sola 2017, "Quaternion kinematics for the error-state Kalman filter", arXiv:1711.02508, ch. 7:
-// globally-defined orientation errors).
+// frame: J. Sola, "Quaternion kinematics for the error-state Kalman filter", 2017, arXiv:1711.02508, ch. 7,
+// "The ESKF using global angular errors".
 //
 // The error is (position, velocity, rotation vector, gyro bias, accelerometer bias), truth less estimate: the
 // first three in NED, the biases in FRD; the true attitude is rotation(error) * q_ned_from_frd. With R =
 // R_ned_from_frd and f = R * (specific force less bias) it moves by Sola's Eq. (300)-(302),
-//   d position = velocity,  d velocity = -f x rotation - R accelerometer_bias - noise,
+//   d position = velocity,  d velocity = -[f]x rotation - R accelerometer_bias - noise,
 //   d rotation = -R gyro_bias - noise.
-// With a world-frame error, R does not turn the transition of position, velocity and rotation: over an
-// interval these see nothing of the path but the integrals of f, and those the nominal state knows already.
-// So the covariance waits at the last pose and is brought to the next in one step, and not with each IMU
-// sample.
+// Over an interval T that is, exact for constant f and R,
+//
+//       | I   T I   -[s]x    T/3 [s]x R   -T^2/2 R |   position
+//       | 0    I    -[u]x    T/2 [u]x R      -T R  |   velocity
+//   F = | 0    0      I        -T R            0   |   rotation
+//       | 0    0      0          I             0   |   gyro bias
+//       | 0    0      0          0             I   |   accelerometer bias
+//
+// with u and s the integral of f and its second integral. With a world-frame error, R does not turn position,
+// velocity and rotation, and the nominal state knows u and s already. So the covariance P waits at the last
+// pose and is brought to the next in one step, P <- F P F' + Q, and not with each IMU sample.
+//
+// A pose measures z = H error + noise of covariance V (Sola's 6.1, "Observation of the error state via filter
+// correction"),
+//
+//   H = | I 0 0 0 0 |,   S = H P H' + V,   K = P H' S^-1,   error = K z,   P <- P - K S K'.
+//       | 0 0 I 0 0 |
+//
+// The last is the symmetric form of (I - K H) P. It equals Joseph's, (I - K H) P (I - K H)' + K V K', for this K,
+// and no other K is used with it; V is far above the rounding of H P H', so that P stays positive definite
+// (estimator_consistency_test.cpp has both).
 #pragma once
-
-#include <array>
 
 #include <Eigen/Core>
 
@@ -21,6 +36,7 @@ namespace swiftlet::control {
 
 constexpr int kErrorStates = 15;
 using ErrorState = Eigen::Matrix<double, kErrorStates, 1>;
+using ErrorMatrix = Eigen::Matrix<double, kErrorStates, kErrorStates>;
 
 // An interval of the nominal path, short enough for one R and one mean of f: some 20 ms. Negative intervals
 // run backwards.
@@ -47,9 +63,6 @@ struct PoseInnovation {
 };
 
 class ErrorCovariance {
-  // One column more than there are states, so that rows fill vector registers. Of no meaning here.
-  using Row = Eigen::Array<double, kErrorStates + 1, 1>;
-
  public:
   ErrorCovariance() { reset(ErrorState::Zero()); }
 
@@ -60,35 +73,33 @@ class ErrorCovariance {
   // Adds to the variances of position, velocity and rotation: for what was not measured.
   void add_motion(double position_variance, double velocity_variance, double rotation_variance);
 
-  // What a pose says: the innovation's square, normalised by its covariance, and the gains behind it. Holds
-  // until the covariance changes.
+  // What a pose says. Holds until the covariance changes.
   class Correction {
    public:
-    double normalised_square() const { return normalised_square_; }  // chi-square of 6 degrees of freedom
-    ErrorState step() const;                                         // K * innovation
+    // z' S^-1 z, chi-square of 6 degrees of freedom.
+    double normalised_square() const { return normalised_square_; }
+    const ErrorState& step() const { return step_; }  // K z
 
    private:
     friend class ErrorCovariance;
-    static constexpr int kRows = 6;
-    std::array<Row, kRows> rows_;  // see weigh()
+    Eigen::Matrix<double, 6, kErrorStates> h_p_;   // H P
+    Eigen::Matrix<double, kErrorStates, 6> gain_;  // K
+    ErrorState step_;
     double normalised_square_ = 0.0;
   };
   Correction weigh(const PoseInnovation& innovation, double position_variance,
                    double rotation_variance) const;
-  // The covariance after the correction has been made: P - K S K'.
+  // The covariance after the correction has been made.
   void reduce(const Correction& correction);
 
-  ErrorState standard_deviation() const;
-  Eigen::Matrix<double, kErrorStates, kErrorStates> matrix() const;
+  ErrorState standard_deviation() const { return p_.diagonal().cwiseMax(0.0).cwiseSqrt(); }
+  const ErrorMatrix& matrix() const { return p_; }
 
  private:
-  template <int kFirst>
-  void reduce_rows(const Correction& correction);
-
-  std::array<Row, kErrorStates> p_;
+  ErrorMatrix p_;
 };
 
-// How an error moves over an interval: p_.advance() does it to both sides of the covariance.
+// F error.
 ErrorState advance(const ErrorInterval& interval, const ErrorState& error);
 
 }  // namespace swiftlet::control

@@ -13,38 +13,24 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double kMaxStep_s = 0.25;  // longer gaps between IMU samples are not integrated over
-// A gap longer than the first may hide accelerations and rates of the others.
-constexpr double kUnseen_s = 0.02;
-constexpr double kUnseenAcceleration = 2.0;  // m/s^2
-constexpr double kUnseenRate = 0.5;          // rad/s
-constexpr double kUnseenTurn_rad = 0.025;    // that needs no trial (motion_trial.hpp) ...
-constexpr double kUnseenTurnSigmas = 4.0;    // ... nor do so many standard deviations of the orientation
-constexpr std::int64_t kInterval_ns = 20'000'000;  // the covariance goes by no longer ones ...
-constexpr std::uint64_t kIntervalMoments = 32;     // ... nor by more moments of the history
-constexpr std::int64_t kMaxLead_ns = 20'000'000;   // that a pose may be ahead of the IMU
-constexpr double kStartSpeed = 1.0;                // m/s, standard deviation at the first pose
-constexpr double kResetSpeed = 0.3;                // m/s, likewise after a reset
-constexpr double kGyroSlip = 3.0;                  // rad/s, of a gyro that misleads
-constexpr double kSmallTurn_rad = 0.01;
-constexpr double kSuddenly = 2.0;         // times the bound of an outlier
-constexpr int kGlitch = 2;                // poses that contradict, in a row; more of them mean something
-constexpr double kStepTime_s = 0.05;      // within which a step could have been a motion
-constexpr int kPosesToRestart = 5;        // that disagree, of a stream without a break: the IMU misled
-constexpr double kRestartGyroBias = 0.1;  // rad/s
-constexpr double kRestartAccelerometerBias = 0.5;  // m/s^2
-constexpr double kSwap_rad = 0.35;
-constexpr double kLongFall = 1e3;  // m/s
+// How finely the covariance follows: F takes f and R for constant over an interval.
+constexpr std::int64_t kInterval_ns = 20'000'000;
+constexpr std::uint64_t kIntervalMoments = 32;  // of the history, likewise
+constexpr double kUnitTolerance = 0.01;         // of a quaternion's length
+constexpr double kLongFall = 1e3;               // m/s, before the first pose: numbers lose their last digits
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
+
+std::int64_t nanoseconds(double s) { return static_cast<std::int64_t>(s * 1e9); }
 
 double squared(double x) { return x * x; }
 
 Vector3d bounded(const Vector3d& v, double limit) { return v.cwiseMax(-limit).cwiseMin(limit); }
 
-// Between attitudes of a path that are close to each other.
+// Between attitudes of a path that are close to each other, up to their signs.
 Quaterniond mean(const Quaterniond& a, double part_a, const Quaterniond& b, double part_b) {
-  return Quaterniond((part_a * a.coeffs() + part_b * b.coeffs()).eval()).normalized();
+  const double sign = a.dot(b) < 0.0 ? -1.0 : 1.0;
+  return Quaterniond((part_a * a.coeffs() + sign * part_b * b.coeffs()).eval()).normalized();
 }
 
 }  // namespace
@@ -69,7 +55,11 @@ const char* to_string(PoseFault fault) {
   return "unknown";
 }
 
-Estimator::Estimator(const EstimatorSettings& settings) : settings_(settings) {
+Estimator::Estimator(const EstimatorSettings& settings)
+    : settings_(settings),
+      detectors_(settings.detectors),
+      repetition_(settings.detectors.stuck_pose),
+      continuity_(settings) {
   noise_.velocity = squared(settings.accelerometer_noise_density);
   noise_.rotation = squared(settings.gyro_noise_density);
   noise_.gyro_bias = squared(settings.gyro_bias_walk);
@@ -85,8 +75,9 @@ bool Estimator::predict(const plant::ImuSample& sample) {
   if (sample.stamp_ns <= last_imu_.stamp_ns) return false;
 
   const bool first = last_imu_.stamp_ns == 0;
-  const double dt = first ? 0.0 : std::min(seconds(sample.stamp_ns - last_imu_.stamp_ns), kMaxStep_s);
-  if (dt > kUnseen_s) {
+  const double dt =
+      first ? 0.0 : std::min(seconds(sample.stamp_ns - last_imu_.stamp_ns), detectors_.imu_silence.longest_s);
+  if (dt > detectors_.imu_silence.from_s) {
     unseen_ = true;
     seen_again_ns_ = sample.stamp_ns;
     trial_.begin();
@@ -95,6 +86,7 @@ bool Estimator::predict(const plant::ImuSample& sample) {
   now_.stamp_ns = sample.stamp_ns;
   now_.body_rates_frd = sample.body_rates_frd - now_.gyro_bias;
 
+  // Sola's nominal state, q <- q rotation(w dt), v <- v + (R a + g) dt, over the mean of the two samples
   const Vector3d mean_rates = 0.5 * (before.body_rates_frd + sample.body_rates_frd) - now_.gyro_bias;
   const Vector3d mean_force =
       0.5 * (before.specific_force_frd + sample.specific_force_frd) - now_.accelerometer_bias;
@@ -128,9 +120,9 @@ bool Estimator::correct(const plant::PoseSample& pose, plant::RotorState rotors)
 PoseFault Estimator::take_in(const plant::PoseSample& pose, plant::RotorState rotors) {
   if (!pose.tracked) return PoseFault::kUntracked;
   if (!pose.position_ned.allFinite() || !pose.q_ned_from_frd.coeffs().allFinite()) return PoseFault::kInvalid;
-  if (std::abs(pose.q_ned_from_frd.norm() - 1.0) > 0.01) return PoseFault::kInvalid;
+  if (std::abs(pose.q_ned_from_frd.norm() - 1.0) > kUnitTolerance) return PoseFault::kInvalid;
   if (now_.stamp_ns == 0) return PoseFault::kUntimely;
-  if (pose.stamp_ns > now_.stamp_ns + kMaxLead_ns) {  // the IMU is silent
+  if (pose.stamp_ns > now_.stamp_ns + nanoseconds(detectors_.recovery.max_lead_s)) {  // the IMU is silent
     continuity_.look_at(pose);
     return PoseFault::kUntimely;
   }
@@ -143,19 +135,7 @@ PoseFault Estimator::take_in(const plant::PoseSample& pose, plant::RotorState ro
     return PoseFault::kNone;
   }
 
-  std::uint64_t first_newer = next_;
-  while (first_newer > first_after_anchor_ && remembered(first_newer - 1).stamp_ns > pose.stamp_ns)
-    --first_newer;
-  const Moment moment = moment_at(std::min(pose.stamp_ns, now_.stamp_ns), first_newer);
-  advance(covariance_, anchor_, first_after_anchor_, moment);
-  anchor_at(moment, first_newer);
-
-  PoseInnovation innovation;
-  // A pose that is ahead of the IMU is compared with where the estimate goes.
-  const double ahead_s = seconds(pose.stamp_ns - moment.stamp_ns);
-  const Quaterniond q_ned_from_frd = moment.q_ned_from_frd * plant::rotation(ahead_s * now_.body_rates_frd);
-  innovation.position = pose.position_ned - (moment.position_ned + ahead_s * moment.velocity_ned);
-  innovation.rotation = plant::rotation_vector(pose.q_ned_from_frd.normalized() * q_ned_from_frd.conjugate());
+  const PoseInnovation innovation = compare(pose);
   const ErrorCovariance::Correction correction = weigh(innovation);
   normalised_innovation_ = correction.normalised_square();
   const bool contradicts = normalised_innovation_ > settings_.gate_chi_square;
@@ -169,12 +149,30 @@ PoseFault Estimator::take_in(const plant::PoseSample& pose, plant::RotorState ro
 
   trust(pose);
   contradictions_ = contradicts ? contradictions_ + 1 : 0;
-  if (contradicts && contradictions_ <= kGlitch) {
+  if (contradicts && contradictions_ <= detectors_.recovery.glitch_poses) {
     apply(std::sqrt(settings_.gate_chi_square / normalised_innovation_) * correction.step());
   } else {
     agree(innovation, correction);
   }
   return PoseFault::kNone;
+}
+
+// z = y - h(x) of Sola's 6.1, at the pose's own stamp, to which the covariance is brought.
+PoseInnovation Estimator::compare(const plant::PoseSample& pose) {
+  std::uint64_t first_newer = next_;
+  while (first_newer > first_after_anchor_ && remembered(first_newer - 1).stamp_ns > pose.stamp_ns)
+    --first_newer;
+  const Moment moment = moment_at(std::min(pose.stamp_ns, now_.stamp_ns), first_newer);
+  advance(covariance_, anchor_, first_after_anchor_, moment);
+  anchor_at(moment, first_newer);
+
+  // A pose that is ahead of the IMU is compared with where the estimate goes.
+  const double ahead_s = seconds(pose.stamp_ns - moment.stamp_ns);
+  const Quaterniond q_ned_from_frd = moment.q_ned_from_frd * plant::rotation(ahead_s * now_.body_rates_frd);
+  PoseInnovation innovation;
+  innovation.position = pose.position_ned - (moment.position_ned + ahead_s * moment.velocity_ned);
+  innovation.rotation = plant::rotation_vector(pose.q_ned_from_frd.normalized() * q_ned_from_frd.conjugate());
+  return innovation;
 }
 
 void Estimator::trust(const plant::PoseSample& pose) {
@@ -192,7 +190,8 @@ void Estimator::agree(const PoseInnovation& innovation, const ErrorCovariance::C
     return;
   }
   const double step_m2 = innovation.position.squaredNorm();
-  covariance_.add_motion(step_m2, step_m2 / squared(kStepTime_s), innovation.rotation.squaredNorm());
+  covariance_.add_motion(step_m2, step_m2 / squared(detectors_.recovery.step_time_s),
+                         innovation.rotation.squaredNorm());
   const ErrorCovariance::Correction likely = weigh(innovation);
   covariance_.reduce(likely);
   apply(likely.step());
@@ -205,13 +204,16 @@ ErrorCovariance::Correction Estimator::weigh(const PoseInnovation& innovation) c
 
 // What turns further from one pose to the next than the gyro ever misleads was not turned.
 double Estimator::outlier_rotation() const {
-  return std::min(settings_.outlier_orientation_rad, kSmallTurn_rad + kGyroSlip * continuity_.interval_s());
+  const double gyro_slip = 0.5 * settings_.max_body_rate;
+  return std::min(settings_.outlier_orientation_rad,
+                  detectors_.continuity.noise_rad + gyro_slip * continuity_.interval_s());
 }
 
 // What only a motion explains that the IMU did not see: the poses must go on in reach, and as the IMU has it
 // since.
 bool Estimator::believed_after_silence(const plant::PoseSample& pose, const PoseInnovation& innovation) {
-  const double turn = std::max(kUnseenTurn_rad, kUnseenTurnSigmas * settings_.mocap_orientation_sigma);
+  const double turn = std::max(detectors_.imu_silence.turn_rad,
+                               detectors_.imu_silence.turn_sigmas * settings_.mocap_orientation_sigma);
   if (!unseen_ ||
       (innovation.position.norm() < settings_.outlier_position_m && innovation.rotation.norm() < turn))
     return true;
@@ -227,18 +229,20 @@ PoseFault Estimator::disagree(const plant::PoseSample& pose, const PoseInnovatio
   if (refused_in_a_row_++ == 0) {
     // What the IMU misleads to grows from pose to pose; what comes at once is a jump, unless the IMU was
     // silent.
-    const bool sudden = innovation.position.norm() > kSuddenly * settings_.outlier_position_m ||
-                        innovation.rotation.norm() > outlier_rotation();
+    const bool sudden =
+        innovation.position.norm() > detectors_.recovery.sudden * settings_.outlier_position_m ||
+        innovation.rotation.norm() > outlier_rotation();
     if (unseen_ && continuity_.in_reach()) continuity_.begin();
     if (!unseen_ && sudden) continuity_.end();
   }
-  const bool goes_on = believed && continuity_.unbroken() && continuity_.poses() >= kPosesToRestart;
+  const bool goes_on = believed && continuity_.unbroken() && continuity_.poses() >= detectors_.recovery.poses;
   const bool at_rest = rotors == plant::RotorState::kOff && continuity_.lasting();
-  if (refused_in_a_row_ >= kPosesToRestart && (goes_on || at_rest)) {
+  if (refused_in_a_row_ >= detectors_.recovery.poses && (goes_on || at_rest)) {
     restart_at(pose, innovation);
     return PoseFault::kNone;
   }
-  return innovation.rotation.norm() > kSwap_rad ? PoseFault::kSwapped : PoseFault::kOutlier;
+  return innovation.rotation.norm() > detectors_.recovery.swap_rad ? PoseFault::kSwapped
+                                                                   : PoseFault::kOutlier;
 }
 
 // Takes a step of the error state at the anchor into the nominal state, there and since.
@@ -265,7 +269,9 @@ void Estimator::apply(const ErrorState& step) {
       bounded(now_.accelerometer_bias + step.segment<3>(12), settings_.accelerometer_bias_limit);
 }
 
-// As advance() of error_covariance.hpp, with the attitude's step as a rotation.
+// F of error_covariance.hpp, with the attitude's step as a rotation: Sola's 7.3.2, "Injection of the observed error
+// into the nominal state", q <- rotation(step) q. The covariance's reset, P <- G P G' with G = I + [step / 2]x up to
+// sign, is left out: G is I within half a step of the attitude, some mrad.
 void Estimator::Correction::carry_to(Moment& moment) const {
   const ErrorInterval since = interval(at, moment);
   const double t = since.duration_s;
@@ -302,9 +308,10 @@ void Estimator::restart_at(const plant::PoseSample& pose, const PoseInnovation& 
   step.segment<3>(6) = innovation.rotation;
   apply(step);
   ErrorState sigma;
-  sigma << Vector3d::Constant(settings_.mocap_position_sigma), Vector3d::Constant(kResetSpeed),
-      Vector3d::Constant(settings_.mocap_orientation_sigma), Vector3d::Constant(kRestartGyroBias),
-      Vector3d::Constant(kRestartAccelerometerBias);
+  sigma << Vector3d::Constant(settings_.mocap_position_sigma), Vector3d::Constant(detectors_.recovery.speed),
+      Vector3d::Constant(settings_.mocap_orientation_sigma),
+      Vector3d::Constant(detectors_.recovery.gyro_bias),
+      Vector3d::Constant(detectors_.recovery.accelerometer_bias);
   covariance_.reset(sigma);
   trust(pose);
   ++now_.resets;
@@ -313,7 +320,7 @@ void Estimator::restart_at(const plant::PoseSample& pose, const PoseInnovation& 
 }
 
 // The path that the IMU has drawn since the pose is laid to it. The vehicle is taken to rest there, within
-// kStartSpeed.
+// settings.start_speed.
 void Estimator::start_at(const plant::PoseSample& pose) {
   first_after_anchor_ = next_ - std::min<std::uint64_t>(next_, kHistory);
   anchor_ = remembered(first_after_anchor_);
@@ -340,7 +347,7 @@ void Estimator::start_at(const plant::PoseSample& pose) {
   initialised_ = true;
   trust(pose);
   ErrorState sigma;
-  sigma << Vector3d::Constant(settings_.mocap_position_sigma), Vector3d::Constant(kStartSpeed),
+  sigma << Vector3d::Constant(settings_.mocap_position_sigma), Vector3d::Constant(settings_.start_speed),
       Vector3d::Constant(settings_.mocap_orientation_sigma), Vector3d::Constant(settings_.gyro_bias_sigma),
       Vector3d::Constant(settings_.accelerometer_bias_sigma);
   covariance_.reset(sigma);
@@ -390,9 +397,10 @@ void Estimator::advance_step(ErrorCovariance& covariance, const Moment& from, co
   step.r_ned_from_frd = mean(from.q_ned_from_frd, 0.5, to.q_ned_from_frd, 0.5).toRotationMatrix();
   covariance.advance(step, noise_);
   const double t = step.duration_s;
-  if (t <= kUnseen_s * 1.5) return;
-  const double speed = kUnseenAcceleration * t;
-  covariance.add_motion(squared(0.5 * t * speed), squared(speed), squared(kUnseenRate * t));
+  const ImuSilenceSettings& silence = detectors_.imu_silence;
+  if (t <= 1.5 * silence.from_s) return;
+  const double speed = silence.acceleration * t;
+  covariance.add_motion(squared(0.5 * t * speed), squared(speed), squared(silence.body_rate * t));
 }
 
 void Estimator::advance(ErrorCovariance& covariance, Moment from, std::uint64_t first,

@@ -2,7 +2,7 @@
 // bias.
 //
 // An error-state Kalman filter on the attitude manifold, its attitude error taken in the world frame (Sola
-// 2017, arXiv:1711.02508; error_covariance.hpp). The nominal state goes on with each IMU sample. The
+// 2017, arXiv:1711.02508; error_covariance.hpp has F, H, Q, V and K). README.md has the detectors. The nominal state goes on with each IMU sample. The
 // covariance stays at the last pose's stamp; a pose is compared with the estimate at the pose's own stamp,
 // the covariance brought there, and the correction brought forward to now along the kept history, so that
 // latency costs no stability.
@@ -122,6 +122,7 @@ class Estimator {
   void show_path();
   void remember();
   PoseFault take_in(const plant::PoseSample& pose, plant::RotorState rotors);
+  PoseInnovation compare(const plant::PoseSample& pose);
   PoseFault disagree(const plant::PoseSample& pose, const PoseInnovation& innovation,
                      plant::RotorState rotors, bool believed);
   void trust(const plant::PoseSample& pose);  // from it on the stream is followed
@@ -142,6 +143,7 @@ class Estimator {
   void anchor_at(const Moment& moment, std::uint64_t first_newer);
 
   EstimatorSettings settings_;
+  DetectorSettings detectors_;  // of the settings
   ErrorNoise noise_;
   Estimate now_;
   Moment path_;  // what the IMU says, of the newest sample; before the first pose from an arbitrary start

@@ -8,15 +8,15 @@
 namespace swiftlet::control {
 namespace {
 
-constexpr double kSigmas = 3.0;
-
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 }  // namespace
 
 MotionTrial::Verdict MotionTrial::look_at(const plant::PoseSample& pose, const PoseInnovation& innovation,
                                           const EstimatorSettings& settings) {
-  if (count_ > 0 && pose.stamp_ns - points_[count_ - 1].stamp_ns < kInterval_ns) return Verdict::kNone;
+  if (count_ > 0 &&
+      seconds(pose.stamp_ns - points_[count_ - 1].stamp_ns) < settings.detectors.motion_trial.interval_s)
+    return Verdict::kNone;
   points_[count_++] = {pose.stamp_ns, pose.position_ned, pose.position_ned - innovation.position,
                        plant::rotation(innovation.rotation)};
   if (count_ < points_.size()) return Verdict::kNone;
@@ -31,8 +31,10 @@ MotionTrial::Verdict MotionTrial::look_at(const plant::PoseSample& pose, const P
 // the same with turn * S, from another p and with another v. So what is left of the poses without g and
 // turn * S is straight and even.
 bool MotionTrial::agree(const EstimatorSettings& settings) const {
+  const MotionTrialSettings& limits = settings.detectors.motion_trial;
   const Eigen::Quaterniond& turn = points_[1].turn_ned;
-  const double turn_limit = kTurn_rad + kSigmas * std::sqrt(2.0) * settings.mocap_orientation_sigma;
+  const double turn_limit =
+      limits.turn_rad + limits.sigmas * std::sqrt(2.0) * settings.mocap_orientation_sigma;
   for (const Point& point : points_) {
     if (plant::rotation_vector(point.turn_ned * turn.conjugate()).norm() > turn_limit) return false;
   }
@@ -47,8 +49,8 @@ bool MotionTrial::agree(const EstimatorSettings& settings) const {
   const Eigen::Vector3d middle = left(points_[1]);
   const Eigen::Vector3d end = left(points_[2]);
   const Eigen::Vector3d acceleration = 2.0 * ((end - middle) / t2 - (middle - start) / t1) / (t1 + t2);
-  const double noise = kSigmas * std::sqrt(6.0) * settings.mocap_position_sigma / (t1 * t2);
-  return acceleration.norm() < kAcceleration + noise;
+  const double noise = limits.sigmas * std::sqrt(6.0) * settings.mocap_position_sigma / (t1 * t2);
+  return acceleration.norm() < limits.acceleration + noise;
 }
 
 }  // namespace swiftlet::control

@@ -21,15 +21,11 @@ class MotionTrial {
   enum class Verdict : std::uint8_t { kNone, kAgree, kDisagree };
 
   // The next pose, and what it differs by from the path that the IMU alone has drawn since the trial began: a
-  // verdict over the last two intervals of kInterval_ns, each time that one is over. Of the settings, the
-  // noise of the poses counts.
+  // verdict over the last two intervals, each time that one is over. Of the settings, the noise of the poses and
+  // detectors.motion_trial count.
   Verdict look_at(const plant::PoseSample& pose, const PoseInnovation& innovation,
                   const EstimatorSettings& settings);
   void begin() { count_ = 0; }
-
-  static constexpr std::int64_t kInterval_ns = 60'000'000;
-  static constexpr double kAcceleration = 0.3;  // m/s^2, that they may differ by: a tilt of 1.8 degrees
-  static constexpr double kTurn_rad = 0.015;    // likewise, of their turns
 
  private:
   struct Point {

@@ -7,32 +7,24 @@
 namespace swiftlet::control {
 namespace {
 
-constexpr double kSame = 1e-8;
-constexpr double kDistinct = 2e-6;  // more than the last bits of what has come to rest
-constexpr int kDistinctPoses = 20;  // that show that a stream has noise
-constexpr double kLongestGap_s = 0.1;
-constexpr double kFastest = 4.0;       // m/s, of a vehicle between two poses ...
-constexpr double kFastestTurn = 6.0;   // rad/s
-constexpr double kSmallStep_m = 0.01;  // ... and what noise may add
-constexpr double kSmallStep_rad = 0.01;
-
-// No component differs by as much, of the position in m or of the quaternion, of which q and -q are the same.
+// No component differs by as much, of the position in m or of the quaternion: q and -q are one attitude.
 bool closer(const plant::PoseSample& a, const plant::PoseSample& b, double distance) {
-  const double sign = a.q_ned_from_frd.dot(b.q_ned_from_frd) < 0.0 ? -1.0 : 1.0;
+  const Eigen::Vector4d q_a = a.q_ned_from_frd.coeffs();
+  const Eigen::Vector4d q_b = b.q_ned_from_frd.coeffs();
   return (a.position_ned - b.position_ned).cwiseAbs().maxCoeff() < distance &&
-         (a.q_ned_from_frd.coeffs() - sign * b.q_ned_from_frd.coeffs()).cwiseAbs().maxCoeff() < distance;
+         std::min((q_a - q_b).cwiseAbs().maxCoeff(), (q_a + q_b).cwiseAbs().maxCoeff()) < distance;
 }
 
 }  // namespace
 
 void RepetitionWatch::look_at(const plant::PoseSample& pose, plant::RotorState rotors) {
-  const bool again = last_.tracked && closer(pose, last_, kSame);
-  const bool distinct = last_.tracked && !closer(pose, last_, kDistinct);
-  repetitions_ = again ? std::min(repetitions_ + 1, kRepetitions) : 0;
+  const bool again = last_.tracked && closer(pose, last_, settings_.same);
+  const bool distinct = last_.tracked && !closer(pose, last_, settings_.distinct);
+  repetitions_ = again ? std::min(repetitions_ + 1, settings_.repetitions) : 0;
   last_ = pose;
   if (rotors != plant::RotorState::kOff) return;
-  distinct_ = distinct ? std::min(distinct_ + 1, kDistinctPoses) : 0;
-  if (distinct_ == kDistinctPoses) noisy_ = true;
+  distinct_ = distinct ? std::min(distinct_ + 1, settings_.distinct_poses) : 0;
+  if (distinct_ == settings_.distinct_poses) noisy_ = true;
 }
 
 void Continuity::look_at(const plant::PoseSample& pose) {
@@ -42,8 +34,8 @@ void Continuity::look_at(const plant::PoseSample& pose) {
     interval_s_ = static_cast<double>(pose.stamp_ns - last.stamp_ns) * 1e-9;
     const Eigen::Vector3d moved_ned = pose.position_ned - last.position_ned;
     const Eigen::Quaterniond turned_frd = last.q_ned_from_frd.conjugate() * pose.q_ned_from_frd;
-    const double reach_m = kFastest * interval_s_ + kSmallStep_m;
-    const double reach_rad = kFastestTurn * interval_s_ + kSmallStep_rad;
+    const double reach_m = max_speed_ * interval_s_ + settings_.noise_m;
+    const double reach_rad = max_body_rate_ * interval_s_ + settings_.noise_rad;
     stepped = moved_ned.norm() > reach_m || plant::rotation_vector(turned_frd).norm() > reach_rad;
     if (stepped && disowned_) {
       disowned_ = false;
@@ -57,7 +49,7 @@ void Continuity::look_at(const plant::PoseSample& pose) {
       in_reach_ =
           stepped_ned_.norm() < 2.0 * reach_m && plant::rotation_vector(turned_frd_).norm() < 2.0 * reach_rad;
     }
-    if (interval_s_ > kLongestGap_s) unbroken_ = false;
+    if (interval_s_ > settings_.longest_gap_s) unbroken_ = false;
   }
   poses_ = stepped ? 1 : poses_ + 1;
   if (stepped) since_ns_ = pose.stamp_ns;

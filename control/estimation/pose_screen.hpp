@@ -1,4 +1,5 @@
-// What can be wrong with a stream of poses that one pose alone does not show: frozen markers, and steps.
+// What can be wrong with a stream of poses that one pose alone does not show: frozen markers, and steps. q and -q
+// are one attitude.
 #pragma once
 
 #include <array>
@@ -8,6 +9,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "swiftlet/control/types/settings.hpp"
 #include "swiftlet/plant/model/samples.hpp"
 
 namespace swiftlet::control {
@@ -18,16 +20,17 @@ namespace swiftlet::control {
 // repeats from the start and is not judged by that.
 class RepetitionWatch {
  public:
+  explicit RepetitionWatch(const StuckPoseSettings& settings = {}) : settings_(settings) {}
+
   void look_at(const plant::PoseSample& pose, plant::RotorState rotors);
 
   // The newest pose is the one before it.
   bool repeats() const { return repetitions_ > 0; }
   // It has been the same for so long as noise never is.
-  bool frozen() const { return noisy_ && repetitions_ >= kRepetitions; }
-
-  static constexpr int kRepetitions = 5;  // a single one happens: a frame that is sent twice
+  bool frozen() const { return noisy_ && repetitions_ >= settings_.repetitions; }
 
  private:
+  StuckPoseSettings settings_;
   plant::PoseSample last_;
   int repetitions_ = 0;
   int distinct_ = 0;  // in a row, with the rotors off
@@ -39,6 +42,11 @@ class RepetitionWatch {
 // back leads to where the body can be again.
 class Continuity {
  public:
+  explicit Continuity(const EstimatorSettings& settings = {})
+      : settings_(settings.detectors.continuity),
+        max_speed_(settings.max_speed),
+        max_body_rate_(settings.max_body_rate) {}
+
   void look_at(const plant::PoseSample& pose);
   // The newest pose agrees with the estimate: from here on.
   void begin() {
@@ -62,21 +70,24 @@ class Continuity {
   // In reach since begin(), steps that led away and back left out, and without a gap in which one would not
   // be seen.
   bool unbroken() const { return unbroken_ && in_reach_; }
-  // The newest poses go on from one to the next: kPoses of them at least, and for kTime_ns.
-  bool lasting() const { return poses_ >= kPoses && before(0).stamp_ns - since_ns_ >= kTime_ns; }
+  // The newest poses go on from one to the next: for settings.lasting_poses and settings.lasting_s at least.
+  bool lasting() const { return poses_ >= settings_.lasting_poses && lasted_s() >= settings_.lasting_s; }
   int poses() const { return poses_; }               // in a row that do
   double interval_s() const { return interval_s_; }  // between the newest two
   // Between the newest pose and that of kSpan poses before, m/s.
   Eigen::Vector3d velocity_ned() const;
 
-  static constexpr int kPoses = 8;
-  static constexpr std::int64_t kTime_ns = 200'000'000;
   static constexpr std::size_t kSpan = 4;
 
  private:
+  double lasted_s() const { return 1e-9 * static_cast<double>(before(0).stamp_ns - since_ns_); }
   const plant::PoseSample& before(std::uint64_t count) const {
     return last_[(next_ - 1 - count) % last_.size()];
   }
+
+  ContinuitySettings settings_;
+  double max_speed_;      // m/s
+  double max_body_rate_;  // rad/s
 
   bool unbroken_ = false;
   bool in_reach_ = false;

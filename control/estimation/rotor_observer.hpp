@@ -2,6 +2,8 @@
 // measured speeds where they come. Its moment is the third state of the attitude design with motor lag.
 #pragma once
 
+#include <cstdint>
+
 #include <Eigen/Core>
 
 #include "swiftlet/plant/model/airframe.hpp"
@@ -13,14 +15,16 @@ namespace swiftlet::control {
 
 class RotorObserver {
  public:
-  explicit RotorObserver(const plant::Vehicle& vehicle);
+  // bandwidth: rad/s, > 0, at which measured speeds draw the model's.
+  RotorObserver(const plant::Vehicle& vehicle, double bandwidth);
 
   // Runs the speeds on by dt_s > 0 under the command that has been in force, at the measured supply voltage.
   // First order with Eq. (18)'s time constant, whichever motor model the vehicle file names.
   void step(double dt_s, const plant::ActuatorCommand& command, double supply_voltage_v);
 
-  // Draws the speeds towards measured ones. Ignored unless finite, not negative and for the vehicle's number
-  // of rotors.
+  // Draws the speeds towards measured ones: a difference falls by exp(-bandwidth dt), dt being the time since
+  // the last sample, at whichever rate they come; the first is taken as it is. Ignored unless finite, not
+  // negative, newer than the last and for the vehicle's number of rotors.
   void correct(const plant::RotorSpeedSample& sample);
 
   const plant::PerRotor& speeds() const { return speeds_; }         // rad/s
@@ -28,18 +32,15 @@ class RotorObserver {
   Eigen::Vector3d moment_frd() const { return wrench_.tail<3>(); }  // N m, Eq. (28)
 
  private:
-  template <int kCount>
-  void run_on(const plant::ActuatorCommand& command, double supply_voltage_v);
-  template <int kCount>
+  using Speeds = Eigen::Array<double, plant::kMaxRotors, 1>;
   void update_wrench();
 
   plant::Esc esc_;
   plant::Motor motor_;
   Eigen::Matrix<double, 4, plant::kMaxRotors> wrench_per_square_;  // of each speed; columns of no rotor: 0
+  double bandwidth_;
   int count_ = 0;
-  double kept_for_s_ =
-      0.0;  // period, and the part of a difference from the steady speed that is left after it
-  double kept_ = 1.0;
+  std::int64_t measured_ns_ = 0;  // stamp of the last measured speeds; 0: none yet
   plant::PerRotor speeds_{};
   Eigen::Vector4d wrench_ = Eigen::Vector4d::Zero();
 };

@@ -58,6 +58,66 @@ void check_estimator(const EstimatorSettings& estimator, RuleChecker& check) {
   check.above("estimator.gate_chi_square", estimator.gate_chi_square, 0.0);
   check.above("estimator.outlier_position_m", estimator.outlier_position_m, 0.0);
   check.above("estimator.outlier_orientation_rad", estimator.outlier_orientation_rad, 0.0);
+  check.above("estimator.max_speed_m_s", estimator.max_speed, 0.0);
+  check.above("estimator.max_body_rate_rad_s", estimator.max_body_rate, 0.0);
+  check.above("estimator.start_speed_m_s", estimator.start_speed, 0.0);
+  check.above("estimator.rotor_speed_bandwidth_rad_s", estimator.rotor_speed_bandwidth, 0.0);
+}
+
+void check_detectors(const DetectorSettings& detectors, RuleChecker& check) {
+  const auto above_0 = [&](const std::string& key, double value) {
+    check.above("estimator.detectors." + key, value, 0.0);
+  };
+  const auto at_least_0 = [&](const std::string& key, double value) {
+    check.at_least("estimator.detectors." + key, value, 0.0);
+  };
+  const auto at_least_1 = [&](const std::string& key, int value) {
+    check.at_least("estimator.detectors." + key, value, 1.0);
+  };
+  const StuckPoseSettings& stuck_pose = detectors.stuck_pose;
+  above_0("stuck_pose.same", stuck_pose.same);
+  check.at_least("estimator.detectors.stuck_pose.distinct", stuck_pose.distinct, stuck_pose.same);
+  at_least_1("stuck_pose.distinct_poses", stuck_pose.distinct_poses);
+  at_least_1("stuck_pose.repetitions", stuck_pose.repetitions);
+
+  const ContinuitySettings& continuity = detectors.continuity;
+  at_least_0("continuity.noise_m", continuity.noise_m);
+  at_least_0("continuity.noise_rad", continuity.noise_rad);
+  above_0("continuity.longest_gap_s", continuity.longest_gap_s);
+  at_least_1("continuity.lasting_poses", continuity.lasting_poses);
+  at_least_0("continuity.lasting_s", continuity.lasting_s);
+
+  const ImuSilenceSettings& silence = detectors.imu_silence;
+  above_0("imu_silence.from_s", silence.from_s);
+  check.at_least("estimator.detectors.imu_silence.longest_s", silence.longest_s, silence.from_s);
+  at_least_0("imu_silence.acceleration_m_s2", silence.acceleration);
+  at_least_0("imu_silence.body_rate_rad_s", silence.body_rate);
+  at_least_0("imu_silence.turn_rad", silence.turn_rad);
+  at_least_0("imu_silence.turn_sigmas", silence.turn_sigmas);
+
+  const MotionTrialSettings& trial = detectors.motion_trial;
+  above_0("motion_trial.interval_s", trial.interval_s);
+  at_least_0("motion_trial.acceleration_m_s2", trial.acceleration);
+  at_least_0("motion_trial.turn_rad", trial.turn_rad);
+  at_least_0("motion_trial.sigmas", trial.sigmas);
+
+  const ClimbWatchSettings& climb = detectors.climb_watch;
+  above_0("climb_watch.memory_s", climb.memory_s);
+  above_0("climb_watch.felt_m", climb.felt_m);
+  check.between("estimator.detectors.climb_watch.seen_part", climb.seen_part, 0.0, 1.0);
+  above_0("climb_watch.clearly_seen_m", climb.clearly_seen_m);
+  at_least_0("climb_watch.longest_s", climb.longest_s);
+
+  const RecoverySettings& recovery = detectors.recovery;
+  check.between("estimator.detectors.recovery.max_lead_s", recovery.max_lead_s, 0.0, 1.0);
+  at_least_1("recovery.glitch_poses", recovery.glitch_poses);
+  above_0("recovery.step_time_s", recovery.step_time_s);
+  check.at_least("estimator.detectors.recovery.sudden", recovery.sudden, 1.0);
+  above_0("recovery.swap_rad", recovery.swap_rad);
+  at_least_1("recovery.poses", recovery.poses);
+  above_0("recovery.speed_m_s", recovery.speed);
+  above_0("recovery.gyro_bias_rad_s", recovery.gyro_bias);
+  above_0("recovery.accelerometer_bias_m_s2", recovery.accelerometer_bias);
 }
 
 void check_arming(const ArmingSettings& arming, RuleChecker& check) {
@@ -108,6 +168,7 @@ std::vector<plant::Violation> validate(const ControlSettings& settings) {
   check.at_least("disturbance.limit_m_s2", settings.disturbance.limit, 0.0);
   check_limits(settings.limits, check);
   check_estimator(settings.estimator, check);
+  check_detectors(settings.estimator.detectors, check);
   check_arming(settings.arming, check);
   check_failsafe(settings.failsafe, settings.limits, check);
   return check.take();

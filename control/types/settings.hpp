@@ -66,6 +66,75 @@ struct Limits {
   Eigen::Vector3d fence_max_ned = {3.0, 3.0, 0.2};     // m
 };
 
+// The thresholds of the estimator's detectors (control/estimation/README.md: symptom, detector, consequence). The
+// defaults serve any vehicle of this size; what depends on the vehicle is max_speed and max_body_rate.
+
+// Poses that repeat (pose_screen.hpp). Distances: m of the position, and of each part of the quaternion.
+struct StuckPoseSettings {
+  double same = 1.0e-8;      // poses closer than that repeat
+  double distinct = 2.0e-6;  // poses further apart show noise, ...
+  int distinct_poses = 20;   // ... if so many do in a row, with the rotors off
+  int repetitions = 5;  // in a row: a stream that has noise is frozen; a single one is a frame sent twice
+};
+
+// Poses that go on as those of one body (pose_screen.hpp).
+struct ContinuitySettings {
+  double noise_m = 0.01;       // that may add to a way between two poses
+  double noise_rad = 0.01;     // likewise, to a turn
+  double longest_gap_s = 0.1;  // between two poses, that hides no step there and back
+  int lasting_poses = 8;       // with the rotors off a stream is believed that goes on for so many poses ...
+  double lasting_s = 0.2;      // ... and for so long
+};
+
+// IMU samples that are missing (estimator.hpp): what may have happened meanwhile is added to the covariance.
+struct ImuSilenceSettings {
+  double from_s = 0.02;       // between two samples: a silence
+  double longest_s = 0.25;    // longer ones are not integrated over
+  double acceleration = 2.0;  // m/s^2, that it may hide
+  double body_rate = 0.5;     // rad/s, that it may hide
+  double turn_rad = 0.025;    // of a pose against the estimate, that needs no trial ...
+  double turn_sigmas = 4.0;   // ... nor do so many standard deviations of the orientation
+};
+
+// Poses that move otherwise than the IMU feels, after a silence (motion_trial.hpp).
+struct MotionTrialSettings {
+  double interval_s = 0.06;   // two of them make a verdict
+  double acceleration = 0.3;  // m/s^2, that poses and IMU may differ by: a tilt of 1.8 degrees
+  double turn_rad = 0.015;    // likewise, of their turns
+  double sigmas = 3.0;        // of the poses' noise, on top of both
+};
+
+// A climb that the accelerometer feels and the poses do not show (climb_watch.hpp).
+struct ClimbWatchSettings {
+  double memory_s = 0.7;        // of the high pass: a bias below felt_m / memory_s^2 is no climb
+  double felt_m = 0.1;          // that count as a climb
+  double seen_part = 0.333;     // of the felt height: fewer contradict
+  double clearly_seen_m = 0.3;  // of climb in the estimate: the watch is over
+  double longest_s = 4.0;       // likewise
+};
+
+// Poses that contradict the estimate, and when it starts anew from them (estimator.hpp).
+struct RecoverySettings {
+  double max_lead_s = 0.02;         // of a pose ahead of the IMU
+  int glitch_poses = 2;             // contradictions in a row that move the estimate no faster than noise
+  double step_time_s = 0.05;        // within which what comes after a glitch may have happened
+  double sudden = 2.0;              // times outlier_position_m: a jump, whatever the IMU misleads to
+  double swap_rad = 0.35;           // against the estimate: markers taken for each other, another vehicle
+  int poses = 5;                    // that disagree, of a stream without a break: the IMU misled
+  double speed = 0.3;               // m/s, standard deviation after a restart
+  double gyro_bias = 0.1;           // rad/s, likewise
+  double accelerometer_bias = 0.5;  // m/s^2, likewise
+};
+
+struct DetectorSettings {
+  StuckPoseSettings stuck_pose;
+  ContinuitySettings continuity;
+  ImuSilenceSettings imu_silence;
+  MotionTrialSettings motion_trial;
+  ClimbWatchSettings climb_watch;
+  RecoverySettings recovery;
+};
+
 // What the estimator believes of its sensors. Noise densities as on data sheets; standard deviations are each
 // axis's.
 struct EstimatorSettings {
@@ -84,6 +153,13 @@ struct EstimatorSettings {
   double gate_chi_square = 30.0;
   double outlier_position_m = 0.05;      // beyond the bound and this far off: refused
   double outlier_orientation_rad = 0.1;  // likewise
+  // The fastest that the vehicle plausibly moves, carried or thrown as well: poses that lie farther apart have
+  // stepped. A gyro that misleads is off by half of max_body_rate at most.
+  double max_speed = 4.0;                // m/s
+  double max_body_rate = 6.0;            // rad/s
+  double start_speed = 1.0;              // m/s, standard deviation at the first pose
+  double rotor_speed_bandwidth = 112.0;  // rad/s, at which measured rotor speeds correct the motor model
+  DetectorSettings detectors;
 };
 
 // What a vehicle may show on the ground and still be armed.

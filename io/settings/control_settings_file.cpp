@@ -72,6 +72,52 @@ control::Limits read_limits(const ConfigNode& node) {
   return limits;
 }
 
+int read_count(const ConfigNode& node) { return static_cast<int>(node.integer(1, 1'000'000)); }
+
+control::DetectorSettings read_detectors(const ConfigNode& node) {
+  control::DetectorSettings detectors;
+  const ConfigNode stuck_pose = node.at("stuck_pose");
+  detectors.stuck_pose.same = stuck_pose.at("same").number();
+  detectors.stuck_pose.distinct = stuck_pose.at("distinct").number();
+  detectors.stuck_pose.distinct_poses = read_count(stuck_pose.at("distinct_poses"));
+  detectors.stuck_pose.repetitions = read_count(stuck_pose.at("repetitions"));
+  const ConfigNode continuity = node.at("continuity");
+  detectors.continuity.noise_m = continuity.at("noise_m").number();
+  detectors.continuity.noise_rad = continuity.at("noise_rad").number();
+  detectors.continuity.longest_gap_s = continuity.at("longest_gap_s").number();
+  detectors.continuity.lasting_poses = read_count(continuity.at("lasting_poses"));
+  detectors.continuity.lasting_s = continuity.at("lasting_s").number();
+  const ConfigNode imu_silence = node.at("imu_silence");
+  detectors.imu_silence.from_s = imu_silence.at("from_s").number();
+  detectors.imu_silence.longest_s = imu_silence.at("longest_s").number();
+  detectors.imu_silence.acceleration = imu_silence.at("acceleration_m_s2").number();
+  detectors.imu_silence.body_rate = imu_silence.at("body_rate_rad_s").number();
+  detectors.imu_silence.turn_rad = imu_silence.at("turn_rad").number();
+  detectors.imu_silence.turn_sigmas = imu_silence.at("turn_sigmas").number();
+  const ConfigNode motion_trial = node.at("motion_trial");
+  detectors.motion_trial.interval_s = motion_trial.at("interval_s").number();
+  detectors.motion_trial.acceleration = motion_trial.at("acceleration_m_s2").number();
+  detectors.motion_trial.turn_rad = motion_trial.at("turn_rad").number();
+  detectors.motion_trial.sigmas = motion_trial.at("sigmas").number();
+  const ConfigNode climb_watch = node.at("climb_watch");
+  detectors.climb_watch.memory_s = climb_watch.at("memory_s").number();
+  detectors.climb_watch.felt_m = climb_watch.at("felt_m").number();
+  detectors.climb_watch.seen_part = climb_watch.at("seen_part").number();
+  detectors.climb_watch.clearly_seen_m = climb_watch.at("clearly_seen_m").number();
+  detectors.climb_watch.longest_s = climb_watch.at("longest_s").number();
+  const ConfigNode recovery = node.at("recovery");
+  detectors.recovery.max_lead_s = recovery.at("max_lead_s").number();
+  detectors.recovery.glitch_poses = read_count(recovery.at("glitch_poses"));
+  detectors.recovery.step_time_s = recovery.at("step_time_s").number();
+  detectors.recovery.sudden = recovery.at("sudden").number();
+  detectors.recovery.swap_rad = recovery.at("swap_rad").number();
+  detectors.recovery.poses = read_count(recovery.at("poses"));
+  detectors.recovery.speed = recovery.at("speed_m_s").number();
+  detectors.recovery.gyro_bias = recovery.at("gyro_bias_rad_s").number();
+  detectors.recovery.accelerometer_bias = recovery.at("accelerometer_bias_m_s2").number();
+  return detectors;
+}
+
 control::EstimatorSettings read_estimator(const ConfigNode& node) {
   control::EstimatorSettings estimator;
   estimator.accelerometer_noise_density = node.at("accelerometer_noise_m_s2_per_sqrt_hz").number();
@@ -87,6 +133,11 @@ control::EstimatorSettings read_estimator(const ConfigNode& node) {
   estimator.gate_chi_square = node.at("gate_chi_square").number();
   estimator.outlier_position_m = node.at("outlier_position_m").number();
   estimator.outlier_orientation_rad = node.at("outlier_orientation_rad").number();
+  estimator.max_speed = node.at("max_speed_m_s").number();
+  estimator.max_body_rate = node.at("max_body_rate_rad_s").number();
+  estimator.start_speed = node.at("start_speed_m_s").number();
+  estimator.rotor_speed_bandwidth = node.at("rotor_speed_bandwidth_rad_s").number();
+  estimator.detectors = read_detectors(node.at("detectors"));
   return estimator;
 }
 

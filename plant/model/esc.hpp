@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Core>
-
 #include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::plant {
@@ -28,13 +26,6 @@ inline double motor_voltage(const Esc& esc, double supply_voltage_v, double thro
   const double square =
       esc.gain * supply_voltage_v * supply_voltage_v * std::clamp(throttle, 0.0, 1.0) + esc.offset_v2;
   return std::sqrt(std::max(square, 0.0));
-}
-
-// The same for throttles within 0 .. 1, side by side.
-template <typename Throttles>
-typename Throttles::PlainObject motor_voltages(const Esc& esc, double supply_voltage_v,
-                                               const Eigen::ArrayBase<Throttles>& throttles) {
-  return (esc.gain * supply_voltage_v * supply_voltage_v * throttles + esc.offset_v2).max(0.0).sqrt();
 }
 
 // Eq. (9) backwards: the throttle, 0 .. 1, that comes nearest to v_a. Below the intercept sqrt(offset) that

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Core>
-
 #include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::plant {
@@ -22,13 +20,6 @@ inline double voltage_from_steady_speed(const Motor& motor, double speed) {
 inline double steady_speed_from_voltage(const Motor& motor, double voltage_v) {
   const double v_a = std::max(voltage_v, 0.0);
   return 2.0 * v_a / (motor.k2 + std::sqrt(motor.k2 * motor.k2 + 4.0 * motor.k3 * v_a));
-}
-
-// The same for voltages of 0 and above, side by side.
-template <typename Voltages>
-typename Voltages::PlainObject steady_speeds_from_voltages(const Motor& motor,
-                                                           const Eigen::ArrayBase<Voltages>& voltages) {
-  return 2.0 * voltages / (motor.k2 + (motor.k2 * motor.k2 + 4.0 * motor.k3 * voltages).sqrt());
 }
 
 // The equations of motion of one motor with its rotor, with all that follows from the identified values

@@ -10,15 +10,11 @@
 //   motors take.
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <vector>
-
 #include <Eigen/Core>
 
+#include "swiftlet/plant/model/airframe.hpp"
 #include "swiftlet/plant/model/motor.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
-#include "swiftlet/plant/simulation/pairs.hpp"
 #include "swiftlet/plant/simulation/vehicle_state.hpp"
 
 namespace swiftlet::plant {
@@ -40,20 +36,13 @@ struct Disturbance {
   PerRotor rotor_factors = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};  // of thrust and torque
 };
 
-// The forms that the motor's equations take: Eq. (18); Eq. (15) with the current at once; Eq. (10) and (15).
-enum class MotorForm { kReduced, kPhysical, kInductive };
-
-// The instructions that steps are made of: the best that the processor has, or those that all processors
-// have. Results are the same to the last bit.
-enum class Instructions { kBest, kBaseline };
-
 class Dynamics {
  public:
   // The vehicle is one that validate() finds no fault with.
-  Dynamics(const Vehicle& vehicle, const Supply& supply, Instructions instructions = Instructions::kBest);
+  Dynamics(const Vehicle& vehicle, const Supply& supply);
 
   // From now on, until another is given.
-  void disturb(const Disturbance& disturbance);
+  void disturb(const Disturbance& disturbance) { disturbance_ = disturbance; }
 
   // Brings the state forward by dt > 0 in as few equal Runge-Kutta steps as max_step_s() allows, with drive
   // and wind held.
@@ -78,15 +67,12 @@ class Dynamics {
   int rotor_count() const { return rotor_count_; }
 
  private:
-  template <int kRotors, MotorForm kMotor>
-  struct Drivetrain;
-  struct RigidBody;
-  struct Wrench {
-    Pair lift_roll = Pair::Zero();  // lift over the vehicle's mass, m/s^2, against body z; moment, N m
-    Pair pitch_yaw = Pair::Zero();  // N m
-  };
-  // Open-circuit voltage as a straight line over the state of charge: that of the table's segment where a
-  // step begins.
+  // All that is integrated, in the order of VehicleState; the quaternion as (x, y, z, w).
+  using State = Eigen::Matrix<double, 15 + 2 * kMaxRotors, 1>;
+  using Rotors = Eigen::Matrix<double, kMaxRotors, 1>;
+
+  // Open-circuit voltage as a straight line over the state of charge: that of the table's segment where a step
+  // begins.
   struct OpenCircuit {
     double at_empty;  // V
     double slope;     // V
@@ -94,52 +80,31 @@ class Dynamics {
     double voltage(double state_of_charge) const { return at_empty + slope * state_of_charge; }
   };
 
-  template <int kRotors, MotorForm kMotor>
-  void advance_as(VehicleState& state, const RotorDrive& drive, const Eigen::Vector3d& wind_ned,
-                  double dt) const;
-  template <int kRotors, MotorForm kMotor>
-  void advance_by_avx(VehicleState& state, const RotorDrive& drive, const Eigen::Vector3d& wind_ned,
-                      double dt) const;
-  template <int kRotors, MotorForm kMotor>
-  void runge_kutta(VehicleState& state, const RotorDrive& drive, const Eigen::Vector3d& wind_ned,
-                   double dt) const;
+  static State pack(const VehicleState& state);
+  static void unpack(const State& x, VehicleState& state);
+  State derivative(const State& x, const RotorDrive& drive, const Eigen::Vector3d& wind_ned,
+                   const OpenCircuit& open_circuit) const;
   OpenCircuit open_circuit(double state_of_charge) const;
-  double armature_voltage(double supply_voltage_v, const RotorDrive& drive, std::size_t rotor) const;
 
-  using Advance = void (Dynamics::*)(VehicleState&, const RotorDrive&, const Eigen::Vector3d&, double) const;
-  template <int kRotors, MotorForm kMotor>
-  static Advance choose(Instructions instructions);
-  template <MotorForm kMotor>
-  static Advance choose(int rotor_count, Instructions instructions);
+  double armature_voltage(double supply_voltage_v, const RotorDrive& drive, int rotor) const;
+  double supply_current(double supply_voltage_v, double power_w) const;
+  // Thrust along -z of FRD, N, and moments, N m.
+  Eigen::Vector4d rotor_wrench(int rotor, double speed) const;
+  // Drag and push, N.
+  Eigen::Vector3d air_force_ned(const Eigen::Vector3d& velocity_ned, const Eigen::Vector3d& wind_ned) const;
 
-  Advance advance_;
   int rotor_count_;
-  double max_step_s_;
-
   double inverse_mass_;
-  double drag_over_mass_;
-  Symmetric inertia_;
-  Symmetric inverse_inertia_;
-  std::array<Wrench, kMaxRotors> sound_wrenches_;  // of each rotor, over Omega^2, without a disturbance
-  std::array<Wrench, kMaxRotors> wrenches_;
-  Eigen::Vector3d push_acceleration_ned_ = Eigen::Vector3d::Zero();
-  Wrench push_;
-  double supply_drop_v_ = 0.0;
-
+  Eigen::Matrix3d inertia_;
+  Eigen::Matrix3d inverse_inertia_;
+  double linear_drag_;  // N s/m
+  Effectiveness effectiveness_;
+  RotorCoefficients rotor_;
   Esc esc_;
   MotorDynamics motor_;
-  double inverse_electrical_time_;  // R_a / L_a
-  // Eq. (22) solved: Omega_ss = sqrt(steady_square + steady_gain v_a) - steady_offset.
-  double steady_offset_;
-  double steady_square_;
-  double steady_gain_;
-
-  bool ideal_supply_;
-  double ideal_voltage_;
-  BatteryParameters battery_;               // of an ideal supply: one without resistance
-  std::vector<OpenCircuit> open_circuits_;  // of each segment of its table
-  double charge_per_current_;               // 1/(A s); 0 for an ideal supply
-  double inverse_sag_time_;
+  BatteryParameters battery_;
+  double max_step_s_;
+  Disturbance disturbance_;
 };
 
 }  // namespace swiftlet::plant

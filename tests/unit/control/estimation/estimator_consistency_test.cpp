@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include "swiftlet/control/estimation/estimator.hpp"
@@ -146,6 +147,51 @@ TEST(EstimatorConsistency, TransitionIsTheDerivativeOfTheMotion) {
     moved << other.p - nominal.p, other.v - nominal.v, rotation_vector(other.q * nominal.q.conjugate()),
         error.tail<6>();
     EXPECT_LT((advance(interval, error) - moved).norm(), 2e-5 * kSmall) << i;
+  }
+}
+
+// F P F' + Q and Joseph's form, by dense matrices.
+TEST(EstimatorConsistency, TheCovarianceFollowsTheDenseEquations) {
+  ErrorInterval interval;
+  interval.duration_s = 0.015;
+  interval.velocity_change = {0.02, -0.03, -0.15};
+  interval.position_change = {1e-4, -2e-4, -1e-3};
+  interval.r_ned_from_frd = rotation({0.3, -0.2, 0.9}).toRotationMatrix();
+  const ErrorNoise noise{1e-2, 2e-3, 3e-4, 4e-2};
+  Matrix15 f;
+  for (int i = 0; i < kErrorStates; ++i) f.col(i) = advance(interval, ErrorState::Unit(i));
+  ErrorCovariance covariance;
+  covariance.reset(ErrorState::LinSpaced(0.01, 0.4));
+  Eigen::Matrix<double, 6, kErrorStates> h = Eigen::Matrix<double, 6, kErrorStates>::Zero();
+  h.block<3, 3>(0, 0).setIdentity();
+  h.block<3, 3>(3, 6).setIdentity();
+  for (int step = 0; step < 5; ++step) {
+    const Matrix15 before = covariance.matrix();
+    covariance.advance(interval, noise);
+    const Matrix15 added = covariance.matrix() - f * before * f.transpose();
+    const double t = interval.duration_s;
+    ErrorState q;
+    q << Vector3d::Constant(noise.velocity * t * t * t / 3), Vector3d::Constant(noise.velocity * t),
+        Vector3d::Constant(noise.rotation * t), Vector3d::Constant(noise.gyro_bias * t),
+        Vector3d::Constant(noise.accelerometer_bias * t);
+    EXPECT_LT((added.diagonal() - q).cwiseAbs().maxCoeff(), 1e-15);
+    EXPECT_NEAR(added(1, 4), noise.velocity * t * t / 2, 1e-15);
+
+    const Matrix15 p = covariance.matrix();
+    Eigen::Matrix<double, 6, 1> v;
+    v << Vector3d::Constant(1e-4), Vector3d::Constant(4e-4);
+    const Eigen::Matrix<double, 6, 6> s = h * p * h.transpose() + Eigen::Matrix<double, 6, 6>(v.asDiagonal());
+    const Eigen::Matrix<double, kErrorStates, 6> k = p * h.transpose() * s.inverse();
+    const PoseInnovation innovation{{0.01, -0.02, 0.03}, {-0.02, 0.01, 0.04}};
+    Eigen::Matrix<double, 6, 1> z;
+    z << innovation.position, innovation.rotation;
+    const auto correction = covariance.weigh(innovation, 1e-4, 4e-4);
+    EXPECT_LT((correction.step() - k * z).norm(), 1e-12);
+    EXPECT_NEAR(correction.normalised_square(), z.dot(s.inverse() * z), 1e-9);
+    covariance.reduce(correction);
+    const Matrix15 rest = Matrix15::Identity() - k * h;
+    const Matrix15 joseph = rest * p * rest.transpose() + k * v.asDiagonal() * k.transpose();
+    EXPECT_LT((covariance.matrix() - joseph).cwiseAbs().maxCoeff(), 1e-14);
   }
 }
 

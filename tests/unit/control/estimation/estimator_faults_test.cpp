@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -345,11 +346,70 @@ TEST_F(EstimatorFaults, FrozenMarkersAreRecognisedInMotionAtOnce) {
   EXPECT_LT(position_error(), 1e-3);
 }
 
+// q and -q are one attitude: motion capture may hand out either, and change at any pose.
+class EstimatorSigns : public EstimatorFaults {
+ protected:
+  static void flip(PoseSample& pose) {
+    if (pose.sequence % 2 == 0) pose.q_ned_from_frd.coeffs() *= -1.0;
+  }
+};
+
+TEST_F(EstimatorSigns, ThatFlipEachPoseChangeNothing) {
+  fly(5.0);
+  const Estimate unflipped = estimator_.estimate();
+  estimator_ = Estimator(settings_);
+  motion_ = NoisyMotion(settings_, 1);
+  time_ns_ = 0;
+  EXPECT_EQ(fly(5.0, flip), PoseFault::kNone);
+  const Estimate& flipped = estimator_.estimate();
+  EXPECT_EQ(flipped.poses_refused, 0U);
+  EXPECT_LT((flipped.position_ned - unflipped.position_ned).norm(), 1e-12);
+  EXPECT_LT((flipped.velocity_ned - unflipped.velocity_ned).norm(), 1e-12);
+  EXPECT_LT(flipped.q_ned_from_frd.angularDistance(unflipped.q_ned_from_frd), 1e-7);
+  EXPECT_LT((flipped.gyro_bias - unflipped.gyro_bias).norm(), 1e-12);
+}
+
+TEST_F(EstimatorSigns, ThatFlipDoNotHideFrozenMarkers) {
+  fly(2.0, flip);
+  PoseSample frozen;
+  fly(0.01, [&](PoseSample& pose) { frozen = pose; });
+  const auto freeze = [&](PoseSample& pose) {
+    pose.position_ned = frozen.position_ned;
+    pose.q_ned_from_frd = frozen.q_ned_from_frd;
+    flip(pose);
+  };
+  EXPECT_EQ(fly(0.01, freeze), PoseFault::kFrozen);
+  EXPECT_EQ(fly(0.4, freeze), PoseFault::kFrozen);
+  EXPECT_EQ(fly(0.05, flip), PoseFault::kNone);
+  EXPECT_LT(position_error(), 1e-3);
+}
+
+TEST_F(EstimatorSigns, ThatFlipNeedNoReset) {
+  fly(2.0, flip);
+  fly(0.2, [](PoseSample& pose) { pose.tracked = false; });
+  time_ns_ += 200'000'000;
+  EXPECT_EQ(fly(0.5, flip), PoseFault::kNone);
+  EXPECT_EQ(estimator_.estimate().resets, 0U);
+  EXPECT_LT(position_error(), 2e-3);
+}
+
+// What a body could have come to in a silence of the IMU depends on how fast it can be.
+TEST_F(EstimatorFaults, TheFastestVehicleIsASetting) {
+  for (const double max_speed : {4.0, 40.0}) {
+    settings_.max_speed = max_speed;
+    estimator_ = Estimator(settings_);
+    fly(3.0);
+    time_ns_ += 250'000'000;
+    const PoseFault fault = fly(0.5, [](PoseSample& pose) { pose.position_ned.x() += 3.0; });
+    EXPECT_EQ(fault, max_speed > 10.0 ? PoseFault::kNone : PoseFault::kOutlier) << max_speed;
+  }
+}
+
 // Standing or hovering: nothing contradicts a pose that stays.
-class EstimatorAtRest : public testing::TestWithParam<bool> {};
+class EstimatorAtRest : public testing::TestWithParam<std::tuple<bool, bool>> {};
 
 TEST_P(EstimatorAtRest, NoiseThatStopsIsAFrozenStreamAndNoNoiseIsNone) {
-  const bool noisy = GetParam();
+  const auto [noisy, flips] = GetParam();
   const EstimatorSettings settings;
   Estimator estimator(settings);
   plant::RandomStream noise(1, 1);
@@ -368,6 +428,7 @@ TEST_P(EstimatorAtRest, NoiseThatStopsIsAFrozenStreamAndNoNoiseIsNone) {
       last.sequence = ++sequence;
       last.tracked = true;
       if (noisy && !frozen) last.position_ned = settings.mocap_position_sigma * noise.normal3();
+      if (flips && (noisy || !frozen)) last.q_ned_from_frd.coeffs() *= -1.0;
       estimator.correct(last, rotors);
     }
     return estimator.estimate().pose_fault;
@@ -378,7 +439,7 @@ TEST_P(EstimatorAtRest, NoiseThatStopsIsAFrozenStreamAndNoNoiseIsNone) {
   EXPECT_NEAR(estimator.pose_age_s(), noisy ? 0.16 : 0.0, 0.02);
   EXPECT_EQ(rest(0.1, false, RotorState::kRunning), PoseFault::kNone);
 }
-INSTANTIATE_TEST_SUITE_P(Noisy, EstimatorAtRest, testing::Bool());
+INSTANTIATE_TEST_SUITE_P(NoisyFlipping, EstimatorAtRest, testing::Combine(testing::Bool(), testing::Bool()));
 
 TEST_F(EstimatorFaults, UntimelyAndInvalidPosesAreNamed) {
   fly(1.0);

@@ -81,7 +81,7 @@ TEST(MotionTrial, BeginsAnew) {
   const EstimatorSettings settings;
   plant::PoseSample pose;
   const auto look = [&](double z_ned) {
-    pose.stamp_ns += MotionTrial::kInterval_ns;
+    pose.stamp_ns += static_cast<std::int64_t>(1e9 * settings.detectors.motion_trial.interval_s);
     pose.position_ned.z() = z_ned;
     return trial.look_at(pose, {{0.0, 0.0, z_ned}, Vector3d::Zero()}, settings);
   };

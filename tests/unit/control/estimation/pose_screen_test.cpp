@@ -46,7 +46,7 @@ TEST_F(StuckPoses, NoiseThatStopsIsFrozenAfterFiveRepetitions) {
   for (int i = 1; i <= 8; ++i) {
     see({0.0, 0.0, -1.0}, RotorState::kRunning);
     EXPECT_TRUE(watch_.repeats());
-    EXPECT_EQ(watch_.frozen(), i >= RepetitionWatch::kRepetitions) << i;
+    EXPECT_EQ(watch_.frozen(), i >= StuckPoseSettings{}.repetitions) << i;
   }
   see({0.001, 0.0, -1.0}, RotorState::kRunning);
   EXPECT_FALSE(watch_.repeats());

@@ -65,6 +65,21 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
       "  gate_chi_square: 58\n"
       "  outlier_position_m: 59\n"
       "  outlier_orientation_rad: 60\n"
+      "  max_speed_m_s: 61\n"
+      "  max_body_rate_rad_s: 62\n"
+      "  start_speed_m_s: 63\n"
+      "  rotor_speed_bandwidth_rad_s: 64\n"
+      "  detectors:\n"
+      "    stuck_pose: {same: 1, distinct: 2, distinct_poses: 3, repetitions: 4}\n"
+      "    continuity: {noise_m: 5, noise_rad: 6, longest_gap_s: 7, lasting_poses: 8, lasting_s: 9}\n"
+      "    imu_silence: {from_s: 10, longest_s: 11, acceleration_m_s2: 12, body_rate_rad_s: 13, turn_rad: "
+      "14,\n"
+      "      turn_sigmas: 15}\n"
+      "    motion_trial: {interval_s: 16, acceleration_m_s2: 17, turn_rad: 18, sigmas: 19}\n"
+      "    climb_watch: {memory_s: 20, felt_m: 21, seen_part: 0.22, clearly_seen_m: 23, longest_s: 24}\n"
+      "    recovery: {max_lead_s: 0.25, glitch_poses: 26, step_time_s: 27, sudden: 28, swap_rad: 29, poses: "
+      "30,\n"
+      "      speed_m_s: 31, gyro_bias_rad_s: 32, accelerometer_bias_m_s2: 33}\n"
       "arming:\n"
       "  max_tilt_rad: 0.41\n"
       "  max_speed_m_s: 42\n"
@@ -129,6 +144,44 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
   EXPECT_EQ(s.estimator.gate_chi_square, 58);
   EXPECT_EQ(s.estimator.outlier_position_m, 59);
   EXPECT_EQ(s.estimator.outlier_orientation_rad, 60);
+  EXPECT_EQ(s.estimator.max_speed, 61);
+  EXPECT_EQ(s.estimator.max_body_rate, 62);
+  EXPECT_EQ(s.estimator.start_speed, 63);
+  EXPECT_EQ(s.estimator.rotor_speed_bandwidth, 64);
+  const control::DetectorSettings& d = s.estimator.detectors;
+  EXPECT_EQ(d.stuck_pose.same, 1);
+  EXPECT_EQ(d.stuck_pose.distinct, 2);
+  EXPECT_EQ(d.stuck_pose.distinct_poses, 3);
+  EXPECT_EQ(d.stuck_pose.repetitions, 4);
+  EXPECT_EQ(d.continuity.noise_m, 5);
+  EXPECT_EQ(d.continuity.noise_rad, 6);
+  EXPECT_EQ(d.continuity.longest_gap_s, 7);
+  EXPECT_EQ(d.continuity.lasting_poses, 8);
+  EXPECT_EQ(d.continuity.lasting_s, 9);
+  EXPECT_EQ(d.imu_silence.from_s, 10);
+  EXPECT_EQ(d.imu_silence.longest_s, 11);
+  EXPECT_EQ(d.imu_silence.acceleration, 12);
+  EXPECT_EQ(d.imu_silence.body_rate, 13);
+  EXPECT_EQ(d.imu_silence.turn_rad, 14);
+  EXPECT_EQ(d.imu_silence.turn_sigmas, 15);
+  EXPECT_EQ(d.motion_trial.interval_s, 16);
+  EXPECT_EQ(d.motion_trial.acceleration, 17);
+  EXPECT_EQ(d.motion_trial.turn_rad, 18);
+  EXPECT_EQ(d.motion_trial.sigmas, 19);
+  EXPECT_EQ(d.climb_watch.memory_s, 20);
+  EXPECT_EQ(d.climb_watch.felt_m, 21);
+  EXPECT_EQ(d.climb_watch.seen_part, 0.22);
+  EXPECT_EQ(d.climb_watch.clearly_seen_m, 23);
+  EXPECT_EQ(d.climb_watch.longest_s, 24);
+  EXPECT_EQ(d.recovery.max_lead_s, 0.25);
+  EXPECT_EQ(d.recovery.glitch_poses, 26);
+  EXPECT_EQ(d.recovery.step_time_s, 27);
+  EXPECT_EQ(d.recovery.sudden, 28);
+  EXPECT_EQ(d.recovery.swap_rad, 29);
+  EXPECT_EQ(d.recovery.poses, 30);
+  EXPECT_EQ(d.recovery.speed, 31);
+  EXPECT_EQ(d.recovery.gyro_bias, 32);
+  EXPECT_EQ(d.recovery.accelerometer_bias, 33);
   EXPECT_EQ(s.arming.max_tilt_rad, 0.41);
   EXPECT_EQ(s.arming.max_speed, 42);
   EXPECT_EQ(s.arming.max_body_rate, 43);
@@ -252,6 +305,40 @@ const Fault kFaults[] = {
     {"estimator.outlier_orientation_rad", "0", "above 0"},
     {"estimator.accelerometer_bias_limit_m_s2", "-1", "at least 0"},
     {"estimator.gyro_bias_limit_rad_s", "-1", "at least 0"},
+    {"estimator.max_speed_m_s", "0", "above 0"},
+    {"estimator.max_body_rate_rad_s", "0", "above 0"},
+    {"estimator.start_speed_m_s", "0", "above 0"},
+    {"estimator.rotor_speed_bandwidth_rad_s", "0", "above 0"},
+    {"estimator.detectors.stuck_pose.same", "0", "above 0"},
+    {"estimator.detectors.stuck_pose.distinct", "1e-9", "at least 1e-08"},
+    {"estimator.detectors.stuck_pose.distinct_poses", "0", "a whole number from 1 to"},
+    {"estimator.detectors.stuck_pose.repetitions", "2.5", "a whole number"},
+    {"estimator.detectors.continuity.noise_m", "-1", "at least 0"},
+    {"estimator.detectors.continuity.noise_rad", "-1", "at least 0"},
+    {"estimator.detectors.continuity.longest_gap_s", "0", "above 0"},
+    {"estimator.detectors.continuity.lasting_s", "-1", "at least 0"},
+    {"estimator.detectors.imu_silence.from_s", "0", "above 0"},
+    {"estimator.detectors.imu_silence.longest_s", "0.01", "at least 0.02"},
+    {"estimator.detectors.imu_silence.acceleration_m_s2", "-1", "at least 0"},
+    {"estimator.detectors.imu_silence.body_rate_rad_s", "-1", "at least 0"},
+    {"estimator.detectors.imu_silence.turn_rad", "-1", "at least 0"},
+    {"estimator.detectors.imu_silence.turn_sigmas", "-1", "at least 0"},
+    {"estimator.detectors.motion_trial.interval_s", "0", "above 0"},
+    {"estimator.detectors.motion_trial.acceleration_m_s2", "-1", "at least 0"},
+    {"estimator.detectors.motion_trial.turn_rad", "-1", "at least 0"},
+    {"estimator.detectors.motion_trial.sigmas", "-1", "at least 0"},
+    {"estimator.detectors.climb_watch.memory_s", "0", "above 0"},
+    {"estimator.detectors.climb_watch.felt_m", "0", "above 0"},
+    {"estimator.detectors.climb_watch.seen_part", "2", "at most 1"},
+    {"estimator.detectors.climb_watch.clearly_seen_m", "0", "above 0"},
+    {"estimator.detectors.climb_watch.longest_s", "-1", "at least 0"},
+    {"estimator.detectors.recovery.max_lead_s", "-1", "at least 0"},
+    {"estimator.detectors.recovery.step_time_s", "0", "above 0"},
+    {"estimator.detectors.recovery.sudden", "0.5", "at least 1"},
+    {"estimator.detectors.recovery.swap_rad", "0", "above 0"},
+    {"estimator.detectors.recovery.speed_m_s", "0", "above 0"},
+    {"estimator.detectors.recovery.gyro_bias_rad_s", "0", "above 0"},
+    {"estimator.detectors.recovery.accelerometer_bias_m_s2", "0", "above 0"},
     {"failsafe.mocap_timeout_s", "0", "above 0"},
     {"failsafe.descent_speed_m_s", "0", "above 0"},
     {"failsafe.descent_timeout_s", "0", "above 0"},

@@ -65,21 +65,6 @@ TEST(Esc, DeadZoneOfNegativeOffsetGivesNoVoltage) {
   EXPECT_NEAR(throttle_from_motor_voltage(esc, 3.7, 0.0), 1.0 / (0.9205 * 3.7 * 3.7), 1e-15);
 }
 
-// What the observer of the rotors and the allocator call, with a dead zone as well.
-TEST(Esc, VoltagesSideBySideAreThoseOfEachThrottle) {
-  for (const double offset_v2 : {0.6472, 0.0, -1.0}) {
-    Esc esc = kaylion().esc;
-    esc.offset_v2 = offset_v2;
-    const Eigen::Array4d throttles(0.0, 0.01, 0.4, 1.0);
-    const Eigen::Array4d found = motor_voltages(esc, 3.7, throttles);
-    for (int i = 0; i < 4; ++i) {
-      const double square = 0.9205 * 3.7 * 3.7 * throttles[i] + offset_v2;
-      EXPECT_NEAR(found[i], square > 0.0 ? std::sqrt(square) : 0.0, 1e-14) << offset_v2 << " " << i;
-      EXPECT_EQ(found[i], motor_voltage(esc, 3.7, throttles[i])) << offset_v2 << " " << i;
-    }
-  }
-}
-
 TEST(Esc, SupplyCurrentConservesPowerAndNeverFlowsBack) {
   EXPECT_DOUBLE_EQ(esc_supply_current(4.0, 2.0, 0.5), 0.25);
   EXPECT_EQ(esc_supply_current(4.0, 2.0, -0.5), 0.0);

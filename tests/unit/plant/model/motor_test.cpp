@@ -53,17 +53,6 @@ TEST(Motor, SteadyStateIsEquation22) {
   EXPECT_NEAR(steady_speed_from_voltage(motor, v_a), root, 1e-9);
 }
 
-TEST(Motor, SteadySpeedsSideBySideAreThoseOfEachVoltage) {
-  const Eigen::Array4d voltages(0.0, 0.804, 2.3, 4.0);
-  const Eigen::Array4d found = steady_speeds_from_voltages(kaylion().motor, voltages);
-  for (int i = 0; i < 4; ++i) {
-    const double root =
-        (-1.020e-3 + std::sqrt(1.020e-3 * 1.020e-3 + 4.0 * 2.817e-7 * voltages[i])) / (2.0 * 2.817e-7);
-    EXPECT_NEAR(found[i], root, 1e-9) << i;
-    EXPECT_EQ(found[i], steady_speed_from_voltage(kaylion().motor, voltages[i])) << i;
-  }
-}
-
 TEST(Motor, SteadySpeedInvertsVoltage) {
   Draw draw;
   for (int i = 0; i < 1000; ++i) {

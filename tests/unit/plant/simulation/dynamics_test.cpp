@@ -79,25 +79,6 @@ TEST_P(EveryMotor, HalvingTheStepDividesTheErrorBySixteen) {
   EXPECT_NEAR(fine / finer, 16.0, 2.0);
 }
 
-TEST_P(EveryMotor, TheProcessorsInstructionsChangeNoBit) {
-  if (!__builtin_cpu_supports("avx")) GTEST_SKIP() << "without AVX there is one set of instructions only";
-  for (int rotors = plant::kMinRotors; rotors <= plant::kMaxRotors; ++rotors) {
-    for (const double inductance_h : {0.0, 2.0e-4}) {
-      Vehicle vehicle = multirotor(rotors);
-      vehicle.motor.model = GetParam();
-      vehicle.motor.armature_inductance_h = inductance_h;
-      vehicle.inertia(0, 1) = vehicle.inertia(1, 0) = rotors % 2 == 0 ? 0.0 : 2.0e-6;
-      VehicleState best = tumbling();
-      VehicleState baseline = best;
-      RotorDrive drive = running(0.4);
-      drive.throttle[1] = 0.7;
-      fly(Dynamics(vehicle, Supply::battery(), plant::Instructions::kBest), best, drive, 0.2, 200);
-      fly(Dynamics(vehicle, Supply::battery(), plant::Instructions::kBaseline), baseline, drive, 0.2, 200);
-      EXPECT_EQ(distance(best, baseline), 0.0) << rotors << " rotors";
-    }
-  }
-}
-
 INSTANTIATE_TEST_SUITE_P(Dynamics, EveryMotor,
                          testing::Values(plant::MotorModel::kReduced, plant::MotorModel::kPhysical));
 
