@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <mutex>
+#include <set>
 #include <stdexcept>
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -9,6 +10,7 @@
 #include <fastdds/dds/log/StdoutErrConsumer.hpp>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 
+#include "swiftlet/services/dds/discovery/discovery_ports.hpp"
 #include "swiftlet/services/dds/participant_qos.hpp"
 #include "swiftlet/services/dds/shared_memory.hpp"
 
@@ -40,22 +42,39 @@ void end(dds::DomainParticipant* participant) {
   dds::DomainParticipantFactory::get_instance()->delete_participant(participant);
 }
 
-// One at a time: Fast DDS 2.9 asks getpwuid() for the user's name, which keeps it in one place for all
-// threads.
 dds::DomainParticipant* create_participant(const NodeSettings& settings,
-                                           dds::DomainParticipantListener* listener) {
+                                           dds::DomainParticipantListener* listener,
+                                           std::uint32_t announced) {
+  return dds::DomainParticipantFactory::get_instance()->create_participant(
+      static_cast<std::uint32_t>(settings.domain), participant_qos(settings, announced), listener,
+      dds::StatusMask::requested_incompatible_qos() << dds::StatusMask::offered_incompatible_qos());
+}
+
+// One at a time: Fast DDS 2.9 asks getpwuid() for the user's name, which keeps it in one place for all
+// threads. Nor does it say at which port it listens, or that it found none.
+dds::DomainParticipant* join(const NodeSettings& settings, dds::DomainParticipantListener* listener) {
   static std::mutex mutex;
   const std::lock_guard<std::mutex> lock(mutex);
-  return dds::DomainParticipantFactory::get_instance()->create_participant(
-      static_cast<std::uint32_t>(settings.domain), participant_qos(settings), listener,
-      dds::StatusMask::requested_incompatible_qos() << dds::StatusMask::offered_incompatible_qos());
+  const DiscoveryPorts ports = discovery_ports(settings.domain);
+  const std::set<std::uint32_t> before = own_discovery_ports(settings.domain);
+  const std::uint32_t expected = free_discovery_port(settings.domain, settings.localhost_only);
+  for (const std::uint32_t announced : {announced_ports(ports, expected), ports.count}) {
+    dds::DomainParticipant* const participant = create_participant(settings, listener, announced);
+    if (participant == nullptr) return nullptr;
+    // Others that start now may have taken so many ports meanwhile that it does not call all below its own.
+    for (const std::uint32_t port : own_discovery_ports(settings.domain)) {
+      if (before.count(port) == 0 && (port < announced || !settings.localhost_only)) return participant;
+    }
+    end(participant);
+  }
+  throw domain_is_full(settings.domain);
 }
 
 }  // namespace
 
 Membership::Membership(const NodeSettings& settings, dds::DomainParticipantListener* listener) {
   set_up_library();
-  participant = create_participant(settings, listener);
+  participant = join(settings, listener);
   if (participant == nullptr) {
     throw std::runtime_error("cannot join DDS domain " + std::to_string(settings.domain) +
                              ": no port could be opened or the transport could not be set up");
@@ -72,7 +91,7 @@ Membership::~Membership() { end(participant); }
 
 void Membership::tell_vehicles(const NodeSettings& settings) {
   dds::DomainParticipantQos qos = participant->get_qos();
-  qos.user_data() = participant_qos(settings).user_data();
+  qos.user_data().data_vec(user_data(settings.vehicle));
   participant->set_qos(qos);
 }
 

@@ -34,15 +34,9 @@ rtps::Locator_t loopback_locator(std::uint32_t port) {
   return locator;
 }
 
-std::vector<rtps::octet> user_data(const std::string& vehicle) {
-  const std::string text =
-      "enclave=/;" + std::string(kVehicleKey) + vehicle + ";";  // ROS 2 looks for the enclave
-  return {text.begin(), text.end()};
-}
-
 }  // namespace
 
-dds::DomainParticipantQos participant_qos(const NodeSettings& settings) {
+dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uint32_t announced_ports) {
   dds::DomainParticipantQos qos;
   qos.name(settings.name);
   qos.user_data().data_vec(user_data(settings.vehicle));
@@ -56,14 +50,12 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings) {
   // A port that is taken is passed over for the next one of the domain, and not for one beyond.
   const DiscoveryPorts ports = discovery_ports(settings.domain);
   builtin.mutation_tries = ports.count - 1;
-  // Here and not by the middleware, which would not say when it found none.
-  const std::uint32_t own_port = free_discovery_port(settings.domain, settings.localhost_only);
 
   const auto udp = std::make_shared<UDPv4TransportDescriptor>();
   udp->non_blocking_send = true;  // a full socket buffer loses a sample rather than hold the sender up
   if (settings.localhost_only) {
     udp->interfaceWhiteList = {kLoopback};
-    udp->maxInitialPeersRange = announced_ports(ports, own_port);
+    udp->maxInitialPeersRange = announced_ports;
     // The first of the domain's ports that is free, whatever number the middleware gives the participant;
     // none for multicast. Of the peers (port 0), the middleware tries as many ports as maxInitialPeersRange.
     builtin.metatrafficUnicastLocatorList.push_back(loopback_locator(ports.first));
@@ -87,6 +79,12 @@ std::string vehicle_of(const std::vector<rtps::octet>& user_data) {
   if (begin == std::string::npos) return {};
   const auto end = text.find(';', begin);
   return text.substr(begin + key.size(), end == std::string::npos ? end : end - begin - key.size());
+}
+
+std::vector<rtps::octet> user_data(const std::string& vehicle) {
+  const std::string text =
+      "enclave=/;" + std::string(kVehicleKey) + vehicle + ";";  // ROS 2 looks for the enclave
+  return {text.begin(), text.end()};
 }
 
 }  // namespace swiftlet::comms

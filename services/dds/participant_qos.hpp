@@ -1,6 +1,7 @@
 // How a node joins the network: discovery, transports, name and user data.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -10,8 +11,12 @@
 
 namespace swiftlet::comms {
 
-// Of a process that joins now. Throws std::runtime_error with a sentence if the domain is full.
-eprosima::fastdds::dds::DomainParticipantQos participant_qos(const NodeSettings& settings);
+// announced_ports: of the domain, to which it announces itself with localhost_only (discovery_ports.hpp).
+eprosima::fastdds::dds::DomainParticipantQos participant_qos(const NodeSettings& settings,
+                                                             std::uint32_t announced_ports);
+
+// The user data of a participant that serves this vehicle.
+std::vector<eprosima::fastrtps::rtps::octet> user_data(const std::string& vehicle);
 
 // The vehicle that a participant's user data names; empty if it names none.
 std::string vehicle_of(const std::vector<eprosima::fastrtps::rtps::octet>& user_data);

@@ -41,6 +41,8 @@ namespace swiftlet {
 namespace {
 
 using namespace std::chrono_literals;
+
+constexpr std::uint32_t kProcesses = 2;  // of the domain
 namespace dds = eprosima::fastdds::dds;
 using comms::msg::ActuatorCommand;
 using comms::msg::Imu;
@@ -101,9 +103,10 @@ class BarePair final : private dds::DataReaderListener {
     settings.localhost_only = true;
     const int sent_deadline_ms = options.no_deadline ? 0 : sent.deadline_ms;
     const int received_deadline_ms = options.no_deadline ? 0 : received.deadline_ms;
-    participant_ = demand(dds::DomainParticipantFactory::get_instance()->create_participant(
-                              static_cast<std::uint32_t>(domain), comms::participant_qos(settings)),
-                          "participant");
+    participant_ =
+        demand(dds::DomainParticipantFactory::get_instance()->create_participant(
+                   static_cast<std::uint32_t>(domain), comms::participant_qos(settings, kProcesses)),
+               "participant");
     auto* const publisher = demand(participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT), "publisher");
     auto* const subscriber =
         demand(participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT), "subscriber");

@@ -4,7 +4,6 @@
 #include <arpa/inet.h>
 #include <limits>
 #include <netinet/in.h>
-#include <stdexcept>
 #include <string>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -14,8 +13,11 @@
 namespace swiftlet::comms {
 namespace {
 
-// More than processes that start at once take from each other between the look and the use of a port.
+// A fleet of four vehicles, in which each process calls all others.
 constexpr std::uint32_t kPortsAbove = 16;
+
+// More than a process here ever opens.
+constexpr int kMostDescriptors = 4096;
 
 bool is_free(std::uint32_t port, bool localhost_only) {
   const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
@@ -44,15 +46,34 @@ DiscoveryPorts discovery_ports(int domain) {
   return ports;
 }
 
+std::runtime_error domain_is_full(int domain) {
+  const DiscoveryPorts ports = discovery_ports(domain);
+  return std::runtime_error("DDS domain " + std::to_string(domain) + " is full: all of its " +
+                            std::to_string(ports.count) + " ports for discovery on this host, UDP " +
+                            std::to_string(ports.first) + " to " + std::to_string(ports.last()) +
+                            ", are taken; choose another with --domain");
+}
+
 std::uint32_t free_discovery_port(int domain, bool localhost_only) {
   const DiscoveryPorts ports = discovery_ports(domain);
   for (std::uint32_t i = 0; i < ports.count; ++i) {
     if (is_free(ports.first + i * ports.gap, localhost_only)) return i;
   }
-  throw std::runtime_error("DDS domain " + std::to_string(domain) + " is full: all of its " +
-                           std::to_string(ports.count) + " ports for discovery on this host, UDP " +
-                           std::to_string(ports.first) + " to " + std::to_string(ports.last()) +
-                           ", are taken; choose another with --domain");
+  throw domain_is_full(domain);
+}
+
+std::set<std::uint32_t> own_discovery_ports(int domain) {
+  const DiscoveryPorts ports = discovery_ports(domain);
+  std::set<std::uint32_t> own;
+  for (int descriptor = 0; descriptor < kMostDescriptors; ++descriptor) {
+    sockaddr_in address{};
+    socklen_t length = sizeof address;
+    if (::getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &length) != 0) continue;
+    const std::uint32_t port = ntohs(address.sin_port);
+    if (address.sin_family != AF_INET || port < ports.first || port > ports.last()) continue;
+    if ((port - ports.first) % ports.gap == 0) own.insert((port - ports.first) / ports.gap);
+  }
+  return own;
 }
 
 std::uint32_t announced_ports(const DiscoveryPorts& ports, std::uint32_t own) {

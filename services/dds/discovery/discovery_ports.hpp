@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
+#include <stdexcept>
 
 namespace swiftlet::comms {
 
@@ -17,9 +19,14 @@ struct DiscoveryPorts {
 // 120 ports; 63 in domain 232, whose ports end with those of UDP.
 DiscoveryPorts discovery_ports(int domain);
 
-// The first of the domain's ports that is free now, counted from 0. Throws std::runtime_error with a sentence
-// if all are taken: a process more would be found by none of the others.
+// "DDS domain 5 is full": all ports are taken, a process more would be found by none of the others.
+std::runtime_error domain_is_full(int domain);
+
+// The first of the domain's ports that is free now, counted from 0. Throws domain_is_full().
 std::uint32_t free_discovery_port(int domain, bool localhost_only);
+
+// Those of them that a socket of this process has.
+std::set<std::uint32_t> own_discovery_ports(int domain);
 
 // To how many of the domain's ports a process announces itself that has the port of this number: to those
 // below its own and some above. So of two processes, the one above always calls the one below, which then

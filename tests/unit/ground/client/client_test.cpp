@@ -6,7 +6,7 @@
 #include <chrono>
 #include <future>
 #include <memory>
-#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 

@@ -4,6 +4,7 @@
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <sys/socket.h>
@@ -113,6 +114,15 @@ TEST(DiscoveryPorts, EachIsAnnouncedToFromAllAbove) {
   for (std::uint32_t own = 0; own < ports.count; ++own) ASSERT_GT(announced_ports(ports, own), own);
   EXPECT_EQ(announced_ports(ports, 0), 17U);
   EXPECT_EQ(announced_ports(ports, ports.count - 1), ports.count);
+}
+
+TEST(DiscoveryPorts, OnesOwnAreKnown) {
+  const DomainClaim claim;
+  const TakenPorts three(claim.domain(), 3);
+  EXPECT_EQ(own_discovery_ports(claim.domain()), (std::set<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(free_discovery_port(claim.domain(), true), 3U);
+  const Node node(settings(claim, "fourth"));
+  EXPECT_EQ(own_discovery_ports(claim.domain()), (std::set<std::uint32_t>{0, 1, 2, 3}));
 }
 
 TEST(DiscoveryPorts, AProcessThatWouldNotBeFoundIsRefusedInWords) {
