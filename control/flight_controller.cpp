@@ -11,9 +11,9 @@
 #include "swiftlet/control/attitude/attitude_controller.hpp"
 #include "swiftlet/control/attitude/attitude_error.hpp"
 #include "swiftlet/control/design/control_design.hpp"
-#include "swiftlet/control/estimation/climb_watch.hpp"
 #include "swiftlet/control/estimation/disturbance_observer.hpp"
 #include "swiftlet/control/estimation/rotor_observer.hpp"
+#include "swiftlet/control/estimation/takeoff_consistency.hpp"
 #include "swiftlet/control/position/position_controller.hpp"
 #include "swiftlet/control/position/thrust_attitude_map.hpp"
 #include "swiftlet/control/supervision/supervisor.hpp"
@@ -59,20 +59,20 @@ struct FlightController::Impl {
   void begin_anew_if_clock_went_back(const plant::ImuSample& sample);
   void count_unusable(bool usable, std::int64_t stamp_ns);
   double take(const plant::ImuSample& sample);
-  Situation situation() const;
-  void observe(const Directive& directive, double dt_s);
-  AttitudeDemand outer_loop(const Directive& directive, double dt_s);
+  SupervisorInputs inputs() const;
+  void observe(const ControlSetpoint& setpoint, double dt_s);
+  AttitudeDemand outer_loop(const ControlSetpoint& setpoint, double dt_s);
   Wrench inner_loop(const AttitudeDemand& demand) const;
   void allocate(const AttitudeDemand& demand, const Wrench& wrench);
   void idle_rotors(plant::RotorState rotor_state);
-  void report(const Situation& situation);
+  void report(const SupervisorInputs& inputs);
   const plant::ActuatorCommand& answer(const plant::ImuSample& sample);
 
   // The outer loop, by what is asked for.
   AttitudeDemand follow_reference(bool integrate, double dt_s);
   AttitudeDemand spool_up(double lift_fraction) const;
   AttitudeDemand descend_level(double speed) const;
-  AttitudeDemand as_asked(const Directive& directive) const;
+  AttitudeDemand as_asked(const ControlSetpoint& setpoint) const;
 
   plant::Vehicle vehicle;
   ControlSettings settings;
@@ -81,7 +81,7 @@ struct FlightController::Impl {
   Estimator estimator;
   RotorObserver rotors;
   DisturbanceObserver disturbance;
-  ClimbWatch climb;
+  TakeoffConsistencyMonitor climb;
   PositionController position;
   AttitudeController attitude;
   Allocator allocator;
@@ -114,7 +114,7 @@ FlightController::Impl::Impl(const plant::Vehicle& vehicle_in, const ControlSett
       estimator(settings_in.estimator),
       rotors(vehicle_in, settings_in.estimator.rotor_speed_bandwidth),
       disturbance(settings_in.disturbance),
-      climb(settings_in.estimator.detectors.climb_watch),
+      climb(settings_in.estimator.detectors.takeoff_consistency),
       position(settings_in.position, settings_in.limits, design_in),
       attitude(vehicle_in, settings_in.attitude, design_in),
       allocator(vehicle_in),
@@ -146,25 +146,25 @@ void FlightController::Impl::count_unusable(bool usable, std::int64_t stamp_ns) 
     unusable_s = std::numeric_limits<double>::infinity();
 }
 
-Situation FlightController::Impl::situation() const {
-  Situation situation;
+SupervisorInputs FlightController::Impl::inputs() const {
+  SupervisorInputs inputs;
   const Estimate& estimate = estimator.estimate();
-  situation.stamp_ns = estimate.stamp_ns;
-  situation.estimate = &estimate;
-  situation.has_estimate = estimator.initialised();
-  situation.pose_age_s = estimator.pose_age_s();
-  situation.pose_jumped = estimate.resets != resets_seen;
-  situation.has_battery = has_battery;
-  situation.supply_voltage_v = supply_voltage_v;
-  situation.battery_age_s = seconds(estimate.stamp_ns - battery_stamp_ns);
-  situation.unexplained_lift =
+  inputs.stamp_ns = estimate.stamp_ns;
+  inputs.estimate = &estimate;
+  inputs.has_estimate = estimator.initialised();
+  inputs.pose_age_s = estimator.pose_age_s();
+  inputs.pose_jumped = estimate.resets != resets_seen;
+  inputs.has_battery = has_battery;
+  inputs.supply_voltage_v = supply_voltage_v;
+  inputs.battery_age_s = seconds(estimate.stamp_ns - battery_stamp_ns);
+  inputs.vertical_specific_force_residual =
       -(specific_force_frd.z() - estimate.accelerometer_bias.z()) - rotors.thrust_n() / vehicle.mass_kg;
-  situation.climb_contradicted = climb.contradicted();
-  situation.specific_force_frd = specific_force_frd;
-  situation.rotor_speed = *std::max_element(rotors.speeds().begin(), rotors.speeds().end());
-  situation.imu_unusable_s = unusable_s;
-  situation.imu_gap_s = imu_gap_s;
-  return situation;
+  inputs.takeoff_inconsistent = climb.contradicted();
+  inputs.specific_force_frd = specific_force_frd;
+  inputs.rotor_speed = *std::max_element(rotors.speeds().begin(), rotors.speeds().end());
+  inputs.imu_unusable_s = unusable_s;
+  inputs.imu_gap_s = imu_gap_s;
+  return inputs;
 }
 
 // Takes a sample that can be used, and runs the rotors' model up to it. Returns the time since the one before, s.
@@ -179,41 +179,41 @@ double FlightController::Impl::take(const plant::ImuSample& sample) {
 }
 
 // What is watched in flight, whichever loop flies.
-void FlightController::Impl::observe(const Directive& directive, double dt_s) {
+void FlightController::Impl::observe(const ControlSetpoint& setpoint, double dt_s) {
   const Estimate& estimate = estimator.estimate();
-  switch (directive.actuation) {
-    case Actuation::kOff:
-    case Actuation::kIdle:
+  switch (setpoint.control_mode) {
+    case ControlMode::kOff:
+    case ControlMode::kIdle:
       position.reset();
       disturbance.reset();
       return;
-    case Actuation::kSpoolUp:
+    case ControlMode::kSpoolUp:
       climb.begin(estimate.accelerometer_bias, estimate.position_ned.z());
       return;
-    case Actuation::kLevelDescent:
+    case ControlMode::kLevelDescent:
       return;
-    case Actuation::kFly:
-    case Actuation::kAttitude:
-    case Actuation::kBodyRates:
+    case ControlMode::kFly:
+    case ControlMode::kAttitude:
+    case ControlMode::kBodyRates:
       climb.step(dt_s, specific_force_frd, estimate.q_ned_from_frd, estimate.position_ned.z());
-      if (!directive.integrate) return;
+      if (!setpoint.integrate) return;
       disturbance.step(dt_s, specific_force_frd - estimate.accelerometer_bias, estimate.q_ned_from_frd,
                        rotors.thrust_n() / vehicle.mass_kg);
       return;
   }
 }
 
-AttitudeDemand FlightController::Impl::outer_loop(const Directive& directive, double dt_s) {
-  switch (directive.actuation) {
-    case Actuation::kSpoolUp:
-      return spool_up(directive.lift_fraction);
-    case Actuation::kLevelDescent:
-      return descend_level(directive.descent_speed);
-    case Actuation::kAttitude:
-    case Actuation::kBodyRates:
-      return as_asked(directive);
+AttitudeDemand FlightController::Impl::outer_loop(const ControlSetpoint& setpoint, double dt_s) {
+  switch (setpoint.control_mode) {
+    case ControlMode::kSpoolUp:
+      return spool_up(setpoint.lift_fraction);
+    case ControlMode::kLevelDescent:
+      return descend_level(setpoint.descent_speed);
+    case ControlMode::kAttitude:
+    case ControlMode::kBodyRates:
+      return as_asked(setpoint);
     default:
-      return follow_reference(directive.integrate, dt_s);
+      return follow_reference(setpoint.integrate, dt_s);
   }
 }
 
@@ -259,15 +259,15 @@ AttitudeDemand FlightController::Impl::descend_level(double speed) const {
 }
 
 // An attitude, or body rates and the attitude as it is.
-AttitudeDemand FlightController::Impl::as_asked(const Directive& directive) const {
+AttitudeDemand FlightController::Impl::as_asked(const ControlSetpoint& setpoint) const {
   AttitudeDemand demand;
-  demand.rates_alone = directive.actuation == Actuation::kBodyRates;
+  demand.rates_alone = setpoint.control_mode == ControlMode::kBodyRates;
   const Eigen::Quaterniond& q =
-      demand.rates_alone ? estimator.estimate().q_ned_from_frd : directive.q_ned_from_frd;
-  demand.thrust_n = directive.thrust * vehicle.mass_kg;
+      demand.rates_alone ? estimator.estimate().q_ned_from_frd : setpoint.q_ned_from_frd;
+  demand.thrust_n = setpoint.thrust * vehicle.mass_kg;
   demand.attitude.body_z_ned = body_z(q);
   demand.attitude.heading = euler_angles(q).heading;
-  demand.attitude.body_rates = directive.body_rates_frd;
+  demand.attitude.body_rates = setpoint.body_rates_frd;
   return demand;
 }
 
@@ -305,11 +305,11 @@ void FlightController::Impl::idle_rotors(plant::RotorState rotor_state) {
   status.saturated = false;
 }
 
-void FlightController::Impl::report(const Situation& situation) {
+void FlightController::Impl::report(const SupervisorInputs& inputs) {
   status.mode = supervisor.mode();
   status.reason = supervisor.reason();
-  status.has_pose = situation.has_estimate && situation.pose_age_s <= settings.failsafe.mocap_timeout_s;
-  status.pose_age_s = situation.pose_age_s;
+  status.has_pose = inputs.has_estimate && inputs.pose_age_s <= settings.failsafe.mocap_timeout_s;
+  status.pose_age_s = inputs.pose_age_s;
   status.airborne = supervisor.airborne();
   status.ground_links = supervisor.ground_links();
   status.supply_voltage_v = supply_voltage_v;
@@ -341,21 +341,21 @@ const plant::ActuatorCommand& FlightController::on_imu(const plant::ImuSample& s
   const double dt_s = usable ? c.take(sample) : 0.0;
 
   // Supervision decides, guidance gives the reference.
-  const Situation situation = c.situation();
-  const Directive directive = c.supervisor.step(situation);
-  c.resets_seen = situation.estimate->resets;
-  c.reference = directive.reference;
+  const SupervisorInputs inputs = c.inputs();
+  const ControlSetpoint setpoint = c.supervisor.step(inputs);
+  c.resets_seen = inputs.estimate->resets;
+  c.reference = setpoint.reference;
 
   // The laws, and the command.
-  c.observe(directive, dt_s);
-  if (directive.actuation == Actuation::kOff || directive.actuation == Actuation::kIdle) {
-    c.idle_rotors(directive.actuation == Actuation::kOff ? plant::RotorState::kOff
-                                                         : plant::RotorState::kRunning);
+  c.observe(setpoint, dt_s);
+  if (setpoint.control_mode == ControlMode::kOff || setpoint.control_mode == ControlMode::kIdle) {
+    c.idle_rotors(setpoint.control_mode == ControlMode::kOff ? plant::RotorState::kOff
+                                                             : plant::RotorState::kRunning);
   } else {
-    const AttitudeDemand demand = c.outer_loop(directive, dt_s);
+    const AttitudeDemand demand = c.outer_loop(setpoint, dt_s);
     c.allocate(demand, c.inner_loop(demand));
   }
-  c.report(situation);
+  c.report(inputs);
   return c.answer(sample);
 }
 
@@ -377,13 +377,15 @@ void FlightController::on_rotor_speeds(const plant::RotorSpeedSample& sample) {
 }
 
 Outcome FlightController::on_setpoint(const Setpoint& setpoint) {
-  return impl_->supervisor.setpoint(setpoint, impl_->situation());
+  return impl_->supervisor.setpoint(setpoint, impl_->inputs());
 }
 
-bool FlightController::on_ground_sign(const GroundSign& sign) { return impl_->supervisor.ground_sign(sign); }
+bool FlightController::on_ground_sign(const GroundHeartbeat& sign) {
+  return impl_->supervisor.ground_sign(sign);
+}
 
 Outcome FlightController::request(const Request& request) {
-  return impl_->supervisor.request(request, impl_->situation());
+  return impl_->supervisor.request(request, impl_->inputs());
 }
 
 FlightState FlightController::state() const {
@@ -399,14 +401,16 @@ void FlightController::adopt(const FlightState& state, const Mission* mission, c
   l.command.throttle = state.throttle;
 }
 
-bool FlightController::feels_airborne() const {
+bool FlightController::detects_airborne() const {
   const Impl& l = *impl_;
   const Vector3d lift_frd(0.0, 0.0, -l.rotors.thrust_n() / l.vehicle.mass_kg);
   const Vector3d unexplained = l.specific_force_frd - l.estimator.estimate().accelerometer_bias - lift_frd;
   return unexplained.norm() < kStandingLift * plant::kGravity;
 }
 
-bool FlightController::find_flying() { return impl_->supervisor.find_flying(impl_->situation()).accepted; }
+bool FlightController::engage_in_flight() {
+  return impl_->supervisor.engage_in_flight(impl_->inputs()).accepted;
+}
 
 const Estimate& FlightController::estimate() const { return impl_->estimator.estimate(); }
 ErrorState FlightController::estimate_deviation() const { return impl_->estimator.standard_deviation(); }

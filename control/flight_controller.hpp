@@ -44,7 +44,7 @@ class FlightController {
   // Setpoints are followed while holding; a refused one changes nothing.
   Outcome on_setpoint(const Setpoint& setpoint);
   // A sign of life of a ground tool. False if the flight depends on too many others already.
-  bool on_ground_sign(const GroundSign& sign);
+  bool on_ground_sign(const GroundHeartbeat& sign);
   // Answers by the present mode. A mission or trajectory must have passed check() of planning/checks.hpp
   // before.
   Outcome request(const Request& request);
@@ -54,9 +54,9 @@ class FlightController {
   FlightState state() const;
   void adopt(const FlightState& state, const Mission* mission, const Trajectory* trajectory);
   // The air carries the vehicle, as far as accelerometer and rotor speeds tell: it does not stand.
-  bool feels_airborne() const;
+  bool detects_airborne() const;
   // Takes a vehicle that flies already into hold; false, and changes nothing, without a pose.
-  bool find_flying();
+  bool engage_in_flight();
 
   // As of the last step.
   const Estimate& estimate() const;

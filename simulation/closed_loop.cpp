@@ -60,7 +60,7 @@ void ClosedLoop::keep_sensors() const {
   if (rotor_speeds_) sensors->rotor_speeds.append(*rotor_speeds_);
 }
 
-const plant::RotorDrive& ClosedLoop::drive() {
+const plant::MotorCommand& ClosedLoop::drive() {
   if (const auto arrived = command_path.arrived(plant.stamp_ns()))
     watchdog.accept(*arrived, plant.stamp_ns());
   return watchdog.drive(plant.stamp_ns());

@@ -56,7 +56,7 @@ class ClosedLoop {
   void collect();
   void answer();
   void keep_sensors() const;
-  const plant::RotorDrive& drive();
+  const plant::MotorCommand& drive();
 
   // The newest since the last answer.
   std::optional<plant::PoseSample> pose_;

@@ -33,7 +33,7 @@ bool finite(const plant::VehicleState& state) {
 double seconds(std::int64_t nanoseconds) { return static_cast<double>(nanoseconds) / 1e9; }
 
 // In steps that suit the body's rates; throws if it turns too fast.
-void advance(const plant::Dynamics& dynamics, MotionRow& now, const plant::RotorDrive& drive,
+void advance(const plant::Dynamics& dynamics, MotionRow& now, const plant::MotorCommand& drive,
              std::int64_t until_ns) {
   const double dt = static_cast<double>(until_ns - now.time_ns) * 1e-9;
   const double rate = now.state.body_rates_frd.norm();
@@ -132,7 +132,7 @@ std::vector<MotionRow> simulate_open_loop(const plant::Vehicle& vehicle, double 
   const plant::Dynamics dynamics(without_drag, plant::Supply::constant(supply_voltage_v));
 
   MotionRow now{pulses.front().time_ns, initial};
-  plant::RotorDrive drive{plant::RotorState::kRunning, pulses.front().throttle};
+  plant::MotorCommand drive{plant::RotorState::kRunning, pulses.front().throttle};
   now.state.armature_currents = dynamics.settled_currents(now.state, drive);
   std::vector<MotionRow> rows = {now};
   std::size_t held = 0;

@@ -28,10 +28,12 @@ AttitudeAxisDesign named_axis(const char* axis, AttitudeModel model, const LqrWe
 PositionAxisDesign position_axis(const char* axis, const RptSettings& settings) {
   const bool valid = std::isfinite(settings.omega_n) && settings.omega_n > 0.0 &&
                      std::isfinite(settings.zeta) && settings.zeta > 0.0 && std::isfinite(settings.epsilon) &&
-                     settings.epsilon > 0.0 && std::isfinite(settings.k_i) && settings.k_i >= 0.0;
+                     settings.epsilon > 0.0 && std::isfinite(settings.integral_pole) &&
+                     settings.integral_pole >= 0.0;
   if (!valid) {
-    throw std::invalid_argument(std::string("position.") + axis +
-                                ": omega_n, zeta and epsilon must be above 0, k_i must be at least 0");
+    throw std::invalid_argument(
+        std::string("position.") + axis +
+        ": omega_n, zeta and epsilon must be above 0, integral_pole must be at least 0");
   }
   PositionAxisDesign axis_design;
   axis_design.settings = settings;
@@ -48,13 +50,13 @@ void analyse(PositionAxisDesign& axis, const Loop& loop) {
 // The position axis without integral has one state less, so that no pole stays at 0.
 Loop with_outer_states(const RptGains& gains, const Eigen::MatrixXd& actuator_a,
                        const Eigen::VectorXd& actuator_b, const Eigen::RowVectorXd& acceleration) {
-  const Eigen::Index integral = gains.k_s > 0.0 ? 1 : 0;
+  const Eigen::Index integral = gains.k_i > 0.0 ? 1 : 0;
   const Eigen::Index inner = actuator_a.rows();
   const Eigen::Index n = integral + 2 + inner;
   Loop loop{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), Eigen::RowVectorXd::Zero(n)};
   if (integral > 0) {
     loop.a(0, 1) = 1.0;
-    loop.c[0] = gains.k_s;
+    loop.c[0] = gains.k_i;
   }
   loop.a(integral, integral + 1) = 1.0;
   loop.a.row(integral + 1).tail(inner) = acceleration;
@@ -119,11 +121,11 @@ Eigen::Matrix<double, 5, 1> rpt_feedback(const RptSettings& settings) {
 RptGains rpt_gains(const RptSettings& settings) {
   const double w = settings.omega_n;
   const double e = settings.epsilon;
-  const double k_i = settings.k_i;
+  const double integral_pole = settings.integral_pole;
   RptGains gains;
-  gains.k_v = (2.0 * settings.zeta * w + k_i) / e;
-  gains.k_p = (w * w + 2.0 * settings.zeta * w * k_i) / (e * e);
-  gains.k_s = k_i * w * w / (e * e * e);
+  gains.k_v = (2.0 * settings.zeta * w + integral_pole) / e;
+  gains.k_p = (w * w + 2.0 * settings.zeta * w * integral_pole) / (e * e);
+  gains.k_i = integral_pole * w * w / (e * e * e);
   return gains;
 }
 

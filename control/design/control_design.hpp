@@ -26,11 +26,11 @@ struct AttitudeAxisDesign {
   double phase_margin_deg = 0.0;                     // cut at the rotor command, rotor lag included
 };
 
-// a = a_r + k_v (u_r - u) + k_p (x_r - x) + k_s integral(x_r - x), Eq. (48) and its integral form.
+// a = a_r + k_v (u_r - u) + k_p (x_r - x) + k_i integral(x_r - x), Eq. (48) and its integral form.
 struct RptGains {
   double k_p = 0.0;  // 1/s^2
   double k_v = 0.0;  // 1/s
-  double k_s = 0.0;  // 1/s^3
+  double k_i = 0.0;  // 1/s^3
 };
 
 // One position axis.
@@ -38,7 +38,7 @@ struct PositionAxisDesign {
   RptSettings settings;
   Eigen::Matrix<double, 5, 1> f =
       Eigen::Matrix<double, 5, 1>::Zero();  // Eq. (49) for the state (45); without integral
-  RptGains gains;                           // what is flown; with the integral if k_i > 0
+  RptGains gains;                           // what is flown; with the integral if integral_pole > 0
   std::vector<std::complex<double>> poles;  // rad/s, of the closed loop with the inner loop and the rotor lag
   double phase_margin_deg = 0.0;  // cut at the acceleration command, inner loop and rotor lag included
 };
@@ -78,7 +78,7 @@ Loop vertical_position_loop(const RptGains& gains, const RotorResponse& thrust);
 // Eq. (49) in the state order of Eq. (45): (x_r, u_r, a_r, x, u).
 Eigen::Matrix<double, 5, 1> rpt_feedback(const RptSettings& settings);
 
-// Eq. (48), or the integral form if k_i > 0.
+// Eq. (48), or the integral form if integral_pole > 0.
 RptGains rpt_gains(const RptSettings& settings);
 
 // LQR of one attitude axis. Throws std::invalid_argument with a sentence if the weights break a rule.

@@ -112,9 +112,10 @@ void ErrorCovariance::add_motion(double position_variance, double velocity_varia
   p_.diagonal().segment<3>(kRotation).array() += rotation_variance;
 }
 
-ErrorCovariance::Correction ErrorCovariance::weigh(const PoseInnovation& innovation, double position_variance,
-                                                   double rotation_variance) const {
-  Correction out;
+ErrorCovariance::Update ErrorCovariance::compute_update(const PoseInnovation& innovation,
+                                                        double position_variance,
+                                                        double rotation_variance) const {
+  Update out;
   out.h_p_ << p_.middleRows<3>(kPosition), p_.middleRows<3>(kRotation);
   Matrix6 s;  // S = H P H' + V
   s << out.h_p_.middleCols<3>(kPosition), out.h_p_.middleCols<3>(kRotation);
@@ -131,7 +132,7 @@ ErrorCovariance::Correction ErrorCovariance::weigh(const PoseInnovation& innovat
 }
 
 // K S = P H'
-void ErrorCovariance::reduce(const Correction& correction) {
+void ErrorCovariance::apply_update(const Update& correction) {
   p_ = symmetric(p_ - correction.gain_ * correction.h_p_);
 }
 

@@ -74,7 +74,7 @@ class ErrorCovariance {
   void add_motion(double position_variance, double velocity_variance, double rotation_variance);
 
   // What a pose says. Holds until the covariance changes.
-  class Correction {
+  class Update {
    public:
     // z' S^-1 z, chi-square of 6 degrees of freedom.
     double normalised_square() const { return normalised_square_; }
@@ -87,10 +87,10 @@ class ErrorCovariance {
     ErrorState step_;
     double normalised_square_ = 0.0;
   };
-  Correction weigh(const PoseInnovation& innovation, double position_variance,
-                   double rotation_variance) const;
+  Update compute_update(const PoseInnovation& innovation, double position_variance,
+                        double rotation_variance) const;
   // The covariance after the correction has been made.
-  void reduce(const Correction& correction);
+  void apply_update(const Update& correction);
 
   ErrorState standard_deviation() const { return p_.diagonal().cwiseMax(0.0).cwiseSqrt(); }
   const ErrorMatrix& matrix() const { return p_; }

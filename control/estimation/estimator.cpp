@@ -102,7 +102,7 @@ bool Estimator::predict(const plant::ImuSample& sample) {
     path_.velocity_ned.setZero();
     next_ = 0;
   }
-  remember();
+  store_history();
   if (initialised_) show_path();
   last_imu_ = sample;
   return true;
@@ -111,13 +111,13 @@ bool Estimator::predict(const plant::ImuSample& sample) {
 bool Estimator::correct(const plant::PoseSample& pose, plant::RotorState rotors) {
   if (pose.stamp_ns == received_stamp_ns_ && received_stamp_ns_ != 0) return false;
   received_stamp_ns_ = pose.stamp_ns;
-  now_.pose_fault = take_in(pose, rotors);
+  now_.pose_fault = fuse(pose, rotors);
   const bool accepted = now_.pose_fault == PoseFault::kNone;
   ++(accepted ? now_.poses_accepted : now_.poses_refused);
   return accepted;
 }
 
-PoseFault Estimator::take_in(const plant::PoseSample& pose, plant::RotorState rotors) {
+PoseFault Estimator::fuse(const plant::PoseSample& pose, plant::RotorState rotors) {
   if (!pose.tracked) return PoseFault::kUntracked;
   if (!pose.position_ned.allFinite() || !pose.q_ned_from_frd.coeffs().allFinite()) return PoseFault::kInvalid;
   if (std::abs(pose.q_ned_from_frd.norm() - 1.0) > kUnitTolerance) return PoseFault::kInvalid;
@@ -136,7 +136,7 @@ PoseFault Estimator::take_in(const plant::PoseSample& pose, plant::RotorState ro
   }
 
   const PoseInnovation innovation = compare(pose);
-  const ErrorCovariance::Correction correction = weigh(innovation);
+  const ErrorCovariance::Correction correction = compute_update(innovation);
   normalised_innovation_ = correction.normalised_square();
   const bool contradicts = normalised_innovation_ > settings_.gate_chi_square;
   // Without noise, a vehicle that stands repeats its pose: believed as any other with the rotors off.
@@ -147,7 +147,7 @@ PoseFault Estimator::take_in(const plant::PoseSample& pose, plant::RotorState ro
                        innovation.rotation.norm() > outlier_rotation();
   if (!believed || (contradicts && far_off)) return disagree(pose, innovation, rotors, believed);
 
-  trust(pose);
+  accept(pose);
   contradictions_ = contradicts ? contradictions_ + 1 : 0;
   if (contradicts && contradictions_ <= detectors_.recovery.glitch_poses) {
     apply(std::sqrt(settings_.gate_chi_square / normalised_innovation_) * correction.step());
@@ -160,9 +160,9 @@ PoseFault Estimator::take_in(const plant::PoseSample& pose, plant::RotorState ro
 // z = y - h(x) of Sola's 6.1, at the pose's own stamp, to which the covariance is brought.
 PoseInnovation Estimator::compare(const plant::PoseSample& pose) {
   std::uint64_t first_newer = next_;
-  while (first_newer > first_after_anchor_ && remembered(first_newer - 1).stamp_ns > pose.stamp_ns)
+  while (first_newer > first_after_anchor_ && history_at(first_newer - 1).stamp_ns > pose.stamp_ns)
     --first_newer;
-  const Moment moment = moment_at(std::min(pose.stamp_ns, now_.stamp_ns), first_newer);
+  const StateSnapshot moment = moment_at(std::min(pose.stamp_ns, now_.stamp_ns), first_newer);
   advance(covariance_, anchor_, first_after_anchor_, moment);
   anchor_at(moment, first_newer);
 
@@ -175,7 +175,7 @@ PoseInnovation Estimator::compare(const plant::PoseSample& pose) {
   return innovation;
 }
 
-void Estimator::trust(const plant::PoseSample& pose) {
+void Estimator::accept(const plant::PoseSample& pose) {
   continuity_.begin();
   unseen_ = false;
   refused_in_a_row_ = 0;
@@ -185,21 +185,21 @@ void Estimator::trust(const plant::PoseSample& pose) {
 
 void Estimator::agree(const PoseInnovation& innovation, const ErrorCovariance::Correction& correction) {
   if (contradictions_ == 0) {
-    covariance_.reduce(correction);
+    covariance_.apply_update(correction);
     apply(correction.step());
     return;
   }
   const double step_m2 = innovation.position.squaredNorm();
   covariance_.add_motion(step_m2, step_m2 / squared(detectors_.recovery.step_time_s),
                          innovation.rotation.squaredNorm());
-  const ErrorCovariance::Correction likely = weigh(innovation);
-  covariance_.reduce(likely);
+  const ErrorCovariance::Correction likely = compute_update(innovation);
+  covariance_.apply_update(likely);
   apply(likely.step());
 }
 
-ErrorCovariance::Correction Estimator::weigh(const PoseInnovation& innovation) const {
-  return covariance_.weigh(innovation, squared(settings_.mocap_position_sigma),
-                           squared(settings_.mocap_orientation_sigma));
+ErrorCovariance::Correction Estimator::compute_update(const PoseInnovation& innovation) const {
+  return covariance_.compute_update(innovation, squared(settings_.mocap_position_sigma),
+                                    squared(settings_.mocap_orientation_sigma));
 }
 
 // What turns further from one pose to the next than the gyro ever misleads was not turned.
@@ -219,9 +219,10 @@ bool Estimator::believed_after_silence(const plant::PoseSample& pose, const Pose
     return true;
   if (pose.stamp_ns < seen_again_ns_) return false;
   if (continuity_.poses() == 1) trial_.begin();
-  const MotionTrial::Verdict verdict = trial_.look_at(pose, innovation, settings_);
-  if (verdict == MotionTrial::Verdict::kDisagree && continuity_.in_reach()) continuity_.disown();
-  return verdict == MotionTrial::Verdict::kAgree && continuity_.in_reach();
+  const PoseImuConsistencyTest::Verdict verdict = trial_.look_at(pose, innovation, settings_);
+  if (verdict == PoseImuConsistencyTest::Verdict::kDisagree && continuity_.in_reach())
+    continuity_.reject_track();
+  return verdict == PoseImuConsistencyTest::Verdict::kAgree && continuity_.in_reach();
 }
 
 PoseFault Estimator::disagree(const plant::PoseSample& pose, const PoseInnovation& innovation,
@@ -249,8 +250,8 @@ PoseFault Estimator::disagree(const plant::PoseSample& pose, const PoseInnovatio
 void Estimator::apply(const ErrorState& step) {
   const Eigen::Matrix3d r = anchor_.q_ned_from_frd.toRotationMatrix();
   if (next_ > first_after_anchor_ &&
-      corrections_made_ - remembered(first_after_anchor_).corrections >= kCorrections)
-    catch_up();
+      corrections_made_ - history_at(first_after_anchor_).corrections >= kCorrections)
+    replay();
   Correction& correction = corrections_[corrections_made_++ % kCorrections];
   correction.at = anchor_;
   correction.position = step.segment<3>(0);
@@ -272,7 +273,7 @@ void Estimator::apply(const ErrorState& step) {
 // F of error_covariance.hpp, with the attitude's step as a rotation: Sola's 7.3.2, "Injection of the observed error
 // into the nominal state", q <- rotation(step) q. The covariance's reset, P <- G P G' with G = I + [step / 2]x up to
 // sign, is left out: G is I within half a step of the attitude, some mrad.
-void Estimator::Correction::carry_to(Moment& moment) const {
+void Estimator::Correction::carry_to(StateSnapshot& moment) const {
   const ErrorInterval since = interval(at, moment);
   const double t = since.duration_s;
   moment.position_ned += position + t * velocity - since.position_change.cross(rotation - (t / 3) * rate) -
@@ -282,16 +283,16 @@ void Estimator::Correction::carry_to(Moment& moment) const {
   ++moment.corrections;
 }
 
-Estimator::Moment Estimator::past(std::uint64_t number) const {
-  Moment moment = remembered(number);
+Estimator::StateSnapshot Estimator::snapshot_at(std::uint64_t number) const {
+  StateSnapshot moment = history_at(number);
   while (moment.corrections < corrections_made_)
     corrections_[moment.corrections % kCorrections].carry_to(moment);
   return moment;
 }
 
-void Estimator::catch_up() {
+void Estimator::replay() {
   for (std::uint64_t number = first_after_anchor_; number < next_; ++number)
-    history_[number % kHistory] = past(number);
+    history_[number % kHistory] = snapshot_at(number);
 }
 
 void Estimator::show_path() {
@@ -313,7 +314,7 @@ void Estimator::restart_at(const plant::PoseSample& pose, const PoseInnovation& 
       Vector3d::Constant(detectors_.recovery.gyro_bias),
       Vector3d::Constant(detectors_.recovery.accelerometer_bias);
   covariance_.reset(sigma);
-  trust(pose);
+  accept(pose);
   ++now_.resets;
   now_.reset_position_ned = innovation.position;
   now_.reset_rotation_ned = innovation.rotation;
@@ -323,16 +324,17 @@ void Estimator::restart_at(const plant::PoseSample& pose, const PoseInnovation& 
 // settings.start_speed.
 void Estimator::start_at(const plant::PoseSample& pose) {
   first_after_anchor_ = next_ - std::min<std::uint64_t>(next_, kHistory);
-  anchor_ = remembered(first_after_anchor_);
+  anchor_ = history_at(first_after_anchor_);
   std::uint64_t first_newer = next_;
-  while (first_newer > first_after_anchor_ && remembered(first_newer - 1).stamp_ns > pose.stamp_ns)
+  while (first_newer > first_after_anchor_ && history_at(first_newer - 1).stamp_ns > pose.stamp_ns)
     --first_newer;
   const bool remembers = pose.stamp_ns > anchor_.stamp_ns;
-  const Moment drawn = remembers ? moment_at(std::min(pose.stamp_ns, path_.stamp_ns), first_newer) : anchor_;
-  const Moment start = {std::min(pose.stamp_ns, path_.stamp_ns), pose.position_ned, Vector3d::Zero(),
-                        pose.q_ned_from_frd.normalized(), 0};
+  const StateSnapshot drawn =
+      remembers ? moment_at(std::min(pose.stamp_ns, path_.stamp_ns), first_newer) : anchor_;
+  const StateSnapshot start = {std::min(pose.stamp_ns, path_.stamp_ns), pose.position_ned, Vector3d::Zero(),
+                               pose.q_ned_from_frd.normalized(), 0};
   const Quaterniond turn = start.q_ned_from_frd * drawn.q_ned_from_frd.conjugate();
-  const auto lay = [&](Moment& moment) {
+  const auto lay = [&](StateSnapshot& moment) {
     const ErrorInterval since = interval(drawn, moment);
     const double t = seconds(moment.stamp_ns - start.stamp_ns);
     const Vector3d fall(0.0, 0.0, t * plant::kGravity);
@@ -345,7 +347,7 @@ void Estimator::start_at(const plant::PoseSample& pose) {
   show_path();
   anchor_at(start, first_newer);
   initialised_ = true;
-  trust(pose);
+  accept(pose);
   ErrorState sigma;
   sigma << Vector3d::Constant(settings_.mocap_position_sigma), Vector3d::Constant(settings_.start_speed),
       Vector3d::Constant(settings_.mocap_orientation_sigma), Vector3d::Constant(settings_.gyro_bias_sigma),
@@ -354,27 +356,27 @@ void Estimator::start_at(const plant::PoseSample& pose) {
 }
 
 // The covariance follows before the moments that it has to go through are forgotten.
-void Estimator::remember() {
+void Estimator::store_history() {
   if (initialised_ && next_ - first_after_anchor_ >= kHistory - kIntervalMoments) {
     const std::uint64_t number = first_after_anchor_ + kIntervalMoments / 2;
-    const Moment moment = past(number);
+    const StateSnapshot moment = snapshot_at(number);
     advance(covariance_, anchor_, first_after_anchor_, moment);
     anchor_at(moment, number + 1);
   }
   history_[next_++ % kHistory] = path_;
 }
 
-void Estimator::anchor_at(const Moment& moment, std::uint64_t first_newer) {
+void Estimator::anchor_at(const StateSnapshot& moment, std::uint64_t first_newer) {
   anchor_ = moment;
   first_after_anchor_ = first_newer;
 }
 
-Estimator::Moment Estimator::moment_at(std::int64_t stamp_ns, std::uint64_t first_newer) const {
-  const Moment before = first_newer > first_after_anchor_ ? past(first_newer - 1) : anchor_;
-  Moment moment = before;
+Estimator::StateSnapshot Estimator::moment_at(std::int64_t stamp_ns, std::uint64_t first_newer) const {
+  const StateSnapshot before = first_newer > first_after_anchor_ ? snapshot_at(first_newer - 1) : anchor_;
+  StateSnapshot moment = before;
   if (before.stamp_ns == stamp_ns) return moment;
   moment.stamp_ns = stamp_ns;
-  const Moment after = past(first_newer);
+  const StateSnapshot after = snapshot_at(first_newer);
   const double part = seconds(stamp_ns - before.stamp_ns) / seconds(after.stamp_ns - before.stamp_ns);
   moment.position_ned += part * (after.position_ned - before.position_ned);
   moment.velocity_ned += part * (after.velocity_ned - before.velocity_ned);
@@ -382,7 +384,7 @@ Estimator::Moment Estimator::moment_at(std::int64_t stamp_ns, std::uint64_t firs
   return moment;
 }
 
-ErrorInterval Estimator::interval(const Moment& from, const Moment& to) {
+ErrorInterval Estimator::interval(const StateSnapshot& from, const StateSnapshot& to) {
   ErrorInterval out;
   out.duration_s = seconds(to.stamp_ns - from.stamp_ns);
   const Vector3d fall = {0.0, 0.0, out.duration_s * plant::kGravity};
@@ -392,7 +394,8 @@ ErrorInterval Estimator::interval(const Moment& from, const Moment& to) {
   return out;
 }
 
-void Estimator::advance_step(ErrorCovariance& covariance, const Moment& from, const Moment& to) const {
+void Estimator::advance_step(ErrorCovariance& covariance, const StateSnapshot& from,
+                             const StateSnapshot& to) const {
   ErrorInterval step = interval(from, to);
   step.r_ned_from_frd = mean(from.q_ned_from_frd, 0.5, to.q_ned_from_frd, 0.5).toRotationMatrix();
   covariance.advance(step, noise_);
@@ -403,15 +406,15 @@ void Estimator::advance_step(ErrorCovariance& covariance, const Moment& from, co
   covariance.add_motion(squared(0.5 * t * speed), squared(speed), squared(silence.body_rate * t));
 }
 
-void Estimator::advance(ErrorCovariance& covariance, Moment from, std::uint64_t first,
-                        const Moment& to) const {
+void Estimator::advance(ErrorCovariance& covariance, StateSnapshot from, std::uint64_t first,
+                        const StateSnapshot& to) const {
   std::uint64_t number = first;
   while (from.stamp_ns + kInterval_ns < to.stamp_ns && number < next_) {
     // To the last moment within the interval, or over the gap to the next.
     std::uint64_t last = number;
-    while (last + 1 < next_ && remembered(last + 1).stamp_ns <= from.stamp_ns + kInterval_ns) ++last;
-    if (remembered(last).stamp_ns >= to.stamp_ns) break;
-    const Moment moment = past(last);
+    while (last + 1 < next_ && history_at(last + 1).stamp_ns <= from.stamp_ns + kInterval_ns) ++last;
+    if (history_at(last).stamp_ns >= to.stamp_ns) break;
+    const StateSnapshot moment = snapshot_at(last);
     advance_step(covariance, from, moment);
     from = moment;
     number = last + 1;

@@ -15,8 +15,8 @@
 #include <Eigen/Geometry>
 
 #include "swiftlet/control/estimation/error_covariance.hpp"
-#include "swiftlet/control/estimation/motion_trial.hpp"
-#include "swiftlet/control/estimation/pose_screen.hpp"
+#include "swiftlet/control/estimation/pose_imu_consistency.hpp"
+#include "swiftlet/control/estimation/pose_stream.hpp"
 #include "swiftlet/control/types/settings.hpp"
 #include "swiftlet/plant/model/samples.hpp"
 
@@ -96,7 +96,7 @@ class Estimator {
   static constexpr int kHistory = 256;  // IMU samples: 0.5 s at 500 Hz
 
  private:
-  struct Moment {
+  struct StateSnapshot {
     std::int64_t stamp_ns = 0;
     Eigen::Vector3d position_ned = Eigen::Vector3d::Zero();
     Eigen::Vector3d velocity_ned = Eigen::Vector3d::Zero();
@@ -105,68 +105,70 @@ class Estimator {
   };
   // A step of the error state at a moment, and what it makes of those before and after.
   struct Correction {
-    Moment at;  // before the correction
+    StateSnapshot at;  // before the correction
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
     Eigen::Vector3d rotation = Eigen::Vector3d::Zero();
     Eigen::Vector3d rate = Eigen::Vector3d::Zero();          // that the rotation loses
     Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // that the velocity loses
-    void carry_to(Moment& moment) const;
+    void carry_to(StateSnapshot& moment) const;
   };
 
   // What is remembered is corrected when it is looked at: of most moments, nothing but the stamp ever is.
   static constexpr std::uint64_t kCorrections = 32;
-  const Moment& remembered(std::uint64_t number) const { return history_[number % kHistory]; }
-  Moment past(std::uint64_t number) const;
+  const StateSnapshot& history_at(std::uint64_t number) const { return history_[number % kHistory]; }
+  StateSnapshot snapshot_at(std::uint64_t number) const;
   void start_at(const plant::PoseSample& pose);
   void show_path();
-  void remember();
-  PoseFault take_in(const plant::PoseSample& pose, plant::RotorState rotors);
+  void store_history();
+  PoseFault fuse(const plant::PoseSample& pose, plant::RotorState rotors);
   PoseInnovation compare(const plant::PoseSample& pose);
   PoseFault disagree(const plant::PoseSample& pose, const PoseInnovation& innovation,
                      plant::RotorState rotors, bool believed);
-  void trust(const plant::PoseSample& pose);  // from it on the stream is followed
+  void accept(const plant::PoseSample& pose);  // from it on the stream is followed
   void agree(const PoseInnovation& innovation, const ErrorCovariance::Correction& correction);
-  ErrorCovariance::Correction weigh(const PoseInnovation& innovation) const;
+  ErrorCovariance::Correction compute_update(const PoseInnovation& innovation) const;
   double outlier_rotation() const;  // rad
   bool believed_after_silence(const plant::PoseSample& pose, const PoseInnovation& innovation);
   void apply(const ErrorState& step);
-  void catch_up();
+  void replay();
   void restart_at(const plant::PoseSample& pose, const PoseInnovation& innovation);
 
-  static ErrorInterval interval(const Moment& from, const Moment& to);
+  static ErrorInterval interval(const StateSnapshot& from, const StateSnapshot& to);
   // The covariance from one moment of the history to another; first is the number of the first after `from`.
-  void advance(ErrorCovariance& covariance, Moment from, std::uint64_t first, const Moment& to) const;
-  void advance_step(ErrorCovariance& covariance, const Moment& from, const Moment& to) const;
+  void advance(ErrorCovariance& covariance, StateSnapshot from, std::uint64_t first,
+               const StateSnapshot& to) const;
+  void advance_step(ErrorCovariance& covariance, const StateSnapshot& from, const StateSnapshot& to) const;
   // The nominal state at a stamp after the anchor's.
-  Moment moment_at(std::int64_t stamp_ns, std::uint64_t first_newer) const;
-  void anchor_at(const Moment& moment, std::uint64_t first_newer);
+  StateSnapshot moment_at(std::int64_t stamp_ns, std::uint64_t first_newer) const;
+  void anchor_at(const StateSnapshot& moment, std::uint64_t first_newer);
 
   EstimatorSettings settings_;
   DetectorSettings detectors_;  // of the settings
   ErrorNoise noise_;
   Estimate now_;
-  Moment path_;  // what the IMU says, of the newest sample; before the first pose from an arbitrary start
+  StateSnapshot
+      path_;  // what the IMU says, of the newest sample; before the first pose from an arbitrary start
   plant::ImuSample last_imu_;
   bool initialised_ = false;
   std::int64_t received_stamp_ns_ = 0;  // of the last pose that came
   std::int64_t pose_stamp_ns_ = 0;      // of the last that was taken in
   std::uint64_t pose_sequence_ = 0;
   double normalised_innovation_ = 0.0;
-  RepetitionWatch repetition_;
-  Continuity continuity_;
+  StuckPoseDetector repetition_;
+  PoseContinuity continuity_;
   bool unseen_ = false;             // the IMU was silent since the last pose that was taken in ...
   std::int64_t seen_again_ns_ = 0;  // ... until then
-  MotionTrial trial_;
+  PoseImuConsistencyTest trial_;
   int refused_in_a_row_ = 0;
   int contradictions_ = 0;  // in a row, of poses that were taken in
 
   // The covariance is that of the anchor: the last pose's moment, or one since.
   ErrorCovariance covariance_;
-  Moment anchor_;
+  StateSnapshot anchor_;
   std::uint64_t first_after_anchor_ = 0;  // number in the history
 
-  std::array<Moment, kHistory> history_;
+  std::array<StateSnapshot, kHistory> history_;
   std::uint64_t next_ = 0;  // number of the moment that will be remembered next
   std::array<Correction, kCorrections> corrections_;
   std::uint64_t corrections_made_ = 0;

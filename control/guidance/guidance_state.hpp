@@ -19,14 +19,14 @@ enum class Phase : std::uint8_t {
 };
 
 // Of a mission that was paused: whether the vehicle is still on its way.
-enum class Detour : std::uint8_t {
+enum class MissionPause : std::uint8_t {
   kNone = 0,
   kAway = 1,       // it was sent elsewhere
   kReturning = 2,  // to where it was left
 };
 
 // A way that was left, and the time of it, to be gone on with.
-struct LeftPath {
+struct PausedPath {
   PolynomialSegment segment;
   std::int64_t start_ns = 0;
   std::int64_t end_ns = 0;
@@ -51,12 +51,12 @@ struct GuidanceState {
   double climb_speed = 0.5;     // m/s
   double ground_z_ned = 0.0;    // m, where it stood when it was armed
 
-  MissionProgress mission;          // the item index says where in the mission
-  std::int64_t item_end_ns = 0;     // of its path and hold, by the path's time; 0: it has not arrived
-  Detour detour = Detour::kNone;    // of a mission that is paused, or returns from that
-  LeftPath left;                    // unless kNone
-  std::uint64_t trajectory_id = 0;  // of the one being flown
-  std::uint32_t next_segment = 0;   // of that trajectory, after the one being flown
+  MissionProgress mission;       // the item index says where in the mission
+  std::int64_t item_end_ns = 0;  // of its path and hold, by the path's time; 0: it has not arrived
+  MissionPause pause = MissionPause::kNone;  // of a mission that is paused, or returns from that
+  PausedPath paused_path;                    // unless kNone
+  std::uint64_t trajectory_id = 0;           // of the one being flown
+  std::uint32_t next_segment = 0;            // of that trajectory, after the one being flown
 
   std::int64_t setpoint_ns = 0;  // when the last one was taken
   SetpointKind setpoint_kind = SetpointKind::kPosition;

@@ -32,9 +32,10 @@ double nearest_turn(double to, double from) { return from + std::remainder(to - 
 
 // How the reference comes to rest inside the fence, being `from` by then. One that follows no path was put
 // where the vehicle is.
-Stop stop_inside(const GuidanceContext& context, const Reference& from) {
+BrakingManoeuvre stop_inside(const GuidanceContext& context, const Reference& from) {
   const Limits& limits = context.limits;
-  Stop stop = context.state.path.moving ? reference_stop(limits, from) : vehicle_stop(limits, from);
+  BrakingManoeuvre stop =
+      context.state.path.moving ? reference_stop(limits, from) : vehicle_stop(limits, from);
   stop.place_ned = stop.place_ned.cwiseMax(limits.fence_min_ned).cwiseMin(limits.fence_max_ned);
   return stop;
 }
@@ -44,7 +45,7 @@ bool leaves_fence(const Limits& limits, const PolynomialSegment& segment) {
   for (int i = 1; i < kLooks; ++i) {
     Reference at = evaluate(segment, segment.duration_s * i / kLooks);
     const Eigen::Vector3d position_ned = at.position_ned;
-    keep_inside(limits, at);
+    clamp_to_fence(limits, at);
     if (at.position_ned != position_ned) return true;
   }
   return false;
@@ -134,20 +135,20 @@ void advance_way(const GuidanceContext& context) {
 }
 
 // Back where the mission was left: its way goes on from there, from rest.
-void take_way_up_again(const GuidanceContext& context) {
+void resume_paused_path(const GuidanceContext& context) {
   GuidanceState& state = context.state;
-  state.path.follow(state.left.segment, context.now_ns);
-  state.path.start_ns = state.left.start_ns;
-  state.path.end_ns = state.left.end_ns;
-  state.path.clock = PathClock::standing_at(state.left.at_ns, context.now_ns);
-  state.detour = Detour::kNone;
-  turn_clock(context, true);
+  state.path.follow(state.paused_path.segment, context.now_ns);
+  state.path.start_ns = state.paused_path.start_ns;
+  state.path.end_ns = state.paused_path.end_ns;
+  state.path.clock = TimeScaling::standing_at(state.paused_path.at_ns, context.now_ns);
+  state.pause = MissionPause::kNone;
+  change_time_scaling(context, true);
 }
 
 // Nothing but the way itself goes on while the clock of the path changes its pace.
 void advance_mission(const GuidanceContext& context) {
   GuidanceState& state = context.state;
-  const bool its_way = state.detour == Detour::kNone;
+  const bool its_way = state.pause == MissionPause::kNone;
   if (state.path.clock.is_changing(context.now_ns)) {
     if (its_way) advance_way(context);
     return;
@@ -158,7 +159,7 @@ void advance_mission(const GuidanceContext& context) {
       state.item_end_ns = std::max(state.item_end_ns + behind_ns, context.now_ns);
   }
   if (!state.path.finished(context.now_ns)) return;
-  if (state.detour == Detour::kReturning) return take_way_up_again(context);
+  if (state.pause == MissionPause::kReturning) return resume_paused_path(context);
   if (item_of(context).kind == MissionItemKind::kLand) return sink(context);
   advance_way(context);
   if (state.item_end_ns == 0 || !state.path.finished(context.now_ns)) return;
@@ -180,7 +181,7 @@ double speed_on_way(const GuidanceContext& context) {
   if (!state.path.moving) return 0.0;
   double speed = limit_use(state.path.segment, unit).speed;
   const MissionItem& item = item_of(context);
-  if (item.kind != MissionItemKind::kTrajectory || state.detour != Detour::kNone) return speed;
+  if (item.kind != MissionItemKind::kTrajectory || state.pause != MissionPause::kNone) return speed;
   double ahead_s = elapsed_s(state.path.path_ns(context.now_ns), state.path.end_ns);
   for (std::uint32_t next = state.next_segment;
        next < item.segment_count && ahead_s < clock_change_s(context.limits, speed); ++next) {
@@ -193,7 +194,7 @@ double speed_on_way(const GuidanceContext& context) {
 
 }  // namespace
 
-void keep_inside(const Limits& limits, Reference& reference) {
+void clamp_to_fence(const Limits& limits, Reference& reference) {
   for (int i = 0; i < 3; ++i) {
     double& at = reference.position_ned[i];
     const bool beyond = at < limits.fence_min_ned[i] || (i < 2 && at > limits.fence_max_ned[i]);
@@ -212,11 +213,11 @@ Reference standing_at(const Estimate& estimate) {
   return reference;
 }
 
-Stop reference_stop(const Limits& limits, const Reference& from) {
-  return limited_stop(from, limits.max_reference_acceleration, limits.max_reference_jerk, kMinMove_s);
+BrakingManoeuvre reference_stop(const Limits& limits, const Reference& from) {
+  return limited_braking(from, limits.max_reference_acceleration, limits.max_reference_jerk, kMinMove_s);
 }
 
-Stop vehicle_stop(const Limits& limits, const Reference& from) {
+BrakingManoeuvre vehicle_stop(const Limits& limits, const Reference& from) {
   const double duration_s =
       std::max(kMinMove_s, 2.0 * from.velocity_ned.norm() / limits.max_reference_acceleration);
   return {duration_s, from.position_ned + 0.5 * duration_s * from.velocity_ned};
@@ -284,7 +285,7 @@ void start_join(const GuidanceContext& context, const PolynomialSegment& first, 
 void start_stop(const GuidanceContext& context) {
   GuidanceState& state = context.state;
   const Reference from = state.path.at(context.now_ns);
-  const Stop stop = stop_inside(context, from);
+  const BrakingManoeuvre stop = stop_inside(context, from);
   state.phase = Phase::kPath;
   state.path.follow(join_to_rest(from, stop.place_ned, from.yaw_rad, stop.duration_s), context.now_ns);
 }
@@ -296,34 +297,35 @@ void start_landing(const GuidanceContext& context, double speed, std::int64_t st
   start_move(context, above_ground, true, 0.0, speed, start_ns);
 }
 
-void turn_clock(const GuidanceContext& context, bool to_running) {
+void change_time_scaling(const GuidanceContext& context, bool to_running) {
   GuidanceState& state = context.state;
   state.path.clock.turn(to_running, clock_change_s(context.limits, speed_on_way(context)), context.now_ns);
 }
 
-void leave_way(const GuidanceContext& context) {
+void pause_path(const GuidanceContext& context) {
   GuidanceState& state = context.state;
-  if (state.detour == Detour::kNone) {
+  if (state.pause == MissionPause::kNone) {
     const ReferencePath& way = state.path;
     const std::int64_t at_ns = way.path_ns(context.now_ns);
-    state.left = {way.segment, way.moving ? way.start_ns : at_ns, way.moving ? way.end_ns : at_ns, at_ns};
+    state.paused_path = {way.segment, way.moving ? way.start_ns : at_ns, way.moving ? way.end_ns : at_ns,
+                         at_ns};
   }
-  state.detour = Detour::kAway;
+  state.pause = MissionPause::kAway;
 }
 
-void return_to_way(const GuidanceContext& context) {
+void return_to_paused_path(const GuidanceContext& context) {
   GuidanceState& state = context.state;
-  if (state.detour != Detour::kAway) return turn_clock(context, true);
-  const LeftPath& left = state.left;
-  const Reference place = evaluate(left.segment, elapsed_s(left.start_ns, left.at_ns));
+  if (state.pause != MissionPause::kAway) return change_time_scaling(context, true);
+  const PausedPath& paused_path = state.paused_path;
+  const Reference place = evaluate(paused_path.segment, elapsed_s(paused_path.start_ns, paused_path.at_ns));
   start_move(context, place.position_ned, false, place.yaw_rad, item_of(context).speed, context.now_ns);
-  state.detour = Detour::kReturning;
+  state.pause = MissionPause::kReturning;
 }
 
 void start_item(const GuidanceContext& context, std::int64_t start_ns) {
   const MissionItem& item = item_of(context);
   context.state.item_end_ns = 0;
-  context.state.detour = Detour::kNone;
+  context.state.pause = MissionPause::kNone;
   switch (item.kind) {
     case MissionItemKind::kTakeoff: {
       if (!context.state.flying()) return start_takeoff(context, item.position_ned.z(), item.speed);
@@ -356,7 +358,7 @@ void advance(const GuidanceContext& context) {
     climb(context);
   if (state.phase != Phase::kPath) return;
   if (context.mode == Mode::kMission) return advance_mission(context);
-  if (context.state.mission_paused() && state.detour == Detour::kNone) return advance_way(context);
+  if (context.state.mission_paused() && state.pause == MissionPause::kNone) return advance_way(context);
   if (!state.path.finished(context.now_ns)) return;
   if (context.mode == Mode::kTrajectory) advance_trajectory(context);
   if (context.mode == Mode::kSetpoint) start_coast(context);
@@ -366,7 +368,7 @@ void advance(const GuidanceContext& context) {
 Reference reference(const GuidanceContext& context) {
   if (!context.state.flying()) return standing_at(context.estimate);
   Reference now = context.state.path.at(context.now_ns);
-  keep_inside(context.limits, now);
+  clamp_to_fence(context.limits, now);
   return now;
 }
 

@@ -2,8 +2,8 @@
 // a plan one after another.
 #pragma once
 
+#include "swiftlet/control/guidance/braking_manoeuvre.hpp"
 #include "swiftlet/control/guidance/guidance_context.hpp"
-#include "swiftlet/control/guidance/stop.hpp"
 
 namespace swiftlet::control {
 
@@ -11,18 +11,18 @@ constexpr double kAirborneHeight_m = 0.03;  // above the ground
 
 // Moves the reference to the nearest place inside the fence: what joins one motion to another may swing
 // out. Down to the ground the fence does not matter.
-void keep_inside(const Limits& limits, Reference& reference);
+void clamp_to_fence(const Limits& limits, Reference& reference);
 
 // Where the estimate is, at rest, with its yaw.
 Reference standing_at(const Estimate& estimate);
 
 // How a reference that moves so comes to rest within the limits of references, as start_stop() would have it
 // without a fence.
-Stop reference_stop(const Limits& limits, const Reference& from);
+BrakingManoeuvre reference_stop(const Limits& limits, const Reference& from);
 // Likewise one that was put where the vehicle is, as it moves: braked by three quarters of the limit at most,
 // since the loops must follow first. Its acceleration is what the thrust gives now, and goes with the
 // attitude.
-Stop vehicle_stop(const Limits& limits, const Reference& from);
+BrakingManoeuvre vehicle_stop(const Limits& limits, const Reference& from);
 
 // Spool up, then climb straight to that height.
 void start_takeoff(const GuidanceContext& context, double to_z_ned, double speed);
@@ -43,11 +43,11 @@ void start_item(const GuidanceContext& context, std::int64_t start_ns);
 
 // Of a mission that is being flown: its time comes to a stand, or runs on again, as smoothly as the limits
 // want it. The vehicle stays on its way.
-void turn_clock(const GuidanceContext& context, bool to_running);
+void change_time_scaling(const GuidanceContext& context, bool to_running);
 // Before a paused mission's vehicle is sent elsewhere: remembers where it was.
-void leave_way(const GuidanceContext& context);
+void pause_path(const GuidanceContext& context);
 // To where the paused mission was left, and on from there.
-void return_to_way(const GuidanceContext& context);
+void return_to_paused_path(const GuidanceContext& context);
 
 // To the phase, item or segment whose time has come.
 void advance(const GuidanceContext& context);

@@ -45,7 +45,7 @@ void ReferencePath::follow(const PolynomialSegment& along, std::int64_t from_ns)
 }
 
 void ReferencePath::follow_on(const PolynomialSegment& along) {
-  const PathClock same = clock;
+  const TimeScaling same = clock;
   follow(along, end_ns);
   clock = same;
 }
@@ -63,7 +63,7 @@ Reference ReferencePath::at(std::int64_t now_ns) const {
   const PathTime time = clock.at(now_ns);
   if (time.at_ns >= end_ns) return at_rest(evaluate(segment, segment.duration_s));
   const Reference reference = evaluate(segment, static_cast<double>(time.at_ns - start_ns) * 1e-9);
-  return clock.is_vehicle_time() ? reference : slowed(reference, time);
+  return clock.is_vehicle_time() ? reference : time_scaled(reference, time);
 }
 
 }  // namespace swiftlet::control

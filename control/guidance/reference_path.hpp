@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "swiftlet/control/guidance/path_clock.hpp"
+#include "swiftlet/control/guidance/time_scaling.hpp"
 #include "swiftlet/control/types/polynomial.hpp"
 
 namespace swiftlet::control {
@@ -15,7 +15,7 @@ struct ReferencePath {
   PolynomialSegment segment;  // while not moving its first instant is the reference, and duration_s is 0
   std::int64_t start_ns = 0;  // of the path's own time
   std::int64_t end_ns = 0;
-  PathClock clock;  // of that
+  TimeScaling clock;  // of that
 
   // Rest at the position and yaw of `at` from now on.
   void rest(const Reference& at);

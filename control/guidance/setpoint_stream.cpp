@@ -118,7 +118,7 @@ PolynomialSegment blend(const Limits& limits, const Reference& from, const Setpo
   }
   if (std::isfinite(least)) return gentlest;
   // From outside the fence, or faster than is allowed: to rest, as fast as that may be.
-  const Stop stop = reference_stop(limits, from);
+  const BrakingManoeuvre stop = reference_stop(limits, from);
   const Vector3d inside = stop.place_ned.cwiseMax(limits.fence_min_ned).cwiseMin(limits.fence_max_ned);
   return join_to_rest(from, inside, from.yaw_rad, stop.duration_s);
 }
@@ -175,7 +175,7 @@ void follow_estimate(const GuidanceContext& context) {
   context.state.path.pin(here);
 }
 
-bool leads_out(const GuidanceContext& context) {
+bool violates_fence(const GuidanceContext& context) {
   const Limits& limits = context.limits;
   Reference here;
   here.position_ned = context.estimate.position_ned + kReaction_s * context.estimate.velocity_ned;

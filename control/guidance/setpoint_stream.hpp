@@ -37,6 +37,6 @@ void follow_estimate(const GuidanceContext& context);
 double stream_period_s(const GuidanceContext& context);
 
 // Where the estimated vehicle could come to rest lies outside the fence.
-bool leads_out(const GuidanceContext& context);
+bool violates_fence(const GuidanceContext& context);
 
 }  // namespace swiftlet::control

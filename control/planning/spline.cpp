@@ -51,7 +51,7 @@ Free<R> free_of(const PlaceDerivatives& derivatives) {
 
 // The derivatives at all points that make the cost least.
 template <int R>
-std::vector<Free<R>> solve(const UnitSegment<R>& unit, const std::vector<Place>& points,
+std::vector<Free<R>> solve(const UnitSegment<R>& unit, const std::vector<PositionYaw>& points,
                            const std::vector<double>& durations_s, const Free<R>& at_start,
                            const Free<R>& at_end) {
   using Block = Eigen::Matrix<double, R - 1, R - 1>;
@@ -99,8 +99,8 @@ std::vector<Free<R>> solve(const UnitSegment<R>& unit, const std::vector<Place>&
 }
 
 template <int R>
-PolynomialSegment segment_between(const UnitSegment<R>& unit, const Place& from, const Free<R>& at_from,
-                                  const Place& to, const Free<R>& at_to, double duration_s) {
+PolynomialSegment segment_between(const UnitSegment<R>& unit, const PositionYaw& from, const Free<R>& at_from,
+                                  const PositionYaw& to, const Free<R>& at_to, double duration_s) {
   // From `from` on, so that places far from the origin cost no digits.
   Eigen::Matrix<double, 2 * R, 4> ends;
   ends.row(0).setZero();
@@ -127,8 +127,9 @@ PolynomialSegment segment_between(const UnitSegment<R>& unit, const Place& from,
 }
 
 template <int R>
-std::vector<PolynomialSegment> least(const std::vector<Place>& points, const std::vector<double>& durations_s,
-                                     const PlaceDerivatives& at_start, const PlaceDerivatives& at_end) {
+std::vector<PolynomialSegment> least(const std::vector<PositionYaw>& points,
+                                     const std::vector<double>& durations_s, const PlaceDerivatives& at_start,
+                                     const PlaceDerivatives& at_end) {
   static const UnitSegment<R> unit;
   const std::vector<Free<R>> derivatives =
       solve<R>(unit, points, durations_s, free_of<R>(at_start), free_of<R>(at_end));
@@ -143,7 +144,7 @@ std::vector<PolynomialSegment> least(const std::vector<Place>& points, const std
 
 }  // namespace
 
-std::vector<PolynomialSegment> spline(Smoothness smoothness, const std::vector<Place>& points,
+std::vector<PolynomialSegment> spline(Smoothness smoothness, const std::vector<PositionYaw>& points,
                                       const std::vector<double>& durations_s,
                                       const PlaceDerivatives& at_start, const PlaceDerivatives& at_end) {
   return smoothness == Smoothness::kMinimumSnap ? least<4>(points, durations_s, at_start, at_end)

@@ -16,14 +16,14 @@ namespace swiftlet::control {
 // points, and up to two orders more inside them.
 enum class Smoothness { kMinimumJerk, kMinimumSnap };
 
-using Place = Eigen::Vector4d;  // north, east, down in m and yaw in rad
+using PositionYaw = Eigen::Vector4d;  // north, east, down in m and yaw in rad
 
 // Velocity, acceleration and jerk of a place, as columns. kMinimumJerk does not look at the jerk.
 using PlaceDerivatives = Eigen::Matrix<double, 4, 3>;
 
 // One segment for each duration, from points[i] to points[i + 1]; two points or more, durations above 0.
 // The derivatives are those at the first and the last point; zero is rest.
-std::vector<PolynomialSegment> spline(Smoothness smoothness, const std::vector<Place>& points,
+std::vector<PolynomialSegment> spline(Smoothness smoothness, const std::vector<PositionYaw>& points,
                                       const std::vector<double>& durations_s,
                                       const PlaceDerivatives& at_start = PlaceDerivatives::Zero(),
                                       const PlaceDerivatives& at_end = PlaceDerivatives::Zero());

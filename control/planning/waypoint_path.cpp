@@ -39,7 +39,7 @@ std::string number(double value) {
   return text;
 }
 
-Place place_of(const PathPoint& point) {
+PositionYaw place_of(const PathPoint& point) {
   return {point.position_ned.x(), point.position_ned.y(), point.position_ned.z(), point.yaw_rad};
 }
 
@@ -77,13 +77,14 @@ void check(const WaypointPath& path) {
 
 // Points of a spline between two stops. Those that were added to hold it in a corridor stand on its leg.
 struct Knots {
-  std::vector<Place> places;
+  std::vector<PositionYaw> places;
   std::vector<std::size_t> leg;  // of each segment, from the first of the path
   std::vector<double> durations_s;
 };
 
 // Of one move from rest to rest, by minimum jerk: an estimate of the time that a leg takes.
-double first_duration(const Place& from, const Place& to, bool at_end, const MotionLimits& limits) {
+double first_duration(const PositionYaw& from, const PositionYaw& to, bool at_end,
+                      const MotionLimits& limits) {
   const double way = (to - from).head<3>().norm();
   const double turn = std::abs(to[3] - from[3]);
   const double passing = std::max(way / limits.speed, turn / limits.yaw_rate);
@@ -225,7 +226,7 @@ bool refine(Knots& knots, const std::vector<PolynomialSegment>& segments, const 
     const int parts = kept ? 1 : 2;
     for (int part = 1; part <= parts; ++part) {
       finer.places.push_back(part == parts ? knots.places[i + 1]
-                                           : Place(0.5 * (knots.places[i] + knots.places[i + 1])));
+                                           : PositionYaw(0.5 * (knots.places[i] + knots.places[i + 1])));
       finer.leg.push_back(leg);
       finer.durations_s.push_back(knots.durations_s[i] / parts);
     }

@@ -9,7 +9,7 @@ PositionController::PositionController(const PositionSettings& settings, const L
                                        const ControlDesign& design)
     : k_p_(design.x.gains.k_p, design.y.gains.k_p, design.z.gains.k_p),
       k_v_(design.x.gains.k_v, design.y.gains.k_v, design.z.gains.k_v),
-      k_s_(design.x.gains.k_s, design.y.gains.k_s, design.z.gains.k_s),
+      k_i_(design.x.gains.k_i, design.y.gains.k_i, design.z.gains.k_i),
       integral_limit_(settings.integral_limit),
       max_acceleration_(limits.max_acceleration) {}
 
@@ -31,7 +31,7 @@ PositionCommand PositionController::step(const Eigen::Vector3d& position_ned,
 
   if (freeze_integral) return command;
   for (int i = 0; i < 3; ++i) {
-    const double increment = k_s_[i] * error[i] * dt_s;
+    const double increment = k_i_[i] * error[i] * dt_s;
     const bool winds_up = (i < 2 ? cut_horizontal : cut_vertical) && increment * wanted[i] > 0.0;
     if (winds_up || !std::isfinite(increment)) continue;
     integral_[i] = std::clamp(integral_[i] + increment, -integral_limit_, integral_limit_);

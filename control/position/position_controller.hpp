@@ -18,10 +18,10 @@ class PositionController {
  public:
   PositionController(const PositionSettings& settings, const Limits& limits, const ControlDesign& design);
 
-  // Eq. (48): a = a_r + k_v (u_r - u) + k_p (x_r - x), and with k_i > 0 its integral form. Cut to
+  // Eq. (48): a = a_r + k_v (u_r - u) + k_p (x_r - x), and with integral_pole > 0 its integral form. Cut to
   // limits.max_acceleration, the horizontal part in length, the vertical part by itself.
   // The integral runs on by dt_s unless freeze_integral is set, stays within settings.integral_limit on each
-  // axis, and does not grow on an axis that the limits cut. Without k_i it is zero.
+  // axis, and does not grow on an axis that the limits cut. Without integral_pole it is zero.
   PositionCommand step(const Eigen::Vector3d& position_ned, const Eigen::Vector3d& velocity_ned,
                        const Reference& reference, double dt_s, bool freeze_integral);
 
@@ -35,7 +35,7 @@ class PositionController {
   const Eigen::Vector3d& integral() const { return integral_; }
 
  private:
-  Eigen::Vector3d k_p_, k_v_, k_s_;
+  Eigen::Vector3d k_p_, k_v_, k_i_;
   double integral_limit_;
   double max_acceleration_;
   Eigen::Vector3d integral_ = Eigen::Vector3d::Zero();

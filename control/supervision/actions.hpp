@@ -1,16 +1,16 @@
 // What a transition does besides changing the mode.
 #pragma once
 
-#include "swiftlet/control/supervision/scene.hpp"
+#include "swiftlet/control/supervision/supervisor_context.hpp"
 
 namespace swiftlet::control {
 
 struct Action {
   const char* text;
-  void (*run)(Scene&);  // in the new mode
+  void (*run)(SupervisorContext&);  // in the new mode
 };
 
-namespace act {
+namespace actions {
 
 extern const Action kNothing;
 extern const Action kNoteGround;  // where it stands, is the ground
@@ -34,5 +34,5 @@ extern const Action kStopFromEstimate;  // the reference begins anew where the v
 extern const Action kLandFromEstimate;
 extern const Action kTakeIntoHold;
 
-}  // namespace act
+}  // namespace actions
 }  // namespace swiftlet::control

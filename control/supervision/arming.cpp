@@ -13,39 +13,39 @@
 namespace swiftlet::control {
 namespace {
 
-using ArmingCheck = Outcome (*)(const Scene&);
+using ArmingCheck = Outcome (*)(const SupervisorContext&);
 
-Outcome pose_there(const Scene& scene) {
-  const Situation& situation = scene.situation;
-  const double limit_s = scene.settings.failsafe.mocap_timeout_s;
-  if (!situation.has_estimate) return refuse("no mocap pose has come");
-  if (situation.pose_age_s > limit_s)
-    return refuse("the last mocap pose is %.2f s old, the limit is %.2f s", situation.pose_age_s, limit_s);
+Outcome pose_there(const SupervisorContext& context) {
+  const SupervisorInputs& inputs = context.inputs;
+  const double limit_s = context.settings.failsafe.mocap_timeout_s;
+  if (!inputs.has_estimate) return refuse("no mocap pose has come");
+  if (inputs.pose_age_s > limit_s)
+    return refuse("the last mocap pose is %.2f s old, the limit is %.2f s", inputs.pose_age_s, limit_s);
   return accept();
 }
 
 // One that was late or came twice is no fault of motion capture.
-Outcome pose_believed(const Scene& scene) {
-  const PoseFault fault = scene.estimate().pose_fault;
+Outcome pose_believed(const SupervisorContext& context) {
+  const PoseFault fault = context.estimate().pose_fault;
   if (fault == PoseFault::kNone || fault == PoseFault::kUntimely) return accept();
   return refuse("the last mocap pose was refused: %s", to_string(fault));
 }
 
-Outcome imu_usable(const Scene& scene) {
-  if (scene.situation.imu_unusable_s > 0.0) return refuse("IMU samples are not usable");
+Outcome imu_usable(const SupervisorContext& context) {
+  if (context.inputs.imu_unusable_s > 0.0) return refuse("IMU samples are not usable");
   return accept();
 }
 
-Outcome battery_there(const Scene& scene) {
-  const Situation& situation = scene.situation;
-  const FailsafeSettings& failsafe = scene.settings.failsafe;
-  if (!situation.has_battery) return refuse("no battery voltage has come");
-  if (situation.battery_age_s > failsafe.battery_timeout_s) {
-    return refuse("the last battery voltage is %.1f s old, the limit is %.1f s", situation.battery_age_s,
+Outcome battery_there(const SupervisorContext& context) {
+  const SupervisorInputs& inputs = context.inputs;
+  const FailsafeSettings& failsafe = context.settings.failsafe;
+  if (!inputs.has_battery) return refuse("no battery voltage has come");
+  if (inputs.battery_age_s > failsafe.battery_timeout_s) {
+    return refuse("the last battery voltage is %.1f s old, the limit is %.1f s", inputs.battery_age_s,
                   failsafe.battery_timeout_s);
   }
-  if (situation.supply_voltage_v < failsafe.low_battery_voltage) {
-    return refuse("the battery has %.2f V, the limit is %.2f V", situation.supply_voltage_v,
+  if (inputs.supply_voltage_v < failsafe.low_battery_voltage) {
+    return refuse("the battery has %.2f V, the limit is %.2f V", inputs.supply_voltage_v,
                   failsafe.low_battery_voltage);
   }
   return accept();
@@ -53,49 +53,50 @@ Outcome battery_there(const Scene& scene) {
 
 // With an attitude that is turned wrong, what the accelerometer has more than gravity passes for a bias; what
 // is too much for one makes dead reckoning run off.
-Outcome imu_at_rest(const Scene& scene) {
-  if (!scene.situation.has_estimate) return accept();
+Outcome imu_at_rest(const SupervisorContext& context) {
+  if (!context.inputs.has_estimate) return accept();
   const Eigen::Vector3d up_ned(0.0, 0.0, -plant::kGravity);
-  const double error = (scene.estimate().q_ned_from_frd * scene.situation.specific_force_frd - up_ned).norm();
-  const double limit = scene.settings.arming.max_specific_force_error;
+  const double error =
+      (context.estimate().q_ned_from_frd * context.inputs.specific_force_frd - up_ned).norm();
+  const double limit = context.settings.arming.max_specific_force_error;
   if (error <= limit) return accept();
   return refuse(
       "the accelerometer is %.2f m/s^2 off gravity in the attitude of the pose, the limit is %.2f m/s^2",
       error, limit);
 }
 
-Outcome not_turning(const Scene& scene) {
-  const double rate = scene.estimate().body_rates_frd.norm();
-  const double limit = scene.settings.arming.max_body_rate;
+Outcome not_turning(const SupervisorContext& context) {
+  const double rate = context.estimate().body_rates_frd.norm();
+  const double limit = context.settings.arming.max_body_rate;
   if (rate <= limit) return accept();
   return refuse("turning at %.2f rad/s, the limit is %.2f rad/s", rate, limit);
 }
 
-Outcome rotors_still(const Scene& scene) {
-  const double speed = scene.situation.rotor_speed;
-  const double limit = scene.settings.arming.max_rotor_speed;
+Outcome rotors_still(const SupervisorContext& context) {
+  const double speed = context.inputs.rotor_speed;
+  const double limit = context.settings.arming.max_rotor_speed;
   if (speed <= limit) return accept();
   return refuse("a rotor turns at %.0f rad/s, the limit is %.0f rad/s", speed, limit);
 }
 
-Outcome level(const Scene& scene) {
-  if (!scene.situation.has_estimate) return accept();
-  const double tilt = std::acos(std::clamp(cosine_of_tilt(scene.estimate().q_ned_from_frd), -1.0, 1.0));
-  const double limit = scene.settings.arming.max_tilt_rad;
+Outcome level(const SupervisorContext& context) {
+  if (!context.inputs.has_estimate) return accept();
+  const double tilt = std::acos(std::clamp(cosine_of_tilt(context.estimate().q_ned_from_frd), -1.0, 1.0));
+  const double limit = context.settings.arming.max_tilt_rad;
   if (tilt <= limit) return accept();
   return refuse("tilted by %.2f rad, the limit is %.2f rad", tilt, limit);
 }
 
-Outcome not_moving(const Scene& scene) {
-  const double speed = scene.estimate().velocity_ned.norm();
-  const double limit = scene.settings.arming.max_speed;
+Outcome not_moving(const SupervisorContext& context) {
+  const double speed = context.estimate().velocity_ned.norm();
+  const double limit = context.settings.arming.max_speed;
   if (speed <= limit) return accept();
   return refuse("moving at %.2f m/s, the limit is %.2f m/s", speed, limit);
 }
 
-Outcome inside_fence(const Scene& scene) {
-  if (!scene.situation.has_estimate) return accept();
-  return check_position("the vehicle", scene.estimate().position_ned, scene.settings.limits);
+Outcome inside_fence(const SupervisorContext& context) {
+  if (!context.inputs.has_estimate) return accept();
+  return check_position("the vehicle", context.estimate().position_ned, context.settings.limits);
 }
 
 constexpr ArmingCheck kChecks[] = {pose_there,  pose_believed, imu_usable, battery_there, imu_at_rest,
@@ -114,10 +115,10 @@ void append(const char* sentence, Outcome& outcome) {
 
 }  // namespace
 
-Outcome check_arming(const Scene& scene) {
+Outcome check_arming(const SupervisorContext& context) {
   Outcome outcome = accept();
   for (const ArmingCheck check : kChecks) {
-    const Outcome one = check(scene);
+    const Outcome one = check(context);
     if (!one.accepted) append(one.reason, outcome);
   }
   return outcome;

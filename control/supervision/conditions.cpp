@@ -26,17 +26,17 @@ bool held(bool condition, std::int64_t& since, std::int64_t now_ns, double durat
   return elapsed_s(since, now_ns) >= duration_s;
 }
 
-bool ground_felt(Scene& scene) {
-  SupervisorState& state = scene.state;
+bool ground_felt(SupervisorContext& context) {
+  SupervisorState& state = context.state;
   if (state.mode == Mode::kDescent) {
-    return held(scene.situation.unexplained_lift > kContactLift, state.contact_since_ns, state.now_ns,
-                kBlindContactTime_s);
+    return held(context.inputs.vertical_specific_force_residual > kContactLift, state.contact_since_ns,
+                state.now_ns, kBlindContactTime_s);
   }
   if (state.guidance.phase != Phase::kSink) {
     state.contact_since_ns = 0;
     return false;
   }
-  const Estimate& estimate = scene.estimate();
+  const Estimate& estimate = context.estimate();
   const double depth = state.guidance.path.at(state.now_ns).position_ned.z() - estimate.position_ned.z();
   const bool at_ground = estimate.position_ned.z() > state.guidance.ground_z_ned - kAirborneHeight_m;
   const double speed = at_ground ? std::abs(estimate.velocity_ned.z()) : estimate.velocity_ned.norm();
@@ -44,22 +44,23 @@ bool ground_felt(Scene& scene) {
               kContactTime_s);
 }
 
-bool outside_fence(const Scene& scene) {
-  return beyond_fence(scene.limits, scene.estimate().position_ned) > scene.settings.failsafe.fence_margin_m;
+bool outside_fence(const SupervisorContext& context) {
+  return beyond_fence(context.limits, context.estimate().position_ned) >
+         context.settings.failsafe.fence_margin_m;
 }
 
-void observe_battery(Scene& scene, EventSet& events) {
-  const FailsafeSettings& failsafe = scene.settings.failsafe;
-  const Situation& situation = scene.situation;
-  SupervisorState& state = scene.state;
+void observe_battery(SupervisorContext& context, EventSet& events) {
+  const FailsafeSettings& failsafe = context.settings.failsafe;
+  const SupervisorInputs& inputs = context.inputs;
+  SupervisorState& state = context.state;
   const auto below = [&](double voltage_v, std::int64_t& since) {
-    return held(situation.has_battery && situation.supply_voltage_v < voltage_v, since, state.now_ns,
+    return held(inputs.has_battery && inputs.supply_voltage_v < voltage_v, since, state.now_ns,
                 failsafe.battery_delay_s);
   };
   events.add(Event::kBatteryLow, below(failsafe.low_battery_voltage, state.low_battery_since_ns));
   events.add(Event::kBatteryCritical,
              below(failsafe.critical_battery_voltage, state.critical_battery_since_ns));
-  events.add(Event::kBatterySilent, situation.battery_age_s > failsafe.battery_timeout_s);
+  events.add(Event::kBatterySilent, inputs.battery_age_s > failsafe.battery_timeout_s);
 }
 
 bool is_silent(const GroundLink& link, std::int64_t now_ns, double timeout_s) {
@@ -73,8 +74,8 @@ double beyond_fence(const Limits& limits, const Eigen::Vector3d& position_ned) {
                   (limits.fence_min_ned - position_ned).maxCoeff());
 }
 
-bool pose_lost(const Situation& situation, const FailsafeSettings& failsafe) {
-  return !situation.has_estimate || situation.pose_age_s > failsafe.mocap_timeout_s;
+bool pose_lost(const SupervisorInputs& inputs, const FailsafeSettings& failsafe) {
+  return !inputs.has_estimate || inputs.pose_age_s > failsafe.mocap_timeout_s;
 }
 
 bool ground_link_lost(const SupervisorState& state, const FailsafeSettings& failsafe) {
@@ -93,35 +94,36 @@ double tip_over_cosine(const FailsafeSettings& failsafe) {
   return std::cos(std::min(failsafe.tip_over_tilt_rad, M_PI));
 }
 
-EventSet observe(Scene& scene, double tip_over_cosine) {
-  const FailsafeSettings& failsafe = scene.settings.failsafe;
-  const Situation& situation = scene.situation;
-  SupervisorState& state = scene.state;
-  const bool lost = pose_lost(situation, failsafe);
+EventSet observe(SupervisorContext& context, double tip_over_cosine) {
+  const FailsafeSettings& failsafe = context.settings.failsafe;
+  const SupervisorInputs& inputs = context.inputs;
+  SupervisorState& state = context.state;
+  const bool lost = pose_lost(inputs, failsafe);
   EventSet events;
-  events.add(Event::kImuUnusable, situation.imu_unusable_s >= failsafe.imu_timeout_s);
-  events.add(Event::kImuGap, situation.imu_gap_s > failsafe.imu_gap_s);
-  events.add(Event::kTippedOver, cosine_of_tilt(scene.estimate().q_ned_from_frd) < tip_over_cosine);
-  events.add(Event::kStruck,
-             state.guidance.phase != Phase::kGround && situation.specific_force_frd.norm() > failsafe.blow);
-  events.add(Event::kClimbNotSeen, situation.climb_contradicted && state.guidance.phase == Phase::kPath);
-  events.add(Event::kPoseJumped, situation.pose_jumped);
+  events.add(Event::kImuUnusable, inputs.imu_unusable_s >= failsafe.imu_timeout_s);
+  events.add(Event::kImuGap, inputs.imu_gap_s > failsafe.imu_gap_s);
+  events.add(Event::kTippedOver, cosine_of_tilt(context.estimate().q_ned_from_frd) < tip_over_cosine);
+  events.add(Event::kImpact,
+             state.guidance.phase != Phase::kGround && inputs.specific_force_frd.norm() > failsafe.blow);
+  events.add(Event::kTakeoffInconsistent,
+             inputs.takeoff_inconsistent && state.guidance.phase == Phase::kPath);
+  events.add(Event::kPoseJumped, inputs.pose_jumped);
   events.add(Event::kPoseLost, lost);
   events.add(Event::kPoseIsBack, !lost);
-  events.add(Event::kGroundFelt, ground_felt(scene));
+  events.add(Event::kGroundFelt, ground_felt(context));
   events.add(Event::kDescentTimedOut,
              state.mode == Mode::kDescent &&
                  elapsed_s(state.mode_since_ns, state.now_ns) > failsafe.descent_timeout_s);
-  observe_battery(scene, events);
-  events.add(Event::kOutsideFence, !lost && outside_fence(scene));
+  observe_battery(context, events);
+  events.add(Event::kOutsideFence, !lost && outside_fence(context));
   events.add(Event::kGroundLinkLost, ground_link_lost(state, failsafe));
-  events.add(Event::kSetpointsLeadOut, state.mode == Mode::kSetpoint &&
-                                           goes_past_position(state.guidance.setpoint_kind) &&
-                                           leads_out(scene.guidance()));
+  events.add(Event::kSetpointsViolateFence, state.mode == Mode::kSetpoint &&
+                                                goes_past_position(state.guidance.setpoint_kind) &&
+                                                violates_fence(context.guidance()));
   events.add(Event::kSetpointsStopped,
              state.mode == Mode::kSetpoint &&
                  elapsed_s(state.guidance.setpoint_ns, state.now_ns) > failsafe.setpoint_timeout_s);
-  events.add(Event::kPlanFinished, plan_finished(scene.guidance()));
+  events.add(Event::kPlanFinished, plan_finished(context.guidance()));
   return events;
 }
 

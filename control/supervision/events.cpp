@@ -10,9 +10,9 @@ const char* to_string(Event event) {
       return "IMU samples were missing";
     case Event::kTippedOver:
       return "tipped over";
-    case Event::kStruck:
+    case Event::kImpact:
       return "struck";
-    case Event::kClimbNotSeen:
+    case Event::kTakeoffInconsistent:
       return "climb not seen";
     case Event::kPoseJumped:
       return "pose jumped";
@@ -34,7 +34,7 @@ const char* to_string(Event event) {
       return "battery silent";
     case Event::kGroundLinkLost:
       return "ground link lost";
-    case Event::kSetpointsLeadOut:
+    case Event::kSetpointsViolateFence:
       return "setpoints lead out";
     case Event::kSetpointsStopped:
       return "setpoints stopped";
@@ -72,7 +72,7 @@ const char* to_string(Event event) {
       return "stop";
     case Event::kPlanUnknown:
       return "taken over without the plan";
-    case Event::kFoundFlying:
+    case Event::kEngagedInFlight:
       return "found flying";
   }
   return "unknown";

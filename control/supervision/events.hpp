@@ -13,8 +13,8 @@ enum class Event : std::uint8_t {
   kImuUnusable = 0,
   kImuGap,
   kTippedOver,
-  kStruck,
-  kClimbNotSeen,
+  kImpact,
+  kTakeoffInconsistent,
   kPoseJumped,
   kPoseLost,
   kPoseIsBack,
@@ -25,7 +25,7 @@ enum class Event : std::uint8_t {
   kBatteryLow,
   kBatterySilent,
   kGroundLinkLost,
-  kSetpointsLeadOut,
+  kSetpointsViolateFence,
   kSetpointsStopped,
   kPlanFinished,
   // Requests.
@@ -44,10 +44,10 @@ enum class Event : std::uint8_t {
   kHold,
   kLand,
   kStop,
-  kPlanUnknown,  // taken over from another controller without the mission or trajectory that it flew
-  kFoundFlying,  // the controller was started while its vehicle flew
+  kPlanUnknown,      // taken over from another controller without the mission or trajectory that it flew
+  kEngagedInFlight,  // the controller was started while its vehicle flew
 };
-constexpr int kEventCount = static_cast<int>(Event::kFoundFlying) + 1;
+constexpr int kEventCount = static_cast<int>(Event::kEngagedInFlight) + 1;
 constexpr Event kFirstRequest = Event::kArm;
 inline bool is_request(Event event) { return event >= kFirstRequest; }
 

@@ -20,97 +20,99 @@ constexpr double kUnitTolerance = 1e-3;
 constexpr double kNoticed_s = 0.01;  // after a stream has timed out: with the next IMU sample
 constexpr double kRounding = 1e-9;
 
-GroundLinkAction link_action(const Scene& scene) { return scene.settings.failsafe.ground_link_action; }
+GroundLinkAction link_action(const SupervisorContext& context) {
+  return context.settings.failsafe.ground_link_action;
+}
 
-Outcome battery_lasts(const Scene& scene) {
-  const Situation& situation = scene.situation;
-  const double limit = scene.settings.failsafe.low_battery_voltage;
-  if (situation.supply_voltage_v >= limit) return accept();
-  return refuse("cannot take off: the battery has %.2f V, the limit is %.2f V", situation.supply_voltage_v,
+Outcome battery_lasts(const SupervisorContext& context) {
+  const SupervisorInputs& inputs = context.inputs;
+  const double limit = context.settings.failsafe.low_battery_voltage;
+  if (inputs.supply_voltage_v >= limit) return accept();
+  return refuse("cannot take off: the battery has %.2f V, the limit is %.2f V", inputs.supply_voltage_v,
                 limit);
 }
 
-Outcome check_takeoff(const Scene& scene) {
-  const Request& request = *scene.request;
-  const Limits& limits = scene.limits;
-  Outcome outcome = battery_lasts(scene);
+Outcome check_takeoff(const SupervisorContext& context) {
+  const Request& request = *context.request;
+  const Limits& limits = context.limits;
+  Outcome outcome = battery_lasts(context);
   if (!outcome.accepted) return outcome;
   outcome = check_speed("takeoff", request.speed, limits);
   if (!outcome.accepted) return outcome;
-  Eigen::Vector3d top = scene.estimate().position_ned;
+  Eigen::Vector3d top = context.estimate().position_ned;
   top.z() = request.position_ned.z();
   outcome = check_position("takeoff", top, limits);
   if (!outcome.accepted) return outcome;
-  if (top.z() <= scene.state.guidance.ground_z_ned - kLeastClimb_m) return accept();
+  if (top.z() <= context.state.guidance.ground_z_ned - kLeastClimb_m) return accept();
   return refuse("takeoff: z is %.3f m, must be above the ground at %.3f m (z points down)", top.z(),
-                scene.state.guidance.ground_z_ned);
+                context.state.guidance.ground_z_ned);
 }
 
-Outcome check_upload(const Scene& scene) {
-  const Mission* const mission = scene.request->mission;
+Outcome check_upload(const SupervisorContext& context) {
+  const Mission* const mission = context.request->mission;
   if (mission == nullptr || mission->items.empty()) return refuse("the mission has no items");
   return accept();
 }
 
 // The one that is there is the one that is meant.
-Outcome check_mission_named(const Scene& scene) {
-  const MissionProgress& there = scene.state.guidance.mission;
-  const std::uint64_t asked = scene.request->mission_id;
-  if (scene.plan.mission == nullptr) return refuse("no mission is here: upload it first");
+Outcome check_mission_named(const SupervisorContext& context) {
+  const MissionProgress& there = context.state.guidance.mission;
+  const std::uint64_t asked = context.request->mission_id;
+  if (context.plan.mission == nullptr) return refuse("no mission is here: upload it first");
   if (asked == 0 || asked == there.id) return accept();
   return refuse("mission %llu is not the one that is here: that is %llu",
                 static_cast<unsigned long long>(asked), static_cast<unsigned long long>(there.id));
 }
 
 // Inside the mission's own fence, as far as the failsafe wants it; there it lands, too.
-Outcome check_mission_fence(const Scene& scene) {
-  const Limits& limits = scene.plan.mission_limits;
-  const double margin_m = scene.settings.failsafe.fence_margin_m;
-  Eigen::Vector3d at = scene.estimate().position_ned;
+Outcome check_mission_fence(const SupervisorContext& context) {
+  const Limits& limits = context.plan.mission_limits;
+  const double margin_m = context.settings.failsafe.fence_margin_m;
+  Eigen::Vector3d at = context.estimate().position_ned;
   if (beyond_fence(limits, at) > margin_m) return check_position("the vehicle", at, limits);
-  if (scene.plan.mission->items.back().kind != MissionItemKind::kLand) return accept();
-  at.z() = scene.state.guidance.ground_z_ned;
+  if (context.plan.mission->items.back().kind != MissionItemKind::kLand) return accept();
+  at.z() = context.state.guidance.ground_z_ned;
   if (beyond_fence(limits, at) > margin_m) return check_position("the ground, on which it lands", at, limits);
   return accept();
 }
 
-Outcome check_start(const Scene& scene) {
-  const Outcome named = check_mission_named(scene);
-  return named.accepted ? check_mission_fence(scene) : named;
+Outcome check_start(const SupervisorContext& context) {
+  const Outcome named = check_mission_named(context);
+  return named.accepted ? check_mission_fence(context) : named;
 }
 
-Outcome check_start_from_ground(const Scene& scene) {
-  const Outcome sound = check_start(scene);
+Outcome check_start_from_ground(const SupervisorContext& context) {
+  const Outcome sound = check_start(context);
   if (!sound.accepted) return sound;
-  const Outcome battery = battery_lasts(scene);
+  const Outcome battery = battery_lasts(context);
   if (!battery.accepted) return battery;
-  const MissionItem& first = scene.plan.mission->items.front();
+  const MissionItem& first = context.plan.mission->items.front();
   if (first.kind != MissionItemKind::kTakeoff)
     return refuse("the vehicle stands on the ground: the mission must begin with a takeoff");
-  if (first.position_ned.z() <= scene.state.guidance.ground_z_ned - kLeastClimb_m) return accept();
+  if (first.position_ned.z() <= context.state.guidance.ground_z_ned - kLeastClimb_m) return accept();
   return refuse("item 1: takeoff to z = %.3f m, must be above the ground at %.3f m (z points down)",
-                first.position_ned.z(), scene.state.guidance.ground_z_ned);
+                first.position_ned.z(), context.state.guidance.ground_z_ned);
 }
 
-Outcome check_skip(const Scene& scene) {
-  const Outcome named = check_mission_named(scene);
+Outcome check_skip(const SupervisorContext& context) {
+  const Outcome named = check_mission_named(context);
   if (!named.accepted) return named;
-  const MissionProgress& there = scene.state.guidance.mission;
+  const MissionProgress& there = context.state.guidance.mission;
   if (there.item_index + 1 < there.item_count) return accept();
   return refuse("item %d is the mission's last: there is none to go on with", there.item_count);
 }
 
 // What is not there need not be cleared.
-Outcome check_clear(const Scene& scene) {
-  return scene.plan.mission == nullptr && scene.request->mission_id == 0 ? accept()
-                                                                         : check_mission_named(scene);
+Outcome check_clear(const SupervisorContext& context) {
+  return context.plan.mission == nullptr && context.request->mission_id == 0 ? accept()
+                                                                             : check_mission_named(context);
 }
 
-Outcome check_trajectory(const Scene& scene) {
-  const Trajectory* trajectory = scene.request->trajectory;
+Outcome check_trajectory(const SupervisorContext& context) {
+  const Trajectory* trajectory = context.request->trajectory;
   if (trajectory == nullptr || trajectory->segments.empty()) return refuse("the trajectory has no segments");
   const Reference start = evaluate(trajectory->segments.front(), 0.0);
-  return check_position("trajectory", start.position_ned, scene.limits);
+  return check_position("trajectory", start.position_ned, context.limits);
 }
 
 Outcome check_feed_forward(const Setpoint& setpoint, const Limits& limits) {
@@ -131,27 +133,27 @@ Outcome check_feed_forward(const Setpoint& setpoint, const Limits& limits) {
                 limits.max_yaw_rate);
 }
 
-Outcome check_position_setpoint(const Scene& scene) {
-  const Setpoint& setpoint = *scene.setpoint;
-  const Outcome position = check_position("setpoint", setpoint.position_ned, scene.limits);
+Outcome check_position_setpoint(const SupervisorContext& context) {
+  const Setpoint& setpoint = *context.setpoint;
+  const Outcome position = check_position("setpoint", setpoint.position_ned, context.limits);
   if (!position.accepted) return position;
-  const double step = (setpoint.position_ned - scene.estimate().position_ned).norm();
+  const double step = (setpoint.position_ned - context.estimate().position_ned).norm();
   if (step <= kMaxSetpointStep_m) return accept();
   return refuse("setpoint: %.2f m away from the vehicle, the limit is %.2f m", step, kMaxSetpointStep_m);
 }
 
 // The stream may cease with this one: then the reference goes on for the time-out, and comes to rest.
-Outcome check_end_of_stream(const Scene& scene) {
-  const Setpoint& setpoint = *scene.setpoint;
-  const Limits& limits = scene.limits;
-  const double timeout_s = scene.settings.failsafe.setpoint_timeout_s + kNoticed_s;
+Outcome check_end_of_stream(const SupervisorContext& context) {
+  const Setpoint& setpoint = *context.setpoint;
+  const Limits& limits = context.limits;
+  const double timeout_s = context.settings.failsafe.setpoint_timeout_s + kNoticed_s;
   Reference last;
   if (setpoint.kind == SetpointKind::kPosition) {
     last.velocity_ned = setpoint.velocity_ned;
     last.position_ned = setpoint.position_ned + timeout_s * setpoint.velocity_ned;
   } else {
-    const Reference from = scene.state.guidance.path.at(scene.state.now_ns);
-    last = after_blend(way_into_setpoint(scene), timeout_s);
+    const Reference from = context.state.guidance.path.at(context.state.now_ns);
+    last = after_blend(way_into_setpoint(context), timeout_s);
     // One that was stopped before the fence is not to creep on towards it, a little from rest each time.
     Reference in_full_motion;
     in_full_motion.velocity_ned =
@@ -192,10 +194,10 @@ Outcome check_attitude(const Setpoint& setpoint, const Limits& limits) {
 }
 
 // One that knows no place: the fence is kept by the vehicle's own motion.
-Outcome check_direct_setpoint(const Scene& scene) {
-  const Setpoint& setpoint = *scene.setpoint;
-  const Limits& limits = scene.limits;
-  if (scene.state.mode == Mode::kHolding && scene.state.reason == Reason::kSetpointsLedOut)
+Outcome check_direct_setpoint(const SupervisorContext& context) {
+  const Setpoint& setpoint = *context.setpoint;
+  const Limits& limits = context.limits;
+  if (context.state.mode == Mode::kHolding && context.state.reason == Reason::kSetpointsViolatedFence)
     return refuse(
         "setpoint: the stream led out of the fence; ask for hold or goto before the next of its kind");
   const Outcome rates = check_rates(setpoint, limits);
@@ -206,29 +208,30 @@ Outcome check_direct_setpoint(const Scene& scene) {
     const Outcome attitude = check_attitude(setpoint, limits);
     if (!attitude.accepted) return attitude;
   }
-  return leads_out(scene.guidance()) ? refuse("setpoint: the vehicle cannot come to rest inside the fence")
-                                     : accept();
+  return violates_fence(context.guidance())
+             ? refuse("setpoint: the vehicle cannot come to rest inside the fence")
+             : accept();
 }
 
-Outcome check_setpoint(const Scene& scene) {
-  const Setpoint& setpoint = *scene.setpoint;
+Outcome check_setpoint(const SupervisorContext& context) {
+  const Setpoint& setpoint = *context.setpoint;
   if (setpoint.kind > SetpointKind::kBodyRates)
     return refuse("setpoint: unknown kind %d", static_cast<int>(setpoint.kind));
-  if (goes_past_position(setpoint.kind)) return check_direct_setpoint(scene);
-  const Outcome numbers = check_feed_forward(setpoint, scene.limits);
+  if (goes_past_position(setpoint.kind)) return check_direct_setpoint(context);
+  const Outcome numbers = check_feed_forward(setpoint, context.limits);
   if (!numbers.accepted) return numbers;
   if (setpoint.kind == SetpointKind::kPosition) {
-    const Outcome position = check_position_setpoint(scene);
+    const Outcome position = check_position_setpoint(context);
     if (!position.accepted) return position;
   }
-  return check_end_of_stream(scene);
+  return check_end_of_stream(context);
 }
 
-Outcome check_goto(const Scene& scene) {
-  const Request& request = *scene.request;
-  const Outcome position = check_position("goto", request.position_ned, scene.limits);
+Outcome check_goto(const SupervisorContext& context) {
+  const Request& request = *context.request;
+  const Outcome position = check_position("goto", request.position_ned, context.limits);
   if (!position.accepted) return position;
-  const Outcome speed = check_speed("goto", request.speed, scene.limits);
+  const Outcome speed = check_speed("goto", request.speed, context.limits);
   if (!speed.accepted) return speed;
   if (!request.yaw_free && !std::isfinite(request.yaw_rad)) return refuse("goto: yaw is not a finite number");
   return accept();
@@ -236,68 +239,78 @@ Outcome check_goto(const Scene& scene) {
 
 }  // namespace
 
-namespace when {
+namespace guards {
 
-const Selector kAlways{"", [](const Scene&) { return true; }};
-const Selector kSpoolingUp{"on the ground",
-                           [](const Scene& scene) { return scene.state.guidance.phase == Phase::kSpoolUp; }};
-const Selector kLiftedOff{"lifted off",
-                          [](const Scene& scene) { return scene.state.guidance.phase != Phase::kSpoolUp; }};
-const Selector kOnLandingItem{"at its landing",
-                              [](const Scene& scene) { return on_landing_item(scene.guidance()); }};
-const Selector kPausable{"lifted off, not at its landing", [](const Scene& scene) {
-                           return kLiftedOff.holds(scene) && !on_landing_item(scene.guidance());
-                         }};
-const Selector kPaused{"a mission is paused", [](const Scene& scene) { return scene.paused(); }};
-const Selector kNotPaused{"no mission is paused", [](const Scene& scene) { return !scene.paused(); }};
-const Selector kNoneUnderWay{"no mission is flown or paused", [](const Scene& scene) {
-                               return !is_under_way(scene.state.guidance.mission.state);
-                             }};
-const Selector kNoneFlown{"no mission is flown", [](const Scene& scene) {
-                            return scene.state.guidance.mission.state != MissionState::kRunning;
+const Guard kAlways{"", [](const SupervisorContext&) { return true; }};
+const Guard kSpoolingUp{"on the ground", [](const SupervisorContext& context) {
+                          return context.state.guidance.phase == Phase::kSpoolUp;
+                        }};
+const Guard kLiftedOff{"lifted off", [](const SupervisorContext& context) {
+                         return context.state.guidance.phase != Phase::kSpoolUp;
+                       }};
+const Guard kOnLandingItem{
+    "at its landing", [](const SupervisorContext& context) { return on_landing_item(context.guidance()); }};
+const Guard kPausable{"lifted off, not at its landing", [](const SupervisorContext& context) {
+                        return kLiftedOff.holds(context) && !on_landing_item(context.guidance());
+                      }};
+const Guard kPaused{"a mission is paused", [](const SupervisorContext& context) { return context.paused(); }};
+const Guard kNotPaused{"no mission is paused",
+                       [](const SupervisorContext& context) { return !context.paused(); }};
+const Guard kNoneUnderWay{"no mission is flown or paused", [](const SupervisorContext& context) {
+                            return !is_under_way(context.state.guidance.mission.state);
                           }};
-const Selector kWasLanding{"was landing", [](const Scene& scene) { return scene.state.land_on_return; }};
-const Selector kNotHurrying{"not for that already", [](const Scene& scene) {
-                              return scene.state.mode != Mode::kLanding ||
-                                     scene.state.reason != Reason::kBatteryCritical;
-                            }};
-const Selector kLinkHolds{"`ground_link_action: hold`",
-                          [](const Scene& scene) { return link_action(scene) == GroundLinkAction::kHold; }};
-const Selector kLinkLands{"`ground_link_action: land`",
-                          [](const Scene& scene) { return link_action(scene) == GroundLinkAction::kLand; }};
-const Selector kLinkMatters{"unless `ground_link_action: none`",
-                            [](const Scene& scene) { return link_action(scene) != GroundLinkAction::kNone; }};
+const Guard kNoneFlown{"no mission is flown", [](const SupervisorContext& context) {
+                         return context.state.guidance.mission.state != MissionState::kRunning;
+                       }};
+const Guard kWasLanding{"was landing",
+                        [](const SupervisorContext& context) { return context.state.land_on_return; }};
+const Guard kNotHurrying{"not for that already", [](const SupervisorContext& context) {
+                           return context.state.mode != Mode::kLanding ||
+                                  context.state.reason != Reason::kBatteryCritical;
+                         }};
+const Guard kLinkHolds{"`ground_link_action: hold`", [](const SupervisorContext& context) {
+                         return link_action(context) == GroundLinkAction::kHold;
+                       }};
+const Guard kLinkLands{"`ground_link_action: land`", [](const SupervisorContext& context) {
+                         return link_action(context) == GroundLinkAction::kLand;
+                       }};
+const Guard kLinkMatters{"unless `ground_link_action: none`", [](const SupervisorContext& context) {
+                           return link_action(context) != GroundLinkAction::kNone;
+                         }};
 
-const Selector kLinkMattersOnGround{
-    "on the ground, unless `ground_link_action: none`",
-    [](const Scene& scene) { return kLinkMatters.holds(scene) && kSpoolingUp.holds(scene); }};
+const Guard kLinkMattersOnGround{"on the ground, unless `ground_link_action: none`",
+                                 [](const SupervisorContext& context) {
+                                   return kLinkMatters.holds(context) && kSpoolingUp.holds(context);
+                                 }};
 
-}  // namespace when
+}  // namespace guards
 
-namespace check_of {
+namespace preconditions {
 
-const Check kNone{"", [](const Scene&) { return accept(); }};
-const Check kArming{"all arming checks pass", check_arming};
-const Check kTakeoff{"battery, speed, and a height above the ground and inside the fence", check_takeoff};
-const Check kUpload{"it has items", check_upload};
-const Check kStartFromGround{
+const Precondition kNone{"", [](const SupervisorContext&) { return accept(); }};
+const Precondition kArming{"all arming checks pass", check_arming};
+const Precondition kTakeoff{"battery, speed, and a height above the ground and inside the fence",
+                            check_takeoff};
+const Precondition kUpload{"it has items", check_upload};
+const Precondition kStartFromGround{
     "it is here, battery, inside its fence, and it begins with a takeoff to above the ground",
     check_start_from_ground};
-const Check kStart{"it is here, inside its fence", check_start};
-const Check kNamed{"it is the one", check_mission_named};
-const Check kSkip{"it is the one, and has another item", check_skip};
-const Check kClear{"it is the one, or there is none", check_clear};
-const Check kTrajectory{"it begins inside the fence", check_trajectory};
-const Check kSetpoint{"inside the fence, from where it can stop inside, within the limits, near the vehicle",
-                      check_setpoint};
-const Check kGoTo{"inside the fence, within the limits", check_goto};
-const Check kLand{"speed",
-                  [](const Scene& scene) { return check_speed("land", scene.request->speed, scene.limits); }};
+const Precondition kStart{"it is here, inside its fence", check_start};
+const Precondition kNamed{"it is the one", check_mission_named};
+const Precondition kSkip{"it is the one, and has another item", check_skip};
+const Precondition kClear{"it is the one, or there is none", check_clear};
+const Precondition kTrajectory{"it begins inside the fence", check_trajectory};
+const Precondition kSetpoint{
+    "inside the fence, from where it can stop inside, within the limits, near the vehicle", check_setpoint};
+const Precondition kGoTo{"inside the fence, within the limits", check_goto};
+const Precondition kLand{"speed", [](const SupervisorContext& context) {
+                           return check_speed("land", context.request->speed, context.limits);
+                         }};
 
-const Check kPose{"a pose", [](const Scene& scene) {
-                    if (!pose_lost(scene.situation, scene.settings.failsafe)) return accept();
-                    return refuse("cannot take a flying vehicle over without a mocap pose");
-                  }};
+const Precondition kPose{"a pose", [](const SupervisorContext& context) {
+                           if (!pose_lost(context.inputs, context.settings.failsafe)) return accept();
+                           return refuse("cannot take a flying vehicle over without a mocap pose");
+                         }};
 
-}  // namespace check_of
+}  // namespace preconditions
 }  // namespace swiftlet::control

@@ -2,56 +2,56 @@
 // request asks is allowed, and if not, why.
 #pragma once
 
-#include "swiftlet/control/supervision/scene.hpp"
+#include "swiftlet/control/supervision/supervisor_context.hpp"
 
 namespace swiftlet::control {
 
-struct Selector {
+struct Guard {
   const char* text;
-  bool (*holds)(const Scene&);
+  bool (*holds)(const SupervisorContext&);
 };
 
-struct Check {
+struct Precondition {
   const char* text;
-  Outcome (*judge)(const Scene&);
+  Outcome (*evaluate)(const SupervisorContext&);
 };
 
-namespace when {
+namespace guards {
 
-extern const Selector kAlways;
-extern const Selector kSpoolingUp;  // on the ground still, in take-off
-extern const Selector kLiftedOff;   // not so
-extern const Selector kOnLandingItem;
-extern const Selector kPausable;  // lifted off, and not at the mission's landing
-extern const Selector kPaused;    // a mission is
-extern const Selector kNotPaused;
-extern const Selector kNoneUnderWay;  // no mission is flown or paused
-extern const Selector kNoneFlown;
-extern const Selector kWasLanding;  // when the pose was lost
-extern const Selector kNotHurrying;
-extern const Selector kLinkHolds;    // failsafe.ground_link_action is hold
-extern const Selector kLinkLands;    // land
-extern const Selector kLinkMatters;  // either
-extern const Selector kLinkMattersOnGround;
+extern const Guard kAlways;
+extern const Guard kSpoolingUp;  // on the ground still, in take-off
+extern const Guard kLiftedOff;   // not so
+extern const Guard kOnLandingItem;
+extern const Guard kPausable;  // lifted off, and not at the mission's landing
+extern const Guard kPaused;    // a mission is
+extern const Guard kNotPaused;
+extern const Guard kNoneUnderWay;  // no mission is flown or paused
+extern const Guard kNoneFlown;
+extern const Guard kWasLanding;  // when the pose was lost
+extern const Guard kNotHurrying;
+extern const Guard kLinkHolds;    // failsafe.ground_link_action is hold
+extern const Guard kLinkLands;    // land
+extern const Guard kLinkMatters;  // either
+extern const Guard kLinkMattersOnGround;
 
-}  // namespace when
+}  // namespace guards
 
-namespace check_of {
+namespace preconditions {
 
-extern const Check kNone;
-extern const Check kArming;
-extern const Check kTakeoff;
-extern const Check kUpload;
-extern const Check kStartFromGround;
-extern const Check kStart;
-extern const Check kNamed;
-extern const Check kSkip;
-extern const Check kClear;
-extern const Check kTrajectory;
-extern const Check kSetpoint;
-extern const Check kGoTo;
-extern const Check kLand;
-extern const Check kPose;
+extern const Precondition kNone;
+extern const Precondition kArming;
+extern const Precondition kTakeoff;
+extern const Precondition kUpload;
+extern const Precondition kStartFromGround;
+extern const Precondition kStart;
+extern const Precondition kNamed;
+extern const Precondition kSkip;
+extern const Precondition kClear;
+extern const Precondition kTrajectory;
+extern const Precondition kSetpoint;
+extern const Precondition kGoTo;
+extern const Precondition kLand;
+extern const Precondition kPose;
 
-}  // namespace check_of
+}  // namespace preconditions
 }  // namespace swiftlet::control

@@ -84,22 +84,22 @@ double segments_progress(const SupervisorState& state, std::size_t count) {
   return fraction(state.guidance.next_segment - 1 + path_progress(state), static_cast<double>(count));
 }
 
-double mission_progress(const Scene& scene) {
-  const SupervisorState& state = scene.state;
-  if (scene.plan.mission == nullptr || state.guidance.mission.state != MissionState::kRunning ||
-      state.guidance.detour != Detour::kNone)
+double mission_progress(const SupervisorContext& context) {
+  const SupervisorState& state = context.state;
+  if (context.plan.mission == nullptr || state.guidance.mission.state != MissionState::kRunning ||
+      state.guidance.pause != MissionPause::kNone)
     return 0.0;
   const MissionItem& item =
-      scene.plan.mission->items[static_cast<std::size_t>(state.guidance.mission.item_index)];
+      context.plan.mission->items[static_cast<std::size_t>(state.guidance.mission.item_index)];
   const double of_item = item.kind == MissionItemKind::kTrajectory
                              ? segments_progress(state, item.segment_count)
                              : path_progress(state);
   return fraction(state.guidance.mission.item_index + of_item, state.guidance.mission.item_count);
 }
 
-double progress(const RequestStatus& request, const Scene& scene) {
-  const SupervisorState& state = scene.state;
-  const double z_ned = scene.estimate().position_ned.z();
+double progress(const RequestStatus& request, const SupervisorContext& context) {
+  const SupervisorState& state = context.state;
+  const double z_ned = context.estimate().position_ned.z();
   switch (request.kind) {
     case RequestKind::kTakeoff:
       return fraction(state.guidance.ground_z_ned - z_ned,
@@ -110,21 +110,21 @@ double progress(const RequestStatus& request, const Scene& scene) {
       return fraction(z_ned - top_z_ned, state.guidance.ground_z_ned - top_z_ned);
     }
     case RequestKind::kTrajectory:
-      return scene.plan.trajectory == nullptr
+      return context.plan.trajectory == nullptr
                  ? 0.0
-                 : segments_progress(state, scene.plan.trajectory->segments.size());
+                 : segments_progress(state, context.plan.trajectory->segments.size());
     case RequestKind::kMissionPause:
-      return state.guidance.detour == Detour::kNone && scene.paused()
+      return state.guidance.pause == MissionPause::kNone && context.paused()
                  ? fraction(elapsed_s(state.guidance.path.clock.change_ns, state.now_ns),
                             state.guidance.path.clock.change_s)
                  : path_progress(state);
     default:
-      return is_of_mission(request.kind) ? mission_progress(scene) : path_progress(state);
+      return is_of_mission(request.kind) ? mission_progress(context) : path_progress(state);
   }
 }
 
 bool reference_rests(const SupervisorState& state) {
-  const PathClock& clock = state.guidance.path.clock;
+  const TimeScaling& clock = state.guidance.path.clock;
   const bool stands = !clock.runs && !clock.is_changing(state.now_ns);
   return state.mode == Mode::kHolding && (stands || state.guidance.path.finished(state.now_ns));
 }
@@ -172,10 +172,10 @@ bool differ_in_state(const RequestStatuses& a, const RequestStatuses& b) {
   });
 }
 
-void note_accepted(Scene& scene) {
-  const Request& request = *scene.request;
+void note_accepted(SupervisorContext& context) {
+  const Request& request = *context.request;
   const auto is_idle = [](const RequestStatus& known) { return !is_under_way(known); };
-  RequestStatuses& known = scene.state.requests;
+  RequestStatuses& known = context.state.requests;
   auto room = std::find_if(known.begin(), known.end(), is_idle);
   if (room == known.end()) room = known.begin();
   std::rotate(room, room + 1, known.end());
@@ -184,13 +184,13 @@ void note_accepted(Scene& scene) {
   added.key = request.key;
   added.kind = request.kind;
   added.state = RequestState::kAccepted;
-  const bool stands = request.kind == RequestKind::kLand && scene.state.mode == Mode::kDisarmed;
+  const bool stands = request.kind == RequestKind::kLand && context.state.mode == Mode::kDisarmed;
   if (is_done_when_accepted(request.kind) || stands) succeed(added);
 }
 
-void end_requests(Scene& scene, const Transition& row) {
-  const SupervisorState& state = scene.state;
-  for (RequestStatus& request : scene.state.requests) {
+void end_requests(SupervisorContext& context, const Transition& row) {
+  const SupervisorState& state = context.state;
+  for (RequestStatus& request : context.state.requests) {
     if (!is_under_way(request)) continue;
     if (is_of_mission(request.kind)) {
       end_with_mission(request, state.guidance.mission.state, row);
@@ -200,12 +200,13 @@ void end_requests(Scene& scene, const Transition& row) {
   }
 }
 
-void follow_requests(Scene& scene, const Reference& reference) {
-  for (RequestStatus& request : scene.state.requests) {
+void follow_requests(SupervisorContext& context, const Reference& reference) {
+  for (RequestStatus& request : context.state.requests) {
     if (!is_under_way(request)) continue;
     request.state = RequestState::kExecuting;
-    request.progress = std::max(request.progress, progress(request, scene));
-    if (ends_at_rest(request.kind) && reference_rests(scene.state) && is_there(scene.estimate(), reference))
+    request.progress = std::max(request.progress, progress(request, context));
+    if (ends_at_rest(request.kind) && reference_rests(context.state) &&
+        is_there(context.estimate(), reference))
       succeed(request);
   }
 }

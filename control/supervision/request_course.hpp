@@ -7,7 +7,7 @@
 #pragma once
 
 #include "swiftlet/control/supervision/request_status.hpp"
-#include "swiftlet/control/supervision/scene.hpp"
+#include "swiftlet/control/supervision/supervisor_context.hpp"
 #include "swiftlet/control/supervision/transitions.hpp"
 
 namespace swiftlet::control {
@@ -17,12 +17,12 @@ constexpr double kThere_m = 0.05;
 constexpr double kStandstill_m_s = 0.1;
 
 // scene.request was accepted and its row taken. What is over makes room for it, the oldest first.
-void note_accepted(Scene& scene);
+void note_accepted(SupervisorContext& context);
 
 // This row was taken, of a condition or a request: ends the requests that it ends.
-void end_requests(Scene& scene, const Transition& row);
+void end_requests(SupervisorContext& context, const Transition& row);
 
 // In each step, after its row: their progress, and whether they have succeeded.
-void follow_requests(Scene& scene, const Reference& reference);
+void follow_requests(SupervisorContext& context, const Reference& reference);
 
 }  // namespace swiftlet::control

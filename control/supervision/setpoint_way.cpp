@@ -4,12 +4,12 @@
 
 namespace swiftlet::control {
 
-const PolynomialSegment& way_into_setpoint(const Scene& scene) {
-  if (!scene.way_taken) {
-    const Reference from = scene.state.guidance.path.at(scene.state.now_ns);
-    scene.way_taken = blend(scene.limits, from, *scene.setpoint, scene.setpoint_period_s);
+const PolynomialSegment& way_into_setpoint(const SupervisorContext& context) {
+  if (!context.way_taken) {
+    const Reference from = context.state.guidance.path.at(context.state.now_ns);
+    context.way_taken = blend(context.limits, from, *context.setpoint, context.setpoint_period_s);
   }
-  return *scene.way_taken;
+  return *context.way_taken;
 }
 
 }  // namespace swiftlet::control

@@ -19,12 +19,12 @@ const Limits& Supervisor::limits() const {
                                                                                  : settings_.limits;
 }
 
-Directive Supervisor::step(const Situation& situation) {
-  state_.now_ns = situation.stamp_ns;
-  Scene now = scene(situation);
+ControlSetpoint Supervisor::step(const SupervisorInputs& inputs) {
+  state_.now_ns = inputs.stamp_ns;
+  SupervisorContext now = context(inputs);
   if (rotors_off(state_.mode)) {
     forget_silent_ground_links(state_, settings_.failsafe);
-    return directive(situation);
+    return setpoint(inputs);
   }
   advance(now.guidance());
   const EventSet conditions = observe(now, tip_over_cosine_);
@@ -35,15 +35,15 @@ Directive Supervisor::step(const Situation& situation) {
   // A lost link is answered once, but only where nothing more urgent comes first.
   if (link_answered && conditions.has(Event::kGroundLinkLost))
     forget_silent_ground_links(state_, settings_.failsafe);
-  const Directive wanted = directive(situation);
+  const ControlSetpoint wanted = setpoint(inputs);
   follow_requests(now, wanted.reference);
   return wanted;
 }
 
-void Supervisor::take(const Transition& row, Scene& scene) {
+void Supervisor::take(const Transition& row, SupervisorContext& context) {
   if (!row.to.stays) enter(row.to.mode, row.reason);
-  row.action.run(scene);
-  end_requests(scene, row);
+  row.action.run(context);
+  end_requests(context, row);
 }
 
 // What becomes of the mission when that mode is entered.
@@ -74,63 +74,64 @@ void Supervisor::enter(Mode mode, Reason reason) {
   if (mode != Mode::kTrajectory) plan_.trajectory = nullptr;
 }
 
-Directive Supervisor::directive(const Situation& situation) {
-  const GuidanceContext guidance = scene(situation).guidance();
-  Directive directive;
-  directive.reference = reference(guidance);
+ControlSetpoint Supervisor::setpoint(const SupervisorInputs& inputs) {
+  const GuidanceContext guidance = context(inputs).guidance();
+  ControlSetpoint setpoint;
+  setpoint.reference = reference(guidance);
   if (rotors_off(state_.mode)) {
-    directive.actuation = Actuation::kOff;
+    setpoint.control_mode = ControlMode::kOff;
   } else if (state_.mode == Mode::kArmed) {
-    directive.actuation = Actuation::kIdle;
+    setpoint.control_mode = ControlMode::kIdle;
   } else if (state_.mode == Mode::kDescent) {
-    directive.actuation = Actuation::kLevelDescent;
-    directive.descent_speed = blind_descent_speed(guidance);
+    setpoint.control_mode = ControlMode::kLevelDescent;
+    setpoint.descent_speed = blind_descent_speed(guidance);
   } else if (state_.guidance.phase == Phase::kSpoolUp) {
-    directive.actuation = Actuation::kSpoolUp;
-    directive.lift_fraction = spool_up_lift(guidance);
+    setpoint.control_mode = ControlMode::kSpoolUp;
+    setpoint.lift_fraction = spool_up_lift(guidance);
   } else if (state_.mode == Mode::kSetpoint && goes_past_position(state_.guidance.setpoint_kind)) {
     const DirectSetpoint& direct = state_.guidance.direct;
     const auto& q = direct.q_ned_from_frd;
     const auto& rates = direct.body_rates_frd;
-    directive.actuation = state_.guidance.setpoint_kind == SetpointKind::kAttitude ? Actuation::kAttitude
-                                                                                   : Actuation::kBodyRates;
-    directive.q_ned_from_frd = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
-    directive.body_rates_frd = Eigen::Vector3d(rates[0], rates[1], rates[2]);
-    directive.thrust = direct.thrust;
-    directive.integrate = state_.guidance.airborne;
+    setpoint.control_mode = state_.guidance.setpoint_kind == SetpointKind::kAttitude
+                                ? ControlMode::kAttitude
+                                : ControlMode::kBodyRates;
+    setpoint.q_ned_from_frd = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+    setpoint.body_rates_frd = Eigen::Vector3d(rates[0], rates[1], rates[2]);
+    setpoint.thrust = direct.thrust;
+    setpoint.integrate = state_.guidance.airborne;
   } else {
-    directive.actuation = Actuation::kFly;
-    directive.integrate = state_.guidance.airborne && state_.guidance.phase == Phase::kPath;
+    setpoint.control_mode = ControlMode::kFly;
+    setpoint.integrate = state_.guidance.airborne && state_.guidance.phase == Phase::kPath;
   }
-  return directive;
+  return setpoint;
 }
 
-Outcome Supervisor::answer(Event request, Scene& scene) {
-  const Transition* const row = find(scene, request);
-  if (row == nullptr) return refusal(request, scene);
-  const Outcome outcome = row->provided.judge(scene);
-  if (outcome.accepted) take(*row, scene);
+Outcome Supervisor::answer(Event request, SupervisorContext& context) {
+  const Transition* const row = find(context, request);
+  if (row == nullptr) return refusal(request, context);
+  const Outcome outcome = row->provided.evaluate(context);
+  if (outcome.accepted) take(*row, context);
   return outcome;
 }
 
-Outcome Supervisor::request(const Request& request, const Situation& situation) {
+Outcome Supervisor::request(const Request& request, const SupervisorInputs& inputs) {
   Event event = Event::kHold;
   if (!event_of(request.kind, event)) return refuse("unknown request %d", static_cast<int>(request.kind));
-  Scene now = scene(situation);
+  SupervisorContext now = context(inputs);
   now.request = &request;
   const Outcome outcome = answer(event, now);
   if (outcome.accepted) note_accepted(now);
   return outcome;
 }
 
-Outcome Supervisor::setpoint(const Setpoint& setpoint, const Situation& situation) {
-  Scene now = scene(situation);
+Outcome Supervisor::setpoint(const Setpoint& setpoint, const SupervisorInputs& inputs) {
+  SupervisorContext now = context(inputs);
   now.setpoint = &setpoint;
   now.setpoint_period_s = stream_period_s(now.guidance());
   return answer(Event::kSetpoint, now);
 }
 
-bool Supervisor::ground_sign(const GroundSign& sign) {
+bool Supervisor::ground_sign(const GroundHeartbeat& sign) {
   GroundLink* place = nullptr;
   for (GroundLink& link : state_.ground_links) {
     if (link.client == sign.client || (link.client == 0 && place == nullptr)) place = &link;
@@ -158,10 +159,10 @@ void Supervisor::adopt(const SupervisorState& state, const Mission* mission, con
   }
   if (known) return;
   Estimate nowhere;  // not looked at: the vehicle stops along its reference
-  Situation situation;
-  situation.stamp_ns = state_.now_ns;
-  situation.estimate = &nowhere;
-  Scene now = scene(situation);
+  SupervisorInputs inputs;
+  inputs.stamp_ns = state_.now_ns;
+  inputs.estimate = &nowhere;
+  SupervisorContext now = context(inputs);
   answer(Event::kPlanUnknown, now);
 }
 
@@ -179,10 +180,10 @@ void Supervisor::adopt_mission(const Mission* mission) {
   }
 }
 
-Outcome Supervisor::find_flying(const Situation& situation) {
-  state_.now_ns = situation.stamp_ns;
-  Scene now = scene(situation);
-  return answer(Event::kFoundFlying, now);
+Outcome Supervisor::engage_in_flight(const SupervisorInputs& inputs) {
+  state_.now_ns = inputs.stamp_ns;
+  SupervisorContext now = context(inputs);
+  return answer(Event::kEngagedInFlight, now);
 }
 
 }  // namespace swiftlet::control

@@ -4,9 +4,9 @@
 
 #include <cstdint>
 
-#include "swiftlet/control/supervision/scene.hpp"
-#include "swiftlet/control/supervision/situation.hpp"
 #include "swiftlet/control/supervision/state.hpp"
+#include "swiftlet/control/supervision/supervisor_context.hpp"
+#include "swiftlet/control/supervision/supervisor_inputs.hpp"
 #include "swiftlet/control/supervision/transitions.hpp"
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/control/types/request.hpp"
@@ -18,12 +18,12 @@ class Supervisor {
  public:
   explicit Supervisor(const SupervisionSettings& settings);
 
-  Directive step(const Situation& situation);
-  Outcome request(const Request& request, const Situation& situation);
+  ControlSetpoint step(const SupervisorInputs& inputs);
+  Outcome request(const Request& request, const SupervisorInputs& inputs);
   // Refused setpoints (outside the fence, too fast, not flying) change nothing.
-  Outcome setpoint(const Setpoint& setpoint, const Situation& situation);
+  Outcome setpoint(const Setpoint& setpoint, const SupervisorInputs& inputs);
   // False if the flight depends on kMaxGroundLinks others already.
-  bool ground_sign(const GroundSign& sign);
+  bool ground_sign(const GroundHeartbeat& sign);
 
   Mode mode() const { return state_.mode; }
   Reason reason() const { return state_.reason; }
@@ -40,17 +40,19 @@ class Supervisor {
   void adopt(const SupervisorState& state, const Mission* mission, const Trajectory* trajectory);
   // The vehicle flies, and nobody knows what for: it comes to rest and holds. The ground is taken to be at z
   // = 0. Refused without a pose, or if this supervisor flies it already.
-  Outcome find_flying(const Situation& situation);
+  Outcome engage_in_flight(const SupervisorInputs& inputs);
 
  private:
-  Scene scene(const Situation& situation) { return {settings_, limits(), situation, state_, plan_}; }
+  SupervisorContext context(const SupervisorInputs& inputs) {
+    return {settings_, limits(), inputs, state_, plan_};
+  }
   const Limits& limits() const;
-  void take(const Transition& row, Scene& scene);
+  void take(const Transition& row, SupervisorContext& context);
   void enter(Mode mode, Reason reason);
   MissionState mission_state_in(Mode mode, Reason reason) const;
   void adopt_mission(const Mission* mission);
-  Outcome answer(Event request, Scene& scene);
-  Directive directive(const Situation& situation);
+  Outcome answer(Event request, SupervisorContext& context);
+  ControlSetpoint setpoint(const SupervisorInputs& inputs);
 
   SupervisionSettings settings_;
   double tip_over_cosine_;

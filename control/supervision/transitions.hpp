@@ -42,8 +42,8 @@ constexpr Target kStay = Target::stay();
 struct Transition {
   ModeSet from;
   Event event;
-  const Selector& when;
-  const Check& provided;  // of requests
+  const Guard& guards;
+  const Precondition& provided;  // of requests
   Target to;
   Reason reason;  // unless it stays
   const Action& action;
@@ -58,11 +58,11 @@ struct TransitionTable {
 TransitionTable transitions();
 
 // The row that the conditions of a step ask for; null if none does.
-const Transition* find(const Scene& scene, const EventSet& conditions);
+const Transition* find(const SupervisorContext& context, const EventSet& conditions);
 // The row that answers a request; null if none does.
-const Transition* find(const Scene& scene, Event request);
+const Transition* find(const SupervisorContext& context, Event request);
 
 // Why a request is refused that no row answers.
-Outcome refusal(Event request, const Scene& scene);
+Outcome refusal(Event request, const SupervisorContext& context);
 
 }  // namespace swiftlet::control

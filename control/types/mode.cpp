@@ -70,17 +70,17 @@ const char* to_string(Reason reason) {
       return "IMU samples were missing";
     case Reason::kGroundLinkLost:
       return "ground link lost";
-    case Reason::kStruck:
+    case Reason::kImpact:
       return "hit something hard";
-    case Reason::kClimbNotSeen:
+    case Reason::kTakeoffInconsistent:
       return "motion capture does not see the climb";
     case Reason::kPoseJumped:
       return "position jumped";
     case Reason::kPlanUnknown:
       return "taken over without the plan that was flown";
-    case Reason::kFoundFlying:
+    case Reason::kEngagedInFlight:
       return "found flying";
-    case Reason::kSetpointsLedOut:
+    case Reason::kSetpointsViolatedFence:
       return "setpoints led out of the fence";
     case Reason::kMissionPaused:
       return "mission paused";

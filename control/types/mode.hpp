@@ -42,12 +42,12 @@ enum class Reason : std::uint8_t {
   kImuUnusable,
   kImuGap,
   kGroundLinkLost,
-  kStruck,           // the accelerometer felt a blow as of a fall to the ground
-  kClimbNotSeen,     // motion capture did not follow the take-off: another body, or markers that came off
-  kPoseJumped,       // motion capture says for long that the vehicle is elsewhere
+  kImpact,               // the accelerometer felt a blow as of a fall to the ground
+  kTakeoffInconsistent,  // motion capture did not follow the take-off: another body, or markers that came off
+  kPoseJumped,           // motion capture says for long that the vehicle is elsewhere
   kPlanUnknown,      // another controller was taken over from whose mission or trajectory is not known here
-  kFoundFlying,      // the controller was started while its vehicle flew
-  kSetpointsLedOut,  // a stream of attitudes or body rates led out of the fence
+  kEngagedInFlight,  // the controller was started while its vehicle flew
+  kSetpointsViolatedFence,  // a stream of attitudes or body rates led out of the fence
   kMissionPaused,
 };
 constexpr int kReasonCount = static_cast<int>(Reason::kMissionPaused) + 1;

@@ -84,7 +84,7 @@ struct Setpoint {
 };
 
 // A sign of life of a ground tool. depends: from now on the flight depends on hearing it; false: no longer.
-struct GroundSign {
+struct GroundHeartbeat {
   std::uint64_t client = 0;  // not 0
   bool depends = false;
 };

@@ -22,7 +22,7 @@ void check_rpt(const std::string& key, const RptSettings& rpt, RuleChecker& chec
   check.above(key + ".omega_n", rpt.omega_n, 0.0);
   check.above(key + ".zeta", rpt.zeta, 0.0);
   check.above(key + ".epsilon", rpt.epsilon, 0.0);
-  check.at_least(key + ".k_i", rpt.k_i, 0.0);
+  check.at_least(key + ".integral_pole", rpt.integral_pole, 0.0);
 }
 
 void check_limits(const Limits& limits, RuleChecker& check) {
@@ -80,7 +80,7 @@ void check_detectors(const DetectorSettings& detectors, RuleChecker& check) {
   at_least_1("stuck_pose.distinct_poses", stuck_pose.distinct_poses);
   at_least_1("stuck_pose.repetitions", stuck_pose.repetitions);
 
-  const ContinuitySettings& continuity = detectors.continuity;
+  const PoseContinuitySettings& continuity = detectors.continuity;
   at_least_0("continuity.noise_m", continuity.noise_m);
   at_least_0("continuity.noise_rad", continuity.noise_rad);
   above_0("continuity.longest_gap_s", continuity.longest_gap_s);
@@ -95,18 +95,18 @@ void check_detectors(const DetectorSettings& detectors, RuleChecker& check) {
   at_least_0("imu_silence.turn_rad", silence.turn_rad);
   at_least_0("imu_silence.turn_sigmas", silence.turn_sigmas);
 
-  const MotionTrialSettings& trial = detectors.motion_trial;
-  above_0("motion_trial.interval_s", trial.interval_s);
-  at_least_0("motion_trial.acceleration_m_s2", trial.acceleration);
-  at_least_0("motion_trial.turn_rad", trial.turn_rad);
-  at_least_0("motion_trial.sigmas", trial.sigmas);
+  const PoseImuConsistencySettings& trial = detectors.pose_imu_consistency;
+  above_0("pose_imu_consistency.interval_s", trial.interval_s);
+  at_least_0("pose_imu_consistency.acceleration_m_s2", trial.acceleration);
+  at_least_0("pose_imu_consistency.turn_rad", trial.turn_rad);
+  at_least_0("pose_imu_consistency.sigmas", trial.sigmas);
 
-  const ClimbWatchSettings& climb = detectors.climb_watch;
-  above_0("climb_watch.memory_s", climb.memory_s);
-  above_0("climb_watch.felt_m", climb.felt_m);
-  check.between("estimator.detectors.climb_watch.seen_part", climb.seen_part, 0.0, 1.0);
-  above_0("climb_watch.clearly_seen_m", climb.clearly_seen_m);
-  at_least_0("climb_watch.longest_s", climb.longest_s);
+  const TakeoffConsistencySettings& climb = detectors.takeoff_consistency;
+  above_0("takeoff_consistency.memory_s", climb.memory_s);
+  above_0("takeoff_consistency.felt_m", climb.felt_m);
+  check.between("estimator.detectors.takeoff_consistency.seen_part", climb.seen_part, 0.0, 1.0);
+  above_0("takeoff_consistency.clearly_seen_m", climb.clearly_seen_m);
+  at_least_0("takeoff_consistency.longest_s", climb.longest_s);
 
   const RecoverySettings& recovery = detectors.recovery;
   check.between("estimator.detectors.recovery.max_lead_s", recovery.max_lead_s, 0.0, 1.0);

@@ -36,10 +36,10 @@ struct AttitudeSettings {
 
 // RPT of one axis, Eq. (49) and its integral form.
 struct RptSettings {
-  double omega_n = 1.0;  // rad/s, > 0
-  double zeta = 1.0;     // > 0
-  double epsilon = 1.0;  // > 0
-  double k_i = 0.0;      // >= 0; 0: no integral
+  double omega_n = 1.0;        // rad/s, > 0
+  double zeta = 1.0;           // > 0
+  double epsilon = 1.0;        // > 0
+  double integral_pole = 0.0;  // >= 0; 0: no integral
 };
 
 struct PositionSettings {
@@ -69,7 +69,7 @@ struct Limits {
 // The thresholds of the estimator's detectors (control/estimation/README.md: symptom, detector, consequence). The
 // defaults serve any vehicle of this size; what depends on the vehicle is max_speed and max_body_rate.
 
-// Poses that repeat (pose_screen.hpp). Distances: m of the position, and of each part of the quaternion.
+// Poses that repeat (pose_stream.hpp). Distances: m of the position, and of each part of the quaternion.
 struct StuckPoseSettings {
   double same = 1.0e-8;      // poses closer than that repeat
   double distinct = 2.0e-6;  // poses further apart show noise, ...
@@ -77,8 +77,8 @@ struct StuckPoseSettings {
   int repetitions = 5;  // in a row: a stream that has noise is frozen; a single one is a frame sent twice
 };
 
-// Poses that go on as those of one body (pose_screen.hpp).
-struct ContinuitySettings {
+// Poses that go on as those of one body (pose_stream.hpp).
+struct PoseContinuitySettings {
   double noise_m = 0.01;       // that may add to a way between two poses
   double noise_rad = 0.01;     // likewise, to a turn
   double longest_gap_s = 0.1;  // between two poses, that hides no step there and back
@@ -96,16 +96,16 @@ struct ImuSilenceSettings {
   double turn_sigmas = 4.0;   // ... nor do so many standard deviations of the orientation
 };
 
-// Poses that move otherwise than the IMU feels, after a silence (motion_trial.hpp).
-struct MotionTrialSettings {
+// Poses that move otherwise than the IMU feels, after a silence (pose_imu_consistency.hpp).
+struct PoseImuConsistencySettings {
   double interval_s = 0.06;   // two of them make a verdict
   double acceleration = 0.3;  // m/s^2, that poses and IMU may differ by: a tilt of 1.8 degrees
   double turn_rad = 0.015;    // likewise, of their turns
   double sigmas = 3.0;        // of the poses' noise, on top of both
 };
 
-// A climb that the accelerometer feels and the poses do not show (climb_watch.hpp).
-struct ClimbWatchSettings {
+// A climb that the accelerometer feels and the poses do not show (takeoff_consistency.hpp).
+struct TakeoffConsistencySettings {
   double memory_s = 0.7;        // of the high pass: a bias below felt_m / memory_s^2 is no climb
   double felt_m = 0.1;          // that count as a climb
   double seen_part = 0.333;     // of the felt height: fewer contradict
@@ -128,10 +128,10 @@ struct RecoverySettings {
 
 struct DetectorSettings {
   StuckPoseSettings stuck_pose;
-  ContinuitySettings continuity;
+  PoseContinuitySettings continuity;
   ImuSilenceSettings imu_silence;
-  MotionTrialSettings motion_trial;
-  ClimbWatchSettings climb_watch;
+  PoseImuConsistencySettings pose_imu_consistency;
+  TakeoffConsistencySettings takeoff_consistency;
   RecoverySettings recovery;
 };
 

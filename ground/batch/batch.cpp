@@ -106,7 +106,7 @@ std::size_t Batch::failed() const {
       std::count_if(runs.begin(), runs.end(), [](const BatchRun& run) { return !run.completed; }));
 }
 
-BatchRunner::BatchRunner(FlightPlan plan, std::size_t runs)
+BatchRunner::BatchRunner(LaunchConfiguration plan, std::size_t runs)
     : plan_(std::move(plan)), runs_(runs), design_(control::design(plan_.vehicle, plan_.control)) {
   const control::FlightController flyable(plan_.vehicle, plan_.control);
   for (std::size_t i = 0; i < runs_; ++i)
@@ -119,7 +119,7 @@ Batch BatchRunner::fly(std::size_t jobs, const std::function<bool()>& cancelled,
   const auto fly_one = [&](std::size_t index, FlightRecord& record) -> std::optional<BatchRun> {
     if (cancelled()) return std::nullopt;
     const std::uint64_t seed = plan_.seed + index;
-    Draw drawn = draw(plan_, seed);
+    DispersionSample drawn = draw(plan_, seed);
     ClosedLoop loop = closed_loop(plan_, drawn.world, seed);
     const FlightReport report = fly_in_process(loop, plan_, seed, record, nullptr, cancelled).report;
     if (!report.completed && cancelled()) return std::nullopt;

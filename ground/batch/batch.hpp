@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "swiftlet/control/design/mismatch.hpp"
-#include "swiftlet/ground/flight/flight_plan.hpp"
+#include "swiftlet/ground/flight/launch_configuration.hpp"
 
 namespace swiftlet::ground {
 
@@ -45,7 +45,7 @@ struct BatchProgress {
 // std::invalid_argument for control settings that cannot be flown.
 class BatchRunner {
  public:
-  BatchRunner(FlightPlan plan, std::size_t runs);
+  BatchRunner(LaunchConfiguration plan, std::size_t runs);
 
   // Flies on so many threads; the outcome is the same whatever their number. `progress` is called now and
   // then from this thread, `cancelled` from all: once it is true, runs under way are dropped. Throws what a
@@ -54,7 +54,7 @@ class BatchRunner {
             const std::function<void(const BatchProgress&)>& progress) const;
 
  private:
-  FlightPlan plan_;
+  LaunchConfiguration plan_;
   std::size_t runs_;
   std::size_t rejected_ = 0;
   control::ControlDesign design_;

@@ -138,7 +138,7 @@ void write_script(const std::filesystem::path& file, const BatchReport& report) 
   std::ofstream script(file);
   script << "headline = "
          << gnuplot_quoted(report.mission + " - " + report.vehicle + ", " + report.control + ", varied by " +
-                           report.vary + ": " + counted(batch.runs.size(), "run") +
+                           report.dispersion + ": " + counted(batch.runs.size(), "run") +
                            fmt::format(", {} failed", batch.failed()) + (batch.failed() > 0 ? " (red)" : ""))
          << "\nruns = " << report.rms_3d_m.count
          << fmt::format("\ntolerance = {:.6g}", report.tolerance_m * 1e3)

@@ -37,7 +37,7 @@ std::string repeat_of(const FlyOptions& options) {
   add("--control", options.control, usual.control);
   add("--simulation", options.simulation, usual.simulation);
   add("--imu-rate", std::to_string(options.imu_rate_hz), std::to_string(usual.imu_rate_hz));
-  add("--vary", options.vary, usual.vary);
+  add("--dispersion", options.dispersion, usual.dispersion);
   return command + " --seed ";
 }
 
@@ -83,7 +83,7 @@ std::string headline_of(const BatchReport& report) {
   const Batch& batch = report.batch;
   const std::uint64_t first = report.first_seed;
   std::string text = report.mission + ", " + report.vehicle + " flown with " + report.control +
-                     ", varied by " + report.vary +
+                     ", varied by " + report.dispersion +
                      fmt::format(": {}, seeds {} to {}\n", counted(batch.asked, "run").c_str(),
                                  static_cast<unsigned long long>(first),
                                  static_cast<unsigned long long>(first + batch.asked - 1));
@@ -137,17 +137,18 @@ double ParameterEffect::strength() const {
   return std::max(value, distance);
 }
 
-BatchReport report_of(const FlightPlan& plan, const FlyOptions& options, Batch batch) {
+BatchReport report_of(const LaunchConfiguration& plan, const FlyOptions& options, Batch batch) {
   BatchReport report;
   report.mission = plan.mission.name;
   report.vehicle = plan.vehicle.name;
   report.control = plan.control.name;
-  report.vary = plan.variation.name;
+  report.dispersion = plan.dispersion.name;
   report.folder = plan.folder.string();
   report.tolerance_m = plan.mission.tolerance_m;
   report.first_seed = plan.seed;
   report.batch = std::move(batch);
-  for (const Variate& variate : plan.variation.variates) report.parameters.push_back(variate.what().name);
+  for (const ParameterDistribution& distribution : plan.dispersion.distributions)
+    report.parameters.push_back(distribution.what().name);
 
   report.rms_3d_m = spread(column(report.batch, [](const BatchRun& run) { return run.rms_3d_m; }));
   report.peak_3d_m = spread(column(report.batch, [](const BatchRun& run) { return run.peak_3d_m; }));
@@ -168,7 +169,7 @@ Json to_json(const BatchReport& report) {
   json["mission"] = report.mission;
   json["vehicle"] = report.vehicle;
   json["control"] = report.control;
-  json["vary"] = report.vary;
+  json["dispersion"] = report.dispersion;
   json["seed"] = report.first_seed;
   json["runs"] = batch.asked;
   json["runs_done"] = batch.runs.size();

@@ -9,7 +9,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "swiftlet/ground/batch/batch.hpp"
-#include "swiftlet/ground/flight/flight_plan.hpp"
+#include "swiftlet/ground/flight/launch_configuration.hpp"
 #include "swiftlet/math/statistics.hpp"
 
 namespace swiftlet::ground {
@@ -27,7 +27,7 @@ struct ParameterEffect {
 };
 
 struct BatchReport {
-  std::string mission, vehicle, control, vary;  // names
+  std::string mission, vehicle, control, dispersion;  // names
   std::string folder;
   double tolerance_m = 0.0;
   std::uint64_t first_seed = 0;
@@ -45,7 +45,7 @@ struct BatchReport {
 };
 
 // options: those that the plan was made from.
-BatchReport report_of(const FlightPlan& plan, const FlyOptions& options, Batch batch);
+BatchReport report_of(const LaunchConfiguration& plan, const FlyOptions& options, Batch batch);
 
 // Lengths in m, angles in degrees; what is not finite is null.
 nlohmann::ordered_json to_json(const BatchReport& report);

@@ -45,14 +45,14 @@ LoopMargins kept_by(const std::vector<LoopMargins>& all, double share) {
 }  // namespace
 
 MarginStudy study_margins(const control::ControlDesign& design, const plant::Vehicle& vehicle,
-                          const Variation& variation, std::size_t draws, std::uint64_t seed) {
+                          const Dispersion& dispersion, std::size_t draws, std::uint64_t seed) {
   MarginStudy out;
   const auto designed = margins_of(design, vehicle, vehicle);
   std::array<std::vector<LoopMargins>, kLoopNames.size()> drawn;
-  if (!variation.variates.empty()) out.draws = draws;
+  if (!dispersion.distributions.empty()) out.draws = draws;
   out.seed = seed;
   for (std::size_t i = 0; i < out.draws; ++i) {
-    const auto margins = margins_of(design, vehicle, draw(variation, {vehicle, {}}, seed + i).world.vehicle);
+    const auto margins = margins_of(design, vehicle, draw(dispersion, {vehicle, {}}, seed + i).world.vehicle);
     bool stable = true;
     for (std::size_t loop = 0; loop < margins.size(); ++loop) {
       drawn[loop].push_back(margins[loop]);

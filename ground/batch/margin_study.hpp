@@ -8,7 +8,7 @@
 #include "swiftlet/control/design/control_design.hpp"
 #include "swiftlet/control/design/margins.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
-#include "swiftlet/simulation/variation.hpp"
+#include "swiftlet/simulation/dispersion.hpp"
 
 namespace swiftlet::ground {
 
@@ -29,6 +29,6 @@ struct MarginStudy {
 // At the voltage of a half-charged battery without load. With a variation, draw i has the seed `seed` + i.
 // Linear about hover; estimator, sampling and latency are left out. Throws as draw().
 MarginStudy study_margins(const control::ControlDesign& design, const plant::Vehicle& vehicle,
-                          const Variation& variation, std::size_t draws, std::uint64_t seed);
+                          const Dispersion& dispersion, std::size_t draws, std::uint64_t seed);
 
 }  // namespace swiftlet::ground

@@ -9,12 +9,12 @@
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
 #include "swiftlet/ground/command_line/network_options.hpp"
-#include "swiftlet/ground/flight/flight_conclusion.hpp"
-#include "swiftlet/ground/flight/flight_plan.hpp"
+#include "swiftlet/ground/flight/flight_outcome.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
+#include "swiftlet/ground/flight/launch_configuration.hpp"
 #include "swiftlet/ground/flight/process_flight.hpp"
 #include "swiftlet/ground/terminal/fleet_progress.hpp"
-#include "swiftlet/services/dds/discovery/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/shared_memory.hpp"
 
 namespace swiftlet::ground {
@@ -34,20 +34,21 @@ void check(const FlyOptions& options, std::size_t vehicles) {
 }
 
 // One for each vehicle: its mission is the only one, or that of its place in the list.
-std::vector<FlightPlan> plan_flights(const FlyOptions& options, const std::vector<std::string>& vehicles) {
+std::vector<LaunchConfiguration> plan_flights(const FlyOptions& options,
+                                              const std::vector<std::string>& vehicles) {
   const std::vector<std::string> missions = split_list(options.mission);
   if (missions.size() != 1 && missions.size() != vehicles.size()) {
     throw InputError("mission: there are " + std::to_string(missions.size()) + " for " +
                      std::to_string(vehicles.size()) + " vehicles, must be one for all or one for each");
   }
-  std::vector<FlightPlan> plans;
+  std::vector<LaunchConfiguration> plans;
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     FlyOptions one = options;
     one.mission = missions[missions.size() == 1 ? 0 : i];
     one.seed = options.seed + i;
     one.start_ned = {
         0.0, options.spacing_m * (static_cast<double>(i) - 0.5 * static_cast<double>(vehicles.size() - 1))};
-    FlightPlan plan = plan_flight(one);
+    LaunchConfiguration plan = plan_flight(one);
     if (vehicles.size() > 1) {
       if (i > 0) plan.folder = plans.front().folder.parent_path();
       plan.folder /= vehicles[i];
@@ -64,7 +65,7 @@ void fly_together(std::deque<ProcessFlight>& flights, const Interrupts& interrup
   names.reserve(flights.size());
   for (const ProcessFlight& flight : flights) names.push_back(flight.vehicle_name());
   FleetProgress shares(progress, names);
-  Together together(flights.size());
+  StartBarrier together(flights.size());
   std::vector<std::future<void>> flying;
   for (std::size_t i = 0; i < flights.size(); ++i) {
     flying.push_back(std::async(std::launch::async, [&, i] {
@@ -83,10 +84,10 @@ void fly_together(std::deque<ProcessFlight>& flights, const Interrupts& interrup
 int fly(const FlyOptions& options) {
   const std::vector<std::string> vehicles = split_list(options.network.vehicle);
   check(options, vehicles.size());
-  std::vector<FlightPlan> plans = plan_flights(options, vehicles);
+  std::vector<LaunchConfiguration> plans = plan_flights(options, vehicles);
 
-  std::optional<comms::DomainClaim> claim;
-  if (options.domain < 0 && options.parties == Parties::kStarted) claim.emplace();
+  std::optional<comms::DomainLock> claim;
+  if (options.domain < 0 && options.launch_mode == LaunchMode::kStarted) claim.emplace();
   comms::NodeSettings network = options.network;
   network.domain = claim ? claim->domain() : std::max(options.domain, 0);
 
@@ -94,12 +95,12 @@ int fly(const FlyOptions& options) {
   std::deque<ProcessFlight> flights;
   const Interrupts interrupts;
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
-    const FlightPlan& plan = plans[i];
+    const LaunchConfiguration& plan = plans[i];
     for (const std::string& assumption : plan.mission.assumptions)
       progress.say(plan.mission.name + ": " + assumption);
     network.vehicle = vehicles[i];
     progress.say("flying " + plan.mission.name +
-                 (plan.parties == Parties::kAttached ? "" : " with " + plan.vehicle.name) + ": " +
+                 (plan.launch_mode == LaunchMode::kAttached ? "" : " with " + plan.vehicle.name) + ": " +
                  network.vehicle + " in domain " + std::to_string(network.domain) +
                  (network.localhost_only ? " (--localhost-only)" : "") + ", record in " +
                  plan.folder.string());
@@ -113,11 +114,11 @@ int fly(const FlyOptions& options) {
   // What a process that was killed left there.
   if (network.transport == comms::Transport::kSharedMemory) comms::remove_stale_shared_memory();
 
-  if (flights.size() == 1) return tell(flights.front().report(), options.json, progress);
+  if (flights.size() == 1) return print_report(flights.front().report(), options.json, progress);
   std::vector<FlightReport> reports;
   reports.reserve(flights.size());
   for (const ProcessFlight& flight : flights) reports.push_back(flight.report());
-  return tell(reports, options.json, progress);
+  return print_report(reports, options.json, progress);
 }
 
 }  // namespace
@@ -141,7 +142,7 @@ Command add_fly_command(runtime::CommandLine root) {
       .environment("ROS_DOMAIN_ID")
       .range(0, 232);
   runtime::Option attach = app.add_flag(
-      "--attach", [options] { options->parties = Parties::kAttached; },
+      "--attach", [options] { options->launch_mode = LaunchMode::kAttached; },
       "start nothing: fly with the plant, mocap and control that run in the domain (0 unless given)");
   runtime::add_clock_option(app, options->clock);
   app.add_option("--speed", options->speed, "of simulated time against real time")

@@ -37,10 +37,11 @@ void add_fly_options(runtime::CommandLine app, FlyOptions& options) {
 }
 
 runtime::Option add_vary_option(runtime::CommandLine app, FlyOptions& options) {
-  return app.add_option("--vary", options.vary,
-                        "vary file, or the name of one in the configuration: what differs from seed to seed "
-                        "in the vehicle that flies and in its world; the controller knows the vehicle file. "
-                        "Or `uncertainty`: what that file says of how sure its parameters are");
+  return app.add_option(
+      "--dispersion", options.dispersion,
+      "dispersion file, or the name of one in the configuration: what differs from seed to seed "
+      "in the vehicle that flies and in its world; the controller knows the vehicle file. "
+      "Or `uncertainty`: what that file says of how sure its parameters are");
 }
 
 }  // namespace swiftlet::ground

@@ -1,7 +1,7 @@
 // The options that the ways to fly a mission share.
 #pragma once
 
-#include "swiftlet/ground/flight/flight_plan.hpp"
+#include "swiftlet/ground/flight/launch_configuration.hpp"
 #include "swiftlet/services/runtime/command_line.hpp"
 
 namespace swiftlet::ground {

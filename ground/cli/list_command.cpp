@@ -42,7 +42,7 @@ std::vector<Found> look(const Options& options) {
   const Context context(options.network);
   std::this_thread::sleep_for(part(0.5 * options.look_s));
   std::map<std::string, std::unique_ptr<Client>> clients;
-  for (const std::string& name : context.vehicles_seen()) {
+  for (const std::string& name : context.discovered_vehicles()) {
     comms::NodeSettings network = options.network;
     network.vehicle = name;
     clients[name] = std::make_unique<Client>(context.participant(), network);

@@ -25,10 +25,10 @@ int run(const Options& options) {
   const MissionFile file = load_mission_file(configuration_file("missions", options.file), settings.limits);
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
-  const Rehearsal rehearsal = rehearse(file.mission, settings, {options.start[0], options.start[1]});
+  const MissionDryRun dry_run = dry_run(file.mission, settings, {options.start[0], options.start[1]});
   const double supply_voltage_v =
       options.supply_voltage_v > 0.0 ? options.supply_voltage_v : settings.failsafe.low_battery_voltage;
-  const MissionCheck check = check_mission(file, rehearsal, vehicle, settings, supply_voltage_v);
+  const MissionCheck check = check_mission(file, dry_run, vehicle, settings, supply_voltage_v);
   if (options.json) {
     std::printf("%s\n", check_json(check, file, vehicle.name, settings.name).c_str());
   } else {

@@ -12,7 +12,7 @@ struct Options : AskOptions {
   std::uint64_t id = 0;
 };
 
-using Ask = Manoeuvre (Vehicle::*)(std::uint64_t, std::chrono::milliseconds);
+using Ask = ActionHandle (Vehicle::*)(std::uint64_t, std::chrono::milliseconds);
 
 Command add_mission_request(runtime::CommandLine mission, const std::string& name,
                             const std::string& description, Ask ask) {

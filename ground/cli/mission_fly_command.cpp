@@ -33,14 +33,15 @@ void show(const VehicleState& state, ProgressLine& progress) {
   progress.update(state.mission.item, text);
 }
 
-Ending follow(const Vehicle& vehicle, const Manoeuvre& flight) {
+ActionResult follow(const Vehicle& vehicle, const ActionHandle& flight) {
   const Interrupts interrupts;
   ProgressLine progress;
   while (true) {
-    Ending ending = flight.wait(kStep);
-    if (ending.kind != Ending::Kind::kTimedOut) return ending;
+    ActionResult ending = flight.wait(kStep);
+    if (ending.kind != ActionResult::Kind::kTimedOut) return ending;
     show(vehicle.state(), progress);
-    if (interrupts.count() > 0) return {Ending::Kind::kTimedOut, "no longer followed; the vehicle flies on"};
+    if (interrupts.count() > 0)
+      return {ActionResult::Kind::kTimedOut, "no longer followed; the vehicle flies on"};
   }
 }
 
@@ -52,11 +53,11 @@ int fly_mission(const Options& options) {
     std::fprintf(stderr, "%s: %s\n", mission.name.c_str(), assumption.c_str());
   Vehicle vehicle(options.network);
   tell_of_connection(vehicle, "mission " + mission.name);
-  if (options.link) vehicle.stay();
-  const Manoeuvre flight = vehicle.follow(mission.mission, options.timeout());
-  Ending end = {Ending::Kind::kNotAccepted, flight.answer().reason};
+  if (options.link) vehicle.enable_link_loss_failsafe();
+  const ActionHandle flight = vehicle.follow(mission.mission, options.timeout());
+  ActionResult end = {ActionResult::Kind::kNotAccepted, flight.answer().reason};
   if (flight.accepted())
-    end = options.no_wait ? Ending{Ending::Kind::kCompleted, ""} : follow(vehicle, flight);
+    end = options.no_wait ? ActionResult{ActionResult::Kind::kCompleted, ""} : follow(vehicle, flight);
 
   if (options.json) {
     nlohmann::ordered_json json = {{"mission", mission.name}, {"accepted", flight.accepted()}};

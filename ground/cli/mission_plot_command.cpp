@@ -19,18 +19,18 @@ struct Options {
 int run(const Options& options) {
   const auto settings = runtime::load_control_settings(configuration_file("control", options.control));
   const MissionFile file = load_mission_file(configuration_file("missions", options.file), settings.limits);
-  const Rehearsal rehearsal = rehearse(file.mission, settings, {options.start[0], options.start[1]});
-  if (!rehearsal.completed)
-    std::fprintf(stderr, "swiftlet: mission %s: %s\n", file.name.c_str(), rehearsal.reason.c_str());
-  if (rehearsal.legs.empty()) return kFailed;
-  const std::string fault = draw_mission(options.output, file, rehearsal, settings.limits);
+  const MissionDryRun dry_run = dry_run(file.mission, settings, {options.start[0], options.start[1]});
+  if (!dry_run.completed)
+    std::fprintf(stderr, "swiftlet: mission %s: %s\n", file.name.c_str(), dry_run.reason.c_str());
+  if (dry_run.legs.empty()) return kFailed;
+  const std::string fault = draw_mission(options.output, file, dry_run, settings.limits);
   if (!fault.empty()) {
     std::fprintf(stderr, "swiftlet: %s\n", fault.c_str());
     return kFailed;
   }
   std::printf("%s: %s shows %.1f s of flight\n", file.name.c_str(), options.output.c_str(),
-              rehearsal.duration_s);
-  return rehearsal.completed ? kDone : kFailed;
+              dry_run.duration_s);
+  return dry_run.completed ? kDone : kFailed;
 }
 
 }  // namespace

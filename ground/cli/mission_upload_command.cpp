@@ -23,7 +23,7 @@ int upload(const Options& options) {
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
   Vehicle vehicle(options.network);
-  const Answer answer = vehicle.upload(file.mission, options.timeout()).answer();
+  const Result answer = vehicle.upload(file.mission, options.timeout()).answer();
   if (options.json) {
     nlohmann::ordered_json json = {{"mission", file.name}, {"accepted", answer.accepted()}};
     if (answer.accepted()) json["mission_id"] = vehicle.uploaded_id();

@@ -16,8 +16,8 @@ namespace {
 // What became of a request to one vehicle.
 struct Asked {
   std::string vehicle;
-  Answer answer;
-  std::optional<Ending> ending;  // if it was waited for
+  Result answer;
+  std::optional<ActionResult> ending;  // if it was waited for
 
   bool failed() const { return ending ? !ending->done() : !answer.accepted(); }
   const std::string& reason() const { return ending ? ending->reason : answer.reason; }
@@ -62,13 +62,13 @@ runtime::CommandLine add_ask_subcommand(runtime::CommandLine root, const std::st
 }
 
 int run_request(const AskOptions& options, const std::string& what,
-                const std::function<Manoeuvre(Vehicle&)>& ask) {
+                const std::function<ActionHandle(Vehicle&)>& ask) {
   const std::vector<std::string> names = split_list(options.network.vehicle);
   const Context context(options.network);
   std::mutex printing;
   const auto ask_one = [&](const std::string& name) {
     Vehicle vehicle(context, name);
-    const Manoeuvre manoeuvre = ask(vehicle);
+    const ActionHandle manoeuvre = ask(vehicle);
     Asked asked{name, manoeuvre.answer(), std::nullopt};
     if (asked.answer.accepted() && !options.json) {
       const std::lock_guard<std::mutex> lock(printing);
@@ -111,7 +111,7 @@ void tell_of_connection(Vehicle& vehicle, const std::string& command) {
 
 Command add_plain_request_command(runtime::CommandLine root, const std::string& name,
                                   const std::string& description,
-                                  Manoeuvre (Vehicle::*ask)(std::chrono::milliseconds)) {
+                                  ActionHandle (Vehicle::*ask)(std::chrono::milliseconds)) {
   const auto options = std::make_shared<AskOptions>();
   const runtime::CommandLine app =
       add_ask_subcommand(root, name, description, "swiftlet " + name + " --vehicle-name kl1,kl2", options);

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "swiftlet/ground/client/manoeuvre.hpp"
+#include "swiftlet/ground/client/action.hpp"
 #include "swiftlet/ground/client/vehicle.hpp"
 #include "swiftlet/ground/command_line/command.hpp"
 #include "swiftlet/ground/command_line/network_options.hpp"
@@ -46,7 +46,7 @@ runtime::CommandLine add_ask_subcommand(runtime::CommandLine root, const std::st
 // for the end where that was wanted. As JSON the answer of one vehicle, or an object of those of several by
 // name. Returns the exit code: a failure if one of them failed.
 int run_request(const AskOptions& options, const std::string& what,
-                const std::function<Manoeuvre(Vehicle&)>& ask);
+                const std::function<ActionHandle(Vehicle&)>& ask);
 
 // From now on says on standard error, in the command's name, when the vehicle's control process falls silent, is heard
 // again, or is another one.
@@ -55,6 +55,6 @@ void tell_of_connection(Vehicle& vehicle, const std::string& command);
 // A subcommand that asks for something without arguments.
 Command add_plain_request_command(runtime::CommandLine root, const std::string& name,
                                   const std::string& description,
-                                  Manoeuvre (Vehicle::*ask)(std::chrono::milliseconds));
+                                  ActionHandle (Vehicle::*ask)(std::chrono::milliseconds));
 
 }  // namespace swiftlet::ground

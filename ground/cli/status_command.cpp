@@ -68,8 +68,8 @@ std::vector<msg::ControllerState> controllers_of(const View& view, Clock::time_p
     if (latest.age_s(now) < kControllerSilence_s) controllers.push_back(latest.message);
   }
   std::sort(controllers.begin(), controllers.end(), [](const auto& a, const auto& b) {
-    return std::tuple(a.role(), a.strength(), a.controller()) >
-           std::tuple(b.role(), b.strength(), b.controller());
+    return std::tuple(a.role(), a.failover_priority(), a.controller()) >
+           std::tuple(b.role(), b.failover_priority(), b.controller());
   });
   return controllers;
 }
@@ -126,7 +126,7 @@ nlohmann::ordered_json to_json(const View& view, const Rates& rates, const Reque
     json["controllers"].push_back({{"number", controller.controller()},
                                    {"role", role_name(controller)},
                                    {"ready", controller.ready()},
-                                   {"strength", controller.strength()},
+                                   {"failover_priority", controller.failover_priority()},
                                    {"term", controller.term()}});
   }
   json["vehicle_info"] = nullptr;
@@ -205,9 +205,9 @@ void print(const View& view, const Rates& rates, const RequestOptions& options) 
       static_cast<unsigned long long>(control.cycles()), control.step_time_max_us(),
       control.realtime_scheduling() ? "" : ", no real-time scheduling");
   for (const msg::ControllerState& controller : controllers_of(view, now)) {
-    std::printf("  controller %016llx: %s%s, strength %u, term %u\n",
+    std::printf("  controller %016llx: %s%s, failover priority %u, term %u\n",
                 static_cast<unsigned long long>(controller.controller()), role_name(controller),
-                controller.ready() ? "" : ", not ready", controller.strength(), controller.term());
+                controller.ready() ? "" : ", not ready", controller.failover_priority(), controller.term());
   }
   if (view.vehicle.seen()) {
     const auto& info = view.vehicle.message;

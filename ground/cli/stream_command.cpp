@@ -38,7 +38,7 @@ struct Options : RequestOptions {
 };
 
 // What was sent, and how it ended.
-struct Course {
+struct ReplayOptions {
   std::uint64_t sent = 0;
   double duration_s = 0.0;
   SetpointTally tally;  // of these setpoints
@@ -114,11 +114,11 @@ std::optional<std::string> go_to_start(Vehicle& vehicle, const control::Setpoint
       (state.reference_position_ned_m - first.position_ned).norm() <= kThere_m)
     return std::nullopt;
   std::fprintf(stderr, "stream: going to where it begins\n");
-  Vehicle::Place place;
+  Vehicle::Target place;
   place.position_ned_m = first.position_ned;
   if (!first.yaw_free) place.yaw_rad = first.yaw_rad;
-  const Manoeuvre going = vehicle.go_to(place, options.timeout());
-  const Ending ending = going.wait(kManoeuvreTimeout);
+  const ActionHandle going = vehicle.go_to(place, options.timeout());
+  const ActionResult ending = going.wait(kManoeuvreTimeout);
   if (ending.done()) return std::nullopt;
   return "where it begins was not reached: " + ending.reason;
 }
@@ -128,7 +128,7 @@ class Streamer {
   Streamer(Vehicle& vehicle, const Interrupts& interrupts)
       : vehicle_(vehicle), interrupts_(interrupts), before_(vehicle.state().setpoints) {}
 
-  Course run(const TimedSetpoint& first, const SetpointSource& source) {
+  ReplayOptions run(const TimedSetpoint& first, const SetpointSource& source) {
     begin_s_ = vehicle_.clock_s();
     for (std::optional<TimedSetpoint> next = first; next; next = source()) {
       if (!wait_for(next->time_s - first.time_s)) break;
@@ -190,13 +190,13 @@ class Streamer {
   SetpointTally before_;
   double begin_s_ = 0.0;
   bool followed_ = false;
-  Course course_;
+  ReplayOptions course_;
 };
 
 // Into hold, or down.
 std::optional<std::string> come_to_rest(Vehicle& vehicle, const Options& options) {
   if (options.land) {
-    const Ending landed = vehicle.land(0.4, options.timeout()).wait(kManoeuvreTimeout);
+    const ActionResult landed = vehicle.land(0.4, options.timeout()).wait(kManoeuvreTimeout);
     return landed.done() ? std::nullopt : std::optional("it did not land: " + landed.reason);
   }
   const bool rests =
@@ -205,7 +205,7 @@ std::optional<std::string> come_to_rest(Vehicle& vehicle, const Options& options
                : std::optional<std::string>("the vehicle still follows setpoints, of somebody else");
 }
 
-void print(const Course& course, const VehicleState& end, bool json) {
+void print(const ReplayOptions& course, const VehicleState& end, bool json) {
   if (json) {
     nlohmann::ordered_json text = {{"sent", course.sent},
                                    {"taken", course.tally.taken},
@@ -230,7 +230,7 @@ int stream(const Options& options) {
   SetpointSource source = open(options);
   const Interrupts interrupts;
   Vehicle vehicle(options.network);
-  const Answer there = vehicle.connect(options.timeout());
+  const Result there = vehicle.connect(options.timeout());
   if (!there.accepted()) {
     std::fprintf(stderr, "swiftlet: stream: %s\n", there.reason.c_str());
     return kFailed;
@@ -243,7 +243,7 @@ int stream(const Options& options) {
       options.timeout());
   const std::optional<TimedSetpoint> first = source();
   if (!first) throw InputError(options.file + ": has no rows");
-  Course course;
+  ReplayOptions course;
   if (const auto fault = go_to_start(vehicle, first->setpoint, options)) {
     course.fault = *fault;
   } else {

@@ -95,7 +95,7 @@ class Keys {
     msg::Command command;
     command.kind(action.kind);
     command.speed(kLandingSpeed_m_s);
-    const Answer answer = client_.command(command, kAnswerTimeout);
+    const Result answer = client_.command(command, kAnswerTimeout);
     return std::string(action.name) + ": " + (answer.accepted() ? "accepted" : answer.reason);
   }
 

@@ -7,7 +7,7 @@
 
 #include "swiftlet/control/estimation/estimator.hpp"
 #include "swiftlet/control/types/mode.hpp"
-#include "swiftlet/ground/client/vehicles_seen.hpp"
+#include "swiftlet/ground/client/discovery.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 
 namespace swiftlet::ground {
@@ -54,10 +54,10 @@ EstimateRow row_of(const msg::Estimate& estimate) {
   return {estimate.stamp_ns(), estimate.position_ned(), estimate.velocity_ned()};
 }
 
-Answer answer_of(const msg::CommandAck& ack) {
+Result answer_of(const msg::CommandAck& ack) {
   const control::RequestKey key{ack.client(), ack.id()};
-  if (ack.accepted()) return {Answer::Kind::kAccepted, "", key, ack.stamp_ns()};
-  return {Answer::Kind::kRefused, ack.reason().c_str(), key};
+  if (ack.accepted()) return {Result::Kind::kAccepted, "", key, ack.stamp_ns()};
+  return {Result::Kind::kRefused, ack.reason().c_str(), key};
 }
 
 MissionRow row_of(const msg::MissionStatus& status) {
@@ -237,35 +237,36 @@ View Client::view() const {
   return view_;
 }
 
-TimeGrants& Client::grants() {
+SimulationClockPublisher& Client::simulation_clock() {
   std::unique_lock lock(mutex_);
   if (grants_) return *grants_;
   lock.unlock();
   const bool every_sample = record_ != nullptr && record_->sensors;
-  auto grants = std::make_shared<TimeGrants>(node_, every_sample ? kSensorWindowNs : kTelemetryWindowNs);
+  auto simulation_clock =
+      std::make_shared<SimulationClockPublisher>(node_, every_sample ? kSensorWindowNs : kTelemetryWindowNs);
   lock.lock();
-  grants_ = std::move(grants);
+  grants_ = std::move(simulation_clock);
   return *grants_;
 }
 
 void Client::grant_after(std::int64_t stamp_ns) {
   std::unique_lock lock(mutex_);
-  const auto grants = grants_;
+  const auto simulation_clock = grants_;
   lock.unlock();
-  if (grants) grants->has_come(stamp_ns);
+  if (simulation_clock) simulation_clock->has_come(stamp_ns);
 }
 
-void Client::stay() {
+void Client::enable_link_loss_failsafe() {
   std::unique_lock lock(mutex_);
   if (signs_) return;
   lock.unlock();
-  auto signs = std::make_shared<SignsOfLife>(node_, client_id_);
+  auto signs = std::make_shared<GroundHeartbeatPublisher>(node_, client_id_);
   lock.lock();
   signs_ = std::move(signs);
 }
 
-void Client::leave() {
-  std::shared_ptr<SignsOfLife> signs;
+void Client::disable_link_loss_failsafe() {
+  std::shared_ptr<GroundHeartbeatPublisher> signs;
   const std::lock_guard lock(mutex_);
   signs_.swap(signs);  // which outlives the lock
 }
@@ -297,28 +298,28 @@ struct Sending {
 }  // namespace
 
 template <class T>
-Answer Client::ask(comms::Publisher<T>& publisher, const T& request, std::chrono::milliseconds timeout,
+Result Client::ask(comms::Publisher<T>& publisher, const T& request, std::chrono::milliseconds timeout,
                    const Cancelled& cancelled) {
   const auto deadline = Clock::now() + timeout;
   std::optional<Sending> sent;
 
   std::unique_lock lock(mutex_);
   const auto asked = answers_.emplace(request.id(), std::nullopt).first;
-  const auto settled = [&](Answer answer) {
+  const auto settled = [&](Result answer) {
     answers_.erase(asked);
     return answer;
   };
   while (!asked->second) {
     const auto now = Clock::now();
-    if (cancelled && cancelled()) return settled({Answer::Kind::kCancelled, "it was cancelled"});
+    if (cancelled && cancelled()) return settled({Result::Kind::kCancelled, "it was cancelled"});
     if (now >= deadline) {
       settled({});
       lock.unlock();
       if (sent) {
-        return {Answer::Kind::kSilence, "no answer from the control service of " + where() +
+        return {Result::Kind::kSilence, "no answer from the control service of " + where() +
                                             "; `swiftlet status` says whether it still runs"};
       }
-      return {Answer::Kind::kNoControl, no_control()};
+      return {Result::Kind::kNoControl, no_control()};
     }
     Sending sending{now, 0, takeovers_};
     lock.unlock();
@@ -335,13 +336,13 @@ Answer Client::ask(comms::Publisher<T>& publisher, const T& request, std::chrono
   return settled(*asked->second);
 }
 
-Answer Client::command(msg::Command command, std::chrono::milliseconds timeout, const Cancelled& cancelled) {
+Result Client::command(msg::Command command, std::chrono::milliseconds timeout, const Cancelled& cancelled) {
   command.client(client_id_);
   command.id(++last_id_);
   return ask(commands_, command, timeout, cancelled);
 }
 
-Answer Client::upload(const control::Mission& mission, std::chrono::milliseconds timeout,
+Result Client::upload(const control::Mission& mission, std::chrono::milliseconds timeout,
                       const Cancelled& cancelled) {
   msg::Mission message = comms::to_message(mission);
   message.client(client_id_);
@@ -350,7 +351,7 @@ Answer Client::upload(const control::Mission& mission, std::chrono::milliseconds
   return ask(missions_, message, timeout, cancelled);
 }
 
-Answer Client::mission_command(std::uint8_t kind, std::uint64_t mission_id, std::chrono::milliseconds timeout,
+Result Client::mission_command(std::uint8_t kind, std::uint64_t mission_id, std::chrono::milliseconds timeout,
                                const Cancelled& cancelled) {
   msg::Command request;
   request.kind(kind);
@@ -358,7 +359,7 @@ Answer Client::mission_command(std::uint8_t kind, std::uint64_t mission_id, std:
   return command(request, timeout, cancelled);
 }
 
-Answer Client::upload(const control::Trajectory& trajectory, std::chrono::milliseconds timeout,
+Result Client::upload(const control::Trajectory& trajectory, std::chrono::milliseconds timeout,
                       const Cancelled& cancelled) {
   msg::Trajectory message = comms::to_message(trajectory);
   message.client(client_id_);

@@ -16,9 +16,9 @@
 #include "swiftlet/control/types/mission.hpp"
 #include "swiftlet/control/types/polynomial.hpp"
 #include "swiftlet/control/types/request.hpp"
-#include "swiftlet/ground/client/answer.hpp"
-#include "swiftlet/ground/client/signs_of_life.hpp"
-#include "swiftlet/ground/client/time_grants.hpp"
+#include "swiftlet/ground/client/ground_heartbeat.hpp"
+#include "swiftlet/ground/client/result.hpp"
+#include "swiftlet/ground/client/simulation_clock.hpp"
 #include "swiftlet/recording/flight_record.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
@@ -81,12 +81,12 @@ class Client {
   void hear_controllers();
 
   // For a plant in lockstep that was started paused: from the first call on, this client grants it time.
-  TimeGrants& grants();
+  SimulationClockPublisher& simulation_clock();
 
   // From now on the flight depends on this client: if it falls silent, the controller does what its settings
   // say. Until leave() or the client's end. One thread calls these and grants().
-  void stay();
-  void leave();
+  void enable_link_loss_failsafe();
+  void disable_link_loss_failsafe();
 
   // Waits until `done` holds of the view; false if it does not within the time-out. `done` must not call this
   // client.
@@ -95,16 +95,16 @@ class Client {
   // Waits until it is answered, the time is over, or `cancelled` says so. Delivery is the network's task: it
   // is sent again where another controller may have to answer, and after 2 s without an answer.
   using Cancelled = std::function<bool()>;
-  Answer command(msg::Command command, std::chrono::milliseconds timeout, const Cancelled& cancelled = {});
-  Answer upload(const control::Mission& mission, std::chrono::milliseconds timeout,
+  Result command(msg::Command command, std::chrono::milliseconds timeout, const Cancelled& cancelled = {});
+  Result upload(const control::Mission& mission, std::chrono::milliseconds timeout,
                 const Cancelled& cancelled = {});
-  Answer upload(const control::Trajectory& trajectory, std::chrono::milliseconds timeout,
+  Result upload(const control::Trajectory& trajectory, std::chrono::milliseconds timeout,
                 const Cancelled& cancelled = {});
   // One of a stream, for which there is no answer: stamp and number are filled in. False if nobody is there
   // to take it.
   bool send(control::Setpoint setpoint);
   // One of Command_Constants::MISSION_*, of the mission of this id; 0: of whichever is there.
-  Answer mission_command(std::uint8_t kind, std::uint64_t mission_id, std::chrono::milliseconds timeout,
+  Result mission_command(std::uint8_t kind, std::uint64_t mission_id, std::chrono::milliseconds timeout,
                          const Cancelled& cancelled = {});
   // Of the mission uploaded last: MissionStatus::mission_id.
   std::uint64_t mission_id() const { return mission_id_; }
@@ -129,7 +129,7 @@ class Client {
   void note_heard(bool HeardSamples::*kind);
   void grant_after(std::int64_t stamp_ns);
   template <class T>
-  Answer ask(comms::Publisher<T>& publisher, const T& request, std::chrono::milliseconds timeout,
+  Result ask(comms::Publisher<T>& publisher, const T& request, std::chrono::milliseconds timeout,
              const Cancelled& cancelled);
 
   comms::NodeSettings settings_;
@@ -141,7 +141,7 @@ class Client {
   mutable std::mutex mutex_;  // guards view_, answers_, told_ and the pointers below; held for copies only
   mutable std::condition_variable changed_;
   View view_;
-  std::map<std::uint64_t, std::optional<Answer>> answers_;  // to the requests under way, by id
+  std::map<std::uint64_t, std::optional<Result>> answers_;  // to the requests under way, by id
   std::uint64_t takeovers_ = 0;                             // that control_status told of
   std::map<std::uint64_t, msg::RequestStatus> told_;        // of this client's requests, by id
 
@@ -153,8 +153,8 @@ class Client {
   std::mutex sending_;  // of all publishers
   std::uint64_t setpoint_count_ = 0;
   // Made, used and destroyed without mutex_: the middleware's threads hold its locks when they ask for that.
-  std::shared_ptr<TimeGrants> grants_;
-  std::shared_ptr<SignsOfLife> signs_;
+  std::shared_ptr<SimulationClockPublisher> grants_;
+  std::shared_ptr<GroundHeartbeatPublisher> signs_;
   std::vector<comms::Subscription> subscriptions_;  // last: their callbacks use all of the above
 };
 

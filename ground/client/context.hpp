@@ -20,7 +20,7 @@ class Context {
       : network_(network), participant_(network) {}
 
   // The names of the vehicles that publish in the domain now, sorted. Others are found within a second.
-  std::vector<std::string> vehicles_seen() const;
+  std::vector<std::string> discovered_vehicles() const;
 
   const comms::NodeSettings& network() const { return network_; }
   const comms::Participant& participant() const { return participant_; }

@@ -5,7 +5,7 @@
 
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/ground/client/connection_watch.hpp"
-#include "swiftlet/services/dds/lookout.hpp"
+#include "swiftlet/services/dds/periodic_task.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/messages/wire.hpp"
 
@@ -87,13 +87,13 @@ void Vehicle::on_connection(std::function<void(const ConnectionEvent&)> callback
                      tell = std::move(callback)] {
     if (const auto event = watch->look(client->view(), Clock::now())) tell(*event);
   };
-  lookout_ = std::make_unique<comms::Lookout>(kConnectionLookPeriod, look);
+  lookout_ = std::make_unique<comms::PeriodicTask>(kConnectionLookPeriod, look);
 }
 
-Answer Vehicle::connect(milliseconds timeout) const {
+Result Vehicle::connect(milliseconds timeout) const {
   if (client_->wait(timeout, [](const View& view) { return view.control.seen(); }))
-    return {Answer::Kind::kAccepted, ""};
-  return {Answer::Kind::kNoControl, client_->no_control()};
+    return {Result::Kind::kAccepted, ""};
+  return {Result::Kind::kNoControl, client_->no_control()};
 }
 
 VehicleState Vehicle::state() const { return state_of(client_->view()); }
@@ -102,22 +102,22 @@ bool Vehicle::wait_until(const std::function<bool(const VehicleState&)>& holds, 
   return client_->wait(timeout, [&holds](const View& view) { return holds(state_of(view)); });
 }
 
-Manoeuvre Vehicle::request(const control::Request& request, milliseconds timeout) {
+ActionHandle Vehicle::request(const control::Request& request, milliseconds timeout) {
   return {client_, client_->command(comms::to_message(request), timeout)};
 }
 
-Manoeuvre Vehicle::arm(milliseconds timeout) { return request(of_kind(RequestKind::kArm), timeout); }
+ActionHandle Vehicle::arm(milliseconds timeout) { return request(of_kind(RequestKind::kArm), timeout); }
 
-Manoeuvre Vehicle::disarm(milliseconds timeout) { return request(of_kind(RequestKind::kDisarm), timeout); }
+ActionHandle Vehicle::disarm(milliseconds timeout) { return request(of_kind(RequestKind::kDisarm), timeout); }
 
-Manoeuvre Vehicle::take_off(double height_m, double speed_m_s, milliseconds timeout) {
+ActionHandle Vehicle::take_off(double height_m, double speed_m_s, milliseconds timeout) {
   control::Request takeoff = of_kind(RequestKind::kTakeoff);
   takeoff.position_ned.z() = -height_m;
   takeoff.speed = speed_m_s;
   return request(takeoff, timeout);
 }
 
-Manoeuvre Vehicle::go_to(const Place& place, milliseconds timeout) {
+ActionHandle Vehicle::go_to(const Target& place, milliseconds timeout) {
   control::Request go_to = of_kind(RequestKind::kGoTo);
   go_to.position_ned = place.position_ned_m;
   go_to.yaw_free = !place.yaw_rad;
@@ -126,59 +126,59 @@ Manoeuvre Vehicle::go_to(const Place& place, milliseconds timeout) {
   return request(go_to, timeout);
 }
 
-Manoeuvre Vehicle::hold(milliseconds timeout) { return request(of_kind(RequestKind::kHold), timeout); }
+ActionHandle Vehicle::hold(milliseconds timeout) { return request(of_kind(RequestKind::kHold), timeout); }
 
-Manoeuvre Vehicle::land(double speed_m_s, milliseconds timeout) {
+ActionHandle Vehicle::land(double speed_m_s, milliseconds timeout) {
   control::Request land = of_kind(RequestKind::kLand);
   land.speed = speed_m_s;
   return request(land, timeout);
 }
 
-Manoeuvre Vehicle::stop(milliseconds timeout) { return request(of_kind(RequestKind::kStop), timeout); }
+ActionHandle Vehicle::stop(milliseconds timeout) { return request(of_kind(RequestKind::kStop), timeout); }
 
-Manoeuvre Vehicle::upload(const control::Mission& mission, milliseconds timeout) {
+ActionHandle Vehicle::upload(const control::Mission& mission, milliseconds timeout) {
   return {client_, client_->upload(mission, timeout)};
 }
 
 std::uint64_t Vehicle::uploaded_id() const { return client_->mission_id(); }
 
-Manoeuvre Vehicle::follow(const control::Mission& mission, milliseconds timeout) {
-  Answer uploaded = client_->upload(mission, timeout);
+ActionHandle Vehicle::follow(const control::Mission& mission, milliseconds timeout) {
+  Result uploaded = client_->upload(mission, timeout);
   if (!uploaded.accepted()) return {client_, std::move(uploaded)};
   return start_mission(client_->mission_id(), timeout);
 }
 
-Manoeuvre Vehicle::request_of_mission(std::uint8_t kind, std::uint64_t id, milliseconds timeout) {
+ActionHandle Vehicle::request_of_mission(std::uint8_t kind, std::uint64_t id, milliseconds timeout) {
   return {client_, client_->mission_command(kind, id, timeout)};
 }
 
-Manoeuvre Vehicle::start_mission(std::uint64_t id, milliseconds timeout) {
+ActionHandle Vehicle::start_mission(std::uint64_t id, milliseconds timeout) {
   return request_of_mission(msg::Command_Constants::MISSION_START, id, timeout);
 }
 
-Manoeuvre Vehicle::pause_mission(std::uint64_t id, milliseconds timeout) {
+ActionHandle Vehicle::pause_mission(std::uint64_t id, milliseconds timeout) {
   return request_of_mission(msg::Command_Constants::MISSION_PAUSE, id, timeout);
 }
 
-Manoeuvre Vehicle::resume_mission(std::uint64_t id, milliseconds timeout) {
+ActionHandle Vehicle::resume_mission(std::uint64_t id, milliseconds timeout) {
   return request_of_mission(msg::Command_Constants::MISSION_RESUME, id, timeout);
 }
 
-Manoeuvre Vehicle::skip_mission_item(std::uint64_t id, milliseconds timeout) {
+ActionHandle Vehicle::skip_mission_item(std::uint64_t id, milliseconds timeout) {
   return request_of_mission(msg::Command_Constants::MISSION_SKIP, id, timeout);
 }
 
-Manoeuvre Vehicle::clear_mission(std::uint64_t id, milliseconds timeout) {
+ActionHandle Vehicle::clear_mission(std::uint64_t id, milliseconds timeout) {
   return request_of_mission(msg::Command_Constants::MISSION_CLEAR, id, timeout);
 }
 
-Manoeuvre Vehicle::follow(const control::Trajectory& trajectory, milliseconds timeout) {
+ActionHandle Vehicle::follow(const control::Trajectory& trajectory, milliseconds timeout) {
   return {client_, client_->upload(trajectory, timeout)};
 }
 
-void Vehicle::stay() { client_->stay(); }
+void Vehicle::enable_link_loss_failsafe() { client_->enable_link_loss_failsafe(); }
 
-void Vehicle::leave() { client_->leave(); }
+void Vehicle::disable_link_loss_failsafe() { client_->disable_link_loss_failsafe(); }
 
 double Vehicle::clock_s() const {
   const View view = client_->view();

@@ -8,7 +8,7 @@
 //   vehicle.go_to({{1, 0, -1}}).wait();  // m, NED
 //   vehicle.land().wait();
 //
-// Each request waits for its answer and gives a Manoeuvre, whose wait() returns when it is done. Positions
+// Each request waits for its answer and gives a ActionHandle, whose wait() returns when it is done. Positions
 // are metres north, east and down of the origin (NED): 1 m up is z = -1. Several vehicles share one Context
 // (ground/context.hpp). A control process that is started again, or one that takes over, is gone on with.
 #pragma once
@@ -28,15 +28,15 @@
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/control/types/polynomial.hpp"
 #include "swiftlet/control/types/request.hpp"
-#include "swiftlet/ground/client/answer.hpp"
+#include "swiftlet/ground/client/action.hpp"
 #include "swiftlet/ground/client/connection.hpp"
 #include "swiftlet/ground/client/context.hpp"
-#include "swiftlet/ground/client/manoeuvre.hpp"
+#include "swiftlet/ground/client/result.hpp"
 #include "swiftlet/ground/client/vehicle_setpoints.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::comms {
-class Lookout;
+class PeriodicTask;
 }
 
 namespace swiftlet::ground {
@@ -98,7 +98,7 @@ class Vehicle {
   // Accepted once a controller of the vehicle is heard and answers requests; else the reason says what was
   // seen in the domain. Requests do without it: they look for the controller themselves, within their
   // time-out.
-  Answer connect(std::chrono::milliseconds timeout = kAnswerTimeout) const;
+  Result connect(std::chrono::milliseconds timeout = kAnswerTimeout) const;
 
   // The name on the network.
   const std::string& name() const;
@@ -106,7 +106,7 @@ class Vehicle {
   // The control process was heard within the last second.
   bool connected() const;
   // Tells from now on, and at once of one that is heard, when the control process is heard, falls silent, or is
-  // another one; which request it knows of is for its Manoeuvre to say. The callback runs in a thread of its own
+  // another one; which request it knows of is for its ActionHandle to say. The callback runs in a thread of its own
   // and may call all but this. A later call takes the place of an earlier one.
   void on_connection(std::function<void(const ConnectionEvent&)> callback);
 
@@ -116,40 +116,42 @@ class Vehicle {
                   std::chrono::milliseconds timeout) const;
 
   // Requests. `timeout` is that of the answer.
-  Manoeuvre arm(std::chrono::milliseconds timeout = kAnswerTimeout);     // done: the rotors turn
-  Manoeuvre disarm(std::chrono::milliseconds timeout = kAnswerTimeout);  // on the ground
+  ActionHandle arm(std::chrono::milliseconds timeout = kAnswerTimeout);     // done: the rotors turn
+  ActionHandle disarm(std::chrono::milliseconds timeout = kAnswerTimeout);  // on the ground
   // Straight up to height_m above the origin, and hold there. speed_m_s: peak.
-  Manoeuvre take_off(double height_m, double speed_m_s = 0.5,
-                     std::chrono::milliseconds timeout = kAnswerTimeout);
-  struct Place {
+  ActionHandle take_off(double height_m, double speed_m_s = 0.5,
+                        std::chrono::milliseconds timeout = kAnswerTimeout);
+  struct Target {
     Eigen::Vector3d position_ned_m;
     std::optional<double> yaw_rad{};  // from north to the east; kept if not given
     double speed_m_s = 0.5;           // peak
   };
   // Straight there, and hold.
-  Manoeuvre go_to(const Place& place, std::chrono::milliseconds timeout = kAnswerTimeout);
-  Manoeuvre hold(std::chrono::milliseconds timeout = kAnswerTimeout);  // done: it has come to rest
-  Manoeuvre land(double speed_m_s = 0.4, std::chrono::milliseconds timeout = kAnswerTimeout);
-  Manoeuvre stop(std::chrono::milliseconds timeout = kAnswerTimeout);  // rotors off at once, wherever it is
+  ActionHandle go_to(const Target& place, std::chrono::milliseconds timeout = kAnswerTimeout);
+  ActionHandle hold(std::chrono::milliseconds timeout = kAnswerTimeout);  // done: it has come to rest
+  ActionHandle land(double speed_m_s = 0.4, std::chrono::milliseconds timeout = kAnswerTimeout);
+  ActionHandle stop(
+      std::chrono::milliseconds timeout = kAnswerTimeout);  // rotors off at once, wherever it is
   // The vehicle keeps it, to be started: as mission uploaded_id().
-  Manoeuvre upload(const control::Mission& mission, std::chrono::milliseconds timeout = kAnswerTimeout);
+  ActionHandle upload(const control::Mission& mission, std::chrono::milliseconds timeout = kAnswerTimeout);
   std::uint64_t uploaded_id() const;
   // Uploads the mission and starts it.
-  Manoeuvre follow(const control::Mission& mission, std::chrono::milliseconds timeout = kAnswerTimeout);
+  ActionHandle follow(const control::Mission& mission, std::chrono::milliseconds timeout = kAnswerTimeout);
   // Of the mission that the vehicle has; refused if that is not of this id, 0: whichever it is. Starting,
   // resuming and skipping are done when it has been flown, pausing when the vehicle rests.
-  Manoeuvre start_mission(std::uint64_t id = 0, std::chrono::milliseconds timeout = kAnswerTimeout);
-  Manoeuvre pause_mission(std::uint64_t id = 0, std::chrono::milliseconds timeout = kAnswerTimeout);
-  Manoeuvre resume_mission(std::uint64_t id = 0, std::chrono::milliseconds timeout = kAnswerTimeout);
-  Manoeuvre skip_mission_item(std::uint64_t id = 0, std::chrono::milliseconds timeout = kAnswerTimeout);
-  Manoeuvre clear_mission(std::uint64_t id = 0, std::chrono::milliseconds timeout = kAnswerTimeout);
+  ActionHandle start_mission(std::uint64_t id = 0, std::chrono::milliseconds timeout = kAnswerTimeout);
+  ActionHandle pause_mission(std::uint64_t id = 0, std::chrono::milliseconds timeout = kAnswerTimeout);
+  ActionHandle resume_mission(std::uint64_t id = 0, std::chrono::milliseconds timeout = kAnswerTimeout);
+  ActionHandle skip_mission_item(std::uint64_t id = 0, std::chrono::milliseconds timeout = kAnswerTimeout);
+  ActionHandle clear_mission(std::uint64_t id = 0, std::chrono::milliseconds timeout = kAnswerTimeout);
   // From hold, a setpoint stream or another trajectory; it is joined smoothly from the present motion.
-  Manoeuvre follow(const control::Trajectory& trajectory, std::chrono::milliseconds timeout = kAnswerTimeout);
+  ActionHandle follow(const control::Trajectory& trajectory,
+                      std::chrono::milliseconds timeout = kAnswerTimeout);
 
   // From now on the flight depends on this program: if it falls silent, the controller does what its
   // settings say (failsafe.ground_link_action). Until leave() or the end of this object. By one thread.
-  void stay();
-  void leave();
+  void enable_link_loss_failsafe();
+  void disable_link_loss_failsafe();
 
   // The vehicle's own clock, s, which a stream goes by: a simulation may be slower than real time. It stands
   // still 20 ms after the vehicle fell silent; NaN before it is heard.
@@ -166,11 +168,11 @@ class Vehicle {
   bool send(const control::Setpoint& setpoint);
 
  private:
-  Manoeuvre request(const control::Request& request, std::chrono::milliseconds timeout);
-  Manoeuvre request_of_mission(std::uint8_t kind, std::uint64_t id, std::chrono::milliseconds timeout);
+  ActionHandle request(const control::Request& request, std::chrono::milliseconds timeout);
+  ActionHandle request_of_mission(std::uint8_t kind, std::uint64_t id, std::chrono::milliseconds timeout);
 
   std::shared_ptr<Client> client_;
-  std::unique_ptr<comms::Lookout> lookout_;  // last: it looks at the client
+  std::unique_ptr<comms::PeriodicTask> lookout_;  // last: it looks at the client
 };
 
 }  // namespace swiftlet::ground

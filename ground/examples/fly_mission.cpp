@@ -8,8 +8,8 @@
 
 using namespace swiftlet::ground;
 
-bool done(const char* what, const Manoeuvre& manoeuvre) {
-  const Ending ending = manoeuvre.wait();
+bool done(const char* what, const ActionHandle& manoeuvre) {
+  const ActionResult ending = manoeuvre.wait();
   std::printf("%s: %s\n", what, ending.done() ? "done" : ending.reason.c_str());
   return ending.done();
 }

@@ -9,13 +9,13 @@
 
 namespace {
 
-using swiftlet::ground::Ending;
-using swiftlet::ground::Manoeuvre;
+using swiftlet::ground::ActionHandle;
+using swiftlet::ground::ActionResult;
 using swiftlet::ground::Vehicle;
 
 // Each request has been answered when it returns; here it is waited for its end too.
-bool completed(const char* what, const Manoeuvre& manoeuvre) {
-  const Ending ending = manoeuvre.wait();
+bool completed(const char* what, const ActionHandle& manoeuvre) {
+  const ActionResult ending = manoeuvre.wait();
   if (ending.done()) {
     std::printf("%s: done\n", what);
   } else {
@@ -30,7 +30,7 @@ bool fly(Vehicle& vehicle) {
   // North, east and down of the origin: 1 m up is -1.
   const Eigen::Vector3d corners[] = {{1, 0, -1}, {1, 1, -1}, {0, 1, -1}, {0, 0, -1}};
   for (const Eigen::Vector3d& corner : corners) {
-    Vehicle::Place place;
+    Vehicle::Target place;
     place.position_ned_m = corner;
     place.speed_m_s = 0.8;
     if (!completed("go to", vehicle.go_to(place))) return false;
@@ -44,7 +44,7 @@ bool fly(Vehicle& vehicle) {
 
 int main(int argc, char** argv) {
   Vehicle vehicle(swiftlet::examples::network(argc, argv));
-  const swiftlet::ground::Answer there = vehicle.connect();
+  const swiftlet::ground::Result there = vehicle.connect();
   if (!there.accepted()) {
     std::fprintf(stderr, "%s\n", there.reason.c_str());
     return 1;

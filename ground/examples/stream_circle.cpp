@@ -79,7 +79,7 @@ bool fly_circle(Vehicle& vehicle) {
 
 int main(int argc, char** argv) {
   Vehicle vehicle(swiftlet::examples::network(argc, argv));
-  const swiftlet::ground::Answer there = vehicle.connect();
+  const swiftlet::ground::Result there = vehicle.connect();
   if (!there.accepted()) {
     std::fprintf(stderr, "%s\n", there.reason.c_str());
     return 1;

@@ -114,18 +114,18 @@ Flight::Flight(Client& client, const FlightRecord& record, const MissionFile& mi
 void Flight::run() {
   wait_until_ready();
   // In lockstep time stands still without this process, and the plant ends the run.
-  if (!lockstep_) client_.stay();
+  if (!lockstep_) client_.enable_link_loss_failsafe();
   arm();
   if (watch_.together != nullptr) wait_for_the_others();
   start_mission();
-  if (lockstep_) client_.grants().without_end();
+  if (lockstep_) client_.simulation_clock().without_end();
   follow();
-  client_.leave();
+  client_.disable_link_loss_failsafe();
   wait_for_last_figures();
 }
 
 void Flight::demand_alive() const {
-  if (const auto casualty = watch_.casualty()) throw FlightFailure(*casualty);
+  if (const auto exited_process = watch_.exited_process()) throw FlightFailure(*exited_process);
 }
 
 void Flight::demand_no_interrupt() const {
@@ -165,14 +165,14 @@ void Flight::wait_until(const std::function<bool(const View&)>& holds, const std
 // Before time passes. A peer may be known that does not know yet who is to hear its samples, which it sends once:
 // only the first come again and again while time stands still.
 void Flight::wait_until_samples_come() {
-  client_.grants().up_to(0);
+  client_.simulation_clock().up_to(0);
   wait_until([](const View& view) { return view.samples.all(); },
              "the first samples of plant, mocap and control have not come");
 }
 
 // Grants the time up to there, and waits until it has passed and all samples are answered.
 void Flight::wait_until_paused_at(std::int64_t stamp_ns) {
-  client_.grants().up_to(stamp_ns);
+  client_.simulation_clock().up_to(stamp_ns);
   paused_at_ns_ = stamp_ns;
   const auto paused = [stamp_ns](const View& view) {
     return view.vehicle.message.paused() && view.vehicle.message.stamp_ns() >= stamp_ns;
@@ -185,14 +185,14 @@ void Flight::arm() {
   command.kind(msg::Command_Constants::ARM);
   const auto deadline = Clock::now() + kArmTimeout;
   while (true) {
-    const Answer answer = client_.command(command, kRequestTimeout,
-                                          [this] { return watch_.casualty() || watch_.interrupts() > 0; });
+    const Result answer = client_.command(
+        command, kRequestTimeout, [this] { return watch_.exited_process() || watch_.interrupts() > 0; });
     demand_alive();
     demand_no_interrupt();
     if (answer.accepted()) return;
     const bool late = lockstep_ ? paused_at_ns_ + FlightSchedule::kRetryNs > FlightSchedule::kLastArmingNs
                                 : Clock::now() > deadline;
-    if (answer.kind != Answer::Kind::kRefused || late) throw FlightFailure("arming: " + answer.reason);
+    if (answer.kind != Result::Kind::kRefused || late) throw FlightFailure("arming: " + answer.reason);
     progress_.update(kBeforeFlight, "arming: " + answer.reason);
     if (lockstep_) {
       wait_until_paused_at(paused_at_ns_ + FlightSchedule::kRetryNs);
@@ -208,7 +208,7 @@ void Flight::wait_for_the_others() {
     demand_alive();
     const auto failure = watch_.together->failure();
     if (failure || watch_.interrupts() > 0) {
-      if (lockstep_) client_.grants().without_end();  // to disarm takes time
+      if (lockstep_) client_.simulation_clock().without_end();  // to disarm takes time
       bring_down(failure.value_or("interrupted"));
     }
     progress_.update(kBeforeFlight, "armed, waiting for the others");
@@ -216,8 +216,8 @@ void Flight::wait_for_the_others() {
 }
 
 void Flight::start_mission() {
-  const auto cancelled = [this] { return watch_.casualty() || watch_.interrupts() > 0; };
-  Answer answer = client_.upload(mission_.mission, kRequestTimeout, cancelled);
+  const auto cancelled = [this] { return watch_.exited_process() || watch_.interrupts() > 0; };
+  Result answer = client_.upload(mission_.mission, kRequestTimeout, cancelled);
   if (answer.accepted()) {
     answer = client_.mission_command(msg::Command_Constants::MISSION_START, client_.mission_id(),
                                      kRequestTimeout, cancelled);
@@ -295,8 +295,8 @@ void Flight::bring_down(const std::string& reason) {
   Silence silence;
   bool descending = false;
   while (!rotors_off(mode_of(client_.view()))) {
-    if (const auto casualty = watch_.casualty())
-      throw FlightFailure(reason + "; while landing, " + *casualty);
+    if (const auto exited_process = watch_.exited_process())
+      throw FlightFailure(reason + "; while landing, " + *exited_process);
     if (watch_.interrupts() > std::max(1, interrupts_before))
       throw FlightFailure(reason + "; ended in flight");
     if (silence.lasts(client_.view().truth.count))

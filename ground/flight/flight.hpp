@@ -7,7 +7,7 @@
 #include <string>
 
 #include "swiftlet/ground/client/client.hpp"
-#include "swiftlet/ground/flight/together.hpp"
+#include "swiftlet/ground/flight/start_barrier.hpp"
 #include "swiftlet/ground/terminal/progress.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
 #include "swiftlet/recording/flight_record.hpp"
@@ -24,9 +24,9 @@ class FlightFailure : public std::runtime_error {
 class Flight {
  public:
   struct Watch {
-    std::function<std::optional<std::string>()> casualty;  // a process that died, as a sentence
-    std::function<int()> interrupts;                       // how often the user asked to end
-    Together* together = nullptr;                          // with others; null: alone
+    std::function<std::optional<std::string>()> exited_process;  // a process that died, as a sentence
+    std::function<int()> interrupts;                             // how often the user asked to end
+    StartBarrier* together = nullptr;                            // with others; null: alone
   };
 
   // In lockstep the plant is one that was started paused.
@@ -35,7 +35,7 @@ class Flight {
 
   // Until vehicle, pose and control are there, the mission is flown, and the rotors are off. Throws
   // FlightFailure; the vehicle has then been landed where that was possible. The first interrupt lands it,
-  // the second gives up at once. Together with others the mission begins when all are armed, and a failure of
+  // the second gives up at once. StartBarrier with others the mission begins when all are armed, and a failure of
   // another one lands this one.
   void run();
 

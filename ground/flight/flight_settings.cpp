@@ -15,10 +15,10 @@ void keep(const fs::path& file, const fs::path& copy) {
 
 }  // namespace
 
-void keep_settings(const FlightPlan& plan) {
+void keep_settings(const LaunchConfiguration& plan) {
   // Under its own ending: it may be of another format.
   keep(plan.mission_file, plan.folder / ("mission" + plan.mission_file.extension().string()));
-  if (plan.parties == Parties::kAttached) return;
+  if (plan.launch_mode == LaunchMode::kAttached) return;
   keep(plan.control_file, plan.folder / "control.yaml");
   keep(plan.vehicle_file, plan.folder / "vehicle.yaml");
   keep(plan.simulation_file, plan.folder / "simulation.yaml");

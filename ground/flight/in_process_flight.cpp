@@ -2,17 +2,17 @@
 
 #include <chrono>
 
-#include "swiftlet/ground/flight/flight_conclusion.hpp"
+#include "swiftlet/ground/flight/flight_outcome.hpp"
 #include "swiftlet/recording/flight_window.hpp"
 #include "swiftlet/simulation/simulated_flight.hpp"
 
 namespace swiftlet::ground {
 
-ClosedLoop closed_loop(const FlightPlan& plan, const World& world, std::uint64_t seed) {
+ClosedLoop closed_loop(const LaunchConfiguration& plan, const World& world, std::uint64_t seed) {
   return {world.vehicle, plan.vehicle, world.simulation, plan.control, seed};
 }
 
-InProcessFlight fly_in_process(ClosedLoop& loop, const FlightPlan& plan, std::uint64_t seed,
+InProcessFlight fly_in_process(ClosedLoop& loop, const LaunchConfiguration& plan, std::uint64_t seed,
                                FlightRecord& record, runtime::FlightTrace* trace,
                                const std::function<bool()>& cancelled) {
   control::Mission mission = plan.mission.mission;
@@ -33,7 +33,7 @@ InProcessFlight fly_in_process(ClosedLoop& loop, const FlightPlan& plan, std::ui
     done.window = *window;
     report.duration_s = mission_duration_s(record, mission.id, *window);
   }
-  judge(report, record, done.window);
+  evaluate(report, record, done.window);
   return done;
 }
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "swiftlet/ground/flight/flight_plan.hpp"
+#include "swiftlet/ground/flight/launch_configuration.hpp"
 #include "swiftlet/ground/report/flight_report.hpp"
 #include "swiftlet/recording/flight_record.hpp"
 #include "swiftlet/recording/flight_trace.hpp"
@@ -19,11 +19,11 @@ struct InProcessFlight {
 
 // What flies in `world`, under a controller that is designed on the plan's vehicle. Throws as ClosedLoop
 // does.
-ClosedLoop closed_loop(const FlightPlan& plan, const World& world, std::uint64_t seed);
+ClosedLoop closed_loop(const LaunchConfiguration& plan, const World& world, std::uint64_t seed);
 
 // The plan's mission by a fresh loop of this seed. The record is an empty one of plan.record_capacity();
 // trace may be null.
-InProcessFlight fly_in_process(ClosedLoop& loop, const FlightPlan& plan, std::uint64_t seed,
+InProcessFlight fly_in_process(ClosedLoop& loop, const LaunchConfiguration& plan, std::uint64_t seed,
                                FlightRecord& record, runtime::FlightTrace* trace,
                                const std::function<bool()>& cancelled);
 

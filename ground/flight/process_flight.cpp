@@ -6,7 +6,7 @@
 
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/ground/flight/flight.hpp"
-#include "swiftlet/ground/flight/flight_conclusion.hpp"
+#include "swiftlet/ground/flight/flight_outcome.hpp"
 #include "swiftlet/ground/flight/flight_settings.hpp"
 #include "swiftlet/recording/flight_window.hpp"
 
@@ -30,7 +30,7 @@ void take_figures(const View& view, FlightReport& report) {
 
 }  // namespace
 
-ProcessFlight::ProcessFlight(FlightPlan plan, comms::NodeSettings network)
+ProcessFlight::ProcessFlight(LaunchConfiguration plan, comms::NodeSettings network)
     : plan_(std::move(plan)),
       network_(std::move(network)),
       record_(plan_.record_capacity()),
@@ -42,23 +42,23 @@ ProcessFlight::ProcessFlight(FlightPlan plan, comms::NodeSettings network)
   processes_.emplace(processes(plan_, network_));
 }
 
-void ProcessFlight::fly(const Interrupts& interrupts, Together* together, Progress& progress) {
+void ProcessFlight::fly(const Interrupts& interrupts, StartBarrier* together, Progress& progress) {
   fly_mission(interrupts, together, progress);
   for (const std::string& complaint : processes_->stop()) {
     if (report_.reason.empty()) report_.reason = "after the flight, " + complaint;
   }
-  judge(report_, record_, window_);
-  keep_record(plan_.folder, record_, report_, window_, progress);
+  evaluate(report_, record_, window_);
+  write_record(plan_.folder, record_, report_, window_, progress);
 }
 
-void ProcessFlight::fly_mission(const Interrupts& interrupts, Together* together, Progress& progress) {
+void ProcessFlight::fly_mission(const Interrupts& interrupts, StartBarrier* together, Progress& progress) {
   comms::NodeSettings network = network_;
   network.deadlines = plan_.clock != runtime::Clock::kLockstep;
   Client client(network, &record_);
   const auto start = Clock::now();
   try {
-    const Flight::Watch watch{[this] { return processes_->casualty(); }, [&] { return interrupts.count(); },
-                              together};
+    const Flight::Watch watch{[this] { return processes_->exited_process(); },
+                              [&] { return interrupts.count(); }, together};
     Flight(client, record_, plan_.mission, plan_.planned_duration_s, plan_.clock, watch, progress).run();
   } catch (const FlightFailure& failure) {
     report_.reason = failure.what();

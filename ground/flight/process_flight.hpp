@@ -3,10 +3,10 @@
 
 #include <filesystem>
 
-#include "swiftlet/ground/flight/flight_plan.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
+#include "swiftlet/ground/flight/launch_configuration.hpp"
 #include "swiftlet/ground/flight/process_group.hpp"
-#include "swiftlet/ground/flight/together.hpp"
+#include "swiftlet/ground/flight/start_barrier.hpp"
 #include "swiftlet/ground/report/flight_report.hpp"
 #include "swiftlet/ground/terminal/progress.hpp"
 #include "swiftlet/recording/flight_record.hpp"
@@ -18,19 +18,19 @@ class ProcessFlight {
  public:
   // Makes the record's folder and starts the plan's processes, which end with the calling thread. Throws
   // InputError or std::runtime_error; nothing then runs.
-  ProcessFlight(FlightPlan plan, comms::NodeSettings network);
+  ProcessFlight(LaunchConfiguration plan, comms::NodeSettings network);
 
   // Flies the mission, ends the processes and keeps the record. together: those that fly at the same time, or
   // null. By any thread, once. Throws std::runtime_error for a record that cannot be written.
-  void fly(const Interrupts& interrupts, Together* together, Progress& progress);
+  void fly(const Interrupts& interrupts, StartBarrier* together, Progress& progress);
 
   const FlightReport& report() const { return report_; }
   const std::string& vehicle_name() const { return network_.vehicle; }
 
  private:
-  void fly_mission(const Interrupts& interrupts, Together* together, Progress& progress);
+  void fly_mission(const Interrupts& interrupts, StartBarrier* together, Progress& progress);
 
-  FlightPlan plan_;
+  LaunchConfiguration plan_;
   comms::NodeSettings network_;
   FlightRecord record_;
   FlightReport report_;

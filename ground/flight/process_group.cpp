@@ -16,7 +16,7 @@ ProcessGroup::ProcessGroup(const std::vector<ProcessSettings>& processes) {
 
 ProcessGroup::~ProcessGroup() { stop(); }
 
-std::optional<std::string> ProcessGroup::casualty() {
+std::optional<std::string> ProcessGroup::exited_process() {
   for (ChildProcess& child : children_) {
     const auto end = child.poll();
     if (!end) continue;

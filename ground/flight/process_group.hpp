@@ -20,7 +20,7 @@ class ProcessGroup {
   ProcessGroup& operator=(const ProcessGroup&) = delete;
 
   // The first that has ended, as a sentence: who, how, and what it said last.
-  std::optional<std::string> casualty();
+  std::optional<std::string> exited_process();
 
   // Ends all. Returns a sentence for each that did not end cleanly.
   std::vector<std::string> stop();

@@ -98,19 +98,19 @@ CaptionedFigure thrust_figure(const FlightIdentification& found) {
 
 CaptionedFigure horizon_figure(const FlightIdentification& found, const std::string& quantity) {
   FigureSeries by_commands{"by the commands alone", Mark::kLine, "#c0392b", {}};
-  FigureSeries idle{"nothing changes", Mark::kDashes, "#1f6fb4", {}};
+  FigureSeries persistence{"nothing changes", Mark::kDashes, "#1f6fb4", {}};
   Figure figure;
   for (const HorizonError& e : found.horizons) {
     if (e.quantity != quantity) continue;
     by_commands.points.push_back({e.horizon_s, e.by_commands});
-    idle.points.push_back({e.horizon_s, e.idle});
+    persistence.points.push_back({e.horizon_s, e.persistence});
     figure.y_label = "RMS error of " + quantity + " (" + e.unit + ")";
   }
   figure.title = figure.y_label + " over the time ahead";
   figure.x_label = "time ahead (s)";
   figure.zero_line = true;
   figure.height = 300;
-  figure.series = {by_commands, idle};
+  figure.series = {by_commands, persistence};
   return {"How far ahead the commands alone tell " + quantity, figure};
 }
 
@@ -119,8 +119,9 @@ std::string comparison_table(const FlightIdentification& found) {
   std::string out = fmt::format("  {:<30} {:>12}  {:<10} {:>12} {:>8}  {}\n", "beside the vehicle file",
                                 "by the log", "+- (95 %)", "file", "ratio", "unit");
   for (const FileComparison& row : found.comparisons) {
-    out += fmt::format("  {:<30} {:12.5g}  {:<10.2g} {:12.5g} {:8.3f}  {}\n", row.told.parameter.c_str(),
-                       row.told.value, row.told.half_width, row.file, row.ratio(), row.told.unit.c_str());
+    out += fmt::format("  {:<30} {:12.5g}  {:<10.2g} {:12.5g} {:8.3f}  {}\n",
+                       row.identified.parameter.c_str(), row.identified.value, row.identified.half_width,
+                       row.file, row.ratio(), row.identified.unit.c_str());
   }
   return out;
 }
@@ -131,7 +132,7 @@ std::string horizon_table(const FlightIdentification& found) {
                                 "ahead, s", "error", "unchanged", "unit");
   for (const HorizonError& e : found.horizons) {
     out += fmt::format("  {:<30} {:12.4g} {:12.4g} {:12.4g}  {}\n", e.quantity.c_str(), e.horizon_s,
-                       e.by_commands, e.idle, e.unit.c_str());
+                       e.by_commands, e.persistence, e.unit.c_str());
   }
   return out;
 }
@@ -142,11 +143,11 @@ std::string comparison_html(const FlightIdentification& found) {
       "<h2>Beside the vehicle file</h2>\n<table><tr><th>parameter</th><th>symbol</th><th>by the log</th>"
       "<th>&plusmn; (95 %)</th><th>file</th><th>ratio</th><th>unit</th></tr>\n";
   for (const FileComparison& row : found.comparisons) {
-    out +=
-        "<tr><td>" + html_escaped(row.told.parameter) + "</td><td>" + html_escaped(row.told.symbol) + "</td>";
-    for (const double value : {row.told.value, row.told.half_width, row.file, row.ratio()})
+    out += "<tr><td>" + html_escaped(row.identified.parameter) + "</td><td>" +
+           html_escaped(row.identified.symbol) + "</td>";
+    for (const double value : {row.identified.value, row.identified.half_width, row.file, row.ratio()})
       out += fmt::format("<td class=\"n\">{:.4g}</td>", value);
-    out += "<td>" + html_unit(row.told.unit) + "</td></tr>\n";
+    out += "<td>" + html_unit(row.identified.unit) + "</td></tr>\n";
   }
   return out + "</table>\n";
 }
@@ -226,12 +227,12 @@ std::string flight_identification_json(const FlightIdentificationReport& report)
                       {"unit", e.unit}});
     Json comparisons = Json::array();
     for (const FileComparison& row : found.comparisons) {
-      comparisons.push_back({{"parameter", row.told.parameter},
-                             {"value", row.told.value},
-                             {"interval_95", {row.told.low(), row.told.high()}},
+      comparisons.push_back({{"parameter", row.identified.parameter},
+                             {"value", row.identified.value},
+                             {"interval_95", {row.identified.low(), row.identified.high()}},
                              {"file", row.file},
                              {"ratio", row.ratio()},
-                             {"unit", row.told.unit}});
+                             {"unit", row.identified.unit}});
     }
     Json horizons = Json::array();
     for (const HorizonError& e : found.horizons) {
@@ -239,7 +240,7 @@ std::string flight_identification_json(const FlightIdentificationReport& report)
                           {"unit", e.unit},
                           {"horizon_s", e.horizon_s},
                           {"by_commands", e.by_commands},
-                          {"idle", e.idle}});
+                          {"persistence", e.persistence}});
     }
     out["lags"] = lags;
     out["beside_file"] = comparisons;

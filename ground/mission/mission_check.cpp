@@ -24,13 +24,13 @@ const WorstDemand* find(const ItemCheck& item, Demand demand) {
 }
 
 // Of its own items' time into that of the mission, which holds and waits as well.
-std::vector<WorstDemand> demands_on(const std::vector<RehearsedLeg>& legs, const plant::Vehicle& vehicle,
+std::vector<WorstDemand> demands_on(const std::vector<DryRunLeg>& legs, const plant::Vehicle& vehicle,
                                     const control::Limits& limits, double supply_voltage_v) {
   if (legs.empty()) return {};
   std::vector<control::PolynomialSegment> segments;
   std::vector<double> begins_s;
   double at_s = 0.0;
-  for (const RehearsedLeg& leg : legs) {
+  for (const DryRunLeg& leg : legs) {
     segments.push_back(leg.segment);
     begins_s.push_back(at_s);
     at_s += leg.segment.duration_s;
@@ -134,21 +134,22 @@ bool MissionCheck::feasible() const {
          });
 }
 
-MissionCheck check_mission(const MissionFile& file, const Rehearsal& rehearsal, const plant::Vehicle& vehicle,
-                           const control::ControlSettings& settings, double supply_voltage_v) {
+MissionCheck check_mission(const MissionFile& file, const MissionDryRun& dry_run,
+                           const plant::Vehicle& vehicle, const control::ControlSettings& settings,
+                           double supply_voltage_v) {
   const control::Limits limits = control::tightened(settings.limits, file.mission.bounds);
   MissionCheck check;
-  check.reason = rehearsal.completed ? "" : rehearsal.reason;
-  check.duration_s = rehearsal.duration_s;
+  check.reason = dry_run.completed ? "" : dry_run.reason;
+  check.duration_s = dry_run.duration_s;
   check.supply_voltage_v = supply_voltage_v;
-  for (std::size_t i = 0; i < rehearsal.item_starts_s.size(); ++i) {
-    const bool last = i + 1 == rehearsal.item_starts_s.size();
-    const double end_s = last ? rehearsal.duration_s : rehearsal.item_starts_s[i + 1];
-    std::vector<RehearsedLeg> legs;
-    std::copy_if(rehearsal.legs.begin(), rehearsal.legs.end(), std::back_inserter(legs),
-                 [i](const RehearsedLeg& leg) { return leg.item == i; });
+  for (std::size_t i = 0; i < dry_run.item_starts_s.size(); ++i) {
+    const bool last = i + 1 == dry_run.item_starts_s.size();
+    const double end_s = last ? dry_run.duration_s : dry_run.item_starts_s[i + 1];
+    std::vector<DryRunLeg> legs;
+    std::copy_if(dry_run.legs.begin(), dry_run.legs.end(), std::back_inserter(legs),
+                 [i](const DryRunLeg& leg) { return leg.item == i; });
     check.items.push_back({file.mission.items[i].kind, i < file.lines.size() ? file.lines[i] : 0,
-                           rehearsal.item_starts_s[i], end_s - rehearsal.item_starts_s[i],
+                           dry_run.item_starts_s[i], end_s - dry_run.item_starts_s[i],
                            demands_on(legs, vehicle, limits, supply_voltage_v)});
   }
   return check;

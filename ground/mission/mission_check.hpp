@@ -6,7 +6,7 @@
 
 #include "swiftlet/control/planning/feasibility.hpp"
 #include "swiftlet/control/types/settings.hpp"
-#include "swiftlet/ground/mission/rehearsal.hpp"
+#include "swiftlet/ground/mission/dry_run.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
@@ -32,8 +32,9 @@ struct MissionCheck {
 
 // At the voltage at which a flight is ended for a low battery, or another one above 0. Limits and fence:
 // the settings', as the mission tightens them.
-MissionCheck check_mission(const MissionFile& file, const Rehearsal& rehearsal, const plant::Vehicle& vehicle,
-                           const control::ControlSettings& settings, double supply_voltage_v);
+MissionCheck check_mission(const MissionFile& file, const MissionDryRun& dry_run,
+                           const plant::Vehicle& vehicle, const control::ControlSettings& settings,
+                           double supply_voltage_v);
 
 // For reading, ending in a newline; as JSON without one:
 //   mission, vehicle, control, feasible, reason, duration_s, supply_voltage_v

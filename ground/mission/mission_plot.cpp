@@ -123,10 +123,10 @@ std::string row_of(double time_s, const control::Reference& at) {
                      at.acceleration_ned.norm(), tilt);
 }
 
-void write_csv(const fs::path& path, const Rehearsal& rehearsal) {
+void write_csv(const fs::path& path, const MissionDryRun& dry_run) {
   std::ofstream csv(path);
   csv << "t,x,y,z,speed,acceleration,tilt\n";
-  for (const RehearsedLeg& leg : rehearsal.legs) {
+  for (const DryRunLeg& leg : dry_run.legs) {
     const double rows = std::ceil(leg.segment.duration_s / kRow_s);
     for (double i = 0.0; i <= rows; i += 1.0) {
       const double t_s = leg.segment.duration_s * i / rows;
@@ -136,21 +136,21 @@ void write_csv(const fs::path& path, const Rehearsal& rehearsal) {
 }
 
 // Where each item ends, and which of them do: "2", or "2, 5" where several end at one place.
-struct Place {
+struct Stopover {
   Eigen::Vector3d position_ned;
   std::string items;
 };
 
-std::vector<Place> places_of(const Rehearsal& rehearsal) {
+std::vector<Stopover> places_of(const MissionDryRun& dry_run) {
   constexpr double kSamePlace_m = 0.02;
-  std::vector<Place> places;
-  for (std::size_t i = 0; i < rehearsal.legs.size(); ++i) {
-    const RehearsedLeg& leg = rehearsal.legs[i];
-    if (i + 1 < rehearsal.legs.size() && rehearsal.legs[i + 1].item == leg.item) continue;
+  std::vector<Stopover> places;
+  for (std::size_t i = 0; i < dry_run.legs.size(); ++i) {
+    const DryRunLeg& leg = dry_run.legs[i];
+    if (i + 1 < dry_run.legs.size() && dry_run.legs[i + 1].item == leg.item) continue;
     const Eigen::Vector3d end = control::evaluate(leg.segment, leg.segment.duration_s).position_ned;
     const std::string number = std::to_string(leg.item + 1);
-    Place* same = nullptr;
-    for (Place& place : places) {
+    Stopover* same = nullptr;
+    for (Stopover& place : places) {
       if ((place.position_ned - end).head<2>().norm() < kSamePlace_m) same = &place;
     }
     if (same == nullptr) {
@@ -186,17 +186,17 @@ std::string fence_blocks(const control::Limits& limits) {
   return block("fence", ring) + block("fence_top", top) + block("fence_posts", posts);
 }
 
-void write_script(const fs::path& path, const MissionFile& file, const Rehearsal& rehearsal,
+void write_script(const fs::path& path, const MissionFile& file, const MissionDryRun& dry_run,
                   const control::Limits& limits) {
-  const std::vector<Place> places = places_of(rehearsal);
+  const std::vector<Stopover> places = places_of(dry_run);
   std::string place_rows;
-  for (const Place& place : places) {
+  for (const Stopover& place : places) {
     const Eigen::Vector3d& p = place.position_ned;
     place_rows += fmt::format("{:.4f},{:.4f},{:.4f},\"{}\"\n", p.x(), p.y(), -p.z(),
                               places.size() <= kMostNumbers ? place.items.c_str() : "");
   }
   std::string starts;
-  for (const double start_s : rehearsal.item_starts_s) starts += fmt::format("{:.4f}\n", start_s);
+  for (const double start_s : dry_run.item_starts_s) starts += fmt::format("{:.4f}\n", start_s);
   const auto range = [&](const char* name, int axis, double sign) {
     const double a = sign * limits.fence_min_ned[axis];
     const double b = sign * limits.fence_max_ned[axis];
@@ -205,11 +205,11 @@ void write_script(const fs::path& path, const MissionFile& file, const Rehearsal
                        std::max(a, b) + margin);
   };
   const std::string title = file.name + (file.description.empty() ? "" : " - " + file.description) +
-                            fmt::format(": {:.1f} s, ", rehearsal.duration_s) +
+                            fmt::format(": {:.1f} s, ", dry_run.duration_s) +
                             counted(file.mission.items.size(), "item");
   std::ofstream script(path);
   script << "headline = " << gnuplot_quoted(title) << "\n"
-         << fmt::format("t_end = {:.4f}\n", rehearsal.duration_s) << range("north", 0, 1.0)
+         << fmt::format("t_end = {:.4f}\n", dry_run.duration_s) << range("north", 0, 1.0)
          << range("east", 1, 1.0) << range("height", 2, -1.0)
          << fmt::format("fence_top = {:.4f}\nfence_bottom = {:.4f}\n", -limits.fence_min_ned.z(),
                         -limits.fence_max_ned.z())
@@ -220,12 +220,12 @@ void write_script(const fs::path& path, const MissionFile& file, const Rehearsal
 
 }  // namespace
 
-std::string draw_mission(const fs::path& png, const MissionFile& file, const Rehearsal& rehearsal,
+std::string draw_mission(const fs::path& png, const MissionFile& file, const MissionDryRun& dry_run,
                          const control::Limits& settings) {
   const control::Limits limits = control::tightened(settings, file.mission.bounds);
   const Workshop workshop;
-  write_csv(workshop.folder() / "mission.csv", rehearsal);
-  write_script(workshop.folder() / "mission.gp", file, rehearsal, limits);
+  write_csv(workshop.folder() / "mission.csv", dry_run);
+  write_script(workshop.folder() / "mission.gp", file, dry_run, limits);
   std::string fault = run_gnuplot(workshop.folder(), "mission");
   if (!fault.empty()) return fault;
   std::error_code error;

@@ -6,13 +6,13 @@
 #include <string>
 
 #include "swiftlet/control/types/settings.hpp"
-#include "swiftlet/ground/mission/rehearsal.hpp"
+#include "swiftlet/ground/mission/dry_run.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
 
 namespace swiftlet::ground {
 
 // limits: the settings'. Returns an empty text, or one sentence that says why there is no picture.
 std::string draw_mission(const std::filesystem::path& png, const MissionFile& file,
-                         const Rehearsal& rehearsal, const control::Limits& limits);
+                         const MissionDryRun& dry_run, const control::Limits& limits);
 
 }  // namespace swiftlet::ground

@@ -28,7 +28,7 @@ nlohmann::ordered_json to_json(const FlightReport& report) {
   json["start_m"] = {report.start_ned.x(), report.start_ned.y()};
   json["vehicle"] = report.vehicle;
   json["control"] = report.control;
-  if (!report.vary.empty()) json["vary"] = report.vary;
+  if (!report.dispersion.empty()) json["dispersion"] = report.dispersion;
   json["seed"] = report.seed;
   json["record_dir"] = report.record_dir;
   json["duration_s"] = report.duration_s;
@@ -84,8 +84,8 @@ std::string to_text(const FlightReport& report) {
                         report.sense_to_actuate.p50_us, report.sense_to_actuate.p99_us,
                         report.sense_to_actuate.max_us);
   }
-  if (!report.vary.empty())
-    text += fmt::format("  varied by         {}, seed {}\n", report.vary.c_str(),
+  if (!report.dispersion.empty())
+    text += fmt::format("  varied by         {}, seed {}\n", report.dispersion.c_str(),
                         static_cast<unsigned long long>(report.seed));
   if (!report.record_dir.empty()) text += "  record            " + report.record_dir + "\n";
   return text;

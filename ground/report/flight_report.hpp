@@ -28,7 +28,7 @@ struct FlightReport {
   Eigen::Vector2d start_ned = Eigen::Vector2d::Zero();  // m, where it stood; the mission lies as far off
   std::string vehicle;                                  // names or files, as flown
   std::string control;
-  std::string vary;  // empty: what flew is as the files say
+  std::string dispersion;  // empty: what flew is as the files say
   std::uint64_t seed = 0;
   std::string record_dir;
 

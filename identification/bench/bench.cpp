@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "swiftlet/identification/fitting/inertia_triangle_inequality.hpp"
 #include "swiftlet/identification/fitting/limits.hpp"
-#include "swiftlet/identification/fitting/possible_inertia.hpp"
 #include "swiftlet/plant/model/airframe.hpp"
 
 namespace swiftlet::identification {
@@ -46,7 +46,7 @@ double largest_radius(const plant::Vehicle& vehicle) {
 
 double relative_error(const std::optional<Experiment>& experiment) {
   if (!experiment) return 0.0;
-  const Estimate& estimate = experiment->estimates.front();
+  const ParameterEstimate& estimate = experiment->estimates.front();
   return estimate.standard_error / estimate.value;
 }
 
@@ -107,9 +107,9 @@ class Bench {
 
   // The estimates become the vehicle's, those but that have no place in its file.
   void adopt(const std::optional<Experiment>& experiment, const std::string& how) {
-    const std::vector<Estimate>& estimates = experiment->estimates;
+    const std::vector<ParameterEstimate>& estimates = experiment->estimates;
     for (std::size_t i = 0; i < estimates.size(); ++i) {
-      const Estimate& estimate = estimates[i];
+      const ParameterEstimate& estimate = estimates[i];
       parameter_of(out_.vehicle, estimate.parameter) = estimate.value;
       out_.sources[estimate.parameter] =
           "bench " + name_ + ", " + std::to_string(experiment->measured.size()) + " readings, " + how;
@@ -131,8 +131,8 @@ class Bench {
     ThrustTorque found = identify_thrust_torque(*data_.thrust_torque, data_.instruments);
     out_.thrust = std::move(found.thrust);
     out_.torque = std::move(found.torque);
-    std::optional<Estimate> thrust_factor;
-    std::optional<Estimate> torque_factor;
+    std::optional<ParameterEstimate> thrust_factor;
+    std::optional<ParameterEstimate> torque_factor;
     if (out_.thrust) {
       thrust_factor = out_.thrust->estimates.front();
       adopt(out_.thrust, "Eq. (25)");
@@ -158,9 +158,10 @@ class Bench {
     const double ratio_m = out_.vehicle.rotor.torque / out_.vehicle.rotor.thrust;
     if (ratio_m >= kLeastTorquePerThrust && ratio_m <= kMostTorquePerThrust) return;
     throw BadData(std::string(out_.thrust ? "thrust" : "torque") + ": makes torque over thrust " +
-                  shown(ratio_m) + " m with the " + (out_.thrust ? "torque" : "thrust") +
-                  " factor of the base vehicle, must be " + shown(kLeastTorquePerThrust) + " to " +
-                  shown(kMostTorquePerThrust) + " m; are the units right, and is the base vehicle alike?");
+                  format_number(ratio_m) + " m with the " + (out_.thrust ? "torque" : "thrust") +
+                  " factor of the base vehicle, must be " + format_number(kLeastTorquePerThrust) + " to " +
+                  format_number(kMostTorquePerThrust) +
+                  " m; are the units right, and is the base vehicle alike?");
   }
 
   void throttle_thrust() {
@@ -171,13 +172,14 @@ class Bench {
       adopt(out_.throttle_thrust, "Eq. (9), (22), (25) at once");
       return;
     }
-    const Estimate& direct = out_.thrust->estimates.front();
-    Estimate& chain = out_.throttle_thrust->estimates.front();
+    const ParameterEstimate& direct = out_.thrust->estimates.front();
+    ParameterEstimate& chain = out_.throttle_thrust->estimates.front();
     chain.parameter = "throttle_thrust.thrust_factor";  // to compare; the vehicle's is the direct one
     const double difference = chain.value / direct.value - 1.0;
     const std::string numbers =
-        "k_T is " + shown(chain.value) + " by thrust over throttle, through ESC and motor, and " +
-        shown(direct.value) + " N*s^2 by thrust over speed: " + shown(100.0 * difference) + " % off";
+        "k_T is " + format_number(chain.value) + " by thrust over throttle, through ESC and motor, and " +
+        format_number(direct.value) + " N*s^2 by thrust over speed: " + format_number(100.0 * difference) +
+        " % off";
     const bool agree = std::abs(difference) < kAgreement;
     (agree ? out_.throttle_thrust->findings : out_.throttle_thrust->warnings)
         .push_back(numbers + (agree ? ", so that the chain of Eq. (9), (22) and (25) closes"
@@ -217,7 +219,7 @@ class Bench {
     std::vector<std::pair<std::string, double>> with_mass;
     for (std::size_t axis = 0; axis < out_.inertia.size(); ++axis) {
       if (!out_.inertia[axis]) continue;
-      const Estimate& inertia = out_.inertia[axis]->estimates.front();
+      const ParameterEstimate& inertia = out_.inertia[axis]->estimates.front();
       if (!(inertia.standard_error > 0.0)) continue;
       with_mass.emplace_back(plant::kInertiaKeys[axis],
                              relative_error(out_.mass) * inertia.value / inertia.standard_error);
@@ -240,8 +242,8 @@ class Bench {
     const double most = motor.k2 * motor.k3 / out_.vehicle.rotor.torque;
     if (motor.armature_resistance_ohm <= most) return;
     out_.warnings.push_back("the armature resistance of the base vehicle, " +
-                            shown(motor.armature_resistance_ohm) +
-                            " ohm, is more than K2 K3 / k_Q = " + shown(most) +
+                            format_number(motor.armature_resistance_ohm) +
+                            " ohm, is more than K2 K3 / k_Q = " + format_number(most) +
                             " ohm leaves without negative friction, Eq. (21): it is set to that");
     motor.armature_resistance_ohm = most;
     out_.sources["motor.armature_resistance"] = "estimate: K2 K3 / k_Q, Eq. (21) without friction";
@@ -252,7 +254,8 @@ class Bench {
     for (std::size_t axis = 0; axis < variances.size(); ++axis) {
       if (out_.inertia[axis]) variances[axis] = out_.inertia[axis]->covariance(0, 0);
     }
-    if (const auto moved = keep_possible(out_.vehicle.inertia, variances)) out_.warnings.push_back(*moved);
+    if (const auto moved = enforce_triangle_inequality(out_.vehicle.inertia, variances))
+      out_.warnings.push_back(*moved);
   }
 
   static constexpr double kAgreement = 0.05;

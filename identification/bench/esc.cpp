@@ -48,8 +48,8 @@ void check(const EscData& data) {
   for (std::size_t i = 0; i < data.throttle.size(); ++i)
     ratios.push_back(data.motor_voltage_v[i] / data.supply_voltage_v[i]);
   if (const double ratio = median(ratios); !(ratio > 0.0 && ratio <= kMeterError)) {
-    throw BadData("motor_voltage: is in the middle " + shown(ratio) +
-                  " times the supply voltage, must be above 0 and at most " + shown(kMeterError) +
+    throw BadData("motor_voltage: is in the middle " + format_number(ratio) +
+                  " times the supply voltage, must be above 0 and at most " + format_number(kMeterError) +
                   ": an ESC cannot raise its supply; are the units of both right?");
   }
 }
@@ -104,9 +104,9 @@ Experiment identify_esc(const EscData& data, const Instruments& instruments) {
 
   const NaiveEsc naive = naive_esc(data, out.outliers);
   const double residual_sd_v = std::sqrt(rest / line.degrees_of_freedom);
-  out.findings.push_back("Eq. (9) leaves " + shown(residual_sd_v) +
-                         " V; the naive v_a = c v_s delta, with c = " + shown(naive.factor) + ", leaves " +
-                         shown(naive.residual_sd_v) +
+  out.findings.push_back("Eq. (9) leaves " + format_number(residual_sd_v) +
+                         " V; the naive v_a = c v_s delta, with c = " + format_number(naive.factor) +
+                         ", leaves " + format_number(naive.residual_sd_v) +
                          " V: " + (residual_sd_v < naive.residual_sd_v ? "Eq. (9)" : "the naive one") +
                          " fits better");
 
@@ -124,13 +124,13 @@ Experiment identify_esc(const EscData& data, const Instruments& instruments) {
   const double full_share =
       std::sqrt(std::max(line.parameters[0] + line.parameters[1] / (supply_v * supply_v), 0.0));
   if (full_share > kMostOfSupply) {
-    throw BadData("throttle: at full throttle the ESC would give " + shown(full_share) +
-                  " times its supply, must be at most " + shown(kMostOfSupply) +
+    throw BadData("throttle: at full throttle the ESC would give " + format_number(full_share) +
+                  " times its supply, must be at most " + format_number(kMostOfSupply) +
                   "; is the unit of throttle right?");
   }
   if (!(line.parameters[0] > 0.0)) {
-    throw BadData("motor_voltage: does not rise with v_s^2 delta: gain is " + shown(line.parameters[0]) +
-                  ", must be above 0");
+    throw BadData("motor_voltage: does not rise with v_s^2 delta: gain is " +
+                  format_number(line.parameters[0]) + ", must be above 0");
   }
   return out;
 }

@@ -35,7 +35,7 @@ Experiment identify(const PeriodLaw& law, const std::vector<double>& periods, co
     single.push_back((periods[i] * periods[i] - law.constant[i]) / law.slope[i]);
   const double start = median(single);
   if (!(start > 0.0)) {
-    throw BadData("period: leads to " + std::string(target.symbol) + " = " + shown(start) +
+    throw BadData("period: leads to " + std::string(target.symbol) + " = " + format_number(start) +
                   " kg*m^2, must be above 0: shorter than that of a point mass; are the units right?");
   }
   problem.start = Eigen::VectorXd::Constant(1, start);
@@ -54,7 +54,7 @@ Experiment identify(const PeriodLaw& law, const std::vector<double>& periods, co
   Experiment out =
       conclude(found, {{target.parameter, target.symbol, "kg*m^2"}}, periods, std::move(predicted), "s");
 
-  Estimate& inertia = out.estimates.front();
+  ParameterEstimate& inertia = out.estimates.front();
   inertia.standard_error = std::hypot(inertia.standard_error, inertia.value * target.mass_error);
   inertia.half_width = interval_factor(found.degrees_of_freedom) * inertia.standard_error;
   out.covariance(0, 0) = inertia.standard_error * inertia.standard_error;
@@ -97,8 +97,8 @@ Experiment identify_inertia(const SwingData& data, const InertiaTarget& target) 
   const double share = out.estimates.front().value / (target.mass_kg * shortest * shortest);
   if (share < kSwingShare) {
     out.warnings.push_back(
-        out.estimates.front().symbol + " is only " + shown(share) +
-        " of what the shortest arm adds, should be at least " + shown(kSwingShare) +
+        out.estimates.front().symbol + " is only " + format_number(share) +
+        " of what the shortest arm adds, should be at least " + format_number(kSwingShare) +
         ": an arm that is off by a little hides it; swing closer to the centre or use two strings");
   }
   return out;

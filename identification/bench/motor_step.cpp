@@ -82,7 +82,7 @@ Levels levels_of(const MotorStepData& data) {
   // Half way where the voltage jumps; at a tenth where only the speed tells.
   const double share = data.motor_voltage_v.empty() ? 0.1 : 0.5;
   if (!data.motor_voltage_v.empty() && !(high - low > kLeastStep * std::abs(high))) {
-    throw BadData("motor_voltage: begins at " + shown(low) + " and ends at " + shown(high) +
+    throw BadData("motor_voltage: begins at " + format_number(low) + " and ends at " + format_number(high) +
                   " V, must step up, with at least " + std::to_string(kLeastRestRows) +
                   " rows before the step");
   }
@@ -100,8 +100,9 @@ void check(const MotorStepData& data) {
   demand_rows(columns, kLeastRows);
   for (std::size_t i = 1; i < data.time_s.size(); ++i) {
     if (!(data.time_s[i] > data.time_s[i - 1]))
-      throw BadData(
-          "time: is " + shown(data.time_s[i]) + " s after " + shown(data.time_s[i - 1]) + " s, must rise", i);
+      throw BadData("time: is " + format_number(data.time_s[i]) + " s after " +
+                        format_number(data.time_s[i - 1]) + " s, must rise",
+                    i);
   }
   demand_variety(speed, 3);
   if (!data.motor_voltage_v.empty()) demand_variety(columns.back());
@@ -109,12 +110,13 @@ void check(const MotorStepData& data) {
 
 void check_step(const MotorStepData& data, const Levels& levels) {
   if (!(levels.final > levels.initial)) {
-    throw BadData("speed: goes from " + shown(levels.initial) + " to " + shown(levels.final) +
+    throw BadData("speed: goes from " + format_number(levels.initial) + " to " + format_number(levels.final) +
                   " rad/s, must step up");
   }
   if (levels.final < kLeastRotorSpeed || levels.final > kMostRotorSpeed) {
-    throw BadData("speed: ends at " + shown(levels.final) + " rad/s, must be " + shown(kLeastRotorSpeed) +
-                  " to " + shown(kMostRotorSpeed) + ": no rotor turns slower or faster; is the unit right?");
+    throw BadData("speed: ends at " + format_number(levels.final) + " rad/s, must be " +
+                  format_number(kLeastRotorSpeed) + " to " + format_number(kMostRotorSpeed) +
+                  ": no rotor turns slower or faster; is the unit right?");
   }
   if (levels.step_row < kLeastRestRows) {
     throw BadData("time: has " + std::to_string(levels.step_row) +
@@ -167,7 +169,7 @@ std::vector<double> curve_of(const MotorStepData& data, const Fit& fit, const An
 }
 
 // The estimate of a time that is factor / rate.
-Estimate time_from_rate(const Fit& fit, double factor, const char* parameter, const char* symbol) {
+ParameterEstimate time_from_rate(const Fit& fit, double factor, const char* parameter, const char* symbol) {
   const double rate = fit.parameters[kRate];
   const double error = factor * fit.standard_error(kRate) / (rate * rate);
   return {parameter, symbol, "s", factor / rate, error, interval_factor(fit.degrees_of_freedom) * error};
@@ -175,7 +177,7 @@ Estimate time_from_rate(const Fit& fit, double factor, const char* parameter, co
 
 // The experiment of one model: its time constant alone is of interest, the levels are the step's own.
 Experiment experiment_of(const MotorStepData& data, const Fit& fit, std::vector<double> curve,
-                         const Estimate& time) {
+                         const ParameterEstimate& time) {
   Experiment out = conclude(fit,
                             {{"step_time", "t_0", "s"},
                              {"rate", "1/tau", "1/s"},
@@ -199,7 +201,7 @@ double log_likelihood_gain(const Experiment& better, const Experiment& worse) {
 
 // 63.2 % of the way between the levels, where a parabola through the readings around it crosses. Levels and
 // step time are those of the fit that is nearer to the data, as an eye would draw them.
-Estimate read_off(const MotorStepData& data, const Fit& fit, const Experiment& model) {
+ParameterEstimate read_off(const MotorStepData& data, const Fit& fit, const Experiment& model) {
   const double initial = fit.parameters[kInitial];
   const double final_speed = fit.parameters[kFinal];
   const double level = initial + kRise * (final_speed - initial);
@@ -242,19 +244,19 @@ Estimate read_off(const MotorStepData& data, const Fit& fit, const Experiment& m
           interval_factor(static_cast<int>(count - 3)) * error};
 }
 
-void check_time(const Estimate& time) {
+void check_time(const ParameterEstimate& time) {
   if (time.value >= kLeastTimeConstant && time.value <= kMostTimeConstant) return;
-  throw BadData("time: leads to tau_m = " + shown(time.value) + " s, must be " + shown(kLeastTimeConstant) +
-                " to " + shown(kMostTimeConstant) +
+  throw BadData("time: leads to tau_m = " + format_number(time.value) + " s, must be " +
+                format_number(kLeastTimeConstant) + " to " + format_number(kMostTimeConstant) +
                 " s: no motor with its rotor is faster or slower; is the unit right?");
 }
 
 void warn_of_short_record(const MotorStepData& data, const Fit& fit, Experiment& experiment) {
   const double after = (data.time_s.back() - fit.parameters[kStepTime]) * fit.parameters[kRate];
   if (after >= kSettled) return;
-  experiment.warnings.push_back("the record ends " + shown(after) +
-                                " time constants after the step, should be at least " + shown(kSettled) +
-                                ": the final speed is extrapolated");
+  experiment.warnings.push_back("the record ends " + format_number(after) +
+                                " time constants after the step, should be at least " +
+                                format_number(kSettled) + ": the final speed is extrapolated");
 }
 
 }  // namespace
@@ -320,12 +322,12 @@ MotorStep identify_motor_step(const MotorStepData& data, const plant::Vehicle& v
     warn_of_short_record(shifted, experiment == &out.reduced ? reduced_fit : physical_fit, *experiment);
   if (better_fit.serial_correlation > 3.0 / std::sqrt(static_cast<double>(data.time_s.size()))) {
     better.warnings.push_back(
-        "neighbouring residuals are correlated by " + shown(better_fit.serial_correlation) +
+        "neighbouring residuals are correlated by " + format_number(better_fit.serial_correlation) +
         ": the model misses something, or the tachometer smooths; intervals are widened for it");
   }
   out.findings.push_back(
-      "the reduced model leaves " + shown(out.reduced.residual_sd) + " rad/s, the physical one " +
-      shown(out.physical.residual_sd) + " rad/s: " +
+      "the reduced model leaves " + format_number(out.reduced.residual_sd) + " rad/s, the physical one " +
+      format_number(out.physical.residual_sd) + " rad/s: " +
       (out.decided
            ? std::string(out.physical_fits_better ? "the physical" : "the reduced") + " model fits better"
            : "these data do not tell which is right"));

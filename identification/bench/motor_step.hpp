@@ -19,12 +19,12 @@ struct MotorStepData {
 };
 
 struct MotorStep {
-  Estimate reading;    // tau_m by the 63.2 % reading
-  Experiment reduced;  // tau_m by tau_m dOmega/dt = Omega_ss - Omega; measured and predicted are Omega
+  ParameterEstimate reading;  // tau_m by the 63.2 % reading
+  Experiment reduced;         // tau_m by tau_m dOmega/dt = Omega_ss - Omega; measured and predicted are Omega
   Experiment
       physical;  // tau_m by J_r dOmega/dt = k_Q (s - Omega)(Omega + s'): the 63.2 % rise of a step from rest to hover
-  Estimate rotor_inertia;    // J_r, by the physical model, for the k_Q given
-  double step_time_s = 0.0;  // by the model that fits better
+  ParameterEstimate rotor_inertia;  // J_r, by the physical model, for the k_Q given
+  double step_time_s = 0.0;         // by the model that fits better
   bool physical_fits_better = false;
   bool decided = false;  // one of them fits better by more than chance
   std::vector<std::string> findings;

@@ -13,8 +13,8 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kLeastThrustCoefficient = 1e-3;  // a tenth of what small propellers have
 constexpr double kMostThrustCoefficient = 0.1;    // above it blades stall
 
-Estimate scaled(const Estimate& factor, double coefficient_of_one, const char* parameter,
-                const char* symbol) {
+ParameterEstimate scaled(const ParameterEstimate& factor, double coefficient_of_one, const char* parameter,
+                         const char* symbol) {
   return {parameter,
           symbol,
           "1",
@@ -26,8 +26,8 @@ Estimate scaled(const Estimate& factor, double coefficient_of_one, const char* p
 void check_tips(const Propeller& propeller, double top_speed) {
   const double tip = top_speed * propeller.radius_m;
   if (tip < kSpeedOfSound) return;
-  throw BadData("speed: moves the blades' tips at " + shown(tip) + " m/s, must be below " +
-                shown(kSpeedOfSound) + ", the speed of sound; is the unit right, and the radius?");
+  throw BadData("speed: moves the blades' tips at " + format_number(tip) + " m/s, must be below " +
+                format_number(kSpeedOfSound) + ", the speed of sound; is the unit right, and the radius?");
 }
 
 // Momentum theory: the power to hold T is at least T sqrt(T / (2 rho A)).
@@ -38,8 +38,8 @@ double figure_of_merit(double thrust_factor, double torque_factor, const Propell
 
 }  // namespace
 
-PropellerCoefficients propeller_coefficients(const std::optional<Estimate>& thrust_factor,
-                                             const std::optional<Estimate>& torque_factor,
+PropellerCoefficients propeller_coefficients(const std::optional<ParameterEstimate>& thrust_factor,
+                                             const std::optional<ParameterEstimate>& torque_factor,
                                              const Propeller& propeller, double top_speed) {
   check_tips(propeller, top_speed);
   const plant::BladeCoefficients of_one =
@@ -49,8 +49,8 @@ PropellerCoefficients propeller_coefficients(const std::optional<Estimate>& thru
     out.thrust = scaled(*thrust_factor, of_one.thrust, "rotor.thrust_coefficient", "C_T");
     const double c_t = out.thrust->value;
     if (!(c_t >= kLeastThrustCoefficient && c_t <= kMostThrustCoefficient)) {
-      throw BadData("thrust: leads to C_T = " + shown(c_t) + " of Eq. (23), must be " +
-                    shown(kLeastThrustCoefficient) + " to " + shown(kMostThrustCoefficient) +
+      throw BadData("thrust: leads to C_T = " + format_number(c_t) + " of Eq. (23), must be " +
+                    format_number(kLeastThrustCoefficient) + " to " + format_number(kMostThrustCoefficient) +
                     "; are the units of speed, thrust and radius right?");
     }
   }
@@ -58,7 +58,7 @@ PropellerCoefficients propeller_coefficients(const std::optional<Estimate>& thru
   if (thrust_factor && torque_factor) {
     out.figure_of_merit = figure_of_merit(thrust_factor->value, torque_factor->value, propeller);
     if (*out.figure_of_merit > 1.0) {
-      throw BadData("thrust: leads to a figure of merit of " + shown(*out.figure_of_merit) +
+      throw BadData("thrust: leads to a figure of merit of " + format_number(*out.figure_of_merit) +
                     ", must be at most 1: no propeller gives more thrust than momentum theory; are the units "
                     "of speed, thrust "
                     "and torque right?");
@@ -67,22 +67,23 @@ PropellerCoefficients propeller_coefficients(const std::optional<Estimate>& thru
   return out;
 }
 
-void demand_possible_rotor(const std::optional<Estimate>& thrust_factor,
-                           const std::optional<Estimate>& torque_factor, const Propeller& largest) {
-  const std::string rotor =
-      "the largest propeller between the base vehicle's hubs, of radius " + shown(largest.radius_m) + " m, ";
+void demand_possible_rotor(const std::optional<ParameterEstimate>& thrust_factor,
+                           const std::optional<ParameterEstimate>& torque_factor, const Propeller& largest) {
+  const std::string rotor = "the largest propeller between the base vehicle's hubs, of radius " +
+                            format_number(largest.radius_m) + " m, ";
   if (!thrust_factor) return;
   const double c_t =
       plant::blade_coefficients({thrust_factor->value, 0.0}, largest.radius_m, largest.air_density).thrust;
   if (c_t > kMostThrustCoefficient) {
-    throw BadData("thrust: asks of " + rotor + "for C_T = " + shown(c_t) + " of Eq. (23), must be at most " +
-                  shown(kMostThrustCoefficient) + "; are the units of speed and thrust right?");
+    throw BadData("thrust: asks of " + rotor + "for C_T = " + format_number(c_t) +
+                  " of Eq. (23), must be at most " + format_number(kMostThrustCoefficient) +
+                  "; are the units of speed and thrust right?");
   }
   if (!torque_factor) return;
   const double merit = figure_of_merit(thrust_factor->value, torque_factor->value, largest);
   if (merit > 1.0) {
     throw BadData(
-        "thrust: asks of " + rotor + "for a figure of merit of " + shown(merit) +
+        "thrust: asks of " + rotor + "for a figure of merit of " + format_number(merit) +
         ", must be at most 1: no propeller gives more thrust than momentum theory; are the units of speed, "
         "thrust and torque right?");
   }

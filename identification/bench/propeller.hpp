@@ -14,21 +14,21 @@ struct Propeller {
 };
 
 struct PropellerCoefficients {
-  std::optional<Estimate> thrust;         // C_T
-  std::optional<Estimate> torque;         // C_Q
-  std::optional<double> figure_of_merit;  // ideal over real power at hover, by momentum theory
+  std::optional<ParameterEstimate> thrust;  // C_T
+  std::optional<ParameterEstimate> torque;  // C_Q
+  std::optional<double> figure_of_merit;    // ideal over real power at hover, by momentum theory
 };
 
 // From estimates of k_T and k_Q; radius and density count as exact. top_speed: the fastest measured, rad/s.
 // Throws BadData for what physics excludes: tips faster than sound, a figure of merit above 1 (more thrust
 // than the power can give), a C_T that no propeller reaches.
-PropellerCoefficients propeller_coefficients(const std::optional<Estimate>& thrust_factor,
-                                             const std::optional<Estimate>& torque_factor,
+PropellerCoefficients propeller_coefficients(const std::optional<ParameterEstimate>& thrust_factor,
+                                             const std::optional<ParameterEstimate>& torque_factor,
                                              const Propeller& propeller, double top_speed);
 
 // Where the propeller is not known: throws BadData if even the largest that could turn there, of radius_m,
 // cannot do what was found, by C_T and figure of merit.
-void demand_possible_rotor(const std::optional<Estimate>& thrust_factor,
-                           const std::optional<Estimate>& torque_factor, const Propeller& largest);
+void demand_possible_rotor(const std::optional<ParameterEstimate>& thrust_factor,
+                           const std::optional<ParameterEstimate>& torque_factor, const Propeller& largest);
 
 }  // namespace swiftlet::identification

@@ -42,15 +42,16 @@ Experiment identify_steady_motor(const SteadyMotorData& data, const Instruments&
 
   Experiment out = conclude(fit, {{"motor.k2", "K2", "V*s/rad"}, {"motor.k3", "K3", "V*s^2/rad^2"}},
                             data.motor_voltage_v, predicted(readings, fit.parameters, steady_voltage), "V");
-  for (const Estimate& estimate : out.estimates) {
+  for (const ParameterEstimate& estimate : out.estimates) {
     if (estimate.value > 0.0) continue;
-    throw BadData("speed: leads to " + estimate.symbol + " = " + shown(estimate.value) + " " + estimate.unit +
+    throw BadData("speed: leads to " + estimate.symbol + " = " + format_number(estimate.value) + " " +
+                  estimate.unit +
                   ", must be above 0 by Eq. (21); are voltage and speed readings of the loaded motor?");
   }
   const Fit with_friction =
       fit_curve(readings, Eigen::Vector3d(start[0], start[1], 0.1 * voltage), steady_voltage);
   if (asks_for_last(with_friction, voltage)) {
-    out.warnings.push_back("a constant of " + shown(with_friction.parameters[2]) +
+    out.warnings.push_back("a constant of " + format_number(with_friction.parameters[2]) +
                            " V besides Eq. (22) is significant: Coulomb friction, a tachometer that is off, "
                            "or one curve of two motors");
   }

@@ -98,9 +98,9 @@ Experiment identify_throttle_thrust(const ThrottleThrustData& data, const plant:
   const Readings readings{data.supply_voltage_v, data.thrust_n, spread.x_spread, spread.y_spread};
   const Fit fit = fit_curve(readings, start, curve);
   Experiment out = conclude(fit, names, data.thrust_n, predicted(readings, fit.parameters, curve), "N");
-  for (const Estimate& estimate : out.estimates) {
+  for (const ParameterEstimate& estimate : out.estimates) {
     if (estimate.value > 0.0 || estimate.parameter == "esc.offset") continue;
-    throw BadData("thrust: leads to " + estimate.symbol + " = " + shown(estimate.value) + " " +
+    throw BadData("thrust: leads to " + estimate.symbol + " = " + format_number(estimate.value) + " " +
                   estimate.unit + ", must be above 0; is the thrust that of one rotor, and its unit right?");
   }
   say_what_is_held(known, out);

@@ -25,15 +25,16 @@ Experiment identify_factor(const std::vector<double>& speeds, const Column& read
   const Eigen::VectorXd start = Eigen::VectorXd::Constant(1, full_scale(reading.values) / (speed * speed));
   const Fit fit = fit_curve(readings, start, square_law);
   if (!(fit.parameters[0] > 0.0)) {
-    throw BadData(std::string(reading.name) + ": leads to " + name.symbol + " = " + shown(fit.parameters[0]) +
-                  " " + name.unit + ", must be above 0; is its sign that of a pushing rotor?");
+    throw BadData(std::string(reading.name) + ": leads to " + name.symbol + " = " +
+                  format_number(fit.parameters[0]) + " " + name.unit +
+                  ", must be above 0; is its sign that of a pushing rotor?");
   }
   Experiment out =
       conclude(fit, {name}, reading.values, predicted(readings, fit.parameters, square_law), reading.unit);
   const Fit with_offset =
       fit_curve(readings, Eigen::Vector2d(start[0], 0.1 * full_scale(reading.values)), square_law);
   if (asks_for_last(with_offset, full_scale(reading.values))) {
-    out.warnings.push_back("a constant of " + shown(with_offset.parameters[1]) + " " + reading.unit +
+    out.warnings.push_back("a constant of " + format_number(with_offset.parameters[1]) + " " + reading.unit +
                            " besides " + name.symbol +
                            " Omega^2 is significant: was the sensor zeroed with the rotor still?");
   }
@@ -68,8 +69,8 @@ ThrustTorque identify_thrust_torque(const ThrustTorqueData& data, const Instrume
   if (out.thrust && out.torque) {
     const double arm = out.torque->estimates[0].value / out.thrust->estimates[0].value;
     if (!(arm >= kLeastTorquePerThrust && arm <= kMostTorquePerThrust)) {
-      throw BadData("torque: is " + shown(arm) + " m times the thrust, must be " +
-                    shown(kLeastTorquePerThrust) + " to " + shown(kMostTorquePerThrust) +
+      throw BadData("torque: is " + format_number(arm) + " m times the thrust, must be " +
+                    format_number(kLeastTorquePerThrust) + " to " + format_number(kMostTorquePerThrust) +
                     " m, some tenths of a rotor's radius; are the units of both right?");
     }
   }

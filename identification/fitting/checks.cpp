@@ -19,13 +19,13 @@ double quantile(std::vector<double> values, double share) {
 }
 
 std::string with_unit(double value, const Column& column) {
-  return *column.unit == '\0' ? shown(value) : shown(value) + " " + column.unit;
+  return *column.unit == '\0' ? format_number(value) : format_number(value) + " " + column.unit;
 }
 
 std::string out_of(const Column& column, const char* what, double value, double min, double max,
                    const std::string& because) {
-  return std::string(column.name) + ": " + what + with_unit(value, column) + ", must be " + shown(min) +
-         " to " + shown(max) + ": " + because + "; is the unit right?";
+  return std::string(column.name) + ": " + what + with_unit(value, column) + ", must be " +
+         format_number(min) + " to " + format_number(max) + ": " + because + "; is the unit right?";
 }
 
 }  // namespace
@@ -88,13 +88,14 @@ void demand_drive(const Column& supply, const Column& throttle) {
   demand_median_between(supply, kLeastSupplyVoltage, kMostSupplyVoltage, "no vehicle flies on less or more");
 }
 
-void demand_gyration(const char* column, const Estimate& inertia, double mass_kg, double hub_distance_m) {
+void demand_gyration(const char* column, const ParameterEstimate& inertia, double mass_kg,
+                     double hub_distance_m) {
   const double gyration = std::sqrt(std::max(inertia.value, 0.0) / mass_kg) / hub_distance_m;
   if (gyration >= kLeastGyration && gyration <= kMostGyration) return;
-  throw BadData(std::string(column) + ": leads to " + inertia.symbol + " = " + shown(inertia.value) +
-                " kg*m^2, a radius of gyration of " + shown(gyration) +
-                " times the hubs' distance from the centre, must be " + shown(kLeastGyration) + " to " +
-                shown(kMostGyration) + "; are the units right?");
+  throw BadData(std::string(column) + ": leads to " + inertia.symbol + " = " + format_number(inertia.value) +
+                " kg*m^2, a radius of gyration of " + format_number(gyration) +
+                " times the hubs' distance from the centre, must be " + format_number(kLeastGyration) +
+                " to " + format_number(kMostGyration) + "; are the units right?");
 }
 
 double median(std::vector<double> values) {

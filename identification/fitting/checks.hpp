@@ -35,7 +35,8 @@ void demand_drive(const Column& supply, const Column& throttle);
 
 // A moment of inertia, kg m^2, against the hubs' distance from the centre: of no mass far beyond the hubs, nor
 // all of it near the centre. column is what led to it.
-void demand_gyration(const char* column, const Estimate& inertia, double mass_kg, double hub_distance_m);
+void demand_gyration(const char* column, const ParameterEstimate& inertia, double mass_kg,
+                     double hub_distance_m);
 
 double median(std::vector<double> values);
 

@@ -29,16 +29,16 @@ void warn_of_collinearity(const Fit& fit, Experiment& experiment) {
     return experiment.estimates[static_cast<std::size_t>(i)].symbol;
   };
   experiment.warnings.push_back("these data can hardly tell " + symbol(first) + " and " + symbol(second) +
-                                " apart: correlation " + shown(fit.correlation(first, second)) +
-                                ", condition number " + shown(fit.condition) + ", should be below " +
-                                shown(kIllConditioned) + "; readings over a wider range would");
+                                " apart: correlation " + format_number(fit.correlation(first, second)) +
+                                ", condition number " + format_number(fit.condition) + ", should be below " +
+                                format_number(kIllConditioned) + "; readings over a wider range would");
 }
 
 void warn_of_wide_intervals(Experiment& experiment) {
-  for (const Estimate& estimate : experiment.estimates) {
+  for (const ParameterEstimate& estimate : experiment.estimates) {
     if (std::abs(estimate.value) > estimate.half_width) continue;
-    experiment.warnings.push_back(estimate.symbol + " is " + shown(estimate.value) + " +- " +
-                                  shown(estimate.half_width) + " " + estimate.unit +
+    experiment.warnings.push_back(estimate.symbol + " is " + format_number(estimate.value) + " +- " +
+                                  format_number(estimate.half_width) + " " + estimate.unit +
                                   ": these data cannot tell it from 0");
   }
 }
@@ -76,8 +76,8 @@ bool Experiment::is_outlier(std::size_t row) const {
   return std::binary_search(outliers.begin(), outliers.end(), row);
 }
 
-const Estimate& Experiment::estimate(const std::string& parameter) const {
-  for (const Estimate& candidate : estimates) {
+const ParameterEstimate& Experiment::estimate(const std::string& parameter) const {
+  for (const ParameterEstimate& candidate : estimates) {
     if (candidate.parameter == parameter) return candidate;
   }
   throw std::out_of_range(parameter + " was not estimated");
@@ -112,6 +112,6 @@ Experiment conclude(const Fit& fit, const std::vector<ParameterName>& names, std
   return out;
 }
 
-std::string shown(double number) { return fmt::format("{:.4g}", number); }
+std::string format_number(double number) { return fmt::format("{:.4g}", number); }
 
 }  // namespace swiftlet::identification

@@ -14,7 +14,7 @@
 namespace swiftlet::identification {
 
 // A parameter as found. The 95 % interval is value -+ half_width.
-struct Estimate {
+struct ParameterEstimate {
   std::string parameter;  // as in the vehicle file where it stands there: "motor.k2", "inertia.xx"
   std::string symbol;     // as in the paper: "K2"
   std::string unit;
@@ -28,7 +28,7 @@ struct Estimate {
 
 // One experiment, identified. Rows are counted from 0, as given.
 struct Experiment {
-  std::vector<Estimate> estimates;
+  std::vector<ParameterEstimate> estimates;
   Eigen::MatrixXd covariance;  // of the estimates, in their order
   double r_squared = 0.0;      // of the reading that the model explains, outliers left out
   double residual_sd = 0.0;    // of that reading, in residual_unit
@@ -41,7 +41,7 @@ struct Experiment {
 
   bool is_outlier(std::size_t row) const;
   // Throws std::out_of_range if it was not estimated.
-  const Estimate& estimate(const std::string& parameter) const;
+  const ParameterEstimate& estimate(const std::string& parameter) const;
 };
 
 // Data from which nothing can be identified. what() is a sentence with value and limit, "speed: is 1500 rad/s
@@ -69,6 +69,6 @@ Experiment conclude(const Fit& fit, const std::vector<ParameterName>& names, std
                     std::vector<double> predicted, const std::string& residual_unit);
 
 // A number for a sentence: four significant digits.
-std::string shown(double number);
+std::string format_number(double number);
 
 }  // namespace swiftlet::identification

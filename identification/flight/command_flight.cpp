@@ -9,7 +9,7 @@
 
 #include "swiftlet/identification/flight/command_model.hpp"
 #include "swiftlet/identification/flight/command_prediction.hpp"
-#include "swiftlet/identification/flight/flight_conclusion.hpp"
+#include "swiftlet/identification/flight/flight_results.hpp"
 
 namespace swiftlet::identification {
 namespace {
@@ -56,7 +56,7 @@ std::vector<CommandFit> fit_alone(const std::vector<FlightSeries>& flights, cons
   return out;
 }
 
-Estimate lag_of(const CommandFit& alone) {
+ParameterEstimate lag_of(const CommandFit& alone) {
   const Index lag = alone.model->layout().lag;
   const double error = alone.fit.standard_error(lag);
   return {response_name(alone.model->responses().front()),      "tau_m", "s", alone.x()[lag], error,
@@ -69,17 +69,17 @@ struct Agreement {
   double ratio = 0.0;           // how much they differ over how much they may: Birge's ratio
 };
 
-Agreement agreement(const std::vector<Estimate>& estimates) {
+Agreement agreement(const std::vector<ParameterEstimate>& estimates) {
   double weight = 0.0;
   double mean = 0.0;
-  for (const Estimate& estimate : estimates) {
+  for (const ParameterEstimate& estimate : estimates) {
     const double w = 1.0 / (estimate.standard_error * estimate.standard_error);
     weight += w;
     mean += w * estimate.value;
   }
   mean /= weight;
   double chi_squared = 0.0;
-  for (const Estimate& estimate : estimates)
+  for (const ParameterEstimate& estimate : estimates)
     chi_squared += std::pow((estimate.value - mean) / estimate.standard_error, 2);
   const double ratio = std::sqrt(chi_squared / static_cast<double>(estimates.size() - 1));
   return {ratio / std::sqrt(weight), ratio};
@@ -167,12 +167,12 @@ std::vector<Derived> derived(const CommandModel& model) {
   return out;
 }
 
-const Estimate& named(const FlightIdentification& found, const std::string& parameter) {
+const ParameterEstimate& named(const FlightIdentification& found, const std::string& parameter) {
   return *found.find(parameter);
 }
 
-std::string with_interval(const Estimate& e) {
-  return shown(e.value) + " +- " + shown(e.half_width) + " " + e.unit;
+std::string with_interval(const ParameterEstimate& e) {
+  return format_number(e.value) + " +- " + format_number(e.half_width) + " " + e.unit;
 }
 
 void compare_with_file(FlightIdentification& out, const CommandModel& model) {
@@ -187,7 +187,7 @@ void compare_with_file(FlightIdentification& out, const CommandModel& model) {
 void draw_thrust(FlightIdentification& out, const CommandFit& all) {
   std::vector<double> commands;
   for (const FlightSeries& flight : all.model->flights()) {
-    for (std::size_t row = flight.fitted.first; row < flight.fitted.last; ++row)
+    for (std::size_t row = flight.estimation_set.first; row < flight.estimation_set.last; ++row)
       commands.insert(commands.end(), flight.log->command[row].begin(),
                       flight.log->command[row].begin() + flight.log->rotor_count);
   }
@@ -212,7 +212,7 @@ void draw_thrust(FlightIdentification& out, const CommandFit& all) {
 // The lag is told by roll and pitch as well, and gains are what moments are made of.
 std::map<std::string, std::string> untold_parameters(FlightIdentification& out,
                                                      const CommandPredictions& predictions) {
-  std::map<std::string, std::string> untold = untold_of_calm_axes(predictions.excitations);
+  std::map<std::string, std::string> untold = not_identifiable_axes(predictions.excitations);
   for (int axis = 0; axis < 3; ++axis) {
     const auto calm = untold.find(plant::kInertiaKeys[static_cast<std::size_t>(axis)]);
     if (calm == untold.end()) continue;
@@ -226,29 +226,29 @@ std::map<std::string, std::string> untold_parameters(FlightIdentification& out,
 void demand_one_rate(const std::vector<FlightSeries>& flights) {
   const auto period_s = [](const FlightSeries& flight) {
     const std::vector<double>& time = flight.log->time_s;
-    return (time[flight.fitted.last - 1] - time[flight.fitted.first]) /
-           static_cast<double>(flight.fitted.size() - 1);
+    return (time[flight.estimation_set.last - 1] - time[flight.estimation_set.first]) /
+           static_cast<double>(flight.estimation_set.size() - 1);
   };
   const double first_s = period_s(flights.front());
   for (const FlightSeries& flight : flights) {
     const double this_s = period_s(flight);
     if (std::abs(this_s / first_s - 1.0) < kOneRate) continue;
-    throw BadData(flight.log->name + " has a sample every " + shown(1e3 * this_s) + " ms and " +
-                  flights.front().log->name + " every " + shown(1e3 * first_s) +
+    throw BadData(flight.log->name + " has a sample every " + format_number(1e3 * this_s) + " ms and " +
+                  flights.front().log->name + " every " + format_number(1e3 * first_s) +
                   " ms: without poses and supply voltage, logs must be of one rate");
   }
 }
 
-void demand_possible_hover(const Estimate& command) {
+void demand_possible_hover(const ParameterEstimate& command) {
   if (command.low() < 1.0 && command.high() > 0.0) return;
-  throw BadData("commands: " + shown(command.value) +
+  throw BadData("commands: " + format_number(command.value) +
                 " of full command would carry the weight, must be 0 to 1; are the units right?");
 }
 
 // What would tell it. by_flight: with what the flight leaves open alone.
-std::string advice(const std::string& parameter, const Estimate& estimate,
-                   const std::vector<Estimate>& by_flight, const plant::Vehicle& base) {
-  for (const Estimate& alone : by_flight) {
+std::string advice(const std::string& parameter, const ParameterEstimate& estimate,
+                   const std::vector<ParameterEstimate>& by_flight, const plant::Vehicle& base) {
+  for (const ParameterEstimate& alone : by_flight) {
     if (alone.parameter == parameter && alone.half_width < 0.7 * estimate.half_width)
       return "most of it is the battery's: measure the internal resistance of " + base.name + "'s";
   }
@@ -260,11 +260,11 @@ std::string advice(const std::string& parameter, const Estimate& estimate,
 
 void tell_of_lags(FlightIdentification& out, const Agreement& lags) {
   std::string sentence = "the rotors' lag by itself: ";
-  for (const Estimate& lag : out.lags)
+  for (const ParameterEstimate& lag : out.lags)
     sentence += (&lag == &out.lags.front() ? "" : ", ") + with_interval(lag) + " by " + lag.parameter;
   if (lags.ratio > kAtOdds) {
     out.warnings.push_back(
-        sentence + "; they differ " + shown(lags.ratio) +
+        sentence + "; they differ " + format_number(lags.ratio) +
         " times as much as their intervals allow: rotors with one lag do not describe this "
         "flight, and the interval of tau_m, with those of all that hangs together with it, is "
         "widened to that");
@@ -276,8 +276,9 @@ void tell_of_lags(FlightIdentification& out, const Agreement& lags) {
 void tell_of_delays(FlightIdentification& out, const CommandFit& all) {
   const CommandLayout& l = all.model->layout();
   out.findings.push_back("correlation of the lag with the delay of the force " +
-                         shown(all.fit.correlation(l.lag, l.force_delay)) + ", with that of the rates " +
-                         shown(all.fit.correlation(l.lag, l.rate_delay)) +
+                         format_number(all.fit.correlation(l.lag, l.force_delay)) +
+                         ", with that of the rates " +
+                         format_number(all.fit.correlation(l.lag, l.rate_delay)) +
                          "; delays hold the filters of the sensors too");
 }
 
@@ -288,7 +289,7 @@ void tell_of_forecasts(FlightIdentification& out, const CommandPredictions& pred
     const double weight = predictions.weight_of_commands[i];
     if (weight > kOfLittleUse) continue;
     quantities += (quantities.empty() ? "" : ", ") + predictions.errors[i].quantity;
-    weights += (weights.empty() ? "" : ", ") + shown(weight);
+    weights += (weights.empty() ? "" : ", ") + format_number(weight);
   }
   if (quantities.empty()) return;
   out.findings.push_back("half a second ahead the commands say little of " + quantities +
@@ -317,7 +318,8 @@ void identify_commands(FlightIdentification& out, const std::vector<FlightSeries
   out.converged = all.fit.converged && within_bounds(all.model->physical_parameters(), all.fit);
   const std::vector<Derived> quantities = derived(*all.model);
   DerivedValues values = evaluate(quantities, all.model->layout().parameters, all.fit);
-  const std::vector<Estimate> by_flight = estimates_of(quantities, values, all.fit.degrees_of_freedom);
+  const std::vector<ParameterEstimate> by_flight =
+      estimates_of(quantities, values, all.fit.degrees_of_freedom);
   allow_for_battery(*all.model, quantities, values);
   out.estimates = estimates_of(quantities, values, all.fit.degrees_of_freedom);
   demand_possible_hover(*out.find("thrust_per_mass.hover_command"));
@@ -331,7 +333,7 @@ void identify_commands(FlightIdentification& out, const std::vector<FlightSeries
       "levers of " +
       base.name + " make of m d/J");
   out.findings.push_back(
-      "a command that all rotors share makes " + shown(all.model->shared_over_single()) +
+      "a command that all rotors share makes " + format_number(all.model->shared_over_single()) +
       " times the thrust of one by which they differ, as the supply sags under it: by the battery of " +
       base.name + ", and allowed for in m d/J");
   compare_with_file(out, *all.model);

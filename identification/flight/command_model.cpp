@@ -27,12 +27,12 @@ std::size_t index_of(Response response) { return static_cast<std::size_t>(respon
 int axis_of(Response response) { return static_cast<int>(response) - 1; }
 
 // Rows of a flight, both parts.
-Rows rows_of(const FlightSeries& series) { return {series.fitted.first, series.kept.last}; }
+Rows rows_of(const FlightSeries& series) { return {series.estimation_set.first, series.validation_set.last}; }
 
 std::size_t rows_in_block(const FlightSeries& series) {
   const std::vector<double>& time = series.log->time_s;
-  const double step =
-      (time[series.fitted.last - 1] - time[series.fitted.first]) / static_cast<double>(series.fitted.size());
+  const double step = (time[series.estimation_set.last - 1] - time[series.estimation_set.first]) /
+                      static_cast<double>(series.estimation_set.size());
   return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kSampleS / step)));
 }
 
@@ -68,7 +68,7 @@ double mean_command(const std::vector<FlightSeries>& flights) {
   double sum = 0.0;
   double count = 0.0;
   for (const FlightSeries& flight : flights) {
-    for (std::size_t row = flight.fitted.first; row < flight.fitted.last; ++row) {
+    for (std::size_t row = flight.estimation_set.first; row < flight.estimation_set.last; ++row) {
       for (int i = 0; i < flight.log->rotor_count; ++i)
         sum += flight.log->command[row][static_cast<std::size_t>(i)];
       count += flight.log->rotor_count;
@@ -100,7 +100,7 @@ CommandModel::CommandModel(std::vector<FlightSeries> flights, plant::Vehicle bas
     signs_.row(axis) = row / row.cwiseAbs().mean();
   }
   for (const FlightSeries& flight : flights_) blocks_.push_back(blocked(flight));
-  lay_out();
+  assign_parameter_indices();
 }
 
 bool CommandModel::has(Response response) const {
@@ -119,7 +119,7 @@ void CommandModel::add_noise(Response response) {
   }
 }
 
-void CommandModel::lay_out() {
+void CommandModel::assign_parameter_indices() {
   CommandLayout& l = layout_;
   const auto add = [&l](FlightParameter parameter) {
     return identification::add(std::move(parameter), l.parameters);
@@ -155,7 +155,7 @@ BlockedFlight CommandModel::blocked(const FlightSeries& series) const {
   const Rows rows = rows_of(series);
   BlockedFlight out;
   out.rows_in_block = rows_in_block(series);
-  out.fitted = series.fitted.size() / out.rows_in_block;
+  out.estimation_set = series.estimation_set.size() / out.rows_in_block;
   out.time_s.resize(rows.size() / out.rows_in_block);
   out.time_s = block_means(out, [&](std::size_t row) { return log.time_s[rows.first + row]; });
   out.means[0] =
@@ -188,8 +188,8 @@ ThrustCurve CommandModel::curve(const VectorXd& x) const {
   return {middle_command_, x[layout_.curve], x[layout_.curve + 1], x[layout_.curve + 2]};
 }
 
-ColouredNoise CommandModel::noise(const VectorXd& x, Response response) const {
-  return coloured_noise(x.data() + layout_.noise[index_of(response)]);
+ArmaNoise CommandModel::noise(const VectorXd& x, Response response) const {
+  return arma_noise(x.data() + layout_.noise[index_of(response)]);
 }
 
 CommandModel::SteadyKey CommandModel::steady_key(const VectorXd& x, std::size_t flight) const {
@@ -308,19 +308,19 @@ std::vector<double> CommandModel::unexplained(const VectorXd& x, std::size_t fli
 // A channel for each response: the fitted blocks of all flights, one after the other.
 SeriesProblem CommandModel::problem(const std::function<void()>& on_iteration) const {
   SeriesProblem out = problem_of(layout_.parameters);
-  std::vector<std::size_t> stretches;  // of each block
+  std::vector<std::size_t> segments;  // of each block
   for (const BlockedFlight& flight : blocks_) {
     std::size_t last = 0;
-    for (std::size_t block = 0; block < flight.fitted; ++block) {
-      const auto stretch = static_cast<std::size_t>((flight.time_s[block] - flight.time_s[0]) / kStretchS);
-      last = stretch;
-      stretches.push_back(out.stretch_count + stretch);
+    for (std::size_t block = 0; block < flight.estimation_set; ++block) {
+      const auto segment = static_cast<std::size_t>((flight.time_s[block] - flight.time_s[0]) / kStretchS);
+      last = segment;
+      segments.push_back(out.stretch_count + segment);
     }
     out.stretch_count += last + 1;
   }
   for (std::size_t i = 0; i < responses_.size(); ++i) {
-    out.channels.push_back({out.stretches.size(), stretches.size()});
-    out.stretches.insert(out.stretches.end(), stretches.begin(), stretches.end());
+    out.channels.push_back({out.segments.size(), segments.size()});
+    out.segments.insert(out.segments.end(), segments.begin(), segments.end());
   }
   out.residuals = [this](const VectorXd& x, VectorXd& residuals_out) { residuals(x, residuals_out); };
   out.on_iteration = on_iteration;
@@ -331,11 +331,11 @@ void CommandModel::residuals(const VectorXd& x, VectorXd& out) const {
   const auto settling = static_cast<std::size_t>(std::lround(kSettlingS / sample_s()));
   Index next = 0;
   for (const Response response : responses_) {
-    const ColouredNoise colour = noise(x, response);
+    const ArmaNoise colour = noise(x, response);
     for (std::size_t flight = 0; flight < flights_.size(); ++flight) {
-      const std::vector<double> surprise = innovations(colour, unexplained(x, flight, response));
-      for (std::size_t block = 0; block < blocks_[flight].fitted; ++block)
-        out[next++] = block < settling ? 0.0 : surprise[block];
+      const std::vector<double> innovation = innovations(colour, unexplained(x, flight, response));
+      for (std::size_t block = 0; block < blocks_[flight].estimation_set; ++block)
+        out[next++] = block < settling ? 0.0 : innovation[block];
     }
   }
 }

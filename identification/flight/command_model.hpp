@@ -26,7 +26,7 @@
 
 #include <Eigen/Core>
 
-#include "swiftlet/identification/fitting/coloured_noise.hpp"
+#include "swiftlet/identification/fitting/arma_noise.hpp"
 #include "swiftlet/identification/fitting/flight_parameter.hpp"
 #include "swiftlet/identification/fitting/recent_results.hpp"
 #include "swiftlet/identification/fitting/series_fit.hpp"
@@ -75,7 +75,7 @@ struct CommandLayout {
 // Means over blocks of rows of a flight, fitted and kept.
 struct BlockedFlight {
   std::size_t rows_in_block = 1;
-  std::size_t fitted = 0;                             // blocks that are fitted; the rest is kept
+  std::size_t estimation_set = 0;                     // blocks that are fitted; the rest is kept
   std::vector<double> time_s;                         // in the middle of each
   std::array<std::vector<double>, kResponses> means;  // thrust over mass, m/s^2; p, q, r, rad/s
   std::array<std::vector<double>, 3> coupling;        // what Eq. (6) adds to rates from a block to the next
@@ -100,7 +100,7 @@ class CommandModel {
 
   SeriesProblem problem(const std::function<void()>& on_iteration) const;
   ThrustCurve curve(const Eigen::VectorXd& parameters) const;
-  ColouredNoise noise(const Eigen::VectorXd& parameters, Response response) const;
+  ArmaNoise noise(const Eigen::VectorXd& parameters, Response response) const;
   double lever(int axis) const { return lever_[static_cast<std::size_t>(axis)]; }  // d, by the base
   double shared_over_single() const { return shared_over_single_; }  // of the base, supply_sag.hpp
 
@@ -113,7 +113,7 @@ class CommandModel {
 
  private:
   bool has(Response response) const;
-  void lay_out();
+  void assign_parameter_indices();
   void add_noise(Response response);
   BlockedFlight blocked(const FlightSeries& series) const;
 

@@ -47,7 +47,7 @@ class Forecast {
  private:
   const std::vector<double>& measured_;
   std::vector<double> modelled_;
-  ColouredNoise noise_;
+  ArmaNoise noise_;
   std::vector<double> unexplained_;
   std::vector<double> innovations_;
   bool is_rate_;
@@ -118,9 +118,9 @@ void predict(const CommandModel& model, const VectorXd& x, std::size_t quantity,
   Squares fitted_one_step;
   for (std::size_t flight = 0; flight < forecasts.size(); ++flight) {
     const std::vector<double>& measured = forecasts[flight].measured();
-    for (std::size_t block = between; block < model.blocks()[flight].fitted; ++block)
+    for (std::size_t block = between; block < model.blocks()[flight].estimation_set; ++block)
       fitted_one_step.add(forecasts[flight].one_step_error(block));
-    for (std::size_t block = model.blocks()[flight].fitted; block < measured.size(); ++block) {
+    for (std::size_t block = model.blocks()[flight].estimation_set; block < measured.size(); ++block) {
       one_step.add(forecasts[flight].one_step_error(block));
       idle_one_step.add(measured[block] - measured[block - 1]);
     }
@@ -131,33 +131,34 @@ void predict(const CommandModel& model, const VectorXd& x, std::size_t quantity,
   for (const double horizon_s : kHorizonsS) {
     const std::size_t ahead = blocks_of(horizon_s, sample_s);
     Squares by_commands;
-    Squares idle;
+    Squares persistence;
     Squares best;
-    std::vector<Start> fitted;
-    std::vector<Start> kept;
+    std::vector<Start> estimation_set;
+    std::vector<Start> validation_set;
     for (std::size_t flight = 0; flight < forecasts.size(); ++flight) {
       const BlockedFlight& blocks = model.blocks()[flight];
-      const std::vector<Start> before = starts(forecasts[flight], between, blocks.fitted, ahead, between);
+      const std::vector<Start> before =
+          starts(forecasts[flight], between, blocks.estimation_set, ahead, between);
       const std::vector<Start> after =
-          starts(forecasts[flight], blocks.fitted, blocks.size(), ahead, between);
-      fitted.insert(fitted.end(), before.begin(), before.end());
-      kept.insert(kept.end(), after.begin(), after.end());
+          starts(forecasts[flight], blocks.estimation_set, blocks.size(), ahead, between);
+      estimation_set.insert(estimation_set.end(), before.begin(), before.end());
+      validation_set.insert(validation_set.end(), after.begin(), after.end());
     }
     if (horizon_s == kAheadS && response != Response::kForce) {
       Squares change;
-      for (const Start& start : fitted) change.add(start.then - start.now);
+      for (const Start& start : estimation_set) change.add(start.then - start.now);
       out.excitations[quantity] = {error.quantity, change.rms(), fitted_one_step.rms()};
     }
-    const Eigen::Vector3d weights = best_weights(fitted);
-    for (const Start& start : kept) {
+    const Eigen::Vector3d weights = best_weights(estimation_set);
+    for (const Start& start : validation_set) {
       by_commands.add(start.then - start.by_commands);
-      idle.add(start.then - start.now);
+      persistence.add(start.then - start.now);
       best.add(start.then - combined(weights, start));
     }
-    out.horizons.push_back({error.quantity, error.unit, horizon_s, by_commands.rms(), idle.rms()});
+    out.horizons.push_back({error.quantity, error.unit, horizon_s, by_commands.rms(), persistence.rms()});
     if (horizon_s != kAheadS) continue;
     error.half_second = best.rms();
-    error.idle_half_second = idle.rms();
+    error.idle_half_second = persistence.rms();
     out.weight_of_commands.push_back(weights[1]);
     out.weight_of_start.push_back(weights[2]);
   }
@@ -170,10 +171,11 @@ void trace(const CommandModel& model, const VectorXd& x, std::size_t quantity, P
   const Forecast forecast(model, x, 0, response);
   const BlockedFlight& blocks = model.blocks().front();
   const std::size_t restart = blocks_of(kTraceRestartS, model.sample_s());
-  for (std::size_t start = blocks.fitted; start + restart < blocks.size(); start += restart) {
+  for (std::size_t start = blocks.estimation_set; start + restart < blocks.size(); start += restart) {
     const std::vector<double> after = forecast.after(start - 1, restart);
     for (std::size_t i = 0; i < restart; ++i) {
-      if (quantity == 0) out.time_s.push_back(blocks.time_s[start + i] - blocks.time_s[blocks.fitted]);
+      if (quantity == 0)
+        out.time_s.push_back(blocks.time_s[start + i] - blocks.time_s[blocks.estimation_set]);
       out.measured[quantity].push_back(sign * forecast.measured()[start + i]);
       out.predicted[quantity].push_back(sign * after[i]);
     }

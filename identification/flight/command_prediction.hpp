@@ -6,7 +6,7 @@
 
 #include "swiftlet/identification/flight/command_model.hpp"
 #include "swiftlet/identification/flight/flight.hpp"
-#include "swiftlet/identification/flight/flight_conclusion.hpp"
+#include "swiftlet/identification/flight/flight_results.hpp"
 
 namespace swiftlet::identification {
 

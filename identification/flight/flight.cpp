@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "swiftlet/identification/flight/command_flight.hpp"
-#include "swiftlet/identification/flight/flight_conclusion.hpp"
 #include "swiftlet/identification/flight/flight_prediction.hpp"
+#include "swiftlet/identification/flight/flight_results.hpp"
 
 namespace swiftlet::identification {
 namespace {
@@ -112,16 +112,16 @@ Excitation excitation(const FlightModel& model, const VectorXd& x) {
   const Vector3d inertia = model.inertia(x);
   for (std::size_t f = 0; f < model.flights().size(); ++f) {
     const FlightSeries& flight = model.flights()[f];
-    const FlightModel::Drive drive = model.drive(x, f, flight.fitted);
-    for (std::size_t i = 0; i < flight.fitted.size(); ++i) {
-      const Vector3d& rates = flight.log->body_rates_frd[flight.fitted.first + i];
+    const FlightModel::Drive drive = model.drive(x, f, flight.estimation_set);
+    for (std::size_t i = 0; i < flight.estimation_set.size(); ++i) {
+      const Vector3d& rates = flight.log->body_rates_frd[flight.estimation_set.first + i];
       const Vector3d coupling = -rates.cross(inertia.cwiseProduct(rates)).cwiseQuotient(inertia);
       for (int axis = 0; axis < 3; ++axis) {
         series[axis].push_back(drive.acceleration[i][axis]);
         series[3 + axis].push_back(coupling[axis]);
       }
       series[6].push_back(drive.specific_force[i].z());
-      series[7].push_back(flight.velocity_ned[flight.fitted.first + i].head<2>().norm());
+      series[7].push_back(flight.velocity_ned[flight.estimation_set.first + i].head<2>().norm());
     }
   }
   return {{spread(series[0]), spread(series[1]), spread(series[2])},
@@ -135,13 +135,14 @@ std::string advice(const std::string& parameter, const Excitation& excited) {
   for (std::size_t axis = 0; axis < plant::kInertiaKeys.size(); ++axis) {
     if (parameter == plant::kInertiaKeys[axis])
       return std::string("moments about ") + axis_name(static_cast<int>(axis)) + " varied by " +
-             shown(excited.acceleration[static_cast<Index>(axis)]) + " rad/s^2 only; " +
+             format_number(excited.acceleration[static_cast<Index>(axis)]) + " rad/s^2 only; " +
              moves_that_tell(axis);
   }
-  if (parameter == "linear_drag") return "speeds varied by " + shown(excited.speed) + " m/s only; fly faster";
+  if (parameter == "linear_drag")
+    return "speeds varied by " + format_number(excited.speed) + " m/s only; fly faster";
   if (parameter == "motor.time_constant")
     return "the commands changed too slowly or too little; fly quick moves, up and down too";
-  return "the thrust varied by " + shown(excited.thrust) + " m/s^2 only; climb and sink quickly";
+  return "the thrust varied by " + format_number(excited.thrust) + " m/s^2 only; climb and sink quickly";
 }
 
 std::array<RateExcitation, 3> rate_excitations(const FlightModel& model, const VectorXd& x) {
@@ -156,16 +157,16 @@ void tell_what_no_flight_tells(FlightIdentification& out, const FlightModel& mod
                                Known known) {
   const plant::Vehicle& base = model.base();
   const double s = fit.parameters[model.layout().thrust];
-  out.findings.push_back(known == Known::kMass
-                             ? "a flight tells thrust over mass: the mass is taken to be " +
-                                   shown(base.mass_kg) + " kg; with the thrust factor of " + base.name +
-                                   " it would be " + shown(base.mass_kg / s) + " kg"
-                             : "a flight tells thrust over mass: the thrust factor is taken to be " +
-                                   shown(base.rotor.thrust) + " N*s^2; with the mass of " + base.name +
-                                   " it would be " + shown(s * base.rotor.thrust) + " N*s^2");
+  out.findings.push_back(
+      known == Known::kMass ? "a flight tells thrust over mass: the mass is taken to be " +
+                                  format_number(base.mass_kg) + " kg; with the thrust factor of " +
+                                  base.name + " it would be " + format_number(base.mass_kg / s) + " kg"
+                            : "a flight tells thrust over mass: the thrust factor is taken to be " +
+                                  format_number(base.rotor.thrust) + " N*s^2; with the mass of " + base.name +
+                                  " it would be " + format_number(s * base.rotor.thrust) + " N*s^2");
   out.findings.push_back(
       "a flight tells torque over the moment of inertia about yaw: the torque factor is that of " +
-      base.name + ", " + shown(base.rotor.torque) + " N*m*s^2");
+      base.name + ", " + format_number(base.rotor.torque) + " N*m*s^2");
   if (model.source() == SpeedSource::kModelled)
     out.findings.push_back(
         "rotor speeds were not recorded: those of " + base.name +
@@ -176,8 +177,8 @@ void tell_of_excitation(FlightIdentification& out, const Excitation& excited) {
   for (int axis = 0; axis < 3; ++axis) {
     if (excited.coupling[axis] > 0.1 * excited.acceleration[axis]) continue;
     out.unexcited.push_back("coupling about " + std::string(axis_name(axis)) + ", Eq. (6): it made " +
-                            shown(excited.coupling[axis]) + " rad/s^2 beside the rotors' " +
-                            shown(excited.acceleration[axis]) +
+                            format_number(excited.coupling[axis]) + " rad/s^2 beside the rotors' " +
+                            format_number(excited.acceleration[axis]) +
                             "; the ratios of the moments of inertia are not told by it");
   }
 }
@@ -187,7 +188,7 @@ void tell_of_poses(FlightIdentification& out, const std::vector<FlightSeries>& f
     const PoseTiming& timing = flights[f].pose_timing;
     const std::string of_log = flights.size() > 1 ? "[" + std::to_string(f) + "]" : "";
     const std::string name = timing.delay.parameter + of_log;
-    if (!timing.told) {
+    if (!timing.identified) {
       out.unexcited.push_back(name +
                               ": the poses are taken to be stamped as the IMU is; tilt and turn quickly");
       continue;
@@ -199,16 +200,18 @@ void tell_of_poses(FlightIdentification& out, const std::vector<FlightSeries>& f
       out.estimates.back().parameter = "gyro_offset" + of_log + "." + "xyz"[axis];
     }
     if (std::abs(timing.delay.value) < kWellStampedS) continue;
-    out.findings.push_back(flights[f].log->name + ": poses are stamped " + shown(1e3 * timing.delay.value) +
+    out.findings.push_back(flights[f].log->name + ": poses are stamped " +
+                           format_number(1e3 * timing.delay.value) +
                            " ms after what the IMU felt; they are taken to be as much older");
   }
 }
 
 }  // namespace
 
-const Estimate* FlightIdentification::find(const std::string& parameter) const {
-  const auto found = std::find_if(estimates.begin(), estimates.end(),
-                                  [&](const Estimate& estimate) { return estimate.parameter == parameter; });
+const ParameterEstimate* FlightIdentification::find(const std::string& parameter) const {
+  const auto found = std::find_if(estimates.begin(), estimates.end(), [&](const ParameterEstimate& estimate) {
+    return estimate.parameter == parameter;
+  });
   return found == estimates.end() ? nullptr : &*found;
 }
 
@@ -221,16 +224,16 @@ FlightIdentification identify_flight(const std::vector<FlightLog>& logs, const p
     warn_of_windows(out, logs);
     return out;
   }
-  const Fitted fitted = fit(std::move(flights), base, options);
-  const FlightModel& model = *fitted.model;
-  const SeriesFit& fit = fitted.fit;
+  const Fitted estimation_set = fit(std::move(flights), base, options);
+  const FlightModel& model = *estimation_set.model;
+  const SeriesFit& fit = estimation_set.fit;
   refuse_turned_gains(model.layout().gain, base, fit);
   out.converged = fit.converged && within_bounds(model.layout().parameters, fit);
   const std::vector<Derived> quantities = derived(model, options.known);
   const DerivedValues values = evaluate(quantities, model.layout().parameters, fit);
   out.estimates = estimates_of(quantities, values, fit.degrees_of_freedom);
   const Excitation excited = excitation(model, fit.parameters);
-  conclude_vehicle(out, values, base, untold_of_calm_axes(rate_excitations(model, fit.parameters)),
+  conclude_vehicle(out, values, base, not_identifiable_axes(rate_excitations(model, fit.parameters)),
                    [&](const std::string& parameter) { return advice(parameter, excited); });
   tell_what_no_flight_tells(out, model, fit, options.known);
   tell_of_excitation(out, excited);

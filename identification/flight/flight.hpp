@@ -47,15 +47,15 @@ struct HorizonError {
   std::string unit;
   double horizon_s = 0.0;
   double by_commands = 0.0;  // root mean squares
-  double idle = 0.0;
+  double persistence = 0.0;
 };
 
 // A number of the base vehicle's file beside what the logs tell of it.
 struct FileComparison {
-  Estimate told;
+  ParameterEstimate identified;
   double file = 0.0;
 
-  double ratio() const { return told.value / file; }
+  double ratio() const { return identified.value / file; }
 };
 
 // For a figure: thrust of all rotors over mass by a command that they share.
@@ -81,7 +81,7 @@ struct FlightIdentification {
   double kept_s = 0.0;
   bool converged = false;  // inside the bounds of the search
 
-  std::vector<Estimate>
+  std::vector<ParameterEstimate>
       estimates;  // all that the logs tell; `parameter` is the vehicle file's key where it has one
   std::vector<std::string> unexcited;  // what they do not, and why; sentences
   std::vector<std::string> findings;
@@ -91,7 +91,8 @@ struct FlightIdentification {
   PredictionTrace trace;
 
   // Where the commands are all that was recorded:
-  std::vector<Estimate> lags;  // tau_m as each response alone tells it; `parameter` names the response
+  std::vector<ParameterEstimate>
+      lags;  // tau_m as each response alone tells it; `parameter` names the response
   std::vector<FileComparison> comparisons;
   std::vector<HorizonError> horizons;
   CommandedThrust thrust;
@@ -100,7 +101,7 @@ struct FlightIdentification {
   plant::VehicleUncertainty uncertainty;
   std::map<std::string, std::string> sources;
 
-  const Estimate* find(const std::string& parameter) const;  // null if it was not estimated
+  const ParameterEstimate* find(const std::string& parameter) const;  // null if it was not estimated
 };
 
 // Logs of one vehicle, of one source of speeds; by commands alone, see command_flight.hpp. Throws BadData.

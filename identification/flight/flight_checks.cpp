@@ -36,7 +36,8 @@ std::vector<double> column(const Rows& rows, const Value& value) {
 void demand_change(const std::vector<double>& values, const std::string& name, const char* unit) {
   if (std::any_of(values.begin(), values.end(), [&](double value) { return value != values.front(); }))
     return;
-  throw BadData(name + ": is " + shown(values.front()) + " " + unit + " all through the flight, must vary");
+  throw BadData(name + ": is " + format_number(values.front()) + " " + unit +
+                " all through the flight, must vary");
 }
 
 void demand_gained_as_felt(const std::vector<double>& gained, const std::vector<double>& felt,
@@ -46,13 +47,14 @@ void demand_gained_as_felt(const std::vector<double>& gained, const std::vector<
   if (found.correlation < kLeastCorrelation) {
     throw BadData(std::string("positions: ") + direction +
                   " they do not move as the specific force asks (correlation of speeds gained " +
-                  shown(found.correlation) + ", must be above " + shown(kLeastCorrelation) +
+                  format_number(found.correlation) + ", must be above " + format_number(kLeastCorrelation) +
                   "); are the frames of poses and IMU right?");
   }
   if (found.ratio > kMostOfFelt || found.ratio < 1.0 / kMostOfFelt) {
-    throw BadData(std::string("positions: ") + direction + " they gain " + shown(found.ratio) +
-                  " times the speed that the specific force asks for, must be " + shown(1.0 / kMostOfFelt) +
-                  " to " + shown(kMostOfFelt) + "; is the unit right?");
+    throw BadData(std::string("positions: ") + direction + " they gain " + format_number(found.ratio) +
+                  " times the speed that the specific force asks for, must be " +
+                  format_number(1.0 / kMostOfFelt) + " to " + format_number(kMostOfFelt) +
+                  "; is the unit right?");
   }
 }
 
@@ -64,8 +66,9 @@ void demand_times(const FlightLog& log) {
   if (periods.empty()) throw BadData("has one row, must have a flight");
   const double period_s = median(periods);
   if (period_s > kLeastPeriodS && period_s <= kLongestRowGapS) return;
-  throw BadData("time: has a sample every " + shown(period_s) + " s in the middle, must have one every " +
-                shown(kLeastPeriodS) + " to " + shown(kLongestRowGapS) + " s; is the unit right?");
+  throw BadData("time: has a sample every " + format_number(period_s) +
+                " s in the middle, must have one every " + format_number(kLeastPeriodS) + " to " +
+                format_number(kLongestRowGapS) + " s; is the unit right?");
 }
 
 void demand_readings(const FlightLog& log, const Rows& flight) {
@@ -110,8 +113,8 @@ void demand_speeds_like_the_motors(const FlightSeries& series, const plant::Vehi
       column(flight, [&](std::size_t row) { return mean(series.steady_speeds[row], log.rotor_count); }));
   const std::string at = " at these commands and this voltage";
   if (steady < kLeastRotorSpeed || steady > kMostRotorSpeed) {
-    throw BadData("rotors: the motors of " + base.name + " do " + shown(steady) + " rad/s" + at +
-                  ", must be " + shown(kLeastRotorSpeed) + " to " + shown(kMostRotorSpeed) +
+    throw BadData("rotors: the motors of " + base.name + " do " + format_number(steady) + " rad/s" + at +
+                  ", must be " + format_number(kLeastRotorSpeed) + " to " + format_number(kMostRotorSpeed) +
                   "; are the units and the base vehicle right?");
   }
   if (log.rotor_speeds.empty()) return;
@@ -119,9 +122,9 @@ void demand_speeds_like_the_motors(const FlightSeries& series, const plant::Vehi
       median(column(flight, [&](std::size_t row) { return mean(log.rotor_speeds[row], log.rotor_count); })) /
       steady;
   if (ratio < kMostOfMotors && ratio > 1.0 / kMostOfMotors) return;
-  throw BadData("rotor speeds: are " + shown(ratio) + " times what the motors of " + base.name + " do" + at +
-                ", must be " + shown(1.0 / kMostOfMotors) + " to " + shown(kMostOfMotors) +
-                "; are the units and the base vehicle right?");
+  throw BadData("rotor speeds: are " + format_number(ratio) + " times what the motors of " + base.name +
+                " do" + at + ", must be " + format_number(1.0 / kMostOfMotors) + " to " +
+                format_number(kMostOfMotors) + "; are the units and the base vehicle right?");
 }
 
 void demand_positions_as_felt(const FlightSeries& series) {
@@ -129,13 +132,13 @@ void demand_positions_as_felt(const FlightSeries& series) {
   const Vector3d gravity_ned(0.0, 0.0, plant::kGravity);
   std::vector<double> gained[3];
   std::vector<double> felt[3];
-  for (const Rows& stretch : series.stretches) {
+  for (const Rows& segment : series.segments) {
     Vector3d asked = Vector3d::Zero();
-    for (std::size_t row = stretch.first + 1; row < stretch.last; ++row) {
+    for (std::size_t row = segment.first + 1; row < segment.last; ++row) {
       const double h = log.time_s[row] - log.time_s[row - 1];
       asked += h * (series.attitude[row] * log.specific_force_frd[row] + gravity_ned);
     }
-    const Vector3d speed = series.velocity_ned[stretch.last - 1] - series.velocity_ned[stretch.first];
+    const Vector3d speed = series.velocity_ned[segment.last - 1] - series.velocity_ned[segment.first];
     for (int axis = 0; axis < 3; ++axis) {
       gained[axis].push_back(speed[axis]);
       felt[axis].push_back(asked[axis]);

@@ -23,12 +23,12 @@ const char* const kAxes[3] = {"roll", "pitch", "yaw"};
 // Rows that are averaged.
 std::size_t block_of(const FlightSeries& flight) {
   const std::vector<double>& time = flight.log->time_s;
-  const double step =
-      (time[flight.fitted.last - 1] - time[flight.fitted.first]) / static_cast<double>(flight.fitted.size());
+  const double step = (time[flight.estimation_set.last - 1] - time[flight.estimation_set.first]) /
+                      static_cast<double>(flight.estimation_set.size());
   return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kBlockS / step)));
 }
 
-std::size_t blocks_in(const Rows& stretch, std::size_t block) { return (stretch.size() + block - 1) / block; }
+std::size_t blocks_in(const Rows& segment, std::size_t block) { return (segment.size() + block - 1) / block; }
 
 plant::PerRotor speed_errors(const plant::PerRotor& measured, const plant::PerRotor& modelled, double scale,
                              int rotors) {
@@ -46,10 +46,10 @@ FlightModel::FlightModel(std::vector<FlightSeries> flights, plant::Vehicle base)
       effectiveness_(plant::effectiveness(base_)),
       wrenches_(kKeptForEachFlight * flights_.size()) {
   for (const FlightSeries& flight : flights_) block_.push_back(block_of(flight));
-  lay_out();
+  assign_parameter_indices();
 }
 
-void FlightModel::lay_out() {
+void FlightModel::assign_parameter_indices() {
   FlightLayout& l = layout_;
   const auto add = [&l](FlightParameter parameter) {
     return identification::add(std::move(parameter), l.parameters);
@@ -173,15 +173,15 @@ SeriesProblem FlightModel::problem(const std::function<void()>& on_iteration) co
   std::vector<std::size_t> per_stretch;
   for (std::size_t f = 0; f < flights_.size(); ++f) {
     const FlightSeries& flight = flights_[f];
-    for (const Rows& stretch : flight.stretches) {
-      per_row.insert(per_row.end(), blocks_in(stretch, block_[f]), out.stretch_count);
+    for (const Rows& segment : flight.segments) {
+      per_row.insert(per_row.end(), blocks_in(segment, block_[f]), out.stretch_count);
       per_stretch.push_back(out.stretch_count);
       ++out.stretch_count;
     }
   }
-  const auto add_channel = [&](const std::vector<std::size_t>& stretches) {
-    out.channels.push_back({out.stretches.size(), stretches.size()});
-    out.stretches.insert(out.stretches.end(), stretches.begin(), stretches.end());
+  const auto add_channel = [&](const std::vector<std::size_t>& segments) {
+    out.channels.push_back({out.segments.size(), segments.size()});
+    out.segments.insert(out.segments.end(), segments.begin(), segments.end());
   };
   for (int i = 0; i < 6; ++i) add_channel(per_row);
   if (source() == SpeedSource::kMeasured) {
@@ -197,8 +197,8 @@ SeriesProblem FlightModel::problem(const std::function<void()>& on_iteration) co
 void FlightModel::residuals(const VectorXd& x, VectorXd& out) const {
   Index rows = 0;  // blocks of them, in all
   for (std::size_t f = 0; f < flights_.size(); ++f) {
-    for (const Rows& stretch : flights_[f].stretches)
-      rows += static_cast<Index>(blocks_in(stretch, block_[f]));
+    for (const Rows& segment : flights_[f].segments)
+      rows += static_cast<Index>(blocks_in(segment, block_[f]));
   }
   const bool with_speeds = source() == SpeedSource::kMeasured;
   const Index rotors = with_speeds ? base_.rotor_count() : 0;
@@ -210,29 +210,29 @@ void FlightModel::residuals(const VectorXd& x, VectorXd& out) const {
   for (std::size_t f = 0; f < flights_.size(); ++f) {
     const FlightSeries& flight = flights_[f];
     const FlightLog& log = *flight.log;
-    if (flight.stretches.empty()) continue;
-    const Rows all{flight.stretches.front().first, flight.stretches.back().last};
+    if (flight.segments.empty()) continue;
+    const Rows all{flight.segments.front().first, flight.segments.back().last};
     const Drive by_model = drive(x, f, all);
     const Vector3d bias = offset(x, f);
     std::vector<plant::PerRotor> modelled;
     if (with_speeds)
       modelled = lagged_speeds(log, flight.steady_speeds, all, x[layout_.lag], x[layout_.motor_delay]);
 
-    for (const Rows& stretch : flight.stretches) {
-      const auto blocks = static_cast<Index>(blocks_in(stretch, block_[f]));
+    for (const Rows& segment : flight.segments) {
+      const auto blocks = static_cast<Index>(blocks_in(segment, block_[f]));
       Vector3d predicted = Vector3d::Zero();
       Vector3d before = Vector3d::Zero();
       double mean_error = 0.0;  // of all rotors' speeds
-      for (std::size_t row = stretch.first; row < stretch.last; ++row) {
+      for (std::size_t row = segment.first; row < segment.last; ++row) {
         const std::size_t i = row - all.first;
-        const std::size_t block = (row - stretch.first) / block_[f];
-        const std::size_t in_block = std::min(block_[f], stretch.size() - block * block_[f]);
+        const std::size_t block = (row - segment.first) / block_[f];
+        const std::size_t in_block = std::min(block_[f], segment.size() - block * block_[f]);
         const double share = 1.0 / static_cast<double>(in_block);
         const Index at = begin + static_cast<Index>(block);
         const Vector3d force = log.specific_force_frd[row] - by_model.specific_force[i] - bias;
         const Vector3d slope =
             rate_derivative(moments_of_inertia, by_model.acceleration[i], log.body_rates_frd[row]);
-        if (row > stretch.first)
+        if (row > segment.first)
           predicted += 0.5 * (log.time_s[row] - log.time_s[row - 1]) * (before + slope);
         before = slope;
         const Vector3d rate = log.body_rates_frd[row] - predicted;
@@ -248,7 +248,7 @@ void FlightModel::residuals(const VectorXd& x, VectorXd& out) const {
         const double common = std::accumulate(error.begin(), error.end(), 0.0) / base_.rotor_count();
         for (Index rotor = 0; rotor < rotors; ++rotor)
           out[(6 + rotor) * rows + at] += share * (error[static_cast<std::size_t>(rotor)] - common);
-        mean_error += common / static_cast<double>(stretch.size());
+        mean_error += common / static_cast<double>(segment.size());
       }
       if (with_speeds) out[next++] = mean_error;
       const auto window = static_cast<Index>(kBlocksInWindow);
@@ -269,12 +269,12 @@ void FlightModel::residuals(const VectorXd& x, VectorXd& out) const {
     const auto vertical = [&](std::size_t row) {
       return (flight.attitude[row] * (log.specific_force_frd[row] - bias)).z() + plant::kGravity;
     };
-    for (const Rows& stretch : flight.stretches) {
+    for (const Rows& segment : flight.segments) {
       double gained = 0.0;
-      for (std::size_t row = stretch.first + 1; row < stretch.last; ++row)
+      for (std::size_t row = segment.first + 1; row < segment.last; ++row)
         gained += 0.5 * (log.time_s[row] - log.time_s[row - 1]) * (vertical(row) + vertical(row - 1));
-      const double length_s = log.time_s[stretch.last - 1] - log.time_s[stretch.first];
-      const double flown = flight.velocity_ned[stretch.last - 1].z() - flight.velocity_ned[stretch.first].z();
+      const double length_s = log.time_s[segment.last - 1] - log.time_s[segment.first];
+      const double flown = flight.velocity_ned[segment.last - 1].z() - flight.velocity_ned[segment.first].z();
       out[next++] = (flown - gained) / length_s;
     }
   }

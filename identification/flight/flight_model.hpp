@@ -80,7 +80,7 @@ class FlightModel {
   Eigen::Vector3d offset(const Eigen::VectorXd& parameters, std::size_t flight) const;
 
  private:
-  void lay_out();
+  void assign_parameter_indices();
   // Thrust and moments by the base vehicle's numbers, at each of the rows.
   using Wrenches = std::vector<Eigen::Vector4d>;
   std::shared_ptr<const Wrenches> wrenches(const Eigen::VectorXd& parameters, std::size_t flight,

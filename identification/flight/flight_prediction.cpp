@@ -27,7 +27,8 @@ class RatePredictor {
  public:
   RatePredictor(const FlightModel& model, const VectorXd& parameters, std::size_t flight, Part part)
       : log_(*model.flights()[flight].log),
-        rows_(part == Part::kKept ? model.flights()[flight].kept : model.flights()[flight].fitted),
+        rows_(part == Part::kKept ? model.flights()[flight].validation_set
+                                  : model.flights()[flight].estimation_set),
         drive_(model.drive_by_commands(parameters, flight, rows_)),
         inertia_(model.inertia(parameters)) {}
 

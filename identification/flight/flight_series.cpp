@@ -20,9 +20,9 @@ constexpr double kLongestPoseGapS = 0.25;  // that is bridged
 void demand_whole(const FlightLog& log, const Rows& rows) {
   for (std::size_t i = rows.first + 1; i < rows.last; ++i) {
     if (log.time_s[i] - log.time_s[i - 1] <= kLongestRowGapS) continue;
-    throw BadData("has no sample for " + shown(log.time_s[i] - log.time_s[i - 1]) +
-                  " s in the flight, after " + shown(log.time_s[i - 1]) + " s, must have one every " +
-                  shown(kLongestRowGapS) + " s");
+    throw BadData("has no sample for " + format_number(log.time_s[i] - log.time_s[i - 1]) +
+                  " s in the flight, after " + format_number(log.time_s[i - 1]) + " s, must have one every " +
+                  format_number(kLongestRowGapS) + " s");
   }
 }
 
@@ -59,12 +59,14 @@ class PoseMotion {
     const FlightPose& before = poses_[next_ - 1];
     const FlightPose& after = poses_[next_];
     if (time_s < before.time_s - kLongestPoseGapS || time_s > after.time_s + kLongestPoseGapS) {
-      throw BadData("has poses from " + shown(poses_.front().time_s) + " to " + shown(poses_.back().time_s) +
-                    " s alone, and flight at " + shown(time_s) + " s; must have them all through the flight");
+      throw BadData("has poses from " + format_number(poses_.front().time_s) + " to " +
+                    format_number(poses_.back().time_s) + " s alone, and flight at " + format_number(time_s) +
+                    " s; must have them all through the flight");
     }
     if (after.time_s - before.time_s > kLongestPoseGapS) {
-      throw BadData("has no pose for " + shown(after.time_s - before.time_s) + " s in the flight, after " +
-                    shown(before.time_s) + " s, must have one every " + shown(kLongestPoseGapS) + " s");
+      throw BadData("has no pose for " + format_number(after.time_s - before.time_s) +
+                    " s in the flight, after " + format_number(before.time_s) + " s, must have one every " +
+                    format_number(kLongestPoseGapS) + " s");
     }
     const double share = std::clamp((time_s - before.time_s) / (after.time_s - before.time_s), 0.0, 1.0);
     return {velocity(time_s), before.q_ned_from_frd.slerp(share, after.q_ned_from_frd)};
@@ -101,7 +103,7 @@ void add_motion(FlightSeries& series) {
   series.velocity_ned.resize(log.size(), Eigen::Vector3d::Zero());
   series.attitude.resize(log.size(), Eigen::Quaterniond::Identity());
   std::vector<FlightPose> poses = log.poses;
-  if (series.pose_timing.told) {
+  if (series.pose_timing.identified) {
     for (FlightPose& pose : poses) pose.time_s -= series.pose_timing.delay.value;
   }
   PoseMotion motion(poses);
@@ -135,15 +137,15 @@ FlightSeries prepare_flight(const FlightLog& log, const plant::Vehicle& base, co
   demand_whole(log, out.window.flight);
   demand_readings(log, out.window.flight);
   const Rows& flight = out.window.flight;
-  out.fitted = {flight.first,
-                flight.last - static_cast<std::size_t>(kKeptShare * static_cast<double>(flight.size()))};
-  out.kept = {out.fitted.last, flight.last};
+  out.estimation_set = {
+      flight.first, flight.last - static_cast<std::size_t>(kKeptShare * static_cast<double>(flight.size()))};
+  out.validation_set = {out.estimation_set.last, flight.last};
   out.source = source_of(log);
   if (out.source == SpeedSource::kCommanded) return out;
   out.steady_speeds = steady_speeds(log, base);
   demand_speeds_like_the_motors(out, base);
-  out.stretches = stretches_of(log, out.fitted);
-  out.pose_timing = find_pose_timing(log, out.stretches);
+  out.segments = stretches_of(log, out.estimation_set);
+  out.pose_timing = find_pose_timing(log, out.segments);
   add_motion(out);
   demand_positions_as_felt(out);
   return out;

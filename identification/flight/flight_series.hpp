@@ -30,15 +30,15 @@ constexpr double kLongestRowGapS = 0.05;  // between samples of a flight
 struct FlightSeries {
   const FlightLog* log = nullptr;
   FlightWindow window;
-  Rows fitted;  // the first four fifths of the flight
-  Rows kept;    // the last one, for predictions
+  Rows estimation_set;  // the first four fifths of the flight
+  Rows validation_set;  // the last one, for predictions
   SpeedSource source = SpeedSource::kMeasured;
   // None of the following of kCommanded.
   std::vector<plant::PerRotor> steady_speeds;  // that the commands ask for, from each row on, rad/s
   PoseTiming pose_timing;                      // motion and attitude are of poses with its delay taken off
   std::vector<Eigen::Vector3d> velocity_ned;   // of each row, by the poses
   std::vector<Eigen::Quaterniond> attitude;    // NED from FRD, likewise
-  std::vector<Rows> stretches;                 // of fitted
+  std::vector<Rows> segments;                  // of fitted
 };
 
 // Chooses the best source of speeds that the logs have, which must be the same of all. They must outlive what

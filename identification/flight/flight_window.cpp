@@ -109,7 +109,7 @@ void demand_flight_in_poses(const FlightLog& log, const Rows& running) {
   }
   if (above_ground(log, running).size() == 0) {
     throw BadData(
-        "has no pose more than " + shown(kAirborneHeightM) +
+        "has no pose more than " + format_number(kAirborneHeightM) +
         " m above where the rotors were started, must have flight in it; are the unit and the frame "
         "of positions right?");
   }
@@ -127,14 +127,14 @@ void tell_what_is_left_out(const FlightLog& log, const Rows& running, FlightWind
     out.left_out.push_back("flight is looked for from " + seconds(log.time_s[running.first]) + " to " +
                            seconds(log.time_s[running.last - 1]) +
                            " s, the longest time without a pause or a gap of more than " +
-                           shown(kLongestPauseS) + " s; rotors ran for another " + shown(elsewhere_s) +
-                           " s outside, which --from and --until can choose");
+                           format_number(kLongestPauseS) + " s; rotors ran for another " +
+                           format_number(elsewhere_s) + " s outside, which --from and --until can choose");
   }
   if (log.poses.empty()) return;
   const double unseen_s = log.time_s[running.last - 1] - log.poses.back().time_s;
   if (unseen_s > kWorthTellingS) {
     out.left_out.push_back("poses end at " + seconds(log.poses.back().time_s) + " s; the rotors ran on for " +
-                           shown(unseen_s) + " s, which are left out");
+                           format_number(unseen_s) + " s, which are left out");
   }
 }
 
@@ -161,10 +161,10 @@ FlightWindow find_flight(const FlightLog& log, const FlightBounds& bounds) {
                               ? log.time_s[out.flight.last - 1] - log.time_s[out.flight.first]
                               : 0.0;
   if (length_s < kShortestFlightS) {
-    throw BadData("holds " + shown(length_s) + " s of flight, must hold at least " + shown(kShortestFlightS) +
-                  " s" +
-                  (out.ends_in_a_blow ? "; a specific force of more than " + shown(kBlow) + " m/s^2 at " +
-                                            seconds(blow_s) + " s ends it: is the unit right?"
+    throw BadData("holds " + format_number(length_s) + " s of flight, must hold at least " +
+                  format_number(kShortestFlightS) + " s" +
+                  (out.ends_in_a_blow ? "; a specific force of more than " + format_number(kBlow) +
+                                            " m/s^2 at " + seconds(blow_s) + " s ends it: is the unit right?"
                                       : ""));
   }
   return out;

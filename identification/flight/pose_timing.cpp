@@ -72,7 +72,7 @@ struct Poses {
   std::size_t last = 0;  // not included
 };
 
-std::vector<Poses> poses_of(const FlightLog& log, const std::vector<Rows>& stretches) {
+std::vector<Poses> poses_of(const FlightLog& log, const std::vector<Rows>& segments) {
   const auto at = [&](double time_s) {
     return static_cast<std::size_t>(
         std::lower_bound(log.poses.begin(), log.poses.end(), time_s,
@@ -80,8 +80,8 @@ std::vector<Poses> poses_of(const FlightLog& log, const std::vector<Rows>& stret
         log.poses.begin());
   };
   std::vector<Poses> out;
-  for (const Rows& stretch : stretches) {
-    const Poses poses{at(log.time_s[stretch.first]), at(log.time_s[stretch.last - 1])};
+  for (const Rows& segment : segments) {
+    const Poses poses{at(log.time_s[segment.first]), at(log.time_s[segment.last - 1])};
     if (poses.last - poses.first >= kLeastPoses) out.push_back(poses);
   }
   return out;
@@ -112,16 +112,16 @@ class GyroIntegral {
 };
 
 // The lag at which poses turn most as the gyro does.
-double rough_delay(const FlightLog& log, const std::vector<Poses>& stretches) {
+double rough_delay(const FlightLog& log, const std::vector<Poses>& segments) {
   struct Span {
     double from_s;
     double to_s;
   };
   std::vector<Span> spans;
   std::vector<double> by_poses;  // rad/s, x, y, z of each span
-  for (const Poses& stretch : stretches) {
-    std::size_t from = stretch.first;
-    for (std::size_t to = from + 1; to < stretch.last; ++to) {
+  for (const Poses& segment : segments) {
+    std::size_t from = segment.first;
+    for (std::size_t to = from + 1; to < segment.last; ++to) {
       const double length_s = log.poses[to].time_s - log.poses[from].time_s;
       if (length_s < kSpanS) continue;
       const Vector3d rates =
@@ -154,28 +154,29 @@ double rough_delay(const FlightLog& log, const std::vector<Poses>& stretches) {
   }
   if (best.spread < kTurning) return 0.0;
   if (best.correlation < kLeastCorrelation) {
-    throw BadData("poses: do not turn as the gyro does, at any delay up to " + shown(kLongestDelayS) +
-                  " s (correlation " + shown(best.correlation) + ", must be above " +
-                  shown(kLeastCorrelation) + "); are the frames of both, and their clocks, right?");
+    throw BadData("poses: do not turn as the gyro does, at any delay up to " + format_number(kLongestDelayS) +
+                  " s (correlation " + format_number(best.correlation) + ", must be above " +
+                  format_number(kLeastCorrelation) + "); are the frames of both, and their clocks, right?");
   }
   if (best.ratio > kMostOfGyro || best.ratio < 1.0 / kMostOfGyro) {
-    throw BadData("body rates: the poses turn " + shown(best.ratio) + " times as far, must be " +
-                  shown(1.0 / kMostOfGyro) + " to " + shown(kMostOfGyro) + "; is the unit right?");
+    throw BadData("body rates: the poses turn " + format_number(best.ratio) + " times as far, must be " +
+                  format_number(1.0 / kMostOfGyro) + " to " + format_number(kMostOfGyro) +
+                  "; is the unit right?");
   }
   return best_s;
 }
 
 // Channels x, y, z: of each pose what it has turned beyond the gyro, rad, less the mean of its stretch.
-void residuals(const FlightLog& log, const std::vector<Poses>& stretches, const VectorXd& x, VectorXd& out) {
+void residuals(const FlightLog& log, const std::vector<Poses>& segments, const VectorXd& x, VectorXd& out) {
   const Index rows = out.size() / 3;
   Index begin = 0;
-  for (const Poses& stretch : stretches) {
-    const double start_s = log.poses[stretch.first].time_s - x[0];
+  for (const Poses& segment : segments) {
+    const double start_s = log.poses[segment.first].time_s - x[0];
     Turned turned(log, x.tail<3>(), start_s);
-    const auto count = static_cast<Index>(stretch.last - stretch.first);
+    const auto count = static_cast<Index>(segment.last - segment.first);
     Quaterniond start;
     for (Index i = 0; i < count; ++i) {
-      const FlightPose& pose = log.poses[stretch.first + static_cast<std::size_t>(i)];
+      const FlightPose& pose = log.poses[segment.first + static_cast<std::size_t>(i)];
       const Quaterniond begun = pose.q_ned_from_frd * turned.at(pose.time_s - x[0]).conjugate();
       if (i == 0) start = begun;
       const Vector3d apart = plant::rotation_vector(start.conjugate() * begun);
@@ -191,8 +192,8 @@ void residuals(const FlightLog& log, const std::vector<Poses>& stretches, const 
 
 }  // namespace
 
-PoseTiming find_pose_timing(const FlightLog& log, const std::vector<Rows>& stretches) {
-  const std::vector<Poses> poses = poses_of(log, stretches);
+PoseTiming find_pose_timing(const FlightLog& log, const std::vector<Rows>& segments) {
+  const std::vector<Poses> poses = poses_of(log, segments);
   PoseTiming out;
   out.delay = {"delay.poses", "T_p", "s"};
   for (std::size_t i = 0; i < 3; ++i)
@@ -207,23 +208,23 @@ PoseTiming find_pose_timing(const FlightLog& log, const std::vector<Rows>& stret
   problem.high = Eigen::Vector4d(delay_s + kLagOffS, 1.0, 1.0, 1.0);
   problem.stretch_count = poses.size();
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::size_t first = problem.stretches.size();
-    for (std::size_t stretch = 0; stretch < poses.size(); ++stretch)
-      problem.stretches.insert(problem.stretches.end(), poses[stretch].last - poses[stretch].first, stretch);
-    problem.channels.push_back({first, problem.stretches.size() - first});
+    const std::size_t first = problem.segments.size();
+    for (std::size_t segment = 0; segment < poses.size(); ++segment)
+      problem.segments.insert(problem.segments.end(), poses[segment].last - poses[segment].first, segment);
+    problem.channels.push_back({first, problem.segments.size() - first});
   }
   problem.residuals = [&](const VectorXd& x, VectorXd& at) { residuals(log, poses, x, at); };
 
   const SeriesFit fit = fit_series(problem);
   const double factor = interval_factor(fit.degrees_of_freedom);
-  const auto tell = [&](Estimate& estimate, Index i) {
+  const auto tell = [&](ParameterEstimate& estimate, Index i) {
     estimate.value = fit.parameters[i];
     estimate.standard_error = fit.standard_error(i);
     estimate.half_width = factor * estimate.standard_error;
   };
   tell(out.delay, 0);
   for (std::size_t i = 0; i < 3; ++i) tell(out.gyro_offset[i], static_cast<Index>(i) + 1);
-  out.told = fit.converged && out.delay.half_width < kToldS;
+  out.identified = fit.converged && out.delay.half_width < kToldS;
   return out;
 }
 

@@ -16,13 +16,13 @@
 namespace swiftlet::identification {
 
 struct PoseTiming {
-  bool told = false;                    // there were poses enough, and the vehicle turned enough
-  Estimate delay;                       // T, s: positive where poses are stamped late
-  std::array<Estimate, 3> gyro_offset;  // rad/s
+  bool identified = false;                       // there were poses enough, and the vehicle turned enough
+  ParameterEstimate delay;                       // T, s: positive where poses are stamped late
+  std::array<ParameterEstimate, 3> gyro_offset;  // rad/s
 };
 
 // By stretches of one flight. Throws BadData where poses turn otherwise than the gyro, whatever the delay: by
 // another unit, or frame, or clock.
-PoseTiming find_pose_timing(const FlightLog& log, const std::vector<Rows>& stretches);
+PoseTiming find_pose_timing(const FlightLog& log, const std::vector<Rows>& segments);
 
 }  // namespace swiftlet::identification

@@ -38,7 +38,7 @@ control::RptSettings read_rpt(const ConfigNode& node) {
   rpt.omega_n = node.at("omega_n").number();
   rpt.zeta = node.at("zeta").number();
   rpt.epsilon = node.at("epsilon").number();
-  rpt.k_i = node.at("k_i").number();
+  rpt.integral_pole = node.at("integral_pole").number();
   return rpt;
 }
 
@@ -94,17 +94,17 @@ control::DetectorSettings read_detectors(const ConfigNode& node) {
   detectors.imu_silence.body_rate = imu_silence.at("body_rate_rad_s").number();
   detectors.imu_silence.turn_rad = imu_silence.at("turn_rad").number();
   detectors.imu_silence.turn_sigmas = imu_silence.at("turn_sigmas").number();
-  const ConfigNode motion_trial = node.at("motion_trial");
-  detectors.motion_trial.interval_s = motion_trial.at("interval_s").number();
-  detectors.motion_trial.acceleration = motion_trial.at("acceleration_m_s2").number();
-  detectors.motion_trial.turn_rad = motion_trial.at("turn_rad").number();
-  detectors.motion_trial.sigmas = motion_trial.at("sigmas").number();
-  const ConfigNode climb_watch = node.at("climb_watch");
-  detectors.climb_watch.memory_s = climb_watch.at("memory_s").number();
-  detectors.climb_watch.felt_m = climb_watch.at("felt_m").number();
-  detectors.climb_watch.seen_part = climb_watch.at("seen_part").number();
-  detectors.climb_watch.clearly_seen_m = climb_watch.at("clearly_seen_m").number();
-  detectors.climb_watch.longest_s = climb_watch.at("longest_s").number();
+  const ConfigNode pose_imu_consistency = node.at("pose_imu_consistency");
+  detectors.pose_imu_consistency.interval_s = pose_imu_consistency.at("interval_s").number();
+  detectors.pose_imu_consistency.acceleration = pose_imu_consistency.at("acceleration_m_s2").number();
+  detectors.pose_imu_consistency.turn_rad = pose_imu_consistency.at("turn_rad").number();
+  detectors.pose_imu_consistency.sigmas = pose_imu_consistency.at("sigmas").number();
+  const ConfigNode takeoff_consistency = node.at("takeoff_consistency");
+  detectors.takeoff_consistency.memory_s = takeoff_consistency.at("memory_s").number();
+  detectors.takeoff_consistency.felt_m = takeoff_consistency.at("felt_m").number();
+  detectors.takeoff_consistency.seen_part = takeoff_consistency.at("seen_part").number();
+  detectors.takeoff_consistency.clearly_seen_m = takeoff_consistency.at("clearly_seen_m").number();
+  detectors.takeoff_consistency.longest_s = takeoff_consistency.at("longest_s").number();
   const ConfigNode recovery = node.at("recovery");
   detectors.recovery.max_lead_s = recovery.at("max_lead_s").number();
   detectors.recovery.glitch_poses = read_count(recovery.at("glitch_poses"));

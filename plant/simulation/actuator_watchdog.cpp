@@ -53,8 +53,8 @@ ObeyedCommand ActuatorWatchdog::obeyed() const {
   return {true, last_stamp_ns_.has_value(), term_, last_stamp_ns_.value_or(0)};
 }
 
-const RotorDrive& ActuatorWatchdog::drive(std::int64_t now_ns) const {
-  static constexpr RotorDrive kOff;
+const MotorCommand& ActuatorWatchdog::drive(std::int64_t now_ns) const {
+  static constexpr MotorCommand kOff;
   return expired(now_ns) ? kOff : drive_;
 }
 

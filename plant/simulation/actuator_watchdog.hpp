@@ -31,7 +31,7 @@ class ActuatorWatchdog {
 
   // What the rotors are to do at now_ns: the last command, or off if it answers a sample older than the
   // time-out.
-  const RotorDrive& drive(std::int64_t now_ns) const;
+  const MotorCommand& drive(std::int64_t now_ns) const;
 
   // A command has been accepted, and it is older than the time-out.
   bool expired(std::int64_t now_ns) const;
@@ -44,7 +44,7 @@ class ActuatorWatchdog {
   std::int64_t timeout_ns_;
   std::optional<std::int64_t> last_stamp_ns_;
   std::uint32_t term_ = 0;
-  RotorDrive drive_;
+  MotorCommand drive_;
 };
 
 }  // namespace swiftlet::plant

@@ -69,7 +69,8 @@ Dynamics::Dynamics(const Vehicle& vehicle, const Supply& supply)
 }
 
 // Eq. (9); a rotor that is off gets no voltage at all.
-inline double Dynamics::armature_voltage(double supply_voltage_v, const RotorDrive& drive, int rotor) const {
+inline double Dynamics::armature_voltage(double supply_voltage_v, const MotorCommand& drive,
+                                         int rotor) const {
   if (drive.state != RotorState::kRunning) return 0.0;
   return motor_voltage(esc_, supply_voltage_v, drive.throttle[static_cast<std::size_t>(rotor)]);
 }
@@ -89,7 +90,7 @@ inline Vector3d Dynamics::air_force_ned(const Vector3d& velocity_ned, const Vect
   return disturbance_.force_ned - linear_drag_ * (velocity_ned - wind_ned);
 }
 
-Dynamics::State Dynamics::derivative(const State& x, const RotorDrive& drive, const Vector3d& wind_ned,
+Dynamics::State Dynamics::derivative(const State& x, const MotorCommand& drive, const Vector3d& wind_ned,
                                      const OpenCircuit& open_circuit) const {
   State dx = State::Zero();
 
@@ -129,7 +130,7 @@ Dynamics::State Dynamics::derivative(const State& x, const RotorDrive& drive, co
   return dx;
 }
 
-void Dynamics::advance(VehicleState& state, const RotorDrive& drive, const Vector3d& wind_ned,
+void Dynamics::advance(VehicleState& state, const MotorCommand& drive, const Vector3d& wind_ned,
                        double dt) const {
   const int steps = dt <= max_step_s_ ? 1 : static_cast<int>(std::ceil(dt / max_step_s_));
   const double h = dt / steps;
@@ -159,7 +160,7 @@ double Dynamics::supply_voltage(const VehicleState& state) const {
   return std::max(open_circuit(state.state_of_charge).voltage(state.state_of_charge) - state.sag_v, 0.0);
 }
 
-double Dynamics::supply_current(const VehicleState& state, const RotorDrive& drive) const {
+double Dynamics::supply_current(const VehicleState& state, const MotorCommand& drive) const {
   const double v_s = supply_voltage(state);
   const PerRotor currents_a =
       motor_.has_current_state() ? state.armature_currents : settled_currents(state, drive);
@@ -170,7 +171,7 @@ double Dynamics::supply_current(const VehicleState& state, const RotorDrive& dri
   return supply_current(v_s, power_w);
 }
 
-PerRotor Dynamics::settled_currents(const VehicleState& state, const RotorDrive& drive) const {
+PerRotor Dynamics::settled_currents(const VehicleState& state, const MotorCommand& drive) const {
   const double v_s = supply_voltage(state);
   PerRotor currents_a{};
   for (int i = 0; i < rotor_count_; ++i) {

@@ -46,7 +46,7 @@ class Dynamics {
 
   // Brings the state forward by dt > 0 in as few equal Runge-Kutta steps as max_step_s() allows, with drive
   // and wind held.
-  void advance(VehicleState& state, const RotorDrive& drive, const Eigen::Vector3d& wind_ned,
+  void advance(VehicleState& state, const MotorCommand& drive, const Eigen::Vector3d& wind_ned,
                double dt) const;
 
   // A third of the smallest of the time constants tau_a = L_a / R_a (with inductance), tau_m and the
@@ -58,11 +58,11 @@ class Dynamics {
 
   // At the battery's terminals, motors and electronics together.
   double supply_voltage(const VehicleState& state) const;
-  double supply_current(const VehicleState& state, const RotorDrive& drive) const;
+  double supply_current(const VehicleState& state, const MotorCommand& drive) const;
 
   // Armature currents that belong to these speeds when the voltages have stood for long against tau_a, i_a =
   // (v_a - e) / R_a.
-  PerRotor settled_currents(const VehicleState& state, const RotorDrive& drive) const;
+  PerRotor settled_currents(const VehicleState& state, const MotorCommand& drive) const;
 
   int rotor_count() const { return rotor_count_; }
 
@@ -82,11 +82,11 @@ class Dynamics {
 
   static State pack(const VehicleState& state);
   static void unpack(const State& x, VehicleState& state);
-  State derivative(const State& x, const RotorDrive& drive, const Eigen::Vector3d& wind_ned,
+  State derivative(const State& x, const MotorCommand& drive, const Eigen::Vector3d& wind_ned,
                    const OpenCircuit& open_circuit) const;
   OpenCircuit open_circuit(double state_of_charge) const;
 
-  double armature_voltage(double supply_voltage_v, const RotorDrive& drive, int rotor) const;
+  double armature_voltage(double supply_voltage_v, const MotorCommand& drive, int rotor) const;
   double supply_current(double supply_voltage_v, double power_w) const;
   // Thrust along -z of FRD, N, and moments, N m.
   Eigen::Vector4d rotor_wrench(int rotor, double speed) const;

@@ -46,7 +46,7 @@ double GroundContact::clearance(const VehicleState& state) const {
   return floor_z_ - state.position_ned.z() - lowest;
 }
 
-bool GroundContact::resolve(const Place& before, VehicleState& after, double dt,
+bool GroundContact::resolve(const ContactState& before, VehicleState& after, double dt,
                             Eigen::Vector3d& acceleration_ned) {
   const auto count = static_cast<std::size_t>(point_count_);
   const Eigen::Matrix3d rotation = before.q_ned_from_frd.toRotationMatrix();

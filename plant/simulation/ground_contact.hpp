@@ -19,7 +19,7 @@ class GroundContact {
  public:
   GroundContact(const Vehicle& vehicle, const GroundSettings& settings);
 
-  struct Place {
+  struct ContactState {
     Eigen::Vector3d position_ned;  // m
     Eigen::Quaterniond q_ned_from_frd;
   };
@@ -30,7 +30,7 @@ class GroundContact {
   // Corrects a step of free flight to after that took dt, from where the vehicle was before. Returns true
   // if the floor bore load; then acceleration_ned is what it added to the body's acceleration over the
   // step, m/s^2.
-  bool resolve(const Place& before, VehicleState& after, double dt, Eigen::Vector3d& acceleration_ned);
+  bool resolve(const ContactState& before, VehicleState& after, double dt, Eigen::Vector3d& acceleration_ned);
 
   // m NED, of the floor, down from the origin: the leg height.
   double floor_z_ned() const { return floor_z_; }

@@ -55,7 +55,7 @@ PlantSimulation::PlantSimulation(const Vehicle& vehicle, const SimulationSetting
   sample({});
 }
 
-void PlantSimulation::step(const RotorDrive& drive) {
+void PlantSimulation::step(const MotorCommand& drive) {
   if (stamp_ns_ >= fault_change_ns_) change_faults();
   air_.advance();
   wind_ned_ = air_.wind_ned() + fault_wind_ned_;
@@ -90,7 +90,7 @@ void PlantSimulation::change_faults() {
   fault_change_ns_ = faults_.next_change_ns(stamp_ns_);
 }
 
-void PlantSimulation::sample(const RotorDrive& drive) {
+void PlantSimulation::sample(const MotorCommand& drive) {
   imu_sample_.reset();
   battery_sample_.reset();
   rotor_speed_sample_.reset();

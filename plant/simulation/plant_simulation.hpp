@@ -16,13 +16,13 @@
 
 #include "swiftlet/plant/model/samples.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
-#include "swiftlet/plant/simulation/air.hpp"
 #include "swiftlet/plant/simulation/dynamics.hpp"
 #include "swiftlet/plant/simulation/ground_contact.hpp"
 #include "swiftlet/plant/simulation/imu.hpp"
 #include "swiftlet/plant/simulation/links/faults.hpp"
 #include "swiftlet/plant/simulation/settings.hpp"
 #include "swiftlet/plant/simulation/vehicle_state.hpp"
+#include "swiftlet/plant/simulation/wind_model.hpp"
 
 namespace swiftlet::plant {
 
@@ -35,7 +35,7 @@ class PlantSimulation {
                   const VehicleState& initial = {});
 
   // One integration step with the drive held. Throttles must lie within 0 .. 1: ActuatorWatchdog sees to it.
-  void step(const RotorDrive& drive);
+  void step(const MotorCommand& drive);
 
   std::int64_t stamp_ns() const { return stamp_ns_; }
   const VehicleState& state() const { return state_; }
@@ -67,13 +67,13 @@ class PlantSimulation {
   };
 
   void change_faults();
-  void sample(const RotorDrive& drive);
+  void sample(const MotorCommand& drive);
   void sample_imu();
   Eigen::Vector3d specific_force_frd();
 
   Dynamics dynamics_;
   GroundContact ground_;
-  Air air_;
+  WindModel air_;
   Imu imu_;
   std::int64_t step_ns_;
   double step_s_;

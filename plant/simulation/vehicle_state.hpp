@@ -20,7 +20,7 @@ struct VehicleState {
 };
 
 // What the ESCs are told.
-struct RotorDrive {
+struct MotorCommand {
   RotorState state = RotorState::kOff;  // kOff: v_a = 0
   PerRotor throttle{};                  // delta of Eq. (8), 0 .. 1
 };

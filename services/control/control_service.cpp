@@ -30,24 +30,24 @@ std::uint64_t random_number() {
 }  // namespace
 
 ControlService::ControlService(const plant::Vehicle& vehicle, const control::ControlSettings& settings,
-                               int strength, comms::Node& node, const runtime::RealtimeSettings& realtime,
-                               runtime::Clock clock)
+                               int failover_priority, comms::Node& node,
+                               const runtime::RealtimeSettings& realtime, runtime::Clock clock)
     : controller_(random_number()),
       clock_(clock),
       realtime_(realtime),
       loop_(vehicle, settings),
       desk_(loop_, settings.limits, wake_),
       telemetry_(loop_, desk_, settings.failsafe, node, controller_),
-      succession_(controller_, strength),
+      succession_(controller_, failover_priority),
       reports_(node.publish(topics::kControllerState)),
       commands_(node.publish(topics::kActuatorCommand, succession_.next_term())),
       wanted_strength_(succession_.next_term()),
       active_heard_ns_(runtime::monotonic_ns()),
       offered_strength_(succession_.next_term()) {
   report_.controller = controller_;
-  report_.strength = strength;
+  report_.failover_priority = failover_priority;
   report_.rotor_count = vehicle.rotor_count();
-  desk_.attend(clock == runtime::Clock::kLockstep);
+  desk_.set_active(clock == runtime::Clock::kLockstep);
   subscribe(node, clock);
 }
 
@@ -110,8 +110,8 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
 
 // Hands a good sample to the inner loop.
 template <class Message, class Sample>
-std::function<void(const Message&)> ControlService::deliver(runtime::Mailbox<Sample>& mailbox,
-                                                            comms::FaultLog& faults) {
+std::function<void(const Message&)> ControlService::deliver(runtime::LatestValue<Sample>& mailbox,
+                                                            comms::ThrottledWarning& faults) {
   return [&mailbox, &faults](const Message& message) {
     Sample sample;
     const comms::Fault fault = comms::from_message(message, sample);
@@ -122,8 +122,8 @@ std::function<void(const Message&)> ControlService::deliver(runtime::Mailbox<Sam
 
 // Number 0, motion capture's sign of life before its first frame, is never new.
 template <class Message, class Sample>
-std::function<void(const Message&)> ControlService::deliver_in_lockstep(runtime::Mailbox<Sample>& mailbox,
-                                                                        comms::FaultLog& faults,
+std::function<void(const Message&)> ControlService::deliver_in_lockstep(runtime::LatestValue<Sample>& mailbox,
+                                                                        comms::ThrottledWarning& faults,
                                                                         LockstepGate::Stream stream) {
   return [this, stream, take = deliver<Message>(mailbox, faults)](const Message& message) {
     const std::lock_guard<std::mutex> lock(gate_mutex_);
@@ -149,14 +149,14 @@ void ControlService::on_controller_state(const msg::ControllerState& message) {
   if (other.active) {
     active_heard_ns_.store(now_ns, std::memory_order_relaxed);
     if (!active_.load(std::memory_order_relaxed)) {
-      Handover handover;
+      FailoverState handover;
       handover.term = other.term;
       handover.flight = other.flight;
       desk_.follow(handover);
     }
   }
-  heartbeats_.push(
-      {other.controller, other.strength, other.term, other.active ? Role::kActive : Role::kStandby, now_ns});
+  heartbeats_.push({other.controller, other.failover_priority, other.term,
+                    other.active ? Role::kActive : Role::kStandby, now_ns});
 }
 
 Role ControlService::take_role(const msg::Imu& message) {
@@ -165,13 +165,13 @@ Role ControlService::take_role(const msg::Imu& message) {
   const std::int64_t now_ns = runtime::monotonic_ns();
   const Role role = succession_.sample(message.stamp_ns(), comms::obeyed_command(message), now_ns);
   const bool active = role == Role::kActive;
-  desk_.attend(active);
+  desk_.set_active(active);
   active_.store(active, std::memory_order_relaxed);
   wanted_strength_.store(active ? succession_.term() : succession_.next_term(), std::memory_order_relaxed);
   if (role != before) {
     if (!active) stepped_down_ns_.store(now_ns, std::memory_order_relaxed);
     const bool flew = message.commands() == msg::Imu_Constants::COMMANDS_OBEYED;
-    if (active && flew && !succession_.continues()) loop_.look_for_flight();
+    if (active && flew && !succession_.continues()) loop_.attempt_restart_in_air();
   }
   return role;
 }
@@ -202,7 +202,7 @@ void ControlService::on_imu_in_lockstep(const msg::Imu& message) {
 
 // One that finds no room is said again.
 void ControlService::on_ground_link(const msg::GroundLink& message) {
-  control::GroundSign sign;
+  control::GroundHeartbeat sign;
   const comms::Fault fault = comms::from_message(message, sign);
   if (fault) return ground_link_faults_.note(fault);
   loop_.ground_signs.push(sign);
@@ -262,7 +262,7 @@ void ControlService::offer_strength() {
 void ControlService::attend_to_those_who_are_alone() {
   const std::int64_t last_ns =
       std::max(loop_.last_arrival_ns(), active_heard_ns_.load(std::memory_order_relaxed));
-  if (runtime::monotonic_ns() - last_ns > kAloneNs) desk_.attend(true);
+  if (runtime::monotonic_ns() - last_ns > kAloneNs) desk_.set_active(true);
 }
 
 }  // namespace swiftlet::services

@@ -9,13 +9,13 @@
 
 #include <boost/lockfree/spsc_queue.hpp>
 
+#include "swiftlet/services/control/command_server.hpp"
+#include "swiftlet/services/control/failover.hpp"
 #include "swiftlet/services/control/inner_loop.hpp"
 #include "swiftlet/services/control/lockstep_gate.hpp"
-#include "swiftlet/services/control/request_desk.hpp"
-#include "swiftlet/services/control/succession.hpp"
 #include "swiftlet/services/control/telemetry.hpp"
-#include "swiftlet/services/dds/fault_log.hpp"
 #include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/dds/throttled_warning.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/runtime/clock.hpp"
 #include "swiftlet/services/runtime/realtime.hpp"
@@ -24,7 +24,7 @@
 namespace swiftlet::services {
 
 // Any number of them may fly one vehicle: one acts, the others step along with the same samples, follow the
-// state of its flight and take over when it falls silent (Succession). In lockstep there is one alone.
+// state of its flight and take over when it falls silent (Failover). In lockstep there is one alone.
 //
 // Threads: the IMU's own runs the inner loop and sends the command before it returns; poses, missions and
 // trajectories arrive in their own, all else in one that is shared; run() is telemetry's. In lockstep the
@@ -33,8 +33,9 @@ class ControlService {
  public:
   // Throws std::invalid_argument as FlightController does, std::runtime_error as Node does. strength: of
   // several standbys the strongest takes over first.
-  ControlService(const plant::Vehicle& vehicle, const control::ControlSettings& settings, int strength,
-                 comms::Node& node, const runtime::RealtimeSettings& realtime, runtime::Clock clock);
+  ControlService(const plant::Vehicle& vehicle, const control::ControlSettings& settings,
+                 int failover_priority, comms::Node& node, const runtime::RealtimeSettings& realtime,
+                 runtime::Clock clock);
 
   void run(const std::atomic<bool>& stop);
   void wake() { wake_.post(); }
@@ -58,10 +59,11 @@ class ControlService {
   void offer_strength();
   bool is_realtime() const;
   template <class Message, class Sample>
-  std::function<void(const Message&)> deliver(runtime::Mailbox<Sample>& mailbox, comms::FaultLog& faults);
+  std::function<void(const Message&)> deliver(runtime::LatestValue<Sample>& mailbox,
+                                              comms::ThrottledWarning& faults);
   template <class Message, class Sample>
-  std::function<void(const Message&)> deliver_in_lockstep(runtime::Mailbox<Sample>& mailbox,
-                                                          comms::FaultLog& faults,
+  std::function<void(const Message&)> deliver_in_lockstep(runtime::LatestValue<Sample>& mailbox,
+                                                          comms::ThrottledWarning& faults,
                                                           LockstepGate::Stream stream);
 
   const std::uint64_t controller_;
@@ -69,11 +71,11 @@ class ControlService {
   runtime::RealtimeSettings realtime_;
   runtime::Semaphore wake_;
   InnerLoop loop_;
-  RequestDesk desk_;
+  CommandServer desk_;
   Telemetry telemetry_;
 
   // By the thread of the inner loop alone.
-  Succession succession_;
+  Failover succession_;
   comms::Publisher<comms::msg::ControllerState> reports_;
   comms::ControllerReport report_;
   comms::msg::ActuatorCommand last_answer_;
@@ -92,12 +94,12 @@ class ControlService {
   std::mutex gate_mutex_;  // in lockstep: of the inner loop and all that it takes in
   LockstepGate gate_;
 
-  comms::FaultLog pose_faults_{"mocap_pose"};
-  comms::FaultLog battery_faults_{"battery"};
-  comms::FaultLog rotor_speed_faults_{"rotor_speeds"};
-  comms::FaultLog setpoint_faults_{"setpoint"};
-  comms::FaultLog controller_faults_{"controller_state"};
-  comms::FaultLog ground_link_faults_{"ground_link"};
+  comms::ThrottledWarning pose_faults_{"mocap_pose"};
+  comms::ThrottledWarning battery_faults_{"battery"};
+  comms::ThrottledWarning rotor_speed_faults_{"rotor_speeds"};
+  comms::ThrottledWarning setpoint_faults_{"setpoint"};
+  comms::ThrottledWarning controller_faults_{"controller_state"};
+  comms::ThrottledWarning ground_link_faults_{"ground_link"};
 
   std::vector<comms::Subscription> subscriptions_;  // last: their callbacks use what stands above
 };

@@ -57,7 +57,7 @@ void InnerLoop::take_setpoint(const control::Setpoint& new_setpoint) {
 }
 
 void InnerLoop::follow(std::uint32_t term) {
-  Handover newest;
+  FailoverState newest;
   if (!handover.take(newest)) return;
   if (newest.term == term) {
     controller_.adopt(newest.flight, newest.mission, newest.trajectory);
@@ -81,12 +81,13 @@ void InnerLoop::look(const plant::ImuSample& sample) {
   const bool over = sample.stamp_ns - looks_since_ns_ > kLookNs;
   const bool rotors_known = rotor_samples_ >= kRotorSamples || over;
   if (!rotors_known) return;
-  const bool stands = !controller_.feels_airborne();
-  if (stands || over || controller_.find_flying()) looks_since_ns_ = kLooksNot;
+  const bool stands = !controller_.detects_airborne();
+  if (stands || over || controller_.engage_in_flight()) looks_since_ns_ = kLooksNot;
 }
 
 void InnerLoop::hear_ground() {
-  ground_signs.consume_all([this](const control::GroundSign& sign) { controller_.on_ground_sign(sign); });
+  ground_signs.consume_all(
+      [this](const control::GroundHeartbeat& sign) { controller_.on_ground_sign(sign); });
 }
 
 void InnerLoop::judge_requests() {

@@ -8,11 +8,11 @@
 #include <boost/lockfree/spsc_queue.hpp>
 
 #include "swiftlet/control/flight_controller.hpp"
+#include "swiftlet/services/control/failover.hpp"
 #include "swiftlet/services/control/pending_request.hpp"
 #include "swiftlet/services/control/step_timing.hpp"
-#include "swiftlet/services/control/succession.hpp"
 #include "swiftlet/services/messages/convert.hpp"
-#include "swiftlet/services/runtime/mailbox.hpp"
+#include "swiftlet/services/runtime/latest_value.hpp"
 
 namespace swiftlet::services {
 
@@ -42,7 +42,7 @@ struct Snapshot {
 };
 
 // The active controller's flight, for a standby to follow.
-struct Handover {
+struct FailoverState {
   std::uint64_t number = 0;  // counts up from 1
   std::uint32_t term = 0;
   control::FlightState flight;
@@ -57,14 +57,14 @@ class InnerLoop {
   InnerLoop(const plant::Vehicle& vehicle, const control::ControlSettings& settings);
 
   // Input, from one thread each; of samples, the newest counts.
-  runtime::Mailbox<plant::PoseSample> pose;
-  runtime::Mailbox<plant::BatterySample> battery;
-  runtime::Mailbox<plant::RotorSpeedSample> rotor_speeds;
-  runtime::Mailbox<control::Setpoint> setpoint;
-  runtime::Mailbox<Handover> handover;
+  runtime::LatestValue<plant::PoseSample> pose;
+  runtime::LatestValue<plant::BatterySample> battery;
+  runtime::LatestValue<plant::RotorSpeedSample> rotor_speeds;
+  runtime::LatestValue<control::Setpoint> setpoint;
+  runtime::LatestValue<FailoverState> handover;
   boost::lockfree::spsc_queue<PendingRequest*, boost::lockfree::capacity<kMaxPendingRequests>> requests;
 
-  boost::lockfree::spsc_queue<control::GroundSign, boost::lockfree::capacity<32>> ground_signs;
+  boost::lockfree::spsc_queue<control::GroundHeartbeat, boost::lockfree::capacity<32>> ground_signs;
 
   // Output, to one thread. When snapshots are not taken, the newest are lost.
   boost::lockfree::spsc_queue<PendingRequest*, boost::lockfree::capacity<kMaxPendingRequests>> judged;
@@ -81,7 +81,7 @@ class InnerLoop {
   // Nobody was there to go on from: from the next step on looks whether the vehicle flies, and takes it into
   // hold if it does. Until that is clear, for at most kLook, there are no commands to be sent: the vehicle
   // goes on with its last one.
-  void look_for_flight() { looks_since_ns_ = kLooksFromNow; }
+  void attempt_restart_in_air() { looks_since_ns_ = kLooksFromNow; }
   bool looking() const { return looks_since_ns_ != kLooksNot; }
   static constexpr std::int64_t kLookNs = 300'000'000;
 

@@ -27,7 +27,7 @@ constexpr std::chrono::milliseconds kLook{100};  // how often the main thread lo
 struct Options {
   std::string vehicle = "vehicles/kaylion.yaml";
   std::string control = "control/motor_lag.yaml";
-  int strength = 0;
+  int failover_priority = 0;
   runtime::Clock clock = runtime::Clock::kRealtime;
   comms::NodeSettings node;
   runtime::ProcessOptions process;
@@ -36,7 +36,7 @@ struct Options {
 void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--vehicle", options.vehicle, "Vehicle file").show_default();
   app.add_option("--control", options.control, "Control settings file").show_default();
-  app.add_option("--strength", options.strength,
+  app.add_option("--failover-priority", options.failover_priority,
                  "Of several controllers one acts; when it fails, the strongest of the others takes over")
       .range(0, 1000)
       .show_default();
@@ -60,9 +60,9 @@ void run(const Options& options) {
   node_settings.deadlines = options.clock == runtime::Clock::kRealtime;
   comms::Node node(node_settings);
   comms::log_peers(node);
-  ControlService service(vehicle, settings, options.strength, node, realtime, options.clock);
-  spdlog::info("ready: {} with {} control, vehicle {}, domain {}, strength {}", vehicle.name, settings.name,
-               node_settings.vehicle, node_settings.domain, options.strength);
+  ControlService service(vehicle, settings, options.failover_priority, node, realtime, options.clock);
+  spdlog::info("ready: {} with {} control, vehicle {}, domain {}, failover priority {}", vehicle.name,
+               settings.name, node_settings.vehicle, node_settings.domain, options.failover_priority);
 
   std::atomic<bool> telemetry_ends{false};
   std::thread telemetry([&] { service.run(telemetry_ends); });

@@ -26,7 +26,7 @@ bool is_over(control::MissionState state) {
 
 }  // namespace
 
-Telemetry::Telemetry(InnerLoop& loop, RequestDesk& desk, const control::FailsafeSettings& thresholds,
+Telemetry::Telemetry(InnerLoop& loop, CommandServer& desk, const control::FailsafeSettings& thresholds,
                      comms::Node& node, std::uint64_t controller)
     : loop_(loop),
       desk_(desk),
@@ -51,12 +51,12 @@ void Telemetry::open() {
 
 void Telemetry::tell() {
   loop_.snapshots.consume_all([this](const Snapshot& snapshot) { take(snapshot); });
-  const std::vector<RequestAnswer> answers = desk_.collect();
+  const std::vector<RequestResult> answers = desk_.collect();
   if (last_.role == Role::kActive) publish_plan();  // before its acceptance is told
   answer_requests(answers);
   const std::int64_t now_ns = runtime::monotonic_ns();
   if (watches_imu_) log_imu_silence(now_ns);
-  if (!desk_.attends()) return;
+  if (!desk_.active()) return;
   if (now_ns >= status_due_ns_) publish_status();
   if (now_ns >= mission_due_ns_) publish_mission();
 }
@@ -185,8 +185,8 @@ void Telemetry::publish_mission() {
   mission_due_ns_ = runtime::monotonic_ns() + kMissionPeriodNs;
 }
 
-void Telemetry::answer_requests(const std::vector<RequestAnswer>& answers) {
-  for (const RequestAnswer& answer : answers) {
+void Telemetry::answer_requests(const std::vector<RequestResult>& answers) {
+  for (const RequestResult& answer : answers) {
     comms::msg::CommandAck ack;
     ack.client(answer.client);
     ack.id(answer.id);

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "swiftlet/services/control/command_server.hpp"
 #include "swiftlet/services/control/inner_loop.hpp"
-#include "swiftlet/services/control/request_desk.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::services {
@@ -14,7 +14,7 @@ namespace swiftlet::services {
 class Telemetry {
  public:
   // thresholds: which others are told; controller: the random number of this one.
-  Telemetry(InnerLoop& loop, RequestDesk& desk, const control::FailsafeSettings& thresholds,
+  Telemetry(InnerLoop& loop, CommandServer& desk, const control::FailsafeSettings& thresholds,
             comms::Node& node, std::uint64_t controller);
 
   // Says what is new or due. By one thread, again and again.
@@ -29,14 +29,14 @@ class Telemetry {
   void take(const Snapshot& snapshot);
   void change_role();
   void publish_plan();
-  void answer_requests(const std::vector<RequestAnswer>& answers);
+  void answer_requests(const std::vector<RequestResult>& answers);
   void log_imu_silence(std::int64_t now_ns);
   void publish_sampled(const Snapshot& snapshot);
   void publish_status();
   void publish_mission();
 
   InnerLoop& loop_;
-  RequestDesk& desk_;
+  CommandServer& desk_;
   const control::FailsafeSettings thresholds_;
   comms::Node& node_;
   const std::uint64_t controller_;

@@ -39,14 +39,14 @@
 #include "swiftlet_msgs/msg/TrajectoryPubSubTypes.h"
 #include "swiftlet_msgs/msg/VehicleInfoPubSubTypes.h"
 
-#include "swiftlet/services/dds/discovery/reunions.hpp"
-#include "swiftlet/services/dds/lookout.hpp"
-#include "swiftlet/services/dds/membership.hpp"
+#include "swiftlet/services/dds/checked_type_support.hpp"
+#include "swiftlet/services/dds/discovery/rediscovery_monitor.hpp"
 #include "swiftlet/services/dds/participant_qos.hpp"
+#include "swiftlet/services/dds/participant_session.hpp"
+#include "swiftlet/services/dds/periodic_task.hpp"
 #include "swiftlet/services/dds/profiles.hpp"
 #include "swiftlet/services/dds/qos_conflicts.hpp"
 #include "swiftlet/services/dds/shared_memory.hpp"
-#include "swiftlet/services/dds/tolerant_type.hpp"
 
 // Each message type that is a topic's.
 // clang-format off
@@ -109,7 +109,7 @@ std::string named(const std::string& name, const rtps::GuidPrefix_t& participant
 }  // namespace
 
 struct Participant::Impl final : public dds::DomainParticipantListener {
-  using Meetings = Reunions<rtps::GuidPrefix_t>;
+  using Meetings = RediscoveryMonitor<rtps::GuidPrefix_t>;
   struct RemoteEndpoint {
     std::string topic;
     EndpointQos qos;
@@ -130,7 +130,7 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
     settings.vehicle = vehicle;
     check(settings);
     if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
-    membership = std::make_unique<Membership>(settings, this);
+    membership = std::make_unique<ParticipantSession>(settings, this);
     lookout.emplace(kLookPeriod, [this] {
       look_after_reunions();
       tell_conflicts_due();
@@ -159,7 +159,7 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
       }
       served = settings.vehicle;
     }
-    if (membership != nullptr) membership->tell_vehicles(settings);
+    if (membership != nullptr) membership->announce_vehicles(settings);
   }
 
   void add(Endpoint* endpoint) {
@@ -187,7 +187,7 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
     const std::lock_guard<std::mutex> lock(membership_mutex);
     leave();
     try {
-      membership = std::make_unique<Membership>(settings, this);
+      membership = std::make_unique<ParticipantSession>(settings, this);
       for (Endpoint* const endpoint : endpoints) endpoint->join(*membership);
       return !away.exchange(false);
     } catch (const std::runtime_error& error) {
@@ -210,9 +210,9 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
   }
 
   template <class T>
-  dds::Topic* topic_in(Membership& in, const std::string& vehicle, const char* name) const {
+  dds::Topic* topic_in(ParticipantSession& in, const std::string& vehicle, const char* name) const {
     return in.topic("rt/" + vehicle + "/" + name,
-                    dds::TypeSupport(new TolerantType<typename PubSubTypeOf<T>::type>()));
+                    dds::TypeSupport(new CheckedTypeSupport<typename PubSubTypeOf<T>::type>()));
   }
   int deadline_ms(int of_topic) const { return settings.deadlines ? of_topic : 0; }
 
@@ -346,7 +346,7 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
 
   std::mutex membership_mutex;  // of these, but what never changes in the settings
   NodeSettings settings;        // vehicle: the names of all that are served
-  std::unique_ptr<Membership> membership;
+  std::unique_ptr<ParticipantSession> membership;
   std::vector<Endpoint*> endpoints;
 
   std::mutex peers_mutex;
@@ -361,7 +361,7 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
   Meetings reunions;
 
   std::atomic<bool> away{false};  // it could not join anew
-  std::optional<Lookout> lookout;
+  std::optional<PeriodicTask> lookout;
 };
 
 namespace {
@@ -386,7 +386,7 @@ class DdsWriter final : public detail::Writer, private Endpoint {
       const std::lock_guard<std::mutex> lock(last_mutex_);
       last_ = *static_cast<const T*>(sample);
     }
-    const typename Handle<dds::DataWriter>::Use writer(writer_);
+    const typename GuardedPointer<dds::DataWriter>::Use writer(writer_);
     if (!writer) return false;
     void* const data = const_cast<void*>(sample);  // serialized before write() returns, not altered
     if (writer->write(data)) return true;
@@ -398,7 +398,7 @@ class DdsWriter final : public detail::Writer, private Endpoint {
 
   void set_strength(std::uint32_t strength) override {
     strength_ = strength;
-    const typename Handle<dds::DataWriter>::Use writer(writer_);
+    const typename GuardedPointer<dds::DataWriter>::Use writer(writer_);
     if (!writer) return;
     dds::DataWriterQos qos = writer->get_qos();
     qos.ownership_strength().value = strength;
@@ -412,7 +412,7 @@ class DdsWriter final : public detail::Writer, private Endpoint {
   }
 
  private:
-  void join(Membership& membership) override {
+  void join(ParticipantSession& membership) override {
     dds::DataWriter* const writer = membership.publisher->create_datawriter(
         node_->template topic_in<T>(membership, vehicle_, topic_.name),
         writer_qos(topic_.qos, node_->deadline_ms(topic_.deadline_ms), strength_, node_->settings.transport));
@@ -421,7 +421,7 @@ class DdsWriter final : public detail::Writer, private Endpoint {
     if (last_) writer->write(&*last_);
     writer_.give(writer);
   }
-  void leave(Membership& membership) override {
+  void leave(ParticipantSession& membership) override {
     dds::DataWriter* const writer = writer_.take();
     if (writer == nullptr) return;
     dds::PublicationMatchedStatus last;
@@ -430,7 +430,7 @@ class DdsWriter final : public detail::Writer, private Endpoint {
     membership.publisher->delete_datawriter(writer);
   }
   dds::PublicationMatchedStatus readers() const {
-    const typename Handle<dds::DataWriter>::Use writer(writer_);
+    const typename GuardedPointer<dds::DataWriter>::Use writer(writer_);
     dds::PublicationMatchedStatus status;
     if (writer) writer->get_publication_matched_status(status);
     return status;
@@ -440,7 +440,7 @@ class DdsWriter final : public detail::Writer, private Endpoint {
   const std::string vehicle_;
   const Topic<T> topic_;
   std::atomic<std::uint32_t> strength_;
-  Handle<dds::DataWriter> writer_;
+  GuardedPointer<dds::DataWriter> writer_;
   std::atomic<std::uint64_t> changes_before_{0};  // in memberships that have ended
   std::mutex last_mutex_;
   std::optional<T> last_;  // of a state, which late joiners are told
@@ -463,14 +463,14 @@ class DdsReader final : public detail::Reader, private Endpoint, private dds::Da
   DdsReader& operator=(const DdsReader&) = delete;
 
   int matched() const override {
-    const typename Handle<dds::DataReader>::Use reader(reader_);
+    const typename GuardedPointer<dds::DataReader>::Use reader(reader_);
     dds::SubscriptionMatchedStatus status;
     if (reader) reader->get_subscription_matched_status(status);
     return status.current_count;
   }
 
  private:
-  void join(Membership& membership) override {
+  void join(ParticipantSession& membership) override {
     open(true);
     dds::DataReader* const reader = membership.subscriber->create_datareader(
         node_->template topic_in<T>(membership, vehicle_, topic_.name),
@@ -479,7 +479,7 @@ class DdsReader final : public detail::Reader, private Endpoint, private dds::Da
     if (reader == nullptr) throw std::runtime_error(std::string("cannot subscribe to ") + topic_.name);
     reader_.give(reader);
   }
-  void leave(Membership& membership) override {
+  void leave(ParticipantSession& membership) override {
     dds::DataReader* const reader = reader_.take();
     if (reader == nullptr) return;
     open(false);
@@ -504,7 +504,7 @@ class DdsReader final : public detail::Reader, private Endpoint, private dds::Da
   const std::string vehicle_;
   const Topic<T> topic_;
   const Delivery delivery_;
-  Handle<dds::DataReader> reader_;
+  GuardedPointer<dds::DataReader> reader_;
   std::mutex mutex_;  // of all below; held while a callback runs
   std::function<void(const T&)> callback_;
   T sample_;

@@ -2,7 +2,7 @@
 
 namespace swiftlet::comms {
 
-bool is_kept(Qos profile) { return profile == Qos::kState || profile == Qos::kDocument; }
+bool is_kept(Qos profile) { return profile == Qos::kLatched || profile == Qos::kLatchedLarge; }
 
 namespace {
 
@@ -17,9 +17,9 @@ Duration_t duration(std::chrono::milliseconds time) {
 
 bool is_stream(Qos profile) { return profile == Qos::kStream || profile == Qos::kOwnedStream; }
 bool is_reliable(Qos profile) {
-  return profile == Qos::kState || profile == Qos::kDocument || profile == Qos::kRequest;
+  return profile == Qos::kLatched || profile == Qos::kLatchedLarge || profile == Qos::kRequest;
 }
-bool is_long(Qos profile) { return profile == Qos::kDocument || profile == Qos::kRequest; }
+bool is_long(Qos profile) { return profile == Qos::kLatchedLarge || profile == Qos::kRequest; }
 
 // What writer and reader state alike, so that they match.
 template <class EndpointQos>

@@ -275,7 +275,7 @@ msg::Setpoint to_message(const control::Setpoint& in) {
   return out;
 }
 
-Fault from_message(const msg::GroundLink& in, control::GroundSign& out) {
+Fault from_message(const msg::GroundLink& in, control::GroundHeartbeat& out) {
   Check check;
   check.at_least("client", static_cast<double>(in.client()), 1.0).time(in.stamp_ns());
   if (!check.ok()) return check.fault();

@@ -27,7 +27,7 @@ struct ControllerReport {
   std::int64_t stamp_ns = 0;
   std::uint64_t sequence = 0;
   std::uint64_t controller = 0;
-  int strength = 0;
+  int failover_priority = 0;
   std::uint32_t term = 0;
   bool active = false;
   bool ready = false;  // it can go on with the flight
@@ -46,7 +46,7 @@ Fault from_message(const msg::RotorSpeeds& in, plant::RotorSpeedSample& out);
 Fault from_message(const msg::ActuatorCommand& in, plant::ActuatorCommand& out);
 Fault from_message(const msg::GroundTruth& in, plant::TruthSample& out);
 Fault from_message(const msg::Setpoint& in, control::Setpoint& out);
-Fault from_message(const msg::GroundLink& in, control::GroundSign& out);
+Fault from_message(const msg::GroundLink& in, control::GroundHeartbeat& out);
 Fault from_message(const msg::Command& in, control::Request& out);
 Fault from_message(const msg::Mission& in, control::Mission& out);
 Fault from_message(const msg::Trajectory& in, control::Trajectory& out);

@@ -6,7 +6,7 @@ namespace {
 
 using namespace wire;
 
-constexpr std::uint64_t kMaxStrength = 1000;
+constexpr std::uint64_t kMaxFailoverPriority = 1000;
 constexpr std::size_t kReplicatedStateBytes = 1096;
 
 }  // namespace
@@ -15,7 +15,7 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
   using namespace msg;
   Check check;
   check.time(in.stamp_ns())
-      .at_most("strength", in.strength(), kMaxStrength)
+      .at_most("failover_priority", in.failover_priority(), kMaxFailoverPriority)
       .at_most("role", in.role(), ControllerState_Constants::ACTIVE)
       .at_most("mode", in.mode(), ControlStatus_Constants::MODE_STOPPED)
       .at_most("reason", in.reason(), control::kReasonCount - 1)
@@ -33,7 +33,7 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
       .at_most("mission_state", in.mission_state(), MissionStatus_Constants::PAUSED)
       .at_most("item_count", in.item_count(), control::kMaxMissionItems)
       .at_most("item_index", in.item_index(), in.item_count())
-      .at_most("detour", in.detour(), static_cast<std::uint64_t>(control::Detour::kReturning))
+      .at_most("detour", in.pause(), static_cast<std::uint64_t>(control::MissionPause::kReturning))
       .at_least("left_duration_s", in.left_duration_s(), 0.0)
       .finite("left_x", in.left_x())
       .finite("left_y", in.left_y())
@@ -57,7 +57,7 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
   out.stamp_ns = in.stamp_ns();
   out.sequence = in.sequence_number();
   out.controller = in.controller();
-  out.strength = static_cast<int>(in.strength());
+  out.failover_priority = static_cast<int>(in.failover_priority());
   out.term = in.term();
   out.active = in.role() == ControllerState_Constants::ACTIVE;
   out.ready = in.ready();
@@ -82,7 +82,7 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
   state.guidance.mission = {in.mission_id(), static_cast<control::MissionState>(in.mission_state()),
                             static_cast<int>(in.item_index()), static_cast<int>(in.item_count())};
   state.guidance.item_end_ns = in.item_end_ns();
-  state.guidance.detour = static_cast<control::Detour>(in.detour());
+  state.guidance.pause = static_cast<control::MissionPause>(in.pause());
   state.guidance.left = {{in.left_duration_s(), in.left_x(), in.left_y(), in.left_z(), in.left_yaw()},
                          in.left_start_ns(),
                          in.left_end_ns(),
@@ -123,7 +123,7 @@ msg::ControllerState to_message(const ControllerReport& in) {
   out.stamp_ns(in.stamp_ns);
   out.sequence_number(in.sequence);
   out.controller(in.controller);
-  out.strength(static_cast<std::uint32_t>(in.strength));
+  out.failover_priority(static_cast<std::uint32_t>(in.failover_priority));
   out.term(in.term);
   out.role(in.active ? msg::ControllerState_Constants::ACTIVE : msg::ControllerState_Constants::STANDBY);
   out.ready(in.ready);
@@ -154,7 +154,7 @@ msg::ControllerState to_message(const ControllerReport& in) {
   out.item_index(static_cast<std::uint32_t>(state.guidance.mission.item_index));
   out.item_count(static_cast<std::uint32_t>(state.guidance.mission.item_count));
   out.item_end_ns(state.guidance.item_end_ns);
-  out.detour(static_cast<std::uint8_t>(state.guidance.detour));
+  out.pause(static_cast<std::uint8_t>(state.guidance.pause));
   out.left_start_ns(state.guidance.left.start_ns);
   out.left_end_ns(state.guidance.left.end_ns);
   out.left_at_ns(state.guidance.left.at_ns);

@@ -6,12 +6,12 @@
 namespace swiftlet::comms {
 
 enum class Qos {
-  kStream,       // best effort, keep last 1, volatile, preallocated
-  kOwnedStream,  // a stream of which the strongest living writer is heard (exclusive ownership)
-  kTelemetry,    // best effort, keep last 1, volatile
-  kState,        // reliable, transient local, keep last 1
-  kDocument,     // a state that may be long: takes memory as it needs it
-  kRequest,      // reliable, volatile, keep all within limits
+  kStream,        // best effort, keep last 1, volatile, preallocated
+  kOwnedStream,   // a stream of which the strongest living writer is heard (exclusive ownership)
+  kTelemetry,     // best effort, keep last 1, volatile
+  kLatched,       // reliable, transient local, keep last 1
+  kLatchedLarge,  // a state that may be long: takes memory as it needs it
+  kRequest,       // reliable, volatile, keep all within limits
 };
 
 // Requests that may be under way between a writer and its readers before publish() waits, and how long it

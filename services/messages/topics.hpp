@@ -47,16 +47,16 @@ inline constexpr Topic<msg::Battery> kBattery{"battery", Qos::kTelemetry};
 inline constexpr Topic<msg::Estimate> kEstimate{"estimate", Qos::kTelemetry};
 inline constexpr Topic<msg::Reference> kReference{"reference", Qos::kTelemetry};
 inline constexpr Topic<msg::GroundTruth> kGroundTruth{"ground_truth", Qos::kTelemetry};
-inline constexpr Topic<msg::ControlStatus> kControlStatus{"control_status", Qos::kState};
-inline constexpr Topic<msg::MissionStatus> kMissionStatus{"mission_status", Qos::kState};
-inline constexpr Topic<msg::VehicleInfo> kVehicleInfo{"vehicle_info", Qos::kState};
-inline constexpr Topic<msg::GroundLink> kGroundLink{"ground_link", Qos::kState};
-inline constexpr Topic<msg::SimulationClock> kSimulationClock{"simulation_clock", Qos::kState};
+inline constexpr Topic<msg::ControlStatus> kControlStatus{"control_status", Qos::kLatched};
+inline constexpr Topic<msg::MissionStatus> kMissionStatus{"mission_status", Qos::kLatched};
+inline constexpr Topic<msg::VehicleInfo> kVehicleInfo{"vehicle_info", Qos::kLatched};
+inline constexpr Topic<msg::GroundLink> kGroundLink{"ground_link", Qos::kLatched};
+inline constexpr Topic<msg::SimulationClock> kSimulationClock{"simulation_clock", Qos::kLatched};
 inline constexpr Topic<msg::Command> kCommand{"command", Qos::kRequest};
 inline constexpr Topic<msg::Mission> kMission{"mission", Qos::kRequest};
 inline constexpr Topic<msg::Trajectory> kTrajectory{"trajectory", Qos::kRequest};
-inline constexpr Topic<msg::Mission> kFlownMission{"flown_mission", Qos::kDocument};
-inline constexpr Topic<msg::Trajectory> kFlownTrajectory{"flown_trajectory", Qos::kDocument};
+inline constexpr Topic<msg::Mission> kFlownMission{"flown_mission", Qos::kLatchedLarge};
+inline constexpr Topic<msg::Trajectory> kFlownTrajectory{"flown_trajectory", Qos::kLatchedLarge};
 inline constexpr Topic<msg::CommandAck> kCommandAck{"command_ack", Qos::kRequest};
 }  // namespace topics
 

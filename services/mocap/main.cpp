@@ -43,10 +43,11 @@ void add_options(runtime::CommandLine app, Options& options) {
 }
 
 // Runs in the thread that receives the truth.
-class Camera {
+class MotionCaptureSimulator {
  public:
-  Camera(const plant::SimulationSettings& settings, std::uint64_t seed, comms::Node& node,
-         const runtime::RealtimeSettings& realtime, runtime::Clock clock, runtime::StopSignal& stop)
+  MotionCaptureSimulator(const plant::SimulationSettings& settings, std::uint64_t seed, comms::Node& node,
+                         const runtime::RealtimeSettings& realtime, runtime::Clock clock,
+                         runtime::StopSignal& stop)
       : mocap_(settings.mocap, seed),
         path_(settings, seed),
         realtime_(realtime),
@@ -156,7 +157,7 @@ void run(const Options& options) {
   node_settings.deadlines = options.clock == runtime::Clock::kRealtime;
   comms::Node node(node_settings);
   comms::log_peers(node);
-  const Camera camera(settings, options.seed, node, realtime, options.clock, stop);
+  const MotionCaptureSimulator camera(settings, options.seed, node, realtime, options.clock, stop);
   spdlog::info("watching: vehicle {}, domain {}, frames {}, seed {}", node_settings.vehicle,
                node_settings.domain, pace(settings.mocap), options.seed);
   stop.wait();

@@ -10,8 +10,8 @@
 #include "swiftlet/plant/simulation/plant_simulation.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/messages/convert.hpp"
-#include "swiftlet/services/plant/answer_times.hpp"
-#include "swiftlet/services/runtime/mailbox.hpp"
+#include "swiftlet/services/plant/answer_latencies.hpp"
+#include "swiftlet/services/runtime/latest_value.hpp"
 
 namespace swiftlet::services {
 
@@ -70,7 +70,7 @@ class SimulatedVehicle {
   void report();
   void note_slip(std::int64_t slipped_ns);
   void note_pause(bool paused) { report_.paused = paused; }
-  runtime::Mailbox<PlantReport>& reports() { return reports_; }
+  runtime::LatestValue<PlantReport>& reports() { return reports_; }
 
  private:
   bool accept(const plant::ActuatorCommand& command);
@@ -89,8 +89,8 @@ class SimulatedVehicle {
 
   PlantReport report_;
   PlantReport told_;
-  AnswerTimes answers_;
-  runtime::Mailbox<PlantReport> reports_;
+  AnswerLatencies answers_;
+  runtime::LatestValue<PlantReport> reports_;
 
   comms::Publisher<comms::msg::Imu> imu_;
   comms::Publisher<comms::msg::GroundTruth> ground_truth_;

@@ -16,7 +16,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "swiftlet/services/dds/discovery/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/runtime/process.hpp"
 
@@ -139,7 +139,7 @@ class Fleet {
 };
 
 nlohmann::ordered_json measure(int count, const Options& options) {
-  const comms::DomainClaim claim;
+  const comms::DomainLock claim;
   const auto start = Clock::now();
   const Fleet fleet(count, claim.domain());
   const int known = fleet.wait_until_known(std::chrono::duration<double>(options.patience_s));

@@ -29,7 +29,7 @@
 #include "swiftlet_msgs/msg/ActuatorCommandPubSubTypes.h"
 #include "swiftlet_msgs/msg/ImuPubSubTypes.h"
 
-#include "swiftlet/services/dds/discovery/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/participant_qos.hpp"
 #include "swiftlet/services/dds/profiles.hpp"
 #include "swiftlet/services/runtime/latency_histogram.hpp"
@@ -280,7 +280,7 @@ class RoundTrips {
 };
 
 void over_dds(const Options& options, comms::Transport transport, int rate_hz, RoundTrips& trips) {
-  const comms::DomainClaim claim;
+  const comms::DomainLock claim;
   ThreadSetUp set_up(options.process.realtime);
   BarePlant pair(options, "plant", claim.domain(), transport, comms::topics::kImu,
                  comms::topics::kActuatorCommand, [&](const ActuatorCommand& command) {

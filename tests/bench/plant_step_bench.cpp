@@ -16,8 +16,8 @@ VehicleState hovering() {
   return state;
 }
 
-RotorDrive hover_drive() {
-  RotorDrive drive;
+MotorCommand hover_drive() {
+  MotorCommand drive;
   drive.state = RotorState::kRunning;
   drive.throttle = {0.35, 0.36, 0.35, 0.36};
   return drive;
@@ -27,7 +27,7 @@ void dynamics_step(benchmark::State& state, MotorModel model) {
   Vehicle vehicle = tests::kaylion();
   vehicle.motor.model = model;
   const Dynamics dynamics(vehicle, Supply::battery());
-  const RotorDrive drive = hover_drive();
+  const MotorCommand drive = hover_drive();
   const Eigen::Vector3d wind = Eigen::Vector3d::Zero();
   VehicleState vehicle_state = hovering();
   for (auto _ : state) {
@@ -44,7 +44,7 @@ void simulation_step(benchmark::State& state) {
   SimulationSettings settings;
   settings.ground.present = false;
   PlantSimulation plant(tests::kaylion(), settings, 1, hovering());
-  const RotorDrive drive = hover_drive();
+  const MotorCommand drive = hover_drive();
   for (auto _ : state) {
     plant.step(drive);
     benchmark::DoNotOptimize(plant.imu());

@@ -23,7 +23,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/client/client.hpp"
-#include "swiftlet/services/dds/discovery/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/runtime/child_process.hpp"
 #include "swiftlet/services/runtime/process.hpp"
 #include "tests/bench/stall_witness.hpp"
@@ -238,7 +238,7 @@ class Vehicle {
     const auto passed_s = [begin] {
       return std::chrono::duration<double>(ground::Clock::now() - begin).count();
     };
-    ground::Answer answer = client.upload(mission, 10s);
+    ground::Result answer = client.upload(mission, 10s);
     took.uploaded_s = passed_s();
     if (answer.accepted())
       answer = client.mission_command(msg::Command_Constants::MISSION_START, client.mission_id(), 10s);
@@ -276,7 +276,7 @@ class Vehicle {
 
  private:
   static void ask(ground::Client& client, const msg::Command& command) {
-    ground::Answer answer;
+    ground::Result answer;
     if (!tests::eventually([&] { return (answer = client.command(command, 3s)).accepted(); }))
       throw std::runtime_error(answer.reason);
   }
@@ -298,7 +298,7 @@ class Vehicle {
     return figures;
   }
 
-  comms::DomainClaim claim_;
+  comms::DomainLock claim_;
   comms::NodeSettings network_ = [] {
     comms::NodeSettings settings;
     settings.name = "ground";

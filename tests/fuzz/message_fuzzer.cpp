@@ -6,7 +6,7 @@
 #include <spdlog/spdlog.h>
 
 #include "swiftlet/control/planning/checks.hpp"
-#include "swiftlet/services/dds/tolerant_type.hpp"
+#include "swiftlet/services/dds/checked_type_support.hpp"
 #include "tests/fuzz/message_types.hpp"
 #include "tests/fuzz/refusal.hpp"
 
@@ -17,7 +17,7 @@ namespace {
 // The plain struct of a message, if the bytes hold one that is sound.
 template <class Type>
 bool is_taken(const std::uint8_t* data, std::size_t size, typename Type::Plain& out) {
-  static comms::TolerantType<typename Type::PubSub> type;
+  static comms::CheckedTypeSupport<typename Type::PubSub> type;
   tests::Payload payload(static_cast<std::uint32_t>(size));
   payload.length = static_cast<std::uint32_t>(size);
   std::copy_n(data, size, payload.data);

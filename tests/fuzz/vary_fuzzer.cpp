@@ -1,7 +1,7 @@
 // Vary files, and the draws from them.
 #include "swiftlet/io/settings/simulation_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
-#include "swiftlet/simulation/vary_file.hpp"
+#include "swiftlet/simulation/dispersion_file.hpp"
 #include "tests/fuzz/refusal.hpp"
 
 using namespace swiftlet;
@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml"),
       runtime::load_simulation_settings(SWIFTLET_SOURCE_DIR "/config/simulation/default.yaml")};
   tests::is_read([&] {
-    const ground::Variation variation =
+    const ground::Dispersion variation =
         ground::parse_vary_file(std::string(tests::text_of(data, size)), tests::kFuzzedFile, nominal);
     const ground::Draw draw = ground::draw(variation, nominal, 1);
     tests::demand(ground::validate(draw.world).empty(), "a world that was drawn keeps the rules");

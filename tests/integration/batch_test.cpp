@@ -30,16 +30,16 @@ const std::string kGrossMass =
 
 class SimBatch : public testing::Test {
  protected:
-  std::vector<std::string> words(const std::string& command, const std::string& vary,
+  std::vector<std::string> words(const std::string& command, const std::string& dispersion,
                                  const std::vector<std::string>& more) const {
-    std::vector<std::string> all = {"sim", command, folder_.write("hop.yaml", kHopMission), "--vary",
-                                    folder_.write("vary.yaml", vary)};
+    std::vector<std::string> all = {"sim", command, folder_.write("hop.yaml", kHopMission), "--dispersion",
+                                    folder_.write("vary.yaml", dispersion)};
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
-  Ending batch(const std::string& vary, std::vector<std::string> more) const {
+  Ending batch(const std::string& dispersion, std::vector<std::string> more) const {
     more.insert(more.end(), {"--out", out().string()});
-    return run_program("swiftlet", words("batch", vary, more), folder_.path());
+    return run_program("swiftlet", words("batch", dispersion, more), folder_.path());
   }
   fs::path out() const { return folder_.path() / "out"; }
 
@@ -75,7 +75,7 @@ TEST_F(SimBatch, AFailedRunIsRepeatedToTheLastDigit) {
   EXPECT_EQ(again.exit_code, 1) << again.errors;
   const json flight = json::parse(again.output);
   EXPECT_EQ(flight.at("reason"), failure.at("reason"));
-  EXPECT_EQ(flight.at("vary"), "vary");
+  EXPECT_EQ(flight.at("dispersion"), "vary");
   std::ifstream csv(out() / "batch.csv");
   const std::string table{std::istreambuf_iterator<char>(csv), {}};
   const std::string figures = "," + flight.at("rms_3d_m").dump() + "," + flight.at("peak_3d_m").dump() + ",";
@@ -96,9 +96,9 @@ TEST_F(SimBatch, IsCancelledAndTellsWhatIsDone) {
 }
 
 TEST_F(SimBatch, RefusesBadInputBeforeItMakesAFolder) {
-  const auto expect_refusal = [&](const std::string& vary, const std::vector<std::string>& more,
+  const auto expect_refusal = [&](const std::string& dispersion, const std::vector<std::string>& more,
                                   const std::string& sentence) {
-    const Ending end = batch(vary, more);
+    const Ending end = batch(dispersion, more);
     EXPECT_EQ(end.exit_code, 2) << end.errors;
     EXPECT_NE(end.errors.find(sentence), std::string::npos) << end.errors;
     EXPECT_EQ(end.output, "");
@@ -112,7 +112,7 @@ TEST_F(SimBatch, RefusesBadInputBeforeItMakesAFolder) {
   expect_refusal(kMass, {"--vehicle", "nobody"}, "nobody.yaml");
   const Ending none = run_program("swiftlet", {"sim", "batch", "square"}, folder_.path());
   EXPECT_EQ(none.exit_code, 2);
-  EXPECT_NE(none.errors.find("--vary"), std::string::npos) << none.errors;
+  EXPECT_NE(none.errors.find("--dispersion"), std::string::npos) << none.errors;
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 #include "swiftlet/ground/client/context.hpp"
 #include "swiftlet/ground/client/vehicle.hpp"
-#include "swiftlet/services/dds/discovery/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/integration/program.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -45,7 +45,7 @@ class OneContext : public testing::Test {
     return network;
   }
 
-  comms::DomainClaim claim_;
+  comms::DomainLock claim_;
   TemporaryFolder folder_;
 };
 
@@ -57,7 +57,7 @@ TEST_F(OneContext, FliesTwoVehiclesAtOnce) {
   const ground::Context context(network());
   ASSERT_TRUE(eventually(
       [&] {
-        return context.vehicles_seen() == std::vector<std::string>{"kl1", "kl2"};
+        return context.discovered_vehicles() == std::vector<std::string>{"kl1", "kl2"};
       },
       20s));
   Vehicle first(context, "kl1");
@@ -70,11 +70,11 @@ TEST_F(OneContext, FliesTwoVehiclesAtOnce) {
   }
   EXPECT_EQ(first.name(), "kl1");
 
-  const ground::Manoeuvre lower = first.take_off(0.5, 0.8);
-  const ground::Manoeuvre higher = second.take_off(0.9, 0.8);
+  const ground::ActionHandle lower = first.take_off(0.5, 0.8);
+  const ground::ActionHandle higher = second.take_off(0.9, 0.8);
   EXPECT_TRUE(lower.accepted()) << lower.answer().reason;
   EXPECT_TRUE(higher.accepted()) << higher.answer().reason;
-  for (const ground::Manoeuvre& manoeuvre : {lower, higher}) {
+  for (const ground::ActionHandle& manoeuvre : {lower, higher}) {
     const Ending ending = manoeuvre.wait(60s);
     EXPECT_TRUE(ending.done()) << ending.reason;
     EXPECT_EQ(manoeuvre.progress(), 1.0);
@@ -82,8 +82,8 @@ TEST_F(OneContext, FliesTwoVehiclesAtOnce) {
   EXPECT_NEAR(first.state().position_ned_m.z(), -0.5, 0.06);
   EXPECT_NEAR(second.state().position_ned_m.z(), -0.9, 0.06);
 
-  const ground::Manoeuvre away = first.go_to({{0.8, 0.0, -0.5}});
-  const ground::Manoeuvre landing = second.land();
+  const ground::ActionHandle away = first.go_to({{0.8, 0.0, -0.5}});
+  const ground::ActionHandle landing = second.land();
   EXPECT_TRUE(landing.wait(60s).done());
   EXPECT_EQ(second.state().mode, control::Mode::kDisarmed);
   EXPECT_TRUE(away.wait(60s).done());

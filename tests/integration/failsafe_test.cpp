@@ -272,7 +272,7 @@ TEST_F(SteppedClock, OfAllProcessesForwardsAndBackItFliesOnAndObeys) {
   for (const std::int64_t step : {3600, -7200}) {
     step_clock(step);
     fly_on(2.0);
-    const ground::Answer answer = ask(msg::Command_Constants::HOLD);
+    const ground::Result answer = ask(msg::Command_Constants::HOLD);
     EXPECT_TRUE(answer.accepted()) << step << ": " << answer.reason;
     for (const TruthRow& row : truth()) {
       farthest_m = std::max(farthest_m,
@@ -293,7 +293,7 @@ TEST_F(SteppedClock, OfOneProcessOnlyItFliesOnAndObeys) {
   for (const std::int64_t step : {3600, -7200}) {
     step_clock(step);
     fly_on(2.0);
-    const ground::Answer answer = ask(msg::Command_Constants::HOLD);
+    const ground::Result answer = ask(msg::Command_Constants::HOLD);
     EXPECT_TRUE(answer.accepted()) << step << ": " << answer.reason;
   }
   EXPECT_TRUE(settles_at(0, 0, -1));

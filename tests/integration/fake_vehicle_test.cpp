@@ -14,7 +14,7 @@
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
-#include "swiftlet/services/dds/discovery/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "tests/integration/program.hpp"
@@ -53,7 +53,7 @@ class FakeVehicleFlight : public testing::Test {
         << control_.errors();
   }
 
-  ground::Answer ask(std::uint8_t kind) {
+  ground::Result ask(std::uint8_t kind) {
     msg::Command command;
     command.kind(kind);
     command.position_ned({0.0, 0.0, -0.6});
@@ -69,9 +69,9 @@ class FakeVehicleFlight : public testing::Test {
 
   void hover() {
     start_vehicle();
-    const ground::Answer armed = ask(msg::Command_Constants::ARM);
+    const ground::Result armed = ask(msg::Command_Constants::ARM);
     ASSERT_TRUE(armed.accepted()) << armed.reason;
-    const ground::Answer off = ask(msg::Command_Constants::TAKEOFF);
+    const ground::Result off = ask(msg::Command_Constants::TAKEOFF);
     ASSERT_TRUE(off.accepted()) << off.reason;
     ASSERT_TRUE(wait_for(Mode::kHolding)) << control_.errors();
   }
@@ -84,7 +84,7 @@ class FakeVehicleFlight : public testing::Test {
     return !commands.empty() && !running(commands.back());
   }
 
-  comms::DomainClaim claim_;
+  comms::DomainLock claim_;
   TemporaryFolder folder_;
   Program control_;
   ground::Client client_;
@@ -92,8 +92,8 @@ class FakeVehicleFlight : public testing::Test {
 };
 
 TEST_F(FakeVehicleFlight, WithoutAVehicleNothingIsArmed) {
-  const ground::Answer answer = ask(msg::Command_Constants::ARM);
-  EXPECT_EQ(answer.kind, ground::Answer::Kind::kRefused) << answer.reason;
+  const ground::Result answer = ask(msg::Command_Constants::ARM);
+  EXPECT_EQ(answer.kind, ground::Result::Kind::kRefused) << answer.reason;
   EXPECT_NE(answer.reason.find("IMU"), std::string::npos) << answer.reason;
 }
 
@@ -134,7 +134,7 @@ TEST_F(FakeVehicleFlight, FliesAMission) {
   mission.items[0].position_ned = {0.0, 0.0, -0.5};
   mission.items[1].position_ned = {0.0, 0.0, -0.8};
   mission.items[2].kind = control::MissionItemKind::kLand;
-  ground::Answer answer = client_.upload(mission, kTimeout);
+  ground::Result answer = client_.upload(mission, kTimeout);
   ASSERT_TRUE(answer.accepted()) << answer.reason;
   answer = client_.mission_command(msg::Command_Constants::MISSION_START, client_.mission_id(), kTimeout);
   ASSERT_TRUE(answer.accepted()) << answer.reason;
@@ -172,7 +172,7 @@ TEST_F(FakeVehicleFlight, TheLongestMissionFitsOnTheWire) {
   control::Mission mission;
   mission.items.resize(control::kMaxMissionItems);
   for (control::MissionItem& item : mission.items) item.position_ned = {0.0, 0.0, -0.7};
-  const ground::Answer answer = client_.upload(mission, kTimeout);
+  const ground::Result answer = client_.upload(mission, kTimeout);
   EXPECT_TRUE(answer.accepted()) << answer.reason;
   EXPECT_TRUE(client_.wait(kTimeout, [&](const View& view) {
     return view.mission.message.mission_id() == client_.mission_id() &&

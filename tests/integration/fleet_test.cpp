@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "swiftlet/services/dds/discovery/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/integration/program.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/hop_mission.hpp"
@@ -112,7 +112,7 @@ class TwoVehicles : public testing::Test {
     return run_program("swiftlet", words(vehicles, more), folder_.path());
   }
 
-  comms::DomainClaim claim_;
+  comms::DomainLock claim_;
   TemporaryFolder folder_;
   Program plant_1_{"swiftlet-plant", lockstep("kl1", {"--speed", "1"}), folder_.path()};
   Program mocap_1_{"swiftlet-mocap", lockstep("kl1"), folder_.path()};

@@ -56,7 +56,7 @@ TEST_F(IdentifyFlight, MakesAVehicleOfARecord) {
   EXPECT_LE(margins["margins"]["roll"]["worst"]["phase_deg"],
             margins["margins"]["roll"]["designed"]["phase_deg"]);
 
-  const Ending batch = run({"sim", "batch", "square", "--vehicle", in_folder("mine.yaml"), "--vary",
+  const Ending batch = run({"sim", "batch", "square", "--vehicle", in_folder("mine.yaml"), "--dispersion",
                             "uncertainty", "--runs", "10", "--out", in_folder("batch"), "--json"});
   EXPECT_EQ(batch.exit_code, 0) << batch.errors;
 }

@@ -15,7 +15,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "swiftlet/services/dds/discovery/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "tests/integration/program.hpp"
 #include "tests/support/eventually.hpp"
@@ -221,7 +221,7 @@ class LockstepWithout : public testing::Test {
     return std::make_unique<Program>(name, more, folder_.path());
   }
 
-  comms::DomainClaim domain_;
+  comms::DomainLock domain_;
   TemporaryFolder folder_;
 };
 

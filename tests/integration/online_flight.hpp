@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "swiftlet/services/dds/discovery/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/integration/program.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -30,7 +30,7 @@ class Online : public testing::Test {
     return run_program("swiftlet", std::move(words), folder_.path(), timeout);
   }
 
-  comms::DomainClaim claim_;
+  comms::DomainLock claim_;
   TemporaryFolder folder_;
 };
 

@@ -52,10 +52,10 @@ void SeparateProcesses::wait_until_ready() {
 
 void SeparateProcesses::hover() {
   wait_until_ready();
-  ground::Answer armed;
+  ground::Result armed;
   ASSERT_TRUE(eventually([&] { return (armed = ask(msg::Command_Constants::ARM)).accepted(); }, kTimeout))
       << armed.reason;
-  const ground::Answer off = ask(msg::Command_Constants::TAKEOFF);
+  const ground::Result off = ask(msg::Command_Constants::TAKEOFF);
   ASSERT_TRUE(off.accepted()) << off.reason;
   ASSERT_TRUE(told(control::Mode::kHolding, "take-off completed")) << story() << control_->errors();
   const auto start = client_->view().truth.message.position_ned();
@@ -64,7 +64,7 @@ void SeparateProcesses::hover() {
   ASSERT_TRUE(told(control::Mode::kHolding, "take-off completed")) << "the story goes on from there";
 }
 
-ground::Answer SeparateProcesses::ask(std::uint8_t kind, double z_ned) {
+ground::Result SeparateProcesses::ask(std::uint8_t kind, double z_ned) {
   msg::Command command;
   command.kind(kind);
   command.position_ned({0.0, 0.0, z_ned});

@@ -12,7 +12,7 @@
 
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/ground/client/client.hpp"
-#include "swiftlet/services/dds/discovery/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/integration/program.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -34,7 +34,7 @@ class SeparateProcesses : public testing::Test {
   void wait_until_ready();
   void hover();
 
-  ground::Answer ask(std::uint8_t kind, double z_ned = -1.0);
+  ground::Result ask(std::uint8_t kind, double z_ned = -1.0);
   // Until some control_status since the last call of forget() says so.
   bool told(control::Mode mode, const std::string& reason, std::chrono::milliseconds timeout = kTimeout);
   void forget();
@@ -54,7 +54,7 @@ class SeparateProcesses : public testing::Test {
   bool wait_until_on_ground() const;
   double distance_m(double x, double y, double z) const;
 
-  comms::DomainClaim claim_;
+  comms::DomainLock claim_;
   TemporaryFolder folder_;
   std::unique_ptr<Program> plant_, mocap_, control_;
   ground::FlightRecord record_;

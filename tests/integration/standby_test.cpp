@@ -137,9 +137,9 @@ TEST_F(Standby, StatusNamesAllControllers) {
   const nlohmann::json status = nlohmann::json::parse(end.output);
   ASSERT_EQ(status.at("controllers").size(), 2U) << end.output;
   EXPECT_EQ(status.at("controllers")[0].at("role"), "active");
-  EXPECT_EQ(status.at("controllers")[0].at("strength"), 5);
+  EXPECT_EQ(status.at("controllers")[0].at("failover_priority"), 5);
   EXPECT_EQ(status.at("controllers")[1].at("role"), "standby");
-  EXPECT_EQ(status.at("controllers")[1].at("strength"), 1);
+  EXPECT_EQ(status.at("controllers")[1].at("failover_priority"), 1);
 }
 
 TEST_F(Standby, OneStartedAloneFindsItsVehicleFlyingAndHoldsIt) {
@@ -184,7 +184,7 @@ TEST_F(Standby, ARequestIsFollowedToItsEndByWhoeverTakesOver) {
   vehicle.on_connection([&](const ground::ConnectionEvent& event) { events.put(event); });
   ASSERT_TRUE(vehicle.connect(10s).accepted());
   ASSERT_TRUE(vehicle.arm().accepted());
-  const ground::Manoeuvre climb = vehicle.take_off(1.0, 0.4);
+  const ground::ActionHandle climb = vehicle.take_off(1.0, 0.4);
   ASSERT_TRUE(climb.accepted()) << climb.answer().reason;
   ASSERT_TRUE(eventually([&] { return climb.progress() > 0.2; }, 10s));
   ASSERT_LT(climb.progress(), 1.0);
@@ -211,7 +211,7 @@ TEST_F(Standby, AProgramGoesOnWithAControlProcessThatIsStartedAgain) {
   EXPECT_EQ(events.items()[0].kind, Kind::kConnected);
   EXPECT_EQ(events.items()[0].controller, first.id);
   ASSERT_TRUE(vehicle.arm().accepted());
-  const ground::Manoeuvre climb = vehicle.take_off(0.5);
+  const ground::ActionHandle climb = vehicle.take_off(0.5);
   ASSERT_TRUE(climb.accepted()) << climb.answer().reason;
   flight_.kill(first);
   ASSERT_TRUE(events.wait_for_count(2));
@@ -228,7 +228,7 @@ TEST_F(Standby, AProgramGoesOnWithAControlProcessThatIsStartedAgain) {
   std::string refusal;
   EXPECT_TRUE(eventually(
       [&] {
-        const ground::Answer answer = vehicle.arm().answer();
+        const ground::Result answer = vehicle.arm().answer();
         refusal = answer.reason;
         return answer.accepted();
       },

@@ -10,7 +10,7 @@
 #include "swiftlet/io/settings/simulation_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/simulation/closed_loop.hpp"
-#include "swiftlet/simulation/vary_file.hpp"
+#include "swiftlet/simulation/dispersion_file.hpp"
 #include "tests/soak/fault_draw.hpp"
 
 namespace swiftlet::soak {
@@ -65,7 +65,7 @@ class Run {
 
  private:
   static ground::World world(const SoakSetup& setup, std::uint64_t seed) {
-    ground::World world = ground::draw(setup.variation, setup.nominal, seed).world;
+    ground::World world = ground::draw(setup.dispersion, setup.nominal, seed).world;
     world.simulation.faults =
         draw_faults(seed, kFirstFault_s, kFlight_s, world.vehicle, setup.control.limits);
     return world;
@@ -175,7 +175,8 @@ SoakSetup load_setup(const std::string& control) {
   setup.nominal.simulation =
       runtime::load_simulation_settings(ground::configuration_file("simulation", "default"));
   setup.control = runtime::load_control_settings(ground::configuration_file("control", control));
-  setup.variation = ground::load_vary_file(ground::configuration_file("vary", "kaylion"), setup.nominal);
+  setup.dispersion =
+      ground::load_dispersion_file(ground::configuration_file("dispersion", "kaylion"), setup.nominal);
   return setup;
 }
 

@@ -10,7 +10,7 @@
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/control/types/settings.hpp"
 #include "swiftlet/plant/simulation/links/faults.hpp"
-#include "swiftlet/simulation/variation.hpp"
+#include "swiftlet/simulation/dispersion.hpp"
 #include "tests/soak/pilot.hpp"
 
 namespace swiftlet::soak {
@@ -18,7 +18,7 @@ namespace swiftlet::soak {
 // What is flown with. The controller is designed on nominal.vehicle.
 struct SoakSetup {
   ground::World nominal;
-  ground::Variation variation;
+  ground::Dispersion dispersion;
   control::ControlSettings control;
 };
 // The files "kaylion" and "default", and the control settings of that name.

@@ -73,10 +73,10 @@ std::vector<Takeover> fly(const Part& part, int kills, int first, std::mt19937_6
   std::vector<std::string> plant;
   if (!options.plant_simulation.empty()) plant = {"--simulation", options.plant_simulation};
   RedundantFlight flight(folder.path(), plant);
-  std::uniform_int_distribution<int> strength(0, 1000);
+  std::uniform_int_distribution<int> failover_priority(0, 1000);
   std::uniform_real_distribution<double> pause_s(0.0, 3.0);
-  flight.start_controller(strength(random));
-  flight.start_controller(strength(random));
+  flight.start_controller(failover_priority(random));
+  flight.start_controller(failover_priority(random));
   flight.wait_for_roles(1, 1);
   flight.fly(square_laps(part.speed, 400));
   flight.wait("it has taken off", [&] { return flight.z_ned() < -0.98; });
@@ -89,7 +89,7 @@ std::vector<Takeover> fly(const Part& part, int kills, int first, std::mt19937_6
     flight.wait("the vehicle's time passes", [&] { return flight.stamp_ns() > until_ns; });
     takeovers.push_back(kill_active(flight, part));
     print(first + kill, part.name, takeovers.back());
-    flight.start_controller(strength(random));
+    flight.start_controller(failover_priority(random));
     flight.wait_for_roles(1, 1);
   }
   return takeovers;

@@ -75,18 +75,18 @@ comms::NodeSettings RedundantFlight::node_settings(const char* name) const {
   return settings;
 }
 
-std::unique_ptr<Program> RedundantFlight::launch_controller(int strength) const {
+std::unique_ptr<Program> RedundantFlight::launch_controller(int failover_priority) const {
   std::vector<std::string> words = network();
-  words.insert(words.end(), {"--strength", std::to_string(strength)});
+  words.insert(words.end(), {"--failover-priority", std::to_string(failover_priority)});
   return std::make_unique<Program>("swiftlet-control", words, folder_);
 }
 
-Controller& RedundantFlight::start_controller(int strength) {
+Controller& RedundantFlight::start_controller(int failover_priority) {
   const auto before = heard();
   controllers_.push_back(std::make_unique<Controller>());
   Controller& started = *controllers_.back();
-  started.strength = strength;
-  started.process = launch_controller(strength);
+  started.failover_priority = failover_priority;
+  started.process = launch_controller(failover_priority);
   wait("the new controller is heard", [&] {
     for (const auto& [id, state] : heard()) {
       if (before.count(id) > 0) continue;
@@ -159,7 +159,7 @@ void RedundantFlight::ask(std::uint8_t kind, double z_ned) {
   command.yaw_free(true);
   command.speed(1.2);
   const auto give_up = ground::Clock::now() + 20s;
-  ground::Answer answer;
+  ground::Result answer;
   do {
     answer = client_.command(command, 5s);
     // At a start there is no pose yet, no battery: what is refused for that is asked again.
@@ -169,7 +169,7 @@ void RedundantFlight::ask(std::uint8_t kind, double z_ned) {
 
 void RedundantFlight::fly(const control::Mission& mission) {
   ask(msg::Command_Constants::ARM);
-  const ground::Answer answer = client_.upload(mission, 10s);
+  const ground::Result answer = client_.upload(mission, 10s);
   if (!answer.accepted()) throw std::runtime_error(answer.reason);
   ask(msg::Command_Constants::MISSION_START);
 }

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "swiftlet/ground/client/client.hpp"
-#include "swiftlet/services/dds/discovery/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "tests/integration/program.hpp"
 
@@ -22,7 +22,7 @@ namespace swiftlet::tests {
 struct Controller {
   std::unique_ptr<Program> process;
   std::uint64_t id = 0;  // as in controller_state
-  int strength = 0;
+  int failover_priority = 0;
 };
 
 // What the vehicle felt of a while.
@@ -42,9 +42,9 @@ class RedundantFlight {
   explicit RedundantFlight(const std::filesystem::path& folder, std::vector<std::string> plant_options = {});
 
   // Starts a controller and waits until it is heard. Throws std::runtime_error if it is not.
-  Controller& start_controller(int strength);
+  Controller& start_controller(int failover_priority);
   // Starts one without waiting.
-  std::unique_ptr<Program> launch_controller(int strength) const;
+  std::unique_ptr<Program> launch_controller(int failover_priority) const;
   // The one that acts; throws std::runtime_error if it is none of them, or not one.
   Controller& active();
   void kill(Controller& controller);
@@ -88,7 +88,7 @@ class RedundantFlight {
   int count(std::uint8_t role) const;
   std::optional<double> deviation_m(std::int64_t stamp_ns) const;  // with the lock held
 
-  comms::DomainClaim claim_;
+  comms::DomainLock claim_;
   std::filesystem::path folder_;
   Program plant_, mocap_;
   std::vector<std::unique_ptr<Controller>> controllers_;

@@ -62,10 +62,10 @@ Json json_of(const PositionAxisDesign& axis) {
   Json out = {{"omega_n", axis.settings.omega_n},
               {"zeta", axis.settings.zeta},
               {"epsilon", axis.settings.epsilon},
-              {"k_i", axis.settings.k_i},
+              {"integral_pole", axis.settings.integral_pole},
               {"f", json_of(axis.f)}};
-  if (axis.settings.k_i > 0.0) {
-    out["integral_form"] = {{"k_p", axis.gains.k_p}, {"k_v", axis.gains.k_v}, {"k_s", axis.gains.k_s}};
+  if (axis.settings.integral_pole > 0.0) {
+    out["integral_form"] = {{"k_p", axis.gains.k_p}, {"k_v", axis.gains.k_v}, {"k_i", axis.gains.k_i}};
   }
   out["poles"] = json_of_poles(axis.poles);
   out["phase_margin_deg"] = json_of_margin(axis.phase_margin_deg);
@@ -93,8 +93,8 @@ std::string row(const char* name, const AttitudeAxisDesign& axis) {
 }
 
 std::string row(const char* name, const PositionAxisDesign& axis) {
-  return fmt::format("  {:<6} k_p ={:7.3f}  k_v ={:7.3f}  k_s ={:7.3f}  margin {:5.1f} deg  poles ", name,
-                     axis.gains.k_p, axis.gains.k_v, axis.gains.k_s, axis.phase_margin_deg) +
+  return fmt::format("  {:<6} k_p ={:7.3f}  k_v ={:7.3f}  k_i ={:7.3f}  margin {:5.1f} deg  poles ", name,
+                     axis.gains.k_p, axis.gains.k_v, axis.gains.k_i, axis.phase_margin_deg) +
          text_of(axis.poles) + "\n";
 }
 
@@ -187,9 +187,9 @@ int run_gains(const GainsOptions& options) {
     std::fprintf(stderr, "swiftlet: not flyable: %s: %s\n", loop.key.c_str(), loop.message.c_str());
   }
   const plant::VehicleUncertainty uncertainty = runtime::load_vehicle_uncertainty(file);
-  const Variation variation =
-      uncertainty.parameters.empty() ? Variation{} : variation_of(uncertainty, vehicle, file);
-  const MarginStudy margins = study_margins(design, vehicle, variation, options.draws, options.seed);
+  const Dispersion dispersion =
+      uncertainty.parameters.empty() ? Dispersion{} : dispersion_of(uncertainty, vehicle, file);
+  const MarginStudy margins = study_margins(design, vehicle, dispersion, options.draws, options.seed);
   if (options.json) {
     std::printf("%s\n", gains_json(design, margins, vehicle.name, settings.name).c_str());
   } else {

@@ -29,10 +29,10 @@ struct GainsOptions {
 //     poles_with_motor_lag: the same gains with the rotor lag
 //     phase_margin_deg: cut at the rotor command, rotor lag included; null if the gain never crosses one
 //   position.{x,y,z}
-//     omega_n, zeta, epsilon, k_i
+//     omega_n, zeta, epsilon, integral_pole
 //     f: Eq. (49) for the state (x_r, u_r, a_r, x, u) of Eq. (45), without the integral
-//     integral_form: only with k_i > 0, the gains that are then flown in place of f:
-//       a = a_r + k_v (u_r - u) + k_p (x_r - x) + k_s integral(x_r - x)
+//     integral_form: only with integral_pole > 0, the gains that are then flown in place of f:
+//       a = a_r + k_v (u_r - u) + k_p (x_r - x) + k_i integral(x_r - x)
 //     poles: of the closed loop over inner loop and rotor lag (x over pitch, y over roll, yaw 0)
 //     phase_margin_deg: cut at the acceleration command, inner loop and rotor lag included
 //   margins.{roll,pitch,yaw,x,y,z}.{designed,most,worst}: on the vehicle, and over draws of its uncertainty,

@@ -13,7 +13,7 @@
 #include "swiftlet/ground/batch/batch_report.hpp"
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
-#include "swiftlet/ground/flight/flight_conclusion.hpp"
+#include "swiftlet/ground/flight/flight_outcome.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/terminal/progress_line.hpp"
 
@@ -44,7 +44,7 @@ std::string bar(const BatchProgress& progress) {
 }
 
 int sim_batch(const BatchOptions& options) {
-  const FlightPlan plan = plan_flight(options.flight);
+  const LaunchConfiguration plan = plan_flight(options.flight);
   if (plan.seed > std::numeric_limits<std::uint64_t>::max() - options.runs)
     throw InputError("--seed " + std::to_string(plan.seed) + ": is too large for " +
                      std::to_string(options.runs) + " runs");
@@ -79,7 +79,7 @@ int sim_batch(const BatchOptions& options) {
 Command add_sim_batch_command(runtime::CommandLine sim) {
   const auto options = std::make_shared<BatchOptions>();
   FlyOptions& flight = options->flight;
-  flight.parties = Parties::kInProcess;
+  flight.launch_mode = LaunchMode::kInProcess;
   const runtime::CommandLine app = sim.add_subcommand(
       "batch", "Fly a mission many times, each in a vehicle and a world drawn anew: Monte Carlo");
   add_mission_options(app, flight);
@@ -95,7 +95,7 @@ Command add_sim_batch_command(runtime::CommandLine sim) {
   app.footer(
       "The controller is designed on --vehicle; what flies is drawn around it. `swiftlet sim fly` with the "
       "seed of one of\nthe runs and the same files flies it again, to the last bit.\n\n"
-      "example: swiftlet sim batch square --runs 200 --seed 1 --vary kaylion --out batches/first");
+      "example: swiftlet sim batch square --runs 200 --seed 1 --dispersion kaylion --out batches/first");
   return {app, [options] { return sim_batch(*options); }};
 }
 

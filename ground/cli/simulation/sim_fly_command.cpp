@@ -3,17 +3,17 @@
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
-#include "swiftlet/ground/flight/flight_conclusion.hpp"
-#include "swiftlet/ground/flight/flight_plan.hpp"
+#include "swiftlet/ground/flight/flight_outcome.hpp"
 #include "swiftlet/ground/flight/flight_settings.hpp"
 #include "swiftlet/ground/flight/in_process_flight.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
+#include "swiftlet/ground/flight/launch_configuration.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
 int sim_fly(const FlyOptions& options) {
-  const FlightPlan plan = plan_flight(options);
+  const LaunchConfiguration plan = plan_flight(options);
   ClosedLoop loop = closed_loop(plan, draw(plan, plan.seed).world, plan.seed);
   make_record_folder(plan.folder);
   keep_settings(plan);
@@ -30,15 +30,15 @@ int sim_fly(const FlyOptions& options) {
   const InProcessFlight flight = fly_in_process(loop, plan, plan.seed, record, trace ? &*trace : nullptr,
                                                 [&] { return interrupts.count() > 0; });
   if (trace) trace->close();
-  keep_record(plan.folder, record, flight.report, flight.window, progress);
-  return tell(flight.report, options.json, progress);
+  write_record(plan.folder, record, flight.report, flight.window, progress);
+  return print_report(flight.report, options.json, progress);
 }
 
 }  // namespace
 
 Command add_sim_fly_command(runtime::CommandLine sim) {
   const auto options = std::make_shared<FlyOptions>();
-  options->parties = Parties::kInProcess;
+  options->launch_mode = LaunchMode::kInProcess;
   const runtime::CommandLine app = sim.add_subcommand(
       "fly", "Fly a mission in this process, as fast as it goes; the same flight as in lockstep");
   add_fly_options(app, *options);

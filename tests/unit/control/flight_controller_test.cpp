@@ -92,9 +92,9 @@ class InFlight : public testing::Test {
 // One step without a pose is no flight: until then the vehicle goes on as it likes.
 TEST_F(InFlight, AControllerThatIsStartedThereFindsTheVehicleFlyingAndHoldsIt) {
   loop_.controller = FlightController(kaylion(), settings("motor_lag"));
-  EXPECT_FALSE(loop_.controller.find_flying()) << "it has seen nothing yet";
+  EXPECT_FALSE(loop_.controller.engage_in_flight()) << "it has seen nothing yet";
   ASSERT_TRUE(loop_.step_until(
-      [&] { return loop_.controller.feels_airborne() && loop_.controller.find_flying(); }, 0.1));
+      [&] { return loop_.controller.detects_airborne() && loop_.controller.engage_in_flight(); }, 0.1));
   double lowest_m = altitude_m();
   loop_.step_until(
       [&] {
@@ -103,17 +103,17 @@ TEST_F(InFlight, AControllerThatIsStartedThereFindsTheVehicleFlyingAndHoldsIt) {
       },
       3.0);
   EXPECT_EQ(loop_.controller.status().mode, Mode::kHolding);
-  EXPECT_EQ(loop_.controller.status().reason, Reason::kFoundFlying);
+  EXPECT_EQ(loop_.controller.status().reason, Reason::kEngagedInFlight);
   EXPECT_GT(lowest_m, 0.6);
   EXPECT_LT(loop_.plant.state().velocity_ned.norm(), 0.05);
 }
 
 TEST_F(InFlight, OnTheGroundNothingFlies) {
-  ASSERT_TRUE(loop_.controller.feels_airborne());
+  ASSERT_TRUE(loop_.controller.detects_airborne());
   ASSERT_TRUE(loop_.controller.request(request(RequestKind::kLand)).accepted);
   ASSERT_TRUE(wait_for(Mode::kDisarmed, 20.0));
   loop_.step_until([] { return false; }, 1.0);
-  EXPECT_FALSE(loop_.controller.feels_airborne());
+  EXPECT_FALSE(loop_.controller.detects_airborne());
 }
 
 TEST_F(InFlight, AControllerGoesOnWithTheStateOfAnother) {

@@ -48,12 +48,12 @@ class Placed : public SupervisedFlight {
 
   struct Moment {
     SupervisorState state;
-    Situation situation;
+    SupervisorInputs inputs;
     Estimate estimate;
   };
   Moment moment() const { return {supervisor_.state(), situation_, estimate_}; }
   void go_back_to(const Moment& moment) {
-    situation_ = moment.situation;
+    situation_ = moment.inputs;
     estimate_ = moment.estimate;
     supervisor_.adopt(moment.state, plan(), &trajectory_);
   }

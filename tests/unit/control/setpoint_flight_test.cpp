@@ -111,7 +111,7 @@ TEST_P(SetpointFlight, AnAttitudeTowardsTheFenceEndsInsideAndNeedsAWordBeforeThe
   double farthest_m = 0.0;
   stream(attitude(0.2, 0.0, 0.0), 10.0);
   EXPECT_EQ(mode(), Mode::kHolding);
-  EXPECT_EQ(loop_.controller.status().reason, Reason::kSetpointsLedOut);
+  EXPECT_EQ(loop_.controller.status().reason, Reason::kSetpointsViolatedFence);
   loop_.step_until(
       [&] {
         farthest_m = std::max(farthest_m, truth().position_ned.y());

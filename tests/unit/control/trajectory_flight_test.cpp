@@ -229,9 +229,9 @@ TEST_F(TrajectoryFlight, AnotherGoesOnInTheMiddleOfAMissionsTrajectory) {
   Supervisor another{SupervisionSettings()};
   another.adopt(supervisor_.state(), &mission, nullptr);
   for (int i = 0; i < 5000; ++i) {
-    Situation same = situation_;
+    SupervisorInputs same = situation_;
     same.stamp_ns += kStep_ns;
-    const Directive theirs = another.step(same);
+    const ControlSetpoint theirs = another.step(same);
     step();
     ASSERT_EQ(theirs.reference.position_ned, directive_.reference.position_ned) << "step " << i;
     ASSERT_EQ(another.mode(), supervisor_.mode());

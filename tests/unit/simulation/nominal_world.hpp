@@ -3,7 +3,7 @@
 
 #include "swiftlet/io/settings/simulation_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
-#include "swiftlet/simulation/variation.hpp"
+#include "swiftlet/simulation/dispersion.hpp"
 
 namespace swiftlet::ground {
 

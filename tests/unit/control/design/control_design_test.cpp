@@ -132,18 +132,18 @@ TEST(RptDesign, FeedbackInTheOrderOfTheState) {
   const RptGains gains = rpt_gains(s);
   EXPECT_DOUBLE_EQ(gains.k_p, 9.0);
   EXPECT_DOUBLE_EQ(gains.k_v, 4.8);
-  EXPECT_EQ(gains.k_s, 0.0);
+  EXPECT_EQ(gains.k_i, 0.0);
 }
 
 TEST(RptDesign, IntegralFormPlacesThePoles) {
-  // (s^2 + 2 zeta w/e s + w^2/e^2) (s + k_i/e), on the double integrator of Eq. (41).
+  // (s^2 + 2 zeta w/e s + w^2/e^2) (s + integral_pole/e), on the double integrator of Eq. (41).
   const RptSettings s{2.0, 0.9, 0.7, 0.4};
   const RptGains g = rpt_gains(s);
   const auto error = [&](std::complex<double> p) {
-    return std::abs(p * p * p + g.k_v * p * p + g.k_p * p + g.k_s);
+    return std::abs(p * p * p + g.k_v * p * p + g.k_p * p + g.k_i);
   };
   const double w = s.omega_n / s.epsilon;
-  EXPECT_LT(error(-s.k_i / s.epsilon), 1e-12);
+  EXPECT_LT(error(-s.integral_pole / s.epsilon), 1e-12);
   EXPECT_LT(error({-s.zeta * w, w * std::sqrt(1.0 - s.zeta * s.zeta)}), 1e-12);
 }
 
@@ -160,13 +160,13 @@ TEST(ControlDesign, CoversAllAxes) {
   const plant::Vehicle& vehicle = tests::kaylion();
   for (const AttitudeModel model : {AttitudeModel::kDoubleIntegrator, AttitudeModel::kMotorLag}) {
     ControlSettings s = settings(model);
-    s.position.z.k_i = 0.3;
+    s.position.z.integral_pole = 0.3;
     const ControlDesign d = design(vehicle, s);
     EXPECT_EQ(d.rotor_lag_s, vehicle.motor.time_constant_s);
     EXPECT_EQ(d.roll.model, model);
     EXPECT_NEAR(d.yaw.k[0], 5.0, 1e-9);
-    EXPECT_EQ(d.x.gains.k_s, 0.0);
-    EXPECT_GT(d.z.gains.k_s, 0.0);
+    EXPECT_EQ(d.x.gains.k_i, 0.0);
+    EXPECT_GT(d.z.gains.k_i, 0.0);
     EXPECT_EQ(d.x.poles.size(), 5U);
     EXPECT_EQ(d.z.poles.size(), 4U);
     EXPECT_TRUE(unstable_loops(d).empty());
@@ -197,7 +197,7 @@ TEST(ControlDesign, RefusesBrokenSettings) {
   refuses([](ControlSettings& s) { s.attitude.yaw.r = 0.0; });
   refuses([](ControlSettings& s) { s.attitude.yaw.q[1] = std::nan(""); });
   refuses([](ControlSettings& s) { s.position.x.epsilon = 0.0; });
-  refuses([](ControlSettings& s) { s.position.z.k_i = -0.1; });
+  refuses([](ControlSettings& s) { s.position.z.integral_pole = -0.1; });
   plant::Vehicle without_lag = vehicle;
   without_lag.motor.time_constant_s = 0.0;
   EXPECT_THROW(design(without_lag, settings(AttitudeModel::kMotorLag)), std::invalid_argument);

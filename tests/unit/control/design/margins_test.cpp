@@ -60,7 +60,7 @@ TEST(Margins, EndWherePolesReachTheAxis) {
   settings.omega_n = 2.0;
   settings.zeta = 1.0;
   settings.epsilon = 1.0;
-  settings.k_i = 0.4;
+  settings.integral_pole = 0.4;
   const AttitudeAxisDesign axis =
       design_attitude_axis(AttitudeModel::kMotorLag, {Eigen::Vector3d(40000.0, 0.0, 0.0), 1.0}, 0.08);
   const Loop loop = horizontal_position_loop(rpt_gains(settings), axis.k, {0.08});

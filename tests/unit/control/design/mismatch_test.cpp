@@ -34,7 +34,7 @@ Response attitude_response(const Eigen::Vector3d& k, double lag_s, double gain, 
   return [=](Complex s) { return gain / (lag_s * s + 1.0) * (k[0] / (s * s) + k[1] / s + k[2] * observed); };
 }
 Complex outer_gains(const RptGains& gains, Complex s) {
-  return gains.k_p / (s * s) + gains.k_v / s + gains.k_s / (s * s * s);
+  return gains.k_p / (s * s) + gains.k_v / s + gains.k_i / (s * s * s);
 }
 Response vertical_response(const RptGains& gains, double lag_s, double gain) {
   return [=](Complex s) { return gain / (lag_s * s + 1.0) * outer_gains(gains, s); };

@@ -59,7 +59,7 @@ class Covariance : public testing::Test {
     covariance.reset(any_state().cwiseAbs() + ErrorState::Constant(0.1));
     for (int i = 0; i < 5; ++i) {
       covariance.advance(interval_of(any(12.0), any_rotation(), 0.2), {0.01, 0.02, 0.03, 0.04});
-      covariance.reduce(covariance.weigh({any(0.1), any(0.1)}, 0.5, 0.7));
+      covariance.apply_update(covariance.compute_update({any(0.1), any(0.1)}, 0.5, 0.7));
     }
     return covariance;
   }
@@ -129,14 +129,14 @@ TEST_F(Covariance, APoseIsTakenInByTheKalmanGain) {
     Eigen::Matrix<double, 6, 1> nu;
     nu << innovation.position, innovation.rotation;
 
-    const ErrorCovariance::Correction correction =
-        covariance.weigh(innovation, position_variance, rotation_variance);
+    const ErrorCovariance::Update correction =
+        covariance.compute_update(innovation, position_variance, rotation_variance);
     const double chi_square = nu.dot(s.inverse() * nu);
     EXPECT_NEAR(correction.normalised_square(), chi_square, 1e-11 * chi_square);
     EXPECT_LT((correction.step() - gain * nu).norm(), 1e-11);
     EXPECT_EQ(covariance.matrix(), p) << "looking changes nothing";
 
-    covariance.reduce(correction);
+    covariance.apply_update(correction);
     const Matrix15 rest = Matrix15::Identity() - gain * h;
     const Matrix15 expected = rest * p * rest.transpose() + gain * n * gain.transpose();
     EXPECT_LT((covariance.matrix() - expected).norm(), 1e-11 * p.norm());

@@ -185,10 +185,10 @@ TEST(EstimatorConsistency, TheCovarianceFollowsTheDenseEquations) {
     const PoseInnovation innovation{{0.01, -0.02, 0.03}, {-0.02, 0.01, 0.04}};
     Eigen::Matrix<double, 6, 1> z;
     z << innovation.position, innovation.rotation;
-    const auto correction = covariance.weigh(innovation, 1e-4, 4e-4);
+    const auto correction = covariance.compute_update(innovation, 1e-4, 4e-4);
     EXPECT_LT((correction.step() - k * z).norm(), 1e-12);
     EXPECT_NEAR(correction.normalised_square(), z.dot(s.inverse() * z), 1e-9);
-    covariance.reduce(correction);
+    covariance.apply_update(correction);
     const Matrix15 rest = Matrix15::Identity() - k * h;
     const Matrix15 joseph = rest * p * rest.transpose() + k * v.asDiagonal() * k.transpose();
     EXPECT_LT((covariance.matrix() - joseph).cwiseAbs().maxCoeff(), 1e-14);

@@ -334,12 +334,12 @@ TEST_F(MissionFlight, AnotherGoesOnFromAPauseAtEveryStep) {
     for (int i = 0; i < steps; ++i) {
       const SupervisorState state = supervisor_.state();
       if (i % 5 == 0) follower.adopt(state, &mission, nullptr);
-      Situation seen = situation_;
+      SupervisorInputs seen = situation_;
       const Estimate before = estimate_;
       step();
       seen.stamp_ns = situation_.stamp_ns;
       seen.estimate = &before;
-      const Directive followed = follower.step(seen);
+      const ControlSetpoint followed = follower.step(seen);
       ASSERT_EQ(followed.reference.position_ned, directive_.reference.position_ned);
       ASSERT_EQ(followed.reference.velocity_ned, directive_.reference.velocity_ned);
       ASSERT_EQ(followed.reference.jerk_ned, directive_.reference.jerk_ned);

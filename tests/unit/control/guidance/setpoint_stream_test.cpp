@@ -265,8 +265,8 @@ TEST_F(Stream, AnotherControllerGoesOnWithIt) {
     standby.adopt(flight.supervisor_.state(), nullptr, nullptr);
     for (int i = 0; i < 400; ++i) {
       flight.step();
-      const Directive theirs = standby.step(flight.situation_);
-      ASSERT_EQ(theirs.actuation, flight.directive_.actuation);
+      const ControlSetpoint theirs = standby.step(flight.situation_);
+      ASSERT_EQ(theirs.control_mode, flight.directive_.control_mode);
       ASSERT_EQ(theirs.reference.position_ned, flight.directive_.reference.position_ned);
       ASSERT_EQ(theirs.q_ned_from_frd.coeffs(), flight.directive_.q_ned_from_frd.coeffs());
       ASSERT_EQ(theirs.body_rates_frd, flight.directive_.body_rates_frd);

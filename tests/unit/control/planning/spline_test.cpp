@@ -25,7 +25,7 @@ std::array<double, 7> derivatives(const Polynomial& c, double t) {
 std::array<const Polynomial*, 4> axes(const PolynomialSegment& s) { return {&s.x, &s.y, &s.z, &s.yaw}; }
 
 struct Case {
-  std::vector<Place> points;
+  std::vector<PositionYaw> points;
   std::vector<double> durations_s;
 };
 Case random_case(unsigned seed, int points) {
@@ -160,7 +160,7 @@ TEST_P(Splines, ScaleWithTime) {
 }
 
 TEST(Spline, OfTwoPointsIsTheRestToRestPolynomial) {
-  const std::vector<Place> points = {{0, 0, -1, 0.2}, {1.5, -2.0, -0.4, -0.7}};
+  const std::vector<PositionYaw> points = {{0, 0, -1, 0.2}, {1.5, -2.0, -0.4, -0.7}};
   const PolynomialSegment jerk = spline(Smoothness::kMinimumJerk, points, {2.5}).front();
   const PolynomialSegment known = minimum_jerk({0, 0, -1}, 0.2, {1.5, -2.0, -0.4}, -0.7, 2.5);
   for (std::size_t i = 0; i < jerk.x.size(); ++i) {

@@ -163,11 +163,11 @@ TEST_P(Paths, TakeLessTimeThanWithDurationsByLength) {
     WaypointPath path = random_path(seed, 30);
     path.smoothness = GetParam();
     planned_s += plan(path).duration_s;
-    std::vector<Place> places;
+    std::vector<PositionYaw> places;
     std::vector<double> durations;
     for (const PathPoint& point : path.points) {
-      const Place place(point.position_ned.x(), point.position_ned.y(), point.position_ned.z(),
-                        point.yaw_rad);
+      const PositionYaw place(point.position_ned.x(), point.position_ned.y(), point.position_ned.z(),
+                              point.yaw_rad);
       if (!places.empty()) durations.push_back((place - places.back()).head<3>().norm() / path.limits.speed);
       places.push_back(place);
     }

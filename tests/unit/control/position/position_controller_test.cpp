@@ -16,12 +16,12 @@ using Eigen::Vector3d;
 
 constexpr double kStep = 1e-3;
 
-ControlSettings settings(double k_i) {
+ControlSettings settings(double integral_pole) {
   ControlSettings s;
   s.attitude.roll = s.attitude.pitch = s.attitude.yaw = {Vector3d(625.0, 0.0, 0.0), 1.0};
-  s.position.x = {1.5, 0.9, 0.8, k_i};
-  s.position.y = {1.2, 1.0, 1.0, k_i};
-  s.position.z = {2.0, 0.8, 1.0, k_i};
+  s.position.x = {1.5, 0.9, 0.8, integral_pole};
+  s.position.y = {1.2, 1.0, 1.0, integral_pole};
+  s.position.z = {2.0, 0.8, 1.0, integral_pole};
   return s;
 }
 
@@ -78,14 +78,14 @@ TEST(PositionController, TracksPerfectlyFromTheReferencesOwnState) {
 
 TEST(PositionController, OnlyTheIntegralRemovesASteadyPush) {
   const Vector3d push(0.3, -0.2, 0.4);
-  for (const double k_i : {0.0, 0.5}) {
-    const ControlSettings s = settings(k_i);
+  for (const double integral_pole : {0.0, 0.5}) {
+    const ControlSettings s = settings(integral_pole);
     PositionController control = controller(s);
     Point point;
     for (int i = 0; i < 40000; ++i) {
       point.step(control.step(point.position, point.velocity, {}, kStep, false).acceleration_ned + push);
     }
-    if (k_i > 0.0) {
+    if (integral_pole > 0.0) {
       EXPECT_LT(point.position.norm(), 1e-5);
       EXPECT_LT((control.integral() + push).norm(), 1e-4);
     } else {

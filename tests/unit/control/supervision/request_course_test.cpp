@@ -141,7 +141,7 @@ TEST_F(Requests, ALandingWithoutPositionIsDoneOnTheGroundToo) {
   situation_.pose_age_s = 10.0;
   ASSERT_TRUE(step_until(Mode::kDescent, 1.0));
   EXPECT_EQ(last().state, RequestState::kExecuting);
-  situation_.unexplained_lift = 5.0;
+  situation_.vertical_specific_force_residual = 5.0;
   ASSERT_TRUE(step_until(Mode::kDisarmed, 5.0));
   EXPECT_EQ(last().state, RequestState::kSucceeded);
 }

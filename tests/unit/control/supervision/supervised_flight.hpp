@@ -30,7 +30,7 @@ class SupervisedFlight {
     situation_.stamp_ns += kStep_ns;
     estimate_.stamp_ns = situation_.stamp_ns;
     directive_ = supervisor_.step(situation_);
-    if (directive_.actuation == control::Actuation::kFly && follows_) {
+    if (directive_.control_mode == control::ControlMode::kFly && follows_) {
       estimate_.position_ned = directive_.reference.position_ned;
       estimate_.velocity_ned = directive_.reference.velocity_ned;
       if (estimate_.position_ned.z() > 0.0) {
@@ -90,8 +90,8 @@ class SupervisedFlight {
 
   control::Supervisor supervisor_;
   control::Estimate estimate_;
-  control::Situation situation_;
-  control::Directive directive_;
+  control::SupervisorInputs situation_;
+  control::ControlSetpoint directive_;
   bool follows_ = true;
   std::uint64_t asked_ = 0;  // so many requests
 };

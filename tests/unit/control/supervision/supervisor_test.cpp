@@ -23,23 +23,23 @@ class Flight : public testing::Test, protected SupervisedFlight {
 
 TEST_F(Flight, StartsDisarmedWithRotorsOff) {
   EXPECT_EQ(supervisor_.mode(), Mode::kDisarmed);
-  EXPECT_EQ(directive_.actuation, Actuation::kOff);
+  EXPECT_EQ(directive_.control_mode, ControlMode::kOff);
 }
 
 TEST_F(Flight, TakesOffHoldsAndLands) {
   ASSERT_TRUE(ask(RequestKind::kArm).accepted);
   step();
-  EXPECT_EQ(directive_.actuation, Actuation::kIdle);
+  EXPECT_EQ(directive_.control_mode, ControlMode::kIdle);
   ASSERT_TRUE(ask(RequestKind::kTakeoff, {0, 0, -1}).accepted);
   step();
-  EXPECT_EQ(directive_.actuation, Actuation::kSpoolUp);
+  EXPECT_EQ(directive_.control_mode, ControlMode::kSpoolUp);
   ASSERT_TRUE(step_until(Mode::kHolding, 10.0));
   EXPECT_NEAR(estimate_.position_ned.z(), -1.0, 1e-9);
   EXPECT_TRUE(supervisor_.airborne());
   ASSERT_TRUE(ask(RequestKind::kLand).accepted);
   ASSERT_TRUE(step_until(Mode::kDisarmed, 10.0));
   EXPECT_EQ(supervisor_.reason(), Reason::kLanded);
-  EXPECT_EQ(directive_.actuation, Actuation::kOff);
+  EXPECT_EQ(directive_.control_mode, ControlMode::kOff);
   EXPECT_FALSE(supervisor_.airborne());
 }
 
@@ -177,7 +177,7 @@ TEST_F(Flight, LosingThePoseLeadsToLevelDescentAndItsReturnToHold) {
   situation_.pose_age_s = 0.6;
   step();
   EXPECT_EQ(supervisor_.mode(), Mode::kDescent);
-  EXPECT_EQ(directive_.actuation, Actuation::kLevelDescent);
+  EXPECT_EQ(directive_.control_mode, ControlMode::kLevelDescent);
   situation_.pose_age_s = 0.0;
   step();
   EXPECT_EQ(supervisor_.mode(), Mode::kHolding);
@@ -187,10 +187,10 @@ TEST_F(Flight, DescentWithoutPositionEndsAtTheGroundOrByTimeOut) {
   hover();
   situation_.pose_age_s = 1.0;
   ASSERT_TRUE(step_until(Mode::kDescent, 0.1));
-  situation_.unexplained_lift = 2.0;
+  situation_.vertical_specific_force_residual = 2.0;
   ASSERT_TRUE(step_until(Mode::kDisarmed, 1.0));
-  situation_ = Situation{situation_};
-  situation_.unexplained_lift = 0.0;
+  situation_ = SupervisorInputs{situation_};
+  situation_.vertical_specific_force_residual = 0.0;
   situation_.pose_age_s = 0.0;
   estimate_ = Estimate();
   hover();
@@ -223,25 +223,25 @@ TEST_F(Flight, AContactBeforeALandingWasCalledOffIsForgotten) {
   ASSERT_TRUE(step_until([&] { return estimate_.position_ned.z() < -0.99; }, 20.0));
   situation_.pose_age_s = 1.0;
   ASSERT_TRUE(step_until(Mode::kDescent, 0.1));
-  situation_.unexplained_lift = 2.0;
+  situation_.vertical_specific_force_residual = 2.0;
   step();
   step();
   EXPECT_EQ(supervisor_.mode(), Mode::kDescent);
-  EXPECT_EQ(directive_.actuation, Actuation::kLevelDescent);
+  EXPECT_EQ(directive_.control_mode, ControlMode::kLevelDescent);
 }
 
 TEST_F(Flight, AContactBeforeThePoseCameBackIsForgotten) {
   hover();
   situation_.pose_age_s = 1.0;
   ASSERT_TRUE(step_until(Mode::kDescent, 0.1));
-  situation_.unexplained_lift = 2.0;
+  situation_.vertical_specific_force_residual = 2.0;
   for (int i = 0; i < 50; ++i) step();
   situation_.pose_age_s = 0.0;
   ASSERT_TRUE(step_until(Mode::kHolding, 0.1));
-  situation_.unexplained_lift = 0.0;
+  situation_.vertical_specific_force_residual = 0.0;
   for (int i = 0; i < 500; ++i) step();
   situation_.pose_age_s = 1.0;
-  situation_.unexplained_lift = 2.0;
+  situation_.vertical_specific_force_residual = 2.0;
   for (int i = 0; i < 10; ++i) step();
   EXPECT_EQ(supervisor_.mode(), Mode::kDescent);
 }
@@ -272,7 +272,7 @@ TEST_F(Flight, TippingOverStopsTheRotors) {
   estimate_.q_ned_from_frd = Eigen::AngleAxisd(1.6, Vector3d::UnitY());
   step();
   EXPECT_EQ(supervisor_.mode(), Mode::kStopped);
-  EXPECT_EQ(directive_.actuation, Actuation::kOff);
+  EXPECT_EQ(directive_.control_mode, ControlMode::kOff);
   ASSERT_TRUE(ask(RequestKind::kDisarm).accepted);
   EXPECT_EQ(supervisor_.mode(), Mode::kDisarmed);
 }
@@ -339,9 +339,9 @@ TEST_F(Flight, FliesATrajectoryFromItsStartToItsEnd) {
   EXPECT_NEAR((estimate_.position_ned - Vector3d(0, 1, -1.5)).norm(), 0.0, 1e-3);
 }
 
-bool same(const Directive& a, const Directive& b) {
-  return a.actuation == b.actuation && a.lift_fraction == b.lift_fraction && a.integrate == b.integrate &&
-         a.reference.position_ned == b.reference.position_ned &&
+bool same(const ControlSetpoint& a, const ControlSetpoint& b) {
+  return a.control_mode == b.control_mode && a.lift_fraction == b.lift_fraction &&
+         a.integrate == b.integrate && a.reference.position_ned == b.reference.position_ned &&
          a.reference.velocity_ned == b.reference.velocity_ned &&
          a.reference.acceleration_ned == b.reference.acceleration_ned &&
          a.reference.jerk_ned == b.reference.jerk_ned && a.reference.snap_ned == b.reference.snap_ned &&
@@ -363,7 +363,7 @@ TEST_F(Flight, AnotherGoesOnFromItsStateAtEveryStep) {
       const SupervisorState state = supervisor_.state();
       follower.adopt(state, &mission, nullptr);
     }
-    Situation seen = situation_;
+    SupervisorInputs seen = situation_;
     const Estimate before = estimate_;
     step();
     if (steps < 7) continue;

@@ -33,7 +33,7 @@ std::string table() {
   for (const Transition& row : transitions()) {
     text << "| " << ++number << " | " << text_of(row.from) << " | "
          << (is_request(row.event) ? "*" + std::string(to_string(row.event)) + "*" : to_string(row.event))
-         << " | " << row.when.text << " | " << row.provided.text << " | "
+         << " | " << row.guards.text << " | " << row.provided.text << " | "
          << (row.to.stays ? "" : std::string("**") + to_string(row.to.mode) + "**") << " | "
          << (row.to.stays ? "" : to_string(row.reason)) << " | " << row.action.text << " |\n";
   }

@@ -126,15 +126,15 @@ const Row kGrid[] = {
     {Event::kImuUnusable, kLand,   ".OOOOOOOOOOO.O", Reason::kImuUnusable, condition([](Placed& f) { f.situation_.imu_unusable_s = 0.1; })},
     {Event::kImuGap, kLand,        ".OOOOOOOOOOO.O", Reason::kImuGap, condition([](Placed& f) { f.situation_.imu_gap_s = 0.4; })},
     {Event::kTippedOver, kLand,    ".OOOOOOOOOOO.O", Reason::kTippedOver, condition([](Placed& f) { f.estimate_.q_ned_from_frd = Eigen::AngleAxisd(1.5, Vector3d::UnitX()); })},
-    {Event::kStruck, kLand,        "..OOOOO OO  .O", Reason::kStruck, condition([](Placed& f) { f.situation_.specific_force_frd.z() = -120.0; })},
-    {Event::kStruck, kLand,        "       D  D   ", Reason::kLanded, condition([](Placed& f) { f.situation_.specific_force_frd.z() = -120.0; })},
-    {Event::kStruck, kLand,        "           D  ", Reason::kLandedWithoutPosition, condition([](Placed& f) { f.situation_.specific_force_frd.z() = -120.0; })},
-    {Event::kClimbNotSeen, kLand,  "...OO.OOOOO..O", Reason::kClimbNotSeen, condition([](Placed& f) { f.situation_.climb_contradicted = true; })},
+    {Event::kImpact, kLand,        "..OOOOO OO  .O", Reason::kImpact, condition([](Placed& f) { f.situation_.specific_force_frd.z() = -120.0; })},
+    {Event::kImpact, kLand,        "       D  D   ", Reason::kLanded, condition([](Placed& f) { f.situation_.specific_force_frd.z() = -120.0; })},
+    {Event::kImpact, kLand,        "           D  ", Reason::kLandedWithoutPosition, condition([](Placed& f) { f.situation_.specific_force_frd.z() = -120.0; })},
+    {Event::kTakeoffInconsistent, kLand,  "...OO.OOOOO..O", Reason::kTakeoffInconsistent, condition([](Placed& f) { f.situation_.takeoff_inconsistent = true; })},
     {Event::kPoseJumped, kLand,    ".DDLLDLLLL.L.L", Reason::kPoseJumped, condition([](Placed& f) { f.situation_.pose_jumped = true; })},
     {Event::kPoseLost, kLand,      ".DDWWDWWWWW..W", Reason::kNoPose, condition([](Placed& f) { f.situation_.pose_age_s = 0.6; })},
     {Event::kPoseIsBack, kLand,    "...........H..", Reason::kPoseIsBack, condition([](Placed& f) { f.situation_.pose_age_s = 0.0; })},
     {Event::kGroundFelt, kLand,    "       D  D   ", Reason::kLanded, lasting(20.0, [](Placed&) {})},
-    {Event::kGroundFelt, kLand,    "           D  ", Reason::kLandedWithoutPosition, lasting(0.4, [](Placed& f) { f.situation_.unexplained_lift = 2.0; })},
+    {Event::kGroundFelt, kLand,    "           D  ", Reason::kLandedWithoutPosition, lasting(0.4, [](Placed& f) { f.situation_.vertical_specific_force_residual = 2.0; })},
     {Event::kDescentTimedOut, kLand, "           O  ", Reason::kDescentTimedOut, lasting(6.1, [](Placed&) {})},
     {Event::kBatteryCritical, kLand, "..DLLDLLLLL..L", Reason::kBatteryCritical, condition([](Placed& f) { f.situation_.supply_voltage_v = 3.0; })},
     {Event::kOutsideFence, kLand,  "..DLLDLLLL...L", Reason::kOutsideFence, condition([](Placed& f) { f.estimate_.position_ned.x() = 3.3; })},
@@ -144,7 +144,7 @@ const Row kGrid[] = {
     {Event::kGroundLinkLost, GroundLinkAction::kHold, ".DDHHDHHHH...H", Reason::kGroundLinkLost, condition([](Placed& f) { f.lose_ground_link(); })},
     {Event::kGroundLinkLost, GroundLinkAction::kNone, "..............", Reason::kGroundLinkLost, condition([](Placed& f) { f.lose_ground_link(); })},
     {Event::kSetpointsStopped, kLand, "         H    ", Reason::kSetpointsStopped, lasting(0.85, [](Placed&) {})},
-    {Event::kSetpointsLeadOut, kLand, "    H    H    ", Reason::kSetpointsLedOut, condition([](Placed& f) { f.tilt(); f.estimate_.position_ned.x() = 2.9; f.estimate_.velocity_ned.x() = 1.0; })},
+    {Event::kSetpointsViolateFence, kLand, "    H    H    ", Reason::kSetpointsViolatedFence, condition([](Placed& f) { f.tilt(); f.estimate_.position_ned.x() = 2.9; f.estimate_.velocity_ned.x() = 1.0; })},
     {Event::kPlanFinished, kLand,  "   H          ", Reason::kTakeOffCompleted, lasting(10.0, [](Placed&) {})},
     {Event::kPlanFinished, kLand,  "      H       ", Reason::kMissionCompleted, lasting(10.0, [](Placed&) {})},
     {Event::kPlanFinished, kLand,  "        H     ", Reason::kTrajectoryCompleted, lasting(10.0, [](Placed&) {})},
@@ -164,7 +164,7 @@ const Row kGrid[] = {
     {Event::kHold, kLand,          "xxxHHxHHHHHxxH", Reason::kRequested, request(RequestKind::kHold)},
     {Event::kLand, kLand,          "xxDLLDLLLL==xL", Reason::kRequested, request(RequestKind::kLand)},
     {Event::kPlanUnknown, kLand,   ".....DHHH....H", Reason::kPlanUnknown, [](Placed& f) { f.forget_plan(); return std::optional<Outcome>(); }},
-    {Event::kFoundFlying, kLand,   "Hxxxxxxxxxxxxx", Reason::kFoundFlying, [](Placed& f) { return std::optional(f.supervisor_.find_flying(f.situation_)); }},
+    {Event::kEngagedInFlight, kLand,   "Hxxxxxxxxxxxxx", Reason::kEngagedInFlight, [](Placed& f) { return std::optional(f.supervisor_.engage_in_flight(f.situation_)); }},
     // clang-format on
 };
 
@@ -219,7 +219,7 @@ TEST(Transitions, NoRowHidesALaterOne) {
       for (int earlier = 0; earlier < later; ++earlier) {
         const Transition& row = table.rows[earlier];
         const bool hides = row.event == table.rows[later].event && row.from.has(static_cast<Mode>(mode)) &&
-                           &row.when == &when::kAlways;
+                           &row.guards == &guards::kAlways;
         EXPECT_FALSE(hides) << "row " << later + 1 << " is never reached in mode "
                             << to_string(static_cast<Mode>(mode)) << ": row " << earlier + 1;
       }
@@ -238,8 +238,8 @@ const std::vector<Urgency>& failsafes() {
       {Reason::kImuGap, [](Placed& f) { f.situation_.imu_gap_s = 0.4; }},
       {Reason::kTippedOver,
        [](Placed& f) { f.estimate_.q_ned_from_frd = Eigen::AngleAxisd(1.5, Vector3d::UnitY()); }},
-      {Reason::kClimbNotSeen, [](Placed& f) { f.situation_.climb_contradicted = true; }},
-      {Reason::kStruck, [](Placed& f) { f.situation_.specific_force_frd.z() = -120.0; }},
+      {Reason::kTakeoffInconsistent, [](Placed& f) { f.situation_.takeoff_inconsistent = true; }},
+      {Reason::kImpact, [](Placed& f) { f.situation_.specific_force_frd.z() = -120.0; }},
       {Reason::kPoseJumped, [](Placed& f) { f.situation_.pose_jumped = true; }},
       {Reason::kNoPose, [](Placed& f) { f.situation_.pose_age_s = 0.6; }},
       {Reason::kBatteryCritical, [](Placed& f) { f.situation_.supply_voltage_v = 3.0; }},
@@ -311,7 +311,7 @@ const Limit kLimits[] = {
     {"tip_over_tilt_rad", 'H', Reason::kTippedOver, kThresholds.tip_over_tilt_rad - 1e-6,
      kThresholds.tip_over_tilt_rad + 1e-6,
      [](Placed& f, double v) { f.estimate_.q_ned_from_frd = Eigen::AngleAxisd(v, Vector3d(0.6, 0.8, 0.0)); }},
-    {"blow_m_s2", 'H', Reason::kStruck, kThresholds.blow, kThresholds.blow + 1e-9,
+    {"blow_m_s2", 'H', Reason::kImpact, kThresholds.blow, kThresholds.blow + 1e-9,
      [](Placed& f, double v) { f.situation_.specific_force_frd.z() = -v; }},
     {"mocap_timeout_s", 'H', Reason::kNoPose, kThresholds.mocap_timeout_s, kThresholds.mocap_timeout_s + 1e-9,
      [](Placed& f, double v) { f.situation_.pose_age_s = v; }},
@@ -409,12 +409,12 @@ TEST(FoundFlying, ComesToRestAndHoldsButNotWithoutAPose) {
   flight.estimate_.position_ned = {1.0, 0.0, -1.5};
   flight.estimate_.velocity_ned = {0.8, 0.0, 0.0};
   flight.situation_.pose_age_s = 0.6;
-  EXPECT_FALSE(flight.supervisor_.find_flying(flight.situation_).accepted);
+  EXPECT_FALSE(flight.supervisor_.engage_in_flight(flight.situation_).accepted);
   EXPECT_EQ(flight.mode(), Mode::kDisarmed);
   flight.situation_.pose_age_s = 0.0;
-  ASSERT_TRUE(flight.supervisor_.find_flying(flight.situation_).accepted);
+  ASSERT_TRUE(flight.supervisor_.engage_in_flight(flight.situation_).accepted);
   flight.step();
-  EXPECT_EQ(flight.directive_.actuation, Actuation::kFly);
+  EXPECT_EQ(flight.directive_.control_mode, ControlMode::kFly);
   EXPECT_NEAR(flight.directive_.reference.velocity_ned.x(), 0.8, 0.02);
   flight.step_until([] { return false; }, 3.0);
   EXPECT_EQ(flight.directive_.reference.velocity_ned, Vector3d::Zero());

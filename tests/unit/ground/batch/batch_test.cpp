@@ -41,12 +41,12 @@ class BatchTest : public testing::Test {
   FlyOptions options(const std::string& parameters) const {
     const std::string config = SWIFTLET_SOURCE_DIR "/config/";
     FlyOptions options;
-    options.parties = Parties::kInProcess;
+    options.launch_mode = LaunchMode::kInProcess;
     options.mission = folder_.write("hop.yaml", tests::kHopMission);
     options.vehicle = config + "vehicles/kaylion.yaml";
     options.control = config + "control/motor_lag.yaml";
     options.simulation = config + "simulation/default.yaml";
-    options.vary = folder_.write("vary.yaml", "parameters:\n" + parameters);
+    options.dispersion = folder_.write("vary.yaml", "parameters:\n" + parameters);
     options.record = folder_.path();
     options.seed = 11;
     return options;
@@ -57,7 +57,7 @@ class BatchTest : public testing::Test {
 
   BatchReport fly(const std::string& parameters, std::size_t runs, std::size_t jobs) const {
     const FlyOptions how = options(parameters);
-    const FlightPlan plan = plan_flight(how);
+    const LaunchConfiguration plan = plan_flight(how);
     return report_of(plan, how, BatchRunner(plan, runs).fly(jobs, never, say_nothing));
   }
 
@@ -72,7 +72,7 @@ class BatchTest : public testing::Test {
   FlightReport repeated(const std::string& parameters, std::uint64_t seed) const {
     FlyOptions how = options(parameters);
     how.seed = seed;
-    const FlightPlan plan = plan_flight(how);
+    const LaunchConfiguration plan = plan_flight(how);
     ClosedLoop loop = closed_loop(plan, draw(plan, plan.seed).world, plan.seed);
     FlightRecord record(plan.record_capacity());
     return fly_in_process(loop, plan, plan.seed, record, nullptr, never).report;
@@ -141,8 +141,8 @@ TEST_F(BatchTest, FindsCountsAndRepeatsWhatDropoutsFail) {
 
 TEST_F(BatchTest, AnUnvariedPlanFliesTheNominalVehicle) {
   FlyOptions how = options(kMass);
-  how.vary.clear();
-  const FlightPlan plan = plan_flight(how);
+  how.dispersion.clear();
+  const LaunchConfiguration plan = plan_flight(how);
   const World world = draw(plan, plan.seed).world;
   EXPECT_EQ(world.vehicle.mass_kg, plan.vehicle.mass_kg);
   EXPECT_EQ(world.vehicle.motor.armature_resistance_ohm, plan.vehicle.motor.armature_resistance_ohm);
@@ -150,7 +150,7 @@ TEST_F(BatchTest, AnUnvariedPlanFliesTheNominalVehicle) {
 
 TEST_F(BatchTest, EndsEarlyAndKeepsWhatIsDone) {
   const FlyOptions how = options(kMass);
-  const FlightPlan plan = plan_flight(how);
+  const LaunchConfiguration plan = plan_flight(how);
   std::atomic<bool> enough{false};
   Batch batch = BatchRunner(plan, 500).fly(
       2, [&] { return enough.load(); }, [&](const BatchProgress& now) { enough = now.done >= 1; });
@@ -165,13 +165,13 @@ TEST_F(BatchTest, EndsEarlyAndKeepsWhatIsDone) {
 }
 
 TEST_F(BatchTest, MakesEveryDrawBeforeTheFirstFlight) {
-  const FlightPlan plan = plan_flight(
+  const LaunchConfiguration plan = plan_flight(
       options("  vehicle.inertia.zz: {distribution: uniform, min: 1.5, max: 2, unit: nominal, source: x}\n"));
   EXPECT_THROW(BatchRunner(plan, 3), runtime::ConfigError);
 }
 
 // Without flights: two runs, of which one failed.
-BatchReport made_report(const FlightPlan& plan, const FlyOptions& how) {
+BatchReport made_report(const LaunchConfiguration& plan, const FlyOptions& how) {
   Batch batch;
   batch.asked = 2;
   BatchRun good;
@@ -193,16 +193,17 @@ BatchReport made_report(const FlightPlan& plan, const FlyOptions& how) {
 
 TEST_F(BatchTest, TellsHowToRepeatAFailedRun) {
   FlyOptions how = options(kMass);
-  const FlightPlan plan = plan_flight(how);
+  const LaunchConfiguration plan = plan_flight(how);
   how.mission = "hop";
   how.vehicle = "it's mine.yaml";
   how.control = "motor_lag";
   how.simulation = "default";
-  how.vary = "vary/room.yaml";
+  how.dispersion = "vary/room.yaml";
   how.imu_rate_hz = 1000;
   const BatchReport report = made_report(plan, how);
   const std::string command =
-      "swiftlet sim fly hop --vehicle 'it'\\''s mine.yaml' --imu-rate 1000 --vary vary/room.yaml --seed 12";
+      "swiftlet sim fly hop --vehicle 'it'\\''s mine.yaml' --imu-rate 1000 --dispersion vary/room.yaml "
+      "--seed 12";
   EXPECT_EQ(report.repeat_command(12), command);
   EXPECT_NE(to_text(report).find("  seed 12: it went away, \"far\": " + command + "\n"), std::string::npos);
 }

@@ -10,18 +10,18 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/services/dds/discovery/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/support/eventually.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
-using comms::DomainClaim;
+using comms::DomainLock;
 using tests::eventually;
 using tests::Inbox;
 using namespace std::chrono_literals;
 
-comms::NodeSettings settings_of(const char* name, const DomainClaim& claim) {
+comms::NodeSettings settings_of(const char* name, const DomainLock& claim) {
   comms::NodeSettings settings;
   settings.name = name;
   settings.domain = claim.domain();
@@ -32,7 +32,7 @@ comms::NodeSettings settings_of(const char* name, const DomainClaim& claim) {
 // Hears requests, and answers if it is to.
 class Control {
  public:
-  explicit Control(const DomainClaim& claim, bool answers = false)
+  explicit Control(const DomainLock& claim, bool answers = false)
       : answers_(answers),
         node_(settings_of("control", claim)),
         acks_(node_.publish(comms::topics::kCommandAck)),
@@ -73,16 +73,16 @@ class Control {
 
 class Requests : public testing::Test {
  protected:
-  std::future<Answer> ask(std::chrono::milliseconds timeout) {
+  std::future<Result> ask(std::chrono::milliseconds timeout) {
     return std::async(std::launch::async, [this, timeout] {
       msg::Command hold;
       hold.kind(msg::Command_Constants::HOLD);
       return client_.command(hold, timeout);
     });
   }
-  bool is_silence(std::future<Answer> answer) { return answer.get().kind == Answer::Kind::kSilence; }
+  bool is_silence(std::future<Result> answer) { return answer.get().kind == Result::Kind::kSilence; }
 
-  DomainClaim claim_;
+  DomainLock claim_;
   Client client_{settings_of("ground", claim_)};
 };
 
@@ -96,7 +96,7 @@ TEST_F(Requests, ALongMissionGoesOutOnce) {
   Control control(claim_);
   control::Mission mission;
   mission.items.resize(control::kMaxMissionItems);
-  EXPECT_EQ(client_.upload(mission, 1900ms).kind, Answer::Kind::kSilence);
+  EXPECT_EQ(client_.upload(mission, 1900ms).kind, Result::Kind::kSilence);
   EXPECT_EQ(control.heard_.size(), 1U);
 }
 
@@ -111,7 +111,7 @@ TEST_F(Requests, GoOutAgainAfterALongSilence) {
 // Well before the silence is long: a controller that was started again, a standby that took over.
 TEST_F(Requests, AreAnsweredByAControllerThatIsStartedMeanwhile) {
   auto first = std::make_unique<Control>(claim_);
-  std::future<Answer> answer = ask(10s);
+  std::future<Result> answer = ask(10s);
   ASSERT_TRUE(first->heard_.wait_for_count(1));
   const auto since = Clock::now();
   first.reset();
@@ -138,7 +138,7 @@ TEST_F(Requests, GoOutAgainWhenAnotherControllerTakesOver) {
       return std::count_if(ids.begin(), ids.end(), [before](auto id) { return id > before; }) == times;
     };
   };
-  std::future<Answer> answer = ask(1900ms);
+  std::future<Result> answer = ask(1900ms);
   ASSERT_TRUE(active.heard_.wait(heard_since(1)));
   ASSERT_TRUE(standby.heard_.wait(heard_since(1)));
   active.say(++sequence);

@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/ground/client/signs_of_life.hpp"
-#include "swiftlet/ground/client/time_grants.hpp"
-#include "swiftlet/services/dds/discovery/domain_claim.hpp"
+#include "swiftlet/ground/client/ground_heartbeat.hpp"
+#include "swiftlet/ground/client/simulation_clock.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/support/eventually.hpp"
 
 namespace swiftlet::ground {
@@ -21,7 +21,7 @@ constexpr std::int64_t kMs = 1'000'000;
 
 class GroundSignals : public testing::Test {
  protected:
-  static comms::NodeSettings settings(const comms::DomainClaim& claim, const char* name) {
+  static comms::NodeSettings settings(const comms::DomainLock& claim, const char* name) {
     comms::NodeSettings settings;
     settings.name = name;
     settings.domain = claim.domain();
@@ -29,7 +29,7 @@ class GroundSignals : public testing::Test {
     settings.deadlines = false;
     return settings;
   }
-  comms::DomainClaim claim_;
+  comms::DomainLock claim_;
   comms::Node ground_{settings(claim_, "ground")};
   comms::Node vehicle_{settings(claim_, "vehicle")};
 };
@@ -38,7 +38,7 @@ TEST_F(GroundSignals, ASignOfLifeGoesOutEveryFifthOfASecondOfTheVehiclesClock) {
   Inbox<msg::GroundLink> inbox;
   const auto subscription = vehicle_.subscribe<msg::GroundLink>(
       comms::topics::kGroundLink, [&](const msg::GroundLink& sign) { inbox.put(sign); });
-  SignsOfLife signs(ground_, 42);
+  GroundHeartbeatPublisher signs(ground_, 42);
   ASSERT_TRUE(eventually([&] { return subscription.matched() == 1; }));
   // A sign takes the place of the one before where that has not gone out yet: each is awaited.
   const auto comes = [&](std::int64_t ms) {
@@ -66,30 +66,31 @@ TEST_F(GroundSignals, ASignOfLifeGoesOutEveryFifthOfASecondOfTheVehiclesClock) {
 
 // A tenth of a second ahead of what has come, in steps of a quarter of that, and never beyond the goal.
 TEST_F(GroundSignals, TimeIsGrantedAWindowAheadUpToTheGoal) {
-  Inbox<std::int64_t> grants;
+  Inbox<std::int64_t> simulation_clock;
   const auto subscription = vehicle_.subscribe<msg::SimulationClock>(
       comms::topics::kSimulationClock,
-      [&](const msg::SimulationClock& clock) { grants.put(clock.advance_to_ns() / kMs); });
-  TimeGrants clock(ground_, 100 * kMs);
+      [&](const msg::SimulationClock& clock) { simulation_clock.put(clock.advance_to_ns() / kMs); });
+  SimulationClockPublisher clock(ground_, 100 * kMs);
   ASSERT_TRUE(eventually([&] { return subscription.matched() == 1; }));
   const auto comes = [&](std::int64_t ms) {
-    return grants.wait([=](const auto& all) { return std::find(all.begin(), all.end(), ms) != all.end(); });
+    return simulation_clock.wait(
+        [=](const auto& all) { return std::find(all.begin(), all.end(), ms) != all.end(); });
   };
   clock.up_to(1'000 * kMs);
   ASSERT_TRUE(comes(100));
   clock.has_come(10 * kMs);  // not worth a message
   clock.has_come(30 * kMs);
   ASSERT_TRUE(comes(130));
-  const std::vector<std::int64_t> so_far = grants.items();
+  const std::vector<std::int64_t> so_far = simulation_clock.items();
   EXPECT_EQ(std::count(so_far.begin(), so_far.end(), 110), 0);
   clock.has_come(20 * kMs);  // late
   clock.up_to(500 * kMs);    // the goal does not go back
   clock.has_come(950 * kMs);
   ASSERT_TRUE(comes(1'000));
   clock.has_come(3'000 * kMs);
-  grants.clear();
-  ASSERT_TRUE(grants.wait_for_count(2)) << "the last grant comes again, for who missed it";
-  const std::vector<std::int64_t> again = grants.items();
+  simulation_clock.clear();
+  ASSERT_TRUE(simulation_clock.wait_for_count(2)) << "the last grant comes again, for who missed it";
+  const std::vector<std::int64_t> again = simulation_clock.items();
   EXPECT_EQ(std::count(again.begin(), again.end(), 1'000), static_cast<std::ptrdiff_t>(again.size()));
   clock.without_end();
   ASSERT_TRUE(comes(3'100));

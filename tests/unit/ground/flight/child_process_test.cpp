@@ -106,9 +106,10 @@ TEST_F(ChildProcessTest, GroupNamesTheOneThatDied) {
   ill.name = "ill";
   ProcessGroup processes({well, ill});
   const auto deadline = std::chrono::steady_clock::now() + 10s;
-  std::optional<std::string> casualty;
-  while (!casualty && std::chrono::steady_clock::now() < deadline) casualty = processes.casualty();
-  EXPECT_EQ(casualty.value_or("none"),
+  std::optional<std::string> exited_process;
+  while (!exited_process && std::chrono::steady_clock::now() < deadline)
+    exited_process = processes.exited_process();
+  EXPECT_EQ(exited_process.value_or("none"),
             "ill was killed by signal 11 (Segmentation fault); it said last: out of luck");
 }
 
@@ -117,7 +118,8 @@ TEST_F(ChildProcessTest, GroupSaysWhoDidNotEndCleanly) {
   fails.name = "fails";
   ProcessGroup processes({fails});
   const auto deadline = std::chrono::steady_clock::now() + 10s;
-  while (!processes.casualty() && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+  while (!processes.exited_process() && std::chrono::steady_clock::now() < deadline)
+    std::this_thread::yield();
   const auto complaints = processes.stop();
   ASSERT_EQ(complaints.size(), 1U);
   EXPECT_EQ(complaints.front(), "fails ended with exit status 3");

@@ -17,7 +17,7 @@ class ForeignFlight : public testing::Test {
  protected:
   void plan(const std::string& file, const std::string& control = "motor_lag") {
     FlyOptions options;
-    options.parties = Parties::kInProcess;
+    options.launch_mode = LaunchMode::kInProcess;
     options.mission = kData + file;
     options.control = control;
     options.record = folder_.path().string();
@@ -38,7 +38,7 @@ class ForeignFlight : public testing::Test {
   }
 
   tests::TemporaryFolder folder_;
-  FlightPlan plan_;
+  LaunchConfiguration plan_;
 };
 
 class ForeignCsv : public ForeignFlight, public testing::WithParamInterface<const char*> {};

@@ -24,12 +24,12 @@ plant::Vehicle crazyflie() { return runtime::load_vehicle(kConfig + "vehicles/cr
 FlightReport fly(const std::string& mission, const std::string& control) {
   const tests::TemporaryFolder folder;
   FlyOptions options;
-  options.parties = Parties::kInProcess;
+  options.launch_mode = LaunchMode::kInProcess;
   options.vehicle = "crazyflie2";
   options.mission = mission;
   options.control = control;
   options.record = folder.path().string();
-  const FlightPlan plan = plan_flight(options);
+  const LaunchConfiguration plan = plan_flight(options);
   ClosedLoop loop = closed_loop(plan, draw(plan, plan.seed).world, plan.seed);
   FlightRecord record(plan.record_capacity());
   return fly_in_process(loop, plan, plan.seed, record, nullptr, {}).report;

@@ -7,8 +7,8 @@
 
 #include "swiftlet/control/design/control_design.hpp"
 #include "swiftlet/ground/batch/margin_study.hpp"
-#include "swiftlet/ground/flight/flight_plan.hpp"
 #include "swiftlet/ground/flight/in_process_flight.hpp"
+#include "swiftlet/ground/flight/launch_configuration.hpp"
 #include "swiftlet/identification/bench/bench.hpp"
 #include "swiftlet/identification/bench/bench_simulation.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
@@ -23,19 +23,19 @@ namespace {
 plant::Vehicle unknown(const plant::Vehicle& like, std::uint64_t seed) {
   plant::RandomStream random(seed, 20250920);
   plant::Vehicle out = like;
-  const auto vary = [&](double& value, double by) { value *= random.uniform(1.0 - by, 1.0 + by); };
-  vary(out.mass_kg, 0.1);
-  for (int axis = 0; axis < 3; ++axis) vary(out.inertia(axis, axis), 0.1);
+  const auto dispersion = [&](double& value, double by) { value *= random.uniform(1.0 - by, 1.0 + by); };
+  dispersion(out.mass_kg, 0.1);
+  for (int axis = 0; axis < 3; ++axis) dispersion(out.inertia(axis, axis), 0.1);
   out.inertia *= random.uniform(0.8, 1.2);
   out.inertia(2, 2) = std::min(out.inertia(2, 2), 0.98 * (out.inertia(0, 0) + out.inertia(1, 1)));
-  vary(out.rotor.thrust, 0.1);
-  vary(out.rotor.torque, 0.1);
-  vary(out.motor.time_constant_s, 0.2);
-  vary(out.motor.k2, 0.1);
-  vary(out.motor.k3, 0.1);
+  dispersion(out.rotor.thrust, 0.1);
+  dispersion(out.rotor.torque, 0.1);
+  dispersion(out.motor.time_constant_s, 0.2);
+  dispersion(out.motor.k2, 0.1);
+  dispersion(out.motor.k3, 0.1);
   out.motor.armature_resistance_ohm = 0.99 * out.motor.k2 * out.motor.k3 / out.rotor.torque;
-  vary(out.esc.gain, 0.05);
-  vary(out.esc.offset_v2, 0.1);
+  dispersion(out.esc.gain, 0.05);
+  dispersion(out.esc.offset_v2, 0.1);
   return out;
 }
 
@@ -51,17 +51,17 @@ std::string identified_file(const tests::TemporaryFolder& folder, const plant::V
                       runtime::vehicle_text(found.vehicle, found.sources, found.uncertainty, ""));
 }
 
-FlightPlan plan_of(const std::string& vehicle, const tests::TemporaryFolder& folder,
-                   const std::string& vary = "") {
+LaunchConfiguration plan_of(const std::string& vehicle, const tests::TemporaryFolder& folder,
+                            const std::string& dispersion = "") {
   FlyOptions options;
-  options.parties = Parties::kInProcess;
+  options.launch_mode = LaunchMode::kInProcess;
   options.vehicle = vehicle;
-  options.vary = vary;
+  options.dispersion = dispersion;
   options.record = folder.path().string();
   return plan_flight(options);
 }
 
-FlightReport fly(const FlightPlan& plan, const plant::Vehicle& truth, std::uint64_t seed) {
+FlightReport fly(const LaunchConfiguration& plan, const plant::Vehicle& truth, std::uint64_t seed) {
   ClosedLoop loop(truth, plan.vehicle, plan.simulation, plan.control, seed);
   FlightRecord record(plan.record_capacity());
   return fly_in_process(loop, plan, seed, record, nullptr, {}).report;
@@ -76,7 +76,7 @@ class BenchToFlight : public testing::TestWithParam<std::uint64_t> {
 
 TEST_P(BenchToFlight, TheSquareOnTheTruePlant) {
   ASSERT_TRUE(plant::validate(truth_).empty());
-  const FlightPlan plan = plan_of(identified_file(folder_, truth_, kaylion_, GetParam()), folder_);
+  const LaunchConfiguration plan = plan_of(identified_file(folder_, truth_, kaylion_, GetParam()), folder_);
   const FlightReport report = fly(plan, truth_, GetParam());
   EXPECT_TRUE(report.completed) << report.reason;
   EXPECT_LT(report.errors.rms_3d_m, 0.004);
@@ -85,7 +85,7 @@ TEST_P(BenchToFlight, TheSquareOnTheTruePlant) {
 
 TEST_P(BenchToFlight, KeepsItsMarginsOverWhatTheBenchLeftOpen) {
   const std::string file = identified_file(folder_, truth_, kaylion_, GetParam());
-  const FlightPlan plan = plan_of(file, folder_, kUncertainty);
+  const LaunchConfiguration plan = plan_of(file, folder_, kUncertainty);
   ASSERT_EQ(plan.variation.name, kUncertainty);
   const MarginStudy study = study_margins(control::design(plan.vehicle, plan.control), plan.vehicle,
                                           plan.variation, 300, GetParam());

@@ -24,8 +24,8 @@ using identification::SpeedSource;
 const std::string kSource = SWIFTLET_SOURCE_DIR;
 constexpr double kDelayS = 0.006;  // that is added to the commands of simulated flights
 
-FlightPlan delayed_plan() {
-  FlightPlan plan = plan_of("identification");
+LaunchConfiguration delayed_plan() {
+  LaunchConfiguration plan = plan_of("identification");
   plan.simulation.rotor_speed_rate_hz = 0.0;
   delay_commands(plan, kDelayS);
   return plan;
@@ -56,7 +56,7 @@ struct Tally {
   double widest = 0.0;  // half width of an interval, relative
 };
 
-std::map<std::string, Tally> recover(const FlightPlan& plan, const char* what, int seeds) {
+std::map<std::string, Tally> recover(const LaunchConfiguration& plan, const char* what, int seeds) {
   std::map<std::string, Tally> tallies;
   for (int i = 1; i <= seeds; ++i) {
     const auto seed = static_cast<std::uint64_t>(i);
@@ -111,7 +111,7 @@ TEST(CommandFlight, RecoversLagAndGains) {
 }
 
 TEST(CommandFlight, RecoversThemInGusts) {
-  FlightPlan plan = delayed_plan();
+  LaunchConfiguration plan = delayed_plan();
   plan.simulation.air.wind_ned = {1.0, -0.7, 0.0};
   plan.simulation.air.gust_sigma_ned = {0.7, 0.7, 0.3};
   expect_true_and_narrow(recover(plan, "gusts", tests::draws(1, 8)));
@@ -134,11 +134,12 @@ TEST(CommandFlight, OfARealVehicle) {
   EXPECT_LT(lag.half_width, 0.02);
   ASSERT_EQ(found.comparisons.size(), 4U);
   for (const identification::FileComparison& comparison : found.comparisons) {
-    if (comparison.told.parameter == "thrust_to_rate.yaw") continue;
-    EXPECT_LT(comparison.told.low(), comparison.file) << comparison.told.parameter;
-    EXPECT_GT(comparison.told.high(), comparison.file) << comparison.told.parameter;
-    EXPECT_NEAR(comparison.ratio(), 1.0, 0.2) << comparison.told.parameter;
-    EXPECT_LT(comparison.told.half_width, 0.3 * comparison.told.value) << comparison.told.parameter;
+    if (comparison.identified.parameter == "thrust_to_rate.yaw") continue;
+    EXPECT_LT(comparison.identified.low(), comparison.file) << comparison.identified.parameter;
+    EXPECT_GT(comparison.identified.high(), comparison.file) << comparison.identified.parameter;
+    EXPECT_NEAR(comparison.ratio(), 1.0, 0.2) << comparison.identified.parameter;
+    EXPECT_LT(comparison.identified.half_width, 0.3 * comparison.identified.value)
+        << comparison.identified.parameter;
   }
   const Estimate& hover = *found.find("thrust_per_mass.hover_command");
   EXPECT_NEAR(hover.value, 0.64, 0.02);
@@ -151,12 +152,12 @@ TEST(CommandFlight, OfARealVehicle) {
   }
   for (const identification::HorizonError& error : found.horizons) {
     if (error.horizon_s > 0.15) continue;
-    EXPECT_LT(error.by_commands, error.idle) << error.quantity << error.horizon_s;
+    EXPECT_LT(error.by_commands, error.persistence) << error.quantity << error.horizon_s;
   }
 }
 
 TEST(CommandFlight, RefusesMotorsInAnotherOrder) {
-  const FlightPlan plan = delayed_plan();
+  const LaunchConfiguration plan = delayed_plan();
   FlightLog log = blinded(flown(plan, plan.vehicle, 4));
   swap_motors(log);
   expect_refused({log}, plan.vehicle, "are the motors in its order");

@@ -19,7 +19,7 @@ using tests::contains;
 class FlightChecks : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    plan_ = new FlightPlan(plan_of("identification"));
+    plan_ = new LaunchConfiguration(plan_of("identification"));
     log_ = new FlightLog(flown(*plan_, plan_->vehicle, 11));
   }
   static void TearDownTestSuite() {
@@ -38,10 +38,10 @@ class FlightChecks : public testing::Test {
     return identification::identify_flight({log}, plan_->vehicle, {});
   }
 
-  static FlightPlan* plan_;
+  static LaunchConfiguration* plan_;
   static FlightLog* log_;
 };
-FlightPlan* FlightChecks::plan_ = nullptr;
+LaunchConfiguration* FlightChecks::plan_ = nullptr;
 FlightLog* FlightChecks::log_ = nullptr;
 
 std::function<void(FlightLog&)> poses(const std::function<void(FlightPose&)>& change) {
@@ -156,9 +156,9 @@ TEST_F(FlightChecks, LogsWithoutPosesAreOfOneRate) {
   FlightLog slow = fast;
   slow.name = "slow.csv";
   const auto thin = [](auto& values) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < values.size(); i += 5) values[kept++] = values[i];
-    values.resize(kept);
+    std::size_t validation_set = 0;
+    for (std::size_t i = 0; i < values.size(); i += 5) values[validation_set++] = values[i];
+    values.resize(validation_set);
   };
   thin(slow.time_s);
   thin(slow.specific_force_frd);
@@ -171,7 +171,7 @@ TEST_F(FlightChecks, LogsWithoutPosesAreOfOneRate) {
 }
 
 TEST(CalmFlight, DoesNotTellMomentsOfInertia) {
-  const FlightPlan plan = plan_of("square");
+  const LaunchConfiguration plan = plan_of("square");
   const FlightIdentification found =
       identification::identify_flight({flown(plan, plan.vehicle, 2)}, plan.vehicle, {});
   EXPECT_LT(found.find("inertia.zz")->high(), plan.vehicle.inertia(2, 2)) << "the trap is gone";
@@ -180,7 +180,7 @@ TEST(CalmFlight, DoesNotTellMomentsOfInertia) {
 }
 
 TEST(CalmFlight, WithoutPosesDoesNotTellThemEither) {
-  const FlightPlan plan = plan_of("square");
+  const LaunchConfiguration plan = plan_of("square");
   FlightLog log = flown(plan, plan.vehicle, 2);
   log.poses.clear();
   const FlightIdentification found = identification::identify_flight({log}, plan.vehicle, {});

@@ -37,7 +37,7 @@ struct Tally {
 enum class Left { kAll, kNoSpeeds };
 
 std::map<std::string, Tally> recover(Left left, int seeds) {
-  FlightPlan plan = plan_of("identification");
+  LaunchConfiguration plan = plan_of("identification");
   if (left == Left::kNoSpeeds) plan.simulation.rotor_speed_rate_hz = 0.0;
   std::map<std::string, Tally> tallies;
   for (int seed = 1; seed <= seeds; ++seed) {
@@ -106,7 +106,7 @@ TEST(FlightIdentification, RecoversAVehicleThatDoesNotTellItsRotorSpeeds) {
 }
 
 TEST(FlightIdentification, TellsMassInsteadWhereTheThrustIsKnown) {
-  const FlightPlan plan = plan_of("identification");
+  const LaunchConfiguration plan = plan_of("identification");
   plant::Vehicle truth = plan.vehicle;
   truth.mass_kg *= 1.1;
   truth.inertia *= 1.1;
@@ -121,7 +121,7 @@ TEST(FlightIdentification, TellsMassInsteadWhereTheThrustIsKnown) {
 }
 
 TEST(FlightIdentification, RefusesLogsThatDoNotHoldTheSame) {
-  const FlightPlan plan = plan_of("identification");
+  const LaunchConfiguration plan = plan_of("identification");
   const FlightLog log = flown(plan, plan.vehicle, 5);
   FlightLog blind = log;
   blind.poses.clear();
@@ -129,7 +129,7 @@ TEST(FlightIdentification, RefusesLogsThatDoNotHoldTheSame) {
 }
 
 TEST(FlightIdentification, TellsADelayOfTheCommands) {
-  FlightPlan plan = plan_of("identification");
+  LaunchConfiguration plan = plan_of("identification");
   plan.simulation.rotor_speed_rate_hz = 0.0;
   delay_commands(plan, 0.006);
   const FlightIdentification found =
@@ -138,7 +138,7 @@ TEST(FlightIdentification, TellsADelayOfTheCommands) {
 }
 
 TEST(FlightIdentification, FindsPosesThatAreStampedLateAndSetsThemRight) {
-  const FlightPlan plan = plan_of("identification");
+  const LaunchConfiguration plan = plan_of("identification");
   const plant::Vehicle truth = another(plan.vehicle, 6);
   FlightLog log = flown(plan, truth, 6);
   const FlightIdentification right = identification::identify_flight({log}, plan.vehicle, {});
@@ -154,7 +154,7 @@ TEST(FlightIdentification, FindsPosesThatAreStampedLateAndSetsThemRight) {
 }
 
 TEST(FlightIdentification, SaysWhatAHoverDoesNotTell) {
-  const FlightPlan plan = plan_of(tests::TemporaryFolder().write("hover.yaml", R"(name: hover
+  const LaunchConfiguration plan = plan_of(tests::TemporaryFolder().write("hover.yaml", R"(name: hover
 frame: ned
 tolerance_m: 0.2
 items:
@@ -170,7 +170,7 @@ items:
 }
 
 TEST(FlightIdentification, RefusesMotorsInAnotherOrder) {
-  const FlightPlan plan = plan_of("identification");
+  const LaunchConfiguration plan = plan_of("identification");
   FlightLog log = flown(plan, plan.vehicle, 4);
   swap_motors(log);
   expect_refused({log}, plan.vehicle, "are the motors in its order");

@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/ground/flight/flight_plan.hpp"
 #include "swiftlet/ground/flight/in_process_flight.hpp"
+#include "swiftlet/ground/flight/launch_configuration.hpp"
 #include "swiftlet/identification/flight/flight.hpp"
 #include "swiftlet/io/logs/flight_log_files.hpp"
 #include "swiftlet/math/random.hpp"
@@ -20,10 +20,10 @@
 
 namespace swiftlet::ground {
 
-inline FlightPlan plan_of(const std::string& mission) {
+inline LaunchConfiguration plan_of(const std::string& mission) {
   const tests::TemporaryFolder folder;
   FlyOptions options;
-  options.parties = Parties::kInProcess;
+  options.launch_mode = LaunchMode::kInProcess;
   options.mission = mission;
   options.record = folder.path().string();
   return plan_flight(options);
@@ -42,7 +42,7 @@ inline plant::Vehicle another(const plant::Vehicle& nominal, std::uint64_t seed)
   return out;
 }
 
-inline identification::FlightLog flown(const FlightPlan& plan, const plant::Vehicle& truth,
+inline identification::FlightLog flown(const LaunchConfiguration& plan, const plant::Vehicle& truth,
                                        std::uint64_t seed) {
   ClosedLoop loop(truth, plan.vehicle, plan.simulation, plan.control, seed);
   SensorRecord record(plan.record_capacity());
@@ -55,7 +55,7 @@ inline identification::FlightLog flown(const FlightPlan& plan, const plant::Vehi
 }
 
 // Commands come to the motors later.
-inline void delay_commands(FlightPlan& plan, double delay_s) {
+inline void delay_commands(LaunchConfiguration& plan, double delay_s) {
   plant::Fault late;
   late.kind = plant::FaultKind::kCommandsDelay;
   late.at_s = 0.0;

@@ -7,7 +7,7 @@
 
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
-#include "swiftlet/simulation/variation.hpp"
+#include "swiftlet/simulation/dispersion.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -27,7 +27,7 @@ plant::VehicleUncertainty uncertainty() {
 
 std::string refused(const plant::VehicleUncertainty& given) {
   try {
-    variation_of(given, kaylion(), "v.yaml");
+    dispersion_of(given, kaylion(), "v.yaml");
   } catch (const runtime::ConfigError& fault) {
     return fault.what();
   }
@@ -37,7 +37,7 @@ std::string refused(const plant::VehicleUncertainty& given) {
 
 TEST(Uncertainty, IsDrawnWithItsErrorsAndCorrelations) {
   const plant::Vehicle vehicle = kaylion();
-  const Variation variation = variation_of(uncertainty(), vehicle, "v.yaml");
+  const Dispersion variation = dispersion_of(uncertainty(), vehicle, "v.yaml");
   constexpr int kDraws = 4000;
   double k2 = 0.0;
   double k3 = 0.0;
@@ -65,7 +65,7 @@ TEST(Uncertainty, IsDrawnWithItsErrorsAndCorrelations) {
 
 TEST(Uncertainty, GivesOneDrawForOneSeed) {
   const plant::Vehicle vehicle = kaylion();
-  const Variation variation = variation_of(uncertainty(), vehicle, "v.yaml");
+  const Dispersion variation = dispersion_of(uncertainty(), vehicle, "v.yaml");
   EXPECT_EQ(draw(variation, {vehicle, {}}, 7).values, draw(variation, {vehicle, {}}, 7).values);
   EXPECT_NE(draw(variation, {vehicle, {}}, 7).values, draw(variation, {vehicle, {}}, 8).values);
 }

@@ -30,7 +30,7 @@ class MissionChecked : public testing::Test {
     return parse_mission_file(text, "m.yaml", settings_.limits);
   }
   MissionCheck checked(const MissionFile& file) const {
-    return check_mission(file, rehearse(file.mission, settings_, {0.0, 0.0}), vehicle_, settings_, 3.3);
+    return check_mission(file, dry_run(file.mission, settings_, {0.0, 0.0}), vehicle_, settings_, 3.3);
   }
   static const WorstDemand& worst(const ItemCheck& item, Demand demand) {
     return item.demands.at(static_cast<std::size_t>(demand));
@@ -151,7 +151,7 @@ TEST_F(MissionChecked, WhatTheControlServiceWouldRefuseIsNotFeasible) {
   const MissionCheck outside = checked(file);
   EXPECT_FALSE(outside.feasible());
   EXPECT_EQ(outside.reason, "the vehicle: x is 0.000 m, outside the fence of 0.500 to 2.000 m");
-  const Rehearsal inside = rehearse(file.mission, settings_, {1.0, 0.0});
+  const MissionDryRun inside = dry_run(file.mission, settings_, {1.0, 0.0});
   EXPECT_TRUE(check_mission(file, inside, vehicle_, settings_, 3.3).feasible()) << inside.reason;
 }
 
@@ -166,13 +166,13 @@ TEST_F(MissionChecked, OneThatBeginsInTheAirIsRehearsedFromAHover) {
 // The rehearsal is what is flown: its legs are those of the mission's own segments, to the last bit.
 TEST_F(MissionChecked, TheRehearsalFliesEverySegmentOfATrajectory) {
   const MissionFile file = load_mission_file(kConfig + "missions/tour.yaml", settings_.limits);
-  const Rehearsal rehearsal = rehearse(file.mission, settings_, {0.0, 0.0});
-  ASSERT_TRUE(rehearsal.completed) << rehearsal.reason;
+  const MissionDryRun dry_run = dry_run(file.mission, settings_, {0.0, 0.0});
+  ASSERT_TRUE(dry_run.completed) << dry_run.reason;
   for (std::size_t i = 0; i < file.mission.items.size(); ++i) {
     const control::MissionItem& item = file.mission.items[i];
     if (item.kind != control::MissionItemKind::kTrajectory) continue;
     std::size_t flown = 0;
-    for (const RehearsedLeg& leg : rehearsal.legs) {
+    for (const DryRunLeg& leg : dry_run.legs) {
       const control::PolynomialSegment& next =
           file.mission.segments[item.first_segment + std::min<std::size_t>(flown, item.segment_count - 1)];
       if (leg.item == i && leg.segment.x == next.x && leg.segment.y == next.y) ++flown;
@@ -185,14 +185,14 @@ TEST_F(MissionChecked, IsDrawn) {
   const tests::TemporaryFolder folder;
   const MissionFile file = load_mission_file(kConfig + "missions/tour.yaml", settings_.limits);
   const std::filesystem::path png = folder.path() / "tour.png";
-  ASSERT_EQ(draw_mission(png, file, rehearse(file.mission, settings_, {0.0, 0.0}), settings_.limits), "");
+  ASSERT_EQ(draw_mission(png, file, dry_run(file.mission, settings_, {0.0, 0.0}), settings_.limits), "");
   std::ifstream picture(png, std::ios::binary);
   std::string magic(8, '\0');
   picture.read(magic.data(), 8);
   EXPECT_EQ(magic, "\x89PNG\r\n\x1a\n");
   EXPECT_GT(std::filesystem::file_size(png), 50'000U);
   EXPECT_NE(draw_mission(folder.path() / "none" / "tour.png", file,
-                         rehearse(file.mission, settings_, {0.0, 0.0}), settings_.limits)
+                         dry_run(file.mission, settings_, {0.0, 0.0}), settings_.limits)
                 .find("cannot be written"),
             std::string::npos);
 }

@@ -111,7 +111,7 @@ TEST(Bench, TakesThePossibleInertiaNearest) {
     ++beyond;
     for (std::size_t i = 0; i < 3; ++i) {
       const auto axis = static_cast<Eigen::Index>(i);
-      const Estimate& estimate = found.inertia[i]->estimates.front();
+      const ParameterEstimate& estimate = found.inertia[i]->estimates.front();
       EXPECT_NEAR(found.vehicle.inertia(axis, axis), estimate.value, 2.0 * estimate.half_width);
     }
   }

@@ -44,7 +44,7 @@ TEST(InertiaExperiment, WarnsOfArmsThatHideIt) {
 }
 
 TEST(InertiaExperiment, SharesTheErrorOfTheMass) {
-  const Estimate found =
+  const ParameterEstimate found =
       identify_inertia(*bench_of(kaylion(), 0.0).inertia[2]->bifilar, target(0.02)).estimates.front();
   EXPECT_NEAR(found.standard_error / found.value, 0.02, 1e-9);
 }

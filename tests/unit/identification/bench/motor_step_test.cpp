@@ -56,8 +56,8 @@ TEST(MotorStepExperiment, FindsItFromAnyOtherSpeedAndTime) {
 
 TEST(MotorStepExperiment, SharesTheErrorOfTheTorqueFactor) {
   const MotorStepData data = *bench_of(physical(), 0.005).motor_step;
-  const Estimate without = identify_motor_step(data, physical(), 0.0).rotor_inertia;
-  const Estimate with = identify_motor_step(data, physical(), 0.05).rotor_inertia;
+  const ParameterEstimate without = identify_motor_step(data, physical(), 0.0).rotor_inertia;
+  const ParameterEstimate with = identify_motor_step(data, physical(), 0.05).rotor_inertia;
   EXPECT_NEAR(with.standard_error / with.value, std::hypot(0.05, without.standard_error / without.value),
               1e-9);
 }

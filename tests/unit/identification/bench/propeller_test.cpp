@@ -12,7 +12,7 @@ using tests::refused;
 
 const Propeller kPropeller{0.0275, 1.2};
 
-Estimate factor(double value) { return {"", "", "", value, 0.01 * value, 0.02 * value}; }
+ParameterEstimate factor(double value) { return {"", "", "", value, 0.01 * value, 0.02 * value}; }
 
 TEST(PropellerCoefficientsOf, AreThoseOfEq23And24) {
   const PropellerCoefficients found =

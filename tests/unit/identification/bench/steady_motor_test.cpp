@@ -36,12 +36,12 @@ TEST(SteadyMotorExperiment, IsNotFlattenedByANoisyTachometer) {
   Instruments known;
   known.motor_voltage_v = 1e-4;
   known.speed_rad_s = 60.0;
-  const Estimate k3 = identify_steady_motor(data, known).estimate("motor.k3");
+  const ParameterEstimate k3 = identify_steady_motor(data, known).estimate("motor.k3");
   EXPECT_LT(std::abs(k3.value - 2.817e-7), 1.5 * k3.half_width);
   EXPECT_LT(k3.half_width, 0.02 * k3.value);
   known.speed_rad_s = 1e-6;
   known.motor_voltage_v = 1.0;
-  const Estimate naive = identify_steady_motor(data, known).estimate("motor.k3");
+  const ParameterEstimate naive = identify_steady_motor(data, known).estimate("motor.k3");
   EXPECT_GT(std::abs(naive.value - 2.817e-7), 2.0 * naive.half_width);
 }
 

@@ -166,7 +166,7 @@ const FlightLog& log_of_truth() {
 // Within twice the half of its own interval, which one error of ten thousand exceeds, and within what a factor that is
 // missing would exceed by far.
 void expect_found(const FlightIdentification& found, const std::string& name, double truth, double share) {
-  const Estimate* const estimate = found.find(name);
+  const ParameterEstimate* const estimate = found.find(name);
   ASSERT_NE(estimate, nullptr) << name;
   EXPECT_LT(std::abs(estimate->value - truth), 2.0 * estimate->half_width)
       << name << " " << estimate->value << " for " << truth;
@@ -242,7 +242,7 @@ TEST(FlightModel, MakesOfTheSpeedsWhatWasFlown) {
   x[l.drag] = truth.drag / truth.mass;
   for (int axis = 0; axis < 3; ++axis)
     x[l.gain[axis]] = (axis < 2 ? s : 1.0) * base.inertia(axis, axis) / truth.inertia[axis];
-  const Rows rows = model.flights().front().fitted;
+  const Rows rows = model.flights().front().estimation_set;
   const FlightModel::Drive drive = model.drive(x, 0, rows);
   ASSERT_EQ(drive.specific_force.size(), rows.size());
   double force = 0.0;

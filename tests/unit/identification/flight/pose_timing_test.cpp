@@ -62,7 +62,7 @@ TEST(PoseTiming, FindsTheDelayOfExactPoses) {
   for (const double delay_s : {-0.02, 0.0, 0.0031, 0.04}) {
     const FlightLog log = log_of({}, delay_s, 0.0, 1);
     const PoseTiming found = find_pose_timing(log, stretches_of(log));
-    EXPECT_TRUE(found.told);
+    EXPECT_TRUE(found.identified);
     EXPECT_NEAR(found.delay.value, delay_s, 1e-5);
     for (int axis = 0; axis < 3; ++axis)
       EXPECT_NEAR(found.gyro_offset[static_cast<std::size_t>(axis)].value, kGyroOffset[axis], 1e-4);
@@ -77,9 +77,11 @@ TEST(PoseTiming, ItsIntervalsHoldTheTruth) {
   for (int seed = 1; seed <= seeds; ++seed) {
     const FlightLog log = log_of({}, kDelay_s, 0.003, static_cast<std::uint64_t>(seed));
     const PoseTiming found = find_pose_timing(log, stretches_of(log));
-    EXPECT_TRUE(found.told);
+    EXPECT_TRUE(found.identified);
     sum_s += found.delay.value / seeds;
-    const auto holds = [](const Estimate& e, double truth) { return e.low() <= truth && truth <= e.high(); };
+    const auto holds = [](const ParameterEstimate& e, double truth) {
+      return e.low() <= truth && truth <= e.high();
+    };
     covered[0] += holds(found.delay, kDelay_s) ? 1 : 0;
     for (std::size_t axis = 0; axis < 3; ++axis)
       covered[axis + 1] += holds(found.gyro_offset[axis], kGyroOffset[static_cast<int>(axis)]) ? 1 : 0;
@@ -92,13 +94,13 @@ TEST(PoseTiming, ItsIntervalsHoldTheTruth) {
 
 TEST(PoseTiming, IsNotToldByABodyThatDoesNotTurn) {
   const FlightLog log = log_of({0.0}, 0.01, 0.003, 2);
-  EXPECT_FALSE(find_pose_timing(log, stretches_of(log)).told);
+  EXPECT_FALSE(find_pose_timing(log, stretches_of(log)).identified);
 }
 
 TEST(PoseTiming, IsNotToldByAFewPoses) {
   FlightLog log = log_of({}, 0.01, 0.003, 3);
   log.poses.resize(100);
-  EXPECT_FALSE(find_pose_timing(log, stretches_of(log)).told);
+  EXPECT_FALSE(find_pose_timing(log, stretches_of(log)).identified);
 }
 
 }  // namespace

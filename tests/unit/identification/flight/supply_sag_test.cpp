@@ -22,7 +22,7 @@ plant::Vehicle vehicle_named(const std::string& name) {
 // Thrusts of all rotors, N, once they have settled at half the charge.
 plant::PerRotor settled_thrusts(const plant::Vehicle& vehicle, const plant::PerRotor& commands) {
   const plant::Dynamics dynamics(vehicle, plant::Supply::battery());
-  plant::RotorDrive drive;
+  plant::MotorCommand drive;
   drive.state = plant::RotorState::kRunning;
   drive.throttle = commands;
   plant::VehicleState state;

@@ -34,9 +34,9 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
       "  yaw: {q: [9, 10, 11], r: 12}\n"
       "  feed_forward: false\n"
       "position:\n"
-      "  x: {omega_n: 13, zeta: 14, epsilon: 15, k_i: 16}\n"
-      "  y: {omega_n: 17, zeta: 18, epsilon: 19, k_i: 20}\n"
-      "  z: {omega_n: 21, zeta: 22, epsilon: 23, k_i: 24}\n"
+      "  x: {omega_n: 13, zeta: 14, epsilon: 15, integral_pole: 16}\n"
+      "  y: {omega_n: 17, zeta: 18, epsilon: 19, integral_pole: 20}\n"
+      "  z: {omega_n: 21, zeta: 22, epsilon: 23, integral_pole: 24}\n"
       "  integral_limit_m_s2: 25\n"
       "disturbance:\n"
       "  bandwidth_rad_s: 47\n"
@@ -75,8 +75,9 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
       "    imu_silence: {from_s: 10, longest_s: 11, acceleration_m_s2: 12, body_rate_rad_s: 13, turn_rad: "
       "14,\n"
       "      turn_sigmas: 15}\n"
-      "    motion_trial: {interval_s: 16, acceleration_m_s2: 17, turn_rad: 18, sigmas: 19}\n"
-      "    climb_watch: {memory_s: 20, felt_m: 21, seen_part: 0.22, clearly_seen_m: 23, longest_s: 24}\n"
+      "    pose_imu_consistency: {interval_s: 16, acceleration_m_s2: 17, turn_rad: 18, sigmas: 19}\n"
+      "    takeoff_consistency: {memory_s: 20, felt_m: 21, seen_part: 0.22, clearly_seen_m: 23, longest_s: "
+      "24}\n"
       "    recovery: {max_lead_s: 0.25, glitch_poses: 26, step_time_s: 27, sudden: 28, swap_rad: 29, poses: "
       "30,\n"
       "      speed_m_s: 31, gyro_bias_rad_s: 32, accelerometer_bias_m_s2: 33}\n"
@@ -117,7 +118,7 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
     EXPECT_EQ(rpt->omega_n, value++);
     EXPECT_EQ(rpt->zeta, value++);
     EXPECT_EQ(rpt->epsilon, value++);
-    EXPECT_EQ(rpt->k_i, value++);
+    EXPECT_EQ(rpt->integral_pole, value++);
   }
   EXPECT_EQ(s.position.integral_limit, 25);
   EXPECT_EQ(s.disturbance.bandwidth, 47);
@@ -164,15 +165,15 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
   EXPECT_EQ(d.imu_silence.body_rate, 13);
   EXPECT_EQ(d.imu_silence.turn_rad, 14);
   EXPECT_EQ(d.imu_silence.turn_sigmas, 15);
-  EXPECT_EQ(d.motion_trial.interval_s, 16);
-  EXPECT_EQ(d.motion_trial.acceleration, 17);
-  EXPECT_EQ(d.motion_trial.turn_rad, 18);
-  EXPECT_EQ(d.motion_trial.sigmas, 19);
-  EXPECT_EQ(d.climb_watch.memory_s, 20);
-  EXPECT_EQ(d.climb_watch.felt_m, 21);
-  EXPECT_EQ(d.climb_watch.seen_part, 0.22);
-  EXPECT_EQ(d.climb_watch.clearly_seen_m, 23);
-  EXPECT_EQ(d.climb_watch.longest_s, 24);
+  EXPECT_EQ(d.pose_imu_consistency.interval_s, 16);
+  EXPECT_EQ(d.pose_imu_consistency.acceleration, 17);
+  EXPECT_EQ(d.pose_imu_consistency.turn_rad, 18);
+  EXPECT_EQ(d.pose_imu_consistency.sigmas, 19);
+  EXPECT_EQ(d.takeoff_consistency.memory_s, 20);
+  EXPECT_EQ(d.takeoff_consistency.felt_m, 21);
+  EXPECT_EQ(d.takeoff_consistency.seen_part, 0.22);
+  EXPECT_EQ(d.takeoff_consistency.clearly_seen_m, 23);
+  EXPECT_EQ(d.takeoff_consistency.longest_s, 24);
   EXPECT_EQ(d.recovery.max_lead_s, 0.25);
   EXPECT_EQ(d.recovery.glitch_poses, 26);
   EXPECT_EQ(d.recovery.step_time_s, 27);
@@ -278,7 +279,7 @@ const Fault kFaults[] = {
     {"position.x.omega_n", "0", "is 0, must be a finite number above 0"},
     {"position.y.zeta", "-1", "above 0"},
     {"position.z.epsilon", ".inf", "must be a finite number"},
-    {"position.x.k_i", "-0.1", "at least 0"},
+    {"position.x.integral_pole", "-0.1", "at least 0"},
     {"position.integral_limit_m_s2", "-2", "at least 0"},
     {"disturbance.bandwidth_rad_s", "-2", "at least 0"},
     {"disturbance.limit_m_s2", "-2", "at least 0"},
@@ -323,15 +324,15 @@ const Fault kFaults[] = {
     {"estimator.detectors.imu_silence.body_rate_rad_s", "-1", "at least 0"},
     {"estimator.detectors.imu_silence.turn_rad", "-1", "at least 0"},
     {"estimator.detectors.imu_silence.turn_sigmas", "-1", "at least 0"},
-    {"estimator.detectors.motion_trial.interval_s", "0", "above 0"},
-    {"estimator.detectors.motion_trial.acceleration_m_s2", "-1", "at least 0"},
-    {"estimator.detectors.motion_trial.turn_rad", "-1", "at least 0"},
-    {"estimator.detectors.motion_trial.sigmas", "-1", "at least 0"},
-    {"estimator.detectors.climb_watch.memory_s", "0", "above 0"},
-    {"estimator.detectors.climb_watch.felt_m", "0", "above 0"},
-    {"estimator.detectors.climb_watch.seen_part", "2", "at most 1"},
-    {"estimator.detectors.climb_watch.clearly_seen_m", "0", "above 0"},
-    {"estimator.detectors.climb_watch.longest_s", "-1", "at least 0"},
+    {"estimator.detectors.pose_imu_consistency.interval_s", "0", "above 0"},
+    {"estimator.detectors.pose_imu_consistency.acceleration_m_s2", "-1", "at least 0"},
+    {"estimator.detectors.pose_imu_consistency.turn_rad", "-1", "at least 0"},
+    {"estimator.detectors.pose_imu_consistency.sigmas", "-1", "at least 0"},
+    {"estimator.detectors.takeoff_consistency.memory_s", "0", "above 0"},
+    {"estimator.detectors.takeoff_consistency.felt_m", "0", "above 0"},
+    {"estimator.detectors.takeoff_consistency.seen_part", "2", "at most 1"},
+    {"estimator.detectors.takeoff_consistency.clearly_seen_m", "0", "above 0"},
+    {"estimator.detectors.takeoff_consistency.longest_s", "-1", "at least 0"},
     {"estimator.detectors.recovery.max_lead_s", "-1", "at least 0"},
     {"estimator.detectors.recovery.step_time_s", "0", "above 0"},
     {"estimator.detectors.recovery.sudden", "0.5", "at least 1"},

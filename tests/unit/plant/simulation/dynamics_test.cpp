@@ -20,15 +20,15 @@ namespace {
 
 using Eigen::Vector3d;
 using plant::Dynamics;
-using plant::RotorDrive;
+using plant::MotorCommand;
 using plant::Supply;
 using plant::Vehicle;
 using plant::VehicleState;
 
 const Vector3d kStillAir = Vector3d::Zero();
 
-void fly(const Dynamics& dynamics, VehicleState& state, const RotorDrive& drive, double duration_s, int steps,
-         const Vector3d& wind_ned = kStillAir) {
+void fly(const Dynamics& dynamics, VehicleState& state, const MotorCommand& drive, double duration_s,
+         int steps, const Vector3d& wind_ned = kStillAir) {
   for (int i = 0; i < steps; ++i) dynamics.advance(state, drive, wind_ned, duration_s / steps);
 }
 
@@ -63,7 +63,7 @@ TEST_P(EveryMotor, HalvingTheStepDividesTheErrorBySixteen) {
   Vehicle vehicle = kaylion();
   vehicle.motor.model = GetParam();
   const Dynamics dynamics(vehicle, Supply::battery());
-  RotorDrive drive = running(0.4);
+  MotorCommand drive = running(0.4);
   drive.throttle[1] = 0.7;
   const auto end = [&](int steps) {
     VehicleState state = tumbling();

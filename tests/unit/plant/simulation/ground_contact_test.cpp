@@ -16,8 +16,8 @@ namespace {
 using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
+using plant::MotorCommand;
 using plant::PlantSimulation;
-using plant::RotorDrive;
 using plant::VehicleState;
 
 plant::SimulationSettings on_floor() {
@@ -41,7 +41,7 @@ double clearance(const VehicleState& state) {
   return plant::GroundContact(kaylion(), on_floor().ground).clearance(state);
 }
 
-void step(PlantSimulation& plant, const RotorDrive& drive, int milliseconds) {
+void step(PlantSimulation& plant, const MotorCommand& drive, int milliseconds) {
   for (int i = 0; i < milliseconds; ++i) plant.step(drive);
 }
 
@@ -51,7 +51,7 @@ void expect_rest(const VehicleState& state) {
 }
 
 TEST(GroundContact, StandsStill) {
-  for (const RotorDrive& drive : {RotorDrive{}, running(0.0), running(0.2)}) {
+  for (const MotorCommand& drive : {MotorCommand{}, running(0.0), running(0.2)}) {
     PlantSimulation plant(kaylion(), on_floor(), 1);
     EXPECT_TRUE(plant.on_ground());
     for (int i = 0; i < 10'000; ++i) {
@@ -158,7 +158,7 @@ TEST(GroundContact, SlidesToRestByCoulombsLaw) {
 TEST(GroundContact, TakesOffCleanly) {
   PlantSimulation plant(kaylion(), on_floor(), 1);
   step(plant, running(0.0), 500);
-  const RotorDrive drive = running(0.5);
+  const MotorCommand drive = running(0.5);
   int lifted_at = 0;
   for (int i = 1; i <= 1000; ++i) {
     plant.step(drive);

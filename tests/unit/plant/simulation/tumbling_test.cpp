@@ -52,7 +52,7 @@ void compare(const plant::Vehicle& vehicle, Motor motor, Draw& draw, double tole
   double fastest = 0.0;
   for (int now = 0; now < kSteps;) {
     const int until = std::min(now + static_cast<int>(draw(3, 80)), kSteps);
-    plant::RotorDrive drive;
+    plant::MotorCommand drive;
     equations.running = draw(0, 1) > 0.1;
     drive.state = equations.running ? plant::RotorState::kRunning : plant::RotorState::kOff;
     for (std::size_t i = 0; i < 4; ++i) {

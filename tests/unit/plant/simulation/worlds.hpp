@@ -23,8 +23,8 @@ inline plant::SimulationSettings empty_space() {
   return settings;
 }
 
-inline plant::RotorDrive running(double throttle) {
-  plant::RotorDrive drive;
+inline plant::MotorCommand running(double throttle) {
+  plant::MotorCommand drive;
   drive.state = plant::RotorState::kRunning;
   drive.throttle.fill(throttle);
   return drive;

@@ -13,7 +13,7 @@
 
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
-#include "swiftlet/services/dds/discovery/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/support/eventually.hpp"
 
 namespace swiftlet::services {
@@ -42,7 +42,7 @@ bool may_be_realtime() {
   return granted;
 }
 
-comms::NodeSettings settings_of(const char* name, const comms::DomainClaim& claim) {
+comms::NodeSettings settings_of(const char* name, const comms::DomainLock& claim) {
   comms::NodeSettings settings;
   settings.name = name;
   settings.domain = claim.domain();
@@ -91,7 +91,7 @@ class RealtimeService : public testing::Test {
   }
   void forget_what_was_said() { said_ = -1; }
 
-  comms::DomainClaim claim_;
+  comms::DomainLock claim_;
   comms::Node vehicle_node_{settings_of("plant", claim_)};
   comms::Node control_node_{settings_of("control", claim_)};
   std::atomic<int> said_{-1};

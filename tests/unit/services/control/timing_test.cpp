@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/services/control/step_timing.hpp"
-#include "swiftlet/services/plant/answer_times.hpp"
+#include "swiftlet/services/plant/answer_latencies.hpp"
 
 namespace swiftlet::services {
 namespace {
@@ -99,8 +99,8 @@ TEST(StepTiming, AClockThatStartsAnewIsNoDelay) {
   EXPECT_EQ(timing.figures().deadline_misses, 0U);
 }
 
-TEST(AnswerTimes, AreFromSampleToItsFirstAnswer) {
-  AnswerTimes times(kPeriod);
+TEST(AnswerLatencies, AreFromSampleToItsFirstAnswer) {
+  AnswerLatencies times(kPeriod);
   times.written(1, 1000);
   times.answered(1, 1500);
   times.answered(1, 9000);  // again
@@ -110,8 +110,8 @@ TEST(AnswerTimes, AreFromSampleToItsFirstAnswer) {
   EXPECT_EQ(times.unanswered(), 0U);
 }
 
-TEST(AnswerTimes, AnAnswerIsLateAfterAPeriod) {
-  AnswerTimes times(kPeriod);
+TEST(AnswerLatencies, AnAnswerIsLateAfterAPeriod) {
+  AnswerLatencies times(kPeriod);
   times.written(1, 0);
   times.answered(1, kPeriod);
   EXPECT_EQ(times.late(), 0U);
@@ -122,13 +122,14 @@ TEST(AnswerTimes, AnAnswerIsLateAfterAPeriod) {
   EXPECT_EQ(times.late(), 0U);
 }
 
-TEST(AnswerTimes, ASampleWithoutAnswerIsCountedWhenPatienceEnds) {
-  AnswerTimes times(kPeriod);
-  for (std::uint64_t sequence = 1; sequence <= AnswerTimes::kPatience; ++sequence) times.written(sequence, 0);
+TEST(AnswerLatencies, ASampleWithoutAnswerIsCountedWhenPatienceEnds) {
+  AnswerLatencies times(kPeriod);
+  for (std::uint64_t sequence = 1; sequence <= AnswerLatencies::kPatience; ++sequence)
+    times.written(sequence, 0);
   EXPECT_EQ(times.unanswered(), 0U);
   times.answered(2, 10);
-  times.written(AnswerTimes::kPatience + 1, 0);  // ends the wait for 1
-  times.written(AnswerTimes::kPatience + 2, 0);  // 2 was answered
+  times.written(AnswerLatencies::kPatience + 1, 0);  // ends the wait for 1
+  times.written(AnswerLatencies::kPatience + 2, 0);  // 2 was answered
   EXPECT_EQ(times.unanswered(), 1U);
   times.answered(1, 20);  // too late
   EXPECT_EQ(times.times().count(), 1U);

@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/services/dds/discovery/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/unit/services/dds/steady_sender.hpp"
 #include "tests/unit/services/messages/messages.hpp"
@@ -19,12 +19,12 @@
 namespace swiftlet::comms::tests {
 namespace {
 
-using swiftlet::comms::DomainClaim;
+using swiftlet::comms::DomainLock;
 using swiftlet::tests::eventually;
 using swiftlet::tests::Inbox;
 using namespace std::chrono_literals;
 
-NodeSettings settings(const DomainClaim& claim, const char* name, Transport transport = Transport::kUdp) {
+NodeSettings settings(const DomainLock& claim, const char* name, Transport transport = Transport::kUdp) {
   NodeSettings settings;
   settings.name = name;
   settings.domain = claim.domain();
@@ -68,7 +68,7 @@ using Messages = testing::Types<msg::Imu, msg::ActuatorCommand, msg::MocapPose, 
 TYPED_TEST_SUITE(EachTopic, Messages);
 
 TYPED_TEST(EachTopic, ArrivesAsItWasSent) {
-  const DomainClaim claim;
+  const DomainLock claim;
   Node here(settings(claim, "here"));
   Node there(settings(claim, "there"));
   Inbox<TypeParam> inbox;
@@ -87,7 +87,7 @@ TYPED_TEST(EachTopic, ArrivesAsItWasSent) {
 class LongMission : public testing::TestWithParam<Transport> {};
 
 TEST_P(LongMission, ArrivesWhole) {
-  const DomainClaim claim;
+  const DomainLock claim;
   Node ground(settings(claim, "ground", GetParam()));
   Node control(settings(claim, "control", GetParam()));
   Inbox<msg::Mission> missions;
@@ -121,7 +121,7 @@ INSTANTIATE_TEST_SUITE_P(Transports, LongMission, testing::Values(Transport::kUd
                          });
 
 TEST(Requests, AllArriveInOrder) {
-  const DomainClaim claim;
+  const DomainLock claim;
   Node ground(settings(claim, "ground"));
   Node control(settings(claim, "control"));
   Inbox<std::uint64_t> ids;
@@ -143,7 +143,7 @@ TEST(Requests, AllArriveInOrder) {
 }
 
 TEST(State, ReachesLateJoiners) {
-  const DomainClaim claim;
+  const DomainLock claim;
   Node control(settings(claim, "control"));
   auto publisher = control.publish(topics::kControlStatus);
   msg::ControlStatus status = example<msg::ControlStatus>();
@@ -166,7 +166,7 @@ class OwnedStream : public testing::Test {
  protected:
   class Controller {
    public:
-    Controller(const DomainClaim& claim, int strength)
+    Controller(const DomainLock& claim, int strength)
         : node_(settings(claim, "control")),
           publisher_(node_.publish(topics::kActuatorCommand, strength)),
           sender_(publisher_, static_cast<std::uint64_t>(strength)) {}
@@ -193,7 +193,7 @@ class OwnedStream : public testing::Test {
     });
   }
 
-  DomainClaim claim_;
+  DomainLock claim_;
   Inbox<std::uint64_t> heard_;
   Node plant_;
   Subscription subscription_;
@@ -236,7 +236,7 @@ TEST_F(OwnedStream, TheOtherTakesOverWithinTheDeadlineWhenTheStrongestFallsSilen
 }
 
 TEST(Delivery, OwnThreadIsOfThatSubscriptionAlone) {
-  const DomainClaim claim;
+  const DomainLock claim;
   Node plant(settings(claim, "plant"));
   Node control(settings(claim, "control"));
   Inbox<std::thread::id> own;
@@ -267,7 +267,7 @@ TEST(Delivery, OwnThreadIsOfThatSubscriptionAlone) {
 }
 
 TEST(Vehicles, DoNotHearEachOther) {
-  const DomainClaim claim;
+  const DomainLock claim;
   NodeSettings first = settings(claim, "plant");
   NodeSettings second = first;
   second.vehicle = "kl2";
@@ -302,7 +302,7 @@ TEST(Vehicles, DoNotHearEachOther) {
 // GIVEN the processes of two vehicles, WHEN one participant serves both, one after the other, THEN its nodes hear and
 // are heard by their own, and each side knows the other as its peer.
 TEST(Vehicles, ShareAParticipant) {
-  const DomainClaim claim;
+  const DomainLock claim;
   NodeSettings plant = settings(claim, "plant");
   Node plant1(plant);
   plant.vehicle = "kl2";
@@ -348,7 +348,7 @@ TEST(Vehicles, ShareAParticipant) {
 }
 
 TEST(Subscription, DeliversNothingOnceItIsGone) {
-  const DomainClaim claim;
+  const DomainLock claim;
   Node plant(settings(claim, "plant"));
   Node control(settings(claim, "control"));
   auto publisher = plant.publish(topics::kImu);

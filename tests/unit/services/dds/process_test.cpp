@@ -15,7 +15,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/services/dds/discovery/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/shared_memory.hpp"
 #include "tests/support/eventually.hpp"
@@ -25,7 +25,7 @@
 namespace swiftlet::comms::tests {
 namespace {
 
-using swiftlet::comms::DomainClaim;
+using swiftlet::comms::DomainLock;
 using swiftlet::tests::eventually;
 using swiftlet::tests::Inbox;
 using namespace std::chrono_literals;
@@ -107,7 +107,7 @@ class Peers : public testing::Test {
     return PeerProcess({std::to_string(claim_.domain()), transport});
   }
 
-  DomainClaim claim_;
+  DomainLock claim_;
   Inbox<PeerEvent> events_;
   Node node_;
 };
@@ -244,7 +244,7 @@ TEST(Isolation, NodesFindEachOtherInAFreshNetworkNamespace) {
 }
 
 TEST(Domain, HoldsThirtyTwoProcesses) {
-  const DomainClaim claim;
+  const DomainLock claim;
   NodeSettings settings;
   settings.domain = claim.domain();
   settings.localhost_only = true;

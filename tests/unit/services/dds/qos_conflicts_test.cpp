@@ -13,7 +13,7 @@
 #include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
 
-#include "swiftlet/services/dds/discovery/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "tests/support/eventually.hpp"
 
@@ -137,7 +137,7 @@ class Conflict : public testing::Test {
     return text;
   }
 
-  DomainClaim claim_;
+  DomainLock claim_;
   Inbox<std::string> lines_;
   const CollectedLog log_{lines_};
   Node talker_{settings("talker")};

@@ -12,9 +12,9 @@
 #include "swiftlet_msgs/msg/MissionPubSubTypes.h"
 #include "swiftlet_msgs/msg/MocapPosePubSubTypes.h"
 
-#include "swiftlet/services/dds/discovery/domain_claim.hpp"
-#include "swiftlet/services/dds/membership.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/dds/participant_session.hpp"
 #include "swiftlet/services/dds/profiles.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/unit/services/messages/messages.hpp"
@@ -68,7 +68,7 @@ Bytes cut(Bytes bytes, std::size_t size) {
   return bytes;
 }
 
-NodeSettings settings(const DomainClaim& claim, const char* name) {
+NodeSettings settings(const DomainLock& claim, const char* name) {
   NodeSettings settings;
   settings.name = name;
   settings.domain = claim.domain();
@@ -79,7 +79,7 @@ NodeSettings settings(const DomainClaim& claim, const char* name) {
 // A peer that publishes bytes on one topic.
 class RawPeer {
  public:
-  RawPeer(const DomainClaim& claim, const std::string& topic, const std::string& type, Qos qos)
+  RawPeer(const DomainLock& claim, const std::string& topic, const std::string& type, Qos qos)
       : membership_(settings(claim, "raw"), nullptr) {
     dds::Topic* const wire = membership_.topic("rt/kl1/" + topic, dds::TypeSupport(new RawType(type)));
     writer_ = membership_.publisher->create_datawriter(wire, writer_qos(qos, 0, 0, Transport::kUdp));
@@ -92,14 +92,14 @@ class RawPeer {
   }
 
  private:
-  Membership membership_;
+  ParticipantSession membership_;
   dds::DataWriter* writer_;
 };
 
 template <class Type>
 void expect_dropped(const Topic<typename Type::type>& topic, const typename Type::type& whole,
                     const std::vector<Bytes>& broken) {
-  const DomainClaim claim;
+  const DomainLock claim;
   Node node(settings(claim, "node"));
   Inbox<typename Type::type> inbox;
   const auto subscription =

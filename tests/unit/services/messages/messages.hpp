@@ -88,7 +88,7 @@ inline ControllerReport controller_report() {
   report.stamp_ns = 1010;
   report.sequence = 22;
   report.controller = 23;
-  report.strength = 24;
+  report.failover_priority = 24;
   report.term = 25;
   report.active = true;
   report.ready = true;
@@ -107,7 +107,7 @@ inline ControllerReport controller_report() {
   state.guidance.mission = {29, control::MissionState::kRunning, 30, 31};
   state.guidance.item_end_ns = 32;
   state.guidance.path.clock = {false, 55, 56, 1.5, {1.0, 0.0, 0.0, -2.9, 2.9, -0.8, 0.0, 0.0}};
-  state.guidance.detour = control::Detour::kReturning;
+  state.guidance.pause = control::MissionPause::kReturning;
   state.guidance.left = {trajectory(3).segments[2], 57, 58, 59};
   state.guidance.trajectory_id = 33;
   state.guidance.next_segment = 34;

@@ -15,7 +15,7 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/plant/simulation/mocap.hpp"
-#include "swiftlet/services/dds/discovery/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 #include "tests/support/eventually.hpp"
@@ -35,7 +35,7 @@ constexpr std::uint64_t kSeed = 3;
 
 class Lockstep : public testing::Test {
  protected:
-  static comms::NodeSettings node_settings(const comms::DomainClaim& claim, const char* name) {
+  static comms::NodeSettings node_settings(const comms::DomainLock& claim, const char* name) {
     comms::NodeSettings settings;
     settings.name = name;
     settings.domain = claim.domain();
@@ -108,7 +108,7 @@ class Lockstep : public testing::Test {
   std::atomic<bool> answers_{false};  // each sample at once
   std::atomic<bool> mocap_answers_{true};
   std::int64_t began_ns_ = 0;
-  comms::DomainClaim claim_;
+  comms::DomainLock claim_;
   comms::Node plant_node_{node_settings(claim_, "plant")};
   comms::Node peer_node_{node_settings(claim_, "peer")};
   std::optional<SimulatedVehicle> vehicle_;

@@ -14,18 +14,18 @@ namespace {
 
 using Json = nlohmann::json;
 
-control::ControlSettings settings(control::AttitudeModel model, double k_i) {
+control::ControlSettings settings(control::AttitudeModel model, double integral_pole) {
   control::ControlSettings s =
       runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml");
   s.attitude.model = model;
   s.attitude.roll = s.attitude.pitch = s.attitude.yaw = {Eigen::Vector3d(625.0, 2.0, 0.5), 4.0};
-  s.position.x = s.position.y = s.position.z = {1.5, 0.8, 0.5, k_i};
+  s.position.x = s.position.y = s.position.z = {1.5, 0.8, 0.5, integral_pole};
   return s;
 }
 
-control::ControlDesign design(control::AttitudeModel model, double k_i) {
+control::ControlDesign design(control::AttitudeModel model, double integral_pole) {
   const plant::Vehicle vehicle = runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
-  return control::design(vehicle, settings(model, k_i));
+  return control::design(vehicle, settings(model, integral_pole));
 }
 
 TEST(GainsJson, GivesEveryAttitudeAxisOnItsModel) {
@@ -56,22 +56,23 @@ TEST(GainsJson, GivesEveryAttitudeAxisOnItsModel) {
 }
 
 TEST(GainsJson, GivesEq49AndTheIntegralFormBesideIt) {
-  for (const double k_i : {0.0, 0.4}) {
-    const Json out = Json::parse(gains_json(design(control::AttitudeModel::kMotorLag, k_i), {}, "v", "c"));
+  for (const double integral_pole : {0.0, 0.4}) {
+    const Json out =
+        Json::parse(gains_json(design(control::AttitudeModel::kMotorLag, integral_pole), {}, "v", "c"));
     for (const char* name : {"x", "y", "z"}) {
       const Json& axis = out["position"][name];
       EXPECT_EQ(axis["omega_n"], 1.5);
       EXPECT_EQ(axis["zeta"], 0.8);
       EXPECT_EQ(axis["epsilon"], 0.5);
-      EXPECT_EQ(axis["k_i"], k_i);
+      EXPECT_EQ(axis["integral_pole"], integral_pole);
       ASSERT_EQ(axis["f"].size(), 5U);
       const double expected[] = {9.0, 4.8, 1.0, -9.0, -4.8};
       for (std::size_t i = 0; i < 5; ++i) EXPECT_DOUBLE_EQ(axis["f"][i], expected[i]);
-      ASSERT_EQ(axis.contains("integral_form"), k_i > 0.0);
-      if (k_i > 0.0) {
+      ASSERT_EQ(axis.contains("integral_form"), integral_pole > 0.0);
+      if (integral_pole > 0.0) {
         EXPECT_DOUBLE_EQ(axis["integral_form"]["k_v"], (2.0 * 0.8 * 1.5 + 0.4) / 0.5);
         EXPECT_DOUBLE_EQ(axis["integral_form"]["k_p"], (2.25 + 2.0 * 0.8 * 1.5 * 0.4) / 0.25);
-        EXPECT_DOUBLE_EQ(axis["integral_form"]["k_s"], 0.4 * 2.25 / 0.125);
+        EXPECT_DOUBLE_EQ(axis["integral_form"]["k_i"], 0.4 * 2.25 / 0.125);
       }
     }
   }

@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-#include "swiftlet/services/dds/discovery/domain_claim.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "tests/support/eventually.hpp"
 
@@ -49,7 +49,7 @@ class TakenPorts {
   std::vector<int> sockets_;
 };
 
-NodeSettings settings(const DomainClaim& claim, const char* name) {
+NodeSettings settings(const DomainLock& claim, const char* name) {
   NodeSettings settings;
   settings.name = name;
   settings.domain = claim.domain();
@@ -71,7 +71,7 @@ TEST(DiscoveryPorts, OfADomainEndBeforeTheNextOnes) {
 
 // The one takes the first port that is free, the other the last of the domain.
 TEST(DiscoveryPorts, TheFirstAndTheLastProcessFindEachOther) {
-  const DomainClaim claim;
+  const DomainLock claim;
   const std::uint32_t count = discovery_ports(claim.domain()).count;
   const TakenPorts but_the_last(claim.domain(), count - 2);
   Node first(settings(claim, "first"));
@@ -91,7 +91,7 @@ TEST(DiscoveryPorts, TheFirstAndTheLastProcessFindEachOther) {
 
 // The one with the last port was there before; the other takes the first, and announces itself to few.
 TEST(DiscoveryPorts, OneThatComesLaterWithALowerPortIsFoundByTheHigherOne) {
-  const DomainClaim claim;
+  const DomainLock claim;
   const DiscoveryPorts ports = discovery_ports(claim.domain());
   std::optional<TakenPorts> but_the_last(std::in_place, claim.domain(), ports.count - 1);
   Node high(settings(claim, "high"));
@@ -117,7 +117,7 @@ TEST(DiscoveryPorts, EachIsAnnouncedToFromAllAbove) {
 }
 
 TEST(DiscoveryPorts, OnesOwnAreKnown) {
-  const DomainClaim claim;
+  const DomainLock claim;
   const TakenPorts three(claim.domain(), 3);
   EXPECT_EQ(own_discovery_ports(claim.domain()), (std::set<std::uint32_t>{0, 1, 2}));
   EXPECT_EQ(free_discovery_port(claim.domain(), true), 3U);
@@ -126,7 +126,7 @@ TEST(DiscoveryPorts, OnesOwnAreKnown) {
 }
 
 TEST(DiscoveryPorts, AProcessThatWouldNotBeFoundIsRefusedInWords) {
-  const DomainClaim claim;
+  const DomainLock claim;
   const DiscoveryPorts ports = discovery_ports(claim.domain());
   const TakenPorts all(claim.domain(), ports.count);
   try {

@@ -1,0 +1,57 @@
+#include "swiftlet/control/estimation/pose_imu_consistency.hpp"
+
+#include <cmath>
+
+#include "swiftlet/math/rotation_vector.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
+
+namespace swiftlet::control {
+namespace {
+
+double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
+
+}  // namespace
+
+PoseImuConsistencyTest::Verdict PoseImuConsistencyTest::look_at(const plant::PoseSample& pose,
+                                                                const PoseInnovation& innovation,
+                                                                const EstimatorSettings& settings) {
+  if (count_ > 0 && seconds(pose.stamp_ns - points_[count_ - 1].stamp_ns) <
+                        settings.detectors.pose_imu_consistency.interval_s)
+    return Verdict::kNone;
+  points_[count_++] = {pose.stamp_ns, pose.position_ned, pose.position_ned - innovation.position,
+                       plant::rotation(innovation.rotation)};
+  if (count_ < points_.size()) return Verdict::kNone;
+  const Verdict verdict = agree(settings) ? Verdict::kAgree : Verdict::kDisagree;
+  points_[0] = points_[1];
+  points_[1] = points_[2];
+  --count_;
+  return verdict;
+}
+
+// The path is p + t v + t^2/2 g + S, S being the double integral of the specific force; the poses' motion is
+// the same with turn * S, from another p and with another v. So what is left of the poses without g and
+// turn * S is straight and even.
+bool PoseImuConsistencyTest::agree(const EstimatorSettings& settings) const {
+  const PoseImuConsistencySettings& limits = settings.detectors.pose_imu_consistency;
+  const Eigen::Quaterniond& turn = points_[1].turn_ned;
+  const double turn_limit =
+      limits.turn_rad + limits.sigmas * std::sqrt(2.0) * settings.mocap_orientation_sigma;
+  for (const Point& point : points_) {
+    if (plant::rotation_vector(point.turn_ned * turn.conjugate()).norm() > turn_limit) return false;
+  }
+  const auto left = [&](const Point& point) -> Eigen::Vector3d {
+    const double t = seconds(point.stamp_ns - points_[0].stamp_ns);
+    const Eigen::Vector3d fall(0.0, 0.0, 0.5 * plant::kGravity * t * t);
+    return (point.position_ned - fall) - turn * (point.path_ned - fall);
+  };
+  const double t1 = seconds(points_[1].stamp_ns - points_[0].stamp_ns);
+  const double t2 = seconds(points_[2].stamp_ns - points_[1].stamp_ns);
+  const Eigen::Vector3d start = left(points_[0]);
+  const Eigen::Vector3d middle = left(points_[1]);
+  const Eigen::Vector3d end = left(points_[2]);
+  const Eigen::Vector3d acceleration = 2.0 * ((end - middle) / t2 - (middle - start) / t1) / (t1 + t2);
+  const double noise = limits.sigmas * std::sqrt(6.0) * settings.mocap_position_sigma / (t1 * t2);
+  return acceleration.norm() < limits.acceleration + noise;
+}
+
+}  // namespace swiftlet::control

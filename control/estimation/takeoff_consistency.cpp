@@ -1,0 +1,32 @@
+#include "swiftlet/control/estimation/takeoff_consistency.hpp"
+
+#include "swiftlet/plant/model/vehicle.hpp"
+
+namespace swiftlet::control {
+
+void TakeoffConsistencyMonitor::Climb::step(double dt_s, double speed_change, double memory_s) {
+  speed += speed_change - dt_s * (2.0 * speed + height_m / memory_s) / memory_s;
+  height_m += dt_s * speed;
+}
+
+void TakeoffConsistencyMonitor::begin(const Eigen::Vector3d& accelerometer_bias_frd, double z_ned) {
+  *this = TakeoffConsistencyMonitor(settings_);
+  active_ = true;
+  start_z_ned_ = z_ned_ = z_ned;
+  bias_frd_ = accelerometer_bias_frd;
+}
+
+void TakeoffConsistencyMonitor::step(double dt_s, const Eigen::Vector3d& specific_force_frd,
+                                     const Eigen::Quaterniond& q_ned_from_frd, double z_ned) {
+  if (!active_) return;
+  elapsed_s_ += dt_s;
+  active_ = elapsed_s_ < settings_.longest_s && start_z_ned_ - z_ned < settings_.clearly_seen_m;
+  const double upward = -(q_ned_from_frd * (specific_force_frd - bias_frd_)).z() - plant::kGravity;
+  felt_.step(dt_s, dt_s * upward, settings_.memory_s);
+  const double speed = (z_ned_ - z_ned) / dt_s;
+  seen_.step(dt_s, speed - speed_, settings_.memory_s);
+  z_ned_ = z_ned;
+  speed_ = speed;
+}
+
+}  // namespace swiftlet::control

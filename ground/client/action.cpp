@@ -1,0 +1,93 @@
+#include "swiftlet/ground/client/action.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+#include "swiftlet/ground/client/client.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+constexpr std::chrono::milliseconds kLookPeriod{100};
+constexpr std::chrono::seconds kSilence{3};
+
+bool is_of(const msg::RequestStatus& request, const control::RequestKey& key) {
+  return request.state() != msg::RequestStatus_Constants::UNKNOWN && request.client() == key.client &&
+         request.id() == key.id;
+}
+
+}  // namespace
+
+const msg::RequestStatus* find_request(const msg::ControlStatus& status, const control::RequestKey& key) {
+  if (is_of(status.request(), key)) return &status.request();
+  const auto& earlier = status.earlier_requests();
+  const auto found = std::find_if(earlier.begin(), earlier.end(),
+                                  [&](const msg::RequestStatus& request) { return is_of(request, key); });
+  return found == earlier.end() ? nullptr : &*found;
+}
+
+std::optional<ActionResult> action_result_of(const msg::RequestStatus& request) {
+  switch (request.state()) {
+    case msg::RequestStatus_Constants::SUCCEEDED:
+      return ActionResult{ActionResult::Kind::kCompleted, ""};
+    case msg::RequestStatus_Constants::CANCELED:
+      return ActionResult{ActionResult::Kind::kCanceled, request.result().c_str()};
+    case msg::RequestStatus_Constants::ABORTED:
+      return ActionResult{ActionResult::Kind::kAborted, request.result().c_str()};
+    default:
+      return std::nullopt;
+  }
+}
+
+std::optional<ActionResult> action_result_by(const msg::ControlStatus& status, const Result& answer) {
+  if (const msg::RequestStatus* const request = find_request(status, answer.key))
+    return action_result_of(*request);
+  if (status.stamp_ns() <= answer.stamp_ns) return std::nullopt;
+  return ActionResult{
+      ActionResult::Kind::kLost,
+      "the controller knows nothing of it any more: it was started again, or too many newer requests came"};
+}
+
+ActionHandle::ActionHandle(std::shared_ptr<const Client> client, Result answer)
+    : client_(std::move(client)), answer_(std::move(answer)) {}
+
+double ActionHandle::progress() const {
+  const std::optional<msg::RequestStatus> told = client_->told_of(answer_.key);
+  return told ? told->progress() : 0.0;
+}
+
+ActionResult ActionHandle::wait(std::chrono::milliseconds timeout) const {
+  if (!accepted()) return {ActionResult::Kind::kNotAccepted, answer_.reason};
+  if (const auto told = client_->told_of(answer_.key)) {
+    if (const auto ending = action_result_of(*told)) return *ending;
+  }
+  const auto begin = Clock::now();
+  const auto deadline = begin + timeout;
+  while (true) {
+    std::optional<ActionResult> ending;
+    bool silent = false;
+    const auto ended = [&](const View& view) {
+      const auto heard = std::max(view.control.received, begin);
+      silent = Clock::now() - heard > kSilence;
+      if (view.control.seen()) ending = action_result_by(view.control.message, answer_);
+      return ending || silent;
+    };
+    client_->wait(kLookPeriod, ended);
+    if (ending) return *ending;
+    if (silent)
+      return {ActionResult::Kind::kLost,
+              "nothing was heard for 3 s from the control service of " + client_->where()};
+    if (Clock::now() < deadline) continue;
+    const double waited_s = std::chrono::duration<double>(timeout).count();
+    char text[64];
+    std::snprintf(text, sizeof text, "not done after %.1f s", waited_s);
+    return {ActionResult::Kind::kTimedOut, text};
+  }
+}
+
+std::future<ActionResult> ActionHandle::future(std::chrono::milliseconds timeout) const {
+  return std::async(std::launch::async, [manoeuvre = *this, timeout] { return manoeuvre.wait(timeout); });
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,33 @@
+// The answer to a request.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "swiftlet/control/types/request.hpp"
+
+namespace swiftlet::ground {
+
+struct Result {
+  enum class Kind {
+    kAccepted,
+    kRefused,    // by the controller, for `reason`
+    kNoControl,  // no controller was there to take it
+    kSilence,    // a controller was there and did not answer
+    kCancelled,
+  };
+  Result() = default;
+  Result(Kind kind_in, std::string reason_in, const control::RequestKey& key_in = {},
+         std::int64_t stamp_ns_in = 0)
+      : kind(kind_in), reason(std::move(reason_in)), key(key_in), stamp_ns(stamp_ns_in) {}
+
+  Kind kind = Kind::kSilence;
+  std::string reason;         // a sentence unless accepted
+  control::RequestKey key;    // of the request, if the controller answered it
+  std::int64_t stamp_ns = 0;  // of an accepted one: each control_status of a later stamp knows it
+
+  bool accepted() const { return kind == Kind::kAccepted; }
+};
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,61 @@
+#include "swiftlet/ground/client/simulation_clock.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+namespace swiftlet::ground {
+namespace {
+
+constexpr std::chrono::milliseconds kRepeatPeriod{200};
+
+}  // namespace
+
+SimulationClockPublisher::SimulationClockPublisher(comms::Node& node, std::int64_t window_ns)
+    : window_ns_(window_ns),
+      publisher_(node.publish(comms::topics::kSimulationClock)),
+      repeater_([this] { repeat(); }) {}
+
+SimulationClockPublisher::~SimulationClockPublisher() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    end_ = true;
+  }
+  ends_.notify_all();
+  repeater_.join();
+}
+
+void SimulationClockPublisher::up_to(std::int64_t stamp_ns) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  goal_ns_ = std::max(goal_ns_, stamp_ns);
+  grant();
+}
+
+void SimulationClockPublisher::has_come(std::int64_t stamp_ns) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  come_ns_ = std::max(come_ns_, stamp_ns);
+  grant();
+}
+
+// Not with every sample: a quarter of the window at once, or what remains to the goal.
+void SimulationClockPublisher::grant() {
+  const std::int64_t granted_ns = clock_.advance_to_ns();
+  const std::int64_t wanted_ns = std::min(goal_ns_, come_ns_ + window_ns_);
+  const std::int64_t least_ns = wanted_ns == goal_ns_ ? granted_ns + 1 : granted_ns + window_ns_ / 4;
+  if (wanted_ns < least_ns && clock_.sequence_number() > 0) return;  // the first one lets it begin
+  clock_.advance_to_ns(wanted_ns);
+  publish();
+}
+
+void SimulationClockPublisher::publish() {
+  clock_.sequence_number(clock_.sequence_number() + 1);
+  publisher_.publish(clock_);
+}
+
+void SimulationClockPublisher::repeat() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (!ends_.wait_for(lock, kRepeatPeriod, [this] { return end_; })) {
+    if (clock_.sequence_number() > 0) publish();
+  }
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,92 @@
+#include "swiftlet/ground/flight/flight_outcome.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "swiftlet/ground/command_line/command.hpp"
+#include "swiftlet/ground/report/flight_files.hpp"
+#include "swiftlet/io/logs/flight_log_files.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+// Why a mission that was flown to its end does not count as completed; empty if it does.
+std::string shortfall(const FlightReport& report, Window window) {
+  if (!enough_samples(report.errors, window)) {
+    return fmt::format(
+        "too little telemetry to judge it: {} samples matched of {:.0f}, longest gap {:.2f} s (at "
+        "least {:.0f} %, at most {:.2f} s)",
+        report.errors.matched, window.duration_s() * kTelemetryRateHz, report.errors.longest_gap_s,
+        kLeastMatchedFraction * 100.0, kLongestGapS);
+  }
+  if (!std::isfinite(report.errors.rms_3d_m)) return "the ground truth is not finite";
+  if (report.errors.peak_3d_m > report.tolerance_m) {
+    return fmt::format("the peak tracking error was {:.3f} m, the tolerance is {:.3f} m",
+                       report.errors.peak_3d_m, report.tolerance_m);
+  }
+  return {};
+}
+
+}  // namespace
+
+void make_record_folder(const std::filesystem::path& folder, const std::string& option) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw InputError(option + " " + folder.string() + ": the folder cannot be made: " + error.message());
+}
+
+void evaluate(FlightReport& report, const FlightRecord& record, Window window) {
+  report.errors = tracking_errors(record.truth, record.reference, window);
+  if (report.reason.empty()) report.reason = shortfall(report, window);
+  report.completed = report.reason.empty();
+}
+
+void write_record(const std::filesystem::path& folder, const FlightRecord& record, const FlightReport& report,
+                  Window window, Progress& progress) {
+  write_flight_csv(folder / "flight.csv", record, window);
+  if (record.sensors) write_flight_log(folder / kSensorsFile, flight_log_of(*record.sensors));
+  write_report_json(folder / "report.json", report);
+  if (report.errors.matched == 0) return;
+  const std::string no_picture = draw_flight(folder, report, window);
+  if (!no_picture.empty()) progress.say(no_picture);
+}
+
+int print_report(const FlightReport& report, bool json, ProgressLine& progress) {
+  progress.close();
+  if (json) {
+    std::printf("%s\n", to_json(report).dump().c_str());
+    if (!report.completed) progress.say("swiftlet: " + report.reason);
+  } else {
+    std::fputs(to_text(report).c_str(), report.completed ? stdout : stderr);
+  }
+  return report.completed ? kDone : kFailed;
+}
+
+int print_report(const std::vector<FlightReport>& reports, bool json, ProgressLine& progress) {
+  progress.close();
+  const auto completed = static_cast<std::size_t>(std::count_if(
+      reports.begin(), reports.end(), [](const FlightReport& report) { return report.completed; }));
+  const bool all = completed == reports.size();
+  if (json) {
+    nlohmann::ordered_json whole = {{"completed", all}, {"vehicles", nlohmann::ordered_json::array()}};
+    for (const FlightReport& report : reports) whole["vehicles"].push_back(to_json(report));
+    std::printf("%s\n", whole.dump().c_str());
+  }
+  for (const FlightReport& report : reports) {
+    if (!json) {
+      const std::string text = report.vehicle_name + ", " + to_text(report);
+      std::fputs(text.c_str(), report.completed ? stdout : stderr);
+    } else if (!report.completed) {
+      progress.say("swiftlet: " + report.vehicle_name + ": " + report.reason);
+    }
+  }
+  if (!json) std::printf("%zu of %zu flights completed\n", completed, reports.size());
+  return all ? kDone : kFailed;
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,185 @@
+#include "swiftlet/ground/flight/launch_configuration.hpp"
+
+#include <ctime>
+
+#include <fmt/core.h>
+
+#include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/ground/command_line/command.hpp"
+#include "swiftlet/ground/command_line/installation.hpp"
+#include "swiftlet/ground/command_line/network_options.hpp"
+#include "swiftlet/io/csv.hpp"
+#include "swiftlet/io/settings/control_settings_file.hpp"
+#include "swiftlet/io/settings/simulation_file.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/simulation/dispersion_file.hpp"
+#include "swiftlet/simulation/flight_schedule.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kHighestImuRateHz = 1000.0;
+constexpr double kSpareS = 30.0;  // of the record, before and after the mission
+
+fs::path default_folder(const std::string& mission) {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char stamp[32];
+  std::strftime(stamp, sizeof stamp, "%Y%m%d-%H%M%S", &local);
+  const fs::path wanted = fs::path("flights") / (std::string(stamp) + "-" + mission);
+  fs::path folder = wanted;
+  for (int i = 2; fs::exists(folder); ++i) folder = wanted.string() + "-" + std::to_string(i);
+  return folder;
+}
+
+void demand_whole_flight(const MissionFile& mission, const fs::path& file, double duration_s) {
+  if (!mission.takes_off())
+    throw InputError(file.string() +
+                     ": items: the first is no takeoff, which a flight from the ground needs");
+  if (!mission.lands())
+    throw InputError(file.string() + ": items: the last is no land, which a flight that ends needs");
+  if (duration_s > kLongestMissionS) {
+    throw InputError(file.string() + ": items: take " + std::to_string(static_cast<int>(duration_s)) +
+                     " s, must be at most " + std::to_string(static_cast<int>(kLongestMissionS)) + " s");
+  }
+}
+
+// Its fence goes along, as far as that of the limits lets it.
+void displace(control::Mission& mission, const Eigen::Vector2d& by_ned, const control::Limits& limits) {
+  if (control::MissionBounds& bounds = mission.bounds; bounds.fenced) {
+    bounds.fence_min_ned.head<2>() += by_ned;
+    bounds.fence_max_ned.head<2>() += by_ned;
+    bounds.fence_min_ned = bounds.fence_min_ned.cwiseMax(limits.fence_min_ned);
+    bounds.fence_max_ned = bounds.fence_max_ned.cwiseMin(limits.fence_max_ned);
+  }
+  for (control::MissionItem& item : mission.items) item.position_ned.head<2>() += by_ned;
+  for (control::PolynomialSegment& segment : mission.segments) {
+    segment.x[0] += by_ned.x();
+    segment.y[0] += by_ned.y();
+  }
+}
+
+std::string absolute_path(const fs::path& path) { return fs::absolute(path).string(); }
+
+}  // namespace
+
+LaunchConfiguration plan_flight(const FlyOptions& options) {
+  LaunchConfiguration plan;
+  plan.launch_mode = options.launch_mode;
+  plan.clock = options.clock;
+  plan.speed = options.speed;
+  plan.vehicle_file = configuration_file("vehicles", options.vehicle);
+  plan.control_file = configuration_file("control", options.control);
+  plan.simulation_file = configuration_file("simulation", options.simulation);
+  plan.vehicle = runtime::load_vehicle(plan.vehicle_file);
+  plan.control = runtime::load_control_settings(plan.control_file);
+  plan.simulation = runtime::load_simulation_settings(plan.simulation_file);
+  plan.imu_rate_option_hz = options.imu_rate_hz;
+  if (options.imu_rate_hz > 0) plan.simulation.imu.rate_hz = options.imu_rate_hz;
+  for (const plant::Violation& violation : plant::validate(plan.simulation)) {
+    throw InputError("--imu-rate: " + violation.key + " " + violation.message);
+  }
+  for (const plant::Violation& violation : plant::validate_faults(plan.simulation.faults, plan.vehicle)) {
+    throw InputError(plan.simulation_file.string() + ": " + violation.key + ": " + violation.message);
+  }
+  if (options.dispersion == kUncertainty) {
+    const std::string file = plan.vehicle_file.string();
+    plan.dispersion = dispersion_of(runtime::load_vehicle_uncertainty(file), plan.vehicle, file);
+  } else if (!options.dispersion.empty()) {
+    plan.dispersion = load_dispersion_file(configuration_file("dispersion", options.dispersion),
+                                           {plan.vehicle, plan.simulation});
+  }
+  plan.seed = options.seed;
+
+  plan.mission_file = configuration_file("missions", options.mission);
+  plan.mission = load_mission_file(plan.mission_file, plan.control.limits);
+  plan.start_ned = options.start_ned;
+  displace(plan.mission.mission, options.start_ned, plan.control.limits);
+  if (const control::Outcome outcome = control::check(plan.mission.mission, plan.control.limits);
+      !outcome.accepted)
+    throw InputError(fmt::format("{}: begun {:g} m north and {:g} m east of the origin: {}",
+                                 plan.mission_file.c_str(), plan.start_ned.x(), plan.start_ned.y(),
+                                 outcome.reason));
+  plan.planned_duration_s = planned_duration_s(plan.mission.mission, plan.control.limits);
+  demand_whole_flight(plan.mission, plan.mission_file, plan.planned_duration_s);
+
+  if (plan.launch_mode == LaunchMode::kStarted) {
+    plan.plant_program = program_beside("swiftlet-plant");
+    plan.mocap_program = program_beside("swiftlet-mocap");
+    plan.control_program = program_beside("swiftlet-control");
+  }
+  plan.folder = options.record.empty() ? default_folder(plan.mission.name) : fs::path(options.record);
+  if (options.trace) plan.trace_file = plan.folder / "trace.csv";
+  plan.sensors = options.sensors;
+  return plan;
+}
+
+DispersionSample draw(const LaunchConfiguration& plan, std::uint64_t seed) {
+  return draw(plan.dispersion, {plan.vehicle, plan.simulation}, seed);
+}
+
+std::size_t LaunchConfiguration::record_capacity() const {
+  // The rate of a vehicle that runs already is not known yet.
+  const double rate_hz = launch_mode == LaunchMode::kAttached ? kHighestImuRateHz : simulation.imu.rate_hz;
+  return static_cast<std::size_t>((FlightSchedule::time_limit_s(planned_duration_s) + kSpareS) * rate_hz);
+}
+
+FlightReport report_of(const LaunchConfiguration& plan) {
+  FlightReport report;
+  report.clock = plan.launch_mode == LaunchMode::kInProcess ? "in process" : runtime::to_string(plan.clock);
+  report.mission = plan.mission.name;
+  report.vehicle = plan.vehicle.name;
+  report.start_ned = plan.start_ned;
+  report.control = plan.control.name;
+  report.dispersion = plan.dispersion.name;
+  report.seed = plan.seed;
+  report.imu_rate_hz = plan.simulation.imu.rate_hz;
+  report.record_dir = plan.folder.string();
+  report.tolerance_m = plan.mission.tolerance_m;
+  return report;
+}
+
+std::vector<ProcessSettings> processes(const LaunchConfiguration& plan, const comms::NodeSettings& network) {
+  if (plan.launch_mode != LaunchMode::kStarted) return {};
+  std::vector<std::string> common = {
+      "--domain",    std::to_string(network.domain), "--vehicle-name", network.vehicle,
+      "--transport", to_string(network.transport),   "--clock",        runtime::to_string(plan.clock)};
+  if (network.localhost_only) common.emplace_back("--localhost-only");
+  const auto process = [&](const std::string& name, const fs::path& program,
+                           std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), common.begin(), common.end());
+    return ProcessSettings{name, program, std::move(arguments), plan.folder / (name + ".log")};
+  };
+  const std::string vehicle = absolute_path(plan.vehicle_file);
+  const std::string simulation = absolute_path(plan.simulation_file);
+  const std::string seed = std::to_string(plan.seed);
+  std::vector<std::string> plant = {"--vehicle",
+                                    vehicle,
+                                    "--simulation",
+                                    simulation,
+                                    "--seed",
+                                    seed,
+                                    "--start",
+                                    runtime::exact(plan.start_ned.x()),
+                                    runtime::exact(plan.start_ned.y())};
+  if (plan.imu_rate_option_hz > 0) {
+    plant.insert(plant.end(), {"--imu-rate", std::to_string(plan.imu_rate_option_hz)});
+  }
+  if (plan.clock == runtime::Clock::kLockstep) {
+    plant.emplace_back("--paused");
+    if (!plan.trace_file.empty()) plant.insert(plant.end(), {"--trace", absolute_path(plan.trace_file)});
+  } else {
+    plant.insert(plant.end(), {"--speed", std::to_string(plan.speed)});
+  }
+  return {
+      process("swiftlet-plant", plan.plant_program, std::move(plant)),
+      process("swiftlet-mocap", plan.mocap_program, {"--simulation", simulation, "--seed", seed}),
+      process("swiftlet-control", plan.control_program,
+              {"--vehicle", vehicle, "--control", absolute_path(plan.control_file)}),
+  };
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,240 @@
+#include "swiftlet/services/control/command_server.hpp"
+
+#include <tuple>
+
+#include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/services/messages/convert.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
+
+namespace swiftlet::services {
+namespace {
+
+constexpr std::size_t kRememberedAnswers = 256;
+constexpr std::int64_t kPatienceNs = 500'000'000;
+
+const char* name_of(control::RequestKind kind) {
+  switch (kind) {
+    case control::RequestKind::kArm:
+      return "arm";
+    case control::RequestKind::kDisarm:
+      return "disarm";
+    case control::RequestKind::kTakeoff:
+      return "takeoff";
+    case control::RequestKind::kGoTo:
+      return "goto";
+    case control::RequestKind::kHold:
+      return "hold";
+    case control::RequestKind::kLand:
+      return "land";
+    case control::RequestKind::kStop:
+      return "stop";
+    case control::RequestKind::kMissionUpload:
+      return "mission";
+    case control::RequestKind::kMissionStart:
+      return "mission start";
+    case control::RequestKind::kMissionPause:
+      return "mission pause";
+    case control::RequestKind::kMissionResume:
+      return "mission resume";
+    case control::RequestKind::kMissionSkip:
+      return "mission skip";
+    case control::RequestKind::kMissionClear:
+      return "mission clear";
+    case control::RequestKind::kTrajectory:
+      return "trajectory";
+  }
+  return "request of unknown kind";
+}
+
+control::Outcome refusal(const comms::Fault& fault) { return control::refuse("%s", fault.text); }
+
+// Into plan, if it can be flown.
+template <class Message, class Plan>
+control::Outcome read(const Message& message, const control::Limits& limits, Plan& plan) {
+  const comms::Fault fault = comms::from_message(message, plan);
+  return fault ? refusal(fault) : control::check(plan, limits);
+}
+
+}  // namespace
+
+CommandServer::CommandServer(InnerLoop& loop, const control::Limits& limits, runtime::Semaphore& wake)
+    : loop_(loop), limits_(limits), wake_(wake) {}
+
+void CommandServer::on_command(const comms::msg::Command& message) {
+  if (!active()) return;
+  const Key key{message.client(), message.id()};
+  if (is_known(key)) return;
+  auto pending = std::make_unique<PendingRequest>();
+  const comms::Fault fault = comms::from_message(message, pending->request);
+  if (fault) return refuse(key, static_cast<control::RequestKind>(message.kind()), refusal(fault));
+  std::tie(pending->client, pending->id) = key;
+  submit(std::move(pending));
+}
+
+void CommandServer::on_mission(const comms::msg::Mission& message) {
+  if (!active()) return on_flown_mission(message);
+  const Key key{message.client(), message.id()};
+  if (is_known(key)) return;
+  auto pending = std::make_unique<PendingRequest>();
+  pending->mission = std::make_unique<control::Mission>();
+  control::Outcome outcome = read(message, limits_, *pending->mission);
+  if (outcome.accepted && is_of_another(message)) {
+    outcome = control::refuse("another mission has the id %llu: a new one needs a new id",
+                              static_cast<unsigned long long>(message.id()));
+  }
+  if (!outcome.accepted) return refuse(key, control::RequestKind::kMissionUpload, outcome);
+  std::tie(pending->client, pending->id) = key;
+  pending->request.kind = control::RequestKind::kMissionUpload;
+  pending->request.mission = pending->mission.get();
+  submit(std::move(pending));
+}
+
+void CommandServer::on_trajectory(const comms::msg::Trajectory& message) {
+  if (!active()) return on_flown_trajectory(message);
+  const Key key{message.client(), message.id()};
+  if (is_known(key)) return;
+  auto pending = std::make_unique<PendingRequest>();
+  pending->trajectory = std::make_unique<control::Trajectory>();
+  const control::Outcome outcome = read(message, limits_, *pending->trajectory);
+  if (!outcome.accepted) return refuse(key, control::RequestKind::kTrajectory, outcome);
+  std::tie(pending->client, pending->id) = key;
+  pending->request.kind = control::RequestKind::kTrajectory;
+  pending->request.trajectory = pending->trajectory.get();
+  submit(std::move(pending));
+}
+
+// Its id is that of a mission which is known here and says something else. One that says the same is asked
+// for once more.
+bool CommandServer::is_of_another(const comms::msg::Mission& message) {
+  comms::msg::Mission known = mission(message.id());
+  if (known.id() != message.id()) return false;
+  known.client(message.client());
+  return known != message;
+}
+
+// A mission may come by two ways, as it is asked for and as it is flown, and each of them again.
+void CommandServer::on_flown_mission(const comms::msg::Mission& message) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (missions_.find(message.id()) != nullptr) return;
+  }
+  auto mission = std::make_unique<control::Mission>();
+  if (!read(message, limits_, *mission).accepted) return;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  missions_.put(std::move(mission));
+}
+
+void CommandServer::on_flown_trajectory(const comms::msg::Trajectory& message) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (trajectories_.find(message.id()) != nullptr) return;
+  }
+  auto trajectory = std::make_unique<control::Trajectory>();
+  if (!read(message, limits_, *trajectory).accepted) return;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  trajectories_.put(std::move(trajectory));
+}
+
+void CommandServer::follow(FailoverState handover) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const control::SupervisorState& state = handover.flight.supervisor;
+  handover.number = ++handovers_;
+  if (state.guidance.mission.state != control::MissionState::kNone)
+    handover.mission = missions_.find(state.guidance.mission.id);
+  if (state.mode == control::Mode::kTrajectory)
+    handover.trajectory = trajectories_.find(state.guidance.trajectory_id);
+  missions_.lend(handover.mission, handover.number);
+  trajectories_.lend(handover.trajectory, handover.number);
+  for (const control::RequestStatus& request : state.requests) {
+    const Key key{request.key.client, request.key.id};
+    if (request.key.id != 0 && answers_.count(key) == 0)
+      keep_answer(key, {key.first, key.second, "request", control::accept(), false, state.now_ns});
+  }
+  loop_.handover.put(handover);
+  missions_.tidy(loop_.taken_handover());
+  trajectories_.tidy(loop_.taken_handover());
+}
+
+comms::msg::Mission CommandServer::mission(std::uint64_t id) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const control::Mission* const mission = missions_.find(id);
+  return mission != nullptr ? comms::to_message(*mission) : comms::msg::Mission();
+}
+
+comms::msg::Trajectory CommandServer::trajectory(std::uint64_t id) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const control::Trajectory* const trajectory = trajectories_.find(id);
+  return trajectory != nullptr ? comms::to_message(*trajectory) : comms::msg::Trajectory();
+}
+
+bool CommandServer::is_known(const Key& key) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto given = answers_.find(key);
+  if (given == answers_.end()) return pending_.count(key) > 0;
+  outbox_.push_back(given->second);
+  outbox_.back().repeated = true;
+  wake_.post();
+  return true;
+}
+
+void CommandServer::submit(std::unique_ptr<PendingRequest> pending) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const Key key{pending->client, pending->id};
+  if (pending_.size() >= kMaxPendingRequests) {
+    return settle(key, pending->request.kind,
+                  control::refuse("%d requests are under way, no more fit", kMaxPendingRequests));
+  }
+  pending->request.key = {pending->client, pending->id};
+  pending->asked_ns = runtime::monotonic_ns();
+  loop_.requests.push(pending.get());  // fits: no more are under way
+  pending_[key] = std::move(pending);
+}
+
+void CommandServer::refuse(const Key& key, control::RequestKind kind, const control::Outcome& outcome) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  settle(key, kind, outcome);
+}
+
+// With the lock held.
+void CommandServer::settle(const Key& key, control::RequestKind kind, const control::Outcome& outcome,
+                           std::int64_t stamp_ns) {
+  const RequestResult answer{key.first, key.second, name_of(kind), outcome, false, stamp_ns};
+  keep_answer(key, answer);
+  outbox_.push_back(answer);
+  wake_.post();
+}
+
+// With the lock held.
+void CommandServer::keep_answer(const Key& key, const RequestResult& answer) {
+  answers_[key] = answer;
+  oldest_.push_back(key);
+  if (oldest_.size() <= kRememberedAnswers) return;
+  answers_.erase(oldest_.front());
+  oldest_.pop_front();
+}
+
+std::vector<RequestResult> CommandServer::collect() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  PendingRequest* judged = nullptr;
+  while (loop_.judged.pop(judged)) {
+    const Key key{judged->client, judged->id};
+    const auto entry = pending_.find(key);
+    const std::unique_ptr<PendingRequest> done = std::move(entry->second);
+    pending_.erase(entry);
+    if (done->state == PendingRequest::State::kGivenUp) continue;  // answered before
+    if (done->outcome.accepted && done->mission) missions_.put_flown(std::move(done->mission));
+    if (done->outcome.accepted && done->trajectory) trajectories_.put_flown(std::move(done->trajectory));
+    settle(key, done->request.kind, done->outcome, done->stamp_ns);
+  }
+  missions_.tidy(loop_.taken_handover());
+  trajectories_.tidy(loop_.taken_handover());
+  const std::int64_t now_ns = runtime::monotonic_ns();
+  for (const auto& [key, pending] : pending_) {
+    if (now_ns - pending->asked_ns < kPatienceNs || !pending->claim(PendingRequest::State::kGivenUp))
+      continue;
+    settle(key, pending->request.kind, control::refuse("no IMU samples arrive: is the vehicle running?"));
+  }
+  return std::exchange(outbox_, {});
+}
+
+}  // namespace swiftlet::services

@@ -1,0 +1,123 @@
+#include "swiftlet/services/control/failover.hpp"
+
+#include <algorithm>
+
+namespace swiftlet::services {
+namespace {
+
+// A term is the count of takeovers, then the strength, then six bits of the controller's number: of two that
+// take over at once the stronger one has the higher term, and next to never have two the same. It is also the
+// ownership strength of the commands.
+constexpr unsigned kStrengthShift = 6;
+constexpr unsigned kCountShift = 16;
+constexpr std::uint32_t kMaxCount = 0xffff;
+constexpr std::uint32_t kNumberMask = 0x3f;
+
+// What one IMU sample adds to a silence at most: a gap in the samples is no silence of the controller.
+constexpr std::int64_t kMaxStepNs = 10'000'000;
+
+}  // namespace
+
+const char* to_string(Role role) { return role == Role::kActive ? "active" : "standby"; }
+
+Failover::Failover(std::uint64_t controller, int failover_priority)
+    : controller_(controller), failover_priority_(failover_priority) {}
+
+std::uint32_t Failover::next_term() const {
+  const std::uint32_t count = std::min((newest_term_ >> kCountShift) + 1, kMaxCount);
+  return (count << kCountShift) | (static_cast<std::uint32_t>(failover_priority_) << kStrengthShift) |
+         (static_cast<std::uint32_t>(controller_) & kNumberMask);
+}
+
+void Failover::heard(const Heartbeat& beat) {
+  if (beat.controller == controller_) return;
+  note(beat);
+  newest_term_ = std::max(newest_term_, beat.term);
+  if (beat.role != Role::kActive) return;
+  if (role_ == Role::kActive) {
+    const bool overtaken = beat.term > own_term_ || (beat.term == own_term_ && beat.controller > controller_);
+    if (!overtaken) return;
+    step_down(beat.term);
+  }
+  const bool recent = beat.heard_ns - followed_heard_ns_ < kForgottenNs;
+  if (beat.term < followed_term_ && recent) return;
+  if (beat.term != followed_term_) followed_for_ns_ = 0;
+  followed_term_ = beat.term;
+  followed_heard_ns_ = beat.heard_ns;
+  silence_ns_ = 0;
+}
+
+void Failover::note(const Heartbeat& beat) {
+  const auto known = std::find_if(peers_.begin(), peers_.end(),
+                                  [&](const Heartbeat& peer) { return peer.controller == beat.controller; });
+  const auto oldest =
+      std::min_element(peers_.begin(), peers_.end(),
+                       [](const Heartbeat& a, const Heartbeat& b) { return a.heard_ns < b.heard_ns; });
+  *(known != peers_.end() ? known : oldest) = beat;
+}
+
+void Failover::step_down(std::uint32_t to_term) {
+  role_ = Role::kStandby;
+  newest_term_ = std::max(newest_term_, to_term);
+  silence_ns_ = 0;
+}
+
+Role Failover::sample(std::int64_t stamp_ns, const plant::ObeyedCommand& obeyed, std::int64_t now_ns) {
+  pass_time(stamp_ns, obeyed, now_ns);
+  obeyed_term_ = obeyed.any ? obeyed.term : 0;
+  newest_term_ = std::max(newest_term_, obeyed_term_);
+  if (role_ == Role::kActive) {
+    const bool another_flies = obeyed.any && obeyed.term > own_term_ && silence_ns_ <= kPatienceNs;
+    if (another_flies) step_down(obeyed.term);
+  } else if (silence_ns_ > patience_ns(obeyed, now_ns) && !is_on_trial()) {
+    continues_ = knows_flight(now_ns);
+    own_term_ = next_term();
+    newest_term_ = own_term_;
+    role_ = Role::kActive;
+  }
+  return role_;
+}
+
+void Failover::pass_time(std::int64_t stamp_ns, const plant::ObeyedCommand& obeyed, std::int64_t now_ns) {
+  const std::int64_t elapsed_ns = sampled_ ? stamp_ns - last_stamp_ns_ : 0;
+  const std::int64_t waited_ns = now_ns - last_now_ns_;
+  if (obeyed.any) {
+    silence_ns_ = stamp_ns - obeyed.stamp_ns;
+  } else if (elapsed_ns < 0) {
+    silence_ns_ = 0;  // the vehicle was started again
+  } else {
+    // Of a burst of samples that waited for this process, next to nothing.
+    silence_ns_ += std::min({elapsed_ns, waited_ns, kMaxStepNs});
+  }
+  followed_for_ns_ += std::clamp<std::int64_t>(elapsed_ns, 0, kMaxStepNs);
+  sampled_ = true;
+  last_stamp_ns_ = stamp_ns;
+  last_now_ns_ = now_ns;
+}
+
+bool Failover::knows_flight(std::int64_t now_ns) const {
+  const bool obeyed = obeyed_term_ == 0 || obeyed_term_ == followed_term_;
+  return followed_term_ != 0 && obeyed && now_ns - followed_heard_ns_ < kForgottenNs;
+}
+
+bool Failover::is_on_trial() const {
+  return obeyed_term_ != 0 && obeyed_term_ < followed_term_ && followed_for_ns_ < kTrialNs;
+}
+
+std::int64_t Failover::patience_ns(const plant::ObeyedCommand& obeyed, std::int64_t now_ns) const {
+  const std::int64_t turn_ns = rank(now_ns) * kPerRankNs;
+  if (knows_flight(now_ns)) return kPatienceNs + turn_ns;
+  return (obeyed.told ? kStrangersPatienceNs : kSearchNs) + turn_ns;
+}
+
+// How many standbys come before this one.
+int Failover::rank(std::int64_t now_ns) const {
+  return static_cast<int>(std::count_if(peers_.begin(), peers_.end(), [&](const Heartbeat& peer) {
+    const bool waits =
+        peer.controller != 0 && peer.role == Role::kStandby && now_ns - peer.heard_ns < kForgottenNs;
+    return waits && (peer.failover_priority > failover_priority_ ||
+                     (peer.failover_priority == failover_priority_ && peer.controller > controller_));
+  }));
+}
+
+}  // namespace swiftlet::services

@@ -1,0 +1,64 @@
+// The missions or trajectories that this process knows. The inner loop flies one of them by its address, so
+// none is let go of while it may.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <utility>
+
+namespace swiftlet::services {
+
+template <class Plan>
+class PlanStore {
+ public:
+  // The newest of this id, or null.
+  const Plan* find(std::uint64_t id) const {
+    const auto entry =
+        std::find_if(entries_.rbegin(), entries_.rend(), [id](const Entry& e) { return e.plan->id == id; });
+    return entry == entries_.rend() ? nullptr : entry->plan.get();
+  }
+
+  void put(std::unique_ptr<Plan> plan) { entries_.push_back({std::move(plan), 0}); }
+
+  // It was accepted: it is kept or flown until another one is.
+  void put_flown(std::unique_ptr<Plan> plan) {
+    flown_ = plan.get();
+    put(std::move(plan));
+  }
+
+  // It goes to the inner loop with the handover of this number. plan may be null.
+  void lend(const Plan* plan, std::uint64_t handover) {
+    for (Entry& entry : entries_) {
+      if (entry.plan.get() == plan) entry.handover = handover;
+    }
+  }
+
+  // Lets go of the oldest that are beyond the capacity and cannot be flown: taken is the number of the newest
+  // handover that the inner loop has gone over to.
+  void tidy(std::uint64_t taken) {
+    const auto idle = [&](const Entry& e) {
+      return e.plan.get() != flown_ && (e.handover == 0 || e.handover < taken);
+    };
+    while (entries_.size() > kCapacity) {
+      const auto entry = std::find_if(entries_.begin(), entries_.end(), idle);
+      if (entry == entries_.end()) return;
+      entries_.erase(entry);
+    }
+  }
+
+  std::size_t size() const { return entries_.size(); }
+  static constexpr std::size_t kCapacity = 4;
+
+ private:
+  struct Entry {
+    std::unique_ptr<Plan> plan;
+    std::uint64_t handover = 0;  // the last one that it went with
+  };
+  std::deque<Entry> entries_;  // oldest first
+  const Plan* flown_ = nullptr;
+};
+
+}  // namespace swiftlet::services

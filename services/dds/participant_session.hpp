@@ -1,0 +1,89 @@
+// What a process is to Fast DDS while it belongs to a domain, and what stays of it when that ends and begins
+// anew.
+#pragma once
+
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <fastdds/dds/topic/Topic.hpp>
+#include <fastdds/dds/topic/TypeSupport.hpp>
+
+#include "swiftlet/services/dds/node.hpp"
+
+namespace swiftlet::comms {
+
+// A participant and what it is made of. When it ends it says goodbye.
+class ParticipantSession {
+ public:
+  // Throws std::runtime_error if the participant cannot be made.
+  ParticipantSession(const NodeSettings& settings,
+                     eprosima::fastdds::dds::DomainParticipantListener* listener);
+  ~ParticipantSession();
+  ParticipantSession(const ParticipantSession&) = delete;
+  ParticipantSession& operator=(const ParticipantSession&) = delete;
+
+  // By one thread at a time. Throws std::runtime_error.
+  eprosima::fastdds::dds::Topic* topic(const std::string& wire_name,
+                                       const eprosima::fastdds::dds::TypeSupport& type);
+
+  // That it serves those that the settings name now.
+  void announce_vehicles(const NodeSettings& settings);
+
+  eprosima::fastdds::dds::DomainParticipant* participant = nullptr;
+  eprosima::fastdds::dds::Publisher* publisher = nullptr;
+  eprosima::fastdds::dds::Subscriber* subscriber = nullptr;
+
+ private:
+  std::map<std::string, eprosima::fastdds::dds::Topic*> topics_;
+};
+
+// A writer or reader that outlives a membership.
+class Endpoint {
+ public:
+  virtual ~Endpoint() = default;
+  virtual void join(ParticipantSession& membership) = 0;   // throws std::runtime_error
+  virtual void leave(ParticipantSession& membership) = 0;  // nothing if it did not join
+};
+
+// A pointer that is used by threads which must not wait, and taken from them by one that may.
+template <class T>
+class GuardedPointer {
+ public:
+  class Use {
+   public:
+    explicit Use(const GuardedPointer& handle) : handle_(handle) {
+      ++handle_.users_;
+      target_ = handle_.target_.load();
+    }
+    ~Use() { --handle_.users_; }
+    Use(const Use&) = delete;
+    Use& operator=(const Use&) = delete;
+    explicit operator bool() const { return target_ != nullptr; }
+    T* operator->() const { return target_; }
+
+   private:
+    const GuardedPointer& handle_;
+    T* target_;
+  };
+
+  void give(T* target) { target_ = target; }
+  // What it was; nobody uses it any more.
+  T* take() {
+    T* const target = target_.exchange(nullptr);
+    while (users_ != 0) std::this_thread::yield();
+    return target;
+  }
+
+ private:
+  mutable std::atomic<int> users_{0};
+  std::atomic<T*> target_{nullptr};
+};
+
+}  // namespace swiftlet::comms

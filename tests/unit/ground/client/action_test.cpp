@@ -1,0 +1,75 @@
+// How a request ended, told from what the controller says of it.
+#include "swiftlet/ground/client/action.hpp"
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/control/supervision/request_status.hpp"
+#include "swiftlet/services/messages/convert.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using control::Event;
+using control::Reason;
+using control::RequestKind;
+using control::RequestState;
+using control::RequestStatus;
+
+constexpr std::int64_t kAccepted_ns = 5'000'000'000;
+const Result kAnswer{Result::Kind::kAccepted, "", {7, 12}, kAccepted_ns};
+
+swiftlet_msgs::msg::ControlStatus status(const RequestStatus& last,
+                                         std::int64_t stamp_ns = kAccepted_ns + 1) {
+  swiftlet_msgs::msg::ControlStatus status;
+  status.stamp_ns(stamp_ns);
+  status.request() = comms::to_message(last);
+  return status;
+}
+
+RequestStatus in_state(RequestState state, Event by = Event::kArm, Reason reason = Reason::kStarted) {
+  return {{7, 12}, RequestKind::kGoTo, state, by, reason, 0.5};
+}
+
+std::string end_of(const std::optional<ActionResult>& ending) {
+  if (!ending) return "under way";
+  return ending->done() ? "done" : ending->reason;
+}
+
+TEST(Manoeuvres, EndAsTheControllerSays) {
+  EXPECT_EQ(end_of(action_result_by(status(in_state(RequestState::kAccepted)), kAnswer)), "under way");
+  EXPECT_EQ(end_of(action_result_by(status(in_state(RequestState::kExecuting)), kAnswer)), "under way");
+  EXPECT_EQ(end_of(action_result_by(status(in_state(RequestState::kSucceeded)), kAnswer)), "done");
+  const auto canceled =
+      action_result_by(status(in_state(RequestState::kCanceled, Event::kLand, Reason::kRequested)), kAnswer);
+  EXPECT_EQ(end_of(canceled), "canceled by a newer request: land");
+  EXPECT_EQ(canceled->kind, ActionResult::Kind::kCanceled);
+  const auto aborted = action_result_by(
+      status(in_state(RequestState::kAborted, Event::kBatteryLow, Reason::kBatteryLow)), kAnswer);
+  EXPECT_EQ(end_of(aborted), "aborted: battery is low");
+  EXPECT_EQ(aborted->kind, ActionResult::Kind::kAborted);
+}
+
+TEST(Manoeuvres, AreFoundAmongTheEarlierRequests) {
+  RequestStatus other = in_state(RequestState::kExecuting);
+  for (const control::RequestKey& key : {control::RequestKey{7, 13}, control::RequestKey{8, 12}}) {
+    other.key = key;
+    auto told = status(other);
+    told.earlier_requests()[2] = comms::to_message(in_state(RequestState::kSucceeded));
+    EXPECT_EQ(end_of(action_result_by(told, kAnswer)), "done");
+  }
+}
+
+// GIVEN a status that does not know the request, WHEN it is of before the answer, THEN the next is waited for; one
+// of after it is of a controller that will never know.
+TEST(Manoeuvres, AreLostWhereALaterStatusDoesNotKnowThem) {
+  RequestStatus other = in_state(RequestState::kSucceeded);
+  other.key = {7, 11};
+  EXPECT_EQ(end_of(action_result_by(status(other, kAccepted_ns), kAnswer)), "under way");
+  const auto lost = action_result_by(status(other, kAccepted_ns + 1), kAnswer);
+  ASSERT_TRUE(lost);
+  EXPECT_EQ(lost->kind, ActionResult::Kind::kLost);
+  EXPECT_EQ(end_of(action_result_by({}, kAnswer)), "under way");
+}
+
+}  // namespace
+}  // namespace swiftlet::ground

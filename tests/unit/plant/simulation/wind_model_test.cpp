@@ -1,0 +1,70 @@
+#include "swiftlet/plant/simulation/wind_model.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace swiftlet::tests {
+namespace {
+
+using Eigen::Vector3d;
+using plant::AirSettings;
+using plant::WindModel;
+
+TEST(WindModel, BlowsSteadilyWithoutGusts) {
+  AirSettings settings;
+  settings.wind_ned = {3.0, -2.0, 1.0};
+  WindModel air(settings, 0.001, 1);
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_EQ(air.wind_ned(), settings.wind_ned);
+    air.advance();
+  }
+}
+
+TEST(WindModel, GustsHaveTheirVarianceAndCorrelationTime) {
+  AirSettings settings;
+  settings.wind_ned = {3.0, -2.0, 0.0};
+  settings.gust_sigma_ned = {1.0, 0.5, 0.0};
+  settings.gust_time_constant_s = 0.2;
+  constexpr double kStep = 0.002;
+  constexpr int kCount = 2'000'000;  // 4000 s, some 10 000 independent ones
+  constexpr int kLag = 100;          // one time constant
+  WindModel air(settings, kStep, 3);
+
+  Vector3d sum = Vector3d::Zero();
+  Vector3d squares = Vector3d::Zero();
+  Vector3d products = Vector3d::Zero();
+  double across = 0.0;
+  std::vector<Vector3d> past(kLag, Vector3d::Zero());
+  for (std::size_t i = 0; i < kCount; ++i) {
+    air.advance();
+    const Vector3d gust = air.wind_ned() - settings.wind_ned;
+    sum += gust;
+    squares += gust.cwiseAbs2();
+    products += gust.cwiseProduct(past[i % kLag]);
+    across += gust.x() * gust.y();
+    past[i % kLag] = gust;
+  }
+  // The standard deviation of these means is about 1 % of the variance; four of them.
+  for (int axis = 0; axis < 2; ++axis) {
+    const double variance = std::pow(settings.gust_sigma_ned[axis], 2);
+    EXPECT_NEAR(sum[axis] / kCount, 0.0, 0.04 * settings.gust_sigma_ned[axis]);
+    EXPECT_NEAR(squares[axis] / kCount, variance, 0.04 * variance);
+    EXPECT_NEAR(products[axis] / kCount, variance * std::exp(-1.0), 0.04 * variance);
+  }
+  EXPECT_NEAR(across / kCount, 0.0, 0.04 * 0.5);
+  EXPECT_EQ(squares.z(), 0.0);
+}
+
+TEST(WindModel, GustsAreThereFromTheStart) {
+  AirSettings settings;
+  settings.gust_sigma_ned = {1.0, 1.0, 1.0};
+  double squares = 0.0;
+  for (std::uint64_t seed = 0; seed < 3000; ++seed)
+    squares += WindModel(settings, 0.001, seed).wind_ned().squaredNorm();
+  EXPECT_NEAR(squares / 9000.0, 1.0, 0.06);
+}
+
+}  // namespace
+}  // namespace swiftlet::tests

@@ -1,0 +1,555 @@
+// Requests through the desk and the inner loop, and what the inner loop costs.
+#include "swiftlet/services/control/command_server.hpp"
+
+#include <chrono>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/io/settings/control_settings_file.hpp"
+#include "swiftlet/io/settings/vehicle_file.hpp"
+#include "swiftlet/services/control/inner_loop.hpp"
+#include "swiftlet/services/messages/convert.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/support/malloc_guard.hpp"
+
+namespace swiftlet::services {
+namespace {
+
+namespace msg = comms::msg;
+namespace Command_Constants = comms::msg::Command_Constants;
+using namespace std::chrono_literals;
+
+constexpr std::uint64_t kClient = 77;
+
+class Desk : public testing::Test {
+ protected:
+  Desk()
+      : vehicle_(runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml")),
+        settings_(runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml")),
+        loop_(vehicle_, settings_),
+        desk_(loop_, settings_.limits, wake_) {}
+
+  // The vehicle at rest on the ground: one IMU sample, with a pose each tenth and a battery sample each.
+  plant::ActuatorCommand step() {
+    ++sequence_;
+    const auto stamp = static_cast<std::int64_t>(sequence_) * 2'000'000;
+    if (sequence_ % 5 == 1) {
+      last_pose_.stamp_ns = stamp;
+      last_pose_.sequence = sequence_;
+      last_pose_.tracked = true;
+      loop_.pose.put(last_pose_);
+    }
+    last_battery_ = {stamp, sequence_, 4.0, 0.1, 0.9};
+    loop_.battery.put(last_battery_);
+    last_rotor_speeds_.stamp_ns = stamp;
+    last_rotor_speeds_.sequence = sequence_;
+    last_rotor_speeds_.rotor_count = vehicle_.rotor_count();
+    loop_.rotor_speeds.put(last_rotor_speeds_);
+    last_imu_.stamp_ns = stamp;
+    last_imu_.sequence = sequence_;
+    last_imu_.specific_force_frd = {0.0, 0.0, -plant::kGravity};
+    const plant::ActuatorCommand command = loop_.step(last_imu_, 1'000'000'000 + stamp);
+    loop_.finish(1'000'000'000 + stamp + 20'000);
+    return command;
+  }
+  void settle() {
+    for (int i = 0; i < 500; ++i) step();
+    Snapshot snapshot;
+    while (loop_.snapshots.pop(snapshot)) last_ = snapshot;
+  }
+  control::Mode mode() {
+    step();
+    Snapshot snapshot;
+    while (loop_.snapshots.pop(snapshot)) last_ = snapshot;
+    return last_.status.mode;
+  }
+
+  static msg::Command command(std::uint8_t kind, std::uint64_t id) {
+    msg::Command message;
+    message.client(kClient);
+    message.id(id);
+    message.kind(kind);
+    message.speed(0.5);
+    message.position_ned({0.0, 0.0, -1.0});
+    return message;
+  }
+  static msg::Mission mission(std::uint64_t id, double x) {
+    control::Mission mission;
+    mission.id = id;
+    mission.items.push_back({control::MissionItemKind::kTakeoff, {0.0, 0.0, -1.0}, 0.0, true, 0.5, 0.0});
+    mission.items.push_back({control::MissionItemKind::kWaypoint, {x, 0.0, -1.0}, 0.0, true, 0.5, 0.0});
+    mission.items.push_back({control::MissionItemKind::kLand, {0.0, 0.0, 0.0}, 0.0, true, 0.5, 0.0});
+    msg::Mission message = comms::to_message(mission);
+    message.client(kClient);
+    return message;
+  }
+
+  plant::Vehicle vehicle_;
+  control::ControlSettings settings_;
+  runtime::Semaphore wake_;
+  InnerLoop loop_;
+  CommandServer desk_;
+  std::uint64_t sequence_ = 0;
+  plant::PoseSample last_pose_;
+  plant::BatterySample last_battery_;
+  plant::RotorSpeedSample last_rotor_speeds_;
+  plant::ImuSample last_imu_;
+  Snapshot last_;
+};
+
+TEST_F(Desk, ARequestIsJudgedInTheNextStepAndAnswered) {
+  settle();
+  desk_.on_command(command(Command_Constants::ARM, 1));
+  EXPECT_TRUE(desk_.collect().empty());
+
+  EXPECT_EQ(step().rotor_state, plant::RotorState::kRunning);
+
+  const std::vector<RequestResult> answers = desk_.collect();
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_EQ(answers[0].client, kClient);
+  EXPECT_EQ(answers[0].id, 1U);
+  EXPECT_STREQ(answers[0].kind, "arm");
+  EXPECT_TRUE(answers[0].outcome.accepted) << answers[0].outcome.reason;
+  EXPECT_FALSE(answers[0].repeated);
+  EXPECT_EQ(mode(), control::Mode::kArmed);
+}
+
+// GIVEN an answer with its stamp, THEN whatever is told of a later stamp knows the request, from its first step on.
+TEST_F(Desk, WhatIsToldAfterAnAcceptanceKnowsTheRequest) {
+  settle();
+  desk_.on_command(command(Command_Constants::ARM, 1));
+  step();
+  desk_.on_command(command(Command_Constants::TAKEOFF, 2));
+  const std::int64_t before_ns = last_imu_.stamp_ns;
+  step();
+  for (const RequestResult& answer : desk_.collect()) EXPECT_GT(answer.stamp_ns, 0) << answer.kind;
+  desk_.on_command(command(Command_Constants::TAKEOFF, 2));
+  const std::vector<RequestResult> again = desk_.collect();
+  ASSERT_EQ(again.size(), 1U);
+  EXPECT_EQ(again[0].stamp_ns, before_ns);
+  for (int i = 0; i < 20; ++i) step();
+  int told = 0;
+  Snapshot snapshot;
+  while (loop_.snapshots.pop(snapshot)) {
+    if (snapshot.stamp_ns <= before_ns) continue;
+    ++told;
+    EXPECT_EQ(snapshot.requests.back().key, (control::RequestKey{kClient, 2})) << snapshot.stamp_ns;
+  }
+  EXPECT_GT(told, 2);
+}
+
+TEST_F(Desk, ARefusalOfTheControllerIsAnsweredWithItsReason) {
+  settle();
+  desk_.on_command(command(Command_Constants::LAND, 1));
+  step();
+  const std::vector<RequestResult> answers = desk_.collect();
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_FALSE(answers[0].outcome.accepted);
+  EXPECT_GT(std::string(answers[0].outcome.reason).size(), 0U);
+}
+
+TEST_F(Desk, ARequestThatWasAnsweredIsAnsweredAgainAndNotAppliedTwice) {
+  settle();
+  desk_.on_command(command(Command_Constants::ARM, 1));
+  step();
+  ASSERT_EQ(desk_.collect().size(), 1U);
+  desk_.on_command(command(Command_Constants::DISARM, 2));
+  step();
+  ASSERT_EQ(desk_.collect().size(), 1U);
+  ASSERT_EQ(mode(), control::Mode::kDisarmed);
+
+  desk_.on_command(command(Command_Constants::ARM, 1));  // the network repeats the first
+
+  EXPECT_EQ(step().rotor_state, plant::RotorState::kOff);
+  const std::vector<RequestResult> answers = desk_.collect();
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_EQ(answers[0].id, 1U);
+  EXPECT_TRUE(answers[0].outcome.accepted);
+  EXPECT_TRUE(answers[0].repeated);
+  EXPECT_EQ(mode(), control::Mode::kDisarmed);
+}
+
+TEST_F(Desk, ARequestThatIsUnderWayIsNotTakenInAgain) {
+  settle();
+  for (int i = 0; i < 3; ++i) desk_.on_command(command(Command_Constants::ARM, 1));
+  step();
+  EXPECT_EQ(desk_.collect().size(), 1U);
+}
+
+TEST_F(Desk, TheSameIdOfAnotherClientIsAnotherRequest) {
+  settle();
+  desk_.on_command(command(Command_Constants::ARM, 1));
+  msg::Command other = command(Command_Constants::DISARM, 1);
+  other.client(kClient + 1);
+  desk_.on_command(other);
+  step();
+  EXPECT_EQ(desk_.collect().size(), 2U);
+  EXPECT_EQ(mode(), control::Mode::kDisarmed);
+}
+
+TEST_F(Desk, BrokenRequestsAreRefusedWithoutTheInnerLoop) {
+  msg::Command go = command(Command_Constants::GOTO, 1);
+  go.position_ned()[1] = std::numeric_limits<double>::quiet_NaN();
+  desk_.on_command(go);
+  msg::Mission outside = mission(2, 99.0);
+  desk_.on_mission(outside);
+  msg::Mission broken = mission(3, 1.0);
+  broken.items()[1].speed(std::numeric_limits<double>::quiet_NaN());
+  desk_.on_mission(broken);
+  msg::Trajectory empty;
+  empty.client(kClient);
+  empty.id(4);
+  desk_.on_trajectory(empty);
+
+  const std::vector<RequestResult> answers = desk_.collect();
+  ASSERT_EQ(answers.size(), 4U);
+  for (const RequestResult& answer : answers) EXPECT_FALSE(answer.outcome.accepted);
+  EXPECT_STREQ(answers[0].outcome.reason, "position_ned[1] is nan, must be finite");
+  EXPECT_NE(std::string(answers[1].outcome.reason).find("item 2: x is 99.000 m"), std::string::npos);
+  EXPECT_STREQ(answers[2].outcome.reason, "item 2: speed is nan, must be finite");
+  EXPECT_STREQ(answers[3].outcome.reason, "the trajectory has no segments");
+  EXPECT_EQ(loop_.requests.read_available(), 0U);
+}
+
+TEST_F(Desk, AMissionIsFlownFromTheDesksOwnCopy) {
+  settle();
+  desk_.on_command(command(Command_Constants::ARM, 1));
+  step();
+  {
+    const msg::Mission message = mission(2, 1.0);
+    desk_.on_mission(message);
+  }
+  desk_.on_command(command(Command_Constants::MISSION_START, 3));
+  step();
+  const std::vector<RequestResult> answers = desk_.collect();
+  ASSERT_EQ(answers.size(), 3U);
+  ASSERT_TRUE(answers[1].outcome.accepted) << answers[1].outcome.reason;
+  ASSERT_TRUE(answers[2].outcome.accepted) << answers[2].outcome.reason;
+  for (int i = 0; i < 100; ++i) step();
+  EXPECT_EQ(mode(), control::Mode::kMission);
+  EXPECT_EQ(last_.status.mission.id, 2U);
+  EXPECT_EQ(last_.status.mission.item_count, 3);
+}
+
+TEST_F(Desk, WithoutImuSamplesARequestIsRefusedAndNotAppliedLater) {
+  settle();
+  desk_.on_command(command(Command_Constants::ARM, 1));
+  std::vector<RequestResult> answers;
+  ASSERT_TRUE(tests::eventually([&] {
+    answers = desk_.collect();
+    return !answers.empty();
+  }));
+  EXPECT_FALSE(answers[0].outcome.accepted);
+  EXPECT_STREQ(answers[0].outcome.reason, "no IMU samples arrive: is the vehicle running?");
+
+  EXPECT_EQ(step().rotor_state, plant::RotorState::kOff);
+  EXPECT_TRUE(desk_.collect().empty());
+  EXPECT_EQ(mode(), control::Mode::kDisarmed);
+}
+
+TEST_F(Desk, MoreThanFitAreRefused) {
+  for (std::uint64_t id = 1; id <= kMaxPendingRequests + 1; ++id)
+    desk_.on_command(command(Command_Constants::HOLD, id));
+  const std::vector<RequestResult> answers = desk_.collect();
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_EQ(answers[0].id, static_cast<std::uint64_t>(kMaxPendingRequests) + 1);
+  EXPECT_STREQ(answers[0].outcome.reason, "32 requests are under way, no more fit");
+  step();
+  EXPECT_EQ(desk_.collect().size(), static_cast<std::size_t>(kMaxPendingRequests));
+}
+
+TEST_F(Desk, TelemetryIsSampledAHundredTimesASecondByTheImusNumbers) {
+  settle();
+  std::size_t sampled = 0;
+  for (int i = 0; i < 500; ++i) {
+    step();
+    Snapshot snapshot;
+    while (loop_.snapshots.pop(snapshot)) {
+      if (!snapshot.sampled) continue;
+      ++sampled;
+      EXPECT_EQ(snapshot.stamp_ns % 10'000'000, 0);
+      EXPECT_EQ(snapshot.estimate.stamp_ns, snapshot.stamp_ns);
+    }
+  }
+  EXPECT_EQ(sampled, 100U);
+}
+
+TEST_F(Desk, TheInnerLoopDoesNotAllocate) {
+  settle();
+  desk_.on_command(command(Command_Constants::ARM, 1));
+  desk_.on_mission(mission(2, 1.0));
+  desk_.on_command(command(Command_Constants::MISSION_START, 3));
+  std::size_t calls = 0;
+  {
+    const test::MallocGuard guard;
+    for (int i = 0; i < 1000; ++i) step();
+    calls = guard.calls();
+  }
+  EXPECT_EQ(calls, 0U);
+  EXPECT_EQ(desk_.collect().size(), 3U);
+}
+
+// A standby beside the fixture's controller, which hears the same samples.
+class DeskOfAStandby : public Desk {
+ protected:
+  DeskOfAStandby()
+      : standby_loop_(vehicle_, settings_), standby_desk_(standby_loop_, settings_.limits, wake_) {
+    standby_desk_.set_active(false);
+  }
+  static constexpr std::uint32_t kTerm = 7;
+
+  // What the active one reports after a step, as the network hands it on.
+  void hand_over() {
+    comms::ControllerReport report;
+    loop_.report(report);
+    ASSERT_TRUE(report.active);
+    comms::ControllerReport heard;
+    ASSERT_FALSE(comms::from_message(comms::to_message(report), heard));
+    FailoverState handover;
+    handover.term = kTerm;
+    handover.flight = heard.flight;
+    standby_desk_.follow(handover);
+  }
+  plant::ActuatorCommand step_standby(Role role) {
+    standby_loop_.pose.put(last_pose_);
+    standby_loop_.battery.put(last_battery_);
+    standby_loop_.rotor_speeds.put(last_rotor_speeds_);
+    const std::int64_t now_ns = 1'000'000'000 + last_imu_.stamp_ns;
+    const plant::ActuatorCommand command = standby_loop_.step(last_imu_, now_ns, role, kTerm);
+    standby_loop_.finish(now_ns + 20'000);
+    return command;
+  }
+  void fly_mission() {
+    settle();
+    desk_.on_command(command(Command_Constants::ARM, 1));
+    step();
+    desk_.on_mission(mission(2, 1.0));
+    desk_.on_command(command(Command_Constants::MISSION_START, 3));
+    step();
+    desk_.collect();
+  }
+  void follow(int steps) {
+    for (int i = 0; i < steps; ++i) {
+      step();
+      hand_over();
+      step_standby(Role::kStandby);
+    }
+  }
+  control::SupervisorState standby_state() {
+    comms::ControllerReport report;
+    standby_loop_.step(last_imu_, 0, Role::kActive);
+    standby_loop_.report(report);
+    return report.flight.supervisor;
+  }
+
+  InnerLoop standby_loop_;
+  CommandServer standby_desk_;
+};
+
+TEST_F(DeskOfAStandby, AnswersNothing) {
+  settle();
+  standby_desk_.on_command(command(Command_Constants::ARM, 1));
+  step();
+  step_standby(Role::kStandby);
+  EXPECT_TRUE(standby_desk_.collect().empty());
+  EXPECT_EQ(standby_state().mode, control::Mode::kDisarmed);
+}
+
+// Setpoints reach all controllers; the active one judges them. A standby that does too would count them, and tell of
+// refusals that nobody is to act on.
+TEST_F(DeskOfAStandby, JudgesNoSetpoints) {
+  settle();
+  const control::Setpoint setpoint;  // refused on the ground
+  const auto tally = [&] {
+    Snapshot snapshot;
+    SetpointTally newest;
+    while (standby_loop_.snapshots.pop(snapshot)) newest = snapshot.setpoints;
+    return newest;
+  };
+  for (int i = 0; i < 20; ++i) {
+    step();
+    standby_loop_.setpoint.put(setpoint);
+    step_standby(Role::kStandby);
+  }
+  EXPECT_EQ(tally().refused, 0U);
+  for (int i = 0; i < 20; ++i) {
+    step();
+    standby_loop_.setpoint.put(setpoint);
+    step_standby(Role::kActive);
+  }
+  const SetpointTally active = tally();
+  EXPECT_GT(active.refused, 10U) << "the same, of the active one";
+  EXPECT_NE(std::string(active.refusal.reason), "");
+}
+
+TEST_F(DeskOfAStandby, GoesOnWithTheMissionThatItHeardBeingAskedFor) {
+  fly_mission();
+  standby_desk_.on_mission(mission(2, 1.0));
+  follow(20);  // until it has a pose
+  for (int i = 0; i < 1500; ++i) {
+    const plant::ActuatorCommand flown = step();
+    hand_over();
+    const plant::ActuatorCommand followed = step_standby(Role::kStandby);
+    EXPECT_EQ(followed.rotor_state, flown.rotor_state);
+  }
+  ASSERT_EQ(mode(), control::Mode::kMission);
+  comms::ControllerReport active;
+  loop_.report(active);
+  const control::SupervisorState state = standby_state();
+  EXPECT_EQ(state.mode, control::Mode::kMission);
+  EXPECT_EQ(state.guidance.mission.id, 2U);
+  EXPECT_EQ(state.guidance.phase, active.flight.supervisor.guidance.phase);
+  EXPECT_EQ(state.guidance.path.segment.z, active.flight.supervisor.guidance.path.segment.z);
+  EXPECT_TRUE(standby_desk_.collect().empty());
+}
+
+TEST_F(DeskOfAStandby, GoesOnWithTheMissionThatItHeardBeingFlown) {
+  fly_mission();
+  standby_desk_.on_flown_mission(desk_.mission(2));
+  follow(20);
+  EXPECT_EQ(standby_state().mode, control::Mode::kMission);
+}
+
+// GIVEN a mission that was uploaded and waits, WHEN another controller takes over, THEN it starts it.
+TEST_F(DeskOfAStandby, StartsTheMissionThatWasUploadedBeforeItTookOver) {
+  for (const bool heard_asked_for : {true, false}) {
+    SCOPED_TRACE(heard_asked_for);
+    settle();
+    const std::uint64_t id = heard_asked_for ? 12 : 22;
+    desk_.on_command(command(Command_Constants::ARM, id - 1));
+    desk_.on_mission(mission(id, 1.0));
+    step();
+    desk_.collect();
+    if (heard_asked_for) {
+      standby_desk_.on_mission(mission(id, 1.0));
+    } else {
+      standby_desk_.on_flown_mission(desk_.mission(id));
+    }
+    follow(20);
+    control::SupervisorState state = standby_state();
+    EXPECT_EQ(state.guidance.mission.id, id);
+    EXPECT_EQ(state.guidance.mission.state, control::MissionState::kUploaded);
+    EXPECT_EQ(state.guidance.mission.item_count, 3);
+    standby_desk_.set_active(true);
+    standby_desk_.on_command(command(Command_Constants::MISSION_START, id + 1));
+    step();
+    step_standby(Role::kActive);
+    const std::vector<RequestResult> answers = standby_desk_.collect();
+    ASSERT_EQ(answers.size(), 1U);
+    EXPECT_TRUE(answers[0].outcome.accepted) << answers[0].outcome.reason;
+    state = standby_state();
+    EXPECT_EQ(state.mode, control::Mode::kMission);
+    EXPECT_EQ(state.guidance.mission.state, control::MissionState::kRunning);
+    standby_desk_.set_active(false);
+    desk_.on_command(command(Command_Constants::DISARM, id + 2));
+    step();
+    desk_.collect();
+  }
+}
+
+TEST_F(Desk, AnotherMissionOfAKnownIdIsRefusedAndTheSameIsNot) {
+  settle();
+  desk_.on_mission(mission(2, 1.0));
+  step();
+  ASSERT_TRUE(desk_.collect().at(0).outcome.accepted);
+  msg::Mission other = mission(2, 1.5);
+  other.client(kClient + 1);
+  desk_.on_mission(other);
+  msg::Mission same = mission(2, 1.0);
+  same.client(kClient + 2);
+  desk_.on_mission(same);
+  step();
+  const std::vector<RequestResult> answers = desk_.collect();
+  ASSERT_EQ(answers.size(), 2U);
+  EXPECT_EQ(answers[0].client, kClient + 1);
+  EXPECT_STREQ(answers[0].outcome.reason, "another mission has the id 2: a new one needs a new id");
+  EXPECT_TRUE(answers[1].outcome.accepted) << answers[1].outcome.reason;
+}
+
+TEST_F(DeskOfAStandby, WithoutTheMissionItStaysOnTheGround) {
+  fly_mission();
+  follow(20);
+  const control::SupervisorState state = standby_state();
+  EXPECT_EQ(state.mode, control::Mode::kDisarmed);
+  EXPECT_EQ(state.reason, control::Reason::kPlanUnknown);
+}
+
+TEST_F(DeskOfAStandby, DoesNotFollowAnotherTerm) {
+  fly_mission();
+  standby_desk_.on_mission(mission(2, 1.0));
+  step();
+  comms::ControllerReport report;
+  loop_.report(report);
+  FailoverState handover;
+  handover.term = kTerm - 1;
+  handover.flight = report.flight;
+  standby_desk_.follow(handover);
+  step_standby(Role::kStandby);
+  EXPECT_EQ(standby_state().mode, control::Mode::kDisarmed);
+}
+
+// GIVEN a request that was accepted, WHEN its answer is lost with the controller that gave it, THEN whoever
+// takes over gives it again and does not apply it twice.
+TEST_F(DeskOfAStandby, ARequestThatWasAcceptedBeforeIsAnsweredAndNotAppliedAgain) {
+  settle();
+  desk_.on_command(command(Command_Constants::ARM, 1));
+  step();
+  hand_over();
+  step_standby(Role::kStandby);
+
+  standby_desk_.set_active(true);
+  step_standby(Role::kActive);
+  standby_desk_.on_command(command(Command_Constants::DISARM, 2));
+  standby_desk_.on_command(command(Command_Constants::ARM, 1));
+  step();
+  step_standby(Role::kActive);
+
+  const std::vector<RequestResult> answers = standby_desk_.collect();
+  ASSERT_EQ(answers.size(), 2U);
+  EXPECT_EQ(answers[0].id, 1U);
+  EXPECT_TRUE(answers[0].outcome.accepted);
+  EXPECT_TRUE(answers[0].repeated);
+  EXPECT_EQ(answers[1].id, 2U);
+  EXPECT_EQ(standby_state().mode, control::Mode::kDisarmed);
+}
+
+// GIVEN a mission that is executed, WHEN a standby takes over, THEN it says so of the request, and that it is canceled
+// by what it is asked for itself.
+TEST_F(DeskOfAStandby, TheRequestUnderWayIsGoneOnWith) {
+  standby_desk_.on_mission(mission(2, 1.0));
+  fly_mission();
+  follow(600);
+  const control::RequestStatus taken = standby_state().requests.back();
+  EXPECT_EQ(taken.key, (control::RequestKey{kClient, 3}));
+  EXPECT_EQ(taken.state, control::RequestState::kExecuting);
+
+  standby_desk_.set_active(true);
+  standby_desk_.on_command(command(Command_Constants::STOP, 4));
+  step();
+  step_standby(Role::kActive);
+  const control::RequestStatuses after = standby_state().requests;
+  EXPECT_EQ(after[after.size() - 2].key, taken.key);
+  EXPECT_EQ(result_of(after[after.size() - 2]), "canceled by a newer request: stop");
+  EXPECT_EQ(after.back().state, control::RequestState::kSucceeded);
+}
+
+TEST_F(DeskOfAStandby, FollowingDoesNotAllocateInTheInnerLoop) {
+  fly_mission();
+  standby_desk_.on_mission(mission(2, 1.0));
+  std::size_t calls = 0;
+  for (int i = 0; i < 50; ++i) {
+    step();
+    hand_over();
+    const test::MallocGuard guard;
+    step_standby(Role::kStandby);
+    calls += guard.calls();
+  }
+  EXPECT_EQ(calls, 0U);
+}
+
+}  // namespace
+}  // namespace swiftlet::services

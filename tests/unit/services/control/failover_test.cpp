@@ -1,0 +1,343 @@
+// Who acts, on sequences of samples, commands and heartbeats as several controllers and their vehicle make
+// them.
+#include "swiftlet/services/control/failover.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace swiftlet::services {
+namespace {
+
+constexpr std::int64_t kPeriodNs = 2'000'000;
+constexpr std::int64_t kStartNs = 5'000'000'000;  // of the computers' clock
+
+std::int64_t ms(std::int64_t time) { return time * 1'000'000; }
+
+// A vehicle, and controllers that hear each other: what each would do on a network without delay. Heartbeats
+// of an active controller come with each of its commands, those of standbys too.
+class Vehicle {
+ public:
+  struct Controller {
+    Controller(std::uint64_t number, int failover_priority)
+        : id(number), n(failover_priority), succession(number, failover_priority) {}
+    std::uint64_t id;
+    int n;
+    Failover succession;
+    bool runs = true;  // false: dead or stopped
+    bool hears_others = true;
+    std::deque<std::pair<std::int64_t, plant::ObeyedCommand>> inbox;  // samples, by stamp
+  };
+
+  Controller& add(std::uint64_t id, int failover_priority) {
+    controllers_.push_back(std::make_unique<Controller>(id, failover_priority));
+    return *controllers_.back();
+  }
+
+  void run(std::int64_t duration_ms) {
+    for (std::int64_t i = 0; i < ms(duration_ms) / kPeriodNs; ++i) sample();
+  }
+
+  void sample() {
+    stamp_ns_ += kPeriodNs;
+    now_ns_ += kPeriodNs;
+    for (const auto& c : controllers_)
+      c->inbox.emplace_back(stamp_ns_, told_ ? obeyed_ : plant::ObeyedCommand());
+    for (const auto& c : controllers_) {
+      if (c->runs) answer(*c);
+    }
+  }
+
+  void answer(Controller& c) {
+    while (!c.inbox.empty()) {
+      const auto [stamp_ns, obeyed] = c.inbox.front();
+      c.inbox.pop_front();
+      const Role role = c.succession.sample(stamp_ns, obeyed, now_ns_);
+      if (role == Role::kActive) command(c, stamp_ns);
+      for (const auto& other : controllers_) {
+        if (other.get() != &c && other->runs && other->hears_others && c.hears_others)
+          other->succession.heard({c.id, c.n, c.succession.term(), role, now_ns_});
+      }
+    }
+  }
+
+  // As the vehicle's watchdog takes them.
+  void command(const Controller& c, std::int64_t stamp_ns) {
+    if (!obeys_ || (obeyed_.any && stamp_ns < obeyed_.stamp_ns)) return;
+    if (obeyed_.any && c.succession.term() < obeyed_.term && stamp_ns_ - obeyed_.stamp_ns < ms(200)) {
+      ++refused_;
+      return;
+    }
+    if (obeyed_.any) longest_gap_ns_ = std::max(longest_gap_ns_, stamp_ns - obeyed_.stamp_ns);
+    if (commander_ != c.id) ++changes_;
+    commander_ = c.id;
+    obeyed_ = {true, true, c.succession.term(), stamp_ns};
+  }
+
+  void restart() {
+    stamp_ns_ = 0;
+    obeyed_ = {true, false, 0, 0};
+    longest_gap_ns_ = 0;
+  }
+  void tell_nothing() { told_ = false; }
+  void obey(bool obeys) { obeys_ = obeys; }
+
+  int active() const {
+    return static_cast<int>(std::count_if(controllers_.begin(), controllers_.end(), [](const auto& c) {
+      return c->runs && c->succession.role() == Role::kActive;
+    }));
+  }
+  std::uint64_t commander() const { return commander_; }
+  std::int64_t longest_gap_ns() const { return longest_gap_ns_; }
+  int changes() const { return changes_; }
+  int refused() const { return refused_; }
+
+ private:
+  std::int64_t stamp_ns_ = 0;
+  std::int64_t now_ns_ = kStartNs;
+  bool told_ = true;
+  bool obeys_ = true;
+  plant::ObeyedCommand obeyed_{true, false, 0, 0};
+  std::uint64_t commander_ = 0;
+  std::int64_t longest_gap_ns_ = 0;
+  int changes_ = 0;
+  int refused_ = 0;
+  std::vector<std::unique_ptr<Controller>> controllers_;
+};
+
+TEST(Failover, OneAloneBecomesActiveAndStaysIt) {
+  Vehicle vehicle;
+  const auto& only = vehicle.add(7, 0);
+  vehicle.run(200);
+  EXPECT_EQ(only.succession.role(), Role::kActive);
+  EXPECT_FALSE(only.succession.continues());
+  vehicle.run(5000);
+  EXPECT_EQ(only.succession.role(), Role::kActive);
+  EXPECT_EQ(vehicle.longest_gap_ns(), kPeriodNs);
+}
+
+TEST(Failover, ALaterOneIsAStandbyHoweverStrong) {
+  Vehicle vehicle;
+  vehicle.add(7, 1);
+  vehicle.run(300);
+  const auto& later = vehicle.add(9, 1000);
+  vehicle.run(5000);
+  EXPECT_EQ(later.succession.role(), Role::kStandby);
+  EXPECT_EQ(vehicle.commander(), 7U);
+  EXPECT_EQ(vehicle.changes(), 1);
+}
+
+TEST(Failover, TheStandbyTakesOverWithinItsPatience) {
+  Vehicle vehicle;
+  auto& first = vehicle.add(7, 5);
+  vehicle.run(300);
+  const auto& standby = vehicle.add(8, 5);
+  vehicle.run(1000);
+  first.runs = false;
+  vehicle.run(100);
+  EXPECT_EQ(vehicle.commander(), 8U);
+  EXPECT_TRUE(standby.succession.continues());
+  EXPECT_LE(vehicle.longest_gap_ns(), Failover::kPatienceNs + 2 * kPeriodNs);
+  EXPECT_GT(standby.succession.term(), first.succession.term());
+}
+
+TEST(Failover, OfTwoStandbysTheStrongerGoesFirstAndTheOtherStays) {
+  Vehicle vehicle;
+  auto& first = vehicle.add(7, 5);
+  vehicle.run(300);
+  const auto& weak = vehicle.add(8, 2);
+  const auto& strong = vehicle.add(9, 3);
+  vehicle.run(1000);
+  first.runs = false;
+  vehicle.run(1000);
+  EXPECT_EQ(vehicle.commander(), 9U);
+  EXPECT_EQ(strong.succession.role(), Role::kActive);
+  EXPECT_EQ(weak.succession.role(), Role::kStandby);
+  EXPECT_EQ(vehicle.changes(), 2);
+}
+
+TEST(Failover, WhenTheFirstInRankDiesTooTheSecondTakesOver) {
+  Vehicle vehicle;
+  auto& first = vehicle.add(7, 5);
+  vehicle.run(300);
+  auto& strong = vehicle.add(9, 3);
+  vehicle.add(8, 2);
+  vehicle.run(1000);
+  first.runs = false;
+  strong.runs = false;
+  vehicle.run(200);
+  EXPECT_EQ(vehicle.commander(), 8U);
+  EXPECT_LE(vehicle.longest_gap_ns(), Failover::kPatienceNs + Failover::kPerRankNs + 2 * kPeriodNs);
+}
+
+TEST(Failover, OneThatWasStoppedComesBackAsStandbyAndIsNotObeyed) {
+  Vehicle vehicle;
+  auto& first = vehicle.add(7, 1000);
+  vehicle.run(300);
+  vehicle.add(8, 1);
+  vehicle.run(1000);
+  first.runs = false;
+  vehicle.run(200);
+  ASSERT_EQ(vehicle.commander(), 8U);
+
+  first.runs = true;  // and finds the samples of that time waiting
+  vehicle.run(1000);
+
+  EXPECT_EQ(vehicle.commander(), 8U);
+  EXPECT_EQ(vehicle.changes(), 2);
+  EXPECT_EQ(vehicle.active(), 1);
+  EXPECT_EQ(first.succession.role(), Role::kStandby);
+}
+
+TEST(Failover, AStandbyThatWasStoppedTakesNobodyForDead) {
+  for (const bool told : {true, false}) {
+    Vehicle vehicle;
+    if (!told) vehicle.tell_nothing();
+    vehicle.add(7, 1);
+    vehicle.run(1500);
+    auto& standby = vehicle.add(8, 9);
+    vehicle.run(2000);
+    ASSERT_EQ(standby.succession.role(), Role::kStandby);
+    standby.runs = false;
+    vehicle.run(200);
+    standby.runs = true;
+    vehicle.run(500);
+    EXPECT_EQ(vehicle.changes(), 1) << (told ? "told" : "not told");
+    EXPECT_EQ(standby.succession.role(), Role::kStandby);
+  }
+}
+
+TEST(Failover, OfSeveralStartedAtOnceOneIsLeft) {
+  for (const int other_strength : {0, 1, 2}) {
+    Vehicle vehicle;
+    vehicle.add(70, 1);
+    vehicle.add(80, other_strength);
+    vehicle.add(90, 1);
+    vehicle.run(1000);
+    EXPECT_EQ(vehicle.active(), 1) << other_strength;
+    if (other_strength == 2) {
+      EXPECT_EQ(vehicle.commander(), 80U);
+    }
+  }
+}
+
+// The vehicle alone settles it.
+TEST(Failover, ThoseThatDoNotHearEachOtherAgreeByWhatTheVehicleObeys) {
+  Vehicle vehicle;
+  auto& one = vehicle.add(70, 1);
+  auto& two = vehicle.add(80, 1);
+  one.hears_others = two.hears_others = false;
+  vehicle.run(1000);
+  EXPECT_EQ(vehicle.active(), 1);
+  EXPECT_LE(vehicle.changes(), 2);
+  auto& acting = one.succession.role() == Role::kActive ? one : two;
+  auto& waiting = &acting == &one ? two : one;
+  acting.runs = false;
+  vehicle.run(300);
+  EXPECT_EQ(vehicle.commander(), waiting.id);
+  EXPECT_FALSE(waiting.succession.continues()) << "it has heard nothing of the flight";
+}
+
+TEST(Failover, OneStartedWhileNobodyFliesTakesOverAtItsFirstSample) {
+  Vehicle vehicle;
+  auto& first = vehicle.add(7, 1);
+  vehicle.run(1000);
+  first.runs = false;
+  vehicle.run(300);
+  const auto& restarted = vehicle.add(8, 1);
+  vehicle.sample();
+  EXPECT_EQ(restarted.succession.role(), Role::kActive);
+  EXPECT_FALSE(restarted.succession.continues());
+  EXPECT_GT(restarted.succession.term(), first.succession.term());
+}
+
+TEST(Failover, AStrangerLeavesTheTakeoverToThoseWhoKnowTheFlight) {
+  Vehicle vehicle;
+  auto& first = vehicle.add(7, 1);
+  vehicle.run(300);
+  vehicle.add(8, 1);
+  vehicle.run(1000);
+  first.runs = false;
+  auto& stranger = vehicle.add(9, 1000);
+  stranger.hears_others = false;
+  vehicle.run(300);
+  EXPECT_EQ(vehicle.commander(), 8U);
+}
+
+TEST(Failover, AVehicleThatIsStartedAgainKeepsItsController) {
+  Vehicle vehicle;
+  vehicle.add(7, 1);
+  vehicle.run(300);
+  vehicle.add(8, 1000);
+  vehicle.run(1000);
+  vehicle.restart();
+  vehicle.run(1000);
+  EXPECT_EQ(vehicle.commander(), 7U);
+  EXPECT_EQ(vehicle.active(), 1);
+}
+
+TEST(Failover, AVehicleThatSaysNothingIsFlownByHeartbeats) {
+  Vehicle vehicle;
+  vehicle.tell_nothing();
+  auto& first = vehicle.add(7, 1);
+  vehicle.run(900);
+  EXPECT_EQ(vehicle.active(), 0) << "it looks for others first";
+  vehicle.run(200);
+  EXPECT_EQ(vehicle.active(), 1);
+  const auto& standby = vehicle.add(8, 1000);
+  vehicle.run(3000);
+  ASSERT_EQ(standby.succession.role(), Role::kStandby);
+  first.runs = false;
+  vehicle.run(100);
+  EXPECT_EQ(vehicle.commander(), 8U);
+  EXPECT_TRUE(standby.succession.continues());
+  EXPECT_LE(vehicle.longest_gap_ns(), Failover::kPatienceNs + 2 * kPeriodNs);
+  first.runs = true;
+  vehicle.run(500);
+  EXPECT_EQ(vehicle.active(), 1);
+  EXPECT_EQ(vehicle.commander(), 8U);
+}
+
+TEST(Failover, AVehicleThatObeysNobodyIsNotFoughtOver) {
+  Vehicle vehicle;
+  auto& one = vehicle.add(7, 1);
+  auto& two = vehicle.add(8, 1);
+  vehicle.run(1000);
+  const std::uint32_t before = std::max(one.succession.term(), two.succession.term());
+  vehicle.obey(false);
+  vehicle.run(2000);
+  const std::uint32_t after = std::max(one.succession.term(), two.succession.term());
+  EXPECT_LE((after >> 16) - (before >> 16), 5U) << "takeovers in 2 s";
+  vehicle.obey(true);
+  vehicle.run(1000);
+  EXPECT_EQ(vehicle.active(), 1);
+}
+
+TEST(Failover, TermsRiseWithEachTakeover) {
+  Vehicle vehicle;
+  std::vector<Vehicle::Controller*> controllers;
+  for (std::uint64_t id = 1; id <= 3; ++id) controllers.push_back(&vehicle.add(id, static_cast<int>(id)));
+  vehicle.run(1000);
+  std::uint32_t term = 0;
+  for (int kill = 0; kill < 20; ++kill) {
+    const auto acting = std::find_if(controllers.begin(), controllers.end(), [](const auto* c) {
+      return c->succession.role() == Role::kActive && c->runs;
+    });
+    ASSERT_NE(acting, controllers.end());
+    EXPECT_GT((*acting)->succession.term(), term);
+    term = (*acting)->succession.term();
+    (*acting)->runs = false;
+    vehicle.run(150);
+    ASSERT_EQ(vehicle.active(), 1);
+    (*acting)->runs = true;
+    vehicle.run(150);
+    ASSERT_EQ(vehicle.active(), 1);
+  }
+  EXPECT_LE(vehicle.longest_gap_ns(), Failover::kPatienceNs + 3 * kPeriodNs);
+}
+
+}  // namespace
+}  // namespace swiftlet::services

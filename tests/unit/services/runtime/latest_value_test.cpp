@@ -1,0 +1,56 @@
+#include "swiftlet/services/runtime/latest_value.hpp"
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+namespace swiftlet::runtime {
+namespace {
+
+TEST(LatestValue, GivesTheNewestValueOnce) {
+  LatestValue<int> mailbox;
+  int value = -1;
+  EXPECT_FALSE(mailbox.take(value));
+  EXPECT_EQ(value, -1);
+  mailbox.put(1);
+  mailbox.put(2);
+  ASSERT_TRUE(mailbox.take(value));
+  EXPECT_EQ(value, 2);
+  EXPECT_FALSE(mailbox.take(value));
+  mailbox.put(3);
+  ASSERT_TRUE(mailbox.take(value));
+  EXPECT_EQ(value, 3);
+}
+
+// A value is whole and newer than the one before, however the threads meet; the last one put arrives.
+TEST(LatestValue, ValuesAreWholeAndInOrderBetweenThreads) {
+  constexpr std::uint64_t kLast = 200'000;
+  using Value = std::array<std::uint64_t, 16>;
+  LatestValue<Value> mailbox;
+  std::thread writer([&] {
+    Value value;
+    for (std::uint64_t i = 1; i <= kLast; ++i) {
+      value.fill(i);
+      mailbox.put(value);
+    }
+  });
+  std::uint64_t newest = 0;
+  bool torn = false;
+  bool went_back = false;
+  Value value;
+  while (newest < kLast) {
+    if (!mailbox.take(value)) continue;
+    for (const std::uint64_t part : value) torn = torn || part != value[0];
+    went_back = went_back || value[0] <= newest;
+    newest = value[0];
+  }
+  writer.join();
+  EXPECT_FALSE(torn);
+  EXPECT_FALSE(went_back);
+}
+
+}  // namespace
+}  // namespace swiftlet::runtime
