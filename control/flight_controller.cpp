@@ -380,8 +380,8 @@ Outcome FlightController::on_setpoint(const Setpoint& setpoint) {
   return impl_->supervisor.setpoint(setpoint, impl_->inputs());
 }
 
-bool FlightController::on_ground_sign(const GroundHeartbeat& sign) {
-  return impl_->supervisor.ground_sign(sign);
+bool FlightController::on_ground_heartbeat(const GroundHeartbeat& sign) {
+  return impl_->supervisor.ground_heartbeat(sign);
 }
 
 Outcome FlightController::request(const Request& request) {

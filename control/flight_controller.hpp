@@ -44,7 +44,7 @@ class FlightController {
   // Setpoints are followed while holding; a refused one changes nothing.
   Outcome on_setpoint(const Setpoint& setpoint);
   // A sign of life of a ground tool. False if the flight depends on too many others already.
-  bool on_ground_sign(const GroundHeartbeat& sign);
+  bool on_ground_heartbeat(const GroundHeartbeat& sign);
   // Answers by the present mode. A mission or trajectory must have passed check() of planning/checks.hpp
   // before.
   Outcome request(const Request& request);

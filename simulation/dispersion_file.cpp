@@ -38,7 +38,7 @@ void read_normal(const ConfigNode& node, ParameterDistribution& distribution) {
   distribution.sigma = node.at("sigma").number({0.0, distribution.max - distribution.min, true, false});
 }
 
-void demand_nominal(const ConfigNode& node, const ParameterDistribution& distribution, World nominal) {
+void require_nominal(const ConfigNode& node, const ParameterDistribution& distribution, World nominal) {
   const std::vector<double*> values = distribution.what().in(nominal);
   const bool all_zero = std::all_of(values.begin(), values.end(), [](const double* v) { return *v == 0.0; });
   if (distribution.of_nominal && all_zero)
@@ -46,7 +46,7 @@ void demand_nominal(const ConfigNode& node, const ParameterDistribution& distrib
 }
 
 // Rules that several parameters break together are a matter of each draw.
-void demand_allowed(const ConfigNode& limit, const ParameterDistribution& distribution, World world) {
+void require_allowed(const ConfigNode& limit, const ParameterDistribution& distribution, World world) {
   apply(world, distribution, limit.number());
   for (const plant::Violation& violation : validate(world)) {
     if (violation.key != distribution.what().rule) continue;
@@ -65,9 +65,9 @@ ParameterDistribution read_variate(const std::string& name, const ConfigNode& no
   read_limits(node, distribution);
   if (distribution.distribution == Distribution::kNormal) read_normal(node, distribution);
   node.at("source").text();
-  demand_nominal(node, distribution, nominal);
-  demand_allowed(node.at("min"), distribution, nominal);
-  demand_allowed(node.at("max"), distribution, nominal);
+  require_nominal(node, distribution, nominal);
+  require_allowed(node.at("min"), distribution, nominal);
+  require_allowed(node.at("max"), distribution, nominal);
   return distribution;
 }
 

@@ -20,11 +20,11 @@ void TakeoffConsistencyMonitor::step(double dt_s, const Eigen::Vector3d& specifi
                                      const Eigen::Quaterniond& q_ned_from_frd, double z_ned) {
   if (!active_) return;
   elapsed_s_ += dt_s;
-  active_ = elapsed_s_ < settings_.longest_s && start_z_ned_ - z_ned < settings_.clearly_seen_m;
+  active_ = elapsed_s_ < settings_.longest_s && start_z_ned_ - z_ned < settings_.confirmed_climb_m;
   const double upward = -(q_ned_from_frd * (specific_force_frd - bias_frd_)).z() - plant::kGravity;
-  felt_.step(dt_s, dt_s * upward, settings_.memory_s);
+  inertial_.step(dt_s, dt_s * upward, settings_.memory_s);
   const double speed = (z_ned_ - z_ned) / dt_s;
-  seen_.step(dt_s, speed - speed_, settings_.memory_s);
+  by_pose_.step(dt_s, speed - speed_, settings_.memory_s);
   z_ned_ = z_ned;
   speed_ = speed;
 }

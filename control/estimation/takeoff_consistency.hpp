@@ -25,8 +25,8 @@ class TakeoffConsistencyMonitor {
 
   // The vehicle climbs and its pose does not.
   bool contradicted() const {
-    return active_ && felt_.height_m > settings_.felt_m &&
-           seen_.height_m < settings_.seen_part * felt_.height_m;
+    return active_ && inertial_.height_m > settings_.inertial_climb_m &&
+           by_pose_.height_m < settings_.min_pose_fraction * inertial_.height_m;
   }
 
  private:
@@ -44,7 +44,7 @@ class TakeoffConsistencyMonitor {
   double z_ned_ = 0.0;
   double speed_ = 0.0;  // m/s, upward, of the estimate's height
   Eigen::Vector3d bias_frd_ = Eigen::Vector3d::Zero();
-  Climb felt_, seen_;
+  Climb inertial_, by_pose_;
 };
 
 }  // namespace swiftlet::control

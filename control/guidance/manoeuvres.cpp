@@ -32,10 +32,10 @@ double nearest_turn(double to, double from) { return from + std::remainder(to - 
 
 // How the reference comes to rest inside the fence, being `from` by then. One that follows no path was put
 // where the vehicle is.
-BrakingManoeuvre stop_inside(const GuidanceContext& context, const Reference& from) {
+BrakingManoeuvre brakes_inside_fence(const GuidanceContext& context, const Reference& from) {
   const Limits& limits = context.limits;
   BrakingManoeuvre stop =
-      context.state.path.moving ? reference_stop(limits, from) : vehicle_stop(limits, from);
+      context.state.path.moving ? brake_reference(limits, from) : brake_vehicle(limits, from);
   stop.place_ned = stop.place_ned.cwiseMax(limits.fence_min_ned).cwiseMin(limits.fence_max_ned);
   return stop;
 }
@@ -213,11 +213,11 @@ Reference standing_at(const Estimate& estimate) {
   return reference;
 }
 
-BrakingManoeuvre reference_stop(const Limits& limits, const Reference& from) {
+BrakingManoeuvre brake_reference(const Limits& limits, const Reference& from) {
   return limited_braking(from, limits.max_reference_acceleration, limits.max_reference_jerk, kMinMove_s);
 }
 
-BrakingManoeuvre vehicle_stop(const Limits& limits, const Reference& from) {
+BrakingManoeuvre brake_vehicle(const Limits& limits, const Reference& from) {
   const double duration_s =
       std::max(kMinMove_s, 2.0 * from.velocity_ned.norm() / limits.max_reference_acceleration);
   return {duration_s, from.position_ned + 0.5 * duration_s * from.velocity_ned};
@@ -241,7 +241,7 @@ void start_move(const GuidanceContext& context, const Eigen::Vector3d& to_ned, b
   double duration = minimum_jerk_duration(distance, speed, limits.max_reference_acceleration,
                                           limits.max_reference_jerk, kMinMove_s);
   duration = std::max(duration, 15.0 / 8.0 * std::abs(to_yaw - from.yaw_rad) / limits.max_yaw_rate);
-  duration = std::max(duration, stop_inside(context, from).duration_s);
+  duration = std::max(duration, brakes_inside_fence(context, from).duration_s);
   context.state.phase = Phase::kPath;
   context.state.path.follow(join_inside(limits, from, to_ned, to_yaw, duration), start_ns);
 }
@@ -285,14 +285,14 @@ void start_join(const GuidanceContext& context, const PolynomialSegment& first, 
 void start_stop(const GuidanceContext& context) {
   GuidanceState& state = context.state;
   const Reference from = state.path.at(context.now_ns);
-  const BrakingManoeuvre stop = stop_inside(context, from);
+  const BrakingManoeuvre stop = brakes_inside_fence(context, from);
   state.phase = Phase::kPath;
   state.path.follow(join_to_rest(from, stop.place_ned, from.yaw_rad, stop.duration_s), context.now_ns);
 }
 
 void start_landing(const GuidanceContext& context, double speed, std::int64_t start_ns) {
   const Reference from = context.state.path.at(start_ns);
-  Eigen::Vector3d above_ground = stop_inside(context, from).place_ned;
+  Eigen::Vector3d above_ground = brakes_inside_fence(context, from).place_ned;
   above_ground.z() = std::max(context.state.ground_z_ned - kFlareHeight_m, from.position_ned.z());
   start_move(context, above_ground, true, 0.0, speed, start_ns);
 }

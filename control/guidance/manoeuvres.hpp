@@ -18,11 +18,11 @@ Reference standing_at(const Estimate& estimate);
 
 // How a reference that moves so comes to rest within the limits of references, as start_stop() would have it
 // without a fence.
-BrakingManoeuvre reference_stop(const Limits& limits, const Reference& from);
+BrakingManoeuvre brake_reference(const Limits& limits, const Reference& from);
 // Likewise one that was put where the vehicle is, as it moves: braked by three quarters of the limit at most,
 // since the loops must follow first. Its acceleration is what the thrust gives now, and goes with the
 // attitude.
-BrakingManoeuvre vehicle_stop(const Limits& limits, const Reference& from);
+BrakingManoeuvre brake_vehicle(const Limits& limits, const Reference& from);
 
 // Spool up, then climb straight to that height.
 void start_takeoff(const GuidanceContext& context, double to_z_ned, double speed);

@@ -118,7 +118,7 @@ PolynomialSegment blend(const Limits& limits, const Reference& from, const Setpo
   }
   if (std::isfinite(least)) return gentlest;
   // From outside the fence, or faster than is allowed: to rest, as fast as that may be.
-  const BrakingManoeuvre stop = reference_stop(limits, from);
+  const BrakingManoeuvre stop = brake_reference(limits, from);
   const Vector3d inside = stop.place_ned.cwiseMax(limits.fence_min_ned).cwiseMin(limits.fence_max_ned);
   return join_to_rest(from, inside, from.yaw_rad, stop.duration_s);
 }
@@ -180,7 +180,7 @@ bool violates_fence(const GuidanceContext& context) {
   Reference here;
   here.position_ned = context.estimate.position_ned + kReaction_s * context.estimate.velocity_ned;
   here.velocity_ned = context.estimate.velocity_ned;
-  const Vector3d rest = vehicle_stop(limits, here).place_ned;
+  const Vector3d rest = brake_vehicle(limits, here).place_ned;
   return (rest.array() < limits.fence_min_ned.array()).any() ||
          (rest.array() > limits.fence_max_ned.array()).any();
 }

@@ -160,7 +160,7 @@ Outcome check_end_of_stream(const SupervisorContext& context) {
         setpoint.kind == SetpointKind::kVelocity ? setpoint.velocity_ned : last.velocity_ned;
     in_full_motion.position_ned = from.position_ned + timeout_s * in_full_motion.velocity_ned;
     const Outcome inside = check_position("setpoint: where it could come to rest",
-                                          reference_stop(limits, in_full_motion).place_ned, limits);
+                                          brake_reference(limits, in_full_motion).place_ned, limits);
     if (!inside.accepted) return inside;
   }
   const double speed = last.velocity_ned.norm();
@@ -168,7 +168,7 @@ Outcome check_end_of_stream(const SupervisorContext& context) {
     return refuse("setpoint: leads to %.2f m/s within %.2f s, the limit is %.2f m/s", speed, timeout_s,
                   limits.max_speed);
   }
-  return check_position("setpoint: where it could come to rest", reference_stop(limits, last).place_ned,
+  return check_position("setpoint: where it could come to rest", brake_reference(limits, last).place_ned,
                         limits);
 }
 

@@ -6,7 +6,7 @@
 #include "swiftlet/control/guidance/setpoint_stream.hpp"
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/supervision/conditions.hpp"
-#include "swiftlet/control/supervision/request_course.hpp"
+#include "swiftlet/control/supervision/request_progress.hpp"
 
 namespace swiftlet::control {
 
@@ -131,7 +131,7 @@ Outcome Supervisor::setpoint(const Setpoint& setpoint, const SupervisorInputs& i
   return answer(Event::kSetpoint, now);
 }
 
-bool Supervisor::ground_sign(const GroundHeartbeat& sign) {
+bool Supervisor::ground_heartbeat(const GroundHeartbeat& sign) {
   GroundLink* place = nullptr;
   for (GroundLink& link : state_.ground_links) {
     if (link.client == sign.client || (link.client == 0 && place == nullptr)) place = &link;

@@ -23,7 +23,7 @@ class Supervisor {
   // Refused setpoints (outside the fence, too fast, not flying) change nothing.
   Outcome setpoint(const Setpoint& setpoint, const SupervisorInputs& inputs);
   // False if the flight depends on kMaxGroundLinks others already.
-  bool ground_sign(const GroundHeartbeat& sign);
+  bool ground_heartbeat(const GroundHeartbeat& sign);
 
   Mode mode() const { return state_.mode; }
   Reason reason() const { return state_.reason; }

@@ -6,23 +6,21 @@
 namespace swiftlet::control {
 namespace {
 
-// Two axes side by side, as a register takes them.
-using Pair = Eigen::Array2d;
+// Of x, y, z and yaw.
+using Axes = Eigen::Array4d;
 
-// Two polynomials and their first four derivatives at one t.
-using Derivatives = std::array<Pair, 5>;
+// Four polynomials and their first four derivatives at one t.
+using Derivatives = std::array<Axes, 5>;
 
-// Horner's scheme for the values and the derivatives at once; dk collects the k-th derivative over k!.
-Derivatives horner(const Polynomial& a, const Polynomial& b, std::size_t coefficients, double t) {
-  Pair d0 = Pair::Zero(), d1 = Pair::Zero(), d2 = Pair::Zero(), d3 = Pair::Zero(), d4 = Pair::Zero();
+// Horner's scheme for the values and the derivatives at once; d[k] collects the k-th derivative over k!.
+Derivatives horner(const PolynomialSegment& segment, std::size_t coefficients, double t) {
+  Derivatives d;
+  d.fill(Axes::Zero());
   for (std::size_t i = coefficients; i-- > 0;) {
-    d4 = d4 * t + d3;
-    d3 = d3 * t + d2;
-    d2 = d2 * t + d1;
-    d1 = d1 * t + d0;
-    d0 = d0 * t + Pair(a[i], b[i]);
+    for (std::size_t k = 4; k > 0; --k) d[k] = d[k] * t + d[k - 1];
+    d[0] = d[0] * t + Axes(segment.x[i], segment.y[i], segment.z[i], segment.yaw[i]);
   }
-  return {d0, d1, 2.0 * d2, 6.0 * d3, 24.0 * d4};
+  return {d[0], d[1], 2.0 * d[2], 6.0 * d[3], 24.0 * d[4]};
 }
 
 // Without those at the end that are zero for all axes: rest has one, most moves have six.
@@ -68,21 +66,16 @@ Polynomial septic(const std::array<double, 4>& from, const std::array<double, 4>
 
 Reference evaluate(const PolynomialSegment& segment, double t_s) {
   const double t = std::clamp(t_s, 0.0, segment.duration_s);
-  const std::size_t count = coefficients(segment);
-  const Derivatives xy = horner(segment.x, segment.y, count, t);
-  const Derivatives z_yaw = horner(segment.z, segment.yaw, count, t);
-  const auto ned = [&](std::size_t order) {
-    return Eigen::Vector3d(xy[order][0], xy[order][1], z_yaw[order][0]);
-  };
+  const Derivatives d = horner(segment, coefficients(segment), t);
   Reference reference;
-  reference.position_ned = ned(0);
-  reference.velocity_ned = ned(1);
-  reference.acceleration_ned = ned(2);
-  reference.jerk_ned = ned(3);
-  reference.snap_ned = ned(4);
-  reference.yaw_rad = z_yaw[0][1];
-  reference.yaw_rate = z_yaw[1][1];
-  reference.yaw_acceleration = z_yaw[2][1];
+  reference.position_ned = d[0].head<3>();
+  reference.velocity_ned = d[1].head<3>();
+  reference.acceleration_ned = d[2].head<3>();
+  reference.jerk_ned = d[3].head<3>();
+  reference.snap_ned = d[4].head<3>();
+  reference.yaw_rad = d[0][3];
+  reference.yaw_rate = d[1][3];
+  reference.yaw_acceleration = d[2][3];
   return reference;
 }
 

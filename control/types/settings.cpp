@@ -103,9 +103,10 @@ void check_detectors(const DetectorSettings& detectors, RuleChecker& check) {
 
   const TakeoffConsistencySettings& climb = detectors.takeoff_consistency;
   above_0("takeoff_consistency.memory_s", climb.memory_s);
-  above_0("takeoff_consistency.felt_m", climb.felt_m);
-  check.between("estimator.detectors.takeoff_consistency.seen_part", climb.seen_part, 0.0, 1.0);
-  above_0("takeoff_consistency.clearly_seen_m", climb.clearly_seen_m);
+  above_0("takeoff_consistency.inertial_climb_m", climb.inertial_climb_m);
+  check.between("estimator.detectors.takeoff_consistency.min_pose_fraction", climb.min_pose_fraction, 0.0,
+                1.0);
+  above_0("takeoff_consistency.confirmed_climb_m", climb.confirmed_climb_m);
   at_least_0("takeoff_consistency.longest_s", climb.longest_s);
 
   const RecoverySettings& recovery = detectors.recovery;

@@ -106,11 +106,11 @@ struct PoseImuConsistencySettings {
 
 // A climb that the accelerometer feels and the poses do not show (takeoff_consistency.hpp).
 struct TakeoffConsistencySettings {
-  double memory_s = 0.7;        // of the high pass: a bias below felt_m / memory_s^2 is no climb
-  double felt_m = 0.1;          // that count as a climb
-  double seen_part = 0.333;     // of the felt height: fewer contradict
-  double clearly_seen_m = 0.3;  // of climb in the estimate: the watch is over
-  double longest_s = 4.0;       // likewise
+  double memory_s = 0.7;          // of the high pass: a bias below inertial_climb_m / memory_s^2 is no climb
+  double inertial_climb_m = 0.1;  // that count as a climb
+  double min_pose_fraction = 0.333;  // of the felt height: fewer contradict
+  double confirmed_climb_m = 0.3;    // of climb in the estimate: the watch is over
+  double longest_s = 4.0;            // likewise
 };
 
 // Poses that contradict the estimate, and when it starts anew from them (estimator.hpp).

@@ -65,14 +65,14 @@ void fly_together(std::deque<ProcessFlight>& flights, const Interrupts& interrup
   names.reserve(flights.size());
   for (const ProcessFlight& flight : flights) names.push_back(flight.vehicle_name());
   FleetProgress shares(progress, names);
-  StartBarrier together(flights.size());
+  StartBarrier barrier(flights.size());
   std::vector<std::future<void>> flying;
   for (std::size_t i = 0; i < flights.size(); ++i) {
     flying.push_back(std::async(std::launch::async, [&, i] {
       try {
-        flights[i].fly(interrupts, &together, shares.of(i));
+        flights[i].fly(interrupts, &barrier, shares.of(i));
       } catch (const std::exception& error) {
-        together.fail(names[i] + " failed: " + error.what());
+        barrier.fail(names[i] + " failed: " + error.what());
         throw;
       }
     }));
@@ -86,10 +86,10 @@ int fly(const FlyOptions& options) {
   check(options, vehicles.size());
   std::vector<LaunchConfiguration> plans = plan_flights(options, vehicles);
 
-  std::optional<comms::DomainLock> claim;
-  if (options.domain < 0 && options.launch_mode == LaunchMode::kStarted) claim.emplace();
+  std::optional<comms::DomainLock> domain_lock;
+  if (options.domain < 0 && options.launch_mode == LaunchMode::kStarted) domain_lock.emplace();
   comms::NodeSettings network = options.network;
-  network.domain = claim ? claim->domain() : std::max(options.domain, 0);
+  network.domain = domain_lock ? domain_lock->domain() : std::max(options.domain, 0);
 
   ProgressLine progress;
   std::deque<ProcessFlight> flights;

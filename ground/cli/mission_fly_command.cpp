@@ -52,7 +52,7 @@ int fly_mission(const Options& options) {
   for (const std::string& assumption : mission.assumptions)
     std::fprintf(stderr, "%s: %s\n", mission.name.c_str(), assumption.c_str());
   Vehicle vehicle(options.network);
-  tell_of_connection(vehicle, "mission " + mission.name);
+  log_connection(vehicle, "mission " + mission.name);
   if (options.link) vehicle.enable_link_loss_failsafe();
   const ActionHandle flight = vehicle.follow(mission.mission, options.timeout());
   ActionResult end = {ActionResult::Kind::kNotAccepted, flight.answer().reason};

@@ -103,7 +103,7 @@ int run_request(const AskOptions& options, const std::string& what,
   return failed ? kFailed : kDone;
 }
 
-void tell_of_connection(Vehicle& vehicle, const std::string& command) {
+void log_connection(Vehicle& vehicle, const std::string& command) {
   vehicle.on_connection([command, first = true](const ConnectionEvent& event) mutable {
     if (!std::exchange(first, false)) std::fprintf(stderr, "%s: %s\n", command.c_str(), event.text.c_str());
   });

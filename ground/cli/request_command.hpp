@@ -50,7 +50,7 @@ int run_request(const AskOptions& options, const std::string& what,
 
 // From now on says on standard error, in the command's name, when the vehicle's control process falls silent, is heard
 // again, or is another one.
-void tell_of_connection(Vehicle& vehicle, const std::string& command);
+void log_connection(Vehicle& vehicle, const std::string& command);
 
 // A subcommand that asks for something without arguments.
 Command add_plain_request_command(runtime::CommandLine root, const std::string& name,

@@ -54,7 +54,7 @@ std::vector<TimedSetpoint> rows_of(SetpointRows& reader, std::istream& in) {
   return rows;
 }
 
-void demand_rate(const std::vector<TimedSetpoint>& rows, const std::string& file) {
+void require_rate(const std::vector<TimedSetpoint>& rows, const std::string& file) {
   if (rows.size() < 2)
     throw runtime::ConfigError(file, 0, "", "has " + std::to_string(rows.size()) + " rows, must have 2");
   for (std::size_t i = 1; i < rows.size(); ++i) {
@@ -98,7 +98,7 @@ SetpointSource open(const Options& options) {
     source = lines_of(std::move(reader), in);
   } else {
     std::vector<TimedSetpoint> rows = rows_of(*reader, in);
-    if (!options.rate_hz) demand_rate(rows, name);
+    if (!options.rate_hz) require_rate(rows, name);
     source = each_of(std::move(rows));
   }
   if (!options.rate_hz) return source;
@@ -235,7 +235,7 @@ int stream(const Options& options) {
     std::fprintf(stderr, "swiftlet: stream: %s\n", there.reason.c_str());
     return kFailed;
   }
-  tell_of_connection(vehicle, "stream");
+  log_connection(vehicle, "stream");
   vehicle.wait_until(
       [](const VehicleState& state) {
         return state.reference_position_ned_m.allFinite() && state.position_ned_m.allFinite();

@@ -53,13 +53,13 @@ ActionHandle::ActionHandle(std::shared_ptr<const Client> client, Result answer)
     : client_(std::move(client)), answer_(std::move(answer)) {}
 
 double ActionHandle::progress() const {
-  const std::optional<msg::RequestStatus> told = client_->told_of(answer_.key);
+  const std::optional<msg::RequestStatus> told = client_->reported_status(answer_.key);
   return told ? told->progress() : 0.0;
 }
 
 ActionResult ActionHandle::wait(std::chrono::milliseconds timeout) const {
   if (!accepted()) return {ActionResult::Kind::kNotAccepted, answer_.reason};
-  if (const auto told = client_->told_of(answer_.key)) {
+  if (const auto told = client_->reported_status(answer_.key)) {
     if (const auto ending = action_result_of(*told)) return *ending;
   }
   const auto begin = Clock::now();

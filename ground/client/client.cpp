@@ -108,17 +108,17 @@ void Client::keep(Latest<T> View::*slot, const T& message) {
 void Client::note_requests(const msg::ControlStatus& status) {
   const std::lock_guard lock(mutex_);
   const auto note = [this](const msg::RequestStatus& request) {
-    if (request.client() == client_id_) told_[request.id()] = request;
+    if (request.client() == client_id_) reported_[request.id()] = request;
   };
   for (const msg::RequestStatus& request : status.earlier_requests()) note(request);
   note(status.request());
-  while (told_.size() > kToldRequests) told_.erase(told_.begin());
+  while (reported_.size() > kToldRequests) reported_.erase(reported_.begin());
 }
 
-std::optional<msg::RequestStatus> Client::told_of(const control::RequestKey& request) const {
+std::optional<msg::RequestStatus> Client::reported_status(const control::RequestKey& request) const {
   const std::lock_guard lock(mutex_);
-  const auto told = told_.find(request.id);
-  if (request.client != client_id_ || told == told_.end()) return std::nullopt;
+  const auto told = reported_.find(request.id);
+  if (request.client != client_id_ || told == reported_.end()) return std::nullopt;
   return told->second;
 }
 
@@ -172,7 +172,7 @@ void Client::subscribe_all() {
         keep(&View::reference, reference);
         grant_after(reference.stamp_ns());
         std::unique_lock lock(mutex_);
-        const auto signs = signs_;
+        const auto signs = heartbeat_;
         lock.unlock();
         if (signs) signs->telemetry(reference.stamp_ns());
       }));
@@ -258,17 +258,17 @@ void Client::grant_after(std::int64_t stamp_ns) {
 
 void Client::enable_link_loss_failsafe() {
   std::unique_lock lock(mutex_);
-  if (signs_) return;
+  if (heartbeat_) return;
   lock.unlock();
   auto signs = std::make_shared<GroundHeartbeatPublisher>(node_, client_id_);
   lock.lock();
-  signs_ = std::move(signs);
+  heartbeat_ = std::move(signs);
 }
 
 void Client::disable_link_loss_failsafe() {
   std::shared_ptr<GroundHeartbeatPublisher> signs;
   const std::lock_guard lock(mutex_);
-  signs_.swap(signs);  // which outlives the lock
+  heartbeat_.swap(signs);  // which outlives the lock
 }
 
 bool Client::wait(std::chrono::milliseconds timeout, const std::function<bool(const View&)>& done) const {

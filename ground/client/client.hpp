@@ -112,7 +112,7 @@ class Client {
 
   // What was told last of a request of this client, also of one that newer requests have pushed out of the status:
   // of the last 64.
-  std::optional<msg::RequestStatus> told_of(const control::RequestKey& request) const;
+  std::optional<msg::RequestStatus> reported_status(const control::RequestKey& request) const;
 
   // "vehicle kl1 in domain 0; seen there: plant, mocap"
   std::string where() const;
@@ -143,7 +143,7 @@ class Client {
   View view_;
   std::map<std::uint64_t, std::optional<Result>> answers_;  // to the requests under way, by id
   std::uint64_t takeovers_ = 0;                             // that control_status told of
-  std::map<std::uint64_t, msg::RequestStatus> told_;        // of this client's requests, by id
+  std::map<std::uint64_t, msg::RequestStatus> reported_;    // of this client's requests, by id
 
   comms::Node node_;
   comms::Publisher<msg::Command> commands_;
@@ -154,7 +154,7 @@ class Client {
   std::uint64_t setpoint_count_ = 0;
   // Made, used and destroyed without mutex_: the middleware's threads hold its locks when they ask for that.
   std::shared_ptr<SimulationClockPublisher> grants_;
-  std::shared_ptr<GroundHeartbeatPublisher> signs_;
+  std::shared_ptr<GroundHeartbeatPublisher> heartbeat_;
   std::vector<comms::Subscription> subscriptions_;  // last: their callbacks use all of the above
 };
 

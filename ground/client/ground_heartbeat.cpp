@@ -9,23 +9,23 @@ constexpr std::int64_t kPeriodNs = 200'000'000;
 
 GroundHeartbeatPublisher::GroundHeartbeatPublisher(comms::Node& node, std::uint64_t client)
     : publisher_(node.publish(comms::topics::kGroundLink)) {
-  sign_.client(client);
+  heartbeat_.client(client);
   publish(true);
 }
 
 GroundHeartbeatPublisher::~GroundHeartbeatPublisher() { publish(false); }
 
 void GroundHeartbeatPublisher::telemetry(std::int64_t stamp_ns) {
-  const std::int64_t elapsed_ns = stamp_ns - sign_.stamp_ns();
+  const std::int64_t elapsed_ns = stamp_ns - heartbeat_.stamp_ns();
   if (elapsed_ns >= 0 && elapsed_ns < kPeriodNs) return;  // a vehicle that was started again counts anew
-  sign_.stamp_ns(stamp_ns);
+  heartbeat_.stamp_ns(stamp_ns);
   publish(true);
 }
 
 void GroundHeartbeatPublisher::publish(bool depends) {
-  sign_.sequence_number(sign_.sequence_number() + 1);
-  sign_.depends(depends);
-  publisher_.publish(sign_);
+  heartbeat_.sequence_number(heartbeat_.sequence_number() + 1);
+  heartbeat_.depends(depends);
+  publisher_.publish(heartbeat_);
 }
 
 }  // namespace swiftlet::ground

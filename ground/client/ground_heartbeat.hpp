@@ -24,7 +24,7 @@ class GroundHeartbeatPublisher {
  private:
   void publish(bool depends);
 
-  comms::msg::GroundLink sign_;
+  comms::msg::GroundLink heartbeat_;
   comms::Publisher<comms::msg::GroundLink> publisher_;
 };
 

@@ -81,13 +81,13 @@ const std::string& Vehicle::name() const { return client_->vehicle(); }
 bool Vehicle::connected() const { return is_connected(client_->view(), Clock::now()); }
 
 void Vehicle::on_connection(std::function<void(const ConnectionEvent&)> callback) {
-  lookout_.reset();
+  periodic_task_.reset();
   if (!callback) return;
   const auto look = [client = client_, watch = std::make_shared<ConnectionWatch>(),
                      tell = std::move(callback)] {
     if (const auto event = watch->look(client->view(), Clock::now())) tell(*event);
   };
-  lookout_ = std::make_unique<comms::PeriodicTask>(kConnectionLookPeriod, look);
+  periodic_task_ = std::make_unique<comms::PeriodicTask>(kConnectionLookPeriod, look);
 }
 
 Result Vehicle::connect(milliseconds timeout) const {

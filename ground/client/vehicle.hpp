@@ -172,7 +172,7 @@ class Vehicle {
   ActionHandle request_of_mission(std::uint8_t kind, std::uint64_t id, std::chrono::milliseconds timeout);
 
   std::shared_ptr<Client> client_;
-  std::unique_ptr<comms::PeriodicTask> lookout_;  // last: it looks at the client
+  std::unique_ptr<comms::PeriodicTask> periodic_task_;  // last: it looks at the client
 };
 
 }  // namespace swiftlet::ground

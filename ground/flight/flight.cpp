@@ -116,7 +116,7 @@ void Flight::run() {
   // In lockstep time stands still without this process, and the plant ends the run.
   if (!lockstep_) client_.enable_link_loss_failsafe();
   arm();
-  if (watch_.together != nullptr) wait_for_the_others();
+  if (watch_.barrier != nullptr) wait_for_the_others();
   start_mission();
   if (lockstep_) client_.simulation_clock().without_end();
   follow();
@@ -124,11 +124,11 @@ void Flight::run() {
   wait_for_last_figures();
 }
 
-void Flight::demand_alive() const {
+void Flight::require_alive() const {
   if (const auto exited_process = watch_.exited_process()) throw FlightFailure(*exited_process);
 }
 
-void Flight::demand_no_interrupt() const {
+void Flight::require_no_interrupt() const {
   if (watch_.interrupts() > 0) throw FlightFailure("interrupted before take-off");
 }
 
@@ -141,8 +141,8 @@ void Flight::wait_until_ready() {
       return absent.empty();
     });
     if (ready) break;
-    demand_alive();
-    demand_no_interrupt();
+    require_alive();
+    require_no_interrupt();
     if (Clock::now() - start > kReadyTimeout) {
       throw FlightFailure("after 20 s there is still missing: " + absent + "; looked for " + client_.where());
     }
@@ -156,8 +156,8 @@ void Flight::wait_until_ready() {
 void Flight::wait_until(const std::function<bool(const View&)>& holds, const std::string& what_not) {
   const auto start = Clock::now();
   while (!client_.wait(kStep, holds)) {
-    demand_alive();
-    demand_no_interrupt();
+    require_alive();
+    require_no_interrupt();
     if (Clock::now() - start > kReadyTimeout) throw FlightFailure("after 20 s " + what_not);
   }
 }
@@ -187,8 +187,8 @@ void Flight::arm() {
   while (true) {
     const Result answer = client_.command(
         command, kRequestTimeout, [this] { return watch_.exited_process() || watch_.interrupts() > 0; });
-    demand_alive();
-    demand_no_interrupt();
+    require_alive();
+    require_no_interrupt();
     if (answer.accepted()) return;
     const bool late = lockstep_ ? paused_at_ns_ + FlightSchedule::kRetryNs > FlightSchedule::kLastArmingNs
                                 : Clock::now() > deadline;
@@ -203,10 +203,10 @@ void Flight::arm() {
 }
 
 void Flight::wait_for_the_others() {
-  watch_.together->ready();
-  while (!watch_.together->wait_for_all(kStep)) {
-    demand_alive();
-    const auto failure = watch_.together->failure();
+  watch_.barrier->ready();
+  while (!watch_.barrier->wait_for_all(kStep)) {
+    require_alive();
+    const auto failure = watch_.barrier->failure();
     if (failure || watch_.interrupts() > 0) {
       if (lockstep_) client_.simulation_clock().without_end();  // to disarm takes time
       bring_down(failure.value_or("interrupted"));
@@ -222,7 +222,7 @@ void Flight::start_mission() {
     answer = client_.mission_command(msg::Command_Constants::MISSION_START, client_.mission_id(),
                                      kRequestTimeout, cancelled);
   }
-  demand_alive();
+  require_alive();
   if (watch_.interrupts() > 0) bring_down("interrupted");
   if (!answer.accepted()) throw FlightFailure("the mission was refused: " + answer.reason);
 }
@@ -239,12 +239,12 @@ void Flight::follow() {
       return view.mission.message.mission_id() == id &&
              view.mission.message.state() == msg::MissionStatus_Constants::COMPLETED;
     });
-    demand_alive();
+    require_alive();
     const View view = client_.view();
     show(view);
     if (watch_.interrupts() > 0) bring_down("interrupted");
-    if (watch_.together != nullptr) {
-      if (const auto failure = watch_.together->failure()) bring_down(*failure);
+    if (watch_.barrier != nullptr) {
+      if (const auto failure = watch_.barrier->failure()) bring_down(*failure);
     }
     const ControlMode mode = mode_of(view);
     if (view.mission.message.mission_id() == id) {
@@ -269,7 +269,7 @@ void Flight::follow() {
 void Flight::fail_of_silence(const std::string& who) {
   const auto deadline = Clock::now() + kEndTimeout;
   while (Clock::now() < deadline) {
-    demand_alive();
+    require_alive();
     client_.wait(kStep, [](const View&) { return false; });
   }
   throw FlightFailure(who + " has said nothing for 3 s");

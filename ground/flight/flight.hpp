@@ -26,7 +26,7 @@ class Flight {
   struct Watch {
     std::function<std::optional<std::string>()> exited_process;  // a process that died, as a sentence
     std::function<int()> interrupts;                             // how often the user asked to end
-    StartBarrier* together = nullptr;                            // with others; null: alone
+    StartBarrier* barrier = nullptr;                             // with others; null: alone
   };
 
   // In lockstep the plant is one that was started paused.
@@ -51,8 +51,8 @@ class Flight {
   [[noreturn]] void fail_of_silence(const std::string& who);
   void wait_for_last_figures();
   [[noreturn]] void bring_down(const std::string& reason);
-  void demand_alive() const;
-  void demand_no_interrupt() const;
+  void require_alive() const;
+  void require_no_interrupt() const;
   void show(const View& view);
 
   Client& client_;

@@ -35,7 +35,7 @@ fs::path default_folder(const std::string& mission) {
   return folder;
 }
 
-void demand_whole_flight(const MissionFile& mission, const fs::path& file, double duration_s) {
+void require_whole_flight(const MissionFile& mission, const fs::path& file, double duration_s) {
   if (!mission.takes_off())
     throw InputError(file.string() +
                      ": items: the first is no takeoff, which a flight from the ground needs");
@@ -104,7 +104,7 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
                                  plan.mission_file.c_str(), plan.start_ned.x(), plan.start_ned.y(),
                                  outcome.reason));
   plan.planned_duration_s = planned_duration_s(plan.mission.mission, plan.control.limits);
-  demand_whole_flight(plan.mission, plan.mission_file, plan.planned_duration_s);
+  require_whole_flight(plan.mission, plan.mission_file, plan.planned_duration_s);
 
   if (plan.launch_mode == LaunchMode::kStarted) {
     plan.plant_program = program_beside("swiftlet-plant");

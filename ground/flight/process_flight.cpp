@@ -42,8 +42,8 @@ ProcessFlight::ProcessFlight(LaunchConfiguration plan, comms::NodeSettings netwo
   processes_.emplace(processes(plan_, network_));
 }
 
-void ProcessFlight::fly(const Interrupts& interrupts, StartBarrier* together, Progress& progress) {
-  fly_mission(interrupts, together, progress);
+void ProcessFlight::fly(const Interrupts& interrupts, StartBarrier* barrier, Progress& progress) {
+  fly_mission(interrupts, barrier, progress);
   for (const std::string& complaint : processes_->stop()) {
     if (report_.reason.empty()) report_.reason = "after the flight, " + complaint;
   }
@@ -51,18 +51,18 @@ void ProcessFlight::fly(const Interrupts& interrupts, StartBarrier* together, Pr
   write_record(plan_.folder, record_, report_, window_, progress);
 }
 
-void ProcessFlight::fly_mission(const Interrupts& interrupts, StartBarrier* together, Progress& progress) {
+void ProcessFlight::fly_mission(const Interrupts& interrupts, StartBarrier* barrier, Progress& progress) {
   comms::NodeSettings network = network_;
   network.deadlines = plan_.clock != runtime::Clock::kLockstep;
   Client client(network, &record_);
   const auto start = Clock::now();
   try {
     const Flight::Watch watch{[this] { return processes_->exited_process(); },
-                              [&] { return interrupts.count(); }, together};
+                              [&] { return interrupts.count(); }, barrier};
     Flight(client, record_, plan_.mission, plan_.planned_duration_s, plan_.clock, watch, progress).run();
   } catch (const FlightFailure& failure) {
     report_.reason = failure.what();
-    if (together != nullptr) together->fail(network_.vehicle + " failed: " + report_.reason);
+    if (barrier != nullptr) barrier->fail(network_.vehicle + " failed: " + report_.reason);
   }
   report_.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
   if (!record_.truth.empty()) report_.simulated_s = static_cast<double>(record_.truth.back().stamp_ns) * 1e-9;

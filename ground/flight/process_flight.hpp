@@ -22,13 +22,13 @@ class ProcessFlight {
 
   // Flies the mission, ends the processes and keeps the record. together: those that fly at the same time, or
   // null. By any thread, once. Throws std::runtime_error for a record that cannot be written.
-  void fly(const Interrupts& interrupts, StartBarrier* together, Progress& progress);
+  void fly(const Interrupts& interrupts, StartBarrier* barrier, Progress& progress);
 
   const FlightReport& report() const { return report_; }
   const std::string& vehicle_name() const { return network_.vehicle; }
 
  private:
-  void fly_mission(const Interrupts& interrupts, StartBarrier* together, Progress& progress);
+  void fly_mission(const Interrupts& interrupts, StartBarrier* barrier, Progress& progress);
 
   LaunchConfiguration plan_;
   comms::NodeSettings network_;

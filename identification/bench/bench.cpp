@@ -141,9 +141,9 @@ class Bench {
       torque_factor = out_.torque->estimates.front();
       adopt(out_.torque, "Eq. (26)");
     }
-    if (out_.thrust.has_value() != out_.torque.has_value()) demand_torque_of_thrust();
+    if (out_.thrust.has_value() != out_.torque.has_value()) require_torque_of_thrust();
     if (!data_.propeller) {
-      demand_possible_rotor(thrust_factor, torque_factor, {largest_radius(out_.vehicle), kSeaLevelDensity});
+      require_possible_rotor(thrust_factor, torque_factor, {largest_radius(out_.vehicle), kSeaLevelDensity});
       return;
     }
     const std::vector<double>& speeds = data_.thrust_torque->speed_rad_s;
@@ -154,7 +154,7 @@ class Bench {
   }
 
   // One of them is the base vehicle's.
-  void demand_torque_of_thrust() const {
+  void require_torque_of_thrust() const {
     const double ratio_m = out_.vehicle.rotor.torque / out_.vehicle.rotor.thrust;
     if (ratio_m >= kLeastTorquePerThrust && ratio_m <= kMostTorquePerThrust) return;
     throw BadData(std::string(out_.thrust ? "thrust" : "torque") + ": makes torque over thrust " +

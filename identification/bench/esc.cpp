@@ -40,10 +40,10 @@ void check(const EscData& data) {
   const Column supply{"supply_voltage", "V", data.supply_voltage_v};
   const Column throttle{"throttle", "", data.throttle};
   const Column voltage{"motor_voltage", "V", data.motor_voltage_v};
-  demand_rows({supply, throttle, voltage}, kLeastRows);
-  demand_drive(supply, throttle);
-  demand_variety(throttle, 3);
-  demand_variety(voltage, 3);
+  require_rows({supply, throttle, voltage}, kLeastRows);
+  require_drive(supply, throttle);
+  require_variety(throttle, 3);
+  require_variety(voltage, 3);
   std::vector<double> ratios;
   for (std::size_t i = 0; i < data.throttle.size(); ++i)
     ratios.push_back(data.motor_voltage_v[i] / data.supply_voltage_v[i]);

@@ -58,7 +58,7 @@ Experiment identify(const PeriodLaw& law, const std::vector<double>& periods, co
   inertia.standard_error = std::hypot(inertia.standard_error, inertia.value * target.mass_error);
   inertia.half_width = interval_factor(found.degrees_of_freedom) * inertia.standard_error;
   out.covariance(0, 0) = inertia.standard_error * inertia.standard_error;
-  demand_gyration("period", inertia, target.mass_kg, target.size_m);
+  require_gyration("period", inertia, target.mass_kg, target.size_m);
   return out;
 }
 
@@ -68,10 +68,10 @@ Experiment identify_inertia(const BifilarData& data, const InertiaTarget& target
   const Column length{"length", "m", data.length_m};
   const Column separation{"separation", "m", data.separation_m};
   const Column period{"period", "s", data.period_s};
-  demand_rows({length, separation, period}, kLeastRows);
-  demand_each_between(length, kLeastLength, kMostLength, "strings are not shorter or longer");
-  demand_each_between(separation, kLeastLength, kMostLength, "strings do not hang nearer or wider");
-  demand_median_between(period, 0.02, 60.0, "no bench swings faster or slower");
+  require_rows({length, separation, period}, kLeastRows);
+  require_each_between(length, kLeastLength, kMostLength, "strings are not shorter or longer");
+  require_each_between(separation, kLeastLength, kMostLength, "strings do not hang nearer or wider");
+  require_median_between(period, 0.02, 60.0, "no bench swings faster or slower");
   PeriodLaw law;
   for (std::size_t i = 0; i < data.period_s.size(); ++i) {
     law.slope.push_back(16.0 * kPi * kPi * data.length_m[i] /
@@ -84,9 +84,9 @@ Experiment identify_inertia(const BifilarData& data, const InertiaTarget& target
 Experiment identify_inertia(const SwingData& data, const InertiaTarget& target) {
   const Column arm{"arm", "m", data.arm_m};
   const Column period{"period", "s", data.period_s};
-  demand_rows({arm, period}, kLeastRows);
-  demand_each_between(arm, kLeastLength, kMostLength, "arms are not shorter or longer");
-  demand_median_between(period, 0.02, 60.0, "no bench swings faster or slower");
+  require_rows({arm, period}, kLeastRows);
+  require_each_between(arm, kLeastLength, kMostLength, "arms are not shorter or longer");
+  require_median_between(period, 0.02, 60.0, "no bench swings faster or slower");
   PeriodLaw law;
   for (std::size_t i = 0; i < data.period_s.size(); ++i) {
     law.slope.push_back(4.0 * kPi * kPi / (target.mass_kg * plant::kGravity * data.arm_m[i]));

@@ -15,8 +15,8 @@ constexpr double kMostMass = 1e3;
 
 Experiment identify_mass(const std::vector<double>& mass_kg) {
   const Column mass{"mass", "kg", mass_kg};
-  demand_rows({mass}, kLeastRows);
-  demand_median_between(mass, kLeastMass, kMostMass, "no vehicle of the kind is lighter or heavier");
+  require_rows({mass}, kLeastRows);
+  require_median_between(mass, kLeastMass, kMostMass, "no vehicle of the kind is lighter or heavier");
   FitProblem problem;
   problem.observations = mass_kg.size();
   problem.start = Eigen::VectorXd::Constant(1, median(mass_kg));

@@ -97,15 +97,15 @@ void check(const MotorStepData& data) {
   const Column speed{"speed", "rad/s", data.speed_rad_s};
   std::vector<Column> columns = {time, speed};
   if (!data.motor_voltage_v.empty()) columns.push_back({"motor_voltage", "V", data.motor_voltage_v});
-  demand_rows(columns, kLeastRows);
+  require_rows(columns, kLeastRows);
   for (std::size_t i = 1; i < data.time_s.size(); ++i) {
     if (!(data.time_s[i] > data.time_s[i - 1]))
       throw BadData("time: is " + format_number(data.time_s[i]) + " s after " +
                         format_number(data.time_s[i - 1]) + " s, must rise",
                     i);
   }
-  demand_variety(speed, 3);
-  if (!data.motor_voltage_v.empty()) demand_variety(columns.back());
+  require_variety(speed, 3);
+  if (!data.motor_voltage_v.empty()) require_variety(columns.back());
 }
 
 void check_step(const MotorStepData& data, const Levels& levels) {

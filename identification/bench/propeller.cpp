@@ -67,8 +67,8 @@ PropellerCoefficients propeller_coefficients(const std::optional<ParameterEstima
   return out;
 }
 
-void demand_possible_rotor(const std::optional<ParameterEstimate>& thrust_factor,
-                           const std::optional<ParameterEstimate>& torque_factor, const Propeller& largest) {
+void require_possible_rotor(const std::optional<ParameterEstimate>& thrust_factor,
+                            const std::optional<ParameterEstimate>& torque_factor, const Propeller& largest) {
   const std::string rotor = "the largest propeller between the base vehicle's hubs, of radius " +
                             format_number(largest.radius_m) + " m, ";
   if (!thrust_factor) return;

@@ -28,7 +28,7 @@ PropellerCoefficients propeller_coefficients(const std::optional<ParameterEstima
 
 // Where the propeller is not known: throws BadData if even the largest that could turn there, of radius_m,
 // cannot do what was found, by C_T and figure of merit.
-void demand_possible_rotor(const std::optional<ParameterEstimate>& thrust_factor,
-                           const std::optional<ParameterEstimate>& torque_factor, const Propeller& largest);
+void require_possible_rotor(const std::optional<ParameterEstimate>& thrust_factor,
+                            const std::optional<ParameterEstimate>& torque_factor, const Propeller& largest);
 
 }  // namespace swiftlet::identification

@@ -21,11 +21,11 @@ CurveValue steady_voltage(std::size_t /*row*/, double speed, const Eigen::Vector
 void check(const SteadyMotorData& data) {
   const Column voltage{"motor_voltage", "V", data.motor_voltage_v};
   const Column speed{"speed", "rad/s", data.speed_rad_s};
-  demand_rows({voltage, speed}, kLeastRows);
-  demand_variety(voltage, 3);
-  demand_variety(speed, 3);
-  demand_median_between(voltage, kLeastMotorVoltage, kMostMotorVoltage, "no vehicle flies on less or more");
-  demand_median_between(speed, kLeastRotorSpeed, kMostRotorSpeed, "no rotor turns slower or faster");
+  require_rows({voltage, speed}, kLeastRows);
+  require_variety(voltage, 3);
+  require_variety(speed, 3);
+  require_median_between(voltage, kLeastMotorVoltage, kMostMotorVoltage, "no vehicle flies on less or more");
+  require_median_between(speed, kLeastRotorSpeed, kMostRotorSpeed, "no rotor turns slower or faster");
 }
 
 }  // namespace

@@ -53,10 +53,10 @@ void check(const ThrottleThrustData& data) {
   const Column supply{"supply_voltage", "V", data.supply_voltage_v};
   const Column throttle{"throttle", "", data.throttle};
   const Column reading{"thrust", "N", data.thrust_n};
-  demand_rows({supply, throttle, reading}, kLeastRows);
-  demand_drive(supply, throttle);
-  demand_variety(throttle, 4);
-  demand_variety(reading, 4);
+  require_rows({supply, throttle, reading}, kLeastRows);
+  require_drive(supply, throttle);
+  require_variety(throttle, 4);
+  require_variety(reading, 4);
 }
 
 void say_what_is_held(const KnownParts& known, Experiment& out) {

@@ -19,7 +19,7 @@ CurveValue square_law(std::size_t /*row*/, double speed, const Eigen::VectorXd& 
 
 Experiment identify_factor(const std::vector<double>& speeds, const Column& reading,
                            const ParameterName& name, const SpreadRatio& spread) {
-  demand_variety(reading, 3);
+  require_variety(reading, 3);
   const Readings readings{speeds, reading.values, spread.x_spread, spread.y_spread};
   const double speed = full_scale(speeds);
   const Eigen::VectorXd start = Eigen::VectorXd::Constant(1, full_scale(reading.values) / (speed * speed));
@@ -51,9 +51,9 @@ ThrustTorque identify_thrust_torque(const ThrustTorqueData& data, const Instrume
   if (!data.thrust_n.empty()) columns.push_back(thrust);
   if (!data.torque_n_m.empty()) columns.push_back(torque);
   if (columns.size() < 2) throw BadData("has neither thrust nor torque, must have at least one");
-  demand_rows(columns, kLeastRows);
-  demand_variety(speed, 3);
-  demand_median_between(speed, kLeastRotorSpeed, kMostRotorSpeed, "no rotor turns slower or faster");
+  require_rows(columns, kLeastRows);
+  require_variety(speed, 3);
+  require_median_between(speed, kLeastRotorSpeed, kMostRotorSpeed, "no rotor turns slower or faster");
 
   ThrustTorque out;
   if (!data.thrust_n.empty()) {

@@ -30,7 +30,7 @@ std::string out_of(const Column& column, const char* what, double value, double 
 
 }  // namespace
 
-void demand_rows(const std::vector<Column>& columns, std::size_t least) {
+void require_rows(const std::vector<Column>& columns, std::size_t least) {
   const std::size_t rows = columns.front().values.size();
   if (rows < least) {
     throw BadData("has " + std::to_string(rows) + (rows == 1 ? " row" : " rows") + ", must have at least " +
@@ -48,7 +48,7 @@ void demand_rows(const std::vector<Column>& columns, std::size_t least) {
   }
 }
 
-void demand_variety(const Column& column, std::size_t least) {
+void require_variety(const Column& column, std::size_t least) {
   std::vector<double> sorted = column.values;
   std::sort(sorted.begin(), sorted.end());
   const double apart = 1e-3 * (quantile(sorted, 0.95) - quantile(sorted, 0.05));
@@ -70,26 +70,26 @@ void demand_variety(const Column& column, std::size_t least) {
                 " different values, must take at least " + std::to_string(least));
 }
 
-void demand_each_between(const Column& column, double min, double max, const std::string& because) {
+void require_each_between(const Column& column, double min, double max, const std::string& because) {
   for (std::size_t i = 0; i < column.values.size(); ++i) {
     const double value = column.values[i];
     if (!(value >= min && value <= max)) throw BadData(out_of(column, "is ", value, min, max, because), i);
   }
 }
 
-void demand_median_between(const Column& column, double min, double max, const std::string& because) {
+void require_median_between(const Column& column, double min, double max, const std::string& because) {
   const double middle = median(column.values);
   if (!(middle >= min && middle <= max))
     throw BadData(out_of(column, "is in the middle ", middle, min, max, because));
 }
 
-void demand_drive(const Column& supply, const Column& throttle) {
-  demand_each_between(throttle, 0.0, 1.0, "it is the share delta of Eq. (8)");
-  demand_median_between(supply, kLeastSupplyVoltage, kMostSupplyVoltage, "no vehicle flies on less or more");
+void require_drive(const Column& supply, const Column& throttle) {
+  require_each_between(throttle, 0.0, 1.0, "it is the share delta of Eq. (8)");
+  require_median_between(supply, kLeastSupplyVoltage, kMostSupplyVoltage, "no vehicle flies on less or more");
 }
 
-void demand_gyration(const char* column, const ParameterEstimate& inertia, double mass_kg,
-                     double hub_distance_m) {
+void require_gyration(const char* column, const ParameterEstimate& inertia, double mass_kg,
+                      double hub_distance_m) {
   const double gyration = std::sqrt(std::max(inertia.value, 0.0) / mass_kg) / hub_distance_m;
   if (gyration >= kLeastGyration && gyration <= kMostGyration) return;
   throw BadData(std::string(column) + ": leads to " + inertia.symbol + " = " + format_number(inertia.value) +

@@ -17,26 +17,26 @@ struct Column {
 };
 
 // Of one length, of at least so many rows, all finite.
-void demand_rows(const std::vector<Column>& columns, std::size_t least);
+void require_rows(const std::vector<Column>& columns, std::size_t least);
 
 // Not the same everywhere: at least so many values that differ by more than a thousandth of what most
 // readings span.
-void demand_variety(const Column& column, std::size_t least = 2);
+void require_variety(const Column& column, std::size_t least = 2);
 
 // For what was set: each value within limits. because is the reason: "a throttle is a share".
-void demand_each_between(const Column& column, double min, double max, const std::string& because);
+void require_each_between(const Column& column, double min, double max, const std::string& because);
 
 // For what was read: the median within limits that physics sets. Single readings outside are left to the fit,
 // which lists them as outliers.
-void demand_median_between(const Column& column, double min, double max, const std::string& because);
+void require_median_between(const Column& column, double min, double max, const std::string& because);
 
 // What drives an ESC: its supply, of a vehicle, and the throttle, a share.
-void demand_drive(const Column& supply, const Column& throttle);
+void require_drive(const Column& supply, const Column& throttle);
 
 // A moment of inertia, kg m^2, against the hubs' distance from the centre: of no mass far beyond the hubs, nor
 // all of it near the centre. column is what led to it.
-void demand_gyration(const char* column, const ParameterEstimate& inertia, double mass_kg,
-                     double hub_distance_m);
+void require_gyration(const char* column, const ParameterEstimate& inertia, double mass_kg,
+                      double hub_distance_m);
 
 double median(std::vector<double> values);
 

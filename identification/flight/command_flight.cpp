@@ -210,8 +210,8 @@ void draw_thrust(FlightIdentification& out, const CommandFit& all) {
 }
 
 // The lag is told by roll and pitch as well, and gains are what moments are made of.
-std::map<std::string, std::string> untold_parameters(FlightIdentification& out,
-                                                     const CommandPredictions& predictions) {
+std::map<std::string, std::string> not_identifiable_parameters(FlightIdentification& out,
+                                                               const CommandPredictions& predictions) {
   std::map<std::string, std::string> untold = not_identifiable_axes(predictions.excitations);
   for (int axis = 0; axis < 3; ++axis) {
     const auto calm = untold.find(plant::kInertiaKeys[static_cast<std::size_t>(axis)]);
@@ -223,7 +223,7 @@ std::map<std::string, std::string> untold_parameters(FlightIdentification& out,
 }
 
 // One description of the noise is fitted to all logs, sample by sample.
-void demand_one_rate(const std::vector<FlightSeries>& flights) {
+void require_one_rate(const std::vector<FlightSeries>& flights) {
   const auto period_s = [](const FlightSeries& flight) {
     const std::vector<double>& time = flight.log->time_s;
     return (time[flight.estimation_set.last - 1] - time[flight.estimation_set.first]) /
@@ -239,7 +239,7 @@ void demand_one_rate(const std::vector<FlightSeries>& flights) {
   }
 }
 
-void demand_possible_hover(const ParameterEstimate& command) {
+void require_possible_hover(const ParameterEstimate& command) {
   if (command.low() < 1.0 && command.high() > 0.0) return;
   throw BadData("commands: " + format_number(command.value) +
                 " of full command would carry the weight, must be 0 to 1; are the units right?");
@@ -258,7 +258,7 @@ std::string advice(const std::string& parameter, const ParameterEstimate& estima
   return "fly quick moves, up and down too";
 }
 
-void tell_of_lags(FlightIdentification& out, const Agreement& lags) {
+void report_lags(FlightIdentification& out, const Agreement& lags) {
   std::string sentence = "the rotors' lag by itself: ";
   for (const ParameterEstimate& lag : out.lags)
     sentence += (&lag == &out.lags.front() ? "" : ", ") + with_interval(lag) + " by " + lag.parameter;
@@ -273,7 +273,7 @@ void tell_of_lags(FlightIdentification& out, const Agreement& lags) {
   }
 }
 
-void tell_of_delays(FlightIdentification& out, const CommandFit& all) {
+void report_delays(FlightIdentification& out, const CommandFit& all) {
   const CommandLayout& l = all.model->layout();
   out.findings.push_back("correlation of the lag with the delay of the force " +
                          format_number(all.fit.correlation(l.lag, l.force_delay)) +
@@ -282,7 +282,7 @@ void tell_of_delays(FlightIdentification& out, const CommandFit& all) {
                          "; delays hold the filters of the sensors too");
 }
 
-void tell_of_forecasts(FlightIdentification& out, const CommandPredictions& predictions) {
+void report_forecasts(FlightIdentification& out, const CommandPredictions& predictions) {
   std::string quantities;
   std::string weights;
   for (std::size_t i = 0; i < predictions.errors.size(); ++i) {
@@ -305,7 +305,7 @@ void identify_commands(FlightIdentification& out, const std::vector<FlightSeries
   const auto progress = [&] {
     if (options.progress) options.progress("fitting");
   };
-  demand_one_rate(flights);
+  require_one_rate(flights);
   const std::vector<CommandFit> alone = fit_alone(flights, base, progress);
   for (const CommandFit& fit : alone) refuse_turned_gains(fit.model->layout().gain, base, fit.fit);
   CommandFit all = fit_responses(flights, base, {kAllResponses.begin(), kAllResponses.end()}, std::nullopt,
@@ -322,11 +322,11 @@ void identify_commands(FlightIdentification& out, const std::vector<FlightSeries
       estimates_of(quantities, values, all.fit.degrees_of_freedom);
   allow_for_battery(*all.model, quantities, values);
   out.estimates = estimates_of(quantities, values, all.fit.degrees_of_freedom);
-  demand_possible_hover(*out.find("thrust_per_mass.hover_command"));
+  require_possible_hover(*out.find("thrust_per_mass.hover_command"));
   CommandPredictions predictions = command_predictions(*all.model, all.x());
-  conclude_vehicle(out, values, base, untold_parameters(out, predictions), [&](const std::string& parameter) {
-    return advice(parameter, *out.find(parameter), by_flight, base);
-  });
+  conclude_vehicle(
+      out, values, base, not_identifiable_parameters(out, predictions),
+      [&](const std::string& parameter) { return advice(parameter, *out.find(parameter), by_flight, base); });
   out.unexcited.emplace_back(
       "mass, rotor.thrust_factor, rotor.torque_factor, linear_drag and the accelerometer's offset: a log "
       "without poses and supply voltage does not tell them; moments of inertia are those that the mass and "
@@ -338,10 +338,10 @@ void identify_commands(FlightIdentification& out, const std::vector<FlightSeries
       base.name + ", and allowed for in m d/J");
   compare_with_file(out, *all.model);
   draw_thrust(out, all);
-  tell_of_lags(out, lags);
-  tell_of_delays(out, all);
+  report_lags(out, lags);
+  report_delays(out, all);
   warn_of_fit(out, all.model->physical_parameters(), all.fit);
-  tell_of_forecasts(out, predictions);
+  report_forecasts(out, predictions);
   out.step_s = all.model->sample_s();
   out.errors = std::move(predictions.errors);
   out.horizons = std::move(predictions.horizons);

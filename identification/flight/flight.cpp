@@ -153,8 +153,8 @@ std::array<RateExcitation, 3> rate_excitations(const FlightModel& model, const V
   return out;
 }
 
-void tell_what_no_flight_tells(FlightIdentification& out, const FlightModel& model, const SeriesFit& fit,
-                               Known known) {
+void warn_of_what_flights_cannot_show(FlightIdentification& out, const FlightModel& model,
+                                      const SeriesFit& fit, Known known) {
   const plant::Vehicle& base = model.base();
   const double s = fit.parameters[model.layout().thrust];
   out.findings.push_back(
@@ -173,7 +173,7 @@ void tell_what_no_flight_tells(FlightIdentification& out, const FlightModel& mod
         "'s ESC and motor at the recorded voltage are taken, and the thrust factor holds what they are off");
 }
 
-void tell_of_excitation(FlightIdentification& out, const Excitation& excited) {
+void report_excitation(FlightIdentification& out, const Excitation& excited) {
   for (int axis = 0; axis < 3; ++axis) {
     if (excited.coupling[axis] > 0.1 * excited.acceleration[axis]) continue;
     out.unexcited.push_back("coupling about " + std::string(axis_name(axis)) + ", Eq. (6): it made " +
@@ -183,7 +183,7 @@ void tell_of_excitation(FlightIdentification& out, const Excitation& excited) {
   }
 }
 
-void tell_of_poses(FlightIdentification& out, const std::vector<FlightSeries>& flights) {
+void report_poses(FlightIdentification& out, const std::vector<FlightSeries>& flights) {
   for (std::size_t f = 0; f < flights.size(); ++f) {
     const PoseTiming& timing = flights[f].pose_timing;
     const std::string of_log = flights.size() > 1 ? "[" + std::to_string(f) + "]" : "";
@@ -235,9 +235,9 @@ FlightIdentification identify_flight(const std::vector<FlightLog>& logs, const p
   const Excitation excited = excitation(model, fit.parameters);
   conclude_vehicle(out, values, base, not_identifiable_axes(rate_excitations(model, fit.parameters)),
                    [&](const std::string& parameter) { return advice(parameter, excited); });
-  tell_what_no_flight_tells(out, model, fit, options.known);
-  tell_of_excitation(out, excited);
-  tell_of_poses(out, model.flights());
+  warn_of_what_flights_cannot_show(out, model, fit, options.known);
+  report_excitation(out, excited);
+  report_poses(out, model.flights());
   warn_of_fit(out, model.layout().parameters, fit);
   warn_of_windows(out, logs);
   out.errors = prediction_errors(model, fit.parameters, Part::kKept);

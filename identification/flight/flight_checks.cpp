@@ -33,15 +33,15 @@ std::vector<double> column(const Rows& rows, const Value& value) {
   return out;
 }
 
-void demand_change(const std::vector<double>& values, const std::string& name, const char* unit) {
+void require_change(const std::vector<double>& values, const std::string& name, const char* unit) {
   if (std::any_of(values.begin(), values.end(), [&](double value) { return value != values.front(); }))
     return;
   throw BadData(name + ": is " + format_number(values.front()) + " " + unit +
                 " all through the flight, must vary");
 }
 
-void demand_gained_as_felt(const std::vector<double>& gained, const std::vector<double>& felt,
-                           const char* direction) {
+void require_gained_as_felt(const std::vector<double>& gained, const std::vector<double>& felt,
+                            const char* direction) {
   const Comparison found = compared(gained, felt);
   if (found.spread < kMoved) return;
   if (found.correlation < kLeastCorrelation) {
@@ -60,7 +60,7 @@ void demand_gained_as_felt(const std::vector<double>& gained, const std::vector<
 
 }  // namespace
 
-void demand_times(const FlightLog& log) {
+void require_times(const FlightLog& log) {
   std::vector<double> periods;
   for (std::size_t row = 1; row < log.size(); ++row) periods.push_back(log.time_s[row] - log.time_s[row - 1]);
   if (periods.empty()) throw BadData("has one row, must have a flight");
@@ -71,37 +71,37 @@ void demand_times(const FlightLog& log) {
                 format_number(kLongestRowGapS) + " s; is the unit right?");
 }
 
-void demand_readings(const FlightLog& log, const Rows& flight) {
+void require_readings(const FlightLog& log, const Rows& flight) {
   const std::string of_axis[3] = {" x", " y", " z"};
   for (int axis = 0; axis < 3; ++axis) {
-    demand_change(column(flight, [&](std::size_t row) { return log.specific_force_frd[row][axis]; }),
-                  "specific force" + of_axis[axis], "m/s^2");
-    demand_change(column(flight, [&](std::size_t row) { return log.body_rates_frd[row][axis]; }),
-                  "body rate" + of_axis[axis], "rad/s");
+    require_change(column(flight, [&](std::size_t row) { return log.specific_force_frd[row][axis]; }),
+                   "specific force" + of_axis[axis], "m/s^2");
+    require_change(column(flight, [&](std::size_t row) { return log.body_rates_frd[row][axis]; }),
+                   "body rate" + of_axis[axis], "rad/s");
   }
   const std::vector<double> force =
       column(flight, [&](std::size_t row) { return log.specific_force_frd[row].norm(); });
-  demand_median_between({"specific force", "m/s^2", force}, kLeastWeight * plant::kGravity,
-                        kMostWeight * plant::kGravity, "what flies carries its weight");
+  require_median_between({"specific force", "m/s^2", force}, kLeastWeight * plant::kGravity,
+                         kMostWeight * plant::kGravity, "what flies carries its weight");
   for (std::size_t rotor = 0; rotor < static_cast<std::size_t>(log.rotor_count); ++rotor) {
     const std::string number = std::to_string(rotor + 1);
-    demand_change(column(flight, [&](std::size_t row) { return log.command[row][rotor]; }),
-                  "command of motor " + number, "of full command");
+    require_change(column(flight, [&](std::size_t row) { return log.command[row][rotor]; }),
+                   "command of motor " + number, "of full command");
     if (log.rotor_speeds.empty()) continue;
     const std::vector<double> speeds =
         column(flight, [&](std::size_t row) { return log.rotor_speeds[row][rotor]; });
-    demand_change(speeds, "speed of rotor " + number, "rad/s");
-    demand_median_between({"rotor speed", "rad/s", speeds}, kLeastRotorSpeed, kMostRotorSpeed,
-                          "no rotor flies a vehicle at less or more");
+    require_change(speeds, "speed of rotor " + number, "rad/s");
+    require_median_between({"rotor speed", "rad/s", speeds}, kLeastRotorSpeed, kMostRotorSpeed,
+                           "no rotor flies a vehicle at less or more");
   }
   if (log.supply_voltage_v.empty()) return;
   const std::vector<double> supply =
       column(flight, [&](std::size_t row) { return log.supply_voltage_v[row]; });
-  demand_median_between({"supply voltage", "V", supply}, kLeastSupplyVoltage, kMostSupplyVoltage,
-                        "no vehicle flies on less or more");
+  require_median_between({"supply voltage", "V", supply}, kLeastSupplyVoltage, kMostSupplyVoltage,
+                         "no vehicle flies on less or more");
 }
 
-void demand_speeds_like_the_motors(const FlightSeries& series, const plant::Vehicle& base) {
+void require_speeds_like_the_motors(const FlightSeries& series, const plant::Vehicle& base) {
   const auto mean = [](const plant::PerRotor& speeds, int count) {
     double sum = 0.0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) sum += speeds[i] / count;
@@ -127,7 +127,7 @@ void demand_speeds_like_the_motors(const FlightSeries& series, const plant::Vehi
                 format_number(kMostOfMotors) + "; are the units and the base vehicle right?");
 }
 
-void demand_positions_as_felt(const FlightSeries& series) {
+void require_positions_as_felt(const FlightSeries& series) {
   const FlightLog& log = *series.log;
   const Vector3d gravity_ned(0.0, 0.0, plant::kGravity);
   std::vector<double> gained[3];
@@ -145,9 +145,9 @@ void demand_positions_as_felt(const FlightSeries& series) {
     }
   }
   if (gained[0].empty()) return;
-  demand_gained_as_felt(gained[0], felt[0], "to the north");
-  demand_gained_as_felt(gained[1], felt[1], "to the east");
-  demand_gained_as_felt(gained[2], felt[2], "up and down");
+  require_gained_as_felt(gained[0], felt[0], "to the north");
+  require_gained_as_felt(gained[1], felt[1], "to the east");
+  require_gained_as_felt(gained[2], felt[2], "up and down");
 }
 
 }  // namespace swiftlet::identification

@@ -12,15 +12,15 @@ namespace swiftlet::identification {
 struct FlightSeries;
 
 // Sampled at a rate that holds the motion of a small vehicle, and that such a vehicle's IMU has.
-void demand_times(const FlightLog& log);
+void require_times(const FlightLog& log);
 
 // What was sensed and commanded in the flight.
-void demand_readings(const FlightLog& log, const Rows& flight);
+void require_readings(const FlightLog& log, const Rows& flight);
 
 // Rotor speeds against those that the base vehicle's motors settle at under the log's commands.
-void demand_speeds_like_the_motors(const FlightSeries& series, const plant::Vehicle& base);
+void require_speeds_like_the_motors(const FlightSeries& series, const plant::Vehicle& base);
 
 // Positions against the specific force: what the one gains of speed over a stretch, the other asks for.
-void demand_positions_as_felt(const FlightSeries& series);
+void require_positions_as_felt(const FlightSeries& series);
 
 }  // namespace swiftlet::identification

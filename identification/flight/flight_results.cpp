@@ -152,7 +152,7 @@ void conclude_vehicle(FlightIdentification& out, const DerivedValues& values, co
   for (const std::size_t axis : {0, 1}) {
     const ParameterEstimate* const found = out.find(plant::kInertiaKeys[axis]);
     if (found != nullptr && found->half_width < kTelling * found->value)
-      demand_gyration("body rates", *found, base.mass_kg, plant::hub_distance(base));
+      require_gyration("body rates", *found, base.mass_kg, plant::hub_distance(base));
   }
   if (!out.converged) {
     out.warnings.emplace_back("nothing of the fit goes into the vehicle");

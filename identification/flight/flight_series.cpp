@@ -17,7 +17,7 @@ constexpr double kHalfSmoothingS = 0.06;   // of the polynomial through neighbou
 constexpr std::size_t kLeastPoses = 5;     // through which one is laid
 constexpr double kLongestPoseGapS = 0.25;  // that is bridged
 
-void demand_whole(const FlightLog& log, const Rows& rows) {
+void require_whole(const FlightLog& log, const Rows& rows) {
   for (std::size_t i = rows.first + 1; i < rows.last; ++i) {
     if (log.time_s[i] - log.time_s[i - 1] <= kLongestRowGapS) continue;
     throw BadData("has no sample for " + format_number(log.time_s[i] - log.time_s[i - 1]) +
@@ -132,10 +132,10 @@ FlightSeries prepare_flight(const FlightLog& log, const plant::Vehicle& base, co
   }
   FlightSeries out;
   out.log = &log;
-  demand_times(log);
+  require_times(log);
   out.window = find_flight(log, bounds);
-  demand_whole(log, out.window.flight);
-  demand_readings(log, out.window.flight);
+  require_whole(log, out.window.flight);
+  require_readings(log, out.window.flight);
   const Rows& flight = out.window.flight;
   out.estimation_set = {
       flight.first, flight.last - static_cast<std::size_t>(kKeptShare * static_cast<double>(flight.size()))};
@@ -143,11 +143,11 @@ FlightSeries prepare_flight(const FlightLog& log, const plant::Vehicle& base, co
   out.source = source_of(log);
   if (out.source == SpeedSource::kCommanded) return out;
   out.steady_speeds = steady_speeds(log, base);
-  demand_speeds_like_the_motors(out, base);
+  require_speeds_like_the_motors(out, base);
   out.segments = stretches_of(log, out.estimation_set);
   out.pose_timing = find_pose_timing(log, out.segments);
   add_motion(out);
-  demand_positions_as_felt(out);
+  require_positions_as_felt(out);
   return out;
 }
 

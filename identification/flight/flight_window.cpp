@@ -98,7 +98,7 @@ Rows airborne(const FlightLog& log, const Rows& running) {
 }
 
 // Poses that are of another clock, or that never leave the ground, hold no flight.
-void demand_flight_in_poses(const FlightLog& log, const Rows& running) {
+void require_flight_in_poses(const FlightLog& log, const Rows& running) {
   if (log.poses.empty()) return;
   const double from_s = log.time_s[running.first];
   const double to_s = log.time_s[running.last - 1];
@@ -116,7 +116,7 @@ void demand_flight_in_poses(const FlightLog& log, const Rows& running) {
 }
 
 // Of rotors that run, before, between and after what is taken.
-void tell_what_is_left_out(const FlightLog& log, const Rows& running, FlightWindow& out) {
+void warn_of_omitted(const FlightLog& log, const Rows& running, FlightWindow& out) {
   double elsewhere_s = 0.0;
   for (std::size_t row = 1; row < log.size(); ++row) {
     const bool taken = row >= running.first && row < running.last;
@@ -144,10 +144,10 @@ FlightWindow find_flight(const FlightLog& log, const FlightBounds& bounds) {
   const Rows running = running_rows(log);
   if (running.size() == 0) throw BadData("the rotors never ran");
   const bool all_known = bounds.from_s && bounds.until_s;
-  if (!all_known) demand_flight_in_poses(log, running);
+  if (!all_known) require_flight_in_poses(log, running);
   FlightWindow out;
   out.flight = airborne(log, running);
-  if (!all_known) tell_what_is_left_out(log, running, out);
+  if (!all_known) warn_of_omitted(log, running, out);
   if (bounds.from_s) out.flight.first = row_at(log, *bounds.from_s);
   if (bounds.until_s) out.flight.last = row_at(log, *bounds.until_s);
   double blow_s = 0.0;

@@ -160,7 +160,7 @@ bool is_frd(const Measurements& table, const std::vector<Eigen::Vector3d>& speci
 }
 
 // Some more than what the ESC obeys are sent to it, to start or stop it for certain.
-void demand_pulse(const Measurements& table, std::size_t row, Quantity which, const plant::Vehicle& base) {
+void require_pulse(const Measurements& table, std::size_t row, Quantity which, const plant::Vehicle& base) {
   const double pulse_us = table.column(which)[row];
   const double least_us = base.esc.pulse_min_us - 0.5 * base.esc.pulse_range_us;
   const double most_us = base.esc.pulse_min_us + 1.5 * base.esc.pulse_range_us;
@@ -185,7 +185,7 @@ void read_commands(const Measurements& table, const plant::Vehicle& base, Flight
     const std::vector<double>& column =
         table.column((shares > 0 ? Quantity::kMotorCommand : Quantity::kMotorPulse) + i);
     for (std::size_t row = 0; row < column.size(); ++row) {
-      if (shares == 0) demand_pulse(table, row, Quantity::kMotorPulse + i, base);
+      if (shares == 0) require_pulse(table, row, Quantity::kMotorPulse + i, base);
       const double command =
           shares > 0 ? column[row] : plant::throttle_from_pulse_width(base.esc, column[row]);
       if (!(command >= 0.0 && command <= 1.0)) {

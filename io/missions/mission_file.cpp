@@ -64,7 +64,7 @@ void read_fence(const ConfigNode& node, MissionFrame frame, const control::Limit
 }
 
 // What comes before the items stands there for a reason: a file that is cut short does not lose it unseen.
-void demand_items_last(const ConfigNode& root, const ConfigNode& items) {
+void require_items_last(const ConfigNode& root, const ConfigNode& items) {
   for (const char* key : {"name", "description", "frame", "tolerance_m", "limits", "geofence", "ends"}) {
     const auto node = root.find(key);
     if (node && node->line() > items.line())
@@ -87,7 +87,7 @@ MissionFile read_mission(const ConfigNode& root, const control::Limits& settings
   const bool hovers = ends && ends->choice<bool>({{"landed", false}, {"hovering", true}});
 
   const ConfigNode items = root.at("items");
-  demand_items_last(root, items);
+  require_items_last(root, items);
   const control::Limits limits = control::tightened(settings, bounds);
   read_mission_items(items, frame, limits, file);
   if (hovers && file.lands()) ends->fail("is hovering, must be landed: the last item is a land");

@@ -110,7 +110,7 @@ class Reader {
     Eigen::Vector3d top_ned =
         0.5 * (limits_.fence_min_ned + limits_.fence_max_ned);  // over wherever it stands
     top_ned.z() = item.position_ned.z();
-    demand_inside_fence(height, top_ned);
+    require_inside_fence(height, top_ned);
     item.speed = speed(node);
     item.hold_s = hold(node);
     return item;
@@ -162,7 +162,7 @@ class Reader {
     } catch (const std::invalid_argument& fault) {
       node.fail(std::string("cannot be planned: ") + fault.what());
     }
-    demand_flyable(planned, points);
+    require_flyable(planned, points);
     return flown(node, std::move(planned.segments), yaw_free, path.limits.speed);
   }
 
@@ -259,7 +259,7 @@ class Reader {
   }
 
   // Between its points, too.
-  void demand_flyable(const control::PlannedPath& planned, const std::vector<ConfigNode>& points) const {
+  void require_flyable(const control::PlannedPath& planned, const std::vector<ConfigNode>& points) const {
     std::size_t leg = 0;
     for (std::size_t i = 0; i < planned.segments.size(); ++i) {
       while (leg + 1 < planned.leg_begins.size() && planned.leg_begins[leg + 1] <= i) ++leg;
@@ -268,7 +268,7 @@ class Reader {
     }
   }
 
-  void demand_inside_fence(const ConfigNode& node, const Eigen::Vector3d& position_ned) const {
+  void require_inside_fence(const ConfigNode& node, const Eigen::Vector3d& position_ned) const {
     constexpr const char* kAxes[] = {"north", "east", "down"};
     for (int axis = 0; axis < 3; ++axis) {
       const double value = position_ned[axis];
@@ -282,7 +282,7 @@ class Reader {
 
   Eigen::Vector3d position(const ConfigNode& node) const {
     Eigen::Vector3d position_ned = ned_from(frame_, node.vector3());
-    demand_inside_fence(node, position_ned);
+    require_inside_fence(node, position_ned);
     return position_ned;
   }
 

@@ -143,7 +143,7 @@ class PlanReader {
           fmt::format("takes off {:.1f} m from home, must be at most {:.0f} m: the vehicle stands at home",
                       aside_m, kTakeoffPlace_m));
     }
-    demand_inside(item, {0.0, 0.0, place.z()});
+    require_inside(item, {0.0, 0.0, place.z()});
     takeoff_aside_m_ = aside_m;
     add({MissionItemKind::kTakeoff, {0.0, 0.0, place.z()}, 0.0, true, speed_, 0.0});
   }
@@ -152,7 +152,7 @@ class PlanReader {
     MissionItem waypoint;
     waypoint.kind = MissionItemKind::kWaypoint;
     waypoint.position_ned = position(item, params, false);
-    demand_inside(item, waypoint.position_ned);
+    require_inside(item, waypoint.position_ned);
     waypoint.speed = speed_;
     if (!is_null(params[0])) waypoint.hold_s = params[0].number(runtime::between(0.0, kLongestHold_s));
     if (!is_null(params[3])) {
@@ -173,7 +173,7 @@ class PlanReader {
   // Straight down at a place, which is flown to at the present height.
   void land_at(const ConfigNode& item, const Eigen::Vector2d& place) {
     const Eigen::Vector3d above(place.x(), place.y(), at_.z());
-    demand_inside(item, above);
+    require_inside(item, above);
     if ((above - at_).norm() > kSamePlace_m) add({MissionItemKind::kWaypoint, above, 0.0, true, speed_, 0.0});
     add({MissionItemKind::kLand, Eigen::Vector3d::Zero(), 0.0, true, speed_, 0.0});
     landed_ = true;
@@ -241,7 +241,7 @@ class PlanReader {
     }
   }
 
-  void demand_inside(const ConfigNode& item, const Eigen::Vector3d& position_ned) const {
+  void require_inside(const ConfigNode& item, const Eigen::Vector3d& position_ned) const {
     constexpr const char* kAxes[] = {"north", "east", "down"};
     for (int axis = 0; axis < 3; ++axis) {
       const double low = limits_.fence_min_ned[axis];

@@ -101,9 +101,9 @@ control::DetectorSettings read_detectors(const ConfigNode& node) {
   detectors.pose_imu_consistency.sigmas = pose_imu_consistency.at("sigmas").number();
   const ConfigNode takeoff_consistency = node.at("takeoff_consistency");
   detectors.takeoff_consistency.memory_s = takeoff_consistency.at("memory_s").number();
-  detectors.takeoff_consistency.felt_m = takeoff_consistency.at("felt_m").number();
-  detectors.takeoff_consistency.seen_part = takeoff_consistency.at("seen_part").number();
-  detectors.takeoff_consistency.clearly_seen_m = takeoff_consistency.at("clearly_seen_m").number();
+  detectors.takeoff_consistency.inertial_climb_m = takeoff_consistency.at("inertial_climb_m").number();
+  detectors.takeoff_consistency.min_pose_fraction = takeoff_consistency.at("min_pose_fraction").number();
+  detectors.takeoff_consistency.confirmed_climb_m = takeoff_consistency.at("confirmed_climb_m").number();
   detectors.takeoff_consistency.longest_s = takeoff_consistency.at("longest_s").number();
   const ConfigNode recovery = node.at("recovery");
   detectors.recovery.max_lead_s = recovery.at("max_lead_s").number();

@@ -64,8 +64,8 @@ struct ActuatorCommand {
 
 // What the vehicle says of the commands that reach it.
 struct ObeyedCommand {
-  bool told = false;  // it says so at all; else nothing below has a meaning
-  bool any = false;   // it has obeyed a command since it was started; else the rest has no meaning
+  bool reported = false;  // it says so at all; else nothing below has a meaning
+  bool any = false;       // it has obeyed a command since it was started; else the rest has no meaning
   std::uint32_t term = 0;
   std::int64_t stamp_ns = 0;  // of the IMU sample that the command answered
 };

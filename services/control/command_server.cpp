@@ -135,22 +135,22 @@ void CommandServer::on_flown_trajectory(const comms::msg::Trajectory& message) {
   trajectories_.put(std::move(trajectory));
 }
 
-void CommandServer::follow(FailoverState handover) {
+void CommandServer::follow(FailoverState failover_state) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const control::SupervisorState& state = handover.flight.supervisor;
-  handover.number = ++handovers_;
+  const control::SupervisorState& state = failover_state.flight.supervisor;
+  failover_state.number = ++failover_states_;
   if (state.guidance.mission.state != control::MissionState::kNone)
-    handover.mission = missions_.find(state.guidance.mission.id);
+    failover_state.mission = missions_.find(state.guidance.mission.id);
   if (state.mode == control::Mode::kTrajectory)
-    handover.trajectory = trajectories_.find(state.guidance.trajectory_id);
-  missions_.lend(handover.mission, handover.number);
-  trajectories_.lend(handover.trajectory, handover.number);
+    failover_state.trajectory = trajectories_.find(state.guidance.trajectory_id);
+  missions_.lend(failover_state.mission, failover_state.number);
+  trajectories_.lend(failover_state.trajectory, failover_state.number);
   for (const control::RequestStatus& request : state.requests) {
     const Key key{request.key.client, request.key.id};
     if (request.key.id != 0 && answers_.count(key) == 0)
       keep_answer(key, {key.first, key.second, "request", control::accept(), false, state.now_ns});
   }
-  loop_.handover.put(handover);
+  loop_.failover_state.put(failover_state);
   missions_.tidy(loop_.taken_handover());
   trajectories_.tidy(loop_.taken_handover());
 }
@@ -215,9 +215,9 @@ void CommandServer::keep_answer(const Key& key, const RequestResult& answer) {
 
 std::vector<RequestResult> CommandServer::collect() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  PendingRequest* judged = nullptr;
-  while (loop_.judged.pop(judged)) {
-    const Key key{judged->client, judged->id};
+  PendingRequest* evaluated = nullptr;
+  while (loop_.evaluated.pop(evaluated)) {
+    const Key key{evaluated->client, evaluated->id};
     const auto entry = pending_.find(key);
     const std::unique_ptr<PendingRequest> done = std::move(entry->second);
     pending_.erase(entry);
@@ -230,7 +230,7 @@ std::vector<RequestResult> CommandServer::collect() {
   trajectories_.tidy(loop_.taken_handover());
   const std::int64_t now_ns = runtime::monotonic_ns();
   for (const auto& [key, pending] : pending_) {
-    if (now_ns - pending->asked_ns < kPatienceNs || !pending->claim(PendingRequest::State::kGivenUp))
+    if (now_ns - pending->asked_ns < kPatienceNs || !pending->domain_lock(PendingRequest::State::kGivenUp))
       continue;
     settle(key, pending->request.kind, control::refuse("no IMU samples arrive: is the vehicle running?"));
   }

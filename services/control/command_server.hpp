@@ -54,7 +54,7 @@ class CommandServer {
   // accepted. By any thread.
   void on_flown_mission(const comms::msg::Mission& message);
   void on_flown_trajectory(const comms::msg::Trajectory& message);
-  void follow(FailoverState handover);
+  void follow(FailoverState failover_state);
 
   // What is kept or flown, for the others to know; id 0 if it is not known here.
   comms::msg::Mission mission(std::uint64_t id);
@@ -84,7 +84,7 @@ class CommandServer {
   std::vector<RequestResult> outbox_;
   PlanStore<control::Mission> missions_;
   PlanStore<control::Trajectory> trajectories_;
-  std::uint64_t handovers_ = 0;
+  std::uint64_t failover_states_ = 0;
 };
 
 }  // namespace swiftlet::services

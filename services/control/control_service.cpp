@@ -36,18 +36,18 @@ ControlService::ControlService(const plant::Vehicle& vehicle, const control::Con
       clock_(clock),
       realtime_(realtime),
       loop_(vehicle, settings),
-      desk_(loop_, settings.limits, wake_),
-      telemetry_(loop_, desk_, settings.failsafe, node, controller_),
-      succession_(controller_, failover_priority),
+      command_server_(loop_, settings.limits, wake_),
+      telemetry_(loop_, command_server_, settings.failsafe, node, controller_),
+      failover_(controller_, failover_priority),
       reports_(node.publish(topics::kControllerState)),
-      commands_(node.publish(topics::kActuatorCommand, succession_.next_term())),
-      wanted_strength_(succession_.next_term()),
+      commands_(node.publish(topics::kActuatorCommand, failover_.next_term())),
+      wanted_strength_(failover_.next_term()),
       active_heard_ns_(runtime::monotonic_ns()),
-      offered_strength_(succession_.next_term()) {
+      offered_strength_(failover_.next_term()) {
   report_.controller = controller_;
   report_.failover_priority = failover_priority;
   report_.rotor_count = vehicle.rotor_count();
-  desk_.set_active(clock == runtime::Clock::kLockstep);
+  command_server_.set_active(clock == runtime::Clock::kLockstep);
   subscribe(node, clock);
 }
 
@@ -88,19 +88,20 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
   subscriptions_.push_back(node.subscribe<msg::GroundLink>(
       topics::kGroundLink, [this](const auto& message) { on_ground_link(message); }));
   subscriptions_.push_back(node.subscribe<msg::Command>(
-      topics::kCommand, [this](const auto& message) { desk_.on_command(message); }));
+      topics::kCommand, [this](const auto& message) { command_server_.on_command(message); }));
   subscriptions_.push_back(node.subscribe<msg::Mission>(
-      topics::kMission, [this](const auto& message) { desk_.on_mission(message); }, Delivery::kOwnThread));
+      topics::kMission, [this](const auto& message) { command_server_.on_mission(message); },
+      Delivery::kOwnThread));
   subscriptions_.push_back(node.subscribe<msg::Trajectory>(
-      topics::kTrajectory, [this](const auto& message) { desk_.on_trajectory(message); },
+      topics::kTrajectory, [this](const auto& message) { command_server_.on_trajectory(message); },
       Delivery::kOwnThread));
   if (clock == runtime::Clock::kRealtime) {
     subscriptions_.push_back(node.subscribe<msg::Mission>(
-        topics::kFlownMission, [this](const auto& message) { desk_.on_flown_mission(message); },
+        topics::kFlownMission, [this](const auto& message) { command_server_.on_flown_mission(message); },
         Delivery::kOwnThread));
     subscriptions_.push_back(node.subscribe<msg::Trajectory>(
-        topics::kFlownTrajectory, [this](const auto& message) { desk_.on_flown_trajectory(message); },
-        Delivery::kOwnThread));
+        topics::kFlownTrajectory,
+        [this](const auto& message) { command_server_.on_flown_trajectory(message); }, Delivery::kOwnThread));
     subscriptions_.push_back(node.subscribe<msg::ControllerState>(
         topics::kControllerState, [this](const auto& message) { on_controller_state(message); },
         Delivery::kOwnThread));
@@ -110,22 +111,22 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
 
 // Hands a good sample to the inner loop.
 template <class Message, class Sample>
-std::function<void(const Message&)> ControlService::deliver(runtime::LatestValue<Sample>& mailbox,
+std::function<void(const Message&)> ControlService::deliver(runtime::LatestValue<Sample>& latest,
                                                             comms::ThrottledWarning& faults) {
-  return [&mailbox, &faults](const Message& message) {
+  return [&latest, &faults](const Message& message) {
     Sample sample;
     const comms::Fault fault = comms::from_message(message, sample);
     if (fault) return faults.note(fault);
-    mailbox.put(sample);
+    latest.put(sample);
   };
 }
 
 // Number 0, motion capture's sign of life before its first frame, is never new.
 template <class Message, class Sample>
-std::function<void(const Message&)> ControlService::deliver_in_lockstep(runtime::LatestValue<Sample>& mailbox,
+std::function<void(const Message&)> ControlService::deliver_in_lockstep(runtime::LatestValue<Sample>& latest,
                                                                         comms::ThrottledWarning& faults,
                                                                         LockstepGate::Stream stream) {
-  return [this, stream, take = deliver<Message>(mailbox, faults)](const Message& message) {
+  return [this, stream, take = deliver<Message>(latest, faults)](const Message& message) {
     const std::lock_guard<std::mutex> lock(gate_mutex_);
     if (!gate_.is_new(stream, message.sequence_number())) return;
     take(message);
@@ -149,10 +150,10 @@ void ControlService::on_controller_state(const msg::ControllerState& message) {
   if (other.active) {
     active_heard_ns_.store(now_ns, std::memory_order_relaxed);
     if (!active_.load(std::memory_order_relaxed)) {
-      FailoverState handover;
-      handover.term = other.term;
-      handover.flight = other.flight;
-      desk_.follow(handover);
+      FailoverState failover_state;
+      failover_state.term = other.term;
+      failover_state.flight = other.flight;
+      command_server_.follow(failover_state);
     }
   }
   heartbeats_.push({other.controller, other.failover_priority, other.term,
@@ -160,18 +161,18 @@ void ControlService::on_controller_state(const msg::ControllerState& message) {
 }
 
 Role ControlService::take_role(const msg::Imu& message) {
-  const Role before = succession_.role();
-  heartbeats_.consume_all([this](const Heartbeat& beat) { succession_.heard(beat); });
+  const Role before = failover_.role();
+  heartbeats_.consume_all([this](const Heartbeat& beat) { failover_.heard(beat); });
   const std::int64_t now_ns = runtime::monotonic_ns();
-  const Role role = succession_.sample(message.stamp_ns(), comms::obeyed_command(message), now_ns);
+  const Role role = failover_.sample(message.stamp_ns(), comms::obeyed_command(message), now_ns);
   const bool active = role == Role::kActive;
-  desk_.set_active(active);
+  command_server_.set_active(active);
   active_.store(active, std::memory_order_relaxed);
-  wanted_strength_.store(active ? succession_.term() : succession_.next_term(), std::memory_order_relaxed);
+  wanted_strength_.store(active ? failover_.term() : failover_.next_term(), std::memory_order_relaxed);
   if (role != before) {
     if (!active) stepped_down_ns_.store(now_ns, std::memory_order_relaxed);
     const bool flew = message.commands() == msg::Imu_Constants::COMMANDS_OBEYED;
-    if (active && flew && !succession_.continues()) loop_.attempt_restart_in_air();
+    if (active && flew && !failover_.continues()) loop_.attempt_restart_in_air();
   }
   return role;
 }
@@ -179,7 +180,7 @@ Role ControlService::take_role(const msg::Imu& message) {
 // The first sample is answered at once, by a term that no other controller has.
 Role ControlService::take_role_in_lockstep(const msg::Imu& message) {
   const plant::ObeyedCommand obeyed = comms::obeyed_command(message);
-  if (obeyed.any && obeyed.term != succession_.next_term()) {
+  if (obeyed.any && obeyed.term != failover_.next_term()) {
     rival_.store(true, std::memory_order_relaxed);
     wake_.post();
     return Role::kStandby;
@@ -192,7 +193,7 @@ Role ControlService::take_role_in_lockstep(const msg::Imu& message) {
 void ControlService::on_imu_in_lockstep(const msg::Imu& message) {
   const std::lock_guard<std::mutex> lock(gate_mutex_);
   if (!gate_.offer(message)) {
-    loop_.judge_requests();
+    loop_.evaluate_requests();
     commands_.publish(last_answer_);
     if (loop_.finish(runtime::monotonic_ns())) wake_.post();
   } else if (const auto imu = gate_.take()) {
@@ -205,7 +206,7 @@ void ControlService::on_ground_link(const msg::GroundLink& message) {
   control::GroundHeartbeat sign;
   const comms::Fault fault = comms::from_message(message, sign);
   if (fault) return ground_link_faults_.note(fault);
-  loop_.ground_signs.push(sign);
+  loop_.ground_heartbeats.push(sign);
 }
 
 void ControlService::answer(const msg::Imu& message, Role role) {
@@ -217,8 +218,8 @@ void ControlService::answer(const msg::Imu& message, Role role) {
     sample.sequence = message.sequence_number();
     sample.specific_force_frd.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
-  last_answer_ = comms::to_message(loop_.step(sample, arrived_ns, role, succession_.followed_term()));
-  last_answer_.term(clock_ == runtime::Clock::kLockstep ? succession_.next_term() : succession_.term());
+  last_answer_ = comms::to_message(loop_.step(sample, arrived_ns, role, failover_.followed_term()));
+  last_answer_.term(clock_ == runtime::Clock::kLockstep ? failover_.next_term() : failover_.term());
   if (role == Role::kActive && !loop_.looking()) commands_.publish(last_answer_);
   if (loop_.finish(runtime::monotonic_ns())) wake_.post();
   if (loop_.report_due()) report(message.stamp_ns());
@@ -236,7 +237,7 @@ void ControlService::run(const std::atomic<bool>& stop) {
   while (!stop.load(std::memory_order_relaxed)) {
     offer_strength();
     telemetry_.set_realtime(is_realtime());
-    telemetry_.tell();
+    telemetry_.publish_due();
     attend_to_those_who_are_alone();
     wake_.wait_for(50ms);
   }
@@ -262,7 +263,7 @@ void ControlService::offer_strength() {
 void ControlService::attend_to_those_who_are_alone() {
   const std::int64_t last_ns =
       std::max(loop_.last_arrival_ns(), active_heard_ns_.load(std::memory_order_relaxed));
-  if (runtime::monotonic_ns() - last_ns > kAloneNs) desk_.set_active(true);
+  if (runtime::monotonic_ns() - last_ns > kAloneNs) command_server_.set_active(true);
 }
 
 }  // namespace swiftlet::services

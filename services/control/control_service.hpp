@@ -59,10 +59,10 @@ class ControlService {
   void offer_strength();
   bool is_realtime() const;
   template <class Message, class Sample>
-  std::function<void(const Message&)> deliver(runtime::LatestValue<Sample>& mailbox,
+  std::function<void(const Message&)> deliver(runtime::LatestValue<Sample>& latest,
                                               comms::ThrottledWarning& faults);
   template <class Message, class Sample>
-  std::function<void(const Message&)> deliver_in_lockstep(runtime::LatestValue<Sample>& mailbox,
+  std::function<void(const Message&)> deliver_in_lockstep(runtime::LatestValue<Sample>& latest,
                                                           comms::ThrottledWarning& faults,
                                                           LockstepGate::Stream stream);
 
@@ -71,11 +71,11 @@ class ControlService {
   runtime::RealtimeSettings realtime_;
   runtime::Semaphore wake_;
   InnerLoop loop_;
-  CommandServer desk_;
+  CommandServer command_server_;
   Telemetry telemetry_;
 
   // By the thread of the inner loop alone.
-  Failover succession_;
+  Failover failover_;
   comms::Publisher<comms::msg::ControllerState> reports_;
   comms::ControllerReport report_;
   comms::msg::ActuatorCommand last_answer_;

@@ -107,7 +107,7 @@ bool Failover::is_on_trial() const {
 std::int64_t Failover::patience_ns(const plant::ObeyedCommand& obeyed, std::int64_t now_ns) const {
   const std::int64_t turn_ns = rank(now_ns) * kPerRankNs;
   if (knows_flight(now_ns)) return kPatienceNs + turn_ns;
-  return (obeyed.told ? kStrangersPatienceNs : kSearchNs) + turn_ns;
+  return (obeyed.reported ? kStrangersPatienceNs : kSearchNs) + turn_ns;
 }
 
 // How many standbys come before this one.

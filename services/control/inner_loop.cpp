@@ -21,7 +21,7 @@ plant::ActuatorCommand InnerLoop::step(const plant::ImuSample& sample, std::int6
   role_ = role;
   take_samples();
   hear_ground();
-  judge_requests();
+  evaluate_requests();
   if (role == Role::kStandby) follow(followed_term);
   if (looking()) look(sample);
   const plant::ActuatorCommand command = controller_.on_imu(sample);
@@ -58,7 +58,7 @@ void InnerLoop::take_setpoint(const control::Setpoint& new_setpoint) {
 
 void InnerLoop::follow(std::uint32_t term) {
   FailoverState newest;
-  if (!handover.take(newest)) return;
+  if (!failover_state.take(newest)) return;
   if (newest.term == term) {
     controller_.adopt(newest.flight, newest.mission, newest.trajectory);
     const control::SupervisorState& state = newest.flight.supervisor;
@@ -86,23 +86,23 @@ void InnerLoop::look(const plant::ImuSample& sample) {
 }
 
 void InnerLoop::hear_ground() {
-  ground_signs.consume_all(
-      [this](const control::GroundHeartbeat& sign) { controller_.on_ground_sign(sign); });
+  ground_heartbeats.consume_all(
+      [this](const control::GroundHeartbeat& sign) { controller_.on_ground_heartbeat(sign); });
 }
 
-void InnerLoop::judge_requests() {
+void InnerLoop::evaluate_requests() {
   PendingRequest* pending = nullptr;
   while (requests.pop(pending)) {
     // What reached a standby is for the active one, which hears it too.
     if (role_ == Role::kStandby) {
-      pending->claim(PendingRequest::State::kGivenUp);
-    } else if (pending->claim(PendingRequest::State::kTaken)) {
+      pending->domain_lock(PendingRequest::State::kGivenUp);
+    } else if (pending->domain_lock(PendingRequest::State::kTaken)) {
       pending->outcome = controller_.request(pending->request);
       pending->stamp_ns = stamp_ns_;
       accepted_any_ = accepted_any_ || pending->outcome.accepted;
     }
-    judged.push(pending);  // fits: no more are under way
-    judged_any_ = true;
+    evaluated.push(pending);  // fits: no more are under way
+    evaluated_any_ = true;
   }
 }
 
@@ -119,12 +119,12 @@ bool InnerLoop::finish(std::int64_t now_ns) {
   saturated_ = saturated_ || status.saturated;
   const bool sampled =
       timing_.period_ns() > 0 && runtime::is_telemetry_sample(imu_sequence_, timing_.period_ns());
-  const bool answers = judged_any_;
-  const bool changed = status_changed() || role_ != told_role_;
+  const bool answers = evaluated_any_;
+  const bool changed = status_changed() || role_ != snapshot_role_;
   const bool old = stamp_ns_ < reported_ns_ || stamp_ns_ - reported_ns_ >= kStandbyReportNs;
   report_due_ = (sampled && role_ == Role::kActive) || old || changed || accepted_any_;
   if (report_due_) reported_ns_ = stamp_ns_;
-  judged_any_ = false;
+  evaluated_any_ = false;
   accepted_any_ = false;
   if (!sampled && !changed) return answers;
 
@@ -142,9 +142,9 @@ bool InnerLoop::finish(std::int64_t now_ns) {
   snapshot_.timing = timing_.figures();
   snapshot_.setpoints = setpoints_;
   if (snapshots.push(snapshot_)) {
-    told_ = status;
-    told_requests_ = snapshot_.requests;
-    told_role_ = role_;
+    last_snapshot_ = status;
+    snapshot_requests_ = snapshot_.requests;
+    snapshot_role_ = role_;
     saturated_ = false;
   }
   return true;
@@ -152,11 +152,12 @@ bool InnerLoop::finish(std::int64_t now_ns) {
 
 bool InnerLoop::status_changed() const {
   const control::Status& now = controller_.status();
-  return now.mode != told_.mode || now.reason != told_.reason || now.has_pose != told_.has_pose ||
-         now.airborne != told_.airborne || now.ground_links != told_.ground_links ||
-         now.mission.id != told_.mission.id || now.mission.state != told_.mission.state ||
-         now.mission.item_index != told_.mission.item_index ||
-         differ_in_state(controller_.requests(), told_requests_);
+  return now.mode != last_snapshot_.mode || now.reason != last_snapshot_.reason ||
+         now.has_pose != last_snapshot_.has_pose || now.airborne != last_snapshot_.airborne ||
+         now.ground_links != last_snapshot_.ground_links || now.mission.id != last_snapshot_.mission.id ||
+         now.mission.state != last_snapshot_.mission.state ||
+         now.mission.item_index != last_snapshot_.mission.item_index ||
+         differ_in_state(controller_.requests(), snapshot_requests_);
 }
 
 }  // namespace swiftlet::services

@@ -61,13 +61,13 @@ class InnerLoop {
   runtime::LatestValue<plant::BatterySample> battery;
   runtime::LatestValue<plant::RotorSpeedSample> rotor_speeds;
   runtime::LatestValue<control::Setpoint> setpoint;
-  runtime::LatestValue<FailoverState> handover;
+  runtime::LatestValue<FailoverState> failover_state;
   boost::lockfree::spsc_queue<PendingRequest*, boost::lockfree::capacity<kMaxPendingRequests>> requests;
 
-  boost::lockfree::spsc_queue<control::GroundHeartbeat, boost::lockfree::capacity<32>> ground_signs;
+  boost::lockfree::spsc_queue<control::GroundHeartbeat, boost::lockfree::capacity<32>> ground_heartbeats;
 
   // Output, to one thread. When snapshots are not taken, the newest are lost.
-  boost::lockfree::spsc_queue<PendingRequest*, boost::lockfree::capacity<kMaxPendingRequests>> judged;
+  boost::lockfree::spsc_queue<PendingRequest*, boost::lockfree::capacity<kMaxPendingRequests>> evaluated;
   boost::lockfree::spsc_queue<Snapshot, boost::lockfree::capacity<256>> snapshots;
 
   // By the IMU thread: step() gives the command; once it is sent, finish() does the rest of the step and
@@ -96,7 +96,7 @@ class InnerLoop {
   std::int64_t last_arrival_ns() const { return last_arrival_ns_.load(std::memory_order_relaxed); }
 
   // Between two steps: has the controller judge what is asked. step() does it too.
-  void judge_requests();
+  void evaluate_requests();
 
  private:
   void take_samples();
@@ -112,14 +112,14 @@ class InnerLoop {
   control::FlightController controller_;
   StepTiming timing_;
   Snapshot snapshot_;
-  control::Status told_;  // in the last snapshot
-  control::RequestStatuses told_requests_{};
+  control::Status last_snapshot_;  // in the last snapshot
+  control::RequestStatuses snapshot_requests_{};
   std::int64_t stamp_ns_ = 0;
   std::uint64_t imu_sequence_ = 0;
   std::atomic<std::int64_t> last_arrival_ns_{0};
   std::atomic<std::uint64_t> taken_handover_{0};
   Role role_ = Role::kStandby;
-  Role told_role_ = Role::kStandby;
+  Role snapshot_role_ = Role::kStandby;
   SetpointTally setpoints_;
   std::int64_t looks_since_ns_ = kLooksNot;
   int rotor_samples_ = 0;    // of the rotors' speeds, since it looks
@@ -128,7 +128,7 @@ class InnerLoop {
   std::int64_t reported_ns_ = 0;
   bool rotors_running_ = false;
   bool saturated_ = false;
-  bool judged_any_ = false;
+  bool evaluated_any_ = false;
   bool accepted_any_ = false;  // since the last report
 };
 

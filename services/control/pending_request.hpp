@@ -27,7 +27,7 @@ struct PendingRequest {
   std::int64_t stamp_ns = 0;  // likewise: of the last sample before
 
   // True for one of those who call it.
-  bool claim(State as) noexcept {
+  bool domain_lock(State as) noexcept {
     State waiting = State::kWaiting;
     return state.compare_exchange_strong(waiting, as, std::memory_order_acq_rel);
   }

@@ -30,9 +30,9 @@ class PlanStore {
   }
 
   // It goes to the inner loop with the handover of this number. plan may be null.
-  void lend(const Plan* plan, std::uint64_t handover) {
+  void lend(const Plan* plan, std::uint64_t failover_state) {
     for (Entry& entry : entries_) {
-      if (entry.plan.get() == plan) entry.handover = handover;
+      if (entry.plan.get() == plan) entry.failover_state = failover_state;
     }
   }
 
@@ -40,7 +40,7 @@ class PlanStore {
   // handover that the inner loop has gone over to.
   void tidy(std::uint64_t taken) {
     const auto idle = [&](const Entry& e) {
-      return e.plan.get() != flown_ && (e.handover == 0 || e.handover < taken);
+      return e.plan.get() != flown_ && (e.failover_state == 0 || e.failover_state < taken);
     };
     while (entries_.size() > kCapacity) {
       const auto entry = std::find_if(entries_.begin(), entries_.end(), idle);
@@ -55,7 +55,7 @@ class PlanStore {
  private:
   struct Entry {
     std::unique_ptr<Plan> plan;
-    std::uint64_t handover = 0;  // the last one that it went with
+    std::uint64_t failover_state = 0;  // the last one that it went with
   };
   std::deque<Entry> entries_;  // oldest first
   const Plan* flown_ = nullptr;

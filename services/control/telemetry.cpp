@@ -26,10 +26,10 @@ bool is_over(control::MissionState state) {
 
 }  // namespace
 
-Telemetry::Telemetry(InnerLoop& loop, CommandServer& desk, const control::FailsafeSettings& thresholds,
-                     comms::Node& node, std::uint64_t controller)
+Telemetry::Telemetry(InnerLoop& loop, CommandServer& command_server,
+                     const control::FailsafeSettings& thresholds, comms::Node& node, std::uint64_t controller)
     : loop_(loop),
-      desk_(desk),
+      command_server_(command_server),
       thresholds_(thresholds),
       node_(node),
       controller_(controller),
@@ -45,18 +45,18 @@ void Telemetry::open() {
   missions_ = node_.publish(topics::kMissionStatus);
   flown_missions_ = node_.publish(topics::kFlownMission);
   flown_trajectories_ = node_.publish(topics::kFlownTrajectory);
-  told_mission_ = 0;
-  told_trajectory_ = 0;
+  published_mission_ = 0;
+  published_trajectory_ = 0;
 }
 
-void Telemetry::tell() {
+void Telemetry::publish_due() {
   loop_.snapshots.consume_all([this](const Snapshot& snapshot) { take(snapshot); });
-  const std::vector<RequestResult> answers = desk_.collect();
+  const std::vector<RequestResult> answers = command_server_.collect();
   if (last_.role == Role::kActive) publish_plan();  // before its acceptance is told
   answer_requests(answers);
   const std::int64_t now_ns = runtime::monotonic_ns();
   if (watches_imu_) log_imu_silence(now_ns);
-  if (!desk_.active()) return;
+  if (!command_server_.active()) return;
   if (now_ns >= status_due_ns_) publish_status();
   if (now_ns >= mission_due_ns_) publish_mission();
 }
@@ -71,16 +71,16 @@ void Telemetry::change_role() {
 
 void Telemetry::publish_plan() {
   const std::uint64_t mission = last_.status.mission.id;
-  if (mission != 0 && mission != told_mission_) {
-    const comms::msg::Mission message = desk_.mission(mission);
+  if (mission != 0 && mission != published_mission_) {
+    const comms::msg::Mission message = command_server_.mission(mission);
     if (message.id() == mission) flown_missions_.publish(message);
-    told_mission_ = mission;
+    published_mission_ = mission;
   }
   const std::uint64_t trajectory = last_.status.mode == control::Mode::kTrajectory ? last_.trajectory_id : 0;
-  if (trajectory != 0 && trajectory != told_trajectory_) {
-    const comms::msg::Trajectory message = desk_.trajectory(trajectory);
+  if (trajectory != 0 && trajectory != published_trajectory_) {
+    const comms::msg::Trajectory message = command_server_.trajectory(trajectory);
     if (message.id() == trajectory) flown_trajectories_.publish(message);
-    told_trajectory_ = trajectory;
+    published_trajectory_ = trajectory;
   }
 }
 

@@ -14,11 +14,11 @@ namespace swiftlet::services {
 class Telemetry {
  public:
   // thresholds: which others are told; controller: the random number of this one.
-  Telemetry(InnerLoop& loop, CommandServer& desk, const control::FailsafeSettings& thresholds,
+  Telemetry(InnerLoop& loop, CommandServer& command_server, const control::FailsafeSettings& thresholds,
             comms::Node& node, std::uint64_t controller);
 
   // Says what is new or due. By one thread, again and again.
-  void tell();
+  void publish_due();
 
   void set_realtime(bool realtime) { realtime_ = realtime; }  // of the threads that fly, now
   void watch_imu() { watches_imu_ = true; }  // before tell(): a silence of the samples is worth a warning
@@ -36,7 +36,7 @@ class Telemetry {
   void publish_mission();
 
   InnerLoop& loop_;
-  CommandServer& desk_;
+  CommandServer& command_server_;
   const control::FailsafeSettings thresholds_;
   comms::Node& node_;
   const std::uint64_t controller_;
@@ -52,8 +52,8 @@ class Telemetry {
   std::uint64_t sampled_count_ = 0;
   std::uint64_t status_count_ = 0;
   std::uint64_t mission_count_ = 0;
-  std::uint64_t told_mission_ = 0;  // of which the others know
-  std::uint64_t told_trajectory_ = 0;
+  std::uint64_t published_mission_ = 0;  // of which the others know
+  std::uint64_t published_trajectory_ = 0;
 
   comms::Publisher<comms::msg::Estimate> estimates_;
   comms::Publisher<comms::msg::Reference> references_;

@@ -130,16 +130,16 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
     settings.vehicle = vehicle;
     check(settings);
     if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
-    membership = std::make_unique<ParticipantSession>(settings, this);
-    lookout.emplace(kLookPeriod, [this] {
+    session = std::make_unique<ParticipantSession>(settings, this);
+    periodic_task.emplace(kLookPeriod, [this] {
       look_after_reunions();
-      tell_conflicts_due();
+      log_conflicts_due();
     });
   }
 
   ~Impl() override {
-    lookout.reset();
-    membership.reset();
+    periodic_task.reset();
+    session.reset();
     if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
   }
 
@@ -148,28 +148,28 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
 
   // From now on it is one of this vehicle's processes, too.
   void serve(const std::string& vehicle) {
-    const std::lock_guard<std::mutex> lock(membership_mutex);
+    const std::lock_guard<std::mutex> lock(session_mutex);
     if (lists(settings.vehicle, vehicle)) return;
     settings.vehicle += (settings.vehicle.empty() ? "" : ",") + vehicle;
     {
       const std::lock_guard<std::mutex> peers_lock(peers_mutex);
       for (const auto& [guid, peer] : peers) {
         if (!is_own(peer) && lists(peer.vehicles, vehicle))
-          reunions.came(guid.guidPrefix, std::chrono::steady_clock::now());
+          rediscovery.came(guid.guidPrefix, std::chrono::steady_clock::now());
       }
       served = settings.vehicle;
     }
-    if (membership != nullptr) membership->announce_vehicles(settings);
+    if (session != nullptr) session->announce_vehicles(settings);
   }
 
   void add(Endpoint* endpoint) {
-    const std::lock_guard<std::mutex> lock(membership_mutex);
-    if (membership != nullptr) endpoint->join(*membership);
+    const std::lock_guard<std::mutex> lock(session_mutex);
+    if (session != nullptr) endpoint->join(*session);
     endpoints.push_back(endpoint);
   }
   void remove(Endpoint* endpoint) {
-    const std::lock_guard<std::mutex> lock(membership_mutex);
-    if (membership != nullptr) endpoint->leave(*membership);
+    const std::lock_guard<std::mutex> lock(session_mutex);
+    if (session != nullptr) endpoint->leave(*session);
     endpoints.erase(std::remove(endpoints.begin(), endpoints.end(), endpoint), endpoints.end());
   }
 
@@ -178,17 +178,17 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
   void look_after_reunions() {
     {
       const std::lock_guard<std::mutex> lock(peers_mutex);
-      if (!reunions.failed(std::chrono::steady_clock::now(), kReunionPatience) && !away) return;
+      if (!rediscovery.failed(std::chrono::steady_clock::now(), kReunionPatience) && !away) return;
     }
     if (rejoin()) spdlog::warn("a peer came back and could not be heard: joined the network anew");
   }
   // False if it is away now, or was.
   bool rejoin() {
-    const std::lock_guard<std::mutex> lock(membership_mutex);
+    const std::lock_guard<std::mutex> lock(session_mutex);
     leave();
     try {
-      membership = std::make_unique<ParticipantSession>(settings, this);
-      for (Endpoint* const endpoint : endpoints) endpoint->join(*membership);
+      session = std::make_unique<ParticipantSession>(settings, this);
+      for (Endpoint* const endpoint : endpoints) endpoint->join(*session);
       return !away.exchange(false);
     } catch (const std::runtime_error& error) {
       if (!away) spdlog::error("cannot join the network anew, trying again: {}", error.what());
@@ -198,15 +198,15 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
     }
   }
   void leave() {
-    if (membership == nullptr) return;
-    for (Endpoint* const endpoint : endpoints) endpoint->leave(*membership);
-    membership.reset();
+    if (session == nullptr) return;
+    for (Endpoint* const endpoint : endpoints) endpoint->leave(*session);
+    session.reset();
     const std::lock_guard<std::mutex> lock(peers_mutex);
     peers.clear();
     writers.clear();
     readers.clear();
-    told_conflicts.clear();
-    reunions.clear();
+    logged_conflicts.clear();
+    rediscovery.clear();
   }
 
   template <class T>
@@ -234,8 +234,8 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
         const Peer gone = peer->second;
         peers.erase(peer);
         if (!is_own(gone)) return;
-        event.said_goodbye ? reunions.gone(info.info.m_guid.guidPrefix)
-                           : reunions.lost(info.info.m_guid.guidPrefix);
+        event.said_goodbye ? rediscovery.gone(info.info.m_guid.guidPrefix)
+                           : rediscovery.lost(info.info.m_guid.guidPrefix);
         for (const auto& [node, ear] : ears) {
           if (lists(gone.vehicles, ear.vehicle)) ear.callback(event);
         }
@@ -247,7 +247,7 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
   void meet(const rtps::GUID_t& guid, const Peer& peer) {
     Peer& known = peers[guid];
     const Peer before = std::exchange(known, peer);
-    if (is_own(peer) && !is_own(before)) reunions.came(guid.guidPrefix, std::chrono::steady_clock::now());
+    if (is_own(peer) && !is_own(before)) rediscovery.came(guid.guidPrefix, std::chrono::steady_clock::now());
     for (const auto& [node, ear] : ears) {
       if (lists(peer.vehicles, ear.vehicle) && !lists(before.vehicles, ear.vehicle))
         ear.callback({peer.name, true, false});
@@ -292,8 +292,8 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
       for (auto it = remote->begin(); it != remote->end();)
         it = it->first.guidPrefix == participant ? remote->erase(it) : std::next(it);
     }
-    for (auto it = told_conflicts.begin(); it != told_conflicts.end();)
-      it = it->second.guidPrefix == participant ? told_conflicts.erase(it) : std::next(it);
+    for (auto it = logged_conflicts.begin(); it != logged_conflicts.end();)
+      it = it->second.guidPrefix == participant ? logged_conflicts.erase(it) : std::next(it);
   }
 
   // Fast DDS says of which reader or writer of ours, but not with whom: with each that it knows of the topic
@@ -301,24 +301,24 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
   void on_requested_incompatible_qos(dds::DataReader* reader,
                                      const dds::RequestedIncompatibleQosStatus&) override {
     const EndpointQos requested = endpoint_qos(reader->get_qos().get_readerqos(dds::SUBSCRIBER_QOS_DEFAULT));
-    tell_conflicts(reader->guid(), reader->get_topicdescription()->get_name(), writers, "is not heard",
-                   [&](const EndpointQos& offered) { return conflicts(offered, requested); });
+    log_conflicts(reader->guid(), reader->get_topicdescription()->get_name(), writers, "is not heard",
+                  [&](const EndpointQos& offered) { return conflicts(offered, requested); });
   }
   void on_offered_incompatible_qos(dds::DataWriter* writer,
                                    const dds::OfferedIncompatibleQosStatus&) override {
     const EndpointQos offered =
         endpoint_qos(writer->get_qos().get_writerqos(dds::PUBLISHER_QOS_DEFAULT, dds::TOPIC_QOS_DEFAULT));
-    tell_conflicts(writer->guid(), writer->get_topic()->get_name(), readers, "does not hear this process",
-                   [&](const EndpointQos& requested) { return conflicts(offered, requested); });
+    log_conflicts(writer->guid(), writer->get_topic()->get_name(), readers, "does not hear this process",
+                  [&](const EndpointQos& requested) { return conflicts(offered, requested); });
   }
   template <class ConflictsWith>
-  void tell_conflicts(const rtps::GUID_t& own, const std::string& topic, const RemoteEndpoints& others,
-                      const char* consequence, const ConflictsWith& conflicts_with) {
+  void log_conflicts(const rtps::GUID_t& own, const std::string& topic, const RemoteEndpoints& others,
+                     const char* consequence, const ConflictsWith& conflicts_with) {
     const std::lock_guard<std::mutex> lock(peers_mutex);
     for (const auto& [guid, other] : others) {
       if (other.topic != topic) continue;
       const std::string policies = conflicts_with(other.qos);
-      if (policies.empty() || !told_conflicts.emplace(own, guid).second) continue;
+      if (policies.empty() || !logged_conflicts.emplace(own, guid).second) continue;
       const auto line =
           conflict_lines.offer(topic + ": " + named(name_of(guid.guidPrefix), guid.guidPrefix) + " " +
                                    consequence + ", their QoS is incompatible: " + policies,
@@ -326,7 +326,7 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
       if (line) spdlog::warn(*line);
     }
   }
-  void tell_conflicts_due() {
+  void log_conflicts_due() {
     const std::lock_guard<std::mutex> lock(peers_mutex);
     if (const auto line = conflict_lines.due(std::chrono::steady_clock::now())) spdlog::warn(*line);
   }
@@ -341,12 +341,12 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
     const std::lock_guard<std::mutex> lock(peers_mutex);
     const rtps::GUID_t peer(guid.guidPrefix, rtps::c_EntityId_RTPSParticipant);
     const auto known = peers.find(peer);
-    if (known != peers.end() && is_own(known->second)) reunions.has(guid.guidPrefix, kind);
+    if (known != peers.end() && is_own(known->second)) rediscovery.has(guid.guidPrefix, kind);
   }
 
-  std::mutex membership_mutex;  // of these, but what never changes in the settings
-  NodeSettings settings;        // vehicle: the names of all that are served
-  std::unique_ptr<ParticipantSession> membership;
+  std::mutex session_mutex;  // of these, but what never changes in the settings
+  NodeSettings settings;     // vehicle: the names of all that are served
+  std::unique_ptr<ParticipantSession> session;
   std::vector<Endpoint*> endpoints;
 
   std::mutex peers_mutex;
@@ -354,14 +354,14 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
   std::map<rtps::GUID_t, Peer> peers;  // of whichever vehicle
   RemoteEndpoints writers;             // of others, of whichever vehicle
   RemoteEndpoints readers;
-  std::set<std::pair<rtps::GUID_t, rtps::GUID_t>> told_conflicts;  // of our own endpoints with others
+  std::set<std::pair<rtps::GUID_t, rtps::GUID_t>> logged_conflicts;  // of our own endpoints with others
   LineLimit conflict_lines;
   std::map<const Node*, Ear> ears;
 
-  Meetings reunions;
+  Meetings rediscovery;
 
   std::atomic<bool> away{false};  // it could not join anew
-  std::optional<PeriodicTask> lookout;
+  std::optional<PeriodicTask> periodic_task;
 };
 
 namespace {
@@ -412,22 +412,22 @@ class DdsWriter final : public detail::Writer, private Endpoint {
   }
 
  private:
-  void join(ParticipantSession& membership) override {
-    dds::DataWriter* const writer = membership.publisher->create_datawriter(
-        node_->template topic_in<T>(membership, vehicle_, topic_.name),
+  void join(ParticipantSession& session) override {
+    dds::DataWriter* const writer = session.publisher->create_datawriter(
+        node_->template topic_in<T>(session, vehicle_, topic_.name),
         writer_qos(topic_.qos, node_->deadline_ms(topic_.deadline_ms), strength_, node_->settings.transport));
     if (writer == nullptr) throw std::runtime_error(std::string("cannot publish ") + topic_.name);
     const std::lock_guard<std::mutex> lock(last_mutex_);
     if (last_) writer->write(&*last_);
     writer_.give(writer);
   }
-  void leave(ParticipantSession& membership) override {
+  void leave(ParticipantSession& session) override {
     dds::DataWriter* const writer = writer_.take();
     if (writer == nullptr) return;
     dds::PublicationMatchedStatus last;
     writer->get_publication_matched_status(last);
     changes_before_ += static_cast<std::uint64_t>(2 * last.total_count);  // all have gone
-    membership.publisher->delete_datawriter(writer);
+    session.publisher->delete_datawriter(writer);
   }
   dds::PublicationMatchedStatus readers() const {
     const typename GuardedPointer<dds::DataWriter>::Use writer(writer_);
@@ -470,21 +470,21 @@ class DdsReader final : public detail::Reader, private Endpoint, private dds::Da
   }
 
  private:
-  void join(ParticipantSession& membership) override {
+  void join(ParticipantSession& session) override {
     open(true);
-    dds::DataReader* const reader = membership.subscriber->create_datareader(
-        node_->template topic_in<T>(membership, vehicle_, topic_.name),
+    dds::DataReader* const reader = session.subscriber->create_datareader(
+        node_->template topic_in<T>(session, vehicle_, topic_.name),
         reader_qos(topic_.qos, node_->deadline_ms(topic_.deadline_ms), node_->settings.transport, delivery_),
         this, dds::StatusMask::data_available());
     if (reader == nullptr) throw std::runtime_error(std::string("cannot subscribe to ") + topic_.name);
     reader_.give(reader);
   }
-  void leave(ParticipantSession& membership) override {
+  void leave(ParticipantSession& session) override {
     dds::DataReader* const reader = reader_.take();
     if (reader == nullptr) return;
     open(false);
     reader->set_listener(nullptr);
-    membership.subscriber->delete_datareader(reader);
+    session.subscriber->delete_datareader(reader);
   }
   void open(bool open) {
     const std::lock_guard<std::mutex> lock(mutex_);

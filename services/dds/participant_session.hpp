@@ -48,8 +48,8 @@ class ParticipantSession {
 class Endpoint {
  public:
   virtual ~Endpoint() = default;
-  virtual void join(ParticipantSession& membership) = 0;   // throws std::runtime_error
-  virtual void leave(ParticipantSession& membership) = 0;  // nothing if it did not join
+  virtual void join(ParticipantSession& session) = 0;   // throws std::runtime_error
+  virtual void leave(ParticipantSession& session) = 0;  // nothing if it did not join
 };
 
 // A pointer that is used by threads which must not wait, and taken from them by one that may.

@@ -7,13 +7,13 @@
 namespace swiftlet::comms {
 
 void ThrottledWarning::note(const Fault& fault) {
-  ++untold_;
+  ++suppressed_;
   const std::int64_t now_ns =
       std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
   if (now_ns < next_ns_) return;
-  spdlog::warn("{} of {} refused: {}", untold_ == 1 ? "a sample" : std::to_string(untold_) + " samples",
-               topic_, fault.text);
-  untold_ = 0;
+  spdlog::warn("{} of {} refused: {}",
+               suppressed_ == 1 ? "a sample" : std::to_string(suppressed_) + " samples", topic_, fault.text);
+  suppressed_ = 0;
   next_ns_ = now_ns + 1'000'000'000;
 }
 

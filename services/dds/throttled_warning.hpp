@@ -15,7 +15,7 @@ class ThrottledWarning {
 
  private:
   const char* topic_;
-  std::uint64_t untold_ = 0;
+  std::uint64_t suppressed_ = 0;
   std::int64_t next_ns_ = 0;
 };
 

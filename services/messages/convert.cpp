@@ -71,14 +71,14 @@ msg::Imu to_message(const plant::ImuSample& in) {
 }
 
 plant::ObeyedCommand obeyed_command(const msg::Imu& in) {
-  const bool told = in.commands() != msg::Imu_Constants::COMMANDS_UNTOLD;
-  return {told, in.commands() == msg::Imu_Constants::COMMANDS_OBEYED, in.command_term(),
+  const bool reported = in.commands() != msg::Imu_Constants::COMMANDS_UNTOLD;
+  return {reported, in.commands() == msg::Imu_Constants::COMMANDS_OBEYED, in.command_term(),
           in.command_stamp_ns()};
 }
 
-void tell(const plant::ObeyedCommand& obeyed, msg::Imu& in) {
+void set_obeyed_command(const plant::ObeyedCommand& obeyed, msg::Imu& in) {
   using namespace msg::Imu_Constants;
-  in.commands(!obeyed.told ? COMMANDS_UNTOLD : obeyed.any ? COMMANDS_OBEYED : COMMANDS_NONE);
+  in.commands(!obeyed.reported ? COMMANDS_UNTOLD : obeyed.any ? COMMANDS_OBEYED : COMMANDS_NONE);
   in.command_term(obeyed.term);
   in.command_stamp_ns(obeyed.stamp_ns);
 }

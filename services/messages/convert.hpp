@@ -53,7 +53,7 @@ Fault from_message(const msg::Trajectory& in, control::Trajectory& out);
 Fault from_message(const msg::ControllerState& in, ControllerReport& out);
 
 msg::Imu to_message(const plant::ImuSample& in);
-void tell(const plant::ObeyedCommand& obeyed, msg::Imu& in);  // in an IMU sample
+void set_obeyed_command(const plant::ObeyedCommand& obeyed, msg::Imu& in);  // in an IMU sample
 msg::MocapPose to_message(const plant::PoseSample& in);
 msg::Battery to_message(const plant::BatterySample& in);
 msg::RotorSpeeds to_message(const plant::RotorSpeedSample& in);

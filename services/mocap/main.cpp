@@ -104,8 +104,8 @@ class MotionCaptureSimulator {
   // Whoever missed the last frame, and the plant that missed a sign of life: in turn, for of two that follow
   // each other at once the first may be lost.
   void answer_again(std::int64_t stamp_ns) {
-    sign_is_next_ = !sign_is_next_;
-    if (made_frame_ || (last_pose_.sequence_number() > 0 && !sign_is_next_)) {
+    heartbeat_is_next_ = !heartbeat_is_next_;
+    if (made_frame_ || (last_pose_.sequence_number() > 0 && !heartbeat_is_next_)) {
       poses_.publish(last_pose_);
     } else {
       say_that_it_is_there(stamp_ns);
@@ -127,7 +127,7 @@ class MotionCaptureSimulator {
   std::uint64_t truth_sequence_ = 0;
   comms::msg::MocapPose last_pose_;  // number 0 before the first frame
   bool made_frame_ = false;          // of the newest truth
-  bool sign_is_next_ = false;
+  bool heartbeat_is_next_ = false;
   std::atomic<bool> lost_truth_{false};
   runtime::RealtimeThread thread_;
   bool told_fault_ = false;

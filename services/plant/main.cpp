@@ -116,10 +116,10 @@ class Reporter {
     timeout_fault_ = text;
   }
 
-  void tell(const PlantReport& report) {
-    const bool changed = report.rotors_running != told_.rotors_running ||
-                         report.timed_out != told_.timed_out || report.paused != told_.paused ||
-                         (report.paused && report.stamp_ns != told_.stamp_ns);
+  void set_obeyed_command(const PlantReport& report) {
+    const bool changed = report.rotors_running != last_report_.rotors_running ||
+                         report.timed_out != last_report_.timed_out || report.paused != last_report_.paused ||
+                         (report.paused && report.stamp_ns != last_report_.stamp_ns);
     const std::int64_t now_ns = runtime::monotonic_ns();
     if (!changed && now_ns < due_ns_) return;
     due_ns_ = now_ns + kPeriodNs;
@@ -128,7 +128,7 @@ class Reporter {
     publisher_.publish(info_);
     log_rotors(report, fault);
     if (now_ns >= trouble_due_ns_ && log_trouble(report)) trouble_due_ns_ = now_ns + kTroublePeriodNs;
-    told_ = report;
+    last_report_ = report;
   }
 
  private:
@@ -136,7 +136,7 @@ class Reporter {
   static constexpr std::int64_t kTroublePeriodNs = 10'000'000'000;
 
   void log_rotors(const PlantReport& report, const std::string& fault) {
-    if (report.rotors_running == told_.rotors_running) return;
+    if (report.rotors_running == last_report_.rotors_running) return;
     if (report.rotors_running) {
       spdlog::info("rotors started");
     } else if (report.timed_out) {
@@ -166,7 +166,7 @@ class Reporter {
   comms::Publisher<comms::msg::VehicleInfo> publisher_;
   comms::msg::VehicleInfo info_;
   std::string timeout_fault_;
-  PlantReport told_;
+  PlantReport last_report_;
   PlantReport told_trouble_;
   std::int64_t due_ns_ = 0;
   std::int64_t trouble_due_ns_ = 0;
@@ -189,13 +189,13 @@ PlantReport run_loop(const std::function<void(const std::atomic<bool>&)>& loop, 
   PlantReport last;
   do {
     vehicle.reports().take(last);
-    reporter.tell(last);
+    reporter.set_obeyed_command(last);
   } while (!stop.wait_for(20ms));
   ends = true;
   thread.join();
   if (failure) std::rethrow_exception(failure);
   vehicle.reports().take(last);
-  reporter.tell(last);
+  reporter.set_obeyed_command(last);
   return last;
 }
 

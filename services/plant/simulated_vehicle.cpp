@@ -72,7 +72,7 @@ void SimulatedVehicle::step() {
 void SimulatedVehicle::publish_samples() {
   if (simulation_.imu()) {
     imu_message_ = comms::to_message(*simulation_.imu());
-    comms::tell(watchdog_.obeyed(), imu_message_);
+    comms::set_obeyed_command(watchdog_.obeyed(), imu_message_);
     if (report_.rotors_running) answers_.written(simulation_.imu()->sequence, runtime::monotonic_ns());
     imu_.publish(imu_message_);
   }
@@ -89,7 +89,7 @@ void SimulatedVehicle::publish_samples_in_order(std::uint64_t mocap_sequence, bo
   // The longest way first: motion capture makes a frame of the truth, for which the controller waits.
   const bool frame_due = mocap_sequence > imu_message_.mocap_sequence_number();
   imu_message_ = comms::to_message(*simulation_.imu());
-  comms::tell(watchdog_.obeyed(), imu_message_);
+  comms::set_obeyed_command(watchdog_.obeyed(), imu_message_);
   imu_message_.mocap_sequence_number(mocap_sequence);
   imu_message_.battery_sequence_number(battery_message_.sequence_number());
   imu_message_.rotor_speeds_sequence_number(rotor_speeds_message_.sequence_number());
@@ -132,9 +132,9 @@ void SimulatedVehicle::note_slip(std::int64_t slipped_ns) {
 }
 
 void SimulatedVehicle::report() {
-  const bool changed = report_.rotors_running != told_.rotors_running ||
-                       report_.timed_out != told_.timed_out || report_.paused != told_.paused;
-  if (!changed && simulation_.stamp_ns() - told_.stamp_ns < kReportPeriodNs) return;
+  const bool changed = report_.rotors_running != last_report_.rotors_running ||
+                       report_.timed_out != last_report_.timed_out || report_.paused != last_report_.paused;
+  if (!changed && simulation_.stamp_ns() - last_report_.stamp_ns < kReportPeriodNs) return;
   report_.stamp_ns = simulation_.stamp_ns();
   report_.answered = answers_.times().count();
   report_.unanswered = answers_.unanswered();
@@ -143,7 +143,7 @@ void SimulatedVehicle::report() {
   report_.answer_p99_ns = answers_.times().quantile_ns(0.99);
   report_.answer_p999_ns = answers_.times().quantile_ns(0.999);
   report_.answer_max_ns = answers_.times().max_ns();
-  told_ = report_;
+  last_report_ = report_;
   reports_.put(report_);
 }
 

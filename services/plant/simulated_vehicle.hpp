@@ -88,7 +88,7 @@ class SimulatedVehicle {
   comms::msg::GroundTruth truth_message_;
 
   PlantReport report_;
-  PlantReport told_;
+  PlantReport last_report_;
   AnswerLatencies answers_;
   runtime::LatestValue<PlantReport> reports_;
 

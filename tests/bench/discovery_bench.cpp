@@ -139,9 +139,9 @@ class Fleet {
 };
 
 nlohmann::ordered_json measure(int count, const Options& options) {
-  const comms::DomainLock claim;
+  const comms::DomainLock lock;
   const auto start = Clock::now();
-  const Fleet fleet(count, claim.domain());
+  const Fleet fleet(count, lock.domain());
   const int known = fleet.wait_until_known(std::chrono::duration<double>(options.patience_s));
   const double found_s = std::chrono::duration<double>(Clock::now() - start).count();
   const double finding_s = fleet.time_s();
@@ -152,7 +152,7 @@ nlohmann::ordered_json measure(int count, const Options& options) {
   const double rest_s = std::chrono::duration<double>(Clock::now() - rest).count();
   const double cpu_s = fleet.time_s() - before_s;
   std::vector<double> joins_s;
-  for (int i = 0; i < kJoins; ++i) joins_s.push_back(fleet.join_s(claim.domain()));
+  for (int i = 0; i < kJoins; ++i) joins_s.push_back(fleet.join_s(lock.domain()));
   std::sort(joins_s.begin(), joins_s.end());
   return {{"processes", count},
           {"know_all", known},

@@ -280,15 +280,15 @@ class RoundTrips {
 };
 
 void over_dds(const Options& options, comms::Transport transport, int rate_hz, RoundTrips& trips) {
-  const comms::DomainLock claim;
+  const comms::DomainLock lock;
   ThreadSetUp set_up(options.process.realtime);
-  BarePlant pair(options, "plant", claim.domain(), transport, comms::topics::kImu,
+  BarePlant pair(options, "plant", lock.domain(), transport, comms::topics::kImu,
                  comms::topics::kActuatorCommand, [&](const ActuatorCommand& command) {
                    set_up();
                    trips.answered(command.imu_sequence_number());
                  });
   const EchoProcess process(options,
-                            {"--echo-domain", std::to_string(claim.domain()), "--echo-transport",
+                            {"--echo-domain", std::to_string(lock.domain()), "--echo-transport",
                              std::to_string(static_cast<int>(transport))},
                             -1);
   if (!tests::eventually([&] { return pair.matched(); }))

@@ -187,7 +187,7 @@ class Vehicle {
  public:
   Vehicle(int number, int rate_hz, bool realtime, const fs::path& folder) {
     network_.vehicle = "kl" + std::to_string(number);
-    network_.domain = claim_.domain();
+    network_.domain = lock_.domain();
     network_.localhost_only = true;
     for (const char* name : kProcesses) {
       std::vector<std::string> words{"--domain", std::to_string(network_.domain), "--vehicle-name",
@@ -298,7 +298,7 @@ class Vehicle {
     return figures;
   }
 
-  comms::DomainLock claim_;
+  comms::DomainLock lock_;
   comms::NodeSettings network_ = [] {
     comms::NodeSettings settings;
     settings.name = "ground";

@@ -250,7 +250,7 @@ class Flight {
     if (std::isfinite(battery.voltage_v)) loop_.controller.on_battery(battery);
   }
 
-  void sign() { loop_.controller.on_ground_sign({1u + input_.byte() % 20u, input_.byte() % 2 == 0}); }
+  void sign() { loop_.controller.on_ground_heartbeat({1u + input_.byte() % 20u, input_.byte() % 2 == 0}); }
 
   Input input_;
   ground::ClosedLoop loop_;

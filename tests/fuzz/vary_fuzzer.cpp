@@ -11,9 +11,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml"),
       runtime::load_simulation_settings(SWIFTLET_SOURCE_DIR "/config/simulation/default.yaml")};
   tests::is_read([&] {
-    const ground::Dispersion variation =
+    const ground::Dispersion dispersion =
         ground::parse_vary_file(std::string(tests::text_of(data, size)), tests::kFuzzedFile, nominal);
-    const ground::Draw draw = ground::draw(variation, nominal, 1);
+    const ground::Draw draw = ground::draw(dispersion, nominal, 1);
     tests::demand(ground::validate(draw.world).empty(), "a world that was drawn keeps the rules");
   });
   return 0;

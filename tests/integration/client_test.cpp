@@ -32,7 +32,7 @@ class OneContext : public testing::Test {
   std::vector<std::string> words(const std::string& vehicle,
                                  const std::vector<std::string>& more = {}) const {
     std::vector<std::string> words = {
-        "--domain", std::to_string(claim_.domain()), "--vehicle-name", vehicle, "--localhost-only", "--clock",
+        "--domain", std::to_string(lock_.domain()), "--vehicle-name", vehicle, "--localhost-only", "--clock",
         "lockstep"};
     words.insert(words.end(), more.begin(), more.end());
     return words;
@@ -40,12 +40,12 @@ class OneContext : public testing::Test {
   comms::NodeSettings network() const {
     comms::NodeSettings network;
     network.name = "test";
-    network.domain = claim_.domain();
+    network.domain = lock_.domain();
     network.localhost_only = true;
     return network;
   }
 
-  comms::DomainLock claim_;
+  comms::DomainLock lock_;
   TemporaryFolder folder_;
 };
 

@@ -70,8 +70,8 @@ TEST_F(Failsafe, MocapIsKilledItDescendsLevelAndStopsOnTheGround) {
   start_all();
   hover();
   mocap_->signal(SIGKILL);
-  ASSERT_TRUE(told(Mode::kDescent, "no mocap pose")) << story();
-  ASSERT_TRUE(told(Mode::kDisarmed, "landed without position")) << story();
+  ASSERT_TRUE(reported(Mode::kDescent, "no mocap pose")) << story();
+  ASSERT_TRUE(reported(Mode::kDisarmed, "landed without position")) << story();
   ASSERT_TRUE(wait_until_rotors_off());
   EXPECT_TRUE(wait_until_on_ground());
   EXPECT_LT(most_tilt_rad(), 0.2);
@@ -83,9 +83,9 @@ TEST_F(Failsafe, MocapComesBackItHoldsAgain) {
   start_all();
   hover();
   mocap_->signal(SIGSTOP);
-  ASSERT_TRUE(told(Mode::kDescent, "no mocap pose")) << story();
+  ASSERT_TRUE(reported(Mode::kDescent, "no mocap pose")) << story();
   mocap_->signal(SIGCONT);
-  ASSERT_TRUE(told(Mode::kHolding, "position is back")) << story();
+  ASSERT_TRUE(reported(Mode::kHolding, "position is back")) << story();
   fly_on(3.0);
   EXPECT_GT(lowest_m(), 0.3);
   EXPECT_LT(client_->view().estimate.message.velocity_ned()[2], 0.05);
@@ -100,7 +100,7 @@ TEST_F(Failsafe, TheGroundToolIsKilledItLands) {
                     "  - {kind: takeoff, height_m: 0.8, speed_m_s: 0.8, hold_s: 300}\n"
                     "  - {kind: land, speed_m_s: 0.4}\n");
   Program fly("swiftlet",
-              {"fly", mission, "--attach", "--domain", std::to_string(claim_.domain()), "--record",
+              {"fly", mission, "--attach", "--domain", std::to_string(lock_.domain()), "--record",
                folder_.path() / "record"},
               folder_.path());
   ASSERT_TRUE(eventually([&] { return -client_->view().truth.message.position_ned()[2] > 0.7; }, kTimeout))
@@ -109,8 +109,8 @@ TEST_F(Failsafe, TheGroundToolIsKilledItLands) {
       client_->wait(kTimeout, [](const View& view) { return view.control.message.ground_links() == 1; }));
   forget();
   fly.signal(SIGKILL);
-  ASSERT_TRUE(told(Mode::kLanding, "ground link lost")) << story();
-  ASSERT_TRUE(told(Mode::kDisarmed, "landed")) << story();
+  ASSERT_TRUE(reported(Mode::kLanding, "ground link lost")) << story();
+  ASSERT_TRUE(reported(Mode::kDisarmed, "landed")) << story();
   EXPECT_TRUE(wait_until_on_ground());
   EXPECT_LT(most_tilt_rad(), 0.2);
   EXPECT_FALSE(plant_->exit_code() || mocap_->exit_code() || control_->exit_code());
@@ -120,7 +120,7 @@ TEST_F(Failsafe, ToolsThatOnlyAskForSomethingAreNotMissed) {
   start_all();
   hover();
   const Ending end = run_program(
-      "swiftlet", {"goto", "0.3", "0", "-1", "--domain", std::to_string(claim_.domain()), "--localhost-only"},
+      "swiftlet", {"goto", "0.3", "0", "-1", "--domain", std::to_string(lock_.domain()), "--localhost-only"},
       folder_.path());
   ASSERT_EQ(end.exit_code, 0) << end.errors;
   fly_on(3.0);
@@ -138,7 +138,7 @@ TEST_F(Failsafe, ControlIsKilledTheVehicleStopsItsRotorsAndAnotherOneStartsAnew)
   EXPECT_NE(std::string(client_->view().vehicle.message.fault().c_str()), "");
   ASSERT_TRUE(eventually([&] { return distance_m(0, 0, 0) < 2.0 && fastest_rotor(truth().back()) < 10.0; }));
   control_ = start("swiftlet-control");
-  ASSERT_TRUE(told(Mode::kDisarmed, "started")) << story();
+  ASSERT_TRUE(reported(Mode::kDisarmed, "started")) << story();
   if (tilt_rad(truth().back()) > 0.3) return;  // it fell on its side
   hover();
 }
@@ -162,7 +162,8 @@ TEST_F(Failsafe, CommandsCeaseTheRotorsStopAndStayOff) {
   ASSERT_TRUE(wait_until_rotors_off());
   fly_on(1.2);  // short of the lease after which the others take it for dead
   control_->signal(SIGCONT);
-  ASSERT_TRUE(told(Mode::kStopped, "IMU samples were missing") || told(Mode::kStopped, "tipped over", 1s))
+  ASSERT_TRUE(reported(Mode::kStopped, "IMU samples were missing") ||
+              reported(Mode::kStopped, "tipped over", 1s))
       << story();
   ASSERT_TRUE(wait_until_rotors_off());
   forget();
@@ -181,7 +182,8 @@ TEST_F(Failsafe, TheImuFallsSilentTheRotorsStopAndStayOff) {
   ASSERT_TRUE(wait_until_rotors_off());
   EXPECT_NEAR(static_cast<double>(client_->view().vehicle.message.stamp_ns()) * 1e-9, 14.5, 0.15)
       << "by its own time-out of 0.5 s";
-  ASSERT_TRUE(told(Mode::kStopped, "IMU samples were missing") || told(Mode::kStopped, "tipped over", 1s))
+  ASSERT_TRUE(reported(Mode::kStopped, "IMU samples were missing") ||
+              reported(Mode::kStopped, "tipped over", 1s))
       << story();
   forget();
   fly_on(1.0);
@@ -195,7 +197,7 @@ TEST_F(Failsafe, ThePlantIsStartedAgainItsRotorsStayOff) {
   plant_->wait(5s);
   forget();
   plant_ = start("swiftlet-plant");
-  ASSERT_TRUE(told(Mode::kStopped, "IMU samples are not usable")) << story();
+  ASSERT_TRUE(reported(Mode::kStopped, "IMU samples are not usable")) << story();
   fly_on(1.0);
   for (const TruthRow& row : truth()) ASSERT_LT(fastest_rotor(row), 20.0);
   // A new flight, after the pilot has seen it.
@@ -225,8 +227,8 @@ TEST_F(Failsafe, SetpointsThatLeaveTheFenceAreRefusedAndItHoldsInside) {
         return elapsed_s > 4.0;
       },
       kTimeout));
-  EXPECT_TRUE(told(Mode::kSetpoint, "setpoints came")) << story();
-  EXPECT_TRUE(told(Mode::kHolding, "setpoints stopped")) << story();
+  EXPECT_TRUE(reported(Mode::kSetpoint, "setpoints came")) << story();
+  EXPECT_TRUE(reported(Mode::kHolding, "setpoints stopped")) << story();
   fly_on(1.0);
   double farthest_north = 0.0;
   for (const TruthRow& row : truth()) farthest_north = std::max(farthest_north, row.position_ned[0]);

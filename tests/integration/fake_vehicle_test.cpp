@@ -34,14 +34,14 @@ constexpr auto kTimeout = 20s;
 class FakeVehicleFlight : public testing::Test {
  protected:
   FakeVehicleFlight()
-      : control_("swiftlet-control", {"--domain", std::to_string(claim_.domain()), "--localhost-only"},
+      : control_("swiftlet-control", {"--domain", std::to_string(lock_.domain()), "--localhost-only"},
                  folder_.path()),
         client_(network("ground")) {}
 
   comms::NodeSettings network(const std::string& name) const {
     comms::NodeSettings settings;
     settings.name = name;
-    settings.domain = claim_.domain();
+    settings.domain = lock_.domain();
     settings.localhost_only = true;
     return settings;
   }
@@ -84,7 +84,7 @@ class FakeVehicleFlight : public testing::Test {
     return !commands.empty() && !running(commands.back());
   }
 
-  comms::DomainLock claim_;
+  comms::DomainLock lock_;
   TemporaryFolder folder_;
   Program control_;
   ground::Client client_;
@@ -205,7 +205,7 @@ TEST_F(FakeVehicleFlight, AnotherMissionOfTheSameIdIsRefused) {
   ASSERT_TRUE(client_.upload(mission, kTimeout).accepted());
   comms::NodeSettings settings;
   settings.name = "stranger";
-  settings.domain = claim_.domain();
+  settings.domain = lock_.domain();
   settings.localhost_only = true;
   comms::Node node(settings);
   auto missions = node.publish(comms::topics::kMission);

@@ -100,7 +100,7 @@ class TwoVehicles : public testing::Test {
  protected:
   std::vector<std::string> words(const std::string& vehicles, const std::vector<std::string>& more) const {
     std::vector<std::string> words = more;
-    words.insert(words.end(), {"--domain", std::to_string(claim_.domain()), "--vehicle-name", vehicles,
+    words.insert(words.end(), {"--domain", std::to_string(lock_.domain()), "--vehicle-name", vehicles,
                                "--localhost-only"});
     return words;
   }
@@ -112,7 +112,7 @@ class TwoVehicles : public testing::Test {
     return run_program("swiftlet", words(vehicles, more), folder_.path());
   }
 
-  comms::DomainLock claim_;
+  comms::DomainLock lock_;
   TemporaryFolder folder_;
   Program plant_1_{"swiftlet-plant", lockstep("kl1", {"--speed", "1"}), folder_.path()};
   Program mocap_1_{"swiftlet-mocap", lockstep("kl1"), folder_.path()};

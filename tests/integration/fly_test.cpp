@@ -48,7 +48,7 @@ class Fly : public testing::Test {
     for (int attempt = 0; attempt < 3; ++attempt) {
       Program fly("swiftlet", words, folder_.path());
       exit_code_ = fly.wait(90s);
-      told_ = told(fly);
+      told_ = reported(fly);
       output_ = fly.output();
       errors_ = fly.errors();
       if (stood_still_ms() < 100.0) return;
@@ -62,7 +62,7 @@ class Fly : public testing::Test {
   }
 
   // All that was said, for a message of a failed expectation.
-  std::string told(const Program& fly) const {
+  std::string reported(const Program& fly) const {
     std::string text = fly.output() + fly.errors();
     for (const char* process : {"swiftlet-plant", "swiftlet-mocap", "swiftlet-control"}) {
       std::ifstream log(record() / (std::string(process) + ".log"));
@@ -138,9 +138,9 @@ TEST_F(Fly, FliesOverSharedMemoryAndLeavesNothingThere) {
         return fly.errors().find("2/6 waypoint") != std::string::npos;
       },
       kStartTimeout))
-      << told(fly);
+      << reported(fly);
   EXPECT_FALSE(files.empty()) << "no process used shared memory";
-  ASSERT_EQ(fly.wait(90s), 0) << told(fly);
+  ASSERT_EQ(fly.wait(90s), 0) << reported(fly);
   for (const std::string& file : files) EXPECT_FALSE(fs::exists(file)) << file;
 }
 
@@ -149,7 +149,7 @@ TEST_F(Fly, FailsBeyondTheMissionsTolerance) {
   mission.replace(mission.find("0.1"), 3, "1e-6");
   Program fly("swiftlet", arguments(folder_.write("strict.yaml", mission), {"--clock", "lockstep"}),
               folder_.path());
-  ASSERT_EQ(fly.wait(90s), 1) << told(fly);
+  ASSERT_EQ(fly.wait(90s), 1) << reported(fly);
   const json report = json::parse(fly.output());
   EXPECT_EQ(report.at("completed"), false);
   EXPECT_NE(report.at("reason").get<std::string>().find("the tolerance is 0.000 m"), std::string::npos)
@@ -183,7 +183,7 @@ class FlyInterrupted : public Fly {
   void SetUp() override {
     ASSERT_TRUE(
         eventually([&] { return fly_.errors().find("2/3 waypoint") != std::string::npos; }, kStartTimeout))
-        << told(fly_);
+        << reported(fly_);
     children_ = children_of(fly_.pid());
     ASSERT_EQ(children_.size(), 3U);
   }
@@ -204,7 +204,7 @@ TEST_P(FlyWithADeath, NamesTheProcessThatDied) {
   const pid_t victim = child_of(fly_.pid(), GetParam());
   ASSERT_GT(victim, 0);
   ASSERT_EQ(kill(victim, SIGKILL), 0);
-  ASSERT_EQ(fly_.wait(20s), 1) << told(fly_);
+  ASSERT_EQ(fly_.wait(20s), 1) << reported(fly_);
   const json report = json::parse(fly_.output());
   EXPECT_EQ(report.at("completed"), false);
   EXPECT_EQ(report.at("reason").get<std::string>().find(std::string(GetParam()) +
@@ -231,13 +231,13 @@ TEST_F(FlyOverSharedMemoryWithADeath, LeavesNothingThere) {
   }
   EXPECT_FALSE(files.empty()) << "no process used shared memory";
   ASSERT_EQ(kill(child_of(fly_.pid(), "swiftlet-control"), SIGKILL), 0);
-  ASSERT_EQ(fly_.wait(20s), 1) << told(fly_);
+  ASSERT_EQ(fly_.wait(20s), 1) << reported(fly_);
   for (const std::string& file : files) EXPECT_FALSE(fs::exists(file)) << file;
 }
 
 TEST_F(FlyInterrupted, LandsOnTheFirstInterrupt) {
   fly_.signal(SIGINT);
-  ASSERT_EQ(fly_.wait(30s), 1) << told(fly_);
+  ASSERT_EQ(fly_.wait(30s), 1) << reported(fly_);
   const json report = json::parse(fly_.output());
   EXPECT_EQ(report.at("completed"), false);
   EXPECT_EQ(report.at("reason"), "interrupted; landed");
@@ -250,7 +250,7 @@ TEST_F(FlyInterrupted, EndsAtOnceOnTheSecond) {
       [&] { return fly_.errors().find("interrupt again to end at once") != std::string::npos; }, 10s));
   const auto second = std::chrono::steady_clock::now();
   fly_.signal(SIGINT);
-  ASSERT_EQ(fly_.wait(30s), 1) << told(fly_);
+  ASSERT_EQ(fly_.wait(30s), 1) << reported(fly_);
   EXPECT_EQ(json::parse(fly_.output()).at("reason"), "interrupted; ended in flight");
   EXPECT_LT(std::chrono::steady_clock::now() - second, 10s);
   expect_end_without_leftovers();
@@ -279,7 +279,7 @@ TEST_P(FlyPaper, KeepsToItsPath) {
   const char* const clock = is_soak() ? "realtime" : "lockstep";
   Program fly("swiftlet", arguments(flight.mission, {"--control", flight.control, "--clock", clock}),
               folder_.path());
-  ASSERT_EQ(fly.wait(120s), 0) << told(fly);
+  ASSERT_EQ(fly.wait(120s), 0) << reported(fly);
   const json report = json::parse(fly.output());
   EXPECT_EQ(report.at("completed"), true) << report;
   EXPECT_NEAR(report.at("duration_s"), 40.0, 4.0);

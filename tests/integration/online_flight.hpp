@@ -22,7 +22,7 @@ using nlohmann::json;
 class Online : public testing::Test {
  protected:
   std::vector<std::string> network() const {
-    return {"--domain", std::to_string(claim_.domain()), "--vehicle-name", "kl7", "--localhost-only"};
+    return {"--domain", std::to_string(lock_.domain()), "--vehicle-name", "kl7", "--localhost-only"};
   }
   // `swiftlet` with the words of a command line.
   Ending swiftlet(std::vector<std::string> words, std::chrono::milliseconds timeout = 30s) const {
@@ -30,7 +30,7 @@ class Online : public testing::Test {
     return run_program("swiftlet", std::move(words), folder_.path(), timeout);
   }
 
-  comms::DomainLock claim_;
+  comms::DomainLock lock_;
   TemporaryFolder folder_;
 };
 
@@ -96,7 +96,7 @@ class OnlineFlight : public Online {
             mission,
             "--attach",
             "--domain",
-            std::to_string(claim_.domain()),
+            std::to_string(lock_.domain()),
             "--vehicle-name",
             "kl7",
             "--json",

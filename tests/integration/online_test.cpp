@@ -229,7 +229,7 @@ TEST_F(OnlineFlight, StatusNamesAllThatAPilotAsksFor) {
   for (const auto& [topic, age] : now.at("ages_s").items()) EXPECT_LT(age.get<double>(), 5.0) << topic;
   const Ending text = swiftlet({"status"});
   EXPECT_EQ(text.exit_code, 0);
-  EXPECT_NE(text.output.find("kl7 in domain " + std::to_string(claim_.domain()) + ": disarmed"),
+  EXPECT_NE(text.output.find("kl7 in domain " + std::to_string(lock_.domain()) + ": disarmed"),
             std::string::npos)
       << text.output;
 }
@@ -246,7 +246,7 @@ TEST_F(OnlineFlight, TheListShowsIt) {
   ASSERT_TRUE(eventually(
       [&] {
         const Ending end = run_program(
-            "swiftlet", {"list", "--json", "--domain", std::to_string(claim_.domain()), "--localhost-only"},
+            "swiftlet", {"list", "--json", "--domain", std::to_string(lock_.domain()), "--localhost-only"},
             folder_.path());
         if (end.exit_code != 0) return false;
         const json list = json::parse(end.output);
@@ -256,16 +256,16 @@ TEST_F(OnlineFlight, TheListShowsIt) {
       },
       30s));
   const Ending text = run_program(
-      "swiftlet", {"list", "--domain", std::to_string(claim_.domain()), "--localhost-only"}, folder_.path());
+      "swiftlet", {"list", "--domain", std::to_string(lock_.domain()), "--localhost-only"}, folder_.path());
   EXPECT_EQ(text.output.rfind("vehicle ", 0), 0U) << text.output;
 }
 
 TEST_F(Online, TheListOfNothingFails) {
   const Ending end = run_program(
-      "swiftlet", {"list", "--time", "0.5", "--domain", std::to_string(claim_.domain()), "--localhost-only"},
+      "swiftlet", {"list", "--time", "0.5", "--domain", std::to_string(lock_.domain()), "--localhost-only"},
       folder_.path());
   EXPECT_EQ(end.exit_code, 1);
-  EXPECT_NE(end.errors.find("swiftlet: list: no vehicle in domain " + std::to_string(claim_.domain())),
+  EXPECT_NE(end.errors.find("swiftlet: list: no vehicle in domain " + std::to_string(lock_.domain())),
             std::string::npos)
       << end.errors;
 }
@@ -282,7 +282,7 @@ TEST_F(Online, SaysWhereItLookedWhenNothingIsThere) {
     EXPECT_EQ(end.exit_code, 1);
     EXPECT_EQ(end.errors, "swiftlet: " + std::string(command) +
                               ": no control service for vehicle kl7 in domain " +
-                              std::to_string(claim_.domain()) +
+                              std::to_string(lock_.domain()) +
                               "; seen there: nothing; is it started, and in this domain (--domain, "
                               "ROS_DOMAIN_ID)?\n");
   }
@@ -291,10 +291,10 @@ TEST_F(Online, SaysWhereItLookedWhenNothingIsThere) {
 TEST_F(OnlineFlight, SaysWhenItStandsOnTheWrongNetwork) {
   const Ending end = run_program(
       "swiftlet",
-      {"status", "--timeout", "2", "--domain", std::to_string(claim_.domain()), "--vehicle-name", "kl7"},
+      {"status", "--timeout", "2", "--domain", std::to_string(lock_.domain()), "--vehicle-name", "kl7"},
       folder_.path());
   if (end.exit_code == 0) {  // of some hosts, all interfaces reach the loopback interface
-    EXPECT_NE(end.output.find("kl7 in domain " + std::to_string(claim_.domain())), std::string::npos)
+    EXPECT_NE(end.output.find("kl7 in domain " + std::to_string(lock_.domain())), std::string::npos)
         << end.output;
     return;
   }
@@ -307,7 +307,7 @@ TEST_F(Online, NamesTheVehiclesThatAreThereInstead) {
   ASSERT_TRUE(eventually(
       [&] {
         const Ending end = run_program("swiftlet",
-                                       {"arm", "--timeout", "1", "--domain", std::to_string(claim_.domain()),
+                                       {"arm", "--timeout", "1", "--domain", std::to_string(lock_.domain()),
                                         "--vehicle-name", "kl8", "--localhost-only"},
                                        folder_.path());
         return end.exit_code == 1 &&

@@ -26,14 +26,14 @@ SeparateProcesses::SeparateProcesses()
 comms::NodeSettings SeparateProcesses::node(const std::string& name) const {
   comms::NodeSettings settings;
   settings.name = name;
-  settings.domain = claim_.domain();
+  settings.domain = lock_.domain();
   settings.localhost_only = true;
   return settings;
 }
 
 std::unique_ptr<Program> SeparateProcesses::start(const std::string& program,
                                                   std::vector<std::string> arguments) const {
-  arguments.insert(arguments.end(), {"--domain", std::to_string(claim_.domain()), "--localhost-only"});
+  arguments.insert(arguments.end(), {"--domain", std::to_string(lock_.domain()), "--localhost-only"});
   return std::make_unique<Program>(program, std::move(arguments), folder_.path());
 }
 
@@ -57,11 +57,11 @@ void SeparateProcesses::hover() {
       << armed.reason;
   const ground::Result off = ask(msg::Command_Constants::TAKEOFF);
   ASSERT_TRUE(off.accepted()) << off.reason;
-  ASSERT_TRUE(told(control::Mode::kHolding, "take-off completed")) << story() << control_->errors();
+  ASSERT_TRUE(reported(control::Mode::kHolding, "take-off completed")) << story() << control_->errors();
   const auto start = client_->view().truth.message.position_ned();
   ASSERT_TRUE(eventually([&] { return distance_m(start[0], start[1], -1) < 0.05; }, kTimeout));
   forget();
-  ASSERT_TRUE(told(control::Mode::kHolding, "take-off completed")) << "the story goes on from there";
+  ASSERT_TRUE(reported(control::Mode::kHolding, "take-off completed")) << "the story goes on from there";
 }
 
 ground::Result SeparateProcesses::ask(std::uint8_t kind, double z_ned) {
@@ -72,11 +72,14 @@ ground::Result SeparateProcesses::ask(std::uint8_t kind, double z_ned) {
   return client_->command(command, std::chrono::seconds(5));
 }
 
-bool SeparateProcesses::told(control::Mode mode, const std::string& reason,
-                             std::chrono::milliseconds timeout) {
+bool SeparateProcesses::reported(control::Mode mode, const std::string& reason,
+                                 std::chrono::milliseconds timeout) {
   const std::string wanted = std::string(control::to_string(mode)) + ": " + reason;
   return story_.wait(
-      [&](const auto& told) { return std::find(told.begin(), told.end(), wanted) != told.end(); }, timeout);
+      [&](const auto& reported) {
+        return std::find(reported.begin(), reported.end(), wanted) != reported.end();
+      },
+      timeout);
 }
 
 void SeparateProcesses::forget() {

@@ -36,7 +36,7 @@ class SeparateProcesses : public testing::Test {
 
   ground::Result ask(std::uint8_t kind, double z_ned = -1.0);
   // Until some control_status since the last call of forget() says so.
-  bool told(control::Mode mode, const std::string& reason, std::chrono::milliseconds timeout = kTimeout);
+  bool reported(control::Mode mode, const std::string& reason, std::chrono::milliseconds timeout = kTimeout);
   void forget();
   // The modes and reasons that were told, one a line.
   std::string story() const;
@@ -54,7 +54,7 @@ class SeparateProcesses : public testing::Test {
   bool wait_until_on_ground() const;
   double distance_m(double x, double y, double z) const;
 
-  comms::DomainLock claim_;
+  comms::DomainLock lock_;
   TemporaryFolder folder_;
   std::unique_ptr<Program> plant_, mocap_, control_;
   ground::FlightRecord record_;

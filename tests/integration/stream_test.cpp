@@ -69,14 +69,14 @@ Ending example(const std::string& name, int domain) {
 }
 
 TEST_F(OnlineFlight, TheExampleFliesASquare) {
-  const Ending end = example("example-fly-square", claim_.domain());
+  const Ending end = example("example-fly-square", lock_.domain());
   EXPECT_EQ(end.exit_code, 0) << end.errors << end.output;
   EXPECT_NE(end.output.find("land: done"), std::string::npos) << end.output;
   EXPECT_EQ(status().at("mode"), "disarmed");
 }
 
 TEST_F(OnlineFlight, TheExampleStreamsACircle) {
-  const Ending end = example("example-stream-circle", claim_.domain());
+  const Ending end = example("example-stream-circle", lock_.domain());
   EXPECT_EQ(end.exit_code, 0) << end.errors << end.output;
   const std::size_t at = end.output.find("up to ");
   ASSERT_NE(at, std::string::npos) << end.output;
@@ -91,7 +91,7 @@ TEST_F(OnlineFlight, TheExampleFliesAMissionFileAndStreams) {
                     "  - {kind: takeoff, height_m: 0.8, speed_m_s: 0.8}\n"
                     "  - {kind: waypoint, position_m: [-0.5, 0, -0.6], speed_m_s: 0.8}\n");
   const Ending end =
-      run_program("example-fly-mission", {file, "kl7", std::to_string(claim_.domain()), "--localhost-only"},
+      run_program("example-fly-mission", {file, "kl7", std::to_string(lock_.domain()), "--localhost-only"},
                   folder_.path(), 120s);
   EXPECT_EQ(end.exit_code, 0) << end.errors << end.output;
   for (const char* line : {"the control process is heard: ", "arm: done\n", "take off: done\n",

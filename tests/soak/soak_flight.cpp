@@ -50,7 +50,7 @@ class Run {
   SoakFlight fly() {
     while (loop_.time_s() < kFlight_s && !flight_.violation && !flight_.lies) {
       const Mode before = loop_.controller.status().mode;
-      tell_faults();
+      report_faults();
       pilot_.act(loop_);
       const Mode asked = loop_.controller.status().mode;
       loop_.step();
@@ -94,8 +94,8 @@ class Run {
       happened(Consequence::kFell);
     }
     was_running_ = rotors_running();
-    judge_fence();
-    judge_attitude(step_s);
+    check_fence();
+    check_attitude(step_s);
   }
 
   void happened(Consequence consequence) {
@@ -106,7 +106,7 @@ class Run {
     }
   }
 
-  void judge_fence() {
+  void check_fence() {
     const Vector3d& p = loop_.plant.state().position_ned;
     const double outside =
         std::max((p - limits_.fence_max_ned).maxCoeff(), (limits_.fence_min_ned - p).maxCoeff());
@@ -114,7 +114,7 @@ class Run {
     if (outside > kFenceMargin_m) violate(text("%.2f m outside the fence", outside));
   }
 
-  void judge_attitude(double step_s) {
+  void check_attitude(double step_s) {
     upside_down_s_ = upside_down() && rotors_running() ? upside_down_s_ + step_s : 0.0;
     if (upside_down_s_ > kUpsideDown_s)
       violate(text("upside down with its rotors running for %.1f s", upside_down_s_));
@@ -145,7 +145,7 @@ class Run {
               what.c_str()));
   }
 
-  void tell_faults() {
+  void report_faults() {
     if (!log_) return;
     for (const MetFault& met : flight_.faults) {
       if (told_s_ < met.fault.at_s && met.fault.at_s <= loop_.time_s())

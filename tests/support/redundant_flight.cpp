@@ -64,13 +64,13 @@ RedundantFlight::RedundantFlight(const std::filesystem::path& folder, std::vecto
 }
 
 std::vector<std::string> RedundantFlight::network() const {
-  return {"--domain", std::to_string(claim_.domain()), "--localhost-only"};
+  return {"--domain", std::to_string(lock_.domain()), "--localhost-only"};
 }
 
 comms::NodeSettings RedundantFlight::node_settings(const char* name) const {
   comms::NodeSettings settings;
   settings.name = name;
-  settings.domain = claim_.domain();
+  settings.domain = lock_.domain();
   settings.localhost_only = true;
   return settings;
 }

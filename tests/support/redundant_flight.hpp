@@ -88,7 +88,7 @@ class RedundantFlight {
   int count(std::uint8_t role) const;
   std::optional<double> deviation_m(std::int64_t stamp_ns) const;  // with the lock held
 
-  comms::DomainLock claim_;
+  comms::DomainLock lock_;
   std::filesystem::path folder_;
   Program plant_, mocap_;
   std::vector<std::unique_ptr<Controller>> controllers_;

@@ -78,7 +78,7 @@ TEST(EstimatorInFlight, HalfASecondWithoutPosesCostsLessThanTenCentimetres) {
 }
 
 // Take-off, a move and a turn by motion capture that hands out q or -q as it likes.
-Vector3d fly_by_signs(bool flips) {
+Vector3d fly_with_heartbeats(bool flips) {
   ClosedLoop flown = loop(world("default"), 7);
   const auto step_for = [&](double time_s) {
     const double end = flown.time_s() + time_s;
@@ -111,7 +111,7 @@ Vector3d fly_by_signs(bool flips) {
 }
 
 TEST(EstimatorInFlight, ASignOfTheQuaternionThatFlipsChangesNothing) {
-  EXPECT_LT((fly_by_signs(true) - fly_by_signs(false)).norm(), 1e-6);
+  EXPECT_LT((fly_with_heartbeats(true) - fly_with_heartbeats(false)).norm(), 1e-6);
 }
 
 TEST(EstimatorInFlight, NoPoseOfAnyWorldIsRefused) {

@@ -430,7 +430,7 @@ class GroundLinks : public testing::Test {
     for (int i = 0; flight_.situation_.stamp_ns < end_ns; ++i) {
       if (i % 100 == 0) {
         for (const std::uint64_t client : clients)
-          EXPECT_TRUE(flight_.supervisor_.ground_sign({client, true}));
+          EXPECT_TRUE(flight_.supervisor_.ground_heartbeat({client, true}));
       }
       flight_.step();
     }
@@ -458,7 +458,7 @@ TEST_F(GroundLinks, OneThatFallsSilentIsMissedThoughAnotherTalks) {
 TEST_F(GroundLinks, OneThatTakesLeaveIsNotMissed) {
   ASSERT_TRUE(flight_.take_off());
   fly_on(1.0, {1});
-  EXPECT_TRUE(flight_.supervisor_.ground_sign({1, false}));
+  EXPECT_TRUE(flight_.supervisor_.ground_heartbeat({1, false}));
   fly_on(3.0, {});
   EXPECT_EQ(flight_.mode(), Mode::kHolding);
 }
@@ -488,16 +488,16 @@ TEST_F(GroundLinks, OneThatIsLostWithoutPositionIsAnsweredWhenThePoseIsBack) {
 
 TEST_F(GroundLinks, NoMoreThanFitAreTaken) {
   for (std::uint64_t client = 1; client <= kMaxGroundLinks; ++client)
-    EXPECT_TRUE(flight_.supervisor_.ground_sign({client, true}));
-  EXPECT_FALSE(flight_.supervisor_.ground_sign({99, true}));
-  EXPECT_TRUE(flight_.supervisor_.ground_sign({99, false})) << "it never was depended on";
-  EXPECT_TRUE(flight_.supervisor_.ground_sign({2, true}));
-  EXPECT_TRUE(flight_.supervisor_.ground_sign({3, false}));
-  EXPECT_TRUE(flight_.supervisor_.ground_sign({99, true}));
+    EXPECT_TRUE(flight_.supervisor_.ground_heartbeat({client, true}));
+  EXPECT_FALSE(flight_.supervisor_.ground_heartbeat({99, true}));
+  EXPECT_TRUE(flight_.supervisor_.ground_heartbeat({99, false})) << "it never was depended on";
+  EXPECT_TRUE(flight_.supervisor_.ground_heartbeat({2, true}));
+  EXPECT_TRUE(flight_.supervisor_.ground_heartbeat({3, false}));
+  EXPECT_TRUE(flight_.supervisor_.ground_heartbeat({99, true}));
 }
 
 TEST_F(GroundLinks, OnesThatFellSilentOnTheGroundDoNotEndTheNextFlight) {
-  EXPECT_TRUE(flight_.supervisor_.ground_sign({1, true}));
+  EXPECT_TRUE(flight_.supervisor_.ground_heartbeat({1, true}));
   fly_on(3.0, {});
   ASSERT_TRUE(flight_.take_off());
   EXPECT_EQ(flight_.mode(), Mode::kHolding);

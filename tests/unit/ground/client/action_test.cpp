@@ -53,9 +53,9 @@ TEST(Manoeuvres, AreFoundAmongTheEarlierRequests) {
   RequestStatus other = in_state(RequestState::kExecuting);
   for (const control::RequestKey& key : {control::RequestKey{7, 13}, control::RequestKey{8, 12}}) {
     other.key = key;
-    auto told = status(other);
-    told.earlier_requests()[2] = comms::to_message(in_state(RequestState::kSucceeded));
-    EXPECT_EQ(end_of(action_result_by(told, kAnswer)), "done");
+    auto reported = status(other);
+    reported.earlier_requests()[2] = comms::to_message(in_state(RequestState::kSucceeded));
+    EXPECT_EQ(end_of(action_result_by(reported, kAnswer)), "done");
   }
 }
 

@@ -21,10 +21,10 @@ using tests::eventually;
 using tests::Inbox;
 using namespace std::chrono_literals;
 
-comms::NodeSettings settings_of(const char* name, const DomainLock& claim) {
+comms::NodeSettings settings_of(const char* name, const DomainLock& lock) {
   comms::NodeSettings settings;
   settings.name = name;
-  settings.domain = claim.domain();
+  settings.domain = lock.domain();
   settings.localhost_only = true;
   return settings;
 }
@@ -32,9 +32,9 @@ comms::NodeSettings settings_of(const char* name, const DomainLock& claim) {
 // Hears requests, and answers if it is to.
 class Control {
  public:
-  explicit Control(const DomainLock& claim, bool answers = false)
+  explicit Control(const DomainLock& lock, bool answers = false)
       : answers_(answers),
-        node_(settings_of("control", claim)),
+        node_(settings_of("control", lock)),
         acks_(node_.publish(comms::topics::kCommandAck)),
         statuses_(node_.publish(comms::topics::kControlStatus)) {
     commands_ = node_.subscribe<msg::Command>(comms::topics::kCommand, [this](const msg::Command& command) {
@@ -82,18 +82,18 @@ class Requests : public testing::Test {
   }
   bool is_silence(std::future<Result> answer) { return answer.get().kind == Result::Kind::kSilence; }
 
-  DomainLock claim_;
-  Client client_{settings_of("ground", claim_)};
+  DomainLock lock_;
+  Client client_{settings_of("ground", lock_)};
 };
 
 TEST_F(Requests, GoOutOnceWhileNobodyAnswers) {
-  Control control(claim_);
+  Control control(lock_);
   EXPECT_TRUE(is_silence(ask(1500ms)));
   EXPECT_EQ(control.heard_.size(), 1U);
 }
 
 TEST_F(Requests, ALongMissionGoesOutOnce) {
-  Control control(claim_);
+  Control control(lock_);
   control::Mission mission;
   mission.items.resize(control::kMaxMissionItems);
   EXPECT_EQ(client_.upload(mission, 1900ms).kind, Result::Kind::kSilence);
@@ -101,7 +101,7 @@ TEST_F(Requests, ALongMissionGoesOutOnce) {
 }
 
 TEST_F(Requests, GoOutAgainAfterALongSilence) {
-  Control control(claim_);
+  Control control(lock_);
   EXPECT_TRUE(is_silence(ask(3500ms)));
   EXPECT_EQ(control.heard_.size(), 2U);
   const auto ids = control.heard_.items();
@@ -110,19 +110,19 @@ TEST_F(Requests, GoOutAgainAfterALongSilence) {
 
 // Well before the silence is long: a controller that was started again, a standby that took over.
 TEST_F(Requests, AreAnsweredByAControllerThatIsStartedMeanwhile) {
-  auto first = std::make_unique<Control>(claim_);
+  auto first = std::make_unique<Control>(lock_);
   std::future<Result> answer = ask(10s);
   ASSERT_TRUE(first->heard_.wait_for_count(1));
   const auto since = Clock::now();
   first.reset();
-  Control second(claim_, true);
+  Control second(lock_, true);
   EXPECT_TRUE(answer.get().accepted());
   EXPECT_LT(Clock::now() - since, 1500ms);
 }
 
 TEST_F(Requests, GoOutAgainWhenAnotherControllerTakesOver) {
-  Control active(claim_, true);
-  Control standby(claim_, true);
+  Control active(lock_, true);
+  Control standby(lock_, true);
   std::uint64_t sequence = 1000;
   ASSERT_TRUE(eventually([&] {
     active.say(++sequence);
@@ -152,7 +152,7 @@ TEST_F(Requests, GoOutAgainWhenAnotherControllerTakesOver) {
 // for the long silence.
 TEST_F(Requests, ReachAControllerThatWasJustFound) {
   for (int round = 0; round < 10; ++round) {
-    Control control(claim_, true);
+    Control control(lock_, true);
     const auto since = Clock::now();
     ASSERT_TRUE(ask(10s).get().accepted()) << round;
     EXPECT_LT(Clock::now() - since, 1500ms) << round;

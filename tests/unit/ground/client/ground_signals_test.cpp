@@ -21,17 +21,17 @@ constexpr std::int64_t kMs = 1'000'000;
 
 class GroundSignals : public testing::Test {
  protected:
-  static comms::NodeSettings settings(const comms::DomainLock& claim, const char* name) {
+  static comms::NodeSettings settings(const comms::DomainLock& lock, const char* name) {
     comms::NodeSettings settings;
     settings.name = name;
-    settings.domain = claim.domain();
+    settings.domain = lock.domain();
     settings.localhost_only = true;
     settings.deadlines = false;
     return settings;
   }
-  comms::DomainLock claim_;
-  comms::Node ground_{settings(claim_, "ground")};
-  comms::Node vehicle_{settings(claim_, "vehicle")};
+  comms::DomainLock lock_;
+  comms::Node ground_{settings(lock_, "ground")};
+  comms::Node vehicle_{settings(lock_, "vehicle")};
 };
 
 TEST_F(GroundSignals, ASignOfLifeGoesOutEveryFifthOfASecondOfTheVehiclesClock) {

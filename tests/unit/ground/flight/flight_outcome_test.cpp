@@ -14,8 +14,8 @@ constexpr std::int64_t kSample_ns = 10'000'000;  // as telemetry comes
 constexpr int kSamples = 1000;
 
 // The report of a flight of 10 s whose truth is off its reference by error(i) m to the north, of which so many samples came.
-FlightReport judged(const std::function<double(int)>& error, int samples = kSamples,
-                    const std::string& reason = "") {
+FlightReport evaluated(const std::function<double(int)>& error, int samples = kSamples,
+                       const std::string& reason = "") {
   FlightRecord record(kSamples);
   for (int i = 0; i < samples; ++i) {
     ReferenceRow asked;
@@ -34,38 +34,38 @@ FlightReport judged(const std::function<double(int)>& error, int samples = kSamp
   return report;
 }
 
-TEST(Judge, AFlightWithinTheToleranceIsCompleted) {
-  const FlightReport report = judged([](int) { return 0.099; });
+TEST(Evaluate, AFlightWithinTheToleranceIsCompleted) {
+  const FlightReport report = evaluated([](int) { return 0.099; });
   EXPECT_TRUE(report.completed);
   EXPECT_EQ(report.reason, "");
   EXPECT_NEAR(report.errors.peak_3d_m, 0.099, 1e-12);
 }
 
 // One sample of 0.2 m among a thousand of 0.01 m: an RMS of 0.012 m, far below the tolerance.
-TEST(Judge, OneSampleBeyondTheToleranceIsEnough) {
-  const FlightReport report = judged([](int i) { return i == 700 ? -0.2 : 0.01; });
+TEST(Evaluate, OneSampleBeyondTheToleranceIsEnough) {
+  const FlightReport report = evaluated([](int i) { return i == 700 ? -0.2 : 0.01; });
   EXPECT_LT(report.errors.rms_3d_m, 0.02);
   EXPECT_FALSE(report.completed);
   EXPECT_EQ(report.reason, "the peak tracking error was 0.200 m, the tolerance is 0.100 m");
 }
 
-TEST(Judge, WhatEndedTheFlightIsTheReason) {
-  const FlightReport report = judged([](int) { return 0.5; }, kSamples, "the vehicle is silent");
+TEST(Evaluate, WhatEndedTheFlightIsTheReason) {
+  const FlightReport report = evaluated([](int) { return 0.5; }, kSamples, "the vehicle is silent");
   EXPECT_FALSE(report.completed);
   EXPECT_EQ(report.reason, "the vehicle is silent");
   EXPECT_NEAR(report.errors.peak_3d_m, 0.5, 1e-12) << "the errors are taken all the same";
 }
 
-TEST(Judge, WithoutTelemetryToTheEndNothingIsCompleted) {
-  const FlightReport report = judged([](int) { return 0.0; }, kSamples - 30);
+TEST(Evaluate, WithoutTelemetryToTheEndNothingIsCompleted) {
+  const FlightReport report = evaluated([](int) { return 0.0; }, kSamples - 30);
   EXPECT_FALSE(report.completed);
   EXPECT_NE(report.reason.find("too little telemetry"), std::string::npos) << report.reason;
-  EXPECT_FALSE(judged([](int) { return 0.0; }, 0).completed);
+  EXPECT_FALSE(evaluated([](int) { return 0.0; }, 0).completed);
 }
 
-TEST(Judge, ATruthThatIsNotFiniteIsNoTruth) {
+TEST(Evaluate, ATruthThatIsNotFiniteIsNoTruth) {
   const FlightReport report =
-      judged([](int i) { return i == 5 ? std::numeric_limits<double>::quiet_NaN() : 0.0; });
+      evaluated([](int i) { return i == 5 ? std::numeric_limits<double>::quiet_NaN() : 0.0; });
   EXPECT_FALSE(report.completed);
   EXPECT_EQ(report.reason, "the ground truth is not finite");
 }

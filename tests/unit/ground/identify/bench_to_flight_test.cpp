@@ -86,9 +86,9 @@ TEST_P(BenchToFlight, TheSquareOnTheTruePlant) {
 TEST_P(BenchToFlight, KeepsItsMarginsOverWhatTheBenchLeftOpen) {
   const std::string file = identified_file(folder_, truth_, kaylion_, GetParam());
   const LaunchConfiguration plan = plan_of(file, folder_, kUncertainty);
-  ASSERT_EQ(plan.variation.name, kUncertainty);
+  ASSERT_EQ(plan.dispersion.name, kUncertainty);
   const MarginStudy study = study_margins(control::design(plan.vehicle, plan.control), plan.vehicle,
-                                          plan.variation, 300, GetParam());
+                                          plan.dispersion, 300, GetParam());
   EXPECT_EQ(study.draws, 300U);
   EXPECT_EQ(study.unstable, 0U);
   for (std::size_t i = 0; i < kLoopNames.size(); ++i) {

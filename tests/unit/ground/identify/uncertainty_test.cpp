@@ -37,7 +37,7 @@ std::string refused(const plant::VehicleUncertainty& given) {
 
 TEST(Uncertainty, IsDrawnWithItsErrorsAndCorrelations) {
   const plant::Vehicle vehicle = kaylion();
-  const Dispersion variation = dispersion_of(uncertainty(), vehicle, "v.yaml");
+  const Dispersion dispersion = dispersion_of(uncertainty(), vehicle, "v.yaml");
   constexpr int kDraws = 4000;
   double k2 = 0.0;
   double k3 = 0.0;
@@ -46,7 +46,7 @@ TEST(Uncertainty, IsDrawnWithItsErrorsAndCorrelations) {
   double apart = 0.0;
   for (int seed = 0; seed < kDraws; ++seed) {
     const plant::Vehicle drawn =
-        draw(variation, {vehicle, {}}, static_cast<std::uint64_t>(seed)).world.vehicle;
+        draw(dispersion, {vehicle, {}}, static_cast<std::uint64_t>(seed)).world.vehicle;
     const double e2 = (drawn.motor.k2 - vehicle.motor.k2) / 5e-6;
     const double e3 = (drawn.motor.k3 - vehicle.motor.k3) / 2e-9;
     const double em = (drawn.mass_kg - vehicle.mass_kg) / 2e-4;
@@ -65,9 +65,9 @@ TEST(Uncertainty, IsDrawnWithItsErrorsAndCorrelations) {
 
 TEST(Uncertainty, GivesOneDrawForOneSeed) {
   const plant::Vehicle vehicle = kaylion();
-  const Dispersion variation = dispersion_of(uncertainty(), vehicle, "v.yaml");
-  EXPECT_EQ(draw(variation, {vehicle, {}}, 7).values, draw(variation, {vehicle, {}}, 7).values);
-  EXPECT_NE(draw(variation, {vehicle, {}}, 7).values, draw(variation, {vehicle, {}}, 8).values);
+  const Dispersion dispersion = dispersion_of(uncertainty(), vehicle, "v.yaml");
+  EXPECT_EQ(draw(dispersion, {vehicle, {}}, 7).values, draw(dispersion, {vehicle, {}}, 7).values);
+  EXPECT_NE(draw(dispersion, {vehicle, {}}, 7).values, draw(dispersion, {vehicle, {}}, 8).values);
 }
 
 TEST(Uncertainty, OfFilesThatStateNoneIsRefused) {

@@ -76,7 +76,8 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
       "14,\n"
       "      turn_sigmas: 15}\n"
       "    pose_imu_consistency: {interval_s: 16, acceleration_m_s2: 17, turn_rad: 18, sigmas: 19}\n"
-      "    takeoff_consistency: {memory_s: 20, felt_m: 21, seen_part: 0.22, clearly_seen_m: 23, longest_s: "
+      "    takeoff_consistency: {memory_s: 20, inertial_climb_m: 21, min_pose_fraction: 0.22, "
+      "confirmed_climb_m: 23, longest_s: "
       "24}\n"
       "    recovery: {max_lead_s: 0.25, glitch_poses: 26, step_time_s: 27, sudden: 28, swap_rad: 29, poses: "
       "30,\n"
@@ -170,9 +171,9 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
   EXPECT_EQ(d.pose_imu_consistency.turn_rad, 18);
   EXPECT_EQ(d.pose_imu_consistency.sigmas, 19);
   EXPECT_EQ(d.takeoff_consistency.memory_s, 20);
-  EXPECT_EQ(d.takeoff_consistency.felt_m, 21);
-  EXPECT_EQ(d.takeoff_consistency.seen_part, 0.22);
-  EXPECT_EQ(d.takeoff_consistency.clearly_seen_m, 23);
+  EXPECT_EQ(d.takeoff_consistency.inertial_climb_m, 21);
+  EXPECT_EQ(d.takeoff_consistency.min_pose_fraction, 0.22);
+  EXPECT_EQ(d.takeoff_consistency.confirmed_climb_m, 23);
   EXPECT_EQ(d.takeoff_consistency.longest_s, 24);
   EXPECT_EQ(d.recovery.max_lead_s, 0.25);
   EXPECT_EQ(d.recovery.glitch_poses, 26);
@@ -329,9 +330,9 @@ const Fault kFaults[] = {
     {"estimator.detectors.pose_imu_consistency.turn_rad", "-1", "at least 0"},
     {"estimator.detectors.pose_imu_consistency.sigmas", "-1", "at least 0"},
     {"estimator.detectors.takeoff_consistency.memory_s", "0", "above 0"},
-    {"estimator.detectors.takeoff_consistency.felt_m", "0", "above 0"},
-    {"estimator.detectors.takeoff_consistency.seen_part", "2", "at most 1"},
-    {"estimator.detectors.takeoff_consistency.clearly_seen_m", "0", "above 0"},
+    {"estimator.detectors.takeoff_consistency.inertial_climb_m", "0", "above 0"},
+    {"estimator.detectors.takeoff_consistency.min_pose_fraction", "2", "at most 1"},
+    {"estimator.detectors.takeoff_consistency.confirmed_climb_m", "0", "above 0"},
     {"estimator.detectors.takeoff_consistency.longest_s", "-1", "at least 0"},
     {"estimator.detectors.recovery.max_lead_s", "-1", "at least 0"},
     {"estimator.detectors.recovery.step_time_s", "0", "above 0"},

@@ -73,7 +73,7 @@ TEST(ActuatorWatchdog, ATermRulesOutLowerOnesUntilItsCommandsCease) {
 
 TEST(ActuatorWatchdog, SaysWhatItObeyed) {
   ActuatorWatchdog watchdog(4, kTimeout);
-  EXPECT_TRUE(watchdog.obeyed().told);
+  EXPECT_TRUE(watchdog.obeyed().reported);
   EXPECT_FALSE(watchdog.obeyed().any);
   ActuatorCommand sent = command(1000);
   sent.term = 7;

@@ -31,7 +31,7 @@ class Desk : public testing::Test {
       : vehicle_(runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml")),
         settings_(runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml")),
         loop_(vehicle_, settings_),
-        desk_(loop_, settings_.limits, wake_) {}
+        command_server_(loop_, settings_.limits, wake_) {}
 
   // The vehicle at rest on the ground: one IMU sample, with a pose each tenth and a battery sample each.
   plant::ActuatorCommand step() {
@@ -92,7 +92,7 @@ class Desk : public testing::Test {
   control::ControlSettings settings_;
   runtime::Semaphore wake_;
   InnerLoop loop_;
-  CommandServer desk_;
+  CommandServer command_server_;
   std::uint64_t sequence_ = 0;
   plant::PoseSample last_pose_;
   plant::BatterySample last_battery_;
@@ -103,12 +103,12 @@ class Desk : public testing::Test {
 
 TEST_F(Desk, ARequestIsJudgedInTheNextStepAndAnswered) {
   settle();
-  desk_.on_command(command(Command_Constants::ARM, 1));
-  EXPECT_TRUE(desk_.collect().empty());
+  command_server_.on_command(command(Command_Constants::ARM, 1));
+  EXPECT_TRUE(command_server_.collect().empty());
 
   EXPECT_EQ(step().rotor_state, plant::RotorState::kRunning);
 
-  const std::vector<RequestResult> answers = desk_.collect();
+  const std::vector<RequestResult> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 1U);
   EXPECT_EQ(answers[0].client, kClient);
   EXPECT_EQ(answers[0].id, 1U);
@@ -121,32 +121,32 @@ TEST_F(Desk, ARequestIsJudgedInTheNextStepAndAnswered) {
 // GIVEN an answer with its stamp, THEN whatever is told of a later stamp knows the request, from its first step on.
 TEST_F(Desk, WhatIsToldAfterAnAcceptanceKnowsTheRequest) {
   settle();
-  desk_.on_command(command(Command_Constants::ARM, 1));
+  command_server_.on_command(command(Command_Constants::ARM, 1));
   step();
-  desk_.on_command(command(Command_Constants::TAKEOFF, 2));
+  command_server_.on_command(command(Command_Constants::TAKEOFF, 2));
   const std::int64_t before_ns = last_imu_.stamp_ns;
   step();
-  for (const RequestResult& answer : desk_.collect()) EXPECT_GT(answer.stamp_ns, 0) << answer.kind;
-  desk_.on_command(command(Command_Constants::TAKEOFF, 2));
-  const std::vector<RequestResult> again = desk_.collect();
+  for (const RequestResult& answer : command_server_.collect()) EXPECT_GT(answer.stamp_ns, 0) << answer.kind;
+  command_server_.on_command(command(Command_Constants::TAKEOFF, 2));
+  const std::vector<RequestResult> again = command_server_.collect();
   ASSERT_EQ(again.size(), 1U);
   EXPECT_EQ(again[0].stamp_ns, before_ns);
   for (int i = 0; i < 20; ++i) step();
-  int told = 0;
+  int reported = 0;
   Snapshot snapshot;
   while (loop_.snapshots.pop(snapshot)) {
     if (snapshot.stamp_ns <= before_ns) continue;
-    ++told;
+    ++reported;
     EXPECT_EQ(snapshot.requests.back().key, (control::RequestKey{kClient, 2})) << snapshot.stamp_ns;
   }
-  EXPECT_GT(told, 2);
+  EXPECT_GT(reported, 2);
 }
 
 TEST_F(Desk, ARefusalOfTheControllerIsAnsweredWithItsReason) {
   settle();
-  desk_.on_command(command(Command_Constants::LAND, 1));
+  command_server_.on_command(command(Command_Constants::LAND, 1));
   step();
-  const std::vector<RequestResult> answers = desk_.collect();
+  const std::vector<RequestResult> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 1U);
   EXPECT_FALSE(answers[0].outcome.accepted);
   EXPECT_GT(std::string(answers[0].outcome.reason).size(), 0U);
@@ -154,18 +154,18 @@ TEST_F(Desk, ARefusalOfTheControllerIsAnsweredWithItsReason) {
 
 TEST_F(Desk, ARequestThatWasAnsweredIsAnsweredAgainAndNotAppliedTwice) {
   settle();
-  desk_.on_command(command(Command_Constants::ARM, 1));
+  command_server_.on_command(command(Command_Constants::ARM, 1));
   step();
-  ASSERT_EQ(desk_.collect().size(), 1U);
-  desk_.on_command(command(Command_Constants::DISARM, 2));
+  ASSERT_EQ(command_server_.collect().size(), 1U);
+  command_server_.on_command(command(Command_Constants::DISARM, 2));
   step();
-  ASSERT_EQ(desk_.collect().size(), 1U);
+  ASSERT_EQ(command_server_.collect().size(), 1U);
   ASSERT_EQ(mode(), control::Mode::kDisarmed);
 
-  desk_.on_command(command(Command_Constants::ARM, 1));  // the network repeats the first
+  command_server_.on_command(command(Command_Constants::ARM, 1));  // the network repeats the first
 
   EXPECT_EQ(step().rotor_state, plant::RotorState::kOff);
-  const std::vector<RequestResult> answers = desk_.collect();
+  const std::vector<RequestResult> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 1U);
   EXPECT_EQ(answers[0].id, 1U);
   EXPECT_TRUE(answers[0].outcome.accepted);
@@ -175,37 +175,37 @@ TEST_F(Desk, ARequestThatWasAnsweredIsAnsweredAgainAndNotAppliedTwice) {
 
 TEST_F(Desk, ARequestThatIsUnderWayIsNotTakenInAgain) {
   settle();
-  for (int i = 0; i < 3; ++i) desk_.on_command(command(Command_Constants::ARM, 1));
+  for (int i = 0; i < 3; ++i) command_server_.on_command(command(Command_Constants::ARM, 1));
   step();
-  EXPECT_EQ(desk_.collect().size(), 1U);
+  EXPECT_EQ(command_server_.collect().size(), 1U);
 }
 
 TEST_F(Desk, TheSameIdOfAnotherClientIsAnotherRequest) {
   settle();
-  desk_.on_command(command(Command_Constants::ARM, 1));
+  command_server_.on_command(command(Command_Constants::ARM, 1));
   msg::Command other = command(Command_Constants::DISARM, 1);
   other.client(kClient + 1);
-  desk_.on_command(other);
+  command_server_.on_command(other);
   step();
-  EXPECT_EQ(desk_.collect().size(), 2U);
+  EXPECT_EQ(command_server_.collect().size(), 2U);
   EXPECT_EQ(mode(), control::Mode::kDisarmed);
 }
 
 TEST_F(Desk, BrokenRequestsAreRefusedWithoutTheInnerLoop) {
   msg::Command go = command(Command_Constants::GOTO, 1);
   go.position_ned()[1] = std::numeric_limits<double>::quiet_NaN();
-  desk_.on_command(go);
+  command_server_.on_command(go);
   msg::Mission outside = mission(2, 99.0);
-  desk_.on_mission(outside);
+  command_server_.on_mission(outside);
   msg::Mission broken = mission(3, 1.0);
   broken.items()[1].speed(std::numeric_limits<double>::quiet_NaN());
-  desk_.on_mission(broken);
+  command_server_.on_mission(broken);
   msg::Trajectory empty;
   empty.client(kClient);
   empty.id(4);
-  desk_.on_trajectory(empty);
+  command_server_.on_trajectory(empty);
 
-  const std::vector<RequestResult> answers = desk_.collect();
+  const std::vector<RequestResult> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 4U);
   for (const RequestResult& answer : answers) EXPECT_FALSE(answer.outcome.accepted);
   EXPECT_STREQ(answers[0].outcome.reason, "position_ned[1] is nan, must be finite");
@@ -217,15 +217,15 @@ TEST_F(Desk, BrokenRequestsAreRefusedWithoutTheInnerLoop) {
 
 TEST_F(Desk, AMissionIsFlownFromTheDesksOwnCopy) {
   settle();
-  desk_.on_command(command(Command_Constants::ARM, 1));
+  command_server_.on_command(command(Command_Constants::ARM, 1));
   step();
   {
     const msg::Mission message = mission(2, 1.0);
-    desk_.on_mission(message);
+    command_server_.on_mission(message);
   }
-  desk_.on_command(command(Command_Constants::MISSION_START, 3));
+  command_server_.on_command(command(Command_Constants::MISSION_START, 3));
   step();
-  const std::vector<RequestResult> answers = desk_.collect();
+  const std::vector<RequestResult> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 3U);
   ASSERT_TRUE(answers[1].outcome.accepted) << answers[1].outcome.reason;
   ASSERT_TRUE(answers[2].outcome.accepted) << answers[2].outcome.reason;
@@ -237,29 +237,29 @@ TEST_F(Desk, AMissionIsFlownFromTheDesksOwnCopy) {
 
 TEST_F(Desk, WithoutImuSamplesARequestIsRefusedAndNotAppliedLater) {
   settle();
-  desk_.on_command(command(Command_Constants::ARM, 1));
+  command_server_.on_command(command(Command_Constants::ARM, 1));
   std::vector<RequestResult> answers;
   ASSERT_TRUE(tests::eventually([&] {
-    answers = desk_.collect();
+    answers = command_server_.collect();
     return !answers.empty();
   }));
   EXPECT_FALSE(answers[0].outcome.accepted);
   EXPECT_STREQ(answers[0].outcome.reason, "no IMU samples arrive: is the vehicle running?");
 
   EXPECT_EQ(step().rotor_state, plant::RotorState::kOff);
-  EXPECT_TRUE(desk_.collect().empty());
+  EXPECT_TRUE(command_server_.collect().empty());
   EXPECT_EQ(mode(), control::Mode::kDisarmed);
 }
 
 TEST_F(Desk, MoreThanFitAreRefused) {
   for (std::uint64_t id = 1; id <= kMaxPendingRequests + 1; ++id)
-    desk_.on_command(command(Command_Constants::HOLD, id));
-  const std::vector<RequestResult> answers = desk_.collect();
+    command_server_.on_command(command(Command_Constants::HOLD, id));
+  const std::vector<RequestResult> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 1U);
   EXPECT_EQ(answers[0].id, static_cast<std::uint64_t>(kMaxPendingRequests) + 1);
   EXPECT_STREQ(answers[0].outcome.reason, "32 requests are under way, no more fit");
   step();
-  EXPECT_EQ(desk_.collect().size(), static_cast<std::size_t>(kMaxPendingRequests));
+  EXPECT_EQ(command_server_.collect().size(), static_cast<std::size_t>(kMaxPendingRequests));
 }
 
 TEST_F(Desk, TelemetryIsSampledAHundredTimesASecondByTheImusNumbers) {
@@ -280,9 +280,9 @@ TEST_F(Desk, TelemetryIsSampledAHundredTimesASecondByTheImusNumbers) {
 
 TEST_F(Desk, TheInnerLoopDoesNotAllocate) {
   settle();
-  desk_.on_command(command(Command_Constants::ARM, 1));
-  desk_.on_mission(mission(2, 1.0));
-  desk_.on_command(command(Command_Constants::MISSION_START, 3));
+  command_server_.on_command(command(Command_Constants::ARM, 1));
+  command_server_.on_mission(mission(2, 1.0));
+  command_server_.on_command(command(Command_Constants::MISSION_START, 3));
   std::size_t calls = 0;
   {
     const test::MallocGuard guard;
@@ -290,7 +290,7 @@ TEST_F(Desk, TheInnerLoopDoesNotAllocate) {
     calls = guard.calls();
   }
   EXPECT_EQ(calls, 0U);
-  EXPECT_EQ(desk_.collect().size(), 3U);
+  EXPECT_EQ(command_server_.collect().size(), 3U);
 }
 
 // A standby beside the fixture's controller, which hears the same samples.
@@ -309,10 +309,10 @@ class DeskOfAStandby : public Desk {
     ASSERT_TRUE(report.active);
     comms::ControllerReport heard;
     ASSERT_FALSE(comms::from_message(comms::to_message(report), heard));
-    FailoverState handover;
-    handover.term = kTerm;
-    handover.flight = heard.flight;
-    standby_desk_.follow(handover);
+    FailoverState failover_state;
+    failover_state.term = kTerm;
+    failover_state.flight = heard.flight;
+    standby_desk_.follow(failover_state);
   }
   plant::ActuatorCommand step_standby(Role role) {
     standby_loop_.pose.put(last_pose_);
@@ -325,12 +325,12 @@ class DeskOfAStandby : public Desk {
   }
   void fly_mission() {
     settle();
-    desk_.on_command(command(Command_Constants::ARM, 1));
+    command_server_.on_command(command(Command_Constants::ARM, 1));
     step();
-    desk_.on_mission(mission(2, 1.0));
-    desk_.on_command(command(Command_Constants::MISSION_START, 3));
+    command_server_.on_mission(mission(2, 1.0));
+    command_server_.on_command(command(Command_Constants::MISSION_START, 3));
     step();
-    desk_.collect();
+    command_server_.collect();
   }
   void follow(int steps) {
     for (int i = 0; i < steps; ++i) {
@@ -409,7 +409,7 @@ TEST_F(DeskOfAStandby, GoesOnWithTheMissionThatItHeardBeingAskedFor) {
 
 TEST_F(DeskOfAStandby, GoesOnWithTheMissionThatItHeardBeingFlown) {
   fly_mission();
-  standby_desk_.on_flown_mission(desk_.mission(2));
+  standby_desk_.on_flown_mission(command_server_.mission(2));
   follow(20);
   EXPECT_EQ(standby_state().mode, control::Mode::kMission);
 }
@@ -420,14 +420,14 @@ TEST_F(DeskOfAStandby, StartsTheMissionThatWasUploadedBeforeItTookOver) {
     SCOPED_TRACE(heard_asked_for);
     settle();
     const std::uint64_t id = heard_asked_for ? 12 : 22;
-    desk_.on_command(command(Command_Constants::ARM, id - 1));
-    desk_.on_mission(mission(id, 1.0));
+    command_server_.on_command(command(Command_Constants::ARM, id - 1));
+    command_server_.on_mission(mission(id, 1.0));
     step();
-    desk_.collect();
+    command_server_.collect();
     if (heard_asked_for) {
       standby_desk_.on_mission(mission(id, 1.0));
     } else {
-      standby_desk_.on_flown_mission(desk_.mission(id));
+      standby_desk_.on_flown_mission(command_server_.mission(id));
     }
     follow(20);
     control::SupervisorState state = standby_state();
@@ -445,25 +445,25 @@ TEST_F(DeskOfAStandby, StartsTheMissionThatWasUploadedBeforeItTookOver) {
     EXPECT_EQ(state.mode, control::Mode::kMission);
     EXPECT_EQ(state.guidance.mission.state, control::MissionState::kRunning);
     standby_desk_.set_active(false);
-    desk_.on_command(command(Command_Constants::DISARM, id + 2));
+    command_server_.on_command(command(Command_Constants::DISARM, id + 2));
     step();
-    desk_.collect();
+    command_server_.collect();
   }
 }
 
 TEST_F(Desk, AnotherMissionOfAKnownIdIsRefusedAndTheSameIsNot) {
   settle();
-  desk_.on_mission(mission(2, 1.0));
+  command_server_.on_mission(mission(2, 1.0));
   step();
-  ASSERT_TRUE(desk_.collect().at(0).outcome.accepted);
+  ASSERT_TRUE(command_server_.collect().at(0).outcome.accepted);
   msg::Mission other = mission(2, 1.5);
   other.client(kClient + 1);
-  desk_.on_mission(other);
+  command_server_.on_mission(other);
   msg::Mission same = mission(2, 1.0);
   same.client(kClient + 2);
-  desk_.on_mission(same);
+  command_server_.on_mission(same);
   step();
-  const std::vector<RequestResult> answers = desk_.collect();
+  const std::vector<RequestResult> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 2U);
   EXPECT_EQ(answers[0].client, kClient + 1);
   EXPECT_STREQ(answers[0].outcome.reason, "another mission has the id 2: a new one needs a new id");
@@ -484,10 +484,10 @@ TEST_F(DeskOfAStandby, DoesNotFollowAnotherTerm) {
   step();
   comms::ControllerReport report;
   loop_.report(report);
-  FailoverState handover;
-  handover.term = kTerm - 1;
-  handover.flight = report.flight;
-  standby_desk_.follow(handover);
+  FailoverState failover_state;
+  failover_state.term = kTerm - 1;
+  failover_state.flight = report.flight;
+  standby_desk_.follow(failover_state);
   step_standby(Role::kStandby);
   EXPECT_EQ(standby_state().mode, control::Mode::kDisarmed);
 }
@@ -496,7 +496,7 @@ TEST_F(DeskOfAStandby, DoesNotFollowAnotherTerm) {
 // takes over gives it again and does not apply it twice.
 TEST_F(DeskOfAStandby, ARequestThatWasAcceptedBeforeIsAnsweredAndNotAppliedAgain) {
   settle();
-  desk_.on_command(command(Command_Constants::ARM, 1));
+  command_server_.on_command(command(Command_Constants::ARM, 1));
   step();
   hand_over();
   step_standby(Role::kStandby);

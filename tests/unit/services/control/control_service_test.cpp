@@ -42,10 +42,10 @@ bool may_be_realtime() {
   return granted;
 }
 
-comms::NodeSettings settings_of(const char* name, const comms::DomainLock& claim) {
+comms::NodeSettings settings_of(const char* name, const comms::DomainLock& lock) {
   comms::NodeSettings settings;
   settings.name = name;
-  settings.domain = claim.domain();
+  settings.domain = lock.domain();
   settings.localhost_only = true;
   return settings;
 }
@@ -91,9 +91,9 @@ class RealtimeService : public testing::Test {
   }
   void forget_what_was_said() { said_ = -1; }
 
-  comms::DomainLock claim_;
-  comms::Node vehicle_node_{settings_of("plant", claim_)};
-  comms::Node control_node_{settings_of("control", claim_)};
+  comms::DomainLock lock_;
+  comms::Node vehicle_node_{settings_of("plant", lock_)};
+  comms::Node control_node_{settings_of("control", lock_)};
   std::atomic<int> said_{-1};
   comms::Subscription status_ = vehicle_node_.subscribe<msg::ControlStatus>(
       topics::kControlStatus,

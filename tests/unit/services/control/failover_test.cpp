@@ -23,10 +23,10 @@ class Vehicle {
  public:
   struct Controller {
     Controller(std::uint64_t number, int failover_priority)
-        : id(number), n(failover_priority), succession(number, failover_priority) {}
+        : id(number), n(failover_priority), failover(number, failover_priority) {}
     std::uint64_t id;
     int n;
-    Failover succession;
+    Failover failover;
     bool runs = true;  // false: dead or stopped
     bool hears_others = true;
     std::deque<std::pair<std::int64_t, plant::ObeyedCommand>> inbox;  // samples, by stamp
@@ -55,11 +55,11 @@ class Vehicle {
     while (!c.inbox.empty()) {
       const auto [stamp_ns, obeyed] = c.inbox.front();
       c.inbox.pop_front();
-      const Role role = c.succession.sample(stamp_ns, obeyed, now_ns_);
+      const Role role = c.failover.sample(stamp_ns, obeyed, now_ns_);
       if (role == Role::kActive) command(c, stamp_ns);
       for (const auto& other : controllers_) {
         if (other.get() != &c && other->runs && other->hears_others && c.hears_others)
-          other->succession.heard({c.id, c.n, c.succession.term(), role, now_ns_});
+          other->failover.heard({c.id, c.n, c.failover.term(), role, now_ns_});
       }
     }
   }
@@ -67,14 +67,14 @@ class Vehicle {
   // As the vehicle's watchdog takes them.
   void command(const Controller& c, std::int64_t stamp_ns) {
     if (!obeys_ || (obeyed_.any && stamp_ns < obeyed_.stamp_ns)) return;
-    if (obeyed_.any && c.succession.term() < obeyed_.term && stamp_ns_ - obeyed_.stamp_ns < ms(200)) {
+    if (obeyed_.any && c.failover.term() < obeyed_.term && stamp_ns_ - obeyed_.stamp_ns < ms(200)) {
       ++refused_;
       return;
     }
     if (obeyed_.any) longest_gap_ns_ = std::max(longest_gap_ns_, stamp_ns - obeyed_.stamp_ns);
     if (commander_ != c.id) ++changes_;
     commander_ = c.id;
-    obeyed_ = {true, true, c.succession.term(), stamp_ns};
+    obeyed_ = {true, true, c.failover.term(), stamp_ns};
   }
 
   void restart() {
@@ -87,7 +87,7 @@ class Vehicle {
 
   int active() const {
     return static_cast<int>(std::count_if(controllers_.begin(), controllers_.end(), [](const auto& c) {
-      return c->runs && c->succession.role() == Role::kActive;
+      return c->runs && c->failover.role() == Role::kActive;
     }));
   }
   std::uint64_t commander() const { return commander_; }
@@ -112,10 +112,10 @@ TEST(Failover, OneAloneBecomesActiveAndStaysIt) {
   Vehicle vehicle;
   const auto& only = vehicle.add(7, 0);
   vehicle.run(200);
-  EXPECT_EQ(only.succession.role(), Role::kActive);
-  EXPECT_FALSE(only.succession.continues());
+  EXPECT_EQ(only.failover.role(), Role::kActive);
+  EXPECT_FALSE(only.failover.continues());
   vehicle.run(5000);
-  EXPECT_EQ(only.succession.role(), Role::kActive);
+  EXPECT_EQ(only.failover.role(), Role::kActive);
   EXPECT_EQ(vehicle.longest_gap_ns(), kPeriodNs);
 }
 
@@ -125,7 +125,7 @@ TEST(Failover, ALaterOneIsAStandbyHoweverStrong) {
   vehicle.run(300);
   const auto& later = vehicle.add(9, 1000);
   vehicle.run(5000);
-  EXPECT_EQ(later.succession.role(), Role::kStandby);
+  EXPECT_EQ(later.failover.role(), Role::kStandby);
   EXPECT_EQ(vehicle.commander(), 7U);
   EXPECT_EQ(vehicle.changes(), 1);
 }
@@ -139,9 +139,9 @@ TEST(Failover, TheStandbyTakesOverWithinItsPatience) {
   first.runs = false;
   vehicle.run(100);
   EXPECT_EQ(vehicle.commander(), 8U);
-  EXPECT_TRUE(standby.succession.continues());
+  EXPECT_TRUE(standby.failover.continues());
   EXPECT_LE(vehicle.longest_gap_ns(), Failover::kPatienceNs + 2 * kPeriodNs);
-  EXPECT_GT(standby.succession.term(), first.succession.term());
+  EXPECT_GT(standby.failover.term(), first.failover.term());
 }
 
 TEST(Failover, OfTwoStandbysTheStrongerGoesFirstAndTheOtherStays) {
@@ -154,8 +154,8 @@ TEST(Failover, OfTwoStandbysTheStrongerGoesFirstAndTheOtherStays) {
   first.runs = false;
   vehicle.run(1000);
   EXPECT_EQ(vehicle.commander(), 9U);
-  EXPECT_EQ(strong.succession.role(), Role::kActive);
-  EXPECT_EQ(weak.succession.role(), Role::kStandby);
+  EXPECT_EQ(strong.failover.role(), Role::kActive);
+  EXPECT_EQ(weak.failover.role(), Role::kStandby);
   EXPECT_EQ(vehicle.changes(), 2);
 }
 
@@ -189,24 +189,24 @@ TEST(Failover, OneThatWasStoppedComesBackAsStandbyAndIsNotObeyed) {
   EXPECT_EQ(vehicle.commander(), 8U);
   EXPECT_EQ(vehicle.changes(), 2);
   EXPECT_EQ(vehicle.active(), 1);
-  EXPECT_EQ(first.succession.role(), Role::kStandby);
+  EXPECT_EQ(first.failover.role(), Role::kStandby);
 }
 
 TEST(Failover, AStandbyThatWasStoppedTakesNobodyForDead) {
-  for (const bool told : {true, false}) {
+  for (const bool reported : {true, false}) {
     Vehicle vehicle;
-    if (!told) vehicle.tell_nothing();
+    if (!reported) vehicle.tell_nothing();
     vehicle.add(7, 1);
     vehicle.run(1500);
     auto& standby = vehicle.add(8, 9);
     vehicle.run(2000);
-    ASSERT_EQ(standby.succession.role(), Role::kStandby);
+    ASSERT_EQ(standby.failover.role(), Role::kStandby);
     standby.runs = false;
     vehicle.run(200);
     standby.runs = true;
     vehicle.run(500);
-    EXPECT_EQ(vehicle.changes(), 1) << (told ? "told" : "not told");
-    EXPECT_EQ(standby.succession.role(), Role::kStandby);
+    EXPECT_EQ(vehicle.changes(), 1) << (reported ? "told" : "not told");
+    EXPECT_EQ(standby.failover.role(), Role::kStandby);
   }
 }
 
@@ -233,12 +233,12 @@ TEST(Failover, ThoseThatDoNotHearEachOtherAgreeByWhatTheVehicleObeys) {
   vehicle.run(1000);
   EXPECT_EQ(vehicle.active(), 1);
   EXPECT_LE(vehicle.changes(), 2);
-  auto& acting = one.succession.role() == Role::kActive ? one : two;
+  auto& acting = one.failover.role() == Role::kActive ? one : two;
   auto& waiting = &acting == &one ? two : one;
   acting.runs = false;
   vehicle.run(300);
   EXPECT_EQ(vehicle.commander(), waiting.id);
-  EXPECT_FALSE(waiting.succession.continues()) << "it has heard nothing of the flight";
+  EXPECT_FALSE(waiting.failover.continues()) << "it has heard nothing of the flight";
 }
 
 TEST(Failover, OneStartedWhileNobodyFliesTakesOverAtItsFirstSample) {
@@ -249,9 +249,9 @@ TEST(Failover, OneStartedWhileNobodyFliesTakesOverAtItsFirstSample) {
   vehicle.run(300);
   const auto& restarted = vehicle.add(8, 1);
   vehicle.sample();
-  EXPECT_EQ(restarted.succession.role(), Role::kActive);
-  EXPECT_FALSE(restarted.succession.continues());
-  EXPECT_GT(restarted.succession.term(), first.succession.term());
+  EXPECT_EQ(restarted.failover.role(), Role::kActive);
+  EXPECT_FALSE(restarted.failover.continues());
+  EXPECT_GT(restarted.failover.term(), first.failover.term());
 }
 
 TEST(Failover, AStrangerLeavesTheTakeoverToThoseWhoKnowTheFlight) {
@@ -289,11 +289,11 @@ TEST(Failover, AVehicleThatSaysNothingIsFlownByHeartbeats) {
   EXPECT_EQ(vehicle.active(), 1);
   const auto& standby = vehicle.add(8, 1000);
   vehicle.run(3000);
-  ASSERT_EQ(standby.succession.role(), Role::kStandby);
+  ASSERT_EQ(standby.failover.role(), Role::kStandby);
   first.runs = false;
   vehicle.run(100);
   EXPECT_EQ(vehicle.commander(), 8U);
-  EXPECT_TRUE(standby.succession.continues());
+  EXPECT_TRUE(standby.failover.continues());
   EXPECT_LE(vehicle.longest_gap_ns(), Failover::kPatienceNs + 2 * kPeriodNs);
   first.runs = true;
   vehicle.run(500);
@@ -306,10 +306,10 @@ TEST(Failover, AVehicleThatObeysNobodyIsNotFoughtOver) {
   auto& one = vehicle.add(7, 1);
   auto& two = vehicle.add(8, 1);
   vehicle.run(1000);
-  const std::uint32_t before = std::max(one.succession.term(), two.succession.term());
+  const std::uint32_t before = std::max(one.failover.term(), two.failover.term());
   vehicle.obey(false);
   vehicle.run(2000);
-  const std::uint32_t after = std::max(one.succession.term(), two.succession.term());
+  const std::uint32_t after = std::max(one.failover.term(), two.failover.term());
   EXPECT_LE((after >> 16) - (before >> 16), 5U) << "takeovers in 2 s";
   vehicle.obey(true);
   vehicle.run(1000);
@@ -324,11 +324,11 @@ TEST(Failover, TermsRiseWithEachTakeover) {
   std::uint32_t term = 0;
   for (int kill = 0; kill < 20; ++kill) {
     const auto acting = std::find_if(controllers.begin(), controllers.end(), [](const auto* c) {
-      return c->succession.role() == Role::kActive && c->runs;
+      return c->failover.role() == Role::kActive && c->runs;
     });
     ASSERT_NE(acting, controllers.end());
-    EXPECT_GT((*acting)->succession.term(), term);
-    term = (*acting)->succession.term();
+    EXPECT_GT((*acting)->failover.term(), term);
+    term = (*acting)->failover.term();
     (*acting)->runs = false;
     vehicle.run(150);
     ASSERT_EQ(vehicle.active(), 1);

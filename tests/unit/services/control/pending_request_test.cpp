@@ -12,9 +12,9 @@ using State = PendingRequest::State;
 
 TEST(PendingRequest, IsTheFirstOnes) {
   PendingRequest request;
-  EXPECT_TRUE(request.claim(State::kTaken));
-  EXPECT_FALSE(request.claim(State::kGivenUp));
-  EXPECT_FALSE(request.claim(State::kTaken));
+  EXPECT_TRUE(request.lock(State::kTaken));
+  EXPECT_FALSE(request.lock(State::kGivenUp));
+  EXPECT_FALSE(request.lock(State::kTaken));
   EXPECT_EQ(request.state, State::kTaken);
 }
 
@@ -29,7 +29,7 @@ TEST(PendingRequest, IsOneThreadsAlone) {
     const auto race = [&](State as, bool& mine) {
       ++ready;
       while (ready < 2) std::this_thread::yield();
-      mine = request.claim(as);
+      mine = request.lock(as);
       if (mine) request.outcome.accepted = as == State::kTaken;
     };
     std::thread loop([&] { race(State::kTaken, taken); });

@@ -20,52 +20,52 @@ std::unique_ptr<Mission> mission(std::uint64_t id) {
 }
 
 TEST(PlanStore, FindsTheNewestOfAnId) {
-  Shelf shelf;
-  EXPECT_EQ(shelf.find(1), nullptr);
-  shelf.put(mission(1));
-  const Mission* const first = shelf.find(1);
+  Shelf store;
+  EXPECT_EQ(store.find(1), nullptr);
+  store.put(mission(1));
+  const Mission* const first = store.find(1);
   ASSERT_NE(first, nullptr);
-  shelf.put(mission(1));
-  EXPECT_NE(shelf.find(1), first);
+  store.put(mission(1));
+  EXPECT_NE(store.find(1), first);
 }
 
 TEST(PlanStore, TheOldestMakeRoom) {
-  Shelf shelf;
-  for (std::uint64_t id = 1; id <= Shelf::kCapacity + 2; ++id) shelf.put(mission(id));
-  shelf.tidy(0);
-  EXPECT_EQ(shelf.size(), Shelf::kCapacity);
-  EXPECT_EQ(shelf.find(1), nullptr);
-  EXPECT_EQ(shelf.find(2), nullptr);
-  EXPECT_NE(shelf.find(3), nullptr);
+  Shelf store;
+  for (std::uint64_t id = 1; id <= Shelf::kCapacity + 2; ++id) store.put(mission(id));
+  store.tidy(0);
+  EXPECT_EQ(store.size(), Shelf::kCapacity);
+  EXPECT_EQ(store.find(1), nullptr);
+  EXPECT_EQ(store.find(2), nullptr);
+  EXPECT_NE(store.find(3), nullptr);
 }
 
 TEST(PlanStore, WhatIsFlownStays) {
-  Shelf shelf;
-  shelf.put_flown(mission(1));
+  Shelf store;
+  store.put_flown(mission(1));
   for (std::uint64_t id = 2; id <= 20; ++id) {
-    shelf.put(mission(id));
-    shelf.tidy(0);
+    store.put(mission(id));
+    store.tidy(0);
   }
-  EXPECT_NE(shelf.find(1), nullptr);
-  shelf.put_flown(mission(21));
-  shelf.tidy(0);
-  EXPECT_EQ(shelf.find(1), nullptr);
-  EXPECT_NE(shelf.find(21), nullptr);
+  EXPECT_NE(store.find(1), nullptr);
+  store.put_flown(mission(21));
+  store.tidy(0);
+  EXPECT_EQ(store.find(1), nullptr);
+  EXPECT_NE(store.find(21), nullptr);
 }
 
 TEST(PlanStore, WhatWasLentStaysUntilALaterHandoverIsTaken) {
-  Shelf shelf;
-  shelf.put(mission(1));
-  shelf.lend(shelf.find(1), 5);
-  for (std::uint64_t id = 2; id <= 20; ++id) shelf.put(mission(id));
-  shelf.tidy(4);
-  EXPECT_NE(shelf.find(1), nullptr) << "on its way";
-  shelf.tidy(5);
-  EXPECT_NE(shelf.find(1), nullptr) << "in use";
-  EXPECT_EQ(shelf.size(), Shelf::kCapacity);
-  shelf.put(mission(21));
-  shelf.tidy(6);
-  EXPECT_EQ(shelf.find(1), nullptr);
+  Shelf store;
+  store.put(mission(1));
+  store.lend(store.find(1), 5);
+  for (std::uint64_t id = 2; id <= 20; ++id) store.put(mission(id));
+  store.tidy(4);
+  EXPECT_NE(store.find(1), nullptr) << "on its way";
+  store.tidy(5);
+  EXPECT_NE(store.find(1), nullptr) << "in use";
+  EXPECT_EQ(store.size(), Shelf::kCapacity);
+  store.put(mission(21));
+  store.tidy(6);
+  EXPECT_EQ(store.find(1), nullptr);
 }
 
 }  // namespace

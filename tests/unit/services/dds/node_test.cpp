@@ -24,10 +24,10 @@ using swiftlet::tests::eventually;
 using swiftlet::tests::Inbox;
 using namespace std::chrono_literals;
 
-NodeSettings settings(const DomainLock& claim, const char* name, Transport transport = Transport::kUdp) {
+NodeSettings settings(const DomainLock& lock, const char* name, Transport transport = Transport::kUdp) {
   NodeSettings settings;
   settings.name = name;
-  settings.domain = claim.domain();
+  settings.domain = lock.domain();
   settings.transport = transport;
   settings.localhost_only = true;
   return settings;
@@ -68,9 +68,9 @@ using Messages = testing::Types<msg::Imu, msg::ActuatorCommand, msg::MocapPose, 
 TYPED_TEST_SUITE(EachTopic, Messages);
 
 TYPED_TEST(EachTopic, ArrivesAsItWasSent) {
-  const DomainLock claim;
-  Node here(settings(claim, "here"));
-  Node there(settings(claim, "there"));
+  const DomainLock lock;
+  Node here(settings(lock, "here"));
+  Node there(settings(lock, "there"));
   Inbox<TypeParam> inbox;
   const auto subscription = there.subscribe<TypeParam>(TopicOf<TypeParam>::topic(),
                                                        [&](const TypeParam& message) { inbox.put(message); });
@@ -87,9 +87,9 @@ TYPED_TEST(EachTopic, ArrivesAsItWasSent) {
 class LongMission : public testing::TestWithParam<Transport> {};
 
 TEST_P(LongMission, ArrivesWhole) {
-  const DomainLock claim;
-  Node ground(settings(claim, "ground", GetParam()));
-  Node control(settings(claim, "control", GetParam()));
+  const DomainLock lock;
+  Node ground(settings(lock, "ground", GetParam()));
+  Node control(settings(lock, "control", GetParam()));
   Inbox<msg::Mission> missions;
   Inbox<msg::Trajectory> trajectories;
   const auto mission_subscription =
@@ -121,9 +121,9 @@ INSTANTIATE_TEST_SUITE_P(Transports, LongMission, testing::Values(Transport::kUd
                          });
 
 TEST(Requests, AllArriveInOrder) {
-  const DomainLock claim;
-  Node ground(settings(claim, "ground"));
-  Node control(settings(claim, "control"));
+  const DomainLock lock;
+  Node ground(settings(lock, "ground"));
+  Node control(settings(lock, "control"));
   Inbox<std::uint64_t> ids;
   const auto subscription =
       control.subscribe<msg::Command>(topics::kCommand, [&](const msg::Command& c) { ids.put(c.id()); });
@@ -143,8 +143,8 @@ TEST(Requests, AllArriveInOrder) {
 }
 
 TEST(State, ReachesLateJoiners) {
-  const DomainLock claim;
-  Node control(settings(claim, "control"));
+  const DomainLock lock;
+  Node control(settings(lock, "control"));
   auto publisher = control.publish(topics::kControlStatus);
   msg::ControlStatus status = example<msg::ControlStatus>();
   status.sequence_number(1);
@@ -152,7 +152,7 @@ TEST(State, ReachesLateJoiners) {
   status.sequence_number(2);
   ASSERT_TRUE(publisher.publish(status));
 
-  Node ground(settings(claim, "ground"));
+  Node ground(settings(lock, "ground"));
   Inbox<msg::ControlStatus> inbox;
   const auto subscription = ground.subscribe<msg::ControlStatus>(
       topics::kControlStatus, [&](const msg::ControlStatus& message) { inbox.put(message); });
@@ -166,8 +166,8 @@ class OwnedStream : public testing::Test {
  protected:
   class Controller {
    public:
-    Controller(const DomainLock& claim, int strength)
-        : node_(settings(claim, "control")),
+    Controller(const DomainLock& lock, int strength)
+        : node_(settings(lock, "control")),
           publisher_(node_.publish(topics::kActuatorCommand, strength)),
           sender_(publisher_, static_cast<std::uint64_t>(strength)) {}
     void mute() { sender_.mute(); }
@@ -180,7 +180,7 @@ class OwnedStream : public testing::Test {
   };
 
   OwnedStream()
-      : plant_(settings(claim_, "plant")),
+      : plant_(settings(lock_, "plant")),
         subscription_(plant_.subscribe<msg::ActuatorCommand>(
             topics::kActuatorCommand,
             [this](const msg::ActuatorCommand& command) { heard_.put(command.sequence_number()); })) {}
@@ -193,16 +193,16 @@ class OwnedStream : public testing::Test {
     });
   }
 
-  DomainLock claim_;
+  DomainLock lock_;
   Inbox<std::uint64_t> heard_;
   Node plant_;
   Subscription subscription_;
 };
 
 TEST_F(OwnedStream, TheStrongestIsHeard) {
-  Controller weak(claim_, 1);
+  Controller weak(lock_, 1);
   ASSERT_TRUE(hears_only(1));
-  Controller strong(claim_, 2);
+  Controller strong(lock_, 2);
   ASSERT_TRUE(hears_only(2));
   ASSERT_TRUE(eventually([&] { return weak.matched() == 1 && subscription_.matched() == 2; }));
   const std::size_t before = heard_.size();
@@ -213,9 +213,9 @@ TEST_F(OwnedStream, TheStrongestIsHeard) {
 }
 
 TEST_F(OwnedStream, TheOtherTakesOverWhenTheStrongestLeaves) {
-  Controller weak(claim_, 1);
+  Controller weak(lock_, 1);
   {
-    Controller strong(claim_, 2);
+    Controller strong(lock_, 2);
     ASSERT_TRUE(hears_only(2));
     ASSERT_TRUE(eventually([&] { return weak.matched() == 1 && subscription_.matched() == 2; }));
   }
@@ -223,8 +223,8 @@ TEST_F(OwnedStream, TheOtherTakesOverWhenTheStrongestLeaves) {
 }
 
 TEST_F(OwnedStream, TheOtherTakesOverWithinTheDeadlineWhenTheStrongestFallsSilent) {
-  Controller weak(claim_, 1);
-  Controller strong(claim_, 2);
+  Controller weak(lock_, 1);
+  Controller strong(lock_, 2);
   ASSERT_TRUE(hears_only(2));
   ASSERT_TRUE(eventually([&] { return weak.matched() == 1 && subscription_.matched() == 2; }));
   const auto silent_since = std::chrono::steady_clock::now();
@@ -236,9 +236,9 @@ TEST_F(OwnedStream, TheOtherTakesOverWithinTheDeadlineWhenTheStrongestFallsSilen
 }
 
 TEST(Delivery, OwnThreadIsOfThatSubscriptionAlone) {
-  const DomainLock claim;
-  Node plant(settings(claim, "plant"));
-  Node control(settings(claim, "control"));
+  const DomainLock lock;
+  Node plant(settings(lock, "plant"));
+  Node control(settings(lock, "control"));
   Inbox<std::thread::id> own;
   Inbox<std::thread::id> shared;
   const auto imu_subscription = control.subscribe<msg::Imu>(
@@ -267,8 +267,8 @@ TEST(Delivery, OwnThreadIsOfThatSubscriptionAlone) {
 }
 
 TEST(Vehicles, DoNotHearEachOther) {
-  const DomainLock claim;
-  NodeSettings first = settings(claim, "plant");
+  const DomainLock lock;
+  NodeSettings first = settings(lock, "plant");
   NodeSettings second = first;
   second.vehicle = "kl2";
   Node plant1(first);
@@ -302,15 +302,15 @@ TEST(Vehicles, DoNotHearEachOther) {
 // GIVEN the processes of two vehicles, WHEN one participant serves both, one after the other, THEN its nodes hear and
 // are heard by their own, and each side knows the other as its peer.
 TEST(Vehicles, ShareAParticipant) {
-  const DomainLock claim;
-  NodeSettings plant = settings(claim, "plant");
+  const DomainLock lock;
+  NodeSettings plant = settings(lock, "plant");
   Node plant1(plant);
   plant.vehicle = "kl2";
   Node plant2(plant);
   Inbox<std::string> peers_of_plant2;
   plant2.on_peer([&](const PeerEvent& event) { peers_of_plant2.put(event.name); });
 
-  const Participant shared(settings(claim, "ground"));
+  const Participant shared(settings(lock, "ground"));
   Node ground1(shared, "kl1");
   auto imu1 = plant1.publish(topics::kImu);
   auto imu2 = plant2.publish(topics::kImu);
@@ -348,9 +348,9 @@ TEST(Vehicles, ShareAParticipant) {
 }
 
 TEST(Subscription, DeliversNothingOnceItIsGone) {
-  const DomainLock claim;
-  Node plant(settings(claim, "plant"));
-  Node control(settings(claim, "control"));
+  const DomainLock lock;
+  Node plant(settings(lock, "plant"));
+  Node control(settings(lock, "control"));
   auto publisher = plant.publish(topics::kImu);
   for (int round = 0; round < 20; ++round) {
     std::atomic<bool> gone{false};

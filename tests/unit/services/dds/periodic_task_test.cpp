@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 TEST(PeriodicTask, LooksAgainAndAgainUntilItEnds) {
   std::atomic<int> looks{0};
   {
-    const PeriodicTask lookout(1ms, [&] { ++looks; });
+    const PeriodicTask periodic_task(1ms, [&] { ++looks; });
     EXPECT_TRUE(swiftlet::tests::eventually([&] { return looks >= 3; }));
   }
   const int at_end = looks;
@@ -26,7 +26,7 @@ TEST(PeriodicTask, LooksAgainAndAgainUntilItEnds) {
 TEST(PeriodicTask, EndsWithoutWaitingForItsPeriod) {
   const auto began = std::chrono::steady_clock::now();
   {
-    const PeriodicTask lookout(10min, [] { ADD_FAILURE() << "the period is not over"; });
+    const PeriodicTask periodic_task(10min, [] { ADD_FAILURE() << "the period is not over"; });
   }
   EXPECT_LT(std::chrono::steady_clock::now() - began, 5min);
 }

@@ -99,15 +99,15 @@ class Peers : public testing::Test {
   NodeSettings settings() const {
     NodeSettings settings;
     settings.name = "observer";
-    settings.domain = claim_.domain();
+    settings.domain = lock_.domain();
     settings.localhost_only = true;
     return settings;
   }
   PeerProcess start(const char* transport = "udp") const {
-    return PeerProcess({std::to_string(claim_.domain()), transport});
+    return PeerProcess({std::to_string(lock_.domain()), transport});
   }
 
-  DomainLock claim_;
+  DomainLock lock_;
   Inbox<PeerEvent> events_;
   Node node_;
 };
@@ -244,9 +244,9 @@ TEST(Isolation, NodesFindEachOtherInAFreshNetworkNamespace) {
 }
 
 TEST(Domain, HoldsThirtyTwoProcesses) {
-  const DomainLock claim;
+  const DomainLock lock;
   NodeSettings settings;
-  settings.domain = claim.domain();
+  settings.domain = lock.domain();
   settings.localhost_only = true;
   settings.name = "first";
   Node first(settings);

@@ -116,7 +116,7 @@ class Conflict : public testing::Test {
   NodeSettings settings(const char* name) const {
     NodeSettings settings;
     settings.name = name;
-    settings.domain = claim_.domain();
+    settings.domain = lock_.domain();
     settings.localhost_only = true;
     return settings;
   }
@@ -137,7 +137,7 @@ class Conflict : public testing::Test {
     return text;
   }
 
-  DomainLock claim_;
+  DomainLock lock_;
   Inbox<std::string> lines_;
   const CollectedLog log_{lines_};
   Node talker_{settings("talker")};

@@ -68,10 +68,10 @@ Bytes cut(Bytes bytes, std::size_t size) {
   return bytes;
 }
 
-NodeSettings settings(const DomainLock& claim, const char* name) {
+NodeSettings settings(const DomainLock& lock, const char* name) {
   NodeSettings settings;
   settings.name = name;
-  settings.domain = claim.domain();
+  settings.domain = lock.domain();
   settings.localhost_only = true;
   return settings;
 }
@@ -79,8 +79,8 @@ NodeSettings settings(const DomainLock& claim, const char* name) {
 // A peer that publishes bytes on one topic.
 class RawPeer {
  public:
-  RawPeer(const DomainLock& claim, const std::string& topic, const std::string& type, Qos qos)
-      : membership_(settings(claim, "raw"), nullptr) {
+  RawPeer(const DomainLock& lock, const std::string& topic, const std::string& type, Qos qos)
+      : membership_(settings(lock, "raw"), nullptr) {
     dds::Topic* const wire = membership_.topic("rt/kl1/" + topic, dds::TypeSupport(new RawType(type)));
     writer_ = membership_.publisher->create_datawriter(wire, writer_qos(qos, 0, 0, Transport::kUdp));
   }
@@ -99,12 +99,12 @@ class RawPeer {
 template <class Type>
 void expect_dropped(const Topic<typename Type::type>& topic, const typename Type::type& whole,
                     const std::vector<Bytes>& broken) {
-  const DomainLock claim;
-  Node node(settings(claim, "node"));
+  const DomainLock lock;
+  Node node(settings(lock, "node"));
   Inbox<typename Type::type> inbox;
   const auto subscription =
       node.subscribe<typename Type::type>(topic, [&](const auto& message) { inbox.put(message); });
-  RawPeer peer(claim, topic.name, Type().getName(), topic.qos);
+  RawPeer peer(lock, topic.name, Type().getName(), topic.qos);
   ASSERT_TRUE(eventually([&] { return subscription.matched() == 1 && peer.is_heard(); }));
 
   std::size_t heard = 0;

@@ -111,14 +111,14 @@ TEST(Convert, AnImuSampleSaysWhatTheVehicleObeyed) {
   for (const plant::ObeyedCommand& obeyed : {plant::ObeyedCommand{}, plant::ObeyedCommand{true, false, 0, 0},
                                              plant::ObeyedCommand{true, true, 7, 8}}) {
     msg::Imu message = example<msg::Imu>();
-    tell(obeyed, message);
+    set_obeyed_command(obeyed, message);
     const plant::ObeyedCommand got = obeyed_command(message);
-    EXPECT_EQ(got.told, obeyed.told);
+    EXPECT_EQ(got.reported, obeyed.reported);
     EXPECT_EQ(got.any, obeyed.any);
     EXPECT_EQ(got.term, obeyed.term);
     EXPECT_EQ(got.stamp_ns, obeyed.stamp_ns);
   }
-  EXPECT_FALSE(obeyed_command(msg::Imu()).told) << "a vehicle that leaves the fields alone";
+  EXPECT_FALSE(obeyed_command(msg::Imu()).reported) << "a vehicle that leaves the fields alone";
 }
 
 TEST(Convert, BrokenSamplesAreRefused) {

@@ -35,10 +35,10 @@ constexpr std::uint64_t kSeed = 3;
 
 class Lockstep : public testing::Test {
  protected:
-  static comms::NodeSettings node_settings(const comms::DomainLock& claim, const char* name) {
+  static comms::NodeSettings node_settings(const comms::DomainLock& lock, const char* name) {
     comms::NodeSettings settings;
     settings.name = name;
-    settings.domain = claim.domain();
+    settings.domain = lock.domain();
     settings.localhost_only = true;
     settings.deadlines = false;
     return settings;
@@ -108,9 +108,9 @@ class Lockstep : public testing::Test {
   std::atomic<bool> answers_{false};  // each sample at once
   std::atomic<bool> mocap_answers_{true};
   std::int64_t began_ns_ = 0;
-  comms::DomainLock claim_;
-  comms::Node plant_node_{node_settings(claim_, "plant")};
-  comms::Node peer_node_{node_settings(claim_, "peer")};
+  comms::DomainLock lock_;
+  comms::Node plant_node_{node_settings(lock_, "plant")};
+  comms::Node peer_node_{node_settings(lock_, "peer")};
   std::optional<SimulatedVehicle> vehicle_;
   std::optional<LockstepLoop> loop_;
 

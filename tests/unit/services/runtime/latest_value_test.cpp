@@ -11,17 +11,17 @@ namespace swiftlet::runtime {
 namespace {
 
 TEST(LatestValue, GivesTheNewestValueOnce) {
-  LatestValue<int> mailbox;
+  LatestValue<int> latest;
   int value = -1;
-  EXPECT_FALSE(mailbox.take(value));
+  EXPECT_FALSE(latest.take(value));
   EXPECT_EQ(value, -1);
-  mailbox.put(1);
-  mailbox.put(2);
-  ASSERT_TRUE(mailbox.take(value));
+  latest.put(1);
+  latest.put(2);
+  ASSERT_TRUE(latest.take(value));
   EXPECT_EQ(value, 2);
-  EXPECT_FALSE(mailbox.take(value));
-  mailbox.put(3);
-  ASSERT_TRUE(mailbox.take(value));
+  EXPECT_FALSE(latest.take(value));
+  latest.put(3);
+  ASSERT_TRUE(latest.take(value));
   EXPECT_EQ(value, 3);
 }
 
@@ -29,12 +29,12 @@ TEST(LatestValue, GivesTheNewestValueOnce) {
 TEST(LatestValue, ValuesAreWholeAndInOrderBetweenThreads) {
   constexpr std::uint64_t kLast = 200'000;
   using Value = std::array<std::uint64_t, 16>;
-  LatestValue<Value> mailbox;
+  LatestValue<Value> latest;
   std::thread writer([&] {
     Value value;
     for (std::uint64_t i = 1; i <= kLast; ++i) {
       value.fill(i);
-      mailbox.put(value);
+      latest.put(value);
     }
   });
   std::uint64_t newest = 0;
@@ -42,7 +42,7 @@ TEST(LatestValue, ValuesAreWholeAndInOrderBetweenThreads) {
   bool went_back = false;
   Value value;
   while (newest < kLast) {
-    if (!mailbox.take(value)) continue;
+    if (!latest.take(value)) continue;
     for (const std::uint64_t part : value) torn = torn || part != value[0];
     went_back = went_back || value[0] <= newest;
     newest = value[0];

@@ -49,10 +49,10 @@ class TakenPorts {
   std::vector<int> sockets_;
 };
 
-NodeSettings settings(const DomainLock& claim, const char* name) {
+NodeSettings settings(const DomainLock& lock, const char* name) {
   NodeSettings settings;
   settings.name = name;
-  settings.domain = claim.domain();
+  settings.domain = lock.domain();
   settings.localhost_only = true;
   return settings;
 }
@@ -71,13 +71,13 @@ TEST(DiscoveryPorts, OfADomainEndBeforeTheNextOnes) {
 
 // The one takes the first port that is free, the other the last of the domain.
 TEST(DiscoveryPorts, TheFirstAndTheLastProcessFindEachOther) {
-  const DomainLock claim;
-  const std::uint32_t count = discovery_ports(claim.domain()).count;
-  const TakenPorts but_the_last(claim.domain(), count - 2);
-  Node first(settings(claim, "first"));
+  const DomainLock lock;
+  const std::uint32_t count = discovery_ports(lock.domain()).count;
+  const TakenPorts but_the_last(lock.domain(), count - 2);
+  Node first(settings(lock, "first"));
   Inbox<std::string> found_by_first;
   first.on_peer([&](const PeerEvent& peer) { found_by_first.put(peer.name); });
-  Node last(settings(claim, "last"));
+  Node last(settings(lock, "last"));
   Inbox<std::string> found_by_last;
   last.on_peer([&](const PeerEvent& peer) { found_by_last.put(peer.name); });
 
@@ -91,14 +91,14 @@ TEST(DiscoveryPorts, TheFirstAndTheLastProcessFindEachOther) {
 
 // The one with the last port was there before; the other takes the first, and announces itself to few.
 TEST(DiscoveryPorts, OneThatComesLaterWithALowerPortIsFoundByTheHigherOne) {
-  const DomainLock claim;
-  const DiscoveryPorts ports = discovery_ports(claim.domain());
-  std::optional<TakenPorts> but_the_last(std::in_place, claim.domain(), ports.count - 1);
-  Node high(settings(claim, "high"));
+  const DomainLock lock;
+  const DiscoveryPorts ports = discovery_ports(lock.domain());
+  std::optional<TakenPorts> but_the_last(std::in_place, lock.domain(), ports.count - 1);
+  Node high(settings(lock, "high"));
   but_the_last.reset();
   Inbox<std::string> found_by_high;
   high.on_peer([&](const PeerEvent& peer) { found_by_high.put(peer.name); });
-  Node low(settings(claim, "low"));
+  Node low(settings(lock, "low"));
   Inbox<std::string> found_by_low;
   low.on_peer([&](const PeerEvent& peer) { found_by_low.put(peer.name); });
 
@@ -117,23 +117,23 @@ TEST(DiscoveryPorts, EachIsAnnouncedToFromAllAbove) {
 }
 
 TEST(DiscoveryPorts, OnesOwnAreKnown) {
-  const DomainLock claim;
-  const TakenPorts three(claim.domain(), 3);
-  EXPECT_EQ(own_discovery_ports(claim.domain()), (std::set<std::uint32_t>{0, 1, 2}));
-  EXPECT_EQ(free_discovery_port(claim.domain(), true), 3U);
-  const Node node(settings(claim, "fourth"));
-  EXPECT_EQ(own_discovery_ports(claim.domain()), (std::set<std::uint32_t>{0, 1, 2, 3}));
+  const DomainLock lock;
+  const TakenPorts three(lock.domain(), 3);
+  EXPECT_EQ(own_discovery_ports(lock.domain()), (std::set<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(free_discovery_port(lock.domain(), true), 3U);
+  const Node node(settings(lock, "fourth"));
+  EXPECT_EQ(own_discovery_ports(lock.domain()), (std::set<std::uint32_t>{0, 1, 2, 3}));
 }
 
 TEST(DiscoveryPorts, AProcessThatWouldNotBeFoundIsRefusedInWords) {
-  const DomainLock claim;
-  const DiscoveryPorts ports = discovery_ports(claim.domain());
-  const TakenPorts all(claim.domain(), ports.count);
+  const DomainLock lock;
+  const DiscoveryPorts ports = discovery_ports(lock.domain());
+  const TakenPorts all(lock.domain(), ports.count);
   try {
-    const Node node(settings(claim, "one too many"));
+    const Node node(settings(lock, "one too many"));
     FAIL();
   } catch (const std::runtime_error& error) {
-    EXPECT_EQ(error.what(), "DDS domain " + std::to_string(claim.domain()) +
+    EXPECT_EQ(error.what(), "DDS domain " + std::to_string(lock.domain()) +
                                 " is full: all of its 120 ports for discovery on this host, UDP " +
                                 std::to_string(ports.first) + " to " + std::to_string(ports.last()) +
                                 ", are taken; choose another with --domain");

@@ -1,4 +1,4 @@
-#include "swiftlet/control/supervision/request_course.hpp"
+#include "swiftlet/control/supervision/request_progress.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // What becomes of each kind of request that was accepted.
-#include "swiftlet/control/supervision/request_course.hpp"
+#include "swiftlet/control/supervision/request_progress.hpp"
 
 #include <string>
 
