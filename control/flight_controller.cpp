@@ -101,7 +101,7 @@ struct FlightController::Impl {
   plant::ActuatorCommand command;
   Reference reference;
   Heading heading;  // of the reference
-  AttitudeSetpoint setpoint;
+  AttitudeSetpoint attitude_setpoint;
   Status status;
 };
 
@@ -264,7 +264,7 @@ AttitudeDemand FlightController::Impl::as_asked(const ControlSetpoint& setpoint)
   demand.rates_alone = setpoint.control_mode == ControlMode::kBodyRates;
   const Eigen::Quaterniond& q =
       demand.rates_alone ? estimator.estimate().q_ned_from_frd : setpoint.q_ned_from_frd;
-  demand.thrust_n = setpoint.thrust * vehicle.mass_kg;
+  demand.thrust_n = setpoint.specific_thrust * vehicle.mass_kg;
   demand.attitude.body_z_ned = body_z(q);
   demand.attitude.heading = euler_angles(q).heading;
   demand.attitude.body_rates = setpoint.body_rates_frd;
@@ -292,8 +292,8 @@ void FlightController::Impl::allocate(const AttitudeDemand& demand, const Wrench
   const Allocation allocation = allocator.allocate(wrench, supply);
   command.rotor_state = plant::RotorState::kRunning;
   command.throttle = allocation.throttle;
-  setpoint = {demand.attitude.body_z_ned, demand.attitude.heading.yaw_rad, wrench.thrust_n,
-              wrench.moment_frd};
+  attitude_setpoint = {demand.attitude.body_z_ned, demand.attitude.heading.yaw_rad, wrench.thrust_n,
+                       wrench.moment_frd};
   status.saturated = allocation.saturated;
 }
 
@@ -301,7 +301,7 @@ void FlightController::Impl::allocate(const AttitudeDemand& demand, const Wrench
 void FlightController::Impl::idle_rotors(plant::RotorState rotor_state) {
   command.rotor_state = rotor_state;
   command.throttle = plant::PerRotor{};
-  setpoint = AttitudeSetpoint();
+  attitude_setpoint = AttitudeSetpoint();
   status.saturated = false;
 }
 
@@ -415,7 +415,7 @@ bool FlightController::engage_in_flight() {
 const Estimate& FlightController::estimate() const { return impl_->estimator.estimate(); }
 ErrorState FlightController::estimate_deviation() const { return impl_->estimator.standard_deviation(); }
 const Reference& FlightController::reference() const { return impl_->reference; }
-const AttitudeSetpoint& FlightController::attitude_setpoint() const { return impl_->setpoint; }
+const AttitudeSetpoint& FlightController::attitude_setpoint() const { return impl_->attitude_setpoint; }
 const Status& FlightController::status() const { return impl_->status; }
 const RequestStatuses& FlightController::requests() const { return impl_->supervisor.requests(); }
 

@@ -4,11 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include <fmt/core.h>
-
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/recording/telemetry_rate.hpp"
-#include "swiftlet/simulation/flight_schedule.hpp"
+#include "swiftlet/simulation/mission_runner.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -28,9 +26,10 @@ TruthRow row_of(const plant::TruthSample& truth) {
           truth.on_ground};
 }
 
-class Run {
+// A loop in this process. All requests are made between an answered IMU sample and the next.
+class LoopTransport final : public MissionTransport {
  public:
-  Run(ClosedLoop& loop, const control::Mission& mission, const FlightObserver& observer)
+  LoopTransport(ClosedLoop& loop, const control::Mission& mission, const FlightObserver& observer)
       : loop_(loop),
         mission_(mission),
         observer_(observer),
@@ -39,71 +38,37 @@ class Run {
     observe();
   }
 
-  SimulatedFlight fly(double planned_duration_s) {
-    SimulatedFlight flight;
-    flight.completed = arm() && start() && follow(FlightSchedule::time_limit_s(planned_duration_s));
-    flight.reason = reason_;
-    flight.simulated_s = loop_.time_s();
-    return flight;
+  void wait_until_ready() override { step_to(FlightSchedule::kFirstRequestNs); }
+  Reply arm() override { return request(control::RequestKind::kArm); }
+  void wait(std::int64_t duration_ns, const std::string&) override {
+    step_to(loop_.plant.stamp_ns() + duration_ns);
   }
+  Reply start_mission() override {
+    const Reply uploaded = request(control::RequestKind::kMissionUpload);
+    return uploaded.accepted ? request(control::RequestKind::kMissionStart) : uploaded;
+  }
+  void advance() override {
+    loop_.step();
+    if (!observe()) throw FlightFailure("it was cancelled");
+  }
+  Status status() const override {
+    const bool flown = status_.mission.id == mission_.id;
+    return {loop_.plant.stamp_ns(), flown ? status_.mission.state : control::MissionState::kNone,
+            control::rotors_off(status_.mode)};
+  }
+  std::string abort_reason() const override { return control::to_string(status_.reason); }
 
  private:
-  bool fail(const std::string& reason) {
-    reason_ = reason;
-    return false;
-  }
-
-  bool step() {
-    loop_.step();
-    return observe() || fail("it was cancelled");
-  }
-
-  bool step_to(std::int64_t stamp_ns) {
-    while (loop_.plant.stamp_ns() < stamp_ns) {
-      if (!step()) return false;
-    }
-    return true;
-  }
-
-  bool arm() {
-    if (!step_to(FlightSchedule::kFirstRequestNs)) return false;
+  Reply request(control::RequestKind kind) {
     control::Request request;
-    request.kind = control::RequestKind::kArm;
-    while (true) {
-      const control::Outcome outcome = loop_.controller.request(request);
-      if (outcome.accepted) return true;
-      const std::int64_t next_ns = loop_.plant.stamp_ns() + FlightSchedule::kRetryNs;
-      if (next_ns > FlightSchedule::kLastArmingNs) return fail(std::string("arming: ") + outcome.reason);
-      if (!step_to(next_ns)) return false;
-    }
+    request.kind = kind;
+    if (kind == control::RequestKind::kMissionUpload) request.mission = &mission_;
+    const control::Outcome outcome = loop_.controller.request(request);
+    return {outcome.accepted, !outcome.accepted, outcome.reason};
   }
 
-  bool start() {
-    control::Request request;
-    request.kind = control::RequestKind::kMissionUpload;
-    request.mission = &mission_;
-    control::Outcome outcome = loop_.controller.request(request);
-    if (outcome.accepted) {
-      request.kind = control::RequestKind::kMissionStart;
-      outcome = loop_.controller.request(request);
-    }
-    return outcome.accepted || fail(std::string("the mission was refused: ") + outcome.reason);
-  }
-
-  bool follow(double time_limit_s) {
-    const double end_s = loop_.time_s() + time_limit_s;
-    while (true) {
-      if (!step()) return false;
-      const bool is_over = status_.mission.id == mission_.id;
-      if (is_over && status_.mission.state == control::MissionState::kCompleted && rotors_off(status_.mode))
-        return true;
-      if (is_over && status_.mission.state == control::MissionState::kAborted)
-        return fail(std::string("the mission was aborted: ") + control::to_string(status_.reason));
-      if (loop_.time_s() > end_s) {
-        const std::string reason = fmt::format("the mission took longer than {:.0f} s", time_limit_s);
-        return fail(reason);
-      }
-    }
+  void step_to(std::int64_t stamp_ns) {
+    while (loop_.plant.stamp_ns() < stamp_ns) advance();
   }
 
   // False if the flight is to end.
@@ -118,10 +83,10 @@ class Run {
     const std::int64_t stamp_ns = loop_.plant.stamp_ns();
     record.truth.append(row_of(loop_.plant.truth()));
     const control::MissionProgress& now = status_.mission;
-    if (now.id != told_.id || now.state != told_.state || now.item_index != told_.item_index) {
+    if (now.id != recorded_.id || now.state != recorded_.state || now.item_index != recorded_.item_index) {
       record.mission.append(
           {stamp_ns, now.id, static_cast<int>(now.state), static_cast<std::uint32_t>(now.item_index)});
-      told_ = now;
+      recorded_ = now;
     }
     if (!sampled || !loop_.plant.imu()) return;
     const control::Reference& reference = loop_.controller.reference();
@@ -136,15 +101,23 @@ class Run {
   const FlightObserver& observer_;
   const control::Status& status_;
   std::int64_t imu_period_ns_;
-  control::MissionProgress told_;
-  std::string reason_;
+  control::MissionProgress recorded_;
 };
 
 }  // namespace
 
 SimulatedFlight fly(ClosedLoop& loop, const control::Mission& mission, double planned_duration_s,
                     const FlightObserver& observer) {
-  return Run(loop, mission, observer).fly(planned_duration_s);
+  SimulatedFlight flight;
+  try {
+    LoopTransport transport(loop, mission, observer);
+    fly_mission(transport, planned_duration_s);
+    flight.completed = true;
+  } catch (const FlightFailure& failure) {
+    flight.reason = failure.what();
+  }
+  flight.simulated_s = loop.time_s();
+  return flight;
 }
 
 }  // namespace swiftlet::ground

@@ -1,4 +1,4 @@
-// A mission flown in this process, by the schedule of flight_schedule.hpp.
+// A mission flown by a loop in this process, by the schedule of mission_runner.hpp.
 #pragma once
 
 #include <cstdint>

@@ -136,7 +136,7 @@ PoseFault Estimator::fuse(const plant::PoseSample& pose, plant::RotorState rotor
   }
 
   const PoseInnovation innovation = compare(pose);
-  const ErrorCovariance::Correction correction = compute_update(innovation);
+  const ErrorCovariance::Update correction = compute_update(innovation);
   normalised_innovation_ = correction.normalised_square();
   const bool contradicts = normalised_innovation_ > settings_.gate_chi_square;
   // Without noise, a vehicle that stands repeats its pose: believed as any other with the rotors off.
@@ -183,7 +183,7 @@ void Estimator::accept(const plant::PoseSample& pose) {
   pose_sequence_ = pose.sequence;
 }
 
-void Estimator::agree(const PoseInnovation& innovation, const ErrorCovariance::Correction& correction) {
+void Estimator::agree(const PoseInnovation& innovation, const ErrorCovariance::Update& correction) {
   if (contradictions_ == 0) {
     covariance_.apply_update(correction);
     apply(correction.step());
@@ -192,12 +192,12 @@ void Estimator::agree(const PoseInnovation& innovation, const ErrorCovariance::C
   const double step_m2 = innovation.position.squaredNorm();
   covariance_.add_motion(step_m2, step_m2 / squared(detectors_.recovery.step_time_s),
                          innovation.rotation.squaredNorm());
-  const ErrorCovariance::Correction likely = compute_update(innovation);
+  const ErrorCovariance::Update likely = compute_update(innovation);
   covariance_.apply_update(likely);
   apply(likely.step());
 }
 
-ErrorCovariance::Correction Estimator::compute_update(const PoseInnovation& innovation) const {
+ErrorCovariance::Update Estimator::compute_update(const PoseInnovation& innovation) const {
   return covariance_.compute_update(innovation, squared(settings_.mocap_position_sigma),
                                     squared(settings_.mocap_orientation_sigma));
 }

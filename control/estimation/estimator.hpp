@@ -126,8 +126,8 @@ class Estimator {
   PoseFault disagree(const plant::PoseSample& pose, const PoseInnovation& innovation,
                      plant::RotorState rotors, bool believed);
   void accept(const plant::PoseSample& pose);  // from it on the stream is followed
-  void agree(const PoseInnovation& innovation, const ErrorCovariance::Correction& correction);
-  ErrorCovariance::Correction compute_update(const PoseInnovation& innovation) const;
+  void agree(const PoseInnovation& innovation, const ErrorCovariance::Update& correction);
+  ErrorCovariance::Update compute_update(const PoseInnovation& innovation) const;
   double outlier_rotation() const;  // rad
   bool believed_after_silence(const plant::PoseSample& pose, const PoseInnovation& innovation);
   void apply(const ErrorState& step);

@@ -37,7 +37,7 @@ struct PausedPath {
 struct DirectSetpoint {
   std::array<double, 4> q_ned_from_frd{1.0, 0.0, 0.0, 0.0};  // w, x, y, z
   std::array<double, 3> body_rates_frd{};                    // rad/s
-  double thrust = 0.0;                                       // m/s^2
+  double specific_thrust = 0.0;                                       // m/s^2
 };
 
 // Of guidance, from one step to the next. Times are stamps of the vehicle's clock, ns.

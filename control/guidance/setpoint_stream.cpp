@@ -160,7 +160,7 @@ void take_direct(const GuidanceContext& context, const Setpoint& setpoint) {
   const Eigen::Quaterniond& q = setpoint.q_ned_from_frd;
   const Vector3d& rates = setpoint.body_rates_frd;
   context.state.phase = Phase::kPath;
-  context.state.direct = {{q.w(), q.x(), q.y(), q.z()}, {rates.x(), rates.y(), rates.z()}, setpoint.thrust};
+  context.state.direct = {{q.w(), q.x(), q.y(), q.z()}, {rates.x(), rates.y(), rates.z()}, setpoint.specific_thrust};
   follow_estimate(context);
 }
 
@@ -168,7 +168,7 @@ void follow_estimate(const GuidanceContext& context) {
   const Estimate& estimate = context.estimate;
   Reference here = standing_at(estimate);
   here.velocity_ned = estimate.velocity_ned;
-  const Vector3d thrust_ned = estimate.q_ned_from_frd * Vector3d(0.0, 0.0, -context.state.direct.thrust);
+  const Vector3d thrust_ned = estimate.q_ned_from_frd * Vector3d(0.0, 0.0, -context.state.direct.specific_thrust);
   const double limit = context.limits.max_acceleration;
   here.acceleration_ned = thrust_ned + Vector3d(0.0, 0.0, plant::kGravity);
   here.acceleration_ned *= limit / std::max(limit, here.acceleration_ned.norm());

@@ -174,8 +174,8 @@ Outcome check_end_of_stream(const SupervisorContext& context) {
 
 Outcome check_thrust(const Setpoint& setpoint, const Limits& limits) {
   const double most = plant::kGravity + limits.max_acceleration;
-  if (setpoint.thrust >= 0.0 && setpoint.thrust <= most) return accept();
-  return refuse("setpoint: thrust is %.2f m/s^2, must be at least 0 and at most %.2f m/s^2", setpoint.thrust,
+  if (setpoint.specific_thrust >= 0.0 && setpoint.specific_thrust <= most) return accept();
+  return refuse("setpoint: thrust is %.2f m/s^2, must be at least 0 and at most %.2f m/s^2", setpoint.specific_thrust,
                 most);
 }
 

@@ -97,7 +97,7 @@ ControlSetpoint Supervisor::setpoint(const SupervisorInputs& inputs) {
                                 : ControlMode::kBodyRates;
     setpoint.q_ned_from_frd = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
     setpoint.body_rates_frd = Eigen::Vector3d(rates[0], rates[1], rates[2]);
-    setpoint.thrust = direct.thrust;
+    setpoint.specific_thrust = direct.specific_thrust;
     setpoint.integrate = state_.guidance.airborne;
   } else {
     setpoint.control_mode = ControlMode::kFly;

@@ -39,14 +39,14 @@ enum class ControlMode : std::uint8_t {
 };
 
 struct ControlSetpoint {
-  ControlMode mode = ControlMode::kOff;
+  ControlMode control_mode = ControlMode::kOff;
   double lift_fraction = 0.0;  // kSpoolUp only
   double descent_speed = 0.0;  // m/s; kLevelDescent only
   bool integrate = false;      // the position integrals may learn
   Reference reference;
   Eigen::Quaterniond q_ned_from_frd = Eigen::Quaterniond::Identity();
   Eigen::Vector3d body_rates_frd = Eigen::Vector3d::Zero();  // rad/s
-  double thrust = 0.0;                                       // m/s^2, of the vehicle's mass
+  double specific_thrust = 0.0;                                       // m/s^2, of the vehicle's mass
 };
 
 }  // namespace swiftlet::control

@@ -80,7 +80,7 @@ struct Setpoint {
   double yaw_rate = 0.0;                                               // rad/s
   Eigen::Quaterniond q_ned_from_frd = Eigen::Quaterniond::Identity();  // kAttitude
   Eigen::Vector3d body_rates_frd = Eigen::Vector3d::Zero();            // rad/s; of kAttitude fed forward
-  double thrust = 0.0;  // m/s^2 along -z of FRD: force over mass, 9.81 carries the weight
+  double specific_thrust = 0.0;  // m/s^2 along -z of FRD: force over mass, 9.81 carries the weight
 };
 
 // A sign of life of a ground tool. depends: from now on the flight depends on hearing it; false: no longer.

@@ -43,7 +43,7 @@ Setpoint to_setpoint(const AttitudeSetpoint& in) {
   out.kind = SetpointKind::kAttitude;
   out.q_ned_from_frd = in.q_ned_from_frd;
   out.body_rates_frd = in.body_rates_frd_rad_s;
-  out.thrust = in.thrust_m_s2;
+  out.specific_thrust = in.specific_thrust_m_s2;
   return out;
 }
 
@@ -51,7 +51,7 @@ Setpoint to_setpoint(const BodyRatesSetpoint& in) {
   Setpoint out;
   out.kind = SetpointKind::kBodyRates;
   out.body_rates_frd = in.body_rates_frd_rad_s;
-  out.thrust = in.thrust_m_s2;
+  out.specific_thrust = in.specific_thrust_m_s2;
   return out;
 }
 

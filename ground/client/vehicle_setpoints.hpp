@@ -38,13 +38,13 @@ struct AccelerationSetpoint {
 // Thrust is force over mass along -z of FRD: 9.81 m/s^2 carries the weight.
 struct AttitudeSetpoint {
   Eigen::Quaterniond q_ned_from_frd;  // unit length
-  double thrust_m_s2 = 0.0;
+  double specific_thrust_m_s2 = 0.0;
   Eigen::Vector3d body_rates_frd_rad_s = Eigen::Vector3d::Zero();  // fed forward
 };
 
 struct BodyRatesSetpoint {
   Eigen::Vector3d body_rates_frd_rad_s;
-  double thrust_m_s2 = 0.0;
+  double specific_thrust_m_s2 = 0.0;
 };
 
 control::Setpoint to_setpoint(const PositionSetpoint& in);

@@ -13,7 +13,7 @@
 #include "swiftlet/io/settings/simulation_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/simulation/dispersion_file.hpp"
-#include "swiftlet/simulation/flight_schedule.hpp"
+#include "swiftlet/simulation/mission_runner.hpp"
 
 namespace swiftlet::ground {
 namespace {

@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "swiftlet/ground/client/client.hpp"
-#include "swiftlet/ground/flight/flight.hpp"
 #include "swiftlet/ground/flight/flight_outcome.hpp"
 #include "swiftlet/ground/flight/flight_settings.hpp"
+#include "swiftlet/ground/flight/network_transport.hpp"
 #include "swiftlet/recording/flight_window.hpp"
 
 namespace swiftlet::ground {
@@ -57,9 +57,11 @@ void ProcessFlight::fly_mission(const Interrupts& interrupts, StartBarrier* barr
   Client client(network, &record_);
   const auto start = Clock::now();
   try {
-    const Flight::Watch watch{[this] { return processes_->exited_process(); },
-                              [&] { return interrupts.count(); }, barrier};
-    Flight(client, record_, plan_.mission, plan_.planned_duration_s, plan_.clock, watch, progress).run();
+    const NetworkTransport::Watch watch{[this] { return processes_->exited_process(); },
+                                        [&] { return interrupts.count(); }, barrier};
+    NetworkTransport vehicle(client, record_, plan_.mission, plan_.clock, watch, progress);
+    fly_mission(vehicle, plan_.planned_duration_s);
+    vehicle.wait_for_last_figures();
   } catch (const FlightFailure& failure) {
     report_.reason = failure.what();
     if (barrier != nullptr) barrier->fail(network_.vehicle + " failed: " + report_.reason);

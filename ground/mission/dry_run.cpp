@@ -7,81 +7,79 @@
 #include "swiftlet/control/supervision/supervisor.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
+#include "swiftlet/simulation/mission_runner.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
-using control::MissionState;
-
 constexpr double kStep_s = 0.002;         // so that no segment is missed, half the shortest, ...
 constexpr double kLeastStep_s = 0.0001;   // ... but no less
-constexpr double kFullBattery_v = 100.0;  // above all thresholds: whether it lasts is not rehearsed
-constexpr double kSpare_s = 60.0;         // beyond twice the planned duration, after which it is given up
+constexpr double kFullBattery_v = 100.0;  // above all thresholds: the dry run has no battery
 
-class Run {
+// Supervision and guidance alone, with a vehicle that is exactly where its reference is.
+class DryRunTransport final : public MissionTransport {
  public:
-  Run(const control::Mission& mission, const control::ControlSettings& settings,
-      const Eigen::Vector2d& start_ned)
+  DryRunTransport(const control::Mission& mission, const control::ControlSettings& settings,
+                  const Eigen::Vector2d& start_ned)
       : mission_(mission), supervisor_({settings.limits, settings.arming, settings.failsafe}) {
     mission_.id = 1;
     double step_s = kStep_s;
     for (const control::PolynomialSegment& segment : mission_.segments)
       step_s = std::min(step_s, 0.5 * segment.duration_s);
     step_ns_ = std::llround(std::max(step_s, kLeastStep_s) * 1e9);
-    situation_.estimate = &estimate_;
-    situation_.has_estimate = true;
-    situation_.has_battery = true;
-    situation_.supply_voltage_v = kFullBattery_v;
-    situation_.specific_force_frd.z() = -plant::kGravity;
+    inputs_.estimate = &estimate_;
+    inputs_.has_estimate = true;
+    inputs_.has_battery = true;
+    inputs_.supply_voltage_v = kFullBattery_v;
+    inputs_.specific_force_frd.z() = -plant::kGravity;
     estimate_.position_ned.head<2>() = start_ned;
-    end_s_ = 2.0 * planned_duration_s(mission, settings.limits) + kSpare_s;
-    step();
   }
 
-  MissionDryRun fly() {
-    if (begin()) {
-      start_ns_ = situation_.stamp_ns;
-      while (supervisor_.mission().state == MissionState::kRunning && elapsed_s() < end_s_) {
-        note();
-        step();
-      }
-      end();
-    }
-    return std::move(out_);
+  void wait_until_ready() override {
+    step();
+    if (!takes_off()) estimate_.position_ned.z() = -kDryRunHover_m;
   }
+  Reply arm() override {
+    return reply(takes_off() ? request(control::RequestKind::kArm) : supervisor_.engage_in_flight(inputs_));
+  }
+  void wait(std::int64_t, const std::string& reason) override { throw FlightFailure(reason); }
+  Reply start_mission() override {
+    const control::Outcome uploaded = request(control::RequestKind::kMissionUpload);
+    start_ns_ = inputs_.stamp_ns;
+    return reply(uploaded.accepted ? request(control::RequestKind::kMissionStart) : uploaded);
+  }
+  void advance() override {
+    note();
+    step();
+    out_.duration_s = elapsed_s();
+  }
+  // The dry run ends with the mission.
+  Status status() const override { return {inputs_.stamp_ns, supervisor_.mission().state, true}; }
+  std::string abort_reason() const override { return control::to_string(supervisor_.reason()); }
+
+  MissionDryRun result() && { return std::move(out_); }
 
  private:
-  bool begin() {
-    const bool from_ground = mission_.items.front().kind == control::MissionItemKind::kTakeoff;
-    if (!from_ground) estimate_.position_ned.z() = -kRehearsedHover_m;
-    control::Request upload;
-    upload.kind = control::RequestKind::kMissionUpload;
-    upload.mission = &mission_;
-    return demand(from_ground ? ask(control::RequestKind::kArm) : supervisor_.engage_in_flight(situation_)) &&
-           demand(supervisor_.request(upload, situation_)) &&
-           demand(ask(control::RequestKind::kMissionStart));
-  }
+  static Reply reply(const control::Outcome& outcome) { return {outcome.accepted, false, outcome.reason}; }
 
-  control::Outcome ask(control::RequestKind kind) {
+  bool takes_off() const { return mission_.items.front().kind == control::MissionItemKind::kTakeoff; }
+
+  control::Outcome request(control::RequestKind kind) {
     control::Request request;
     request.kind = kind;
-    return supervisor_.request(request, situation_);
+    if (kind == control::RequestKind::kMissionUpload) request.mission = &mission_;
+    return supervisor_.request(request, inputs_);
   }
 
-  bool demand(const control::Outcome& outcome) {
-    if (!outcome.accepted) out_.reason = outcome.reason;
-    return outcome.accepted;
-  }
-
-  double elapsed_s() const { return static_cast<double>(situation_.stamp_ns - start_ns_) * 1e-9; }
+  double elapsed_s() const { return static_cast<double>(inputs_.stamp_ns - start_ns_) * 1e-9; }
 
   void step() {
-    situation_.stamp_ns += step_ns_;
-    estimate_.stamp_ns = situation_.stamp_ns;
-    const control::ControlSetpoint directive = supervisor_.step(situation_);
-    if (directive.control_mode != control::ControlMode::kFly) return;
-    estimate_.position_ned = directive.reference.position_ned;
-    estimate_.velocity_ned = directive.reference.velocity_ned;
+    inputs_.stamp_ns += step_ns_;
+    estimate_.stamp_ns = inputs_.stamp_ns;
+    const control::ControlSetpoint setpoint = supervisor_.step(inputs_);
+    if (setpoint.control_mode != control::ControlMode::kFly) return;
+    estimate_.position_ned = setpoint.reference.position_ned;
+    estimate_.velocity_ned = setpoint.reference.velocity_ned;
     if (estimate_.position_ned.z() < 0.0) return;
     estimate_.position_ned.z() = 0.0;  // the ground
     estimate_.velocity_ned.setZero();
@@ -98,31 +96,31 @@ class Run {
     out_.legs.push_back({path.segment, static_cast<double>(path.start_ns - start_ns_) * 1e-9, item});
   }
 
-  void end() {
-    out_.duration_s = elapsed_s();
-    out_.completed = supervisor_.mission().state == MissionState::kCompleted;
-    if (out_.completed) return;
-    out_.reason = supervisor_.mission().state == MissionState::kRunning
-                      ? "it does not come to its end"
-                      : std::string("it is aborted: ") + control::to_string(supervisor_.reason());
-  }
-
   control::Mission mission_;
   control::Supervisor supervisor_;
   control::Estimate estimate_;
-  control::SupervisorInputs situation_;
+  control::SupervisorInputs inputs_;
   MissionDryRun out_;
   std::int64_t start_ns_ = 0;
   std::int64_t leg_ns_ = -1;
   std::int64_t step_ns_ = 0;
-  double end_s_ = 0.0;
 };
 
 }  // namespace
 
 MissionDryRun dry_run(const control::Mission& mission, const control::ControlSettings& settings,
                       const Eigen::Vector2d& start_ned) {
-  return Run(mission, settings, start_ned).fly();
+  DryRunTransport transport(mission, settings, start_ned);
+  std::string reason;
+  try {
+    fly_mission(transport, planned_duration_s(mission, settings.limits));
+  } catch (const FlightFailure& failure) {
+    reason = failure.what();
+  }
+  MissionDryRun out = std::move(transport).result();
+  out.completed = reason.empty();
+  out.reason = reason;
+  return out;
 }
 
 }  // namespace swiftlet::ground

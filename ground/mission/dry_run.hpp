@@ -30,9 +30,9 @@ struct MissionDryRun {
 };
 
 // start_ned: where it stands on the ground at z = 0, heading north; a mission that does not take off begins
-// at kRehearsedHover_m above there.
+// at kDryRunHover_m above there.
 MissionDryRun dry_run(const control::Mission& mission, const control::ControlSettings& settings,
                       const Eigen::Vector2d& start_ned);
-constexpr double kRehearsedHover_m = 1.0;
+constexpr double kDryRunHover_m = 1.0;
 
 }  // namespace swiftlet::ground

@@ -11,7 +11,7 @@
 namespace swiftlet::ground {
 namespace {
 
-using control::Place;
+using control::PositionYaw;
 using control::PlaceDerivatives;
 
 constexpr double kLeastStep_s = 1e-4;
@@ -45,7 +45,7 @@ Columns columns_of(const std::vector<std::string>& header) {
 // In NED, one entry a row.
 struct Samples {
   std::vector<double> time_s;
-  std::vector<Place> places;
+  std::vector<PositionYaw> places;
   std::vector<PlaceDerivatives> derivatives;  // velocity and acceleration, as far as they are known
 };
 
@@ -63,7 +63,7 @@ Samples read(const runtime::CsvTable& table, const Columns& columns) {
                                                               samples.time_s.back() + kLongestStep_s),
                                              "s");
     samples.time_s.push_back(t);
-    Place place;
+    PositionYaw place;
     place.head<3>() = ned_of(table, row, 1);
     place[3] = columns.yaw ? ned_yaw(table.number(row, columns.names.size() - 1)) : 0.0;
     if (row > 0) {  // no whole turns from one to the next
@@ -105,7 +105,7 @@ std::vector<std::size_t> knots_of(std::size_t rows) {
 
 std::vector<control::PolynomialSegment> through(const Samples& samples, const std::vector<std::size_t>& knots,
                                                 bool known_derivatives) {
-  std::vector<Place> places;
+  std::vector<PositionYaw> places;
   std::vector<double> durations;
   for (std::size_t i = 0; i < knots.size(); ++i) {
     places.push_back(samples.places[knots[i]]);
@@ -146,9 +146,9 @@ TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file
       "taken as a sampled trajectory in ENU: m, rad and s, its origin that of motion capture"};
   if (!columns.yaw) assumptions.emplace_back("it gives no yaw: north");
   double least_m = -samples.places.front().z();
-  for (const Place& place : samples.places) least_m = std::min(least_m, -place.z());
+  for (const PositionYaw& place : samples.places) least_m = std::min(least_m, -place.z());
   const double raise_m = raise_by(least_m, assumptions);
-  for (Place& place : samples.places) place.z() -= raise_m;
+  for (PositionYaw& place : samples.places) place.z() -= raise_m;
 
   if (columns.velocity) difference(samples, columns);
   const std::vector<std::size_t> knots = knots_of(table.row_count());

@@ -179,7 +179,7 @@ Setpoint between(const TimedSetpoint& before, const TimedSetpoint& after, double
   setpoint.yaw_rate = between(a.yaw_rate, b.yaw_rate, part);
   setpoint.q_ned_from_frd = a.q_ned_from_frd.slerp(part, b.q_ned_from_frd);
   setpoint.body_rates_frd = between(a.body_rates_frd, b.body_rates_frd, part);
-  setpoint.thrust = between(a.thrust, b.thrust, part);
+  setpoint.specific_thrust = between(a.specific_thrust, b.specific_thrust, part);
   return setpoint;
 }
 
@@ -253,7 +253,7 @@ Setpoint SetpointRows::setpoint_of(const std::vector<double>& values) const {
   setpoint.yaw_rate = number(kYawRate);
   setpoint.q_ned_from_frd = control::quaternion_from_euler({number(kRoll), number(kPitch), number(kYaw)});
   setpoint.body_rates_frd = {number(kP), number(kQ), number(kR)};
-  setpoint.thrust = number(kThrust);
+  setpoint.specific_thrust = number(kThrust);
   return setpoint;
 }
 

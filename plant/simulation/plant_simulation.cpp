@@ -59,7 +59,7 @@ void PlantSimulation::step(const MotorCommand& drive) {
   if (stamp_ns_ >= fault_change_ns_) change_faults();
   air_.advance();
   wind_ned_ = air_.wind_ned() + fault_wind_ned_;
-  const GroundContact::Place before{state_.position_ned, state_.q_ned_from_frd};
+  const GroundContact::ContactState before{state_.position_ned, state_.q_ned_from_frd};
   dynamics_.advance(state_, drive, wind_ned_, step_s_);
   on_ground_ = false;
   if (!ground_.out_of_reach(state_.position_ned.z())) {

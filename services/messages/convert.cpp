@@ -232,7 +232,7 @@ Fault from_message(const msg::Setpoint& in, control::Setpoint& out) {
   if (moves) check.finite("velocity_ned", in.velocity_ned());
   if (turns) check.unit("q_ned_from_frd", in.q_ned_from_frd());
   if (past_position) {
-    check.finite("body_rates_frd", in.body_rates_frd()).finite("thrust", in.thrust());
+    check.finite("body_rates_frd", in.body_rates_frd()).finite("specific_thrust", in.specific_thrust());
   } else {
     check.finite("acceleration_ned", in.acceleration_ned())
         .finite("yaw", in.yaw_free() ? 0.0 : in.yaw())
@@ -248,7 +248,7 @@ Fault from_message(const msg::Setpoint& in, control::Setpoint& out) {
   if (turns) out.q_ned_from_frd = quaternion(in.q_ned_from_frd());
   if (past_position) {
     out.body_rates_frd = vector(in.body_rates_frd());
-    out.thrust = in.thrust();
+    out.specific_thrust = in.specific_thrust();
     return {};
   }
   out.acceleration_ned = vector(in.acceleration_ned());
@@ -271,7 +271,7 @@ msg::Setpoint to_message(const control::Setpoint& in) {
   out.yaw_rate(in.yaw_rate);
   out.q_ned_from_frd(array(in.q_ned_from_frd));
   out.body_rates_frd(array(in.body_rates_frd));
-  out.thrust(in.thrust);
+  out.specific_thrust(in.specific_thrust);
   return out;
 }
 

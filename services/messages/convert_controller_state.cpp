@@ -43,7 +43,7 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
       .at_most("setpoint_kind", in.setpoint_kind(), Setpoint_Constants::BODY_RATES)
       .finite("setpoint_attitude", in.setpoint_attitude())
       .finite("setpoint_body_rates", in.setpoint_body_rates())
-      .finite("setpoint_thrust", in.setpoint_thrust())
+      .finite("setpoint_specific_thrust", in.setpoint_specific_thrust())
       .finite("position_integral_ned", in.position_integral_ned())
       .at_most("rotor_state", in.rotor_state(), ActuatorCommand_Constants::ROTORS_RUNNING)
       .per_rotor("throttle", in.rotor_count(), in.throttle(), 0.0, 1.0);
@@ -91,7 +91,7 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
   state.guidance.next_segment = in.next_segment();
   state.guidance.setpoint_ns = in.setpoint_ns();
   state.guidance.setpoint_kind = static_cast<control::SetpointKind>(in.setpoint_kind());
-  state.guidance.direct = {in.setpoint_attitude(), in.setpoint_body_rates(), in.setpoint_thrust()};
+  state.guidance.direct = {in.setpoint_attitude(), in.setpoint_body_rates(), in.setpoint_specific_thrust()};
   state.contact_since_ns = in.contact_since_ns();
   state.low_battery_since_ns = in.low_battery_since_ns();
   state.critical_battery_since_ns = in.critical_battery_since_ns();
@@ -169,7 +169,7 @@ msg::ControllerState to_message(const ControllerReport& in) {
   out.setpoint_kind(static_cast<std::uint8_t>(state.guidance.setpoint_kind));
   out.setpoint_attitude(state.guidance.direct.q_ned_from_frd);
   out.setpoint_body_rates(state.guidance.direct.body_rates_frd);
-  out.setpoint_thrust(state.guidance.direct.thrust);
+  out.setpoint_specific_thrust(state.guidance.direct.specific_thrust);
   out.contact_since_ns(state.contact_since_ns);
   out.low_battery_since_ns(state.low_battery_since_ns);
   out.critical_battery_since_ns(state.critical_battery_since_ns);

@@ -66,7 +66,7 @@ BENCHMARK(plan_corridor)->Arg(300)->Arg(100)->Arg(20)->Unit(benchmark::kMillisec
 // The spline alone at given durations. Argument: waypoints.
 void solve_spline(benchmark::State& state) {
   const WaypointPath path = random_path(static_cast<int>(state.range(0)), Smoothness::kMinimumSnap);
-  std::vector<Place> places;
+  std::vector<PositionYaw> places;
   for (const PathPoint& point : path.points)
     places.emplace_back(point.position_ned.x(), point.position_ned.y(), point.position_ned.z(),
                         point.yaw_rad);

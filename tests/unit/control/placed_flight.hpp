@@ -51,9 +51,9 @@ class Placed : public SupervisedFlight {
     SupervisorInputs inputs;
     Estimate estimate;
   };
-  Moment moment() const { return {supervisor_.state(), situation_, estimate_}; }
+  Moment moment() const { return {supervisor_.state(), inputs_, estimate_}; }
   void go_back_to(const Moment& moment) {
-    situation_ = moment.inputs;
+    inputs_ = moment.inputs;
     estimate_ = moment.estimate;
     supervisor_.adopt(moment.state, plan(), &trajectory_);
   }
@@ -72,14 +72,14 @@ class Placed : public SupervisedFlight {
   Outcome stream(const Vector3d& position_ned) {
     Setpoint setpoint;
     setpoint.position_ned = position_ned;
-    return supervisor_.setpoint(setpoint, situation_);
+    return supervisor_.setpoint(setpoint, inputs_);
   }
 
   Outcome tilt() {
     Setpoint setpoint;
     setpoint.kind = SetpointKind::kAttitude;
     setpoint.thrust = plant::kGravity;
-    return supervisor_.setpoint(setpoint, situation_);
+    return supervisor_.setpoint(setpoint, inputs_);
   }
 
   const Mission mission_ = hop();

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 using tests::SupervisedFlight;
 
 Trajectory through(std::uint64_t id, const std::vector<Vector3d>& points, double leg_s, double yaw = 0.0) {
-  std::vector<Place> places;
+  std::vector<PositionYaw> places;
   places.reserve(points.size());
   for (const Vector3d& p : points) places.emplace_back(p.x(), p.y(), p.z(), yaw);
   return {id, spline(Smoothness::kMinimumSnap, places, std::vector<double>(points.size() - 1, leg_s))};
@@ -38,9 +38,9 @@ class TrajectoryFlight : public testing::Test, protected SupervisedFlight {
   // Steps, and looks that the reference goes on without a step: each derivative up to the jerk changes by no
   // more than the next one allows.
   void step_smoothly() {
-    const Reference before = directive_.reference;
+    const Reference before = control_setpoint_.reference;
     step();
-    const Reference& after = directive_.reference;
+    const Reference& after = control_setpoint_.reference;
     const double highest_jerk = 60.0;
     const double highest_snap = 600.0;
     ASSERT_LE((after.position_ned - before.position_ned).norm(), (kFastest + 0.1) * kStep_s);
@@ -52,12 +52,12 @@ class TrajectoryFlight : public testing::Test, protected SupervisedFlight {
     EXPECT_LE(after.acceleration_ned.norm(), Limits().max_acceleration + 1e-9);
   }
   void fly_smoothly(double seconds) {
-    const std::int64_t end_ns = situation_.stamp_ns + std::llround(seconds * 1e9);
-    while (situation_.stamp_ns < end_ns && !HasFatalFailure()) step_smoothly();
+    const std::int64_t end_ns = inputs_.stamp_ns + std::llround(seconds * 1e9);
+    while (inputs_.stamp_ns < end_ns && !HasFatalFailure()) step_smoothly();
   }
   void land_smoothly_in(Mode mode, double limit_s) {
-    const std::int64_t end_ns = situation_.stamp_ns + std::llround(limit_s * 1e9);
-    while (supervisor_.mode() != mode && situation_.stamp_ns < end_ns && !HasFatalFailure()) step_smoothly();
+    const std::int64_t end_ns = inputs_.stamp_ns + std::llround(limit_s * 1e9);
+    while (supervisor_.mode() != mode && inputs_.stamp_ns < end_ns && !HasFatalFailure()) step_smoothly();
     ASSERT_EQ(supervisor_.mode(), mode);
   }
 
@@ -69,18 +69,18 @@ class TrajectoryFlight : public testing::Test, protected SupervisedFlight {
 TEST_F(TrajectoryFlight, TheReferenceIsThePolynomialExactly) {
   ASSERT_TRUE(check(tour_, Limits()).accepted);
   ASSERT_TRUE(fly(tour_).accepted);
-  const std::int64_t asked_ns = situation_.stamp_ns;
+  const std::int64_t asked_ns = inputs_.stamp_ns;
   fly_smoothly(0.5);  // the least that a join takes
   const std::int64_t start_ns = asked_ns + 500'000'000;
   std::int64_t segment_start_ns = start_ns;
   for (const PolynomialSegment& segment : tour_.segments) {
     const std::int64_t end_ns = segment_start_ns + std::llround(segment.duration_s * 1e9);
-    while (situation_.stamp_ns + kStep_ns < end_ns) {
+    while (inputs_.stamp_ns + kStep_ns < end_ns) {
       step_smoothly();
       const Reference wanted =
-          evaluate(segment, static_cast<double>(situation_.stamp_ns - segment_start_ns) * 1e-9);
-      ASSERT_LT((directive_.reference.position_ned - wanted.position_ned).norm(), 1e-15);
-      ASSERT_LT((directive_.reference.velocity_ned - wanted.velocity_ned).norm(), 1e-14);
+          evaluate(segment, static_cast<double>(inputs_.stamp_ns - segment_start_ns) * 1e-9);
+      ASSERT_LT((control_setpoint_.reference.position_ned - wanted.position_ned).norm(), 1e-15);
+      ASSERT_LT((control_setpoint_.reference.velocity_ned - wanted.velocity_ned).norm(), 1e-14);
     }
     segment_start_ns = end_ns;
   }
@@ -96,16 +96,16 @@ TEST_F(TrajectoryFlight, ANewOneJoinsTheMotionOfThePresentOne) {
     while (supervisor_.state().guidance.next_segment == 0 && !HasFatalFailure())
       step_smoothly();  // the way there
     fly_smoothly(at_s);
-    EXPECT_GT(directive_.reference.velocity_ned.norm(), 0.01);
+    EXPECT_GT(control_setpoint_.reference.velocity_ned.norm(), 0.01);
     ASSERT_TRUE(fly(other_).accepted);
     EXPECT_EQ(supervisor_.mode(), Mode::kTrajectory);
     EXPECT_EQ(supervisor_.state().guidance.trajectory_id, 2U);
     land_smoothly_in(Mode::kHolding, 60.0);
     EXPECT_EQ(supervisor_.reason(), Reason::kTrajectoryCompleted);
-    EXPECT_LT((directive_.reference.position_ned - Vector3d(1.0, 0.5, -1.5)).norm(), 1e-9);
+    EXPECT_LT((control_setpoint_.reference.position_ned - Vector3d(1.0, 0.5, -1.5)).norm(), 1e-9);
     ASSERT_TRUE(ask(RequestKind::kGoTo, {0, 0, -1}, 1.0).accepted);
     ASSERT_TRUE(
-        step_until([&] { return supervisor_.state().guidance.path.finished(situation_.stamp_ns); }, 20.0));
+        step_until([&] { return supervisor_.state().guidance.path.finished(inputs_.stamp_ns); }, 20.0));
   }
 }
 
@@ -114,7 +114,7 @@ TEST_F(TrajectoryFlight, OneIsJoinedFromASetpointStream) {
   for (int i = 0; i < 200; ++i) {
     setpoint.position_ned = {0.5 * kStep_s * i, 0, -1};
     setpoint.velocity_ned = {0.5, 0, 0};
-    ASSERT_TRUE(supervisor_.setpoint(setpoint, situation_).accepted);
+    ASSERT_TRUE(supervisor_.setpoint(setpoint, inputs_).accepted);
     step();
   }
   ASSERT_TRUE(fly(other_).accepted);
@@ -133,12 +133,12 @@ TEST_F(TrajectoryFlight, TheWayToANewOneStaysInsideTheFence) {
     ASSERT_TRUE(fly(other_).accepted);
     while (supervisor_.mode() == Mode::kTrajectory) {
       step();
-      ASSERT_LE(directive_.reference.position_ned.x(), Limits().fence_max_ned.x());
-      ASSERT_LE(directive_.reference.velocity_ned.norm(), Limits().max_speed + 0.1);
+      ASSERT_LE(control_setpoint_.reference.position_ned.x(), Limits().fence_max_ned.x());
+      ASSERT_LE(control_setpoint_.reference.velocity_ned.norm(), Limits().max_speed + 0.1);
     }
     ASSERT_TRUE(ask(RequestKind::kGoTo, {0, 0, -1}, 1.0).accepted);
     ASSERT_TRUE(
-        step_until([&] { return supervisor_.state().guidance.path.finished(situation_.stamp_ns); }, 20.0));
+        step_until([&] { return supervisor_.state().guidance.path.finished(inputs_.stamp_ns); }, 20.0));
   }
 }
 
@@ -150,7 +150,7 @@ TEST_F(TrajectoryFlight, ARefusedOneLeavesThePresentOneAsItIs) {
   EXPECT_FALSE(fly(outside).accepted);
   EXPECT_EQ(supervisor_.state().guidance.trajectory_id, 1U);
   land_smoothly_in(Mode::kHolding, 20.0);
-  EXPECT_LT((directive_.reference.position_ned - Vector3d(0, -0.5, -1)).norm(), 1e-9);
+  EXPECT_LT((control_setpoint_.reference.position_ned - Vector3d(0, -0.5, -1)).norm(), 1e-9);
 }
 
 TEST_F(TrajectoryFlight, SegmentsShorterThanAStepAreNotFallenBehindOn) {
@@ -164,9 +164,9 @@ TEST_F(TrajectoryFlight, SegmentsShorterThanAStepAreNotFallenBehindOn) {
   }
   ASSERT_TRUE(check(chopped, Limits()).accepted) << check(chopped, Limits()).reason;
   ASSERT_TRUE(fly(chopped).accepted);
-  const std::int64_t start_ns = situation_.stamp_ns;
+  const std::int64_t start_ns = inputs_.stamp_ns;
   ASSERT_TRUE(step_until(Mode::kHolding, 10.0));
-  EXPECT_NEAR(static_cast<double>(situation_.stamp_ns - start_ns) * 1e-9, 2.0, 0.01);
+  EXPECT_NEAR(static_cast<double>(inputs_.stamp_ns - start_ns) * 1e-9, 2.0, 0.01);
 }
 
 Mission with_trajectory(const Trajectory& first, const Trajectory& second) {
@@ -199,12 +199,12 @@ TEST_F(TrajectoryFlight, AMissionFliesItsTrajectoriesInTheirTurn) {
     return step_until([&] { return supervisor_.mission().item_index == item; }, 30.0);
   };
   ASSERT_TRUE(at_item(1));
-  const std::int64_t begun_ns = situation_.stamp_ns;
+  const std::int64_t begun_ns = inputs_.stamp_ns;
   ASSERT_TRUE(at_item(2));
   EXPECT_LT((estimate_.position_ned - Vector3d(0, -0.5, -1)).norm(), 1e-4);
   const double way_s =
       septic_duration(0.5, 0.5, Limits().max_reference_acceleration, Limits().max_reference_jerk);
-  EXPECT_NEAR(static_cast<double>(situation_.stamp_ns - begun_ns) * 1e-9, way_s + duration_s(tour_) + 0.4,
+  EXPECT_NEAR(static_cast<double>(inputs_.stamp_ns - begun_ns) * 1e-9, way_s + duration_s(tour_) + 0.4,
               0.01);
   ASSERT_TRUE(at_item(3));
   EXPECT_LT((estimate_.position_ned - Vector3d(1.0, 0.5, -1.5)).norm(), 1e-4);
@@ -229,11 +229,11 @@ TEST_F(TrajectoryFlight, AnotherGoesOnInTheMiddleOfAMissionsTrajectory) {
   Supervisor another{SupervisionSettings()};
   another.adopt(supervisor_.state(), &mission, nullptr);
   for (int i = 0; i < 5000; ++i) {
-    SupervisorInputs same = situation_;
+    SupervisorInputs same = inputs_;
     same.stamp_ns += kStep_ns;
     const ControlSetpoint theirs = another.step(same);
     step();
-    ASSERT_EQ(theirs.reference.position_ned, directive_.reference.position_ned) << "step " << i;
+    ASSERT_EQ(theirs.reference.position_ned, control_setpoint_.reference.position_ned) << "step " << i;
     ASSERT_EQ(another.mode(), supervisor_.mode());
   }
 }

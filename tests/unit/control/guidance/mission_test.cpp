@@ -70,10 +70,10 @@ class MissionFlight : public testing::Test, protected SupervisedFlight {
   void step_smoothly(double seconds, const Limits& limits = {}) {
     const double dt = static_cast<double>(kStep_ns) * 1e-9;
     std::optional<Reference> before;
-    const std::int64_t end_ns = situation_.stamp_ns + std::llround(seconds * 1e9);
-    while (situation_.stamp_ns < end_ns) {
+    const std::int64_t end_ns = inputs_.stamp_ns + std::llround(seconds * 1e9);
+    while (inputs_.stamp_ns < end_ns) {
       step();
-      const Reference& r = directive_.reference;
+      const Reference& r = control_setpoint_.reference;
       if (before) {
         const Vector3d velocity = (r.position_ned - before->position_ned) / dt;
         const Vector3d acceleration = (r.velocity_ned - before->velocity_ned) / dt;
@@ -124,10 +124,10 @@ TEST_F(MissionFlight, EachRefusalSaysWhy) {
   Request start;
   start.kind = RequestKind::kMissionStart;
   start.mission_id = 9;
-  EXPECT_STREQ(supervisor_.request(start, situation_).reason,
+  EXPECT_STREQ(supervisor_.request(start, inputs_).reason,
                "mission 9 is not the one that is here: that is 7");
   start.mission_id = 7;
-  ASSERT_TRUE(supervisor_.request(start, situation_).accepted);
+  ASSERT_TRUE(supervisor_.request(start, inputs_).accepted);
   EXPECT_STREQ(upload(other).reason, "mission 7 is being flown: hold, goto or land ends that");
   EXPECT_STREQ(ask(RequestKind::kMissionStart).reason,
                "mission 7 is being flown: hold, goto or land ends that");
@@ -149,23 +149,23 @@ TEST_F(MissionFlight, APauseComesToRestOnThePathWithoutAStepAndResumesThere) {
     ASSERT_TRUE(fly(mission).accepted);
     ASSERT_NO_FATAL_FAILURE(step_smoothly(pause_at_s));
     if (supervisor_.mode() != Mode::kMission) break;
-    const double speed = directive_.reference.velocity_ned.norm();
+    const double speed = control_setpoint_.reference.velocity_ned.norm();
     ASSERT_TRUE(pause().accepted);
     EXPECT_EQ(supervisor_.mode(), Mode::kHolding);
     EXPECT_EQ(supervisor_.reason(), Reason::kMissionPaused);
     EXPECT_EQ(state(), MissionState::kPaused);
     step();
-    EXPECT_NEAR(directive_.reference.velocity_ned.norm(), speed, 0.01);
+    EXPECT_NEAR(control_setpoint_.reference.velocity_ned.norm(), speed, 0.01);
     ASSERT_NO_FATAL_FAILURE(step_smoothly(3.0));
-    EXPECT_EQ(directive_.reference.velocity_ned, Vector3d::Zero());
-    const Vector3d rest = directive_.reference.position_ned;
+    EXPECT_EQ(control_setpoint_.reference.velocity_ned, Vector3d::Zero());
+    const Vector3d rest = control_setpoint_.reference.position_ned;
     EXPECT_LT(distance_from(mission.segments, rest), 2e-3) << "paused at " << pause_at_s << " s";
     fly_on(1.0);
-    EXPECT_EQ(directive_.reference.position_ned, rest);
+    EXPECT_EQ(control_setpoint_.reference.position_ned, rest);
     ASSERT_TRUE(resume().accepted);
     EXPECT_EQ(state(), MissionState::kRunning);
     ASSERT_NO_FATAL_FAILURE(step_smoothly(1.0));
-    EXPECT_LT(distance_from(mission.segments, directive_.reference.position_ned), 2e-3);
+    EXPECT_LT(distance_from(mission.segments, control_setpoint_.reference.position_ned), 2e-3);
     ASSERT_TRUE(step_until([&] { return state() == MissionState::kCompleted; }, 20.0));
     EXPECT_NEAR((estimate_.position_ned - Vector3d(0, 0, -1)).norm(), 0.0, 1e-6);
   }
@@ -182,7 +182,7 @@ TEST_F(MissionFlight, APauseIsInterruptedAtAnyTimeWithoutAStep) {
     ASSERT_NO_FATAL_FAILURE(step_smoothly(after_s));
     ASSERT_TRUE(pause().accepted);
     ASSERT_NO_FATAL_FAILURE(step_smoothly(3.0));
-    EXPECT_LT(distance_from(mission.segments, directive_.reference.position_ned), 2e-3);
+    EXPECT_LT(distance_from(mission.segments, control_setpoint_.reference.position_ned), 2e-3);
     ASSERT_TRUE(resume().accepted);
     ASSERT_TRUE(step_until([&] { return state() == MissionState::kCompleted; }, 30.0));
   }
@@ -195,7 +195,7 @@ TEST_F(MissionFlight, SentElsewhereInAPauseItReturnsToWhereItWasLeft) {
     fly_on(2.0);
     ASSERT_TRUE(pause().accepted);
     ASSERT_NO_FATAL_FAILURE(step_smoothly(pause_s));
-    const Vector3d left = directive_.reference.position_ned;
+    const Vector3d left = control_setpoint_.reference.position_ned;
     ASSERT_TRUE(ask(RequestKind::kGoTo, {-1, -1, -2}).accepted);
     EXPECT_EQ(state(), MissionState::kPaused);
     fly_on(12.0);
@@ -208,7 +208,7 @@ TEST_F(MissionFlight, SentElsewhereInAPauseItReturnsToWhereItWasLeft) {
           const double distance = (estimate_.position_ned - left).norm();
           nearest = std::min(nearest, distance);
           if (distance < 1e-3)
-            slowest_there = std::min(slowest_there, directive_.reference.velocity_ned.norm());
+            slowest_there = std::min(slowest_there, control_setpoint_.reference.velocity_ned.norm());
           return state() == MissionState::kCompleted;
         },
         40.0));
@@ -224,7 +224,7 @@ TEST_F(MissionFlight, AReturnIsPausedAndGoneOnWith) {
   fly_on(2.0);
   ASSERT_TRUE(pause().accepted);
   fly_on(3.0);
-  const Vector3d left = directive_.reference.position_ned;
+  const Vector3d left = control_setpoint_.reference.position_ned;
   ASSERT_TRUE(ask(RequestKind::kGoTo, {-1, -1, -2}).accepted);
   fly_on(12.0);
   ASSERT_TRUE(resume().accepted);
@@ -252,9 +252,9 @@ TEST_F(MissionFlight, TheRestOfAHoldIsKeptInAPause) {
   fly_on(30.0);
   EXPECT_EQ(item(), 0);
   ASSERT_TRUE(resume().accepted);
-  const std::int64_t resumed_ns = situation_.stamp_ns;
+  const std::int64_t resumed_ns = inputs_.stamp_ns;
   ASSERT_TRUE(step_until([&] { return item() == 1; }, 10.0));
-  const double rest_s = static_cast<double>(situation_.stamp_ns - resumed_ns) * 1e-9;
+  const double rest_s = static_cast<double>(inputs_.stamp_ns - resumed_ns) * 1e-9;
   EXPECT_GT(rest_s, 2.4);
   EXPECT_LT(rest_s, 3.6);
 }
@@ -277,12 +277,12 @@ TEST_F(MissionFlight, SkipGoesOnWithTheNextItemFromThePresentMotion) {
       mission_of({waypoint({2, 0, -1}, 0.8), waypoint({0, 1, -1}, 0.8), waypoint({0, 0, -1}, 0.8)});
   ASSERT_TRUE(fly(mission).accepted);
   fly_on(2.0);
-  const double speed = directive_.reference.velocity_ned.x();
+  const double speed = control_setpoint_.reference.velocity_ned.x();
   ASSERT_GT(speed, 0.3);
   ASSERT_TRUE(ask(RequestKind::kMissionSkip).accepted);
   EXPECT_EQ(item(), 1);
   step();
-  EXPECT_NEAR(directive_.reference.velocity_ned.x(), speed, 0.02);
+  EXPECT_NEAR(control_setpoint_.reference.velocity_ned.x(), speed, 0.02);
   ASSERT_TRUE(step_until([&] { return item() == 2; }, 20.0));
   EXPECT_NEAR((estimate_.position_ned - Vector3d(0, 1, -1)).norm(), 0.0, 1e-3);
 }
@@ -310,7 +310,7 @@ TEST_F(MissionFlight, ClearInAPauseComesToRestAndForgetsIt) {
   EXPECT_EQ(state(), MissionState::kNone);
   EXPECT_EQ(supervisor_.mission().id, 0u);
   ASSERT_NO_FATAL_FAILURE(step_smoothly(4.0));
-  EXPECT_EQ(directive_.reference.velocity_ned, Vector3d::Zero());
+  EXPECT_EQ(control_setpoint_.reference.velocity_ned, Vector3d::Zero());
   EXPECT_FALSE(resume().accepted);
   EXPECT_FALSE(ask(RequestKind::kMissionStart).accepted);
 }
@@ -334,15 +334,15 @@ TEST_F(MissionFlight, AnotherGoesOnFromAPauseAtEveryStep) {
     for (int i = 0; i < steps; ++i) {
       const SupervisorState state = supervisor_.state();
       if (i % 5 == 0) follower.adopt(state, &mission, nullptr);
-      SupervisorInputs seen = situation_;
+      SupervisorInputs seen = inputs_;
       const Estimate before = estimate_;
       step();
-      seen.stamp_ns = situation_.stamp_ns;
+      seen.stamp_ns = inputs_.stamp_ns;
       seen.estimate = &before;
       const ControlSetpoint followed = follower.step(seen);
-      ASSERT_EQ(followed.reference.position_ned, directive_.reference.position_ned);
-      ASSERT_EQ(followed.reference.velocity_ned, directive_.reference.velocity_ned);
-      ASSERT_EQ(followed.reference.jerk_ned, directive_.reference.jerk_ned);
+      ASSERT_EQ(followed.reference.position_ned, control_setpoint_.reference.position_ned);
+      ASSERT_EQ(followed.reference.velocity_ned, control_setpoint_.reference.velocity_ned);
+      ASSERT_EQ(followed.reference.jerk_ned, control_setpoint_.reference.jerk_ned);
       ASSERT_EQ(follower.mission().state, supervisor_.mission().state);
     }
   };
@@ -385,7 +385,7 @@ TEST_F(MissionFlight, AnItemWithAnAcceptanceRadiusWaitsForTheVehicleItself) {
   estimate_.position_ned = {0.9, 0, -1};
   fly_on(10.0);
   EXPECT_EQ(item(), 0);
-  EXPECT_NEAR(directive_.reference.position_ned.x(), 1.0, 1e-9);
+  EXPECT_NEAR(control_setpoint_.reference.position_ned.x(), 1.0, 1e-9);
   estimate_.position_ned = {0.951, 0, -1};
   fly_on(0.9);
   EXPECT_EQ(item(), 0) << "its hold begins when it has arrived";
@@ -401,9 +401,9 @@ TEST_F(MissionFlight, AWaitStaysWhereItIs) {
   ASSERT_TRUE(check(mission, Limits{}).accepted) << check(mission, Limits{}).reason;
   ASSERT_TRUE(fly(mission).accepted);
   ASSERT_TRUE(step_until([&] { return item() == 1; }, 10.0));
-  const std::int64_t begun_ns = situation_.stamp_ns;
+  const std::int64_t begun_ns = inputs_.stamp_ns;
   ASSERT_TRUE(step_until([&] { return item() == 2; }, 10.0));
-  EXPECT_NEAR(static_cast<double>(situation_.stamp_ns - begun_ns) * 1e-9, 2.0, 0.01);
+  EXPECT_NEAR(static_cast<double>(inputs_.stamp_ns - begun_ns) * 1e-9, 2.0, 0.01);
   EXPECT_NEAR(estimate_.position_ned.x(), 0.5, 1e-4);
   EXPECT_TRUE(step_until([&] { return state() == MissionState::kCompleted; }, 10.0));
 }
@@ -423,8 +423,8 @@ TEST_F(MissionFlight, ATrajectoryWhoseYawIsFreeKeepsTheYaw) {
     double greatest = -9.0;
     step_until(
         [&] {
-          least = std::min(least, directive_.reference.yaw_rad);
-          greatest = std::max(greatest, directive_.reference.yaw_rad);
+          least = std::min(least, control_setpoint_.reference.yaw_rad);
+          greatest = std::max(greatest, control_setpoint_.reference.yaw_rad);
           return state() == MissionState::kCompleted;
         },
         20.0);
@@ -440,9 +440,9 @@ TEST_F(MissionFlight, ItsOwnLimitsHoldWhileItIsFlown) {
     EXPECT_TRUE(fly(mission).accepted);
     step_until(
         [&] {
-          peak = peak.cwiseMax(Vector3d(directive_.reference.velocity_ned.norm(),
-                                        directive_.reference.acceleration_ned.norm(),
-                                        directive_.reference.jerk_ned.norm()));
+          peak = peak.cwiseMax(Vector3d(control_setpoint_.reference.velocity_ned.norm(),
+                                        control_setpoint_.reference.acceleration_ned.norm(),
+                                        control_setpoint_.reference.jerk_ned.norm()));
           return state() == MissionState::kCompleted;
         },
         60.0);

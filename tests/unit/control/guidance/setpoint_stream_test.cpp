@@ -22,19 +22,19 @@ class Stream : public testing::Test, protected SupervisedFlight {
  protected:
   Stream() {
     EXPECT_TRUE(take_off());
-    before_ = directive_.reference;
+    before_ = control_setpoint_.reference;
   }
 
   // One step, in which position, velocity and acceleration of the reference go on as their derivatives say.
   void step_smoothly() {
     step();
-    const Reference& now = directive_.reference;
+    const Reference& now = control_setpoint_.reference;
     const double acceleration = std::max(allowed_acceleration_, 1e-9);
     ASSERT_LE((now.position_ned - before_.position_ned - kStep_s * before_.velocity_ned).norm(),
               acceleration * kStep_s * kStep_s + kRounding);
     ASSERT_LE((now.velocity_ned - before_.velocity_ned).norm(), acceleration * kStep_s + kRounding);
     ASSERT_LE((now.acceleration_ned - before_.acceleration_ned).norm(), allowed_jerk_ * kStep_s + kRounding)
-        << "at " << 1e-9 * static_cast<double>(situation_.stamp_ns);
+        << "at " << 1e-9 * static_cast<double>(inputs_.stamp_ns);
     ASSERT_LE(now.acceleration_ned.norm(), allowed_acceleration_ + kRounding);
     ASSERT_LE(now.velocity_ned.norm(), limits_.max_speed + kRounding);
     ASSERT_LE(std::abs(now.yaw_rate), limits_.max_yaw_rate + kRounding);
@@ -50,11 +50,11 @@ class Stream : public testing::Test, protected SupervisedFlight {
     const auto steps = static_cast<int>(std::lround(duration_s / kStep_s));
     const auto period = static_cast<int>(std::lround(1.0 / rate_hz / kStep_s));
     for (int i = 0; i < steps; ++i) {
-      if (i % period == 0) last_ = supervisor_.setpoint(setpoint_at(i * kStep_s), situation_);
+      if (i % period == 0) last_ = supervisor_.setpoint(setpoint_at(i * kStep_s), inputs_);
       ASSERT_NO_FATAL_FAILURE(step_smoothly());
     }
   }
-  Outcome send(const Setpoint& setpoint) { return supervisor_.setpoint(setpoint, situation_); }
+  Outcome send(const Setpoint& setpoint) { return supervisor_.setpoint(setpoint, inputs_); }
   std::string refusal(const Setpoint& setpoint) {
     const Outcome outcome = send(setpoint);
     return outcome.accepted ? "accepted" : outcome.reason;
@@ -71,7 +71,7 @@ Setpoint of_kind(SetpointKind kind) {
   Setpoint setpoint;
   setpoint.kind = kind;
   setpoint.yaw_free = true;
-  setpoint.thrust = plant::kGravity;
+  setpoint.specific_thrust = plant::kGravity;
   return setpoint;
 }
 
@@ -104,7 +104,7 @@ TEST_P(Rates, PositionsWithTheirDerivativesAreFollowedOnTheSpot) {
   double farthest_m = 0.0;
   const auto next = [&](double t) {
     if (t > 1.0) {
-      farthest_m = std::max(farthest_m, (directive_.reference.position_ned - circle(t).position_ned).norm());
+      farthest_m = std::max(farthest_m, (control_setpoint_.reference.position_ned - circle(t).position_ned).norm());
     }
     return circle(t);
   };
@@ -117,7 +117,7 @@ TEST_P(Rates, PositionsAloneAreFollowedSmoothly) {
   const Circle circle{false, false};
   ASSERT_NO_FATAL_FAILURE(stream(14.0, GetParam(), circle));
   EXPECT_EQ(supervisor_.mode(), Mode::kSetpoint);
-  EXPECT_LT((directive_.reference.position_ned - circle(14.0).position_ned).norm(), 0.6);
+  EXPECT_LT((control_setpoint_.reference.position_ned - circle(14.0).position_ned).norm(), 0.6);
   ASSERT_TRUE(step_until(Mode::kHolding, 1.0));
   EXPECT_EQ(supervisor_.reason(), Reason::kSetpointsStopped);
 }
@@ -126,16 +126,16 @@ TEST_P(Rates, AStepOfThePositionBecomesASmoothMove) {
   Setpoint setpoint = of_kind(SetpointKind::kPosition);
   setpoint.position_ned = {0.6, -0.4, -1.3};
   ASSERT_NO_FATAL_FAILURE(stream(5.0, GetParam(), [&](double) { return setpoint; }));
-  EXPECT_LT((directive_.reference.position_ned - setpoint.position_ned).norm(), 1e-3);
-  EXPECT_LT(directive_.reference.velocity_ned.norm(), 1e-3);
+  EXPECT_LT((control_setpoint_.reference.position_ned - setpoint.position_ned).norm(), 1e-3);
+  EXPECT_LT(control_setpoint_.reference.velocity_ned.norm(), 1e-3);
 }
 
 TEST_P(Rates, AVelocityIsReachedSmoothlyAndKept) {
   Setpoint setpoint = of_kind(SetpointKind::kVelocity);
   setpoint.velocity_ned = {0.3, -0.2, -0.1};
   ASSERT_NO_FATAL_FAILURE(stream(3.0, GetParam(), [&](double) { return setpoint; }));
-  EXPECT_LT((directive_.reference.velocity_ned - setpoint.velocity_ned).norm(), 1e-3);
-  EXPECT_LT((directive_.reference.position_ned - 3.0 * setpoint.velocity_ned + Vector3d::UnitZ()).norm(),
+  EXPECT_LT((control_setpoint_.reference.velocity_ned - setpoint.velocity_ned).norm(), 1e-3);
+  EXPECT_LT((control_setpoint_.reference.position_ned - 3.0 * setpoint.velocity_ned + Vector3d::UnitZ()).norm(),
             0.3);
 }
 
@@ -143,8 +143,8 @@ TEST_P(Rates, AnAccelerationIsReachedSmoothlyAndKept) {
   Setpoint setpoint = of_kind(SetpointKind::kAcceleration);
   setpoint.acceleration_ned = {0.0, 0.5, 0.0};
   ASSERT_NO_FATAL_FAILURE(stream(1.5, GetParam(), [&](double) { return setpoint; }));
-  EXPECT_LT((directive_.reference.acceleration_ned - setpoint.acceleration_ned).norm(), 1e-2);
-  EXPECT_NEAR(directive_.reference.velocity_ned.y(), 0.5 * 1.5, 0.2);
+  EXPECT_LT((control_setpoint_.reference.acceleration_ned - setpoint.acceleration_ned).norm(), 1e-2);
+  EXPECT_NEAR(control_setpoint_.reference.velocity_ned.y(), 0.5 * 1.5, 0.2);
 }
 
 TEST_P(Rates, AVelocityTowardsTheFenceStopsBeforeIt) {
@@ -153,7 +153,7 @@ TEST_P(Rates, AVelocityTowardsTheFenceStopsBeforeIt) {
   ASSERT_NO_FATAL_FAILURE(stream(12.0, GetParam(), [&](double) { return setpoint; }));
   EXPECT_EQ(supervisor_.mode(), Mode::kHolding);
   EXPECT_FALSE(last_.accepted);
-  EXPECT_GT(directive_.reference.position_ned.x(), 1.8);
+  EXPECT_GT(control_setpoint_.reference.position_ned.x(), 1.8);
 }
 
 TEST_P(Rates, AnAccelerationEndsAtTheSpeedThatIsAllowed) {
@@ -161,7 +161,7 @@ TEST_P(Rates, AnAccelerationEndsAtTheSpeedThatIsAllowed) {
   setpoint.acceleration_ned = {1.2, 0.0, 0.0};
   ASSERT_NO_FATAL_FAILURE(stream(6.0, GetParam(), [&](double) { return setpoint; }));
   EXPECT_FALSE(last_.accepted) << "either for the speed or for the fence";
-  EXPECT_LT(directive_.reference.velocity_ned.norm(), limits_.max_speed);
+  EXPECT_LT(control_setpoint_.reference.velocity_ned.norm(), limits_.max_speed);
 }
 
 TEST_P(Rates, AHeadingIsTurnedToWithinItsRate) {
@@ -170,12 +170,12 @@ TEST_P(Rates, AHeadingIsTurnedToWithinItsRate) {
   setpoint.yaw_free = false;
   setpoint.yaw_rad = 3.0;
   ASSERT_NO_FATAL_FAILURE(stream(9.0, GetParam(), [&](double) { return setpoint; }));
-  EXPECT_NEAR(std::remainder(directive_.reference.yaw_rad - 3.0, 2.0 * M_PI), 0.0, 1e-3);
+  EXPECT_NEAR(std::remainder(control_setpoint_.reference.yaw_rad - 3.0, 2.0 * M_PI), 0.0, 1e-3);
   setpoint.yaw_free = true;
   setpoint.yaw_rate = -0.5;
-  const double before = directive_.reference.yaw_rad;
+  const double before = control_setpoint_.reference.yaw_rad;
   ASSERT_NO_FATAL_FAILURE(stream(2.0, GetParam(), [&](double) { return setpoint; }));
-  EXPECT_NEAR(directive_.reference.yaw_rad - before, -1.0, 0.3);
+  EXPECT_NEAR(control_setpoint_.reference.yaw_rad - before, -1.0, 0.3);
 }
 
 INSTANTIATE_TEST_SUITE_P(OfStreams, Rates, testing::Values(2.0, 5.0, 20.0, 100.0, 500.0));
@@ -188,20 +188,20 @@ TEST_F(Stream, TheFirstSetpointIsGoneOverIntoWithoutDelay) {
   ASSERT_TRUE(send(setpoint).accepted);
   const auto steps = static_cast<int>(std::lround(0.1 / kStep_s));
   for (int i = 0; i < steps; ++i) ASSERT_NO_FATAL_FAILURE(step_smoothly());
-  EXPECT_NEAR(directive_.reference.velocity_ned.x(), 0.005, 1e-6);
+  EXPECT_NEAR(control_setpoint_.reference.velocity_ned.x(), 0.005, 1e-6);
 }
 
 TEST_F(Stream, TheFirstSetpointAfterAPauseIsGoneOverIntoWithoutDelay) {
   Setpoint setpoint = of_kind(SetpointKind::kPosition);
-  setpoint.position_ned = directive_.reference.position_ned;
+  setpoint.position_ned = control_setpoint_.reference.position_ned;
   ASSERT_TRUE(send(setpoint).accepted);
   ASSERT_TRUE(step_until(Mode::kHolding, 2.0));
-  setpoint.position_ned = directive_.reference.position_ned + Vector3d(2e-5, 0.0, 0.0);
-  before_ = directive_.reference;
+  setpoint.position_ned = control_setpoint_.reference.position_ned + Vector3d(2e-5, 0.0, 0.0);
+  before_ = control_setpoint_.reference;
   ASSERT_TRUE(send(setpoint).accepted);
   const auto steps = static_cast<int>(std::lround(0.1 / kStep_s));
   for (int i = 0; i < steps; ++i) ASSERT_NO_FATAL_FAILURE(step_smoothly());
-  EXPECT_NEAR(directive_.reference.position_ned.x(), setpoint.position_ned.x(), 1e-7);
+  EXPECT_NEAR(control_setpoint_.reference.position_ned.x(), setpoint.position_ned.x(), 1e-7);
 }
 
 // A slow sine in x, 500 times a second, so small that no blend takes longer for the sake of the limits.
@@ -213,7 +213,7 @@ class Sine : public Stream {
   double lag_s(bool with_derivatives) {
     double in_phase = 0.0, behind = 0.0;
     const auto next = [&](double t) {
-      const double x = directive_.reference.position_ned.x();
+      const double x = control_setpoint_.reference.position_ned.x();
       if (t >= 10.0) in_phase += x * std::sin(kRate * t), behind -= x * std::cos(kRate * t);
       Setpoint setpoint = of_kind(SetpointKind::kPosition);
       setpoint.position_ned = {kAmplitude * std::sin(kRate * t), 0.0, -1.0};
@@ -241,9 +241,9 @@ TEST_F(Stream, FromOneKindToTheNextTheReferenceGoesOnSmoothly) {
   ASSERT_NO_FATAL_FAILURE(stream(1.0, 20.0, [&](double) { return velocity; }));
   ASSERT_NO_FATAL_FAILURE(stream(0.6, 20.0, [&](double) { return acceleration; }));
   Setpoint place = of_kind(SetpointKind::kPosition);
-  place.position_ned = directive_.reference.position_ned;
+  place.position_ned = control_setpoint_.reference.position_ned;
   ASSERT_NO_FATAL_FAILURE(stream(4.0, 20.0, [&](double) { return place; }));
-  EXPECT_LT((directive_.reference.position_ned - place.position_ned).norm(), 1e-3);
+  EXPECT_LT((control_setpoint_.reference.position_ned - place.position_ned).norm(), 1e-3);
 }
 
 TEST_F(Stream, AnotherControllerGoesOnWithIt) {
@@ -259,18 +259,18 @@ TEST_F(Stream, AnotherControllerGoesOnWithIt) {
     setpoint.acceleration_ned = {0.1, 0, 0};
     setpoint.q_ned_from_frd = Eigen::AngleAxisd(0.1, Vector3d::UnitX());
     setpoint.body_rates_frd = {0.1, 0.2, 0.3};
-    ASSERT_TRUE(flight.supervisor_.setpoint(setpoint, flight.situation_).accepted);
+    ASSERT_TRUE(flight.supervisor_.setpoint(setpoint, flight.inputs_).accepted);
     for (int i = 0; i < 100; ++i) flight.step();
     Supervisor standby({});
     standby.adopt(flight.supervisor_.state(), nullptr, nullptr);
     for (int i = 0; i < 400; ++i) {
       flight.step();
-      const ControlSetpoint theirs = standby.step(flight.situation_);
-      ASSERT_EQ(theirs.control_mode, flight.directive_.control_mode);
-      ASSERT_EQ(theirs.reference.position_ned, flight.directive_.reference.position_ned);
-      ASSERT_EQ(theirs.q_ned_from_frd.coeffs(), flight.directive_.q_ned_from_frd.coeffs());
-      ASSERT_EQ(theirs.body_rates_frd, flight.directive_.body_rates_frd);
-      ASSERT_EQ(theirs.thrust, flight.directive_.thrust);
+      const ControlSetpoint theirs = standby.step(flight.inputs_);
+      ASSERT_EQ(theirs.control_mode, flight.control_setpoint_.control_mode);
+      ASSERT_EQ(theirs.reference.position_ned, flight.control_setpoint_.reference.position_ned);
+      ASSERT_EQ(theirs.q_ned_from_frd.coeffs(), flight.control_setpoint_.q_ned_from_frd.coeffs());
+      ASSERT_EQ(theirs.body_rates_frd, flight.control_setpoint_.body_rates_frd);
+      ASSERT_EQ(theirs.specific_thrust, flight.control_setpoint_.specific_thrust);
     }
     EXPECT_EQ(standby.reason(), Reason::kSetpointsStopped);
   }
@@ -300,9 +300,9 @@ TEST_F(Stream, RefusesWhatIsBeyondALimitWithTheValueAndTheLimit) {
   setpoint.q_ned_from_frd = Eigen::Quaterniond(0.9, 0, 0, 0);
   EXPECT_EQ(refusal(setpoint), "setpoint: the attitude is no unit quaternion");
   setpoint = of_kind(SetpointKind::kAttitude);
-  setpoint.thrust = 15.0;
+  setpoint.specific_thrust = 15.0;
   EXPECT_EQ(refusal(setpoint), "setpoint: thrust is 15.00 m/s^2, must be at least 0 and at most 14.81 m/s^2");
-  setpoint.thrust = nan;
+  setpoint.specific_thrust = nan;
   EXPECT_NE(refusal(setpoint), "accepted");
   setpoint = of_kind(SetpointKind::kBodyRates);
   setpoint.body_rates_frd = {0, 0, 6.5};
@@ -321,7 +321,7 @@ TEST_F(Stream, WhatAKindDoesNotNameIsNotLookedAt) {
   EXPECT_EQ(refusal(setpoint), "accepted");
   setpoint = of_kind(SetpointKind::kVelocity);
   setpoint.position_ned = {99, 99, 99};
-  setpoint.thrust = -1.0;
+  setpoint.specific_thrust = -1.0;
   EXPECT_EQ(refusal(setpoint), "accepted");
 }
 

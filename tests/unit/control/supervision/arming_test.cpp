@@ -38,30 +38,30 @@ TEST_P(Arming, IsRefusedBeyondTheLimitWithValueAndLimit) {
 const auto kNothing = [](Placed&) {};
 void tilt(Placed& flight, double angle_rad) {
   flight.estimate_.q_ned_from_frd = Eigen::AngleAxisd(angle_rad, Vector3d::UnitX());
-  flight.situation_.specific_force_frd =
+  flight.inputs_.specific_force_frd =
       flight.estimate_.q_ned_from_frd.conjugate() * Vector3d(0.0, 0.0, -plant::kGravity);
 }
 const ArmingLimit kArmingLimits[] = {
-    {"pose", kNothing, [](Placed& f) { f.situation_.has_estimate = false; }, "no mocap pose has come"},
-    {"pose age", [](Placed& f) { f.situation_.pose_age_s = 0.5; },
-     [](Placed& f) { f.situation_.pose_age_s = 0.51; },
+    {"pose", kNothing, [](Placed& f) { f.inputs_.has_estimate = false; }, "no mocap pose has come"},
+    {"pose age", [](Placed& f) { f.inputs_.pose_age_s = 0.5; },
+     [](Placed& f) { f.inputs_.pose_age_s = 0.51; },
      "the last mocap pose is 0.51 s old, the limit is 0.50 s"},
     {"pose fault", [](Placed& f) { f.estimate_.pose_fault = PoseFault::kUntimely; },
      [](Placed& f) { f.estimate_.pose_fault = PoseFault::kFrozen; },
      "the last mocap pose was refused: frozen"},
-    {"imu", kNothing, [](Placed& f) { f.situation_.imu_unusable_s = 0.002; }, "IMU samples are not usable"},
-    {"battery", kNothing, [](Placed& f) { f.situation_.has_battery = false; }, "no battery voltage has come"},
-    {"battery age", [](Placed& f) { f.situation_.battery_age_s = 2.0; },
-     [](Placed& f) { f.situation_.battery_age_s = 2.1; },
+    {"imu", kNothing, [](Placed& f) { f.inputs_.imu_unusable_s = 0.002; }, "IMU samples are not usable"},
+    {"battery", kNothing, [](Placed& f) { f.inputs_.has_battery = false; }, "no battery voltage has come"},
+    {"battery age", [](Placed& f) { f.inputs_.battery_age_s = 2.0; },
+     [](Placed& f) { f.inputs_.battery_age_s = 2.1; },
      "the last battery voltage is 2.1 s old, the limit is 2.0 s"},
-    {"voltage", [](Placed& f) { f.situation_.supply_voltage_v = 3.3; },
-     [](Placed& f) { f.situation_.supply_voltage_v = 3.29; }, "the battery has 3.29 V, the limit is 3.30 V"},
+    {"voltage", [](Placed& f) { f.inputs_.supply_voltage_v = 3.3; },
+     [](Placed& f) { f.inputs_.supply_voltage_v = 3.29; }, "the battery has 3.29 V, the limit is 3.30 V"},
     {"specific force",
      [](Placed& f) {
-       f.situation_.specific_force_frd = {0.6, 0.0, -plant::kGravity - 0.79};
+       f.inputs_.specific_force_frd = {0.6, 0.0, -plant::kGravity - 0.79};
      },
      [](Placed& f) {
-       f.situation_.specific_force_frd = {0.0, 0.0, -plant::kGravity + 1.01};
+       f.inputs_.specific_force_frd = {0.0, 0.0, -plant::kGravity + 1.01};
      },
      "the accelerometer is 1.01 m/s^2 off gravity in the attitude of the pose, the limit is 1.00 m/s^2"},
     {"tilt of the pose alone", kNothing,
@@ -75,8 +75,8 @@ const ArmingLimit kArmingLimits[] = {
        f.estimate_.body_rates_frd = {0.2, 0.2, 0.1};
      },
      "turning at 0.30 rad/s, the limit is 0.20 rad/s"},
-    {"rotors", [](Placed& f) { f.situation_.rotor_speed = 100.0; },
-     [](Placed& f) { f.situation_.rotor_speed = 101.0; },
+    {"rotors", [](Placed& f) { f.inputs_.rotor_speed = 100.0; },
+     [](Placed& f) { f.inputs_.rotor_speed = 101.0; },
      "a rotor turns at 101 rad/s, the limit is 100 rad/s"},
     {"tilt", [](Placed& f) { tilt(f, 0.349); }, [](Placed& f) { tilt(f, 0.36); },
      "tilted by 0.36 rad, the limit is 0.35 rad"},
@@ -96,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(Checks, Arming, testing::ValuesIn(kArmingLimits));
 
 TEST(ArmingRefusal, NamesAllThatStandsAgainstItAndNeverHalfASentence) {
   Placed flight(kLand);
-  flight.situation_.has_battery = false;
+  flight.inputs_.has_battery = false;
   flight.estimate_.velocity_ned.x() = 1.0;
   EXPECT_STREQ(flight.ask(RequestKind::kArm).reason,
                "cannot arm: no battery voltage has come; moving at 1.00 m/s, the limit is 0.30 m/s");

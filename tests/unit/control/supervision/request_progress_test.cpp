@@ -138,10 +138,10 @@ TEST_F(Requests, ALandingWithoutPositionIsDoneOnTheGroundToo) {
   hover();
   ASSERT_TRUE(ask(RequestKind::kLand).accepted);
   for (int i = 0; i < 100; ++i) step();
-  situation_.pose_age_s = 10.0;
+  inputs_.pose_age_s = 10.0;
   ASSERT_TRUE(step_until(Mode::kDescent, 1.0));
   EXPECT_EQ(last().state, RequestState::kExecuting);
-  situation_.vertical_specific_force_residual = 5.0;
+  inputs_.vertical_specific_force_residual = 5.0;
   ASSERT_TRUE(step_until(Mode::kDisarmed, 5.0));
   EXPECT_EQ(last().state, RequestState::kSucceeded);
 }
@@ -206,7 +206,7 @@ TEST_F(Requests, AMissionIsDoneWhenItIsCompletedWhateverPausesIt) {
   EXPECT_EQ(numbered(pause).state, RequestState::kExecuting);
   ASSERT_TRUE(step_until_over(pause, 5.0));
   EXPECT_EQ(end_of(pause), "succeeded ");
-  EXPECT_EQ(directive_.reference.velocity_ned, Vector3d::Zero());
+  EXPECT_EQ(control_setpoint_.reference.velocity_ned, Vector3d::Zero());
   EXPECT_EQ(numbered(start).state, RequestState::kExecuting);
 
   ASSERT_TRUE(ask(RequestKind::kGoTo, {0, 0.3, -1}).accepted);
@@ -255,7 +255,7 @@ TEST_F(Requests, AMissionEndsWithWhatEndsIt) {
   {
     SupervisedFlight flight;
     begin(flight);
-    flight.situation_.supply_voltage_v = 3.0;
+    flight.inputs_.supply_voltage_v = 3.0;
     ASSERT_TRUE(flight.step_until(Mode::kLanding, 10.0));
     EXPECT_EQ(result(flight, flight.asked_),
               std::string("aborted: ") + to_string(flight.supervisor_.reason()));
@@ -266,7 +266,7 @@ TEST_F(Requests, AFailsafeAbortsWithItsReason) {
   hover();
   ASSERT_TRUE(ask(RequestKind::kGoTo, {1, 0, -1}).accepted);
   for (int i = 0; i < 100; ++i) step();
-  situation_.pose_age_s = 10.0;
+  inputs_.pose_age_s = 10.0;
   ASSERT_TRUE(step_until(Mode::kDescent, 1.0));
   EXPECT_EQ(end_of(asked_), "aborted aborted: no mocap pose");
   EXPECT_LT(last().progress, 0.5) << "it stays where it was";
@@ -277,9 +277,9 @@ TEST_F(Requests, SetpointsCancelWhatIsUnderWay) {
   ASSERT_TRUE(ask(RequestKind::kGoTo, {1, 0, -1}).accepted);
   for (int i = 0; i < 100; ++i) step();
   Setpoint setpoint;
-  setpoint.position_ned = directive_.reference.position_ned;
+  setpoint.position_ned = control_setpoint_.reference.position_ned;
   setpoint.yaw_free = true;
-  ASSERT_TRUE(supervisor_.setpoint(setpoint, situation_).accepted);
+  ASSERT_TRUE(supervisor_.setpoint(setpoint, inputs_).accepted);
   EXPECT_EQ(end_of(asked_), "canceled canceled by setpoints");
 }
 

@@ -15,24 +15,24 @@ class SupervisedFlight {
   static constexpr std::int64_t kStep_ns = 2'000'000;
 
   explicit SupervisedFlight(const control::SupervisionSettings& settings = {}) : supervisor_(settings) {
-    situation_.stamp_ns = kStep_ns;
-    situation_.estimate = &estimate_;
-    situation_.has_estimate = true;
-    situation_.has_battery = true;
-    situation_.supply_voltage_v = 3.9;
-    situation_.specific_force_frd.z() = -plant::kGravity;
+    inputs_.stamp_ns = kStep_ns;
+    inputs_.estimate = &estimate_;
+    inputs_.has_estimate = true;
+    inputs_.has_battery = true;
+    inputs_.supply_voltage_v = 3.9;
+    inputs_.specific_force_frd.z() = -plant::kGravity;
     step();
   }
   SupervisedFlight(const SupervisedFlight&) = delete;
   SupervisedFlight& operator=(const SupervisedFlight&) = delete;
 
   void step() {
-    situation_.stamp_ns += kStep_ns;
-    estimate_.stamp_ns = situation_.stamp_ns;
-    directive_ = supervisor_.step(situation_);
-    if (directive_.control_mode == control::ControlMode::kFly && follows_) {
-      estimate_.position_ned = directive_.reference.position_ned;
-      estimate_.velocity_ned = directive_.reference.velocity_ned;
+    inputs_.stamp_ns += kStep_ns;
+    estimate_.stamp_ns = inputs_.stamp_ns;
+    control_setpoint_ = supervisor_.step(inputs_);
+    if (control_setpoint_.control_mode == control::ControlMode::kFly && follows_) {
+      estimate_.position_ned = control_setpoint_.reference.position_ned;
+      estimate_.velocity_ned = control_setpoint_.reference.velocity_ned;
       if (estimate_.position_ned.z() > 0.0) {
         estimate_.position_ned.z() = 0.0;
         estimate_.velocity_ned.setZero();
@@ -41,8 +41,8 @@ class SupervisedFlight {
   }
   // Steps until the predicate holds; false if it does not within `limit_s` of flight.
   bool step_until(const std::function<bool()>& predicate, double limit_s) {
-    const std::int64_t end_ns = situation_.stamp_ns + std::llround(limit_s * 1e9);
-    while (situation_.stamp_ns < end_ns) {
+    const std::int64_t end_ns = inputs_.stamp_ns + std::llround(limit_s * 1e9);
+    while (inputs_.stamp_ns < end_ns) {
       if (predicate()) return true;
       step();
     }
@@ -57,12 +57,12 @@ class SupervisedFlight {
     control::Request request = next_request(kind);
     request.position_ned = position;
     request.speed = speed;
-    return supervisor_.request(request, situation_);
+    return supervisor_.request(request, inputs_);
   }
   control::Outcome upload(const control::Mission& mission) {
     control::Request request = next_request(control::RequestKind::kMissionUpload);
     request.mission = &mission;
-    return supervisor_.request(request, situation_);
+    return supervisor_.request(request, inputs_);
   }
   // With the next number of client 1.
   control::Request next_request(control::RequestKind kind) {
@@ -79,7 +79,7 @@ class SupervisedFlight {
   control::Outcome fly(const control::Trajectory& trajectory) {
     control::Request request = next_request(control::RequestKind::kTrajectory);
     request.trajectory = &trajectory;
-    return supervisor_.request(request, situation_);
+    return supervisor_.request(request, inputs_);
   }
   // Up to 1 m, where it holds.
   bool take_off() {
@@ -90,8 +90,8 @@ class SupervisedFlight {
 
   control::Supervisor supervisor_;
   control::Estimate estimate_;
-  control::SupervisorInputs situation_;
-  control::ControlSetpoint directive_;
+  control::SupervisorInputs inputs_;
+  control::ControlSetpoint control_setpoint_;
   bool follows_ = true;
   std::uint64_t asked_ = 0;  // so many requests
 };

@@ -23,23 +23,23 @@ class Flight : public testing::Test, protected SupervisedFlight {
 
 TEST_F(Flight, StartsDisarmedWithRotorsOff) {
   EXPECT_EQ(supervisor_.mode(), Mode::kDisarmed);
-  EXPECT_EQ(directive_.control_mode, ControlMode::kOff);
+  EXPECT_EQ(control_setpoint_.control_mode, ControlMode::kOff);
 }
 
 TEST_F(Flight, TakesOffHoldsAndLands) {
   ASSERT_TRUE(ask(RequestKind::kArm).accepted);
   step();
-  EXPECT_EQ(directive_.control_mode, ControlMode::kIdle);
+  EXPECT_EQ(control_setpoint_.control_mode, ControlMode::kIdle);
   ASSERT_TRUE(ask(RequestKind::kTakeoff, {0, 0, -1}).accepted);
   step();
-  EXPECT_EQ(directive_.control_mode, ControlMode::kSpoolUp);
+  EXPECT_EQ(control_setpoint_.control_mode, ControlMode::kSpoolUp);
   ASSERT_TRUE(step_until(Mode::kHolding, 10.0));
   EXPECT_NEAR(estimate_.position_ned.z(), -1.0, 1e-9);
   EXPECT_TRUE(supervisor_.airborne());
   ASSERT_TRUE(ask(RequestKind::kLand).accepted);
   ASSERT_TRUE(step_until(Mode::kDisarmed, 10.0));
   EXPECT_EQ(supervisor_.reason(), Reason::kLanded);
-  EXPECT_EQ(directive_.control_mode, ControlMode::kOff);
+  EXPECT_EQ(control_setpoint_.control_mode, ControlMode::kOff);
   EXPECT_FALSE(supervisor_.airborne());
 }
 
@@ -62,11 +62,11 @@ TEST_F(Flight, ALandingAskedForOnTheGroundDoesNotRise) {
   ASSERT_TRUE(ask(RequestKind::kLand).accepted);
   ASSERT_TRUE(step_until([&] { return estimate_.position_ned.z() > -0.01; }, 10.0));
   ASSERT_TRUE(ask(RequestKind::kGoTo, estimate_.position_ned).accepted);
-  const double before_z = directive_.reference.position_ned.z();
+  const double before_z = control_setpoint_.reference.position_ned.z();
   ASSERT_TRUE(ask(RequestKind::kLand).accepted);
   while (supervisor_.mode() == Mode::kLanding) {
     step();
-    ASSERT_GT(directive_.reference.position_ned.z(), before_z - 0.02);
+    ASSERT_GT(control_setpoint_.reference.position_ned.z(), before_z - 0.02);
   }
   EXPECT_EQ(supervisor_.reason(), Reason::kLanded);
 }
@@ -87,7 +87,7 @@ TEST_F(Flight, FliesTheItemsOfAMissionInOrderAndCompletesIt) {
   EXPECT_NEAR((estimate_.position_ned - Vector3d(1, 0, -1)).norm(), 0.0, 1e-3);
   ASSERT_TRUE(step_until([&] { return supervisor_.mission().item_index == 3; }, 10.0));
   EXPECT_NEAR((estimate_.position_ned - Vector3d(1, 1, -1.5)).norm(), 0.0, 1e-3);
-  EXPECT_NEAR(directive_.reference.yaw_rad, 1.0, 1e-3);
+  EXPECT_NEAR(control_setpoint_.reference.yaw_rad, 1.0, 1e-3);
   ASSERT_TRUE(step_until(Mode::kDisarmed, 20.0));
   EXPECT_EQ(supervisor_.mission().state, MissionState::kCompleted);
   EXPECT_EQ(supervisor_.mission().id, 7u);
@@ -95,10 +95,10 @@ TEST_F(Flight, FliesTheItemsOfAMissionInOrderAndCompletesIt) {
 
 TEST_F(Flight, ReferenceNeverJumpsWhateverIsAskedInFlight) {
   hover();
-  Vector3d last = directive_.reference.position_ned;
-  Vector3d last_velocity = directive_.reference.velocity_ned;
+  Vector3d last = control_setpoint_.reference.position_ned;
+  Vector3d last_velocity = control_setpoint_.reference.velocity_ned;
   const auto smooth = [&] {
-    const Reference& r = directive_.reference;
+    const Reference& r = control_setpoint_.reference;
     EXPECT_LT((r.position_ned - last).norm(), 0.006);
     EXPECT_LT((r.velocity_ned - last_velocity).norm(), 0.06);
     last = r.position_ned;
@@ -132,18 +132,18 @@ TEST_F(Flight, ReferenceNeverJumpsWhateverIsAskedInFlight) {
 }
 
 TEST_F(Flight, RefusesToArmWithoutPoseBatteryOrLevel) {
-  situation_.has_estimate = false;
+  inputs_.has_estimate = false;
   EXPECT_NE(std::string(ask(RequestKind::kArm).reason).find("no mocap pose"), std::string::npos);
-  situation_.has_estimate = true;
-  situation_.pose_age_s = 2.0;
+  inputs_.has_estimate = true;
+  inputs_.pose_age_s = 2.0;
   EXPECT_NE(std::string(ask(RequestKind::kArm).reason).find("2.00 s old"), std::string::npos);
-  situation_.pose_age_s = 0.0;
-  situation_.has_battery = false;
+  inputs_.pose_age_s = 0.0;
+  inputs_.has_battery = false;
   EXPECT_NE(std::string(ask(RequestKind::kArm).reason).find("no battery voltage"), std::string::npos);
-  situation_.has_battery = true;
-  situation_.supply_voltage_v = 3.1;
+  inputs_.has_battery = true;
+  inputs_.supply_voltage_v = 3.1;
   EXPECT_NE(std::string(ask(RequestKind::kArm).reason).find("3.10 V"), std::string::npos);
-  situation_.supply_voltage_v = 3.9;
+  inputs_.supply_voltage_v = 3.9;
   estimate_.q_ned_from_frd = Eigen::AngleAxisd(0.6, Vector3d::UnitX());
   EXPECT_NE(std::string(ask(RequestKind::kArm).reason).find("tilted"), std::string::npos);
   estimate_.q_ned_from_frd.setIdentity();
@@ -171,30 +171,30 @@ TEST_F(Flight, RefusesWhatTheModeDoesNotAllow) {
 
 TEST_F(Flight, LosingThePoseLeadsToLevelDescentAndItsReturnToHold) {
   hover();
-  situation_.pose_age_s = 0.4;
+  inputs_.pose_age_s = 0.4;
   step();
   EXPECT_EQ(supervisor_.mode(), Mode::kHolding);
-  situation_.pose_age_s = 0.6;
+  inputs_.pose_age_s = 0.6;
   step();
   EXPECT_EQ(supervisor_.mode(), Mode::kDescent);
-  EXPECT_EQ(directive_.control_mode, ControlMode::kLevelDescent);
-  situation_.pose_age_s = 0.0;
+  EXPECT_EQ(control_setpoint_.control_mode, ControlMode::kLevelDescent);
+  inputs_.pose_age_s = 0.0;
   step();
   EXPECT_EQ(supervisor_.mode(), Mode::kHolding);
 }
 
 TEST_F(Flight, DescentWithoutPositionEndsAtTheGroundOrByTimeOut) {
   hover();
-  situation_.pose_age_s = 1.0;
+  inputs_.pose_age_s = 1.0;
   ASSERT_TRUE(step_until(Mode::kDescent, 0.1));
-  situation_.vertical_specific_force_residual = 2.0;
+  inputs_.vertical_specific_force_residual = 2.0;
   ASSERT_TRUE(step_until(Mode::kDisarmed, 1.0));
-  situation_ = SupervisorInputs{situation_};
-  situation_.vertical_specific_force_residual = 0.0;
-  situation_.pose_age_s = 0.0;
+  inputs_ = SupervisorInputs{inputs_};
+  inputs_.vertical_specific_force_residual = 0.0;
+  inputs_.pose_age_s = 0.0;
   estimate_ = Estimate();
   hover();
-  situation_.pose_age_s = 1.0;
+  inputs_.pose_age_s = 1.0;
   ASSERT_TRUE(step_until(Mode::kStopped, 8.0));
   EXPECT_EQ(supervisor_.reason(), Reason::kDescentTimedOut);
 }
@@ -203,10 +203,10 @@ TEST_F(Flight, DescentWithoutPositionEndsAtTheGroundOrByTimeOut) {
 TEST_F(Flight, TheTimeOfADescentBeginsWithIt) {
   hover();
   for (int descent = 0; descent < 3; ++descent) {
-    situation_.pose_age_s = 1.0;
+    inputs_.pose_age_s = 1.0;
     ASSERT_TRUE(step_until(Mode::kDescent, 0.1));
     ASSERT_FALSE(step_until(Mode::kStopped, 4.0)) << descent;
-    situation_.pose_age_s = 0.0;
+    inputs_.pose_age_s = 0.0;
     ASSERT_TRUE(step_until(Mode::kHolding, 0.1));
     for (int i = 0; i < 50; ++i) step();
   }
@@ -221,27 +221,27 @@ TEST_F(Flight, AContactBeforeALandingWasCalledOffIsForgotten) {
   ASSERT_EQ(supervisor_.mode(), Mode::kLanding);
   ASSERT_TRUE(ask(RequestKind::kGoTo, {0, 0, -1}).accepted);
   ASSERT_TRUE(step_until([&] { return estimate_.position_ned.z() < -0.99; }, 20.0));
-  situation_.pose_age_s = 1.0;
+  inputs_.pose_age_s = 1.0;
   ASSERT_TRUE(step_until(Mode::kDescent, 0.1));
-  situation_.vertical_specific_force_residual = 2.0;
+  inputs_.vertical_specific_force_residual = 2.0;
   step();
   step();
   EXPECT_EQ(supervisor_.mode(), Mode::kDescent);
-  EXPECT_EQ(directive_.control_mode, ControlMode::kLevelDescent);
+  EXPECT_EQ(control_setpoint_.control_mode, ControlMode::kLevelDescent);
 }
 
 TEST_F(Flight, AContactBeforeThePoseCameBackIsForgotten) {
   hover();
-  situation_.pose_age_s = 1.0;
+  inputs_.pose_age_s = 1.0;
   ASSERT_TRUE(step_until(Mode::kDescent, 0.1));
-  situation_.vertical_specific_force_residual = 2.0;
+  inputs_.vertical_specific_force_residual = 2.0;
   for (int i = 0; i < 50; ++i) step();
-  situation_.pose_age_s = 0.0;
+  inputs_.pose_age_s = 0.0;
   ASSERT_TRUE(step_until(Mode::kHolding, 0.1));
-  situation_.vertical_specific_force_residual = 0.0;
+  inputs_.vertical_specific_force_residual = 0.0;
   for (int i = 0; i < 500; ++i) step();
-  situation_.pose_age_s = 1.0;
-  situation_.vertical_specific_force_residual = 2.0;
+  inputs_.pose_age_s = 1.0;
+  inputs_.vertical_specific_force_residual = 2.0;
   for (int i = 0; i < 10; ++i) step();
   EXPECT_EQ(supervisor_.mode(), Mode::kDescent);
 }
@@ -252,16 +252,16 @@ TEST_F(Flight, ABatteryThatWasLowIsForgottenOnTheGround) {
   for (const double voltage_v : {3.2, 2.9}) {
     SupervisedFlight flight;
     ASSERT_TRUE(flight.take_off());
-    flight.situation_.supply_voltage_v = voltage_v;
+    flight.inputs_.supply_voltage_v = voltage_v;
     for (int i = 0; i < 20; ++i) flight.step();
     ASSERT_TRUE(flight.ask(RequestKind::kStop).accepted);
     ASSERT_TRUE(flight.ask(RequestKind::kDisarm).accepted);
     flight.estimate_ = Estimate();
-    flight.situation_.supply_voltage_v = 4.0;
+    flight.inputs_.supply_voltage_v = 4.0;
     for (int i = 0; i < 2500; ++i) flight.step();
     ASSERT_TRUE(flight.ask(RequestKind::kArm).accepted);
     ASSERT_TRUE(flight.ask(RequestKind::kTakeoff, {0, 0, -1}).accepted);
-    flight.situation_.supply_voltage_v = voltage_v;
+    flight.inputs_.supply_voltage_v = voltage_v;
     for (int i = 0; i < 5; ++i) flight.step();
     EXPECT_EQ(flight.supervisor_.mode(), Mode::kTakingOff) << voltage_v;
   }
@@ -272,19 +272,19 @@ TEST_F(Flight, TippingOverStopsTheRotors) {
   estimate_.q_ned_from_frd = Eigen::AngleAxisd(1.6, Vector3d::UnitY());
   step();
   EXPECT_EQ(supervisor_.mode(), Mode::kStopped);
-  EXPECT_EQ(directive_.control_mode, ControlMode::kOff);
+  EXPECT_EQ(control_setpoint_.control_mode, ControlMode::kOff);
   ASSERT_TRUE(ask(RequestKind::kDisarm).accepted);
   EXPECT_EQ(supervisor_.mode(), Mode::kDisarmed);
 }
 
 TEST_F(Flight, ALowBatteryLandsOnlyIfItStaysLow) {
   hover();
-  situation_.supply_voltage_v = 3.2;
+  inputs_.supply_voltage_v = 3.2;
   for (int i = 0; i < 250; ++i) step();
   EXPECT_EQ(supervisor_.mode(), Mode::kHolding);
-  situation_.supply_voltage_v = 3.5;
+  inputs_.supply_voltage_v = 3.5;
   step();
-  situation_.supply_voltage_v = 3.2;
+  inputs_.supply_voltage_v = 3.2;
   ASSERT_TRUE(step_until(Mode::kLanding, 1.5));
   EXPECT_EQ(supervisor_.reason(), Reason::kBatteryLow);
 }
@@ -308,16 +308,16 @@ TEST_F(Flight, FollowsSetpointsAndHoldsWhenTheyStop) {
   Setpoint setpoint;
   setpoint.position_ned = {0.2, 0, -1};
   setpoint.velocity_ned = {0.3, 0, 0};
-  ASSERT_TRUE(supervisor_.setpoint(setpoint, situation_).accepted);
+  ASSERT_TRUE(supervisor_.setpoint(setpoint, inputs_).accepted);
   step();
   EXPECT_EQ(supervisor_.mode(), Mode::kSetpoint);
-  EXPECT_GT(directive_.reference.jerk_ned.x(), 0.0) << "it begins to move";
-  EXPECT_LT(directive_.reference.velocity_ned.norm(), 0.01) << "from rest";
+  EXPECT_GT(control_setpoint_.reference.jerk_ned.x(), 0.0) << "it begins to move";
+  EXPECT_LT(control_setpoint_.reference.velocity_ned.norm(), 0.01) << "from rest";
   setpoint.position_ned = {0.2, 9.0, -1};
-  EXPECT_FALSE(supervisor_.setpoint(setpoint, situation_).accepted);
+  EXPECT_FALSE(supervisor_.setpoint(setpoint, inputs_).accepted);
   setpoint.position_ned = {2.9, 0, -1};
   estimate_.position_ned = setpoint.position_ned;
-  const Outcome outcome = supervisor_.setpoint(setpoint, situation_);
+  const Outcome outcome = supervisor_.setpoint(setpoint, inputs_);
   EXPECT_STREQ(outcome.reason,
                "setpoint: where it could come to rest: x is 3.203 m, outside the fence of -3.000 to 3.000 m");
   ASSERT_TRUE(step_until(Mode::kHolding, 0.85));
@@ -333,7 +333,7 @@ TEST_F(Flight, FliesATrajectoryFromItsStartToItsEnd) {
   Request request;
   request.kind = RequestKind::kTrajectory;
   request.trajectory = &trajectory;
-  ASSERT_TRUE(supervisor_.request(request, situation_).accepted);
+  ASSERT_TRUE(supervisor_.request(request, inputs_).accepted);
   EXPECT_EQ(supervisor_.mode(), Mode::kTrajectory);
   ASSERT_TRUE(step_until(Mode::kHolding, 12.0));
   EXPECT_NEAR((estimate_.position_ned - Vector3d(0, 1, -1.5)).norm(), 0.0, 1e-3);
@@ -363,13 +363,13 @@ TEST_F(Flight, AnotherGoesOnFromItsStateAtEveryStep) {
       const SupervisorState state = supervisor_.state();
       follower.adopt(state, &mission, nullptr);
     }
-    SupervisorInputs seen = situation_;
+    SupervisorInputs seen = inputs_;
     const Estimate before = estimate_;
     step();
     if (steps < 7) continue;
-    seen.stamp_ns = situation_.stamp_ns;
+    seen.stamp_ns = inputs_.stamp_ns;
     seen.estimate = &before;
-    ASSERT_TRUE(same(follower.step(seen), directive_)) << "at step " << steps;
+    ASSERT_TRUE(same(follower.step(seen), control_setpoint_)) << "at step " << steps;
     ASSERT_EQ(follower.mode(), supervisor_.mode());
   }
   EXPECT_EQ(supervisor_.reason(), Reason::kLanded);
@@ -383,7 +383,7 @@ TEST_F(Flight, AMissionThatIsNotKnownToWhoTakesOverEndsInHold) {
   mission.items = {{MissionItemKind::kWaypoint, {2, 0, -1}, 0, true, 1.0, 0.0}};
   ASSERT_TRUE(fly(mission).accepted);
   for (int i = 0; i < 500; ++i) step();
-  const Reference before = directive_.reference;
+  const Reference before = control_setpoint_.reference;
   ASSERT_GT(before.velocity_ned.x(), 0.3);
   Mission other = mission;
   other.id = 6;
@@ -393,9 +393,9 @@ TEST_F(Flight, AMissionThatIsNotKnownToWhoTakesOverEndsInHold) {
   EXPECT_EQ(supervisor_.reason(), Reason::kPlanUnknown);
   EXPECT_EQ(supervisor_.mission().state, MissionState::kAborted);
   step();
-  EXPECT_NEAR(directive_.reference.velocity_ned.x(), before.velocity_ned.x(), 0.02);
+  EXPECT_NEAR(control_setpoint_.reference.velocity_ned.x(), before.velocity_ned.x(), 0.02);
   for (int i = 0; i < 1000; ++i) step();
-  EXPECT_EQ(directive_.reference.velocity_ned, Vector3d::Zero());
+  EXPECT_EQ(control_setpoint_.reference.velocity_ned, Vector3d::Zero());
 }
 
 TEST(Checks, RefuseMissionsWithTheItemTheValueAndTheLimit) {

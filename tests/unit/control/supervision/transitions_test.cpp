@@ -60,7 +60,7 @@ const std::vector<Place>& places() {
       {'W', "descent without position", Mode::kDescent,
        [](Placed& f) {
          const bool up = f.take_off();
-         f.situation_.pose_age_s = 1.0;
+         f.inputs_.pose_age_s = 1.0;
          f.step();
          return up;
        }},
@@ -123,23 +123,23 @@ void PrintTo(const Row& row, std::ostream* out) { *out << to_string(row.event); 
 const Row kGrid[] = {
     // clang-format off
     //                              DAtTHmMlJSLWOP
-    {Event::kImuUnusable, kLand,   ".OOOOOOOOOOO.O", Reason::kImuUnusable, condition([](Placed& f) { f.situation_.imu_unusable_s = 0.1; })},
-    {Event::kImuGap, kLand,        ".OOOOOOOOOOO.O", Reason::kImuGap, condition([](Placed& f) { f.situation_.imu_gap_s = 0.4; })},
+    {Event::kImuUnusable, kLand,   ".OOOOOOOOOOO.O", Reason::kImuUnusable, condition([](Placed& f) { f.inputs_.imu_unusable_s = 0.1; })},
+    {Event::kImuGap, kLand,        ".OOOOOOOOOOO.O", Reason::kImuGap, condition([](Placed& f) { f.inputs_.imu_gap_s = 0.4; })},
     {Event::kTippedOver, kLand,    ".OOOOOOOOOOO.O", Reason::kTippedOver, condition([](Placed& f) { f.estimate_.q_ned_from_frd = Eigen::AngleAxisd(1.5, Vector3d::UnitX()); })},
-    {Event::kImpact, kLand,        "..OOOOO OO  .O", Reason::kImpact, condition([](Placed& f) { f.situation_.specific_force_frd.z() = -120.0; })},
-    {Event::kImpact, kLand,        "       D  D   ", Reason::kLanded, condition([](Placed& f) { f.situation_.specific_force_frd.z() = -120.0; })},
-    {Event::kImpact, kLand,        "           D  ", Reason::kLandedWithoutPosition, condition([](Placed& f) { f.situation_.specific_force_frd.z() = -120.0; })},
-    {Event::kTakeoffInconsistent, kLand,  "...OO.OOOOO..O", Reason::kTakeoffInconsistent, condition([](Placed& f) { f.situation_.takeoff_inconsistent = true; })},
-    {Event::kPoseJumped, kLand,    ".DDLLDLLLL.L.L", Reason::kPoseJumped, condition([](Placed& f) { f.situation_.pose_jumped = true; })},
-    {Event::kPoseLost, kLand,      ".DDWWDWWWWW..W", Reason::kNoPose, condition([](Placed& f) { f.situation_.pose_age_s = 0.6; })},
-    {Event::kPoseIsBack, kLand,    "...........H..", Reason::kPoseIsBack, condition([](Placed& f) { f.situation_.pose_age_s = 0.0; })},
+    {Event::kImpact, kLand,        "..OOOOO OO  .O", Reason::kImpact, condition([](Placed& f) { f.inputs_.specific_force_frd.z() = -120.0; })},
+    {Event::kImpact, kLand,        "       D  D   ", Reason::kLanded, condition([](Placed& f) { f.inputs_.specific_force_frd.z() = -120.0; })},
+    {Event::kImpact, kLand,        "           D  ", Reason::kLandedWithoutPosition, condition([](Placed& f) { f.inputs_.specific_force_frd.z() = -120.0; })},
+    {Event::kTakeoffInconsistent, kLand,  "...OO.OOOOO..O", Reason::kTakeoffInconsistent, condition([](Placed& f) { f.inputs_.takeoff_inconsistent = true; })},
+    {Event::kPoseJumped, kLand,    ".DDLLDLLLL.L.L", Reason::kPoseJumped, condition([](Placed& f) { f.inputs_.pose_jumped = true; })},
+    {Event::kPoseLost, kLand,      ".DDWWDWWWWW..W", Reason::kNoPose, condition([](Placed& f) { f.inputs_.pose_age_s = 0.6; })},
+    {Event::kPoseIsBack, kLand,    "...........H..", Reason::kPoseIsBack, condition([](Placed& f) { f.inputs_.pose_age_s = 0.0; })},
     {Event::kGroundFelt, kLand,    "       D  D   ", Reason::kLanded, lasting(20.0, [](Placed&) {})},
-    {Event::kGroundFelt, kLand,    "           D  ", Reason::kLandedWithoutPosition, lasting(0.4, [](Placed& f) { f.situation_.vertical_specific_force_residual = 2.0; })},
+    {Event::kGroundFelt, kLand,    "           D  ", Reason::kLandedWithoutPosition, lasting(0.4, [](Placed& f) { f.inputs_.vertical_specific_force_residual = 2.0; })},
     {Event::kDescentTimedOut, kLand, "           O  ", Reason::kDescentTimedOut, lasting(6.1, [](Placed&) {})},
-    {Event::kBatteryCritical, kLand, "..DLLDLLLLL..L", Reason::kBatteryCritical, condition([](Placed& f) { f.situation_.supply_voltage_v = 3.0; })},
+    {Event::kBatteryCritical, kLand, "..DLLDLLLLL..L", Reason::kBatteryCritical, condition([](Placed& f) { f.inputs_.supply_voltage_v = 3.0; })},
     {Event::kOutsideFence, kLand,  "..DLLDLLLL...L", Reason::kOutsideFence, condition([](Placed& f) { f.estimate_.position_ned.x() = 3.3; })},
-    {Event::kBatteryLow, kLand,    "..DLLDLLLL...L", Reason::kBatteryLow, condition([](Placed& f) { f.situation_.supply_voltage_v = 3.2; })},
-    {Event::kBatterySilent, kLand, "..DLLDLLLL...L", Reason::kBatterySilent, condition([](Placed& f) { f.situation_.battery_age_s = 2.1; })},
+    {Event::kBatteryLow, kLand,    "..DLLDLLLL...L", Reason::kBatteryLow, condition([](Placed& f) { f.inputs_.supply_voltage_v = 3.2; })},
+    {Event::kBatterySilent, kLand, "..DLLDLLLL...L", Reason::kBatterySilent, condition([](Placed& f) { f.inputs_.battery_age_s = 2.1; })},
     {Event::kGroundLinkLost, kLand, ".DDLLDLLLL...L", Reason::kGroundLinkLost, condition([](Placed& f) { f.lose_ground_link(); })},
     {Event::kGroundLinkLost, GroundLinkAction::kHold, ".DDHHDHHHH...H", Reason::kGroundLinkLost, condition([](Placed& f) { f.lose_ground_link(); })},
     {Event::kGroundLinkLost, GroundLinkAction::kNone, "..............", Reason::kGroundLinkLost, condition([](Placed& f) { f.lose_ground_link(); })},
@@ -164,7 +164,7 @@ const Row kGrid[] = {
     {Event::kHold, kLand,          "xxxHHxHHHHHxxH", Reason::kRequested, request(RequestKind::kHold)},
     {Event::kLand, kLand,          "xxDLLDLLLL==xL", Reason::kRequested, request(RequestKind::kLand)},
     {Event::kPlanUnknown, kLand,   ".....DHHH....H", Reason::kPlanUnknown, [](Placed& f) { f.forget_plan(); return std::optional<Outcome>(); }},
-    {Event::kEngagedInFlight, kLand,   "Hxxxxxxxxxxxxx", Reason::kEngagedInFlight, [](Placed& f) { return std::optional(f.supervisor_.engage_in_flight(f.situation_)); }},
+    {Event::kEngagedInFlight, kLand,   "Hxxxxxxxxxxxxx", Reason::kEngagedInFlight, [](Placed& f) { return std::optional(f.supervisor_.engage_in_flight(f.inputs_)); }},
     // clang-format on
 };
 
@@ -234,19 +234,19 @@ struct Urgency {
 };
 const std::vector<Urgency>& failsafes() {
   static const std::vector<Urgency> kFailsafes = {
-      {Reason::kImuUnusable, [](Placed& f) { f.situation_.imu_unusable_s = 0.2; }},
-      {Reason::kImuGap, [](Placed& f) { f.situation_.imu_gap_s = 0.4; }},
+      {Reason::kImuUnusable, [](Placed& f) { f.inputs_.imu_unusable_s = 0.2; }},
+      {Reason::kImuGap, [](Placed& f) { f.inputs_.imu_gap_s = 0.4; }},
       {Reason::kTippedOver,
        [](Placed& f) { f.estimate_.q_ned_from_frd = Eigen::AngleAxisd(1.5, Vector3d::UnitY()); }},
-      {Reason::kTakeoffInconsistent, [](Placed& f) { f.situation_.takeoff_inconsistent = true; }},
-      {Reason::kImpact, [](Placed& f) { f.situation_.specific_force_frd.z() = -120.0; }},
-      {Reason::kPoseJumped, [](Placed& f) { f.situation_.pose_jumped = true; }},
-      {Reason::kNoPose, [](Placed& f) { f.situation_.pose_age_s = 0.6; }},
-      {Reason::kBatteryCritical, [](Placed& f) { f.situation_.supply_voltage_v = 3.0; }},
+      {Reason::kTakeoffInconsistent, [](Placed& f) { f.inputs_.takeoff_inconsistent = true; }},
+      {Reason::kImpact, [](Placed& f) { f.inputs_.specific_force_frd.z() = -120.0; }},
+      {Reason::kPoseJumped, [](Placed& f) { f.inputs_.pose_jumped = true; }},
+      {Reason::kNoPose, [](Placed& f) { f.inputs_.pose_age_s = 0.6; }},
+      {Reason::kBatteryCritical, [](Placed& f) { f.inputs_.supply_voltage_v = 3.0; }},
       {Reason::kOutsideFence, [](Placed& f) { f.estimate_.position_ned.y() = -3.3; }},
       {Reason::kBatteryLow,
-       [](Placed& f) { f.situation_.supply_voltage_v = std::min(f.situation_.supply_voltage_v, 3.2); }},
-      {Reason::kBatterySilent, [](Placed& f) { f.situation_.battery_age_s = 2.1; }},
+       [](Placed& f) { f.inputs_.supply_voltage_v = std::min(f.inputs_.supply_voltage_v, 3.2); }},
+      {Reason::kBatterySilent, [](Placed& f) { f.inputs_.battery_age_s = 2.1; }},
       {Reason::kGroundLinkLost, [](Placed& f) { f.lose_ground_link(); }},
   };
   return kFailsafes;
@@ -305,23 +305,23 @@ TEST_P(Limits_, HoldAtTheLimitAndNotBeyond) {
 const FailsafeSettings kThresholds;
 const Limit kLimits[] = {
     {"imu_timeout_s", 'H', Reason::kImuUnusable, kThresholds.imu_timeout_s - 1e-9, kThresholds.imu_timeout_s,
-     [](Placed& f, double v) { f.situation_.imu_unusable_s = v; }},
+     [](Placed& f, double v) { f.inputs_.imu_unusable_s = v; }},
     {"imu_gap_s", 'H', Reason::kImuGap, kThresholds.imu_gap_s, kThresholds.imu_gap_s + 1e-9,
-     [](Placed& f, double v) { f.situation_.imu_gap_s = v; }},
+     [](Placed& f, double v) { f.inputs_.imu_gap_s = v; }},
     {"tip_over_tilt_rad", 'H', Reason::kTippedOver, kThresholds.tip_over_tilt_rad - 1e-6,
      kThresholds.tip_over_tilt_rad + 1e-6,
      [](Placed& f, double v) { f.estimate_.q_ned_from_frd = Eigen::AngleAxisd(v, Vector3d(0.6, 0.8, 0.0)); }},
     {"blow_m_s2", 'H', Reason::kImpact, kThresholds.blow, kThresholds.blow + 1e-9,
-     [](Placed& f, double v) { f.situation_.specific_force_frd.z() = -v; }},
+     [](Placed& f, double v) { f.inputs_.specific_force_frd.z() = -v; }},
     {"mocap_timeout_s", 'H', Reason::kNoPose, kThresholds.mocap_timeout_s, kThresholds.mocap_timeout_s + 1e-9,
-     [](Placed& f, double v) { f.situation_.pose_age_s = v; }},
+     [](Placed& f, double v) { f.inputs_.pose_age_s = v; }},
     {"low_battery_voltage", 'H', Reason::kBatteryLow, kThresholds.low_battery_voltage,
-     kThresholds.low_battery_voltage - 1e-9, [](Placed& f, double v) { f.situation_.supply_voltage_v = v; }},
+     kThresholds.low_battery_voltage - 1e-9, [](Placed& f, double v) { f.inputs_.supply_voltage_v = v; }},
     {"critical_battery_voltage", 'L', Reason::kBatteryCritical, kThresholds.critical_battery_voltage,
      kThresholds.critical_battery_voltage - 1e-9,
-     [](Placed& f, double v) { f.situation_.supply_voltage_v = v; }},
+     [](Placed& f, double v) { f.inputs_.supply_voltage_v = v; }},
     {"battery_timeout_s", 'H', Reason::kBatterySilent, kThresholds.battery_timeout_s,
-     kThresholds.battery_timeout_s + 1e-9, [](Placed& f, double v) { f.situation_.battery_age_s = v; }},
+     kThresholds.battery_timeout_s + 1e-9, [](Placed& f, double v) { f.inputs_.battery_age_s = v; }},
     {"fence_margin_m", 'H', Reason::kOutsideFence, 3.0 + kThresholds.fence_margin_m - 1e-9,
      3.0 + kThresholds.fence_margin_m + 1e-9, [](Placed& f, double v) { f.estimate_.position_ned.x() = v; }},
     {"fence_margin_m upward", 'H', Reason::kOutsideFence, -2.5 - kThresholds.fence_margin_m + 1e-9,
@@ -335,11 +335,11 @@ TEST(Failsafes, ABatteryMustStayLowForAsLongAsTheSettingsSay) {
   for (const double voltage_v : {3.2, 3.0}) {
     SupervisedFlight flight(settings);
     ASSERT_TRUE(flight.take_off());
-    flight.situation_.supply_voltage_v = voltage_v;
+    flight.inputs_.supply_voltage_v = voltage_v;
     EXPECT_FALSE(flight.step_until(Mode::kLanding, 0.49));
-    flight.situation_.supply_voltage_v = 3.5;
+    flight.inputs_.supply_voltage_v = 3.5;
     flight.step();
-    flight.situation_.supply_voltage_v = voltage_v;
+    flight.inputs_.supply_voltage_v = voltage_v;
     EXPECT_FALSE(flight.step_until(Mode::kLanding, 0.49));
     EXPECT_TRUE(flight.step_until(Mode::kLanding, 0.03));
   }
@@ -349,10 +349,10 @@ TEST(Failsafes, ACriticalBatteryLandsFasterThanALowOne) {
   const auto landing_s = [](double voltage_v) {
     Placed flight(kLand);
     EXPECT_TRUE(flight.take_off());
-    flight.situation_.supply_voltage_v = voltage_v;
-    const std::int64_t start_ns = flight.situation_.stamp_ns;
+    flight.inputs_.supply_voltage_v = voltage_v;
+    const std::int64_t start_ns = flight.inputs_.stamp_ns;
     EXPECT_TRUE(flight.step_until(Mode::kDisarmed, 30.0));
-    return static_cast<double>(flight.situation_.stamp_ns - start_ns) * 1e-9;
+    return static_cast<double>(flight.inputs_.stamp_ns - start_ns) * 1e-9;
   };
   EXPECT_LT(landing_s(3.0), 0.8 * landing_s(3.2));
 }
@@ -382,9 +382,9 @@ TEST(Failsafes, ALandingThatLosesThePoseGoesOnWhenItIsBack) {
       ASSERT_TRUE(flight.take_off());
       ASSERT_TRUE(flight.ask(RequestKind::kLand).accepted);
     }
-    flight.situation_.pose_age_s = 1.0;
+    flight.inputs_.pose_age_s = 1.0;
     ASSERT_TRUE(flight.step_until(Mode::kDescent, 0.1));
-    flight.situation_.pose_age_s = 0.0;
+    flight.inputs_.pose_age_s = 0.0;
     flight.step();
     EXPECT_EQ(flight.mode(), Mode::kLanding);
     EXPECT_EQ(flight.supervisor_.reason(), Reason::kPoseIsBack);
@@ -395,11 +395,11 @@ TEST(Failsafes, ALandingThatLosesThePoseGoesOnWhenItIsBack) {
 TEST(Failsafes, ALandingAskedForWithoutPositionFollowsWhenItIsBack) {
   Placed flight(kLand);
   ASSERT_TRUE(flight.take_off());
-  flight.situation_.pose_age_s = 1.0;
+  flight.inputs_.pose_age_s = 1.0;
   flight.step();
   ASSERT_TRUE(flight.ask(RequestKind::kLand).accepted);
   EXPECT_EQ(flight.mode(), Mode::kDescent);
-  flight.situation_.pose_age_s = 0.0;
+  flight.inputs_.pose_age_s = 0.0;
   flight.step();
   EXPECT_EQ(flight.mode(), Mode::kLanding);
 }
@@ -408,16 +408,16 @@ TEST(FoundFlying, ComesToRestAndHoldsButNotWithoutAPose) {
   Placed flight(kLand);
   flight.estimate_.position_ned = {1.0, 0.0, -1.5};
   flight.estimate_.velocity_ned = {0.8, 0.0, 0.0};
-  flight.situation_.pose_age_s = 0.6;
-  EXPECT_FALSE(flight.supervisor_.engage_in_flight(flight.situation_).accepted);
+  flight.inputs_.pose_age_s = 0.6;
+  EXPECT_FALSE(flight.supervisor_.engage_in_flight(flight.inputs_).accepted);
   EXPECT_EQ(flight.mode(), Mode::kDisarmed);
-  flight.situation_.pose_age_s = 0.0;
-  ASSERT_TRUE(flight.supervisor_.engage_in_flight(flight.situation_).accepted);
+  flight.inputs_.pose_age_s = 0.0;
+  ASSERT_TRUE(flight.supervisor_.engage_in_flight(flight.inputs_).accepted);
   flight.step();
-  EXPECT_EQ(flight.directive_.control_mode, ControlMode::kFly);
-  EXPECT_NEAR(flight.directive_.reference.velocity_ned.x(), 0.8, 0.02);
+  EXPECT_EQ(flight.control_setpoint_.control_mode, ControlMode::kFly);
+  EXPECT_NEAR(flight.control_setpoint_.reference.velocity_ned.x(), 0.8, 0.02);
   flight.step_until([] { return false; }, 3.0);
-  EXPECT_EQ(flight.directive_.reference.velocity_ned, Vector3d::Zero());
+  EXPECT_EQ(flight.control_setpoint_.reference.velocity_ned, Vector3d::Zero());
   ASSERT_TRUE(flight.ask(RequestKind::kLand).accepted);
   EXPECT_TRUE(flight.step_until(Mode::kDisarmed, 20.0));
 }
@@ -426,8 +426,8 @@ class GroundLinks : public testing::Test {
  protected:
   // For seconds of flight, with a sign of life each 0.2 s of these clients.
   void fly_on(double seconds, const std::vector<std::uint64_t>& clients) {
-    const std::int64_t end_ns = flight_.situation_.stamp_ns + std::llround(seconds * 1e9);
-    for (int i = 0; flight_.situation_.stamp_ns < end_ns; ++i) {
+    const std::int64_t end_ns = flight_.inputs_.stamp_ns + std::llround(seconds * 1e9);
+    for (int i = 0; flight_.inputs_.stamp_ns < end_ns; ++i) {
       if (i % 100 == 0) {
         for (const std::uint64_t client : clients)
           EXPECT_TRUE(flight_.supervisor_.ground_heartbeat({client, true}));
@@ -475,10 +475,10 @@ TEST_F(GroundLinks, ALostOneIsAnsweredOnceAndThenForgotten) {
 TEST_F(GroundLinks, OneThatIsLostWithoutPositionIsAnsweredWhenThePoseIsBack) {
   ASSERT_TRUE(flight_.take_off());
   fly_on(1.0, {1});
-  flight_.situation_.pose_age_s = 1.0;
+  flight_.inputs_.pose_age_s = 1.0;
   fly_on(2.0, {});
   ASSERT_EQ(flight_.mode(), Mode::kDescent);
-  flight_.situation_.pose_age_s = 0.0;
+  flight_.inputs_.pose_age_s = 0.0;
   flight_.step();
   EXPECT_EQ(flight_.mode(), Mode::kHolding);
   flight_.step();

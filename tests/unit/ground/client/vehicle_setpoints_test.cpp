@@ -41,12 +41,12 @@ TEST(VehicleSetpoints, OfAttitudeAndBodyRatesHaveThrust) {
   const Setpoint attitude = to_setpoint(AttitudeSetpoint{tilted, 9.81, {0.1, 0.2, 0.3}});
   EXPECT_EQ(attitude.kind, SetpointKind::kAttitude);
   EXPECT_EQ(attitude.q_ned_from_frd.coeffs(), tilted.coeffs());
-  EXPECT_EQ(attitude.thrust, 9.81);
+  EXPECT_EQ(attitude.specific_thrust, 9.81);
   EXPECT_EQ(attitude.body_rates_frd, Vector3d(0.1, 0.2, 0.3));
   const Setpoint rates = to_setpoint(BodyRatesSetpoint{{1, 2, 3}, 8.0});
   EXPECT_EQ(rates.kind, SetpointKind::kBodyRates);
   EXPECT_EQ(rates.body_rates_frd, Vector3d(1, 2, 3));
-  EXPECT_EQ(rates.thrust, 8.0);
+  EXPECT_EQ(rates.specific_thrust, 8.0);
 }
 
 }  // namespace

@@ -173,7 +173,7 @@ TEST(Convert, OfASetpointItsKindSaysWhatCounts) {
   control::Setpoint all = setpoint();
   all.q_ned_from_frd = Eigen::Quaterniond(0.5, -0.5, 0.5, 0.5);
   all.body_rates_frd = {0.1, 0.2, 0.3};
-  all.thrust = 9.0;
+  all.specific_thrust = 9.0;
   const auto taken = [&all](SetpointKind kind) {
     all.kind = kind;
     control::Setpoint out;
@@ -190,12 +190,12 @@ TEST(Convert, OfASetpointItsKindSaysWhatCounts) {
     EXPECT_EQ(out.acceleration_ned, all.acceleration_ned);
     EXPECT_EQ(out.yaw_rad, all.yaw_rad);
     EXPECT_EQ(out.yaw_rate, all.yaw_rate);
-    EXPECT_EQ(out.thrust, 0.0);
+    EXPECT_EQ(out.specific_thrust, 0.0);
   }
   const control::Setpoint attitude = taken(SetpointKind::kAttitude);
   EXPECT_EQ(attitude.q_ned_from_frd.coeffs(), all.q_ned_from_frd.coeffs());
   EXPECT_EQ(attitude.body_rates_frd, all.body_rates_frd);
-  EXPECT_EQ(attitude.thrust, all.thrust);
+  EXPECT_EQ(attitude.specific_thrust, all.specific_thrust);
   EXPECT_EQ(attitude.acceleration_ned, nothing);
   const control::Setpoint rates = taken(SetpointKind::kBodyRates);
   EXPECT_EQ(rates.q_ned_from_frd.coeffs(), Eigen::Quaterniond::Identity().coeffs());
@@ -204,7 +204,7 @@ TEST(Convert, OfASetpointItsKindSaysWhatCounts) {
   all.kind = SetpointKind::kVelocity;
   msg::Setpoint message = to_message(all);
   message.position_ned()[0] = kNan;
-  message.thrust(kNan);
+  message.specific_thrust(kNan);
   message.q_ned_from_frd({0.0, 0.0, 0.0, 0.0});
   control::Setpoint out;
   EXPECT_STREQ(from_message(message, out).text, "");
@@ -214,8 +214,8 @@ TEST(Convert, OfASetpointItsKindSaysWhatCounts) {
   expect_refused<control::Setpoint>(to_message(all), "kind is 5, must be at most 4",
                                     [](msg::Setpoint& m) { m.kind(5); });
   all.kind = SetpointKind::kAttitude;
-  expect_refused<control::Setpoint>(to_message(all), "thrust is nan, must be finite",
-                                    [](msg::Setpoint& m) { m.thrust(kNan); });
+  expect_refused<control::Setpoint>(to_message(all), "specific_thrust is nan, must be finite",
+                                    [](msg::Setpoint& m) { m.specific_thrust(kNan); });
   expect_refused<control::Setpoint>(
       to_message(all), "q_ned_from_frd has the length 0, must be 1 within 0.001", [](msg::Setpoint& m) {
         m.q_ned_from_frd({0.0, 0.0, 0.0, 0.0});

@@ -1,4 +1,4 @@
-#include "swiftlet/ground/flight/flight.hpp"
+#include "swiftlet/ground/flight/network_transport.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,6 @@
 
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/recording/flight_window.hpp"
-#include "swiftlet/simulation/flight_schedule.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -19,12 +18,12 @@ using ControlMode = control::Mode;
 
 constexpr auto kReadyTimeout = 20s;
 constexpr auto kRequestTimeout = 3s;
-constexpr auto kArmTimeout = 5s;  // the estimator may need a moment for the first checks to pass
 constexpr auto kRetryPeriod = 200ms;
 constexpr auto kStep = 50ms;
 constexpr auto kLastFiguresTimeout = 1500ms;
 constexpr auto kEndTimeout = 2s;
-constexpr double kSilenceS = 3.0;  // without control_status or ground_truth
+constexpr double kLongestStepS = 0.2;  // of this process, between two looks
+constexpr double kSilenceS = 3.0;      // without control_status or ground_truth
 constexpr double kLandingTimeoutS = 30.0;
 constexpr double kLandingSpeed = 0.4;  // m/s
 constexpr int kBeforeFlight = -1;      // stage of the progress; later ones are the mission's items
@@ -60,26 +59,6 @@ double simulated_s(const View& view, std::int64_t since_ns) {
   return static_cast<double>(view.truth.message.stamp_ns() - since_ns) * 1e-9;
 }
 
-// No new sample for kSilenceS, of which only what this process was awake for counts: when the computer
-// stalls, nobody is to blame.
-class Silence {
- public:
-  bool lasts(std::uint64_t sample_count) {
-    const auto now = Clock::now();
-    const double step_s = std::min(std::chrono::duration<double>(now - looked_).count(), kLongestStepS);
-    looked_ = now;
-    lasted_s_ = sample_count == count_ ? lasted_s_ + step_s : 0.0;
-    count_ = sample_count;
-    return lasted_s_ > kSilenceS;
-  }
-
- private:
-  static constexpr double kLongestStepS = 0.2;
-  Clock::time_point looked_ = Clock::now();
-  std::uint64_t count_ = 0;
-  double lasted_s_ = 0.0;
-};
-
 // The newest tracking error of which truth and reference are both in; NaN if there is none among the last
 // rows.
 double newest_error_m(const FlightRecord& record) {
@@ -101,38 +80,37 @@ double newest_error_m(const FlightRecord& record) {
 
 }  // namespace
 
-Flight::Flight(Client& client, const FlightRecord& record, const MissionFile& mission,
-               double planned_duration_s, runtime::Clock clock, Watch watch, Progress& progress)
+NetworkTransport::NetworkTransport(Client& client, const FlightRecord& record, const MissionFile& mission,
+                                   runtime::Clock clock, Watch watch, Progress& progress)
     : client_(client),
       record_(record),
       mission_(mission),
-      planned_duration_s_(planned_duration_s),
       lockstep_(clock == runtime::Clock::kLockstep),
       watch_(std::move(watch)),
       progress_(progress) {}
 
-void Flight::run() {
-  wait_until_ready();
-  // In lockstep time stands still without this process, and the plant ends the run.
-  if (!lockstep_) client_.enable_link_loss_failsafe();
-  arm();
-  if (watch_.barrier != nullptr) wait_for_the_others();
-  start_mission();
-  if (lockstep_) client_.simulation_clock().without_end();
-  follow();
-  client_.disable_link_loss_failsafe();
-  wait_for_last_figures();
+NetworkTransport::~NetworkTransport() { client_.disable_link_loss_failsafe(); }
+
+// No new sample for kSilenceS, of which only what this process was awake for counts: when the computer
+// stalls, nobody is to blame.
+bool NetworkTransport::Silence::lasts(std::uint64_t sample_count) {
+  const auto now = Clock::now();
+  const double step_s = std::min(std::chrono::duration<double>(now - looked_).count(), kLongestStepS);
+  looked_ = now;
+  lasted_s_ = sample_count == count_ ? lasted_s_ + step_s : 0.0;
+  count_ = sample_count;
+  return lasted_s_ > kSilenceS;
 }
 
-void Flight::require_alive() const {
+void NetworkTransport::require_alive() const {
   if (const auto exited_process = watch_.exited_process()) throw FlightFailure(*exited_process);
 }
 
-void Flight::require_no_interrupt() const {
+void NetworkTransport::require_no_interrupt() const {
   if (watch_.interrupts() > 0) throw FlightFailure("interrupted before take-off");
 }
 
-void Flight::wait_until_ready() {
+void NetworkTransport::wait_until_ready() {
   const auto start = Clock::now();
   while (true) {
     std::string absent;
@@ -148,12 +126,17 @@ void Flight::wait_until_ready() {
     }
     progress_.update(kBeforeFlight, "waiting for " + absent);
   }
-  if (!lockstep_) return;
+  if (!lockstep_) {
+    // In lockstep time stands still without this process, and the plant ends the run.
+    client_.enable_link_loss_failsafe();
+    return;
+  }
   if (record_.sensors) wait_until_samples_come();
   wait_until_paused_at(FlightSchedule::kFirstRequestNs);
 }
 
-void Flight::wait_until(const std::function<bool(const View&)>& holds, const std::string& what_not) {
+void NetworkTransport::wait_until(const std::function<bool(const View&)>& holds,
+                                  const std::string& what_not) {
   const auto start = Clock::now();
   while (!client_.wait(kStep, holds)) {
     require_alive();
@@ -164,14 +147,14 @@ void Flight::wait_until(const std::function<bool(const View&)>& holds, const std
 
 // Before time passes. A peer may be known that does not know yet who is to hear its samples, which it sends once:
 // only the first come again and again while time stands still.
-void Flight::wait_until_samples_come() {
+void NetworkTransport::wait_until_samples_come() {
   client_.simulation_clock().up_to(0);
   wait_until([](const View& view) { return view.samples.all(); },
              "the first samples of plant, mocap and control have not come");
 }
 
 // Grants the time up to there, and waits until it has passed and all samples are answered.
-void Flight::wait_until_paused_at(std::int64_t stamp_ns) {
+void NetworkTransport::wait_until_paused_at(std::int64_t stamp_ns) {
   client_.simulation_clock().up_to(stamp_ns);
   paused_at_ns_ = stamp_ns;
   const auto paused = [stamp_ns](const View& view) {
@@ -180,42 +163,38 @@ void Flight::wait_until_paused_at(std::int64_t stamp_ns) {
   wait_until(paused, "simulated time has not come to " + std::to_string(stamp_ns) + " ns");
 }
 
-void Flight::arm() {
+MissionTransport::Reply NetworkTransport::arm() {
   msg::Command command;
   command.kind(msg::Command_Constants::ARM);
-  const auto deadline = Clock::now() + kArmTimeout;
-  while (true) {
-    const Result answer = client_.command(
-        command, kRequestTimeout, [this] { return watch_.exited_process() || watch_.interrupts() > 0; });
-    require_alive();
-    require_no_interrupt();
-    if (answer.accepted()) return;
-    const bool late = lockstep_ ? paused_at_ns_ + FlightSchedule::kRetryNs > FlightSchedule::kLastArmingNs
-                                : Clock::now() > deadline;
-    if (answer.kind != Result::Kind::kRefused || late) throw FlightFailure("arming: " + answer.reason);
-    progress_.update(kBeforeFlight, "arming: " + answer.reason);
-    if (lockstep_) {
-      wait_until_paused_at(paused_at_ns_ + FlightSchedule::kRetryNs);
-      continue;
-    }
-    client_.wait(kRetryPeriod, [this](const View&) { return watch_.interrupts() > 0; });
-  }
+  const Result answer = client_.command(
+      command, kRequestTimeout, [this] { return watch_.exited_process() || watch_.interrupts() > 0; });
+  require_alive();
+  require_no_interrupt();
+  return {answer.accepted(), answer.kind == Result::Kind::kRefused, answer.reason};
 }
 
-void Flight::wait_for_the_others() {
+void NetworkTransport::wait(std::int64_t duration_ns, const std::string& reason) {
+  progress_.update(kBeforeFlight, reason);
+  if (lockstep_) return wait_until_paused_at(paused_at_ns_ + duration_ns);
+  client_.wait(std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::nanoseconds(duration_ns)),
+               [this](const View&) { return watch_.interrupts() > 0; });
+}
+
+void NetworkTransport::wait_for_other_vehicles() {
+  if (watch_.barrier == nullptr) return;
   watch_.barrier->ready();
   while (!watch_.barrier->wait_for_all(kStep)) {
     require_alive();
     const auto failure = watch_.barrier->failure();
     if (failure || watch_.interrupts() > 0) {
       if (lockstep_) client_.simulation_clock().without_end();  // to disarm takes time
-      bring_down(failure.value_or("interrupted"));
+      abandon(failure.value_or("interrupted"));
     }
     progress_.update(kBeforeFlight, "armed, waiting for the others");
   }
 }
 
-void Flight::start_mission() {
+MissionTransport::Reply NetworkTransport::start_mission() {
   const auto cancelled = [this] { return watch_.exited_process() || watch_.interrupts() > 0; };
   Result answer = client_.upload(mission_.mission, kRequestTimeout, cancelled);
   if (answer.accepted()) {
@@ -223,50 +202,42 @@ void Flight::start_mission() {
                                      kRequestTimeout, cancelled);
   }
   require_alive();
-  if (watch_.interrupts() > 0) bring_down("interrupted");
-  if (!answer.accepted()) throw FlightFailure("the mission was refused: " + answer.reason);
+  if (watch_.interrupts() > 0) abandon("interrupted");
+  if (answer.accepted() && lockstep_) client_.simulation_clock().without_end();
+  return {answer.accepted(), false, answer.reason};
 }
 
-void Flight::follow() {
+void NetworkTransport::advance() {
   const std::uint64_t id = client_.mission_id();
-  const double time_limit_s = FlightSchedule::time_limit_s(planned_duration_s_);
-  const std::int64_t start_ns = client_.view().truth.message.stamp_ns();
-  Silence control_silence;
-  Silence vehicle_silence;
-  while (true) {
-    // Wakes for the end; looks around at every step besides.
-    client_.wait(kStep, [id](const View& view) {
-      return view.mission.message.mission_id() == id &&
-             view.mission.message.state() == msg::MissionStatus_Constants::COMPLETED;
-    });
-    require_alive();
-    const View view = client_.view();
-    show(view);
-    if (watch_.interrupts() > 0) bring_down("interrupted");
-    if (watch_.barrier != nullptr) {
-      if (const auto failure = watch_.barrier->failure()) bring_down(*failure);
-    }
-    const ControlMode mode = mode_of(view);
-    if (view.mission.message.mission_id() == id) {
-      const auto state = view.mission.message.state();
-      if (state == msg::MissionStatus_Constants::COMPLETED && rotors_off(mode)) return;
-      if (state == msg::MissionStatus_Constants::ABORTED) {
-        bring_down(std::string("the mission was aborted: ") + view.mission.message.reason().c_str());
-      }
-    }
-    if (control_silence.lasts(view.control.count)) fail_of_silence("control");
-    if (vehicle_silence.lasts(view.truth.count)) fail_of_silence("the vehicle");
-    if (simulated_s(view, start_ns) > time_limit_s) {
-      const std::string reason =
-          fmt::format("the mission took longer than {:.0f} s, of which {:.0f} s were planned", time_limit_s,
-                      planned_duration_s_);
-      bring_down(reason);
-    }
+  // Wakes for the end; looks around at every step besides.
+  client_.wait(kStep, [id](const View& view) {
+    return view.mission.message.mission_id() == id &&
+           view.mission.message.state() == msg::MissionStatus_Constants::COMPLETED;
+  });
+  require_alive();
+  const View view = client_.view();
+  show(view);
+  if (watch_.interrupts() > 0) abandon("interrupted");
+  if (watch_.barrier != nullptr) {
+    if (const auto failure = watch_.barrier->failure()) abandon(*failure);
   }
+  if (control_silence_.lasts(view.control.count)) fail_of_silence("control");
+  if (vehicle_silence_.lasts(view.truth.count)) fail_of_silence("the vehicle");
 }
+
+MissionTransport::Status NetworkTransport::status() const {
+  const View view = client_.view();
+  const auto& mission = view.mission.message;
+  const bool flown = mission.mission_id() == client_.mission_id();
+  return {view.truth.message.stamp_ns(),
+          flown ? static_cast<control::MissionState>(mission.state()) : control::MissionState::kNone,
+          control::rotors_off(mode_of(view))};
+}
+
+std::string NetworkTransport::abort_reason() const { return client_.view().mission.message.reason().c_str(); }
 
 // A process that was killed is silent before it has ended, on a busy computer for seconds.
-void Flight::fail_of_silence(const std::string& who) {
+void NetworkTransport::fail_of_silence(const std::string& who) {
   const auto deadline = Clock::now() + kEndTimeout;
   while (Clock::now() < deadline) {
     require_alive();
@@ -276,7 +247,7 @@ void Flight::fail_of_silence(const std::string& who) {
 }
 
 // Plant and control give their figures of the flight with their next status after it.
-void Flight::wait_for_last_figures() {
+void NetworkTransport::wait_for_last_figures() {
   const auto landed = Clock::now();
   client_.wait(kLastFiguresTimeout, [landed](const View& view) {
     return !view.vehicle.message.rotors_running() && view.vehicle.received > landed &&
@@ -284,7 +255,7 @@ void Flight::wait_for_last_figures() {
   });
 }
 
-void Flight::bring_down(const std::string& reason) {
+void NetworkTransport::abandon(const std::string& reason) {
   const int interrupts_before = watch_.interrupts();
   progress_.say(reason +
                 (interrupts_before > 0 ? "; landing (interrupt again to end at once)" : "; landing"));
@@ -319,7 +290,7 @@ void Flight::bring_down(const std::string& reason) {
                       (mode_of(client_.view()) == ControlMode::kStopped ? "; rotors stopped" : "; landed"));
 }
 
-void Flight::show(const View& view) {
+void NetworkTransport::show(const View& view) {
   const auto& mission = view.mission.message;
   const auto& position = view.truth.message.position_ned();
   const auto window = mission_window(record_, client_.mission_id(), mission_.mission);

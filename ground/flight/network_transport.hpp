@@ -1,0 +1,77 @@
+// A vehicle on the network, as the mission runner flies it (simulation/mission_runner.hpp).
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "swiftlet/ground/client/client.hpp"
+#include "swiftlet/ground/flight/start_barrier.hpp"
+#include "swiftlet/ground/terminal/progress.hpp"
+#include "swiftlet/io/missions/mission_file.hpp"
+#include "swiftlet/recording/flight_record.hpp"
+#include "swiftlet/services/runtime/clock.hpp"
+#include "swiftlet/simulation/mission_runner.hpp"
+
+namespace swiftlet::ground {
+
+// Lands the vehicle where a flight fails in the air and landing is possible. The first interrupt lands it, the second
+// ends the flight at once. Together with other vehicles the mission starts when all are armed, and the failure of
+// another one lands this one.
+class NetworkTransport final : public MissionTransport {
+ public:
+  struct Watch {
+    std::function<std::optional<std::string>()> exited_process;  // a process that ended, as a sentence
+    std::function<int()> interrupts;                             // by the user, so far
+    StartBarrier* barrier = nullptr;                             // with other vehicles; null: alone
+  };
+
+  // In lockstep the plant was started paused.
+  NetworkTransport(Client& client, const FlightRecord& record, const MissionFile& mission,
+                   runtime::Clock clock, Watch watch, Progress& progress);
+  ~NetworkTransport() override;
+
+  void wait_until_ready() override;
+  Reply arm() override;
+  void wait(std::int64_t duration_ns, const std::string& reason) override;
+  void wait_for_other_vehicles() override;
+  Reply start_mission() override;
+  void advance() override;
+  Status status() const override;
+  std::string abort_reason() const override;
+  [[noreturn]] void abandon(const std::string& reason) override;
+
+  // After the flight: plant and control publish its timing figures with their next status.
+  void wait_for_last_figures();
+
+ private:
+  // When samples stop to come.
+  class Silence {
+   public:
+    bool lasts(std::uint64_t sample_count);
+
+   private:
+    Clock::time_point looked_ = Clock::now();
+    std::uint64_t count_ = 0;
+    double lasted_s_ = 0.0;
+  };
+
+  void wait_until(const std::function<bool(const View&)>& holds, const std::string& what_not);
+  void wait_until_samples_come();
+  void wait_until_paused_at(std::int64_t stamp_ns);
+  [[noreturn]] void fail_of_silence(const std::string& who);
+  void require_alive() const;
+  void require_no_interrupt() const;
+  void show(const View& view);
+
+  Client& client_;
+  const FlightRecord& record_;
+  const MissionFile& mission_;
+  bool lockstep_;
+  std::int64_t paused_at_ns_ = 0;  // in lockstep, before the mission
+  Watch watch_;
+  Progress& progress_;
+  Silence control_silence_, vehicle_silence_;
+};
+
+}  // namespace swiftlet::ground
