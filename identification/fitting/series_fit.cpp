@@ -27,7 +27,7 @@ class WeighedProblem final : public ceres::CostFunction {
  public:
   explicit WeighedProblem(const SeriesProblem& problem)
       : problem_(problem),
-        rows_(static_cast<Index>(problem.stretches.size())),
+        rows_(static_cast<Index>(problem.segments.size())),
         spread_(VectorXd::Ones(static_cast<Index>(problem.channels.size()))),
         above_(rows_),
         below_(rows_) {
@@ -141,7 +141,7 @@ SeriesFit fit_series(const SeriesProblem& problem) {
   WeighedProblem cost(problem);
   VectorXd x = problem.start.cwiseQuotient(problem.scale);
   SeriesFit out;
-  out.residuals.resize(static_cast<Index>(problem.stretches.size()));
+  out.residuals.resize(static_cast<Index>(problem.segments.size()));
   problem.residuals(problem.start, out.residuals);
   cost.weigh(out.residuals);
   for (int round = 0; round < kMostReweightings; ++round) {
@@ -152,15 +152,15 @@ SeriesFit fit_series(const SeriesProblem& problem) {
 
   const VectorXd residuals = cost.residuals_at(x);
   const MatrixXd jacobian = cost.jacobian_at(x);
-  MatrixXd scores = MatrixXd::Zero(static_cast<Index>(problem.stretch_count), x.size());
+  MatrixXd scores = MatrixXd::Zero(static_cast<Index>(problem.segment_count), x.size());
   for (Index i = 0; i < residuals.size(); ++i)
-    scores.row(static_cast<Index>(problem.stretches[static_cast<std::size_t>(i)])) +=
+    scores.row(static_cast<Index>(problem.segments[static_cast<std::size_t>(i)])) +=
         residuals[i] * jacobian.row(i);
   const Information information = inverted(jacobian.transpose() * jacobian);
   const MatrixXd& inverse = information.inverse;
-  const auto stretches = static_cast<double>(problem.stretch_count);
-  out.degrees_of_freedom = std::max(1, static_cast<int>(problem.stretch_count) - static_cast<int>(x.size()));
-  const double correction = stretches / static_cast<double>(out.degrees_of_freedom);
+  const auto segments = static_cast<double>(problem.segment_count);
+  out.degrees_of_freedom = std::max(1, static_cast<int>(problem.segment_count) - static_cast<int>(x.size()));
+  const double correction = segments / static_cast<double>(out.degrees_of_freedom);
   const MatrixXd covariance =
       correction * inverse * (scores.transpose() * scores) * inverse + information.unseen;
   out.parameters = x.cwiseProduct(problem.scale);

@@ -24,15 +24,15 @@ struct SeriesProblem {
   Eigen::VectorXd low;    // bounds
   Eigen::VectorXd high;
   std::vector<Channel> channels;       // that make up the residuals, in their order
-  std::vector<std::size_t> stretches;  // of each residual: the stretch of time that it belongs to
-  std::size_t stretch_count = 0;
+  std::vector<std::size_t> segments;  // of each residual: the segment of time that it belongs to
+  std::size_t segment_count = 0;
   // Residuals of a channel in one unit; channels are weighed by their spread. Sized already.
   std::function<void(const Eigen::VectorXd& parameters, Eigen::VectorXd& residuals)> residuals;
   std::function<void()> on_iteration;  // may be empty
 };
 
-// The covariance is robust against correlation inside a stretch, between all channels (Liang, Zeger 1986),
-// with the correction for few stretches; the degrees of freedom are stretches less parameters. What no residual
+// The covariance is robust against correlation inside a segment, between all channels (Liang, Zeger 1986),
+// with the correction for few segments; the degrees of freedom are segments less parameters. What no residual
 // depends on has a standard error of 1e4 of the parameters' scales.
 struct SeriesFit : EstimatedParameters {
   Eigen::VectorXd residuals;           // in the channels' units

@@ -314,9 +314,9 @@ SeriesProblem CommandModel::problem(const std::function<void()>& on_iteration) c
     for (std::size_t block = 0; block < flight.estimation_set; ++block) {
       const auto segment = static_cast<std::size_t>((flight.time_s[block] - flight.time_s[0]) / kStretchS);
       last = segment;
-      segments.push_back(out.stretch_count + segment);
+      segments.push_back(out.segment_count + segment);
     }
-    out.stretch_count += last + 1;
+    out.segment_count += last + 1;
   }
   for (std::size_t i = 0; i < responses_.size(); ++i) {
     out.channels.push_back({out.segments.size(), segments.size()});

@@ -174,9 +174,9 @@ SeriesProblem FlightModel::problem(const std::function<void()>& on_iteration) co
   for (std::size_t f = 0; f < flights_.size(); ++f) {
     const FlightSeries& flight = flights_[f];
     for (const Rows& segment : flight.segments) {
-      per_row.insert(per_row.end(), blocks_in(segment, block_[f]), out.stretch_count);
-      per_stretch.push_back(out.stretch_count);
-      ++out.stretch_count;
+      per_row.insert(per_row.end(), blocks_in(segment, block_[f]), out.segment_count);
+      per_stretch.push_back(out.segment_count);
+      ++out.segment_count;
     }
   }
   const auto add_channel = [&](const std::vector<std::size_t>& segments) {

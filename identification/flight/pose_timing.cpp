@@ -206,7 +206,7 @@ PoseTiming find_pose_timing(const FlightLog& log, const std::vector<Rows>& segme
   problem.scale = Eigen::Vector4d(2e-3, 0.01, 0.01, 0.01);
   problem.low = Eigen::Vector4d(delay_s - kLagOffS, -1.0, -1.0, -1.0);
   problem.high = Eigen::Vector4d(delay_s + kLagOffS, 1.0, 1.0, 1.0);
-  problem.stretch_count = poses.size();
+  problem.segment_count = poses.size();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::size_t first = problem.segments.size();
     for (std::size_t segment = 0; segment < poses.size(); ++segment)

@@ -15,20 +15,20 @@ using Eigen::VectorXd;
 
 constexpr double kFar = 1e6;
 
-SeriesProblem problem_of(int parameters, const std::vector<std::size_t>& stretches,
-                         std::size_t stretch_count) {
+SeriesProblem problem_of(int parameters, const std::vector<std::size_t>& segments,
+                         std::size_t segment_count) {
   SeriesProblem problem;
   problem.start = VectorXd::Zero(parameters);
   problem.scale = VectorXd::Ones(parameters);
   problem.low = VectorXd::Constant(parameters, -kFar);
   problem.high = VectorXd::Constant(parameters, kFar);
-  problem.channels = {{0, stretches.size()}};
-  problem.stretches = stretches;
-  problem.stretch_count = stretch_count;
+  problem.channels = {{0, segments.size()}};
+  problem.segments = segments;
+  problem.segment_count = segment_count;
   return problem;
 }
 
-// Readings that share an error in each stretch of ten.
+// Readings that share an error in each segment of ten.
 struct Readings {
   explicit Readings(unsigned seed, double truth = 3.0) {
     std::mt19937 generator(seed);
@@ -37,17 +37,17 @@ struct Readings {
       const double shared = normal(generator);
       for (int i = 0; i < 10; ++i) {
         value.push_back(truth + shared + 0.3 * normal(generator));
-        stretch.push_back(s);
+        segment.push_back(s);
       }
     }
   }
   static constexpr std::size_t kStretches = 25;
   std::vector<double> value;
-  std::vector<std::size_t> stretch;
+  std::vector<std::size_t> segment;
 };
 
 SeriesFit mean_of(const Readings& readings) {
-  SeriesProblem problem = problem_of(1, readings.stretch, Readings::kStretches);
+  SeriesProblem problem = problem_of(1, readings.segment, Readings::kStretches);
   problem.residuals = [&](const VectorXd& x, VectorXd& out) {
     for (std::size_t i = 0; i < readings.value.size(); ++i)
       out[static_cast<Index>(i)] = readings.value[i] - x[0];
@@ -61,7 +61,7 @@ TEST(SeriesFit, AMeanHasTheErrorOfItsStretchesMeans) {
   const SeriesFit fit = mean_of(readings);
   std::vector<double> means(Readings::kStretches, 0.0);
   for (std::size_t i = 0; i < readings.value.size(); ++i)
-    means[readings.stretch[i]] += 0.1 * readings.value[i];
+    means[readings.segment[i]] += 0.1 * readings.value[i];
   double mean = 0.0;
   for (const double m : means) mean += m / static_cast<double>(means.size());
   double squares = 0.0;
@@ -92,11 +92,11 @@ TEST(SeriesFit, ChannelsCountByTheirSpread) {
   std::mt19937 generator(3);
   std::normal_distribution<double> normal;
   std::vector<double> fine, coarse;
-  std::vector<std::size_t> stretches;
+  std::vector<std::size_t> segments;
   for (std::size_t i = 0; i < 100; ++i) fine.push_back(5.0 + 0.1 * normal(generator));
   for (std::size_t i = 0; i < 60; ++i) coarse.push_back(5.0 + 10.0 * normal(generator));
-  for (std::size_t i = 0; i < 160; ++i) stretches.push_back(i);
-  SeriesProblem problem = problem_of(1, stretches, 160);
+  for (std::size_t i = 0; i < 160; ++i) segments.push_back(i);
+  SeriesProblem problem = problem_of(1, segments, 160);
   problem.channels = {{0, 100}, {100, 60}};
   problem.residuals = [&](const VectorXd& x, VectorXd& out) {
     for (std::size_t i = 0; i < 160; ++i)
@@ -129,9 +129,9 @@ TEST(SeriesFit, ChannelsCountByTheirSpread) {
 
 // y = a exp(-b t) without noise, in parameters of very different scales.
 TEST(SeriesFit, FindsACurveFromAfar) {
-  std::vector<std::size_t> stretches;
-  for (std::size_t i = 0; i < 200; ++i) stretches.push_back(i / 10);
-  SeriesProblem problem = problem_of(2, stretches, 20);
+  std::vector<std::size_t> segments;
+  for (std::size_t i = 0; i < 200; ++i) segments.push_back(i / 10);
+  SeriesProblem problem = problem_of(2, segments, 20);
   problem.start << 500.0, 1e-3;
   problem.scale << 100.0, 1e-3;
   problem.residuals = [](const VectorXd& x, VectorXd& out) {
@@ -148,7 +148,7 @@ TEST(SeriesFit, FindsACurveFromAfar) {
 
 TEST(SeriesFit, StaysWithinItsBounds) {
   const Readings readings(5);
-  SeriesProblem problem = problem_of(1, readings.stretch, Readings::kStretches);
+  SeriesProblem problem = problem_of(1, readings.segment, Readings::kStretches);
   problem.high[0] = 2.0;
   problem.residuals = [&](const VectorXd& x, VectorXd& out) {
     EXPECT_LE(x[0], 2.0 + 1e-12);
@@ -161,7 +161,7 @@ TEST(SeriesFit, StaysWithinItsBounds) {
 // What no reading depends on is told to be unknown, and does not spoil the rest.
 TEST(SeriesFit, WhatIsNotSeenIsUnknown) {
   const Readings readings(6);
-  SeriesProblem problem = problem_of(2, readings.stretch, Readings::kStretches);
+  SeriesProblem problem = problem_of(2, readings.segment, Readings::kStretches);
   problem.scale[1] = 0.01;
   problem.residuals = [&](const VectorXd& x, VectorXd& out) {
     for (std::size_t i = 0; i < readings.value.size(); ++i)

@@ -12,9 +12,9 @@ using State = PendingRequest::State;
 
 TEST(PendingRequest, IsTheFirstOnes) {
   PendingRequest request;
-  EXPECT_TRUE(request.lock(State::kTaken));
-  EXPECT_FALSE(request.lock(State::kGivenUp));
-  EXPECT_FALSE(request.lock(State::kTaken));
+  EXPECT_TRUE(request.claim(State::kTaken));
+  EXPECT_FALSE(request.claim(State::kGivenUp));
+  EXPECT_FALSE(request.claim(State::kTaken));
   EXPECT_EQ(request.state, State::kTaken);
 }
 
