@@ -68,7 +68,7 @@ struct VehicleState {
   bool airborne = false;
   bool has_pose = false;      // motion capture poses arrive
   double age_s = kUnknown;    // since the last control_status
-  std::int64_t stamp_ns = 0;  // of the estimate, vehicle's clock
+  std::int64_t stamp_ns = 0;  // of the estimate, on the vehicle's clock
   Eigen::Vector3d position_ned_m = Eigen::Vector3d::Constant(kUnknown);  // estimated
   Eigen::Vector3d velocity_ned_m_s = Eigen::Vector3d::Constant(kUnknown);
   Eigen::Quaterniond q_ned_from_frd{kUnknown, kUnknown, kUnknown, kUnknown};
