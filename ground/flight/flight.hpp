@@ -1,4 +1,5 @@
-// One mission flown from the ground: wait for the vehicle, arm, upload, follow it down.
+// Flies one mission over DDS: waits for the vehicle, arms, uploads and starts the mission, monitors it to its
+// end.
 #pragma once
 
 #include <functional>
@@ -15,7 +16,7 @@
 
 namespace swiftlet::ground {
 
-// Why a flight did not come to its end. what() is a sentence.
+// A flight that was not completed. what() is a sentence with the reason.
 class FlightFailure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -24,19 +25,19 @@ class FlightFailure : public std::runtime_error {
 class Flight {
  public:
   struct Watch {
-    std::function<std::optional<std::string>()> exited_process;  // a process that died, as a sentence
-    std::function<int()> interrupts;                             // how often the user asked to end
-    StartBarrier* barrier = nullptr;                             // with others; null: alone
+    std::function<std::optional<std::string>()> exited_process;  // a sentence if a process exited
+    std::function<int()> interrupts;                             // number of interrupts by the user
+    StartBarrier* barrier = nullptr;                             // null: a single vehicle
   };
 
-  // In lockstep the plant is one that was started paused.
+  // In lockstep the plant must have been started with --paused.
   Flight(Client& client, const FlightRecord& record, const MissionFile& mission, double planned_duration_s,
          runtime::Clock clock, Watch watch, Progress& progress);
 
-  // Until vehicle, pose and control are there, the mission is flown, and the rotors are off. Throws
-  // FlightFailure; the vehicle has then been landed where that was possible. The first interrupt lands it,
-  // the second gives up at once. StartBarrier with others the mission begins when all are armed, and a failure of
-  // another one lands this one.
+  // Waits for vehicle, pose and control, flies the mission and returns when the rotors are off. With a
+  // barrier the mission starts when all vehicles are armed, and a failure of another vehicle lands this one.
+  // The first interrupt lands the vehicle, the second returns at once. Throws FlightFailure after landing the
+  // vehicle, if that was possible.
   void run();
 
  private:
@@ -60,7 +61,7 @@ class Flight {
   const MissionFile& mission_;
   double planned_duration_s_;
   bool lockstep_;
-  std::int64_t paused_at_ns_ = 0;  // in lockstep, before the mission
+  std::int64_t paused_at_ns_ = 0;  // lockstep, before the mission
   Watch watch_;
   Progress& progress_;
 };

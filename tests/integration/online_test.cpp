@@ -214,7 +214,7 @@ TEST_F(OnlineFlight, FlyNamesAVehicleThatFellSilent) {
       << fly.errors();
   plant_.signal(SIGKILL);
   ASSERT_EQ(fly.wait(30s), 1) << fly.errors();
-  EXPECT_EQ(json::parse(fly.output()).at("reason"), "the vehicle has said nothing for 3 s");
+  EXPECT_EQ(json::parse(fly.output()).at("reason"), "the vehicle has sent nothing for 3 s");
 }
 
 TEST_F(OnlineFlight, StatusNamesAllThatAPilotAsksFor) {
