@@ -193,8 +193,8 @@ void Client::subscribe_all() {
   });
 }
 
-// Subscribes to the IMU last of the plant's topics: a plant whose IMU samples arrive has discovered the
-// others.
+// Subscribes to the IMU last of the plant's topics: a plant whose IMU samples arrive has discovered the other
+// subscriptions too.
 void Client::subscribe_sensors(SensorRecord& sensors) {
   using namespace comms::topics;
   subscriptions_.push_back(node_.subscribe<msg::RotorSpeeds>(

@@ -154,8 +154,8 @@ class Client {
   comms::Publisher<msg::Setpoint> setpoints_;
   std::mutex sending_;  // guards all publishers
   std::uint64_t setpoint_count_ = 0;
-  // Created, used and destroyed without mutex_ held: the middleware's threads lock mutex_ in callbacks, while
-  // they hold the middleware's locks.
+  // Created, used and destroyed without mutex_ held: the middleware's threads lock mutex_ in callbacks while
+  // they hold the middleware's own locks (deadlock).
   std::shared_ptr<SimulationClockPublisher> clock_publisher_;
   std::shared_ptr<GroundHeartbeatPublisher> heartbeat_;
   std::vector<comms::Subscription> subscriptions_;  // last: their callbacks use all members above

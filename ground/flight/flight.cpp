@@ -116,7 +116,7 @@ void Flight::run() {
   // Not in lockstep: without this process time stands still, and the plant ends the run.
   if (!lockstep_) client_.enable_link_loss_failsafe();
   arm();
-  if (watch_.barrier != nullptr) wait_for_the_others();
+  if (watch_.barrier != nullptr) wait_for_barrier();
   start_mission();
   if (lockstep_) client_.simulation_clock().without_end();
   follow();
@@ -202,14 +202,14 @@ void Flight::arm() {
   }
 }
 
-void Flight::wait_for_the_others() {
+void Flight::wait_for_barrier() {
   watch_.barrier->ready();
   while (!watch_.barrier->wait_for_all(kStep)) {
     require_alive();
     const auto failure = watch_.barrier->failure();
     if (failure || watch_.interrupts() > 0) {
       if (lockstep_) client_.simulation_clock().without_end();  // disarming needs time to advance
-      bring_down(failure.value_or("interrupted"));
+      land_and_fail(failure.value_or("interrupted"));
     }
     progress_.update(kBeforeFlight, "armed, waiting for the other vehicles");
   }
@@ -223,7 +223,7 @@ void Flight::start_mission() {
                                      kRequestTimeout, cancelled);
   }
   require_alive();
-  if (watch_.interrupts() > 0) bring_down("interrupted");
+  if (watch_.interrupts() > 0) land_and_fail("interrupted");
   if (!answer.accepted()) throw FlightFailure("mission refused: " + answer.reason);
 }
 
@@ -241,32 +241,32 @@ void Flight::follow() {
     });
     require_alive();
     const View view = client_.view();
-    show(view);
-    if (watch_.interrupts() > 0) bring_down("interrupted");
+    update_progress(view);
+    if (watch_.interrupts() > 0) land_and_fail("interrupted");
     if (watch_.barrier != nullptr) {
-      if (const auto failure = watch_.barrier->failure()) bring_down(*failure);
+      if (const auto failure = watch_.barrier->failure()) land_and_fail(*failure);
     }
     const ControlMode mode = mode_of(view);
     if (view.mission.message.mission_id() == id) {
       const auto state = view.mission.message.state();
       if (state == msg::MissionStatus_Constants::COMPLETED && rotors_off(mode)) return;
       if (state == msg::MissionStatus_Constants::ABORTED) {
-        bring_down(std::string("the mission was aborted: ") + view.mission.message.reason().c_str());
+        land_and_fail(std::string("the mission was aborted: ") + view.mission.message.reason().c_str());
       }
     }
-    if (control_silence.lasts(view.control.count)) fail_of_silence("control");
-    if (vehicle_silence.lasts(view.truth.count)) fail_of_silence("the vehicle");
+    if (control_silence.lasts(view.control.count)) fail_silent("control");
+    if (vehicle_silence.lasts(view.truth.count)) fail_silent("the vehicle");
     if (simulated_s(view, start_ns) > time_limit_s) {
       const std::string reason =
           fmt::format("the mission exceeds its time limit of {:.0f} s (planned: {:.0f} s)", time_limit_s,
                       planned_duration_s_);
-      bring_down(reason);
+      land_and_fail(reason);
     }
   }
 }
 
 // A killed process may be silent for seconds before its exit is seen: reports the exit if there is one.
-void Flight::fail_of_silence(const std::string& who) {
+void Flight::fail_silent(const std::string& who) {
   const auto deadline = Clock::now() + kEndTimeout;
   while (Clock::now() < deadline) {
     require_alive();
@@ -284,7 +284,7 @@ void Flight::wait_for_last_figures() {
   });
 }
 
-void Flight::bring_down(const std::string& reason) {
+void Flight::land_and_fail(const std::string& reason) {
   const int interrupts_before = watch_.interrupts();
   progress_.say(reason +
                 (interrupts_before > 0 ? "; landing (interrupt again to quit at once)" : "; landing"));
@@ -311,7 +311,7 @@ void Flight::bring_down(const std::string& reason) {
       // Refused while the rotors spool up or during a descent: requests again.
       descending = client_.command(land, kRetryPeriod).accepted();
     }
-    show(client_.view());
+    update_progress(client_.view());
     client_.wait(kRetryPeriod, [](const View& view) { return rotors_off(mode_of(view)); });
   }
   wait_for_last_figures();
@@ -319,7 +319,7 @@ void Flight::bring_down(const std::string& reason) {
                       (mode_of(client_.view()) == ControlMode::kStopped ? "; rotors stopped" : "; landed"));
 }
 
-void Flight::show(const View& view) {
+void Flight::update_progress(const View& view) {
   const auto& mission = view.mission.message;
   const auto& position = view.truth.message.position_ned();
   const auto window = mission_window(record_, client_.mission_id(), mission_.mission);

@@ -46,15 +46,15 @@ class Flight {
   void wait_until_samples_come();
   void wait_until_paused_at(std::int64_t stamp_ns);
   void arm();
-  void wait_for_the_others();
+  void wait_for_barrier();
   void start_mission();
   void follow();
-  [[noreturn]] void fail_of_silence(const std::string& who);
+  [[noreturn]] void fail_silent(const std::string& who);
   void wait_for_last_figures();
-  [[noreturn]] void bring_down(const std::string& reason);
+  [[noreturn]] void land_and_fail(const std::string& reason);
   void require_alive() const;
   void require_no_interrupt() const;
-  void show(const View& view);
+  void update_progress(const View& view);
 
   Client& client_;
   const FlightRecord& record_;

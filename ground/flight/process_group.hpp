@@ -12,8 +12,8 @@ namespace swiftlet::ground {
 
 class ProcessGroup {
  public:
-  // Starts the processes in this order. Throws std::runtime_error if one cannot be started, after ending the
-  // others.
+  // Starts the processes in this order. If one cannot be started, ends the others and throws
+  // std::runtime_error.
   explicit ProcessGroup(const std::vector<ProcessSettings>& processes);
   // Ends running processes: SIGTERM to all, SIGKILL to those that do not end within 10 s.
   ~ProcessGroup();

@@ -79,7 +79,7 @@ void CommandServer::on_mission(const comms::msg::Mission& message) {
   pending->mission = std::make_unique<control::Mission>();
   control::Outcome outcome = read(message, limits_, *pending->mission);
   if (outcome.accepted && is_of_another(message)) {
-    outcome = control::refuse("another mission has the id %llu: a new one needs a new id",
+    outcome = control::refuse("mission id %llu belongs to another mission: upload with a new id",
                               static_cast<unsigned long long>(message.id()));
   }
   if (!outcome.accepted) return refuse(key, control::RequestKind::kMissionUpload, outcome);

@@ -100,7 +100,7 @@ void Telemetry::take(const Snapshot& snapshot) {
   if (mode_changed) spdlog::info("{}: {}", control::to_string(now.mode), control::to_string(now.reason));
   if (now.has_pose != before.has_pose) {
     if (now.has_pose) {
-      spdlog::info("mocap pose available");
+      spdlog::info("mocap available");
     } else {
       spdlog::warn("mocap lost: the last pose is {:.2f} s old", now.pose_age_s);
     }
