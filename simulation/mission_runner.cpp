@@ -10,14 +10,14 @@ void arm(MissionTransport& vehicle) {
     const MissionTransport::Reply reply = vehicle.arm();
     if (reply.accepted) return;
     const bool late = waited_ns + FlightSchedule::kArmingRetryNs > FlightSchedule::kArmingTimeoutNs;
-    if (!reply.retry || late) throw FlightFailure("arming: " + reply.reason);
-    vehicle.wait(FlightSchedule::kArmingRetryNs, "arming: " + reply.reason);
+    if (!reply.retry || late) throw FlightFailure("arming failed: " + reply.reason);
+    vehicle.wait(FlightSchedule::kArmingRetryNs, "arming refused: " + reply.reason);
   }
 }
 
 void start(MissionTransport& vehicle) {
   const MissionTransport::Reply reply = vehicle.start_mission();
-  if (!reply.accepted) throw FlightFailure("the mission was refused: " + reply.reason);
+  if (!reply.accepted) throw FlightFailure("mission refused: " + reply.reason);
 }
 
 void follow(MissionTransport& vehicle, double planned_duration_s) {
@@ -30,7 +30,7 @@ void follow(MissionTransport& vehicle, double planned_duration_s) {
     if (status.mission == control::MissionState::kAborted)
       vehicle.abandon("the mission was aborted: " + vehicle.abort_reason());
     if (static_cast<double>(status.stamp_ns - start_ns) * 1e-9 > time_limit_s) {
-      vehicle.abandon(fmt::format("the mission took longer than {:.0f} s, of which {:.0f} s were planned",
+      vehicle.abandon(fmt::format("the mission exceeds its time limit of {:.0f} s (planned: {:.0f} s)",
                                   time_limit_s, planned_duration_s));
     }
   }

@@ -9,7 +9,7 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr std::chrono::milliseconds kLookPeriod{100};
+constexpr std::chrono::milliseconds kPollPeriod{100};
 constexpr std::chrono::seconds kSilence{3};
 
 bool is_of(const msg::RequestStatus& request, const control::RequestKey& key) {
@@ -46,38 +46,38 @@ std::optional<ActionResult> action_result_by(const msg::ControlStatus& status, c
   if (status.stamp_ns() <= answer.stamp_ns) return std::nullopt;
   return ActionResult{
       ActionResult::Kind::kLost,
-      "the controller knows nothing of it any more: it was started again, or too many newer requests came"};
+      "the controller no longer lists this request: it was restarted, or newer requests replaced it"};
 }
 
 ActionHandle::ActionHandle(std::shared_ptr<const Client> client, Result answer)
     : client_(std::move(client)), answer_(std::move(answer)) {}
 
 double ActionHandle::progress() const {
-  const std::optional<msg::RequestStatus> told = client_->reported_status(answer_.key);
-  return told ? told->progress() : 0.0;
+  const std::optional<msg::RequestStatus> status = client_->reported_status(answer_.key);
+  return status ? status->progress() : 0.0;
 }
 
 ActionResult ActionHandle::wait(std::chrono::milliseconds timeout) const {
   if (!accepted()) return {ActionResult::Kind::kNotAccepted, answer_.reason};
-  if (const auto told = client_->reported_status(answer_.key)) {
-    if (const auto ending = action_result_of(*told)) return *ending;
+  if (const auto status = client_->reported_status(answer_.key)) {
+    if (const auto result = action_result_of(*status)) return *result;
   }
   const auto begin = Clock::now();
   const auto deadline = begin + timeout;
   while (true) {
-    std::optional<ActionResult> ending;
+    std::optional<ActionResult> result;
     bool silent = false;
     const auto ended = [&](const View& view) {
-      const auto heard = std::max(view.control.received, begin);
-      silent = Clock::now() - heard > kSilence;
-      if (view.control.seen()) ending = action_result_by(view.control.message, answer_);
-      return ending || silent;
+      const auto last_heard = std::max(view.control.received, begin);
+      silent = Clock::now() - last_heard > kSilence;
+      if (view.control.seen()) result = action_result_by(view.control.message, answer_);
+      return result || silent;
     };
-    client_->wait(kLookPeriod, ended);
-    if (ending) return *ending;
+    client_->wait(kPollPeriod, ended);
+    if (result) return *result;
     if (silent)
       return {ActionResult::Kind::kLost,
-              "nothing was heard for 3 s from the control service of " + client_->where()};
+              "no control_status for 3 s from the control service of " + client_->where()};
     if (Clock::now() < deadline) continue;
     const double waited_s = std::chrono::duration<double>(timeout).count();
     char text[64];
@@ -87,7 +87,7 @@ ActionResult ActionHandle::wait(std::chrono::milliseconds timeout) const {
 }
 
 std::future<ActionResult> ActionHandle::future(std::chrono::milliseconds timeout) const {
-  return std::async(std::launch::async, [manoeuvre = *this, timeout] { return manoeuvre.wait(timeout); });
+  return std::async(std::launch::async, [action = *this, timeout] { return action.wait(timeout); });
 }
 
 }  // namespace swiftlet::ground

@@ -1,5 +1,5 @@
-// What a vehicle was asked to do: first it is answered, then, if it was accepted, it is done or ends
-// otherwise. How far it is and how it ended is what the controller says in control_status.
+// The handle and result of a request to a vehicle. The controller answers each request; an accepted one then
+// executes until it completes, is canceled or is aborted. Progress and result come from control_status.
 #pragma once
 
 #include <chrono>
@@ -19,35 +19,35 @@ namespace swiftlet::ground {
 
 class Client;
 
-// How a manoeuvre ended.
+// The result of an action.
 struct ActionResult {
   enum class Kind {
     kCompleted,
-    kNotAccepted,  // it was never begun
-    kCanceled,     // by a newer request, whoever asked for it, or by setpoints
+    kNotAccepted,  // refused or not answered; never started
+    kCanceled,     // by a newer request of any client, or by setpoints
     kAborted,      // by a failsafe
-    kLost,         // nothing more is heard of it: the controller is silent, or was started again
-    kTimedOut,     // it goes on, for longer than was waited
+    kLost,         // result unknown: the controller is silent or was restarted
+    kTimedOut,     // still executing when the time-out of wait() ended
   };
   Kind kind = Kind::kTimedOut;
-  std::string reason;  // a sentence unless done
+  std::string reason;  // a sentence; empty if done
 
   bool done() const { return kind == Kind::kCompleted; }
 };
 
-// The request's place in a status; null if it is not there.
+// The request's entry in `status`; null if the status does not list it.
 const swiftlet_msgs::msg::RequestStatus* find_request(const swiftlet_msgs::msg::ControlStatus& status,
                                                       const control::RequestKey& key);
 
-// How it ended; nothing while it is under way.
+// The result of a request; nullopt while it executes.
 std::optional<ActionResult> action_result_of(const swiftlet_msgs::msg::RequestStatus& request);
 
-// How an accepted request ended, by a status; nothing while it is under way, or where the status is older than
-// its answer.
+// The result of an accepted request according to `status`; nullopt while it executes, or if the status is
+// older than the request's answer. kLost if a newer status does not list the request.
 std::optional<ActionResult> action_result_by(const swiftlet_msgs::msg::ControlStatus& status,
                                              const Result& answer);
 
-// A handle that may be copied and outlive the Vehicle that gave it. Any thread may call it.
+// Copyable. May outlive the Vehicle that returned it. Thread-safe.
 class ActionHandle {
  public:
   ActionHandle(std::shared_ptr<const Client> client, Result answer);
@@ -55,13 +55,13 @@ class ActionHandle {
   const Result& answer() const { return answer_; }
   bool accepted() const { return answer_.accepted(); }
 
-  // 0 .. 1, as told last: of a take-off's or landing's height, of a way's time, of a mission's items, of a
-  // trajectory's segments.
+  // 0 .. 1, as last reported: the share of the height (take-off, landing), of the time (go-to), of the items
+  // (mission) or of the segments (trajectory).
   double progress() const;
 
-  // Returns when it has ended, or after the time-out; at once if it was not accepted.
+  // Blocks until the action ends or the time-out expires. Returns at once if it was not accepted.
   ActionResult wait(std::chrono::milliseconds timeout = std::chrono::seconds(60)) const;
-  // The same in a thread of its own, for a program that has other things to do.
+  // Runs wait() in a thread of its own.
   std::future<ActionResult> future(std::chrono::milliseconds timeout = std::chrono::seconds(60)) const;
 
  private:

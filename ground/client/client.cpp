@@ -13,11 +13,11 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr std::chrono::milliseconds kLongSilence{2000};  // after which a request is sent again
-constexpr std::size_t kToldRequests = 64;
-constexpr std::chrono::milliseconds kLookPeriod{20};  // how often a wait looks at what makes no noise
-// In lockstep: of telemetry, 50 samples at 100 Hz; of what is sensed and commanded besides, 30 samples with
-// an IMU at 500 Hz and 50 at 1000 Hz.
+constexpr std::chrono::milliseconds kResendPeriod{2000};  // without an answer
+constexpr std::size_t kMaxReportedRequests = 64;
+constexpr std::chrono::milliseconds kPollPeriod{20};  // for conditions that do not notify changed_
+// How far a lockstep plant may run ahead. Telemetry alone: up to 50 samples at 100 Hz. With sensors and
+// commands: 30 samples at an IMU rate of 500 Hz, 50 at 1000 Hz.
 constexpr std::int64_t kTelemetryWindowNs = 100'000'000;
 constexpr std::int64_t kSensorWindowNs = 20'000'000;
 
@@ -54,7 +54,7 @@ EstimateRow row_of(const msg::Estimate& estimate) {
   return {estimate.stamp_ns(), estimate.position_ned(), estimate.velocity_ned()};
 }
 
-Result answer_of(const msg::CommandAck& ack) {
+Result result_of(const msg::CommandAck& ack) {
   const control::RequestKey key{ack.client(), ack.id()};
   if (ack.accepted()) return {Result::Kind::kAccepted, "", key, ack.stamp_ns()};
   return {Result::Kind::kRefused, ack.reason().c_str(), key};
@@ -64,8 +64,8 @@ MissionRow row_of(const msg::MissionStatus& status) {
   return {status.stamp_ns(), status.mission_id(), status.state(), status.item_index()};
 }
 
-// What cannot be is left out, and in lockstep what comes again because its answer is late, and the signs of a
-// motion capture that has no pose yet: they are of number 0.
+// Appends a valid sample. Skips invalid ones, samples that lockstep repeats, and heartbeats of motion capture
+// without a pose (sequence 0).
 template <class Message, class Sample>
 void keep_sample(const Message& message, Track<Sample>& track) {
   Sample sample;
@@ -112,23 +112,23 @@ void Client::note_requests(const msg::ControlStatus& status) {
   };
   for (const msg::RequestStatus& request : status.earlier_requests()) note(request);
   note(status.request());
-  while (reported_.size() > kToldRequests) reported_.erase(reported_.begin());
+  while (reported_.size() > kMaxReportedRequests) reported_.erase(reported_.begin());
 }
 
 std::optional<msg::RequestStatus> Client::reported_status(const control::RequestKey& request) const {
   const std::lock_guard lock(mutex_);
-  const auto told = reported_.find(request.id);
-  if (request.client != client_id_ || told == reported_.end()) return std::nullopt;
-  return told->second;
+  const auto reported = reported_.find(request.id);
+  if (request.client != client_id_ || reported == reported_.end()) return std::nullopt;
+  return reported->second;
 }
 
 void Client::subscribe_all() {
   using namespace comms::topics;
-  // States, answers and peers wake whoever waits; telemetry comes too often for that.
+  // Statuses, answers and peer events wake waiting threads. Telemetry does not: its rate is too high.
   subscriptions_.push_back(
       node_.subscribe<msg::ControlStatus>(kControlStatus, [this](const msg::ControlStatus& status) {
         {
-          // Each controller counts its own.
+          // Each controller counts its own statuses: a count that does not rise is another controller's.
           const std::lock_guard lock(mutex_);
           if (status.sequence_number() <= view_.control.message.sequence_number()) ++takeovers_;
         }
@@ -153,7 +153,7 @@ void Client::subscribe_all() {
     {
       const std::lock_guard lock(mutex_);
       const auto asked = answers_.find(ack.id());
-      if (asked != answers_.end()) asked->second = answer_of(ack);
+      if (asked != answers_.end()) asked->second = result_of(ack);
     }
     changed_.notify_all();
   }));
@@ -172,13 +172,13 @@ void Client::subscribe_all() {
         keep(&View::reference, reference);
         grant_after(reference.stamp_ns());
         std::unique_lock lock(mutex_);
-        const auto signs = heartbeat_;
+        const auto heartbeat = heartbeat_;
         lock.unlock();
-        if (signs) signs->telemetry(reference.stamp_ns());
+        if (heartbeat) heartbeat->telemetry(reference.stamp_ns());
       }));
   subscriptions_.push_back(
       node_.subscribe<msg::GroundTruth>(kGroundTruth, [this](const msg::GroundTruth& truth) {
-        // In lockstep a sample comes again when its answer is late.
+        // Lockstep repeats a sample whose answer is late.
         const bool again = record_ != nullptr && !record_->truth.empty() &&
                            record_->truth.back().stamp_ns == truth.stamp_ns();
         if (record_ != nullptr && !again) record_->truth.append(row_of(truth));
@@ -193,7 +193,8 @@ void Client::subscribe_all() {
   });
 }
 
-// That of the IMU comes last of the plant's: who sends it has got to know the others before.
+// Subscribes to the IMU last of the plant's topics: a plant whose IMU samples arrive has discovered the other
+// subscriptions too.
 void Client::subscribe_sensors(SensorRecord& sensors) {
   using namespace comms::topics;
   subscriptions_.push_back(node_.subscribe<msg::RotorSpeeds>(
@@ -239,19 +240,19 @@ View Client::view() const {
 
 SimulationClockPublisher& Client::simulation_clock() {
   std::unique_lock lock(mutex_);
-  if (grants_) return *grants_;
+  if (clock_publisher_) return *clock_publisher_;
   lock.unlock();
   const bool every_sample = record_ != nullptr && record_->sensors;
   auto simulation_clock =
       std::make_shared<SimulationClockPublisher>(node_, every_sample ? kSensorWindowNs : kTelemetryWindowNs);
   lock.lock();
-  grants_ = std::move(simulation_clock);
-  return *grants_;
+  clock_publisher_ = std::move(simulation_clock);
+  return *clock_publisher_;
 }
 
 void Client::grant_after(std::int64_t stamp_ns) {
   std::unique_lock lock(mutex_);
-  const auto simulation_clock = grants_;
+  const auto simulation_clock = clock_publisher_;
   lock.unlock();
   if (simulation_clock) simulation_clock->has_come(stamp_ns);
 }
@@ -260,15 +261,15 @@ void Client::enable_link_loss_failsafe() {
   std::unique_lock lock(mutex_);
   if (heartbeat_) return;
   lock.unlock();
-  auto signs = std::make_shared<GroundHeartbeatPublisher>(node_, client_id_);
+  auto heartbeat = std::make_shared<GroundHeartbeatPublisher>(node_, client_id_);
   lock.lock();
-  heartbeat_ = std::move(signs);
+  heartbeat_ = std::move(heartbeat);
 }
 
 void Client::disable_link_loss_failsafe() {
-  std::shared_ptr<GroundHeartbeatPublisher> signs;
+  std::shared_ptr<GroundHeartbeatPublisher> heartbeat;
   const std::lock_guard lock(mutex_);
-  heartbeat_.swap(signs);  // which outlives the lock
+  heartbeat_.swap(heartbeat);  // destroyed after the lock is released
 }
 
 bool Client::wait(std::chrono::milliseconds timeout, const std::function<bool(const View&)>& done) const {
@@ -277,21 +278,21 @@ bool Client::wait(std::chrono::milliseconds timeout, const std::function<bool(co
   while (!done(view_)) {
     const auto now = Clock::now();
     if (now >= deadline) return false;
-    changed_.wait_until(lock, std::min(deadline, now + kLookPeriod));
+    changed_.wait_until(lock, std::min(deadline, now + kPollPeriod));
   }
   return true;
 }
 
 namespace {
 
-// When a request was sent, and what was so then: where it changes, others may have to answer.
+// When a request was sent, and to which readers and controller. If these change, it is sent again.
 struct Sending {
   Clock::time_point at;
   std::uint64_t reader_changes = 0;
   std::uint64_t takeovers = 0;
 
   bool reached_all(const Sending& now) const {
-    return now.reader_changes == reader_changes && now.takeovers == takeovers && now.at < at + kLongSilence;
+    return now.reader_changes == reader_changes && now.takeovers == takeovers && now.at < at + kResendPeriod;
   }
 };
 
@@ -311,13 +312,13 @@ Result Client::ask(comms::Publisher<T>& publisher, const T& request, std::chrono
   };
   while (!asked->second) {
     const auto now = Clock::now();
-    if (cancelled && cancelled()) return settled({Result::Kind::kCancelled, "it was cancelled"});
+    if (cancelled && cancelled()) return settled({Result::Kind::kCancelled, "the request was cancelled"});
     if (now >= deadline) {
       settled({});
       lock.unlock();
       if (sent) {
         return {Result::Kind::kSilence, "no answer from the control service of " + where() +
-                                            "; `swiftlet status` says whether it still runs"};
+                                            "; `swiftlet status` shows whether it still runs"};
       }
       return {Result::Kind::kNoControl, no_control()};
     }
@@ -331,7 +332,7 @@ Result Client::ask(comms::Publisher<T>& publisher, const T& request, std::chrono
     }
     lock.lock();
     if (asked->second) break;
-    changed_.wait_until(lock, std::min(deadline, now + kLookPeriod));
+    changed_.wait_until(lock, std::min(deadline, now + kPollPeriod));
   }
   return settled(*asked->second);
 }
@@ -381,23 +382,23 @@ std::string Client::where() const {
   }
   const std::string alive = listed(names);
   return "vehicle " + settings_.vehicle + " in domain " + std::to_string(settings_.domain) +
-         "; seen there: " + (alive.empty() ? "nothing" : alive);
+         "; processes found: " + (alive.empty() ? "none" : alive);
 }
 
 std::string Client::no_control() const {
   std::string text = "no control service for " + where();
-  // Those that keep to the loopback interface are seen, but do not talk to others.
+  // Processes started with --localhost-only are discovered, but exchange data on the loopback interface only.
   const auto peers = view().peers;
   const auto control = peers.find("control");
   const bool seen = control != peers.end() && control->second > 0;
   if (seen && !settings_.localhost_only) text += " (try --localhost-only)";
   const std::vector<std::string> topics = node_.topics_seen();
   const std::string own = listed(topics_of(settings_.vehicle, topics));
-  if (!own.empty()) text += "; topics seen: " + own;
+  if (!own.empty()) text += "; topics found: " + own;
   std::vector<std::string> others = vehicles_of(topics);
   others.erase(std::remove(others.begin(), others.end(), settings_.vehicle), others.end());
-  if (!others.empty()) return text + "; other vehicles there: " + listed(others) + " (--vehicle-name)";
-  if (!seen && own.empty()) text += "; is it started, and in this domain (--domain, ROS_DOMAIN_ID)?";
+  if (!others.empty()) return text + "; other vehicles found: " + listed(others) + " (--vehicle-name)";
+  if (!seen && own.empty()) text += "; is it running in this domain (--domain, ROS_DOMAIN_ID)?";
   return text;
 }
 

@@ -1,4 +1,4 @@
-// The ground's end of the wire to one vehicle: hears what it says of itself and asks things of it.
+// The message-level client of one vehicle: receives its topics and sends requests to its controller.
 #pragma once
 
 #include <atomic>
@@ -32,22 +32,22 @@ template <class T>
 struct Latest {
   T message{};
   Clock::time_point received{};
-  std::uint64_t count = 0;  // of the samples that came
+  std::uint64_t count = 0;  // samples received
 
   bool seen() const { return count > 0; }
   double age_s(Clock::time_point now) const { return std::chrono::duration<double>(now - received).count(); }
 };
 
-// What has come of the samples, where they are recorded.
+// Which sample streams have been received at least once. Set only if sensors are recorded.
 struct HeardSamples {
   bool imu = false;
   bool command = false;
-  bool pose = false;  // or the sign of motion capture that it is there
+  bool pose = false;  // a pose, or a heartbeat of motion capture
 
   bool all() const { return imu && command && pose; }
 };
 
-// What the vehicle and its controller have said.
+// The newest message of each topic of the vehicle and its controller.
 struct View {
   Latest<msg::ControlStatus> control;
   Latest<msg::MissionStatus> mission;
@@ -57,66 +57,68 @@ struct View {
   Latest<msg::Reference> reference;
   Latest<msg::GroundTruth> truth;
   HeardSamples samples;
-  std::map<std::string, int> peers;  // by name: how many are alive
+  std::map<std::string, int> peers;  // number of live processes, by name
   std::map<std::uint64_t, Latest<msg::ControllerState>>
-      controllers;  // by number; once hear_controllers() was called
+      controllers;  // by controller number; filled after hear_controllers()
 };
 
-// The wire itself, as messages; a program that flies a vehicle uses Vehicle (ground/client/vehicle.hpp), which
-// stands on it. Any thread may call it.
+// Works on messages. Programs that fly a vehicle use Vehicle (ground/client/vehicle.hpp), which is built on
+// this class. Thread-safe.
 class Client {
  public:
-  // record: where every sample of truth, reference, estimate and mission status is kept, and, if it has room
-  // for them, what was sensed and commanded; may be null. Throws std::runtime_error if the network cannot be
-  // joined.
+  // record: receives every sample of ground truth, reference, estimate and mission status and, if its
+  // `sensors` are set, of the sensors and actuator commands; may be null. Throws std::runtime_error if the
+  // network cannot be joined.
   explicit Client(const comms::NodeSettings& settings, FlightRecord* record = nullptr);
-  // One of those that share the participant; settings.vehicle says which.
+  // Shares the participant with other clients. settings.vehicle names the vehicle.
   Client(const comms::Participant& participant, const comms::NodeSettings& settings);
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 
   View view() const;
 
-  // From now on the view holds what the controllers say of themselves, the standbys too. Once, by one thread.
+  // Fills View::controllers from controller_state, which standbys publish too. Call once, from one thread.
   void hear_controllers();
 
-  // For a plant in lockstep that was started paused: from the first call on, this client grants it time.
+  // Grants time to a lockstep plant that was started paused. The first call starts the publisher.
   SimulationClockPublisher& simulation_clock();
 
-  // From now on the flight depends on this client: if it falls silent, the controller does what its settings
-  // say. Until leave() or the client's end. One thread calls these and grants().
+  // Publishes the ground heartbeat until the failsafe is disabled or the client is destroyed: if it stops
+  // otherwise, the controller does what failsafe.ground_link_action says. Call these two and
+  // simulation_clock() from one thread.
   void enable_link_loss_failsafe();
   void disable_link_loss_failsafe();
 
-  // Waits until `done` holds of the view; false if it does not within the time-out. `done` must not call this
+  // Waits until `done` returns true for the view. Returns false after the time-out. `done` must not call this
   // client.
   bool wait(std::chrono::milliseconds timeout, const std::function<bool(const View&)>& done) const;
 
-  // Waits until it is answered, the time is over, or `cancelled` says so. Delivery is the network's task: it
-  // is sent again where another controller may have to answer, and after 2 s without an answer.
+  // Sends a request and waits until it is answered, the time-out expires, or `cancelled` returns true.
+  // Delivery is reliable. The request is sent again only if another controller may have to answer it, or
+  // after 2 s without an answer.
   using Cancelled = std::function<bool()>;
   Result command(msg::Command command, std::chrono::milliseconds timeout, const Cancelled& cancelled = {});
   Result upload(const control::Mission& mission, std::chrono::milliseconds timeout,
                 const Cancelled& cancelled = {});
   Result upload(const control::Trajectory& trajectory, std::chrono::milliseconds timeout,
                 const Cancelled& cancelled = {});
-  // One of a stream, for which there is no answer: stamp and number are filled in. False if nobody is there
-  // to take it.
+  // Publishes one setpoint of a stream; setpoints are not answered. Fills in stamp and sequence. Returns
+  // false if no controller subscribes.
   bool send(control::Setpoint setpoint);
-  // One of Command_Constants::MISSION_*, of the mission of this id; 0: of whichever is there.
+  // kind: one of Command_Constants::MISSION_*. mission_id: 0 means the mission that the vehicle has.
   Result mission_command(std::uint8_t kind, std::uint64_t mission_id, std::chrono::milliseconds timeout,
                          const Cancelled& cancelled = {});
-  // Of the mission uploaded last: MissionStatus::mission_id.
+  // MissionStatus::mission_id of the mission that this client uploaded last.
   std::uint64_t mission_id() const { return mission_id_; }
   const std::string& vehicle() const { return settings_.vehicle; }
 
-  // What was told last of a request of this client, also of one that newer requests have pushed out of the status:
-  // of the last 64.
+  // The last reported status of one of this client's last 64 requests. Keeps those that control_status no
+  // longer lists. nullopt if none was reported.
   std::optional<msg::RequestStatus> reported_status(const control::RequestKey& request) const;
 
-  // "vehicle kl1 in domain 0; seen there: plant, mocap"
+  // "vehicle kl1 in domain 0; processes found: plant, mocap"
   std::string where() const;
-  // That none was found there, what was, and what to do about it.
+  // An error text: no controller was found, what was found instead, and what to try.
   std::string no_control() const;
 
  private:
@@ -135,14 +137,14 @@ class Client {
   comms::NodeSettings settings_;
   FlightRecord* record_;
   std::uint64_t client_id_;
-  std::atomic<std::uint64_t> last_id_;  // starts at random: mission ids of two tools must differ
+  std::atomic<std::uint64_t> last_id_;  // random start: mission ids of two tools must differ
   std::atomic<std::uint64_t> mission_id_{0};
 
-  mutable std::mutex mutex_;  // guards view_, answers_, told_ and the pointers below; held for copies only
+  mutable std::mutex mutex_;  // guards view_, answers_, reported_ and the pointers below; held briefly
   mutable std::condition_variable changed_;
   View view_;
-  std::map<std::uint64_t, std::optional<Result>> answers_;  // to the requests under way, by id
-  std::uint64_t takeovers_ = 0;                             // that control_status told of
+  std::map<std::uint64_t, std::optional<Result>> answers_;  // of pending requests, by id
+  std::uint64_t takeovers_ = 0;                             // seen in control_status
   std::map<std::uint64_t, msg::RequestStatus> reported_;    // of this client's requests, by id
 
   comms::Node node_;
@@ -150,15 +152,16 @@ class Client {
   comms::Publisher<msg::Mission> missions_;
   comms::Publisher<msg::Trajectory> trajectories_;
   comms::Publisher<msg::Setpoint> setpoints_;
-  std::mutex sending_;  // of all publishers
+  std::mutex sending_;  // guards all publishers
   std::uint64_t setpoint_count_ = 0;
-  // Made, used and destroyed without mutex_: the middleware's threads hold its locks when they ask for that.
-  std::shared_ptr<SimulationClockPublisher> grants_;
+  // Created, used and destroyed without mutex_ held: the middleware's threads lock mutex_ in callbacks while
+  // they hold the middleware's own locks (deadlock).
+  std::shared_ptr<SimulationClockPublisher> clock_publisher_;
   std::shared_ptr<GroundHeartbeatPublisher> heartbeat_;
-  std::vector<comms::Subscription> subscriptions_;  // last: their callbacks use all of the above
+  std::vector<comms::Subscription> subscriptions_;  // last: their callbacks use all members above
 };
 
-// Words for the constants of the wire.
+// Names of the messages' constants.
 const char* mode_name(std::uint8_t mode);
 const char* pose_fault_name(std::uint8_t fault);  // "none", "frozen" ...
 const char* mission_state_name(std::uint8_t state);

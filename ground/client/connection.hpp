@@ -1,4 +1,4 @@
-// What a Vehicle tells of its control process.
+// Connection events of a Vehicle: its control process is found, lost or replaced.
 #pragma once
 
 #include <chrono>
@@ -7,17 +7,17 @@
 
 namespace swiftlet::ground {
 
-// control_status comes ten times a second: this long without one, nobody is connected.
+// Without control_status, which has 10 Hz, for this long, the control process counts as disconnected.
 constexpr std::chrono::milliseconds kConnectionSilence{1000};
 
 struct ConnectionEvent {
   enum class Kind {
-    kConnected,  // it is heard, for the first time or again
-    kLost,       // it has fallen silent
-    kReplaced,  // another process controls the vehicle: the old one was started again, or a standby took over
+    kConnected,  // control_status is received, for the first time or again
+    kLost,       // no control_status for kConnectionSilence
+    kReplaced,   // another process controls the vehicle: restarted, or a standby took over
   };
   Kind kind = Kind::kLost;
-  std::uint64_t controller = 0;  // the random number of the process that is heard, or was
+  std::uint64_t controller = 0;  // random number of the current or last process
   std::string text;              // a sentence
 };
 

@@ -19,17 +19,16 @@ std::optional<ConnectionEvent> ConnectionWatch::look(const View& view, Clock::ti
   connected_ = is_connected(view, now);
   if (!connected_) {
     if (!was_connected) return std::nullopt;
-    return ConnectionEvent{Kind::kLost, controller_, "nothing is heard from the control process any more"};
+    return ConnectionEvent{Kind::kLost, controller_, "control process lost: no control_status for 1 s"};
   }
   const msg::ControlStatus& status = view.control.message;
   const std::uint64_t before = controller_;
   controller_ = status.controller();
   if (before != 0 && before != controller_)
     return ConnectionEvent{Kind::kReplaced, controller_,
-                           "another control process has the vehicle now: " + mode_of(status)};
+                           "another control process controls the vehicle: " + mode_of(status)};
   if (was_connected) return std::nullopt;
-  const char* const words =
-      before == 0 ? "the control process is heard: " : "the control process is heard again: ";
+  const char* const words = before == 0 ? "control process connected: " : "control process connected again: ";
   return ConnectionEvent{Kind::kConnected, controller_, words + mode_of(status)};
 }
 

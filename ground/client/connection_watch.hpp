@@ -1,4 +1,4 @@
-// Whether a vehicle's control process is heard, and whether it is the one that was.
+// Detects changes of the connection to a vehicle's control process.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,12 @@ bool is_connected(const View& view, Clock::time_point now);
 
 class ConnectionWatch {
  public:
-  // What has changed since the last look.
+  // The change since the last call; nullopt if there is none.
   std::optional<ConnectionEvent> look(const View& view, Clock::time_point now);
 
  private:
   bool connected_ = false;
-  std::uint64_t controller_ = 0;  // that was heard last; 0: none yet
+  std::uint64_t controller_ = 0;  // heard last; 0: none yet
 };
 
 }  // namespace swiftlet::ground

@@ -1,5 +1,4 @@
-// A program's place on the network, from which its vehicles are made: any number of them share one DDS
-// participant.
+// A DDS participant that the vehicles of a program share.
 //
 //   swiftlet::ground::Context context;                       // domain 0
 //   swiftlet::ground::Vehicle first(context, "kl1"), second(context, "kl2");
@@ -14,12 +13,12 @@ namespace swiftlet::ground {
 
 class Context {
  public:
-  // Of the settings, `name` is this program's own, as others see it; `vehicle` is not looked at. Throws
-  // std::runtime_error with a sentence if the network cannot be joined.
+  // network.name: this program's name in the domain. network.vehicle is ignored. Throws std::runtime_error if
+  // the network cannot be joined.
   explicit Context(const comms::NodeSettings& network = {"ground"})
       : network_(network), participant_(network) {}
 
-  // The names of the vehicles that publish in the domain now, sorted. Others are found within a second.
+  // The names of the vehicles discovered in the domain so far, sorted. Discovery takes up to a second.
   std::vector<std::string> discovered_vehicles() const;
 
   const comms::NodeSettings& network() const { return network_; }

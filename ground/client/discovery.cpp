@@ -15,7 +15,7 @@ bool comes_from_ground(const std::string& topic) {
   return std::find(kFromGround.begin(), kFromGround.end(), topic) != kFromGround.end();
 }
 
-// Into vehicle and topic; false for what is no topic of a vehicle.
+// Splits a DDS topic name into vehicle and topic. Returns false if it is not a vehicle's topic.
 bool split(const std::string& wire_name, std::string& vehicle, std::string& topic) {
   const std::string prefix = kRos;
   const std::size_t slash = wire_name.find('/', prefix.size());

@@ -1,4 +1,4 @@
-// Which vehicles there are, told from the topics that are published in a domain.
+// Finds vehicles by the topics that are published in a domain.
 #pragma once
 
 #include <string>
@@ -6,11 +6,11 @@
 
 namespace swiftlet::ground {
 
-// Names of the wire, "rt/<vehicle>/<name>", that a vehicle, its motion capture or its controller publish;
-// what ground tools publish shows no vehicle. Sorted, each once.
+// The names of the vehicles among DDS topic names "rt/<vehicle>/<name>". Ignores topics that ground tools
+// publish. Sorted, without duplicates.
 std::vector<std::string> vehicles_of(const std::vector<std::string>& wire_names);
 
-// The names of one vehicle's topics among them, whoever publishes them.
+// The topic names of one vehicle, of any publisher. Sorted, without duplicates.
 std::vector<std::string> topics_of(const std::string& vehicle, const std::vector<std::string>& wire_names);
 
 std::string listed(const std::vector<std::string>& words);  // "a, b, c"

@@ -17,7 +17,7 @@ GroundHeartbeatPublisher::~GroundHeartbeatPublisher() { publish(false); }
 
 void GroundHeartbeatPublisher::telemetry(std::int64_t stamp_ns) {
   const std::int64_t elapsed_ns = stamp_ns - heartbeat_.stamp_ns();
-  if (elapsed_ns >= 0 && elapsed_ns < kPeriodNs) return;  // a vehicle that was started again counts anew
+  if (elapsed_ns >= 0 && elapsed_ns < kPeriodNs) return;  // < 0: the vehicle was restarted
   heartbeat_.stamp_ns(stamp_ns);
   publish(true);
 }

@@ -1,5 +1,5 @@
-// Tells the vehicle that its flight depends on this tool: when the tool falls silent, the controller does
-// what its settings say (failsafe.ground_link_action).
+// Publishes the ground heartbeat (topic ground_link): if it stops, the controller's link-loss failsafe does
+// what failsafe.ground_link_action says.
 #pragma once
 
 #include <cstdint>
@@ -8,17 +8,16 @@
 
 namespace swiftlet::ground {
 
-// One thread at a time calls it.
+// Not thread-safe.
 class GroundHeartbeatPublisher {
  public:
   GroundHeartbeatPublisher(comms::Node& node, std::uint64_t client);
-  ~GroundHeartbeatPublisher();  // takes leave
+  ~GroundHeartbeatPublisher();  // publishes `depends` = false: ends the failsafe
   GroundHeartbeatPublisher(const GroundHeartbeatPublisher&) = delete;
   GroundHeartbeatPublisher& operator=(const GroundHeartbeatPublisher&) = delete;
 
-  // Telemetry of this stamp of the vehicle's clock was heard. By that clock a sign goes out every fifth of a
-  // second, whatever the speed of the simulation: a tool that the vehicle's telemetry does not reach falls
-  // silent.
+  // Call with the stamp of each received telemetry sample. Publishes a heartbeat every 0.2 s of the vehicle's
+  // clock, at any speed of the simulation. A tool that receives no telemetry sends no heartbeat.
   void telemetry(std::int64_t stamp_ns);
 
  private:

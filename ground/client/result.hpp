@@ -1,4 +1,4 @@
-// The answer to a request.
+// The controller's answer to a request.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +12,9 @@ namespace swiftlet::ground {
 struct Result {
   enum class Kind {
     kAccepted,
-    kRefused,    // by the controller, for `reason`
-    kNoControl,  // no controller was there to take it
-    kSilence,    // a controller was there and did not answer
+    kRefused,    // by the controller, see `reason`
+    kNoControl,  // no controller was found
+    kSilence,    // a controller was found and did not answer
     kCancelled,
   };
   Result() = default;
@@ -23,9 +23,9 @@ struct Result {
       : kind(kind_in), reason(std::move(reason_in)), key(key_in), stamp_ns(stamp_ns_in) {}
 
   Kind kind = Kind::kSilence;
-  std::string reason;         // a sentence unless accepted
-  control::RequestKey key;    // of the request, if the controller answered it
-  std::int64_t stamp_ns = 0;  // of an accepted one: each control_status of a later stamp knows it
+  std::string reason;         // a sentence; empty if accepted
+  control::RequestKey key;    // of the request, if the controller answered
+  std::int64_t stamp_ns = 0;  // if accepted: a control_status of a later stamp lists the request
 
   bool accepted() const { return kind == Kind::kAccepted; }
 };

@@ -36,12 +36,12 @@ void SimulationClockPublisher::has_come(std::int64_t stamp_ns) {
   grant();
 }
 
-// Not with every sample: a quarter of the window at once, or what remains to the goal.
+// Grants at least a quarter of the window at once, or the rest to the goal, not a message per sample.
 void SimulationClockPublisher::grant() {
   const std::int64_t granted_ns = clock_.advance_to_ns();
   const std::int64_t wanted_ns = std::min(goal_ns_, come_ns_ + window_ns_);
   const std::int64_t least_ns = wanted_ns == goal_ns_ ? granted_ns + 1 : granted_ns + window_ns_ / 4;
-  if (wanted_ns < least_ns && clock_.sequence_number() > 0) return;  // the first one lets it begin
+  if (wanted_ns < least_ns && clock_.sequence_number() > 0) return;  // the first grant starts the plant
   clock_.advance_to_ns(wanted_ns);
   publish();
 }

@@ -1,4 +1,4 @@
-// Lockstep: lets simulated time pass, and keeps the plant from running away from what is recorded of it.
+// Lockstep: grants simulated time to the plant, no faster than its samples are recorded.
 #pragma once
 
 #include <condition_variable>
@@ -11,10 +11,10 @@
 
 namespace swiftlet::ground {
 
-// A plant that was started with --paused goes as far as it is granted: to a goal, but never further than a
-// window beyond what has come from it, few enough samples under way that a socket's buffer holds them all.
-// The last grant is said again and again: the plant ends the run when it hears nothing more. Any thread may
-// call it.
+// A plant that was started with --paused advances as far as simulation_clock grants: to the goal, but at most
+// window_ns beyond the newest sample received from it. The window bounds the samples in transit, so that a
+// socket's buffer holds them. Repeats the last grant every 0.2 s: the plant ends the run if it receives none.
+// Thread-safe.
 class SimulationClockPublisher {
  public:
   SimulationClockPublisher(comms::Node& node, std::int64_t window_ns);
@@ -22,15 +22,15 @@ class SimulationClockPublisher {
   SimulationClockPublisher(const SimulationClockPublisher&) = delete;
   SimulationClockPublisher& operator=(const SimulationClockPublisher&) = delete;
 
-  // The goal; not before the last one.
+  // Sets the goal. An earlier stamp than the present goal has no effect.
   void up_to(std::int64_t stamp_ns);
   void without_end() { up_to(std::numeric_limits<std::int64_t>::max()); }
 
-  // What the vehicle was or did at this stamp has come.
+  // Call when a sample of this stamp was received.
   void has_come(std::int64_t stamp_ns);
 
  private:
-  void grant();  // with the lock held, as publish()
+  void grant();  // call with mutex_ held, as publish()
   void publish();
   void repeat();
 

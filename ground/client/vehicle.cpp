@@ -18,8 +18,8 @@ using control::Mode;
 using control::RequestKind;
 using std::chrono::milliseconds;
 
-constexpr double kClockGoesOn_s = 0.02;
-constexpr milliseconds kConnectionLookPeriod{50};
+constexpr double kMaxExtrapolation_s = 0.02;
+constexpr milliseconds kConnectionPollPeriod{50};
 
 comms::NodeSettings of_vehicle(comms::NodeSettings network, const std::string& name) {
   network.vehicle = name;
@@ -87,7 +87,7 @@ void Vehicle::on_connection(std::function<void(const ConnectionEvent&)> callback
                      tell = std::move(callback)] {
     if (const auto event = watch->look(client->view(), Clock::now())) tell(*event);
   };
-  periodic_task_ = std::make_unique<comms::PeriodicTask>(kConnectionLookPeriod, look);
+  periodic_task_ = std::make_unique<comms::PeriodicTask>(kConnectionPollPeriod, look);
 }
 
 Result Vehicle::connect(milliseconds timeout) const {
@@ -184,7 +184,7 @@ double Vehicle::clock_s() const {
   const View view = client_->view();
   if (!view.estimate.seen()) return VehicleState::kUnknown;
   return 1e-9 * static_cast<double>(view.estimate.message.stamp_ns()) +
-         std::min(view.estimate.age_s(Clock::now()), kClockGoesOn_s);
+         std::min(view.estimate.age_s(Clock::now()), kMaxExtrapolation_s);
 }
 
 bool Vehicle::send(const control::Setpoint& setpoint) { return client_->send(setpoint); }

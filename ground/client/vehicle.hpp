@@ -1,6 +1,5 @@
-// One vehicle, as a program that flies it sees it: connect, arm, take off, go to places, follow missions and
-// trajectories, stream setpoints, hold, land. The command `swiftlet` stands on it; ground/examples shows it
-// in use.
+// The C++ API to one vehicle: connect, arm, take off, go to positions, follow missions and trajectories,
+// stream setpoints, hold, land. The command `swiftlet` is built on it; ground/examples shows its use.
 //
 //   swiftlet::ground::Vehicle vehicle;  // kl1 in domain 0
 //   if (!vehicle.connect().accepted() || !vehicle.arm().wait().done()) return 1;
@@ -8,9 +7,10 @@
 //   vehicle.go_to({{1, 0, -1}}).wait();  // m, NED
 //   vehicle.land().wait();
 //
-// Each request waits for its answer and gives a ActionHandle, whose wait() returns when it is done. Positions
-// are metres north, east and down of the origin (NED): 1 m up is z = -1. Several vehicles share one Context
-// (ground/context.hpp). A control process that is started again, or one that takes over, is gone on with.
+// Each request blocks until the controller answers it and returns an ActionHandle, whose wait() blocks until
+// the action ends. Positions are in metres north, east and down of the origin (NED): 1 m up is z = -1.
+// Several vehicles share one Context (ground/client/context.hpp). A Vehicle stays usable if its control
+// process is restarted or a standby takes over.
 #pragma once
 
 #include <chrono>
@@ -43,123 +43,125 @@ namespace swiftlet::ground {
 
 class Client;
 
-// What became of the setpoints that reached the controller, since it began to fly this vehicle.
+// Setpoints that the controller received since it became active.
 struct SetpointTally {
-  std::uint64_t taken = 0;
+  std::uint64_t taken = 0;  // accepted
   std::uint64_t refused = 0;
-  std::string refusal;  // of the last that was refused: a sentence
+  std::string refusal;  // a sentence: why the last one was refused
 };
 
-// Of the mission that the vehicle has.
+// The state of the mission that the vehicle has.
 struct MissionProgress {
   std::uint64_t id = 0;
   control::MissionState state = control::MissionState::kNone;
-  int item = 0;  // that is flown, from 1; 0 without a mission
+  int item = 0;  // the item being flown, from 1; 0 without a mission
   int items = 0;
   std::string reason;  // why it was aborted
 };
 
-// The newest of all that the vehicle and its controller have said. NaN where nothing came yet.
+// The newest state that the vehicle and its controller reported. NaN: not received yet.
 struct VehicleState {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
   control::Mode mode = control::Mode::kDisarmed;
-  std::string mode_reason;  // why it was entered
+  std::string mode_reason;  // why the mode was entered
   bool airborne = false;
-  bool has_pose = false;      // motion capture sees it
-  double age_s = kUnknown;    // since the controller was heard last
+  bool has_pose = false;      // motion capture poses arrive
+  double age_s = kUnknown;    // since the last control_status
   std::int64_t stamp_ns = 0;  // of the estimate, on the vehicle's clock
   Eigen::Vector3d position_ned_m = Eigen::Vector3d::Constant(kUnknown);  // estimated
   Eigen::Vector3d velocity_ned_m_s = Eigen::Vector3d::Constant(kUnknown);
   Eigen::Quaterniond q_ned_from_frd{kUnknown, kUnknown, kUnknown, kUnknown};
   Eigen::Vector3d body_rates_frd_rad_s = Eigen::Vector3d::Constant(kUnknown);
-  Eigen::Vector3d reference_position_ned_m = Eigen::Vector3d::Constant(kUnknown);  // where it is to be
+  Eigen::Vector3d reference_position_ned_m = Eigen::Vector3d::Constant(kUnknown);
   double battery_voltage_v = kUnknown;
   double battery_charge = kUnknown;  // 0 empty .. 1 full
   MissionProgress mission;
   SetpointTally setpoints;
 };
 
-// Any thread may call it; requests of several threads do not wait for each other.
+// Thread-safe. Requests of several threads do not wait for each other.
 class Vehicle {
  public:
   static constexpr std::chrono::milliseconds kAnswerTimeout{5000};
 
-  // The vehicle's name and domain are those of `network`; its `name` is this program's own, as others see it.
-  // Throws std::runtime_error with a sentence if the network cannot be joined.
+  // network.vehicle and network.domain select the vehicle; network.name is this program's name in the domain.
+  // Throws std::runtime_error if the network cannot be joined.
   explicit Vehicle(const comms::NodeSettings& network = {"ground"});
-  // One of those that share the context, which may end before it. Throws std::runtime_error for a name that
-  // cannot be one.
+  // Shares the context's participant; the Context may be destroyed first. Throws std::runtime_error if `name`
+  // is not a valid vehicle name.
   Vehicle(const Context& context, const std::string& name);
   ~Vehicle();
   Vehicle(const Vehicle&) = delete;
   Vehicle& operator=(const Vehicle&) = delete;
 
-  // Accepted once a controller of the vehicle is heard and answers requests; else the reason says what was
-  // seen in the domain. Requests do without it: they look for the controller themselves, within their
-  // time-out.
+  // Waits for the vehicle's control_status. Accepted when it arrives; else the reason says what was found in
+  // the domain. Not required before requests: they wait for the controller themselves, within their time-out.
   Result connect(std::chrono::milliseconds timeout = kAnswerTimeout) const;
 
-  // The name on the network.
+  // The vehicle's name in the domain.
   const std::string& name() const;
 
-  // The control process was heard within the last second.
+  // True if a control_status arrived within the last second.
   bool connected() const;
-  // Tells from now on, and at once of one that is heard, when the control process is heard, falls silent, or is
-  // another one; which request it knows of is for its ActionHandle to say. The callback runs in a thread of its own
-  // and may call all but this. A later call takes the place of an earlier one.
+  // Calls `callback` when the control process connects, is lost or is replaced, and at once if it is
+  // connected already. The callback runs in a thread of its own and may call any method but this one. A later
+  // call replaces the callback. An ActionHandle reports whether a request survives such an event.
   void on_connection(std::function<void(const ConnectionEvent&)> callback);
 
   VehicleState state() const;
-  // Until `holds` is true of the state; false if it is not within the time-out.
+  // Waits until `holds` returns true for the state. Returns false after the time-out.
   bool wait_until(const std::function<bool(const VehicleState&)>& holds,
                   std::chrono::milliseconds timeout) const;
 
-  // Requests. `timeout` is that of the answer.
-  ActionHandle arm(std::chrono::milliseconds timeout = kAnswerTimeout);     // done: the rotors turn
-  ActionHandle disarm(std::chrono::milliseconds timeout = kAnswerTimeout);  // on the ground
-  // Straight up to height_m above the origin, and hold there. speed_m_s: peak.
+  // Requests. `timeout` limits the wait for the answer.
+  ActionHandle arm(std::chrono::milliseconds timeout = kAnswerTimeout);     // done: rotors turn
+  ActionHandle disarm(std::chrono::milliseconds timeout = kAnswerTimeout);  // on the ground only
+  // Climbs straight up to height_m above the origin and holds. speed_m_s: peak.
   ActionHandle take_off(double height_m, double speed_m_s = 0.5,
                         std::chrono::milliseconds timeout = kAnswerTimeout);
   struct Target {
     Eigen::Vector3d position_ned_m;
-    std::optional<double> yaw_rad{};  // from north to the east; kept if not given
+    std::optional<double> yaw_rad{};  // from north towards east; kept if not given
     double speed_m_s = 0.5;           // peak
   };
-  // Straight there, and hold.
+  // Flies straight to the target and holds.
   ActionHandle go_to(const Target& place, std::chrono::milliseconds timeout = kAnswerTimeout);
-  ActionHandle hold(std::chrono::milliseconds timeout = kAnswerTimeout);  // done: it has come to rest
+  ActionHandle hold(std::chrono::milliseconds timeout = kAnswerTimeout);  // done: at rest
   ActionHandle land(double speed_m_s = 0.4, std::chrono::milliseconds timeout = kAnswerTimeout);
-  ActionHandle stop(
-      std::chrono::milliseconds timeout = kAnswerTimeout);  // rotors off at once, wherever it is
-  // The vehicle keeps it, to be started: as mission uploaded_id().
+  // Switches the rotors off at once, in flight too.
+  ActionHandle stop(std::chrono::milliseconds timeout = kAnswerTimeout);
+  // Uploads a mission without starting it. Its id is then uploaded_id().
   ActionHandle upload(const control::Mission& mission, std::chrono::milliseconds timeout = kAnswerTimeout);
   std::uint64_t uploaded_id() const;
   // Uploads the mission and starts it.
   ActionHandle follow(const control::Mission& mission, std::chrono::milliseconds timeout = kAnswerTimeout);
-  // Of the mission that the vehicle has; refused if that is not of this id, 0: whichever it is. Starting,
-  // resuming and skipping are done when it has been flown, pausing when the vehicle rests.
+  // Commands to the mission that the vehicle has. id: refused if the vehicle's mission has another id; 0
+  // means any. Start, resume and skip are done when the mission is completed, pause when the vehicle is at
+  // rest.
   ActionHandle start_mission(std::uint64_t id = 0, std::chrono::milliseconds timeout = kAnswerTimeout);
   ActionHandle pause_mission(std::uint64_t id = 0, std::chrono::milliseconds timeout = kAnswerTimeout);
   ActionHandle resume_mission(std::uint64_t id = 0, std::chrono::milliseconds timeout = kAnswerTimeout);
   ActionHandle skip_mission_item(std::uint64_t id = 0, std::chrono::milliseconds timeout = kAnswerTimeout);
   ActionHandle clear_mission(std::uint64_t id = 0, std::chrono::milliseconds timeout = kAnswerTimeout);
-  // From hold, a setpoint stream or another trajectory; it is joined smoothly from the present motion.
+  // Accepted while holding, streaming setpoints or following another trajectory. The vehicle joins the
+  // trajectory without a step in position, velocity, acceleration or jerk.
   ActionHandle follow(const control::Trajectory& trajectory,
                       std::chrono::milliseconds timeout = kAnswerTimeout);
 
-  // From now on the flight depends on this program: if it falls silent, the controller does what its
-  // settings say (failsafe.ground_link_action). Until leave() or the end of this object. By one thread.
+  // Enables the link-loss failsafe: if this program falls silent, the controller does what its setting
+  // failsafe.ground_link_action says. Ends with disable_link_loss_failsafe() or with this object. Call both
+  // from one thread.
   void enable_link_loss_failsafe();
   void disable_link_loss_failsafe();
 
-  // The vehicle's own clock, s, which a stream goes by: a simulation may be slower than real time. It stands
-  // still 20 ms after the vehicle fell silent; NaN before it is heard.
+  // The vehicle's clock, s; NaN before its first estimate. Time setpoint streams by it: a simulation may be
+  // slower than real time. Stops 20 ms after the last estimate.
   double clock_s() const;
 
-  // One of a stream of setpoints, at 2 Hz or more, followed from hold on (idl/README.md says what each kind
-  // does and what is refused). When the stream stops the vehicle holds. Stamp and sequence are filled in.
-  // False if no controller is there.
+  // Publishes one setpoint of a stream of at least 2 Hz. The vehicle follows the stream from hold on and
+  // holds when it stops. idl/README.md describes each kind and what is refused. Fills in stamp and sequence.
+  // Returns false if no controller subscribes.
   bool send(const PositionSetpoint& setpoint) { return send(to_setpoint(setpoint)); }
   bool send(const VelocitySetpoint& setpoint) { return send(to_setpoint(setpoint)); }
   bool send(const AccelerationSetpoint& setpoint) { return send(to_setpoint(setpoint)); }
@@ -172,7 +174,7 @@ class Vehicle {
   ActionHandle request_of_mission(std::uint8_t kind, std::uint64_t id, std::chrono::milliseconds timeout);
 
   std::shared_ptr<Client> client_;
-  std::unique_ptr<comms::PeriodicTask> periodic_task_;  // last: it looks at the client
+  std::unique_ptr<comms::PeriodicTask> periodic_task_;  // last: it uses client_
 };
 
 }  // namespace swiftlet::ground

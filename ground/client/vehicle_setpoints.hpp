@@ -1,5 +1,5 @@
-// What can be streamed to a vehicle, one struct for each kind of setpoint. NED: north, east, down of the origin; FRD:
-// forward, right, down of the vehicle.
+// The setpoints that can be streamed to a vehicle, a struct for each kind. NED: north, east, down of the
+// origin. FRD: forward, right, down of the vehicle.
 #pragma once
 
 #include <optional>
@@ -11,10 +11,10 @@
 
 namespace swiftlet::ground {
 
-// Where the nose points; for the kinds that do not command an attitude.
+// The heading, for setpoints that do not command an attitude.
 struct HeadingSetpoint {
-  std::optional<double> yaw_rad;  // from north to the east; not given: the heading is kept
-  double yaw_rate_rad_s = 0.0;    // likewise; fed forward, or turns a heading that is kept
+  std::optional<double> yaw_rad;  // from north towards east; not given: the heading is kept
+  double yaw_rate_rad_s = 0.0;    // fed forward; turns the heading if yaw_rad is not given
 };
 
 struct PositionSetpoint {
@@ -35,7 +35,7 @@ struct AccelerationSetpoint {
   HeadingSetpoint heading{};
 };
 
-// Thrust is force over mass along -z of FRD: 9.81 m/s^2 carries the weight.
+// thrust_m_s2 is force over mass along -z of FRD: 9.81 m/s^2 carries the weight.
 struct AttitudeSetpoint {
   Eigen::Quaterniond q_ned_from_frd;  // unit length
   double specific_thrust_m_s2 = 0.0;

@@ -1,4 +1,4 @@
-// Which vehicle the examples fly.
+// The arguments of the examples: which vehicle to fly.
 #pragma once
 
 #include <cstdlib>
@@ -8,7 +8,7 @@
 
 namespace swiftlet::examples {
 
-// [VEHICLE] [DOMAIN] [--localhost-only]
+// Reads [VEHICLE] [DOMAIN] [--localhost-only].
 inline comms::NodeSettings network(int argc, char** argv) {
   comms::NodeSettings network;
   network.name = "example";

@@ -1,4 +1,4 @@
-// Arms, takes off, flies a mission file, streams setpoints and lands: example-fly-mission FILE [VEHICLE] [DOMAIN]
+// Arms, takes off, flies a mission file, streams setpoints, lands: example-fly-mission FILE [VEHICLE] [DOMAIN]
 #include <cstdio>
 #include <thread>
 
@@ -8,10 +8,10 @@
 
 using namespace swiftlet::ground;
 
-bool done(const char* what, const ActionHandle& manoeuvre) {
-  const ActionResult ending = manoeuvre.wait();
-  std::printf("%s: %s\n", what, ending.done() ? "done" : ending.reason.c_str());
-  return ending.done();
+bool done(const char* what, const ActionHandle& action) {
+  const ActionResult result = action.wait();
+  std::printf("%s: %s\n", what, result.done() ? "done" : result.reason.c_str());
+  return result.done();
 }
 
 int main(int argc, char** argv) {

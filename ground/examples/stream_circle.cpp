@@ -1,5 +1,5 @@
-// Flies a circle of 0.5 m with a stream of setpoints, 50 a second: after take-off the vehicle follows
-// whatever comes, and holds when nothing comes any more.
+// Flies a circle of 0.5 m radius with a stream of position setpoints at 50 Hz. After take-off the vehicle
+// follows the stream; when the stream stops, it holds.
 //
 //   swiftlet-plant & swiftlet-mocap & swiftlet-control &
 //   example-stream-circle [VEHICLE] [DOMAIN] [--localhost-only]
@@ -18,18 +18,18 @@ using swiftlet::ground::PositionSetpoint;
 using swiftlet::ground::Vehicle;
 
 constexpr double kRadius_m = 0.5;
-constexpr double kTurn_s = 8.0;  // for once around
+constexpr double kTurn_s = 8.0;  // one revolution
 constexpr std::chrono::milliseconds kPeriod{20};
 constexpr double kSoftStart_s = 2.0;
 
-// Along the circle, in rad and its derivatives by time.
+// The angle along the circle, rad, and its time derivatives, rad/s and rad/s^2.
 struct Turn {
   double angle;
   double rate;
   double acceleration;
 };
 
-// From rest to the full rate within kSoftStart_s, by a cosine.
+// Accelerates from rest to the full rate within kSoftStart_s, with a cosine profile.
 Turn turn_at(double t) {
   const double full = 2.0 * M_PI / kTurn_s;
   if (t >= kSoftStart_s) return {full * (t - 0.5 * kSoftStart_s), full, 0.0};
@@ -38,8 +38,8 @@ Turn turn_at(double t) {
           0.5 * full * M_PI / kSoftStart_s * std::sin(phase)};
 }
 
-// A position with its velocity and acceleration, which are fed forward. It begins where the vehicle holds,
-// `start`, going east.
+// The position at time t, s, with velocity and acceleration fed forward. The circle begins at `start`, where
+// the vehicle holds, going east.
 PositionSetpoint circle(double t, const Eigen::Vector3d& start) {
   const Turn turn = turn_at(t);
   const Eigen::Vector3d outward(std::cos(turn.angle), std::sin(turn.angle), 0.0);
@@ -54,7 +54,7 @@ PositionSetpoint circle(double t, const Eigen::Vector3d& start) {
 bool fly_circle(Vehicle& vehicle) {
   const auto before = vehicle.state();
   const Eigen::Vector3d start = before.reference_position_ned_m;
-  const double begin_s = vehicle.clock_s();  // the vehicle's time: a simulation may be slower than real time
+  const double begin_s = vehicle.clock_s();  // vehicle's clock: a simulation may be slower than real time
   double farthest_m = 0.0;
   double t = 0.0;
   while (t < kTurn_s + 0.5 * kSoftStart_s) {
@@ -63,13 +63,13 @@ bool fly_circle(Vehicle& vehicle) {
     std::this_thread::sleep_for(kPeriod);
     t = vehicle.clock_s() - begin_s;
   }
-  std::printf("once around, up to %.2f m from its start\n", farthest_m);
-  // No setpoint comes any more: it holds.
+  std::printf("flew one circle, up to %.2f m from its start\n", farthest_m);
+  // The stream has stopped: the vehicle holds.
   const bool holds =
       vehicle.wait_until([](const auto& state) { return state.mode == swiftlet::control::Mode::kHolding; },
                          std::chrono::seconds(20));
   const auto tally = vehicle.state().setpoints;
-  std::printf("%llu setpoints were taken\n",
+  std::printf("%llu setpoints were accepted\n",
               static_cast<unsigned long long>(tally.taken - before.setpoints.taken));
   if (tally.refused > before.setpoints.refused) std::fprintf(stderr, "%s\n", tally.refusal.c_str());
   return holds && tally.refused == before.setpoints.refused;
@@ -79,9 +79,9 @@ bool fly_circle(Vehicle& vehicle) {
 
 int main(int argc, char** argv) {
   Vehicle vehicle(swiftlet::examples::network(argc, argv));
-  const swiftlet::ground::Result there = vehicle.connect();
-  if (!there.accepted()) {
-    std::fprintf(stderr, "%s\n", there.reason.c_str());
+  const swiftlet::ground::Result connection = vehicle.connect();
+  if (!connection.accepted()) {
+    std::fprintf(stderr, "%s\n", connection.reason.c_str());
     return 1;
   }
   const bool flown =

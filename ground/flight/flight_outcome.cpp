@@ -14,12 +14,12 @@
 namespace swiftlet::ground {
 namespace {
 
-// Why a mission that was flown to its end does not count as completed; empty if it does.
+// Why a mission that was flown to its end does not count as completed; empty if it counts.
 std::string shortfall(const FlightReport& report, Window window) {
   if (!enough_samples(report.errors, window)) {
     return fmt::format(
-        "too little telemetry to judge it: {} samples matched of {:.0f}, longest gap {:.2f} s (at "
-        "least {:.0f} %, at most {:.2f} s)",
+        "too little telemetry: {0} of {1:.0f} samples matched (at least {3:.0f} %), longest gap {2:.2f} s "
+        "(at most {4:.2f} s)",
         report.errors.matched, window.duration_s() * kTelemetryRateHz, report.errors.longest_gap_s,
         kLeastMatchedFraction * 100.0, kLongestGapS);
   }
@@ -37,7 +37,7 @@ void make_record_folder(const std::filesystem::path& folder, const std::string& 
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error)
-    throw InputError(option + " " + folder.string() + ": the folder cannot be made: " + error.message());
+    throw InputError(option + " " + folder.string() + ": the folder cannot be created: " + error.message());
 }
 
 void evaluate(FlightReport& report, const FlightRecord& record, Window window) {

@@ -1,4 +1,4 @@
-// What every recorded flight ends with, whichever way it was flown.
+// Evaluates a recorded flight, writes its record and prints its report.
 #pragma once
 
 #include <filesystem>
@@ -11,21 +11,21 @@
 
 namespace swiftlet::ground {
 
-// Throws InputError if the folder cannot be made; option is the one that names it.
+// Throws InputError if the folder cannot be created. option: the command-line option that names it.
 void make_record_folder(const std::filesystem::path& folder, const std::string& option = "--record");
 
-// Takes the errors inside the window, and decides whether the flight counts as completed: no reason against
-// it in the report, enough telemetry to judge it by, and the errors within the tolerance.
+// Computes the tracking errors inside the window and sets report.completed: true if report.reason is empty,
+// the telemetry is complete enough and the peak error is within the tolerance.
 void evaluate(FlightReport& report, const FlightRecord& record, Window window);
 
-// Writes flight.csv, report.json, flight.gp and flight.png. Throws std::runtime_error for what cannot be
-// written; a picture that cannot be drawn is a line of progress only.
+// Writes flight.csv, report.json, flight.gp and flight.png. Throws std::runtime_error if a file cannot be
+// written. If the figure cannot be drawn, says so in the progress only.
 void write_record(const std::filesystem::path& folder, const FlightRecord& record, const FlightReport& report,
                   Window window, Progress& progress);
 
-// The report, as JSON on standard output or as text. Returns what the program is to return.
+// Prints the report as JSON to standard output, or as text. Returns the program's exit code.
 int print_report(const FlightReport& report, bool json, ProgressLine& progress);
-// Those of vehicles that flew together: as JSON one object, {completed, vehicles: [...]}.
+// Prints the reports of vehicles that flew together. JSON: one object {completed, vehicles: [...]}.
 int print_report(const std::vector<FlightReport>& reports, bool json, ProgressLine& progress);
 
 }  // namespace swiftlet::ground

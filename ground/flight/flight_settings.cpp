@@ -7,7 +7,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void keep(const fs::path& file, const fs::path& copy) {
+void copy_to_record(const fs::path& file, const fs::path& copy) {
   std::error_code error;
   fs::copy_file(file, copy, fs::copy_options::overwrite_existing, error);
   if (error) throw std::runtime_error(copy.string() + " cannot be written: " + error.message());
@@ -16,12 +16,12 @@ void keep(const fs::path& file, const fs::path& copy) {
 }  // namespace
 
 void keep_settings(const LaunchConfiguration& plan) {
-  // Under its own ending: it may be of another format.
-  keep(plan.mission_file, plan.folder / ("mission" + plan.mission_file.extension().string()));
+  // Keeps its extension: it may have another format.
+  copy_to_record(plan.mission_file, plan.folder / ("mission" + plan.mission_file.extension().string()));
   if (plan.launch_mode == LaunchMode::kAttached) return;
-  keep(plan.control_file, plan.folder / "control.yaml");
-  keep(plan.vehicle_file, plan.folder / "vehicle.yaml");
-  keep(plan.simulation_file, plan.folder / "simulation.yaml");
+  copy_to_record(plan.control_file, plan.folder / "control.yaml");
+  copy_to_record(plan.vehicle_file, plan.folder / "vehicle.yaml");
+  copy_to_record(plan.simulation_file, plan.folder / "simulation.yaml");
 }
 
 }  // namespace swiftlet::ground

@@ -1,13 +1,13 @@
-// The settings that a recorded flight was flown with, kept beside it.
+// Copies the settings of a flight into its record.
 #pragma once
 
 #include "swiftlet/ground/flight/launch_configuration.hpp"
 
 namespace swiftlet::ground {
 
-// Copies mission.yaml into the record's folder, and control.yaml, vehicle.yaml and simulation.yaml too,
-// unless the flight is one over processes that run already: those know their own. Throws std::runtime_error
-// if it cannot.
+// Copies the mission file into the record's folder, and control.yaml, vehicle.yaml and simulation.yaml unless
+// the flight is attached to running processes, which have their own settings. Throws std::runtime_error if a
+// file cannot be copied.
 void keep_settings(const LaunchConfiguration& plan);
 
 }  // namespace swiftlet::ground

@@ -1,4 +1,4 @@
-// A planned flight in this process, flown and judged.
+// Flies a planned flight in this process and evaluates it.
 #pragma once
 
 #include <cstdint>
@@ -14,15 +14,15 @@ namespace swiftlet::ground {
 
 struct InProcessFlight {
   FlightReport report;
-  Window window;  // that the errors are taken from
+  Window window;  // in which the errors are evaluated
 };
 
-// What flies in `world`, under a controller that is designed on the plan's vehicle. Throws as ClosedLoop
-// does.
+// The closed loop of the vehicle in `world` and a controller designed for the plan's vehicle. Throws as
+// ClosedLoop does.
 ClosedLoop closed_loop(const LaunchConfiguration& plan, const World& world, std::uint64_t seed);
 
-// The plan's mission by a fresh loop of this seed. The record is an empty one of plan.record_capacity();
-// trace may be null.
+// Flies the plan's mission. loop: new, of the same seed. record: empty, of plan.record_capacity(). trace: may
+// be null.
 InProcessFlight fly_in_process(ClosedLoop& loop, const LaunchConfiguration& plan, std::uint64_t seed,
                                FlightRecord& record, runtime::FlightTrace* trace,
                                const std::function<bool()>& cancelled);

@@ -1,9 +1,10 @@
-// Ctrl-C and its kin, counted instead of fatal.
+// Counts interrupt signals, so that the program can land the vehicle before it ends.
 #pragma once
 
 namespace swiftlet::ground {
 
-// While one lives, SIGINT, SIGTERM and SIGHUP only count. One at a time.
+// While an instance exists, SIGINT, SIGTERM and SIGHUP are counted and have no other effect. At most one
+// instance at a time.
 class Interrupts {
  public:
   Interrupts();

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kHighestImuRateHz = 1000.0;
-constexpr double kSpareS = 30.0;  // of the record, before and after the mission
+constexpr double kSpareS = 30.0;  // recorded before and after the mission
 
 fs::path default_folder(const std::string& mission) {
   const std::time_t now = std::time(nullptr);
@@ -35,19 +35,20 @@ fs::path default_folder(const std::string& mission) {
   return folder;
 }
 
-void require_whole_flight(const MissionFile& mission, const fs::path& file, double duration_s) {
+void require_takeoff_and_land(const MissionFile& mission, const fs::path& file, double duration_s) {
   if (!mission.takes_off())
     throw InputError(file.string() +
-                     ": items: the first is no takeoff, which a flight from the ground needs");
+                     ": items: the first item is not a takeoff: a flight starts on the ground");
   if (!mission.lands())
-    throw InputError(file.string() + ": items: the last is no land, which a flight that ends needs");
+    throw InputError(file.string() + ": items: the last item is not a land: a flight ends on the ground");
   if (duration_s > kLongestMissionS) {
-    throw InputError(file.string() + ": items: take " + std::to_string(static_cast<int>(duration_s)) +
-                     " s, must be at most " + std::to_string(static_cast<int>(kLongestMissionS)) + " s");
+    throw InputError(file.string() + ": items: the mission takes " +
+                     std::to_string(static_cast<int>(duration_s)) + " s, must be at most " +
+                     std::to_string(static_cast<int>(kLongestMissionS)) + " s");
   }
 }
 
-// Its fence goes along, as far as that of the limits lets it.
+// Shifts the mission and its fence. The shifted fence is clamped to the fence of the limits.
 void displace(control::Mission& mission, const Eigen::Vector2d& by_ned, const control::Limits& limits) {
   if (control::MissionBounds& bounds = mission.bounds; bounds.fenced) {
     bounds.fence_min_ned.head<2>() += by_ned;
@@ -100,11 +101,11 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
   displace(plan.mission.mission, options.start_ned, plan.control.limits);
   if (const control::Outcome outcome = control::check(plan.mission.mission, plan.control.limits);
       !outcome.accepted)
-    throw InputError(fmt::format("{}: begun {:g} m north and {:g} m east of the origin: {}",
+    throw InputError(fmt::format("{}: started at {:g} m north and {:g} m east of the origin: {}",
                                  plan.mission_file.c_str(), plan.start_ned.x(), plan.start_ned.y(),
                                  outcome.reason));
   plan.planned_duration_s = planned_duration_s(plan.mission.mission, plan.control.limits);
-  require_whole_flight(plan.mission, plan.mission_file, plan.planned_duration_s);
+  require_takeoff_and_land(plan.mission, plan.mission_file, plan.planned_duration_s);
 
   if (plan.launch_mode == LaunchMode::kStarted) {
     plan.plant_program = program_beside("swiftlet-plant");
@@ -122,7 +123,7 @@ DispersionSample draw(const LaunchConfiguration& plan, std::uint64_t seed) {
 }
 
 std::size_t LaunchConfiguration::record_capacity() const {
-  // The rate of a vehicle that runs already is not known yet.
+  // The IMU rate of a running vehicle is not known yet.
   const double rate_hz = launch_mode == LaunchMode::kAttached ? kHighestImuRateHz : simulation.imu.rate_hz;
   return static_cast<std::size_t>((FlightSchedule::time_limit_s(planned_duration_s) + kSpareS) * rate_hz);
 }

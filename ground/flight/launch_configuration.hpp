@@ -1,4 +1,4 @@
-// All that a flight needs, found and checked before anything is started.
+// The complete, checked configuration of a flight, made before any process is started.
 #pragma once
 
 #include <cstdint>
@@ -24,29 +24,29 @@ namespace swiftlet::ground {
 // Where plant, mocap and control run.
 enum class LaunchMode {
   kStarted,    // in processes that this one starts
-  kAttached,   // in processes that run already
-  kInProcess,  // here, without DDS
+  kAttached,   // in processes that are running already
+  kInProcess,  // in this process, without DDS
 };
 
 struct FlyOptions {
   LaunchMode launch_mode = LaunchMode::kStarted;
   runtime::Clock clock = runtime::Clock::kRealtime;
-  double speed = 1.0;  // of simulated time against real time
+  double speed = 1.0;  // simulated time per real time
   std::string mission = "square";
   std::string vehicle = "kaylion";
   std::string control = "motor_lag";
   std::string simulation = "default";
-  std::string dispersion;  // of kInProcess: a dispersion file; empty: what flies is as the files say
+  std::string dispersion;  // kInProcess: a dispersion file; empty: no dispersion
   std::string record;      // empty: flights/<date-time>-<mission>
   std::uint64_t seed = 1;
-  int imu_rate_hz = 0;  // 0: as the simulation file says
+  int imu_rate_hz = 0;  // 0: as in the simulation file
   comms::NodeSettings network;
-  Eigen::Vector2d start_ned =
-      Eigen::Vector2d::Zero();  // m, where the vehicle stands; the mission lies as far off
-  double spacing_m = 1.0;       // of several vehicles, from one to the next, to the east
-  int domain = -1;              // below 0: a free one, or 0 to attach
-  bool trace = false;           // keep a trace of a lockstep or in-process flight
-  bool sensors = false;         // keep what was sensed and commanded, for `swiftlet identify flight`
+  // m, initial position; the mission is shifted by it.
+  Eigen::Vector2d start_ned = Eigen::Vector2d::Zero();
+  double spacing_m = 1.0;  // distance between several vehicles, to the east
+  int domain = -1;         // DDS domain; < 0: a free one, or 0 if attached
+  bool trace = false;      // write a trace of a lockstep or in-process flight
+  bool sensors = false;    // record sensors and commands, for `swiftlet identify flight`
   bool json = false;
 };
 
@@ -60,31 +60,33 @@ struct LaunchConfiguration {
   plant::Vehicle vehicle;
   control::ControlSettings control;
   plant::SimulationSettings simulation;
-  Dispersion dispersion;       // of what is flown; without variates unless asked for
-  int imu_rate_option_hz = 0;  // as FlyOptions
+  Dispersion dispersion;       // of vehicle and simulation; empty unless requested
+  int imu_rate_option_hz = 0;  // FlyOptions::imu_rate_hz
   std::uint64_t seed = 0;
   Eigen::Vector2d start_ned = Eigen::Vector2d::Zero();                  // m
-  std::filesystem::path folder;                                         // of the record; not made yet
-  std::filesystem::path trace_file;                                     // empty: none is kept
-  bool sensors = false;                                                 // keep them
-  std::filesystem::path plant_program, mocap_program, control_program;  // of kStarted
+  std::filesystem::path folder;                                         // of the record; not created yet
+  std::filesystem::path trace_file;                                     // empty: no trace
+  bool sensors = false;                                                 // record sensors and commands
+  std::filesystem::path plant_program, mocap_program, control_program;  // if kStarted
 
-  std::size_t record_capacity() const;  // for each IMU sample of the longest that it may take
+  std::size_t record_capacity() const;  // rows: IMU samples within the flight's time limit
 };
 
 // Longer missions are refused: the record is kept in memory.
 constexpr double kLongestMissionS = 600.0;
 
-// Throws runtime::ConfigError or InputError for input that cannot be flown. Starts and writes nothing.
+// Throws runtime::ConfigError or InputError if the input is invalid or cannot be flown. Starts no process and
+// writes no file.
 LaunchConfiguration plan_flight(const FlyOptions& options);
 
-// What flies with a seed, while the controller is designed on plan.vehicle. Throws as draw() does.
+// Samples the vehicle and simulation to fly with this seed; the controller is designed for plan.vehicle.
+// Throws as draw() of dispersion.hpp does.
 DispersionSample draw(const LaunchConfiguration& plan, std::uint64_t seed);
 
-// The three processes of a plan of kStarted, on this network; none of others.
+// The three processes of a plan of kStarted, on this network; empty for other launch modes.
 std::vector<ProcessSettings> processes(const LaunchConfiguration& plan, const comms::NodeSettings& network);
 
-// A report that says what is to be flown.
+// A report with the fields of the plan filled in.
 FlightReport report_of(const LaunchConfiguration& plan);
 
 }  // namespace swiftlet::ground

@@ -22,15 +22,15 @@ constexpr auto kRetryPeriod = 200ms;
 constexpr auto kStep = 50ms;
 constexpr auto kLastFiguresTimeout = 1500ms;
 constexpr auto kEndTimeout = 2s;
-constexpr double kLongestStepS = 0.2;  // of this process, between two looks
+constexpr double kLongestStepS = 0.2;  // of this process, between two polls
 constexpr double kSilenceS = 3.0;      // without control_status or ground_truth
 constexpr double kLandingTimeoutS = 30.0;
 constexpr double kLandingSpeed = 0.4;  // m/s
-constexpr int kBeforeFlight = -1;      // stage of the progress; later ones are the mission's items
+constexpr int kBeforeFlight = -1;      // progress stage; the later stages are the mission's items
 
 ControlMode mode_of(const View& view) { return static_cast<ControlMode>(view.control.message.mode()); }
 
-// What is not there yet; empty when all is.
+// The topics that are still missing; empty if all have arrived.
 std::string missing(const View& view) {
   std::string list;
   const auto need = [&list](bool there, const char* what) {
@@ -41,11 +41,11 @@ std::string missing(const View& view) {
   need(view.truth.seen(), "ground_truth");
   need(view.control.seen(), "control_status");
   need(view.reference.seen(), "reference");
-  need(view.control.message.has_pose(), "a mocap_pose that control has taken in");
+  need(view.control.message.has_pose(), "a mocap_pose accepted by control");
   return list;
 }
 
-// Who is not there yet; empty when all are. Samples come only when time passes.
+// The first missing process; empty if all are discovered. In lockstep samples arrive only when time advances.
 std::string missing_peer(const View& view) {
   for (const char* name : {"plant", "mocap", "control"}) {
     const auto peer = view.peers.find(name);
@@ -54,13 +54,13 @@ std::string missing_peer(const View& view) {
   return {};
 }
 
-// Since a stamp of the vehicle's clock, which a flight's time limits are about.
+// Simulated time since `since_ns`. The time limits of a flight are in the vehicle's time.
 double simulated_s(const View& view, std::int64_t since_ns) {
   return static_cast<double>(view.truth.message.stamp_ns() - since_ns) * 1e-9;
 }
 
-// The newest tracking error of which truth and reference are both in; NaN if there is none among the last
-// rows.
+// The newest tracking error, from truth and reference of equal stamp; NaN if the last 64 rows have no such
+// pair.
 double newest_error_m(const FlightRecord& record) {
   constexpr std::size_t kLookBack = 64;
   const std::size_t truths = record.truth.size();
@@ -91,12 +91,11 @@ NetworkTransport::NetworkTransport(Client& client, const FlightRecord& record, c
 
 NetworkTransport::~NetworkTransport() { client_.disable_link_loss_failsafe(); }
 
-// No new sample for kSilenceS, of which only what this process was awake for counts: when the computer
-// stalls, nobody is to blame.
+// Only time in which this process was running counts: a stalled computer is not the peer's fault.
 bool NetworkTransport::Silence::lasts(std::uint64_t sample_count) {
   const auto now = Clock::now();
-  const double step_s = std::min(std::chrono::duration<double>(now - looked_).count(), kLongestStepS);
-  looked_ = now;
+  const double step_s = std::min(std::chrono::duration<double>(now - polled_).count(), kLongestStepS);
+  polled_ = now;
   lasted_s_ = sample_count == count_ ? lasted_s_ + step_s : 0.0;
   count_ = sample_count;
   return lasted_s_ > kSilenceS;
@@ -122,7 +121,7 @@ void NetworkTransport::wait_until_ready() {
     require_alive();
     require_no_interrupt();
     if (Clock::now() - start > kReadyTimeout) {
-      throw FlightFailure("after 20 s there is still missing: " + absent + "; looked for " + client_.where());
+      throw FlightFailure("not ready after 20 s: missing " + absent + "; looked for " + client_.where());
     }
     progress_.update(kBeforeFlight, "waiting for " + absent);
   }
@@ -141,26 +140,26 @@ void NetworkTransport::wait_until(const std::function<bool(const View&)>& holds,
   while (!client_.wait(kStep, holds)) {
     require_alive();
     require_no_interrupt();
-    if (Clock::now() - start > kReadyTimeout) throw FlightFailure("after 20 s " + what_not);
+    if (Clock::now() - start > kReadyTimeout) throw FlightFailure("not ready after 20 s: " + what_not);
   }
 }
 
-// Before time passes. A peer may be known that does not know yet who is to hear its samples, which it sends once:
-// only the first come again and again while time stands still.
+// Waits before time advances, until the first samples arrive. A discovered peer may not have discovered this
+// process yet, and it sends each sample once. Only the first samples are repeated while time is paused.
 void NetworkTransport::wait_until_samples_come() {
   client_.simulation_clock().up_to(0);
   wait_until([](const View& view) { return view.samples.all(); },
-             "the first samples of plant, mocap and control have not come");
+             "no first samples from plant, mocap and control");
 }
 
-// Grants the time up to there, and waits until it has passed and all samples are answered.
+// Grants time up to stamp_ns and waits until the plant has reached it and all samples are answered.
 void NetworkTransport::wait_until_paused_at(std::int64_t stamp_ns) {
   client_.simulation_clock().up_to(stamp_ns);
   paused_at_ns_ = stamp_ns;
   const auto paused = [stamp_ns](const View& view) {
     return view.vehicle.message.paused() && view.vehicle.message.stamp_ns() >= stamp_ns;
   };
-  wait_until(paused, "simulated time has not come to " + std::to_string(stamp_ns) + " ns");
+  wait_until(paused, "simulated time has not reached " + std::to_string(stamp_ns) + " ns");
 }
 
 MissionTransport::Reply NetworkTransport::arm() {
@@ -187,10 +186,10 @@ void NetworkTransport::wait_for_other_vehicles() {
     require_alive();
     const auto failure = watch_.barrier->failure();
     if (failure || watch_.interrupts() > 0) {
-      if (lockstep_) client_.simulation_clock().without_end();  // to disarm takes time
+      if (lockstep_) client_.simulation_clock().without_end();  // disarming needs time to advance
       abandon(failure.value_or("interrupted"));
     }
-    progress_.update(kBeforeFlight, "armed, waiting for the others");
+    progress_.update(kBeforeFlight, "armed, waiting for the other vehicles");
   }
 }
 
@@ -209,20 +208,20 @@ MissionTransport::Reply NetworkTransport::start_mission() {
 
 void NetworkTransport::advance() {
   const std::uint64_t id = client_.mission_id();
-  // Wakes for the end; looks around at every step besides.
+  // Returns early when the mission is completed, else after kStep.
   client_.wait(kStep, [id](const View& view) {
     return view.mission.message.mission_id() == id &&
            view.mission.message.state() == msg::MissionStatus_Constants::COMPLETED;
   });
   require_alive();
   const View view = client_.view();
-  show(view);
+  update_progress(view);
   if (watch_.interrupts() > 0) abandon("interrupted");
   if (watch_.barrier != nullptr) {
     if (const auto failure = watch_.barrier->failure()) abandon(*failure);
   }
-  if (control_silence_.lasts(view.control.count)) fail_of_silence("control");
-  if (vehicle_silence_.lasts(view.truth.count)) fail_of_silence("the vehicle");
+  if (control_silence_.lasts(view.control.count)) fail_silent("control");
+  if (vehicle_silence_.lasts(view.truth.count)) fail_silent("the vehicle");
 }
 
 MissionTransport::Status NetworkTransport::status() const {
@@ -236,17 +235,17 @@ MissionTransport::Status NetworkTransport::status() const {
 
 std::string NetworkTransport::abort_reason() const { return client_.view().mission.message.reason().c_str(); }
 
-// A process that was killed is silent before it has ended, on a busy computer for seconds.
-void NetworkTransport::fail_of_silence(const std::string& who) {
+// A killed process may be silent for seconds before its exit is seen: reports the exit if there is one.
+void NetworkTransport::fail_silent(const std::string& who) {
   const auto deadline = Clock::now() + kEndTimeout;
   while (Clock::now() < deadline) {
     require_alive();
     client_.wait(kStep, [](const View&) { return false; });
   }
-  throw FlightFailure(who + " has said nothing for 3 s");
+  throw FlightFailure(who + " has sent nothing for 3 s");
 }
 
-// Plant and control give their figures of the flight with their next status after it.
+// Waits for vehicle_info and control_status after the landing: they carry the figures of the flight.
 void NetworkTransport::wait_for_last_figures() {
   const auto landed = Clock::now();
   client_.wait(kLastFiguresTimeout, [landed](const View& view) {
@@ -258,7 +257,7 @@ void NetworkTransport::wait_for_last_figures() {
 void NetworkTransport::abandon(const std::string& reason) {
   const int interrupts_before = watch_.interrupts();
   progress_.say(reason +
-                (interrupts_before > 0 ? "; landing (interrupt again to end at once)" : "; landing"));
+                (interrupts_before > 0 ? "; landing (interrupt again to quit at once)" : "; landing"));
   msg::Command land;
   land.kind(msg::Command_Constants::LAND);
   land.speed(kLandingSpeed);
@@ -269,20 +268,20 @@ void NetworkTransport::abandon(const std::string& reason) {
     if (const auto exited_process = watch_.exited_process())
       throw FlightFailure(reason + "; while landing, " + *exited_process);
     if (watch_.interrupts() > std::max(1, interrupts_before))
-      throw FlightFailure(reason + "; ended in flight");
+      throw FlightFailure(reason + "; quit in flight");
     if (silence.lasts(client_.view().truth.count))
-      throw FlightFailure(reason + "; while landing, the vehicle has said nothing for 3 s");
+      throw FlightFailure(reason + "; while landing, the vehicle has sent nothing for 3 s");
     if (simulated_s(client_.view(), start_ns) > kLandingTimeoutS)
-      throw FlightFailure(reason + "; it did not land within 30 s");
+      throw FlightFailure(reason + "; the vehicle did not land within 30 s");
     if (mode_of(client_.view()) == ControlMode::kArmed) {
       msg::Command disarm;
       disarm.kind(msg::Command_Constants::DISARM);
       client_.command(disarm, kRetryPeriod);
     } else if (!descending) {
-      // Refused while the rotors spool up or the descent is already on: asked again.
+      // Refused while the rotors spool up or during a descent: requests again.
       descending = client_.command(land, kRetryPeriod).accepted();
     }
-    show(client_.view());
+    update_progress(client_.view());
     client_.wait(kRetryPeriod, [](const View& view) { return rotors_off(mode_of(view)); });
   }
   wait_for_last_figures();
@@ -290,7 +289,7 @@ void NetworkTransport::abandon(const std::string& reason) {
                       (mode_of(client_.view()) == ControlMode::kStopped ? "; rotors stopped" : "; landed"));
 }
 
-void NetworkTransport::show(const View& view) {
+void NetworkTransport::update_progress(const View& view) {
   const auto& mission = view.mission.message;
   const auto& position = view.truth.message.position_ned();
   const auto window = mission_window(record_, client_.mission_id(), mission_.mission);

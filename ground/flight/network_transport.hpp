@@ -51,7 +51,7 @@ class NetworkTransport final : public MissionTransport {
     bool lasts(std::uint64_t sample_count);
 
    private:
-    Clock::time_point looked_ = Clock::now();
+    Clock::time_point polled_ = Clock::now();
     std::uint64_t count_ = 0;
     double lasted_s_ = 0.0;
   };
@@ -59,10 +59,10 @@ class NetworkTransport final : public MissionTransport {
   void wait_until(const std::function<bool(const View&)>& holds, const std::string& what_not);
   void wait_until_samples_come();
   void wait_until_paused_at(std::int64_t stamp_ns);
-  [[noreturn]] void fail_of_silence(const std::string& who);
+  [[noreturn]] void fail_silent(const std::string& who);
   void require_alive() const;
   void require_no_interrupt() const;
-  void show(const View& view);
+  void update_progress(const View& view);
 
   Client& client_;
   const FlightRecord& record_;

@@ -44,8 +44,8 @@ ProcessFlight::ProcessFlight(LaunchConfiguration plan, comms::NodeSettings netwo
 
 void ProcessFlight::fly(const Interrupts& interrupts, StartBarrier* barrier, Progress& progress) {
   fly_mission(interrupts, barrier, progress);
-  for (const std::string& complaint : processes_->stop()) {
-    if (report_.reason.empty()) report_.reason = "after the flight, " + complaint;
+  for (const std::string& error : processes_->stop()) {
+    if (report_.reason.empty()) report_.reason = "after the flight: " + error;
   }
   evaluate(report_, record_, window_);
   write_record(plan_.folder, record_, report_, window_, progress);

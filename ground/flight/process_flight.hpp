@@ -1,4 +1,4 @@
-// A flight of one vehicle over DDS: the processes that were started for it, the record, and the report.
+// A flight of one vehicle over DDS: starts its processes, flies the mission, writes record and report.
 #pragma once
 
 #include <filesystem>
@@ -16,12 +16,13 @@ namespace swiftlet::ground {
 
 class ProcessFlight {
  public:
-  // Makes the record's folder and starts the plan's processes, which end with the calling thread. Throws
-  // InputError or std::runtime_error; nothing then runs.
+  // Creates the record's folder and starts the plan's processes, which end with the calling thread. Throws
+  // InputError or std::runtime_error; no process is running then.
   ProcessFlight(LaunchConfiguration plan, comms::NodeSettings network);
 
-  // Flies the mission, ends the processes and keeps the record. together: those that fly at the same time, or
-  // null. By any thread, once. Throws std::runtime_error for a record that cannot be written.
+  // Flies the mission, ends the processes and writes the record. barrier: shared with the other vehicles of
+  // the flight; null for a single one. Call once, from any thread. Throws std::runtime_error if the record
+  // cannot be written.
   void fly(const Interrupts& interrupts, StartBarrier* barrier, Progress& progress);
 
   const FlightReport& report() const { return report_; }

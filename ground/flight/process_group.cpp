@@ -5,7 +5,7 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr std::chrono::seconds kGrace{10};  // a busy machine may hold a process up for some seconds
+constexpr std::chrono::seconds kGrace{10};  // a busy machine may delay a process by some seconds
 
 }  // namespace
 
@@ -21,13 +21,13 @@ std::optional<std::string> ProcessGroup::exited_process() {
     const auto end = child.poll();
     if (!end) continue;
     const std::string last_line = child.last_log_line();
-    return child.name() + " " + end->to_string() + (last_line.empty() ? "" : "; it said last: " + last_line);
+    return child.name() + " " + end->to_string() + (last_line.empty() ? "" : "; last log line: " + last_line);
   }
   return std::nullopt;
 }
 
 std::vector<std::string> ProcessGroup::stop() {
-  std::vector<std::string> complaints;
+  std::vector<std::string> errors;
   for (ChildProcess& child : children_) child.signal(SIGTERM);
   const auto deadline = std::chrono::steady_clock::now() + kGrace;
   for (ChildProcess& child : children_) {
@@ -36,13 +36,13 @@ std::vector<std::string> ProcessGroup::stop() {
     const bool ended = child.wait(left).has_value();
     const ProcessEnd end = child.stop(std::chrono::milliseconds::zero());
     if (!ended) {
-      complaints.push_back(child.name() + " did not end by itself and was killed");
+      errors.push_back(child.name() + " did not end within 10 s of SIGTERM and was killed");
     } else if (end.by_signal || end.code != 0) {
-      complaints.push_back(child.name() + " " + end.to_string());
+      errors.push_back(child.name() + " " + end.to_string());
     }
   }
   children_.clear();
-  return complaints;
+  return errors;
 }
 
 }  // namespace swiftlet::ground

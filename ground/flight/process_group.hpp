@@ -1,4 +1,4 @@
-// The processes of one simulated flight: plant, mocap and control.
+// The processes of one simulated flight: plant, motion capture and control.
 #pragma once
 
 #include <chrono>
@@ -12,17 +12,18 @@ namespace swiftlet::ground {
 
 class ProcessGroup {
  public:
-  // Starts them in this order. Throws std::runtime_error if one cannot be started; those before it are ended.
+  // Starts the processes in this order. If one cannot be started, ends the others and throws
+  // std::runtime_error.
   explicit ProcessGroup(const std::vector<ProcessSettings>& processes);
-  // Ends what still runs: SIGTERM to all, SIGKILL to those that do not end in time.
+  // Ends running processes: SIGTERM to all, SIGKILL to those that do not end within 10 s.
   ~ProcessGroup();
   ProcessGroup(const ProcessGroup&) = delete;
   ProcessGroup& operator=(const ProcessGroup&) = delete;
 
-  // The first that has ended, as a sentence: who, how, and what it said last.
+  // A sentence on the first process that has exited: its name, its exit status and its last log line.
   std::optional<std::string> exited_process();
 
-  // Ends all. Returns a sentence for each that did not end cleanly.
+  // Ends all processes. Returns a sentence for each that did not end cleanly.
   std::vector<std::string> stop();
 
  private:

@@ -1,4 +1,4 @@
-// Flights that begin at one time, and of which none goes on alone when another one has failed.
+// Starts several flights at the same time and ends all when one fails.
 #pragma once
 
 #include <chrono>
@@ -10,18 +10,18 @@
 
 namespace swiftlet::ground {
 
-// Any thread may call it.
+// Thread-safe.
 class StartBarrier {
  public:
   explicit StartBarrier(std::size_t flights) : awaited_(flights) {}
 
-  // One more is ready to begin.
+  // Call when a flight is ready to start.
   void ready();
-  // True as soon as all are ready and none has failed; false if it is not so within the time, or one has
+  // Returns true when all flights are ready and none has failed; false after the time-out or if one has
   // failed.
   bool wait_for_all(std::chrono::milliseconds timeout);
 
-  // A flight has failed: a sentence that names the vehicle. The first is kept.
+  // Call when a flight fails. sentence: names the vehicle and the reason; the first one is kept.
   void fail(const std::string& sentence);
   std::optional<std::string> failure() const;
 

@@ -12,9 +12,9 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr double kStep_s = 0.002;         // so that no segment is missed, half the shortest, ...
-constexpr double kLeastStep_s = 0.0001;   // ... but no less
-constexpr double kFullBattery_v = 100.0;  // above all thresholds: the dry run has no battery
+constexpr double kStep_s = 0.002;         // at most half the shortest segment, so that none is missed, ...
+constexpr double kLeastStep_s = 0.0001;   // ... but at least this
+constexpr double kFullBattery_v = 100.0;  // above all thresholds: the dry run does not check the battery
 
 // Supervision and guidance alone, with a vehicle that is exactly where its reference is.
 class DryRunTransport final : public MissionTransport {
@@ -49,7 +49,7 @@ class DryRunTransport final : public MissionTransport {
     return reply(uploaded.accepted ? request(control::RequestKind::kMissionStart) : uploaded);
   }
   void advance() override {
-    note();
+    record_leg();
     step();
     out_.duration_s = elapsed_s();
   }
@@ -85,8 +85,8 @@ class DryRunTransport final : public MissionTransport {
     estimate_.velocity_ned.setZero();
   }
 
-  // The item and the leg that are flown from now on, if they are new.
-  void note() {
+  // Records the item and the leg being flown if they are new.
+  void record_leg() {
     const control::SupervisorState& state = supervisor_.state();
     const auto item = static_cast<std::size_t>(state.guidance.mission.item_index);
     while (out_.item_starts_s.size() <= item) out_.item_starts_s.push_back(elapsed_s());

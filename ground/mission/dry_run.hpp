@@ -1,6 +1,6 @@
-// A mission as it will be flown: the control service's own supervision flies it, in no time, with a vehicle
-// that is exactly where it is asked to be. What comes out is the very path, with all that the service plans
-// itself.
+// Mission dry run: the control service's own supervisor flies the mission faster than real time, with an
+// ideal vehicle that is always at its reference. The result is the exact path, including the parts that the
+// service plans itself.
 #pragma once
 
 #include <cstddef>
@@ -17,20 +17,20 @@ namespace swiftlet::ground {
 
 struct DryRunLeg {
   control::PolynomialSegment segment;
-  double start_s = 0.0;  // since the mission's start
-  std::size_t item = 0;  // of the mission, from 0
+  double start_s = 0.0;  // since the start of the mission
+  std::size_t item = 0;  // index of the mission's item, from 0
 };
 
 struct MissionDryRun {
   bool completed = false;
-  std::string reason;                 // if not
-  std::vector<DryRunLeg> legs;        // all that moves, without the last centimetres of the landing
+  std::string reason;                 // why it is not completed
+  std::vector<DryRunLeg> legs;        // all moves, without the last centimetres of the landing
   std::vector<double> item_starts_s;  // of each item
-  double duration_s = 0.0;            // to the touch-down, or to the end of the last item
+  double duration_s = 0.0;            // to the touchdown, or to the end of the last item
 };
 
-// start_ned: where it stands on the ground at z = 0, heading north; a mission that does not take off begins
-// at kDryRunHover_m above there.
+// start_ned: m, the vehicle stands there on the ground at z = 0, heading north. A mission without a take-off
+// starts at kDryRunHover_m above it.
 MissionDryRun dry_run(const control::Mission& mission, const control::ControlSettings& settings,
                       const Eigen::Vector2d& start_ned);
 constexpr double kDryRunHover_m = 1.0;

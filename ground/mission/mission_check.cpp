@@ -15,7 +15,7 @@ using control::Demand;
 using control::WorstDemand;
 
 constexpr double kDegrees = 180.0 / 3.14159265358979323846;
-constexpr int kMostFaults = 20;  // that are told one by one
+constexpr int kMaxListed = 20;  // exceeded limits listed one by one
 
 const WorstDemand* find(const ItemCheck& item, Demand demand) {
   const auto found = std::find_if(item.demands.begin(), item.demands.end(),
@@ -23,7 +23,7 @@ const WorstDemand* find(const ItemCheck& item, Demand demand) {
   return found == item.demands.end() ? nullptr : &*found;
 }
 
-// Of its own items' time into that of the mission, which holds and waits as well.
+// The worst demands on the legs of an item, with times since the start of the mission, holds included.
 std::vector<WorstDemand> demands_on(const std::vector<DryRunLeg>& legs, const plant::Vehicle& vehicle,
                                     const control::Limits& limits, double supply_voltage_v) {
   if (legs.empty()) return {};
@@ -40,7 +40,7 @@ std::vector<WorstDemand> demands_on(const std::vector<DryRunLeg>& legs, const pl
   return demands;
 }
 
-// 1 is at the limit.
+// The value as a share of its limit; 1: at the limit.
 double use_of(const WorstDemand& worst) {
   const bool least = worst.demand == Demand::kLift || worst.demand == Demand::kRotorLeast;
   return least ? worst.limit / std::max(worst.value, 1e-9) : worst.value / worst.limit;
@@ -84,8 +84,8 @@ std::string limits_row(const ItemCheck& item) {
                      find(item, Demand::kTilt)->limit * kDegrees, 100.0);
 }
 
-// Which of all comes nearest to its limit. The fence has none that could be a share.
-std::string nearest_to_a_limit(const MissionCheck& check) {
+// The demand closest to its limit. Leaves out the fence, for which a share is not defined.
+std::string closest_to_limit(const MissionCheck& check) {
   const WorstDemand* nearest = nullptr;
   std::string where;
   for (std::size_t i = 0; i < check.items.size(); ++i) {
@@ -97,20 +97,20 @@ std::string nearest_to_a_limit(const MissionCheck& check) {
     }
   }
   if (nearest == nullptr) return "";
-  return "nearest to its limit: " + where + ": " + value_of(*nearest) + ": " + place_of(*nearest) + "\n";
+  return "closest to its limit: " + where + ": " + value_of(*nearest) + ": " + place_of(*nearest) + "\n";
 }
 
-std::string faults_of(const MissionCheck& check) {
+std::string exceeded_of(const MissionCheck& check) {
   std::string text;
   int count = 0;
   for (std::size_t i = 0; i < check.items.size(); ++i) {
     for (const WorstDemand& worst : check.items[i].demands) {
       if (!worst.exceeded()) continue;
-      if (++count <= kMostFaults)
+      if (++count <= kMaxListed)
         text += name_of(check.items[i], i) + ": " + value_of(worst) + ": " + place_of(worst) + "\n";
     }
   }
-  if (count > kMostFaults) text += fmt::format("and {} more\n", count - kMostFaults);
+  if (count > kMaxListed) text += fmt::format("and {} more\n", count - kMaxListed);
   return text;
 }
 
@@ -165,10 +165,12 @@ std::string check_table(const MissionCheck& check, const MissionFile& file, cons
     if (!check.items[i].demands.empty()) moving = &check.items[i];
   }
   if (moving != nullptr) text += limits_row(*moving);
-  text += "\n" + nearest_to_a_limit(check) + faults_of(check);
-  if (!check.reason.empty()) return text + "the control service would not fly it: " + check.reason + "\n";
-  return text + fmt::format("{} {} fly it: {:.1f} s, with a battery down to {:.2f} V\n", vehicle.c_str(),
-                            check.feasible() ? "can" : "cannot", check.duration_s, check.supply_voltage_v);
+  text += "\n" + closest_to_limit(check) + exceeded_of(check);
+  if (!check.reason.empty())
+    return text + "the control service would not complete the mission: " + check.reason + "\n";
+  return text + fmt::format("{} {} fly the mission: {:.1f} s, with a battery down to {:.2f} V\n",
+                            vehicle.c_str(), check.feasible() ? "can" : "cannot", check.duration_s,
+                            check.supply_voltage_v);
 }
 
 std::string check_json(const MissionCheck& check, const MissionFile& file, const std::string& vehicle,

@@ -1,4 +1,4 @@
-// Whether a vehicle can fly a mission, by its model, everywhere on the path.
+// Checks by the vehicle's model whether it can fly a mission, everywhere on the path.
 #pragma once
 
 #include <string>
@@ -12,31 +12,31 @@
 
 namespace swiftlet::ground {
 
-// Of one item: when it is flown, and the worst of each demand on its way; none where nothing moves.
+// One item: when it is flown, and the worst value of each demand on its path; none if the item does not move.
 struct ItemCheck {
   control::MissionItemKind kind = control::MissionItemKind::kWaypoint;
-  int line = 0;  // in the file; 0 if that is not known
+  int line = 0;  // in the file; 0 if unknown
   double start_s = 0.0;
   double duration_s = 0.0;
-  std::vector<control::WorstDemand> demands;  // time_s: since the mission's start
+  std::vector<control::WorstDemand> demands;  // time_s: since the start of the mission
 };
 
 struct MissionCheck {
-  std::string reason;  // the control service's, if it would not fly it to the end
+  std::string reason;  // why the control service would not complete it; else empty
   std::vector<ItemCheck> items;
   double duration_s = 0.0;
-  double supply_voltage_v = 0.0;  // at which the rotors must do it
+  double supply_voltage_v = 0.0;  // at which the rotors are checked
 
   bool feasible() const;
 };
 
-// At the voltage at which a flight is ended for a low battery, or another one above 0. Limits and fence:
-// the settings', as the mission tightens them.
+// supply_voltage_v: > 0, usually the low-battery threshold. Limits and fence: those of the settings, as
+// tightened by the mission.
 MissionCheck check_mission(const MissionFile& file, const MissionDryRun& dry_run,
                            const plant::Vehicle& vehicle, const control::ControlSettings& settings,
                            double supply_voltage_v);
 
-// For reading, ending in a newline; as JSON without one:
+// check_table(): text for people, ends in a newline. check_json(): JSON, without a newline, of
 //   mission, vehicle, control, feasible, reason, duration_s, supply_voltage_v
 //   items: kind, line, start_s, duration_s,
 //     demands: demand, unit, value, limit, exceeded, time_s, position_ned

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr double kRow_s = 0.02;
 constexpr double kDegrees = 180.0 / 3.14159265358979323846;
-constexpr std::size_t kMostNumbers = 40;  // of places that are numbered
+constexpr std::size_t kMaxLabels = 40;  // of places; more places get no labels
 
 constexpr const char* kPlot = R"(
 set terminal pngcairo size 1600,1150 font 'DejaVu Sans,12' noenhanced
@@ -95,20 +95,20 @@ splot $fence_top using 2:1:3 with lines ls 2, $fence_posts using 2:1:3 with line
 unset multiplot
 )";
 
-// One of its own, which goes with all that is in it.
-class Workshop {
+// A new temporary folder; the destructor removes it with its contents.
+class TemporaryFolder {
  public:
-  Workshop() {
+  TemporaryFolder() {
     std::string pattern = (fs::temp_directory_path() / "swiftlet-plot.XXXXXX").string();
     if (mkdtemp(pattern.data()) == nullptr) throw std::system_error(errno, std::generic_category(), pattern);
     folder_ = pattern;
   }
-  ~Workshop() {
+  ~TemporaryFolder() {
     std::error_code error;
     fs::remove_all(folder_, error);
   }
-  Workshop(const Workshop&) = delete;
-  Workshop& operator=(const Workshop&) = delete;
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
   const fs::path& folder() const { return folder_; }
 
  private:
@@ -135,22 +135,22 @@ void write_csv(const fs::path& path, const MissionDryRun& dry_run) {
   }
 }
 
-// Where each item ends, and which of them do: "2", or "2, 5" where several end at one place.
-struct Stopover {
+// A place where items end, with their numbers: "2", or "2, 5" if several end there.
+struct ItemEnd {
   Eigen::Vector3d position_ned;
   std::string items;
 };
 
-std::vector<Stopover> places_of(const MissionDryRun& dry_run) {
+std::vector<ItemEnd> places_of(const MissionDryRun& dry_run) {
   constexpr double kSamePlace_m = 0.02;
-  std::vector<Stopover> places;
+  std::vector<ItemEnd> places;
   for (std::size_t i = 0; i < dry_run.legs.size(); ++i) {
     const DryRunLeg& leg = dry_run.legs[i];
     if (i + 1 < dry_run.legs.size() && dry_run.legs[i + 1].item == leg.item) continue;
     const Eigen::Vector3d end = control::evaluate(leg.segment, leg.segment.duration_s).position_ned;
     const std::string number = std::to_string(leg.item + 1);
-    Stopover* same = nullptr;
-    for (Stopover& place : places) {
+    ItemEnd* same = nullptr;
+    for (ItemEnd& place : places) {
       if ((place.position_ned - end).head<2>().norm() < kSamePlace_m) same = &place;
     }
     if (same == nullptr) {
@@ -188,12 +188,12 @@ std::string fence_blocks(const control::Limits& limits) {
 
 void write_script(const fs::path& path, const MissionFile& file, const MissionDryRun& dry_run,
                   const control::Limits& limits) {
-  const std::vector<Stopover> places = places_of(dry_run);
+  const std::vector<ItemEnd> places = places_of(dry_run);
   std::string place_rows;
-  for (const Stopover& place : places) {
+  for (const ItemEnd& place : places) {
     const Eigen::Vector3d& p = place.position_ned;
     place_rows += fmt::format("{:.4f},{:.4f},{:.4f},\"{}\"\n", p.x(), p.y(), -p.z(),
-                              places.size() <= kMostNumbers ? place.items.c_str() : "");
+                              places.size() <= kMaxLabels ? place.items.c_str() : "");
   }
   std::string starts;
   for (const double start_s : dry_run.item_starts_s) starts += fmt::format("{:.4f}\n", start_s);
@@ -223,14 +223,14 @@ void write_script(const fs::path& path, const MissionFile& file, const MissionDr
 std::string draw_mission(const fs::path& png, const MissionFile& file, const MissionDryRun& dry_run,
                          const control::Limits& settings) {
   const control::Limits limits = control::tightened(settings, file.mission.bounds);
-  const Workshop workshop;
-  write_csv(workshop.folder() / "mission.csv", dry_run);
-  write_script(workshop.folder() / "mission.gp", file, dry_run, limits);
-  std::string fault = run_gnuplot(workshop.folder(), "mission");
+  const TemporaryFolder temporary;
+  write_csv(temporary.folder() / "mission.csv", dry_run);
+  write_script(temporary.folder() / "mission.gp", file, dry_run, limits);
+  std::string fault = run_gnuplot(temporary.folder(), "mission");
   if (!fault.empty()) return fault;
   std::error_code error;
-  fs::copy_file(workshop.folder() / "mission.png", png, fs::copy_options::overwrite_existing, error);
-  return error ? png.string() + ": cannot be written: " + error.message() : "";
+  fs::copy_file(temporary.folder() / "mission.png", png, fs::copy_options::overwrite_existing, error);
+  return error ? png.string() + " cannot be written: " + error.message() : "";
 }
 
 }  // namespace swiftlet::ground

@@ -1,5 +1,5 @@
-// A picture of a mission before it is flown: the path from above and in space, height, speed, acceleration
-// and tilt against time, with limits and fence.
+// Plots a mission before it is flown: the path from above and in 3-D; height, speed, acceleration and tilt
+// over time, with limits and fence.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 
 namespace swiftlet::ground {
 
-// limits: the settings'. Returns an empty text, or one sentence that says why there is no picture.
+// limits: of the control settings. Returns an empty string, or a sentence that says why there is no plot.
 std::string draw_mission(const std::filesystem::path& png, const MissionFile& file,
                          const MissionDryRun& dry_run, const control::Limits& limits);
 

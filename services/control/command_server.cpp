@@ -48,7 +48,7 @@ const char* name_of(control::RequestKind kind) {
 
 control::Outcome refusal(const comms::Fault& fault) { return control::refuse("%s", fault.text); }
 
-// Into plan, if it can be flown.
+// Reads the message into `plan` and checks that it can be flown.
 template <class Message, class Plan>
 control::Outcome read(const Message& message, const control::Limits& limits, Plan& plan) {
   const comms::Fault fault = comms::from_message(message, plan);
@@ -79,7 +79,7 @@ void CommandServer::on_mission(const comms::msg::Mission& message) {
   pending->mission = std::make_unique<control::Mission>();
   control::Outcome outcome = read(message, limits_, *pending->mission);
   if (outcome.accepted && is_of_another(message)) {
-    outcome = control::refuse("another mission has the id %llu: a new one needs a new id",
+    outcome = control::refuse("mission id %llu belongs to another mission: upload with a new id",
                               static_cast<unsigned long long>(message.id()));
   }
   if (!outcome.accepted) return refuse(key, control::RequestKind::kMissionUpload, outcome);
@@ -103,8 +103,8 @@ void CommandServer::on_trajectory(const comms::msg::Trajectory& message) {
   submit(std::move(pending));
 }
 
-// Its id is that of a mission which is known here and says something else. One that says the same is asked
-// for once more.
+// True if a stored mission has the same id but different contents. The same contents are the same upload,
+// repeated.
 bool CommandServer::is_of_another(const comms::msg::Mission& message) {
   comms::msg::Mission known = mission(message.id());
   if (known.id() != message.id()) return false;
@@ -112,7 +112,7 @@ bool CommandServer::is_of_another(const comms::msg::Mission& message) {
   return known != message;
 }
 
-// A mission may come by two ways, as it is asked for and as it is flown, and each of them again.
+// A mission may arrive on two topics, `mission` and `flown_mission`, and repeatedly on each.
 void CommandServer::on_flown_mission(const comms::msg::Mission& message) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -151,8 +151,8 @@ void CommandServer::follow(FailoverState failover_state) {
       keep_answer(key, {key.first, key.second, "request", control::accept(), false, state.now_ns});
   }
   loop_.failover_state.put(failover_state);
-  missions_.tidy(loop_.taken_handover());
-  trajectories_.tidy(loop_.taken_handover());
+  missions_.tidy(loop_.adopted_state());
+  trajectories_.tidy(loop_.adopted_state());
 }
 
 comms::msg::Mission CommandServer::mission(std::uint64_t id) {
@@ -182,11 +182,11 @@ void CommandServer::submit(std::unique_ptr<PendingRequest> pending) {
   const Key key{pending->client, pending->id};
   if (pending_.size() >= kMaxPendingRequests) {
     return settle(key, pending->request.kind,
-                  control::refuse("%d requests are under way, no more fit", kMaxPendingRequests));
+                  control::refuse("%d requests are pending, the limit", kMaxPendingRequests));
   }
   pending->request.key = {pending->client, pending->id};
   pending->asked_ns = runtime::monotonic_ns();
-  loop_.requests.push(pending.get());  // fits: no more are under way
+  loop_.requests.push(pending.get());  // always fits: at most kMaxPendingRequests
   pending_[key] = std::move(pending);
 }
 
@@ -195,7 +195,7 @@ void CommandServer::refuse(const Key& key, control::RequestKind kind, const cont
   settle(key, kind, outcome);
 }
 
-// With the lock held.
+// Call with mutex_ held.
 void CommandServer::settle(const Key& key, control::RequestKind kind, const control::Outcome& outcome,
                            std::int64_t stamp_ns) {
   const RequestResult answer{key.first, key.second, name_of(kind), outcome, false, stamp_ns};
@@ -204,7 +204,7 @@ void CommandServer::settle(const Key& key, control::RequestKind kind, const cont
   wake_.post();
 }
 
-// With the lock held.
+// Call with mutex_ held.
 void CommandServer::keep_answer(const Key& key, const RequestResult& answer) {
   answers_[key] = answer;
   oldest_.push_back(key);
@@ -221,16 +221,16 @@ std::vector<RequestResult> CommandServer::collect() {
     const auto entry = pending_.find(key);
     const std::unique_ptr<PendingRequest> done = std::move(entry->second);
     pending_.erase(entry);
-    if (done->state == PendingRequest::State::kGivenUp) continue;  // answered before
+    if (done->state == PendingRequest::State::kGivenUp) continue;  // already answered
     if (done->outcome.accepted && done->mission) missions_.put_flown(std::move(done->mission));
     if (done->outcome.accepted && done->trajectory) trajectories_.put_flown(std::move(done->trajectory));
     settle(key, done->request.kind, done->outcome, done->stamp_ns);
   }
-  missions_.tidy(loop_.taken_handover());
-  trajectories_.tidy(loop_.taken_handover());
+  missions_.tidy(loop_.adopted_state());
+  trajectories_.tidy(loop_.adopted_state());
   const std::int64_t now_ns = runtime::monotonic_ns();
   for (const auto& [key, pending] : pending_) {
-    if (now_ns - pending->asked_ns < kPatienceNs || !pending->domain_lock(PendingRequest::State::kGivenUp))
+    if (now_ns - pending->asked_ns < kPatienceNs || !pending->claim(PendingRequest::State::kGivenUp))
       continue;
     settle(key, pending->request.kind, control::refuse("no IMU samples arrive: is the vehicle running?"));
   }

@@ -1,5 +1,5 @@
-// Takes requests in, has them judged by the inner loop and keeps the answers. At a standby's desk they are
-// only read: what the active controller accepts and flies is kept, so that it can be gone on with.
+// Receives requests, passes them to the inner loop for evaluation and stores the answers. A standby's command
+// server only stores what the active controller accepts and flies, so that the standby can continue it.
 #pragma once
 
 #include <atomic>
@@ -19,44 +19,44 @@
 
 namespace swiftlet::services {
 
-// For the one who asked.
+// The answer to a request, for its client.
 struct RequestResult {
   std::uint64_t client = 0;
   std::uint64_t id = 0;
   const char* kind = "";  // "mission", "arm"
   control::Outcome outcome;
-  bool repeated = false;      // it was given before
-  std::int64_t stamp_ns = 0;  // of an accepted one: as CommandAck's
+  bool repeated = false;      // the answer was published before
+  std::int64_t stamp_ns = 0;  // if accepted: as in CommandAck
 };
 
-// Requests are known by client and id: one that was answered is answered alike again and not applied twice;
-// one that is under way is not taken in again.
+// Identifies requests by client and id. A request that was answered gets the same answer again and is not
+// applied twice. A repeated request that is still pending is ignored.
 class CommandServer {
  public:
-  // wake is posted when there is something to collect.
+  // Posts `wake` when collect() has something to return.
   CommandServer(InnerLoop& loop, const control::Limits& limits, runtime::Semaphore& wake);
 
-  // By any thread that may take a lock; each message type by one thread at a time. What is wrong in itself is
-  // refused here, the rest is for the inner loop to judge.
+  // Call from any thread that may lock a mutex; each message type from one thread at a time. Refuses
+  // malformed and infeasible requests at once; the inner loop evaluates the others.
   void on_command(const comms::msg::Command& message);
   void on_mission(const comms::msg::Mission& message);
   void on_trajectory(const comms::msg::Trajectory& message);
 
-  // The answers to be given. Refuses what the inner loop has not looked at in time, because no IMU sample
-  // came; lets go of missions and trajectories that the controller has left. By one thread.
+  // Returns the answers to publish. Refuses requests that the inner loop has not evaluated in time, because
+  // no IMU sample arrived. Erases missions and trajectories that are no longer in use. Call from one thread.
   std::vector<RequestResult> collect();
 
-  // Whether requests are taken in and answered here; they are at first. By any thread.
+  // Active: accepts and answers requests. Active at construction. Call from any thread.
   void set_active(bool active) { active_.store(active, std::memory_order_relaxed); }
   bool active() const { return active_.load(std::memory_order_relaxed); }
 
-  // What the active controller says: the mission that it keeps, the trajectory that it flies, and what it
-  // accepted. By any thread.
+  // A standby's input from the active controller: its mission, its trajectory, and its failover state with
+  // the accepted requests. Call from any thread.
   void on_flown_mission(const comms::msg::Mission& message);
   void on_flown_trajectory(const comms::msg::Trajectory& message);
   void follow(FailoverState failover_state);
 
-  // What is kept or flown, for the others to know; id 0 if it is not known here.
+  // The stored mission or trajectory, to publish to other controllers; its id is 0 if it is not stored here.
   comms::msg::Mission mission(std::uint64_t id);
   comms::msg::Trajectory trajectory(std::uint64_t id);
 
@@ -77,10 +77,10 @@ class CommandServer {
   const control::Limits limits_;
   runtime::Semaphore& wake_;
 
-  std::mutex mutex_;  // guards all below; held for moments
+  std::mutex mutex_;  // guards all members below; held briefly
   std::map<Key, std::unique_ptr<PendingRequest>> pending_;
   std::map<Key, RequestResult> answers_;
-  std::deque<Key> oldest_;  // of answers_
+  std::deque<Key> oldest_;  // keys of answers_, oldest first
   std::vector<RequestResult> outbox_;
   PlanStore<control::Mission> missions_;
   PlanStore<control::Trajectory> trajectories_;

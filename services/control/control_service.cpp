@@ -15,12 +15,13 @@ namespace topics = comms::topics;
 using comms::Delivery;
 using namespace std::chrono_literals;
 
-// So long after it stepped down a controller leaves its strength as it is: the vehicle, which listens to the
-// strongest, must have heard the other one before.
-constexpr std::int64_t kOldStrengthNs = 200'000'000;
+// A controller that stepped down keeps its ownership strength for this long: the vehicle, which listens to
+// the strongest writer, must hear the other controller first.
+constexpr std::int64_t kKeepStrengthNs = 200'000'000;
 
-// Without samples and without an active controller for so long, requests are answered, by saying so.
-constexpr std::int64_t kAloneNs = 1'000'000'000;
+// Without IMU samples and without an active controller for this long, requests are answered: they are
+// refused, with that reason.
+constexpr std::int64_t kIsolationNs = 1'000'000'000;
 
 std::uint64_t random_number() {
   std::random_device device;
@@ -57,7 +58,7 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
   std::function<void(const msg::Battery&)> take_battery;
   std::function<void(const msg::RotorSpeeds&)> take_rotor_speeds;
   std::function<void(const msg::Imu&)> take_imu;
-  // In real time nothing else may delay them; in lockstep a thread each would only cost wake-ups.
+  // In real time no other topic may delay IMU and poses. In lockstep threads of their own only cost wake-ups.
   const Delivery delivery = clock == runtime::Clock::kLockstep ? Delivery::kShared : Delivery::kOwnThread;
   if (clock == runtime::Clock::kLockstep) {
     take_pose = deliver_in_lockstep<msg::MocapPose>(loop_.pose, pose_faults_, Stream::kPose);
@@ -73,7 +74,7 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
     telemetry_.watch_imu();
   }
 
-  // Poses hold the vehicle in place: like the IMU's, their thread does not wait behind the host's other work.
+  // Poses are needed to hold position: their thread has real-time priority, like the IMU's.
   subscriptions_.push_back(node.subscribe<msg::MocapPose>(
       topics::kMocapPose,
       [this, take_pose](const auto& message) {
@@ -109,7 +110,7 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
   subscriptions_.push_back(node.subscribe<msg::Imu>(topics::kImu, take_imu, delivery));
 }
 
-// Hands a good sample to the inner loop.
+// Returns a callback that passes valid samples to the inner loop and warns of invalid ones.
 template <class Message, class Sample>
 std::function<void(const Message&)> ControlService::deliver(runtime::LatestValue<Sample>& latest,
                                                             comms::ThrottledWarning& faults) {
@@ -121,7 +122,7 @@ std::function<void(const Message&)> ControlService::deliver(runtime::LatestValue
   };
 }
 
-// Number 0, motion capture's sign of life before its first frame, is never new.
+// Sequence 0, motion capture's heartbeat before its first frame, is never new.
 template <class Message, class Sample>
 std::function<void(const Message&)> ControlService::deliver_in_lockstep(runtime::LatestValue<Sample>& latest,
                                                                         comms::ThrottledWarning& faults,
@@ -134,13 +135,13 @@ std::function<void(const Message&)> ControlService::deliver_in_lockstep(runtime:
   };
 }
 
-// The hot path: from the sample to its command.
+// The hot path: from the IMU sample to its command.
 void ControlService::on_imu(const msg::Imu& message) {
   imu_thread_.enter(realtime_);
   answer(message, take_role(message));
 }
 
-// Whatever the others say reaches the inner loop with the next sample.
+// The inner loop uses the other controllers' states from the next IMU sample on.
 void ControlService::on_controller_state(const msg::ControllerState& message) {
   if (message.controller() == controller_) return;
   comms::ControllerReport other;
@@ -177,7 +178,7 @@ Role ControlService::take_role(const msg::Imu& message) {
   return role;
 }
 
-// The first sample is answered at once, by a term that no other controller has.
+// A lockstep controller is active from the first sample on. Another term in a sample reveals a rival.
 Role ControlService::take_role_in_lockstep(const msg::Imu& message) {
   const plant::ObeyedCommand obeyed = comms::obeyed_command(message);
   if (obeyed.any && obeyed.term != failover_.next_term()) {
@@ -188,8 +189,8 @@ Role ControlService::take_role_in_lockstep(const msg::Imu& message) {
   return Role::kActive;
 }
 
-// What was answered before comes again while time stands still: requests are then looked at, and the answer
-// is the same.
+// While time is paused, the plant repeats an IMU sample that was answered before: pending requests are then
+// evaluated, and the same command is published again.
 void ControlService::on_imu_in_lockstep(const msg::Imu& message) {
   const std::lock_guard<std::mutex> lock(gate_mutex_);
   if (!gate_.offer(message)) {
@@ -201,26 +202,26 @@ void ControlService::on_imu_in_lockstep(const msg::Imu& message) {
   }
 }
 
-// One that finds no room is said again.
+// A heartbeat that finds the queue full is lost; the tool repeats it.
 void ControlService::on_ground_link(const msg::GroundLink& message) {
-  control::GroundHeartbeat sign;
-  const comms::Fault fault = comms::from_message(message, sign);
+  control::GroundHeartbeat heartbeat;
+  const comms::Fault fault = comms::from_message(message, heartbeat);
   if (fault) return ground_link_faults_.note(fault);
-  loop_.ground_heartbeats.push(sign);
+  loop_.ground_heartbeats.push(heartbeat);
 }
 
 void ControlService::answer(const msg::Imu& message, Role role) {
   const std::int64_t arrived_ns = runtime::monotonic_ns();
   plant::ImuSample sample;
   if (comms::from_message(message, sample)) {
-    // The controller counts broken samples and acts on them: it has to see them as such.
+    // The controller counts unusable samples and acts on them: it must see them as NaN.
     sample.stamp_ns = message.stamp_ns();
     sample.sequence = message.sequence_number();
     sample.specific_force_frd.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   last_answer_ = comms::to_message(loop_.step(sample, arrived_ns, role, failover_.followed_term()));
   last_answer_.term(clock_ == runtime::Clock::kLockstep ? failover_.next_term() : failover_.term());
-  if (role == Role::kActive && !loop_.looking()) commands_.publish(last_answer_);
+  if (role == Role::kActive && !loop_.detecting_airborne()) commands_.publish(last_answer_);
   if (loop_.finish(runtime::monotonic_ns())) wake_.post();
   if (loop_.report_due()) report(message.stamp_ns());
 }
@@ -235,10 +236,10 @@ void ControlService::report(std::int64_t stamp_ns) {
 
 void ControlService::run(const std::atomic<bool>& stop) {
   while (!stop.load(std::memory_order_relaxed)) {
-    offer_strength();
+    update_strength();
     telemetry_.set_realtime(is_realtime());
     telemetry_.publish_due();
-    attend_to_those_who_are_alone();
+    activate_if_isolated();
     wake_.wait_for(50ms);
   }
 }
@@ -247,23 +248,23 @@ bool ControlService::is_realtime() const {
   return imu_thread_.is_realtime() && (pose_thread_.is_realtime() || !pose_thread_.has_entered());
 }
 
-// A standby's commands have a strength beyond that of the active one before the first of them is sent: the
-// vehicle listens to it at once.
-void ControlService::offer_strength() {
+// Raises a standby's ownership strength above the active controller's before it sends a command: at a
+// takeover the vehicle listens to its first command.
+void ControlService::update_strength() {
   const std::uint32_t wanted = wanted_strength_.load(std::memory_order_relaxed);
   if (wanted == offered_strength_) return;
   const bool just_overtaken =
       !active_.load(std::memory_order_relaxed) &&
-      runtime::monotonic_ns() - stepped_down_ns_.load(std::memory_order_relaxed) < kOldStrengthNs;
+      runtime::monotonic_ns() - stepped_down_ns_.load(std::memory_order_relaxed) < kKeepStrengthNs;
   if (just_overtaken) return;
   commands_.set_strength(wanted);
   offered_strength_ = wanted;
 }
 
-void ControlService::attend_to_those_who_are_alone() {
+void ControlService::activate_if_isolated() {
   const std::int64_t last_ns =
       std::max(loop_.last_arrival_ns(), active_heard_ns_.load(std::memory_order_relaxed));
-  if (runtime::monotonic_ns() - last_ns > kAloneNs) command_server_.set_active(true);
+  if (runtime::monotonic_ns() - last_ns > kIsolationNs) command_server_.set_active(true);
 }
 
 }  // namespace swiftlet::services

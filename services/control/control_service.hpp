@@ -1,4 +1,4 @@
-// The flight controller on the network.
+// Connects the flight controller to the DDS topics.
 #pragma once
 
 #include <atomic>
@@ -23,16 +23,18 @@
 
 namespace swiftlet::services {
 
-// Any number of them may fly one vehicle: one acts, the others step along with the same samples, follow the
-// state of its flight and take over when it falls silent (Failover). In lockstep there is one alone.
+// Any number of control services may serve one vehicle: one is active, the others are standbys. A standby
+// steps with the same samples, follows the active controller's state and takes over when it falls silent
+// (Failover). In lockstep only one is allowed.
 //
-// Threads: the IMU's own runs the inner loop and sends the command before it returns; poses, missions and
-// trajectories arrive in their own, all else in one that is shared; run() is telemetry's. In lockstep the
-// inner loop runs in the thread that brings the last of the samples that belong together.
+// Threads: the thread of the IMU subscription runs the inner loop and publishes the command before its
+// callback returns. Poses, missions, trajectories and controller states have a thread each; the other topics
+// share one. run() is the telemetry thread. In lockstep the inner loop runs in the thread that receives the
+// last sample of a step.
 class ControlService {
  public:
-  // Throws std::invalid_argument as FlightController does, std::runtime_error as Node does. strength: of
-  // several standbys the strongest takes over first.
+  // Throws std::invalid_argument as FlightController does, std::runtime_error as Node does.
+  // failover_priority: of several standbys the one of the highest priority takes over first.
   ControlService(const plant::Vehicle& vehicle, const control::ControlSettings& settings,
                  int failover_priority, comms::Node& node, const runtime::RealtimeSettings& realtime,
                  runtime::Clock clock);
@@ -40,7 +42,7 @@ class ControlService {
   void run(const std::atomic<bool>& stop);
   void wake() { wake_.post(); }
 
-  // In lockstep: another controller answers the vehicle too.
+  // Lockstep: true if another controller commands the vehicle too.
   bool has_rival() const { return rival_.load(std::memory_order_relaxed); }
 
   const Snapshot& last() const { return telemetry_.last(); }  // once run() has returned
@@ -55,8 +57,8 @@ class ControlService {
   Role take_role_in_lockstep(const comms::msg::Imu& message);
   void answer(const comms::msg::Imu& message, Role role);
   void report(std::int64_t stamp_ns);
-  void attend_to_those_who_are_alone();
-  void offer_strength();
+  void activate_if_isolated();
+  void update_strength();
   bool is_realtime() const;
   template <class Message, class Sample>
   std::function<void(const Message&)> deliver(runtime::LatestValue<Sample>& latest,
@@ -74,7 +76,7 @@ class ControlService {
   CommandServer command_server_;
   Telemetry telemetry_;
 
-  // By the thread of the inner loop alone.
+  // Used by the inner loop's thread only.
   Failover failover_;
   comms::Publisher<comms::msg::ControllerState> reports_;
   comms::ControllerReport report_;
@@ -83,15 +85,15 @@ class ControlService {
   comms::Publisher<comms::msg::ActuatorCommand> commands_;
   boost::lockfree::spsc_queue<Heartbeat, boost::lockfree::capacity<64>> heartbeats_;
   std::atomic<bool> active_{false};
-  std::atomic<std::uint32_t> wanted_strength_;    // of the commands
+  std::atomic<std::uint32_t> wanted_strength_;    // DDS ownership strength of the commands
   std::atomic<std::int64_t> stepped_down_ns_{0};  // monotonic
-  std::atomic<std::int64_t> active_heard_ns_{0};  // another one; monotonic
+  std::atomic<std::int64_t> active_heard_ns_{0};  // last of another active one; monotonic
   std::atomic<bool> rival_{false};
-  std::uint32_t offered_strength_;  // by the thread of run()
+  std::uint32_t offered_strength_;  // used by the thread of run() only
 
   runtime::RealtimeThread imu_thread_, pose_thread_;
 
-  std::mutex gate_mutex_;  // in lockstep: of the inner loop and all that it takes in
+  std::mutex gate_mutex_;  // lockstep: guards the inner loop and its inputs
   LockstepGate gate_;
 
   comms::ThrottledWarning pose_faults_{"mocap_pose"};
@@ -101,7 +103,7 @@ class ControlService {
   comms::ThrottledWarning controller_faults_{"controller_state"};
   comms::ThrottledWarning ground_link_faults_{"ground_link"};
 
-  std::vector<comms::Subscription> subscriptions_;  // last: their callbacks use what stands above
+  std::vector<comms::Subscription> subscriptions_;  // last: their callbacks use all members above
 };
 
 }  // namespace swiftlet::services

@@ -5,15 +5,15 @@
 namespace swiftlet::services {
 namespace {
 
-// A term is the count of takeovers, then the strength, then six bits of the controller's number: of two that
-// take over at once the stronger one has the higher term, and next to never have two the same. It is also the
-// ownership strength of the commands.
-constexpr unsigned kStrengthShift = 6;
+// A term consists of the count of takeovers (16 bits), the failover priority (10 bits) and six bits of the
+// controller's number. Of two controllers that take over at once, the one of higher priority has the higher
+// term; equal terms are very unlikely. The term is also the DDS ownership strength of the commands.
+constexpr unsigned kPriorityShift = 6;
 constexpr unsigned kCountShift = 16;
 constexpr std::uint32_t kMaxCount = 0xffff;
 constexpr std::uint32_t kNumberMask = 0x3f;
 
-// What one IMU sample adds to a silence at most: a gap in the samples is no silence of the controller.
+// One IMU sample adds at most this to the silence: a gap in the samples is not silence of the controller.
 constexpr std::int64_t kMaxStepNs = 10'000'000;
 
 }  // namespace
@@ -25,7 +25,7 @@ Failover::Failover(std::uint64_t controller, int failover_priority)
 
 std::uint32_t Failover::next_term() const {
   const std::uint32_t count = std::min((newest_term_ >> kCountShift) + 1, kMaxCount);
-  return (count << kCountShift) | (static_cast<std::uint32_t>(failover_priority_) << kStrengthShift) |
+  return (count << kCountShift) | (static_cast<std::uint32_t>(failover_priority_) << kPriorityShift) |
          (static_cast<std::uint32_t>(controller_) & kNumberMask);
 }
 
@@ -84,9 +84,9 @@ void Failover::pass_time(std::int64_t stamp_ns, const plant::ObeyedCommand& obey
   if (obeyed.any) {
     silence_ns_ = stamp_ns - obeyed.stamp_ns;
   } else if (elapsed_ns < 0) {
-    silence_ns_ = 0;  // the vehicle was started again
+    silence_ns_ = 0;  // the vehicle was restarted
   } else {
-    // Of a burst of samples that waited for this process, next to nothing.
+    // A burst of samples that waited for this process adds next to nothing.
     silence_ns_ += std::min({elapsed_ns, waited_ns, kMaxStepNs});
   }
   followed_for_ns_ += std::clamp<std::int64_t>(elapsed_ns, 0, kMaxStepNs);
@@ -107,10 +107,10 @@ bool Failover::is_on_trial() const {
 std::int64_t Failover::patience_ns(const plant::ObeyedCommand& obeyed, std::int64_t now_ns) const {
   const std::int64_t turn_ns = rank(now_ns) * kPerRankNs;
   if (knows_flight(now_ns)) return kPatienceNs + turn_ns;
-  return (obeyed.reported ? kStrangersPatienceNs : kSearchNs) + turn_ns;
+  return (obeyed.reported ? kUnknownFlightPatienceNs : kSearchNs) + turn_ns;
 }
 
-// How many standbys come before this one.
+// The number of standbys that rank before this one.
 int Failover::rank(std::int64_t now_ns) const {
   return static_cast<int>(std::count_if(peers_.begin(), peers_.end(), [&](const Heartbeat& peer) {
     const bool waits =

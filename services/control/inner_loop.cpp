@@ -7,7 +7,7 @@
 namespace swiftlet::services {
 namespace {
 
-constexpr int kRotorSamples = 20;  // until the rotor observer has come to the measured speeds
+constexpr int kRotorSamples = 20;  // for the rotor observer to converge to the measured speeds
 constexpr std::int64_t kStandbyReportNs = 100'000'000;
 
 }  // namespace
@@ -20,10 +20,10 @@ plant::ActuatorCommand InnerLoop::step(const plant::ImuSample& sample, std::int6
   last_arrival_ns_.store(now_ns, std::memory_order_relaxed);
   role_ = role;
   take_samples();
-  hear_ground();
+  take_heartbeats();
   evaluate_requests();
   if (role == Role::kStandby) follow(followed_term);
-  if (looking()) look(sample);
+  if (detecting_airborne()) detect_airborne(sample);
   const plant::ActuatorCommand command = controller_.on_imu(sample);
   rotors_running_ = command.rotor_state == plant::RotorState::kRunning;
   stamp_ns_ = sample.stamp_ns;
@@ -66,49 +66,49 @@ void InnerLoop::follow(std::uint32_t term) {
                              control::is_under_way(state.guidance.mission.state);
     knows_plan_ = (!has_mission || newest.mission != nullptr) &&
                   (state.mode != control::Mode::kTrajectory || newest.trajectory != nullptr);
-    looks_since_ns_ = kLooksNot;
+    detecting_since_ns_ = kNotDetecting;
   }
-  taken_handover_.store(newest.number, std::memory_order_release);
+  adopted_state_.store(newest.number, std::memory_order_release);
 }
 
-// Judged by the state before this sample, which is why the first one only begins the look.
-void InnerLoop::look(const plant::ImuSample& sample) {
-  if (looks_since_ns_ == kLooksFromNow || sample.stamp_ns < looks_since_ns_) {
-    looks_since_ns_ = sample.stamp_ns;
+// Uses the state before this sample; therefore the first call only begins the detection.
+void InnerLoop::detect_airborne(const plant::ImuSample& sample) {
+  if (detecting_since_ns_ == kDetectFromNow || sample.stamp_ns < detecting_since_ns_) {
+    detecting_since_ns_ = sample.stamp_ns;
     rotor_samples_ = 0;
     return;
   }
-  const bool over = sample.stamp_ns - looks_since_ns_ > kLookNs;
+  const bool over = sample.stamp_ns - detecting_since_ns_ > kAirborneDetectionNs;
   const bool rotors_known = rotor_samples_ >= kRotorSamples || over;
   if (!rotors_known) return;
   const bool stands = !controller_.detects_airborne();
-  if (stands || over || controller_.engage_in_flight()) looks_since_ns_ = kLooksNot;
+  if (stands || over || controller_.engage_in_flight()) detecting_since_ns_ = kNotDetecting;
 }
 
-void InnerLoop::hear_ground() {
+void InnerLoop::take_heartbeats() {
   ground_heartbeats.consume_all(
-      [this](const control::GroundHeartbeat& sign) { controller_.on_ground_heartbeat(sign); });
+      [this](const control::GroundHeartbeat& heartbeat) { controller_.on_ground_heartbeat(heartbeat); });
 }
 
 void InnerLoop::evaluate_requests() {
   PendingRequest* pending = nullptr;
   while (requests.pop(pending)) {
-    // What reached a standby is for the active one, which hears it too.
+    // The active controller receives the request too and answers it.
     if (role_ == Role::kStandby) {
-      pending->domain_lock(PendingRequest::State::kGivenUp);
-    } else if (pending->domain_lock(PendingRequest::State::kTaken)) {
+      pending->claim(PendingRequest::State::kGivenUp);
+    } else if (pending->claim(PendingRequest::State::kTaken)) {
       pending->outcome = controller_.request(pending->request);
       pending->stamp_ns = stamp_ns_;
       accepted_any_ = accepted_any_ || pending->outcome.accepted;
     }
-    evaluated.push(pending);  // fits: no more are under way
+    evaluated.push(pending);  // always fits: at most kMaxPendingRequests
     evaluated_any_ = true;
   }
 }
 
 void InnerLoop::report(comms::ControllerReport& report) const {
   report.active = role_ == Role::kActive;
-  report.ready = (report.active && !looking()) || (knows_plan_ && controller_.status().has_pose);
+  report.ready = (report.active && !detecting_airborne()) || (knows_plan_ && controller_.status().has_pose);
   if (!report.active) return;
   report.flight = controller_.state();
 }

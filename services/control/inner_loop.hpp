@@ -1,5 +1,6 @@
-// The flight controller in the thread that receives the IMU. All other input reaches it through mailboxes and
-// a ring, all output but the command leaves it through rings. Nothing in it waits, allocates or logs.
+// Runs the flight controller in the thread that receives the IMU samples. All other inputs arrive through
+// latest values and lock-free queues; all outputs but the command leave through lock-free queues. Does not
+// block, allocate or log.
 #pragma once
 
 #include <atomic>
@@ -16,37 +17,36 @@
 
 namespace swiftlet::services {
 
-// What became of the setpoints that came while this controller was the active one.
+// Setpoints received while this controller was active.
 struct SetpointTally {
-  std::uint64_t taken = 0;
+  std::uint64_t taken = 0;  // accepted
   std::uint64_t refused = 0;
-  control::Outcome refusal;  // the last
+  control::Outcome refusal;  // of the last one refused
 };
 
-// What a step says to the rest of the process.
+// The state after a step, for telemetry.
 struct Snapshot {
   std::int64_t stamp_ns = 0;  // of the IMU sample
-  bool sampled =
-      false;  // one of the 100 a second that telemetry shows; others are there for a change of status
+  bool sampled = false;       // one of the 100 per second for telemetry; else a change of status
   control::Estimate estimate;
-  control::ErrorState estimate_deviation;  // of a sampled one
+  control::ErrorState estimate_deviation;  // set if sampled
   control::Reference reference;
   control::AttitudeSetpoint setpoint;
   control::Status status;
   control::RequestStatuses requests;
-  std::uint64_t trajectory_id = 0;  // of the one being flown
+  std::uint64_t trajectory_id = 0;  // of the trajectory being flown
   Role role = Role::kStandby;
   bool saturated = false;  // in any step since the last snapshot
   StepTiming::Figures timing;
   SetpointTally setpoints;
 };
 
-// The active controller's flight, for a standby to follow.
+// The active controller's state, for a standby to follow.
 struct FailoverState {
-  std::uint64_t number = 0;  // counts up from 1
+  std::uint64_t number = 0;  // counts up from 1, per process
   std::uint32_t term = 0;
   control::FlightState flight;
-  // What is there or flown; null if it is not known here.
+  // The uploaded or flown plan; null if it is not stored here.
   const control::Mission* mission = nullptr;
   const control::Trajectory* trajectory = nullptr;
 };
@@ -56,7 +56,7 @@ class InnerLoop {
   // Throws std::invalid_argument as FlightController does.
   InnerLoop(const plant::Vehicle& vehicle, const control::ControlSettings& settings);
 
-  // Input, from one thread each; of samples, the newest counts.
+  // Inputs, each from one thread. Of samples only the newest is used.
   runtime::LatestValue<plant::PoseSample> pose;
   runtime::LatestValue<plant::BatterySample> battery;
   runtime::LatestValue<plant::RotorSpeedSample> rotor_speeds;
@@ -66,64 +66,64 @@ class InnerLoop {
 
   boost::lockfree::spsc_queue<control::GroundHeartbeat, boost::lockfree::capacity<32>> ground_heartbeats;
 
-  // Output, to one thread. When snapshots are not taken, the newest are lost.
+  // Outputs, to one thread. If the snapshot queue is full, the newest snapshots are lost.
   boost::lockfree::spsc_queue<PendingRequest*, boost::lockfree::capacity<kMaxPendingRequests>> evaluated;
   boost::lockfree::spsc_queue<Snapshot, boost::lockfree::capacity<256>> snapshots;
 
-  // By the IMU thread: step() gives the command; once it is sent, finish() does the rest of the step and
-  // returns whether there is new output. now_ns: monotonic time of the sample's arrival, or of the command's
-  // departure. A standby steps as the active one does and follows the flight of that term; its command is not
-  // for sending.
+  // Call both from the IMU thread. step() returns the command. finish() does the rest of the step after the
+  // command is sent, and returns true if there is new output. now_ns, monotonic: arrival of the sample for
+  // step(), departure of the command for finish(). A standby steps too and adopts the active controller's
+  // state of term followed_term; its command must not be sent.
   plant::ActuatorCommand step(const plant::ImuSample& sample, std::int64_t now_ns, Role role = Role::kActive,
                               std::uint32_t followed_term = 0);
   bool finish(std::int64_t now_ns);
 
-  // Nobody was there to go on from: from the next step on looks whether the vehicle flies, and takes it into
-  // hold if it does. Until that is clear, for at most kLook, there are no commands to be sent: the vehicle
-  // goes on with its last one.
-  void attempt_restart_in_air() { looks_since_ns_ = kLooksFromNow; }
-  bool looking() const { return looks_since_ns_ != kLooksNot; }
-  static constexpr std::int64_t kLookNs = 300'000'000;
+  // In-air restart, if there is no controller state to continue from: from the next step on detects whether
+  // the vehicle is airborne, and if so engages hold. Until that is decided, for at most kAirborneDetectionNs,
+  // commands must not be sent: the vehicle keeps executing its last one.
+  void attempt_restart_in_air() { detecting_since_ns_ = kDetectFromNow; }
+  bool detecting_airborne() const { return detecting_since_ns_ != kNotDetecting; }
+  static constexpr std::int64_t kAirborneDetectionNs = 300'000'000;
 
-  // Whether a report to the other controllers is due with this step, and what it says of the flight.
+  // report_due(): this step must publish a controller_state. report() fills in its flight fields.
   bool report_due() const { return report_due_; }
   void report(comms::ControllerReport& report) const;
 
-  // The newest handover that was gone over to. By any thread.
-  std::uint64_t taken_handover() const { return taken_handover_.load(std::memory_order_acquire); }
+  // The number of the newest FailoverState that was taken. Call from any thread.
+  std::uint64_t adopted_state() const { return adopted_state_.load(std::memory_order_acquire); }
 
-  // Monotonic; 0 before the first sample. By any thread.
+  // Monotonic; 0 before the first sample. Call from any thread.
   std::int64_t last_arrival_ns() const { return last_arrival_ns_.load(std::memory_order_relaxed); }
 
-  // Between two steps: has the controller judge what is asked. step() does it too.
+  // Evaluates pending requests between two steps. step() does so too.
   void evaluate_requests();
 
  private:
   void take_samples();
   void take_setpoint(const control::Setpoint& setpoint);
   void follow(std::uint32_t term);
-  void look(const plant::ImuSample& sample);
-  void hear_ground();
+  void detect_airborne(const plant::ImuSample& sample);
+  void take_heartbeats();
   bool status_changed() const;
 
-  static constexpr std::int64_t kLooksNot = -1;
-  static constexpr std::int64_t kLooksFromNow = -2;
+  static constexpr std::int64_t kNotDetecting = -1;
+  static constexpr std::int64_t kDetectFromNow = -2;
 
   control::FlightController controller_;
   StepTiming timing_;
   Snapshot snapshot_;
-  control::Status last_snapshot_;  // in the last snapshot
+  control::Status last_snapshot_;  // of the last snapshot
   control::RequestStatuses snapshot_requests_{};
   std::int64_t stamp_ns_ = 0;
   std::uint64_t imu_sequence_ = 0;
   std::atomic<std::int64_t> last_arrival_ns_{0};
-  std::atomic<std::uint64_t> taken_handover_{0};
+  std::atomic<std::uint64_t> adopted_state_{0};
   Role role_ = Role::kStandby;
   Role snapshot_role_ = Role::kStandby;
   SetpointTally setpoints_;
-  std::int64_t looks_since_ns_ = kLooksNot;
-  int rotor_samples_ = 0;    // of the rotors' speeds, since it looks
-  bool knows_plan_ = false;  // of the flight that it follows
+  std::int64_t detecting_since_ns_ = kNotDetecting;
+  int rotor_samples_ = 0;    // rotor speed samples since detection began
+  bool knows_plan_ = false;  // plan of the followed flight is stored here
   bool report_due_ = false;
   std::int64_t reported_ns_ = 0;
   bool rotors_running_ = false;

@@ -1,5 +1,5 @@
-// In lockstep: holds an IMU sample back until the samples that it names have come, so that every run takes
-// them in in one order.
+// Lockstep: holds an IMU sample back until the pose, battery and rotor-speed samples that it names have
+// arrived, so that every run processes them in the same order.
 #pragma once
 
 #include <array>
@@ -12,12 +12,12 @@
 
 namespace swiftlet::services {
 
-// One thread at a time calls it.
+// Not thread-safe.
 class LockstepGate {
  public:
   enum class Stream : std::size_t { kPose, kBattery, kRotorSpeeds };
 
-  // A sample has come; false if it is one that came before and must not be taken in again.
+  // Call for each sample. Returns false for a repeated sample, which must be ignored.
   bool is_new(Stream stream, std::uint64_t sequence) {
     std::uint64_t& newest = newest_[static_cast<std::size_t>(stream)];
     if (sequence <= newest) return false;
@@ -25,14 +25,14 @@ class LockstepGate {
     return true;
   }
 
-  // An IMU sample has come; false if it is one that has been let through before.
+  // Call for each IMU sample. Returns false if take() has returned it before.
   bool offer(const comms::msg::Imu& imu) {
     if (imu.sequence_number() == let_through_) return false;
     waiting_ = imu;
     return true;
   }
 
-  // The sample that is to be answered now, once; empty if there is none or if it has to wait.
+  // Returns the IMU sample to answer now, once; nullopt if there is none or it must wait.
   std::optional<comms::msg::Imu> take() {
     if (!waiting_ || !complete(*waiting_)) return std::nullopt;
     let_through_ = waiting_->sequence_number();

@@ -22,7 +22,7 @@
 namespace swiftlet::services {
 namespace {
 
-constexpr std::chrono::milliseconds kLook{100};  // how often the main thread looks around
+constexpr std::chrono::milliseconds kPollPeriod{100};  // of the main thread
 
 struct Options {
   std::string vehicle = "vehicles/kaylion.yaml";
@@ -37,7 +37,7 @@ void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--vehicle", options.vehicle, "Vehicle file").show_default();
   app.add_option("--control", options.control, "Control settings file").show_default();
   app.add_option("--failover-priority", options.failover_priority,
-                 "Of several controllers one acts; when it fails, the strongest of the others takes over")
+                 "When the active controller fails, the standby of the highest priority takes over")
       .range(0, 1000)
       .show_default();
   runtime::add_clock_option(app, options.clock);
@@ -66,13 +66,13 @@ void run(const Options& options) {
 
   std::atomic<bool> telemetry_ends{false};
   std::thread telemetry([&] { service.run(telemetry_ends); });
-  while (!service.has_rival() && !stop.wait_for(kLook)) {
+  while (!service.has_rival() && !stop.wait_for(kPollPeriod)) {
   }
   telemetry_ends = true;
   service.wake();
   telemetry.join();
   if (service.has_rival())
-    throw std::runtime_error("lockstep: another controller answers this vehicle; there can be only one");
+    throw std::runtime_error("lockstep: another controller commands this vehicle; only one is allowed");
 
   const Snapshot& last = service.last();
   spdlog::info(
@@ -91,7 +91,7 @@ int main(int argc, char** argv) {
   options.process.realtime.priority = 70;
   return runtime::run_process(
       {"swiftlet-control",
-       "The flight controller: answers every IMU sample with an actuator command, flies what it is asked to.",
+       "The flight controller: answers each IMU sample with an actuator command, executes requests.",
        "--control config/control/motor_lag.yaml --localhost-only"},
       argc, argv, [&](runtime::CommandLine app) { services::add_options(app, options); },
       [&] { services::run(options); });

@@ -1,5 +1,5 @@
-// The missions or trajectories that this process knows. The inner loop flies one of them by its address, so
-// none is let go of while it may.
+// Stores the missions or trajectories that this process knows. The inner loop flies one of them by address,
+// so none is erased while the inner loop may use it.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace swiftlet::services {
 template <class Plan>
 class PlanStore {
  public:
-  // The newest of this id, or null.
+  // The newest plan of this id, or null.
   const Plan* find(std::uint64_t id) const {
     const auto entry =
         std::find_if(entries_.rbegin(), entries_.rend(), [id](const Entry& e) { return e.plan->id == id; });
@@ -23,21 +23,21 @@ class PlanStore {
 
   void put(std::unique_ptr<Plan> plan) { entries_.push_back({std::move(plan), 0}); }
 
-  // It was accepted: it is kept or flown until another one is.
+  // Stores an accepted plan: it stays in use until another one is accepted.
   void put_flown(std::unique_ptr<Plan> plan) {
     flown_ = plan.get();
     put(std::move(plan));
   }
 
-  // It goes to the inner loop with the handover of this number. plan may be null.
+  // Marks the plan as passed to the inner loop with the FailoverState of this number. plan may be null.
   void lend(const Plan* plan, std::uint64_t failover_state) {
     for (Entry& entry : entries_) {
       if (entry.plan.get() == plan) entry.failover_state = failover_state;
     }
   }
 
-  // Lets go of the oldest that are beyond the capacity and cannot be flown: taken is the number of the newest
-  // handover that the inner loop has gone over to.
+  // Erases the oldest plans beyond the capacity that the inner loop cannot use. taken: number of the newest
+  // FailoverState that the inner loop has taken.
   void tidy(std::uint64_t taken) {
     const auto idle = [&](const Entry& e) {
       return e.plan.get() != flown_ && (e.failover_state == 0 || e.failover_state < taken);
@@ -55,7 +55,7 @@ class PlanStore {
  private:
   struct Entry {
     std::unique_ptr<Plan> plan;
-    std::uint64_t failover_state = 0;  // the last one that it went with
+    std::uint64_t failover_state = 0;  // number of the last one that passed it on; 0: none
   };
   std::deque<Entry> entries_;  // oldest first
   const Plan* flown_ = nullptr;

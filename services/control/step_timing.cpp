@@ -6,18 +6,18 @@
 namespace swiftlet::services {
 namespace {
 
-constexpr std::int64_t kPaceShare = 8;  // of a delay, that the pace gives way by, one in so many
+constexpr std::int64_t kDelayShare = 8;  // the expected time adapts by 1/8 of a delay per sample
 
 }  // namespace
 
 void StepTiming::arrived(std::uint64_t sequence, std::int64_t stamp_ns, std::int64_t now_ns,
                          bool rotors_running) {
   const std::int64_t elapsed_ns = stamp_ns - last_stamp_ns_;
-  const bool starts_anew = last_sequence_ == 0 || sequence <= last_sequence_ || elapsed_ns <= 0;
-  if (!starts_anew && sequence == last_sequence_ + 1) period_ns_ = elapsed_ns;
+  const bool restarts = last_sequence_ == 0 || sequence <= last_sequence_ || elapsed_ns <= 0;
+  if (!restarts && sequence == last_sequence_ + 1) period_ns_ = elapsed_ns;
   const std::int64_t interval_ns = now_ns - arrival_ns_;
-  const std::int64_t delay_ns = starts_anew ? 0 : now_ns - (pace_ns_ + elapsed_ns);
-  pace_ns_ = delay_ns > 0 ? now_ns - delay_ns + delay_ns / kPaceShare : now_ns;
+  const std::int64_t delay_ns = restarts ? 0 : now_ns - (expected_ns_ + elapsed_ns);
+  expected_ns_ = delay_ns > 0 ? now_ns - delay_ns + delay_ns / kDelayShare : now_ns;
   last_sequence_ = sequence;
   last_stamp_ns_ = stamp_ns;
   arrival_ns_ = now_ns;
@@ -29,7 +29,7 @@ void StepTiming::arrived(std::uint64_t sequence, std::int64_t stamp_ns, std::int
   }
   running_ = rotors_running;
   if (!running_) return;
-  if (!starts_anew && figures_.cycles > 0) jitter_.record(std::abs(interval_ns - elapsed_ns));
+  if (!restarts && figures_.cycles > 0) jitter_.record(std::abs(interval_ns - elapsed_ns));
   ++figures_.cycles;
   if (period_ns_ > 0 && delay_ns > period_ns_ / 2) ++figures_.deadline_misses;
   if (now_ns > first_arrival_ns_) {

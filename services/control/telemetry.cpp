@@ -39,7 +39,7 @@ Telemetry::Telemetry(InnerLoop& loop, CommandServer& command_server,
   open();
 }
 
-// The states, with nothing said yet.
+// Creates the latched publishers anew, without a last sample.
 void Telemetry::open() {
   statuses_ = node_.publish(topics::kControlStatus);
   missions_ = node_.publish(topics::kMissionStatus);
@@ -52,7 +52,7 @@ void Telemetry::open() {
 void Telemetry::publish_due() {
   loop_.snapshots.consume_all([this](const Snapshot& snapshot) { take(snapshot); });
   const std::vector<RequestResult> answers = command_server_.collect();
-  if (last_.role == Role::kActive) publish_plan();  // before its acceptance is told
+  if (last_.role == Role::kActive) publish_plan();  // before its acceptance is published
   answer_requests(answers);
   const std::int64_t now_ns = runtime::monotonic_ns();
   if (watches_imu_) log_imu_silence(now_ns);
@@ -61,9 +61,9 @@ void Telemetry::publish_due() {
   if (now_ns >= mission_due_ns_) publish_mission();
 }
 
-// What was said last is not for those who join later: they are to hear the active controller alone.
+// A standby drops its latched samples: late joiners must receive those of the active controller only.
 void Telemetry::change_role() {
-  spdlog::info("{} now, in {}", to_string(last_.role), control::to_string(last_.status.mode));
+  spdlog::info("role is {}, mode {}", to_string(last_.role), control::to_string(last_.status.mode));
   if (last_.role == Role::kStandby) return open();
   publish_status();
   publish_mission();
@@ -100,13 +100,13 @@ void Telemetry::take(const Snapshot& snapshot) {
   if (mode_changed) spdlog::info("{}: {}", control::to_string(now.mode), control::to_string(now.reason));
   if (now.has_pose != before.has_pose) {
     if (now.has_pose) {
-      spdlog::info("mocap is there");
+      spdlog::info("mocap available");
     } else {
       spdlog::warn("mocap lost: the last pose is {:.2f} s old", now.pose_age_s);
     }
   }
   if (now.ground_links != before.ground_links)
-    spdlog::info("the flight depends on {} ground tools", now.ground_links);
+    spdlog::info("link-loss failsafe watches {} ground tools", now.ground_links);
   if (snapshot.sampled) publish_sampled(snapshot);
   saturated_ = saturated_ || snapshot.saturated;
   last_ = snapshot;
@@ -195,7 +195,7 @@ void Telemetry::answer_requests(const std::vector<RequestResult>& answers) {
     ack.stamp_ns(answer.stamp_ns);
     acks_.publish(ack);
     if (answer.repeated) {
-      spdlog::debug("{} {} was answered before: answered again", answer.kind, answer.id);
+      spdlog::debug("{} {} is a repeated request: answered again", answer.kind, answer.id);
     } else if (answer.outcome.accepted) {
       spdlog::info("{} {} accepted", answer.kind, answer.id);
     } else {

@@ -1,5 +1,5 @@
-// What the control service says of itself: telemetry, status, answers to requests, log lines. Nothing here is
-// in a hurry. A standby says next to nothing: of several controllers one is heard.
+// Publishes the control service's telemetry, statuses and answers to requests, and writes its log. Not
+// time-critical. A standby publishes almost nothing, so that tools hear the active controller only.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +13,19 @@ namespace swiftlet::services {
 
 class Telemetry {
  public:
-  // thresholds: which others are told; controller: the random number of this one.
+  // thresholds: published in control_status. controller: the random number of this controller.
   Telemetry(InnerLoop& loop, CommandServer& command_server, const control::FailsafeSettings& thresholds,
             comms::Node& node, std::uint64_t controller);
 
-  // Says what is new or due. By one thread, again and again.
+  // Publishes what is new or due. Call periodically from one thread.
   void publish_due();
 
-  void set_realtime(bool realtime) { realtime_ = realtime; }  // of the threads that fly, now
-  void watch_imu() { watches_imu_ = true; }  // before tell(): a silence of the samples is worth a warning
-  const Snapshot& last() const { return last_; }  // by the thread of tell(), or after it
+  // Sets whether the flight threads have real-time scheduling.
+  void set_realtime(bool realtime) { realtime_ = realtime; }
+  // Warns when IMU samples stop. Call before publish_due().
+  void watch_imu() { watches_imu_ = true; }
+  // Call from the thread of publish_due(), or after it has ended.
+  const Snapshot& last() const { return last_; }
 
  private:
   void open();
@@ -45,14 +48,14 @@ class Telemetry {
   bool imu_silent_ = false;
 
   Snapshot last_;
-  bool saturated_ = false;        // since the last status
+  bool saturated_ = false;        // since the last control_status
   const char* mission_end_ = "";  // why the last mission ended
   std::int64_t status_due_ns_ = 0;
   std::int64_t mission_due_ns_ = 0;
   std::uint64_t sampled_count_ = 0;
   std::uint64_t status_count_ = 0;
   std::uint64_t mission_count_ = 0;
-  std::uint64_t published_mission_ = 0;  // of which the others know
+  std::uint64_t published_mission_ = 0;  // id of the last flown_mission
   std::uint64_t published_trajectory_ = 0;
 
   comms::Publisher<comms::msg::Estimate> estimates_;

@@ -1,4 +1,5 @@
-// swiftlet-mocap: simulated motion capture. Takes truth in, gives poses out, and goes by the stamps alone.
+// swiftlet-mocap: simulates motion capture. Receives ground truth, publishes poses. Uses the samples' stamps
+// only, no clock.
 #include <atomic>
 #include <cstdint>
 #include <limits>
@@ -34,7 +35,7 @@ struct Options {
 
 void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--simulation", options.simulation, "Simulation file").show_default();
-  app.add_option("--seed", options.seed, "Of errors and dropouts")
+  app.add_option("--seed", options.seed, "Seed of pose errors and dropouts")
       .range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max())
       .show_default();
   runtime::add_clock_option(app, options.clock);
@@ -42,7 +43,7 @@ void add_options(runtime::CommandLine app, Options& options) {
   runtime::add_process_options(app, options.process);
 }
 
-// Runs in the thread that receives the truth.
+// Runs in the thread that receives ground_truth.
 class MotionCaptureSimulator {
  public:
   MotionCaptureSimulator(const plant::SimulationSettings& settings, std::uint64_t seed, comms::Node& node,
@@ -60,7 +61,7 @@ class MotionCaptureSimulator {
 
   std::uint64_t frames() const { return frames_; }
   std::uint64_t untracked() const { return untracked_; }
-  // Lockstep: a sample of the truth is missing, and with it what this process was to make of it.
+  // Lockstep: true if a sample of the ground truth was lost; its frame cannot be made.
   bool lost_truth() const { return lost_truth_; }
 
  private:
@@ -69,15 +70,15 @@ class MotionCaptureSimulator {
     plant::TruthSample truth;
     const comms::Fault fault = comms::from_message(message, truth);
     if (fault) {
-      if (!told_fault_) spdlog::warn("ground truth refused: {}", fault.text);
-      told_fault_ = true;
+      if (!logged_fault_) spdlog::warn("ground truth refused: {}", fault.text);
+      logged_fault_ = true;
       return;
     }
-    if (clock_ == runtime::Clock::kLockstep && !goes_on(truth)) return;
+    if (clock_ == runtime::Clock::kLockstep && !is_next(truth)) return;
     const auto pose = path_.pass(mocap_.update(truth), truth.stamp_ns);
     made_frame_ = pose.has_value();
     if (!pose) {
-      if (clock_ == runtime::Clock::kLockstep) say_that_it_is_there(truth.stamp_ns);
+      if (clock_ == runtime::Clock::kLockstep) publish_heartbeat(truth.stamp_ns);
       return;
     }
     last_pose_ = comms::to_message(*pose);
@@ -86,8 +87,9 @@ class MotionCaptureSimulator {
     if (!pose->tracked) untracked_.fetch_add(1, std::memory_order_relaxed);
   }
 
-  // In lockstep: true if this is the next sample. One that comes again is answered again.
-  bool goes_on(const plant::TruthSample& truth) {
+  // Lockstep: returns true for the next sample in sequence. Answers a repeated sample again. Stops the
+  // process at a gap.
+  bool is_next(const plant::TruthSample& truth) {
     if (truth.sequence <= truth_sequence_) {
       answer_again(truth.stamp_ns);
       return false;
@@ -101,22 +103,22 @@ class MotionCaptureSimulator {
     return true;
   }
 
-  // Whoever missed the last frame, and the plant that missed a sign of life: in turn, for of two that follow
-  // each other at once the first may be lost.
+  // Repeats the last frame for control and the heartbeat for the plant, alternately: of two messages sent at
+  // once the first may be lost.
   void answer_again(std::int64_t stamp_ns) {
     heartbeat_is_next_ = !heartbeat_is_next_;
     if (made_frame_ || (last_pose_.sequence_number() > 0 && !heartbeat_is_next_)) {
       poses_.publish(last_pose_);
     } else {
-      say_that_it_is_there(stamp_ns);
+      publish_heartbeat(stamp_ns);
     }
   }
 
-  // By a pose of number 0: truth has come up to this stamp, and the frames that it makes have gone out.
-  void say_that_it_is_there(std::int64_t stamp_ns) {
-    comms::msg::MocapPose sign;
-    sign.stamp_ns(stamp_ns);
-    poses_.publish(sign);
+  // A pose with sequence 0: the truth up to this stamp has arrived and its frames have been published.
+  void publish_heartbeat(std::int64_t stamp_ns) {
+    comms::msg::MocapPose heartbeat;
+    heartbeat.stamp_ns(stamp_ns);
+    poses_.publish(heartbeat);
   }
 
   plant::Mocap mocap_;
@@ -125,21 +127,21 @@ class MotionCaptureSimulator {
   runtime::Clock clock_;
   runtime::StopSignal& stop_;
   std::uint64_t truth_sequence_ = 0;
-  comms::msg::MocapPose last_pose_;  // number 0 before the first frame
+  comms::msg::MocapPose last_pose_;  // sequence 0 before the first frame
   bool made_frame_ = false;          // of the newest truth
   bool heartbeat_is_next_ = false;
   std::atomic<bool> lost_truth_{false};
   runtime::RealtimeThread thread_;
-  bool told_fault_ = false;
+  bool logged_fault_ = false;
   std::atomic<std::uint64_t> frames_{0};
   std::atomic<std::uint64_t> untracked_{0};
   comms::Publisher<comms::msg::MocapPose> poses_;
-  comms::Subscription truth_;  // last: its callback uses what stands above
+  comms::Subscription truth_;  // last: its callback uses all members above
 };
 
-std::string pace(const plant::MocapSettings& settings) {
-  if (settings.model == plant::MocapModel::kOptitrack) return "at uneven intervals";
-  return fmt::format("{:g} times a second", settings.rate_hz);
+std::string frame_rate(const plant::MocapSettings& settings) {
+  if (settings.model == plant::MocapModel::kOptitrack) return "at irregular intervals";
+  return fmt::format("at {:g} Hz", settings.rate_hz);
 }
 
 void run(const Options& options) {
@@ -157,12 +159,12 @@ void run(const Options& options) {
   node_settings.deadlines = options.clock == runtime::Clock::kRealtime;
   comms::Node node(node_settings);
   comms::log_peers(node);
-  const MotionCaptureSimulator camera(settings, options.seed, node, realtime, options.clock, stop);
-  spdlog::info("watching: vehicle {}, domain {}, frames {}, seed {}", node_settings.vehicle,
-               node_settings.domain, pace(settings.mocap), options.seed);
+  const MotionCaptureSimulator simulator(settings, options.seed, node, realtime, options.clock, stop);
+  spdlog::info("ready: vehicle {}, domain {}, frames {}, seed {}", node_settings.vehicle,
+               node_settings.domain, frame_rate(settings.mocap), options.seed);
   stop.wait();
-  if (camera.lost_truth()) throw std::runtime_error("lockstep: a sample of ground_truth was lost");
-  spdlog::info("ended: {} frames, {} of them untracked", camera.frames(), camera.untracked());
+  if (simulator.lost_truth()) throw std::runtime_error("lockstep: a ground_truth sample was lost");
+  spdlog::info("ended: {} frames, {} untracked", simulator.frames(), simulator.untracked());
 }
 
 }  // namespace
@@ -174,7 +176,7 @@ int main(int argc, char** argv) {
   options.process.realtime.priority = 50;
   return runtime::run_process(
       {"swiftlet-mocap",
-       "Simulated motion capture: sees the ground truth of a simulated vehicle, publishes its pose.",
+       "Simulates motion capture: receives the ground truth of a simulated vehicle, publishes its pose.",
        "--seed 7 --localhost-only"},
       argc, argv, [&](runtime::CommandLine app) { services::add_options(app, options); },
       [&] { services::run(options); });

@@ -1,4 +1,4 @@
-// Sense-to-actuate: from writing an IMU sample to receiving the command that answers it.
+// Measures sense-to-actuate latency: from publishing an IMU sample to receiving the command that answers it.
 #pragma once
 
 #include <array>
@@ -8,18 +8,18 @@
 
 namespace swiftlet::services {
 
-// One thread calls it. Times are monotonic, ns.
+// Not thread-safe. Times are monotonic, ns.
 class AnswerLatencies {
  public:
-  // A sample that has no answer when kPatience more have been written counts as unanswered.
+  // A sample without an answer after kPatience further samples counts as unanswered.
   static constexpr std::uint64_t kPatience = 8;
 
-  // late_after_ns: from when on an answer counts as late.
+  // late_after_ns: latency above which an answer counts as late.
   explicit AnswerLatencies(std::int64_t late_after_ns) : late_after_ns_(late_after_ns) {}
 
   void written(std::uint64_t imu_sequence, std::int64_t now_ns);
-  void answered(std::uint64_t imu_sequence,
-                std::int64_t now_ns);  // second answers and unknown samples are left out
+  // Ignores second answers and unknown samples.
+  void answered(std::uint64_t imu_sequence, std::int64_t now_ns);
   void reset();
 
   const runtime::LatencyHistogram& times() const { return times_; }

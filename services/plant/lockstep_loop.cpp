@@ -18,8 +18,8 @@ namespace {
 using namespace std::chrono_literals;
 using Lock = std::lock_guard<std::mutex>;
 
-constexpr auto kLookPeriod = 20ms;  // also after which what has no answer is sent again
-constexpr double kLongestLookS = 0.1;
+constexpr auto kPollPeriod = 20ms;  // unanswered samples are sent again after this time
+constexpr double kLongestPollS = 0.1;
 
 }  // namespace
 
@@ -45,15 +45,15 @@ LockstepLoop::LockstepLoop(SimulatedVehicle& vehicle, const plant::SimulationSet
 }
 
 void LockstepLoop::run(const std::atomic<bool>& stop) {
-  std::int64_t looked_ns = runtime::monotonic_ns();
+  std::int64_t polled_ns = runtime::monotonic_ns();
   while (!stop.load(std::memory_order_relaxed)) {
     {
       const Lock lock(mutex_);
       const std::int64_t now_ns = runtime::monotonic_ns();
-      look_after(std::min(static_cast<double>(now_ns - looked_ns) * 1e-9, kLongestLookS));
-      looked_ns = now_ns;
+      poll(std::min(static_cast<double>(now_ns - polled_ns) * 1e-9, kLongestPollS));
+      polled_ns = now_ns;
     }
-    std::this_thread::sleep_for(kLookPeriod);
+    std::this_thread::sleep_for(kPollPeriod);
   }
   const Lock lock(mutex_);
   if (trace_) trace_->close();
@@ -61,7 +61,7 @@ void LockstepLoop::run(const std::atomic<bool>& stop) {
 
 void LockstepLoop::on_command(const comms::msg::ActuatorCommand& message) {
   const Lock lock(mutex_);
-  if (!started_ || !command_due()) return;  // an answer that came again
+  if (!started_ || !command_due()) return;  // a repeated answer
   if (message.imu_sequence_number() != vehicle_.simulation().imu()->sequence) return;
   const ReceivedCommand received(message, runtime::monotonic_ns());
   if (!vehicle_.obey(received)) return;
@@ -94,7 +94,7 @@ bool LockstepLoop::may_advance() const {
   return !is_paused() && vehicle_.simulation().stamp_ns() + imu_period_ns_ <= paced_ns_;
 }
 
-// By the time that this process was awake. What the answers take beyond it is not made good.
+// Advances the time limit by the time in which this process was running. Late answers are not made up for.
 void LockstepLoop::keep_pace(double awake_s) {
   if (lockstep_.speed == 0.0) return;
   const double step_ns = 1e9 * awake_s * lockstep_.speed;
@@ -103,8 +103,8 @@ void LockstepLoop::keep_pace(double awake_s) {
   advance();
 }
 
-// In the thread that brought the last of what was waited for; on and on while faults leave nothing to wait
-// for.
+// Runs in the thread that received the last missing answer. Loops while simulated faults leave no answer to
+// wait for.
 void LockstepLoop::advance() {
   while (failure_.empty() && started_ && answered()) {
     vehicle_.note_pause(is_paused());
@@ -143,7 +143,7 @@ void LockstepLoop::publish() {
   vehicle_.publish_samples_in_order(mocap_due_, truth_needed);
 }
 
-// Whether a frame comes out of the faults' path at this stamp.
+// True if the mocap path with its faults delivers a frame at this stamp.
 bool LockstepLoop::frame_is_due(std::int64_t stamp_ns, bool delivered) {
   std::optional<plant::PoseSample> frame;
   if (delivered) {
@@ -156,7 +156,7 @@ bool LockstepLoop::frame_is_due(std::int64_t stamp_ns, bool delivered) {
   return out.has_value();
 }
 
-void LockstepLoop::look_after(double awake_s) {
+void LockstepLoop::poll(double awake_s) {
   if (!failure_.empty()) throw std::runtime_error(failure_);
   if (!started_) {
     if (granted_ns_ < 0) return;
@@ -168,14 +168,14 @@ void LockstepLoop::look_after(double awake_s) {
   if (clock_heard_ && (clock_silence_s_ += awake_s) > lockstep_.patience_s)
     throw std::runtime_error(silent_ground());
   if (answered()) {
-    // The controller looks at requests with each sample, also with one that it has answered. The first samples all
-    // come again until time passes: whoever records them may not have been known when they were sent.
+    // The controller evaluates requests with each sample, also with a repeated one. The first samples are all
+    // repeated until time advances: a recorder may not have been discovered when they were first sent.
     if (vehicle_.simulation().stamp_ns() == 0) return vehicle_.publish_again();
     vehicle_.publish_imu_again();
     return;
   }
   if ((silence_s_ += awake_s) > lockstep_.patience_s) throw std::runtime_error(silent_peer());
-  if (silence_s_ > std::chrono::duration<double>(kLookPeriod).count()) vehicle_.publish_again();
+  if (silence_s_ > std::chrono::duration<double>(kPollPeriod).count()) vehicle_.publish_again();
 }
 
 std::string LockstepLoop::silent_ground() const {

@@ -39,9 +39,9 @@ struct Options {
   std::string simulation = "simulation/default.yaml";
   std::uint64_t seed = 1;
   std::array<double, 2> start{};  // m, north and east
-  int imu_rate = 0;               // Hz; 0: that of the simulation file
+  int imu_rate = 0;               // Hz; 0: as in the simulation file
   runtime::Clock clock = runtime::Clock::kRealtime;
-  double speed = 0.0;  // 0: real time, or in lockstep as fast as the answers come
+  double speed = 0.0;  // 0: real time, or in lockstep no limit
   LockstepSettings lockstep;
   comms::NodeSettings node;
   runtime::ProcessOptions process;
@@ -50,29 +50,29 @@ struct Options {
 void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--vehicle", options.vehicle, "Vehicle file").show_default();
   app.add_option("--simulation", options.simulation, "Simulation file").show_default();
-  app.add_option("--seed", options.seed, "Of noise, biases and gusts")
+  app.add_option("--seed", options.seed, "Seed of noise, biases and gusts")
       .range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max())
       .show_default();
-  app.add_option("--start", options.start, "Where it stands at first, m north and east of the origin")
+  app.add_option("--start", options.start, "Initial position on the ground, m north and m east of the origin")
       .range(-1e3, 1e3);
   app.add_option("--imu-rate", options.imu_rate,
-                 "IMU samples a second, 500 or 1000; default: the simulation file's")
+                 "IMU rate, Hz, 500 or 1000; default: as in the simulation file")
       .one_of({500, 1000});
   runtime::add_clock_option(app, options.clock);
   app.add_option(
          "--speed", options.speed,
-         "Of simulated time against real time, 1 unless given; in lockstep at most, unless given as fast "
-         "as the answers come")
+         "Simulated time per real time; default 1. In lockstep an upper limit; default: as fast as answers "
+         "arrive")
       .range(0.01, 100.0);
   app.add_flag("--paused", options.lockstep.paused,
-               "Lockstep: let time pass only as far as simulation_clock grants it");
+               "Lockstep: advance time only as far as simulation_clock grants");
   app.add_option("--trace", options.lockstep.trace,
-                 "Lockstep: keep every sample and command of the flight in this CSV file, to the last bit");
+                 "Lockstep: write every sample and command of the flight to this CSV file, without rounding");
   comms::add_node_options(app, options.node);
   runtime::add_process_options(app, options.process);
 }
 
-// Throws std::invalid_argument for options that do not go together.
+// Throws std::invalid_argument for lockstep options without --clock lockstep.
 void check(const Options& options) {
   const bool lockstep = options.clock == runtime::Clock::kLockstep;
   if (!lockstep && options.lockstep.paused) throw std::invalid_argument("--paused: needs --clock lockstep");
@@ -105,8 +105,8 @@ void update(comms::msg::VehicleInfo& info, const PlantReport& report, const std:
   info.fault() = fault;
 }
 
-// Tells the network and the log what the loop reports: every second, and at once when the rotors start or
-// stop.
+// Publishes and logs the loop's reports: every second, and at once when the rotors start or stop or the pause
+// changes.
 class Reporter {
  public:
   Reporter(comms::Node& node, const plant::Vehicle& vehicle, const plant::SimulationSettings& settings)
@@ -116,7 +116,7 @@ class Reporter {
     timeout_fault_ = text;
   }
 
-  void set_obeyed_command(const PlantReport& report) {
+  void publish_due(const PlantReport& report) {
     const bool changed = report.rotors_running != last_report_.rotors_running ||
                          report.timed_out != last_report_.timed_out || report.paused != last_report_.paused ||
                          (report.paused && report.stamp_ns != last_report_.stamp_ns);
@@ -146,20 +146,20 @@ class Reporter {
     }
   }
 
-  // True if there was trouble since it was last told.
+  // Logs refused commands and slips since the last call. Returns true if there were any.
   bool log_trouble(const PlantReport& report) {
-    const bool refused = report.refused_commands > told_trouble_.refused_commands;
-    const bool slipped = report.slips > told_trouble_.slips;
+    const bool refused = report.refused_commands > logged_report_.refused_commands;
+    const bool slipped = report.slips > logged_report_.slips;
     if (refused) {
-      spdlog::warn("{} actuator commands refused, the last: {}",
-                   report.refused_commands - told_trouble_.refused_commands, report.refusal.text);
+      spdlog::warn("refused {} actuator commands, the last: {}",
+                   report.refused_commands - logged_report_.refused_commands, report.refusal.text);
     }
     if (slipped) {
-      spdlog::warn("fell behind real time: simulated time put off {} times, by {:.1f} ms in all",
-                   report.slips - told_trouble_.slips,
-                   static_cast<double>(report.slipped_ns - told_trouble_.slipped_ns) * 1e-6);
+      spdlog::warn("fell behind real time: delayed simulated time {} times, by {:.1f} ms in total",
+                   report.slips - logged_report_.slips,
+                   static_cast<double>(report.slipped_ns - logged_report_.slipped_ns) * 1e-6);
     }
-    told_trouble_ = report;
+    logged_report_ = report;
     return refused || slipped;
   }
 
@@ -167,12 +167,12 @@ class Reporter {
   comms::msg::VehicleInfo info_;
   std::string timeout_fault_;
   PlantReport last_report_;
-  PlantReport told_trouble_;
+  PlantReport logged_report_;
   std::int64_t due_ns_ = 0;
   std::int64_t trouble_due_ns_ = 0;
 };
 
-// Runs the loop in a thread of its own until a stop or its failure, which is thrown on. Returns its last
+// Runs the loop in a thread of its own until a stop or its failure, which is rethrown. Returns the last
 // report.
 PlantReport run_loop(const std::function<void(const std::atomic<bool>&)>& loop, SimulatedVehicle& vehicle,
                      Reporter& reporter, runtime::StopSignal& stop) {
@@ -189,13 +189,13 @@ PlantReport run_loop(const std::function<void(const std::atomic<bool>&)>& loop, 
   PlantReport last;
   do {
     vehicle.reports().take(last);
-    reporter.set_obeyed_command(last);
+    reporter.publish_due(last);
   } while (!stop.wait_for(20ms));
   ends = true;
   thread.join();
   if (failure) std::rethrow_exception(failure);
   vehicle.reports().take(last);
-  reporter.set_obeyed_command(last);
+  reporter.publish_due(last);
   return last;
 }
 
@@ -228,7 +228,7 @@ void run(const Options& options) {
   plant::VehicleState initial;
   initial.position_ned.head<2>() = Eigen::Vector2d(options.start[0], options.start[1]);
   SimulatedVehicle simulated(vehicle, settings, options.seed, initial, node);
-  spdlog::info("{} flies: vehicle {}, domain {}, clock {}, IMU at {:g} Hz, seed {}", vehicle.name,
+  spdlog::info("ready: {}, vehicle {}, domain {}, clock {}, IMU at {:g} Hz, seed {}", vehicle.name,
                node_settings.vehicle, node_settings.domain, runtime::to_string(options.clock),
                settings.imu.rate_hz, options.seed);
 
@@ -268,7 +268,7 @@ int main(int argc, char** argv) {
   options.process.realtime.priority = 60;
   return runtime::run_process(
       {"swiftlet-plant",
-       "A simulated quadrotor on the network: publishes what it senses, obeys actuator commands.",
+       "Simulates a quadrotor on the network: publishes sensor samples, obeys actuator commands.",
        "--vehicle config/vehicles/kaylion.yaml --seed 7 --localhost-only"},
       argc, argv, [&](runtime::CommandLine app) { services::add_options(app, options); },
       [&] { services::run(options); });

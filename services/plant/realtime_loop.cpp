@@ -37,7 +37,7 @@ void RealtimeLoop::run(const std::atomic<bool>& stop) {
   }
 }
 
-// In the thread that received it.
+// Runs in the subscription's thread.
 void RealtimeLoop::on_command(const comms::msg::ActuatorCommand& message) {
   listener_.enter(realtime_);
   received_.push(ReceivedCommand(message, runtime::monotonic_ns()));

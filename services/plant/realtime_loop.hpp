@@ -1,4 +1,4 @@
-// Simulated time that follows the computer's clock.
+// Real time: simulated time follows the computer's clock.
 #pragma once
 
 #include <atomic>
@@ -14,25 +14,25 @@ namespace swiftlet::services {
 
 class RealtimeLoop {
  public:
-  // speed: of simulated time against the clock, > 0. The vehicle must outlive the loop.
+  // speed: simulated time per real time, > 0. The vehicle must outlive the loop.
   RealtimeLoop(SimulatedVehicle& vehicle, const plant::SimulationSettings& settings, double speed,
                comms::Node& node, const runtime::RealtimeSettings& realtime);
 
-  // Steps until `stop`. Behind by more than an IMU period, simulated time is put off instead of made up for:
-  // no burst of samples that nobody could answer.
+  // Steps until `stop`. If it falls behind by more than an IMU period, it delays simulated time instead of
+  // catching up: a burst of samples could not be answered.
   void run(const std::atomic<bool>& stop);
 
  private:
   void on_command(const comms::msg::ActuatorCommand& message);
 
   SimulatedVehicle& vehicle_;
-  std::int64_t step_ns_;  // of the clock
+  std::int64_t step_ns_;  // computer's clock
   std::int64_t imu_period_ns_;
   runtime::RealtimeSettings realtime_;
 
   boost::lockfree::spsc_queue<ReceivedCommand, boost::lockfree::capacity<64>> received_;
   runtime::RealtimeThread listener_;
-  comms::Subscription commands_;  // last: its callback uses what stands above
+  comms::Subscription commands_;  // last: its callback uses all members above
 };
 
 }  // namespace swiftlet::services

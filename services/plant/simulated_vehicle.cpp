@@ -86,7 +86,8 @@ void SimulatedVehicle::publish_samples_in_order(std::uint64_t mocap_sequence, bo
     if (truth_needed) publish_truth();
     return;
   }
-  // The longest way first: motion capture makes a frame of the truth, for which the controller waits.
+  // Publishes the longest path first: the controller waits for the frame that motion capture makes of the
+  // truth.
   const bool frame_due = mocap_sequence > imu_message_.mocap_sequence_number();
   imu_message_ = comms::to_message(*simulation_.imu());
   comms::set_obeyed_command(watchdog_.obeyed(), imu_message_);

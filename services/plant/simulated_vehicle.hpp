@@ -1,5 +1,5 @@
-// The simulated vehicle on the network: publishes what it senses, obeys what reaches it. When time passes is
-// for the loops.
+// The simulated vehicle on DDS: publishes its sensor samples, obeys actuator commands. RealtimeLoop and
+// LockstepLoop advance its time.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,12 @@
 
 namespace swiftlet::services {
 
-// What the loop tells the rest of the process.
+// The loop's report to the rest of the process.
 struct PlantReport {
   std::int64_t stamp_ns = 0;
   bool rotors_running = false;
-  bool timed_out = false;  // the vehicle stopped its rotors itself: commands ceased
-  bool paused = false;     // in lockstep: waits to be granted more time
+  bool timed_out = false;  // command time-out: the vehicle stopped its rotors
+  bool paused = false;     // lockstep: waits for simulation_clock
   std::uint64_t answered = 0;
   std::uint64_t unanswered = 0;
   std::uint64_t late = 0;
@@ -28,14 +28,14 @@ struct PlantReport {
   std::int64_t answer_p99_ns = 0;
   std::int64_t answer_p999_ns = 0;
   std::int64_t answer_max_ns = 0;
-  std::uint64_t commands = 0;  // that were obeyed
+  std::uint64_t commands = 0;  // obeyed
   std::uint64_t refused_commands = 0;
-  comms::Fault refusal;         // of the last of those
-  std::uint64_t slips = 0;      // times that the loop fell behind real time
-  std::int64_t slipped_ns = 0;  // in all
+  comms::Fault refusal;         // of the last refused command
+  std::uint64_t slips = 0;      // number of times the loop fell behind real time
+  std::int64_t slipped_ns = 0;  // total
 };
 
-// An actuator command as it came.
+// An actuator command as received.
 struct ReceivedCommand {
   explicit ReceivedCommand(const comms::msg::ActuatorCommand& message, std::int64_t now_ns)
       : received_ns(now_ns), fault(comms::from_message(message, command)) {}
@@ -46,7 +46,7 @@ struct ReceivedCommand {
   comms::Fault fault;
 };
 
-// One thread at a time calls it.
+// Not thread-safe.
 class SimulatedVehicle {
  public:
   SimulatedVehicle(const plant::Vehicle& vehicle, const plant::SimulationSettings& settings,
@@ -54,19 +54,21 @@ class SimulatedVehicle {
 
   const plant::PlantSimulation& simulation() const { return simulation_; }
 
-  // False if the command was refused; it then counts as none. One that a fault keeps back is not refused.
+  // Returns false if the command is refused, that is ignored. A command that a simulated fault delays or
+  // drops is not refused.
   bool obey(const ReceivedCommand& received);
-  // One integration step.
+  // Advances one integration step.
   void step();
-  // What is due at this stamp, the IMU's sample first: the controller waits for it.
+  // Publishes the samples due at this stamp, the IMU's first: the controller waits for it.
   void publish_samples();
-  // The same for lockstep: each sample that belongs to the IMU's before it, and the IMU's with the numbers of
-  // what is to be waited for. mocap_sequence: the newest frame that motion capture makes of the truth so far.
+  // The same for lockstep: publishes battery and rotor speeds before the IMU sample that belongs to them. The
+  // IMU sample carries the sequence numbers that control must wait for. mocap_sequence: the newest frame that
+  // motion capture makes of the ground truth up to this stamp.
   void publish_samples_in_order(std::uint64_t mocap_sequence, bool truth_needed);
   void publish_imu_again();
-  void publish_again();  // the newest of all samples
+  void publish_again();  // the newest sample of each topic
 
-  // Puts a report out when something changed or the last one has become old.
+  // Updates reports() on a change of state and every 50 ms of simulated time.
   void report();
   void note_slip(std::int64_t slipped_ns);
   void note_pause(bool paused) { report_.paused = paused; }
@@ -81,7 +83,7 @@ class SimulatedVehicle {
   plant::PlantSimulation simulation_;
   plant::CommandPath command_path_;
   plant::ActuatorWatchdog watchdog_;
-  // The newest; number 0 before the first.
+  // The newest samples; sequence number 0 before the first.
   comms::msg::Imu imu_message_;
   comms::msg::Battery battery_message_;
   comms::msg::RotorSpeeds rotor_speeds_message_;

@@ -63,7 +63,7 @@ TEST_F(BadInput, SeveralVehicles) {
   expect_refusal({file, "--vehicle-name", "a,b,c,d,e,f,g,h,i,j,k,l,m"},
                  "names 13 vehicles, at most 12 fly from one command");
   expect_refusal({file, "--vehicle-name", "a,b", "--spacing", "40"},
-                 "mission.yaml: begun 0 m north and -20 m east of the origin: item 2: y is -20.000 m");
+                 "mission.yaml: started at 0 m north and -20 m east of the origin: item 2: y is -20.000 m");
   const Ending sent =
       run_program("swiftlet", {"goto", "0", "0", "-1", "--vehicle-name", "kl1,kl2"}, folder_.path());
   EXPECT_EQ(sent.exit_code, 2);
@@ -79,7 +79,7 @@ TEST_F(BadInput, MissionThatIsCutShort) {
 TEST_F(BadInput, MissionWithoutATakeoff) {
   const std::string file =
       folder_.write("low.yaml", replaced(kMission, "  - {kind: takeoff, height_m: 1, speed_m_s: 0.5}\n", ""));
-  expect_refusal({file}, file + ": items: the first is no takeoff");
+  expect_refusal({file}, file + ": items: the first item is not a takeoff");
 }
 
 TEST_F(BadInput, MissionWithoutALand) {
@@ -124,7 +124,7 @@ TEST_F(BadInput, RecordFolderThatCannotBeMade) {
   const std::string file = folder_.write("file", "");
   const Ending end = run_program("swiftlet", {"fly", "square", "--record", file + "/record"}, folder_.path());
   EXPECT_EQ(end.exit_code, 2);
-  EXPECT_NE(end.errors.find("the folder cannot be made"), std::string::npos) << end.errors;
+  EXPECT_NE(end.errors.find("the folder cannot be created"), std::string::npos) << end.errors;
 }
 
 TEST_F(BadInput, OfTheOnlineCommands) {

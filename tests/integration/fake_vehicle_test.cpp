@@ -230,7 +230,7 @@ TEST_F(FakeVehicleFlight, AnotherMissionOfTheSameIdIsRefused) {
       kTimeout));
   EXPECT_FALSE(ack->accepted());
   EXPECT_EQ(ack->reason(),
-            "another mission has the id " + std::to_string(mission.id) + ": a new one needs a new id");
+            "mission id " + std::to_string(mission.id) + " belongs to another mission: upload with a new id");
 }
 
 }  // namespace

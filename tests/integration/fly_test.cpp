@@ -247,11 +247,11 @@ TEST_F(FlyInterrupted, LandsOnTheFirstInterrupt) {
 TEST_F(FlyInterrupted, EndsAtOnceOnTheSecond) {
   fly_.signal(SIGINT);
   ASSERT_TRUE(eventually(
-      [&] { return fly_.errors().find("interrupt again to end at once") != std::string::npos; }, 10s));
+      [&] { return fly_.errors().find("interrupt again to quit at once") != std::string::npos; }, 10s));
   const auto second = std::chrono::steady_clock::now();
   fly_.signal(SIGINT);
   ASSERT_EQ(fly_.wait(30s), 1) << reported(fly_);
-  EXPECT_EQ(json::parse(fly_.output()).at("reason"), "interrupted; ended in flight");
+  EXPECT_EQ(json::parse(fly_.output()).at("reason"), "interrupted; quit in flight");
   EXPECT_LT(std::chrono::steady_clock::now() - second, 10s);
   expect_end_without_leftovers();
 }

@@ -280,7 +280,7 @@ TEST_F(LockstepWithout, AnythingElseTimePassesAsFastAsItCan) {
   const auto mocap = start("swiftlet-mocap");
   const auto control = start("swiftlet-control");
   const auto plant = start("swiftlet-plant");
-  EXPECT_TRUE(eventually([&] { return control->errors().find("mocap is there") != std::string::npos; }, 20s))
+  EXPECT_TRUE(eventually([&] { return control->errors().find("mocap available") != std::string::npos; }, 20s))
       << plant->errors() << control->errors() << mocap->errors();
   plant->signal(SIGTERM);
   EXPECT_EQ(plant->wait(20s), 0) << plant->errors();

@@ -214,7 +214,7 @@ TEST_F(OnlineFlight, FlyNamesAVehicleThatFellSilent) {
       << fly.errors();
   plant_.signal(SIGKILL);
   ASSERT_EQ(fly.wait(30s), 1) << fly.errors();
-  EXPECT_EQ(json::parse(fly.output()).at("reason"), "the vehicle has said nothing for 3 s");
+  EXPECT_EQ(json::parse(fly.output()).at("reason"), "the vehicle has sent nothing for 3 s");
 }
 
 TEST_F(OnlineFlight, StatusNamesAllThatAPilotAsksFor) {
@@ -283,7 +283,7 @@ TEST_F(Online, SaysWhereItLookedWhenNothingIsThere) {
     EXPECT_EQ(end.errors, "swiftlet: " + std::string(command) +
                               ": no control service for vehicle kl7 in domain " +
                               std::to_string(lock_.domain()) +
-                              "; seen there: nothing; is it started, and in this domain (--domain, "
+                              "; processes found: none; is it running in this domain (--domain, "
                               "ROS_DOMAIN_ID)?\n");
   }
 }
@@ -311,7 +311,7 @@ TEST_F(Online, NamesTheVehiclesThatAreThereInstead) {
                                         "--vehicle-name", "kl8", "--localhost-only"},
                                        folder_.path());
         return end.exit_code == 1 &&
-               end.errors.find("seen there: nothing; other vehicles there: kl7 (--vehicle-name)") !=
+               end.errors.find("processes found: none; other vehicles found: kl7 (--vehicle-name)") !=
                    std::string::npos;
       },
       20s));
@@ -323,7 +323,7 @@ TEST_F(Online, SaysWhatItSawWhenOnlyControlIsMissing) {
       [&] {
         const Ending end = swiftlet({"arm", "--timeout", "1"});
         return end.exit_code == 1 &&
-               end.errors.find("seen there: plant; topics seen: battery, ground_truth, imu, ") !=
+               end.errors.find("processes found: plant; topics found: battery, ground_truth, imu, ") !=
                    std::string::npos;
       },
       20s));

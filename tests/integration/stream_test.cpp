@@ -94,7 +94,7 @@ TEST_F(OnlineFlight, TheExampleFliesAMissionFileAndStreams) {
       run_program("example-fly-mission", {file, "kl7", std::to_string(lock_.domain()), "--localhost-only"},
                   folder_.path(), 120s);
   EXPECT_EQ(end.exit_code, 0) << end.errors << end.output;
-  for (const char* line : {"the control process is heard: ", "arm: done\n", "take off: done\n",
+  for (const char* line : {"control process connected: ", "arm: done\n", "take off: done\n",
                            "mission: done\n", "land: done\n"})
     EXPECT_NE(end.output.find(line), std::string::npos) << line << "\n" << end.output;
   const json now = status();

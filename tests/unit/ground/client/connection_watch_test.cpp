@@ -35,7 +35,7 @@ TEST_F(Connection, IsToldWhenItComesGoesAndComesBack) {
   ASSERT_TRUE(come);
   EXPECT_EQ(come->kind, Kind::kConnected);
   EXPECT_EQ(come->controller, 7U);
-  EXPECT_EQ(come->text, "the control process is heard: disarmed (started)");
+  EXPECT_EQ(come->text, "control process connected: disarmed (started)");
   EXPECT_FALSE(look_after(900ms));
   EXPECT_TRUE(is_connected(view_, now_));
   const auto gone = look_after(200ms);
@@ -47,7 +47,7 @@ TEST_F(Connection, IsToldWhenItComesGoesAndComesBack) {
   const auto back = look_after(10ms);
   ASSERT_TRUE(back);
   EXPECT_EQ(back->kind, Kind::kConnected);
-  EXPECT_EQ(back->text, "the control process is heard again: disarmed (started)");
+  EXPECT_EQ(back->text, "control process connected again: disarmed (started)");
 }
 
 TEST_F(Connection, ToAnotherProcessIsToldWithOrWithoutSilence) {
@@ -58,7 +58,7 @@ TEST_F(Connection, ToAnotherProcessIsToldWithOrWithoutSilence) {
   ASSERT_TRUE(at_once);
   EXPECT_EQ(at_once->kind, Kind::kReplaced);
   EXPECT_EQ(at_once->controller, 8U);
-  EXPECT_EQ(at_once->text, "another control process has the vehicle now: disarmed (started)");
+  EXPECT_EQ(at_once->text, "another control process controls the vehicle: disarmed (started)");
   EXPECT_FALSE(look_after(100ms));
   EXPECT_EQ(look_after(2s)->kind, Kind::kLost);
   hear(9);

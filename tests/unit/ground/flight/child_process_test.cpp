@@ -110,7 +110,7 @@ TEST_F(ChildProcessTest, GroupNamesTheOneThatDied) {
   while (!exited_process && std::chrono::steady_clock::now() < deadline)
     exited_process = processes.exited_process();
   EXPECT_EQ(exited_process.value_or("none"),
-            "ill was killed by signal 11 (Segmentation fault); it said last: out of luck");
+            "ill was killed by signal 11 (Segmentation fault); last log line: out of luck");
 }
 
 TEST_F(ChildProcessTest, GroupSaysWhoDidNotEndCleanly) {

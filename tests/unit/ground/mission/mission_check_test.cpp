@@ -83,7 +83,7 @@ TEST_F(MissionChecked, AVehicleThatIsTooHeavyCannotAndIsToldWhereAndWhy) {
   const std::string table = check_table(check, file, vehicle_.name);
   EXPECT_NE(table.find("item 1 (takeoff, line 10): greatest thrust of a rotor is "), std::string::npos)
       << table;
-  EXPECT_NE(table.find(vehicle_.name + " cannot fly it"), std::string::npos) << table;
+  EXPECT_NE(table.find(vehicle_.name + " cannot fly the mission"), std::string::npos) << table;
   const auto json = nlohmann::json::parse(check_json(check, file, vehicle_.name, settings_.name));
   EXPECT_EQ(json.at("feasible"), false);
   const auto& demand = json.at("items").at(0).at("demands").at(static_cast<std::size_t>(Demand::kRotorMost));

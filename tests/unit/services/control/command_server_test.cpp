@@ -257,7 +257,7 @@ TEST_F(Desk, MoreThanFitAreRefused) {
   const std::vector<RequestResult> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 1U);
   EXPECT_EQ(answers[0].id, static_cast<std::uint64_t>(kMaxPendingRequests) + 1);
-  EXPECT_STREQ(answers[0].outcome.reason, "32 requests are under way, no more fit");
+  EXPECT_STREQ(answers[0].outcome.reason, "32 requests are pending, the limit");
   step();
   EXPECT_EQ(command_server_.collect().size(), static_cast<std::size_t>(kMaxPendingRequests));
 }
@@ -466,7 +466,7 @@ TEST_F(Desk, AnotherMissionOfAKnownIdIsRefusedAndTheSameIsNot) {
   const std::vector<RequestResult> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 2U);
   EXPECT_EQ(answers[0].client, kClient + 1);
-  EXPECT_STREQ(answers[0].outcome.reason, "another mission has the id 2: a new one needs a new id");
+  EXPECT_STREQ(answers[0].outcome.reason, "mission id 2 belongs to another mission: upload with a new id");
   EXPECT_TRUE(answers[1].outcome.accepted) << answers[1].outcome.reason;
 }
 

@@ -29,7 +29,7 @@ TEST(PendingRequest, IsOneThreadsAlone) {
     const auto race = [&](State as, bool& mine) {
       ++ready;
       while (ready < 2) std::this_thread::yield();
-      mine = request.lock(as);
+      mine = request.claim(as);
       if (mine) request.outcome.accepted = as == State::kTaken;
     };
     std::thread loop([&] { race(State::kTaken, taken); });
