@@ -19,11 +19,11 @@ namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{4} << 20;
 constexpr std::size_t kMaxDepth = 24;
-constexpr std::size_t kMaxKeys = 1000;  // of one map
+constexpr std::size_t kMaxKeys = 1000;  // in one map
 constexpr std::size_t kMaxShownLength = 60;
 
-// Ends the document: without it yaml-cpp takes a quote that is never closed for a text that ends with the
-// file.
+// Marks the end of the document. Without it yaml-cpp accepts an unterminated quote as a text that ends with
+// the file.
 constexpr const char* kDocumentEnd = "...\n";
 
 enum class Kind { kNull, kScalar, kList, kMap };
@@ -37,13 +37,13 @@ std::string shown(double number) {
 
 bool is_printable(char c) { return static_cast<unsigned char>(c) >= 0x20 && c != 0x7f; }
 
-// A text from the file as it may stand in a message.
+// A text from the file, shortened and without control characters, for messages.
 std::string shown(std::string_view text) {
   std::string out;
   for (const char c : text.substr(0, kMaxShownLength)) out += is_printable(c) ? c : '?';
   if (text.size() > kMaxShownLength) {
     while (!out.empty() && (static_cast<unsigned char>(out.back()) & 0xc0) == 0x80)
-      out.pop_back();  // half a UTF-8 character
+      out.pop_back();  // truncated UTF-8 character
     if (!out.empty() && (static_cast<unsigned char>(out.back()) & 0x80) != 0) out.pop_back();
     out += "...";
   }
@@ -59,7 +59,7 @@ std::string joined(const std::vector<std::string>& names) {
   return out;
 }
 
-// By how many letters that are put in, left out or replaced one becomes the other (Levenshtein 1966).
+// Edit distance: the number of inserted, deleted or replaced characters (Levenshtein 1966).
 std::size_t distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
@@ -75,7 +75,7 @@ std::size_t distance(const std::string& a, const std::string& b) {
   return row[b.size()];
 }
 
-// ", nearest is hold_s", if one is near enough to have been meant: it begins alike, or few letters differ.
+// "; nearest is hold_s" if a name starts with the wanted text or differs from it by few letters, else "".
 std::string nearest_of(const std::vector<std::string>& names, const std::string& wanted) {
   const auto nearest = std::min_element(names.begin(), names.end(), [&](const auto& a, const auto& b) {
     return distance(a, wanted) < distance(b, wanted);
@@ -93,8 +93,8 @@ std::string unknown_key(const std::vector<std::string>& known, const std::string
   return "is unknown, must be one of " + joined(known) + nearest_of(known, key);
 }
 
-// Length of the UTF-8 character that text starts with; 0 if there is none (truncated, overlong, surrogate,
-// beyond U+10FFFF).
+// Length in bytes of the UTF-8 character at the start of text; 0 if it is invalid (truncated, overlong,
+// surrogate, beyond U+10FFFF).
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned>(static_cast<unsigned char>(text[i])); };
   const unsigned lead = byte(0);
@@ -109,7 +109,7 @@ std::size_t utf8_length(std::string_view text) {
   return overlong || no_character ? 0 : length;
 }
 
-// What no text file holds is refused before the YAML parser sees it.
+// Refuses what is not a text file before the YAML parser reads it.
 void check_text(std::string_view text, const std::string& file) {
   if (text.size() > kMaxBytes) {
     throw ConfigError(file, 0, "", "is too large, must hold at most " + std::to_string(kMaxBytes) + " bytes");
@@ -151,9 +151,9 @@ struct ConfigNode::Value {
   std::string scalar;
   bool quoted = false;
   std::vector<std::unique_ptr<Value>> children;
-  std::vector<std::string> names;  // of the children of a map
-  std::vector<std::string> asked;  // keys that the program knows here
-  bool open = false;               // all keys are known here
+  std::vector<std::string> names;  // keys of a map's children
+  std::vector<std::string> asked;  // keys that the program has read
+  bool open = false;               // entries() has read all keys
 
   std::string shown_value() const {
     switch (kind) {
@@ -188,7 +188,7 @@ namespace {
 
 using Value = ConfigNode::Value;
 
-// Builds the tree from the parser's events, and refuses what is not wanted as soon as it is seen.
+// Builds the tree from the parser's events. Refuses unsupported YAML as soon as it occurs.
 class TreeBuilder final : public YAML::EventHandler {
  public:
   explicit TreeBuilder(std::string file) : file_(std::move(file)) {}
@@ -224,7 +224,7 @@ class TreeBuilder final : public YAML::EventHandler {
  private:
   struct Frame {
     Value* value = nullptr;
-    bool has_name = false;  // of a map: the key has come, its value is next
+    bool has_name = false;  // map: the key has been read, its value is next
     int name_line = 0;
   };
 
@@ -239,7 +239,7 @@ class TreeBuilder final : public YAML::EventHandler {
     stack_.push_back({value, false});
   }
 
-  // Returns null for what was taken as a key.
+  // Returns null if the scalar is a key of the map.
   Value* add(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, Kind kind,
              const std::string& text) {
     if (anchor != 0) fail(mark, "has an anchor, must be without");
@@ -287,7 +287,7 @@ class TreeBuilder final : public YAML::EventHandler {
                      std::to_string(kMaxShownLength) + " bytes");
     }
     if (frame.value->names.size() == kMaxKeys) {
-      fail(mark, "is a map of too many keys, must be at most " + std::to_string(kMaxKeys));
+      fail(mark, "has too many keys, must have at most " + std::to_string(kMaxKeys));
     }
     frame.value->names.push_back(name);
     frame.has_name = true;

@@ -62,7 +62,7 @@ std::string_view without_byte_order_mark(std::string_view text) {
   return text;
 }
 
-// Lines of a text, one after the other; a last line that is empty is none.
+// Iterates over the lines of a text. An empty last line does not count.
 class Lines {
  public:
   explicit Lines(std::string_view text) : rest_(text) {}
