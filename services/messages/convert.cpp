@@ -11,7 +11,7 @@ namespace {
 
 using namespace wire;
 
-constexpr double kMaxRotorSpeed = 1e5;  // rad/s; none turns as fast
+constexpr double kMaxRotorSpeed = 1e5;  // rad/s, above any real rotor
 
 void check_segments(const std::vector<msg::PolynomialSegment>& segments, Check& check) {
   if (!check.ok()) return;

@@ -113,7 +113,7 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
   return {};
 }
 
-// Whoever adds to the state adds to the message: else a standby would go on without it.
+// A field added to the state must be added to the message: otherwise a standby continues without it.
 static_assert(sizeof(control::SupervisorState) == kReplicatedStateBytes,
               "controller_state does not carry all of SupervisorState");
 
