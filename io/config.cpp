@@ -29,7 +29,7 @@ constexpr const char* kDocumentEnd = "...\n";
 enum class Kind { kNull, kScalar, kList, kMap };
 
 // A number as a person would write it: 0.1, not 0.10000000000000001.
-std::string shown(double number) {
+std::string format_value(double number) {
   std::ostringstream out;
   out << number;
   return out.str();
@@ -38,7 +38,7 @@ std::string shown(double number) {
 bool is_printable(char c) { return static_cast<unsigned char>(c) >= 0x20 && c != 0x7f; }
 
 // A text from the file, shortened and without control characters, for messages.
-std::string shown(std::string_view text) {
+std::string format_value(std::string_view text) {
   std::string out;
   for (const char c : text.substr(0, kMaxShownLength)) out += is_printable(c) ? c : '?';
   if (text.size() > kMaxShownLength) {
@@ -138,9 +138,9 @@ bool Bounds::contains(double value) const {
 
 std::string Bounds::to_string() const {
   std::string out;
-  if (std::isfinite(min)) out = (min_open ? "above " : "at least ") + shown(min);
+  if (std::isfinite(min)) out = (min_open ? "above " : "at least ") + format_value(min);
   if (std::isfinite(max))
-    out += (out.empty() ? "" : " and ") + std::string(max_open ? "below " : "at most ") + shown(max);
+    out += (out.empty() ? "" : " and ") + std::string(max_open ? "below " : "at most ") + format_value(max);
   return out.empty() ? "a finite number" : out;
 }
 
@@ -151,16 +151,17 @@ struct ConfigNode::Value {
   std::string scalar;
   bool quoted = false;
   std::vector<std::unique_ptr<Value>> children;
-  std::vector<std::string> names;  // keys of a map's children
-  std::vector<std::string> asked;  // keys that the program has read
-  bool open = false;               // entries() has read all keys
+  std::vector<std::string> names;      // keys of a map's children
+  std::vector<std::string> read_keys;  // keys that the program has read
+  bool open = false;                   // entries() has read all keys
 
-  std::string shown_value() const {
+  std::string describe() const {
     switch (kind) {
       case Kind::kNull:
         return "empty";
       case Kind::kScalar:
-        return quoted ? '"' + shown(std::string_view(scalar)) + '"' : shown(std::string_view(scalar));
+        return quoted ? '"' + format_value(std::string_view(scalar)) + '"'
+                      : format_value(std::string_view(scalar));
       case Kind::kList:
         return "a list";
       case Kind::kMap:
@@ -174,8 +175,8 @@ struct ConfigNode::Value {
     return it == names.end() ? nullptr : children[static_cast<std::size_t>(it - names.begin())].get();
   }
 
-  void ask(const std::string& name) {
-    if (std::find(asked.begin(), asked.end(), name) == asked.end()) asked.push_back(name);
+  void mark_read(const std::string& name) {
+    if (std::find(read_keys.begin(), read_keys.end(), name) == read_keys.end()) read_keys.push_back(name);
   }
 };
 
@@ -244,7 +245,7 @@ class TreeBuilder final : public YAML::EventHandler {
              const std::string& text) {
     if (anchor != 0) fail(mark, "has an anchor, must be without");
     if (!tag.empty() && tag != "?" && tag != "!") {
-      fail(mark, "has the tag " + shown(std::string_view(tag)) + ", must be without");
+      fail(mark, "has the tag " + format_value(std::string_view(tag)) + ", must be without");
     }
     if (!stack_.empty() && stack_.back().value->kind == Kind::kMap && !stack_.back().has_name) {
       if (kind != Kind::kScalar) fail(mark, "has a key that is not a text, must be a plain name");
@@ -283,7 +284,7 @@ class TreeBuilder final : public YAML::EventHandler {
     }
     if (name.empty() || name.size() > kMaxShownLength ||
         !std::all_of(name.begin(), name.end(), is_printable)) {
-      fail(mark, "has the key \"" + shown(std::string_view(name)) + "\", must be one line of 1 to " +
+      fail(mark, "has the key \"" + format_value(std::string_view(name)) + "\", must be one line of 1 to " +
                      std::to_string(kMaxShownLength) + " bytes");
     }
     if (frame.value->names.size() == kMaxKeys) {
@@ -303,8 +304,8 @@ void reject_unknown(const std::string& file, const Value& value) {
   for (std::size_t i = 0; i < value.children.size(); ++i) {
     const Value& child = *value.children[i];
     if (value.kind == Kind::kMap && !value.open &&
-        std::find(value.asked.begin(), value.asked.end(), value.names[i]) == value.asked.end()) {
-      throw ConfigError(file, child.line, child.key, unknown_key(value.asked, value.names[i]));
+        std::find(value.read_keys.begin(), value.read_keys.end(), value.names[i]) == value.read_keys.end()) {
+      throw ConfigError(file, child.line, child.key, unknown_key(value.read_keys, value.names[i]));
     }
     reject_unknown(file, child);
   }
@@ -319,12 +320,12 @@ void ConfigNode::fail(const std::string& message) const {
 }
 
 void ConfigNode::fail_type(const std::string& wanted) const {
-  fail("is " + value_->shown_value() + ", must be " + wanted);
+  fail("is " + value_->describe() + ", must be " + wanted);
 }
 
 std::optional<ConfigNode> ConfigNode::find(const std::string& key) const {
   if (value_->kind != Kind::kMap) fail_type("a map");
-  value_->ask(key);
+  value_->mark_read(key);
   Value* const child = value_->child(key);
   if (child == nullptr) return std::nullopt;
   return ConfigNode(tree_, child);
@@ -500,7 +501,7 @@ ConfigNode parse_config(std::string_view text, const std::string& file_name) {
     throw ConfigError(file_name, 0, "", "is empty, must be a YAML map");
   if (tree->root->kind != Kind::kMap) {
     throw ConfigError(file_name, tree->root->line, "",
-                      "is " + tree->root->shown_value() + ", must be a YAML map");
+                      "is " + tree->root->describe() + ", must be a YAML map");
   }
   ConfigNode::Value* const root = tree->root.get();
   return {std::move(tree), root};

@@ -97,25 +97,25 @@ int motors(const Measurements& table, Quantity first) {
 
 // Returns whether the column names have the first of two endings; nothing if none of them has either. Throws
 // if the columns differ.
-std::optional<bool> says(const Measurements& table, const std::vector<Quantity>& columns,
-                         const std::string& first, const std::string& second) {
-  std::optional<bool> said;
-  bool any_silent = false;
+std::optional<bool> has_first_ending(const Measurements& table, const std::vector<Quantity>& columns,
+                                     const std::string& first, const std::string& second) {
+  std::optional<bool> declared;
+  bool any_without = false;
   for (const Quantity column : columns) {
     const std::string& header = table.header(column);
     const bool is_first = header.find(first) != std::string::npos;
     const bool is_second = header.find(second) != std::string::npos;
-    any_silent = any_silent || !(is_first || is_second);
+    any_without = any_without || !(is_first || is_second);
     if (!(is_first || is_second)) continue;
-    if ((said && *said != is_first))
+    if ((declared && *declared != is_first))
       throw ConfigError(table.file(), 1, "header", "mixes " + first + " and " + second);
-    said = is_first;
+    declared = is_first;
   }
-  if (said && any_silent)
+  if (declared && any_without)
     throw ConfigError(
         table.file(), 1, "header",
         "names axes in some columns only; must end all names in " + first + " or all in " + second);
-  return said;
+  return declared;
 }
 
 // Returns whether the body axes are forward-right-down; otherwise they are forward-left-up.
@@ -124,29 +124,30 @@ bool is_frd(const Measurements& table, const std::vector<Eigen::Vector3d>& speci
   std::vector<Quantity> columns;
   for (int i = 0; i < 3; ++i)
     columns.insert(columns.end(), {Quantity::kSpecificForceX + i, Quantity::kBodyRateX + i});
-  std::optional<bool> said = says(table, columns, "_frd", "_flu");
+  std::optional<bool> declared = has_first_ending(table, columns, "_frd", "_flu");
   if (axes != BodyAxes::kAsSaid) {
     const bool frd = axes == BodyAxes::kFrd;
-    if (said && *said != frd)
-      throw ConfigError(table.file(), 1, "header",
-                        std::string("names ") + (*said ? "_frd" : "_flu") + " axes, but --axes names others");
-    said = frd;
+    if (declared && *declared != frd)
+      throw ConfigError(
+          table.file(), 1, "header",
+          std::string("names ") + (*declared ? "_frd" : "_flu") + " axes, but --axes names others");
+    declared = frd;
   }
   double mean = 0.0;
   // The vehicle is upright in the first half of a log; at the end it may lie upside down.
   const std::size_t upright = std::max<std::size_t>(specific_force.size() / 2, 1);
   for (std::size_t row = 0; row < upright; ++row)
     mean += specific_force[row].z() / static_cast<double>(upright);
-  const bool is_told = std::abs(mean) > kNearGravity * plant::kGravity;
-  if (said && is_told && *said != (mean < 0.0)) {
+  const bool shows_gravity = std::abs(mean) > kNearGravity * plant::kGravity;
+  if (declared && shows_gravity && *declared != (mean < 0.0)) {
     throw ConfigError(
         table.file(), 1, "specific_force_z",
         "has the mean " + std::to_string(mean) + " m/s^2, must be " +
-            (*said ? "negative in forward-right-down axes" : "positive in forward-left-up axes") +
+            (*declared ? "negative in forward-right-down axes" : "positive in forward-left-up axes") +
             "; check the axes");
   }
-  if (said) return *said;
-  if (!is_told) {
+  if (declared) return *declared;
+  if (!shows_gravity) {
     throw ConfigError(
         table.file(), 1, "header",
         "does not name its body axes, and gravity does not show them: the mean specific force along z is " +
@@ -197,14 +198,14 @@ void read_commands(const Measurements& table, const plant::Vehicle& base, Flight
     }
   }
   log.running.assign(table.row_count(), 0);
-  const bool says_running = table.has(Quantity::kRunning);
+  const bool has_running = table.has(Quantity::kRunning);
   for (std::size_t row = 0; row < log.running.size(); ++row) {
     const plant::PerRotor& command = log.command[row];
-    log.running[row] = says_running
+    log.running[row] = has_running
                            ? table.column(Quantity::kRunning)[row] != 0.0
                            : std::any_of(command.begin(), command.end(), [](double c) { return c > 0.0; });
   }
-  if (!says_running)
+  if (!has_running)
     assumptions.emplace_back(
         "rotors are taken as off where all commands are 0, because there is no column running");
 }
@@ -231,7 +232,7 @@ void read_poses(const Measurements& table, FlightLog& log) {
   columns.reserve(7);
   for (int i = 0; i < 3; ++i) columns.push_back(Quantity::kPositionX + i);
   for (int i = 0; i < 4; ++i) columns.push_back(Quantity::kOrientationW + i);
-  const std::optional<bool> ned = says(table, columns, "_ned", "_enu");
+  const std::optional<bool> ned = has_first_ending(table, columns, "_ned", "_enu");
   if (!ned) {
     throw ConfigError(table.file(), 1, "header",
                       "does not name the frame of its poses: end position_x and the like in _ned or _enu, "

@@ -163,7 +163,7 @@ class Reader {
       node.fail(std::string("cannot be planned: ") + fault.what());
     }
     require_flyable(planned, points);
-    return flown(node, std::move(planned.segments), yaw_free, path.limits.speed);
+    return add_trajectory(node, std::move(planned.segments), yaw_free, path.limits.speed);
   }
 
   MissionItem trajectory(const ConfigNode& node) {
@@ -179,7 +179,7 @@ class Reader {
     TrajectoryFile read = load_trajectory_file(path.string(), name);
     for (const std::string& assumption : read.assumptions)
       file_.assumptions.push_back(name.text() + ": " + assumption);
-    return flown(node, std::move(read.segments), yaw.has_value(), speed(node));
+    return add_trajectory(node, std::move(read.segments), yaw.has_value(), speed(node));
   }
 
   TrajectoryFile load_trajectory_file(const std::string& path, const ConfigNode& name) const {
@@ -195,8 +195,8 @@ class Reader {
   }
 
   // Adds the segments to those of the mission.
-  MissionItem flown(const ConfigNode& node, std::vector<control::PolynomialSegment> segments, bool yaw_free,
-                    double speed) {
+  MissionItem add_trajectory(const ConfigNode& node, std::vector<control::PolynomialSegment> segments,
+                             bool yaw_free, double speed) {
     std::vector<control::PolynomialSegment>& all = file_.mission.segments;
     MissionItem item;
     item.kind = MissionItemKind::kTrajectory;

@@ -134,17 +134,17 @@ const Form& form_of(const std::string& file, const std::vector<int>& slots) {
                             ", or " + list_of({kP, kQ, kR, kThrust}));
   }
   std::vector<int> used = {kT};
-  const auto demand = [&](const std::vector<int>& group) {
+  const auto require = [&](const std::vector<int>& group) {
     for (const int slot : group) {
       if (!has(slot))
         refuse_header(file, "has no column " + header_of(slot) + ", must have " + list_of(group));
     }
     used.insert(used.end(), group.begin(), group.end());
   };
-  demand({kT});
-  demand(form->needed);
+  require({kT});
+  require(form->needed);
   for (const std::vector<int>& group : form->more) {
-    if (std::any_of(group.begin(), group.end(), has)) demand(group);
+    if (std::any_of(group.begin(), group.end(), has)) require(group);
   }
   for (const int slot : slots) {
     if (std::find(used.begin(), used.end(), slot) == used.end()) {

@@ -301,14 +301,15 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
   void on_requested_incompatible_qos(dds::DataReader* reader,
                                      const dds::RequestedIncompatibleQosStatus&) override {
     const EndpointQos requested = endpoint_qos(reader->get_qos().get_readerqos(dds::SUBSCRIBER_QOS_DEFAULT));
-    log_conflicts(reader->guid(), reader->get_topicdescription()->get_name(), writers, "is not heard",
+    log_conflicts(reader->guid(), reader->get_topicdescription()->get_name(), writers, "is not received",
                   [&](const EndpointQos& offered) { return conflicts(offered, requested); });
   }
   void on_offered_incompatible_qos(dds::DataWriter* writer,
                                    const dds::OfferedIncompatibleQosStatus&) override {
     const EndpointQos offered =
         endpoint_qos(writer->get_qos().get_writerqos(dds::PUBLISHER_QOS_DEFAULT, dds::TOPIC_QOS_DEFAULT));
-    log_conflicts(writer->guid(), writer->get_topic()->get_name(), readers, "does not hear this process",
+    log_conflicts(writer->guid(), writer->get_topic()->get_name(), readers,
+                  "does not receive from this process",
                   [&](const EndpointQos& requested) { return conflicts(offered, requested); });
   }
   template <class ConflictsWith>

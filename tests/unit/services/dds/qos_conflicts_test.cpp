@@ -152,11 +152,11 @@ TEST_F(Conflict, BothSidesNameTopicPolicyAndPeer) {
   const auto subscription = listener_.subscribe<msg::Imu>(kReliableImu, [](const msg::Imu&) {});
 
   EXPECT_TRUE(is_said({"rt/kl1/imu: 'talker' (",
-                       ") is not heard, their QoS is incompatible: "
+                       ") is not received, their QoS is incompatible: "
                        "reliability (offered best effort, requested reliable)"}))
       << all_lines();
   EXPECT_TRUE(is_said({"rt/kl1/imu: 'listener' (",
-                       ") does not hear this process, their QoS is incompatible: "
+                       ") does not receive from this process, their QoS is incompatible: "
                        "reliability (offered best effort, requested reliable)"}))
       << all_lines();
   EXPECT_EQ(publisher.matched(), 0);
@@ -171,8 +171,9 @@ TEST_F(Conflict, IsToldAlsoByWhoComesLater) {
 
   const std::string policies =
       "ownership (offered shared, requested exclusive), deadline (offered none, requested 50 ms)";
-  EXPECT_TRUE(is_said({"rt/kl1/actuator_command: 'talker' (", "is not heard", policies})) << all_lines();
-  EXPECT_TRUE(is_said({"rt/kl1/actuator_command: 'listener' (", "does not hear", policies})) << all_lines();
+  EXPECT_TRUE(is_said({"rt/kl1/actuator_command: 'talker' (", "is not received", policies})) << all_lines();
+  EXPECT_TRUE(is_said({"rt/kl1/actuator_command: 'listener' (", "does not receive", policies}))
+      << all_lines();
 }
 
 TEST_F(Conflict, ManyMakeOneLineASecond) {
@@ -182,8 +183,9 @@ TEST_F(Conflict, ManyMakeOneLineASecond) {
   for (int i = 0; i < 5; ++i)
     subscriptions.push_back(listener_.subscribe<msg::Imu>(kReliableImu, [](const msg::Imu&) {}));
 
-  EXPECT_TRUE(is_said({"does not hear this process", "(and 3 more in the last second)"})) << all_lines();
-  EXPECT_EQ(count(lines_.items(), {"does not hear this process"}), 2) << all_lines();
+  EXPECT_TRUE(is_said({"does not receive from this process", "(and 3 more in the last second)"}))
+      << all_lines();
+  EXPECT_EQ(count(lines_.items(), {"does not receive from this process"}), 2) << all_lines();
 }
 
 TEST_F(Conflict, OnesThatMatchAreNotMentioned) {
@@ -194,7 +196,7 @@ TEST_F(Conflict, OnesThatMatchAreNotMentioned) {
       listener_.subscribe<msg::MocapPose>({"mocap_pose", Qos::kRequest}, [](const msg::MocapPose&) {});
 
   ASSERT_TRUE(eventually([&] { return good.matched() == 1 && heard.matched() == 1; }));
-  ASSERT_TRUE(is_said({"rt/kl1/mocap_pose", "is not heard"})) << all_lines();
+  ASSERT_TRUE(is_said({"rt/kl1/mocap_pose", "is not received"})) << all_lines();
   EXPECT_EQ(count(lines_.items(), {"rt/kl1/imu"}), 0) << all_lines();
 }
 
