@@ -1,4 +1,4 @@
-// Files that are there whole or not at all.
+// Atomic writes: a reader sees the old file or the complete new one, never a part.
 #pragma once
 
 #include <filesystem>
@@ -6,7 +6,8 @@
 
 namespace swiftlet::ground {
 
-// Throws std::runtime_error, and leaves what was there before.
+// Writes FILE.part and renames it to the file. Throws std::runtime_error if that fails; the old file then
+// stays unchanged.
 void write_whole_file(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace swiftlet::ground

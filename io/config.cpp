@@ -19,17 +19,17 @@ namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{4} << 20;
 constexpr std::size_t kMaxDepth = 24;
-constexpr std::size_t kMaxKeys = 1000;  // of one map
+constexpr std::size_t kMaxKeys = 1000;  // in one map
 constexpr std::size_t kMaxShownLength = 60;
 
-// Ends the document: without it yaml-cpp takes a quote that is never closed for a text that ends with the
-// file.
+// Marks the end of the document. Without it yaml-cpp accepts an unterminated quote as a text that ends with
+// the file.
 constexpr const char* kDocumentEnd = "...\n";
 
 enum class Kind { kNull, kScalar, kList, kMap };
 
 // A number as a person would write it: 0.1, not 0.10000000000000001.
-std::string shown(double number) {
+std::string format_value(double number) {
   std::ostringstream out;
   out << number;
   return out.str();
@@ -37,13 +37,13 @@ std::string shown(double number) {
 
 bool is_printable(char c) { return static_cast<unsigned char>(c) >= 0x20 && c != 0x7f; }
 
-// A text from the file as it may stand in a message.
-std::string shown(std::string_view text) {
+// A text from the file, shortened and without control characters, for messages.
+std::string format_value(std::string_view text) {
   std::string out;
   for (const char c : text.substr(0, kMaxShownLength)) out += is_printable(c) ? c : '?';
   if (text.size() > kMaxShownLength) {
     while (!out.empty() && (static_cast<unsigned char>(out.back()) & 0xc0) == 0x80)
-      out.pop_back();  // half a UTF-8 character
+      out.pop_back();  // truncated UTF-8 character
     if (!out.empty() && (static_cast<unsigned char>(out.back()) & 0x80) != 0) out.pop_back();
     out += "...";
   }
@@ -59,7 +59,7 @@ std::string joined(const std::vector<std::string>& names) {
   return out;
 }
 
-// By how many letters that are put in, left out or replaced one becomes the other (Levenshtein 1966).
+// Edit distance: the number of inserted, deleted or replaced characters (Levenshtein 1966).
 std::size_t distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
@@ -75,7 +75,7 @@ std::size_t distance(const std::string& a, const std::string& b) {
   return row[b.size()];
 }
 
-// ", nearest is hold_s", if one is near enough to have been meant: it begins alike, or few letters differ.
+// "; nearest is hold_s" if a name starts with the wanted text or differs from it by few letters, else "".
 std::string nearest_of(const std::vector<std::string>& names, const std::string& wanted) {
   const auto nearest = std::min_element(names.begin(), names.end(), [&](const auto& a, const auto& b) {
     return distance(a, wanted) < distance(b, wanted);
@@ -93,8 +93,8 @@ std::string unknown_key(const std::vector<std::string>& known, const std::string
   return "is unknown, must be one of " + joined(known) + nearest_of(known, key);
 }
 
-// Length of the UTF-8 character that text starts with; 0 if there is none (truncated, overlong, surrogate,
-// beyond U+10FFFF).
+// Length in bytes of the UTF-8 character at the start of text; 0 if it is invalid (truncated, overlong,
+// surrogate, beyond U+10FFFF).
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned>(static_cast<unsigned char>(text[i])); };
   const unsigned lead = byte(0);
@@ -109,7 +109,7 @@ std::size_t utf8_length(std::string_view text) {
   return overlong || no_character ? 0 : length;
 }
 
-// What no text file holds is refused before the YAML parser sees it.
+// Refuses what is not a text file before the YAML parser reads it.
 void check_text(std::string_view text, const std::string& file) {
   if (text.size() > kMaxBytes) {
     throw ConfigError(file, 0, "", "is too large, must hold at most " + std::to_string(kMaxBytes) + " bytes");
@@ -138,9 +138,9 @@ bool Bounds::contains(double value) const {
 
 std::string Bounds::to_string() const {
   std::string out;
-  if (std::isfinite(min)) out = (min_open ? "above " : "at least ") + shown(min);
+  if (std::isfinite(min)) out = (min_open ? "above " : "at least ") + format_value(min);
   if (std::isfinite(max))
-    out += (out.empty() ? "" : " and ") + std::string(max_open ? "below " : "at most ") + shown(max);
+    out += (out.empty() ? "" : " and ") + std::string(max_open ? "below " : "at most ") + format_value(max);
   return out.empty() ? "a finite number" : out;
 }
 
@@ -151,16 +151,17 @@ struct ConfigNode::Value {
   std::string scalar;
   bool quoted = false;
   std::vector<std::unique_ptr<Value>> children;
-  std::vector<std::string> names;  // of the children of a map
-  std::vector<std::string> asked;  // keys that the program knows here
-  bool open = false;               // all keys are known here
+  std::vector<std::string> names;      // keys of a map's children
+  std::vector<std::string> read_keys;  // keys that the program has read
+  bool open = false;                   // entries() has read all keys
 
-  std::string shown_value() const {
+  std::string describe() const {
     switch (kind) {
       case Kind::kNull:
         return "empty";
       case Kind::kScalar:
-        return quoted ? '"' + shown(std::string_view(scalar)) + '"' : shown(std::string_view(scalar));
+        return quoted ? '"' + format_value(std::string_view(scalar)) + '"'
+                      : format_value(std::string_view(scalar));
       case Kind::kList:
         return "a list";
       case Kind::kMap:
@@ -174,8 +175,8 @@ struct ConfigNode::Value {
     return it == names.end() ? nullptr : children[static_cast<std::size_t>(it - names.begin())].get();
   }
 
-  void ask(const std::string& name) {
-    if (std::find(asked.begin(), asked.end(), name) == asked.end()) asked.push_back(name);
+  void mark_read(const std::string& name) {
+    if (std::find(read_keys.begin(), read_keys.end(), name) == read_keys.end()) read_keys.push_back(name);
   }
 };
 
@@ -188,7 +189,7 @@ namespace {
 
 using Value = ConfigNode::Value;
 
-// Builds the tree from the parser's events, and refuses what is not wanted as soon as it is seen.
+// Builds the tree from the parser's events. Refuses unsupported YAML as soon as it occurs.
 class TreeBuilder final : public YAML::EventHandler {
  public:
   explicit TreeBuilder(std::string file) : file_(std::move(file)) {}
@@ -224,7 +225,7 @@ class TreeBuilder final : public YAML::EventHandler {
  private:
   struct Frame {
     Value* value = nullptr;
-    bool has_name = false;  // of a map: the key has come, its value is next
+    bool has_name = false;  // map: the key has been read, its value is next
     int name_line = 0;
   };
 
@@ -239,12 +240,12 @@ class TreeBuilder final : public YAML::EventHandler {
     stack_.push_back({value, false});
   }
 
-  // Returns null for what was taken as a key.
+  // Returns null if the scalar is a key of the map.
   Value* add(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, Kind kind,
              const std::string& text) {
     if (anchor != 0) fail(mark, "has an anchor, must be without");
     if (!tag.empty() && tag != "?" && tag != "!") {
-      fail(mark, "has the tag " + shown(std::string_view(tag)) + ", must be without");
+      fail(mark, "has the tag " + format_value(std::string_view(tag)) + ", must be without");
     }
     if (!stack_.empty() && stack_.back().value->kind == Kind::kMap && !stack_.back().has_name) {
       if (kind != Kind::kScalar) fail(mark, "has a key that is not a text, must be a plain name");
@@ -283,11 +284,11 @@ class TreeBuilder final : public YAML::EventHandler {
     }
     if (name.empty() || name.size() > kMaxShownLength ||
         !std::all_of(name.begin(), name.end(), is_printable)) {
-      fail(mark, "has the key \"" + shown(std::string_view(name)) + "\", must be one line of 1 to " +
+      fail(mark, "has the key \"" + format_value(std::string_view(name)) + "\", must be one line of 1 to " +
                      std::to_string(kMaxShownLength) + " bytes");
     }
     if (frame.value->names.size() == kMaxKeys) {
-      fail(mark, "is a map of too many keys, must be at most " + std::to_string(kMaxKeys));
+      fail(mark, "has too many keys, must have at most " + std::to_string(kMaxKeys));
     }
     frame.value->names.push_back(name);
     frame.has_name = true;
@@ -303,8 +304,8 @@ void reject_unknown(const std::string& file, const Value& value) {
   for (std::size_t i = 0; i < value.children.size(); ++i) {
     const Value& child = *value.children[i];
     if (value.kind == Kind::kMap && !value.open &&
-        std::find(value.asked.begin(), value.asked.end(), value.names[i]) == value.asked.end()) {
-      throw ConfigError(file, child.line, child.key, unknown_key(value.asked, value.names[i]));
+        std::find(value.read_keys.begin(), value.read_keys.end(), value.names[i]) == value.read_keys.end()) {
+      throw ConfigError(file, child.line, child.key, unknown_key(value.read_keys, value.names[i]));
     }
     reject_unknown(file, child);
   }
@@ -319,12 +320,12 @@ void ConfigNode::fail(const std::string& message) const {
 }
 
 void ConfigNode::fail_type(const std::string& wanted) const {
-  fail("is " + value_->shown_value() + ", must be " + wanted);
+  fail("is " + value_->describe() + ", must be " + wanted);
 }
 
 std::optional<ConfigNode> ConfigNode::find(const std::string& key) const {
   if (value_->kind != Kind::kMap) fail_type("a map");
-  value_->ask(key);
+  value_->mark_read(key);
   Value* const child = value_->child(key);
   if (child == nullptr) return std::nullopt;
   return ConfigNode(tree_, child);
@@ -500,7 +501,7 @@ ConfigNode parse_config(std::string_view text, const std::string& file_name) {
     throw ConfigError(file_name, 0, "", "is empty, must be a YAML map");
   if (tree->root->kind != Kind::kMap) {
     throw ConfigError(file_name, tree->root->line, "",
-                      "is " + tree->root->shown_value() + ", must be a YAML map");
+                      "is " + tree->root->describe() + ", must be a YAML map");
   }
   ConfigNode::Value* const root = tree->root.get();
   return {std::move(tree), root};

@@ -1,13 +1,13 @@
-// Strict reader of YAML configuration. Every fault, from a missing file to a misspelt key, is a ConfigError
-// with file, line, key, value and limit; no input, however broken, does anything else.
+// Strict reader of YAML configuration. Every fault, from a missing file to a misspelt key, throws ConfigError
+// with file, line, key, value and limit. No input causes any other exception.
 //
 //   const ConfigNode root = load_config("square.yaml");
 //   const double speed = root.at("speed_m_s").number(above(0.0));
 //   for (const ConfigNode& item : root.at("items").items()) add(item.at("position_ned_m").vector3());
 //   root.reject_unknown_keys();
 //
-// What is read: one document, of block or flow style, UTF-8, that ends with a newline (a last line without
-// one is taken for a truncated file). Anchors, aliases and tags are refused.
+// The input is one UTF-8 document in block or flow style that ends with a newline. A last line without a
+// newline is reported as a truncated file. Anchors, aliases and tags are refused.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@
 
 namespace swiftlet::runtime {
 
-// Where a number may lie. An open end excludes the bound itself.
+// The valid range of a number. An open end excludes the bound itself.
 struct Bounds {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
@@ -44,25 +44,25 @@ inline Bounds at_most(double max) { return {-std::numeric_limits<double>::infini
 inline Bounds between(double min, double max) { return {min, max, false, false}; }
 
 // A value in a document: scalar, list or map. Cheap to copy; keeps the document alive. Reading is not
-// thread-safe: a document notes which keys have been asked for. All members throw ConfigError if the value is
-// not what is asked for.
+// thread-safe: the document records which keys have been read. All members throw ConfigError if the value
+// does not have the requested type or range.
 class ConfigNode {
  public:
   struct Tree;
   struct Value;
   ConfigNode(std::shared_ptr<Tree> tree, Value* value);
 
-  // Map: the value of a key. at() demands it, find() does not. entries() gives all, in the file's order,
-  // where keys are free.
+  // Map: the value of a key. at() throws if the key is missing, find() returns nothing. entries() returns all
+  // keys with their values in the order of the file; the keys are then arbitrary.
   ConfigNode at(const std::string& key) const;
   std::optional<ConfigNode> find(const std::string& key) const;
   std::vector<std::pair<std::string, ConfigNode>> entries() const;
 
-  // Map: throws for the first key that is none of these, with the nearest of them: before any is asked for,
-  // so that a misspelt one is not reported as the right one missing.
+  // Map: throws for the first key that is not in this list; the message suggests the nearest listed key. Call
+  // it before reading the keys: otherwise a misspelt key is reported as the correct key missing.
   void allow(std::initializer_list<const char*> keys) const;
 
-  // List: its values.
+  // List: its values, min_count to max_count of them.
   std::vector<ConfigNode> items() const;
   std::vector<ConfigNode> items(std::size_t min_count, std::size_t max_count) const;
 
@@ -84,22 +84,22 @@ class ConfigNode {
                               const Bounds& bounds = any_number()) const;
   Eigen::Vector3d vector3(const Bounds& bounds = any_number()) const;
 
-  // A quantity is a map {value, unit, source}: returns value once the unit is found to be this one, the
-  // source a text and nothing else to stand there.
+  // A quantity is a map {value, unit, source}. Returns its value. Throws if the unit is another, the source
+  // is not a text, or a key is missing.
   ConfigNode quantity(const std::string& unit) const;
 
   bool is_map() const;
   bool is_list() const;
   bool is_scalar() const;
 
-  // Throws for the first key, here or below, that nobody has asked for. Call it on the root when all is read.
+  // Throws for the first key, here or below, that has not been read. Call it on the root after reading.
   void reject_unknown_keys() const;
 
-  // The deepest value on the way along key ("rotors[1].spin"), seen from here: this node itself if nothing of
-  // it is there.
+  // The deepest existing value along the path key ("rotors[1].spin"), relative to this node; this node itself
+  // if no part of the path exists.
   ConfigNode nearest(const std::string& key) const;
 
-  // Throws ConfigError for this value; message is "is 3, must be below 2" or the like.
+  // Throws ConfigError for this value. message reads like "is 3, must be below 2".
   [[noreturn]] void fail(const std::string& message) const;
 
   const std::string& file() const;
@@ -114,7 +114,7 @@ class ConfigNode {
   Value* value_;
 };
 
-// The root, which is a map. file_name is for the messages only.
+// Returns the root, which is a map. file_name appears in messages only.
 ConfigNode parse_config(std::string_view text, const std::string& file_name);
 ConfigNode load_config(const std::string& path);
 

@@ -1,4 +1,4 @@
-// The one exception for bad input files: vehicle, settings, missions, CSV.
+// The exception for invalid input files: vehicle, settings, missions, CSV.
 #pragma once
 
 #include <stdexcept>
@@ -6,8 +6,8 @@
 
 namespace swiftlet::runtime {
 
-// what() is one sentence: "FILE:LINE: KEY: is VALUE, must be LIMIT". A line of 0 and an empty key are left
-// out, control characters shown as "?".
+// what() is one sentence: "FILE:LINE: KEY: is VALUE, must be LIMIT". It omits a line of 0 and an empty key,
+// and shows control characters as "?".
 class ConfigError : public std::runtime_error {
  public:
   ConfigError(const std::string& file, int line, const std::string& key, const std::string& message)

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMaxShownLength = 60;
 
-std::string shown(std::string_view text) {
+std::string format_value(std::string_view text) {
   if (text.empty()) return "empty";
   std::string out;
   for (const char c : text.substr(0, kMaxShownLength)) out += c >= 0x20 && c < 0x7f ? c : '?';
@@ -62,7 +62,7 @@ std::string_view without_byte_order_mark(std::string_view text) {
   return text;
 }
 
-// Lines of a text, one after the other; a last line that is empty is none.
+// Iterates over the lines of a text. An empty last line does not count.
 class Lines {
  public:
   explicit Lines(std::string_view text) : rest_(text) {}
@@ -96,7 +96,7 @@ void check_header(std::string_view line, const std::string& file, const std::vec
     while (i < names.size() && names[i] == columns[i]) ++i;
     if (i == names.size()) return;
   }
-  throw ConfigError(file, 1, "header", "is " + shown(line) + ", must be " + joined(columns));
+  throw ConfigError(file, 1, "header", "is " + format_value(line) + ", must be " + joined(columns));
 }
 
 CsvTable read_rows(Lines& lines, const std::string& file_name, const std::vector<std::string>& columns,
@@ -118,7 +118,7 @@ CsvTable read_rows(Lines& lines, const std::string& file_name, const std::vector
     for (std::size_t i = 0; i < fields.size(); ++i) {
       if (!read_number(fields[i], numbers[i])) {
         throw ConfigError(file_name, lines.number(), columns[i],
-                          "is " + shown(fields[i]) + ", must be a finite number");
+                          "is " + format_value(fields[i]) + ", must be a finite number");
       }
     }
     table.add_row(lines.number(), numbers);
@@ -177,7 +177,7 @@ CsvTable parse_csv_as_headed(std::string_view text, const std::string& file_name
   for (const std::string_view name : fields_of(header)) {
     double number = 0.0;
     if (name.empty() || read_number(name, number))
-      throw ConfigError(file_name, 1, "header", "is " + shown(header) + ", must name every column");
+      throw ConfigError(file_name, 1, "header", "is " + format_value(header) + ", must name every column");
     columns.emplace_back(name);
   }
   return read_rows(lines, file_name, columns, min_rows, {});

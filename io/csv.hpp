@@ -1,13 +1,13 @@
 // Strict reader of CSV tables of numbers: one header line that names every column, then rows of finite
-// numbers. Anything else is a ConfigError with file, line, column, value and limit.
+// numbers. Any other input throws ConfigError with file, line, column, value and limit.
 //
 //   const CsvTable table = load_csv("pwm.csv", {"t", "pwm1", "pwm2"});
 //   for (std::size_t row = 0; row < table.row_count(); ++row) {
 //     use(table.number(row, 0), table.number(row, 1, between(1000, 2000)));
 //   }
 //
-// Lines end with LF or CRLF, the last one may lack it; blanks around a field are ignored; there are no quotes
-// and no comments. Files of others may differ from that as CsvForm says.
+// Lines end with LF or CRLF; the last line may lack it. Blanks around a field are ignored. Quotes and
+// comments are not supported. CsvForm lists the accepted variations of files from other tools.
 #pragma once
 
 #include <cstddef>
@@ -27,17 +27,17 @@ class CsvTable {
   std::size_t row_count() const { return lines_.size(); }
   std::size_t column_count() const { return columns_.size(); }
 
-  // Throws ConfigError if the number does not lie within bounds. unit is for the message only.
+  // Throws ConfigError if the number is out of bounds. unit appears in the message only.
   double number(std::size_t row, std::size_t column, const Bounds& bounds = any_number(),
                 const char* unit = "") const;
 
-  // Throws ConfigError for a row's value; message is "is 3, must be below 2" or the like. columns names what
-  // it is about.
+  // Throws ConfigError for this row. columns names the affected columns; message reads like "is 3, must be
+  // below 2".
   [[noreturn]] void fail(std::size_t row, const std::string& columns, const std::string& message) const;
 
   const std::string& file() const { return file_; }
   const std::string& column(std::size_t column) const { return columns_[column]; }
-  int line(std::size_t row) const { return lines_[row]; }  // from 1, the header's
+  int line(std::size_t row) const { return lines_[row]; }  // from 1, which is the header
 
   void add_row(int line, const std::vector<double>& numbers);
 
@@ -50,20 +50,20 @@ class CsvTable {
 
 struct CsvForm {
   bool has_header = true;
-  bool may_end_with_comma = false;  // each line, the header too
+  bool may_end_with_comma = false;  // every line, including the header
 };
 
-// A table of exactly these columns, in this order, with at least min_rows rows. file_name is for the messages
-// only.
+// Reads a table of exactly these columns, in this order, with at least min_rows rows. file_name appears in
+// messages only.
 CsvTable parse_csv(std::string_view text, const std::string& file_name,
                    const std::vector<std::string>& columns, std::size_t min_rows = 1,
                    const CsvForm& form = {});
 CsvTable load_csv(const std::string& path, const std::vector<std::string>& columns, std::size_t min_rows = 1);
 
-// The fields of the first line that is not blank; none of a text without one.
+// The fields of the first non-blank line; empty if there is none.
 std::vector<std::string> first_csv_line(std::string_view text);
-bool is_number(std::string_view field);  // finite
-// A table of whatever columns its header names, one at least.
+bool is_number(std::string_view field);  // true for a finite number
+// Reads a table with any column names in its header, at least one.
 CsvTable parse_csv_as_headed(std::string_view text, const std::string& file_name, std::size_t min_rows = 1);
 
 // The shortest decimal that reads back as the same number.

@@ -1,4 +1,4 @@
-// Where configuration files are looked for.
+// The search path of configuration files.
 #pragma once
 
 #include <string>
@@ -6,13 +6,13 @@
 
 namespace swiftlet::runtime {
 
-// Folders that may hold vehicles/, control/, missions/, in order: $SWIFTLET_CONFIG_DIR if it is set, then,
-// seen from the folder of the running executable, ../share/swiftlet/config (installed) and ../../config
-// (build tree).
+// The folders that are searched for vehicles/, control/, missions/, in order: $SWIFTLET_CONFIG_DIR if it is
+// set, then, relative to the folder of the running executable, ../share/swiftlet/config (installed) and
+// ../../config (build tree).
 std::vector<std::string> config_directories();
 
-// The first file there is: path as given, then, if it is relative ("vehicles/kaylion.yaml"), below each of
-// config_directories(). Throws ConfigError with all places if there is none.
+// Returns the first file that exists: path as given, then, if it is relative ("vehicles/kaylion.yaml"), path
+// below each of config_directories(). Throws ConfigError that lists all searched places if there is none.
 std::string find_config(const std::string& path);
 
 }  // namespace swiftlet::runtime

@@ -1,4 +1,4 @@
-// A YAML text as a list of single settings, to compare files by.
+// Flattens a YAML text to a list of key-value pairs, for comparing files.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace swiftlet::runtime {
 
-// "position.x.omega_n" -> "2.0", in the order of the text; elements of a list are key[0], key[1] ... , but a
-// list of plain values stays one setting, "[1, 2, 3]". Values are as written. Throws ConfigError, with file
-// and line, for what is no YAML.
+// Returns pairs such as "position.x.omega_n" -> "2.0", in the order of the text. The elements of a list have
+// the keys key[0], key[1], ...; a list of scalars is one pair with the value "[1, 2, 3]". Values are as
+// written. Throws ConfigError with file and line for invalid YAML.
 std::vector<std::pair<std::string, std::string>> flatten_yaml(std::string_view text,
                                                               const std::string& file_name);
 

@@ -1,4 +1,4 @@
-// Texts of numbers.
+// Formats counts for messages.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 namespace swiftlet::ground {
 
-// "1 flight", "2 flights"; of a noun whose plural ends with -s.
+// "1 flight", "2 flights". The plural of the noun must end in -s.
 std::string counted(std::size_t count, const std::string& noun);
 
 }  // namespace swiftlet::ground

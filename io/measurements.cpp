@@ -11,7 +11,7 @@ namespace swiftlet::runtime {
 
 namespace {
 
-constexpr double kStandardGravity = 9.80665;  // m/s^2, of a gram-force
+constexpr double kStandardGravity = 9.80665;  // m/s^2, defines the gram-force
 constexpr double kPi = 3.14159265358979323846;
 
 struct Unit {
@@ -22,8 +22,8 @@ struct Unit {
 
 struct Kind {
   Quantity quantity;
-  std::vector<std::string> names;  // the first is the one that is written
-  std::vector<Unit> units;         // likewise, SI
+  std::vector<std::string> names;  // accepted names, first the written one
+  std::vector<Unit> units;         // accepted units, first the SI one
 };
 
 const std::vector<Unit> kSeconds = {
@@ -48,7 +48,7 @@ const std::vector<Unit> kSpeeds = {{"rad/s", 1.0, {"rads/s", "rad s^-1"}},
                                    {"rpm", 2.0 * kPi / 60.0, {"RPM", "1/min", "rev/min"}},
                                    {"rev/s", 2.0 * kPi, {"Hz", "rps"}}};
 
-// Each name with each ending: {"acc_x"}, {"_frd", ""} -> acc_x_frd, acc_x.
+// Combines each name with each ending: {"acc_x"}, {"_frd", ""} -> acc_x_frd, acc_x.
 std::vector<std::string> with_endings(const std::vector<std::string>& names,
                                       const std::vector<std::string>& endings) {
   std::vector<std::string> out;
@@ -62,7 +62,7 @@ std::vector<std::string> numbered(const std::vector<std::string>& names, int num
   return with_endings(names, {std::to_string(number), "_" + std::to_string(number)});
 }
 
-// What a flight's log holds, an axis or a motor at a time.
+// Adds the quantities of a flight log, per axis and per motor.
 void add_flight(std::vector<Kind>& all) {
   const std::vector<std::string> body = {"_frd", "", "_flu"};
   const std::vector<std::string> world = {"_ned", "", "_enu"};
@@ -165,7 +165,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-// "speed [rad/s]" -> "speed" and "rad/s"; no unit where there are no brackets.
+// "speed [rad/s]" -> "speed" and "rad/s"; no unit without brackets.
 struct Declaration {
   std::string name;
   std::optional<std::string> unit;
@@ -209,7 +209,7 @@ Column resolve(const std::string& header, const std::string& file, const std::ve
     for (const Quantity quantity : allowed) known.push_back(header_of(quantity));
     throw ConfigError(file, 1, "header", "has the column " + header + ", must be one of " + one_of(known));
   }
-  // A name that is a unit itself, as rpm, says all.
+  // A name that is itself a unit, such as rpm, declares its unit.
   const std::string unit = declared.unit.value_or(declared.name);
   std::vector<Column> meant;
   for (const Kind* kind : candidates) {
@@ -218,7 +218,7 @@ Column resolve(const std::string& header, const std::string& file, const std::ve
   if (meant.size() == 1) return meant.front();
   const std::string choices = one_of(choices_of(declared.name, candidates));
   throw ConfigError(file, 1, "header",
-                    (declared.unit ? "has the column " + header + " of a unit that is not known"
+                    (declared.unit ? "has the column " + header + " with an unknown unit"
                                    : "has the column " + header + " without a unit") +
                         ", must be " + choices);
 }

@@ -1,6 +1,6 @@
-// Measured data as people keep them: CSV whose header declares each column as `name [unit]`, in the names and
-// units that are usual, "omega [rpm]", "thrust [g]", "pwm [us]". What comes out is in SI units. What could be
-// read in two ways is refused, with the choices.
+// Measured data as CSV. The header declares each column as `name [unit]` with common names and units, such as
+// "omega [rpm]", "thrust [g]", "pwm [us]". Values are converted to SI units. An ambiguous column is refused;
+// the message lists the choices.
 #pragma once
 
 #include <cstddef>
@@ -11,15 +11,15 @@
 
 namespace swiftlet::runtime {
 
-// What a column may hold, and the unit in which it is handed out. Throttle and pulse width share their names:
-// the unit tells which it is.
+// The quantity of a column, and the unit of its values after reading. Throttle and pulse width share column
+// names; the unit distinguishes them.
 enum class Quantity {
   kTime,           // s
   kSupplyVoltage,  // v_s, V
   kMotorVoltage,   // v_a, V
   kThrottle,       // delta, 1
   kPulseWidth,     // us
-  kSpeed,          // of a rotor, rad/s
+  kSpeed,          // rotor speed, rad/s
   kThrust,         // N
   kTorque,         // N*m
   kMass,           // kg
@@ -28,8 +28,8 @@ enum class Quantity {
   kArm,            // m
   kPeriod,         // s
 
-  // Of a flight. x, y, z by the axes that the name ends in, _frd, _flu, _ned or _enu; those of plain names
-  // are for the reader to tell.
+  // Quantities of a flight log. The ending of the column name states the axes of x, y, z: _frd, _flu, _ned or
+  // _enu. The caller decides the axes of names without such an ending.
   kSpecificForceX,  // m/s^2
   kSpecificForceY,
   kSpecificForceZ,
@@ -45,29 +45,29 @@ enum class Quantity {
   kOrientationZ,
   kPoseTime,      // s
   kRunning,       // 1: the rotors run, 0: they are off
-  kMotorCommand,  // 1, of full command: kMotorCommand + i is that of motor i + 1, eight in all
-  kMotorPulse = kMotorCommand + 8,  // us, likewise
-  kMotorSpeed = kMotorPulse + 8,    // rad/s, likewise
+  kMotorCommand,  // 1, share of full command; kMotorCommand + i belongs to motor i + 1, up to 8 motors
+  kMotorPulse = kMotorCommand + 8,  // us, one per motor
+  kMotorSpeed = kMotorPulse + 8,    // rad/s, one per motor
 };
 
 constexpr Quantity operator+(Quantity first, int offset) {
   return static_cast<Quantity>(static_cast<int>(first) + offset);
 }
 
-// The name under which a quantity is written, with its SI unit: "speed [rad/s]".
+// The column header that Swiftlet writes for a quantity, with its SI unit: "speed [rad/s]".
 std::string header_of(Quantity quantity);
 
-// A name without its unit: "speed".
+// The same without the unit: "speed".
 const std::string& name_of(Quantity quantity);
 
 class Measurements {
  public:
   bool has(Quantity quantity) const { return columns_.count(quantity) > 0; }
-  // Throw ConfigError where the file has no such column.
+  // Both throw ConfigError if the file has no such column.
   const std::vector<double>& column(Quantity quantity) const;
-  const std::string& header(Quantity quantity) const;  // as it stands in the file
+  const std::string& header(Quantity quantity) const;  // as written in the file
   std::size_t row_count() const { return lines_.size(); }
-  int line(std::size_t row) const { return lines_[row]; }  // from 1, the header's
+  int line(std::size_t row) const { return lines_[row]; }  // from 1, which is the header
   const std::string& file() const { return file_; }
 
  private:
@@ -79,9 +79,9 @@ class Measurements {
   std::map<Quantity, std::string> headers_;
 };
 
-// A table in which these quantities may stand, in any order, each once. Throws ConfigError for a column
-// without a unit, of a name or unit that is not known here, or that says again what another says. file_name
-// is for the messages only.
+// Reads a table whose columns are any of these quantities, in any order, each at most once. Throws
+// ConfigError for a column without a unit, with an unknown name or unit, or with the quantity of another
+// column. file_name appears in messages only.
 Measurements parse_measurements(std::string_view text, const std::string& file_name,
                                 const std::vector<Quantity>& allowed);
 Measurements load_measurements(const std::string& path, const std::vector<Quantity>& allowed);

@@ -1,11 +1,11 @@
-// Files that may be compressed.
+// Reads files that may be compressed.
 #pragma once
 
 #include <string>
 
 namespace swiftlet::ground {
 
-// The text of a file, unpacked if it is one of gzip. Throws runtime::ConfigError.
+// Returns the text of a file, decompressed if it is a gzip file. Throws runtime::ConfigError.
 std::string read_unpacked(const std::string& path);
 
 }  // namespace swiftlet::ground

@@ -26,11 +26,11 @@ using runtime::Quantity;
 
 constexpr double kLongestTimeGap = 3600.0;  // s
 constexpr double kNearGravity =
-    0.5;  // of g: a mean of the specific force along z beyond it tells up from down
+    0.5;  // of g; a larger mean specific force along z shows the direction of the z axis
 
 double seconds(std::int64_t stamp_ns) { return static_cast<double>(stamp_ns) * 1e-9; }
 
-// The newest row of a track up to a stamp; calls come with rising stamps.
+// Finds the newest row of a track up to a stamp. Calls must have rising stamps.
 template <class Row>
 class Newest {
  public:
@@ -89,77 +89,79 @@ int motors(const Measurements& table, Quantity first) {
   for (int later = count + 1; later < plant::kMaxRotors; ++later) {
     if (!table.has(first + later)) continue;
     throw ConfigError(table.file(), 1, "header",
-                      "has " + table.header(first + later) + " and none of motor " +
-                          std::to_string(count + 1) + "; must number motors from 1 on");
+                      "has " + table.header(first + later) + " but none of motor " +
+                          std::to_string(count + 1) + ", must number motors from 1 without gaps");
   }
   return count;
 }
 
-// Which of two endings the columns' names have; all the same one, or none of them any.
-std::optional<bool> says(const Measurements& table, const std::vector<Quantity>& columns,
-                         const std::string& first, const std::string& second) {
-  std::optional<bool> said;
-  bool any_silent = false;
+// Returns whether the column names have the first of two endings; nothing if none of them has either. Throws
+// if the columns differ.
+std::optional<bool> has_first_ending(const Measurements& table, const std::vector<Quantity>& columns,
+                                     const std::string& first, const std::string& second) {
+  std::optional<bool> declared;
+  bool any_without = false;
   for (const Quantity column : columns) {
     const std::string& header = table.header(column);
     const bool is_first = header.find(first) != std::string::npos;
     const bool is_second = header.find(second) != std::string::npos;
-    any_silent = any_silent || !(is_first || is_second);
+    any_without = any_without || !(is_first || is_second);
     if (!(is_first || is_second)) continue;
-    if ((said && *said != is_first))
+    if ((declared && *declared != is_first))
       throw ConfigError(table.file(), 1, "header", "mixes " + first + " and " + second);
-    said = is_first;
+    declared = is_first;
   }
-  if (said && any_silent)
+  if (declared && any_without)
     throw ConfigError(
         table.file(), 1, "header",
         "names axes in some columns only; must end all names in " + first + " or all in " + second);
-  return said;
+  return declared;
 }
 
-// Whether the body's axes are forward-right-down; else they are forward-left-up.
+// Returns whether the body axes are forward-right-down; otherwise they are forward-left-up.
 bool is_frd(const Measurements& table, const std::vector<Eigen::Vector3d>& specific_force, BodyAxes axes,
             std::vector<std::string>& assumptions) {
   std::vector<Quantity> columns;
   for (int i = 0; i < 3; ++i)
     columns.insert(columns.end(), {Quantity::kSpecificForceX + i, Quantity::kBodyRateX + i});
-  std::optional<bool> said = says(table, columns, "_frd", "_flu");
+  std::optional<bool> declared = has_first_ending(table, columns, "_frd", "_flu");
   if (axes != BodyAxes::kAsSaid) {
     const bool frd = axes == BodyAxes::kFrd;
-    if (said && *said != frd)
-      throw ConfigError(table.file(), 1, "header",
-                        std::string("names ") + (*said ? "_frd" : "_flu") + " axes, --axes others");
-    said = frd;
+    if (declared && *declared != frd)
+      throw ConfigError(
+          table.file(), 1, "header",
+          std::string("names ") + (*declared ? "_frd" : "_flu") + " axes, but --axes names others");
+    declared = frd;
   }
   double mean = 0.0;
-  // At its begin a log has the vehicle upright; at its end it may lie on its back.
+  // The vehicle is upright in the first half of a log; at the end it may lie upside down.
   const std::size_t upright = std::max<std::size_t>(specific_force.size() / 2, 1);
   for (std::size_t row = 0; row < upright; ++row)
     mean += specific_force[row].z() / static_cast<double>(upright);
-  const bool is_told = std::abs(mean) > kNearGravity * plant::kGravity;
-  if (said && is_told && *said != (mean < 0.0)) {
+  const bool shows_gravity = std::abs(mean) > kNearGravity * plant::kGravity;
+  if (declared && shows_gravity && *declared != (mean < 0.0)) {
     throw ConfigError(
         table.file(), 1, "specific_force_z",
-        "is " + std::to_string(mean) + " m/s^2 in the mean, must be " +
-            (*said ? "negative in forward-right-down axes" : "positive in forward-left-up axes") +
-            "; are the axes right?");
+        "has the mean " + std::to_string(mean) + " m/s^2, must be " +
+            (*declared ? "negative in forward-right-down axes" : "positive in forward-left-up axes") +
+            "; check the axes");
   }
-  if (said) return *said;
-  if (!is_told) {
+  if (declared) return *declared;
+  if (!shows_gravity) {
     throw ConfigError(
         table.file(), 1, "header",
-        "does not say its body axes, and gravity does not tell them: the specific force along z is " +
-            std::to_string(mean) +
-            " m/s^2 in the mean, about 9.8 in hover; is its unit right? If it is, say " +
+        "does not name its body axes, and gravity does not show them: the mean specific force along z is " +
+            std::to_string(mean) + " m/s^2, must be about 9.8 or -9.8 in hover; check its unit, or give " +
             "--axes frd or --axes flu");
   }
   assumptions.push_back(
-      mean < 0.0 ? "body axes are taken for forward-right-down: the specific force along z is negative"
-                 : "body axes are taken for forward-left-up: the specific force along z is positive");
+      mean < 0.0 ? "body axes are taken as forward-right-down: the specific force along z is negative"
+                 : "body axes are taken as forward-left-up: the specific force along z is positive");
   return mean < 0.0;
 }
 
-// Some more than what the ESC obeys are sent to it, to start or stop it for certain.
+// Refuses implausible pulse widths. Flight controllers send pulses somewhat beyond the ESC's range, to start
+// or stop it reliably.
 void require_pulse(const Measurements& table, std::size_t row, Quantity which, const plant::Vehicle& base) {
   const double pulse_us = table.column(which)[row];
   const double least_us = base.esc.pulse_min_us - 0.5 * base.esc.pulse_range_us;
@@ -167,8 +169,8 @@ void require_pulse(const Measurements& table, std::size_t row, Quantity which, c
   if (pulse_us == 0.0 || (pulse_us >= least_us && pulse_us <= most_us)) return;
   throw ConfigError(table.file(), table.line(row), table.header(which),
                     "is " + std::to_string(pulse_us) + " us, must be 0 or between " +
-                        std::to_string(least_us) + " and " + std::to_string(most_us) +
-                        " us, by half the range of " + base.name + "'s ESC at most beyond it");
+                        std::to_string(least_us) + " and " + std::to_string(most_us) + " us: the range of " +
+                        base.name + "'s ESC, extended by half of it at both ends");
 }
 
 void read_commands(const Measurements& table, const plant::Vehicle& base, FlightLog& log,
@@ -196,16 +198,16 @@ void read_commands(const Measurements& table, const plant::Vehicle& base, Flight
     }
   }
   log.running.assign(table.row_count(), 0);
-  const bool says_running = table.has(Quantity::kRunning);
+  const bool has_running = table.has(Quantity::kRunning);
   for (std::size_t row = 0; row < log.running.size(); ++row) {
     const plant::PerRotor& command = log.command[row];
-    log.running[row] = says_running
+    log.running[row] = has_running
                            ? table.column(Quantity::kRunning)[row] != 0.0
                            : std::any_of(command.begin(), command.end(), [](double c) { return c > 0.0; });
   }
-  if (!says_running)
+  if (!has_running)
     assumptions.emplace_back(
-        "rotors are taken to be off where all commands are 0, there being no column running");
+        "rotors are taken as off where all commands are 0, because there is no column running");
 }
 
 void read_rotor_speeds(const Measurements& table, FlightLog& log) {
@@ -214,7 +216,7 @@ void read_rotor_speeds(const Measurements& table, FlightLog& log) {
   if (count != log.rotor_count) {
     throw ConfigError(table.file(), 1, "header",
                       "has speeds of " + std::to_string(count) + " rotors and commands of " +
-                          std::to_string(log.rotor_count) + ", must have as many");
+                          std::to_string(log.rotor_count) + ", must have the same number of both");
   }
   log.rotor_speeds.assign(table.row_count(), plant::PerRotor{});
   for (int i = 0; i < count; ++i) {
@@ -230,10 +232,10 @@ void read_poses(const Measurements& table, FlightLog& log) {
   columns.reserve(7);
   for (int i = 0; i < 3; ++i) columns.push_back(Quantity::kPositionX + i);
   for (int i = 0; i < 4; ++i) columns.push_back(Quantity::kOrientationW + i);
-  const std::optional<bool> ned = says(table, columns, "_ned", "_enu");
+  const std::optional<bool> ned = has_first_ending(table, columns, "_ned", "_enu");
   if (!ned) {
     throw ConfigError(table.file(), 1, "header",
-                      "does not say the frame of its poses: end position_x and the like in _ned or _enu, "
+                      "does not name the frame of its poses: end position_x and the like in _ned or _enu, "
                       "orientation_w and the like in "
                       "_ned_from_frd or _enu_from_flu");
   }
@@ -351,7 +353,7 @@ ReadFlightLog read_flight_log(const fs::path& path, const plant::Vehicle& base, 
     if (step > 0.0 && step < kLongestTimeGap) continue;
     throw ConfigError(
         file.string(), table.line(row), table.header(Quantity::kTime),
-        "is " + std::to_string(step) + " s after the row before, must be above 0 and below an hour");
+        "is " + std::to_string(step) + " s after the previous row, must be above 0 and below 3600 s");
   }
   log.specific_force_frd = vectors(table, Quantity::kSpecificForceX);
   log.body_rates_frd = vectors(table, Quantity::kBodyRateX);

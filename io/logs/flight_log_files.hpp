@@ -1,4 +1,4 @@
-// Logs of flights as files: the sensors.csv of a record, and what others have logged.
+// Flight log files: the sensors.csv of a flight record, and CSV logs of other tools.
 #pragma once
 
 #include <filesystem>
@@ -13,30 +13,31 @@ namespace swiftlet::ground {
 
 inline constexpr const char* kSensorsFile = "sensors.csv";
 
-// One row an IMU sample, from the first on at which all that came at all had come. Voltages between two
-// samples lie on the straight line.
+// Converts a record to one row per IMU sample. The rows start with the first IMU sample at which every
+// recorded stream has a sample. Supply voltages are interpolated linearly, commands and rotor speeds are
+// held.
 identification::FlightLog flight_log_of(const SensorRecord& record);
 
-// As CSV, each column headed `name [unit]`. A pose stands in all rows up to the next. Throws
-// std::runtime_error.
+// Writes a log as CSV with column headers `name [unit]`. A pose is repeated in every row until the next pose.
+// Throws std::runtime_error.
 void write_flight_log(const std::filesystem::path& file, const identification::FlightLog& log);
 
-// Axes of the body in which a log has its IMU.
+// The body axes of a log's IMU samples.
 enum class BodyAxes {
-  kAsSaid,  // by the columns' names; where they do not say, as gravity has it, x forward
+  kAsSaid,  // from the column names, or else from the sign of gravity along z, with x forward
   kFrd,     // forward, right, down
   kFlu,     // forward, left, up
 };
 
 struct ReadFlightLog {
   identification::FlightLog log;
-  std::vector<std::string> assumptions;  // sentences
+  std::vector<std::string> assumptions;  // made while reading, as sentences
 };
 
-// A CSV whose columns are declared as io/measurements.hpp has them, compressed by gzip or not:
-// time, the specific force and body rates along x, y and z, a command for each motor (or a pulse width, which
-// the ESC of `base` makes a throttle), and whatever else of supply voltage, rotor speeds, running, pose_time
-// with position and orientation is there. Of a folder, its sensors.csv. Throws runtime::ConfigError.
+// Reads a CSV file with columns as in io/measurements.hpp, plain or compressed by gzip. Required: time,
+// specific force and body rates along x, y and z, and per motor a command or a pulse width. The ESC of `base`
+// converts pulse widths to throttles. Optional: supply voltage, rotor speeds, running, and pose_time with
+// position and orientation. If the path is a folder, reads its sensors.csv. Throws runtime::ConfigError.
 ReadFlightLog read_flight_log(const std::filesystem::path& file, const plant::Vehicle& base, BodyAxes axes);
 
 }  // namespace swiftlet::ground

@@ -1,4 +1,4 @@
-// Geographic coordinates near a home position as metres on its tangent plane.
+// Converts geographic coordinates near a home position to metres on its tangent plane.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,8 +10,8 @@ struct GeographicPosition {
   double longitude_deg = 0.0;
 };
 
-// North and east of home, m: by the radii of curvature of WGS 84 at home. Within 1 km of it that is right to
-// some centimetres.
+// Returns north and east of home, m, from the radii of curvature of the WGS 84 ellipsoid at home. Within 1 km
+// of home the error is a few centimetres.
 Eigen::Vector2d north_east_of(const GeographicPosition& home, const GeographicPosition& position);
 
 }  // namespace swiftlet::ground

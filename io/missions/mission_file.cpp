@@ -63,12 +63,12 @@ void read_fence(const ConfigNode& node, MissionFrame frame, const control::Limit
   if (!outcome.accepted) node.fail(outcome.reason);
 }
 
-// What comes before the items stands there for a reason: a file that is cut short does not lose it unseen.
+// Requires all other keys before the items: otherwise a truncated file would lose them without an error.
 void require_items_last(const ConfigNode& root, const ConfigNode& items) {
   for (const char* key : {"name", "description", "frame", "tolerance_m", "limits", "geofence", "ends"}) {
     const auto node = root.find(key);
     if (node && node->line() > items.line())
-      node->fail("stands after items, must stand before them: a file that is cut short would lose it unseen");
+      node->fail("stands after items, must stand before them: a truncated file would lose it silently");
   }
 }
 
@@ -93,7 +93,7 @@ MissionFile read_mission(const ConfigNode& root, const control::Limits& settings
   if (hovers && file.lands()) ends->fail("is hovering, must be landed: the last item is a land");
   if (!hovers && !file.lands()) {
     const ConfigNode last = items.items().back();
-    last.fail("is the last item, which must be a land, unless the mission says `ends: hovering`");
+    last.fail("is the last item, which must be a land unless the mission has `ends: hovering`");
   }
   return file;
 }

@@ -1,7 +1,7 @@
-// Files of other projects that are flown as missions. Each is turned into a whole flight in NED, take-off
-// and landing included, and says in MissionFile::assumptions what it was taken for.
+// Reads files of other projects as missions. Each is converted to a complete flight in NED with take-off and
+// landing. MissionFile::assumptions states how the file was interpreted.
 //
-//   polynomial CSV      duration,x^0..x^7,y^0..y^7,z^0..z^7,yaw^0..yaw^7   as Crazyswarm and uav_trajectories have it
+//   polynomial CSV      duration,x^0..x^7,y^0..y^7,z^0..z^7,yaw^0..yaw^7 (Crazyswarm, uav_trajectories)
 //   sampled CSV         t,x,y,z[,vx,vy,vz[,ax,ay,az]][,yaw]
 //   waypoint CSV        x,y,z[,yaw], with or without a header line
 //   QGroundControl      .plan, JSON: a simple mission with a planned home position
@@ -19,18 +19,18 @@ namespace swiftlet::ground {
 
 enum class MissionFormat { kYaml, kPolynomialCsv, kSampledCsv, kWaypointCsv, kQGroundControlPlan };
 
-// By content; file_name counts for messages and where the content leaves it open. Throws runtime::ConfigError
-// for a CSV file that is none of these.
+// Detects the format from the content, or from the extension of file_name if the content is ambiguous. Throws
+// runtime::ConfigError for a CSV file of another format.
 MissionFormat detect_format(std::string_view text, const std::string& file_name);
 
-// A path in NED that begins at rest, and what it was taken for.
+// A path in NED that begins at rest, and the assumptions made in reading it.
 struct TrajectoryFile {
   std::vector<control::PolynomialSegment> segments;
   std::vector<std::string> assumptions;
 };
 
-// All that follow throw runtime::ConfigError with file, line, column, value and limit for whatever breaks
-// the form, the limits or the fence.
+// All functions below throw runtime::ConfigError with file, line, column, value and limit for a violation of
+// the format, the limits or the fence.
 TrajectoryFile read_polynomial_csv(const std::string& text, const std::string& file_name,
                                    const control::Limits& limits);
 TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file_name,
@@ -38,7 +38,7 @@ TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file
 TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& file_name,
                                  const control::Limits& limits);
 
-// Whole flights.
+// Complete flights: take-off, the path, landing.
 MissionFile parse_polynomial_csv(const std::string& text, const std::string& file_name,
                                  const control::Limits& limits);
 MissionFile parse_sampled_csv(const std::string& text, const std::string& file_name,

@@ -23,19 +23,19 @@ using runtime::ConfigNode;
 
 constexpr double kLongestHoldS = 3600.0;
 constexpr double kLargestRadiusM = 10.0;
-constexpr double kLeastCorridorM = 1e-3;  // half the width, as control/planning/waypoint_path.hpp has it
+constexpr double kLeastCorridorM = 1e-3;  // half width, as in control/planning/waypoint_path.hpp
 constexpr double kLargestCorridorM = 10.0;
 constexpr std::size_t kMaxPoints = control::kMaxTrajectorySegments + 1;
 
 enum class FileItem { kTakeoff, kWaypoint, kPath, kTrajectory, kSet, kWait, kLand };
 
-// In NED; free: the yaw is kept.
+// A yaw in NED; free: the vehicle keeps its yaw.
 struct Yaw {
   bool free = true;
   double rad = 0.0;
 };
 
-// What `set` said last.
+// The defaults of the last `set` item.
 struct Defaults {
   std::optional<double> speed;
   double acceptance_radius_m = 0.0;
@@ -108,7 +108,7 @@ class Reader {
     const ConfigNode height = node.at("height_m");
     item.position_ned.z() = -height.number(runtime::above(0.0));
     Eigen::Vector3d top_ned =
-        0.5 * (limits_.fence_min_ned + limits_.fence_max_ned);  // over wherever it stands
+        0.5 * (limits_.fence_min_ned + limits_.fence_max_ned);  // horizontal position unknown
     top_ned.z() = item.position_ned.z();
     require_inside_fence(height, top_ned);
     item.speed = speed(node);
@@ -163,7 +163,7 @@ class Reader {
       node.fail(std::string("cannot be planned: ") + fault.what());
     }
     require_flyable(planned, points);
-    return flown(node, std::move(planned.segments), yaw_free, path.limits.speed);
+    return add_trajectory(node, std::move(planned.segments), yaw_free, path.limits.speed);
   }
 
   MissionItem trajectory(const ConfigNode& node) {
@@ -171,15 +171,15 @@ class Reader {
     const ConfigNode name = node.at("file");
     const std::filesystem::path path = std::filesystem::path(node.file()).parent_path() / name.text();
     if (!std::filesystem::is_regular_file(path)) {
-      name.fail("is " + name.text() + ", must be a file that is there: looked for " +
+      name.fail("is " + name.text() + ", must be an existing file: looked for " +
                 path.lexically_normal().string());
     }
     const auto yaw = node.find("yaw_rad");
-    if (yaw && !yaw_of(*yaw).free) yaw->fail("is a number, must be free: else the file's own yaw is flown");
+    if (yaw && !yaw_of(*yaw).free) yaw->fail("is a number, must be free; without it the file's yaw is flown");
     TrajectoryFile read = load_trajectory_file(path.string(), name);
     for (const std::string& assumption : read.assumptions)
       file_.assumptions.push_back(name.text() + ": " + assumption);
-    return flown(node, std::move(read.segments), yaw.has_value(), speed(node));
+    return add_trajectory(node, std::move(read.segments), yaw.has_value(), speed(node));
   }
 
   TrajectoryFile load_trajectory_file(const std::string& path, const ConfigNode& name) const {
@@ -194,9 +194,9 @@ class Reader {
     }
   }
 
-  // Adds the segments to the mission's.
-  MissionItem flown(const ConfigNode& node, std::vector<control::PolynomialSegment> segments, bool yaw_free,
-                    double speed) {
+  // Adds the segments to those of the mission.
+  MissionItem add_trajectory(const ConfigNode& node, std::vector<control::PolynomialSegment> segments,
+                             bool yaw_free, double speed) {
     std::vector<control::PolynomialSegment>& all = file_.mission.segments;
     MissionItem item;
     item.kind = MissionItemKind::kTrajectory;
@@ -208,18 +208,18 @@ class Reader {
     item.segment_count = static_cast<std::uint32_t>(segments.size());
     all.insert(all.end(), segments.begin(), segments.end());
     if (all.size() > control::kMaxTrajectorySegments) {
-      node.fail(fmt::format("needs {} segments, {} with those before it, at most {} fit in a mission",
+      node.fail(fmt::format("needs {} segments, {} with the items before it, a mission has at most {}",
                             segments.size(), all.size(), control::kMaxTrajectorySegments));
     }
     return item;
   }
 
-  // A point that gives no yaw has that of the one before, those before the first that does have its. True
-  // if no point has one: the yaw is then free.
+  // A point without a yaw takes that of the previous point; points before the first yaw take the first one.
+  // Returns true if no point has a yaw: the yaw is then free.
   bool read_points(const std::vector<ConfigNode>& nodes, const Yaw& fallback,
                    std::vector<control::PathPoint>& points) const {
     Yaw last = fallback;
-    std::size_t without = 0;  // at the beginning
+    std::size_t without = 0;  // points before the first yaw
     for (const ConfigNode& node : nodes) {
       control::PathPoint& point = points.emplace_back();
       if (node.is_list()) {
@@ -258,7 +258,7 @@ class Reader {
     path.legs.assign(path.points.size() - 1, leg);
   }
 
-  // Between its points, too.
+  // Checks the whole path, also between its points.
   void require_flyable(const control::PlannedPath& planned, const std::vector<ConfigNode>& points) const {
     std::size_t leg = 0;
     for (std::size_t i = 0; i < planned.segments.size(); ++i) {
@@ -301,7 +301,7 @@ class Reader {
     return given ? given->number(runtime::between(0.0, kLargestRadiusM)) : defaults_.acceptance_radius_m;
   }
 
-  // A number of rad, or the word free.
+  // Reads a number in rad, or the word free.
   Yaw yaw_of(const ConfigNode& node) const {
     if (node.is_scalar() && node.text() == "free") return {};
     return {false, ned_yaw_from(frame_, node.number(runtime::between(-M_PI, M_PI)))};
@@ -331,7 +331,7 @@ void read_mission_items(const ConfigNode& list, MissionFrame frame, const contro
                         MissionFile& file) {
   Reader reader(frame, limits, file);
   for (const ConfigNode& node : list.items(1, control::kMaxMissionItems)) reader.read(node);
-  if (file.mission.items.empty()) list.fail("holds nothing to be flown");
+  if (file.mission.items.empty()) list.fail("has no item to fly, must have at least one besides set");
 }
 
 }  // namespace swiftlet::ground

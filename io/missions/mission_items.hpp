@@ -1,4 +1,4 @@
-// The items of a mission file, one after another.
+// Reads the items of a mission file.
 #pragma once
 
 #include <string>
@@ -10,15 +10,15 @@
 
 namespace swiftlet::ground {
 
-// Of positions and yaws in the file: north, east, down with yaw clockwise from north, or east, north, up
-// with yaw counter-clockwise from east.
+// The frame of positions and yaws in the file: north, east, down with yaw clockwise from north, or east,
+// north, up with yaw counter-clockwise from east.
 enum class MissionFrame { kNed, kEnu };
 
 Eigen::Vector3d ned_from(MissionFrame frame, const Eigen::Vector3d& position);
 double ned_yaw_from(MissionFrame frame, double yaw);
 
-// Into file.mission and its lines and assumptions. limits: those of the control settings as the mission
-// tightens them. Throws runtime::ConfigError.
+// Reads list into file.mission, file.lines and file.assumptions. limits are those of the control settings,
+// tightened by the mission. Throws runtime::ConfigError.
 void read_mission_items(const runtime::ConfigNode& list, MissionFrame frame, const control::Limits& limits,
                         MissionFile& file);
 

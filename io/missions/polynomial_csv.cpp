@@ -39,7 +39,7 @@ TrajectoryFile read_polynomial_csv(const std::string& text, const std::string& f
   std::vector<control::PolynomialSegment> segments;
   for (std::size_t row = 0; row < table.row_count(); ++row) segments.push_back(ned_segment(read(table, row)));
   std::vector<std::string> assumptions = {
-      "taken as a polynomial trajectory in ENU: m, rad and s, its origin that of motion capture"};
+      "taken as a polynomial trajectory in ENU: m, rad and s, from the origin of motion capture"};
   const double raise_m = raise_by(least_height(segments), assumptions);
   for (control::PolynomialSegment& segment : segments) segment.z[0] -= raise_m;
   return checked({std::move(segments), std::move(assumptions)}, limits,

@@ -1,5 +1,5 @@
-// The form: https://docs.qgroundcontrol.com/master/en/qgc-dev-guide/file_formats/plan.html, the commands
-// and frames: https://mavlink.io/en/messages/common.html.
+// File format: https://docs.qgroundcontrol.com/master/en/qgc-dev-guide/file_formats/plan.html. Commands and
+// frames: https://mavlink.io/en/messages/common.html.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -23,11 +23,11 @@ using runtime::ConfigNode;
 constexpr double kTolerance_m = 0.1;
 constexpr double kLongestHold_s = 3600.0;
 constexpr double kSamePlace_m = 0.01;
-constexpr double kTakeoffPlace_m = 1.0;  // how far from home a take-off may be said to be
+constexpr double kTakeoffPlace_m = 1.0;  // largest distance of the take-off item from home
 constexpr double kHighest_m = 1e5;
 constexpr double kDefaultSpeed = 0.5;  // m/s
 
-// MAV_CMD and MAV_FRAME, as far as they are flown.
+// The supported values of MAV_CMD and MAV_FRAME.
 constexpr int kWaypoint = 16;
 constexpr int kLoiterTime = 19;
 constexpr int kReturnToLaunch = 20;
@@ -47,11 +47,12 @@ struct Home {
   double altitude_m = 0.0;
 };
 
-// JSON is a flow document of YAML, whose reader knows the lines. nlohmann's finds what is no JSON.
+// JSON is valid YAML in flow style, and the YAML reader reports lines. nlohmann::json only checks that it is
+// JSON.
 ConfigNode read_json(std::string text, const std::string& file_name) {
   try {
     [[maybe_unused]] const auto valid = nlohmann::json::parse(text);
-  } catch (const nlohmann::json::out_of_range&) {  // of 1e309; it does not tell where
+  } catch (const nlohmann::json::out_of_range&) {  // such as 1e309; no position given
     throw runtime::ConfigError(file_name, 0, "", "holds a number beyond 1.8e308, must hold smaller ones");
   } catch (const nlohmann::json::parse_error& error) {
     const std::size_t at = std::min(error.byte, text.size());
@@ -61,9 +62,9 @@ ConfigNode read_json(std::string text, const std::string& file_name) {
     const std::size_t column = line_begin == std::string::npos ? at : at - line_begin - 1;
     throw runtime::ConfigError(
         file_name, static_cast<int>(line), "column " + std::to_string(std::max<std::size_t>(column, 1)),
-        text.empty() ? "the file is empty, must be a JSON document" : "is where the file ceases to be JSON");
+        text.empty() ? "the file is empty, must be a JSON document" : "is invalid JSON");
   }
-  std::replace(text.begin(), text.end(), '\t', ' ');  // in JSON they are blanks between values
+  std::replace(text.begin(), text.end(), '\t', ' ');  // tabs separate values in JSON but not in YAML
   if (text.back() != '\n') text += '\n';
   return runtime::parse_config(text, file_name);
 }
@@ -170,7 +171,7 @@ class PlanReader {
     land_at(item, somewhere ? Eigen::Vector2d(position(item, params, true).head<2>()) : at_.head<2>());
   }
 
-  // Straight down at a place, which is flown to at the present height.
+  // Flies to a place at the present height, then lands straight down.
   void land_at(const ConfigNode& item, const Eigen::Vector2d& place) {
     const Eigen::Vector3d above(place.x(), place.y(), at_.z());
     require_inside(item, above);
@@ -189,7 +190,7 @@ class PlanReader {
   }
   void complete() {
     if (items_.empty())
-      root_.at("mission").at("items").fail("hold nothing to fly, must hold a take-off or a waypoint");
+      root_.at("mission").at("items").fail("has no item to fly, must have a take-off or a waypoint");
     if (landed_) return;
     add({MissionItemKind::kLand, Eigen::Vector3d::Zero(), 0.0, true, speed_, 0.0});
     landing_added_ = true;
@@ -198,12 +199,12 @@ class PlanReader {
   void add(const MissionItem& item) {
     if (items_.size() == control::kMaxMissionItems)
       root_.at("mission").at("items").fail(
-          fmt::format("become more than {} items", control::kMaxMissionItems));
+          fmt::format("has more than {} items with those added", control::kMaxMissionItems));
     items_.push_back(item);
     if (item.kind != MissionItemKind::kLand) at_ = item.position_ned;
   }
 
-  // m in NED from home. Of take-offs and landings the horizontal place may be left out.
+  // Returns the position in NED from home, m. Take-offs and landings may omit the horizontal position.
   Eigen::Vector3d position(const ConfigNode& item, const std::vector<ConfigNode>& params,
                            bool place_optional) {
     const ConfigNode frame = item.at("frame");
@@ -264,18 +265,18 @@ class PlanReader {
     if (local_)
       all.emplace_back(
           global_
-              ? "its local coordinates are m from there"
+              ? "local coordinates are m from there"
               : "taken as a QGroundControl plan with local coordinates: m from the origin of motion capture");
     if (takeoff_aside_m_ > kSamePlace_m)
       all.push_back(
-          fmt::format("it takes off where it stands, not {:.2f} m aside as the plan says", takeoff_aside_m_));
+          fmt::format("it takes off where it stands; the plan says {:.2f} m away", takeoff_aside_m_));
     if (fastest_wanted_ > 0.0)
-      all.push_back(fmt::format("flown at up to {:g} m/s, as the limits say; the plan wants {:g} m/s",
+      all.push_back(fmt::format("flown at up to {:g} m/s, the limit; the plan wants {:g} m/s",
                                 limits_.max_speed, fastest_wanted_));
     if (takeoff_added_) all.emplace_back("a take-off to the height of the first waypoint is added");
     if (landing_added_) all.emplace_back("a landing is added");
     all.emplace_back(
-        "it stops at each waypoint; acceptance radii, fences and rally points of the plan are not looked at");
+        "it stops at each waypoint; acceptance radii, fences and rally points of the plan are ignored");
     return all;
   }
 
@@ -283,9 +284,9 @@ class PlanReader {
   const control::Limits& limits_;
   std::optional<Home> home_;
   std::vector<MissionItem> items_;
-  Eigen::Vector3d at_ = Eigen::Vector3d::Zero();  // where the items so far lead
+  Eigen::Vector3d at_ = Eigen::Vector3d::Zero();  // end of the items so far
   double speed_ = kDefaultSpeed;
-  double fastest_wanted_ = 0.0;  // m/s, beyond the limit; 0: nothing is
+  double fastest_wanted_ = 0.0;  // m/s, largest speed above the limit; 0: none
   double takeoff_aside_m_ = 0.0;
   bool landed_ = false, takeoff_added_ = false, landing_added_ = false, global_ = false, local_ = false;
 };

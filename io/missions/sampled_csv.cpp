@@ -24,7 +24,8 @@ struct Columns {
   bool yaw = false;
 };
 
-// What the header names; where it is none of what can be read, the nearest that can, against which it fails.
+// Returns the columns of the header. For an unsupported header, returns the nearest supported columns;
+// parse_csv() then refuses the header.
 Columns columns_of(const std::vector<std::string>& header) {
   const auto has = [&](const char* name) {
     return std::find(header.begin(), header.end(), name) != header.end();
@@ -42,7 +43,7 @@ Columns columns_of(const std::vector<std::string>& header) {
   return columns;
 }
 
-// In NED, one entry a row.
+// In NED, one entry per row.
 struct Samples {
   std::vector<double> time_s;
   std::vector<PositionYaw> places;
@@ -66,7 +67,7 @@ Samples read(const runtime::CsvTable& table, const Columns& columns) {
     PositionYaw place;
     place.head<3>() = ned_of(table, row, 1);
     place[3] = columns.yaw ? ned_yaw(table.number(row, columns.names.size() - 1)) : 0.0;
-    if (row > 0) {  // no whole turns from one to the next
+    if (row > 0) {  // unwrapped: less than half a turn between rows
       const double before = samples.places.back()[3];
       place[3] = before + std::remainder(place[3] - before, 2.0 * M_PI);
     }
@@ -79,8 +80,8 @@ Samples read(const runtime::CsvTable& table, const Columns& columns) {
   return samples;
 }
 
-// Differences over the rows beside each, of what the file does not give and its neighbours do; zero at the
-// ends.
+// Fills in derivatives that the file does not give by central differences over the neighbouring rows; they
+// stay zero at both ends.
 void difference(Samples& samples, const Columns& columns) {
   const std::size_t last = samples.places.size() - 1;
   for (std::size_t i = 1; i < last; ++i) {
@@ -94,7 +95,7 @@ void difference(Samples& samples, const Columns& columns) {
   }
 }
 
-// Rows at which a segment begins or ends: all, or as many as fit, evenly among them.
+// Returns the rows at which segments begin or end: all rows, or evenly spaced ones if there are too many.
 std::vector<std::size_t> knots_of(std::size_t rows) {
   const std::size_t most = control::kMaxTrajectorySegments;
   const std::size_t segments = std::min(rows - 1, most);
@@ -143,8 +144,8 @@ TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file
   const runtime::CsvTable table = runtime::parse_csv(text, file_name, columns.names, 2, {true, true});
   Samples samples = read(table, columns);
   std::vector<std::string> assumptions = {
-      "taken as a sampled trajectory in ENU: m, rad and s, its origin that of motion capture"};
-  if (!columns.yaw) assumptions.emplace_back("it gives no yaw: north");
+      "taken as a sampled trajectory in ENU: m, rad and s, from the origin of motion capture"};
+  if (!columns.yaw) assumptions.emplace_back("the file has no yaw: the vehicle faces north");
   double least_m = -samples.places.front().z();
   for (const PositionYaw& place : samples.places) least_m = std::min(least_m, -place.z());
   const double raise_m = raise_by(least_m, assumptions);
@@ -153,11 +154,11 @@ TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file
   if (columns.velocity) difference(samples, columns);
   const std::vector<std::size_t> knots = knots_of(table.row_count());
   std::vector<control::PolynomialSegment> segments = through(samples, knots, columns.velocity);
-  assumptions.push_back(fmt::format("{} samples became {} segments {}; the furthest sample is {:.1f} mm off",
+  assumptions.push_back(fmt::format("{} samples became {} segments {}; the largest deviation is {:.1f} mm",
                                     table.row_count(), segments.size(),
                                     columns.acceleration ? "with their velocities and accelerations"
                                     : columns.velocity   ? "with their velocities"
-                                                         : "of least snap, at rest at both ends",
+                                                         : "of minimum snap, at rest at both ends",
                                     greatest_deviation(samples, knots, segments) * 1e3));
   return checked(
       {std::move(segments), std::move(assumptions)}, limits,

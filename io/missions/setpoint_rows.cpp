@@ -20,7 +20,7 @@ using control::SetpointKind;
 using runtime::ConfigError;
 
 constexpr double kRadPerDeg = M_PI / 180.0;
-constexpr double kStandardGravity = 9.80665;  // m/s^2, of a g
+constexpr double kStandardGravity = 9.80665;  // m/s^2, one g
 
 enum Slot : int {
   kT,
@@ -56,9 +56,9 @@ const std::vector<Unit> kRates = {{"rad/s", 1.0}, {"deg/s", kRadPerDeg}};
 
 struct Known {
   const char* name;
-  const std::vector<Unit>* units;  // the first is that of the topics
+  const std::vector<Unit>* units;  // first the unit of the topics
 };
-// By Slot.
+// Indexed by Slot.
 const std::array<Known, 18> kKnown = {{{"t", &kSeconds},
                                        {"x", &kMetres},
                                        {"y", &kMetres},
@@ -78,7 +78,8 @@ const std::array<Known, 18> kKnown = {{{"t", &kSeconds},
                                        {"r", &kRates},
                                        {"thrust", &kAccelerations}}};
 
-// What a stream of a kind must have besides the time, and what it may have: wholly, or not at all.
+// The columns of a kind of stream besides the time: the required ones, and optional groups, each complete or
+// absent.
 struct Form {
   SetpointKind kind;
   const char* name;
@@ -88,7 +89,7 @@ struct Form {
 const std::vector<int> kVelocity = {kVx, kVy, kVz};
 const std::vector<int> kAcceleration = {kAx, kAy, kAz};
 const std::vector<int> kBodyRates = {kP, kQ, kR};
-// Told apart by the first that is needed.
+// The first form whose first required column is present applies.
 const std::vector<Form> kForms = {
     {SetpointKind::kPosition, "positions", {kX, kY, kZ}, {kVelocity, kAcceleration, {kYaw}, {kYawRate}}},
     {SetpointKind::kAttitude, "attitudes", {kRoll, kPitch, kYaw, kThrust}, {kBodyRates}},
@@ -133,22 +134,22 @@ const Form& form_of(const std::string& file, const std::vector<int>& slots) {
                             ", or " + list_of({kP, kQ, kR, kThrust}));
   }
   std::vector<int> used = {kT};
-  const auto demand = [&](const std::vector<int>& group) {
+  const auto require = [&](const std::vector<int>& group) {
     for (const int slot : group) {
       if (!has(slot))
         refuse_header(file, "has no column " + header_of(slot) + ", must have " + list_of(group));
     }
     used.insert(used.end(), group.begin(), group.end());
   };
-  demand({kT});
-  demand(form->needed);
+  require({kT});
+  require(form->needed);
   for (const std::vector<int>& group : form->more) {
-    if (std::any_of(group.begin(), group.end(), has)) demand(group);
+    if (std::any_of(group.begin(), group.end(), has)) require(group);
   }
   for (const int slot : slots) {
     if (std::find(used.begin(), used.end(), slot) == used.end()) {
-      refuse_header(file, "has the column " + header_of(slot) + ", which a stream of " + form->name +
-                              " has no use for");
+      refuse_header(
+          file, "has the column " + header_of(slot) + ", which a stream of " + form->name + " does not use");
     }
   }
   return *form;
@@ -213,8 +214,8 @@ SetpointRows::SetpointRows(const std::string& header, const std::string& file_na
       for (const Unit& choice : units)
         choices += (choices.empty() ? "" : " or ") + name + " [" + choice.name + "]";
       refuse_header(file_, "has the column " + text +
-                               (has_unit ? " of a unit that is not known" : " without a unit") +
-                               ", must be " + choices);
+                               (has_unit ? " with an unknown unit" : " without a unit") + ", must be " +
+                               choices);
     }
     columns_.push_back({slot, meant->factor});
   }
@@ -223,7 +224,7 @@ SetpointRows::SetpointRows(const std::string& header, const std::string& file_na
   enu_ = true;
   if (kind_ != SetpointKind::kPosition)
     refuse_header(file_, "has no units, must have them: vx [m/s], thrust [m/s^2] ...");
-  assumption_ = "taken as a sampled trajectory in ENU: m, rad and s, its origin that of motion capture";
+  assumption_ = "taken as a sampled trajectory in ENU: m, rad and s, from the origin of motion capture";
 }
 
 double SetpointRows::value(const std::vector<double>& values, int slot) const {
@@ -272,7 +273,7 @@ std::optional<TimedSetpoint> SetpointRows::read(const std::string& line) {
   const double time_s = value(values, kT);
   if (last_time_s_ && time_s <= *last_time_s_) {
     throw ConfigError(file_, line_, "t",
-                      "is " + runtime::exact(time_s) + " s, must be above that of the row before, " +
+                      "is " + runtime::exact(time_s) + " s, must be above that of the previous row, " +
                           runtime::exact(*last_time_s_) + " s");
   }
   last_time_s_ = time_s;
@@ -304,7 +305,7 @@ SetpointSource resampled(SetpointSource source, double rate_hz) {
       p.after = p.source();
     }
     if (p.after) return TimedSetpoint{time_s, between(*p.before, *p.after, time_s)};
-    return std::exchange(p.before, std::nullopt);  // the last row as it is
+    return std::exchange(p.before, std::nullopt);  // the last row unchanged
   };
 }
 

@@ -1,4 +1,4 @@
-// Tables of setpoints over time, one a row, for `swiftlet stream`.
+// Tables of setpoints over time, one per row, for `swiftlet stream`.
 //
 //   t [s],x [m],y [m],z [m][,vx [m/s],vy ..,vz ..][,ax [m/s^2],ay ..,az ..]     positions
 //   t [s],vx [m/s],vy [m/s],vz [m/s][,ax ..,ay ..,az ..]                        velocities
@@ -6,11 +6,11 @@
 //   t [s],roll [rad],pitch [rad],yaw [rad],thrust [m/s^2][,p [rad/s],q ..,r ..] attitudes
 //   t [s],p [rad/s],q [rad/s],r [rad/s],thrust [m/s^2]                          body rates
 //
-// The columns may stand in any order; the first three kinds may have yaw [rad] (else the heading is kept) and
-// yaw_rate [rad/s]. Units that are usual are known too: deg, deg/s, cm, ms, thrust in g. Frames are those of
-// the topics, x north, y east, z down, roll, pitch and yaw as Eq. (3) has them. A header without units,
-// t,x,y,z[,vx,vy,vz[,ax,ay,az]][,yaw], is a sampled trajectory as of others, in ENU, and said to be taken for
-// that.
+// The columns may have any order. The first three kinds may have yaw [rad] and yaw_rate [rad/s]; without yaw
+// the heading is kept. Other common units are accepted: deg, deg/s, cm, ms, thrust in g. Frames are those of
+// the topics: x north, y east, z down; roll, pitch and yaw as in Eq. (3). A header without units,
+// t,x,y,z[,vx,vy,vz[,ax,ay,az]][,yaw], is read as a sampled trajectory of another project, in ENU;
+// assumption() says so.
 #pragma once
 
 #include <functional>
@@ -27,14 +27,14 @@ struct TimedSetpoint {
   control::Setpoint setpoint;
 };
 
-// Reads rows one after another, so that they may still be coming.
+// Reads rows one at a time, so that the input may be a live stream.
 class SetpointRows {
  public:
-  // header: the first line. Throws runtime::ConfigError with what cannot be read and what could be.
+  // header is the first line. Throws runtime::ConfigError with the invalid column and the valid ones.
   SetpointRows(const std::string& header, const std::string& file_name);
 
-  // The next line's; nothing for a blank one. Throws runtime::ConfigError for a row that breaks the form, or
-  // whose time is not above that of the row before.
+  // Returns the setpoint of the next line; nothing for a blank line. Throws runtime::ConfigError for an
+  // invalid row, or if its time is not later than that of the previous row.
   std::optional<TimedSetpoint> read(const std::string& line);
 
   control::SetpointKind kind() const { return kind_; }
@@ -58,10 +58,10 @@ class SetpointRows {
   std::optional<double> last_time_s_;
 };
 
-// Where the next row comes from; nothing: there is none.
+// Returns the next row; nothing at the end.
 using SetpointSource = std::function<std::optional<TimedSetpoint>()>;
 
-// The same motion at that rate, straight between the rows; headings and attitudes by the shorter way.
+// Resamples the rows at rate_hz by linear interpolation; headings and attitudes turn the shorter way.
 SetpointSource resampled(SetpointSource source, double rate_hz);
 
 }  // namespace swiftlet::ground

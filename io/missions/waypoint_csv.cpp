@@ -24,13 +24,13 @@ control::WaypointPath read(const runtime::CsvTable& table) {
     if (table.column_count() < 4) continue;
     point.yaw_rad = ned_yaw(table.number(row, 3));
     if (row == 0) continue;
-    const double before = path.points[row - 1].yaw_rad;  // no whole turns from one to the next
+    const double before = path.points[row - 1].yaw_rad;  // unwrapped
     point.yaw_rad = before + std::remainder(point.yaw_rad - before, 2.0 * M_PI);
   }
   return path;
 }
 
-// Of the path's segments, the row whose waypoint they begin at or follow.
+// Returns the row of the last waypoint at or before the start of a segment.
 std::size_t row_of(const control::PlannedPath& planned, std::size_t segment) {
   std::size_t row = 0;
   while (row + 1 < planned.leg_begins.size() && planned.leg_begins[row + 1] <= segment) ++row;
@@ -42,7 +42,7 @@ std::size_t row_of(const control::PlannedPath& planned, std::size_t segment) {
 TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& file_name,
                                  const control::Limits& limits) {
   std::vector<std::string> first = runtime::first_csv_line(text);
-  if (first.empty()) first.emplace_back();  // what parse_csv() refuses
+  if (first.empty()) first.emplace_back();  // parse_csv() refuses the empty file
   const bool has_header = !runtime::is_number(first.front());
   std::vector<std::string> columns = {"x", "y", "z"};
   const std::size_t fields = first.back().empty() ? first.size() - 1 : first.size();
@@ -52,8 +52,8 @@ TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& fil
   path.limits = reference_limits(limits);
 
   std::vector<std::string> assumptions = {
-      "taken as waypoints in ENU: m and rad, their origin that of motion capture"};
-  if (columns.size() < 4) assumptions.emplace_back("they give no yaw: north");
+      "taken as waypoints in ENU: m and rad, from the origin of motion capture"};
+  if (columns.size() < 4) assumptions.emplace_back("the file has no yaw: the vehicle faces north");
   double least_m = -path.points.front().position_ned.z();
   for (const control::PathPoint& point : path.points) least_m = std::min(least_m, -point.position_ned.z());
   const double raise_m = raise_by(least_m, assumptions);
@@ -64,7 +64,7 @@ TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& fil
     if (!inside.accepted) table.fail(row, "x,y,z", inside.reason);
   }
   assumptions.push_back(fmt::format(
-      "flown through without stopping on a path of least snap, at up to {:g} m/s, {:g} m/s^2 and {:g} m/s^3",
+      "flown without stopping on a path of minimum snap, at up to {:g} m/s, {:g} m/s^2 and {:g} m/s^3",
       path.limits.speed, path.limits.acceleration, path.limits.jerk));
   control::PlannedPath planned;
   try {

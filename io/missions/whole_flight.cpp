@@ -13,7 +13,7 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr double kTolerance_m = 0.1;  // of the tracking error, as in the missions of the configuration
+constexpr double kTolerance_m = 0.1;  // of the tracking error, as in config/missions
 
 control::Polynomial negative(control::Polynomial polynomial) {
   for (double& c : polynomial) c = -c;
@@ -36,15 +36,16 @@ control::PolynomialSegment ned_segment(const control::PolynomialSegment& segment
 }
 
 double raise_by(double least_height_m, std::vector<std::string>& assumptions) {
-  const double shown_m = std::round(least_height_m * 100.0) / 100.0 + 0.0;  // no -0.00
+  const double rounded_m = std::round(least_height_m * 100.0) / 100.0 + 0.0;  // no -0.00
   if (least_height_m >= kLeastHeight_m) {
-    assumptions.push_back(fmt::format("heights are above the ground: it comes down to {:.2f} m", shown_m));
+    assumptions.push_back(
+        fmt::format("heights are above the ground: the lowest point is {:.2f} m", rounded_m));
     return 0.0;
   }
   const double raise_m = kHoverHeight_m - least_height_m;
   assumptions.push_back(
-      fmt::format("it comes down to {:.2f} m, so its heights are taken from a hover: raised by {:.2f} m",
-                  shown_m, raise_m));
+      fmt::format("the lowest point is {:.2f} m, so heights are relative to a hover: raised by {:.2f} m",
+                  rounded_m, raise_m));
   return raise_m;
 }
 

@@ -1,4 +1,4 @@
-// What the formats of others have in common: ENU, and a flight around a path.
+// Common parts of the readers of other projects' formats: ENU to NED, and a complete flight around a path.
 #pragma once
 
 #include <functional>
@@ -17,24 +17,24 @@ Eigen::Vector3d ned_position(const Eigen::Vector3d& position_enu);
 double ned_yaw(double yaw_enu);
 control::PolynomialSegment ned_segment(const control::PolynomialSegment& segment_enu);
 
-constexpr double kHoverHeight_m = 1.0;  // above which a path is flown that says nothing of the ground
-constexpr double kLeastHeight_m = 0.2;  // a path that comes lower is taken for one of these
+constexpr double kHoverHeight_m = 1.0;  // lowest point of a path that was raised
+constexpr double kLeastHeight_m = 0.2;  // a path with a lower point is raised
 constexpr double kApproachSpeed =
-    0.5;  // m/s, of take-off, to where the path begins, and of the landing at most
+    0.5;  // m/s, largest speed of take-off, of the flight to the start of the path, and of landing
 
-// By how much a path must be raised, m; 0 if it stays above kLeastHeight_m. Adds to the assumptions what was
-// decided.
+// Returns by how much a path must be raised, m; 0 if it stays above kLeastHeight_m. Adds the decision to the
+// assumptions.
 double raise_by(double least_height_m, std::vector<std::string>& assumptions);
 
-// The path, if it can be flown. `where` throws for the segment of this index with a sentence about it, for
-// one that breaks fence, limits or the one before it.
+// Returns the path if it can be flown. Calls `where`, which must throw, with the index of the first segment
+// that violates the fence or the limits or does not continue the previous segment, and with the reason.
 TrajectoryFile checked(TrajectoryFile path, const control::Limits& limits,
                        const std::function<void(std::size_t, const std::string&)>& where);
 
-// Take-off to the height where the path begins, the path, the landing.
+// Returns take-off to the height of the path's start, the path, and landing.
 MissionFile whole_flight(const std::string& file_name, TrajectoryFile path, const control::Limits& limits);
 
-// The least height above z = 0 along the path, m.
+// Returns the least height above z = 0 along the path, m.
 double least_height(const std::vector<control::PolynomialSegment>& segments);
 
 control::MotionLimits reference_limits(const control::Limits& limits);

@@ -8,7 +8,7 @@ namespace swiftlet::runtime {
 
 namespace {
 
-// As many weights as the model has states.
+// The list q has one weight per state of the model.
 control::LqrWeights read_weights(const ConfigNode& node, control::AttitudeModel model) {
   const std::size_t states = model == control::AttitudeModel::kMotorLag ? 3 : 2;
   const std::vector<double> q = node.at("q").numbers(states, states);

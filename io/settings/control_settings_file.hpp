@@ -1,5 +1,5 @@
-// The control settings file: YAML with the values of control::ControlSettings, units in the key names.
-// config/control/motor_lag.yaml shows all keys; each must be given.
+// The control settings file: YAML with the values of control::ControlSettings. Key names end with the unit.
+// config/control/motor_lag.yaml shows all keys; every key is required.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace swiftlet::runtime {
 
-// Settings that control::validate() finds no fault with. Throws ConfigError for anything else. file_name is
-// for the messages only.
+// Returns settings that pass control::validate(). Throws ConfigError otherwise. file_name appears in messages
+// only.
 control::ControlSettings parse_control_settings(std::string_view text, const std::string& file_name);
 control::ControlSettings load_control_settings(const std::string& path);
 

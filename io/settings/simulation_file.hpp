@@ -1,6 +1,6 @@
-// The simulation file: YAML with the keys of plant/simulation/settings.hpp, their units in their names.
-// config/simulation/default.yaml shows all of them but `faults`, the list of faults to inject, which may be
-// left out; faults_example.yaml shows those.
+// The simulation file: YAML with the values of plant/simulation/settings.hpp. Key names end with the unit.
+// All keys are required except `faults`, the list of faults to inject. config/simulation/default.yaml shows
+// the required keys, faults_example.yaml the faults.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace swiftlet::runtime {
 
-// Settings that plant::validate() finds no fault with. Throws ConfigError for anything else. All other keys
-// must be given. file_name is for the messages only.
+// Returns settings that pass plant::validate(). Throws ConfigError otherwise. file_name appears in messages
+// only.
 plant::SimulationSettings parse_simulation_settings(std::string_view text, const std::string& file_name);
 plant::SimulationSettings load_simulation_settings(const std::string& path);
 

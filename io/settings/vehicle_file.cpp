@@ -35,7 +35,7 @@ std::vector<plant::RotorMount> read_rotors(const ConfigNode& node) {
   return rotors;
 }
 
-// Either the factors of Eq. (25) and (26), or the coefficients of Eq. (23) and (24).
+// The file gives either the factors of Eq. (25) and (26) or the coefficients of Eq. (23) and (24).
 plant::RotorCoefficients read_rotor(const ConfigNode& node) {
   if (!node.find("thrust_coefficient")) {
     return {node.at("thrust_factor").quantity("N*s^2").number(),
@@ -82,7 +82,7 @@ plant::BatteryParameters read_battery(const ConfigNode& node) {
   return battery;
 }
 
-// A parameter that may be uncertain: a single number of the vehicle.
+// Reads the key of a scalar vehicle parameter that may have an uncertainty.
 std::string read_parameter_key(const ConfigNode& node) {
   constexpr std::array<const char*, 17> kKeys = {"mass",
                                                  "linear_drag",
@@ -119,7 +119,7 @@ plant::VehicleUncertainty read_uncertainty(const ConfigNode& root) {
       return other.parameter == parameter.parameter;
     };
     if (std::any_of(out.parameters.begin(), out.parameters.end(), is_same))
-      item.at("parameter").fail("is " + parameter.parameter + ", which stands there already");
+      item.at("parameter").fail("is " + parameter.parameter + ", which is listed already");
     parameter.standard_error = item.at("standard_error").number(at_least(0.0));
     const std::vector<double> interval = item.at("interval_95").numbers(2, 2);
     parameter.low = interval[0];

@@ -110,7 +110,7 @@ void write_battery(std::ostream& out, const plant::BatteryParameters& battery, c
 
 void write_uncertainty(std::ostream& out, const plant::VehicleUncertainty& uncertainty) {
   if (uncertainty.parameters.empty()) return;
-  out << "\n# How sure the identified parameters are, in their units; correlations are those of their "
+  out << "\n# Uncertainty of the identified parameters, in their units, and correlations of their "
          "errors.\n"
          "uncertainty:\n  parameters:\n";
   for (const plant::ParameterUncertainty& p : uncertainty.parameters) {

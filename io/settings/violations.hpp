@@ -1,4 +1,4 @@
-// From broken rules of a parameter struct to an error that points into its file.
+// Reports violated rules of a parameter struct as an error with the line of its file.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace swiftlet::runtime {
 
-// Throws ConfigError for the first violation, if there is one, with the line of its key (or of the nearest
-// map around it).
+// Throws ConfigError for the first violation, with the line of its key or, if the key is missing, of the
+// nearest enclosing map. Does nothing without a violation.
 void reject_violations(const ConfigNode& root, const std::vector<plant::Violation>& violations);
 
 }  // namespace swiftlet::runtime

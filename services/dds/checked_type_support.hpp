@@ -1,4 +1,4 @@
-// A generated type support that outlives what is not of its type.
+// A generated type support that drops malformed payloads.
 #pragma once
 
 #include <cstdio>
@@ -11,9 +11,9 @@
 
 namespace swiftlet::comms {
 
-// Generated code of Fast DDS 2.9 lets exceptions of the decoder through, of which a byte other than 0 or 1 in
-// a boolean is enough; in a thread of the middleware they would end the process. Here such a sample is
-// dropped, with a line in the log.
+// Generated code of Fast DDS 2.9 does not catch the exceptions of the decoder. A byte other than 0 or 1 in a
+// boolean is enough to throw one, and in a middleware thread it would end the process. This class drops such
+// a sample and logs a line.
 template <class PubSubType>
 class CheckedTypeSupport final : public PubSubType {
  public:
@@ -32,12 +32,12 @@ class CheckedTypeSupport final : public PubSubType {
  private:
   void note(const char* what) {
     Fault fault;
-    std::snprintf(fault.text, sizeof fault.text, "the bytes are no message of this type: %s", what);
+    std::snprintf(fault.text, sizeof fault.text, "the payload is not a message of this type: %s", what);
     const std::lock_guard<std::mutex> lock(mutex_);
     log_.note(fault);
   }
 
-  std::mutex mutex_;  // samples are taken by several threads
+  std::mutex mutex_;  // several threads take samples
   ThrottledWarning log_{this->getName()};
 };
 

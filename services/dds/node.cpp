@@ -48,7 +48,7 @@
 #include "swiftlet/services/dds/qos_conflicts.hpp"
 #include "swiftlet/services/dds/shared_memory.hpp"
 
-// Each message type that is a topic's.
+// All message types of topics.
 // clang-format off
 #define SWIFTLET_FOR_EACH_MESSAGE(X)                                      \
   X(ActuatorCommand) X(Battery) X(Command) X(CommandAck) X(ControllerState) X(ControlStatus) \
@@ -92,13 +92,13 @@ const std::string& checked(const std::string& vehicle) {
   return vehicle;
 }
 
-// Of names as they stand in a participant's user data: "kl1,kl2".
+// True if the list of a participant's user data, "kl1,kl2", contains the vehicle.
 bool lists(const std::string& names, const std::string& vehicle) {
   return ("," + names + ",").find("," + vehicle + ",") != std::string::npos;
 }
 
-constexpr std::chrono::milliseconds kReunionPatience{1000};
-constexpr std::chrono::milliseconds kLookPeriod{250};
+constexpr std::chrono::milliseconds kRediscoveryPatience{1000};
+constexpr std::chrono::milliseconds kCheckPeriod{250};
 
 std::string named(const std::string& name, const rtps::GuidPrefix_t& participant) {
   std::ostringstream text;
@@ -109,7 +109,7 @@ std::string named(const std::string& name, const rtps::GuidPrefix_t& participant
 }  // namespace
 
 struct Participant::Impl final : public dds::DomainParticipantListener {
-  using Meetings = RediscoveryMonitor<rtps::GuidPrefix_t>;
+  using PeerMonitor = RediscoveryMonitor<rtps::GuidPrefix_t>;
   struct RemoteEndpoint {
     std::string topic;
     EndpointQos qos;
@@ -119,20 +119,20 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
     std::string name;
     std::string vehicles;
   };
-  struct Ear {
+  struct PeerListener {
     std::string vehicle;
     std::function<void(const PeerEvent&)> callback;
   };
 
-  // vehicles: one, or none yet
+  // vehicle: may be empty
   Impl(const NodeSettings& node_settings, const std::string& vehicle)
       : settings(node_settings), served(vehicle) {
     settings.vehicle = vehicle;
     check(settings);
     if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
     session = std::make_unique<ParticipantSession>(settings, this);
-    periodic_task.emplace(kLookPeriod, [this] {
-      look_after_reunions();
+    periodic_task.emplace(kCheckPeriod, [this] {
+      rejoin_if_rediscovery_failed();
       log_conflicts_due();
     });
   }
@@ -146,7 +146,7 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  // From now on it is one of this vehicle's processes, too.
+  // Adds a vehicle that this process serves.
   void serve(const std::string& vehicle) {
     const std::lock_guard<std::mutex> lock(session_mutex);
     if (lists(settings.vehicle, vehicle)) return;
@@ -173,16 +173,16 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
     endpoints.erase(std::remove(endpoints.begin(), endpoints.end(), endpoint), endpoints.end());
   }
 
-  // Where a peer came back without its endpoints, this process leaves the domain and joins it anew, with all
-  // that it publishes and subscribes; nobody takes it for the one that was there.
-  void look_after_reunions() {
+  // If a peer was rediscovered without its endpoints, leaves the domain and rejoins it with all publishers
+  // and subscriptions. The peers then discover it as a new process.
+  void rejoin_if_rediscovery_failed() {
     {
       const std::lock_guard<std::mutex> lock(peers_mutex);
-      if (!rediscovery.failed(std::chrono::steady_clock::now(), kReunionPatience) && !away) return;
+      if (!rediscovery.failed(std::chrono::steady_clock::now(), kRediscoveryPatience) && !away) return;
     }
-    if (rejoin()) spdlog::warn("a peer came back and could not be heard: joined the network anew");
+    if (rejoin()) spdlog::warn("rejoined the network: a peer was rediscovered without its endpoints");
   }
-  // False if it is away now, or was.
+  // Returns false if joining failed this time or the previous time.
   bool rejoin() {
     const std::lock_guard<std::mutex> lock(session_mutex);
     leave();
@@ -191,7 +191,7 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
       for (Endpoint* const endpoint : endpoints) endpoint->join(*session);
       return !away.exchange(false);
     } catch (const std::runtime_error& error) {
-      if (!away) spdlog::error("cannot join the network anew, trying again: {}", error.what());
+      if (!away) spdlog::error("cannot rejoin the network, trying again: {}", error.what());
       away = true;
       leave();
       return false;
@@ -221,8 +221,8 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
     switch (info.status) {
       case rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT:
       case rtps::ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT:
-        meet(info.info.m_guid,
-             {info.info.m_participantName.c_str(), vehicle_of(info.info.m_userData.dataVec())});
+        update_peer(info.info.m_guid,
+                    {info.info.m_participantName.c_str(), vehicle_of(info.info.m_userData.dataVec())});
         break;
       case rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT:
       case rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT: {
@@ -236,24 +236,24 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
         if (!is_own(gone)) return;
         event.said_goodbye ? rediscovery.gone(info.info.m_guid.guidPrefix)
                            : rediscovery.lost(info.info.m_guid.guidPrefix);
-        for (const auto& [node, ear] : ears) {
-          if (lists(gone.vehicles, ear.vehicle)) ear.callback(event);
+        for (const auto& [node, listener] : peer_listeners) {
+          if (lists(gone.vehicles, listener.vehicle)) listener.callback(event);
         }
         break;
       }
     }
   }
-  // With the lock held. One that is known may serve more vehicles now.
-  void meet(const rtps::GUID_t& guid, const Peer& peer) {
+  // Adds or updates a peer: a known peer may serve more vehicles now. Requires peers_mutex.
+  void update_peer(const rtps::GUID_t& guid, const Peer& peer) {
     Peer& known = peers[guid];
     const Peer before = std::exchange(known, peer);
     if (is_own(peer) && !is_own(before)) rediscovery.came(guid.guidPrefix, std::chrono::steady_clock::now());
-    for (const auto& [node, ear] : ears) {
-      if (lists(peer.vehicles, ear.vehicle) && !lists(before.vehicles, ear.vehicle))
-        ear.callback({peer.name, true, false});
+    for (const auto& [node, listener] : peer_listeners) {
+      if (lists(peer.vehicles, listener.vehicle) && !lists(before.vehicles, listener.vehicle))
+        listener.callback({peer.name, true, false});
     }
   }
-  // With the lock held: it serves one of the vehicles that this process does.
+  // True if the peer serves a vehicle that this process serves. Requires peers_mutex.
   bool is_own(const Peer& peer) const {
     std::size_t begin = 0;
     while (begin < served.size()) {
@@ -267,7 +267,7 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
   void on_publisher_discovery(dds::DomainParticipant* own, rtps::WriterDiscoveryInfo&& info) override {
     if (info.info.guid().guidPrefix == own->guid().guidPrefix) return;
     if (info.status == rtps::WriterDiscoveryInfo::DISCOVERED_WRITER) {
-      note_endpoint(info.info.guid(), Meetings::kWriter);
+      note_endpoint(info.info.guid(), PeerMonitor::kWriter);
       const std::lock_guard<std::mutex> lock(peers_mutex);
       writers[info.info.guid()] = {info.info.topicName().c_str(), endpoint_qos(info.info.m_qos)};
     } else if (info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) {
@@ -278,7 +278,7 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
   void on_subscriber_discovery(dds::DomainParticipant* own, rtps::ReaderDiscoveryInfo&& info) override {
     if (info.info.guid().guidPrefix == own->guid().guidPrefix) return;
     if (info.status == rtps::ReaderDiscoveryInfo::DISCOVERED_READER) {
-      note_endpoint(info.info.guid(), Meetings::kReader);
+      note_endpoint(info.info.guid(), PeerMonitor::kReader);
       const std::lock_guard<std::mutex> lock(peers_mutex);
       readers[info.info.guid()] = {info.info.topicName().c_str(), endpoint_qos(info.info.m_qos)};
     } else if (info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER) {
@@ -286,7 +286,7 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
       readers.erase(info.info.guid());
     }
   }
-  // With the lock held.
+  // Requires peers_mutex.
   void forget(const rtps::GuidPrefix_t& participant) {
     for (RemoteEndpoints* const remote : {&writers, &readers}) {
       for (auto it = remote->begin(); it != remote->end();)
@@ -296,19 +296,20 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
       it = it->second.guidPrefix == participant ? logged_conflicts.erase(it) : std::next(it);
   }
 
-  // Fast DDS says of which reader or writer of ours, but not with whom: with each that it knows of the topic
-  // and that does not match.
+  // Fast DDS reports which own reader or writer has a conflict, but not the peer. Logs every known peer
+  // endpoint of the topic that does not match.
   void on_requested_incompatible_qos(dds::DataReader* reader,
                                      const dds::RequestedIncompatibleQosStatus&) override {
     const EndpointQos requested = endpoint_qos(reader->get_qos().get_readerqos(dds::SUBSCRIBER_QOS_DEFAULT));
-    log_conflicts(reader->guid(), reader->get_topicdescription()->get_name(), writers, "is not heard",
+    log_conflicts(reader->guid(), reader->get_topicdescription()->get_name(), writers, "is not received",
                   [&](const EndpointQos& offered) { return conflicts(offered, requested); });
   }
   void on_offered_incompatible_qos(dds::DataWriter* writer,
                                    const dds::OfferedIncompatibleQosStatus&) override {
     const EndpointQos offered =
         endpoint_qos(writer->get_qos().get_writerqos(dds::PUBLISHER_QOS_DEFAULT, dds::TOPIC_QOS_DEFAULT));
-    log_conflicts(writer->guid(), writer->get_topic()->get_name(), readers, "does not hear this process",
+    log_conflicts(writer->guid(), writer->get_topic()->get_name(), readers,
+                  "does not receive from this process",
                   [&](const EndpointQos& requested) { return conflicts(offered, requested); });
   }
   template <class ConflictsWith>
@@ -331,36 +332,36 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
     if (const auto line = conflict_lines.due(std::chrono::steady_clock::now())) spdlog::warn(*line);
   }
 
-  // With the lock held.
+  // Requires peers_mutex.
   std::string name_of(const rtps::GuidPrefix_t& participant) const {
     const auto peer = peers.find(rtps::GUID_t(participant, rtps::c_EntityId_RTPSParticipant));
     return peer == peers.end() ? "" : peer->second.name;
   }
 
-  void note_endpoint(const rtps::GUID_t& guid, Meetings::Kind kind) {
+  void note_endpoint(const rtps::GUID_t& guid, PeerMonitor::Kind kind) {
     const std::lock_guard<std::mutex> lock(peers_mutex);
     const rtps::GUID_t peer(guid.guidPrefix, rtps::c_EntityId_RTPSParticipant);
     const auto known = peers.find(peer);
     if (known != peers.end() && is_own(known->second)) rediscovery.has(guid.guidPrefix, kind);
   }
 
-  std::mutex session_mutex;  // of these, but what never changes in the settings
-  NodeSettings settings;     // vehicle: the names of all that are served
+  std::mutex session_mutex;  // guards these, except constant fields of the settings
+  NodeSettings settings;     // vehicle: all served vehicles, "kl1,kl2"
   std::unique_ptr<ParticipantSession> session;
   std::vector<Endpoint*> endpoints;
 
   std::mutex peers_mutex;
-  std::string served;                  // as settings.vehicle
-  std::map<rtps::GUID_t, Peer> peers;  // of whichever vehicle
-  RemoteEndpoints writers;             // of others, of whichever vehicle
+  std::string served;                  // same as settings.vehicle
+  std::map<rtps::GUID_t, Peer> peers;  // of any vehicle
+  RemoteEndpoints writers;             // of other processes, any vehicle
   RemoteEndpoints readers;
-  std::set<std::pair<rtps::GUID_t, rtps::GUID_t>> logged_conflicts;  // of our own endpoints with others
+  std::set<std::pair<rtps::GUID_t, rtps::GUID_t>> logged_conflicts;  // of own endpoints with others
   LineLimit conflict_lines;
-  std::map<const Node*, Ear> ears;
+  std::map<const Node*, PeerListener> peer_listeners;
 
-  Meetings rediscovery;
+  PeerMonitor rediscovery;
 
-  std::atomic<bool> away{false};  // it could not join anew
+  std::atomic<bool> away{false};  // the last rejoin failed
   std::optional<PeriodicTask> periodic_task;
 };
 
@@ -369,7 +370,7 @@ namespace {
 const eprosima::fastrtps::Duration_t kWriteTimeout{0,
                                                    std::chrono::nanoseconds(kReliableWriteTimeout).count()};
 
-// Endpoints share the node, so that the order in which a process lets go of them does not matter.
+// Endpoints share the participant, so that they may be destroyed in any order.
 template <class Impl, class T>
 class DdsWriter final : public detail::Writer, private Endpoint {
  public:
@@ -382,15 +383,15 @@ class DdsWriter final : public detail::Writer, private Endpoint {
   DdsWriter& operator=(const DdsWriter&) = delete;
 
   bool write(const void* sample) override {
-    if (is_kept(topic_.qos)) {
+    if (is_latched(topic_.qos)) {
       const std::lock_guard<std::mutex> lock(last_mutex_);
       last_ = *static_cast<const T*>(sample);
     }
     const typename GuardedPointer<dds::DataWriter>::Use writer(writer_);
     if (!writer) return false;
-    void* const data = const_cast<void*>(sample);  // serialized before write() returns, not altered
+    void* const data = const_cast<void*>(sample);  // serialized before write() returns, never modified
     if (writer->write(data)) return true;
-    // A full history of requests makes room when they are acknowledged; write() does not always wait for
+    // A full history of requests has room again once they are acknowledged. write() does not always wait for
     // that.
     return topic_.qos == Qos::kRequest &&
            writer->wait_for_acknowledgments(kWriteTimeout) == ReturnCode_t::RETCODE_OK && writer->write(data);
@@ -426,7 +427,7 @@ class DdsWriter final : public detail::Writer, private Endpoint {
     if (writer == nullptr) return;
     dds::PublicationMatchedStatus last;
     writer->get_publication_matched_status(last);
-    changes_before_ += static_cast<std::uint64_t>(2 * last.total_count);  // all have gone
+    changes_before_ += static_cast<std::uint64_t>(2 * last.total_count);  // all readers unmatched
     session.publisher->delete_datawriter(writer);
   }
   dds::PublicationMatchedStatus readers() const {
@@ -441,9 +442,9 @@ class DdsWriter final : public detail::Writer, private Endpoint {
   const Topic<T> topic_;
   std::atomic<std::uint32_t> strength_;
   GuardedPointer<dds::DataWriter> writer_;
-  std::atomic<std::uint64_t> changes_before_{0};  // in memberships that have ended
+  std::atomic<std::uint64_t> changes_before_{0};  // in ended sessions
   std::mutex last_mutex_;
-  std::optional<T> last_;  // of a state, which late joiners are told
+  std::optional<T> last_;  // of a latched topic, sent again after rejoining
 };
 
 template <class Impl, class T>
@@ -505,7 +506,7 @@ class DdsReader final : public detail::Reader, private Endpoint, private dds::Da
   const Topic<T> topic_;
   const Delivery delivery_;
   GuardedPointer<dds::DataReader> reader_;
-  std::mutex mutex_;  // of all below; held while a callback runs
+  std::mutex mutex_;  // guards all below; held while a callback runs
   std::function<void(const T&)> callback_;
   T sample_;
   bool open_ = false;
@@ -536,12 +537,12 @@ std::vector<std::string> Participant::topics_seen() const {
 void Node::on_peer(std::function<void(const PeerEvent&)> callback) {
   Participant::Impl& impl = *participant_.impl_;
   const std::lock_guard<std::mutex> lock(impl.peers_mutex);
-  impl.ears.erase(this);
+  impl.peer_listeners.erase(this);
   if (!callback) return;
   for (const auto& [guid, peer] : impl.peers) {
     if (lists(peer.vehicles, vehicle_)) callback({peer.name, true, false});
   }
-  impl.ears[this] = {vehicle_, std::move(callback)};
+  impl.peer_listeners[this] = {vehicle_, std::move(callback)};
 }
 
 void Node::rejoin() { participant_.impl_->rejoin(); }

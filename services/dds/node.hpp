@@ -1,5 +1,5 @@
-// One process on the network: a DDS participant, and nodes that publish and subscribe the topics of one vehicle
-// each. No Fast DDS header is seen through this file.
+// A process on the network: a DDS participant, and nodes that each publish and subscribe the topics of one
+// vehicle. This header includes no Fast DDS header.
 #pragma once
 
 #include <chrono>
@@ -15,36 +15,36 @@
 namespace swiftlet::comms {
 
 enum class Transport {
-  kUdp,           // works everywhere, leaves nothing behind
-  kSharedMemory,  // between processes of one user on one host; UDP for others
-  kDataSharing,   // streams through memory that writer and reader map, the rest as kUdp; for measurements
+  kUdp,           // default; leaves no files behind
+  kSharedMemory,  // between processes of one user on one host; UDP to others
+  kDataSharing,   // streams through memory mapped by writer and reader, the rest as kUdp; for benchmarks
 };
 
 struct NodeSettings {
-  std::string name;             // of the process: "plant", "mocap", "control", "ground"
+  std::string name;             // process: "plant", "mocap", "control", "ground"
   std::string vehicle = "kl1";  // namespace of the topics: letters, digits and _, at most 64
   int domain = 0;               // 0 .. 232
   Transport transport = Transport::kUdp;
-  bool localhost_only = false;  // discover and talk over the loopback interface only, without multicast
-  // Offer and ask for the topics' deadlines. Not in lockstep, where time stands still; who asks for one does
-  // not hear who offers none.
+  bool localhost_only = false;  // loopback interface only, without multicast
+  // Offer and request the topics' deadlines. False in lockstep, where time may stand still. A reader that
+  // requests a deadline does not match a writer that offers none.
   bool deadlines = true;
-  // How often it announces itself: kFixturePeriod for what a controller cannot fly without.
+  // Period of its announcements: kFixturePeriod for vehicle and motion capture.
   std::chrono::milliseconds announcement_period = kLivelinessPeriod;
 };
 
-// Another process of the same vehicle appeared or went away.
+// Another process of the same vehicle was discovered or lost.
 struct PeerEvent {
   std::string name;
   bool alive = false;
-  bool said_goodbye = false;  // of one that went away: it ended cleanly; otherwise it died or was cut off
+  bool said_goodbye = false;  // if not alive: it ended cleanly; else it died or was cut off
 };
 
-// Which thread runs the callback.
+// The thread that runs the callback.
 enum class Delivery {
-  // One that all such subscriptions of the node share.
+  // One thread for all such subscriptions of the node.
   kShared,
-  // One of its own, with a socket of its own: nothing else that arrives delays a sample. Over shared memory
+  // A separate thread with a separate socket: no other message delays a sample. With kSharedMemory the same
   // as kShared.
   kOwnThread,
 };
@@ -65,48 +65,48 @@ class Reader {
 };
 }  // namespace detail
 
-// May outlive its node. One thread at a time calls publish().
+// May outlive its node. publish() must not be called concurrently.
 template <class T>
 class Publisher {
  public:
   Publisher() = default;
   explicit Publisher(std::unique_ptr<detail::Writer> writer) : writer_(std::move(writer)) {}
-  // False if the sample was not handed to the network (no resources, time-out of a reliable writer).
+  // Returns false if the sample was not sent (no resources, or time-out of a reliable writer).
   bool publish(const T& sample) { return writer_->write(&sample); }
-  int matched() const { return writer_->matched(); }  // readers that hear it
-  // How often one of these has come or gone: what was sent before the last change may not have reached all.
+  int matched() const { return writer_->matched(); }  // number of matched readers
+  // Number of matches and unmatches of readers. A sample sent before the last one may not have reached all.
   std::uint64_t changes() const { return writer_->changes(); }
-  // Of an owned stream, from now on; the readers know it within milliseconds. By any thread.
+  // Sets the ownership strength of an owned stream. Takes effect within milliseconds. Thread-safe.
   void set_strength(std::uint32_t strength) { writer_->set_strength(strength); }
 
  private:
   std::unique_ptr<detail::Writer> writer_;
 };
 
-// Deliveries stop when it is destroyed; the destructor waits for a callback that is running, so it must not
-// be destroyed from there. May outlive its node.
+// Its destructor stops the deliveries and waits for a running callback, so the callback must not destroy it.
+// May outlive its node.
 class Subscription {
  public:
   Subscription() = default;
   explicit Subscription(std::unique_ptr<detail::Reader> reader) : reader_(std::move(reader)) {}
-  int matched() const { return reader_->matched(); }  // writers that are heard
+  int matched() const { return reader_->matched(); }  // number of matched writers
 
  private:
   std::unique_ptr<detail::Reader> reader_;
 };
 
-// A process's place in a domain, which the nodes of any number of vehicles share: one set of sockets, threads and
-// discoveries for all of them.
+// A DDS participant that the nodes of any number of vehicles share: one set of sockets, threads and discovery
+// data for all of them.
 class Participant {
  public:
-  // Of no vehicle at first: that of the settings is not looked at. Throws std::runtime_error with a sentence if it
-  // cannot be made. Its threads have the scheduling of the thread that makes it. With kSharedMemory, what dead
-  // processes of this user left in /dev/shm is removed at its start and its end.
+  // Creates a participant without a vehicle; ignores settings.vehicle. Its threads inherit the scheduling of
+  // the calling thread. With kSharedMemory, constructor and destructor remove the files that dead processes
+  // of this user left in /dev/shm. Throws std::runtime_error with a sentence.
   explicit Participant(const NodeSettings& settings);
 
-  // The topics that others in the domain publish now, whichever vehicle's, by their names on the wire
-  // ("rt/kl1/imu"); sorted, each once. Those of processes that keep to the loopback interface are there only
-  // for who does so too.
+  // The wire names ("rt/kl1/imu") of the topics that other participants of the domain publish now, of any
+  // vehicle; sorted, without duplicates. Topics of processes with localhost_only are seen only with
+  // localhost_only.
   std::vector<std::string> topics_seen() const;
 
  private:
@@ -118,19 +118,20 @@ class Participant {
 
 class Node {
  public:
-  // With a participant of its own. Throws as Participant does, and for a vehicle's name that cannot be one.
+  // With its own participant. Throws as Participant does, and for an invalid vehicle name.
   explicit Node(const NodeSettings& settings);
-  // One of those that share the participant.
+  // Shares the participant with other nodes.
   Node(const Participant& participant, const std::string& vehicle);
   ~Node();
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
 
-  // strength: of an owned stream; the strongest living writer is heard. Throws std::runtime_error.
+  // strength: ownership strength of an owned stream; readers receive the strongest live writer. Throws
+  // std::runtime_error.
   template <class T>
   Publisher<T> publish(const Topic<T>& topic, std::uint32_t strength = 0);
 
-  // The callback runs in the thread that received the sample, once for each sample, one at a time, and must
+  // The callback runs in the thread that received the sample, once per sample, never concurrently. It must
   // not block. Throws std::runtime_error.
   template <class T>
   Subscription subscribe(const Topic<T>& topic, std::function<void(const T&)> callback,
@@ -138,14 +139,14 @@ class Node {
 
   std::vector<std::string> topics_seen() const { return participant_.topics_seen(); }
 
-  // Tells of the vehicle's peers that come and go, also of those that were there before the call. Runs in a middleware
-  // thread. A later call takes the place of an earlier one; when it returns, the earlier callback runs no
-  // more.
+  // Sets the callback for discovered and lost peers of the vehicle; it is called at once for known peers. It
+  // runs in a middleware thread. A new callback replaces the previous one, which no longer runs when this
+  // returns.
   void on_peer(std::function<void(const PeerEvent&)> callback);
 
-  // Leaves the domain and joins it anew, with all that it publishes and subscribes: others take it for a new
-  // process. Callbacks run in new threads from then on. It does so by itself where a peer came back and
-  // cannot be heard. Not from a callback.
+  // Leaves the domain and joins it again with all publishers and subscriptions. Other processes see a new
+  // process, and callbacks run in new threads. The participant does so by itself when a peer is rediscovered
+  // without its endpoints. Must not be called from a callback.
   void rejoin();
 
  private:

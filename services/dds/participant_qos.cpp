@@ -19,7 +19,7 @@ using eprosima::fastrtps::Duration_t;
 
 constexpr const char* kLoopback = "127.0.0.1";
 constexpr const char* kVehicleKey = "vehicle=";
-constexpr std::uint32_t kSegmentBytes = 1 << 20;  // of shared memory: seven missions of the greatest length
+constexpr std::uint32_t kSegmentBytes = 1 << 20;  // of shared memory: fits seven missions of maximum length
 
 Duration_t duration(std::chrono::milliseconds time) {
   return {static_cast<std::int32_t>(time.count() / 1000),
@@ -47,17 +47,17 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uin
   builtin.discovery_config.initial_announcements.count = kFirstAnnouncements;
   builtin.discovery_config.initial_announcements.period = duration(kFirstAnnouncementPeriod);
 
-  // A port that is taken is passed over for the next one of the domain, and not for one beyond.
+  // If a port is taken, try the next ones of this domain only.
   const DiscoveryPorts ports = discovery_ports(settings.domain);
   builtin.mutation_tries = ports.count - 1;
 
   const auto udp = std::make_shared<UDPv4TransportDescriptor>();
-  udp->non_blocking_send = true;  // a full socket buffer loses a sample rather than hold the sender up
+  udp->non_blocking_send = true;  // a full socket buffer drops a sample instead of blocking the sender
   if (settings.localhost_only) {
     udp->interfaceWhiteList = {kLoopback};
     udp->maxInitialPeersRange = announced_ports;
-    // The first of the domain's ports that is free, whatever number the middleware gives the participant;
-    // none for multicast. Of the peers (port 0), the middleware tries as many ports as maxInitialPeersRange.
+    // Listen on the first free port of the domain, whatever ID the middleware assigns to the participant, and
+    // on no multicast address. For the peers (port 0) the middleware tries maxInitialPeersRange ports.
     builtin.metatrafficUnicastLocatorList.push_back(loopback_locator(ports.first));
     builtin.initialPeersList.push_back(loopback_locator(0));
   }
@@ -83,7 +83,7 @@ std::string vehicle_of(const std::vector<rtps::octet>& user_data) {
 
 std::vector<rtps::octet> user_data(const std::string& vehicle) {
   const std::string text =
-      "enclave=/;" + std::string(kVehicleKey) + vehicle + ";";  // ROS 2 looks for the enclave
+      "enclave=/;" + std::string(kVehicleKey) + vehicle + ";";  // ROS 2 expects the enclave
   return {text.begin(), text.end()};
 }
 

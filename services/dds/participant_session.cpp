@@ -20,14 +20,14 @@ namespace {
 namespace dds = eprosima::fastdds::dds;
 using eprosima::fastrtps::types::ReturnCode_t;
 
-// Once in a process, before its first participant.
+// Runs once per process, before its first participant.
 void set_up_library() {
   static const bool done = [] {
     dds::Log::ClearConsumers();
     dds::Log::RegisterConsumer(
-        std::make_unique<dds::StdoutErrConsumer>());  // to stderr: stdout is the program's own
+        std::make_unique<dds::StdoutErrConsumer>());  // stderr, because stdout belongs to the program
     dds::Log::SetVerbosity(dds::Log::Kind::Error);
-    // Two nodes in one process talk as two processes do: a callback never runs inside the publisher's call.
+    // Two nodes in one process communicate as two processes do: publish() never runs a callback.
     auto settings = eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings();
     settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
     eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
@@ -50,8 +50,9 @@ dds::DomainParticipant* create_participant(const NodeSettings& settings,
       dds::StatusMask::requested_incompatible_qos() << dds::StatusMask::offered_incompatible_qos());
 }
 
-// One at a time: Fast DDS 2.9 asks getpwuid() for the user's name, which keeps it in one place for all
-// threads. Nor does it say at which port it listens, or that it found none.
+// Serialized by a mutex, because Fast DDS 2.9 calls getpwuid(), which is not thread-safe. Fast DDS reports
+// neither the port at which it listens nor that it found none, hence the comparison of ports before and
+// after.
 dds::DomainParticipant* join(const NodeSettings& settings, dds::DomainParticipantListener* listener) {
   static std::mutex mutex;
   const std::lock_guard<std::mutex> lock(mutex);
@@ -61,7 +62,8 @@ dds::DomainParticipant* join(const NodeSettings& settings, dds::DomainParticipan
   for (const std::uint32_t announced : {announced_ports(ports, expected), ports.count}) {
     dds::DomainParticipant* const participant = create_participant(settings, listener, announced);
     if (participant == nullptr) return nullptr;
-    // Others that start now may have taken so many ports meanwhile that it does not call all below its own.
+    // Other processes may have taken ports meanwhile. If the own port is then too high to announce itself to
+    // all ports below it, try again with all ports.
     for (const std::uint32_t port : own_discovery_ports(settings.domain)) {
       if (before.count(port) == 0 && (port < announced || !settings.localhost_only)) return participant;
     }
@@ -100,7 +102,7 @@ dds::Topic* ParticipantSession::topic(const std::string& wire_name, const dds::T
   dds::Topic*& found = topics_[wire_name];
   if (found == nullptr && participant->register_type(type) == ReturnCode_t::RETCODE_OK)
     found = participant->create_topic(wire_name, type.get_type_name(), dds::TOPIC_QOS_DEFAULT);
-  if (found == nullptr) throw std::runtime_error("cannot make DDS topic " + wire_name);
+  if (found == nullptr) throw std::runtime_error("cannot create DDS topic " + wire_name);
   return found;
 }
 

@@ -1,5 +1,5 @@
-// What a process is to Fast DDS while it belongs to a domain, and what stays of it when that ends and begins
-// anew.
+// The Fast DDS entities of a process while it is in a domain, and the endpoints that survive leaving and
+// rejoining it.
 #pragma once
 
 #include <atomic>
@@ -19,21 +19,22 @@
 
 namespace swiftlet::comms {
 
-// A participant and what it is made of. When it ends it says goodbye.
+// A participant with its publisher, subscriber and topics. Its destructor announces to the peers that it
+// leaves.
 class ParticipantSession {
  public:
-  // Throws std::runtime_error if the participant cannot be made.
+  // Throws std::runtime_error if the participant cannot be created.
   ParticipantSession(const NodeSettings& settings,
                      eprosima::fastdds::dds::DomainParticipantListener* listener);
   ~ParticipantSession();
   ParticipantSession(const ParticipantSession&) = delete;
   ParticipantSession& operator=(const ParticipantSession&) = delete;
 
-  // By one thread at a time. Throws std::runtime_error.
+  // Returns the topic, created on first use. Not thread-safe. Throws std::runtime_error.
   eprosima::fastdds::dds::Topic* topic(const std::string& wire_name,
                                        const eprosima::fastdds::dds::TypeSupport& type);
 
-  // That it serves those that the settings name now.
+  // Announces the vehicles in settings.vehicle to the peers.
   void announce_vehicles(const NodeSettings& settings);
 
   eprosima::fastdds::dds::DomainParticipant* participant = nullptr;
@@ -44,15 +45,15 @@ class ParticipantSession {
   std::map<std::string, eprosima::fastdds::dds::Topic*> topics_;
 };
 
-// A writer or reader that outlives a membership.
+// A writer or reader that outlives a session.
 class Endpoint {
  public:
   virtual ~Endpoint() = default;
   virtual void join(ParticipantSession& session) = 0;   // throws std::runtime_error
-  virtual void leave(ParticipantSession& session) = 0;  // nothing if it did not join
+  virtual void leave(ParticipantSession& session) = 0;  // no effect if it did not join
 };
 
-// A pointer that is used by threads which must not wait, and taken from them by one that may.
+// A pointer for threads that must not block; another thread that may block can take it away.
 template <class T>
 class GuardedPointer {
  public:
@@ -74,7 +75,7 @@ class GuardedPointer {
   };
 
   void give(T* target) { target_ = target; }
-  // What it was; nobody uses it any more.
+  // Clears the pointer, waits until nobody uses it, and returns its old value.
   T* take() {
     T* const target = target_.exchange(nullptr);
     while (users_ != 0) std::this_thread::yield();

@@ -1,4 +1,4 @@
-// A thread that looks at something now and then.
+// A thread that calls a function periodically.
 #pragma once
 
 #include <chrono>
@@ -12,10 +12,10 @@ namespace swiftlet::comms {
 
 class PeriodicTask {
  public:
-  // look() is called once each period.
-  PeriodicTask(std::chrono::milliseconds period, std::function<void()> look)
-      : period_(period), look_(std::move(look)), thread_([this] { watch(); }) {}
-  // Ends at once, or with the look that is under way.
+  // Calls task() once per period.
+  PeriodicTask(std::chrono::milliseconds period, std::function<void()> task)
+      : period_(period), task_(std::move(task)), thread_([this] { run(); }) {}
+  // Ends at once, or when a running call returns.
   ~PeriodicTask() {
     {
       const std::lock_guard<std::mutex> lock(mutex_);
@@ -28,17 +28,17 @@ class PeriodicTask {
   PeriodicTask& operator=(const PeriodicTask&) = delete;
 
  private:
-  void watch() {
+  void run() {
     std::unique_lock<std::mutex> lock(mutex_);
     while (!ended_.wait_for(lock, period_, [this] { return end_; })) {
       lock.unlock();
-      look_();
+      task_();
       lock.lock();
     }
   }
 
   const std::chrono::milliseconds period_;
-  const std::function<void()> look_;
+  const std::function<void()> task_;
   std::mutex mutex_;
   std::condition_variable ended_;
   bool end_ = false;

@@ -2,7 +2,7 @@
 
 namespace swiftlet::comms {
 
-bool is_kept(Qos profile) { return profile == Qos::kLatched || profile == Qos::kLatchedLarge; }
+bool is_latched(Qos profile) { return profile == Qos::kLatched || profile == Qos::kLatchedLarge; }
 
 namespace {
 
@@ -21,20 +21,20 @@ bool is_reliable(Qos profile) {
 }
 bool is_long(Qos profile) { return profile == Qos::kLatchedLarge || profile == Qos::kRequest; }
 
-// What writer and reader state alike, so that they match.
+// The policies that are the same for writer and reader, so that they match.
 template <class EndpointQos>
 void set_common(EndpointQos& qos, Qos profile, int deadline_ms, Transport transport) {
   qos.reliability().kind =
       is_reliable(profile) ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
   qos.reliability().max_blocking_time = duration(kReliableWriteTimeout);
   qos.durability().kind =
-      is_kept(profile) ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
+      is_latched(profile) ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
   if (deadline_ms > 0) qos.deadline().period = duration(std::chrono::milliseconds(deadline_ms));
   if (profile == Qos::kOwnedStream) qos.ownership().kind = dds::EXCLUSIVE_OWNERSHIP_QOS;
 
   auto& limits = qos.resource_limits();
   limits.max_instances = 1;
-  // A mission can be 3000 times as long as a command: memory is taken as it is needed, and kept.
+  // A mission can be 3000 times as long as a command: memory is allocated as needed, and kept.
   qos.endpoint().history_memory_policy =
       is_long(profile) ? rtps::DYNAMIC_REUSABLE_MEMORY_MODE : rtps::PREALLOCATED_MEMORY_MODE;
   if (profile == Qos::kRequest) {
@@ -43,7 +43,7 @@ void set_common(EndpointQos& qos, Qos profile, int deadline_ms, Transport transp
     limits.max_samples_per_instance = kMaxPendingRequests;
     limits.allocated_samples = 1;
   } else {
-    // One sample more than the last one may be in hand while the next arrives; the pool never grows.
+    // The application may hold one sample besides the last one while the next arrives; the pool never grows.
     qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
     qos.history().depth = 1;
     limits.max_samples = 2;
@@ -65,9 +65,9 @@ dds::DataWriterQos writer_qos(Qos profile, int deadline_ms, std::uint32_t streng
   dds::DataWriterQos qos;
   set_common(qos, profile, deadline_ms, transport);
   if (profile == Qos::kOwnedStream) qos.ownership_strength().value = strength;
-  // What may be long leaves in fragments, from a thread of the middleware. All else leaves from the caller's.
+  // A middleware thread sends long messages in fragments. The calling thread sends all others.
   qos.publish_mode().kind = is_long(profile) ? dds::ASYNCHRONOUS_PUBLISH_MODE : dds::SYNCHRONOUS_PUBLISH_MODE;
-  // A lost fragment is asked for again after one heartbeat.
+  // Readers request a lost fragment again after one heartbeat.
   if (is_reliable(profile)) {
     qos.reliable_writer_qos().times.heartbeatPeriod = duration(std::chrono::milliseconds(100));
   }
@@ -77,7 +77,7 @@ dds::DataWriterQos writer_qos(Qos profile, int deadline_ms, std::uint32_t streng
 dds::DataReaderQos reader_qos(Qos profile, int deadline_ms, Transport transport, Delivery delivery) {
   dds::DataReaderQos qos;
   set_common(qos, profile, deadline_ms, transport);
-  // Not over shared memory: there two processes can be given the same port, and one hears nothing.
+  // Not over shared memory: Fast DDS can give two processes the same port there, and one receives nothing.
   if (delivery == Delivery::kOwnThread && transport != Transport::kSharedMemory) {
     qos.properties().properties().emplace_back("fastdds.unique_network_flows", "");
   }

@@ -1,4 +1,4 @@
-// The QoS profiles as Fast DDS states them.
+// The QoS profiles in terms of Fast DDS.
 #pragma once
 
 #include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
@@ -8,8 +8,8 @@
 
 namespace swiftlet::comms {
 
-// A late joiner is told the last sample.
-bool is_kept(Qos profile);
+// True if late joiners receive the last sample (durability transient local).
+bool is_latched(Qos profile);
 
 eprosima::fastdds::dds::DataWriterQos writer_qos(Qos profile, int deadline_ms, std::uint32_t strength,
                                                  Transport transport);

@@ -56,14 +56,14 @@ void add(std::string& list, const char* policy, const std::string& offered, cons
   list.append(policy)
       .append(" (offered ")
       .append(offered)
-      .append(", asked for ")
+      .append(", requested ")
       .append(requested)
       .append(")");
 }
 
 }  // namespace
 
-// As Fast DDS 2.9 decides, in EDP::valid_matching().
+// Same rules as EDP::valid_matching() of Fast DDS 2.9.
 std::string conflicts(const EndpointQos& offered, const EndpointQos& requested) {
   std::string list;
   if (offered.reliability < requested.reliability)
@@ -95,7 +95,7 @@ std::optional<std::string> LineLimit::offer(std::string line, Time now) {
 
 std::optional<std::string> LineLimit::due(Time now) {
   if (kept_count_ == 0 || now - *written_ < kLinePeriod) return std::nullopt;
-  if (kept_count_ > 1) kept_ += " (and " + std::to_string(kept_count_ - 1) + " more of the last second)";
+  if (kept_count_ > 1) kept_ += " (and " + std::to_string(kept_count_ - 1) + " more in the last second)";
   written_ = now;
   kept_count_ = 0;
   return std::move(kept_);

@@ -1,4 +1,4 @@
-// Peers that are not heard, or do not hear, because a writer offers less than a reader asks for.
+// Reports writers and readers that do not match because the offered QoS is less than the requested one.
 #pragma once
 
 #include <chrono>
@@ -10,7 +10,7 @@
 
 namespace swiftlet::comms {
 
-// What of an endpoint's QoS a peer must agree to.
+// The QoS policies of an endpoint that must be compatible with those of its peer.
 struct EndpointQos {
   eprosima::fastdds::dds::ReliabilityQosPolicyKind reliability;
   eprosima::fastdds::dds::DurabilityQosPolicyKind durability;
@@ -21,7 +21,7 @@ struct EndpointQos {
   bool without_positive_acks = false;
 };
 
-// Of a WriterQos or a ReaderQos.
+// Extracts them from a WriterQos or a ReaderQos.
 template <class Qos>
 EndpointQos endpoint_qos(const Qos& qos) {
   return {qos.m_reliability.kind,
@@ -33,18 +33,18 @@ EndpointQos endpoint_qos(const Qos& qos) {
           qos.m_disablePositiveACKs.enabled};
 }
 
-// Each policy for which they do not match, with both values: "reliability (offered best effort, asked for
-// reliable)"; empty if they match.
+// Returns each incompatible policy with both values: "reliability (offered best effort, requested reliable)";
+// empty if all match.
 std::string conflicts(const EndpointQos& offered, const EndpointQos& requested);
 
-// Lines for a log of which at most one a second is written.
+// Limits log lines to one per second.
 class LineLimit {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  // The line, if it may be written now. Else it is kept for due(), in the place of one that was kept before.
+  // Returns the line if it may be written now. Otherwise keeps it for due() and drops the line kept before.
   std::optional<std::string> offer(std::string line, Time now);
-  // Again and again: what was kept, once it may be written, and how many others there were.
+  // Call it periodically: returns the kept line once it may be written, with the number of dropped lines.
   std::optional<std::string> due(Time now);
 
  private:

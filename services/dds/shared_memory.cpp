@@ -18,14 +18,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// False as well if there is no such file.
+// False if the file does not exist.
 bool is_young(const fs::path& path) {
   std::error_code error;
   const auto written = fs::last_write_time(path, error);
   return !error && fs::file_time_type::clock::now() - written < std::chrono::seconds(1);
 }
 
-// Whether the lock file's holder, a process of this user, is dead; true as well if there is no such file.
+// True if a lock file of this user has no holder, or does not exist.
 bool is_free(const fs::path& lock_file) {
   const int fd = ::open(lock_file.c_str(), O_RDWR | O_CLOEXEC);
   if (fd < 0) return errno == ENOENT;
@@ -48,7 +48,7 @@ int remove_files(const std::vector<fs::path>& paths) {
 }  // namespace
 
 int remove_stale_shared_memory(const std::string& directory) {
-  // A segment, or a port with its semaphore; beside it a lock file that its owner holds, exclusive or shared.
+  // A segment, or a port with its semaphore; each has a lock file that its owner holds, exclusive or shared.
   static const std::regex kFile("(fastrtps_(?:[0-9a-f]{16}|port[0-9]+))(?:_[es]l)?");
 
   std::error_code error;

@@ -1,4 +1,4 @@
-// Refused messages of one topic in the process's log: at most one line a second.
+// Logs refused messages of one topic, at most one line per second.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace swiftlet::comms {
 
-// One thread at a time calls it.
+// Not thread-safe.
 class ThrottledWarning {
  public:
   explicit ThrottledWarning(const char* topic) : topic_(topic) {}

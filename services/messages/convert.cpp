@@ -11,7 +11,7 @@ namespace {
 
 using namespace wire;
 
-constexpr double kMaxRotorSpeed = 1e5;  // rad/s; none turns as fast
+constexpr double kMaxRotorSpeed = 1e5;  // rad/s, above any real rotor
 
 void check_segments(const std::vector<msg::PolynomialSegment>& segments, Check& check) {
   if (!check.ok()) return;
@@ -71,14 +71,14 @@ msg::Imu to_message(const plant::ImuSample& in) {
 }
 
 plant::ObeyedCommand obeyed_command(const msg::Imu& in) {
-  const bool reported = in.commands() != msg::Imu_Constants::COMMANDS_UNTOLD;
+  const bool reported = in.commands() != msg::Imu_Constants::COMMANDS_UNREPORTED;
   return {reported, in.commands() == msg::Imu_Constants::COMMANDS_OBEYED, in.command_term(),
           in.command_stamp_ns()};
 }
 
 void set_obeyed_command(const plant::ObeyedCommand& obeyed, msg::Imu& in) {
   using namespace msg::Imu_Constants;
-  in.commands(!obeyed.reported ? COMMANDS_UNTOLD : obeyed.any ? COMMANDS_OBEYED : COMMANDS_NONE);
+  in.commands(!obeyed.reported ? COMMANDS_UNREPORTED : obeyed.any ? COMMANDS_OBEYED : COMMANDS_NONE);
   in.command_term(obeyed.term);
   in.command_stamp_ns(obeyed.stamp_ns);
 }

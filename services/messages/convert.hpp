@@ -1,5 +1,6 @@
-// Messages <-> the plain structs of plant and control. What comes in is checked: numbers finite, counts and
-// enumerations in range, quaternions of unit length. Whether a request can be flown is not judged here.
+// Converts between messages and the plain structs of plant and control. Received messages are validated:
+// numbers finite, counts and enumerations in range, quaternions of unit length. Whether a request can be
+// flown is checked elsewhere (control/planning/checks.hpp).
 #pragma once
 
 #include <array>
@@ -16,13 +17,13 @@
 
 namespace swiftlet::comms {
 
-// What is wrong with a message: a sentence with field, value and limit, or nothing. Without heap.
+// The fault of an invalid message: a sentence with field, value and limit; empty for a valid one. No heap.
 struct Fault {
   char text[160] = {};
   explicit operator bool() const { return text[0] != '\0'; }
 };
 
-// controller_state: what a controller says of itself to the others.
+// The content of controller_state: what a controller reports to the others.
 struct ControllerReport {
   std::int64_t stamp_ns = 0;
   std::uint64_t sequence = 0;
@@ -30,17 +31,18 @@ struct ControllerReport {
   int failover_priority = 0;
   std::uint32_t term = 0;
   bool active = false;
-  bool ready = false;  // it can go on with the flight
-  // Of an active one.
+  bool ready = false;  // it can take over the flight
+  // Valid for an active controller only.
   control::FlightState flight;
   int rotor_count = 0;
 };
 
-// Into out, unless there is a fault: then out is not touched. Those of samples do not allocate.
+// Validates in and converts it into out. On a fault, out is unchanged. The functions of samples do not
+// allocate.
 Fault from_message(const msg::Imu& in, plant::ImuSample& out);
 plant::ObeyedCommand obeyed_command(const msg::Imu& in);
 Fault from_message(const msg::MocapPose& in,
-                   plant::PoseSample& out);  // of an untracked one, the pose is not looked at
+                   plant::PoseSample& out);  // ignores the pose of an untracked sample
 Fault from_message(const msg::Battery& in, plant::BatterySample& out);
 Fault from_message(const msg::RotorSpeeds& in, plant::RotorSpeedSample& out);
 Fault from_message(const msg::ActuatorCommand& in, plant::ActuatorCommand& out);
@@ -53,7 +55,7 @@ Fault from_message(const msg::Trajectory& in, control::Trajectory& out);
 Fault from_message(const msg::ControllerState& in, ControllerReport& out);
 
 msg::Imu to_message(const plant::ImuSample& in);
-void set_obeyed_command(const plant::ObeyedCommand& obeyed, msg::Imu& in);  // in an IMU sample
+void set_obeyed_command(const plant::ObeyedCommand& obeyed, msg::Imu& in);  // into an IMU sample
 msg::MocapPose to_message(const plant::PoseSample& in);
 msg::Battery to_message(const plant::BatterySample& in);
 msg::RotorSpeeds to_message(const plant::RotorSpeedSample& in);
@@ -62,10 +64,10 @@ msg::GroundTruth to_message(const plant::TruthSample& in);
 msg::Setpoint to_message(const control::Setpoint& in);
 msg::ControllerState to_message(const ControllerReport& in);
 msg::Estimate to_message(const control::Estimate& in, const control::ErrorState& standard_deviation,
-                         double pose_age_s);  // sequence_number is left to the sender
+                         double pose_age_s);  // the caller sets sequence_number
 msg::Reference to_message(const control::Reference& in, const control::AttitudeSetpoint& setpoint,
                           control::Mode mode);
-// client and id are left to the sender; of a command, kind is not that of a mission or trajectory.
+// The caller sets client and id. For a Command, in.kind must not be that of a mission or trajectory.
 msg::Command to_message(const control::Request& in);
 msg::Mission to_message(const control::Mission& in);
 msg::Trajectory to_message(const control::Trajectory& in);

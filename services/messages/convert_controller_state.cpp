@@ -33,12 +33,12 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
       .at_most("mission_state", in.mission_state(), MissionStatus_Constants::PAUSED)
       .at_most("item_count", in.item_count(), control::kMaxMissionItems)
       .at_most("item_index", in.item_index(), in.item_count())
-      .at_most("detour", in.pause(), static_cast<std::uint64_t>(control::MissionPause::kReturning))
-      .at_least("left_duration_s", in.left_duration_s(), 0.0)
-      .finite("left_x", in.left_x())
-      .finite("left_y", in.left_y())
-      .finite("left_z", in.left_z())
-      .finite("left_yaw", in.left_yaw())
+      .at_most("pause", in.pause(), static_cast<std::uint64_t>(control::MissionPause::kReturning))
+      .at_least("paused_path_duration_s", in.paused_path_duration_s(), 0.0)
+      .finite("paused_path_x", in.paused_path_x())
+      .finite("paused_path_y", in.paused_path_y())
+      .finite("paused_path_z", in.paused_path_z())
+      .finite("paused_path_yaw", in.paused_path_yaw())
       .at_most("next_segment", in.next_segment(), control::kMaxTrajectorySegments)
       .at_most("setpoint_kind", in.setpoint_kind(), Setpoint_Constants::BODY_RATES)
       .finite("setpoint_attitude", in.setpoint_attitude())
@@ -83,10 +83,10 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
                             static_cast<int>(in.item_index()), static_cast<int>(in.item_count())};
   state.guidance.item_end_ns = in.item_end_ns();
   state.guidance.pause = static_cast<control::MissionPause>(in.pause());
-  state.guidance.left = {{in.left_duration_s(), in.left_x(), in.left_y(), in.left_z(), in.left_yaw()},
-                         in.left_start_ns(),
-                         in.left_end_ns(),
-                         in.left_at_ns()};
+  state.guidance.paused_path = {{in.paused_path_duration_s(), in.paused_path_x(), in.paused_path_y(), in.paused_path_z(), in.paused_path_yaw()},
+                         in.paused_path_start_ns(),
+                         in.paused_path_end_ns(),
+                         in.paused_path_at_ns()};
   state.guidance.trajectory_id = in.trajectory_id();
   state.guidance.next_segment = in.next_segment();
   state.guidance.setpoint_ns = in.setpoint_ns();
@@ -113,7 +113,7 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
   return {};
 }
 
-// Whoever adds to the state adds to the message: else a standby would go on without it.
+// A field added to the state must be added to the message: otherwise a standby continues without it.
 static_assert(sizeof(control::SupervisorState) == kReplicatedStateBytes,
               "controller_state does not carry all of SupervisorState");
 
@@ -155,14 +155,14 @@ msg::ControllerState to_message(const ControllerReport& in) {
   out.item_count(static_cast<std::uint32_t>(state.guidance.mission.item_count));
   out.item_end_ns(state.guidance.item_end_ns);
   out.pause(static_cast<std::uint8_t>(state.guidance.pause));
-  out.left_start_ns(state.guidance.left.start_ns);
-  out.left_end_ns(state.guidance.left.end_ns);
-  out.left_at_ns(state.guidance.left.at_ns);
-  out.left_duration_s(state.guidance.left.segment.duration_s);
-  out.left_x(state.guidance.left.segment.x);
-  out.left_y(state.guidance.left.segment.y);
-  out.left_z(state.guidance.left.segment.z);
-  out.left_yaw(state.guidance.left.segment.yaw);
+  out.paused_path_start_ns(state.guidance.paused_path.start_ns);
+  out.paused_path_end_ns(state.guidance.paused_path.end_ns);
+  out.paused_path_at_ns(state.guidance.paused_path.at_ns);
+  out.paused_path_duration_s(state.guidance.paused_path.segment.duration_s);
+  out.paused_path_x(state.guidance.paused_path.segment.x);
+  out.paused_path_y(state.guidance.paused_path.segment.y);
+  out.paused_path_z(state.guidance.paused_path.segment.z);
+  out.paused_path_yaw(state.guidance.paused_path.segment.yaw);
   out.trajectory_id(state.guidance.trajectory_id);
   out.next_segment(state.guidance.next_segment);
   out.setpoint_ns(state.guidance.setpoint_ns);

@@ -1,4 +1,4 @@
-// The ways in which topics are delivered, and their numbers. idl/README.md shows them as a table.
+// The QoS profiles of the topics, and their parameters. idl/README.md shows them as a table.
 #pragma once
 
 #include <chrono>
@@ -7,23 +7,23 @@ namespace swiftlet::comms {
 
 enum class Qos {
   kStream,        // best effort, keep last 1, volatile, preallocated
-  kOwnedStream,   // a stream of which the strongest living writer is heard (exclusive ownership)
+  kOwnedStream,   // stream with exclusive ownership: readers receive the strongest live writer
   kTelemetry,     // best effort, keep last 1, volatile
   kLatched,       // reliable, transient local, keep last 1
-  kLatchedLarge,  // a state that may be long: takes memory as it needs it
-  kRequest,       // reliable, volatile, keep all within limits
+  kLatchedLarge,  // latched, for long messages: allocates memory as needed
+  kRequest,       // reliable, volatile, keep all up to kMaxPendingRequests
 };
 
-// Requests that may be under way between a writer and its readers before publish() waits, and how long it
-// waits.
+// Number of unacknowledged requests of a writer before publish() waits, and how long it waits.
 constexpr int kMaxPendingRequests = 64;
 constexpr std::chrono::milliseconds kReliableWriteTimeout{200};
 
-// A process says that it lives once in each period; after a lease without it the others take it for dead.
+// A process announces itself once per period. After a lease without an announcement the others take it for
+// dead.
 constexpr std::chrono::milliseconds kLivelinessPeriod{400};
 constexpr std::chrono::milliseconds kLivelinessLease{2000};
-// At its start more often, and vehicle and motion capture always: a controller that is started again in
-// flight must find them at once, and hears of them with their next announcement.
+// Vehicle and motion capture announce themselves once per kFixturePeriod, and every process more often at its
+// start: a controller that restarts in flight discovers them with their next announcement.
 constexpr std::chrono::milliseconds kFixturePeriod{100};
 constexpr int kFirstAnnouncements = 20;
 constexpr std::chrono::milliseconds kFirstAnnouncementPeriod{25};

@@ -33,7 +33,7 @@ struct Topic {
   using Message = T;
   const char* name;
   Qos qos;
-  int deadline_ms = 0;  // of owned streams: silence after which the next strongest writer is heard
+  int deadline_ms = 0;  // of owned streams: silence before readers switch to the next strongest writer
 };
 
 namespace topics {

@@ -1,4 +1,4 @@
-// Between messages and plain structs: vectors, and the checks of what came over the network.
+// Helpers of the conversions: vectors and quaternions, and the validation of received messages.
 #pragma once
 
 #include <algorithm>
@@ -29,18 +29,18 @@ using PerRotor = std::array<double, plant::kMaxRotors>;
 
 inline Vector3d vector(const Vector3& in) { return {in[0], in[1], in[2]}; }
 inline Vector3 array(const Vector3d& in) { return {in.x(), in.y(), in.z()}; }
-// What differs from unit length by rounding only stays as it is: a sample that was sent is the one that was
-// taken.
+// A quaternion whose norm differs from 1 by rounding only is not normalized, so that a sample is received bit
+// for bit as it was sent.
 inline Quaterniond quaternion(const Vector4& in) {
   const Quaterniond q(in[0], in[1], in[2], in[3]);
   return std::abs(q.squaredNorm() - 1.0) < kRounding ? q : q.normalized();
 }
 inline Vector4 array(const Quaterniond& in) { return {in.w(), in.x(), in.y(), in.z()}; }
 
-// Collects the first fault of a message; later checks are skipped.
+// Records the first fault of a message and skips the later checks.
 class Check {
  public:
-  // What follows is checked of the item of this number, counted from 1.
+  // The following checks apply to the item with this number, counted from 1.
   void of_item(const char* item, std::size_t number) {
     item_ = item;
     number_ = number;
@@ -87,7 +87,7 @@ class Check {
     if (ok() && stamp_ns < 0) fail("stamp_ns is %lld, must be at least 0", static_cast<long long>(stamp_ns));
     return *this;
   }
-  // The first `count` of the values lie within the bounds, and there are no more than fit.
+  // Checks that the first `count` values are within the bounds, and that count is at most kMaxRotors.
   Check& per_rotor(const char* field, int count, const PerRotor& values, double min, double max) {
     at_most("rotor_count", static_cast<std::uint64_t>(count), plant::kMaxRotors);
     for (std::size_t i = 0; ok() && i < static_cast<std::size_t>(count); ++i) {
@@ -113,7 +113,7 @@ class Check {
   }
 
   const char* item_ = "";
-  std::size_t number_ = 0;  // 0: the message itself is checked
+  std::size_t number_ = 0;  // 0: checks apply to the message itself
   Fault fault_;
 };
 

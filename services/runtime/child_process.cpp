@@ -42,8 +42,8 @@ class FileDescriptor {
   throw std::runtime_error(settings.name + ": " + what + ": " + std::strerror(error));
 }
 
-// The child between fork and exec: async-signal-safe calls only. An errno goes up the pipe, which a
-// successful exec closes.
+// Runs in the child between fork and exec: async-signal-safe calls only. Writes errno to the pipe on failure;
+// a successful exec closes the pipe.
 [[noreturn]] void become_program(char* const* arguments, const char* directory, int log, int input,
                                  int failure_pipe, pid_t launcher) {
   sigset_t none;
@@ -87,18 +87,17 @@ ChildProcess::ChildProcess(ProcessSettings settings) : settings_(std::move(setti
 
   const FileDescriptor log(
       open(settings_.log_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0644));
-  if (!log.valid())
-    fail(settings_, "its log file " + settings_.log_file.string() + " cannot be written", errno);
+  if (!log.valid()) fail(settings_, "log file " + settings_.log_file.string() + " cannot be written", errno);
   const FileDescriptor input(open("/dev/null", O_RDONLY | O_CLOEXEC));
   if (!input.valid()) fail(settings_, "/dev/null cannot be opened", errno);
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) fail(settings_, "no pipe could be made", errno);
+  if (pipe2(ends, O_CLOEXEC) != 0) fail(settings_, "cannot create a pipe", errno);
   const FileDescriptor failure(ends[0]);
   FileDescriptor failure_writer(ends[1]);
 
   const pid_t launcher = getpid();
   pid_ = fork();
-  if (pid_ < 0) fail(settings_, "no process could be made", errno);
+  if (pid_ < 0) fail(settings_, "cannot create a process", errno);
   if (pid_ == 0) {
     become_program(arguments.data(), settings_.working_directory.c_str(), log.get(), input.get(),
                    failure_writer.get(), launcher);

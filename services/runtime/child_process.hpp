@@ -1,5 +1,5 @@
-// A program that the launcher starts beside itself and answers for: it writes to a log file of its own, hears
-// no Ctrl-C of the launcher's terminal, and ends with the launcher, however that ends.
+// A child process of the launcher. It writes to its own log file, does not receive Ctrl-C from the launcher's
+// terminal, and ends with the launcher, however that ends.
 #pragma once
 
 #include <chrono>
@@ -16,10 +16,10 @@ struct ProcessSettings {
   std::filesystem::path program;
   std::vector<std::string> arguments;
   std::filesystem::path log_file;                // standard output and error
-  std::filesystem::path working_directory = {};  // empty: the launcher's
+  std::filesystem::path working_directory = {};  // empty: that of the launcher
 };
 
-// The program of this name in $PATH; empty if there is none.
+// Returns the path of the program in $PATH; empty if there is none.
 std::filesystem::path find_program(const std::string& name);
 
 // How a process ended.
@@ -32,10 +32,10 @@ struct ProcessEnd {
 
 class ChildProcess {
  public:
-  // Throws std::runtime_error with a sentence if the program cannot be started. The thread that calls it must
-  // live as long as the child: the kernel takes that thread's end for the launcher's.
+  // Starts the program. Throws std::runtime_error with a sentence if that fails. The calling thread must live
+  // as long as the child, because the kernel signals the child when that thread ends (PR_SET_PDEATHSIG).
   explicit ChildProcess(ProcessSettings settings);
-  // Kills and reaps a child that still runs.
+  // Kills and reaps a running child.
   ~ChildProcess();
   ChildProcess(ChildProcess&& other) noexcept;
   ChildProcess& operator=(ChildProcess&&) = delete;
@@ -43,16 +43,16 @@ class ChildProcess {
   const std::string& name() const { return settings_.name; }
   pid_t pid() const { return pid_; }
 
-  // Empty while it runs. Does not wait.
+  // Returns how it ended; empty while it runs. Does not wait.
   std::optional<ProcessEnd> poll();
-  // Empty if it runs for longer than this.
+  // Waits for its end; empty after the timeout.
   std::optional<ProcessEnd> wait(std::chrono::milliseconds timeout);
-  void signal(int number);  // to a child that still runs
+  void signal(int number);  // no effect after its end
 
-  // SIGTERM, then SIGKILL to what still runs after `grace`.
+  // Sends SIGTERM, then SIGKILL if it still runs after `grace`, and waits for its end.
   ProcessEnd stop(std::chrono::milliseconds grace);
 
-  std::string last_log_line() const;  // empty if it has said nothing
+  std::string last_log_line() const;  // last non-blank line; empty if none
 
  private:
   ProcessSettings settings_;

@@ -1,4 +1,4 @@
-// What makes simulated time pass.
+// The source of simulated time.
 #pragma once
 
 #include "swiftlet/services/runtime/command_line.hpp"
@@ -6,8 +6,8 @@
 namespace swiftlet::runtime {
 
 enum class Clock {
-  kRealtime,  // the computer's clock, scaled
-  kLockstep,  // the answers: time stands still until the samples of this moment have been answered
+  kRealtime,  // the computer's clock, times a speed factor
+  kLockstep,  // simulated time waits until the samples of each stamp have been answered
 };
 
 // --clock realtime|lockstep. `clock` must outlive the parsing.

@@ -12,7 +12,7 @@
 namespace swiftlet::runtime {
 namespace {
 
-// CLI11's own checks let "nan" through.
+// CLI11's own checks accept "nan".
 std::optional<double> finite_number(const std::string& text) {
   double value = 0.0;
   if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value)) return std::nullopt;

@@ -1,7 +1,7 @@
-// Options and subcommands of a program's command line: CLI11 behind a header that costs the compiler nothing.
+// Options and subcommands of a program's command line: a wrapper of CLI11 that is cheap to compile.
 //
-// CommandLine and Option are handles on what CLI11 holds; they are copied freely and live as long as the Program does.
-// An invalid definition, such as a name that is taken, throws CLI11's exception at start.
+// CommandLine and Option are handles to CLI11's objects. They can be copied and are valid as long as the
+// Program lives. An invalid definition, such as a duplicate name, throws CLI11's exception at start.
 #pragma once
 
 #include <cstddef>
@@ -25,22 +25,22 @@ class Option {
 
   Option& required();
   Option& expected(int values);
-  Option& show_default();  // in --help: what the variable holds now
+  Option& show_default();  // in --help: the present value of the variable
   Option& show_default(const std::string& text);
   Option& type_name(const std::string& name);
-  Option& environment(const std::string& variable);  // gives the value where the command line does not
-  Option& hidden();                                  // from --help
+  Option& environment(const std::string& variable);  // the value if the command line has none
+  Option& hidden();                                  // not in --help
   Option& excludes(Option other);
   Option& needs(Option other);
 
-  // Number is int, std::int64_t, std::size_t or double. Ends are allowed.
+  // Number is int, std::int64_t, std::size_t or double. The limits are valid values.
   template <class Number>
   Option& range(Number least, Number most);
-  Option& finite();    // a number, neither infinite nor NaN
-  Option& positive();  // likewise, and above 0
+  Option& finite();    // neither infinite nor NaN
+  Option& positive();  // finite and above 0
   Option& one_of(std::initializer_list<const char*> texts);
   Option& one_of(std::initializer_list<int> numbers);
-  // fault_of gives the sentence why a text is refused, or "". value_name stands in --help.
+  // fault_of returns why a text is refused, a sentence, or "" if it is valid. --help shows value_name.
   Option& check(std::function<std::string(const std::string&)> fault_of, const std::string& value_name);
 
   std::string description() const;
@@ -58,11 +58,11 @@ class CommandLine {
   void require_subcommand(std::size_t least, std::size_t most) const;
   void footer(const std::string& text) const;
 
-  // "--name", "-n,--name", or "name" for an argument by its place. `value` outlives the parsing; its content is the
-  // default. For Value: command_line.cpp has the list.
+  // name: "--name", "-n,--name", or "name" for a positional argument. `value` must outlive the parsing; its
+  // content is the default. command_line.cpp lists the types for Value.
   template <class Value>
   Option add_option(const std::string& name, Value& value, const std::string& description) const;
-  // A value of an enumeration by its name on the command line.
+  // An enumeration value, given by its name.
   template <class Value>
   Option add_choice(const std::string& name, Value& value, std::vector<std::pair<const char*, Value>> choices,
                     const std::string& description) const {
@@ -79,7 +79,7 @@ class CommandLine {
 
   std::string name() const;
   std::string help() const;
-  bool parsed() const;  // this subcommand stood on the command line
+  bool parsed() const;  // true if this subcommand was given
 
   CLI::App& app() const { return *app_; }
 
@@ -100,9 +100,9 @@ class Program {
   CommandLine command_line() const { return CommandLine(*app_); }
 
   enum class Parsed { kRun, kHelp, kWrongUsage };
-  // kHelp and kWrongUsage have been printed, to stdout and stderr.
+  // Prints the help to stdout (kHelp) or the error to stderr (kWrongUsage).
   Parsed parse(int argc, const char* const* argv);
-  // As above, of one line without the program's name; prints nothing.
+  // Parses one line without the program's name; prints nothing.
   Parsed parse(const std::string& line);
 
  private:

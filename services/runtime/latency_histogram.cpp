@@ -5,8 +5,8 @@
 
 namespace swiftlet::runtime {
 
-// Below 2^kSubBits a bucket is 1 ns wide; then octave e = 1, 2, .. holds values whose highest bit is kSubBits
-// - 1 + e, in buckets of 2^(e-1) ns.
+// Below 2^kSubBits a bucket is 1 ns wide. Octave e = 1, 2, .. holds values whose highest bit is kSubBits - 1
+// + e, in buckets of 2^(e-1) ns.
 int LatencyHistogram::bucket_of(std::uint64_t nanoseconds) noexcept {
   constexpr std::uint64_t kSub = 1U << kSubBits;
   const std::uint64_t value = std::min(nanoseconds, (std::uint64_t{1} << kMaxBits) - 1);

@@ -1,5 +1,5 @@
-// Durations counted in buckets of a fixed relative width: exact to 1 part in 32, from 1 ns to a minute,
-// without heap.
+// A histogram of durations with buckets of fixed relative width: resolution 1/32, range 1 ns to 69 s. No
+// heap.
 #pragma once
 
 #include <array>
@@ -7,20 +7,20 @@
 
 namespace swiftlet::runtime {
 
-// Log-linear, as HdrHistogram (Tene 2012): every power of two is cut into 32 equal buckets. Not for use by
-// several threads.
+// Log-linear buckets as in HdrHistogram (Tene 2012): every power of two is divided into 32 equal buckets. Not
+// thread-safe.
 class LatencyHistogram {
  public:
-  // A negative duration counts as 0, one beyond the range as the range's end in the quantiles; max is kept as
-  // given.
+  // A negative duration counts as 0. In the quantiles a duration beyond the range counts as the end of the
+  // range; max_ns() is exact.
   void record(std::int64_t nanoseconds) noexcept;
   void reset() noexcept;
 
   std::uint64_t count() const noexcept { return count_; }
   std::int64_t max_ns() const noexcept { return max_ns_; }
 
-  // The duration that a share q (0 .. 1) of those recorded do not exceed: the upper end of its bucket, at
-  // most max_ns(). 0 if none was recorded.
+  // Returns the q-quantile (q in 0 .. 1) of the recorded durations: the upper end of its bucket, at most
+  // max_ns(). 0 if none was recorded.
   std::int64_t quantile_ns(double q) const noexcept;
 
  private:

@@ -1,4 +1,4 @@
-// The newest value, handed from one thread to another without waiting on either side.
+// Passes the newest value from one thread to another, wait-free on both sides.
 #pragma once
 
 #include <array>
@@ -7,8 +7,9 @@
 
 namespace swiftlet::runtime {
 
-// One thread puts, one thread takes. Three slots go round: the writer's, the reader's, and the one between
-// them that is swapped with an atomic exchange. T is copied by assignment; that must not throw.
+// One thread calls put(), one thread calls take(). Three slots rotate: the writer's, the reader's, and a
+// middle one that each side swaps with its own by an atomic exchange. T is copied by assignment, which must
+// not throw.
 template <class T>
 class LatestValue {
  public:
@@ -17,7 +18,7 @@ class LatestValue {
     writer_slot_ = middle_.exchange(writer_slot_ | kFresh, std::memory_order_acq_rel) & kSlot;
   }
 
-  // True if a value was put since the last call; then value is the newest one.
+  // Returns true if a value was put since the last call, and copies the newest one to value.
   bool take(T& value) noexcept {
     if ((middle_.load(std::memory_order_relaxed) & kFresh) == 0) return false;
     reader_slot_ = middle_.exchange(reader_slot_, std::memory_order_acq_rel) & kSlot;

@@ -1,5 +1,5 @@
-// Logging of a process: spdlog's default logger, made asynchronous. A caller never waits for the output: when
-// the queue is full the oldest line is lost.
+// Logging of a process: spdlog's default logger, asynchronous. A caller never waits for the output; when the
+// queue is full, the oldest line is dropped.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@ namespace swiftlet::runtime {
 
 struct LogSettings {
   std::string level = "info";  // trace, debug, info, warning, error, off
-  std::string file;            // written besides stderr; empty: none
+  std::string file;            // written in addition to stderr; empty: none
 };
 
-// Sets the default logger for as long as it lives; its end writes what is queued. One a process.
+// Sets the default logger for its lifetime; the destructor writes the queued lines. One per process.
 class Logging {
  public:
   // Throws std::runtime_error if the file cannot be written.

@@ -1,4 +1,4 @@
-// A period kept by absolute times of the monotonic clock: no drift.
+// A periodic timer with absolute times of the monotonic clock: no drift.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,12 @@ std::int64_t monotonic_ns() noexcept;
 
 class PeriodicTimer {
  public:
-  // period_ns > 0. A tick that comes more than max_lateness_ns after its time is not made up for: the ticks
-  // that follow are put off by as much as it is late. Smaller delays are made up for by ticks that follow at
-  // once.
+  // period_ns > 0. If a tick is late by more than max_lateness_ns, all later ticks shift by its lateness.
+  // After smaller delays the timer catches up: late ticks follow at once.
   PeriodicTimer(std::int64_t period_ns, std::int64_t max_lateness_ns);
 
-  // Sleeps to the next tick, the first one period after construction. Returns by how much the ticks were put
-  // off, ns.
+  // Sleeps until the next tick; the first is one period after construction. Returns by how much the ticks
+  // were shifted, ns.
   std::int64_t wait() noexcept;
 
  private:

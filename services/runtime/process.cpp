@@ -24,15 +24,15 @@ int fail(const ProgramText& text, const std::exception& error, int code) {
 }  // namespace
 
 void add_process_options(CommandLine app, ProcessOptions& options) {
-  app.add_option("--log-level", options.log.level, "Least severe lines to log")
+  app.add_option("--log-level", options.log.level, "Lowest severity to log")
       .one_of({"trace", "debug", "info", "warning", "error", "off"})
       .show_default();
   app.add_option("--log-file", options.log.file, "Log to this file as well as to stderr");
-  app.add_flag("!--no-realtime", options.realtime.enabled, "Neither lock memory nor ask for SCHED_FIFO");
-  app.add_option("--priority", options.realtime.priority, "SCHED_FIFO priority of the thread that counts")
+  app.add_flag("!--no-realtime", options.realtime.enabled, "Do not lock memory or request SCHED_FIFO");
+  app.add_option("--priority", options.realtime.priority, "SCHED_FIFO priority of the real-time thread")
       .range(1, 99)
       .show_default();
-  app.add_option("--cpu", options.realtime.cpu, "Core of that thread; -1: any")
+  app.add_option("--cpu", options.realtime.cpu, "CPU core of the real-time thread; -1: any")
       .range(-1, 1023)
       .show_default();
 }
@@ -46,7 +46,7 @@ RealtimeSettings prepare_realtime(RealtimeSettings settings, Clock clock) {
     if (!refusals.empty() && !refusal.empty()) refusals += "; ";
     refusals += refusal;
   }).join();
-  if (!refusals.empty()) spdlog::warn("not real-time, expect late steps: {}", refusals);
+  if (!refusals.empty()) spdlog::warn("real-time setup is incomplete, steps may be late: {}", refusals);
   return settings;
 }
 

@@ -1,4 +1,4 @@
-// What the services' mains have in common: options and exit codes.
+// Common parts of the services' main functions: options and exit codes.
 #pragma once
 
 #include <functional>
@@ -18,23 +18,21 @@ struct ProcessOptions {
 // --log-level, --log-file, --no-realtime, --priority, --cpu. The priority in options is the default.
 void add_process_options(CommandLine app, ProcessOptions& options);
 
-// Locks memory and tries what make_this_thread_realtime() will do. What the system refuses is one line of
-// warning.
-//
-// Returns the settings that hold under this clock: in lockstep nothing is in a hurry, and nothing is asked of
-// the system.
+// Locks memory and checks that make_this_thread_realtime() will succeed. Logs one warning with what the
+// system refuses. Does neither if disabled or in lockstep, which has no real-time requirements.
+// Returns the settings that apply under this clock: disabled in lockstep.
 RealtimeSettings prepare_realtime(RealtimeSettings settings, Clock clock);
 
-// What --help says besides the options.
+// The texts of --help besides the options.
 struct ProgramText {
   const char* name;
   const char* purpose;
   const char* example;  // arguments
 };
 
-// Reads the command line, limits the stacks of threads, then runs body. Exit code: 0 done (also --help); 2
-// wrong usage or bad input (ConfigError, std::invalid_argument); 1 any other exception. A fault is one line
-// on stderr.
+// Parses the command line, limits the stacks of threads, then runs body. Exit code: 0 done (also --help); 2
+// wrong usage or bad input (ConfigError, std::invalid_argument); 1 any other exception. Prints an error as
+// one line on stderr.
 int run_process(const ProgramText& text, int argc, char** argv,
                 const std::function<void(CommandLine)>& add_options, const std::function<void()>& body);
 

@@ -12,7 +12,7 @@
 namespace swiftlet::runtime {
 namespace {
 
-// CAP_IPC_LOCK lifts the limit on locked memory.
+// With CAP_IPC_LOCK a process has no limit on locked memory.
 bool may_lock_without_limit() {
   rlimit limit{};
   if (getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY) return true;
@@ -73,7 +73,7 @@ bool this_thread_is_realtime() {
   return pthread_getschedparam(pthread_self(), &policy, &parameters) == 0 && policy == SCHED_FIFO;
 }
 
-// By the kernel's number: a new thread often has the pthread_t of one that has ended.
+// Compares kernel thread IDs: a new thread often gets the pthread_t of an ended one.
 void RealtimeThread::enter(const RealtimeSettings& settings) {
   static thread_local const pid_t this_thread = ::gettid();
   if (thread_.load(std::memory_order_relaxed) == this_thread) return;

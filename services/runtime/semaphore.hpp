@@ -1,4 +1,4 @@
-// Wakes a thread from one that must not wait.
+// A semaphore by which a thread that must not block wakes another.
 #pragma once
 
 #include <cerrno>
@@ -17,7 +17,7 @@ class Semaphore {
 
   void post() noexcept { sem_post(&semaphore_); }  // neither waits nor allocates
 
-  // Until post() has been called since the last wait, or the time has passed.
+  // Waits until post() has been called since the last wait, or the time has passed.
   void wait_for(std::chrono::milliseconds time) noexcept {
     timespec until{};
     clock_gettime(CLOCK_MONOTONIC, &until);

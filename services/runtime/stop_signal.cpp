@@ -32,7 +32,7 @@ StopSignal::~StopSignal() {
 void StopSignal::request() noexcept {
   requested_.store(true, std::memory_order_relaxed);
   const std::uint64_t one = 1;
-  static_cast<void>(!::write(event_fd_, &one, sizeof one));  // full: the waiting thread has been told already
+  static_cast<void>(!::write(event_fd_, &one, sizeof one));  // full: the waiting thread is already notified
 }
 
 bool StopSignal::poll_for(int milliseconds) noexcept {

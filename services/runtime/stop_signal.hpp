@@ -1,4 +1,4 @@
-// SIGINT and SIGTERM as a request to end.
+// Turns SIGINT and SIGTERM into a stop request.
 #pragma once
 
 #include <atomic>
@@ -8,18 +8,18 @@ namespace swiftlet::runtime {
 
 class StopSignal {
  public:
-  // Blocks both signals for the calling thread and those that it makes: construct it before any thread. One a
-  // process. Throws std::system_error.
+  // Blocks both signals for the calling thread and its future threads: construct it before any other thread.
+  // One per process. Throws std::system_error.
   StopSignal();
   ~StopSignal();
   StopSignal(const StopSignal&) = delete;
   StopSignal& operator=(const StopSignal&) = delete;
 
-  // From any thread, also in a signal's stead.
+  // Requests a stop without a signal. Thread-safe.
   void request() noexcept;
   bool requested() const noexcept { return requested_.load(std::memory_order_relaxed); }
 
-  // By one thread. True once a stop was requested; otherwise false when the time has passed.
+  // Returns true once a stop was requested, false when the time has passed. Not thread-safe.
   bool wait_for(std::chrono::milliseconds time) noexcept;
   void wait() noexcept;
 

@@ -13,15 +13,15 @@
 namespace swiftlet::comms {
 namespace {
 
-// A fleet of four vehicles, in which each process calls all others.
+// Enough for a fleet of four vehicles, in which each process announces itself to all others.
 constexpr std::uint32_t kPortsAbove = 16;
 
-// More than a process here ever opens.
+// Above the number of descriptors of any process here.
 constexpr int kMostDescriptors = 4096;
 
 bool is_free(std::uint32_t port, bool localhost_only) {
   const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (socket < 0) return true;  // not for us to say why
+  if (socket < 0) return true;  // unknown; the participant will report the error
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(port));
@@ -38,7 +38,7 @@ DiscoveryPorts discovery_ports(int domain) {
   DiscoveryPorts ports;
   ports.first = rtps.getUnicastPort(static_cast<std::uint32_t>(domain), 0);
   ports.gap = rtps.participantIDGain;
-  // The port for a process's data lies behind its port for discovery.
+  // The data port of a process follows its discovery port.
   const std::uint32_t data_offset = rtps.offsetd3 - rtps.offsetd1;
   const std::uint32_t end = std::min<std::uint32_t>(ports.first - rtps.offsetd1 + rtps.domainIDGain,
                                                     std::numeric_limits<std::uint16_t>::max() + 1U);

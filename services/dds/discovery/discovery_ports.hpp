@@ -1,5 +1,5 @@
-// The UDP ports at which the processes of a host hear of each other: those that the RTPS standard gives to a
-// DDS domain, every second one between the first of this domain and the first of the next.
+// The UDP ports for discovery between the processes of a host. The RTPS standard assigns them to a DDS
+// domain: every second port from the first of this domain to the first of the next.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace swiftlet::comms {
 
 struct DiscoveryPorts {
   std::uint32_t first = 0;
-  std::uint32_t count = 0;  // of processes that find each other
+  std::uint32_t count = 0;  // largest number of processes
   std::uint32_t gap = 0;
 
   std::uint32_t last() const { return first + (count - 1) * gap; }
@@ -19,18 +19,19 @@ struct DiscoveryPorts {
 // 120 ports; 63 in domain 232, whose ports end with those of UDP.
 DiscoveryPorts discovery_ports(int domain);
 
-// "DDS domain 5 is full": all ports are taken, a process more would be found by none of the others.
+// The error "DDS domain 5 is full ...": all ports are taken. The others would not discover one more process.
 std::runtime_error domain_is_full(int domain);
 
-// The first of the domain's ports that is free now, counted from 0. Throws domain_is_full().
+// Returns the index of the first free port of the domain, from 0. Throws domain_is_full().
 std::uint32_t free_discovery_port(int domain, bool localhost_only);
 
-// Those of them that a socket of this process has.
+// Returns the indices of the ports that sockets of this process are bound to.
 std::set<std::uint32_t> own_discovery_ports(int domain);
 
-// To how many of the domain's ports a process announces itself that has the port of this number: to those
-// below its own and some above. So of two processes, the one above always calls the one below, which then
-// answers; in a domain of few processes each calls all others, and few ports that nobody has.
+// Returns to how many of the domain's ports a process with port index `own` announces itself: to all ports
+// below its own and some above. Of two processes, the one with the higher port thus always reaches the other,
+// which then answers. In a domain of few processes each reaches all others, and few announcements go to
+// unused ports.
 std::uint32_t announced_ports(const DiscoveryPorts& ports, std::uint32_t own);
 
 }  // namespace swiftlet::comms

@@ -12,8 +12,8 @@
 namespace swiftlet::comms {
 namespace {
 
-// Opens the file, which another user may have made: a lock needs no right to write, but O_CREAT would be
-// refused there.
+// Opens the lock file, which may belong to another user. A lock needs no write permission, but O_CREAT would
+// be refused for such a file.
 int open_or_create(const std::string& file) {
   const int there = ::open(file.c_str(), O_RDONLY | O_NOFOLLOW);
   if (there >= 0 || errno != ENOENT) return there;
@@ -22,7 +22,7 @@ int open_or_create(const std::string& file) {
   return made;
 }
 
-// An open file that only we have locked; -1 if another has, or if it is not ours to open.
+// Returns the file descriptor of the lock; -1 if another process holds it or the file cannot be opened.
 int try_lock(const std::string& file) {
   const int lock = open_or_create(file);
   if (lock < 0) return -1;
@@ -34,7 +34,7 @@ int try_lock(const std::string& file) {
 }  // namespace
 
 DomainLock::DomainLock() {
-  // Not the same first each time: what was just ended may still have packets under way.
+  // The start varies, because a process that just ended may still have packets in flight in its domain.
   constexpr int kCount = kLast - kFirst + 1;
   const int start = static_cast<int>(::getpid() % kCount);
   const std::filesystem::path folder = std::filesystem::temp_directory_path();
@@ -44,7 +44,7 @@ DomainLock::DomainLock() {
   }
   if (lock_ < 0) {
     throw std::runtime_error("all DDS domains from " + std::to_string(kFirst) + " to " +
-                             std::to_string(kLast) + " are claimed; choose one with --domain");
+                             std::to_string(kLast) + " are in use; choose one with --domain");
   }
 }
 

@@ -1,11 +1,12 @@
-// A DDS domain of one's own on this host: flights and tests side by side must not hear each other.
+// Reserves a DDS domain on this host, so that concurrent flights and tests do not receive each other's
+// topics.
 #pragma once
 
 namespace swiftlet::comms {
 
-// Claims a free domain for as long as it lives, by a lock on a file in the folder for temporary files, which
-// the kernel lets go however the process ends. Child processes inherit the claim: the domain is not free
-// before they have ended too.
+// Holds a free domain for its lifetime, by a lock on a file in the folder for temporary files. The kernel
+// releases the lock however the process ends. Child processes inherit the lock: the domain stays reserved
+// until they have ended too.
 class DomainLock {
  public:
   // Throws std::runtime_error if no domain of kFirst .. kLast is free.
@@ -16,7 +17,7 @@ class DomainLock {
 
   int domain() const { return domain_; }
 
-  // Below, people choose by hand; above, the ports of DDS reach into those that the kernel hands out.
+  // Lower domains are left to users. The DDS ports of higher domains overlap the kernel's ephemeral ports.
   static constexpr int kFirst = 20;
   static constexpr int kLast = 99;
 

@@ -1,11 +1,11 @@
-// Peers that come and go, told in the process's log.
+// Logs discovered and lost peers.
 #pragma once
 
 #include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::comms {
 
-// Takes the node's on_peer().
+// Sets the node's on_peer() callback.
 void log_peers(Node& node);
 
 }  // namespace swiftlet::comms

@@ -1,4 +1,4 @@
-// Peers that were taken for dead and come back as they were.
+// Detects peers whose rediscovery after a lost lease is incomplete.
 #pragma once
 
 #include <chrono>
@@ -6,10 +6,10 @@
 
 namespace swiftlet::comms {
 
-// Both sides forget each other when a network is cut. When only one process was away (stopped, or starved of
-// its cores), the others forget it, but it may remember them; then Fast DDS 2.9 does not always tell them its
-// endpoints again, and they do not hear each other for good. Such a peer is known by coming back without the
-// kinds of endpoints that it had.
+// When a network is cut, both sides drop each other. When only one process was away (stopped, or starved of
+// CPU time), the others drop it, but it may still know them. Fast DDS 2.9 then does not always announce its
+// endpoints again, and the processes never receive each other. Such a peer is rediscovered without the kinds
+// of endpoints that it had before.
 template <class Id>
 class RediscoveryMonitor {
  public:
@@ -26,11 +26,11 @@ class RediscoveryMonitor {
     it.present |= endpoint;
     it.known |= endpoint;
   }
-  void lost(const Id& peer) { peers_[peer].since = Time::max(); }  // its lease ran out
-  void gone(const Id& peer) { peers_.erase(peer); }                // it said goodbye
+  void lost(const Id& peer) { peers_[peer].since = Time::max(); }  // its lease expired
+  void gone(const Id& peer) { peers_.erase(peer); }                // it left the domain
   void clear() { peers_.clear(); }
 
-  // A peer is back for that long, and not all of it.
+  // True if a peer was rediscovered longer than patience ago and still lacks a kind of endpoint.
   bool failed(Time now, std::chrono::milliseconds patience) const {
     for (const auto& [id, peer] : peers_) {
       if (peer.present != peer.known && now - patience > peer.since) return true;
@@ -40,9 +40,9 @@ class RediscoveryMonitor {
 
  private:
   struct Peer {
-    Time since;            // it came; Time::max(): it is lost
-    unsigned present = 0;  // kinds of endpoints since then
-    unsigned known = 0;    // ever
+    Time since;            // its discovery; Time::max(): lost
+    unsigned present = 0;  // kinds of endpoints seen since then
+    unsigned known = 0;    // kinds of endpoints ever seen
   };
   std::map<Id, Peer> peers_;
 };

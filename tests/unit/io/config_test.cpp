@@ -133,7 +133,7 @@ TEST(Config, NestingHasALimit) {
 TEST(Config, SizeHasALimit) {
   std::string keys;
   for (int i = 0; i < 1001; ++i) keys += "k" + std::to_string(i) + ": 1\n";
-  EXPECT_EQ(parse_refusal(keys), "f.yaml:1001: is a map of too many keys, must be at most 1000");
+  EXPECT_EQ(parse_refusal(keys), "f.yaml:1001: has too many keys, must have at most 1000");
   const std::string comment(5 << 20, '#');
   EXPECT_EQ(parse_refusal(comment + "\n"), "f.yaml: is too large, must hold at most 4194304 bytes");
 }

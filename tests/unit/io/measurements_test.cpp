@@ -64,7 +64,7 @@ TEST(Measurements, RefusesWhatCouldBeReadInTwoWays) {
             "throttle [us] or "
             "throttle [ms]");
   EXPECT_EQ(refused("thrust [lb],rpm"),
-            "f.csv:1: header: has the column thrust [lb] of a unit that is not known, must be thrust [N], "
+            "f.csv:1: header: has the column thrust [lb] with an unknown unit, must be thrust [N], "
             "thrust [mN], "
             "thrust [g] or thrust [kg]");
   EXPECT_EQ(refused("speed [rad/s],rpm"),

@@ -169,14 +169,14 @@ TEST(FlightLogFiles, MakesThrottlesOfPulses) {
 
 TEST(FlightLogFiles, RefuseWhatTheyCannotTell) {
   const std::string head = "t [s],acc_x [g],acc_y [g],acc_z [g],p [rad/s],q [rad/s],r [rad/s],m1 [1]";
-  expect_contains(refused(head + "\n0,0,0,0.1,0,0,0,0.5\n"), "say --axes frd or --axes flu");
+  expect_contains(refused(head + "\n0,0,0,0.1,0,0,0,0.5\n"), "give --axes frd or --axes flu");
   expect_contains(refused(head + "\n0,0,0,1,0,0,0,1.5\n"), "of full command, must be between 0 and 1");
-  expect_contains(refused(head + "\n0.1,0,0,1,0,0,0,1\n0.1,0,0,1,0,0,0,1\n"), "s after the row before");
+  expect_contains(refused(head + "\n0.1,0,0,1,0,0,0,1\n0.1,0,0,1,0,0,0,1\n"), "s after the previous row");
   expect_contains(
       refused(
           head +
           ",pose_time [s],x [m],y [m],z [m],qw [1],qx [1],qy [1],qz [1]\n0,0,0,1,0,0,0,1,0,0,0,0,1,0,0,0\n"),
-      "does not say the frame of its poses");
+      "does not name the frame of its poses");
   expect_contains(
       refused(
           "t [s],acc_x_frd [g],acc_y [g],acc_z [g],p [rad/s],q [rad/s],r [rad/s],m1 [1]\n0,0,0,1,0,0,0,1\n"),
@@ -186,7 +186,7 @@ TEST(FlightLogFiles, RefuseWhatTheyCannotTell) {
       "has no column throttle1 [1]");
   expect_contains(refused("t [s],acc_x [g],acc_y [g],acc_z [g],p [rad/s],q [rad/s],r [rad/s],m1 [1],m3 "
                           "[1]\n0,0,0,1,0,0,0,1,1\n"),
-                  "has m3 [1] and none of motor 2");
+                  "has m3 [1] but none of motor 2");
 }
 
 TEST(FlightLogFiles, UnpackGzipAndSayIfTheyCannot) {

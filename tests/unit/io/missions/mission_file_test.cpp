@@ -250,9 +250,9 @@ INSTANTIATE_TEST_SUITE_P(
               "m.yaml:4: items[0]: sets nothing, must give one of speed_m_s, yaw_rad, acceptance_radius_m or "
               "hold_s"},
         Fault{"NothingFlown", kHead + "  - {kind: set, speed_m_s: 1}\n",
-              "m.yaml:3: items: holds nothing to be flown"},
+              "m.yaml:3: items: has no item to fly, must have at least one besides set"},
         Fault{"NoLanding", kHead + kTakeoff + kWaypoint,
-              "m.yaml:5: items[1]: is the last item, which must be a land, unless the mission says `ends: "
+              "m.yaml:5: items[1]: is the last item, which must be a land unless the mission has `ends: "
               "hovering`"},
         Fault{"LandsThoughItHovers", kHovers + kTakeoff + kLand,
               "m.yaml:1: ends: is hovering, must be landed: the last item is a land"},
@@ -276,9 +276,8 @@ INSTANTIATE_TEST_SUITE_P(
               "geofence: {min_m: [-1, -1, -2], max_m: [1, 1, 0.2]}\n" + kHead + kTakeoff + kWaypoint + kLand,
               "m.yaml:6: items[1].position_m: north is 2 m, must be inside the fence, -1 to 1 m"},
         Fault{"KeyAfterTheItems", kHead + kTakeoff + kLand + "name: late\n",
-              "m.yaml:6: name: stands after items, must stand before them: a file that is cut short would "
-              "lose it "
-              "unseen"},
+              "m.yaml:6: name: stands after items, must stand before them: a truncated file would "
+              "lose it silently"},
         Fault{"PathOfOnePoint", kHead + kTakeoff + "  - {kind: path, points: [[1, 0, -1]], speed_m_s: 1}\n",
               "m.yaml:5: items[1].points: is a list of 1, must be a list of 2 to 1025"},
         Fault{"PathOutsideTheFence",
@@ -300,7 +299,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"EmptyWait", kHead + kTakeoff + "  - {kind: wait, duration_s: 0}\n",
               "m.yaml:5: items[1].duration_s: is 0, must be above 0 and at most 3600"},
         Fault{"NoSuchTrajectory", kHead + kTakeoff + "  - {kind: trajectory, file: none.csv, speed_m_s: 1}\n",
-              "m.yaml:5: items[1].file: is none.csv, must be a file that is there: looked for none.csv"},
+              "m.yaml:5: items[1].file: is none.csv, must be an existing file: looked for none.csv"},
         Fault{"NameWithAFolder", "name: ../x\n" + kHead + kTakeoff,
               "m.yaml:1: name: must be at most 64 characters and hold no /"}),
     name_of);

@@ -117,7 +117,7 @@ TEST(PolynomialCsv, TurnsEnuIntoNed) {
   EXPECT_NEAR(start.yaw_rad, M_PI / 2 - 0.3, 1e-6);
   EXPECT_LT((control::evaluate(segment, 4.0).position_ned - Vector3d(0, 1.5, -1.5)).norm(), 1e-3);
   EXPECT_TRUE(assumes(file, "ENU"));
-  EXPECT_TRUE(assumes(file, "above the ground: it comes down to 1.50 m"));
+  EXPECT_TRUE(assumes(file, "above the ground: the lowest point is 1.50 m"));
   EXPECT_TRUE(assumes(file, "take-off to 1.50 m and a landing are added"));
 }
 
@@ -241,7 +241,7 @@ TEST(SampledCsv, IsFollowedBetweenItsSamples) {
   EXPECT_LT(furthest_from_truth(samples(sampled(10.0, "t,x,y,z,vx,vy,vz"))), 1e-3);
   EXPECT_LT(furthest_from_truth(samples(sampled(10.0, "t,x,y,z,vx,vy,vz,ax,ay,az"))), 1e-5);
   const MissionFile file = samples(sampled(10.0, "t,x,y,z"));
-  EXPECT_TRUE(assumes(file, "41 samples became 40 segments of least snap"));
+  EXPECT_TRUE(assumes(file, "41 samples became 40 segments of minimum snap"));
   EXPECT_TRUE(assumes(file, "no yaw"));
 }
 
@@ -250,7 +250,7 @@ TEST(SampledCsv, ThinsOutWhatDoesNotFitAndSaysHowFarThatIsOff) {
   EXPECT_EQ(file.mission.segments.size(), 1024U);
   EXPECT_LT(furthest_from_truth(file), 1e-4);
   EXPECT_TRUE(assumes(file, "4001 samples became 1024 segments"));
-  EXPECT_TRUE(assumes(file, "0.0 mm off"));
+  EXPECT_TRUE(assumes(file, "largest deviation is 0.0 mm"));
 }
 
 TEST(SampledCsv, YawGoesOnWithoutWholeTurns) {
@@ -310,7 +310,7 @@ TEST(WaypointCsv, ReadsWhatUavTrajectoriesHas) {
   const MissionFile file = load_mission_file(kData + "uav_waypoints.csv", control::Limits());
   EXPECT_EQ(file.mission.segments.size(), 17U);
   EXPECT_LT((at_path_start(file).position_ned - Vector3d(0.453548997641, 0, -1.4156037569)).norm(), 1e-12);
-  EXPECT_TRUE(assumes(file, "above the ground: it comes down to 1.39 m"));
+  EXPECT_TRUE(assumes(file, "above the ground: the lowest point is 1.39 m"));
   EXPECT_TRUE(control::check(file.mission, control::Limits()).accepted);
 }
 
@@ -377,7 +377,7 @@ TEST(QGroundControlPlan, ReadsPx4sBox) {
   EXPECT_EQ(items[6].kind, MissionItemKind::kLand);
   EXPECT_TRUE(assumes(file, "home, 47.3977420, 8.5455940 deg and 488.0 m, is the origin"));
   EXPECT_TRUE(assumes(file, "the plan wants 5 m/s"));
-  EXPECT_TRUE(assumes(file, "not 0.40 m aside"));
+  EXPECT_TRUE(assumes(file, "the plan says 0.40 m away"));
   EXPECT_TRUE(control::check(file.mission, field()).accepted) << control::check(file.mission, field()).reason;
 }
 
@@ -438,8 +438,7 @@ INSTANTIATE_TEST_SUITE_P(
     , BadPlan,
     testing::Values(
         Fault{"empty", "", "q.plan:1: column 1: the file is empty, must be a JSON document"},
-        Fault{"cut_short", "{\n \"fileType\": \"Plan\",\n \"mission",
-              "q.plan:3: column 9: is where the file ceases to be JSON"},
+        Fault{"cut_short", "{\n \"fileType\": \"Plan\",\n \"mission", "q.plan:3: column 9: is invalid JSON"},
         Fault{"a_number_beyond_all", plan(item(16, 1, "0,0,0,null,1e309,1,-1")),
               "q.plan: holds a number beyond 1.8e308, must hold smaller ones"},
         Fault{"of_another_kind", "{\"fileType\": \"Fence\"}", "q.plan:1: fileType: is Fence, must be Plan"},
@@ -480,7 +479,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"a_speed_of_0", plan(item(178, 2, "1,0,-1,0,0,0,0")),
               "q.plan:5: mission.items[0].params[1]: is 0, must be above 0"},
         Fault{"only_a_speed", plan(item(178, 2, "1,1,-1,0,0,0,0")),
-              "q.plan:4: mission.items: hold nothing to fly, must hold a take-off or a waypoint"}),
+              "q.plan:4: mission.items: has no item to fly, must have a take-off or a waypoint"}),
     name_of);
 
 TEST(QGroundControlPlan, GeographicItemsNeedAHome) {

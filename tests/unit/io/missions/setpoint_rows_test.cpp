@@ -67,12 +67,12 @@ TEST(SetpointRows, RefuseWithWhatTheyCannotRead) {
             "s.csv:1: header: has no column z [m], must have x [m], y [m] and z [m]");
   EXPECT_EQ(refusal("x [m],y [m],z [m]"), "s.csv:1: header: has no column t [s], must have t [s]");
   EXPECT_EQ(refusal("t [s],x [ft],y [m],z [m]"),
-            "s.csv:1: header: has the column x [ft] of a unit that is not known, must be x [m] or x [cm] or "
+            "s.csv:1: header: has the column x [ft] with an unknown unit, must be x [m] or x [cm] or "
             "x [mm]");
   EXPECT_EQ(refusal("t [s],x,y [m],z [m]"),
             "s.csv:1: header: has the column x without a unit, must be x [m] or x [cm] or x [mm]");
   EXPECT_EQ(refusal("t [s],x [m],y [m],z [m],roll [rad]"),
-            "s.csv:1: header: has the column roll [rad], which a stream of positions has no use for");
+            "s.csv:1: header: has the column roll [rad], which a stream of positions does not use");
   EXPECT_EQ(refusal("t [s],x [m],x [m],y [m],z [m]"),
             "s.csv:1: header: has the column x twice, must have it once");
   EXPECT_NE(refusal("t [s],height [m]").find("has the column height [m], must be t [s], x [m]"),
@@ -80,7 +80,7 @@ TEST(SetpointRows, RefuseWithWhatTheyCannotRead) {
   EXPECT_NE(refusal("t [s]").find("names no setpoint"), std::string::npos);
   const std::string header = "t [s],x [m],y [m],z [m]";
   EXPECT_EQ(refusal(header, {"0,0,0,-1", "0,0,0,-1"}),
-            "s.csv:3: t: is 0 s, must be above that of the row before, 0 s");
+            "s.csv:3: t: is 0 s, must be above that of the previous row, 0 s");
   EXPECT_EQ(refusal(header, {"0,0,0"}), "s.csv:2: row: has 3 fields, must have 4");
   for (const char* text : {"nan", "inf", "up", ""})
     EXPECT_EQ(refusal(header, {std::string("0,") + text + ",0,-1"}),

@@ -74,7 +74,7 @@ TEST(VehicleUncertaintySection, IsRefusedWhereItIsWrong) {
   EXPECT_NE(refused(bad).find("is motor.k7, must be one of mass, "), std::string::npos);
   bad = kUncertainty;
   bad.parameters[1].parameter = "motor.k2";
-  EXPECT_NE(refused(bad).find("is motor.k2, which stands there already"), std::string::npos);
+  EXPECT_NE(refused(bad).find("is motor.k2, which is listed already"), std::string::npos);
   bad = kUncertainty;
   bad.parameters[0].low = 1.0;
   EXPECT_NE(refused(bad).find("interval_95: must rise"), std::string::npos);

@@ -35,7 +35,7 @@ TEST(QosConflicts, EachPolicyIsNamedWithBothValues) {
   offered.reliability = dds::BEST_EFFORT_RELIABILITY_QOS;
   EndpointQos requested = demand();
   requested.reliability = dds::RELIABLE_RELIABILITY_QOS;
-  EXPECT_EQ(conflicts(offered, requested), "reliability (offered best effort, asked for reliable)");
+  EXPECT_EQ(conflicts(offered, requested), "reliability (offered best effort, requested reliable)");
 
   offered.durability = dds::VOLATILE_DURABILITY_QOS;
   requested.durability = dds::TRANSIENT_LOCAL_DURABILITY_QOS;
@@ -45,13 +45,13 @@ TEST(QosConflicts, EachPolicyIsNamedWithBothValues) {
   requested.lease = {2, 0U};
   requested.without_positive_acks = true;
   EXPECT_EQ(conflicts(offered, requested),
-            "reliability (offered best effort, asked for reliable), "
-            "durability (offered volatile, asked for transient local), "
-            "ownership (offered shared, asked for exclusive), "
-            "deadline (offered none, asked for 50 ms), "
-            "liveliness (offered automatic, asked for manual by topic), "
-            "liveliness lease (offered none, asked for 2000 ms), "
-            "disabled positive acknowledgements (offered no, asked for yes)");
+            "reliability (offered best effort, requested reliable), "
+            "durability (offered volatile, requested transient local), "
+            "ownership (offered shared, requested exclusive), "
+            "deadline (offered none, requested 50 ms), "
+            "liveliness (offered automatic, requested manual by topic), "
+            "liveliness lease (offered none, requested 2000 ms), "
+            "disabled positive acknowledgements (offered no, requested yes)");
 }
 
 TEST(QosConflicts, MoreThanWasAskedForMatches) {
@@ -80,7 +80,7 @@ TEST(LineLimit, WritesOneASecondAndLosesNoneUncounted) {
   EXPECT_EQ(limit.offer("d", begin + 11100ms), std::nullopt);
   EXPECT_EQ(limit.offer("e", begin + 11200ms), std::nullopt);
   EXPECT_EQ(limit.offer("f", begin + 11300ms), std::nullopt);
-  EXPECT_EQ(limit.due(begin + 12s), "f (and 2 more of the last second)");
+  EXPECT_EQ(limit.due(begin + 12s), "f (and 2 more in the last second)");
   EXPECT_EQ(limit.due(begin + 20s), std::nullopt);
 }
 
@@ -152,12 +152,12 @@ TEST_F(Conflict, BothSidesNameTopicPolicyAndPeer) {
   const auto subscription = listener_.subscribe<msg::Imu>(kReliableImu, [](const msg::Imu&) {});
 
   EXPECT_TRUE(is_said({"rt/kl1/imu: 'talker' (",
-                       ") is not heard, their QoS is incompatible: "
-                       "reliability (offered best effort, asked for reliable)"}))
+                       ") is not received, their QoS is incompatible: "
+                       "reliability (offered best effort, requested reliable)"}))
       << all_lines();
   EXPECT_TRUE(is_said({"rt/kl1/imu: 'listener' (",
-                       ") does not hear this process, their QoS is incompatible: "
-                       "reliability (offered best effort, asked for reliable)"}))
+                       ") does not receive from this process, their QoS is incompatible: "
+                       "reliability (offered best effort, requested reliable)"}))
       << all_lines();
   EXPECT_EQ(publisher.matched(), 0);
   EXPECT_EQ(subscription.matched(), 0);
@@ -170,9 +170,10 @@ TEST_F(Conflict, IsToldAlsoByWhoComesLater) {
       listener_.subscribe<msg::ActuatorCommand>(topics::kActuatorCommand, [](const msg::ActuatorCommand&) {});
 
   const std::string policies =
-      "ownership (offered shared, asked for exclusive), deadline (offered none, asked for 50 ms)";
-  EXPECT_TRUE(is_said({"rt/kl1/actuator_command: 'talker' (", "is not heard", policies})) << all_lines();
-  EXPECT_TRUE(is_said({"rt/kl1/actuator_command: 'listener' (", "does not hear", policies})) << all_lines();
+      "ownership (offered shared, requested exclusive), deadline (offered none, requested 50 ms)";
+  EXPECT_TRUE(is_said({"rt/kl1/actuator_command: 'talker' (", "is not received", policies})) << all_lines();
+  EXPECT_TRUE(is_said({"rt/kl1/actuator_command: 'listener' (", "does not receive", policies}))
+      << all_lines();
 }
 
 TEST_F(Conflict, ManyMakeOneLineASecond) {
@@ -182,8 +183,9 @@ TEST_F(Conflict, ManyMakeOneLineASecond) {
   for (int i = 0; i < 5; ++i)
     subscriptions.push_back(listener_.subscribe<msg::Imu>(kReliableImu, [](const msg::Imu&) {}));
 
-  EXPECT_TRUE(is_said({"does not hear this process", "(and 3 more of the last second)"})) << all_lines();
-  EXPECT_EQ(count(lines_.items(), {"does not hear this process"}), 2) << all_lines();
+  EXPECT_TRUE(is_said({"does not receive from this process", "(and 3 more in the last second)"}))
+      << all_lines();
+  EXPECT_EQ(count(lines_.items(), {"does not receive from this process"}), 2) << all_lines();
 }
 
 TEST_F(Conflict, OnesThatMatchAreNotMentioned) {
@@ -194,7 +196,7 @@ TEST_F(Conflict, OnesThatMatchAreNotMentioned) {
       listener_.subscribe<msg::MocapPose>({"mocap_pose", Qos::kRequest}, [](const msg::MocapPose&) {});
 
   ASSERT_TRUE(eventually([&] { return good.matched() == 1 && heard.matched() == 1; }));
-  ASSERT_TRUE(is_said({"rt/kl1/mocap_pose", "is not heard"})) << all_lines();
+  ASSERT_TRUE(is_said({"rt/kl1/mocap_pose", "is not received"})) << all_lines();
   EXPECT_EQ(count(lines_.items(), {"rt/kl1/imu"}), 0) << all_lines();
 }
 
