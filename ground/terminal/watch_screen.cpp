@@ -32,8 +32,8 @@ struct Threshold {
   bool assumed = false;
 };
 
-Threshold threshold(double told_v, double default_v) {
-  return told_v > 0.0 ? Threshold{told_v, false} : Threshold{default_v, true};
+Threshold threshold(double published_v, double default_v) {
+  return published_v > 0.0 ? Threshold{published_v, false} : Threshold{default_v, true};
 }
 Threshold low_battery(const View& view) {
   return threshold(view.control.message.low_battery_voltage_v(),
