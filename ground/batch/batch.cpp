@@ -27,12 +27,12 @@ double supply_voltage_v(const World& world) {
   return plant::open_circuit_voltage(world.vehicle.battery, world.simulation.supply.initial_state_of_charge);
 }
 
-// The threads of a batch: each takes the next run that is left, into a record that it flies all of its in.
-class Crew {
+// The threads of a batch. Each thread takes the next run and reuses one flight record for all its runs.
+class WorkerPool {
  public:
   using Fly = std::function<std::optional<BatchRun>(std::size_t index, FlightRecord& record)>;
 
-  Crew(std::size_t runs, std::size_t record_capacity, Fly fly)
+  WorkerPool(std::size_t runs, std::size_t record_capacity, Fly fly)
       : fly_(std::move(fly)), record_capacity_(record_capacity), results_(runs) {}
 
   void work(std::size_t jobs, const std::function<void(std::size_t done, std::size_t failed)>& progress) {
@@ -133,14 +133,14 @@ Batch BatchRunner::fly(std::size_t jobs, const std::function<bool()>& cancelled,
                     std::move(drawn.values)};
   };
 
-  Crew crew(runs_, plan_.record_capacity(), fly_one);
-  crew.work(std::min(jobs, runs_), [&](std::size_t done, std::size_t failed) {
+  WorkerPool pool(runs_, plan_.record_capacity(), fly_one);
+  pool.work(std::min(jobs, runs_), [&](std::size_t done, std::size_t failed) {
     progress({runs_, done, failed, elapsed_s(start)});
   });
 
   Batch batch;
   batch.asked = runs_;
-  batch.runs = crew.take_results();
+  batch.runs = pool.take_results();
   batch.rejected = rejected_;
   batch.designed_deg =
       margins_on(design_, plan_.vehicle, plan_.vehicle, supply_voltage_v({plan_.vehicle, plan_.simulation}));

@@ -1,4 +1,5 @@
-// A plan flown many times, each with a seed, and so a draw, of its own.
+// Monte Carlo batch: one launch configuration flown many times, each run with its own seed and sampled
+// parameters.
 #pragma once
 
 #include <cstddef>
@@ -15,19 +16,19 @@ namespace swiftlet::ground {
 struct BatchRun {
   std::uint64_t seed = 0;
   bool completed = false;
-  std::string reason;       // why not; empty if completed
-  double rms_3d_m = 0.0;    // of the tracking error; NaN if the mission was not started
-  double peak_3d_m = 0.0;   // likewise
-  double duration_s = 0.0;  // of the mission, as far as it went
+  std::string reason;       // why the run failed; empty if completed
+  double rms_3d_m = 0.0;    // tracking error; NaN if the mission did not start
+  double peak_3d_m = 0.0;   // tracking error; NaN if the mission did not start
+  double duration_s = 0.0;  // flown part of the mission
   control::PhaseMargins margins_deg;
-  std::vector<double> values;  // of the plan's variates, as drawn
+  std::vector<double> values;  // sampled, in the order of the distributions
 };
 
 struct Batch {
-  std::size_t asked = 0;
-  std::vector<BatchRun> runs;          // that were flown to their end, by rising seed
-  std::size_t rejected = 0;            // draws that broke a rule and were drawn anew
-  control::PhaseMargins designed_deg;  // on the vehicle of the design
+  std::size_t asked = 0;               // requested runs
+  std::vector<BatchRun> runs;          // finished runs, in order of the seed
+  std::size_t rejected = 0;            // samples that broke a rule and were sampled again
+  control::PhaseMargins designed_deg;  // of the nominal vehicle
   double wall_s = 0.0;
 
   std::size_t failed() const;
@@ -40,16 +41,16 @@ struct BatchProgress {
   double elapsed_s = 0.0;
 };
 
-// Run i, from 0, has the seed plan.seed + i, for its draw as for all that is random in its simulation. All
-// draws are made before the first flight: throws runtime::ConfigError for one that cannot be, and
-// std::invalid_argument for control settings that cannot be flown.
+// Run i, from 0, uses the seed plan.seed + i for the parameter samples and for all random numbers of its
+// simulation. The constructor samples all runs: it throws runtime::ConfigError if no valid sample is found,
+// and std::invalid_argument for control settings that cannot be flown.
 class BatchRunner {
  public:
   BatchRunner(LaunchConfiguration plan, std::size_t runs);
 
-  // Flies on so many threads; the outcome is the same whatever their number. `progress` is called now and
-  // then from this thread, `cancelled` from all: once it is true, runs under way are dropped. Throws what a
-  // run throws.
+  // Flies the runs on `jobs` threads; the result does not depend on their number. Calls `progress` about
+  // every 100 ms from this thread, and `cancelled` from all threads. Once `cancelled` returns true, unfinished
+  // runs are discarded. Rethrows the first exception of a run.
   Batch fly(std::size_t jobs, const std::function<bool()>& cancelled,
             const std::function<void(const BatchProgress&)>& progress) const;
 

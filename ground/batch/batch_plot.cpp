@@ -14,7 +14,7 @@ namespace swiftlet::ground {
 namespace {
 
 constexpr std::size_t kMostScatters = 3;
-constexpr double kLongTail = 4.0;  // times the median: beyond, errors stand on a logarithmic axis
+constexpr double kLongTail = 4.0;  // maximum over median, above which the error axis is logarithmic
 
 constexpr const char* kPlot = R"(
 # Draws batch.png from batch.csv: run `gnuplot batch.gp` in this folder.
@@ -37,7 +37,7 @@ ok(value) = column('completed') == 1 ? value : NaN
 failed(value) = column('completed') == 0 ? value : NaN
 mm(name) = 1e3 * column(name)
 
-# How many runs stay below an error.
+# Cumulative distribution of the errors.
 set tmargin at screen 0.925; set bmargin at screen 0.575
 set lmargin at screen 0.060; set rmargin at screen 0.470
 set logscale x
@@ -68,11 +68,11 @@ set ylabel 'phase margin (deg)' offset 1
 set key at graph 0.5,1.01 center bottom horizontal maxrows 1
 plot for [i = 1:6] csv using (i):(column(i + 6)) with boxplot lc rgb '#1f6fb4' lw 1.4 notitle, \
      '+' using (NaN):(NaN) with boxes lc rgb '#1f6fb4' title 'quartiles and 90 % of the runs', \
-     designed using 1:2:(0.36) with xerrorbars lc rgb '#b03a2e' lw 2.4 pt 0 title 'on the vehicle of the design'
+     designed using 1:2:(0.36) with xerrorbars lc rgb '#b03a2e' lw 2.4 pt 0 title 'nominal vehicle'
 set offsets 0, 0, 0, 0
 set xtics autofreq
 
-# The RMS error against what goes with it most.
+# The RMS error against the parameters with the strongest rank correlation.
 unset key
 set tmargin at screen 0.445; set bmargin at screen 0.085
 set offsets graph 0.03, graph 0.03, graph 0.12, 0
@@ -86,7 +86,7 @@ constexpr const char* kScatter =
      csv using (column(name) / scale):(failed(mm('rms_3d_m'))) with points ls 4
 )";
 
-// The power of a thousand that an axis is read in, so that its labels are short.
+// Returns the power of a thousand that keeps the tick labels of an axis short.
 double axis_scale(const BatchReport& report, const std::string& name) {
   const auto index = static_cast<std::size_t>(
       std::find(report.parameters.begin(), report.parameters.end(), name) - report.parameters.begin());
@@ -126,7 +126,7 @@ void write_scatters(std::ostream& script, const BatchReport& report) {
         << "set xlabel " << gnuplot_quoted(axis_label(effect.name, scale)) << "\n"
         << (i == 0 ? "set ylabel 'tracking error, RMS (mm)' offset 1\n" : "unset ylabel\n")
         << fmt::format(
-               "set label 1 'rank correlation {:+.2f}, of the distance {:+.2f}' at graph 0.03,0.95 front\n",
+               "set label 1 'rank correlation {:+.2f}, distance {:+.2f}' at graph 0.03,0.95 front\n",
                effect.of_value, effect.of_distance)
         << "name = '" << effect.name << "'\nscale = " << fmt::format("{:g}", scale) << "\n"
         << kScatter;
@@ -137,7 +137,7 @@ void write_script(const std::filesystem::path& file, const BatchReport& report) 
   const Batch& batch = report.batch;
   std::ofstream script(file);
   script << "headline = "
-         << gnuplot_quoted(report.mission + " - " + report.vehicle + ", " + report.control + ", varied by " +
+         << gnuplot_quoted(report.mission + " - " + report.vehicle + ", " + report.control + ", dispersion " +
                            report.dispersion + ": " + counted(batch.runs.size(), "run") +
                            fmt::format(", {} failed", batch.failed()) + (batch.failed() > 0 ? " (red)" : ""))
          << "\nruns = " << report.rms_3d_m.count

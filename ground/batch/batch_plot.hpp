@@ -1,4 +1,4 @@
-// The picture of a batch.
+// The plot of a batch.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 namespace swiftlet::ground {
 
 // Writes folder/batch.gp, which draws folder/batch.png from folder/batch.csv, and runs gnuplot on it. Returns
-// an empty text, or one sentence that says why there is no picture.
+// an empty string, or one sentence with the reason why there is no picture.
 std::string draw_batch(const std::filesystem::path& folder, const BatchReport& report);
 
 }  // namespace swiftlet::ground

@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kPlainCharacters =
     "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./:,@%=";
 
-// As a shell takes it for one word.
+// Quotes the text if a shell would not take it as one word.
 std::string shell_word(const std::string& text) {
   if (!text.empty() && text.find_first_not_of(kPlainCharacters) == std::string::npos) return text;
   std::string quoted = "'";
@@ -82,14 +82,14 @@ std::string row_of(const char* name, const char* unit, const Spread& spread, dou
 std::string headline_of(const BatchReport& report) {
   const Batch& batch = report.batch;
   const std::uint64_t first = report.first_seed;
-  std::string text = report.mission + ", " + report.vehicle + " flown with " + report.control +
-                     ", varied by " + report.dispersion +
+  std::string text = report.mission + ", " + report.vehicle + " with " + report.control +
+                     ", dispersion " + report.dispersion +
                      fmt::format(": {}, seeds {} to {}\n", counted(batch.asked, "run").c_str(),
                                  static_cast<unsigned long long>(first),
                                  static_cast<unsigned long long>(first + batch.asked - 1));
   text += fmt::format("  {} completed, {} failed", batch.runs.size() - batch.failed(), batch.failed());
   if (report.interrupted())
-    text += fmt::format(", {} NOT flown: it was cancelled", batch.asked - batch.runs.size());
+    text += fmt::format(", {} NOT flown: batch cancelled", batch.asked - batch.runs.size());
   return text + fmt::format("; {:.1f} s\n", batch.wall_s);
 }
 
@@ -99,16 +99,16 @@ std::string effect_cell(double correlation) {
 
 std::string effects_text(const BatchReport& report) {
   std::string text =
-      fmt::format("\nrank correlation with the RMS error (chance alone: within +-{:.2f} in 95 % of cases)\n",
+      fmt::format("\nrank correlation with the RMS error (independent: within +-{:.2f} in 95 % of cases)\n",
                   chance_correlation(report.rms_3d_m.count)) +
-      fmt::format(" {:>9} {:>9}  distance: from the median\n", "value", "distance");
+      fmt::format(" {:>9} {:>9}  distance: |value - median|\n", "value", "distance");
   for (const ParameterEffect& effect : report.effects)
     text += effect_cell(effect.of_value) + effect_cell(effect.of_distance) + "  " + effect.name + "\n";
   return text;
 }
 
 std::string failures_text(const BatchReport& report) {
-  std::string text = "\nfailed runs, and how to repeat them\n";
+  std::string text = "\nfailed runs, and the command that repeats each\n";
   for (const BatchRun& run : report.batch.runs) {
     if (!run.completed)
       text += "  seed " + std::to_string(run.seed) + ": " + run.reason + ": " +
@@ -202,9 +202,9 @@ std::string to_text(const BatchReport& report) {
   constexpr double kMm = 1e3;
   std::string text = headline_of(report);
   if (report.batch.rejected > 0)
-    text += "  drawn anew: " + counted(report.batch.rejected, "draw") + " that broke a rule\n";
+    text += "  sampled again: " + counted(report.batch.rejected, "sample") + " that broke a rule\n";
   text += fmt::format("\n  {:<22} {:>3} {:>6} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9}\n", "", "", "runs", "min",
-                      "p5", "median", "p95", "max", "designed");
+                      "p5", "median", "p95", "max", "nominal");
   text += row_of("tracking error, RMS", "mm", report.rms_3d_m, kMm) + "\n";
   text += row_of("tracking error, peak", "mm", report.peak_3d_m, kMm) +
           fmt::format("   (tolerance {:.0f})\n", report.tolerance_m * kMm);

@@ -13,7 +13,7 @@ namespace {
 using control::LoopMargins;
 
 constexpr double kHalfCharged = 0.5;
-constexpr double kKept = 0.95;  // share of the draws
+constexpr double kKept = 0.95;  // share of the samples
 
 std::array<LoopMargins, kLoopNames.size()> margins_of(const control::ControlDesign& design,
                                                       const plant::Vehicle& designed,
@@ -24,7 +24,7 @@ std::array<LoopMargins, kLoopNames.size()> margins_of(const control::ControlDesi
           control::margins(loops.x),    control::margins(loops.y),     control::margins(loops.z)};
 }
 
-// The value that this share of all is at least.
+// Returns the value that this share of `values` reaches or exceeds.
 double kept_by(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
   return values[static_cast<std::size_t>((1.0 - share) * static_cast<double>(values.size()))];
@@ -37,7 +37,7 @@ LoopMargins kept_by(const std::vector<LoopMargins>& all, double share) {
     for (const LoopMargins& one : all) values.push_back(sign * one.*margin);
     return sign * kept_by(std::move(values), share);
   };
-  // The larger the gain is that a loop does not bear any more to lose, the worse.
+  // gain_decrease is a factor below 1: a larger value is a smaller margin.
   return {least(&LoopMargins::phase_deg, 1.0), least(&LoopMargins::gain_increase, 1.0),
           least(&LoopMargins::gain_decrease, -1.0), least(&LoopMargins::delay_s, 1.0)};
 }

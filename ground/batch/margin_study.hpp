@@ -1,4 +1,4 @@
-// The margins of a design, on the vehicle that it is made for and on those that may fly in its place.
+// Stability margins of a control design, on the nominal vehicle and on vehicles sampled from its uncertainty.
 #pragma once
 
 #include <array>
@@ -16,18 +16,19 @@ inline constexpr std::array<const char*, 6> kLoopNames = {"roll", "pitch", "yaw"
 
 struct MarginStudy {
   struct Loop {
-    control::LoopMargins designed;  // on the vehicle of the design
-    control::LoopMargins most;      // that 95 % of the draws keep, each margin by itself
-    control::LoopMargins worst;     // of all draws, likewise
+    control::LoopMargins designed;  // nominal vehicle
+    control::LoopMargins most;      // held by 95 % of the samples, each margin by itself
+    control::LoopMargins worst;     // worst of all samples, each margin by itself
   };
   std::array<Loop, kLoopNames.size()> loops;
-  std::size_t draws = 0;  // 0: only the design's own
+  std::size_t draws = 0;  // number of samples; 0: only the nominal vehicle
   std::uint64_t seed = 0;
-  std::size_t unstable = 0;  // draws of which a loop is not stable
+  std::size_t unstable = 0;  // samples with an unstable loop
 };
 
-// At the voltage of a half-charged battery without load. With a variation, draw i has the seed `seed` + i.
-// Linear about hover; estimator, sampling and latency are left out. Throws as draw().
+// Computes the margins at the open-circuit voltage of a half-charged battery. With a dispersion, sample i has
+// the seed `seed` + i. The model is linear about hover, without estimator, sampling and latency. Throws as
+// draw() does.
 MarginStudy study_margins(const control::ControlDesign& design, const plant::Vehicle& vehicle,
                           const Dispersion& dispersion, std::size_t draws, std::uint64_t seed);
 

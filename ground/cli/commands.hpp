@@ -1,14 +1,14 @@
-// The subcommands of `swiftlet`, one file each.
+// The subcommands of `swiftlet`: each function adds one to the command line and returns what runs it.
 #pragma once
 
 #include "swiftlet/ground/command_line/command.hpp"
 
 namespace swiftlet::ground {
 
-// A flight from one command: the processes, the mission, the report.
+// Starts the processes, flies a mission and reports.
 Command add_fly_command(runtime::CommandLine root);
 
-// Asked of a vehicle that runs already.
+// Requests to, and state of, a vehicle that already runs.
 Command add_arm_command(runtime::CommandLine root);
 Command add_disarm_command(runtime::CommandLine root);
 Command add_takeoff_command(runtime::CommandLine root);
@@ -28,19 +28,19 @@ Command add_trajectory_command(runtime::CommandLine root);
 Command add_stream_command(runtime::CommandLine root);
 Command add_status_command(runtime::CommandLine root);
 Command add_watch_command(runtime::CommandLine root);
-Command add_list_command(runtime::CommandLine root);  // of all vehicles
+Command add_list_command(runtime::CommandLine root);  // all vehicles of the domain
 
-// What was flown.
+// Recorded flights.
 Command add_report_command(runtime::CommandLine root);
 
-// What is to be flown, from bench data or from flights.
-Command add_identify_command(runtime::CommandLine root, char** argv);  // becomes `swiftlet-identify`
+// Vehicle parameters from bench data or flights.
+Command add_identify_command(runtime::CommandLine root, char** argv);  // executes `swiftlet-identify`
 
-// Of this program itself.
+// Shell completion and manual pages.
 Command add_completion_command(runtime::CommandLine root);
 Command add_manual_command(runtime::CommandLine root);
 
-// What will be flown, without flying.
+// Controller design, mission checks and simulation.
 Command add_gains_command(runtime::CommandLine root);
 Command add_mission_check_command(runtime::CommandLine mission);
 Command add_mission_plot_command(runtime::CommandLine mission);

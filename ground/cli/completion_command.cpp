@@ -8,8 +8,8 @@ namespace swiftlet::ground {
 Command add_completion_command(runtime::CommandLine root) {
   const auto shell = std::make_shared<std::string>();
   const runtime::CommandLine app =
-      root.add_subcommand("completion", "Print the script that completes this command in a shell");
-  app.add_option("shell", *shell, "for which shell").required().one_of({"bash", "zsh"});
+      root.add_subcommand("completion", "Print the completion script for a shell");
+  app.add_option("shell", *shell, "shell that loads the script").required().one_of({"bash", "zsh"});
   app.footer("example: source <(swiftlet completion bash)");
   return {app, [root, shell] {
             const CommandText program = command_text(root);

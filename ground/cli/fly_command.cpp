@@ -20,25 +20,26 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr std::size_t kMostVehicles = 12;  // three processes each, and 40 of a host find each other
+constexpr std::size_t kMostVehicles = 12;  // three processes each; discovery covers 40 participants a host
 
 void check(const FlyOptions& options, std::size_t vehicles) {
   const bool lockstep = options.clock == runtime::Clock::kLockstep;
   if (lockstep && options.speed != 1.0)
-    throw InputError("--speed: lockstep goes as fast as the answers come");
-  if (!lockstep && options.trace) throw InputError("--trace: needs --clock lockstep");
+    throw InputError("--speed: cannot be used with --clock lockstep, which runs as fast as possible");
+  if (!lockstep && options.trace) throw InputError("--trace: requires --clock lockstep");
   if (vehicles > kMostVehicles) {
-    throw InputError("--vehicle-name: names " + std::to_string(vehicles) + " vehicles, at most " +
-                     std::to_string(kMostVehicles) + " fly from one command");
+    throw InputError("--vehicle-name: names " + std::to_string(vehicles) + " vehicles, limit " +
+                     std::to_string(kMostVehicles) + " per command");
   }
 }
 
-// One for each vehicle: its mission is the only one, or that of its place in the list.
+// Returns one launch configuration per vehicle. A single mission is flown by all vehicles; otherwise the i-th
+// mission belongs to the i-th vehicle.
 std::vector<LaunchConfiguration> plan_flights(const FlyOptions& options,
                                               const std::vector<std::string>& vehicles) {
   const std::vector<std::string> missions = split_list(options.mission);
   if (missions.size() != 1 && missions.size() != vehicles.size()) {
-    throw InputError("mission: there are " + std::to_string(missions.size()) + " for " +
+    throw InputError("mission: " + std::to_string(missions.size()) + " missions for " +
                      std::to_string(vehicles.size()) + " vehicles, must be one for all or one for each");
   }
   std::vector<LaunchConfiguration> plans;
@@ -59,7 +60,7 @@ std::vector<LaunchConfiguration> plan_flights(const FlyOptions& options,
   return plans;
 }
 
-// All at one time, each in a thread of its own.
+// Flies all vehicles at the same time, each from its own thread.
 void fly_together(std::deque<ProcessFlight>& flights, const Interrupts& interrupts, ProgressLine& progress) {
   std::vector<std::string> names;
   names.reserve(flights.size());
@@ -111,7 +112,7 @@ int fly(const FlyOptions& options) {
   } else {
     fly_together(flights, interrupts, progress);
   }
-  // What a process that was killed left there.
+  // A killed process leaves its shared memory segments behind.
   if (network.transport == comms::Transport::kSharedMemory) comms::remove_stale_shared_memory();
 
   if (flights.size() == 1) return print_report(flights.front().report(), options.json, progress);
@@ -127,41 +128,39 @@ Command add_fly_command(runtime::CommandLine root) {
   const auto options = std::make_shared<FlyOptions>();
   options->network.localhost_only = true;
   const runtime::CommandLine app = root.add_subcommand(
-      "fly", "Start plant, mocap and control on this computer, fly a mission, and report");
+      "fly", "Start plant, mocap and control on this computer, fly a mission and report");
   add_fly_options(app, *options);
   add_network_options(app, options->network, Vehicles::kSeveral);
   app.add_option("--spacing", options->spacing_m,
-                 "of several vehicles: they start in a row from west to east about the origin, so many m "
-                 "apart, and their "
-                 "missions lie as far from each other")
+                 "distance between the start positions of several vehicles, m: a row from west to east about "
+                 "the origin; each mission is shifted with its vehicle")
       .range(-100.0, 100.0)
       .show_default();
-  app.remove_option("--localhost-only");  // it stays there
-  app.remove_option("--domain");          // whose default is not that of a flight
-  app.add_option("--domain", options->domain, "DDS domain; a free one unless given")
+  app.remove_option("--localhost-only");  // always set, except with --network
+  app.remove_option("--domain");          // added below with another default
+  app.add_option("--domain", options->domain, "DDS domain; default: a free one")
       .environment("ROS_DOMAIN_ID")
       .range(0, 232);
   runtime::Option attach = app.add_flag(
       "--attach", [options] { options->launch_mode = LaunchMode::kAttached; },
-      "start nothing: fly with the plant, mocap and control that run in the domain (0 unless given)");
+      "start no processes: use the plant, mocap and control that run in the domain (default: 0)");
   runtime::add_clock_option(app, options->clock);
-  app.add_option("--speed", options->speed, "of simulated time against real time")
+  app.add_option("--speed", options->speed, "simulated seconds per second of real time")
       .range(0.01, 100.0)
       .show_default();
   app.add_flag("--trace", options->trace,
-               "lockstep: keep trace.csv in the record, every sample and command to the last bit");
-  for (const char* of_the_started :
+               "lockstep only: write trace.csv, which holds every sample and command bit for bit");
+  for (const char* launch_option :
        {"--vehicle", "--simulation", "--seed", "--imu-rate", "--clock", "--speed"}) {
-    attach.excludes(app.option(of_the_started));
+    attach.excludes(app.option(launch_option));
   }
-  app.add_flag("--network{false}", options->network.localhost_only, "use all interfaces, not loopback alone")
+  app.add_flag("--network{false}", options->network.localhost_only, "use all interfaces, not only loopback")
       .needs(attach);
   app.footer(
-      "Several vehicles (--vehicle-name kl1,kl2) begin at one time; when one fails the others land. Paths "
-      "are not checked "
-      "against each other.\nCtrl-C lands; a second Ctrl-C ends at once.\nexample: swiftlet fly square "
-      "--record /tmp/square "
-      "--json | jq .rms_3d_m\nexample: swiftlet fly square,zigzag --vehicle-name kl1,kl2");
+      "Several vehicles (--vehicle-name kl1,kl2) start their missions at the same time. If one fails, the "
+      "others land.\nThe paths are not checked for collisions between vehicles.\nCtrl-C lands; a second "
+      "Ctrl-C ends the flight at once.\nexample: swiftlet fly square --record /tmp/square --json | jq "
+      ".rms_3d_m\nexample: swiftlet fly square,zigzag --vehicle-name kl1,kl2");
   return {app, [options] { return fly(*options); }};
 }
 

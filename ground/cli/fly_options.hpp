@@ -1,4 +1,4 @@
-// The options that the ways to fly a mission share.
+// The options that the commands which fly a mission have in common.
 #pragma once
 
 #include "swiftlet/ground/flight/launch_configuration.hpp"
@@ -6,12 +6,13 @@
 
 namespace swiftlet::ground {
 
-// `options` must outlive the parsing.
-// Mission, vehicle, control, simulation, seed, imu-rate.
+// In all functions `options` must outlive the parsing.
+
+// Adds mission, --vehicle, --control, --simulation, --seed and --imu-rate.
 void add_mission_options(runtime::CommandLine app, FlyOptions& options);
-// These, record and json.
+// Adds the options of add_mission_options(), --record, --sensors and --json.
 void add_fly_options(runtime::CommandLine app, FlyOptions& options);
-// vary
+// Adds --dispersion.
 runtime::Option add_vary_option(runtime::CommandLine app, FlyOptions& options);
 
 }  // namespace swiftlet::ground

@@ -10,13 +10,13 @@
 namespace swiftlet::ground {
 
 Command add_identify_command(runtime::CommandLine root, char** argv) {
-  const auto hand_over = [argv](const auto&) -> int {
+  const auto execute_program = [argv](const auto&) -> int {
     const std::string program = program_beside("swiftlet-identify").string();
-    execv(program.c_str(), argv + 1);  // from the command's name on, which stands for the program's
+    execv(program.c_str(), argv + 1);  // argv[0] of the new program is the name of the command
     throw std::system_error(errno, std::generic_category(), program);
   };
   const runtime::CommandLine app = root.add_subcommand("identify", kIdentifyPurpose);
-  return add_identify_options(app, {hand_over, hand_over, hand_over});
+  return add_identify_options(app, {execute_program, execute_program, execute_program});
 }
 
 }  // namespace swiftlet::ground

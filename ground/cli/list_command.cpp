@@ -21,15 +21,15 @@ struct Options {
   bool json = false;
 };
 
-// A vehicle that was found.
+// A discovered vehicle.
 struct Found {
   std::string name;
   View view;
-  double mocap_hz = 0.0;  // poses that were used
+  double mocap_hz = 0.0;  // poses a second, accepted and refused
   int controllers = 0;
 };
 
-std::chrono::milliseconds part(double seconds) {
+std::chrono::milliseconds to_milliseconds(double seconds) {
   return std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1e3));
 }
 
@@ -37,10 +37,10 @@ std::uint64_t poses(const View& view) {
   return view.estimate.message.poses_accepted() + view.estimate.message.poses_refused();
 }
 
-// Half of the time goes into finding names, the other into hearing each of them.
-std::vector<Found> look(const Options& options) {
+// Discovers vehicle names for half of the time, then receives the topics of each vehicle for the other half.
+std::vector<Found> discover(const Options& options) {
   const Context context(options.network);
-  std::this_thread::sleep_for(part(0.5 * options.look_s));
+  std::this_thread::sleep_for(to_milliseconds(0.5 * options.look_s));
   std::map<std::string, std::unique_ptr<Client>> clients;
   for (const std::string& name : context.discovered_vehicles()) {
     comms::NodeSettings network = options.network;
@@ -50,10 +50,10 @@ std::vector<Found> look(const Options& options) {
   }
   std::map<std::string, View> before;
   const double listen_s = 0.25 * options.look_s;
-  std::this_thread::sleep_for(part(listen_s));
+  std::this_thread::sleep_for(to_milliseconds(listen_s));
   for (const auto& [name, client] : clients) before[name] = client->view();
   const auto start = Clock::now();
-  std::this_thread::sleep_for(part(listen_s));
+  std::this_thread::sleep_for(to_milliseconds(listen_s));
   const double time_s = std::chrono::duration<double>(Clock::now() - start).count();
   std::vector<Found> found;
   for (const auto& [name, client] : clients) {
@@ -93,7 +93,7 @@ void print(const std::vector<Found>& vehicles) {
 }
 
 int list(const Options& options) {
-  const std::vector<Found> vehicles = look(options);
+  const std::vector<Found> vehicles = discover(options);
   if (options.json) {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     for (const Found& vehicle : vehicles) json.push_back(to_json(vehicle));
@@ -104,8 +104,8 @@ int list(const Options& options) {
   if (!vehicles.empty()) return kDone;
   std::fprintf(
       stderr,
-      "swiftlet: list: no vehicle in domain %d within %.1f s%s; is it started, and in this domain (--domain, "
-      "ROS_DOMAIN_ID)?\n",
+      "swiftlet: list: no vehicle found in domain %d within %.1f s%s; check that it runs and that the domain "
+      "is right (--domain, ROS_DOMAIN_ID)\n",
       options.network.domain, options.look_s,
       options.network.localhost_only ? " on the loopback interface" : "");
   return kFailed;
@@ -116,10 +116,10 @@ int list(const Options& options) {
 Command add_list_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
   const runtime::CommandLine app = root.add_subcommand(
-      "list", "Say which vehicles are on the network: mode, battery, controllers, poses a second");
+      "list", "List the vehicles of the domain with model, mode, battery, controllers and pose rate");
   add_network_options(app, options->network);
   app.remove_option("--vehicle-name");
-  app.add_option("--time", options->look_s, "how long to look, s").range(0.4, 60.0).show_default();
+  app.add_option("--time", options->look_s, "duration of the discovery, s").range(0.4, 60.0).show_default();
   app.add_flag("--json", options->json, "print the list as JSON");
   app.footer("example: swiftlet list --json | jq -r .[].vehicle");
   return {app, [options] { return list(*options); }};

@@ -11,8 +11,8 @@ int main(int argc, char** argv) {
   const runtime::CommandLine root = program.command_line();
   root.require_subcommand(0, 1);
   root.footer(
-      "example: swiftlet fly square\n`swiftlet COMMAND --help` explains a command.\nExit codes: 0 done, 1 "
-      "failed, 2 bad input.");
+      "example: swiftlet fly square\n`swiftlet COMMAND --help` explains a command.\nExit codes: 0 success, 1 "
+      "failed or refused, 2 bad input.");
   const std::vector<ground::Command> commands = {
       ground::add_fly_command(root),        ground::add_arm_command(root),
       ground::add_disarm_command(root),     ground::add_takeoff_command(root),

@@ -31,7 +31,7 @@ const CommandText& find(const CommandText& program, const std::vector<std::strin
         std::find_if(found->commands.begin(), found->commands.end(),
                      [&](const CommandText& candidate) { return candidate.words.back() == word; });
     if (sub == found->commands.end())
-      throw InputError("man: " + word + " is no command of " + manual_page_name(*found));
+      throw InputError("man: " + word + " is not a command of " + manual_page_name(*found));
     found = &*sub;
   }
   return *found;
@@ -54,8 +54,8 @@ Command add_manual_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
   const runtime::CommandLine app =
       root.add_subcommand("man", "Print the manual page of this program or of a command");
-  app.add_option("command", options->command, "the command's words; none: the program");
-  app.add_option("--into", options->folder, "write the pages of all commands into this folder");
+  app.add_option("command", options->command, "command, such as: sim fly; default: the program itself");
+  app.add_option("--into", options->folder, "folder to which the pages of all commands are written");
   app.footer("example: swiftlet man sim fly | man -l -");
   return {app, [root, options] { return run(root, *options); }};
 }

@@ -15,7 +15,7 @@ struct Options {
   std::string vehicle = "kaylion";
   std::string control = "motor_lag";
   std::vector<double> start = {0.0, 0.0};
-  double supply_voltage_v = 0.0;  // 0: the low-battery threshold
+  double supply_voltage_v = 0.0;  // 0: low_battery_voltage_v
   bool json = false;
 };
 
@@ -25,10 +25,10 @@ int run(const Options& options) {
   const MissionFile file = load_mission_file(configuration_file("missions", options.file), settings.limits);
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
-  const MissionDryRun dry_run = dry_run(file.mission, settings, {options.start[0], options.start[1]});
+  const MissionDryRun flown = dry_run(file.mission, settings, {options.start[0], options.start[1]});
   const double supply_voltage_v =
       options.supply_voltage_v > 0.0 ? options.supply_voltage_v : settings.failsafe.low_battery_voltage;
-  const MissionCheck check = check_mission(file, dry_run, vehicle, settings, supply_voltage_v);
+  const MissionCheck check = check_mission(file, flown, vehicle, settings, supply_voltage_v);
   if (options.json) {
     std::printf("%s\n", check_json(check, file, vehicle.name, settings.name).c_str());
   } else {
@@ -42,22 +42,21 @@ int run(const Options& options) {
 Command add_mission_check_command(runtime::CommandLine mission) {
   const auto options = std::make_shared<Options>();
   const runtime::CommandLine app = mission.add_subcommand(
-      "check", "Whether a mission file is sound, and whether the vehicle can fly it everywhere on its path");
+      "check", "Check a mission file, and whether the vehicle can fly every part of its path");
   app.footer(
-      "example: swiftlet mission check square --vehicle kaylion\nExit codes: 0 it can be flown, 1 it cannot, "
-      "2 "
-      "the file is wrong.");
+      "example: swiftlet mission check square --vehicle kaylion\nExit codes: 0 the vehicle can fly it, 1 it "
+      "cannot, 2 the file is invalid.");
   app.add_option("file", options->file,
-                 "mission file, or the name of one in the configuration; also files of others")
+                 "mission file, or the name of one in config/missions; also CSV or QGroundControl .plan")
       .required();
-  app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in the configuration")
+  app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
       .show_default();
   app.add_option("--control", options->control,
-                 "control settings whose limits and fence hold, likewise a file or a name")
+                 "control settings file, or the name of one in config/control: its limits and fence apply")
       .show_default();
-  app.add_option("--start", options->start, "where the vehicle stands: north and east, m").expected(2);
+  app.add_option("--start", options->start, "start position of the vehicle: north and east, m").expected(2);
   app.add_option("--supply", options->supply_voltage_v,
-                 "battery voltage at which it must be possible, V; the low-battery threshold unless told")
+                 "battery voltage of the check, V; default: the low-battery threshold")
       .range(0.1, 100.0);
   app.add_flag("--json", options->json, "print JSON");
   return {app, [options] { return run(*options); }};

@@ -1,4 +1,4 @@
-// `swiftlet mission`, and of its subcommands those that ask something of the mission that the vehicle has: `start`, `pause`,
+// `swiftlet mission`, and its subcommands that control the mission on the vehicle: `start`, `pause`,
 // `resume`, `skip` and `clear`.
 #include <vector>
 
@@ -20,7 +20,7 @@ Command add_mission_request(runtime::CommandLine mission, const std::string& nam
   const runtime::CommandLine app =
       add_ask_subcommand(mission, name, description, "swiftlet mission " + name, options);
   app.add_option("--id", options->id,
-                 "refuse if the mission there is another one: the number that `mission upload` said");
+                 "mission id that `mission upload` printed; refused if the vehicle has another mission");
   return {app, [options, name, ask] {
             return run_request(*options, "mission " + name, [&](Vehicle& vehicle) {
               return (vehicle.*ask)(options->id, options->timeout());
@@ -32,27 +32,27 @@ Command add_mission_request(runtime::CommandLine mission, const std::string& nam
 
 Command add_mission_start_command(runtime::CommandLine mission) {
   return add_mission_request(mission, "start",
-                             "Fly the mission that was uploaded, from its first item; again, if it has ended",
+                             "Start the uploaded mission at its first item; also after it has ended",
                              &Vehicle::start_mission);
 }
 
 Command add_mission_pause_command(runtime::CommandLine mission) {
-  return add_mission_request(mission, "pause", "Come to rest on the path and hold, to be gone on with",
+  return add_mission_request(mission, "pause", "Come to rest on the path and hold; `resume` continues",
                              &Vehicle::pause_mission);
 }
 
 Command add_mission_resume_command(runtime::CommandLine mission) {
-  return add_mission_request(mission, "resume", "Back to where the mission was left, and on",
+  return add_mission_request(mission, "resume", "Return to where the mission was paused, and continue",
                              &Vehicle::resume_mission);
 }
 
 Command add_mission_skip_command(runtime::CommandLine mission) {
-  return add_mission_request(mission, "skip", "Give up the item that is flown or paused, on with the next",
+  return add_mission_request(mission, "skip", "Skip the current item, flown or paused, and fly the next one",
                              &Vehicle::skip_mission_item);
 }
 
 Command add_mission_clear_command(runtime::CommandLine mission) {
-  return add_mission_request(mission, "clear", "Forget the mission; refused while it is flown",
+  return add_mission_request(mission, "clear", "Delete the uploaded mission; refused while it is flown",
                              &Vehicle::clear_mission);
 }
 

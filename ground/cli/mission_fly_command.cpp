@@ -37,11 +37,11 @@ ActionResult follow(const Vehicle& vehicle, const ActionHandle& flight) {
   const Interrupts interrupts;
   ProgressLine progress;
   while (true) {
-    ActionResult ending = flight.wait(kStep);
-    if (ending.kind != ActionResult::Kind::kTimedOut) return ending;
+    ActionResult result = flight.wait(kStep);
+    if (result.kind != ActionResult::Kind::kTimedOut) return result;
     show(vehicle.state(), progress);
     if (interrupts.count() > 0)
-      return {ActionResult::Kind::kTimedOut, "no longer followed; the vehicle flies on"};
+      return {ActionResult::Kind::kTimedOut, "interrupted; the vehicle continues the mission"};
   }
 }
 
@@ -77,21 +77,22 @@ int fly_mission(const Options& options) {
 Command add_mission_fly_command(runtime::CommandLine mission) {
   const auto options = std::make_shared<Options>();
   const runtime::CommandLine app =
-      add_request_subcommand(mission, "fly", "Upload a mission file, start it and follow it to its end",
+      add_request_subcommand(mission, "fly", "Upload a mission file, start it and wait until it ends",
                              "swiftlet mission fly config/missions/square.yaml", options);
   app.add_option(
          "file", options->file,
-         "mission file, or the name of one in the configuration; also a trajectory or waypoints as CSV, "
-         "or a QGroundControl .plan")
+         "mission file, or the name of one in config/missions; also a trajectory or waypoints as CSV, "
+         "or a QGroundControl .plan file")
       .required();
   app.add_option("--control", options->control,
-                 "control settings whose limits and fence the file is checked against")
+                 "control settings with the limits and the fence for the mission check")
       .show_default();
-  runtime::Option no_wait = app.add_flag("--no-wait", options->no_wait, "return once it has been started");
+  runtime::Option no_wait =
+      app.add_flag("--no-wait", options->no_wait, "return when the mission has started");
   app.add_flag(
          "--link", options->link,
-         "the flight depends on this command: if it falls silent, the vehicle does what ground_link_action "
-         "of its control settings says")
+         "enable the link-loss failsafe: if the heartbeat of this command stops, the vehicle executes "
+         "ground_link_action of its control settings")
       .excludes(no_wait);
   return {app, [options] { return fly_mission(*options); }};
 }

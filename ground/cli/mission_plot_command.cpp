@@ -19,18 +19,18 @@ struct Options {
 int run(const Options& options) {
   const auto settings = runtime::load_control_settings(configuration_file("control", options.control));
   const MissionFile file = load_mission_file(configuration_file("missions", options.file), settings.limits);
-  const MissionDryRun dry_run = dry_run(file.mission, settings, {options.start[0], options.start[1]});
-  if (!dry_run.completed)
-    std::fprintf(stderr, "swiftlet: mission %s: %s\n", file.name.c_str(), dry_run.reason.c_str());
-  if (dry_run.legs.empty()) return kFailed;
-  const std::string fault = draw_mission(options.output, file, dry_run, settings.limits);
+  const MissionDryRun flown = dry_run(file.mission, settings, {options.start[0], options.start[1]});
+  if (!flown.completed)
+    std::fprintf(stderr, "swiftlet: mission %s: %s\n", file.name.c_str(), flown.reason.c_str());
+  if (flown.legs.empty()) return kFailed;
+  const std::string fault = draw_mission(options.output, file, flown, settings.limits);
   if (!fault.empty()) {
     std::fprintf(stderr, "swiftlet: %s\n", fault.c_str());
     return kFailed;
   }
-  std::printf("%s: %s shows %.1f s of flight\n", file.name.c_str(), options.output.c_str(),
-              dry_run.duration_s);
-  return dry_run.completed ? kDone : kFailed;
+  std::printf("%s: wrote %s, %.1f s of flight\n", file.name.c_str(), options.output.c_str(),
+              flown.duration_s);
+  return flown.completed ? kDone : kFailed;
 }
 
 }  // namespace
@@ -38,16 +38,16 @@ int run(const Options& options) {
 Command add_mission_plot_command(runtime::CommandLine mission) {
   const auto options = std::make_shared<Options>();
   const runtime::CommandLine app =
-      mission.add_subcommand("plot", "Draw the path of a mission file, with its limits and its fence");
+      mission.add_subcommand("plot", "Plot the path of a mission file with its limits and fence");
   app.footer("example: swiftlet mission plot square -o square.png");
   app.add_option("file", options->file,
-                 "mission file, or the name of one in the configuration; also files of others")
+                 "mission file, or the name of one in config/missions; also CSV or QGroundControl .plan")
       .required();
-  app.add_option("-o,--out", options->output, "the picture, PNG").show_default();
+  app.add_option("-o,--out", options->output, "output file, PNG").show_default();
   app.add_option("--control", options->control,
-                 "control settings whose limits and fence hold, a file or a name")
+                 "control settings file, or the name of one in config/control: its limits and fence apply")
       .show_default();
-  app.add_option("--start", options->start, "where the vehicle stands: north and east, m").expected(2);
+  app.add_option("--start", options->start, "start position of the vehicle: north and east, m").expected(2);
   return {app, [options] { return run(*options); }};
 }
 

@@ -30,8 +30,8 @@ int upload(const Options& options) {
     if (!answer.accepted()) json["reason"] = answer.reason;
     std::printf("%s\n", json.dump().c_str());
   } else if (answer.accepted()) {
-    std::printf("%s: taken by %s as mission %llu, %s\n", file.name.c_str(), options.network.vehicle.c_str(),
-                static_cast<unsigned long long>(vehicle.uploaded_id()),
+    std::printf("%s: uploaded to %s as mission %llu, %s\n", file.name.c_str(),
+                options.network.vehicle.c_str(), static_cast<unsigned long long>(vehicle.uploaded_id()),
                 counted(file.mission.items.size(), "item").c_str());
   }
   if (!answer.accepted())
@@ -44,13 +44,13 @@ int upload(const Options& options) {
 Command add_mission_upload_command(runtime::CommandLine mission) {
   const auto options = std::make_shared<Options>();
   const runtime::CommandLine app = add_request_subcommand(
-      mission, "upload", "Hand a mission over to the vehicle, which keeps it until it is started",
+      mission, "upload", "Upload a mission to the vehicle, to be started with `mission start`",
       "swiftlet mission upload square && swiftlet mission start", options);
   app.add_option("file", options->file,
-                 "mission file, or the name of one in the configuration; also files of others")
+                 "mission file, or the name of one in config/missions; also CSV or QGroundControl .plan")
       .required();
   app.add_option("--control", options->control,
-                 "control settings whose limits and fence the file is checked against")
+                 "control settings with the limits and the fence for the mission check")
       .show_default();
   return {app, [options] { return upload(*options); }};
 }

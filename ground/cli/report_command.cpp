@@ -30,9 +30,9 @@ int report(const ReportOptions& options) {
 Command add_report_command(runtime::CommandLine root) {
   const auto options = std::make_shared<ReportOptions>();
   const runtime::CommandLine app =
-      root.add_subcommand("report", "What recorded flights came to, and which settings made the difference");
-  app.add_option("FOLDER", options->folders, "records of flights; the newest below flights/ unless given");
-  app.add_flag("--json", options->json, "for scripts");
+      root.add_subcommand("report", "Report recorded flights, and the settings in which they differ");
+  app.add_option("FOLDER", options->folders, "flight records; default: the newest one in flights/");
+  app.add_flag("--json", options->json, "print JSON");
   app.footer("example: swiftlet report flights/20261121-093909-square flights/20261121-093910-square");
   return {app, [options] { return report(*options); }};
 }

@@ -13,20 +13,20 @@
 namespace swiftlet::ground {
 namespace {
 
-// What became of a request to one vehicle.
-struct Asked {
+// The result of a request to one vehicle.
+struct RequestOutcome {
   std::string vehicle;
   Result answer;
-  std::optional<ActionResult> ending;  // if it was waited for
+  std::optional<ActionResult> action_result;  // unset without --wait
 
-  bool failed() const { return ending ? !ending->done() : !answer.accepted(); }
-  const std::string& reason() const { return ending ? ending->reason : answer.reason; }
+  bool failed() const { return action_result ? !action_result->done() : !answer.accepted(); }
+  const std::string& reason() const { return action_result ? action_result->reason : answer.reason; }
 };
 
-nlohmann::ordered_json to_json(const Asked& asked) {
-  nlohmann::ordered_json json = {{"accepted", asked.answer.accepted()}};
-  if (asked.ending) json["done"] = asked.ending->done();
-  if (asked.failed()) json["reason"] = asked.reason();
+nlohmann::ordered_json to_json(const RequestOutcome& outcome) {
+  nlohmann::ordered_json json = {{"accepted", outcome.answer.accepted()}};
+  if (outcome.action_result) json["done"] = outcome.action_result->done();
+  if (outcome.failed()) json["reason"] = outcome.reason();
   return json;
 }
 
@@ -35,10 +35,10 @@ runtime::CommandLine add_subcommand(runtime::CommandLine root, const std::string
                                     const std::shared_ptr<RequestOptions>& options, Vehicles vehicles) {
   const runtime::CommandLine app = root.add_subcommand(name, description);
   add_network_options(app, options->network, vehicles);
-  app.add_option("--timeout", options->timeout_s, "longest wait for an answer, s")
+  app.add_option("--timeout", options->timeout_s, "longest wait for the acknowledgement, s")
       .range(0.1, 3600.0)
       .show_default();
-  app.add_flag("--json", options->json, "print the answer as JSON");
+  app.add_flag("--json", options->json, "print JSON");
   app.footer("example: " + example);
   return app;
 }
@@ -56,7 +56,7 @@ runtime::CommandLine add_ask_subcommand(runtime::CommandLine root, const std::st
                                         const std::shared_ptr<AskOptions>& options, Vehicles vehicles) {
   const runtime::CommandLine app = add_subcommand(root, name, description, example, options, vehicles);
   app.add_option("--wait", options->wait_s,
-                 "return when it is done, after so many s at the latest; exit code 1 if it is not")
+                 "wait at most so many s until the action completes; exit code 1 if it does not")
       .range(0.1, 3600.0);
   return app;
 }
@@ -68,37 +68,38 @@ int run_request(const AskOptions& options, const std::string& what,
   std::mutex printing;
   const auto ask_one = [&](const std::string& name) {
     Vehicle vehicle(context, name);
-    const ActionHandle manoeuvre = ask(vehicle);
-    Asked asked{name, manoeuvre.answer(), std::nullopt};
-    if (asked.answer.accepted() && !options.json) {
+    const ActionHandle action = ask(vehicle);
+    RequestOutcome outcome{name, action.answer(), std::nullopt};
+    if (outcome.answer.accepted() && !options.json) {
       const std::lock_guard<std::mutex> lock(printing);
       std::printf("%s: accepted by %s\n", what.c_str(), name.c_str());
       std::fflush(stdout);
     }
-    if (asked.answer.accepted() && options.wait_s)
-      asked.ending =
-          manoeuvre.wait(std::chrono::milliseconds(static_cast<std::int64_t>(*options.wait_s * 1e3)));
-    return asked;
+    if (outcome.answer.accepted() && options.wait_s)
+      outcome.action_result =
+          action.wait(std::chrono::milliseconds(static_cast<std::int64_t>(*options.wait_s * 1e3)));
+    return outcome;
   };
-  std::vector<std::future<Asked>> asking;
-  asking.reserve(names.size());
-  for (const std::string& name : names) asking.push_back(std::async(std::launch::async, ask_one, name));
-  std::vector<Asked> all;
+  std::vector<std::future<RequestOutcome>> pending;
+  pending.reserve(names.size());
+  for (const std::string& name : names) pending.push_back(std::async(std::launch::async, ask_one, name));
+  std::vector<RequestOutcome> all;
   all.reserve(names.size());
-  for (std::future<Asked>& one : asking) all.push_back(one.get());
+  for (std::future<RequestOutcome>& one : pending) all.push_back(one.get());
 
   const bool alone = all.size() == 1;
   if (options.json) {
     nlohmann::ordered_json json;
-    for (const Asked& asked : all) json[asked.vehicle] = to_json(asked);
+    for (const RequestOutcome& outcome : all) json[outcome.vehicle] = to_json(outcome);
     std::printf("%s\n", (alone ? json.front() : json).dump().c_str());
   }
   bool failed = false;
-  for (const Asked& asked : all) {
-    const std::string who = alone ? what : what + ": " + asked.vehicle;
-    if (asked.failed()) std::fprintf(stderr, "swiftlet: %s: %s\n", who.c_str(), asked.reason().c_str());
-    if (asked.ending && asked.ending->done() && !options.json) std::printf("%s: done\n", who.c_str());
-    failed = failed || asked.failed();
+  for (const RequestOutcome& outcome : all) {
+    const std::string who = alone ? what : what + ": " + outcome.vehicle;
+    if (outcome.failed()) std::fprintf(stderr, "swiftlet: %s: %s\n", who.c_str(), outcome.reason().c_str());
+    if (outcome.action_result && outcome.action_result->done() && !options.json)
+      std::printf("%s: done\n", who.c_str());
+    failed = failed || outcome.failed();
   }
   return failed ? kFailed : kDone;
 }

@@ -1,4 +1,4 @@
-// What the commands that ask one thing of a running vehicle have in common.
+// Common parts of the commands that send a request to a running vehicle.
 #pragma once
 
 #include <chrono>
@@ -18,7 +18,7 @@ namespace swiftlet::ground {
 
 struct RequestOptions {
   comms::NodeSettings network;
-  double timeout_s = 5.0;  // for an answer
+  double timeout_s = 5.0;  // longest wait for the acknowledgement
   bool json = false;
 
   std::chrono::milliseconds timeout() const {
@@ -26,33 +26,35 @@ struct RequestOptions {
   }
 };
 
-// Of a command that asks one thing.
+// Options of a command that sends one request.
 struct AskOptions : RequestOptions {
-  std::optional<double> wait_s;  // until it is done, at most so long
+  std::optional<double> wait_s;  // longest wait for completion; unset: does not wait
 };
 
-// A subcommand with the network's options, --timeout and --json; `options` is kept by what run captures.
+// Adds a subcommand for one vehicle with the network options, --timeout and --json. The command's run
+// function must keep `options` alive.
 runtime::CommandLine add_request_subcommand(runtime::CommandLine root, const std::string& name,
                                             const std::string& description, const std::string& example,
                                             const std::shared_ptr<RequestOptions>& options);
 
-// Likewise, with --wait, and for several vehicles unless told.
+// As add_request_subcommand(), with --wait in addition, and for several vehicles by default.
 runtime::CommandLine add_ask_subcommand(runtime::CommandLine root, const std::string& name,
                                         const std::string& description, const std::string& example,
                                         const std::shared_ptr<AskOptions>& options,
                                         Vehicles vehicles = Vehicles::kSeveral);
 
-// Joins the network, asks all vehicles at once, each in a thread of its own, prints the answers, and waits
-// for the end where that was wanted. As JSON the answer of one vehicle, or an object of those of several by
-// name. Returns the exit code: a failure if one of them failed.
+// Joins the network, sends the request to all vehicles at once, each from its own thread, and prints the
+// results. With --wait, waits until the action of each vehicle ends. The JSON output is the result of the
+// vehicle, or with several vehicles an object with their names as keys. Returns the exit code: kFailed if a
+// vehicle failed.
 int run_request(const AskOptions& options, const std::string& what,
                 const std::function<ActionHandle(Vehicle&)>& ask);
 
-// From now on says on standard error, in the command's name, when the vehicle's control process falls silent, is heard
-// again, or is another one.
+// Prints a line to standard error, prefixed with `command`, whenever the connection to the vehicle's control
+// process is lost, is restored or changes to another process.
 void log_connection(Vehicle& vehicle, const std::string& command);
 
-// A subcommand that asks for something without arguments.
+// Adds a subcommand whose request has no arguments.
 Command add_plain_request_command(runtime::CommandLine root, const std::string& name,
                                   const std::string& description,
                                   ActionHandle (Vehicle::*ask)(std::chrono::milliseconds));

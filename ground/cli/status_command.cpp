@@ -16,7 +16,7 @@ namespace swiftlet::ground {
 namespace {
 
 constexpr std::chrono::milliseconds kRestTimeout{1000};
-constexpr double kControllerSilence_s = 0.5;  // one that was heard and is silent for so long is not listed
+constexpr double kControllerSilence_s = 0.5;  // a controller silent for longer is not listed
 
 struct Options : RequestOptions {
   double watch_s = 1.0;
@@ -61,7 +61,7 @@ const char* state_name(const msg::RequestStatus& request) {
   return control::to_string(static_cast<control::RequestState>(request.state()));
 }
 
-// Those that live, the active one first, then by strength.
+// The controllers that are alive: the active one first, then by descending failover priority.
 std::vector<msg::ControllerState> controllers_of(const View& view, Clock::time_point now) {
   std::vector<msg::ControllerState> controllers;
   for (const auto& [number, latest] : view.controllers) {
@@ -158,7 +158,7 @@ nlohmann::ordered_json to_json(const View& view, const Rates& rates, const Reque
 
 template <class T>
 std::string age_text(const Latest<T>& latest, Clock::time_point now) {
-  if (!latest.seen()) return "never came";
+  if (!latest.seen()) return "not received";
   return fmt::format("{:.2f} s old", latest.age_s(now));
 }
 
@@ -178,10 +178,11 @@ void print(const View& view, const Rates& rates, const RequestOptions& options) 
   std::printf("  pose      %s, %.3f s old", control.has_pose() ? "tracked" : "MISSING", control.pose_age_s());
   if (view.estimate.seen()) {
     const auto& estimate = view.estimate.message;
-    std::printf(", %llu used and %llu refused", static_cast<unsigned long long>(estimate.poses_accepted()),
+    std::printf(", %llu accepted and %llu refused",
+                static_cast<unsigned long long>(estimate.poses_accepted()),
                 static_cast<unsigned long long>(estimate.poses_refused()));
     if (estimate.pose_fault() != msg::Estimate_Constants::POSE_FAULT_NONE)
-      std::printf(", now as %s", pose_fault_name(estimate.pose_fault()));
+      std::printf(", fault: %s", pose_fault_name(estimate.pose_fault()));
     if (estimate.resets() > 0) std::printf(", %u resets", estimate.resets());
   }
   std::printf("\n");
@@ -200,7 +201,7 @@ void print(const View& view, const Rates& rates, const RequestOptions& options) 
     std::printf("  request   %s: %s, %.0f %%\n", kind_name(request), result, 100.0 * request.progress());
   }
   std::printf(
-      "  control   %.1f Hz since the rotors were started, %llu of %llu steps late, longest step %.0f us%s\n",
+      "  control   %.1f Hz since the rotors started, %llu of %llu steps late, longest step %.0f us%s\n",
       control.rate_hz(), static_cast<unsigned long long>(control.deadline_misses()),
       static_cast<unsigned long long>(control.cycles()), control.step_time_max_us(),
       control.realtime_scheduling() ? "" : ", no real-time scheduling");
@@ -231,7 +232,7 @@ int show_status(const Options& options) {
     std::fprintf(stderr, "swiftlet: status: %s\n", client.no_control().c_str());
     return kFailed;
   }
-  // What is there comes within moments; what does not is shown as missing.
+  // Topics that do not arrive within kRestTimeout are shown as missing.
   client.wait(kRestTimeout, [](const View& view) {
     return view.vehicle.seen() && view.battery.seen() && view.estimate.seen() && view.mission.seen();
   });
@@ -253,9 +254,9 @@ int show_status(const Options& options) {
 Command add_status_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
   const runtime::CommandLine app =
-      add_request_subcommand(root, "status", "Say mode, position, battery, rates, ages and mission",
+      add_request_subcommand(root, "status", "Print mode, position, battery, mission, topic rates and ages",
                              "swiftlet status --json | jq .battery.voltage_v", options);
-  app.add_option("--watch", options->watch_s, "how long rates are counted, s")
+  app.add_option("--watch", options->watch_s, "time over which the rates are measured, s")
       .range(0.1, 60.0)
       .show_default();
   return {app, [options] { return show_status(*options); }};

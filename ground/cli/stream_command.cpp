@@ -26,10 +26,10 @@ using namespace std::chrono_literals;
 constexpr double kLeastRate_hz = 2.0;
 constexpr double kRateTolerance = 1e-6;
 constexpr auto kStep = 2ms;
-constexpr double kSlack_s = 1.5;  // by the vehicle's clock, within which it follows, and its status says so
+constexpr double kSlack_s = 1.5;  // vehicle clock: longest time until its status says setpoint
 constexpr auto kSilence = 3s;
 constexpr auto kManoeuvreTimeout = 60s;
-constexpr double kThere_m = 0.02;  // from the reference to where a stream of positions begins
+constexpr double kThere_m = 0.02;  // from the reference to the first position of a stream
 
 struct Options : RequestOptions {
   std::string file;
@@ -37,15 +37,15 @@ struct Options : RequestOptions {
   bool land = false;
 };
 
-// What was sent, and how it ended.
-struct ReplayOptions {
+// What was sent, and whether it failed.
+struct StreamResult {
   std::uint64_t sent = 0;
   double duration_s = 0.0;
-  SetpointTally tally;  // of these setpoints
-  std::string fault;    // a sentence; empty: all of it was streamed
+  SetpointTally tally;  // of this stream alone
+  std::string fault;    // a sentence; empty if the whole stream was sent
 };
 
-// The whole of a file, so that nothing is flown of one with a fault further down.
+// Reads the whole file, so that nothing is flown of a file with an error further down.
 std::vector<TimedSetpoint> rows_of(SetpointRows& reader, std::istream& in) {
   std::vector<TimedSetpoint> rows;
   for (std::string line; std::getline(in, line);) {
@@ -56,14 +56,15 @@ std::vector<TimedSetpoint> rows_of(SetpointRows& reader, std::istream& in) {
 
 void require_rate(const std::vector<TimedSetpoint>& rows, const std::string& file) {
   if (rows.size() < 2)
-    throw runtime::ConfigError(file, 0, "", "has " + std::to_string(rows.size()) + " rows, must have 2");
+    throw runtime::ConfigError(file, 0, "",
+                               "has " + std::to_string(rows.size()) + " rows, must have at least 2");
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const double gap_s = rows[i].time_s - rows[i - 1].time_s;
     if (gap_s <= (1.0 + kRateTolerance) / kLeastRate_hz) continue;
     throw InputError(
         file + ": " +
-        fmt::format("at t = {:.3f} s the next row is {:.3f} s away, must be {:.1f} s at most: with --rate "
-                    "the rows are filled in",
+        fmt::format("the row after t = {:.3f} s is {:.3f} s later, limit {:.1f} s; --rate interpolates "
+                    "between the rows",
                     rows[i - 1].time_s, gap_s, 1.0 / kLeastRate_hz));
   }
 }
@@ -105,7 +106,7 @@ SetpointSource open(const Options& options) {
   return resampled(std::move(source), *options.rate_hz);
 }
 
-// Streams of positions begin where the vehicle is.
+// Flies to the first setpoint of a stream of positions. Returns a sentence if that fails.
 std::optional<std::string> go_to_start(Vehicle& vehicle, const control::Setpoint& first,
                                        const Options& options) {
   if (first.kind != control::SetpointKind::kPosition) return std::nullopt;
@@ -113,14 +114,14 @@ std::optional<std::string> go_to_start(Vehicle& vehicle, const control::Setpoint
   if (state.mode != Mode::kHolding ||
       (state.reference_position_ned_m - first.position_ned).norm() <= kThere_m)
     return std::nullopt;
-  std::fprintf(stderr, "stream: going to where it begins\n");
+  std::fprintf(stderr, "stream: flying to the first setpoint\n");
   Vehicle::Target place;
   place.position_ned_m = first.position_ned;
   if (!first.yaw_free) place.yaw_rad = first.yaw_rad;
   const ActionHandle going = vehicle.go_to(place, options.timeout());
   const ActionResult ending = going.wait(kManoeuvreTimeout);
   if (ending.done()) return std::nullopt;
-  return "where it begins was not reached: " + ending.reason;
+  return "the first setpoint was not reached: " + ending.reason;
 }
 
 class Streamer {
@@ -128,31 +129,31 @@ class Streamer {
   Streamer(Vehicle& vehicle, const Interrupts& interrupts)
       : vehicle_(vehicle), interrupts_(interrupts), before_(vehicle.state().setpoints) {}
 
-  ReplayOptions run(const TimedSetpoint& first, const SetpointSource& source) {
+  StreamResult run(const TimedSetpoint& first, const SetpointSource& source) {
     begin_s_ = vehicle_.clock_s();
     for (std::optional<TimedSetpoint> next = first; next; next = source()) {
       if (!wait_for(next->time_s - first.time_s)) break;
       if (!vehicle_.send(next->setpoint)) {
-        course_.fault = "the control service is gone";
+        result_.fault = "connection to the control service lost";
         break;
       }
-      ++course_.sent;
+      ++result_.sent;
     }
-    course_.duration_s = vehicle_.clock_s() - begin_s_;
-    // What the last ones came to is told with the next status.
+    result_.duration_s = vehicle_.clock_s() - begin_s_;
+    // A status sent later than the last setpoint counts all of them.
     const double last_s = vehicle_.clock_s();
     vehicle_.wait_until(
         [&](const VehicleState& state) { return 1e-9 * static_cast<double>(state.stamp_ns) > last_s + 0.25; },
         kSilence);
     const SetpointTally tally = vehicle_.state().setpoints;
-    course_.tally = {tally.taken - before_.taken, tally.refused - before_.refused, tally.refusal};
-    if (course_.fault.empty() && course_.tally.taken == 0) course_.fault = "no setpoint was followed";
-    if (!course_.fault.empty() && course_.tally.refused > 0) course_.fault += "; " + course_.tally.refusal;
-    return course_;
+    result_.tally = {tally.taken - before_.taken, tally.refused - before_.refused, tally.refusal};
+    if (result_.fault.empty() && result_.tally.taken == 0) result_.fault = "no setpoint was accepted";
+    if (!result_.fault.empty() && result_.tally.refused > 0) result_.fault += "; " + result_.tally.refusal;
+    return result_;
   }
 
  private:
-  // Until the stream's time has come to t_s; false if it has ended before.
+  // Waits until the stream's time is t_s. Returns false if the stream ends before.
   bool wait_for(double t_s) {
     auto moved = std::chrono::steady_clock::now();
     double last_s = vehicle_.clock_s();
@@ -164,7 +165,7 @@ class Streamer {
       if (now_s > last_s) moved = now;
       last_s = now_s;
       if (now - moved > kSilence) {
-        course_.fault = "the vehicle has said nothing for 3 s";
+        result_.fault = "no data from the vehicle for 3 s";
         return false;
       }
     }
@@ -173,15 +174,16 @@ class Streamer {
 
   bool goes_on() {
     if (interrupts_.count() > 0) {
-      course_.fault = "interrupted";
+      result_.fault = "interrupted";
       return false;
     }
     const VehicleState state = vehicle_.state();
     const double since_s = vehicle_.clock_s() - begin_s_;
     followed_ = followed_ || state.mode == Mode::kSetpoint;
     if (state.mode == Mode::kSetpoint || (!followed_ && since_s < kSlack_s)) return true;
-    course_.fault = fmt::format("after {:.1f} s the vehicle is {}", since_s, control::to_string(state.mode));
-    if (followed_) course_.fault += ": " + state.mode_reason;
+    result_.fault =
+        fmt::format("stopped after {:.1f} s: the vehicle is {}", since_s, control::to_string(state.mode));
+    if (followed_) result_.fault += ": " + state.mode_reason;
     return false;
   }
 
@@ -190,40 +192,40 @@ class Streamer {
   SetpointTally before_;
   double begin_s_ = 0.0;
   bool followed_ = false;
-  ReplayOptions course_;
+  StreamResult result_;
 };
 
-// Into hold, or down.
+// Waits until the vehicle holds, or lands it. Returns a sentence if that fails.
 std::optional<std::string> come_to_rest(Vehicle& vehicle, const Options& options) {
   if (options.land) {
     const ActionResult landed = vehicle.land(0.4, options.timeout()).wait(kManoeuvreTimeout);
-    return landed.done() ? std::nullopt : std::optional("it did not land: " + landed.reason);
+    return landed.done() ? std::nullopt : std::optional("the vehicle did not land: " + landed.reason);
   }
   const bool rests =
       vehicle.wait_until([](const VehicleState& state) { return state.mode != Mode::kSetpoint; }, 10s);
   return rests ? std::nullopt
-               : std::optional<std::string>("the vehicle still follows setpoints, of somebody else");
+               : std::optional<std::string>("the vehicle still follows setpoints, sent by another program");
 }
 
-void print(const ReplayOptions& course, const VehicleState& end, bool json) {
+void print(const StreamResult& result, const VehicleState& end, bool json) {
   if (json) {
-    nlohmann::ordered_json text = {{"sent", course.sent},
-                                   {"taken", course.tally.taken},
-                                   {"refused", course.tally.refused},
-                                   {"duration_s", course.duration_s},
+    nlohmann::ordered_json text = {{"sent", result.sent},
+                                   {"taken", result.tally.taken},
+                                   {"refused", result.tally.refused},
+                                   {"duration_s", result.duration_s},
                                    {"mode", control::to_string(end.mode)}};
-    if (!course.fault.empty()) text["reason"] = course.fault;
+    if (!result.fault.empty()) text["reason"] = result.fault;
     std::printf("%s\n", text.dump().c_str());
   } else {
     std::printf(
-        "stream: %llu setpoints in %.1f s, of which %llu were taken and %llu refused; now %s at (%.2f, %.2f, "
+        "stream: %llu setpoints in %.1f s, %llu accepted and %llu refused; now %s at (%.2f, %.2f, "
         "%.2f) m\n",
-        static_cast<unsigned long long>(course.sent), course.duration_s,
-        static_cast<unsigned long long>(course.tally.taken),
-        static_cast<unsigned long long>(course.tally.refused), control::to_string(end.mode),
+        static_cast<unsigned long long>(result.sent), result.duration_s,
+        static_cast<unsigned long long>(result.tally.taken),
+        static_cast<unsigned long long>(result.tally.refused), control::to_string(end.mode),
         end.position_ned_m.x(), end.position_ned_m.y(), end.position_ned_m.z());
   }
-  if (!course.fault.empty()) std::fprintf(stderr, "swiftlet: stream: %s\n", course.fault.c_str());
+  if (!result.fault.empty()) std::fprintf(stderr, "swiftlet: stream: %s\n", result.fault.c_str());
 }
 
 int stream(const Options& options) {
@@ -243,16 +245,16 @@ int stream(const Options& options) {
       options.timeout());
   const std::optional<TimedSetpoint> first = source();
   if (!first) throw InputError(options.file + ": has no rows");
-  ReplayOptions course;
+  StreamResult result;
   if (const auto fault = go_to_start(vehicle, first->setpoint, options)) {
-    course.fault = *fault;
+    result.fault = *fault;
   } else {
-    course = Streamer(vehicle, interrupts).run(*first, source);
+    result = Streamer(vehicle, interrupts).run(*first, source);
     const auto left = come_to_rest(vehicle, options);
-    if (course.fault.empty() && left) course.fault = *left;
+    if (result.fault.empty() && left) result.fault = *left;
   }
-  print(course, vehicle.state(), options.json);
-  return course.fault.empty() ? kDone : kFailed;
+  print(result, vehicle.state(), options.json);
+  return result.fault.empty() ? kDone : kFailed;
 }
 
 }  // namespace
@@ -261,19 +263,18 @@ Command add_stream_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
   const runtime::CommandLine app = add_request_subcommand(
       root, "stream",
-      "Stream setpoints from a CSV file, by the vehicle's own clock: positions, velocities, accelerations, "
-      "attitudes "
-      "and thrust, or body rates and thrust. The vehicle must hold; afterwards it holds again, or lands",
+      "Stream setpoints from a CSV file, timed by the vehicle's clock: positions, velocities, accelerations, "
+      "attitudes and thrust, or body rates and thrust. The vehicle must hold; it holds again at the end, or "
+      "lands with --land",
       "swiftlet stream circle.csv --rate 50    (header: t [s],x [m],y [m],z [m])", options);
   app.add_option("file", options->file,
-                 "CSV whose header names the columns with their units (NED), or "
-                 "t,x,y,z[,vx,vy,vz[,ax,ay,az]][,yaw] (ENU); "
-                 "- reads standard input as it comes")
+                 "CSV file whose header names the columns with their units (NED), or is "
+                 "t,x,y,z[,vx,vy,vz[,ax,ay,az]][,yaw] (ENU); - streams from standard input")
       .required();
   app.add_option("--rate", options->rate_hz,
-                 "send so many a second, between the rows, Hz; else each row at its time")
+                 "interpolate between the rows and send at this rate, Hz; default: send each row at its time")
       .range(kLeastRate_hz, 1000.0);
-  app.add_flag("--land", options->land, "land at the end, also where the stream ended early");
+  app.add_flag("--land", options->land, "land at the end, also if the stream ends early");
   return {app, [options] { return stream(*options); }};
 }
 

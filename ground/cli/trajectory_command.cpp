@@ -15,14 +15,14 @@ struct Options : AskOptions {
   std::string control = "motor_lag";
 };
 
-// Of a file that holds one trajectory; take-off and landing around it are left out.
+// The trajectory of a file that holds exactly one, without take-off and landing. Throws InputError otherwise.
 control::Trajectory trajectory_of(const MissionFile& file, const std::string& path) {
   const auto is_trajectory = [](const control::MissionItem& item) {
     return item.kind == control::MissionItemKind::kTrajectory;
   };
   const auto& items = file.mission.items;
   if (std::count_if(items.begin(), items.end(), is_trajectory) != 1) {
-    throw InputError(path + ": holds no trajectory; `swiftlet mission fly` flies missions");
+    throw InputError(path + ": must hold exactly one trajectory; `swiftlet mission fly` flies missions");
   }
   return {0, file.mission.segments};
 }
@@ -44,12 +44,12 @@ Command add_trajectory_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
   const runtime::CommandLine app = add_ask_subcommand(
       root, "trajectory",
-      "Send a trajectory to a vehicle that holds, follows setpoints or flies another: it joins this one from "
-      "its present motion",
+      "Fly a trajectory from hold, from a setpoint stream or from another trajectory: the vehicle joins it "
+      "from its current motion",
       "swiftlet trajectory figure8.csv", options, Vehicles::kOne);
   app.add_option("file", options->file, "trajectory or waypoints as CSV").required();
   app.add_option("--control", options->control,
-                 "control settings whose limits and fence the file is checked against")
+                 "control settings with the limits and the fence for the check of the file")
       .show_default();
   return {app, [options] { return send_trajectory(*options); }};
 }

@@ -1,4 +1,4 @@
-// `swiftlet arm`, `disarm`, `takeoff`, `goto`, `hold`, `land` and `stop`: one action of a running vehicle each.
+// `swiftlet arm`, `disarm`, `takeoff`, `goto`, `hold`, `land` and `stop`: each sends one request.
 #include <array>
 #include <cstdio>
 #include <iostream>
@@ -31,14 +31,14 @@ struct StopOptions : AskOptions {
   bool yes = false;
 };
 
-// At a terminal only: a script says --yes.
+// Asks for confirmation at the terminal. Throws InputError if it is refused, or without terminal and --yes.
 void confirm(const StopOptions& options) {
   if (options.yes) return;
   if (isatty(STDIN_FILENO) == 0 || isatty(STDERR_FILENO) == 0)
     throw InputError(
-        "stop: the rotors go off in the air too, and the vehicle falls; without a terminal say --yes");
+        "stop: requires --yes without a terminal: a vehicle in the air falls");
   const bool one = split_list(options.network.vehicle).size() == 1;
-  std::fprintf(stderr, "Rotors off at once, wherever %s %s: in the air %s. Type stop to do it: ",
+  std::fprintf(stderr, "The rotors turn off at once, also if %s %s in the air: %s. Type stop to do it: ",
                options.network.vehicle.c_str(), one ? "is" : "are", one ? "it falls" : "they fall");
   std::string typed;
   std::getline(std::cin, typed);
@@ -49,7 +49,7 @@ void confirm(const StopOptions& options) {
 
 Command add_arm_command(runtime::CommandLine root) {
   return add_plain_request_command(
-      root, "arm", "Start the rotors turning on the ground, once all checks pass", &Vehicle::arm);
+      root, "arm", "Start the rotors on the ground if all arming checks pass", &Vehicle::arm);
 }
 
 Command add_disarm_command(runtime::CommandLine root) {
@@ -59,7 +59,8 @@ Command add_disarm_command(runtime::CommandLine root) {
 Command add_takeoff_command(runtime::CommandLine root) {
   const auto options = std::make_shared<TakeoffOptions>();
   const runtime::CommandLine app = add_ask_subcommand(
-      root, "takeoff", "Climb straight up and hold; arm first", "swiftlet takeoff 1.2 --speed 0.5", options);
+      root, "takeoff", "Climb vertically and hold; the vehicle must be armed",
+      "swiftlet takeoff 1.2 --speed 0.5", options);
   app.add_option("height", options->height_m, "height above the origin, m").positive().show_default();
   app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
   return {app, [options] {
@@ -72,16 +73,16 @@ Command add_takeoff_command(runtime::CommandLine root) {
 Command add_goto_command(runtime::CommandLine root) {
   const auto options = std::make_shared<GotoOptions>();
   const runtime::CommandLine app = add_ask_subcommand(
-      root, "goto", "Fly straight to a place, north, east and down of the origin, and hold there",
+      root, "goto", "Fly straight to a position (NED, relative to the origin) and hold there",
       "swiftlet goto -1 0 -1.5 --yaw 1.57    (1 m south of the origin, 1.5 m up, nose to the east)", options,
-      Vehicles::kOne);  // a place has room for one
+      Vehicles::kOne);  // two vehicles cannot hold at one position
   constexpr const char* kNames[] = {"x", "y", "z"};
   constexpr const char* kMeanings[] = {"north, m", "east, m", "down, m: negative is up"};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     app.add_option(kNames[axis], options->position_ned[axis], kMeanings[axis]).required().finite();
   }
   app.add_option("--yaw", options->yaw_rad,
-                 "heading to be reached with the place, rad from north to the east; kept unless given")
+                 "yaw at the position, rad from north to east; default: the yaw does not change")
       .finite();
   app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
   return {app, [options] {
@@ -93,13 +94,13 @@ Command add_goto_command(runtime::CommandLine root) {
 }
 
 Command add_hold_command(runtime::CommandLine root) {
-  return add_plain_request_command(root, "hold", "Stop where it is and stay there", &Vehicle::hold);
+  return add_plain_request_command(root, "hold", "Come to rest and hold the position", &Vehicle::hold);
 }
 
 Command add_land_command(runtime::CommandLine root) {
   const auto options = std::make_shared<LandOptions>();
   const runtime::CommandLine app = add_ask_subcommand(
-      root, "land", "Descend straight down and stop the rotors", "swiftlet land --speed 0.3", options);
+      root, "land", "Descend vertically, land and stop the rotors", "swiftlet land --speed 0.3", options);
   app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
   return {app, [options] {
             return run_request(*options, "land", [&](Vehicle& vehicle) {
@@ -111,7 +112,8 @@ Command add_land_command(runtime::CommandLine root) {
 Command add_stop_command(runtime::CommandLine root) {
   const auto options = std::make_shared<StopOptions>();
   const runtime::CommandLine app = add_ask_subcommand(
-      root, "stop", "Emergency: rotors off at once, wherever it is", "swiftlet stop --yes", options);
+      root, "stop", "Emergency stop: turn the rotors off at once, also in the air", "swiftlet stop --yes",
+      options);
   app.add_flag("--yes,-y", options->yes, "do not ask for confirmation");
   return {app, [options] {
             confirm(*options);

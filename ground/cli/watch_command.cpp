@@ -26,7 +26,7 @@ struct Options {
   std::optional<double> duration_s;
 };
 
-// Rates, of what came within the last second.
+// Topic rates over the last second.
 class Rates {
  public:
   void look(const View& view, WatchFacts& facts) {
@@ -55,12 +55,12 @@ class Rates {
   View before_;
 };
 
-// The keys: a letter names what is to be asked, y confirms it.
+// Handles keys: a letter selects a request, y confirms it.
 class Keys {
  public:
   explicit Keys(Client& client) : client_(client) {}
 
-  // False: to quit.
+  // Returns false if the key quits.
   bool press(int key, std::string& message) {
     if (asked_ != nullptr) {
       message = key == 'y' || key == 'Y' ? answer_of(*asked_) : std::string(asked_->name) + ": not confirmed";
@@ -85,10 +85,11 @@ class Keys {
     std::uint8_t kind;
   };
   static constexpr Action kActions[] = {
-      {'h', "hold", "hold: stop where it is? y confirms, any other key does not",
+      {'h', "hold", "hold: come to rest and hold? y confirms, any other key cancels",
        msg::Command_Constants::HOLD},
-      {'l', "land", "land: straight down? y confirms, any other key does not", msg::Command_Constants::LAND},
-      {'s', "stop", "STOP: ROTORS OFF, IN THE AIR IT FALLS? y confirms, any other key does not",
+      {'l', "land", "land: descend vertically? y confirms, any other key cancels",
+       msg::Command_Constants::LAND},
+      {'s', "stop", "STOP: ROTORS OFF, FALL IF IN THE AIR? y confirms, any other key cancels",
        msg::Command_Constants::STOP}};
 
   std::string answer_of(const Action& action) {
@@ -169,12 +170,12 @@ Command add_watch_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
   const runtime::CommandLine app =
       root.add_subcommand("watch",
-                          "Show a vehicle on the whole terminal: state, position against reference, battery, "
-                          "rates, latencies, warnings; "
-                          "keys hold, land and stop it. Without a terminal, a line a second");
+                          "Show a vehicle full screen: mode, position and reference, battery, rates, "
+                          "latencies and warnings; keys request hold, land and stop. Without a terminal, "
+                          "print a line a second");
   add_network_options(app, options->network);
-  app.add_flag("--plain", options->plain, "print a line a second, also at a terminal");
-  app.add_option("--duration", options->duration_s, "end after so many s; else with q or an interrupt")
+  app.add_flag("--plain", options->plain, "print a line a second, also on a terminal");
+  app.add_option("--duration", options->duration_s, "end after so many s; default: end with q or Ctrl-C")
       .range(0.1, 86400.0);
   app.footer("example: swiftlet watch --vehicle-name kl2");
   return {app, [options] { return watch(*options); }};

@@ -1,5 +1,5 @@
-// How a subcommand joins the program `swiftlet`: add_X_command adds its options to the command line and hands
-// back what to run.
+// A subcommand of `swiftlet`: add_X_command() adds its options to the command line and returns the function
+// to run.
 #pragma once
 
 #include <functional>
@@ -10,18 +10,18 @@
 
 namespace swiftlet::ground {
 
-// What the program returns.
-constexpr int kDone = 0;      // it did what was asked
-constexpr int kFailed = 1;    // it ran and failed
-constexpr int kBadInput = 2;  // wrong usage or bad input; nothing was started or moved
+// Exit codes of the program.
+constexpr int kDone = 0;      // the command succeeded
+constexpr int kFailed = 1;    // the command ran and failed, or was refused
+constexpr int kBadInput = 2;  // wrong usage or bad input; nothing was started and no request was sent
 
 struct Command {
   runtime::CommandLine app;  // the subcommand; run is called if it was parsed
-  std::function<int()>
-      run;  // returns kDone, kFailed or kBadInput, or throws: InputError is bad input, any other a failure
+  // Returns kDone, kFailed or kBadInput. Throws InputError for bad input, another exception for a failure.
+  std::function<int()> run;
 };
 
-// Input that was refused. what() is one sentence for the user.
+// Bad input. what() is one sentence for the user.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -1,4 +1,4 @@
-// The program's commands and options as data, from which completion scripts and manual pages are written.
+// The program's commands and options as data, the source of completion scripts and manual pages.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 namespace swiftlet::ground {
 
 struct OptionText {
-  std::vector<std::string> names;  // "--json", "-y"; of an argument without dashes, its name
+  std::vector<std::string> names;  // "--json", "-y"; the name of a positional argument
   bool positional = false;
   bool required = false;
-  std::string value;                 // what it takes: "TEXT"; empty for a flag
-  std::vector<std::string> choices;  // of which the value is one
+  std::string value;                 // type of the value: "TEXT"; empty for a flag
+  std::vector<std::string> choices;  // allowed values; empty: any
   std::string description;
   std::vector<std::string> facts;  // "default 0", "INT in [0 - 232]", "environment ROS_DOMAIN_ID"
 };
@@ -26,7 +26,7 @@ struct CommandText {
   std::vector<CommandText> commands;
 };
 
-// Of the command and all below it.
+// Returns the command with all its subcommands.
 CommandText command_text(runtime::CommandLine command);
 
 std::string bash_completion(const CommandText& program);

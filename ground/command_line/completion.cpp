@@ -1,5 +1,5 @@
-// Completion scripts: both find out which command is being typed by walking the words, and look up what may
-// follow it.
+// Completion scripts for bash and zsh. Both determine the current command from the words typed so far, and
+// look up what may follow it.
 #include <functional>
 
 #include "swiftlet/ground/command_line/command_text.hpp"
@@ -7,7 +7,7 @@
 namespace swiftlet::ground {
 namespace {
 
-// "/sim/fly"; of the program itself "".
+// "/sim/fly" for `swiftlet sim fly`; "" for the program itself.
 std::string path_of(const CommandText& command) {
   std::string path;
   for (std::size_t i = 1; i < command.words.size(); ++i) path += "/" + command.words[i];
@@ -25,7 +25,7 @@ std::string joined(const std::vector<std::string>& words, const std::string& bet
   return text;
 }
 
-// Patterns of a shell's case, one for each command below the program.
+// Patterns of a shell `case`, one for each subcommand.
 std::string command_patterns(const CommandText& program) {
   std::vector<std::string> patterns;
   for_each(program, [&](const CommandText& command) {
@@ -43,7 +43,7 @@ std::vector<std::string> value_patterns(const CommandText& command, const Option
   return patterns;
 }
 
-// What has no list of its values completes as a file.
+// Options without a list of choices complete as file names.
 std::string values_after_options(const CommandText& program, const char* open, const char* list_begin,
                                  const char* list_end, const char* files) {
   std::string text;

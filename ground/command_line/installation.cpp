@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 fs::path program_beside(const std::string& name) {
   fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / name;
   if (access(program.c_str(), X_OK) != 0) {
-    throw std::runtime_error(name + " is not there: it should stand beside this program, in " +
+    throw std::runtime_error(name + " not found, must be in the folder of this program, " +
                              program.parent_path().string());
   }
   return program;

@@ -8,7 +8,8 @@
 namespace swiftlet::ground {
 namespace {
 
-// Text as it is: neither its dashes nor its backslashes mean anything, nor does a dot at the start of a line.
+// Escapes dashes, backslashes, quotes and a dot at the start of a line, so that man(7) prints the text
+// literally.
 std::string plain(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -108,8 +109,7 @@ std::string manual_page(const CommandText& command) {
     text += ".TP\n" + bold(spaced(sub.words)) + "\n" + plain(sub.description) + "\n";
   text += footer(command.footer);
   text +=
-      ".SH EXIT STATUS\n0 it did what was asked; 1 it ran and failed, or was refused; 2 wrong usage or bad "
-      "input.\n";
+      ".SH EXIT STATUS\n0 success; 1 the command failed or was refused; 2 wrong usage or bad input.\n";
   if (command.words.size() > 1) {
     CommandText above;
     above.words.assign(command.words.begin(), command.words.end() - 1);

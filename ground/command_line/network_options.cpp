@@ -18,7 +18,7 @@ std::string fault_of_name(const std::string& name) {
 std::string fault_of_names(const std::string& list) {
   const std::vector<std::string> names = split_list(list);
   for (auto name = names.begin(); name != names.end(); ++name) {
-    if (const std::string fault = fault_of_name(*name); !fault.empty()) return "each of them " + fault;
+    if (const std::string fault = fault_of_name(*name); !fault.empty()) return "each name " + fault;
     if (std::find(names.begin(), name, *name) != name) return "names " + *name + " twice";
   }
   return "";
@@ -34,7 +34,7 @@ void add_network_options(runtime::CommandLine app, comms::NodeSettings& network,
     name.check(fault_of_name, "NAME");
   } else {
     name.check(fault_of_names, "NAME[,NAME...]");
-    name.describe(name.description() + "; several are separated by commas");
+    name.describe(name.description() + "; separate several names with commas");
   }
 }
 

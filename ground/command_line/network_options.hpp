@@ -1,4 +1,4 @@
-// Where a vehicle is to be found: the options that all commands which talk to one share.
+// The network options that all commands which talk to a vehicle have in common.
 #pragma once
 
 #include <string>
@@ -9,15 +9,16 @@
 
 namespace swiftlet::ground {
 
-// Whom a command asks. The names of several stand in NodeSettings::vehicle as one list: split_list().
+// How many vehicles a command accepts. NodeSettings::vehicle holds several names as one list, see
+// split_list().
 enum class Vehicles { kOne, kSeveral };
 
-// The options of comms::add_node_options, a name that cannot be one refused as bad input. `network` must
-// outlive the parsing.
+// Adds the options of comms::add_node_options() and refuses invalid vehicle names as bad input. `network`
+// must outlive the parsing.
 void add_network_options(runtime::CommandLine app, comms::NodeSettings& network,
                          Vehicles vehicles = Vehicles::kOne);
 
-// What stands between the commas.
+// Splits a list at its commas.
 std::vector<std::string> split_list(const std::string& list);
 
 std::string to_string(comms::Transport transport);  // as on the command line

@@ -9,7 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path whole(const fs::path& path) {
+fs::path canonical_path(const fs::path& path) {
   std::error_code fault;
   const fs::path out = fs::weakly_canonical(fs::absolute(path), fault);
   return fault ? path : out;
@@ -20,16 +20,16 @@ fs::path whole(const fs::path& path) {
 void refuse_overwriting(const std::vector<OutputFile>& outputs, const std::vector<fs::path>& inputs) {
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     if (outputs[i].file.empty()) continue;
-    const fs::path written = whole(outputs[i].file);
+    const fs::path written = canonical_path(outputs[i].file);
     for (const fs::path& input : inputs) {
-      if (whole(input) == written)
+      if (canonical_path(input) == written)
         throw InputError(outputs[i].option + ": " + outputs[i].file +
-                         " is one of the files that are read, must be another");
+                         " is also an input file, must be another file");
     }
     for (std::size_t k = 0; k < i; ++k) {
-      if (!outputs[k].file.empty() && whole(outputs[k].file) == written)
-        throw InputError(outputs[i].option + " and " + outputs[k].option + ": are both " + outputs[i].file +
-                         ", must be two files");
+      if (!outputs[k].file.empty() && canonical_path(outputs[k].file) == written)
+        throw InputError(outputs[i].option + " and " + outputs[k].option + ": both write " + outputs[i].file +
+                         ", must be different files");
     }
   }
 }

@@ -1,4 +1,4 @@
-// Files that a command is told to write.
+// Checks of the output files of a command.
 #pragma once
 
 #include <filesystem>
@@ -12,11 +12,11 @@ struct OutputFile {
   std::string file;    // empty: none
 };
 
-// Throws InputError if one of them is an input, or two are the same: what was measured would be lost.
+// Throws InputError if an output is also an input, or two outputs are the same file: data would be lost.
 void refuse_overwriting(const std::vector<OutputFile>& outputs,
                         const std::vector<std::filesystem::path>& inputs);
 
-// All files of a folder; the file itself if it is none.
+// Returns all entries of a folder, or the path itself if it is not a folder.
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& path);
 
 }  // namespace swiftlet::ground

@@ -9,7 +9,7 @@
 namespace swiftlet::ground {
 namespace {
 
-int complain(const std::exception& error, int code) {
+int report_error(const std::exception& error, int code) {
   std::fprintf(stderr, "swiftlet: %s\n", error.what());
   return code;
 }
@@ -22,11 +22,11 @@ int run_command_line(runtime::Program& program, int argc, char** argv, const std
     const Parsed parsed = program.parse(argc, argv);
     return parsed == Parsed::kRun ? run() : parsed == Parsed::kHelp ? kDone : kBadInput;
   } catch (const InputError& error) {
-    return complain(error, kBadInput);
+    return report_error(error, kBadInput);
   } catch (const runtime::ConfigError& error) {
-    return complain(error, kBadInput);
+    return report_error(error, kBadInput);
   } catch (const std::exception& error) {
-    return complain(error, kFailed);
+    return report_error(error, kFailed);
   }
 }
 

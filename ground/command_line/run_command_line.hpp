@@ -1,4 +1,4 @@
-// The frame of the ground tool's programs: reads the command line, runs, and says what went wrong.
+// The main function of the ground tool's programs: parses the command line, runs and reports errors.
 #pragma once
 
 #include <functional>
@@ -7,8 +7,9 @@
 
 namespace swiftlet::ground {
 
-// The exit code of the program: that of `run`, kDone after --help, kBadInput after wrong usage, an InputError or a
-// runtime::ConfigError, kFailed after any other exception. A fault is one line on stderr.
+// Returns the exit code of the program: that of `run`, kDone after --help, kBadInput after wrong usage, an
+// InputError or a runtime::ConfigError, kFailed after any other exception. Prints an error as one line to
+// standard error.
 int run_command_line(runtime::Program& program, int argc, char** argv, const std::function<int()>& run);
 
 }  // namespace swiftlet::ground

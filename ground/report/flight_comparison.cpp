@@ -15,7 +15,7 @@ namespace swiftlet::ground {
 namespace {
 
 namespace fs = std::filesystem;
-using Row = std::vector<std::string>;  // what it is, then a cell for each flight
+using Row = std::vector<std::string>;  // label, then one cell per flight
 
 constexpr const char* kMissing = "-";
 
@@ -25,7 +25,7 @@ std::string value_of(const RecordedFlight& flight, const std::string& key) {
   return found == flight.settings.end() ? kMissing : found->second;
 }
 
-// Every key that any of them has, in the order of the first that has it.
+// The keys of all flights without repetition, in order of first appearance.
 std::vector<std::string> keys_of(const std::vector<RecordedFlight>& flights) {
   std::vector<std::string> keys;
   std::set<std::string> known;
@@ -109,7 +109,7 @@ std::string failures(const std::vector<RecordedFlight>& flights) {
 RecordedFlight load_recorded_flight(const fs::path& folder) {
   const fs::path file = folder / "report.json";
   if (!fs::exists(file))
-    throw InputError(folder.string() + ": holds no report.json: no flight was recorded there");
+    throw InputError(folder.string() + ": contains no report.json, is not a flight record");
   RecordedFlight flight;
   flight.folder = fs::absolute(folder).lexically_normal();
   if (flight.folder.filename().empty()) flight.folder = flight.folder.parent_path();
@@ -128,7 +128,7 @@ fs::path newest_flight(const fs::path& below) {
     if (!newest || fs::last_write_time(report) > fs::last_write_time(*newest / "report.json"))
       newest = entry.path();
   }
-  if (!newest) throw InputError(below.string() + ": holds no recorded flight; name the folder of one");
+  if (!newest) throw InputError(below.string() + ": contains no flight record; pass the folder of a record");
   return *newest;
 }
 
@@ -139,14 +139,14 @@ std::string comparison_table(const std::vector<RecordedFlight>& flights) {
     for (const auto& [key, value] : flights.front().settings) {
       if (key.rfind("control.", 0) == 0) rows.push_back({key, value});
     }
-    return table + (rows.empty() ? "\nno settings were kept with it\n" : "\n" + layout(rows));
+    return table + (rows.empty() ? "\nthe record contains no settings\n" : "\n" + layout(rows));
   }
   for (const std::string& key : differing_keys(flights)) {
     Row row{key};
     for (const RecordedFlight& flight : flights) row.push_back(value_of(flight, key));
     rows.push_back(std::move(row));
   }
-  return table + (rows.empty() ? "\nthey differ in no setting\n" : "\nthey differ in\n" + layout(rows));
+  return table + (rows.empty() ? "\nno settings differ\n" : "\nsettings that differ\n" + layout(rows));
 }
 
 nlohmann::ordered_json comparison_json(const std::vector<RecordedFlight>& flights) {

@@ -1,4 +1,4 @@
-// Recorded flights side by side: what each came to, and in which settings they differ.
+// Recorded flights side by side: the result of each, and the settings in which they differ.
 #pragma once
 
 #include <filesystem>
@@ -16,15 +16,16 @@ struct RecordedFlight {  // NOLINT(bugprone-exception-escape): ordered_json is m
   std::vector<std::pair<std::string, std::string>> settings;
 };
 
-// Throws InputError for a folder that holds no flight, runtime::ConfigError for a file of it that cannot be
-// read.
+// Throws InputError for a folder without a flight record, runtime::ConfigError for an invalid file in the
+// record.
 RecordedFlight load_recorded_flight(const std::filesystem::path& folder);
 
-// The newest flight below a folder, by the time of its report. Throws InputError if there is none.
+// Returns the newest flight record in a folder, by the time of its report. Throws InputError if there is
+// none.
 std::filesystem::path newest_flight(const std::filesystem::path& below);
 
-// For a terminal, a column for each flight. One flight: its figures and all settings of its loops. Several:
-// figures, then the settings in which they differ; one that a flight does not have is "-".
+// Returns a table for a terminal with one column per flight. For one flight: its results and all its control
+// settings. For several: their results, and the settings in which they differ; "-" marks a missing value.
 std::string comparison_table(const std::vector<RecordedFlight>& flights);
 
 // {"flights": [{"folder", "report", "settings": {...}}], "differ": [keys]}

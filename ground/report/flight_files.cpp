@@ -16,7 +16,7 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr std::int64_t kLongestRowGapNs = 15'000'000;  // references come every 10 ms
+constexpr std::int64_t kLongestRowGapNs = 15'000'000;  // references are published every 10 ms
 
 struct Closer {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -31,7 +31,7 @@ void write_empty_cells(std::FILE* file, int count) {
   for (int i = 0; i < count; ++i) std::fputc(',', file);
 }
 
-// The row of a track with this stamp, from `at` onwards; null if there is none.
+// Returns the row with this stamp and advances `at` to it; null if there is none.
 template <class Row>
 const Row* row_at(const Row*& at, const Row* end, std::int64_t stamp_ns) {
   while (at != end && at->stamp_ns < stamp_ns) ++at;

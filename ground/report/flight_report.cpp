@@ -69,7 +69,7 @@ std::string to_text(const FlightReport& report) {
                         errors.peak_m[0] * kMm, errors.peak_m[1] * kMm, errors.peak_m[2] * kMm,
                         errors.peak_3d_m * kMm, report.tolerance_m * kMm);
     text += fmt::format("    from {} samples, takeoff to {}\n", errors.matched,
-                        report.completed ? "landing" : "where it ended");
+                        report.completed ? "landing" : "the end of the flight");
   }
   if (report.clock != kRealtime && report.wall_s > 0.0) {
     text += fmt::format("  simulated         {:.1f} s in {:.2f} s, {}: {:.0f} times real time\n",
@@ -85,7 +85,7 @@ std::string to_text(const FlightReport& report) {
                         report.sense_to_actuate.max_us);
   }
   if (!report.dispersion.empty())
-    text += fmt::format("  varied by         {}, seed {}\n", report.dispersion.c_str(),
+    text += fmt::format("  dispersion        {}, seed {}\n", report.dispersion.c_str(),
                         static_cast<unsigned long long>(report.seed));
   if (!report.record_dir.empty()) text += "  record            " + report.record_dir + "\n";
   return text;

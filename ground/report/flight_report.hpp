@@ -1,4 +1,4 @@
-// What a flight came to: for the eye and for scripts.
+// The result of a flight, as text and as JSON.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace swiftlet::ground {
 
-// Sense-to-actuate: IMU sample written by the vehicle to command received by it.
+// Sense-to-actuate latency: from the vehicle's write of an IMU sample to its receipt of the command.
 struct LatencyFigures {
   double p50_us = 0.0;
   double p99_us = 0.0;
@@ -20,36 +20,36 @@ struct LatencyFigures {
 
 struct FlightReport {
   bool completed = false;
-  std::string reason;  // why not; empty if completed
+  std::string reason;  // why the flight failed; empty if completed
 
   std::string clock;  // "realtime", "lockstep" or "in process"
   std::string mission;
-  std::string vehicle_name;                             // "kl1"; empty: in process
-  Eigen::Vector2d start_ned = Eigen::Vector2d::Zero();  // m, where it stood; the mission lies as far off
-  std::string vehicle;                                  // names or files, as flown
+  std::string vehicle_name;                             // "kl1"; empty for an in-process flight
+  Eigen::Vector2d start_ned = Eigen::Vector2d::Zero();  // m, start position; the mission is shifted by it
+  std::string vehicle;                                  // vehicle, control: names or files
   std::string control;
-  std::string dispersion;  // empty: what flew is as the files say
+  std::string dispersion;  // empty: nominal vehicle and simulation
   std::uint64_t seed = 0;
   std::string record_dir;
 
-  double duration_s = 0.0;   // from the mission's start to rotors off, or to what ended it
-  double tolerance_m = 0.0;  // on the peak 3-D error
-  TrackingErrors errors;     // from the mission's start to the landing command
+  double duration_s = 0.0;   // from mission start to rotors off, or to the failure
+  double tolerance_m = 0.0;  // limit of the peak 3-D error
+  TrackingErrors errors;     // from mission start to the landing command
   double imu_rate_hz = 0.0;
-  double simulated_s = 0.0;  // from stamp 0
-  double wall_s = 0.0;       // that this took
+  double simulated_s = 0.0;  // simulated time since stamp 0
+  double wall_s = 0.0;       // elapsed real time
 
-  // Of a flight in real time.
+  // Only for a flight in real time.
   double control_rate_hz = 0.0;
   std::uint64_t cycles = 0;
   std::uint64_t deadline_misses = 0;
-  std::uint64_t unanswered = 0;  // IMU samples that no command answered
+  std::uint64_t unanswered = 0;  // IMU samples without a command
   double step_time_max_us = 0.0;
   bool realtime_scheduling = false;
   LatencyFigures sense_to_actuate;
 };
 
-// Lengths in m, times as the key says; what was not measured is null.
+// Lengths in m, times in the unit of the key; a value that is not finite is null.
 nlohmann::ordered_json to_json(const FlightReport& report);
 
 // Several lines for a terminal, errors in mm.

@@ -1,4 +1,4 @@
-// The settings of a recorded flight, read back from beside it.
+// The settings in a flight record.
 #pragma once
 
 #include <filesystem>
@@ -8,9 +8,9 @@
 
 namespace swiftlet::ground {
 
-// Key and value of every single setting of control.yaml, mission.yaml, simulation.yaml and vehicle.yaml, as far as the folder
-// holds them: "control.position.x.omega_n",
-// "2.0". Throws runtime::ConfigError for a file that is no YAML.
+// Returns key and value, such as "control.position.x.omega_n" and "2.0", of every setting in control.yaml,
+// mission.yaml, simulation.yaml and vehicle.yaml. Skips a file that does not exist. Throws
+// runtime::ConfigError for a file that is not YAML.
 std::vector<std::pair<std::string, std::string>> kept_settings(const std::filesystem::path& folder);
 
 }  // namespace swiftlet::ground

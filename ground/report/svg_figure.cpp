@@ -15,12 +15,12 @@ constexpr int kLeft = 74;
 constexpr int kRight = 16;
 constexpr int kTop = 14;
 constexpr int kBottom = 54;
-constexpr int kTicks = 6;         // about
+constexpr int kTicks = 6;         // approximate number
 constexpr double kMargin = 0.04;  // of the span, on both sides
 constexpr int kLegendRow = 18;
-constexpr double kCharacter = 6.6;  // px, about, at the legend's size
+constexpr double kCharacter = 6.6;  // px, approximate width in the legend
 
-// One axis: from data to pixels.
+// Maps the data of one axis to pixels.
 class Axis {
  public:
   Axis(double min, double max, double from_px, double to_px) : from_px_(from_px), to_px_(to_px) {
@@ -88,7 +88,7 @@ struct Extent {
 
 struct Legend {
   std::string label;
-  const FigureSeries* series;  // null: a band
+  const FigureSeries* series;  // null for a band
   std::string colour;
 };
 
@@ -109,7 +109,7 @@ class Drawing {
            fmt::format("<rect width=\"{}\" height=\"{}\" fill=\"#fff\"/>\n", kWidth, figure_.height);
     axes();
     for (const FigureBand& band : figure_.bands) draw_band(band);
-    // Readings above the curves through them, or they would hide under the line.
+    // Draws points after curves, so that curves do not hide them.
     for (const FigureSeries& series : figure_.series) {
       if (series.mark == Mark::kLine || series.mark == Mark::kDashes) draw_series(series);
     }
@@ -190,7 +190,7 @@ class Drawing {
               "/>\n";
       return;
     }
-    // One path for all points of a series: a long record would else be a large page.
+    // One path for all points of a series keeps the page small for long records.
     std::string d;
     for (const FigurePoint& point : series.points) {
       const double x = x_.pixel(point.x);
@@ -230,7 +230,7 @@ class Drawing {
     }
   }
 
-  // Where a box of this size hides the fewest points: its upper left corner.
+  // Upper left corner of a box of this size in the corner of the plot where it hides the fewest points.
   FigurePoint emptiest_corner(double width, double height) const {
     constexpr double kGap = 8.0;
     const double left = kLeft + kGap;

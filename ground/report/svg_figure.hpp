@@ -1,4 +1,4 @@
-// A figure of points and curves as SVG, to stand in a page: no script, no font file, no network.
+// Figures of points and curves as SVG to embed in a page, without script, font file and network access.
 #pragma once
 
 #include <string>
@@ -14,13 +14,13 @@ struct FigurePoint {
 enum class Mark { kDots, kCrosses, kLine, kDashes };
 
 struct FigureSeries {
-  std::string label;  // in the legend, if not empty
+  std::string label;  // legend text; empty: not in the legend
   Mark mark = Mark::kDots;
   std::string colour;
   std::vector<FigurePoint> points;
 };
 
-// Between two curves over the same x.
+// The area between two curves over the same x.
 struct FigureBand {
   std::string label;
   std::string colour;
@@ -29,21 +29,21 @@ struct FigureBand {
 };
 
 struct Figure {
-  std::string title;  // for those who cannot see it
+  std::string title;  // accessible name for screen readers
   std::string x_label;
   std::string y_label;
   bool zero_line = false;
-  int height = 400;  // px of a width of 640
+  int height = 400;  // px; the width is 640 px
   std::vector<FigureBand> bands;
   std::vector<FigureSeries> series;
 };
 
-// A whole <svg> element. Axes span what is drawn, crosses (outliers) included; ticks are round numbers,
-// scaled by a power of ten where they would be long, which the label then names. The legend stands in the
-// corner where it hides least.
+// Returns an <svg> element. The axes span all data, crosses (outliers) included. Ticks are round numbers;
+// long ones are scaled by a power of ten, which the axis label shows. The legend is in the corner where it
+// hides the fewest points.
 std::string svg(const Figure& figure);
 
-// For text between tags and in attributes.
+// Escapes text for element content and attributes.
 std::string html_escaped(const std::string& text);
 
 }  // namespace swiftlet::ground

@@ -1,4 +1,4 @@
-// The progress of several vehicles that fly at once, on one line of a terminal.
+// The progress of several vehicles that fly at the same time, on one line of a terminal.
 #pragma once
 
 #include <deque>
@@ -17,7 +17,7 @@ class FleetProgress {
   FleetProgress(const FleetProgress&) = delete;
   FleetProgress& operator=(const FleetProgress&) = delete;
 
-  // Of the vehicle of this index; each may be used by a thread of its own.
+  // The progress of one vehicle, by its index. Each vehicle may report from its own thread.
   Progress& of(std::size_t vehicle) { return shares_[vehicle]; }
 
  private:
@@ -36,7 +36,7 @@ class FleetProgress {
   };
 
   ProgressLine& line_;
-  std::mutex mutex_;  // of the line and of all shares
+  std::mutex mutex_;  // guards line_ and shares_
   std::deque<Share> shares_;
 };
 

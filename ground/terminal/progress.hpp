@@ -1,4 +1,4 @@
-// Where something that takes a while says how far it is.
+// Interface to report the progress of a long operation.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@ class Progress {
  public:
   virtual ~Progress() = default;
 
-  // What stands now. stage: a change of it is worth telling of at once.
+  // Shows the current state. A change of `stage` is shown at once; other updates may be dropped.
   virtual void update(int stage, const std::string& text) = 0;
-  // A line that stays.
+  // Prints a permanent line.
   virtual void say(const std::string& text) = 0;
 };
 

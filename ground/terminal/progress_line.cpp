@@ -17,7 +17,7 @@ ProgressLine::ProgressLine() : terminal_(isatty(STDERR_FILENO) != 0) {}
 
 ProgressLine::~ProgressLine() { close(); }
 
-// A line that wrapped could not be written over.
+// One column less than the terminal: a wrapped line could not be overwritten.
 std::size_t ProgressLine::width() const {
   winsize size{};
   if (!terminal_ || ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return 0;

@@ -1,4 +1,4 @@
-// Progress on standard error: one line that is rewritten on a terminal, a line now and then elsewhere.
+// Progress on standard error: one line that is overwritten on a terminal, otherwise a new line every 10 s.
 #pragma once
 
 #include <chrono>
@@ -16,12 +16,12 @@ class ProgressLine final : public Progress {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  // Cut to the terminal's width. A change of the stage is a line of its own where lines cannot be rewritten.
+  // Cuts the text to the width of the terminal. Without a terminal a change of the stage prints a new line.
   void update(int stage, const std::string& text) override;
   void say(const std::string& text) override;
-  // Characters that an update may have; 0: any number, where lines are not rewritten.
+  // Longest update, characters; 0: no limit, because standard error is not a terminal.
   std::size_t width() const;
-  // No more progress for now: what others print begins on a fresh line.
+  // Ends the current progress line, so that other output begins on a new line.
   void close();
 
  private:

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#define NCURSES_NOMACROS  // whose names are common words
+#define NCURSES_NOMACROS  // the macro names are common words
 #include <ncurses.h>
 
 namespace swiftlet::ground {
@@ -42,8 +42,8 @@ TerminalScreen::TerminalScreen() : impl_(new Impl) {
   if (impl_->screen == nullptr) {
     delete impl_;
     const char* const kind = std::getenv("TERM");
-    throw std::runtime_error(std::string("a terminal of the kind '") + (kind != nullptr ? kind : "") +
-                             "' cannot show a screen; `swiftlet watch --plain` prints lines");
+    throw std::runtime_error(std::string("terminal type '") + (kind != nullptr ? kind : "") +
+                             "' does not support full screen; use `swiftlet watch --plain`");
   }
   set_term(impl_->screen);
   cbreak();

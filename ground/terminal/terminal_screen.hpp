@@ -1,4 +1,4 @@
-// A terminal that shows a screen of lines and gives keys.
+// Full-screen text output and key input on a terminal.
 #pragma once
 
 #include <optional>
@@ -8,10 +8,10 @@
 
 namespace swiftlet::ground {
 
-// One at a time. The terminal is as it was when it is destroyed.
+// At most one may exist at a time. The destructor restores the terminal.
 class TerminalScreen {
  public:
-  TerminalScreen();  // throws std::runtime_error if the terminal is of a kind that cannot do it
+  TerminalScreen();  // throws std::runtime_error if $TERM does not support full screen
   ~TerminalScreen();
   TerminalScreen(const TerminalScreen&) = delete;
   TerminalScreen& operator=(const TerminalScreen&) = delete;
@@ -22,7 +22,7 @@ class TerminalScreen {
 
   static constexpr int kResized = -1;
   static constexpr int kEscape = 27;
-  // The next key within the time, kResized when the terminal's size has changed; nothing otherwise.
+  // Waits for the next key. Returns kResized if the size of the terminal changed, nothing after within_ms.
   std::optional<int> key(int within_ms);
 
  private:

@@ -17,23 +17,23 @@ using control::Mode;
 using Eigen::Vector3d;
 
 constexpr double kSilence_s = 1.0;
-constexpr double kFarOff_m = 0.1;  // from the reference
-constexpr double kLateSteps = 0.01;
+constexpr double kFarOff_m = 0.1;  // tracking error
+constexpr double kLateSteps = 0.01;  // share of the control steps
 constexpr const char* kKeys = "h hold   l land   s stop (rotors off)   q quit";
 
 Mode mode_of(const View& view) { return static_cast<Mode>(view.control.message.mode()); }
 
 bool flies(const View& view) { return !control::rotors_off(mode_of(view)) && mode_of(view) != Mode::kArmed; }
 
-// At which voltage the vehicle acts, and whether it has said so itself: one that says 0 leaves it to what
-// control settings have unless told.
+// Voltage below which a battery failsafe acts. A vehicle that publishes 0 does not say: then the default of
+// the control settings is assumed.
 struct Threshold {
   double voltage_v = 0.0;
   bool assumed = false;
 };
 
-Threshold threshold(double told_v, double default_v) {
-  return told_v > 0.0 ? Threshold{told_v, false} : Threshold{default_v, true};
+Threshold threshold(double published_v, double default_v) {
+  return published_v > 0.0 ? Threshold{published_v, false} : Threshold{default_v, true};
 }
 Threshold low_battery(const View& view) {
   return threshold(view.control.message.low_battery_voltage_v(),
@@ -68,7 +68,7 @@ std::string of_vector(const char* name, const Vector3d& v, const char* unit) {
   return fmt::format("{:<11} {:8.3f} {:8.3f} {:8.3f} {}", name, v.x(), v.y(), v.z(), unit);
 }
 
-// -.....|..... from -limit to limit.
+// ".....#....|.........." from -limit to limit.
 std::string bar(double value, double limit, int width) {
   std::string text(static_cast<std::size_t>(width), '.');
   const double part = std::clamp(0.5 + 0.5 * value / limit, 0.0, 1.0);
@@ -89,7 +89,7 @@ class Screen {
   void add(std::string text, Emphasis emphasis = Emphasis::kPlain) {
     if (static_cast<int>(lines_.size()) + 1 < height_) lines_.push_back({cut(std::move(text)), emphasis});
   }
-  // Fills up, with this as the last line.
+  // Fills the screen with empty lines, and adds the last line.
   std::vector<ScreenLine> close(std::string last, Emphasis emphasis) {
     while (static_cast<int>(lines_.size()) + 1 < height_) lines_.push_back({"", Emphasis::kPlain});
     lines_.push_back({cut(std::move(last)), emphasis});
@@ -116,7 +116,7 @@ void show_motion(const View& view, Screen& screen) {
     const Vector3d reference = vector(view.reference.message.position_ned());
     const Vector3d off_mm = 1e3 * (position - reference);
     screen.add(of_vector("reference", reference, "m"));
-    screen.add(fmt::format("{:<11} {:8.1f} {:8.1f} {:8.1f} mm   {:.1f} mm in all", "off by", off_mm.x(),
+    screen.add(fmt::format("{:<11} {:8.1f} {:8.1f} {:8.1f} mm   3-D {:.1f} mm", "error", off_mm.x(),
                            off_mm.y(), off_mm.z(), off_mm.norm()),
                off_mm.norm() > 1e3 * kFarOff_m && flies(view) ? Emphasis::kWarning : Emphasis::kPlain);
     for (int i = 0; i < 3; ++i)
@@ -153,7 +153,7 @@ void show_timing(const View& view, const WatchFacts& facts, Clock::time_point no
                          static_cast<unsigned long long>(control.cycles()), control.step_time_max_us()));
   int controllers = 0;
   for (const auto& [number, latest] : view.controllers) controllers += latest.age_s(now) < kSilence_s ? 1 : 0;
-  screen.add(fmt::format("{:<11} {}, of which {} would take over", "controllers", controllers,
+  screen.add(fmt::format("{:<11} {}, of which {} on standby", "controllers", controllers,
                          std::max(controllers - 1, 0)));
 }
 
@@ -164,22 +164,22 @@ std::vector<std::string> warnings_of(const View& view, Clock::time_point now) {
   if (!view.control.seen()) return {"no control service"};
   const msg::ControlStatus& control = view.control.message;
   if (view.control.age_s(now) > kSilence_s)
-    warnings.push_back(fmt::format("control has said nothing for {:.0f} s", view.control.age_s(now)));
+    warnings.push_back(fmt::format("no control status for {:.0f} s", view.control.age_s(now)));
   if (mode_of(view) == Mode::kStopped)
     warnings.push_back("rotors stopped: " + std::string(control.reason().c_str()));
   if (view.vehicle.seen() && view.vehicle.message.fault().size() > 0)
     warnings.push_back("vehicle: " + std::string(view.vehicle.message.fault().c_str()));
   if (!control.has_pose()) warnings.push_back(fmt::format("no pose for {:.1f} s", control.pose_age_s()));
   if (view.estimate.seen() && view.estimate.message.pose_fault() != msg::Estimate_Constants::POSE_FAULT_NONE)
-    warnings.push_back(std::string("poses are refused as ") +
+    warnings.push_back(std::string("poses are refused: ") +
                        pose_fault_name(view.estimate.message.pose_fault()));
   warn_of_battery(view, warnings);
   if (flies(view) && view.estimate.seen() && view.reference.seen() && off_reference_m(view) > kFarOff_m)
-    warnings.push_back(fmt::format("{:.2f} m off the reference", off_reference_m(view)));
-  if (control.saturated()) warnings.emplace_back("the rotors' limits cut commands");
+    warnings.push_back(fmt::format("tracking error {:.2f} m", off_reference_m(view)));
+  if (control.saturated()) warnings.emplace_back("commands saturate at the rotor limits");
   if (static_cast<double>(control.deadline_misses()) > kLateSteps * static_cast<double>(control.cycles()))
     warnings.push_back(fmt::format(
-        "{:.1f} % of the steps are late",
+        "{:.1f} % of the control steps are late",
         100.0 * static_cast<double>(control.deadline_misses()) / static_cast<double>(control.cycles())));
   if (mode_of(view) == Mode::kSetpoint && control.setpoint_refusal().size() > 0)
     warnings.emplace_back(control.setpoint_refusal().c_str());
@@ -226,7 +226,7 @@ std::string watch_line(const View& view, const WatchFacts& facts, Clock::time_po
       line += fmt::format(", at ({:.3f}, {:.3f}, {:.3f}) m", p[0], p[1], p[2]);
     }
     if (view.reference.seen() && view.estimate.seen())
-      line += fmt::format(", {:.1f} mm off", 1e3 * off_reference_m(view));
+      line += fmt::format(", error {:.1f} mm", 1e3 * off_reference_m(view));
     if (view.battery.seen()) line += fmt::format(", {:.2f} V", view.battery.message.voltage_v());
     line += fmt::format(", poses {:.0f} Hz", facts.pose_hz);
     for (const std::string& warning : warnings_of(view, now)) line += "; ! " + warning;

@@ -1,4 +1,4 @@
-// What `swiftlet watch` shows, as lines of text for a screen of a given size.
+// The screen of `swiftlet watch` as lines of text for a given size.
 #pragma once
 
 #include <cstdint>
@@ -12,31 +12,32 @@ namespace swiftlet::ground {
 enum class Emphasis : std::uint8_t { kPlain, kHeading, kGood, kWarning };
 
 struct ScreenLine {
-  std::string text;  // of one column a character
+  std::string text;  // one column per character
   Emphasis emphasis = Emphasis::kPlain;
 };
 
-// What is shown besides the view: rates over the last second, and what the user was told.
+// Data shown in addition to the view: rates over the last second and the last message to the user.
 struct WatchFacts {
   std::string vehicle;
   int domain = 0;
-  std::string where;  // Client::no_control(), while no controller is heard
+  std::string where;  // Client::no_control(); used while no controller is connected
   double estimate_hz = 0.0;
   double pose_hz = 0.0;
   double battery_hz = 0.0;
-  std::string message;  // the answer to the last key, or what a key asks
+  std::string message;  // result of the last key, or the question that it asks; empty: none
 };
 
-// What stands against a quiet flight, worst first, each as a few words: "battery is low: 3.25 V, below 3.30 V".
-// Of what the battery must have, the vehicle's own control settings say; "(assumed)" if they have not been told.
+// Warnings, most severe first, such as "battery is low: 3.25 V, below 3.30 V". The battery thresholds are
+// those of the vehicle's control settings; "(assumed)" marks default thresholds, used if the vehicle does not
+// publish its own.
 std::vector<std::string> warnings_of(const View& view, Clock::time_point now);
 
-// At most `height` lines of at most `width` characters: what matters most stays when the screen is small. The
-// last line is the keys' or the message.
+// Returns `height` lines of at most `width` characters, the most important first, so that a small screen
+// shows these. The last line shows the keys or the message.
 std::vector<ScreenLine> watch_screen(const View& view, const WatchFacts& facts, Clock::time_point now,
                                      int width, int height);
 
-// All of it on one line, for output that is no terminal.
+// The same on one line, for output without a terminal.
 std::string watch_line(const View& view, const WatchFacts& facts, Clock::time_point now);
 
 }  // namespace swiftlet::ground

@@ -57,11 +57,11 @@ TEST_F(BadInput, MissionOutsideTheFence) {
 TEST_F(BadInput, SeveralVehicles) {
   const std::string file = folder_.write("mission.yaml", kMission);
   expect_refusal({file, "--vehicle-name", "kl1,kl1"}, "names kl1 twice");
-  expect_refusal({file, "--vehicle-name", "kl1,,kl2"}, "each of them must be 1 to 64 letters, digits and _");
+  expect_refusal({file, "--vehicle-name", "kl1,,kl2"}, "each name must be 1 to 64 letters, digits and _");
   expect_refusal({file + "," + file, "--vehicle-name", "a,b,c"},
-                 "there are 2 for 3 vehicles, must be one for all or one for each");
+                 "mission: 2 missions for 3 vehicles, must be one for all or one for each");
   expect_refusal({file, "--vehicle-name", "a,b,c,d,e,f,g,h,i,j,k,l,m"},
-                 "names 13 vehicles, at most 12 fly from one command");
+                 "names 13 vehicles, limit 12 per command");
   expect_refusal({file, "--vehicle-name", "a,b", "--spacing", "40"},
                  "mission.yaml: started at 0 m north and -20 m east of the origin: item 2: y is -20.000 m");
   const Ending sent =

@@ -92,7 +92,7 @@ TEST_F(SimBatch, IsCancelledAndTellsWhatIsDone) {
   const json report = json::parse(program.output());
   EXPECT_EQ(report.at("interrupted"), true);
   EXPECT_LT(report.at("runs_done"), 20000);
-  EXPECT_NE(program.errors().find("it was cancelled after"), std::string::npos) << program.errors();
+  EXPECT_NE(program.errors().find("batch cancelled after"), std::string::npos) << program.errors();
 }
 
 TEST_F(SimBatch, RefusesBadInputBeforeItMakesAFolder) {

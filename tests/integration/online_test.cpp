@@ -238,7 +238,7 @@ TEST_F(OnlineFlight, StopWithoutATerminalNeedsAYes) {
   expect_accepted({"arm"});
   const Ending end = swiftlet({"stop"});
   EXPECT_EQ(end.exit_code, 2);
-  EXPECT_NE(end.errors.find("without a terminal say --yes"), std::string::npos) << end.errors;
+  EXPECT_NE(end.errors.find("requires --yes without a terminal"), std::string::npos) << end.errors;
   EXPECT_EQ(status().at("mode"), "armed");
 }
 
@@ -265,7 +265,7 @@ TEST_F(Online, TheListOfNothingFails) {
       "swiftlet", {"list", "--time", "0.5", "--domain", std::to_string(lock_.domain()), "--localhost-only"},
       folder_.path());
   EXPECT_EQ(end.exit_code, 1);
-  EXPECT_NE(end.errors.find("swiftlet: list: no vehicle in domain " + std::to_string(lock_.domain())),
+  EXPECT_NE(end.errors.find("swiftlet: list: no vehicle found in domain " + std::to_string(lock_.domain())),
             std::string::npos)
       << end.errors;
 }

@@ -117,12 +117,12 @@ TEST_F(AtATerminal, WatchShowsTheFlightAndItsKeysAct) {
   ASSERT_TRUE(eventually([&] { return terminal.line(39).rfind("h hold", 0) == 0; }, 20s)) << terminal.text();
 
   terminal.type("l");
-  ASSERT_TRUE(shows("land: straight down? y confirms")) << terminal.text();
+  ASSERT_TRUE(shows("land: descend vertically? y confirms")) << terminal.text();
   terminal.type("x");
   ASSERT_TRUE(shows("land: not confirmed")) << terminal.text();
   EXPECT_EQ(status().at("mode"), "holding");
   terminal.type("l");
-  ASSERT_TRUE(shows("land: straight down? y confirms")) << terminal.text();
+  ASSERT_TRUE(shows("land: descend vertically? y confirms")) << terminal.text();
   terminal.type("y");
   ASSERT_TRUE(shows("land: accepted")) << terminal.text();
   ASSERT_TRUE(shows(": disarmed (landed)")) << terminal.text();

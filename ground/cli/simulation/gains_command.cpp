@@ -130,11 +130,11 @@ std::string margin_text(const control::LoopMargins& m) {
 
 std::string text_of(const MarginStudy& study) {
   std::string out =
-      "margins: phase (deg), loss and rise of gain (dB), delay (ms)\n  loop   on this vehicle             ";
+      "margins: phase (deg), lower and upper gain (dB), delay (ms)\n  loop   nominal vehicle            ";
   if (study.draws > 0) {
-    out += fmt::format("   kept by 95 % of {} draws      worst draw\n", study.draws);
+    out += fmt::format("   held by 95 % of {} samples  worst sample\n", study.draws);
   } else {
-    out += "   (the vehicle file does not say how sure its parameters are)\n";
+    out += "   (the vehicle file states no parameter uncertainty)\n";
   }
   for (std::size_t i = 0; i < kLoopNames.size(); ++i) {
     out += fmt::format("  {:<6} ", kLoopNames[i]) + margin_text(study.loops[i].designed);
@@ -142,7 +142,7 @@ std::string text_of(const MarginStudy& study) {
       out += "   " + margin_text(study.loops[i].most) + "   " + margin_text(study.loops[i].worst);
     out += "\n";
   }
-  if (study.unstable > 0) out += fmt::format("  not stable: {} of {} draws\n", study.unstable, study.draws);
+  if (study.unstable > 0) out += fmt::format("  unstable: {} of {} samples\n", study.unstable, study.draws);
   return out;
 }
 
@@ -166,14 +166,14 @@ std::string gains_json(const ControlDesign& design, const MarginStudy& margins, 
 
 std::string gains_table(const ControlDesign& design, const MarginStudy& margins, const std::string& vehicle,
                         const std::string& control) {
-  return fmt::format("{} flown with {}; rotor lag {:.4g} s in every margin and pole (rad/s)\n",
+  return fmt::format("{} with {}; all margins and poles (rad/s) include the rotor lag of {:.4g} s\n",
                      vehicle.c_str(), control.c_str(), design.rotor_lag_s) +
          fmt::format(
-             "attitude: LQR on {}, u = -k (angle, rate{})\n",
-             design.roll.model == AttitudeModel::kDoubleIntegrator ? "double integrators" : "the rotor lag",
+             "attitude: LQR designed on {}, u = -k (angle, rate{})\n",
+             design.roll.model == AttitudeModel::kDoubleIntegrator ? "double integrators" : "motor-lag model",
              design.roll.model == AttitudeModel::kDoubleIntegrator ? "" : ", moment / inertia") +
          row("roll", design.roll) + row("pitch", design.pitch) + row("yaw", design.yaw) +
-         "position: RPT over the closed inner loop\n" + row("x", design.x) + row("y", design.y) +
+         "position: RPT around the closed attitude loop\n" + row("x", design.x) + row("y", design.y) +
          row("z", design.z) + text_of(margins);
 }
 
@@ -201,19 +201,20 @@ int run_gains(const GainsOptions& options) {
 Command add_gains_command(runtime::CommandLine root) {
   const auto options = std::make_shared<GainsOptions>();
   const runtime::CommandLine app =
-      root.add_subcommand("gains", "Print the gains that a vehicle and control settings lead to");
+      root.add_subcommand("gains", "Print the gains, poles and margins for a vehicle and control settings");
   app.footer("example: swiftlet gains --vehicle config/vehicles/kaylion.yaml --json");
-  app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in the configuration")
+  app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
       .show_default();
   app.add_option("--control", options->control,
-                 "control settings file, or the name of one in the configuration")
+                 "control settings file, or the name of one in config/control")
       .show_default();
   app.add_option(
          "--draws", options->draws,
-         "vehicles drawn from the uncertainty that the vehicle file states, for the margins over them")
+         "number of vehicles sampled from the uncertainty in the vehicle file, for the margins")
       .range(std::size_t{1}, std::size_t{1'000'000})
       .show_default();
-  app.add_option("--seed", options->seed, "of the first draw; each next one has one more").show_default();
+  app.add_option("--seed", options->seed, "seed of the first sample; each further sample adds one")
+      .show_default();
   app.add_flag("--json", options->json, "print JSON");
   return {app, [options] { return run_gains(*options); }};
 }

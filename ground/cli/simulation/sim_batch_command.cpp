@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t kMostRuns = 1'000'000;
 constexpr std::size_t kMostJobs = 1024;
 constexpr std::size_t kBarLength = 30;
-constexpr std::size_t kStages = 5;  // lines where a line cannot be rewritten
+constexpr std::size_t kStages = 5;  // progress lines in all if standard error is no terminal
 
 struct BatchOptions {
   FlyOptions flight;
@@ -46,7 +46,7 @@ std::string bar(const BatchProgress& progress) {
 int sim_batch(const BatchOptions& options) {
   const LaunchConfiguration plan = plan_flight(options.flight);
   if (plan.seed > std::numeric_limits<std::uint64_t>::max() - options.runs)
-    throw InputError("--seed " + std::to_string(plan.seed) + ": is too large for " +
+    throw InputError("--seed " + std::to_string(plan.seed) + ": too large for " +
                      std::to_string(options.runs) + " runs");
   const BatchRunner runner(plan, options.runs);
   make_record_folder(plan.folder, "--out");
@@ -69,7 +69,7 @@ int sim_batch(const BatchOptions& options) {
   progress.close();
   std::printf("%s", options.flight.json ? (to_json(report).dump() + "\n").c_str() : to_text(report).c_str());
   if (report.interrupted())
-    progress.say(fmt::format("swiftlet: it was cancelled after {} of {} runs", report.batch.runs.size(),
+    progress.say(fmt::format("swiftlet: batch cancelled after {} of {} runs", report.batch.runs.size(),
                              report.batch.asked));
   return report.completed() ? kDone : kFailed;
 }
@@ -81,20 +81,20 @@ Command add_sim_batch_command(runtime::CommandLine sim) {
   FlyOptions& flight = options->flight;
   flight.launch_mode = LaunchMode::kInProcess;
   const runtime::CommandLine app = sim.add_subcommand(
-      "batch", "Fly a mission many times, each in a vehicle and a world drawn anew: Monte Carlo");
+      "batch", "Monte Carlo: fly a mission many times, with vehicle and simulation sampled for each run");
   add_mission_options(app, flight);
   add_vary_option(app, flight).required();
-  app.add_option("--runs", options->runs, "number of flights; the first has --seed, each next one more")
+  app.add_option("--runs", options->runs, "number of runs; the first uses --seed, each further run adds one")
       .range(std::size_t{1}, kMostRuns)
       .show_default();
-  app.add_option("--jobs", options->jobs, "flights at the same time; all cores unless given")
+  app.add_option("--jobs", options->jobs, "number of parallel runs; default: one per core")
       .range(std::size_t{1}, kMostJobs);
   app.add_option("--out", flight.record,
-                 "folder for batch.csv and batch.png; flights/<date>-<mission> unless given");
+                 "folder for batch.csv and batch.png; default: flights/<date>-<mission>");
   app.add_flag("--json", flight.json, "print one JSON object instead of the table");
   app.footer(
-      "The controller is designed on --vehicle; what flies is drawn around it. `swiftlet sim fly` with the "
-      "seed of one of\nthe runs and the same files flies it again, to the last bit.\n\n"
+      "The controller is designed on --vehicle; the flown vehicles are sampled around it. `swiftlet sim fly` "
+      "with the seed\nof a run and the same files repeats that run bit for bit.\n\n"
       "example: swiftlet sim batch square --runs 200 --seed 1 --dispersion kaylion --out batches/first");
   return {app, [options] { return sim_batch(*options); }};
 }

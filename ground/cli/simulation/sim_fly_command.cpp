@@ -40,12 +40,12 @@ Command add_sim_fly_command(runtime::CommandLine sim) {
   const auto options = std::make_shared<FlyOptions>();
   options->launch_mode = LaunchMode::kInProcess;
   const runtime::CommandLine app = sim.add_subcommand(
-      "fly", "Fly a mission in this process, as fast as it goes; the same flight as in lockstep");
+      "fly", "Fly a mission in one process, as fast as possible; the same flight as with --clock lockstep");
   add_fly_options(app, *options);
   add_vary_option(app, *options);
   app.add_flag(
       "--trace", options->trace,
-      "keep trace.csv in the record: every sample and command to the last bit, to compare flights by");
+      "write trace.csv, which holds every sample and command bit for bit, to compare flights");
   app.footer("example: swiftlet sim fly square --seed 7 --json | jq .rms_3d_m");
   return {app, [options] { return sim_fly(*options); }};
 }

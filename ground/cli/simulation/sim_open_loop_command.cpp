@@ -43,24 +43,24 @@ Command add_sim_open_loop_command(runtime::CommandLine sim) {
   const auto options = std::make_shared<OpenLoopOptions>();
   const runtime::CommandLine open_loop = sim.add_subcommand(
       "open-loop",
-      "Integrate given pulse widths: no ground, drag or noise, an ideal supply; a row for each millisecond");
+      "Simulate the response to pulse widths: no ground, drag or noise, an ideal supply; one row per ms");
   open_loop.footer(
-      "FILE.csv of --pwm has the columns t,pwm1,pwm2,...: seconds and microseconds, held until the next row; "
-      "the last row's\n"
-      "time ends the run. --initial has one row px,py,pz,vx,vy,vz,qw,qx,qy,qz,p,q,r,om1,...: position and "
+      "--pwm has the columns t,pwm1,pwm2,...: seconds and microseconds, held until the next row; the time of "
+      "the last row\n"
+      "ends the run. --initial has one row px,py,pz,vx,vy,vz,qw,qx,qy,qz,p,q,r,om1,...: position and "
       "velocity in NED (m, m/s),\n"
-      "quaternion NED from FRD, body rates and rotor speeds (rad/s). --out has the same columns behind t.\n\n"
+      "quaternion NED from FRD, body rates and rotor speeds (rad/s). --out has column t, then the same.\n\n"
       "example: swiftlet sim open-loop --vehicle kaylion --pwm pulses.csv --supply 3.7 --out motion.csv");
-  open_loop.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in the configuration")
+  open_loop.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
       .required();
-  open_loop.add_option("--pwm", options->pulses, "pulse widths, CSV").required();
+  open_loop.add_option("--pwm", options->pulses, "pulse widths, CSV file").required();
   open_loop.add_option("--supply", options->supply_voltage_v, "supply voltage v_s of Eq. (9), V")
       .required()
       .finite()
       .range(0.1, 100.0);
   open_loop.add_option("--initial", options->initial,
-                       "initial state, CSV; at rest at the origin, rotors still, unless given");
-  open_loop.add_option("--out", options->out, "the motion, CSV").required();
+                       "initial state, CSV file; default: at rest at the origin, rotors stopped");
+  open_loop.add_option("--out", options->out, "simulated motion, CSV file").required();
   return {open_loop, [options] { return run_open_loop(*options); }};
 }
 

@@ -160,7 +160,7 @@ TEST_F(BatchTest, EndsEarlyAndKeepsWhatIsDone) {
   EXPECT_GE(report.batch.runs.size(), 1U);
   EXPECT_LT(report.batch.runs.size(), 500U);
   EXPECT_EQ(report.batch.failed(), 0U) << "what was dropped has not failed";
-  EXPECT_NE(to_text(report).find("NOT flown: it was cancelled"), std::string::npos);
+  EXPECT_NE(to_text(report).find("NOT flown: batch cancelled"), std::string::npos);
   EXPECT_EQ(to_json(report).at("interrupted"), true);
 }
 

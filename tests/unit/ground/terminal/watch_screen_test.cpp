@@ -75,7 +75,7 @@ TEST(WatchScreen, ShowsPositionAgainstReference) {
   const std::string text = text_of(watch_screen(in_flight(), facts(), kNow, 100, 40));
   EXPECT_NE(text.find("no warnings\n"), std::string::npos) << text;
   EXPECT_NE(text.find("position       0.001    0.000   -1.000 m\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("off by           1.0      0.0      0.0 mm   1.0 mm in all\n"), std::string::npos)
+  EXPECT_NE(text.find("error            1.0      0.0      0.0 mm   3-D 1.0 mm\n"), std::string::npos)
       << text;
 }
 
@@ -96,18 +96,18 @@ TEST(Warnings, NameWhatStandsAgainstAQuietFlight) {
     const auto warnings = warnings_of(view, kNow);
     EXPECT_TRUE(std::find(warnings.begin(), warnings.end(), sentence) != warnings.end()) << sentence;
   };
-  warns([](View& v) { v.control.received -= std::chrono::seconds(3); }, "control has said nothing for 3 s");
+  warns([](View& v) { v.control.received -= std::chrono::seconds(3); }, "no control status for 3 s");
   warns([](View& v) { v.control.message.mode(msg::ControlStatus_Constants::MODE_STOPPED); },
         "rotors stopped: take-off completed");
   warns([](View& v) { v.control.message.has_pose(false); }, "no pose for 0.0 s");
   warns([](View& v) { v.battery.message.voltage_v(3.4); }, "battery is low: 3.40 V, below 3.50 V");
   warns([](View& v) { v.battery.message.voltage_v(3.2); }, "battery is critical: 3.20 V, below 3.30 V");
-  warns([](View& v) { v.estimate.message.position_ned({0.5, 0, -1}); }, "0.50 m off the reference");
-  warns([](View& v) { v.control.message.saturated(true); }, "the rotors' limits cut commands");
-  warns([](View& v) { v.control.message.deadline_misses(50); }, "5.0 % of the steps are late");
+  warns([](View& v) { v.estimate.message.position_ned({0.5, 0, -1}); }, "tracking error 0.50 m");
+  warns([](View& v) { v.control.message.saturated(true); }, "commands saturate at the rotor limits");
+  warns([](View& v) { v.control.message.deadline_misses(50); }, "5.0 % of the control steps are late");
   warns([](View& v) { v.vehicle.message.fault() = "no commands"; }, "vehicle: no commands");
   warns([](View& v) { v.estimate.message.pose_fault(msg::Estimate_Constants::POSE_FAULT_FROZEN); },
-        "poses are refused as frozen");
+        "poses are refused: frozen");
   EXPECT_EQ(warnings_of(View(), kNow), std::vector<std::string>({"no control service"}));
 }
 
