@@ -166,13 +166,13 @@ TEST_F(MissionChecked, OneThatBeginsInTheAirIsRehearsedFromAHover) {
 // The rehearsal is what is flown: its legs are those of the mission's own segments, to the last bit.
 TEST_F(MissionChecked, TheRehearsalFliesEverySegmentOfATrajectory) {
   const MissionFile file = load_mission_file(kConfig + "missions/tour.yaml", settings_.limits);
-  const MissionDryRun dry_run = dry_run(file.mission, settings_, {0.0, 0.0});
-  ASSERT_TRUE(dry_run.completed) << dry_run.reason;
+  const MissionDryRun run = dry_run(file.mission, settings_, {0.0, 0.0});
+  ASSERT_TRUE(run.completed) << run.reason;
   for (std::size_t i = 0; i < file.mission.items.size(); ++i) {
     const control::MissionItem& item = file.mission.items[i];
     if (item.kind != control::MissionItemKind::kTrajectory) continue;
     std::size_t flown = 0;
-    for (const DryRunLeg& leg : dry_run.legs) {
+    for (const DryRunLeg& leg : run.legs) {
       const control::PolynomialSegment& next =
           file.mission.segments[item.first_segment + std::min<std::size_t>(flown, item.segment_count - 1)];
       if (leg.item == i && leg.segment.x == next.x && leg.segment.y == next.y) ++flown;
