@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "swiftlet/control/types/mission.hpp"
+#include "swiftlet/control/types/mode.hpp"
 
 namespace swiftlet::ground {
 
