@@ -13,11 +13,11 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-// How finely the covariance follows: F takes f and R for constant over an interval.
+// Longest interval of one covariance propagation, in which F takes f and R as constant.
 constexpr std::int64_t kInterval_ns = 20'000'000;
-constexpr std::uint64_t kIntervalMoments = 32;  // of the history, likewise
-constexpr double kUnitTolerance = 0.01;         // of a quaternion's length
-constexpr double kLongFall = 1e3;               // m/s, before the first pose: numbers lose their last digits
+constexpr std::uint64_t kIntervalMoments = 32;  // history entries per covariance propagation
+constexpr double kUnitTolerance = 0.01;         // allowed deviation of a quaternion's length from 1
+constexpr double kLongFall = 1e3;               // m/s before the first pose; above it precision is lost
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
@@ -27,7 +27,7 @@ double squared(double x) { return x * x; }
 
 Vector3d bounded(const Vector3d& v, double limit) { return v.cwiseMax(-limit).cwiseMin(limit); }
 
-// Between attitudes of a path that are close to each other, up to their signs.
+// Weighted mean of two attitudes that are close to each other, whatever the signs of the quaternions.
 Quaterniond mean(const Quaterniond& a, double part_a, const Quaterniond& b, double part_b) {
   const double sign = a.dot(b) < 0.0 ? -1.0 : 1.0;
   return Quaterniond((part_a * a.coeffs() + sign * part_b * b.coeffs()).eval()).normalized();
@@ -86,7 +86,7 @@ bool Estimator::predict(const plant::ImuSample& sample) {
   now_.stamp_ns = sample.stamp_ns;
   now_.body_rates_frd = sample.body_rates_frd - now_.gyro_bias;
 
-  // Sola's nominal state, q <- q rotation(w dt), v <- v + (R a + g) dt, over the mean of the two samples
+  // Sola's nominal state, q <- q rotation(w dt), v <- v + (R a + g) dt, with the mean of the two samples
   const Vector3d mean_rates = 0.5 * (before.body_rates_frd + sample.body_rates_frd) - now_.gyro_bias;
   const Vector3d mean_force =
       0.5 * (before.specific_force_frd + sample.specific_force_frd) - now_.accelerometer_bias;
@@ -97,7 +97,7 @@ bool Estimator::predict(const plant::ImuSample& sample) {
   path_.position_ned += dt * path_.velocity_ned + (0.5 * dt * dt) * acceleration;
   path_.velocity_ned += dt * acceleration;
   path_.q_ned_from_frd = plant::renormalised(q_mid * half_turn);
-  if (!initialised_ && path_.velocity_ned.norm() > kLongFall) {  // anew: the start is arbitrary
+  if (!initialised_ && path_.velocity_ned.norm() > kLongFall) {  // restart: the start is arbitrary
     path_.position_ned.setZero();
     path_.velocity_ned.setZero();
     next_ = 0;
@@ -139,7 +139,7 @@ PoseFault Estimator::fuse(const plant::PoseSample& pose, plant::RotorState rotor
   const ErrorCovariance::Correction correction = compute_update(innovation);
   normalised_innovation_ = correction.normalised_square();
   const bool contradicts = normalised_innovation_ > settings_.gate_chi_square;
-  // Without noise, a vehicle that stands repeats its pose: believed as any other with the rotors off.
+  // A stream without noise repeats its pose while the vehicle stands: with the rotors off it is not stuck.
   const bool stuck = contradicts && repetition_.repeats() && rotors != plant::RotorState::kOff;
   if (repetition_.frozen() || stuck) return PoseFault::kFrozen;
   const bool believed = rotors == plant::RotorState::kOff || believed_after_silence(pose, innovation);
@@ -157,7 +157,7 @@ PoseFault Estimator::fuse(const plant::PoseSample& pose, plant::RotorState rotor
   return PoseFault::kNone;
 }
 
-// z = y - h(x) of Sola's 6.1, at the pose's own stamp, to which the covariance is brought.
+// z = y - h(x) of Sola's 6.1 at the pose's own stamp, to which the covariance is propagated.
 PoseInnovation Estimator::compare(const plant::PoseSample& pose) {
   std::uint64_t first_newer = next_;
   while (first_newer > first_after_anchor_ && history_at(first_newer - 1).stamp_ns > pose.stamp_ns)
@@ -166,7 +166,7 @@ PoseInnovation Estimator::compare(const plant::PoseSample& pose) {
   advance(covariance_, anchor_, first_after_anchor_, moment);
   anchor_at(moment, first_newer);
 
-  // A pose that is ahead of the IMU is compared with where the estimate goes.
+  // A pose ahead of the IMU is compared with the extrapolated estimate.
   const double ahead_s = seconds(pose.stamp_ns - moment.stamp_ns);
   const Quaterniond q_ned_from_frd = moment.q_ned_from_frd * plant::rotation(ahead_s * now_.body_rates_frd);
   PoseInnovation innovation;
@@ -202,15 +202,15 @@ ErrorCovariance::Correction Estimator::compute_update(const PoseInnovation& inno
                                     squared(settings_.mocap_orientation_sigma));
 }
 
-// What turns further from one pose to the next than the gyro ever misleads was not turned.
+// A rotation between two poses beyond the largest gyro error did not happen.
 double Estimator::outlier_rotation() const {
   const double gyro_slip = 0.5 * settings_.max_body_rate;
   return std::min(settings_.outlier_orientation_rad,
                   detectors_.continuity.noise_rad + gyro_slip * continuity_.interval_s());
 }
 
-// What only a motion explains that the IMU did not see: the poses must go on in reach, and as the IMU has it
-// since.
+// After an IMU silence, a pose with a large innovation is trusted only if its stream stayed in reach and its
+// motion since agrees with the IMU.
 bool Estimator::believed_after_silence(const plant::PoseSample& pose, const PoseInnovation& innovation) {
   const double turn = std::max(detectors_.imu_silence.turn_rad,
                                detectors_.imu_silence.turn_sigmas * settings_.mocap_orientation_sigma);
@@ -228,7 +228,7 @@ bool Estimator::believed_after_silence(const plant::PoseSample& pose, const Pose
 PoseFault Estimator::disagree(const plant::PoseSample& pose, const PoseInnovation& innovation,
                               plant::RotorState rotors, bool believed) {
   if (refused_in_a_row_++ == 0) {
-    // What the IMU misleads to grows from pose to pose; what comes at once is a jump, unless the IMU was
+    // An IMU error grows from pose to pose. An innovation that appears at once is a jump, unless the IMU was
     // silent.
     const bool sudden =
         innovation.position.norm() > detectors_.recovery.sudden * settings_.outlier_position_m ||
@@ -246,7 +246,7 @@ PoseFault Estimator::disagree(const plant::PoseSample& pose, const PoseInnovatio
                                                                    : PoseFault::kOutlier;
 }
 
-// Takes a step of the error state at the anchor into the nominal state, there and since.
+// Applies an error-state step at the anchor to the nominal state, there and since.
 void Estimator::apply(const ErrorState& step) {
   const Eigen::Matrix3d r = anchor_.q_ned_from_frd.toRotationMatrix();
   if (next_ > first_after_anchor_ &&
@@ -270,9 +270,9 @@ void Estimator::apply(const ErrorState& step) {
       bounded(now_.accelerometer_bias + step.segment<3>(12), settings_.accelerometer_bias_limit);
 }
 
-// F of error_covariance.hpp, with the attitude's step as a rotation: Sola's 7.3.2, "Injection of the observed error
-// into the nominal state", q <- rotation(step) q. The covariance's reset, P <- G P G' with G = I + [step / 2]x up to
-// sign, is left out: G is I within half a step of the attitude, some mrad.
+// F of error_covariance.hpp, with the attitude step as a rotation: Sola's 7.3.2, "Injection of the observed
+// error into the nominal state", q <- rotation(step) q. The covariance's reset, P <- G P G' with G = I +
+// [step / 2]x up to sign, is left out: G differs from I by half a step of attitude, some mrad.
 void Estimator::Correction::carry_to(StateSnapshot& moment) const {
   const ErrorInterval since = interval(at, moment);
   const double t = since.duration_s;
@@ -301,7 +301,7 @@ void Estimator::show_path() {
   now_.q_ned_from_frd = path_.q_ned_from_frd;
 }
 
-// Position, velocity and attitude of the poses, which go on from one to the next.
+// Resets position, velocity and attitude to a continuous stream of poses.
 void Estimator::restart_at(const plant::PoseSample& pose, const PoseInnovation& innovation) {
   ErrorState step = ErrorState::Zero();
   step.segment<3>(0) = innovation.position;
@@ -320,7 +320,7 @@ void Estimator::restart_at(const plant::PoseSample& pose, const PoseInnovation& 
   now_.reset_rotation_ned = innovation.rotation;
 }
 
-// The path that the IMU has drawn since the pose is laid to it. The vehicle is taken to rest there, within
+// Moves the IMU-propagated path since the pose onto the pose. The vehicle is assumed at rest there, within
 // settings.start_speed.
 void Estimator::start_at(const plant::PoseSample& pose) {
   first_after_anchor_ = next_ - std::min<std::uint64_t>(next_, kHistory);
@@ -355,7 +355,7 @@ void Estimator::start_at(const plant::PoseSample& pose) {
   covariance_.reset(sigma);
 }
 
-// The covariance follows before the moments that it has to go through are forgotten.
+// Propagates the covariance before the history entries that it needs are overwritten.
 void Estimator::store_history() {
   if (initialised_ && next_ - first_after_anchor_ >= kHistory - kIntervalMoments) {
     const std::uint64_t number = first_after_anchor_ + kIntervalMoments / 2;
@@ -410,7 +410,7 @@ void Estimator::advance(ErrorCovariance& covariance, StateSnapshot from, std::ui
                         const StateSnapshot& to) const {
   std::uint64_t number = first;
   while (from.stamp_ns + kInterval_ns < to.stamp_ns && number < next_) {
-    // To the last moment within the interval, or over the gap to the next.
+    // To the last state within the interval, or across the gap to the next.
     std::uint64_t last = number;
     while (last + 1 < next_ && history_at(last + 1).stamp_ns <= from.stamp_ns + kInterval_ns) ++last;
     if (history_at(last).stamp_ns >= to.stamp_ns) break;

@@ -28,9 +28,9 @@ PoseImuConsistencyTest::Verdict PoseImuConsistencyTest::look_at(const plant::Pos
   return verdict;
 }
 
-// The path is p + t v + t^2/2 g + S, S being the double integral of the specific force; the poses' motion is
-// the same with turn * S, from another p and with another v. So what is left of the poses without g and
-// turn * S is straight and even.
+// The IMU's path is p + t v + t^2/2 g + S, S being the double integral of the specific force. The poses
+// follow the same with turn * S, from another p and with another v. So the poses without g and turn * S must
+// move along a straight line at constant velocity.
 bool PoseImuConsistencyTest::agree(const EstimatorSettings& settings) const {
   const PoseImuConsistencySettings& limits = settings.detectors.pose_imu_consistency;
   const Eigen::Quaterniond& turn = points_[1].turn_ned;
