@@ -46,7 +46,8 @@ Allocator::Allocator(const plant::Vehicle& vehicle)
   effectiveness_ = plant::effectiveness(vehicle);
 
   if (!effectiveness_.allFinite() || plant::least_authority(effectiveness_) < kLeastAuthority) {
-    throw std::invalid_argument("rotors: their places and spins cannot give thrust and all three moments");
+    throw std::invalid_argument(
+        "rotors: their positions and spin directions cannot give thrust and all three moments");
   }
   const plant::Allocation inverse = plant::pseudo_inverse(effectiveness_);
   for (int i = 0; i < count_; ++i) {

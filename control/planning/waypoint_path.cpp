@@ -60,7 +60,7 @@ void check(const WaypointPath& path) {
   }
   if (!path.legs.empty() && path.legs.size() + 1 != path.points.size()) {
     refuse("the path has " + std::to_string(path.legs.size()) + " legs between " +
-           std::to_string(path.points.size()) + " points, must have one less than points");
+           std::to_string(path.points.size()) + " points, must be one fewer than points");
   }
   for (std::size_t i = 0; i < path.points.size(); ++i) {
     if (!place_of(path.points[i]).allFinite())
@@ -260,7 +260,7 @@ void add_spline(const WaypointPath& path, std::size_t first, std::size_t last, P
     if (!refine(knots, segments, path)) break;
     if (round == kMaxRefinements) {
       refuse("the corridor between points " + std::to_string(first + 1) + " and " + std::to_string(last + 1) +
-             " is too narrow to be flown through: stop at its corners");
+             " is too narrow to fly through: stop at its corners");
     }
   }
   double factor = 0.0;
@@ -324,7 +324,7 @@ PlannedPath plan(const WaypointPath& path) {
     }
     first = last;
   }
-  if (planned.segments.empty()) refuse("the path goes nowhere: all its points are one place");
+  if (planned.segments.empty()) refuse("the path has no length: all points are at one place");
   if (planned.segments.size() > kMaxTrajectorySegments)
     refuse("the path takes more than " + std::to_string(kMaxTrajectorySegments) + " segments");
   for (const PolynomialSegment& segment : planned.segments) planned.duration_s += segment.duration_s;

@@ -42,7 +42,7 @@ void tilt(Placed& flight, double angle_rad) {
       flight.estimate_.q_ned_from_frd.conjugate() * Vector3d(0.0, 0.0, -plant::kGravity);
 }
 const ArmingLimit kArmingLimits[] = {
-    {"pose", kNothing, [](Placed& f) { f.situation_.has_estimate = false; }, "no mocap pose has come"},
+    {"pose", kNothing, [](Placed& f) { f.situation_.has_estimate = false; }, "no mocap pose received"},
     {"pose age", [](Placed& f) { f.situation_.pose_age_s = 0.5; },
      [](Placed& f) { f.situation_.pose_age_s = 0.51; },
      "the last mocap pose is 0.51 s old, the limit is 0.50 s"},
@@ -50,7 +50,7 @@ const ArmingLimit kArmingLimits[] = {
      [](Placed& f) { f.estimate_.pose_fault = PoseFault::kFrozen; },
      "the last mocap pose was refused: frozen"},
     {"imu", kNothing, [](Placed& f) { f.situation_.imu_unusable_s = 0.002; }, "IMU samples are not usable"},
-    {"battery", kNothing, [](Placed& f) { f.situation_.has_battery = false; }, "no battery voltage has come"},
+    {"battery", kNothing, [](Placed& f) { f.situation_.has_battery = false; }, "no battery voltage received"},
     {"battery age", [](Placed& f) { f.situation_.battery_age_s = 2.0; },
      [](Placed& f) { f.situation_.battery_age_s = 2.1; },
      "the last battery voltage is 2.1 s old, the limit is 2.0 s"},
@@ -99,7 +99,7 @@ TEST(ArmingRefusal, NamesAllThatStandsAgainstItAndNeverHalfASentence) {
   flight.situation_.has_battery = false;
   flight.estimate_.velocity_ned.x() = 1.0;
   EXPECT_STREQ(flight.ask(RequestKind::kArm).reason,
-               "cannot arm: no battery voltage has come; moving at 1.00 m/s, the limit is 0.30 m/s");
+               "cannot arm: no battery voltage received; moving at 1.00 m/s, the limit is 0.30 m/s");
   for (const ArmingLimit& limit : kArmingLimits) limit.bad(flight);
   const std::string all = flight.ask(RequestKind::kArm).reason;
   EXPECT_LT(all.size(), sizeof Outcome().reason);
