@@ -21,7 +21,7 @@ constexpr auto kChoose = pascal();  // kChoose[n][k] = n over k
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
-// The same polynomial with one more coefficient.
+// The same polynomial with its degree raised by one.
 Bernstein raised(const Bernstein& a) {
   Bernstein out;
   out.degree = a.degree + 1;

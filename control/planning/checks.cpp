@@ -11,9 +11,9 @@ namespace swiftlet::control {
 namespace {
 
 constexpr double kLongestSegment_s = 3600.0;
-constexpr double kPlaceTolerance_m = 1e-9;  // what sums of coefficients leave
-constexpr double kPlacePrecision_m = 1e-6;  // to which extrema are sought
-constexpr double kPrecision = 1e-6;         // likewise, of squares, relative to the limit's
+constexpr double kPlaceTolerance_m = 1e-9;  // rounding of sums of coefficients
+constexpr double kPlacePrecision_m = 1e-6;  // of extrema
+constexpr double kPrecision = 1e-6;         // of extrema of squares, relative to the squared limit
 
 bool finite(const Polynomial& p) {
   return std::all_of(p.begin(), p.end(), [](double c) { return std::isfinite(c); });
@@ -64,7 +64,7 @@ Outcome check_segments(const char* of, const PolynomialSegment* segments, std::s
   return accept();
 }
 
-// What only a mission that says so demands of the segments that come ready made.
+// Limits that only a mission's own bounds set on ready-made segments: jerk and yaw rate.
 Outcome check_own_bounds(const char* item, std::size_t number, const PolynomialSegment& segment,
                          const MissionBounds& bounds, bool yaw_free) {
   char what[64];

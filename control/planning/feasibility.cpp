@@ -17,15 +17,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPrecision = 1e-6;  // to which extrema are sought, relative to the limit
-constexpr double kMostLooks = 1e6;   // at the rotors, in a whole path
+constexpr double kPrecision = 1e-6;  // of extrema, relative to the limit
+constexpr double kMostLooks = 1e6;   // most samples of the rotors on a path
 
 constexpr std::array<const char*, 9> kUnits = {"m", "m/s", "m/s^2", "rad/s", "m/s^2", "rad", "N", "N", "N"};
 
 bool is_least(Demand demand) { return demand == Demand::kLift || demand == Demand::kRotorLeast; }
 
-// The path as the rotors feel it: drag acts like an acceleration in proportion to the velocity, and so do its
-// derivatives.
+// The reference plus drag: drag acts as an acceleration in proportion to the velocity, and its derivatives
+// accordingly.
 Reference with_drag(const Reference& reference, double drag_per_mass) {
   Reference felt = reference;
   felt.acceleration_ned += drag_per_mass * reference.velocity_ned;
@@ -104,7 +104,7 @@ class Survey {
     note_root(Demand::kYawRate, yaw_rate * yaw_rate, 1.0, segment);
   }
 
-  // b = g e3 - a - (c / m) v: what the rotors give, over the mass, along the body's z.
+  // b = g e3 - a - (c / m) v: the specific force of the rotors, along body z.
   void look_at_force(const PolynomialSegment& segment) {
     const auto axis = [&](const Polynomial& p, double gravity) {
       return constant(gravity) - bernstein(p, segment.duration_s, 2) -
@@ -117,7 +117,7 @@ class Survey {
     note(Demand::kLift, least.value, segment, least.at * segment.duration_s);
     note_root(Demand::kThrust, squared_length(x, y, z), vehicle_.mass_kg, segment);
 
-    // Beyond the limit where the horizontal part is longer than tan(limit) times the vertical one.
+    // The tilt exceeds its limit where the horizontal part is longer than tan(limit) times the vertical one.
     const double tangent = std::tan(limits_.max_tilt_rad);
     const Bernstein beyond = squared_length(x, y) - tangent * tangent * squared_length(z);
     const Extremum most = maximum(beyond, kPrecision * plant::kGravity * plant::kGravity);
