@@ -47,7 +47,7 @@ ControlDesign flyable_design(const plant::Vehicle& vehicle, const ControlSetting
 struct AttitudeDemand {
   double thrust_n = 0.0;
   AttitudeReference attitude;
-  bool rates_alone = false;  // body rates are controlled, the attitude is not
+  bool rates_only = false;  // body rates are controlled, the attitude is not
 };
 
 }  // namespace
@@ -56,9 +56,9 @@ struct FlightController::Impl {
   Impl(const plant::Vehicle& vehicle_in, const ControlSettings& settings_in, const ControlDesign& design_in);
 
   // The stages of a step, in order.
-  void begin_anew_if_clock_went_back(const plant::ImuSample& sample);
+  void restart_if_clock_went_back(const plant::ImuSample& sample);
   void count_unusable(bool usable, std::int64_t stamp_ns);
-  double take(const plant::ImuSample& sample);
+  double store_sample(const plant::ImuSample& sample);
   SupervisorInputs inputs() const;
   void observe(const ControlSetpoint& setpoint, double dt_s);
   AttitudeDemand outer_loop(const ControlSetpoint& setpoint, double dt_s);
@@ -66,13 +66,13 @@ struct FlightController::Impl {
   void allocate(const AttitudeDemand& demand, const Wrench& wrench);
   void idle_rotors(plant::RotorState rotor_state);
   void report(const SupervisorInputs& inputs);
-  const plant::ActuatorCommand& answer(const plant::ImuSample& sample);
+  const plant::ActuatorCommand& stamp_command(const plant::ImuSample& sample);
 
   // The outer loop for each control mode.
   AttitudeDemand follow_reference(bool integrate, double dt_s);
   AttitudeDemand spool_up(double lift_fraction) const;
   AttitudeDemand descend_level(double speed) const;
-  AttitudeDemand as_asked(const ControlSetpoint& setpoint) const;
+  AttitudeDemand follow_direct_setpoint(const ControlSetpoint& setpoint) const;
 
   plant::Vehicle vehicle;
   ControlSettings settings;
@@ -81,7 +81,7 @@ struct FlightController::Impl {
   Estimator estimator;
   RotorObserver rotors;
   DisturbanceObserver disturbance;
-  TakeoffConsistencyMonitor climb;
+  TakeoffConsistencyMonitor takeoff_monitor;
   PositionController position;
   AttitudeController attitude;
   Allocator allocator;
@@ -114,7 +114,7 @@ FlightController::Impl::Impl(const plant::Vehicle& vehicle_in, const ControlSett
       estimator(settings_in.estimator),
       rotors(vehicle_in, settings_in.estimator.rotor_speed_bandwidth),
       disturbance(settings_in.disturbance),
-      climb(settings_in.estimator.detectors.takeoff_consistency),
+      takeoff_monitor(settings_in.estimator.detectors.takeoff_consistency),
       position(settings_in.position, settings_in.limits, design_in),
       attitude(vehicle_in, settings_in.attitude, design_in),
       allocator(vehicle_in),
@@ -125,7 +125,7 @@ FlightController::Impl::Impl(const plant::Vehicle& vehicle_in, const ControlSett
 }
 
 // A restarted vehicle counts its time from 0 again. This is accepted while the rotors are off.
-void FlightController::Impl::begin_anew_if_clock_went_back(const plant::ImuSample& sample) {
+void FlightController::Impl::restart_if_clock_went_back(const plant::ImuSample& sample) {
   const bool rotors_off = command.rotor_state == plant::RotorState::kOff;
   if (sample.stamp_ns >= last_stamp_ns || !rotors_off) return;
   estimator = Estimator(settings.estimator);
@@ -159,7 +159,7 @@ SupervisorInputs FlightController::Impl::inputs() const {
   inputs.battery_age_s = seconds(estimate.stamp_ns - battery_stamp_ns);
   inputs.vertical_specific_force_residual =
       -(specific_force_frd.z() - estimate.accelerometer_bias.z()) - rotors.thrust_n() / vehicle.mass_kg;
-  inputs.takeoff_inconsistent = climb.contradicted();
+  inputs.takeoff_inconsistent = takeoff_monitor.contradicted();
   inputs.specific_force_frd = specific_force_frd;
   inputs.rotor_speed = *std::max_element(rotors.speeds().begin(), rotors.speeds().end());
   inputs.imu_unusable_s = unusable_s;
@@ -168,7 +168,7 @@ SupervisorInputs FlightController::Impl::inputs() const {
 }
 
 // Stores a usable sample and runs the rotor model up to it. Returns the time since the last sample, s.
-double FlightController::Impl::take(const plant::ImuSample& sample) {
+double FlightController::Impl::store_sample(const plant::ImuSample& sample) {
   if (!has_battery && last_stamp_ns == 0) battery_stamp_ns = sample.stamp_ns;  // starts the battery time-out
   imu_gap_s = last_stamp_ns == 0 ? kFirstStep_s : seconds(sample.stamp_ns - last_stamp_ns);
   const double dt_s = std::min(imu_gap_s, kMaxStep_s);
@@ -188,14 +188,14 @@ void FlightController::Impl::observe(const ControlSetpoint& setpoint, double dt_
       disturbance.reset();
       return;
     case ControlMode::kSpoolUp:
-      climb.begin(estimate.accelerometer_bias, estimate.position_ned.z());
+      takeoff_monitor.begin(estimate.accelerometer_bias, estimate.position_ned.z());
       return;
     case ControlMode::kLevelDescent:
       return;
     case ControlMode::kFly:
     case ControlMode::kAttitude:
     case ControlMode::kBodyRates:
-      climb.step(dt_s, specific_force_frd, estimate.q_ned_from_frd, estimate.position_ned.z());
+      takeoff_monitor.step(dt_s, specific_force_frd, estimate.q_ned_from_frd, estimate.position_ned.z());
       if (!setpoint.integrate) return;
       disturbance.step(dt_s, specific_force_frd - estimate.accelerometer_bias, estimate.q_ned_from_frd,
                        rotors.thrust_n() / vehicle.mass_kg);
@@ -211,7 +211,7 @@ AttitudeDemand FlightController::Impl::outer_loop(const ControlSetpoint& setpoin
       return descend_level(setpoint.descent_speed);
     case ControlMode::kAttitude:
     case ControlMode::kBodyRates:
-      return as_asked(setpoint);
+      return follow_direct_setpoint(setpoint);
     default:
       return follow_reference(setpoint.integrate, dt_s);
   }
@@ -259,11 +259,11 @@ AttitudeDemand FlightController::Impl::descend_level(double speed) const {
 }
 
 // The attitude of the setpoint, or its body rates at the present attitude.
-AttitudeDemand FlightController::Impl::as_asked(const ControlSetpoint& setpoint) const {
+AttitudeDemand FlightController::Impl::follow_direct_setpoint(const ControlSetpoint& setpoint) const {
   AttitudeDemand demand;
-  demand.rates_alone = setpoint.control_mode == ControlMode::kBodyRates;
+  demand.rates_only = setpoint.control_mode == ControlMode::kBodyRates;
   const Eigen::Quaterniond& q =
-      demand.rates_alone ? estimator.estimate().q_ned_from_frd : setpoint.q_ned_from_frd;
+      demand.rates_only ? estimator.estimate().q_ned_from_frd : setpoint.q_ned_from_frd;
   demand.thrust_n = setpoint.thrust * vehicle.mass_kg;
   demand.attitude.body_z_ned = body_z(q);
   demand.attitude.heading = euler_angles(q).heading;
@@ -275,7 +275,7 @@ AttitudeDemand FlightController::Impl::as_asked(const ControlSetpoint& setpoint)
 Wrench FlightController::Impl::inner_loop(const AttitudeDemand& demand) const {
   const Estimate& estimate = estimator.estimate();
   Wrench wrench;
-  if (demand.rates_alone) {
+  if (demand.rates_only) {
     wrench.thrust_n = demand.thrust_n;
     wrench.moment_frd =
         attitude.moments_for_rates(estimate.body_rates_frd, rotors.moment_frd(), demand.attitude.body_rates);
@@ -316,7 +316,7 @@ void FlightController::Impl::report(const SupervisorInputs& inputs) {
   status.mission = supervisor.mission();
 }
 
-const plant::ActuatorCommand& FlightController::Impl::answer(const plant::ImuSample& sample) {
+const plant::ActuatorCommand& FlightController::Impl::stamp_command(const plant::ImuSample& sample) {
   command.stamp_ns = sample.stamp_ns;
   command.imu_sequence = sample.sequence;
   command.mocap_sequence = estimator.pose_sequence();
@@ -334,11 +334,11 @@ FlightController& FlightController::operator=(FlightController&&) noexcept = def
 const plant::ActuatorCommand& FlightController::on_imu(const plant::ImuSample& sample) {
   Impl& c = *impl_;
   // Estimate.
-  c.begin_anew_if_clock_went_back(sample);
+  c.restart_if_clock_went_back(sample);
   const bool usable = c.estimator.predict(sample);
   c.count_unusable(usable, sample.stamp_ns);
-  if (!usable && c.unusable_s < c.settings.failsafe.imu_timeout_s) return c.answer(sample);
-  const double dt_s = usable ? c.take(sample) : 0.0;
+  if (!usable && c.unusable_s < c.settings.failsafe.imu_timeout_s) return c.stamp_command(sample);
+  const double dt_s = usable ? c.store_sample(sample) : 0.0;
 
   // Supervision decides the mode, guidance generates the reference.
   const SupervisorInputs inputs = c.inputs();
@@ -356,7 +356,7 @@ const plant::ActuatorCommand& FlightController::on_imu(const plant::ImuSample& s
     c.allocate(demand, c.inner_loop(demand));
   }
   c.report(inputs);
-  return c.answer(sample);
+  return c.stamp_command(sample);
 }
 
 void FlightController::on_pose(const plant::PoseSample& sample) {
@@ -380,8 +380,8 @@ Outcome FlightController::on_setpoint(const Setpoint& setpoint) {
   return impl_->supervisor.setpoint(setpoint, impl_->inputs());
 }
 
-bool FlightController::on_ground_heartbeat(const GroundHeartbeat& sign) {
-  return impl_->supervisor.ground_heartbeat(sign);
+bool FlightController::on_ground_heartbeat(const GroundHeartbeat& heartbeat) {
+  return impl_->supervisor.ground_heartbeat(heartbeat);
 }
 
 Outcome FlightController::request(const Request& request) {

@@ -45,7 +45,7 @@ class FlightController {
   // Setpoints are accepted in holding and setpoint mode. A refused one changes nothing.
   Outcome on_setpoint(const Setpoint& setpoint);
   // Returns false if the link-loss failsafe is on for too many other clients already.
-  bool on_ground_heartbeat(const GroundHeartbeat& sign);
+  bool on_ground_heartbeat(const GroundHeartbeat& heartbeat);
   // Accepts or refuses by the present mode. A mission or trajectory must have passed check() of
   // planning/checks.hpp before.
   Outcome request(const Request& request);

@@ -110,7 +110,7 @@ class Estimator {
     Eigen::Vector3d rotation = Eigen::Vector3d::Zero();
     Eigen::Vector3d rate = Eigen::Vector3d::Zero();          // subtracted from the rotation's rate
     Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // subtracted from the velocity's rate
-    void carry_to(StateSnapshot& moment) const;
+    void apply_to(StateSnapshot& snapshot) const;
   };
 
   // History entries are corrected when they are read: of most, only the stamp ever is.
@@ -118,17 +118,17 @@ class Estimator {
   const StateSnapshot& history_at(std::uint64_t number) const { return history_[number % kHistory]; }
   StateSnapshot snapshot_at(std::uint64_t number) const;
   void start_at(const plant::PoseSample& pose);
-  void show_path();
+  void publish_path();
   void store_history();
   PoseFault fuse(const plant::PoseSample& pose, plant::RotorState rotors);
   PoseInnovation compare(const plant::PoseSample& pose);
   PoseFault disagree(const plant::PoseSample& pose, const PoseInnovation& innovation,
-                     plant::RotorState rotors, bool believed);
+                     plant::RotorState rotors, bool trusted);
   void accept(const plant::PoseSample& pose);  // ends all disagreement with the stream
   void agree(const PoseInnovation& innovation, const ErrorCovariance::Correction& correction);
   ErrorCovariance::Correction compute_update(const PoseInnovation& innovation) const;
   double outlier_rotation() const;  // rad
-  bool believed_after_silence(const plant::PoseSample& pose, const PoseInnovation& innovation);
+  bool trusted_after_silence(const plant::PoseSample& pose, const PoseInnovation& innovation);
   void apply(const ErrorState& step);
   void replay();
   void restart_at(const plant::PoseSample& pose, const PoseInnovation& innovation);
@@ -140,8 +140,8 @@ class Estimator {
                const StateSnapshot& to) const;
   void advance_step(ErrorCovariance& covariance, const StateSnapshot& from, const StateSnapshot& to) const;
   // The nominal state at a stamp after the anchor's.
-  StateSnapshot moment_at(std::int64_t stamp_ns, std::uint64_t first_newer) const;
-  void anchor_at(const StateSnapshot& moment, std::uint64_t first_newer);
+  StateSnapshot state_at(std::int64_t stamp_ns, std::uint64_t first_newer) const;
+  void anchor_at(const StateSnapshot& snapshot, std::uint64_t first_newer);
 
   EstimatorSettings settings_;
   DetectorSettings detectors_;  // copy of settings_.detectors
@@ -154,11 +154,11 @@ class Estimator {
   std::int64_t pose_stamp_ns_ = 0;      // of the last pose fused
   std::uint64_t pose_sequence_ = 0;
   double normalised_innovation_ = 0.0;
-  StuckPoseDetector repetition_;
+  StuckPoseDetector stuck_pose_;
   PoseContinuity continuity_;
-  bool unseen_ = false;             // the IMU was silent since the last fused pose ...
-  std::int64_t seen_again_ns_ = 0;  // ... until then
-  PoseImuConsistencyTest trial_;
+  bool imu_was_silent_ = false;      // the IMU was silent since the last fused pose ...
+  std::int64_t silence_end_ns_ = 0;  // ... until then
+  PoseImuConsistencyTest pose_imu_test_;
   int refused_in_a_row_ = 0;
   int contradictions_ = 0;  // in a row, of fused poses
 

@@ -41,9 +41,9 @@ BrakingManoeuvre brakes_inside_fence(const GuidanceContext& context, const Refer
 }
 
 bool leaves_fence(const Limits& limits, const PolynomialSegment& segment) {
-  constexpr int kLooks = 24;
-  for (int i = 1; i < kLooks; ++i) {
-    Reference at = evaluate(segment, segment.duration_s * i / kLooks);
+  constexpr int kSamples = 24;
+  for (int i = 1; i < kSamples; ++i) {
+    Reference at = evaluate(segment, segment.duration_s * i / kSamples);
     const Eigen::Vector3d position_ned = at.position_ned;
     clamp_to_fence(limits, at);
     if (at.position_ned != position_ned) return true;
@@ -121,7 +121,7 @@ bool arrived(const GuidanceContext& context) {
 
 // Follows the segments of a trajectory item; other items have one segment only. Sets the item's end on
 // arrival.
-void advance_way(const GuidanceContext& context) {
+void advance_item(const GuidanceContext& context) {
   GuidanceState& state = context.state;
   const MissionItem& item = item_of(context);
   if (item.kind == MissionItemKind::kTrajectory) {
@@ -148,20 +148,20 @@ void resume_paused_path(const GuidanceContext& context) {
 // While the time scaling changes, only the item's own path advances.
 void advance_mission(const GuidanceContext& context) {
   GuidanceState& state = context.state;
-  const bool its_way = state.pause == MissionPause::kNone;
+  const bool on_item_path = state.pause == MissionPause::kNone;
   if (state.path.clock.is_changing(context.now_ns)) {
-    if (its_way) advance_way(context);
+    if (on_item_path) advance_item(context);
     return;
   }
   if (!state.path.clock.is_vehicle_time()) {
     const std::int64_t behind_ns = state.path.take_vehicle_time(context.now_ns);
-    if (its_way && state.item_end_ns != 0)
+    if (on_item_path && state.item_end_ns != 0)
       state.item_end_ns = std::max(state.item_end_ns + behind_ns, context.now_ns);
   }
   if (!state.path.finished(context.now_ns)) return;
   if (state.pause == MissionPause::kReturning) return resume_paused_path(context);
   if (item_of(context).kind == MissionItemKind::kLand) return sink(context);
-  advance_way(context);
+  advance_item(context);
   if (state.item_end_ns == 0 || !state.path.finished(context.now_ns)) return;
   if (context.now_ns < state.item_end_ns || state.mission.item_index + 1 >= state.mission.item_count) return;
   ++state.mission.item_index;
@@ -175,7 +175,7 @@ void advance_trajectory(const GuidanceContext& context) {
 
 // The greatest speed on the path until a change of the time scaling would be over, as bounds of its segments
 // show.
-double speed_on_way(const GuidanceContext& context) {
+double max_speed_ahead(const GuidanceContext& context) {
   const MotionLimits unit{1.0, 1.0, 1.0, 1.0};
   const GuidanceState& state = context.state;
   if (!state.path.moving) return 0.0;
@@ -272,12 +272,12 @@ void start_join(const GuidanceContext& context, const PolynomialSegment& first, 
   }
   duration = std::max(duration, 35.0 / 16.0 * std::abs(to.yaw_rad - from.yaw_rad) / limits.max_yaw_rate);
   for (int attempt = 0; attempt < kJoinAttempts && least > gentle; ++attempt, duration *= kJoinStretch) {
-    const PolynomialSegment way = join(from, to, duration);
-    if (!check_motion("join", way, limits).accepted) continue;
-    const double acceleration = limit_use(way, unit).acceleration;
+    const PolynomialSegment candidate = join(from, to, duration);
+    if (!check_motion("join", candidate, limits).accepted) continue;
+    const double acceleration = limit_use(candidate, unit).acceleration;
     if (acceleration >= least) continue;
     least = acceleration;
-    gentlest = way;
+    gentlest = candidate;
   }
   if (std::isfinite(least)) return state.path.follow(gentlest, start_ns);
   start_move(context, to.position_ned, false, to.yaw_rad, speed, start_ns);
@@ -300,7 +300,7 @@ void start_landing(const GuidanceContext& context, double speed, std::int64_t st
 
 void change_time_scaling(const GuidanceContext& context, bool to_running) {
   GuidanceState& state = context.state;
-  state.path.clock.turn(to_running, clock_change_s(context.limits, speed_on_way(context)), context.now_ns);
+  state.path.clock.turn(to_running, clock_change_s(context.limits, max_speed_ahead(context)), context.now_ns);
 }
 
 void pause_path(const GuidanceContext& context) {
@@ -359,7 +359,7 @@ void advance(const GuidanceContext& context) {
     climb(context);
   if (state.phase != Phase::kPath) return;
   if (context.mode == Mode::kMission) return advance_mission(context);
-  if (context.state.mission_paused() && state.pause == MissionPause::kNone) return advance_way(context);
+  if (context.state.mission_paused() && state.pause == MissionPause::kNone) return advance_item(context);
   if (!state.path.finished(context.now_ns)) return;
   if (context.mode == Mode::kTrajectory) advance_trajectory(context);
   if (context.mode == Mode::kSetpoint) start_coast(context);

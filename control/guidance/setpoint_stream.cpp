@@ -109,12 +109,12 @@ PolynomialSegment blend(const Limits& limits, const Reference& from, const Setpo
   double least = std::numeric_limits<double>::infinity();  // greatest use of the acceleration and jerk limits
   double duration = period_s;
   for (int attempt = 0; attempt < kAttempts && least > 1.0 + kRounding; ++attempt, duration *= kStretch) {
-    const PolynomialSegment way = blend_in(limits, from, to, duration, period_s);
-    const LimitUse use = limit_use(way, unit);
+    const PolynomialSegment candidate = blend_in(limits, from, to, duration, period_s);
+    const LimitUse use = limit_use(candidate, unit);
     const double most = std::max(use.acceleration / acceleration, use.jerk / jerk);
-    if (most >= least || !check_motion("setpoint", way, limits).accepted) continue;
+    if (most >= least || !check_motion("setpoint", candidate, limits).accepted) continue;
     least = most;
-    gentlest = way;
+    gentlest = candidate;
   }
   if (std::isfinite(least)) return gentlest;
   // From outside the fence, or above the speed limit: brakes to rest as fast as allowed.

@@ -51,13 +51,13 @@ Bernstein split_off_left(Bernstein& a) {
   return left;
 }
 
-void look(double value, double at, Extremum& best) {
+void update_best(double value, double at, Extremum& best) {
   if (value > best.value) best = {value, at};
 }
 
 void search(Bernstein part, double from, double width, double tolerance, int halvings, Extremum& best) {
-  look(part.c[0], from, best);
-  look(part.c[index(part.degree)], from + width, best);
+  update_best(part.c[0], from, best);
+  update_best(part.c[index(part.degree)], from + width, best);
   if (halvings == 0 || !(part.greatest() > best.value + tolerance)) return;
   const Bernstein left = split_off_left(part);
   const double half = 0.5 * width;

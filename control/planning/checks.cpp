@@ -28,10 +28,11 @@ struct NamedAxis {
 Outcome check_axis(const char* what, const NamedAxis& axis, double duration_s, const Limits& limits) {
   const double low = limits.fence_min_ned[axis.index];
   const double high = limits.fence_max_ned[axis.index];
-  const Bernstein way = bernstein(axis.polynomial, duration_s);
-  if (way.least() >= low - kPlaceTolerance_m && way.greatest() <= high + kPlaceTolerance_m) return accept();
+  const Bernstein position = bernstein(axis.polynomial, duration_s);
+  if (position.least() >= low - kPlaceTolerance_m && position.greatest() <= high + kPlaceTolerance_m)
+    return accept();
   for (const double reached :
-       {minimum(way, kPlacePrecision_m).value, maximum(way, kPlacePrecision_m).value}) {
+       {minimum(position, kPlacePrecision_m).value, maximum(position, kPlacePrecision_m).value}) {
     if (reached >= low - kPlaceTolerance_m && reached <= high + kPlaceTolerance_m) continue;
     return refuse("%s: %c is %.3f m, outside the fence of %.3f to %.3f m", what, axis.name, reached, low,
                   high);

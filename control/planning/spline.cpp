@@ -78,9 +78,9 @@ std::vector<Free<R>> solve(const UnitSegment<R>& unit, const std::vector<Positio
     diagonal[i + 1] += weight * (s * unit.cost.template block<R - 1, R - 1>(R + 1, R + 1) * s);
     next[i] = weight * (s * unit.cost.template block<R - 1, R - 1>(1, R + 1) * s);
     // The positions of both ends enter with opposite signs: only their difference matters.
-    const Eigen::RowVector4d way = (points[i + 1] - points[i]).transpose();
-    right[i] -= weight * (s * unit.cost.template block<R - 1, 1>(1, R)) * way;
-    right[i + 1] -= weight * (s * unit.cost.template block<R - 1, 1>(R + 1, R)) * way;
+    const Eigen::RowVector4d difference = (points[i + 1] - points[i]).transpose();
+    right[i] -= weight * (s * unit.cost.template block<R - 1, 1>(1, R)) * difference;
+    right[i + 1] -= weight * (s * unit.cost.template block<R - 1, 1>(R + 1, R)) * difference;
   }
   right[1] -= next[0].transpose() * at_start;
   right[last - 1] -= next[last - 1] * at_end;

@@ -25,7 +25,7 @@ constexpr double kSmoothingExponent = 0.15;
 constexpr int kBalancings = 24;
 constexpr int kPatience = 6;                // rounds without gain before it ends
 constexpr double kGain = 1e-3;              // least gain in the whole duration, relative
-constexpr int kLooks = 6;                   // samples of a segment in each round
+constexpr int kSamples = 6;                 // samples of a segment in each round
 constexpr double kSlowingExponent = 0.5;    // change of a segment's duration with its limit use, above 1
 constexpr double kHasteningExponent = 0.1;  // ... and below 1
 constexpr int kMaxRefinements = 10;         // rounds of points added to keep a spline inside its corridors
@@ -85,19 +85,19 @@ struct Knots {
 // Initial estimate of a leg's duration.
 double first_duration(const PositionYaw& from, const PositionYaw& to, bool at_end,
                       const MotionLimits& limits) {
-  const double way = (to - from).head<3>().norm();
+  const double distance = (to - from).head<3>().norm();
   const double turn = std::abs(to[3] - from[3]);
-  const double passing = std::max(way / limits.speed, turn / limits.yaw_rate);
+  const double passing = std::max(distance / limits.speed, turn / limits.yaw_rate);
   const double starting = at_end ? limits.speed / limits.acceleration / 2.0 : 0.0;
-  const double slow = std::sqrt(2.0 * way / limits.acceleration);
+  const double slow = std::sqrt(2.0 * distance / limits.acceleration);
   return std::max({std::min(passing + starting, slow), passing, kLeastDuration_s});
 }
 
 // As limit_use(), but from samples.
-LimitUse looked_at(const PolynomialSegment& segment, const MotionLimits& limits) {
+LimitUse sampled_use(const PolynomialSegment& segment, const MotionLimits& limits) {
   LimitUse use;
-  for (int i = 0; i <= kLooks; ++i) {
-    const Reference at = evaluate(segment, segment.duration_s * i / kLooks);
+  for (int i = 0; i <= kSamples; ++i) {
+    const Reference at = evaluate(segment, segment.duration_s * i / kSamples);
     use.speed = std::max(use.speed, at.velocity_ned.squaredNorm());
     use.acceleration = std::max(use.acceleration, at.acceleration_ned.squaredNorm());
     use.jerk = std::max(use.jerk, at.jerk_ned.squaredNorm());
@@ -161,7 +161,7 @@ void balance(Knots& knots, Smoothness smoothness, const MotionLimits& limits) {
   for (int round = 0; round < kBalancings && without_gain < kPatience; ++round) {
     const std::vector<PolynomialSegment> segments = spline(smoothness, knots.places, durations);
     std::vector<double> use(segments.size());
-    for (std::size_t i = 0; i < segments.size(); ++i) use[i] = looked_at(segments[i], limits).stretch();
+    for (std::size_t i = 0; i < segments.size(); ++i) use[i] = sampled_use(segments[i], limits).stretch();
     const double stretch = *std::max_element(use.begin(), use.end());
     const double whole_s = stretch * sum(durations);
     without_gain = whole_s < (1.0 - kGain) * best_s ? 0 : without_gain + 1;
@@ -204,12 +204,12 @@ double distance_from_leg(const PolynomialSegment& segment, const Vector3d& from,
     return direction.x() * axes[0] + direction.y() * axes[1] + direction.z() * axes[2] -
            constant(direction.dot(from));
   };
-  const Bernstein way = towards(along);
+  const Bernstein progress = towards(along);
   const double tolerance = kPrecision * kLeastCorridor_m;
   const double beside =
       maximum(squared_length(towards(across), towards(upright)), tolerance * tolerance).value;
-  const double before = -minimum(way, tolerance).value;
-  const double beyond = maximum(way, tolerance).value - length;
+  const double before = -minimum(progress, tolerance).value;
+  const double beyond = maximum(progress, tolerance).value - length;
   return std::max({std::sqrt(std::max(beside, 0.0)) + tolerance, before, beyond});
 }
 

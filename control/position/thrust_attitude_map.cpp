@@ -18,7 +18,7 @@ Vector3d unyawed(const Vector3d& v, double cosine, double sine) {
 }
 
 // e3 x v.
-Vector3d turned(const Vector3d& v) { return {-v.y(), v.x(), 0.0}; }
+Vector3d e3_cross(const Vector3d& v) { return {-v.y(), v.x(), 0.0}; }
 
 }  // namespace
 
@@ -61,10 +61,10 @@ ReferenceMotion reference_motion(double mass_kg, const Reference& reference, con
     out.thrust_n = mass_kg * b.norm();
     return out;
   }
-  const Vector3d b_1 = unyawed(-jerk - psi_1 * turned(n0), cosine, sine);
-  const Vector3d b_2 =
-      unyawed(-snap + 2.0 * psi_1 * turned(jerk) - psi_2 * turned(n0) + psi_1 * psi_1 * turned(turned(n0)),
-              cosine, sine);
+  const Vector3d b_1 = unyawed(-jerk - psi_1 * e3_cross(n0), cosine, sine);
+  const Vector3d b_2 = unyawed(
+      -snap + 2.0 * psi_1 * e3_cross(jerk) - psi_2 * e3_cross(n0) + psi_1 * psi_1 * e3_cross(e3_cross(n0)),
+      cosine, sine);
 
   // theta = atan2(b_x, b_z), with rho its radius.
   const double rho_squared = b.x() * b.x() + b.z() * b.z();

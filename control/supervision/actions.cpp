@@ -51,7 +51,7 @@ void clear_mission(SupervisorContext& context) {
 }
 
 // Stores the path of a paused mission, so that it can be resumed from elsewhere.
-void leave_way_if_paused(SupervisorContext& context) {
+void store_path_if_paused(SupervisorContext& context) {
   if (context.paused()) pause_path(context.guidance());
 }
 
@@ -75,7 +75,7 @@ void follow_setpoint(SupervisorContext& context) {
 }
 
 void move(SupervisorContext& context) {
-  leave_way_if_paused(context);
+  store_path_if_paused(context);
   const Request& request = *context.request;
   start_move(context.guidance(), request.position_ned, request.yaw_free, request.yaw_rad, request.speed,
              context.state.now_ns);
@@ -112,7 +112,7 @@ const Action kStartTrajectory{"join the start of the trajectory", start_trajecto
 const Action kFollowSetpoint{"follow the setpoint", follow_setpoint};
 const Action kMove{"move to the target", move};
 const Action kStop{"brake to rest", [](SupervisorContext& context) {
-                     leave_way_if_paused(context);
+                     store_path_if_paused(context);
                      start_stop(context.guidance());
                    }};
 const Action kLandAsAsked{

@@ -15,7 +15,7 @@ namespace {
 
 using ArmingCheck = Outcome (*)(const SupervisorContext&);
 
-Outcome pose_there(const SupervisorContext& context) {
+Outcome pose_available(const SupervisorContext& context) {
   const SupervisorInputs& inputs = context.inputs;
   const double limit_s = context.settings.failsafe.mocap_timeout_s;
   if (!inputs.has_estimate) return refuse("no mocap pose received");
@@ -25,7 +25,7 @@ Outcome pose_there(const SupervisorContext& context) {
 }
 
 // A late or duplicate pose is no fault of motion capture.
-Outcome pose_believed(const SupervisorContext& context) {
+Outcome pose_accepted(const SupervisorContext& context) {
   const PoseFault fault = context.estimate().pose_fault;
   if (fault == PoseFault::kNone || fault == PoseFault::kUntimely) return accept();
   return refuse("the last mocap pose was refused: %s", to_string(fault));
@@ -36,7 +36,7 @@ Outcome imu_usable(const SupervisorContext& context) {
   return accept();
 }
 
-Outcome battery_there(const SupervisorContext& context) {
+Outcome battery_available(const SupervisorContext& context) {
   const SupervisorInputs& inputs = context.inputs;
   const FailsafeSettings& failsafe = context.settings.failsafe;
   if (!inputs.has_battery) return refuse("no battery voltage received");
@@ -99,8 +99,9 @@ Outcome inside_fence(const SupervisorContext& context) {
   return check_position("the vehicle", context.estimate().position_ned, context.settings.limits);
 }
 
-constexpr ArmingCheck kChecks[] = {pose_there,  pose_believed, imu_usable, battery_there, imu_at_rest,
-                                   not_turning, rotors_still,  level,      not_moving,    inside_fence};
+constexpr ArmingCheck kChecks[] = {pose_available, pose_accepted, imu_usable,   battery_available,
+                                   imu_at_rest,    not_turning,   rotors_still, level,
+                                   not_moving,     inside_fence};
 
 // Appends "; sentence" if it fits.
 void append(const char* sentence, Outcome& outcome) {

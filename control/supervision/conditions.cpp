@@ -26,7 +26,7 @@ bool held(bool condition, std::int64_t& since, std::int64_t now_ns, double durat
   return elapsed_s(since, now_ns) >= duration_s;
 }
 
-bool ground_felt(SupervisorContext& context) {
+bool touchdown_detected(SupervisorContext& context) {
   SupervisorState& state = context.state;
   if (state.mode == Mode::kDescent) {
     return held(context.inputs.vertical_specific_force_residual > kContactLift, state.contact_since_ns,
@@ -110,7 +110,7 @@ EventSet observe(SupervisorContext& context, double tip_over_cosine) {
   events.add(Event::kPoseJumped, inputs.pose_jumped);
   events.add(Event::kPoseLost, lost);
   events.add(Event::kPoseIsBack, !lost);
-  events.add(Event::kGroundFelt, ground_felt(context));
+  events.add(Event::kGroundFelt, touchdown_detected(context));
   events.add(Event::kDescentTimedOut,
              state.mode == Mode::kDescent &&
                  elapsed_s(state.mode_since_ns, state.now_ns) > failsafe.descent_timeout_s);

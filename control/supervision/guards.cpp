@@ -17,14 +17,14 @@ namespace {
 constexpr double kLeastClimb_m = 2.0 * kAirborneHeight_m;
 constexpr double kMaxSetpointStep_m = 1.0;
 constexpr double kUnitTolerance = 1e-3;
-constexpr double kNoticed_s = 0.01;  // delay until a stream time-out is detected: the next IMU sample
+constexpr double kDetectionDelay_s = 0.01;  // delay until a stream time-out is detected: the next IMU sample
 constexpr double kRounding = 1e-9;
 
 GroundLinkAction link_action(const SupervisorContext& context) {
   return context.settings.failsafe.ground_link_action;
 }
 
-Outcome battery_lasts(const SupervisorContext& context) {
+Outcome battery_sufficient(const SupervisorContext& context) {
   const SupervisorInputs& inputs = context.inputs;
   const double limit = context.settings.failsafe.low_battery_voltage;
   if (inputs.supply_voltage_v >= limit) return accept();
@@ -35,7 +35,7 @@ Outcome battery_lasts(const SupervisorContext& context) {
 Outcome check_takeoff(const SupervisorContext& context) {
   const Request& request = *context.request;
   const Limits& limits = context.limits;
-  Outcome outcome = battery_lasts(context);
+  Outcome outcome = battery_sufficient(context);
   if (!outcome.accepted) return outcome;
   outcome = check_speed("takeoff", request.speed, limits);
   if (!outcome.accepted) return outcome;
@@ -84,7 +84,7 @@ Outcome check_start(const SupervisorContext& context) {
 Outcome check_start_from_ground(const SupervisorContext& context) {
   const Outcome sound = check_start(context);
   if (!sound.accepted) return sound;
-  const Outcome battery = battery_lasts(context);
+  const Outcome battery = battery_sufficient(context);
   if (!battery.accepted) return battery;
   const MissionItem& first = context.plan.mission->items.front();
   if (first.kind != MissionItemKind::kTakeoff)
@@ -146,7 +146,7 @@ Outcome check_position_setpoint(const SupervisorContext& context) {
 Outcome check_end_of_stream(const SupervisorContext& context) {
   const Setpoint& setpoint = *context.setpoint;
   const Limits& limits = context.limits;
-  const double timeout_s = context.settings.failsafe.setpoint_timeout_s + kNoticed_s;
+  const double timeout_s = context.settings.failsafe.setpoint_timeout_s + kDetectionDelay_s;
   Reference last;
   if (setpoint.kind == SetpointKind::kPosition) {
     last.velocity_ned = setpoint.velocity_ned;

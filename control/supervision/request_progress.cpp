@@ -50,7 +50,7 @@ void end_with_mission(RequestStatus& request, MissionState mission, const Transi
 
 // Requests with a path of their own end with it. A landing also succeeds on the ground after a descent
 // without position.
-void end_with_way(RequestStatus& request, Mode mode, const Transition& row) {
+void end_with_path(RequestStatus& request, Mode mode, const Transition& row) {
   if (row.event == Event::kMissionUpload || row.event == Event::kMissionClear) return;
   switch (request.kind) {
     case RequestKind::kTakeoff:
@@ -129,7 +129,7 @@ bool reference_rests(const SupervisorState& state) {
   return state.mode == Mode::kHolding && (stands || state.guidance.path.finished(state.now_ns));
 }
 
-bool is_there(const Estimate& estimate, const Reference& reference) {
+bool is_at_reference(const Estimate& estimate, const Reference& reference) {
   return (estimate.position_ned - reference.position_ned).norm() < kThere_m &&
          estimate.velocity_ned.norm() < kStandstill_m_s;
 }
@@ -176,9 +176,9 @@ void note_accepted(SupervisorContext& context) {
   const Request& request = *context.request;
   const auto is_idle = [](const RequestStatus& known) { return !is_under_way(known); };
   RequestStatuses& known = context.state.requests;
-  auto room = std::find_if(known.begin(), known.end(), is_idle);
-  if (room == known.end()) room = known.begin();
-  std::rotate(room, room + 1, known.end());
+  auto slot = std::find_if(known.begin(), known.end(), is_idle);
+  if (slot == known.end()) slot = known.begin();
+  std::rotate(slot, slot + 1, known.end());
   RequestStatus& added = known.back();
   added = {};
   added.key = request.key;
@@ -195,7 +195,7 @@ void end_requests(SupervisorContext& context, const Transition& row) {
     if (is_of_mission(request.kind)) {
       end_with_mission(request, state.guidance.mission.state, row);
     } else {
-      end_with_way(request, state.mode, row);
+      end_with_path(request, state.mode, row);
     }
   }
 }
@@ -206,7 +206,7 @@ void follow_requests(SupervisorContext& context, const Reference& reference) {
     request.state = RequestState::kExecuting;
     request.progress = std::max(request.progress, progress(request, context));
     if (ends_at_rest(request.kind) && reference_rests(context.state) &&
-        is_there(context.estimate(), reference))
+        is_at_reference(context.estimate(), reference))
       succeed(request);
   }
 }

@@ -131,14 +131,14 @@ Outcome Supervisor::setpoint(const Setpoint& setpoint, const SupervisorInputs& i
   return answer(Event::kSetpoint, now);
 }
 
-bool Supervisor::ground_heartbeat(const GroundHeartbeat& sign) {
-  GroundLink* place = nullptr;
+bool Supervisor::ground_heartbeat(const GroundHeartbeat& heartbeat) {
+  GroundLink* slot = nullptr;
   for (GroundLink& link : state_.ground_links) {
-    if (link.client == sign.client || (link.client == 0 && place == nullptr)) place = &link;
-    if (link.client == sign.client) break;
+    if (link.client == heartbeat.client || (link.client == 0 && slot == nullptr)) slot = &link;
+    if (link.client == heartbeat.client) break;
   }
-  if (place == nullptr) return !sign.depends;
-  *place = sign.depends ? GroundLink{sign.client, state_.now_ns} : GroundLink();
+  if (slot == nullptr) return !heartbeat.depends;
+  *slot = heartbeat.depends ? GroundLink{heartbeat.client, state_.now_ns} : GroundLink();
   return true;
 }
 
@@ -158,10 +158,10 @@ void Supervisor::adopt(const SupervisorState& state, const Mission* mission, con
     if (known) plan_.trajectory = trajectory;
   }
   if (known) return;
-  Estimate nowhere;  // unused: the vehicle brakes along its reference
+  Estimate unused_estimate;  // unused: the vehicle brakes along its reference
   SupervisorInputs inputs;
   inputs.stamp_ns = state_.now_ns;
-  inputs.estimate = &nowhere;
+  inputs.estimate = &unused_estimate;
   SupervisorContext now = context(inputs);
   answer(Event::kPlanUnknown, now);
 }

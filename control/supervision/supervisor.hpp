@@ -23,7 +23,7 @@ class Supervisor {
   // Refused setpoints (outside the fence, too fast, not in flight) change nothing.
   Outcome setpoint(const Setpoint& setpoint, const SupervisorInputs& inputs);
   // Returns false if the link-loss failsafe is on for kMaxGroundLinks other clients already.
-  bool ground_heartbeat(const GroundHeartbeat& sign);
+  bool ground_heartbeat(const GroundHeartbeat& heartbeat);
 
   Mode mode() const { return state_.mode; }
   Reason reason() const { return state_.reason; }
