@@ -24,14 +24,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kFirstStep_s = 0.002;  // taken for the first sample, which has none before it
+constexpr double kFirstStep_s = 0.002;  // assumed for the first sample
 constexpr double kMaxStep_s = 0.1;
-constexpr int kUnusableToFault = 200;  // IMU samples in a row that cannot be used, whatever their stamps say
-// Of the weight, specific force that the rotors do not explain: something else carries the vehicle, on its
-// legs or on its side.
+constexpr int kUnusableToFault = 200;  // unusable IMU samples in a row to a fault, whatever their stamps
+// Fraction of the weight: above this specific force that the rotors do not explain, something else carries
+// the vehicle, on its legs or on its side.
 constexpr double kStandingLift = 0.5;
-constexpr double kDescentGain = 4.0;   // 1/s, vertical speed to acceleration, in descent without position
-constexpr double kBrakeGain = 2.0;     // 1/s, likewise of the horizontal speed
+constexpr double kDescentGain = 4.0;   // 1/s, vertical speed error to acceleration, level descent
+constexpr double kBrakeGain = 2.0;     // 1/s, the same for the horizontal speed
 constexpr double kDescentLimit = 2.0;  // m/s^2, of that acceleration
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
@@ -43,11 +43,11 @@ ControlDesign flyable_design(const plant::Vehicle& vehicle, const ControlSetting
   throw std::invalid_argument(settings.name + ": " + unstable.front().key + " " + unstable.front().message);
 }
 
-// What the outer loop asks of the inner one.
+// The output of the outer loop, for the inner one.
 struct AttitudeDemand {
   double thrust_n = 0.0;
   AttitudeReference attitude;
-  bool rates_alone = false;  // the attitude is as it is
+  bool rates_only = false;  // body rates are controlled, the attitude is not
 };
 
 }  // namespace
@@ -55,10 +55,10 @@ struct AttitudeDemand {
 struct FlightController::Impl {
   Impl(const plant::Vehicle& vehicle_in, const ControlSettings& settings_in, const ControlDesign& design_in);
 
-  // The stages of a step, in their order.
-  void begin_anew_if_clock_went_back(const plant::ImuSample& sample);
+  // The stages of a step, in order.
+  void restart_if_clock_went_back(const plant::ImuSample& sample);
   void count_unusable(bool usable, std::int64_t stamp_ns);
-  double take(const plant::ImuSample& sample);
+  double store_sample(const plant::ImuSample& sample);
   SupervisorInputs inputs() const;
   void observe(const ControlSetpoint& setpoint, double dt_s);
   AttitudeDemand outer_loop(const ControlSetpoint& setpoint, double dt_s);
@@ -66,13 +66,13 @@ struct FlightController::Impl {
   void allocate(const AttitudeDemand& demand, const Wrench& wrench);
   void idle_rotors(plant::RotorState rotor_state);
   void report(const SupervisorInputs& inputs);
-  const plant::ActuatorCommand& answer(const plant::ImuSample& sample);
+  const plant::ActuatorCommand& stamp_command(const plant::ImuSample& sample);
 
-  // The outer loop, by what is asked for.
+  // The outer loop for each control mode.
   AttitudeDemand follow_reference(bool integrate, double dt_s);
   AttitudeDemand spool_up(double lift_fraction) const;
   AttitudeDemand descend_level(double speed) const;
-  AttitudeDemand as_asked(const ControlSetpoint& setpoint) const;
+  AttitudeDemand follow_direct_setpoint(const ControlSetpoint& setpoint) const;
 
   plant::Vehicle vehicle;
   ControlSettings settings;
@@ -81,7 +81,7 @@ struct FlightController::Impl {
   Estimator estimator;
   RotorObserver rotors;
   DisturbanceObserver disturbance;
-  TakeoffConsistencyMonitor climb;
+  TakeoffConsistencyMonitor takeoff_monitor;
   PositionController position;
   AttitudeController attitude;
   Allocator allocator;
@@ -89,10 +89,10 @@ struct FlightController::Impl {
 
   std::int64_t last_stamp_ns = 0;
   int unusable_samples = 0;            // in a row
-  std::int64_t unusable_since_ns = 0;  // the last stamp before them, or that to which time went back
+  std::int64_t unusable_since_ns = 0;  // the last stamp before them, or the one after time went back
   double unusable_s = 0.0;
-  std::uint32_t resets_seen = 0;  // of the estimate, by the supervisor
-  double imu_gap_s = 0.0;         // between the last two samples that could be used
+  std::uint32_t resets_seen = 0;  // resets of the estimate that the supervisor has processed
+  double imu_gap_s = 0.0;         // between the last two usable samples
   Vector3d specific_force_frd = Vector3d::Zero();
   bool has_battery = false;
   std::int64_t battery_stamp_ns = 0;
@@ -100,7 +100,7 @@ struct FlightController::Impl {
   Allocator::Supply supply;
   plant::ActuatorCommand command;
   Reference reference;
-  Heading heading;  // of the reference
+  Heading heading;  // of the reference's yaw
   AttitudeSetpoint attitude_setpoint;
   Status status;
 };
@@ -114,7 +114,7 @@ FlightController::Impl::Impl(const plant::Vehicle& vehicle_in, const ControlSett
       estimator(settings_in.estimator),
       rotors(vehicle_in, settings_in.estimator.rotor_speed_bandwidth),
       disturbance(settings_in.disturbance),
-      climb(settings_in.estimator.detectors.takeoff_consistency),
+      takeoff_monitor(settings_in.estimator.detectors.takeoff_consistency),
       position(settings_in.position, settings_in.limits, design_in),
       attitude(vehicle_in, settings_in.attitude, design_in),
       allocator(vehicle_in),
@@ -124,8 +124,8 @@ FlightController::Impl::Impl(const plant::Vehicle& vehicle_in, const ControlSett
   command.rotor_count = vehicle.rotor_count();
 }
 
-// A vehicle that was started again counts its time anew; that is believed while the rotors are off.
-void FlightController::Impl::begin_anew_if_clock_went_back(const plant::ImuSample& sample) {
+// A restarted vehicle counts its time from 0 again. This is accepted while the rotors are off.
+void FlightController::Impl::restart_if_clock_went_back(const plant::ImuSample& sample) {
   const bool rotors_off = command.rotor_state == plant::RotorState::kOff;
   if (sample.stamp_ns >= last_stamp_ns || !rotors_off) return;
   estimator = Estimator(settings.estimator);
@@ -135,8 +135,8 @@ void FlightController::Impl::begin_anew_if_clock_went_back(const plant::ImuSampl
   has_battery = false;
 }
 
-// For how long no sample could be used, by their stamps. A clock that stands still does not hide it, and one
-// that goes far back is that of a vehicle which was started again: it must not hear the flight's commands.
+// For how long no sample was usable, by the stamps. The count of samples covers a clock that stands still. A
+// clock that goes far back is that of a restarted vehicle, which must not receive this flight's commands.
 void FlightController::Impl::count_unusable(bool usable, std::int64_t stamp_ns) {
   unusable_samples = usable ? 0 : unusable_samples + 1;
   if (unusable_samples == 1) unusable_since_ns = std::min(stamp_ns, last_stamp_ns);
@@ -159,7 +159,7 @@ SupervisorInputs FlightController::Impl::inputs() const {
   inputs.battery_age_s = seconds(estimate.stamp_ns - battery_stamp_ns);
   inputs.vertical_specific_force_residual =
       -(specific_force_frd.z() - estimate.accelerometer_bias.z()) - rotors.thrust_n() / vehicle.mass_kg;
-  inputs.takeoff_inconsistent = climb.contradicted();
+  inputs.takeoff_inconsistent = takeoff_monitor.contradicted();
   inputs.specific_force_frd = specific_force_frd;
   inputs.rotor_speed = *std::max_element(rotors.speeds().begin(), rotors.speeds().end());
   inputs.imu_unusable_s = unusable_s;
@@ -167,9 +167,9 @@ SupervisorInputs FlightController::Impl::inputs() const {
   return inputs;
 }
 
-// Takes a sample that can be used, and runs the rotors' model up to it. Returns the time since the one before, s.
-double FlightController::Impl::take(const plant::ImuSample& sample) {
-  if (!has_battery && last_stamp_ns == 0) battery_stamp_ns = sample.stamp_ns;  // it is awaited from here
+// Stores a usable sample and runs the rotor model up to it. Returns the time since the last sample, s.
+double FlightController::Impl::store_sample(const plant::ImuSample& sample) {
+  if (!has_battery && last_stamp_ns == 0) battery_stamp_ns = sample.stamp_ns;  // starts the battery time-out
   imu_gap_s = last_stamp_ns == 0 ? kFirstStep_s : seconds(sample.stamp_ns - last_stamp_ns);
   const double dt_s = std::min(imu_gap_s, kMaxStep_s);
   last_stamp_ns = sample.stamp_ns;
@@ -178,7 +178,7 @@ double FlightController::Impl::take(const plant::ImuSample& sample) {
   return dt_s;
 }
 
-// What is watched in flight, whichever loop flies.
+// Updates the monitor and the observer that run in flight, in every control mode.
 void FlightController::Impl::observe(const ControlSetpoint& setpoint, double dt_s) {
   const Estimate& estimate = estimator.estimate();
   switch (setpoint.control_mode) {
@@ -188,14 +188,14 @@ void FlightController::Impl::observe(const ControlSetpoint& setpoint, double dt_
       disturbance.reset();
       return;
     case ControlMode::kSpoolUp:
-      climb.begin(estimate.accelerometer_bias, estimate.position_ned.z());
+      takeoff_monitor.begin(estimate.accelerometer_bias, estimate.position_ned.z());
       return;
     case ControlMode::kLevelDescent:
       return;
     case ControlMode::kFly:
     case ControlMode::kAttitude:
     case ControlMode::kBodyRates:
-      climb.step(dt_s, specific_force_frd, estimate.q_ned_from_frd, estimate.position_ned.z());
+      takeoff_monitor.step(dt_s, specific_force_frd, estimate.q_ned_from_frd, estimate.position_ned.z());
       if (!setpoint.integrate) return;
       disturbance.step(dt_s, specific_force_frd - estimate.accelerometer_bias, estimate.q_ned_from_frd,
                        rotors.thrust_n() / vehicle.mass_kg);
@@ -211,13 +211,13 @@ AttitudeDemand FlightController::Impl::outer_loop(const ControlSetpoint& setpoin
       return descend_level(setpoint.descent_speed);
     case ControlMode::kAttitude:
     case ControlMode::kBodyRates:
-      return as_asked(setpoint);
+      return follow_direct_setpoint(setpoint);
     default:
       return follow_reference(setpoint.integrate, dt_s);
   }
 }
 
-// Eq. (48), and the way from its acceleration to a thrust and an attitude.
+// Eq. (48), then the map from its acceleration to thrust and attitude.
 AttitudeDemand FlightController::Impl::follow_reference(bool integrate, double dt_s) {
   const Estimate& estimate = estimator.estimate();
   const PositionCommand wanted =
@@ -258,12 +258,12 @@ AttitudeDemand FlightController::Impl::descend_level(double speed) const {
   return braking;
 }
 
-// An attitude, or body rates and the attitude as it is.
-AttitudeDemand FlightController::Impl::as_asked(const ControlSetpoint& setpoint) const {
+// The attitude of the setpoint, or its body rates at the present attitude.
+AttitudeDemand FlightController::Impl::follow_direct_setpoint(const ControlSetpoint& setpoint) const {
   AttitudeDemand demand;
-  demand.rates_alone = setpoint.control_mode == ControlMode::kBodyRates;
+  demand.rates_only = setpoint.control_mode == ControlMode::kBodyRates;
   const Eigen::Quaterniond& q =
-      demand.rates_alone ? estimator.estimate().q_ned_from_frd : setpoint.q_ned_from_frd;
+      demand.rates_only ? estimator.estimate().q_ned_from_frd : setpoint.q_ned_from_frd;
   demand.thrust_n = setpoint.specific_thrust * vehicle.mass_kg;
   demand.attitude.body_z_ned = body_z(q);
   demand.attitude.heading = euler_angles(q).heading;
@@ -271,11 +271,11 @@ AttitudeDemand FlightController::Impl::as_asked(const ControlSetpoint& setpoint)
   return demand;
 }
 
-// Eq. (35)-(40). Of the wanted thrust, the part along the axis on which the rotors can give it: none while upside down.
+// Eq. (35)-(40). Uses the part of the thrust along the present body axis, and none while upside down.
 Wrench FlightController::Impl::inner_loop(const AttitudeDemand& demand) const {
   const Estimate& estimate = estimator.estimate();
   Wrench wrench;
-  if (demand.rates_alone) {
+  if (demand.rates_only) {
     wrench.thrust_n = demand.thrust_n;
     wrench.moment_frd =
         attitude.moments_for_rates(estimate.body_rates_frd, rotors.moment_frd(), demand.attitude.body_rates);
@@ -297,7 +297,7 @@ void FlightController::Impl::allocate(const AttitudeDemand& demand, const Wrench
   status.saturated = allocation.saturated;
 }
 
-// Off, or idle: they turn at no throttle.
+// Rotors off, or running at throttle 0.
 void FlightController::Impl::idle_rotors(plant::RotorState rotor_state) {
   command.rotor_state = rotor_state;
   command.throttle = plant::PerRotor{};
@@ -316,7 +316,7 @@ void FlightController::Impl::report(const SupervisorInputs& inputs) {
   status.mission = supervisor.mission();
 }
 
-const plant::ActuatorCommand& FlightController::Impl::answer(const plant::ImuSample& sample) {
+const plant::ActuatorCommand& FlightController::Impl::stamp_command(const plant::ImuSample& sample) {
   command.stamp_ns = sample.stamp_ns;
   command.imu_sequence = sample.sequence;
   command.mocap_sequence = estimator.pose_sequence();
@@ -333,20 +333,20 @@ FlightController& FlightController::operator=(FlightController&&) noexcept = def
 
 const plant::ActuatorCommand& FlightController::on_imu(const plant::ImuSample& sample) {
   Impl& c = *impl_;
-  // The estimate.
-  c.begin_anew_if_clock_went_back(sample);
+  // Estimate.
+  c.restart_if_clock_went_back(sample);
   const bool usable = c.estimator.predict(sample);
   c.count_unusable(usable, sample.stamp_ns);
-  if (!usable && c.unusable_s < c.settings.failsafe.imu_timeout_s) return c.answer(sample);
-  const double dt_s = usable ? c.take(sample) : 0.0;
+  if (!usable && c.unusable_s < c.settings.failsafe.imu_timeout_s) return c.stamp_command(sample);
+  const double dt_s = usable ? c.store_sample(sample) : 0.0;
 
-  // Supervision decides, guidance gives the reference.
+  // Supervision decides the mode, guidance generates the reference.
   const SupervisorInputs inputs = c.inputs();
   const ControlSetpoint setpoint = c.supervisor.step(inputs);
   c.resets_seen = inputs.estimate->resets;
   c.reference = setpoint.reference;
 
-  // The laws, and the command.
+  // The control laws and the command.
   c.observe(setpoint, dt_s);
   if (setpoint.control_mode == ControlMode::kOff || setpoint.control_mode == ControlMode::kIdle) {
     c.idle_rotors(setpoint.control_mode == ControlMode::kOff ? plant::RotorState::kOff
@@ -356,7 +356,7 @@ const plant::ActuatorCommand& FlightController::on_imu(const plant::ImuSample& s
     c.allocate(demand, c.inner_loop(demand));
   }
   c.report(inputs);
-  return c.answer(sample);
+  return c.stamp_command(sample);
 }
 
 void FlightController::on_pose(const plant::PoseSample& sample) {
@@ -380,8 +380,8 @@ Outcome FlightController::on_setpoint(const Setpoint& setpoint) {
   return impl_->supervisor.setpoint(setpoint, impl_->inputs());
 }
 
-bool FlightController::on_ground_heartbeat(const GroundHeartbeat& sign) {
-  return impl_->supervisor.ground_heartbeat(sign);
+bool FlightController::on_ground_heartbeat(const GroundHeartbeat& heartbeat) {
+  return impl_->supervisor.ground_heartbeat(heartbeat);
 }
 
 Outcome FlightController::request(const Request& request) {

@@ -1,5 +1,5 @@
 // The whole controller as pure code: samples and requests in, actuator commands out. No clock, no I/O, no
-// threads, no heap after construction; time is what the samples' stamps say. One thread calls it.
+// threads, no heap allocation after construction. Time is the samples' stamps. One thread calls it.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@
 
 namespace swiftlet::control {
 
-// What each step asked of the inner loop, for plots and logs.
+// The setpoint of the inner loop in each step, for plots and logs.
 struct AttitudeSetpoint {
   Eigen::Vector3d body_z_ned = Eigen::Vector3d::UnitZ();  // unit length
   double yaw_rad = 0.0;
@@ -34,37 +34,38 @@ class FlightController {
   FlightController(FlightController&&) noexcept;
   FlightController& operator=(FlightController&&) noexcept;
 
-  // One step of the inner loop: the command that answers this sample. A sample that is not finite or not
-  // newer than the last one is not used; the command then repeats the last. The answer stays until the next.
+  // One step of the inner loop. Returns the command for this sample. A sample that is not finite or not
+  // newer than the last is not used, and the last command is repeated. The returned reference stays valid
+  // until the next call.
   const plant::ActuatorCommand& on_imu(const plant::ImuSample& sample);
 
   void on_pose(const plant::PoseSample& sample);
   void on_battery(const plant::BatterySample& sample);
   void on_rotor_speeds(const plant::RotorSpeedSample& sample);
-  // Setpoints are followed while holding; a refused one changes nothing.
+  // Setpoints are accepted in holding and setpoint mode. A refused one changes nothing.
   Outcome on_setpoint(const Setpoint& setpoint);
-  // A sign of life of a ground tool. False if the flight depends on too many others already.
-  bool on_ground_heartbeat(const GroundHeartbeat& sign);
-  // Answers by the present mode. A mission or trajectory must have passed check() of planning/checks.hpp
-  // before.
+  // Returns false if the link-loss failsafe is on for too many other clients already.
+  bool on_ground_heartbeat(const GroundHeartbeat& heartbeat);
+  // Accepts or refuses by the present mode. A mission or trajectory must have passed check() of
+  // planning/checks.hpp before.
   Outcome request(const Request& request);
 
-  // The flight, for another controller of the same vehicle and settings to go on with, in its next step. What
-  // is being flown is passed beside it, as in Supervisor::adopt().
+  // The state of the flight. Another controller of the same vehicle and settings adopts it and continues in
+  // its next step. The mission and trajectory being flown are passed separately, as in Supervisor::adopt().
   FlightState state() const;
   void adopt(const FlightState& state, const Mission* mission, const Trajectory* trajectory);
-  // The air carries the vehicle, as far as accelerometer and rotor speeds tell: it does not stand.
+  // True if the vehicle flies, by accelerometer and rotor speeds: nothing but the rotors carries it.
   bool detects_airborne() const;
-  // Takes a vehicle that flies already into hold; false, and changes nothing, without a pose.
+  // Brings a vehicle that is already flying into hold. Returns false without a pose, and changes nothing.
   bool engage_in_flight();
 
-  // As of the last step.
+  // Values of the last step.
   const Estimate& estimate() const;
   ErrorState estimate_deviation() const;  // Estimator::standard_deviation()
   const Reference& reference() const;
   const AttitudeSetpoint& attitude_setpoint() const;
   const Status& status() const;
-  // As of now: what has become of the requests that were accepted last.
+  // Current status of the requests that were accepted last.
   const RequestStatuses& requests() const;
 
  private:

@@ -1,5 +1,5 @@
-// What a controller must be given to go on with a flight where another one stopped: plain data. What the
-// estimator and the rotor observer know is not part of it: each controller hears the same sensors.
+// The state of a flight, for another controller to continue it: plain data. The states of the estimator and
+// the rotor observer are not part of it, because every controller receives the same sensor data.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,8 +11,8 @@ namespace swiftlet::control {
 
 struct FlightState {
   SupervisorState supervisor;
-  Eigen::Vector3d position_integral = Eigen::Vector3d::Zero();  // m/s^2, of acceleration in NED
-  plant::RotorState rotor_state = plant::RotorState::kOff;      // of the last command, as what follows
+  Eigen::Vector3d position_integral = Eigen::Vector3d::Zero();  // m/s^2, in NED
+  plant::RotorState rotor_state = plant::RotorState::kOff;      // of the last command, as is throttle
   plant::PerRotor throttle{};
 };
 

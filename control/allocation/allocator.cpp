@@ -17,8 +17,8 @@ namespace {
 using plant::PerRotor;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kFitTolerance = 1e-12;         // of the highest thrust: how far beyond a limit is rounding
-constexpr double kCoefficientTolerance = 1e-9;  // of the largest of its kind: smaller counts as 0
+constexpr double kFitTolerance = 1e-12;         // of the highest thrust: rounding at a limit
+constexpr double kCoefficientTolerance = 1e-9;  // of the largest of its kind: smaller ones count as 0
 constexpr double kLeastAuthority = 1e-6;        // of plant::least_authority: below it the rank counts as 3
 constexpr double kLargestMoment = 1e100;        // N m, so that no quotient of moments overflows
 constexpr int kScaleSteps = 64;
@@ -46,7 +46,8 @@ Allocator::Allocator(const plant::Vehicle& vehicle)
   effectiveness_ = plant::effectiveness(vehicle);
 
   if (!effectiveness_.allFinite() || plant::least_authority(effectiveness_) < kLeastAuthority) {
-    throw std::invalid_argument("rotors: their places and spins cannot give thrust and all three moments");
+    throw std::invalid_argument(
+        "rotors: their positions and spin directions cannot give thrust and all three moments");
   }
   const plant::Allocation inverse = plant::pseudo_inverse(effectiveness_);
   for (int i = 0; i < count_; ++i) {
@@ -96,7 +97,7 @@ Wrench Allocator::wrench(const PerRotor& thrust_n) const {
   return sum;
 }
 
-// Finite, and sanitised() would change nothing.
+// True for a finite wrench that sanitised() would not change.
 bool Allocator::within_bound(const Wrench& wanted) const {
   return std::abs(wanted.thrust_n) <= bound_.thrust_n &&
          std::abs(wanted.moment_frd.x()) <= bound_.moment_frd.x() &&
@@ -114,7 +115,8 @@ Wrench Allocator::sanitised(const Wrench& wanted, bool& invalid) const {
     invalid |= !std::isfinite(moment);
     moment = std::isfinite(moment) ? std::clamp(moment, -kLargestMoment, kLargestMoment) : 0.0;
   }
-  // Nothing beyond the bound fits, so cutting there first changes no result and keeps the arithmetic finite.
+  // No wrench beyond the bound fits, so clipping there first changes no result and keeps the arithmetic
+  // finite.
   out.thrust_n = std::clamp(out.thrust_n, -bound_.thrust_n, bound_.thrust_n);
   const Eigen::Array2d size = out.moment_frd.head<2>().array().abs();
   const Eigen::Array2d bound = bound_.moment_frd.head<2>().array();
@@ -128,7 +130,7 @@ Allocation Allocator::allocate(const Wrench& wanted, const Supply& supply) const
                                      : allocate_to<plant::kMaxRotors>(wanted, supply);
 }
 
-// kCount: of the values that are worked out side by side; those beyond count_ are of no rotor.
+// kCount: number of values computed side by side; those beyond count_ belong to no rotor.
 template <int kCount>
 Allocation Allocator::allocate_to(const Wrench& wanted, const Supply& supply) const {
   using Values = Eigen::Array<double, kCount, 1>;
@@ -163,9 +165,9 @@ Allocation Allocator::allocate_to(const Wrench& wanted, const Supply& supply) co
   return out;
 }
 
-// With roll and pitch scaled by s, rotor i holds t_i = s tilt_i + for_thrust_i T + for_yaw_i Y, and low <=
-// t_i <= high for all i is a convex region of (s, T, Y). Its shadow on (s, T), then on s, is found by
-// elimination (Fourier-Motzkin), and s, T, Y are chosen one after the other.
+// With roll and pitch scaled by s, rotor i has t_i = s tilt_i + for_thrust_i T + for_yaw_i Y, and low <= t_i
+// <= high for all i is a convex region of (s, T, Y). Elimination (Fourier-Motzkin) projects it on (s, T),
+// then on s; s, T, Y are chosen one after the other.
 PerRotor Allocator::fitted(const Wrench& wanted, const PerRotor& tilt, const Interval& limits) const {
   const double scale = largest_scale(tilt, limits);
   const Interval thrust_range = thrust_interval(scale, tilt, limits).at;
@@ -184,9 +186,9 @@ double Allocator::nearest(double wanted, const Interval& interval) {
   return std::clamp(wanted, interval.low, interval.high);
 }
 
-// Every bound a T <= c + d s that is left once yaw is eliminated: for each pair of rotors, the least yaw that
-// one needs is at most the greatest that the other bears; a rotor that yaw does not move has two bounds of
-// its own. Coefficients a that are 0 but for rounding are handed over as 0.
+// Visits every bound a T <= c + d s that remains when yaw is eliminated: for each pair of rotors, the least
+// yaw of one is at most the greatest yaw of the other; a rotor that yaw does not change has two bounds of
+// its own. Coefficients a that are 0 up to rounding are passed as 0.
 template <typename Visit>
 void Allocator::visit_thrust_bounds(const PerRotor& tilt, const Interval& limits, Visit&& visit) const {
   PerRotor least{};
@@ -236,8 +238,8 @@ Allocator::ThrustInterval Allocator::thrust_interval(double scale, const PerRoto
   return out;
 }
 
-// The width of the thrust interval is concave in the scale, so that Newton's method from above meets its root
-// from above, piece by piece, in a few steps.
+// The width of the thrust interval is concave and piecewise linear in the scale, so Newton's method from
+// above converges to its root from above in a few steps.
 double Allocator::largest_scale(const PerRotor& tilt, const Interval& limits) const {
   double scale = 1.0;
   visit_thrust_bounds(tilt, limits, [&](double a, double c, double d) {

@@ -1,5 +1,5 @@
-// Attitude: an LQR behind feedback linearisation, Eq. (32)-(40), on the error that the settings name: the
-// paper's Euler angles, or the rotation, which has no singularity.
+// Attitude control: an LQR with feedback linearisation, Eq. (32)-(40), on the error that the settings
+// select: the paper's Euler angles, or the rotation, which has no singularity.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,9 +12,9 @@
 namespace swiftlet::control {
 
 struct AttitudeReference {
-  Eigen::Vector3d body_z_ned = Eigen::Vector3d::UnitZ();  // where the body z axis is to point, unit length
+  Eigen::Vector3d body_z_ned = Eigen::Vector3d::UnitZ();  // desired direction of body z, unit length
   Heading heading;
-  // Fed forward, in the reference's own body axes; leave zero where they are not known.
+  // Feed-forward in the reference's own body axes. Leave at zero if not known.
   Eigen::Vector3d body_rates = Eigen::Vector3d::Zero();          // rad/s
   Eigen::Vector3d body_accelerations = Eigen::Vector3d::Zero();  // rad/s^2
   Eigen::Vector3d body_jerks = Eigen::Vector3d::Zero();          // rad/s^3, leads the rotor lag (kMotorLag)
@@ -26,28 +26,29 @@ class AttitudeController {
   AttitudeController(const plant::Vehicle& vehicle, const AttitudeSettings& settings,
                      const ControlDesign& design);
 
-  // The moments u1 .. u3 to be commanded, N m:
-  //   u = J (k (reference - state) + feed forward) + omega x J omega, the last as in Eq. (35)-(37).
-  // The state is (error of attitude.error's kind, body rate), as Eq. (38)-(40) approximate (29)-(31), and
-  // with kMotorLag the present angular acceleration, from present_moment_frd, the moment that the rotors give
-  // now (unused otherwise). Fed forward is alpha_r, with kMotorLag alpha_r + tau d(alpha_r)/dt, so that it
-  // arrives in time behind the lag; with kRotation turned from the reference's axes into the body's.
+  // The commanded moments u1 .. u3, N m:
+  //   u = J (k (reference - state) + feed forward) + omega x J omega, the last term as in Eq. (35)-(37).
+  // The state is (error of attitude.error's kind, body rate), with Eq. (38)-(40) approximating (29)-(31).
+  // With kMotorLag it also has the present angular acceleration, from present_moment_frd, the present moment
+  // of the rotors (unused otherwise). The feed-forward is alpha_r, with kMotorLag alpha_r + tau
+  // d(alpha_r)/dt, which compensates the lag; with kRotation it is rotated from the reference's axes into
+  // the body's.
   //
-  // Finite at every attitude. An input that is not finite gives moments that are not finite, which Allocator
-  // takes.
+  // Finite at every attitude. Inputs that are not finite give moments that are not finite, which Allocator
+  // handles.
   Eigen::Vector3d moments(const Eigen::Quaterniond& q_ned_from_frd, const Eigen::Vector3d& body_rates_frd,
                           const Eigen::Vector3d& present_moment_frd,
                           const AttitudeReference& reference) const;
 
-  // Likewise for body rates, of which the attitude is left to itself: u = J k (wanted - rates) + omega x J
-  // omega, with the gains of the rates, and with kMotorLag of the present angular acceleration.
+  // The same for body rates without attitude control: u = J k (desired - rates) + omega x J omega, with the
+  // gains of the rates, and with kMotorLag of the present angular acceleration.
   Eigen::Vector3d moments_for_rates(const Eigen::Vector3d& body_rates_frd,
                                     const Eigen::Vector3d& present_moment_frd,
                                     const Eigen::Vector3d& wanted_rates_frd) const;
 
  private:
-  // Eq. (38)-(40) and (35)-(37), from the commanded moment / inertia as far as attitude and reference make
-  // it.
+  // Eq. (38)-(40) and (35)-(37). command: the part of moment / inertia that attitude and reference
+  // determine.
   Eigen::Vector3d linearised(const Eigen::Vector3d& command, const Eigen::Vector3d& body_rates_frd,
                              const Eigen::Vector3d& present_moment_frd,
                              const Eigen::Vector3d& wanted_acceleration) const;

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kOpposed = 1e-9;  // 1 + cosine of two directions that count as opposed
+constexpr double kOpposed = 1e-9;  // 1 + cosine below which two directions count as opposed
 
 // 2 sin(angle / 2) from the angle's cosine and sine.
 double chord(double cosine, double sine) {
@@ -57,7 +57,8 @@ RotationError rotation_error(const Eigen::Quaterniond& q_ned_from_frd, const Vec
     error.angle = {2.0, 0.0, chord(x.x(), -x.y())};  // half a turn about x takes y to -y
     return error;
   }
-  // Body z turned to z by its own shortest way; what that way back leaves of the wanted x axis shows the yaw.
+  // Rotates body z to z the shortest way. What this rotation, undone, leaves of the desired x axis is the
+  // yaw.
   const double scale = std::sqrt(2.0 / sum);
   const double part = x.z() / sum;
   error.angle = {-scale * z.y(), scale * z.x(), chord(x.x() - part * z.x(), x.y() - part * z.y())};

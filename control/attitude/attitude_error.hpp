@@ -1,7 +1,7 @@
-// How far the attitude is from the one that is asked for: by the paper's Euler angles, or by the rotation
-// itself. Both are about the body's axes and alike to first order.
+// The attitude error, by the paper's Euler angles or by the rotation itself. Both are about the body axes
+// and equal to first order.
 //
-// What is asked for is where the body z axis points, for that is where the thrust goes, and the Euler yaw.
+// The desired attitude is the direction of body z, which is the direction of thrust, and the Euler yaw.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@
 
 namespace swiftlet::control {
 
-// Of the angle between the body z axis and straight down: 1 upright, -1 upside down.
+// Cosine of the angle between body z and straight down: 1 upright, -1 upside down.
 inline double cosine_of_tilt(const Eigen::Quaterniond& q_ned_from_frd) {
   const Eigen::Quaterniond& q = q_ned_from_frd;
   return 1.0 - 2.0 * (q.x() * q.x() + q.y() * q.y());
@@ -23,26 +23,27 @@ inline Eigen::Vector3d body_z(const Eigen::Quaterniond& q_ned_from_frd) {
   return {2.0 * (q.x() * q.z() + q.w() * q.y()), 2.0 * (q.y() * q.z() - q.w() * q.x()), cosine_of_tilt(q)};
 }
 
-// The body's axes, as columns in NED, of the attitude whose z axis is body_z_ned, of unit length and less
-// than 90 degrees from straight down, and whose Euler yaw, Eq. (3), is the heading.
+// The body axes, as columns in NED, of the attitude whose z axis is body_z_ned (unit length, less than 90
+// degrees from straight down) and whose Euler yaw, Eq. (3), is the heading.
 Eigen::Matrix3d attitude_along(const Eigen::Vector3d& body_z_ned, const Heading& heading);
 
-// The differences of the Euler angles (phi, theta, psi), each in -pi .. pi. phi and theta point body z along
-// body_z_ned at the present yaw, so that the thrust points right while yaw is still turning:
+// Differences of the Euler angles (phi, theta, psi), each in -pi .. pi. The desired phi and theta point body
+// z along body_z_ned at the present yaw, so the thrust direction is right while yaw still turns:
 //   b = R_z(psi)' body_z_ned, phi_c = -asin b_y, theta_c = atan2(b_x, b_z).
-// Finite at every attitude, but phi and psi jump at theta = +-90 degrees: good for tilts up to about 80.
+// Finite at every attitude, but phi and psi jump at theta = +-90 degrees: usable for tilts up to about 80
+// degrees.
 Eigen::Vector3d euler_error(const Eigen::Quaterniond& q_ned_from_frd, const Eigen::Vector3d& body_z_ned,
                             double yaw_rad);
 
 struct RotationError {
-  Eigen::Vector3d angle = Eigen::Vector3d::Zero();  // about the body's axes, as below
+  Eigen::Vector3d angle = Eigen::Vector3d::Zero();  // about the body axes, as below
   Eigen::Matrix3d r_frd_from_reference = Eigen::Matrix3d::Identity();
 };
 
-// The rotation that is missing, in two parts that follow each other: the shortest one that brings body z to
-// where it should be, then one about z for yaw (Brescianini, Hehn, D'Andrea, "Nonlinear quadrocopter attitude
-// control", ETH 2013). Each counts as 2 sin(angle / 2) about its axis: the angle when it is small, at most 2,
-// and never without a way to go: upside down it turns about the body's x axis.
+// The rotation to the desired attitude, in two successive parts: the shortest one that brings body z to its
+// desired direction, then one about z for yaw (Brescianini, Hehn, D'Andrea, "Nonlinear quadrocopter attitude
+// control", ETH 2013). Each is 2 sin(angle / 2) about its axis: equal to the angle if small, at most 2, and
+// never without a direction: upside down it turns about the body x axis.
 RotationError rotation_error(const Eigen::Quaterniond& q_ned_from_frd, const Eigen::Vector3d& body_z_ned,
                              const Heading& heading);
 

@@ -47,7 +47,7 @@ void analyse(PositionAxisDesign& axis, const Loop& loop) {
   axis.phase_margin_deg = phase_margin_deg(loop);
 }
 
-// The position axis without integral has one state less, so that no pole stays at 0.
+// A position axis without integral has one state less, so that no pole stays at 0.
 Loop with_outer_states(const RptGains& gains, const Eigen::MatrixXd& actuator_a,
                        const Eigen::VectorXd& actuator_b, const Eigen::RowVectorXd& acceleration) {
   const Eigen::Index integral = gains.k_i > 0.0 ? 1 : 0;

@@ -1,5 +1,5 @@
-// All gains of the controller, from the vehicle and the settings: what FlightController flies and what
-// `swiftlet gains` prints.
+// All gains of the controller, from the vehicle and the settings. FlightController flies them, `swiftlet
+// gains` prints them.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ struct AttitudeAxisDesign {
       Eigen::Vector3d::Zero();              // rad/s^2 per rad, per rad/s, per rad/s^2; [2] is 0 on (38)-(40)
   std::vector<std::complex<double>> poles;  // rad/s, of the closed loop on the model it is designed on
   std::vector<std::complex<double>> poles_with_lag;  // rad/s, of the closed loop with the rotor lag
-  double phase_margin_deg = 0.0;                     // cut at the rotor command, rotor lag included
+  double phase_margin_deg = 0.0;                     // at the rotor command, rotor lag included
 };
 
 // a = a_r + k_v (u_r - u) + k_p (x_r - x) + k_i integral(x_r - x), Eq. (48) and its integral form.
@@ -38,15 +38,15 @@ struct PositionAxisDesign {
   RptSettings settings;
   Eigen::Matrix<double, 5, 1> f =
       Eigen::Matrix<double, 5, 1>::Zero();  // Eq. (49) for the state (45); without integral
-  RptGains gains;                           // what is flown; with the integral if integral_pole > 0
+  RptGains gains;                           // gains flown; with the integral if integral_pole > 0
   std::vector<std::complex<double>> poles;  // rad/s, of the closed loop with the inner loop and the rotor lag
-  double phase_margin_deg = 0.0;  // cut at the acceleration command, inner loop and rotor lag included
+  double phase_margin_deg = 0.0;            // at the acceleration command, inner loop and rotor lag included
 };
 
 struct ControlDesign {
   double rotor_lag_s = 0.0;  // tau_m of Eq. (18)
   AttitudeAxisDesign roll, pitch, yaw;
-  PositionAxisDesign x, y, z;  // margins and poles with x over pitch, y over roll (yaw 0), z over the rotors
+  PositionAxisDesign x, y, z;  // poles and margins: x over pitch, y over roll (yaw 0), z over the rotors
 };
 
 // (A, B) of one attitude axis: Eq. (38)-(40), or with moment / inertia as third state, tau d(m)/dt = u - m.
@@ -56,8 +56,8 @@ struct StateSpace {
 };
 StateSpace attitude_axis_model(AttitudeModel model, double rotor_lag_s);
 
-// How the rotors answer on one axis: gain times what is commanded, behind the lag. The controller sees
-// `observed` times the answer. 1 both on the vehicle that the loops are designed on.
+// Response of the rotors on one axis: gain times the command, behind the lag. The controller observes
+// `observed` times the response. Both factors are 1 on the vehicle that the loops are designed for.
 struct RotorResponse {
   double lag_s = 0.0;
   double gain = 1.0;
@@ -68,7 +68,7 @@ struct RotorResponse {
 Loop attitude_loop(const Eigen::Vector3d& k, const RotorResponse& moment);
 
 // A horizontal position axis over a closed attitude axis, cut at the acceleration command (small angles:
-// acceleration = tilt_gain * g * angle, the angle command takes the acceleration command at once).
+// acceleration = tilt_gain * g * angle; the acceleration command is the angle command without delay).
 Loop horizontal_position_loop(const RptGains& gains, const Eigen::Vector3d& attitude_k,
                               const RotorResponse& moment, double tilt_gain = 1.0);
 
@@ -84,11 +84,12 @@ RptGains rpt_gains(const RptSettings& settings);
 // LQR of one attitude axis. Throws std::invalid_argument with a sentence if the weights break a rule.
 AttitudeAxisDesign design_attitude_axis(AttitudeModel model, const LqrWeights& weights, double rotor_lag_s);
 
-// Everything. Throws std::invalid_argument with a sentence if the vehicle or the settings break a rule.
+// Designs all gains. Throws std::invalid_argument with a sentence if the vehicle or the settings break a
+// rule.
 ControlDesign design(const plant::Vehicle& vehicle, const ControlSettings& settings);
 
-// Which loops would not be stable with the rotor lag, keys as in the control settings file; empty for one
-// that can be flown. design() hands such gains out all the same, so that they can be looked at.
+// The loops that are unstable with the rotor lag, keys as in the control settings file; empty if the design
+// can be flown. design() returns unstable designs too, for inspection.
 std::vector<plant::Violation> unstable_loops(const ControlDesign& design);
 
 }  // namespace swiftlet::control

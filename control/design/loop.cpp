@@ -11,8 +11,8 @@ namespace swiftlet::control {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-// An eigenvalue of the Hamiltonian counts as imaginary if the gain there is one to within this; rounding
-// moves the eigenvalue by far less, and a Newton-like step then brings the gain to one.
+// An eigenvalue of the Hamiltonian counts as imaginary if the gain there is one to within this. Rounding
+// moves the eigenvalue by far less. A root search then brings the gain to one.
 constexpr double kGainTolerance = 1e-4;
 
 double log_gain(const Loop& loop, double omega) {

@@ -17,13 +17,12 @@ struct Loop {
 // L(j omega) = c (j omega I - A)^-1 b, omega in rad/s, not a pole of the open loop.
 std::complex<double> frequency_response(const Loop& loop, double omega);
 
-// Every omega > 0, rad/s, at which |L(j omega)| = 1, rising. From the imaginary eigenvalues of the
+// All omega > 0, rad/s, ascending, at which |L(j omega)| = 1. From the imaginary eigenvalues of the
 // Hamiltonian [A, bb'; -c'c, -A'] (Boyd, Balakrishnan, Kabamba 1989), so none is missed between grid points.
 std::vector<double> crossovers(const Loop& loop);
 
-// The phase, in degrees, by which the loop may turn at a crossover before it reaches -180 degrees: the one of
-// least magnitude over all crossovers. Negative if the loop is beyond -180 there; infinite without a
-// crossover.
+// Phase margin in degrees: the one of least magnitude over all crossovers. Negative if the phase there is
+// beyond -180 degrees; infinite without a crossover.
 double phase_margin_deg(const Loop& loop);
 
 // Eigenvalues of A - b c, sorted by real, then imaginary part.

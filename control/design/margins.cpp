@@ -12,13 +12,13 @@ namespace swiftlet::control {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kNearAxis = 1e-3;      // real over imaginary part of a zero that may lie on the axis
-constexpr double kRealResponse = 1e-9;  // imaginary over real part of the response, up to which it is real
-constexpr double kLowest = 1e-4;        // rad/s: zeros below are those at 0, rounded
+constexpr double kNearAxis = 1e-3;      // real over imaginary part up to which a zero may lie on the axis
+constexpr double kRealResponse = 1e-9;  // imaginary over real part up to which a response counts as real
+constexpr double kLowest = 1e-4;        // rad/s: zeros below count as 0
 constexpr double kShift = 1.1;          // over the mean pole: the pencil is not singular there
 
-// The geometric mean of the sizes of the poles that are not at 0, rad/s: about as fast as the zeros to be found, so that
-// slow ones keep their digits.
+// The geometric mean of the magnitudes of the poles that are not at 0, rad/s. It is of the order of the
+// zeros to be found, so that slow ones keep their precision.
 double mean_pole(const Loop& loop) {
   double log_sum = 0.0;
   int count = 0;
@@ -30,7 +30,7 @@ double mean_pole(const Loop& loop) {
   return count > 0 ? std::exp(log_sum / count) : 1.0;
 }
 
-// Secant steps on the phase of -L over log omega from a start that is nearly right.
+// Secant steps on the phase of -L over log omega, from a good initial value.
 double refine_phase_crossover(const Loop& loop, double omega) {
   const auto phase = [&](double log_omega) {
     const std::complex<double> response = frequency_response(loop, std::exp(log_omega));
@@ -41,9 +41,9 @@ double refine_phase_crossover(const Loop& loop, double omega) {
 
 }  // namespace
 
-// Of the 2n + 1 zeros of L(s) - L(-s) = c (sI - A)^-1 b + c (sI + A)^-1 b those on the imaginary axis. The zeros are
-// the s at which the pencil S - s E is singular; as E is singular too, they come from the eigenvalues 1 / (s - shift) of
-// (S - shift E)^-1 E, and each is then made exact.
+// The imaginary ones of the 2n + 1 zeros of L(s) - L(-s) = c (sI - A)^-1 b + c (sI + A)^-1 b. The zeros are
+// the s at which the pencil S - s E is singular. E is singular too, so they come from the eigenvalues 1 / (s
+// - shift) of (S - shift E)^-1 E. Each is then refined.
 std::vector<double> phase_crossovers(const Loop& loop) {
   const Eigen::Index n = loop.a.rows();
   const Eigen::Index size = 2 * n + 1;
@@ -80,7 +80,7 @@ LoopMargins margins(const Loop& loop) {
   out.phase_deg = phase;
   out.delay_s = std::numeric_limits<double>::infinity();
   for (const double omega : crossovers(loop)) {
-    double left = std::arg(-frequency_response(loop, omega));  // by which a delay may turn it
+    double left = std::arg(-frequency_response(loop, omega));  // phase margin against a delay
     if (left < 0.0) left += 2.0 * kPi;
     out.delay_s = std::min(out.delay_s, left / omega);
   }

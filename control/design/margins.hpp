@@ -1,22 +1,21 @@
-// How far a closed loop is from the end of its stability.
+// Stability margins of a closed loop.
 #pragma once
 
 #include "swiftlet/control/design/loop.hpp"
 
 namespace swiftlet::control {
 
-// Of a loop that is closed by u = -y. One that is not stable has none: phase at most 0, both gains 1, no
-// delay.
+// Margins of a loop closed by u = -y. An unstable loop has none: phase at most 0, both gains 1, no delay.
 struct LoopMargins {
   double phase_deg = 0.0;  // as phase_margin_deg(); infinite without a crossover
   double gain_increase =
-      1.0;  // the least factor above 1 on the loop's gain that it does not bear; infinite if it bears any
-  double gain_decrease = 1.0;  // the largest below 1, likewise; 0 if it bears any
-  double delay_s = 0.0;        // the least further delay that it does not bear; infinite if it bears any
+      1.0;  // least factor above 1 on the loop gain that makes it unstable; infinite if none does
+  double gain_decrease = 1.0;  // largest factor below 1, likewise; 0 if none does
+  double delay_s = 0.0;        // s, least added delay that makes it unstable; infinite if none does
 };
 
-// Every omega > 0, rad/s, at which L(j omega) is real, rising. They are the imaginary zeros of L(s) - L(-s),
-// so none is missed between grid points.
+// All omega > 0, rad/s, ascending, at which L(j omega) is real: the imaginary zeros of L(s) - L(-s), so none
+// is missed between grid points.
 std::vector<double> phase_crossovers(const Loop& loop);
 
 LoopMargins margins(const Loop& loop);

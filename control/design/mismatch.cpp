@@ -9,7 +9,7 @@
 namespace swiftlet::control {
 namespace {
 
-// One rotor in hover: what the controller asks of it, and by how much its thrust changes with that.
+// One rotor in hover: the commanded thrust, and the change of actual thrust with it.
 struct HoverPoint {
   double commanded_thrust_n = 0.0;
   double thrust_gain = 1.0;  // d thrust / d commanded thrust
@@ -33,7 +33,7 @@ HoverPoint hover_point(const plant::Vehicle& designed, const plant::Vehicle& flo
           speed_per_thrust * voltage_per_speed * voltage_per_voltage * speed_per_voltage * thrust_per_speed};
 }
 
-// Beyond -180 degrees at a crossover or not, a loop that does not settle has no margin.
+// A loop that is not stable has no margin, whatever its phase at the crossovers.
 double margin_of(const Loop& loop) {
   const double margin = phase_margin_deg(loop);
   return closed_loop_poles(loop).back().real() < 0.0 ? margin : std::min(margin, 0.0);
@@ -48,7 +48,7 @@ LoopSet loops_on(const ControlDesign& design, const plant::Vehicle& designed, co
   const double thrust_ratio = flown.rotor.thrust / designed.rotor.thrust;
   const double torque_ratio = flown.rotor.torque / designed.rotor.torque;
 
-  // Moment / inertia: commanded with the inertia, observed with the rotor factors of the design.
+  // Moment / inertia: commanded with the design's inertia, observed with the design's rotor coefficients.
   const auto moment = [&](int axis, double factor_ratio) {
     const double inertia_ratio = flown.inertia(axis, axis) / designed.inertia(axis, axis);
     return RotorResponse{lag, hover.thrust_gain * factor_ratio / thrust_ratio / inertia_ratio,

@@ -6,11 +6,11 @@ namespace swiftlet::control {
 
 void DisturbanceObserver::step(double dt_s, const Eigen::Vector3d& specific_force_frd,
                                const Eigen::Quaterniond& q_ned_from_frd, double lift) {
-  const double turned = settings_.bandwidth * dt_s;
+  const double bandwidth_dt = settings_.bandwidth * dt_s;
   const Eigen::Vector3d unexplained_frd = specific_force_frd + lift * Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d unexplained_ned = q_ned_from_frd * unexplained_frd;
   if (!unexplained_ned.allFinite()) return;
-  acceleration_ned_ += turned / (1.0 + turned) * (unexplained_ned - acceleration_ned_);
+  acceleration_ned_ += bandwidth_dt / (1.0 + bandwidth_dt) * (unexplained_ned - acceleration_ned_);
   const double squared = acceleration_ned_.squaredNorm();
   if (squared > settings_.limit * settings_.limit) acceleration_ned_ *= settings_.limit / std::sqrt(squared);
 }

@@ -1,7 +1,6 @@
-// What pushes the vehicle besides the thrust that is known: wind, drag, a wrong mass, weak rotors. The
-// accelerometer feels all of it at once; what the rotors' thrust explains is taken away (a disturbance
-// observer: Ohnishi 1987; with the accelerometer as here: Smeur, de Croon, Chu, "Cascaded incremental
-// nonlinear dynamic inversion", 2018).
+// Disturbance observer: estimates the acceleration that the modelled thrust does not explain (wind, drag, a
+// wrong mass, weak rotors). It is the measured specific force less that of the rotors' thrust (Ohnishi 1987;
+// with the accelerometer: Smeur, de Croon, Chu, "Cascaded incremental nonlinear dynamic inversion", 2018).
 #pragma once
 
 #include <Eigen/Core>
@@ -15,13 +14,13 @@ class DisturbanceObserver {
  public:
   explicit DisturbanceObserver(const DisturbanceSettings& settings) : settings_(settings) {}
 
-  // A step of dt_s > 0 in free flight. specific_force_frd: measured, bias removed, m/s^2; lift: what the
-  // rotors' thrust gives, thrust over mass, m/s^2. Low-passed at settings.bandwidth, its length kept within
-  // settings.limit; an input that is not finite changes nothing. Bandwidth 0: it stays zero.
+  // A step of dt_s > 0 in free flight. specific_force_frd: measured, bias removed, m/s^2. lift: rotor thrust
+  // over mass, m/s^2. Low-passes the difference at settings.bandwidth and limits its length to
+  // settings.limit. Ignores an input that is not finite. With bandwidth 0 the estimate stays zero.
   void step(double dt_s, const Eigen::Vector3d& specific_force_frd, const Eigen::Quaterniond& q_ned_from_frd,
             double lift);
 
-  // Forgets: the vehicle stands on something that carries it.
+  // Sets the estimate to zero: for a vehicle on the ground, whose contact force is no disturbance.
   void reset() { acceleration_ned_.setZero(); }
 
   const Eigen::Vector3d& acceleration_ned() const { return acceleration_ned_; }  // m/s^2

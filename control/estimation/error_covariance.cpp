@@ -11,7 +11,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-// Where the error's parts begin.
+// Offsets of the error's parts.
 constexpr int kPosition = 0;
 constexpr int kVelocity = 3;
 constexpr int kRotation = 6;
@@ -50,7 +50,7 @@ Transition transition(const ErrorInterval& interval) {
   return f;
 }
 
-// F X, of errors in the columns of X.
+// F X, for errors in the columns of X.
 template <class Columns>
 Columns product(const Transition& f, const Columns& x) {
   const auto velocity = x.template middleRows<3>(kVelocity);
@@ -72,7 +72,7 @@ Columns product(const Transition& f, const Columns& x) {
   return out;
 }
 
-// Without what rounding has made of a symmetric matrix.
+// Removes the asymmetry that rounding has caused.
 ErrorMatrix symmetric(const ErrorMatrix& m) { return 0.5 * (m + m.transpose()); }
 
 }  // namespace
@@ -85,7 +85,7 @@ void ErrorCovariance::reset(const ErrorState& standard_deviation) {
   p_ = standard_deviation.cwiseAbs2().asDiagonal();
 }
 
-// P <- F P F' + Q: F (F P)', P being symmetric.
+// P <- F P F' + Q, computed as F (F P)', since P is symmetric.
 void ErrorCovariance::advance(const ErrorInterval& interval, const ErrorNoise& noise) {
   const Transition f = transition(interval);
   const ErrorMatrix f_p = product(f, p_);

@@ -2,12 +2,12 @@
 // frame: J. Sola, "Quaternion kinematics for the error-state Kalman filter", 2017, arXiv:1711.02508, ch. 7,
 // "The ESKF using global angular errors".
 //
-// The error is (position, velocity, rotation vector, gyro bias, accelerometer bias), truth less estimate: the
-// first three in NED, the biases in FRD; the true attitude is rotation(error) * q_ned_from_frd. With R =
-// R_ned_from_frd and f = R * (specific force less bias) it moves by Sola's Eq. (300)-(302),
+// The error is (position, velocity, rotation vector, gyro bias, accelerometer bias), truth minus estimate:
+// the first three in NED, the biases in FRD. The true attitude is rotation(error) * q_ned_from_frd. With R =
+// R_ned_from_frd and f = R * (specific force - bias) the error obeys Sola's Eq. (300)-(302),
 //   d position = velocity,  d velocity = -[f]x rotation - R accelerometer_bias - noise,
 //   d rotation = -R gyro_bias - noise.
-// Over an interval T that is, exact for constant f and R,
+// Integrated over an interval T, exactly for constant f and R, this is
 //
 //       | I   T I   -[s]x    T/3 [s]x R   -T^2/2 R |   position
 //       | 0    I    -[u]x    T/2 [u]x R      -T R  |   velocity
@@ -15,9 +15,9 @@
 //       | 0    0      0          I             0   |   gyro bias
 //       | 0    0      0          0             I   |   accelerometer bias
 //
-// with u and s the integral of f and its second integral. With a world-frame error, R does not turn position,
-// velocity and rotation, and the nominal state knows u and s already. So the covariance P waits at the last
-// pose and is brought to the next in one step, P <- F P F' + Q, and not with each IMU sample.
+// with u the integral of f and s its second integral. With a world-frame error, R does not rotate position,
+// velocity and rotation, and u and s are known from the nominal state. So the covariance P stays at the time
+// of the last pose and is propagated to the next in one step, P <- F P F' + Q, not with each IMU sample.
 //
 // A pose measures z = H error + noise of covariance V (Sola's 6.1, "Observation of the error state via filter
 // correction"),
@@ -25,9 +25,9 @@
 //   H = | I 0 0 0 0 |,   S = H P H' + V,   K = P H' S^-1,   error = K z,   P <- P - K S K'.
 //       | 0 0 I 0 0 |
 //
-// The last is the symmetric form of (I - K H) P. It equals Joseph's, (I - K H) P (I - K H)' + K V K', for this K,
-// and no other K is used with it; V is far above the rounding of H P H', so that P stays positive definite
-// (estimator_consistency_test.cpp has both).
+// The last equation is the symmetric form of (I - K H) P. It equals Joseph's form, (I - K H) P (I - K H)' +
+// K V K', for this K, and no other K is used. V is far above the rounding error of H P H', so P stays
+// positive definite (estimator_consistency_test.cpp tests both).
 #pragma once
 
 #include <Eigen/Core>
@@ -38,17 +38,17 @@ constexpr int kErrorStates = 15;
 using ErrorState = Eigen::Matrix<double, kErrorStates, 1>;
 using ErrorMatrix = Eigen::Matrix<double, kErrorStates, kErrorStates>;
 
-// An interval of the nominal path, short enough for one R and one mean of f: some 20 ms. Negative intervals
+// An interval of the nominal path, short enough for one R and one mean of f: about 20 ms. Negative intervals
 // run backwards.
 struct ErrorInterval {
   double duration_s = 0.0;
   Eigen::Vector3d velocity_change = Eigen::Vector3d::Zero();  // m/s, integral of f: without gravity
   Eigen::Vector3d position_change =
       Eigen::Vector3d::Zero();  // m, its second integral: without gravity and first velocity
-  Eigen::Matrix3d r_ned_from_frd = Eigen::Matrix3d::Identity();  // in its middle
+  Eigen::Matrix3d r_ned_from_frd = Eigen::Matrix3d::Identity();  // at its middle
 };
 
-// Variances that a second adds.
+// Variance that is added per second.
 struct ErrorNoise {
   double velocity = 0.0;            // (m/s)^2/s, the square of the accelerometer's noise density
   double rotation = 0.0;            // rad^2/s
@@ -56,7 +56,7 @@ struct ErrorNoise {
   double accelerometer_bias = 0.0;  // (m/s^2)^2/s
 };
 
-// A measured pose less the estimated one, both at the covariance's time.
+// Measured pose minus estimated pose, both at the covariance's time.
 struct PoseInnovation {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // m, NED
   Eigen::Vector3d rotation = Eigen::Vector3d::Zero();  // rad, in NED
@@ -66,14 +66,14 @@ class ErrorCovariance {
  public:
   ErrorCovariance() { reset(ErrorState::Zero()); }
 
-  // Uncorrelated, from standard deviations.
+  // Sets a diagonal covariance from standard deviations.
   void reset(const ErrorState& standard_deviation);
 
   void advance(const ErrorInterval& interval, const ErrorNoise& noise);
-  // Adds to the variances of position, velocity and rotation: for what was not measured.
+  // Adds variance to position, velocity and rotation, for motion that was not measured.
   void add_motion(double position_variance, double velocity_variance, double rotation_variance);
 
-  // What a pose says. Holds until the covariance changes.
+  // The update of a pose. Valid until the covariance changes.
   class Update {
    public:
     // z' S^-1 z, chi-square of 6 degrees of freedom.
@@ -89,7 +89,7 @@ class ErrorCovariance {
   };
   Update compute_update(const PoseInnovation& innovation, double position_variance,
                         double rotation_variance) const;
-  // The covariance after the correction has been made.
+  // Sets the covariance to that after the update.
   void apply_update(const Update& correction);
 
   ErrorState standard_deviation() const { return p_.diagonal().cwiseMax(0.0).cwiseSqrt(); }

@@ -13,11 +13,11 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-// How finely the covariance follows: F takes f and R for constant over an interval.
+// Longest interval of one covariance propagation, in which F takes f and R as constant.
 constexpr std::int64_t kInterval_ns = 20'000'000;
-constexpr std::uint64_t kIntervalMoments = 32;  // of the history, likewise
-constexpr double kUnitTolerance = 0.01;         // of a quaternion's length
-constexpr double kLongFall = 1e3;               // m/s, before the first pose: numbers lose their last digits
+constexpr std::uint64_t kIntervalEntries = 32;  // history entries per covariance propagation
+constexpr double kUnitTolerance = 0.01;         // allowed deviation of a quaternion's length from 1
+constexpr double kMaxFallSpeed = 1e3;           // m/s before the first pose; above it precision is lost
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
@@ -27,7 +27,7 @@ double squared(double x) { return x * x; }
 
 Vector3d bounded(const Vector3d& v, double limit) { return v.cwiseMax(-limit).cwiseMin(limit); }
 
-// Between attitudes of a path that are close to each other, up to their signs.
+// Weighted mean of two attitudes that are close to each other, whatever the signs of the quaternions.
 Quaterniond mean(const Quaterniond& a, double part_a, const Quaterniond& b, double part_b) {
   const double sign = a.dot(b) < 0.0 ? -1.0 : 1.0;
   return Quaterniond((part_a * a.coeffs() + sign * part_b * b.coeffs()).eval()).normalized();
@@ -58,7 +58,7 @@ const char* to_string(PoseFault fault) {
 Estimator::Estimator(const EstimatorSettings& settings)
     : settings_(settings),
       detectors_(settings.detectors),
-      repetition_(settings.detectors.stuck_pose),
+      stuck_pose_(settings.detectors.stuck_pose),
       continuity_(settings) {
   noise_.velocity = squared(settings.accelerometer_noise_density);
   noise_.rotation = squared(settings.gyro_noise_density);
@@ -78,15 +78,15 @@ bool Estimator::predict(const plant::ImuSample& sample) {
   const double dt =
       first ? 0.0 : std::min(seconds(sample.stamp_ns - last_imu_.stamp_ns), detectors_.imu_silence.longest_s);
   if (dt > detectors_.imu_silence.from_s) {
-    unseen_ = true;
-    seen_again_ns_ = sample.stamp_ns;
-    trial_.begin();
+    imu_was_silent_ = true;
+    silence_end_ns_ = sample.stamp_ns;
+    pose_imu_test_.begin();
   }
   const plant::ImuSample& before = first ? sample : last_imu_;
   now_.stamp_ns = sample.stamp_ns;
   now_.body_rates_frd = sample.body_rates_frd - now_.gyro_bias;
 
-  // Sola's nominal state, q <- q rotation(w dt), v <- v + (R a + g) dt, over the mean of the two samples
+  // Sola's nominal state, q <- q rotation(w dt), v <- v + (R a + g) dt, with the mean of the two samples
   const Vector3d mean_rates = 0.5 * (before.body_rates_frd + sample.body_rates_frd) - now_.gyro_bias;
   const Vector3d mean_force =
       0.5 * (before.specific_force_frd + sample.specific_force_frd) - now_.accelerometer_bias;
@@ -97,13 +97,13 @@ bool Estimator::predict(const plant::ImuSample& sample) {
   path_.position_ned += dt * path_.velocity_ned + (0.5 * dt * dt) * acceleration;
   path_.velocity_ned += dt * acceleration;
   path_.q_ned_from_frd = plant::renormalised(q_mid * half_turn);
-  if (!initialised_ && path_.velocity_ned.norm() > kLongFall) {  // anew: the start is arbitrary
+  if (!initialised_ && path_.velocity_ned.norm() > kMaxFallSpeed) {  // restart: the start is arbitrary
     path_.position_ned.setZero();
     path_.velocity_ned.setZero();
     next_ = 0;
   }
   store_history();
-  if (initialised_) show_path();
+  if (initialised_) publish_path();
   last_imu_ = sample;
   return true;
 }
@@ -128,7 +128,7 @@ PoseFault Estimator::fuse(const plant::PoseSample& pose, plant::RotorState rotor
   }
   if (initialised_ && (pose.stamp_ns <= pose_stamp_ns_ || pose.stamp_ns < anchor_.stamp_ns))
     return PoseFault::kUntimely;
-  repetition_.look_at(pose, rotors);
+  stuck_pose_.look_at(pose, rotors);
   continuity_.look_at(pose);
   if (!initialised_) {
     start_at(pose);
@@ -139,13 +139,13 @@ PoseFault Estimator::fuse(const plant::PoseSample& pose, plant::RotorState rotor
   const ErrorCovariance::Update correction = compute_update(innovation);
   normalised_innovation_ = correction.normalised_square();
   const bool contradicts = normalised_innovation_ > settings_.gate_chi_square;
-  // Without noise, a vehicle that stands repeats its pose: believed as any other with the rotors off.
-  const bool stuck = contradicts && repetition_.repeats() && rotors != plant::RotorState::kOff;
-  if (repetition_.frozen() || stuck) return PoseFault::kFrozen;
-  const bool believed = rotors == plant::RotorState::kOff || believed_after_silence(pose, innovation);
+  // A stream without noise repeats its pose while the vehicle stands: with the rotors off it is not stuck.
+  const bool stuck = contradicts && stuck_pose_.repeats() && rotors != plant::RotorState::kOff;
+  if (stuck_pose_.frozen() || stuck) return PoseFault::kFrozen;
+  const bool trusted = rotors == plant::RotorState::kOff || trusted_after_silence(pose, innovation);
   const bool far_off = innovation.position.norm() > settings_.outlier_position_m ||
                        innovation.rotation.norm() > outlier_rotation();
-  if (!believed || (contradicts && far_off)) return disagree(pose, innovation, rotors, believed);
+  if (!trusted || (contradicts && far_off)) return disagree(pose, innovation, rotors, trusted);
 
   accept(pose);
   contradictions_ = contradicts ? contradictions_ + 1 : 0;
@@ -157,27 +157,27 @@ PoseFault Estimator::fuse(const plant::PoseSample& pose, plant::RotorState rotor
   return PoseFault::kNone;
 }
 
-// z = y - h(x) of Sola's 6.1, at the pose's own stamp, to which the covariance is brought.
+// z = y - h(x) of Sola's 6.1 at the pose's own stamp, to which the covariance is propagated.
 PoseInnovation Estimator::compare(const plant::PoseSample& pose) {
   std::uint64_t first_newer = next_;
   while (first_newer > first_after_anchor_ && history_at(first_newer - 1).stamp_ns > pose.stamp_ns)
     --first_newer;
-  const StateSnapshot moment = moment_at(std::min(pose.stamp_ns, now_.stamp_ns), first_newer);
-  advance(covariance_, anchor_, first_after_anchor_, moment);
-  anchor_at(moment, first_newer);
+  const StateSnapshot snapshot = state_at(std::min(pose.stamp_ns, now_.stamp_ns), first_newer);
+  advance(covariance_, anchor_, first_after_anchor_, snapshot);
+  anchor_at(snapshot, first_newer);
 
-  // A pose that is ahead of the IMU is compared with where the estimate goes.
-  const double ahead_s = seconds(pose.stamp_ns - moment.stamp_ns);
-  const Quaterniond q_ned_from_frd = moment.q_ned_from_frd * plant::rotation(ahead_s * now_.body_rates_frd);
+  // A pose ahead of the IMU is compared with the extrapolated estimate.
+  const double ahead_s = seconds(pose.stamp_ns - snapshot.stamp_ns);
+  const Quaterniond q_ned_from_frd = snapshot.q_ned_from_frd * plant::rotation(ahead_s * now_.body_rates_frd);
   PoseInnovation innovation;
-  innovation.position = pose.position_ned - (moment.position_ned + ahead_s * moment.velocity_ned);
+  innovation.position = pose.position_ned - (snapshot.position_ned + ahead_s * snapshot.velocity_ned);
   innovation.rotation = plant::rotation_vector(pose.q_ned_from_frd.normalized() * q_ned_from_frd.conjugate());
   return innovation;
 }
 
 void Estimator::accept(const plant::PoseSample& pose) {
   continuity_.begin();
-  unseen_ = false;
+  imu_was_silent_ = false;
   refused_in_a_row_ = 0;
   pose_stamp_ns_ = pose.stamp_ns;
   pose_sequence_ = pose.sequence;
@@ -202,43 +202,44 @@ ErrorCovariance::Update Estimator::compute_update(const PoseInnovation& innovati
                                     squared(settings_.mocap_orientation_sigma));
 }
 
-// What turns further from one pose to the next than the gyro ever misleads was not turned.
+// A rotation between two poses beyond the largest gyro error did not happen.
 double Estimator::outlier_rotation() const {
   const double gyro_slip = 0.5 * settings_.max_body_rate;
   return std::min(settings_.outlier_orientation_rad,
                   detectors_.continuity.noise_rad + gyro_slip * continuity_.interval_s());
 }
 
-// What only a motion explains that the IMU did not see: the poses must go on in reach, and as the IMU has it
-// since.
-bool Estimator::believed_after_silence(const plant::PoseSample& pose, const PoseInnovation& innovation) {
+// After an IMU silence, a pose with a large innovation is trusted only if its stream stayed in reach and its
+// motion since agrees with the IMU.
+bool Estimator::trusted_after_silence(const plant::PoseSample& pose, const PoseInnovation& innovation) {
   const double turn = std::max(detectors_.imu_silence.turn_rad,
                                detectors_.imu_silence.turn_sigmas * settings_.mocap_orientation_sigma);
-  if (!unseen_ ||
+  if (!imu_was_silent_ ||
       (innovation.position.norm() < settings_.outlier_position_m && innovation.rotation.norm() < turn))
     return true;
-  if (pose.stamp_ns < seen_again_ns_) return false;
-  if (continuity_.poses() == 1) trial_.begin();
-  const PoseImuConsistencyTest::Verdict verdict = trial_.look_at(pose, innovation, settings_);
+  if (pose.stamp_ns < silence_end_ns_) return false;
+  if (continuity_.poses() == 1) pose_imu_test_.begin();
+  const PoseImuConsistencyTest::Verdict verdict = pose_imu_test_.look_at(pose, innovation, settings_);
   if (verdict == PoseImuConsistencyTest::Verdict::kDisagree && continuity_.in_reach())
     continuity_.reject_track();
   return verdict == PoseImuConsistencyTest::Verdict::kAgree && continuity_.in_reach();
 }
 
 PoseFault Estimator::disagree(const plant::PoseSample& pose, const PoseInnovation& innovation,
-                              plant::RotorState rotors, bool believed) {
+                              plant::RotorState rotors, bool trusted) {
   if (refused_in_a_row_++ == 0) {
-    // What the IMU misleads to grows from pose to pose; what comes at once is a jump, unless the IMU was
+    // An IMU error grows from pose to pose. An innovation that appears at once is a jump, unless the IMU was
     // silent.
     const bool sudden =
         innovation.position.norm() > detectors_.recovery.sudden * settings_.outlier_position_m ||
         innovation.rotation.norm() > outlier_rotation();
-    if (unseen_ && continuity_.in_reach()) continuity_.begin();
-    if (!unseen_ && sudden) continuity_.end();
+    if (imu_was_silent_ && continuity_.in_reach()) continuity_.begin();
+    if (!imu_was_silent_ && sudden) continuity_.end();
   }
-  const bool goes_on = believed && continuity_.unbroken() && continuity_.poses() >= detectors_.recovery.poses;
+  const bool continuous =
+      trusted && continuity_.unbroken() && continuity_.poses() >= detectors_.recovery.poses;
   const bool at_rest = rotors == plant::RotorState::kOff && continuity_.lasting();
-  if (refused_in_a_row_ >= detectors_.recovery.poses && (goes_on || at_rest)) {
+  if (refused_in_a_row_ >= detectors_.recovery.poses && (continuous || at_rest)) {
     restart_at(pose, innovation);
     return PoseFault::kNone;
   }
@@ -246,7 +247,7 @@ PoseFault Estimator::disagree(const plant::PoseSample& pose, const PoseInnovatio
                                                                    : PoseFault::kOutlier;
 }
 
-// Takes a step of the error state at the anchor into the nominal state, there and since.
+// Applies an error-state step at the anchor to the nominal state, there and since.
 void Estimator::apply(const ErrorState& step) {
   const Eigen::Matrix3d r = anchor_.q_ned_from_frd.toRotationMatrix();
   if (next_ > first_after_anchor_ &&
@@ -259,9 +260,9 @@ void Estimator::apply(const ErrorState& step) {
   correction.rotation = step.segment<3>(6);
   correction.rate = r * step.segment<3>(9);
   correction.acceleration = r * step.segment<3>(12);
-  correction.carry_to(anchor_);
-  correction.carry_to(path_);
-  show_path();
+  correction.apply_to(anchor_);
+  correction.apply_to(path_);
+  publish_path();
 
   const Vector3d gyro_bias = bounded(now_.gyro_bias + step.segment<3>(9), settings_.gyro_bias_limit);
   now_.body_rates_frd += now_.gyro_bias - gyro_bias;
@@ -270,24 +271,25 @@ void Estimator::apply(const ErrorState& step) {
       bounded(now_.accelerometer_bias + step.segment<3>(12), settings_.accelerometer_bias_limit);
 }
 
-// F of error_covariance.hpp, with the attitude's step as a rotation: Sola's 7.3.2, "Injection of the observed error
-// into the nominal state", q <- rotation(step) q. The covariance's reset, P <- G P G' with G = I + [step / 2]x up to
-// sign, is left out: G is I within half a step of the attitude, some mrad.
-void Estimator::Correction::carry_to(StateSnapshot& moment) const {
-  const ErrorInterval since = interval(at, moment);
+// F of error_covariance.hpp, with the attitude step as a rotation: Sola's 7.3.2, "Injection of the observed
+// error into the nominal state", q <- rotation(step) q. The covariance's reset, P <- G P G' with G = I +
+// [step / 2]x up to sign, is left out: G differs from I by half a step of attitude, some mrad.
+void Estimator::Correction::apply_to(StateSnapshot& snapshot) const {
+  const ErrorInterval since = interval(at, snapshot);
   const double t = since.duration_s;
-  moment.position_ned += position + t * velocity - since.position_change.cross(rotation - (t / 3) * rate) -
-                         (t * t / 2) * acceleration;
-  moment.velocity_ned += velocity - since.velocity_change.cross(rotation - (t / 2) * rate) - t * acceleration;
-  moment.q_ned_from_frd = (plant::rotation(rotation - t * rate) * moment.q_ned_from_frd).normalized();
-  ++moment.corrections;
+  snapshot.position_ned += position + t * velocity - since.position_change.cross(rotation - (t / 3) * rate) -
+                           (t * t / 2) * acceleration;
+  snapshot.velocity_ned +=
+      velocity - since.velocity_change.cross(rotation - (t / 2) * rate) - t * acceleration;
+  snapshot.q_ned_from_frd = (plant::rotation(rotation - t * rate) * snapshot.q_ned_from_frd).normalized();
+  ++snapshot.corrections;
 }
 
 Estimator::StateSnapshot Estimator::snapshot_at(std::uint64_t number) const {
-  StateSnapshot moment = history_at(number);
-  while (moment.corrections < corrections_made_)
-    corrections_[moment.corrections % kCorrections].carry_to(moment);
-  return moment;
+  StateSnapshot snapshot = history_at(number);
+  while (snapshot.corrections < corrections_made_)
+    corrections_[snapshot.corrections % kCorrections].apply_to(snapshot);
+  return snapshot;
 }
 
 void Estimator::replay() {
@@ -295,13 +297,13 @@ void Estimator::replay() {
     history_[number % kHistory] = snapshot_at(number);
 }
 
-void Estimator::show_path() {
+void Estimator::publish_path() {
   now_.position_ned = path_.position_ned;
   now_.velocity_ned = path_.velocity_ned;
   now_.q_ned_from_frd = path_.q_ned_from_frd;
 }
 
-// Position, velocity and attitude of the poses, which go on from one to the next.
+// Resets position, velocity and attitude to a continuous stream of poses.
 void Estimator::restart_at(const plant::PoseSample& pose, const PoseInnovation& innovation) {
   ErrorState step = ErrorState::Zero();
   step.segment<3>(0) = innovation.position;
@@ -320,7 +322,7 @@ void Estimator::restart_at(const plant::PoseSample& pose, const PoseInnovation& 
   now_.reset_rotation_ned = innovation.rotation;
 }
 
-// The path that the IMU has drawn since the pose is laid to it. The vehicle is taken to rest there, within
+// Moves the IMU-propagated path since the pose onto the pose. The vehicle is assumed at rest there, within
 // settings.start_speed.
 void Estimator::start_at(const plant::PoseSample& pose) {
   first_after_anchor_ = next_ - std::min<std::uint64_t>(next_, kHistory);
@@ -328,23 +330,24 @@ void Estimator::start_at(const plant::PoseSample& pose) {
   std::uint64_t first_newer = next_;
   while (first_newer > first_after_anchor_ && history_at(first_newer - 1).stamp_ns > pose.stamp_ns)
     --first_newer;
-  const bool remembers = pose.stamp_ns > anchor_.stamp_ns;
-  const StateSnapshot drawn =
-      remembers ? moment_at(std::min(pose.stamp_ns, path_.stamp_ns), first_newer) : anchor_;
+  const bool in_history = pose.stamp_ns > anchor_.stamp_ns;
+  const StateSnapshot propagated =
+      in_history ? state_at(std::min(pose.stamp_ns, path_.stamp_ns), first_newer) : anchor_;
   const StateSnapshot start = {std::min(pose.stamp_ns, path_.stamp_ns), pose.position_ned, Vector3d::Zero(),
                                pose.q_ned_from_frd.normalized(), 0};
-  const Quaterniond turn = start.q_ned_from_frd * drawn.q_ned_from_frd.conjugate();
-  const auto lay = [&](StateSnapshot& moment) {
-    const ErrorInterval since = interval(drawn, moment);
-    const double t = seconds(moment.stamp_ns - start.stamp_ns);
+  const Quaterniond turn = start.q_ned_from_frd * propagated.q_ned_from_frd.conjugate();
+  const auto shift_to_pose = [&](StateSnapshot& snapshot) {
+    const ErrorInterval since = interval(propagated, snapshot);
+    const double t = seconds(snapshot.stamp_ns - start.stamp_ns);
     const Vector3d fall(0.0, 0.0, t * plant::kGravity);
-    moment.position_ned = start.position_ned + 0.5 * t * fall + turn * since.position_change;
-    moment.velocity_ned = fall + turn * since.velocity_change;
-    moment.q_ned_from_frd = (turn * moment.q_ned_from_frd).normalized();
+    snapshot.position_ned = start.position_ned + 0.5 * t * fall + turn * since.position_change;
+    snapshot.velocity_ned = fall + turn * since.velocity_change;
+    snapshot.q_ned_from_frd = (turn * snapshot.q_ned_from_frd).normalized();
   };
-  for (std::uint64_t number = first_newer; number < next_; ++number) lay(history_[number % kHistory]);
-  lay(path_);
-  show_path();
+  for (std::uint64_t number = first_newer; number < next_; ++number)
+    shift_to_pose(history_[number % kHistory]);
+  shift_to_pose(path_);
+  publish_path();
   anchor_at(start, first_newer);
   initialised_ = true;
   accept(pose);
@@ -355,33 +358,33 @@ void Estimator::start_at(const plant::PoseSample& pose) {
   covariance_.reset(sigma);
 }
 
-// The covariance follows before the moments that it has to go through are forgotten.
+// Propagates the covariance before the history entries that it needs are overwritten.
 void Estimator::store_history() {
-  if (initialised_ && next_ - first_after_anchor_ >= kHistory - kIntervalMoments) {
-    const std::uint64_t number = first_after_anchor_ + kIntervalMoments / 2;
-    const StateSnapshot moment = snapshot_at(number);
-    advance(covariance_, anchor_, first_after_anchor_, moment);
-    anchor_at(moment, number + 1);
+  if (initialised_ && next_ - first_after_anchor_ >= kHistory - kIntervalEntries) {
+    const std::uint64_t number = first_after_anchor_ + kIntervalEntries / 2;
+    const StateSnapshot snapshot = snapshot_at(number);
+    advance(covariance_, anchor_, first_after_anchor_, snapshot);
+    anchor_at(snapshot, number + 1);
   }
   history_[next_++ % kHistory] = path_;
 }
 
-void Estimator::anchor_at(const StateSnapshot& moment, std::uint64_t first_newer) {
-  anchor_ = moment;
+void Estimator::anchor_at(const StateSnapshot& snapshot, std::uint64_t first_newer) {
+  anchor_ = snapshot;
   first_after_anchor_ = first_newer;
 }
 
-Estimator::StateSnapshot Estimator::moment_at(std::int64_t stamp_ns, std::uint64_t first_newer) const {
+Estimator::StateSnapshot Estimator::state_at(std::int64_t stamp_ns, std::uint64_t first_newer) const {
   const StateSnapshot before = first_newer > first_after_anchor_ ? snapshot_at(first_newer - 1) : anchor_;
-  StateSnapshot moment = before;
-  if (before.stamp_ns == stamp_ns) return moment;
-  moment.stamp_ns = stamp_ns;
+  StateSnapshot snapshot = before;
+  if (before.stamp_ns == stamp_ns) return snapshot;
+  snapshot.stamp_ns = stamp_ns;
   const StateSnapshot after = snapshot_at(first_newer);
   const double part = seconds(stamp_ns - before.stamp_ns) / seconds(after.stamp_ns - before.stamp_ns);
-  moment.position_ned += part * (after.position_ned - before.position_ned);
-  moment.velocity_ned += part * (after.velocity_ned - before.velocity_ned);
-  moment.q_ned_from_frd = mean(before.q_ned_from_frd, 1.0 - part, after.q_ned_from_frd, part);
-  return moment;
+  snapshot.position_ned += part * (after.position_ned - before.position_ned);
+  snapshot.velocity_ned += part * (after.velocity_ned - before.velocity_ned);
+  snapshot.q_ned_from_frd = mean(before.q_ned_from_frd, 1.0 - part, after.q_ned_from_frd, part);
+  return snapshot;
 }
 
 ErrorInterval Estimator::interval(const StateSnapshot& from, const StateSnapshot& to) {
@@ -410,13 +413,13 @@ void Estimator::advance(ErrorCovariance& covariance, StateSnapshot from, std::ui
                         const StateSnapshot& to) const {
   std::uint64_t number = first;
   while (from.stamp_ns + kInterval_ns < to.stamp_ns && number < next_) {
-    // To the last moment within the interval, or over the gap to the next.
+    // To the last state within the interval, or across the gap to the next.
     std::uint64_t last = number;
     while (last + 1 < next_ && history_at(last + 1).stamp_ns <= from.stamp_ns + kInterval_ns) ++last;
     if (history_at(last).stamp_ns >= to.stamp_ns) break;
-    const StateSnapshot moment = snapshot_at(last);
-    advance_step(covariance, from, moment);
-    from = moment;
+    const StateSnapshot snapshot = snapshot_at(last);
+    advance_step(covariance, from, snapshot);
+    from = snapshot;
     number = last + 1;
   }
   if (from.stamp_ns != to.stamp_ns) advance_step(covariance, from, to);

@@ -28,9 +28,9 @@ PoseImuConsistencyTest::Verdict PoseImuConsistencyTest::look_at(const plant::Pos
   return verdict;
 }
 
-// The path is p + t v + t^2/2 g + S, S being the double integral of the specific force; the poses' motion is
-// the same with turn * S, from another p and with another v. So what is left of the poses without g and
-// turn * S is straight and even.
+// The IMU's path is p + t v + t^2/2 g + S, S being the double integral of the specific force. The poses
+// follow the same with turn * S, from another p and with another v. So the poses without g and turn * S must
+// move along a straight line at constant velocity.
 bool PoseImuConsistencyTest::agree(const EstimatorSettings& settings) const {
   const PoseImuConsistencySettings& limits = settings.detectors.pose_imu_consistency;
   const Eigen::Quaterniond& turn = points_[1].turn_ned;
@@ -39,16 +39,16 @@ bool PoseImuConsistencyTest::agree(const EstimatorSettings& settings) const {
   for (const Point& point : points_) {
     if (plant::rotation_vector(point.turn_ned * turn.conjugate()).norm() > turn_limit) return false;
   }
-  const auto left = [&](const Point& point) -> Eigen::Vector3d {
+  const auto residual = [&](const Point& point) -> Eigen::Vector3d {
     const double t = seconds(point.stamp_ns - points_[0].stamp_ns);
     const Eigen::Vector3d fall(0.0, 0.0, 0.5 * plant::kGravity * t * t);
     return (point.position_ned - fall) - turn * (point.path_ned - fall);
   };
   const double t1 = seconds(points_[1].stamp_ns - points_[0].stamp_ns);
   const double t2 = seconds(points_[2].stamp_ns - points_[1].stamp_ns);
-  const Eigen::Vector3d start = left(points_[0]);
-  const Eigen::Vector3d middle = left(points_[1]);
-  const Eigen::Vector3d end = left(points_[2]);
+  const Eigen::Vector3d start = residual(points_[0]);
+  const Eigen::Vector3d middle = residual(points_[1]);
+  const Eigen::Vector3d end = residual(points_[2]);
   const Eigen::Vector3d acceleration = 2.0 * ((end - middle) / t2 - (middle - start) / t1) / (t1 + t2);
   const double noise = limits.sigmas * std::sqrt(6.0) * settings.mocap_position_sigma / (t1 * t2);
   return acceleration.norm() < limits.acceleration + noise;

@@ -1,6 +1,6 @@
-// Whether poses and the IMU tell of one motion. After a silence of the IMU the estimate does not know the
-// attitude well enough to judge a pose by it; but poses that are turned wrong contradict the IMU by
-// themselves: under their attitude, the specific force is not the acceleration with which they move.
+// Tests whether poses and IMU show one motion. After an IMU silence the estimated attitude is too uncertain
+// to judge a pose. But poses with a wrong attitude contradict the IMU by themselves: rotated by their
+// attitude, the specific force is not the acceleration with which they move.
 #pragma once
 
 #include <array>
@@ -20,9 +20,9 @@ class PoseImuConsistencyTest {
  public:
   enum class Verdict : std::uint8_t { kNone, kAgree, kDisagree };
 
-  // The next pose, and what it differs by from the path that the IMU alone has drawn since the trial began: a
-  // verdict over the last two intervals, each time that one is over. Of the settings, the noise of the poses and
-  // detectors.pose_imu_consistency count.
+  // Adds a pose and its innovation from the path that the IMU alone has propagated since begin(). Returns a
+  // verdict over the last two intervals whenever an interval ends. Uses the pose noise and
+  // detectors.pose_imu_consistency of the settings.
   Verdict look_at(const plant::PoseSample& pose, const PoseInnovation& innovation,
                   const EstimatorSettings& settings);
   void begin() { count_ = 0; }
@@ -31,8 +31,8 @@ class PoseImuConsistencyTest {
   struct Point {
     std::int64_t stamp_ns = 0;
     Eigen::Vector3d position_ned = Eigen::Vector3d::Zero();        // of the pose
-    Eigen::Vector3d path_ned = Eigen::Vector3d::Zero();            // of the IMU's path
-    Eigen::Quaterniond turn_ned = Eigen::Quaterniond::Identity();  // of the pose against the path
+    Eigen::Vector3d path_ned = Eigen::Vector3d::Zero();            // of the IMU-propagated path
+    Eigen::Quaterniond turn_ned = Eigen::Quaterniond::Identity();  // rotation from the path to the pose
   };
   bool agree(const EstimatorSettings& settings) const;
 

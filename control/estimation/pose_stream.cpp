@@ -7,7 +7,8 @@
 namespace swiftlet::control {
 namespace {
 
-// No component differs by as much, of the position in m or of the quaternion: q and -q are one attitude.
+// True if no component differs by `distance` or more: m of position, or quaternion. q and -q are one
+// attitude.
 bool closer(const plant::PoseSample& a, const plant::PoseSample& b, double distance) {
   const Eigen::Vector4d q_a = a.q_ned_from_frd.coeffs();
   const Eigen::Vector4d q_b = b.q_ned_from_frd.coeffs();
@@ -45,7 +46,7 @@ void PoseContinuity::look_at(const plant::PoseSample& pose) {
     } else if (stepped) {
       stepped_ned_ += moved_ned;
       turned_frd_ = (turned_frd_ * turned_frd).normalized();
-      // Within what the body has moved by itself, in the step away and in the step back.
+      // The allowance is twice the reach: once for the step away, once for the step back.
       in_reach_ =
           stepped_ned_.norm() < 2.0 * reach_m && plant::rotation_vector(turned_frd_).norm() < 2.0 * reach_rad;
     }

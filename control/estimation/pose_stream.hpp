@@ -1,5 +1,4 @@
-// What can be wrong with a stream of poses that one pose alone does not show: frozen markers, and steps. q and -q
-// are one attitude.
+// Detectors of faults that only a sequence of poses shows: stuck poses and steps. q and -q are one attitude.
 #pragma once
 
 #include <array>
@@ -14,19 +13,19 @@
 
 namespace swiftlet::control {
 
-// Recognises a stream that says the same again and again. A vehicle that moves while its pose does not gives
-// it away, once the innovation contradicts. In hover nothing contradicts, but noise does not repeat: a stream
-// that never did while the vehicle stood with its rotors off is frozen when it does. A stream without noise
-// repeats from the start and is not judged by that.
+// Detects a stream whose poses repeat. If the vehicle moves, a repeated pose is stuck as soon as the
+// innovation contradicts it. In hover nothing contradicts it, but noise does not repeat: a stream that was
+// noisy on the ground with the rotors off is stuck when it repeats. A stream without noise repeats from the
+// start, so repetition alone does not reject it.
 class StuckPoseDetector {
  public:
   explicit StuckPoseDetector(const StuckPoseSettings& settings = {}) : settings_(settings) {}
 
   void look_at(const plant::PoseSample& pose, plant::RotorState rotors);
 
-  // The newest pose is the one before it.
+  // The newest pose equals the one before it.
   bool repeats() const { return repetitions_ > 0; }
-  // It has been the same for so long as noise never is.
+  // The stream was noisy, and its poses have repeated longer than noise ever does.
   bool frozen() const { return noisy_ && repetitions_ >= settings_.repetitions; }
 
  private:
@@ -37,9 +36,9 @@ class StuckPoseDetector {
   bool noisy_ = false;
 };
 
-// Whether a stream goes on without a break, as the pose of a body does that moves. What leads from a pose to
-// the next faster than a body moves is a step: from there on the stream shows something else, until the way
-// back leads to where the body can be again.
+// Detects steps in a stream of poses. A change from one pose to the next that is faster than a body moves is
+// a step. From there on the stream shows something else, until a later step leads back to within the body's
+// reach.
 class PoseContinuity {
  public:
   explicit PoseContinuity(const EstimatorSettings& settings = {})
@@ -48,7 +47,7 @@ class PoseContinuity {
         max_body_rate_(settings.max_body_rate) {}
 
   void look_at(const plant::PoseSample& pose);
-  // The newest pose agrees with the estimate: from here on.
+  // The newest pose agrees with the estimate. Continuity counts from here.
   void begin() {
     unbroken_ = true;
     in_reach_ = true;
@@ -57,24 +56,24 @@ class PoseContinuity {
     turned_frd_.setIdentity();
   }
   void end() { unbroken_ = false; }
-  // The stream shows something else, and a gap has hidden how it came to that: with the next step it may show
-  // the body again.
+  // Rejects the track: the stream shows something else, and a gap hid the change to it. The next step may
+  // lead back to the body.
   void reject_track() {
     rejected_ = true;
     unbroken_ = false;
   }
 
-  // The steps since begin() have led back, or there were none: a body could have gone the way, also where
-  // poses are missing.
+  // The steps since begin() cancel, or there were none: a body could have made this motion, also across
+  // gaps.
   bool in_reach() const { return in_reach_; }
-  // In reach since begin(), steps that led away and back left out, and without a gap in which one would not
-  // be seen.
+  // In reach since begin() (apart from steps that led away and back), and without a gap that could hide a
+  // step.
   bool unbroken() const { return unbroken_ && in_reach_; }
-  // The newest poses go on from one to the next: for settings.lasting_poses and settings.lasting_s at least.
+  // The newest poses are continuous, for at least settings.lasting_poses and settings.lasting_s.
   bool lasting() const { return poses_ >= settings_.lasting_poses && lasted_s() >= settings_.lasting_s; }
-  int poses() const { return poses_; }               // in a row that do
-  double interval_s() const { return interval_s_; }  // between the newest two
-  // Between the newest pose and that of kSpan poses before, m/s.
+  int poses() const { return poses_; }               // newest continuous poses
+  double interval_s() const { return interval_s_; }  // s between the newest two
+  // Mean velocity over the last kSpan pose intervals, m/s.
   Eigen::Vector3d velocity_ned() const;
 
   static constexpr std::size_t kSpan = 4;
@@ -92,14 +91,14 @@ class PoseContinuity {
   bool unbroken_ = false;
   bool in_reach_ = false;
   bool rejected_ = false;
-  // All steps since begin(), one after the other.
+  // Sum of all steps since begin().
   Eigen::Vector3d stepped_ned_ = Eigen::Vector3d::Zero();  // m
   Eigen::Quaterniond turned_frd_ = Eigen::Quaterniond::Identity();
   int poses_ = 0;
   std::int64_t since_ns_ = 0;
   double interval_s_ = 0.0;
   std::array<plant::PoseSample, kSpan + 1> last_;
-  std::uint64_t next_ = 0;  // of all that came
+  std::uint64_t next_ = 0;  // number of poses received
 };
 
 }  // namespace swiftlet::control

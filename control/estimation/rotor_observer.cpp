@@ -12,7 +12,7 @@ RotorObserver::RotorObserver(const plant::Vehicle& vehicle, double bandwidth)
   wrench_per_square_.leftCols(count_) = vehicle.rotor.thrust * plant::effectiveness(vehicle);  // Eq. (25)
 }
 
-// Eq. (18), solved over dt_s for a steady speed that stays: Omega_ss + exp(-dt / tau_m) (Omega - Omega_ss).
+// Eq. (18) solved over dt_s for a constant steady speed: Omega_ss + exp(-dt / tau_m) (Omega - Omega_ss).
 void RotorObserver::step(double dt_s, const plant::ActuatorCommand& command, double supply_voltage_v) {
   const double kept = std::exp(-dt_s / motor_.time_constant_s);
   const bool running = command.rotor_state == plant::RotorState::kRunning;

@@ -1,5 +1,6 @@
-// What the rotors do at this moment: the motor model run on the commands that were sent, corrected by
-// measured speeds where they come. Its moment is the third state of the attitude design with motor lag.
+// Rotor observer: the speeds, thrust and moments of the rotors now. It runs the motor model on the sent
+// commands and corrects it by measured speeds where they are available. Its moment is the third state of the
+// attitude design with motor lag.
 #pragma once
 
 #include <cstdint>
@@ -15,16 +16,16 @@ namespace swiftlet::control {
 
 class RotorObserver {
  public:
-  // bandwidth: rad/s, > 0, at which measured speeds draw the model's.
+  // bandwidth: rad/s, > 0, of the correction by measured speeds.
   RotorObserver(const plant::Vehicle& vehicle, double bandwidth);
 
-  // Runs the speeds on by dt_s > 0 under the command that has been in force, at the measured supply voltage.
-  // First order with Eq. (18)'s time constant, whichever motor model the vehicle file names.
+  // Propagates the speeds by dt_s > 0 under the command in force, at the measured supply voltage. First
+  // order with the time constant of Eq. (18), whichever motor model the vehicle file names.
   void step(double dt_s, const plant::ActuatorCommand& command, double supply_voltage_v);
 
-  // Draws the speeds towards measured ones: a difference falls by exp(-bandwidth dt), dt being the time since
-  // the last sample, at whichever rate they come; the first is taken as it is. Ignored unless finite, not
-  // negative, newer than the last and for the vehicle's number of rotors.
+  // Corrects the speeds by measured ones: a difference decays by exp(-bandwidth dt), dt being the time since
+  // the last sample, at any sample rate. The first sample sets the speeds. Ignores samples that are not
+  // finite, negative, not newer than the last, or for another number of rotors.
   void correct(const plant::RotorSpeedSample& sample);
 
   const plant::PerRotor& speeds() const { return speeds_; }         // rad/s
@@ -37,7 +38,7 @@ class RotorObserver {
 
   plant::Esc esc_;
   plant::Motor motor_;
-  Eigen::Matrix<double, 4, plant::kMaxRotors> wrench_per_square_;  // of each speed; columns of no rotor: 0
+  Eigen::Matrix<double, 4, plant::kMaxRotors> wrench_per_square_;  // per speed squared; unused columns: 0
   double bandwidth_;
   int count_ = 0;
   std::int64_t measured_ns_ = 0;  // stamp of the last measured speeds; 0: none yet

@@ -1,6 +1,6 @@
-// Whether motion capture sees the climb that the accelerometer feels. Poses of another body, or of markers
-// that came off, agree with a vehicle that stands; after the lift-off the position loop would push on for
-// good, and the estimator take the contradiction for a bias of the accelerometer.
+// Monitors whether the poses show the climb that the accelerometer measures after lift-off. Poses of another
+// body, or of markers that came off, agree with a vehicle on the ground. In flight the position loop would
+// climb without end, and the estimator would take the contradiction for an accelerometer bias.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,23 +14,23 @@ class TakeoffConsistencyMonitor {
  public:
   explicit TakeoffConsistencyMonitor(const TakeoffConsistencySettings& settings = {}) : settings_(settings) {}
 
-  // On the ground: the watch starts with the next step().
+  // Called on the ground: monitoring starts with the next step().
   void begin(const Eigen::Vector3d& accelerometer_bias_frd, double z_ned);
 
-  // A step of dt_s > 0 in flight. specific_force_frd: measured, m/s^2, less the bias that was known on the
-  // ground; z_ned: of the estimate, m. Does nothing before begin(), nor once the climb has been seen or
-  // settings.longest_s are over.
+  // A step of dt_s > 0 in flight. specific_force_frd: measured, m/s^2; the bias given to begin() is
+  // subtracted. z_ned: of the estimate, m. Does nothing before begin(), and after the climb is confirmed or
+  // settings.longest_s has passed.
   void step(double dt_s, const Eigen::Vector3d& specific_force_frd, const Eigen::Quaterniond& q_ned_from_frd,
             double z_ned);
 
-  // The vehicle climbs and its pose does not.
+  // The accelerometer shows a climb and the poses do not.
   bool contradicted() const {
     return active_ && inertial_.height_m > settings_.inertial_climb_m &&
            by_pose_.height_m < settings_.min_pose_fraction * inertial_.height_m;
   }
 
  private:
-  // A height behind the high pass s^2 / (s + 1 / memory_s)^2.
+  // A height after the high pass s^2 / (s + 1 / memory_s)^2.
   struct Climb {
     double height_m = 0.0;
     double speed = 0.0;  // m/s

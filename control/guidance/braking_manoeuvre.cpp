@@ -6,12 +6,12 @@
 namespace swiftlet::control {
 
 // With s = t/T, the acceleration is (1 - s) ((1 - 3 s) a - 6 s v/T). Its length is at most
-//   (1 - s) (|1 - 3 s| |a| + 6 s |v|/T),
-// of which the peak after s = 1/3, (2 |a| + w)^2 / (4 (3 |a| + w)) with w = 6 |v|/T, stays below a limit A
-// for
+//   (1 - s) (|1 - 3 s| |a| + 6 s |v|/T).
+// The peak of this bound after s = 1/3, (2 |a| + w)^2 / (4 (3 |a| + w)) with w = 6 |v|/T, stays below a
+// limit A for
 //   w <= 2 (A - |a| + sqrt(A (A + |a|))),
-// and what is before it stays below A as well. The jerk is linear in t; its ends are -(6 v/T^2 + 4 a/T) and
-// 6 v/T^2 + 2 a/T.
+// and the part before s = 1/3 stays below A as well. The jerk is linear in t; its end values are -(6 v/T^2 +
+// 4 a/T) and 6 v/T^2 + 2 a/T.
 BrakingManoeuvre limited_braking(const Reference& from, double peak_acceleration, double peak_jerk,
                                  double min_duration_s) {
   const double v = from.velocity_ned.norm();

@@ -1,20 +1,22 @@
-// Coming to rest wherever that leads: the quartic along which the velocity, a cubic, goes from what it is to
-// zero, and the acceleration with it. Of all ways to come to rest in a time it has the least jerk squared.
+// Brakes any motion to rest, with a free stopping point: along a quartic in position, whose cubic velocity
+// goes smoothly to zero and whose acceleration ends at zero. Of all motions that come to rest in a given
+// time, it has the least squared jerk.
 #pragma once
 
 #include "swiftlet/control/types/reference.hpp"
 
 namespace swiftlet::control {
 
-// join_to_rest() to the place within the duration is the quartic.
+// join_to_rest() to place_ned in duration_s is this quartic.
 struct BrakingManoeuvre {
   double duration_s = 0.0;                              // > 0
-  Eigen::Vector3d place_ned = Eigen::Vector3d::Zero();  // m
+  Eigen::Vector3d place_ned = Eigen::Vector3d::Zero();  // m, the stopping point
 };
 
-// So that neither acceleration nor jerk are beyond their peaks (> 0), in min_duration_s (> 0) at least. A
-// motion that begins with more acceleration than that keeps to what it begins with, and to as much more jerk.
-// Closed form: the shortest where the motion is straight and does not brake yet, somewhat longer elsewhere.
+// Braking with acceleration and jerk within their peaks (> 0), in min_duration_s (> 0) or more. A motion
+// that starts with more than the peak acceleration is limited by its own acceleration instead, and the jerk
+// limit grows in proportion. Closed form: the shortest for straight motions that do not brake yet, somewhat
+// longer for others.
 BrakingManoeuvre limited_braking(const Reference& from, double peak_acceleration, double peak_jerk,
                                  double min_duration_s);
 

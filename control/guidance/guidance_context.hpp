@@ -1,4 +1,4 @@
-// What the manoeuvres of one step look at, and what they change.
+// The inputs of the manoeuvres in one step, and the state that they change.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +12,19 @@
 
 namespace swiftlet::control {
 
-// Owned by who asked for it.
+// The plans being flown. The sender of the request owns them.
 struct FlownPlan {
-  const Mission* mission = nullptr;        // the one that was uploaded, flown or not
-  Limits mission_limits;                   // the settings', as that mission tightens them
-  const Trajectory* trajectory = nullptr;  // the one being flown; null in other modes
+  const Mission* mission = nullptr;        // the uploaded one, flown or not
+  Limits mission_limits;                   // limits of the settings, tightened by the mission's
+  const Trajectory* trajectory = nullptr;  // being flown; null in other modes
 };
 
 struct GuidanceContext {
-  const Limits& limits;  // the settings', or while a mission is under way those of the mission
+  const Limits& limits;  // of the settings, or of the mission while it runs or is paused
   const FailsafeSettings& failsafe;
   const Estimate& estimate;
   const FlownPlan& plan;
-  Mode mode;  // names the manoeuvre
+  Mode mode;  // selects the manoeuvre
   std::int64_t now_ns;
   GuidanceState& state;
 };

@@ -13,12 +13,12 @@ namespace {
 
 constexpr double kSpoolUp_s = 0.8;
 constexpr double kSpoolUpLift = 0.95;    // of the weight, at the end of the spool-up
-constexpr double kFlareHeight_m = 0.08;  // the landing's planned path ends here, then it sinks
+constexpr double kFlareHeight_m = 0.08;  // the planned path of a landing ends here, then the vehicle sinks
 constexpr double kSinkSpeed = 0.15;      // m/s
-constexpr double kSink_s = 60.0;         // at most
+constexpr double kSink_s = 60.0;         // longest duration
 constexpr double kBlindDepth_m = 0.1;    // below the ground, by dead reckoning
 constexpr double kMinMove_s = 0.5;
-constexpr int kJoinAttempts = 16;  // to join a trajectory from the motion as it is, each with more time
+constexpr int kJoinAttempts = 16;  // attempts to join a trajectory from motion, each with more time
 constexpr double kJoinStretch = 1.25;
 
 std::int64_t nanoseconds(double s) { return static_cast<std::int64_t>(std::llround(s * 1e9)); }
@@ -27,11 +27,11 @@ double yaw_of(const Eigen::Quaterniond& q) {
   return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
 }
 
-// The yaw that is `to` plus whole turns, nearest to `from`.
+// The yaw equal to `to` up to whole turns that is nearest to `from`.
 double nearest_turn(double to, double from) { return from + std::remainder(to - from, 2.0 * M_PI); }
 
-// How the reference comes to rest inside the fence, being `from` by then. One that follows no path was put
-// where the vehicle is.
+// The braking manoeuvre from `from`, with its stopping point moved inside the fence. A reference that
+// follows no path is at the vehicle's own motion.
 BrakingManoeuvre brakes_inside_fence(const GuidanceContext& context, const Reference& from) {
   const Limits& limits = context.limits;
   BrakingManoeuvre stop =
@@ -41,9 +41,9 @@ BrakingManoeuvre brakes_inside_fence(const GuidanceContext& context, const Refer
 }
 
 bool leaves_fence(const Limits& limits, const PolynomialSegment& segment) {
-  constexpr int kLooks = 24;
-  for (int i = 1; i < kLooks; ++i) {
-    Reference at = evaluate(segment, segment.duration_s * i / kLooks);
+  constexpr int kSamples = 24;
+  for (int i = 1; i < kSamples; ++i) {
+    Reference at = evaluate(segment, segment.duration_s * i / kSamples);
     const Eigen::Vector3d position_ned = at.position_ned;
     clamp_to_fence(limits, at);
     if (at.position_ned != position_ned) return true;
@@ -51,8 +51,8 @@ bool leaves_fence(const Limits& limits, const PolynomialSegment& segment) {
   return false;
 }
 
-// A quintic that takes long swings out far with the speed that it begins with. Where that would leave the
-// fence, the reference sheds as much of its speed at once as it must; from rest the way is straight.
+// A long quintic from motion swings out far. Where it would leave the fence, the reference drops as much of
+// its initial speed at once as needed. From rest the path is straight.
 PolynomialSegment join_inside(const Limits& limits, Reference from, const Eigen::Vector3d& to_ned,
                               double to_yaw, double duration_s) {
   constexpr int kParts = 4;
@@ -75,7 +75,7 @@ void climb(const GuidanceContext& context) {
   start_move(context, top, true, 0.0, state.climb_speed, context.now_ns);
 }
 
-// The planned part of a landing is over: sink until the ground is felt.
+// The planned part of a landing is over: sinks until touchdown is detected.
 void sink(const GuidanceContext& context) {
   GuidanceState& state = context.state;
   state.phase = Phase::kSink;
@@ -98,7 +98,7 @@ const MissionItem& item_of(const GuidanceContext& context) {
   return context.plan.mission->items[static_cast<std::size_t>(context.state.mission.item_index)];
 }
 
-// One segment after another, each from where the last one ended in time. keep_yaw: theirs is not flown.
+// Follows the next segment whenever one ends. keep_yaw: ignores the yaw of the segments.
 void advance_segments(const GuidanceContext& context, const PolynomialSegment* segments, std::size_t count,
                       bool keep_yaw) {
   GuidanceState& state = context.state;
@@ -109,7 +109,7 @@ void advance_segments(const GuidanceContext& context, const PolynomialSegment* s
   }
 }
 
-// The reference rests at the item's end. So must the vehicle, if the item asks for that.
+// True if the reference rests at the item's end and, if the item asks for that, the vehicle is near.
 bool arrived(const GuidanceContext& context) {
   const GuidanceState& state = context.state;
   const MissionItem& item = item_of(context);
@@ -119,9 +119,9 @@ bool arrived(const GuidanceContext& context) {
   return (context.estimate.position_ned - end).norm() <= item.acceptance_radius_m;
 }
 
-// The segments of a trajectory, one after another; any other item's path is all there is. Once it has
-// arrived, when the item ends.
-void advance_way(const GuidanceContext& context) {
+// Follows the segments of a trajectory item; other items have one segment only. Sets the item's end on
+// arrival.
+void advance_item(const GuidanceContext& context) {
   GuidanceState& state = context.state;
   const MissionItem& item = item_of(context);
   if (item.kind == MissionItemKind::kTrajectory) {
@@ -134,7 +134,7 @@ void advance_way(const GuidanceContext& context) {
       (awaited ? state.path.path_ns(context.now_ns) : state.path.end_ns) + nanoseconds(item.hold_s);
 }
 
-// Back where the mission was left: its way goes on from there, from rest.
+// At the point where the mission was paused: resumes its path from rest.
 void resume_paused_path(const GuidanceContext& context) {
   GuidanceState& state = context.state;
   state.path.follow(state.paused_path.segment, context.now_ns);
@@ -145,23 +145,23 @@ void resume_paused_path(const GuidanceContext& context) {
   change_time_scaling(context, true);
 }
 
-// Nothing but the way itself goes on while the clock of the path changes its pace.
+// While the time scaling changes, only the item's own path advances.
 void advance_mission(const GuidanceContext& context) {
   GuidanceState& state = context.state;
-  const bool its_way = state.pause == MissionPause::kNone;
+  const bool on_item_path = state.pause == MissionPause::kNone;
   if (state.path.clock.is_changing(context.now_ns)) {
-    if (its_way) advance_way(context);
+    if (on_item_path) advance_item(context);
     return;
   }
   if (!state.path.clock.is_vehicle_time()) {
     const std::int64_t behind_ns = state.path.take_vehicle_time(context.now_ns);
-    if (its_way && state.item_end_ns != 0)
+    if (on_item_path && state.item_end_ns != 0)
       state.item_end_ns = std::max(state.item_end_ns + behind_ns, context.now_ns);
   }
   if (!state.path.finished(context.now_ns)) return;
   if (state.pause == MissionPause::kReturning) return resume_paused_path(context);
   if (item_of(context).kind == MissionItemKind::kLand) return sink(context);
-  advance_way(context);
+  advance_item(context);
   if (state.item_end_ns == 0 || !state.path.finished(context.now_ns)) return;
   if (context.now_ns < state.item_end_ns || state.mission.item_index + 1 >= state.mission.item_count) return;
   ++state.mission.item_index;
@@ -173,9 +173,9 @@ void advance_trajectory(const GuidanceContext& context) {
   advance_segments(context, segments.data(), segments.size(), false);
 }
 
-// The greatest speed on the way that is passed before a change of the clock is over, as bounds of its
-// segments show.
-double speed_on_way(const GuidanceContext& context) {
+// The greatest speed on the path until a change of the time scaling would be over, as bounds of its segments
+// show.
+double max_speed_ahead(const GuidanceContext& context) {
   const MotionLimits unit{1.0, 1.0, 1.0, 1.0};
   const GuidanceState& state = context.state;
   if (!state.path.moving) return 0.0;
@@ -256,14 +256,15 @@ void start_join(const GuidanceContext& context, const PolynomialSegment& first, 
   if (keep_yaw) to.yaw_rate = to.yaw_acceleration = 0.0;
   state.phase = Phase::kPath;
   state.next_segment = 0;
-  // From rest the way is straight, in the time that it takes. From motion it swings out the further the
-  // longer it takes, and accelerates the more the shorter: the first that is gentle, or else the gentlest.
+  // From rest the join is straight, in the time that it takes. From motion it swings out further the longer
+  // it takes, and accelerates more the shorter it takes. The first within the acceleration limit is taken,
+  // or else the one with the least acceleration.
   const bool moves = !from.velocity_ned.isZero(0.0) || !from.acceleration_ned.isZero(0.0);
   const double gentle = (1.0 + 1e-5) * std::max({limits.max_reference_acceleration,
                                                  from.acceleration_ned.norm(), to.acceleration_ned.norm()});
   const MotionLimits unit{1.0, 1.0, 1.0, 1.0};
   PolynomialSegment gentlest;
-  double least = std::numeric_limits<double>::infinity();  // m/s^2, that it peaks at
+  double least = std::numeric_limits<double>::infinity();  // m/s^2, its peak acceleration
   double duration = kMinMove_s;
   if (!moves) {
     duration = septic_duration((to.position_ned - from.position_ned).norm(), speed,
@@ -271,12 +272,12 @@ void start_join(const GuidanceContext& context, const PolynomialSegment& first, 
   }
   duration = std::max(duration, 35.0 / 16.0 * std::abs(to.yaw_rad - from.yaw_rad) / limits.max_yaw_rate);
   for (int attempt = 0; attempt < kJoinAttempts && least > gentle; ++attempt, duration *= kJoinStretch) {
-    const PolynomialSegment way = join(from, to, duration);
-    if (!check_motion("join", way, limits).accepted) continue;
-    const double acceleration = limit_use(way, unit).acceleration;
+    const PolynomialSegment candidate = join(from, to, duration);
+    if (!check_motion("join", candidate, limits).accepted) continue;
+    const double acceleration = limit_use(candidate, unit).acceleration;
     if (acceleration >= least) continue;
     least = acceleration;
-    gentlest = way;
+    gentlest = candidate;
   }
   if (std::isfinite(least)) return state.path.follow(gentlest, start_ns);
   start_move(context, to.position_ned, false, to.yaw_rad, speed, start_ns);
@@ -299,7 +300,7 @@ void start_landing(const GuidanceContext& context, double speed, std::int64_t st
 
 void change_time_scaling(const GuidanceContext& context, bool to_running) {
   GuidanceState& state = context.state;
-  state.path.clock.turn(to_running, clock_change_s(context.limits, speed_on_way(context)), context.now_ns);
+  state.path.clock.turn(to_running, clock_change_s(context.limits, max_speed_ahead(context)), context.now_ns);
 }
 
 void pause_path(const GuidanceContext& context) {
@@ -358,7 +359,7 @@ void advance(const GuidanceContext& context) {
     climb(context);
   if (state.phase != Phase::kPath) return;
   if (context.mode == Mode::kMission) return advance_mission(context);
-  if (context.state.mission_paused() && state.pause == MissionPause::kNone) return advance_way(context);
+  if (context.state.mission_paused() && state.pause == MissionPause::kNone) return advance_item(context);
   if (!state.path.finished(context.now_ns)) return;
   if (context.mode == Mode::kTrajectory) advance_trajectory(context);
   if (context.mode == Mode::kSetpoint) start_coast(context);

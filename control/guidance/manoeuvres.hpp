@@ -1,5 +1,5 @@
-// The reference path of each phase of flight: take-off, moves, stops, landings, and the items and segments of
-// a plan one after another.
+// The manoeuvres: the reference path of each phase of flight (take-off, moves, stops, landings), and the
+// sequence of a plan's items and segments.
 #pragma once
 
 #include "swiftlet/control/guidance/braking_manoeuvre.hpp"
@@ -7,63 +7,63 @@
 
 namespace swiftlet::control {
 
-constexpr double kAirborneHeight_m = 0.03;  // above the ground
+constexpr double kAirborneHeight_m = 0.03;  // m above the ground
 
-// Moves the reference to the nearest place inside the fence: what joins one motion to another may swing
-// out. Down to the ground the fence does not matter.
+// Moves the reference to the nearest position inside the fence, because the join of two motions may leave
+// it. The fence's lower end (maximum z) is not enforced, so that landings reach the ground.
 void clamp_to_fence(const Limits& limits, Reference& reference);
 
-// Where the estimate is, at rest, with its yaw.
+// A reference at rest at the estimated position and yaw.
 Reference standing_at(const Estimate& estimate);
 
-// How a reference that moves so comes to rest within the limits of references, as start_stop() would have it
-// without a fence.
+// The braking manoeuvre of a moving reference, within the limits of references: that of start_stop() without
+// a fence.
 BrakingManoeuvre brake_reference(const Limits& limits, const Reference& from);
-// Likewise one that was put where the vehicle is, as it moves: braked by three quarters of the limit at most,
-// since the loops must follow first. Its acceleration is what the thrust gives now, and goes with the
-// attitude.
+// The same for a reference that starts at the vehicle's own motion. Its peak is three quarters of the
+// acceleration limit, since the loops must follow first. It ignores the present acceleration, which depends
+// on the attitude and changes with it.
 BrakingManoeuvre brake_vehicle(const Limits& limits, const Reference& from);
 
-// Spool up, then climb straight to that height.
+// Spools up, then climbs vertically to to_z_ned.
 void start_takeoff(const GuidanceContext& context, double to_z_ned, double speed);
-// From the reference as it is at start_ns, straight to a place; a vehicle in motion gets there by a quintic.
+// Moves from the reference at start_ns to a position: straight from rest, by a quintic from motion.
 void start_move(const GuidanceContext& context, const Eigen::Vector3d& to_ned, bool yaw_free, double yaw_rad,
                 double speed, std::int64_t start_ns);
-// From the reference as it is at start_ns into the start of a trajectory: position, velocity, acceleration
-// and jerk go over without a step; of the yaw not, with keep_yaw. Where no such way stays inside the fence
-// and the limits, as start_move(). Its segments follow from the first on.
+// Joins a trajectory from the reference at start_ns: position, velocity, acceleration and jerk are
+// continuous, and with keep_yaw = false yaw is too. Where no join stays inside the fence and the limits,
+// moves as start_move() does. The trajectory's segments follow from the first on.
 void start_join(const GuidanceContext& context, const PolynomialSegment& first, bool keep_yaw, double speed,
                 std::int64_t start_ns);
-// Comes to rest along the present velocity, inside the fence.
+// Brakes along the present velocity, inside the fence.
 void start_stop(const GuidanceContext& context);
-// Comes to rest inside the fence on the way down, then sinks until the ground is felt.
+// Brakes inside the fence while it descends, then sinks until touchdown is detected.
 void start_landing(const GuidanceContext& context, double speed, std::int64_t start_ns);
-// The item that the mission's progress names.
+// Starts the item that the mission's progress names.
 void start_item(const GuidanceContext& context, std::int64_t start_ns);
 
-// Of a mission that is being flown: its time comes to a stand, or runs on again, as smoothly as the limits
-// want it. The vehicle stays on its way.
+// Time scaling of a mission being flown: the path's time slows to a stop, or starts to run again, within the
+// limits. The vehicle stays on its path.
 void change_time_scaling(const GuidanceContext& context, bool to_running);
-// Before a paused mission's vehicle is sent elsewhere: remembers where it was.
+// Stores the path and its time before a paused mission's vehicle is sent elsewhere.
 void pause_path(const GuidanceContext& context);
-// To where the paused mission was left, and on from there.
+// Returns to the point where the mission was paused and resumes it.
 void return_to_paused_path(const GuidanceContext& context);
 
-// To the phase, item or segment whose time has come.
+// Moves on to the next phase, item or segment once it is due.
 void advance(const GuidanceContext& context);
-// What the vehicle is to do now: where it stands, on the ground; in flight the place on its path, inside the fence.
+// The reference now: at rest at the estimate on the ground; on the path and inside the fence in flight.
 Reference reference(const GuidanceContext& context);
-// Nothing is left to fly of a take-off, mission or trajectory.
+// True once the take-off, mission or trajectory of the present mode is finished.
 bool plan_finished(const GuidanceContext& context);
-// The item being flown is the mission's landing.
+// True while the mission's landing item is flown.
 bool on_landing_item(const GuidanceContext& context);
 
-// Of the level descent without position. Where dead reckoning says that the vehicle must be standing, twice
-// failsafe.descent_speed: one that stands on thrust that carries its weight feels no ground, less thrust
-// shows it.
+// Speed of the level descent without position, m/s: failsafe.descent_speed, and twice that once dead
+// reckoning is below the ground. A vehicle that stands while its thrust carries its weight shows no
+// touchdown; less thrust makes it show.
 double blind_descent_speed(const GuidanceContext& context);
 
-// Of the thrust while spooling up, of the weight.
+// Thrust during spool-up, as a fraction of the weight.
 double spool_up_lift(const GuidanceContext& context);
 
 }  // namespace swiftlet::control

@@ -12,7 +12,7 @@ Reference at_rest(const Reference& at) {
   return rest;
 }
 
-// The Taylor polynomial of which evaluate(segment, 0) is `at`.
+// The Taylor polynomial for which evaluate(segment, 0) is `at`.
 PolynomialSegment instant(const Reference& at) {
   const auto axis = [&](int i) {
     return Polynomial{at.position_ned[i], at.velocity_ned[i], at.acceleration_ned[i] / 2.0,

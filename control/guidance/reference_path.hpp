@@ -1,4 +1,4 @@
-// The reference in time: rest at a place, one instant that stays, or one polynomial segment after another.
+// The reference over time: rest at a position, one constant reference, or polynomial segments in sequence.
 #pragma once
 
 #include <cstdint>
@@ -9,27 +9,27 @@
 
 namespace swiftlet::control {
 
-// Plain data, so that another process can go on with it where this one stopped.
+// Plain data, so that another process can take it over.
 struct ReferencePath {
   bool moving = false;
-  PolynomialSegment segment;  // while not moving its first instant is the reference, and duration_s is 0
-  std::int64_t start_ns = 0;  // of the path's own time
+  PolynomialSegment segment;  // if not moving, its start is the reference and duration_s is 0
+  std::int64_t start_ns = 0;  // path time
   std::int64_t end_ns = 0;
-  TimeScaling clock;  // of that
+  TimeScaling clock;  // of the path time
 
-  // Rest at the position and yaw of `at` from now on.
+  // From now on, rest at the position and yaw of `at`.
   void rest(const Reference& at);
-  // The reference is `at`, as it is, until told otherwise.
+  // From now on, the constant reference `at`.
   void pin(const Reference& at);
-  // Follow the segment from `from_ns`, vehicle's time; at its end, rest where it ends.
+  // Follows the segment from `from_ns`, vehicle time. Rests at its end afterwards.
   void follow(const PolynomialSegment& along, std::int64_t from_ns);
-  // Follow the segment from where this one ends, by the same clock.
+  // Follows the segment from the end of the present one, with the same time scaling.
   void follow_on(const PolynomialSegment& along);
-  // Of a clock that runs again: from now on the path's time is the vehicle's. Returns by how much it was
-  // behind, ns.
+  // After a pause: sets path time equal to vehicle time from now on. Returns the delay of path time before,
+  // ns.
   std::int64_t take_vehicle_time(std::int64_t now_ns);
 
-  // What follows is asked for by the vehicle's time.
+  // The arguments below are vehicle time.
   Reference at(std::int64_t now_ns) const;
   std::int64_t path_ns(std::int64_t now_ns) const { return clock.at(now_ns).at_ns; }
   bool finished(std::int64_t now_ns) const { return !moving || path_ns(now_ns) >= end_ns; }

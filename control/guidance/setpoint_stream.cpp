@@ -14,16 +14,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLeastPeriod_s = 0.1;  // a stream that comes faster is blended into over this time
-constexpr int kAttempts = 16;           // to blend, each with more time
+constexpr double kLeastPeriod_s = 0.1;  // shortest blend, for faster streams
+constexpr int kAttempts = 16;           // attempts to blend, each with more time
 constexpr double kStretch = 1.25;
 constexpr double kRounding = 1e-5;
-constexpr double kReaction_s = 0.15;         // to turn the thrust against the motion
-constexpr double kPastTimeout_s = 0.1;       // coasting reaches beyond the stream's time-out, which ends it
-constexpr double kQuinticPeak = 15.0 / 8.0;  // of the rate of a quintic from rest to rest, of its mean
+constexpr double kReaction_s = 0.15;         // delay until the thrust acts against the motion
+constexpr double kPastTimeout_s = 0.1;       // coasting outlasts the stream's time-out
+constexpr double kQuinticPeak = 15.0 / 8.0;  // peak over mean of a rest-to-rest quintic's rate
 
-// Where a setpoint is duration_s after it came, if it goes on by itself: at its acceleration until the next
-// is due, then at constant velocity.
+// The setpoint extrapolated to duration_s after it arrived: at constant acceleration until the next is due,
+// then at constant velocity.
 Reference carried_on(const Setpoint& to, double duration_s, double period_s) {
   const double accelerated_s = std::min(duration_s, period_s);
   const double rest_s = duration_s - accelerated_s;
@@ -35,7 +35,7 @@ Reference carried_on(const Setpoint& to, double duration_s, double period_s) {
   return end;
 }
 
-// The yaw that the reference has then, and its rate.
+// Sets the yaw and yaw rate of the blend's end.
 void turn(const Limits& limits, const Reference& from, const Setpoint& to, double duration_s,
           Reference& end) {
   const double with_rate = to.yaw_rate * duration_s;
@@ -45,7 +45,7 @@ void turn(const Limits& limits, const Reference& from, const Setpoint& to, doubl
   end.yaw_rate = to.yaw_rate;
 }
 
-// a + b t + c t^2 + .. of an axis, by its derivative's: the integral that begins at `start`.
+// The integral of a polynomial that starts at `start`.
 Polynomial integral(double start, const Polynomial& of) {
   Polynomial result{};
   result[0] = start;
@@ -53,9 +53,9 @@ Polynomial integral(double start, const Polynomial& of) {
   return result;
 }
 
-// The quintic that begins with a value and two derivatives and, t later, has another value and rate and
-// nothing more. Taken anew again and again, as by a fast stream, each from where the last has come, it
-// settles: the error then obeys s^3 + 9/t s^2 + 36/t^2 s + 60/t^3.
+// The quintic from a value and two derivatives to another value and rate, with zero second derivative, after
+// time t. A fast stream replaces it again and again by a new one from the present state. This converges: the
+// error then obeys s^3 + 9/t s^2 + 36/t^2 s + 60/t^3.
 Polynomial quintic(double value, double rate, double change, double to_value, double to_rate, double t) {
   const double dv = to_value - (value + rate * t + 0.5 * change * t * t);
   const double dr = (to_rate - (rate + change * t)) * t;
@@ -69,7 +69,7 @@ Polynomial quintic(double value, double rate, double change, double to_value, do
           (6.0 * dv - 3.0 * dr + 0.5 * dc) / (t3 * t * t)};
 }
 
-// The acceleration that goes over into `acceleration`, its derivative into 0: a cubic.
+// The cubic from acceleration a with derivative j to `acceleration` with derivative 0, after time t.
 Polynomial acceleration_blend(double a, double j, double acceleration, double t) {
   const double da = acceleration - (a + j * t);
   const double dj = -j * t;
@@ -106,18 +106,18 @@ PolynomialSegment blend(const Limits& limits, const Reference& from, const Setpo
       std::max({limits.max_reference_acceleration, from.acceleration_ned.norm(), to.acceleration_ned.norm()});
   const double jerk = std::max(limits.max_reference_jerk, from.jerk_ned.norm());
   PolynomialSegment gentlest;
-  double least = std::numeric_limits<double>::infinity();  // of the limits, that it uses
+  double least = std::numeric_limits<double>::infinity();  // greatest use of the acceleration and jerk limits
   double duration = period_s;
   for (int attempt = 0; attempt < kAttempts && least > 1.0 + kRounding; ++attempt, duration *= kStretch) {
-    const PolynomialSegment way = blend_in(limits, from, to, duration, period_s);
-    const LimitUse use = limit_use(way, unit);
+    const PolynomialSegment candidate = blend_in(limits, from, to, duration, period_s);
+    const LimitUse use = limit_use(candidate, unit);
     const double most = std::max(use.acceleration / acceleration, use.jerk / jerk);
-    if (most >= least || !check_motion("setpoint", way, limits).accepted) continue;
+    if (most >= least || !check_motion("setpoint", candidate, limits).accepted) continue;
     least = most;
-    gentlest = way;
+    gentlest = candidate;
   }
   if (std::isfinite(least)) return gentlest;
-  // From outside the fence, or faster than is allowed: to rest, as fast as that may be.
+  // From outside the fence, or above the speed limit: brakes to rest as fast as allowed.
   const BrakingManoeuvre stop = brake_reference(limits, from);
   const Vector3d inside = stop.place_ned.cwiseMax(limits.fence_min_ned).cwiseMin(limits.fence_max_ned);
   return join_to_rest(from, inside, from.yaw_rad, stop.duration_s);
@@ -160,7 +160,8 @@ void take_direct(const GuidanceContext& context, const Setpoint& setpoint) {
   const Eigen::Quaterniond& q = setpoint.q_ned_from_frd;
   const Vector3d& rates = setpoint.body_rates_frd;
   context.state.phase = Phase::kPath;
-  context.state.direct = {{q.w(), q.x(), q.y(), q.z()}, {rates.x(), rates.y(), rates.z()}, setpoint.specific_thrust};
+  context.state.direct = {
+      {q.w(), q.x(), q.y(), q.z()}, {rates.x(), rates.y(), rates.z()}, setpoint.specific_thrust};
   follow_estimate(context);
 }
 
@@ -168,7 +169,8 @@ void follow_estimate(const GuidanceContext& context) {
   const Estimate& estimate = context.estimate;
   Reference here = standing_at(estimate);
   here.velocity_ned = estimate.velocity_ned;
-  const Vector3d thrust_ned = estimate.q_ned_from_frd * Vector3d(0.0, 0.0, -context.state.direct.specific_thrust);
+  const Vector3d thrust_ned =
+      estimate.q_ned_from_frd * Vector3d(0.0, 0.0, -context.state.direct.specific_thrust);
   const double limit = context.limits.max_acceleration;
   here.acceleration_ned = thrust_ned + Vector3d(0.0, 0.0, plant::kGravity);
   here.acceleration_ned *= limit / std::max(limit, here.acceleration_ned.norm());

@@ -1,6 +1,6 @@
-// Streams of setpoints. Those of position, velocity and acceleration become a reference: from each to the
-// next it moves smoothly, within the limits, however seldom they come. Those of attitude and body rates go
-// past the position loop, and the reference is where the vehicle is.
+// Setpoint streams. Position, velocity and acceleration setpoints become a reference that moves smoothly
+// from each setpoint to the next, within the limits, at any stream rate. Attitude and body-rate setpoints
+// bypass the position loop; the reference is then the vehicle's own state.
 #pragma once
 
 #include "swiftlet/control/guidance/guidance_context.hpp"
@@ -10,33 +10,32 @@
 
 namespace swiftlet::control {
 
-// From the reference as it is into what the setpoint asks for: position, velocity, acceleration and jerk go
-// over without a step. It takes period_s, the time until the next setpoint, at the end of which the reference
-// is where the setpoint, going on by itself, would be by then; or as much longer as speed, acceleration and
-// jerk need to stay within the limits. Where nothing is gentle and inside the fence, the gentlest that is
-// inside. A heading that cannot be reached in that time at max_yaw_rate is turned to as far as it goes.
+// A segment from the present reference to the setpoint, continuous in position, velocity, acceleration and
+// jerk. It takes period_s, the time until the next setpoint, and ends where the extrapolated setpoint is
+// then. It takes longer where speed, acceleration and jerk need that to stay within the limits. If no
+// duration keeps the limits inside the fence, the one with the least acceleration and jerk inside the fence
+// is taken. Yaw turns as far as max_yaw_rate allows in the time.
 PolynomialSegment blend(const Limits& limits, const Reference& from, const Setpoint& to, double period_s);
 
-// The reference after_s after a blend that was begun from there: at its end it goes on with constant
-// acceleration.
+// The reference after_s after the start of a blend. Beyond the blend's end it coasts.
 Reference after_blend(const PolynomialSegment& blend, double after_s);
 
-// On with constant acceleration and yaw rate.
+// Motion at constant acceleration and yaw rate.
 PolynomialSegment coast(const Reference& from, double duration_s);
 
-// A way from the reference as it is, as of blend().
+// Follows a segment that starts at the present reference, such as a blend().
 void follow_way(const GuidanceContext& context, const PolynomialSegment& way);
-// After a blend, while the next setpoint is awaited.
+// After a blend, coasts until the next setpoint arrives.
 void start_coast(const GuidanceContext& context);
-// Takes an attitude or body rates, which directive() then asks for.
+// Stores an attitude or body-rate setpoint, which Supervisor::step() then outputs.
 void take_direct(const GuidanceContext& context, const Setpoint& setpoint);
-// Pins the reference where the vehicle is, with its velocity and the acceleration that its thrust gives it.
+// Sets the reference to the vehicle's position and velocity, and the acceleration that its thrust gives.
 void follow_estimate(const GuidanceContext& context);
 
-// The time to the next setpoint, by that since the last, of those that the mode of now follows.
+// Estimated time to the next setpoint: the time since the last one that the present mode follows.
 double stream_period_s(const GuidanceContext& context);
 
-// Where the estimated vehicle could come to rest lies outside the fence.
+// True if the stopping point of the vehicle's motion is outside the fence.
 bool violates_fence(const GuidanceContext& context);
 
 }  // namespace swiftlet::control

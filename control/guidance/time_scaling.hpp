@@ -1,5 +1,5 @@
-// How time runs along a path: with the vehicle's, not at all, or smoothly from one to the other. What is
-// slowed down and brought to rest by its clock stays exactly on its path, wherever that leads.
+// Time scaling of a path: path time runs as vehicle time, stands still, or changes smoothly between the two.
+// A vehicle that is slowed and stopped this way stays exactly on its path, whatever its shape.
 #pragma once
 
 #include <cstdint>
@@ -10,26 +10,27 @@
 
 namespace swiftlet::control {
 
-// An instant of a path's own time, and how that runs: the first four derivatives by the vehicle's time.
+// A path time and its first four derivatives with respect to vehicle time.
 struct PathTime {
   std::int64_t at_ns = 0;
-  double rate = 1.0;          // 1: as the vehicle's; 0: it stands
+  double rate = 1.0;          // 1: as vehicle time; 0: stopped
   double acceleration = 0.0;  // 1/s
   double jerk = 0.0;          // 1/s^2
   double snap = 0.0;          // 1/s^3
 };
 
-// Plain data, so that another process can go on with it where this one stopped.
+// Plain data, so that another process can take it over.
 struct TimeScaling {
-  bool runs = true;            // once the change is over
-  std::int64_t change_ns = 0;  // when the change began, vehicle's time
-  std::int64_t from_ns = 0;    // and what the path's time was then
-  double change_s = 0.0;       // how long it takes; 0: there is none
-  Polynomial rate{};           // of the path's time, by s since change_ns, during the change
+  bool runs = true;            // state after the change
+  std::int64_t change_ns = 0;  // start of the change, vehicle time
+  std::int64_t from_ns = 0;    // path time at change_ns
+  double change_s = 0.0;       // duration of the change; 0: no change
+  Polynomial rate{};           // rate of path time during the change, over s since change_ns
 
-  // From now on towards running or standing: a quintic of the rate, which begins as it is and ends steadily.
+  // Starts a change towards running or stopped: a quintic of the rate that is continuous at its start and
+  // end.
   void turn(bool to_running, double duration_s, std::int64_t now_ns);
-  // Stands at this time of the path.
+  // Path time stopped at path_ns.
   static TimeScaling standing_at(std::int64_t path_ns, std::int64_t now_ns);
 
   PathTime at(std::int64_t now_ns) const {
@@ -44,12 +45,12 @@ struct TimeScaling {
 };
 static_assert(std::is_trivially_copyable_v<TimeScaling>);
 
-// The shortest change between running and standing in which a motion at this speed (m/s, >= 0) is slowed by
-// at most acceleration and jerk (m/s^2, m/s^3, > 0): 15/8 v/T and 10/sqrt(3) v/T^2. At least
+// The shortest change between running and stopped that slows a motion at this speed (m/s, >= 0) within
+// acceleration and jerk (m/s^2, m/s^3, > 0): their peaks are 15/8 v/T and 10/sqrt(3) v/T^2. At least
 // min_duration_s.
 double clock_change_duration(double speed, double acceleration, double jerk, double min_duration_s);
 
-// Of what has `reference` at a time of the path's own: what it has by the vehicle's time, by the chain rule.
+// The reference with respect to vehicle time, from that with respect to path time, by the chain rule.
 Reference time_scaled(const Reference& reference, const PathTime& time);
 
 }  // namespace swiftlet::control

@@ -21,7 +21,7 @@ constexpr auto kChoose = pascal();  // kChoose[n][k] = n over k
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
-// The same polynomial with one more coefficient.
+// The same polynomial with its degree raised by one.
 Bernstein raised(const Bernstein& a) {
   Bernstein out;
   out.degree = a.degree + 1;
@@ -51,13 +51,13 @@ Bernstein split_off_left(Bernstein& a) {
   return left;
 }
 
-void look(double value, double at, Extremum& best) {
+void update_best(double value, double at, Extremum& best) {
   if (value > best.value) best = {value, at};
 }
 
 void search(Bernstein part, double from, double width, double tolerance, int halvings, Extremum& best) {
-  look(part.c[0], from, best);
-  look(part.c[index(part.degree)], from + width, best);
+  update_best(part.c[0], from, best);
+  update_best(part.c[index(part.degree)], from + width, best);
   if (halvings == 0 || !(part.greatest() > best.value + tolerance)) return;
   const Bernstein left = split_off_left(part);
   const double half = 0.5 * width;

@@ -1,5 +1,5 @@
-// Polynomials by their Bernstein coefficients on one segment. A polynomial lies between the least and the
-// greatest of them, so bounds hold everywhere and not at samples alone (Farouki, "The Bernstein polynomial
+// Polynomials by their Bernstein coefficients on one segment. The polynomial lies between the least and the
+// greatest coefficient, so bounds hold everywhere, not only at samples (Farouki, "The Bernstein polynomial
 // basis: a centennial retrospective", 2012).
 #pragma once
 
@@ -14,13 +14,13 @@ constexpr int kMaxBernsteinDegree = 14;  // the square of a position of degree 7
 // Over u = t / duration_s, 0 .. 1.
 struct Bernstein {
   int degree = 0;
-  std::array<double, kMaxBernsteinDegree + 1> c{};  // degree + 1 of them
+  std::array<double, kMaxBernsteinDegree + 1> c{};  // degree + 1 coefficients
 
   double greatest() const;
   double least() const;
 };
 
-// The derivative of this order, 0 .. 7, with respect to t in s. duration_s > 0.
+// The Bernstein form of the derivative of order 0 .. 7 with respect to t in s. duration_s > 0.
 Bernstein bernstein(const Polynomial& polynomial, double duration_s, int derivative = 0);
 Bernstein constant(double value);
 
@@ -37,13 +37,14 @@ Bernstein squared_length(const Components&... components) {
 }
 
 struct Extremum {
-  double value = 0.0;  // what the polynomial has there
+  double value = 0.0;  // of the polynomial
   double at = 0.0;     // u
 };
 
-// The true maximum is at most `tolerance` above the value: branch and bound with de Casteljau's subdivision.
+// The maximum to within `tolerance` (the true one is not more than that above): branch and bound with de
+// Casteljau's subdivision.
 Extremum maximum(const Bernstein& polynomial, double tolerance);
-// Likewise; at most `tolerance` below.
+// The minimum, likewise; the true one is at most `tolerance` below.
 Extremum minimum(const Bernstein& polynomial, double tolerance);
 
 }  // namespace swiftlet::control

@@ -11,9 +11,9 @@ namespace swiftlet::control {
 namespace {
 
 constexpr double kLongestSegment_s = 3600.0;
-constexpr double kPlaceTolerance_m = 1e-9;  // what sums of coefficients leave
-constexpr double kPlacePrecision_m = 1e-6;  // to which extrema are sought
-constexpr double kPrecision = 1e-6;         // likewise, of squares, relative to the limit's
+constexpr double kPlaceTolerance_m = 1e-9;  // rounding of sums of coefficients
+constexpr double kPlacePrecision_m = 1e-6;  // of extrema
+constexpr double kPrecision = 1e-6;         // of extrema of squares, relative to the squared limit
 
 bool finite(const Polynomial& p) {
   return std::all_of(p.begin(), p.end(), [](double c) { return std::isfinite(c); });
@@ -28,10 +28,11 @@ struct NamedAxis {
 Outcome check_axis(const char* what, const NamedAxis& axis, double duration_s, const Limits& limits) {
   const double low = limits.fence_min_ned[axis.index];
   const double high = limits.fence_max_ned[axis.index];
-  const Bernstein way = bernstein(axis.polynomial, duration_s);
-  if (way.least() >= low - kPlaceTolerance_m && way.greatest() <= high + kPlaceTolerance_m) return accept();
+  const Bernstein position = bernstein(axis.polynomial, duration_s);
+  if (position.least() >= low - kPlaceTolerance_m && position.greatest() <= high + kPlaceTolerance_m)
+    return accept();
   for (const double reached :
-       {minimum(way, kPlacePrecision_m).value, maximum(way, kPlacePrecision_m).value}) {
+       {minimum(position, kPlacePrecision_m).value, maximum(position, kPlacePrecision_m).value}) {
     if (reached >= low - kPlaceTolerance_m && reached <= high + kPlaceTolerance_m) continue;
     return refuse("%s: %c is %.3f m, outside the fence of %.3f to %.3f m", what, axis.name, reached, low,
                   high);
@@ -64,7 +65,7 @@ Outcome check_segments(const char* of, const PolynomialSegment* segments, std::s
   return accept();
 }
 
-// What only a mission that says so demands of the segments that come ready made.
+// Limits that only a mission's own bounds set on ready-made segments: jerk and yaw rate.
 Outcome check_own_bounds(const char* item, std::size_t number, const PolynomialSegment& segment,
                          const MissionBounds& bounds, bool yaw_free) {
   char what[64];
@@ -78,16 +79,17 @@ Outcome check_own_bounds(const char* item, std::size_t number, const PolynomialS
   const double precision = kPrecision * bounds.max_yaw_rate;
   const double reached = std::max(maximum(rate, precision).value, -minimum(rate, precision).value);
   if (reached <= bounds.max_yaw_rate + precision) return accept();
-  return refuse("%s reaches %.2f rad/s of yaw, the limit is %.2f rad/s", what, reached, bounds.max_yaw_rate);
+  return refuse("%s reaches a yaw rate of %.2f rad/s, the limit is %.2f rad/s", what, reached,
+                bounds.max_yaw_rate);
 }
 
 Outcome check_item_trajectory(const char* what, const Mission& mission, const MissionItem& item,
                               const Limits& limits) {
   const std::size_t there = mission.segments.size();
   const std::size_t end = std::size_t{item.first_segment} + item.segment_count;
-  if (item.segment_count == 0) return refuse("%s: its trajectory has no segments", what);
+  if (item.segment_count == 0) return refuse("%s: the trajectory has no segments", what);
   if (end > there) {
-    return refuse("%s: its trajectory ends with segment %zu, the mission has %zu", what, end, there);
+    return refuse("%s: the trajectory ends at segment %zu, the mission has %zu", what, end, there);
   }
   char of[40];
   std::snprintf(of, sizeof of, "%s: ", what);
@@ -144,17 +146,17 @@ Outcome check(const MissionBounds& bounds, const Limits& limits) {
                              Bound{"jerk", bounds.max_jerk, limits.max_reference_jerk, "m/s^3"},
                              Bound{"yaw rate", bounds.max_yaw_rate, limits.max_yaw_rate, "rad/s"}}) {
     if (bound.value >= 0.0 && bound.value <= bound.limit) continue;
-    return refuse("the mission's limit of %s is %.3f %s, must be above 0 and at most %.3f %s", bound.name,
+    return refuse("the mission's %s limit is %.3f %s, must be above 0 and at most %.3f %s", bound.name,
                   bound.value, bound.unit, bound.limit, bound.unit);
   }
   if (!bounds.fenced) return accept();
-  Outcome outcome = check_position("the mission's fence, its least corner", bounds.fence_min_ned, limits);
+  Outcome outcome = check_position("the mission's fence, minimum corner", bounds.fence_min_ned, limits);
   if (outcome.accepted)
-    outcome = check_position("the mission's fence, its greatest corner", bounds.fence_max_ned, limits);
+    outcome = check_position("the mission's fence, maximum corner", bounds.fence_max_ned, limits);
   if (!outcome.accepted) return outcome;
   for (int i = 0; i < 3; ++i) {
     if (bounds.fence_max_ned[i] > bounds.fence_min_ned[i]) continue;
-    return refuse("the mission's fence: %c ends at %.3f m, must end above %.3f m, where it begins", "xyz"[i],
+    return refuse("the mission's fence: maximum %c is %.3f m, must be above the minimum, %.3f m", "xyz"[i],
                   bounds.fence_max_ned[i], bounds.fence_min_ned[i]);
   }
   return accept();
@@ -167,9 +169,9 @@ Outcome check(const Mission& mission, const Limits& settings) {
   const std::size_t count = mission.items.size();
   if (count == 0) return refuse("the mission has no items");
   if (count > kMaxMissionItems)
-    return refuse("the mission has %zu items, at most %d fit", count, kMaxMissionItems);
+    return refuse("the mission has %zu items, the limit is %d", count, kMaxMissionItems);
   if (mission.segments.size() > kMaxTrajectorySegments) {
-    return refuse("the mission's trajectories have %zu segments, at most %d fit", mission.segments.size(),
+    return refuse("the mission's trajectories have %zu segments, the limit is %d", mission.segments.size(),
                   kMaxTrajectorySegments);
   }
   for (std::size_t i = 0; i < count; ++i) {
@@ -206,7 +208,7 @@ Outcome check(const Trajectory& trajectory, const Limits& limits) {
   const std::size_t count = trajectory.segments.size();
   if (count == 0) return refuse("the trajectory has no segments");
   if (count > kMaxTrajectorySegments) {
-    return refuse("the trajectory has %zu segments, at most %d fit", count, kMaxTrajectorySegments);
+    return refuse("the trajectory has %zu segments, the limit is %d", count, kMaxTrajectorySegments);
   }
   return check_segments("", trajectory.segments.data(), count, limits);
 }
@@ -239,7 +241,7 @@ Outcome check_joint(const char* what, const PolynomialSegment& before, const Pol
   const double step_m = (start.position_ned - end.position_ned).norm();
   const double step_m_s = (start.velocity_ned - end.velocity_ned).norm();
   if (step_m <= kJoin_m && step_m_s <= kJoin_m_s) return accept();
-  return refuse("%s does not begin where the one before ends: %.3f m and %.3f m/s apart", what, step_m,
+  return refuse("%s does not start where the previous one ends: %.3f m and %.3f m/s apart", what, step_m,
                 step_m_s);
 }
 

@@ -1,5 +1,5 @@
-// What a request may ask: finite, inside the fence, within the limits. Pure; run before a request reaches the
-// flight controller.
+// Checks of requests: values are finite, inside the fence, within the limits. Pure functions, run before a
+// request reaches the flight controller.
 #pragma once
 
 #include "swiftlet/control/types/mission.hpp"
@@ -10,35 +10,35 @@
 namespace swiftlet::control {
 
 Outcome accept();
-// A refusal; the reason is formatted as by printf and cut at its length.
+// A refusal. The reason is formatted as by printf and truncated to its size.
 [[gnu::format(printf, 1, 2)]] Outcome refuse(const char* format, ...);
 
 // `what` names the position in the reason: "item 3", "goto".
 Outcome check_position(const char* what, const Eigen::Vector3d& position_ned, const Limits& limits);
 Outcome check_speed(const char* what, double speed, const Limits& limits);
 
-// No looser than the limits, and a fence that is one.
+// The bounds are no looser than the limits, and the fence's maximum is above its minimum.
 Outcome check(const MissionBounds& bounds, const Limits& limits);
-// 1 to kMaxMissionItems items; a takeoff only first, a landing only last. Each of its trajectories as
-// below. By its own bounds, which check() finds no looser than the settings' limits.
+// 1 to kMaxMissionItems items, a takeoff only first, a landing only last, each trajectory as below. Checked
+// against the settings' limits as tightened by the mission's bounds, which must pass check() themselves.
 Outcome check(const Mission& mission, const Limits& settings);
 
-// 1 to kMaxTrajectorySegments segments as check_segment() has them, that join without steps in position and
-// velocity and start at rest.
+// 1 to kMaxTrajectorySegments segments that pass check_segment(), without steps in position and velocity
+// between them, starting at rest.
 Outcome check(const Trajectory& trajectory, const Limits& limits);
 
-// A positive duration, an hour at most, finite coefficients, and check_motion().
+// Duration above 0 and at most an hour, finite coefficients, and check_motion().
 Outcome check_segment(const char* what, const PolynomialSegment& segment, const Limits& limits);
 
-// Inside the fence and under the limits of speed and acceleration everywhere, as bounds of the polynomials
-// show.
+// Inside the fence, and below the limits of speed and acceleration, everywhere: checked by bounds of the
+// polynomials.
 Outcome check_motion(const char* what, const PolynomialSegment& segment, const Limits& limits);
 
-// That `next` begins where `before` ends, to kJoin_m and kJoin_m_s.
+// `next` starts where `before` ends, to within kJoin_m and kJoin_m_s.
 constexpr double kJoin_m = 1e-3;
 constexpr double kJoin_m_s = 1e-2;
 Outcome check_joint(const char* what, const PolynomialSegment& before, const PolynomialSegment& next);
-// That a trajectory's first segment begins at rest, to kJoin_m_s.
+// A trajectory's first segment starts at rest, to within kJoin_m_s.
 Outcome check_start(const char* what, const PolynomialSegment& first);
 
 }  // namespace swiftlet::control

@@ -17,21 +17,21 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPrecision = 1e-6;  // to which extrema are sought, relative to the limit
-constexpr double kMostLooks = 1e6;   // at the rotors, in a whole path
+constexpr double kPrecision = 1e-6;       // of extrema, relative to the limit
+constexpr double kMaxRotorSamples = 1e6;  // most samples of the rotors on a path
 
 constexpr std::array<const char*, 9> kUnits = {"m", "m/s", "m/s^2", "rad/s", "m/s^2", "rad", "N", "N", "N"};
 
 bool is_least(Demand demand) { return demand == Demand::kLift || demand == Demand::kRotorLeast; }
 
-// The path as the rotors feel it: drag acts like an acceleration in proportion to the velocity, and so do its
-// derivatives.
+// The reference plus drag: drag acts as an acceleration in proportion to the velocity, and its derivatives
+// accordingly.
 Reference with_drag(const Reference& reference, double drag_per_mass) {
-  Reference felt = reference;
-  felt.acceleration_ned += drag_per_mass * reference.velocity_ned;
-  felt.jerk_ned += drag_per_mass * reference.acceleration_ned;
-  felt.snap_ned += drag_per_mass * reference.jerk_ned;
-  return felt;
+  Reference effective = reference;
+  effective.acceleration_ned += drag_per_mass * reference.velocity_ned;
+  effective.jerk_ned += drag_per_mass * reference.acceleration_ned;
+  effective.snap_ned += drag_per_mass * reference.jerk_ned;
+  return effective;
 }
 
 class Survey {
@@ -40,7 +40,7 @@ class Survey {
       : vehicle_(vehicle),
         limits_(limits),
         drag_per_mass_(vehicle.linear_drag / vehicle.mass_kg),
-        rotor_step_s_(std::max(kRotorStep_s, duration_s / kMostLooks)) {
+        rotor_step_s_(std::max(kRotorStep_s, duration_s / kMaxRotorSamples)) {
     for_wrench_ = plant::pseudo_inverse(plant::effectiveness(vehicle));
     const plant::ThrustRange rotor = plant::steady_thrust_range(vehicle, supply_voltage_v);
     begin(Demand::kFence, 0.0);
@@ -55,9 +55,9 @@ class Survey {
   }
 
   void add(const PolynomialSegment& segment) {
-    look_at_motion(segment);
-    look_at_force(segment);
-    look_at_rotors(segment);
+    add_motion(segment);
+    add_force(segment);
+    add_rotors(segment);
     start_s_ += segment.duration_s;
     ++index_;
   }
@@ -84,13 +84,13 @@ class Survey {
     note(demand, factor * std::sqrt(std::max(most.value, 0.0)), segment, most.at * segment.duration_s);
   }
 
-  void look_at_motion(const PolynomialSegment& segment) {
+  void add_motion(const PolynomialSegment& segment) {
     const std::array<const Polynomial*, 3> axes = {&segment.x, &segment.y, &segment.z};
     const double precision_m = 1e-6;
     for (int i = 0; i < 3; ++i) {
-      const Bernstein way = bernstein(*axes[static_cast<std::size_t>(i)], segment.duration_s);
-      const Extremum high = maximum(way, precision_m);
-      const Extremum low = minimum(way, precision_m);
+      const Bernstein position = bernstein(*axes[static_cast<std::size_t>(i)], segment.duration_s);
+      const Extremum high = maximum(position, precision_m);
+      const Extremum low = minimum(position, precision_m);
       note(Demand::kFence, high.value - limits_.fence_max_ned[i], segment, high.at * segment.duration_s);
       note(Demand::kFence, limits_.fence_min_ned[i] - low.value, segment, low.at * segment.duration_s);
     }
@@ -104,8 +104,8 @@ class Survey {
     note_root(Demand::kYawRate, yaw_rate * yaw_rate, 1.0, segment);
   }
 
-  // b = g e3 - a - (c / m) v: what the rotors give, over the mass, along the body's z.
-  void look_at_force(const PolynomialSegment& segment) {
+  // b = g e3 - a - (c / m) v: the specific force of the rotors, along body z.
+  void add_force(const PolynomialSegment& segment) {
     const auto axis = [&](const Polynomial& p, double gravity) {
       return constant(gravity) - bernstein(p, segment.duration_s, 2) -
              drag_per_mass_ * bernstein(p, segment.duration_s, 1);
@@ -117,7 +117,7 @@ class Survey {
     note(Demand::kLift, least.value, segment, least.at * segment.duration_s);
     note_root(Demand::kThrust, squared_length(x, y, z), vehicle_.mass_kg, segment);
 
-    // Beyond the limit where the horizontal part is longer than tan(limit) times the vertical one.
+    // The tilt exceeds its limit where the horizontal part is longer than tan(limit) times the vertical one.
     const double tangent = std::tan(limits_.max_tilt_rad);
     const Bernstein beyond = squared_length(x, y) - tangent * tangent * squared_length(z);
     const Extremum most = maximum(beyond, kPrecision * plant::kGravity * plant::kGravity);
@@ -129,13 +129,13 @@ class Survey {
     }
   }
 
-  void look_at_rotors(const PolynomialSegment& segment) {
-    const auto looks =
+  void add_rotors(const PolynomialSegment& segment) {
+    const auto samples =
         static_cast<std::int64_t>(std::max(1.0, std::ceil(segment.duration_s / rotor_step_s_)));
-    for (std::int64_t i = 0; i <= looks; ++i) {
-      const double t_s = segment.duration_s * static_cast<double>(i) / static_cast<double>(looks);
-      const Reference felt = with_drag(evaluate(segment, t_s), drag_per_mass_);
-      const ReferenceMotion motion = reference_motion(vehicle_.mass_kg, felt, felt.yaw_rad);
+    for (std::int64_t i = 0; i <= samples; ++i) {
+      const double t_s = segment.duration_s * static_cast<double>(i) / static_cast<double>(samples);
+      const Reference effective = with_drag(evaluate(segment, t_s), drag_per_mass_);
+      const ReferenceMotion motion = reference_motion(vehicle_.mass_kg, effective, effective.yaw_rad);
       // Euler's equation: J omega' + omega x J omega.
       const Vector3d moment = vehicle_.inertia * motion.body_accelerations +
                               motion.body_rates.cross(vehicle_.inertia * motion.body_rates);

@@ -1,5 +1,5 @@
-// What a path asks of a vehicle that is exactly on it, by the vehicle's model: how fast, how tilted, how much
-// of each rotor, each at its worst with the place where that is.
+// Feasibility of a path by the vehicle's model, for a vehicle that follows it exactly: the worst value of
+// speed, tilt, rotor thrust and other demands, and where on the path it occurs.
 #pragma once
 
 #include <cstddef>
@@ -17,20 +17,20 @@ enum class Demand {
   kSpeed,         // m/s
   kAcceleration,  // m/s^2
   kYawRate,       // rad/s
-  kLift,          // m/s^2, the upward specific force; the least
+  kLift,          // m/s^2, least upward specific force
   kTilt,          // rad, of the thrust from the vertical
   kThrust,        // N, of all rotors
-  kRotorLeast,    // N, of the rotor that gives the least
-  kRotorMost,     // N, of the rotor that gives the most
+  kRotorLeast,    // N, least thrust of any rotor
+  kRotorMost,     // N, greatest thrust of any rotor
 };
 const char* to_string(Demand demand);
 const char* unit_of(Demand demand);
 
-// The worst of one demand along a path.
+// The worst value of one demand along a path.
 struct WorstDemand {
   Demand demand = Demand::kFence;
   double value = 0.0;
-  double limit = 0.0;       // kLift and kRotorLeast: the least; of all others: the most
+  double limit = 0.0;       // kLift and kRotorLeast: minimum; all others: maximum
   std::size_t segment = 0;  // from 0
   double time_s = 0.0;      // from the path's start
   Eigen::Vector3d position_ned = Eigen::Vector3d::Zero();
@@ -40,12 +40,12 @@ struct WorstDemand {
   std::string sentence() const;
 };
 
-// All demands, in the order of the enumeration. Fence, speed, acceleration, yaw rate, lift and thrust are
-// extrema of polynomials, found everywhere on the path; so is whether the tilt exceeds its limit, and where
-// most. The rotors' thrusts are looked at every kRotorStep_s or finer (a path of more than an hour: at a
-// million places). Drag is included, at rest in the air. Rotors hold their thrusts; that their speed takes
-// time to change is not part of it. supply_voltage_v: at which the rotors must do it, above 0. At least one
-// segment, each as check_segment() has it.
+// The worst value of each demand, in the order of the enumeration. Fence, speed, acceleration, yaw rate,
+// lift and thrust are extrema of polynomials and hold everywhere on the path; so does the decision whether
+// the tilt exceeds its limit, and where most. Rotor thrusts are sampled every kRotorStep_s or finer (paths
+// of more than an hour: at a million points). Drag in still air is included. Rotor thrusts are steady: the
+// time that rotors take to change speed is not modelled. supply_voltage_v: voltage for the rotor limits,
+// above 0. Needs at least one segment; each must pass check_segment().
 std::vector<WorstDemand> worst_demands(const plant::Vehicle& vehicle, const Limits& limits,
                                        double supply_voltage_v,
                                        const std::vector<PolynomialSegment>& segments);

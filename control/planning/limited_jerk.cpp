@@ -63,7 +63,7 @@ std::vector<PolynomialSegment> limited_jerk_leg(const Eigen::Vector3d& from_ned,
   const Eigen::Vector3d direction = (to_ned - from_ned) / distance;
   const double yaw_per_m = (to_yaw - from_yaw) / distance;
   std::vector<PolynomialSegment> segments;
-  double s = 0.0, v = 0.0, a = 0.0;  // way, speed and acceleration along the leg
+  double s = 0.0, v = 0.0, a = 0.0;  // distance, speed and acceleration along the leg
   for (const auto& [jerk, duration_s] : pieces) {
     if (duration_s < kLeastDuration_s) continue;
     const auto axis = [&, jerk = jerk](double from, double per_m) {

@@ -17,8 +17,8 @@ double falling(int n, int k) {
   return product;
 }
 
-// Of a segment of duration 1, R = 3 for jerk and 4 for snap: its ends' derivatives of order 0 .. R - 1, first
-// those at the start, give the coefficients and the cost.
+// A segment of duration 1, R = 3 for jerk and 4 for snap. Coefficients and cost are functions of the ends'
+// derivatives of order 0 .. R - 1, those at the start first.
 template <int R>
 struct UnitSegment {
   using Matrix = Eigen::Matrix<double, 2 * R, 2 * R>;
@@ -49,7 +49,7 @@ Free<R> free_of(const PlaceDerivatives& derivatives) {
   return derivatives.leftCols<R - 1>().transpose();
 }
 
-// The derivatives at all points that make the cost least.
+// The derivatives at all points that minimise the cost.
 template <int R>
 std::vector<Free<R>> solve(const UnitSegment<R>& unit, const std::vector<PositionYaw>& points,
                            const std::vector<double>& durations_s, const Free<R>& at_start,
@@ -61,8 +61,8 @@ std::vector<Free<R>> solve(const UnitSegment<R>& unit, const std::vector<Positio
   derivatives.back() = at_end;
   if (last < 2) return derivatives;
 
-  // The normal equations' diagonal, the block right of it, and their right-hand side. Of a segment of
-  // duration T the k-th derivative counts T^k, and the whole T^(1 - 2R).
+  // The normal equations: diagonal blocks, blocks right of the diagonal, right-hand side. For a segment of
+  // duration T the k-th derivative is scaled by T^k, and the cost by T^(1 - 2R).
   std::vector<Block> diagonal(points.size(), Block::Zero());
   std::vector<Block> next(points.size(), Block::Zero());
   std::vector<Free<R>> right(points.size(), Free<R>::Zero());
@@ -77,10 +77,10 @@ std::vector<Free<R>> solve(const UnitSegment<R>& unit, const std::vector<Positio
     diagonal[i] += weight * (s * unit.cost.template block<R - 1, R - 1>(1, 1) * s);
     diagonal[i + 1] += weight * (s * unit.cost.template block<R - 1, R - 1>(R + 1, R + 1) * s);
     next[i] = weight * (s * unit.cost.template block<R - 1, R - 1>(1, R + 1) * s);
-    // Both ends' positions count alike but for their sign: what is left is the way between them.
-    const Eigen::RowVector4d way = (points[i + 1] - points[i]).transpose();
-    right[i] -= weight * (s * unit.cost.template block<R - 1, 1>(1, R)) * way;
-    right[i + 1] -= weight * (s * unit.cost.template block<R - 1, 1>(R + 1, R)) * way;
+    // The positions of both ends enter with opposite signs: only their difference matters.
+    const Eigen::RowVector4d difference = (points[i + 1] - points[i]).transpose();
+    right[i] -= weight * (s * unit.cost.template block<R - 1, 1>(1, R)) * difference;
+    right[i + 1] -= weight * (s * unit.cost.template block<R - 1, 1>(R + 1, R)) * difference;
   }
   right[1] -= next[0].transpose() * at_start;
   right[last - 1] -= next[last - 1] * at_end;
@@ -101,7 +101,7 @@ std::vector<Free<R>> solve(const UnitSegment<R>& unit, const std::vector<Positio
 template <int R>
 PolynomialSegment segment_between(const UnitSegment<R>& unit, const PositionYaw& from, const Free<R>& at_from,
                                   const PositionYaw& to, const Free<R>& at_to, double duration_s) {
-  // From `from` on, so that places far from the origin cost no digits.
+  // Relative to `from`, so that positions far from the origin do not lose precision.
   Eigen::Matrix<double, 2 * R, 4> ends;
   ends.row(0).setZero();
   ends.row(R) = (to - from).transpose();

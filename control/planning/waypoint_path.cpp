@@ -19,17 +19,16 @@ using Eigen::Vector3d;
 constexpr double kSamePlace_m = 1e-4;
 constexpr double kLeastCorridor_m = 1e-3;
 constexpr double kLeastDuration_s = 1e-3;
-constexpr double kPrecision = 1e-6;  // of what the bounds are known to, relative
+constexpr double kPrecision = 1e-6;  // relative precision of the bounds
 constexpr int kSmoothings = 12;
 constexpr double kSmoothingExponent = 0.15;
 constexpr int kBalancings = 24;
-constexpr int kPatience = 6;    // balancings without gain
-constexpr double kGain = 1e-3;  // of the whole duration, that is one
-constexpr int kLooks = 6;       // in a segment, while its share of the time is sought
-constexpr double kSlowingExponent =
-    0.5;  // of a segment's use of the limits, in its next duration, where it is too much
-constexpr double kHasteningExponent = 0.1;  // and where it is too little
-constexpr int kMaxRefinements = 10;         // of the points that hold a spline inside its corridors
+constexpr int kPatience = 6;                // rounds without gain before it ends
+constexpr double kGain = 1e-3;              // least gain in the whole duration, relative
+constexpr int kSamples = 6;                 // samples of a segment in each round
+constexpr double kSlowingExponent = 0.5;    // change of a segment's duration with its limit use, above 1
+constexpr double kHasteningExponent = 0.1;  // ... and below 1
+constexpr int kMaxRefinements = 10;         // rounds of points added to keep a spline inside its corridors
 
 [[noreturn]] void refuse(const std::string& sentence) { throw std::invalid_argument(sentence); }
 
@@ -60,7 +59,7 @@ void check(const WaypointPath& path) {
   }
   if (!path.legs.empty() && path.legs.size() + 1 != path.points.size()) {
     refuse("the path has " + std::to_string(path.legs.size()) + " legs between " +
-           std::to_string(path.points.size()) + " points, must have one less than points");
+           std::to_string(path.points.size()) + " points, must be one fewer than points");
   }
   for (std::size_t i = 0; i < path.points.size(); ++i) {
     if (!place_of(path.points[i]).allFinite())
@@ -75,29 +74,30 @@ void check(const WaypointPath& path) {
   }
 }
 
-// Points of a spline between two stops. Those that were added to hold it in a corridor stand on its leg.
+// The points of a spline between two stops. Points added for a corridor lie on the straight line of their
+// leg.
 struct Knots {
   std::vector<PositionYaw> places;
-  std::vector<std::size_t> leg;  // of each segment, from the first of the path
+  std::vector<std::size_t> leg;  // of each segment; index from the start of the path
   std::vector<double> durations_s;
 };
 
-// Of one move from rest to rest, by minimum jerk: an estimate of the time that a leg takes.
+// Initial estimate of a leg's duration.
 double first_duration(const PositionYaw& from, const PositionYaw& to, bool at_end,
                       const MotionLimits& limits) {
-  const double way = (to - from).head<3>().norm();
+  const double distance = (to - from).head<3>().norm();
   const double turn = std::abs(to[3] - from[3]);
-  const double passing = std::max(way / limits.speed, turn / limits.yaw_rate);
+  const double passing = std::max(distance / limits.speed, turn / limits.yaw_rate);
   const double starting = at_end ? limits.speed / limits.acceleration / 2.0 : 0.0;
-  const double slow = std::sqrt(2.0 * way / limits.acceleration);
+  const double slow = std::sqrt(2.0 * distance / limits.acceleration);
   return std::max({std::min(passing + starting, slow), passing, kLeastDuration_s});
 }
 
-// As limit_use(), but only where it looks.
-LimitUse looked_at(const PolynomialSegment& segment, const MotionLimits& limits) {
+// As limit_use(), but from samples.
+LimitUse sampled_use(const PolynomialSegment& segment, const MotionLimits& limits) {
   LimitUse use;
-  for (int i = 0; i <= kLooks; ++i) {
-    const Reference at = evaluate(segment, segment.duration_s * i / kLooks);
+  for (int i = 0; i <= kSamples; ++i) {
+    const Reference at = evaluate(segment, segment.duration_s * i / kSamples);
     use.speed = std::max(use.speed, at.velocity_ned.squaredNorm());
     use.acceleration = std::max(use.acceleration, at.acceleration_ned.squaredNorm());
     use.jerk = std::max(use.jerk, at.jerk_ned.squaredNorm());
@@ -116,8 +116,8 @@ double sum(const std::vector<double>& values) {
   return total;
 }
 
-// Less the derivative of a segment's cost with respect to its duration, while its ends' derivatives are the
-// best ones: of the spline's variational problem, the Hamiltonian, constant along the segment.
+// Minus the derivative of a segment's cost with respect to its duration, for optimal end derivatives: the
+// Hamiltonian of the spline's variational problem, which is constant along the segment.
 double hamiltonian(const PolynomialSegment& segment, Smoothness smoothness) {
   double sum = 0.0;
   for (const Polynomial* const axis : {&segment.x, &segment.y, &segment.z}) {
@@ -134,8 +134,8 @@ double hamiltonian(const PolynomialSegment& segment, Smoothness smoothness) {
   return sum;
 }
 
-// Towards the durations with which, of one sum, the cost is least: there all segments' Hamiltonians are the
-// same.
+// Moves the durations, at a constant sum, towards least cost: there the Hamiltonians of all segments are
+// equal.
 void smooth(Knots& knots, Smoothness smoothness) {
   for (int round = 0; round < kSmoothings; ++round) {
     const std::vector<PolynomialSegment> segments = spline(smoothness, knots.places, knots.durations_s);
@@ -152,8 +152,8 @@ void smooth(Knots& knots, Smoothness smoothness) {
   }
 }
 
-// Time goes to where the limits are used most, until the whole does not get shorter. What counts is the
-// duration after all of it is stretched to hold the limits; from rest to rest that changes nothing else.
+// Moves time to the segments that use the limits most, while the whole gets shorter. The measure is the
+// whole duration after stretching to the limits; from rest to rest, stretching changes nothing else.
 void balance(Knots& knots, Smoothness smoothness, const MotionLimits& limits) {
   std::vector<double> durations = knots.durations_s;
   double best_s = std::numeric_limits<double>::infinity();
@@ -161,7 +161,7 @@ void balance(Knots& knots, Smoothness smoothness, const MotionLimits& limits) {
   for (int round = 0; round < kBalancings && without_gain < kPatience; ++round) {
     const std::vector<PolynomialSegment> segments = spline(smoothness, knots.places, durations);
     std::vector<double> use(segments.size());
-    for (std::size_t i = 0; i < segments.size(); ++i) use[i] = looked_at(segments[i], limits).stretch();
+    for (std::size_t i = 0; i < segments.size(); ++i) use[i] = sampled_use(segments[i], limits).stretch();
     const double stretch = *std::max_element(use.begin(), use.end());
     const double whole_s = stretch * sum(durations);
     without_gain = whole_s < (1.0 - kGain) * best_s ? 0 : without_gain + 1;
@@ -177,7 +177,7 @@ void balance(Knots& knots, Smoothness smoothness, const MotionLimits& limits) {
   }
 }
 
-// Time grows by the factor all along.
+// Stretches time by the factor.
 void stretch(std::vector<PolynomialSegment>& segments, double factor) {
   for (PolynomialSegment& segment : segments) {
     segment.duration_s *= factor;
@@ -191,8 +191,7 @@ void stretch(std::vector<PolynomialSegment>& segments, double factor) {
   }
 }
 
-// A segment's greatest distance from the straight line between its leg's points, which it must not pass
-// either.
+// Greatest distance of a segment from the straight line between its leg's points, including beyond its ends.
 double distance_from_leg(const PolynomialSegment& segment, const Vector3d& from, const Vector3d& to) {
   const double length = (to - from).norm();
   const Vector3d along = (to - from) / length;
@@ -205,16 +204,16 @@ double distance_from_leg(const PolynomialSegment& segment, const Vector3d& from,
     return direction.x() * axes[0] + direction.y() * axes[1] + direction.z() * axes[2] -
            constant(direction.dot(from));
   };
-  const Bernstein way = towards(along);
+  const Bernstein progress = towards(along);
   const double tolerance = kPrecision * kLeastCorridor_m;
   const double beside =
       maximum(squared_length(towards(across), towards(upright)), tolerance * tolerance).value;
-  const double before = -minimum(way, tolerance).value;
-  const double beyond = maximum(way, tolerance).value - length;
+  const double before = -minimum(progress, tolerance).value;
+  const double beyond = maximum(progress, tolerance).value - length;
   return std::max({std::sqrt(std::max(beside, 0.0)) + tolerance, before, beyond});
 }
 
-// Another point in the middle of each segment that leaves its corridor; true if there was one.
+// Adds a point in the middle of each segment that leaves its corridor. Returns true if it added one.
 bool refine(Knots& knots, const std::vector<PolynomialSegment>& segments, const WaypointPath& path) {
   Knots finer;
   finer.places.push_back(knots.places.front());
@@ -236,7 +235,7 @@ bool refine(Knots& knots, const std::vector<PolynomialSegment>& segments, const 
   return changed;
 }
 
-// From the stop at point `first` to the one at point `last`, by a spline.
+// Plans a spline from the stop at point `first` to the one at point `last`.
 void add_spline(const WaypointPath& path, std::size_t first, std::size_t last, PlannedPath& planned) {
   Knots knots;
   for (std::size_t i = first; i <= last; ++i) knots.places.push_back(place_of(path.points[i]));
@@ -260,7 +259,7 @@ void add_spline(const WaypointPath& path, std::size_t first, std::size_t last, P
     if (!refine(knots, segments, path)) break;
     if (round == kMaxRefinements) {
       refuse("the corridor between points " + std::to_string(first + 1) + " and " + std::to_string(last + 1) +
-             " is too narrow to be flown through: stop at its corners");
+             " is too narrow to fly through: stop at its corners");
     }
   }
   double factor = 0.0;
@@ -324,7 +323,7 @@ PlannedPath plan(const WaypointPath& path) {
     }
     first = last;
   }
-  if (planned.segments.empty()) refuse("the path goes nowhere: all its points are one place");
+  if (planned.segments.empty()) refuse("the path has no length: all points are at one place");
   if (planned.segments.size() > kMaxTrajectorySegments)
     refuse("the path takes more than " + std::to_string(kMaxTrajectorySegments) + " segments");
   for (const PolynomialSegment& segment : planned.segments) planned.duration_s += segment.duration_s;

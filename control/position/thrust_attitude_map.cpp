@@ -18,7 +18,7 @@ Vector3d unyawed(const Vector3d& v, double cosine, double sine) {
 }
 
 // e3 x v.
-Vector3d turned(const Vector3d& v) { return {-v.y(), v.x(), 0.0}; }
+Vector3d e3_cross(const Vector3d& v) { return {-v.y(), v.x(), 0.0}; }
 
 }  // namespace
 
@@ -49,7 +49,7 @@ ReferenceMotion reference_motion(double mass_kg, const Reference& reference, con
   const double psi_1 = reference.yaw_rate;
   const double psi_2 = reference.yaw_acceleration;
 
-  // b, seen from a frame that yaws with the reference, and its derivatives there.
+  // b and its derivatives in a frame that yaws with the reference.
   const Vector3d n0 = Vector3d(0.0, 0.0, plant::kGravity) - reference.acceleration_ned;
   const Vector3d& jerk = reference.jerk_ned;
   const Vector3d& snap = reference.snap_ned;
@@ -61,10 +61,10 @@ ReferenceMotion reference_motion(double mass_kg, const Reference& reference, con
     out.thrust_n = mass_kg * b.norm();
     return out;
   }
-  const Vector3d b_1 = unyawed(-jerk - psi_1 * turned(n0), cosine, sine);
-  const Vector3d b_2 =
-      unyawed(-snap + 2.0 * psi_1 * turned(jerk) - psi_2 * turned(n0) + psi_1 * psi_1 * turned(turned(n0)),
-              cosine, sine);
+  const Vector3d b_1 = unyawed(-jerk - psi_1 * e3_cross(n0), cosine, sine);
+  const Vector3d b_2 = unyawed(
+      -snap + 2.0 * psi_1 * e3_cross(jerk) - psi_2 * e3_cross(n0) + psi_1 * psi_1 * e3_cross(e3_cross(n0)),
+      cosine, sine);
 
   // theta = atan2(b_x, b_z), with rho its radius.
   const double rho_squared = b.x() * b.x() + b.z() * b.z();
@@ -87,7 +87,7 @@ ReferenceMotion reference_motion(double mass_kg, const Reference& reference, con
   const double phi_1 = -(b_1.y() * rho - b.y() * rho_1) * per_norm_squared;
   const double phi_2 = -(b_2.y() * rho - b.y() * rho_2) * per_norm_squared - 2.0 * phi_1 * norm_1 * per_norm;
 
-  // omega = S1^-1 Theta', Eq. (29)-(31) backwards, and its derivative.
+  // omega = S1^-1 Theta', the inverse of Eq. (29)-(31), and its derivative.
   const double sin_phi = -b.y() * per_norm;
   const double cos_phi = rho * per_norm;
   const double sin_theta = b.x() * per_rho;

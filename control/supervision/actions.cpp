@@ -9,7 +9,7 @@
 namespace swiftlet::control::actions {
 namespace {
 
-constexpr double kApproachSpeed = 0.5;  // m/s, from rest to where a trajectory begins
+constexpr double kApproachSpeed = 0.5;  // m/s, from rest to the start of a trajectory
 
 void take_off(SupervisorContext& context) {
   start_takeoff(context.guidance(), context.request->position_ned.z(), context.request->speed);
@@ -23,7 +23,7 @@ void keep_mission(SupervisorContext& context) {
                                     static_cast<int>(mission.items.size())};
 }
 
-// The scene of a request has the limits of before it: of the mission, from here on.
+// The context of a request has the limits from before it. From here on the mission's limits apply.
 void fly_mission(SupervisorContext& context, void (*begin)(SupervisorContext&)) {
   SupervisorContext flown{context.settings, context.plan.mission_limits,
                           context.inputs,   context.state,
@@ -44,14 +44,14 @@ void skip_item(SupervisorContext& context) {
 
 void clear_mission(SupervisorContext& context) {
   const bool moves = context.paused() && context.state.guidance.pause == MissionPause::kNone;
-  if (moves) start_stop(context.guidance());  // along its way it could not go on
+  if (moves) start_stop(context.guidance());  // it cannot continue on its path
   context.plan.mission = nullptr;
   context.state.guidance.mission = {};
   context.state.guidance.pause = MissionPause::kNone;
 }
 
-// A mission that is paused can be gone on with from elsewhere.
-void leave_way_if_paused(SupervisorContext& context) {
+// Stores the path of a paused mission, so that it can be resumed from elsewhere.
+void store_path_if_paused(SupervisorContext& context) {
   if (context.paused()) pause_path(context.guidance());
 }
 
@@ -75,7 +75,7 @@ void follow_setpoint(SupervisorContext& context) {
 }
 
 void move(SupervisorContext& context) {
-  leave_way_if_paused(context);
+  store_path_if_paused(context);
   const Request& request = *context.request;
   start_move(context.guidance(), request.position_ned, request.yaw_free, request.yaw_rad, request.speed,
              context.state.now_ns);
@@ -96,38 +96,38 @@ void begin_at_estimate(SupervisorContext& context) {
 }  // namespace
 
 const Action kNothing{"", [](SupervisorContext&) {}};
-const Action kNoteGround{"note where the ground is", [](SupervisorContext& context) {
+const Action kNoteGround{"store the ground height", [](SupervisorContext& context) {
                            context.state.guidance.ground_z_ned = context.estimate().position_ned.z();
                          }};
 const Action kTakeOff{"spool up, climb", take_off};
-const Action kKeepMission{"keep it", keep_mission};
-const Action kStartMission{"start its first item", start_mission};
-const Action kPause{"come to rest on its way",
+const Action kKeepMission{"store the mission", keep_mission};
+const Action kStartMission{"start the first item", start_mission};
+const Action kPause{"brake along the path",
                     [](SupervisorContext& context) { change_time_scaling(context.guidance(), false); }};
-const Action kResume{"back to where it was left, and on",
+const Action kResume{"return to the paused path, then continue",
                      [](SupervisorContext& context) { return_to_paused_path(context.guidance()); }};
-const Action kSkip{"start its next item", skip_item};
-const Action kClearMission{"forget it; come to rest where it was flown", clear_mission};
-const Action kStartTrajectory{"join it where it begins", start_trajectory};
-const Action kFollowSetpoint{"follow it", follow_setpoint};
-const Action kMove{"go there", move};
-const Action kStop{"come to rest", [](SupervisorContext& context) {
-                     leave_way_if_paused(context);
+const Action kSkip{"start the next item", skip_item};
+const Action kClearMission{"delete the mission; brake if still on its path", clear_mission};
+const Action kStartTrajectory{"join the start of the trajectory", start_trajectory};
+const Action kFollowSetpoint{"follow the setpoint", follow_setpoint};
+const Action kMove{"move to the target", move};
+const Action kStop{"brake to rest", [](SupervisorContext& context) {
+                     store_path_if_paused(context);
                      start_stop(context.guidance());
                    }};
 const Action kLandAsAsked{
-    "land at the speed asked for, `descent_speed` at most", [](SupervisorContext& context) {
+    "land at the requested speed, `descent_speed` at most", [](SupervisorContext& context) {
       land_at(context, std::min(context.request->speed, context.settings.failsafe.descent_speed));
     }};
 const Action kLand{"land at `descent_speed`", land};
 const Action kLandFast{"land at `critical_descent_speed`", [](SupervisorContext& context) {
                          land_at(context, context.settings.failsafe.critical_descent_speed);
                        }};
-const Action kHoldOnReturn{"hold when the pose is back",
+const Action kHoldOnReturn{"hold once a pose is available",
                            [](SupervisorContext& context) { context.state.land_on_return = false; }};
-const Action kLandOnReturn{"land when the pose is back",
+const Action kLandOnReturn{"land once a pose is available",
                            [](SupervisorContext& context) { context.state.land_on_return = true; }};
-const Action kStopFromEstimate{"come to rest, from the estimate", [](SupervisorContext& context) {
+const Action kStopFromEstimate{"brake to rest, from the estimate", [](SupervisorContext& context) {
                                  begin_at_estimate(context);
                                  start_stop(context.guidance());
                                }};
@@ -136,7 +136,7 @@ const Action kLandFromEstimate{"land at `descent_speed`, from the estimate", [](
                                  land(context);
                                }};
 
-const Action kTakeIntoHold{"come to rest, from the estimate; the ground is at z = 0",
+const Action kTakeIntoHold{"brake to rest, from the estimate; the ground is at z = 0",
                            [](SupervisorContext& context) {
                              context.state.guidance.ground_z_ned = 0.0;
                              context.state.guidance.airborne = true;

@@ -1,4 +1,4 @@
-// What a transition does besides changing the mode.
+// The action of a transition, besides the change of mode.
 #pragma once
 
 #include "swiftlet/control/supervision/supervisor_context.hpp"
@@ -7,13 +7,13 @@ namespace swiftlet::control {
 
 struct Action {
   const char* text;
-  void (*run)(SupervisorContext&);  // in the new mode
+  void (*run)(SupervisorContext&);  // called in the new mode
 };
 
 namespace actions {
 
 extern const Action kNothing;
-extern const Action kNoteGround;  // where it stands, is the ground
+extern const Action kNoteGround;  // the ground is at the estimated height
 extern const Action kTakeOff;
 extern const Action kKeepMission;
 extern const Action kStartMission;
@@ -28,9 +28,9 @@ extern const Action kStop;
 extern const Action kLandAsAsked;
 extern const Action kLand;
 extern const Action kLandFast;
-extern const Action kHoldOnReturn;  // when the pose is back
+extern const Action kHoldOnReturn;  // once a pose is available
 extern const Action kLandOnReturn;
-extern const Action kStopFromEstimate;  // the reference begins anew where the vehicle is
+extern const Action kStopFromEstimate;  // restarts the reference at the vehicle
 extern const Action kLandFromEstimate;
 extern const Action kTakeIntoHold;
 

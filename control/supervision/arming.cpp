@@ -15,17 +15,17 @@ namespace {
 
 using ArmingCheck = Outcome (*)(const SupervisorContext&);
 
-Outcome pose_there(const SupervisorContext& context) {
+Outcome pose_available(const SupervisorContext& context) {
   const SupervisorInputs& inputs = context.inputs;
   const double limit_s = context.settings.failsafe.mocap_timeout_s;
-  if (!inputs.has_estimate) return refuse("no mocap pose has come");
+  if (!inputs.has_estimate) return refuse("no mocap pose received");
   if (inputs.pose_age_s > limit_s)
     return refuse("the last mocap pose is %.2f s old, the limit is %.2f s", inputs.pose_age_s, limit_s);
   return accept();
 }
 
-// One that was late or came twice is no fault of motion capture.
-Outcome pose_believed(const SupervisorContext& context) {
+// A late or duplicate pose is no fault of motion capture.
+Outcome pose_accepted(const SupervisorContext& context) {
   const PoseFault fault = context.estimate().pose_fault;
   if (fault == PoseFault::kNone || fault == PoseFault::kUntimely) return accept();
   return refuse("the last mocap pose was refused: %s", to_string(fault));
@@ -36,10 +36,10 @@ Outcome imu_usable(const SupervisorContext& context) {
   return accept();
 }
 
-Outcome battery_there(const SupervisorContext& context) {
+Outcome battery_available(const SupervisorContext& context) {
   const SupervisorInputs& inputs = context.inputs;
   const FailsafeSettings& failsafe = context.settings.failsafe;
-  if (!inputs.has_battery) return refuse("no battery voltage has come");
+  if (!inputs.has_battery) return refuse("no battery voltage received");
   if (inputs.battery_age_s > failsafe.battery_timeout_s) {
     return refuse("the last battery voltage is %.1f s old, the limit is %.1f s", inputs.battery_age_s,
                   failsafe.battery_timeout_s);
@@ -51,8 +51,8 @@ Outcome battery_there(const SupervisorContext& context) {
   return accept();
 }
 
-// With an attitude that is turned wrong, what the accelerometer has more than gravity passes for a bias; what
-// is too much for one makes dead reckoning run off.
+// With a wrong attitude, the rest of the specific force beyond gravity looks like an accelerometer bias. If
+// it is too large for a bias, dead reckoning diverges.
 Outcome imu_at_rest(const SupervisorContext& context) {
   if (!context.inputs.has_estimate) return accept();
   const Eigen::Vector3d up_ned(0.0, 0.0, -plant::kGravity);
@@ -99,10 +99,11 @@ Outcome inside_fence(const SupervisorContext& context) {
   return check_position("the vehicle", context.estimate().position_ned, context.settings.limits);
 }
 
-constexpr ArmingCheck kChecks[] = {pose_there,  pose_believed, imu_usable, battery_there, imu_at_rest,
-                                   not_turning, rotors_still,  level,      not_moving,    inside_fence};
+constexpr ArmingCheck kChecks[] = {pose_available, pose_accepted, imu_usable,   battery_available,
+                                   imu_at_rest,    not_turning,   rotors_still, level,
+                                   not_moving,     inside_fence};
 
-// "a; b; c", or the part of it that fits.
+// Appends "; sentence" if it fits.
 void append(const char* sentence, Outcome& outcome) {
   const std::string_view joint = outcome.accepted ? "cannot arm: " : "; ";
   const std::string_view addition = sentence;

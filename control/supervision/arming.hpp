@@ -1,4 +1,4 @@
-// What must hold before the rotors may turn.
+// The arming checks: conditions for the rotors to start.
 #pragma once
 
 #include "swiftlet/control/supervision/supervisor_context.hpp"
@@ -6,8 +6,8 @@
 
 namespace swiftlet::control {
 
-// Accepted, or refused with all that stands against it, each with value and limit, as far as a reason is
-// long.
+// Accepts, or refuses with a list of all failed checks, each with value and limit, as far as they fit into
+// the reason.
 Outcome check_arming(const SupervisorContext& context);
 
 }  // namespace swiftlet::control

@@ -10,13 +10,13 @@
 namespace swiftlet::control {
 namespace {
 
-constexpr double kContactDepth_m = 0.05;  // reference this far below the vehicle ...
-constexpr double kContactSpeed = 0.05;    // ... which does not move, or slides at the ground's height
+constexpr double kContactDepth_m = 0.05;  // the reference is this far below the vehicle ...
+constexpr double kContactSpeed = 0.05;    // ... and the vehicle is at rest, or slides at ground height
 constexpr double kContactTime_s = 0.2;
-constexpr double kContactLift = 1.0;  // m/s^2 of lift that the rotors do not explain, for kBlindContactTime_s
+constexpr double kContactLift = 1.0;  // m/s^2, vertical specific-force residual for kBlindContactTime_s
 constexpr double kBlindContactTime_s = 0.3;
 
-// True once `condition` has held for `duration_s`; `since` keeps when it began (0: it does not hold).
+// True once `condition` has held for `duration_s`. `since` is when it began, or 0 if it does not hold.
 bool held(bool condition, std::int64_t& since, std::int64_t now_ns, double duration_s) {
   if (!condition) {
     since = 0;
@@ -26,7 +26,7 @@ bool held(bool condition, std::int64_t& since, std::int64_t now_ns, double durat
   return elapsed_s(since, now_ns) >= duration_s;
 }
 
-bool ground_felt(SupervisorContext& context) {
+bool touchdown_detected(SupervisorContext& context) {
   SupervisorState& state = context.state;
   if (state.mode == Mode::kDescent) {
     return held(context.inputs.vertical_specific_force_residual > kContactLift, state.contact_since_ns,
@@ -110,7 +110,7 @@ EventSet observe(SupervisorContext& context, double tip_over_cosine) {
   events.add(Event::kPoseJumped, inputs.pose_jumped);
   events.add(Event::kPoseLost, lost);
   events.add(Event::kPoseIsBack, !lost);
-  events.add(Event::kGroundFelt, ground_felt(context));
+  events.add(Event::kGroundFelt, touchdown_detected(context));
   events.add(Event::kDescentTimedOut,
              state.mode == Mode::kDescent &&
                  elapsed_s(state.mode_since_ns, state.now_ns) > failsafe.descent_timeout_s);

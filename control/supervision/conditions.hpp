@@ -1,4 +1,4 @@
-// The conditions of a step, each against its threshold.
+// The conditions of a step, each compared with its threshold.
 #pragma once
 
 #include "swiftlet/control/supervision/events.hpp"
@@ -6,20 +6,20 @@
 
 namespace swiftlet::control {
 
-// Which of them hold. Keeps in the state since when those hold that must last for a while.
-// tip_over_cosine: tip_over_cosine() of the settings, which no step works out anew.
+// The conditions that hold. The state keeps the start times of those that must hold for some time.
+// tip_over_cosine: tip_over_cosine() of the settings, computed once.
 EventSet observe(SupervisorContext& context, double tip_over_cosine);
 
-// Of the tilt at which the vehicle has tipped over.
+// Cosine of the tilt at which the vehicle has tipped over.
 double tip_over_cosine(const FailsafeSettings& failsafe);
 
-// How far outside the fence, along the axis where it is farthest, m; negative inside.
+// Distance outside the fence along the worst axis, m; negative inside.
 double beyond_fence(const Limits& limits, const Eigen::Vector3d& position_ned);
 
 bool pose_lost(const SupervisorInputs& inputs, const FailsafeSettings& failsafe);
-// Some ground tool that the flight depends on has been silent for too long.
+// True if a client whose link-loss failsafe is on has been silent for too long.
 bool ground_link_lost(const SupervisorState& state, const FailsafeSettings& failsafe);
-// Those that have been silent for too long are not waited for any more.
+// Switches the link-loss failsafe off for clients that have been silent for too long.
 void forget_silent_ground_links(SupervisorState& state, const FailsafeSettings& failsafe);
 
 }  // namespace swiftlet::control

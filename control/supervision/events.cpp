@@ -11,17 +11,17 @@ const char* to_string(Event event) {
     case Event::kTippedOver:
       return "tipped over";
     case Event::kImpact:
-      return "struck";
+      return "impact";
     case Event::kTakeoffInconsistent:
-      return "climb not seen";
+      return "take-off inconsistent";
     case Event::kPoseJumped:
       return "pose jumped";
     case Event::kPoseLost:
       return "pose lost";
     case Event::kPoseIsBack:
-      return "pose is there";
+      return "pose available";
     case Event::kGroundFelt:
-      return "ground felt";
+      return "touchdown detected";
     case Event::kDescentTimedOut:
       return "descent timed out";
     case Event::kBatteryCritical:
@@ -35,7 +35,7 @@ const char* to_string(Event event) {
     case Event::kGroundLinkLost:
       return "ground link lost";
     case Event::kSetpointsViolateFence:
-      return "setpoints lead out";
+      return "setpoints violate the fence";
     case Event::kSetpointsStopped:
       return "setpoints stopped";
     case Event::kPlanFinished:
@@ -71,9 +71,9 @@ const char* to_string(Event event) {
     case Event::kStop:
       return "stop";
     case Event::kPlanUnknown:
-      return "taken over without the plan";
+      return "plan unknown";
     case Event::kEngagedInFlight:
-      return "found flying";
+      return "engaged in flight";
   }
   return "unknown";
 }

@@ -1,5 +1,4 @@
-// What can move the vehicle from one mode to another: conditions, which are looked at in every step, and
-// requests.
+// The events of the state machine: conditions, which are evaluated in every step, and requests.
 #pragma once
 
 #include <cstdint>
@@ -44,8 +43,8 @@ enum class Event : std::uint8_t {
   kHold,
   kLand,
   kStop,
-  kPlanUnknown,      // taken over from another controller without the mission or trajectory that it flew
-  kEngagedInFlight,  // the controller was started while its vehicle flew
+  kPlanUnknown,      // the mission or trajectory is not known here after a failover
+  kEngagedInFlight,  // the controller started while its vehicle was in the air
 };
 constexpr int kEventCount = static_cast<int>(Event::kEngagedInFlight) + 1;
 constexpr Event kFirstRequest = Event::kArm;
@@ -53,7 +52,7 @@ inline bool is_request(Event event) { return event >= kFirstRequest; }
 
 const char* to_string(Event event);  // "battery low", "goto"
 
-// By request; anything else than a RequestKind is a kind that nobody knows.
+// The event of a request. Returns false for a value that is no RequestKind.
 bool event_of(RequestKind kind, Event& event);
 
 class EventSet {

@@ -17,14 +17,14 @@ namespace {
 constexpr double kLeastClimb_m = 2.0 * kAirborneHeight_m;
 constexpr double kMaxSetpointStep_m = 1.0;
 constexpr double kUnitTolerance = 1e-3;
-constexpr double kNoticed_s = 0.01;  // after a stream has timed out: with the next IMU sample
+constexpr double kDetectionDelay_s = 0.01;  // delay until a stream time-out is detected: the next IMU sample
 constexpr double kRounding = 1e-9;
 
 GroundLinkAction link_action(const SupervisorContext& context) {
   return context.settings.failsafe.ground_link_action;
 }
 
-Outcome battery_lasts(const SupervisorContext& context) {
+Outcome battery_sufficient(const SupervisorContext& context) {
   const SupervisorInputs& inputs = context.inputs;
   const double limit = context.settings.failsafe.low_battery_voltage;
   if (inputs.supply_voltage_v >= limit) return accept();
@@ -35,7 +35,7 @@ Outcome battery_lasts(const SupervisorContext& context) {
 Outcome check_takeoff(const SupervisorContext& context) {
   const Request& request = *context.request;
   const Limits& limits = context.limits;
-  Outcome outcome = battery_lasts(context);
+  Outcome outcome = battery_sufficient(context);
   if (!outcome.accepted) return outcome;
   outcome = check_speed("takeoff", request.speed, limits);
   if (!outcome.accepted) return outcome;
@@ -54,17 +54,17 @@ Outcome check_upload(const SupervisorContext& context) {
   return accept();
 }
 
-// The one that is there is the one that is meant.
+// The request names the uploaded mission, or none.
 Outcome check_mission_named(const SupervisorContext& context) {
   const MissionProgress& there = context.state.guidance.mission;
   const std::uint64_t asked = context.request->mission_id;
-  if (context.plan.mission == nullptr) return refuse("no mission is here: upload it first");
+  if (context.plan.mission == nullptr) return refuse("no mission is uploaded: upload one first");
   if (asked == 0 || asked == there.id) return accept();
-  return refuse("mission %llu is not the one that is here: that is %llu",
+  return refuse("mission %llu is not uploaded: the uploaded mission is %llu",
                 static_cast<unsigned long long>(asked), static_cast<unsigned long long>(there.id));
 }
 
-// Inside the mission's own fence, as far as the failsafe wants it; there it lands, too.
+// The vehicle is inside the mission's fence, within the failsafe's margin, and so is the landing point.
 Outcome check_mission_fence(const SupervisorContext& context) {
   const Limits& limits = context.plan.mission_limits;
   const double margin_m = context.settings.failsafe.fence_margin_m;
@@ -72,7 +72,7 @@ Outcome check_mission_fence(const SupervisorContext& context) {
   if (beyond_fence(limits, at) > margin_m) return check_position("the vehicle", at, limits);
   if (context.plan.mission->items.back().kind != MissionItemKind::kLand) return accept();
   at.z() = context.state.guidance.ground_z_ned;
-  if (beyond_fence(limits, at) > margin_m) return check_position("the ground, on which it lands", at, limits);
+  if (beyond_fence(limits, at) > margin_m) return check_position("the landing point", at, limits);
   return accept();
 }
 
@@ -84,7 +84,7 @@ Outcome check_start(const SupervisorContext& context) {
 Outcome check_start_from_ground(const SupervisorContext& context) {
   const Outcome sound = check_start(context);
   if (!sound.accepted) return sound;
-  const Outcome battery = battery_lasts(context);
+  const Outcome battery = battery_sufficient(context);
   if (!battery.accepted) return battery;
   const MissionItem& first = context.plan.mission->items.front();
   if (first.kind != MissionItemKind::kTakeoff)
@@ -99,10 +99,10 @@ Outcome check_skip(const SupervisorContext& context) {
   if (!named.accepted) return named;
   const MissionProgress& there = context.state.guidance.mission;
   if (there.item_index + 1 < there.item_count) return accept();
-  return refuse("item %d is the mission's last: there is none to go on with", there.item_count);
+  return refuse("item %d is the last of the mission: there is no item to skip to", there.item_count);
 }
 
-// What is not there need not be cleared.
+// If no mission is uploaded, there is nothing to clear.
 Outcome check_clear(const SupervisorContext& context) {
   return context.plan.mission == nullptr && context.request->mission_id == 0 ? accept()
                                                                              : check_mission_named(context);
@@ -142,11 +142,11 @@ Outcome check_position_setpoint(const SupervisorContext& context) {
   return refuse("setpoint: %.2f m away from the vehicle, the limit is %.2f m", step, kMaxSetpointStep_m);
 }
 
-// The stream may cease with this one: then the reference goes on for the time-out, and comes to rest.
+// This setpoint may be the last: the reference then continues for the time-out, and brakes to rest.
 Outcome check_end_of_stream(const SupervisorContext& context) {
   const Setpoint& setpoint = *context.setpoint;
   const Limits& limits = context.limits;
-  const double timeout_s = context.settings.failsafe.setpoint_timeout_s + kNoticed_s;
+  const double timeout_s = context.settings.failsafe.setpoint_timeout_s + kDetectionDelay_s;
   Reference last;
   if (setpoint.kind == SetpointKind::kPosition) {
     last.velocity_ned = setpoint.velocity_ned;
@@ -154,29 +154,28 @@ Outcome check_end_of_stream(const SupervisorContext& context) {
   } else {
     const Reference from = context.state.guidance.path.at(context.state.now_ns);
     last = after_blend(way_into_setpoint(context), timeout_s);
-    // One that was stopped before the fence is not to creep on towards it, a little from rest each time.
+    // Prevents a stream that was stopped before the fence from creeping towards it in short moves from rest.
     Reference in_full_motion;
     in_full_motion.velocity_ned =
         setpoint.kind == SetpointKind::kVelocity ? setpoint.velocity_ned : last.velocity_ned;
     in_full_motion.position_ned = from.position_ned + timeout_s * in_full_motion.velocity_ned;
-    const Outcome inside = check_position("setpoint: where it could come to rest",
-                                          brake_reference(limits, in_full_motion).place_ned, limits);
+    const Outcome inside =
+        check_position("setpoint: stopping point", brake_reference(limits, in_full_motion).place_ned, limits);
     if (!inside.accepted) return inside;
   }
   const double speed = last.velocity_ned.norm();
   if (speed > limits.max_speed + kRounding) {
-    return refuse("setpoint: leads to %.2f m/s within %.2f s, the limit is %.2f m/s", speed, timeout_s,
+    return refuse("setpoint: speed reaches %.2f m/s within %.2f s, the limit is %.2f m/s", speed, timeout_s,
                   limits.max_speed);
   }
-  return check_position("setpoint: where it could come to rest", brake_reference(limits, last).place_ned,
-                        limits);
+  return check_position("setpoint: stopping point", brake_reference(limits, last).place_ned, limits);
 }
 
 Outcome check_thrust(const Setpoint& setpoint, const Limits& limits) {
   const double most = plant::kGravity + limits.max_acceleration;
   if (setpoint.specific_thrust >= 0.0 && setpoint.specific_thrust <= most) return accept();
-  return refuse("setpoint: thrust is %.2f m/s^2, must be at least 0 and at most %.2f m/s^2", setpoint.specific_thrust,
-                most);
+  return refuse("setpoint: thrust is %.2f m/s^2, must be at least 0 and at most %.2f m/s^2",
+                setpoint.specific_thrust, most);
 }
 
 Outcome check_rates(const Setpoint& setpoint, const Limits& limits) {
@@ -187,19 +186,19 @@ Outcome check_rates(const Setpoint& setpoint, const Limits& limits) {
 
 Outcome check_attitude(const Setpoint& setpoint, const Limits& limits) {
   if (!(std::abs(setpoint.q_ned_from_frd.norm() - 1.0) <= kUnitTolerance))
-    return refuse("setpoint: the attitude is no unit quaternion");
+    return refuse("setpoint: the attitude is not a unit quaternion");
   const double tilt = std::acos(std::clamp(cosine_of_tilt(setpoint.q_ned_from_frd), -1.0, 1.0));
   if (tilt <= limits.max_tilt_rad) return accept();
   return refuse("setpoint: tilt is %.2f rad, the limit is %.2f rad", tilt, limits.max_tilt_rad);
 }
 
-// One that knows no place: the fence is kept by the vehicle's own motion.
+// Attitudes and body rates have no position: the fence check uses the vehicle's own motion.
 Outcome check_direct_setpoint(const SupervisorContext& context) {
   const Setpoint& setpoint = *context.setpoint;
   const Limits& limits = context.limits;
   if (context.state.mode == Mode::kHolding && context.state.reason == Reason::kSetpointsViolatedFence)
     return refuse(
-        "setpoint: the stream led out of the fence; ask for hold or goto before the next of its kind");
+        "setpoint: the stream violated the fence; send hold or goto before more setpoints of its kind");
   const Outcome rates = check_rates(setpoint, limits);
   if (!rates.accepted) return rates;
   const Outcome thrust = check_thrust(setpoint, limits);
@@ -248,9 +247,10 @@ const Guard kSpoolingUp{"on the ground", [](const SupervisorContext& context) {
 const Guard kLiftedOff{"lifted off", [](const SupervisorContext& context) {
                          return context.state.guidance.phase != Phase::kSpoolUp;
                        }};
-const Guard kOnLandingItem{
-    "at its landing", [](const SupervisorContext& context) { return on_landing_item(context.guidance()); }};
-const Guard kPausable{"lifted off, not at its landing", [](const SupervisorContext& context) {
+const Guard kOnLandingItem{"on the landing item", [](const SupervisorContext& context) {
+                             return on_landing_item(context.guidance());
+                           }};
+const Guard kPausable{"lifted off, not on the landing item", [](const SupervisorContext& context) {
                         return kLiftedOff.holds(context) && !on_landing_item(context.guidance());
                       }};
 const Guard kPaused{"a mission is paused", [](const SupervisorContext& context) { return context.paused(); }};
@@ -264,7 +264,7 @@ const Guard kNoneFlown{"no mission is flown", [](const SupervisorContext& contex
                        }};
 const Guard kWasLanding{"was landing",
                         [](const SupervisorContext& context) { return context.state.land_on_return; }};
-const Guard kNotHurrying{"not for that already", [](const SupervisorContext& context) {
+const Guard kNotHurrying{"unless already landing for it", [](const SupervisorContext& context) {
                            return context.state.mode != Mode::kLanding ||
                                   context.state.reason != Reason::kBatteryCritical;
                          }};
@@ -289,27 +289,27 @@ namespace preconditions {
 
 const Precondition kNone{"", [](const SupervisorContext&) { return accept(); }};
 const Precondition kArming{"all arming checks pass", check_arming};
-const Precondition kTakeoff{"battery, speed, and a height above the ground and inside the fence",
+const Precondition kTakeoff{"battery voltage, speed, target above the ground and inside the fence",
                             check_takeoff};
-const Precondition kUpload{"it has items", check_upload};
+const Precondition kUpload{"the mission has items", check_upload};
 const Precondition kStartFromGround{
-    "it is here, battery, inside its fence, and it begins with a takeoff to above the ground",
+    "a mission is uploaded, battery voltage, inside its fence, first item a takeoff to above the ground",
     check_start_from_ground};
-const Precondition kStart{"it is here, inside its fence", check_start};
-const Precondition kNamed{"it is the one", check_mission_named};
-const Precondition kSkip{"it is the one, and has another item", check_skip};
-const Precondition kClear{"it is the one, or there is none", check_clear};
-const Precondition kTrajectory{"it begins inside the fence", check_trajectory};
-const Precondition kSetpoint{
-    "inside the fence, from where it can stop inside, within the limits, near the vehicle", check_setpoint};
+const Precondition kStart{"a mission is uploaded, inside its fence", check_start};
+const Precondition kNamed{"the mission id matches", check_mission_named};
+const Precondition kSkip{"the mission id matches, another item follows", check_skip};
+const Precondition kClear{"the mission id matches, or no mission is uploaded", check_clear};
+const Precondition kTrajectory{"starts inside the fence", check_trajectory};
+const Precondition kSetpoint{"inside the fence with room to stop, within the limits, near the vehicle",
+                             check_setpoint};
 const Precondition kGoTo{"inside the fence, within the limits", check_goto};
-const Precondition kLand{"speed", [](const SupervisorContext& context) {
+const Precondition kLand{"speed within the limit", [](const SupervisorContext& context) {
                            return check_speed("land", context.request->speed, context.limits);
                          }};
 
-const Precondition kPose{"a pose", [](const SupervisorContext& context) {
+const Precondition kPose{"a pose is available", [](const SupervisorContext& context) {
                            if (!pose_lost(context.inputs, context.settings.failsafe)) return accept();
-                           return refuse("cannot take a flying vehicle over without a mocap pose");
+                           return refuse("cannot engage in flight without a mocap pose");
                          }};
 
 }  // namespace preconditions

@@ -1,5 +1,5 @@
-// The guards of the transition table. A selector decides whether a row is the one; a check, whether what its
-// request asks is allowed, and if not, why.
+// The guards and preconditions of the transition table. A guard selects whether a row applies. A
+// precondition decides whether the request of that row is accepted, and if not, why.
 #pragma once
 
 #include "swiftlet/control/supervision/supervisor_context.hpp"
@@ -19,19 +19,19 @@ struct Precondition {
 namespace guards {
 
 extern const Guard kAlways;
-extern const Guard kSpoolingUp;  // on the ground still, in take-off
-extern const Guard kLiftedOff;   // not so
+extern const Guard kSpoolingUp;  // in take-off, still on the ground
+extern const Guard kLiftedOff;   // the opposite
 extern const Guard kOnLandingItem;
-extern const Guard kPausable;  // lifted off, and not at the mission's landing
-extern const Guard kPaused;    // a mission is
+extern const Guard kPausable;  // lifted off and not on the landing item
+extern const Guard kPaused;    // a mission is paused
 extern const Guard kNotPaused;
 extern const Guard kNoneUnderWay;  // no mission is flown or paused
 extern const Guard kNoneFlown;
 extern const Guard kWasLanding;  // when the pose was lost
 extern const Guard kNotHurrying;
 extern const Guard kLinkHolds;    // failsafe.ground_link_action is hold
-extern const Guard kLinkLands;    // land
-extern const Guard kLinkMatters;  // either
+extern const Guard kLinkLands;    // ... is land
+extern const Guard kLinkMatters;  // ... is hold or land
 extern const Guard kLinkMattersOnGround;
 
 }  // namespace guards

@@ -27,7 +27,7 @@ bool is_done_when_accepted(RequestKind kind) {
   }
 }
 
-// One that was asked for by somebody.
+// True for requests of a client or user.
 bool is_asked_for(Event event) { return is_request(event) && event < Event::kPlanUnknown; }
 
 void succeed(RequestStatus& request) {
@@ -41,20 +41,20 @@ void fail(RequestStatus& request, const Transition& by) {
   request.reason = by.reason;
 }
 
-// Those that lead the vehicle along the mission end with it.
+// Requests that fly the mission end with it.
 void end_with_mission(RequestStatus& request, MissionState mission, const Transition& row) {
   if (control::is_under_way(mission)) return;
   if (mission == MissionState::kCompleted) return succeed(request);
   fail(request, row);
 }
 
-// Those that lead the vehicle along a way of their own end with that. Of a landing: by way of the descent without
-// position it ends on the ground, too.
-void end_with_way(RequestStatus& request, Mode mode, const Transition& row) {
+// Requests with a path of their own end with it. A landing also succeeds on the ground after a descent
+// without position.
+void end_with_path(RequestStatus& request, Mode mode, const Transition& row) {
   if (row.event == Event::kMissionUpload || row.event == Event::kMissionClear) return;
   switch (request.kind) {
     case RequestKind::kTakeoff:
-      if (row.event == Event::kPlanFinished) return;  // the reference is there
+      if (row.event == Event::kPlanFinished) return;  // the reference is at the end
       break;
     case RequestKind::kLand:
       if (mode == Mode::kLanding || mode == Mode::kDescent) return;
@@ -71,14 +71,14 @@ void end_with_way(RequestStatus& request, Mode mode, const Transition& row) {
 
 double fraction(double part, double whole) { return whole > 0.0 ? std::clamp(part / whole, 0.0, 1.0) : 0.0; }
 
-// Of the segment being flown, by the path's own time.
+// Progress along the segment being flown, in path time.
 double path_progress(const SupervisorState& state) {
   if (state.guidance.phase != Phase::kPath || !state.guidance.path.moving) return 0.0;
   return fraction(elapsed_s(state.guidance.path.start_ns, state.guidance.path.path_ns(state.now_ns)),
                   elapsed_s(state.guidance.path.start_ns, state.guidance.path.end_ns));
 }
 
-// next_segment is 0 on the way to the first.
+// next_segment is 0 while the vehicle moves to the start of the first segment.
 double segments_progress(const SupervisorState& state, std::size_t count) {
   if (state.guidance.next_segment == 0) return 0.0;
   return fraction(state.guidance.next_segment - 1 + path_progress(state), static_cast<double>(count));
@@ -129,7 +129,7 @@ bool reference_rests(const SupervisorState& state) {
   return state.mode == Mode::kHolding && (stands || state.guidance.path.finished(state.now_ns));
 }
 
-bool is_there(const Estimate& estimate, const Reference& reference) {
+bool is_at_reference(const Estimate& estimate, const Reference& reference) {
   return (estimate.position_ned - reference.position_ned).norm() < kThere_m &&
          estimate.velocity_ned.norm() < kStandstill_m_s;
 }
@@ -176,9 +176,9 @@ void note_accepted(SupervisorContext& context) {
   const Request& request = *context.request;
   const auto is_idle = [](const RequestStatus& known) { return !is_under_way(known); };
   RequestStatuses& known = context.state.requests;
-  auto room = std::find_if(known.begin(), known.end(), is_idle);
-  if (room == known.end()) room = known.begin();
-  std::rotate(room, room + 1, known.end());
+  auto slot = std::find_if(known.begin(), known.end(), is_idle);
+  if (slot == known.end()) slot = known.begin();
+  std::rotate(slot, slot + 1, known.end());
   RequestStatus& added = known.back();
   added = {};
   added.key = request.key;
@@ -195,7 +195,7 @@ void end_requests(SupervisorContext& context, const Transition& row) {
     if (is_of_mission(request.kind)) {
       end_with_mission(request, state.guidance.mission.state, row);
     } else {
-      end_with_way(request, state.mode, row);
+      end_with_path(request, state.mode, row);
     }
   }
 }
@@ -206,7 +206,7 @@ void follow_requests(SupervisorContext& context, const Reference& reference) {
     request.state = RequestState::kExecuting;
     request.progress = std::max(request.progress, progress(request, context));
     if (ends_at_rest(request.kind) && reference_rests(context.state) &&
-        is_there(context.estimate(), reference))
+        is_at_reference(context.estimate(), reference))
       succeed(request);
   }
 }

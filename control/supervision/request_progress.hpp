@@ -1,9 +1,10 @@
-// Follows the requests that were accepted to their end: which of them goes on, and which has succeeded, was
-// canceled by a newer request or aborted by a failsafe.
+// Tracks accepted requests to their end: executing, succeeded, canceled by a newer request, or aborted by a
+// failsafe.
 //
-// arm, disarm, stop, mission upload and mission clear have succeeded when they are accepted. takeoff, goto, hold and
-// mission pause have when the reference rests and the vehicle is there; land on the ground; a trajectory at its end;
-// mission start, resume and skip when the mission is completed, whatever pauses come before that.
+// arm, disarm, stop, mission upload and mission clear succeed when they are accepted. takeoff, goto, hold
+// and mission pause succeed when the reference rests and the vehicle is there; land succeeds on the ground;
+// a trajectory at its end; mission start, resume and skip when the mission is completed, whatever pauses
+// come before.
 #pragma once
 
 #include "swiftlet/control/supervision/request_status.hpp"
@@ -12,17 +13,18 @@
 
 namespace swiftlet::control {
 
-// The vehicle is with a reference that rests.
+// The vehicle counts as at a resting reference below these distances and speeds.
 constexpr double kThere_m = 0.05;
 constexpr double kStandstill_m_s = 0.1;
 
-// scene.request was accepted and its row taken. What is over makes room for it, the oldest first.
+// Stores context.request, which was accepted and whose row was taken. Replaces the oldest finished request,
+// or else the oldest.
 void note_accepted(SupervisorContext& context);
 
-// This row was taken, of a condition or a request: ends the requests that it ends.
+// Ends the requests that this row ends; the row is that of a condition or a request.
 void end_requests(SupervisorContext& context, const Transition& row);
 
-// In each step, after its row: their progress, and whether they have succeeded.
+// Updates progress and success in each step, after its row.
 void follow_requests(SupervisorContext& context, const Reference& reference);
 
 }  // namespace swiftlet::control

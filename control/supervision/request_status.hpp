@@ -1,4 +1,4 @@
-// What has become of the requests that were accepted last, as plain data.
+// The status of the requests that were accepted last, as plain data.
 #pragma once
 
 #include <array>
@@ -14,9 +14,9 @@ namespace swiftlet::control {
 
 // Names and numbers are those of ROS 2's action_msgs/msg/GoalStatus.
 enum class RequestState : std::uint8_t {
-  kUnknown = 0,    // there is no such request
-  kAccepted = 1,   // it begins with the next step
-  kExecuting = 2,  // the vehicle does it
+  kUnknown = 0,    // no such request
+  kAccepted = 1,   // starts with the next step
+  kExecuting = 2,  // the vehicle executes it
   kSucceeded = 4,
   kCanceled = 5,  // by a newer request
   kAborted = 6,   // by a failsafe
@@ -28,20 +28,20 @@ struct RequestStatus {
   RequestKey key;
   RequestKind kind = RequestKind::kArm;
   RequestState state = RequestState::kUnknown;
-  Event ended_by = Event::kArm;      // of a canceled or aborted one
+  Event ended_by = Event::kArm;      // if canceled or aborted
   Reason reason = Reason::kStarted;  // likewise
-  double progress = 0.0;  // 0 .. 1, never falls: of a take-off's or landing's height, of the time of any
-                          // other way, of a mission's items, of a trajectory's segments
+  double progress = 0.0;  // 0 .. 1, never falls: fraction of the height of a take-off or landing, of a
+                          // mission's items, of a trajectory's segments, of the time of other paths
 };
 
 constexpr int kRememberedRequests = 4;
 using RequestStatuses = std::array<RequestStatus, kRememberedRequests>;  // oldest first
 static_assert(std::is_trivially_copyable_v<RequestStatuses>);
 
-// Whether there is another request, or another state of one; progress is not looked at.
+// True if a request or its state differs; progress is ignored.
 bool differ_in_state(const RequestStatuses& a, const RequestStatuses& b);
 
-// "canceled by a newer request: land", "aborted: battery is low"; empty unless it ended so.
+// "canceled by a newer request: land", "aborted: battery is low"; empty for other states.
 std::string result_of(const RequestStatus& request);
 
 }  // namespace swiftlet::control

@@ -4,7 +4,8 @@
 
 namespace swiftlet::control {
 
-// blend() from the reference into the newest setpoint, worked out once: what is checked is what is flown.
+// The blend() from the reference to the newest setpoint. It is computed once, so the checked path is the
+// flown one.
 const PolynomialSegment& way_into_setpoint(const SupervisorContext& context);
 
 }  // namespace swiftlet::control

@@ -1,5 +1,5 @@
-// All that the supervisor remembers from one step to the next, as plain data: another process that is given
-// it, with the plan being flown, goes on exactly where this one stopped.
+// The state of the supervisor between steps, as plain data. Another process that receives it, with the plan
+// being flown, continues exactly.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace swiftlet::control {
 
-// A ground tool that the flight depends on.
+// A ground client whose link-loss failsafe is on.
 struct GroundLink {
   std::uint64_t client = 0;  // 0: none
   std::int64_t heard_ns = 0;
@@ -24,15 +24,15 @@ constexpr int kMaxGroundLinks = 4;
 struct SupervisorState {
   Mode mode = Mode::kDisarmed;
   Reason reason = Reason::kStarted;
-  bool land_on_return = false;  // in descent without position: a landing was under way
+  bool land_on_return = false;  // a landing was under way when the pose was lost
   std::int64_t now_ns = 0;      // of the last step
   std::int64_t mode_since_ns = 0;
 
   GuidanceState guidance;
 
-  std::int64_t contact_since_ns = 0;           // 0: the ground is not felt
-  std::int64_t low_battery_since_ns = 0;       // 0: the battery is well
-  std::int64_t critical_battery_since_ns = 0;  // 0: it is not that low
+  std::int64_t contact_since_ns = 0;           // since when touchdown signs hold; 0: they do not
+  std::int64_t low_battery_since_ns = 0;       // since when it is low; 0: it is not
+  std::int64_t critical_battery_since_ns = 0;  // since when it is critical; 0: it is not
   std::array<GroundLink, kMaxGroundLinks> ground_links{};
   RequestStatuses requests{};
 };

@@ -13,7 +13,7 @@ namespace swiftlet::control {
 Supervisor::Supervisor(const SupervisionSettings& settings)
     : settings_(settings), tip_over_cosine_(tip_over_cosine(settings.failsafe)) {}
 
-// A mission that is on its way has bounds of its own.
+// A mission that runs or is paused has its own limits.
 const Limits& Supervisor::limits() const {
   return plan_.mission != nullptr && is_under_way(state_.guidance.mission.state) ? plan_.mission_limits
                                                                                  : settings_.limits;
@@ -32,7 +32,7 @@ ControlSetpoint Supervisor::step(const SupervisorInputs& inputs) {
   const bool link_answered =
       row == nullptr ? state_.mode != Mode::kDescent : row->event == Event::kGroundLinkLost;
   if (row != nullptr) take(*row, now);
-  // A lost link is answered once, but only where nothing more urgent comes first.
+  // A lost link triggers its row once, but only if no more urgent row was taken.
   if (link_answered && conditions.has(Event::kGroundLinkLost))
     forget_silent_ground_links(state_, settings_.failsafe);
   const ControlSetpoint wanted = setpoint(inputs);
@@ -46,7 +46,7 @@ void Supervisor::take(const Transition& row, SupervisorContext& context) {
   end_requests(context, row);
 }
 
-// What becomes of the mission when that mode is entered.
+// The state of the mission after a change of mode.
 MissionState Supervisor::mission_state_in(Mode mode, Reason reason) const {
   const MissionState before = state_.guidance.mission.state;
   if (!is_under_way(before)) return before;
@@ -131,14 +131,14 @@ Outcome Supervisor::setpoint(const Setpoint& setpoint, const SupervisorInputs& i
   return answer(Event::kSetpoint, now);
 }
 
-bool Supervisor::ground_heartbeat(const GroundHeartbeat& sign) {
-  GroundLink* place = nullptr;
+bool Supervisor::ground_heartbeat(const GroundHeartbeat& heartbeat) {
+  GroundLink* slot = nullptr;
   for (GroundLink& link : state_.ground_links) {
-    if (link.client == sign.client || (link.client == 0 && place == nullptr)) place = &link;
-    if (link.client == sign.client) break;
+    if (link.client == heartbeat.client || (link.client == 0 && slot == nullptr)) slot = &link;
+    if (link.client == heartbeat.client) break;
   }
-  if (place == nullptr) return !sign.depends;
-  *place = sign.depends ? GroundLink{sign.client, state_.now_ns} : GroundLink();
+  if (slot == nullptr) return !heartbeat.depends;
+  *slot = heartbeat.depends ? GroundLink{heartbeat.client, state_.now_ns} : GroundLink();
   return true;
 }
 
@@ -158,15 +158,15 @@ void Supervisor::adopt(const SupervisorState& state, const Mission* mission, con
     if (known) plan_.trajectory = trajectory;
   }
   if (known) return;
-  Estimate nowhere;  // not looked at: the vehicle stops along its reference
+  Estimate unused_estimate;  // unused: the vehicle brakes along its reference
   SupervisorInputs inputs;
   inputs.stamp_ns = state_.now_ns;
-  inputs.estimate = &nowhere;
+  inputs.estimate = &unused_estimate;
   SupervisorContext now = context(inputs);
   answer(Event::kPlanUnknown, now);
 }
 
-// One that waits to be started and is not known here is forgotten.
+// Drops a mission that has not started and is not known here.
 void Supervisor::adopt_mission(const Mission* mission) {
   MissionProgress& progress = state_.guidance.mission;
   if (progress.state == MissionState::kNone) return;

@@ -1,5 +1,5 @@
-// Which mode the vehicle is in, what it is asked to do there, and when it must leave it: the table of
-// transitions.hpp, run.
+// The supervisor: runs the table of transitions.hpp. It decides the mode, the setpoint of each step, and the
+// reaction to conditions and requests.
 #pragma once
 
 #include <cstdint>
@@ -20,26 +20,25 @@ class Supervisor {
 
   ControlSetpoint step(const SupervisorInputs& inputs);
   Outcome request(const Request& request, const SupervisorInputs& inputs);
-  // Refused setpoints (outside the fence, too fast, not flying) change nothing.
+  // Refused setpoints (outside the fence, too fast, not in flight) change nothing.
   Outcome setpoint(const Setpoint& setpoint, const SupervisorInputs& inputs);
-  // False if the flight depends on kMaxGroundLinks others already.
-  bool ground_heartbeat(const GroundHeartbeat& sign);
+  // Returns false if the link-loss failsafe is on for kMaxGroundLinks other clients already.
+  bool ground_heartbeat(const GroundHeartbeat& heartbeat);
 
   Mode mode() const { return state_.mode; }
   Reason reason() const { return state_.reason; }
   const MissionProgress& mission() const { return state_.guidance.mission; }
   bool airborne() const { return state_.guidance.airborne; }
-  int ground_links() const;  // ground tools that the flight depends on
+  int ground_links() const;  // clients with the link-loss failsafe on
   const RequestStatuses& requests() const { return state_.requests; }
 
   const SupervisorState& state() const { return state_; }
-  // Goes on from the state of another controller with the same settings. mission: the one that is there,
-  // flown or not; trajectory: the one that is being flown; null where it is not known here, upon which a
-  // vehicle that flies it comes to rest and holds. Owned by the caller and kept until the controller has
-  // left it.
+  // Continues from the state of another controller with the same settings. mission: the uploaded one, flown
+  // or not. trajectory: the one being flown. Null if it is not known here: a vehicle that flies it then
+  // brakes and holds. Both are owned by the caller and kept until the controller has left them.
   void adopt(const SupervisorState& state, const Mission* mission, const Trajectory* trajectory);
-  // The vehicle flies, and nobody knows what for: it comes to rest and holds. The ground is taken to be at z
-  // = 0. Refused without a pose, or if this supervisor flies it already.
+  // Takes control of a vehicle already in flight, whose state is not known: it brakes and holds. The ground
+  // is assumed at z = 0. Refused without a pose, or if this supervisor is not in disarmed mode.
   Outcome engage_in_flight(const SupervisorInputs& inputs);
 
  private:

@@ -1,4 +1,4 @@
-// What the rules of supervision look at, and what their actions change.
+// The inputs of guards, preconditions and actions, and the state that actions change.
 #pragma once
 
 #include <optional>
@@ -19,14 +19,14 @@ struct SupervisionSettings {
 
 struct SupervisorContext {
   const SupervisionSettings& settings;
-  const Limits& limits;  // the settings', or while a mission is under way those of the mission
+  const Limits& limits;  // of the settings, or of the mission while it runs or is paused
   const SupervisorInputs& inputs;
   SupervisorState& state;
   FlownPlan& plan;
-  const Request* request = nullptr;  // to be answered
+  const Request* request = nullptr;  // the request being answered
   const Setpoint* setpoint = nullptr;
-  double setpoint_period_s = 0.0;                           // until the next one, by that since the last
-  mutable std::optional<PolynomialSegment> way_taken = {};  // into the setpoint, once it was worked out
+  double setpoint_period_s = 0.0;                           // estimated time to the next one
+  mutable std::optional<PolynomialSegment> way_taken = {};  // blend into the setpoint, once computed
 
   const Estimate& estimate() const { return *inputs.estimate; }
   bool flying() const { return state.guidance.flying(); }

@@ -1,4 +1,4 @@
-// What the supervisor sees of a step, and what it asks for.
+// Input and output of the supervisor in a step.
 #pragma once
 
 #include <cstdint>
@@ -11,21 +11,21 @@ namespace swiftlet::control {
 struct SupervisorInputs {
   std::int64_t stamp_ns = 0;
   const Estimate* estimate = nullptr;
-  bool has_estimate = false;  // the estimator has been started by a pose
+  bool has_estimate = false;  // a pose has initialised the estimator
   double pose_age_s = 0.0;
-  bool pose_jumped = false;  // since the last step the estimate gave in to poses that disagreed for long
+  bool pose_jumped = false;  // the estimate was reset to poses that disagreed for long, since the last step
   bool takeoff_inconsistent =
-      false;  // after the lift-off the pose does not follow the motion (estimation/takeoff_consistency.hpp)
-  bool has_battery = false;  // the supply voltage is a measured one
+      false;  // after lift-off the poses do not follow the motion (estimation/takeoff_consistency.hpp)
+  bool has_battery = false;  // the supply voltage was measured
   double supply_voltage_v = 0.0;
   double battery_age_s = 0.0;
   double vertical_specific_force_residual =
-      0.0;  // m/s^2, upward specific force less what the rotors' thrust explains; about
+      0.0;  // m/s^2, upward specific force minus rotor thrust over mass; about
             // g - thrust/m on the ground
-  Eigen::Vector3d specific_force_frd = Eigen::Vector3d::Zero();  // m/s^2, of the last sample
-  double rotor_speed = 0.0;                                      // rad/s, of the fastest rotor
-  double imu_unusable_s = 0.0;                                   // for how long no sample could be used
-  double imu_gap_s = 0.0;  // between this usable sample and the one before
+  Eigen::Vector3d specific_force_frd = Eigen::Vector3d::Zero();  // m/s^2, last sample
+  double rotor_speed = 0.0;                                      // rad/s, fastest rotor
+  double imu_unusable_s = 0.0;                                   // time without a usable sample
+  double imu_gap_s = 0.0;                                        // s between the last two usable samples
 };
 
 enum class ControlMode : std::uint8_t {
@@ -42,11 +42,11 @@ struct ControlSetpoint {
   ControlMode control_mode = ControlMode::kOff;
   double lift_fraction = 0.0;  // kSpoolUp only
   double descent_speed = 0.0;  // m/s; kLevelDescent only
-  bool integrate = false;      // the position integrals may learn
+  bool integrate = false;      // the position integrals are active
   Reference reference;
   Eigen::Quaterniond q_ned_from_frd = Eigen::Quaterniond::Identity();
   Eigen::Vector3d body_rates_frd = Eigen::Vector3d::Zero();  // rad/s
-  double specific_thrust = 0.0;                                       // m/s^2, of the vehicle's mass
+  double specific_thrust = 0.0;                              // m/s^2, thrust over mass
 };
 
 }  // namespace swiftlet::control

@@ -24,19 +24,19 @@ constexpr ModeSet kLeavingGround{M::kTakingOff, M::kMission};
 
 // clang-format off
 const Transition kTransitions[] = {
-  // What stops the rotors at once.
+  // Conditions that stop the rotors at once.
   {kRotorsOn, E::kImuUnusable, guards::kAlways, preconditions::kNone, M::kStopped, R::kImuUnusable, actions::kNothing},
   {kRotorsOn, E::kImuGap, guards::kAlways, preconditions::kNone, M::kStopped, R::kImuGap, actions::kNothing},
   {kRotorsOn, E::kTippedOver, guards::kAlways, preconditions::kNone, M::kStopped, R::kTippedOver, actions::kNothing},
   {kWithPosition, E::kTakeoffInconsistent, guards::kAlways, preconditions::kNone, M::kStopped, R::kTakeoffInconsistent, actions::kNothing},
 
-  // A descent that ends hard has ended; any other flight has met the ground or a wall.
+  // A hard touchdown ends a descent or landing. In any other mode an impact is a collision.
   {{M::kDescent}, E::kImpact, guards::kAlways, preconditions::kNone, M::kDisarmed, R::kLandedWithoutPosition, actions::kNothing},
   {{M::kLanding}, E::kImpact, guards::kAlways, preconditions::kNone, M::kDisarmed, R::kLanded, actions::kNothing},
   {{M::kMission}, E::kImpact, guards::kOnLandingItem, preconditions::kNone, M::kDisarmed, R::kLanded, actions::kNothing},
   {kUnderWay, E::kImpact, guards::kAlways, preconditions::kNone, M::kStopped, R::kImpact, actions::kNothing},
 
-  // On the ground still, it stays there.
+  // Still on the ground: it stays there.
   {{M::kArmed}, E::kPoseLost, guards::kAlways, preconditions::kNone, M::kDisarmed, R::kNoPose, actions::kNothing},
   {{M::kArmed}, E::kGroundLinkLost, guards::kLinkMatters, preconditions::kNone, M::kDisarmed, R::kGroundLinkLost, actions::kNothing},
   {kLeavingGround, E::kPoseLost, guards::kSpoolingUp, preconditions::kNone, M::kDisarmed, R::kNoPose, actions::kNothing},
@@ -46,7 +46,7 @@ const Transition kTransitions[] = {
   {kLeavingGround, E::kBatterySilent, guards::kSpoolingUp, preconditions::kNone, M::kDisarmed, R::kBatterySilent, actions::kNothing},
   {kLeavingGround, E::kGroundLinkLost, guards::kLinkMattersOnGround, preconditions::kNone, M::kDisarmed, R::kGroundLinkLost, actions::kNothing},
 
-  // It is elsewhere than it was thought to be: straight down, whichever of the two was wrong.
+  // The estimate was reset: the vehicle descends vertically, which is right whichever of the two was wrong.
   {{M::kArmed}, E::kPoseJumped, guards::kAlways, preconditions::kNone, M::kDisarmed, R::kPoseJumped, actions::kNothing},
   {kLeavingGround, E::kPoseJumped, guards::kSpoolingUp, preconditions::kNone, M::kDisarmed, R::kPoseJumped, actions::kNothing},
   {kUnderWay, E::kPoseJumped, guards::kAlways, preconditions::kNone, M::kLanding, R::kPoseJumped, actions::kLandFromEstimate},
@@ -62,7 +62,7 @@ const Transition kTransitions[] = {
   {{M::kDescent}, E::kPoseIsBack, guards::kAlways, preconditions::kNone, M::kHolding, R::kPoseIsBack, actions::kStopFromEstimate},
   {{M::kDescent}, E::kDescentTimedOut, guards::kAlways, preconditions::kNone, M::kStopped, R::kDescentTimedOut, actions::kNothing},
 
-  // What ends a flight early.
+  // Failsafes that end a flight.
   {kWithPosition, E::kBatteryCritical, guards::kNotHurrying, preconditions::kNone, M::kLanding, R::kBatteryCritical, actions::kLandFast},
   {kUnderWay, E::kOutsideFence, guards::kAlways, preconditions::kNone, M::kLanding, R::kOutsideFence, actions::kLandFromEstimate},
   {kUnderWay, E::kBatteryLow, guards::kAlways, preconditions::kNone, M::kLanding, R::kBatteryLow, actions::kLand},
@@ -72,7 +72,7 @@ const Transition kTransitions[] = {
   {{M::kSetpoint}, E::kSetpointsViolateFence, guards::kAlways, preconditions::kNone, M::kHolding, R::kSetpointsViolatedFence, actions::kStop},
   {{M::kSetpoint}, E::kSetpointsStopped, guards::kAlways, preconditions::kNone, M::kHolding, R::kSetpointsStopped, actions::kStop},
 
-  // How a flight goes on.
+  // Normal end of a manoeuvre.
   {{M::kLanding, M::kMission}, E::kGroundFelt, guards::kAlways, preconditions::kNone, M::kDisarmed, R::kLanded, actions::kNothing},
   {{M::kTakingOff}, E::kPlanFinished, guards::kAlways, preconditions::kNone, M::kHolding, R::kTakeOffCompleted, actions::kNothing},
   {{M::kMission}, E::kPlanFinished, guards::kAlways, preconditions::kNone, M::kHolding, R::kMissionCompleted, actions::kNothing},
@@ -120,7 +120,7 @@ EventsByMode answered() {
   return events;
 }
 
-// For which events there is a row in the mode: hardly a step sees one of them.
+// Events that have a row in each mode: most steps have none of them.
 const EventsByMode kAnswered = answered();
 
 }  // namespace
@@ -146,20 +146,19 @@ const Transition* find(const SupervisorContext& context, Event request) {
 namespace {
 
 Outcome refuse_for_mission(const SupervisorContext& context) {
-  return refuse(
-      "mission %llu is %s", static_cast<unsigned long long>(context.state.guidance.mission.id),
-      context.paused() ? "paused: resume or clear it" : "being flown: hold, goto or land ends that");
+  return refuse("mission %llu is %s", static_cast<unsigned long long>(context.state.guidance.mission.id),
+                context.paused() ? "paused: resume or clear it" : "running: end it with hold, goto or land");
 }
 
-// Of what is asked of a mission that is not being flown, or must not be interrupted where it is.
+// Refuses pause, resume or skip of a mission that does not run, or cannot be interrupted now.
 Outcome refuse_to_change_mission(Event request, const SupervisorContext& context) {
-  if (context.state.mode != Mode::kMission && !context.paused()) return refuse("no mission is being flown");
+  if (context.state.mode != Mode::kMission && !context.paused()) return refuse("no mission is running");
   if (context.paused())
-    return refuse("mission %llu is paused already",
+    return refuse("mission %llu is already paused",
                   static_cast<unsigned long long>(context.state.guidance.mission.id));
-  if (context.state.guidance.phase == Phase::kSpoolUp) return refuse("the mission's take-off has only begun");
+  if (context.state.guidance.phase == Phase::kSpoolUp) return refuse("the mission has not taken off yet");
   if (request == Event::kMissionResume) return refuse("the mission is not paused");
-  return refuse("the mission is at its landing; goto or hold ends that");
+  return refuse("the mission is landing: end it with goto or hold");
 }
 
 }  // namespace
@@ -187,9 +186,9 @@ Outcome refusal(Event request, const SupervisorContext& context) {
     case Event::kTrajectory:
       return refuse("cannot start a trajectory while %s", now);
     case Event::kSetpoint:
-      return refuse("setpoints are not followed while %s", now);
+      return refuse("setpoints are not accepted while %s", now);
     default:
-      return refuse("cannot do that while %s", now);
+      return refuse("the request is not allowed while %s", now);
   }
 }
 

@@ -1,5 +1,5 @@
-// The modes' one state machine, as a table. Conditions are looked at in every step, and of all rows that fit,
-// the first is taken. Of a request, the first row that fits answers; where none does, it is refused.
+// The state machine of the modes, as a table. Conditions are evaluated in every step: the first row that
+// applies is taken. A request is answered by the first row that applies, and refused if none does.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ class ModeSet {
   unsigned bits_ = 0;
 };
 
-// Where a transition leads: to a mode, or nowhere else.
+// The target of a transition: another mode, or none.
 struct Target {
   constexpr Target(Mode to) : mode(to), stays(false) {}  // NOLINT(google-explicit-constructor)
   constexpr static Target stay() { return Target(); }
@@ -43,9 +43,9 @@ struct Transition {
   ModeSet from;
   Event event;
   const Guard& guards;
-  const Precondition& provided;  // of requests
+  const Precondition& provided;  // requests only
   Target to;
-  Reason reason;  // unless it stays
+  Reason reason;  // unused without a change of mode
   const Action& action;
 };
 
@@ -57,12 +57,12 @@ struct TransitionTable {
 };
 TransitionTable transitions();
 
-// The row that the conditions of a step ask for; null if none does.
+// The row for the conditions of a step; null if none applies.
 const Transition* find(const SupervisorContext& context, const EventSet& conditions);
-// The row that answers a request; null if none does.
+// The row that answers a request; null if none applies.
 const Transition* find(const SupervisorContext& context, Event request);
 
-// Why a request is refused that no row answers.
+// The refusal of a request to which no row applies.
 Outcome refusal(Event request, const SupervisorContext& context);
 
 }  // namespace swiftlet::control

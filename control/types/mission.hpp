@@ -1,5 +1,4 @@
-// A mission as the control service flies it: a list of items, one after another, and the bounds that it
-// sets itself.
+// A mission as the control service flies it: a list of items in order, and the mission's own limits.
 #pragma once
 
 #include <cstdint>
@@ -13,35 +12,35 @@
 namespace swiftlet::control {
 
 enum class MissionItemKind : std::uint8_t {
-  kTakeoff = 0,     // climb straight up to position_ned.z, wherever the vehicle stands
-  kWaypoint = 1,    // fly straight to position_ned and stop there, minimum jerk, then hold
-  kLand = 2,        // descend straight down and stop the rotors
-  kTrajectory = 3,  // join the first of its segments smoothly, fly them all, then hold
-  kWait = 4,        // stay where it is for hold_s
+  kTakeoff = 0,     // climb vertically to position_ned.z from the present position
+  kWaypoint = 1,    // fly straight to position_ned by minimum jerk, stop there and hold
+  kLand = 2,        // descend vertically and stop the rotors
+  kTrajectory = 3,  // join the first segment smoothly, fly all segments, then hold
+  kWait = 4,        // hold the present position for hold_s
 };
 
 struct MissionItem {
   MissionItemKind kind = MissionItemKind::kWaypoint;
   Eigen::Vector3d position_ned =
-      Eigen::Vector3d::Zero();      // m; of kTakeoff only z counts, of kTrajectory and kWait nothing
-  double yaw_rad = 0.0;             // kWaypoint: yaw to be reached with the position
-  bool yaw_free = true;             // true: keep the yaw that the reference has, whatever the segments' is
-  double speed = 0.5;               // m/s, the peak on the way (to the start of a trajectory), > 0
-  double hold_s = 0.0;              // stay this long after arrival, >= 0
+      Eigen::Vector3d::Zero();      // m; kTakeoff uses z only, kTrajectory and kWait do not use it
+  double yaw_rad = 0.0;             // kWaypoint: yaw at arrival
+  bool yaw_free = true;             // true: keep the yaw of the reference and ignore that of the segments
+  double speed = 0.5;               // m/s, peak speed (kTrajectory: of the move to its start), > 0
+  double hold_s = 0.0;              // hold time after arrival, >= 0
   std::uint32_t first_segment = 0;  // kTrajectory: index into Mission::segments
   std::uint32_t segment_count = 0;  // kTrajectory: 1 or more
   double acceptance_radius_m =
-      0.0;  // above 0: arrived is who is this near by the estimate, not the reference alone
+      0.0;  // above 0: arrival also needs the estimate within this distance of the end
 };
 
-// What a mission allows itself while it is flown or paused, at most what the control settings allow.
+// The mission's own limits, in force while it runs or is paused. None is looser than the control settings.
 struct MissionBounds {
-  // > 0; 0: as in the settings.
+  // > 0; 0: the limit of the settings
   double max_speed = 0.0;                                   // m/s
   double max_acceleration = 0.0;                            // m/s^2, of all references
-  double max_jerk = 0.0;                                    // m/s^3, likewise
-  double max_yaw_rate = 0.0;                                // rad/s, likewise
-  bool fenced = false;                                      // else the fence of the settings holds
+  double max_jerk = 0.0;                                    // m/s^3, of all references
+  double max_yaw_rate = 0.0;                                // rad/s, of all references
+  bool fenced = false;                                      // false: the fence of the settings applies
   Eigen::Vector3d fence_min_ned = Eigen::Vector3d::Zero();  // m
   Eigen::Vector3d fence_max_ned = Eigen::Vector3d::Zero();
 };
@@ -49,13 +48,13 @@ struct MissionBounds {
 struct Mission {
   std::uint64_t id = 0;
   std::vector<MissionItem> items;
-  std::vector<PolynomialSegment> segments;  // of its trajectories; at most kMaxTrajectorySegments
+  std::vector<PolynomialSegment> segments;  // of all its trajectories; at most kMaxTrajectorySegments
   MissionBounds bounds;
 };
 
 constexpr int kMaxMissionItems = 2048;
 
-// What holds while a mission with these bounds is flown: of each limit the tighter one.
+// The limits in force while a mission with these bounds is flown: the tighter value of each limit.
 Limits tightened(const Limits& limits, const MissionBounds& bounds);
 
 }  // namespace swiftlet::control

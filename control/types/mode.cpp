@@ -45,7 +45,7 @@ const char* to_string(Reason reason) {
     case Reason::kLandedWithoutPosition:
       return "landed without position";
     case Reason::kSetpointsCame:
-      return "setpoints came";
+      return "setpoints received";
     case Reason::kSetpointsStopped:
       return "setpoints stopped";
     case Reason::kBatteryLow:
@@ -59,7 +59,7 @@ const char* to_string(Reason reason) {
     case Reason::kNoPose:
       return "no mocap pose";
     case Reason::kPoseIsBack:
-      return "position is back";
+      return "pose regained";
     case Reason::kDescentTimedOut:
       return "descent without position timed out";
     case Reason::kTippedOver:
@@ -71,17 +71,17 @@ const char* to_string(Reason reason) {
     case Reason::kGroundLinkLost:
       return "ground link lost";
     case Reason::kImpact:
-      return "hit something hard";
+      return "impact detected";
     case Reason::kTakeoffInconsistent:
-      return "motion capture does not see the climb";
+      return "poses do not follow the take-off";
     case Reason::kPoseJumped:
       return "position jumped";
     case Reason::kPlanUnknown:
-      return "taken over without the plan that was flown";
+      return "mission or trajectory unknown after failover";
     case Reason::kEngagedInFlight:
-      return "found flying";
+      return "engaged in flight";
     case Reason::kSetpointsViolatedFence:
-      return "setpoints led out of the fence";
+      return "setpoints violated the fence";
     case Reason::kMissionPaused:
       return "mission paused";
   }

@@ -1,4 +1,4 @@
-// The states of flight and what the controller says of itself.
+// The flight modes and the status of the controller.
 #pragma once
 
 #include <cstdint>
@@ -7,14 +7,14 @@ namespace swiftlet::control {
 
 enum class Mode : std::uint8_t {
   kDisarmed = 0,  // rotors off
-  kArmed = 1,     // on the ground, rotors turning slowly
+  kArmed = 1,     // on the ground, rotors idle
   kTakingOff = 2,
-  kHolding = 3,  // at a place, or on the way to one
+  kHolding = 3,  // at a position, or moving to one
   kMission = 4,
   kTrajectory = 5,
   kSetpoint = 6,  // follows a setpoint stream
   kLanding = 7,
-  kDescent = 8,  // level, without position, until the ground or a time-out
+  kDescent = 8,  // level attitude without position, until touchdown or time-out
   kStopped = 9,  // rotors off by a request or a failsafe; disarm to leave
 };
 const char* to_string(Mode mode);
@@ -42,12 +42,12 @@ enum class Reason : std::uint8_t {
   kImuUnusable,
   kImuGap,
   kGroundLinkLost,
-  kImpact,               // the accelerometer felt a blow as of a fall to the ground
-  kTakeoffInconsistent,  // motion capture did not follow the take-off: another body, or markers that came off
-  kPoseJumped,           // motion capture says for long that the vehicle is elsewhere
-  kPlanUnknown,      // another controller was taken over from whose mission or trajectory is not known here
-  kEngagedInFlight,  // the controller was started while its vehicle flew
-  kSetpointsViolatedFence,  // a stream of attitudes or body rates led out of the fence
+  kImpact,                  // the specific force exceeded failsafe.blow: the vehicle hit the ground or a wall
+  kTakeoffInconsistent,     // poses do not follow the take-off: another body, or markers that came off
+  kPoseJumped,              // poses disagreed with the estimate for long, and the estimate was reset to them
+  kPlanUnknown,             // the mission or trajectory is not known here after a failover
+  kEngagedInFlight,         // the controller started while its vehicle was in the air
+  kSetpointsViolatedFence,  // a stream of attitudes or body rates violated the fence
   kMissionPaused,
 };
 constexpr int kReasonCount = static_cast<int>(Reason::kMissionPaused) + 1;
@@ -56,10 +56,10 @@ const char* to_string(Reason reason);
 enum class MissionState : std::uint8_t {
   kNone = 0,
   kRunning = 1,
-  kCompleted = 2,  // it can be started again, as one that was aborted
+  kCompleted = 2,  // can be started again, as can an aborted one
   kAborted = 3,
   kUploaded = 4,  // not started yet
-  kPaused = 5,    // its vehicle holds
+  kPaused = 5,    // the vehicle holds
 };
 inline bool is_under_way(MissionState state) {
   return state == MissionState::kRunning || state == MissionState::kPaused;
@@ -68,19 +68,19 @@ inline bool is_under_way(MissionState state) {
 struct MissionProgress {
   std::uint64_t id = 0;
   MissionState state = MissionState::kNone;
-  int item_index = 0;  // the item being flown, from 0
+  int item_index = 0;  // item being flown, from 0
   int item_count = 0;
 };
 
 struct Status {
   Mode mode = Mode::kDisarmed;
   Reason reason = Reason::kStarted;  // why the mode was entered
-  bool has_pose = false;             // a mocap pose has come within the time-out
+  bool has_pose = false;             // a mocap pose was accepted within the time-out
   double pose_age_s = 0.0;           // at this step
   bool airborne = false;
-  int ground_links = 0;  // ground tools that the flight depends on
+  int ground_links = 0;  // ground clients with the link-loss failsafe on
   double supply_voltage_v = 0.0;
-  bool saturated = false;  // the last command was cut by the rotors' limits
+  bool saturated = false;  // the rotors' limits cut the last command
   MissionProgress mission;
 };
 

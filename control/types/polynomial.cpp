@@ -6,7 +6,7 @@
 namespace swiftlet::control {
 namespace {
 
-// Of x, y, z and yaw.
+// x, y, z and yaw.
 using Axes = Eigen::Array4d;
 
 // Four polynomials and their first four derivatives at one t.
@@ -23,7 +23,7 @@ Derivatives horner(const PolynomialSegment& segment, std::size_t coefficients, d
   return {d[0], d[1], 2.0 * d[2], 6.0 * d[3], 24.0 * d[4]};
 }
 
-// Without those at the end that are zero for all axes: rest has one, most moves have six.
+// Number of coefficients without trailing ones that are zero on all axes: rest has one, most moves have six.
 std::size_t coefficients(const PolynomialSegment& segment) {
   std::size_t count = kPolynomialCoefficients;
   const auto is_zero = [&](std::size_t i) {
@@ -46,7 +46,7 @@ Polynomial septic(const std::array<double, 4>& from, const std::array<double, 4>
   const double t = duration_s;
   const double t2 = t * t;
   const double t3 = t2 * t;
-  // What the cubic through the start lacks at the end, in units of s = t / duration.
+  // The end minus the cubic extrapolation from the start, in units of s = t / duration.
   const double p = to[0] - (from[0] + t * from[1] + t2 / 2.0 * from[2] + t3 / 6.0 * from[3]);
   const double v = t * (to[1] - (from[1] + t * from[2] + t2 / 2.0 * from[3]));
   const double a = t2 * (to[2] - (from[2] + t * from[3]));

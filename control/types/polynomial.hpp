@@ -1,4 +1,4 @@
-// Polynomial references: what missions are flown along and what commanded trajectories consist of.
+// Polynomial references: the segments of missions and trajectories.
 #pragma once
 
 #include <array>
@@ -43,8 +43,8 @@ Polynomial quintic_to_rest(double value, double first, double second, double to,
 PolynomialSegment join_to_rest(const Reference& from, const Eigen::Vector3d& to_ned, double to_yaw,
                                double duration_s);
 
-// The septic between two references that has position, velocity, acceleration and jerk of both, after
-// duration_s > 0. Of the yaw, whose jerk is taken as zero, likewise.
+// The septic between two references: it has position, velocity, acceleration and jerk of both, and takes
+// duration_s > 0. The same holds for yaw, whose jerk is zero at both ends.
 PolynomialSegment join(const Reference& from, const Reference& to, double duration_s);
 
 // The shortest duration for which a minimum-jerk move over `distance` (>= 0) stays within peak speed,
@@ -53,7 +53,7 @@ PolynomialSegment join(const Reference& from, const Reference& to, double durati
 double minimum_jerk_duration(double distance, double peak_speed, double peak_acceleration, double peak_jerk,
                              double min_duration_s = 0.1);
 
-// Likewise of the septic from rest to rest, join(): 35/16 d/T, 84/25 sqrt(5) d/T^2, 105/2 d/T^3.
+// The same for the septic from rest to rest of join(): 35/16 d/T, 84/25 sqrt(5) d/T^2, 105/2 d/T^3.
 double septic_duration(double distance, double peak_speed, double peak_acceleration, double peak_jerk,
                        double min_duration_s = 0.1);
 

@@ -1,4 +1,4 @@
-// What the vehicle is asked to do at one instant.
+// The desired motion of the vehicle at one instant.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// What can be asked of the flight controller, and its answer.
+// Requests to the flight controller, setpoints, and the outcome of each.
 #pragma once
 
 #include <cstdint>
@@ -14,22 +14,22 @@ namespace swiftlet::control {
 enum class RequestKind : std::uint8_t {
   kArm = 0,
   kDisarm = 1,   // on the ground only
-  kTakeoff = 2,  // to position_ned.z above where it stands
+  kTakeoff = 2,  // to position_ned.z, straight up
   kGoTo = 3,     // to position_ned
-  kHold = 4,     // stop where it is
+  kHold = 4,     // brake to rest
   kLand = 5,
-  kStop = 6,  // rotors off at once, wherever it is
+  kStop = 6,  // stop the rotors at once, in flight too
   kMissionStart = 7,
-  kMissionPause = 8,   // come to rest on the way, and keep the rest of it
-  kMissionResume = 9,  // back to where it was left, and on
-  kMissionSkip = 10,   // on with the next item
-  kMissionClear = 11,  // forget it
-  // Not by a command, but by messages of their own.
-  kMissionUpload = 64,  // keep it, to be started
+  kMissionPause = 8,   // brake along the path and keep the rest of the mission
+  kMissionResume = 9,  // return to the point of the pause, then continue
+  kMissionSkip = 10,   // continue with the next item
+  kMissionClear = 11,  // delete the mission
+  // Sent by topics of their own, not by a command.
+  kMissionUpload = 64,  // store the mission
   kTrajectory = 65,
 };
 
-// A request, by who asked and the number that it was given there.
+// Identifies a request: the client that sent it and the client's number for it.
 struct RequestKey {
   std::uint64_t client = 0;
   std::uint64_t id = 0;  // 0: none
@@ -42,32 +42,32 @@ struct Request {
   RequestKind kind = RequestKind::kHold;
   Eigen::Vector3d position_ned = Eigen::Vector3d::Zero();  // m
   double yaw_rad = 0.0;
-  bool yaw_free = true;          // keep the present yaw
+  bool yaw_free = true;          // true: keep the present yaw
   double speed = 0.5;            // m/s, peak
-  std::uint64_t mission_id = 0;  // kMissionStart .. kMissionClear: of which mission; 0: whichever is there
+  std::uint64_t mission_id = 0;  // kMissionStart .. kMissionClear: the mission meant; 0: the uploaded one
   const Mission* mission =
-      nullptr;  // kMissionUpload; owned by the caller, kept until another one is accepted
+      nullptr;  // kMissionUpload; owned by the caller, kept until another upload is accepted
   const Trajectory* trajectory = nullptr;  // kTrajectory; likewise, or until the controller has left it
 };
 
-// Accepted, or refused with one sentence that names the value and the limit. Nothing of a refused request is
-// applied.
+// Accepted, or refused with one sentence that names the value and the limit. A refused request changes
+// nothing.
 struct Outcome {
   bool accepted = false;
   char reason[192] = {};
 };
 
-// What a stream of setpoints commands.
+// The quantity that a stream of setpoints commands.
 enum class SetpointKind : std::uint8_t {
   kPosition = 0,  // with velocity and acceleration fed forward
   kVelocity = 1,  // with acceleration fed forward
   kAcceleration = 2,
-  kAttitude = 3,   // and thrust; past the position loop, as what follows
+  kAttitude = 3,   // and thrust; bypasses the position loop, as does kBodyRates
   kBodyRates = 4,  // and thrust
 };
 inline bool goes_past_position(SetpointKind kind) { return kind >= SetpointKind::kAttitude; }
 
-// One instant of a stream. What its kind does not name is not looked at.
+// One setpoint of a stream. Fields that its kind does not name are ignored.
 struct Setpoint {
   std::int64_t stamp_ns = 0;
   std::uint64_t sequence = 0;
@@ -75,15 +75,15 @@ struct Setpoint {
   Eigen::Vector3d position_ned = Eigen::Vector3d::Zero();      // m
   Eigen::Vector3d velocity_ned = Eigen::Vector3d::Zero();      // m/s
   Eigen::Vector3d acceleration_ned = Eigen::Vector3d::Zero();  // m/s^2
-  bool yaw_free = false;  // kPosition to kAcceleration: true keeps the heading, and turns it at yaw_rate
+  bool yaw_free = false;  // kPosition to kAcceleration: true keeps the yaw, and turns it at yaw_rate
   double yaw_rad = 0.0;
   double yaw_rate = 0.0;                                               // rad/s
   Eigen::Quaterniond q_ned_from_frd = Eigen::Quaterniond::Identity();  // kAttitude
-  Eigen::Vector3d body_rates_frd = Eigen::Vector3d::Zero();            // rad/s; of kAttitude fed forward
-  double specific_thrust = 0.0;  // m/s^2 along -z of FRD: force over mass, 9.81 carries the weight
+  Eigen::Vector3d body_rates_frd = Eigen::Vector3d::Zero();            // rad/s; kAttitude: fed forward
+  double specific_thrust = 0.0;  // m/s^2 along -z of FRD: thrust over mass, 9.81 in hover
 };
 
-// A sign of life of a ground tool. depends: from now on the flight depends on hearing it; false: no longer.
+// Heartbeat of a ground client. depends: true switches the link-loss failsafe on for this client, false off.
 struct GroundHeartbeat {
   std::uint64_t client = 0;  // not 0
   bool depends = false;

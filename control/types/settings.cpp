@@ -8,7 +8,7 @@ namespace {
 
 using plant::RuleChecker;
 
-constexpr double kMaxTilt = 1.5;  // rad; thrust along the vertical must remain
+constexpr double kMaxTilt = 1.5;  // rad; some vertical thrust must remain
 constexpr char kAxis[] = {'x', 'y', 'z'};
 
 void check_weights(const std::string& key, const LqrWeights& weights, RuleChecker& check) {

@@ -178,7 +178,7 @@ TEST_F(FaultInFlight, MocapSeesAnotherBodyForAMomentItFliesOn) {
 
 TEST_F(FaultInFlight, MocapShowsABodyThatStaysOnTheGroundTheRotorsStopJustAboveIt) {
   const Flown flown = fly("mocap_swap", "60", "position_ned_m: [1, -1, 0], yaw_rad: 2", 0.1);
-  EXPECT_EQ(reason(flown), "the mission was aborted: motion capture does not see the climb; rotors stopped");
+  EXPECT_EQ(reason(flown), "the mission was aborted: poses do not follow the take-off; rotors stopped");
   EXPECT_FALSE(flown.after.back().commanded);
   double highest = 0.0;
   for (const Moment& moment : flown.after) highest = std::max(highest, moment.height_m);

@@ -85,7 +85,7 @@ TEST_F(Failsafe, MocapComesBackItHoldsAgain) {
   mocap_->signal(SIGSTOP);
   ASSERT_TRUE(reported(Mode::kDescent, "no mocap pose")) << story();
   mocap_->signal(SIGCONT);
-  ASSERT_TRUE(reported(Mode::kHolding, "position is back")) << story();
+  ASSERT_TRUE(reported(Mode::kHolding, "pose regained")) << story();
   fly_on(3.0);
   EXPECT_GT(lowest_m(), 0.3);
   EXPECT_LT(client_->view().estimate.message.velocity_ned()[2], 0.05);
@@ -227,7 +227,7 @@ TEST_F(Failsafe, SetpointsThatLeaveTheFenceAreRefusedAndItHoldsInside) {
         return elapsed_s > 4.0;
       },
       kTimeout));
-  EXPECT_TRUE(reported(Mode::kSetpoint, "setpoints came")) << story();
+  EXPECT_TRUE(reported(Mode::kSetpoint, "setpoints received")) << story();
   EXPECT_TRUE(reported(Mode::kHolding, "setpoints stopped")) << story();
   fly_on(1.0);
   double farthest_north = 0.0;

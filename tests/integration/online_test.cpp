@@ -16,7 +16,7 @@ using nlohmann::json;
 
 TEST_F(OnlineFlight, EveryCommandDoesWhatItSays) {
   expect_refused({"takeoff"}, "cannot take off while disarmed; arm first");
-  expect_refused({"hold"}, "cannot do that while disarmed");
+  expect_refused({"hold"}, "the request is not allowed while disarmed");
   expect_accepted({"arm"});
   ASSERT_TRUE(reaches_mode("armed"));
   expect_accepted({"disarm"});
@@ -125,11 +125,11 @@ TEST_F(OnlineFlight, AMissionIsUploadedStartedPausedGoneOnWithSkippedAndCleared)
   const std::string id = std::to_string(json::parse(uploaded.output).at("mission_id").get<std::uint64_t>());
   ASSERT_TRUE(mission_is("uploaded"));
   refused("start", "cannot start a mission while disarmed; arm first");
-  refused("pause", "no mission is being flown");
+  refused("pause", "no mission is running");
   expect_accepted({"arm"});
   const Ending other = swiftlet({"mission", "start", "--id", "5"});
   EXPECT_EQ(other.errors,
-            "swiftlet: mission start: mission 5 is not the one that is here: that is " + id + "\n");
+            "swiftlet: mission start: mission 5 is not uploaded: the uploaded mission is " + id + "\n");
   accepted("start");
   ASSERT_TRUE(
       reaches("its second item", [](const json& status) { return status.at("mission").at("item") == 2; }));
@@ -139,7 +139,7 @@ TEST_F(OnlineFlight, AMissionIsUploadedStartedPausedGoneOnWithSkippedAndCleared)
   refused("start", "mission " + id + " is paused: resume or clear it");
   accepted("resume");
   ASSERT_TRUE(mission_is("running"));
-  refused("clear", "mission " + id + " is being flown: hold, goto or land ends that");
+  refused("clear", "mission " + id + " is running: end it with hold, goto or land");
   accepted("skip");
   ASSERT_TRUE(mission_is("completed"));
   ASSERT_TRUE(reaches_place(0.3, 0.2, -0.6));

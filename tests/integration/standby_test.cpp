@@ -149,7 +149,7 @@ TEST_F(Standby, OneStartedAloneFindsItsVehicleFlyingAndHoldsIt) {
   const std::int64_t at_ns = flight_.stamp_ns();
   flight_.kill(first);
   flight_.start_controller(0);
-  flight_.wait("it holds", [&] { return mode() == "holding" && reason() == "found flying"; });
+  flight_.wait("it holds", [&] { return mode() == "holding" && reason() == "engaged in flight"; });
   const Felt felt = flight_.felt(at_ns, at_ns + 3 * kSecond / 2);
   EXPECT_LT(felt.lowest_z_ned, -0.3) << "it fell too far; without a command for " << felt.longest_gap_ms
                                      << " ms";

@@ -122,8 +122,9 @@ TEST_P(SetpointFlight, AnAttitudeTowardsTheFenceEndsInsideAndNeedsAWordBeforeThe
   EXPECT_GT(farthest_m, 1.5);
   EXPECT_EQ(mode(), Mode::kHolding);
   const Setpoint level = attitude(0.0, 0.0, 0.0);
-  EXPECT_STREQ(loop_.controller.on_setpoint(level).reason,
-               "setpoint: the stream led out of the fence; ask for hold or goto before the next of its kind");
+  EXPECT_STREQ(
+      loop_.controller.on_setpoint(level).reason,
+      "setpoint: the stream violated the fence; send hold or goto before more setpoints of its kind");
   ASSERT_TRUE(ask(RequestKind::kGoTo, {0, 0, -1.2}));
   EXPECT_TRUE(loop_.controller.on_setpoint(level).accepted);
 }

@@ -258,17 +258,17 @@ TEST(TrajectoryChecks, AMissionsTrajectoryMustLieInItsSegments) {
     return std::string(check(mission, limits).reason);
   };
   EXPECT_EQ(reason(0, 1), "");
-  EXPECT_EQ(reason(0, 0), "item 1: its trajectory has no segments");
-  EXPECT_EQ(reason(0, 2), "item 1: its trajectory ends with segment 2, the mission has 1");
+  EXPECT_EQ(reason(0, 0), "item 1: the trajectory has no segments");
+  EXPECT_EQ(reason(0, 2), "item 1: the trajectory ends at segment 2, the mission has 1");
   EXPECT_EQ(reason(std::numeric_limits<std::uint32_t>::max(), 2),
-            "item 1: its trajectory ends with segment 4294967297, the mission has 1");
+            "item 1: the trajectory ends at segment 4294967297, the mission has 1");
   Mission fast;
   fast.segments = through(1, {{0, 0, -1}, {2, 0, -1}}, 1.5).segments;
   fast.items = {{MissionItemKind::kTrajectory, Vector3d::Zero(), 0, true, 0.5, 0.0, 0, 1}};
   EXPECT_EQ(std::string(check(fast, limits).reason),
             "item 1: segment 1 reaches 2.92 m/s, the limit is 2.00 m/s");
   fast.segments.resize(kMaxTrajectorySegments + 1);
-  EXPECT_NE(std::string(check(fast, limits).reason).find("1025 segments, at most 1024 fit"),
+  EXPECT_NE(std::string(check(fast, limits).reason).find("1025 segments, the limit is 1024"),
             std::string::npos);
 }
 

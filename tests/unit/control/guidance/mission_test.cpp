@@ -114,10 +114,10 @@ TEST_F(MissionFlight, OneThatHasEndedIsStartedAgain) {
 }
 
 TEST_F(MissionFlight, EachRefusalSaysWhy) {
-  EXPECT_STREQ(ask(RequestKind::kMissionStart).reason, "no mission is here: upload it first");
-  EXPECT_STREQ(pause().reason, "no mission is being flown");
-  EXPECT_STREQ(resume().reason, "no mission is being flown");
-  EXPECT_STREQ(ask(RequestKind::kMissionSkip).reason, "no mission is being flown");
+  EXPECT_STREQ(ask(RequestKind::kMissionStart).reason, "no mission is uploaded: upload one first");
+  EXPECT_STREQ(pause().reason, "no mission is running");
+  EXPECT_STREQ(resume().reason, "no mission is running");
+  EXPECT_STREQ(ask(RequestKind::kMissionSkip).reason, "no mission is running");
   const Mission mission = mission_of({waypoint({1, 0, -1}), waypoint({0, 0, -1})});
   const Mission other = mission_of({waypoint({1, 1, -1})}, 8);
   ASSERT_TRUE(upload(mission).accepted);
@@ -125,22 +125,22 @@ TEST_F(MissionFlight, EachRefusalSaysWhy) {
   start.kind = RequestKind::kMissionStart;
   start.mission_id = 9;
   EXPECT_STREQ(supervisor_.request(start, inputs_).reason,
-               "mission 9 is not the one that is here: that is 7");
+               "mission 9 is not uploaded: the uploaded mission is 7");
   start.mission_id = 7;
   ASSERT_TRUE(supervisor_.request(start, inputs_).accepted);
-  EXPECT_STREQ(upload(other).reason, "mission 7 is being flown: hold, goto or land ends that");
+  EXPECT_STREQ(upload(other).reason, "mission 7 is running: end it with hold, goto or land");
   EXPECT_STREQ(ask(RequestKind::kMissionStart).reason,
-               "mission 7 is being flown: hold, goto or land ends that");
+               "mission 7 is running: end it with hold, goto or land");
   EXPECT_STREQ(ask(RequestKind::kMissionClear).reason,
-               "mission 7 is being flown: hold, goto or land ends that");
+               "mission 7 is running: end it with hold, goto or land");
   EXPECT_STREQ(resume().reason, "the mission is not paused");
   ASSERT_TRUE(pause().accepted);
-  EXPECT_STREQ(pause().reason, "mission 7 is paused already");
+  EXPECT_STREQ(pause().reason, "mission 7 is already paused");
   EXPECT_STREQ(upload(other).reason, "mission 7 is paused: resume or clear it");
   ASSERT_TRUE(ask(RequestKind::kMissionSkip).accepted);
   EXPECT_EQ(item(), 1);
   EXPECT_STREQ(ask(RequestKind::kMissionSkip).reason,
-               "item 2 is the mission's last: there is none to go on with");
+               "item 2 is the last of the mission: there is no item to skip to");
 }
 
 TEST_F(MissionFlight, APauseComesToRestOnThePathWithoutAStepAndResumesThere) {
@@ -502,16 +502,15 @@ TEST(MissionBounds, NoLooserThanTheSettingsAndOfSomeSize) {
   const Limits limits;
   const auto refusal = [&](const MissionBounds& bounds) { return std::string(check(bounds, limits).reason); };
   EXPECT_EQ(refusal({}), "");
-  EXPECT_EQ(refusal({3.0}),
-            "the mission's limit of speed is 3.000 m/s, must be above 0 and at most 2.000 m/s");
+  EXPECT_EQ(refusal({3.0}), "the mission's speed limit is 3.000 m/s, must be above 0 and at most 2.000 m/s");
   EXPECT_EQ(refusal({0.0, 9.0}),
-            "the mission's limit of acceleration is 9.000 m/s^2, must be above 0 and at most 5.000 m/s^2");
+            "the mission's acceleration limit is 9.000 m/s^2, must be above 0 and at most 5.000 m/s^2");
   EXPECT_EQ(refusal({0.0, 0.0, std::nan("")}),
-            "the mission's limit of jerk is nan m/s^3, must be above 0 and at most 8.000 m/s^3");
+            "the mission's jerk limit is nan m/s^3, must be above 0 and at most 8.000 m/s^3");
   EXPECT_EQ(refusal({0.0, 0.0, 0.0, 0.0, true, {-4, -1, -1}, {1, 1, 0}}),
-            "the mission's fence, its least corner: x is -4.000 m, outside the fence of -3.000 to 3.000 m");
+            "the mission's fence, minimum corner: x is -4.000 m, outside the fence of -3.000 to 3.000 m");
   EXPECT_EQ(refusal({0.0, 0.0, 0.0, 0.0, true, {-1, 1, -1}, {1, 1, 0}}),
-            "the mission's fence: y ends at 1.000 m, must end above 1.000 m, where it begins");
+            "the mission's fence: maximum y is 1.000 m, must be above the minimum, 1.000 m");
 }
 
 TEST(MissionBounds, HoldForReadyMadeTrajectories) {
@@ -530,7 +529,7 @@ TEST(MissionBounds, HoldForReadyMadeTrajectories) {
   mission.segments.front().yaw = {0.0, 0.9};
   mission.bounds.max_yaw_rate = 0.5;
   EXPECT_STREQ(check(mission, limits).reason,
-               "item 1: segment 1 reaches 0.90 rad/s of yaw, the limit is 0.50 rad/s");
+               "item 1: segment 1 reaches a yaw rate of 0.90 rad/s, the limit is 0.50 rad/s");
 }
 
 }  // namespace

@@ -298,7 +298,7 @@ TEST_F(Stream, RefusesWhatIsBeyondALimitWithTheValueAndTheLimit) {
   setpoint.q_ned_from_frd = Eigen::AngleAxisd(0.7, Vector3d::UnitY());
   EXPECT_EQ(refusal(setpoint), "setpoint: tilt is 0.70 rad, the limit is 0.60 rad");
   setpoint.q_ned_from_frd = Eigen::Quaterniond(0.9, 0, 0, 0);
-  EXPECT_EQ(refusal(setpoint), "setpoint: the attitude is no unit quaternion");
+  EXPECT_EQ(refusal(setpoint), "setpoint: the attitude is not a unit quaternion");
   setpoint = of_kind(SetpointKind::kAttitude);
   setpoint.specific_thrust = 15.0;
   EXPECT_EQ(refusal(setpoint), "setpoint: thrust is 15.00 m/s^2, must be at least 0 and at most 14.81 m/s^2");

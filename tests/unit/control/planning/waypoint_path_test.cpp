@@ -274,13 +274,13 @@ TEST(Path, BadInputIsRefusedWithASentence) {
   EXPECT_EQ(refusal(path), "the limit of jerk is 0, must be above 0");
   path = square();
   path.legs.resize(3);
-  EXPECT_EQ(refusal(path), "the path has 3 legs between 5 points, must have one less than points");
+  EXPECT_EQ(refusal(path), "the path has 3 legs between 5 points, must be one fewer than points");
   path = square();
   path.legs.assign(4, {LegShape::kCorridor, 0.0005});
   EXPECT_EQ(refusal(path), "leg 1: the corridor is 0.0005 m, must be at least 0.001 m");
   path.points.assign(3, {});
   path.legs.clear();
-  EXPECT_EQ(refusal(path), "the path goes nowhere: all its points are one place");
+  EXPECT_EQ(refusal(path), "the path has no length: all points are at one place");
   EXPECT_EQ(plan(random_path(1, kMaxTrajectorySegments + 1)).segments.size(),
             std::size_t{kMaxTrajectorySegments});
   EXPECT_EQ(refusal(random_path(1, kMaxTrajectorySegments + 2)),

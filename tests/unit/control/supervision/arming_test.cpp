@@ -42,7 +42,7 @@ void tilt(Placed& flight, double angle_rad) {
       flight.estimate_.q_ned_from_frd.conjugate() * Vector3d(0.0, 0.0, -plant::kGravity);
 }
 const ArmingLimit kArmingLimits[] = {
-    {"pose", kNothing, [](Placed& f) { f.inputs_.has_estimate = false; }, "no mocap pose has come"},
+    {"pose", kNothing, [](Placed& f) { f.inputs_.has_estimate = false; }, "no mocap pose received"},
     {"pose age", [](Placed& f) { f.inputs_.pose_age_s = 0.5; },
      [](Placed& f) { f.inputs_.pose_age_s = 0.51; },
      "the last mocap pose is 0.51 s old, the limit is 0.50 s"},
@@ -50,7 +50,7 @@ const ArmingLimit kArmingLimits[] = {
      [](Placed& f) { f.estimate_.pose_fault = PoseFault::kFrozen; },
      "the last mocap pose was refused: frozen"},
     {"imu", kNothing, [](Placed& f) { f.inputs_.imu_unusable_s = 0.002; }, "IMU samples are not usable"},
-    {"battery", kNothing, [](Placed& f) { f.inputs_.has_battery = false; }, "no battery voltage has come"},
+    {"battery", kNothing, [](Placed& f) { f.inputs_.has_battery = false; }, "no battery voltage received"},
     {"battery age", [](Placed& f) { f.inputs_.battery_age_s = 2.0; },
      [](Placed& f) { f.inputs_.battery_age_s = 2.1; },
      "the last battery voltage is 2.1 s old, the limit is 2.0 s"},
@@ -76,8 +76,7 @@ const ArmingLimit kArmingLimits[] = {
      },
      "turning at 0.30 rad/s, the limit is 0.20 rad/s"},
     {"rotors", [](Placed& f) { f.inputs_.rotor_speed = 100.0; },
-     [](Placed& f) { f.inputs_.rotor_speed = 101.0; },
-     "a rotor turns at 101 rad/s, the limit is 100 rad/s"},
+     [](Placed& f) { f.inputs_.rotor_speed = 101.0; }, "a rotor turns at 101 rad/s, the limit is 100 rad/s"},
     {"tilt", [](Placed& f) { tilt(f, 0.349); }, [](Placed& f) { tilt(f, 0.36); },
      "tilted by 0.36 rad, the limit is 0.35 rad"},
     {"speed",
@@ -99,7 +98,7 @@ TEST(ArmingRefusal, NamesAllThatStandsAgainstItAndNeverHalfASentence) {
   flight.inputs_.has_battery = false;
   flight.estimate_.velocity_ned.x() = 1.0;
   EXPECT_STREQ(flight.ask(RequestKind::kArm).reason,
-               "cannot arm: no battery voltage has come; moving at 1.00 m/s, the limit is 0.30 m/s");
+               "cannot arm: no battery voltage received; moving at 1.00 m/s, the limit is 0.30 m/s");
   for (const ArmingLimit& limit : kArmingLimits) limit.bad(flight);
   const std::string all = flight.ask(RequestKind::kArm).reason;
   EXPECT_LT(all.size(), sizeof Outcome().reason);

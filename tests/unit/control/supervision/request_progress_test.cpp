@@ -323,7 +323,7 @@ TEST_F(Requests, OfAMissionThatNobodyKnowsTheyAreAborted) {
   for (int i = 0; i < 300; ++i) step();
   const SupervisorState state = supervisor_.state();
   supervisor_.adopt(state, nullptr, nullptr);
-  EXPECT_EQ(end_of(asked_), "aborted aborted: taken over without the plan that was flown");
+  EXPECT_EQ(end_of(asked_), "aborted aborted: mission or trajectory unknown after failover");
 }
 
 }  // namespace

@@ -319,7 +319,7 @@ TEST_F(Flight, FollowsSetpointsAndHoldsWhenTheyStop) {
   estimate_.position_ned = setpoint.position_ned;
   const Outcome outcome = supervisor_.setpoint(setpoint, inputs_);
   EXPECT_STREQ(outcome.reason,
-               "setpoint: where it could come to rest: x is 3.203 m, outside the fence of -3.000 to 3.000 m");
+               "setpoint: stopping point: x is 3.203 m, outside the fence of -3.000 to 3.000 m");
   ASSERT_TRUE(step_until(Mode::kHolding, 0.85));
   EXPECT_EQ(supervisor_.reason(), Reason::kSetpointsStopped);
 }
@@ -437,7 +437,7 @@ TEST(Checks, RefuseTrajectoriesThatStepLeaveTheFenceOrAreTooFast) {
   EXPECT_FALSE(check(trajectory, limits).accepted);
   trajectory.segments = {minimum_jerk({0, 0, -1}, 0, {1, 0, -1}, 0, 3.0),
                          minimum_jerk({1.1, 0, -1}, 0, {0, 0, -1}, 0, 3.0)};
-  EXPECT_NE(std::string(check(trajectory, limits).reason).find("segment 2 does not begin"),
+  EXPECT_NE(std::string(check(trajectory, limits).reason).find("segment 2 does not start"),
             std::string::npos);
   trajectory.segments = {minimum_jerk({0, 0, -1}, 0, {8, 0, -1}, 0, 30.0)};
   EXPECT_NE(std::string(check(trajectory, limits).reason).find("outside the fence"), std::string::npos);

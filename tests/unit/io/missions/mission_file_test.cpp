@@ -266,7 +266,7 @@ INSTANTIATE_TEST_SUITE_P(
               "m.yaml:5: items[0].speed_m_s: is 0.5, must be above 0 and at most 0.4"},
         Fault{"LooserFence",
               "geofence: {min_m: [-9, -1, -2], max_m: [1, 1, 0.2]}\n" + kHead + kTakeoff + kLand,
-              "m.yaml:1: geofence: the mission's fence, its least corner: x is -9.000 m, outside the fence "
+              "m.yaml:1: geofence: the mission's fence, minimum corner: x is -9.000 m, outside the fence "
               "of -3.000 "
               "to 3.000 m"},
         Fault{"FenceOfNoSize",

@@ -183,7 +183,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"too_fast", kHeader + "\n" + row(1.8, 0.0, 2.0, 1.0),
               "p.csv:2: segment 1 in NED reaches 2.08 m/s, the limit is 2.00 m/s"},
         Fault{"a_step", kHeader + "\n" + row(4.0, 0.0, 1.0, 1.0) + "\n" + row(4.0, 1.1, 1.0, 1.0),
-              "p.csv:3: segment 2 in NED does not begin where the one before ends: 0.100 m and 0.000 m/s "
+              "p.csv:3: segment 2 in NED does not start where the previous one ends: 0.100 m and 0.000 m/s "
               "apart"},
         Fault{"in_motion", kHeader + "\n" + replaced(kRow, 2, "0.5"),
               "p.csv:2: segment 1 in NED starts at 0.50 m/s, must start at rest"}),
@@ -331,7 +331,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"infinite", "0,0,1\n1,inf,1\n", "w.csv:2: y: is inf, must be a finite number"},
         Fault{"outside", "0,0,1\n3.1,0,1\n",
               "w.csv:2: x,y,z: in NED: y is 3.100 m, outside the fence of -3.000 to 3.000 m"},
-        Fault{"one_place", "0,0,1\n0,0,1\n", "w.csv: the path goes nowhere: all its points are one place"},
+        Fault{"one_place", "0,0,1\n0,0,1\n", "w.csv: the path has no length: all points are at one place"},
         Fault{"too_many", hover_points(1026), "w.csv:1026: x,y,z: is waypoint 1026, at most 1025 fit"}),
     name_of);
 
