@@ -39,8 +39,8 @@ const char* source_key(SpeedSource source) {
 }
 
 std::string what_was_fitted(const FlightIdentification& found) {
-  return fmt::format("{:.1f} s of flight fitted to, the {:.1f} s that follow predicted; ", found.fitted_s,
-                     found.kept_s) +
+  return fmt::format("{:.1f} s of flight fitted to, the {:.1f} s that follow predicted; ", found.estimation_set_s,
+                     found.validation_set_s) +
          source_text(found.source);
 }
 
@@ -176,7 +176,7 @@ std::string flight_identification_table(const FlightIdentificationReport& report
                      "unchanged", "0.5 s", "unchanged", "unit");
   for (const PredictionError& e : found.errors) {
     out += fmt::format("  {:<30} {:12.4g} {:12.4g} {:12.4g} {:12.4g}  {}\n", e.quantity.c_str(), e.one_step,
-                       e.idle_one_step, e.half_second, e.idle_half_second, e.unit.c_str());
+                       e.persistence_one_step, e.half_second, e.persistence_half_second, e.unit.c_str());
   }
   out += horizon_table(found);
   for (const auto& [kind, sentences] : notes(report)) {
@@ -207,16 +207,16 @@ std::string flight_identification_json(const FlightIdentificationReport& report)
     prediction.push_back({{"quantity", e.quantity},
                           {"unit", e.unit},
                           {"one_step", e.one_step},
-                          {"idle_one_step", e.idle_one_step},
+                          {"persistence_one_step", e.persistence_one_step},
                           {"half_second", e.half_second},
-                          {"idle_half_second", e.idle_half_second}});
+                          {"persistence_half_second", e.persistence_half_second}});
   }
   Json out = {{"vehicle", found.vehicle.name},
               {"base_vehicle", report.base_vehicle},
               {"logs", logs},
               {"source", source_key(found.source)},
-              {"fitted_s", found.fitted_s},
-              {"kept_s", found.kept_s},
+              {"estimation_set_s", found.estimation_set_s},
+              {"validation_set_s", found.validation_set_s},
               {"parameters", parameters}};
   if (found.source == SpeedSource::kCommanded) {
     Json lags = Json::array();
@@ -282,7 +282,7 @@ std::string flight_identification_html(const FlightIdentificationReport& report)
       "<th>0.5 s</th><th>if unchanged</th><th>unit</th></tr>\n";
   for (const PredictionError& e : found.errors) {
     out += "<tr><td>" + html_escaped(e.quantity) + "</td>";
-    for (const double value : {e.one_step, e.idle_one_step, e.half_second, e.idle_half_second})
+    for (const double value : {e.one_step, e.persistence_one_step, e.half_second, e.persistence_half_second})
       out += fmt::format("<td class=\"n\">{:.4g}</td>", value);
     out += "<td>" + html_unit(e.unit) + "</td></tr>\n";
   }

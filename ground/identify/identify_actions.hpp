@@ -1,4 +1,5 @@
-// What `swiftlet identify` does: reads, fits, prints, writes. Each returns the exit code, or throws as a Command does.
+// What `swiftlet identify` does: reads, fits, prints, writes. Each returns the exit code, or throws as a
+// Command does.
 #pragma once
 
 #include "swiftlet/ground/identify/identify_options.hpp"

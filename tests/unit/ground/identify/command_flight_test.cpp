@@ -81,8 +81,8 @@ std::map<std::string, Tally> recover(const LaunchConfiguration& plan, const char
     std::printf("%s %d delay of rates %.5f +- %.5f\n", what, i, found.find("delay.rates")->value,
                 found.find("delay.rates")->half_width);
     for (const identification::PredictionError& error : found.errors) {
-      EXPECT_LT(error.one_step, error.idle_one_step) << error.quantity;
-      EXPECT_LT(error.half_second, error.idle_half_second) << error.quantity;
+      EXPECT_LT(error.one_step, error.persistence_one_step) << error.quantity;
+      EXPECT_LT(error.half_second, error.persistence_half_second) << error.quantity;
     }
   }
   for (const auto& [name, tally] : tallies) {
@@ -145,9 +145,9 @@ TEST(CommandFlight, OfARealVehicle) {
   EXPECT_NEAR(hover.value, 0.64, 0.02);
   EXPECT_LT(hover.half_width, 0.02);
   for (const identification::PredictionError& error : found.errors) {
-    EXPECT_LT(error.half_second, 0.75 * error.idle_half_second) << error.quantity;
+    EXPECT_LT(error.half_second, 0.75 * error.persistence_half_second) << error.quantity;
     EXPECT_LT(error.one_step,
-              (error.quantity == "p" || error.quantity == "q" ? 0.3 : 0.85) * error.idle_one_step)
+              (error.quantity == "p" || error.quantity == "q" ? 0.3 : 0.85) * error.persistence_one_step)
         << error.quantity;
   }
   for (const identification::HorizonError& error : found.horizons) {

@@ -125,7 +125,7 @@ TEST(FlightIdentification, RefusesLogsThatDoNotHoldTheSame) {
   const FlightLog log = flown(plan, plan.vehicle, 5);
   FlightLog blind = log;
   blind.poses.clear();
-  expect_refused({log, blind}, plan.vehicle, "do not hold the same");
+  expect_refused({log, blind}, plan.vehicle, "hold different data");
 }
 
 TEST(FlightIdentification, TellsADelayOfTheCommands) {
