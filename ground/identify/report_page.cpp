@@ -12,7 +12,7 @@ namespace {
 
 using identification::Estimate;
 
-// A value with as many digits as its interval deserves, and its interval.
+// "value +- half width".
 std::string with_interval(const Estimate& estimate) {
   return fmt::format("{:.5g} \xc2\xb1 {:.2g}", estimate.value, estimate.half_width);
 }

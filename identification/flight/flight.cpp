@@ -193,8 +193,7 @@ void report_poses(FlightIdentification& out, const std::vector<FlightSeries>& fl
     const std::string name = timing.delay.parameter + of_log;
     if (!timing.identified) {
       out.unexcited.push_back(name +
-                              ": not identifiable, the poses are assumed to have no delay; tilt and turn "
-                              "quickly");
+                              ": the poses are assumed to have no delay; tilt and turn quickly");
       continue;
     }
     out.estimates.push_back(timing.delay);

@@ -89,7 +89,7 @@ TEST_F(IdentifyFlight, TellsWhatALogWithoutPosesTells) {
   EXPECT_NEAR(found.motor.time_constant_s, 0.065, 0.01);
   std::ostringstream page;
   page << std::ifstream(in_folder("report.html")).rdbuf();
-  EXPECT_NE(page.str().find("Beside the vehicle file"), std::string::npos);
+  EXPECT_NE(page.str().find("Comparison with the vehicle file"), std::string::npos);
   EXPECT_NE(page.str().find("Thrust over mass by command"), std::string::npos);
 }
 
