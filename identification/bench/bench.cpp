@@ -178,10 +178,10 @@ class Bench {
     ParameterEstimate& chain = out_.throttle_thrust->estimates.front();
     chain.parameter = "throttle_thrust.thrust_factor";  // for comparison only
     const double difference = chain.value / direct.value - 1.0;
-    const std::string numbers =
-        "k_T is " + format_number(chain.value) + " N*s^2 from throttle_thrust, through ESC and motor, and " +
-        format_number(direct.value) + " N*s^2 from thrust_torque: it differs by " +
-        format_number(100.0 * difference) + " %";
+    const std::string numbers = "k_T is " + format_number(chain.value) +
+                                " N*s^2 from throttle_thrust, through ESC and motor, and " +
+                                format_number(direct.value) + " N*s^2 from thrust_torque: it differs by " +
+                                format_number(100.0 * difference) + " %";
     const bool agree = std::abs(difference) < kAgreement;
     (agree ? out_.throttle_thrust->findings : out_.throttle_thrust->warnings)
         .push_back(numbers + (agree ? "; the chain of Eq. (9), (22) and (25) closes"

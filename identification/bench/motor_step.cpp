@@ -19,8 +19,8 @@ namespace swiftlet::identification {
 namespace {
 
 constexpr std::size_t kLeastRows = 20;
-constexpr std::size_t kLeastRiseRows = 6;  // between 10 and 90 % of the step
-constexpr std::size_t kLeastRestRows = 3;  // before the step, for the initial speed
+constexpr std::size_t kLeastRiseRows = 6;      // between 10 and 90 % of the step
+constexpr std::size_t kLeastRestRows = 3;      // before the step, for the initial speed
 constexpr double kRise = 0.63212055882855767;  // 1 - 1/e
 constexpr double kLeastStep = 0.1;             // of the final voltage
 constexpr double kSettled = 4.0;               // time constants to 98 % of the step
@@ -137,7 +137,7 @@ void check_step(const MotorStepData& data, const Levels& levels) {
 
 template <typename Response>
 Fit fit_response(const MotorStepData& data, const Eigen::Vector4d& start, const Response& response,
-               const std::function<void()>& on_iteration) {
+                 const std::function<void()>& on_iteration) {
   FitProblem problem;
   problem.observations = data.time_s.size();
   problem.start = start;

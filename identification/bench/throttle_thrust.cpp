@@ -64,7 +64,7 @@ void warn_of_fixed_parts(const KnownParts& known, Experiment& out) {
   std::string held = known.thrust ? "k_T of thrust_torque" : "k_T of the base vehicle";
   if (!known.esc && !known.steady_motor) held += " and the ESC's gain of the base vehicle";
   out.warnings.push_back(
-      "thrust without speed cannot tell K2, K3, k_T and the ESC's gain apart: " + held +
+      "thrust without speed does not identify K2, K3, k_T and the ESC's gain separately: " + held +
       (known.esc || known.steady_motor ? " is held fixed" : " are held fixed") +
       "; the chain from throttle to thrust is valid, its parts only as far as the fixed values are");
 }

@@ -276,11 +276,11 @@ void report_lags(FlightIdentification& out, const Agreement& lags) {
 
 void report_delays(FlightIdentification& out, const CommandFit& all) {
   const CommandLayout& l = all.model->layout();
-  out.findings.push_back("correlation of the lag with the delay of the force: " +
-                         format_number(all.fit.correlation(l.lag, l.force_delay)) +
-                         ", with the delay of the rates: " +
-                         format_number(all.fit.correlation(l.lag, l.rate_delay)) +
-                         "; delays include the filters of the sensors");
+  out.findings.push_back(
+      "correlation of the lag with the delay of the force: " +
+      format_number(all.fit.correlation(l.lag, l.force_delay)) +
+      ", with the delay of the rates: " + format_number(all.fit.correlation(l.lag, l.rate_delay)) +
+      "; delays include the filters of the sensors");
 }
 
 void report_forecasts(FlightIdentification& out, const CommandPredictions& predictions) {

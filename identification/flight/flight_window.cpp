@@ -162,10 +162,10 @@ FlightWindow find_flight(const FlightLog& log, const FlightBounds& bounds) {
   if (length_s < kShortestFlightS) {
     throw BadData("has " + format_number(length_s) + " s of flight, must have at least " +
                   format_number(kShortestFlightS) + " s" +
-                  (out.ends_in_impact ? "; a specific force of more than " + format_number(kImpact) +
-                                            " m/s^2 at " + seconds(impact_s) +
-                                            " s ends it: is the unit right?"
-                                      : ""));
+                  (out.ends_in_impact
+                       ? "; a specific force of more than " + format_number(kImpact) + " m/s^2 at " +
+                             seconds(impact_s) + " s ends it: is the unit right?"
+                       : ""));
   }
   return out;
 }
