@@ -46,22 +46,23 @@ void refuse_unknown_tables(const fs::path& folder) {
   for (const fs::path& table : tables) {
     if (table.extension() != ".csv" ||
         std::find(known.begin(), known.end(), table.stem().string()) == known.end())
-      throw InputError(table.string() + ": is no experiment that is known, must be one of " + joined(known));
+      throw InputError(table.string() + ": is not a known experiment, must be one of " + joined(known));
   }
   if (tables.empty())
-    throw InputError(folder.string() + ": holds no experiment, must hold at least one of " + joined(known));
+    throw InputError(folder.string() + ": contains no experiment, must contain at least one of " +
+                     joined(known));
 }
 
 std::vector<double> column_or_nothing(const Measurements& table, Quantity quantity) {
   return table.has(quantity) ? table.column(quantity) : std::vector<double>();
 }
 
-// delta of Eq. (8), from whichever of both the table has.
+// Throttle delta of Eq. (8), from the column of throttles or of pulse widths.
 std::vector<double> throttles(const Measurements& table, const plant::Esc& esc) {
   if (table.has(Quantity::kThrottle) && table.has(Quantity::kPulseWidth)) {
     throw runtime::ConfigError(
         table.file(), 1, "header",
-        "has a throttle and a pulse width, must have one of them: Eq. (8) makes one of the other");
+        "has a throttle and a pulse width, must have one of them: Eq. (8) converts one to the other");
   }
   if (!table.has(Quantity::kPulseWidth)) return table.column(Quantity::kThrottle);
   std::vector<double> out;
@@ -78,7 +79,7 @@ std::vector<double> throttles(const Measurements& table, const plant::Esc& esc) 
   return out;
 }
 
-// Reads the tables that there are.
+// Reads the tables that exist.
 class Loader {
  public:
   Loader(fs::path folder, const plant::Esc& esc) : folder_(std::move(folder)), esc_(esc) {}
@@ -139,7 +140,7 @@ class Loader {
     if (strings == t.has(Quantity::kArm)) {
       throw runtime::ConfigError(
           t.file(), 1, "header",
-          "must have either length and separation (two strings) or arm (swung about an axis)");
+          "must have either length and separation (bifilar pendulum) or arm (physical pendulum)");
     }
     if (!strings)
       return {{}, identification::SwingData{t.column(Quantity::kArm), t.column(Quantity::kPeriod)}};
@@ -175,7 +176,7 @@ void write_table(const fs::path& file,
 
 BenchSettings load_bench_settings(const fs::path& folder) {
   if (!fs::is_directory(folder))
-    throw InputError(folder.string() + ": is no folder, must be one of bench data");
+    throw InputError(folder.string() + ": is not a folder, must be a folder of bench data");
   BenchSettings out;
   const fs::path file = folder / kBenchSettingsFile;
   if (!fs::exists(file)) return out;

@@ -10,7 +10,7 @@
 namespace swiftlet::ground {
 namespace {
 
-using identification::Estimate;
+using identification::ParameterEstimate;
 using identification::FileComparison;
 using identification::FlightIdentification;
 using identification::HorizonError;
@@ -18,18 +18,18 @@ using identification::PredictionError;
 using identification::SpeedSource;
 using Json = nlohmann::ordered_json;
 
-constexpr double kShownS = 8.0;  // of the predictions, in the figures
+constexpr double kShownS = 8.0;  // s, length of the figures of predictions
 
 const char* source_text(SpeedSource source) {
   switch (source) {
     case SpeedSource::kMeasured:
       return "measured rotor speeds";
     case SpeedSource::kModelled:
-      return "rotor speeds by command and supply voltage";
+      return "rotor speeds modelled from command and supply voltage";
     case SpeedSource::kCommanded:
       break;
   }
-  return "commands and IMU alone";
+  return "commands and IMU only";
 }
 
 const char* source_key(SpeedSource source) {
@@ -38,16 +38,16 @@ const char* source_key(SpeedSource source) {
                                             : "commanded";
 }
 
-std::string what_was_fitted(const FlightIdentification& found) {
-  return fmt::format("{:.1f} s of flight fitted to, the {:.1f} s that follow predicted; ", found.fitted_s,
-                     found.kept_s) +
+std::string data_sets_text(const FlightIdentification& found) {
+  return fmt::format("estimation set {:.1f} s, validation set {:.1f} s; ", found.estimation_set_s,
+                     found.validation_set_s) +
          source_text(found.source);
 }
 
 std::vector<std::pair<std::string, const std::vector<std::string>*>> notes(
     const FlightIdentificationReport& report) {
   return {{"assumed", &report.assumptions},
-          {"not excited", &report.found.unexcited},
+          {"not identifiable", &report.found.unexcited},
           {"note", &report.found.findings},
           {"warning", &report.found.warnings}};
 }
@@ -62,15 +62,15 @@ CaptionedFigure prediction_figure(const FlightIdentification& found, int quantit
   }
   Figure figure;
   figure.title = std::string(label) + " over time, measured and predicted";
-  figure.x_label = "time from the first row that was not fitted to (s)";
+  figure.x_label = "time from the start of the validation set (s)";
   figure.y_label = label;
   figure.height = 300;
   figure.series = {measured, predicted};
-  const bool by_noise_too = found.source == SpeedSource::kCommanded;
-  return {quantity < 3 || by_noise_too
-              ? fmt::format("From what was measured, anew every {:g} s, by the commands alone",
+  const bool restarts_all = found.source == SpeedSource::kCommanded;
+  return {quantity < 3 || restarts_all
+              ? fmt::format("Predicted by the commands alone, restarted from the measured value every {:g} s",
                             found.trace.restart_s)
-              : "By the commands alone",
+              : "Predicted by the commands alone",
           figure};
 }
 
@@ -93,12 +93,12 @@ CaptionedFigure thrust_figure(const FlightIdentification& found) {
   figure.height = 300;
   figure.bands = {band};
   figure.series = {curve, weight};
-  return {"Steady, of all rotors together, over the commands of this flight", figure};
+  return {"Steady thrust of all rotors together, over the range of commands in this flight", figure};
 }
 
 CaptionedFigure horizon_figure(const FlightIdentification& found, const std::string& quantity) {
   FigureSeries by_commands{"by the commands alone", Mark::kLine, "#c0392b", {}};
-  FigureSeries persistence{"nothing changes", Mark::kDashes, "#1f6fb4", {}};
+  FigureSeries persistence{"persistence baseline", Mark::kDashes, "#1f6fb4", {}};
   Figure figure;
   for (const HorizonError& e : found.horizons) {
     if (e.quantity != quantity) continue;
@@ -106,18 +106,18 @@ CaptionedFigure horizon_figure(const FlightIdentification& found, const std::str
     persistence.points.push_back({e.horizon_s, e.persistence});
     figure.y_label = "RMS error of " + quantity + " (" + e.unit + ")";
   }
-  figure.title = figure.y_label + " over the time ahead";
-  figure.x_label = "time ahead (s)";
+  figure.title = figure.y_label + " over the prediction horizon";
+  figure.x_label = "prediction horizon (s)";
   figure.zero_line = true;
   figure.height = 300;
   figure.series = {by_commands, persistence};
-  return {"How far ahead the commands alone tell " + quantity, figure};
+  return {"Prediction error by the commands alone, " + quantity, figure};
 }
 
 std::string comparison_table(const FlightIdentification& found) {
   if (found.comparisons.empty()) return "";
-  std::string out = fmt::format("  {:<30} {:>12}  {:<10} {:>12} {:>8}  {}\n", "beside the vehicle file",
-                                "by the log", "+- (95 %)", "file", "ratio", "unit");
+  std::string out = fmt::format("  {:<30} {:>12}  {:<10} {:>12} {:>8}  {}\n", "comparison with vehicle file",
+                                "identified", "+- (95 %)", "file", "ratio", "unit");
   for (const FileComparison& row : found.comparisons) {
     out += fmt::format("  {:<30} {:12.5g}  {:<10.2g} {:12.5g} {:8.3f}  {}\n",
                        row.identified.parameter.c_str(), row.identified.value, row.identified.half_width,
@@ -128,8 +128,8 @@ std::string comparison_table(const FlightIdentification& found) {
 
 std::string horizon_table(const FlightIdentification& found) {
   if (found.horizons.empty()) return "";
-  std::string out = fmt::format("  {:<30} {:>12} {:>12} {:>12}  {}\n", "by the commands alone, RMS",
-                                "ahead, s", "error", "unchanged", "unit");
+  std::string out = fmt::format("  {:<30} {:>12} {:>12} {:>12}  {}\n", "error by the commands, RMS",
+                                "horizon, s", "error", "persistence", "unit");
   for (const HorizonError& e : found.horizons) {
     out += fmt::format("  {:<30} {:12.4g} {:12.4g} {:12.4g}  {}\n", e.quantity.c_str(), e.horizon_s,
                        e.by_commands, e.persistence, e.unit.c_str());
@@ -140,8 +140,8 @@ std::string horizon_table(const FlightIdentification& found) {
 std::string comparison_html(const FlightIdentification& found) {
   if (found.comparisons.empty()) return "";
   std::string out =
-      "<h2>Beside the vehicle file</h2>\n<table><tr><th>parameter</th><th>symbol</th><th>by the log</th>"
-      "<th>&plusmn; (95 %)</th><th>file</th><th>ratio</th><th>unit</th></tr>\n";
+      "<h2>Comparison with the vehicle file</h2>\n<table><tr><th>parameter</th><th>symbol</th>"
+      "<th>identified</th><th>&plusmn; (95 %)</th><th>file</th><th>ratio</th><th>unit</th></tr>\n";
   for (const FileComparison& row : found.comparisons) {
     out += "<tr><td>" + html_escaped(row.identified.parameter) + "</td><td>" +
            html_escaped(row.identified.symbol) + "</td>";
@@ -163,20 +163,20 @@ std::string flight_identification_table(const FlightIdentificationReport& report
   const FlightIdentification& found = report.found;
   std::string out = found.vehicle.name + ", identified from";
   for (const std::string& log : report.logs) out += " " + log;
-  out += "; what is not named is from " + report.base_vehicle + "\n  " + what_was_fitted(found) + "\n";
+  out += "; other parameters are those of " + report.base_vehicle + "\n  " + data_sets_text(found) + "\n";
   out +=
       fmt::format("  {:<30} {:<17} {:>12}  {:<10} {}\n", "parameter", "symbol", "value", "+- (95 %)", "unit");
-  for (const Estimate& e : found.estimates) {
+  for (const ParameterEstimate& e : found.estimates) {
     out += fmt::format("  {:<30} {:<17} {:12.5g}  {:<10.2g} {}\n", e.parameter.c_str(), e.symbol.c_str(),
                        e.value, e.half_width, e.unit.c_str());
   }
   out += comparison_table(found);
   if (found.step_s > 0.0) out += fmt::format("  one step of the predictions is {:.4g} s\n", found.step_s);
   out += fmt::format("  {:<30} {:>12} {:>12} {:>12} {:>12}  {}\n", "prediction error, RMS", "one step",
-                     "unchanged", "0.5 s", "unchanged", "unit");
+                     "persistence", "0.5 s", "persistence", "unit");
   for (const PredictionError& e : found.errors) {
     out += fmt::format("  {:<30} {:12.4g} {:12.4g} {:12.4g} {:12.4g}  {}\n", e.quantity.c_str(), e.one_step,
-                       e.idle_one_step, e.half_second, e.idle_half_second, e.unit.c_str());
+                       e.persistence_one_step, e.half_second, e.persistence_half_second, e.unit.c_str());
   }
   out += horizon_table(found);
   for (const auto& [kind, sentences] : notes(report)) {
@@ -194,7 +194,7 @@ std::string flight_identification_json(const FlightIdentificationReport& report)
                     {"to_row", found.windows[i].flight.last}});
   }
   Json parameters = Json::array();
-  for (const Estimate& e : found.estimates) {
+  for (const ParameterEstimate& e : found.estimates) {
     parameters.push_back({{"parameter", e.parameter},
                           {"symbol", e.symbol},
                           {"value", e.value},
@@ -207,20 +207,20 @@ std::string flight_identification_json(const FlightIdentificationReport& report)
     prediction.push_back({{"quantity", e.quantity},
                           {"unit", e.unit},
                           {"one_step", e.one_step},
-                          {"idle_one_step", e.idle_one_step},
+                          {"persistence_one_step", e.persistence_one_step},
                           {"half_second", e.half_second},
-                          {"idle_half_second", e.idle_half_second}});
+                          {"persistence_half_second", e.persistence_half_second}});
   }
   Json out = {{"vehicle", found.vehicle.name},
               {"base_vehicle", report.base_vehicle},
               {"logs", logs},
               {"source", source_key(found.source)},
-              {"fitted_s", found.fitted_s},
-              {"kept_s", found.kept_s},
+              {"estimation_set_s", found.estimation_set_s},
+              {"validation_set_s", found.validation_set_s},
               {"parameters", parameters}};
   if (found.source == SpeedSource::kCommanded) {
     Json lags = Json::array();
-    for (const Estimate& e : found.lags)
+    for (const ParameterEstimate& e : found.lags)
       lags.push_back({{"response", e.parameter},
                       {"value", e.value},
                       {"interval_95", {e.low(), e.high()}},
@@ -263,34 +263,33 @@ std::string flight_identification_html(const FlightIdentificationReport& report)
   std::string out =
       page_head("Identification of " + found.vehicle.name + " from flights") + "<p class=\"quiet\">from";
   for (const std::string& log : report.logs) out += " " + html_escaped(log);
-  out += "; " + html_escaped(what_was_fitted(found)) + "; what is not named is from " +
+  out += "; " + html_escaped(data_sets_text(found)) + "; other parameters are those of " +
          html_escaped(report.base_vehicle) +
-         "</p>\n<p class=\"quiet\">Intervals are those of 95 in 100 such flights: Student's t, residuals "
-         "correlated inside each half "
-         "second as the data show it</p>\n" +
+         "</p>\n<p class=\"quiet\">95 % intervals by Student's t; residuals may be correlated within "
+         "segments of half a second</p>\n" +
          estimates_html(found.estimates);
   for (const auto& [kind, sentences] : notes(report)) {
-    const bool loud = kind == "warning" || kind == "not excited";
+    const bool loud = kind == "warning" || kind == "not identifiable";
     for (const std::string& sentence : *sentences)
       out += std::string("<p class=\"") + (loud ? "warning" : "finding") + "\">" + kind + ": " +
              html_escaped(sentence) + ".</p>\n";
   }
   out += comparison_html(found);
   out +=
-      "<h2>Prediction of flight that was not fitted to</h2>\n<table><tr><th>RMS error of</th><th>one "
-      "step</th><th>if unchanged</th>"
-      "<th>0.5 s</th><th>if unchanged</th><th>unit</th></tr>\n";
+      "<h2>Prediction of the validation set</h2>\n<table><tr><th>RMS error of</th><th>one step</th>"
+      "<th>persistence</th><th>0.5 s</th><th>persistence</th><th>unit</th></tr>\n";
   for (const PredictionError& e : found.errors) {
     out += "<tr><td>" + html_escaped(e.quantity) + "</td>";
-    for (const double value : {e.one_step, e.idle_one_step, e.half_second, e.idle_half_second})
+    for (const double value : {e.one_step, e.persistence_one_step, e.half_second, e.persistence_half_second})
       out += fmt::format("<td class=\"n\">{:.4g}</td>", value);
     out += "<td>" + html_unit(e.unit) + "</td></tr>\n";
   }
   out += "</table>\n";
   if (found.step_s > 0.0)
     out += fmt::format(
-        "<p class=\"quiet\">One step is {:.4g} s; half a second ahead: the best sum, by the fitted part, of "
-        "what the commands ask for, the value at the start and the mean</p>\n",
+        "<p class=\"quiet\">One step is {:.4g} s. The forecast 0.5 s ahead is the weighted sum of the "
+        "prediction by the commands, the value at the start and the mean that is best on the estimation "
+        "set.</p>\n",
         found.step_s);
   out += "<div class=\"figures\">\n";
   const char* const labels[4] = {"p (rad/s)", "q (rad/s)", "r (rad/s)", "specific force along z (m/s^2)"};

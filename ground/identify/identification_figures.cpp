@@ -22,7 +22,7 @@ constexpr int kCurvePoints = 80;
 constexpr double kDerivativeStep = 1e-5;  // relative
 constexpr std::size_t kMostGroups = 7;
 constexpr std::size_t kUsualGroups = 5;
-constexpr double kGroupWidth = 0.03;  // of the supply voltage, that its noise may span
+constexpr double kGroupWidth = 0.03;  // of the supply voltage, largest relative span of a group
 constexpr const char* kFitColour = "#1a1a1a";
 constexpr const char* kReadingColour = "#1f6fb4";
 constexpr const char* kOutlierColour = "#c0392b";
@@ -32,11 +32,11 @@ constexpr std::array<const char*, kMostGroups> kGroupColours = {"#1f6fb4", "#c25
 
 Parameters values(const Experiment& fit) {
   Parameters out;
-  for (const identification::Estimate& estimate : fit.estimates) out.push_back(estimate.value);
+  for (const identification::ParameterEstimate& estimate : fit.estimates) out.push_back(estimate.value);
   return out;
 }
 
-// Variance of the model's value at x, by the covariance of its parameters.
+// Variance of the model's value at x, from the covariance of its parameters.
 double variance(const Experiment& fit, const Model& model, double x) {
   const Parameters at = values(fit);
   Eigen::VectorXd gradient(static_cast<Eigen::Index>(at.size()));
@@ -52,11 +52,11 @@ double variance(const Experiment& fit, const Model& model, double x) {
 }
 
 double interval_factor(const Experiment& fit) {
-  const identification::Estimate& any = fit.estimates.front();
+  const identification::ParameterEstimate& any = fit.estimates.front();
   return any.standard_error > 0.0 ? any.half_width / any.standard_error : 0.0;
 }
 
-// The model's curve, and the bands in which it and single readings lie in 95 of 100 cases. place makes a
+// Adds the model's curve and the 95 % bands of the curve and of single readings. place maps model values to a
 // point of the figure.
 void add_fit(Figure& figure, const Experiment& fit, const Model& model, double from, double to,
              const std::string& label, const std::function<FigurePoint(double x, double y)>& place) {
@@ -79,7 +79,7 @@ void add_fit(Figure& figure, const Experiment& fit, const Model& model, double f
   figure.series.push_back(line);
 }
 
-// Readings in two series: those that the fit took, and its outliers.
+// Adds readings in two series: those used by the fit, and outliers.
 void add_readings(Figure& figure, const Experiment& fit, const std::vector<FigurePoint>& points,
                   const std::string& label) {
   FigureSeries taken{label, Mark::kDots, kReadingColour, {}};
@@ -95,7 +95,7 @@ std::array<double, 2> range_of(const std::vector<double>& numbers) {
   return {*low, *high};
 }
 
-// Rows of about one supply voltage, highest first.
+// Groups rows of similar supply voltage, highest voltage first.
 std::vector<std::vector<std::size_t>> groups_of(const std::vector<double>& supply) {
   std::vector<std::size_t> order(supply.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -109,14 +109,14 @@ std::vector<std::vector<std::size_t>> groups_of(const std::vector<double>& suppl
     narrow = narrow && supply[groups.back().front()] - supply[order[i]] < kGroupWidth * supply[order.front()];
   }
   if (narrow && groups.size() <= kMostGroups) return groups;
-  // No gaps to tell them apart by: as many rows in each.
+  // The voltages have no gaps: makes groups of equal size.
   const std::size_t wanted = std::min(kUsualGroups, supply.size());
   groups.assign(wanted, {});
   for (std::size_t i = 0; i < order.size(); ++i) groups[i * wanted / order.size()].push_back(order[i]);
   return groups;
 }
 
-// A reading over throttle, for each supply voltage, with the model's curves.
+// Adds readings over throttle and the model's curve for each supply voltage.
 void add_groups(Figure& figure, const Experiment& fit, const std::vector<double>& supply,
                 const std::vector<double>& throttle, const std::vector<double>& reading,
                 const std::function<double(double supply, double throttle)>& model) {
@@ -169,7 +169,7 @@ CaptionedFigure square_law_figure(const std::vector<double>& speeds, const Exper
 std::vector<CaptionedFigure> esc_figures(const identification::EscData& data, const Experiment& fit) {
   const double gain = fit.estimates[0].value;
   const double offset = fit.estimates[1].value;
-  CaptionedFigure over_throttle{"Fig. 2: voltage that the ESC gives, steady, for each supply voltage", {}};
+  CaptionedFigure over_throttle{"Fig. 2: steady motor voltage over throttle, for each supply voltage", {}};
   over_throttle.figure.title = over_throttle.caption;
   over_throttle.figure.x_label = "throttle \xce\xb4";
   over_throttle.figure.y_label = "motor voltage v_a (V)";
@@ -178,7 +178,7 @@ std::vector<CaptionedFigure> esc_figures(const identification::EscData& data, co
                return std::sqrt(std::max(gain * supply * supply * delta + offset, 0.0));
              });
 
-  CaptionedFigure line{"Fig. 3: the same, squared, over v_s\xc2\xb2\xce\xb4: the straight line of Eq. (9)",
+  CaptionedFigure line{"Fig. 3: motor voltage squared over v_s\xc2\xb2\xce\xb4, with the line of Eq. (9)",
                        {}};
   line.figure.title = line.caption;
   line.figure.x_label = "v_s\xc2\xb2\xce\xb4 (V\xc2\xb2)";
@@ -232,7 +232,7 @@ CaptionedFigure torque_figure(const identification::ThrustTorqueData& data, cons
 
 CaptionedFigure motor_step_figure(const identification::MotorStepData& data,
                                   const identification::MotorStep& step) {
-  CaptionedFigure out{"Step of the motor voltage: speed, both models, and the 63.2 % reading", {}};
+  CaptionedFigure out{"Step response of the speed, with both models and the 63.2 % reading", {}};
   Figure& figure = out.figure;
   figure.title = out.caption;
   figure.x_label = "time (s)";
@@ -265,8 +265,7 @@ CaptionedFigure motor_step_figure(const identification::MotorStepData& data,
 
 CaptionedFigure throttle_thrust_figure(const identification::ThrottleThrustData& data, const Experiment& fit,
                                        const plant::Vehicle& vehicle) {
-  CaptionedFigure out{"Thrust of one rotor over throttle, with the whole chain of Eq. (9), (22) and (25)",
-                      {}};
+  CaptionedFigure out{"Thrust of one rotor over throttle, with the chain of Eq. (9), (22) and (25)", {}};
   out.figure.title = out.caption;
   out.figure.x_label = "throttle \xce\xb4";
   out.figure.y_label = "thrust T (N)";
@@ -278,8 +277,8 @@ CaptionedFigure throttle_thrust_figure(const identification::ThrottleThrustData&
 }
 
 CaptionedFigure residual_figure(const Experiment& fit) {
-  CaptionedFigure out{"What the fit leaves, in the order of the rows", {}};
-  if (!fit.outliers.empty()) out.caption += "; crosses: outliers, at the edge where they lie beyond";
+  CaptionedFigure out{"Residuals in the order of the rows", {}};
+  if (!fit.outliers.empty()) out.caption += "; crosses: outliers, clipped to the edge";
   Figure& figure = out.figure;
   figure.title = out.caption;
   figure.x_label = "row";

@@ -1,4 +1,4 @@
-// The paper's figures, redrawn from bench data with the fits through them.
+// The paper's figures, drawn from bench data and fits.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ std::vector<CaptionedFigure> esc_figures(const identification::EscData& data,
 // Fig. 4: speed over v_a.
 CaptionedFigure steady_motor_figure(const identification::SteadyMotorData& data,
                                     const identification::Experiment& fit);
-// Fig. 6 and 7: thrust and torque over the square of the speed.
+// Figs. 6 and 7: thrust and torque over the square of the speed.
 CaptionedFigure thrust_figure(const identification::ThrustTorqueData& data,
                               const identification::Experiment& fit);
 CaptionedFigure torque_figure(const identification::ThrustTorqueData& data,
@@ -31,10 +31,11 @@ CaptionedFigure motor_step_figure(const identification::MotorStepData& data,
 // Thrust over delta for each supply voltage.
 CaptionedFigure throttle_thrust_figure(const identification::ThrottleThrustData& data,
                                        const identification::Experiment& fit, const plant::Vehicle& vehicle);
-// What a fit leaves, in the order of the rows; outliers that lie far beyond the others stand at the edge.
+// Residuals of a fit in the order of the rows. Outliers outside the range of the others are clipped to the
+// edge.
 CaptionedFigure residual_figure(const identification::Experiment& fit);
 
-// "V*s^2/rad^2" with a raised 2 and a centred dot, in UTF-8.
+// A unit, "V*s^2/rad^2", with superscript 2 and centred dots, UTF-8.
 std::string written_unit(const std::string& unit);
 
 }  // namespace swiftlet::ground

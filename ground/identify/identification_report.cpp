@@ -17,21 +17,21 @@ namespace swiftlet::ground {
 namespace {
 
 using identification::BenchIdentification;
-using identification::Estimate;
+using identification::ParameterEstimate;
 using identification::Experiment;
 using Json = nlohmann::ordered_json;
 
 constexpr std::array<const char*, 3> kInertiaTitles = {"Moment of inertia, roll", "Moment of inertia, pitch",
                                                        "Moment of inertia, yaw"};
 constexpr std::size_t kMostOutliersShown = 30;
-constexpr std::size_t kFewOutliers = 4;  // that the page shows unasked
+constexpr std::size_t kFewOutliers = 4;  // longest list that the page shows open
 
-// One fit with all that a reader wants to see of it.
+// One section of the report: a fit with estimates, findings and figures.
 struct Part {
-  std::string name;  // of the file, without its ending
+  std::string name;  // stem of the file
   std::string title;
   const Experiment* fit = nullptr;
-  std::vector<Estimate> estimates;
+  std::vector<ParameterEstimate> estimates;
   std::vector<std::string> findings;
   std::vector<CaptionedFigure> figures;
 };
@@ -42,7 +42,7 @@ Part part_of(const char* name, const char* title, const Experiment& fit,
   return {name, title, &fit, fit.estimates, fit.findings, std::move(figures)};
 }
 
-void add_propeller(Part& part, const std::optional<Estimate>& coefficient) {
+void add_propeller(Part& part, const std::optional<ParameterEstimate>& coefficient) {
   if (coefficient) part.estimates.push_back(*coefficient);
 }
 
@@ -51,7 +51,7 @@ Part motor_step_part(const identification::MotorStepData& data, const BenchIdent
   const bool physical = found.vehicle.motor.model == plant::MotorModel::kPhysical;
   Part part = part_of(identification::kMotorStepName, "Motor step, Eq. (15)-(18)",
                       physical ? step.physical : step.reduced, {motor_step_figure(data, step)});
-  Estimate other = physical ? step.reduced.estimates[0] : step.physical.estimates[0];
+  ParameterEstimate other = physical ? step.reduced.estimates[0] : step.physical.estimates[0];
   other.parameter = physical ? "motor_step.reduced" : "motor_step.physical";
   part.estimates.insert(part.estimates.end(), {other, step.reading, step.rotor_inertia});
   part.findings = step.findings;
@@ -97,7 +97,7 @@ std::vector<Part> parts_of(const IdentificationReport& report) {
   return parts;
 }
 
-// A constant explains nothing of its readings' spread.
+// R^2; a dash if the model is a constant, which explains no variance.
 std::string r_squared_text(const Experiment& fit) {
   return fit.r_squared > 1e-9 ? fmt::format("{:8.5f}", fit.r_squared) : "       -";
 }
@@ -113,7 +113,7 @@ std::string outliers_html(const IdentificationReport& report, const Part& part) 
   const std::vector<int> lines = outlier_lines(report, part);
   if (lines.empty()) return "";
   std::string out =
-      fmt::format("<details{}><summary>{} of {} rows are outliers and were left out</summary>\n",
+      fmt::format("<details{}><summary>{} of {} rows are outliers and are left out</summary>\n",
                   lines.size() <= kFewOutliers ? " open" : "", lines.size(), part.fit->measured.size());
   out += "<table><tr><th>line of the file</th><th>measured</th><th>fitted</th><th>unit</th></tr>\n";
   for (std::size_t i = 0; i < std::min(lines.size(), kMostOutliersShown); ++i) {
@@ -130,12 +130,12 @@ std::string outliers_html(const IdentificationReport& report, const Part& part) 
 }
 
 std::string part_html(const IdentificationReport& report, const Part& part) {
-  std::string out =
-      "<h2>" + html_escaped(part.title) + "</h2>\n<p class=\"quiet\">" +
-      html_escaped(report.bench.files.at(part.name).file) +
-      fmt::format(": {} rows; R\xc2\xb2 ", part.fit->measured.size()) + r_squared_text(*part.fit) +
-      fmt::format("; the fit leaves {:.3g} ", part.fit->residual_sd) + html_unit(part.fit->residual_unit) +
-      " (standard deviation)</p>\n" + estimates_html(part.estimates);
+  std::string out = "<h2>" + html_escaped(part.title) + "</h2>\n<p class=\"quiet\">" +
+                    html_escaped(report.bench.files.at(part.name).file) +
+                    fmt::format(": {} rows; R\xc2\xb2 ", part.fit->measured.size()) +
+                    r_squared_text(*part.fit) + fmt::format("; residuals {:.3g} ", part.fit->residual_sd) +
+                    html_unit(part.fit->residual_unit) + " (standard deviation)</p>\n" +
+                    estimates_html(part.estimates);
   for (const std::string& finding : part.findings)
     out += "<p class=\"finding\">" + html_escaped(finding) + ".</p>\n";
   for (const std::string& warning : part.fit->warnings)
@@ -151,11 +151,10 @@ std::string part_html(const IdentificationReport& report, const Part& part) {
 std::string summary_html(const IdentificationReport& report) {
   const std::map<std::string, std::string>& sources = report.found.sources;
   std::string out =
-      "<p class=\"quiet\">Intervals hold in 95 of 100 benches of this kind (Student's t, spread of the "
-      "readings as "
-      "the data show it). What is not named below was not measured and is from the base vehicle " +
+      "<p class=\"quiet\">95 % intervals by Student's t, from the spread of the readings. Parameters that "
+      "are not listed were not measured and are those of the base vehicle " +
       html_escaped(report.base_vehicle) + ".</p>\n";
-  out += "<table><tr><th>in the vehicle file</th><th>value</th><th>95 % interval</th><th>source</th></tr>\n";
+  out += "<table><tr><th>parameter</th><th>value</th><th>95 % interval</th><th>source</th></tr>\n";
   for (const plant::ParameterUncertainty& p : report.found.uncertainty.parameters) {
     out += "<tr><td>" + html_escaped(p.parameter) + "</td>" +
            fmt::format("<td class=\"n\">{:.5g}</td><td class=\"n\">{:.5g} to {:.5g}</td><td>",
@@ -168,7 +167,7 @@ std::string summary_html(const IdentificationReport& report) {
   return out;
 }
 
-Json json_of(const Estimate& estimate, const std::string& experiment) {
+Json json_of(const ParameterEstimate& estimate, const std::string& experiment) {
   return {{"parameter", estimate.parameter},
           {"symbol", estimate.symbol},
           {"value", estimate.value},
@@ -193,13 +192,13 @@ std::string identification_html(const IdentificationReport& report) {
 
 std::string identification_table(const IdentificationReport& report) {
   std::string out = report.found.vehicle.name + ", identified from " + report.bench_folder +
-                    "; what is not named is from " + report.base_vehicle + "\n" +
+                    "; other parameters are those of " + report.base_vehicle + "\n" +
                     fmt::format("  {:<24} {:<7} {:>12}  {:<10} {:<12} {:<16} {:>8} {:>8}\n", "parameter",
                                 "symbol", "value", "+- (95 %)", "unit", "from", "R^2", "outliers");
   std::string notes;
   for (const Part& part : parts_of(report)) {
     for (std::size_t i = 0; i < part.estimates.size(); ++i) {
-      const Estimate& e = part.estimates[i];
+      const ParameterEstimate& e = part.estimates[i];
       out += fmt::format("  {:<24} {:<7} {:12.5g}  {:<10.2g} {:<12} {:<16}", e.parameter.c_str(),
                          e.symbol.c_str(), e.value, e.half_width, e.unit.c_str(), part.name.c_str());
       out +=
@@ -223,7 +222,7 @@ std::string identification_json(const IdentificationReport& report) {
   Json parameters = Json::array();
   Json experiments = Json::array();
   for (const Part& part : parts_of(report)) {
-    for (const Estimate& estimate : part.estimates) parameters.push_back(json_of(estimate, part.name));
+    for (const ParameterEstimate& estimate : part.estimates) parameters.push_back(json_of(estimate, part.name));
     experiments.push_back({{"name", part.name},
                            {"title", part.title},
                            {"rows", part.fit->measured.size()},

@@ -1,4 +1,4 @@
-// What an identification gave: as a page with figures, as a table for a terminal, as JSON.
+// Formats the result of an identification from bench data: as an HTML page with figures, as a table, as JSON.
 #pragma once
 
 #include <string>
@@ -10,22 +10,22 @@ namespace swiftlet::ground {
 
 struct IdentificationReport {
   std::string bench_folder;
-  std::string base_vehicle;  // as named
+  std::string base_vehicle;  // name or path, as given
   plant::Vehicle base;
   Bench bench;
   identification::BenchIdentification found;
 };
 
-// One HTML file that needs nothing else: the paper's Figs. 2, 3, 4, 6 and 7 from these data, fits, intervals,
+// A self-contained HTML page: the paper's Figs. 2, 3, 4, 6 and 7 from these data, fits, intervals,
 // residuals, outliers by line, findings and warnings.
 std::string identification_html(const IdentificationReport& report);
 
-// A row for each parameter, then outliers and warnings; ends in a newline.
+// A row for each parameter, then outliers, findings and warnings. Ends in a newline.
 std::string identification_table(const IdentificationReport& report);
 
-// parameters: [{parameter, symbol, value, standard_error, interval_95, unit, experiment}], experiments:
-// [{name, rows, r_squared, residual_sd, residual_unit, outlier_lines, findings, warnings}], warnings,
-// vehicle. One line, without a newline at its end.
+// Keys: parameters: [{parameter, symbol, value, standard_error, interval_95, unit, experiment}], experiments:
+// [{name, title, rows, r_squared, residual_sd, residual_unit, outlier_lines, findings, warnings}], warnings,
+// vehicle, base_vehicle. One line without a newline.
 std::string identification_json(const IdentificationReport& report);
 
 }  // namespace swiftlet::ground

@@ -1,4 +1,5 @@
-// What `swiftlet identify` does: reads, fits, prints, writes. Each returns the exit code, or throws as a Command does.
+// The actions of `swiftlet identify`. Each reads its input, fits, prints and writes the results, and returns
+// the exit code. They throw the same exceptions as a Command.
 #pragma once
 
 #include "swiftlet/ground/identify/identify_options.hpp"

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::milliseconds kQuickEnough{500};  // without progress
+constexpr std::chrono::milliseconds kProgressAfter{500};  // shorter runs show no progress
 
 identification::BenchIdentification identify(const Bench& bench, const std::string& folder,
                                              const plant::Vehicle& base) {
@@ -31,7 +31,7 @@ identification::BenchIdentification identify(const Bench& bench, const std::stri
   try {
     return identification::identify_bench(
         bench.data, base, [&](const std::string& experiment, std::size_t done, std::size_t all) {
-          if (std::chrono::steady_clock::now() - started < kQuickEnough) return;
+          if (std::chrono::steady_clock::now() - started < kProgressAfter) return;
           progress.update(static_cast<int>(done),
                           fmt::format("fitting {}, {} of {}", experiment.c_str(), done + 1, all));
         });
@@ -43,7 +43,7 @@ identification::BenchIdentification identify(const Bench& bench, const std::stri
   }
 }
 
-// A name that bench.yaml gives is refused with its line.
+// An invalid name in bench.yaml is reported with its line.
 fs::path base_file_of(const std::string& base, const IdentifyBenchOptions& options,
                       const BenchSettings& settings) {
   try {
@@ -58,7 +58,7 @@ fs::path base_file_of(const std::string& base, const IdentifyBenchOptions& optio
 void refuse_unflyable(const plant::Vehicle& vehicle, const std::string& folder, const std::string& base) {
   for (const plant::Violation& broken : plant::validate(vehicle)) {
     throw InputError(folder + ": the identified vehicle cannot fly: " + broken.key + ": " + broken.message +
-                     "; are the units right, and what is not measured and therefore from " + base + "?");
+                     "; are the units and the unmeasured parameters of " + base + " right?");
   }
 }
 
@@ -87,7 +87,7 @@ int identify_bench(const IdentifyBenchOptions& options) {
   runtime::VehicleSources sources = runtime::load_vehicle_sources(base_file.string());
   for (const auto& [key, source] : report.found.sources) sources[key] = source;
   const std::string comment = "Identified by `swiftlet identify` from the bench " +
-                              folder.filename().string() + ";\nwhat was not measured is from the vehicle " +
+                              folder.filename().string() + ";\nunmeasured parameters are those of " +
                               report.base.name + ". Frame: Forward-Right-Down, origin at the centre of mass.";
   const std::string text =
       runtime::vehicle_text(report.found.vehicle, sources, report.found.uncertainty, comment);

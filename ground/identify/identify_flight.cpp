@@ -23,19 +23,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::milliseconds kQuickEnough{500};  // without progress
+constexpr std::chrono::milliseconds kProgressAfter{500};  // shorter runs show no progress
 
 struct Base {
   fs::path file;
-  bool assumed;  // neither named nor that of a record
+  bool assumed;  // neither given nor found in a record
 };
 
-// By --base, or from the record that the log is part of.
+// The base vehicle: --base, else that of the record around the log, else kaylion.
 Base base_of(const IdentifyFlightOptions& options) {
   if (!options.base.empty()) return {configuration_file("vehicles", options.base), false};
   const fs::path log = options.logs.front();
-  const fs::path kept = (fs::is_directory(log) ? log : log.parent_path()) / "vehicle.yaml";
-  if (fs::is_regular_file(kept)) return {kept, false};
+  const fs::path record_vehicle = (fs::is_directory(log) ? log : log.parent_path()) / "vehicle.yaml";
+  if (fs::is_regular_file(record_vehicle)) return {record_vehicle, false};
   return {configuration_file("vehicles", "kaylion"), true};
 }
 
@@ -54,15 +54,15 @@ int identify_flight(IdentifyFlightOptions options) {
   report.logs = options.logs;
   report.base_vehicle = options.base.empty() ? base_path.string() : options.base;
   if (is_assumed)
-    report.assumptions.push_back("the vehicle is taken to be like " + base.name +
-                                 ", there being no --base and no record around the log");
+    report.assumptions.push_back("the base vehicle is " + base.name +
+                                 ": --base is not given, and the log is not part of a record");
 
   ProgressLine progress;
   const auto started = std::chrono::steady_clock::now();
   int iterations = 0;
   options.fit.progress = [&](const std::string& what) {
     ++iterations;
-    if (std::chrono::steady_clock::now() - started > kQuickEnough)
+    if (std::chrono::steady_clock::now() - started > kProgressAfter)
       progress.update(0, fmt::format("{}, iteration {}", what.c_str(), iterations));
   };
   std::vector<identification::FlightLog> logs;
@@ -89,22 +89,21 @@ int identify_flight(IdentifyFlightOptions options) {
   }
   if (!options.report.empty()) write_whole_file(options.report, flight_identification_html(report));
   if (!report.found.converged)
-    throw std::runtime_error(options.out.empty()
-                                 ? "the fit is not to be trusted"
-                                 : "the fit is not to be trusted: " + options.out + " is not written");
+    throw std::runtime_error(options.out.empty() ? "the fit did not converge within its bounds"
+                                                 : "the fit did not converge within its bounds: " +
+                                                       options.out + " is not written");
   if (!options.out.empty()) {
     if (report.found.uncertainty.parameters.empty())
-      throw std::runtime_error("nothing of the vehicle was told, see above: " + options.out +
-                               " is not written");
+      throw std::runtime_error("no parameter is identifiable, see above: " + options.out + " is not written");
     for (const plant::Violation& broken : plant::validate(vehicle)) {
       throw InputError("the identified vehicle cannot fly: " + broken.key + ": " + broken.message +
-                       "; what no flight tells is from " + report.base_vehicle);
+                       "; parameters that are not identified are those of " + report.base_vehicle);
     }
     runtime::VehicleSources sources = runtime::load_vehicle_sources(base_path.string());
     for (const auto& [key, source] : report.found.sources) sources[key] = source;
     const std::string text = runtime::vehicle_text(
         vehicle, sources, report.found.uncertainty,
-        "Identified by `swiftlet identify flight`; what flights did not tell is from the vehicle " +
+        "Identified by `swiftlet identify flight`; parameters that were not identified are those of " +
             base.name + ". Frame: Forward-Right-Down, origin at the centre of mass.");
     runtime::parse_vehicle(text, options.out);
     write_whole_file(options.out, text);
@@ -113,7 +112,7 @@ int identify_flight(IdentifyFlightOptions options) {
   for (const std::string& file : {options.out, options.report}) {
     if (!file.empty()) wrote += (wrote.empty() ? "; wrote " : " and ") + file;
   }
-  std::fprintf(stderr, "swiftlet: %s of the vehicle told by %s%s\n",
+  std::fprintf(stderr, "swiftlet: %s identified from %s%s\n",
                counted(report.found.uncertainty.parameters.size(), "parameter").c_str(),
                counted(logs.size(), "flight").c_str(), wrote.c_str());
   return kDone;

@@ -1,4 +1,4 @@
-// swiftlet-identify: what `swiftlet identify` runs.
+// swiftlet-identify: the program behind `swiftlet identify`.
 #include "swiftlet/ground/command_line/run_command_line.hpp"
 #include "swiftlet/ground/identify/identify_actions.hpp"
 

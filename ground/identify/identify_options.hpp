@@ -1,5 +1,5 @@
-// The command line of `swiftlet identify`. It belongs to `swiftlet`, which explains and completes it, and to
-// `swiftlet-identify`, which does what it says: that program alone links what the fits need.
+// The command line of `swiftlet identify`. `swiftlet` uses it for help and completion; `swiftlet-identify`
+// runs the actions and is the only program that links the fitting libraries.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace swiftlet::ground {
 
-// From test bench data.
+// Options of `swiftlet identify BENCH_DIR`.
 struct IdentifyBenchOptions {
   std::string bench;
   std::string out;
@@ -24,7 +24,7 @@ struct IdentifyBenchOptions {
   bool json = false;
 };
 
-// From logs of flights.
+// Options of `swiftlet identify flight`.
 struct IdentifyFlightOptions {
   std::vector<std::string> logs;
   std::string base;
@@ -36,7 +36,7 @@ struct IdentifyFlightOptions {
   bool json = false;
 };
 
-// Bench data of a known vehicle.
+// Options of `swiftlet identify simulate`.
 struct IdentifySimulateOptions {
   std::string vehicle = "kaylion";
   std::string out;
@@ -44,7 +44,7 @@ struct IdentifySimulateOptions {
   std::uint64_t seed = 1;
 };
 
-// What the command does in its three forms; each returns the exit code.
+// The actions of the three forms of the command. Each returns the exit code.
 struct IdentifyActions {
   std::function<int(const IdentifyBenchOptions&)> bench;
   std::function<int(const IdentifyFlightOptions&)> flight;
@@ -53,7 +53,7 @@ struct IdentifyActions {
 
 constexpr const char* kIdentifyPurpose = "Identify a vehicle from test bench data, or from flights";
 
-// Adds the options and the subcommands to the command itself.
+// Adds options and subcommands to the command.
 Command add_identify_options(runtime::CommandLine identify, const IdentifyActions& actions);
 
 }  // namespace swiftlet::ground

@@ -28,10 +28,10 @@ int identify_simulate(const IdentifySimulateOptions& options) {
   const plant::Vehicle vehicle = runtime::parse_vehicle(vehicle_text, vehicle_file.string());
   const fs::path folder = options.out;
   if (fs::exists(folder) && !fs::is_directory(folder))
-    throw InputError("--out: " + options.out + " is no folder, must be one or not be there");
+    throw InputError("--out: " + options.out + " is not a folder, must be a folder or not exist");
   if (fs::exists(folder) && !fs::is_empty(folder) && !fs::exists(folder / kTruth))
     throw InputError("--out: " + options.out +
-                     " holds files that this command has not made, must be empty or not be there");
+                     " contains files that this command did not write, must be empty or not exist");
   write_bench(folder, identification::simulate_bench(vehicle, options.noise, options.seed),
               "# Simulated: " + vehicle.name + ", noise " + runtime::exact(options.noise.share) +
                   ", outliers " + runtime::exact(options.noise.outliers) + ", seed " +

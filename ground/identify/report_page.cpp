@@ -10,14 +10,14 @@
 namespace swiftlet::ground {
 namespace {
 
-using identification::Estimate;
+using identification::ParameterEstimate;
 
-// A value with as many digits as its interval deserves, and its interval.
-std::string with_interval(const Estimate& estimate) {
+// "value +- half width".
+std::string with_interval(const ParameterEstimate& estimate) {
   return fmt::format("{:.5g} \xc2\xb1 {:.2g}", estimate.value, estimate.half_width);
 }
 
-double share_percent(const Estimate& estimate) {
+double share_percent(const ParameterEstimate& estimate) {
   return estimate.value != 0.0 ? 100.0 * estimate.half_width / std::abs(estimate.value) : 0.0;
 }
 
@@ -42,11 +42,11 @@ std::string page_head(const std::string& title) {
 
 std::string html_unit(const std::string& unit) { return unit == "1" ? "" : html_escaped(written_unit(unit)); }
 
-std::string estimates_html(const std::vector<Estimate>& estimates) {
+std::string estimates_html(const std::vector<ParameterEstimate>& estimates) {
   std::string out =
       "<table><tr><th>parameter</th><th></th><th>estimate, 95 % "
       "interval</th><th>unit</th><th>interval</th></tr>\n";
-  for (const Estimate& estimate : estimates) {
+  for (const ParameterEstimate& estimate : estimates) {
     out += "<tr><td>" + html_escaped(estimate.parameter) + "</td><td>" + html_escaped(estimate.symbol) +
            "</td><td class=\"n\">" + with_interval(estimate) + "</td><td>" + html_unit(estimate.unit) +
            "</td><td class=\"n\">" + fmt::format("\xc2\xb1 {:.2g} %", share_percent(estimate)) +

@@ -1,4 +1,4 @@
-// What the pages of identifications share.
+// Common parts of the HTML reports of identifications.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace swiftlet::ground {
 
-// From the beginning of the page to its headline.
+// The start of the page, up to and including its headline.
 std::string page_head(const std::string& title);
 
-// A unit as it is written by hand; nothing for the unit 1.
+// A unit as HTML, with superscripts; empty for the unit 1.
 std::string html_unit(const std::string& unit);
 
-// A table with a row for each.
-std::string estimates_html(const std::vector<identification::Estimate>& estimates);
+// A table with a row for each estimate.
+std::string estimates_html(const std::vector<identification::ParameterEstimate>& estimates);
 
 }  // namespace swiftlet::ground

@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::array<const char*, 3> kInertiaSymbols = {"J_x", "J_y", "J_z"};
 constexpr double kSeaLevelDensity = 1.225;    // kg/m^3, standard atmosphere
-constexpr double kCoaxial = 1e-3;             // m, between hubs in the plane of the rotors
-constexpr double kNotableCorrelation = 0.05;  // below it parameters may as well be drawn apart
+constexpr double kCoaxial = 1e-3;             // m, hub distance in the rotor plane of coaxial rotors
+constexpr double kNotableCorrelation = 0.05;  // smaller correlations are left out of the vehicle file
 
 double& parameter_of(plant::Vehicle& vehicle, const std::string& key) {
   const std::map<std::string, double*> known = {{"mass", &vehicle.mass_kg},
@@ -32,7 +32,8 @@ double& parameter_of(plant::Vehicle& vehicle, const std::string& key) {
   return *known.at(key);
 }
 
-// Half the way to the nearest hub beside it: rotors do not overlap. Coaxial ones are not beside each other.
+// The largest rotor radius, m: half the distance between the nearest hubs, as rotors do not overlap. Coaxial
+// rotors may overlap.
 double largest_radius(const plant::Vehicle& vehicle) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const plant::RotorMount& a : vehicle.rotors) {
@@ -50,14 +51,14 @@ double relative_error(const std::optional<Experiment>& experiment) {
   return estimate.standard_error / estimate.value;
 }
 
-// Runs the experiments and keeps what they give.
+// Runs the experiments and collects their results.
 class Bench {
  public:
   Bench(const BenchData& data, const plant::Vehicle& base, const BenchProgress& progress)
       : data_(data), progress_(progress) {
     out_.vehicle = base;
     all_ = count();
-    if (all_ == 0) throw BenchError("", BadData("holds no experiment"));
+    if (all_ == 0) throw BenchError("", BadData("contains no experiment"));
   }
 
   BenchIdentification run() {
@@ -76,8 +77,8 @@ class Bench {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (data_.inertia[axis]) run(kInertiaNames[axis], [&] { inertia(axis); });
     }
-    keep_friction_positive();
-    keep_inertia_possible();
+    limit_armature_resistance();
+    enforce_inertia_triangle_inequality();
     correlate_inertia_with_mass();
     return std::move(out_);
   }
@@ -105,7 +106,8 @@ class Bench {
     ++done_;
   }
 
-  // The estimates become the vehicle's, those but that have no place in its file.
+  // Copies the estimates into the vehicle, with their source, interval and correlations. Each estimate must
+  // name a parameter of the vehicle file.
   void adopt(const std::optional<Experiment>& experiment, const std::string& how) {
     const std::vector<ParameterEstimate>& estimates = experiment->estimates;
     for (std::size_t i = 0; i < estimates.size(); ++i) {
@@ -153,15 +155,15 @@ class Bench {
     out_.propeller = propeller_coefficients(thrust_factor, torque_factor, *data_.propeller, top);
   }
 
-  // One of them is the base vehicle's.
+  // Checks torque over thrust where only one factor was measured and the other is the base vehicle's.
   void require_torque_of_thrust() const {
     const double ratio_m = out_.vehicle.rotor.torque / out_.vehicle.rotor.thrust;
     if (ratio_m >= kLeastTorquePerThrust && ratio_m <= kMostTorquePerThrust) return;
-    throw BadData(std::string(out_.thrust ? "thrust" : "torque") + ": makes torque over thrust " +
+    throw BadData(std::string(out_.thrust ? "thrust" : "torque") + ": torque over thrust is " +
                   format_number(ratio_m) + " m with the " + (out_.thrust ? "torque" : "thrust") +
                   " factor of the base vehicle, must be " + format_number(kLeastTorquePerThrust) + " to " +
                   format_number(kMostTorquePerThrust) +
-                  " m; are the units right, and is the base vehicle alike?");
+                  " m; are the units right, and does the base vehicle match?");
   }
 
   void throttle_thrust() {
@@ -169,21 +171,21 @@ class Bench {
     out_.throttle_thrust =
         identify_throttle_thrust(*data_.throttle_thrust, out_.vehicle, known, data_.instruments);
     if (!(known.esc && known.steady_motor && known.thrust)) {
-      adopt(out_.throttle_thrust, "Eq. (9), (22), (25) at once");
+      adopt(out_.throttle_thrust, "Eq. (9), (22) and (25) fitted together");
       return;
     }
     const ParameterEstimate& direct = out_.thrust->estimates.front();
     ParameterEstimate& chain = out_.throttle_thrust->estimates.front();
-    chain.parameter = "throttle_thrust.thrust_factor";  // to compare; the vehicle's is the direct one
+    chain.parameter = "throttle_thrust.thrust_factor";  // for comparison only
     const double difference = chain.value / direct.value - 1.0;
-    const std::string numbers =
-        "k_T is " + format_number(chain.value) + " by thrust over throttle, through ESC and motor, and " +
-        format_number(direct.value) + " N*s^2 by thrust over speed: " + format_number(100.0 * difference) +
-        " % off";
+    const std::string numbers = "k_T is " + format_number(chain.value) +
+                                " N*s^2 from throttle_thrust, through ESC and motor, and " +
+                                format_number(direct.value) + " N*s^2 from thrust_torque: it differs by " +
+                                format_number(100.0 * difference) + " %";
     const bool agree = std::abs(difference) < kAgreement;
     (agree ? out_.throttle_thrust->findings : out_.throttle_thrust->warnings)
-        .push_back(numbers + (agree ? ", so that the chain of Eq. (9), (22) and (25) closes"
-                                    : ", should be within 5 %: the parts were not measured on one set-up, or "
+        .push_back(numbers + (agree ? "; the chain of Eq. (9), (22) and (25) closes"
+                                    : ", should be within 5 %: the experiments used different set-ups, or "
                                       "one of them is wrong"));
   }
 
@@ -210,10 +212,10 @@ class Bench {
     const InertiaData& data = *data_.inertia[axis];
     out_.inertia[axis] =
         data.bifilar ? identify_inertia(*data.bifilar, target) : identify_inertia(*data.swing, target);
-    adopt(out_.inertia[axis], data.bifilar ? "bifilar pendulum" : "swung about an axis");
+    adopt(out_.inertia[axis], data.bifilar ? "bifilar pendulum" : "physical pendulum");
   }
 
-  // Moments are proportional to the mass, and share its error.
+  // Moments of inertia are proportional to the mass and share its error.
   void correlate_inertia_with_mass() {
     if (!out_.mass) return;
     std::vector<std::pair<std::string, double>> with_mass;
@@ -235,27 +237,27 @@ class Bench {
     }
   }
 
-  // Eq. (21): F is not negative only for R_a up to K2 K3 / k_Q. A resistance that was taken, not measured,
-  // gives way.
-  void keep_friction_positive() {
+  // Eq. (21): the friction F is negative for R_a above K2 K3 / k_Q. Lowers R_a to that limit: it is the base
+  // vehicle's and was not measured.
+  void limit_armature_resistance() {
     plant::Motor& motor = out_.vehicle.motor;
     const double most = motor.k2 * motor.k3 / out_.vehicle.rotor.torque;
     if (motor.armature_resistance_ohm <= most) return;
     out_.warnings.push_back("the armature resistance of the base vehicle, " +
                             format_number(motor.armature_resistance_ohm) +
-                            " ohm, is more than K2 K3 / k_Q = " + format_number(most) +
-                            " ohm leaves without negative friction, Eq. (21): it is set to that");
+                            " ohm, exceeds K2 K3 / k_Q = " + format_number(most) +
+                            " ohm, above which the friction of Eq. (21) is negative: it is set to that");
     motor.armature_resistance_ohm = most;
     out_.sources["motor.armature_resistance"] = "estimate: K2 K3 / k_Q, Eq. (21) without friction";
   }
 
-  void keep_inertia_possible() {
+  void enforce_inertia_triangle_inequality() {
     std::array<std::optional<double>, 3> variances;
     for (std::size_t axis = 0; axis < variances.size(); ++axis) {
       if (out_.inertia[axis]) variances[axis] = out_.inertia[axis]->covariance(0, 0);
     }
-    if (const auto moved = enforce_triangle_inequality(out_.vehicle.inertia, variances))
-      out_.warnings.push_back(*moved);
+    if (const auto warning = enforce_triangle_inequality(out_.vehicle.inertia, variances))
+      out_.warnings.push_back(*warning);
   }
 
   static constexpr double kAgreement = 0.05;

@@ -1,5 +1,5 @@
-// From a whole test bench to a vehicle: every experiment that there are data for, in the order in which they
-// build on each other.
+// Identifies a vehicle from test bench data. Runs each experiment that has data, in an order in which later
+// experiments use the results of earlier ones.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@
 
 namespace swiftlet::identification {
 
-// Names of the experiments, as of their files.
+// Names of the experiments: the stems of their files.
 inline constexpr const char* kMassName = "mass";
 inline constexpr const char* kEscName = "esc";
 inline constexpr const char* kThrustTorqueName = "thrust_torque";
@@ -33,7 +33,7 @@ inline constexpr const char* kMotorStepName = "motor_step";
 inline constexpr const char* kThrottleThrustName = "throttle_thrust";
 inline constexpr std::array<const char*, 3> kInertiaNames = {"inertia_roll", "inertia_pitch", "inertia_yaw"};
 
-// About one body axis: either of the two set-ups.
+// Data about one body axis: exactly one of the two set-ups.
 struct InertiaData {
   std::optional<BifilarData> bifilar;
   std::optional<SwingData> swing;
@@ -62,14 +62,13 @@ struct BenchIdentification {
   std::optional<Experiment> throttle_thrust;
   std::array<std::optional<Experiment>, 3> inertia;
 
-  plant::Vehicle vehicle;                 // the base with all that was identified
-  plant::VehicleUncertainty uncertainty;  // of what was identified
-  std::map<std::string, std::string>
-      sources;                        // of what was identified, by the vehicle file's keys: "motor.k2"
-  std::vector<std::string> warnings;  // that are no single experiment's
+  plant::Vehicle vehicle;                      // base vehicle with the identified parameters
+  plant::VehicleUncertainty uncertainty;       // of the identified parameters
+  std::map<std::string, std::string> sources;  // of the identified parameters, by key of the file: "motor.k2"
+  std::vector<std::string> warnings;           // that concern several experiments
 };
 
-// Bad data of one experiment.
+// BadData with the name of the experiment. The name is empty if there is no experiment at all.
 class BenchError : public std::runtime_error {
  public:
   BenchError(std::string experiment, const BadData& fault)
@@ -82,11 +81,12 @@ class BenchError : public std::runtime_error {
   std::optional<std::size_t> row_;
 };
 
-// experiment: the one that begins; done of all are finished. Called again while a long fit goes on.
+// Reports that an experiment begins, with the number of finished experiments and of all. Called repeatedly
+// during a long fit.
 using BenchProgress = std::function<void(const std::string& experiment, std::size_t done, std::size_t all)>;
 
-// What is not measured stays as base has it. The vehicle may still break rules of plant::validate(): that is
-// for the caller to tell. Throws BenchError, also where there is no experiment at all.
+// Parameters that are not measured keep the values of base. The vehicle may violate plant::validate(): the
+// caller checks it. Throws BenchError, also if data contains no experiment.
 BenchIdentification identify_bench(const BenchData& data, const plant::Vehicle& base,
                                    const BenchProgress& progress = {});
 

@@ -14,18 +14,18 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr std::array<double, 5> kSupplies = {4.190 / 4.19, 4.040 / 4.19, 3.906 / 4.19, 3.809 / 4.19,
-                                             3.637 / 4.19};  // Fig. 2, over full
+                                             3.637 / 4.19};  // of Fig. 2, over full charge
 constexpr int kThrottles = 9;                                // 0.1 .. 0.9
 constexpr int kSpeeds = 40;
-constexpr double kSampleS = 1e-3;  // of the step
+constexpr double kSampleS = 1e-3;  // s, sample period of the step
 constexpr int kStepsPerSample = 20;
-constexpr double kRestS = 0.1;          // before the step
-constexpr double kTimeConstants = 6.0;  // after it
+constexpr double kRestS = 0.1;          // s, before the step
+constexpr double kTimeConstants = 6.0;  // length of the record after the step
 constexpr int kWeighings = 8;
 constexpr std::array<double, 3> kStringLengths = {0.6, 0.9, 1.2};  // m
-constexpr int kSwings = 4;                                         // with each of them
+constexpr int kSwings = 4;                                         // with each length
 
-// Streams of the experiments, so that what one draws does not move another.
+// One random stream for each experiment: the noise of one does not depend on the others.
 enum Stream : std::uint64_t {
   kMass = 1,
   kEsc,
@@ -41,16 +41,16 @@ class Reader {
   Reader(const BenchNoise& noise, std::uint64_t seed, std::uint64_t stream)
       : noise_(noise), random_(seed, stream) {}
 
-  // Readings of a column of true values: each of its instrument's noise.
+  // Adds noise relative to the full scale of the column.
   void read(std::vector<double>& column) {
     const double full = *std::max_element(column.begin(), column.end());
     for (double& value : column) value += noise_.share * full * random_.normal();
   }
-  // Readings off by a share of themselves.
+  // Adds noise relative to each value.
   void read_relative(std::vector<double>& column) {
     for (double& value : column) value *= 1.0 + noise_.share * random_.normal();
   }
-  // Spoils rows of a column.
+  // Turns some rows of a column into outliers.
   void spoil(std::vector<double>& column) {
     const double full = *std::max_element(column.begin(), column.end());
     for (double& value : column) {
@@ -114,7 +114,7 @@ ThrustTorqueData thrust_torque_data(const plant::Vehicle& vehicle, Reader reader
   return out;
 }
 
-// Speed and, where it is a state, current of one motor.
+// State of one motor: speed, rad/s, and current, A, if the motor model has it as a state.
 struct Shaft {
   double speed = 0.0;
   double current = 0.0;
@@ -127,7 +127,7 @@ Shaft rate(const plant::MotorDynamics& dynamics, double voltage, const Shaft& no
           plant::motor_current_rate(dynamics, voltage, now.current, now.speed)};
 }
 
-// Runge and Kutta's of order 4.
+// Advances the state by dt with the classical Runge-Kutta method of order 4.
 Shaft advanced(const plant::MotorDynamics& dynamics, double voltage, const Shaft& now, double dt) {
   const auto moved = [&](const Shaft& by, double time) {
     return Shaft{now.speed + time * by.speed, now.current + time * by.current};
@@ -145,7 +145,7 @@ MotorStepData motor_step_data(const plant::Vehicle& vehicle, Reader reader) {
   const double voltage = plant::voltage_from_steady_speed(vehicle.motor, plant::hover_speed(vehicle));
   const auto rest = static_cast<int>(std::lround(kRestS / kSampleS));
   const auto moving = static_cast<int>(std::ceil(kTimeConstants * vehicle.motor.time_constant_s / kSampleS));
-  // The current's time constant bounds the steps where it is a state.
+  // Where the current is a state, its time constant limits the integration step.
   const double electrical = vehicle.motor.armature_inductance_h / vehicle.motor.armature_resistance_ohm;
   const int steps = dynamics.has_current_state()
                         ? std::max(kStepsPerSample, static_cast<int>(std::ceil(2.0 * kSampleS / electrical)))

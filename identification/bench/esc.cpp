@@ -12,10 +12,10 @@ namespace swiftlet::identification {
 namespace {
 
 constexpr std::size_t kLeastRows = 6;
-constexpr double kMeterError = 1.1;         // v_a over v_s at which two meters can no longer be the reason
-constexpr double kLeastSquareShare = 1e-6;  // of the full scale: below it v_a is 0, and its root has no slope
+constexpr double kMeterError = 1.1;         // v_a over v_s, largest ratio that two meters' errors explain
+constexpr double kLeastSquareShare = 1e-6;  // of full-scale v_a^2; below it the model gives v_a = 0
 
-// Eq. (9) with a term in (v_s^2 delta)^2 where there is a third parameter.
+// Eq. (9). A third parameter adds a term in (v_s^2 delta)^2.
 Curve esc_curve(const EscData& data, double least_square) {
   return [&data, least_square](std::size_t row, double supply, const Eigen::VectorXd& p, Gradient& by) {
     const double delta = data.throttle[row];
@@ -48,9 +48,9 @@ void check(const EscData& data) {
   for (std::size_t i = 0; i < data.throttle.size(); ++i)
     ratios.push_back(data.motor_voltage_v[i] / data.supply_voltage_v[i]);
   if (const double ratio = median(ratios); !(ratio > 0.0 && ratio <= kMeterError)) {
-    throw BadData("motor_voltage: is in the middle " + format_number(ratio) +
+    throw BadData("motor_voltage: its median is " + format_number(ratio) +
                   " times the supply voltage, must be above 0 and at most " + format_number(kMeterError) +
-                  ": an ESC cannot raise its supply; are the units of both right?");
+                  ": an ESC cannot raise its supply; are the units of both columns right?");
   }
 }
 
@@ -105,8 +105,8 @@ Experiment identify_esc(const EscData& data, const Instruments& instruments) {
   const NaiveEsc naive = naive_esc(data, out.outliers);
   const double residual_sd_v = std::sqrt(rest / line.degrees_of_freedom);
   out.findings.push_back("Eq. (9) leaves " + format_number(residual_sd_v) +
-                         " V; the naive v_a = c v_s delta, with c = " + format_number(naive.factor) +
-                         ", leaves " + format_number(naive.residual_sd_v) +
+                         " V (standard deviation of residuals); the naive v_a = c v_s delta, with c = " +
+                         format_number(naive.factor) + ", leaves " + format_number(naive.residual_sd_v) +
                          " V: " + (residual_sd_v < naive.residual_sd_v ? "Eq. (9)" : "the naive one") +
                          " fits better");
 
@@ -116,9 +116,8 @@ Experiment identify_esc(const EscData& data, const Instruments& instruments) {
       curve);
   if (asks_for_last(bent, full_square / (full_drive * full_drive))) {
     out.warnings.emplace_back(
-        "v_a^2 over v_s^2 delta is not quite a straight line: a term in its square is significant, so Eq. "
-        "(9) holds for the "
-        "range of these data only");
+        "v_a^2 over v_s^2 delta is not quite a straight line: a term in (v_s^2 delta)^2 is significant; "
+        "Eq. (9) holds only within the range of these data");
   }
   const double supply_v = median(data.supply_voltage_v);
   const double full_share =

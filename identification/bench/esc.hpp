@@ -1,5 +1,5 @@
-// ESC, Eq. (7)-(9): v_a^2 = gain v_s^2 delta + offset, from readings of v_s, delta and v_a in the steady
-// state (the paper's Figs. 2 and 3).
+// Identifies the ESC, Eq. (7)-(9): v_a^2 = gain v_s^2 delta + offset, from steady-state readings of v_s,
+// delta and v_a (the paper's Figs. 2 and 3).
 #pragma once
 
 #include <vector>
@@ -15,13 +15,14 @@ struct EscData {
   std::vector<double> motor_voltage_v;   // v_a
 };
 
-// Estimates esc.gain and esc.offset: the straight line through v_a^2 over v_s^2 delta, each reading weighted
-// as its instruments are good (the same noise of v_a counts more in the square of a large v_a). measured and
-// predicted are v_a^2. Findings compare with the naive v_a = c v_s delta. Throws BadData.
+// Estimates esc.gain and esc.offset: the straight line through v_a^2 over v_s^2 delta. Each reading is
+// weighted by the accuracy of its instruments; as v_a is squared, its noise counts more where v_a is large.
+// measured and predicted are v_a^2. The findings compare Eq. (9) with the naive v_a = c v_s delta. Throws
+// BadData.
 Experiment identify_esc(const EscData& data, const Instruments& instruments);
 
-// Least squares of v_a = c v_s delta, through the rows that are not outliers: c, and the standard deviation
-// of what it leaves, V.
+// Least-squares fit of v_a = c v_s delta to the rows that are not outliers: c, and the standard deviation of
+// the residuals, V.
 struct NaiveEsc {
   double factor = 0.0;
   double residual_sd_v = 0.0;

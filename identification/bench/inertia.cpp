@@ -16,7 +16,7 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr std::size_t kLeastRows = 4;
 constexpr double kLeastLength = 0.005;  // m
 constexpr double kMostLength = 20.0;    // m
-constexpr double kSwingShare = 0.1;     // J over m arm^2 below which the arm hides J
+constexpr double kSwingShare = 0.1;     // J over m arm^2; below it the error of the arm hides J
 
 // period^2 = slope J + constant for each row.
 struct PeriodLaw {
@@ -36,7 +36,7 @@ Experiment identify(const PeriodLaw& law, const std::vector<double>& periods, co
   const double start = median(single);
   if (!(start > 0.0)) {
     throw BadData("period: leads to " + std::string(target.symbol) + " = " + format_number(start) +
-                  " kg*m^2, must be above 0: shorter than that of a point mass; are the units right?");
+                  " kg*m^2, must be above 0: a point mass would swing slower; are the units right?");
   }
   problem.start = Eigen::VectorXd::Constant(1, start);
   problem.residuals = [&](const Eigen::VectorXd& p, Eigen::VectorXd& residuals, Eigen::MatrixXd* jacobian) {
@@ -69,8 +69,8 @@ Experiment identify_inertia(const BifilarData& data, const InertiaTarget& target
   const Column separation{"separation", "m", data.separation_m};
   const Column period{"period", "s", data.period_s};
   require_rows({length, separation, period}, kLeastRows);
-  require_each_between(length, kLeastLength, kMostLength, "strings are not shorter or longer");
-  require_each_between(separation, kLeastLength, kMostLength, "strings do not hang nearer or wider");
+  require_each_between(length, kLeastLength, kMostLength, "no bench uses shorter or longer strings");
+  require_each_between(separation, kLeastLength, kMostLength, "no bench hangs strings closer or wider apart");
   require_median_between(period, 0.02, 60.0, "no bench swings faster or slower");
   PeriodLaw law;
   for (std::size_t i = 0; i < data.period_s.size(); ++i) {
@@ -85,7 +85,7 @@ Experiment identify_inertia(const SwingData& data, const InertiaTarget& target) 
   const Column arm{"arm", "m", data.arm_m};
   const Column period{"period", "s", data.period_s};
   require_rows({arm, period}, kLeastRows);
-  require_each_between(arm, kLeastLength, kMostLength, "arms are not shorter or longer");
+  require_each_between(arm, kLeastLength, kMostLength, "no bench uses a shorter or longer arm");
   require_median_between(period, 0.02, 60.0, "no bench swings faster or slower");
   PeriodLaw law;
   for (std::size_t i = 0; i < data.period_s.size(); ++i) {
@@ -98,8 +98,8 @@ Experiment identify_inertia(const SwingData& data, const InertiaTarget& target) 
   if (share < kSwingShare) {
     out.warnings.push_back(
         out.estimates.front().symbol + " is only " + format_number(share) +
-        " of what the shortest arm adds, should be at least " + format_number(kSwingShare) +
-        ": an arm that is off by a little hides it; swing closer to the centre or use two strings");
+        " of m arm^2 of the shortest arm, should be at least " + format_number(kSwingShare) +
+        ": a small error of the arm hides it; swing closer to the centre of mass or use two strings");
   }
   return out;
 }

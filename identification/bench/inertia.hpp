@@ -1,4 +1,4 @@
-// Moment of inertia about one body axis from the period of free swings.
+// Identifies the moment of inertia about one body axis from the period of free oscillations.
 #pragma once
 
 #include <vector>
@@ -7,16 +7,17 @@
 
 namespace swiftlet::identification {
 
-// Hung by two parallel strings of a length, separation apart, both at the same distance from the centre of
-// mass, and turned about the vertical body axis: J = m g separation^2 period^2 / (16 pi^2 length).
+// Bifilar pendulum: the vehicle hangs by two parallel strings of equal length, at the same distance from the
+// centre of mass, and oscillates about the vertical body axis:
+// J = m g separation^2 period^2 / (16 pi^2 length).
 struct BifilarData {
   std::vector<double> length_m;
   std::vector<double> separation_m;
   std::vector<double> period_s;
 };
 
-// Swung about a horizontal axis parallel to the body axis, arm away from the centre of mass:
-// J = m g arm period^2 / (4 pi^2) - m arm^2.
+// Physical pendulum: the vehicle swings about a horizontal axis that is parallel to the body axis, at
+// distance arm from the centre of mass: J = m g arm period^2 / (4 pi^2) - m arm^2.
 struct SwingData {
   std::vector<double> arm_m;
   std::vector<double> period_s;
@@ -26,12 +27,12 @@ struct InertiaTarget {
   const char* parameter = "inertia.xx";
   const char* symbol = "J_x";
   double mass_kg = 0.0;
-  double mass_error = 0.0;  // standard error of the mass, relative: J shares it
-  double size_m = 0.0;      // the hubs' distance from the centre, by which results are judged
+  double mass_error = 0.0;  // relative standard error of the mass, shared by J
+  double size_m = 0.0;      // m, distance of the hubs from the centre, for the plausibility check
 };
 
-// Small angles. measured and predicted are periods; lengths and mass count as exact but for mass_error.
-// Throws BadData.
+// Valid for small angles. measured and predicted are periods, s. Lengths are exact; the mass has mass_error.
+// Throws BadData, also if the radius of gyration is not plausible for size_m.
 Experiment identify_inertia(const BifilarData& data, const InertiaTarget& target);
 Experiment identify_inertia(const SwingData& data, const InertiaTarget& target);
 

@@ -1,4 +1,4 @@
-// How far off the bench's instruments are.
+// Accuracy of the bench's instruments.
 #pragma once
 
 #include <optional>
@@ -6,8 +6,8 @@
 
 namespace swiftlet::identification {
 
-// Standard deviations of single readings, where known. For two readings of one row only their ratio matters.
-// Where one of them is not known, each is taken to be off by the same share of its full scale.
+// Standard deviations of single readings, where known. For the two readings of a row only their ratio
+// matters. If one of them is unknown, both have the same error relative to full scale.
 struct Instruments {
   std::optional<double> supply_voltage_v;
   std::optional<double> motor_voltage_v;
@@ -16,6 +16,7 @@ struct Instruments {
   std::optional<double> torque_n_m;
 };
 
+// Standard deviations of x and y, up to a common factor.
 struct SpreadRatio {
   double x_spread = 0.0;
   double y_spread = 0.0;

@@ -16,7 +16,7 @@ constexpr double kMostMass = 1e3;
 Experiment identify_mass(const std::vector<double>& mass_kg) {
   const Column mass{"mass", "kg", mass_kg};
   require_rows({mass}, kLeastRows);
-  require_median_between(mass, kLeastMass, kMostMass, "no vehicle of the kind is lighter or heavier");
+  require_median_between(mass, kLeastMass, kMostMass, "no multirotor is lighter or heavier");
   FitProblem problem;
   problem.observations = mass_kg.size();
   problem.start = Eigen::VectorXd::Constant(1, median(mass_kg));
@@ -30,7 +30,7 @@ Experiment identify_mass(const std::vector<double>& mass_kg) {
                             std::vector<double>(mass_kg.size(), found.parameters[0]), "kg");
   if (out.residual_sd == 0.0) {
     out.warnings.emplace_back(
-        "all readings are the same: the balance's resolution hides their spread, so that the interval is too "
+        "all readings are the same: the balance's resolution hides their spread, and the interval is too "
         "narrow");
   }
   return out;

@@ -1,4 +1,4 @@
-// Mass from repeated weighings.
+// Identifies the mass from repeated weighings.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace swiftlet::identification {
 
-// Estimates mass. Throws BadData.
+// Estimates mass from readings in kg. Throws BadData.
 Experiment identify_mass(const std::vector<double>& mass_kg);
 
 }  // namespace swiftlet::identification

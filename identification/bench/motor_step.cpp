@@ -19,32 +19,32 @@ namespace swiftlet::identification {
 namespace {
 
 constexpr std::size_t kLeastRows = 20;
-constexpr std::size_t kLeastRiseRows = 6;  // between 10 and 90 % of the step
-constexpr std::size_t kLeastRestRows = 3;  // before the step, to tell its time from the speed it starts at
+constexpr std::size_t kLeastRiseRows = 6;      // between 10 and 90 % of the step
+constexpr std::size_t kLeastRestRows = 3;      // before the step, for the initial speed
 constexpr double kRise = 0.63212055882855767;  // 1 - 1/e
 constexpr double kLeastStep = 0.1;             // of the final voltage
-constexpr double kSettled = 4.0;               // time constants after which 98 % are reached
-constexpr double kDecisive = 10.0;  // difference of log likelihoods, times 2, that chance does not give
+constexpr double kSettled = 4.0;               // time constants to 98 % of the step
+constexpr double kDecisive = 10.0;             // twice the log-likelihood difference that is significant
 
 using std::exp;
 
-// Parameters of both answers.
+// Parameters of both step responses.
 enum Parameter : int { kStepTime, kRate, kFinal, kInitial };
 constexpr int kParameters = 4;
 using Jet = ceres::Jet<double, kParameters>;
 
 // tau_m dOmega/dt = Omega_ss - Omega; rate is 1 / tau_m.
 template <typename T>
-T reduced_answer(const T* p, double time) {
+T reduced_response(const T* p, double time) {
   const T elapsed = time - p[kStepTime];
   if (elapsed <= T(0.0)) return p[kInitial];
   return p[kFinal] + (p[kInitial] - p[kFinal]) * exp(-p[kRate] * elapsed);
 }
 
-// J_r dOmega/dt = k_Q (s - Omega)(Omega + s'), s' = s + K2 / K3, a Riccati equation: y = (s - Omega) / (Omega
-// + s') decays at the rate (k_Q / J_r) (s + s'), which is the parameter here.
+// J_r dOmega/dt = k_Q (s - Omega)(Omega + s'), s' = s + K2 / K3, a Riccati equation:
+// y = (s - Omega) / (Omega + s') decays at the rate (k_Q / J_r) (s + s'), which is the parameter kRate.
 template <typename T>
-T physical_answer(const T* p, double time, double k2_over_k3) {
+T physical_response(const T* p, double time, double k2_over_k3) {
   const T elapsed = time - p[kStepTime];
   if (elapsed <= T(0.0)) return p[kInitial];
   const T& s = p[kFinal];
@@ -64,7 +64,7 @@ std::vector<double> part(const std::vector<double>& values, std::size_t begin, s
           values.begin() + static_cast<std::ptrdiff_t>(end)};
 }
 
-// The first of three rows in a row above a level: one alone may be an outlier.
+// The first of three consecutive rows above a level: a single one may be an outlier. values.size() if none.
 std::size_t first_above(const std::vector<double>& values, double level) {
   for (std::size_t i = 0; i + 2 < values.size(); ++i) {
     if (values[i] > level && values[i + 1] > level && values[i + 2] > level) return i;
@@ -79,7 +79,8 @@ Levels levels_of(const MotorStepData& data) {
   const std::vector<double>& cause = data.motor_voltage_v.empty() ? data.speed_rad_s : data.motor_voltage_v;
   const double low = median(part(cause, 0, kLeastRestRows));
   const double high = median(part(cause, rows - rows / 5, rows));
-  // Half way where the voltage jumps; at a tenth where only the speed tells.
+  // The step begins where the voltage passes half of its change; without voltage, where the speed passes a
+  // tenth of its change.
   const double share = data.motor_voltage_v.empty() ? 0.1 : 0.5;
   if (!data.motor_voltage_v.empty() && !(high - low > kLeastStep * std::abs(high))) {
     throw BadData("motor_voltage: begins at " + format_number(low) + " and ends at " + format_number(high) +
@@ -134,9 +135,9 @@ void check_step(const MotorStepData& data, const Levels& levels) {
   }
 }
 
-template <typename Answer>
-Fit fit_answer(const MotorStepData& data, const Eigen::Vector4d& start, const Answer& answer,
-               const std::function<void()>& on_iteration) {
+template <typename Response>
+Fit fit_response(const MotorStepData& data, const Eigen::Vector4d& start, const Response& response,
+                 const std::function<void()>& on_iteration) {
   FitProblem problem;
   problem.observations = data.time_s.size();
   problem.start = start;
@@ -149,10 +150,10 @@ Fit fit_answer(const MotorStepData& data, const Eigen::Vector4d& start, const An
     for (std::size_t row = 0; row < data.time_s.size(); ++row) {
       const auto at = static_cast<Eigen::Index>(row);
       if (jacobian == nullptr) {
-        residuals[at] = data.speed_rad_s[row] - answer(p.data(), data.time_s[row]);
+        residuals[at] = data.speed_rad_s[row] - response(p.data(), data.time_s[row]);
         continue;
       }
-      const Jet value = answer(jets.data(), data.time_s[row]);
+      const Jet value = response(jets.data(), data.time_s[row]);
       residuals[at] = data.speed_rad_s[row] - value.a;
       jacobian->row(at) = -value.v.transpose();
     }
@@ -160,22 +161,22 @@ Fit fit_answer(const MotorStepData& data, const Eigen::Vector4d& start, const An
   return fit(problem);
 }
 
-template <typename Answer>
-std::vector<double> curve_of(const MotorStepData& data, const Fit& fit, const Answer& answer) {
+template <typename Response>
+std::vector<double> curve_of(const MotorStepData& data, const Fit& fit, const Response& response) {
   std::vector<double> out;
   out.reserve(data.time_s.size());
-  for (const double time : data.time_s) out.push_back(answer(fit.parameters.data(), time));
+  for (const double time : data.time_s) out.push_back(response(fit.parameters.data(), time));
   return out;
 }
 
-// The estimate of a time that is factor / rate.
+// The estimate of the time factor / rate, s.
 ParameterEstimate time_from_rate(const Fit& fit, double factor, const char* parameter, const char* symbol) {
   const double rate = fit.parameters[kRate];
   const double error = factor * fit.standard_error(kRate) / (rate * rate);
   return {parameter, symbol, "s", factor / rate, error, interval_factor(fit.degrees_of_freedom) * error};
 }
 
-// The experiment of one model: its time constant alone is of interest, the levels are the step's own.
+// The experiment of one model. Estimates the time constant alone; the other parameters describe this step.
 Experiment experiment_of(const MotorStepData& data, const Fit& fit, std::vector<double> curve,
                          const ParameterEstimate& time) {
   Experiment out = conclude(fit,
@@ -186,7 +187,7 @@ Experiment experiment_of(const MotorStepData& data, const Fit& fit, std::vector<
                             data.speed_rad_s, std::move(curve), "rad/s");
   out.estimates = {time};
   out.covariance = Eigen::MatrixXd::Constant(1, 1, time.standard_error * time.standard_error);
-  // That a step starts from 0 rad/s or at 0 s is no lack of the data.
+  // A step from 0 rad/s or at 0 s is valid: removes the warnings of an estimate that is not different from 0.
   out.warnings.erase(
       std::remove_if(out.warnings.begin(), out.warnings.end(),
                      [](const std::string& text) { return text.find("from 0") != std::string::npos; }),
@@ -199,8 +200,8 @@ double log_likelihood_gain(const Experiment& better, const Experiment& worse) {
   return 2.0 * rows * std::log(worse.residual_sd / better.residual_sd);
 }
 
-// 63.2 % of the way between the levels, where a parabola through the readings around it crosses. Levels and
-// step time are those of the fit that is nearer to the data, as an eye would draw them.
+// Reads tau_m off as the time to 63.2 % of the step, where a parabola through the readings nearby crosses
+// that level. Levels and step time are those of the model that fits better.
 ParameterEstimate read_off(const MotorStepData& data, const Fit& fit, const Experiment& model) {
   const double initial = fit.parameters[kInitial];
   const double final_speed = fit.parameters[kFinal];
@@ -248,15 +249,15 @@ void check_time(const ParameterEstimate& time) {
   if (time.value >= kLeastTimeConstant && time.value <= kMostTimeConstant) return;
   throw BadData("time: leads to tau_m = " + format_number(time.value) + " s, must be " +
                 format_number(kLeastTimeConstant) + " to " + format_number(kMostTimeConstant) +
-                " s: no motor with its rotor is faster or slower; is the unit right?");
+                " s: no motor with a rotor is faster or slower; is the unit right?");
 }
 
 void warn_of_short_record(const MotorStepData& data, const Fit& fit, Experiment& experiment) {
   const double after = (data.time_s.back() - fit.parameters[kStepTime]) * fit.parameters[kRate];
   if (after >= kSettled) return;
   experiment.warnings.push_back("the record ends " + format_number(after) +
-                                " time constants after the step, should be at least " +
-                                format_number(kSettled) + ": the final speed is extrapolated");
+                                " time constants after the step, should end at least " +
+                                format_number(kSettled) + " after it: the final speed is extrapolated");
 }
 
 }  // namespace
@@ -273,24 +274,24 @@ MotorStep identify_motor_step(const MotorStepData& data, const plant::Vehicle& v
   const double sample =
       (data.time_s.back() - data.time_s.front()) / static_cast<double>(data.time_s.size() - 1);
 
-  // Times count from the step, so that no parameter of the fit is near 0 by chance of the clock.
+  // Shifts the time to begin shortly before the step, so that the step time is not close to 0.
   MotorStepData shifted = data;
   const double origin = step_time - 10.0 * sample;
   for (double& time : shifted.time_s) time -= origin;
   const Eigen::Vector4d start(step_time - origin, 1.0 / std::max(rise_time, sample), levels.final,
                               std::max(levels.initial, 0.01 * levels.final));
 
-  const auto reduced = [](const auto* p, double time) { return reduced_answer(p, time); };
+  const auto reduced = [](const auto* p, double time) { return reduced_response(p, time); };
   const double k2_over_k3 = vehicle.motor.k2 / vehicle.motor.k3;
   const auto physical = [k2_over_k3](const auto* p, double time) {
-    return physical_answer(p, time, k2_over_k3);
+    return physical_response(p, time, k2_over_k3);
   };
-  const Fit reduced_fit = fit_answer(shifted, start, reduced, on_iteration);
+  const Fit reduced_fit = fit_response(shifted, start, reduced, on_iteration);
   check_time(time_from_rate(reduced_fit, 1.0, "motor.time_constant", "tau_m"));
-  const Fit physical_fit = fit_answer(shifted, start, physical, on_iteration);
+  const Fit physical_fit = fit_response(shifted, start, physical, on_iteration);
 
-  // J_r from the rate (k_Q / J_r) (s + s'), and the rise time from rest to hover that goes with it:
-  // plant/model/motor.cpp backwards.
+  // J_r from the rate (k_Q / J_r) (s + s'), and its 63.2 % rise time from rest to hover: the inverse of the
+  // computation in plant/model/motor.cpp.
   const double final_speed = physical_fit.parameters[kFinal];
   const double inertia_rate = vehicle.rotor.torque * (2.0 * final_speed + k2_over_k3);  // J_r times the rate
   const double hover = plant::hover_speed(vehicle);
@@ -322,15 +323,16 @@ MotorStep identify_motor_step(const MotorStepData& data, const plant::Vehicle& v
     warn_of_short_record(shifted, experiment == &out.reduced ? reduced_fit : physical_fit, *experiment);
   if (better_fit.serial_correlation > 3.0 / std::sqrt(static_cast<double>(data.time_s.size()))) {
     better.warnings.push_back(
-        "neighbouring residuals are correlated by " + format_number(better_fit.serial_correlation) +
-        ": the model misses something, or the tachometer smooths; intervals are widened for it");
+        "neighbouring residuals have a correlation of " + format_number(better_fit.serial_correlation) +
+        ": the model is incomplete, or the tachometer filters the speed; the intervals are widened for it");
   }
   out.findings.push_back(
-      "the reduced model leaves " + format_number(out.reduced.residual_sd) + " rad/s, the physical one " +
+      "the reduced model leaves " + format_number(out.reduced.residual_sd) +
+      " rad/s (standard deviation of residuals), the physical model " +
       format_number(out.physical.residual_sd) + " rad/s: " +
       (out.decided
            ? std::string(out.physical_fits_better ? "the physical" : "the reduced") + " model fits better"
-           : "these data do not tell which is right"));
+           : "the difference is not significant"));
   return out;
 }
 

@@ -10,8 +10,8 @@ namespace swiftlet::identification {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kLeastThrustCoefficient = 1e-3;  // a tenth of what small propellers have
-constexpr double kMostThrustCoefficient = 0.1;    // above it blades stall
+constexpr double kLeastThrustCoefficient = 1e-3;  // a tenth of a small propeller's
+constexpr double kMostThrustCoefficient = 0.1;    // blades stall above it
 
 ParameterEstimate scaled(const ParameterEstimate& factor, double coefficient_of_one, const char* parameter,
                          const char* symbol) {
@@ -26,11 +26,11 @@ ParameterEstimate scaled(const ParameterEstimate& factor, double coefficient_of_
 void check_tips(const Propeller& propeller, double top_speed) {
   const double tip = top_speed * propeller.radius_m;
   if (tip < kSpeedOfSound) return;
-  throw BadData("speed: moves the blades' tips at " + format_number(tip) + " m/s, must be below " +
-                format_number(kSpeedOfSound) + ", the speed of sound; is the unit right, and the radius?");
+  throw BadData("speed: the blade tips move at " + format_number(tip) + " m/s, must be below " +
+                format_number(kSpeedOfSound) + ", the speed of sound; are the unit and the radius right?");
 }
 
-// Momentum theory: the power to hold T is at least T sqrt(T / (2 rho A)).
+// Momentum theory: the power for a thrust T at hover is at least T sqrt(T / (2 rho A)).
 double figure_of_merit(double thrust_factor, double torque_factor, const Propeller& propeller) {
   const double area = kPi * propeller.radius_m * propeller.radius_m;
   return std::pow(thrust_factor, 1.5) / (torque_factor * std::sqrt(2.0 * propeller.air_density * area));
@@ -49,7 +49,7 @@ PropellerCoefficients propeller_coefficients(const std::optional<ParameterEstima
     out.thrust = scaled(*thrust_factor, of_one.thrust, "rotor.thrust_coefficient", "C_T");
     const double c_t = out.thrust->value;
     if (!(c_t >= kLeastThrustCoefficient && c_t <= kMostThrustCoefficient)) {
-      throw BadData("thrust: leads to C_T = " + format_number(c_t) + " of Eq. (23), must be " +
+      throw BadData("thrust: leads to C_T = " + format_number(c_t) + " by Eq. (23), must be " +
                     format_number(kLeastThrustCoefficient) + " to " + format_number(kMostThrustCoefficient) +
                     "; are the units of speed, thrust and radius right?");
     }
@@ -60,8 +60,7 @@ PropellerCoefficients propeller_coefficients(const std::optional<ParameterEstima
     if (*out.figure_of_merit > 1.0) {
       throw BadData("thrust: leads to a figure of merit of " + format_number(*out.figure_of_merit) +
                     ", must be at most 1: no propeller gives more thrust than momentum theory; are the units "
-                    "of speed, thrust "
-                    "and torque right?");
+                    "of speed, thrust and torque right?");
     }
   }
   return out;
@@ -69,21 +68,21 @@ PropellerCoefficients propeller_coefficients(const std::optional<ParameterEstima
 
 void require_possible_rotor(const std::optional<ParameterEstimate>& thrust_factor,
                             const std::optional<ParameterEstimate>& torque_factor, const Propeller& largest) {
-  const std::string rotor = "the largest propeller between the base vehicle's hubs, of radius " +
-                            format_number(largest.radius_m) + " m, ";
+  const std::string rotor = "the largest propeller that fits between the base vehicle's hubs (radius " +
+                            format_number(largest.radius_m) + " m) ";
   if (!thrust_factor) return;
   const double c_t =
       plant::blade_coefficients({thrust_factor->value, 0.0}, largest.radius_m, largest.air_density).thrust;
   if (c_t > kMostThrustCoefficient) {
-    throw BadData("thrust: asks of " + rotor + "for C_T = " + format_number(c_t) +
-                  " of Eq. (23), must be at most " + format_number(kMostThrustCoefficient) +
+    throw BadData("thrust: " + rotor + "would need C_T = " + format_number(c_t) +
+                  " by Eq. (23), must be at most " + format_number(kMostThrustCoefficient) +
                   "; are the units of speed and thrust right?");
   }
   if (!torque_factor) return;
   const double merit = figure_of_merit(thrust_factor->value, torque_factor->value, largest);
   if (merit > 1.0) {
     throw BadData(
-        "thrust: asks of " + rotor + "for a figure of merit of " + format_number(merit) +
+        "thrust: " + rotor + "would need a figure of merit of " + format_number(merit) +
         ", must be at most 1: no propeller gives more thrust than momentum theory; are the units of speed, "
         "thrust and torque right?");
   }

@@ -1,5 +1,5 @@
-// Propeller coefficients from what its rotor was found to do, Eq. (23) and (24), and whether a propeller can
-// do that.
+// Converts k_T and k_Q to propeller coefficients, Eq. (23) and (24), and checks that a propeller can reach
+// them.
 #pragma once
 
 #include <optional>
@@ -16,18 +16,18 @@ struct Propeller {
 struct PropellerCoefficients {
   std::optional<ParameterEstimate> thrust;  // C_T
   std::optional<ParameterEstimate> torque;  // C_Q
-  std::optional<double> figure_of_merit;    // ideal over real power at hover, by momentum theory
+  std::optional<double> figure_of_merit;    // ideal over real power at hover, momentum theory
 };
 
-// From estimates of k_T and k_Q; radius and density count as exact. top_speed: the fastest measured, rad/s.
-// Throws BadData for what physics excludes: tips faster than sound, a figure of merit above 1 (more thrust
-// than the power can give), a C_T that no propeller reaches.
+// Takes estimates of k_T and k_Q; radius and density are exact. top_speed is the highest measured speed,
+// rad/s. Throws BadData for results that physics excludes: blade tips faster than sound, a figure of merit
+// above 1 (more thrust than the power can give), a C_T that no propeller reaches.
 PropellerCoefficients propeller_coefficients(const std::optional<ParameterEstimate>& thrust_factor,
                                              const std::optional<ParameterEstimate>& torque_factor,
                                              const Propeller& propeller, double top_speed);
 
-// Where the propeller is not known: throws BadData if even the largest that could turn there, of radius_m,
-// cannot do what was found, by C_T and figure of merit.
+// For an unknown propeller: throws BadData if C_T or the figure of merit is impossible even for the largest
+// propeller that fits the vehicle.
 void require_possible_rotor(const std::optional<ParameterEstimate>& thrust_factor,
                             const std::optional<ParameterEstimate>& torque_factor, const Propeller& largest);
 

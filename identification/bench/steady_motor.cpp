@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kLeastRows = 6;
 
-// Eq. (22), with a constant voltage where there is a third parameter.
+// Eq. (22). A third parameter adds a constant voltage.
 CurveValue steady_voltage(std::size_t /*row*/, double speed, const Eigen::VectorXd& p, Gradient& by) {
   by[0] = speed;
   by[1] = speed * speed;
@@ -46,14 +46,14 @@ Experiment identify_steady_motor(const SteadyMotorData& data, const Instruments&
     if (estimate.value > 0.0) continue;
     throw BadData("speed: leads to " + estimate.symbol + " = " + format_number(estimate.value) + " " +
                   estimate.unit +
-                  ", must be above 0 by Eq. (21); are voltage and speed readings of the loaded motor?");
+                  ", must be above 0 by Eq. (21); were voltage and speed read with the rotor mounted?");
   }
   const Fit with_friction =
       fit_curve(readings, Eigen::Vector3d(start[0], start[1], 0.1 * voltage), steady_voltage);
   if (asks_for_last(with_friction, voltage)) {
     out.warnings.push_back("a constant of " + format_number(with_friction.parameters[2]) +
-                           " V besides Eq. (22) is significant: Coulomb friction, a tachometer that is off, "
-                           "or one curve of two motors");
+                           " V added to Eq. (22) is significant: Coulomb friction, a tachometer with an "
+                           "offset, or readings of two motors");
   }
   return out;
 }

@@ -20,8 +20,8 @@ constexpr std::array<ParameterName, kParts> kNames = {{{"esc.gain", "gain", "1"}
                                                        {"motor.k2", "K2", "V*s/rad"},
                                                        {"motor.k3", "K3", "V*s^2/rad^2"},
                                                        {"rotor.thrust_factor", "k_T", "N*s^2"}}};
-using Jet = ceres::Jet<double, kParts + 1>;  // the parts, and v_s
-constexpr double kLeastSquare = 1e-9;        // V^2, keeps the root away from 0
+using Jet = ceres::Jet<double, kParts + 1>;  // derivatives by the parts and v_s
+constexpr double kLeastSquare = 1e-9;        // V^2, keeps the square root away from 0
 
 Jet thrust(const std::array<Jet, kParts>& part, const Jet& supply, double throttle) {
   const Jet square = part[kGain] * supply * supply * throttle + part[kOffset];
@@ -59,14 +59,14 @@ void check(const ThrottleThrustData& data) {
   require_variety(reading, 4);
 }
 
-void say_what_is_held(const KnownParts& known, Experiment& out) {
+void warn_of_fixed_parts(const KnownParts& known, Experiment& out) {
   if (known.esc && known.steady_motor) return;
-  std::string held = known.thrust ? "k_T as its own experiment found it" : "k_T as the base vehicle has it";
-  if (!known.esc && !known.steady_motor) held += " and the ESC's gain as the base vehicle has it";
+  std::string held = known.thrust ? "k_T of thrust_torque" : "k_T of the base vehicle";
+  if (!known.esc && !known.steady_motor) held += " and the ESC's gain of the base vehicle";
   out.warnings.push_back(
-      "thrust without speed cannot tell K2, K3, k_T and the ESC's gain apart: " + held +
-      (known.esc || known.steady_motor ? ", is held" : ", are held") +
-      "; the chain from throttle to thrust is right, each of its parts only as far as that");
+      "thrust without speed does not identify K2, K3, k_T and the ESC's gain separately: " + held +
+      (known.esc || known.steady_motor ? " is held fixed" : " are held fixed") +
+      "; the chain from throttle to thrust is valid, its parts only as far as the fixed values are");
 }
 
 }  // namespace
@@ -103,7 +103,7 @@ Experiment identify_throttle_thrust(const ThrottleThrustData& data, const plant:
     throw BadData("thrust: leads to " + estimate.symbol + " = " + format_number(estimate.value) + " " +
                   estimate.unit + ", must be above 0; is the thrust that of one rotor, and its unit right?");
   }
-  say_what_is_held(known, out);
+  warn_of_fixed_parts(known, out);
   return out;
 }
 

@@ -1,5 +1,5 @@
-// Thrust over throttle, without the rotor's speed: the whole chain at once, T = k_T Omega_ss(v_a)^2 by Eq.
-// (9), (22) and (25).
+// Identifies the chain from throttle to thrust without measuring rotor speed: T = k_T Omega_ss(v_a)^2 by
+// Eq. (9), (22) and (25).
 #pragma once
 
 #include <vector>
@@ -16,17 +16,17 @@ struct ThrottleThrustData {
   std::vector<double> thrust_n;          // of one rotor
 };
 
-// What other experiments have found, so that these data need not tell it.
+// The parts that other experiments have identified.
 struct KnownParts {
   bool esc = false;           // esc.gain, esc.offset
   bool steady_motor = false;  // motor.k2, motor.k3
   bool thrust = false;        // rotor.thrust_factor
 };
 
-// Estimates what is not known of esc.gain, esc.offset, motor.k2, motor.k3 and rotor.thrust_factor; the rest
-// stays as vehicle has it. Where Eq. (9) or (22) is unknown, thrust without speed leaves a scale open: k_T
-// and, if both are unknown, the gain are then held at the vehicle's too, and a warning says so. Where all is
-// known, rotor.thrust_factor is estimated all the same, to compare. Intervals count what is held as exact.
+// Estimates those of esc.gain, esc.offset, motor.k2, motor.k3 and rotor.thrust_factor that are not known; the
+// others keep the vehicle's values. If Eq. (9) or (22) is unknown, thrust without speed does not determine
+// the scale: k_T and, if both are unknown, esc.gain then also keep the vehicle's values, with a warning. If
+// all are known, estimates rotor.thrust_factor for comparison. Intervals treat fixed values as exact.
 // measured and predicted are T. Throws BadData.
 Experiment identify_throttle_thrust(const ThrottleThrustData& data, const plant::Vehicle& vehicle,
                                     const KnownParts& known, const Instruments& instruments);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kLeastRows = 5;
 
-// Eq. (25) or (26), with a constant where there is a second parameter.
+// Eq. (25) or (26). A second parameter adds a constant.
 CurveValue square_law(std::size_t /*row*/, double speed, const Eigen::VectorXd& p, Gradient& by) {
   by[0] = speed * speed;
   if (p.size() > 1) by[1] = 1.0;
@@ -27,7 +27,7 @@ Experiment identify_factor(const std::vector<double>& speeds, const Column& read
   if (!(fit.parameters[0] > 0.0)) {
     throw BadData(std::string(reading.name) + ": leads to " + name.symbol + " = " +
                   format_number(fit.parameters[0]) + " " + name.unit +
-                  ", must be above 0; is its sign that of a pushing rotor?");
+                  ", must be above 0; is the sign of the column right?");
   }
   Experiment out =
       conclude(fit, {name}, reading.values, predicted(readings, fit.parameters, square_law), reading.unit);
@@ -35,8 +35,8 @@ Experiment identify_factor(const std::vector<double>& speeds, const Column& read
       fit_curve(readings, Eigen::Vector2d(start[0], 0.1 * full_scale(reading.values)), square_law);
   if (asks_for_last(with_offset, full_scale(reading.values))) {
     out.warnings.push_back("a constant of " + format_number(with_offset.parameters[1]) + " " + reading.unit +
-                           " besides " + name.symbol +
-                           " Omega^2 is significant: was the sensor zeroed with the rotor still?");
+                           " added to " + name.symbol +
+                           " Omega^2 is significant: was the sensor zeroed with the rotor stopped?");
   }
   return out;
 }
@@ -71,7 +71,7 @@ ThrustTorque identify_thrust_torque(const ThrustTorqueData& data, const Instrume
     if (!(arm >= kLeastTorquePerThrust && arm <= kMostTorquePerThrust)) {
       throw BadData("torque: is " + format_number(arm) + " m times the thrust, must be " +
                     format_number(kLeastTorquePerThrust) + " to " + format_number(kMostTorquePerThrust) +
-                    " m, some tenths of a rotor's radius; are the units of both right?");
+                    " m, some tenths of the rotor radius; are the units of both columns right?");
     }
   }
   return out;

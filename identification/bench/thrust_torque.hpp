@@ -1,5 +1,5 @@
-// Rotor on a force and torque sensor, Eq. (25) and (26): T = k_T Omega^2, Q = k_Q Omega^2 (the paper's Figs.
-// 6 and 7).
+// Identifies the rotor on a force and torque sensor, Eq. (25) and (26): T = k_T Omega^2, Q = k_Q Omega^2 (the
+// paper's Figs. 6 and 7).
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ namespace swiftlet::identification {
 struct ThrustTorqueData {
   std::vector<double> speed_rad_s;
   std::vector<double> thrust_n;    // empty: not measured
-  std::vector<double> torque_n_m;  // likewise
+  std::vector<double> torque_n_m;  // empty: not measured
 };
 
 struct ThrustTorque {
@@ -21,7 +21,7 @@ struct ThrustTorque {
   std::optional<Experiment> torque;  // estimates rotor.torque_factor; measured and predicted are Q
 };
 
-// Warns where the data ask for a constant besides: a sensor that was not zeroed. Throws BadData.
+// Warns if an additional constant is significant: the sensor was not zeroed. Throws BadData.
 ThrustTorque identify_thrust_torque(const ThrustTorqueData& data, const Instruments& instruments);
 
 }  // namespace swiftlet::identification

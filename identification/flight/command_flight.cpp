@@ -19,11 +19,11 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t kCurvePoints = 41;
-constexpr double kRareCommands = 0.01;  // share of commands that lie outside the figure, at each end
-constexpr double kAtOdds = 1.5;         // of what responses tell of the lag, over what they may differ
-constexpr double kBatteryKnown = 0.25;  // standard error of the sag, over the sag
-constexpr double kOneRate = 0.1;        // of logs fitted together: how much their periods may differ
-constexpr double kOfLittleUse = 0.1;    // weight of the commands in a forecast
+constexpr double kRareCommands = 0.01;  // fraction of commands outside the figure, at each end
+constexpr double kAtOdds = 1.5;         // Birge's ratio of the lags above which it warns
+constexpr double kBatteryKnown = 0.25;  // standard error of the sag over the sag
+constexpr double kOneRate = 0.1;        // relative difference of the sample periods of logs
+constexpr double kOfLittleUse = 0.1;    // weight of the commands in a forecast that is reported
 
 struct CommandFit {
   std::unique_ptr<CommandModel> model;
@@ -45,7 +45,8 @@ CommandFit fit_responses(const std::vector<FlightSeries>& flights, const plant::
   return out;
 }
 
-// Specific force, roll and pitch, each alone. Yaw tells no lag: the rotors' own inertia does as much there.
+// Fits specific force, roll and pitch alone. Yaw does not determine the lag: the rotors' own inertia has a
+// similar effect there.
 std::vector<CommandFit> fit_alone(const std::vector<FlightSeries>& flights, const plant::Vehicle& base,
                                   const std::function<void()>& progress) {
   std::vector<CommandFit> out;
@@ -63,10 +64,10 @@ ParameterEstimate lag_of(const CommandFit& alone) {
           interval_factor(alone.fit.degrees_of_freedom) * error};
 }
 
-// Of several estimates of one quantity.
+// Consistency of several estimates of one quantity.
 struct Agreement {
-  double standard_error = 0.0;  // of their weighted mean, by how they differ
-  double ratio = 0.0;           // how much they differ over how much they may: Birge's ratio
+  double standard_error = 0.0;  // of their weighted mean, from their differences
+  double ratio = 0.0;           // Birge's ratio: actual over expected differences
 };
 
 Agreement agreement(const std::vector<ParameterEstimate>& estimates) {
@@ -85,7 +86,7 @@ Agreement agreement(const std::vector<ParameterEstimate>& estimates) {
   return {ratio / std::sqrt(weight), ratio};
 }
 
-// Lets a parameter vary as much as `standard_error` says, and all others with it as they hang together.
+// Raises the standard error of a parameter, and those of the others by their correlations with it.
 void widen(EstimatedParameters& fit, Index parameter, double standard_error) {
   const double variance = fit.covariance(parameter, parameter);
   const double wanted = standard_error * standard_error;
@@ -94,7 +95,7 @@ void widen(EstimatedParameters& fit, Index parameter, double standard_error) {
   fit.covariance += (wanted - variance) * follows * follows.transpose();
 }
 
-// The sag that stands in the gains, and in what follows from them, is the base's.
+// Adds the uncertainty of the base vehicle's supply sag to the gains and the quantities derived from them.
 void allow_for_battery(const CommandModel& model, const std::vector<Derived>& quantities,
                        DerivedValues& values) {
   const double relative = kBatteryKnown * (1.0 / model.shared_over_single() - 1.0);
@@ -109,7 +110,7 @@ void allow_for_battery(const CommandModel& model, const std::vector<Derived>& qu
   values.covariance += moved * moved.transpose();
 }
 
-// The command of which all rotors carry the weight.
+// The command at which all rotors together carry the weight.
 double hover_command(const ThrustCurve& curve) {
   const double missing = plant::kGravity - curve.value;
   const double root = std::sqrt(std::max(curve.slope * curve.slope + 4.0 * curve.curvature * missing, 0.0));
@@ -209,20 +210,21 @@ void draw_thrust(FlightIdentification& out, const CommandFit& all) {
   }
 }
 
-// The lag is told by roll and pitch as well, and gains are what moments are made of.
+// The parameters that are not identifiable for lack of excitation, with the reason. Without excitation of
+// roll or pitch, the lag is not identifiable either. Adds a sentence for each gain.
 std::map<std::string, std::string> not_identifiable_parameters(FlightIdentification& out,
                                                                const CommandPredictions& predictions) {
-  std::map<std::string, std::string> untold = not_identifiable_axes(predictions.excitations);
+  std::map<std::string, std::string> not_identifiable = not_identifiable_axes(predictions.excitations);
   for (int axis = 0; axis < 3; ++axis) {
-    const auto calm = untold.find(plant::kInertiaKeys[static_cast<std::size_t>(axis)]);
-    if (calm == untold.end()) continue;
-    if (axis < 2) untold["motor.time_constant"] = calm->second;
+    const auto calm = not_identifiable.find(plant::kInertiaKeys[static_cast<std::size_t>(axis)]);
+    if (calm == not_identifiable.end()) continue;
+    if (axis < 2) not_identifiable["motor.time_constant"] = calm->second;
     out.unexcited.push_back(std::string("thrust_to_rate.") + axis_name(axis) + ": " + calm->second);
   }
-  return untold;
+  return not_identifiable;
 }
 
-// One description of the noise is fitted to all logs, sample by sample.
+// All logs share one discrete-time noise model: they need the same sample rate.
 void require_one_rate(const std::vector<FlightSeries>& flights) {
   const auto period_s = [](const FlightSeries& flight) {
     const std::vector<double>& time = flight.log->time_s;
@@ -235,39 +237,38 @@ void require_one_rate(const std::vector<FlightSeries>& flights) {
     if (std::abs(this_s / first_s - 1.0) < kOneRate) continue;
     throw BadData(flight.log->name + " has a sample every " + format_number(1e3 * this_s) + " ms and " +
                   flights.front().log->name + " every " + format_number(1e3 * first_s) +
-                  " ms: without poses and supply voltage, logs must be of one rate");
+                  " ms: without poses and supply voltage, logs must have the same sample rate");
   }
 }
 
 void require_possible_hover(const ParameterEstimate& command) {
   if (command.low() < 1.0 && command.high() > 0.0) return;
-  throw BadData("commands: " + format_number(command.value) +
-                " of full command would carry the weight, must be 0 to 1; are the units right?");
+  throw BadData("commands: hover is at " + format_number(command.value) +
+                " of full command, must be 0 to 1; are the units right?");
 }
 
-// What would tell it. by_flight: with what the flight leaves open alone.
+// What to do to identify the parameter. by_flight holds the intervals without the uncertainty of the battery.
 std::string advice(const std::string& parameter, const ParameterEstimate& estimate,
                    const std::vector<ParameterEstimate>& by_flight, const plant::Vehicle& base) {
   for (const ParameterEstimate& alone : by_flight) {
     if (alone.parameter == parameter && alone.half_width < 0.7 * estimate.half_width)
-      return "most of it is the battery's: measure the internal resistance of " + base.name + "'s";
+      return "the battery causes most of it: measure the internal resistance of " + base.name + "'s battery";
   }
   for (std::size_t axis = 0; axis < plant::kInertiaKeys.size(); ++axis) {
-    if (parameter == plant::kInertiaKeys[axis]) return moves_that_tell(axis);
+    if (parameter == plant::kInertiaKeys[axis]) return excitation_advice(axis);
   }
-  return "fly quick moves, up and down too";
+  return "fly quick moves, also up and down";
 }
 
 void report_lags(FlightIdentification& out, const Agreement& lags) {
-  std::string sentence = "the rotors' lag by itself: ";
+  std::string sentence = "the rotor lag fitted to each response alone: ";
   for (const ParameterEstimate& lag : out.lags)
     sentence += (&lag == &out.lags.front() ? "" : ", ") + with_interval(lag) + " by " + lag.parameter;
   if (lags.ratio > kAtOdds) {
     out.warnings.push_back(
         sentence + "; they differ " + format_number(lags.ratio) +
-        " times as much as their intervals allow: rotors with one lag do not describe this "
-        "flight, and the interval of tau_m, with those of all that hangs together with it, is "
-        "widened to that");
+        " times as much as their intervals allow: a single rotor lag does not describe this flight; "
+        "the intervals of tau_m and of the parameters correlated with it are widened accordingly");
   } else {
     out.findings.push_back(sentence);
   }
@@ -275,11 +276,11 @@ void report_lags(FlightIdentification& out, const Agreement& lags) {
 
 void report_delays(FlightIdentification& out, const CommandFit& all) {
   const CommandLayout& l = all.model->layout();
-  out.findings.push_back("correlation of the lag with the delay of the force " +
-                         format_number(all.fit.correlation(l.lag, l.force_delay)) +
-                         ", with that of the rates " +
-                         format_number(all.fit.correlation(l.lag, l.rate_delay)) +
-                         "; delays hold the filters of the sensors too");
+  out.findings.push_back(
+      "correlation of the lag with the delay of the force: " +
+      format_number(all.fit.correlation(l.lag, l.force_delay)) +
+      ", with the delay of the rates: " + format_number(all.fit.correlation(l.lag, l.rate_delay)) +
+      "; delays include the filters of the sensors");
 }
 
 void report_forecasts(FlightIdentification& out, const CommandPredictions& predictions) {
@@ -292,10 +293,9 @@ void report_forecasts(FlightIdentification& out, const CommandPredictions& predi
     weights += (weights.empty() ? "" : ", ") + format_number(weight);
   }
   if (quantities.empty()) return;
-  out.findings.push_back("half a second ahead the commands say little of " + quantities +
-                         ": what disturbs the vehicle, and its controller's answer to it, weigh more; the "
-                         "forecast takes " +
-                         weights + " of the change that they ask for");
+  out.findings.push_back("half a second ahead the commands predict little of " + quantities +
+                         ": disturbances and the controller's response to them dominate; the forecast uses " +
+                         weights + " of the change that the commands predict");
 }
 
 }  // namespace
@@ -307,13 +307,13 @@ void identify_commands(FlightIdentification& out, const std::vector<FlightSeries
   };
   require_one_rate(flights);
   const std::vector<CommandFit> alone = fit_alone(flights, base, progress);
-  for (const CommandFit& fit : alone) refuse_turned_gains(fit.model->layout().gain, base, fit.fit);
+  for (const CommandFit& fit : alone) reject_negative_gains(fit.model->layout().gain, base, fit.fit);
   CommandFit all = fit_responses(flights, base, {kAllResponses.begin(), kAllResponses.end()}, std::nullopt,
                                  {&alone[2], &alone[1], &alone[0]}, progress);
   for (const CommandFit& fit : alone) out.lags.push_back(lag_of(fit));
   const Agreement lags = agreement(out.lags);
   if (lags.ratio > 1.0) widen(all.fit, all.model->layout().lag, lags.standard_error);
-  refuse_turned_gains(all.model->layout().gain, base, all.fit);
+  reject_negative_gains(all.model->layout().gain, base, all.fit);
 
   out.converged = all.fit.converged && within_bounds(all.model->physical_parameters(), all.fit);
   const std::vector<Derived> quantities = derived(*all.model);
@@ -329,13 +329,13 @@ void identify_commands(FlightIdentification& out, const std::vector<FlightSeries
       [&](const std::string& parameter) { return advice(parameter, *out.find(parameter), by_flight, base); });
   out.unexcited.emplace_back(
       "mass, rotor.thrust_factor, rotor.torque_factor, linear_drag and the accelerometer's offset: a log "
-      "without poses and supply voltage does not tell them; moments of inertia are those that the mass and "
+      "without poses and supply voltage does not determine them; moments of inertia follow from the mass and "
       "levers of " +
-      base.name + " make of m d/J");
+      base.name + " and m d/J");
   out.findings.push_back(
-      "a command that all rotors share makes " + format_number(all.model->shared_over_single()) +
-      " times the thrust of one by which they differ, as the supply sags under it: by the battery of " +
-      base.name + ", and allowed for in m d/J");
+      "a change of all commands changes the thrust " + format_number(all.model->shared_over_single()) +
+      " times as much as a change of their differences, as the supply sags: computed with the battery of " +
+      base.name + ", and included in m d/J");
   compare_with_file(out, *all.model);
   draw_thrust(out, all);
   report_lags(out, lags);

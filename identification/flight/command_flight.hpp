@@ -1,5 +1,5 @@
-// From logs of IMU and commands alone, without poses or supply voltage, to what they can tell: the rotors'
-// lag, delays, thrust over mass by command, and how the rotors turn the body.
+// Identifies from logs of IMU and commands, without poses or supply voltage, what they determine: rotor lag,
+// delays, thrust over mass as a function of the command, and the gains from thrust to angular acceleration.
 #pragma once
 
 #include <vector>
@@ -9,10 +9,10 @@
 
 namespace swiftlet::identification {
 
-// Completes an identification that has its windows. The lag is fitted to specific force, roll and pitch each
-// alone, then to all; where the three differ by more than their intervals allow, the interval of the lag is
-// widened to what they leave open (Birge 1932), and with it those of all that hangs together with it. Moments
-// of inertia are those that the base's mass and levers make of the gains. Throws BadData.
+// Completes `out`, of which windows and source are set. Fits the lag to specific force, roll and pitch alone,
+// then to all responses. If the three lags differ by more than their intervals allow, widens the interval of
+// the lag by Birge's ratio (Birge 1932), and those of the parameters correlated with it. Moments of inertia
+// follow from the gains with the base vehicle's mass and levers. Throws BadData.
 void identify_commands(FlightIdentification& out, const std::vector<FlightSeries>& flights,
                        const plant::Vehicle& base, const FlightOptions& options);
 

@@ -14,19 +14,19 @@ using Eigen::Index;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double kSettlingS = 0.3;     // of the noise's filters, whose past is not known
-constexpr double kLeastThrust = 1e-3;  // m/s^2 of one rotor, where the curve falls below
+constexpr double kSettlingS = 0.3;     // s, of the noise filters, whose initial state is unknown
+constexpr double kLeastThrust = 1e-3;  // m/s^2, lower limit of one rotor's thrust over mass
 constexpr double kMostReflection = 0.9995;
-// What wanders slower than about half a second is left to the curve and its drift.
+// Noise slower than about half a second is left to the thrust curve and its drift.
 constexpr double kMostForceReflection = 0.99;
-constexpr std::size_t kKeptForEachFlight = 4;
+constexpr std::size_t kCachedPerFlight = 4;
 
 const char* const kNames[kResponses] = {"specific force", "roll", "pitch", "yaw"};
 
 std::size_t index_of(Response response) { return static_cast<std::size_t>(response); }
 int axis_of(Response response) { return static_cast<int>(response) - 1; }
 
-// Rows of a flight, both parts.
+// Rows of estimation set and validation set.
 Rows rows_of(const FlightSeries& series) { return {series.estimation_set.first, series.validation_set.last}; }
 
 std::size_t rows_in_block(const FlightSeries& series) {
@@ -36,7 +36,7 @@ std::size_t rows_in_block(const FlightSeries& series) {
   return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kSampleS / step)));
 }
 
-// Means over the blocks of a value of each row, the first of which is `row` 0.
+// Means of value(row) over each block. Row 0 is the first row of the first block.
 template <typename Value>
 std::vector<double> block_means(const BlockedFlight& blocks, const Value& value) {
   std::vector<double> out(blocks.size(), 0.0);
@@ -48,19 +48,20 @@ std::vector<double> block_means(const BlockedFlight& blocks, const Value& value)
   return out;
 }
 
-void make_gains(std::vector<double>& means) {
+void to_differences(std::vector<double>& means) {
   for (std::size_t block = means.size(); block-- > 1;) means[block] -= means[block - 1];
   if (!means.empty()) means[0] = 0.0;
 }
 
-// The integral of a value of each row, by the trapezoidal rule: what its mean gains from block to block.
+// Integrates value(row) by the trapezoidal rule. Returns the change of the integral's mean from block to
+// block.
 template <typename Value>
 std::vector<double> block_gains(const BlockedFlight& blocks, const double* time_s, const Value& value) {
   std::vector<double> integral(blocks.size() * blocks.rows_in_block, 0.0);
   for (std::size_t row = 1; row < integral.size(); ++row)
     integral[row] = integral[row - 1] + 0.5 * (time_s[row] - time_s[row - 1]) * (value(row) + value(row - 1));
   std::vector<double> out = block_means(blocks, [&](std::size_t row) { return integral[row]; });
-  make_gains(out);
+  to_differences(out);
   return out;
 }
 
@@ -89,9 +90,9 @@ CommandModel::CommandModel(std::vector<FlightSeries> flights, plant::Vehicle bas
       given_curve_(curve),
       middle_command_(curve ? curve->middle : mean_command(flights_)),
       shared_over_single_(identification::shared_over_single(base_)),
-      steady_speeds_(kKeptForEachFlight * flights_.size()),
-      thrust_(kKeptForEachFlight * flights_.size()),
-      moments_(kKeptForEachFlight * flights_.size()) {
+      steady_speeds_(kCachedPerFlight * flights_.size()),
+      thrust_(kCachedPerFlight * flights_.size()),
+      moments_(kCachedPerFlight * flights_.size()) {
   const plant::Effectiveness effectiveness = plant::effectiveness(base_);
   signs_.resize(3, effectiveness.cols());
   for (int axis = 0; axis < 3; ++axis) {
@@ -142,7 +143,8 @@ void CommandModel::assign_parameter_indices() {
     const double by_base = base_.mass_kg * lever(axis) / base_.inertia(axis, axis);
     l.gain[axis] =
         add({"gain about " + name, "1/m", by_base, 0.1 * by_base, -100.0 * by_base, 100.0 * by_base});
-    l.trim[axis] = add({"offset of the thrust, " + name, "1/m", 0.0, 0.02 * by_base, -by_base, by_base});
+    l.trim[axis] =
+        add({"offset of the centre of thrust, " + name, "1/m", 0.0, 0.02 * by_base, -by_base, by_base});
     if (response == Response::kYaw)
       l.spin_up =
           add({"spin-up about yaw", "(s^2/m)^(1/2)/s", 0.0, 0.03 * by_base, -10.0 * by_base, 10.0 * by_base});
@@ -264,7 +266,7 @@ CommandModel::Moments CommandModel::moments_of(std::size_t flight, const Speeds&
         block_gains(blocks, time, [&](std::size_t row) { return sums[row][static_cast<Index>(axis) + 1]; });
   }
   out.spin_up = block_means(blocks, [&](std::size_t row) { return signed_speed[row]; });
-  make_gains(out.spin_up);
+  to_differences(out.spin_up);
   return out;
 }
 
@@ -299,20 +301,20 @@ std::vector<double> CommandModel::modelled(const VectorXd& x, std::size_t flight
 std::vector<double> CommandModel::unexplained(const VectorXd& x, std::size_t flight,
                                               Response response) const {
   std::vector<double> out = blocks_[flight].means[index_of(response)];
-  if (response != Response::kForce) make_gains(out);
+  if (response != Response::kForce) to_differences(out);
   const std::vector<double> by_model = modelled(x, flight, response);
   for (std::size_t block = 0; block < out.size(); ++block) out[block] -= by_model[block];
   return out;
 }
 
-// A channel for each response: the fitted blocks of all flights, one after the other.
+// One channel for each response: the blocks of the estimation sets of all flights.
 SeriesProblem CommandModel::problem(const std::function<void()>& on_iteration) const {
   SeriesProblem out = problem_of(layout_.parameters);
-  std::vector<std::size_t> segments;  // of each block
+  std::vector<std::size_t> segments;  // segment of each block
   for (const BlockedFlight& flight : blocks_) {
     std::size_t last = 0;
     for (std::size_t block = 0; block < flight.estimation_set; ++block) {
-      const auto segment = static_cast<std::size_t>((flight.time_s[block] - flight.time_s[0]) / kStretchS);
+      const auto segment = static_cast<std::size_t>((flight.time_s[block] - flight.time_s[0]) / kSegmentS);
       last = segment;
       segments.push_back(out.segment_count + segment);
     }

@@ -1,19 +1,20 @@
-// The equations that a log of IMU and commands alone is fitted with.
+// The model that is fitted to a log of IMU and commands without poses or supply voltage.
 //
-//   rotors           s_i = sqrt(a(u_i) / N) behind the lag tau_m and a delay; its square is thrust over mass
+//   rotors           s_i = sqrt(a(u_i) / N) with lag tau_m and a delay; s_i^2 is thrust over mass of rotor i
 //   specific force   -f_z = sum s_i^2 + v_f
 //   rates            dw/dt = g o (L s^2) + r sum s_i^2 + l (L_z ds/dt) - coupling of Eq. (6) + v_w
 //
-// a(u) is the thrust over mass of all N rotors, m/s^2, at a command u that all have, a polynomial of second
-// order times a drift in time, as the supply sinks; what a command differs by from the mean of all counts
-// more, as supply_sag.hpp has it of the base. s_i goes with the speed of a rotor, which has the lag. L has
-// the signs of the moments that the rotors make, over their lever d, and g = m d / J: the thrust factor
-// times lever over inertia, over the thrust factor over mass. r is an offset of the thrust's centre, l what
-// the rotors' own inertia does about yaw. The log tells no ratios of inertias: those of the base go into
-// the coupling.
+// a(u) is the thrust over mass of all N rotors, m/s^2, at a command u that is equal for all rotors: a
+// polynomial of second order times a drift in time, as the supply voltage falls. The difference of a command
+// from the mean of all rotors has a larger effect, by the ratio of supply_sag.hpp for the base vehicle. s_i
+// is proportional to rotor speed, the state that has the lag. L holds the moments of the rotors relative to
+// their mean lever d (signs, for equal levers), and g = m d / J: thrust factor times lever over inertia,
+// divided by thrust factor over mass. r is the offset of the centre of thrust; l is the effect of the rotors'
+// own inertia about yaw. The ratios of the moments of inertia are not identifiable: the coupling uses the
+// base vehicle's.
 //
-// v is coloured noise, and its innovations are what is made small: gusts, thrusts that are not quite the
-// commanded ones, the gyro's noise. Samples are averaged over blocks of kSampleS.
+// v is ARMA noise: gusts, thrust errors, gyro noise. The fit minimises its innovations. Samples are averaged
+// over blocks of kSampleS.
 #pragma once
 
 #include <array>
@@ -36,21 +37,21 @@
 
 namespace swiftlet::identification {
 
-// What was measured.
+// A measured quantity that the model predicts.
 enum class Response { kForce, kRoll, kPitch, kYaw };
 constexpr std::size_t kResponses = 4;
 constexpr std::array<Response, kResponses> kAllResponses = {Response::kForce, Response::kRoll,
                                                             Response::kPitch, Response::kYaw};
 const char* response_name(Response response);  // "specific force", "roll"
 
-constexpr double kSampleS = 0.005;  // of blocks, about
+constexpr double kSampleS = 0.005;  // s, approximate length of a block
 
-// Thrust over mass of all rotors, m/s^2, over a command that they share.
+// Thrust over mass of all rotors, m/s^2, as a function of a command that is equal for all rotors.
 struct ThrustCurve {
-  double middle = 0.5;  // the command that the other numbers are of
-  double value = 0.0;   // m/s^2
-  double slope = 0.0;   // m/s^2 for full command
-  double curvature = 0.0;
+  double middle = 0.5;     // command at which value and slope hold
+  double value = 0.0;      // m/s^2
+  double slope = 0.0;      // m/s^2 for full command
+  double curvature = 0.0;  // m/s^2, half the second derivative
 
   double at(double command) const {
     const double off = command - middle;
@@ -59,6 +60,7 @@ struct ThrustCurve {
   double slope_at(double command) const { return slope + 2.0 * (command - middle) * curvature; }
 };
 
+// Indices of the parameters in the vector; kAbsent if not part of the fit.
 struct CommandLayout {
   std::vector<FlightParameter> parameters;
   int lag = kAbsent;
@@ -69,45 +71,46 @@ struct CommandLayout {
   int gain[3] = {kAbsent, kAbsent, kAbsent};
   int trim[3] = {kAbsent, kAbsent, kAbsent};
   int spin_up = kAbsent;
-  int noise[kResponses] = {kAbsent, kAbsent, kAbsent, kAbsent};  // kNoiseParameters each, last of all
+  int noise[kResponses] = {kAbsent, kAbsent, kAbsent, kAbsent};  // kNoiseParameters each, at the end
 };
 
-// Means over blocks of rows of a flight, fitted and kept.
+// Means over blocks of rows of a flight: estimation set, then validation set.
 struct BlockedFlight {
   std::size_t rows_in_block = 1;
-  std::size_t estimation_set = 0;                     // blocks that are fitted; the rest is kept
-  std::vector<double> time_s;                         // in the middle of each
+  std::size_t estimation_set = 0;                     // number of its blocks; the rest is the validation set
+  std::vector<double> time_s;                         // middle of each block
   std::array<std::vector<double>, kResponses> means;  // thrust over mass, m/s^2; p, q, r, rad/s
-  std::array<std::vector<double>, 3> coupling;        // what Eq. (6) adds to rates from a block to the next
+  std::array<std::vector<double>, 3> coupling;        // rad/s, change by Eq. (6) since the last block
 
   std::size_t size() const { return time_s.size(); }
 };
 
-// One thread at a time: what was computed last is kept for the next call.
+// Not thread-safe: const methods cache the last results.
 class CommandModel {
  public:
-  // Of some responses; without that of the force, the curve has to be given. The logs must outlive the model.
+  // Fits the given responses. `curve` is required if they do not include kForce. The logs must outlive the
+  // model.
   CommandModel(std::vector<FlightSeries> flights, plant::Vehicle base, std::vector<Response> responses,
                std::optional<ThrustCurve> curve);
 
   const CommandLayout& layout() const { return layout_; }
-  std::vector<FlightParameter> physical_parameters() const;  // all but those of the noise
+  std::vector<FlightParameter> physical_parameters() const;  // without those of the noise
   const std::vector<FlightSeries>& flights() const { return flights_; }
   const std::vector<BlockedFlight>& blocks() const { return blocks_; }
   const std::vector<Response>& responses() const { return responses_; }
   const plant::Vehicle& base() const { return base_; }
-  double sample_s() const;  // length of a block
+  double sample_s() const;  // s, length of a block
 
   SeriesProblem problem(const std::function<void()>& on_iteration) const;
   ThrustCurve curve(const Eigen::VectorXd& parameters) const;
   ArmaNoise noise(const Eigen::VectorXd& parameters, Response response) const;
-  double lever(int axis) const { return lever_[static_cast<std::size_t>(axis)]; }  // d, by the base
-  double shared_over_single() const { return shared_over_single_; }  // of the base, supply_sag.hpp
+  double lever(int axis) const { return lever_[static_cast<std::size_t>(axis)]; }  // d, m, of the base
+  double shared_over_single() const { return shared_over_single_; }                // of the base vehicle
 
-  // What the model has of each block: of the force its value, of a rate what it gains since the block before.
+  // Model output of each block: thrust over mass, m/s^2, or change of a rate since the last block, rad/s.
   std::vector<double> modelled(const Eigen::VectorXd& parameters, std::size_t flight,
                                Response response) const;
-  // What was measured, in the same sense, less that: the noise.
+  // Measured value less model output, in the same units: the noise v.
   std::vector<double> unexplained(const Eigen::VectorXd& parameters, std::size_t flight,
                                   Response response) const;
 
@@ -118,18 +121,18 @@ class CommandModel {
   BlockedFlight blocked(const FlightSeries& series) const;
 
   using Speeds = std::vector<plant::PerRotor>;  // s_i of each row
-  // Where s_i tends to by the commands of each row up to the last of a flight's.
+  // Steady s_i at the commands of each row, from the start of the log to the end of the flight.
   std::shared_ptr<const Speeds> steady_speeds(const Eigen::VectorXd& parameters, std::size_t flight) const;
   Speeds speeds(const Eigen::VectorXd& parameters, std::size_t flight, double delay_s) const;
 
-  // Sums over the rotors, of each block.
+  // Sums over the rotors for each block.
   struct Thrust {
     std::vector<double> mean;  // of sum s^2, m/s^2
   };
-  struct Moments {                            // gains since the block before
-    std::vector<double> gained;               // of the integral of sum s^2: m/s
-    std::array<std::vector<double>, 3> turn;  // of that of L s^2
-    std::vector<double> spin_up;              // of L_z s, (m/s^2)^(1/2)
+  struct Moments {                            // changes since the last block
+    std::vector<double> gained;               // m/s, of the integral of sum s^2
+    std::array<std::vector<double>, 3> turn;  // m/s, of the integral of L s^2
+    std::vector<double> spin_up;              // (m/s^2)^(1/2), of L_z s
   };
   std::shared_ptr<const Thrust> thrust(const Eigen::VectorXd& parameters, std::size_t flight) const;
   std::shared_ptr<const Moments> moments(const Eigen::VectorXd& parameters, std::size_t flight) const;
@@ -141,14 +144,14 @@ class CommandModel {
   plant::Vehicle base_;
   std::vector<Response> responses_;
   std::optional<ThrustCurve> given_curve_;
-  double middle_command_ = 0.5;  // mean of the fitted rows
+  double middle_command_ = 0.5;  // mean over the estimation set
   Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, plant::kMaxRotors> signs_;  // L
   std::array<double, 3> lever_{};
   double shared_over_single_ = 1.0;
   std::vector<BlockedFlight> blocks_;
   CommandLayout layout_;
 
-  // Most parameters move none of these, and lag and delays not what the speeds tend to.
+  // Keys of the caches. Parameters outside a key do not change its result.
   using SteadyKey = std::array<double, 5>;  // flight, curve and drift
   using RotorsKey = std::array<double, 7>;  // lag and delay as well
   SteadyKey steady_key(const Eigen::VectorXd& parameters, std::size_t flight) const;
@@ -158,7 +161,8 @@ class CommandModel {
   mutable RecentResults<RotorsKey, Moments> moments_;
 };
 
-// Values of one model's parameters where another has them too, by their names; the rest as it is in `start`.
+// Start values for model `to`: the `values` of model `from` for parameters of the same name, `start` for the
+// rest.
 Eigen::VectorXd started_from(const CommandModel& from, const Eigen::VectorXd& values, const CommandModel& to,
                              Eigen::VectorXd start);
 

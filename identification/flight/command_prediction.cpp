@@ -14,11 +14,11 @@ constexpr double kAheadS = 0.5;
 constexpr double kBetweenStartsS = 0.05;
 constexpr double kTraceRestartS = 0.1;
 constexpr std::array<double, 5> kHorizonsS = {0.02, 0.05, 0.1, 0.2, kAheadS};
-constexpr std::array<Response, kResponses> kShownOrder = {Response::kRoll, Response::kPitch, Response::kYaw,
-                                                          Response::kForce};
+constexpr std::array<Response, kResponses> kQuantityOrder = {Response::kRoll, Response::kPitch,
+                                                             Response::kYaw, Response::kForce};
 const char* const kQuantities[kResponses] = {"p", "q", "r", "f_z"};
 
-// One response of one flight.
+// Forecasts one response of one flight.
 class Forecast {
  public:
   Forecast(const CommandModel& model, const VectorXd& x, std::size_t flight, Response response)
@@ -30,10 +30,10 @@ class Forecast {
         is_rate_(response != Response::kForce) {}
 
   const std::vector<double>& measured() const { return measured_; }
-  // Of a block, as the blocks before it tell it.
+  // Error of the prediction of a block from all blocks before it.
   double one_step_error(std::size_t block) const { return innovations_[block]; }
 
-  // What follows a block, which is known, by the commands and what the noise is expected to do.
+  // Predicts the `ahead` blocks after `block` from its measured value, the commands and the expected noise.
   std::vector<double> after(std::size_t block, std::size_t ahead) const {
     std::vector<double> out = expected_noise(noise_, unexplained_, innovations_, block + 1, ahead);
     double sum = measured_[block];
@@ -53,7 +53,7 @@ class Forecast {
   bool is_rate_;
 };
 
-// Root of a mean square.
+// Accumulates a root mean square.
 struct Squares {
   double sum = 0.0;
   double count = 0.0;
@@ -65,13 +65,14 @@ struct Squares {
   double rms() const { return count > 0.0 ? std::sqrt(sum / count) : 0.0; }
 };
 
+// One prediction over a horizon.
 struct Start {
-  double now = 0.0;
-  double by_commands = 0.0;
-  double then = 0.0;
+  double now = 0.0;          // measured at the start
+  double by_commands = 0.0;  // predicted at the horizon
+  double then = 0.0;         // measured at the horizon
 };
 
-// A start every kBetweenStartsS, of blocks from first up to last.
+// Predictions from every `between`-th block of first up to last, `ahead` blocks ahead.
 std::vector<Start> starts(const Forecast& forecast, std::size_t first, std::size_t last, std::size_t ahead,
                           std::size_t between) {
   std::vector<Start> out;
@@ -86,7 +87,7 @@ std::size_t blocks_of(double time_s, double sample_s) {
   return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(time_s / sample_s)));
 }
 
-// then = c0 + c1 (by_commands - now) + c2 now, as it was best.
+// Least-squares weights c of then = c0 + c1 (by_commands - now) + c2 now.
 Eigen::Vector3d best_weights(const std::vector<Start>& starts) {
   Eigen::Matrix<double, Eigen::Dynamic, 3> rows(static_cast<Eigen::Index>(starts.size()), 3);
   VectorXd then(rows.rows());
@@ -103,7 +104,7 @@ double combined(const Eigen::Vector3d& weights, const Start& start) {
 }
 
 void predict(const CommandModel& model, const VectorXd& x, std::size_t quantity, CommandPredictions& out) {
-  const Response response = kShownOrder[quantity];
+  const Response response = kQuantityOrder[quantity];
   const double sample_s = model.sample_s();
   const std::size_t between = blocks_of(kBetweenStartsS, sample_s);
   std::vector<Forecast> forecasts;
@@ -114,7 +115,7 @@ void predict(const CommandModel& model, const VectorXd& x, std::size_t quantity,
   error.quantity = kQuantities[quantity];
   error.unit = response == Response::kForce ? "m/s^2" : "rad/s";
   Squares one_step;
-  Squares idle_one_step;
+  Squares persistence_one_step;
   Squares fitted_one_step;
   for (std::size_t flight = 0; flight < forecasts.size(); ++flight) {
     const std::vector<double>& measured = forecasts[flight].measured();
@@ -122,11 +123,11 @@ void predict(const CommandModel& model, const VectorXd& x, std::size_t quantity,
       fitted_one_step.add(forecasts[flight].one_step_error(block));
     for (std::size_t block = model.blocks()[flight].estimation_set; block < measured.size(); ++block) {
       one_step.add(forecasts[flight].one_step_error(block));
-      idle_one_step.add(measured[block] - measured[block - 1]);
+      persistence_one_step.add(measured[block] - measured[block - 1]);
     }
   }
   error.one_step = one_step.rms();
-  error.idle_one_step = idle_one_step.rms();
+  error.persistence_one_step = persistence_one_step.rms();
 
   for (const double horizon_s : kHorizonsS) {
     const std::size_t ahead = blocks_of(horizon_s, sample_s);
@@ -158,7 +159,7 @@ void predict(const CommandModel& model, const VectorXd& x, std::size_t quantity,
     out.horizons.push_back({error.quantity, error.unit, horizon_s, by_commands.rms(), persistence.rms()});
     if (horizon_s != kAheadS) continue;
     error.half_second = best.rms();
-    error.idle_half_second = persistence.rms();
+    error.persistence_half_second = persistence.rms();
     out.weight_of_commands.push_back(weights[1]);
     out.weight_of_start.push_back(weights[2]);
   }
@@ -166,8 +167,8 @@ void predict(const CommandModel& model, const VectorXd& x, std::size_t quantity,
 }
 
 void trace(const CommandModel& model, const VectorXd& x, std::size_t quantity, PredictionTrace& out) {
-  const Response response = kShownOrder[quantity];
-  const double sign = response == Response::kForce ? -1.0 : 1.0;  // f_z is against the thrust
+  const Response response = kQuantityOrder[quantity];
+  const double sign = response == Response::kForce ? -1.0 : 1.0;  // f_z is opposite to the thrust
   const Forecast forecast(model, x, 0, response);
   const BlockedFlight& blocks = model.blocks().front();
   const std::size_t restart = blocks_of(kTraceRestartS, model.sample_s());

@@ -1,4 +1,4 @@
-// How well a model of commands alone predicts flight that it was not fitted to.
+// Prediction errors of a CommandModel on the validation set.
 #pragma once
 
 #include <array>
@@ -11,10 +11,10 @@
 namespace swiftlet::identification {
 
 struct CommandPredictions {
-  std::vector<PredictionError> errors;        // p, q, r, f_z; one step is a block
-  std::array<RateExcitation, 3> excitations;  // of p, q, r on the fitted rows
-  // Of the forecast half a second ahead, in the same order: what it takes of the change by the commands and
-  // of the deviation from the mean at its start.
+  std::vector<PredictionError> errors;        // of p, q, r, f_z; one step is a block
+  std::array<RateExcitation, 3> excitations;  // of p, q, r on the estimation set
+  // Weights of the forecast 0.5 s ahead, in the order of errors: of the change predicted by the commands, and
+  // of the measured value at its start.
   std::vector<double> weight_of_commands;
   std::vector<double> weight_of_start;
   std::vector<HorizonError> horizons;

@@ -18,7 +18,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double kWellStampedS = 0.002;  // delay of poses that is not worth a sentence
+constexpr double kWellStampedS = 0.002;  // s, smaller delays of the poses are not reported
 
 struct Fitted {
   std::unique_ptr<FlightModel> model;
@@ -59,7 +59,7 @@ std::vector<Derived> derived(const FlightModel& model, Known known) {
   }
   const char* const symbols[3] = {"J_xx", "J_yy", "J_zz"};
   for (int axis = 0; axis < 3; ++axis) {
-    // With the thrust known and the mass told, the moments are the base's.
+    // With the thrust known and the mass identified, J_xx and J_yy do not depend on the mass.
     out.push_back({plant::kInertiaKeys[static_cast<std::size_t>(axis)], symbols[axis], "kg*m^2",
                    [&model, &l, axis, mass_known](const VectorXd& x) {
                      const double of_mass = model.inertia(x)[axis];
@@ -90,7 +90,7 @@ Fitted fit(std::vector<FlightSeries> flights, const plant::Vehicle& base, const 
   return out;
 }
 
-// Root mean square about the mean.
+// Standard deviation.
 double spread(const std::vector<double>& values) {
   double mean = 0.0;
   for (const double value : values) mean += value / static_cast<double>(values.size());
@@ -100,10 +100,11 @@ double spread(const std::vector<double>& values) {
   return std::sqrt(square);
 }
 
+// Standard deviations over the estimation set.
 struct Excitation {
-  Vector3d acceleration = Vector3d::Zero();  // rad/s^2
-  Vector3d coupling = Vector3d::Zero();      // likewise, what Eq. (6) makes of products of rates
-  double thrust = 0.0;                       // m/s^2
+  Vector3d acceleration = Vector3d::Zero();  // rad/s^2, by the rotors
+  Vector3d coupling = Vector3d::Zero();      // rad/s^2, by the coupling of Eq. (6)
+  double thrust = 0.0;                       // m/s^2, over mass
   double speed = 0.0;                        // m/s, horizontal
 };
 
@@ -130,56 +131,58 @@ Excitation excitation(const FlightModel& model, const VectorXd& x) {
           spread(series[7])};
 }
 
-// What would tell it.
+// What to fly to identify the parameter.
 std::string advice(const std::string& parameter, const Excitation& excited) {
   for (std::size_t axis = 0; axis < plant::kInertiaKeys.size(); ++axis) {
     if (parameter == plant::kInertiaKeys[axis])
-      return std::string("moments about ") + axis_name(static_cast<int>(axis)) + " varied by " +
-             format_number(excited.acceleration[static_cast<Index>(axis)]) + " rad/s^2 only; " +
-             moves_that_tell(axis);
+      return std::string("angular acceleration about ") + axis_name(static_cast<int>(axis)) +
+             " varies by only " + format_number(excited.acceleration[static_cast<Index>(axis)]) +
+             " rad/s^2; " + excitation_advice(axis);
   }
   if (parameter == "linear_drag")
-    return "speeds varied by " + format_number(excited.speed) + " m/s only; fly faster";
+    return "the horizontal speed varies by only " + format_number(excited.speed) + " m/s; fly faster";
   if (parameter == "motor.time_constant")
-    return "the commands changed too slowly or too little; fly quick moves, up and down too";
-  return "the thrust varied by " + format_number(excited.thrust) + " m/s^2 only; climb and sink quickly";
+    return "the commands change too slowly or too little; fly quick moves, also up and down";
+  return "thrust over mass varies by only " + format_number(excited.thrust) +
+         " m/s^2; climb and descend quickly";
 }
 
 std::array<RateExcitation, 3> rate_excitations(const FlightModel& model, const VectorXd& x) {
-  const std::vector<PredictionError> errors = prediction_errors(model, x, Part::kFitted);
+  const std::vector<PredictionError> errors = prediction_errors(model, x, Part::kEstimationSet);
   std::array<RateExcitation, 3> out;
   for (std::size_t axis = 0; axis < out.size(); ++axis)
     out[axis] = {errors[axis].quantity, errors[axis].idle_half_second, errors[axis].one_step};
   return out;
 }
 
-void warn_of_what_flights_cannot_show(FlightIdentification& out, const FlightModel& model,
-                                      const SeriesFit& fit, Known known) {
+void report_assumptions(FlightIdentification& out, const FlightModel& model, const SeriesFit& fit,
+                        Known known) {
   const plant::Vehicle& base = model.base();
   const double s = fit.parameters[model.layout().thrust];
   out.findings.push_back(
-      known == Known::kMass ? "a flight tells thrust over mass: the mass is taken to be " +
+      known == Known::kMass ? "a flight determines only thrust over mass: the mass is assumed to be " +
                                   format_number(base.mass_kg) + " kg; with the thrust factor of " +
                                   base.name + " it would be " + format_number(base.mass_kg / s) + " kg"
-                            : "a flight tells thrust over mass: the thrust factor is taken to be " +
+                            : "a flight determines only thrust over mass: the thrust factor is assumed to "
+                              "be " +
                                   format_number(base.rotor.thrust) + " N*s^2; with the mass of " + base.name +
                                   " it would be " + format_number(s * base.rotor.thrust) + " N*s^2");
   out.findings.push_back(
-      "a flight tells torque over the moment of inertia about yaw: the torque factor is that of " +
+      "a flight determines only torque over the moment of inertia about yaw: the torque factor is that of " +
       base.name + ", " + format_number(base.rotor.torque) + " N*m*s^2");
   if (model.source() == SpeedSource::kModelled)
     out.findings.push_back(
-        "rotor speeds were not recorded: those of " + base.name +
-        "'s ESC and motor at the recorded voltage are taken, and the thrust factor holds what they are off");
+        "rotor speeds were not recorded: they are modelled with " + base.name +
+        "'s ESC and motor at the recorded voltage, and the thrust factor absorbs their error");
 }
 
 void report_excitation(FlightIdentification& out, const Excitation& excited) {
   for (int axis = 0; axis < 3; ++axis) {
     if (excited.coupling[axis] > 0.1 * excited.acceleration[axis]) continue;
-    out.unexcited.push_back("coupling about " + std::string(axis_name(axis)) + ", Eq. (6): it made " +
-                            format_number(excited.coupling[axis]) + " rad/s^2 beside the rotors' " +
+    out.unexcited.push_back("coupling about " + std::string(axis_name(axis)) + ", Eq. (6): varies by only " +
+                            format_number(excited.coupling[axis]) + " rad/s^2, the rotors' part by " +
                             format_number(excited.acceleration[axis]) +
-                            "; the ratios of the moments of inertia are not told by it");
+                            " rad/s^2; it does not determine the ratios of the moments of inertia");
   }
 }
 
@@ -190,7 +193,7 @@ void report_poses(FlightIdentification& out, const std::vector<FlightSeries>& fl
     const std::string name = timing.delay.parameter + of_log;
     if (!timing.identified) {
       out.unexcited.push_back(name +
-                              ": the poses are taken to be stamped as the IMU is; tilt and turn quickly");
+                              ": the poses are assumed to have no delay; tilt and turn quickly");
       continue;
     }
     out.estimates.push_back(timing.delay);
@@ -202,7 +205,7 @@ void report_poses(FlightIdentification& out, const std::vector<FlightSeries>& fl
     if (std::abs(timing.delay.value) < kWellStampedS) continue;
     out.findings.push_back(flights[f].log->name + ": poses are stamped " +
                            format_number(1e3 * timing.delay.value) +
-                           " ms after what the IMU felt; they are taken to be as much older");
+                           " ms late relative to the IMU; the delay is removed");
   }
 }
 
@@ -218,16 +221,16 @@ const ParameterEstimate* FlightIdentification::find(const std::string& parameter
 FlightIdentification identify_flight(const std::vector<FlightLog>& logs, const plant::Vehicle& base,
                                      const FlightOptions& options) {
   std::vector<FlightSeries> flights = prepare_flights(logs, base, options.bounds);
-  FlightIdentification out = begun_with(flights);
+  FlightIdentification out = start_identification(flights);
   if (out.source == SpeedSource::kCommanded) {
     identify_commands(out, flights, base, options);
     warn_of_windows(out, logs);
     return out;
   }
-  const Fitted estimation_set = fit(std::move(flights), base, options);
-  const FlightModel& model = *estimation_set.model;
-  const SeriesFit& fit = estimation_set.fit;
-  refuse_turned_gains(model.layout().gain, base, fit);
+  const Fitted fitted = fit(std::move(flights), base, options);
+  const FlightModel& model = *fitted.model;
+  const SeriesFit& fit = fitted.fit;
+  reject_negative_gains(model.layout().gain, base, fit);
   out.converged = fit.converged && within_bounds(model.layout().parameters, fit);
   const std::vector<Derived> quantities = derived(model, options.known);
   const DerivedValues values = evaluate(quantities, model.layout().parameters, fit);
@@ -235,12 +238,12 @@ FlightIdentification identify_flight(const std::vector<FlightLog>& logs, const p
   const Excitation excited = excitation(model, fit.parameters);
   conclude_vehicle(out, values, base, not_identifiable_axes(rate_excitations(model, fit.parameters)),
                    [&](const std::string& parameter) { return advice(parameter, excited); });
-  warn_of_what_flights_cannot_show(out, model, fit, options.known);
+  report_assumptions(out, model, fit, options.known);
   report_excitation(out, excited);
   report_poses(out, model.flights());
   warn_of_fit(out, model.layout().parameters, fit);
   warn_of_windows(out, logs);
-  out.errors = prediction_errors(model, fit.parameters, Part::kKept);
+  out.errors = prediction_errors(model, fit.parameters, Part::kValidationSet);
   out.trace = prediction_trace(model, fit.parameters);
   return out;
 }

@@ -17,13 +17,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLeastWeight = 0.5;  // median of the specific force, over g
+constexpr double kLeastWeight = 0.5;  // of the median specific force, over g
 constexpr double kMostWeight = 2.0;
-constexpr double kMostOfMotors = 3.0;      // of rotor speeds, over the motors' and the other way round
-constexpr double kMoved = 0.15;            // m/s that is gained or lost in a stretch, RMS, to compare by
-constexpr double kLeastCorrelation = 0.5;  // of speeds gained
-constexpr double kMostOfFelt = 2.0;        // of their ratio, and the other way round
-constexpr double kLeastPeriodS = 2e-5;     // of the IMU
+constexpr double kMostOfMotors = 3.0;      // of rotor speeds over those of the motors, and its inverse
+constexpr double kMoved = 0.15;            // m/s, least RMS change of velocity in a segment to compare
+constexpr double kLeastCorrelation = 0.5;  // of the changes of velocity
+constexpr double kMostSpeedRatio = 2.0;    // of their ratio, and its inverse
+constexpr double kLeastPeriodS = 2e-5;     // s, of the IMU
 
 template <typename Value>
 std::vector<double> column(const Rows& rows, const Value& value) {
@@ -40,20 +40,20 @@ void require_change(const std::vector<double>& values, const std::string& name, 
                 " all through the flight, must vary");
 }
 
-void require_gained_as_felt(const std::vector<double>& gained, const std::vector<double>& felt,
-                            const char* direction) {
-  const Comparison found = compared(gained, felt);
+void require_speed_gains_match(const std::vector<double>& gained, const std::vector<double>& by_force,
+                               const char* direction) {
+  const Comparison found = compared(gained, by_force);
   if (found.spread < kMoved) return;
   if (found.correlation < kLeastCorrelation) {
     throw BadData(std::string("positions: ") + direction +
-                  " they do not move as the specific force asks (correlation of speeds gained " +
+                  " velocity disagrees with the specific force (correlation of their changes " +
                   format_number(found.correlation) + ", must be above " + format_number(kLeastCorrelation) +
                   "); are the frames of poses and IMU right?");
   }
-  if (found.ratio > kMostOfFelt || found.ratio < 1.0 / kMostOfFelt) {
-    throw BadData(std::string("positions: ") + direction + " they gain " + format_number(found.ratio) +
-                  " times the speed that the specific force asks for, must be " +
-                  format_number(1.0 / kMostOfFelt) + " to " + format_number(kMostOfFelt) +
+  if (found.ratio > kMostSpeedRatio || found.ratio < 1.0 / kMostSpeedRatio) {
+    throw BadData(std::string("positions: ") + direction + " velocity changes by " +
+                  format_number(found.ratio) + " times as much as the specific force gives, must be " +
+                  format_number(1.0 / kMostSpeedRatio) + " to " + format_number(kMostSpeedRatio) +
                   "; is the unit right?");
   }
 }
@@ -63,12 +63,12 @@ void require_gained_as_felt(const std::vector<double>& gained, const std::vector
 void require_times(const FlightLog& log) {
   std::vector<double> periods;
   for (std::size_t row = 1; row < log.size(); ++row) periods.push_back(log.time_s[row] - log.time_s[row - 1]);
-  if (periods.empty()) throw BadData("has one row, must have a flight");
+  if (periods.empty()) throw BadData("has one row, must contain a flight");
   const double period_s = median(periods);
   if (period_s > kLeastPeriodS && period_s <= kLongestRowGapS) return;
-  throw BadData("time: has a sample every " + format_number(period_s) +
-                " s in the middle, must have one every " + format_number(kLeastPeriodS) + " to " +
-                format_number(kLongestRowGapS) + " s; is the unit right?");
+  throw BadData("time: the median sample period is " + format_number(period_s) + " s, must be " +
+                format_number(kLeastPeriodS) + " to " + format_number(kLongestRowGapS) +
+                " s; is the unit right?");
 }
 
 void require_readings(const FlightLog& log, const Rows& flight) {
@@ -82,7 +82,7 @@ void require_readings(const FlightLog& log, const Rows& flight) {
   const std::vector<double> force =
       column(flight, [&](std::size_t row) { return log.specific_force_frd[row].norm(); });
   require_median_between({"specific force", "m/s^2", force}, kLeastWeight * plant::kGravity,
-                         kMostWeight * plant::kGravity, "what flies carries its weight");
+                         kMostWeight * plant::kGravity, "a flying vehicle carries its weight");
   for (std::size_t rotor = 0; rotor < static_cast<std::size_t>(log.rotor_count); ++rotor) {
     const std::string number = std::to_string(rotor + 1);
     require_change(column(flight, [&](std::size_t row) { return log.command[row][rotor]; }),
@@ -92,7 +92,7 @@ void require_readings(const FlightLog& log, const Rows& flight) {
         column(flight, [&](std::size_t row) { return log.rotor_speeds[row][rotor]; });
     require_change(speeds, "speed of rotor " + number, "rad/s");
     require_median_between({"rotor speed", "rad/s", speeds}, kLeastRotorSpeed, kMostRotorSpeed,
-                           "no rotor flies a vehicle at less or more");
+                           "no rotor flies a vehicle slower or faster");
   }
   if (log.supply_voltage_v.empty()) return;
   const std::vector<double> supply =
@@ -101,7 +101,7 @@ void require_readings(const FlightLog& log, const Rows& flight) {
                          "no vehicle flies on less or more");
 }
 
-void require_speeds_like_the_motors(const FlightSeries& series, const plant::Vehicle& base) {
+void require_speeds_match_motors(const FlightSeries& series, const plant::Vehicle& base) {
   const auto mean = [](const plant::PerRotor& speeds, int count) {
     double sum = 0.0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) sum += speeds[i] / count;
@@ -113,7 +113,7 @@ void require_speeds_like_the_motors(const FlightSeries& series, const plant::Veh
       column(flight, [&](std::size_t row) { return mean(series.steady_speeds[row], log.rotor_count); }));
   const std::string at = " at these commands and this voltage";
   if (steady < kLeastRotorSpeed || steady > kMostRotorSpeed) {
-    throw BadData("rotors: the motors of " + base.name + " do " + format_number(steady) + " rad/s" + at +
+    throw BadData("rotors: the motors of " + base.name + " reach " + format_number(steady) + " rad/s" + at +
                   ", must be " + format_number(kLeastRotorSpeed) + " to " + format_number(kMostRotorSpeed) +
                   "; are the units and the base vehicle right?");
   }
@@ -123,31 +123,31 @@ void require_speeds_like_the_motors(const FlightSeries& series, const plant::Veh
       steady;
   if (ratio < kMostOfMotors && ratio > 1.0 / kMostOfMotors) return;
   throw BadData("rotor speeds: are " + format_number(ratio) + " times what the motors of " + base.name +
-                " do" + at + ", must be " + format_number(1.0 / kMostOfMotors) + " to " +
+                " reach" + at + ", must be " + format_number(1.0 / kMostOfMotors) + " to " +
                 format_number(kMostOfMotors) + "; are the units and the base vehicle right?");
 }
 
-void require_positions_as_felt(const FlightSeries& series) {
+void require_positions_match_force(const FlightSeries& series) {
   const FlightLog& log = *series.log;
   const Vector3d gravity_ned(0.0, 0.0, plant::kGravity);
   std::vector<double> gained[3];
-  std::vector<double> felt[3];
+  std::vector<double> by_force[3];
   for (const Rows& segment : series.segments) {
-    Vector3d asked = Vector3d::Zero();
+    Vector3d by_force_sum = Vector3d::Zero();
     for (std::size_t row = segment.first + 1; row < segment.last; ++row) {
       const double h = log.time_s[row] - log.time_s[row - 1];
-      asked += h * (series.attitude[row] * log.specific_force_frd[row] + gravity_ned);
+      by_force_sum += h * (series.attitude[row] * log.specific_force_frd[row] + gravity_ned);
     }
     const Vector3d speed = series.velocity_ned[segment.last - 1] - series.velocity_ned[segment.first];
     for (int axis = 0; axis < 3; ++axis) {
       gained[axis].push_back(speed[axis]);
-      felt[axis].push_back(asked[axis]);
+      by_force[axis].push_back(by_force_sum[axis]);
     }
   }
   if (gained[0].empty()) return;
-  require_gained_as_felt(gained[0], felt[0], "to the north");
-  require_gained_as_felt(gained[1], felt[1], "to the east");
-  require_gained_as_felt(gained[2], felt[2], "up and down");
+  require_speed_gains_match(gained[0], by_force[0], "north");
+  require_speed_gains_match(gained[1], by_force[1], "east");
+  require_speed_gains_match(gained[2], by_force[2], "down");
 }
 
 }  // namespace swiftlet::identification

@@ -1,5 +1,5 @@
-// What a flight's log must be before anything is believed of it: readings that vary, in units that physics
-// allows, and that agree with each other. All throw BadData.
+// Checks the readings of a flight's log before the fit: they must vary, be physically plausible in their
+// units, and agree with each other. All functions throw BadData.
 #pragma once
 
 #include "swiftlet/identification/fitting/estimate.hpp"
@@ -11,16 +11,17 @@ namespace swiftlet::identification {
 
 struct FlightSeries;
 
-// Sampled at a rate that holds the motion of a small vehicle, and that such a vehicle's IMU has.
+// Checks the sample period: fast enough for the motion of a small vehicle, slow enough for an IMU.
 void require_times(const FlightLog& log);
 
-// What was sensed and commanded in the flight.
+// Checks that specific force, body rates, commands, rotor speeds and supply voltage of the flight vary and
+// are plausible.
 void require_readings(const FlightLog& log, const Rows& flight);
 
-// Rotor speeds against those that the base vehicle's motors settle at under the log's commands.
-void require_speeds_like_the_motors(const FlightSeries& series, const plant::Vehicle& base);
+// Checks the rotor speeds against the steady speeds of the base vehicle's motors at the log's commands.
+void require_speeds_match_motors(const FlightSeries& series, const plant::Vehicle& base);
 
-// Positions against the specific force: what the one gains of speed over a stretch, the other asks for.
-void require_positions_as_felt(const FlightSeries& series);
+// Checks the positions against the specific force: both must give the same change of velocity over a segment.
+void require_positions_match_force(const FlightSeries& series);
 
 }  // namespace swiftlet::identification

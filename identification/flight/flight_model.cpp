@@ -14,13 +14,13 @@ using Eigen::Index;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double kBlockS = 0.01;            // samples that are averaged
-constexpr std::size_t kBlocksInWindow = 5;  // over which rates are integrated from a free start
-constexpr std::size_t kKeptForEachFlight = 4;
+constexpr double kBlockS = 0.01;            // s, block of samples that are averaged
+constexpr std::size_t kBlocksInWindow = 5;  // rates are integrated over a window from a free initial value
+constexpr std::size_t kCachedPerFlight = 4;
 
 const char* const kAxes[3] = {"roll", "pitch", "yaw"};
 
-// Rows that are averaged.
+// Number of rows in a block.
 std::size_t block_of(const FlightSeries& flight) {
   const std::vector<double>& time = flight.log->time_s;
   const double step = (time[flight.estimation_set.last - 1] - time[flight.estimation_set.first]) /
@@ -44,7 +44,7 @@ FlightModel::FlightModel(std::vector<FlightSeries> flights, plant::Vehicle base)
     : flights_(std::move(flights)),
       base_(std::move(base)),
       effectiveness_(plant::effectiveness(base_)),
-      wrenches_(kKeptForEachFlight * flights_.size()) {
+      wrenches_(kCachedPerFlight * flights_.size()) {
   for (const FlightSeries& flight : flights_) block_.push_back(block_of(flight));
   assign_parameter_indices();
 }
@@ -57,16 +57,17 @@ void FlightModel::assign_parameter_indices() {
   l.lag = add({"rotor lag", "s", base_.motor.time_constant_s, 0.01, 2e-3, 1.0});
   if (source() == SpeedSource::kMeasured) {
     l.motor_delay = add({"delay from command to rotor speed", "s", 2e-3, 2e-3, -0.02, 0.05});
-    l.speed_scale = add({"rotor speed over the model's", "1", 1.0, 0.05, 0.1, 10.0});
+    l.speed_scale = add({"measured over modelled rotor speed", "1", 1.0, 0.05, 0.1, 10.0});
   } else {
     l.force_delay = add({"delay from command to specific force", "s", 2e-3, 2e-3, -0.02, 0.05});
     l.rate_delay = add({"delay from command to angular acceleration", "s", 2e-3, 2e-3, -0.02, 0.05});
   }
-  l.thrust = add({"thrust over the base's", "1", 1.0, 0.1, 0.01, 100.0});
+  l.thrust = add({"thrust relative to the base vehicle", "1", 1.0, 0.1, 0.01, 100.0});
   for (int axis = 0; axis < 3; ++axis) {
     const std::string name = kAxes[axis];
-    l.gain[axis] = add({"gain about " + name + " over the base's", "1", 1.0, 0.1, -100.0, 100.0});
-    l.trim[axis] = add({"offset of the thrust, " + name, "m", 0.0, 1e-3, -0.1, 0.1});
+    l.gain[axis] =
+        add({"gain about " + name + " relative to the base vehicle", "1", 1.0, 0.1, -100.0, 100.0});
+    l.trim[axis] = add({"offset of the centre of thrust, " + name, "m", 0.0, 1e-3, -0.1, 0.1});
   }
   l.drag = add({"drag over mass", "1/s", 0.1, 0.1, -10.0, 50.0});
   for (const FlightSeries& flight : flights_) {
@@ -165,17 +166,17 @@ Vector3d FlightModel::rate_derivative(const Vector3d& inertia, const Vector3d& a
   return acceleration - rates.cross(inertia.cwiseProduct(rates)).cwiseQuotient(inertia);
 }
 
-// Channels, one after the other: specific force x, y, z, rates p, q, r, speed of each rotor less the mean of
-// all, that mean over each stretch, vertical motion.
+// Channels, in this order: specific force x, y, z; rates p, q, r; with measured rotor speeds, speed of each
+// rotor less the mean of all rotors, and that mean over each segment; vertical motion.
 SeriesProblem FlightModel::problem(const std::function<void()>& on_iteration) const {
   SeriesProblem out = problem_of(layout_.parameters);
-  std::vector<std::size_t> per_row;  // stretch of each block of fitted rows, all flights
-  std::vector<std::size_t> per_stretch;
+  std::vector<std::size_t> per_row;  // segment of each block, all flights
+  std::vector<std::size_t> per_segment;
   for (std::size_t f = 0; f < flights_.size(); ++f) {
     const FlightSeries& flight = flights_[f];
     for (const Rows& segment : flight.segments) {
       per_row.insert(per_row.end(), blocks_in(segment, block_[f]), out.segment_count);
-      per_stretch.push_back(out.segment_count);
+      per_segment.push_back(out.segment_count);
       ++out.segment_count;
     }
   }
@@ -186,23 +187,23 @@ SeriesProblem FlightModel::problem(const std::function<void()>& on_iteration) co
   for (int i = 0; i < 6; ++i) add_channel(per_row);
   if (source() == SpeedSource::kMeasured) {
     for (int i = 0; i < base_.rotor_count(); ++i) add_channel(per_row);
-    add_channel(per_stretch);
+    add_channel(per_segment);
   }
-  add_channel(per_stretch);
+  add_channel(per_segment);
   out.residuals = [this](const VectorXd& x, VectorXd& residuals_out) { residuals(x, residuals_out); };
   out.on_iteration = on_iteration;
   return out;
 }
 
 void FlightModel::residuals(const VectorXd& x, VectorXd& out) const {
-  Index rows = 0;  // blocks of them, in all
+  Index rows = 0;  // number of blocks of all flights
   for (std::size_t f = 0; f < flights_.size(); ++f) {
     for (const Rows& segment : flights_[f].segments)
       rows += static_cast<Index>(blocks_in(segment, block_[f]));
   }
   const bool with_speeds = source() == SpeedSource::kMeasured;
   const Index rotors = with_speeds ? base_.rotor_count() : 0;
-  Index begin = 0;  // of the stretch, among the blocks
+  Index begin = 0;  // first block of the segment
   Index next = (6 + rotors) * rows;
   const Vector3d moments_of_inertia = inertia(x);
   out.head(next).setZero();
@@ -222,7 +223,7 @@ void FlightModel::residuals(const VectorXd& x, VectorXd& out) const {
       const auto blocks = static_cast<Index>(blocks_in(segment, block_[f]));
       Vector3d predicted = Vector3d::Zero();
       Vector3d before = Vector3d::Zero();
-      double mean_error = 0.0;  // of all rotors' speeds
+      double mean_error = 0.0;  // rad/s, of the mean speed of all rotors
       for (std::size_t row = segment.first; row < segment.last; ++row) {
         const std::size_t i = row - all.first;
         const std::size_t block = (row - segment.first) / block_[f];
@@ -241,8 +242,8 @@ void FlightModel::residuals(const VectorXd& x, VectorXd& out) const {
           out[(3 + axis) * rows + at] += share * rate[axis];
         }
         if (!with_speeds) continue;
-        // The supply, which sags with every change of the thrust, is sampled slower than that: it moves all
-        // rotors alike.
+        // The supply voltage sags with every change of thrust, faster than it is sampled. This error is
+        // common to all rotors: the residuals of single rotors omit their mean.
         const plant::PerRotor error =
             speed_errors(log.rotor_speeds[row], modelled[i], x[layout_.speed_scale], base_.rotor_count());
         const double common = std::accumulate(error.begin(), error.end(), 0.0) / base_.rotor_count();
@@ -261,7 +262,7 @@ void FlightModel::residuals(const VectorXd& x, VectorXd& out) const {
       begin += blocks;
     }
   }
-  // dv/dt = R (f - b) + g, the vertical part, over each stretch.
+  // Vertical part of dv/dt = R (f - b) + g, averaged over each segment.
   for (std::size_t f = 0; f < flights_.size(); ++f) {
     const FlightSeries& flight = flights_[f];
     const FlightLog& log = *flight.log;

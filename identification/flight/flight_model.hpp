@@ -1,13 +1,14 @@
-// The equations that a flight's log is fitted with, and which of their parameters the log can tell.
+// The model that is fitted to a flight's log, and its identifiable parameters.
 //
 //   specific force   f = (0, 0, -s T / m) - (c / m) V_b + b                                Eq. (5), (27)
 //   rates            J_b dw/dt = g o (M - r x T) - coupling of Eq. (6)                     Eq. (6), (28)
-//   rotors           T, M of the speeds as measured, or of steady speeds behind lag and delay, Eq. (18)
+//   rotors           T, M from the measured speeds, or from steady speeds with lag and delay, Eq. (18)
 //
-// T and M are those of the base vehicle, which s and g correct: as a log has no force, it tells thrust over
-// mass and moment over inertia alone. Rates are an output error: integrated over 50 ms from a start that is
-// free. Over longer times, what pushes the vehicle would be taken for what its controller commands against
-// it. The accelerometer's offset along z is told from the thrust by the poses.
+// T and M are the thrust and moments of the base vehicle; s and g scale them. A log holds no force, so that
+// only thrust over mass and moment over inertia are identifiable. The residuals of the rates are an output
+// error: the rates are integrated over 50 ms from a free initial value. Over longer times, the fit would
+// attribute disturbances to the commands with which the controller rejects them. The poses separate the
+// accelerometer's offset along z from the thrust.
 #pragma once
 
 #include <cstddef>
@@ -28,26 +29,25 @@
 
 namespace swiftlet::identification {
 
-// Where parameters stand in the vector; those that are absent stay at 0 (gains at 1).
+// Indices of the parameters in the vector. Absent parameters have the index kAbsent and the value 0, gains 1.
 struct FlightLayout {
   std::vector<FlightParameter> parameters;
   int lag = kAbsent;                          // tau_m
-  int motor_delay = kAbsent;                  // from command to rotor speed, where that is measured
-  int speed_scale = kAbsent;                  // measured over modelled steady speed, likewise
+  int motor_delay = kAbsent;                  // from command to measured rotor speed
+  int speed_scale = kAbsent;                  // measured over modelled rotor speed
   int force_delay = kAbsent;                  // from command to specific force
   int rate_delay = kAbsent;                   // from command to angular acceleration
   int thrust = kAbsent;                       // s
   int gain[3] = {kAbsent, kAbsent, kAbsent};  // g about roll, pitch, yaw
-  int trim[3] = {kAbsent, kAbsent,
-                 kAbsent};  // r: centre of thrust along x, along y; torque over thrust about z, m
-  int drag = kAbsent;       // c / m, 1/s
-  std::vector<int> offset;  // b along x of each log; y and z follow
+  int trim[3] = {kAbsent, kAbsent, kAbsent};  // r, m: centre of thrust y, x; torque over thrust about z
+  int drag = kAbsent;                         // c / m, 1/s
+  std::vector<int> offset;                    // b along x of each log; y and z follow
 };
 
-// One thread at a time: what was computed last is kept for the next call.
+// Not thread-safe: const methods cache the last results.
 class FlightModel {
  public:
-  // Of logs of one vehicle, all of one source of speeds. They must outlive the model.
+  // flights: logs of one vehicle with the same SpeedSource. The logs must outlive the model.
   FlightModel(std::vector<FlightSeries> flights, plant::Vehicle base);
 
   const FlightLayout& layout() const { return layout_; }
@@ -57,31 +57,31 @@ class FlightModel {
 
   SeriesProblem problem(const std::function<void()>& on_iteration) const;
 
-  // Value of a parameter, or what stands in for one that is absent.
+  // Value of a parameter, or `absent` if the index is kAbsent.
   double value(const Eigen::VectorXd& parameters, int index, double absent = 0.0) const {
     return index == kAbsent ? absent : parameters[index];
   }
-  // Moments of inertia about roll, pitch and yaw, kg m^2, if the mass is the base's; yaw with the base's
+  // Moments of inertia about roll, pitch and yaw, kg m^2, for the base vehicle's mass and, about yaw, its
   // torque factor.
   Eigen::Vector3d inertia(const Eigen::VectorXd& parameters) const;
 
-  // By these parameters, at rows of one of the flights: specific force without the offset, and moment over
+  // Model output at rows of a flight: specific force without the accelerometer's offset, and moment over
   // inertia without coupling.
   struct Drive {
-    std::vector<Eigen::Vector3d> specific_force;
-    std::vector<Eigen::Vector3d> acceleration;  // rad/s^2
+    std::vector<Eigen::Vector3d> specific_force;  // m/s^2, FRD
+    std::vector<Eigen::Vector3d> acceleration;    // rad/s^2, FRD
   };
   Drive drive(const Eigen::VectorXd& parameters, std::size_t flight, const Rows& rows) const;
-  // The same by the speeds that the commands ask for, measured or not.
+  // The same with rotor speeds modelled from the commands, even if the log has measured ones.
   Drive drive_by_commands(const Eigen::VectorXd& parameters, std::size_t flight, const Rows& rows) const;
-  // dw/dt of these rates under that.
+  // dw/dt, rad/s^2: acceleration less the coupling of Eq. (6) at these rates.
   static Eigen::Vector3d rate_derivative(const Eigen::Vector3d& inertia, const Eigen::Vector3d& acceleration,
                                          const Eigen::Vector3d& rates);
   Eigen::Vector3d offset(const Eigen::VectorXd& parameters, std::size_t flight) const;
 
  private:
   void assign_parameter_indices();
-  // Thrust and moments by the base vehicle's numbers, at each of the rows.
+  // Thrust, N, and moments, N m, of the base vehicle at each row.
   using Wrenches = std::vector<Eigen::Vector4d>;
   std::shared_ptr<const Wrenches> wrenches(const Eigen::VectorXd& parameters, std::size_t flight,
                                            const Rows& rows, double delay_s) const;
@@ -95,9 +95,9 @@ class FlightModel {
   plant::Vehicle base_;
   plant::Effectiveness effectiveness_;
   FlightLayout layout_;
-  std::vector<std::size_t> block_;  // rows of each flight that make one residual, their mean
+  std::vector<std::size_t> block_;  // rows of each flight that are averaged to one residual
 
-  // By flight, first and last row, lag and delay: most parameters do not move the rotors.
+  // Flight, first and last row, lag and delay. The other parameters do not change the wrenches.
   using WrenchKey = std::tuple<std::size_t, std::size_t, std::size_t, double, double>;
   mutable RecentResults<WrenchKey, Wrenches> wrenches_;
 };

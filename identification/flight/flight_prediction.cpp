@@ -10,7 +10,7 @@ using Eigen::VectorXd;
 
 constexpr double kAheadS = 0.5;
 
-// Sums of squares along three axes.
+// Accumulates root mean squares along three axes.
 struct Squares {
   Vector3d sum = Vector3d::Zero();
   double count = 0.0;
@@ -22,20 +22,20 @@ struct Squares {
   double rms(int axis) const { return count > 0.0 ? std::sqrt(sum[axis] / count) : 0.0; }
 };
 
-// Rates, from the measured ones of a row on, by what the commands of the rows that follow make the rotors do.
+// Predicts the body rates from the measured ones of a row, by the commands of the following rows.
 class RatePredictor {
  public:
   RatePredictor(const FlightModel& model, const VectorXd& parameters, std::size_t flight, Part part)
       : log_(*model.flights()[flight].log),
-        rows_(part == Part::kKept ? model.flights()[flight].validation_set
-                                  : model.flights()[flight].estimation_set),
+        rows_(part == Part::kValidationSet ? model.flights()[flight].validation_set
+                                           : model.flights()[flight].estimation_set),
         drive_(model.drive_by_commands(parameters, flight, rows_)),
         inertia_(model.inertia(parameters)) {}
 
   const Rows& rows() const { return rows_; }
   const FlightModel::Drive& drive() const { return drive_; }
 
-  // From `row` to the next, by the trapezoidal rule.
+  // Rates at the row after `row`, by the trapezoidal rule.
   Vector3d next(std::size_t row, const Vector3d& rates) const {
     const double h = log_.time_s[row + 1] - log_.time_s[row];
     const Vector3d slope = derivative(row, rates);
@@ -58,11 +58,11 @@ class RatePredictor {
 std::vector<PredictionError> prediction_errors(const FlightModel& model, const VectorXd& parameters,
                                                Part part) {
   Squares one_step;
-  Squares idle_one_step;
+  Squares persistence_one_step;
   Squares ahead;
-  Squares idle_ahead;
+  Squares persistence_ahead;
   Squares force;
-  Squares idle_force;
+  Squares persistence_force;
   for (std::size_t f = 0; f < model.flights().size(); ++f) {
     const FlightLog& log = *model.flights()[f].log;
     const RatePredictor predictor(model, parameters, f, part);
@@ -73,12 +73,12 @@ std::vector<PredictionError> prediction_errors(const FlightModel& model, const V
     for (std::size_t row = rows.first; row < rows.last; ++row) {
       force.add(log.specific_force_frd[row] - predictor.drive().specific_force[row - rows.first] -
                 model.offset(parameters, f));
-      idle_force.add(log.specific_force_frd[row] - mean);
+      persistence_force.add(log.specific_force_frd[row] - mean);
       if (row + 1 == rows.last) break;
       one_step.add(log.body_rates_frd[row + 1] - predictor.next(row, log.body_rates_frd[row]));
-      idle_one_step.add(log.body_rates_frd[row + 1] - log.body_rates_frd[row]);
+      persistence_one_step.add(log.body_rates_frd[row + 1] - log.body_rates_frd[row]);
     }
-    // From a start every tenth of the horizon.
+    // Predictions start every tenth of the horizon.
     double next_start_s = log.time_s[rows.first];
     for (std::size_t start = rows.first; start < rows.last; ++start) {
       if (log.time_s[start] < next_start_s) continue;
@@ -88,7 +88,7 @@ std::vector<PredictionError> prediction_errors(const FlightModel& model, const V
         rates = predictor.next(row, rates);
         if (log.time_s[row + 1] - log.time_s[start] < kAheadS) continue;
         ahead.add(log.body_rates_frd[row + 1] - rates);
-        idle_ahead.add(log.body_rates_frd[row + 1] - log.body_rates_frd[start]);
+        persistence_ahead.add(log.body_rates_frd[row + 1] - log.body_rates_frd[start]);
         break;
       }
     }
@@ -97,16 +97,17 @@ std::vector<PredictionError> prediction_errors(const FlightModel& model, const V
   const char* const rates[] = {"p", "q", "r"};
   out.reserve(4);
   for (int axis = 0; axis < 3; ++axis) {
-    out.push_back({rates[axis], "rad/s", one_step.rms(axis), idle_one_step.rms(axis), ahead.rms(axis),
-                   idle_ahead.rms(axis)});
+    out.push_back({rates[axis], "rad/s", one_step.rms(axis), persistence_one_step.rms(axis), ahead.rms(axis),
+                   persistence_ahead.rms(axis)});
   }
-  out.push_back({"f_z", "m/s^2", force.rms(2), idle_force.rms(2), force.rms(2), idle_force.rms(2)});
+  out.push_back(
+      {"f_z", "m/s^2", force.rms(2), persistence_force.rms(2), force.rms(2), persistence_force.rms(2)});
   return out;
 }
 
 PredictionTrace prediction_trace(const FlightModel& model, const VectorXd& parameters) {
   const FlightLog& log = *model.flights().front().log;
-  const RatePredictor predictor(model, parameters, 0, Part::kKept);
+  const RatePredictor predictor(model, parameters, 0, Part::kValidationSet);
   const Rows rows = predictor.rows();
   PredictionTrace out;
   Vector3d rates = log.body_rates_frd[rows.first];

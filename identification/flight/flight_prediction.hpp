@@ -1,4 +1,4 @@
-// How well a fitted model predicts flight by its commands.
+// Prediction errors of a fitted model under the commands of a flight.
 #pragma once
 
 #include <vector>
@@ -7,12 +7,12 @@
 
 namespace swiftlet::identification {
 
-enum class Part { kFitted, kKept };
+enum class Part { kEstimationSet, kValidationSet };
 
 std::vector<PredictionError> prediction_errors(const FlightModel& model, const Eigen::VectorXd& parameters,
                                                Part part);
 
-// Of the kept rows of the first flight.
+// Predictions over the validation set of the first flight.
 PredictionTrace prediction_trace(const FlightModel& model, const Eigen::VectorXd& parameters);
 
 }  // namespace swiftlet::identification

@@ -18,12 +18,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kTold = 0.25;     // half an interval over its value, up to which a parameter counts as told
-constexpr double kToldDrag = 0.1;  // 1/s, half an interval of drag over mass, likewise
-constexpr double kTelling = 0.5;   // half an interval over its value, to judge the value by
-constexpr double kSmallStep = 1e-4;  // of differences, over a parameter's scale
-constexpr double kOverNoise = 20.0;  // of what a rate changes by in half a second
-constexpr double kTurned = 3.0;      // standard errors below 0 at which a gain is negative for certain
+constexpr double kMostHalfWidth = 0.25;         // half width over value of an identified parameter
+constexpr double kMostDragHalfWidth = 0.1;      // 1/s, the same for drag over mass
+constexpr double kPlausibilityHalfWidth = 0.5;  // half width over value, to check the value
+constexpr double kSmallStep = 1e-4;             // of numerical differentiation, over a parameter's scale
+constexpr double kOverNoise = 20.0;             // least change of a rate in half a second, over its noise
+constexpr double kNegativeErrors = 3.0;         // standard errors below 0 of a significantly negative gain
 
 const char* const kAxisNames[3] = {"roll", "pitch", "yaw"};
 
@@ -31,10 +31,10 @@ std::string share_text(const ParameterEstimate& estimate) {
   return format_number(100.0 * estimate.half_width / std::max(std::abs(estimate.value), 1e-300)) + " %";
 }
 
-bool is_told(const ParameterEstimate& estimate, const plant::Vehicle& base) {
+bool is_identified(const ParameterEstimate& estimate, const plant::Vehicle& base) {
   if (estimate.parameter == "linear_drag")
-    return estimate.half_width < kToldDrag * base.mass_kg && estimate.high() > 0.0;
-  return estimate.value > 0.0 && estimate.half_width < kTold * estimate.value;
+    return estimate.half_width < kMostDragHalfWidth * base.mass_kg && estimate.high() > 0.0;
+  return estimate.value > 0.0 && estimate.half_width < kMostHalfWidth * estimate.value;
 }
 
 void put(plant::Vehicle& vehicle, const std::string& parameter, double value) {
@@ -52,7 +52,7 @@ bool at_bound(const FlightParameter& parameter, double value) {
   return value - parameter.low <= margin || parameter.high - value <= margin;
 }
 
-void keep_inertia_possible(FlightIdentification& out) {
+void enforce_inertia_triangle_inequality(FlightIdentification& out) {
   std::array<std::optional<double>, 3> variances;
   for (std::size_t axis = 0; axis < variances.size(); ++axis) {
     const char* const key = plant::kInertiaKeys[axis];
@@ -62,7 +62,7 @@ void keep_inertia_possible(FlightIdentification& out) {
     out.warnings.push_back(*moved);
 }
 
-bool stands_in_file(const std::string& parameter) {
+bool is_in_vehicle_file(const std::string& parameter) {
   return parameter == "motor.time_constant" || parameter == "rotor.thrust_factor" || parameter == "mass" ||
          parameter == "linear_drag" || parameter.rfind("inertia.", 0) == 0;
 }
@@ -107,21 +107,21 @@ std::vector<ParameterEstimate> estimates_of(const std::vector<Derived>& quantiti
   return out;
 }
 
-FlightIdentification begun_with(const std::vector<FlightSeries>& flights) {
+FlightIdentification start_identification(const std::vector<FlightSeries>& flights) {
   FlightIdentification out;
   out.source = flights.front().source;
   for (const FlightSeries& flight : flights) {
     const std::vector<double>& time = flight.log->time_s;
     out.windows.push_back(flight.window);
-    out.fitted_s += time[flight.estimation_set.last - 1] - time[flight.estimation_set.first];
-    out.kept_s += time[flight.validation_set.last - 1] - time[flight.validation_set.first];
+    out.estimation_set_s += time[flight.estimation_set.last - 1] - time[flight.estimation_set.first];
+    out.validation_set_s += time[flight.validation_set.last - 1] - time[flight.validation_set.first];
   }
   return out;
 }
 
-std::string moves_that_tell(std::size_t axis) {
+std::string excitation_advice(std::size_t axis) {
   constexpr std::array<const char*, 3> kMoves = {
-      "fly quick moves sideways", "fly quick moves forward and back", "turn about yaw, quickly"};
+      "fly quick moves sideways", "fly quick moves forward and back", "turn quickly about yaw"};
   return kMoves[axis];
 }
 
@@ -131,9 +131,9 @@ std::map<std::string, std::string> not_identifiable_axes(const std::array<RateEx
     const RateExcitation& of = excitations[axis];
     if (of.in_half_second > kOverNoise * of.noise) continue;
     out[plant::kInertiaKeys[axis]] = of.quantity + " changes by " + format_number(of.in_half_second) +
-                                     " rad/s in half a second, must by " + format_number(kOverNoise) +
+                                     " rad/s in half a second, must change by " + format_number(kOverNoise) +
                                      " times the noise, " + format_number(of.noise) + " rad/s; " +
-                                     moves_that_tell(axis);
+                                     excitation_advice(axis);
   }
   return out;
 }
@@ -146,34 +146,34 @@ bool within_bounds(const std::vector<FlightParameter>& parameters, const Estimat
 }
 
 void conclude_vehicle(FlightIdentification& out, const DerivedValues& values, const plant::Vehicle& base,
-                      const std::map<std::string, std::string>& untold,
+                      const std::map<std::string, std::string>& not_identifiable,
                       const std::function<std::string(const std::string& parameter)>& advice) {
   out.vehicle = base;
   for (const std::size_t axis : {0, 1}) {
     const ParameterEstimate* const found = out.find(plant::kInertiaKeys[axis]);
-    if (found != nullptr && found->half_width < kTelling * found->value)
+    if (found != nullptr && found->half_width < kPlausibilityHalfWidth * found->value)
       require_gyration("body rates", *found, base.mass_kg, plant::hub_distance(base));
   }
   if (!out.converged) {
-    out.warnings.emplace_back("nothing of the fit goes into the vehicle");
+    out.warnings.emplace_back("no estimate is copied to the vehicle");
     return;
   }
   std::vector<Index> written;
   for (std::size_t i = 0; i < out.estimates.size(); ++i) {
     const ParameterEstimate& estimate = out.estimates[i];
-    if (!stands_in_file(estimate.parameter)) continue;
-    if (const auto reason = untold.find(estimate.parameter); reason != untold.end()) {
+    if (!is_in_vehicle_file(estimate.parameter)) continue;
+    if (const auto reason = not_identifiable.find(estimate.parameter); reason != not_identifiable.end()) {
       out.unexcited.push_back(estimate.parameter + ": " + reason->second);
       continue;
     }
-    if (!is_told(estimate, base)) {
+    if (!is_identified(estimate, base)) {
       if (estimate.parameter == "linear_drag" && estimate.high() <= 0.0) {
-        out.warnings.push_back("linear_drag is negative for certain, " + format_number(estimate.value) +
+        out.warnings.push_back("linear_drag is significantly negative, " + format_number(estimate.value) +
                                " +- " + format_number(estimate.half_width) +
-                               " N*s/m, and not written; are the frames of poses and IMU right?");
+                               " N*s/m: it is not written; are the frames of poses and IMU right?");
         continue;
       }
-      out.unexcited.push_back(estimate.parameter + ": the interval is +- " + share_text(estimate) +
+      out.unexcited.push_back(estimate.parameter + ": its interval is +- " + share_text(estimate) +
                               " of the value: " + advice(estimate.parameter));
       continue;
     }
@@ -186,7 +186,7 @@ void conclude_vehicle(FlightIdentification& out, const DerivedValues& values, co
                                       share_text(estimate);
     written.push_back(static_cast<Index>(i));
   }
-  keep_inertia_possible(out);
+  enforce_inertia_triangle_inequality(out);
   for (std::size_t a = 0; a < written.size(); ++a) {
     for (std::size_t b = a + 1; b < written.size(); ++b) {
       const double scale =
@@ -200,14 +200,14 @@ void conclude_vehicle(FlightIdentification& out, const DerivedValues& values, co
   }
 }
 
-void refuse_turned_gains(const int (&gain)[3], const plant::Vehicle& base, const EstimatedParameters& fit) {
+void reject_negative_gains(const int (&gain)[3], const plant::Vehicle& base, const EstimatedParameters& fit) {
   for (int axis = 0; axis < 3; ++axis) {
     if (gain[axis] == kAbsent) continue;
-    if (fit.parameters[gain[axis]] > -kTurned * fit.standard_error(gain[axis])) continue;
+    if (fit.parameters[gain[axis]] > -kNegativeErrors * fit.standard_error(gain[axis])) continue;
     throw BadData("the vehicle turns about " + std::string(kAxisNames[axis]) +
-                  " against what the rotors of " + base.name +
-                  " ask for; are the motors in its order, and are the axes forward-right-down or "
-                  "forward-left-up as said?");
+                  " opposite to the moments of the rotors of " + base.name +
+                  "; are the motors in its order, and are the body axes forward-right-down or "
+                  "forward-left-up as given?");
   }
 }
 
@@ -218,7 +218,7 @@ void warn_of_fit(FlightIdentification& out, const std::vector<FlightParameter>& 
     const double value = fit.parameters[static_cast<Index>(i)];
     if (!at_bound(parameters[i], value)) continue;
     out.warnings.push_back(parameters[i].name + " is " + format_number(value) + " " + parameters[i].unit +
-                           ", where the search ends; the model does not describe this flight");
+                           ", a bound of the search; the model does not describe this flight");
   }
 }
 
@@ -226,9 +226,9 @@ void warn_of_windows(FlightIdentification& out, const std::vector<FlightLog>& lo
   for (std::size_t f = 0; f < out.windows.size(); ++f) {
     for (const std::string& sentence : out.windows[f].left_out)
       out.warnings.push_back(logs[f].name + ": " + sentence);
-    if (out.windows[f].ends_in_a_blow)
-      out.warnings.push_back(logs[f].name + " ends in a blow of more than " + format_number(kBlow) +
-                             " m/s^2; what follows it is left out");
+    if (out.windows[f].ends_in_impact)
+      out.warnings.push_back(logs[f].name + ": an impact of more than " + format_number(kImpact) +
+                             " m/s^2 ends the flight; later rows are not used");
   }
 }
 

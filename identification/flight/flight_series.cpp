@@ -12,10 +12,10 @@
 namespace swiftlet::identification {
 namespace {
 
-constexpr double kKeptShare = 0.2;
-constexpr double kHalfSmoothingS = 0.06;   // of the polynomial through neighbouring poses
-constexpr std::size_t kLeastPoses = 5;     // through which one is laid
-constexpr double kLongestPoseGapS = 0.25;  // that is bridged
+constexpr double kValidationShare = 0.2;
+constexpr double kHalfSmoothingS = 0.06;   // s, half the window of the polynomial through poses
+constexpr std::size_t kLeastPoses = 5;     // of that polynomial
+constexpr double kLongestPoseGapS = 0.25;  // s, longest allowed gap between poses
 
 void require_whole(const FlightLog& log, const Rows& rows) {
   for (std::size_t i = rows.first + 1; i < rows.last; ++i) {
@@ -47,20 +47,21 @@ struct Motion {
   Eigen::Quaterniond attitude = Eigen::Quaterniond::Identity();
 };
 
-// Through the poses near a time: positions by a cubic, the attitude between the two neighbours.
+// Motion at a time: velocity from a cubic polynomial through the nearby positions, attitude by slerp between
+// the two neighbouring poses.
 class PoseMotion {
  public:
   explicit PoseMotion(const std::vector<FlightPose>& poses) : poses_(poses) {}
 
-  // Times must rise from call to call.
+  // Times must increase from call to call.
   Motion at(double time_s) {
     while (next_ + 1 < poses_.size() && poses_[next_].time_s <= time_s) ++next_;
     if (next_ == 0) next_ = 1;
     const FlightPose& before = poses_[next_ - 1];
     const FlightPose& after = poses_[next_];
     if (time_s < before.time_s - kLongestPoseGapS || time_s > after.time_s + kLongestPoseGapS) {
-      throw BadData("has poses from " + format_number(poses_.front().time_s) + " to " +
-                    format_number(poses_.back().time_s) + " s alone, and flight at " + format_number(time_s) +
+      throw BadData("has poses only from " + format_number(poses_.front().time_s) + " to " +
+                    format_number(poses_.back().time_s) + " s, but flight at " + format_number(time_s) +
                     " s; must have them all through the flight");
     }
     if (after.time_s - before.time_s > kLongestPoseGapS) {
@@ -114,11 +115,11 @@ void add_motion(FlightSeries& series) {
   }
 }
 
-std::vector<Rows> stretches_of(const FlightLog& log, const Rows& rows) {
+std::vector<Rows> segments_of(const FlightLog& log, const Rows& rows) {
   std::vector<Rows> out;
   std::size_t first = rows.first;
   for (std::size_t i = rows.first; i < rows.last; ++i) {
-    if (log.time_s[i] - log.time_s[first] < kStretchS) continue;
+    if (log.time_s[i] - log.time_s[first] < kSegmentS) continue;
     out.push_back({first, i});
     first = i;
   }
@@ -127,8 +128,8 @@ std::vector<Rows> stretches_of(const FlightLog& log, const Rows& rows) {
 
 FlightSeries prepare_flight(const FlightLog& log, const plant::Vehicle& base, const FlightBounds& bounds) {
   if (log.rotor_count != base.rotor_count()) {
-    throw BadData("has commands of " + std::to_string(log.rotor_count) + " motors, must have those of the " +
-                  std::to_string(base.rotor_count()) + " of " + base.name);
+    throw BadData("has commands of " + std::to_string(log.rotor_count) + " motors, must have " +
+                  std::to_string(base.rotor_count()) + ", the number of rotors of " + base.name);
   }
   FlightSeries out;
   out.log = &log;
@@ -138,16 +139,17 @@ FlightSeries prepare_flight(const FlightLog& log, const plant::Vehicle& base, co
   require_readings(log, out.window.flight);
   const Rows& flight = out.window.flight;
   out.estimation_set = {
-      flight.first, flight.last - static_cast<std::size_t>(kKeptShare * static_cast<double>(flight.size()))};
+      flight.first,
+      flight.last - static_cast<std::size_t>(kValidationShare * static_cast<double>(flight.size()))};
   out.validation_set = {out.estimation_set.last, flight.last};
   out.source = source_of(log);
   if (out.source == SpeedSource::kCommanded) return out;
   out.steady_speeds = steady_speeds(log, base);
-  require_speeds_like_the_motors(out, base);
-  out.segments = stretches_of(log, out.estimation_set);
+  require_speeds_match_motors(out, base);
+  out.segments = segments_of(log, out.estimation_set);
   out.pose_timing = find_pose_timing(log, out.segments);
   add_motion(out);
-  require_positions_as_felt(out);
+  require_positions_match_force(out);
   return out;
 }
 
@@ -165,7 +167,7 @@ std::vector<FlightSeries> prepare_flights(const std::vector<FlightLog>& logs, co
     if (out.back().source == out.front().source) continue;
     throw BadData(
         log.name + " and " + logs.front().name +
-        " do not hold the same: poses, supply voltage and rotor speeds must each be in all logs or in none");
+        " hold different data: poses, supply voltage and rotor speeds must each be in all logs or in none");
   }
   return out;
 }

@@ -1,5 +1,4 @@
-// A log made ready for fits: steady speeds that its commands ask of the rotors, motion by its poses,
-// stretches of time.
+// Prepares a log for the fit: steady rotor speeds of its commands, motion from its poses, segments of time.
 #pragma once
 
 #include <cstddef>
@@ -15,40 +14,40 @@
 
 namespace swiftlet::identification {
 
-// Where the rotors' speeds are from.
+// Where rotor speeds come from.
 enum class SpeedSource {
-  kMeasured,   // by the vehicle
-  kModelled,   // from command and supply voltage by Eq. (9), (22) and (18) with the base vehicle's numbers
-  kCommanded,  // neither: poses or supply voltage were not recorded, and the command is all there is
+  kMeasured,   // recorded in the log
+  kModelled,   // from command and supply voltage by Eq. (9), (22) and (18) with the base vehicle's parameters
+  kCommanded,  // poses or supply voltage were not recorded: only commands and IMU are used
 };
 
-// What a channel of residuals is cut into; inside, samples hang together.
-constexpr double kStretchS = 0.5;
+// Length of a segment of a residual channel. The residuals inside a segment may be correlated.
+constexpr double kSegmentS = 0.5;
 
-constexpr double kLongestRowGapS = 0.05;  // between samples of a flight
+constexpr double kLongestRowGapS = 0.05;  // s, longest allowed gap between samples of a flight
 
 struct FlightSeries {
   const FlightLog* log = nullptr;
   FlightWindow window;
-  Rows estimation_set;  // the first four fifths of the flight
-  Rows validation_set;  // the last one, for predictions
+  Rows estimation_set;  // first four fifths of the flight, for the fit
+  Rows validation_set;  // last fifth, for the prediction errors
   SpeedSource source = SpeedSource::kMeasured;
-  // None of the following of kCommanded.
-  std::vector<plant::PerRotor> steady_speeds;  // that the commands ask for, from each row on, rad/s
-  PoseTiming pose_timing;                      // motion and attitude are of poses with its delay taken off
-  std::vector<Eigen::Vector3d> velocity_ned;   // of each row, by the poses
-  std::vector<Eigen::Quaterniond> attitude;    // NED from FRD, likewise
-  std::vector<Rows> segments;                  // of fitted
+  // The rest is empty for kCommanded.
+  std::vector<plant::PerRotor> steady_speeds;  // rad/s, steady speeds of each row's commands
+  PoseTiming pose_timing;                      // its delay is removed from velocity_ned and attitude
+  std::vector<Eigen::Vector3d> velocity_ned;   // m/s, of each row, from the poses
+  std::vector<Eigen::Quaterniond> attitude;    // q_ned_from_frd of each row, from the poses
+  std::vector<Rows> segments;                  // of the estimation set
 };
 
-// Chooses the best source of speeds that the logs have, which must be the same of all. They must outlive what
-// is returned. Throws BadData.
+// Chooses the best SpeedSource that the logs support; it must be the same for all. The logs must outlive the
+// result. Throws BadData.
 std::vector<FlightSeries> prepare_flights(const std::vector<FlightLog>& logs, const plant::Vehicle& base,
                                           const FlightBounds& bounds);
 
-// Steady speeds, each from its row on, behind the rotors' lag, Eq. (18) in its reduced form, a delay later:
-// at the times of `rows`. The lag is started with the log, at the speeds
-// that are steady there.
+// Rotor speeds at the times of `rows`, rad/s: the steady speeds, each held from its row on, delayed by
+// delay_s and filtered by the first-order rotor lag, Eq. (18), reduced model. The filter starts at the steady
+// speeds of the first row of the log.
 std::vector<plant::PerRotor> lagged_speeds(const FlightLog& log, const std::vector<plant::PerRotor>& steady,
                                            const Rows& rows, double time_constant_s, double delay_s);
 

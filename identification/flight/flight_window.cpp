@@ -13,20 +13,19 @@
 namespace swiftlet::identification {
 namespace {
 
-constexpr double kCarrying = 0.9;  // of the median command: what lifts the vehicle
+constexpr double kCarrying = 0.9;  // of the median command: enough to lift the vehicle
 constexpr double kSmoothingS = 0.05;
-constexpr double kAfterLiftS = 0.3;  // until the legs are well off the ground
-constexpr double kBeforeBlowS = 0.3;
-constexpr double kWorthTellingS = 1.0;  // of flight that is left out
-constexpr double kLongestPauseS =
-    1.0;  // of rotors without command that is still flight: a fall between two pushes
+constexpr double kAfterLiftS = 0.3;  // until the vehicle is clear of the ground
+constexpr double kBeforeImpactS = 0.3;
+constexpr double kNotableS = 1.0;       // s, shorter unused parts of the flight are not reported
+constexpr double kLongestPauseS = 1.0;  // s, longest pause of the rotors in flight (free fall)
 
 std::size_t row_at(const FlightLog& log, double time_s) {
   return static_cast<std::size_t>(std::lower_bound(log.time_s.begin(), log.time_s.end(), time_s) -
                                   log.time_s.begin());
 }
 
-// The longest stretch of running rotors, short pauses included.
+// The longest time with running rotors, including short pauses.
 Rows running_rows(const FlightLog& log) {
   Rows best;
   Rows now;
@@ -42,7 +41,7 @@ Rows running_rows(const FlightLog& log) {
   return best;
 }
 
-// Mean command of the rotors, smoothed.
+// Mean command of the rotors, low-pass filtered.
 std::vector<double> smoothed_commands(const FlightLog& log, const Rows& rows) {
   std::vector<double> out(rows.size(), 0.0);
   double smoothed = 0.0;
@@ -57,7 +56,7 @@ std::vector<double> smoothed_commands(const FlightLog& log, const Rows& rows) {
   return out;
 }
 
-// Between the first and the last command that carries the vehicle; most of the time it is carried.
+// From the first to the last command that carries the vehicle. Assumes flight for most of the time.
 Rows carried(const FlightLog& log, const Rows& running) {
   const std::vector<double> commands = smoothed_commands(log, running);
   std::vector<double> sorted = commands;
@@ -97,7 +96,7 @@ Rows airborne(const FlightLog& log, const Rows& running) {
   return log.poses.empty() ? carried(log, running) : above_ground(log, running);
 }
 
-// Poses that are of another clock, or that never leave the ground, hold no flight.
+// Rejects poses of another clock and poses that never leave the ground.
 void require_flight_in_poses(const FlightLog& log, const Rows& running) {
   if (log.poses.empty()) return;
   const double from_s = log.time_s[running.first];
@@ -110,12 +109,12 @@ void require_flight_in_poses(const FlightLog& log, const Rows& running) {
   if (above_ground(log, running).size() == 0) {
     throw BadData(
         "has no pose more than " + format_number(kAirborneHeightM) +
-        " m above where the rotors were started, must have flight in it; are the unit and the frame "
+        " m above the point where the rotors started, must contain a flight; are the unit and the frame "
         "of positions right?");
   }
 }
 
-// Of rotors that run, before, between and after what is taken.
+// Reports the time with running rotors that is not part of `running`, and the time after the last pose.
 void warn_of_omitted(const FlightLog& log, const Rows& running, FlightWindow& out) {
   double elsewhere_s = 0.0;
   for (std::size_t row = 1; row < log.size(); ++row) {
@@ -123,18 +122,18 @@ void warn_of_omitted(const FlightLog& log, const Rows& running, FlightWindow& ou
     const double h = log.time_s[row] - log.time_s[row - 1];
     if (!taken && log.running[row] != 0 && log.running[row - 1] != 0 && h < kLongestPauseS) elsewhere_s += h;
   }
-  if (elsewhere_s > kWorthTellingS) {
-    out.left_out.push_back("flight is looked for from " + seconds(log.time_s[running.first]) + " to " +
+  if (elsewhere_s > kNotableS) {
+    out.left_out.push_back("the flight is searched from " + seconds(log.time_s[running.first]) + " to " +
                            seconds(log.time_s[running.last - 1]) +
                            " s, the longest time without a pause or a gap of more than " +
-                           format_number(kLongestPauseS) + " s; rotors ran for another " +
-                           format_number(elsewhere_s) + " s outside, which --from and --until can choose");
+                           format_number(kLongestPauseS) + " s; the rotors ran for another " +
+                           format_number(elsewhere_s) + " s, which --from and --until can select");
   }
   if (log.poses.empty()) return;
   const double unseen_s = log.time_s[running.last - 1] - log.poses.back().time_s;
-  if (unseen_s > kWorthTellingS) {
+  if (unseen_s > kNotableS) {
     out.left_out.push_back("poses end at " + seconds(log.poses.back().time_s) + " s; the rotors ran on for " +
-                           format_number(unseen_s) + " s, which are left out");
+                           format_number(unseen_s) + " s, which are not used");
   }
 }
 
@@ -150,22 +149,23 @@ FlightWindow find_flight(const FlightLog& log, const FlightBounds& bounds) {
   if (!all_known) warn_of_omitted(log, running, out);
   if (bounds.from_s) out.flight.first = row_at(log, *bounds.from_s);
   if (bounds.until_s) out.flight.last = row_at(log, *bounds.until_s);
-  double blow_s = 0.0;
+  double impact_s = 0.0;
   for (std::size_t i = out.flight.first; i < out.flight.last; ++i) {
-    if (log.specific_force_frd[i].norm() < kBlow) continue;
-    out.flight.last = row_at(log, log.time_s[i] - kBeforeBlowS);
-    out.ends_in_a_blow = true;
-    blow_s = log.time_s[i];
+    if (log.specific_force_frd[i].norm() < kImpact) continue;
+    out.flight.last = row_at(log, log.time_s[i] - kBeforeImpactS);
+    out.ends_in_impact = true;
+    impact_s = log.time_s[i];
   }
   const double length_s = out.flight.first < out.flight.last
                               ? log.time_s[out.flight.last - 1] - log.time_s[out.flight.first]
                               : 0.0;
   if (length_s < kShortestFlightS) {
-    throw BadData("holds " + format_number(length_s) + " s of flight, must hold at least " +
+    throw BadData("has " + format_number(length_s) + " s of flight, must have at least " +
                   format_number(kShortestFlightS) + " s" +
-                  (out.ends_in_a_blow ? "; a specific force of more than " + format_number(kBlow) +
-                                            " m/s^2 at " + seconds(blow_s) + " s ends it: is the unit right?"
-                                      : ""));
+                  (out.ends_in_impact
+                       ? "; a specific force of more than " + format_number(kImpact) + " m/s^2 at " +
+                             seconds(impact_s) + " s ends it: is the unit right?"
+                       : ""));
   }
   return out;
 }

@@ -1,4 +1,4 @@
-// Which rows of a log are flight.
+// Finds the rows of a log that are flight.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace swiftlet::identification {
 
-// Rows from first up to last, that one not included.
+// Rows from first up to, but not including, last.
 struct Rows {
   std::size_t first = 0;
   std::size_t last = 0;
@@ -19,25 +19,26 @@ struct Rows {
 };
 
 struct FlightWindow {
-  Rows flight;  // in the air, rotors running, between the first and the last of it
-  bool ends_in_a_blow = false;
-  std::vector<std::string> left_out;  // of what was flown, and why; sentences
+  Rows flight;                        // from the first to the last row in the air with rotors running
+  bool ends_in_impact = false;        // an impact cut the flight short
+  std::vector<std::string> left_out;  // sentences: parts of the flight that are not used, and why
 };
 
-// What the user knows better; seconds of the log's own clock.
+// Bounds given by the user, s, by the clock of the log.
 struct FlightBounds {
   std::optional<double> from_s;
   std::optional<double> until_s;
 };
 
-// In the air is, with poses, what is more than kAirborneHeightM above where the rotors were started; without,
-// what lies between the first and the last command that is about the median one, less kLandingS. A blow of
-// more than kBlow ends the flight before it. Throws BadData if less than kShortestFlightS is left.
+// Finds the flight. With poses, the vehicle is in the air while it is more than kAirborneHeightM above the
+// point where the rotors started. Without poses, it is in the air from the first to the last command above
+// 0.9 of the median, less a short time at the start and kLandingS at the end. A specific force above kImpact
+// ends the flight shortly before it. Throws BadData if less than kShortestFlightS is left.
 FlightWindow find_flight(const FlightLog& log, const FlightBounds& bounds);
 
 constexpr double kAirborneHeightM = 0.1;
 constexpr double kLandingS = 1.0;
-constexpr double kBlow = 40.0;  // m/s^2
+constexpr double kImpact = 40.0;  // m/s^2
 constexpr double kShortestFlightS = 5.0;
 
 }  // namespace swiftlet::identification

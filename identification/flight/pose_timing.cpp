@@ -20,18 +20,18 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr std::size_t kLeastPoses = 3;  // of a stretch
-constexpr std::size_t kLeastStretches = 8;
+constexpr std::size_t kLeastPoses = 3;  // in a segment
+constexpr std::size_t kLeastSegments = 8;
 constexpr double kLongestDelayS = 1.0;
-constexpr double kLagStepS = 0.01;  // of the first search
-constexpr double kLagOffS = 0.05;   // that the first search may be off by
-constexpr double kSpanS = 0.05;     // over which it compares turns
-constexpr double kTurning = 0.25;   // rad/s, RMS over such spans, to compare by
+constexpr double kLagStepS = 0.01;  // s, step of the first search
+constexpr double kLagOffS = 0.05;   // s, largest error of the first search
+constexpr double kSpanS = 0.05;     // s, span over which it compares rotations
+constexpr double kTurning = 0.25;   // rad/s, least RMS rate over such spans to compare
 constexpr double kLeastCorrelation = 0.5;
-constexpr double kMostOfGyro = 1.25;  // of the poses' turns over the gyro's, and the other way round
-constexpr double kToldS = 0.002;      // half an interval of the delay up to which it counts as told
+constexpr double kMostOfGyro = 1.25;            // of the poses' rotation over the gyro's, and its inverse
+constexpr double kMostDelayHalfWidthS = 0.002;  // s, of an identified delay
 
-// What the body has turned, by the gyro less its offset, since about a time.
+// Rotation of the body since about since_s, integrated from the gyro less its offset.
 class Turned {
  public:
   Turned(const FlightLog& log, const Vector3d& offset, double since_s) : log_(log), offset_(offset) {
@@ -39,7 +39,7 @@ class Turned {
     row_ = static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - log.time_s.begin() - 1, 0));
   }
 
-  // Times must rise from call to call.
+  // Times must increase from call to call.
   Quaterniond at(double time_s) {
     while (row_ + 1 < log_.size() && log_.time_s[row_ + 1] <= time_s) {
       turned_ = plant::renormalised(turned_ * step(log_.time_s[row_ + 1]));
@@ -49,7 +49,7 @@ class Turned {
   }
 
  private:
-  // From the present row to a time that is not after the next row. Between rows, rates go straight.
+  // Rotation from the current row to a time that is not after the next row. Rates are linear between rows.
   Quaterniond step(double to_s) const {
     const double passed_s = std::max(to_s - log_.time_s[row_], 0.0);
     Vector3d rates = log_.body_rates_frd[row_];
@@ -66,7 +66,7 @@ class Turned {
   Quaterniond turned_ = Quaterniond::Identity();
 };
 
-// Poses of one stretch.
+// Poses of one segment.
 struct Poses {
   std::size_t first = 0;
   std::size_t last = 0;  // not included
@@ -87,7 +87,7 @@ std::vector<Poses> poses_of(const FlightLog& log, const std::vector<Rows>& segme
   return out;
 }
 
-// The integral of the gyro's rates, at any time of a log.
+// Integral of the gyro's rates, rad, interpolated at any time of a log.
 class GyroIntegral {
  public:
   explicit GyroIntegral(const FlightLog& log) : time_s_(log.time_s), integral_(log.size(), Vector3d::Zero()) {
@@ -111,7 +111,7 @@ class GyroIntegral {
   std::vector<Vector3d> integral_;
 };
 
-// The lag at which poses turn most as the gyro does.
+// The lag, s, with the highest correlation of the rates of poses and gyro. 0 if the vehicle hardly turns.
 double rough_delay(const FlightLog& log, const std::vector<Poses>& segments) {
   struct Span {
     double from_s;
@@ -156,17 +156,17 @@ double rough_delay(const FlightLog& log, const std::vector<Poses>& segments) {
   if (best.correlation < kLeastCorrelation) {
     throw BadData("poses: do not turn as the gyro does, at any delay up to " + format_number(kLongestDelayS) +
                   " s (correlation " + format_number(best.correlation) + ", must be above " +
-                  format_number(kLeastCorrelation) + "); are the frames of both, and their clocks, right?");
+                  format_number(kLeastCorrelation) + "); are their frames and clocks right?");
   }
   if (best.ratio > kMostOfGyro || best.ratio < 1.0 / kMostOfGyro) {
-    throw BadData("body rates: the poses turn " + format_number(best.ratio) + " times as far, must be " +
-                  format_number(1.0 / kMostOfGyro) + " to " + format_number(kMostOfGyro) +
-                  "; is the unit right?");
+    throw BadData("body rates: the poses turn " + format_number(best.ratio) +
+                  " times as far as the gyro, must be " + format_number(1.0 / kMostOfGyro) + " to " +
+                  format_number(kMostOfGyro) + "; is the unit right?");
   }
   return best_s;
 }
 
-// Channels x, y, z: of each pose what it has turned beyond the gyro, rad, less the mean of its stretch.
+// Channels x, y, z: for each pose its rotation less that of the gyro, rad, less the mean over the segment.
 void residuals(const FlightLog& log, const std::vector<Poses>& segments, const VectorXd& x, VectorXd& out) {
   const Index rows = out.size() / 3;
   Index begin = 0;
@@ -198,7 +198,7 @@ PoseTiming find_pose_timing(const FlightLog& log, const std::vector<Rows>& segme
   out.delay = {"delay.poses", "T_p", "s"};
   for (std::size_t i = 0; i < 3; ++i)
     out.gyro_offset[i] = {std::string("gyro_offset.") + "xyz"[i], std::string("b_w") + "xyz"[i], "rad/s"};
-  if (poses.size() < kLeastStretches) return out;
+  if (poses.size() < kLeastSegments) return out;
 
   SeriesProblem problem;
   const double delay_s = rough_delay(log, poses);
@@ -217,14 +217,14 @@ PoseTiming find_pose_timing(const FlightLog& log, const std::vector<Rows>& segme
 
   const SeriesFit fit = fit_series(problem);
   const double factor = interval_factor(fit.degrees_of_freedom);
-  const auto tell = [&](ParameterEstimate& estimate, Index i) {
+  const auto set_estimate = [&](ParameterEstimate& estimate, Index i) {
     estimate.value = fit.parameters[i];
     estimate.standard_error = fit.standard_error(i);
     estimate.half_width = factor * estimate.standard_error;
   };
-  tell(out.delay, 0);
-  for (std::size_t i = 0; i < 3; ++i) tell(out.gyro_offset[i], static_cast<Index>(i) + 1);
-  out.identified = fit.converged && out.delay.half_width < kToldS;
+  set_estimate(out.delay, 0);
+  for (std::size_t i = 0; i < 3; ++i) set_estimate(out.gyro_offset[i], static_cast<Index>(i) + 1);
+  out.identified = fit.converged && out.delay.half_width < kMostDelayHalfWidthS;
   return out;
 }
 

@@ -1,9 +1,9 @@
-// When the poses of a log were taken by the clock of its IMU.
+// Identifies the delay of a log's pose time stamps relative to the clock of its IMU.
 //
-// A pose turns between two stamps as the gyro says between two times, each a delay before the stamp:
-//   q(t)* q(t + s) = exp of the gyro's rate, less its offset, from t - T to t + s - T.
-// First by the lag at which the rates of both go together best, then as an output error: integrated over each
-// stretch from a start that is free.
+// The rotation between the stamps of two poses equals the gyro's rotation, both times a delay T earlier:
+//   q(t)* q(t + s) = exp of the integral of the gyro's rate, less its offset, from t - T to t + s - T.
+// A first search takes the lag with the highest correlation of the two rates. A fit refines it by an output
+// error: the gyro is integrated over each segment from a free initial attitude.
 #pragma once
 
 #include <array>
@@ -16,13 +16,13 @@
 namespace swiftlet::identification {
 
 struct PoseTiming {
-  bool identified = false;                       // there were poses enough, and the vehicle turned enough
-  ParameterEstimate delay;                       // T, s: positive where poses are stamped late
+  bool identified = false;                       // enough poses, and enough rotation
+  ParameterEstimate delay;                       // T, s: positive if poses are stamped late
   std::array<ParameterEstimate, 3> gyro_offset;  // rad/s
 };
 
-// By stretches of one flight. Throws BadData where poses turn otherwise than the gyro, whatever the delay: by
-// another unit, or frame, or clock.
+// Fits over segments of one flight. Throws BadData if poses and gyro do not show the same rotation at any
+// delay: unit, frame or clock of one of them is wrong.
 PoseTiming find_pose_timing(const FlightLog& log, const std::vector<Rows>& segments);
 
 }  // namespace swiftlet::identification

@@ -11,9 +11,9 @@ namespace {
 
 constexpr double kCharge = 0.5;
 constexpr double kStep = 1e-3;   // of the command
-constexpr int kIterations = 60;  // each leaves a small part of the error: the part of the voltage that sags
+constexpr int kIterations = 60;  // each reduces the error to the fraction of the voltage that sags
 
-// That the battery settles at when all rotors have this command, V.
+// Steady supply voltage, V, with all rotors at this command.
 double settled_voltage(const plant::Vehicle& vehicle, const plant::MotorDynamics& motor, double command) {
   const plant::BatteryParameters& battery = vehicle.battery;
   const double open_circuit = plant::open_circuit_voltage(battery, kCharge);

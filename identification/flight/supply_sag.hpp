@@ -1,13 +1,13 @@
-// How the supply's sag bears on what commands do.
+// Effect of the supply's sag on the thrust of a command.
 #pragma once
 
 #include "swiftlet/plant/model/vehicle.hpp"
 
 namespace swiftlet::identification {
 
-// Near hover, the thrust that a small change of all rotors' commands makes of each, over what as much makes
-// of a rotor while others change against it: all together draw the supply down. Between 0 and 1; by Eq.
-// (9), (22) and (25) with the vehicle's battery at half its charge, settled.
+// Ratio, between 0 and 1, of two changes of a rotor's thrust near hover: by a small change of the commands of
+// all rotors, and by the same change of its own command while others change oppositely. Only the former makes
+// the supply voltage sag. By Eq. (9), (22) and (25), in steady state, with the battery at half its charge.
 double shared_over_single(const plant::Vehicle& vehicle);
 
 }  // namespace swiftlet::identification

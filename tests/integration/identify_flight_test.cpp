@@ -83,13 +83,13 @@ TEST_F(IdentifyFlight, TellsWhatALogWithoutPosesTells) {
   EXPECT_EQ(report["beside_file"].size(), 4U);
   EXPECT_EQ(report["beside_file"][0]["file"], 0.072);
   EXPECT_EQ(report["horizons"].size(), 20U);
-  EXPECT_NE(report["unexcited"].dump().find("does not tell them"), std::string::npos);
+  EXPECT_NE(report["unexcited"].dump().find("does not determine them"), std::string::npos);
   const plant::Vehicle found = runtime::load_vehicle(in_folder("mine.yaml"));
   EXPECT_EQ(found.mass_kg, 0.027);
   EXPECT_NEAR(found.motor.time_constant_s, 0.065, 0.01);
   std::ostringstream page;
   page << std::ifstream(in_folder("report.html")).rdbuf();
-  EXPECT_NE(page.str().find("Beside the vehicle file"), std::string::npos);
+  EXPECT_NE(page.str().find("Comparison with the vehicle file"), std::string::npos);
   EXPECT_NE(page.str().find("Thrust over mass by command"), std::string::npos);
 }
 

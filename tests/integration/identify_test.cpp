@@ -126,7 +126,7 @@ TEST_F(Identify, WritesOverNothingThatItReads) {
 TEST_F(Identify, RefusesWhatIsNoBench) {
   const Ending none = identify(folder_.path() / "nowhere");
   EXPECT_EQ(none.exit_code, 2);
-  EXPECT_NE(none.errors.find("nowhere: is no folder"), std::string::npos) << none.errors;
+  EXPECT_NE(none.errors.find("nowhere: is not a folder"), std::string::npos) << none.errors;
   EXPECT_EQ(run({"identify"}).exit_code, 2);
   EXPECT_EQ(run({"identify", bench().string()}).exit_code, 2);
   EXPECT_EQ(run({"identify", "simulate", "--noise", "nan", "--out", vehicle()}).exit_code, 2);

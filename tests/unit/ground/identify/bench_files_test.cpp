@@ -70,12 +70,12 @@ TEST_F(BenchFolder, RefusesThrottleAndPulseWidthTogether) {
 }
 
 TEST_F(BenchFolder, RefusesFilesThatItDoesNotKnow) {
-  EXPECT_NE(refused().find("holds no experiment, must hold at least one of mass.csv, esc.csv"),
+  EXPECT_NE(refused().find("contains no experiment, must contain at least one of mass.csv, esc.csv"),
             std::string::npos);
   folder_.write("stedy_motor.csv", "x\n1\n");
-  EXPECT_EQ(refused().find(at("stedy_motor.csv") + ": is no experiment that is known"), 0U);
+  EXPECT_EQ(refused().find(at("stedy_motor.csv") + ": is not a known experiment"), 0U);
   std::filesystem::rename(at("stedy_motor.csv"), at("mass.CSV"));
-  EXPECT_EQ(refused().find(at("mass.CSV") + ": is no experiment that is known"), 0U);
+  EXPECT_EQ(refused().find(at("mass.CSV") + ": is not a known experiment"), 0U);
 }
 
 TEST_F(BenchFolder, ReadsEitherSetUpForInertia) {

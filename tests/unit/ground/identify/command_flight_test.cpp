@@ -16,7 +16,7 @@
 namespace swiftlet::ground {
 namespace {
 
-using identification::Estimate;
+using identification::ParameterEstimate;
 using identification::FlightIdentification;
 using identification::FlightLog;
 using identification::SpeedSource;
@@ -67,7 +67,7 @@ std::map<std::string, Tally> recover(const LaunchConfiguration& plan, const char
     EXPECT_EQ(found.source, SpeedSource::kCommanded);
     EXPECT_TRUE(found.converged) << seed;
     for (const auto& [name, value] : truth_of(truth)) {
-      const Estimate& estimate = *found.find(name);
+      const ParameterEstimate& estimate = *found.find(name);
       Tally& tally = tallies[name];
       ++tally.count;
       tally.covered += estimate.low() <= value && value <= estimate.high() ? 1 : 0;
@@ -81,8 +81,8 @@ std::map<std::string, Tally> recover(const LaunchConfiguration& plan, const char
     std::printf("%s %d delay of rates %.5f +- %.5f\n", what, i, found.find("delay.rates")->value,
                 found.find("delay.rates")->half_width);
     for (const identification::PredictionError& error : found.errors) {
-      EXPECT_LT(error.one_step, error.idle_one_step) << error.quantity;
-      EXPECT_LT(error.half_second, error.idle_half_second) << error.quantity;
+      EXPECT_LT(error.one_step, error.persistence_one_step) << error.quantity;
+      EXPECT_LT(error.half_second, error.persistence_half_second) << error.quantity;
     }
   }
   for (const auto& [name, tally] : tallies) {
@@ -128,7 +128,7 @@ TEST(CommandFlight, OfARealVehicle) {
   EXPECT_TRUE(found.converged);
   ASSERT_EQ(found.lags.size(), 3U);
   EXPECT_NEAR(found.lags[0].value, 0.072, 0.006) << "Eschmann, from the specific force";
-  const Estimate& lag = *found.find("motor.time_constant");
+  const ParameterEstimate& lag = *found.find("motor.time_constant");
   EXPECT_LT(lag.low(), base.motor.time_constant_s);
   EXPECT_GT(lag.high(), base.motor.time_constant_s);
   EXPECT_LT(lag.half_width, 0.02);
@@ -141,13 +141,13 @@ TEST(CommandFlight, OfARealVehicle) {
     EXPECT_LT(comparison.identified.half_width, 0.3 * comparison.identified.value)
         << comparison.identified.parameter;
   }
-  const Estimate& hover = *found.find("thrust_per_mass.hover_command");
+  const ParameterEstimate& hover = *found.find("thrust_per_mass.hover_command");
   EXPECT_NEAR(hover.value, 0.64, 0.02);
   EXPECT_LT(hover.half_width, 0.02);
   for (const identification::PredictionError& error : found.errors) {
-    EXPECT_LT(error.half_second, 0.75 * error.idle_half_second) << error.quantity;
+    EXPECT_LT(error.half_second, 0.75 * error.persistence_half_second) << error.quantity;
     EXPECT_LT(error.one_step,
-              (error.quantity == "p" || error.quantity == "q" ? 0.3 : 0.85) * error.idle_one_step)
+              (error.quantity == "p" || error.quantity == "q" ? 0.3 : 0.85) * error.persistence_one_step)
         << error.quantity;
   }
   for (const identification::HorizonError& error : found.horizons) {

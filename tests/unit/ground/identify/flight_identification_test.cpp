@@ -46,7 +46,7 @@ std::map<std::string, Tally> recover(Left left, int seeds) {
     const FlightIdentification found = identification::identify_flight({log}, plan.vehicle, {});
     EXPECT_TRUE(found.converged) << seed;
     for (const auto& [name, value] : truth_of(truth)) {
-      const identification::Estimate* const estimate = found.find(name);
+      const identification::ParameterEstimate* const estimate = found.find(name);
       if (estimate == nullptr) {
         ADD_FAILURE() << name << " was not estimated";
         continue;
@@ -125,7 +125,7 @@ TEST(FlightIdentification, RefusesLogsThatDoNotHoldTheSame) {
   const FlightLog log = flown(plan, plan.vehicle, 5);
   FlightLog blind = log;
   blind.poses.clear();
-  expect_refused({log, blind}, plan.vehicle, "do not hold the same");
+  expect_refused({log, blind}, plan.vehicle, "hold different data");
 }
 
 TEST(FlightIdentification, TellsADelayOfTheCommands) {

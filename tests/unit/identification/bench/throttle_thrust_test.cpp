@@ -40,8 +40,8 @@ TEST(ThrottleThrustExperiment, GetsTheChainRightWhereItsPartsAreOpen) {
   base.motor.k2 *= 1.4;
   const Experiment found =
       identify_throttle_thrust(*bench_of(kaylion(), 0.0).throttle_thrust, base, {false, false, false}, {});
-  EXPECT_TRUE(
-      contains(found.warnings, "thrust without speed cannot tell K2, K3, k_T and the ESC's gain apart"));
+  EXPECT_TRUE(contains(found.warnings,
+                       "thrust without speed does not identify K2, K3, k_T and the ESC's gain separately"));
   plant::Vehicle fitted = base;
   fitted.esc.offset_v2 = found.estimate("esc.offset").value;
   fitted.motor.k2 = found.estimate("motor.k2").value;
