@@ -1,18 +1,19 @@
-// When a flight does what, in simulated time, so that a flight in lockstep over DDS and one in this process
-// are the same.
+// Times of the requests of a simulated flight, so that a flight in lockstep over DDS and one in a single
+// process are identical.
 #pragma once
 
 #include <cstdint>
 
 namespace swiftlet::ground {
 
-// Requests are made between an answered IMU sample and the next; in lockstep, while time stands still.
+// Simulated time, ns. Requests are made after the command for one IMU sample and before the next IMU sample;
+// in lockstep the simulation clock is stopped meanwhile.
 struct FlightSchedule {
-  static constexpr std::int64_t kFirstRequestNs = 1'000'000'000;  // the estimator has settled
-  static constexpr std::int64_t kRetryNs = 200'000'000;           // after a refusal to arm
-  static constexpr std::int64_t kLastArmingNs = 6'000'000'000;
+  static constexpr std::int64_t kFirstRequestNs = 1'000'000'000;  // the estimator has converged by then
+  static constexpr std::int64_t kRetryNs = 200'000'000;           // interval between requests to arm
+  static constexpr std::int64_t kLastArmingNs = 6'000'000'000;    // time of the last request to arm
 
-  // From the start of the mission.
+  // Time limit of a mission, s, from its start.
   static double time_limit_s(double planned_duration_s) { return 1.5 * planned_duration_s + 30.0; }
 };
 

@@ -106,7 +106,7 @@ class Run {
     }
   }
 
-  // False if the flight is to end.
+  // Returns false if the flight is cancelled.
   bool observe() {
     const bool sampled = runtime::is_telemetry_sample(loop_.plant.imu_count(), imu_period_ns_);
     if (observer_.trace != nullptr) observer_.trace->add(loop_.plant.truth(), loop_.command);
@@ -118,10 +118,11 @@ class Run {
     const std::int64_t stamp_ns = loop_.plant.stamp_ns();
     record.truth.append(row_of(loop_.plant.truth()));
     const control::MissionProgress& now = status_.mission;
-    if (now.id != told_.id || now.state != told_.state || now.item_index != told_.item_index) {
+    if (now.id != last_recorded_.id || now.state != last_recorded_.state ||
+        now.item_index != last_recorded_.item_index) {
       record.mission.append(
           {stamp_ns, now.id, static_cast<int>(now.state), static_cast<std::uint32_t>(now.item_index)});
-      told_ = now;
+      last_recorded_ = now;
     }
     if (!sampled || !loop_.plant.imu()) return;
     const control::Reference& reference = loop_.controller.reference();
@@ -136,7 +137,7 @@ class Run {
   const FlightObserver& observer_;
   const control::Status& status_;
   std::int64_t imu_period_ns_;
-  control::MissionProgress told_;
+  control::MissionProgress last_recorded_;
   std::string reason_;
 };
 
