@@ -1,5 +1,5 @@
-# What `cmake --install` lays down, in two components: `programs` (to fly: programs and configuration) and `development`
-# (to build on: libraries, headers, IDL, and the package that find_package(swiftlet) reads).
+# Install rules, in two components: `programs` (executables and configuration, to fly) and `development` (libraries, headers, IDL
+# and the CMake package for find_package(swiftlet), to build on).
 
 include(CMakePackageConfigHelpers)
 

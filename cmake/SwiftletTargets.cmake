@@ -1,21 +1,21 @@
-# Every target of the project is made here, so that language level, warnings, sanitizers and install rules are one thing.
+# Functions that create every target of the project, with the same language level, warnings, sanitizers and install rules.
 
 option(SWIFTLET_WERROR "Treat warnings as errors" ${PROJECT_IS_TOP_LEVEL})
-option(SWIFTLET_FUZZERS "Build nothing but fuzzers, with Clang" OFF)
-set(SWIFTLET_SANITIZE "" CACHE STRING "Sanitizers to build with, as given to -fsanitize=")
+option(SWIFTLET_FUZZERS "Build only the fuzzers; requires Clang" OFF)
+set(SWIFTLET_SANITIZE "" CACHE STRING "Sanitizers to build with: the argument of -fsanitize=")
 
 add_library(swiftlet_flags INTERFACE)
 target_compile_features(swiftlet_flags INTERFACE cxx_std_17)
 target_compile_options(swiftlet_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual -Wcast-qual
-  -ffp-contract=off  # one result on every machine: lockstep runs are compared bit by bit
-  -fno-math-errno -fno-trapping-math  # nobody reads errno after a root, nor the floating-point exception flags
+  -ffp-contract=off  # same result on every machine: lockstep runs are compared bit by bit
+  -fno-math-errno -fno-trapping-math  # no code reads errno after a math function or the floating-point exception flags
   $<$<BOOL:${SWIFTLET_WERROR}>:-Werror>)
 if(SWIFTLET_SANITIZE)
-  # What a sanitizer finds ends the program, so that the test fails.
+  # A sanitizer error ends the program, so that the test fails.
   target_compile_options(swiftlet_flags INTERFACE
     -fsanitize=${SWIFTLET_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)  # GCC takes what the sanitizers insert for uses
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)  # false positives in instrumented code
   target_link_options(swiftlet_flags INTERFACE -fsanitize=${SWIFTLET_SANITIZE})
   target_sources(swiftlet_flags INTERFACE
     $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:${PROJECT_SOURCE_DIR}/cmake/sanitizer_options.cpp>)
@@ -24,11 +24,12 @@ if(SWIFTLET_FUZZERS)
   target_compile_options(swiftlet_flags INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
-# Headers of the standard library and of Eigen, read once for all files of the libraries and, with GoogleTest, once for those of
-# the tests. A file includes what it needs all the same: ./dev lint compiles without them.
+# Precompiled headers: the standard library and Eigen for the libraries, plus GoogleTest for the tests. Every file still includes
+# what it uses: ./dev lint compiles without precompiled headers.
 option(SWIFTLET_PRECOMPILED_HEADERS "Precompile the headers of the standard library, Eigen and GoogleTest" ${PROJECT_IS_TOP_LEVEL})
 
-# swiftlet_add_precompiled_headers(NAME LIBS ...): the target swiftlet_NAME holds cmake/NAME.hpp, compiled for all that reuse it.
+# swiftlet_add_precompiled_headers(NAME LIBS ...): adds the target swiftlet_NAME, which precompiles cmake/NAME.hpp. Other targets
+# reuse it.
 function(swiftlet_add_precompiled_headers name)
   add_library(swiftlet_${name} OBJECT ${PROJECT_SOURCE_DIR}/cmake/${name}.cpp)
   target_precompile_headers(swiftlet_${name} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/${name}.hpp)
@@ -41,7 +42,7 @@ if(SWIFTLET_PRECOMPILED_HEADERS)
   set_target_properties(swiftlet_library_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
 endif()
 
-# Headers are included as <swiftlet/FOLDER/...> here as by those who use the installed ones.
+# Headers are included as <swiftlet/FOLDER/...> in the build tree and after installation.
 set(SWIFTLET_HEADER_FOLDERS math plant control recording identification io simulation services ground)
 set(SWIFTLET_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
 foreach(folder IN LISTS SWIFTLET_HEADER_FOLDERS)
@@ -49,8 +50,8 @@ foreach(folder IN LISTS SWIFTLET_HEADER_FOLDERS)
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${folder} ${SWIFTLET_INCLUDE_DIR}/swiftlet/${folder} SYMBOLIC)
 endforeach()
 
-# swiftlet_add_library(NAME [SOURCES ...] [PUBLIC ...] [PRIVATE ...]): a static library swiftlet_NAME, alias swiftlet::NAME,
-# installed and exported. PUBLIC and PRIVATE are link libraries.
+# swiftlet_add_library(NAME [SOURCES ...] [PUBLIC ...] [PRIVATE ...]): adds a static library swiftlet_NAME with the alias
+# swiftlet::NAME, installed and exported. PUBLIC and PRIVATE list link libraries.
 function(swiftlet_add_library name)
   cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   set(target swiftlet_${name})
@@ -67,7 +68,8 @@ function(swiftlet_add_library name)
   swiftlet_export(${name} ${arg_PUBLIC} ${arg_PRIVATE})
 endfunction()
 
-# swiftlet_export(NAME LIBS ...): the library swiftlet_NAME is a component of the installed package, which looks for what it links.
+# swiftlet_export(NAME LIBS ...): makes the library swiftlet_NAME a component of the installed package, which finds the packages of
+# the libraries LIBS.
 function(swiftlet_export name)
   set(components "")
   set(packages "")
@@ -86,7 +88,7 @@ function(swiftlet_export name)
   set_property(GLOBAL APPEND_STRING PROPERTY SWIFTLET_COMPONENTS "${component}")
 endfunction()
 
-# swiftlet_add_executable(NAME SOURCES ... LIBS ...): an installed program bin/NAME.
+# swiftlet_add_executable(NAME SOURCES ... LIBS ...): adds an installed program bin/NAME.
 function(swiftlet_add_executable name)
   cmake_parse_arguments(arg "" "" "SOURCES;LIBS" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
@@ -94,16 +96,17 @@ function(swiftlet_add_executable name)
   set_property(GLOBAL APPEND PROPERTY SWIFTLET_EXECUTABLES ${name})
 endfunction()
 
-# Seconds after which a test is stuck, not slow: twenty times what the slowest takes alone. Sanitizers make tests ten times slower.
+# Time-out of a test, s: twenty times the duration of the slowest test when it runs alone. Sanitizers make tests ten times slower.
 set(SWIFTLET_TEST_TIMEOUT 200)
 if(SWIFTLET_SANITIZE)
   set(SWIFTLET_TEST_TIMEOUT 1000)
 endif()
 
-# swiftlet_add_test(NAME SOURCES ... LIBS ... [LABEL label] [CASES_APART] [WAITS] [ALONE filter]): a GoogleTest program. It is one
-# test of CTest; with CASES_APART each case is, as is worth a process where cases take seconds. It keeps a core busy, and counts for
-# two of `ctest --parallel`; with WAITS it waits for clocks most of the time, and counts for one. ALONE: those cases that judge what
-# real time passes, beside which nothing else runs. Labelled `unit`, and part of the target unit_tests, unless told.
+# swiftlet_add_test(NAME SOURCES ... LIBS ... [LABEL label] [CASES_APART] [WAITS] [ALONE filter]): adds a GoogleTest program.
+#   LABEL        CTest label; the default `unit` also adds the program to the target unit_tests
+#   CASES_APART  each test case is a CTest test with its own process, for cases that take seconds; by default the program is one test
+#   WAITS        the program mostly waits for clocks and counts as one process of `ctest --parallel`; the default is two
+#   ALONE        GoogleTest filter of the cases that measure real time; nothing runs in parallel with them (needs CASES_APART)
 function(swiftlet_add_test name)
   cmake_parse_arguments(arg "CASES_APART;WAITS" "LABEL;ALONE" "SOURCES;LIBS" ${ARGN})
   if(NOT arg_LABEL)
@@ -115,7 +118,7 @@ function(swiftlet_add_test name)
     add_dependencies(unit_tests ${name})
   endif()
   target_link_libraries(${name} PRIVATE ${arg_LIBS} GTest::gtest GTest::gtest_main swiftlet_flags)
-  target_compile_options(${name} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O1>)  # what is tested is optimised, its tests need not be
+  target_compile_options(${name} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O1>)  # only the code under test needs -O2
   if(SWIFTLET_PRECOMPILED_HEADERS)
     target_precompile_headers(${name} REUSE_FROM swiftlet_test_headers)
   endif()

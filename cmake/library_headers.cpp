@@ -1,1 +1,1 @@
-// Nothing but its precompiled headers: library_headers.hpp.
+// Empty source file of the target that precompiles library_headers.hpp.

@@ -1,4 +1,4 @@
-// What most files of the libraries begin with, precompiled.
+// Precompiled headers of the libraries.
 #pragma once
 
 #include <algorithm>

@@ -1,26 +1,27 @@
-// Linked into every program of a build with sanitizers: what their runtimes are told.
+// Options of the sanitizer runtimes, linked into every program of a sanitizer build.
 #include <ctime>
 #include <pthread.h>
 #include <semaphore.h>
 
 extern "C" {
 
-// Debian's Fast DDS 2.9 frees with sized deletes of a base class: objects of the library, new and gone within
-// it.
+// Debian's Fast DDS 2.9 deletes its own objects through a base class with sized delete. The mismatch stays
+// inside the library.
 const char* __asan_default_options() { return "new_delete_type_mismatch=0"; }
 
 const char* __ubsan_default_options() { return "print_stacktrace=1"; }
 
 #ifdef __SANITIZE_THREAD__
 
-// Fast DDS and spdlog are not built with the sanitizer, which sees their locks but not their atomics: the one
-// locks some mutexes again in the thread that holds them, the other counts who shares a logger.
+// Fast DDS and spdlog are not built with the sanitizer, which sees their locks but not their atomics. Fast
+// DDS locks some mutexes recursively; spdlog counts references to a logger with atomics.
 const char* __tsan_default_suppressions() {
   return "deadlock:libfastrtps.so\n"
          "race:libspdlog.so\n";
 }
 
-// The same time by the clock that the sanitizer's functions wait by.
+// Converts an absolute time from `clock` to CLOCK_REALTIME, the clock of the functions that the sanitizer
+// intercepts.
 static timespec by_real_time(clockid_t clock, const timespec* until) {
   constexpr long kSecond_ns = 1'000'000'000;
   timespec now{};
@@ -39,7 +40,8 @@ static timespec by_real_time(clockid_t clock, const timespec* until) {
   return real;
 }
 
-// The runtime of GCC 12 does not know these ways to wait, of std::timed_mutex and runtime::Semaphore. It knows others.
+// The sanitizer runtime of GCC 12 does not intercept these functions, which std::timed_mutex and
+// runtime::Semaphore use. They are mapped to functions that it intercepts.
 int pthread_mutex_clocklock(pthread_mutex_t* mutex, clockid_t clock, const timespec* until) noexcept {
   const timespec real = by_real_time(clock, until);
   return pthread_mutex_timedlock(mutex, &real);

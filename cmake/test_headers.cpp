@@ -1,1 +1,1 @@
-// Nothing but its precompiled headers: test_headers.hpp.
+// Empty source file of the target that precompiles test_headers.hpp.

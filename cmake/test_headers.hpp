@@ -1,4 +1,4 @@
-// What most files of the tests begin with, precompiled.
+// Precompiled headers of the tests.
 #pragma once
 
 #include <algorithm>

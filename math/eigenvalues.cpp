@@ -8,7 +8,8 @@
 
 namespace swiftlet::math {
 
-// Those of the blocks on the diagonal of the real Schur form: 1 x 1, or 2 x 2 with a conjugate pair.
+// The eigenvalues are those of the diagonal blocks of the real Schur form: 1 x 1, or 2 x 2 with a conjugate
+// pair.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& a) {
   const Eigen::RealSchur<Eigen::MatrixXd> schur(a, false);
   const Eigen::MatrixXd& t = schur.matrixT();
@@ -33,8 +34,9 @@ SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a) {
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
-// The eigenvalues of [0 A; A' 0] are the singular values of A, these with the other sign, and zeros. A of many rows has
-// those of its R: the cost goes with the cube of all rows and columns.
+// The eigenvalues of [0 A; A' 0] are the singular values of A, their negatives, and zeros. The cost grows
+// with the cube of rows plus columns. A matrix with more rows than columns is therefore replaced by its
+// triangular factor R, which has the same singular values.
 Eigen::VectorXd singular_values(const Eigen::MatrixXd& a) {
   const Eigen::Index m = a.rows();
   const Eigen::Index n = a.cols();

@@ -5,7 +5,7 @@
 namespace swiftlet::control {
 namespace {
 
-constexpr double kGimbalCosine = 1e-6;  // of theta; closer to +-90 degrees psi is taken as 0
+constexpr double kGimbalCosine = 1e-6;  // cos(theta) below which psi is set to 0
 
 }  // namespace
 

@@ -17,11 +17,13 @@ struct EulerAngles {
   Eigen::Vector3d vector() const { return {roll_rad, pitch_rad, heading.yaw_rad}; }
 };
 
-// Those of Eq. (3). At theta = +-pi/2, where phi and psi are one angle, psi is 0.
+// Euler angles of a unit quaternion, Eq. (3). At theta = +-pi/2 only the sum or difference of phi and psi is
+// defined; psi is set to 0.
 EulerAngles euler_angles(const Eigen::Quaterniond& q_ned_from_frd);
+// Unit quaternion q_ned_from_frd of the Euler angles (phi, theta, psi), rad.
 Eigen::Quaterniond quaternion_from_euler(const Eigen::Vector3d& euler_rad);
 
-// The same angle in -pi .. pi.
+// Wraps an angle to -pi .. pi.
 double wrap_angle(double angle_rad);
 
 }  // namespace swiftlet::control

@@ -1,4 +1,4 @@
-// A yaw angle with its cosine and sine, for the steps that need them more than once.
+// Yaw angle with its cosine and sine, for code that needs them more than once.
 #pragma once
 
 #include <cmath>

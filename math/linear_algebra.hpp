@@ -1,22 +1,23 @@
-// Decompositions of dense matrices of any size. They stand here, and not where they are used, because the compiler
-// takes seconds for each of Eigen's. For what runs once, at start: they allocate.
+// Decompositions of dense matrices of any size. They are compiled once in this library because each of
+// Eigen's decompositions takes seconds to compile. They allocate memory: use them at start-up only.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace swiftlet::math {
 
-// The eigenvalues of a square matrix, complex ones in conjugate pairs, in no order.
+// Eigenvalues of a square matrix, unordered; complex eigenvalues are in conjugate pairs.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& a);
 
-// A = V diag(values) V' of a symmetric A, of which the lower triangle is read; values rise.
+// A = V diag(values) V' of a symmetric A. Only the lower triangle of A is read. The values are in ascending
+// order.
 struct SymmetricEigen {
   Eigen::VectorXd values;
-  Eigen::MatrixXd vectors;  // a column for each value
+  Eigen::MatrixXd vectors;  // one column per value
 };
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a);
 
-// Falling.
+// Singular values in descending order.
 Eigen::VectorXd singular_values(const Eigen::MatrixXd& a);
 
 // A = U T U^H of a square matrix: U is unitary, T upper triangular.
@@ -26,18 +27,19 @@ struct ComplexSchur {
 };
 ComplexSchur complex_schur(const Eigen::MatrixXd& a);
 
-// X with A X = B for a square A, by elimination with row pivoting; not finite where A is singular.
+// Solves A X = B for a square A by LU decomposition with partial pivoting. The result is not finite if A is
+// singular.
 Eigen::MatrixXd solve(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 Eigen::MatrixXcd solve(const Eigen::MatrixXcd& a, const Eigen::MatrixXcd& b);
 
-// X with A X = B for a symmetric positive definite A, by Cholesky's factors.
+// Solves A X = B for a symmetric positive definite A by Cholesky decomposition.
 Eigen::MatrixXd solve_positive_definite(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 bool is_positive_definite(const Eigen::MatrixXd& a);
 
-// The x, a column for each of B, that makes |A X - B| least, by Householder's QR with column pivoting.
+// The X that minimises |A X - B|, by Householder QR with column pivoting.
 Eigen::MatrixXd least_squares(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-// The square R of the same, A P = Q R, of an A with at least as many rows as columns.
+// The square factor R of the same decomposition, A P = Q R. A has at least as many rows as columns.
 Eigen::MatrixXd triangular_factor(const Eigen::MatrixXd& a);
 
 }  // namespace swiftlet::math

@@ -10,7 +10,7 @@ Eigen::MatrixXd solve(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return a.partialPivLu().solve(b);
 }
 
-// (Re A + i Im A)(Re X + i Im X) = Re B + i Im B, written in real numbers.
+// Solves (Re A + i Im A)(Re X + i Im X) = Re B + i Im B as a real system of twice the size.
 Eigen::MatrixXcd solve(const Eigen::MatrixXcd& a, const Eigen::MatrixXcd& b) {
   const Eigen::Index n = a.rows();
   Eigen::MatrixXd real_a(2 * n, 2 * n);

@@ -17,8 +17,8 @@ std::uint64_t splitmix64(std::uint64_t& state) {
   return z ^ (z >> 31U);
 }
 
-// Natural logarithm of x > 0, normal: x = m 2^e with m around 1, log m = 2 atanh((m - 1)/(m + 1)) as a
-// series. The C library's differs in the last bit from processor to processor.
+// Natural logarithm of a normal number x > 0: x = m 2^e with m near 1, log m = 2 atanh((m - 1)/(m + 1)) as a
+// series. The last bit of std::log differs between processors.
 double portable_log(double x) {
   int exponent = 0;
   double mantissa = std::frexp(x, &exponent);
@@ -35,7 +35,7 @@ double portable_log(double x) {
   return 2.0 * s * sum + exponent * kLog2;
 }
 
-// e^x of a finite x: 2^k e^r with r within +-log(2)/2, e^r as a series.
+// e^x of a finite x: 2^k e^r with |r| <= log(2)/2, e^r as a series.
 double portable_exp(double x) {
   const double k = std::floor(x / kLog2 + 0.5);
   const double r = x - k * kLog2;
@@ -44,8 +44,8 @@ double portable_exp(double x) {
   return std::ldexp(sum, static_cast<int>(k));
 }
 
-// For 256 layers: where the tail begins, the curve's height there, and the area of each layer, which is that
-// height times that place plus the tail's area.
+// For 256 layers: the start of the tail, the height of the curve there, and the area of each layer, which is
+// kTail * kTailHeight plus the area of the tail.
 constexpr double kTail = 3.6541528853610088;
 constexpr double kTailHeight = 1.2602859304985976e-3;
 constexpr double kLayerArea = 4.9286732339746547e-3;
@@ -73,8 +73,8 @@ RandomStream::RandomStream(std::uint64_t seed, std::uint64_t stream_id) {
   for (std::uint64_t& word : state_) word = splitmix64(mix);
 }
 
-// A draw that lies in its layer beside the part that is below the curve for sure.
-double RandomStream::normal_beside(std::size_t layer, double x) {
+// Completes a draw that lies in the part of its layer that the curve crosses (the wedge), or in the tail.
+double RandomStream::normal_in_wedge(std::size_t layer, double x) {
   if (layer == 0) return x < 0.0 ? -normal_tail() : normal_tail();
   const double bottom = kZiggurat.height[layer];
   const double height = bottom + uniform() * (kZiggurat.height[layer + 1] - bottom);
@@ -97,7 +97,7 @@ double RandomStream::truncated_normal(double mean, double sigma, double min, dou
   }
 }
 
-// Beyond kTail (Marsaglia 1964).
+// Normal deviate above kTail (Marsaglia 1964).
 double RandomStream::normal_tail() {
   for (;;) {
     const double beyond = -portable_log(1.0 - uniform()) / kTail;

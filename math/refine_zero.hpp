@@ -1,11 +1,12 @@
-// The zero of a function beside a start that is nearly right.
+// Refines an approximate zero of a scalar function.
 #pragma once
 
 #include <cmath>
 
 namespace swiftlet::control {
 
-// By secant steps; x0 itself where they lead away from it.
+// Returns the zero of f near x0 by the secant method, at most 20 steps. It stops at a step of 0.1 or more and
+// returns the value before that step.
 template <class Function>
 double refine_zero(const Function& f, double x0) {
   double f0 = f(x0);

@@ -57,13 +57,14 @@ void check_problem(const MatrixXd& a, const MatrixXd& b, const MatrixXd& q, cons
   if (!math::is_positive_definite(r)) refuse("R must be positive definite");
 }
 
-// Popov-Belevitch-Hautus: every mode that is not stable must be reached, rank [A - lambda I, B] = n.
+// Popov-Belevitch-Hautus test: every mode lambda of A that is not stable must be controllable, rank [A -
+// lambda I, B] = n.
 void check_stabilisable(const MatrixXd& a, const MatrixXd& b) {
   const Eigen::Index n = a.rows();
   const VectorXcd modes = math::eigenvalues(a);
   for (const std::complex<double>& mode : modes) {
     if (mode.real() < 0.0) continue;
-    // [A - lambda I, B] in real numbers, which doubles its rank.
+    // [A - lambda I, B] as a real matrix of twice the rank.
     const MatrixXd real = a - mode.real() * MatrixXd::Identity(n, n);
     const MatrixXd imaginary = mode.imag() * MatrixXd::Identity(n, n);
     const MatrixXd none = MatrixXd::Zero(n, b.cols());
@@ -88,11 +89,11 @@ void swap_eigenvalues(MatrixXcd& t, MatrixXcd& u, Eigen::Index k) {
   t(k + 1, k) = 0.0;
 }
 
-// X from the stable invariant subspace of the Hamiltonian [A, -G; -Q, -A'], by its ordered Schur form
-// (Laub 1979); not finite if it has not n stable eigenvalues.
+// X from the stable invariant subspace of the Hamiltonian [A, -G; -Q, -A'], by its ordered Schur form (Laub
+// 1979). The result is NaN if the Hamiltonian does not have n stable eigenvalues.
 MatrixXd solution_by_schur(const MatrixXd& a, const MatrixXd& g, const MatrixXd& q) {
   const Eigen::Index n = a.rows();
-  // X = size * X', with which the off-diagonal blocks come to one size.
+  // X = size * X'. This scaling gives both off-diagonal blocks the same norm.
   const double size = q.norm() > 0.0 && g.norm() > 0.0 ? std::sqrt(q.norm() / g.norm()) : 1.0;
   MatrixXd hamiltonian(2 * n, 2 * n);
   hamiltonian << a, -size * g, -q / size, -a.transpose();
@@ -141,7 +142,7 @@ MatrixXd solve_care(const MatrixXd& a, const MatrixXd& b, const MatrixXd& q, con
   check_stabilisable(a, b);
   const MatrixXd g = b * math::solve_positive_definite(r, b.transpose());
   MatrixXd x = solution_by_schur(a, g, q);
-  // Kleinman: (A - G X)' X+ + X+ (A - G X) + Q + X G X = 0, for as long as it gains.
+  // Kleinman's iteration, (A - G X)' X+ + X+ (A - G X) + Q + X G X = 0, while the residual decreases.
   double residual = x.allFinite() ? care_residual(a, b, q, r, x) : 0.0;
   for (int i = 0; i < kNewtonIterations && is_stable(a - g * x); ++i) {
     const MatrixXd next = solve_lyapunov(a - g * x, q + x * g * x);

@@ -1,4 +1,4 @@
-// Rotation vectors, rad, and the unit quaternions that turn by them.
+// Conversion between rotation vectors, rad, and unit quaternions.
 #pragma once
 
 #include <cmath>
@@ -8,8 +8,8 @@
 
 namespace swiftlet::plant {
 
-// The unit quaternion of a rotation vector: (cos h, sin(h) / h * half), h being the length of half the
-// vector. Small ones, as of every step, by series whose first term left out is below 1e-16.
+// Unit quaternion of a rotation vector: (cos h, sin(h) / h * half) with half = vector / 2 and h = |half|.
+// Small vectors use series; the first omitted term is below 1e-16.
 inline Eigen::Quaterniond rotation(const Eigen::Vector3d& vector) {
   constexpr double kLargestForSeries = 0.01;  // h^2
   const Eigen::Vector3d half = 0.5 * vector;
@@ -26,12 +26,13 @@ inline Eigen::Quaterniond rotation(const Eigen::Vector3d& vector) {
   return {cosine, sine_over_h * half.x(), sine_over_h * half.y(), sine_over_h * half.z()};
 }
 
-// Of a product of unit quaternions, which is off by rounding only: of length 1.
+// Normalises a quaternion whose length differs from 1 by rounding errors only, such as a product of unit
+// quaternions.
 inline Eigen::Quaterniond renormalised(const Eigen::Quaterniond& q) {
   return Eigen::Quaterniond((0.5 * (3.0 - q.squaredNorm())) * q.coeffs());
 }
 
-// The rotation vector of a unit quaternion, at most pi long. Off by less than 1e-9 of itself.
+// Rotation vector of a unit quaternion, at most pi long. The relative error is below 1e-9.
 inline Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q) {
   constexpr double kLargestForSeries = 1e-3;  // s^2
   const double s2 = q.vec().squaredNorm();

@@ -1,4 +1,4 @@
-// How numbers are spread, and how they go together. What is not finite is left out.
+// Percentiles and rank correlations. Values that are not finite are ignored.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 namespace swiftlet::ground {
 
-// NaN where there are no numbers.
+// Distribution of a set of numbers. All fields except count are NaN for an empty set.
 struct Spread {
   std::size_t count = 0;
   double min = 0.0;
@@ -16,14 +16,15 @@ struct Spread {
   double max = 0.0;
 };
 
-// Percentiles are linear between the sorted numbers: the q-quantile stands at place q (n - 1).
+// Percentiles are interpolated linearly between the sorted numbers: the q-quantile is at index q (n - 1).
 Spread spread(std::vector<double> numbers);
 
-// Spearman's rank correlation, -1 .. 1: that of the ranks, equal numbers sharing their mean rank. NaN with
-// fewer than three pairs, or if either side has but one value. x and y are of one length.
+// Spearman's rank correlation, -1 .. 1. Equal numbers share their mean rank. NaN for fewer than three pairs
+// or if all values of x or of y are equal. x and y have the same length.
 double rank_correlation(const std::vector<double>& x, const std::vector<double>& y);
 
-// Of independent numbers, 95 % of rank correlations of so many pairs lie within plus and minus this.
+// Bound on the absolute rank correlation that 95 % of samples of independent numbers stay within, for this
+// number of pairs.
 double chance_correlation(std::size_t pairs);
 
 }  // namespace swiftlet::ground

@@ -1,5 +1,4 @@
-// What the ground tool keeps of a flight: every sample of the telemetry, in storage that was made before the
-// flight.
+// Record of a flight on the ground: all telemetry samples, in storage that is allocated before the flight.
 #pragma once
 
 #include <array>
@@ -46,7 +45,7 @@ struct MissionRow {
 };
 
 struct FlightRecord {
-  // capacity: of each track
+  // capacity: rows of each track
   explicit FlightRecord(std::size_t capacity)
       : truth(capacity), reference(capacity), estimate(capacity), mission(capacity) {}
 
@@ -62,10 +61,10 @@ struct FlightRecord {
   Track<ReferenceRow> reference;
   Track<EstimateRow> estimate;
   Track<MissionRow> mission;
-  std::unique_ptr<SensorRecord> sensors;  // only if they are to be kept
+  std::unique_ptr<SensorRecord> sensors;  // null if the sensors are not recorded
 };
 
-// Stamps from which and up to which (not included) errors are taken.
+// Half-open interval of stamps [from_ns, to_ns) in which errors are evaluated.
 struct Window {
   std::int64_t from_ns = 0;
   std::int64_t to_ns = 0;

@@ -34,9 +34,9 @@ std::string header(int rotor_count) {
 
 FlightTrace::FlightTrace(const std::string& path, int rotor_count)
     : path_(path), file_(std::fopen(path.c_str(), "w")) {
-  demand(file_ != nullptr);
+  require_written(file_ != nullptr);
   const std::string columns = header(rotor_count);
-  demand(std::fwrite(columns.data(), 1, columns.size(), file_.get()) == columns.size());
+  require_written(std::fwrite(columns.data(), 1, columns.size(), file_.get()) == columns.size());
 }
 
 void FlightTrace::add(const plant::TruthSample& truth, const plant::ActuatorCommand& command) {
@@ -59,14 +59,14 @@ void FlightTrace::add(const plant::TruthSample& truth, const plant::ActuatorComm
   append(row_, runs ? 1 : 0);
   append_all(row_, command.throttle.data(), command.rotor_count);
   row_ += '\n';
-  demand(std::fwrite(row_.data(), 1, row_.size(), file_.get()) == row_.size());
+  require_written(std::fwrite(row_.data(), 1, row_.size(), file_.get()) == row_.size());
 }
 
 void FlightTrace::close() {
-  if (file_) demand(std::fclose(file_.release()) == 0);
+  if (file_) require_written(std::fclose(file_.release()) == 0);
 }
 
-void FlightTrace::demand(bool written) const {
+void FlightTrace::require_written(bool written) const {
   if (!written) throw std::runtime_error(path_ + ": cannot be written");
 }
 

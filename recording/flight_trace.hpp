@@ -1,5 +1,5 @@
-// A simulated flight to the last bit: the truth at each IMU sample and the command that answered it, as CSV.
-// Two flights are the same if and only if their traces are the same bytes.
+// Bit-exact trace of a simulated flight as CSV: the ground truth at each IMU sample and the command computed
+// from that sample. Two flights are identical if and only if their traces are identical byte by byte.
 #pragma once
 
 #include <cstdio>
@@ -10,21 +10,22 @@
 
 namespace swiftlet::runtime {
 
-// From the first sample to the one whose command stops the rotors again. Columns: t_ns, position, velocity,
-// attitude, body rates (NED, FRD, SI), rotor speeds, supply voltage, on_ground, then of the command: its
-// mocap frame, running, throttles; each number in the shortest form that reads back as the same.
+// The trace runs from the first sample to the one whose command stops the rotors. Columns: t_ns, position,
+// velocity, attitude, body rates (NED, FRD, SI), rotor speeds, supply voltage, on_ground, and of the command:
+// sequence of its mocap frame, running, throttles. Each number has the shortest form that parses to the same
+// value.
 class FlightTrace {
  public:
-  // Throws std::runtime_error if the file cannot be written, as do the others.
+  // All functions throw std::runtime_error if the file cannot be written.
   FlightTrace(const std::string& path, int rotor_count);
 
   void add(const plant::TruthSample& truth, const plant::ActuatorCommand& command);
   void close();
 
-  bool complete() const { return complete_; }  // the rotors ran and have stopped; nothing is added any more
+  bool complete() const { return complete_; }  // the rotors ran and have stopped; add() has no further effect
 
  private:
-  void demand(bool written) const;
+  void require_written(bool written) const;
 
   struct Closer {
     void operator()(std::FILE* file) const { std::fclose(file); }

@@ -1,4 +1,4 @@
-// The part of a recorded flight that is judged.
+// The part of a recorded flight that is evaluated.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,13 @@
 
 namespace swiftlet::ground {
 
-// From the mission's start to the start of its landing (or its end, without one); empty if it was not
-// started.
+// Interval from the mission's start to the start of its landing, or to its end if it has no landing; nullopt
+// if the mission was not started.
 std::optional<Window> mission_window(const FlightRecord& record, std::uint64_t mission_id,
                                      const control::Mission& mission);
 
-// From the mission's start to its end, as far as it went; 0 if it was not started.
+// Duration from the mission's start to its end, s, or to the end of the record if the mission did not end.
+// window: as mission_window() returns it.
 double mission_duration_s(const FlightRecord& record, std::uint64_t mission_id, Window window);
 
 }  // namespace swiftlet::ground

@@ -1,5 +1,4 @@
-// What a vehicle sensed and what it was commanded, sample by sample: a flight's record from which it can be
-// identified.
+// Record of a vehicle's sensor samples and actuator commands, from which the vehicle can be identified.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +9,7 @@
 namespace swiftlet::ground {
 
 struct SensorRecord {
-  // capacity: of each track
+  // capacity: rows of each track
   explicit SensorRecord(std::size_t capacity)
       : imu(capacity), commands(capacity), poses(capacity), batteries(capacity), rotor_speeds(capacity) {}
 
@@ -23,8 +22,8 @@ struct SensorRecord {
   }
 
   Track<plant::ImuSample> imu;
-  Track<plant::ActuatorCommand> commands;  // each with the stamp of the IMU sample that it answers
-  Track<plant::PoseSample> poses;          // as they came, untracked ones too
+  Track<plant::ActuatorCommand> commands;  // stamp: that of the IMU sample the command was computed from
+  Track<plant::PoseSample> poses;          // in order of arrival, untracked frames included
   Track<plant::BatterySample> batteries;
   Track<plant::RotorSpeedSample> rotor_speeds;
 };

@@ -1,4 +1,4 @@
-// Which samples of a stream telemetry shows.
+// Decimation of telemetry.
 #pragma once
 
 #include <algorithm>
@@ -6,7 +6,8 @@
 
 namespace swiftlet::runtime {
 
-// 100 a second. By the sample's number, so that all who thin out a stream keep the same stamps.
+// True for 100 samples per second. The sequence number decides, so that all publishers select the same
+// stamps.
 inline bool is_telemetry_sample(std::uint64_t imu_sequence, std::int64_t imu_period_ns) {
   constexpr std::int64_t kPeriodNs = 10'000'000;
   const std::int64_t every =

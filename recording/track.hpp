@@ -1,4 +1,4 @@
-// A record that one thread writes while others read.
+// Append-only record that one thread writes while others read.
 #pragma once
 
 #include <atomic>
@@ -7,8 +7,8 @@
 
 namespace swiftlet::ground {
 
-// Rows in the order in which they came: one thread appends and never waits, any thread reads those that are
-// in.
+// Rows in order of arrival. One thread appends without waiting. Any thread may read the rows appended so far.
+// When the track is full, further rows are dropped.
 template <class Row>
 class Track {
  public:
@@ -24,13 +24,13 @@ class Track {
     size_.store(at + 1, std::memory_order_release);
   }
 
-  void clear() noexcept {  // for another flight; while nobody reads
+  void clear() noexcept {  // only while no thread reads
     size_.store(0, std::memory_order_release);
     dropped_.store(0, std::memory_order_relaxed);
   }
 
   std::size_t size() const { return size_.load(std::memory_order_acquire); }
-  std::size_t dropped() const { return dropped_.load(std::memory_order_relaxed); }  // came when it was full
+  std::size_t dropped() const { return dropped_.load(std::memory_order_relaxed); }  // rows, since clear()
   bool empty() const { return size() == 0; }
   const Row& operator[](std::size_t i) const { return rows_[i]; }
   const Row& back() const { return rows_[size() - 1]; }

@@ -1,4 +1,4 @@
-// How well a flight followed its reference: the truth less the reference at equal stamps.
+// Tracking error of a flight: position of the ground truth minus position of the reference at equal stamps.
 #pragma once
 
 #include <array>
@@ -9,21 +9,22 @@
 namespace swiftlet::ground {
 
 struct TrackingErrors {
-  std::array<double, 3> rms_m{};   // north, east, down; NaN without a matched sample
-  std::array<double, 3> peak_m{};  // of the absolute value
+  std::array<double, 3> rms_m{};   // north, east, down; all errors are NaN without a matched sample
+  std::array<double, 3> peak_m{};  // largest absolute value
   double rms_3d_m = 0.0;
   double peak_3d_m = 0.0;
-  std::size_t matched = 0;     // samples of truth and reference with one stamp inside the window
-  double longest_gap_s = 0.0;  // between matched samples, the window's ends included
+  std::size_t matched = 0;     // pairs of truth and reference with equal stamps inside the window
+  double longest_gap_s = 0.0;  // between matched samples or a matched sample and an end of the window
 };
 
-// Rows of both tracks are in the order of their stamps.
+// The rows of both tracks must be in ascending order of their stamps.
 TrackingErrors tracking_errors(const Track<TruthRow>& truth, const Track<ReferenceRow>& reference,
                                Window window);
 
-// Enough samples to judge the flight by: half of those that rate_hz makes in the window, and never none for
-// longer than kLongestGapS, in which a slow loop could go astray and come back.
-constexpr double kTelemetryRateHz = 100.0;  // of references
+// True if there are enough samples to evaluate the flight: at least half of the number expected at rate_hz in
+// the window, and no gap longer than kLongestGapS. In a longer gap a slow loop could diverge and return
+// unnoticed.
+constexpr double kTelemetryRateHz = 100.0;  // rate of reference telemetry
 constexpr double kLeastMatchedFraction = 0.5;
 constexpr double kLongestGapS = 0.25;
 bool enough_samples(const TrackingErrors& errors, Window window, double rate_hz = kTelemetryRateHz);

@@ -45,14 +45,14 @@ void ClosedLoop::answer() {
   if (battery_) controller.on_battery(*battery_);
   if (rotor_speeds_) controller.on_rotor_speeds(*rotor_speeds_);
   command = controller.on_imu(*plant.imu());
-  if (sensors != nullptr) keep_sensors();
+  if (sensors != nullptr) record_sensors();
   pose_.reset();
   battery_.reset();
   rotor_speeds_.reset();
   if (command_path.send(command, plant.stamp_ns())) watchdog.accept(command, plant.stamp_ns());
 }
 
-void ClosedLoop::keep_sensors() const {
+void ClosedLoop::record_sensors() const {
   sensors->imu.append(*plant.imu());
   sensors->commands.append(command);
   if (pose_) sensors->poses.append(*pose_);

@@ -1,6 +1,6 @@
-// Plant, mocap and flight controller in one thread, without DDS: each IMU sample is answered at its own
-// stamp, after the samples that were taken before it. The separate processes do the same in lockstep, to the
-// last bit.
+// Plant, motion capture and flight controller in one thread, without DDS. The controller processes each IMU
+// sample at its own stamp, after all samples taken before it. The separate processes give bit-identical
+// results in lockstep.
 #pragma once
 
 #include <cstdint>
@@ -23,22 +23,23 @@ namespace swiftlet::ground {
 
 class ClosedLoop {
  public:
-  // Answers the samples of stamp 0. Throws std::invalid_argument as FlightController does.
+  // Processes the samples of stamp 0. Throws std::invalid_argument like FlightController.
   ClosedLoop(const plant::Vehicle& vehicle, const plant::SimulationSettings& simulation,
              const control::ControlSettings& settings, std::uint64_t seed);
-  // A controller that was designed on another vehicle than the one that flies. Both have as many rotors.
+  // As above, with a controller that is designed for control_vehicle and flies plant_vehicle. Both must have
+  // the same number of rotors.
   ClosedLoop(const plant::Vehicle& plant_vehicle, const plant::Vehicle& control_vehicle,
              const plant::SimulationSettings& simulation, const control::ControlSettings& settings,
              std::uint64_t seed);
 
-  // Up to the next stamp of the IMU, and the controller's answer to its sample if a fault does not keep it
-  // back.
+  // Advances to the next IMU stamp. The controller then processes the IMU sample, unless a fault suppresses
+  // it.
   void step();
-  // Steps until the predicate holds; false if it does not within limit_s of simulated time.
+  // Steps until the predicate is true. Returns false if it is not within limit_s of simulated time.
   bool step_until(const std::function<bool()>& predicate, double limit_s);
 
   double time_s() const { return static_cast<double>(plant.stamp_ns()) * 1e-9; }
-  // Position less reference, m NED; zero while the rotors are off.
+  // Position minus reference, m NED; zero while the rotors are off.
   Eigen::Vector3d tracking_error() const;
 
   const double imu_rate_hz;
@@ -48,17 +49,17 @@ class ClosedLoop {
   plant::CommandPath command_path;
   plant::ActuatorWatchdog watchdog;
   control::FlightController controller;
-  plant::ActuatorCommand command;  // the last answer
+  plant::ActuatorCommand command;  // the controller's last command
   bool mocap_connected = true;
-  SensorRecord* sensors = nullptr;  // where all that the controller gets and answers is kept; may be null
+  SensorRecord* sensors = nullptr;  // records the controller's inputs and commands; null: no record
 
  private:
   void collect();
   void answer();
-  void keep_sensors() const;
+  void record_sensors() const;
   const plant::MotorCommand& drive();
 
-  // The newest since the last answer.
+  // Newest samples since the last IMU sample that the controller processed.
   std::optional<plant::PoseSample> pose_;
   std::optional<plant::BatterySample> battery_;
   std::optional<plant::RotorSpeedSample> rotor_speeds_;

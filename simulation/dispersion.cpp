@@ -46,7 +46,7 @@ std::vector<double> drawn(const Dispersion& dispersion, std::vector<plant::Rando
   return values;
 }
 
-// K2 K3 / k_Q: the most that R_a may be, Eq. (21).
+// K2 K3 / k_Q: the upper limit of R_a by Eq. (21), at which the friction F is 0.
 double frictionless_resistance(const plant::Vehicle& vehicle) {
   return vehicle.motor.k2 * vehicle.motor.k3 / vehicle.rotor.torque;
 }
@@ -169,7 +169,7 @@ Dispersion dispersion_of(const plant::VehicleUncertainty& uncertainty, const pla
   if (uncertainty.parameters.empty()) {
     throw runtime::ConfigError(
         file, 0, "uncertainty",
-        "is missing, must say how sure the parameters are; `swiftlet identify` writes it");
+        "is missing, must list the standard errors of the parameters; `swiftlet identify` writes it");
   }
   Dispersion out;
   out.file = file;
@@ -208,7 +208,7 @@ Dispersion dispersion_of(const plant::VehicleUncertainty& uncertainty, const pla
     const Eigen::Index j = index_of(pair.second);
     if (i < count && j < count && i != j) correlation(i, j) = correlation(j, i) = pair.value;
   }
-  // Rounded numbers may not be a correlation of anything by a little: what is below 0 counts as 0.
+  // A matrix of rounded correlations may have slightly negative eigenvalues. They are set to 0.
   const math::SymmetricEigen eigen = math::symmetric_eigen(correlation);
   out.correlation_root = eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
   return out;

@@ -1,5 +1,5 @@
-// What differs from run to run of a batch: parameters of the vehicle and of the simulated world, each drawn
-// from a distribution. A seed gives the same draw on every machine, whatever was drawn before it.
+// Dispersion of a batch: parameters of the vehicle and of the simulation that vary from run to run, each with
+// a distribution. A seed gives the same sample on every machine, independent of earlier samples.
 #pragma once
 
 #include <cstdint>
@@ -20,12 +20,12 @@ struct World {
   plant::SimulationSettings simulation;
 };
 
-// What can be varied.
+// A parameter that can be varied.
 struct Parameter {
-  std::string name;  // "vehicle." or "simulation.", and the key of that file
-  std::string unit;  // empty: of several values, which are multiplied together
-  std::string rule;  // the key under which validate() speaks of this value alone; empty: must be above 0
-  std::vector<double*> (*in)(World& world);
+  std::string name;  // "vehicle." or "simulation." plus the key in that file
+  std::string unit;  // empty: several values, which are all multiplied by the same factor
+  std::string rule;  // key of validate()'s violations that concern only this value; empty: must be above 0
+  std::vector<double*> (*in)(World& world);  // the values in a world
 };
 
 const std::vector<Parameter>& parameters();  // in the order of columns and draws
@@ -39,9 +39,9 @@ enum class Distribution {
 struct ParameterDistribution {
   std::size_t parameter = 0;  // index into parameters()
   Distribution distribution = Distribution::kUniform;
-  bool of_nominal = false;  // what is drawn multiplies the nominal value; else it takes its place
-  double mean = 0.0;        // of kNormal, as sigma
-  double sigma = 0.0;
+  bool of_nominal = false;  // true: the sample multiplies the nominal value; false: it replaces it
+  double mean = 0.0;        // kNormal only
+  double sigma = 0.0;       // kNormal only
   double min = 0.0;
   double max = 0.0;
 
@@ -49,37 +49,39 @@ struct ParameterDistribution {
 };
 
 struct Dispersion {
-  std::string file;  // for messages
+  std::string file;  // used in messages
   std::string name;
-  std::vector<ParameterDistribution> distributions;  // in the order of parameters(), none twice
-  // Where it is not empty, all variates are normal ones without limits, and correlated: R R' is the
-  // correlation of their errors.
+  std::vector<ParameterDistribution> distributions;  // in the order of parameters(), without duplicates
+  // Square root R of the correlation matrix R R' of the parameters' errors. If it is not empty, all
+  // distributions are normal, correlated and not truncated.
   Eigen::MatrixXd correlation_root;
 };
 
-// What the uncertainty of a vehicle's file lets its parameters be: each as far from the file's value as its
-// standard error says, errors correlated as the file says. Throws runtime::ConfigError with `file` for a
-// parameter that cannot be varied, and if there is none.
+// Dispersion that follows the uncertainty section of a vehicle file: each parameter is normal about the
+// file's value with its standard error, and the errors are correlated. Throws runtime::ConfigError with
+// `file` if the section is missing or names a parameter that cannot be varied.
 Dispersion dispersion_of(const plant::VehicleUncertainty& uncertainty, const plant::Vehicle& vehicle,
                          const std::string& file);
-inline constexpr const char* kUncertainty = "uncertainty";  // its name, and that by which it is asked for
+inline constexpr const char* kUncertainty = "uncertainty";  // its name, also on the command line
 
 struct DispersionSample {
   World world;
-  std::vector<double> values;  // of the variates, in their units; without a unit the factor
-  int rejected = 0;            // draws before this one that broke a rule
+  std::vector<double> values;  // sampled values in their units, or the factor for parameters without a unit
+  int rejected = 0;            // invalid samples drawn before this one
 };
 
-// The rules that a world breaks, keys as in the two files.
+// Returns the rules that a world violates. Keys are those of the vehicle and the simulation file.
 std::vector<plant::Violation> validate(const World& world);
 
-// Puts `value`, or so many times what is there, into the world. Returns what a Draw tells of it.
+// Sets the parameter in the world to `value`, or multiplies it by `value` if of_nominal. Returns the entry of
+// DispersionSample::values.
 double apply(World& world, const ParameterDistribution& distribution, double value);
 
-// The draw of a seed: of each parameter from the stream that bears its name, so that neither the order of
-// keys nor the other parameters move it. A world that breaks a rule, as a body that no mass can have, is
-// drawn anew as a whole. The armature resistance follows K2, K3 and k_Q, K1 of Eq. (21) keeping its share of
-// K2, unless it is varied itself. Throws runtime::ConfigError if no draw in a hundred can be flown.
+// Draws the sample of a seed. Each parameter has a random stream of its own, named after it, so that neither
+// the order of keys nor the other parameters change its value. An invalid world, such as one whose inertia
+// violates the triangle inequality, is rejected and all parameters are drawn again. Unless the armature
+// resistance is varied itself, it follows K2, K3 and k_Q such that the ratio of K1, Eq. (21), to K2 remains
+// the nominal one. Throws runtime::ConfigError if 100 samples in a row are invalid.
 DispersionSample draw(const Dispersion& dispersion, const World& nominal, std::uint64_t seed);
 
 }  // namespace swiftlet::ground

@@ -45,7 +45,7 @@ void require_nominal(const ConfigNode& node, const ParameterDistribution& distri
     node.at("unit").fail("is nominal, must be " + distribution.what().unit + ": the nominal value is 0");
 }
 
-// Rules that several parameters break together are a matter of each draw.
+// Checks the rules that concern this parameter alone. draw() checks those that concern several.
 void require_allowed(const ConfigNode& limit, const ParameterDistribution& distribution, World world) {
   apply(world, distribution, limit.number());
   for (const plant::Violation& violation : validate(world)) {
@@ -54,7 +54,8 @@ void require_allowed(const ConfigNode& limit, const ParameterDistribution& distr
   }
 }
 
-ParameterDistribution read_variate(const std::string& name, const ConfigNode& node, const World& nominal) {
+ParameterDistribution read_distribution(const std::string& name, const ConfigNode& node,
+                                        const World& nominal) {
   ParameterDistribution distribution;
   distribution.parameter = parameter_index(name, node);
   distribution.distribution = node.at("distribution")
@@ -71,14 +72,14 @@ ParameterDistribution read_variate(const std::string& name, const ConfigNode& no
   return distribution;
 }
 
-Dispersion read_variation(const ConfigNode& root, const World& nominal) {
+Dispersion read_dispersion(const ConfigNode& root, const World& nominal) {
   Dispersion dispersion;
   dispersion.file = root.file();
   const auto name = root.find("name");
   dispersion.name = name ? name->text() : std::filesystem::path(root.file()).stem().string();
   const ConfigNode list = root.at("parameters");
   for (const auto& [key, node] : list.entries())
-    dispersion.distributions.push_back(read_variate(key, node, nominal));
+    dispersion.distributions.push_back(read_distribution(key, node, nominal));
   if (dispersion.distributions.empty()) list.fail("is empty, must name at least one parameter");
   root.reject_unknown_keys();
   std::sort(dispersion.distributions.begin(), dispersion.distributions.end(),
@@ -91,11 +92,11 @@ Dispersion read_variation(const ConfigNode& root, const World& nominal) {
 }  // namespace
 
 Dispersion load_dispersion_file(const std::string& path, const World& nominal) {
-  return read_variation(runtime::load_config(path), nominal);
+  return read_dispersion(runtime::load_config(path), nominal);
 }
 
 Dispersion parse_vary_file(const std::string& text, const std::string& file_name, const World& nominal) {
-  return read_variation(runtime::parse_config(text, file_name), nominal);
+  return read_dispersion(runtime::parse_config(text, file_name), nominal);
 }
 
 }  // namespace swiftlet::ground

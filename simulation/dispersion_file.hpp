@@ -1,6 +1,6 @@
-// Vary files (YAML), what the runs of a batch differ in:
+// Dispersion files (YAML) list the parameters that vary between the runs of a batch:
 //
-//   name: kaylion        # optional; the file's name without its ending
+//   name: kaylion        # optional; default: the file's name without its extension
 //   parameters:
 //     vehicle.mass: {distribution: normal, mean: 1, sigma: 0.02, min: 0.95, max: 1.05, unit: nominal,
 //                    source: estimate}
@@ -8,14 +8,16 @@
 //     vehicle.battery.internal_resistance: {distribution: log_uniform, min: 0.5, max: 2, unit: nominal,
 //                                           source: estimate}
 //
-// A parameter is a key of the vehicle file or of the simulation file behind "vehicle." or "simulation.", a
-// component of it (inertia.xx, wind_ned_m_s.north), or all of the inertia; parameters() of
-// simulation/dispersion.hpp lists them, as does the refusal of any other key. `unit` is the parameter's own
-// (that of a simulation key stands in its name), or nominal: what is drawn multiplies the value in the file.
+// A parameter is "vehicle." or "simulation." followed by a key of that file, a component of such a key
+// (inertia.xx, wind_ned_m_s.north), or the whole inertia. parameters() of simulation/dispersion.hpp lists
+// them; the error for an unknown key lists them too. `unit` is the parameter's own unit (a simulation key
+// contains it), or nominal: the sample then multiplies the value in the file.
 //
-// uniform: evenly between min and max. log_uniform: its logarithm is; min above 0. normal: mean and sigma,
-// and what falls outside min .. max is drawn again; mean between them, and they at least a sigma apart.
-// source: a text that says where the range is from, or estimate.
+// uniform: uniform between min and max.
+// log_uniform: the logarithm is uniform; min must be above 0.
+// normal: mean and sigma, truncated to min .. max; the mean must lie between them, and they must be at least
+// one sigma apart.
+// source: a text that states the origin of the range, or estimate.
 #pragma once
 
 #include <string>
@@ -24,8 +26,8 @@
 
 namespace swiftlet::ground {
 
-// Throws runtime::ConfigError with file, line, key, value and limit for whatever breaks the form, or lets a
-// parameter alone leave the range that the vehicle or the simulation may have.
+// Both functions throw runtime::ConfigError with file, line, key, value and limit if the file is malformed or
+// if min or max of a parameter violates a rule of the vehicle or the simulation by itself.
 Dispersion load_dispersion_file(const std::string& path, const World& nominal);
 Dispersion parse_vary_file(const std::string& text, const std::string& file_name, const World& nominal);
 

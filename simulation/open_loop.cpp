@@ -14,14 +14,14 @@ namespace {
 
 constexpr std::int64_t kRowPeriodNs = 1'000'000;
 constexpr double kMaxStepS = 2e-5;
-// Turn of the body in one step; its attitude is then off by 1e-8 after a second.
+// Largest rotation of the body in one step; the attitude error is then 1e-8 after one second.
 constexpr double kMaxTurnRad = 0.01;
-constexpr double kFastestTurn = 1e4;   // rad/s
-constexpr double kLargest = 1e6;       // of positions, velocities and rotor speeds to start with, SI
-constexpr double kFastestStart = 2e3;  // of body rates to start with, rad/s
+constexpr double kFastestTurn = 1e4;   // rad/s, limit of the body rate during the run
+constexpr double kLargest = 1e6;       // limit of initial positions, velocities and rotor speeds, SI
+constexpr double kFastestStart = 2e3;  // rad/s, limit of initial body rates
 constexpr double kUnitTolerance = 1e-3;
-constexpr double kLatestTimeS = 1e6;    // nanoseconds stay exact
-constexpr double kLongestRunS = 600.0;  // the motion is kept in memory
+constexpr double kLatestTimeS = 1e6;    // keeps nanoseconds exact
+constexpr double kLongestRunS = 600.0;  // bounds the memory of the result
 
 std::int64_t nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
 
@@ -32,15 +32,16 @@ bool finite(const plant::VehicleState& state) {
 
 double seconds(std::int64_t nanoseconds) { return static_cast<double>(nanoseconds) / 1e9; }
 
-// In steps that suit the body's rates; throws if it turns too fast.
+// Integrates up to until_ns, in steps that are short enough for the body rate. Throws std::runtime_error if
+// the rate is above kFastestTurn.
 void advance(const plant::Dynamics& dynamics, MotionRow& now, const plant::MotorCommand& drive,
              std::int64_t until_ns) {
   const double dt = static_cast<double>(until_ns - now.time_ns) * 1e-9;
   const double rate = now.state.body_rates_frd.norm();
   if (!(rate < kFastestTurn) || !finite(now.state)) {
-    throw std::runtime_error("the vehicle turns at " + runtime::exact(rate) +
-                             " rad/s at t = " + runtime::exact(seconds(now.time_ns)) +
-                             " s, the simulation holds up to " + runtime::exact(kFastestTurn) + " rad/s");
+    throw std::runtime_error("the body rate is " + runtime::exact(rate) +
+                             " rad/s at t = " + runtime::exact(seconds(now.time_ns)) + " s, must be below " +
+                             runtime::exact(kFastestTurn) + " rad/s");
   }
   const int count = static_cast<int>(std::ceil(dt * std::max(1.0 / kMaxStepS, rate / kMaxTurnRad)));
   for (int i = 0; i < count; ++i) dynamics.advance(now.state, drive, Eigen::Vector3d::Zero(), dt / count);
@@ -88,7 +89,7 @@ std::vector<PulseWidths> read_pulses(const runtime::CsvTable& table, const plant
     if (table.number(row, 0) - table.number(0, 0) > kLongestRunS) {
       table.fail(row, "t",
                  "is " + runtime::exact(table.number(row, 0) - table.number(0, 0)) +
-                     " s behind the first row's, must be at most " + runtime::exact(kLongestRunS) + " s");
+                     " s after the first row, must be at most " + runtime::exact(kLongestRunS) + " s");
     }
     for (std::size_t i = 0; i + 1 < table.column_count(); ++i) {
       pulses[row].throttle[i] =
@@ -99,7 +100,7 @@ std::vector<PulseWidths> read_pulses(const runtime::CsvTable& table, const plant
 }
 
 plant::VehicleState read_state(const runtime::CsvTable& table, int rotor_count) {
-  if (table.row_count() != 1) table.fail(1, "", "is a second row, there must be only one");
+  if (table.row_count() != 1) table.fail(1, "", "is a second row, the limit is one row");
   const auto value = [&](std::size_t column) {
     return table.number(0, column, runtime::between(-kLargest, kLargest));
   };

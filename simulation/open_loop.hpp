@@ -1,4 +1,4 @@
-// Open-loop simulation: given pulse widths, Eq. (1)-(28) and nothing else - no ground, drag, wind or noise,
+// Open-loop simulation: Eq. (1)-(28) driven by given pulse widths, without ground, drag, wind or noise, with
 // an ideal supply.
 #pragma once
 
@@ -12,21 +12,23 @@
 
 namespace swiftlet::ground {
 
-// Pulse widths from a time on, until the next.
+// Pulse widths that are held from time_ns to the time of the next row.
 struct PulseWidths {
   std::int64_t time_ns = 0;
-  plant::PerRotor throttle{};  // delta of Eq. (8)
+  plant::PerRotor throttle{};  // delta of Eq. (8), computed from the pulse widths
 };
 
-// Columns of the three files, for a vehicle of rotor_count rotors.
-// t,pwm1,...: s and microseconds; zero-order hold, the last row's time ends the run.
+// Columns of the CSV files for a vehicle with rotor_count rotors.
+// t,pwm1,...: s and microseconds. Zero-order hold; the time of the last row ends the run.
 std::vector<std::string> pulse_columns(int rotor_count);
-// px,py,pz,vx,vy,vz,qw,qx,qy,qz,p,q,r,om1,...: m and m/s NED, q_ned_from_frd, rad/s FRD, rad/s.
+// px,py,pz,vx,vy,vz,qw,qx,qy,qz,p,q,r,om1,...: m and m/s in NED, q_ned_from_frd, body rates in rad/s FRD,
+// rotor speeds in rad/s.
 std::vector<std::string> state_columns(int rotor_count);
 
-// Throw runtime::ConfigError with file, line, column, value and limit: pulse widths outside Eq. (8)'s range,
-// times that do not rise, a quaternion that is off unit length by more than 1e-3 (within, it is normalised),
-// a negative rotor speed, not exactly one state.
+// Both throw runtime::ConfigError with file, line, column, value and limit for pulse widths outside the range
+// of Eq. (8), times that do not increase, a run longer than 600 s, a quaternion whose length differs from 1
+// by more than 1e-3 (otherwise it is normalised), a negative rotor speed, and a number of states other than
+// one.
 std::vector<PulseWidths> read_pulses(const runtime::CsvTable& table, const plant::Vehicle& vehicle);
 plant::VehicleState read_state(const runtime::CsvTable& table, int rotor_count);
 
@@ -35,14 +37,15 @@ struct MotionRow {
   plant::VehicleState state;
 };
 
-// The motion from the first pulse time to the last, a row for each whole millisecond from the first on. At
-// least two pulses. Throws std::runtime_error if the numbers run away.
+// Simulates the motion from the first pulse time to the last, with one row per millisecond from the first on.
+// At least two rows of pulses. Throws std::runtime_error if the body rate reaches 1e4 rad/s or the state is
+// not finite.
 std::vector<MotionRow> simulate_open_loop(const plant::Vehicle& vehicle, double supply_voltage_v,
                                           const plant::VehicleState& initial,
                                           const std::vector<PulseWidths>& pulses);
 
-// t and state_columns(), each number in the shortest form that reads back as the same. The file appears whole
-// or not at all. Throws std::runtime_error.
+// Writes t and state_columns() as CSV. Each number has the shortest form that parses to the same value. The
+// file is written atomically. Throws std::runtime_error if it cannot be written.
 void write_motion(const std::string& path, const std::vector<MotionRow>& rows, int rotor_count);
 
 }  // namespace swiftlet::ground

@@ -71,7 +71,7 @@ class LoopTransport final : public MissionTransport {
     while (loop_.plant.stamp_ns() < stamp_ns) advance();
   }
 
-  // False if the flight is to end.
+  // Returns false if the flight is cancelled.
   bool observe() {
     const bool sampled = runtime::is_telemetry_sample(loop_.plant.imu_count(), imu_period_ns_);
     if (observer_.trace != nullptr) observer_.trace->add(loop_.plant.truth(), loop_.command);

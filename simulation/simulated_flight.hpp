@@ -1,4 +1,4 @@
-// A mission flown by a loop in this process, by the schedule of mission_runner.hpp.
+// Flies a mission in a single process, with the schedule of flight_schedule.hpp.
 #pragma once
 
 #include <cstdint>
@@ -14,19 +14,20 @@ namespace swiftlet::ground {
 
 struct SimulatedFlight {
   bool completed = false;
-  std::string reason;        // why not; empty if completed
-  double simulated_s = 0.0;  // from stamp 0
+  std::string reason;        // why the mission was not completed; empty if it was
+  double simulated_s = 0.0;  // simulated time from stamp 0
 };
 
-// What else a flight does, step by step; any of it may be empty.
+// Outputs of a flight during its steps, and its cancellation. Every member may be null.
 struct FlightObserver {
-  FlightRecord* record = nullptr;  // truth of each IMU sample, the rest at the rate of telemetry
+  FlightRecord* record = nullptr;  // ground truth at each IMU sample, the rest at the telemetry rate
   runtime::FlightTrace* trace = nullptr;
-  std::function<bool()> cancelled;  // asked at the rate of telemetry
+  std::function<bool()> cancelled;  // polled at the telemetry rate; true ends the flight
 };
 
-// Arms, flies and lands a fresh loop. The mission has an id other than 0, begins with a take-off, ends with a
-// landing and has passed control::check(). planned_duration_s bounds the time it may take.
+// Arms, flies the mission and lands. The loop must be newly constructed. The mission must have an id other
+// than 0, begin with a take-off, end with a landing and pass control::check(). planned_duration_s determines
+// the time limit.
 SimulatedFlight fly(ClosedLoop& loop, const control::Mission& mission, double planned_duration_s,
                     const FlightObserver& observer);
 

@@ -32,22 +32,22 @@ std::vector<double> innovations(const ArmaNoise& noise, const std::vector<double
 std::vector<double> expected_noise(const ArmaNoise& noise, const std::vector<double>& series,
                                    const std::vector<double>& innovations, std::size_t known,
                                    std::size_t ahead) {
-  std::array<double, kNoiseOrder> past{};      // of the series, the newest first
-  std::array<double, kNoiseOrder> surprise{};  // of the innovations, likewise
+  std::array<double, kNoiseOrder> past{};              // last values of the series, newest first
+  std::array<double, kNoiseOrder> past_innovations{};  // newest first
   for (std::size_t i = 0; i < kNoiseOrder; ++i) {
     past[i] = before(series, known, i + 1);
-    surprise[i] = before(innovations, known, i + 1);
+    past_innovations[i] = before(innovations, known, i + 1);
   }
   std::vector<double> out(ahead);
   for (double& value : out) {
     for (std::size_t i = 0; i < kNoiseOrder; ++i)
-      value += noise.numerator[i] * surprise[i] - noise.denominator[i] * past[i];
+      value += noise.numerator[i] * past_innovations[i] - noise.denominator[i] * past[i];
     for (std::size_t i = kNoiseOrder - 1; i > 0; --i) {
       past[i] = past[i - 1];
-      surprise[i] = surprise[i - 1];
+      past_innovations[i] = past_innovations[i - 1];
     }
     past[0] = value;
-    surprise[0] = 0.0;
+    past_innovations[0] = 0.0;
   }
   return out;
 }

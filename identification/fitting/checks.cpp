@@ -80,11 +80,11 @@ void require_each_between(const Column& column, double min, double max, const st
 void require_median_between(const Column& column, double min, double max, const std::string& because) {
   const double middle = median(column.values);
   if (!(middle >= min && middle <= max))
-    throw BadData(out_of(column, "is in the middle ", middle, min, max, because));
+    throw BadData(out_of(column, "has the median ", middle, min, max, because));
 }
 
 void require_drive(const Column& supply, const Column& throttle) {
-  require_each_between(throttle, 0.0, 1.0, "it is the share delta of Eq. (8)");
+  require_each_between(throttle, 0.0, 1.0, "it is the throttle delta of Eq. (8)");
   require_median_between(supply, kLeastSupplyVoltage, kMostSupplyVoltage, "no vehicle flies on less or more");
 }
 

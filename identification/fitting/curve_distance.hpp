@@ -1,5 +1,5 @@
-// Distance of a measured point from a curve y = f(x; p) where both readings are noisy: orthogonal distance
-// regression. Plain least squares, which takes x for exact, would flatten every curve by the noise of x.
+// Orthogonal distance regression: distance of a measured point from a curve y = f(x; p) if both readings are
+// noisy. Plain least squares assumes an exact x, so that noise in x reduces the slope of the fitted curve.
 #pragma once
 
 #include <cmath>
@@ -9,15 +9,15 @@
 
 namespace swiftlet::identification {
 
-// f at a point, and its derivatives.
+// Value and slope of f at a point.
 struct CurveValue {
   double y = 0.0;
   double slope = 0.0;  // df/dx
 };
 
-// Minimises ((y_read - f(x)) / y_spread)^2 + ((x_read - x) / x_spread)^2 over the true x. curve(x) gives a
-// CurveValue. Returns the root of the minimum with the sign of y_read - f, and in x where it lies. Its
-// derivative by a parameter p of the curve is -df/dp(x) / spread, spread as returned.
+// Minimises ((y_read - f(x)) / y_spread)^2 + ((x_read - x) / x_spread)^2 over the true x. curve(x) returns a
+// CurveValue. distance is the square root of the minimum with the sign of y_read - f, and x its location. The
+// derivative of distance by a parameter p of the curve is -df/dp(x) / spread.
 struct CurveDistance {
   double distance = 0.0;
   double x = 0.0;
@@ -27,7 +27,7 @@ struct CurveDistance {
 template <typename Curve>
 CurveDistance curve_distance(const Curve& curve, double x_read, double y_read, double x_spread,
                              double y_spread) {
-  constexpr int kMostSteps = 12;  // they converge by the curvature over a noise's width: two do
+  constexpr int kMostSteps = 12;  // two are enough if the slope hardly changes over the spread of x
   constexpr double kEnough = 1e-10;
   CurveDistance out;
   out.x = x_read;

@@ -9,8 +9,8 @@ namespace swiftlet::identification {
 
 namespace {
 
-constexpr double kIllConditioned = 30.0;  // Belsley, Kuh, Welsch 1980: collinearity begins to harm
-constexpr double kManyOutliers = 0.2;     // share of the rows
+constexpr double kIllConditioned = 30.0;  // Belsley, Kuh, Welsch 1980: collinearity is harmful above
+constexpr double kManyOutliers = 0.2;     // fraction of the rows
 
 void warn_of_collinearity(const Fit& fit, Experiment& experiment) {
   const auto count = static_cast<Eigen::Index>(experiment.estimates.size());
@@ -28,10 +28,10 @@ void warn_of_collinearity(const Fit& fit, Experiment& experiment) {
   const auto symbol = [&](Eigen::Index i) {
     return experiment.estimates[static_cast<std::size_t>(i)].symbol;
   };
-  experiment.warnings.push_back("these data can hardly tell " + symbol(first) + " and " + symbol(second) +
+  experiment.warnings.push_back("these data hardly tell " + symbol(first) + " and " + symbol(second) +
                                 " apart: correlation " + format_number(fit.correlation(first, second)) +
                                 ", condition number " + format_number(fit.condition) + ", should be below " +
-                                format_number(kIllConditioned) + "; readings over a wider range would");
+                                format_number(kIllConditioned) + "; readings over a wider range are needed");
 }
 
 void warn_of_wide_intervals(Experiment& experiment) {
@@ -39,7 +39,7 @@ void warn_of_wide_intervals(Experiment& experiment) {
     if (std::abs(estimate.value) > estimate.half_width) continue;
     experiment.warnings.push_back(estimate.symbol + " is " + format_number(estimate.value) + " +- " +
                                   format_number(estimate.half_width) + " " + estimate.unit +
-                                  ": these data cannot tell it from 0");
+                                  ": its 95 % interval contains 0");
   }
 }
 
@@ -105,7 +105,7 @@ Experiment conclude(const Fit& fit, const std::vector<ParameterName>& names, std
   if (static_cast<double>(out.outliers.size()) > kManyOutliers * rows) {
     out.warnings.push_back(
         std::to_string(out.outliers.size()) + " of " + std::to_string(out.measured.size()) +
-        " rows are outliers: the model does not describe these data, or they come from two set-ups");
+        " rows are outliers: the model does not describe these data, or they mix two set-ups");
   }
   warn_of_collinearity(fit, out);
   warn_of_wide_intervals(out);

@@ -1,4 +1,4 @@
-// What an experiment gives.
+// Results of an experiment.
 #pragma once
 
 #include <cstddef>
@@ -13,9 +13,9 @@
 
 namespace swiftlet::identification {
 
-// A parameter as found. The 95 % interval is value -+ half_width.
+// An estimated parameter. Its 95 % interval is value -+ half_width.
 struct ParameterEstimate {
-  std::string parameter;  // as in the vehicle file where it stands there: "motor.k2", "inertia.xx"
+  std::string parameter;  // its key if the vehicle file has one: "motor.k2", "inertia.xx"
   std::string symbol;     // as in the paper: "K2"
   std::string unit;
   double value = 0.0;
@@ -26,49 +26,49 @@ struct ParameterEstimate {
   double high() const { return value + half_width; }
 };
 
-// One experiment, identified. Rows are counted from 0, as given.
+// Result of one experiment. Rows are counted from 0 in the order of the data.
 struct Experiment {
   std::vector<ParameterEstimate> estimates;
   Eigen::MatrixXd covariance;  // of the estimates, in their order
-  double r_squared = 0.0;      // of the reading that the model explains, outliers left out
-  double residual_sd = 0.0;    // of that reading, in residual_unit
+  double r_squared = 0.0;      // of the measured quantity, without outliers
+  double residual_sd = 0.0;    // standard deviation of its residuals, without outliers, in residual_unit
   std::string residual_unit;
-  std::vector<double> predicted;  // that reading by the model, a value for each row
-  std::vector<double> measured;
-  std::vector<std::size_t> outliers;
-  std::vector<std::string> findings;  // what else the data say; sentences
-  std::vector<std::string> warnings;  // what the data cannot tell or do not agree with; sentences
+  std::vector<double> predicted;      // the quantity by the model, one value per row
+  std::vector<double> measured;       // the quantity as measured, one value per row
+  std::vector<std::size_t> outliers;  // rows, ascending
+  std::vector<std::string> findings;  // further results, as sentences
+  std::vector<std::string> warnings;  // what is not identifiable or contradicts the model, as sentences
 
   bool is_outlier(std::size_t row) const;
-  // Throws std::out_of_range if it was not estimated.
+  // Throws std::out_of_range if the parameter was not estimated.
   const ParameterEstimate& estimate(const std::string& parameter) const;
 };
 
-// Data from which nothing can be identified. what() is a sentence with value and limit, "speed: is 1500 rad/s
-// in all 40 rows, must vary".
+// Error for data from which nothing can be identified. what() is a sentence with value and limit: "speed: is
+// 1500 rad/s in all 40 rows, must vary".
 class BadData : public std::runtime_error {
  public:
   explicit BadData(const std::string& message, std::optional<std::size_t> row = std::nullopt)
       : std::runtime_error(message), row_(row) {}
-  std::optional<std::size_t> row() const { return row_; }  // the row at fault, if it is one
+  std::optional<std::size_t> row() const { return row_; }  // the faulty row, if it is a single one
 
  private:
   std::optional<std::size_t> row_;
 };
 
-// Names of a fit's parameters, in its order.
+// Names of one parameter of a fit.
 struct ParameterName {
   const char* parameter;
   const char* symbol;
   const char* unit;
 };
 
-// The experiment that a fit makes: estimates, outliers, R^2 and the warnings that hold for any fit. measured
-// and predicted are those of Experiment.
+// Builds the experiment from a fit: estimates, outliers, R^2 and the warnings that apply to any fit. names:
+// in the order of the fit's parameters. measured, predicted, residual_unit: as in Experiment.
 Experiment conclude(const Fit& fit, const std::vector<ParameterName>& names, std::vector<double> measured,
                     std::vector<double> predicted, const std::string& residual_unit);
 
-// A number for a sentence: four significant digits.
+// Formats a number for a message, with four significant digits.
 std::string format_number(double number);
 
 }  // namespace swiftlet::identification

@@ -1,4 +1,4 @@
-// Estimated parameters and how sure they are.
+// Estimated parameters and their covariance.
 #pragma once
 
 #include <Eigen/Core>

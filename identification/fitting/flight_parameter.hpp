@@ -1,4 +1,4 @@
-// One parameter of a fit to flights, and the problem that several make.
+// Parameters of a fit to flights.
 #pragma once
 
 #include <string>
@@ -12,18 +12,18 @@ struct FlightParameter {
   std::string name;
   std::string unit;
   double start = 0.0;
-  double scale = 1.0;  // by how much it may be off
-  double low = 0.0;    // bounds
-  double high = 0.0;
+  double scale = 1.0;  // expected size of the error of start
+  double low = 0.0;    // lower bound
+  double high = 0.0;   // upper bound
 };
 
-// Where a parameter stands among all; kAbsent: the logs cannot tell it.
+// Index of a parameter that is not identifiable from the logs.
 constexpr int kAbsent = -1;
 
-// Returns where it stands.
+// Appends the parameter and returns its index.
 int add(FlightParameter parameter, std::vector<FlightParameter>& parameters);
 
-// Of these parameters, as yet without residuals.
+// Returns a problem with the start, scales and bounds of these parameters, without residuals.
 SeriesProblem problem_of(const std::vector<FlightParameter>& parameters);
 
 }  // namespace swiftlet::identification

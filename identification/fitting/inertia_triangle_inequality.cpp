@@ -9,7 +9,7 @@
 namespace swiftlet::identification {
 namespace {
 
-constexpr double kChanceDeviations = 4.0;
+constexpr double kChanceDeviations = 4.0;  // largest correction, in standard deviations
 
 }  // namespace
 
@@ -20,26 +20,26 @@ std::optional<std::string> enforce_triangle_inequality(
   if (identified == 0) return std::nullopt;
   const bool all = identified == 3;
   Eigen::Vector3d moments = inertia.diagonal();
-  Eigen::Vector3d give = Eigen::Vector3d::Zero();
+  Eigen::Vector3d weight = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i < 3; ++i) {
     const std::optional<double>& variance = variances[static_cast<std::size_t>(i)];
     if (all) {
-      give[i] = *variance;
+      weight[i] = *variance;
     } else if (!variance) {
-      give[i] = moments[i] * moments[i];
+      weight[i] = moments[i] * moments[i];
     }
   }
   Eigen::Index largest = 0;
   moments.maxCoeff(&largest);
-  const double beyond = 2.0 * moments[largest] - moments.sum();
-  if (beyond <= 0.0 || (all && beyond > kChanceDeviations * std::sqrt(give.sum()))) return std::nullopt;
+  const double excess = 2.0 * moments[largest] - moments.sum();
+  if (excess <= 0.0 || (all && excess > kChanceDeviations * std::sqrt(weight.sum()))) return std::nullopt;
   for (Eigen::Index i = 0; i < 3; ++i)
-    moments[i] += (i == largest ? -1.0 : 1.0) * beyond * give[i] / give.sum();
+    moments[i] += (i == largest ? -1.0 : 1.0) * excess * weight[i] / weight.sum();
   inertia.diagonal() = moments;
-  return std::string(plant::kInertiaKeys[static_cast<std::size_t>(largest)]) + " came out " +
-         format_number(beyond) + " kg*m^2 above the sum of the other moments, which no body exceeds: " +
-         (all ? "the nearest that is possible, within what chance gives, is taken"
-              : "those that were not measured are moved");
+  return std::string(plant::kInertiaKeys[static_cast<std::size_t>(largest)]) + " was estimated " +
+         format_number(excess) + " kg*m^2 above the sum of the other moments, the limit for any body: " +
+         (all ? "all three are corrected, within their uncertainty, to the nearest possible inertia"
+              : "the moments that were not measured are corrected");
 }
 
 }  // namespace swiftlet::identification

@@ -1,4 +1,4 @@
-// Moments of inertia that a body can have.
+// Triangle inequality of the moments of inertia.
 #pragma once
 
 #include <array>
@@ -9,10 +9,12 @@
 
 namespace swiftlet::identification {
 
-// A flat vehicle's largest moment is nearly the sum of the others, which no body exceeds; noise alone may then
-// put it beyond. Moves the diagonal of inertia, kg m^2, to the nearest that is possible, and says so. variances
-// are of the moments that were identified: the others give way first, by any length; where all were, each gives
-// way by its variance, within what chance gives.
+// Corrects the diagonal of an inertia, kg m^2, that violates the triangle inequality: no moment of a body
+// exceeds the sum of the other two. The largest moment of a flat vehicle is nearly this sum, so that noise
+// alone may cause a violation. variances: those of the identified moments, kg^2 m^4. If some moments were not
+// identified, only these are corrected, by any amount. If all were identified, each is corrected in
+// proportion to its variance, up to four standard deviations of the excess. Returns a sentence that describes
+// the correction, or nullopt if there is none.
 std::optional<std::string> enforce_triangle_inequality(Eigen::Matrix3d& inertia,
                                                        const std::array<std::optional<double>, 3>& variances);
 

@@ -20,15 +20,15 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int kSubsets = 40;           // half the rows bad, two parameters: one of these is good for certain
+constexpr int kSubsets = 40;           // with half the rows bad and two parameters, one is good almost surely
 constexpr int kSubsetSteps = 4;        // Gauss-Newton steps on a subset
 constexpr int kReweightings = 15;      // with Tukey's biweight
 constexpr double kTukey = 4.685;       // 95 % as efficient as least squares on normal deviates
 constexpr double kNormalMad = 1.4826;  // standard deviation of normal deviates over their median magnitude
 constexpr double kFirstCut = 4.0;      // in robust standard deviations
-constexpr double kFalseOutliers = 0.01;  // experiments in which a good row is called an outlier
+constexpr double kFalseOutliers = 0.01;  // fraction of experiments in which a good row becomes an outlier
 constexpr int kMostScreenings = 20;
-constexpr double kLeastSpread = 1e-12;  // of residuals, against data without any noise
+constexpr double kLeastSpread = 1e-12;  // of residuals; for data without noise
 
 double magnitude_quantile(VectorXd residuals, double share) {
   residuals = residuals.cwiseAbs();
@@ -37,7 +37,7 @@ double magnitude_quantile(VectorXd residuals, double share) {
   return residuals[at];
 }
 
-// The problem in parameters of about 1, with a weight for each observation.
+// The problem with parameters scaled to the order of 1.
 class ScaledProblem {
  public:
   explicit ScaledProblem(const FitProblem& problem)
@@ -62,7 +62,7 @@ class ScaledProblem {
     jacobian_ = jacobian_ * scale_.asDiagonal();
     return residuals_;
   }
-  const MatrixXd& jacobian() const { return jacobian_; }  // as linearised last
+  const MatrixXd& jacobian() const { return jacobian_; }  // of the last call of linearise()
 
  private:
   const FitProblem& problem_;
@@ -98,13 +98,13 @@ class WeightedCost final : public ceres::CostFunction {
   const VectorXd& root_weights_;
 };
 
-// Least squares with these weights, from x on; returns whether it converged.
+// Weighted least squares, starting at x. Returns true if it converged.
 bool minimise(ScaledProblem& problem, const VectorXd& root_weights, VectorXd& x) {
   WeightedCost cost(problem, root_weights);
   return identification::minimise(cost, Minimisation(), problem.problem().on_iteration, x);
 }
 
-// Gauss-Newton on as many rows as there are parameters, from the start on. False where it leads nowhere.
+// Gauss-Newton on as many rows as there are parameters, beginning at the start. Returns false if it diverges.
 bool solve_subset(ScaledProblem& problem, const std::vector<Index>& rows, VectorXd& x) {
   const auto count = static_cast<Index>(rows.size());
   MatrixXd jacobian(count, problem.columns());
@@ -123,7 +123,8 @@ bool solve_subset(ScaledProblem& problem, const std::vector<Index>& rows, Vector
   return problem.residuals(x).allFinite();
 }
 
-// The least median of magnitudes (Rousseeuw 1984) over subsets, the start itself included.
+// Least median of squares (Rousseeuw 1984): of the start and the solutions of random subsets, the one with
+// the smallest median magnitude of all residuals.
 VectorXd best_start(ScaledProblem& problem) {
   VectorXd best = problem.start();
   double least = magnitude_quantile(problem.residuals(best), 0.5);
@@ -151,7 +152,7 @@ double robust_spread(const VectorXd& residuals, Index parameters) {
   return std::max(kNormalMad * correction * magnitude_quantile(residuals, 0.5), kLeastSpread);
 }
 
-// Iterated reweighting with Tukey's biweight; leaves x at the robust estimate.
+// Iteratively reweighted least squares with Tukey's biweight. Sets x to the robust estimate.
 void reweight(ScaledProblem& problem, VectorXd& x) {
   VectorXd root_weights(problem.rows());
   for (int round = 0; round < kReweightings; ++round) {
@@ -190,12 +191,12 @@ MatrixXd inverse_information(const MatrixXd& jacobian, const VectorXd& weights) 
   return information.completeOrthogonalDecomposition().pseudoInverse();
 }
 
-// What follows from the rows inside.
+// Statistics of the fit to the rows that are not outliers.
 struct Spread {
   double sigma = 0.0;
   int degrees_of_freedom = 0;
   MatrixXd inverse;    // of J^T J, scaled parameters
-  VectorXd leverages;  // J_i (J^T J)^-1 J_i^T, of all rows
+  VectorXd leverages;  // J_i (J^T J)^-1 J_i^T for every row i, outliers included
 };
 
 Spread spread_of(const VectorXd& residuals, const MatrixXd& jacobian, const VectorXd& weights) {
@@ -207,18 +208,19 @@ Spread spread_of(const VectorXd& residuals, const MatrixXd& jacobian, const Vect
   return out;
 }
 
-// Each row judged by the fit to the others: which of them stay.
+// Tests each row against the fit to the other rows (externally studentised residuals). Returns true for each
+// row that is not an outlier.
 std::vector<bool> screened(const VectorXd& residuals, const Spread& spread, const std::vector<bool>& inside) {
   const double tail = 0.5 * kFalseOutliers / static_cast<double>(inside.size());
   const double dof = spread.degrees_of_freedom;
-  std::vector<bool> stays(inside.size());
+  std::vector<bool> accepted(inside.size());
   for (std::size_t i = 0; i < inside.size(); ++i) {
     const auto row = static_cast<Index>(i);
     const double leverage = spread.leverages[row];
     if (!inside[i]) {
       const double expected = spread.sigma * std::sqrt(1.0 + leverage);
-      stays[i] = std::abs(residuals[row]) <=
-                 student_quantile(tail, spread.degrees_of_freedom) * expected + kLeastSpread;
+      accepted[i] = std::abs(residuals[row]) <=
+                    student_quantile(tail, spread.degrees_of_freedom) * expected + kLeastSpread;
       continue;
     }
     const double rest = std::max(1.0 - leverage, 1e-9);
@@ -226,9 +228,9 @@ std::vector<bool> screened(const VectorXd& residuals, const Spread& spread, cons
                            std::max(dof - 1.0, 1.0);
     const double expected = std::sqrt(std::max(without, 0.0) * rest);
     const double limit = student_quantile(tail, std::max(1, spread.degrees_of_freedom - 1));
-    stays[i] = std::abs(residuals[row]) <= limit * expected + kLeastSpread;
+    accepted[i] = std::abs(residuals[row]) <= limit * expected + kLeastSpread;
   }
-  return stays;
+  return accepted;
 }
 
 double serial_correlation(const VectorXd& residuals, const std::vector<bool>& inside) {
@@ -245,8 +247,8 @@ double serial_correlation(const VectorXd& residuals, const std::vector<bool>& in
   return square > 0.0 ? product / square : 0.0;
 }
 
-// By how much the variance of a mean of correlated deviates exceeds that of independent ones. Correlation
-// that chance alone explains does not count.
+// Factor by which the variance of a mean of correlated deviates exceeds that of independent ones. It is 1 for
+// a correlation that is not significant.
 double variance_inflation(double correlation, Index count) {
   if (correlation < 3.0 / std::sqrt(static_cast<double>(count))) return 1.0;
   const double bounded = std::min(correlation, 0.999);
@@ -313,9 +315,9 @@ Fit fit(const FitProblem& given) {
     out.converged = minimise(problem, weights, x);
     residuals = problem.linearise(x);
     spread = spread_of(residuals, problem.jacobian(), weights);
-    const std::vector<bool> stays = screened(residuals, spread, inside);
-    if (stays == inside || !enough(stays)) break;
-    inside = stays;
+    const std::vector<bool> accepted = screened(residuals, spread, inside);
+    if (accepted == inside || !enough(accepted)) break;
+    inside = accepted;
   }
 
   out.parameters = problem.unscaled(x);

@@ -1,5 +1,5 @@
-// Robust nonlinear least squares: the fit behind every experiment. Outliers are found, left out and listed,
-// not weighted down in silence; the rest is plain least squares, so that its intervals mean what they say.
+// Robust nonlinear least squares, used by all experiments. Outliers are detected, excluded and listed. The
+// remaining observations are fitted by plain least squares, so that the confidence intervals are valid.
 #pragma once
 
 #include <cstddef>
@@ -12,44 +12,45 @@
 
 namespace swiftlet::identification {
 
-// Residual of each observation, in units of the spread that its instruments are taken to have (a common
-// factor does not matter), and, where jacobian is not null, their derivatives: one row an observation, one
-// column a parameter. Both are sized when called. A residual that is not finite ends the fit.
+// Computes the residual of each observation over the assumed spread of its instruments (a common factor does
+// not matter) and, if jacobian is not null, the derivatives: one row per observation, one column per
+// parameter. Both have the right size when the function is called. A residual that is not finite ends the
+// fit.
 using ResidualFunction = std::function<void(const Eigen::VectorXd& parameters, Eigen::VectorXd& residuals,
                                             Eigen::MatrixXd* jacobian)>;
 
 struct FitProblem {
   std::size_t observations = 0;
-  Eigen::VectorXd start;  // of the right order of magnitude and not 0: parameters are scaled by it
+  Eigen::VectorXd start;  // order of magnitude of the parameters, not 0; parameters are scaled by it
   ResidualFunction residuals;
-  // Observations may be wrong in what they were taken at, not only in what was read (a rotor speed counted
-  // twice): the fit then starts from the best of many small subsets, where single rows cannot pull it along.
+  // True if the independent variable of an observation may be wrong as well (a rotor speed counted twice).
+  // The fit then starts from the best of many small subsets, so that single rows cannot dominate it.
   bool bad_leverage = true;
-  // Observations follow each other in time: if their residuals do too, intervals are widened by the
-  // correlation.
+  // True if the observations are a time series. Intervals are then widened by the serial correlation of the
+  // residuals.
   bool time_series = false;
-  std::function<void()> on_iteration;  // may be empty; for fits that take long
+  std::function<void()> on_iteration;  // may be empty; called at each iteration, for progress
 };
 
-// The covariance is heteroscedasticity-consistent (MacKinnon, White 1985, HC3): it holds also where the
-// spread is not the same everywhere.
+// Result of a fit. The covariance is heteroscedasticity-consistent (MacKinnon, White 1985, HC3): it is valid
+// if the spread differs between observations.
 struct Fit : EstimatedParameters {
   std::vector<double> residuals;      // of all observations, as the problem defines them
-  std::vector<std::size_t> outliers;  // observations left out, rising
+  std::vector<std::size_t> outliers;  // excluded observations, ascending
   double sigma = 0.0;                 // standard deviation of the residuals without outliers
-  double condition =
-      0.0;  // of the Jacobian with columns of length 1; 1: parameters act apart, above 30: hardly
-  double serial_correlation = 0.0;  // of neighbouring residuals, for time series
+  double condition = 0.0;             // of the Jacobian with columns of length 1; above 30: collinear
+  double serial_correlation = 0.0;    // between consecutive residuals, for time series
   bool converged = false;
 
   bool is_outlier(std::size_t observation) const;
 };
 
-// At least one more observation than parameters. An observation is an outlier if, judged by the fit to the
-// others, it is further off than the furthest of so many normal deviates would be in 99 of 100 experiments.
+// Requires more observations than parameters. An observation is an outlier if its residual against the fit to
+// the other observations exceeds the limit that all of the same number of normal deviates keep in 99 of 100
+// experiments.
 Fit fit(const FitProblem& problem);
 
-// Half the length of a 95 % interval over the standard error, by Student's distribution.
+// Half-width of a 95 % interval over the standard error, by Student's distribution.
 double interval_factor(int degrees_of_freedom);
 
 }  // namespace swiftlet::identification

@@ -36,8 +36,9 @@ bool minimise(ceres::CostFunction& cost, const Minimisation& settings,
   options.function_tolerance = settings.function_tolerance;
   options.parameter_tolerance = settings.parameter_tolerance;
   options.gradient_tolerance = settings.gradient_tolerance;
-  // With bounds, every step is searched along its line, as a rule at its end alone. Of the default, cubic, that takes
-  // the Jacobian each time: two out of three of a fit, which are most of its time.
+  // With bounds, Ceres runs a line search on every step, which usually evaluates only its end point. The
+  // default, cubic interpolation, needs the Jacobian there: two of three Jacobians of a fit, which take most
+  // of its time.
   options.line_search_interpolation_type = ceres::QUADRATIC;
   options.callbacks.push_back(&callback);
   ceres::Solver::Summary summary;

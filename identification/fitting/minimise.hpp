@@ -1,5 +1,5 @@
-// One block of parameters and one of residuals, handed to Ceres. For the sources of this library alone: its
-// other headers name no Ceres.
+// Least squares with one parameter block and one residual block, solved by Ceres. Internal to this library:
+// its other headers do not include Ceres.
 #pragma once
 
 #include <functional>
@@ -19,8 +19,8 @@ struct Minimisation {
   Eigen::VectorXd high;
 };
 
-// Least squares from x on, which is left at the best that was found; on_iteration may be empty. Whether it
-// converged, to finite parameters.
+// Minimises the cost, starting at x, and sets x to the best solution found. on_iteration may be empty.
+// Returns true if the solver converged to finite parameters.
 bool minimise(ceres::CostFunction& cost, const Minimisation& settings,
               const std::function<void()>& on_iteration, Eigen::VectorXd& x);
 

@@ -1,5 +1,4 @@
-// The last few results of a computation that is asked for again and again, as by a fit whose steps move one
-// parameter at a time.
+// Cache of the most recent results of a computation, for a fit that changes one parameter at a time.
 #pragma once
 
 #include <cstddef>
@@ -9,13 +8,14 @@
 
 namespace swiftlet::identification {
 
-// One thread at a time.
+// Not thread-safe.
 template <class Key, class Result>
 class RecentResults {
  public:
   explicit RecentResults(std::size_t most) : most_(most) { kept_.reserve(most); }
 
-  // What `compute` returned for an equal key, if that is still kept, or what it returns now.
+  // Returns the cached result for an equal key, or calls `compute` and caches its result. When the cache is
+  // full, the oldest result is replaced.
   template <class Compute>
   std::shared_ptr<const Result> of(const Key& key, const Compute& compute) {
     for (const auto& [kept, result] : kept_) {

@@ -16,16 +16,16 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kStep = 1e-3;        // of central differences, over a parameter's scale
-constexpr int kMostReweightings = 4;  // spreads of the channels, then a fit with them
-constexpr double kSettled = 0.01;     // of the spreads, relative
+constexpr int kMostReweightings = 4;  // fits, each with the channel spreads of the one before
+constexpr double kSettled = 0.01;     // relative change of the spreads that ends the reweighting
 constexpr double kLeastSpread = 1e-9;
-constexpr double kUnseen = 1e-14;         // of the largest eigenvalue of the normal equations
-constexpr double kUnseenDeviation = 1e4;  // standard deviation along what is not seen, in scales
+constexpr double kUnseen = 1e-14;         // eigenvalue of the normal matrix over the largest one
+constexpr double kUnseenDeviation = 1e4;  // standard deviation in unobservable directions, in scales
 
-// Residuals over their channels' spreads, in parameters over their scales.
-class WeighedProblem final : public ceres::CostFunction {
+// The problem with residuals divided by the spreads of their channels and parameters divided by their scales.
+class WeightedProblem final : public ceres::CostFunction {
  public:
-  explicit WeighedProblem(const SeriesProblem& problem)
+  explicit WeightedProblem(const SeriesProblem& problem)
       : problem_(problem),
         rows_(static_cast<Index>(problem.segments.size())),
         spread_(VectorXd::Ones(static_cast<Index>(problem.channels.size()))),
@@ -71,8 +71,8 @@ class WeighedProblem final : public ceres::CostFunction {
     return out;
   }
 
-  // From residuals without weights. Returns the largest relative change.
-  double weigh(const VectorXd& residuals) {
+  // Sets the channel spreads from unweighted residuals. Returns the largest relative change.
+  double update_spreads(const VectorXd& residuals) {
     double change = 0.0;
     for_each_channel([&](Index channel, Index first, Index size) {
       const double square = residuals.segment(first, size).squaredNorm();
@@ -102,10 +102,10 @@ class WeighedProblem final : public ceres::CostFunction {
   mutable VectorXd below_;
 };
 
-// Of a matrix of normal equations, in parameters over their scales.
+// Inverse of the normal matrix, in scaled parameters.
 struct Information {
-  MatrixXd inverse;  // along what the residuals see
-  MatrixXd unseen;   // the covariance of the rest: directions in which no residual changes
+  MatrixXd inverse;  // in the directions in which residuals change
+  MatrixXd unseen;   // covariance in the other, unobservable directions
 };
 
 Information inverted(const MatrixXd& normal) {
@@ -138,16 +138,16 @@ Minimisation minimisation_of(const SeriesProblem& problem) {
 }  // namespace
 
 SeriesFit fit_series(const SeriesProblem& problem) {
-  WeighedProblem cost(problem);
+  WeightedProblem cost(problem);
   VectorXd x = problem.start.cwiseQuotient(problem.scale);
   SeriesFit out;
   out.residuals.resize(static_cast<Index>(problem.segments.size()));
   problem.residuals(problem.start, out.residuals);
-  cost.weigh(out.residuals);
+  cost.update_spreads(out.residuals);
   for (int round = 0; round < kMostReweightings; ++round) {
     out.converged = minimise(cost, minimisation_of(problem), problem.on_iteration, x);
     problem.residuals(x.cwiseProduct(problem.scale), out.residuals);
-    if (cost.weigh(out.residuals) < kSettled) break;
+    if (cost.update_spreads(out.residuals) < kSettled) break;
   }
 
   const VectorXd residuals = cost.residuals_at(x);

@@ -1,5 +1,4 @@
-// Least squares over series in time, whose residuals are correlated from sample to sample and from series to
-// series.
+// Least squares over time series with residuals that are correlated between samples and between series.
 #pragma once
 
 #include <cstddef>
@@ -12,28 +11,30 @@
 
 namespace swiftlet::identification {
 
-// A residual series: rows of one kind, as of one axis of the gyro.
+// A series of residuals of one kind, such as one gyro axis.
 struct Channel {
-  std::size_t first = 0;  // among all residuals
+  std::size_t first = 0;  // index of its first residual
   std::size_t size = 0;
 };
 
 struct SeriesProblem {
   Eigen::VectorXd start;
-  Eigen::VectorXd scale;  // of each parameter: by how much it may be off; steps of differences follow it
-  Eigen::VectorXd low;    // bounds
-  Eigen::VectorXd high;
-  std::vector<Channel> channels;       // that make up the residuals, in their order
-  std::vector<std::size_t> segments;  // of each residual: the segment of time that it belongs to
-  std::size_t segment_count = 0;
-  // Residuals of a channel in one unit; channels are weighed by their spread. Sized already.
+  Eigen::VectorXd scale;  // expected size of the error of start; sets the steps of numerical differences
+  Eigen::VectorXd low;    // lower bounds
+  Eigen::VectorXd high;   // upper bounds
+  std::vector<Channel> channels;      // the channels that make up the residuals, in their order
+  std::vector<std::size_t> segments;  // of each residual: index of its segment of time
+  std::size_t segment_count = 0;      // number of segments
+  // Computes the residuals into a vector of the right size. All residuals of a channel have the same unit;
+  // the fit weights the channels by their spread.
   std::function<void(const Eigen::VectorXd& parameters, Eigen::VectorXd& residuals)> residuals;
   std::function<void()> on_iteration;  // may be empty
 };
 
-// The covariance is robust against correlation inside a segment, between all channels (Liang, Zeger 1986),
-// with the correction for few segments; the degrees of freedom are segments less parameters. What no residual
-// depends on has a standard error of 1e4 of the parameters' scales.
+// Result of a fit. The covariance is robust against correlation inside a segment of time, across all channels
+// (Liang, Zeger 1986), with the correction for a small number of segments. The degrees of freedom are the
+// number of segments minus the number of parameters. In directions that no residual depends on, the standard
+// error is 1e4 times the parameters' scales.
 struct SeriesFit : EstimatedParameters {
   Eigen::VectorXd residuals;           // in the channels' units
   std::vector<double> channel_spread;  // standard deviation of each channel's residuals

@@ -1,4 +1,5 @@
-// Battery: open-circuit voltage over state of charge, one lag for the sag under load. Not in the paper.
+// Battery: open-circuit voltage over state of charge, and a first-order lag for the sag under load. Not in
+// the paper.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 
 namespace swiftlet::plant {
 
-// V, linear between the table's points. A state of charge beyond 0 .. 1 counts as the end.
+// V, linear between the points of the table. The state of charge is clamped to 0 .. 1.
 inline double open_circuit_voltage(const BatteryParameters& battery, double state_of_charge) {
   const std::vector<double>& soc = battery.state_of_charge;
   const std::vector<double>& voltage = battery.open_circuit_voltage_v;
@@ -18,7 +19,8 @@ inline double open_circuit_voltage(const BatteryParameters& battery, double stat
   return voltage[i - 1] + (voltage[i] - voltage[i - 1]) * (s - soc[i - 1]) / (soc[i] - soc[i - 1]);
 }
 
-// 0 .. 1: open_circuit_voltage() backwards. A voltage beyond the table counts as its end.
+// State of charge, 0 .. 1: the inverse of open_circuit_voltage(). The voltage is clamped to the range of the
+// table.
 inline double state_of_charge_from_voltage(const BatteryParameters& battery, double open_circuit_voltage_v) {
   const std::vector<double>& soc = battery.state_of_charge;
   const std::vector<double>& voltage = battery.open_circuit_voltage_v;
@@ -28,7 +30,7 @@ inline double state_of_charge_from_voltage(const BatteryParameters& battery, dou
   return soc[i - 1] + (soc[i] - soc[i - 1]) * (v - voltage[i - 1]) / (voltage[i] - voltage[i - 1]);
 }
 
-// v_s of Eq. (9), V: v_oc(soc) - v_sag, never below 0.
+// v_s of Eq. (9), V: v_oc(soc) - v_sag, at least 0.
 inline double terminal_voltage(const BatteryParameters& battery, double state_of_charge,
                                double sag_voltage_v) {
   return std::max(open_circuit_voltage(battery, state_of_charge) - sag_voltage_v, 0.0);

@@ -6,10 +6,10 @@ namespace swiftlet::plant {
 
 namespace {
 
-// J_r from the rise time of a step from rest. With c = K1 / R_a = k_Q / K3 the physical model is the Riccati
-// equation
-//   J_r dOmega/dt = c (v_a - K2 Omega - K3 Omega^2) = k_Q (s - Omega) (Omega + s'),  s' = s + K2 / K3,
-// s being the final speed. Separated and integrated from 0 to (1 - 1/e) s:
+// J_r from the rise time of a step from rest. With c = K1 / R_a = k_Q / K3 and the final speed s, the
+// physical model is the Riccati equation
+//   J_r dOmega/dt = c (v_a - K2 Omega - K3 Omega^2) = k_Q (s - Omega) (Omega + s'),  s' = s + K2 / K3.
+// Separation of variables and integration from 0 to (1 - 1/e) s give
 //   t = J_r / (k_Q (s + s')) (1 + ln(1 + (1 - 1/e) s / s')).
 double rotor_inertia_from_rise_time(const Motor& motor, double rotor_torque, double final_speed) {
   const double other_root = final_speed + motor.k2 / motor.k3;

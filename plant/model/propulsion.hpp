@@ -1,5 +1,5 @@
-// The whole chain of one rotor at a supply voltage v_s: throttle delta -> v_a -> Omega -> thrust in the
-// steady state, and back.
+// Steady-state propulsion chain of one rotor at a supply voltage v_s: throttle delta -> v_a -> Omega ->
+// thrust, and the inverse.
 #pragma once
 
 #include "swiftlet/plant/model/esc.hpp"
@@ -9,29 +9,29 @@
 
 namespace swiftlet::plant {
 
-// rad/s. Eq. (9) and (22).
+// Speed in rad/s, Eq. (9) and (22).
 inline double steady_speed_from_throttle(const Vehicle& vehicle, double supply_voltage_v, double throttle) {
   return steady_speed_from_voltage(vehicle.motor, motor_voltage(vehicle.esc, supply_voltage_v, throttle));
 }
 
-// 0 .. 1, the throttle that comes nearest to the speed.
+// Throttle, 0 .. 1, whose steady speed is nearest to the given one.
 inline double throttle_from_steady_speed(const Vehicle& vehicle, double supply_voltage_v, double speed) {
   return throttle_from_motor_voltage(vehicle.esc, supply_voltage_v,
                                      voltage_from_steady_speed(vehicle.motor, speed));
 }
 
-// N. Eq. (9), (22) and (25).
+// Thrust in N, Eq. (9), (22) and (25).
 inline double steady_thrust_from_throttle(const Vehicle& vehicle, double supply_voltage_v, double throttle) {
   return thrust_from_speed(vehicle.rotor, steady_speed_from_throttle(vehicle, supply_voltage_v, throttle));
 }
 
-// 0 .. 1, the throttle that comes nearest to the thrust.
+// Throttle, 0 .. 1, whose steady thrust is nearest to the given one.
 inline double throttle_from_steady_thrust(const Vehicle& vehicle, double supply_voltage_v, double thrust_n) {
   return throttle_from_steady_speed(vehicle, supply_voltage_v, speed_from_thrust(vehicle.rotor, thrust_n));
 }
 
-// What one running rotor can hold at a supply voltage, N: its thrust at throttle 0, which is not 0, and at
-// throttle 1.
+// Steady thrust range of one running rotor at a supply voltage, N: the thrust at throttle 0, which is above
+// 0, and at throttle 1.
 struct ThrustRange {
   double min = 0.0;
   double max = 0.0;

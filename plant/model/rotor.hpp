@@ -1,5 +1,5 @@
-// Rotor, Eq. (23)-(26): speed Omega in rad/s -> thrust T in N and torque Q in N m, and back. A rotor turns
-// one way only: negative thrusts need speed 0.
+// Rotor, Eq. (23)-(26): speed Omega in rad/s -> thrust T in N and torque Q in N m, and the inverse. A rotor
+// turns in one direction only: a negative thrust gives speed 0.
 #pragma once
 
 #include <algorithm>
@@ -14,12 +14,12 @@ inline double thrust_from_speed(const RotorCoefficients& rotor, double speed) {
   return rotor.thrust * speed * speed;
 }
 
-// Eq. (26), the magnitude of the torque; Spin says which way it acts.
+// Eq. (26), the magnitude of the torque. Spin gives its direction.
 inline double torque_from_speed(const RotorCoefficients& rotor, double speed) {
   return rotor.torque * speed * speed;
 }
 
-// Eq. (25) backwards.
+// Inverse of Eq. (25).
 inline double speed_from_thrust(const RotorCoefficients& rotor, double thrust_n) {
   return std::sqrt(std::max(thrust_n, 0.0) / rotor.thrust);
 }

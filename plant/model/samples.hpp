@@ -1,7 +1,6 @@
-// The vehicle and mocap boundaries as plain structs: what a vehicle measures, what it obeys, what motion
-// capture sees. Frames: n is North-East-Down (suffix _ned), b is Forward-Right-Down (suffix _frd). SI units,
-// radians. stamp_ns is the time of the measurement on the vehicle's clock; sequence counts up from 1 for each
-// stream.
+// Inputs and outputs of the vehicle and of motion capture as plain structs. Frames: n is North-East-Down
+// (suffix _ned), b is Forward-Right-Down (suffix _frd). SI units, radians. stamp_ns is the time of the
+// measurement on the vehicle's clock. sequence counts up from 1 in each stream.
 #pragma once
 
 #include <array>
@@ -15,7 +14,7 @@ namespace swiftlet::plant {
 constexpr int kMinRotors = 4;
 constexpr int kMaxRotors = 8;
 
-// One value per rotor; only the first rotor_count entries have a meaning, the rest are zero.
+// One value per rotor. Only the first rotor_count entries are used; the rest are 0.
 using PerRotor = std::array<double, kMaxRotors>;
 
 struct ImuSample {
@@ -26,9 +25,9 @@ struct ImuSample {
 };
 
 struct PoseSample {
-  std::int64_t stamp_ns = 0;  // when the frame was exposed, not when it arrived
+  std::int64_t stamp_ns = 0;  // exposure of the frame, not its arrival
   std::uint64_t sequence = 0;
-  bool tracked = false;  // false: the system saw too few markers; the pose is then without meaning
+  bool tracked = false;  // false: too few markers were visible, the pose below is invalid
   Eigen::Vector3d position_ned = Eigen::Vector3d::Zero();  // m
   Eigen::Quaterniond q_ned_from_frd = Eigen::Quaterniond::Identity();
 };
@@ -48,29 +47,29 @@ struct RotorSpeedSample {
   PerRotor speeds{};  // rad/s
 };
 
-// "Rotors off" is a state of its own: at throttle 0 the ESC of Eq. (9) still turns them.
+// "Off" differs from throttle 0, at which the ESC of Eq. (9) still turns the rotor.
 enum class RotorState : std::uint8_t { kOff = 0, kRunning = 1 };
 
 struct ActuatorCommand {
-  std::int64_t stamp_ns = 0;  // stamp of the IMU sample that this command answers
+  std::int64_t stamp_ns = 0;  // stamp of the IMU sample that this command was computed from
   std::uint64_t sequence = 0;
-  std::uint64_t imu_sequence = 0;    // the IMU sample that this command answers
-  std::uint64_t mocap_sequence = 0;  // the newest mocap frame that had been taken in
+  std::uint64_t imu_sequence = 0;    // sequence of that IMU sample
+  std::uint64_t mocap_sequence = 0;  // newest mocap frame received before this command
   RotorState rotor_state = RotorState::kOff;
   int rotor_count = 0;
   PerRotor throttle{};     // delta of Eq. (8), 0 .. 1
-  std::uint32_t term = 0;  // of the controller: whoever takes over from another begins a higher one
+  std::uint32_t term = 0;  // controller's term: a controller that takes over starts a higher one
 };
 
-// What the vehicle says of the commands that reach it.
+// The vehicle's report of the newest command that it accepted.
 struct ObeyedCommand {
-  bool reported = false;  // it says so at all; else nothing below has a meaning
-  bool any = false;       // it has obeyed a command since it was started; else the rest has no meaning
+  bool reported = false;  // the vehicle sends this report; if false, all fields below are invalid
+  bool any = false;       // a command was accepted since start-up; if false, the fields below are invalid
   std::uint32_t term = 0;
-  std::int64_t stamp_ns = 0;  // of the IMU sample that the command answered
+  std::int64_t stamp_ns = 0;  // stamp of the IMU sample that the command was computed from
 };
 
-// What a perfect observer knows of the vehicle. Only the mocap simulation and recorders may look at it.
+// Ground truth of the simulated vehicle. Only the motion capture simulator and recorders may read it.
 struct TruthSample {
   std::int64_t stamp_ns = 0;
   std::uint64_t sequence = 0;

@@ -12,11 +12,11 @@ namespace swiftlet::plant {
 
 namespace {
 
-constexpr double kMinTimeConstant = 1e-3;            // s; below it nothing integrates in real time
-constexpr double kMinElectricalTimeConstant = 1e-6;  // s, L_a / R_a; likewise
-constexpr double kMinHubDistance = 1e-3;             // m
-constexpr double kMinSingularValue = 1e-3;           // of the effectiveness with rows of length 1
-constexpr double kSymmetry = 1e-9;                   // relative
+constexpr double kMinTimeConstant = 1e-3;            // s; shorter ones cannot be integrated in real time
+constexpr double kMinElectricalTimeConstant = 1e-6;  // s, L_a / R_a; for the same reason
+constexpr double kMinHubDistance = 1e-3;             // m, between two hubs
+constexpr double kMinSingularValue = 1e-3;           // of the effectiveness with rows scaled to length 1
+constexpr double kSymmetry = 1e-9;                   // relative tolerance
 
 std::string rotor_key(std::size_t index, const char* name) {
   return "rotors[" + std::to_string(index) + "]." + name;
@@ -29,10 +29,10 @@ bool check_inertia(const Eigen::Matrix3d& inertia, RuleChecker& check) {
     return false;
   }
   if ((inertia - inertia.transpose()).cwiseAbs().maxCoeff() > kSymmetry * inertia.cwiseAbs().maxCoeff()) {
-    check.add(key, "is not symmetric, must be");
+    check.add(key, "is not symmetric, must be symmetric");
     return false;
   }
-  const Eigen::Vector3d principal = math::symmetric_eigen(inertia).values;  // rising
+  const Eigen::Vector3d principal = math::symmetric_eigen(inertia).values;  // in ascending order
   if (!(principal[0] > 0.0)) {
     check.add(key, "has the principal moment ", principal[0], ", must be above 0");
     return false;
@@ -85,14 +85,13 @@ bool check_motor(const Vehicle& vehicle, RuleChecker& check) {
   if (!(motor.armature_resistance_ohm <= max_resistance)) {
     check.add("motor.armature_resistance", "is ", motor.armature_resistance_ohm,
               ", must be at most K2 K3 / k_Q = ", max_resistance,
-              ": the friction of Eq. (21) is not negative");
+              ", for which the friction of Eq. (21) is 0");
     return false;
   }
   const double min_inductance = kMinElectricalTimeConstant * motor.armature_resistance_ohm;
   if (motor.armature_inductance_h > 0.0 && motor.armature_inductance_h < min_inductance) {
-    check.add(
-        "motor.armature_inductance", "is ", motor.armature_inductance_h,
-        ", must be 0, so that the current follows at once, or at least 1 us times R_a = ", min_inductance);
+    check.add("motor.armature_inductance", "is ", motor.armature_inductance_h,
+              ", must be 0 (no electrical lag) or at least 1 us times R_a = ", min_inductance);
     return false;
   }
   return true;
@@ -134,12 +133,11 @@ bool check_battery(const BatteryParameters& battery, RuleChecker& check) {
   return holds;
 }
 
-// Whether thrust, roll, pitch and yaw can be commanded one by one.
+// Checks that thrust, roll, pitch and yaw can be commanded independently.
 bool check_authority(const Vehicle& vehicle, RuleChecker& check) {
   if (least_authority(effectiveness(vehicle)) > kMinSingularValue) return true;
-  check.add(
-      "rotors",
-      "cannot produce thrust, roll, pitch and yaw one by one, must: Eq. (27) and (28) have rank below 4");
+  check.add("rotors",
+            "must produce thrust, roll, pitch and yaw independently: Eq. (27) and (28) have rank below 4");
   return false;
 }
 
@@ -149,7 +147,7 @@ void check_hover(const Vehicle& vehicle, RuleChecker& check) {
   const double max_mass = vehicle.rotor_count() * range.max / kGravity;
   const double min_mass = vehicle.rotor_count() * range.min / kGravity;
   if (!(vehicle.mass_kg < max_mass)) {
-    check.add("mass", "is ", vehicle.mass_kg, ", must be below ", max_mass, ", which full throttle at ", full,
+    check.add("mass", "is ", vehicle.mass_kg, ", must be below ", max_mass, ", which throttle 1 at ", full,
               " V can lift");
     return;
   }
@@ -161,7 +159,7 @@ void check_hover(const Vehicle& vehicle, RuleChecker& check) {
   const RotorThrusts trim = trim_thrusts(vehicle);
   for (int i = 0; i < vehicle.rotor_count(); ++i) {
     if (trim[i] > range.min && trim[i] < range.max) continue;
-    check.add(rotor_key(static_cast<std::size_t>(i), "position_frd"), "asks this rotor for ", trim[i],
+    check.add(rotor_key(static_cast<std::size_t>(i), "position_frd"), "requires a thrust of ", trim[i],
               " N in hover, must be between ", range.min, " and ", range.max, " (throttle 0 and 1 at ", full,
               " V)");
   }

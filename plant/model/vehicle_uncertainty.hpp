@@ -1,4 +1,4 @@
-// How sure the parameters of a vehicle are.
+// Uncertainty of a vehicle's identified parameters.
 #pragma once
 
 #include <array>
@@ -7,26 +7,26 @@
 
 namespace swiftlet::plant {
 
-// The diagonal of the inertia, x, y, z.
+// Keys of the diagonal elements of the inertia: x, y, z.
 inline constexpr std::array<const char*, 3> kInertiaKeys = {"inertia.xx", "inertia.yy", "inertia.zz"};
 
-// A parameter by its key in the vehicle file, "motor.k2", or one of kInertiaKeys.
+// Uncertainty of one parameter, named by its key in the vehicle file ("motor.k2") or by one of kInertiaKeys.
 struct ParameterUncertainty {
   std::string parameter;
   double standard_error = 0.0;  // in the unit of the parameter
-  double low = 0.0;             // 95 % interval
-  double high = 0.0;
+  double low = 0.0;             // lower end of the 95 % interval
+  double high = 0.0;            // upper end
 };
 
-// Between the errors of two parameters, -1 .. 1. Those of K2 and K3 nearly cancel: whoever draws them apart
-// draws motors that nobody has measured.
+// Correlation between the errors of two parameters, -1 .. 1. The errors of K2 and K3 nearly cancel: sampling
+// them independently gives motors that contradict the measurements.
 struct ParameterCorrelation {
   std::string first;
   std::string second;
   double value = 0.0;
 };
 
-// Parameters that do not stand here are estimates of unknown quality.
+// The uncertainty of parameters not listed here is unknown.
 struct VehicleUncertainty {
   std::vector<ParameterUncertainty> parameters;
   std::vector<ParameterCorrelation> correlations;

@@ -1,4 +1,4 @@
-// Broken rules of plain parameter structs: vehicles, settings.
+// Validation of plain parameter structs such as vehicles and settings.
 #pragma once
 
 #include <cmath>
@@ -9,13 +9,13 @@
 
 namespace swiftlet::plant {
 
-// One broken rule: which key of the file that holds the parameters, and a sentence with value and limit.
+// One violated rule: the key in the parameter file and a sentence with value and limit.
 struct Violation {
   std::string key;      // as in the file: "motor.time_constant", "rotors[2].position_frd"
   std::string message;  // "is -0.1, must be a finite number above 0"
 };
 
-// Collects violations. Each check returns whether it holds; a NaN breaks every one.
+// Collects violations. Each check returns true if the rule holds. A NaN violates every rule.
 class RuleChecker {
  public:
   template <typename... Parts>
@@ -26,26 +26,26 @@ class RuleChecker {
   }
 
   bool finite(const std::string& key, double value) {
-    return demand(std::isfinite(value), key, "is ", value, ", must be a finite number");
+    return require(std::isfinite(value), key, "is ", value, ", must be a finite number");
   }
   bool above(const std::string& key, double value, double min) {
-    return demand(std::isfinite(value) && value > min, key, "is ", value, ", must be a finite number above ",
-                  min);
+    return require(std::isfinite(value) && value > min, key, "is ", value, ", must be a finite number above ",
+                   min);
   }
   bool at_least(const std::string& key, double value, double min) {
-    return demand(std::isfinite(value) && value >= min, key, "is ", value,
-                  ", must be a finite number of at least ", min);
+    return require(std::isfinite(value) && value >= min, key, "is ", value,
+                   ", must be a finite number of at least ", min);
   }
   bool between(const std::string& key, double value, double min, double max) {
-    return demand(value >= min && value <= max, key, "is ", value, ", must be at least ", min,
-                  " and at most ", max);
+    return require(value >= min && value <= max, key, "is ", value, ", must be at least ", min,
+                   " and at most ", max);
   }
 
   std::vector<Violation> take() { return std::move(violations_); }
 
  private:
   template <typename... Parts>
-  bool demand(bool holds, const std::string& key, const Parts&... parts) {
+  bool require(bool holds, const std::string& key, const Parts&... parts) {
     if (!holds) add(key, parts...);
     return holds;
   }

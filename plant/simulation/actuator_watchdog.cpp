@@ -7,17 +7,17 @@ const char* to_string(CommandFault fault) {
     case CommandFault::kNone:
       return "no fault";
     case CommandFault::kRotorCount:
-      return "rotor count is not the vehicle's";
+      return "rotor count differs from the vehicle's";
     case CommandFault::kRotorState:
       return "rotor state is neither off nor running";
     case CommandFault::kThrottle:
       return "throttle is not a number within 0 .. 1";
     case CommandFault::kStale:
-      return "answers an old IMU sample";
+      return "answers an outdated IMU sample";
     case CommandFault::kFuture:
-      return "answers an IMU sample that has not been taken";
+      return "answers an IMU sample of the future";
     case CommandFault::kOvertaken:
-      return "another controller has taken over";
+      return "a controller with a higher term has taken over";
   }
   return "";
 }

@@ -1,5 +1,5 @@
-// The vehicle's own guard over the commands that reach it: refuses broken ones, and stops the rotors when
-// good ones cease.
+// Watchdog of the vehicle over the actuator commands that it receives. It rejects invalid commands and stops
+// the rotors if no valid command arrives within the time-out.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@ namespace swiftlet::plant {
 
 enum class CommandFault : std::uint8_t {
   kNone,
-  kRotorCount,  // not the vehicle's
-  kRotorState,  // neither off nor running
-  kThrottle,    // not finite, or outside 0 .. 1
-  kStale,       // answers an older sample than the last command did, or one beyond the time-out
-  kFuture,      // answers a sample that has not been taken
-  kOvertaken,   // of a controller from which another has taken over
+  kRotorCount,  // rotor count differs from the vehicle's
+  kRotorState,  // rotor state is neither off nor running
+  kThrottle,    // throttle is not finite or outside 0 .. 1
+  kStale,       // IMU stamp is older than the last command's, or older than the time-out
+  kFuture,      // IMU stamp is later than the vehicle's clock
+  kOvertaken,   // term is lower than that of the controller in command
 };
 const char* to_string(CommandFault fault);  // "throttle is not a number within 0 .. 1"
 
@@ -25,18 +25,18 @@ class ActuatorWatchdog {
  public:
   ActuatorWatchdog(int rotor_count, std::int64_t timeout_ns);
 
-  // A command that arrives at now_ns, the vehicle's clock. One with a fault counts as no command. A term
-  // rules out lower ones until its commands are older than the time-out.
+  // Processes a command that arrives at now_ns on the vehicle's clock. A command with a fault is ignored.
+  // Commands with a term below that of the last accepted one are rejected until that one is older than the
+  // time-out.
   CommandFault accept(const ActuatorCommand& command, std::int64_t now_ns);
 
-  // What the rotors are to do at now_ns: the last command, or off if it answers a sample older than the
-  // time-out.
+  // Motor command at now_ns: the last accepted command, or off if its IMU sample is older than the time-out.
   const MotorCommand& drive(std::int64_t now_ns) const;
 
-  // A command has been accepted, and it is older than the time-out.
+  // True if a command has been accepted and its IMU sample is older than the time-out.
   bool expired(std::int64_t now_ns) const;
 
-  // For the controllers to know.
+  // The last accepted command, as the vehicle reports it to the controllers.
   ObeyedCommand obeyed() const;
 
  private:

@@ -19,9 +19,9 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 
-constexpr double kStepPerTimeConstant = 1.0 / 3.0;
+constexpr double kStepPerTimeConstant = 1.0 / 3.0;  // largest step over the shortest time constant
 
-// Where the parts of the state vector begin.
+// Indices of the first element of each part of the state vector.
 constexpr int kPosition = 0;
 constexpr int kVelocity = 3;
 constexpr int kAttitude = 6;
@@ -31,13 +31,13 @@ constexpr int kSag = 14;
 constexpr int kRotorSpeeds = 15;
 constexpr int kCurrents = kRotorSpeeds + kMaxRotors;
 
-// The third column of R_{n/b}, Eq. (3), by the quaternion: z of the body.
+// Third column of R_{n/b}, Eq. (3), from the quaternion: the body's z axis in NED.
 Vector3d body_z_ned(const Quaterniond& q) {
   return {2.0 * (q.x() * q.z() + q.w() * q.y()), 2.0 * (q.y() * q.z() - q.w() * q.x()),
           q.w() * q.w() - q.x() * q.x() - q.y() * q.y() + q.z() * q.z()};
 }
 
-// A battery of constant voltage: no resistance, no end.
+// Battery of constant voltage: no resistance, unlimited capacity.
 BatteryParameters ideal_battery(BatteryParameters battery, double voltage_v) {
   battery.state_of_charge = {0.0, 1.0};
   battery.open_circuit_voltage_v = {voltage_v, voltage_v};
@@ -68,14 +68,14 @@ Dynamics::Dynamics(const Vehicle& vehicle, const Supply& supply)
   max_step_s_ = kStepPerTimeConstant * shortest_s;
 }
 
-// Eq. (9); a rotor that is off gets no voltage at all.
+// Eq. (9). The voltage of a rotor that is off is 0.
 inline double Dynamics::armature_voltage(double supply_voltage_v, const MotorCommand& drive,
                                          int rotor) const {
   if (drive.state != RotorState::kRunning) return 0.0;
   return motor_voltage(esc_, supply_voltage_v, drive.throttle[static_cast<std::size_t>(rotor)]);
 }
 
-// The ESCs pass on all the power that they draw (esc.hpp).
+// The ESCs have no losses (esc.hpp): power_w is both what they draw and what the motors take.
 inline double Dynamics::supply_current(double supply_voltage_v, double power_w) const {
   return battery_.electronics_current_a + (supply_voltage_v > 0.0 ? power_w / supply_voltage_v : 0.0);
 }
@@ -120,7 +120,7 @@ Dynamics::State Dynamics::derivative(const State& x, const MotorCommand& drive, 
   const Vector3d v = x.segment<3>(kVelocity);
   const Quaterniond q(x.segment<4>(kAttitude));
   const Vector3d w = x.segment<3>(kBodyRates);
-  const Vector3d f_ned = air_force_ned(v, wind_ned) - wrench[0] * body_z_ned(q);  // R F of Eq. (27), and air
+  const Vector3d f_ned = air_force_ned(v, wind_ned) - wrench[0] * body_z_ned(q);  // R F of Eq. (27), drag
   const Vector3d m = wrench.tail<3>() + disturbance_.moment_frd;                  // M of Eq. (28)
   const Vector3d g(0.0, 0.0, kGravity);
   dx.segment<3>(kPosition) = v;                                                           // Eq. (1)

@@ -1,13 +1,13 @@
-// Eq. (1)-(28) as one system of ordinary differential equations, integrated by the classical Runge-Kutta
-// method of order 4: rigid body in NED velocities with quaternion attitude, ESC, motors, rotors and battery
-// in one state.
+// Eq. (1)-(28) as one system of ordinary differential equations, integrated with the classical Runge-Kutta
+// method of order 4. The state holds the rigid body (NED velocity, quaternion attitude), motors, rotors and
+// battery.
 //
 //   dp/dt = v                                        Eq. (1)
-//   m dv/dt = R F + m g z - c (v - wind)             Eq. (5), written in NED; c is the vehicle's linear drag
-//   dq/dt = q (0, w) / 2                             Eq. (2)-(4) without their singularity
+//   m dv/dt = R F + m g z - c (v - wind)             Eq. (5), in NED; c is the vehicle's linear drag
+//   dq/dt = q (0, w) / 2                             Eq. (2)-(4) without the Euler angles' singularity
 //   J dw/dt = M - w x J w                            Eq. (6)
-//   rotors: Eq. (9), (18) or (10)-(16), (25)-(28); battery: vehicle.hpp, drawn from by the power that the
-//   motors take.
+//   rotors                                           Eq. (9), (18) or (10)-(16), (25)-(28)
+//   battery                                          vehicle.hpp, discharged by motors and electronics
 #pragma once
 
 #include <Eigen/Core>
@@ -19,63 +19,67 @@
 
 namespace swiftlet::plant {
 
-// Where v_s of Eq. (9) comes from: the vehicle's battery, or a source of constant voltage.
+// Source of v_s of Eq. (9): the vehicle's battery or an ideal source of constant voltage.
 struct Supply {
   bool ideal = false;
-  double voltage_v = 0.0;  // of the ideal source
+  double voltage_v = 0.0;  // V, of the ideal source
 
   static Supply battery() { return {}; }
   static Supply constant(double voltage_v) { return {true, voltage_v}; }
 };
 
-// What acts on a vehicle besides its own equations.
+// External disturbances and degradations of a vehicle.
 struct Disturbance {
   Eigen::Vector3d force_ned = Eigen::Vector3d::Zero();                // N, at the centre of mass
   Eigen::Vector3d moment_frd = Eigen::Vector3d::Zero();               // N m
-  double supply_drop_v = 0.0;                                         // of the open-circuit voltage
-  PerRotor rotor_factors = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};  // of thrust and torque
+  double supply_drop_v = 0.0;                                         // V, drop of the open-circuit voltage
+  PerRotor rotor_factors = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};  // factors of thrust and torque
 };
 
 class Dynamics {
  public:
-  // The vehicle is one that validate() finds no fault with.
+  // Precondition: validate(vehicle) is empty.
   Dynamics(const Vehicle& vehicle, const Supply& supply);
 
-  // From now on, until another is given.
+  // Sets the disturbance that acts until the next call.
   void disturb(const Disturbance& disturbance) { disturbance_ = disturbance; }
 
-  // Brings the state forward by dt > 0 in as few equal Runge-Kutta steps as max_step_s() allows, with drive
-  // and wind held.
+  // Integrates the state over dt > 0, s, in the fewest equal Runge-Kutta steps not above max_step_s(). The
+  // motor command and the wind are constant over dt.
   void advance(VehicleState& state, const MotorCommand& drive, const Eigen::Vector3d& wind_ned,
                double dt) const;
 
-  // A third of the smallest of the time constants tau_a = L_a / R_a (with inductance), tau_m and the
-  // battery's sag: RK4 is stable up to 2.7 of them, and off by less than 1e-4 of a transient at a third.
+  // Largest integration step: a third of the smallest of the time constants tau_a = L_a / R_a (with
+  // inductance), tau_m and the battery's sag. RK4 is stable up to 2.7 time constants; at a third its error is
+  // below 1e-4 of a transient.
   double max_step_s() const { return max_step_s_; }
 
-  // All forces but gravity, over mass: what an ideal accelerometer at the centre of mass measures in flight.
+  // Specific force, m/s^2: all forces except gravity and ground contact, over the mass. An ideal
+  // accelerometer at the centre of mass measures this in flight.
   Eigen::Vector3d specific_force_frd(const VehicleState& state, const Eigen::Vector3d& wind_ned) const;
 
-  // At the battery's terminals, motors and electronics together.
+  // Voltage, V, and current, A, at the battery terminals. The current is that of motors and electronics
+  // together.
   double supply_voltage(const VehicleState& state) const;
   double supply_current(const VehicleState& state, const MotorCommand& drive) const;
 
-  // Armature currents that belong to these speeds when the voltages have stood for long against tau_a, i_a =
-  // (v_a - e) / R_a.
+  // Steady armature currents, A, at the state's rotor speeds: i_a = (v_a - e) / R_a with back-EMF e, reached
+  // when the voltages are constant for a time much longer than tau_a.
   PerRotor settled_currents(const VehicleState& state, const MotorCommand& drive) const;
 
   int rotor_count() const { return rotor_count_; }
 
  private:
-  // All that is integrated, in the order of VehicleState; the quaternion as (x, y, z, w).
+  // State vector in the order pack() writes: position, velocity, quaternion (x, y, z, w), body rates, state
+  // of charge, sag, rotor speeds, armature currents.
   using State = Eigen::Matrix<double, 15 + 2 * kMaxRotors, 1>;
   using Rotors = Eigen::Matrix<double, kMaxRotors, 1>;
 
-  // Open-circuit voltage as a straight line over the state of charge: that of the table's segment where a step
-  // begins.
+  // Open-circuit voltage as a linear function of the state of charge: the segment of the table in which a
+  // step begins.
   struct OpenCircuit {
-    double at_empty;  // V
-    double slope;     // V
+    double at_empty;  // V, at state of charge 0
+    double slope;     // V per unit state of charge
 
     double voltage(double state_of_charge) const { return at_empty + slope * state_of_charge; }
   };
@@ -88,9 +92,9 @@ class Dynamics {
 
   double armature_voltage(double supply_voltage_v, const MotorCommand& drive, int rotor) const;
   double supply_current(double supply_voltage_v, double power_w) const;
-  // Thrust along -z of FRD, N, and moments, N m.
+  // Thrust along -z of FRD, N, and roll, pitch and yaw moment, N m, of one rotor.
   Eigen::Vector4d rotor_wrench(int rotor, double speed) const;
-  // Drag and push, N.
+  // Drag and disturbance force, N.
   Eigen::Vector3d air_force_ned(const Eigen::Vector3d& velocity_ned, const Eigen::Vector3d& wind_ned) const;
 
   int rotor_count_;

@@ -10,9 +10,10 @@ namespace {
 
 constexpr int kMaxSweeps = 60;
 constexpr double kConverged = 1.0e-7;  // m/s, change of a point's velocity in one sweep
-constexpr double kRest = 1.0e-5;  // m/s; a body that bears on the floor and is slower than this stands still
+constexpr double kRest = 1.0e-5;       // m/s; a body in contact that is slower than this is set to rest
 
-Eigen::Quaterniond turned(const Eigen::Quaterniond& q, const Eigen::Vector3d& body_rates_frd, double dt) {
+Eigen::Quaterniond integrate_attitude(const Eigen::Quaterniond& q, const Eigen::Vector3d& body_rates_frd,
+                                      double dt) {
   const Eigen::Vector3d half = 0.5 * dt * body_rates_frd;
   return (q * Eigen::Quaterniond(1.0, half.x(), half.y(), half.z())).normalized();
 }
@@ -53,7 +54,8 @@ bool GroundContact::resolve(const ContactState& before, VehicleState& after, dou
   Eigen::Vector3d velocity = after.velocity_ned;
   Eigen::Vector3d turn_rate = rotation * after.body_rates_frd;  // in NED
 
-  // Geometry of the step's start; a point that stays above the floor without help bears nothing.
+  // Uses the geometry at the start of the step. A point that stays above the floor without an impulse carries
+  // no load.
   bool touching = false;
   for (std::size_t i = 0; i < count; ++i) {
     Point& point = points_[i];
@@ -92,9 +94,9 @@ bool GroundContact::resolve(const ContactState& before, VehicleState& after, dou
     for (std::size_t i = 0; i < count; ++i) {
       Point& point = points_[i];
       const Eigen::Vector3d old = point.impulse;
-      // Down is positive: at most gap / dt downwards, pushed upwards only.
+      // z points down: a point may move down by at most gap / dt, and its impulse only pushes up.
       const double excess = (velocity + turn_rate.cross(point.arm_ned)).z() - point.gap / dt;
-      if (excess <= 0.0 && old.z() == 0.0) continue;  // needs no impulse and has none
+      if (excess <= 0.0 && old.z() == 0.0) continue;  // no impulse needed, none applied
       if (!point.has_inertia) find_inertia(point);
       point.impulse.z() = std::min(old.z() - excess / point.inverse_mass.z(), 0.0);
       apply(point, {0.0, 0.0, point.impulse.z() - old.z()});
@@ -126,8 +128,9 @@ bool GroundContact::resolve(const ContactState& before, VehicleState& after, dou
   after.body_rates_frd = rotation.transpose() * turn_rate;
   after.position_ned = before.position_ned + dt * velocity;
   after.q_ned_from_frd =
-      rests ? before.q_ned_from_frd : turned(before.q_ned_from_frd, after.body_rates_frd, dt);
-  // Turning moves points along arcs: what that leaves in the floor, a square of dt, is lifted out.
+      rests ? before.q_ned_from_frd : integrate_attitude(before.q_ned_from_frd, after.body_rates_frd, dt);
+  // Rotation moves points along arcs, so that they may end below the floor by a distance of order dt^2. The
+  // body is lifted by that distance.
   if (!rests) after.position_ned.z() += std::min(clearance(after), 0.0);
   return true;
 }

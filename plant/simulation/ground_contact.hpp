@@ -1,8 +1,10 @@
-// A level floor under a rigid vehicle: feet under the rotors, and the hubs for one that lies on its back.
+// Contact of a rigid vehicle with a level floor. Contact points are a foot under each rotor, and each hub for
+// a vehicle that lies on its back.
 //
-// No springs: an impulse at each touching point ends every step, such that no point moves into the floor,
-// none is held by it, and friction stays within Coulomb's cone (Moreau's time stepping; the impulses by
-// projected Gauss-Seidel). Impacts are inelastic. It is stable at any step and adds no energy.
+// There are no springs. Moreau's time stepping applies an impulse at each touching point at the end of a
+// step, such that no point moves into the floor, the floor does not pull, and friction stays within Coulomb's
+// cone. Projected Gauss-Seidel solves for the impulses. Impacts are inelastic. The method is stable at any
+// step and adds no energy.
 #pragma once
 
 #include <array>
@@ -24,27 +26,28 @@ class GroundContact {
     Eigen::Quaterniond q_ned_from_frd;
   };
 
-  // Nothing of the vehicle can be on the floor with its origin at this height: no need to ask further.
+  // True if a vehicle whose origin is at this height cannot touch the floor in any attitude. No other call is
+  // then needed.
   bool out_of_reach(double position_z_ned) const { return position_z_ned + reach_ < floor_z_; }
 
-  // Corrects a step of free flight to after that took dt, from where the vehicle was before. Returns true
-  // if the floor bore load; then acceleration_ned is what it added to the body's acceleration over the
-  // step, m/s^2.
+  // Applies contact to a step of free flight of length dt, s, from `before` to `after`, and corrects `after`.
+  // Returns true if the floor carries load; acceleration_ned is then its contribution to the body's mean
+  // acceleration over the step, m/s^2.
   bool resolve(const ContactState& before, VehicleState& after, double dt, Eigen::Vector3d& acceleration_ned);
 
-  // m NED, of the floor, down from the origin: the leg height.
+  // Height of the floor, m NED (down is positive): the leg height.
   double floor_z_ned() const { return floor_z_; }
-  // m, from the lowest point of the vehicle down to the floor; negative: it is in the floor.
+  // Distance from the lowest contact point down to the floor, m; negative if it is below the floor.
   double clearance(const VehicleState& state) const;
 
  private:
   struct Point {
-    Eigen::Vector3d arm_ned;       // from the origin
-    double gap;                    // m, to the floor
-    bool has_inertia;              // the next two are those of this step
-    Eigen::Matrix3d turn;          // angular velocity over impulse
-    Eigen::Vector3d inverse_mass;  // velocity over impulse, along each axis
-    Eigen::Vector3d impulse;       // N s, in NED; kept from step to step, where the next solution starts
+    Eigen::Vector3d arm_ned;       // m, from the origin
+    double gap;                    // m, distance to the floor
+    bool has_inertia;              // turn and inverse_mass are valid for this step
+    Eigen::Matrix3d turn;          // rad/s per N s, angular velocity change per impulse
+    Eigen::Vector3d inverse_mass;  // 1/kg, velocity change of the point per impulse along each axis
+    Eigen::Vector3d impulse;       // N s, in NED; the next step's solution starts from it
   };
 
   static constexpr int kMaxPoints = 2 * kMaxRotors;

@@ -1,5 +1,5 @@
-// Inertial measurement unit at the centre of mass, its axes the body's: white noise, a constant bias drawn
-// once a run, a bias that wanders (in steps of kWalkSamples), saturation.
+// Inertial measurement unit at the centre of mass with axes aligned to the body. Models white noise, a
+// constant bias drawn once per run, a bias random walk (updated every kWalkSamples samples) and saturation.
 #pragma once
 
 #include <cstdint>
@@ -16,19 +16,19 @@ class Imu {
  public:
   Imu(const ImuSettings& settings, std::uint64_t seed);
 
-  // The next sample, one period of the settings' rate after the last.
+  // Returns the next sample. Call it once per period of the IMU rate.
   ImuSample sample(std::int64_t stamp_ns, const Eigen::Vector3d& specific_force_frd,
                    const Eigen::Vector3d& body_rates_frd);
 
-  const Eigen::Vector3d& accelerometer_bias() const { return accelerometer_.bias; }  // of the last sample
-  const Eigen::Vector3d& gyro_bias() const { return gyro_.bias; }
+  const Eigen::Vector3d& accelerometer_bias() const { return accelerometer_.bias; }  // m/s^2, last sample's
+  const Eigen::Vector3d& gyro_bias() const { return gyro_.bias; }                    // rad/s, last sample's
 
-  static constexpr int kWalkSamples = 10;  // to draw each time would show nowhere
+  static constexpr int kWalkSamples = 10;  // updating the walk at every sample makes no visible difference
 
  private:
   struct Sensor {
     double noise_sigma;
-    double walk_sigma;  // of one step
+    double walk_sigma;  // standard deviation of one step of the walk
     double range;
     RandomStream noise;
     RandomStream walk;

@@ -12,7 +12,7 @@ std::int64_t nanoseconds(double seconds) {
   return std::llround(seconds * static_cast<double>(kNanosecondsPerSecond));
 }
 
-// Rotation by a small vector, in radians; off by less than |v|^3 / 12.
+// Unit quaternion of a small rotation vector, rad. The error is below |v|^3 / 12.
 Eigen::Quaterniond small_rotation(const Eigen::Vector3d& vector) {
   const Eigen::Vector3d half = 0.5 * vector;
   const double scale = 1.0 / std::sqrt(1.0 + half.x() * half.x() + half.y() * half.y() + half.z() * half.z());
@@ -56,7 +56,7 @@ PoseSample Mocap::expose(std::int64_t stamp_ns, const Eigen::Vector3d& position_
   pose.stamp_ns = stamp_ns;
   pose.sequence = ++sequence_;
   pose.tracked = !in_dropout(stamp_ns);
-  // Drawn for untracked frames too: a dropout does not change the frames after it.
+  // Errors are drawn for untracked frames too, so that a dropout does not change the frames after it.
   const Eigen::Vector3d position_error = settings_.position_error_m * error(position_noise_);
   const Eigen::Vector3d orientation_error = settings_.orientation_error_rad * error(orientation_noise_);
   if (!pose.tracked) return pose;

@@ -1,8 +1,9 @@
-// Motion capture, driven by truth stamps alone: it works the same in real time, scaled time and lockstep.
+// Motion capture simulator. It is driven by the stamps of the ground truth only, so that it works the same in
+// real time, scaled time and lockstep.
 //
-// Frames are exposed at times that the model gives, counted from stamp 0, and delivered a latency later:
-// whole multiples of the period, or intervals drawn one by one (mocap_schedule.hpp). When truth comes in
-// steps, both happen at the first truth stamp that is not earlier.
+// Frames are exposed at the times of mocap_schedule.hpp, counted from stamp 0: multiples of the period or
+// intervals drawn one by one. They are delivered one latency later. Both happen at the first truth stamp that
+// is not earlier.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +24,10 @@ class Mocap {
  public:
   Mocap(const MocapSettings& settings, std::uint64_t seed);
 
-  // Takes in what is true at a stamp; hands back the oldest frame that is due and has not been handed out.
-  // Frames that fall into a gap between truth samples are exposed, once, at its end. A stamp that is not
-  // newer than the last starts the schedule anew: the plant has been restarted; sequences go on.
+  // Processes the true pose at a stamp. Returns the oldest undelivered frame that is due, if any. If
+  // exposures fall into a gap between truth samples, one frame is exposed at the end of the gap. A stamp that
+  // is not newer than the last restarts the schedule: the plant has been restarted. Sequence numbers
+  // continue.
   std::optional<PoseSample> update(std::int64_t stamp_ns, const Eigen::Vector3d& position_ned,
                                    const Eigen::Quaterniond& q_ned_from_frd);
   std::optional<PoseSample> update(const TruthSample& truth) {
@@ -35,7 +37,7 @@ class Mocap {
  private:
   PoseSample expose(std::int64_t stamp_ns, const Eigen::Vector3d& position_ned,
                     const Eigen::Quaterniond& q_ned_from_frd);
-  Eigen::Vector3d error(RandomStream& noise) const;  // of size 1
+  Eigen::Vector3d error(RandomStream& noise) const;  // of unit bound (kBounded) or unit standard deviation
   bool in_dropout(std::int64_t stamp_ns);
 
   MocapSettings settings_;
@@ -48,7 +50,7 @@ class Mocap {
 
   std::optional<std::int64_t> dropout_end_ns_;
   std::uint64_t sequence_ = 0;
-  std::vector<PoseSample> in_flight_;  // ring
+  std::vector<PoseSample> in_flight_;  // ring buffer of exposed frames not yet delivered
   std::size_t oldest_ = 0;
   std::size_t count_ = 0;
 };

@@ -49,7 +49,7 @@ MocapSchedule::Events MocapSchedule::advance(std::int64_t stamp_ns) {
   return events;
 }
 
-// The first frame is of stamp 0, whenever the first stamp comes.
+// The schedule counts from stamp 0, whatever the first stamp is.
 void MocapSchedule::start(std::int64_t stamp_ns) {
   intervals_ = RandomStream(seed_, streams::kMocapIntervals);
   count_ = 0;

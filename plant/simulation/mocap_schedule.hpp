@@ -1,5 +1,6 @@
-// When motion capture exposes frames and hands them out. A function of settings, seed and the stamps at which
-// it is asked: whoever has these, as the plant in lockstep, knows it as well as the cameras do.
+// Schedule of motion capture: when frames are exposed and delivered. It is a function of the settings, the
+// seed and the stamps of the calls only. In lockstep the plant can therefore compute it as well as the motion
+// capture simulator.
 #pragma once
 
 #include <cstdint>
@@ -16,17 +17,17 @@ class MocapSchedule {
   MocapSchedule(const MocapSettings& settings, std::uint64_t seed);
 
   struct Events {
-    bool starts_anew = false;  // frames that were under way are lost
-    bool exposes = false;      // a frame, now
-    bool delivers = false;     // the oldest frame that is under way
+    bool starts_anew = false;  // the schedule restarts; frames in flight are lost
+    bool exposes = false;      // a frame is exposed
+    bool delivers = false;     // the oldest frame in flight is delivered
   };
-  // What happens at this stamp, after the one before. Frames that fall between two stamps are exposed, once,
-  // at the second. A stamp that is not newer than the last starts the schedule anew.
+  // Returns what happens at this stamp. If exposures fall between the last stamp and this one, one frame is
+  // exposed at this one. A stamp that is not newer than the last restarts the schedule.
   Events advance(std::int64_t stamp_ns);
 
-  // That advance() has let out; those of schedules begun before count.
+  // Number of frames delivered since construction, across restarts of the schedule.
   std::uint64_t delivered() const { return delivered_; }
-  // Frames that can be under way.
+  // Largest number of frames in flight.
   std::size_t capacity() const { return in_flight_.size(); }
 
  private:
@@ -40,7 +41,7 @@ class MocapSchedule {
   std::optional<std::int64_t> last_stamp_ns_;
   std::int64_t next_exposure_ns_ = 0;
   std::uint64_t delivered_ = 0;
-  std::vector<std::int64_t> in_flight_;  // ring of exposure stamps
+  std::vector<std::int64_t> in_flight_;  // ring buffer of exposure stamps
   std::size_t oldest_ = 0;
   std::size_t count_ = 0;
 };

@@ -46,7 +46,7 @@ PlantSimulation::PlantSimulation(const Vehicle& vehicle, const SimulationSetting
   state_.sag_v = 0.0;
   on_ground_ = !ground_.out_of_reach(state_.position_ned.z()) && ground_.clearance(state_) <= 0.0;
   if (on_ground_) {
-    // The floor bears what the rotors do not.
+    // The floor carries the weight that the rotors do not.
     contact_sum_ned_ =
         -state_.q_ned_from_frd._transformVector(dynamics_.specific_force_frd(state_, wind_ned_));
     contact_sum_ned_.z() -= kGravity;
@@ -73,7 +73,7 @@ void PlantSimulation::step(const MotorCommand& drive) {
   sample(drive);
 }
 
-// Those that are there from this stamp on.
+// Applies the faults that are active from this stamp on.
 void PlantSimulation::change_faults() {
   Disturbance disturbance;
   if (const Fault* push = faults_.active(FaultKind::kPush, stamp_ns_)) {
@@ -106,7 +106,7 @@ void PlantSimulation::sample(const MotorCommand& drive) {
   }
 }
 
-// What a fault does to a sample is done to one that was drawn: it moves no later one.
+// Faults modify a sample after it is drawn, so that they do not change later draws.
 void PlantSimulation::sample_imu() {
   ImuSample sample = imu_.sample(stamp_ns_, specific_force_frd(), state_.body_rates_frd);
   if (faults_.empty()) {
@@ -130,8 +130,8 @@ void PlantSimulation::sample_imu() {
   if (faults_.active(FaultKind::kImuStop, stamp_ns_) == nullptr) imu_sample_ = sample;
 }
 
-// Forces of the flow as they are, the floor's as a mean since the last sample: impacts are shorter than a
-// sample.
+// Rotor and air forces are instantaneous. The contact force is the mean since the last sample, because
+// impacts are shorter than a sample period.
 Eigen::Vector3d PlantSimulation::specific_force_frd() {
   Eigen::Vector3d specific_force = dynamics_.specific_force_frd(state_, wind_ned_);
   if (!contact_sum_ned_.isZero(0.0)) {

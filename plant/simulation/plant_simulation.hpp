@@ -1,6 +1,6 @@
-// The simulated vehicle: dynamics, air, floor and the sensors on board, advanced step by step. Deterministic:
-// the same vehicle, settings, seed and commands give the same samples bit by bit. Time is a whole number of
-// steps from the start and has no drift.
+// The simulated vehicle: dynamics, wind, ground contact and on-board sensors, advanced step by step. It is
+// deterministic: the same vehicle, settings, seed and commands give bit-identical samples. Time is a whole
+// number of steps since the start and does not drift.
 //
 //   PlantSimulation plant(vehicle, settings, seed);
 //   for (;;) {
@@ -28,22 +28,24 @@ namespace swiftlet::plant {
 
 class PlantSimulation {
  public:
-  // Vehicle and settings must be such that validate() finds no fault. Stands at rest at the origin, rotors
-  // off, unless an initial state is given; the battery's part of it is that of the settings. Samples of stamp
-  // 0 are there at once.
+  // Precondition: validate() finds no violation in vehicle and settings. By default the vehicle is at rest at
+  // the origin with its rotors off. The battery state of `initial` is ignored; the settings give it. The
+  // samples of stamp 0 are available after construction.
   PlantSimulation(const Vehicle& vehicle, const SimulationSettings& settings, std::uint64_t seed,
                   const VehicleState& initial = {});
 
-  // One integration step with the drive held. Throttles must lie within 0 .. 1: ActuatorWatchdog sees to it.
+  // Advances by one integration step with a constant motor command. Throttles must lie within 0 .. 1;
+  // ActuatorWatchdog ensures that.
   void step(const MotorCommand& drive);
 
   std::int64_t stamp_ns() const { return stamp_ns_; }
   const VehicleState& state() const { return state_; }
   TruthSample truth() const;
-  // The stamp is one of the IMU's, whether a fault keeps the sample back or not; how many there have been.
+  // imu_due(): true if an IMU sample is due at this stamp, even if a fault suppresses it. imu_count(): number
+  // of samples due so far.
   bool imu_due() const { return imu_due_; }
   std::uint64_t imu_count() const { return imu_schedule_.sequence; }
-  // Samples that are sent at this stamp.
+  // Samples sent at this stamp; empty if none is due or a fault suppresses it.
   const std::optional<ImuSample>& imu() const { return imu_sample_; }
   const std::optional<BatterySample>& battery() const { return battery_sample_; }
   const std::optional<RotorSpeedSample>& rotor_speeds() const { return rotor_speed_sample_; }
@@ -52,7 +54,7 @@ class PlantSimulation {
   const Imu& imu_sensor() const { return imu_; }
 
  private:
-  // Counts steps between samples.
+  // Counts the steps between samples.
   struct Schedule {
     std::int64_t steps_per_sample;  // 0: never
     std::int64_t steps_left = 0;
@@ -79,16 +81,16 @@ class PlantSimulation {
   double step_s_;
   int rotor_count_;
   FaultSchedule faults_;
-  std::int64_t fault_change_ns_;  // the next
+  std::int64_t fault_change_ns_;  // next stamp at which a fault starts or ends
   Eigen::Vector3d fault_wind_ned_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d wind_ned_;  // of the step under way
+  Eigen::Vector3d wind_ned_;  // m/s, over the current step
 
   std::int64_t stamp_ns_ = 0;
   std::uint64_t steps_ = 0;
   VehicleState state_;
   bool on_ground_ = false;
   Eigen::Vector3d contact_sum_ned_ =
-      Eigen::Vector3d::Zero();  // the floor's accelerations since the last IMU sample
+      Eigen::Vector3d::Zero();  // m/s^2, sum of contact accelerations since the last IMU sample
   std::int64_t contact_steps_ = 0;
 
   Schedule imu_schedule_;
@@ -96,7 +98,7 @@ class PlantSimulation {
   Schedule rotor_speed_schedule_;
   bool imu_due_ = false;
   std::optional<ImuSample> imu_sample_;
-  ImuSample last_sound_imu_;  // before the values got stuck
+  ImuSample last_sound_imu_;  // last sample before kImuStuck
   std::optional<BatterySample> battery_sample_;
   std::optional<RotorSpeedSample> rotor_speed_sample_;
 };

@@ -8,7 +8,7 @@ namespace {
 
 double step_s(const SimulationSettings& settings) { return static_cast<double>(settings.step_ns) * 1.0e-9; }
 
-// Samples fall on the ends of steps.
+// Samples are taken at the ends of integration steps only.
 void check_whole_steps(const std::string& key, double rate_hz, const SimulationSettings& settings,
                        RuleChecker& check) {
   if (!(rate_hz > 0.0) || settings.step_ns <= 0) return;

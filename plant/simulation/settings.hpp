@@ -1,5 +1,5 @@
-// What a user sets of the simulated world: integration, sensors, battery, air, ground. The simulation file
-// holds the same keys.
+// Settings of the simulation: integration, sensors, battery, air and ground. The keys of the simulation file
+// have the same names.
 #pragma once
 
 #include <array>
@@ -17,82 +17,81 @@ namespace swiftlet::plant {
 
 constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 
-// Noise densities as on data sheets; a sample's standard deviation is density * sqrt(rate).
+// Noise densities are those of data sheets; a sample's standard deviation is density * sqrt(rate).
 struct ImuSettings {
-  double rate_hz = 500.0;                       // 1 s / rate must be a whole number of integration steps
-  double accelerometer_noise_density = 4.0e-3;  // m/s^2/sqrt(Hz)
-  double gyro_noise_density = 2.0e-4;           // rad/s/sqrt(Hz)
-  double accelerometer_bias_sigma = 0.1;        // m/s^2, of the constant part, drawn once a run for each axis
-  double gyro_bias_sigma = 0.01;                // rad/s, likewise
-  double accelerometer_bias_walk = 1.0e-3;      // m/s^2/sqrt(s): the bias wanders by walk * sqrt(t)
-  double gyro_bias_walk = 1.0e-4;               // rad/s/sqrt(s)
-  double accelerometer_range = 16.0 * kGravity;  // m/s^2, a sample saturates here
+  double rate_hz = 500.0;                        // 1 s / rate must be a whole number of integration steps
+  double accelerometer_noise_density = 4.0e-3;   // m/s^2/sqrt(Hz)
+  double gyro_noise_density = 2.0e-4;            // rad/s/sqrt(Hz)
+  double accelerometer_bias_sigma = 0.1;         // m/s^2, constant bias, drawn once per run for each axis
+  double gyro_bias_sigma = 0.01;                 // rad/s, as above
+  double accelerometer_bias_walk = 1.0e-3;       // m/s^2/sqrt(s), random walk of the bias: walk * sqrt(t)
+  double gyro_bias_walk = 1.0e-4;                // rad/s/sqrt(s)
+  double accelerometer_range = 16.0 * kGravity;  // m/s^2, samples saturate here
   double gyro_range = 34.9;                      // rad/s
 };
 
 enum class MocapModel {
-  kBounded,  // frames at a steady rate, errors inside a bound: a calibrated system as its maker describes it
-  kOptitrack,  // frames at uneven intervals, Gaussian errors: recorded sessions of such a system
+  kBounded,    // constant frame rate, bounded errors: a calibrated system as its data sheet states
+  kOptitrack,  // irregular frame intervals, Gaussian errors: recorded sessions of an OptiTrack system
 };
 
 struct MocapSettings {
   MocapModel model = MocapModel::kBounded;
   double rate_hz = 100.0;    // kBounded
   double latency_s = 0.010;  // from exposure to delivery
-  // kBounded: radius of the ball that each frame's error lies in. kOptitrack: standard deviation of each
-  // axis.
+  // kBounded: radius of the ball that contains the error of each frame. kOptitrack: standard deviation of
+  // each axis.
   double position_error_m = 1.0e-4;
-  double orientation_error_rad = 1.4e-3;  // likewise, as a rotation vector: 0.1 mm over an arm of 69.5 mm
-  // kOptitrack: how long the next frame takes, at the probabilities kIntervalProbabilities; uniform between.
+  double orientation_error_rad = 1.4e-3;  // the same for the rotation vector: 0.1 mm over an arm of 69.5 mm
+  // kOptitrack: quantiles of the frame interval at kIntervalProbabilities; uniform in between.
   static constexpr std::array<double, 11> kIntervalProbabilities = {0.0,  0.05, 0.10, 0.25,  0.50, 0.75,
                                                                     0.90, 0.95, 0.99, 0.999, 1.0};
   std::array<double, 11> interval_quantiles_s = {0.0003, 0.0012, 0.0097, 0.0100, 0.0199, 0.0203,
                                                  0.0300, 0.0301, 0.0400, 0.1300, 0.1400};
-  double misalignment_rad =
-      1.75e-3;  // angle between the marker body's axes and the vehicle's; direction drawn once a run
-  double dropout_probability = 0.0;  // that a frame begins a dropout
-  double dropout_length_s = 0.2;     // frames come untracked for so long
+  double misalignment_rad = 1.75e-3;  // angle from marker body to vehicle axes; direction drawn once per run
+  double dropout_probability = 0.0;   // probability that a frame begins a dropout
+  double dropout_length_s = 0.2;      // duration of a dropout, in which frames are untracked
 };
 
 struct SupplySettings {
-  bool ideal = false;                    // holds the open-circuit voltage of the initial charge
+  bool ideal = false;                    // constant voltage: open circuit at the initial state of charge
   double initial_state_of_charge = 1.0;  // 0 .. 1
-  double rate_hz = 10.0;                 // of battery samples; a whole number of steps, like the IMU's
+  double rate_hz = 10.0;  // of battery samples; 1 s / rate must be a whole number of integration steps
 };
 
 struct AirSettings {
-  bool drag = true;                                    // the vehicle's linear drag
+  bool drag = true;                                    // applies the vehicle's linear drag
   Eigen::Vector3d wind_ned = Eigen::Vector3d::Zero();  // m/s, steady
   Eigen::Vector3d gust_sigma_ned =
-      Eigen::Vector3d::Zero();        // m/s, of gusts: an Ornstein-Uhlenbeck process for each axis
-  double gust_time_constant_s = 1.0;  // its correlation time
+      Eigen::Vector3d::Zero();        // m/s, gusts: an Ornstein-Uhlenbeck process for each axis
+  double gust_time_constant_s = 1.0;  // correlation time of the gusts
 };
 
-// The floor is level. Standing level on it, the body origin is at z = 0 NED: the floor is leg_height_m below.
+// The floor is level, leg_height_m below z = 0 NED. A vehicle that stands level on it has its
+// origin at z = 0.
 struct GroundSettings {
   bool present = true;
-  double leg_height_m =
-      0.02;  // from the rotor hubs' plane through the body origin down to the feet, one under each rotor
-  double friction = 0.6;  // Coulomb
+  double leg_height_m = 0.02;  // from the body origin down to the feet, one under each rotor
+  double friction = 0.6;       // Coulomb coefficient
 };
 
 struct SimulationSettings {
   std::string name = "default";
   std::int64_t step_ns = 1'000'000;    // integration step
-  double command_timeout_s = 0.5;      // rotors off if no valid command has come for so long
+  double command_timeout_s = 0.5;      // the vehicle stops its rotors after this time without a valid command
   double rotor_speed_rate_hz = 500.0;  // of rotor speed samples; 0: the vehicle does not measure them
   ImuSettings imu;
   MocapSettings mocap;
   SupplySettings supply;
   AirSettings air;
   GroundSettings ground;
-  std::vector<Fault> faults;  // that are injected; in any order
+  std::vector<Fault> faults;  // injected faults, in any order
 };
 
-// Period of a rate, to the nanosecond; 0 for a rate of 0.
+// Period of a rate, rounded to 1 ns; 0 for a rate of 0.
 std::int64_t period_ns(double rate_hz);
 
-// Every rule that the settings break; keys are those of the simulation file ("imu.rate_hz").
+// Returns every rule that the settings violate. Keys are those of the simulation file ("imu.rate_hz").
 std::vector<Violation> validate(const SimulationSettings& settings);
 
 }  // namespace swiftlet::plant

@@ -1,4 +1,5 @@
-// Which random stream is whose. A number, once given, stays: runs of one seed repeat from release to release.
+// Ids of the random streams. An id never changes once assigned, so that runs of a seed repeat across
+// releases.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +19,7 @@ constexpr std::uint64_t kMocapDropouts = 9;
 constexpr std::uint64_t kMocapIntervals = 10;
 constexpr std::uint64_t kMocapOtherBody = 20;
 
-// The stream of a parameter that is drawn once a run, by its name: FNV-1a.
+// Stream id of a parameter that is drawn once per run: the FNV-1a hash of its name.
 constexpr std::uint64_t of_name(std::string_view name) {
   std::uint64_t hash = 0xcbf29ce484222325U;
   for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;

@@ -1,4 +1,4 @@
-// Everything about the vehicle that is integrated.
+// Integrated state of the vehicle, and the command to its motors.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,12 +14,12 @@ struct VehicleState {
   Eigen::Quaterniond q_ned_from_frd = Eigen::Quaterniond::Identity();
   Eigen::Vector3d body_rates_frd = Eigen::Vector3d::Zero();  // rad/s
   PerRotor rotor_speeds{};                                   // rad/s, >= 0
-  PerRotor armature_currents{};                              // A; only integrated with armature inductance
-  double state_of_charge = 1.0;                              // of the battery, 1 full .. 0 empty
-  double sag_v = 0.0;                                        // open-circuit less terminal voltage
+  PerRotor armature_currents{};                              // A; integrated only with armature inductance
+  double state_of_charge = 1.0;                              // of the battery, 0 empty .. 1 full
+  double sag_v = 0.0;                                        // V, open-circuit minus terminal voltage
 };
 
-// What the ESCs are told.
+// Command to the ESCs.
 struct MotorCommand {
   RotorState state = RotorState::kOff;  // kOff: v_a = 0
   PerRotor throttle{};                  // delta of Eq. (8), 0 .. 1

@@ -1,5 +1,5 @@
-// The air's motion: a steady wind and gusts. Each gust axis is an Ornstein-Uhlenbeck process, the first-order
-// relative of Dryden's longitudinal model.
+// Wind model: a steady wind plus gusts. Each axis of the gusts is an Ornstein-Uhlenbeck process, the
+// first-order form of Dryden's longitudinal model.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ class WindModel {
  public:
   WindModel(const AirSettings& settings, double step_s, std::uint64_t seed);
 
-  // The wind that holds over the next step; draws the gusts if there are any.
+  // Advances to the wind of the next integration step.
   void advance() {
     if (gusty_) draw();
   }
@@ -27,9 +27,9 @@ class WindModel {
   bool gusty_;
   Eigen::Vector3d mean_ned_;
   Eigen::Vector3d sigma_ned_;
-  double keep_;           // of a gust, over a step
-  double renew_;          // so that the variance stays
-  Eigen::Vector3d gust_;  // over sigma
+  double decay_;          // factor of a gust over one step
+  double noise_gain_;     // sqrt(1 - decay_^2), keeps the variance constant
+  Eigen::Vector3d gust_;  // gust over sigma
   Eigen::Vector3d wind_ned_;
   RandomStream random_;
 };

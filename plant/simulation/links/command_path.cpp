@@ -6,7 +6,7 @@ namespace swiftlet::plant {
 
 namespace {
 
-std::size_t commands_under_way(const FaultSchedule& faults, const ImuSettings& imu) {
+std::size_t delay_capacity(const FaultSchedule& faults, const ImuSettings& imu) {
   const double longest_s = faults.longest_delay_s(FaultKind::kCommandsDelay);
   return longest_s > 0.0 ? static_cast<std::size_t>(longest_s * imu.rate_hz) + 2 : 0;
 }
@@ -16,7 +16,7 @@ std::size_t commands_under_way(const FaultSchedule& faults, const ImuSettings& i
 CommandPath::CommandPath(const SimulationSettings& settings)
     : faults_(settings.faults),
       faultless_(!faults_.has(FaultKind::kCommandsStop) && !faults_.has(FaultKind::kCommandsDelay)),
-      delayed_(commands_under_way(faults_, settings.imu)) {}
+      delayed_(delay_capacity(faults_, settings.imu)) {}
 
 bool CommandPath::send_with_faults(const ActuatorCommand& command, std::int64_t now_ns) {
   if (faults_.active(FaultKind::kCommandsStop, now_ns) != nullptr) return false;
@@ -24,7 +24,7 @@ bool CommandPath::send_with_faults(const ActuatorCommand& command, std::int64_t 
     delayed_.put(command, now_ns + std::llround(delay->delay_s * 1.0e9));
     return false;
   }
-  delayed_.clear();  // overtaken
+  delayed_.clear();  // older commands are superseded
   return true;
 }
 

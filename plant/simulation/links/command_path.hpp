@@ -1,4 +1,4 @@
-// The way of the actuator commands to the vehicle, with the faults that befall them there.
+// Link of the actuator commands from the controller to the vehicle, with the injected faults (loss, delay).
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,12 @@ class CommandPath {
  public:
   explicit CommandPath(const SimulationSettings& settings);
 
-  // A command is sent at now_ns. True if it arrives at once.
+  // Sends a command at now_ns. Returns true if it arrives immediately.
   bool send(const ActuatorCommand& command, std::int64_t now_ns) {
     return faultless_ || send_with_faults(command, now_ns);
   }
 
-  // One that was sent before and arrives now.
+  // The newest delayed command that has arrived by now_ns, if any.
   std::optional<ActuatorCommand> arrived(std::int64_t now_ns) {
     if (delayed_.empty()) return std::nullopt;
     return delayed_.take(now_ns);

@@ -1,4 +1,4 @@
-// Holds what is under way for a while, in order. Memory is taken at construction alone.
+// Delay line: holds items in order until they are due. It allocates memory only at construction.
 #pragma once
 
 #include <algorithm>
@@ -12,17 +12,17 @@ namespace swiftlet::plant {
 template <class Item>
 class DelayLine {
  public:
-  // Room for so many; when it is full, the oldest is lost.
+  // capacity: largest number of items. When the line is full, put() drops the oldest item.
   explicit DelayLine(std::size_t capacity) : items_(std::max<std::size_t>(capacity, 1)) {}
 
-  // Arrives at due_ns, or with the one before it if that is later.
+  // Adds an item that arrives at due_ns, or together with the item before it if that one is due later.
   void put(const Item& item, std::int64_t due_ns) {
     if (count_ == items_.size()) drop_oldest();
     if (count_ > 0) due_ns = std::max(due_ns, at(count_ - 1).due_ns);
     at(count_++) = {item, due_ns};
   }
 
-  // The newest that has arrived at now_ns; older ones are lost.
+  // Returns the newest item that is due at now_ns, if any. Older items are dropped.
   std::optional<Item> take(std::int64_t now_ns) {
     std::optional<Item> newest;
     while (count_ > 0 && at(0).due_ns <= now_ns) {

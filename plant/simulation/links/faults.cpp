@@ -7,7 +7,7 @@ namespace swiftlet::plant {
 
 namespace {
 
-constexpr double kLongest_s = 86'400.0;
+constexpr double kLongest_s = 86'400.0;  // one day
 constexpr double kLongestDelay_s = 1.0;
 
 std::int64_t nanoseconds(double seconds) { return std::llround(seconds * 1.0e9); }

@@ -10,12 +10,13 @@ namespace swiftlet::plant {
 
 namespace {
 
-constexpr FaultKind kOfMocap[] = {FaultKind::kMocapStop, FaultKind::kMocapFreeze, FaultKind::kMocapUntracked,
-                                  FaultKind::kMocapJump, FaultKind::kMocapSwap,   FaultKind::kMocapLatency};
+constexpr FaultKind kMocapFaults[] = {FaultKind::kMocapStop,      FaultKind::kMocapFreeze,
+                                      FaultKind::kMocapUntracked, FaultKind::kMocapJump,
+                                      FaultKind::kMocapSwap,      FaultKind::kMocapLatency};
 
 std::int64_t nanoseconds(double seconds) { return std::llround(seconds * 1.0e9); }
 
-std::size_t frames_under_way(const FaultSchedule& faults, const MocapSettings& mocap) {
+std::size_t delay_capacity(const FaultSchedule& faults, const MocapSettings& mocap) {
   const double longest_s = faults.longest_delay_s(FaultKind::kMocapLatency);
   return longest_s > 0.0 ? static_cast<std::size_t>(longest_s * mocap.rate_hz) + 2 : 0;
 }
@@ -24,11 +25,11 @@ std::size_t frames_under_way(const FaultSchedule& faults, const MocapSettings& m
 
 MocapPath::MocapPath(const SimulationSettings& settings, std::uint64_t seed)
     : faults_(settings.faults),
-      faultless_(std::none_of(std::begin(kOfMocap), std::end(kOfMocap),
+      faultless_(std::none_of(std::begin(kMocapFaults), std::end(kMocapFaults),
                               [this](FaultKind kind) { return faults_.has(kind); })),
       other_body_error_m_(settings.mocap.position_error_m),
       other_body_noise_(seed, streams::kMocapOtherBody),
-      delayed_(frames_under_way(faults_, settings.mocap)) {}
+      delayed_(delay_capacity(faults_, settings.mocap)) {}
 
 std::optional<PoseSample> MocapPath::pass(const std::optional<PoseSample>& frame, std::int64_t now_ns) {
   if (faultless_) return frame;
@@ -45,7 +46,7 @@ std::optional<PoseSample> MocapPath::pass(const std::optional<PoseSample>& frame
     delayed_.put(seen, now_ns + nanoseconds(late->delay_s));
     return out;
   }
-  delayed_.clear();  // overtaken
+  delayed_.clear();  // older frames are superseded
   return seen;
 }
 

@@ -1,7 +1,7 @@
-// The way of a frame from motion capture to whoever listens, with the faults that befall it there.
+// Link of the frames from motion capture to the subscribers, with the injected faults.
 //
-// In lockstep the plant sends the numbers of the frames that it expects down a path of its own: so it knows
-// which of them come out, and when.
+// In lockstep the plant passes the sequence numbers of the frames that it expects through its own copy of
+// this link. It then knows which of them are delivered, and when.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,11 @@ namespace swiftlet::plant {
 
 class MocapPath {
  public:
-  // The seed is that of Mocap.
+  // seed: the same as for Mocap.
   MocapPath(const SimulationSettings& settings, std::uint64_t seed);
 
-  // What comes out at a stamp, at which motion capture hands over `frame`, or nothing. Stamps that go back
-  // start it anew: the plant has been restarted.
+  // Returns the frame delivered at now_ns, if any. `frame` is the frame that motion capture outputs at this
+  // stamp, or nullopt. A stamp earlier than the last resets the link: the plant has been restarted.
   std::optional<PoseSample> pass(const std::optional<PoseSample>& frame, std::int64_t now_ns);
 
  private:
@@ -32,7 +32,7 @@ class MocapPath {
   double other_body_error_m_;
   RandomStream other_body_noise_;
   DelayLine<PoseSample> delayed_;
-  std::optional<PoseSample> last_tracked_;  // that came out before the freeze
+  std::optional<PoseSample> last_tracked_;  // repeated by kMocapFreeze
   std::int64_t last_ns_ = 0;
 };
 

@@ -71,9 +71,9 @@ TEST(Uncertainty, GivesOneDrawForOneSeed) {
 }
 
 TEST(Uncertainty, OfFilesThatStateNoneIsRefused) {
-  EXPECT_EQ(
-      refused({}),
-      "v.yaml: uncertainty: is missing, must say how sure the parameters are; `swiftlet identify` writes it");
+  EXPECT_EQ(refused({}),
+            "v.yaml: uncertainty: is missing, must list the standard errors of the parameters; `swiftlet "
+            "identify` writes it");
 }
 
 TEST(Uncertainty, OfWhatCannotBeVariedIsRefused) {

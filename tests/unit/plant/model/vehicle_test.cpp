@@ -90,7 +90,7 @@ const Rule kRules[] = {
      [](Vehicle& v) {
        for (RotorMount& m : v.rotors) m.position_frd.x() += 0.06;
      },
-     "rotors[0].position_frd", "asks this rotor for -"},
+     "rotors[0].position_frd", "requires a thrust of -"},
     {"ThrustFactor", [](Vehicle& v) { v.rotor.thrust = 0.0; }, "rotor.thrust_factor", "above 0"},
     {"TorqueFactor", [](Vehicle& v) { v.rotor.torque = -1e-10; }, "rotor.torque_factor", "is -1e-10"},
     {"TimeConstant", [](Vehicle& v) { v.motor.time_constant_s = 1e-4; }, "motor.time_constant",

@@ -100,9 +100,9 @@ std::vector<Broken> broken_commands() {
   };
   ActuatorCommand c = command(1000, 0.9);
   c.rotor_count = 6;
-  add("too many rotors", CommandFault::kRotorCount, c, "rotor count is not the vehicle's");
+  add("too many rotors", CommandFault::kRotorCount, c, "rotor count differs from the vehicle's");
   c.rotor_count = 0;
-  add("no rotors", CommandFault::kRotorCount, c, "rotor count is not the vehicle's");
+  add("no rotors", CommandFault::kRotorCount, c, "rotor count differs from the vehicle's");
   c = command(1000, 0.9);
   c.rotor_state = static_cast<RotorState>(2);
   add("unknown state", CommandFault::kRotorState, c, "rotor state is neither off nor running");
@@ -115,9 +115,8 @@ std::vector<Broken> broken_commands() {
     add("bad throttle of rotors that are off", CommandFault::kThrottle, c,
         "throttle is not a number within 0 .. 1");
   }
-  add("older than the last", CommandFault::kStale, command(899, 0.9), "answers an old IMU sample");
-  add("from the future", CommandFault::kFuture, command(1051, 0.9),
-      "answers an IMU sample that has not been taken");
+  add("older than the last", CommandFault::kStale, command(899, 0.9), "answers an outdated IMU sample");
+  add("from the future", CommandFault::kFuture, command(1051, 0.9), "answers an IMU sample of the future");
   return all;
 }
 
