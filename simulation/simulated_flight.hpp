@@ -1,4 +1,4 @@
-// Flies a mission in a single process, with the schedule of flight_schedule.hpp.
+// Flies a mission in a single process, with the schedule of mission_runner.hpp.
 #pragma once
 
 #include <cstdint>

@@ -121,15 +121,14 @@ void write_scatters(std::ostream& script, const BatchReport& report) {
     if (effect.strength() < 0.0) break;
     const double scale = axis_scale(report, effect.name);
     const double left = 0.060 + 0.3225 * static_cast<double>(i);
-    script
-        << fmt::format("set lmargin at screen {:.4f}; set rmargin at screen {:.4f}\n", left, left + 0.260)
-        << "set xlabel " << gnuplot_quoted(axis_label(effect.name, scale)) << "\n"
-        << (i == 0 ? "set ylabel 'tracking error, RMS (mm)' offset 1\n" : "unset ylabel\n")
-        << fmt::format(
-               "set label 1 'rank correlation {:+.2f}, distance {:+.2f}' at graph 0.03,0.95 front\n",
-               effect.of_value, effect.of_distance)
-        << "name = '" << effect.name << "'\nscale = " << fmt::format("{:g}", scale) << "\n"
-        << kScatter;
+    script << fmt::format("set lmargin at screen {:.4f}; set rmargin at screen {:.4f}\n", left, left + 0.260)
+           << "set xlabel " << gnuplot_quoted(axis_label(effect.name, scale)) << "\n"
+           << (i == 0 ? "set ylabel 'tracking error, RMS (mm)' offset 1\n" : "unset ylabel\n")
+           << fmt::format(
+                  "set label 1 'rank correlation {:+.2f}, distance {:+.2f}' at graph 0.03,0.95 front\n",
+                  effect.of_value, effect.of_distance)
+           << "name = '" << effect.name << "'\nscale = " << fmt::format("{:g}", scale) << "\n"
+           << kScatter;
   }
 }
 

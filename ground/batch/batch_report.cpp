@@ -82,8 +82,8 @@ std::string row_of(const char* name, const char* unit, const Spread& spread, dou
 std::string headline_of(const BatchReport& report) {
   const Batch& batch = report.batch;
   const std::uint64_t first = report.first_seed;
-  std::string text = report.mission + ", " + report.vehicle + " with " + report.control +
-                     ", dispersion " + report.dispersion +
+  std::string text = report.mission + ", " + report.vehicle + " with " + report.control + ", dispersion " +
+                     report.dispersion +
                      fmt::format(": {}, seeds {} to {}\n", counted(batch.asked, "run").c_str(),
                                  static_cast<unsigned long long>(first),
                                  static_cast<unsigned long long>(first + batch.asked - 1));

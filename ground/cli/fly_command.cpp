@@ -127,8 +127,8 @@ int fly(const FlyOptions& options) {
 Command add_fly_command(runtime::CommandLine root) {
   const auto options = std::make_shared<FlyOptions>();
   options->network.localhost_only = true;
-  const runtime::CommandLine app = root.add_subcommand(
-      "fly", "Start plant, mocap and control on this computer, fly a mission and report");
+  const runtime::CommandLine app =
+      root.add_subcommand("fly", "Start plant, mocap and control on this computer, fly a mission and report");
   add_fly_options(app, *options);
   add_network_options(app, options->network, Vehicles::kSeveral);
   app.add_option("--spacing", options->spacing_m,

@@ -89,10 +89,9 @@ Command add_mission_fly_command(runtime::CommandLine mission) {
       .show_default();
   runtime::Option no_wait =
       app.add_flag("--no-wait", options->no_wait, "return when the mission has started");
-  app.add_flag(
-         "--link", options->link,
-         "enable the link-loss failsafe: if the heartbeat of this command stops, the vehicle executes "
-         "ground_link_action of its control settings")
+  app.add_flag("--link", options->link,
+               "enable the link-loss failsafe: if the heartbeat of this command stops, the vehicle executes "
+               "ground_link_action of its control settings")
       .excludes(no_wait);
   return {app, [options] { return fly_mission(*options); }};
 }

@@ -35,8 +35,7 @@ struct StopOptions : AskOptions {
 void confirm(const StopOptions& options) {
   if (options.yes) return;
   if (isatty(STDIN_FILENO) == 0 || isatty(STDERR_FILENO) == 0)
-    throw InputError(
-        "stop: requires --yes without a terminal: a vehicle in the air falls");
+    throw InputError("stop: requires --yes without a terminal: a vehicle in the air falls");
   const bool one = split_list(options.network.vehicle).size() == 1;
   std::fprintf(stderr, "The rotors turn off at once, also if %s %s in the air: %s. Type stop to do it: ",
                options.network.vehicle.c_str(), one ? "is" : "are", one ? "it falls" : "they fall");
@@ -48,8 +47,8 @@ void confirm(const StopOptions& options) {
 }  // namespace
 
 Command add_arm_command(runtime::CommandLine root) {
-  return add_plain_request_command(
-      root, "arm", "Start the rotors on the ground if all arming checks pass", &Vehicle::arm);
+  return add_plain_request_command(root, "arm", "Start the rotors on the ground if all arming checks pass",
+                                   &Vehicle::arm);
 }
 
 Command add_disarm_command(runtime::CommandLine root) {
@@ -58,9 +57,9 @@ Command add_disarm_command(runtime::CommandLine root) {
 
 Command add_takeoff_command(runtime::CommandLine root) {
   const auto options = std::make_shared<TakeoffOptions>();
-  const runtime::CommandLine app = add_ask_subcommand(
-      root, "takeoff", "Climb vertically and hold; the vehicle must be armed",
-      "swiftlet takeoff 1.2 --speed 0.5", options);
+  const runtime::CommandLine app =
+      add_ask_subcommand(root, "takeoff", "Climb vertically and hold; the vehicle must be armed",
+                         "swiftlet takeoff 1.2 --speed 0.5", options);
   app.add_option("height", options->height_m, "height above the origin, m").positive().show_default();
   app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
   return {app, [options] {
@@ -111,9 +110,9 @@ Command add_land_command(runtime::CommandLine root) {
 
 Command add_stop_command(runtime::CommandLine root) {
   const auto options = std::make_shared<StopOptions>();
-  const runtime::CommandLine app = add_ask_subcommand(
-      root, "stop", "Emergency stop: turn the rotors off at once, also in the air", "swiftlet stop --yes",
-      options);
+  const runtime::CommandLine app =
+      add_ask_subcommand(root, "stop", "Emergency stop: turn the rotors off at once, also in the air",
+                         "swiftlet stop --yes", options);
   app.add_flag("--yes,-y", options->yes, "do not ask for confirmation");
   return {app, [options] {
             confirm(*options);

@@ -108,8 +108,7 @@ std::string manual_page(const CommandText& command) {
   for (const CommandText& sub : command.commands)
     text += ".TP\n" + bold(spaced(sub.words)) + "\n" + plain(sub.description) + "\n";
   text += footer(command.footer);
-  text +=
-      ".SH EXIT STATUS\n0 success; 1 the command failed or was refused; 2 wrong usage or bad input.\n";
+  text += ".SH EXIT STATUS\n0 success; 1 the command failed or was refused; 2 wrong usage or bad input.\n";
   if (command.words.size() > 1) {
     CommandText above;
     above.words.assign(command.words.begin(), command.words.end() - 1);

@@ -10,10 +10,10 @@
 namespace swiftlet::ground {
 namespace {
 
-using identification::ParameterEstimate;
 using identification::FileComparison;
 using identification::FlightIdentification;
 using identification::HorizonError;
+using identification::ParameterEstimate;
 using identification::PredictionError;
 using identification::SpeedSource;
 using Json = nlohmann::ordered_json;

@@ -17,8 +17,8 @@ namespace swiftlet::ground {
 namespace {
 
 using identification::BenchIdentification;
-using identification::ParameterEstimate;
 using identification::Experiment;
+using identification::ParameterEstimate;
 using Json = nlohmann::ordered_json;
 
 constexpr std::array<const char*, 3> kInertiaTitles = {"Moment of inertia, roll", "Moment of inertia, pitch",
@@ -222,7 +222,8 @@ std::string identification_json(const IdentificationReport& report) {
   Json parameters = Json::array();
   Json experiments = Json::array();
   for (const Part& part : parts_of(report)) {
-    for (const ParameterEstimate& estimate : part.estimates) parameters.push_back(json_of(estimate, part.name));
+    for (const ParameterEstimate& estimate : part.estimates)
+      parameters.push_back(json_of(estimate, part.name));
     experiments.push_back({{"name", part.name},
                            {"title", part.title},
                            {"rows", part.fit->measured.size()},

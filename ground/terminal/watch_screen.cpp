@@ -17,7 +17,7 @@ using control::Mode;
 using Eigen::Vector3d;
 
 constexpr double kSilence_s = 1.0;
-constexpr double kFarOff_m = 0.1;  // tracking error
+constexpr double kFarOff_m = 0.1;    // tracking error
 constexpr double kLateSteps = 0.01;  // share of the control steps
 constexpr const char* kKeys = "h hold   l land   s stop (rotors off)   q quit";
 

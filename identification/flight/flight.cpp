@@ -151,7 +151,7 @@ std::array<RateExcitation, 3> rate_excitations(const FlightModel& model, const V
   const std::vector<PredictionError> errors = prediction_errors(model, x, Part::kEstimationSet);
   std::array<RateExcitation, 3> out;
   for (std::size_t axis = 0; axis < out.size(); ++axis)
-    out[axis] = {errors[axis].quantity, errors[axis].idle_half_second, errors[axis].one_step};
+    out[axis] = {errors[axis].quantity, errors[axis].persistence_half_second, errors[axis].one_step};
   return out;
 }
 
@@ -192,8 +192,7 @@ void report_poses(FlightIdentification& out, const std::vector<FlightSeries>& fl
     const std::string of_log = flights.size() > 1 ? "[" + std::to_string(f) + "]" : "";
     const std::string name = timing.delay.parameter + of_log;
     if (!timing.identified) {
-      out.unexcited.push_back(name +
-                              ": the poses are assumed to have no delay; tilt and turn quickly");
+      out.unexcited.push_back(name + ": the poses are assumed to have no delay; tilt and turn quickly");
       continue;
     }
     out.estimates.push_back(timing.delay);

@@ -32,8 +32,8 @@ struct MissionFile {
   std::string name;
   std::string description;
   double tolerance_m = 0.0;
-  control::Mission mission;  // in NED; its id is 0
-  std::vector<int> lines;    // line of each item, from 1; empty for files of other projects
+  control::Mission mission;              // in NED; its id is 0
+  std::vector<int> lines;                // line of each item, from 1; empty for files of other projects
   std::vector<std::string> assumptions;  // made in reading a file of another project, as sentences
 
   bool takes_off() const;

@@ -11,8 +11,8 @@
 namespace swiftlet::ground {
 namespace {
 
-using control::PositionYaw;
 using control::PlaceDerivatives;
+using control::PositionYaw;
 
 constexpr double kLeastStep_s = 1e-4;
 constexpr double kLongestStep_s = 3600.0;

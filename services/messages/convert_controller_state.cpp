@@ -83,10 +83,11 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
                             static_cast<int>(in.item_index()), static_cast<int>(in.item_count())};
   state.guidance.item_end_ns = in.item_end_ns();
   state.guidance.pause = static_cast<control::MissionPause>(in.pause());
-  state.guidance.paused_path = {{in.paused_path_duration_s(), in.paused_path_x(), in.paused_path_y(), in.paused_path_z(), in.paused_path_yaw()},
-                         in.paused_path_start_ns(),
-                         in.paused_path_end_ns(),
-                         in.paused_path_at_ns()};
+  state.guidance.paused_path = {{in.paused_path_duration_s(), in.paused_path_x(), in.paused_path_y(),
+                                 in.paused_path_z(), in.paused_path_yaw()},
+                                in.paused_path_start_ns(),
+                                in.paused_path_end_ns(),
+                                in.paused_path_at_ns()};
   state.guidance.trajectory_id = in.trajectory_id();
   state.guidance.next_segment = in.next_segment();
   state.guidance.setpoint_ns = in.setpoint_ns();

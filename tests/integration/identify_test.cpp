@@ -118,8 +118,7 @@ TEST_F(Identify, WritesOverNothingThatItReads) {
   fs::copy_file(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml", base);
   const Ending end = run({"identify", bench().string(), "--base", base, "--out", base});
   EXPECT_EQ(end.exit_code, 2);
-  EXPECT_NE(end.errors.find("--out: " + base + " is also an input file"), std::string::npos)
-      << end.errors;
+  EXPECT_NE(end.errors.find("--out: " + base + " is also an input file"), std::string::npos) << end.errors;
   EXPECT_EQ(runtime::load_vehicle(base).name, "kaylion");
 }
 

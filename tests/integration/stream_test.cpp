@@ -44,8 +44,7 @@ TEST_F(StreamFlight, AVelocityThatLeadsOutOfTheFenceIsToldSo) {
       folder_.write("out.csv", "t [s],vx [cm/s],vy [cm/s],vz [cm/s]\n0,150,0,0\n9,150,0,0\n");
   const Ending slow = swiftlet({"stream", file});
   EXPECT_EQ(slow.exit_code, 2);
-  EXPECT_NE(slow.errors.find("the row after t = 0.000 s is 9.000 s later, limit 0.5 s"),
-            std::string::npos)
+  EXPECT_NE(slow.errors.find("the row after t = 0.000 s is 9.000 s later, limit 0.5 s"), std::string::npos)
       << slow.errors;
   const Ending end = swiftlet({"stream", file, "--rate", "5", "--land"}, 90s);
   EXPECT_EQ(end.exit_code, 1);
@@ -93,8 +92,8 @@ TEST_F(OnlineFlight, TheExampleFliesAMissionFileAndStreams) {
       run_program("example-fly-mission", {file, "kl7", std::to_string(lock_.domain()), "--localhost-only"},
                   folder_.path(), 120s);
   EXPECT_EQ(end.exit_code, 0) << end.errors << end.output;
-  for (const char* line : {"control process connected: ", "arm: done\n", "take off: done\n",
-                           "mission: done\n", "land: done\n"})
+  for (const char* line :
+       {"control process connected: ", "arm: done\n", "take off: done\n", "mission: done\n", "land: done\n"})
     EXPECT_NE(end.output.find(line), std::string::npos) << line << "\n" << end.output;
   const json now = status();
   EXPECT_EQ(now.at("mode"), "disarmed");

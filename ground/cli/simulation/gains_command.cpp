@@ -205,12 +205,10 @@ Command add_gains_command(runtime::CommandLine root) {
   app.footer("example: swiftlet gains --vehicle config/vehicles/kaylion.yaml --json");
   app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
       .show_default();
-  app.add_option("--control", options->control,
-                 "control settings file, or the name of one in config/control")
+  app.add_option("--control", options->control, "control settings file, or the name of one in config/control")
       .show_default();
-  app.add_option(
-         "--draws", options->draws,
-         "number of vehicles sampled from the uncertainty in the vehicle file, for the margins")
+  app.add_option("--draws", options->draws,
+                 "number of vehicles sampled from the uncertainty in the vehicle file, for the margins")
       .range(std::size_t{1}, std::size_t{1'000'000})
       .show_default();
   app.add_option("--seed", options->seed, "seed of the first sample; each further sample adds one")

@@ -43,9 +43,8 @@ Command add_sim_fly_command(runtime::CommandLine sim) {
       "fly", "Fly a mission in one process, as fast as possible; the same flight as with --clock lockstep");
   add_fly_options(app, *options);
   add_vary_option(app, *options);
-  app.add_flag(
-      "--trace", options->trace,
-      "write trace.csv, which holds every sample and command bit for bit, to compare flights");
+  app.add_flag("--trace", options->trace,
+               "write trace.csv, which holds every sample and command bit for bit, to compare flights");
   app.footer("example: swiftlet sim fly square --seed 7 --json | jq .rms_3d_m");
   return {app, [options] { return sim_fly(*options); }};
 }

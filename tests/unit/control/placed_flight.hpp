@@ -78,7 +78,7 @@ class Placed : public SupervisedFlight {
   Outcome tilt() {
     Setpoint setpoint;
     setpoint.kind = SetpointKind::kAttitude;
-    setpoint.thrust = plant::kGravity;
+    setpoint.specific_thrust = plant::kGravity;
     return supervisor_.setpoint(setpoint, inputs_);
   }
 

@@ -62,14 +62,14 @@ class SetpointFlight : public testing::TestWithParam<const char*> {
     Setpoint setpoint;
     setpoint.kind = SetpointKind::kAttitude;
     setpoint.q_ned_from_frd = quaternion_from_euler({roll_rad, pitch_rad, yaw_rad});
-    setpoint.thrust = plant::kGravity / (std::cos(roll_rad) * std::cos(pitch_rad));
+    setpoint.specific_thrust = plant::kGravity / (std::cos(roll_rad) * std::cos(pitch_rad));
     return setpoint;
   }
   Setpoint body_rates(const Vector3d& rates) {
     Setpoint setpoint;
     setpoint.kind = SetpointKind::kBodyRates;
     setpoint.body_rates_frd = rates;
-    setpoint.thrust = plant::kGravity;
+    setpoint.specific_thrust = plant::kGravity;
     return setpoint;
   }
 

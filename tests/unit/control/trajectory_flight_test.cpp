@@ -204,8 +204,7 @@ TEST_F(TrajectoryFlight, AMissionFliesItsTrajectoriesInTheirTurn) {
   EXPECT_LT((estimate_.position_ned - Vector3d(0, -0.5, -1)).norm(), 1e-4);
   const double way_s =
       septic_duration(0.5, 0.5, Limits().max_reference_acceleration, Limits().max_reference_jerk);
-  EXPECT_NEAR(static_cast<double>(inputs_.stamp_ns - begun_ns) * 1e-9, way_s + duration_s(tour_) + 0.4,
-              0.01);
+  EXPECT_NEAR(static_cast<double>(inputs_.stamp_ns - begun_ns) * 1e-9, way_s + duration_s(tour_) + 0.4, 0.01);
   ASSERT_TRUE(at_item(3));
   EXPECT_LT((estimate_.position_ned - Vector3d(1.0, 0.5, -1.5)).norm(), 1e-4);
   ASSERT_TRUE(step_until(Mode::kDisarmed, 20.0));

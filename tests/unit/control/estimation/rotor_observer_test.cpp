@@ -15,7 +15,7 @@ using tests::kaylion;
 using tests::multirotor;
 
 constexpr double kSupply_v = 3.7;
-constexpr double kTau_s = 0.0821;  // Eq. (18)
+constexpr double kTau_s = 0.0821;     // Eq. (18)
 constexpr double kBandwidth = 112.0;  // rad/s
 
 // Eq. (9) and (22) with the paper's numbers.

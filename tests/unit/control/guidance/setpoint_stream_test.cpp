@@ -104,7 +104,8 @@ TEST_P(Rates, PositionsWithTheirDerivativesAreFollowedOnTheSpot) {
   double farthest_m = 0.0;
   const auto next = [&](double t) {
     if (t > 1.0) {
-      farthest_m = std::max(farthest_m, (control_setpoint_.reference.position_ned - circle(t).position_ned).norm());
+      farthest_m =
+          std::max(farthest_m, (control_setpoint_.reference.position_ned - circle(t).position_ned).norm());
     }
     return circle(t);
   };
@@ -135,8 +136,9 @@ TEST_P(Rates, AVelocityIsReachedSmoothlyAndKept) {
   setpoint.velocity_ned = {0.3, -0.2, -0.1};
   ASSERT_NO_FATAL_FAILURE(stream(3.0, GetParam(), [&](double) { return setpoint; }));
   EXPECT_LT((control_setpoint_.reference.velocity_ned - setpoint.velocity_ned).norm(), 1e-3);
-  EXPECT_LT((control_setpoint_.reference.position_ned - 3.0 * setpoint.velocity_ned + Vector3d::UnitZ()).norm(),
-            0.3);
+  EXPECT_LT(
+      (control_setpoint_.reference.position_ned - 3.0 * setpoint.velocity_ned + Vector3d::UnitZ()).norm(),
+      0.3);
 }
 
 TEST_P(Rates, AnAccelerationIsReachedSmoothlyAndKept) {

@@ -16,9 +16,9 @@
 namespace swiftlet::ground {
 namespace {
 
-using identification::ParameterEstimate;
 using identification::FlightIdentification;
 using identification::FlightLog;
+using identification::ParameterEstimate;
 using identification::SpeedSource;
 
 const std::string kSource = SWIFTLET_SOURCE_DIR;

@@ -75,8 +75,7 @@ TEST(WatchScreen, ShowsPositionAgainstReference) {
   const std::string text = text_of(watch_screen(in_flight(), facts(), kNow, 100, 40));
   EXPECT_NE(text.find("no warnings\n"), std::string::npos) << text;
   EXPECT_NE(text.find("position       0.001    0.000   -1.000 m\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("error            1.0      0.0      0.0 mm   3-D 1.0 mm\n"), std::string::npos)
-      << text;
+  EXPECT_NE(text.find("error            1.0      0.0      0.0 mm   3-D 1.0 mm\n"), std::string::npos) << text;
 }
 
 TEST(WatchScreen, SaysWhatItWaitsFor) {

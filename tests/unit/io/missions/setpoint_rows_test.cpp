@@ -47,7 +47,7 @@ TEST(SetpointRows, ComeInSiUnits) {
   EXPECT_FALSE(rows.read("")) << "a blank line is no row";
   SetpointRows attitudes("t [s],roll [deg],pitch [deg],yaw [deg],thrust [g]", "f");
   const auto attitude = attitudes.read("0,10,-5,30,1");
-  EXPECT_NEAR(attitude->setpoint.thrust, 9.80665, 1e-12);
+  EXPECT_NEAR(attitude->setpoint.specific_thrust, 9.80665, 1e-12);
   const Vector3d euler = control::euler_angles(attitude->setpoint.q_ned_from_frd).vector();
   EXPECT_LT((euler * 180.0 / M_PI - Vector3d(10, -5, 30)).norm(), 1e-9);
 }

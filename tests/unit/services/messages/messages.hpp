@@ -108,7 +108,7 @@ inline ControllerReport controller_report() {
   state.guidance.item_end_ns = 32;
   state.guidance.path.clock = {false, 55, 56, 1.5, {1.0, 0.0, 0.0, -2.9, 2.9, -0.8, 0.0, 0.0}};
   state.guidance.pause = control::MissionPause::kReturning;
-  state.guidance.left = {trajectory(3).segments[2], 57, 58, 59};
+  state.guidance.paused_path = {trajectory(3).segments[2], 57, 58, 59};
   state.guidance.trajectory_id = 33;
   state.guidance.next_segment = 34;
   state.guidance.setpoint_ns = 35;
