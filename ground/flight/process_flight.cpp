@@ -60,7 +60,7 @@ void ProcessFlight::fly_mission(const Interrupts& interrupts, StartBarrier* barr
     const NetworkTransport::Watch watch{[this] { return processes_->exited_process(); },
                                         [&] { return interrupts.count(); }, barrier};
     NetworkTransport vehicle(client, record_, plan_.mission, plan_.clock, watch, progress);
-    fly_mission(vehicle, plan_.planned_duration_s);
+    ground::fly_mission(vehicle, plan_.planned_duration_s);
     vehicle.wait_for_last_figures();
   } catch (const FlightFailure& failure) {
     report_.reason = failure.what();
