@@ -29,6 +29,6 @@ namespace swiftlet::ground {
 // Both functions throw runtime::ConfigError with file, line, key, value and limit if the file is malformed or
 // if min or max of a parameter violates a rule of the vehicle or the simulation by itself.
 Dispersion load_dispersion_file(const std::string& path, const World& nominal);
-Dispersion parse_vary_file(const std::string& text, const std::string& file_name, const World& nominal);
+Dispersion parse_dispersion_file(const std::string& text, const std::string& file_name, const World& nominal);
 
 }  // namespace swiftlet::ground

@@ -40,7 +40,7 @@ void add_fly_options(runtime::CommandLine app, FlyOptions& options) {
   app.add_flag("--json", options.json, "print one JSON object instead of the summary");
 }
 
-runtime::Option add_vary_option(runtime::CommandLine app, FlyOptions& options) {
+runtime::Option add_dispersion_option(runtime::CommandLine app, FlyOptions& options) {
   return app.add_option(
       "--dispersion", options.dispersion,
       "dispersion file, or the name of one in config/dispersion: the distributions from which the parameters "

@@ -13,6 +13,6 @@ void add_mission_options(runtime::CommandLine app, FlyOptions& options);
 // Adds the options of add_mission_options(), --record, --sensors and --json.
 void add_fly_options(runtime::CommandLine app, FlyOptions& options);
 // Adds --dispersion.
-runtime::Option add_vary_option(runtime::CommandLine app, FlyOptions& options);
+runtime::Option add_dispersion_option(runtime::CommandLine app, FlyOptions& options);
 
 }  // namespace swiftlet::ground

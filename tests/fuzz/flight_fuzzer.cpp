@@ -217,7 +217,7 @@ class Flight {
     setpoint.yaw_free = input_.byte() % 2 == 0;
     setpoint.q_ned_from_frd = attitude();
     setpoint.body_rates_frd = input_.vector();
-    setpoint.thrust = input_.number();
+    setpoint.specific_thrust = input_.number();
     const control::Outcome outcome = loop_.controller.on_setpoint(setpoint);
     tests::demand(outcome.accepted || std::strlen(outcome.reason) > 4, "a refusal says why");
   }

@@ -15,7 +15,7 @@ namespace swiftlet::tests {
 namespace {
 
 using namespace std::chrono_literals;
-using ground::Ending;
+using ground::ActionResult;
 using ground::Vehicle;
 
 class OneContext : public testing::Test {

@@ -189,7 +189,7 @@ TEST_F(Standby, ARequestIsFollowedToItsEndByWhoeverTakesOver) {
   ASSERT_TRUE(eventually([&] { return climb.progress() > 0.2; }, 10s));
   ASSERT_LT(climb.progress(), 1.0);
   flight_.kill(flight_.active());
-  const ground::Ending ending = climb.wait(20s);
+  const ground::ActionResult ending = climb.wait(20s);
   EXPECT_TRUE(ending.done()) << ending.reason;
   EXPECT_NEAR(vehicle.state().position_ned_m.z(), -1.0, 0.06);
   EXPECT_TRUE(events.wait(
@@ -223,8 +223,8 @@ TEST_F(Standby, AProgramGoesOnWithAControlProcessThatIsStartedAgain) {
   EXPECT_EQ(events.items()[2].kind, Kind::kReplaced);
   EXPECT_EQ(events.items()[2].controller, second.id);
   EXPECT_TRUE(vehicle.connected());
-  const ground::Ending lost = climb.wait(10s);
-  EXPECT_EQ(lost.kind, ground::Ending::Kind::kLost) << lost.reason;
+  const ground::ActionResult lost = climb.wait(10s);
+  EXPECT_EQ(lost.kind, ground::ActionResult::Kind::kLost) << lost.reason;
   std::string refusal;
   EXPECT_TRUE(eventually(
       [&] {

@@ -83,7 +83,7 @@ Command add_sim_batch_command(runtime::CommandLine sim) {
   const runtime::CommandLine app = sim.add_subcommand(
       "batch", "Monte Carlo: fly a mission many times, with vehicle and simulation sampled for each run");
   add_mission_options(app, flight);
-  add_vary_option(app, flight).required();
+  add_dispersion_option(app, flight).required();
   app.add_option("--runs", options->runs, "number of runs; the first uses --seed, each further run adds one")
       .range(std::size_t{1}, kMostRuns)
       .show_default();

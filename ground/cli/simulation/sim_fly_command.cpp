@@ -42,7 +42,7 @@ Command add_sim_fly_command(runtime::CommandLine sim) {
   const runtime::CommandLine app = sim.add_subcommand(
       "fly", "Fly a mission in one process, as fast as possible; the same flight as with --clock lockstep");
   add_fly_options(app, *options);
-  add_vary_option(app, *options);
+  add_dispersion_option(app, *options);
   app.add_flag("--trace", options->trace,
                "write trace.csv, which holds every sample and command bit for bit, to compare flights");
   app.footer("example: swiftlet sim fly square --seed 7 --json | jq .rms_3d_m");

@@ -11,7 +11,7 @@
 namespace swiftlet::ground {
 namespace {
 
-Dispersion parse(const std::string& text) { return parse_vary_file(text, "v.yaml", nominal()); }
+Dispersion parse(const std::string& text) { return parse_dispersion_file(text, "v.yaml", nominal()); }
 
 const std::string kMass =
     "  vehicle.mass: {distribution: normal, mean: 1, sigma: 0.02, min: 0.95, max: 1.1, unit: nominal, "

@@ -15,7 +15,7 @@ namespace swiftlet::ground {
 namespace {
 
 Dispersion parse(const std::string& parameters) {
-  return parse_vary_file("parameters:\n" + parameters, "v.yaml", nominal());
+  return parse_dispersion_file("parameters:\n" + parameters, "v.yaml", nominal());
 }
 
 const std::string kMass =

@@ -1,4 +1,4 @@
-// Vary files, and the draws from them.
+// Dispersion files, and the draws from them.
 #include "swiftlet/io/settings/simulation_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/simulation/dispersion_file.hpp"
@@ -12,8 +12,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       runtime::load_simulation_settings(SWIFTLET_SOURCE_DIR "/config/simulation/default.yaml")};
   tests::is_read([&] {
     const ground::Dispersion dispersion =
-        ground::parse_vary_file(std::string(tests::text_of(data, size)), tests::kFuzzedFile, nominal);
-    const ground::Draw draw = ground::draw(dispersion, nominal, 1);
+        ground::parse_dispersion_file(std::string(tests::text_of(data, size)), tests::kFuzzedFile, nominal);
+    const ground::DispersionSample draw = ground::draw(dispersion, nominal, 1);
     tests::demand(ground::validate(draw.world).empty(), "a world that was drawn keeps the rules");
   });
   return 0;
