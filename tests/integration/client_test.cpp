@@ -75,7 +75,7 @@ TEST_F(OneContext, FliesTwoVehiclesAtOnce) {
   EXPECT_TRUE(lower.accepted()) << lower.answer().reason;
   EXPECT_TRUE(higher.accepted()) << higher.answer().reason;
   for (const ground::ActionHandle& manoeuvre : {lower, higher}) {
-    const Ending ending = manoeuvre.wait(60s);
+    const ActionResult ending = manoeuvre.wait(60s);
     EXPECT_TRUE(ending.done()) << ending.reason;
     EXPECT_EQ(manoeuvre.progress(), 1.0);
   }

@@ -121,6 +121,9 @@ void RedundantFlight::kill(Controller& controller) {
   controllers_.erase(gone);
 }
 
+void RedundantFlight::stop_time() { plant_.signal(SIGSTOP); }
+void RedundantFlight::resume_time() { plant_.signal(SIGCONT); }
+
 std::map<std::uint64_t, msg::ControllerState> RedundantFlight::heard() const {
   const auto now = ground::Clock::now();
   const std::lock_guard<std::mutex> lock(mutex_);

@@ -48,6 +48,9 @@ class RedundantFlight {
   // The one that acts; throws std::runtime_error if it is none of them, or not one.
   Controller& active();
   void kill(Controller& controller);
+  // Stops the plant's process and lets it go on: no time of the vehicle passes between the two.
+  void stop_time();
+  void resume_time();
   const std::vector<std::unique_ptr<Controller>>& controllers() const { return controllers_; }
 
   // As controller_state has it of those heard within the last half second.
