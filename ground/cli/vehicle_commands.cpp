@@ -37,7 +37,7 @@ void confirm(const StopOptions& options) {
   if (isatty(STDIN_FILENO) == 0 || isatty(STDERR_FILENO) == 0)
     throw InputError("stop: requires --yes without a terminal: a vehicle in the air falls");
   const bool one = split_list(options.network.vehicle).size() == 1;
-  std::fprintf(stderr, "The rotors turn off at once, also if %s %s in the air: %s. Type stop to do it: ",
+  std::fprintf(stderr, "The rotors turn off at once, also if %s %s in the air: %s.\nType stop to do it: ",
                options.network.vehicle.c_str(), one ? "is" : "are", one ? "it falls" : "they fall");
   std::string typed;
   std::getline(std::cin, typed);

@@ -58,13 +58,13 @@ std::function<void(FlightLog&)> rows(const std::function<void(FlightLog&, std::s
 
 TEST_F(FlightChecks, UnitsThatPhysicsExcludes) {
   expect_refused_with(rows([](FlightLog& log, std::size_t row) { log.specific_force_frd[row] /= 9.81; }),
-                      "specific force: is in the middle 0.98");
+                      "specific force: has the median 0.98");
   expect_refused_with(rows([](FlightLog& log, std::size_t row) { log.specific_force_frd[row] *= 1000.0; }),
                       "s ends it: is the unit right?");
   expect_refused_with(rows([](FlightLog& log, std::size_t row) { log.body_rates_frd[row] *= 180.0 / M_PI; }),
                       "body rates: the poses turn 0.017");
   expect_refused_with(rows([](FlightLog& log, std::size_t row) { log.supply_voltage_v[row] *= 1000.0; }),
-                      "supply voltage: is in the middle 39");
+                      "supply voltage: has the median 39");
   expect_refused_with(rows([](FlightLog& log, std::size_t row) {
                         for (double& speed : log.rotor_speeds[row]) speed *= 9.549;
                       }),
