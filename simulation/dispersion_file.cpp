@@ -95,7 +95,8 @@ Dispersion load_dispersion_file(const std::string& path, const World& nominal) {
   return read_dispersion(runtime::load_config(path), nominal);
 }
 
-Dispersion parse_dispersion_file(const std::string& text, const std::string& file_name, const World& nominal) {
+Dispersion parse_dispersion_file(const std::string& text, const std::string& file_name,
+                                 const World& nominal) {
   return read_dispersion(runtime::parse_config(text, file_name), nominal);
 }
 

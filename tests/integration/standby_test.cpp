@@ -152,9 +152,8 @@ TEST_F(Standby, OneStartedAloneFindsItsVehicleFlyingAndHoldsIt) {
   flight_.kill(first);
   flight_.stop_time();  // a process takes as long to start as the machine is busy
   const std::unique_ptr<Program> second = flight_.launch_controller(0);
-  flight_.wait("the second one is ready", [&] {
-    return (second->output() + second->errors()).find("ready: ") != std::string::npos;
-  });
+  flight_.wait("the second one is ready",
+               [&] { return (second->output() + second->errors()).find("ready: ") != std::string::npos; });
   flight_.resume_time();
   flight_.wait("it holds", [&] { return mode() == "holding" && reason() == "engaged in flight"; });
   const Felt felt = flight_.felt(at_ns, at_ns + 3 * kSecond / 2);

@@ -150,7 +150,8 @@ TEST_F(MissionChecked, WhatTheControlServiceWouldRefuseIsNotFeasible) {
                                  "  - {kind: land, speed_m_s: 0.4}\n");
   const MissionCheck outside = checked(file);
   EXPECT_FALSE(outside.feasible());
-  EXPECT_EQ(outside.reason, "mission refused: the vehicle: x is 0.000 m, outside the fence of 0.500 to 2.000 m");
+  EXPECT_EQ(outside.reason,
+            "mission refused: the vehicle: x is 0.000 m, outside the fence of 0.500 to 2.000 m");
   const MissionDryRun inside = dry_run(file.mission, settings_, {1.0, 0.0});
   EXPECT_TRUE(check_mission(file, inside, vehicle_, settings_, 3.3).feasible()) << inside.reason;
 }
