@@ -10,7 +10,6 @@
 #include <string>
 #include <sys/select.h>
 #include <sys/wait.h>
-#include <thread>
 #include <unistd.h>
 #include <vector>
 
@@ -19,6 +18,7 @@
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/runtime/process.hpp"
+#include "tests/support/eventually.hpp"
 
 namespace swiftlet {
 namespace {
@@ -120,6 +120,19 @@ class Fleet {
     return time_s;
   }
 
+  // Lets the time pass. Throws if a process ends meanwhile.
+  void stay(std::chrono::milliseconds duration) const {
+    const auto one_has_ended = [this] {
+      return std::any_of(processes_.begin(), processes_.end(), [](pid_t pid) {
+        siginfo_t ended{};
+        return ::waitid(P_PID, static_cast<id_t>(pid), &ended, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+               ended.si_pid == pid;
+      });
+    };
+    if (tests::eventually(one_has_ended, duration, std::chrono::milliseconds(20)))
+      throw std::runtime_error("a process ended while the fleet was measured");
+  }
+
   // Of the processor, by all of them so far.
   double time_s() const {
     double ticks = 0.0;
@@ -145,10 +158,11 @@ nlohmann::ordered_json measure(int count, const Options& options) {
   const int known = fleet.wait_until_known(std::chrono::duration<double>(options.patience_s));
   const double found_s = std::chrono::duration<double>(Clock::now() - start).count();
   const double finding_s = fleet.time_s();
-  std::this_thread::sleep_for(kFirstAnnouncements);
+  fleet.stay(kFirstAnnouncements);
   const double before_s = fleet.time_s();
   const auto rest = Clock::now();
-  std::this_thread::sleep_for(std::chrono::duration<double>(options.seconds));
+  fleet.stay(
+      std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(options.seconds)));
   const double rest_s = std::chrono::duration<double>(Clock::now() - rest).count();
   const double cpu_s = fleet.time_s() - before_s;
   std::vector<double> joins_s;

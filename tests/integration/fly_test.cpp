@@ -88,7 +88,7 @@ void expect_control_rate(const json& report, double rate_hz) {
   EXPECT_LT(report.at("control_rate_hz"), 1.05 * rate_hz);
 }
 
-// This and the next judge latencies and errors in real time: nothing runs beside them.
+// This and the next two judge rates, latencies and errors in real time: nothing runs beside them.
 TEST_F(Fly, FliesReportsAndRecordsAMission) {
   fly_in_real_time(arguments(folder_.write("hop.yaml", kHopMission), {"--seed", "7"}));
   ASSERT_EQ(exit_code_, 0) << told_;
@@ -123,6 +123,14 @@ TEST_F(Fly, FliesAtOneKilohertz) {
   ASSERT_EQ(exit_code_, 0) << told_;
   const json report = json::parse(output_);
   expect_control_rate(report, 1000.0);
+  EXPECT_LT(report.at("rms_3d_m"), 0.010);
+}
+
+TEST_F(Fly, SpeedScalesRealTime) {
+  fly_in_real_time(arguments(folder_.write("hop.yaml", kHopMission), {"--speed", "4"}));
+  ASSERT_EQ(exit_code_, 0) << told_;
+  const json report = json::parse(output_);
+  EXPECT_NEAR(report.at("control_rate_hz"), 2000.0, 200.0);
   EXPECT_LT(report.at("rms_3d_m"), 0.010);
 }
 

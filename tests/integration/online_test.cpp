@@ -2,10 +2,14 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/control/types/mode.hpp"
+#include "swiftlet/services/dds/node.hpp"
 #include "tests/integration/online_flight.hpp"
 
 namespace swiftlet::tests {
@@ -148,8 +152,8 @@ TEST_F(OnlineFlight, AMissionIsUploadedStartedPausedGoneOnWithSkippedAndCleared)
 }
 
 TEST_F(OnlineFlight, ASecondTrajectoryIsJoinedInTheMiddleOfTheFirst) {
-  const std::string tour =
-      folder_.write("tour.csv", "x,y,z\n0,0,1\n0.6,0,1\n0.6,0.6,1\n-0.6,0.6,1.2\n-0.6,-0.6,1\n0,0,1\n");
+  const std::string lap = "0.6,0,1\n0.6,0.6,1\n-0.6,0.6,1.2\n-0.6,-0.6,1\n0,0,1\n";
+  const std::string tour = folder_.write("tour.csv", "x,y,z\n0,0,1\n" + lap + lap + lap + lap);  // some 20 s
   const std::string other = folder_.write("other.csv", "0.3,0.4,0.8\n0.5,0,0.8\n");
   const std::string mission = folder_.write("hop.yaml",
                                             "frame: ned\ntolerance_m: 0.1\nends: hovering\nitems:\n  - "
@@ -162,10 +166,26 @@ TEST_F(OnlineFlight, ASecondTrajectoryIsJoinedInTheMiddleOfTheFirst) {
       << disarmed.errors;
   EXPECT_EQ(swiftlet({"trajectory", mission}).exit_code, 2);
   take_off();
+  Inbox<std::string> modes;
+  comms::NodeSettings settings{"watcher"};
+  settings.vehicle = "kl7";
+  settings.domain = lock_.domain();
+  settings.localhost_only = true;
+  settings.deadlines = false;
+  comms::Node watcher(settings);
+  const comms::Subscription subscription =
+      watcher.subscribe<comms::msg::ControlStatus>(comms::topics::kControlStatus, [&](const auto& status) {
+        const std::vector<std::string> before = modes.items();
+        const std::string mode = control::to_string(static_cast<control::Mode>(status.mode()));
+        if (before.empty() || before.back() != mode) modes.put(mode);
+      });
+  ASSERT_TRUE(modes.wait_for_count(1));
   expect_accepted({"trajectory", tour});
-  ASSERT_TRUE(reaches_mode("trajectory"));
+  ASSERT_TRUE(modes.wait_for_count(2));
   expect_accepted({"trajectory", other});
   ASSERT_TRUE(reaches_mode("holding"));
+  EXPECT_EQ(modes.items(), (std::vector<std::string>{"holding", "trajectory", "holding"}))
+      << "it must not hold between the two";
   EXPECT_EQ(status().at("reason"), "trajectory completed");
   ASSERT_TRUE(reaches_place(0.0, 0.5, -0.8));
 }
