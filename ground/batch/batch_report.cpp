@@ -84,12 +84,12 @@ std::string headline_of(const BatchReport& report) {
   const std::uint64_t first = report.first_seed;
   std::string text = report.mission + ", " + report.vehicle + " with " + report.control + ", dispersion " +
                      report.dispersion +
-                     fmt::format(": {}, seeds {} to {}\n", counted(batch.asked, "run").c_str(),
+                     fmt::format(": {}, seeds {} to {}\n", counted(batch.requested, "run").c_str(),
                                  static_cast<unsigned long long>(first),
-                                 static_cast<unsigned long long>(first + batch.asked - 1));
+                                 static_cast<unsigned long long>(first + batch.requested - 1));
   text += fmt::format("  {} completed, {} failed", batch.runs.size() - batch.failed(), batch.failed());
   if (report.interrupted())
-    text += fmt::format(", {} NOT flown: batch cancelled", batch.asked - batch.runs.size());
+    text += fmt::format(", {} NOT flown: batch cancelled", batch.requested - batch.runs.size());
   return text + fmt::format("; {:.1f} s\n", batch.wall_s);
 }
 
@@ -171,7 +171,7 @@ Json to_json(const BatchReport& report) {
   json["control"] = report.control;
   json["dispersion"] = report.dispersion;
   json["seed"] = report.first_seed;
-  json["runs"] = batch.asked;
+  json["runs"] = batch.requested;
   json["runs_done"] = batch.runs.size();
   json["runs_failed"] = batch.failed();
   json["draws_rejected"] = batch.rejected;

@@ -49,10 +49,10 @@ TEST_F(IdentifyFlight, MakesAVehicleOfARecord) {
   EXPECT_NE(page.str().find("<svg"), std::string::npos);
   EXPECT_EQ(page.str().find("http"), std::string::npos);
 
-  const Ending gains = run({"gains", "--vehicle", in_folder("mine.yaml"), "--draws", "50", "--json"});
+  const Ending gains = run({"gains", "--vehicle", in_folder("mine.yaml"), "--samples", "50", "--json"});
   ASSERT_EQ(gains.exit_code, 0) << gains.errors;
   const nlohmann::json margins = nlohmann::json::parse(gains.output);
-  EXPECT_EQ(margins["draws"], 50);
+  EXPECT_EQ(margins["samples"], 50);
   EXPECT_LE(margins["margins"]["roll"]["worst"]["phase_deg"],
             margins["margins"]["roll"]["designed"]["phase_deg"]);
 

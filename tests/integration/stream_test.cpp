@@ -30,7 +30,7 @@ TEST_F(StreamFlight, AFileOfPositionsIsFlownAndItHoldsAfterwards) {
   const json report = json::parse(end.output);
   EXPECT_EQ(report.at("sent"), 41);
   EXPECT_EQ(report.at("refused"), 0);
-  EXPECT_GT(report.at("taken"), 20);
+  EXPECT_GT(report.at("accepted"), 20);
   EXPECT_EQ(report.at("mode"), "holding");
   EXPECT_NEAR(report.at("duration_s").get<double>(), 4.0, 0.5);
   const json now = status();

@@ -84,7 +84,7 @@ Vector3d fly_with_heartbeats(bool flips) {
     const double end = flown.time_s() + time_s;
     while (flown.time_s() < end) {
       do {
-        flown.plant.step(flown.watchdog.drive(flown.plant.stamp_ns()));
+        flown.plant.step(flown.watchdog.motor_command(flown.plant.stamp_ns()));
       } while (!flown.plant.imu());
       auto pose = flown.mocap.update(flown.plant.truth());
       if (pose && flips && pose->sequence % 3 == 0) pose->q_ned_from_frd.coeffs() *= -1.0;

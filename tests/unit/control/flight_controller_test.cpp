@@ -192,7 +192,7 @@ TEST_F(InFlight, OneStepDoesNotTouchTheHeap) {
   const auto flown = [&](int steps) {
     for (int i = 0; i < steps; ++i) {
       do {
-        loop_.plant.step(loop_.watchdog.drive(loop_.plant.stamp_ns()));
+        loop_.plant.step(loop_.watchdog.motor_command(loop_.plant.stamp_ns()));
       } while (!loop_.plant.imu());
       const auto pose = loop_.mocap.update(loop_.plant.truth());
       const test::MallocGuard guard;

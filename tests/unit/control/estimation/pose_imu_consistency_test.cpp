@@ -39,7 +39,7 @@ class Trials : public testing::TestWithParam<std::uint64_t> {
       const double t = static_cast<double>(pose_.stamp_ns) * 1e-9;
       innovation.position = pose_.position_ned - path_.position(t);
       innovation.rotation = rotation_vector(pose_.q_ned_from_frd * path_.attitude(t).conjugate());
-      const Verdict verdict = trial_.look_at(pose_, innovation, settings_);
+      const Verdict verdict = trial_.update(pose_, innovation, settings_);
       agree_ += verdict == Verdict::kAgree ? 1 : 0;
       disagree_ += verdict == Verdict::kDisagree ? 1 : 0;
     }
@@ -83,7 +83,7 @@ TEST(PoseImuConsistencyTest, BeginsAnew) {
   const auto look = [&](double z_ned) {
     pose.stamp_ns += static_cast<std::int64_t>(1e9 * settings.detectors.pose_imu_consistency.interval_s);
     pose.position_ned.z() = z_ned;
-    return trial.look_at(pose, {{0.0, 0.0, z_ned}, Vector3d::Zero()}, settings);
+    return trial.update(pose, {{0.0, 0.0, z_ned}, Vector3d::Zero()}, settings);
   };
   EXPECT_EQ(look(0.0), Verdict::kNone);
   EXPECT_EQ(look(0.0), Verdict::kNone);

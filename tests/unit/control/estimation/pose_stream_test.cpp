@@ -30,7 +30,7 @@ Vector3d noisy(int frame) { return {1e-4 * ((frame * 7919) % 13 - 6), 0.0, -1.0}
 class StuckPoses : public testing::Test {
  protected:
   void see(const Vector3d& position_ned, RotorState rotors, const Quaterniond& q = Quaterniond::Identity()) {
-    watch_.look_at(pose(frame_++, position_ned, q), rotors);
+    watch_.update(pose(frame_++, position_ned, q), rotors);
   }
   void stand_in_noise() {
     for (int i = 0; i < 40; ++i) see(noisy(i), RotorState::kOff);
@@ -99,8 +99,8 @@ class Track : public testing::Test {
   // The vehicle flies north at 1 m/s and turns right at 1 rad/s; the pose is off that by so much.
   void see(int frame, const Vector3d& off_ned = Vector3d::Zero(), double off_yaw = 0.0) {
     const double t = 0.01 * frame;
-    continuity_.look_at(pose(frame, Vector3d(t, 0.0, -1.0) + off_ned,
-                             Quaterniond(AngleAxisd(t + off_yaw, Vector3d::UnitZ()))));
+    continuity_.update(pose(frame, Vector3d(t, 0.0, -1.0) + off_ned,
+                            Quaterniond(AngleAxisd(t + off_yaw, Vector3d::UnitZ()))));
     frame_ = frame + 1;
   }
   void see_many(int count, const Vector3d& off_ned = Vector3d::Zero(), double off_yaw = 0.0) {
@@ -150,11 +150,11 @@ TEST_F(Track, TurnsAreUndoneInTheOrderInWhichTheyCame) {
                              a * b * a.conjugate() * b.conjugate()};
   int frame = 0;
   for (const Quaterniond& q : way) {
-    still.look_at(pose(frame, Vector3d::Zero(), q));
+    still.update(pose(frame, Vector3d::Zero(), q));
     if (frame++ == 0) still.begin();
   }
   EXPECT_FALSE(still.in_reach()) << "the commutator of the turns is left";
-  still.look_at(pose(frame, Vector3d::Zero()));
+  still.update(pose(frame, Vector3d::Zero()));
   EXPECT_TRUE(still.in_reach());
 }
 
@@ -200,7 +200,7 @@ TEST_F(Track, LastsOnceItHasGoneOnForEightPosesAndAFifthOfASecond) {
   }
   PoseContinuity slow;  // 20 Hz
   for (int i = 0; i < 10; ++i) {
-    slow.look_at(pose(5 * i, {0.0, 0.0, -1.0}));
+    slow.update(pose(5 * i, {0.0, 0.0, -1.0}));
     EXPECT_EQ(slow.lasting(), i >= 7) << i;
   }
 }
@@ -210,7 +210,7 @@ TEST_F(Track, TheSignOfTheQuaternionIsNoStep) {
     const double t = 0.01 * frame_;
     Quaterniond q(AngleAxisd(t, Vector3d::UnitZ()));
     if (i % 2 == 0) q.coeffs() *= -1.0;
-    continuity_.look_at(pose(frame_++, {t, 0.0, -1.0}, q));
+    continuity_.update(pose(frame_++, {t, 0.0, -1.0}, q));
   }
   EXPECT_TRUE(continuity_.unbroken());
   EXPECT_EQ(continuity_.poses(), 70);
@@ -218,9 +218,9 @@ TEST_F(Track, TheSignOfTheQuaternionIsNoStep) {
 
 TEST(PoseContinuity, KnowsNoVelocityBeforeFivePoses) {
   PoseContinuity continuity;
-  for (int i = 0; i < 4; ++i) continuity.look_at(pose(i, {0.01 * i, 0.0, 0.0}));
+  for (int i = 0; i < 4; ++i) continuity.update(pose(i, {0.01 * i, 0.0, 0.0}));
   EXPECT_EQ(continuity.velocity_ned(), Vector3d::Zero());
-  continuity.look_at(pose(4, {0.04, 0.0, 0.0}));
+  continuity.update(pose(4, {0.04, 0.0, 0.0}));
   EXPECT_LT((continuity.velocity_ned() - Vector3d(1.0, 0.0, 0.0)).norm(), 1e-9);
 }
 

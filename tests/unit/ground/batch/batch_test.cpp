@@ -173,7 +173,7 @@ TEST_F(BatchTest, MakesEveryDrawBeforeTheFirstFlight) {
 // Without flights: two runs, of which one failed.
 BatchReport made_report(const LaunchConfiguration& plan, const FlyOptions& how) {
   Batch batch;
-  batch.asked = 2;
+  batch.requested = 2;
   BatchRun good;
   good.seed = 11;
   good.completed = true;

@@ -19,7 +19,7 @@ class Connection : public testing::Test {
   }
   std::optional<ConnectionEvent> look_after(std::chrono::milliseconds time) {
     now_ += time;
-    return watch_.look(view_, now_);
+    return watch_.update(view_, now_);
   }
 
   View view_;

@@ -91,7 +91,7 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
       "failsafe:\n"
       "  imu_timeout_s: 46\n"
       "  imu_gap_s: 47\n"
-      "  blow_m_s2: 61\n"
+      "  impact_m_s2: 61\n"
       "  mocap_timeout_s: 48\n"
       "  descent_speed_m_s: 49\n"
       "  descent_timeout_s: 50\n"
@@ -191,7 +191,7 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
   EXPECT_EQ(s.arming.max_rotor_speed, 45);
   EXPECT_EQ(s.failsafe.imu_timeout_s, 46);
   EXPECT_EQ(s.failsafe.imu_gap_s, 47);
-  EXPECT_EQ(s.failsafe.blow, 61);
+  EXPECT_EQ(s.failsafe.impact_acceleration, 61);
   EXPECT_EQ(s.failsafe.mocap_timeout_s, 48);
   EXPECT_EQ(s.failsafe.descent_speed, 49);
   EXPECT_EQ(s.failsafe.descent_timeout_s, 50);
@@ -352,7 +352,7 @@ const Fault kFaults[] = {
     {"arming.max_rotor_speed_rad_s", ".nan", "must be a finite number"},
     {"failsafe.imu_timeout_s", "0", "above 0"},
     {"failsafe.imu_gap_s", "0", "above 0"},
-    {"failsafe.blow_m_s2", "9", "above 9.80665"},
+    {"failsafe.impact_m_s2", "9", "above 9.80665"},
     {"failsafe.low_battery_voltage_v", "-1", "at least 0"},
     {"failsafe.critical_battery_voltage_v", "3.4", "is 3.4, must be at least 0 and at most 3.3"},
     {"failsafe.battery_delay_s", "-1", "at least 0"},

@@ -27,8 +27,8 @@ ActuatorCommand command(std::int64_t stamp_ns, double throttle = 0.5) {
 
 TEST(ActuatorWatchdog, KeepsRotorsOffUntilTheFirstCommand) {
   const ActuatorWatchdog watchdog(4, kTimeout);
-  EXPECT_EQ(watchdog.drive(0).state, RotorState::kOff);
-  EXPECT_EQ(watchdog.drive(1'000'000).state, RotorState::kOff);
+  EXPECT_EQ(watchdog.motor_command(0).state, RotorState::kOff);
+  EXPECT_EQ(watchdog.motor_command(1'000'000).state, RotorState::kOff);
   EXPECT_FALSE(watchdog.expired(1'000'000));  // nothing has ceased
 }
 
@@ -37,23 +37,24 @@ TEST(ActuatorWatchdog, PassesGoodCommandsOn) {
   ActuatorCommand good = command(1000);
   good.throttle = {0.0, 1.0, 0.25, 0.75, 0.9, 0.9, 0.9, 0.9};
   EXPECT_EQ(watchdog.accept(good, 1000), CommandFault::kNone);
-  EXPECT_EQ(watchdog.drive(1000).state, RotorState::kRunning);
-  EXPECT_EQ(watchdog.drive(1000).throttle, (plant::PerRotor{0.0, 1.0, 0.25, 0.75, 0.0, 0.0, 0.0, 0.0}));
+  EXPECT_EQ(watchdog.motor_command(1000).state, RotorState::kRunning);
+  EXPECT_EQ(watchdog.motor_command(1000).throttle,
+            (plant::PerRotor{0.0, 1.0, 0.25, 0.75, 0.0, 0.0, 0.0, 0.0}));
   good.rotor_state = RotorState::kOff;
   EXPECT_EQ(watchdog.accept(good, 1001), CommandFault::kNone);  // answers the same sample again
-  EXPECT_EQ(watchdog.drive(1001).state, RotorState::kOff);
+  EXPECT_EQ(watchdog.motor_command(1001).state, RotorState::kOff);
 }
 
 TEST(ActuatorWatchdog, StopsRotorsWhenCommandsCease) {
   ActuatorWatchdog watchdog(4, kTimeout);
   watchdog.accept(command(1000), 1100);
   EXPECT_FALSE(watchdog.expired(1200));
-  EXPECT_EQ(watchdog.drive(1200).state, RotorState::kRunning);
+  EXPECT_EQ(watchdog.motor_command(1200).state, RotorState::kRunning);
   EXPECT_TRUE(watchdog.expired(1201));  // counted from the sample, not from the command's arrival
-  EXPECT_EQ(watchdog.drive(1201).state, RotorState::kOff);
-  EXPECT_EQ(watchdog.drive(1201).throttle, plant::PerRotor{});
+  EXPECT_EQ(watchdog.motor_command(1201).state, RotorState::kOff);
+  EXPECT_EQ(watchdog.motor_command(1201).throttle, plant::PerRotor{});
   EXPECT_EQ(watchdog.accept(command(1300), 1300), CommandFault::kNone);
-  EXPECT_EQ(watchdog.drive(1300).state, RotorState::kRunning);
+  EXPECT_EQ(watchdog.motor_command(1300).state, RotorState::kRunning);
 }
 
 TEST(ActuatorWatchdog, ATermRulesOutLowerOnesUntilItsCommandsCease) {
@@ -127,15 +128,15 @@ TEST(ActuatorWatchdog, RefusesBrokenCommandsWithoutEffect) {
     ASSERT_EQ(watchdog.accept(command(900), 900), CommandFault::kNone);
     EXPECT_EQ(watchdog.accept(broken.command, 1050), broken.fault);
     EXPECT_EQ(plant::to_string(broken.fault), broken.sentence);
-    EXPECT_EQ(watchdog.drive(1100).throttle[0], 0.5);
-    EXPECT_EQ(watchdog.drive(1101).state, RotorState::kOff) << "it counted as a command";
+    EXPECT_EQ(watchdog.motor_command(1100).throttle[0], 0.5);
+    EXPECT_EQ(watchdog.motor_command(1101).state, RotorState::kOff) << "it counted as a command";
   }
 }
 
 TEST(ActuatorWatchdog, RefusesCommandsBeyondTheTimeout) {
   ActuatorWatchdog watchdog(4, kTimeout);
   EXPECT_EQ(watchdog.accept(command(999), 1200), CommandFault::kStale);
-  EXPECT_EQ(watchdog.drive(1200).state, RotorState::kOff);
+  EXPECT_EQ(watchdog.motor_command(1200).state, RotorState::kOff);
   EXPECT_EQ(watchdog.accept(command(1000), 1200), CommandFault::kNone);
 }
 
