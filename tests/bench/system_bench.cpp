@@ -26,6 +26,7 @@
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/runtime/child_process.hpp"
 #include "swiftlet/services/runtime/process.hpp"
+#include "tests/bench/longest_steps.hpp"
 #include "tests/bench/stall_witness.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -472,6 +473,16 @@ void missions(Table& table) {
       {"until the vehicle says that it flies it", 1e3 * took.started_s, "ms", "the target", 1000.0, ""});
 }
 
+void planning(Table& table) {
+  table.section(
+      "(h) a step of plant and controller that evaluates a request or setpoint in motion, CPU time");
+  for (const tests::StepTimes& times : tests::longest_steps()) {
+    table.add({times.what + ": median", times.median_us, "us", "", 0.0, ""});
+    table.add(
+        {times.what + ": longest", times.longest_us, "us", "half a control period of 2 ms", 1000.0, ""});
+  }
+}
+
 constexpr double kFleetShare = 4.0;  // as long again, for counts that are small
 
 void fleets(Table& table, const Options& options) {
@@ -509,6 +520,7 @@ void run(const Options& options) {
   if (wanted("latency")) latency_and_load(table, options);
   if (wanted("jitter")) jitter(table, options);
   if (wanted("simulation")) simulated_time(table);
+  if (wanted("planning")) planning(table);
   if (wanted("missions")) missions(table);
   if (wanted("fleet")) fleets(table, options);
   table.end();
@@ -517,7 +529,7 @@ void run(const Options& options) {
 void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--seconds", options.seconds, "Of each measurement in real time").range(1.0, 3600.0);
   app.add_option("--only", options.only, "Of these sections; several may be given")
-      .one_of({"latency", "jitter", "simulation", "missions", "fleet"});
+      .one_of({"latency", "jitter", "simulation", "planning", "missions", "fleet"});
   app.add_flag("--json", options.json, "Print JSON");
 }
 

@@ -100,5 +100,18 @@ TEST(Bernstein, AConstantIsItsOwnExtremum) {
   EXPECT_EQ(minimum(bernstein({2.0}, 1.0), 0.0).value, 2.0);
 }
 
+// With a tolerance of 0, rounding errors leave each part of a constant in doubt.
+TEST(Bernstein, BoundsTheSearchForAMaximum) {
+  Bernstein flat;
+  flat.degree = kMaxBernsteinDegree;
+  for (std::size_t i = 0; i < flat.c.size(); ++i) flat.c[i] = i % 2 == 0 ? 0.1 : 0.1 + 1e-13;
+  const Extremum most = maximum(flat, 0.0);
+  EXPECT_GE(most.value, 0.1);
+  EXPECT_LE(most.value, 0.1 + 1e-13);
+  const Extremum least = minimum(flat, 0.0);
+  EXPECT_LE(least.value, 0.1 + 1e-13);
+  EXPECT_GE(least.value, 0.1);
+}
+
 }  // namespace
 }  // namespace swiftlet::control
