@@ -102,13 +102,14 @@ if(SWIFTLET_SANITIZE)
   set(SWIFTLET_TEST_TIMEOUT 1000)
 endif()
 
-# swiftlet_add_test(NAME SOURCES ... LIBS ... [LABEL label] [CASES_APART] [WAITS] [ALONE filter]): adds a GoogleTest program.
+# swiftlet_add_test(NAME SOURCES ... LIBS ... [LABEL label] [SHARDS n] [CASES_APART] [WAITS] [ALONE filter]): adds a GoogleTest program.
 #   LABEL        CTest label; the default `unit` also adds the program to the target unit_tests
-#   CASES_APART  each test case is a CTest test with its own process, for cases that take seconds; by default the program is one test
+#   SHARDS       number of CTest tests that share the test cases; the default is one test
+#   CASES_APART  each test case is a CTest test with its own process, for cases that take seconds
 #   WAITS        the program mostly waits for clocks and counts as one process of `ctest --parallel`; the default is two
 #   ALONE        GoogleTest filter of the cases that measure real time; nothing runs in parallel with them (needs CASES_APART)
 function(swiftlet_add_test name)
-  cmake_parse_arguments(arg "CASES_APART;WAITS" "LABEL;ALONE" "SOURCES;LIBS" ${ARGN})
+  cmake_parse_arguments(arg "CASES_APART;WAITS" "LABEL;SHARDS;ALONE" "SOURCES;LIBS" ${ARGN})
   if(NOT arg_LABEL)
     set(arg_LABEL unit)
   endif()
@@ -128,6 +129,15 @@ function(swiftlet_add_test name)
   set(properties LABELS ${arg_LABEL} TIMEOUT ${SWIFTLET_TEST_TIMEOUT} ENVIRONMENT_MODIFICATION "ROS_DOMAIN_ID=unset:")
   if(NOT arg_WAITS)
     list(APPEND properties PROCESSORS 2)
+  endif()
+  if(arg_SHARDS)
+    foreach(shard RANGE 1 ${arg_SHARDS})
+      math(EXPR index "${shard} - 1")
+      add_test(NAME ${name}.${shard} COMMAND ${name})
+      set_tests_properties(${name}.${shard} PROPERTIES ${properties}
+        ENVIRONMENT "GTEST_TOTAL_SHARDS=${arg_SHARDS};GTEST_SHARD_INDEX=${index}")
+    endforeach()
+    return()
   endif()
   if(NOT arg_CASES_APART)
     add_test(NAME ${name} COMMAND ${name})

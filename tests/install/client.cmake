@@ -1,0 +1,33 @@
+# Builds, in the project that consumer.cmake has configured, programs that fly vehicles, and runs them without one.
+include(${CMAKE_CURRENT_LIST_DIR}/common.cmake)
+set(consumer ${WORK_DIR}/consumer)
+run(${CMAKE_COMMAND} --build ${consumer})
+execute_process(COMMAND ${consumer}/fly_square nobody 229 --localhost-only RESULT_VARIABLE alone ERROR_VARIABLE said)
+if(NOT alone EQUAL 1 OR NOT said MATCHES "no control service for vehicle nobody in domain 229")
+  message(FATAL_ERROR "the example said: ${said}")
+endif()
+
+# What the client links, and what comes with that.
+execute_process(COMMAND readelf -d ${consumer}/fly_mission OUTPUT_VARIABLE needed COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ldd ${consumer}/fly_mission OUTPUT_VARIABLE loaded COMMAND_ERROR_IS_FATAL ANY)
+if(NOT needed MATCHES "libfastrtps")
+  message(FATAL_ERROR "readelf did not say what is linked: ${needed}")
+endif()
+foreach(heavy ceres glog CLI11 ncurses tinfo gnuplot)
+  if("${needed}${loaded}" MATCHES "${heavy}")
+    message(FATAL_ERROR "a program that stands on swiftlet::ground_client links ${heavy}: ${needed}${loaded}")
+  endif()
+endforeach()
+if(needed MATCHES "libz\\.")  # others' OpenSSL may load it
+  message(FATAL_ERROR "a program that stands on swiftlet::ground_client links libz: ${needed}")
+endif()
+file(STRINGS ${prefix}/share/swiftlet/examples/fly_mission.cpp lines)
+list(LENGTH lines count)
+if(count GREATER 30)
+  message(FATAL_ERROR "fly_mission.cpp has ${count} lines")
+endif()
+execute_process(COMMAND ${consumer}/fly_mission ${prefix}/share/swiftlet/config/missions/square.yaml nobody 229 --localhost-only
+  RESULT_VARIABLE alone OUTPUT_VARIABLE said)
+if(NOT alone EQUAL 1 OR NOT said MATCHES "arm: no control service for vehicle nobody in domain 229")
+  message(FATAL_ERROR "the example said: ${said}")
+endif()
