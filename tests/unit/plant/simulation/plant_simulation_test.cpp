@@ -1,4 +1,4 @@
-// Runs that repeat bit by bit, and noise that keeps to itself.
+// Runs are reproducible bit by bit, and noise streams are independent.
 #include "swiftlet/plant/simulation/plant_simulation.hpp"
 
 #include <cstring>
@@ -68,7 +68,7 @@ bool same(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
-TEST(PlantSimulation, RepeatsBitByBit) {
+TEST(PlantSimulation, IsReproducibleBitByBit) {
   const Recording a = fly(noisy_world(), 42);
   const Recording b = fly(noisy_world(), 42);
   EXPECT_TRUE(same(a.truth, b.truth));
@@ -88,14 +88,14 @@ TEST(PlantSimulation, DiffersWithTheSeed) {
   EXPECT_FALSE(same(a.orientations, b.orientations));
 }
 
-TEST(PlantSimulation, SensorNoiseLeavesTheTruthAlone) {
+TEST(PlantSimulation, SensorNoiseDoesNotChangeTheTruth) {
   SimulationSettings quiet = noisy_world();
   quiet.imu = empty_space().imu;
   quiet.mocap.position_error_m = 0.0;
   EXPECT_TRUE(same(fly(noisy_world(), 42).truth, fly(quiet, 42).truth));
 }
 
-TEST(PlantSimulation, NoiseStreamsDoNotMoveEachOther) {
+TEST(PlantSimulation, NoiseStreamsAreIndependent) {
   const Recording all = fly(noisy_world(), 42);
   SimulationSettings settings = noisy_world();
   settings.imu.accelerometer_noise_density = 0.0;

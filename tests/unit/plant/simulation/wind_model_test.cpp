@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 using plant::AirSettings;
 using plant::WindModel;
 
-TEST(WindModel, BlowsSteadilyWithoutGusts) {
+TEST(WindModel, IsConstantWithoutGusts) {
   AirSettings settings;
   settings.wind_ned = {3.0, -2.0, 1.0};
   WindModel air(settings, 0.001, 1);
@@ -28,7 +28,7 @@ TEST(WindModel, GustsHaveTheirVarianceAndCorrelationTime) {
   settings.gust_sigma_ned = {1.0, 0.5, 0.0};
   settings.gust_time_constant_s = 0.2;
   constexpr double kStep = 0.002;
-  constexpr int kCount = 2'000'000;  // 4000 s, some 10 000 independent ones
+  constexpr int kCount = 2'000'000;  // 4000 s, about 10 000 independent ones
   constexpr int kLag = 100;          // one time constant
   WindModel air(settings, kStep, 3);
 
@@ -57,7 +57,7 @@ TEST(WindModel, GustsHaveTheirVarianceAndCorrelationTime) {
   EXPECT_EQ(squares.z(), 0.0);
 }
 
-TEST(WindModel, GustsAreThereFromTheStart) {
+TEST(WindModel, GustsHaveTheirVarianceFromTheStart) {
   AirSettings settings;
   settings.gust_sigma_ned = {1.0, 1.0, 1.0};
   double squares = 0.0;
