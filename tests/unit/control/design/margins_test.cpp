@@ -96,7 +96,7 @@ TEST(Margins, DelayMarginIsTheLimitOfStability) {
   EXPECT_GT(delayed(1.02 * m.delay_s), 0.0);
 }
 
-TEST(Margins, OfAnLqrOnItsDesignModelSatisfyKalman) {
+TEST(Margins, OfAnLqrOnItsModelSatisfyKalmansInequality) {
   const LoopMargins m = margins(roll_loop(0.08));
   EXPECT_GE(m.phase_deg, 60.0);
   EXPECT_LE(m.gain_decrease, 0.5);

@@ -95,7 +95,7 @@ TEST(Mismatch, NominalMarginsMatchTheTransferFunctions) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(found[i], expected[i], 1e-6) << i;
 }
 
-TEST(Mismatch, LagChangesTheLoopLag) {
+TEST(Mismatch, MotorLagChangesTheLagOfTheLoops) {
   plant::Vehicle slow = kaylion();
   slow.motor.time_constant_s *= 1.5;
   const double lag = 1.5 * 0.0821;

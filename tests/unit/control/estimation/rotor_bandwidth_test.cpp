@@ -26,7 +26,7 @@ class RotorBandwidth : public testing::TestWithParam<std::int64_t> {};
 TEST_P(RotorBandwidth, DifferenceDecaysEquallyAtEveryRate) {
   RotorObserver observer(tests::kaylion(), kBandwidth);
   observer.correct(measured(kStart_ns, 1000.0));
-  EXPECT_EQ(observer.speeds()[0], 1000.0) << "the first is taken as it is";
+  EXPECT_EQ(observer.speeds()[0], 1000.0) << "the first measurement is taken as it is";
   for (std::int64_t t = GetParam(); t <= 20'000'000; t += GetParam())
     observer.correct(measured(kStart_ns + t, 1500.0));
   EXPECT_NEAR(observer.speeds()[3], 1500.0 - 500.0 * std::exp(-kBandwidth * 0.02), 1e-9);

@@ -106,7 +106,7 @@ TEST(RotorObserver, TakesTheFirstMeasurementAsItIs) {
   sample.speeds = {100.0, 2000.0, 0.0, 1500.0};
   sample.stamp_ns = 1;
   observer.correct(sample);
-  EXPECT_EQ(observer.speeds(), sample.speeds) << "the first is taken as it is";
+  EXPECT_EQ(observer.speeds(), sample.speeds) << "the first measurement is taken as it is";
   EXPECT_NEAR(observer.thrust_n(), 3.7901e-8 * (100.0 * 100.0 + 2000.0 * 2000.0 + 1500.0 * 1500.0), 1e-9);
 }
 

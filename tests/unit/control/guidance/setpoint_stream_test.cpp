@@ -182,8 +182,8 @@ TEST_P(Rates, TurnsToAHeadingWithinTheYawRate) {
 
 INSTANTIATE_TEST_SUITE_P(Hz, Rates, testing::Values(2.0, 5.0, 20.0, 100.0, 500.0));
 
-// The blend takes the minimum of 0.1 s, since there is no setpoint before it to give an interval. The fence check
-// uses the same path.
+// The blend takes the minimum of 0.1 s, since no setpoint before it gives an interval. The fence check uses
+// the same path.
 TEST_F(Stream, BlendsIntoTheFirstSetpointWithoutDelay) {
   Setpoint setpoint = of_kind(SetpointKind::kVelocity);
   setpoint.velocity_ned = {0.005, 0.0, 0.0};

@@ -127,7 +127,7 @@ TEST(MissionFile, PlansAPathThroughItsPointsWithinLimits) {
   EXPECT_GT(end_of(0).velocity_ned.norm(), 0.1) << "it does not stop";
   EXPECT_NEAR(file.mission.segments[0].yaw[0], 3.0, 1e-9) << "yaw of the first point that has one";
   EXPECT_NEAR(end_of(1).yaw_rad, 3.0, 1e-6) << "yaw of the previous point";
-  EXPECT_NEAR(end_of(2).yaw_rad, 2 * M_PI - 3.0, 1e-6) << "the short way round";
+  EXPECT_NEAR(end_of(2).yaw_rad, 2 * M_PI - 3.0, 1e-6) << "the shorter turn";
   EXPECT_GT(planned_duration_s(file.mission, control::Limits{}), duration_s);
 }
 

@@ -209,7 +209,7 @@ std::string sampled(double rate_hz, const std::string& columns, bool yaw = false
   for (int i = 0; i <= rows; ++i) {
     const control::Reference r = control::evaluate(s, i / rate_hz);
     text += std::to_string(i / rate_hz);
-    add(r.position_ned);  // read as ENU, whatever the member's name
+    add(r.position_ned);  // the file is read as ENU
     if (columns.find("vx") != std::string::npos) add(r.velocity_ned);
     if (columns.find("ax") != std::string::npos) add(r.acceleration_ned);
     if (yaw)

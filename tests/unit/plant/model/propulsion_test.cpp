@@ -23,7 +23,7 @@ void PrintTo(const HoverAnchor& anchor, std::ostream* out) { *out << anchor.mass
 
 class HoverAnchors : public testing::TestWithParam<HoverAnchor> {};
 
-TEST_P(HoverAnchors, AreMet) {
+TEST_P(HoverAnchors, MatchTheModel) {
   const HoverAnchor& anchor = GetParam();
   const double thrust = anchor.mass_kg * 9.81 / 4.0;
   const double speed = speed_from_thrust(kaylion().rotor, thrust);

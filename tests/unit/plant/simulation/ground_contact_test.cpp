@@ -41,8 +41,8 @@ double clearance(const VehicleState& state) {
   return plant::GroundContact(kaylion(), on_floor().ground).clearance(state);
 }
 
-void step(PlantSimulation& plant, const MotorCommand& drive, int milliseconds) {
-  for (int i = 0; i < milliseconds; ++i) plant.step(drive);
+void step(PlantSimulation& plant, const MotorCommand& command, int milliseconds) {
+  for (int i = 0; i < milliseconds; ++i) plant.step(command);
 }
 
 void expect_rest(const VehicleState& state) {
@@ -51,11 +51,11 @@ void expect_rest(const VehicleState& state) {
 }
 
 TEST(GroundContact, StandsStillAtLowThrottle) {
-  for (const MotorCommand& drive : {MotorCommand{}, running(0.0), running(0.2)}) {
+  for (const MotorCommand& command : {MotorCommand{}, running(0.0), running(0.2)}) {
     PlantSimulation plant(kaylion(), on_floor(), 1);
     EXPECT_TRUE(plant.on_ground());
     for (int i = 0; i < 10'000; ++i) {
-      plant.step(drive);
+      plant.step(command);
       ASSERT_TRUE(plant.on_ground()) << i;
       ASSERT_LT(plant.state().position_ned.norm(), 1.0e-4) << i;
       ASSERT_LT(tilt(plant.state()), 1.0e-4) << i;
@@ -158,10 +158,10 @@ TEST(GroundContact, SlidesToRestByCoulombsLaw) {
 TEST(GroundContact, TakesOffWithoutTouchingAgain) {
   PlantSimulation plant(kaylion(), on_floor(), 1);
   step(plant, running(0.0), 500);
-  const MotorCommand drive = running(0.5);
+  const MotorCommand command = running(0.5);
   int lifted_at = 0;
   for (int i = 1; i <= 1000; ++i) {
-    plant.step(drive);
+    plant.step(command);
     if (!plant.on_ground() && lifted_at == 0) lifted_at = i;
     if (lifted_at > 0) {
       ASSERT_FALSE(plant.on_ground()) << "touched again after " << i << " ms";

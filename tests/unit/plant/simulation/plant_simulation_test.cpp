@@ -57,9 +57,9 @@ Recording fly(const SimulationSettings& settings, std::uint64_t seed) {
       append(run.positions, pose->position_ned.data(), 3);
       append(run.orientations, pose->q_ned_from_frd.coeffs().data(), 4);
     }
-    plant::MotorCommand drive = running(0.36);
-    drive.throttle[static_cast<std::size_t>(i / 10 % 4)] += 0.02;
-    plant.step(drive);
+    plant::MotorCommand command = running(0.36);
+    command.throttle[static_cast<std::size_t>(i / 10 % 4)] += 0.02;
+    plant.step(command);
   }
   return run;
 }

@@ -52,15 +52,15 @@ void compare(const plant::Vehicle& vehicle, Motor motor, Draw& draw, double tole
   double fastest = 0.0;
   for (int now = 0; now < kSteps;) {
     const int until = std::min(now + static_cast<int>(draw(3, 80)), kSteps);
-    plant::MotorCommand drive;
+    plant::MotorCommand command;
     equations.running = draw(0, 1) > 0.1;
-    drive.state = equations.running ? plant::RotorState::kRunning : plant::RotorState::kOff;
+    command.state = equations.running ? plant::RotorState::kRunning : plant::RotorState::kOff;
     for (std::size_t i = 0; i < 4; ++i) {
       equations.throttle[i] = std::clamp(draw(-0.2, 0.9), 0.0, 1.0);
-      drive.throttle[i] = equations.throttle[i];
+      command.throttle[i] = equations.throttle[i];
     }
     paper::integrate(equations, reference, now * 1.0e-3, until * 1.0e-3);
-    for (; now < until; ++now) plant.step(drive);
+    for (; now < until; ++now) plant.step(command);
 
     comparison.add(reference, paper::state_of(plant.state()));
     fastest = std::max(fastest, plant.state().body_rates_frd.norm());

@@ -46,7 +46,7 @@ TEST(WindModel, GustsHaveTheirVarianceAndCorrelationTime) {
     across += gust.x() * gust.y();
     past[i % kLag] = gust;
   }
-  // The standard deviation of these means is about 1 % of the variance; four of them.
+  // The standard deviation of these means is about 1 % of the variance; the bounds are four of them.
   for (int axis = 0; axis < 2; ++axis) {
     const double variance = std::pow(settings.gust_sigma_ned[axis], 2);
     EXPECT_NEAR(sum[axis] / kCount, 0.0, 0.04 * settings.gust_sigma_ned[axis]);
