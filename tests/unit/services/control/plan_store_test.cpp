@@ -29,7 +29,7 @@ TEST(PlanStore, FindsTheNewestOfAnId) {
   EXPECT_NE(store.find(1), first);
 }
 
-TEST(PlanStore, TheOldestMakeRoom) {
+TEST(PlanStore, EvictsTheOldest) {
   Shelf store;
   for (std::uint64_t id = 1; id <= Shelf::kCapacity + 2; ++id) store.put(mission(id));
   store.tidy(0);
@@ -39,7 +39,7 @@ TEST(PlanStore, TheOldestMakeRoom) {
   EXPECT_NE(store.find(3), nullptr);
 }
 
-TEST(PlanStore, WhatIsFlownStays) {
+TEST(PlanStore, KeepsTheFlownMission) {
   Shelf store;
   store.put_flown(mission(1));
   for (std::uint64_t id = 2; id <= 20; ++id) {
@@ -53,13 +53,13 @@ TEST(PlanStore, WhatIsFlownStays) {
   EXPECT_NE(store.find(21), nullptr);
 }
 
-TEST(PlanStore, WhatWasLentStaysUntilALaterHandoverIsTaken) {
+TEST(PlanStore, KeepsALentMissionUntilALaterStateIsTaken) {
   Shelf store;
   store.put(mission(1));
   store.lend(store.find(1), 5);
   for (std::uint64_t id = 2; id <= 20; ++id) store.put(mission(id));
   store.tidy(4);
-  EXPECT_NE(store.find(1), nullptr) << "on its way";
+  EXPECT_NE(store.find(1), nullptr) << "sent but not taken";
   store.tidy(5);
   EXPECT_NE(store.find(1), nullptr) << "in use";
   EXPECT_EQ(store.size(), Shelf::kCapacity);
