@@ -30,22 +30,22 @@ RequestStatus in_state(RequestState state, Event by = Event::kArm, Reason reason
   return {{7, 12}, RequestKind::kGoTo, state, by, reason, 0.5};
 }
 
-std::string result_of(const std::optional<ActionResult>& result) {
+std::string summary_of(const std::optional<ActionResult>& result) {
   if (!result) return "under way";
   return result->done() ? "done" : result->reason;
 }
 
 TEST(ActionResults, FollowTheReportedRequestState) {
-  EXPECT_EQ(result_of(action_result_by(status(in_state(RequestState::kAccepted)), kAnswer)), "under way");
-  EXPECT_EQ(result_of(action_result_by(status(in_state(RequestState::kExecuting)), kAnswer)), "under way");
-  EXPECT_EQ(result_of(action_result_by(status(in_state(RequestState::kSucceeded)), kAnswer)), "done");
+  EXPECT_EQ(summary_of(action_result_by(status(in_state(RequestState::kAccepted)), kAnswer)), "under way");
+  EXPECT_EQ(summary_of(action_result_by(status(in_state(RequestState::kExecuting)), kAnswer)), "under way");
+  EXPECT_EQ(summary_of(action_result_by(status(in_state(RequestState::kSucceeded)), kAnswer)), "done");
   const auto canceled =
       action_result_by(status(in_state(RequestState::kCanceled, Event::kLand, Reason::kRequested)), kAnswer);
-  EXPECT_EQ(result_of(canceled), "canceled by a newer request: land");
+  EXPECT_EQ(summary_of(canceled), "canceled by a newer request: land");
   EXPECT_EQ(canceled->kind, ActionResult::Kind::kCanceled);
   const auto aborted = action_result_by(
       status(in_state(RequestState::kAborted, Event::kBatteryLow, Reason::kBatteryLow)), kAnswer);
-  EXPECT_EQ(result_of(aborted), "aborted: battery is low");
+  EXPECT_EQ(summary_of(aborted), "aborted: battery is low");
   EXPECT_EQ(aborted->kind, ActionResult::Kind::kAborted);
 }
 
@@ -55,7 +55,7 @@ TEST(ActionResults, AreReadFromEarlierRequests) {
     other.key = key;
     auto reported = status(other);
     reported.earlier_requests()[2] = comms::to_message(in_state(RequestState::kSucceeded));
-    EXPECT_EQ(result_of(action_result_by(reported, kAnswer)), "done");
+    EXPECT_EQ(summary_of(action_result_by(reported, kAnswer)), "done");
   }
 }
 
@@ -64,11 +64,11 @@ TEST(ActionResults, AreReadFromEarlierRequests) {
 TEST(ActionResults, AreLostWhenALaterStatusOmitsTheRequest) {
   RequestStatus other = in_state(RequestState::kSucceeded);
   other.key = {7, 11};
-  EXPECT_EQ(result_of(action_result_by(status(other, kAccepted_ns), kAnswer)), "under way");
+  EXPECT_EQ(summary_of(action_result_by(status(other, kAccepted_ns), kAnswer)), "under way");
   const auto lost = action_result_by(status(other, kAccepted_ns + 1), kAnswer);
   ASSERT_TRUE(lost);
   EXPECT_EQ(lost->kind, ActionResult::Kind::kLost);
-  EXPECT_EQ(result_of(action_result_by({}, kAnswer)), "under way");
+  EXPECT_EQ(summary_of(action_result_by({}, kAnswer)), "under way");
 }
 
 }  // namespace
