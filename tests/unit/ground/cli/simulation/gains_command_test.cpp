@@ -28,7 +28,7 @@ control::ControlDesign design(control::AttitudeModel model, double integral_pole
   return control::design(vehicle, settings(model, integral_pole));
 }
 
-TEST(GainsJson, GivesEveryAttitudeAxisOnItsModel) {
+TEST(GainsJson, ListsEveryAttitudeAxisWithItsModel) {
   for (const control::AttitudeModel model :
        {control::AttitudeModel::kDoubleIntegrator, control::AttitudeModel::kMotorLag}) {
     const bool lag = model == control::AttitudeModel::kMotorLag;
@@ -55,7 +55,7 @@ TEST(GainsJson, GivesEveryAttitudeAxisOnItsModel) {
   }
 }
 
-TEST(GainsJson, GivesEq49AndTheIntegralFormBesideIt) {
+TEST(GainsJson, ListsEq49AndTheIntegralForm) {
   for (const double integral_pole : {0.0, 0.4}) {
     const Json out =
         Json::parse(gains_json(design(control::AttitudeModel::kMotorLag, integral_pole), {}, "v", "c"));
