@@ -19,7 +19,9 @@ TEST(PeriodicTask, RunsRepeatedlyUntilDestroyed) {
     EXPECT_TRUE(swiftlet::tests::eventually([&] { return runs >= 3; }));
   }
   const int at_end = runs;
-  const PeriodicTask later(1ms, [] {});
+  std::atomic<int> later_runs{0};
+  const PeriodicTask later(1ms, [&] { ++later_runs; });
+  EXPECT_TRUE(swiftlet::tests::eventually([&] { return later_runs >= 3; }));
   EXPECT_EQ(runs, at_end);
 }
 
