@@ -22,7 +22,7 @@ struct Climbed {
 
 // Climbs to 1 m along a cosine, tilted. The pose shows pose_fraction of the height.
 Climbed climb(TakeoffConsistencyMonitor& monitor, double duration_s, double pose_fraction,
-              const Vector3d& error_frd = Vector3d::Zero()) {
+              const Vector3d& error_frd = Vector3d::Zero(), double start_z_ned = 0.0) {
   const Quaterniond tilted(Eigen::AngleAxisd(0.2, Vector3d::UnitX()));
   const double omega = M_PI / duration_s;
   Climbed out;
@@ -31,7 +31,7 @@ Climbed climb(TakeoffConsistencyMonitor& monitor, double duration_s, double pose
     const double upward = 0.5 * omega * omega * std::cos(omega * t);
     const Vector3d force_ned(0.0, 0.0, -upward - plant::kGravity);
     monitor.step(kStep_s, tilted.conjugate() * force_ned + kBias + error_frd, tilted,
-                 -pose_fraction * out.height_m);
+                 start_z_ned - pose_fraction * out.height_m);
     out.contradicted = monitor.contradicted();
   }
   return out;
@@ -63,6 +63,13 @@ TEST_P(TakeoffClimb, NotShownByThePoseIsContradictedAtLowHeight) {
 TEST_P(TakeoffClimb, IsNotMonitoredBeforeBegin) {
   TakeoffConsistencyMonitor idle;
   EXPECT_FALSE(climb(idle, GetParam(), 0.0).contradicted);
+}
+
+TEST_P(TakeoffClimb, IsMeasuredFromWhereTheVehicleStood) {
+  monitor_.begin(kBias, -1.0);
+  EXPECT_TRUE(climb(monitor_, GetParam(), 0.0, Vector3d::Zero(), -1.0).contradicted);
+  monitor_.begin(kBias, -1.0);
+  EXPECT_FALSE(climb(monitor_, GetParam(), 1.0, Vector3d::Zero(), -1.0).contradicted);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seconds, TakeoffClimb, testing::Values(1.0, 1.5, 2.5), [](const auto& param) {

@@ -527,8 +527,10 @@ TEST(MissionBounds, HoldForGivenTrajectories) {
   mission.bounds = {};
   mission.segments.front().yaw = {0.0, 0.9};
   mission.bounds.max_yaw_rate = 0.5;
-  EXPECT_STREQ(check(mission, limits).reason,
-               "item 1: segment 1 reaches a yaw rate of 0.90 rad/s, the limit is 0.50 rad/s");
+  const char* const too_fast = "item 1: segment 1 reaches a yaw rate of 0.90 rad/s, the limit is 0.50 rad/s";
+  EXPECT_STREQ(check(mission, limits).reason, too_fast);
+  mission.segments.front().yaw = {0.0, -0.9};
+  EXPECT_STREQ(check(mission, limits).reason, too_fast) << "to the left as to the right";
 }
 
 }  // namespace

@@ -173,6 +173,11 @@ TEST_P(Rates, TurnsToAHeadingWithinTheYawRate) {
   setpoint.yaw_rad = 3.0;
   ASSERT_NO_FATAL_FAILURE(stream(9.0, GetParam(), [&](double) { return setpoint; }));
   EXPECT_NEAR(std::remainder(control_setpoint_.reference.yaw_rad - 3.0, 2.0 * M_PI), 0.0, 1e-3);
+  setpoint.yaw_rad = -3.0;
+  ASSERT_NO_FATAL_FAILURE(stream(0.1, GetParam(), [&](double) { return setpoint; }));
+  EXPECT_GT(control_setpoint_.reference.yaw_rate, 0.0) << "the short way, through south";
+  ASSERT_NO_FATAL_FAILURE(stream(4.0, GetParam(), [&](double) { return setpoint; }));
+  EXPECT_NEAR(std::remainder(control_setpoint_.reference.yaw_rad + 3.0, 2.0 * M_PI), 0.0, 1e-3);
   setpoint.yaw_free = true;
   setpoint.yaw_rate = -0.5;
   const double before = control_setpoint_.reference.yaw_rad;

@@ -177,6 +177,18 @@ TEST_F(MocapFaults, JumpOffsetsAndRotatesPoses) {
   }
 }
 
+// The rotation is about the axes of the body, FRD, as its name says.
+TEST_F(MocapFaults, JumpRotatesAboutTheAxesOfTheBody) {
+  SimulationSettings settings;
+  settings.faults = {fault(FaultKind::kMocapJump, 0.0, 0.03)};
+  settings.faults.front().rotation_frd = {0.4, 0.0, 0.0};
+  MocapPath path(settings, 1);
+  PoseSample yawed = frame_at(0);
+  yawed.q_ned_from_frd = Eigen::AngleAxisd(1.0, Vector3d::UnitZ());
+  const Quaterniond rolled = yawed.q_ned_from_frd * Quaterniond(Eigen::AngleAxisd(0.4, Vector3d::UnitX()));
+  EXPECT_LT(path.pass(yawed, 0)->q_ned_from_frd.angularDistance(rolled), 1e-9);
+}
+
 TEST_F(MocapFaults, SwapShowsAnotherBodyAtRestWithNoise) {
   Fault swap = fault(FaultKind::kMocapSwap, 0.02, 0.03);
   swap.position_ned = {-1.0, 1.0, 0.0};

@@ -220,6 +220,18 @@ TEST_F(Lockstep, PausedTimeAdvancesWithTheSimulationClock) {
   ASSERT_TRUE(is_resent(10 * kPeriod_ns));
 }
 
+// A late grant must not take back one whose time has not been used yet: here no answer lets time advance.
+TEST_F(Lockstep, ASmallerGrantLeavesTheLargerOneInForce) {
+  LockstepSettings settings = with_long_patience();
+  settings.paused = true;
+  start(settings);
+  advance_to(4 * kPeriod_ns);
+  advance_to(kPeriod_ns);
+  ASSERT_TRUE(is_resent(0, 8));
+  answers_ = true;
+  EXPECT_TRUE(is_resent(4 * kPeriod_ns));
+}
+
 TEST_F(Lockstep, NamesASilentGround) {
   answers_ = true;
   LockstepSettings settings;
