@@ -1,11 +1,7 @@
-# Builds, in the project that consumer.cmake has configured, programs that fly vehicles, and runs them without one.
+# Builds, in the project that consumer.cmake has configured, a program that flies vehicles, and runs it without one.
 include(${CMAKE_CURRENT_LIST_DIR}/common.cmake)
 set(consumer ${WORK_DIR}/consumer)
-run(${CMAKE_COMMAND} --build ${consumer})
-execute_process(COMMAND ${consumer}/fly_square nobody 229 --localhost-only RESULT_VARIABLE alone ERROR_VARIABLE said)
-if(NOT alone EQUAL 1 OR NOT said MATCHES "no control service for vehicle nobody in domain 229")
-  message(FATAL_ERROR "the example said: ${said}")
-endif()
+run(${CMAKE_COMMAND} --build ${consumer} --target fly_mission)
 
 # Libraries that the client links, directly and indirectly.
 execute_process(COMMAND readelf -d ${consumer}/fly_mission OUTPUT_VARIABLE needed COMMAND_ERROR_IS_FATAL ANY)
