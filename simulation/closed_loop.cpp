@@ -63,7 +63,7 @@ void ClosedLoop::record_sensors() const {
 const plant::MotorCommand& ClosedLoop::drive() {
   if (const auto arrived = command_path.arrived(plant.stamp_ns()))
     watchdog.accept(*arrived, plant.stamp_ns());
-  return watchdog.drive(plant.stamp_ns());
+  return watchdog.motor_command(plant.stamp_ns());
 }
 
 bool ClosedLoop::step_until(const std::function<bool()>& predicate, double limit_s) {

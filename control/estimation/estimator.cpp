@@ -123,13 +123,13 @@ PoseFault Estimator::fuse(const plant::PoseSample& pose, plant::RotorState rotor
   if (std::abs(pose.q_ned_from_frd.norm() - 1.0) > kUnitTolerance) return PoseFault::kInvalid;
   if (now_.stamp_ns == 0) return PoseFault::kUntimely;
   if (pose.stamp_ns > now_.stamp_ns + nanoseconds(detectors_.recovery.max_lead_s)) {  // the IMU is silent
-    continuity_.look_at(pose);
+    continuity_.update(pose);
     return PoseFault::kUntimely;
   }
   if (initialised_ && (pose.stamp_ns <= pose_stamp_ns_ || pose.stamp_ns < anchor_.stamp_ns))
     return PoseFault::kUntimely;
-  stuck_pose_.look_at(pose, rotors);
-  continuity_.look_at(pose);
+  stuck_pose_.update(pose, rotors);
+  continuity_.update(pose);
   if (!initialised_) {
     start_at(pose);
     return PoseFault::kNone;
@@ -219,7 +219,7 @@ bool Estimator::trusted_after_silence(const plant::PoseSample& pose, const PoseI
     return true;
   if (pose.stamp_ns < silence_end_ns_) return false;
   if (continuity_.poses() == 1) pose_imu_test_.begin();
-  const PoseImuConsistencyTest::Verdict verdict = pose_imu_test_.look_at(pose, innovation, settings_);
+  const PoseImuConsistencyTest::Verdict verdict = pose_imu_test_.update(pose, innovation, settings_);
   if (verdict == PoseImuConsistencyTest::Verdict::kDisagree && continuity_.in_reach())
     continuity_.reject_track();
   return verdict == PoseImuConsistencyTest::Verdict::kAgree && continuity_.in_reach();

@@ -12,9 +12,9 @@ double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 }  // namespace
 
-PoseImuConsistencyTest::Verdict PoseImuConsistencyTest::look_at(const plant::PoseSample& pose,
-                                                                const PoseInnovation& innovation,
-                                                                const EstimatorSettings& settings) {
+PoseImuConsistencyTest::Verdict PoseImuConsistencyTest::update(const plant::PoseSample& pose,
+                                                               const PoseInnovation& innovation,
+                                                               const EstimatorSettings& settings) {
   if (count_ > 0 && seconds(pose.stamp_ns - points_[count_ - 1].stamp_ns) <
                         settings.detectors.pose_imu_consistency.interval_s)
     return Verdict::kNone;

@@ -23,8 +23,8 @@ class PoseImuConsistencyTest {
   // Adds a pose and its innovation from the path that the IMU alone has propagated since begin(). Returns a
   // verdict over the last two intervals whenever an interval ends. Uses the pose noise and
   // detectors.pose_imu_consistency of the settings.
-  Verdict look_at(const plant::PoseSample& pose, const PoseInnovation& innovation,
-                  const EstimatorSettings& settings);
+  Verdict update(const plant::PoseSample& pose, const PoseInnovation& innovation,
+                 const EstimatorSettings& settings);
   void begin() { count_ = 0; }
 
  private:

@@ -18,7 +18,7 @@ bool closer(const plant::PoseSample& a, const plant::PoseSample& b, double dista
 
 }  // namespace
 
-void StuckPoseDetector::look_at(const plant::PoseSample& pose, plant::RotorState rotors) {
+void StuckPoseDetector::update(const plant::PoseSample& pose, plant::RotorState rotors) {
   const bool again = last_.tracked && closer(pose, last_, settings_.same);
   const bool distinct = last_.tracked && !closer(pose, last_, settings_.distinct);
   repetitions_ = again ? std::min(repetitions_ + 1, settings_.repetitions) : 0;
@@ -28,7 +28,7 @@ void StuckPoseDetector::look_at(const plant::PoseSample& pose, plant::RotorState
   if (distinct_ == settings_.distinct_poses) noisy_ = true;
 }
 
-void PoseContinuity::look_at(const plant::PoseSample& pose) {
+void PoseContinuity::update(const plant::PoseSample& pose) {
   bool stepped = next_ == 0;
   if (next_ > 0) {
     const plant::PoseSample& last = before(0);

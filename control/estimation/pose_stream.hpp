@@ -21,7 +21,7 @@ class StuckPoseDetector {
  public:
   explicit StuckPoseDetector(const StuckPoseSettings& settings = {}) : settings_(settings) {}
 
-  void look_at(const plant::PoseSample& pose, plant::RotorState rotors);
+  void update(const plant::PoseSample& pose, plant::RotorState rotors);
 
   // The newest pose equals the one before it.
   bool repeats() const { return repetitions_ > 0; }
@@ -46,7 +46,7 @@ class PoseContinuity {
         max_speed_(settings.max_speed),
         max_body_rate_(settings.max_body_rate) {}
 
-  void look_at(const plant::PoseSample& pose);
+  void update(const plant::PoseSample& pose);
   // The newest pose agrees with the estimate. Continuity counts from here.
   void begin() {
     unbroken_ = true;

@@ -143,7 +143,7 @@ double stream_period_s(const GuidanceContext& context) {
   return std::clamp(since_s, kLeastPeriod_s, std::max(kLeastPeriod_s, context.failsafe.setpoint_timeout_s));
 }
 
-void follow_way(const GuidanceContext& context, const PolynomialSegment& way) {
+void follow_path(const GuidanceContext& context, const PolynomialSegment& way) {
   context.state.phase = Phase::kPath;
   context.state.path.follow(way, context.now_ns);
 }

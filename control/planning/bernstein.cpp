@@ -7,7 +7,6 @@ namespace swiftlet::control {
 namespace {
 
 constexpr std::size_t kSize = kMaxBernsteinDegree + 1;
-constexpr int kMaxHalvings = 40;
 
 constexpr std::array<std::array<double, kSize>, kSize> pascal() {
   std::array<std::array<double, kSize>, kSize> rows{};
@@ -51,24 +50,41 @@ Bernstein split_off_left(Bernstein& a) {
   return left;
 }
 
-void update_best(double value, double at, Extremum& best) {
-  if (value > best.value) best = {value, at};
-}
-
-void search(Bernstein part, double from, double width, double tolerance, int halvings, Extremum& best) {
-  update_best(part.c[0], from, best);
-  update_best(part.c[index(part.degree)], from + width, best);
-  if (halvings == 0 || !(part.greatest() > best.value + tolerance)) return;
-  const Bernstein left = split_off_left(part);
-  const double half = 0.5 * width;
-  if (left.greatest() > part.greatest()) {
-    search(left, from, half, tolerance, halvings - 1, best);
-    search(part, from + half, half, tolerance, halvings - 1, best);
-  } else {
-    search(part, from + half, half, tolerance, halvings - 1, best);
-    search(left, from, half, tolerance, halvings - 1, best);
+// Branch and bound with de Casteljau's subdivision.
+class MaximumSearch {
+ public:
+  MaximumSearch(const Bernstein& polynomial, double tolerance)
+      : tolerance_(tolerance), best_{polynomial.c[0], 0.0} {
+    search(polynomial, 0.0, 1.0);
   }
-}
+  const Extremum& best() const { return best_; }
+
+ private:
+  void update_best(double value, double at) {
+    if (value > best_.value) best_ = {value, at};
+  }
+
+  void search(Bernstein part, double from, double width) {
+    update_best(part.c[0], from);
+    update_best(part.c[index(part.degree)], from + width);
+    if (!(part.greatest() > best_.value + tolerance_)) return;
+    if (subdivisions_ == kMaxSubdivisions) return update_best(part.greatest(), from + 0.5 * width);
+    ++subdivisions_;
+    const Bernstein left = split_off_left(part);
+    const double half = 0.5 * width;
+    if (left.greatest() > part.greatest()) {
+      search(left, from, half);
+      search(part, from + half, half);
+    } else {
+      search(part, from + half, half);
+      search(left, from, half);
+    }
+  }
+
+  double tolerance_;
+  int subdivisions_ = 0;
+  Extremum best_;
+};
 
 }  // namespace
 
@@ -124,9 +140,7 @@ Bernstein operator*(const Bernstein& a, const Bernstein& b) {
 }
 
 Extremum maximum(const Bernstein& polynomial, double tolerance) {
-  Extremum best{polynomial.c[0], 0.0};
-  search(polynomial, 0.0, 1.0, tolerance, kMaxHalvings, best);
-  return best;
+  return MaximumSearch(polynomial, tolerance).best();
 }
 
 Extremum minimum(const Bernstein& polynomial, double tolerance) {

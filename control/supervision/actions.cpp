@@ -4,7 +4,7 @@
 
 #include "swiftlet/control/guidance/manoeuvres.hpp"
 #include "swiftlet/control/guidance/setpoint_stream.hpp"
-#include "swiftlet/control/supervision/setpoint_way.hpp"
+#include "swiftlet/control/supervision/setpoint_path.hpp"
 
 namespace swiftlet::control::actions {
 namespace {
@@ -68,7 +68,7 @@ void follow_setpoint(SupervisorContext& context) {
   if (goes_past_position(kind)) {
     take_direct(context.guidance(), *context.setpoint);
   } else {
-    follow_way(context.guidance(), way_into_setpoint(context));
+    follow_path(context.guidance(), path_to_setpoint(context));
   }
   context.state.guidance.setpoint_kind = kind;
   context.state.guidance.setpoint_ns = context.state.now_ns;

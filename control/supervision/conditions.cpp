@@ -103,14 +103,14 @@ EventSet observe(SupervisorContext& context, double tip_over_cosine) {
   events.add(Event::kImuUnusable, inputs.imu_unusable_s >= failsafe.imu_timeout_s);
   events.add(Event::kImuGap, inputs.imu_gap_s > failsafe.imu_gap_s);
   events.add(Event::kTippedOver, cosine_of_tilt(context.estimate().q_ned_from_frd) < tip_over_cosine);
-  events.add(Event::kImpact,
-             state.guidance.phase != Phase::kGround && inputs.specific_force_frd.norm() > failsafe.blow);
+  events.add(Event::kImpact, state.guidance.phase != Phase::kGround &&
+                                 inputs.specific_force_frd.norm() > failsafe.impact_acceleration);
   events.add(Event::kTakeoffInconsistent,
              inputs.takeoff_inconsistent && state.guidance.phase == Phase::kPath);
   events.add(Event::kPoseJumped, inputs.pose_jumped);
   events.add(Event::kPoseLost, lost);
   events.add(Event::kPoseIsBack, !lost);
-  events.add(Event::kGroundFelt, touchdown_detected(context));
+  events.add(Event::kTouchdown, touchdown_detected(context));
   events.add(Event::kDescentTimedOut,
              state.mode == Mode::kDescent &&
                  elapsed_s(state.mode_since_ns, state.now_ns) > failsafe.descent_timeout_s);

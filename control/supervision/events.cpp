@@ -20,7 +20,7 @@ const char* to_string(Event event) {
       return "pose lost";
     case Event::kPoseIsBack:
       return "pose available";
-    case Event::kGroundFelt:
+    case Event::kTouchdown:
       return "touchdown detected";
     case Event::kDescentTimedOut:
       return "descent timed out";

@@ -17,7 +17,7 @@ enum class Event : std::uint8_t {
   kPoseJumped,
   kPoseLost,
   kPoseIsBack,
-  kGroundFelt,
+  kTouchdown,
   kDescentTimedOut,
   kBatteryCritical,
   kOutsideFence,

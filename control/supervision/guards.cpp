@@ -9,7 +9,7 @@
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/control/supervision/arming.hpp"
 #include "swiftlet/control/supervision/conditions.hpp"
-#include "swiftlet/control/supervision/setpoint_way.hpp"
+#include "swiftlet/control/supervision/setpoint_path.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -153,7 +153,7 @@ Outcome check_end_of_stream(const SupervisorContext& context) {
     last.position_ned = setpoint.position_ned + timeout_s * setpoint.velocity_ned;
   } else {
     const Reference from = context.state.guidance.path.at(context.state.now_ns);
-    last = after_blend(way_into_setpoint(context), timeout_s);
+    last = after_blend(path_to_setpoint(context), timeout_s);
     // Prevents a stream that was stopped before the fence from creeping towards it in short moves from rest.
     Reference in_full_motion;
     in_full_motion.velocity_ned =

@@ -25,8 +25,8 @@ struct SupervisorContext {
   FlownPlan& plan;
   const Request* request = nullptr;  // the request being answered
   const Setpoint* setpoint = nullptr;
-  double setpoint_period_s = 0.0;                           // estimated time to the next one
-  mutable std::optional<PolynomialSegment> way_taken = {};  // blend into the setpoint, once computed
+  double setpoint_period_s = 0.0;                               // estimated time to the next one
+  mutable std::optional<PolynomialSegment> setpoint_path = {};  // blend into the setpoint, once computed
 
   const Estimate& estimate() const { return *inputs.estimate; }
   bool flying() const { return state.guidance.flying(); }

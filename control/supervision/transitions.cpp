@@ -57,7 +57,7 @@ const Transition kTransitions[] = {
   {{M::kLanding}, E::kPoseLost, guards::kAlways, preconditions::kNone, M::kDescent, R::kNoPose, actions::kLandOnReturn},
   {{M::kMission}, E::kPoseLost, guards::kOnLandingItem, preconditions::kNone, M::kDescent, R::kNoPose, actions::kLandOnReturn},
   {kUnderWay, E::kPoseLost, guards::kAlways, preconditions::kNone, M::kDescent, R::kNoPose, actions::kHoldOnReturn},
-  {{M::kDescent}, E::kGroundFelt, guards::kAlways, preconditions::kNone, M::kDisarmed, R::kLandedWithoutPosition, actions::kNothing},
+  {{M::kDescent}, E::kTouchdown, guards::kAlways, preconditions::kNone, M::kDisarmed, R::kLandedWithoutPosition, actions::kNothing},
   {{M::kDescent}, E::kPoseIsBack, guards::kWasLanding, preconditions::kNone, M::kLanding, R::kPoseIsBack, actions::kLandFromEstimate},
   {{M::kDescent}, E::kPoseIsBack, guards::kAlways, preconditions::kNone, M::kHolding, R::kPoseIsBack, actions::kStopFromEstimate},
   {{M::kDescent}, E::kDescentTimedOut, guards::kAlways, preconditions::kNone, M::kStopped, R::kDescentTimedOut, actions::kNothing},
@@ -73,7 +73,7 @@ const Transition kTransitions[] = {
   {{M::kSetpoint}, E::kSetpointsStopped, guards::kAlways, preconditions::kNone, M::kHolding, R::kSetpointsStopped, actions::kStop},
 
   // Normal end of a manoeuvre.
-  {{M::kLanding, M::kMission}, E::kGroundFelt, guards::kAlways, preconditions::kNone, M::kDisarmed, R::kLanded, actions::kNothing},
+  {{M::kLanding, M::kMission}, E::kTouchdown, guards::kAlways, preconditions::kNone, M::kDisarmed, R::kLanded, actions::kNothing},
   {{M::kTakingOff}, E::kPlanFinished, guards::kAlways, preconditions::kNone, M::kHolding, R::kTakeOffCompleted, actions::kNothing},
   {{M::kMission}, E::kPlanFinished, guards::kAlways, preconditions::kNone, M::kHolding, R::kMissionCompleted, actions::kNothing},
   {{M::kTrajectory}, E::kPlanFinished, guards::kAlways, preconditions::kNone, M::kHolding, R::kTrajectoryCompleted, actions::kNothing},

@@ -132,7 +132,7 @@ void check_arming(const ArmingSettings& arming, RuleChecker& check) {
 void check_failsafe(const FailsafeSettings& failsafe, const Limits& limits, RuleChecker& check) {
   check.above("failsafe.imu_timeout_s", failsafe.imu_timeout_s, 0.0);
   check.above("failsafe.imu_gap_s", failsafe.imu_gap_s, 0.0);
-  check.above("failsafe.blow_m_s2", failsafe.blow, plant::kGravity);
+  check.above("failsafe.impact_m_s2", failsafe.impact_acceleration, plant::kGravity);
   check.above("failsafe.mocap_timeout_s", failsafe.mocap_timeout_s, 0.0);
   check.above("failsafe.descent_speed_m_s", failsafe.descent_speed, 0.0);
   check.above("failsafe.descent_timeout_s", failsafe.descent_timeout_s, 0.0);

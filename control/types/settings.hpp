@@ -179,7 +179,7 @@ struct FailsafeSettings {
   double imu_timeout_s = 0.1;             // no usable sample for this time: rotors off
   double imu_gap_s = 0.3;                 // between two samples: rotors off
   double tip_over_tilt_rad = 1.4;         // rad: rotors off
-  double blow = 100.0;                    // m/s^2 of specific force, an impact: rotors off
+  double impact_acceleration = 100.0;     // m/s^2 of specific force, an impact: rotors off
   double mocap_timeout_s = 0.5;           // no pose for this time: level descent instead of dead reckoning
   double descent_speed = 0.4;             // m/s without position, and upper limit of landings
   double descent_timeout_s = 6.0;         // without position for this time: rotors off

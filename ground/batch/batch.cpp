@@ -139,7 +139,7 @@ Batch BatchRunner::fly(std::size_t jobs, const std::function<bool()>& cancelled,
   });
 
   Batch batch;
-  batch.asked = runs_;
+  batch.requested = runs_;
   batch.runs = pool.take_results();
   batch.rejected = rejected_;
   batch.designed_deg =

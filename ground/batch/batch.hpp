@@ -25,7 +25,7 @@ struct BatchRun {
 };
 
 struct Batch {
-  std::size_t asked = 0;               // requested runs
+  std::size_t requested = 0;           // requested runs
   std::vector<BatchRun> runs;          // finished runs, in order of the seed
   std::size_t rejected = 0;            // samples that broke a rule and were sampled again
   control::PhaseMargins designed_deg;  // of the nominal vehicle
@@ -35,7 +35,7 @@ struct Batch {
 };
 
 struct BatchProgress {
-  std::size_t asked = 0;
+  std::size_t requested = 0;
   std::size_t done = 0;
   std::size_t failed = 0;
   double elapsed_s = 0.0;

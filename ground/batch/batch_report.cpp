@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "swiftlet/io/csv.hpp"
+#include "swiftlet/io/csv_writer.hpp"
 #include "swiftlet/io/format.hpp"
 
 namespace swiftlet::ground {
@@ -84,12 +84,12 @@ std::string headline_of(const BatchReport& report) {
   const std::uint64_t first = report.first_seed;
   std::string text = report.mission + ", " + report.vehicle + " with " + report.control + ", dispersion " +
                      report.dispersion +
-                     fmt::format(": {}, seeds {} to {}\n", counted(batch.asked, "run").c_str(),
+                     fmt::format(": {}, seeds {} to {}\n", counted(batch.requested, "run").c_str(),
                                  static_cast<unsigned long long>(first),
-                                 static_cast<unsigned long long>(first + batch.asked - 1));
+                                 static_cast<unsigned long long>(first + batch.requested - 1));
   text += fmt::format("  {} completed, {} failed", batch.runs.size() - batch.failed(), batch.failed());
   if (report.interrupted())
-    text += fmt::format(", {} NOT flown: batch cancelled", batch.asked - batch.runs.size());
+    text += fmt::format(", {} NOT flown: batch cancelled", batch.requested - batch.runs.size());
   return text + fmt::format("; {:.1f} s\n", batch.wall_s);
 }
 
@@ -116,14 +116,6 @@ std::string failures_text(const BatchReport& report) {
   }
   return text;
 }
-
-std::string csv_quoted(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
-std::string cell(double number) { return std::isfinite(number) ? "," + runtime::exact(number) : ","; }
 
 }  // namespace
 
@@ -171,7 +163,7 @@ Json to_json(const BatchReport& report) {
   json["control"] = report.control;
   json["dispersion"] = report.dispersion;
   json["seed"] = report.first_seed;
-  json["runs"] = batch.asked;
+  json["runs"] = batch.requested;
   json["runs_done"] = batch.runs.size();
   json["runs_failed"] = batch.failed();
   json["draws_rejected"] = batch.rejected;
@@ -219,19 +211,19 @@ std::string to_text(const BatchReport& report) {
 }
 
 void write_batch_csv(const std::filesystem::path& file, const BatchReport& report) {
-  std::ofstream csv(file);
-  csv << "seed,completed,reason,rms_3d_m,peak_3d_m,duration_s";
-  for (const char* name : kMarginNames) csv << ",margin_" << name << "_deg";
-  for (const std::string& name : report.parameters) csv << "," << name;
-  csv << "\n";
+  std::vector<std::string> columns = {"seed", "completed", "reason", "rms_3d_m", "peak_3d_m", "duration_s"};
+  for (const char* name : kMarginNames) columns.push_back(std::string("margin_") + name + "_deg");
+  columns.insert(columns.end(), report.parameters.begin(), report.parameters.end());
+  runtime::CsvWriter csv(file, columns);
+  const auto finite = [&csv](double value) { std::isfinite(value) ? csv.exact(value) : csv.empty(); };
   for (const BatchRun& run : report.batch.runs) {
-    csv << run.seed << (run.completed ? ",1," : ",0,") << csv_quoted(run.reason) << cell(run.rms_3d_m)
-        << cell(run.peak_3d_m) << cell(run.duration_s);
-    for (const double margin : as_array(run.margins_deg)) csv << cell(margin);
-    for (const double value : run.values) csv << cell(value);
-    csv << "\n";
+    csv.text(std::to_string(run.seed)).text(run.completed ? "1" : "0").text(run.reason);
+    for (const double value : {run.rms_3d_m, run.peak_3d_m, run.duration_s}) finite(value);
+    for (const double margin : as_array(run.margins_deg)) finite(margin);
+    for (const double value : run.values) finite(value);
+    csv.end_row();
   }
-  if (!csv.flush()) throw std::runtime_error(file.string() + " cannot be written");
+  csv.finish();
 }
 
 }  // namespace swiftlet::ground

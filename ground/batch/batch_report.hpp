@@ -40,7 +40,7 @@ struct BatchReport {
   std::vector<ParameterEffect> effects;  // strongest first
   std::string repeat;                    // command that repeats a run, without the value of --seed
 
-  bool interrupted() const { return batch.runs.size() < batch.asked; }
+  bool interrupted() const { return batch.runs.size() < batch.requested; }
   bool completed() const { return !interrupted() && batch.failed() == 0; }
   std::string repeat_command(std::uint64_t seed) const { return repeat + std::to_string(seed); }
 };

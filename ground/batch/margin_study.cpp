@@ -45,13 +45,13 @@ LoopMargins kept_by(const std::vector<LoopMargins>& all, double share) {
 }  // namespace
 
 MarginStudy study_margins(const control::ControlDesign& design, const plant::Vehicle& vehicle,
-                          const Dispersion& dispersion, std::size_t draws, std::uint64_t seed) {
+                          const Dispersion& dispersion, std::size_t samples, std::uint64_t seed) {
   MarginStudy out;
   const auto designed = margins_of(design, vehicle, vehicle);
   std::array<std::vector<LoopMargins>, kLoopNames.size()> drawn;
-  if (!dispersion.distributions.empty()) out.draws = draws;
+  if (!dispersion.distributions.empty()) out.samples = samples;
   out.seed = seed;
-  for (std::size_t i = 0; i < out.draws; ++i) {
+  for (std::size_t i = 0; i < out.samples; ++i) {
     const auto margins = margins_of(design, vehicle, draw(dispersion, {vehicle, {}}, seed + i).world.vehicle);
     bool stable = true;
     for (std::size_t loop = 0; loop < margins.size(); ++loop) {

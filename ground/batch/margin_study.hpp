@@ -21,7 +21,7 @@ struct MarginStudy {
     control::LoopMargins worst;     // worst of all samples, each margin by itself
   };
   std::array<Loop, kLoopNames.size()> loops;
-  std::size_t draws = 0;  // number of samples; 0: only the nominal vehicle
+  std::size_t samples = 0;  // number of samples; 0: only the nominal vehicle
   std::uint64_t seed = 0;
   std::size_t unstable = 0;  // samples with an unstable loop
 };
@@ -30,6 +30,6 @@ struct MarginStudy {
 // the seed `seed` + i. The model is linear about hover, without estimator, sampling and latency. Throws as
 // draw() does.
 MarginStudy study_margins(const control::ControlDesign& design, const plant::Vehicle& vehicle,
-                          const Dispersion& dispersion, std::size_t draws, std::uint64_t seed);
+                          const Dispersion& dispersion, std::size_t samples, std::uint64_t seed);
 
 }  // namespace swiftlet::ground

@@ -8,7 +8,7 @@
 namespace swiftlet::ground {
 namespace {
 
-struct Options : AskOptions {
+struct Options : RequestOptions {
   std::uint64_t id = 0;
 };
 
@@ -18,7 +18,7 @@ Command add_mission_request(runtime::CommandLine mission, const std::string& nam
                             const std::string& description, Ask ask) {
   const auto options = std::make_shared<Options>();
   const runtime::CommandLine app =
-      add_ask_subcommand(mission, name, description, "swiftlet mission " + name, options);
+      add_request_subcommand(mission, name, description, "swiftlet mission " + name, options);
   app.add_option("--id", options->id,
                  "mission id that `mission upload` printed; refused if the vehicle has another mission");
   return {app, [options, name, ask] {

@@ -51,9 +51,10 @@ runtime::CommandLine add_request_subcommand(runtime::CommandLine root, const std
   return add_subcommand(root, name, description, example, options, Vehicles::kOne);
 }
 
-runtime::CommandLine add_ask_subcommand(runtime::CommandLine root, const std::string& name,
-                                        const std::string& description, const std::string& example,
-                                        const std::shared_ptr<AskOptions>& options, Vehicles vehicles) {
+runtime::CommandLine add_request_subcommand(runtime::CommandLine root, const std::string& name,
+                                            const std::string& description, const std::string& example,
+                                            const std::shared_ptr<RequestOptions>& options,
+                                            Vehicles vehicles) {
   const runtime::CommandLine app = add_subcommand(root, name, description, example, options, vehicles);
   app.add_option("--wait", options->wait_s,
                  "wait at most so many s until the action completes; exit code 1 if it does not")
@@ -61,7 +62,7 @@ runtime::CommandLine add_ask_subcommand(runtime::CommandLine root, const std::st
   return app;
 }
 
-int run_request(const AskOptions& options, const std::string& what,
+int run_request(const RequestOptions& options, const std::string& what,
                 const std::function<ActionHandle(Vehicle&)>& ask) {
   const std::vector<std::string> names = split_list(options.network.vehicle);
   const Context context(options.network);
@@ -113,9 +114,9 @@ void log_connection(Vehicle& vehicle, const std::string& command) {
 Command add_plain_request_command(runtime::CommandLine root, const std::string& name,
                                   const std::string& description,
                                   ActionHandle (Vehicle::*ask)(std::chrono::milliseconds)) {
-  const auto options = std::make_shared<AskOptions>();
-  const runtime::CommandLine app =
-      add_ask_subcommand(root, name, description, "swiftlet " + name + " --vehicle-name kl1,kl2", options);
+  const auto options = std::make_shared<RequestOptions>();
+  const runtime::CommandLine app = add_request_subcommand(
+      root, name, description, "swiftlet " + name + " --vehicle-name kl1,kl2", options);
   return {app, [options, name, ask] {
             return run_request(*options, name,
                                [&](Vehicle& vehicle) { return (vehicle.*ask)(options->timeout()); });

@@ -27,7 +27,7 @@ struct RequestOptions {
 };
 
 // Options of a command that sends one request.
-struct AskOptions : RequestOptions {
+struct RequestOptions : RequestOptions {
   std::optional<double> wait_s;  // longest wait for completion; unset: does not wait
 };
 
@@ -38,16 +38,16 @@ runtime::CommandLine add_request_subcommand(runtime::CommandLine root, const std
                                             const std::shared_ptr<RequestOptions>& options);
 
 // As add_request_subcommand(), with --wait in addition, and for several vehicles by default.
-runtime::CommandLine add_ask_subcommand(runtime::CommandLine root, const std::string& name,
-                                        const std::string& description, const std::string& example,
-                                        const std::shared_ptr<AskOptions>& options,
-                                        Vehicles vehicles = Vehicles::kSeveral);
+runtime::CommandLine add_request_subcommand(runtime::CommandLine root, const std::string& name,
+                                            const std::string& description, const std::string& example,
+                                            const std::shared_ptr<RequestOptions>& options,
+                                            Vehicles vehicles = Vehicles::kSeveral);
 
 // Joins the network, sends the request to all vehicles at once, each from its own thread, and prints the
 // results. With --wait, waits until the action of each vehicle ends. The JSON output is the result of the
 // vehicle, or with several vehicles an object with their names as keys. Returns the exit code: kFailed if a
 // vehicle failed.
-int run_request(const AskOptions& options, const std::string& what,
+int run_request(const RequestOptions& options, const std::string& what,
                 const std::function<ActionHandle(Vehicle&)>& ask);
 
 // Prints a line to standard error, prefixed with `command`, whenever the connection to the vehicle's control

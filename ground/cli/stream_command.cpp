@@ -146,8 +146,8 @@ class Streamer {
         [&](const VehicleState& state) { return 1e-9 * static_cast<double>(state.stamp_ns) > last_s + 0.25; },
         kSilence);
     const SetpointTally tally = vehicle_.state().setpoints;
-    result_.tally = {tally.taken - before_.taken, tally.refused - before_.refused, tally.refusal};
-    if (result_.fault.empty() && result_.tally.taken == 0) result_.fault = "no setpoint was accepted";
+    result_.tally = {tally.accepted - before_.accepted, tally.refused - before_.refused, tally.refusal};
+    if (result_.fault.empty() && result_.tally.accepted == 0) result_.fault = "no setpoint was accepted";
     if (!result_.fault.empty() && result_.tally.refused > 0) result_.fault += "; " + result_.tally.refusal;
     return result_;
   }
@@ -210,7 +210,7 @@ std::optional<std::string> come_to_rest(Vehicle& vehicle, const Options& options
 void print(const StreamResult& result, const VehicleState& end, bool json) {
   if (json) {
     nlohmann::ordered_json text = {{"sent", result.sent},
-                                   {"taken", result.tally.taken},
+                                   {"accepted", result.tally.accepted},
                                    {"refused", result.tally.refused},
                                    {"duration_s", result.duration_s},
                                    {"mode", control::to_string(end.mode)}};
@@ -221,7 +221,7 @@ void print(const StreamResult& result, const VehicleState& end, bool json) {
         "stream: %llu setpoints in %.1f s, %llu accepted and %llu refused; now %s at (%.2f, %.2f, "
         "%.2f) m\n",
         static_cast<unsigned long long>(result.sent), result.duration_s,
-        static_cast<unsigned long long>(result.tally.taken),
+        static_cast<unsigned long long>(result.tally.accepted),
         static_cast<unsigned long long>(result.tally.refused), control::to_string(end.mode),
         end.position_ned_m.x(), end.position_ned_m.y(), end.position_ned_m.z());
   }

@@ -10,7 +10,7 @@
 namespace swiftlet::ground {
 namespace {
 
-struct Options : AskOptions {
+struct Options : RequestOptions {
   std::string file;
   std::string control = "motor_lag";
 };
@@ -42,7 +42,7 @@ int send_trajectory(const Options& options) {
 
 Command add_trajectory_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
-  const runtime::CommandLine app = add_ask_subcommand(
+  const runtime::CommandLine app = add_request_subcommand(
       root, "trajectory",
       "Fly a trajectory from hold, from a setpoint stream or from another trajectory: the vehicle joins it "
       "from its current motion",

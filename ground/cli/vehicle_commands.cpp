@@ -12,22 +12,22 @@
 namespace swiftlet::ground {
 namespace {
 
-struct TakeoffOptions : AskOptions {
+struct TakeoffOptions : RequestOptions {
   double height_m = 1.0;
   double speed = 0.5;
 };
 
-struct GotoOptions : AskOptions {
+struct GotoOptions : RequestOptions {
   std::array<double, 3> position_ned{};
   std::optional<double> yaw_rad;
   double speed = 0.5;
 };
 
-struct LandOptions : AskOptions {
+struct LandOptions : RequestOptions {
   double speed = 0.4;
 };
 
-struct StopOptions : AskOptions {
+struct StopOptions : RequestOptions {
   bool yes = false;
 };
 
@@ -58,8 +58,8 @@ Command add_disarm_command(runtime::CommandLine root) {
 Command add_takeoff_command(runtime::CommandLine root) {
   const auto options = std::make_shared<TakeoffOptions>();
   const runtime::CommandLine app =
-      add_ask_subcommand(root, "takeoff", "Climb vertically and hold; the vehicle must be armed",
-                         "swiftlet takeoff 1.2 --speed 0.5", options);
+      add_request_subcommand(root, "takeoff", "Climb vertically and hold; the vehicle must be armed",
+                             "swiftlet takeoff 1.2 --speed 0.5", options);
   app.add_option("height", options->height_m, "height above the origin, m").positive().show_default();
   app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
   return {app, [options] {
@@ -71,7 +71,7 @@ Command add_takeoff_command(runtime::CommandLine root) {
 
 Command add_goto_command(runtime::CommandLine root) {
   const auto options = std::make_shared<GotoOptions>();
-  const runtime::CommandLine app = add_ask_subcommand(
+  const runtime::CommandLine app = add_request_subcommand(
       root, "goto", "Fly straight to a position (NED, relative to the origin) and hold there",
       "swiftlet goto -1 0 -1.5 --yaw 1.57    (1 m south of the origin, 1.5 m up, nose to the east)", options,
       Vehicles::kOne);  // two vehicles cannot hold at one position
@@ -98,7 +98,7 @@ Command add_hold_command(runtime::CommandLine root) {
 
 Command add_land_command(runtime::CommandLine root) {
   const auto options = std::make_shared<LandOptions>();
-  const runtime::CommandLine app = add_ask_subcommand(
+  const runtime::CommandLine app = add_request_subcommand(
       root, "land", "Descend vertically, land and stop the rotors", "swiftlet land --speed 0.3", options);
   app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
   return {app, [options] {
@@ -111,8 +111,8 @@ Command add_land_command(runtime::CommandLine root) {
 Command add_stop_command(runtime::CommandLine root) {
   const auto options = std::make_shared<StopOptions>();
   const runtime::CommandLine app =
-      add_ask_subcommand(root, "stop", "Emergency stop: turn the rotors off at once, also in the air",
-                         "swiftlet stop --yes", options);
+      add_request_subcommand(root, "stop", "Emergency stop: turn the rotors off at once, also in the air",
+                             "swiftlet stop --yes", options);
   app.add_flag("--yes,-y", options->yes, "do not ask for confirmation");
   return {app, [options] {
             confirm(*options);

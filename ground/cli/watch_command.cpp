@@ -29,7 +29,7 @@ struct Options {
 // Topic rates over the last second.
 class Rates {
  public:
-  void look(const View& view, WatchFacts& facts) {
+  void update(const View& view, WatchFacts& facts) {
     const auto now = Clock::now();
     if (!begun_) {
       begun_ = now;
@@ -120,7 +120,7 @@ class Watch {
     TerminalScreen screen;
     Keys keys(client_);
     while (goes_on()) {
-      screen.show(watch_screen(look(), facts_, Clock::now(), screen.width(), screen.height()));
+      screen.show(watch_screen(update(), facts_, Clock::now(), screen.width(), screen.height()));
       const std::optional<int> key = screen.key(kFrame_ms);
       if (key && *key != TerminalScreen::kResized && !keys.press(*key, facts_.message)) break;
     }
@@ -130,7 +130,7 @@ class Watch {
   int in_lines() {
     while (goes_on()) {
       client_.wait(kRateTime, [this](const View&) { return !goes_on(); });
-      const View view = look();
+      const View view = update();
       if (!facts_.message.empty()) std::printf("%s\n", std::exchange(facts_.message, {}).c_str());
       std::printf("%s\n", watch_line(view, facts_, Clock::now()).c_str());
       std::fflush(stdout);
@@ -141,10 +141,10 @@ class Watch {
  private:
   bool goes_on() const { return interrupts_.count() == 0 && !(end_ && Clock::now() >= *end_); }
 
-  View look() {
+  View update() {
     View view = client_.view();
-    rates_.look(view, facts_);
-    const std::optional<ConnectionEvent> event = connection_.look(view, Clock::now());
+    rates_.update(view, facts_);
+    const std::optional<ConnectionEvent> event = connection_.update(view, Clock::now());
     if (event && event->kind != ConnectionEvent::Kind::kConnected) facts_.message = event->text;
     if (!view.control.seen()) facts_.where = client_.no_control();
     return view;

@@ -13,7 +13,7 @@ bool is_connected(const View& view, Clock::time_point now) {
   return view.control.seen() && now - view.control.received < kConnectionSilence;
 }
 
-std::optional<ConnectionEvent> ConnectionWatch::look(const View& view, Clock::time_point now) {
+std::optional<ConnectionEvent> ConnectionWatch::update(const View& view, Clock::time_point now) {
   using Kind = ConnectionEvent::Kind;
   const bool was_connected = connected_;
   connected_ = is_connected(view, now);

@@ -14,7 +14,7 @@ bool is_connected(const View& view, Clock::time_point now);
 class ConnectionWatch {
  public:
   // The change since the last call; nullopt if there is none.
-  std::optional<ConnectionEvent> look(const View& view, Clock::time_point now);
+  std::optional<ConnectionEvent> update(const View& view, Clock::time_point now);
 
  private:
   bool connected_ = false;

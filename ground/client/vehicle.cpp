@@ -83,11 +83,11 @@ bool Vehicle::connected() const { return is_connected(client_->view(), Clock::no
 void Vehicle::on_connection(std::function<void(const ConnectionEvent&)> callback) {
   periodic_task_.reset();
   if (!callback) return;
-  const auto look = [client = client_, watch = std::make_shared<ConnectionWatch>(),
-                     tell = std::move(callback)] {
-    if (const auto event = watch->look(client->view(), Clock::now())) tell(*event);
+  const auto update = [client = client_, watch = std::make_shared<ConnectionWatch>(),
+                       tell = std::move(callback)] {
+    if (const auto event = watch->update(client->view(), Clock::now())) tell(*event);
   };
-  periodic_task_ = std::make_unique<comms::PeriodicTask>(kConnectionPollPeriod, look);
+  periodic_task_ = std::make_unique<comms::PeriodicTask>(kConnectionPollPeriod, update);
 }
 
 Result Vehicle::connect(milliseconds timeout) const {

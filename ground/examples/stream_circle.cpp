@@ -70,7 +70,7 @@ bool fly_circle(Vehicle& vehicle) {
                          std::chrono::seconds(20));
   const auto tally = vehicle.state().setpoints;
   std::printf("%llu setpoints were accepted\n",
-              static_cast<unsigned long long>(tally.taken - before.setpoints.taken));
+              static_cast<unsigned long long>(tally.accepted - before.setpoints.accepted));
   if (tally.refused > before.setpoints.refused) std::fprintf(stderr, "%s\n", tally.refusal.c_str());
   return holds && tally.refused == before.setpoints.refused;
 }

@@ -8,6 +8,7 @@
 #include "swiftlet/ground/command_line/command.hpp"
 #include "swiftlet/io/config.hpp"
 #include "swiftlet/io/csv.hpp"
+#include "swiftlet/io/csv_writer.hpp"
 #include "swiftlet/io/measurements.hpp"
 
 namespace swiftlet::ground {
@@ -160,16 +161,15 @@ std::optional<double> spread_of(const runtime::ConfigNode& instruments, const ch
 
 void write_table(const fs::path& file,
                  const std::vector<std::pair<Quantity, const std::vector<double>*>>& columns) {
-  std::ofstream out(file);
-  for (std::size_t i = 0; i < columns.size(); ++i)
-    out << (i == 0 ? "" : ",") << runtime::header_of(columns[i].first);
-  out << '\n';
+  std::vector<std::string> names;
+  names.reserve(columns.size());
+  for (const auto& [quantity, values] : columns) names.push_back(runtime::header_of(quantity));
+  runtime::CsvWriter csv(file, names);
   for (std::size_t row = 0; row < columns.front().second->size(); ++row) {
-    for (std::size_t i = 0; i < columns.size(); ++i)
-      out << (i == 0 ? "" : ",") << runtime::exact((*columns[i].second)[row]);
-    out << '\n';
+    for (const auto& [quantity, values] : columns) csv.exact((*values)[row]);
+    csv.end_row();
   }
-  if (!out.flush()) throw std::runtime_error(file.string() + " cannot be written");
+  csv.finish();
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <fmt/core.h>
 
 #include "swiftlet/ground/report/gnuplot.hpp"
+#include "swiftlet/io/csv_writer.hpp"
 #include "swiftlet/io/format.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
@@ -115,24 +116,20 @@ class TemporaryFolder {
   fs::path folder_;
 };
 
-std::string row_of(double time_s, const control::Reference& at) {
-  const Eigen::Vector3d thrust = at.acceleration_ned - Eigen::Vector3d(0.0, 0.0, plant::kGravity);
-  const double tilt = std::atan2(thrust.head<2>().norm(), -thrust.z()) * kDegrees;
-  return fmt::format("{:.4f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.4f}\n", time_s, at.position_ned.x(),
-                     at.position_ned.y(), at.position_ned.z(), at.velocity_ned.norm(),
-                     at.acceleration_ned.norm(), tilt);
-}
-
 void write_csv(const fs::path& path, const MissionDryRun& dry_run) {
-  std::ofstream csv(path);
-  csv << "t,x,y,z,speed,acceleration,tilt\n";
+  runtime::CsvWriter csv(path, {"t", "x", "y", "z", "speed", "acceleration", "tilt"});
   for (const DryRunLeg& leg : dry_run.legs) {
     const double rows = std::ceil(leg.segment.duration_s / kRow_s);
     for (double i = 0.0; i <= rows; i += 1.0) {
       const double t_s = leg.segment.duration_s * i / rows;
-      csv << row_of(leg.start_s + t_s, control::evaluate(leg.segment, t_s));
+      const control::Reference at = control::evaluate(leg.segment, t_s);
+      const Eigen::Vector3d thrust = at.acceleration_ned - Eigen::Vector3d(0.0, 0.0, plant::kGravity);
+      const double tilt = std::atan2(thrust.head<2>().norm(), -thrust.z()) * kDegrees;
+      csv.number(leg.start_s + t_s).numbers(at.position_ned);
+      csv.number(at.velocity_ned.norm()).number(at.acceleration_ned.norm()).number(tilt).end_row();
     }
   }
+  csv.finish();
 }
 
 // A place where items end, with their numbers: "2", or "2, 5" if several end there.

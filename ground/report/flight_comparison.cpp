@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 
 #include "swiftlet/ground/command_line/command.hpp"
-#include "swiftlet/ground/report/kept_settings.hpp"
+#include "swiftlet/ground/report/recorded_settings.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/text_file.hpp"
 
@@ -115,7 +115,7 @@ RecordedFlight load_recorded_flight(const fs::path& folder) {
   if (flight.folder.filename().empty()) flight.folder = flight.folder.parent_path();
   flight.report = nlohmann::ordered_json::parse(runtime::read_text_file(file.string()), nullptr, false);
   if (!flight.report.is_object()) throw runtime::ConfigError(file.string(), 0, "", "is not valid JSON");
-  flight.settings = kept_settings(folder);
+  flight.settings = recorded_settings(folder);
   return flight;
 }
 

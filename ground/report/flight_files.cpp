@@ -2,34 +2,22 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <fstream>
 #include <limits>
-#include <memory>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/report/gnuplot.hpp"
+#include "swiftlet/io/csv_writer.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
 constexpr std::int64_t kLongestRowGapNs = 15'000'000;  // references are published every 10 ms
-
-struct Closer {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-
-template <std::size_t N>
-void write_cells(std::FILE* file, const std::array<double, N>& values, std::size_t count = N) {
-  for (std::size_t i = 0; i < count; ++i) std::fprintf(file, ",%.9g", values[i]);
-}
-
-void write_empty_cells(std::FILE* file, int count) {
-  for (int i = 0; i < count; ++i) std::fputc(',', file);
-}
 
 // Returns the row with this stamp and advances `at` to it; null if there is none.
 template <class Row>
@@ -147,17 +135,13 @@ void write_script(const std::filesystem::path& file, const FlightReport& report,
 }  // namespace
 
 void write_flight_csv(const std::filesystem::path& file, const FlightRecord& record, Window window) {
-  const std::unique_ptr<std::FILE, Closer> csv(std::fopen(file.c_str(), "w"));
-  if (!csv) throw std::runtime_error(file.string() + " cannot be written");
-  std::FILE* const out = csv.get();
-
-  const int rotors = record.truth.empty() ? 0 : record.truth.back().rotor_count;
-  std::fputs(
-      "t,mode,px,py,pz,vx,vy,vz,qw,qx,qy,qz,p,q,r,ref_px,ref_py,ref_pz,ref_vx,ref_vy,ref_vz,ref_yaw,"
-      "est_px,est_py,est_pz,est_vx,est_vy,est_vz,v_s",
-      out);
-  for (int i = 1; i <= rotors; ++i) std::fprintf(out, ",om%d", i);
-  std::fputc('\n', out);
+  const auto rotors = static_cast<std::size_t>(record.truth.empty() ? 0 : record.truth.back().rotor_count);
+  std::vector<std::string> columns = {
+      "t",      "mode",    "px",     "py",     "pz",     "vx",     "vy",     "vz",     "qw",     "qx",
+      "qy",     "qz",      "p",      "q",      "r",      "ref_px", "ref_py", "ref_pz", "ref_vx", "ref_vy",
+      "ref_vz", "ref_yaw", "est_px", "est_py", "est_pz", "est_vx", "est_vy", "est_vz", "v_s"};
+  for (std::size_t i = 1; i <= rotors; ++i) columns.push_back("om" + std::to_string(i));
+  runtime::CsvWriter csv(file, columns);
 
   const ReferenceRow* next_reference = record.reference.begin();
   const EstimateRow* next_estimate = record.estimate.begin();
@@ -167,31 +151,29 @@ void write_flight_csv(const std::filesystem::path& file, const FlightRecord& rec
     if (reference == nullptr && truth.stamp_ns - last_ns < kLongestRowGapNs) continue;
     last_ns = truth.stamp_ns;
     const EstimateRow* estimate = row_at(next_estimate, record.estimate.end(), truth.stamp_ns);
-    std::fprintf(out, "%.6f,", static_cast<double>(truth.stamp_ns - window.from_ns) * 1e-9);
-    if (reference != nullptr) std::fprintf(out, "%d", reference->mode);
-    write_cells(out, truth.position_ned);
-    write_cells(out, truth.velocity_ned);
-    write_cells(out, truth.q_ned_from_frd);
-    write_cells(out, truth.body_rates_frd);
+    csv.fixed(static_cast<double>(truth.stamp_ns - window.from_ns) * 1e-9, 6);
     if (reference != nullptr) {
-      write_cells(out, reference->position_ned);
-      write_cells(out, reference->velocity_ned);
-      std::fprintf(out, ",%.9g", reference->yaw_rad);
+      csv.number(reference->mode);
     } else {
-      write_empty_cells(out, 7);
+      csv.empty();
+    }
+    csv.numbers(truth.position_ned).numbers(truth.velocity_ned).numbers(truth.q_ned_from_frd);
+    csv.numbers(truth.body_rates_frd);
+    if (reference != nullptr) {
+      csv.numbers(reference->position_ned).numbers(reference->velocity_ned).number(reference->yaw_rad);
+    } else {
+      csv.empty(7);
     }
     if (estimate != nullptr) {
-      write_cells(out, estimate->position_ned);
-      write_cells(out, estimate->velocity_ned);
+      csv.numbers(estimate->position_ned).numbers(estimate->velocity_ned);
     } else {
-      write_empty_cells(out, 6);
+      csv.empty(6);
     }
-    std::fprintf(out, ",%.6g", truth.supply_voltage_v);
-    write_cells(out, truth.rotor_speeds, static_cast<std::size_t>(rotors));
-    std::fputc('\n', out);
+    csv.number(truth.supply_voltage_v, 6);
+    for (std::size_t i = 0; i < rotors; ++i) csv.number(truth.rotor_speeds[i]);
+    csv.end_row();
   }
-  if (std::fflush(out) != 0 || std::ferror(out) != 0)
-    throw std::runtime_error(file.string() + " cannot be written");
+  csv.finish();
 }
 
 void write_report_json(const std::filesystem::path& file, const FlightReport& report) {

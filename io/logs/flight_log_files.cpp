@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <stdexcept>
 
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/csv_writer.hpp"
 #include "swiftlet/io/logs/compressed_file.hpp"
 #include "swiftlet/io/measurements.hpp"
 #include "swiftlet/plant/model/esc.hpp"
@@ -55,10 +54,6 @@ double voltage_at(const plant::BatterySample& before, const plant::BatterySample
                        static_cast<double>(after->stamp_ns - before.stamp_ns);
   return before.voltage_v + share * (after->voltage_v - before.voltage_v);
 }
-
-struct Closer {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
 
 std::vector<Quantity> flight_quantities() {
   std::vector<Quantity> all = {Quantity::kTime};
@@ -125,7 +120,7 @@ bool is_frd(const Measurements& table, const std::vector<Eigen::Vector3d>& speci
   for (int i = 0; i < 3; ++i)
     columns.insert(columns.end(), {Quantity::kSpecificForceX + i, Quantity::kBodyRateX + i});
   std::optional<bool> declared = has_first_ending(table, columns, "_frd", "_flu");
-  if (axes != BodyAxes::kAsSaid) {
+  if (axes != BodyAxes::kAsDeclared) {
     const bool frd = axes == BodyAxes::kFrd;
     if (declared && *declared != frd)
       throw ConfigError(
@@ -292,13 +287,10 @@ FlightLog flight_log_of(const SensorRecord& record) {
 }
 
 void write_flight_log(const fs::path& file, const FlightLog& log) {
-  const std::unique_ptr<std::FILE, Closer> csv(std::fopen(file.c_str(), "w"));
-  if (!csv) throw std::runtime_error(file.string() + " cannot be written");
-  std::FILE* const out = csv.get();
   const auto rotors = static_cast<std::size_t>(log.rotor_count);
-  std::string header = runtime::header_of(Quantity::kTime);
-  const auto add = [&](Quantity first, int count) {
-    for (int i = 0; i < count; ++i) header += "," + runtime::header_of(first + i);
+  std::vector<std::string> columns = {runtime::header_of(Quantity::kTime)};
+  const auto add = [&columns](Quantity first, int count) {
+    for (int i = 0; i < count; ++i) columns.push_back(runtime::header_of(first + i));
   };
   add(Quantity::kSpecificForceX, 3);
   add(Quantity::kBodyRateX, 3);
@@ -311,33 +303,27 @@ void write_flight_log(const fs::path& file, const FlightLog& log) {
     add(Quantity::kPositionX, 3);
     add(Quantity::kOrientationW, 4);
   }
-  std::fprintf(out, "%s\n", header.c_str());
+  runtime::CsvWriter csv(file, columns);
 
   std::size_t pose = 0;
   for (std::size_t row = 0; row < log.size(); ++row) {
     while (pose + 1 < log.poses.size() && log.poses[pose + 1].time_s <= log.time_s[row]) ++pose;
     if (!log.poses.empty() && log.poses[pose].time_s > log.time_s[row]) continue;
-    std::fprintf(out, "%.6f", log.time_s[row]);
-    const auto number = [&](double value) { std::fprintf(out, ",%.9g", value); };
-    for (const double value : log.specific_force_frd[row]) number(value);
-    for (const double value : log.body_rates_frd[row]) number(value);
-    number(log.running[row]);
-    for (std::size_t i = 0; i < rotors; ++i) number(log.command[row][i]);
-    if (!log.supply_voltage_v.empty()) number(log.supply_voltage_v[row]);
+    csv.fixed(log.time_s[row], 6).numbers(log.specific_force_frd[row]).numbers(log.body_rates_frd[row]);
+    csv.number(log.running[row]);
+    for (std::size_t i = 0; i < rotors; ++i) csv.number(log.command[row][i]);
+    if (!log.supply_voltage_v.empty()) csv.number(log.supply_voltage_v[row]);
     if (!log.rotor_speeds.empty()) {
-      for (std::size_t i = 0; i < rotors; ++i) number(log.rotor_speeds[row][i]);
+      for (std::size_t i = 0; i < rotors; ++i) csv.number(log.rotor_speeds[row][i]);
     }
     if (!log.poses.empty()) {
       const FlightPose& now = log.poses[pose];
-      std::fprintf(out, ",%.6f", now.time_s);
-      for (const double value : now.position_ned) number(value);
       const Eigen::Quaterniond& q = now.q_ned_from_frd;
-      for (const double value : {q.w(), q.x(), q.y(), q.z()}) number(value);
+      csv.fixed(now.time_s, 6).numbers(now.position_ned).numbers(std::array{q.w(), q.x(), q.y(), q.z()});
     }
-    std::fputc('\n', out);
+    csv.end_row();
   }
-  if (std::fflush(out) != 0 || std::ferror(out) != 0)
-    throw std::runtime_error(file.string() + " cannot be written");
+  csv.finish();
 }
 
 ReadFlightLog read_flight_log(const fs::path& path, const plant::Vehicle& base, BodyAxes axes) {

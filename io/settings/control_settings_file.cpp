@@ -155,7 +155,7 @@ control::FailsafeSettings read_failsafe(const ConfigNode& node) {
   control::FailsafeSettings failsafe;
   failsafe.imu_timeout_s = node.at("imu_timeout_s").number();
   failsafe.imu_gap_s = node.at("imu_gap_s").number();
-  failsafe.blow = node.at("blow_m_s2").number();
+  failsafe.impact_acceleration = node.at("impact_m_s2").number();
   failsafe.mocap_timeout_s = node.at("mocap_timeout_s").number();
   failsafe.descent_speed = node.at("descent_speed_m_s").number();
   failsafe.descent_timeout_s = node.at("descent_timeout_s").number();

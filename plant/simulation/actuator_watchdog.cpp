@@ -53,7 +53,7 @@ ObeyedCommand ActuatorWatchdog::obeyed() const {
   return {true, last_stamp_ns_.has_value(), term_, last_stamp_ns_.value_or(0)};
 }
 
-const MotorCommand& ActuatorWatchdog::drive(std::int64_t now_ns) const {
+const MotorCommand& ActuatorWatchdog::motor_command(std::int64_t now_ns) const {
   static constexpr MotorCommand kOff;
   return expired(now_ns) ? kOff : drive_;
 }

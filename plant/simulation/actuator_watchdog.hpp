@@ -31,7 +31,7 @@ class ActuatorWatchdog {
   CommandFault accept(const ActuatorCommand& command, std::int64_t now_ns);
 
   // Motor command at now_ns: the last accepted command, or off if its IMU sample is older than the time-out.
-  const MotorCommand& drive(std::int64_t now_ns) const;
+  const MotorCommand& motor_command(std::int64_t now_ns) const;
 
   // True if a command has been accepted and its IMU sample is older than the time-out.
   bool expired(std::int64_t now_ns) const;

@@ -35,7 +35,7 @@ Mocap::Mocap(const MocapSettings& settings, std::uint64_t seed)
 std::optional<PoseSample> Mocap::update(std::int64_t stamp_ns, const Eigen::Vector3d& position_ned,
                                         const Eigen::Quaterniond& q_ned_from_frd) {
   const MocapSchedule::Events events = schedule_.advance(stamp_ns);
-  if (events.starts_anew) {
+  if (events.restarts) {
     dropout_end_ns_.reset();
     count_ = 0;
   }

@@ -30,7 +30,7 @@ MocapSchedule::MocapSchedule(const MocapSettings& settings, std::uint64_t seed)
 MocapSchedule::Events MocapSchedule::advance(std::int64_t stamp_ns) {
   Events events;
   if (!last_stamp_ns_ || stamp_ns <= *last_stamp_ns_) {
-    events.starts_anew = last_stamp_ns_.has_value();
+    events.restarts = last_stamp_ns_.has_value();
     start(stamp_ns);
   }
   last_stamp_ns_ = stamp_ns;

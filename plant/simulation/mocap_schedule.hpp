@@ -17,9 +17,9 @@ class MocapSchedule {
   MocapSchedule(const MocapSettings& settings, std::uint64_t seed);
 
   struct Events {
-    bool starts_anew = false;  // the schedule restarts; frames in flight are lost
-    bool exposes = false;      // a frame is exposed
-    bool delivers = false;     // the oldest frame in flight is delivered
+    bool restarts = false;  // the schedule restarts; frames in flight are lost
+    bool exposes = false;   // a frame is exposed
+    bool delivers = false;  // the oldest frame in flight is delivered
   };
   // Returns what happens at this stamp. If exposures fall between the last stamp and this one, one frame is
   // exposed at this one. A stamp that is not newer than the last restarts the schedule.

@@ -5,7 +5,7 @@
 //   PlantSimulation plant(vehicle, settings, seed);
 //   for (;;) {
 //     if (plant.imu()) ... publish, wait for a command ...
-//     plant.step(watchdog.drive(plant.stamp_ns()));
+//     plant.step(watchdog.motor_command(plant.stamp_ns()));
 //   }
 #pragma once
 

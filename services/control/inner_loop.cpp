@@ -49,7 +49,7 @@ void InnerLoop::take_samples() {
 void InnerLoop::take_setpoint(const control::Setpoint& new_setpoint) {
   const control::Outcome outcome = controller_.on_setpoint(new_setpoint);
   if (outcome.accepted) {
-    ++setpoints_.taken;
+    ++setpoints_.accepted;
     return;
   }
   ++setpoints_.refused;

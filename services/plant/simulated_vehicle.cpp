@@ -58,7 +58,7 @@ void SimulatedVehicle::refuse(const comms::Fault& fault) {
 
 void SimulatedVehicle::step() {
   if (const auto arrived = command_path_.arrived(simulation_.stamp_ns())) accept(*arrived);
-  const plant::MotorCommand drive = watchdog_.drive(simulation_.stamp_ns());
+  const plant::MotorCommand drive = watchdog_.motor_command(simulation_.stamp_ns());
   const bool running = drive.state == plant::RotorState::kRunning;
   if (running && !report_.rotors_running) {
     answers_.reset();

@@ -1,5 +1,5 @@
-// The mission square from the ground to the ground: simulated vehicle with all its sensors, mocap, and the
-// flight controller, in one thread. Plant and inner loop at 1 kHz.
+// The mission "square" from take-off to landing: simulated vehicle with all sensors, mocap and flight
+// controller in one thread. Plant and inner loop run at 1 kHz.
 #include <cstdint>
 
 #include <benchmark/benchmark.h>
@@ -14,7 +14,7 @@
 namespace swiftlet {
 namespace {
 
-// An item is one step of both: 1 ms.
+// An item is one step of plant and controller: 1 ms.
 void fly_square(benchmark::State& state, const char* settings_file) {
   const plant::Vehicle vehicle = runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml"));
   const control::ControlSettings settings =

@@ -1,4 +1,4 @@
-// The parts of one control step, one by one, and the design that runs once at start.
+// The parts of one control step, and the gain design that runs once at start.
 #include <random>
 #include <vector>
 
@@ -25,8 +25,8 @@ const ControlSettings& settings() {
   return loaded;
 }
 
-// Different wrenches in turn, so that no branch is learnt by heart. `size` scales moments and thrust's way
-// from hover.
+// Random wrenches, so that branch prediction does not learn them. `size` scales the moments and the deviation
+// of thrust from hover.
 std::vector<Wrench> wrenches(const plant::Vehicle& vehicle, double size) {
   std::mt19937 generator(1);
   std::uniform_real_distribution<double> draw(-size, size);
@@ -38,7 +38,7 @@ std::vector<Wrench> wrenches(const plant::Vehicle& vehicle, double size) {
   return out;
 }
 
-// Arguments: rotors; size of the wrenches in per cent. The share of saturated ones is counted.
+// Arguments: rotors; size of the wrenches in percent. Counts the share of saturated allocations.
 void allocate(benchmark::State& state) {
   const int rotors = static_cast<int>(state.range(0));
   const plant::Vehicle vehicle = rotors == 4 ? tests::kaylion() : tests::multirotor(rotors);
@@ -76,7 +76,7 @@ void attitude_moments(benchmark::State& state, AttitudeErrorKind error) {
 BENCHMARK_CAPTURE(attitude_moments, euler_angles, AttitudeErrorKind::kEulerAngles);
 BENCHMARK_CAPTURE(attitude_moments, rotation, AttitudeErrorKind::kRotation);
 
-// Reference from the polynomial, position loop, map to thrust and attitude, feed forward.
+// Reference from the polynomial, position law, conversion to thrust and attitude, feedforward.
 void outer_loop(benchmark::State& state) {
   const plant::Vehicle& vehicle = tests::kaylion();
   PositionController controller(settings().position, settings().limits, design(vehicle, settings()));

@@ -1,6 +1,6 @@
-// How long it takes until the processes of one host have found each other with --localhost-only, and what
-// that costs once they have. Each process is one of a fleet: of every four, two announce themselves as
-// vehicle and motion capture do.
+// Time until the processes of one host have discovered each other with --localhost-only, and the CPU load
+// afterwards. The processes form a fleet: two of every four announce themselves as plant and motion capture
+// do.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -26,8 +26,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kJoins = 9;
-constexpr std::chrono::seconds kFirstAnnouncements{
-    2};  // which come faster than later ones, and their answers
+constexpr std::chrono::seconds kFirstAnnouncements{2};  // duration of the faster initial announcements
 
 struct Options {
   std::vector<int> processes{4, 40, 80};
@@ -36,8 +35,8 @@ struct Options {
   bool json = false;
 };
 
-// Ends when its standard input does; writes a byte when it knows all others.
-[[noreturn]] void live(int number, int count, int domain, int input, int output) {
+// Runs until its standard input is closed; writes a byte once it has discovered all others.
+[[noreturn]] void run_process_of_fleet(int number, int count, int domain, int input, int output) {
   comms::NodeSettings settings;
   settings.name = "process" + std::to_string(number);
   settings.domain = domain;
@@ -56,7 +55,7 @@ struct Options {
   char byte = 0;
   while (::read(input, &byte, 1) > 0) {
   }
-  std::_Exit(0);  // all at once: nobody is to hear of it
+  std::_Exit(0);  // without goodbye messages
 }
 
 class Fleet {
@@ -67,7 +66,7 @@ class Fleet {
       const pid_t pid = ::fork();
       if (pid == 0) {
         ::close(input_[1]);
-        live(i, count, domain, input_[0], output_[1]);
+        run_process_of_fleet(i, count, domain, input_[0], output_[1]);
       }
       processes_.push_back(pid);
     }
@@ -82,7 +81,7 @@ class Fleet {
   Fleet(const Fleet&) = delete;
   Fleet& operator=(const Fleet&) = delete;
 
-  // Of those that know all others, once so many do or the time is over.
+  // Waits until all processes know all others or the time is over; returns how many do.
   int wait_until_known(std::chrono::duration<double> patience) const {
     const auto deadline = Clock::now() + patience;
     int known = 0;
@@ -99,7 +98,7 @@ class Fleet {
     return known;
   }
 
-  // How long one that comes later needs until it knows them all.
+  // Time that a late joiner needs to discover all processes.
   double join_s(int domain) const {
     std::array<int, 2> input{}, output{};
     if (::pipe(input.data()) != 0 || ::pipe(output.data()) != 0) throw std::runtime_error("no pipe");
@@ -108,7 +107,7 @@ class Fleet {
     const pid_t pid = ::fork();
     if (pid == 0) {
       ::close(input[1]);
-      live(2, count + 1, domain, input[0], output[1]);
+      run_process_of_fleet(2, count + 1, domain, input[0], output[1]);
     }
     ::close(output[1]);
     char byte = 0;
@@ -116,7 +115,7 @@ class Fleet {
     const double time_s = std::chrono::duration<double>(Clock::now() - start).count();
     for (const int end : {input[0], input[1], output[0]}) ::close(end);
     ::waitpid(pid, nullptr, 0);
-    if (!known) throw std::runtime_error("a process that came later failed");
+    if (!known) throw std::runtime_error("a late joiner failed");
     return time_s;
   }
 
@@ -133,7 +132,7 @@ class Fleet {
       throw std::runtime_error("a process ended while the fleet was measured");
   }
 
-  // Of the processor, by all of them so far.
+  // CPU time of all processes so far.
   double time_s() const {
     double ticks = 0.0;
     for (const pid_t pid : processes_) {
@@ -203,15 +202,15 @@ int main(int argc, char** argv) {
   using namespace swiftlet;
   Options options;
   return runtime::run_process(
-      {"discovery_bench", "How long processes of one host take to find each other, and what it costs.",
+      {"discovery_bench", "Measures the discovery time of processes on one host, and its CPU load.",
        "--processes 4 --processes 80"},
       argc, argv,
       [&](runtime::CommandLine app) {
-        app.add_option("--processes", options.processes, "Several may be given").range(2, 120);
-        app.add_option("--seconds", options.seconds, "Of the measurement at rest").range(1.0, 60.0);
-        app.add_option("--patience", options.patience_s, "Longest wait until all know each other, s")
-            .range(1.0, 600.0);
-        app.add_flag("--json", options.json, "Print JSON");
+        app.add_option("--processes", options.processes, "number of processes; may be repeated")
+            .range(2, 120);
+        app.add_option("--seconds", options.seconds, "duration of the CPU measurement").range(1.0, 60.0);
+        app.add_option("--patience", options.patience_s, "timeout of discovery, s").range(1.0, 600.0);
+        app.add_flag("--json", options.json, "print JSON");
       },
       [&] { run(options); });
 }

@@ -1,4 +1,4 @@
-// The estimator alone: IMU at 1 kHz, poses at 100 Hz that come 10 ms after their exposure.
+// The estimator alone: IMU at 1 kHz, poses at 100 Hz with a latency of 10 ms.
 #include <vector>
 
 #include <benchmark/benchmark.h>

@@ -22,8 +22,8 @@ control::Request request(control::RequestKind kind,
   return request;
 }
 
-// A closed loop that has taken off, on its way along a minimum-jerk line that it flies for a long time.
-ground::ClosedLoop under_way(const char* settings) {
+// A closed loop after take-off, on a long and slow minimum-jerk line.
+ground::ClosedLoop loop_in_flight(const char* settings) {
   ground::ClosedLoop loop(runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml")),
                           plant::SimulationSettings(),
                           runtime::load_control_settings(runtime::find_config(settings)), 1);
@@ -33,16 +33,16 @@ ground::ClosedLoop under_way(const char* settings) {
       !loop.step_until([&] { return loop.controller.status().mode == control::Mode::kHolding; }, 10.0)) {
     throw std::runtime_error("did not take off");
   }
-  control::Request away = request(control::RequestKind::kGoTo, {2, 2, -1.5});
-  away.speed = 1e-3;
-  if (!loop.controller.request(away).accepted) throw std::runtime_error("did not move");
+  control::Request move = request(control::RequestKind::kGoTo, {2, 2, -1.5});
+  move.speed = 1e-3;
+  if (!loop.controller.request(move).accepted) throw std::runtime_error("did not move");
   return loop;
 }
 
-// Samples of steady flight come again and again with new stamps, a pose with every fifth of the IMU's, the
-// battery's at 10 Hz: the controller does all it does in flight, the plant is not timed.
+// Repeats samples of steady flight with new stamps: a pose with every fifth IMU sample, the battery at 10 Hz.
+// Times the controller as in flight, without the plant.
 void inner_loop_step(benchmark::State& state, const char* settings) {
-  ground::ClosedLoop loop = under_way(settings);
+  ground::ClosedLoop loop = loop_in_flight(settings);
   constexpr int kPosePeriod = 5;
   constexpr int kBatteryPeriod = 50;
   plant::ImuSample imu = *loop.plant.imu();
@@ -61,7 +61,7 @@ void inner_loop_step(benchmark::State& state, const char* settings) {
       pose.stamp_ns = imu.stamp_ns - 10'000'000;
       ++pose.sequence;
       pose.position_ned.x() +=
-          pose.sequence % 2 == 0 ? 2e-5 : -2e-5;  // noise: the same again would be frozen
+          pose.sequence % 2 == 0 ? 2e-5 : -2e-5;  // noise, since an equal pose counts as stuck
       loop.controller.on_pose(pose);
     }
     if (imu.sequence % kBatteryPeriod == 0) {

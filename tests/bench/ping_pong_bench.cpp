@@ -1,6 +1,6 @@
-// What the way from sense to actuate costs at least: one process sends the bytes of an IMU sample at the pace
-// of the plant, another answers each with those of an actuator command. Over Fast DDS without anything of
-// ours but the QoS profiles, and over a Unix socket.
+// Lower bound of the latency from sense to actuate: one process sends the bytes of an IMU sample at the
+// plant's rate, another answers each with those of an actuator command. Over bare Fast DDS with this
+// project's QoS profiles, and over a Unix socket.
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -42,7 +42,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::uint32_t kProcesses = 2;  // of the domain
+constexpr std::uint32_t kProcesses = 2;  // in the domain
 namespace dds = eprosima::fastdds::dds;
 using comms::msg::ActuatorCommand;
 using comms::msg::Imu;
@@ -55,7 +55,7 @@ struct Options {
   bool json = false;
   bool no_deadline = false;
   runtime::ProcessOptions process;
-  // Of the process that answers.
+  // Options of the echo process.
   int echo_domain = -1;
   int echo_transport = 0;
   int echo_socket = -1;
@@ -67,7 +67,7 @@ constexpr std::pair<const char*, comms::Transport> kTransports[] = {
     {"data-sharing", comms::Transport::kDataSharing}};
 constexpr const char* kSocket = "unix-socket";
 
-// Makes the thread that first comes here real-time, once.
+// Makes the first calling thread real-time, once.
 class ThreadSetUp {
  public:
   explicit ThreadSetUp(const runtime::RealtimeSettings& settings) : settings_(settings) {}
@@ -83,8 +83,8 @@ class ThreadSetUp {
 };
 
 template <class T>
-T* demand(T* made, const char* what) {
-  if (made == nullptr) throw std::runtime_error(std::string("cannot make a ") + what);
+T* require_created(T* made, const char* what) {
+  if (made == nullptr) throw std::runtime_error(std::string("cannot create ") + what);
   return made;
 }
 
@@ -104,21 +104,23 @@ class BarePair final : private dds::DataReaderListener {
     const int sent_deadline_ms = options.no_deadline ? 0 : sent.deadline_ms;
     const int received_deadline_ms = options.no_deadline ? 0 : received.deadline_ms;
     participant_ =
-        demand(dds::DomainParticipantFactory::get_instance()->create_participant(
-                   static_cast<std::uint32_t>(domain), comms::participant_qos(settings, kProcesses)),
-               "participant");
-    auto* const publisher = demand(participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT), "publisher");
+        require_created(dds::DomainParticipantFactory::get_instance()->create_participant(
+                            static_cast<std::uint32_t>(domain), comms::participant_qos(settings, kProcesses)),
+                        "participant");
+    auto* const publisher =
+        require_created(participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT), "publisher");
     auto* const subscriber =
-        demand(participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT), "subscriber");
-    writer_ =
-        demand(publisher->create_datawriter(topic<SentType>(sent.name),
-                                            comms::writer_qos(sent.qos, sent_deadline_ms, 0, transport)),
-               "writer");
-    reader_ = demand(subscriber->create_datareader(topic<ReceivedType>(received.name),
-                                                   comms::reader_qos(received.qos, received_deadline_ms,
-                                                                     transport, comms::Delivery::kOwnThread),
-                                                   this, dds::StatusMask::data_available()),
-                     "reader");
+        require_created(participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT), "subscriber");
+    writer_ = require_created(
+        publisher->create_datawriter(topic<SentType>(sent.name),
+                                     comms::writer_qos(sent.qos, sent_deadline_ms, 0, transport)),
+        "writer");
+    reader_ = require_created(
+        subscriber->create_datareader(
+            topic<ReceivedType>(received.name),
+            comms::reader_qos(received.qos, received_deadline_ms, transport, comms::Delivery::kOwnThread),
+            this, dds::StatusMask::data_available()),
+        "reader");
   }
   ~BarePair() override {
     reader_->set_listener(nullptr);
@@ -143,7 +145,8 @@ class BarePair final : private dds::DataReaderListener {
   dds::Topic* topic(const std::string& name) {
     const dds::TypeSupport type(new Type());
     participant_->register_type(type);
-    return demand(participant_->create_topic(name, type.get_type_name(), dds::TOPIC_QOS_DEFAULT), "topic");
+    return require_created(participant_->create_topic(name, type.get_type_name(), dds::TOPIC_QOS_DEFAULT),
+                           "topic");
   }
 
   void on_data_available(dds::DataReader* reader) override {
@@ -164,7 +167,7 @@ using BarePlant = BarePair<Imu, swiftlet_msgs::msg::ImuPubSubType, ActuatorComma
 using BareControl = BarePair<ActuatorCommand, swiftlet_msgs::msg::ActuatorCommandPubSubType, Imu,
                              swiftlet_msgs::msg::ImuPubSubType>;
 
-// The control-like process: lives until its standard input is closed.
+// The echo process: runs until its standard input is closed.
 void echo_dds(const Options& options) {
   std::unique_ptr<BareControl> pair;
   std::atomic<BareControl*> ready{nullptr};
@@ -183,7 +186,7 @@ void echo_dds(const Options& options) {
   }
 }
 
-// On a socket the numbers alone count; the rest is as long as on the wire.
+// A datagram of the size of the DDS message; only the numbers have a meaning.
 struct Datagram {
   std::uint64_t sequence;
   char rest[120];
@@ -198,7 +201,7 @@ void echo_socket(const Options& options) {
   }
 }
 
-// The other process, for as long as this lives.
+// Runs the echo process during its lifetime.
 class EchoProcess {
  public:
   EchoProcess(const Options& options, std::vector<std::string> words, int kept_open) {
@@ -231,19 +234,19 @@ class EchoProcess {
   EchoProcess(const EchoProcess&) = delete;
   EchoProcess& operator=(const EchoProcess&) = delete;
 
-  static constexpr int kEchoSocket = 9;  // its number there
+  static constexpr int kEchoSocket = 9;  // file descriptor in the echo process
 
  private:
   pid_t child_ = -1;
   int input_ = -1;
 };
 
-// The times of one measurement, by sequence number from 1.
+// Round-trip times of one measurement, by sequence number from 1.
 class RoundTrips {
  public:
   explicit RoundTrips(std::uint64_t count) : written_(count + 1) {}
 
-  // By the thread that sends, once all is ready: half a second to warm up, then what counts.
+  // Called by the sending thread: 0.5 s of warm-up, then the measurement.
   void pace(const Options& options, int rate_hz, const std::function<void(std::uint64_t)>& send) {
     std::thread([&] {
       if (options.process.realtime.enabled) runtime::make_this_thread_realtime(options.process.realtime);
@@ -259,10 +262,11 @@ class RoundTrips {
         send(sequence);
       }
     }).join();
-    tests::eventually([this] { return answers_ == count(); }, 100ms);  // what is then missing is lost
+    tests::eventually([this] { return answers_ == count(); },
+                      100ms);  // answers that are still missing are lost
   }
 
-  // By the thread that receives.
+  // Called by the receiving thread.
   void answered(std::uint64_t sequence) {
     const std::int64_t now_ns = runtime::monotonic_ns();
     if (sequence >= written_.size()) return;
@@ -368,12 +372,12 @@ void run(Options options) {
 }
 
 void add_options(runtime::CommandLine app, Options& options) {
-  app.add_option("--seconds", options.seconds, "Of each measurement").range(0.1, 3600.0);
-  app.add_option("--rate", options.rates_hz, "Samples a second; several may be given").range(1, 10'000);
-  app.add_option("--transport", options.transports, "Of these alone; several may be given")
+  app.add_option("--seconds", options.seconds, "duration of each measurement, s").range(0.1, 3600.0);
+  app.add_option("--rate", options.rates_hz, "samples per second; may be repeated").range(1, 10'000);
+  app.add_option("--transport", options.transports, "only these transports; may be repeated")
       .one_of({"udp", "shm", "data-sharing", kSocket});
-  app.add_flag("--json", options.json, "Print JSON");
-  app.add_flag("--no-deadline", options.no_deadline, "Leave out the deadline QoS");
+  app.add_flag("--json", options.json, "print JSON");
+  app.add_flag("--no-deadline", options.no_deadline, "without deadline QoS");
   app.add_option("--echo-domain", options.echo_domain, "").hidden();
   app.add_option("--echo-transport", options.echo_transport, "").hidden();
   app.add_option("--echo-socket", options.echo_socket, "").hidden();

@@ -39,7 +39,7 @@ void dynamics_step(benchmark::State& state, MotorModel model) {
 BENCHMARK_CAPTURE(dynamics_step, reduced, MotorModel::kReduced);
 BENCHMARK_CAPTURE(dynamics_step, physical, MotorModel::kPhysical);
 
-// With the sensors on board at their default rates.
+// With the onboard sensors at their default rates.
 void simulation_step(benchmark::State& state) {
   SimulationSettings settings;
   settings.ground.present = false;

@@ -53,8 +53,8 @@ void StallWitness::watch(Core& core, int cpu) {
   for (std::int64_t due_ns = start_ns; !end_; due_ns = runtime::monotonic_ns() + kLookNs) {
     sleep_until(due_ns);
     const std::int64_t now_ns = runtime::monotonic_ns();
-    // A sample that comes within a stall is answered at its end: late by a period are those of all but its
-    // last period.
+    // A sample during a stall is answered at its end: all but those of the last period are late by more than
+    // a period.
     core.lost_ns += std::max<std::int64_t>(now_ns - due_ns - period_ns_, 0);
     core.elapsed_ns = now_ns - start_ns;
   }

@@ -1,6 +1,6 @@
-// What the computer itself takes from every process: a thread on each core, above all others, that does
-// nothing but look at the clock. Without the right to real-time priorities it sees what other processes take,
-// too. On a virtual machine the host stops cores; nothing that runs on them can answer meanwhile.
+// Measures stalls of the machine itself with a thread of the highest priority on each core that only reads
+// the clock. Without permission for real-time priorities, the result includes time taken by other processes.
+// On a virtual machine, the host may stop a core.
 #pragma once
 
 #include <atomic>
@@ -13,20 +13,20 @@ namespace swiftlet::bench {
 
 class StallWitness {
  public:
-  // Of cycles of period_ns.
+  // Measures stalls of control cycles of period_ns.
   explicit StallWitness(std::int64_t period_ns);
   ~StallWitness();
   StallWitness(const StallWitness&) = delete;
   StallWitness& operator=(const StallWitness&) = delete;
 
-  // Of the cycles of the core that lost most, how many could not be answered within a period because the core
-  // stood still, in percent.
+  // Percentage of cycles that could not be answered within a period because the core stalled, on the worst
+  // core.
   double lost_percent() const;
 
  private:
   struct Core {
     std::atomic<std::int64_t> elapsed_ns{0};
-    std::atomic<std::int64_t> lost_ns{0};  // beyond a period, of each stall
+    std::atomic<std::int64_t> lost_ns{0};  // sum of stalls, each beyond one period
     std::thread thread;
   };
   void watch(Core& core, int cpu);

@@ -1,5 +1,5 @@
-// What the whole system costs, each figure beside its limit as it was measured in the same run: latency,
-// jitter, lockstep, steps, load, and how many vehicles this computer carries.
+// Figures of the whole system beside their limits, measured in the same run: latency, jitter, lockstep, step
+// times, load, and the number of vehicles on this machine.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -26,6 +26,7 @@
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/runtime/child_process.hpp"
 #include "swiftlet/services/runtime/process.hpp"
+#include "tests/bench/longest_steps.hpp"
 #include "tests/bench/stall_witness.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -51,7 +52,7 @@ struct Row {
   std::string what;
   double value = 0.0;
   std::string unit;
-  std::string limit;         // what it is measured against; empty: nothing
+  std::string limit;         // name of the limit; empty: none
   double limit_value = 0.0;  // in the same unit
   std::string target;
 };
@@ -104,7 +105,7 @@ fs::path program(const std::string& name) {
   throw std::runtime_error(name + " is not built");
 }
 
-// Standard output of a program that must succeed.
+// Standard output of a program; throws if the program fails.
 std::string output_of(const std::string& command) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(::popen((command + " 2>/dev/null").c_str(), "r"),
                                                              ::pclose);
@@ -116,11 +117,10 @@ std::string output_of(const std::string& command) {
   return text;
 }
 
-// Works on every core for as long as it lives, two processes each: arithmetic, memory and system calls in
-// turn.
-class OtherLoad {
+// Loads every core during its lifetime with two processes of arithmetic, memory accesses and system calls.
+class CpuLoad {
  public:
-  OtherLoad() {
+  CpuLoad() {
     for (unsigned i = 0; i < 2 * std::thread::hardware_concurrency(); ++i) {
       const pid_t child = ::fork();
       if (child == 0) {
@@ -130,12 +130,12 @@ class OtherLoad {
       children_.push_back(child);
     }
   }
-  ~OtherLoad() {
+  ~CpuLoad() {
     for (const pid_t child : children_) ::kill(child, SIGKILL);
     for (const pid_t child : children_) ::waitpid(child, nullptr, 0);
   }
-  OtherLoad(const OtherLoad&) = delete;
-  OtherLoad& operator=(const OtherLoad&) = delete;
+  CpuLoad(const CpuLoad&) = delete;
+  CpuLoad& operator=(const CpuLoad&) = delete;
 
  private:
   [[noreturn]] static void work() {
@@ -150,7 +150,7 @@ class OtherLoad {
   std::vector<pid_t> children_;
 };
 
-// ---- vehicles that hover
+// ---- hovering vehicles
 
 struct Usage {
   double cpu_s = 0.0;
@@ -175,8 +175,8 @@ constexpr std::array<const char*, 3> kProcesses = {"plant", "mocap", "control"};
 struct VehicleFigures {
   msg::VehicleInfo vehicle;
   msg::ControlStatus control;
-  std::uint64_t answered = 0;  // while it was measured
-  std::uint64_t overdue = 0;   // of those, after more than a period or not at all
+  std::uint64_t answered = 0;  // during the measurement
+  std::uint64_t overdue = 0;   // of these, after more than a period or not at all
   std::uint64_t cycles = 0;
   std::uint64_t late_steps = 0;
   std::array<double, 3> cpu_percent{};  // of one core, by kProcesses
@@ -203,7 +203,7 @@ class Vehicle {
   void take_off() {
     ground::Client client(network_);
     if (!client.wait(30s, [](const ground::View& view) { return view.control.message.has_pose(); }))
-      throw std::runtime_error("no vehicle came up: " + client.where());
+      throw std::runtime_error("no vehicle started: " + client.where());
     msg::Command arm;
     arm.kind(msg::Command_Constants::ARM);
     ask(client, arm);
@@ -218,8 +218,8 @@ class Vehicle {
       throw std::runtime_error("a vehicle did not take off");
   }
 
-  // Of a vehicle that hovers: from the upload of a mission of so many waypoints until it says that it flies
-  // it; with how much of that until the upload is answered, s.
+  // Uploads a mission of this many waypoints to the hovering vehicle. Returns the times until the upload is
+  // answered and until the mission is reported as running, s.
   struct MissionStart {
     double uploaded_s = 0.0;
     double started_s = 0.0;
@@ -227,7 +227,7 @@ class Vehicle {
   MissionStart start_mission(std::size_t waypoints) {
     ground::Client client(network_);
     if (!client.wait(10s, [](const ground::View& view) { return view.mission.seen(); }))
-      throw std::runtime_error("a vehicle fell silent");
+      throw std::runtime_error("a vehicle is silent");
     control::Mission mission;
     mission.items.resize(waypoints);
     for (std::size_t i = 0; i < waypoints; ++i)
@@ -262,7 +262,7 @@ class Vehicle {
     return figures;
   }
 
-  // Whether one of its processes has.
+  // Whether one of its processes has ended.
   bool has_ended() {
     return std::any_of(processes_.begin(), processes_.end(),
                        [](ground::ChildProcess& process) { return process.poll().has_value(); });
@@ -281,13 +281,13 @@ class Vehicle {
       throw std::runtime_error(answer.reason);
   }
 
-  // Counts so far.
+  // Counters so far.
   VehicleFigures read() {
     VehicleFigures figures;
     ground::Client client(network_);
     if (!client.wait(
             10s, [](const ground::View& view) { return view.vehicle.count > 1 && view.control.count > 1; }))
-      throw std::runtime_error("a vehicle fell silent");
+      throw std::runtime_error("a vehicle is silent");
     const ground::View view = client.view();
     figures.vehicle = view.vehicle.message;
     figures.control = view.control.message;
@@ -308,17 +308,17 @@ class Vehicle {
   VehicleFigures begin_;
 };
 
-constexpr std::chrono::milliseconds kLook{100};  // at the processes while they are measured
+constexpr std::chrono::milliseconds kLook{100};  // period of checks on the processes
 
-// Figures of vehicles that hover side by side, from their take-off on; counts are of the last `seconds`.
-// stalls: what the computer takes meanwhile, in percent of the cycles; null: nobody looks.
+// Figures of vehicles that hover side by side; counters cover the last `seconds`. stalls: percentage of
+// cycles that the machine stalls meanwhile; null: not measured.
 std::vector<VehicleFigures> hover(int vehicles, int rate_hz, bool realtime, double seconds,
                                   bool loaded = false, double* stalls = nullptr) {
   const tests::TemporaryFolder folder;
   std::vector<std::unique_ptr<Vehicle>> fleet;
   for (int i = 1; i <= vehicles; ++i)
     fleet.push_back(std::make_unique<Vehicle>(i, rate_hz, realtime, folder.path()));
-  std::optional<OtherLoad> load;
+  std::optional<CpuLoad> load;
   if (loaded) load.emplace();
   for (const auto& vehicle : fleet) vehicle->take_off();
   for (const auto& vehicle : fleet) vehicle->begin();
@@ -404,7 +404,7 @@ void jitter(Table& table, const Options& options) {
   }
 }
 
-// Medians of a Google Benchmark program, ns of CPU, by name; of counters too.
+// Medians of a Google Benchmark program by name: CPU time and counters.
 json benchmarks(const std::string& name, const std::string& filter) {
   const json report =
       json::parse(output_of(program(name).string() + " --benchmark_format=json --benchmark_repetitions=5" +
@@ -472,7 +472,17 @@ void missions(Table& table) {
       {"until the vehicle says that it flies it", 1e3 * took.started_s, "ms", "the target", 1000.0, ""});
 }
 
-constexpr double kFleetShare = 4.0;  // as long again, for counts that are small
+void planning(Table& table) {
+  table.section(
+      "(h) a step of plant and controller that evaluates a request or setpoint in motion, CPU time");
+  for (const tests::StepTimes& times : tests::longest_steps()) {
+    table.add({times.what + ": median", times.median_us, "us", "", 0.0, ""});
+    table.add(
+        {times.what + ": longest", times.longest_us, "us", "half a control period of 2 ms", 1000.0, ""});
+  }
+}
+
+constexpr double kFleetShare = 4.0;  // times longer, since the counts are small
 
 void fleets(Table& table, const Options& options) {
   table.section("(g) vehicles on this computer, 500 Hz each, each in a domain of its own");
@@ -509,16 +519,17 @@ void run(const Options& options) {
   if (wanted("latency")) latency_and_load(table, options);
   if (wanted("jitter")) jitter(table, options);
   if (wanted("simulation")) simulated_time(table);
+  if (wanted("planning")) planning(table);
   if (wanted("missions")) missions(table);
   if (wanted("fleet")) fleets(table, options);
   table.end();
 }
 
 void add_options(runtime::CommandLine app, Options& options) {
-  app.add_option("--seconds", options.seconds, "Of each measurement in real time").range(1.0, 3600.0);
-  app.add_option("--only", options.only, "Of these sections; several may be given")
-      .one_of({"latency", "jitter", "simulation", "missions", "fleet"});
-  app.add_flag("--json", options.json, "Print JSON");
+  app.add_option("--seconds", options.seconds, "duration of each measurement in real time, s").range(1.0, 3600.0);
+  app.add_option("--only", options.only, "only these sections; may be repeated")
+      .one_of({"latency", "jitter", "simulation", "planning", "missions", "fleet"});
+  app.add_flag("--json", options.json, "print JSON");
 }
 
 }  // namespace
@@ -528,7 +539,7 @@ int main(int argc, char** argv) {
   using namespace swiftlet;
   Options options;
   return runtime::run_process(
-      {"system_bench", "The system's figures, each beside its limit as measured in the same run.",
+      {"system_bench", "Measures the figures of the system, each beside its limit in the same run.",
        "--only latency --seconds 10"},
       argc, argv, [&](runtime::CommandLine app) { add_options(app, options); }, [&] { run(options); });
 }

@@ -1,6 +1,6 @@
-// The tracking table of the field: five paths flown in one process, the 3-D error against truth, once with
-// perfect state feedback and once with all sensor models. Figures of other projects are those that were
-// measured on such a machine with their own vehicles, gains and perfect state feedback.
+// Tracking error of five common paths, flown in one process: 3-D error against ground truth, with perfect
+// state feedback and with all sensor models. Figures of other projects were measured on such a machine with
+// their own vehicles and gains and perfect state feedback.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,8 +32,8 @@ using Eigen::Vector3d;
 
 constexpr double kHeight = 1.0;  // m
 constexpr double kHover = 5.0;   // s before a path
-constexpr double kJoin = 0.5;   // s that the controller takes to join a trajectory whose start is where it is
-constexpr double kJump = 1e-4;  // m, between segments whose coefficients are rounded
+constexpr double kJoin = 0.5;    // s, join to a trajectory that starts at the current position
+constexpr double kJump = 1e-4;   // m, step between segments with rounded coefficients
 
 struct Options {
   std::string figure_of_eight = SWIFTLET_SOURCE_DIR "/tests/data/crazyswarm_figure8.csv";
@@ -41,10 +41,10 @@ struct Options {
   bool json = false;
 };
 
-// What is asked of a vehicle: where it should be, and the trajectory that is commanded for it.
+// A path: desired positions, and the trajectory commanded for it.
 struct Path {
   std::string name;
-  std::function<Vector3d(double)> position_ned;  // at s from the trajectory's start
+  std::function<Vector3d(double)> position_ned;  // at a time from the trajectory's start, s
   control::Trajectory trajectory;
   double score_from_s = 0.0;
   double score_to_s = 0.0;
@@ -58,7 +58,7 @@ struct Knot {
   Vector2d j = Vector2d::Zero();
 };
 
-// The septic that joins two knots.
+// The polynomial of degree 7 between two knots.
 PolynomialSegment join(const Knot& from, const Knot& to, double duration_s) {
   Eigen::Matrix4d powers;  // of position, velocity, acceleration and jerk at the end, from t^4 on
   const double t = duration_s;
@@ -96,8 +96,8 @@ std::array<Vector2d, 5> corners(double length) {
   return {Vector2d{0, 0}, Vector2d{length, 0}, Vector2d{length, length}, Vector2d{0, length}, Vector2d{0, 0}};
 }
 
-// Sides at constant speed: the velocity steps at the corners. A vehicle cannot follow a step; the trajectory
-// rounds each off within kBlend before and after it.
+// Sides at constant speed with velocity steps at the corners. The trajectory smooths each step within kBlend
+// before and after it, since a vehicle cannot follow a step.
 Path square(const std::string& name, double length) {
   constexpr double kBlend = 0.22;  // s
   const auto at = corners(length);
@@ -135,8 +135,7 @@ Path minimum_jerk_square() {
   return {"sq2j", {}, trajectory, 0.0, 2.0 * kHold + 4.0 * kSide};
 }
 
-// Laps of a trajectory file of the Crazyswarm form: duration, then eight coefficients each of x, y, z and
-// yaw, in ENU.
+// Laps of a Crazyswarm trajectory file: duration, then eight coefficients each of x, y, z and yaw, in ENU.
 Path figure_of_eight(const std::string& file, int laps) {
   std::vector<std::string> columns{"duration"};
   for (const char* axis : {"x", "y", "z", "yaw"}) {
@@ -163,8 +162,8 @@ Path figure_of_eight(const std::string& file, int laps) {
   return path;
 }
 
-// x = 2 sin(w t), y = sin(2 w t), 10 s a lap, as septics of half a second; 10 s before get up speed from
-// rest.
+// x = 2 sin(w t), y = sin(2 w t), 10 s per lap, as polynomials of degree 7 over 0.5 s, after 10 s of
+// acceleration from rest.
 Path lemniscate() {
   constexpr double kLap = 10.0;
   constexpr double kPiece = 0.5;
@@ -211,27 +210,27 @@ struct Score {
 };
 
 control::Request request(control::RequestKind kind) {
-  control::Request asked;
-  asked.kind = kind;
-  return asked;
+  control::Request desired;
+  desired.kind = kind;
+  return desired;
 }
 
-void demand(ground::ClosedLoop& loop, const control::Request& asked) {
-  const control::Outcome outcome = loop.controller.request(asked);
+void send_request(ground::ClosedLoop& loop, const control::Request& desired) {
+  const control::Outcome outcome = loop.controller.request(desired);
   if (!outcome.accepted) throw std::runtime_error(outcome.reason);
 }
 
 Score fly(const Path& path, const plant::SimulationSettings& simulation,
           const control::ControlSettings& settings, std::uint64_t seed) {
-  const control::Outcome sound = control::check(path.trajectory, settings.limits);
-  if (!sound.accepted) throw std::runtime_error(path.name + ": " + sound.reason);
+  const control::Outcome checked = control::check(path.trajectory, settings.limits);
+  if (!checked.accepted) throw std::runtime_error(path.name + ": " + checked.reason);
   ground::ClosedLoop loop(runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml")), simulation,
                           settings, seed);
   loop.step_until([&] { return loop.time_s() >= 1.0; }, 2.0);
-  demand(loop, request(control::RequestKind::kArm));
+  send_request(loop, request(control::RequestKind::kArm));
   control::Request takeoff = request(control::RequestKind::kTakeoff);
   takeoff.position_ned.z() = -kHeight;
-  demand(loop, takeoff);
+  send_request(loop, takeoff);
   if (!loop.step_until([&] { return loop.controller.status().mode == control::Mode::kHolding; }, 20.0))
     throw std::runtime_error("did not take off");
   const double hover_end = loop.time_s() + kHover;
@@ -239,7 +238,7 @@ Score fly(const Path& path, const plant::SimulationSettings& simulation,
 
   control::Request follow = request(control::RequestKind::kTrajectory);
   follow.trajectory = &path.trajectory;
-  demand(loop, follow);
+  send_request(loop, follow);
   const double start_s = loop.time_s() + kJoin;
   Score score;
   double sum = 0.0;
@@ -251,8 +250,8 @@ Score fly(const Path& path, const plant::SimulationSettings& simulation,
     const Vector3d commanded = reference_at(path.trajectory, t);
     if ((loop.controller.reference().position_ned - commanded).norm() > kJump)
       throw std::runtime_error(path.name + ": the controller does not follow the trajectory of this time");
-    const Vector3d asked = path.position_ned ? path.position_ned(t) : commanded;
-    const double error = (loop.plant.state().position_ned - asked).norm();
+    const Vector3d desired = path.position_ned ? path.position_ned(t) : commanded;
+    const double error = (loop.plant.state().position_ned - desired).norm();
     sum += error * error;
     score.peak_m = std::max(score.peak_m, error);
     ++samples;
@@ -280,7 +279,7 @@ constexpr Peer kPeers[] = {
 void run(const Options& options) {
   control::ControlSettings settings =
       runtime::load_control_settings(runtime::find_config("control/motor_lag.yaml"));
-  settings.limits.fence_min_ned = {-5.0, -5.0, -2.5};  // sq4 is larger than the arena
+  settings.limits.fence_min_ned = {-5.0, -5.0, -2.5};  // sq4 exceeds the default fence
   settings.limits.fence_max_ned = {5.0, 5.0, 0.2};
   plant::SimulationSettings perfect =
       runtime::load_simulation_settings(runtime::find_config("simulation/ideal.yaml"));
@@ -338,8 +337,8 @@ void run(const Options& options) {
 
 void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--figure-of-eight", options.figure_of_eight, "Crazyswarm trajectory file").show_default();
-  app.add_option("--seed", options.seed, "Of the sensors' errors").show_default();
-  app.add_flag("--json", options.json, "Print JSON instead of the table");
+  app.add_option("--seed", options.seed, "seed of the sensor errors").show_default();
+  app.add_flag("--json", options.json, "print JSON instead of the table");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Planning of paths, and the checks of what is commanded.
+// Path planning, and checks of commanded trajectories.
 #include <random>
 
 #include <benchmark/benchmark.h>
@@ -21,7 +21,7 @@ WaypointPath random_path(int points, Smoothness smoothness) {
   return path;
 }
 
-// Argument: waypoints. The planned duration stands beside, s.
+// Argument: waypoints. The counter shows the planned duration, s.
 void plan_path(benchmark::State& state, Smoothness smoothness) {
   const WaypointPath path = random_path(static_cast<int>(state.range(0)), smoothness);
   double duration_s = 0.0;
@@ -46,7 +46,7 @@ BENCHMARK_CAPTURE(plan_path, least_jerk, Smoothness::kMinimumJerk)
     ->Unit(benchmark::kMillisecond)
     ->Complexity(benchmark::oN);
 
-// A square of 2 m flown through. Argument: half the corridors' width, mm.
+// A square of 2 m without stops. Argument: half width of the corridors, mm.
 void plan_corridor(benchmark::State& state) {
   WaypointPath path;
   for (const auto& corner : {Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(2, 0, -1), Eigen::Vector3d(2, 2, -1),
@@ -63,7 +63,7 @@ void plan_corridor(benchmark::State& state) {
 }
 BENCHMARK(plan_corridor)->Arg(300)->Arg(100)->Arg(20)->Unit(benchmark::kMillisecond);
 
-// The spline alone at given durations. Argument: waypoints.
+// The spline alone, with given durations. Argument: waypoints.
 void solve_spline(benchmark::State& state) {
   const WaypointPath path = random_path(static_cast<int>(state.range(0)), Smoothness::kMinimumSnap);
   std::vector<PositionYaw> places;
@@ -75,12 +75,12 @@ void solve_spline(benchmark::State& state) {
 }
 BENCHMARK(solve_spline)->Arg(100)->Unit(benchmark::kMicrosecond);
 
-// What the control service does with a trajectory that is sent to it. Argument: segments.
+// The check of the control service for a received trajectory. Argument: segments.
 void check_trajectory(benchmark::State& state) {
   const Trajectory trajectory{
       1, plan(random_path(static_cast<int>(state.range(0)) + 1, Smoothness::kMinimumSnap)).segments};
   Limits limits;
-  limits.fence_min_ned = {-9.0, -9.0, -9.0};  // the path swings out: nothing is to be refused
+  limits.fence_min_ned = {-9.0, -9.0, -9.0};  // wide enough that the path is not refused
   limits.fence_max_ned = {9.0, 9.0, 9.0};
   if (!check(trajectory, limits).accepted) state.SkipWithError(check(trajectory, limits).reason);
   for (auto _ : state) benchmark::DoNotOptimize(check(trajectory, limits).accepted);

@@ -1,4 +1,4 @@
-// Files of control settings.
+// Fuzzes control settings files.
 #include "swiftlet/control/types/settings.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "tests/fuzz/refusal.hpp"
@@ -9,7 +9,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   tests::is_read([&] {
     const control::ControlSettings settings =
         runtime::parse_control_settings(tests::text_of(data, size), tests::kFuzzedFile);
-    tests::demand(control::validate(settings).empty(), "settings that were read keep the rules");
+    tests::demand(control::validate(settings).empty(), "settings that were read are valid");
   });
   return 0;
 }

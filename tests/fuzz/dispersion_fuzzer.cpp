@@ -1,4 +1,4 @@
-// Dispersion files, and the draws from them.
+// Fuzzes dispersion files and the samples drawn from them.
 #include "swiftlet/io/settings/simulation_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/simulation/dispersion_file.hpp"
@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const ground::Dispersion dispersion =
         ground::parse_dispersion_file(std::string(tests::text_of(data, size)), tests::kFuzzedFile, nominal);
     const ground::DispersionSample draw = ground::draw(dispersion, nominal, 1);
-    tests::demand(ground::validate(draw.world).empty(), "a world that was drawn keeps the rules");
+    tests::demand(ground::validate(draw.world).empty(), "a sampled world is valid");
   });
   return 0;
 }

@@ -1,6 +1,5 @@
-// Requests, setpoints and samples of motion capture in any order, some while others are under way, and what
-// the controller makes of them in flight. Each byte of the input is an operation, or a number that it
-// takes.
+// Fuzzes the controller in closed loop with requests, setpoints, poses, battery samples and heartbeats in any
+// order. Each byte of the input is an operation or an argument of one.
 #include <cmath>
 #include <cstring>
 #include <deque>
@@ -24,7 +23,7 @@ class Input {
   Input(const std::uint8_t* data, std::size_t size) : next_(data), end_(data + size) {}
   bool empty() const { return next_ == end_; }
   std::uint8_t byte() { return empty() ? 0 : *next_++; }
-  // -5 to 5 in steps of 0.04, or something that no pilot sends.
+  // -5 to 5 in steps of 0.04, or an extreme value.
   double number() {
     const std::uint8_t tag = byte();
     switch (tag) {
@@ -81,9 +80,9 @@ class Flight {
   explicit Flight(Input input) : input_(input), loop_(vehicle(), simulation(), settings(), 1) {}
 
   void fly() {
-    go_on(500);
+    step(500);
     while (!input_.empty() && loop_.time_s() < kLongest_s) act();
-    go_on(100);
+    step(100);
   }
 
  private:
@@ -115,15 +114,15 @@ class Flight {
       case 11:
         return send_battery();
       case 12:
-        return sign();
+        return send_heartbeat();
       case 13:
-        return go_on(input_.byte());
+        return step(input_.byte());
       default:
-        return go_on(5 * input_.byte());
+        return step(5 * input_.byte());
     }
   }
 
-  void go_on(int steps) {
+  void step(int steps) {
     for (int i = 0; i < steps && loop_.time_s() < kLongest_s; ++i) {
       loop_.step();
       for (int rotor = 0; rotor < loop_.command.rotor_count; ++rotor) {
@@ -208,7 +207,7 @@ class Flight {
     control::Setpoint setpoint;
     setpoint.stamp_ns = loop_.plant.stamp_ns();
     setpoint.sequence = ++sequence_;
-    setpoint.kind = static_cast<control::SetpointKind>(input_.byte() % 6);  // one too many
+    setpoint.kind = static_cast<control::SetpointKind>(input_.byte() % 6);  // one invalid kind
     setpoint.position_ned = input_.vector();
     setpoint.velocity_ned = input_.vector();
     setpoint.acceleration_ned = input_.vector();
@@ -222,7 +221,7 @@ class Flight {
     tests::demand(outcome.accepted || std::strlen(outcome.reason) > 4, "a refusal says why");
   }
 
-  // What passes the checks of a message, and yet need not be true.
+  // A pose that passes the message checks but need not be true.
   void send_pose() {
     plant::PoseSample pose;
     pose.stamp_ns = loop_.plant.stamp_ns() - 1'000'000 * input_.byte();
@@ -233,7 +232,7 @@ class Flight {
     if (pose.position_ned.allFinite()) loop_.controller.on_pose(pose);
   }
 
-  // Of unit length, as a message that is taken in has it.
+  // Of unit length, as in an accepted message.
   Eigen::Quaterniond attitude() {
     const Eigen::Vector3d axis = input_.vector();
     const Eigen::Vector4d wxyz(input_.number(), axis.x(), axis.y(), axis.z());
@@ -250,12 +249,14 @@ class Flight {
     if (std::isfinite(battery.voltage_v)) loop_.controller.on_battery(battery);
   }
 
-  void sign() { loop_.controller.on_ground_heartbeat({1u + input_.byte() % 20u, input_.byte() % 2 == 0}); }
+  void send_heartbeat() {
+    loop_.controller.on_ground_heartbeat({1u + input_.byte() % 20u, input_.byte() % 2 == 0});
+  }
 
   Input input_;
   ground::ClosedLoop loop_;
   std::uint64_t sequence_ = 1'000'000;
-  std::deque<control::Mission> missions_;  // the controller may fly any of them still
+  std::deque<control::Mission> missions_;  // the controller may still fly any of them
   std::deque<control::Trajectory> trajectories_;
 };
 

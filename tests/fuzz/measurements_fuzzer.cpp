@@ -1,4 +1,4 @@
-// CSV files of a test bench.
+// Fuzzes CSV files of a test bench.
 #include <cmath>
 
 #include "swiftlet/io/measurements.hpp"

@@ -1,5 +1,4 @@
-// What comes over the network, from its bytes to what the controller is given. The first byte chooses the
-// type.
+// Fuzzes received messages, from bytes to the structs for the controller. The first byte selects the type.
 #include <algorithm>
 #include <cstring>
 
@@ -14,9 +13,9 @@ using namespace swiftlet;
 
 namespace {
 
-// The plain struct of a message, if the bytes hold one that is sound.
+// Converts the bytes to the plain struct of a message; false if they are not a valid message.
 template <class Type>
-bool is_taken(const std::uint8_t* data, std::size_t size, typename Type::Plain& out) {
+bool is_accepted(const std::uint8_t* data, std::size_t size, typename Type::Plain& out) {
   static comms::CheckedTypeSupport<typename Type::PubSub> type;
   tests::Payload payload(static_cast<std::uint32_t>(size));
   payload.length = static_cast<std::uint32_t>(size);
@@ -29,21 +28,22 @@ bool is_taken(const std::uint8_t* data, std::size_t size, typename Type::Plain& 
 }
 
 template <class Type>
-void take(const std::uint8_t* data, std::size_t size) {
-  typename Type::Plain taken;
-  if (!is_taken<Type>(data, size, taken)) return;
+void check_message(const std::uint8_t* data, std::size_t size) {
+  typename Type::Plain accepted;
+  if (!is_accepted<Type>(data, size, accepted)) return;
   if constexpr (std::is_same_v<Type, tests::Mission> || std::is_same_v<Type, tests::Trajectory>) {
-    const control::Outcome outcome = control::check(taken, control::Limits());
+    const control::Outcome outcome = control::check(accepted, control::Limits());
     tests::demand(outcome.accepted || std::strlen(outcome.reason) > 8, "a refusal says what is wrong");
   } else if constexpr (!std::is_same_v<Type, tests::GroundLink>) {
     typename Type::Plain again;
-    tests::demand(!comms::from_message(comms::to_message(taken), again), "what was taken can be sent");
+    tests::demand(!comms::from_message(comms::to_message(accepted), again),
+                  "an accepted message can be sent");
   }
 }
 
 template <class... Types>
-void take_chosen(char tag, const std::uint8_t* data, std::size_t size) {
-  (void)((tag == Types::kTag && (take<Types>(data, size), true)) || ...);
+void check_selected(char tag, const std::uint8_t* data, std::size_t size) {
+  (void)((tag == Types::kTag && (check_message<Types>(data, size), true)) || ...);
 }
 
 }  // namespace
@@ -56,7 +56,8 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   using namespace swiftlet::tests;
-  take_chosen<Imu, MocapPose, Battery, RotorSpeeds, ActuatorCommand, GroundTruth, Setpoint, ControllerState,
-              GroundLink, Command, Mission, Trajectory>(static_cast<char>(*data), data + 1, size - 1);
+  check_selected<Imu, MocapPose, Battery, RotorSpeeds, ActuatorCommand, GroundTruth, Setpoint,
+                 ControllerState, GroundLink, Command, Mission, Trajectory>(static_cast<char>(*data),
+                                                                            data + 1, size - 1);
   return 0;
 }

@@ -1,5 +1,5 @@
-// Writes messages as the message fuzzer reads them, into a folder: one of each type, and requests at their
-// bounds, past them, empty and not finite.
+// Writes seeds for the message fuzzer into a folder: one message of each type, and requests at and beyond
+// their size limits, empty and not finite.
 #include <cmath>
 #include <cstdio>
 #include <filesystem>

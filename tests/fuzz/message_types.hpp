@@ -1,4 +1,4 @@
-// The messages that the fuzzer feeds, each with the letter that chooses it.
+// The message types of the fuzzer, each with the letter that selects it.
 #pragma once
 
 #include <fastdds/rtps/common/SerializedPayload.h>

@@ -1,5 +1,5 @@
-// Mission files of every form: YAML, polynomials, samples and waypoints as CSV, QGroundControl's plan. One
-// program for each, by SWIFTLET_FUZZED_PARSER.
+// Fuzzes mission files of every format: YAML, CSV of polynomials, samples and waypoints, and QGroundControl
+// plans. SWIFTLET_FUZZED_PARSER selects the format of each program.
 #include <cmath>
 
 #include "swiftlet/control/planning/checks.hpp"
@@ -19,7 +19,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!outcome.accepted) std::fprintf(stderr, "%s\n", outcome.reason);
     tests::demand(outcome.accepted, "control accepts a mission that was read");
     const double duration_s = ground::planned_duration_s(file.mission, limits);
-    tests::demand(std::isfinite(duration_s) && duration_s > 0.0, "a mission's duration");
+    tests::demand(std::isfinite(duration_s) && duration_s > 0.0,
+                  "the duration of a mission is finite and positive");
   });
   return 0;
 }

@@ -1,4 +1,4 @@
-// What a parser may do with any input: read it, or refuse it with a sentence.
+// Expectation of every parser: it reads an input or refuses it with a message.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ inline std::string_view text_of(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
-// Ends the process, as a sanitizer does, with what does not hold.
+// Aborts the process with a message unless `holds`.
 inline void demand(bool holds, const char* what) {
   if (holds) return;
   std::fprintf(stderr, "does not hold: %s\n", what);
@@ -24,7 +24,7 @@ inline void demand(bool holds, const char* what) {
 
 constexpr const char* kFuzzedFile = "fuzzed";
 
-// True if it was read. Exceptions other than the one for bad input files go through, and end the process.
+// Returns true if the input was read, false if refused with a ConfigError. Other exceptions end the process.
 template <class Parse>
 bool is_read(const Parse& parse) {
   try {
@@ -34,7 +34,7 @@ bool is_read(const Parse& parse) {
     const std::string sentence = error.what();
     demand(sentence.rfind(kFuzzedFile, 0) == 0, "a refusal names the file");
     demand(sentence.size() > error.file().size() + error.key().size() + 6, "a refusal says what is wrong");
-    demand(error.line() >= 0, "a refusal's line");
+    demand(error.line() >= 0, "a refusal has a line");
     return false;
   }
 }

@@ -1,6 +1,6 @@
-// Feeds a fuzzer's function the files of some folders and mutations of them, the same on every run.
+// Feeds a fuzzer's function with the files of some folders and with mutations of them, the same on every run.
 //   PROGRAM LONGEST MUTATIONS [FOLDER...]
-// What does not hold ends the process; the input that it was at stays in a file then, which it names.
+// A failure ends the process; the current input remains in a file that is printed at the start.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -21,9 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr unsigned kLongest_s = 20;  // that one input may take, with sanitizers
+constexpr unsigned kLongest_s = 20;  // timeout of one input, with sanitizers
 
-// What parsers stumble over.
+// Words that are difficult for parsers.
 const std::vector<std::string> kWords = {"nan", ".inf", "-",  "1e309", "0",   "4294967296", "[]", "{}",
                                          "\n",  ",",    ": ", "\"",    "\\u", "\xff",       "~",  "    "};
 
@@ -100,10 +100,10 @@ int main(int argc, char** argv) {
   if (LLVMFuzzerInitialize != nullptr) LLVMFuzzerInitialize(&argc, &argv);
 
   const fs::path kept = fs::absolute(name + ".input");
-  std::printf("the input under way is in %s\n", kept.c_str());
+  std::printf("the current input is in %s\n", kept.c_str());
   std::fflush(stdout);
-  const int file =
-      open(kept.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);  // once: that costs more than to write
+  const int file = open(kept.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC,
+                        0600);  // opened once, since this costs more than writing
   const auto feed = [&](const std::string& input) {
     if (pwrite(file, input.data(), input.size(), 0) < 0 ||
         ftruncate(file, static_cast<off_t>(input.size())) != 0)

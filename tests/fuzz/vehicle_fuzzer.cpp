@@ -1,4 +1,4 @@
-// Vehicle files, and what is written of them.
+// Fuzzes reading and writing of vehicle files.
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/io/settings/vehicle_writer.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
@@ -19,13 +19,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text = tests::text_of(data, size);
   tests::is_read([&] {
     const plant::Vehicle vehicle = runtime::parse_vehicle(text, tests::kFuzzedFile);
-    tests::demand(plant::validate(vehicle).empty(), "a vehicle that was read keeps the rules");
+    tests::demand(plant::validate(vehicle).empty(), "a vehicle that was read is valid");
     const std::string once = rewritten(text, vehicle);
     std::string twice;
     tests::demand(
         tests::is_read([&] { twice = rewritten(once, runtime::parse_vehicle(once, tests::kFuzzedFile)); }),
-        "a vehicle that was written can be read");
-    tests::demand(once == twice, "a vehicle that was written is read as it was");
+        "a written vehicle can be read");
+    tests::demand(once == twice, "a written vehicle is read unchanged");
   });
   return 0;
 }

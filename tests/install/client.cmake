@@ -3,7 +3,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/common.cmake)
 set(consumer ${WORK_DIR}/consumer)
 run(${CMAKE_COMMAND} --build ${consumer} --target fly_mission)
 
-# What the client links, and what comes with that.
+# Libraries that the client links, directly and indirectly.
 execute_process(COMMAND readelf -d ${consumer}/fly_mission OUTPUT_VARIABLE needed COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ldd ${consumer}/fly_mission OUTPUT_VARIABLE loaded COMMAND_ERROR_IS_FATAL ANY)
 if(NOT needed MATCHES "libfastrtps")
@@ -14,7 +14,7 @@ foreach(heavy ceres glog CLI11 ncurses tinfo gnuplot)
     message(FATAL_ERROR "a program that stands on swiftlet::ground_client links ${heavy}: ${needed}${loaded}")
   endif()
 endforeach()
-if(needed MATCHES "libz\\.")  # others' OpenSSL may load it
+if(needed MATCHES "libz\\.")  # some builds of OpenSSL load it
   message(FATAL_ERROR "a program that stands on swiftlet::ground_client links libz: ${needed}")
 endif()
 file(STRINGS ${prefix}/share/swiftlet/examples/fly_mission.cpp lines)

@@ -1,3 +1,3 @@
-# Links each component of the installed package alone, in the project that consumer.cmake has configured.
+# Links each component of the installed package alone, in the project configured by consumer.cmake.
 include(${CMAKE_CURRENT_LIST_DIR}/common.cmake)
 run(${CMAKE_COMMAND} --build ${WORK_DIR}/consumer --target links)

@@ -1,4 +1,4 @@
-# Builds a project of its own against the installed package, and runs it.
+# Builds a separate project against the installed package and runs it.
 include(${CMAKE_CURRENT_LIST_DIR}/common.cmake)
 set(consumer ${WORK_DIR}/consumer)
 file(REMOVE_RECURSE ${consumer})

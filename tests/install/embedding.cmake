@@ -1,5 +1,5 @@
-# Configures a project that has this one as a subdirectory, into which the rules for warnings and the tests of this one do not come. Without
-# a type of build, as a project is configured that does not care.
+# Configures a project with this one as a subdirectory, without a build type. The warning flags and tests of this project must not
+# apply there.
 include(${CMAKE_CURRENT_LIST_DIR}/common.cmake)
 set(embedding ${WORK_DIR}/embedding)
 file(REMOVE_RECURSE ${embedding})

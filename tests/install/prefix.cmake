@@ -1,4 +1,4 @@
-# Installs the programs, looks at them, then installs the rest.
+# Installs the programs, checks them, then installs the rest.
 include(${CMAKE_CURRENT_LIST_DIR}/common.cmake)
 file(REMOVE_RECURSE ${prefix})
 
@@ -29,7 +29,7 @@ if(NOT includes STREQUAL "swiftlet")
   message(FATAL_ERROR "headers beside include/swiftlet: ${includes}")
 endif()
 
-# The package may be moved, and used on a machine whose libraries stand elsewhere.
+# The package must be relocatable, and usable on a machine with other library paths.
 file(GLOB exports ${prefix}/lib/*/cmake/swiftlet/*.cmake ${prefix}/lib/cmake/swiftlet/*.cmake)
 foreach(file IN LISTS exports)
   file(STRINGS ${file} paths REGEX "(^|[\";:])/(usr|lib|home|work|tmp|root)/")

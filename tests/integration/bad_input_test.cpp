@@ -1,4 +1,4 @@
-// What is wrong with the input ends with exit code 2 and a sentence, before anything is started or moved.
+// Invalid input ends with exit code 2 and a message, before any process starts or vehicle moves.
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -35,15 +35,15 @@ class BadInput : public testing::Test {
  protected:
   fs::path record() const { return folder_.path() / "record"; }
 
-  // Runs `swiftlet fly` with these words: refused with the sentence, nothing started.
+  // Runs `swiftlet fly` with these arguments. Expects a refusal with the sentence and no process started.
   void expect_refusal(std::vector<std::string> words, const std::string& sentence) const {
     words.insert(words.begin(), "fly");
     words.insert(words.end(), {"--json", "--record", record().string()});
-    const Ending end = run_program("swiftlet", words, folder_.path());
-    EXPECT_EQ(end.exit_code, 2) << end.errors;
-    EXPECT_NE(end.errors.find(sentence), std::string::npos) << end.errors;
-    EXPECT_EQ(end.output, "");
-    EXPECT_FALSE(fs::exists(record())) << "there are logs, so processes were started";
+    const ProgramResult result = run_program("swiftlet", words, folder_.path());
+    EXPECT_EQ(result.exit_code, 2) << result.errors;
+    EXPECT_NE(result.errors.find(sentence), std::string::npos) << result.errors;
+    EXPECT_EQ(result.output, "");
+    EXPECT_FALSE(fs::exists(record())) << "logs exist, so processes were started";
   }
 
   TemporaryFolder folder_;
@@ -64,15 +64,16 @@ TEST_F(BadInput, SeveralVehicles) {
                  "names 13 vehicles, limit 12 per command");
   expect_refusal({file, "--vehicle-name", "a,b", "--spacing", "40"},
                  "mission.yaml: started at 0 m north and -20 m east of the origin: item 2: y is -20.000 m");
-  const Ending sent =
+  const ProgramResult goto_result =
       run_program("swiftlet", {"goto", "0", "0", "-1", "--vehicle-name", "kl1,kl2"}, folder_.path());
-  EXPECT_EQ(sent.exit_code, 2);
-  EXPECT_NE(sent.errors.find("must be 1 to 64 letters, digits and _"), std::string::npos) << sent.errors;
+  EXPECT_EQ(goto_result.exit_code, 2);
+  EXPECT_NE(goto_result.errors.find("must be 1 to 64 letters, digits and _"), std::string::npos)
+      << goto_result.errors;
 }
 
-TEST_F(BadInput, MissionThatIsNotThere) { expect_refusal({"nowhere.yaml"}, "nowhere.yaml: is not found"); }
+TEST_F(BadInput, MissingMission) { expect_refusal({"nowhere.yaml"}, "nowhere.yaml: is not found"); }
 
-TEST_F(BadInput, MissionThatIsCutShort) {
+TEST_F(BadInput, TruncatedMission) {
   expect_refusal({folder_.write("cut.yaml", kMission.substr(0, kMission.size() - 20))}, "cut.yaml:6:");
 }
 
@@ -82,7 +83,7 @@ TEST_F(BadInput, MissionWithoutATakeoff) {
   expect_refusal({file}, file + ": items: the first item is not a takeoff");
 }
 
-TEST_F(BadInput, MissionWithoutALand) {
+TEST_F(BadInput, MissionWithoutALanding) {
   const std::string file =
       folder_.write("up.yaml", replaced(kMission, "  - {kind: land, speed_m_s: 0.5}\n", ""));
   expect_refusal({file}, file + ":5: items[1]: is the last item, which must be a land");
@@ -94,7 +95,7 @@ TEST_F(BadInput, MissionThatTakesTooLong) {
   expect_refusal({file}, "must be at most 600 s");
 }
 
-TEST_F(BadInput, VehicleThatBreaksARule) {
+TEST_F(BadInput, InvalidVehicle) {
   const std::string vehicle = text_of(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
   const std::string key = "mass: {value: ";
   ASSERT_NE(vehicle.find(key), std::string::npos);
@@ -108,9 +109,7 @@ TEST_F(BadInput, ControlSettingsWithAnUnknownKey) {
   expect_refusal({"square", "--control", file}, "odd.yaml:");
 }
 
-TEST_F(BadInput, SimulationThatIsNotThere) {
-  expect_refusal({"square", "--simulation", "moon"}, "moon.yaml");
-}
+TEST_F(BadInput, MissingSimulation) { expect_refusal({"square", "--simulation", "moon"}, "moon.yaml"); }
 
 TEST_F(BadInput, WrongUsage) {
   expect_refusal({"square", "--imu-rate", "777"}, "--imu-rate");
@@ -120,18 +119,19 @@ TEST_F(BadInput, WrongUsage) {
   expect_refusal({"square", "--transport", "pigeon"}, "--transport: pigeon not in {udp,shm}");
 }
 
-TEST_F(BadInput, RecordFolderThatCannotBeMade) {
+TEST_F(BadInput, RecordFolderThatCannotBeCreated) {
   const std::string file = folder_.write("file", "");
-  const Ending end = run_program("swiftlet", {"fly", "square", "--record", file + "/record"}, folder_.path());
-  EXPECT_EQ(end.exit_code, 2);
-  EXPECT_NE(end.errors.find("the folder cannot be created"), std::string::npos) << end.errors;
+  const ProgramResult result =
+      run_program("swiftlet", {"fly", "square", "--record", file + "/record"}, folder_.path());
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.errors.find("the folder cannot be created"), std::string::npos) << result.errors;
 }
 
-TEST_F(BadInput, OfTheOnlineCommands) {
+TEST_F(BadInput, OnlineCommands) {
   const auto refuses = [&](std::vector<std::string> words, const std::string& sentence) {
-    const Ending end = run_program("swiftlet", std::move(words), folder_.path());
-    EXPECT_EQ(end.exit_code, 2) << end.errors;
-    EXPECT_NE(end.errors.find(sentence), std::string::npos) << end.errors;
+    const ProgramResult result = run_program("swiftlet", std::move(words), folder_.path());
+    EXPECT_EQ(result.exit_code, 2) << result.errors;
+    EXPECT_NE(result.errors.find(sentence), std::string::npos) << result.errors;
   };
   refuses({"goto", "1", "2"}, "z is required");
   refuses({"goto", "1", "2", "nan"}, "nan is not a finite number");
@@ -143,12 +143,13 @@ TEST_F(BadInput, OfTheOnlineCommands) {
   refuses({}, "swiftlet: a command is required");
 }
 
-TEST_F(BadInput, HelpIsNone) {
+TEST_F(BadInput, HelpIsNotRefused) {
   for (const char* command : {"fly", "arm", "disarm", "takeoff", "goto", "land", "hold", "stop", "mission",
                               "trajectory", "stream", "status", "watch", "list", "gains", "identify"}) {
-    const Ending end = run_program("swiftlet", {command, "--help"}, folder_.path());
-    EXPECT_EQ(end.exit_code, 0);
-    EXPECT_NE(end.output.find("example: swiftlet " + std::string(command)), std::string::npos) << end.output;
+    const ProgramResult result = run_program("swiftlet", {command, "--help"}, folder_.path());
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_NE(result.output.find("example: swiftlet " + std::string(command)), std::string::npos)
+        << result.output;
   }
 }
 

@@ -24,7 +24,7 @@ using nlohmann::json;
 const std::string kMass =
     "parameters:\n"
     "  vehicle.mass: {distribution: uniform, min: 0.95, max: 1.05, unit: nominal, source: estimate}\n";
-const std::string kGrossMass =
+const std::string kHighMass =
     "parameters:\n"
     "  vehicle.mass: {distribution: uniform, min: 0.95, max: 1.8, unit: nominal, source: estimate}\n";
 
@@ -37,7 +37,7 @@ class SimBatch : public testing::Test {
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
-  Ending batch(const std::string& dispersion, std::vector<std::string> more) const {
+  ProgramResult batch(const std::string& dispersion, std::vector<std::string> more) const {
     more.insert(more.end(), {"--out", out().string()});
     return run_program("swiftlet", words("batch", dispersion, more), folder_.path());
   }
@@ -46,21 +46,21 @@ class SimBatch : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(SimBatch, CompletesWritesAndTells) {
-  const Ending end = batch(kMass, {"--runs", "4", "--seed", "3"});
-  EXPECT_EQ(end.exit_code, 0) << end.errors;
-  EXPECT_NE(end.output.find("4 completed, 0 failed"), std::string::npos) << end.output;
-  EXPECT_NE(end.output.find("tracking error, RMS"), std::string::npos);
-  EXPECT_NE(end.output.find("vehicle.mass"), std::string::npos);
-  EXPECT_NE(end.errors.find("4/4 runs, 0 failed"), std::string::npos) << "no progress: " << end.errors;
+TEST_F(SimBatch, WritesFilesAndReportsFigures) {
+  const ProgramResult result = batch(kMass, {"--runs", "4", "--seed", "3"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find("4 completed, 0 failed"), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("tracking error, RMS"), std::string::npos);
+  EXPECT_NE(result.output.find("vehicle.mass"), std::string::npos);
+  EXPECT_NE(result.errors.find("4/4 runs, 0 failed"), std::string::npos) << "no progress: " << result.errors;
   EXPECT_TRUE(fs::exists(out() / "batch.csv"));
   EXPECT_GT(fs::file_size(out() / "batch.png"), 20'000U);
 }
 
-TEST_F(SimBatch, AFailedRunIsRepeatedToTheLastDigit) {
-  const Ending end = batch(kGrossMass, {"--runs", "6", "--seed", "11", "--json"});
-  EXPECT_EQ(end.exit_code, 1) << end.errors;
-  const json report = json::parse(end.output);
+TEST_F(SimBatch, RepeatsAFailedRunExactly) {
+  const ProgramResult result = batch(kHighMass, {"--runs", "6", "--seed", "11", "--json"});
+  EXPECT_EQ(result.exit_code, 1) << result.errors;
+  const json report = json::parse(result.output);
   EXPECT_EQ(report.at("completed"), false);
   EXPECT_GT(report.at("runs_failed"), 0);
   EXPECT_LT(report.at("runs_failed"), 6);
@@ -68,9 +68,9 @@ TEST_F(SimBatch, AFailedRunIsRepeatedToTheLastDigit) {
   const std::string seed = std::to_string(failure.at("seed").get<int>());
   EXPECT_NE(failure.at("repeat").get<std::string>().find(" --seed " + seed), std::string::npos);
 
-  const Ending again = run_program(
+  const ProgramResult again = run_program(
       "swiftlet",
-      words("fly", kGrossMass, {"--seed", seed, "--json", "--record", (folder_.path() / "record").string()}),
+      words("fly", kHighMass, {"--seed", seed, "--json", "--record", (folder_.path() / "record").string()}),
       folder_.path());
   EXPECT_EQ(again.exit_code, 1) << again.errors;
   const json flight = json::parse(again.output);
@@ -83,7 +83,7 @@ TEST_F(SimBatch, AFailedRunIsRepeatedToTheLastDigit) {
   EXPECT_NE(table.find(figures), std::string::npos) << figures << " is not in\n" << table;
 }
 
-TEST_F(SimBatch, IsCancelledAndTellsWhatIsDone) {
+TEST_F(SimBatch, ReportsCompletedRunsWhenCancelled) {
   Program program("swiftlet", words("batch", kMass, {"--runs", "20000", "--json", "--out", out().string()}),
                   folder_.path());
   ASSERT_TRUE(eventually([&] { return program.errors().find("/20000 runs") != std::string::npos; }, 30s));
@@ -95,13 +95,13 @@ TEST_F(SimBatch, IsCancelledAndTellsWhatIsDone) {
   EXPECT_NE(program.errors().find("batch cancelled after"), std::string::npos) << program.errors();
 }
 
-TEST_F(SimBatch, RefusesBadInputBeforeItMakesAFolder) {
+TEST_F(SimBatch, RefusesBadInputBeforeItCreatesAFolder) {
   const auto expect_refusal = [&](const std::string& dispersion, const std::vector<std::string>& more,
                                   const std::string& sentence) {
-    const Ending end = batch(dispersion, more);
-    EXPECT_EQ(end.exit_code, 2) << end.errors;
-    EXPECT_NE(end.errors.find(sentence), std::string::npos) << end.errors;
-    EXPECT_EQ(end.output, "");
+    const ProgramResult result = batch(dispersion, more);
+    EXPECT_EQ(result.exit_code, 2) << result.errors;
+    EXPECT_NE(result.errors.find(sentence), std::string::npos) << result.errors;
+    EXPECT_EQ(result.output, "");
     EXPECT_FALSE(fs::exists(out()));
   };
   expect_refusal("parameters: {}\n", {}, "vary.yaml:1: parameters: is empty");
@@ -110,9 +110,10 @@ TEST_F(SimBatch, RefusesBadInputBeforeItMakesAFolder) {
   expect_refusal(kMass, {"--seed", "-1"}, "--seed");
   expect_refusal(kMass, {"--seed", "18446744073709551615", "--runs", "2"}, "--seed");
   expect_refusal(kMass, {"--vehicle", "nobody"}, "nobody.yaml");
-  const Ending none = run_program("swiftlet", {"sim", "batch", "square"}, folder_.path());
-  EXPECT_EQ(none.exit_code, 2);
-  EXPECT_NE(none.errors.find("--dispersion"), std::string::npos) << none.errors;
+  const ProgramResult without_dispersion =
+      run_program("swiftlet", {"sim", "batch", "square"}, folder_.path());
+  EXPECT_EQ(without_dispersion.exit_code, 2);
+  EXPECT_NE(without_dispersion.errors.find("--dispersion"), std::string::npos) << without_dispersion.errors;
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ using ground::Vehicle;
 
 class OneContext : public testing::Test {
  protected:
-  // The processes of one vehicle, in lockstep at twice the pace of the clock.
+  // The processes of one vehicle, in lockstep at twice real time.
   struct Processes {
     Processes(const OneContext& test, const std::string& vehicle)
         : plant("swiftlet-plant", test.words(vehicle, {"--speed", "2"}), test.folder_.path()),
@@ -49,9 +49,9 @@ class OneContext : public testing::Test {
   TemporaryFolder folder_;
 };
 
-// GIVEN two vehicles of one participant, WHEN each is asked for something else at the same time, THEN each does its
-// own, and says so.
-TEST_F(OneContext, FliesTwoVehiclesAtOnce) {
+// GIVEN two vehicles of one participant WHEN each has a different request at the same time THEN each executes
+// its own and reports its result.
+TEST_F(OneContext, FliesTwoVehiclesConcurrently) {
   const Processes first_processes(*this, "kl1");
   const Processes second_processes(*this, "kl2");
   const ground::Context context(network());
@@ -74,28 +74,28 @@ TEST_F(OneContext, FliesTwoVehiclesAtOnce) {
   const ground::ActionHandle higher = second.take_off(0.9, 0.8);
   EXPECT_TRUE(lower.accepted()) << lower.answer().reason;
   EXPECT_TRUE(higher.accepted()) << higher.answer().reason;
-  for (const ground::ActionHandle& manoeuvre : {lower, higher}) {
-    const ActionResult ending = manoeuvre.wait(60s);
-    EXPECT_TRUE(ending.done()) << ending.reason;
-    EXPECT_EQ(manoeuvre.progress(), 1.0);
+  for (const ground::ActionHandle& action : {lower, higher}) {
+    const ActionResult result = action.wait(60s);
+    EXPECT_TRUE(result.done()) << result.reason;
+    EXPECT_EQ(action.progress(), 1.0);
   }
   EXPECT_NEAR(first.state().position_ned_m.z(), -0.5, 0.06);
   EXPECT_NEAR(second.state().position_ned_m.z(), -0.9, 0.06);
 
-  const ground::ActionHandle away = first.go_to({{0.8, 0.0, -0.5}});
+  const ground::ActionHandle move = first.go_to({{0.8, 0.0, -0.5}});
   const ground::ActionHandle landing = second.land();
   EXPECT_TRUE(landing.wait(60s).done());
   EXPECT_EQ(second.state().mode, control::Mode::kDisarmed);
-  EXPECT_TRUE(away.wait(60s).done());
+  EXPECT_TRUE(move.wait(60s).done());
   EXPECT_NEAR(first.state().position_ned_m.x(), 0.8, 0.06);
 
-  // More newer requests than the controller remembers.
+  // More requests than the controller keeps in its history.
   for (int i = 0; i < 5; ++i) EXPECT_TRUE(first.hold().accepted());
   EXPECT_TRUE(lower.wait(0ms).done());
-  EXPECT_TRUE(away.wait(0ms).done());
+  EXPECT_TRUE(move.wait(0ms).done());
 }
 
-TEST_F(OneContext, NamesThatCannotBeOneAreRefused) {
+TEST_F(OneContext, RefusesInvalidVehicleNames) {
   const ground::Context context(network());
   EXPECT_THROW(Vehicle(context, "kl 1"), std::runtime_error);
   EXPECT_THROW(Vehicle(context, ""), std::runtime_error);

@@ -1,5 +1,5 @@
-// What goes wrong with the sensors and the vehicle, flown by real processes in lockstep: one fault a flight,
-// at the same place in each. What the vehicle did is told by its trace, which is ground truth.
+// Faults of sensors and vehicle, flown by real processes in lockstep: one fault per flight, at the same time
+// in each. The vehicle's motion is read from its trace, which is ground truth.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -27,19 +27,19 @@ const std::string kHover =
     "  - {kind: takeoff, height_m: 1.0, speed_m_s: 0.8, hold_s: 12}\n"
     "  - {kind: land, speed_m_s: 0.4}\n";
 
-struct Moment {
+struct TraceRow {
   double time_s = 0.0;
   double north_m = 0.0, east_m = 0.0, height_m = 0.0;
   double sink_m_s = 0.0;
   double tilt_rad = 0.0;
   bool on_ground = false;
-  bool commanded = false;  // the rotors are told to turn
+  bool commanded = false;  // the rotors are commanded to run
 };
 
 // The columns of trace.csv:
 // t_ns,px,py,pz,vx,vy,vz,qw,qx,qy,qz,p,q,r,om1..om4,v_s,on_ground,mocap_frame,running,...
-std::vector<Moment> read_trace(const std::filesystem::path& file) {
-  std::vector<Moment> moments;
+std::vector<TraceRow> read_trace(const std::filesystem::path& file) {
+  std::vector<TraceRow> rows;
   std::ifstream in(file);
   std::string line;
   std::getline(in, line);
@@ -48,48 +48,47 @@ std::vector<Moment> read_trace(const std::filesystem::path& file) {
     std::stringstream cells(line);
     for (std::string cell; std::getline(cells, cell, ',');) v.push_back(std::stod(cell));
     if (v.size() < 22) break;
-    Moment moment;
-    moment.time_s = v[0] * 1e-9;
-    moment.north_m = v[1];
-    moment.east_m = v[2];
-    moment.height_m = -v[3];
-    moment.sink_m_s = v[6];
-    moment.tilt_rad = std::acos(std::clamp(1.0 - 2.0 * (v[8] * v[8] + v[9] * v[9]), -1.0, 1.0));
-    moment.on_ground = v[19] != 0.0;
-    moment.commanded = v[21] != 0.0;
-    moments.push_back(moment);
+    TraceRow row;
+    row.time_s = v[0] * 1e-9;
+    row.north_m = v[1];
+    row.east_m = v[2];
+    row.height_m = -v[3];
+    row.sink_m_s = v[6];
+    row.tilt_rad = std::acos(std::clamp(1.0 - 2.0 * (v[8] * v[8] + v[9] * v[9]), -1.0, 1.0));
+    row.on_ground = v[19] != 0.0;
+    row.commanded = v[21] != 0.0;
+    rows.push_back(row);
   }
-  return moments;
+  return rows;
 }
 
-struct Flown {  // NOLINT(bugprone-exception-escape): json is moved without one
+struct FaultFlight {  // NOLINT(bugprone-exception-escape): json is moved without one
   json report;
-  std::vector<Moment> after;  // from the fault on
+  std::vector<TraceRow> after;  // from the fault on
 
   double last_commanded_s() const {
     double last = kFault_s;
-    for (const Moment& moment : after) {
-      if (moment.commanded) last = moment.time_s;
+    for (const TraceRow& row : after) {
+      if (row.commanded) last = row.time_s;
     }
     return last;
   }
   double most_tilt_rad() const {
     double most = 0.0;
-    for (const Moment& moment : after) most = std::max(most, moment.tilt_rad);
+    for (const TraceRow& row : after) most = std::max(most, row.tilt_rad);
     return most;
   }
   double fastest_sink() const {
     double fastest = 0.0;
-    for (const Moment& moment : after) fastest = std::max(fastest, moment.sink_m_s);
+    for (const TraceRow& row : after) fastest = std::max(fastest, row.sink_m_s);
     return fastest;
   }
   double farthest_m() const {
     double farthest = 0.0;
-    for (const Moment& moment : after)
-      farthest = std::max(farthest, std::hypot(moment.north_m, moment.east_m));
+    for (const TraceRow& row : after) farthest = std::max(farthest, std::hypot(row.north_m, row.east_m));
     return farthest;
   }
-  // The vehicle stands when its rotors are stopped.
+  // The vehicle is on the ground and upright when its rotors stop.
   void expect_landed() const {
     ASSERT_FALSE(after.empty());
     EXPECT_TRUE(after.back().on_ground) << after.back().height_m;
@@ -100,136 +99,137 @@ struct Flown {  // NOLINT(bugprone-exception-escape): json is moved without one
 
 class FaultInFlight : public testing::Test {
  protected:
-  // parameters: what the fault needs beside its kind, as YAML.
-  Flown fly(const std::string& kind, const std::string& for_s, const std::string& parameters = "",
-            double at_s = kFault_s) {
+  // parameters: of the fault beside its kind, as YAML.
+  FaultFlight fly(const std::string& kind, const std::string& for_s, const std::string& parameters = "",
+                  double at_s = kFault_s) {
     std::string simulation = runtime::read_text_file(SWIFTLET_SOURCE_DIR "/config/simulation/default.yaml");
     simulation += "faults:\n  - {kind: " + kind + ", at_s: " + std::to_string(at_s) + ", for_s: " + for_s +
                   (parameters.empty() ? "" : ", " + parameters) + "}\n";
     const std::string file = folder_.write("faulty.yaml", simulation);
     const auto record = folder_.path() / "record";
-    const Ending ending =
+    const ProgramResult result =
         run_program("swiftlet",
                     {"fly", folder_.write("hover.yaml", kHover), "--simulation", file, "--clock", "lockstep",
                      "--trace", "--json", "--record", record.string()},
                     folder_.path(), 120s);
-    Flown flown;
-    flown.report = json::parse(ending.output, nullptr, false);
-    EXPECT_TRUE(flown.report.is_object()) << ending.errors;
-    for (const Moment& moment : read_trace(record / "trace.csv")) {
-      if (moment.time_s >= at_s) flown.after.push_back(moment);
+    FaultFlight flight;
+    flight.report = json::parse(result.output, nullptr, false);
+    EXPECT_TRUE(flight.report.is_object()) << result.errors;
+    for (const TraceRow& row : read_trace(record / "trace.csv")) {
+      if (row.time_s >= at_s) flight.after.push_back(row);
     }
-    return flown;
+    return flight;
   }
-  static std::string reason(const Flown& flown) { return flown.report.value("reason", "completed"); }
+  static std::string reason(const FaultFlight& flight) { return flight.report.value("reason", "completed"); }
 
   TemporaryFolder folder_;
 };
 
-void expect_descended_level(const Flown& flown) {
-  flown.expect_landed();
-  EXPECT_LT(flown.most_tilt_rad(), 0.15);
-  EXPECT_LT(flown.fastest_sink(), 0.8);
-  EXPECT_LT(flown.farthest_m(), 1.0);
+void expect_descended_level(const FaultFlight& flight) {
+  flight.expect_landed();
+  EXPECT_LT(flight.most_tilt_rad(), 0.15);
+  EXPECT_LT(flight.fastest_sink(), 0.8);
+  EXPECT_LT(flight.farthest_m(), 1.0);
 }
 
-TEST_F(FaultInFlight, MocapStopsItDescendsLevel) {
-  const Flown flown = fly("mocap_stop", "60");
-  EXPECT_EQ(reason(flown), "the mission was aborted: no mocap pose; landed");
-  expect_descended_level(flown);
+TEST_F(FaultInFlight, DescendsLevelWhenMocapStops) {
+  const FaultFlight flight = fly("mocap_stop", "60");
+  EXPECT_EQ(reason(flight), "the mission was aborted: no mocap pose; landed");
+  expect_descended_level(flight);
 }
 
-TEST_F(FaultInFlight, MocapFreezesItDescendsLevel) {
-  const Flown flown = fly("mocap_freeze", "60");
-  EXPECT_EQ(reason(flown), "the mission was aborted: no mocap pose; landed");
-  expect_descended_level(flown);
+TEST_F(FaultInFlight, DescendsLevelWhenMocapFreezes) {
+  const FaultFlight flight = fly("mocap_freeze", "60");
+  EXPECT_EQ(reason(flight), "the mission was aborted: no mocap pose; landed");
+  expect_descended_level(flight);
 }
 
-TEST_F(FaultInFlight, MocapLosesTheMarkersItDescendsLevel) {
-  const Flown flown = fly("mocap_untracked", "60");
-  EXPECT_EQ(reason(flown), "the mission was aborted: no mocap pose; landed");
-  expect_descended_level(flown);
+TEST_F(FaultInFlight, DescendsLevelWhenMocapLosesTheMarkers) {
+  const FaultFlight flight = fly("mocap_untracked", "60");
+  EXPECT_EQ(reason(flight), "the mission was aborted: no mocap pose; landed");
+  expect_descended_level(flight);
 }
 
-TEST_F(FaultInFlight, MocapTakesTheMarkersForOthersItDescendsLevel) {
-  const Flown flown = fly("mocap_jump", "60", "position_ned_m: [0, 0, 0], rotation_frd_rad: [0, 0, 3.1416]");
-  EXPECT_EQ(reason(flown), "the mission was aborted: no mocap pose; landed");
-  expect_descended_level(flown);
+TEST_F(FaultInFlight, DescendsLevelWhenMocapConfusesTheMarkers) {
+  const FaultFlight flight =
+      fly("mocap_jump", "60", "position_ned_m: [0, 0, 0], rotation_frd_rad: [0, 0, 3.1416]");
+  EXPECT_EQ(reason(flight), "the mission was aborted: no mocap pose; landed");
+  expect_descended_level(flight);
 }
 
-TEST_F(FaultInFlight, MocapIsGoneForAMomentItFliesOn) {
-  const Flown flown = fly("mocap_stop", "0.3");
-  EXPECT_EQ(reason(flown), "completed");
-  EXPECT_LT(flown.report.at("peak_3d_m"), 0.05);
+TEST_F(FaultInFlight, FliesOnAfterAShortMocapOutage) {
+  const FaultFlight flight = fly("mocap_stop", "0.3");
+  EXPECT_EQ(reason(flight), "completed");
+  EXPECT_LT(flight.report.at("peak_3d_m"), 0.05);
 }
 
-TEST_F(FaultInFlight, MocapJumpsForAMomentItFliesOn) {
-  const Flown flown =
+TEST_F(FaultInFlight, FliesOnAfterAShortMocapJump) {
+  const FaultFlight flight =
       fly("mocap_jump", "0.15", "position_ned_m: [1.5, 0.5, 0.3], rotation_frd_rad: [0, 0, 0]");
-  EXPECT_EQ(reason(flown), "completed");
-  EXPECT_LT(flown.report.at("peak_3d_m"), 0.05);
+  EXPECT_EQ(reason(flight), "completed");
+  EXPECT_LT(flight.report.at("peak_3d_m"), 0.05);
 }
 
-TEST_F(FaultInFlight, MocapSeesAnotherBodyForAMomentItFliesOn) {
-  const Flown flown = fly("mocap_swap", "0.15", "position_ned_m: [-1, 2, 0], yaw_rad: 2");
-  EXPECT_EQ(reason(flown), "completed");
-  EXPECT_LT(flown.report.at("peak_3d_m"), 0.05);
+TEST_F(FaultInFlight, FliesOnAfterMocapBrieflyTracksAnotherBody) {
+  const FaultFlight flight = fly("mocap_swap", "0.15", "position_ned_m: [-1, 2, 0], yaw_rad: 2");
+  EXPECT_EQ(reason(flight), "completed");
+  EXPECT_LT(flight.report.at("peak_3d_m"), 0.05);
 }
 
-TEST_F(FaultInFlight, MocapShowsABodyThatStaysOnTheGroundTheRotorsStopJustAboveIt) {
-  const Flown flown = fly("mocap_swap", "60", "position_ned_m: [1, -1, 0], yaw_rad: 2", 0.1);
-  EXPECT_EQ(reason(flown), "the mission was aborted: poses do not follow the take-off; rotors stopped");
-  EXPECT_FALSE(flown.after.back().commanded);
+TEST_F(FaultInFlight, StopsRotorsWhenPosesDoNotFollowTheTakeoff) {
+  const FaultFlight flight = fly("mocap_swap", "60", "position_ned_m: [1, -1, 0], yaw_rad: 2", 0.1);
+  EXPECT_EQ(reason(flight), "the mission was aborted: poses do not follow the take-off; rotors stopped");
+  EXPECT_FALSE(flight.after.back().commanded);
   double highest = 0.0;
-  for (const Moment& moment : flown.after) highest = std::max(highest, moment.height_m);
+  for (const TraceRow& row : flight.after) highest = std::max(highest, row.height_m);
   EXPECT_GT(highest, 0.05);
   EXPECT_LT(highest, 0.3);
 }
 
-TEST_F(FaultInFlight, TheImuGivesNoNumbersTheRotorsStop) {
-  const Flown flown = fly("imu_nan", "60");
-  EXPECT_EQ(reason(flown), "the mission was aborted: IMU samples are not usable; rotors stopped");
-  EXPECT_NEAR(flown.last_commanded_s(), kFault_s + 0.1, 0.01);
+TEST_F(FaultInFlight, StopsRotorsWhenTheImuSendsNaN) {
+  const FaultFlight flight = fly("imu_nan", "60");
+  EXPECT_EQ(reason(flight), "the mission was aborted: IMU samples are not usable; rotors stopped");
+  EXPECT_NEAR(flight.last_commanded_s(), kFault_s + 0.1, 0.01);
 }
 
-TEST_F(FaultInFlight, TheImuGivesNoNumbersForAMomentItFliesOn) {
-  const Flown flown = fly("imu_nan", "0.05");
-  EXPECT_EQ(reason(flown), "completed");
+TEST_F(FaultInFlight, FliesOnAfterAShortImuNaN) {
+  const FaultFlight flight = fly("imu_nan", "0.05");
+  EXPECT_EQ(reason(flight), "completed");
 }
 
-TEST_F(FaultInFlight, TheBatteryIsLowItLands) {
-  const Flown flown = fly("battery_drop", "60", "voltage_v: 0.8");
-  EXPECT_EQ(reason(flown), "the mission was aborted: battery is low; landed");
-  expect_descended_level(flown);
+TEST_F(FaultInFlight, LandsWhenTheBatteryIsLow) {
+  const FaultFlight flight = fly("battery_drop", "60", "voltage_v: 0.8");
+  EXPECT_EQ(reason(flight), "the mission was aborted: battery is low; landed");
+  expect_descended_level(flight);
 }
 
-TEST_F(FaultInFlight, TheBatteryIsCriticalItLandsFaster) {
-  const Flown low = fly("battery_drop", "60", "voltage_v: 0.8");
-  const Flown critical = fly("battery_drop", "60", "voltage_v: 1.0");
+TEST_F(FaultInFlight, LandsFasterWhenTheBatteryIsCritical) {
+  const FaultFlight low = fly("battery_drop", "60", "voltage_v: 0.8");
+  const FaultFlight critical = fly("battery_drop", "60", "voltage_v: 1.0");
   EXPECT_EQ(reason(critical), "the mission was aborted: battery is critical; landed");
   critical.expect_landed();
   EXPECT_LT(critical.last_commanded_s(), low.last_commanded_s() - 0.5);
 }
 
-TEST_F(FaultInFlight, TheBatteryIsSilentItLands) {
-  const Flown flown = fly("battery_stop", "60");
-  EXPECT_EQ(reason(flown), "the mission was aborted: no battery voltage; landed");
-  expect_descended_level(flown);
+TEST_F(FaultInFlight, LandsWithoutBatterySamples) {
+  const FaultFlight flight = fly("battery_stop", "60");
+  EXPECT_EQ(reason(flight), "the mission was aborted: no battery voltage; landed");
+  expect_descended_level(flight);
 }
 
-TEST_F(FaultInFlight, APushTipsItOverTheRotorsStop) {
-  const Flown flown = fly("push", "0.1", "force_ned_n: [0, 0, 0], moment_frd_n_m: [0.02, 0, 0]");
-  EXPECT_EQ(reason(flown), "the mission was aborted: tipped over; rotors stopped");
-  EXPECT_LT(flown.last_commanded_s(), kFault_s + 0.5);
-  EXPECT_NEAR(flown.after.back().tilt_rad, 1.4, 0.3) << "they stop as soon as it is beyond";
+TEST_F(FaultInFlight, StopsRotorsWhenTippedOver) {
+  const FaultFlight flight = fly("push", "0.1", "force_ned_n: [0, 0, 0], moment_frd_n_m: [0.02, 0, 0]");
+  EXPECT_EQ(reason(flight), "the mission was aborted: tipped over; rotors stopped");
+  EXPECT_LT(flight.last_commanded_s(), kFault_s + 0.5);
+  EXPECT_NEAR(flight.after.back().tilt_rad, 1.4, 0.3) << "the rotors must stop right at the tilt limit";
 }
 
-TEST_F(FaultInFlight, AGaleBlowsItOutOfTheFenceItLandsInside) {
-  const Flown flown = fly("push", "1.6", "force_ned_n: [0.42, 0, 0], moment_frd_n_m: [0, 0, 0]");
-  EXPECT_EQ(reason(flown), "the mission was aborted: outside the fence; landed");
-  EXPECT_GT(flown.farthest_m(), 3.2);
-  flown.expect_landed();
-  EXPECT_LE(std::hypot(flown.after.back().north_m, flown.after.back().east_m), 3.05);
+TEST_F(FaultInFlight, LandsInsideTheFenceWhenBlownOut) {
+  const FaultFlight flight = fly("push", "1.6", "force_ned_n: [0.42, 0, 0], moment_frd_n_m: [0, 0, 0]");
+  EXPECT_EQ(reason(flight), "the mission was aborted: outside the fence; landed");
+  EXPECT_GT(flight.farthest_m(), 3.2);
+  flight.expect_landed();
+  EXPECT_LE(std::hypot(flight.after.back().north_m, flight.after.back().east_m), 3.05);
 }
 
 }  // namespace

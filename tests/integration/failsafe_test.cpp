@@ -1,5 +1,5 @@
-// Faults of processes and of the wire, in real time: one is killed, stopped, started again, or its clock
-// steps. What the vehicle did is told by ground truth, why by control_status.
+// Faults of processes and network in real time: a process is killed, suspended or restarted, or its clock
+// steps. Ground truth shows what the vehicle did, control_status why.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -66,12 +66,12 @@ class Failsafe : public SeparateProcesses {
   }
 };
 
-TEST_F(Failsafe, MocapIsKilledItDescendsLevelAndStopsOnTheGround) {
+TEST_F(Failsafe, DescendsLevelAndDisarmsWhenMocapIsKilled) {
   start_all();
   hover();
   mocap_->signal(SIGKILL);
-  ASSERT_TRUE(reported(Mode::kDescent, "no mocap pose")) << story();
-  ASSERT_TRUE(reported(Mode::kDisarmed, "landed without position")) << story();
+  ASSERT_TRUE(reported(Mode::kDescent, "no mocap pose")) << mode_log();
+  ASSERT_TRUE(reported(Mode::kDisarmed, "landed without position")) << mode_log();
   ASSERT_TRUE(wait_until_rotors_off());
   EXPECT_TRUE(wait_until_on_ground());
   EXPECT_LT(most_tilt_rad(), 0.2);
@@ -79,19 +79,19 @@ TEST_F(Failsafe, MocapIsKilledItDescendsLevelAndStopsOnTheGround) {
   EXPECT_LT(farthest_m(), 1.0);
 }
 
-TEST_F(Failsafe, MocapComesBackItHoldsAgain) {
+TEST_F(Failsafe, HoldsWhenMocapReturns) {
   start_all();
   hover();
   mocap_->signal(SIGSTOP);
-  ASSERT_TRUE(reported(Mode::kDescent, "no mocap pose")) << story();
+  ASSERT_TRUE(reported(Mode::kDescent, "no mocap pose")) << mode_log();
   mocap_->signal(SIGCONT);
-  ASSERT_TRUE(reported(Mode::kHolding, "pose regained")) << story();
-  fly_on(3.0);
+  ASSERT_TRUE(reported(Mode::kHolding, "pose regained")) << mode_log();
+  wait_vehicle_time(3.0);
   EXPECT_GT(lowest_m(), 0.3);
   EXPECT_LT(client_->view().estimate.message.velocity_ned()[2], 0.05);
 }
 
-TEST_F(Failsafe, TheGroundToolIsKilledItLands) {
+TEST_F(Failsafe, LandsWhenTheGroundToolIsKilled) {
   start_all();
   wait_until_ready();
   const std::string mission =
@@ -107,29 +107,29 @@ TEST_F(Failsafe, TheGroundToolIsKilledItLands) {
       << fly.errors();
   EXPECT_TRUE(
       client_->wait(kTimeout, [](const View& view) { return view.control.message.ground_links() == 1; }));
-  forget();
+  clear_history();
   fly.signal(SIGKILL);
-  ASSERT_TRUE(reported(Mode::kLanding, "ground link lost")) << story();
-  ASSERT_TRUE(reported(Mode::kDisarmed, "landed")) << story();
+  ASSERT_TRUE(reported(Mode::kLanding, "ground link lost")) << mode_log();
+  ASSERT_TRUE(reported(Mode::kDisarmed, "landed")) << mode_log();
   EXPECT_TRUE(wait_until_on_ground());
   EXPECT_LT(most_tilt_rad(), 0.2);
   EXPECT_FALSE(plant_->exit_code() || mocap_->exit_code() || control_->exit_code());
 }
 
-TEST_F(Failsafe, ToolsThatOnlyAskForSomethingAreNotMissed) {
+TEST_F(Failsafe, IgnoresTheExitOfShortCommands) {
   start_all();
   hover();
-  const Ending end = run_program(
+  const ProgramResult result = run_program(
       "swiftlet", {"goto", "0.3", "0", "-1", "--domain", std::to_string(lock_.domain()), "--localhost-only"},
       folder_.path());
-  ASSERT_EQ(end.exit_code, 0) << end.errors;
-  fly_on(3.0);
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  wait_vehicle_time(3.0);
   EXPECT_EQ(client_->view().control.message.ground_links(), 0);
   EXPECT_TRUE(settles_at(0.3, 0, -1));
-  EXPECT_EQ(story(), "holding: take-off completed\nholding: requested\n");
+  EXPECT_EQ(mode_log(), "holding: take-off completed\nholding: requested\n");
 }
 
-TEST_F(Failsafe, ControlIsKilledTheVehicleStopsItsRotorsAndAnotherOneStartsAnew) {
+TEST_F(Failsafe, RotorsStopWhenControlIsKilledAndARestartCanFly) {
   start_all();
   hover();
   control_->signal(SIGKILL);
@@ -138,41 +138,41 @@ TEST_F(Failsafe, ControlIsKilledTheVehicleStopsItsRotorsAndAnotherOneStartsAnew)
   EXPECT_NE(std::string(client_->view().vehicle.message.fault().c_str()), "");
   ASSERT_TRUE(eventually([&] { return distance_m(0, 0, 0) < 2.0 && fastest_rotor(truth().back()) < 10.0; }));
   control_ = start("swiftlet-control");
-  ASSERT_TRUE(reported(Mode::kDisarmed, "started")) << story();
-  if (tilt_rad(truth().back()) > 0.3) return;  // it fell on its side
+  ASSERT_TRUE(reported(Mode::kDisarmed, "started")) << mode_log();
+  if (tilt_rad(truth().back()) > 0.3) return;  // the vehicle lies on its side
   hover();
 }
 
-TEST_F(Failsafe, ControlIsStoppedForTwoTenthsOfASecondItFliesOn) {
+TEST_F(Failsafe, FliesOnAfterControlIsSuspendedFor200Ms) {
   start_all();
   hover();
   control_->signal(SIGSTOP);
-  fly_on(0.2);
+  wait_vehicle_time(0.2);
   control_->signal(SIGCONT);
-  fly_on(4.0);
-  EXPECT_EQ(story(), "holding: take-off completed\n");
+  wait_vehicle_time(4.0);
+  EXPECT_EQ(mode_log(), "holding: take-off completed\n");
   EXPECT_GT(lowest_m(), 0.5);
   EXPECT_TRUE(settles_at(0, 0, -1));
 }
 
-TEST_F(Failsafe, CommandsCeaseTheRotorsStopAndStayOff) {
+TEST_F(Failsafe, RotorsStopAndStayOffWhenCommandsCease) {
   start_all();
   hover();
   control_->signal(SIGSTOP);
   ASSERT_TRUE(wait_until_rotors_off());
-  fly_on(1.2);  // short of the lease after which the others take it for dead
+  wait_vehicle_time(1.2);  // below the liveliness lease, after which peers treat it as dead
   control_->signal(SIGCONT);
   ASSERT_TRUE(reported(Mode::kStopped, "IMU samples were missing") ||
               reported(Mode::kStopped, "tipped over", 1s))
-      << story();
+      << mode_log();
   ASSERT_TRUE(wait_until_rotors_off());
-  forget();
-  fly_on(1.0);
+  clear_history();
+  wait_vehicle_time(1.0);
   for (const TruthRow& row : truth()) ASSERT_LT(fastest_rotor(row), 100.0);
 }
 
-// In lockstep at a pace: a busy machine slows the take-off down, which has to be over when the fault comes.
-TEST_F(Failsafe, TheImuFallsSilentTheRotorsStopAndStayOff) {
+// In lockstep at a set speed: the take-off must be over when the fault starts, however busy the machine.
+TEST_F(Failsafe, RotorsStopAndStayOffWhenTheImuFallsSilent) {
   control_ = start("swiftlet-control", {"--clock", "lockstep"});
   mocap_ = start("swiftlet-mocap", {"--clock", "lockstep"});
   plant_ = start("swiftlet-plant", {"--clock", "lockstep", "--speed", "2", "--simulation",
@@ -181,32 +181,32 @@ TEST_F(Failsafe, TheImuFallsSilentTheRotorsStopAndStayOff) {
   ASSERT_LT(stamp_ns(), 14'000'000'000) << "the take-off took too long for this test";
   ASSERT_TRUE(wait_until_rotors_off());
   EXPECT_NEAR(static_cast<double>(client_->view().vehicle.message.stamp_ns()) * 1e-9, 14.5, 0.15)
-      << "by its own time-out of 0.5 s";
+      << "by the vehicle's own time-out of 0.5 s";
   ASSERT_TRUE(reported(Mode::kStopped, "IMU samples were missing") ||
               reported(Mode::kStopped, "tipped over", 1s))
-      << story();
-  forget();
-  fly_on(1.0);
+      << mode_log();
+  clear_history();
+  wait_vehicle_time(1.0);
   for (const TruthRow& row : truth()) ASSERT_LT(fastest_rotor(row), 100.0);
 }
 
-TEST_F(Failsafe, ThePlantIsStartedAgainItsRotorsStayOff) {
+TEST_F(Failsafe, RotorsStayOffWhenThePlantRestarts) {
   start_all();
   hover();
   plant_->signal(SIGKILL);
   plant_->wait(5s);
-  forget();
+  clear_history();
   plant_ = start("swiftlet-plant");
-  ASSERT_TRUE(reported(Mode::kStopped, "IMU samples are not usable")) << story();
-  fly_on(1.0);
+  ASSERT_TRUE(reported(Mode::kStopped, "IMU samples are not usable")) << mode_log();
+  wait_vehicle_time(1.0);
   for (const TruthRow& row : truth()) ASSERT_LT(fastest_rotor(row), 20.0);
-  // A new flight, after the pilot has seen it.
+  // A new flight is possible after a disarm.
   EXPECT_FALSE(ask(msg::Command_Constants::ARM).accepted());
   ASSERT_TRUE(ask(msg::Command_Constants::DISARM).accepted());
   hover();
 }
 
-TEST_F(Failsafe, SetpointsThatLeaveTheFenceAreRefusedAndItHoldsInside) {
+TEST_F(Failsafe, HoldsInsideTheFenceWhenSetpointsLeaveIt) {
   start_all(
       {"--control", settings_with("fence_max_ned_m: [3.0, 3.0, 0.2]", "fence_max_ned_m: [0.6, 3.0, 0.2]")});
   hover();
@@ -227,22 +227,22 @@ TEST_F(Failsafe, SetpointsThatLeaveTheFenceAreRefusedAndItHoldsInside) {
         return elapsed_s > 4.0;
       },
       kTimeout));
-  EXPECT_TRUE(reported(Mode::kSetpoint, "setpoints received")) << story();
-  EXPECT_TRUE(reported(Mode::kHolding, "setpoints stopped")) << story();
-  fly_on(1.0);
+  EXPECT_TRUE(reported(Mode::kSetpoint, "setpoints received")) << mode_log();
+  EXPECT_TRUE(reported(Mode::kHolding, "setpoints stopped")) << mode_log();
+  wait_vehicle_time(1.0);
   double farthest_north = 0.0;
   for (const TruthRow& row : truth()) farthest_north = std::max(farthest_north, row.position_ned[0]);
   EXPECT_GT(farthest_north, 0.3);
-  // Its reference comes to rest before the fence; to the jerk of the stop the vehicle lags by up to 3 cm.
-  EXPECT_LT(farthest_north, 0.635) << "it follows them as far as it can come to rest inside";
+  // The reference stops before the fence; the vehicle overshoots the stop by up to 3 cm.
+  EXPECT_LT(farthest_north, 0.635) << "must stop inside the fence";
   EXPECT_EQ(client_->view().control.message.mode(), static_cast<std::uint8_t>(Mode::kHolding));
 }
 
-// CLOCK_REALTIME of the processes, which a test steps.
+// Steps CLOCK_REALTIME of the processes.
 class SteppedClock : public Failsafe {
  public:
   ~SteppedClock() override {
-    forget_clock();
+    stop_preloading();
     munmap(shift_s_, sizeof(std::int64_t));
   }
 
@@ -256,8 +256,8 @@ class SteppedClock : public Failsafe {
     setenv("SWIFTLET_CLOCK_SHIFT", file.c_str(), 1);
     setenv("LD_PRELOAD", SWIFTLET_PRELOADS, 1);
   }
-  // Processes that are started from now on have the true one.
-  static void forget_clock() {
+  // Processes started from now on use the true clock.
+  static void stop_preloading() {
     unsetenv("LD_PRELOAD");
     unsetenv("SWIFTLET_CLOCK_SHIFT");
   }
@@ -266,14 +266,14 @@ class SteppedClock : public Failsafe {
   std::int64_t* shift_s_ = nullptr;
 };
 
-TEST_F(SteppedClock, OfAllProcessesForwardsAndBackItFliesOnAndObeys) {
+TEST_F(SteppedClock, OfAllProcessesDoesNotDisturbTheFlight) {
   start_all();
-  forget_clock();
+  stop_preloading();
   hover();
   double farthest_m = 0.0;
   for (const std::int64_t step : {3600, -7200}) {
     step_clock(step);
-    fly_on(2.0);
+    wait_vehicle_time(2.0);
     const ground::Result answer = ask(msg::Command_Constants::HOLD);
     EXPECT_TRUE(answer.accepted()) << step << ": " << answer.reason;
     for (const TruthRow& row : truth()) {
@@ -283,23 +283,23 @@ TEST_F(SteppedClock, OfAllProcessesForwardsAndBackItFliesOnAndObeys) {
     EXPECT_LT(client_->view().control.message.pose_age_s(), 0.2) << "after a step of " << step << " s";
   }
   EXPECT_LT(farthest_m, 0.05);
-  EXPECT_EQ(story(), "holding: take-off completed\nholding: requested\n");
+  EXPECT_EQ(mode_log(), "holding: take-off completed\nholding: requested\n");
 }
 
-TEST_F(SteppedClock, OfOneProcessOnlyItFliesOnAndObeys) {
+TEST_F(SteppedClock, OfOneProcessDoesNotDisturbTheFlight) {
   control_ = start("swiftlet-control");
-  forget_clock();
+  stop_preloading();
   plant_ = start("swiftlet-plant");
   mocap_ = start("swiftlet-mocap");
   hover();
   for (const std::int64_t step : {3600, -7200}) {
     step_clock(step);
-    fly_on(2.0);
+    wait_vehicle_time(2.0);
     const ground::Result answer = ask(msg::Command_Constants::HOLD);
     EXPECT_TRUE(answer.accepted()) << step << ": " << answer.reason;
   }
   EXPECT_TRUE(settles_at(0, 0, -1));
-  EXPECT_EQ(story(), "holding: take-off completed\nholding: requested\n");
+  EXPECT_EQ(mode_log(), "holding: take-off completed\nholding: requested\n");
 }
 
 }  // namespace

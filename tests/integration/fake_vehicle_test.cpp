@@ -1,5 +1,5 @@
-// The plant swapped: the control service against a vehicle that the test makes. Whatever publishes imu and
-// battery and obeys actuator_command is a vehicle.
+// The control service with a vehicle simulated by the test instead of the plant. Any process that publishes
+// imu and battery and obeys actuator_command is a vehicle.
 #include "tests/support/fake_vehicle.hpp"
 
 #include <algorithm>
@@ -91,7 +91,7 @@ class FakeVehicleFlight : public testing::Test {
   std::unique_ptr<FakeVehicle> vehicle_;
 };
 
-TEST_F(FakeVehicleFlight, WithoutAVehicleNothingIsArmed) {
+TEST_F(FakeVehicleFlight, RefusesToArmWithoutAVehicle) {
   const ground::Result answer = ask(msg::Command_Constants::ARM);
   EXPECT_EQ(answer.kind, ground::Result::Kind::kRefused) << answer.reason;
   EXPECT_NE(answer.reason.find("IMU"), std::string::npos) << answer.reason;
@@ -110,19 +110,19 @@ TEST_F(FakeVehicleFlight, EveryCommandAnswersASample) {
 
   const auto commands = vehicle_->commands();
   ASSERT_FALSE(commands.empty());
-  EXPECT_FALSE(running(commands.front())) << "rotors ran before they were armed";
+  EXPECT_FALSE(running(commands.front())) << "rotors ran before arming";
   std::uint64_t last = 0;
   for (const msg::ActuatorCommand& command : commands) {
-    EXPECT_GT(command.imu_sequence_number(), last) << "answered twice or out of order";
+    EXPECT_GT(command.imu_sequence_number(), last) << "repeated or out of order";
     last = command.imu_sequence_number();
     EXPECT_EQ(command.stamp_ns(), static_cast<std::int64_t>(last) * FakeVehicle::kPeriodNs);
     ASSERT_EQ(command.rotor_count(), 4);
     for (int i = 0; i < 4; ++i)
-      EXPECT_EQ(command.throttle()[static_cast<std::size_t>(i)], 0.0) << "it stands";
+      EXPECT_EQ(command.throttle()[static_cast<std::size_t>(i)], 0.0) << "armed on the ground";
   }
   EXPECT_GT(commands.back().mocap_sequence_number(), 0U);
-  const double asked = static_cast<double>(last - commands.front().imu_sequence_number() + 1);
-  EXPECT_GT(static_cast<double>(commands.size()), 0.9 * asked) << "samples went unanswered";
+  const double expected = static_cast<double>(last - commands.front().imu_sequence_number() + 1);
+  EXPECT_GT(static_cast<double>(commands.size()), 0.9 * expected) << "too many samples without a command";
 }
 
 TEST_F(FakeVehicleFlight, FliesAMission) {
@@ -147,16 +147,16 @@ TEST_F(FakeVehicleFlight, FliesAMission) {
   EXPECT_TRUE(eventually([&] { return rotors_are_off(); }, kTimeout));
 }
 
-TEST_F(FakeVehicleFlight, ComesDownWithoutMocap) {
+TEST_F(FakeVehicleFlight, DescendsWithoutMocap) {
   hover();
   vehicle_->seen_by_mocap = false;
   EXPECT_TRUE(wait_for(Mode::kDescent)) << control_.errors();
-  EXPECT_GT(vehicle_->height_m(), 0.1) << "it fell";
+  EXPECT_GT(vehicle_->height_m(), 0.1) << "fell";
   EXPECT_TRUE(eventually([&] { return rotors_are_off(); }, kTimeout)) << control_.errors();
-  EXPECT_LT(vehicle_->height_m(), 0.1) << "the rotors went off in the air";
+  EXPECT_LT(vehicle_->height_m(), 0.1) << "rotors stopped in the air";
 }
 
-TEST_F(FakeVehicleFlight, HoldsAgainWhenThePoseIsBack) {
+TEST_F(FakeVehicleFlight, HoldsWhenThePoseReturns) {
   hover();
   vehicle_->tracked = false;
   ASSERT_TRUE(wait_for(Mode::kDescent)) << control_.errors();
@@ -167,7 +167,7 @@ TEST_F(FakeVehicleFlight, HoldsAgainWhenThePoseIsBack) {
   EXPECT_EQ(vehicle_->height_m(), 0.0);
 }
 
-TEST_F(FakeVehicleFlight, TheLongestMissionFitsOnTheWire) {
+TEST_F(FakeVehicleFlight, UploadsTheLongestMission) {
   hover();
   control::Mission mission;
   mission.items.resize(control::kMaxMissionItems);
@@ -180,8 +180,8 @@ TEST_F(FakeVehicleFlight, TheLongestMissionFitsOnTheWire) {
   }));
 }
 
-// As `./dev bench --only missions` measures it, with room for a busy computer: the target is 1 s.
-TEST_F(FakeVehicleFlight, AMissionOfAThousandWaypointsIsUploadedAndStartedAtOnce) {
+// `./dev bench --only missions` measures the target of 1 s; the bound here allows for a busy machine.
+TEST_F(FakeVehicleFlight, StartsAMissionOf1000WaypointsQuickly) {
   hover();
   control::Mission mission;
   mission.items.resize(1000);
@@ -197,7 +197,7 @@ TEST_F(FakeVehicleFlight, AMissionOfAThousandWaypointsIsUploadedAndStartedAtOnce
   EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 5.0);
 }
 
-TEST_F(FakeVehicleFlight, AnotherMissionOfTheSameIdIsRefused) {
+TEST_F(FakeVehicleFlight, RefusesADifferentMissionOfTheSameId) {
   start_vehicle();
   control::Mission mission;
   mission.items.resize(2);

@@ -1,4 +1,4 @@
-// Several vehicles from one command.
+// Several vehicles flown by one command.
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using nlohmann::json;
 
-// The vehicle's control process, of those that a flight has started.
+// The control process of a vehicle among the children of `swiftlet fly`.
 pid_t control_of(const Program& fly, const std::string& vehicle) {
   for (const pid_t child : children_of(fly.pid())) {
     const std::string words = command_line_of(child);
@@ -57,15 +57,15 @@ class FleetFlight : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(FleetFlight, BeginsTogetherSideBySide) {
-  const Ending end = run_program("swiftlet", arguments({"--clock", "lockstep", "--spacing", "2", "--json"}),
-                                 folder_.path(), 90s);
-  ASSERT_EQ(end.exit_code, 0) << end.errors;
-  const json whole = json::parse(end.output);
-  EXPECT_EQ(whole.at("completed"), true);
-  ASSERT_EQ(whole.at("vehicles").size(), 2U);
+TEST_F(FleetFlight, StartsTogetherSideBySide) {
+  const ProgramResult result = run_program(
+      "swiftlet", arguments({"--clock", "lockstep", "--spacing", "2", "--json"}), folder_.path(), 90s);
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const json report_of_all = json::parse(result.output);
+  EXPECT_EQ(report_of_all.at("completed"), true);
+  ASSERT_EQ(report_of_all.at("vehicles").size(), 2U);
   for (const int i : {0, 1}) {
-    const json& report = whole.at("vehicles")[static_cast<std::size_t>(i)];
+    const json& report = report_of_all.at("vehicles")[static_cast<std::size_t>(i)];
     const std::string name = "kl" + std::to_string(i + 1);
     EXPECT_EQ(report.at("vehicle_name"), name);
     EXPECT_EQ(report.at("record_dir"), (record() / name).string());
@@ -77,7 +77,7 @@ TEST_F(FleetFlight, BeginsTogetherSideBySide) {
   }
 }
 
-TEST_F(FleetFlight, WhenOneFailsTheOtherLands) {
+TEST_F(FleetFlight, LandsTheOthersWhenOneFails) {
   Program fly("swiftlet", arguments({}), folder_.path());
   ASSERT_TRUE(
       eventually([&] { return fly.errors().find("2/") != std::string::npos || fly.exit_code(); }, 60s));
@@ -108,7 +108,7 @@ class TwoVehicles : public testing::Test {
     more.insert(more.end(), {"--clock", "lockstep"});
     return words(vehicle, more);
   }
-  Ending swiftlet(const std::string& vehicles, const std::vector<std::string>& more) const {
+  ProgramResult swiftlet(const std::string& vehicles, const std::vector<std::string>& more) const {
     return run_program("swiftlet", words(vehicles, more), folder_.path());
   }
 
@@ -122,8 +122,8 @@ class TwoVehicles : public testing::Test {
   Program control_2_{"swiftlet-control", lockstep("kl2"), folder_.path()};
 };
 
-TEST_F(TwoVehicles, AreAskedAtOnceAndAnswerEachForItself) {
-  Ending armed;
+TEST_F(TwoVehicles, AnswerOneCommandIndependently) {
+  ProgramResult armed;
   ASSERT_TRUE(eventually([&] {
     armed = swiftlet("kl1,kl2", {"arm", "--json"});
     return armed.exit_code == 0;
@@ -131,20 +131,20 @@ TEST_F(TwoVehicles, AreAskedAtOnceAndAnswerEachForItself) {
   EXPECT_EQ(json::parse(armed.output),
             json::parse(R"({"kl1": {"accepted": true}, "kl2": {"accepted": true}})"));
 
-  const Ending disarmed = swiftlet("kl2", {"disarm"});
+  const ProgramResult disarmed = swiftlet("kl2", {"disarm"});
   EXPECT_EQ(disarmed.exit_code, 0) << disarmed.errors;
-  const Ending taken_off = swiftlet("kl1,kl2", {"takeoff", "0.5", "--wait", "20"});
+  const ProgramResult taken_off = swiftlet("kl1,kl2", {"takeoff", "0.5", "--wait", "20"});
   EXPECT_EQ(taken_off.exit_code, 1);
   EXPECT_EQ(taken_off.output, "takeoff: accepted by kl1\ntakeoff: kl1: done\n");
   EXPECT_NE(taken_off.errors.find("swiftlet: takeoff: kl2: "), std::string::npos) << taken_off.errors;
   EXPECT_EQ(taken_off.errors.find("kl1"), std::string::npos) << taken_off.errors;
 }
 
-TEST_F(TwoVehicles, OneThatIsNotThereIsNamed) {
-  const Ending end = swiftlet("kl1,kl9", {"stop", "--yes", "--timeout", "5"});
-  EXPECT_EQ(end.exit_code, 1);
-  EXPECT_EQ(end.output, "stop: accepted by kl1\n");
-  EXPECT_NE(end.errors.find("swiftlet: stop: kl9: "), std::string::npos) << end.errors;
+TEST_F(TwoVehicles, MissingVehicleIsNamed) {
+  const ProgramResult result = swiftlet("kl1,kl9", {"stop", "--yes", "--timeout", "5"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.output, "stop: accepted by kl1\n");
+  EXPECT_NE(result.errors.find("swiftlet: stop: kl9: "), std::string::npos) << result.errors;
 }
 
 }  // namespace

@@ -21,9 +21,10 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using nlohmann::json;
 
-constexpr auto kStartTimeout = 40s;  // until it is in the air; processes come up slowly on a busy machine
+constexpr auto kStartTimeout =
+    40s;  // until the vehicle is airborne; processes start slowly on a busy machine
 
-// Long enough to do something to it while it flies.
+// Long enough to disturb it in flight.
 const std::string kLongMission =
     "name: hover\n"
     "frame: ned\n"
@@ -42,27 +43,28 @@ class Fly : public testing::Test {
   }
   fs::path record() const { return folder_.path() / "record"; }
 
-  // Flies in real time. A computer that stands still, as one whose disk is busy may for half a second, flies another
-  // flight than was asked for: that one is flown again, twice at most.
+  // Flies in real time. A flight during which the machine stalls for more than 100 ms is repeated, twice at
+  // most.
   void fly_in_real_time(const std::vector<std::string>& words) {
     for (int attempt = 0; attempt < 3; ++attempt) {
       Program fly("swiftlet", words, folder_.path());
       exit_code_ = fly.wait(90s);
-      told_ = reported(fly);
+      log_text_ = all_output(fly);
       output_ = fly.output();
       errors_ = fly.errors();
-      if (stood_still_ms() < 100.0) return;
+      if (longest_stall_ms() < 100.0) return;
     }
   }
-  // How long the plant was behind real time, as its last line says.
-  double stood_still_ms() const {
-    const std::size_t at = told_.rfind("behind real time ");
-    const std::size_t comma = told_.find(", ", at);
-    return at == std::string::npos || comma == std::string::npos ? 0.0 : std::stod(told_.substr(comma + 2));
+  // The plant's longest delay behind real time, from its last log line.
+  double longest_stall_ms() const {
+    const std::size_t at = log_text_.rfind("behind real time ");
+    const std::size_t comma = log_text_.find(", ", at);
+    return at == std::string::npos || comma == std::string::npos ? 0.0
+                                                                 : std::stod(log_text_.substr(comma + 2));
   }
 
-  // All that was said, for a message of a failed expectation.
-  std::string reported(const Program& fly) const {
+  // All output, for failure messages.
+  std::string all_output(const Program& fly) const {
     std::string text = fly.output() + fly.errors();
     for (const char* process : {"swiftlet-plant", "swiftlet-mocap", "swiftlet-control"}) {
       std::ifstream log(record() / (std::string(process) + ".log"));
@@ -72,14 +74,14 @@ class Fly : public testing::Test {
   }
 
   TemporaryFolder folder_;
-  int exit_code_ = -1;  // of fly_in_real_time(), and what was said there
-  std::string told_;
+  int exit_code_ = -1;  // of fly_in_real_time(), with its output
+  std::string log_text_;
   std::string output_;
   std::string errors_;
 };
 
-// A step of control for each sample of the flight, by the vehicle's clock: a computer that stalls slows both down, and
-// with them the rate by the clock on the wall, which may be lower but not higher.
+// Expects one control step per IMU sample of the flight, by the vehicle's clock. A machine that stalls slows
+// both down, so the rate in real time may be lower but not higher.
 void expect_control_rate(const json& report, double rate_hz) {
   const double cycles = report.at("cycles");
   EXPECT_GT(cycles, 0.95 * rate_hz * report.at("duration_s").get<double>());
@@ -88,10 +90,10 @@ void expect_control_rate(const json& report, double rate_hz) {
   EXPECT_LT(report.at("control_rate_hz"), 1.05 * rate_hz);
 }
 
-// This and the next two judge rates, latencies and errors in real time: nothing runs beside them.
+// This test and the next two measure rates, latencies and errors in real time and run alone (ALONE in CMakeLists.txt).
 TEST_F(Fly, FliesReportsAndRecordsAMission) {
   fly_in_real_time(arguments(folder_.write("hop.yaml", kHopMission), {"--seed", "7"}));
-  ASSERT_EQ(exit_code_, 0) << told_;
+  ASSERT_EQ(exit_code_, 0) << log_text_;
 
   const json report = json::parse(output_);
   EXPECT_EQ(report.at("completed"), true);
@@ -111,16 +113,16 @@ TEST_F(Fly, FliesReportsAndRecordsAMission) {
   EXPECT_LE(latency.at("p50"), latency.at("p99"));
   EXPECT_LE(latency.at("p99"), latency.at("max"));
 
-  std::ifstream kept(record() / "report.json");
-  EXPECT_EQ(json::parse(kept), report);
+  std::ifstream report_file(record() / "report.json");
+  EXPECT_EQ(json::parse(report_file), report);
   EXPECT_GT(fs::file_size(record() / "flight.csv"), 50'000U);
   EXPECT_GT(fs::file_size(record() / "flight.png"), 20'000U);
-  EXPECT_NE(errors_.find("2/3 waypoint"), std::string::npos) << "no progress was shown: " << errors_;
+  EXPECT_NE(errors_.find("2/3 waypoint"), std::string::npos) << "no progress shown: " << errors_;
 }
 
 TEST_F(Fly, FliesAtOneKilohertz) {
   fly_in_real_time(arguments(folder_.write("hop.yaml", kHopMission), {"--imu-rate", "1000"}));
-  ASSERT_EQ(exit_code_, 0) << told_;
+  ASSERT_EQ(exit_code_, 0) << log_text_;
   const json report = json::parse(output_);
   expect_control_rate(report, 1000.0);
   EXPECT_LT(report.at("rms_3d_m"), 0.010);
@@ -128,13 +130,13 @@ TEST_F(Fly, FliesAtOneKilohertz) {
 
 TEST_F(Fly, SpeedScalesRealTime) {
   fly_in_real_time(arguments(folder_.write("hop.yaml", kHopMission), {"--speed", "4"}));
-  ASSERT_EQ(exit_code_, 0) << told_;
+  ASSERT_EQ(exit_code_, 0) << log_text_;
   const json report = json::parse(output_);
   EXPECT_NEAR(report.at("control_rate_hz"), 2000.0, 200.0);
   EXPECT_LT(report.at("rms_3d_m"), 0.010);
 }
 
-TEST_F(Fly, FliesOverSharedMemoryAndLeavesNothingThere) {
+TEST_F(Fly, FliesOverSharedMemoryAndRemovesIt) {
   Program fly("swiftlet", arguments("square", {"--transport", "shm", "--clock", "lockstep"}), folder_.path());
   const auto children = [&] { return children_of(fly.pid()); };
   std::vector<std::string> files;
@@ -146,9 +148,9 @@ TEST_F(Fly, FliesOverSharedMemoryAndLeavesNothingThere) {
         return fly.errors().find("2/6 waypoint") != std::string::npos;
       },
       kStartTimeout))
-      << reported(fly);
+      << all_output(fly);
   EXPECT_FALSE(files.empty()) << "no process used shared memory";
-  ASSERT_EQ(fly.wait(90s), 0) << reported(fly);
+  ASSERT_EQ(fly.wait(90s), 0) << all_output(fly);
   for (const std::string& file : files) EXPECT_FALSE(fs::exists(file)) << file;
 }
 
@@ -157,7 +159,7 @@ TEST_F(Fly, FailsBeyondTheMissionsTolerance) {
   mission.replace(mission.find("0.1"), 3, "1e-6");
   Program fly("swiftlet", arguments(folder_.write("strict.yaml", mission), {"--clock", "lockstep"}),
               folder_.path());
-  ASSERT_EQ(fly.wait(90s), 1) << reported(fly);
+  ASSERT_EQ(fly.wait(90s), 1) << all_output(fly);
   const json report = json::parse(fly.output());
   EXPECT_EQ(report.at("completed"), false);
   EXPECT_NE(report.at("reason").get<std::string>().find("the tolerance is 0.000 m"), std::string::npos)
@@ -166,7 +168,7 @@ TEST_F(Fly, FailsBeyondTheMissionsTolerance) {
 
 class FlyTwoAtOnce : public Fly, public testing::WithParamInterface<const char*> {};
 
-TEST_P(FlyTwoAtOnce, DoNotDisturbEachOther) {
+TEST_P(FlyTwoAtOnce, DoNotInterfere) {
   const std::string mission = folder_.write("hop.yaml", kHopMission);
   const auto words = [&](const char* name) {
     return std::vector<std::string>{"fly",      mission,    "--json",
@@ -181,7 +183,7 @@ TEST_P(FlyTwoAtOnce, DoNotDisturbEachOther) {
 
 INSTANTIATE_TEST_SUITE_P(, FlyTwoAtOnce, testing::Values("udp", "shm"));
 
-// Everything that happens to a flight under way.
+// A flight that is interrupted once it is airborne.
 class FlyInterrupted : public Fly {
  protected:
   explicit FlyInterrupted(const std::string& transport = "udp")
@@ -191,7 +193,7 @@ class FlyInterrupted : public Fly {
   void SetUp() override {
     ASSERT_TRUE(
         eventually([&] { return fly_.errors().find("2/3 waypoint") != std::string::npos; }, kStartTimeout))
-        << reported(fly_);
+        << all_output(fly_);
     children_ = children_of(fly_.pid());
     ASSERT_EQ(children_.size(), 3U);
   }
@@ -206,13 +208,13 @@ class FlyInterrupted : public Fly {
   std::vector<pid_t> children_;
 };
 
-class FlyWithADeath : public FlyInterrupted, public testing::WithParamInterface<const char*> {};
+class FlyWithADeadProcess : public FlyInterrupted, public testing::WithParamInterface<const char*> {};
 
-TEST_P(FlyWithADeath, NamesTheProcessThatDied) {
+TEST_P(FlyWithADeadProcess, NamesTheProcessThatDied) {
   const pid_t victim = child_of(fly_.pid(), GetParam());
   ASSERT_GT(victim, 0);
   ASSERT_EQ(kill(victim, SIGKILL), 0);
-  ASSERT_EQ(fly_.wait(20s), 1) << reported(fly_);
+  ASSERT_EQ(fly_.wait(20s), 1) << all_output(fly_);
   const json report = json::parse(fly_.output());
   EXPECT_EQ(report.at("completed"), false);
   EXPECT_EQ(report.at("reason").get<std::string>().find(std::string(GetParam()) +
@@ -220,58 +222,57 @@ TEST_P(FlyWithADeath, NamesTheProcessThatDied) {
             0U)
       << report;
   EXPECT_NE(fly_.errors().find(GetParam()), std::string::npos);
-  EXPECT_TRUE(fs::exists(record() / "flight.csv")) << "what was flown until then is kept";
+  EXPECT_TRUE(fs::exists(record() / "flight.csv")) << "the record so far must be kept";
   expect_end_without_leftovers();
 }
 
-INSTANTIATE_TEST_SUITE_P(, FlyWithADeath,
+INSTANTIATE_TEST_SUITE_P(, FlyWithADeadProcess,
                          testing::Values("swiftlet-plant", "swiftlet-mocap", "swiftlet-control"));
 
-class FlyOverSharedMemoryWithADeath : public FlyInterrupted {
+class FlyOverSharedMemoryWithADeadProcess : public FlyInterrupted {
  protected:
-  FlyOverSharedMemoryWithADeath() : FlyInterrupted("shm") {}
+  FlyOverSharedMemoryWithADeadProcess() : FlyInterrupted("shm") {}
 };
 
-TEST_F(FlyOverSharedMemoryWithADeath, LeavesNothingThere) {
+TEST_F(FlyOverSharedMemoryWithADeadProcess, RemovesItsSharedMemory) {
   std::vector<std::string> files;
   for (const pid_t child : children_) {
     for (const std::string& file : shared_memory_of(child)) files.push_back(file);
   }
   EXPECT_FALSE(files.empty()) << "no process used shared memory";
   ASSERT_EQ(kill(child_of(fly_.pid(), "swiftlet-control"), SIGKILL), 0);
-  ASSERT_EQ(fly_.wait(20s), 1) << reported(fly_);
+  ASSERT_EQ(fly_.wait(20s), 1) << all_output(fly_);
   for (const std::string& file : files) EXPECT_FALSE(fs::exists(file)) << file;
 }
 
 TEST_F(FlyInterrupted, LandsOnTheFirstInterrupt) {
   fly_.signal(SIGINT);
-  ASSERT_EQ(fly_.wait(30s), 1) << reported(fly_);
+  ASSERT_EQ(fly_.wait(30s), 1) << all_output(fly_);
   const json report = json::parse(fly_.output());
   EXPECT_EQ(report.at("completed"), false);
   EXPECT_EQ(report.at("reason"), "interrupted; landed");
   expect_end_without_leftovers();
 }
 
-TEST_F(FlyInterrupted, EndsAtOnceOnTheSecond) {
+TEST_F(FlyInterrupted, QuitsOnTheSecondInterrupt) {
   fly_.signal(SIGINT);
   ASSERT_TRUE(eventually(
       [&] { return fly_.errors().find("interrupt again to quit at once") != std::string::npos; }, 10s));
   const auto second = std::chrono::steady_clock::now();
   fly_.signal(SIGINT);
-  ASSERT_EQ(fly_.wait(30s), 1) << reported(fly_);
+  ASSERT_EQ(fly_.wait(30s), 1) << all_output(fly_);
   EXPECT_EQ(json::parse(fly_.output()).at("reason"), "interrupted; quit in flight");
   EXPECT_LT(std::chrono::steady_clock::now() - second, 10s);
   expect_end_without_leftovers();
 }
 
-TEST_F(FlyInterrupted, TakesItsProcessesWithItWhenItIsKilled) {
+TEST_F(FlyInterrupted, EndsItsProcessesWhenKilled) {
   fly_.signal(SIGKILL);
   ASSERT_EQ(fly_.wait(10s), 128 + SIGKILL);
   expect_end_without_leftovers();
 }
 
-// The whole paths of the paper's Figs. 8 and 9: the errors are those of the laws in lockstep too. `./dev soak flights`
-// flies them in real time.
+// The whole paths of the paper's Figs. 8 and 9, in lockstep; `./dev soak flights` flies them in real time.
 struct PaperFlight {
   const char* name;
   const char* mission;
@@ -282,12 +283,12 @@ void PrintTo(const PaperFlight& flight, std::ostream* out) { *out << flight.name
 
 class FlyPaper : public Fly, public testing::WithParamInterface<PaperFlight> {};
 
-TEST_P(FlyPaper, KeepsToItsPath) {
+TEST_P(FlyPaper, TracksItsPath) {
   const PaperFlight& flight = GetParam();
   const char* const clock = is_soak() ? "realtime" : "lockstep";
   Program fly("swiftlet", arguments(flight.mission, {"--control", flight.control, "--clock", clock}),
               folder_.path());
-  ASSERT_EQ(fly.wait(120s), 0) << reported(fly);
+  ASSERT_EQ(fly.wait(120s), 0) << all_output(fly);
   const json report = json::parse(fly.output());
   EXPECT_EQ(report.at("completed"), true) << report;
   EXPECT_NEAR(report.at("duration_s"), 40.0, 4.0);

@@ -1,5 +1,5 @@
-// `swiftlet identify flight` as a user runs it: a flight's record in, a vehicle file out that the other
-// commands take.
+// `swiftlet identify flight` from end to end: reads a flight record, writes a vehicle file that other
+// commands read.
 #include <chrono>
 #include <fstream>
 #include <sstream>
@@ -16,27 +16,27 @@
 namespace swiftlet::tests {
 namespace {
 
-// A fit takes some seconds, and ten times that with sanitizers.
-constexpr std::chrono::seconds kPatience{120};
+// A fit takes seconds, and ten times as long with sanitizers.
+constexpr std::chrono::seconds kFitTimeout{120};
 
 class IdentifyFlight : public testing::Test {
  protected:
-  Ending run(std::vector<std::string> words) const {
-    return run_program("swiftlet", std::move(words), folder_.path(), kPatience);
+  ProgramResult run(std::vector<std::string> words) const {
+    return run_program("swiftlet", std::move(words), folder_.path(), kFitTimeout);
   }
   std::string in_folder(const char* name) const { return (folder_.path() / name).string(); }
 
   TemporaryFolder folder_;
 };
 
-TEST_F(IdentifyFlight, MakesAVehicleOfARecord) {
-  const Ending flight =
+TEST_F(IdentifyFlight, WritesAVehicleFileFromARecord) {
+  const ProgramResult flight =
       run({"sim", "fly", "identification", "--sensors", "--record", in_folder("first"), "--json"});
   ASSERT_EQ(flight.exit_code, 0) << flight.errors;
-  const Ending end = run({"identify", "flight", in_folder("first"), "--out", in_folder("mine.yaml"),
-                          "--report", in_folder("report.html"), "--json"});
-  ASSERT_EQ(end.exit_code, 0) << end.errors;
-  const nlohmann::json report = nlohmann::json::parse(end.output);
+  const ProgramResult result = run({"identify", "flight", in_folder("first"), "--out", in_folder("mine.yaml"),
+                                    "--report", in_folder("report.html"), "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const nlohmann::json report = nlohmann::json::parse(result.output);
   EXPECT_EQ(report["vehicle"], "mine");
   EXPECT_EQ(report["source"], "measured");
   EXPECT_EQ(report["prediction"].size(), 4U);
@@ -49,35 +49,36 @@ TEST_F(IdentifyFlight, MakesAVehicleOfARecord) {
   EXPECT_NE(page.str().find("<svg"), std::string::npos);
   EXPECT_EQ(page.str().find("http"), std::string::npos);
 
-  const Ending gains = run({"gains", "--vehicle", in_folder("mine.yaml"), "--draws", "50", "--json"});
+  const ProgramResult gains = run({"gains", "--vehicle", in_folder("mine.yaml"), "--samples", "50", "--json"});
   ASSERT_EQ(gains.exit_code, 0) << gains.errors;
   const nlohmann::json margins = nlohmann::json::parse(gains.output);
-  EXPECT_EQ(margins["draws"], 50);
+  EXPECT_EQ(margins["samples"], 50);
   EXPECT_LE(margins["margins"]["roll"]["worst"]["phase_deg"],
             margins["margins"]["roll"]["designed"]["phase_deg"]);
 
-  const Ending batch = run({"sim", "batch", "square", "--vehicle", in_folder("mine.yaml"), "--dispersion",
-                            "uncertainty", "--runs", "10", "--out", in_folder("batch"), "--json"});
+  const ProgramResult batch =
+      run({"sim", "batch", "square", "--vehicle", in_folder("mine.yaml"), "--dispersion", "uncertainty",
+           "--runs", "10", "--out", in_folder("batch"), "--json"});
   EXPECT_EQ(batch.exit_code, 0) << batch.errors;
 }
 
-// What comes over the network is what identifies the vehicle, not what the plant keeps to itself.
-TEST_F(IdentifyFlight, TakesTheRecordOfSeparateProcesses) {
-  const Ending flight = run({"fly", "identification", "--clock", "lockstep", "--sensors", "--record",
-                             in_folder("first"), "--json"});
+// Identification uses data received over the network, not internals of the plant.
+TEST_F(IdentifyFlight, ReadsTheRecordOfSeparateProcesses) {
+  const ProgramResult flight = run({"fly", "identification", "--clock", "lockstep", "--sensors", "--record",
+                                    in_folder("first"), "--json"});
   ASSERT_EQ(flight.exit_code, 0) << flight.errors;
-  const Ending end =
+  const ProgramResult result =
       run({"identify", "flight", in_folder("first"), "--out", in_folder("mine.yaml"), "--json"});
-  ASSERT_EQ(end.exit_code, 0) << end.errors;
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_NEAR(runtime::load_vehicle(in_folder("mine.yaml")).motor.time_constant_s / 0.0821, 1.0, 0.001);
 }
 
-TEST_F(IdentifyFlight, TellsWhatALogWithoutPosesTells) {
+TEST_F(IdentifyFlight, ReportsWhatALogWithoutPosesDetermines) {
   const std::string log = SWIFTLET_SOURCE_DIR "/tests/data/crazyflie_flight.csv.gz";
-  const Ending end = run({"identify", "flight", log, "--base", "crazyflie2", "--out", in_folder("mine.yaml"),
-                          "--report", in_folder("report.html"), "--json"});
-  ASSERT_EQ(end.exit_code, 0) << end.errors;
-  const nlohmann::json report = nlohmann::json::parse(end.output);
+  const ProgramResult result = run({"identify", "flight", log, "--base", "crazyflie2", "--out",
+                                    in_folder("mine.yaml"), "--report", in_folder("report.html"), "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const nlohmann::json report = nlohmann::json::parse(result.output);
   EXPECT_EQ(report["source"], "commanded");
   EXPECT_EQ(report["lags"].size(), 3U);
   EXPECT_EQ(report["beside_file"].size(), 4U);
@@ -93,18 +94,19 @@ TEST_F(IdentifyFlight, TellsWhatALogWithoutPosesTells) {
   EXPECT_NE(page.str().find("Thrust over mass by command"), std::string::npos);
 }
 
-TEST_F(IdentifyFlight, RefusesWhatIsNoFlight) {
+TEST_F(IdentifyFlight, RefusesInvalidLogs) {
   const std::string head =
       "t [s],acc_x [g],acc_y [g],acc_z [g],p [rad/s],q [rad/s],r [rad/s],m1 [1],m2 [1],m3 [1],m4 [1]\n";
   std::string still = head;
   for (int i = 0; i < 200; ++i) still += std::to_string(0.01 * i) + ",0,0,1,0,0,0,0,0,0,0\n";
-  const Ending never = run({"identify", "flight", folder_.write("still.csv", still)});
-  EXPECT_EQ(never.exit_code, 2);
-  EXPECT_NE(never.errors.find("still.csv: the rotors never ran"), std::string::npos) << never.errors;
-  const Ending none = run({"identify", "flight", in_folder("nowhere.csv")});
-  EXPECT_EQ(none.exit_code, 2);
-  EXPECT_NE(none.errors.find("nowhere.csv: cannot be read"), std::string::npos) << none.errors;
-  const Ending unit = run({"identify", "flight", folder_.write("unit.csv", "t,acc_x [g]\n0,0\n")});
+  const ProgramResult rotors_off = run({"identify", "flight", folder_.write("still.csv", still)});
+  EXPECT_EQ(rotors_off.exit_code, 2);
+  EXPECT_NE(rotors_off.errors.find("still.csv: the rotors never ran"), std::string::npos)
+      << rotors_off.errors;
+  const ProgramResult missing = run({"identify", "flight", in_folder("nowhere.csv")});
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_NE(missing.errors.find("nowhere.csv: cannot be read"), std::string::npos) << missing.errors;
+  const ProgramResult unit = run({"identify", "flight", folder_.write("unit.csv", "t,acc_x [g]\n0,0\n")});
   EXPECT_EQ(unit.exit_code, 2);
   EXPECT_NE(unit.errors.find("has the column t without a unit"), std::string::npos) << unit.errors;
 }

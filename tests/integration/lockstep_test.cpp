@@ -1,4 +1,4 @@
-// Lockstep: runs that repeat exactly, and what becomes of them when a peer falls silent.
+// Lockstep: flights repeat exactly, and end when a peer falls silent.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -36,10 +36,10 @@ const std::string kMission =
     "  - {kind: waypoint, position_m: [0.5, -0.3, -0.7], yaw_rad: 0.5, speed_m_s: 0.5}\n"
     "  - {kind: land, speed_m_s: 0.5}\n";
 
-// Works on every core for as long as it lives.
-class OtherLoad {
+// Loads every core during its lifetime.
+class CpuLoad {
  public:
-  OtherLoad() {
+  CpuLoad() {
     for (unsigned i = 0; i < std::thread::hardware_concurrency(); ++i) {
       threads_.emplace_back([this] {
         volatile double x = 1.0;
@@ -47,7 +47,7 @@ class OtherLoad {
       });
     }
   }
-  ~OtherLoad() {
+  ~CpuLoad() {
     end_ = true;
     for (std::thread& thread : threads_) thread.join();
   }
@@ -69,33 +69,33 @@ class Lockstep : public testing::Test {
     std::string trace;
   };
 
-  // words: how to fly, without mission and record.
+  // words: the command line without mission and record.
   Flight fly(std::vector<std::string> words, const std::string& name) {
     const auto record = folder_.path() / name;
     words.insert(words.end(), {mission_, "--trace", "--json", "--record", record.string()});
-    const Ending ending = run_program("swiftlet", words, folder_.path(), 90s);
-    EXPECT_EQ(ending.exit_code, 0) << ending.errors;
-    return {json::parse(ending.output), contents(record / "trace.csv")};
+    const ProgramResult result = run_program("swiftlet", words, folder_.path(), 90s);
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    return {json::parse(result.output), contents(record / "trace.csv")};
   }
 
   TemporaryFolder folder_;
   std::string mission_ = folder_.write("hop.yaml", kMission);
 };
 
-TEST_F(Lockstep, RepeatsAFlightToTheLastBitAlsoBesideOtherWork) {
+TEST_F(Lockstep, RepeatsAFlightBitForBitUnderLoad) {
   const Flight alone = fly({"fly", "--clock", "lockstep", "--seed", "3"}, "alone");
-  const OtherLoad load;
-  const Flight beside = fly({"fly", "--clock", "lockstep", "--seed", "3"}, "beside");
+  const CpuLoad load;
+  const Flight under_load = fly({"fly", "--clock", "lockstep", "--seed", "3"}, "beside");
   EXPECT_GT(alone.trace.size(), 1'000'000U);
-  EXPECT_TRUE(alone.trace == beside.trace);
-  EXPECT_EQ(alone.report.at("rms_3d_m"), beside.report.at("rms_3d_m"));
-  EXPECT_EQ(alone.report.at("matched_samples"), beside.report.at("matched_samples"));
+  EXPECT_TRUE(alone.trace == under_load.trace);
+  EXPECT_EQ(alone.report.at("rms_3d_m"), under_load.report.at("rms_3d_m"));
+  EXPECT_EQ(alone.report.at("matched_samples"), under_load.report.at("matched_samples"));
   EXPECT_EQ(alone.report.at("clock"), "lockstep");
 }
 
 class LockstepRate : public Lockstep, public testing::WithParamInterface<const char*> {};
 
-TEST_P(LockstepRate, IsTheFlightOfOneProcess) {
+TEST_P(LockstepRate, EqualsTheFlightInOneProcess) {
   const std::string rate = GetParam();
   const Flight over_dds = fly({"fly", "--clock", "lockstep", "--seed", "4", "--imu-rate", rate}, "dds");
   const Flight in_process = fly({"sim", "fly", "--seed", "4", "--imu-rate", rate}, "process");
@@ -109,20 +109,20 @@ TEST_P(LockstepRate, IsTheFlightOfOneProcess) {
 INSTANTIATE_TEST_SUITE_P(, LockstepRate, testing::Values("500", "1000"),
                          [](const auto& rate) { return std::string(rate.param) + "Hz"; });
 
-// The plant waits for frames whose times are drawn.
-TEST_F(Lockstep, IsTheFlightOfOneProcessAlsoWithUnevenMocap) {
-  const std::vector<std::string> uneven = {"--seed", "7", "--simulation", "simulation/optitrack.yaml"};
+// The plant waits for frames with random times.
+TEST_F(Lockstep, EqualsTheFlightInOneProcessWithMocapJitter) {
+  const std::vector<std::string> jitter = {"--seed", "7", "--simulation", "simulation/optitrack.yaml"};
   std::vector<std::string> over_dds = {"fly", "--clock", "lockstep"};
   std::vector<std::string> in_process = {"sim", "fly"};
-  over_dds.insert(over_dds.end(), uneven.begin(), uneven.end());
-  in_process.insert(in_process.end(), uneven.begin(), uneven.end());
+  over_dds.insert(over_dds.end(), jitter.begin(), jitter.end());
+  in_process.insert(in_process.end(), jitter.begin(), jitter.end());
   const Flight dds = fly(over_dds, "dds");
   EXPECT_GT(dds.trace.size(), 1'000'000U);
   EXPECT_TRUE(dds.trace == fly(in_process, "process").trace);
 }
 
-// What a fault keeps back is not waited for, and whatever comes comes at the same stamp.
-TEST_F(Lockstep, FaultsAreTheSameInEveryProcess) {
+// The plant does not wait for samples that a fault suppresses; all others arrive at the same stamp.
+TEST_F(Lockstep, EqualsTheFlightInOneProcessWithFaults) {
   std::ifstream world(SWIFTLET_SOURCE_DIR "/config/simulation/default.yaml");
   const std::string simulation = folder_.write(
       "faults.yaml",
@@ -154,8 +154,8 @@ TEST_F(Lockstep, FaultsAreTheSameInEveryProcess) {
   }
 }
 
-// Polynomials that came as a file of another project, in one message, evaluated to the last bit.
-TEST_F(Lockstep, ATrajectoryIsTheFlightOfOneProcess) {
+// Polynomials of a third-party file, sent in one message and evaluated bit for bit.
+TEST_F(Lockstep, EqualsTheFlightInOneProcessOnATrajectory) {
   mission_ = SWIFTLET_SOURCE_DIR "/tests/data/crazyswarm_figure8.csv";
   const Flight over_dds = fly({"fly", "--clock", "lockstep", "--seed", "8"}, "dds");
   const Flight in_process = fly({"sim", "fly", "--seed", "8"}, "process");
@@ -171,9 +171,9 @@ std::vector<std::string> lines_of(const std::filesystem::path& file) {
   return lines;
 }
 
-// Nothing is lost on the way to the ground, whatever else the machine does.
-TEST_F(Lockstep, RecordsEverySampleThatOneProcessRecordsAlsoBesideOtherWork) {
-  const OtherLoad load;
+// No sample is lost on the way to the ground, whatever the load.
+TEST_F(Lockstep, RecordsEverySampleUnderLoad) {
+  const CpuLoad load;
   fly({"fly", "--clock", "lockstep", "--seed", "5", "--sensors"}, "dds");
   fly({"sim", "fly", "--seed", "5", "--sensors"}, "process");
   const std::vector<std::string> over_dds = lines_of(folder_.path() / "dds/sensors.csv");
@@ -181,8 +181,8 @@ TEST_F(Lockstep, RecordsEverySampleThatOneProcessRecordsAlsoBesideOtherWork) {
   ASSERT_GT(in_process.size(), 2'000U);
   ASSERT_GE(over_dds.size(), in_process.size());
   EXPECT_EQ(over_dds[0], in_process[0]);
-  // One process keeps nothing of its very first sample, and ends before the next voltage, towards which
-  // those of the last rows go.
+  // The in-process flight does not record its first sample, and ends before the next voltage, to which the
+  // last rows interpolate.
   constexpr std::size_t kLastRows = 60;
   const auto first = std::find(over_dds.begin(), over_dds.end(), in_process[1]);
   ASSERT_NE(first, over_dds.end());
@@ -191,12 +191,12 @@ TEST_F(Lockstep, RecordsEverySampleThatOneProcessRecordsAlsoBesideOtherWork) {
   EXPECT_TRUE(std::equal(first, first + compared, in_process.begin() + 1));
 }
 
-TEST_F(Lockstep, AnotherSeedIsAnotherFlight) {
+TEST_F(Lockstep, DependsOnTheSeed) {
   EXPECT_FALSE(fly({"sim", "fly", "--seed", "5"}, "five").trace ==
                fly({"sim", "fly", "--seed", "6"}, "six").trace);
 }
 
-TEST_F(Lockstep, NamesAControllerThatFallsSilent) {
+TEST_F(Lockstep, NamesASilentController) {
   const std::string hover = folder_.write("hover.yaml",
                                           "name: hover\nframe: ned\ntolerance_m: 0.1\nitems:\n"
                                           "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.5, hold_s: 400}\n"
@@ -212,8 +212,8 @@ TEST_F(Lockstep, NamesAControllerThatFallsSilent) {
   EXPECT_NE(fly.errors().find("lockstep: control is silent: IMU sample"), std::string::npos) << fly.errors();
 }
 
-// Two of three processes, without a ground tool.
-class LockstepWithout : public testing::Test {
+// The services in lockstep without a ground tool.
+class LockstepServices : public testing::Test {
  protected:
   std::unique_ptr<Program> start(const std::string& name, std::vector<std::string> more = {}) {
     more.insert(more.end(),
@@ -225,22 +225,22 @@ class LockstepWithout : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(LockstepWithout, MocapThePlantSaysSo) {
+TEST_F(LockstepServices, PlantReportsMissingMocap) {
   const auto control = start("swiftlet-control");
   const auto plant = start("swiftlet-plant");
   EXPECT_EQ(plant->wait(20s), 1);
   EXPECT_NE(plant->errors().find("lockstep: mocap is silent: "), std::string::npos) << plant->errors();
 }
 
-TEST_F(LockstepWithout, ControlThePlantSaysSo) {
+TEST_F(LockstepServices, PlantReportsMissingControl) {
   const auto mocap = start("swiftlet-mocap");
   const auto plant = start("swiftlet-plant");
   EXPECT_EQ(plant->wait(20s), 1);
   EXPECT_NE(plant->errors().find("lockstep: control is silent: "), std::string::npos) << plant->errors();
 }
 
-// Time passes up to each grant and no further; when the grants cease, the plant ends the run.
-TEST_F(LockstepWithout, GroundTimeStandsStill) {
+// Time advances up to each simulation clock message; without further messages, the plant ends the run.
+TEST_F(LockstepServices, TimeAdvancesWithTheSimulationClockOnly) {
   const auto mocap = start("swiftlet-mocap");
   const auto control = start("swiftlet-control");
   const auto plant = start("swiftlet-plant", {"--paused"});
@@ -256,12 +256,12 @@ TEST_F(LockstepWithout, GroundTimeStandsStill) {
           if (info.paused()) pauses.put(info.stamp_ns());
         });
     auto clock = ground.publish(comms::topics::kSimulationClock);
-    comms::msg::SimulationClock grant;
+    comms::msg::SimulationClock clock_message;
     for (const std::int64_t until_ns : {100'000'000, 150'000'000}) {
-      grant.advance_to_ns(until_ns);
+      clock_message.advance_to_ns(until_ns);
       ASSERT_TRUE(eventually(
           [&] {
-            clock.publish(grant);
+            clock.publish(clock_message);
             return pauses.wait(
                 [&](const auto& stamps) { return !stamps.empty() && stamps.back() == until_ns; }, 200ms);
           },
@@ -276,7 +276,7 @@ TEST_F(LockstepWithout, GroundTimeStandsStill) {
       << plant->errors();
 }
 
-TEST_F(LockstepWithout, AnythingElseTimePassesAsFastAsItCan) {
+TEST_F(LockstepServices, RunWithoutAGroundTool) {
   const auto mocap = start("swiftlet-mocap");
   const auto control = start("swiftlet-control");
   const auto plant = start("swiftlet-plant");
@@ -286,8 +286,8 @@ TEST_F(LockstepWithout, AnythingElseTimePassesAsFastAsItCan) {
   EXPECT_EQ(plant->wait(20s), 0) << plant->errors();
 }
 
-// Never ahead of the clock; how far behind is up to the machine.
-TEST_F(LockstepWithout, HasteTimePassesAtItsPace) {
+// Time is never ahead of the scaled clock; the machine decides how far behind it is.
+TEST_F(LockstepServices, DoNotExceedTheirSpeed) {
   constexpr double kSpeed = 4.0;
   comms::NodeSettings settings;
   settings.name = "watcher";
@@ -308,12 +308,12 @@ TEST_F(LockstepWithout, HasteTimePassesAtItsPace) {
   EXPECT_GE(elapsed.count(), 4.0 / kSpeed);
 }
 
-TEST(LockstepOptions, ThatDoNotGoTogetherAreRefused) {
+TEST(LockstepOptions, ConflictingOnesAreRefused) {
   const TemporaryFolder folder;
   const auto refused = [&](const std::string& program, const std::vector<std::string>& words) {
-    const Ending ending = run_program(program, words, folder.path());
-    EXPECT_EQ(ending.exit_code, 2) << ending.errors;
-    return ending.errors;
+    const ProgramResult result = run_program(program, words, folder.path());
+    EXPECT_EQ(result.exit_code, 2) << result.errors;
+    return result.errors;
   };
   EXPECT_NE(refused("swiftlet", {"fly", "--clock", "lockstep", "--speed", "2"}).find("--speed"),
             std::string::npos);

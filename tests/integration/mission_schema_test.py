@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""config/missions/mission.schema.json, which editors use, and the parser of `swiftlet mission check` say the same.
+"""config/missions/mission.schema.json, used by editors, agrees with the parser of `swiftlet mission check`.
 
 usage: mission_schema_test.py SWIFTLET SOURCE_FOLDER
-Every example mission passes both, missions that are wrong in form neither, and both know the same keys.
+Both accept every example mission, refuse missions of invalid form, and know the same keys.
 """
 
 import json
@@ -26,7 +26,7 @@ def mission(*items, head=HEAD):
 
 
 POINTS = "[[0, 0, -1], [1, 0, -1]]"
-FINE = {
+VALID = {
     "all of a waypoint": mission(
         "{kind: waypoint, position_m: [1, 0, -1], yaw_rad: 1, speed_m_s: 1, acceptance_radius_m: 0.1, hold_s: 1}"),
     "free yaw": mission("{kind: waypoint, position_m: [1, 0, -1], yaw_rad: free, speed_m_s: 1}"),
@@ -45,7 +45,7 @@ FINE = {
                                 "acceleration_m_s2: 1, jerk_m_s3: 6, yaw_rate_rad_s: 1}\n"
                                 "geofence: {min_m: [-1, -1, -2], max_m: [1, 1, 0.2]}\n"),
 }
-WRONG_IN_FORM = {
+INVALID_FORM = {
     "no frame": mission(head="tolerance_m: 0.1\n"),
     "another frame": mission(head="frame: body\ntolerance_m: 0.1\n"),
     "no tolerance": mission(head="frame: ned\n"),
@@ -75,8 +75,8 @@ WRONG_IN_FORM = {
     "ends somewhere": mission(head=HEAD + "ends: somewhere\n"),
     "name with a folder": mission(head="name: ../m\n" + HEAD),
 }
-# What a schema cannot see.
-WRONG_OTHERWISE = {
+# Faults that a schema cannot detect.
+INVALID_CONTENT = {
     "outside the fence": mission("{kind: waypoint, position_m: [9, 0, -1], speed_m_s: 1}"),
     "too fast": mission("{kind: waypoint, position_m: [1, 0, -1], speed_m_s: 9}"),
     "a second takeoff": mission("{kind: takeoff, height_m: 1, speed_m_s: 0.5}"),
@@ -95,7 +95,7 @@ def expect(holds, sentence):
         failures.append(sentence)
 
 
-class Judges:
+class Checkers:
     def __init__(self, swiftlet, schema, folder):
         self.swiftlet = swiftlet
         self.validator = jsonschema.Draft7Validator(schema)
@@ -106,10 +106,10 @@ class Judges:
         return fault.message if fault else ""
 
     def parser_fault(self, path):
-        """Empty if it is taken; whether it can be flown is another question."""
-        end = subprocess.run([self.swiftlet, "mission", "check", path], capture_output=True, text=True, check=False)
-        expect(end.returncode in (0, 1, 2), f"{path}: exit code {end.returncode}: {end.stderr}")
-        return end.stderr if end.returncode == 2 else ""
+        """The parser's message, or empty if it accepts the file; feasibility is not checked."""
+        result = subprocess.run([self.swiftlet, "mission", "check", path], capture_output=True, text=True, check=False)
+        expect(result.returncode in (0, 1, 2), f"{path}: exit code {result.returncode}: {result.stderr}")
+        return result.stderr if result.returncode == 2 else ""
 
     def parser_fault_of_text(self, text):
         path = self.folder / "m.yaml"
@@ -118,12 +118,12 @@ class Judges:
 
 
 def keys_named_by(fault):
-    """Those of "must be one of a, b or c; nearest is b"."""
+    """The keys in a message such as "must be one of a, b or c; nearest is b"."""
     listed = re.search(r"must be one of ([^;\n]*)", fault)
     return set(re.split(r", | or ", listed.group(1))) if listed else set()
 
 
-def check_keys(judges, schema):
+def check_keys(checkers, schema):
     definitions = schema["definitions"]
     kinds = definitions["item"]["properties"]["kind"]["enum"]
     every = set().union(*(definitions[kind]["properties"] for kind in kinds))
@@ -141,9 +141,9 @@ def check_keys(judges, schema):
         text = HEAD + f"items:\n  - {{kind: {kind}, {other}: 1}}\n" + LAND
         expected[kind] = (text, known)
     for what, (text, known) in expected.items():
-        fault = judges.parser_fault_of_text(text)
+        fault = checkers.parser_fault_of_text(text)
         expect(keys_named_by(fault) == known, f"keys of {what}: the schema has {sorted(known)}, the parser says {fault}")
-        expect(judges.schema_fault(text), f"keys of {what}: the schema takes one that it does not know")
+        expect(checkers.schema_fault(text), f"keys of {what}: the schema accepts an unknown key")
 
 
 def main():
@@ -152,25 +152,25 @@ def main():
     schema = json.loads((missions / "mission.schema.json").read_text())
     jsonschema.Draft7Validator.check_schema(schema)
     with tempfile.TemporaryDirectory() as folder:
-        judges = Judges(swiftlet, schema, folder)
+        checkers = Checkers(swiftlet, schema, folder)
         examples = sorted(missions.glob("*.yaml"))
         expect(len(examples) >= 3, f"{missions} holds {len(examples)} missions")
         for example in examples:
             text = example.read_text()
             expect(text.startswith("# yaml-language-server: $schema=mission.schema.json\n"),
                    f"{example.name} does not name its schema in its first line")
-            expect(not judges.schema_fault(text), f"{example.name}: the schema: {judges.schema_fault(text)}")
-            expect(not judges.parser_fault(example), f"{example.name}: the parser: {judges.parser_fault(example)}")
-        for name, text in FINE.items():
-            expect(not judges.schema_fault(text), f"{name}: the schema: {judges.schema_fault(text)}")
-            expect(not judges.parser_fault_of_text(text), f"{name}: the parser: {judges.parser_fault_of_text(text)}")
-        for name, text in WRONG_IN_FORM.items():
-            expect(judges.schema_fault(text), f"{name}: the schema takes it")
-            expect(judges.parser_fault_of_text(text), f"{name}: the parser takes it")
-        for name, text in WRONG_OTHERWISE.items():
-            expect(not judges.schema_fault(text), f"{name}: the schema: {judges.schema_fault(text)}")
-            expect(judges.parser_fault_of_text(text), f"{name}: the parser takes it")
-        check_keys(judges, schema)
+            expect(not checkers.schema_fault(text), f"{example.name}: the schema: {checkers.schema_fault(text)}")
+            expect(not checkers.parser_fault(example), f"{example.name}: the parser: {checkers.parser_fault(example)}")
+        for name, text in VALID.items():
+            expect(not checkers.schema_fault(text), f"{name}: the schema: {checkers.schema_fault(text)}")
+            expect(not checkers.parser_fault_of_text(text), f"{name}: the parser: {checkers.parser_fault_of_text(text)}")
+        for name, text in INVALID_FORM.items():
+            expect(checkers.schema_fault(text), f"{name}: the schema accepts it")
+            expect(checkers.parser_fault_of_text(text), f"{name}: the parser accepts it")
+        for name, text in INVALID_CONTENT.items():
+            expect(not checkers.schema_fault(text), f"{name}: the schema: {checkers.schema_fault(text)}")
+            expect(checkers.parser_fault_of_text(text), f"{name}: the parser accepts it")
+        check_keys(checkers, schema)
     for failure in failures:
         print(failure)
     print(f"{len(failures)} disagree")

@@ -1,4 +1,4 @@
-// The tool's commands against processes that run already, on a domain of their own.
+// Fixtures for the online commands with running processes, each on its own DDS domain.
 #pragma once
 
 #include <chrono>
@@ -24,8 +24,8 @@ class Online : public testing::Test {
   std::vector<std::string> network() const {
     return {"--domain", std::to_string(lock_.domain()), "--vehicle-name", "kl7", "--localhost-only"};
   }
-  // `swiftlet` with the words of a command line.
-  Ending swiftlet(std::vector<std::string> words, std::chrono::milliseconds timeout = 30s) const {
+  // Runs `swiftlet` with these arguments on this domain.
+  ProgramResult swiftlet(std::vector<std::string> words, std::chrono::milliseconds timeout = 30s) const {
     for (const std::string& word : network()) words.push_back(word);
     return run_program("swiftlet", std::move(words), folder_.path(), timeout);
   }
@@ -34,8 +34,8 @@ class Online : public testing::Test {
   TemporaryFolder folder_;
 };
 
-// In lockstep at twice the pace of the clock: the tools go by the vehicle's and wait as they do with a real one, and a
-// machine that is busy slows the flight down instead of failing it.
+// In lockstep at twice real time: the tools use the vehicle's clock as with a real vehicle, and a busy
+// machine slows the flight down instead of failing it.
 class OnlineFlight : public Online {
  protected:
   OnlineFlight()
@@ -55,9 +55,9 @@ class OnlineFlight : public Online {
   }
 
   json status() const {
-    const Ending end = swiftlet({"status", "--json", "--watch", "0.1"});
-    EXPECT_EQ(end.exit_code, 0) << end.errors;
-    return end.exit_code == 0 ? json::parse(end.output) : json();
+    const ProgramResult result = swiftlet({"status", "--json", "--watch", "0.1"});
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    return result.exit_code == 0 ? json::parse(result.output) : json();
   }
   template <class Predicate>
   bool reaches(const char* what, const Predicate& predicate) const {
@@ -76,14 +76,14 @@ class OnlineFlight : public Online {
     });
   }
   void expect_accepted(const std::vector<std::string>& words) const {
-    const Ending end = swiftlet(words);
-    EXPECT_EQ(end.exit_code, 0) << words.front() << ": " << end.errors;
-    EXPECT_EQ(end.output, words.front() + ": accepted by kl7\n");
+    const ProgramResult result = swiftlet(words);
+    EXPECT_EQ(result.exit_code, 0) << words.front() << ": " << result.errors;
+    EXPECT_EQ(result.output, words.front() + ": accepted by kl7\n");
   }
   void expect_refused(const std::vector<std::string>& words, const std::string& reason) const {
-    const Ending end = swiftlet(words);
-    EXPECT_EQ(end.exit_code, 1);
-    EXPECT_EQ(end.errors, "swiftlet: " + words.front() + ": " + reason + "\n");
+    const ProgramResult result = swiftlet(words);
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_EQ(result.errors, "swiftlet: " + words.front() + ": " + reason + "\n");
   }
   void take_off() const {
     expect_accepted({"arm"});

@@ -1,4 +1,4 @@
-// The online commands against processes that run already.
+// The online commands with running processes.
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -18,7 +18,7 @@ namespace {
 using namespace std::chrono_literals;
 using nlohmann::json;
 
-TEST_F(OnlineFlight, EveryCommandDoesWhatItSays) {
+TEST_F(OnlineFlight, ExecutesEveryCommand) {
   expect_refused({"takeoff"}, "cannot take off while disarmed; arm first");
   expect_refused({"hold"}, "the request is not allowed while disarmed");
   expect_accepted({"arm"});
@@ -38,29 +38,30 @@ TEST_F(OnlineFlight, EveryCommandDoesWhatItSays) {
   ASSERT_TRUE(reaches_place(-0.4, 0.3, 0.0));
 }
 
-TEST_F(OnlineFlight, WaitsUntilItIsDoneWhereThatIsAsked) {
+TEST_F(OnlineFlight, WaitOptionWaitsForTheResult) {
   const auto done = [this](std::vector<std::string> words) {
     const std::string what = words.front();
     words.insert(words.end(), {"--wait", "60"});
-    const Ending end = swiftlet(words, 70s);
-    EXPECT_EQ(end.exit_code, 0) << end.errors;
-    EXPECT_EQ(end.output, what + ": accepted by kl7\n" + what + ": done\n");
+    const ProgramResult result = swiftlet(words, 70s);
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_EQ(result.output, what + ": accepted by kl7\n" + what + ": done\n");
   };
   done({"arm"});
   done({"takeoff", "0.6"});
   EXPECT_EQ(status().at("mode"), "holding");
   done({"goto", "0.4", "0", "-0.6", "--speed", "0.8"});
   EXPECT_NEAR(status().at("position_ned_m")[0].get<double>(), 0.4, 0.05);
-  const Ending early = swiftlet({"goto", "-0.5", "0", "-0.6", "--speed", "0.3", "--wait", "0.3", "--json"});
-  EXPECT_EQ(early.exit_code, 1);
-  EXPECT_EQ(json::parse(early.output),
+  const ProgramResult timed_out =
+      swiftlet({"goto", "-0.5", "0", "-0.6", "--speed", "0.3", "--wait", "0.3", "--json"});
+  EXPECT_EQ(timed_out.exit_code, 1);
+  EXPECT_EQ(json::parse(timed_out.output),
             json({{"accepted", true}, {"done", false}, {"reason", "not done after 0.3 s"}}));
   done({"hold"});
   done({"land"});
   EXPECT_EQ(status().at("mode"), "disarmed");
 }
 
-TEST_F(OnlineFlight, TellsWhatEndedItInstead) {
+TEST_F(OnlineFlight, WaitOptionReportsACancellation) {
   take_off();
   std::vector<std::string> words = {"goto", "2", "0", "-0.6", "--speed", "0.15", "--wait", "60"};
   for (const std::string& word : network()) words.push_back(word);
@@ -82,27 +83,27 @@ TEST_F(OnlineFlight, StopTurnsTheRotorsOffInTheAir) {
   }));
 }
 
-TEST_F(OnlineFlight, FollowsAMissionFileToItsEnd) {
+TEST_F(OnlineFlight, FliesAMissionFileToItsEnd) {
   const std::string file = folder_.write("hop.yaml",
                                          "frame: enu\ntolerance_m: 0.1\nitems:\n"
                                          "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.8}\n"
                                          "  - {kind: waypoint, position_m: [0.4, 0, 0.6], speed_m_s: 0.8}\n"
                                          "  - {kind: land, speed_m_s: 0.8}\n");
-  const Ending unarmed = swiftlet({"mission", "fly", file});
+  const ProgramResult unarmed = swiftlet({"mission", "fly", file});
   EXPECT_EQ(unarmed.exit_code, 1);
   EXPECT_EQ(unarmed.errors, "swiftlet: mission hop: cannot start a mission while disarmed; arm first\n");
   expect_accepted({"arm"});
-  const Ending flown = swiftlet({"mission", "fly", file, "--json"}, 60s);
+  const ProgramResult flown = swiftlet({"mission", "fly", file, "--json"}, 60s);
   EXPECT_EQ(flown.exit_code, 0) << flown.errors;
   EXPECT_EQ(json::parse(flown.output), json({{"mission", "hop"}, {"accepted", true}, {"completed", true}}));
-  EXPECT_NE(flown.errors.find("2/3"), std::string::npos) << "no progress was shown: " << flown.errors;
+  EXPECT_NE(flown.errors.find("2/3"), std::string::npos) << "no progress shown: " << flown.errors;
   const json now = status();
   EXPECT_EQ(now.at("mode"), "disarmed");
   EXPECT_EQ(now.at("mission").at("state"), "completed");
   EXPECT_NEAR(now.at("position_ned_m")[1].get<double>(), 0.4, 0.02) << "0.4 m east";
 }
 
-TEST_F(OnlineFlight, AMissionIsUploadedStartedPausedGoneOnWithSkippedAndCleared) {
+TEST_F(OnlineFlight, UploadsStartsPausesResumesSkipsAndClearsAMission) {
   const std::string file =
       folder_.write("walk.yaml",
                     "frame: ned\ntolerance_m: 0.1\nends: hovering\nitems:\n"
@@ -114,24 +115,24 @@ TEST_F(OnlineFlight, AMissionIsUploadedStartedPausedGoneOnWithSkippedAndCleared)
                    [&](const json& status) { return status.at("mission").at("state") == state; });
   };
   const auto accepted = [&](const std::string& request) {
-    const Ending end = swiftlet({"mission", request});
-    EXPECT_EQ(end.exit_code, 0) << end.errors;
-    EXPECT_EQ(end.output, "mission " + request + ": accepted by kl7\n");
+    const ProgramResult result = swiftlet({"mission", request});
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_EQ(result.output, "mission " + request + ": accepted by kl7\n");
   };
   const auto refused = [&](const std::string& request, const std::string& reason) {
-    const Ending end = swiftlet({"mission", request});
-    EXPECT_EQ(end.exit_code, 1);
-    EXPECT_EQ(end.errors, "swiftlet: mission " + request + ": " + reason + "\n");
+    const ProgramResult result = swiftlet({"mission", request});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_EQ(result.errors, "swiftlet: mission " + request + ": " + reason + "\n");
   };
-  accepted("clear");  // of none
-  const Ending uploaded = swiftlet({"mission", "upload", file, "--json"});
+  accepted("clear");  // without a mission
+  const ProgramResult uploaded = swiftlet({"mission", "upload", file, "--json"});
   ASSERT_EQ(uploaded.exit_code, 0) << uploaded.errors;
   const std::string id = std::to_string(json::parse(uploaded.output).at("mission_id").get<std::uint64_t>());
   ASSERT_TRUE(mission_is("uploaded"));
   refused("start", "cannot start a mission while disarmed; arm first");
   refused("pause", "no mission is running");
   expect_accepted({"arm"});
-  const Ending other = swiftlet({"mission", "start", "--id", "5"});
+  const ProgramResult other = swiftlet({"mission", "start", "--id", "5"});
   EXPECT_EQ(other.errors,
             "swiftlet: mission start: mission 5 is not uploaded: the uploaded mission is " + id + "\n");
   accepted("start");
@@ -151,14 +152,14 @@ TEST_F(OnlineFlight, AMissionIsUploadedStartedPausedGoneOnWithSkippedAndCleared)
   ASSERT_TRUE(mission_is("none"));
 }
 
-TEST_F(OnlineFlight, ASecondTrajectoryIsJoinedInTheMiddleOfTheFirst) {
+TEST_F(OnlineFlight, JoinsASecondTrajectoryDuringTheFirst) {
   const std::string lap = "0.6,0,1\n0.6,0.6,1\n-0.6,0.6,1.2\n-0.6,-0.6,1\n0,0,1\n";
-  const std::string tour = folder_.write("tour.csv", "x,y,z\n0,0,1\n" + lap + lap + lap + lap);  // some 20 s
+  const std::string tour = folder_.write("tour.csv", "x,y,z\n0,0,1\n" + lap + lap + lap + lap);  // about 20 s
   const std::string other = folder_.write("other.csv", "0.3,0.4,0.8\n0.5,0,0.8\n");
   const std::string mission = folder_.write("hop.yaml",
                                             "frame: ned\ntolerance_m: 0.1\nends: hovering\nitems:\n  - "
                                             "{kind: takeoff, height_m: 1, speed_m_s: 0.8}\n");
-  const Ending disarmed = swiftlet({"trajectory", tour});
+  const ProgramResult disarmed = swiftlet({"trajectory", tour});
   EXPECT_EQ(disarmed.exit_code, 1);
   EXPECT_NE(disarmed.errors.find("tour: taken as waypoints in ENU"), std::string::npos) << disarmed.errors;
   EXPECT_NE(disarmed.errors.find("swiftlet: trajectory: cannot start a trajectory while disarmed\n"),
@@ -190,7 +191,7 @@ TEST_F(OnlineFlight, ASecondTrajectoryIsJoinedInTheMiddleOfTheFirst) {
   ASSERT_TRUE(reaches_place(0.0, 0.5, -0.8));
 }
 
-TEST_F(OnlineFlight, TellsThatAMissionWasAborted) {
+TEST_F(OnlineFlight, ReportsACanceledMission) {
   const std::string file = folder_.write("hover.yaml",
                                          "frame: ned\ntolerance_m: 0.1\nitems:\n"
                                          "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.8, hold_s: 100}\n"
@@ -208,22 +209,22 @@ TEST_F(OnlineFlight, TellsThatAMissionWasAborted) {
   ASSERT_TRUE(reaches_mode("disarmed"));
 }
 
-TEST_F(OnlineFlight, FlyAttachesToWhatRuns) {
+TEST_F(OnlineFlight, FlyAttachesToRunningProcesses) {
   const std::string file = folder_.write("hop.yaml",
                                          "frame: ned\ntolerance_m: 0.1\nitems:\n"
                                          "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.8}\n"
                                          "  - {kind: land, speed_m_s: 0.8}\n");
-  const Ending end = run_program("swiftlet", attach(file), folder_.path(), 60s);
-  ASSERT_EQ(end.exit_code, 0) << end.errors;
-  const json report = json::parse(end.output);
+  const ProgramResult result = run_program("swiftlet", attach(file), folder_.path(), 60s);
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const json report = json::parse(result.output);
   EXPECT_EQ(report.at("completed"), true);
   EXPECT_EQ(report.at("vehicle"), "kaylion");
   EXPECT_LT(report.at("rms_3d_m"), 0.01);
   EXPECT_FALSE(plant_.exit_code() || mocap_.exit_code() || control_.exit_code())
-      << "they were not its own to end";
+      << "fly must not end processes that it did not start";
 }
 
-TEST_F(OnlineFlight, FlyNamesAVehicleThatFellSilent) {
+TEST_F(OnlineFlight, FlyReportsASilentVehicle) {
   const std::string file = folder_.write("hover.yaml",
                                          "frame: ned\ntolerance_m: 0.1\nitems:\n"
                                          "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.8, hold_s: 100}\n"
@@ -236,7 +237,7 @@ TEST_F(OnlineFlight, FlyNamesAVehicleThatFellSilent) {
   EXPECT_EQ(json::parse(fly.output()).at("reason"), "the vehicle has sent nothing for 3 s");
 }
 
-TEST_F(OnlineFlight, StatusNamesAllThatAPilotAsksFor) {
+TEST_F(OnlineFlight, StatusShowsVehicleBatteryPoseAndPeers) {
   const json now = status();
   EXPECT_EQ(now.at("vehicle"), "kl7");
   EXPECT_EQ(now.at("mode"), "disarmed");
@@ -246,103 +247,106 @@ TEST_F(OnlineFlight, StatusNamesAllThatAPilotAsksFor) {
   for (const char* peer : {"plant", "mocap", "control"})
     EXPECT_EQ(now.at("peers_alive").at(peer), true) << peer;
   for (const auto& [topic, age] : now.at("ages_s").items()) EXPECT_LT(age.get<double>(), 5.0) << topic;
-  const Ending text = swiftlet({"status"});
+  const ProgramResult text = swiftlet({"status"});
   EXPECT_EQ(text.exit_code, 0);
   EXPECT_NE(text.output.find("kl7 in domain " + std::to_string(lock_.domain()) + ": disarmed"),
             std::string::npos)
       << text.output;
 }
 
-TEST_F(OnlineFlight, StopWithoutATerminalNeedsAYes) {
+TEST_F(OnlineFlight, StopWithoutATerminalRequiresYes) {
   expect_accepted({"arm"});
-  const Ending end = swiftlet({"stop"});
-  EXPECT_EQ(end.exit_code, 2);
-  EXPECT_NE(end.errors.find("requires --yes without a terminal"), std::string::npos) << end.errors;
+  const ProgramResult result = swiftlet({"stop"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.errors.find("requires --yes without a terminal"), std::string::npos) << result.errors;
   EXPECT_EQ(status().at("mode"), "armed");
 }
 
-TEST_F(OnlineFlight, TheListShowsIt) {
+TEST_F(OnlineFlight, ListShowsTheVehicle) {
   ASSERT_TRUE(eventually(
       [&] {
-        const Ending end = run_program(
+        const ProgramResult result = run_program(
             "swiftlet", {"list", "--json", "--domain", std::to_string(lock_.domain()), "--localhost-only"},
             folder_.path());
-        if (end.exit_code != 0) return false;
-        const json list = json::parse(end.output);
+        if (result.exit_code != 0) return false;
+        const json list = json::parse(result.output);
         return list.size() == 1 && list[0].at("vehicle") == "kl7" && list[0].at("mode") == "disarmed" &&
                list[0].at("model") == "kaylion" && list[0].at("controllers") == 1 &&
                list[0].at("battery_v") > 4.0 && list[0].at("mocap_hz") > 20.0;
       },
       30s));
-  const Ending text = run_program(
+  const ProgramResult text = run_program(
       "swiftlet", {"list", "--domain", std::to_string(lock_.domain()), "--localhost-only"}, folder_.path());
   EXPECT_EQ(text.output.rfind("vehicle ", 0), 0U) << text.output;
 }
 
-TEST_F(Online, TheListOfNothingFails) {
-  const Ending end = run_program(
+TEST_F(Online, ListFailsWithoutVehicles) {
+  const ProgramResult result = run_program(
       "swiftlet", {"list", "--time", "0.5", "--domain", std::to_string(lock_.domain()), "--localhost-only"},
       folder_.path());
-  EXPECT_EQ(end.exit_code, 1);
-  EXPECT_NE(end.errors.find("swiftlet: list: no vehicle found in domain " + std::to_string(lock_.domain())),
-            std::string::npos)
-      << end.errors;
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(
+      result.errors.find("swiftlet: list: no vehicle found in domain " + std::to_string(lock_.domain())),
+      std::string::npos)
+      << result.errors;
 }
 
-TEST_F(OnlineFlight, WatchPrintsLinesWhereThereIsNoTerminal) {
-  const Ending end = swiftlet({"watch", "--duration", "3"});
-  EXPECT_EQ(end.exit_code, 0) << end.errors;
-  EXPECT_NE(end.output.find("kl7: disarmed (started), at ("), std::string::npos) << end.output;
+TEST_F(OnlineFlight, WatchPrintsLinesWithoutATerminal) {
+  const ProgramResult result = swiftlet({"watch", "--duration", "3"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find("kl7: disarmed (started), at ("), std::string::npos) << result.output;
 }
 
-TEST_F(Online, SaysWhereItLookedWhenNothingIsThere) {
+TEST_F(Online, ReportsTheDomainSearchedWhenNothingIsFound) {
   for (const char* command : {"status", "arm"}) {
-    const Ending end = swiftlet({command, "--timeout", "0.5"});
-    EXPECT_EQ(end.exit_code, 1);
-    EXPECT_EQ(end.errors, "swiftlet: " + std::string(command) +
-                              ": no control service for vehicle kl7 in domain " +
-                              std::to_string(lock_.domain()) +
-                              "; processes found: none; is it running in this domain (--domain, "
-                              "ROS_DOMAIN_ID)?\n");
+    const ProgramResult result = swiftlet({command, "--timeout", "0.5"});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_EQ(result.errors, "swiftlet: " + std::string(command) +
+                                 ": no control service for vehicle kl7 in domain " +
+                                 std::to_string(lock_.domain()) +
+                                 "; processes found: none; is it running in this domain (--domain, "
+                                 "ROS_DOMAIN_ID)?\n");
   }
 }
 
-TEST_F(OnlineFlight, SaysWhenItStandsOnTheWrongNetwork) {
-  const Ending end = run_program(
+TEST_F(OnlineFlight, SuggestsLocalhostOnlyOnTheWrongNetwork) {
+  const ProgramResult result = run_program(
       "swiftlet",
       {"status", "--timeout", "2", "--domain", std::to_string(lock_.domain()), "--vehicle-name", "kl7"},
       folder_.path());
-  if (end.exit_code == 0) {  // of some hosts, all interfaces reach the loopback interface
-    EXPECT_NE(end.output.find("kl7 in domain " + std::to_string(lock_.domain())), std::string::npos)
-        << end.output;
+  if (result.exit_code == 0) {  // on some hosts, all interfaces reach the loopback interface
+    EXPECT_NE(result.output.find("kl7 in domain " + std::to_string(lock_.domain())), std::string::npos)
+        << result.output;
     return;
   }
-  EXPECT_EQ(end.exit_code, 1);
-  EXPECT_NE(end.errors.find("control, mocap, plant (try --localhost-only)"), std::string::npos) << end.errors;
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.errors.find("control, mocap, plant (try --localhost-only)"), std::string::npos)
+      << result.errors;
 }
 
-TEST_F(Online, NamesTheVehiclesThatAreThereInstead) {
+TEST_F(Online, NamesOtherVehiclesFound) {
   Program plant("swiftlet-plant", network(), folder_.path());
   ASSERT_TRUE(eventually(
       [&] {
-        const Ending end = run_program("swiftlet",
-                                       {"arm", "--timeout", "1", "--domain", std::to_string(lock_.domain()),
-                                        "--vehicle-name", "kl8", "--localhost-only"},
-                                       folder_.path());
-        return end.exit_code == 1 &&
-               end.errors.find("processes found: none; other vehicles found: kl7 (--vehicle-name)") !=
+        const ProgramResult result =
+            run_program("swiftlet",
+                        {"arm", "--timeout", "1", "--domain", std::to_string(lock_.domain()),
+                         "--vehicle-name", "kl8", "--localhost-only"},
+                        folder_.path());
+        return result.exit_code == 1 &&
+               result.errors.find("processes found: none; other vehicles found: kl7 (--vehicle-name)") !=
                    std::string::npos;
       },
       20s));
 }
 
-TEST_F(Online, SaysWhatItSawWhenOnlyControlIsMissing) {
+TEST_F(Online, NamesTopicsFoundWhenControlIsMissing) {
   Program plant("swiftlet-plant", network(), folder_.path());
   ASSERT_TRUE(eventually(
       [&] {
-        const Ending end = swiftlet({"arm", "--timeout", "1"});
-        return end.exit_code == 1 &&
-               end.errors.find("processes found: plant; topics found: battery, ground_truth, imu, ") !=
+        const ProgramResult result = swiftlet({"arm", "--timeout", "1"});
+        return result.exit_code == 1 &&
+               result.errors.find("processes found: plant; topics found: battery, ground_truth, imu, ") !=
                    std::string::npos;
       },
       20s));

@@ -22,8 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-// As far as it can be read: a file of /proc may fail halfway, when its process ends. An iterator over the stream
-// buffer would throw then.
+// Reads as much as it can: a file of /proc may fail halfway when its process ends. An iterator over the
+// stream buffer would throw then.
 std::string text_of(const fs::path& file) {
   std::ostringstream text;
   text << std::ifstream(file, std::ios::binary).rdbuf();
@@ -37,7 +37,7 @@ struct ProcessStat {
 };
 ProcessStat stat_of(pid_t pid) {
   const std::string text = text_of("/proc/" + std::to_string(pid) + "/stat");
-  const std::size_t name_end = text.rfind(')');  // the name before it may hold anything
+  const std::size_t name_end = text.rfind(')');  // the name before it may contain anything
   ProcessStat stat;
   if (name_end != std::string::npos)
     std::istringstream(text.substr(name_end + 1)) >> stat.state >> stat.parent;
@@ -104,8 +104,8 @@ int Program::wait(std::chrono::milliseconds timeout) {
 std::string Program::output() const { return text_of(output_file_); }
 std::string Program::errors() const { return text_of(error_file_); }
 
-Ending run_program(const std::string& name, std::vector<std::string> arguments, const fs::path& folder,
-                   std::chrono::milliseconds timeout) {
+ProgramResult run_program(const std::string& name, std::vector<std::string> arguments, const fs::path& folder,
+                          std::chrono::milliseconds timeout) {
   Program program(name, std::move(arguments), folder);
   const int exit_code = program.wait(timeout);
   return {exit_code, program.output(), program.errors()};

@@ -1,4 +1,4 @@
-// One of the project's programs, run by a test as a user would run it.
+// Runs one of the project's programs from a test.
 #pragma once
 
 #include <chrono>
@@ -12,8 +12,8 @@ namespace swiftlet::tests {
 
 class Program {
  public:
-  // `name` is that of a program in the build's bin folder, or a path from the root. Output goes to files in
-  // `folder`. Ends with the test.
+  // Starts `name`, a program in the build's bin folder or an absolute path. Its output goes to files in
+  // `folder`. The destructor ends it.
   Program(const std::string& name, std::vector<std::string> arguments, const std::filesystem::path& folder);
   ~Program();
   Program(const Program&) = delete;
@@ -22,9 +22,9 @@ class Program {
   pid_t pid() const { return pid_; }
   void signal(int number) const;
 
-  // Exit status, 128 + signal for one that was killed, nothing while it runs.
+  // Exit status; 128 + signal if killed; nullopt while it runs.
   std::optional<int> exit_code();
-  // Waits for the end; -1 if it does not come in time.
+  // Waits for the exit code; -1 after the timeout.
   int wait(std::chrono::milliseconds timeout);
 
   std::string output() const;  // standard output so far
@@ -36,23 +36,23 @@ class Program {
   std::optional<int> exit_code_;
 };
 
-// What a finished run of a program gave.
-struct Ending {
+// Exit code and output of a program.
+struct ProgramResult {
   int exit_code = -1;
   std::string output;
   std::string errors;
 };
-Ending run_program(const std::string& name, std::vector<std::string> arguments,
-                   const std::filesystem::path& folder,
-                   std::chrono::milliseconds timeout = std::chrono::seconds(30));
+ProgramResult run_program(const std::string& name, std::vector<std::string> arguments,
+                          const std::filesystem::path& folder,
+                          std::chrono::milliseconds timeout = std::chrono::seconds(30));
 
-// What the kernel tells of processes, which may end at any moment: nothing is told then.
+// Facts about processes from /proc. A process may end at any moment; the result is empty then.
 
-// The child of a process whose program has this name; -1 if there is none.
+// The child of a process that runs this program; -1 if there is none.
 pid_t child_of(pid_t parent, const std::string& program);
 std::vector<pid_t> children_of(pid_t parent);
-std::string command_line_of(pid_t pid);  // words, each ended by a NUL
-bool is_running(pid_t pid);              // false for one that has ended and was not reaped
+std::string command_line_of(pid_t pid);  // arguments, each terminated by NUL
+bool is_running(pid_t pid);              // false for a zombie
 
 // The files in /dev/shm that a process has open or mapped.
 std::vector<std::string> shared_memory_of(pid_t pid);

@@ -19,7 +19,7 @@ SeparateProcesses::SeparateProcesses()
       watcher_(std::make_unique<comms::Node>(node("watcher"))) {
   status_ =
       watcher_->subscribe<msg::ControlStatus>(comms::topics::kControlStatus, [this](const auto& status) {
-        story_.put(std::string(ground::mode_name(status.mode())) + ": " + status.reason().c_str());
+        mode_log_.put(std::string(ground::mode_name(status.mode())) + ": " + status.reason().c_str());
       });
 }
 
@@ -57,11 +57,12 @@ void SeparateProcesses::hover() {
       << armed.reason;
   const ground::Result off = ask(msg::Command_Constants::TAKEOFF);
   ASSERT_TRUE(off.accepted()) << off.reason;
-  ASSERT_TRUE(reported(control::Mode::kHolding, "take-off completed")) << story() << control_->errors();
+  ASSERT_TRUE(reported(control::Mode::kHolding, "take-off completed")) << mode_log() << control_->errors();
   const auto start = client_->view().truth.message.position_ned();
   ASSERT_TRUE(eventually([&] { return distance_m(start[0], start[1], -1) < 0.05; }, kTimeout));
-  forget();
-  ASSERT_TRUE(reported(control::Mode::kHolding, "take-off completed")) << "the story goes on from there";
+  clear_history();
+  ASSERT_TRUE(reported(control::Mode::kHolding, "take-off completed"))
+      << "status must continue after clear_history()";
 }
 
 ground::Result SeparateProcesses::ask(std::uint8_t kind, double z_ned) {
@@ -75,22 +76,22 @@ ground::Result SeparateProcesses::ask(std::uint8_t kind, double z_ned) {
 bool SeparateProcesses::reported(control::Mode mode, const std::string& reason,
                                  std::chrono::milliseconds timeout) {
   const std::string wanted = std::string(control::to_string(mode)) + ": " + reason;
-  return story_.wait(
+  return mode_log_.wait(
       [&](const auto& reported) {
         return std::find(reported.begin(), reported.end(), wanted) != reported.end();
       },
       timeout);
 }
 
-void SeparateProcesses::forget() {
-  story_.clear();
-  forgotten_ = record_.truth.size();
+void SeparateProcesses::clear_history() {
+  mode_log_.clear();
+  first_row_ = record_.truth.size();
 }
 
-std::string SeparateProcesses::story() const {
+std::string SeparateProcesses::mode_log() const {
   std::string text;
   std::string last;
-  for (const std::string& line : story_.items()) {
+  for (const std::string& line : mode_log_.items()) {
     if (line != last) text += line + "\n";
     last = line;
   }
@@ -102,7 +103,7 @@ bool SeparateProcesses::wait_for_truth(const std::function<bool(const msg::Groun
   return client_->wait(timeout, [&](const View& view) { return predicate(view.truth.message); });
 }
 
-void SeparateProcesses::fly_on(double seconds) const {
+void SeparateProcesses::wait_vehicle_time(double seconds) const {
   const std::int64_t end_ns = stamp_ns() + std::llround(seconds * 1e9);
   ASSERT_TRUE(wait_for_truth([&](const auto& truth) { return truth.stamp_ns() >= end_ns; }));
 }

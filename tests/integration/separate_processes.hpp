@@ -1,5 +1,5 @@
-// A vehicle, motion capture and control service as separate processes, on a domain of their own, and the
-// ground's end of the wire in the test. Each may be started, stopped and killed by itself.
+// Plant, motion capture and control service as separate processes on their own DDS domain, with a ground
+// client in the test. Each process can be started, suspended and killed separately.
 #pragma once
 
 #include <chrono>
@@ -26,30 +26,30 @@ class SeparateProcesses : public testing::Test {
   SeparateProcesses();
 
   comms::NodeSettings node(const std::string& name) const;
-  // The program's arguments, and what puts it on this domain.
+  // Starts a program on this domain.
   std::unique_ptr<Program> start(const std::string& program, std::vector<std::string> arguments = {}) const;
   void start_all(const std::vector<std::string>& control_arguments = {},
                  const std::vector<std::string>& plant_arguments = {});
-  // Until `control` has a pose and the vehicle's truth is heard.
+  // Waits until control has a pose and ground truth and battery arrive.
   void wait_until_ready();
   void hover();
 
   ground::Result ask(std::uint8_t kind, double z_ned = -1.0);
-  // Until some control_status since the last call of forget() says so.
+  // Waits for a control_status with this mode and reason since the last clear_history().
   bool reported(control::Mode mode, const std::string& reason, std::chrono::milliseconds timeout = kTimeout);
-  void forget();
-  // The modes and reasons that were told, one a line.
-  std::string story() const;
+  void clear_history();
+  // The modes and reasons of control_status, one per line.
+  std::string mode_log() const;
 
-  // The truth since the last call of forget().
+  // The truth since the last clear_history().
   std::vector<ground::TruthRow> truth() const {
-    return {record_.truth.begin() + forgotten_, record_.truth.end()};
+    return {record_.truth.begin() + first_row_, record_.truth.end()};
   }
   std::int64_t stamp_ns() const { return client_->view().truth.message.stamp_ns(); }
   bool wait_for_truth(const std::function<bool(const ground::msg::GroundTruth&)>& predicate,
                       std::chrono::milliseconds timeout = kTimeout) const;
-  // So long by the vehicle's clock.
-  void fly_on(double seconds) const;
+  // Waits for this time by the vehicle's clock.
+  void wait_vehicle_time(double seconds) const;
   bool wait_until_rotors_off() const;
   bool wait_until_on_ground() const;
   double distance_m(double x, double y, double z) const;
@@ -58,14 +58,14 @@ class SeparateProcesses : public testing::Test {
   TemporaryFolder folder_;
   std::unique_ptr<Program> plant_, mocap_, control_;
   ground::FlightRecord record_;
-  std::size_t forgotten_ = 0;  // rows of truth
+  std::size_t first_row_ = 0;  // of truth(), in record_
   std::unique_ptr<ground::Client> client_;
   std::unique_ptr<comms::Node> watcher_;
-  Inbox<std::string> story_;
+  Inbox<std::string> mode_log_;
   comms::Subscription status_;
 };
 
-// Of a row of truth.
+// Of one row of ground truth.
 double tilt_rad(const ground::TruthRow& row);
 double fastest_rotor(const ground::TruthRow& row);
 

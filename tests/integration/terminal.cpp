@@ -187,7 +187,7 @@ class Screen {
         if (sequence_.find("?1049") != std::string::npos) alternate_ = c == 'h';
         break;
       default:
-        break;  // colours, and what shows nothing
+        break;  // colours and invisible sequences
     }
   }
   void erase_line() {
@@ -232,7 +232,7 @@ struct Terminal::Impl {
   }
 
   int master = -1;
-  int slave = -1;  // kept open, so that its modes can be looked at when the program has ended
+  int slave = -1;  // kept open to read its modes after the program ends
   pid_t pid = -1;
   bool reaped = false;
   int status = 0;
@@ -322,7 +322,7 @@ int Terminal::wait(std::chrono::milliseconds timeout) {
   return WIFSIGNALED(impl_->status) ? 128 + WTERMSIG(impl_->status) : WEXITSTATUS(impl_->status);
 }
 
-bool Terminal::is_as_before() {
+bool Terminal::is_restored() {
   termios now{};
   tcgetattr(impl_->slave, &now);
   const std::lock_guard lock(impl_->mutex);

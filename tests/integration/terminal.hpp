@@ -1,4 +1,4 @@
-// A program in a terminal of its own, of the kind xterm, and what that shows.
+// Runs a program in an emulated xterm and reads its screen.
 #pragma once
 
 #include <chrono>
@@ -17,16 +17,16 @@ class Terminal {
 
   void type(const std::string& keys);
   void signal(int number) const;
-  // The program is told, as by a window that changes its size; the screen is empty until it draws anew.
+  // Resizes the terminal and notifies the program; the screen is empty until it redraws.
   void resize(int width, int height);
 
-  std::string line(int row);  // without the blanks at its end
+  std::string line(int row);  // without trailing blanks
   std::string text();         // all lines
 
-  // Waits for the program's end; -1 if it does not come in time, 128 + signal if it was killed.
+  // Waits for the exit code; 128 + signal if killed; -1 after the timeout.
   int wait(std::chrono::milliseconds timeout);
-  // The terminal's modes are those that the program found, and its normal screen is shown.
-  bool is_as_before();
+  // Whether the terminal's modes are as at the start and its normal screen is shown.
+  bool is_restored();
 
  private:
   struct Impl;

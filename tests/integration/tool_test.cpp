@@ -1,4 +1,4 @@
-// What the tool says of itself: completion in a shell, manual pages; and how it behaves at a terminal.
+// Shell completion, manual pages, and behaviour at a terminal.
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
@@ -12,11 +12,11 @@ namespace {
 
 class Tool : public testing::Test {
  protected:
-  Ending run(std::vector<std::string> words) const {
+  ProgramResult run(std::vector<std::string> words) const {
     return run_program("swiftlet", std::move(words), folder_.path());
   }
 
-  // What bash completes the last of the words to.
+  // Completions of the last word by bash.
   std::vector<std::string> completed(const std::vector<std::string>& words) const {
     const std::string script = folder_.write("completion.bash", run({"completion", "bash"}).output);
     std::string array;
@@ -25,11 +25,11 @@ class Tool : public testing::Test {
         folder_.write("complete.bash", "source '" + script + "'\nCOMP_WORDS=(" + array +
                                            ")\nCOMP_CWORD=" + std::to_string(words.size() - 1) +
                                            "\n_swiftlet\nprintf '%s\\n' \"${COMPREPLY[@]}\"\n");
-    const Ending end = run_program("/bin/bash", {"--norc", "-u", test}, folder_.path());
-    EXPECT_EQ(end.exit_code, 0) << end.errors;
-    EXPECT_EQ(end.errors, "");
+    const ProgramResult result = run_program("/bin/bash", {"--norc", "-u", test}, folder_.path());
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_EQ(result.errors, "");
     std::vector<std::string> found;
-    std::istringstream lines(end.output);
+    std::istringstream lines(result.output);
     for (std::string line; std::getline(lines, line);) {
       if (!line.empty()) found.push_back(line);
     }
@@ -49,7 +49,7 @@ TEST_F(Tool, BashCompletesCommandsOptionsAndTheirValues) {
   EXPECT_EQ(completed({"swiftlet", "land", "--transport", "=", "s"}), Words({"shm"}));
   EXPECT_EQ(completed({"swiftlet", "land", "--transport", "="}), Words({"udp", "shm"}));
   EXPECT_EQ(completed({"swiftlet", "completion", "z"}), Words({"zsh"}));
-  EXPECT_EQ(completed({"swiftlet", "report", ""}), Words()) << "files, which bash completes itself";
+  EXPECT_EQ(completed({"swiftlet", "report", ""}), Words()) << "bash completes files itself";
   EXPECT_EQ(completed({"swiftlet", "fly", "--record", ""}), Words());
 }
 
@@ -67,23 +67,23 @@ TEST_F(Tool, EveryCommandHasACompletionAndAManualPage) {
   EXPECT_TRUE(std::filesystem::exists(pages + "/swiftlet-sim-fly.1"));
 }
 
-TEST_F(Tool, ManualPagesHaveNoFaultThatGroffFinds) {
-  ASSERT_TRUE(std::filesystem::exists("/usr/bin/groff")) << "packages.txt names it";
+TEST_F(Tool, ManualPagesPassGroff) {
+  ASSERT_TRUE(std::filesystem::exists("/usr/bin/groff")) << "install the packages of packages.txt";
   const std::string pages = folder_.path() / "man";
   ASSERT_EQ(run({"man", "--into", pages}).exit_code, 0);
   int count = 0;
   for (const auto& page : std::filesystem::directory_iterator(pages)) {
-    const Ending end =
+    const ProgramResult result =
         run_program("/usr/bin/groff", {"-ww", "-man", "-Tutf8", "-z", page.path()}, folder_.path());
-    EXPECT_EQ(end.exit_code, 0);
-    EXPECT_EQ(end.errors, "") << page.path();
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.errors, "") << page.path();
     ++count;
   }
   EXPECT_GT(count, 20);
 }
 
-TEST_F(Tool, AManualPageShowsWhatTheHelpShows) {
-  const Ending page = run({"man", "stream"});
+TEST_F(Tool, ManualPageMatchesTheHelp) {
+  const ProgramResult page = run({"man", "stream"});
   EXPECT_EQ(page.exit_code, 0);
   for (const char* part : {".TH SWIFTLET-STREAM 1", "\\fB\\-\\-rate\\fR", "\\fIfile\\fR", ".SH EXIT STATUS"})
     EXPECT_NE(page.output.find(part), std::string::npos) << part << "\n" << page.output;
@@ -99,7 +99,7 @@ class AtATerminal : public OnlineFlight {
   }
 };
 
-TEST_F(AtATerminal, WatchShowsTheFlightAndItsKeysAct) {
+TEST_F(AtATerminal, WatchShowsTheFlightAndExecutesKeys) {
   take_off();
   Terminal terminal("swiftlet", with_network({"watch"}), 80, 24);
   const auto shows = [&](const std::string& text) {
@@ -128,22 +128,22 @@ TEST_F(AtATerminal, WatchShowsTheFlightAndItsKeysAct) {
   ASSERT_TRUE(shows(": disarmed (landed)")) << terminal.text();
   terminal.type("q");
   EXPECT_EQ(terminal.wait(10s), 0);
-  EXPECT_TRUE(terminal.is_as_before());
+  EXPECT_TRUE(terminal.is_restored());
 }
 
-TEST_F(AtATerminal, WatchLeavesTheTerminalAsItWasWhenItIsInterrupted) {
+TEST_F(AtATerminal, InterruptedWatchRestoresTheTerminal) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     Terminal terminal("swiftlet", with_network({"watch"}), 80, 24);
     ASSERT_TRUE(eventually([&] { return terminal.text().find("disarmed") != std::string::npos; }, 20s))
         << terminal.text();
-    EXPECT_FALSE(terminal.is_as_before());
+    EXPECT_FALSE(terminal.is_restored());
     terminal.signal(signal);
     EXPECT_EQ(terminal.wait(10s), 0) << signal;
-    EXPECT_TRUE(terminal.is_as_before()) << signal;
+    EXPECT_TRUE(terminal.is_restored()) << signal;
   }
 }
 
-TEST_F(AtATerminal, StopIsTypedToBeConfirmed) {
+TEST_F(AtATerminal, StopRequiresATypedConfirmation) {
   expect_accepted({"arm"});
   {
     Terminal terminal("swiftlet", with_network({"stop"}), 80, 24);

@@ -16,9 +16,9 @@ using plant::FaultKind;
 using plant::RandomStream;
 
 constexpr double kMeanInterval_s = 4.0;
-constexpr double kRecovery_s = 5.0;  // of an estimate, after a fault of the IMU or of motion capture
+constexpr double kRecovery_s = 5.0;  // of the estimate after a fault of IMU or motion capture
 
-// How long a fault of a kind lasts: log-uniform between these.
+// Duration of a kind of fault: log-uniform between these.
 struct Duration {
   FaultKind kind;
   double min_s;
@@ -100,7 +100,7 @@ bool hides_attitude(FaultKind kind) {
 }
 bool misleads(FaultKind kind) { return kind == FaultKind::kImuBias || kind == FaultKind::kImuStuck; }
 
-// An IMU that misleads while motion capture is gone: nobody could know.
+// A misleading IMU during a loss of motion capture is undetectable.
 bool hidden(const Fault& fault, const std::vector<Fault>& earlier) {
   return std::any_of(earlier.begin(), earlier.end(), [&](const Fault& other) {
     const bool together = (misleads(fault.kind) && hides_attitude(other.kind)) ||
@@ -114,7 +114,7 @@ bool hidden(const Fault& fault, const std::vector<Fault>& earlier) {
 std::vector<Fault> draw_faults(std::uint64_t seed, double first_s, double last_s,
                                const plant::Vehicle& vehicle, const control::Limits& limits) {
   RandomStream random(seed, plant::streams::of_name("soak.faults"));
-  std::array<double, plant::kFaultKinds> free_from_s{};  // of each kind: when the last one is over
+  std::array<double, plant::kFaultKinds> free_from_s{};  // by kind: end of its last fault
   std::vector<Fault> faults;
   for (double at_s = first_s;;) {
     at_s -= kMeanInterval_s * std::log(1.0 - random.uniform());

@@ -1,4 +1,4 @@
-// Which faults a flight of the soak meets: drawn from the seed, of all kinds, from milliseconds to seconds.
+// Random faults of a soak flight, sampled from its seed: all kinds, from milliseconds to seconds.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,9 @@
 
 namespace swiftlet::soak {
 
-// One every four seconds on average, from first_s to last_s, in the order of their beginnings. What some of
-// them may do is bounded by what can be flown with: a rotor keeps three quarters of its thrust, a command
-// comes at most 20 ms late, a push gives at most 0.5 m/s.
+// Samples one fault every 4 s on average, from first_s to last_s, in order of start. Severity is bounded so
+// that the vehicle remains flyable: a rotor keeps at least 85 % of its thrust, a command is at most 20 ms
+// late, a push adds at most 0.5 m/s.
 std::vector<plant::Fault> draw_faults(std::uint64_t seed, double first_s, double last_s,
                                       const plant::Vehicle& vehicle, const control::Limits& limits);
 

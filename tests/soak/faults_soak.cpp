@@ -1,5 +1,5 @@
-// Simulated flight for hours with random faults: what comes of each kind, and whether the vehicle ever leaves
-// the fence or ends upside down with its rotors running. Every flight repeats with its seed.
+// Simulates hours of flight with random faults. Reports the consequences of each kind and every flight that
+// leaves the fence or is upside down with its rotors running. Every flight repeats with its seed.
 #include <array>
 #include <cstdint>
 #include <cstdio>
@@ -53,7 +53,7 @@ int count(const Counts& counts, Consequence consequence) {
   return counts[static_cast<std::size_t>(consequence)];
 }
 
-std::string repeats(const Options& options, const SoakFlight& flight) {
+std::string repeat_command(const Options& options, const SoakFlight& flight) {
   return "./dev soak faults --flight " + std::to_string(flight.seed) +
          (options.control == "motor_lag" ? "" : " --control " + options.control);
 }
@@ -83,8 +83,8 @@ void print_table(const Summary& summary, const Options& options) {
   std::printf("farthest outside the fence: %.2f m, the limit is %.2f m\n",
               std::max(summary.most_outside_m, 0.0), kFenceMargin_m);
   for (const SoakFlight& flight : summary.violating) {
-    std::printf("violation: %s at %.1f s; again: %s\n", flight.violation->what.c_str(),
-                flight.violation->at_s, repeats(options, flight).c_str());
+    std::printf("violation: %s at %.1f s; repeat with: %s\n", flight.violation->what.c_str(),
+                flight.violation->at_s, repeat_command(options, flight).c_str());
   }
   std::printf("violations: %zu\n", summary.violating.size());
 }
@@ -112,12 +112,12 @@ void print_json(const Summary& summary, const Options& options) {
     json["violations"].push_back({{"seed", flight.seed},
                                   {"at_s", flight.violation->at_s},
                                   {"what", flight.violation->what},
-                                  {"again", repeats(options, flight)}});
+                                  {"again", repeat_command(options, flight)}});
   }
   std::printf("%s\n", json.dump(2).c_str());
 }
 
-// True if nothing was violated.
+// Returns true without violations.
 bool soak(const Options& options) {
   const SoakSetup setup = load_setup(options.control);
   Summary summary;
@@ -139,20 +139,22 @@ bool soak(const Options& options) {
 int main(int argc, char** argv) {
   using namespace swiftlet;
   soak::Options options;
-  bool sound = false;
+  bool passed = false;
   const int code = runtime::run_process(
       {"faults_soak",
-       "Fly for long with random faults, and see that the vehicle stays inside the fence and on its feet.",
+       "Flies with random faults and checks that the vehicle stays inside the fence and upright.",
        "--minutes 30 --seed 1"},
       argc, argv,
       [&](runtime::CommandLine app) {
-        app.add_option("--minutes", options.minutes, "Of simulated time").range(0.1, 1e5).show_default();
-        app.add_option("--seed", options.seed, "Of the first flight; the next has the next").show_default();
-        app.add_option("--flight", options.flight,
-                       "Fly the flight of this seed alone, and tell what happens");
-        app.add_option("--control", options.control, "Control settings").show_default();
-        app.add_flag("--json", options.json, "For scripts");
+        app.add_option("--minutes", options.minutes, "minutes of simulated time")
+            .range(0.1, 1e5)
+            .show_default();
+        app.add_option("--seed", options.seed, "seed of the first flight, incremented for each flight")
+            .show_default();
+        app.add_option("--flight", options.flight, "fly only the flight of this seed, and log its events");
+        app.add_option("--control", options.control, "control settings").show_default();
+        app.add_flag("--json", options.json, "print JSON");
       },
-      [&] { sound = soak::soak(options); });
-  return code != 0 ? code : sound ? 0 : 1;
+      [&] { passed = soak::soak(options); });
+  return code != 0 ? code : passed ? 0 : 1;
 }

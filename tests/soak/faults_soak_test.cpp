@@ -1,4 +1,4 @@
-// The soak in short, and each flight that once left the fence or ended upside down.
+// A short soak, and every flight that once left the fence or ended upside down.
 #include <cstdint>
 #include <fstream>
 #include <string>
@@ -27,10 +27,10 @@ std::vector<std::uint64_t> kept_seeds() {
 
 class SoakFlights : public testing::TestWithParam<std::uint64_t> {};
 
-TEST_P(SoakFlights, StaysInsideTheFenceAndOnItsFeet) {
+TEST_P(SoakFlights, StaysInsideTheFenceAndUpright) {
   const SoakFlight flight = fly(setup(), GetParam());
   EXPECT_FALSE(flight.violation.has_value()) << flight.violation->what << " at " << flight.violation->at_s
-                                             << " s; again: ./dev soak faults --flight " << flight.seed;
+                                             << " s; repeat with: ./dev soak faults --flight " << flight.seed;
   EXPECT_GT(flight.take_offs, 0);
 }
 
@@ -39,7 +39,7 @@ INSTANTIATE_TEST_SUITE_P(First, SoakFlights, testing::Range<std::uint64_t>(1, 6)
 INSTANTIATE_TEST_SUITE_P(Kept, SoakFlights, testing::ValuesIn(kept_seeds()),
                          [](const auto& seed) { return std::to_string(seed.param); });
 
-TEST(FaultsSoak, AFlightRepeatsWithItsSeed) {
+TEST(FaultsSoak, FlightRepeatsWithItsSeed) {
   const SoakFlight one = fly(setup(), 3);
   const SoakFlight again = fly(setup(), 3);
   EXPECT_EQ(one.airborne_s, again.airborne_s);

@@ -20,10 +20,10 @@ using control::Trajectory;
 using Eigen::Vector3d;
 
 constexpr double kMargin_m = 1.0;
-constexpr double kLowest_m = 0.3;  // above the ground
+constexpr double kLowest_m = 0.3;  // height
 constexpr double kHighest_m = 1.7;
 constexpr std::int64_t kSetpointPeriodNs = 50'000'000;
-constexpr std::int64_t kFirstRequestNs = 1'000'000'000;  // the estimator has settled
+constexpr std::int64_t kFirstRequestNs = 1'000'000'000;  // once the estimator has settled
 
 }  // namespace
 
@@ -50,7 +50,7 @@ void Pilot::act(ground::ClosedLoop& loop) {
     case Mode::kArmed:
       return take_off(loop);
     case Mode::kHolding:
-      return go_on(loop);
+      return fly_something(loop);
     case Mode::kMission:
     case Mode::kTrajectory:
     case Mode::kSetpoint:
@@ -80,12 +80,12 @@ void Pilot::take_off(ground::ClosedLoop& loop) {
   if (random_.uniform() < 0.5) return fly_mission(loop, true);
   Request request;
   request.kind = RequestKind::kTakeoff;
-  request.position_ned = place();
+  request.position_ned = sample_position();
   request.speed = random_.uniform(0.3, 1.0);
   ask(loop, request, "take off");
 }
 
-void Pilot::go_on(ground::ClosedLoop& loop) {
+void Pilot::fly_something(ground::ClosedLoop& loop) {
   const double what = random_.uniform();
   wait(random_.uniform(0.5, 5.0));
   if (what < 0.45) return go_to(loop);
@@ -98,7 +98,7 @@ void Pilot::go_on(ground::ClosedLoop& loop) {
   ask(loop, request, "hold");
 }
 
-Vector3d Pilot::place() {
+Vector3d Pilot::sample_position() {
   const auto along = [this](int axis) {
     return random_.uniform(limits_.fence_min_ned[axis] + kMargin_m, limits_.fence_max_ned[axis] - kMargin_m);
   };
@@ -110,7 +110,7 @@ Vector3d Pilot::place() {
 void Pilot::go_to(ground::ClosedLoop& loop) {
   Request request;
   request.kind = RequestKind::kGoTo;
-  request.position_ned = place();
+  request.position_ned = sample_position();
   request.speed = speed();
   request.yaw_free = random_.uniform() < 0.5;
   request.yaw_rad = random_.uniform(-M_PI, M_PI);
@@ -123,7 +123,7 @@ void Pilot::fly_mission(ground::ClosedLoop& loop, bool from_ground) {
   const auto add = [&](MissionItemKind kind) {
     MissionItem item;
     item.kind = kind;
-    item.position_ned = place();
+    item.position_ned = sample_position();
     item.yaw_free = random_.uniform() < 0.5;
     item.yaw_rad = random_.uniform(-M_PI, M_PI);
     item.speed = speed();
@@ -151,11 +151,11 @@ void Pilot::fly_mission(ground::ClosedLoop& loop, bool from_ground) {
 void Pilot::fly_trajectory(ground::ClosedLoop& loop) {
   Trajectory& trajectory = trajectories_.emplace_back();
   trajectory.id = trajectories_.size();
-  Vector3d from = place();
+  Vector3d from = sample_position();
   const double yaw = loop.controller.reference().yaw_rad;
   const int segments = 2 + static_cast<int>(random_.uniform() * 3.0);
   for (int i = 0; i < segments; ++i) {
-    const Vector3d to = place();
+    const Vector3d to = sample_position();
     const double duration = control::minimum_jerk_duration(
         (to - from).norm(), speed(), limits_.max_reference_acceleration, limits_.max_reference_jerk);
     trajectory.segments.push_back(control::minimum_jerk(from, yaw, to, yaw, duration));
@@ -172,15 +172,15 @@ void Pilot::fly_trajectory(ground::ClosedLoop& loop) {
   ask(loop, request, "trajectory");
 }
 
-// From where the reference is, at constant velocity, as far as the margins reach; some run on out of the
-// fence and are refused there.
+// Setpoints at constant velocity from the current reference towards a position inside the margins. Some
+// continue out of the fence and are refused there.
 void Pilot::begin_setpoints(ground::ClosedLoop& loop) {
   setpoints_until_ns_ = now_ns_ + static_cast<std::int64_t>(random_.uniform(0.5, 3.0) * 1e9);
   next_setpoint_ns_ = now_ns_;
   setpoint_.position_ned = loop.controller.reference().position_ned;
   setpoint_.yaw_rad = loop.controller.reference().yaw_rad;
-  const Vector3d way = place() - setpoint_.position_ned;
-  setpoint_.velocity_ned = random_.uniform(0.1, 0.6) * way.normalized();
+  const Vector3d offset = sample_position() - setpoint_.position_ned;
+  setpoint_.velocity_ned = random_.uniform(0.1, 0.6) * offset.normalized();
   if (log_) log_("sends setpoints");
 }
 

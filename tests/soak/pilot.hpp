@@ -1,6 +1,6 @@
-// Whoever asks the vehicle for this and that: arms it, takes off, sends it from place to place, on missions,
-// along trajectories and by setpoints, lands it, and begins anew when it stands on its feet again. Drawn from
-// the seed. Stays a metre inside the fence at up to 1.5 m/s: who loses all control there falls inside it.
+// A random pilot, sampled from the seed: arms, takes off, flies to positions, missions, trajectories and
+// setpoints, lands, and starts again when the vehicle stands upright. Stays 1 m inside the fence at up to 1.5
+// m/s, so that a vehicle that loses all control falls inside the fence.
 #pragma once
 
 #include <cstdint>
@@ -23,18 +23,18 @@ class Pilot {
  public:
   Pilot(std::uint64_t seed, const control::Limits& limits, Log log);
 
-  // What it asks for between two samples, if anything.
+  // Sends requests between two samples, if any are due.
   void act(ground::ClosedLoop& loop);
 
   int take_offs() const { return take_offs_; }
 
  private:
-  Eigen::Vector3d place();
+  Eigen::Vector3d sample_position();
   double speed() { return random_.uniform(0.3, 1.5); }
   bool ask(ground::ClosedLoop& loop, const control::Request& request, const std::string& what);
   void arm(ground::ClosedLoop& loop);
   void take_off(ground::ClosedLoop& loop);
-  void go_on(ground::ClosedLoop& loop);
+  void fly_something(ground::ClosedLoop& loop);
   void go_to(ground::ClosedLoop& loop);
   void fly_mission(ground::ClosedLoop& loop, bool from_ground);
   void fly_trajectory(ground::ClosedLoop& loop);
@@ -49,7 +49,7 @@ class Pilot {
   std::int64_t now_ns_ = 0;
   std::int64_t next_ns_;
   int take_offs_ = 0;
-  std::deque<control::Mission> missions_;  // the controller may fly any of them still
+  std::deque<control::Mission> missions_;  // the controller may still fly any of them
   std::deque<control::Trajectory> trajectories_;
   // The stream of setpoints.
   std::int64_t setpoints_until_ns_ = 0;

@@ -41,7 +41,7 @@ class Run {
         log_(log),
         world_(world(setup, seed)),
         loop_(world_.vehicle, setup.nominal.vehicle, world_.simulation, setup.control, seed),
-        pilot_(seed, limits_, log ? Log([this](const std::string& what) { tell(what); }) : Log()) {
+        pilot_(seed, limits_, log ? Log([this](const std::string& what) { log_event(what); }) : Log()) {
     flight_.seed = seed;
     for (const Fault& fault : world_.simulation.faults)
       flight_.faults.push_back({fault, Consequence::kOnGround});
@@ -52,9 +52,9 @@ class Run {
       const Mode before = loop_.controller.status().mode;
       report_faults();
       pilot_.act(loop_);
-      const Mode asked = loop_.controller.status().mode;
+      const Mode after_requests = loop_.controller.status().mode;
       loop_.step();
-      look(before, asked);
+      update_consequences(before, after_requests);
     }
     if (!flight_.violation && upside_down() && rotors_running())
       violate("ended upside down with its rotors running");
@@ -72,33 +72,33 @@ class Run {
   }
 
   bool rotors_running() const {
-    return loop_.watchdog.drive(loop_.plant.stamp_ns()).state == plant::RotorState::kRunning;
+    return loop_.watchdog.motor_command(loop_.plant.stamp_ns()).state == plant::RotorState::kRunning;
   }
   bool upside_down() const { return cosine_of_tilt(loop_.plant.state().q_ned_from_frd) < 0.0; }
   bool airborne() const { return !loop_.plant.on_ground(); }
 
-  void look(Mode before, Mode asked) {
+  void update_consequences(Mode before, Mode after_requests) {
     const Mode mode = loop_.controller.status().mode;
     if (mode != before && log_)
-      tell(std::string("mode: ") + to_string(mode) + ", " + to_string(loop_.controller.status().reason));
-    const double step_s = loop_.time_s() - looked_s_;
-    looked_s_ = loop_.time_s();
+      log_event(std::string("mode: ") + to_string(mode) + ", " + to_string(loop_.controller.status().reason));
+    const double step_s = loop_.time_s() - last_step_s_;
+    last_step_s_ = loop_.time_s();
     if (airborne()) flight_.airborne_s += step_s;
 
-    if (airborne()) happened(Consequence::kFlewOn);
-    if (mode != asked && mode == Mode::kLanding) happened(Consequence::kLanded);
-    if (mode != asked && mode == Mode::kDescent) happened(Consequence::kDescended);
-    if (mode != asked && mode == Mode::kStopped) happened(Consequence::kStopped);
+    if (airborne()) record_consequence(Consequence::kFlewOn);
+    if (mode != after_requests && mode == Mode::kLanding) record_consequence(Consequence::kLanded);
+    if (mode != after_requests && mode == Mode::kDescent) record_consequence(Consequence::kDescended);
+    if (mode != after_requests && mode == Mode::kStopped) record_consequence(Consequence::kStopped);
     if (airborne() && was_running_ && !rotors_running() && mode != Mode::kDisarmed) {
-      if (log_) tell(std::string("the rotors stop in the air"));
-      happened(Consequence::kFell);
+      if (log_) log_event(std::string("the rotors stop in the air"));
+      record_consequence(Consequence::kFell);
     }
     was_running_ = rotors_running();
     check_fence();
     check_attitude(step_s);
   }
 
-  void happened(Consequence consequence) {
+  void record_consequence(Consequence consequence) {
     for (MetFault& met : flight_.faults) {
       const double now_s = loop_.time_s();
       if (now_s < met.fault.at_s || now_s > met.fault.at_s + met.fault.for_s + kAftermath_s) continue;
@@ -123,17 +123,17 @@ class Run {
     lies_s_ = lies ? lies_s_ + step_s : 0.0;
     if (lies_s_ > kLies_s) {
       flight_.lies = true;
-      if (log_) tell("lies on the ground");
+      if (log_) log_event("lies on the ground");
     }
   }
 
   void violate(const std::string& what) {
     if (flight_.violation) return;
     flight_.violation = Violation{loop_.time_s(), what};
-    if (log_) tell("VIOLATION: " + what);
+    if (log_) log_event("VIOLATION: " + what);
   }
 
-  void tell(const std::string& what) {
+  void log_event(const std::string& what) {
     const plant::VehicleState& state = loop_.plant.state();
     const Vector3d& p = state.position_ned;
     const Vector3d error = loop_.controller.estimate().position_ned - p;
@@ -148,10 +148,10 @@ class Run {
   void report_faults() {
     if (!log_) return;
     for (const MetFault& met : flight_.faults) {
-      if (told_s_ < met.fault.at_s && met.fault.at_s <= loop_.time_s())
-        tell(text("fault: %s for %.3f s", plant::to_string(met.fault.kind), met.fault.for_s));
+      if (reported_until_s_ < met.fault.at_s && met.fault.at_s <= loop_.time_s())
+        log_event(text("fault: %s for %.3f s", plant::to_string(met.fault.kind), met.fault.for_s));
     }
-    told_s_ = loop_.time_s();
+    reported_until_s_ = loop_.time_s();
   }
 
   const control::Limits& limits_;
@@ -160,8 +160,8 @@ class Run {
   ground::ClosedLoop loop_;
   Pilot pilot_;
   SoakFlight flight_;
-  double looked_s_ = 0.0;
-  double told_s_ = 0.0;
+  double last_step_s_ = 0.0;
+  double reported_until_s_ = 0.0;
   bool was_running_ = false;
   double upside_down_s_ = 0.0;
   double lies_s_ = 0.0;

@@ -1,5 +1,5 @@
-// A flight of the soak: a drawn vehicle in a drawn world, a pilot who asks for this and that, faults of all
-// kinds, and what must hold whatever they do.
+// A soak flight: a sampled vehicle and world, a random pilot, random faults, and the invariants that must
+// hold.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +15,13 @@
 
 namespace swiftlet::soak {
 
-// What is flown with. The controller is designed on nominal.vehicle.
+// Vehicle, world and settings. The controller is designed on nominal.vehicle.
 struct SoakSetup {
   ground::World nominal;
   ground::Dispersion dispersion;
   control::ControlSettings control;
 };
-// The files "kaylion" and "default", and the control settings of that name.
+// Loads vehicle "kaylion", simulation "default" and the control settings of this name.
 SoakSetup load_setup(const std::string& control);
 
 // The invariant: truth is at most kFenceMargin_m outside the fence at every IMU stamp, and the vehicle is
@@ -34,8 +34,8 @@ struct Violation {
   std::string what;  // "0.52 m outside the fence"
 };
 
-// What came of a fault: the gravest that the controller did by itself, or that happened to the vehicle, from
-// the fault's beginning to a second after its end. Faults that overlap are told the same.
+// Consequence of a fault: the most severe action of the controller or event of the vehicle from the fault's
+// start to 1 s after its end. Overlapping faults have the same consequences.
 enum class Consequence : std::uint8_t { kOnGround, kFlewOn, kLanded, kDescended, kStopped, kFell };
 constexpr int kConsequences = static_cast<int>(Consequence::kFell) + 1;
 
@@ -50,12 +50,12 @@ struct SoakFlight {
   double airborne_s = 0.0;
   int take_offs = 0;
   double most_outside_m = 0.0;  // the fence
-  bool lies = false;            // it ended on the ground, not on its feet: nobody can arm it any more
+  bool lies = false;            // ended tilted on the ground, so that it cannot be armed
   std::vector<MetFault> faults;
-  std::optional<Violation> violation;  // the first; ends the flight
+  std::optional<Violation> violation;  // the first one; it ends the flight
 };
 
-// The flight of a seed; of 120 s unless it ends before. `log`, if there is one, is told what happens.
+// Flies the flight of a seed: 120 s unless it ends earlier. Logs events to `log`, if given.
 SoakFlight fly(const SoakSetup& setup, std::uint64_t seed, const Log& log = {});
 
 }  // namespace swiftlet::soak

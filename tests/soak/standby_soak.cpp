@@ -1,5 +1,4 @@
-// Kills the active controller again and again in flight: what the standby's takeover costs, a row for each
-// kill.
+// Kills the active controller repeatedly in flight and prints the metrics of each takeover.
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
@@ -24,11 +23,11 @@ struct Options {
   std::string plant_simulation;  // empty: the default world
 };
 
-// Half of the kills each.
+// Each part has half of the kills.
 struct Part {
   const char* name;
   double speed;          // m/s, of the mission
-  double kill_at_speed;  // m/s, and no slower
+  double kill_at_speed;  // m/s, minimum
 };
 constexpr Part kParts[] = {{"square at 0.5 m/s", 0.5, 0.1}, {"square at 1.5 m/s", 1.5, 1.45}};
 
@@ -54,16 +53,16 @@ void print(int number, const char* part, const Takeover& t) {
 }
 
 Takeover kill_active(RedundantFlight& flight, const Part& part) {
-  flight.wait("it flies at speed", [&] { return flight.speed() > part.kill_at_speed; });
+  flight.wait("the vehicle flies at speed", [&] { return flight.speed() > part.kill_at_speed; });
   Takeover takeover;
   takeover.speed = flight.speed();
   const std::int64_t at_ns = flight.stamp_ns();
   flight.kill(flight.active());
-  const Felt felt = flight.felt(at_ns, at_ns + kWindowNs, side_ns(part.speed));
-  takeover.gap_ms = felt.longest_gap_ms;
-  takeover.deviation_m = felt.largest_deviation_m;
-  takeover.extra_m = felt.extra_deviation_m;
-  takeover.step_m = felt.largest_step_m;
+  const FlightMetrics metrics = flight.metrics(at_ns, at_ns + kWindowNs, side_ns(part.speed));
+  takeover.gap_ms = metrics.longest_gap_ms;
+  takeover.deviation_m = metrics.largest_deviation_m;
+  takeover.extra_m = metrics.extra_deviation_m;
+  takeover.step_m = metrics.largest_step_m;
   return takeover;
 }
 
@@ -79,9 +78,9 @@ std::vector<Takeover> fly(const Part& part, int kills, int first, std::mt19937_6
   flight.start_controller(failover_priority(random));
   flight.wait_for_roles(1, 1);
   flight.fly(square_laps(part.speed, 400));
-  flight.wait("it has taken off", [&] { return flight.z_ned() < -0.98; });
+  flight.wait("the vehicle has taken off", [&] { return flight.z_ned() < -0.98; });
   const std::int64_t first_side_ns = flight.stamp_ns() + side_ns(part.speed) + 2'000'000'000;
-  flight.wait("it has flown a side", [&] { return flight.stamp_ns() > first_side_ns; });
+  flight.wait("the vehicle has flown a side", [&] { return flight.stamp_ns() > first_side_ns; });
 
   std::vector<Takeover> takeovers;
   for (int kill = 0; kill < kills; ++kill) {
@@ -128,11 +127,11 @@ int main(int argc, char** argv) {
   tests::Options options;
   int exit_code = 0;
   const int status = runtime::run_process(
-      {"standby_soak", "Kills the active controller in flight, again and again.", "--kills 10 --seed 3"},
-      argc, argv,
+      {"standby_soak", "Kills the active controller repeatedly in flight.", "--kills 10 --seed 3"}, argc,
+      argv,
       [&](runtime::CommandLine app) {
-        app.add_option("--kills", options.kills, "how often").range(1, 10000).show_default();
-        app.add_option("--seed", options.seed, "of strengths and pauses").show_default();
+        app.add_option("--kills", options.kills, "number of kills").range(1, 10000).show_default();
+        app.add_option("--seed", options.seed, "seed of priorities and pauses").show_default();
         app.add_option("--simulation", options.plant_simulation, "the plant's simulation file");
       },
       [&] { exit_code = tests::run(options); });

@@ -1,5 +1,5 @@
-// How much a test draws: a little beside all other tests, much in `./dev soak identification` and `./dev soak flights`.
-// One piece of code serves both, with bounds that follow from how much was drawn.
+// Sample counts of statistical tests: few in the ordinary run, many in `./dev soak identification` and `./dev
+// soak flights`. The bounds follow from the count.
 #pragma once
 
 #include <cmath>
@@ -11,19 +11,19 @@ inline bool is_soak() { return std::getenv("SWIFTLET_SOAK") != nullptr; }
 
 inline int draws(int few, int many) { return is_soak() ? many : few; }
 
-// By how much the mean of `count` independent errors may be off, where that of one may by `bound`.
+// Bound of the mean of `count` independent errors, where one error has the bound `bound`.
 inline double bound_of_mean(double bound, int count) { return bound / std::sqrt(count); }
 
-// The standard error of the share of `count` 95 % intervals that hold the truth.
+// Standard error of the share of `count` 95 % intervals that cover the truth.
 inline double coverage_error(int count) { return std::sqrt(0.95 * 0.05 / count); }
 
-// How many of `count` 95 % intervals must hold the truth. Fewer do in one campaign of a hundred, by the binomial
-// distribution. In the tests, whose seeds are few and always the same, all must.
+// Minimum number of `count` 95 % intervals that must cover the truth: by the binomial distribution, 1 soak in
+// 100 has fewer. Outside a soak, with few fixed seeds, all must.
 inline int least_covered(int count) {
   if (!is_soak()) return count;
   int least = 0;
   double fewer = 0.0;
-  double exactly = std::pow(0.05, count);  // as many as `least`
+  double exactly = std::pow(0.05, count);  // probability of `least`
   while (fewer + exactly < 0.01) {
     fewer += exactly;
     exactly *= 0.95 / 0.05 * (count - least) / (least + 1);

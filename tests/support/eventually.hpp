@@ -1,4 +1,4 @@
-// Waiting for what will be so.
+// Waiting for a predicate with a deadline.
 #pragma once
 
 #include <chrono>
@@ -11,8 +11,9 @@
 
 namespace swiftlet::tests {
 
-// True as soon as the predicate holds; false if it has not within the time. For what cannot notify, as another
-// process: looks at it every `period`, and once more after the time, however long this thread was kept waiting.
+// Returns true as soon as the predicate holds, false after the timeout. For sources that cannot notify, such
+// as another process: evaluates it every `period`, and once more after the timeout even if this thread was
+// delayed.
 inline bool eventually(const std::function<bool()>& predicate,
                        std::chrono::milliseconds timeout = std::chrono::seconds(10),
                        std::chrono::milliseconds period = std::chrono::milliseconds(1)) {
@@ -24,7 +25,7 @@ inline bool eventually(const std::function<bool()>& predicate,
   return true;
 }
 
-// Collects what callbacks in other threads deliver.
+// Collects items from callbacks in other threads.
 template <class T>
 class Inbox {
  public:
@@ -43,7 +44,7 @@ class Inbox {
     items_.clear();
   }
 
-  // True as soon as the predicate holds of the items; false if it has not within the time.
+  // Returns true as soon as the predicate holds for the items, false after the timeout.
   bool wait(const std::function<bool(const std::vector<T>&)>& predicate,
             std::chrono::milliseconds timeout = std::chrono::seconds(10)) const {
     std::unique_lock<std::mutex> lock(mutex_);

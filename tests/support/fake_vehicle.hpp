@@ -1,6 +1,5 @@
-// A vehicle that is not the project's plant: a mass on a vertical rail, which senses, is seen by motion
-// capture, and obeys actuator commands over the network. It knows nothing of the control service but the
-// topics.
+// A vehicle other than the plant: a mass on a vertical rail with sensors and motion capture that obeys
+// actuator commands over the network. It depends on the topics only.
 #pragma once
 
 #include <atomic>
@@ -22,11 +21,11 @@ class FakeVehicle {
   FakeVehicle(const FakeVehicle&) = delete;
   FakeVehicle& operator=(const FakeVehicle&) = delete;
 
-  // What the script turns off and on.
-  std::atomic<bool> seen_by_mocap{true};  // frames come; otherwise none do
-  std::atomic<bool> tracked{true};        // frames hold a pose
+  // Switches for the test.
+  std::atomic<bool> seen_by_mocap{true};  // poses are published
+  std::atomic<bool> tracked{true};        // poses are valid
 
-  // What was heard, in order.
+  // Commands received, in order.
   std::vector<comms::msg::ActuatorCommand> commands() const;
   double height_m() const { return height_m_; }
   double highest_m() const { return highest_m_; }

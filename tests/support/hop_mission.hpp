@@ -1,4 +1,4 @@
-// A short mission from the ground up and down again.
+// A short mission: take-off, one waypoint, landing.
 #pragma once
 
 #include <string>

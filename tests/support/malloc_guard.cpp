@@ -16,7 +16,7 @@ void count_call() {
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 
-// The sanitizer interposes malloc itself, and tells. Debian's GCC brings its runtime without the header.
+// The sanitizer interposes malloc itself and calls hooks. Debian's GCC has its runtime without the header.
 // NOLINTNEXTLINE(bugprone-reserved-identifier)
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*on_malloc)(const volatile void*, std::size_t),
                                                          void (*on_free)(const volatile void*));
@@ -30,7 +30,7 @@ namespace {
 
 #else
 
-// glibc's own entry points, behind the names that are interposed below.
+// glibc's own entry points behind the functions interposed below.
 // NOLINTBEGIN(bugprone-reserved-identifier)
 extern "C" {
 void* __libc_malloc(std::size_t size);

@@ -1,5 +1,5 @@
-// Counts heap allocations of the calling thread while it stands. Link tests/support/malloc_guard.cpp, which
-// interposes malloc.
+// Counts heap allocations of the calling thread during its lifetime. Link tests/support/malloc_guard.cpp,
+// which interposes malloc.
 #pragma once
 
 #include <cstddef>

@@ -59,7 +59,7 @@ RedundantFlight::RedundantFlight(const std::filesystem::path& folder, std::vecto
   subscriptions_.push_back(node_.subscribe<msg::ControllerState>(
       topics::kControllerState, [this](const msg::ControllerState& message) {
         const std::lock_guard<std::mutex> lock(mutex_);
-        heard_[message.controller()] = {message, ground::Clock::now()};
+        states_[message.controller()] = {message, ground::Clock::now()};
       }));
 }
 
@@ -82,13 +82,13 @@ std::unique_ptr<Program> RedundantFlight::launch_controller(int failover_priorit
 }
 
 Controller& RedundantFlight::start_controller(int failover_priority) {
-  const auto before = heard();
+  const auto before = recent_states();
   controllers_.push_back(std::make_unique<Controller>());
   Controller& started = *controllers_.back();
   started.failover_priority = failover_priority;
   started.process = launch_controller(failover_priority);
-  wait("the new controller is heard", [&] {
-    for (const auto& [id, state] : heard()) {
+  wait("the new controller sends its state", [&] {
+    for (const auto& [id, state] : recent_states()) {
       if (before.count(id) > 0) continue;
       started.id = id;
       return true;
@@ -100,9 +100,9 @@ Controller& RedundantFlight::start_controller(int failover_priority) {
 
 Controller& RedundantFlight::active() {
   std::uint64_t id = 0;
-  wait("one controller acts", [&] {
+  wait("one controller is active", [&] {
     if (active_count() != 1) return false;
-    for (const auto& [controller, state] : heard()) {
+    for (const auto& [controller, state] : recent_states()) {
       if (state.role() == msg::ControllerState_Constants::ACTIVE) id = controller;
     }
     return true;
@@ -110,7 +110,7 @@ Controller& RedundantFlight::active() {
   for (const auto& controller : controllers_) {
     if (controller->id == id) return *controller;
   }
-  throw std::runtime_error("the controller that acts was not started here");
+  throw std::runtime_error("the active controller was not started here");
 }
 
 void RedundantFlight::kill(Controller& controller) {
@@ -124,18 +124,18 @@ void RedundantFlight::kill(Controller& controller) {
 void RedundantFlight::stop_time() { plant_.signal(SIGSTOP); }
 void RedundantFlight::resume_time() { plant_.signal(SIGCONT); }
 
-std::map<std::uint64_t, msg::ControllerState> RedundantFlight::heard() const {
+std::map<std::uint64_t, msg::ControllerState> RedundantFlight::recent_states() const {
   const auto now = ground::Clock::now();
   const std::lock_guard<std::mutex> lock(mutex_);
   std::map<std::uint64_t, msg::ControllerState> recent;
-  for (const auto& [id, heard] : heard_) {
-    if (now - heard.at < 500ms) recent[id] = heard.message;
+  for (const auto& [id, state] : states_) {
+    if (now - state.at < 500ms) recent[id] = state.message;
   }
   return recent;
 }
 
 int RedundantFlight::count(std::uint8_t role) const {
-  const auto all = heard();
+  const auto all = recent_states();
   return static_cast<int>(std::count_if(all.begin(), all.end(),
                                         [role](const auto& entry) { return entry.second.role() == role; }));
 }
@@ -143,13 +143,12 @@ int RedundantFlight::active_count() const { return count(msg::ControllerState_Co
 int RedundantFlight::standby_count() const { return count(msg::ControllerState_Constants::STANDBY); }
 
 void RedundantFlight::wait(const char* what, const std::function<bool()>& predicate) const {
-  if (!eventually(predicate, 30s))
-    throw std::runtime_error(std::string("within 30 s it did not come to this: ") + what);
+  if (!eventually(predicate, 30s)) throw std::runtime_error(std::string("timed out after 30 s: ") + what);
 }
 
 void RedundantFlight::wait_for_roles(int active, int standby) const {
   wait("controllers have their roles", [&] {
-    const auto all = heard();
+    const auto all = recent_states();
     const bool ready = std::all_of(all.begin(), all.end(), [](const auto& c) { return c.second.ready(); });
     return ready && active_count() == active && standby_count() == standby;
   });
@@ -165,7 +164,7 @@ void RedundantFlight::ask(std::uint8_t kind, double z_ned) {
   ground::Result answer;
   do {
     answer = client_.command(command, 5s);
-    // At a start there is no pose yet, no battery: what is refused for that is asked again.
+    // At start, requests are refused until a pose and a battery sample arrive: repeat them.
   } while (!answer.accepted() && ground::Clock::now() < give_up);
   if (!answer.accepted()) throw std::runtime_error(answer.reason);
 }
@@ -199,17 +198,18 @@ std::optional<double> RedundantFlight::deviation_m(std::int64_t stamp_ns) const 
   return norm(difference(truth->second.position_ned, reference->second.position_ned()));
 }
 
-Felt RedundantFlight::felt(std::int64_t from_ns, std::int64_t to_ns, std::int64_t period_ns) const {
-  constexpr std::int64_t kMargin_ns = 50'000'000;  // telemetry is not in a hurry
+FlightMetrics RedundantFlight::metrics(std::int64_t from_ns, std::int64_t to_ns,
+                                       std::int64_t period_ns) const {
+  constexpr std::int64_t kMargin_ns = 50'000'000;  // for telemetry that arrives late
   wait("the vehicle's time passes", [&] { return stamp_ns() > to_ns + kMargin_ns; });
   const std::lock_guard<std::mutex> lock(mutex_);
-  Felt felt;
+  FlightMetrics metrics;
   std::uint32_t term = 0;
   for (auto imu = imu_.lower_bound(from_ns); imu != imu_.upper_bound(to_ns); ++imu) {
-    ++felt.samples;
+    ++metrics.samples;
     const auto gap_ns = imu->first - imu->second.command_stamp_ns();
-    felt.longest_gap_ms = std::max(felt.longest_gap_ms, seconds(gap_ns) * 1e3);
-    if (term != 0 && imu->second.command_term() != term) ++felt.changes_of_controller;
+    metrics.longest_gap_ms = std::max(metrics.longest_gap_ms, seconds(gap_ns) * 1e3);
+    if (term != 0 && imu->second.command_term() != term) ++metrics.changes_of_controller;
     term = imu->second.command_term();
   }
   const msg::Reference* last = nullptr;
@@ -218,20 +218,21 @@ Felt RedundantFlight::felt(std::int64_t from_ns, std::int64_t to_ns, std::int64_
     const msg::Reference& now = reference->second;
     const std::optional<double> deviation = deviation_m(reference->first);
     const std::optional<double> usual = deviation_m(reference->first - period_ns);
-    if (deviation) felt.largest_deviation_m = std::max(felt.largest_deviation_m, *deviation);
-    if (deviation && usual) felt.extra_deviation_m = std::max(felt.extra_deviation_m, *deviation - *usual);
+    if (deviation) metrics.largest_deviation_m = std::max(metrics.largest_deviation_m, *deviation);
+    if (deviation && usual)
+      metrics.extra_deviation_m = std::max(metrics.extra_deviation_m, *deviation - *usual);
     if (last != nullptr) {
       const double passed_s = seconds(now.stamp_ns() - last->stamp_ns());
       std::array<double, 3> step = difference(now.position_ned(), last->position_ned());
       for (std::size_t i = 0; i < 3; ++i) step[i] -= last->velocity_ned()[i] * passed_s;
-      felt.largest_step_m = std::max(felt.largest_step_m, norm(step));
+      metrics.largest_step_m = std::max(metrics.largest_step_m, norm(step));
     }
     last = &now;
   }
-  felt.lowest_z_ned = -1e9;
+  metrics.lowest_z_ned = -1e9;
   for (auto truth = truth_.lower_bound(from_ns); truth != truth_.upper_bound(to_ns); ++truth)
-    felt.lowest_z_ned = std::max(felt.lowest_z_ned, truth->second.position_ned[2]);
-  return felt;
+    metrics.lowest_z_ned = std::max(metrics.lowest_z_ned, truth->second.position_ned[2]);
+  return metrics;
 }
 
 control::Mission square_laps(double speed, int laps) {

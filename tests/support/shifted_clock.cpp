@@ -1,6 +1,5 @@
-// Preloaded into a process, this shifts its CLOCK_REALTIME by as many seconds as the file that
-// SWIFTLET_CLOCK_SHIFT names holds (an int64, mapped, so that a test can step the clock while the process
-// runs).
+// Preloaded into a process, this shifts its CLOCK_REALTIME by the number of seconds in the file
+// SWIFTLET_CLOCK_SHIFT: a mapped int64, so that a test can step the clock while the process runs.
 #include <cstdint>
 #include <cstdlib>
 #include <ctime>

@@ -12,7 +12,7 @@
 
 namespace swiftlet::tests {
 
-// Removed with its contents, unless the test has failed: its files then tell why.
+// Removed with its contents, unless the test failed: its files are kept for inspection.
 class TemporaryFolder {
  public:
   TemporaryFolder() {

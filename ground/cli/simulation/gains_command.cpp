@@ -112,7 +112,7 @@ Json json_of(const MarginStudy& study) {
   for (std::size_t i = 0; i < kLoopNames.size(); ++i) {
     const MarginStudy::Loop& loop = study.loops[i];
     out[kLoopNames[i]] = {{"designed", json_of(loop.designed)}};
-    if (study.draws == 0) continue;
+    if (study.samples == 0) continue;
     out[kLoopNames[i]]["most"] = json_of(loop.most);
     out[kLoopNames[i]]["worst"] = json_of(loop.worst);
   }
@@ -131,18 +131,18 @@ std::string margin_text(const control::LoopMargins& m) {
 std::string text_of(const MarginStudy& study) {
   std::string out =
       "margins: phase (deg), lower and upper gain (dB), delay (ms)\n  loop   nominal vehicle            ";
-  if (study.draws > 0) {
-    out += fmt::format("   held by 95 % of {} samples  worst sample\n", study.draws);
+  if (study.samples > 0) {
+    out += fmt::format("   held by 95 % of {} samples  worst sample\n", study.samples);
   } else {
     out += "   (the vehicle file states no parameter uncertainty)\n";
   }
   for (std::size_t i = 0; i < kLoopNames.size(); ++i) {
     out += fmt::format("  {:<6} ", kLoopNames[i]) + margin_text(study.loops[i].designed);
-    if (study.draws > 0)
+    if (study.samples > 0)
       out += "   " + margin_text(study.loops[i].most) + "   " + margin_text(study.loops[i].worst);
     out += "\n";
   }
-  if (study.unstable > 0) out += fmt::format("  unstable: {} of {} samples\n", study.unstable, study.draws);
+  if (study.unstable > 0) out += fmt::format("  unstable: {} of {} samples\n", study.unstable, study.samples);
   return out;
 }
 
@@ -158,7 +158,7 @@ std::string gains_json(const ControlDesign& design, const MarginStudy& margins, 
        {{"roll", json_of(design.roll)}, {"pitch", json_of(design.pitch)}, {"yaw", json_of(design.yaw)}}},
       {"position", {{"x", json_of(design.x)}, {"y", json_of(design.y)}, {"z", json_of(design.z)}}},
       {"margins", json_of(margins)},
-      {"draws", margins.draws},
+      {"samples", margins.samples},
       {"seed", margins.seed},
       {"unstable", margins.unstable}};
   return out.dump(2);
@@ -189,7 +189,7 @@ int run_gains(const GainsOptions& options) {
   const plant::VehicleUncertainty uncertainty = runtime::load_vehicle_uncertainty(file);
   const Dispersion dispersion =
       uncertainty.parameters.empty() ? Dispersion{} : dispersion_of(uncertainty, vehicle, file);
-  const MarginStudy margins = study_margins(design, vehicle, dispersion, options.draws, options.seed);
+  const MarginStudy margins = study_margins(design, vehicle, dispersion, options.samples, options.seed);
   if (options.json) {
     std::printf("%s\n", gains_json(design, margins, vehicle.name, settings.name).c_str());
   } else {
@@ -207,7 +207,7 @@ Command add_gains_command(runtime::CommandLine root) {
       .show_default();
   app.add_option("--control", options->control, "control settings file, or the name of one in config/control")
       .show_default();
-  app.add_option("--draws", options->draws,
+  app.add_option("--samples", options->samples,
                  "number of vehicles sampled from the uncertainty in the vehicle file, for the margins")
       .range(std::size_t{1}, std::size_t{1'000'000})
       .show_default();

@@ -14,7 +14,7 @@ namespace swiftlet::ground {
 struct GainsOptions {
   std::string vehicle = "kaylion";    // a file, or the name of one in config/vehicles
   std::string control = "motor_lag";  // a file, or the name of one in config/control
-  std::size_t draws = 1000;           // sampled vehicles, if the vehicle file states an uncertainty
+  std::size_t samples = 1000;         // sampled vehicles, if the vehicle file states an uncertainty
   std::uint64_t seed = 1;             // of the first sample
   bool json = false;
 };

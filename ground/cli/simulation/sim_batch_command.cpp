@@ -32,11 +32,11 @@ struct BatchOptions {
 };
 
 std::string bar(const BatchProgress& progress) {
-  const std::size_t filled = kBarLength * progress.done / progress.asked;
+  const std::size_t filled = kBarLength * progress.done / progress.requested;
   std::string text = "[" + std::string(filled, '#') + std::string(kBarLength - filled, '.') + "] " +
-                     fmt::format("{}/{} runs, {} failed", progress.done, progress.asked, progress.failed);
-  if (progress.done > 0 && progress.done < progress.asked) {
-    const double left_s = progress.elapsed_s * static_cast<double>(progress.asked - progress.done) /
+                     fmt::format("{}/{} runs, {} failed", progress.done, progress.requested, progress.failed);
+  if (progress.done > 0 && progress.done < progress.requested) {
+    const double left_s = progress.elapsed_s * static_cast<double>(progress.requested - progress.done) /
                           static_cast<double>(progress.done);
     text += fmt::format(", {:.0f} s left", left_s);
   }
@@ -60,7 +60,7 @@ int sim_batch(const BatchOptions& options) {
                 runner.fly(
                     options.jobs, [&] { return interrupts.count() > 0; },
                     [&](const BatchProgress& now) {
-                      progress.update(static_cast<int>(kStages * now.done / now.asked), bar(now));
+                      progress.update(static_cast<int>(kStages * now.done / now.requested), bar(now));
                     }));
   write_batch_csv(plan.folder / "batch.csv", report);
   const std::string no_picture = draw_batch(plan.folder, report);
@@ -70,7 +70,7 @@ int sim_batch(const BatchOptions& options) {
   std::printf("%s", options.flight.json ? (to_json(report).dump() + "\n").c_str() : to_text(report).c_str());
   if (report.interrupted())
     progress.say(fmt::format("swiftlet: batch cancelled after {} of {} runs", report.batch.runs.size(),
-                             report.batch.asked));
+                             report.batch.requested));
   return report.completed() ? kDone : kFailed;
 }
 

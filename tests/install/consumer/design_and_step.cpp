@@ -1,4 +1,4 @@
-// The parts without DDS: reads the installed vehicle and settings, designs the gains, drops the vehicle.
+// Uses the parts without DDS: reads the installed vehicle and settings, designs the gains, simulates a fall.
 #include <cmath>
 #include <cstdio>
 #include <string>

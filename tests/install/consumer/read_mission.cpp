@@ -1,4 +1,4 @@
-// The parts with DDS: joins the network, and reads the installed mission.
+// Uses the parts with DDS: joins the network and reads the installed mission.
 #include <cstdio>
 #include <string>
 

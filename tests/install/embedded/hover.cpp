@@ -1,4 +1,4 @@
-// A project that embeds this one: in hover the rotors carry the weight.
+// A project that embeds this one: checks that the rotors carry the weight in hover.
 #include <cmath>
 #include <cstdio>
 

@@ -1,4 +1,4 @@
-// Inner loop and plant alone, from attitudes that no flight should know.
+// Inner loop and plant alone, from extreme attitudes.
 #include <algorithm>
 #include <cstdint>
 #include <optional>
@@ -32,7 +32,7 @@ class Tumble {
     attitude_.emplace(vehicle_, settings.attitude, design(vehicle_, settings));
   }
 
-  // s until it is level for good; kSpan_s if it never is.
+  // Time in s until it stays level; kSpan_s if it never does.
   double time_to_level(const plant::VehicleState& start) const {
     plant::SimulationSettings air;
     air.ground.present = false;
@@ -79,13 +79,13 @@ plant::VehicleState start_at(const Quaterniond& q, const Vector3d& rates) {
   return state;
 }
 
-TEST(AttitudeRecovery, UpsideDownItTurnsOver) {
+TEST(AttitudeRecovery, RecoversFromUpsideDown) {
   const Tumble rotation(AttitudeErrorKind::kRotation);
   EXPECT_LT(rotation.time_to_level(start_at(Quaterniond(0, 1, 0, 0), Vector3d::Zero())), 1.0);
   EXPECT_LT(rotation.time_to_level(start_at(Quaterniond(0, 0, 1, 0), Vector3d::Zero())), 1.0);
 }
 
-TEST(AttitudeRecovery, FromAnyAttitudeNoSlowerThanByTheEulerAngles) {
+TEST(AttitudeRecovery, RecoversFasterThanWithEulerAngles) {
   const Tumble rotation(AttitudeErrorKind::kRotation);
   const Tumble euler(AttitudeErrorKind::kEulerAngles);
   std::mt19937 generator(3);

@@ -23,7 +23,7 @@ plant::SimulationSettings world(const std::string& name) {
   return runtime::load_simulation_settings(kConfig + "simulation/" + name + ".yaml");
 }
 
-// Patient enough to dead reckon where it would give up.
+// The timeout of poses is long enough for half a second of dead reckoning.
 ClosedLoop loop(const plant::SimulationSettings& simulation, std::uint64_t seed) {
   ControlSettings settings = runtime::load_control_settings(kConfig + "control/motor_lag.yaml");
   settings.failsafe.mocap_timeout_s = 0.6;
@@ -51,7 +51,7 @@ void hover(ClosedLoop& flown) {
   pass(flown, 3.0);
 }
 
-TEST(EstimatorInFlight, HalfASecondWithoutPosesCostsLessThanTenCentimetres) {
+TEST(EstimatorInFlight, DriftsLessThanTenCentimetresInHalfASecondWithoutPoses) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     ClosedLoop flown = loop(world("default"), seed);
     hover(flown);
@@ -77,14 +77,14 @@ TEST(EstimatorInFlight, HalfASecondWithoutPosesCostsLessThanTenCentimetres) {
   }
 }
 
-// Take-off, a move and a turn by motion capture that hands out q or -q as it likes.
-Vector3d fly_with_heartbeats(bool flips) {
+// Take-off, a move and a turn. If the sign flips, every third pose has -q instead of q.
+Vector3d fly_with_signs(bool flips) {
   ClosedLoop flown = loop(world("default"), 7);
   const auto step_for = [&](double time_s) {
     const double end = flown.time_s() + time_s;
     while (flown.time_s() < end) {
       do {
-        flown.plant.step(flown.watchdog.drive(flown.plant.stamp_ns()));
+        flown.plant.step(flown.watchdog.motor_command(flown.plant.stamp_ns()));
       } while (!flown.plant.imu());
       auto pose = flown.mocap.update(flown.plant.truth());
       if (pose && flips && pose->sequence % 3 == 0) pose->q_ned_from_frd.coeffs() *= -1.0;
@@ -101,7 +101,7 @@ Vector3d fly_with_heartbeats(bool flips) {
   step_for(6.0);
   Request turn = request(RequestKind::kGoTo, {0.5, 0.3, -1.2});
   turn.yaw_free = false;
-  turn.yaw_rad = 3.0;  // q.w near 0: the sign is anybody's guess
+  turn.yaw_rad = 3.0;  // q.w is near 0: either sign is likely
   EXPECT_TRUE(flown.controller.request(turn).accepted);
   step_for(5.0);
   EXPECT_EQ(flown.controller.status().mode, Mode::kHolding);
@@ -110,11 +110,11 @@ Vector3d fly_with_heartbeats(bool flips) {
   return flown.plant.state().position_ned;
 }
 
-TEST(EstimatorInFlight, ASignOfTheQuaternionThatFlipsChangesNothing) {
-  EXPECT_LT((fly_with_heartbeats(true) - fly_with_heartbeats(false)).norm(), 1e-6);
+TEST(EstimatorInFlight, IgnoresTheSignOfTheQuaternion) {
+  EXPECT_LT((fly_with_signs(true) - fly_with_signs(false)).norm(), 1e-6);
 }
 
-TEST(EstimatorInFlight, NoPoseOfAnyWorldIsRefused) {
+TEST(EstimatorInFlight, AcceptsEveryPoseOfEveryWorld) {
   for (const char* name : {"default", "ideal", "optitrack"}) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
       ClosedLoop flown = loop(world(name), seed);
@@ -132,7 +132,7 @@ TEST(EstimatorInFlight, NoPoseOfAnyWorldIsRefused) {
 
 class Latency : public testing::TestWithParam<double> {};
 
-TEST_P(Latency, OfThePosesCostsNoStability) {
+TEST_P(Latency, OfPosesKeepsTheLoopStable) {
   plant::SimulationSettings simulation = world("default");
   simulation.mocap.latency_s = GetParam();
   ClosedLoop flown = loop(simulation, 1);

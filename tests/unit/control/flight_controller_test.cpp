@@ -55,7 +55,7 @@ Request request(RequestKind kind, const Vector3d& position = Vector3d::Zero(), d
 
 struct Flown : ground::SimulatedFlight {
   double rms_3d_m = 0.0;
-  double duration_s = 0.0;  // of what is judged: take-off to landing
+  double duration_s = 0.0;  // of the mission window, take-off to landing
 };
 
 Flown fly(ClosedLoop& loop, const Mission& mission) {
@@ -89,10 +89,10 @@ class InFlight : public testing::Test {
   ClosedLoop loop_{kaylion(), plant::SimulationSettings(), settings("motor_lag"), 11};
 };
 
-// One step without a pose is no flight: until then the vehicle goes on as it likes.
-TEST_F(InFlight, AControllerThatIsStartedThereFindsTheVehicleFlyingAndHoldsIt) {
+// Without a pose the controller cannot engage. Until then the vehicle is not controlled.
+TEST_F(InFlight, RestartedControllerEngagesAndHolds) {
   loop_.controller = FlightController(kaylion(), settings("motor_lag"));
-  EXPECT_FALSE(loop_.controller.engage_in_flight()) << "it has seen nothing yet";
+  EXPECT_FALSE(loop_.controller.engage_in_flight()) << "it has no estimate yet";
   ASSERT_TRUE(loop_.step_until(
       [&] { return loop_.controller.detects_airborne() && loop_.controller.engage_in_flight(); }, 0.1));
   double lowest_m = altitude_m();
@@ -108,7 +108,7 @@ TEST_F(InFlight, AControllerThatIsStartedThereFindsTheVehicleFlyingAndHoldsIt) {
   EXPECT_LT(loop_.plant.state().velocity_ned.norm(), 0.05);
 }
 
-TEST_F(InFlight, OnTheGroundNothingFlies) {
+TEST_F(InFlight, LandedVehicleIsNotAirborne) {
   ASSERT_TRUE(loop_.controller.detects_airborne());
   ASSERT_TRUE(loop_.controller.request(request(RequestKind::kLand)).accepted);
   ASSERT_TRUE(wait_for(Mode::kDisarmed, 20.0));
@@ -116,22 +116,22 @@ TEST_F(InFlight, OnTheGroundNothingFlies) {
   EXPECT_FALSE(loop_.controller.detects_airborne());
 }
 
-TEST_F(InFlight, AControllerGoesOnWithTheStateOfAnother) {
+TEST_F(InFlight, ControllerContinuesWithAdoptedState) {
   ASSERT_TRUE(loop_.controller.request(request(RequestKind::kGoTo, {1.0, 0.0, -1.0})).accepted);
   loop_.step_until([] { return false; }, 1.0);
-  const FlightState handed = loop_.controller.state();
+  const FlightState adopted = loop_.controller.state();
   const Vector3d place = loop_.plant.state().position_ned;
   ASSERT_GT(loop_.plant.state().velocity_ned.norm(), 0.3);
 
   loop_.controller = FlightController(kaylion(), settings("motor_lag"));
   ASSERT_TRUE(loop_.step_until([&] { return loop_.controller.status().has_pose; }, 0.1));
-  loop_.controller.adopt(handed, nullptr, nullptr);
+  loop_.controller.adopt(adopted, nullptr, nullptr);
   loop_.step_until([] { return false; }, 0.002);
 
   EXPECT_EQ(loop_.controller.status().mode, Mode::kHolding);
   EXPECT_EQ(loop_.controller.status().reason, Reason::kRequested);
   EXPECT_LT((loop_.controller.reference().position_ned - place).norm(), 0.1)
-      << "it goes on where the other one was";
+      << "the reference must continue at the adopted position";
   loop_.step_until([] { return false; }, 6.0);
   EXPECT_LT((loop_.plant.state().position_ned - Vector3d(1.0, 0.0, -1.0)).norm(), 0.02);
 }
@@ -149,16 +149,16 @@ TEST_P(Seeds, MotorAwareLoopsFlyTheSquareWithinTenMillimetres) {
   EXPECT_EQ(loop.command.rotor_state, plant::RotorState::kOff);
 }
 
-TEST_P(Seeds, ThePapersLoopsFlyTheSquareWithinThirtyMillimetres) {
+TEST_P(Seeds, PaperLoopsFlyTheSquareWithinThirtyMillimetres) {
   ClosedLoop loop(kaylion(), plant::SimulationSettings(), settings("paper"),
                   static_cast<std::uint64_t>(GetParam()));
   const Flown result = fly(loop, square(0.5));
   ASSERT_TRUE(result.completed) << result.reason;
   EXPECT_LT(result.rms_3d_m, 0.030);
 }
-INSTANTIATE_TEST_SUITE_P(OfTheSquare, Seeds, testing::Range(1, 9));
+INSTANTIATE_TEST_SUITE_P(Square, Seeds, testing::Range(1, 9));
 
-TEST(FlightController, KnowingTheRotorLagTracksBetter) {
+TEST(FlightController, TracksBetterWithTheRotorLagModel) {
   ClosedLoop with(kaylion(), plant::SimulationSettings(), settings("motor_lag"), 3);
   ClosedLoop without(kaylion(), plant::SimulationSettings(), settings("paper"), 3);
   EXPECT_LT(fly(with, square(0.5)).rms_3d_m, 0.5 * fly(without, square(0.5)).rms_3d_m);
@@ -169,13 +169,13 @@ TEST(FlightController, RefusesGainsThatTheRotorLagMakesUnstable) {
   hot.position.x.omega_n = 8.0;
   try {
     FlightController controller(kaylion(), hot);
-    FAIL() << "took gains that are not stable";
+    FAIL() << "accepted unstable gains";
   } catch (const std::invalid_argument& error) {
     EXPECT_NE(std::string(error.what()).find("position.x"), std::string::npos) << error.what();
   }
 }
 
-TEST(FlightController, KeepsTheRotorsOffUntilAsked) {
+TEST(FlightController, KeepsTheRotorsOffUntilRequested) {
   ClosedLoop loop(kaylion(), plant::SimulationSettings(), settings("motor_lag"), 1);
   for (int i = 0; i < 1000; ++i) {
     loop.step();
@@ -184,7 +184,7 @@ TEST(FlightController, KeepsTheRotorsOffUntilAsked) {
   EXPECT_NEAR(loop.plant.state().position_ned.norm(), 0.0, 1e-3);
 }
 
-TEST_F(InFlight, OneStepDoesNotTouchTheHeap) {
+TEST_F(InFlight, StepAllocatesNoMemory) {
   const Mission mission = square(0.5);
   Request upload = request(RequestKind::kMissionUpload);
   upload.mission = &mission;
@@ -192,7 +192,7 @@ TEST_F(InFlight, OneStepDoesNotTouchTheHeap) {
   const auto flown = [&](int steps) {
     for (int i = 0; i < steps; ++i) {
       do {
-        loop_.plant.step(loop_.watchdog.drive(loop_.plant.stamp_ns()));
+        loop_.plant.step(loop_.watchdog.motor_command(loop_.plant.stamp_ns()));
       } while (!loop_.plant.imu());
       const auto pose = loop_.mocap.update(loop_.plant.truth());
       const test::MallocGuard guard;
@@ -215,7 +215,7 @@ TEST_F(InFlight, OneStepDoesNotTouchTheHeap) {
   EXPECT_EQ(calls, 0u);
 }
 
-TEST_F(InFlight, GoesWhereItIsToldAndHolds) {
+TEST_F(InFlight, GoToReachesThePositionAndHolds) {
   ASSERT_TRUE(loop_.controller.request(request(RequestKind::kGoTo, {1, -1, -1.5})).accepted);
   ASSERT_TRUE(loop_.step_until(
       [&] { return (loop_.plant.state().position_ned - Vector3d(1, -1, -1.5)).norm() < 0.01; }, 10.0));
@@ -225,7 +225,7 @@ TEST_F(InFlight, GoesWhereItIsToldAndHolds) {
   }
 }
 
-TEST_F(InFlight, TurnsToAYawTheShortWay) {
+TEST_F(InFlight, TurnsToAYawTheShorterWay) {
   Request turn = request(RequestKind::kGoTo, {0, 0, -1});
   turn.yaw_free = false;
   turn.yaw_rad = 3.0;
@@ -245,7 +245,7 @@ TEST_F(InFlight, TurnsToAYawTheShortWay) {
   EXPECT_LT((loop_.plant.state().position_ned - Vector3d(0, 0, -1)).norm(), 0.02);
 }
 
-TEST_F(InFlight, WithoutMocapItComesDownLevelAndStopsOnTheGround) {
+TEST_F(InFlight, DescendsLevelWithoutMocapAndStopsOnTheGround) {
   loop_.mocap_connected = false;
   ASSERT_TRUE(wait_for(Mode::kDescent, 1.0));
   double most_tilt = 0.0, fastest = 0.0;
@@ -279,24 +279,24 @@ TEST_F(InFlight, FliesOnThroughAMocapGapOfFourTenthsOfASecond) {
   EXPECT_LT(worst, 0.05);
 }
 
-TEST_F(InFlight, AnImuThatGivesNoNumbersStopsTheRotorsAfterATenthOfASecond) {
+TEST_F(InFlight, StopsTheRotorsAfterATenthOfASecondOfInvalidImu) {
   plant::ImuSample broken = *loop_.plant.imu();
   broken.body_rates_frd.setConstant(std::numeric_limits<double>::quiet_NaN());
-  int answers = 0;
+  int commands = 0;
   plant::ActuatorCommand command = loop_.command;
-  while (command.rotor_state == plant::RotorState::kRunning && answers < 200) {
+  while (command.rotor_state == plant::RotorState::kRunning && commands < 200) {
     broken.stamp_ns += 2'000'000;
     ++broken.sequence;
     command = loop_.controller.on_imu(broken);
     EXPECT_EQ(command.imu_sequence, broken.sequence);
     for (const double throttle : command.throttle) EXPECT_TRUE(std::isfinite(throttle));
-    ++answers;
+    ++commands;
   }
-  EXPECT_EQ(answers, 50);
+  EXPECT_EQ(commands, 50);
   EXPECT_EQ(loop_.controller.status().mode, Mode::kStopped);
 }
 
-TEST(FlightController, ABatteryThatRunsLowLandsIt) {
+TEST(FlightController, LandsWhenTheBatteryIsLow) {
   ControlSettings careful = settings("motor_lag");
   careful.failsafe.low_battery_voltage = 4.0;
   ClosedLoop loop(kaylion(), plant::SimulationSettings(), careful, 2);
@@ -307,7 +307,7 @@ TEST(FlightController, ABatteryThatRunsLowLandsIt) {
   EXPECT_TRUE(loop.plant.on_ground());
 }
 
-TEST_F(InFlight, AVoltageThatNoBatteryHasIsNotBelieved) {
+TEST_F(InFlight, IgnoresImpossibleBatteryVoltages) {
   const double before = loop_.controller.status().supply_voltage_v;
   plant::BatterySample broken;
   for (const double voltage : {0.0, -3.0, 400.0, std::numeric_limits<double>::quiet_NaN()}) {
@@ -318,14 +318,14 @@ TEST_F(InFlight, AVoltageThatNoBatteryHasIsNotBelieved) {
   }
 }
 
-TEST_F(InFlight, StopTurnsTheRotorsOffWhereverItIs) {
+TEST_F(InFlight, StopTurnsTheRotorsOffInFlight) {
   ASSERT_TRUE(loop_.controller.request(request(RequestKind::kStop)).accepted);
   loop_.step();
   EXPECT_EQ(loop_.command.rotor_state, plant::RotorState::kOff);
   ASSERT_TRUE(loop_.step_until([&] { return loop_.plant.on_ground(); }, 2.0));
 }
 
-TEST(FlightController, RepeatsItselfBitByBit) {
+TEST(FlightController, IsReproducibleBitByBit) {
   ClosedLoop one(kaylion(), plant::SimulationSettings(), settings("motor_lag"), 5);
   ClosedLoop two(kaylion(), plant::SimulationSettings(), settings("motor_lag"), 5);
   ClosedLoop other(kaylion(), plant::SimulationSettings(), settings("motor_lag"), 6);
@@ -337,7 +337,7 @@ TEST(FlightController, RepeatsItselfBitByBit) {
   EXPECT_NE(one.plant.state().position_ned, other.plant.state().position_ned);
 }
 
-TEST(FlightController, BeginsAnewWhenTheVehicleWasStartedAgain) {
+TEST(FlightController, RestartsWithTheVehicle) {
   ClosedLoop first(kaylion(), plant::SimulationSettings(), settings("motor_lag"), 5);
   first.step_until([] { return false; }, 3.0);
   ClosedLoop again(kaylion(), plant::SimulationSettings(), settings("motor_lag"), 6);

@@ -1,4 +1,4 @@
-// A flight to be brought to some place of the state machine, for the tests of its table.
+// A flight that the tests of the transition table bring to a state of the state machine.
 #pragma once
 
 #include "tests/unit/control/supervision/supervised_flight.hpp"
@@ -41,21 +41,20 @@ inline Trajectory line() {
   return trajectory;
 }
 
-// A flight that was brought to some place of the state machine.
 class Placed : public SupervisedFlight {
  public:
   explicit Placed(GroundLinkAction action) : SupervisedFlight(settings_of(action)) {}
 
-  struct Moment {
+  struct Snapshot {
     SupervisorState state;
     SupervisorInputs inputs;
     Estimate estimate;
   };
-  Moment moment() const { return {supervisor_.state(), inputs_, estimate_}; }
-  void go_back_to(const Moment& moment) {
-    inputs_ = moment.inputs;
-    estimate_ = moment.estimate;
-    supervisor_.adopt(moment.state, plan(), &trajectory_);
+  Snapshot snapshot() const { return {supervisor_.state(), inputs_, estimate_}; }
+  void restore(const Snapshot& snapshot) {
+    inputs_ = snapshot.inputs;
+    estimate_ = snapshot.estimate;
+    supervisor_.adopt(snapshot.state, plan(), &trajectory_);
   }
 
   Mode mode() const { return supervisor_.mode(); }

@@ -43,7 +43,7 @@ class SetpointFlight : public testing::TestWithParam<const char*> {
   const plant::VehicleState& truth() const { return loop_.plant.state(); }
   double tilt_rad() const { return std::acos(cosine_of_tilt(truth().q_ned_from_frd)); }
 
-  // For so long, or until it is refused.
+  // Streams for a duration, or until a setpoint is refused.
   Outcome stream(const Setpoint& setpoint, double duration_s) {
     const double end_s = loop_.time_s() + duration_s;
     Outcome outcome;
@@ -77,7 +77,7 @@ class SetpointFlight : public testing::TestWithParam<const char*> {
                            plant::SimulationSettings(), settings(), 11};
 };
 
-TEST_P(SetpointFlight, AnAttitudeIsTakenAndTheThrustCarriesIt) {
+TEST_P(SetpointFlight, FollowsAnAttitudeAndKeepsItsHeight) {
   ASSERT_TRUE(stream(attitude(0.1, -0.05, 0.0), 0.8).accepted);
   EXPECT_EQ(mode(), Mode::kSetpoint);
   const Vector3d euler = euler_angles(truth().q_ned_from_frd).vector();
@@ -91,7 +91,7 @@ TEST_P(SetpointFlight, AnAttitudeIsTakenAndTheThrustCarriesIt) {
   EXPECT_TRUE(loop_.step_until(rests, 10.0));
 }
 
-TEST_P(SetpointFlight, BodyRatesAreTaken) {
+TEST_P(SetpointFlight, FollowsBodyRates) {
   const double before = euler_angles(truth().q_ned_from_frd).vector().z();
   ASSERT_TRUE(stream(body_rates({0, 0, 1.0}), 1.5).accepted);
   EXPECT_NEAR(truth().body_rates_frd.z(), 1.0, 0.1);
@@ -101,13 +101,13 @@ TEST_P(SetpointFlight, BodyRatesAreTaken) {
   EXPECT_NEAR(truth().body_rates_frd.x(), 0.5, 0.1);
 }
 
-TEST_P(SetpointFlight, RatesThatTurnItOverStopTheRotors) {
+TEST_P(SetpointFlight, StopsTheRotorsWhenBodyRatesTipItOver) {
   stream(body_rates({4.0, 0, 0}), 1.0);
   EXPECT_EQ(mode(), Mode::kStopped);
   EXPECT_EQ(loop_.controller.status().reason, Reason::kTippedOver);
 }
 
-TEST_P(SetpointFlight, AnAttitudeTowardsTheFenceEndsInsideAndNeedsAWordBeforeTheNext) {
+TEST_P(SetpointFlight, StopsAnAttitudeStreamInsideTheFenceUntilARequest) {
   double farthest_m = 0.0;
   stream(attitude(0.2, 0.0, 0.0), 10.0);
   EXPECT_EQ(mode(), Mode::kHolding);
@@ -129,8 +129,8 @@ TEST_P(SetpointFlight, AnAttitudeTowardsTheFenceEndsInsideAndNeedsAWordBeforeThe
   EXPECT_TRUE(loop_.controller.on_setpoint(level).accepted);
 }
 
-// From flying tilted to a velocity: the tilt goes over, it does not jump.
-TEST_P(SetpointFlight, FromAnAttitudeToAVelocityItGoesOver) {
+// From a tilted attitude to a velocity the tilt changes without a jump.
+TEST_P(SetpointFlight, ChangesFromAttitudeToVelocityWithoutAJump) {
   ASSERT_TRUE(stream(attitude(0.15, 0.0, 0.0), 0.8).accepted);
   const Vector3d before = loop_.controller.attitude_setpoint().body_z_ned;
   Setpoint velocity;
@@ -145,7 +145,7 @@ TEST_P(SetpointFlight, FromAnAttitudeToAVelocityItGoesOver) {
   EXPECT_NEAR(truth().velocity_ned.y(), 0.5, 0.1);
 }
 
-TEST_P(SetpointFlight, APositionStreamOf2HzIsFlownWithoutAJerk) {
+TEST_P(SetpointFlight, FliesAPositionStreamOf2HzSmoothly) {
   double most_rate = 0.0, most_tilt = 0.0;
   Setpoint setpoint;
   setpoint.yaw_free = true;
@@ -168,8 +168,8 @@ TEST_P(SetpointFlight, APositionStreamOf2HzIsFlownWithoutAJerk) {
   EXPECT_NEAR(truth().position_ned.x(), 1.5, 0.03);
 }
 
-// Positions that run on through the fence: the last that is taken lets it come to rest inside.
-TEST_P(SetpointFlight, APositionStreamThatLeavesTheFenceEndsBeforeIt) {
+// Positions that continue through the fence: the last accepted one leaves room to stop inside.
+TEST_P(SetpointFlight, StopsAPositionStreamBeforeTheFence) {
   double farthest_reference_m = 0.0, farthest_m = 0.0;
   Setpoint setpoint;
   setpoint.yaw_free = true;
@@ -191,11 +191,11 @@ TEST_P(SetpointFlight, APositionStreamThatLeavesTheFenceEndsBeforeIt) {
   EXPECT_EQ(mode(), Mode::kHolding);
   EXPECT_LE(farthest_reference_m, 3.0);
   EXPECT_GT(farthest_reference_m, 2.9);
-  const double lag_m = std::string(GetParam()) == "paper" ? 0.07 : 0.03;  // of the loops, to the stop's jerk
+  const double lag_m = std::string(GetParam()) == "paper" ? 0.07 : 0.03;  // of the loops while it stops
   EXPECT_LT(farthest_m, 3.0 + lag_m);
 }
 
-TEST_P(SetpointFlight, NoKindTakesMemory) {
+TEST_P(SetpointFlight, AllocatesNoMemoryForAnyKind) {
   std::size_t calls = 0;
   Setpoint setpoint = attitude(0.02, 0.0, 0.0);
   setpoint.yaw_free = true;
@@ -212,7 +212,7 @@ TEST_P(SetpointFlight, NoKindTakesMemory) {
     }
     for (int i = 0; i < 20; ++i) {
       do {
-        loop_.plant.step(loop_.watchdog.drive(loop_.plant.stamp_ns()));
+        loop_.plant.step(loop_.watchdog.motor_command(loop_.plant.stamp_ns()));
       } while (!loop_.plant.imu());
       const auto pose = loop_.mocap.update(loop_.plant.truth());
       const test::MallocGuard guard;

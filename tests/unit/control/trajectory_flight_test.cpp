@@ -1,5 +1,4 @@
-// Commanded trajectories under supervision: how one is joined, from hold and from another's middle, and flown
-// as an item of a mission.
+// Trajectories under supervision: joined from hold and from another trajectory, and flown as a mission item.
 #include <cmath>
 #include <limits>
 #include <string>
@@ -35,8 +34,8 @@ class TrajectoryFlight : public testing::Test, protected SupervisedFlight {
 
   void SetUp() override { ASSERT_TRUE(take_off()); }
 
-  // Steps, and looks that the reference goes on without a step: each derivative up to the jerk changes by no
-  // more than the next one allows.
+  // Steps and checks that the reference is continuous: each derivative up to the jerk changes by no more than
+  // the next one allows.
   void step_smoothly() {
     const Reference before = control_setpoint_.reference;
     step();
@@ -55,7 +54,7 @@ class TrajectoryFlight : public testing::Test, protected SupervisedFlight {
     const std::int64_t end_ns = inputs_.stamp_ns + std::llround(seconds * 1e9);
     while (inputs_.stamp_ns < end_ns && !HasFatalFailure()) step_smoothly();
   }
-  void land_smoothly_in(Mode mode, double limit_s) {
+  void fly_smoothly_until(Mode mode, double limit_s) {
     const std::int64_t end_ns = inputs_.stamp_ns + std::llround(limit_s * 1e9);
     while (supervisor_.mode() != mode && inputs_.stamp_ns < end_ns && !HasFatalFailure()) step_smoothly();
     ASSERT_EQ(supervisor_.mode(), mode);
@@ -66,12 +65,12 @@ class TrajectoryFlight : public testing::Test, protected SupervisedFlight {
   const Trajectory other_ = through(2, {{-0.5, 1.0, -1.5}, {0.5, 1.5, -1.2}, {1.0, 0.5, -1.5}}, 1.5, 1.0);
 };
 
-TEST_F(TrajectoryFlight, TheReferenceIsThePolynomialExactly) {
+TEST_F(TrajectoryFlight, ReferenceIsExactlyThePolynomial) {
   ASSERT_TRUE(check(tour_, Limits()).accepted);
   ASSERT_TRUE(fly(tour_).accepted);
-  const std::int64_t asked_ns = inputs_.stamp_ns;
-  fly_smoothly(0.5);  // the least that a join takes
-  const std::int64_t start_ns = asked_ns + 500'000'000;
+  const std::int64_t requested_ns = inputs_.stamp_ns;
+  fly_smoothly(0.5);  // the minimum duration of a join
+  const std::int64_t start_ns = requested_ns + 500'000'000;
   std::int64_t segment_start_ns = start_ns;
   for (const PolynomialSegment& segment : tour_.segments) {
     const std::int64_t end_ns = segment_start_ns + std::llround(segment.duration_s * 1e9);
@@ -84,23 +83,23 @@ TEST_F(TrajectoryFlight, TheReferenceIsThePolynomialExactly) {
     }
     segment_start_ns = end_ns;
   }
-  land_smoothly_in(Mode::kHolding, 0.1);
+  fly_smoothly_until(Mode::kHolding, 0.1);
   EXPECT_EQ(supervisor_.reason(), Reason::kTrajectoryCompleted);
 }
 
-// Wherever in the first it is sent, the second is joined without a step and flown to its end.
-TEST_F(TrajectoryFlight, ANewOneJoinsTheMotionOfThePresentOne) {
+// At any time in the first trajectory the second is joined without a step and flown to its end.
+TEST_F(TrajectoryFlight, NewTrajectoryJoinsThePresentMotion) {
   for (const double at_s : {0.2, 0.9, 2.0, 2.9, 4.1}) {
     SCOPED_TRACE(at_s);
     ASSERT_TRUE(fly(tour_).accepted);
     while (supervisor_.state().guidance.next_segment == 0 && !HasFatalFailure())
-      step_smoothly();  // the way there
+      step_smoothly();  // the join to its start
     fly_smoothly(at_s);
     EXPECT_GT(control_setpoint_.reference.velocity_ned.norm(), 0.01);
     ASSERT_TRUE(fly(other_).accepted);
     EXPECT_EQ(supervisor_.mode(), Mode::kTrajectory);
     EXPECT_EQ(supervisor_.state().guidance.trajectory_id, 2U);
-    land_smoothly_in(Mode::kHolding, 60.0);
+    fly_smoothly_until(Mode::kHolding, 60.0);
     EXPECT_EQ(supervisor_.reason(), Reason::kTrajectoryCompleted);
     EXPECT_LT((control_setpoint_.reference.position_ned - Vector3d(1.0, 0.5, -1.5)).norm(), 1e-9);
     ASSERT_TRUE(ask(RequestKind::kGoTo, {0, 0, -1}, 1.0).accepted);
@@ -109,7 +108,7 @@ TEST_F(TrajectoryFlight, ANewOneJoinsTheMotionOfThePresentOne) {
   }
 }
 
-TEST_F(TrajectoryFlight, OneIsJoinedFromASetpointStream) {
+TEST_F(TrajectoryFlight, JoinsFromASetpointStream) {
   Setpoint setpoint;
   for (int i = 0; i < 200; ++i) {
     setpoint.position_ned = {0.5 * kStep_s * i, 0, -1};
@@ -118,12 +117,12 @@ TEST_F(TrajectoryFlight, OneIsJoinedFromASetpointStream) {
     step();
   }
   ASSERT_TRUE(fly(other_).accepted);
-  land_smoothly_in(Mode::kHolding, 60.0);
+  fly_smoothly_until(Mode::kHolding, 60.0);
   EXPECT_EQ(supervisor_.reason(), Reason::kTrajectoryCompleted);
 }
 
-// Straight at the fence and back: the way to the second stays inside though there is little room.
-TEST_F(TrajectoryFlight, TheWayToANewOneStaysInsideTheFence) {
+// Straight at the fence and back: the join to the second stays inside with little room.
+TEST_F(TrajectoryFlight, JoinStaysInsideTheFence) {
   const Trajectory to_the_fence = through(3, {{0, 0, -1}, {1.5, 0, -1}, {2.95, 0, -1}}, 1.9);
   ASSERT_TRUE(check(to_the_fence, Limits()).accepted) << check(to_the_fence, Limits()).reason;
   for (const double at_s : {2.0, 2.4, 2.8, 3.2}) {
@@ -142,18 +141,18 @@ TEST_F(TrajectoryFlight, TheWayToANewOneStaysInsideTheFence) {
   }
 }
 
-TEST_F(TrajectoryFlight, ARefusedOneLeavesThePresentOneAsItIs) {
+TEST_F(TrajectoryFlight, RefusedTrajectoryDoesNotChangeThePresentOne) {
   ASSERT_TRUE(fly(tour_).accepted);
   fly_smoothly(1.5);
   Trajectory outside = other_;
   outside.segments.front().x[0] = 9.0;
   EXPECT_FALSE(fly(outside).accepted);
   EXPECT_EQ(supervisor_.state().guidance.trajectory_id, 1U);
-  land_smoothly_in(Mode::kHolding, 20.0);
+  fly_smoothly_until(Mode::kHolding, 20.0);
   EXPECT_LT((control_setpoint_.reference.position_ned - Vector3d(0, -0.5, -1)).norm(), 1e-9);
 }
 
-TEST_F(TrajectoryFlight, SegmentsShorterThanAStepAreNotFallenBehindOn) {
+TEST_F(TrajectoryFlight, KeepsUpWithSegmentsShorterThanAStep) {
   Trajectory chopped{9, {}};
   const PolynomialSegment whole = minimum_jerk({0, 0, -1}, 0.0, {0.4, 0, -1}, 0.0, 1.5);
   constexpr int kPieces = 1024;  // of 1.5 ms; a step is 2 ms
@@ -191,7 +190,7 @@ Mission with_trajectory(const Trajectory& first, const Trajectory& second) {
   return mission;
 }
 
-TEST_F(TrajectoryFlight, AMissionFliesItsTrajectoriesInTheirTurn) {
+TEST_F(TrajectoryFlight, MissionFliesItsTrajectoriesInOrder) {
   const Mission mission = with_trajectory(tour_, other_);
   ASSERT_TRUE(check(mission, Limits()).accepted) << check(mission, Limits()).reason;
   ASSERT_TRUE(fly(mission).accepted);
@@ -202,16 +201,17 @@ TEST_F(TrajectoryFlight, AMissionFliesItsTrajectoriesInTheirTurn) {
   const std::int64_t begun_ns = inputs_.stamp_ns;
   ASSERT_TRUE(at_item(2));
   EXPECT_LT((estimate_.position_ned - Vector3d(0, -0.5, -1)).norm(), 1e-4);
-  const double way_s =
+  const double join_s =
       septic_duration(0.5, 0.5, Limits().max_reference_acceleration, Limits().max_reference_jerk);
-  EXPECT_NEAR(static_cast<double>(inputs_.stamp_ns - begun_ns) * 1e-9, way_s + duration_s(tour_) + 0.4, 0.01);
+  EXPECT_NEAR(static_cast<double>(inputs_.stamp_ns - begun_ns) * 1e-9, join_s + duration_s(tour_) + 0.4,
+              0.01);
   ASSERT_TRUE(at_item(3));
   EXPECT_LT((estimate_.position_ned - Vector3d(1.0, 0.5, -1.5)).norm(), 1e-4);
   ASSERT_TRUE(step_until(Mode::kDisarmed, 20.0));
   EXPECT_EQ(supervisor_.mission().state, MissionState::kCompleted);
 }
 
-TEST_F(TrajectoryFlight, AMissionThatEndsWithATrajectoryHoldsThere) {
+TEST_F(TrajectoryFlight, MissionEndingWithATrajectoryHoldsThere) {
   Mission mission = with_trajectory(tour_, other_);
   mission.items.pop_back();
   ASSERT_TRUE(fly(mission).accepted);
@@ -220,8 +220,8 @@ TEST_F(TrajectoryFlight, AMissionThatEndsWithATrajectoryHoldsThere) {
   EXPECT_LT((estimate_.position_ned - Vector3d(1.0, 0.5, -1.5)).norm(), 1e-4);
 }
 
-// In the middle of a trajectory of a mission another supervisor goes on with the same reference.
-TEST_F(TrajectoryFlight, AnotherGoesOnInTheMiddleOfAMissionsTrajectory) {
+// In the middle of a mission's trajectory another supervisor continues with the same reference.
+TEST_F(TrajectoryFlight, FollowerContinuesAMissionTrajectory) {
   const Mission mission = with_trajectory(tour_, other_);
   ASSERT_TRUE(fly(mission).accepted);
   ASSERT_TRUE(step_until([&] { return supervisor_.state().guidance.next_segment == 2; }, 30.0));
@@ -237,8 +237,8 @@ TEST_F(TrajectoryFlight, AnotherGoesOnInTheMiddleOfAMissionsTrajectory) {
   }
 }
 
-TEST(TrajectoryChecks, SeeWhatLiesBetweenSamples) {
-  // Beyond the fence by a centimetre for 20 ms only.
+TEST(TrajectoryChecks, FindViolationsBetweenSamples) {
+  // Beyond the fence by 0.01 mm at the turning point only.
   Trajectory trajectory = through(1, {{0, 0, -1}, {2.0, 0, -1}, {0, 0, -1}}, 2.0);
   Limits limits;
   limits.fence_max_ned.x() = 2.0 - 1e-5;
@@ -247,7 +247,7 @@ TEST(TrajectoryChecks, SeeWhatLiesBetweenSamples) {
   EXPECT_TRUE(check(trajectory, limits).accepted) << check(trajectory, limits).reason;
 }
 
-TEST(TrajectoryChecks, AMissionsTrajectoryMustLieInItsSegments) {
+TEST(TrajectoryChecks, RefuseMissionTrajectoriesBeyondTheSegments) {
   const Limits limits;
   const Trajectory one = through(1, {{0, 0, -1}, {1, 0, -1}}, 3.0);
   const auto reason = [&](std::uint32_t first, std::uint32_t count) {

@@ -1,4 +1,4 @@
-// A file that is refused, and how.
+// An invalid file and the message it is refused with.
 #pragma once
 
 #include <ostream>

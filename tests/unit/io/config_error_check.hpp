@@ -1,4 +1,4 @@
-// What a refusal must look like.
+// Catches the ConfigError of a refused input.
 #pragma once
 
 #include <functional>
@@ -17,7 +17,7 @@ inline std::string refusal(const std::function<void()>& work) {
   } catch (const runtime::ConfigError& error) {
     return error.what();
   }
-  ADD_FAILURE() << "nothing was refused";
+  ADD_FAILURE() << "no ConfigError was thrown";
   return "";
 }
 

@@ -55,7 +55,7 @@ TEST(Config, ReadsEachKindOfValue) {
   root.reject_unknown_keys();
 }
 
-TEST(Config, KnowsKeyAndLine) {
+TEST(Config, NodesKnowTheirKeyAndLine) {
   const ConfigNode root = parse_config("# a comment\na:\n  b:\n    - 1\n    - {c: 2}\n", "f.yaml");
   const ConfigNode c = root.at("a").at("b").items()[1].at("c");
   EXPECT_EQ(c.key(), "a.b[1].c");
@@ -66,7 +66,7 @@ TEST(Config, KnowsKeyAndLine) {
   EXPECT_EQ(root.nearest("ab").key(), "");
 }
 
-TEST(Config, ErrorCarriesItsParts) {
+TEST(Config, ErrorHoldsFileLineKeyAndMessage) {
   try {
     parse_config("x: 1\ny: 5\n", "f.yaml").at("y").number(at_most(3.0));
     FAIL();
@@ -78,7 +78,7 @@ TEST(Config, ErrorCarriesItsParts) {
   }
 }
 
-TEST(Config, RefusesWhatIsNotOneMap) {
+TEST(Config, RefusesTextThatIsNotOneMap) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"", "f.yaml: is empty, must be a YAML map"},
       {"\n", "f.yaml: is empty, must be a YAML map"},
@@ -107,7 +107,7 @@ TEST(Config, RefusesWhatIsNotOneMap) {
   for (const auto& [text, message] : cases) EXPECT_EQ(parse_refusal(text), message);
 }
 
-TEST(Config, TakesEveryStyleOfOneMap) {
+TEST(Config, AcceptsEveryStyleOfAMap) {
   for (const char* text : {"a: 1\n", "---\na: 1\n", "a: 1\n...\n", "{a: 1}\n", "{\"a\": 1}\n", "a: 1\r\n",
                            "# c\na: 1  # d\n", "\uFEFFa: 1\n"}) {
     EXPECT_EQ(parse_config(text, "f.yaml").at("a").number(), 1.0) << text;
@@ -115,7 +115,7 @@ TEST(Config, TakesEveryStyleOfOneMap) {
   EXPECT_EQ(parse_config("a: gr\xc3\xbc\xc3\x9f\n", "f.yaml").at("a").text(), "gr\xc3\xbc\xc3\x9f");
 }
 
-TEST(Config, NestingHasALimit) {
+TEST(Config, RefusesNestingBeyondTheLimit) {
   std::string list = "a: ";
   for (int i = 0; i < 100000; ++i) list += '[';
   EXPECT_NE(parse_refusal(list + "\n").find("f.yaml:1: "), std::string::npos);
@@ -130,7 +130,7 @@ TEST(Config, NestingHasALimit) {
   }
 }
 
-TEST(Config, SizeHasALimit) {
+TEST(Config, RefusesTooManyKeysAndBytes) {
   std::string keys;
   for (int i = 0; i < 1001; ++i) keys += "k" + std::to_string(i) + ": 1\n";
   EXPECT_EQ(parse_refusal(keys), "f.yaml:1001: has too many keys, must have at most 1000");
@@ -189,7 +189,7 @@ TEST(Config, RefusesValuesWithKeyLineValueAndLimit) {
   EXPECT_EQ(refusal([&] { root.at("n").quantity("kg"); }), "f.yaml:14: n.source: is \"\", must be a text");
 }
 
-TEST(Config, RefusesKeysThatNobodyAsksFor) {
+TEST(Config, RefusesKeysThatWereNotRead) {
   const ConfigNode root = parse_config("mass: 1\nspeed:\n  limit: 1\n  limti: 2\n", "f.yaml");
   root.at("mass");
   root.at("speed").at("limit");
@@ -203,8 +203,8 @@ TEST(Config, NodesOutliveTheRoot) {
   EXPECT_EQ(make().at("b").number(), 3.0);
 }
 
-TEST(Config, GarbageIsRefusedOrRead) {
-  // Random texts over YAML's own characters: whatever comes, a map or a ConfigError.
+TEST(Config, ReadsOrRefusesRandomText) {
+  // Random texts over YAML's own characters give a map or a ConfigError.
   const std::string alphabet = "ab1 :-?[]{},#&*!|>'\"%@`\n\n\t.~<=\\";
   std::mt19937 generator(7);
   int read = 0;
@@ -220,10 +220,10 @@ TEST(Config, GarbageIsRefusedOrRead) {
     } catch (const ConfigError&) {
     }
   }
-  EXPECT_GT(read, 100);  // the draw reaches both ends
+  EXPECT_GT(read, 100);  // some of the texts are maps
 }
 
-TEST(TextFile, NamesFileAndReason) {
+TEST(TextFile, ErrorNamesFileAndReason) {
   EXPECT_EQ(refusal([] { read_text_file("/nonexistent/f.yaml"); }),
             "/nonexistent/f.yaml: cannot be read: No such file or directory");
   EXPECT_EQ(refusal([] { load_config("/"); }), "/: cannot be read: Is a directory");
@@ -231,7 +231,7 @@ TEST(TextFile, NamesFileAndReason) {
             "/dev/zero: is too large, must hold at most 1000 bytes");
 }
 
-TEST(TextFile, ReadsWhole) {
+TEST(TextFile, ReadsTheWholeFile) {
   const auto path = std::filesystem::temp_directory_path() / ("swiftlet-text-" + std::to_string(::getpid()));
   std::string text(200000, 'x');
   text.append("\0end\n", 5);

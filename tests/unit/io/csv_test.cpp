@@ -44,7 +44,7 @@ TEST(Csv, RefusesBadHeaders) {
   EXPECT_EQ(refused("t\n1\n"), "f.csv:1: header: is t, must be t,a");
 }
 
-TEST(Csv, SaysThatCommasSeparateColumns) {
+TEST(Csv, RefusesSemicolonsAndTabs) {
   const auto refused_with = [](std::string_view text) {
     return refusal([&] { parse_csv_as_headed(text, "f.csv"); });
   };
@@ -64,13 +64,13 @@ TEST(Csv, RefusesBadRows) {
     EXPECT_EQ(refused("t,a\n0," + bad + "\n"), "f.csv:2: a: is " + bad + ", must be a finite number");
 }
 
-TEST(Csv, ShowsBrokenTextInAsciiAndShort) {
+TEST(Csv, QuotesBadFieldsInShortAscii) {
   EXPECT_EQ(refused("t,a\n0,\xff\x01z\n"), "f.csv:2: a: is ??z, must be a finite number");
   EXPECT_EQ(refused("t,a\n0," + std::string(100, 'x') + "\n"),
             "f.csv:2: a: is " + std::string(60, 'x') + "..., must be a finite number");
 }
 
-TEST(Csv, DemandsRows) {
+TEST(Csv, RequiresAMinimumOfRows) {
   EXPECT_EQ(refused("t,a\n"), "f.csv: has 0 rows behind the header, must have at least 1");
   EXPECT_EQ(refused("t,a\n0,1\n", 2), "f.csv: has 1 rows behind the header, must have at least 2");
   EXPECT_EQ(read("t,a\n", 0).row_count(), 0U);
@@ -86,7 +86,7 @@ TEST(Csv, ChecksBounds) {
             "f.csv:3: t: is 1, must be below 0.5");
 }
 
-TEST(Csv, NamesAFileThatIsNotThere) {
+TEST(Csv, NamesAMissingFile) {
   EXPECT_NE(refusal([] { load_csv("/nowhere/f.csv", {"t"}); }).find("/nowhere/f.csv: "), std::string::npos);
 }
 

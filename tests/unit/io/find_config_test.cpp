@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using tests::refusal;
 
-// A folder of one's own with a file in it, named by the environment while the test runs.
+// A temporary folder with a file, which SWIFTLET_CONFIG_DIR names during the test.
 class FindConfig : public testing::Test {
  protected:
   FindConfig() : folder_(fs::temp_directory_path() / ("swiftlet-find-config-" + std::to_string(::getpid()))) {
@@ -31,20 +31,20 @@ class FindConfig : public testing::Test {
   fs::path folder_;
 };
 
-TEST_F(FindConfig, TakesAPathAsGiven) {
+TEST_F(FindConfig, UsesAnExistingPathAsGiven) {
   const std::string path = (folder_ / "vehicles" / "own.yaml").string();
   EXPECT_EQ(find_config(path), path);
 }
 
-TEST_F(FindConfig, LooksInTheFolderOfTheEnvironment) {
+TEST_F(FindConfig, SearchesTheFolderOfTheEnvironment) {
   EXPECT_EQ(find_config("vehicles/own.yaml"), (folder_ / "vehicles" / "own.yaml").string());
 }
 
-TEST_F(FindConfig, AFolderIsNoFile) {
+TEST_F(FindConfig, RefusesAFolder) {
   EXPECT_NE(refusal([] { find_config("vehicles"); }).find("is not found"), std::string::npos);
 }
 
-TEST_F(FindConfig, LooksBesideTheExecutable) {
+TEST_F(FindConfig, SearchesBesideTheExecutable) {
   ::unsetenv("SWIFTLET_CONFIG_DIR");
   const std::vector<std::string> directories = config_directories();
   ASSERT_EQ(directories.size(), 2U);
@@ -53,7 +53,7 @@ TEST_F(FindConfig, LooksBesideTheExecutable) {
   EXPECT_EQ(directories[1], (executable.parent_path().parent_path().parent_path() / "config").string());
 }
 
-TEST_F(FindConfig, SaysWhereItLooked) {
+TEST_F(FindConfig, ErrorListsTheSearchedPaths) {
   const std::string sentence = refusal([] { find_config("vehicles/none.yaml"); });
   EXPECT_EQ(sentence.rfind("vehicles/none.yaml: is not found, looked for vehicles/none.yaml, " +
                                (folder_ / "vehicles/none.yaml").string() + ", ",
@@ -63,7 +63,7 @@ TEST_F(FindConfig, SaysWhereItLooked) {
   EXPECT_NE(sentence.find("/share/swiftlet/config/vehicles/none.yaml"), std::string::npos);
 }
 
-TEST_F(FindConfig, AnAbsolutePathIsLookedForOnce) {
+TEST_F(FindConfig, SearchesAnAbsolutePathOnce) {
   EXPECT_EQ(refusal([] { find_config("/nonexistent.yaml"); }),
             "/nonexistent.yaml: is not found, looked for /nonexistent.yaml");
 }

@@ -25,7 +25,7 @@ std::string refused(const std::string& header, const std::vector<Quantity>& allo
   return refusal([&] { parse_measurements(header + "\n2,3\n", "f.csv", allowed); });
 }
 
-TEST(Measurements, TakesThePeoplesNamesAndUnits) {
+TEST(Measurements, AcceptsCommonNamesAndUnits) {
   constexpr double kPi = 3.14159265358979323846;
   EXPECT_DOUBLE_EQ(read("speed [rad/s]", Quantity::kSpeed), 2.0);
   EXPECT_DOUBLE_EQ(read("omega [rpm]", Quantity::kSpeed), 2.0 * kPi / 30.0);
@@ -55,7 +55,7 @@ TEST(Measurements, ReadsColumnsInAnyOrder) {
   EXPECT_FALSE(table.has(Quantity::kTorque));
 }
 
-TEST(Measurements, RefusesWhatCouldBeReadInTwoWays) {
+TEST(Measurements, RefusesAmbiguousColumns) {
   EXPECT_EQ(refused("speed,thrust [N]"),
             "f.csv:1: header: has the column speed without a unit, must be speed [rad/s], speed [rpm] or "
             "speed [rev/s]");
@@ -71,7 +71,7 @@ TEST(Measurements, RefusesWhatCouldBeReadInTwoWays) {
             "f.csv:1: header: has the columns speed [rad/s] and rpm, must have one of them: both are speed");
 }
 
-TEST(Measurements, RefusesColumnsThatHaveNoPlace) {
+TEST(Measurements, RefusesUnknownColumns) {
   EXPECT_EQ(refused("colour [1],rpm", {Quantity::kSpeed, Quantity::kThrust}),
             "f.csv:1: header: has the column colour [1], must be one of speed [rad/s] or thrust [N]");
   EXPECT_EQ(refused("mass [g],rpm", {Quantity::kSpeed, Quantity::kThrust}),
@@ -79,66 +79,66 @@ TEST(Measurements, RefusesColumnsThatHaveNoPlace) {
   EXPECT_EQ(refused("1,2"), "f.csv:1: header: is 1,2, must name every column");
 }
 
-const std::vector<Quantity> kOfFlights = {Quantity::kTime,
-                                          Quantity::kSpecificForceX,
-                                          Quantity::kSpecificForceZ,
-                                          Quantity::kBodyRateX,
-                                          Quantity::kBodyRateX + 1,
-                                          Quantity::kMotorCommand,
-                                          Quantity::kMotorCommand + 3,
-                                          Quantity::kMotorPulse,
-                                          Quantity::kMotorPulse + 3,
-                                          Quantity::kMotorSpeed,
-                                          Quantity::kMotorSpeed + 7,
-                                          Quantity::kPositionX + 1,
-                                          Quantity::kOrientationW,
-                                          Quantity::kOrientationX};
+const std::vector<Quantity> kFlightQuantities = {Quantity::kTime,
+                                                 Quantity::kSpecificForceX,
+                                                 Quantity::kSpecificForceZ,
+                                                 Quantity::kBodyRateX,
+                                                 Quantity::kBodyRateX + 1,
+                                                 Quantity::kMotorCommand,
+                                                 Quantity::kMotorCommand + 3,
+                                                 Quantity::kMotorPulse,
+                                                 Quantity::kMotorPulse + 3,
+                                                 Quantity::kMotorSpeed,
+                                                 Quantity::kMotorSpeed + 7,
+                                                 Quantity::kPositionX + 1,
+                                                 Quantity::kOrientationW,
+                                                 Quantity::kOrientationX};
 
-double of_flight(const std::string& header, Quantity quantity) {
-  return parse_measurements(header + "\n2\n", "f.csv", kOfFlights).column(quantity).front();
+double read_flight(const std::string& header, Quantity quantity) {
+  return parse_measurements(header + "\n2\n", "f.csv", kFlightQuantities).column(quantity).front();
 }
 
-TEST(Measurements, TakesThePeoplesNamesAndUnitsOfFlights) {
+TEST(Measurements, AcceptsCommonNamesAndUnitsOfFlightLogs) {
   constexpr double kPi = 3.14159265358979323846;
-  EXPECT_DOUBLE_EQ(of_flight("acc_z [g]", Quantity::kSpecificForceZ), 2.0 * 9.80665);
-  EXPECT_DOUBLE_EQ(of_flight("specific_force_x_frd [m/s^2]", Quantity::kSpecificForceX), 2.0);
-  EXPECT_DOUBLE_EQ(of_flight("ax [mg]", Quantity::kSpecificForceX), 2e-3 * 9.80665);
-  EXPECT_DOUBLE_EQ(of_flight("gyro_x [deg/s]", Quantity::kBodyRateX), kPi / 90.0);
-  EXPECT_DOUBLE_EQ(of_flight("q [rad/s]", Quantity::kBodyRateX + 1), 2.0);
-  EXPECT_DOUBLE_EQ(of_flight("motor4 [0..65535]", Quantity::kMotorCommand + 3), 2.0 / 65535.0);
-  EXPECT_DOUBLE_EQ(of_flight("m1 [%]", Quantity::kMotorCommand), 0.02);
-  EXPECT_DOUBLE_EQ(of_flight("motor_4 [us]", Quantity::kMotorPulse + 3), 2.0);
-  EXPECT_DOUBLE_EQ(of_flight("rpm8 [rpm]", Quantity::kMotorSpeed + 7), kPi / 15.0);
-  EXPECT_DOUBLE_EQ(of_flight("py_enu [mm]", Quantity::kPositionX + 1), 2e-3);
-  EXPECT_DOUBLE_EQ(of_flight("qw_ned_from_frd [1]", Quantity::kOrientationW), 2.0);
+  EXPECT_DOUBLE_EQ(read_flight("acc_z [g]", Quantity::kSpecificForceZ), 2.0 * 9.80665);
+  EXPECT_DOUBLE_EQ(read_flight("specific_force_x_frd [m/s^2]", Quantity::kSpecificForceX), 2.0);
+  EXPECT_DOUBLE_EQ(read_flight("ax [mg]", Quantity::kSpecificForceX), 2e-3 * 9.80665);
+  EXPECT_DOUBLE_EQ(read_flight("gyro_x [deg/s]", Quantity::kBodyRateX), kPi / 90.0);
+  EXPECT_DOUBLE_EQ(read_flight("q [rad/s]", Quantity::kBodyRateX + 1), 2.0);
+  EXPECT_DOUBLE_EQ(read_flight("motor4 [0..65535]", Quantity::kMotorCommand + 3), 2.0 / 65535.0);
+  EXPECT_DOUBLE_EQ(read_flight("m1 [%]", Quantity::kMotorCommand), 0.02);
+  EXPECT_DOUBLE_EQ(read_flight("motor_4 [us]", Quantity::kMotorPulse + 3), 2.0);
+  EXPECT_DOUBLE_EQ(read_flight("rpm8 [rpm]", Quantity::kMotorSpeed + 7), kPi / 15.0);
+  EXPECT_DOUBLE_EQ(read_flight("py_enu [mm]", Quantity::kPositionX + 1), 2e-3);
+  EXPECT_DOUBLE_EQ(read_flight("qw_ned_from_frd [1]", Quantity::kOrientationW), 2.0);
 }
 
-TEST(Measurements, RefusesFlightsThatCouldBeReadInTwoWays) {
-  EXPECT_EQ(refused("motor1,time [s]", kOfFlights),
+TEST(Measurements, RefusesAmbiguousColumnsOfFlightLogs) {
+  EXPECT_EQ(refused("motor1,time [s]", kFlightQuantities),
             "f.csv:1: header: has the column motor1 without a unit, must be motor1 [1], motor1 [%], motor1 "
             "[0..65535], "
             "motor1 [0..255], motor1 [us] or motor1 [ms]");
-  EXPECT_EQ(refused("gyro_x,time [s]", kOfFlights),
+  EXPECT_EQ(refused("gyro_x,time [s]", kFlightQuantities),
             "f.csv:1: header: has the column gyro_x without a unit, must be gyro_x [rad/s], gyro_x [deg/s] "
             "or gyro_x "
             "[mrad/s]");
-  EXPECT_EQ(refused("acc_x [g],ax_frd [g]", kOfFlights),
+  EXPECT_EQ(refused("acc_x [g],ax_frd [g]", kFlightQuantities),
             "f.csv:1: header: has the columns acc_x [g] and ax_frd [g], must have one of them: both are "
             "specific_force_x_frd");
 }
 
 TEST(Measurements, KeepsTheHeader) {
-  const Measurements table = parse_measurements("acc_x_flu [g]\n1\n", "f.csv", kOfFlights);
+  const Measurements table = parse_measurements("acc_x_flu [g]\n1\n", "f.csv", kFlightQuantities);
   EXPECT_EQ(table.header(Quantity::kSpecificForceX), "acc_x_flu [g]");
 }
 
-TEST(Measurements, NamesAColumnThatIsMissing) {
+TEST(Measurements, NamesAMissingColumn) {
   const Measurements table = parse_measurements("rpm\n1\n", "f.csv", {Quantity::kSpeed, Quantity::kThrust});
   EXPECT_EQ(refusal([&] { (void)table.column(Quantity::kThrust); }),
             "f.csv:1: header: has no column thrust [N], must have one");
 }
 
-TEST(Measurements, RefusesNumbersThatAreNone) {
+TEST(Measurements, RefusesNumbersThatAreNotFinite) {
   EXPECT_EQ(refusal([] { parse_measurements("rpm\nnan\n", "f.csv", {Quantity::kSpeed}); }),
             "f.csv:2: rpm: is nan, must be a finite number");
 }

@@ -17,10 +17,10 @@ using plant::kZiggurat;
 using plant::RandomStream;
 using plant::Ziggurat;
 
-// Of the normal distribution.
+// Cumulative distribution function of the standard normal distribution.
 double share_below(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
 
-TEST(Random, ZigguratLayersAreOfOneAreaAndEndAtTheCurvesTop) {
+TEST(Random, ZigguratLayersHaveEqualAreasAndEndAtThePeak) {
   const double area = kZiggurat.edge[0] * kZiggurat.height[1];
   for (std::size_t i = 1; i < Ziggurat::kLayers; ++i) {
     EXPECT_LT(kZiggurat.edge[i], kZiggurat.edge[i - 1]);
@@ -33,7 +33,7 @@ TEST(Random, ZigguratLayersAreOfOneAreaAndEndAtTheCurvesTop) {
   EXPECT_NEAR(area, kZiggurat.edge[1] * kZiggurat.height[1] + tail, 1e-15);
 }
 
-TEST(Random, NormalDeviatesFollowTheirDistribution) {
+TEST(Random, NormalSamplesFollowTheDistribution) {
   RandomStream random(7, 1);
   constexpr std::size_t kCount = 1'000'000;
   std::vector<double> draws(kCount);
@@ -62,7 +62,7 @@ TEST(Random, NormalDeviatesFollowTheirDistribution) {
   EXPECT_LT(distance, 1.95 / std::sqrt(kCount));
 }
 
-// The sum over all parts of the ziggurat tells the least deviation.
+// The sum covers every part of the ziggurat.
 TEST(Random, DrawsTheSameBitsOnEveryMachine) {
   RandomStream random(1, 2);
   EXPECT_EQ(random.normal(), 0x1.be45993b8bd22p+0);
@@ -73,8 +73,8 @@ TEST(Random, DrawsTheSameBitsOnEveryMachine) {
   EXPECT_EQ(sum, 0x1.2c21e16f51779p+6);
 }
 
-// What the ziggurat draws in another way: about 2.6 of 10,000 draws.
-TEST(Random, TailOfTheNormalDistributionIsThereAndOfTheRightShape) {
+// The ziggurat draws the tail by another method: about 2.6 of 10,000 draws.
+TEST(Random, NormalTailHasTheRightFrequency) {
   RandomStream random(8, 1);
   const double tail = kZiggurat.edge[1];
   constexpr int kCount = 20'000'000;
@@ -92,7 +92,7 @@ TEST(Random, TailOfTheNormalDistributionIsThereAndOfTheRightShape) {
   EXPECT_NEAR(far, expected_far, 5.0 * std::sqrt(expected_far));
 }
 
-TEST(Random, NeighboursAndStreamsAreNotCorrelated) {
+TEST(Random, SuccessiveSamplesAndStreamsAreUncorrelated) {
   RandomStream one(9, 1);
   RandomStream other(9, 2);
   constexpr int kCount = 1'000'000;
@@ -150,7 +150,7 @@ TEST(RandomStream, LogUniformIsTheExponentialOfTheUniform) {
   }
 }
 
-TEST(RandomStream, TruncatedNormalKeepsItsLimits) {
+TEST(RandomStream, TruncatedNormalStaysWithinItsLimits) {
   RandomStream random(7, 100);
   double sum = 0.0;
   for (int i = 0; i < kDraws; ++i) {
@@ -166,7 +166,7 @@ TEST(RandomStream, TruncatedNormalKeepsItsLimits) {
   EXPECT_NEAR(sum / kDraws, mean, 5.0 * 0.5 / std::sqrt(kDraws));
 }
 
-TEST(RandomStream, RangesDrawTheSameBitsOnEveryMachine) {
+TEST(RandomStream, DistributionsDrawTheSameBitsOnEveryMachine) {
   RandomStream random(42, plant::streams::of_name("vehicle.mass"));
   EXPECT_EQ(random.uniform(0.9, 1.1), 0x1.f2b9adaddbd2cp-1);
   EXPECT_EQ(random.log_uniform(1e-3, 1.0), 0x1.2d92c2352dc3ap-9);

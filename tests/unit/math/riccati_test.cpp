@@ -39,15 +39,15 @@ struct Problem {
   MatrixXd a, b, q, r;
 };
 
-// |A'X + XA - XBR^-1B'X + Q|, over the sizes of its terms.
+// |A'X + XA - XBR^-1B'X + Q| relative to the size of its terms.
 double residual(const Problem& p, const MatrixXd& x) {
   const MatrixXd g = p.b * p.r.ldlt().solve(p.b.transpose());
   const MatrixXd left = p.a.transpose() * x + x * p.a - x * g * x + p.q;
   return left.norm() / (2.0 * p.a.norm() * x.norm() + x.norm() * x.norm() * g.norm() + p.q.norm());
 }
 
-// X = V2 V1^-1, where [V1; V2] are the eigenvectors of the Hamiltonian [A, -BR^-1B'; -Q, -A'] left of the imaginary
-// axis (MacFarlane 1963, Potter 1966): another way than the code's, and less exact.
+// X = V2 V1^-1, where [V1; V2] are the eigenvectors of the Hamiltonian [A, -BR^-1B'; -Q, -A'] left of the
+// imaginary axis (MacFarlane 1963, Potter 1966): an independent method, less exact than the code's.
 MatrixXd by_eigenvectors(const Problem& p) {
   const Eigen::Index n = p.a.rows();
   MatrixXd hamiltonian(2 * n, 2 * n);
@@ -100,7 +100,7 @@ TEST(Riccati, SolvesRandomSystems) {
   }
 }
 
-TEST(Riccati, IsWhatTheHamiltoniansEigenvectorsSay) {
+TEST(Riccati, AgreesWithTheHamiltonianEigenvectors) {
   Random random(4);
   for (int trial = 0; trial < 50; ++trial) {
     const Problem p = random_problem(random);
@@ -110,8 +110,8 @@ TEST(Riccati, IsWhatTheHamiltoniansEigenvectorsSay) {
   }
 }
 
-// A residual that were 0 whatever X is would say nothing.
-TEST(Riccati, ResidualIsThatOfTheEquation) {
+// X is arbitrary, so that the residual is not 0.
+TEST(Riccati, ResidualMatchesTheEquation) {
   Random random(5);
   for (int trial = 0; trial < 50; ++trial) {
     const Problem p = random_problem(random);
@@ -124,8 +124,8 @@ TEST(Riccati, ResidualIsThatOfTheEquation) {
 }
 
 // Benner, Laub, Mehrmann, "A collection of benchmark examples for the numerical solution of algebraic Riccati
-// equations I: continuous-time case" (1995), those with a solution in closed form.
-TEST(Riccati, PublishedExamplesInClosedForm) {
+// equations I: continuous-time case" (1995), the examples with a closed form.
+TEST(Riccati, MatchesPublishedClosedForms) {
   const MatrixXd one = MatrixXd::Identity(1, 1);
   const auto expect = [](const Problem& p, const Eigen::Matrix2d& x) {
     EXPECT_LT((solve_care(p.a, p.b, p.q, p.r) - x).norm(), 1e-9 * x.norm());
@@ -146,8 +146,8 @@ TEST(Riccati, PublishedExamplesInClosedForm) {
   }
 }
 
-// The cost that it stands for, X = integral e^A't Q e^At dt.
-TEST(Riccati, LyapunovsSolutionIsTheIntegralOfTheCost) {
+// X = integral e^A't Q e^At dt.
+TEST(Riccati, LyapunovSolutionIsTheCostIntegral) {
   const MatrixXd a = two_by_two(-1.0, 2.0, 0.0, -3.0);
   const MatrixXd q = two_by_two(4.0, 1.0, 1.0, 2.0);
   // e^At = [e^-t, e^-t - e^-3t; 0, e^-3t].
@@ -157,7 +157,7 @@ TEST(Riccati, LyapunovsSolutionIsTheIntegralOfTheCost) {
   EXPECT_LT((solve_lyapunov(a, q) - two_by_two(x11, x12, x12, x22)).norm(), 1e-13);
 }
 
-TEST(Riccati, GainIsTheCheapest) {
+TEST(Riccati, GainMinimisesTheCost) {
   // The cost from x0 is x0' P x0 with (A-BK)' P + P (A-BK) + Q + K'RK = 0: any other gain costs more.
   Random random(2);
   int compared = 0;
@@ -177,7 +177,7 @@ TEST(Riccati, GainIsTheCheapest) {
   }
 }
 
-TEST(Riccati, DoubleIntegratorInClosedForm) {
+TEST(Riccati, MatchesTheClosedFormOfADoubleIntegrator) {
   MatrixXd a(2, 2);
   a << 0.0, 1.0, 0.0, 0.0;
   const MatrixXd b = Eigen::Vector2d(0.0, 1.0);
@@ -194,7 +194,7 @@ TEST(Riccati, DoubleIntegratorInClosedForm) {
   }
 }
 
-TEST(Riccati, ScalarInClosedForm) {
+TEST(Riccati, MatchesTheClosedFormOfAScalar) {
   for (const double a : {-3.0, 0.0, 2.0}) {
     const auto one = [](double v) { return MatrixXd::Constant(1, 1, v); };
     const MatrixXd x = solve_care(one(a), one(2.0), one(5.0), one(0.5));
@@ -228,7 +228,7 @@ TEST(Riccati, SolvesLyapunovEquations) {
   }
 }
 
-TEST(Riccati, RefusesWhatHasNoSolution) {
+TEST(Riccati, RefusesProblemsWithoutASolution) {
   const MatrixXd i1 = MatrixXd::Identity(1, 1);
   const MatrixXd i2 = MatrixXd::Identity(2, 2);
   MatrixXd integrators(2, 2);

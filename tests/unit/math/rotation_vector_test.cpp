@@ -29,11 +29,11 @@ Vector3d direction(Draw& draw) {
   return Vector3d(draw(-1.0, 1.0), draw(-1.0, 1.0), draw(-1.0, 1.0)).normalized();
 }
 
-// On both sides of where the series end, 0.2 rad one way and 0.063 rad the other.
+// Both sides of the limits of the series, 0.2 rad to a quaternion and 0.063 rad from one.
 const double kAngles[] = {1e-9,   1e-5,   1e-3, 0.06, 0.0632, 0.0633, 0.07, 0.19,
                           0.1999, 0.2001, 0.3,  1.0,  2.0,    3.0,    3.14};
 
-TEST(RotationVector, TurnsByRodriguesFormula) {
+TEST(RotationVector, MatchesRodriguesFormula) {
   Draw draw;
   for (const double angle : kAngles) {
     const Vector3d vector = angle * direction(draw);
@@ -44,7 +44,7 @@ TEST(RotationVector, TurnsByRodriguesFormula) {
   EXPECT_EQ(rotation(Vector3d::Zero()).coeffs(), Quaterniond::Identity().coeffs());
 }
 
-TEST(RotationVector, IsThatOfTheQuaternion) {
+TEST(RotationVector, IsRecoveredFromTheQuaternion) {
   Draw draw;
   for (const double angle : kAngles) {
     const Vector3d vector = angle * direction(draw);
@@ -57,15 +57,14 @@ TEST(RotationVector, IsThatOfTheQuaternion) {
   EXPECT_EQ(rotation_vector(Quaterniond::Identity()), Vector3d::Zero());
 }
 
-// A turn of more than half is one of less the other way.
-TEST(RotationVector, GoesTheShortWay) {
+TEST(RotationVector, TakesTheShorterRotation) {
   const Vector3d n(0.6, 0.0, -0.8);
   EXPECT_LT((rotation_vector(rotation(4.0 * n)) - (4.0 - 2.0 * kPi) * n).norm(), 1e-12);
   EXPECT_LT((rotation_vector(rotation(2.0 * kPi * n))).norm(), 1e-12);
   EXPECT_NEAR(rotation_vector(Quaterniond(0.0, 0.6, 0.0, -0.8)).norm(), kPi, 1e-12) << "half a turn";
 }
 
-TEST(RotationVector, ProductsAreBroughtBackToUnitLength) {
+TEST(RotationVector, RenormalisesProductsToUnitLength) {
   Quaterniond q = rotation({0.3, -0.2, 0.5});
   const Quaterniond exact = q;
   q.coeffs() *= 1.0 + 1e-8;

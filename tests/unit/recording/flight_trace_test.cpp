@@ -32,7 +32,7 @@ plant::ActuatorCommand command(plant::RotorState state) {
   return answer;
 }
 
-TEST(FlightTrace, KeepsEveryNumberToTheLastBit) {
+TEST(FlightTrace, WritesNumbersExactly) {
   const tests::TemporaryFolder folder;
   const std::string file = folder.path() / "trace.csv";
   FlightTrace trace(file, 4);
@@ -54,7 +54,7 @@ TEST(FlightTrace, KeepsEveryNumberToTheLastBit) {
   EXPECT_EQ(std::stod(row.substr(row.find(',') + 1)), 1.0 / 3.0);
 }
 
-TEST(FlightTrace, EndsWhereTheRotorsStop) {
+TEST(FlightTrace, EndsWhenTheRotorsStop) {
   const tests::TemporaryFolder folder;
   const std::string file = folder.path() / "trace.csv";
   FlightTrace trace(file, 4);
@@ -72,10 +72,10 @@ TEST(FlightTrace, EndsWhereTheRotorsStop) {
   EXPECT_EQ(std::count(std::istreambuf_iterator<char>(in), {}, '\n'), 5) << "a header and four rows";
 }
 
-TEST(FlightTrace, SaysWhatCannotBeWritten) {
+TEST(FlightTrace, ReportsAFileThatCannotBeWritten) {
   try {
     FlightTrace trace("/nonexistent/trace.csv", 4);
-    FAIL() << "wrote nowhere";
+    FAIL() << "no error for a path that does not exist";
   } catch (const std::runtime_error& error) {
     EXPECT_STREQ(error.what(), "/nonexistent/trace.csv: cannot be written");
   }

@@ -9,7 +9,7 @@
 namespace swiftlet::ground {
 namespace {
 
-TEST(Track, KeepsRowsInOrderAndCountsThoseThatDidNotFit) {
+TEST(Track, KeepsRowsInOrderAndCountsDroppedRows) {
   Track<int> track(3);
   EXPECT_TRUE(track.empty());
   for (int i = 1; i <= 5; ++i) track.append(i);
@@ -25,8 +25,8 @@ TEST(Track, KeepsRowsInOrderAndCountsThoseThatDidNotFit) {
   EXPECT_EQ(track.back(), 7);
 }
 
-// A row that is in is whole, while others are appended.
-TEST(Track, IsReadWhileItIsWritten) {
+// A row within size() is complete while others are appended.
+TEST(Track, CanBeReadWhileItIsWritten) {
   constexpr std::size_t kRows = 50'000;
   using Row = std::array<std::size_t, 8>;
   Track<Row> track(kRows);

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::int64_t kStep = 2'000'000;  // ns
 
-// A flight of `count` samples whose truth is the reference plus error(i); reference and truth are thinned out
-// by what says to keep them.
+// A flight of `count` samples whose truth is the reference plus error(i). keep_truth and keep_reference
+// select the rows to record.
 struct SyntheticFlight {
   Track<TruthRow> truth{2000};
   Track<ReferenceRow> reference{2000};
@@ -37,7 +37,7 @@ struct SyntheticFlight {
   }
 };
 
-TEST(TrackingErrors, OfAConstantErrorAreThatError) {
+TEST(TrackingErrors, EqualAConstantError) {
   const SyntheticFlight flight(1000, [](int) { return std::array<double, 3>{0.003, -0.004, 0.012}; });
   const TrackingErrors errors = tracking_errors(flight.truth, flight.reference, {0, 1000 * kStep});
   EXPECT_EQ(errors.matched, 1000U);
@@ -49,7 +49,7 @@ TEST(TrackingErrors, OfAConstantErrorAreThatError) {
   EXPECT_NEAR(errors.peak_3d_m, 0.013, 1e-12);
 }
 
-TEST(TrackingErrors, OfASineAreItsAmplitudeOverRootTwo) {
+TEST(TrackingErrors, OfASineHaveAnRmsOfAmplitudeOverRootTwo) {
   const SyntheticFlight flight(1000, [](int i) {
     return std::array<double, 3>{0.02 * std::sin(2 * M_PI * i / 100.0), 0.0, 0.0};
   });
@@ -59,7 +59,7 @@ TEST(TrackingErrors, OfASineAreItsAmplitudeOverRootTwo) {
   EXPECT_NEAR(errors.rms_3d_m, errors.rms_m[0], 1e-12);
 }
 
-TEST(TrackingErrors, ThePeakIsThatOfOneInstantNotOfTheAxesTogether) {
+TEST(TrackingErrors, TakeThePeakOfOneInstantNotOfEachAxis) {
   const SyntheticFlight flight(100, [](int i) {
     return std::array<double, 3>{i == 10 ? 0.03 : 0.0, i == 20 ? 0.04 : 0.0, 0.0};
   });
@@ -67,7 +67,7 @@ TEST(TrackingErrors, ThePeakIsThatOfOneInstantNotOfTheAxesTogether) {
   EXPECT_NEAR(errors.peak_3d_m, 0.04, 1e-12);
 }
 
-TEST(TrackingErrors, CountOnlyWhatLiesInTheWindow) {
+TEST(TrackingErrors, CountSamplesInTheWindowOnly) {
   const SyntheticFlight flight(1000, [](int i) {
     return std::array<double, 3>{i < 100 || i >= 900 ? 1.0 : 0.001, 0.0, 0.0};
   });
@@ -76,7 +76,7 @@ TEST(TrackingErrors, CountOnlyWhatLiesInTheWindow) {
   EXPECT_NEAR(errors.peak_3d_m, 0.001, 1e-12);
 }
 
-TEST(TrackingErrors, AreTakenAtEqualStampsOnly) {
+TEST(TrackingErrors, CompareSamplesOfEqualStampsOnly) {
   const SyntheticFlight flight(
       1000,
       [](int) {
@@ -84,11 +84,11 @@ TEST(TrackingErrors, AreTakenAtEqualStampsOnly) {
       },
       [](int i) { return i % 3 != 0; }, [](int i) { return i % 5 != 0; });
   const TrackingErrors errors = tracking_errors(flight.truth, flight.reference, {0, 1000 * kStep});
-  EXPECT_EQ(errors.matched, 533U) << "of 1000, those that neither 3 nor 5 divides";
+  EXPECT_EQ(errors.matched, 533U) << "of 1000, those not divisible by 3 or 5";
   EXPECT_NEAR(errors.peak_3d_m, 0.001, 1e-12) << "a sample was compared with a neighbour";
 }
 
-TEST(TrackingErrors, AreNotANumberWithoutAMatch) {
+TEST(TrackingErrors, AreNaNWithoutAMatch) {
   const SyntheticFlight flight(
       100, [](int) { return std::array<double, 3>{}; }, [](int i) { return i % 2 == 0; },
       [](int i) { return i % 2 == 1; });
@@ -99,14 +99,14 @@ TEST(TrackingErrors, AreNotANumberWithoutAMatch) {
   EXPECT_FALSE(enough_samples(errors, {0, 100 * kStep}, 500.0));
 }
 
-TEST(TrackingErrors, OfATruthThatIsNotANumberAreNotOneEither) {
+TEST(TrackingErrors, AreNaNIfTheTruthIsNaN) {
   const SyntheticFlight flight(100, [](int i) {
     return std::array<double, 3>{i == 50 ? std::numeric_limits<double>::quiet_NaN() : 0.0, 0.0, 0.0};
   });
   EXPECT_TRUE(std::isnan(tracking_errors(flight.truth, flight.reference, {0, 100 * kStep}).rms_3d_m));
 }
 
-TEST(EnoughSamples, WantsHalfOfThem) {
+TEST(EnoughSamples, RequiresHalfOfTheSamples) {
   const Window window = {0, 1000 * kStep};
   const auto none = [](int) { return std::array<double, 3>{}; };
   const SyntheticFlight two_in_three(1000, none, [](int i) { return i % 3 != 0; });
@@ -117,7 +117,7 @@ TEST(EnoughSamples, WantsHalfOfThem) {
       enough_samples(tracking_errors(one_in_three.truth, one_in_three.reference, window), window, 500.0));
 }
 
-TEST(EnoughSamples, WantsNoLongGap) {
+TEST(EnoughSamples, RejectsLongGaps) {
   const Window window = {0, 1000 * kStep};
   const auto none = [](int) { return std::array<double, 3>{}; };
   const auto gap_at = [&](int from, int length) {
@@ -131,7 +131,7 @@ TEST(EnoughSamples, WantsNoLongGap) {
   EXPECT_FALSE(enough_samples(gap_at(800, 200), window, 500.0)) << "at the window's end";
 }
 
-TEST(Track, KeepsWhatFitsAndCountsTheRest) {
+TEST(Track, KeepsRowsThatFitAndCountsTheRest) {
   Track<MissionRow> track(3);
   for (int i = 0; i < 5; ++i) track.append({i, 0, 0, 0});
   ASSERT_EQ(track.size(), 3U);

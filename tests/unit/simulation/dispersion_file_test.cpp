@@ -24,7 +24,7 @@ const std::string kResistance =
     "  vehicle.battery.internal_resistance: {distribution: log_uniform, min: 0.06, max: 0.24, unit: ohm, "
     "source: \"a cold cell\"}\n";
 
-TEST(VaryFile, ReadsEveryDistribution) {
+TEST(DispersionFile, ReadsEveryDistribution) {
   const Dispersion dispersion = parse("name: room\nparameters:\n" + kLatency + kResistance + kMass);
   EXPECT_EQ(dispersion.name, "room");
   ASSERT_EQ(dispersion.distributions.size(), 3U);
@@ -43,9 +43,9 @@ TEST(VaryFile, ReadsEveryDistribution) {
   EXPECT_EQ(dispersion.distributions[2].distribution, Distribution::kUniform);
 }
 
-TEST(VaryFile, IsNamedAfterTheFileUnlessItSays) { EXPECT_EQ(parse("parameters:\n" + kMass).name, "v"); }
+TEST(DispersionFile, UsesTheFileNameWithoutANameKey) { EXPECT_EQ(parse("parameters:\n" + kMass).name, "v"); }
 
-TEST(VaryFile, TheOneInTheConfigurationIsGood) {
+TEST(DispersionFile, LoadsTheKayLionConfiguration) {
   const Dispersion dispersion =
       load_dispersion_file(SWIFTLET_SOURCE_DIR "/config/dispersion/kaylion.yaml", nominal());
   EXPECT_EQ(dispersion.name, "kaylion");
@@ -53,7 +53,7 @@ TEST(VaryFile, TheOneInTheConfigurationIsGood) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) EXPECT_EQ(draw(dispersion, nominal(), seed).rejected, 0);
 }
 
-TEST(VaryFile, EveryParameterMayBeVaried) {
+TEST(DispersionFile, AcceptsEveryParameter) {
   for (const Parameter& parameter : parameters()) {
     World world = nominal();
     const bool is_zero = *parameter.in(world).front() == 0.0;
@@ -66,7 +66,7 @@ TEST(VaryFile, EveryParameterMayBeVaried) {
   }
 }
 
-TEST(VaryFile, AnUnknownKeyIsRefusedWithTheList) {
+TEST(DispersionFile, RefusesUnknownParametersAndListsTheKnown) {
   const std::string sentence = tests::refusal([] {
     parse("parameters:\n  vehicle.weight: {distribution: uniform, min: 1, max: 2, unit: kg, source: x}\n");
   });
@@ -81,14 +81,14 @@ std::string one(const std::string& key, const std::string& fields) {
   return "parameters:\n  " + key + ": {" + fields + "}\n";
 }
 
-class BadVaryFile : public testing::TestWithParam<Fault> {};
+class BadDispersionFile : public testing::TestWithParam<Fault> {};
 
-TEST_P(BadVaryFile, IsRefusedWithASentence) {
+TEST_P(BadDispersionFile, IsRefusedWithASentence) {
   EXPECT_EQ(tests::refusal([] { parse(GetParam().text); }), GetParam().sentence);
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    , BadVaryFile,
+    , BadDispersionFile,
     testing::Values(
         Fault{"NoParameters", "name: x\n", "v.yaml:1: parameters: is missing, must be given"},
         Fault{"EmptyParameters", "parameters: {}\n",
@@ -101,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(
               "normal"},
         Fault{"WrongUnit", one("vehicle.mass", "distribution: uniform, min: 30, max: 50, unit: g, source: x"),
               "v.yaml:2: parameters.vehicle.mass.unit: is g, must be nominal or kg"},
-        Fault{"AllOfTheInertiaInAUnit",
+        Fault{"WholeInertiaInAUnit",
               one("vehicle.inertia", "distribution: uniform, min: 1, max: 2, unit: kg*m^2, source: x"),
               "v.yaml:2: parameters.vehicle.inertia.unit: is kg*m^2, must be nominal"},
         Fault{"NoUnit", one("vehicle.mass", "distribution: uniform, min: 0.9, max: 1.1, source: x"),
@@ -111,22 +111,22 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"NoLimit",
               one("vehicle.mass", "distribution: normal, mean: 1, sigma: 1, unit: nominal, source: x"),
               "v.yaml:2: parameters.vehicle.mass.min: is missing, must be given"},
-        Fault{"LimitsTheWrongWayRound",
+        Fault{"MaxBelowMin",
               one("vehicle.mass", "distribution: uniform, min: 1.1, max: 0.9, unit: nominal, source: x"),
               "v.yaml:2: parameters.vehicle.mass.max: is 0.9, must be above 1.1"},
         Fault{"LogarithmOfZero",
               one("simulation.mocap.latency_s",
                   "distribution: log_uniform, min: 0, max: 1, unit: s, source: x"),
               "v.yaml:2: parameters.simulation.mocap.latency_s.min: is 0, must be above 0"},
-        Fault{"MeanOutsideItsLimits",
+        Fault{"MeanOutsideLimits",
               one("vehicle.mass",
                   "distribution: normal, mean: 2, sigma: 0.1, min: 0.9, max: 1.1, unit: nominal, source: x"),
               "v.yaml:2: parameters.vehicle.mass.mean: is 2, must be at least 0.9 and at most 1.1"},
-        Fault{"SigmaBeyondItsLimits",
+        Fault{"SigmaTooLarge",
               one("vehicle.mass",
                   "distribution: normal, mean: 1, sigma: 9, min: 0.75, max: 1.25, unit: nominal, source: x"),
               "v.yaml:2: parameters.vehicle.mass.sigma: is 9, must be above 0 and at most 0.5"},
-        Fault{"SigmaOfAUniform",
+        Fault{"SigmaForUniform",
               one("vehicle.mass",
                   "distribution: uniform, min: 0.9, max: 1.1, sigma: 1, unit: nominal, source: x"),
               "v.yaml:2: parameters.vehicle.mass.sigma: is unknown, must be one of distribution, unit, min, "
@@ -134,7 +134,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"NotANumber",
               one("vehicle.mass", "distribution: uniform, min: .nan, max: 2, unit: kg, source: x"),
               "v.yaml:2: parameters.vehicle.mass.min: is .nan, must be a finite number"},
-        Fault{"FactorOfZero",
+        Fault{"FactorOfNominalZero",
               one("simulation.mocap.dropout_probability",
                   "distribution: uniform, min: 0.5, max: 2, unit: nominal, source: x"),
               "v.yaml:2: parameters.simulation.mocap.dropout_probability.unit: is nominal, must be 1: the "
@@ -144,7 +144,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "distribution: uniform, min: -0.01, max: 1, unit: s, source: x"),
               "v.yaml:2: parameters.simulation.mocap.latency_s.min: is -0.01, must be at least 0 and at most "
               "1"},
-        Fault{"Storm",
+        Fault{"WindBeyondTheLimit",
               one("simulation.air.wind_ned_m_s.east",
                   "distribution: uniform, min: 0, max: 50, unit: m/s, source: x"),
               "v.yaml:2: parameters.simulation.air.wind_ned_m_s.east.max: is 50, must be at least -30 and at "
@@ -158,7 +158,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"NegativeInertia",
               one("vehicle.inertia.xx", "distribution: uniform, min: -1, max: 1, unit: nominal, source: x"),
               "v.yaml:2: parameters.vehicle.inertia.xx.min: is -1, must be above 0"},
-        Fault{"UnknownKeyBeside", "parameters:\n" + kMass + "seed: 3\n",
+        Fault{"UnknownRootKey", "parameters:\n" + kMass + "seed: 3\n",
               "v.yaml:3: seed: is unknown, must be one of name or parameters"}),
     name_of);
 

@@ -31,7 +31,7 @@ const std::string kRoll =
 const std::string kK2 =
     "  vehicle.motor.k2: {distribution: uniform, min: 0.9, max: 1.1, unit: nominal, source: estimate}\n";
 
-TEST(DispersionSample, IsTheSameForASeedWhateverWasDrawnBefore) {
+TEST(DispersionSample, DependsOnTheSeedAndNotOnEarlierDraws) {
   const Dispersion dispersion = parse(kMass + kLatency);
   const std::vector<double> first = draw(dispersion, nominal(), 5).values;
   draw(dispersion, nominal(), 6);
@@ -39,7 +39,7 @@ TEST(DispersionSample, IsTheSameForASeedWhateverWasDrawnBefore) {
   EXPECT_NE(draw(dispersion, nominal(), 6).values, first);
 }
 
-TEST(DispersionSample, DoesNotDependOnTheOrderOfKeysNorOnOtherKeys) {
+TEST(DispersionSample, IsIndependentOfKeyOrderAndOtherKeys) {
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     const std::vector<double> both = draw(parse(kMass + kLatency), nominal(), seed).values;
     EXPECT_EQ(draw(parse(kLatency + kMass), nominal(), seed).values, both);
@@ -48,7 +48,7 @@ TEST(DispersionSample, DoesNotDependOnTheOrderOfKeysNorOnOtherKeys) {
   }
 }
 
-TEST(DispersionSample, HasAStreamForEachParameterAsideOfTheSimulations) {
+TEST(DispersionSample, UsesOneStreamPerParameterApartFromTheSimulation) {
   std::set<std::uint64_t> ids;
   for (const Parameter& parameter : parameters()) {
     const std::uint64_t id = plant::streams::of_name(parameter.name);
@@ -79,10 +79,10 @@ TEST(DispersionSample, FollowsTheDistributionOverSeeds) {
   const double bound = 5.0 / std::sqrt(kDraws);
   EXPECT_NEAR(mass_sum / kDraws, 1.0, bound * 0.02);
   EXPECT_NEAR(latency_sum / kDraws, 0.0125, bound * 0.015 / std::sqrt(12.0));
-  EXPECT_NEAR(product_sum / kDraws, 0.0, bound) << "streams of neighbouring seeds go together";
+  EXPECT_NEAR(product_sum / kDraws, 0.0, bound) << "mass and latency are correlated";
 }
 
-TEST(DispersionSample, LeavesAloneWhatIsNotVaried) {
+TEST(DispersionSample, KeepsOtherParametersNominal) {
   World drawn = draw(parse(kMass), nominal(), 3).world;
   drawn.vehicle.mass_kg = nominal().vehicle.mass_kg;
   World before = nominal();
@@ -93,7 +93,7 @@ TEST(DispersionSample, LeavesAloneWhatIsNotVaried) {
   }
 }
 
-TEST(DispersionSample, MultipliesAllOfTheInertiaAndThenItsParts) {
+TEST(DispersionSample, ScalesTheWholeInertiaBeforeItsElements) {
   const DispersionSample one = draw(parse(kInertia + kRoll), nominal(), 9);
   const double factor = one.values[0];
   const Eigen::Matrix3d& drawn = one.world.vehicle.inertia;
@@ -104,7 +104,7 @@ TEST(DispersionSample, MultipliesAllOfTheInertiaAndThenItsParts) {
   EXPECT_NE(drawn(0, 0), factor * before(0, 0));
 }
 
-TEST(DispersionSample, IsDrawnAnewIfTheBodyCannotBe) {
+TEST(DispersionSample, IsRedrawnIfTheInertiaIsInvalid) {
   const Dispersion dispersion = parse(kRoll);
   int rejected = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
@@ -115,7 +115,7 @@ TEST(DispersionSample, IsDrawnAnewIfTheBodyCannotBe) {
   EXPECT_GT(rejected, 50) << "an inertia xx much below the nominal breaks the triangle inequality";
 }
 
-TEST(DispersionSample, ThatNeverCanBeIsRefused) {
+TEST(DispersionSample, IsRefusedAfterOneHundredInvalidDraws) {
   const Dispersion dispersion =
       parse("  vehicle.inertia.zz: {distribution: uniform, min: 1.5, max: 2, unit: nominal, source: x}\n");
   const std::string sentence = tests::refusal([&] { draw(dispersion, nominal(), 17); });
@@ -124,7 +124,7 @@ TEST(DispersionSample, ThatNeverCanBeIsRefused) {
       << sentence;
 }
 
-TEST(DispersionSample, LetsTheResistanceFollowTheMotorConstants) {
+TEST(DispersionSample, ScalesTheResistanceWithTheMotorConstants) {
   const plant::Vehicle& before = nominal().vehicle;
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     const DispersionSample one = draw(parse(kK2), nominal(), seed);

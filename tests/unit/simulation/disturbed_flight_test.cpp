@@ -1,4 +1,4 @@
-// How closely the default controller follows the square, in the default world and in a rough one.
+// Tracking error of the default controller on the square, in the default world and with disturbances.
 #include <cmath>
 #include <string>
 
@@ -31,11 +31,11 @@ control::Mission square(const std::string& speed, const control::Limits& limits)
 }
 
 struct Flight {
-  double rms_m = 0.0;             // from take-off to the landing's start
-  double lowest_voltage_v = 1e9;  // the battery's, of the whole flight
+  double rms_m = 0.0;             // from take-off to the start of the landing
+  double lowest_voltage_v = 1e9;  // of the battery, over the whole flight
 };
 
-struct Scene {
+struct FlightSetup {
   plant::Vehicle nominal = runtime::load_vehicle(runtime::find_config("vehicles/kaylion.yaml"));
   plant::Vehicle flown = nominal;
   plant::SimulationSettings world =
@@ -66,32 +66,32 @@ struct Scene {
   }
 };
 
-TEST(DisturbedFlight, AtHalfAMetrePerSecond) {
-  const Scene scene;
-  for (const std::uint64_t seed : {1, 2, 3}) EXPECT_LT(scene.fly("0.5", seed).rms_m, 5e-3);
+TEST(DisturbedFlight, TracksTheSquareAtHalfAMetrePerSecond) {
+  const FlightSetup setup;
+  for (const std::uint64_t seed : {1, 2, 3}) EXPECT_LT(setup.fly("0.5", seed).rms_m, 5e-3);
 }
 
-TEST(DisturbedFlight, AtOneAndAHalfMetresPerSecond) {
-  Scene scene;
-  for (const std::uint64_t seed : {1, 2, 3}) EXPECT_LT(scene.fly("1.5", seed).rms_m, 25e-3);
+TEST(DisturbedFlight, TracksTheSquareAtOneAndAHalfMetresPerSecond) {
+  FlightSetup setup;
+  for (const std::uint64_t seed : {1, 2, 3}) EXPECT_LT(setup.fly("1.5", seed).rms_m, 25e-3);
 }
 
-// 10 % of mass that the controller knows nothing of, 2 m/s of wind with gusts, and a cell that is full at the
-// start and all but empty at the end.
-TEST(DisturbedFlight, HeavyInWindWithABatteryThatEmpties) {
-  Scene scene;
-  scene.flown.mass_kg *= 1.1;
-  scene.flown.linear_drag = 0.01;
-  scene.world.air.wind_ned = {1.6, -1.2, 0.0};
-  scene.world.air.gust_sigma_ned = {0.7, 0.7, 0.3};
-  scene.flown.battery.capacity_ah *= 0.06;
+// 10 % more mass than the controller's model, 2 m/s of wind with gusts, and a full cell that is nearly empty
+// at the end.
+TEST(DisturbedFlight, TracksTheSquareHeavyInWindOnADrainingBattery) {
+  FlightSetup setup;
+  setup.flown.mass_kg *= 1.1;
+  setup.flown.linear_drag = 0.01;
+  setup.world.air.wind_ned = {1.6, -1.2, 0.0};
+  setup.world.air.gust_sigma_ned = {0.7, 0.7, 0.3};
+  setup.flown.battery.capacity_ah *= 0.06;
   for (const std::uint64_t seed : {1, 2, 3}) {
-    const Flight flight = scene.fly("0.5", seed);
+    const Flight flight = setup.fly("0.5", seed);
     EXPECT_LT(flight.rms_m, 20e-3);
     EXPECT_LT(flight.lowest_voltage_v, 3.6);
   }
-  scene.control.disturbance.bandwidth = 0.0;
-  EXPECT_GT(scene.fly("0.5", 1).rms_m, 1.5 * 20e-3) << "without the observer";
+  setup.control.disturbance.bandwidth = 0.0;
+  EXPECT_GT(setup.fly("0.5", 1).rms_m, 1.5 * 20e-3) << "without the disturbance observer";
 }
 
 }  // namespace

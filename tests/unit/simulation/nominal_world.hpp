@@ -1,4 +1,4 @@
-// What variations start from in the tests.
+// The nominal world of the dispersion tests.
 #pragma once
 
 #include "swiftlet/io/settings/simulation_file.hpp"

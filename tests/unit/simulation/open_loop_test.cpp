@@ -39,7 +39,7 @@ std::string fault_of(const std::function<void()>& read) {
   return "none";
 }
 
-TEST(OpenLoop, ARowForEachMillisecondFromTheFirstTimeToTheLast) {
+TEST(OpenLoop, ReturnsARowEachMillisecondFromFirstToLastTime) {
   const auto rows =
       simulate_open_loop(kaylion(), 3.7, {}, pulses("0.5,1400,1400,1400,1400\n0.6005,1400,1400,1400,1400\n"));
   ASSERT_EQ(rows.size(), 101u);
@@ -48,7 +48,7 @@ TEST(OpenLoop, ARowForEachMillisecondFromTheFirstTimeToTheLast) {
   }
 }
 
-TEST(OpenLoop, HoversAtTheSpeedAndPulseWidthOfTheAnchors) {
+TEST(OpenLoop, HoversAtTheAnchorSpeedAndPulseWidth) {
   const plant::Vehicle& vehicle = kaylion();
   const double throttle = plant::throttle_from_steady_thrust(vehicle, 3.7, plant::hover_thrust(vehicle));
   const double pulse = 1039.0 + 1000.0 * throttle;
@@ -60,12 +60,12 @@ TEST(OpenLoop, HoversAtTheSpeedAndPulseWidthOfTheAnchors) {
   EXPECT_LT(rows.back().state.position_ned.norm(), 1e-9);
 }
 
-TEST(OpenLoop, AThrottleChangesAtItsTimeAlsoBetweenMilliseconds) {
+TEST(OpenLoop, AppliesThrottleChangesBetweenMilliseconds) {
   const plant::Vehicle& vehicle = kaylion();
   const auto rows = simulate_open_loop(
       vehicle, 4.0, {},
       pulses("0,1039,1039,1039,1039\n0.0105,2039,1039,1039,1039\n0.02,1039,1039,1039,1039\n"));
-  // One first-order lag after the other, Eq. (18).
+  // Consecutive first-order lags, Eq. (18).
   const auto rise = [&](double from, double throttle, double t) {
     const double steady = plant::steady_speed_from_throttle(vehicle, 4.0, throttle);
     return steady + (from - steady) * std::exp(-t / vehicle.motor.time_constant_s);
@@ -76,9 +76,8 @@ TEST(OpenLoop, AThrottleChangesAtItsTimeAlsoBetweenMilliseconds) {
   EXPECT_NEAR(rows[20].state.rotor_speeds[1], rise(before, 0.0, 0.0095), 1e-8);
 }
 
-// Flies 2 s with pulse widths that change at any nanosecond, and compares each row with the paper's equations
-// as another method integrates them. Every quantity must agree within tolerance of the largest value that it
-// takes.
+// Simulates 2 s with pulse widths that change at any nanosecond, and compares each row with an independent
+// integration of the paper's equations. The tolerance is relative to the peak of each quantity.
 void expect_paper_motion(const plant::VehicleState& initial, const std::vector<PulseWidths>& commands,
                          double tolerance) {
   constexpr double kSupply = 3.9;
@@ -102,13 +101,13 @@ void expect_paper_motion(const plant::VehicleState& initial, const std::vector<P
     comparison.add(reference, tests::paper::state_of(rows[row].state));
   }
   for (std::size_t i = 0; i < tests::paper::kNames.size(); ++i) {
-    // What symmetry keeps at 0 may be off by what is nothing beside the rest.
+    // A quantity that stays near 0 by symmetry has an absolute tolerance.
     EXPECT_LT(comparison.worst[i], tolerance * std::max(comparison.peak[i], 1e-3))
         << tests::paper::kNames[i] << " reaches " << comparison.peak[i];
   }
 }
 
-TEST(OpenLoop, ATumbleAgreesWithThePaper) {
+TEST(OpenLoop, TumblingMatchesThePaperEquations) {
   tests::Draw draw;
   for (int flight = 0; flight < 5; ++flight) {
     SCOPED_TRACE("flight " + std::to_string(flight));
@@ -129,14 +128,14 @@ TEST(OpenLoop, ATumbleAgreesWithThePaper) {
   }
 }
 
-// The fastest there is: both left rotors at full throttle, the right ones at none, 2 s long.
-TEST(OpenLoop, TheWildestTumbleAgreesWithThePaper) {
+// Both left rotors at full throttle, the right ones at zero, for 2 s.
+TEST(OpenLoop, FastestTumbleMatchesThePaperEquations) {
   PulseWidths roll;
   roll.throttle = {0.0, 1.0, 1.0, 0.0};
   expect_paper_motion({}, {roll, {2'000'000'000, {}}}, 1e-6);
 }
 
-TEST(OpenLoop, RefusesToSpinBeyondAllBounds) {
+TEST(OpenLoop, ThrowsBeyondTheBodyRateLimit) {
   plant::VehicleState fast;
   fast.body_rates_frd.x() = 9990.0;  // of 10,000
   const auto commands = pulses("0,1039,2039,2039,1039\n1,1039,2039,2039,1039\n");
@@ -145,7 +144,7 @@ TEST(OpenLoop, RefusesToSpinBeyondAllBounds) {
   EXPECT_NO_THROW(simulate_open_loop(kaylion(), 4.0, fast, coasting));
 }
 
-TEST(OpenLoop, TakesTheInitialStateAsItIs) {
+TEST(OpenLoop, ReadsTheInitialState) {
   const plant::VehicleState start = state("1,2,-3,0.1,0.2,0.3,0.5,0.5,0.5,0.5,1,2,3,100,200,300,400\n");
   EXPECT_EQ(start.position_ned, Eigen::Vector3d(1, 2, -3));
   EXPECT_EQ(start.velocity_ned, Eigen::Vector3d(0.1, 0.2, 0.3));

@@ -54,7 +54,7 @@ class AllocatorTest : public testing::TestWithParam<int> {
     return std::uniform_real_distribution<double>(low, high)(generator_);
   }
 
-  // A wrench that fits at this supply among the pseudo-inverse's solutions, often close to the limits.
+  // A wrench whose pseudo-inverse solution is feasible at this supply, often close to the limits.
   Wrench feasible(double supply) {
     const plant::ThrustRange range = plant::steady_thrust_range(vehicle_, supply);
     while (true) {
@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(Rotors, AllocatorTest, testing::Values(0, 4, 5, 6, 7, 8
 
 constexpr double kTolerance = 1e-10;  // N and N m
 
-TEST_P(AllocatorTest, InvertsTheModelExactlyWhereItCan) {
+TEST_P(AllocatorTest, InvertsTheModelExactlyIfFeasible) {
   const Allocator allocator(vehicle_);
   for (int trial = 0; trial < 1000; ++trial) {
     const double supply = draw(3.3, 4.3);
@@ -97,7 +97,7 @@ TEST_P(AllocatorTest, InvertsTheModelExactlyWhereItCan) {
   }
 }
 
-TEST_P(AllocatorTest, IsAlwaysFiniteWithinLimitsAndHonest) {
+TEST_P(AllocatorTest, IsFiniteWithinLimitsAndReportsSaturation) {
   const Allocator allocator(vehicle_);
   const double odd[] = {kNaN, kInf, -kInf, 0.0, -0.0, 1e308, -1e308, 1e-308, 1.0, -5.0};
   const auto any = [&](double size) {
@@ -133,8 +133,8 @@ TEST_P(AllocatorTest, IsAlwaysFiniteWithinLimitsAndHonest) {
   }
 }
 
-// A wrench that fits is known; the wanted one shares its roll and pitch moment and asks anything else.
-TEST_P(AllocatorTest, NeverGivesUpRollAndPitchForThrustOrYaw) {
+// The wanted wrench has roll and pitch moment of a feasible one, and any thrust and yaw moment.
+TEST_P(AllocatorTest, PrioritisesRollAndPitchOverThrustAndYaw) {
   const Allocator allocator(vehicle_);
   for (int trial = 0; trial < 5000; ++trial) {
     const double supply = draw(3.3, 4.3);
@@ -144,13 +144,13 @@ TEST_P(AllocatorTest, NeverGivesUpRollAndPitchForThrustOrYaw) {
     wanted.moment_frd.z() = draw(-0.01, 0.01);
     const Wrench got = allocator.wrench(allocate(allocator, wanted, supply).thrust_n);
     EXPECT_LT((got.moment_frd - wanted.moment_frd).head<2>().norm(), kTolerance);
-    // The known one is at hand, so thrust comes at least as near as its thrust does.
+    // The thrust error is no larger than that of the feasible wrench.
     EXPECT_LE(std::abs(got.thrust_n - wanted.thrust_n),
               std::abs(known.thrust_n - wanted.thrust_n) + kTolerance);
   }
 }
 
-TEST_P(AllocatorTest, NeverGivesUpThrustForYaw) {
+TEST_P(AllocatorTest, PrioritisesThrustOverYaw) {
   const Allocator allocator(vehicle_);
   for (int trial = 0; trial < 5000; ++trial) {
     const double supply = draw(3.3, 4.3);
@@ -165,7 +165,7 @@ TEST_P(AllocatorTest, NeverGivesUpThrustForYaw) {
   }
 }
 
-TEST_P(AllocatorTest, KeepsTheDirectionOfRollAndPitchWhenTheyDoNotFit) {
+TEST_P(AllocatorTest, KeepsTheDirectionOfSaturatedRollAndPitch) {
   const Allocator allocator(vehicle_);
   for (int trial = 0; trial < 5000; ++trial) {
     const double supply = draw(3.3, 4.3);
@@ -180,7 +180,7 @@ TEST_P(AllocatorTest, KeepsTheDirectionOfRollAndPitchWhenTheyDoNotFit) {
   }
 }
 
-TEST(Allocator, HoverAnchors) {
+TEST(Allocator, MatchesTheHoverAnchors) {
   plant::Vehicle vehicle = tests::kaylion();
   vehicle.mass_kg = 0.040;
   const Allocator allocator(vehicle);
@@ -190,7 +190,7 @@ TEST(Allocator, HoverAnchors) {
   EXPECT_NEAR(allocate(allocator, hover, 4.2).throttle[3], 0.306, 1e-3);
 }
 
-TEST(Allocator, MomentsTurnTheRotorsOfEq28) {
+TEST(Allocator, MomentsChangeTheThrustsAsInEq28) {
   const Allocator allocator(tests::kaylion());
   const auto thrusts = [&](const Vector3d& moment) {
     return allocate(allocator, {0.4, moment}, 3.9).thrust_n;
@@ -203,7 +203,7 @@ TEST(Allocator, MomentsTurnTheRotorsOfEq28) {
   EXPECT_TRUE(yaw[0] > 0.1 && yaw[1] < 0.1 && yaw[2] > 0.1 && yaw[3] < 0.1);
 }
 
-TEST(Allocator, ThrustBeyondTheLimitsIsCutWithoutMoments) {
+TEST(Allocator, ClampsThrustWithoutMoments) {
   const plant::Vehicle& vehicle = tests::kaylion();
   const Allocator allocator(vehicle);
   const plant::ThrustRange range = plant::steady_thrust_range(vehicle, 3.7);
@@ -218,7 +218,7 @@ TEST(Allocator, ThrustBeyondTheLimitsIsCutWithoutMoments) {
   EXPECT_LT(allocator.wrench(none.thrust_n).moment_frd.norm(), kTolerance);
 }
 
-TEST(Allocator, BadInputHasADefinedResult) {
+TEST(Allocator, ReplacesInvalidInput) {
   const plant::Vehicle& vehicle = tests::kaylion();
   const Allocator allocator(vehicle);
   const double weight = vehicle.mass_kg * plant::kGravity;
@@ -238,7 +238,7 @@ TEST(Allocator, BadInputHasADefinedResult) {
   }
 }
 
-TEST(Allocator, RefusesRotorsThatCannotTurnTheBody) {
+TEST(Allocator, RefusesRotorsThatCannotGiveAllMoments) {
   plant::Vehicle vehicle = tests::kaylion();
   for (plant::RotorMount& mount : vehicle.rotors) mount.spin = plant::Spin::kClockwise;
   EXPECT_THROW(Allocator{vehicle}, std::invalid_argument);

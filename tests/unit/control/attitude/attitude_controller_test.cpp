@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(Errors, AttitudeControllerTest,
                            return kind.param == AttitudeErrorKind::kRotation ? "Rotation" : "EulerAngles";
                          });
 
-// The control law by itself, from rotation matrices, Eq. (3), and half angles: nothing of the code's own error functions.
+// The control law from rotation matrices, Eq. (3), and half angles, without the code's error functions.
 struct Law {
   AttitudeModel model;
   AttitudeErrorKind error;
@@ -87,7 +87,7 @@ struct Law {
   Vector3d angle_error(const Matrix3d& r_ned_from_frd, const Vector3d& euler_r) const {
     const Matrix3d r_ned_from_reference = matrix_of(euler_r);
     if (error == AttitudeErrorKind::kEulerAngles) {
-      // b points where the reference's z axis does, seen from the present heading.
+      // b is the z axis of the reference, in axes of the present heading.
       const Vector3d euler = euler_of(r_ned_from_frd);
       const Vector3d b = Eigen::AngleAxisd(-euler.z(), Vector3d::UnitZ()) * r_ned_from_reference.col(2);
       const Vector3d wanted(-std::asin(b.y()), std::atan2(b.x(), b.z()), euler_r.z());
@@ -102,7 +102,7 @@ struct Law {
     const double yaw = std::atan2(after_tilt(1, 0), after_tilt(0, 0));
     return 2.0 * std::sin(0.5 * tilt) * axis + 2.0 * std::sin(0.5 * yaw) * Vector3d::UnitZ();
   }
-  // What the moment commanded is to make of the angular acceleration by Eq. (6), and that moment.
+  // The moment for a commanded angular acceleration by Eq. (6).
   Vector3d moment(const Vector3d& command, const Vector3d& rates, const Vector3d& present_moment,
                   const Vector3d& accelerations_r) const {
     const Vector3d gyroscopic = rates.cross(inertia * rates);
@@ -130,8 +130,8 @@ Law law_of(const Loops& loops, AttitudeModel model, AttitudeErrorKind error) {
           {g.roll.k[2], g.pitch.k[2], g.yaw.k[2]}};
 }
 
-// Far from each other and from level, turning, with a moment under way and all that can be fed forward.
-TEST_P(AttitudeControllerTest, MomentsAreTheLaw) {
+// Large angles, body rates, a present moment and all feed-forward terms.
+TEST_P(AttitudeControllerTest, MomentsMatchTheControlLaw) {
   for (const AttitudeModel model : {AttitudeModel::kDoubleIntegrator, AttitudeModel::kMotorLag}) {
     const Loops loops(model, GetParam());
     const Law law = law_of(loops, model, GetParam());
@@ -161,7 +161,7 @@ TEST_P(AttitudeControllerTest, MomentsAreTheLaw) {
   }
 }
 
-TEST_P(AttitudeControllerTest, MomentsForRatesAreTheLawWithoutAttitude) {
+TEST_P(AttitudeControllerTest, MomentsForRatesMatchTheRateLaw) {
   for (const AttitudeModel model : {AttitudeModel::kDoubleIntegrator, AttitudeModel::kMotorLag}) {
     const Loops loops(model, GetParam());
     const Law law = law_of(loops, model, GetParam());
@@ -177,28 +177,29 @@ TEST_P(AttitudeControllerTest, MomentsForRatesAreTheLawWithoutAttitude) {
   }
 }
 
-// The double integrator's LQR in closed form, Q = diag(q1, q2) and R = 1: K = [sqrt(q1), sqrt(q2 + 2 sqrt(q1))].
-TEST_P(AttitudeControllerTest, ASmallTurnOfEachAxisIsAnsweredByItsGain) {
+// The double integrator's LQR in closed form, Q = diag(q1, q2) and R = 1:
+// K = [sqrt(q1), sqrt(q2 + 2 sqrt(q1))].
+TEST_P(AttitudeControllerTest, SmallErrorsOfEachAxisUseItsGains) {
   const Loops loops(AttitudeModel::kDoubleIntegrator, GetParam());
   const Vector3d k_angle(25.0, 30.0, 5.0);
   const Vector3d k_rate(std::sqrt(50.0), std::sqrt(61.0), std::sqrt(10.0));
   for (int axis = 0; axis < 3; ++axis) {
     const Vector3d unit = Vector3d::Unit(axis);
     const Quaterniond turned(Eigen::AngleAxisd(1e-5, unit));
-    const Vector3d angle_answer =
+    const Vector3d angle_moment =
         loops.controller->moments(turned, Vector3d::Zero(), Vector3d::Zero(), reference_at(Vector3d::Zero()));
-    EXPECT_LT((angle_answer + loops.vehicle.inertia * (1e-5 * k_angle[axis] * unit)).norm(),
-              1e-9 * angle_answer.norm())
+    EXPECT_LT((angle_moment + loops.vehicle.inertia * (1e-5 * k_angle[axis] * unit)).norm(),
+              1e-9 * angle_moment.norm())
         << axis;
-    const Vector3d rate_answer = loops.controller->moments(Quaterniond::Identity(), 1e-5 * unit,
+    const Vector3d rate_moment = loops.controller->moments(Quaterniond::Identity(), 1e-5 * unit,
                                                            Vector3d::Zero(), reference_at(Vector3d::Zero()));
-    EXPECT_LT((rate_answer + loops.vehicle.inertia * (1e-5 * k_rate[axis] * unit)).norm(),
-              1e-4 * rate_answer.norm())
+    EXPECT_LT((rate_moment + loops.vehicle.inertia * (1e-5 * k_rate[axis] * unit)).norm(),
+              1e-4 * rate_moment.norm())
         << axis;
   }
 }
 
-TEST_P(AttitudeControllerTest, FeedForwardIsLeftOutWhenNotWanted) {
+TEST_P(AttitudeControllerTest, FeedForwardCanBeDisabled) {
   const Loops loops(AttitudeModel::kMotorLag, GetParam(), false);
   const Quaterniond q = quaternion_from_euler({0.1, 0.2, 0.3});
   const Vector3d rates = any(2.0);
@@ -211,7 +212,7 @@ TEST_P(AttitudeControllerTest, FeedForwardIsLeftOutWhenNotWanted) {
             loops.controller->moments(q, rates, Vector3d::Zero(), still));
 }
 
-TEST_P(AttitudeControllerTest, YawTurnsTheShortWay) {
+TEST_P(AttitudeControllerTest, YawTurnsTheShorterWay) {
   const Loops loops(AttitudeModel::kMotorLag, GetParam());
   const Vector3d moment = loops.controller->moments(quaternion_from_euler({0.0, 0.0, 3.0}), Vector3d::Zero(),
                                                     Vector3d::Zero(), reference_at({0.0, 0.0, -3.0}));
@@ -270,7 +271,7 @@ TEST_P(AttitudeControllerTest, BringsALargeAttitudeErrorToRest) {
   }
 }
 
-TEST_P(AttitudeControllerTest, FeedForwardWithItsDerivativeLeadsTheLag) {
+TEST_P(AttitudeControllerTest, FeedForwardOfTheJerkCompensatesTheLag) {
   // Pitch follows 0.3 sin(4 t): behind the lag of 82 ms alone it would be 0.3 rad late in phase.
   const Loops loops(AttitudeModel::kMotorLag, GetParam());
   const auto worst = [&](bool lead) {
@@ -296,7 +297,7 @@ TEST_P(AttitudeControllerTest, FeedForwardWithItsDerivativeLeadsTheLag) {
 }
 
 // Pitching through the vertical, the Euler angles phi and psi jump by half a turn.
-TEST(AttitudeController, OnlyTheRotationKnowsNoJump) {
+TEST(AttitudeController, OnlyTheRotationErrorIsContinuous) {
   const auto largest_jump = [](AttitudeErrorKind kind) {
     const Loops loops(AttitudeModel::kMotorLag, kind);
     const AttitudeReference reference = reference_at({0.0, 0.0, 0.5});
@@ -318,7 +319,7 @@ TEST(AttitudeController, OnlyTheRotationKnowsNoJump) {
   EXPECT_GT(largest_jump(AttitudeErrorKind::kEulerAngles), 1.0);
 }
 
-TEST(AttitudeController, RefusesAnInertiaThatIsNone) {
+TEST(AttitudeController, RefusesAnInvalidInertia) {
   ControlSettings s = settings(AttitudeModel::kMotorLag);
   plant::Vehicle vehicle = tests::kaylion();
   const ControlDesign gains = design(vehicle, s);

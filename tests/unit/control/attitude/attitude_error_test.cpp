@@ -28,7 +28,7 @@ class AttitudeErrorTest : public testing::Test {
   std::mt19937 generator_{9};
 };
 
-TEST_F(AttitudeErrorTest, EulerAnglesAreThoseOfEq3) {
+TEST_F(AttitudeErrorTest, EulerAnglesMatchEq3) {
   for (int trial = 0; trial < 1000; ++trial) {
     const Vector3d euler = any(1.0).cwiseProduct(Vector3d(M_PI, 0.999 * M_PI / 2.0, M_PI));
     const double sp = std::sin(euler[0]), cp = std::cos(euler[0]), st = std::sin(euler[1]),
@@ -43,7 +43,7 @@ TEST_F(AttitudeErrorTest, EulerAnglesAreThoseOfEq3) {
   }
 }
 
-TEST_F(AttitudeErrorTest, EulerAnglesAtTheSingularityStillTurnBack) {
+TEST_F(AttitudeErrorTest, EulerAnglesAtTheSingularityRoundTrip) {
   for (const double theta : {M_PI / 2.0, -M_PI / 2.0}) {
     const Quaterniond q = quaternion_from_euler({0.4, theta, 0.9});
     const Vector3d euler = euler_angles(q).vector();
@@ -66,7 +66,7 @@ TEST_F(AttitudeErrorTest, AttitudeAlongHasTheEulerYaw) {
   }
 }
 
-TEST_F(AttitudeErrorTest, NoErrorAtTheReference) {
+TEST_F(AttitudeErrorTest, IsZeroAtTheReference) {
   for (int trial = 0; trial < 100; ++trial) {
     const Vector3d euler = any(1.0).cwiseProduct(Vector3d(1.2, 1.2, M_PI));
     const Quaterniond q = quaternion_from_euler(euler);
@@ -77,8 +77,8 @@ TEST_F(AttitudeErrorTest, NoErrorAtTheReference) {
   }
 }
 
-// By the first order of both: what is left falls with the square of the size.
-TEST_F(AttitudeErrorTest, BothAgreeNearLevel) {
+// To first order: the difference is quadratic in the size.
+TEST_F(AttitudeErrorTest, EulerAndRotationErrorsAgreeNearLevel) {
   for (const double size : {1e-2, 1e-3}) {
     for (int trial = 0; trial < 100; ++trial) {
       const Quaterniond q = quaternion_from_euler(any(size));
@@ -90,7 +90,7 @@ TEST_F(AttitudeErrorTest, BothAgreeNearLevel) {
   }
 }
 
-TEST_F(AttitudeErrorTest, TheTwoPartsAddUpToTheRotation) {
+TEST_F(AttitudeErrorTest, TiltAndYawPartsComposeToTheRotation) {
   for (int trial = 0; trial < 1000; ++trial) {
     const Quaterniond q = any_attitude();
     const Vector3d z = quaternion_from_euler(any(1.0)) * Vector3d::UnitZ();
@@ -107,7 +107,7 @@ TEST_F(AttitudeErrorTest, TheTwoPartsAddUpToTheRotation) {
   }
 }
 
-TEST_F(AttitudeErrorTest, UpsideDownThereIsAWayToGo) {
+TEST_F(AttitudeErrorTest, IsLargeAndFiniteUpsideDown) {
   for (int trial = 0; trial < 100; ++trial) {
     const Quaterniond q = quaternion_from_euler(any(1.0)) * AngleAxisd(M_PI, Vector3d::UnitX());
     const Vector3d z = -(q * Vector3d::UnitZ());

@@ -29,7 +29,7 @@ ControlSettings settings(AttitudeModel model) {
   return s;
 }
 
-// The margin by a dense scan of the phase wherever the gain passes one.
+// The phase margin by a dense scan for gain crossovers.
 double scanned_margin_deg(const Loop& loop) {
   double margin = std::numeric_limits<double>::infinity();
   double before = std::log(std::abs(frequency_response(loop, 1e-3)));
@@ -44,7 +44,7 @@ double scanned_margin_deg(const Loop& loop) {
   return margin;
 }
 
-TEST(AttitudeDesign, DoubleIntegratorAnchors) {
+TEST(AttitudeDesign, MatchesTheDoubleIntegratorAnchors) {
   const AttitudeAxisDesign slow =
       design_attitude_axis(AttitudeModel::kDoubleIntegrator, weights(625.0), kLag);
   EXPECT_NEAR(slow.k[0], 25.0, 1e-10);
@@ -58,7 +58,7 @@ TEST(AttitudeDesign, DoubleIntegratorAnchors) {
   EXPECT_NEAR(fast.phase_margin_deg, 15.0, 0.5);
 }
 
-TEST(AttitudeDesign, MotorLagAnchor) {
+TEST(AttitudeDesign, MatchesTheMotorLagAnchor) {
   const AttitudeAxisDesign axis = design_attitude_axis(AttitudeModel::kMotorLag, weights(625.0), kLag);
   EXPECT_NEAR(axis.k[0], 25.0, 5e-3);
   EXPECT_NEAR(axis.k[1], 8.85, 5e-3);
@@ -66,7 +66,7 @@ TEST(AttitudeDesign, MotorLagAnchor) {
   EXPECT_NEAR(axis.phase_margin_deg, 64.0, 0.5);
 }
 
-TEST(AttitudeDesign, MotorLagKeepsTheMarginOfLqr) {
+TEST(AttitudeDesign, MotorLagKeepsTheLqrMargin) {
   // Kalman's inequality: an LQR loop cut at its one input keeps 60 degrees, whatever the weights.
   std::mt19937 generator(4);
   std::uniform_real_distribution<double> exponent(-2.0, 5.0);
@@ -79,7 +79,7 @@ TEST(AttitudeDesign, MotorLagKeepsTheMarginOfLqr) {
   }
 }
 
-TEST(AttitudeDesign, PolesAreThoseOfTheDesignModel) {
+TEST(AttitudeDesign, PolesMatchTheDesignModel) {
   const AttitudeAxisDesign axis =
       design_attitude_axis(AttitudeModel::kDoubleIntegrator, weights(625.0), kLag);
   ASSERT_EQ(axis.poles.size(), 2U);
@@ -92,7 +92,7 @@ TEST(AttitudeDesign, PolesAreThoseOfTheDesignModel) {
   EXPECT_EQ(design_attitude_axis(AttitudeModel::kMotorLag, weights(625.0), kLag).poles.size(), 3U);
 }
 
-TEST(LoopMargin, AgreesWithAScan) {
+TEST(LoopMargin, AgreesWithADenseScan) {
   std::mt19937 generator(5);
   std::uniform_real_distribution<double> exponent(-1.0, 1.0);
   for (int trial = 0; trial < 10; ++trial) {
@@ -121,7 +121,7 @@ TEST(LoopMargin, FindsEveryCrossover) {
   EXPECT_EQ(phase_margin_deg(loop), std::numeric_limits<double>::infinity());
 }
 
-TEST(RptDesign, FeedbackInTheOrderOfTheState) {
+TEST(RptDesign, FeedbackFollowsTheOrderOfTheState) {
   const RptSettings s{1.5, 0.8, 0.5, 0.0};
   const Eigen::Matrix<double, 5, 1> f = rpt_feedback(s);
   EXPECT_DOUBLE_EQ(f[0], 9.0);  // omega_n^2 / epsilon^2
@@ -147,7 +147,7 @@ TEST(RptDesign, IntegralFormPlacesThePoles) {
   EXPECT_LT(error({-s.zeta * w, w * std::sqrt(1.0 - s.zeta * s.zeta)}), 1e-12);
 }
 
-TEST(RptDesign, MarginOverTheInnerLoopAnchors) {
+TEST(RptDesign, MarginMatchesTheInnerLoopAnchors) {
   const Vector3d k(25.0, std::sqrt(50.0), 0.0);
   const auto margin = [&](double omega_n) {
     return phase_margin_deg(horizontal_position_loop(rpt_gains({omega_n, 1.0, 1.0, 0.0}), k, {kLag}));
@@ -181,11 +181,11 @@ TEST(ControlDesign, NamesUnstableLoops) {
   const std::vector<plant::Violation> found = unstable_loops(design(tests::kaylion(), s));
   ASSERT_EQ(found.size(), 3U);
   EXPECT_EQ(found[0].key, "attitude.pitch");
-  EXPECT_EQ(found[1].key, "position.x");  // flies on pitch
+  EXPECT_EQ(found[1].key, "position.x");  // acts through pitch
   EXPECT_EQ(found[2].key, "position.y");
 }
 
-TEST(ControlDesign, RefusesBrokenSettings) {
+TEST(ControlDesign, RefusesInvalidSettings) {
   const plant::Vehicle& vehicle = tests::kaylion();
   const auto refuses = [&](auto change) {
     ControlSettings s = settings(AttitudeModel::kMotorLag);

@@ -1,5 +1,4 @@
-// Gain, phase and delay margins against closed forms and against the loop that they leave at the end of its
-// stability.
+// Gain, phase and delay margins against closed forms and against the loop at its stability limit.
 #include "swiftlet/control/design/margins.hpp"
 
 #include <cmath>
@@ -34,7 +33,7 @@ double rightmost_pole(Loop loop, double gain) {
   return closed_loop_poles(loop).back().real();
 }
 
-TEST(Margins, AreThoseOfTheClosedForm) {
+TEST(Margins, MatchTheClosedForm) {
   const std::vector<double> crossings = phase_crossovers(third_order(2.0));
   ASSERT_EQ(crossings.size(), 1U);
   EXPECT_NEAR(crossings.front(), std::sqrt(2.0), 1e-9);
@@ -46,7 +45,7 @@ TEST(Margins, AreThoseOfTheClosedForm) {
   EXPECT_NEAR(m.phase_deg, 180.0 - 90.0 - (std::atan(omega) + std::atan(omega / 2.0)) * 180.0 / kPi, 1e-9);
 }
 
-TEST(Margins, OfAnUnstableLoopAreNone) {
+TEST(Margins, OfAnUnstableLoopAreZero) {
   const LoopMargins m = margins(third_order(7.0));
   EXPECT_LE(m.phase_deg, 0.0);
   EXPECT_EQ(m.gain_increase, 1.0);
@@ -54,8 +53,8 @@ TEST(Margins, OfAnUnstableLoopAreNone) {
   EXPECT_EQ(m.delay_s, 0.0);
 }
 
-// A position loop with an integral over the attitude loop is lost by too much gain, and by too little.
-TEST(Margins, EndWherePolesReachTheAxis) {
+// A position loop with an integral over the attitude loop is unstable with too much and with too little gain.
+TEST(Margins, EndWherePolesReachTheImaginaryAxis) {
   RptSettings settings;
   settings.omega_n = 2.0;
   settings.zeta = 1.0;
@@ -73,8 +72,8 @@ TEST(Margins, EndWherePolesReachTheAxis) {
   EXPECT_GT(rightmost_pole(loop, 0.999 * m.gain_decrease), 0.0);
 }
 
-// A delay by Pade's form of order 2, exact enough this far below its corner.
-TEST(Margins, DelayEndsStability) {
+// The delay is a Pade approximation of order 2, accurate this far below its corner.
+TEST(Margins, DelayMarginIsTheLimitOfStability) {
   const Loop loop = roll_loop(0.08);
   const LoopMargins m = margins(loop);
   const auto delayed = [&](double delay_s) {
@@ -97,7 +96,7 @@ TEST(Margins, DelayEndsStability) {
   EXPECT_GT(delayed(1.02 * m.delay_s), 0.0);
 }
 
-TEST(Margins, OfAnLqrOnItsOwnModelAreKalmans) {
+TEST(Margins, OfAnLqrOnItsModelSatisfyKalmansInequality) {
   const LoopMargins m = margins(roll_loop(0.08));
   EXPECT_GE(m.phase_deg, 60.0);
   EXPECT_LE(m.gain_decrease, 0.5);

@@ -28,8 +28,8 @@ const ControlDesign& motor_lag() {
 using Complex = std::complex<double>;
 using Response = std::function<Complex(Complex s)>;
 
-// The loops as transfer functions, written down by hand: gain / (tau s + 1) times what the controller makes of
-// angle = a / s^2, rate = a / s and the acceleration a that it takes for `observed` a.
+// The loops as explicit transfer functions: gain / (tau s + 1) times the feedback of angle = a / s^2,
+// rate = a / s and acceleration, which the observer scales to `observed` a.
 Response attitude_response(const Eigen::Vector3d& k, double lag_s, double gain, double observed) {
   return [=](Complex s) { return gain / (lag_s * s + 1.0) * (k[0] / (s * s) + k[1] / s + k[2] * observed); };
 }
@@ -39,7 +39,7 @@ Complex outer_gains(const RptGains& gains, Complex s) {
 Response vertical_response(const RptGains& gains, double lag_s, double gain) {
   return [=](Complex s) { return gain / (lag_s * s + 1.0) * outer_gains(gains, s); };
 }
-// Over the closed attitude loop, from the commanded angle, which counts k[0], to the angle.
+// Over the closed attitude loop, from the commanded angle, with gain k[0], to the angle.
 Response horizontal_response(const RptGains& gains, const Eigen::Vector3d& k, double lag_s, double gain,
                              double observed, double tilt_gain = 1.0) {
   const Response inner = attitude_response(k, lag_s, gain, observed);
@@ -49,7 +49,7 @@ Response horizontal_response(const RptGains& gains, const Eigen::Vector3d& k, do
   };
 }
 
-// Of all crossings of |L| = 1, found on a grid and by bisection, the phase that is left to -180 degrees: the least.
+// The least phase margin of all crossings of |L| = 1, found on a grid and by bisection.
 double margin_of(const Response& response) {
   const auto log_gain = [&](double x) { return std::log(std::abs(response(Complex(0.0, std::exp(x))))); };
   constexpr double kGrid = 1e-3;
@@ -73,7 +73,7 @@ std::array<double, 6> margins(const plant::Vehicle& flown) {
   return {m.roll, m.pitch, m.yaw, m.x, m.y, m.z};
 }
 
-TEST(Mismatch, IsNoneOnTheVehicleOfTheDesign) {
+TEST(Mismatch, KeepsTheDesignMarginsOnTheDesignVehicle) {
   const ControlDesign& d = motor_lag();
   const std::array<double, 6> expected = {d.roll.phase_margin_deg, d.pitch.phase_margin_deg,
                                           d.yaw.phase_margin_deg,  d.x.phase_margin_deg,
@@ -82,7 +82,7 @@ TEST(Mismatch, IsNoneOnTheVehicleOfTheDesign) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(found[i], expected[i], 1e-6) << i;
 }
 
-TEST(Mismatch, WithoutAnyTheLoopsAreThoseWrittenDownByHand) {
+TEST(Mismatch, NominalMarginsMatchTheTransferFunctions) {
   const ControlDesign& d = motor_lag();
   const double lag = 0.0821;
   const std::array<double, 6> expected = {margin_of(attitude_response(d.roll.k, lag, 1.0, 1.0)),
@@ -95,7 +95,7 @@ TEST(Mismatch, WithoutAnyTheLoopsAreThoseWrittenDownByHand) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(found[i], expected[i], 1e-6) << i;
 }
 
-TEST(Mismatch, OfTheLagAloneIsTheLoopWithThatLag) {
+TEST(Mismatch, MotorLagChangesTheLagOfTheLoops) {
   plant::Vehicle slow = kaylion();
   slow.motor.time_constant_s *= 1.5;
   const double lag = 1.5 * 0.0821;
@@ -108,7 +108,7 @@ TEST(Mismatch, OfTheLagAloneIsTheLoopWithThatLag) {
   EXPECT_LT(found[0], margins(kaylion())[0]);
 }
 
-TEST(Mismatch, OfTheInertiaDividesTheMomentAndMultipliesWhatIsSeenOfIt) {
+TEST(Mismatch, InertiaDividesTheGainAndScalesTheObservedMoment) {
   plant::Vehicle heavy = kaylion();
   heavy.inertia *= 1.4;
   const ControlDesign& d = motor_lag();
@@ -120,7 +120,7 @@ TEST(Mismatch, OfTheInertiaDividesTheMomentAndMultipliesWhatIsSeenOfIt) {
   EXPECT_NEAR(margins(heavy)[5], margins(kaylion())[5], 1e-6) << "the vertical loop has no moment";
 }
 
-TEST(Mismatch, OfTheMassTouchesThePositionAlone) {
+TEST(Mismatch, MassChangesThePositionLoopsOnly) {
   plant::Vehicle heavy = kaylion();
   heavy.mass_kg *= 1.25;
   const ControlDesign& d = motor_lag();
@@ -132,8 +132,8 @@ TEST(Mismatch, OfTheMassTouchesThePositionAlone) {
   EXPECT_NEAR(found[5], margin_of(vertical_response(d.z.gains, lag, 1.0 / 1.25)), 1e-6);
 }
 
-// The thrust that comes of a commanded one, by Eq. (25), (22) and (9) of the vehicle that the controller knows, and
-// (9), (22), (25) of the one that flies.
+// The thrust that results from a commanded one: Eq. (25), (22) and (9) with the controller's vehicle, then
+// (9), (22) and (25) with the vehicle flown.
 double thrust_of(const plant::Vehicle& flown, double commanded_n) {
   const plant::Vehicle& known = kaylion();
   const double speed_c = std::sqrt(commanded_n / known.rotor.thrust);
@@ -145,7 +145,7 @@ double thrust_of(const plant::Vehicle& flown, double commanded_n) {
   return flown.rotor.thrust * speed * speed;
 }
 
-TEST(Mismatch, OfMotorRotorAndEscIsTheSlopeOfTheirThrust) {
+TEST(Mismatch, PropulsionScalesTheGainByTheThrustSlope) {
   plant::Vehicle flown = kaylion();
   flown.motor.k2 *= 0.93;
   flown.motor.k3 *= 1.06;
@@ -169,7 +169,7 @@ TEST(Mismatch, OfMotorRotorAndEscIsTheSlopeOfTheirThrust) {
               margin_of(horizontal_response(d.x.gains, d.pitch.k, lag, slope, 1.0 / 1.05, tilt_gain)), 1e-4);
 }
 
-TEST(Mismatch, LeavesNoMarginToALoopThatIsNotStable) {
+TEST(Mismatch, UnstableLoopsHaveNoMargin) {
   plant::Vehicle slow = kaylion();
   slow.motor.time_constant_s *= 20.0;
   const std::array<double, 6> found = margins(slow);

@@ -19,19 +19,19 @@ constexpr double kLift = plant::kGravity;
 const Vector3d kWind(0.8, -0.5, 0.3);  // m/s^2
 const Quaterniond kTilted = quaternion_from_euler({0.2, -0.3, 2.0});
 
-// What an accelerometer feels under this lift and that push.
-Vector3d specific_force(const Quaterniond& q, double lift, const Vector3d& push_ned) {
-  return q.conjugate() * push_ned - lift * Vector3d::UnitZ();
+// Specific force under a lift and a disturbance.
+Vector3d specific_force(const Quaterniond& q, double lift, const Vector3d& disturbance_ned) {
+  return q.conjugate() * disturbance_ned - lift * Vector3d::UnitZ();
 }
 
-TEST(DisturbanceObserver, FindsASteadyPushAtAnyAttitude) {
+TEST(DisturbanceObserver, EstimatesAConstantDisturbanceWhenTilted) {
   DisturbanceObserver observer({10.0, 3.0});
   for (int i = 0; i < 1000; ++i)
     observer.step(kStep_s, specific_force(kTilted, kLift, kWind), kTilted, kLift);
   EXPECT_LT((observer.acceleration_ned() - kWind).norm(), 1e-6);
 }
 
-TEST(DisturbanceObserver, FollowsWithItsBandwidth) {
+TEST(DisturbanceObserver, ConvergesWithItsBandwidth) {
   constexpr double kBandwidth = 10.0;
   DisturbanceObserver observer({kBandwidth, 3.0});
   const int steps = static_cast<int>(std::lround(1.0 / kBandwidth / kStep_s));
@@ -40,14 +40,15 @@ TEST(DisturbanceObserver, FollowsWithItsBandwidth) {
   EXPECT_NEAR(observer.acceleration_ned().norm() / kWind.norm(), 1.0 - std::exp(-1.0), 0.02);
 }
 
-TEST(DisturbanceObserver, TooMuchMassIsAPushDown) {
+TEST(DisturbanceObserver, ExtraMassIsADownwardDisturbance) {
   DisturbanceObserver observer({10.0, 3.0});
-  const double felt = kLift / 1.1;  // the same thrust on 10 % more mass
-  for (int i = 0; i < 1000; ++i) observer.step(kStep_s, {0.0, 0.0, -felt}, Quaterniond::Identity(), kLift);
-  EXPECT_LT((observer.acceleration_ned() - Vector3d(0.0, 0.0, kLift - felt)).norm(), 1e-6);
+  const double measured = kLift / 1.1;  // the same thrust on 10 % more mass
+  for (int i = 0; i < 1000; ++i)
+    observer.step(kStep_s, {0.0, 0.0, -measured}, Quaterniond::Identity(), kLift);
+  EXPECT_LT((observer.acceleration_ned() - Vector3d(0.0, 0.0, kLift - measured)).norm(), 1e-6);
 }
 
-TEST(DisturbanceObserver, StaysWithinItsLimitAndTakesNoNonsense) {
+TEST(DisturbanceObserver, StaysWithinItsLimitAndIgnoresInvalidInput) {
   DisturbanceObserver observer({10.0, 0.5});
   for (int i = 0; i < 1000; ++i)
     observer.step(kStep_s, specific_force(kTilted, kLift, kWind), kTilted, kLift);
@@ -63,7 +64,7 @@ TEST(DisturbanceObserver, StaysWithinItsLimitAndTakesNoNonsense) {
   EXPECT_EQ(observer.acceleration_ned(), Vector3d::Zero());
 }
 
-TEST(DisturbanceObserver, WithoutBandwidthSeesNothing) {
+TEST(DisturbanceObserver, IsZeroWithoutBandwidth) {
   DisturbanceObserver observer({0.0, 3.0});
   for (int i = 0; i < 100; ++i) observer.step(kStep_s, specific_force(kTilted, kLift, kWind), kTilted, kLift);
   EXPECT_EQ(observer.acceleration_ned(), Vector3d::Zero());

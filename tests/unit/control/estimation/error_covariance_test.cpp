@@ -1,4 +1,4 @@
-// The covariance against the matrices that its header's equations stand for.
+// The covariance against dense matrices of the equations in its header.
 #include "swiftlet/control/estimation/error_covariance.hpp"
 
 #include <random>
@@ -53,7 +53,7 @@ class Covariance : public testing::Test {
     return ErrorState::NullaryExpr([this] { return draw_(generator_); });
   }
   Matrix3d any_rotation() { return Eigen::AngleAxisd(2.0, any(1.0).normalized()).toRotationMatrix(); }
-  // One that has all its correlations, by way of some intervals and poses.
+  // A covariance with all its correlations, after some intervals and poses.
   ErrorCovariance any_covariance() {
     ErrorCovariance covariance;
     covariance.reset(any_state().cwiseAbs() + ErrorState::Constant(0.1));
@@ -68,7 +68,7 @@ class Covariance : public testing::Test {
   std::uniform_real_distribution<double> draw_{-1.0, 1.0};
 };
 
-TEST_F(Covariance, AnErrorMovesByTheEquations) {
+TEST_F(Covariance, ErrorPropagatesByTheEquations) {
   for (const double t : {0.002, 0.02, 0.1, -0.05}) {
     const Vector3d f = any(12.0);
     const Matrix3d r = any_rotation();
@@ -78,7 +78,7 @@ TEST_F(Covariance, AnErrorMovesByTheEquations) {
   }
 }
 
-TEST_F(Covariance, MovesOnBothSidesAndGrowsByTheNoise) {
+TEST_F(Covariance, PropagatesAndGrowsByTheNoise) {
   const ErrorNoise noise{0.3, 0.5, 0.7, 0.11};
   for (const double t : {0.002, 0.02, 0.1}) {
     ErrorCovariance covariance = any_covariance();
@@ -100,7 +100,7 @@ TEST_F(Covariance, MovesOnBothSidesAndGrowsByTheNoise) {
   }
 }
 
-TEST_F(Covariance, IsBroughtBackByTheSameIntervalBackwards) {
+TEST_F(Covariance, IsRestoredByTheReverseInterval) {
   ErrorCovariance covariance = any_covariance();
   const Matrix15 before = covariance.matrix();
   const Vector3d f = any(12.0);
@@ -112,7 +112,7 @@ TEST_F(Covariance, IsBroughtBackByTheSameIntervalBackwards) {
 }
 
 // K = P H' (H P H' + N)^-1, P+ = (1 - K H) P (1 - K H)' + K N K', with position and rotation measured.
-TEST_F(Covariance, APoseIsTakenInByTheKalmanGain) {
+TEST_F(Covariance, FusesAPoseWithTheKalmanGain) {
   for (int trial = 0; trial < 20; ++trial) {
     ErrorCovariance covariance = any_covariance();
     const Matrix15 p = covariance.matrix();
@@ -134,7 +134,7 @@ TEST_F(Covariance, APoseIsTakenInByTheKalmanGain) {
     const double chi_square = nu.dot(s.inverse() * nu);
     EXPECT_NEAR(correction.normalised_square(), chi_square, 1e-11 * chi_square);
     EXPECT_LT((correction.step() - gain * nu).norm(), 1e-11);
-    EXPECT_EQ(covariance.matrix(), p) << "looking changes nothing";
+    EXPECT_EQ(covariance.matrix(), p) << "compute_update() changes nothing";
 
     covariance.apply_update(correction);
     const Matrix15 rest = Matrix15::Identity() - gain * h;
@@ -144,7 +144,7 @@ TEST_F(Covariance, APoseIsTakenInByTheKalmanGain) {
   }
 }
 
-TEST_F(Covariance, MotionThatWasNotMeasuredIsAddedToTheVariances) {
+TEST_F(Covariance, AddsUnmeasuredMotionToTheVariances) {
   ErrorCovariance covariance = any_covariance();
   Matrix15 expected = covariance.matrix();
   for (int i = 0; i < 3; ++i) {
@@ -156,7 +156,7 @@ TEST_F(Covariance, MotionThatWasNotMeasuredIsAddedToTheVariances) {
   EXPECT_LT((covariance.matrix() - expected).norm(), 1e-15);
 }
 
-TEST_F(Covariance, BeginsUncorrelated) {
+TEST_F(Covariance, IsUncorrelatedAfterReset) {
   ErrorCovariance covariance = any_covariance();
   const ErrorState sigma = any_state().cwiseAbs();
   covariance.reset(sigma);

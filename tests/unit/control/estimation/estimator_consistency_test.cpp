@@ -1,5 +1,5 @@
-// Is the filter as sure as it is right? Errors drawn as it assumes, over many seeds; bounds of chi-square
-// sums are mean +- 5 sqrt(2 n), which a good filter leaves once in a million.
+// Consistency of the filter: errors drawn as it assumes, over many seeds. The bounds of chi-square sums are
+// mean +- 5 sqrt(2 n), which a consistent filter exceeds once in a million.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -25,7 +25,7 @@ struct Case {
   int frames;  // IMU samples between poses
 };
 
-// Runs for a time; hands out each pose that is compared, and what the error is at its end.
+// Runs for a time and calls on_pose after each pose. Returns the error at the end.
 template <class OnPose>
 ErrorState run(Estimator& estimator, NoisyMotion& motion, double end_s, const Case& c, OnPose on_pose) {
   for (std::int64_t t = kStep_ns; static_cast<double>(t) * 1e-9 <= end_s; t += kStep_ns) {
@@ -40,7 +40,7 @@ ErrorState run(Estimator& estimator, NoisyMotion& motion, double end_s, const Ca
 
 class Consistency : public testing::TestWithParam<Case> {};
 
-TEST_P(Consistency, ErrorsAndInnovationsAreAsLargeAsTheCovarianceSays) {
+TEST_P(Consistency, ErrorsAndInnovationsMatchTheCovariance) {
   EstimatorSettings settings;
   settings.gate_chi_square = 100.0;
   double nees = 0.0;
@@ -65,8 +65,8 @@ INSTANTIATE_TEST_SUITE_P(Streams, Consistency,
                          testing::Values(Case{0, 5}, Case{10'000'000, 5}, Case{30'000'000, 5},
                                          Case{10'000'000, 15}, Case{4'000'000, 1}));
 
-// Half a second without poses: the error stays as large as the covariance says, and that is not much.
-TEST(EstimatorConsistency, DeadReckoningIsAsSureAsItIsRight) {
+// Half a second without poses: the error matches the covariance and stays small.
+TEST(EstimatorConsistency, DeadReckoningErrorMatchesTheCovariance) {
   const EstimatorSettings settings;
   double nees = 0.0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
@@ -83,7 +83,7 @@ TEST(EstimatorConsistency, DeadReckoningIsAsSureAsItIsRight) {
   EXPECT_NEAR(nees, 15.0 * kSeeds, 5.0 * std::sqrt(2.0 * 15.0 * kSeeds));
 }
 
-TEST(EstimatorConsistency, LearnsTheBiasesWithinTwoSeconds) {
+TEST(EstimatorConsistency, EstimatesTheBiasesWithinTwoSeconds) {
   const EstimatorSettings settings;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     Estimator estimator(settings);
@@ -110,7 +110,7 @@ TEST(EstimatorConsistency, CovarianceStaysSymmetricAndPositiveDefinite) {
 }
 
 // The transition in closed form against the nominal equations, integrated twice: with and without the error.
-TEST(EstimatorConsistency, TransitionIsTheDerivativeOfTheMotion) {
+TEST(EstimatorConsistency, TransitionMatchesTheNominalEquations) {
   const Vector3d rates(0.8, -0.5, 0.3);
   const Vector3d force(1.0, -2.0, -9.0);
   const double duration = 0.02;
@@ -151,7 +151,7 @@ TEST(EstimatorConsistency, TransitionIsTheDerivativeOfTheMotion) {
 }
 
 // F P F' + Q and Joseph's form, by dense matrices.
-TEST(EstimatorConsistency, TheCovarianceFollowsTheDenseEquations) {
+TEST(EstimatorConsistency, CovarianceMatchesTheDenseEquations) {
   ErrorInterval interval;
   interval.duration_s = 0.015;
   interval.velocity_change = {0.02, -0.03, -0.15};
@@ -195,24 +195,24 @@ TEST(EstimatorConsistency, TheCovarianceFollowsTheDenseEquations) {
   }
 }
 
-TEST(EstimatorConsistency, ALatePoseTeachesWhatOneInTimeDoes) {
+TEST(EstimatorConsistency, LatePoseCorrectsLikeATimelyOne) {
   const EstimatorSettings settings;
   Estimator in_time(settings);
   Estimator late(settings);
   NoisyMotion a(settings, 400);
   NoisyMotion b(settings, 400);
   run(in_time, a, 3.0, {0, 5}, [] {});
-  // The same samples in the same order of drawing; poses kept back for 30 ms.
-  std::array<plant::PoseSample, 3> kept;
+  // The same random samples in the same order; poses delayed by 30 ms.
+  std::array<plant::PoseSample, 3> delayed;
   std::uint64_t poses = 0;
   for (std::int64_t t = kStep_ns; t <= 3'000'000'000; t += kStep_ns) {
     late.predict(b.imu(t));
     if (t % kFrame_ns != 0) continue;
     const plant::PoseSample pose = b.pose(t);
-    if (poses >= 3) late.correct(kept[poses % 3]);
-    kept[poses++ % 3] = pose;
+    if (poses >= 3) late.correct(delayed[poses % 3]);
+    delayed[poses++ % 3] = pose;
   }
-  for (int i = 0; i < 3; ++i) late.correct(kept[(poses + static_cast<std::uint64_t>(i)) % 3]);
+  for (int i = 0; i < 3; ++i) late.correct(delayed[(poses + static_cast<std::uint64_t>(i)) % 3]);
   ErrorState difference;
   difference << late.estimate().position_ned - in_time.estimate().position_ned,
       late.estimate().velocity_ned - in_time.estimate().velocity_ned,
@@ -224,7 +224,7 @@ TEST(EstimatorConsistency, ALatePoseTeachesWhatOneInTimeDoes) {
   EXPECT_LT((late.standard_deviation() - sigma).cwiseQuotient(sigma).cwiseAbs().maxCoeff(), 0.02);
 }
 
-TEST(EstimatorConsistency, NothingTouchesTheHeap) {
+TEST(EstimatorConsistency, AllocatesNoMemory) {
   const EstimatorSettings settings;
   Estimator estimator(settings);
   NoisyMotion motion(settings, 500);

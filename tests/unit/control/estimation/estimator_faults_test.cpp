@@ -1,4 +1,4 @@
-// Poses that are wrong: what is refused, how it is called, and when the estimate gives in.
+// Faulty poses: which are refused, with which fault, and when the estimate is reset.
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -18,12 +18,12 @@ using Eigen::Vector3d;
 using plant::PoseSample;
 using plant::RotorState;
 
-// Poses at 100 Hz, 10 ms late, from a vehicle that swings about or stands.
+// Poses at 100 Hz, 10 ms late, from a moving vehicle.
 class EstimatorFaults : public testing::Test {
  protected:
   using Change = std::function<void(PoseSample&)>;
 
-  // What the estimator says of the last pose.
+  // Returns the fault of the last pose.
   PoseFault fly(
       double duration_s, const Change& change = [](PoseSample&) {},
       RotorState rotors = RotorState::kRunning) {
@@ -58,18 +58,18 @@ class EstimatorFaults : public testing::Test {
   Estimator estimator_{settings_};
   NoisyMotion motion_{settings_, 1};
   Vector3d imu_error_ = Vector3d::Zero();              // m/s^2
-  Quaterniond hidden_turn_ = Quaterniond::Identity();  // of the body, that no IMU sample has seen
+  Quaterniond hidden_turn_ = Quaterniond::Identity();  // of the body, in no IMU sample
   std::int64_t time_ns_ = 0;
 };
 
-TEST_F(EstimatorFaults, EachGoodPoseIsUsed) {
+TEST_F(EstimatorFaults, AcceptsEveryGoodPose) {
   EXPECT_EQ(fly(20.0), PoseFault::kNone);
   EXPECT_EQ(estimator_.estimate().poses_refused, 0U);
   EXPECT_EQ(estimator_.estimate().poses_accepted, 1999U);
   EXPECT_EQ(estimator_.estimate().resets, 0U);
 }
 
-TEST_F(EstimatorFaults, SingleOutliersAreRefusedAndCostNothing) {
+TEST_F(EstimatorFaults, RefusesSingleOutliersWithoutAnError) {
   fly(2.0);
   for (int i = 0; i < 50; ++i) {
     const double angle = 2.4 * i;
@@ -82,8 +82,8 @@ TEST_F(EstimatorFaults, SingleOutliersAreRefusedAndCostNothing) {
   EXPECT_EQ(estimator_.estimate().poses_refused, 50U);
 }
 
-// Below what counts as an outlier, a pose moves the estimate by no more than the gate lets it.
-TEST_F(EstimatorFaults, ASmallJumpMovesTheEstimateLittle) {
+// Below the threshold of an outlier, the gate limits how far a pose moves the estimate.
+TEST_F(EstimatorFaults, SmallJumpMovesTheEstimateLittle) {
   fly(2.0);
   EXPECT_EQ(fly(0.01, [](PoseSample& pose) { pose.position_ned.x() += 0.04; }), PoseFault::kNone);
   EXPECT_LT(position_error(), 1e-3);
@@ -91,7 +91,7 @@ TEST_F(EstimatorFaults, ASmallJumpMovesTheEstimateLittle) {
   EXPECT_LT(position_error(), 5e-4);
 }
 
-TEST_F(EstimatorFaults, ScatteredOutliersNeverMoveIt) {
+TEST_F(EstimatorFaults, ScatteredOutliersNeverMoveTheEstimate) {
   fly(2.0);
   int i = 0;
   fly(0.4, [&](PoseSample& pose) { pose.position_ned.x() += ++i % 2 == 0 ? 1.0 : -0.5; });
@@ -99,19 +99,18 @@ TEST_F(EstimatorFaults, ScatteredOutliersNeverMoveIt) {
   EXPECT_LT(position_error(), 0.02);
 }
 
-TEST_F(EstimatorFaults, AJumpThatPersistsIsNotBelievedInFlight) {
+TEST_F(EstimatorFaults, RefusesALastingJumpInFlight) {
   fly(3.0);
   const Change jumped = [](PoseSample& pose) { pose.position_ned += Vector3d(1.0, -0.4, 0.2); };
   EXPECT_EQ(fly(1.0, jumped), PoseFault::kOutlier);
-  EXPECT_LT(position_error(), 0.2) << "it goes by the IMU alone";
+  EXPECT_LT(position_error(), 0.2) << "it uses the IMU alone";
   EXPECT_EQ(fly(0.5), PoseFault::kNone);
   EXPECT_LT(position_error(), 5e-3);
   EXPECT_EQ(estimator_.estimate().resets, 0U);
 }
 
-// Short of an outlier it is followed, and must not be taken for a motion: the velocity of the dead reckoning
-// that may come next.
-TEST_F(EstimatorFaults, AStepThatStaysLeavesNoVelocityBehind) {
+// A step below the threshold of an outlier is followed, but must leave no velocity for later dead reckoning.
+TEST_F(EstimatorFaults, SmallLastingStepLeavesNoVelocity) {
   fly(3.0);
   const Change stepped = [](PoseSample& pose) { pose.position_ned.x() += 0.045; };
   for (const Change& change : {stepped, Change([](PoseSample&) {})}) {
@@ -124,8 +123,8 @@ TEST_F(EstimatorFaults, AStepThatStaysLeavesNoVelocityBehind) {
   EXPECT_LT(position_error(), 5e-4);
 }
 
-// The gyro knows better: with a wrong tilt, dead reckoning would run off.
-TEST_F(EstimatorFaults, ATurnAtOnceIsNotBelievedInFlight) {
+// With a wrong tilt, dead reckoning would diverge.
+TEST_F(EstimatorFaults, RefusesAnAttitudeJumpInFlight) {
   fly(3.0);
   const Change turned = [](PoseSample& pose) {
     pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(0.08, Vector3d::UnitY());
@@ -136,8 +135,8 @@ TEST_F(EstimatorFaults, ATurnAtOnceIsNotBelievedInFlight) {
   EXPECT_LT(angle_error(), 0.005);
 }
 
-// A blow that the accelerometer cannot follow.
-TEST_F(EstimatorFaults, PosesAreFollowedWhereTheImuMisleads) {
+// A shock that the accelerometer measures wrongly.
+TEST_F(EstimatorFaults, FollowsPosesWhenTheImuIsWrong) {
   fly(3.0);
   imu_error_ = {60.0, 0.0, 0.0};
   EXPECT_EQ(fly(0.05), PoseFault::kNone);
@@ -148,8 +147,8 @@ TEST_F(EstimatorFaults, PosesAreFollowedWhereTheImuMisleads) {
   EXPECT_LT(angle_error(), 0.02);
 }
 
-// The same while some poses were missing: they disagree as no noise does, but go on without a break.
-TEST_F(EstimatorFaults, AnUnbrokenStreamIsBelievedAgainstTheImu) {
+// The same with some poses missing: the difference exceeds any noise, but the stream is unbroken.
+TEST_F(EstimatorFaults, FollowsAnUnbrokenStreamAgainstTheImu) {
   fly(3.0);
   imu_error_ = {40.0, 0.0, 0.0};
   fly(0.05, [](PoseSample& pose) { pose.tracked = false; });
@@ -160,9 +159,9 @@ TEST_F(EstimatorFaults, AnUnbrokenStreamIsBelievedAgainstTheImu) {
   EXPECT_LT(angle_error(), 0.02);
 }
 
-// A fifth of a second without poses, after which they show the vehicle 8 cm from where the IMU has it: a body could
-// have gone there, but nobody has seen whether the stream did. The IMU, which was there all the time, is believed.
-TEST_F(EstimatorFaults, AStreamThatWasInterruptedIsNotBelievedAgainstTheImu) {
+// After 0.2 s without poses they differ by 8 cm from the IMU. A body could have moved there, but the stream
+// was interrupted and the IMU was not: the IMU is followed.
+TEST_F(EstimatorFaults, RefusesAnInterruptedStreamAgainstTheImu) {
   for (const Vector3d& off :
        {Vector3d(0.08, 0.0, 0.0), Vector3d(0.0, -0.08, 0.0), Vector3d(0.0, 0.0, 0.08)}) {
     estimator_ = Estimator(settings_);
@@ -176,22 +175,22 @@ TEST_F(EstimatorFaults, AStreamThatWasInterruptedIsNotBelievedAgainstTheImu) {
   }
 }
 
-// It may have hit the ground meanwhile: what a body could have come to is believed, and nothing farther.
-TEST_F(EstimatorFaults, AfterSilenceOfTheImuPosesInReachAreBelieved) {
+// The vehicle may have hit the ground meanwhile: poses in reach of a body are accepted, others are not.
+TEST_F(EstimatorFaults, AcceptsPosesInReachAfterImuSilence) {
   for (const double off : {0.5, 2.0}) {
     estimator_ = Estimator(settings_);
     fly(3.0);
     time_ns_ += 250'000'000;
     const PoseFault fault = fly(0.5, [&](PoseSample& pose) { pose.position_ned.x() += off; });
-    const bool believed = off < 1.0;
-    EXPECT_EQ(fault, believed ? PoseFault::kNone : PoseFault::kOutlier) << off;
-    EXPECT_EQ(estimator_.estimate().resets, believed ? 1U : 0U) << off;
-    EXPECT_NEAR(position_error(), believed ? off : 0.0, 0.2);
+    const bool accepted = off < 1.0;
+    EXPECT_EQ(fault, accepted ? PoseFault::kNone : PoseFault::kOutlier) << off;
+    EXPECT_EQ(estimator_.estimate().resets, accepted ? 1U : 0U) << off;
+    EXPECT_NEAR(position_error(), accepted ? off : 0.0, 0.2);
   }
 }
 
-// Seen while the IMU was silent, the step tells that what follows is no motion.
-TEST_F(EstimatorFaults, MarkersThatSwapWhileTheImuIsSilentAreNotBelieved) {
+// The step during the silence of the IMU shows that the poses after it are no motion.
+TEST_F(EstimatorFaults, RefusesMarkersThatSwapDuringImuSilence) {
   const Change swap = [](PoseSample& pose) {
     pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(0.4 * M_PI, Vector3d::UnitZ());
   };
@@ -208,8 +207,8 @@ TEST_F(EstimatorFaults, MarkersThatSwapWhileTheImuIsSilentAreNotBelieved) {
   EXPECT_EQ(fly(0.5), PoseFault::kNone);
 }
 
-// The silence is no excuse: by what it may hide, the turn alone would pass for a motion.
-TEST_F(EstimatorFaults, ATurnOfThePosesInASilenceOfTheImuIsNotBelieved) {
+// The rotation alone could be a motion during the silence.
+TEST_F(EstimatorFaults, RefusesAPoseRotationDuringImuSilence) {
   const Change turned = [](PoseSample& pose) {
     pose.position_ned.x() += 0.03;
     pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(0.2, Vector3d(0.6, 0.8, 0.0));
@@ -227,7 +226,7 @@ TEST_F(EstimatorFaults, ATurnOfThePosesInASilenceOfTheImuIsNotBelieved) {
     }
     EXPECT_EQ(fly(0.4, turned), PoseFault::kOutlier) << last_true_frame;
     EXPECT_LT(angle_error(), 0.1) << last_true_frame;
-    // What steps back to where the body can be is believed again, though the IMU has missed a motion.
+    // Poses that step back into reach are accepted again, though the IMU has missed a motion.
     EXPECT_EQ(fly(0.2), PoseFault::kNone) << last_true_frame;
     EXPECT_EQ(fly(0.5), PoseFault::kNone) << last_true_frame;
     EXPECT_LT(position_error(), 2e-3) << last_true_frame;
@@ -235,8 +234,8 @@ TEST_F(EstimatorFaults, ATurnOfThePosesInASilenceOfTheImuIsNotBelieved) {
   }
 }
 
-// Poses were missing with the IMU's samples, so that no step shows: they contradict the IMU afterwards.
-TEST_F(EstimatorFaults, ATurnThatASilenceHasHiddenIsNotBelieved) {
+// Poses are missing as well, so that no step is visible: they contradict the IMU afterwards.
+TEST_F(EstimatorFaults, RefusesAPoseRotationHiddenByImuSilence) {
   for (const double angle : {0.1, 0.2, 0.4}) {
     const Change turned = [&](PoseSample& pose) {
       pose.position_ned.x() += 0.03;
@@ -257,19 +256,19 @@ TEST_F(EstimatorFaults, ATurnThatASilenceHasHiddenIsNotBelieved) {
   }
 }
 
-// What the vehicle has really done in the silence is believed as soon as the IMU bears it out.
-TEST_F(EstimatorFaults, AMotionThatASilenceHasHiddenIsBelieved) {
+// A real motion during the silence is accepted as soon as the IMU confirms it.
+TEST_F(EstimatorFaults, AcceptsAMotionHiddenByImuSilence) {
   fly(3.0);
   hidden_turn_ = AngleAxisd(0.2, Vector3d(0.6, 0.8, 0.0));
   time_ns_ += 200'000'000;
-  EXPECT_EQ(fly(0.1), PoseFault::kOutlier) << "on trial";
+  EXPECT_EQ(fly(0.1), PoseFault::kOutlier) << "until the consistency test agrees";
   EXPECT_EQ(fly(0.1), PoseFault::kNone);
   EXPECT_EQ(fly(0.5), PoseFault::kNone);
   EXPECT_LT(angle_error(), 0.005);
   EXPECT_LT(position_error(), 2e-3);
 }
 
-TEST_F(EstimatorFaults, SwappedMarkersAreNotBelievedInFlight) {
+TEST_F(EstimatorFaults, RefusesSwappedMarkersInFlight) {
   fly(2.0);
   for (const double angle : {0.5 * M_PI, M_PI}) {
     EXPECT_EQ(fly(0.5,
@@ -283,7 +282,7 @@ TEST_F(EstimatorFaults, SwappedMarkersAreNotBelievedInFlight) {
   EXPECT_EQ(estimator_.estimate().resets, 0U);
 }
 
-TEST_F(EstimatorFaults, WithRotorsOffTheyAre) {
+TEST_F(EstimatorFaults, AcceptsSwappedMarkersWithRotorsOff) {
   const Change turned = [](PoseSample& pose) {
     pose.q_ned_from_frd = pose.q_ned_from_frd * AngleAxisd(M_PI, Vector3d::UnitZ());
   };
@@ -296,8 +295,8 @@ TEST_F(EstimatorFaults, WithRotorsOffTheyAre) {
   EXPECT_GE(estimator_.estimate().resets, 1U);
 }
 
-// A blow, as of a fall, leaves a speed behind that the vehicle does not have.
-TEST_F(EstimatorFaults, WithRotorsOffAnEstimateThatRunsAwayComesBack) {
+// A shock, as of a fall, leaves a wrong velocity.
+TEST_F(EstimatorFaults, RecoversADivergedEstimateWithRotorsOff) {
   fly(3.0);
   imu_error_ = {400.0, -300.0, 200.0};
   fly(
@@ -311,7 +310,7 @@ TEST_F(EstimatorFaults, WithRotorsOffAnEstimateThatRunsAwayComesBack) {
                 },
                 RotorState::kOff),
             PoseFault::kOutlier)
-      << "no stream without a break";
+      << "the stream is not unbroken";
   EXPECT_EQ(fly(
                 1.0, [](PoseSample&) {}, RotorState::kOff),
             PoseFault::kNone);
@@ -319,7 +318,7 @@ TEST_F(EstimatorFaults, WithRotorsOffAnEstimateThatRunsAwayComesBack) {
   EXPECT_LT(position_error(), 2e-3);
 }
 
-TEST_F(EstimatorFaults, AnotherVehicleThatMovesIsNotTakenForThisOne) {
+TEST_F(EstimatorFaults, RefusesPosesOfAnotherVehicle) {
   fly(2.0);
   const double start = static_cast<double>(time_ns_) * 1e-9;
   EXPECT_EQ(fly(0.6,
@@ -331,7 +330,7 @@ TEST_F(EstimatorFaults, AnotherVehicleThatMovesIsNotTakenForThisOne) {
   EXPECT_EQ(estimator_.estimate().resets, 0U);
 }
 
-TEST_F(EstimatorFaults, FrozenMarkersAreRecognisedInMotionAtOnce) {
+TEST_F(EstimatorFaults, DetectsFrozenMarkersInMotionAtOnce) {
   fly(2.0);
   PoseSample frozen;
   fly(0.01, [&](PoseSample& pose) { frozen = pose; });
@@ -347,14 +346,14 @@ TEST_F(EstimatorFaults, FrozenMarkersAreRecognisedInMotionAtOnce) {
 }
 
 // q and -q are one attitude: motion capture may hand out either, and change at any pose.
-class EstimatorSigns : public EstimatorFaults {
+class QuaternionSigns : public EstimatorFaults {
  protected:
   static void flip(PoseSample& pose) {
     if (pose.sequence % 2 == 0) pose.q_ned_from_frd.coeffs() *= -1.0;
   }
 };
 
-TEST_F(EstimatorSigns, ThatFlipEachPoseChangeNothing) {
+TEST_F(QuaternionSigns, FlippedEachPoseChangeNothing) {
   fly(5.0);
   const Estimate unflipped = estimator_.estimate();
   estimator_ = Estimator(settings_);
@@ -369,7 +368,7 @@ TEST_F(EstimatorSigns, ThatFlipEachPoseChangeNothing) {
   EXPECT_LT((flipped.gyro_bias - unflipped.gyro_bias).norm(), 1e-12);
 }
 
-TEST_F(EstimatorSigns, ThatFlipDoNotHideFrozenMarkers) {
+TEST_F(QuaternionSigns, DoNotHideFrozenMarkers) {
   fly(2.0, flip);
   PoseSample frozen;
   fly(0.01, [&](PoseSample& pose) { frozen = pose; });
@@ -384,7 +383,7 @@ TEST_F(EstimatorSigns, ThatFlipDoNotHideFrozenMarkers) {
   EXPECT_LT(position_error(), 1e-3);
 }
 
-TEST_F(EstimatorSigns, ThatFlipNeedNoReset) {
+TEST_F(QuaternionSigns, NeedNoReset) {
   fly(2.0, flip);
   fly(0.2, [](PoseSample& pose) { pose.tracked = false; });
   time_ns_ += 200'000'000;
@@ -393,8 +392,8 @@ TEST_F(EstimatorSigns, ThatFlipNeedNoReset) {
   EXPECT_LT(position_error(), 2e-3);
 }
 
-// What a body could have come to in a silence of the IMU depends on how fast it can be.
-TEST_F(EstimatorFaults, TheFastestVehicleIsASetting) {
+// The reach of a body during IMU silence depends on its maximum speed.
+TEST_F(EstimatorFaults, ReachDependsOnTheMaximumSpeed) {
   for (const double max_speed : {4.0, 40.0}) {
     settings_.max_speed = max_speed;
     estimator_ = Estimator(settings_);
@@ -405,10 +404,10 @@ TEST_F(EstimatorFaults, TheFastestVehicleIsASetting) {
   }
 }
 
-// Standing or hovering: nothing contradicts a pose that stays.
+// At rest or in hover no motion contradicts a constant pose.
 class EstimatorAtRest : public testing::TestWithParam<std::tuple<bool, bool>> {};
 
-TEST_P(EstimatorAtRest, NoiseThatStopsIsAFrozenStreamAndNoNoiseIsNone) {
+TEST_P(EstimatorAtRest, DetectsAFrozenStreamOnlyIfItHadNoise) {
   const auto [noisy, flips] = GetParam();
   const EstimatorSettings settings;
   Estimator estimator(settings);
@@ -441,7 +440,7 @@ TEST_P(EstimatorAtRest, NoiseThatStopsIsAFrozenStreamAndNoNoiseIsNone) {
 }
 INSTANTIATE_TEST_SUITE_P(NoisyFlipping, EstimatorAtRest, testing::Combine(testing::Bool(), testing::Bool()));
 
-TEST_F(EstimatorFaults, UntimelyAndInvalidPosesAreNamed) {
+TEST_F(EstimatorFaults, ReportsUntimelyUntrackedAndInvalidPoses) {
   fly(1.0);
   const Estimate before = estimator_.estimate();
   PoseSample pose = motion_.pose(time_ns_ - 2 * kFrame_ns);
@@ -464,8 +463,8 @@ TEST_F(EstimatorFaults, UntimelyAndInvalidPosesAreNamed) {
   EXPECT_EQ(estimator_.estimate().velocity_ned, before.velocity_ned);
 }
 
-// A process that was stopped for 0.2 s at 1 m/s finds its way without a reset.
-TEST_F(EstimatorFaults, AGapOfTheImuIsWrittenIntoTheCovariance) {
+// A process that was stopped for 0.2 s at 1 m/s recovers without a reset.
+TEST_F(EstimatorFaults, ImuGapGrowsTheCovariance) {
   fly(2.0);
   const double before = estimator_.standard_deviation()[0];
   time_ns_ += 200'000'000;

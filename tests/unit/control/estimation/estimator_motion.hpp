@@ -1,4 +1,4 @@
-// What the tests of the estimator fly: a known path, with the samples that sensors would take on it.
+// A known motion with its sensor samples, for the tests of the estimator.
 #pragma once
 
 #include <cmath>
@@ -21,7 +21,7 @@ using plant::rotation_vector;
 constexpr std::int64_t kStep_ns = 2'000'000;
 constexpr std::int64_t kFrame_ns = 10'000'000;
 
-// A vehicle that swings about on a known path, with the IMU that it would carry.
+// A vehicle on a known path, with its IMU samples.
 struct Motion {
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();
   Eigen::Vector3d accelerometer_bias = Eigen::Vector3d::Zero();
@@ -58,7 +58,7 @@ struct Motion {
   }
 };
 
-// Gaussian errors of the densities that the settings name, biases drawn from their standard deviations.
+// Adds Gaussian noise with the densities of the settings, and biases with their standard deviations.
 class NoisyMotion {
  public:
   NoisyMotion(const EstimatorSettings& settings, std::uint64_t seed) : settings_(settings), noise_(seed, 1) {
@@ -85,7 +85,7 @@ class NoisyMotion {
   }
   const Motion& motion() const { return motion_; }  // with the biases of the last sample
 
-  // Truth less estimate, in the filter's own coordinates.
+  // Truth minus estimate, in the error state of the filter.
   ErrorState error(const Estimate& estimate) const {
     const double t = static_cast<double>(estimate.stamp_ns) * 1e-9;
     ErrorState out;

@@ -1,5 +1,5 @@
-// Poses that a real OptiTrack session recorded of a vehicle at rest (tests/data/README.md), with the IMU that
-// it would have carried: nothing moves, so gravity is all that there is to measure.
+// Poses of a vehicle at rest from a recorded OptiTrack session (tests/data/README.md), with a simulated IMU
+// that measures gravity only.
 #include <cmath>
 #include <cstdint>
 #include <fstream>
@@ -37,7 +37,7 @@ std::vector<plant::PoseSample> session() {
   return poses;
 }
 
-TEST(EstimatorReplay, TakesARealSessionAtRest) {
+TEST(EstimatorReplay, AcceptsARecordedSessionAtRest) {
   const std::vector<plant::PoseSample> poses = session();
   ASSERT_EQ(poses.size(), kAtRest);
   const Eigen::Vector3d weight =
@@ -58,7 +58,7 @@ TEST(EstimatorReplay, TakesARealSessionAtRest) {
   EXPECT_LT((estimator.estimate().position_ned - poses[0].position_ned).norm(), 2e-4);
   EXPECT_LT(estimator.estimate().velocity_ned.norm(), 5e-3);
   EXPECT_LT(estimator.estimate().gyro_bias.norm(), 2e-3);
-  EXPECT_LT(innovations, 10.0);  // 6 if the filter's noise were the session's
+  EXPECT_LT(innovations, 10.0);  // 6 with the noise that the filter assumes
 }
 
 }  // namespace

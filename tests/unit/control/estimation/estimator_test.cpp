@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 double angle_between(const Quaterniond& a, const Quaterniond& b) { return a.angularDistance(b); }
 
-// Runs to `end_s` with poses that come `latency_ns` after their exposure.
+// Runs to `end_s` with poses that arrive `latency_ns` after their exposure.
 void run(Estimator& estimator, const Motion& motion, double end_s, std::int64_t latency_ns) {
   std::uint64_t sequence = 0;
   for (std::int64_t t = kStep_ns; static_cast<double>(t) * 1e-9 <= end_s; t += kStep_ns) {
@@ -28,7 +28,7 @@ void run(Estimator& estimator, const Motion& motion, double end_s, std::int64_t 
 
 class EstimatorLatency : public testing::TestWithParam<int> {};
 
-TEST_P(EstimatorLatency, FollowsTheMotionWhateverTheLatencyOfThePoses) {
+TEST_P(EstimatorLatency, FollowsTheMotionAtAnyPoseLatency) {
   Estimator estimator{EstimatorSettings{}};
   Motion motion;
   run(estimator, motion, 8.0, std::int64_t{GetParam()} * 1'000'000);
@@ -40,8 +40,8 @@ TEST_P(EstimatorLatency, FollowsTheMotionWhateverTheLatencyOfThePoses) {
 }
 INSTANTIATE_TEST_SUITE_P(Milliseconds, EstimatorLatency, testing::Values(0, 10, 30, 100));
 
-// As many corrections as the filter keeps, and more, are made between the stamp of a pose and its arrival.
-TEST(Estimator, FollowsPosesOfEachSampleThatComeATenthOfASecondLate) {
+// Between the stamp of a pose and its arrival the filter makes more corrections than it keeps.
+TEST(Estimator, FollowsPosesAtTheImuRateATenthOfASecondLate) {
   Estimator estimator{EstimatorSettings{}};
   Motion motion;
   motion.gyro_bias = {0.02, -0.03, 0.01};
@@ -63,7 +63,7 @@ TEST(Estimator, FollowsPosesOfEachSampleThatComeATenthOfASecondLate) {
 }
 
 // A constant rate is integrated without error, however long the steps.
-TEST(Estimator, TurnsByTheMeasuredRate) {
+TEST(Estimator, IntegratesTheMeasuredRate) {
   for (const std::int64_t step_ns : {100'000, 1'000'000, 10'000'000, 100'000'000}) {
     Estimator estimator{EstimatorSettings{}};
     plant::ImuSample imu;
@@ -81,7 +81,7 @@ TEST(Estimator, TurnsByTheMeasuredRate) {
   }
 }
 
-TEST(Estimator, FindsTheBiasesOfGyroAndAccelerometer) {
+TEST(Estimator, EstimatesGyroAndAccelerometerBiases) {
   Estimator estimator{EstimatorSettings{}};
   Motion motion;
   motion.gyro_bias = {0.02, -0.03, 0.01};
@@ -106,7 +106,7 @@ TEST(Estimator, DeadReckonsThroughHalfASecondWithoutPoses) {
   EXPECT_NEAR(estimator.pose_age_s(), 0.51, 0.011);
 }
 
-TEST(Estimator, HasNoMeaningBeforeTheFirstPose) {
+TEST(Estimator, IsNotInitialisedBeforeTheFirstPose) {
   Estimator estimator{EstimatorSettings{}};
   EXPECT_TRUE(estimator.predict(Motion().imu(kStep_ns)));
   EXPECT_FALSE(estimator.initialised());
@@ -137,17 +137,18 @@ TEST(Estimator, RefusesSamplesThatAreNotFiniteOrNotNewer) {
   EXPECT_EQ(estimator.estimate().stamp_ns, before.stamp_ns);
 }
 
-// Poses as they should be, but `off` by so much, for a second. Returns how many were taken in.
-int run_with_jump(Estimator& estimator, const Motion& motion, const Vector3d& off, plant::RotorState rotors) {
+// Poses with an offset for a second. Returns how many were accepted.
+int run_with_jump(Estimator& estimator, const Motion& motion, const Vector3d& offset_ned,
+                  plant::RotorState rotors) {
   std::uint64_t sequence = 10'000;
-  int taken = 0;
+  int accepted = 0;
   for (int frame = 0; frame < 100; ++frame) {
     for (int i = 0; i < 5; ++i) estimator.predict(motion.imu(estimator.estimate().stamp_ns + kStep_ns));
     plant::PoseSample pose = Motion::pose(estimator.estimate().stamp_ns, ++sequence);
-    pose.position_ned += off;
-    if (estimator.correct(pose, rotors)) ++taken;
+    pose.position_ned += offset_ned;
+    if (estimator.correct(pose, rotors)) ++accepted;
   }
-  return taken;
+  return accepted;
 }
 
 double position_error(const Estimator& estimator) {
@@ -155,8 +156,7 @@ double position_error(const Estimator& estimator) {
   return (estimator.estimate().position_ned - Motion::position(t)).norm();
 }
 
-// Of a gap of 10 s, it goes on through 0.25 s with the last rates and specific force: what it would integrate over all of it
-// is nowhere.
+// Of a gap of 10 s it integrates 0.25 s with the last rates and specific force.
 TEST(Estimator, DoesNotIntegrateThroughALongGap) {
   Estimator estimator{EstimatorSettings{}};
   plant::ImuSample imu;
@@ -176,18 +176,18 @@ TEST(Estimator, DoesNotIntegrateThroughALongGap) {
   fly_for(2'000'000'000);  // east at 1 m/s
   const Estimate before = estimator.estimate();
   imu.stamp_ns += 10'000'000'000;
-  imu.body_rates_frd.z() = 0.8;  // at its end; in the mean of the gap, half as much
+  imu.body_rates_frd.z() = 0.8;  // at the end of the gap; half as much in its mean
   ASSERT_TRUE(estimator.predict(imu));
   const Estimate& after = estimator.estimate();
   EXPECT_EQ(after.stamp_ns, imu.stamp_ns);
   EXPECT_LT((after.position_ned - before.position_ned - Vector3d(0.0, 0.25, 0.0)).norm(), 1e-3);
   EXPECT_LT((after.velocity_ned - before.velocity_ned).norm(), 1e-3);
   EXPECT_NEAR(angle_between(after.q_ned_from_frd, before.q_ned_from_frd), 0.25 * 0.4, 1e-3);
-  EXPECT_GT(estimator.standard_deviation()[0], 10.0) << "and does not claim to know";
+  EXPECT_GT(estimator.standard_deviation()[0], 10.0) << "the standard deviation must grow";
 }
 
-// Each second pose of the same motion as -q, which is the same attitude.
-TEST(Estimator, TheSignOfAPosesQuaternionChangesNothing) {
+// Every second pose of the same motion is -q, the same attitude.
+TEST(Estimator, IgnoresTheSignOfAPoseQuaternion) {
   Estimator one{EstimatorSettings{}};
   Estimator other{EstimatorSettings{}};
   const Motion motion;
@@ -206,8 +206,8 @@ TEST(Estimator, TheSignOfAPosesQuaternionChangesNothing) {
   }
 }
 
-// Another body, or a world that was shifted: who flies cannot know, and goes by the IMU until it has landed.
-TEST(Estimator, DoesNotBelieveAJumpInFlight) {
+// Another body or a shifted world frame: in flight the estimator relies on the IMU.
+TEST(Estimator, RefusesAJumpInFlight) {
   Estimator estimator{EstimatorSettings{}};
   Motion motion;
   run(estimator, motion, 2.0, 0);
@@ -216,7 +216,7 @@ TEST(Estimator, DoesNotBelieveAJumpInFlight) {
   EXPECT_EQ(run_with_jump(estimator, motion, {0.0, 0.0, 0.0}, plant::RotorState::kRunning), 100);
 }
 
-TEST(Estimator, BelievesAJumpThatLastsWithItsRotorsOff) {
+TEST(Estimator, AcceptsALastingJumpWithRotorsOff) {
   Estimator estimator{EstimatorSettings{}};
   Motion motion;
   run(estimator, motion, 2.0, 0);
@@ -225,9 +225,9 @@ TEST(Estimator, BelievesAJumpThatLastsWithItsRotorsOff) {
   EXPECT_NEAR(position_error(estimator), 2.0, 0.01);
 }
 
-// Carried away while it stood, turned and tilted against north: the jump is the rotation that is to be made in NED,
-// q_new = rotation(jump) * q_old, not one about the body's axes.
-TEST(Estimator, TellsAJumpInTheWorldsAxes) {
+// The vehicle is carried away with yaw and tilt. The jump is a rotation in NED,
+// q_new = rotation(jump) * q_old, not one in body axes.
+TEST(Estimator, ReportsAJumpInNed) {
   Estimator estimator{EstimatorSettings{}};
   const Quaterniond stood =
       Quaterniond(AngleAxisd(1.2, Vector3d::UnitZ()) * AngleAxisd(0.2, Vector3d::UnitY()));
@@ -252,19 +252,19 @@ TEST(Estimator, TellsAJumpInTheWorldsAxes) {
   EXPECT_LT((estimator.estimate().reset_position_ned - Vector3d(0.5, 0.0, -0.3)).norm(), 0.2);
 }
 
-TEST(Estimator, FollowsThePosesWhenTheImuMisleads) {
+TEST(Estimator, FollowsThePosesWhenTheImuIsWrong) {
   Estimator estimator{EstimatorSettings{}};
   Motion motion;
   run(estimator, motion, 2.0, 0);
-  Motion misled = motion;
-  misled.accelerometer_bias = {20.0, 0.0, 0.0};
-  EXPECT_EQ(run_with_jump(estimator, misled, {0.0, 0.0, 0.0}, plant::RotorState::kRunning), 100);
+  Motion wrong = motion;
+  wrong.accelerometer_bias = {20.0, 0.0, 0.0};
+  EXPECT_EQ(run_with_jump(estimator, wrong, {0.0, 0.0, 0.0}, plant::RotorState::kRunning), 100);
   EXPECT_LT(position_error(estimator), 0.01);
   run_with_jump(estimator, motion, {0.0, 0.0, 0.0}, plant::RotorState::kRunning);
   EXPECT_LT(position_error(estimator), 0.005);
 }
 
-TEST(Estimator, RefusesAPoseThatIsOlderThanItsHistory) {
+TEST(Estimator, RefusesAPoseOlderThanItsHistory) {
   Estimator estimator{EstimatorSettings{}};
   Motion motion;
   ASSERT_TRUE(estimator.predict(motion.imu(kStep_ns)));

@@ -1,4 +1,4 @@
-// Poses against the path that the IMU draws: which of their differences the trial takes for a contradiction.
+// Poses against the path of the IMU: which of their differences the test rejects.
 #include "swiftlet/control/estimation/pose_imu_consistency.hpp"
 
 #include <cstdint>
@@ -14,7 +14,7 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Verdict = PoseImuConsistencyTest::Verdict;
 
-// The IMU's path begins somewhere, at some speed, at some attitude: none of these contradicts the poses.
+// The IMU's path starts at any position, speed and attitude: none of these contradicts the poses.
 struct Path {
   Vector3d offset_ned;   // m
   Vector3d speed_ned;    // m/s
@@ -29,17 +29,17 @@ struct Path {
   Quaterniond attitude(double t) const { return turn_ned.conjugate() * Motion::attitude(t); }
 };
 
-class Trials : public testing::TestWithParam<std::uint64_t> {
+class PoseImuConsistency : public testing::TestWithParam<std::uint64_t> {
  protected:
-  // The verdicts over a second of poses at 100 Hz that are turned in the body's axes: how many of each.
-  void judge(const Vector3d& turned_frd) {
+  // Counts the verdicts over a second of poses at 100 Hz that are rotated in body axes.
+  void run(const Vector3d& turned_frd) {
     for (int frame = 0; frame < 100; ++frame) {
       take_pose(frame, turned_frd);
       PoseInnovation innovation;
       const double t = static_cast<double>(pose_.stamp_ns) * 1e-9;
       innovation.position = pose_.position_ned - path_.position(t);
       innovation.rotation = rotation_vector(pose_.q_ned_from_frd * path_.attitude(t).conjugate());
-      const Verdict verdict = trial_.look_at(pose_, innovation, settings_);
+      const Verdict verdict = test_.update(pose_, innovation, settings_);
       agree_ += verdict == Verdict::kAgree ? 1 : 0;
       disagree_ += verdict == Verdict::kDisagree ? 1 : 0;
     }
@@ -56,40 +56,40 @@ class Trials : public testing::TestWithParam<std::uint64_t> {
   plant::RandomStream random_{GetParam(), 1};
   const Path path_{random_.normal3(), random_.normal3(), rotation(0.3 * random_.normal3())};
   plant::PoseSample pose_;
-  PoseImuConsistencyTest trial_;
+  PoseImuConsistencyTest test_;
   int agree_ = 0;
   int disagree_ = 0;
 };
 
-TEST_P(Trials, AgreesWhereverThePathBegan) {
-  judge(Vector3d::Zero());
+TEST_P(PoseImuConsistency, AgreesForAnyStartOfThePath) {
+  run(Vector3d::Zero());
   EXPECT_EQ(disagree_, 0);
   EXPECT_EQ(agree_, 15) << "one for each interval but the first";
 }
 
-TEST_P(Trials, DisagreesWithATilt) {
+TEST_P(PoseImuConsistency, DisagreesWithATilt) {
   Vector3d turned_frd = random_.normal3();
   turned_frd.z() = 0.0;
-  judge(0.07 * turned_frd.normalized());
+  run(0.07 * turned_frd.normalized());
   EXPECT_EQ(agree_, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seed, Trials, testing::Range<std::uint64_t>(1, 21));
+INSTANTIATE_TEST_SUITE_P(Seed, PoseImuConsistency, testing::Range<std::uint64_t>(1, 21));
 
-TEST(PoseImuConsistencyTest, BeginsAnew) {
-  PoseImuConsistencyTest trial;
+TEST(PoseImuConsistencyTest, RestartsAfterBegin) {
+  PoseImuConsistencyTest test;
   const EstimatorSettings settings;
   plant::PoseSample pose;
   const auto look = [&](double z_ned) {
     pose.stamp_ns += static_cast<std::int64_t>(1e9 * settings.detectors.pose_imu_consistency.interval_s);
     pose.position_ned.z() = z_ned;
-    return trial.look_at(pose, {{0.0, 0.0, z_ned}, Vector3d::Zero()}, settings);
+    return test.update(pose, {{0.0, 0.0, z_ned}, Vector3d::Zero()}, settings);
   };
   EXPECT_EQ(look(0.0), Verdict::kNone);
   EXPECT_EQ(look(0.0), Verdict::kNone);
   EXPECT_EQ(look(0.0), Verdict::kAgree);
   EXPECT_EQ(look(0.5), Verdict::kDisagree);
-  trial.begin();
+  test.begin();
   EXPECT_EQ(look(0.5), Verdict::kNone);
   EXPECT_EQ(look(0.5), Verdict::kNone);
   EXPECT_EQ(look(0.5), Verdict::kAgree);

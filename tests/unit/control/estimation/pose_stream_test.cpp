@@ -24,83 +24,83 @@ PoseSample pose(int frame, const Vector3d& position_ned, const Quaterniond& q = 
   return sample;
 }
 
-// A tenth of a millimetre to and fro, as noise is.
+// Noise in steps of a tenth of a millimetre.
 Vector3d noisy(int frame) { return {1e-4 * ((frame * 7919) % 13 - 6), 0.0, -1.0}; }
 
-class StuckPoses : public testing::Test {
+class StuckPose : public testing::Test {
  protected:
   void see(const Vector3d& position_ned, RotorState rotors, const Quaterniond& q = Quaterniond::Identity()) {
-    watch_.look_at(pose(frame_++, position_ned, q), rotors);
+    detector_.update(pose(frame_++, position_ned, q), rotors);
   }
   void stand_in_noise() {
     for (int i = 0; i < 40; ++i) see(noisy(i), RotorState::kOff);
   }
-  StuckPoseDetector watch_;
+  StuckPoseDetector detector_;
   int frame_ = 0;
 };
 
-TEST_F(StuckPoses, NoiseThatStopsIsFrozenAfterFiveRepetitions) {
+TEST_F(StuckPose, IsFrozenFiveRepetitionsAfterNoiseStops) {
   stand_in_noise();
   see({0.0, 0.0, -1.0}, RotorState::kRunning);
-  EXPECT_FALSE(watch_.repeats());
+  EXPECT_FALSE(detector_.repeats());
   for (int i = 1; i <= 8; ++i) {
     see({0.0, 0.0, -1.0}, RotorState::kRunning);
-    EXPECT_TRUE(watch_.repeats());
-    EXPECT_EQ(watch_.frozen(), i >= StuckPoseSettings{}.repetitions) << i;
+    EXPECT_TRUE(detector_.repeats());
+    EXPECT_EQ(detector_.frozen(), i >= StuckPoseSettings{}.repetitions) << i;
   }
   see({0.001, 0.0, -1.0}, RotorState::kRunning);
-  EXPECT_FALSE(watch_.repeats());
-  EXPECT_FALSE(watch_.frozen()) << "it goes on";
+  EXPECT_FALSE(detector_.repeats());
+  EXPECT_FALSE(detector_.frozen()) << "the poses change again";
 }
 
-TEST_F(StuckPoses, AStreamWithoutNoiseRepeatsAndIsNotFrozen) {
+TEST_F(StuckPose, NoiselessStreamRepeatsButIsNotFrozen) {
   for (int i = 0; i < 100; ++i) see({0.0, 0.0, -1.0}, RotorState::kOff);
   for (int i = 0; i < 100; ++i) see({0.0, 0.0, -1.0}, RotorState::kRunning);
-  EXPECT_TRUE(watch_.repeats());
-  EXPECT_FALSE(watch_.frozen());
+  EXPECT_TRUE(detector_.repeats());
+  EXPECT_FALSE(detector_.frozen());
 }
 
-// What moves in flight says nothing of noise.
-TEST_F(StuckPoses, OnlyAStandingVehicleShowsThatThereIsNoise) {
+// Motion in flight is no evidence of noise.
+TEST_F(StuckPose, LearnsNoiseOnlyWithRotorsOff) {
   for (int i = 0; i < 100; ++i) see({0.01 * i, 0.0, -1.0}, RotorState::kRunning);
   for (int i = 0; i < 100; ++i) see({1.0, 0.0, -1.0}, RotorState::kRunning);
-  EXPECT_FALSE(watch_.frozen());
+  EXPECT_FALSE(detector_.frozen());
 }
 
-TEST_F(StuckPoses, TheNoiseHasToLastForTwentyPoses) {
+TEST_F(StuckPose, LearnsNoiseFromTwentyPoses) {
   for (int i = 0; i < 20; ++i) see(noisy(i), RotorState::kOff);  // 19 that differ from the one before
   for (int i = 0; i < 10; ++i) see({1.0, 0.0, -1.0}, RotorState::kRunning);
-  EXPECT_FALSE(watch_.frozen());
+  EXPECT_FALSE(detector_.frozen());
 }
 
-TEST_F(StuckPoses, ATurnIsNoRepetition) {
+TEST_F(StuckPose, RotationIsNoRepetition) {
   stand_in_noise();
   for (int i = 0; i < 20; ++i)
     see({0.0, 0.0, -1.0}, RotorState::kRunning, Quaterniond(AngleAxisd(0.001 * i, Vector3d::UnitZ())));
-  EXPECT_FALSE(watch_.repeats());
+  EXPECT_FALSE(detector_.repeats());
 }
 
 // q and -q are one attitude: a change of the sign is neither a motion nor noise.
-TEST_F(StuckPoses, TheSignOfTheQuaternionDoesNotCount) {
+TEST_F(StuckPose, IgnoresTheSignOfTheQuaternion) {
   const Quaterniond q(AngleAxisd(0.3, Vector3d(0.6, 0.0, 0.8)));
   const Quaterniond minus_q(Quaterniond(-q.coeffs()));
   for (int i = 0; i < 60; ++i) see({0.0, 0.0, -1.0}, RotorState::kOff, i % 2 == 0 ? q : minus_q);
-  EXPECT_TRUE(watch_.repeats());
+  EXPECT_TRUE(detector_.repeats());
   for (int i = 0; i < 10; ++i) see({0.0, 0.0, -1.0}, RotorState::kRunning, q);
-  EXPECT_FALSE(watch_.frozen()) << "there was no noise";
+  EXPECT_FALSE(detector_.frozen()) << "there was no noise";
 }
 
-class Track : public testing::Test {
+class PoseTrack : public testing::Test {
  protected:
-  Track() {
+  PoseTrack() {
     for (int i = 0; i < 30; ++i) see(i);
     continuity_.begin();
   }
-  // The vehicle flies north at 1 m/s and turns right at 1 rad/s; the pose is off that by so much.
+  // The vehicle flies north at 1 m/s and turns right at 1 rad/s; the pose has an offset from that.
   void see(int frame, const Vector3d& off_ned = Vector3d::Zero(), double off_yaw = 0.0) {
     const double t = 0.01 * frame;
-    continuity_.look_at(pose(frame, Vector3d(t, 0.0, -1.0) + off_ned,
-                             Quaterniond(AngleAxisd(t + off_yaw, Vector3d::UnitZ()))));
+    continuity_.update(pose(frame, Vector3d(t, 0.0, -1.0) + off_ned,
+                            Quaterniond(AngleAxisd(t + off_yaw, Vector3d::UnitZ()))));
     frame_ = frame + 1;
   }
   void see_many(int count, const Vector3d& off_ned = Vector3d::Zero(), double off_yaw = 0.0) {
@@ -110,7 +110,7 @@ class Track : public testing::Test {
   int frame_ = 0;
 };
 
-TEST_F(Track, OfAMovingBodyIsUnbroken) {
+TEST_F(PoseTrack, IsUnbrokenForAMovingBody) {
   see_many(50);
   EXPECT_TRUE(continuity_.unbroken());
   EXPECT_TRUE(continuity_.in_reach());
@@ -119,7 +119,7 @@ TEST_F(Track, OfAMovingBodyIsUnbroken) {
   EXPECT_LT((continuity_.velocity_ned() - Vector3d(1.0, 0.0, 0.0)).norm(), 1e-9);
 }
 
-TEST_F(Track, AfterAStepShowsSomethingElseUntilItStepsBack) {
+TEST_F(PoseTrack, IsOutOfReachAfterAStepUntilItStepsBack) {
   const Vector3d steps[] = {{0.3, 0.0, 0.0}, {0.0, -0.3, 0.0}, {0.0, 0.0, 0.3}};
   for (const Vector3d& step : steps) {
     see_many(10, step);
@@ -132,33 +132,33 @@ TEST_F(Track, AfterAStepShowsSomethingElseUntilItStepsBack) {
   }
 }
 
-TEST_F(Track, AfterATurnAtOnceShowsSomethingElseUntilItTurnsBack) {
+TEST_F(PoseTrack, IsOutOfReachAfterAYawJumpUntilItTurnsBack) {
   see_many(10, Vector3d::Zero(), 0.4);
   EXPECT_FALSE(continuity_.in_reach());
   see_many(10, Vector3d::Zero(), 0.8);
-  EXPECT_FALSE(continuity_.in_reach()) << "a turn further does not lead back";
+  EXPECT_FALSE(continuity_.in_reach()) << "a further turn does not lead back";
   see_many(10);
   EXPECT_TRUE(continuity_.in_reach());
 }
 
-// Two turns about different axes are not undone in any order: what counts is how they follow each other.
-TEST_F(Track, TurnsAreUndoneInTheOrderInWhichTheyCame) {
+// Rotations about different axes do not commute: steps are undone in reverse order only.
+TEST_F(PoseTrack, UndoesRotationsInReverseOrderOnly) {
   PoseContinuity still;
   const Quaterniond a(AngleAxisd(1.2, Vector3d::UnitX()));
   const Quaterniond b(AngleAxisd(1.2, Vector3d::UnitZ()));
-  const Quaterniond way[] = {Quaterniond::Identity(), a, a * b, a * b * a.conjugate(),
-                             a * b * a.conjugate() * b.conjugate()};
+  const Quaterniond attitudes[] = {Quaterniond::Identity(), a, a * b, a * b * a.conjugate(),
+                                   a * b * a.conjugate() * b.conjugate()};
   int frame = 0;
-  for (const Quaterniond& q : way) {
-    still.look_at(pose(frame, Vector3d::Zero(), q));
+  for (const Quaterniond& q : attitudes) {
+    still.update(pose(frame, Vector3d::Zero(), q));
     if (frame++ == 0) still.begin();
   }
-  EXPECT_FALSE(still.in_reach()) << "the commutator of the turns is left";
-  still.look_at(pose(frame, Vector3d::Zero()));
+  EXPECT_FALSE(still.in_reach()) << "the commutator of the rotations is left";
+  still.update(pose(frame, Vector3d::Zero()));
   EXPECT_TRUE(still.in_reach());
 }
 
-TEST_F(Track, IsBrokenByAGapInWhichAStepWouldNotBeSeen) {
+TEST_F(PoseTrack, IsBrokenByALongGap) {
   see(frame_ + 8);
   EXPECT_TRUE(continuity_.unbroken()) << "90 ms";
   see(frame_ + 10);
@@ -170,8 +170,7 @@ TEST_F(Track, IsBrokenByAGapInWhichAStepWouldNotBeSeen) {
   EXPECT_TRUE(continuity_.unbroken());
 }
 
-// The longer the interval, the further a body may have come.
-TEST_F(Track, ReachGrowsWithTheInterval) {
+TEST_F(PoseTrack, ReachGrowsWithTheInterval) {
   see(frame_, {0.12, 0.0, 0.0});
   EXPECT_FALSE(continuity_.in_reach()) << "13 cm in 10 ms";
   see(frame_);
@@ -180,18 +179,18 @@ TEST_F(Track, ReachGrowsWithTheInterval) {
   EXPECT_TRUE(continuity_.in_reach()) << "17 cm in 50 ms";
 }
 
-TEST_F(Track, ThatWasDisownedMayShowTheBodyWithItsNextStep) {
+TEST_F(PoseTrack, ReturnsIntoReachWithAStepAfterRejection) {
   continuity_.reject_track();
   EXPECT_FALSE(continuity_.unbroken());
   see_many(10);
   EXPECT_FALSE(continuity_.unbroken());
   see_many(5, {0.5, 0.0, 0.0});
-  EXPECT_TRUE(continuity_.in_reach()) << "from here on";
+  EXPECT_TRUE(continuity_.in_reach()) << "a step may return to the body";
   see_many(5);
-  EXPECT_FALSE(continuity_.in_reach()) << "and a step is one again";
+  EXPECT_FALSE(continuity_.in_reach()) << "the next step leaves it again";
 }
 
-TEST_F(Track, LastsOnceItHasGoneOnForEightPosesAndAFifthOfASecond) {
+TEST_F(PoseTrack, LastsAfterEightPosesAndAFifthOfASecond) {
   EXPECT_TRUE(continuity_.lasting());
   see(frame_, {0.5, 0.0, 0.0});
   for (int i = 1; i <= 30; ++i) {
@@ -200,27 +199,27 @@ TEST_F(Track, LastsOnceItHasGoneOnForEightPosesAndAFifthOfASecond) {
   }
   PoseContinuity slow;  // 20 Hz
   for (int i = 0; i < 10; ++i) {
-    slow.look_at(pose(5 * i, {0.0, 0.0, -1.0}));
+    slow.update(pose(5 * i, {0.0, 0.0, -1.0}));
     EXPECT_EQ(slow.lasting(), i >= 7) << i;
   }
 }
 
-TEST_F(Track, TheSignOfTheQuaternionIsNoStep) {
+TEST_F(PoseTrack, IgnoresTheSignOfTheQuaternion) {
   for (int i = 0; i < 40; ++i) {
     const double t = 0.01 * frame_;
     Quaterniond q(AngleAxisd(t, Vector3d::UnitZ()));
     if (i % 2 == 0) q.coeffs() *= -1.0;
-    continuity_.look_at(pose(frame_++, {t, 0.0, -1.0}, q));
+    continuity_.update(pose(frame_++, {t, 0.0, -1.0}, q));
   }
   EXPECT_TRUE(continuity_.unbroken());
   EXPECT_EQ(continuity_.poses(), 70);
 }
 
-TEST(PoseContinuity, KnowsNoVelocityBeforeFivePoses) {
+TEST(PoseContinuity, HasNoVelocityBeforeFivePoses) {
   PoseContinuity continuity;
-  for (int i = 0; i < 4; ++i) continuity.look_at(pose(i, {0.01 * i, 0.0, 0.0}));
+  for (int i = 0; i < 4; ++i) continuity.update(pose(i, {0.01 * i, 0.0, 0.0}));
   EXPECT_EQ(continuity.velocity_ned(), Vector3d::Zero());
-  continuity.look_at(pose(4, {0.04, 0.0, 0.0}));
+  continuity.update(pose(4, {0.04, 0.0, 0.0}));
   EXPECT_LT((continuity.velocity_ned() - Vector3d(1.0, 0.0, 0.0)).norm(), 1e-9);
 }
 

@@ -1,4 +1,4 @@
-// How fast measured rotor speeds correct the model: by a bandwidth, at whichever rate they come.
+// Measured rotor speeds correct the model with one bandwidth at any sample rate.
 #include <cmath>
 #include <cstdint>
 
@@ -23,10 +23,10 @@ plant::RotorSpeedSample measured(std::int64_t stamp_ns, double speed) {
 
 class RotorBandwidth : public testing::TestWithParam<std::int64_t> {};
 
-TEST_P(RotorBandwidth, TheDifferenceFallsAlikeAtEveryRate) {
+TEST_P(RotorBandwidth, DifferenceDecaysEquallyAtEveryRate) {
   RotorObserver observer(tests::kaylion(), kBandwidth);
   observer.correct(measured(kStart_ns, 1000.0));
-  EXPECT_EQ(observer.speeds()[0], 1000.0) << "the first is taken as it is";
+  EXPECT_EQ(observer.speeds()[0], 1000.0) << "the first measurement is taken as it is";
   for (std::int64_t t = GetParam(); t <= 20'000'000; t += GetParam())
     observer.correct(measured(kStart_ns + t, 1500.0));
   EXPECT_NEAR(observer.speeds()[3], 1500.0 - 500.0 * std::exp(-kBandwidth * 0.02), 1e-9);
@@ -34,7 +34,7 @@ TEST_P(RotorBandwidth, TheDifferenceFallsAlikeAtEveryRate) {
 INSTANTIATE_TEST_SUITE_P(Periods, RotorBandwidth,
                          testing::Values(1'000'000, 2'000'000, 10'000'000, 20'000'000));
 
-TEST(RotorObserverStamps, ASampleThatComesAgainOrLateChangesNothing) {
+TEST(RotorObserverStamps, IgnoresRepeatedAndLateSamples) {
   RotorObserver observer(tests::kaylion(), kBandwidth);
   observer.correct(measured(kStart_ns, 1000.0));
   observer.correct(measured(kStart_ns + 2'000'000, 1500.0));

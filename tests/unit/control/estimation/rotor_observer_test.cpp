@@ -34,8 +34,8 @@ plant::ActuatorCommand running(int rotor_count, const plant::PerRotor& throttle)
 
 const plant::PerRotor kThrottles = {0.1, 0.3, 0.5, 0.9};
 
-// A first-order lag: after a time t, however it is divided into steps, exp(-t / tau) is left of what was missing.
-TEST(RotorObserver, SpeedsFollowTheLagWhateverTheSteps) {
+// First-order lag: after a time t in any steps, exp(-t / tau) of the initial difference is left.
+TEST(RotorObserver, SpeedsFollowTheLagForAnySteps) {
   for (const int rotors : {4, 6}) {
     RotorObserver observer(rotors == 4 ? kaylion() : multirotor(rotors), kBandwidth);
     plant::PerRotor throttles = kThrottles;
@@ -53,7 +53,7 @@ TEST(RotorObserver, SpeedsFollowTheLagWhateverTheSteps) {
   }
 }
 
-TEST(RotorObserver, RotorsThatAreOffRunDownWhateverTheSteps) {
+TEST(RotorObserver, RotorsThatAreOffDecayForAnySteps) {
   RotorObserver observer(kaylion(), kBandwidth);
   observer.step(10.0, running(4, kThrottles), kSupply_v);
   double t = 0.0;
@@ -66,7 +66,7 @@ TEST(RotorObserver, RotorsThatAreOffRunDownWhateverTheSteps) {
 }
 
 // Eq. (27) and (28), with k_T, k_Q and l / sqrt 2 of the paper.
-TEST(RotorObserver, TheWrenchIsThatOfTheSpeeds) {
+TEST(RotorObserver, WrenchFollowsFromTheSpeeds) {
   RotorObserver observer(kaylion(), kBandwidth);
   observer.step(10.0, running(4, kThrottles), kSupply_v);
   double t[4], q[4];
@@ -82,11 +82,12 @@ TEST(RotorObserver, TheWrenchIsThatOfTheSpeeds) {
   EXPECT_LT((observer.moment_frd() - moment).norm(), 2e-6 * moment.norm())
       << observer.moment_frd().transpose();
   observer.step(kTau_s, {}, kSupply_v);
-  EXPECT_NEAR(observer.thrust_n(), std::exp(-2.0) * (t[0] + t[1] + t[2] + t[3]), 1e-9) << "running down";
+  EXPECT_NEAR(observer.thrust_n(), std::exp(-2.0) * (t[0] + t[1] + t[2] + t[3]), 1e-9)
+      << "after one time constant with rotors off";
 }
 
-// An ESC with a dead zone: below it no voltage, not the root of a negative number.
-TEST(RotorObserver, AThrottleInTheDeadZoneTurnsNothing) {
+// Below the dead zone of the ESC there is no voltage, not the root of a negative number.
+TEST(RotorObserver, ThrottleInTheDeadZoneGivesNoSpeed) {
   plant::Vehicle vehicle = kaylion();
   vehicle.esc.offset_v2 = -1.0;
   RotorObserver observer(vehicle, kBandwidth);
@@ -97,7 +98,7 @@ TEST(RotorObserver, AThrottleInTheDeadZoneTurnsNothing) {
   EXPECT_GT(observer.thrust_n(), 0.0);
 }
 
-TEST(RotorObserver, MeasuredSpeedsDrawTheirOwn) {
+TEST(RotorObserver, TakesTheFirstMeasurementAsItIs) {
   RotorObserver observer(kaylion(), kBandwidth);
   observer.step(10.0, running(4, kThrottles), kSupply_v);
   plant::RotorSpeedSample sample;
@@ -105,11 +106,11 @@ TEST(RotorObserver, MeasuredSpeedsDrawTheirOwn) {
   sample.speeds = {100.0, 2000.0, 0.0, 1500.0};
   sample.stamp_ns = 1;
   observer.correct(sample);
-  EXPECT_EQ(observer.speeds(), sample.speeds) << "the first is taken as it is";
+  EXPECT_EQ(observer.speeds(), sample.speeds) << "the first measurement is taken as it is";
   EXPECT_NEAR(observer.thrust_n(), 3.7901e-8 * (100.0 * 100.0 + 2000.0 * 2000.0 + 1500.0 * 1500.0), 1e-9);
 }
 
-TEST(RotorObserver, WhatIsNoMeasurementIsIgnored) {
+TEST(RotorObserver, IgnoresSamplesThatAreNotMeasurements) {
   RotorObserver observer(kaylion(), kBandwidth);
   observer.step(10.0, running(4, kThrottles), kSupply_v);
   const plant::PerRotor before = observer.speeds();

@@ -1,4 +1,4 @@
-// Coming to rest: within the limits from any motion that is, and no slower than they ask for.
+// Braking to rest: within the limits from any motion within them, and no slower than necessary.
 #include "swiftlet/control/guidance/braking_manoeuvre.hpp"
 
 #include <algorithm>
@@ -38,17 +38,17 @@ struct Peaks {
   double jerk = 0.0;
 };
 Peaks peaks(const PolynomialSegment& segment) {
-  constexpr int kLooks = 400;
+  constexpr int kSamples = 400;
   Peaks most;
-  for (int i = 0; i <= kLooks; ++i) {
-    const Reference at = evaluate(segment, segment.duration_s * i / kLooks);
+  for (int i = 0; i <= kSamples; ++i) {
+    const Reference at = evaluate(segment, segment.duration_s * i / kSamples);
     most.acceleration = std::max(most.acceleration, at.acceleration_ned.norm());
     most.jerk = std::max(most.jerk, at.jerk_ned.norm());
   }
   return most;
 }
 
-TEST(BrakingManoeuvre, KeepsTheLimitsFromAnyMotionWithinThem) {
+TEST(BrakingManoeuvre, StaysWithinTheLimitsFromAnyMotionWithinThem) {
   plant::RandomStream random(1, 1);
   double most_acceleration = 0.0, most_jerk = 0.0;
   for (int i = 0; i < 5000; ++i) {
@@ -64,7 +64,7 @@ TEST(BrakingManoeuvre, KeepsTheLimitsFromAnyMotionWithinThem) {
   EXPECT_GT(most_jerk, 0.99 * kPeakJerk);
 }
 
-TEST(BrakingManoeuvre, BeginsWithTheMotionAndEndsAtRest) {
+TEST(BrakingManoeuvre, StartsFromTheMotionAndEndsAtRest) {
   plant::RandomStream random(2, 1);
   for (int i = 0; i < 200; ++i) {
     const Reference from =
@@ -81,8 +81,8 @@ TEST(BrakingManoeuvre, BeginsWithTheMotionAndEndsAtRest) {
   }
 }
 
-// Straight on, one of the limits is reached: it takes no longer than a quartic has to.
-TEST(BrakingManoeuvre, UsesALimitUpWhereItIsStraight) {
+// On a straight line one of the limits is reached: a quartic cannot be faster.
+TEST(BrakingManoeuvre, ReachesALimitOnAStraightLine) {
   for (const double speed : {0.05, 0.4, 1.0, 2.0, 4.0}) {
     for (const double acceleration : {0.0, 0.5, 1.0, 2.0}) {
       const Peaks most = peaks(stop(motion({speed, 0, 0}, {acceleration, 0, 0})));
@@ -92,21 +92,21 @@ TEST(BrakingManoeuvre, UsesALimitUpWhereItIsStraight) {
   }
 }
 
-TEST(BrakingManoeuvre, ShedsWhatIsBeyondTheLimitsWithoutMore) {
+TEST(BrakingManoeuvre, DoesNotIncreaseAMotionBeyondTheLimits) {
   const Reference from = motion({1.0, 0, 0}, {2.5 * kPeakAcceleration, 0, 0});
   const Peaks most = peaks(stop(from));
   EXPECT_LE(most.acceleration, 2.5 * kPeakAcceleration * kRounding);
   EXPECT_LE(most.jerk, 2.5 * kPeakJerk * kRounding);
 }
 
-TEST(BrakingManoeuvre, RestsWhereItIsAndTakesItsTime) {
+TEST(BrakingManoeuvre, StaysInPlaceForTheMinimumDuration) {
   const Reference from = motion(Vector3d::Zero(), Vector3d::Zero());
   const BrakingManoeuvre stop = limited_braking(from, kPeakAcceleration, kPeakJerk, 0.5);
   EXPECT_EQ(stop.duration_s, 0.5);
   EXPECT_EQ(stop.place_ned, from.position_ned);
 }
 
-TEST(BrakingManoeuvre, TakesNoMemory) {
+TEST(BrakingManoeuvre, AllocatesNoMemory) {
   const Reference from = motion({1, 0, 0}, {0, 1, 0});
   const test::MallocGuard guard;
   const PolynomialSegment segment = stop(from);

@@ -1,5 +1,4 @@
-// Missions as they are kept, started, paused, gone on with, skipped and forgotten, and the bounds that they
-// set themselves.
+// Upload, start, pause, resume, skip and clear of missions, and the bounds that they set.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -45,7 +44,7 @@ Mission curve(std::vector<Vector3d>* points = nullptr) {
   return mission;
 }
 
-// How far a place is from the nearest of the path of these segments, looked at every ms.
+// Distance of a position from the path of these segments, sampled every ms.
 double distance_from(const std::vector<PolynomialSegment>& segments, const Vector3d& place) {
   double least = 1e9;
   for (const PolynomialSegment& segment : segments) {
@@ -66,7 +65,7 @@ class MissionFlight : public testing::Test, protected SupervisedFlight {
     step_until([] { return false; }, seconds);
   }
 
-  // Steps, and finds the reference's derivatives to be those of its position: it has no step anywhere.
+  // Steps and checks that the reference is continuous and that its derivatives match its position.
   void step_smoothly(double seconds, const Limits& limits = {}) {
     const double dt = static_cast<double>(kStep_ns) * 1e-9;
     std::optional<Reference> before;
@@ -86,7 +85,7 @@ class MissionFlight : public testing::Test, protected SupervisedFlight {
   }
 };
 
-TEST_F(MissionFlight, AnUploadedOneIsKeptUntilItIsStarted) {
+TEST_F(MissionFlight, UploadedMissionWaitsForStart) {
   const Mission mission = mission_of({waypoint({1, 0, -1})});
   ASSERT_TRUE(upload(mission).accepted);
   fly_on(2.0);
@@ -101,7 +100,7 @@ TEST_F(MissionFlight, AnUploadedOneIsKeptUntilItIsStarted) {
   EXPECT_NEAR(estimate_.position_ned.x(), 1.0, 1e-6);
 }
 
-TEST_F(MissionFlight, OneThatHasEndedIsStartedAgain) {
+TEST_F(MissionFlight, EndedMissionCanBeStartedAgain) {
   const Mission mission = mission_of({waypoint({1, 0, -1}), waypoint({0, 0, -1})});
   ASSERT_TRUE(fly(mission).accepted);
   ASSERT_TRUE(step_until([&] { return item() == 1; }, 10.0));
@@ -113,7 +112,7 @@ TEST_F(MissionFlight, OneThatHasEndedIsStartedAgain) {
   ASSERT_TRUE(step_until([&] { return state() == MissionState::kCompleted; }, 20.0));
 }
 
-TEST_F(MissionFlight, EachRefusalSaysWhy) {
+TEST_F(MissionFlight, RefusalsGiveTheReason) {
   EXPECT_STREQ(ask(RequestKind::kMissionStart).reason, "no mission is uploaded: upload one first");
   EXPECT_STREQ(pause().reason, "no mission is running");
   EXPECT_STREQ(resume().reason, "no mission is running");
@@ -143,7 +142,7 @@ TEST_F(MissionFlight, EachRefusalSaysWhy) {
                "item 2 is the last of the mission: there is no item to skip to");
 }
 
-TEST_F(MissionFlight, APauseComesToRestOnThePathWithoutAStepAndResumesThere) {
+TEST_F(MissionFlight, PauseStopsOnThePathAndResumesThere) {
   const Mission mission = curve();
   for (double pause_at_s = 0.8; pause_at_s < 6.0; pause_at_s += 0.61) {
     ASSERT_TRUE(fly(mission).accepted);
@@ -171,7 +170,7 @@ TEST_F(MissionFlight, APauseComesToRestOnThePathWithoutAStepAndResumesThere) {
   }
 }
 
-TEST_F(MissionFlight, APauseIsInterruptedAtAnyTimeWithoutAStep) {
+TEST_F(MissionFlight, PauseAndResumeAreContinuousAtAnyTime) {
   const Mission mission = curve();
   for (double after_s = 0.05; after_s < 2.2; after_s += 0.15) {
     ASSERT_TRUE(fly(mission).accepted);
@@ -188,7 +187,7 @@ TEST_F(MissionFlight, APauseIsInterruptedAtAnyTimeWithoutAStep) {
   }
 }
 
-TEST_F(MissionFlight, SentElsewhereInAPauseItReturnsToWhereItWasLeft) {
+TEST_F(MissionFlight, ResumeAfterGoToReturnsToThePausedPosition) {
   const Mission mission = curve();
   for (const double pause_s : {0.4, 4.0}) {  // before it has come to rest, and after
     ASSERT_TRUE(fly(mission).accepted);
@@ -218,7 +217,7 @@ TEST_F(MissionFlight, SentElsewhereInAPauseItReturnsToWhereItWasLeft) {
   }
 }
 
-TEST_F(MissionFlight, AReturnIsPausedAndGoneOnWith) {
+TEST_F(MissionFlight, ReturnToThePathCanBePausedAndResumed) {
   const Mission mission = curve();
   ASSERT_TRUE(fly(mission).accepted);
   fly_on(2.0);
@@ -243,7 +242,7 @@ TEST_F(MissionFlight, AReturnIsPausedAndGoneOnWith) {
   EXPECT_LT(nearest, 1e-4);
 }
 
-TEST_F(MissionFlight, TheRestOfAHoldIsKeptInAPause) {
+TEST_F(MissionFlight, PauseKeepsTheRestOfAHold) {
   const Mission mission = mission_of({waypoint({0.5, 0, -1}, 0.5, 4.0), waypoint({0, 0, -1})});
   ASSERT_TRUE(fly(mission).accepted);
   ASSERT_TRUE(step_until([&] { return supervisor_.state().guidance.item_end_ns != 0; }, 10.0));
@@ -259,7 +258,7 @@ TEST_F(MissionFlight, TheRestOfAHoldIsKeptInAPause) {
   EXPECT_LT(rest_s, 3.6);
 }
 
-TEST_F(MissionFlight, AHoldThatEndsWhileItsClockTurnsBeginsTheNextItemWithoutAStep) {
+TEST_F(MissionFlight, HoldThatEndsDuringTimeScalingIsContinuous) {
   const Mission mission = mission_of({waypoint({0.5, 0, -1}, 0.5, 0.3), waypoint({0, 0, -1})});
   for (double after_s = 0.0; after_s < 3.0; after_s += 0.1) {
     ASSERT_TRUE(fly(mission).accepted);
@@ -272,7 +271,7 @@ TEST_F(MissionFlight, AHoldThatEndsWhileItsClockTurnsBeginsTheNextItemWithoutASt
   }
 }
 
-TEST_F(MissionFlight, SkipGoesOnWithTheNextItemFromThePresentMotion) {
+TEST_F(MissionFlight, SkipContinuesFromThePresentMotion) {
   const Mission mission =
       mission_of({waypoint({2, 0, -1}, 0.8), waypoint({0, 1, -1}, 0.8), waypoint({0, 0, -1}, 0.8)});
   ASSERT_TRUE(fly(mission).accepted);
@@ -300,7 +299,7 @@ TEST_F(MissionFlight, SkipInAPauseFliesTheNextItem) {
   EXPECT_NEAR((estimate_.position_ned - Vector3d(0, 1, -1)).norm(), 0.0, 1e-6);
 }
 
-TEST_F(MissionFlight, ClearInAPauseComesToRestAndForgetsIt) {
+TEST_F(MissionFlight, ClearInAPauseStopsAndForgetsTheMission) {
   const Mission mission = curve();
   ASSERT_TRUE(fly(mission).accepted);
   fly_on(2.0);
@@ -315,7 +314,7 @@ TEST_F(MissionFlight, ClearInAPauseComesToRestAndForgetsIt) {
   EXPECT_FALSE(ask(RequestKind::kMissionStart).accepted);
 }
 
-TEST_F(MissionFlight, APauseEndsWithAnyOtherModeThanHold) {
+TEST_F(MissionFlight, PauseEndsWithAnyOtherModeThanHold) {
   const Mission mission = mission_of({waypoint({2, 0, -1}), waypoint({0, 0, -1})});
   ASSERT_TRUE(fly(mission).accepted);
   fly_on(1.0);
@@ -327,19 +326,19 @@ TEST_F(MissionFlight, APauseEndsWithAnyOtherModeThanHold) {
   EXPECT_FALSE(resume().accepted);
 }
 
-TEST_F(MissionFlight, AnotherGoesOnFromAPauseAtEveryStep) {
+TEST_F(MissionFlight, FollowerContinuesFromAPauseAtEveryStep) {
   const Mission mission = curve();
   Supervisor follower{SupervisionSettings()};
   const auto step_both = [&](int steps) {
     for (int i = 0; i < steps; ++i) {
       const SupervisorState state = supervisor_.state();
       if (i % 5 == 0) follower.adopt(state, &mission, nullptr);
-      SupervisorInputs seen = inputs_;
+      SupervisorInputs inputs = inputs_;
       const Estimate before = estimate_;
       step();
-      seen.stamp_ns = inputs_.stamp_ns;
-      seen.estimate = &before;
-      const ControlSetpoint followed = follower.step(seen);
+      inputs.stamp_ns = inputs_.stamp_ns;
+      inputs.estimate = &before;
+      const ControlSetpoint followed = follower.step(inputs);
       ASSERT_EQ(followed.reference.position_ned, control_setpoint_.reference.position_ned);
       ASSERT_EQ(followed.reference.velocity_ned, control_setpoint_.reference.velocity_ned);
       ASSERT_EQ(followed.reference.jerk_ned, control_setpoint_.reference.jerk_ned);
@@ -359,7 +358,7 @@ TEST_F(MissionFlight, AnotherGoesOnFromAPauseAtEveryStep) {
   EXPECT_EQ(state(), MissionState::kCompleted);
 }
 
-TEST_F(MissionFlight, WhoTakesOverWithoutItForgetsOneThatWaitsAndAbortsOneThatIsPaused) {
+TEST_F(MissionFlight, FailoverWithoutTheMissionForgetsOrAbortsIt) {
   const Mission mission = curve();
   ASSERT_TRUE(upload(mission).accepted);
   Supervisor follower{SupervisionSettings()};
@@ -376,24 +375,24 @@ TEST_F(MissionFlight, WhoTakesOverWithoutItForgetsOneThatWaitsAndAbortsOneThatIs
   EXPECT_EQ(follower.mission().state, MissionState::kAborted);
 }
 
-TEST_F(MissionFlight, AnItemWithAnAcceptanceRadiusWaitsForTheVehicleItself) {
+TEST_F(MissionFlight, AcceptanceRadiusWaitsForTheVehicle) {
   Mission mission = mission_of({waypoint({1, 0, -1}, 0.5, 1.0), waypoint({0, 0, -1})});
   mission.items[0].acceptance_radius_m = 0.05;
   ASSERT_TRUE(fly(mission).accepted);
   fly_on(2.0);
-  follows_ = false;  // it is blown off
+  follows_ = false;  // the vehicle is off the reference
   estimate_.position_ned = {0.9, 0, -1};
   fly_on(10.0);
   EXPECT_EQ(item(), 0);
   EXPECT_NEAR(control_setpoint_.reference.position_ned.x(), 1.0, 1e-9);
   estimate_.position_ned = {0.951, 0, -1};
   fly_on(0.9);
-  EXPECT_EQ(item(), 0) << "its hold begins when it has arrived";
+  EXPECT_EQ(item(), 0) << "the hold starts when the vehicle has arrived";
   fly_on(0.2);
   EXPECT_EQ(item(), 1);
 }
 
-TEST_F(MissionFlight, AWaitStaysWhereItIs) {
+TEST_F(MissionFlight, WaitHoldsThePosition) {
   MissionItem wait;
   wait.kind = MissionItemKind::kWait;
   wait.hold_s = 2.0;
@@ -408,7 +407,7 @@ TEST_F(MissionFlight, AWaitStaysWhereItIs) {
   EXPECT_TRUE(step_until([&] { return state() == MissionState::kCompleted; }, 10.0));
 }
 
-TEST_F(MissionFlight, ATrajectoryWhoseYawIsFreeKeepsTheYaw) {
+TEST_F(MissionFlight, FreeYawTrajectoryKeepsTheYaw) {
   Mission mission = mission_of({waypoint({0, 0, -1})});
   mission.items[0].yaw_free = false;
   mission.items[0].yaw_rad = 0.7;
@@ -433,7 +432,7 @@ TEST_F(MissionFlight, ATrajectoryWhoseYawIsFreeKeepsTheYaw) {
   }
 }
 
-TEST_F(MissionFlight, ItsOwnLimitsHoldWhileItIsFlown) {
+TEST_F(MissionFlight, MissionLimitsHoldDuringTheMission) {
   Mission mission = mission_of({waypoint({2, 0, -1}, 2.0)});
   const auto peaks = [&] {
     Vector3d peak = Vector3d::Zero();
@@ -461,7 +460,7 @@ TEST_F(MissionFlight, ItsOwnLimitsHoldWhileItIsFlown) {
   EXPECT_FALSE(check(mission, Limits{}).accepted) << "its waypoint asks for 2 m/s";
 }
 
-TEST_F(MissionFlight, ItsOwnFenceHoldsWhileItIsFlownOrPausedAndNoLonger) {
+TEST_F(MissionFlight, MissionFenceHoldsUntilTheMissionEnds) {
   Mission mission = mission_of({waypoint({1, 0, -1}), waypoint({0, 0, -1})});
   mission.bounds.fenced = true;
   mission.bounds.fence_min_ned = {-0.5, -0.5, -1.5};
@@ -488,7 +487,7 @@ TEST_F(MissionFlight, ItsOwnFenceHoldsWhileItIsFlownOrPausedAndNoLonger) {
   EXPECT_EQ(supervisor_.mode(), Mode::kHolding);
 }
 
-TEST_F(MissionFlight, IsRefusedWhereTheVehicleIsOutsideItsFence) {
+TEST_F(MissionFlight, RefusesToStartOutsideTheMissionFence) {
   Mission mission = mission_of({waypoint({2, 0, -1})});
   mission.bounds.fenced = true;
   mission.bounds.fence_min_ned = {1, -1, -2};
@@ -498,7 +497,7 @@ TEST_F(MissionFlight, IsRefusedWhereTheVehicleIsOutsideItsFence) {
                "the vehicle: x is 0.000 m, outside the fence of 1.000 to 3.000 m");
 }
 
-TEST(MissionBounds, NoLooserThanTheSettingsAndOfSomeSize) {
+TEST(MissionBounds, AreTighterThanTheSettingsAndNotEmpty) {
   const Limits limits;
   const auto refusal = [&](const MissionBounds& bounds) { return std::string(check(bounds, limits).reason); };
   EXPECT_EQ(refusal({}), "");
@@ -513,7 +512,7 @@ TEST(MissionBounds, NoLooserThanTheSettingsAndOfSomeSize) {
             "the mission's fence: maximum y is 1.000 m, must be above the minimum, 1.000 m");
 }
 
-TEST(MissionBounds, HoldForReadyMadeTrajectories) {
+TEST(MissionBounds, HoldForGivenTrajectories) {
   const Limits limits;
   Mission mission = curve();
   for (MissionItem& item : mission.items) item.yaw_free = false;
@@ -528,8 +527,10 @@ TEST(MissionBounds, HoldForReadyMadeTrajectories) {
   mission.bounds = {};
   mission.segments.front().yaw = {0.0, 0.9};
   mission.bounds.max_yaw_rate = 0.5;
-  EXPECT_STREQ(check(mission, limits).reason,
-               "item 1: segment 1 reaches a yaw rate of 0.90 rad/s, the limit is 0.50 rad/s");
+  const char* const too_fast = "item 1: segment 1 reaches a yaw rate of 0.90 rad/s, the limit is 0.50 rad/s";
+  EXPECT_STREQ(check(mission, limits).reason, too_fast);
+  mission.segments.front().yaw = {0.0, -0.9};
+  EXPECT_STREQ(check(mission, limits).reason, too_fast) << "to the left as to the right";
 }
 
 }  // namespace

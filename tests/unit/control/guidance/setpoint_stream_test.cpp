@@ -25,7 +25,7 @@ class Stream : public testing::Test, protected SupervisedFlight {
     before_ = control_setpoint_.reference;
   }
 
-  // One step, in which position, velocity and acceleration of the reference go on as their derivatives say.
+  // One step. Checks that the reference is continuous up to the acceleration, within limits and fence.
   void step_smoothly() {
     step();
     const Reference& now = control_setpoint_.reference;
@@ -44,7 +44,7 @@ class Stream : public testing::Test, protected SupervisedFlight {
     }
     before_ = now;
   }
-  // For so long, with a setpoint of time t each 1/rate_hz.
+  // Streams for a duration, with the setpoint of time t each 1/rate_hz.
   template <class Setpoints>
   void stream(double duration_s, double rate_hz, const Setpoints& setpoint_at) {
     const auto steps = static_cast<int>(std::lround(duration_s / kStep_s));
@@ -75,7 +75,7 @@ Setpoint of_kind(SetpointKind kind) {
   return setpoint;
 }
 
-// A circle of 0.5 m, begun slowly: 8 s for once around.
+// A circle of 0.5 m with a slow start, 8 s for a turn.
 struct Circle {
   static constexpr double kRadius = 0.5, kRate = 2.0 * M_PI / 8.0, kStart_s = 4.0;
   bool velocity = true;
@@ -99,7 +99,7 @@ struct Circle {
 
 class Rates : public Stream, public testing::WithParamInterface<double> {};
 
-TEST_P(Rates, PositionsWithTheirDerivativesAreFollowedOnTheSpot) {
+TEST_P(Rates, FollowsPositionsWithDerivativesWithoutLag) {
   const Circle circle;
   double farthest_m = 0.0;
   const auto next = [&](double t) {
@@ -114,7 +114,7 @@ TEST_P(Rates, PositionsWithTheirDerivativesAreFollowedOnTheSpot) {
   EXPECT_LT(farthest_m, GetParam() < 5.0 ? 0.03 : 0.003);
 }
 
-TEST_P(Rates, PositionsAloneAreFollowedSmoothly) {
+TEST_P(Rates, FollowsPositionsAloneSmoothly) {
   const Circle circle{false, false};
   ASSERT_NO_FATAL_FAILURE(stream(14.0, GetParam(), circle));
   EXPECT_EQ(supervisor_.mode(), Mode::kSetpoint);
@@ -123,7 +123,7 @@ TEST_P(Rates, PositionsAloneAreFollowedSmoothly) {
   EXPECT_EQ(supervisor_.reason(), Reason::kSetpointsStopped);
 }
 
-TEST_P(Rates, AStepOfThePositionBecomesASmoothMove) {
+TEST_P(Rates, SmoothsAStepOfThePosition) {
   Setpoint setpoint = of_kind(SetpointKind::kPosition);
   setpoint.position_ned = {0.6, -0.4, -1.3};
   ASSERT_NO_FATAL_FAILURE(stream(5.0, GetParam(), [&](double) { return setpoint; }));
@@ -131,7 +131,7 @@ TEST_P(Rates, AStepOfThePositionBecomesASmoothMove) {
   EXPECT_LT(control_setpoint_.reference.velocity_ned.norm(), 1e-3);
 }
 
-TEST_P(Rates, AVelocityIsReachedSmoothlyAndKept) {
+TEST_P(Rates, ReachesAndKeepsAVelocity) {
   Setpoint setpoint = of_kind(SetpointKind::kVelocity);
   setpoint.velocity_ned = {0.3, -0.2, -0.1};
   ASSERT_NO_FATAL_FAILURE(stream(3.0, GetParam(), [&](double) { return setpoint; }));
@@ -141,7 +141,7 @@ TEST_P(Rates, AVelocityIsReachedSmoothlyAndKept) {
       0.3);
 }
 
-TEST_P(Rates, AnAccelerationIsReachedSmoothlyAndKept) {
+TEST_P(Rates, ReachesAndKeepsAnAcceleration) {
   Setpoint setpoint = of_kind(SetpointKind::kAcceleration);
   setpoint.acceleration_ned = {0.0, 0.5, 0.0};
   ASSERT_NO_FATAL_FAILURE(stream(1.5, GetParam(), [&](double) { return setpoint; }));
@@ -149,7 +149,7 @@ TEST_P(Rates, AnAccelerationIsReachedSmoothlyAndKept) {
   EXPECT_NEAR(control_setpoint_.reference.velocity_ned.y(), 0.5 * 1.5, 0.2);
 }
 
-TEST_P(Rates, AVelocityTowardsTheFenceStopsBeforeIt) {
+TEST_P(Rates, StopsAVelocityBeforeTheFence) {
   Setpoint setpoint = of_kind(SetpointKind::kVelocity);
   setpoint.velocity_ned = {0.8, 0.0, 0.0};
   ASSERT_NO_FATAL_FAILURE(stream(12.0, GetParam(), [&](double) { return setpoint; }));
@@ -158,21 +158,26 @@ TEST_P(Rates, AVelocityTowardsTheFenceStopsBeforeIt) {
   EXPECT_GT(control_setpoint_.reference.position_ned.x(), 1.8);
 }
 
-TEST_P(Rates, AnAccelerationEndsAtTheSpeedThatIsAllowed) {
+TEST_P(Rates, StopsAnAccelerationBelowTheSpeedLimit) {
   Setpoint setpoint = of_kind(SetpointKind::kAcceleration);
   setpoint.acceleration_ned = {1.2, 0.0, 0.0};
   ASSERT_NO_FATAL_FAILURE(stream(6.0, GetParam(), [&](double) { return setpoint; }));
-  EXPECT_FALSE(last_.accepted) << "either for the speed or for the fence";
+  EXPECT_FALSE(last_.accepted) << "must be refused for the speed or for the fence";
   EXPECT_LT(control_setpoint_.reference.velocity_ned.norm(), limits_.max_speed);
 }
 
-TEST_P(Rates, AHeadingIsTurnedToWithinItsRate) {
+TEST_P(Rates, TurnsToAHeadingWithinTheYawRate) {
   Setpoint setpoint = of_kind(SetpointKind::kPosition);
   setpoint.position_ned = {0, 0, -1};
   setpoint.yaw_free = false;
   setpoint.yaw_rad = 3.0;
   ASSERT_NO_FATAL_FAILURE(stream(9.0, GetParam(), [&](double) { return setpoint; }));
   EXPECT_NEAR(std::remainder(control_setpoint_.reference.yaw_rad - 3.0, 2.0 * M_PI), 0.0, 1e-3);
+  setpoint.yaw_rad = -3.0;
+  ASSERT_NO_FATAL_FAILURE(stream(0.1, GetParam(), [&](double) { return setpoint; }));
+  EXPECT_GT(control_setpoint_.reference.yaw_rate, 0.0) << "the short way, through south";
+  ASSERT_NO_FATAL_FAILURE(stream(4.0, GetParam(), [&](double) { return setpoint; }));
+  EXPECT_NEAR(std::remainder(control_setpoint_.reference.yaw_rad + 3.0, 2.0 * M_PI), 0.0, 1e-3);
   setpoint.yaw_free = true;
   setpoint.yaw_rate = -0.5;
   const double before = control_setpoint_.reference.yaw_rad;
@@ -180,11 +185,11 @@ TEST_P(Rates, AHeadingIsTurnedToWithinItsRate) {
   EXPECT_NEAR(control_setpoint_.reference.yaw_rad - before, -1.0, 0.3);
 }
 
-INSTANTIATE_TEST_SUITE_P(OfStreams, Rates, testing::Values(2.0, 5.0, 20.0, 100.0, 500.0));
+INSTANTIATE_TEST_SUITE_P(Hz, Rates, testing::Values(2.0, 5.0, 20.0, 100.0, 500.0));
 
-// Over the least time, 0.1 s: there is none before it that the time could be counted from. What the check of
-// the fence looks at is the same way.
-TEST_F(Stream, TheFirstSetpointIsGoneOverIntoWithoutDelay) {
+// The blend takes the minimum of 0.1 s, since no setpoint before it gives an interval. The fence check uses
+// the same path.
+TEST_F(Stream, BlendsIntoTheFirstSetpointWithoutDelay) {
   Setpoint setpoint = of_kind(SetpointKind::kVelocity);
   setpoint.velocity_ned = {0.005, 0.0, 0.0};
   ASSERT_TRUE(send(setpoint).accepted);
@@ -193,7 +198,7 @@ TEST_F(Stream, TheFirstSetpointIsGoneOverIntoWithoutDelay) {
   EXPECT_NEAR(control_setpoint_.reference.velocity_ned.x(), 0.005, 1e-6);
 }
 
-TEST_F(Stream, TheFirstSetpointAfterAPauseIsGoneOverIntoWithoutDelay) {
+TEST_F(Stream, BlendsIntoTheFirstSetpointAfterAPauseWithoutDelay) {
   Setpoint setpoint = of_kind(SetpointKind::kPosition);
   setpoint.position_ned = control_setpoint_.reference.position_ned;
   ASSERT_TRUE(send(setpoint).accepted);
@@ -206,12 +211,12 @@ TEST_F(Stream, TheFirstSetpointAfterAPauseIsGoneOverIntoWithoutDelay) {
   EXPECT_NEAR(control_setpoint_.reference.position_ned.x(), setpoint.position_ned.x(), 1e-7);
 }
 
-// A slow sine in x, 500 times a second, so small that no blend takes longer for the sake of the limits.
+// A slow sine in x at 500 Hz, so small that the limits lengthen no blend.
 class Sine : public Stream {
  protected:
   static constexpr double kAmplitude = 0.002, kRate = 2.0 * M_PI / 10.0;
 
-  // By the first harmonic of the reference, over the second turn.
+  // From the first harmonic of the reference over the second period.
   double lag_s(bool with_derivatives) {
     double in_phase = 0.0, behind = 0.0;
     const auto next = [&](double t) {
@@ -230,12 +235,12 @@ class Sine : public Stream {
   }
 };
 
-// Blended into once: the error obeys s^3 + 9/t s^2 + 36/t^2 s + 60/t^3, which lags by 36/60 t.
-TEST_F(Sine, OfPositionsAloneLagsByThreeFifthsOfTheTimeOfABlend) { EXPECT_NEAR(lag_s(false), 0.06, 0.003); }
+// The error of a blend over t obeys s^3 + 9/t s^2 + 36/t^2 s + 60/t^3, which lags by 36/60 t.
+TEST_F(Sine, OfPositionsAloneLagsByThreeFifthsOfTheBlendTime) { EXPECT_NEAR(lag_s(false), 0.06, 0.003); }
 
-TEST_F(Sine, OfPositionsWithTheirDerivativesDoesNotLag) { EXPECT_NEAR(lag_s(true), 0.0, 0.003); }
+TEST_F(Sine, OfPositionsWithDerivativesDoesNotLag) { EXPECT_NEAR(lag_s(true), 0.0, 0.003); }
 
-TEST_F(Stream, FromOneKindToTheNextTheReferenceGoesOnSmoothly) {
+TEST_F(Stream, ReferenceIsContinuousBetweenKinds) {
   Setpoint velocity = of_kind(SetpointKind::kVelocity);
   velocity.velocity_ned = {0.4, 0, 0};
   Setpoint acceleration = of_kind(SetpointKind::kAcceleration);
@@ -248,7 +253,7 @@ TEST_F(Stream, FromOneKindToTheNextTheReferenceGoesOnSmoothly) {
   EXPECT_LT((control_setpoint_.reference.position_ned - place.position_ned).norm(), 1e-3);
 }
 
-TEST_F(Stream, AnotherControllerGoesOnWithIt) {
+TEST_F(Stream, StandbyContinuesTheStream) {
   for (const SetpointKind kind :
        {SetpointKind::kPosition, SetpointKind::kVelocity, SetpointKind::kAcceleration,
         SetpointKind::kAttitude, SetpointKind::kBodyRates}) {
@@ -278,7 +283,7 @@ TEST_F(Stream, AnotherControllerGoesOnWithIt) {
   }
 }
 
-TEST_F(Stream, RefusesWhatIsBeyondALimitWithTheValueAndTheLimit) {
+TEST_F(Stream, RefusesValuesBeyondALimitAndNamesBoth) {
   const double nan = std::nan("");
   Setpoint setpoint = of_kind(SetpointKind::kPosition);
   setpoint.position_ned = {0, 0, -2.6};
@@ -313,10 +318,10 @@ TEST_F(Stream, RefusesWhatIsBeyondALimitWithTheValueAndTheLimit) {
   EXPECT_NE(refusal(setpoint), "accepted");
   setpoint.kind = static_cast<SetpointKind>(9);
   EXPECT_EQ(refusal(setpoint), "setpoint: unknown kind 9");
-  EXPECT_EQ(supervisor_.mode(), Mode::kHolding) << "nothing of it was applied";
+  EXPECT_EQ(supervisor_.mode(), Mode::kHolding) << "no refused setpoint may be applied";
 }
 
-TEST_F(Stream, WhatAKindDoesNotNameIsNotLookedAt) {
+TEST_F(Stream, IgnoresFieldsThatAKindDoesNotUse) {
   Setpoint setpoint = of_kind(SetpointKind::kAttitude);
   setpoint.position_ned = {99, 99, 99};
   setpoint.velocity_ned = {99, 99, 99};

@@ -22,7 +22,7 @@ PolynomialSegment curve() {
   return segment;
 }
 
-TEST(TimeScaling, IsTheVehiclesOwnToTheNanosecondUntilItIsTurned) {
+TEST(TimeScaling, IsVehicleTimeUntilTheFirstChange) {
   const TimeScaling clock;
   for (const std::int64_t now_ns : {std::int64_t{0}, std::int64_t{1}, 12'345 * kSecond + 7}) {
     EXPECT_EQ(clock.at(now_ns).at_ns, now_ns);
@@ -31,7 +31,7 @@ TEST(TimeScaling, IsTheVehiclesOwnToTheNanosecondUntilItIsTurned) {
   EXPECT_TRUE(clock.is_vehicle_time());
 }
 
-TEST(TimeScaling, ComesToAStandHalfTheChangeLaterAndRunsOnFromThere) {
+TEST(TimeScaling, StopsHalfTheChangeLaterAndResumesThere) {
   TimeScaling clock;
   clock.turn(false, 2.0, 10 * kSecond);
   EXPECT_TRUE(clock.is_changing(12 * kSecond - 1));
@@ -45,7 +45,7 @@ TEST(TimeScaling, ComesToAStandHalfTheChangeLaterAndRunsOnFromThere) {
   EXPECT_EQ(clock.at(103 * kSecond).rate, 1.0);
 }
 
-TEST(TimeScaling, TurnedInTheMiddleOfAChangeItNeitherStepsNorRunsBackwards) {
+TEST(TimeScaling, ReversedDuringAChangeIsContinuousAndNeverBackwards) {
   for (const bool first : {false, true}) {
     for (double after_s = 0.01; after_s < 1.0; after_s += 0.03) {
       TimeScaling clock = first ? TimeScaling::standing_at(0, 0) : TimeScaling();
@@ -70,8 +70,8 @@ TEST(TimeScaling, TurnedInTheMiddleOfAChangeItNeitherStepsNorRunsBackwards) {
   }
 }
 
-// The chain rule against differences of what it comes from.
-TEST(TimeScaling, TheReferencesDerivativesAreThoseOfItsPosition) {
+// The chain rule against finite differences.
+TEST(TimeScaling, ReferenceDerivativesMatchFiniteDifferences) {
   ReferencePath path;
   path.follow(curve(), 0);
   path.clock.turn(false, 1.5, kSecond);
@@ -90,7 +90,7 @@ TEST(TimeScaling, TheReferencesDerivativesAreThoseOfItsPosition) {
   }
 }
 
-TEST(TimeScaling, ASlowedMotionKeepsTheLimitsOfItsChange) {
+TEST(TimeScaling, ScaledMotionStaysWithinTheLimits) {
   const double speed = 1.7;
   const double duration_s = clock_change_duration(speed, 2.0, 20.0, 0.5);
   ReferencePath path;
@@ -105,11 +105,11 @@ TEST(TimeScaling, ASlowedMotionKeepsTheLimitsOfItsChange) {
     acceleration = std::max(acceleration, path.at(now).acceleration_ned.norm());
     jerk = std::max(jerk, path.at(now).jerk_ned.norm());
   }
-  EXPECT_NEAR(acceleration, 2.0, 1e-3) << "it is used up";
+  EXPECT_NEAR(acceleration, 2.0, 1e-3) << "the limit of acceleration is reached";
   EXPECT_LT(jerk, 20.0);
 }
 
-TEST(TimeScaling, TakingTheVehiclesTimeChangesNothingButTheClock) {
+TEST(TimeScaling, TakingVehicleTimeKeepsTheReference) {
   ReferencePath path;
   path.follow(curve(), 0);
   path.clock.turn(false, 1.0, kSecond);

@@ -42,7 +42,7 @@ PolynomialSegment arc(double r, double w) {
   return segment;
 }
 
-TEST(Feasibility, AHoverAsksForTheWeight) {
+TEST(Feasibility, HoverRequiresTheWeight) {
   const auto all = survey({hover()});
   const plant::Vehicle& vehicle = tests::kaylion();
   EXPECT_EQ(of(all, Demand::kSpeed).value, 0.0);
@@ -55,7 +55,7 @@ TEST(Feasibility, AHoverAsksForTheWeight) {
   for (const WorstDemand& worst : all) EXPECT_FALSE(worst.exceeded()) << worst.sentence();
 }
 
-TEST(Feasibility, AnArcTiltsByItsCentripetalAcceleration) {
+TEST(Feasibility, ArcTiltsByItsCentripetalAcceleration) {
   constexpr double kRadius = 0.5;
   for (const double w : {2.0, 3.6, 3.8}) {
     const auto all = survey({hover(), arc(kRadius, w)});
@@ -71,7 +71,7 @@ TEST(Feasibility, AnArcTiltsByItsCentripetalAcceleration) {
   }
 }
 
-TEST(Feasibility, EveryLimitIsHeldUpToItsValueAndNotBeyond) {
+TEST(Feasibility, ReportsEachLimitExactlyAboveItsValue) {
   const std::vector<PolynomialSegment> path = {minimum_jerk({0, 0, -1}, 0.0, {1.5, -1.0, -1.6}, 1.0, 2.0)};
   const auto worst = survey(path);
   const auto exceeded_with = [&](Demand demand, auto set, double factor) {
@@ -97,8 +97,8 @@ TEST(Feasibility, EveryLimitIsHeldUpToItsValueAndNotBeyond) {
   EXPECT_NEAR(fence.time_s, 2.0, 1e-3);
 }
 
-TEST(Feasibility, RotorsAreTheFirstToGiveOutInAFastClimb) {
-  // Up at an acceleration that the four rotors together cannot hold.
+TEST(Feasibility, RotorsLimitAFastClimb) {
+  // A climb at an acceleration that the four rotors together cannot give.
   const plant::Vehicle& vehicle = tests::kaylion();
   const double most = plant::steady_thrust_range(vehicle, kSupply_v).max * vehicle.rotor_count();
   PolynomialSegment climb = hover();
@@ -116,7 +116,7 @@ TEST(Feasibility, RotorsAreTheFirstToGiveOutInAFastClimb) {
   EXPECT_NEAR(of(all, Demand::kRotorMost).value, 1.05 * most / vehicle.rotor_count(), 1e-6);
 }
 
-TEST(Feasibility, AFreeFallIsFoundThoughItLastsForAMoment) {
+TEST(Feasibility, FindsAShortFreeFall) {
   // A push down: z'' is above 0.9 g for some milliseconds around the middle.
   PolynomialSegment dive = minimum_jerk({0, 0, -2}, 0.0, {0, 0, -1.2}, 0.0, 0.62);
   Limits limits;
@@ -129,7 +129,7 @@ TEST(Feasibility, AFreeFallIsFoundThoughItLastsForAMoment) {
   EXPECT_NE(lift.sentence().find("upward specific force is -2.2"), std::string::npos) << lift.sentence();
 }
 
-TEST(Feasibility, DragIsPartOfTheForce) {
+TEST(Feasibility, IncludesDrag) {
   plant::Vehicle vehicle = tests::kaylion();
   vehicle.linear_drag = 0.05;
   PolynomialSegment cruise = hover();
@@ -139,7 +139,7 @@ TEST(Feasibility, DragIsPartOfTheForce) {
   EXPECT_NEAR(of(all, Demand::kTilt).value, std::atan(backward / plant::kGravity), 1e-9);
 }
 
-TEST(Feasibility, TheSentenceNamesValueLimitAndPlace) {
+TEST(Feasibility, MessageNamesValueLimitAndPosition) {
   WorstDemand worst{Demand::kTilt, 0.713, 0.6, 3, 3.2, {0.1, 0.2, -1.0}};
   EXPECT_EQ(worst.sentence(),
             "tilt is 0.713 rad, the limit is 0.600 rad: at 3.20 s, segment 4, (0.10, 0.20, -1.00) m NED");

@@ -61,7 +61,7 @@ class Splines : public testing::TestWithParam<Smoothness> {
   std::size_t order() const { return GetParam() == Smoothness::kMinimumSnap ? 4 : 3; }
 };
 
-TEST_P(Splines, GoThroughThePointsFromRestToRest) {
+TEST_P(Splines, PassThroughThePointsFromRestToRest) {
   const Case c = random_case(1, 9);
   const auto segments = spline(GetParam(), c.points, c.durations_s);
   ASSERT_EQ(segments.size(), c.durations_s.size());
@@ -83,8 +83,8 @@ TEST_P(Splines, GoThroughThePointsFromRestToRest) {
   }
 }
 
-// What least cost asks for beyond what was demanded: derivatives up to 2 (order - 1) are continuous.
-TEST_P(Splines, AreAsSmoothAtThePointsAsTheLeastCostIs) {
+// Condition of the minimum cost: derivatives up to 2 (order - 1) are continuous.
+TEST_P(Splines, HaveContinuousDerivativesAtThePoints) {
   const Case c = random_case(2, 12);
   const auto segments = spline(GetParam(), c.points, c.durations_s);
   for (std::size_t i = 1; i < segments.size(); ++i) {
@@ -126,7 +126,7 @@ TEST_P(Splines, CostLessThanTheirNeighbours) {
   }
 }
 
-TEST_P(Splines, StartAndEndWithTheDerivativesThatAreGiven) {
+TEST_P(Splines, StartAndEndWithGivenDerivatives) {
   const Case c = random_case(4, 4);
   PlaceDerivatives start;
   PlaceDerivatives end;
@@ -159,7 +159,7 @@ TEST_P(Splines, ScaleWithTime) {
   }
 }
 
-TEST(Spline, OfTwoPointsIsTheRestToRestPolynomial) {
+TEST(Spline, OfTwoPointsEqualsTheRestToRestPolynomial) {
   const std::vector<PositionYaw> points = {{0, 0, -1, 0.2}, {1.5, -2.0, -0.4, -0.7}};
   const PolynomialSegment jerk = spline(Smoothness::kMinimumJerk, points, {2.5}).front();
   const PolynomialSegment known = minimum_jerk({0, 0, -1}, 0.2, {1.5, -2.0, -0.4}, -0.7, 2.5);
@@ -177,8 +177,8 @@ TEST(Spline, OfTwoPointsIsTheRestToRestPolynomial) {
   for (std::size_t i = 0; i < snap.y.size(); ++i) EXPECT_NEAR(snap.y[i], septic.y[i], 1e-12);
 }
 
-// A thousand points with durations from 20 ms to 20 s: the elimination stays sound.
-TEST_P(Splines, HoldWithDurationsOfAnySize) {
+// A thousand points with durations from 20 ms to 20 s: the elimination stays accurate.
+TEST_P(Splines, AreContinuousWithDurationsOfAnySize) {
   Case c = random_case(6, 1000);
   for (std::size_t i = 0; i < c.durations_s.size(); ++i)
     c.durations_s[i] = 0.02 * std::pow(1000.0, static_cast<double>((i * 7919) % 100) / 99.0);
@@ -192,9 +192,10 @@ TEST_P(Splines, HoldWithDurationsOfAnySize) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, Splines, testing::Values(Smoothness::kMinimumJerk, Smoothness::kMinimumSnap),
+INSTANTIATE_TEST_SUITE_P(Costs, Splines, testing::Values(Smoothness::kMinimumJerk, Smoothness::kMinimumSnap),
                          [](const auto& smoothness) {
-                           return smoothness.param == Smoothness::kMinimumSnap ? "LeastSnap" : "LeastJerk";
+                           return smoothness.param == Smoothness::kMinimumSnap ? "MinimumSnap"
+                                                                               : "MinimumJerk";
                          });
 
 }  // namespace

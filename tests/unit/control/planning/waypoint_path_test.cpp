@@ -34,7 +34,7 @@ double greatest_use(const Peaks& peaks, const MotionLimits& limits) {
                    peaks.jerk / limits.jerk, peaks.yaw_rate / limits.yaw_rate});
 }
 
-// Without steps up to the acceleration (of a straight leg) or the jerk (of a spline).
+// Continuous in position, velocity, acceleration and yaw.
 void expect_continuous(const std::vector<PolynomialSegment>& segments) {
   for (std::size_t i = 1; i < segments.size(); ++i) {
     const Reference before = evaluate(segments[i - 1], segments[i - 1].duration_s);
@@ -70,19 +70,19 @@ WaypointPath square() {
   return path;
 }
 
-// From the straight line between two points, of a segment at its worst, with how far it runs beyond its ends.
+// Largest distance of a segment from the line between two points, with any overshoot beyond its ends.
 double worst_distance(const PolynomialSegment& segment, const Vector3d& from, const Vector3d& to) {
   const Vector3d along = (to - from).normalized();
   double worst = 0.0;
   for (int i = 0; i <= 400; ++i) {
     const Vector3d p = evaluate(segment, segment.duration_s * i / 400).position_ned - from;
-    const double way = std::clamp(along.dot(p), 0.0, (to - from).norm());
-    worst = std::max(worst, (p - way * along).norm());
+    const double projection = std::clamp(along.dot(p), 0.0, (to - from).norm());
+    worst = std::max(worst, (p - projection * along).norm());
   }
   return worst;
 }
 
-TEST(LimitedJerkLeg, HoldsItsLimitsAndReachesOneOfThem) {
+TEST(LimitedJerkLeg, StaysWithinItsLimitsAndReachesTheJerkLimit) {
   std::mt19937 generator(4);
   std::uniform_real_distribution<double> exponent(-1.0, 1.0);
   int cruises = 0;
@@ -111,8 +111,8 @@ TEST(LimitedJerkLeg, HoldsItsLimitsAndReachesOneOfThem) {
   EXPECT_GT(at_acceleration, 30);
 }
 
-// The least time of a double integrator with limited jerk is known: 4 pieces of cbrt(d / 2j) for a short way.
-TEST(LimitedJerkLeg, TakesTheLeastTime) {
+// The least time of a double integrator with limited jerk is known: 4 pieces of cbrt(d / 2j) for a short leg.
+TEST(LimitedJerkLeg, TakesTheMinimumTime) {
   const MotionLimits limits{100.0, 100.0, 2.0, 1.0};
   EXPECT_NEAR(duration(limited_jerk_leg({0, 0, 0}, 0, {1, 0, 0}, 0, limits)), 4.0 * std::cbrt(1.0 / 4.0),
               1e-12);
@@ -121,7 +121,7 @@ TEST(LimitedJerkLeg, TakesTheLeastTime) {
   EXPECT_NEAR(duration(limited_jerk_leg({0, 0, 0}, 0, {3, 0, 0}, 0, slow)), 6.0 + 0.5 + 0.25, 1e-12);
 }
 
-TEST(LimitedJerkLeg, TurnsOnTheSpotOrGoesNowhere) {
+TEST(LimitedJerkLeg, HandlesLegsOfZeroLength) {
   const MotionLimits limits;
   EXPECT_TRUE(limited_jerk_leg({1, 0, -1}, 0.3, {1, 0, -1}, 0.3, limits).empty());
   const auto turn = limited_jerk_leg({1, 0, -1}, 0.0, {1, 0, -1}, 2.0, limits);
@@ -131,7 +131,7 @@ TEST(LimitedJerkLeg, TurnsOnTheSpotOrGoesNowhere) {
 
 class Paths : public testing::TestWithParam<Smoothness> {};
 
-TEST_P(Paths, GoThroughTheirPointsWithinTheLimits) {
+TEST_P(Paths, PassThroughTheirPointsWithinTheLimits) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     WaypointPath path = random_path(seed, 2 + static_cast<int>(seed) * 3);
     path.smoothness = GetParam();
@@ -154,9 +154,8 @@ TEST_P(Paths, GoThroughTheirPointsWithinTheLimits) {
   }
 }
 
-// Against the time that a spline takes whose durations are those of the legs, stretched alike to hold the
-// limits.
-TEST_P(Paths, TakeLessTimeThanWithDurationsByLength) {
+// Compares with a spline whose durations are proportional to the leg lengths and hold the limits.
+TEST_P(Paths, AreFasterThanWithDurationsByLength) {
   double by_length_s = 0.0;
   double planned_s = 0.0;
   for (unsigned seed = 20; seed < 26; ++seed) {
@@ -179,12 +178,13 @@ TEST_P(Paths, TakeLessTimeThanWithDurationsByLength) {
   EXPECT_LT(planned_s, 0.85 * by_length_s) << planned_s << " s against " << by_length_s << " s";
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, Paths, testing::Values(Smoothness::kMinimumJerk, Smoothness::kMinimumSnap),
+INSTANTIATE_TEST_SUITE_P(Costs, Paths, testing::Values(Smoothness::kMinimumJerk, Smoothness::kMinimumSnap),
                          [](const auto& smoothness) {
-                           return smoothness.param == Smoothness::kMinimumSnap ? "LeastSnap" : "LeastJerk";
+                           return smoothness.param == Smoothness::kMinimumSnap ? "MinimumSnap"
+                                                                               : "MinimumJerk";
                          });
 
-TEST(Path, StopsWhereItIsAskedTo) {
+TEST(Path, StopsAtStopPoints) {
   WaypointPath path = random_path(7, 6);
   path.points[2].stop = true;
   const PlannedPath planned = plan(path);
@@ -233,7 +233,7 @@ TEST(Path, StaysInItsCorridorsWithoutStopping) {
   }
 }
 
-TEST(Path, WithoutACorridorTheSquareSwingsOutFurther) {
+TEST(Path, LeavesTheLegsWithoutACorridor) {
   const WaypointPath path = square();
   const PlannedPath planned = plan(path);
   double worst = 0.0;
@@ -243,7 +243,7 @@ TEST(Path, WithoutACorridorTheSquareSwingsOutFurther) {
   EXPECT_GT(worst, 0.3);
 }
 
-TEST(Path, PointsAtOnePlaceAreForTurning) {
+TEST(Path, StopsAndTurnsAtRepeatedPoints) {
   WaypointPath path = square();
   path.points[2].position_ned = path.points[1].position_ned;
   path.points[2].yaw_rad = 1.0;
@@ -262,7 +262,7 @@ std::string refusal(const WaypointPath& path) {
   return "it was planned";
 }
 
-TEST(Path, BadInputIsRefusedWithASentence) {
+TEST(Path, RefusesInvalidInput) {
   WaypointPath path = square();
   path.points.resize(1);
   EXPECT_EQ(refusal(path), "the path has 1 points, must have at least 2");

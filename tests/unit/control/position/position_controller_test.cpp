@@ -29,7 +29,7 @@ PositionController controller(const ControlSettings& s) {
   return PositionController(s.position, s.limits, design(tests::kaylion(), s));
 }
 
-// Eq. (41): the ideal vehicle, pushed by a steady acceleration.
+// Eq. (41): the ideal vehicle, a double integrator.
 struct Point {
   Vector3d position = Vector3d::Zero();
   Vector3d velocity = Vector3d::Zero();
@@ -39,7 +39,7 @@ struct Point {
   }
 };
 
-TEST(PositionController, CommandIsEq48) {
+TEST(PositionController, CommandMatchesEq48) {
   const ControlSettings s = settings(0.0);
   const ControlDesign d = design(tests::kaylion(), s);
   PositionController control(s.position, s.limits, d);
@@ -65,32 +65,34 @@ TEST(PositionController, CommandIsEq48) {
   EXPECT_EQ(control.integral(), Vector3d::Zero());
 }
 
-TEST(PositionController, TracksPerfectlyFromTheReferencesOwnState) {
+TEST(PositionController, TracksTheReferenceFromItsInitialState) {
   PositionController control = controller(settings(0.0));
   const Trajectory path{0, {minimum_jerk({0, 0, -1}, 0.0, {1.5, -1.0, -1.4}, 0.0, 4.0)}};
   Point point{{0, 0, -1}, {0, 0, 0}};
   for (int i = 0; i < 5000; ++i) {
     const Reference r = evaluate(path.segments[0], i * kStep);
-    EXPECT_LT((point.position - r.position_ned).norm(), 2e-3) << "only the step's own error";
+    EXPECT_LT((point.position - r.position_ned).norm(), 2e-3) << "more than the integration error";
     point.step(control.step(point.position, point.velocity, r, kStep, false).acceleration_ned);
   }
 }
 
-TEST(PositionController, OnlyTheIntegralRemovesASteadyPush) {
-  const Vector3d push(0.3, -0.2, 0.4);
+TEST(PositionController, OnlyTheIntegralRemovesAConstantDisturbance) {
+  const Vector3d disturbance(0.3, -0.2, 0.4);
   for (const double integral_pole : {0.0, 0.5}) {
     const ControlSettings s = settings(integral_pole);
     PositionController control = controller(s);
     Point point;
     for (int i = 0; i < 40000; ++i) {
-      point.step(control.step(point.position, point.velocity, {}, kStep, false).acceleration_ned + push);
+      point.step(control.step(point.position, point.velocity, {}, kStep, false).acceleration_ned +
+                 disturbance);
     }
     if (integral_pole > 0.0) {
       EXPECT_LT(point.position.norm(), 1e-5);
-      EXPECT_LT((control.integral() + push).norm(), 1e-4);
+      EXPECT_LT((control.integral() + disturbance).norm(), 1e-4);
     } else {
       const RptSettings axes[] = {s.position.x, s.position.y, s.position.z};
-      for (int i = 0; i < 3; ++i) EXPECT_NEAR(point.position[i], push[i] / rpt_gains(axes[i]).k_p, 1e-6);
+      for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(point.position[i], disturbance[i] / rpt_gains(axes[i]).k_p, 1e-6);
     }
   }
 }
@@ -107,7 +109,7 @@ TEST(PositionController, IntegralStaysWithinItsLimit) {
   EXPECT_EQ(control.integral(), Vector3d::Zero());
 }
 
-TEST(PositionController, IntegralStandsStillWhenTold) {
+TEST(PositionController, IntegralCanBeFrozen) {
   PositionController control = controller(settings(0.5));
   Reference r;
   r.position_ned = {0.5, -0.5, 0.5};
@@ -118,7 +120,7 @@ TEST(PositionController, IntegralStandsStillWhenTold) {
   EXPECT_EQ(control.integral(), before);
 }
 
-TEST(PositionController, CutsToTheLimitsAndDoesNotWindUpThere) {
+TEST(PositionController, ClampsToTheLimitsWithoutWindup) {
   const ControlSettings s = settings(0.5);
   PositionController control = controller(s);
   Reference far;
@@ -139,7 +141,7 @@ TEST(PositionController, CutsToTheLimitsAndDoesNotWindUpThere) {
   EXPECT_EQ(control.integral().z(), 0.0);
 }
 
-TEST(PositionController, BadInputLeavesNoTrace) {
+TEST(PositionController, InvalidInputDoesNotChangeTheIntegral) {
   PositionController control = controller(settings(0.5));
   const double nan = std::numeric_limits<double>::quiet_NaN();
   control.step({nan, 0.0, 0.0}, Vector3d::Zero(), {}, kStep, false);

@@ -21,14 +21,14 @@ constexpr double kTilt = 0.6;
 const double kTiltTangent = std::tan(kTilt);
 const Vector3d kGravityNed(0.0, 0.0, plant::kGravity);
 
-// Eq. (1) and (5) without drag: what the vehicle does under this thrust at this attitude.
+// Eq. (1) and (5) without drag: the acceleration under this thrust at this attitude.
 Vector3d acceleration(const ThrustAttitude& out) {
   return kGravityNed - out.thrust_n / kMass * out.body_z_ned;
 }
 
 double tilt(const ThrustAttitude& out) { return std::acos(std::min(out.body_z_ned.z(), 1.0)); }
 
-// Of a vehicle that is on the reference.
+// Thrust and attitude of a vehicle on the reference.
 ThrustAttitude attitude_on(const Reference& r) {
   return thrust_attitude(kMass, r.acceleration_ned, std::tan(1.5));
 }
@@ -40,7 +40,7 @@ class ThrustAttitudeTest : public testing::Test {
   std::mt19937 generator_{10};
 };
 
-TEST_F(ThrustAttitudeTest, GivesTheAccelerationThatWasAskedFor) {
+TEST_F(ThrustAttitudeTest, GivesTheCommandedAcceleration) {
   for (int trial = 0; trial < 1000; ++trial) {
     const Vector3d wanted = any(3.0);
     const ThrustAttitude out = thrust_attitude(kMass, wanted, kTiltTangent);
@@ -55,7 +55,7 @@ TEST_F(ThrustAttitudeTest, HoverIsLevel) {
   EXPECT_EQ(out.body_z_ned, Vector3d::UnitZ());
 }
 
-TEST_F(ThrustAttitudeTest, TiltIsCutAndTheVerticalPartKept) {
+TEST_F(ThrustAttitudeTest, ClampsTheTiltAndKeepsTheVerticalPart) {
   int cut = 0;
   for (int trial = 0; trial < 1000; ++trial) {
     const Vector3d wanted = any(1.0).cwiseProduct(Vector3d(30.0, 30.0, 8.0));
@@ -72,7 +72,7 @@ TEST_F(ThrustAttitudeTest, TiltIsCutAndTheVerticalPartKept) {
   EXPECT_LT(cut, 1000);
 }
 
-TEST_F(ThrustAttitudeTest, NeverFallsFasterThanTheGuardNorTurnsOver) {
+TEST_F(ThrustAttitudeTest, LimitsDownwardAccelerationAndTilt) {
   for (const double down : {0.95 * plant::kGravity, plant::kGravity, 20.0, 1e6}) {
     const ThrustAttitude out = thrust_attitude(kMass, {1.0, -2.0, down}, kTiltTangent);
     EXPECT_TRUE(out.limited);
@@ -81,7 +81,7 @@ TEST_F(ThrustAttitudeTest, NeverFallsFasterThanTheGuardNorTurnsOver) {
   }
 }
 
-TEST_F(ThrustAttitudeTest, BadInputMeansHover) {
+TEST_F(ThrustAttitudeTest, InvalidInputGivesHover) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   for (const ThrustAttitude& out : {thrust_attitude(kMass, {nan, 0.0, 0.0}, kTiltTangent),
@@ -92,7 +92,7 @@ TEST_F(ThrustAttitudeTest, BadInputMeansHover) {
   }
 }
 
-// A segment that tilts and turns the vehicle a good deal.
+// A segment with large tilt and yaw.
 PolynomialSegment lively_segment(std::mt19937& generator) {
   std::uniform_real_distribution<double> draw(-1.0, 1.0);
   PolynomialSegment segment;
@@ -107,7 +107,7 @@ PolynomialSegment lively_segment(std::mt19937& generator) {
   return segment;
 }
 
-TEST_F(ThrustAttitudeTest, ReferenceThrustIsTheMapOfItsAcceleration) {
+TEST_F(ThrustAttitudeTest, ReferenceThrustMatchesTheMap) {
   for (int trial = 0; trial < 50; ++trial) {
     const Reference r = evaluate(lively_segment(generator_), 0.5);
     const ThrustAttitude map = attitude_on(r);
@@ -147,7 +147,7 @@ TEST_F(ThrustAttitudeTest, ReferenceRatesAgreeWithFiniteDifferences) {
   EXPECT_GT(fastest, 2.0);
 }
 
-TEST_F(ThrustAttitudeTest, ReferenceThatFallsFreelyHasNoDerivatives) {
+TEST_F(ThrustAttitudeTest, FreeFallReferenceHasNoDerivatives) {
   Reference r;
   r.acceleration_ned = {0.0, 0.0, plant::kGravity};
   r.jerk_ned = {1.0, 2.0, 3.0};

@@ -1,4 +1,3 @@
-// Each arming check at its limit and just beyond it, and what it then says.
 #include <cmath>
 #include <functional>
 #include <string>
@@ -10,7 +9,7 @@
 namespace swiftlet::control {
 namespace {
 
-// An arming check at its limit and just beyond it, and what it then says.
+// An arming check: accepted at its limit, refused with a sentence just beyond it.
 struct ArmingLimit {
   const char* name;
   std::function<void(Placed&)> good;
@@ -93,7 +92,7 @@ const ArmingLimit kArmingLimits[] = {
 };
 INSTANTIATE_TEST_SUITE_P(Checks, Arming, testing::ValuesIn(kArmingLimits));
 
-TEST(ArmingRefusal, NamesAllThatStandsAgainstItAndNeverHalfASentence) {
+TEST(ArmingRefusal, ListsAllReasonsInWholeSentences) {
   Placed flight(kLand);
   flight.inputs_.has_battery = false;
   flight.estimate_.velocity_ned.x() = 1.0;

@@ -1,4 +1,4 @@
-// What becomes of each kind of request that was accepted.
+// Progress and result of each kind of accepted request.
 #include "swiftlet/control/supervision/request_progress.hpp"
 
 #include <string>
@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 using tests::SupervisedFlight;
 
-class Requests : public testing::Test, protected SupervisedFlight {
+class RequestProgress : public testing::Test, protected SupervisedFlight {
  protected:
   const RequestStatus& last() const { return supervisor_.requests().back(); }
   const RequestStatus& numbered(std::uint64_t id) const {
@@ -60,17 +60,17 @@ class Requests : public testing::Test, protected SupervisedFlight {
   }
 };
 
-TEST_F(Requests, NothingIsKnownBeforeTheFirst) {
+TEST_F(RequestProgress, AreUnknownBeforeTheFirst) {
   for (const RequestStatus& request : supervisor_.requests())
     EXPECT_EQ(request.state, RequestState::kUnknown);
 }
 
-TEST_F(Requests, WhatIsRefusedIsNotKept) {
+TEST_F(RequestProgress, AreNotKeptWhenRefused) {
   EXPECT_FALSE(ask(RequestKind::kTakeoff, {0, 0, -1}).accepted);
   EXPECT_EQ(last().state, RequestState::kUnknown);
 }
 
-TEST_F(Requests, ArmingDisarmingAndStoppingAreDoneAtOnce) {
+TEST_F(RequestProgress, ArmDisarmAndStopSucceedAtOnce) {
   for (const RequestKind kind : {RequestKind::kArm, RequestKind::kDisarm, RequestKind::kStop}) {
     ASSERT_TRUE(ask(kind).accepted);
     EXPECT_EQ(last().key.id, asked_);
@@ -80,7 +80,7 @@ TEST_F(Requests, ArmingDisarmingAndStoppingAreDoneAtOnce) {
   }
 }
 
-TEST_F(Requests, ATakeOffIsAcceptedThenExecutedAndDoneAtItsHeight) {
+TEST_F(RequestProgress, TakeoffSucceedsAtItsHeight) {
   ASSERT_TRUE(ask(RequestKind::kArm).accepted);
   ASSERT_TRUE(ask(RequestKind::kTakeoff, {0, 0, -1}).accepted);
   EXPECT_EQ(last().state, RequestState::kAccepted);
@@ -93,7 +93,7 @@ TEST_F(Requests, ATakeOffIsAcceptedThenExecutedAndDoneAtItsHeight) {
 
 // GIVEN a vehicle that lags behind, WHEN its reference is at the height, THEN the take-off goes on until the
 // vehicle is, too.
-TEST_F(Requests, ATakeOffIsNotDoneBeforeTheVehicleIsThere) {
+TEST_F(RequestProgress, TakeoffWaitsForTheVehicle) {
   ASSERT_TRUE(ask(RequestKind::kArm).accepted);
   ASSERT_TRUE(ask(RequestKind::kTakeoff, {0, 0, -1}).accepted);
   ASSERT_TRUE(step_until([&] { return estimate_.position_ned.z() < -0.8; }, 10.0));
@@ -106,7 +106,7 @@ TEST_F(Requests, ATakeOffIsNotDoneBeforeTheVehicleIsThere) {
   EXPECT_EQ(last().state, RequestState::kSucceeded);
 }
 
-TEST_F(Requests, AGoToAndAHoldAreDoneAtRest) {
+TEST_F(RequestProgress, GoToAndHoldSucceedAtRest) {
   hover();
   ASSERT_TRUE(ask(RequestKind::kGoTo, {1, 0, -1}).accepted);
   step();
@@ -126,7 +126,7 @@ TEST_F(Requests, AGoToAndAHoldAreDoneAtRest) {
   EXPECT_GT(estimate_.position_ned.x(), 0.1);
 }
 
-TEST_F(Requests, ALandingIsDoneOnTheGround) {
+TEST_F(RequestProgress, LandingSucceedsOnTheGround) {
   hover();
   ASSERT_TRUE(ask(RequestKind::kLand).accepted);
   step();
@@ -134,7 +134,7 @@ TEST_F(Requests, ALandingIsDoneOnTheGround) {
   EXPECT_EQ(supervisor_.mode(), Mode::kDisarmed);
 }
 
-TEST_F(Requests, ALandingWithoutPositionIsDoneOnTheGroundToo) {
+TEST_F(RequestProgress, LandingWithoutPositionSucceedsOnTheGround) {
   hover();
   ASSERT_TRUE(ask(RequestKind::kLand).accepted);
   for (int i = 0; i < 100; ++i) step();
@@ -146,7 +146,7 @@ TEST_F(Requests, ALandingWithoutPositionIsDoneOnTheGroundToo) {
   EXPECT_EQ(last().state, RequestState::kSucceeded);
 }
 
-TEST_F(Requests, ALandingWhileTheRotorsSpoolUpIsDoneAtOnce) {
+TEST_F(RequestProgress, LandingDuringSpoolUpSucceedsAtOnce) {
   ASSERT_TRUE(ask(RequestKind::kArm).accepted);
   ASSERT_TRUE(ask(RequestKind::kTakeoff, {0, 0, -1}).accepted);
   step();
@@ -155,7 +155,7 @@ TEST_F(Requests, ALandingWhileTheRotorsSpoolUpIsDoneAtOnce) {
   EXPECT_EQ(end_of(asked_ - 1), "canceled canceled by a newer request: land");
 }
 
-TEST_F(Requests, ALandingThatIsAskedForTwiceEndsTwice) {
+TEST_F(RequestProgress, BothOfTwoLandingsSucceed) {
   hover();
   ASSERT_TRUE(ask(RequestKind::kLand).accepted);
   step();
@@ -165,7 +165,7 @@ TEST_F(Requests, ALandingThatIsAskedForTwiceEndsTwice) {
   EXPECT_EQ(end_of(asked_ - 1), "succeeded ");
 }
 
-TEST_F(Requests, ATrajectoryIsDoneAtItsEnd) {
+TEST_F(RequestProgress, TrajectorySucceedsAtItsEnd) {
   hover();
   Trajectory trajectory;
   trajectory.id = 3;
@@ -190,7 +190,7 @@ TEST_F(Requests, ATrajectoryIsDoneAtItsEnd) {
   EXPECT_EQ(end_of(asked_ - 1), "canceled canceled by a newer request: trajectory");
 }
 
-TEST_F(Requests, AMissionIsDoneWhenItIsCompletedWhateverPausesIt) {
+TEST_F(RequestProgress, MissionSucceedsAfterPauses) {
   hover();
   const Mission mission = two_places();
   ASSERT_TRUE(upload(mission).accepted);
@@ -223,7 +223,7 @@ TEST_F(Requests, AMissionIsDoneWhenItIsCompletedWhateverPausesIt) {
   EXPECT_EQ(supervisor_.mission().state, MissionState::kCompleted);
 }
 
-TEST_F(Requests, AMissionEndsWithWhatEndsIt) {
+TEST_F(RequestProgress, MissionResultNamesTheCause) {
   const Mission mission = two_places();
   const auto begin = [&](SupervisedFlight& flight) {
     ASSERT_TRUE(flight.take_off());
@@ -250,7 +250,7 @@ TEST_F(Requests, AMissionEndsWithWhatEndsIt) {
     ASSERT_TRUE(flight.ask(RequestKind::kMissionPause).accepted);
     ASSERT_TRUE(flight.ask(RequestKind::kMissionClear).accepted);
     EXPECT_EQ(result(flight, start), "canceled by a newer request: mission clear");
-    EXPECT_EQ(result(flight, start + 1), "") << "it comes to rest all the same";
+    EXPECT_EQ(result(flight, start + 1), "") << "the pause itself is not canceled";
   }
   {
     SupervisedFlight flight;
@@ -262,17 +262,17 @@ TEST_F(Requests, AMissionEndsWithWhatEndsIt) {
   }
 }
 
-TEST_F(Requests, AFailsafeAbortsWithItsReason) {
+TEST_F(RequestProgress, FailsafeAbortsWithItsReason) {
   hover();
   ASSERT_TRUE(ask(RequestKind::kGoTo, {1, 0, -1}).accepted);
   for (int i = 0; i < 100; ++i) step();
   inputs_.pose_age_s = 10.0;
   ASSERT_TRUE(step_until(Mode::kDescent, 1.0));
   EXPECT_EQ(end_of(asked_), "aborted aborted: no mocap pose");
-  EXPECT_LT(last().progress, 0.5) << "it stays where it was";
+  EXPECT_LT(last().progress, 0.5) << "progress stops where it was";
 }
 
-TEST_F(Requests, SetpointsCancelWhatIsUnderWay) {
+TEST_F(RequestProgress, SetpointsCancelTheActiveRequest) {
   hover();
   ASSERT_TRUE(ask(RequestKind::kGoTo, {1, 0, -1}).accepted);
   for (int i = 0; i < 100; ++i) step();
@@ -283,9 +283,8 @@ TEST_F(Requests, SetpointsCancelWhatIsUnderWay) {
   EXPECT_EQ(end_of(asked_), "canceled canceled by setpoints");
 }
 
-// GIVEN a mission that is flown, WHEN more is asked for and done meanwhile than is remembered, THEN the mission is
-// not forgotten.
-TEST_F(Requests, WhatIsUnderWayIsForgottenLast) {
+// GIVEN an active mission, WHEN more requests follow than are remembered, THEN the mission is not forgotten.
+TEST_F(RequestProgress, ActiveRequestIsForgottenLast) {
   hover();
   const Mission mission = two_places();
   ASSERT_TRUE(fly(mission).accepted);
@@ -300,8 +299,8 @@ TEST_F(Requests, WhatIsUnderWayIsForgottenLast) {
   EXPECT_EQ(last().key.id, asked_);
 }
 
-// GIVEN a standby that took over the state in the middle of a way, WHEN it flies on, THEN the request ends there.
-TEST_F(Requests, AnotherGoesOnWithThem) {
+// GIVEN a standby that adopts the state during a goto, WHEN it flies on, THEN the request succeeds there.
+TEST_F(RequestProgress, StandbyContinuesThem) {
   hover();
   ASSERT_TRUE(ask(RequestKind::kGoTo, {1, 0, -1}).accepted);
   for (int i = 0; i < 300; ++i) step();
@@ -316,7 +315,7 @@ TEST_F(Requests, AnotherGoesOnWithThem) {
   EXPECT_NEAR(estimate_.position_ned.x(), 1.0, kThere_m);
 }
 
-TEST_F(Requests, OfAMissionThatNobodyKnowsTheyAreAborted) {
+TEST_F(RequestProgress, UnknownMissionIsAborted) {
   hover();
   const Mission mission = two_places();
   ASSERT_TRUE(fly(mission).accepted);

@@ -1,4 +1,4 @@
-// A supervisor whose vehicle is exactly where the reference asks it to be, and never below the ground.
+// A supervisor whose vehicle follows the reference exactly, but never below the ground.
 #pragma once
 
 #include <cmath>
@@ -64,7 +64,7 @@ class SupervisedFlight {
     request.mission = &mission;
     return supervisor_.request(request, inputs_);
   }
-  // With the next number of client 1.
+  // A request of client 1 with its next id.
   control::Request next_request(control::RequestKind kind) {
     control::Request request;
     request.key = {1, ++asked_};
@@ -73,15 +73,15 @@ class SupervisedFlight {
   }
   // Uploads and starts it.
   control::Outcome fly(const control::Mission& mission) {
-    const control::Outcome kept = upload(mission);
-    return kept.accepted ? ask(control::RequestKind::kMissionStart) : kept;
+    const control::Outcome uploaded = upload(mission);
+    return uploaded.accepted ? ask(control::RequestKind::kMissionStart) : uploaded;
   }
   control::Outcome fly(const control::Trajectory& trajectory) {
     control::Request request = next_request(control::RequestKind::kTrajectory);
     request.trajectory = &trajectory;
     return supervisor_.request(request, inputs_);
   }
-  // Up to 1 m, where it holds.
+  // Arms, takes off to 1 m and holds.
   bool take_off() {
     return ask(control::RequestKind::kArm).accepted &&
            ask(control::RequestKind::kTakeoff, {0, 0, -1}).accepted &&
@@ -93,7 +93,7 @@ class SupervisedFlight {
   control::SupervisorInputs inputs_;
   control::ControlSetpoint control_setpoint_;
   bool follows_ = true;
-  std::uint64_t asked_ = 0;  // so many requests
+  std::uint64_t asked_ = 0;  // number of requests
 };
 
 }  // namespace swiftlet::tests

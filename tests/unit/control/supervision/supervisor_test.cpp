@@ -43,8 +43,8 @@ TEST_F(Flight, TakesOffHoldsAndLands) {
   EXPECT_FALSE(supervisor_.airborne());
 }
 
-// A push at the end of a landing, with rotors that carry nearly the weight still.
-TEST_F(Flight, SlidingOnTheGroundItHasLanded) {
+// A push at the end of a landing, while the rotors still carry nearly the weight.
+TEST_F(Flight, DetectsLandingWhileSliding) {
   for (const double height_m : {0.0, 0.3}) {
     SupervisedFlight flight;
     ASSERT_TRUE(flight.take_off());
@@ -57,7 +57,7 @@ TEST_F(Flight, SlidingOnTheGroundItHasLanded) {
   }
 }
 
-TEST_F(Flight, ALandingAskedForOnTheGroundDoesNotRise) {
+TEST_F(Flight, LandingRequestedNearTheGroundDoesNotRise) {
   hover();
   ASSERT_TRUE(ask(RequestKind::kLand).accepted);
   ASSERT_TRUE(step_until([&] { return estimate_.position_ned.z() > -0.01; }, 10.0));
@@ -93,7 +93,7 @@ TEST_F(Flight, FliesTheItemsOfAMissionInOrderAndCompletesIt) {
   EXPECT_EQ(supervisor_.mission().id, 7u);
 }
 
-TEST_F(Flight, ReferenceNeverJumpsWhateverIsAskedInFlight) {
+TEST_F(Flight, ReferenceIsContinuousOverRequests) {
   hover();
   Vector3d last = control_setpoint_.reference.position_ned;
   Vector3d last_velocity = control_setpoint_.reference.velocity_ned;
@@ -152,7 +152,7 @@ TEST_F(Flight, RefusesToArmWithoutPoseBatteryOrLevel) {
   EXPECT_EQ(supervisor_.mode(), Mode::kDisarmed);
 }
 
-TEST_F(Flight, RefusesWhatTheModeDoesNotAllow) {
+TEST_F(Flight, RefusesRequestsThatTheModeDoesNotAllow) {
   EXPECT_FALSE(ask(RequestKind::kTakeoff, {0, 0, -1}).accepted);
   EXPECT_FALSE(ask(RequestKind::kGoTo, {0, 0, -1}).accepted);
   EXPECT_FALSE(ask(RequestKind::kLand).accepted);
@@ -169,7 +169,7 @@ TEST_F(Flight, RefusesWhatTheModeDoesNotAllow) {
   EXPECT_EQ(supervisor_.mode(), Mode::kHolding);
 }
 
-TEST_F(Flight, LosingThePoseLeadsToLevelDescentAndItsReturnToHold) {
+TEST_F(Flight, PoseLossDescendsLevelAndItsReturnHolds) {
   hover();
   inputs_.pose_age_s = 0.4;
   step();
@@ -183,13 +183,12 @@ TEST_F(Flight, LosingThePoseLeadsToLevelDescentAndItsReturnToHold) {
   EXPECT_EQ(supervisor_.mode(), Mode::kHolding);
 }
 
-TEST_F(Flight, DescentWithoutPositionEndsAtTheGroundOrByTimeOut) {
+TEST_F(Flight, DescentWithoutPositionEndsOnTheGroundOrByTimeout) {
   hover();
   inputs_.pose_age_s = 1.0;
   ASSERT_TRUE(step_until(Mode::kDescent, 0.1));
   inputs_.vertical_specific_force_residual = 2.0;
   ASSERT_TRUE(step_until(Mode::kDisarmed, 1.0));
-  inputs_ = SupervisorInputs{inputs_};
   inputs_.vertical_specific_force_residual = 0.0;
   inputs_.pose_age_s = 0.0;
   estimate_ = Estimate();
@@ -199,8 +198,8 @@ TEST_F(Flight, DescentWithoutPositionEndsAtTheGroundOrByTimeOut) {
   EXPECT_EQ(supervisor_.reason(), Reason::kDescentTimedOut);
 }
 
-// Each descent has its own time: two of 4 s are none of 8 s.
-TEST_F(Flight, TheTimeOfADescentBeginsWithIt) {
+// Each descent has its own timeout: several of 4 s do not add up.
+TEST_F(Flight, DescentTimeoutStartsWithEachDescent) {
   hover();
   for (int descent = 0; descent < 3; ++descent) {
     inputs_.pose_age_s = 1.0;
@@ -212,12 +211,13 @@ TEST_F(Flight, TheTimeOfADescentBeginsWithIt) {
   }
 }
 
-// The ground was felt for a moment, in a landing that was called off. When the pose is lost later, a gust that
-// lasts for two samples must not be taken for the rest of that contact: it flies at 1 m.
-TEST_F(Flight, AContactBeforeALandingWasCalledOffIsForgotten) {
+// GIVEN a short ground contact in a canceled landing, WHEN the pose is lost later at 1 m, THEN a gust of two
+// samples does not count as the rest of that contact.
+TEST_F(Flight, ForgetsContactOfACanceledLanding) {
   hover();
   ASSERT_TRUE(ask(RequestKind::kLand).accepted);
-  ASSERT_TRUE(step_until([&] { return supervisor_.state().contact_since_ns != 0; }, 20.0)) << "it sinks";
+  ASSERT_TRUE(step_until([&] { return supervisor_.state().contact_since_ns != 0; }, 20.0))
+      << "no ground contact";
   ASSERT_EQ(supervisor_.mode(), Mode::kLanding);
   ASSERT_TRUE(ask(RequestKind::kGoTo, {0, 0, -1}).accepted);
   ASSERT_TRUE(step_until([&] { return estimate_.position_ned.z() < -0.99; }, 20.0));
@@ -230,7 +230,7 @@ TEST_F(Flight, AContactBeforeALandingWasCalledOffIsForgotten) {
   EXPECT_EQ(control_setpoint_.control_mode, ControlMode::kLevelDescent);
 }
 
-TEST_F(Flight, AContactBeforeThePoseCameBackIsForgotten) {
+TEST_F(Flight, ForgetsContactBeforeThePoseReturned) {
   hover();
   inputs_.pose_age_s = 1.0;
   ASSERT_TRUE(step_until(Mode::kDescent, 0.1));
@@ -246,9 +246,9 @@ TEST_F(Flight, AContactBeforeThePoseCameBackIsForgotten) {
   EXPECT_EQ(supervisor_.mode(), Mode::kDescent);
 }
 
-// A battery that was low at the end of one flight says nothing of the one that it was exchanged for, whose
-// voltage sags for a moment as its rotors start.
-TEST_F(Flight, ABatteryThatWasLowIsForgottenOnTheGround) {
+// A low battery at the end of a flight does not count for its replacement, whose voltage sags briefly as the
+// rotors start.
+TEST_F(Flight, ForgetsALowBatteryOnTheGround) {
   for (const double voltage_v : {3.2, 2.9}) {
     SupervisedFlight flight;
     ASSERT_TRUE(flight.take_off());
@@ -277,7 +277,7 @@ TEST_F(Flight, TippingOverStopsTheRotors) {
   EXPECT_EQ(supervisor_.mode(), Mode::kDisarmed);
 }
 
-TEST_F(Flight, ALowBatteryLandsOnlyIfItStaysLow) {
+TEST_F(Flight, LandsOnlyIfTheBatteryStaysLow) {
   hover();
   inputs_.supply_voltage_v = 3.2;
   for (int i = 0; i < 250; ++i) step();
@@ -289,7 +289,7 @@ TEST_F(Flight, ALowBatteryLandsOnlyIfItStaysLow) {
   EXPECT_EQ(supervisor_.reason(), Reason::kBatteryLow);
 }
 
-TEST_F(Flight, AMissionThatIsInterruptedIsAborted) {
+TEST_F(Flight, AbortsAnInterruptedMission) {
   Mission mission;
   mission.id = 3;
   mission.items = {{MissionItemKind::kTakeoff, {0, 0, -1}, 0, true, 0.5, 0.0},
@@ -311,8 +311,9 @@ TEST_F(Flight, FollowsSetpointsAndHoldsWhenTheyStop) {
   ASSERT_TRUE(supervisor_.setpoint(setpoint, inputs_).accepted);
   step();
   EXPECT_EQ(supervisor_.mode(), Mode::kSetpoint);
-  EXPECT_GT(control_setpoint_.reference.jerk_ned.x(), 0.0) << "it begins to move";
-  EXPECT_LT(control_setpoint_.reference.velocity_ned.norm(), 0.01) << "from rest";
+  EXPECT_GT(control_setpoint_.reference.jerk_ned.x(), 0.0) << "the reference does not begin to move";
+  EXPECT_LT(control_setpoint_.reference.velocity_ned.norm(), 0.01)
+      << "the reference does not start from rest";
   setpoint.position_ned = {0.2, 9.0, -1};
   EXPECT_FALSE(supervisor_.setpoint(setpoint, inputs_).accepted);
   setpoint.position_ned = {2.9, 0, -1};
@@ -348,7 +349,7 @@ bool same(const ControlSetpoint& a, const ControlSetpoint& b) {
          a.reference.yaw_rad == b.reference.yaw_rad && a.reference.yaw_rate == b.reference.yaw_rate;
 }
 
-TEST_F(Flight, AnotherGoesOnFromItsStateAtEveryStep) {
+TEST_F(Flight, FollowerContinuesFromItsStateAtEveryStep) {
   Mission mission;
   mission.id = 5;
   mission.items = {{MissionItemKind::kTakeoff, {0, 0, -1}, 0, true, 0.5, 0.2},
@@ -363,20 +364,20 @@ TEST_F(Flight, AnotherGoesOnFromItsStateAtEveryStep) {
       const SupervisorState state = supervisor_.state();
       follower.adopt(state, &mission, nullptr);
     }
-    SupervisorInputs seen = inputs_;
+    SupervisorInputs inputs = inputs_;
     const Estimate before = estimate_;
     step();
     if (steps < 7) continue;
-    seen.stamp_ns = inputs_.stamp_ns;
-    seen.estimate = &before;
-    ASSERT_TRUE(same(follower.step(seen), control_setpoint_)) << "at step " << steps;
+    inputs.stamp_ns = inputs_.stamp_ns;
+    inputs.estimate = &before;
+    ASSERT_TRUE(same(follower.step(inputs), control_setpoint_)) << "at step " << steps;
     ASSERT_EQ(follower.mode(), supervisor_.mode());
   }
   EXPECT_EQ(supervisor_.reason(), Reason::kLanded);
   EXPECT_EQ(follower.mission().state, MissionState::kCompleted);
 }
 
-TEST_F(Flight, AMissionThatIsNotKnownToWhoTakesOverEndsInHold) {
+TEST_F(Flight, FailoverWithAnUnknownMissionHolds) {
   hover();
   Mission mission;
   mission.id = 5;
@@ -398,7 +399,7 @@ TEST_F(Flight, AMissionThatIsNotKnownToWhoTakesOverEndsInHold) {
   EXPECT_EQ(control_setpoint_.reference.velocity_ned, Vector3d::Zero());
 }
 
-TEST(Checks, RefuseMissionsWithTheItemTheValueAndTheLimit) {
+TEST(PlanChecks, RefuseMissionsWithItemValueAndLimit) {
   const Limits limits;
   Mission mission;
   EXPECT_FALSE(check(mission, limits).accepted);
@@ -431,7 +432,7 @@ TEST(Checks, RefuseMissionsWithTheItemTheValueAndTheLimit) {
   EXPECT_NE(std::string(check(mission, limits).reason).find("2049 items"), std::string::npos);
 }
 
-TEST(Checks, RefuseTrajectoriesThatStepLeaveTheFenceOrAreTooFast) {
+TEST(PlanChecks, RefuseDiscontinuousOutsideOrFastTrajectories) {
   const Limits limits;
   Trajectory trajectory;
   EXPECT_FALSE(check(trajectory, limits).accepted);

@@ -40,7 +40,7 @@ std::string table() {
   return text.str();
 }
 
-TEST(TransitionsDocument, ShowsTheTableThatTheCodeRuns) {
+TEST(TransitionsDocument, ShowsTheTableOfTheCode) {
   std::ifstream in(kFile);
   const std::string document{std::istreambuf_iterator<char>(in), {}};
   const std::size_t begin = document.find(kBegin);
@@ -51,7 +51,7 @@ TEST(TransitionsDocument, ShowsTheTableThatTheCodeRuns) {
   if (document.substr(first, end - first) == table()) return;
   const std::string written = testing::TempDir() + "supervision.md";
   std::ofstream(written) << document.substr(0, first) << table() << document.substr(end);
-  FAIL() << "control/supervision/README.md is not the code's table; " << written << " is: copy it there";
+  FAIL() << "control/supervision/README.md differs from the code's table: copy " << written << " there";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The table of modes, run: every mode with every event, every guard at its limit, all failsafes at once.
+// Runs the transition table: every mode with every event, every guard at its limit, all failsafes at once.
 #include "swiftlet/control/supervision/transitions.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace swiftlet::control {
 namespace {
 
-// The columns of the grid below. Small letters: a place within a mode.
+// The columns of the grid below. A small letter is a situation within a mode.
 struct Place {
   char letter;
   const char* name;
@@ -81,7 +81,7 @@ Mode mode_of(char letter) {
   return Mode::kDisarmed;
 }
 
-// Makes an event happen; of a request, the answer.
+// Triggers an event; returns the outcome of a request.
 using Cause = std::function<std::optional<Outcome>(Placed&)>;
 
 Cause condition(const std::function<void(Placed&)>& change) {
@@ -133,8 +133,8 @@ const Row kGrid[] = {
     {Event::kPoseJumped, kLand,    ".DDLLDLLLL.L.L", Reason::kPoseJumped, condition([](Placed& f) { f.inputs_.pose_jumped = true; })},
     {Event::kPoseLost, kLand,      ".DDWWDWWWWW..W", Reason::kNoPose, condition([](Placed& f) { f.inputs_.pose_age_s = 0.6; })},
     {Event::kPoseIsBack, kLand,    "...........H..", Reason::kPoseIsBack, condition([](Placed& f) { f.inputs_.pose_age_s = 0.0; })},
-    {Event::kGroundFelt, kLand,    "       D  D   ", Reason::kLanded, lasting(20.0, [](Placed&) {})},
-    {Event::kGroundFelt, kLand,    "           D  ", Reason::kLandedWithoutPosition, lasting(0.4, [](Placed& f) { f.inputs_.vertical_specific_force_residual = 2.0; })},
+    {Event::kTouchdown, kLand,    "       D  D   ", Reason::kLanded, lasting(20.0, [](Placed&) {})},
+    {Event::kTouchdown, kLand,    "           D  ", Reason::kLandedWithoutPosition, lasting(0.4, [](Placed& f) { f.inputs_.vertical_specific_force_residual = 2.0; })},
     {Event::kDescentTimedOut, kLand, "           O  ", Reason::kDescentTimedOut, lasting(6.1, [](Placed&) {})},
     {Event::kBatteryCritical, kLand, "..DLLDLLLLL..L", Reason::kBatteryCritical, condition([](Placed& f) { f.inputs_.supply_voltage_v = 3.0; })},
     {Event::kOutsideFence, kLand,  "..DLLDLLLL...L", Reason::kOutsideFence, condition([](Placed& f) { f.estimate_.position_ned.x() = 3.3; })},
@@ -170,7 +170,7 @@ const Row kGrid[] = {
 
 class Grid : public testing::TestWithParam<Row> {};
 
-TEST_P(Grid, EveryModeAnswersAsItSays) {
+TEST_P(Grid, EveryModeReactsAsListed) {
   const Row& row = GetParam();
   ASSERT_EQ(std::string(row.next).size(), places().size());
   for (std::size_t i = 0; i < places().size(); ++i) {
@@ -185,7 +185,7 @@ TEST_P(Grid, EveryModeAnswersAsItSays) {
     const std::optional<Outcome> outcome = row.cause(flight);
     if (outcome) {
       EXPECT_EQ(outcome->accepted, next != 'x') << outcome->reason;
-      EXPECT_EQ(outcome->reason[0] == '\0', next != 'x') << "a refusal has a sentence, nothing else has one";
+      EXPECT_EQ(outcome->reason[0] == '\0', next != 'x') << "a refusal has a reason, nothing else has one";
     }
     const bool moves = std::string(".=x").find(next) == std::string::npos;
     EXPECT_EQ(flight.mode(), moves ? mode_of(next) : place.mode)
@@ -196,7 +196,7 @@ TEST_P(Grid, EveryModeAnswersAsItSays) {
 
 INSTANTIATE_TEST_SUITE_P(Events, Grid, testing::ValuesIn(kGrid));
 
-TEST(GridItself, HoldsEveryEventAndEveryMode) {
+TEST(GridItself, CoversEveryEventAndMode) {
   for (int i = 0; i < kEventCount; ++i) {
     const auto event = static_cast<Event>(i);
     EXPECT_TRUE(std::any_of(std::begin(kGrid), std::end(kGrid), [&](const Row& row) {
@@ -211,7 +211,7 @@ TEST(GridItself, HoldsEveryEventAndEveryMode) {
   }
 }
 
-TEST(Transitions, NoRowHidesALaterOne) {
+TEST(Transitions, NoRowHidesALaterRow) {
   const TransitionTable table = transitions();
   for (int later = 0; later < table.count; ++later) {
     for (int mode = 0; mode < kModeCount; ++mode) {
@@ -227,7 +227,7 @@ TEST(Transitions, NoRowHidesALaterOne) {
   }
 }
 
-// Those that can hold in one step of a flight, the most urgent first.
+// Failsafes that can trigger in one step of a flight, the most urgent first.
 struct Urgency {
   Reason reason;
   std::function<void(Placed&)> change;
@@ -252,16 +252,16 @@ const std::vector<Urgency>& failsafes() {
   return kFailsafes;
 }
 
-TEST(Priorities, OfAllFailsafesThatHoldTheMostUrgentIsTaken) {
+TEST(Priorities, MostUrgentFailsafeIsTaken) {
   const unsigned sets = 1U << failsafes().size();
   for (const char letter : {'T', 'H', 'M', 'J', 'S', 'P'}) {
     const auto place =
         std::find_if(places().begin(), places().end(), [&](const Place& p) { return p.letter == letter; });
     Placed flight(kLand);
     ASSERT_TRUE(place->reach(flight));
-    const Placed::Moment place_in_flight = flight.moment();
+    const Placed::Snapshot in_flight = flight.snapshot();
     for (unsigned set = 1; set < sets; ++set) {
-      flight.go_back_to(place_in_flight);
+      flight.restore(in_flight);
       std::optional<Reason> most_urgent;
       for (std::size_t i = 0; i < failsafes().size(); ++i) {
         if ((set >> i & 1U) == 0) continue;
@@ -286,9 +286,9 @@ struct Limit {
 };
 void PrintTo(const Limit& limit, std::ostream* out) { *out << limit.name; }
 
-class Limits_ : public testing::TestWithParam<Limit> {};
+class FailsafeLimits : public testing::TestWithParam<Limit> {};
 
-TEST_P(Limits_, HoldAtTheLimitAndNotBeyond) {
+TEST_P(FailsafeLimits, TriggerBeyondTheLimitOnly) {
   const Limit& limit = GetParam();
   const auto place =
       std::find_if(places().begin(), places().end(), [&](const Place& p) { return p.letter == limit.place; });
@@ -311,7 +311,8 @@ const Limit kLimits[] = {
     {"tip_over_tilt_rad", 'H', Reason::kTippedOver, kThresholds.tip_over_tilt_rad - 1e-6,
      kThresholds.tip_over_tilt_rad + 1e-6,
      [](Placed& f, double v) { f.estimate_.q_ned_from_frd = Eigen::AngleAxisd(v, Vector3d(0.6, 0.8, 0.0)); }},
-    {"blow_m_s2", 'H', Reason::kImpact, kThresholds.blow, kThresholds.blow + 1e-9,
+    {"impact_m_s2", 'H', Reason::kImpact, kThresholds.impact_acceleration,
+     kThresholds.impact_acceleration + 1e-9,
      [](Placed& f, double v) { f.inputs_.specific_force_frd.z() = -v; }},
     {"mocap_timeout_s", 'H', Reason::kNoPose, kThresholds.mocap_timeout_s, kThresholds.mocap_timeout_s + 1e-9,
      [](Placed& f, double v) { f.inputs_.pose_age_s = v; }},
@@ -327,9 +328,9 @@ const Limit kLimits[] = {
     {"fence_margin_m upward", 'H', Reason::kOutsideFence, -2.5 - kThresholds.fence_margin_m + 1e-9,
      -2.5 - kThresholds.fence_margin_m - 1e-9, [](Placed& f, double v) { f.estimate_.position_ned.z() = v; }},
 };
-INSTANTIATE_TEST_SUITE_P(OfTheFailsafes, Limits_, testing::ValuesIn(kLimits));
+INSTANTIATE_TEST_SUITE_P(Settings, FailsafeLimits, testing::ValuesIn(kLimits));
 
-TEST(Failsafes, ABatteryMustStayLowForAsLongAsTheSettingsSay) {
+TEST(Failsafes, BatteryMustStayLowForTheDelay) {
   SupervisionSettings settings;
   settings.failsafe.battery_delay_s = 0.5;
   for (const double voltage_v : {3.2, 3.0}) {
@@ -345,7 +346,7 @@ TEST(Failsafes, ABatteryMustStayLowForAsLongAsTheSettingsSay) {
   }
 }
 
-TEST(Failsafes, ACriticalBatteryLandsFasterThanALowOne) {
+TEST(Failsafes, CriticalBatteryLandsFasterThanLowBattery) {
   const auto landing_s = [](double voltage_v) {
     Placed flight(kLand);
     EXPECT_TRUE(flight.take_off());
@@ -357,7 +358,7 @@ TEST(Failsafes, ACriticalBatteryLandsFasterThanALowOne) {
   EXPECT_LT(landing_s(3.0), 0.8 * landing_s(3.2));
 }
 
-TEST(Failsafes, OutsideTheFenceItComesDownInside) {
+TEST(Failsafes, LandsInsideAfterLeavingTheFence) {
   Placed flight(kLand);
   ASSERT_TRUE(flight.take_off());
   ASSERT_TRUE(flight.ask(RequestKind::kGoTo, {2.5, 0, -1}).accepted);
@@ -371,7 +372,7 @@ TEST(Failsafes, OutsideTheFenceItComesDownInside) {
   EXPECT_LE(flight.estimate_.position_ned.x(), 3.0 + 1e-9);
 }
 
-TEST(Failsafes, ALandingThatLosesThePoseGoesOnWhenItIsBack) {
+TEST(Failsafes, LandingResumesWhenThePoseReturns) {
   for (const bool of_a_mission : {false, true}) {
     Placed flight(kLand);
     if (of_a_mission) {
@@ -392,7 +393,7 @@ TEST(Failsafes, ALandingThatLosesThePoseGoesOnWhenItIsBack) {
   }
 }
 
-TEST(Failsafes, ALandingAskedForWithoutPositionFollowsWhenItIsBack) {
+TEST(Failsafes, LandingRequestedWithoutPoseStartsWhenItReturns) {
   Placed flight(kLand);
   ASSERT_TRUE(flight.take_off());
   flight.inputs_.pose_age_s = 1.0;
@@ -404,7 +405,7 @@ TEST(Failsafes, ALandingAskedForWithoutPositionFollowsWhenItIsBack) {
   EXPECT_EQ(flight.mode(), Mode::kLanding);
 }
 
-TEST(FoundFlying, ComesToRestAndHoldsButNotWithoutAPose) {
+TEST(EngagedInFlight, ComesToRestAndHoldsButNeedsAPose) {
   Placed flight(kLand);
   flight.estimate_.position_ned = {1.0, 0.0, -1.5};
   flight.estimate_.velocity_ned = {0.8, 0.0, 0.0};
@@ -424,7 +425,7 @@ TEST(FoundFlying, ComesToRestAndHoldsButNotWithoutAPose) {
 
 class GroundLinks : public testing::Test {
  protected:
-  // For seconds of flight, with a sign of life each 0.2 s of these clients.
+  // Flies for seconds, with a heartbeat of these clients each 0.2 s.
   void fly_on(double seconds, const std::vector<std::uint64_t>& clients) {
     const std::int64_t end_ns = flight_.inputs_.stamp_ns + std::llround(seconds * 1e9);
     for (int i = 0; flight_.inputs_.stamp_ns < end_ns; ++i) {
@@ -438,13 +439,13 @@ class GroundLinks : public testing::Test {
   Placed flight_{kLand};
 };
 
-TEST_F(GroundLinks, AFlightThatDependsOnNobodyGoesOn) {
+TEST_F(GroundLinks, FlightWithoutClientsContinues) {
   ASSERT_TRUE(flight_.take_off());
   fly_on(5.0, {});
   EXPECT_EQ(flight_.mode(), Mode::kHolding);
 }
 
-TEST_F(GroundLinks, OneThatFallsSilentIsMissedThoughAnotherTalks) {
+TEST_F(GroundLinks, SilentClientTriggersDespiteAnother) {
   ASSERT_TRUE(flight_.take_off());
   fly_on(5.0, {1, 2});
   EXPECT_EQ(flight_.mode(), Mode::kHolding);
@@ -455,7 +456,7 @@ TEST_F(GroundLinks, OneThatFallsSilentIsMissedThoughAnotherTalks) {
   EXPECT_EQ(flight_.supervisor_.reason(), Reason::kGroundLinkLost);
 }
 
-TEST_F(GroundLinks, OneThatTakesLeaveIsNotMissed) {
+TEST_F(GroundLinks, ClientThatLeavesDoesNotTrigger) {
   ASSERT_TRUE(flight_.take_off());
   fly_on(1.0, {1});
   EXPECT_TRUE(flight_.supervisor_.ground_heartbeat({1, false}));
@@ -463,7 +464,7 @@ TEST_F(GroundLinks, OneThatTakesLeaveIsNotMissed) {
   EXPECT_EQ(flight_.mode(), Mode::kHolding);
 }
 
-TEST_F(GroundLinks, ALostOneIsAnsweredOnceAndThenForgotten) {
+TEST_F(GroundLinks, LossTriggersOnceOnly) {
   ASSERT_TRUE(flight_.take_off());
   fly_on(1.0, {1});
   ASSERT_TRUE(flight_.step_until(Mode::kLanding, 1.2));
@@ -472,7 +473,7 @@ TEST_F(GroundLinks, ALostOneIsAnsweredOnceAndThenForgotten) {
   EXPECT_EQ(flight_.mode(), Mode::kHolding);
 }
 
-TEST_F(GroundLinks, OneThatIsLostWithoutPositionIsAnsweredWhenThePoseIsBack) {
+TEST_F(GroundLinks, LossWithoutPoseTriggersWhenThePoseReturns) {
   ASSERT_TRUE(flight_.take_off());
   fly_on(1.0, {1});
   flight_.inputs_.pose_age_s = 1.0;
@@ -486,17 +487,17 @@ TEST_F(GroundLinks, OneThatIsLostWithoutPositionIsAnsweredWhenThePoseIsBack) {
   EXPECT_EQ(flight_.supervisor_.reason(), Reason::kGroundLinkLost);
 }
 
-TEST_F(GroundLinks, NoMoreThanFitAreTaken) {
+TEST_F(GroundLinks, RefusesMoreClientsThanFit) {
   for (std::uint64_t client = 1; client <= kMaxGroundLinks; ++client)
     EXPECT_TRUE(flight_.supervisor_.ground_heartbeat({client, true}));
   EXPECT_FALSE(flight_.supervisor_.ground_heartbeat({99, true}));
-  EXPECT_TRUE(flight_.supervisor_.ground_heartbeat({99, false})) << "it never was depended on";
+  EXPECT_TRUE(flight_.supervisor_.ground_heartbeat({99, false})) << "it was not registered";
   EXPECT_TRUE(flight_.supervisor_.ground_heartbeat({2, true}));
   EXPECT_TRUE(flight_.supervisor_.ground_heartbeat({3, false}));
   EXPECT_TRUE(flight_.supervisor_.ground_heartbeat({99, true}));
 }
 
-TEST_F(GroundLinks, OnesThatFellSilentOnTheGroundDoNotEndTheNextFlight) {
+TEST_F(GroundLinks, LossOnTheGroundDoesNotEndTheNextFlight) {
   EXPECT_TRUE(flight_.supervisor_.ground_heartbeat({1, true}));
   fly_on(3.0, {});
   ASSERT_TRUE(flight_.take_off());

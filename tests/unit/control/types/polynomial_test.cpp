@@ -68,7 +68,7 @@ void expect_rest(const Reference& r, const Vector3d& at, double yaw) {
   EXPECT_NEAR(r.yaw_acceleration, 0.0, 1e-12);
 }
 
-TEST(MinimumJerk, FromRestToRestOnAStraightLine) {
+TEST(MinimumJerk, MovesFromRestToRestOnAStraightLine) {
   const Vector3d from(1.0, -2.0, -0.5);
   const Vector3d to(-0.5, 0.7, -1.5);
   const PolynomialSegment s = minimum_jerk(from, 0.2, to, -0.9, 3.0);
@@ -77,14 +77,14 @@ TEST(MinimumJerk, FromRestToRestOnAStraightLine) {
   const Vector3d direction = (to - from).normalized();
   double before = -1.0;
   for (int i = 0; i <= 60; ++i) {
-    const Vector3d way = evaluate(s, 0.05 * i).position_ned - from;
-    EXPECT_LT((way - way.dot(direction) * direction).norm(), 1e-12);
-    EXPECT_GT(way.dot(direction), before);
-    before = way.dot(direction);
+    const Vector3d offset = evaluate(s, 0.05 * i).position_ned - from;
+    EXPECT_LT((offset - offset.dot(direction) * direction).norm(), 1e-12);
+    EXPECT_GT(offset.dot(direction), before);
+    before = offset.dot(direction);
   }
 }
 
-TEST(MinimumJerk, JerkIsLessThanThatOfOtherWays) {
+TEST(MinimumJerk, HasLessJerkThanOtherPolynomials) {
   // Adding any c t^3 (T - t)^3, which keeps all boundary conditions, costs jerk.
   const double duration = 2.0;
   const PolynomialSegment best = minimum_jerk(Vector3d::Zero(), 0.0, Vector3d(1.0, 0.0, 0.0), 0.0, duration);
@@ -106,7 +106,7 @@ TEST(MinimumJerk, JerkIsLessThanThatOfOtherWays) {
   EXPECT_GT(cost(-0.01), cost(0.0));
 }
 
-TEST(MinimumJerk, DurationMeetsThePeaks) {
+TEST(MinimumJerk, DurationReachesAPeakLimit) {
   std::mt19937 generator(3);
   std::uniform_real_distribution<double> size(0.1, 4.0);
   bool by_speed = false;
@@ -144,7 +144,7 @@ TEST(MinimumJerk, DurationMeetsThePeaks) {
   EXPECT_EQ(minimum_jerk_duration(0.0, 1.0, 1.0, 1.0, 0.5), 0.5);
 }
 
-TEST(JoinToRest, LeavesTheMotionSmoothly) {
+TEST(JoinToRest, StartsFromTheMotionAndEndsAtRest) {
   Reference from;
   from.position_ned = {0.3, -0.2, -1.0};
   from.velocity_ned = {0.5, 0.1, -0.4};
@@ -177,7 +177,7 @@ TEST(JoinToRest, FromRestIsMinimumJerk) {
   }
 }
 
-TEST(Join, HasAllOfBothReferences) {
+TEST(Join, MatchesBothReferences) {
   std::mt19937 generator(5);
   std::uniform_real_distribution<double> draw(-1.0, 1.0);
   const auto any = [&] {
@@ -206,7 +206,7 @@ TEST(Join, HasAllOfBothReferences) {
   }
 }
 
-TEST(Join, FromRestToRestItsDurationMeetsThePeaks) {
+TEST(Join, RestToRestDurationReachesAPeakLimit) {
   for (const auto& [speed, acceleration, jerk] :
        {std::array{0.5, 9.0, 99.0}, std::array{9.0, 0.5, 99.0}, std::array{9.0, 9.0, 0.5}}) {
     Reference to;

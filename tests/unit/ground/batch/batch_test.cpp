@@ -26,10 +26,10 @@ const std::string kMass =
 const std::string kLatency =
     "  simulation.mocap.latency_s: {distribution: uniform, min: 0.005, max: 0.02, unit: s, source: "
     "estimate}\n";
-// Some lift off late and miss the tolerance.
-const std::string kGrossMass =
+// Some vehicles are so heavy that they take off late and exceed the tolerance.
+const std::string kHighMass =
     "  vehicle.mass: {distribution: uniform, min: 0.95, max: 1.8, unit: nominal, source: estimate}\n";
-// Somewhere in most flights the pose stays away for 2 s.
+// Most flights lose the pose for 2 s.
 const std::string kDropouts =
     "  simulation.mocap.dropout_probability: {distribution: uniform, min: 0.001, max: 0.004, unit: 1, "
     "source: "
@@ -53,12 +53,12 @@ class BatchTest : public testing::Test {
   }
 
   static bool never() { return false; }
-  static void say_nothing(const BatchProgress&) {}
+  static void ignore_progress(const BatchProgress&) {}
 
   BatchReport fly(const std::string& parameters, std::size_t runs, std::size_t jobs) const {
     const FlyOptions how = options(parameters);
     const LaunchConfiguration plan = plan_flight(how);
-    return report_of(plan, how, BatchRunner(plan, runs).fly(jobs, never, say_nothing));
+    return report_of(plan, how, BatchRunner(plan, runs).fly(jobs, never, ignore_progress));
   }
 
   std::string csv(const BatchReport& report) const {
@@ -68,7 +68,7 @@ class BatchTest : public testing::Test {
     return {std::istreambuf_iterator<char>(stream), {}};
   }
 
-  // What `sim fly` with the seed of a run flies.
+  // The flight of `sim fly` with the seed of a run.
   FlightReport repeated(const std::string& parameters, std::uint64_t seed) const {
     FlyOptions how = options(parameters);
     how.seed = seed;
@@ -78,7 +78,7 @@ class BatchTest : public testing::Test {
     return fly_in_process(loop, plan, plan.seed, record, nullptr, never).report;
   }
 
-  void expect_failures_that_repeat(const std::string& parameters, const BatchReport& report) const {
+  void expect_failures_to_repeat(const std::string& parameters, const BatchReport& report) const {
     ASSERT_GT(report.batch.failed(), 0U);
     EXPECT_FALSE(report.completed());
     for (const BatchRun& run : report.batch.runs) {
@@ -95,17 +95,17 @@ class BatchTest : public testing::Test {
   tests::TemporaryFolder folder_;
 };
 
-TEST_F(BatchTest, GivesTheSameTableWhateverTheNumberOfJobs) {
+TEST_F(BatchTest, TableIsIndependentOfTheNumberOfJobs) {
   const BatchReport one = fly(kMass + kLatency, 8, 1);
   EXPECT_TRUE(one.completed());
   EXPECT_EQ(csv(one), csv(fly(kMass + kLatency, 8, 4)));
 }
 
-TEST_F(BatchTest, GivesTheSameTableWhateverTheOrderOfKeys) {
+TEST_F(BatchTest, TableIsIndependentOfTheOrderOfKeys) {
   EXPECT_EQ(csv(fly(kMass + kLatency, 3, 2)), csv(fly(kLatency + kMass, 3, 2)));
 }
 
-TEST_F(BatchTest, FliesEachRunWithItsOwnSeedAndDraw) {
+TEST_F(BatchTest, FliesEachRunWithItsOwnSeedAndSample) {
   const BatchReport report = fly(kMass + kLatency, 4, 2);
   ASSERT_EQ(report.batch.runs.size(), 4U);
   EXPECT_EQ(report.parameters, (std::vector<std::string>{"vehicle.mass", "simulation.mocap.latency_s"}));
@@ -123,23 +123,23 @@ TEST_F(BatchTest, FliesEachRunWithItsOwnSeedAndDraw) {
   EXPECT_NE(report.batch.runs[0].values, report.batch.runs[1].values);
 }
 
-TEST_F(BatchTest, TheFirstRunsOfALongBatchAreThoseOfAShortOne) {
+TEST_F(BatchTest, FirstRunsAreIndependentOfTheNumberOfRuns) {
   const std::string shorter = csv(fly(kMass, 2, 2));
   EXPECT_EQ(csv(fly(kMass, 4, 2)).substr(0, shorter.size()), shorter);
 }
 
-TEST_F(BatchTest, FindsCountsAndRepeatsWhatAGrossMassFails) {
-  const BatchReport report = fly(kGrossMass, 6, 2);
-  EXPECT_LT(report.batch.failed(), 6U) << "all failed: the test does not tell good from bad";
-  expect_failures_that_repeat(kGrossMass, report);
+TEST_F(BatchTest, FailuresFromAHighMassRepeat) {
+  const BatchReport report = fly(kHighMass, 6, 2);
+  EXPECT_LT(report.batch.failed(), 6U) << "expected some runs to complete";
+  expect_failures_to_repeat(kHighMass, report);
 }
 
-TEST_F(BatchTest, FindsCountsAndRepeatsWhatDropoutsFail) {
+TEST_F(BatchTest, FailuresFromPoseDropoutsRepeat) {
   const BatchReport report = fly(kDropouts, 4, 2);
-  expect_failures_that_repeat(kDropouts, report);
+  expect_failures_to_repeat(kDropouts, report);
 }
 
-TEST_F(BatchTest, AnUnvariedPlanFliesTheNominalVehicle) {
+TEST_F(BatchTest, FliesTheNominalVehicleWithoutDispersion) {
   FlyOptions how = options(kMass);
   how.dispersion.clear();
   const LaunchConfiguration plan = plan_flight(how);
@@ -148,32 +148,32 @@ TEST_F(BatchTest, AnUnvariedPlanFliesTheNominalVehicle) {
   EXPECT_EQ(world.vehicle.motor.armature_resistance_ohm, plan.vehicle.motor.armature_resistance_ohm);
 }
 
-TEST_F(BatchTest, EndsEarlyAndKeepsWhatIsDone) {
+TEST_F(BatchTest, CancelKeepsTheCompletedRuns) {
   const FlyOptions how = options(kMass);
   const LaunchConfiguration plan = plan_flight(how);
-  std::atomic<bool> enough{false};
+  std::atomic<bool> cancelled{false};
   Batch batch = BatchRunner(plan, 500).fly(
-      2, [&] { return enough.load(); }, [&](const BatchProgress& now) { enough = now.done >= 1; });
+      2, [&] { return cancelled.load(); }, [&](const BatchProgress& now) { cancelled = now.done >= 1; });
   const BatchReport report = report_of(plan, how, std::move(batch));
   EXPECT_TRUE(report.interrupted());
   EXPECT_FALSE(report.completed());
   EXPECT_GE(report.batch.runs.size(), 1U);
   EXPECT_LT(report.batch.runs.size(), 500U);
-  EXPECT_EQ(report.batch.failed(), 0U) << "what was dropped has not failed";
+  EXPECT_EQ(report.batch.failed(), 0U) << "cancelled runs do not count as failed";
   EXPECT_NE(to_text(report).find("NOT flown: batch cancelled"), std::string::npos);
   EXPECT_EQ(to_json(report).at("interrupted"), true);
 }
 
-TEST_F(BatchTest, MakesEveryDrawBeforeTheFirstFlight) {
+TEST_F(BatchTest, SamplesAllVehiclesBeforeTheFirstFlight) {
   const LaunchConfiguration plan = plan_flight(
       options("  vehicle.inertia.zz: {distribution: uniform, min: 1.5, max: 2, unit: nominal, source: x}\n"));
   EXPECT_THROW(BatchRunner(plan, 3), runtime::ConfigError);
 }
 
-// Without flights: two runs, of which one failed.
-BatchReport made_report(const LaunchConfiguration& plan, const FlyOptions& how) {
+// Two runs without flights, the second one failed.
+BatchReport example_report(const LaunchConfiguration& plan, const FlyOptions& how) {
   Batch batch;
-  batch.asked = 2;
+  batch.requested = 2;
   BatchRun good;
   good.seed = 11;
   good.completed = true;
@@ -191,7 +191,7 @@ BatchReport made_report(const LaunchConfiguration& plan, const FlyOptions& how) 
   return report_of(plan, how, std::move(batch));
 }
 
-TEST_F(BatchTest, TellsHowToRepeatAFailedRun) {
+TEST_F(BatchTest, ReportsTheCommandThatRepeatsAFailedRun) {
   FlyOptions how = options(kMass);
   const LaunchConfiguration plan = plan_flight(how);
   how.mission = "hop";
@@ -200,7 +200,7 @@ TEST_F(BatchTest, TellsHowToRepeatAFailedRun) {
   how.simulation = "default";
   how.dispersion = "vary/room.yaml";
   how.imu_rate_hz = 1000;
-  const BatchReport report = made_report(plan, how);
+  const BatchReport report = example_report(plan, how);
   const std::string command =
       "swiftlet sim fly hop --vehicle 'it'\\''s mine.yaml' --imu-rate 1000 --dispersion vary/room.yaml "
       "--seed 12";
@@ -208,9 +208,9 @@ TEST_F(BatchTest, TellsHowToRepeatAFailedRun) {
   EXPECT_NE(to_text(report).find("  seed 12: it went away, \"far\": " + command + "\n"), std::string::npos);
 }
 
-TEST_F(BatchTest, JsonHasTheFiguresAndNullForWhatThereIsNot) {
+TEST_F(BatchTest, JsonHasNullForMissingFigures) {
   const FlyOptions how = options(kMass);
-  const nlohmann::json json = nlohmann::json::parse(to_json(made_report(plan_flight(how), how)).dump());
+  const nlohmann::json json = nlohmann::json::parse(to_json(example_report(plan_flight(how), how)).dump());
   EXPECT_EQ(json.at("completed"), false);
   EXPECT_EQ(json.at("interrupted"), false);
   EXPECT_EQ(json.at("runs"), 2);
@@ -226,25 +226,25 @@ TEST_F(BatchTest, JsonHasTheFiguresAndNullForWhatThereIsNot) {
 
 TEST_F(BatchTest, CsvHasARowForEachRun) {
   const FlyOptions how = options(kMass);
-  const std::string text = csv(made_report(plan_flight(how), how));
+  const std::string text = csv(example_report(plan_flight(how), how));
   EXPECT_EQ(text,
             "seed,completed,reason,rms_3d_m,peak_3d_m,duration_s,margin_roll_deg,margin_pitch_deg,"
             "margin_yaw_deg,margin_x_deg,margin_y_deg,margin_z_deg,vehicle.mass\n"
-            "11,1,\"\",0.001,0.005,0,60,61,62,31,32,47,0.04\n"
+            "11,1,,0.001,0.005,0,60,61,62,31,32,47,0.04\n"
             "12,0,\"it went away, \"\"far\"\"\",,,0,60,61,62,31,32,47,0.06\n");
 }
 
 TEST_F(BatchTest, DrawsAPicture) {
-  ASSERT_FALSE(find_program("gnuplot").empty()) << "packages.txt names what the tests need";
+  ASSERT_FALSE(find_program("gnuplot").empty()) << "install the packages of packages.txt";
   BatchReport report = fly(kMass + kLatency, 4, 2);
   report.mission = "it's_a 'hop'";
   csv(report);
   EXPECT_EQ(draw_batch(folder_.path(), report), "");
   EXPECT_GT(std::filesystem::file_size(folder_.path() / "batch.png"), 20'000U);
-  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "batch.gp")) << "to draw it anew";
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "batch.gp")) << "kept to draw the picture again";
 }
 
-TEST_F(BatchTest, SaysWhyThereIsNoPicture) {
+TEST_F(BatchTest, ReportsWhyNoPictureIsDrawn) {
   EXPECT_EQ(draw_batch(folder_.path(), {}), "no picture was drawn: no run has a tracking error");
 }
 

@@ -1,4 +1,4 @@
-// How a request ended, told from what the controller says of it.
+// The result of an action, from the controller's status.
 #include "swiftlet/ground/client/action.hpp"
 
 #include <gtest/gtest.h>
@@ -30,45 +30,45 @@ RequestStatus in_state(RequestState state, Event by = Event::kArm, Reason reason
   return {{7, 12}, RequestKind::kGoTo, state, by, reason, 0.5};
 }
 
-std::string end_of(const std::optional<ActionResult>& ending) {
-  if (!ending) return "under way";
-  return ending->done() ? "done" : ending->reason;
+std::string summary_of(const std::optional<ActionResult>& result) {
+  if (!result) return "under way";
+  return result->done() ? "done" : result->reason;
 }
 
-TEST(Manoeuvres, EndAsTheControllerSays) {
-  EXPECT_EQ(end_of(action_result_by(status(in_state(RequestState::kAccepted)), kAnswer)), "under way");
-  EXPECT_EQ(end_of(action_result_by(status(in_state(RequestState::kExecuting)), kAnswer)), "under way");
-  EXPECT_EQ(end_of(action_result_by(status(in_state(RequestState::kSucceeded)), kAnswer)), "done");
+TEST(ActionResults, FollowTheReportedRequestState) {
+  EXPECT_EQ(summary_of(action_result_by(status(in_state(RequestState::kAccepted)), kAnswer)), "under way");
+  EXPECT_EQ(summary_of(action_result_by(status(in_state(RequestState::kExecuting)), kAnswer)), "under way");
+  EXPECT_EQ(summary_of(action_result_by(status(in_state(RequestState::kSucceeded)), kAnswer)), "done");
   const auto canceled =
       action_result_by(status(in_state(RequestState::kCanceled, Event::kLand, Reason::kRequested)), kAnswer);
-  EXPECT_EQ(end_of(canceled), "canceled by a newer request: land");
+  EXPECT_EQ(summary_of(canceled), "canceled by a newer request: land");
   EXPECT_EQ(canceled->kind, ActionResult::Kind::kCanceled);
   const auto aborted = action_result_by(
       status(in_state(RequestState::kAborted, Event::kBatteryLow, Reason::kBatteryLow)), kAnswer);
-  EXPECT_EQ(end_of(aborted), "aborted: battery is low");
+  EXPECT_EQ(summary_of(aborted), "aborted: battery is low");
   EXPECT_EQ(aborted->kind, ActionResult::Kind::kAborted);
 }
 
-TEST(Manoeuvres, AreFoundAmongTheEarlierRequests) {
+TEST(ActionResults, AreReadFromEarlierRequests) {
   RequestStatus other = in_state(RequestState::kExecuting);
   for (const control::RequestKey& key : {control::RequestKey{7, 13}, control::RequestKey{8, 12}}) {
     other.key = key;
     auto reported = status(other);
     reported.earlier_requests()[2] = comms::to_message(in_state(RequestState::kSucceeded));
-    EXPECT_EQ(end_of(action_result_by(reported, kAnswer)), "done");
+    EXPECT_EQ(summary_of(action_result_by(reported, kAnswer)), "done");
   }
 }
 
-// GIVEN a status that does not know the request, WHEN it is of before the answer, THEN the next is waited for; one
-// of after it is of a controller that will never know.
-TEST(Manoeuvres, AreLostWhereALaterStatusDoesNotKnowThem) {
+// GIVEN a status without the request, WHEN it is older than the answer THEN the action is under way, WHEN it
+// is newer THEN the action is lost.
+TEST(ActionResults, AreLostWhenALaterStatusOmitsTheRequest) {
   RequestStatus other = in_state(RequestState::kSucceeded);
   other.key = {7, 11};
-  EXPECT_EQ(end_of(action_result_by(status(other, kAccepted_ns), kAnswer)), "under way");
+  EXPECT_EQ(summary_of(action_result_by(status(other, kAccepted_ns), kAnswer)), "under way");
   const auto lost = action_result_by(status(other, kAccepted_ns + 1), kAnswer);
   ASSERT_TRUE(lost);
   EXPECT_EQ(lost->kind, ActionResult::Kind::kLost);
-  EXPECT_EQ(end_of(action_result_by({}, kAnswer)), "under way");
+  EXPECT_EQ(summary_of(action_result_by({}, kAnswer)), "under way");
 }
 
 }  // namespace

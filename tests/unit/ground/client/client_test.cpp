@@ -1,4 +1,5 @@
-// How often a request goes out, and that whoever acts answers it. The control service is the test.
+// How often a request is sent, and that the active controller answers it. The test stands in for the control
+// service.
 #include "swiftlet/ground/client/client.hpp"
 
 #include <algorithm>
@@ -29,7 +30,7 @@ comms::NodeSettings settings_of(const char* name, const DomainLock& lock) {
   return settings;
 }
 
-// Hears requests, and answers if it is to.
+// Receives requests and optionally answers them.
 class Control {
  public:
   explicit Control(const DomainLock& lock, bool answers = false)
@@ -38,23 +39,23 @@ class Control {
         acks_(node_.publish(comms::topics::kCommandAck)),
         statuses_(node_.publish(comms::topics::kControlStatus)) {
     commands_ = node_.subscribe<msg::Command>(comms::topics::kCommand, [this](const msg::Command& command) {
-      heard_.put(command.id());
+      received_.put(command.id());
       if (answers_) answer(command.client(), command.id());
     });
     missions_ = node_.subscribe<msg::Mission>(
-        comms::topics::kMission, [this](const msg::Mission& mission) { heard_.put(mission.id()); });
+        comms::topics::kMission, [this](const msg::Mission& mission) { received_.put(mission.id()); });
   }
-  void say(std::uint64_t sequence_number) {
+  void publish_status(std::uint64_t sequence_number) {
     msg::ControlStatus status;
     status.sequence_number(sequence_number);
     statuses_.publish(status);
   }
   void answers(bool answers) { answers_ = answers; }
-  std::uint64_t newest() const {
-    const auto ids = heard_.items();
+  std::uint64_t newest_id() const {
+    const auto ids = received_.items();
     return ids.empty() ? 0 : *std::max_element(ids.begin(), ids.end());
   }
-  Inbox<std::uint64_t> heard_;  // ids of requests
+  Inbox<std::uint64_t> received_;  // ids of requests
 
  private:
   void answer(std::uint64_t client, std::uint64_t id) {
@@ -80,39 +81,39 @@ class Requests : public testing::Test {
       return client_.command(hold, timeout);
     });
   }
-  bool is_silence(std::future<Result> answer) { return answer.get().kind == Result::Kind::kSilence; }
+  bool is_unanswered(std::future<Result> answer) { return answer.get().kind == Result::Kind::kSilence; }
 
   DomainLock lock_;
   Client client_{settings_of("ground", lock_)};
 };
 
-TEST_F(Requests, GoOutOnceWhileNobodyAnswers) {
+TEST_F(Requests, AreSentOnceWhileUnanswered) {
   Control control(lock_);
-  EXPECT_TRUE(is_silence(ask(1500ms)));
-  EXPECT_EQ(control.heard_.size(), 1U);
+  EXPECT_TRUE(is_unanswered(ask(1500ms)));
+  EXPECT_EQ(control.received_.size(), 1U);
 }
 
-TEST_F(Requests, ALongMissionGoesOutOnce) {
+TEST_F(Requests, AreSentOnceForALongMission) {
   Control control(lock_);
   control::Mission mission;
   mission.items.resize(control::kMaxMissionItems);
   EXPECT_EQ(client_.upload(mission, 1900ms).kind, Result::Kind::kSilence);
-  EXPECT_EQ(control.heard_.size(), 1U);
+  EXPECT_EQ(control.received_.size(), 1U);
 }
 
-TEST_F(Requests, GoOutAgainAfterALongSilence) {
+TEST_F(Requests, AreSentAgainAfterALongTimeout) {
   Control control(lock_);
-  EXPECT_TRUE(is_silence(ask(3500ms)));
-  EXPECT_EQ(control.heard_.size(), 2U);
-  const auto ids = control.heard_.items();
+  EXPECT_TRUE(is_unanswered(ask(3500ms)));
+  EXPECT_EQ(control.received_.size(), 2U);
+  const auto ids = control.received_.items();
   EXPECT_EQ(ids.front(), ids.back());
 }
 
-// Well before the silence is long: a controller that was started again, a standby that took over.
-TEST_F(Requests, AreAnsweredByAControllerThatIsStartedMeanwhile) {
+// The client sends again before its timeout when a restarted controller or a standby appears.
+TEST_F(Requests, AreAnsweredByARestartedController) {
   auto first = std::make_unique<Control>(lock_);
   std::future<Result> answer = ask(10s);
-  ASSERT_TRUE(first->heard_.wait_for_count(1));
+  ASSERT_TRUE(first->received_.wait_for_count(1));
   const auto since = Clock::now();
   first.reset();
   Control second(lock_, true);
@@ -120,37 +121,37 @@ TEST_F(Requests, AreAnsweredByAControllerThatIsStartedMeanwhile) {
   EXPECT_LT(Clock::now() - since, 1500ms);
 }
 
-TEST_F(Requests, GoOutAgainWhenAnotherControllerTakesOver) {
+TEST_F(Requests, AreSentAgainAfterAFailover) {
   Control active(lock_, true);
   Control standby(lock_, true);
   std::uint64_t sequence = 1000;
   ASSERT_TRUE(eventually([&] {
-    active.say(++sequence);
-    return ask(10s).get().accepted() && active.heard_.size() > 0 && standby.heard_.size() > 0 &&
+    active.publish_status(++sequence);
+    return ask(10s).get().accepted() && active.received_.size() > 0 && standby.received_.size() > 0 &&
            client_.view().control.seen();
-  })) << "they all know each other";
+  })) << "discovery incomplete";
   active.answers(false);
   standby.answers(false);
-  // Those of before may still be on their way to the one that did not answer them.
-  const std::uint64_t before = std::max(active.newest(), standby.newest());
-  const auto heard_since = [before](std::ptrdiff_t times) {
+  // Earlier requests may still be in flight to the controller that did not answer them.
+  const std::uint64_t before = std::max(active.newest_id(), standby.newest_id());
+  const auto received_since = [before](std::ptrdiff_t times) {
     return [before, times](const auto& ids) {
       return std::count_if(ids.begin(), ids.end(), [before](auto id) { return id > before; }) == times;
     };
   };
   std::future<Result> answer = ask(1900ms);
-  ASSERT_TRUE(active.heard_.wait(heard_since(1)));
-  ASSERT_TRUE(standby.heard_.wait(heard_since(1)));
-  active.say(++sequence);
-  standby.say(1);
-  EXPECT_TRUE(standby.heard_.wait(heard_since(2)));
-  EXPECT_TRUE(is_silence(std::move(answer)));
-  EXPECT_TRUE(heard_since(2)(standby.heard_.items()));
+  ASSERT_TRUE(active.received_.wait(received_since(1)));
+  ASSERT_TRUE(standby.received_.wait(received_since(1)));
+  active.publish_status(++sequence);
+  standby.publish_status(1);
+  EXPECT_TRUE(standby.received_.wait(received_since(2)));
+  EXPECT_TRUE(is_unanswered(std::move(answer)));
+  EXPECT_TRUE(received_since(2)(standby.received_.items()));
 }
 
-// A reader may be known to the one before the writer is known to the other: what is sent then must not wait
-// for the long silence.
-TEST_F(Requests, ReachAControllerThatWasJustFound) {
+// One side may discover the reader before the other discovers the writer. A request sent in between must not
+// wait for the long timeout.
+TEST_F(Requests, ReachAJustDiscoveredControllerWithoutDelay) {
   for (int round = 0; round < 10; ++round) {
     Control control(lock_, true);
     const auto since = Clock::now();

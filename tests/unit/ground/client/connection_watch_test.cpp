@@ -1,4 +1,4 @@
-// What a client says of the control process that it hears, or hears no more.
+// Events of a client about its connection to the control process.
 #include "swiftlet/ground/client/connection_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -9,9 +9,9 @@ namespace {
 using Kind = ConnectionEvent::Kind;
 using namespace std::chrono_literals;
 
-class Connection : public testing::Test {
+class ConnectionWatchTest : public testing::Test {
  protected:
-  void hear(std::uint64_t controller) {
+  void receive_status(std::uint64_t controller) {
     view_.control.message.controller(controller);
     view_.control.message.reason() = "started";
     view_.control.received = now_;
@@ -19,7 +19,7 @@ class Connection : public testing::Test {
   }
   std::optional<ConnectionEvent> look_after(std::chrono::milliseconds time) {
     now_ += time;
-    return watch_.look(view_, now_);
+    return watch_.update(view_, now_);
   }
 
   View view_;
@@ -27,41 +27,41 @@ class Connection : public testing::Test {
   ConnectionWatch watch_;
 };
 
-TEST_F(Connection, IsToldWhenItComesGoesAndComesBack) {
-  EXPECT_FALSE(look_after(5s)) << "nothing was there, and nothing is";
+TEST_F(ConnectionWatchTest, ReportsConnectionLossAndReconnection) {
+  EXPECT_FALSE(look_after(5s)) << "never connected";
   EXPECT_FALSE(is_connected(view_, now_));
-  hear(7);
-  const auto come = look_after(10ms);
-  ASSERT_TRUE(come);
-  EXPECT_EQ(come->kind, Kind::kConnected);
-  EXPECT_EQ(come->controller, 7U);
-  EXPECT_EQ(come->text, "control process connected: disarmed (started)");
+  receive_status(7);
+  const auto connected = look_after(10ms);
+  ASSERT_TRUE(connected);
+  EXPECT_EQ(connected->kind, Kind::kConnected);
+  EXPECT_EQ(connected->controller, 7U);
+  EXPECT_EQ(connected->text, "control process connected: disarmed (started)");
   EXPECT_FALSE(look_after(900ms));
   EXPECT_TRUE(is_connected(view_, now_));
-  const auto gone = look_after(200ms);
-  ASSERT_TRUE(gone);
-  EXPECT_EQ(gone->kind, Kind::kLost);
-  EXPECT_EQ(gone->controller, 7U);
+  const auto lost = look_after(200ms);
+  ASSERT_TRUE(lost);
+  EXPECT_EQ(lost->kind, Kind::kLost);
+  EXPECT_EQ(lost->controller, 7U);
   EXPECT_FALSE(look_after(5s));
-  hear(7);
-  const auto back = look_after(10ms);
-  ASSERT_TRUE(back);
-  EXPECT_EQ(back->kind, Kind::kConnected);
-  EXPECT_EQ(back->text, "control process connected again: disarmed (started)");
+  receive_status(7);
+  const auto reconnected = look_after(10ms);
+  ASSERT_TRUE(reconnected);
+  EXPECT_EQ(reconnected->kind, Kind::kConnected);
+  EXPECT_EQ(reconnected->text, "control process connected again: disarmed (started)");
 }
 
-TEST_F(Connection, ToAnotherProcessIsToldWithOrWithoutSilence) {
-  hear(7);
+TEST_F(ConnectionWatchTest, ReportsAReplacedControllerWithAndWithoutTimeout) {
+  receive_status(7);
   ASSERT_TRUE(look_after(0ms));
-  hear(8);
-  const auto at_once = look_after(100ms);
-  ASSERT_TRUE(at_once);
-  EXPECT_EQ(at_once->kind, Kind::kReplaced);
-  EXPECT_EQ(at_once->controller, 8U);
-  EXPECT_EQ(at_once->text, "another control process controls the vehicle: disarmed (started)");
+  receive_status(8);
+  const auto replaced = look_after(100ms);
+  ASSERT_TRUE(replaced);
+  EXPECT_EQ(replaced->kind, Kind::kReplaced);
+  EXPECT_EQ(replaced->controller, 8U);
+  EXPECT_EQ(replaced->text, "another control process controls the vehicle: disarmed (started)");
   EXPECT_FALSE(look_after(100ms));
   EXPECT_EQ(look_after(2s)->kind, Kind::kLost);
-  hear(9);
+  receive_status(9);
   EXPECT_EQ(look_after(0ms)->kind, Kind::kReplaced);
 }
 

@@ -7,7 +7,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-TEST(VehiclesSeen, AreThoseThatPublishAndNotThoseThatAreAskedFor) {
+TEST(VehicleDiscovery, FindsVehiclesThatPublish) {
   const Words topics = {"rt/kl1/imu",     "rt/kl1/mocap_pose", "rt/kl2/command", "rt/kl2/setpoint",
                         "rt/kl3/battery", "rt/rosout",         "rt/a/b/c",       "rq/kl4/imu",
                         "DCPSTopic",      "rt/kl3/command"};

@@ -1,4 +1,4 @@
-// What the ground tells a vehicle beside requests: that it is there, and how far simulated time may pass.
+// Signals of the ground to a vehicle beside requests: heartbeat and simulation clock.
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -34,66 +34,66 @@ class GroundSignals : public testing::Test {
   comms::Node vehicle_{settings(lock_, "vehicle")};
 };
 
-TEST_F(GroundSignals, ASignOfLifeGoesOutEveryFifthOfASecondOfTheVehiclesClock) {
+TEST_F(GroundSignals, HeartbeatIsSentEvery200MsOfTheVehiclesClock) {
   Inbox<msg::GroundLink> inbox;
   const auto subscription = vehicle_.subscribe<msg::GroundLink>(
-      comms::topics::kGroundLink, [&](const msg::GroundLink& sign) { inbox.put(sign); });
-  GroundHeartbeatPublisher signs(ground_, 42);
+      comms::topics::kGroundLink, [&](const msg::GroundLink& heartbeat) { inbox.put(heartbeat); });
+  GroundHeartbeatPublisher publisher(ground_, 42);
   ASSERT_TRUE(eventually([&] { return subscription.matched() == 1; }));
-  // A sign takes the place of the one before where that has not gone out yet: each is awaited.
-  const auto comes = [&](std::int64_t ms) {
+  // A new heartbeat replaces one that was not sent yet, so the test waits for each.
+  const auto arrives = [&](std::int64_t ms) {
     return inbox.wait([=](const auto& all) { return !all.empty() && all.back().stamp_ns() == ms * kMs; });
   };
-  signs.telemetry(5'000 * kMs);
-  ASSERT_TRUE(comes(5'000));
+  publisher.telemetry(5'000 * kMs);
+  ASSERT_TRUE(arrives(5'000));
   inbox.clear();
   for (std::int64_t t = 5'010; t <= 5'600; t += 10) {
-    signs.telemetry(t * kMs);
+    publisher.telemetry(t * kMs);
     if (t % 200 == 0) {
-      ASSERT_TRUE(comes(t)) << t;
+      ASSERT_TRUE(arrives(t)) << t;
     }
   }
-  signs.telemetry(100 * kMs);
-  ASSERT_TRUE(comes(100)) << "the vehicle was started again";
+  publisher.telemetry(100 * kMs);
+  ASSERT_TRUE(arrives(100)) << "after a restart of the vehicle";
   std::vector<std::int64_t> stamps;
-  for (const msg::GroundLink& sign : inbox.items()) {
-    EXPECT_EQ(sign.client(), 42U);
-    EXPECT_TRUE(sign.depends());
-    stamps.push_back(sign.stamp_ns() / kMs);
+  for (const msg::GroundLink& heartbeat : inbox.items()) {
+    EXPECT_EQ(heartbeat.client(), 42U);
+    EXPECT_TRUE(heartbeat.depends());
+    stamps.push_back(heartbeat.stamp_ns() / kMs);
   }
   EXPECT_EQ(stamps, (std::vector<std::int64_t>{5'200, 5'400, 5'600, 100}));
 }
 
-// A tenth of a second ahead of what has come, in steps of a quarter of that, and never beyond the goal.
-TEST_F(GroundSignals, TimeIsGrantedAWindowAheadUpToTheGoal) {
+// 100 ms ahead of the time reached, in steps of 25 ms, and never beyond the goal.
+TEST_F(GroundSignals, SimulationClockRunsOneWindowAheadUpToTheGoal) {
   Inbox<std::int64_t> simulation_clock;
   const auto subscription = vehicle_.subscribe<msg::SimulationClock>(
       comms::topics::kSimulationClock,
       [&](const msg::SimulationClock& clock) { simulation_clock.put(clock.advance_to_ns() / kMs); });
   SimulationClockPublisher clock(ground_, 100 * kMs);
   ASSERT_TRUE(eventually([&] { return subscription.matched() == 1; }));
-  const auto comes = [&](std::int64_t ms) {
+  const auto arrives = [&](std::int64_t ms) {
     return simulation_clock.wait(
         [=](const auto& all) { return std::find(all.begin(), all.end(), ms) != all.end(); });
   };
   clock.up_to(1'000 * kMs);
-  ASSERT_TRUE(comes(100));
-  clock.has_come(10 * kMs);  // not worth a message
+  ASSERT_TRUE(arrives(100));
+  clock.has_come(10 * kMs);  // too small a step for a message
   clock.has_come(30 * kMs);
-  ASSERT_TRUE(comes(130));
+  ASSERT_TRUE(arrives(130));
   const std::vector<std::int64_t> so_far = simulation_clock.items();
   EXPECT_EQ(std::count(so_far.begin(), so_far.end(), 110), 0);
-  clock.has_come(20 * kMs);  // late
+  clock.has_come(20 * kMs);  // out of order
   clock.up_to(500 * kMs);    // the goal does not go back
   clock.has_come(950 * kMs);
-  ASSERT_TRUE(comes(1'000));
+  ASSERT_TRUE(arrives(1'000));
   clock.has_come(3'000 * kMs);
   simulation_clock.clear();
-  ASSERT_TRUE(simulation_clock.wait_for_count(2)) << "the last grant comes again, for who missed it";
+  ASSERT_TRUE(simulation_clock.wait_for_count(2)) << "the last message is repeated for late subscribers";
   const std::vector<std::int64_t> again = simulation_clock.items();
   EXPECT_EQ(std::count(again.begin(), again.end(), 1'000), static_cast<std::ptrdiff_t>(again.size()));
   clock.without_end();
-  ASSERT_TRUE(comes(3'100));
+  ASSERT_TRUE(arrives(3'100));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Setpoints with units in their names become those that are sent.
+// Conversion of the client's setpoints to those that are sent.
 #include "swiftlet/ground/client/vehicle_setpoints.hpp"
 
 #include <gtest/gtest.h>
@@ -10,20 +10,20 @@ using control::Setpoint;
 using control::SetpointKind;
 using Eigen::Vector3d;
 
-TEST(VehicleSetpoints, OfPositionKeepTheHeadingUnlessTold) {
-  const Setpoint kept = to_setpoint(PositionSetpoint{{1, 2, -3}, {0.1, 0.2, 0.3}, {4, 5, 6}});
-  EXPECT_EQ(kept.kind, SetpointKind::kPosition);
-  EXPECT_EQ(kept.position_ned, Vector3d(1, 2, -3));
-  EXPECT_EQ(kept.velocity_ned, Vector3d(0.1, 0.2, 0.3));
-  EXPECT_EQ(kept.acceleration_ned, Vector3d(4, 5, 6));
-  EXPECT_TRUE(kept.yaw_free);
-  const Setpoint turned = to_setpoint(PositionSetpoint{{1, 2, -3}, {0, 0, 0}, {0, 0, 0}, {0.7, 0.2}});
-  EXPECT_FALSE(turned.yaw_free);
-  EXPECT_EQ(turned.yaw_rad, 0.7);
-  EXPECT_EQ(turned.yaw_rate, 0.2);
+TEST(VehicleSetpoints, PositionKeepsTheYawUnlessGiven) {
+  const Setpoint yaw_kept = to_setpoint(PositionSetpoint{{1, 2, -3}, {0.1, 0.2, 0.3}, {4, 5, 6}});
+  EXPECT_EQ(yaw_kept.kind, SetpointKind::kPosition);
+  EXPECT_EQ(yaw_kept.position_ned, Vector3d(1, 2, -3));
+  EXPECT_EQ(yaw_kept.velocity_ned, Vector3d(0.1, 0.2, 0.3));
+  EXPECT_EQ(yaw_kept.acceleration_ned, Vector3d(4, 5, 6));
+  EXPECT_TRUE(yaw_kept.yaw_free);
+  const Setpoint with_yaw = to_setpoint(PositionSetpoint{{1, 2, -3}, {0, 0, 0}, {0, 0, 0}, {0.7, 0.2}});
+  EXPECT_FALSE(with_yaw.yaw_free);
+  EXPECT_EQ(with_yaw.yaw_rad, 0.7);
+  EXPECT_EQ(with_yaw.yaw_rate, 0.2);
 }
 
-TEST(VehicleSetpoints, OfVelocityAndAcceleration) {
+TEST(VehicleSetpoints, VelocityAndAccelerationAreConverted) {
   const Setpoint velocity = to_setpoint(VelocitySetpoint{{0.1, 0.2, 0.3}, {4, 5, 6}, {-1.5}});
   EXPECT_EQ(velocity.kind, SetpointKind::kVelocity);
   EXPECT_EQ(velocity.velocity_ned, Vector3d(0.1, 0.2, 0.3));
@@ -36,7 +36,7 @@ TEST(VehicleSetpoints, OfVelocityAndAcceleration) {
   EXPECT_EQ(acceleration.yaw_rate, 0.3);
 }
 
-TEST(VehicleSetpoints, OfAttitudeAndBodyRatesHaveThrust) {
+TEST(VehicleSetpoints, AttitudeAndBodyRatesHaveThrust) {
   const Eigen::Quaterniond tilted(0.5, 0.5, -0.5, 0.5);
   const Setpoint attitude = to_setpoint(AttitudeSetpoint{tilted, 9.81, {0.1, 0.2, 0.3}});
   EXPECT_EQ(attitude.kind, SetpointKind::kAttitude);

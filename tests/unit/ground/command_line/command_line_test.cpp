@@ -33,21 +33,21 @@ class CommandLine : public testing::Test {
   std::vector<Command> commands_;
 };
 
-TEST_F(CommandLine, GotoTakesNegativeNumbers) {
+TEST_F(CommandLine, GotoAcceptsNegativeNumbers) {
   ASSERT_TRUE(parses("goto -1 0 -1.5"));
   EXPECT_EQ(value("goto", "x"), -1.0);
   EXPECT_EQ(value("goto", "y"), 0.0);
   EXPECT_EQ(value("goto", "z"), -1.5);
 }
 
-TEST_F(CommandLine, GotoTakesNegativeNumbersWithExponents) {
+TEST_F(CommandLine, GotoAcceptsNegativeNumbersWithExponents) {
   ASSERT_TRUE(parses("goto -0.5 -1e-1 -1 --yaw -1.57 --speed 0.2"));
   EXPECT_EQ(value("goto", "x"), -0.5);
   EXPECT_EQ(value("goto", "y"), -0.1);
   EXPECT_EQ(value("goto", "--yaw"), -1.57);
 }
 
-TEST_F(CommandLine, GotoRefusesWhatIsNoPlace) {
+TEST_F(CommandLine, GotoRefusesInvalidPositions) {
   EXPECT_FALSE(parses("goto 1 2"));
   EXPECT_FALSE(parses("goto 1 2 up"));
   EXPECT_FALSE(parses("goto 1 2 -1 4"));
@@ -63,7 +63,7 @@ TEST_F(CommandLine, FlyAttachesOrStartsProcesses) {
   EXPECT_FALSE(parses("fly square --network"));
 }
 
-TEST_F(CommandLine, TakeoffWantsAHeightAboveZero) {
+TEST_F(CommandLine, TakeoffRequiresAPositiveHeight) {
   EXPECT_TRUE(parses("takeoff"));
   EXPECT_TRUE(parses("takeoff 1.5"));
   EXPECT_FALSE(parses("takeoff -1"));
@@ -71,7 +71,7 @@ TEST_F(CommandLine, TakeoffWantsAHeightAboveZero) {
   EXPECT_FALSE(parses("takeoff inf"));
 }
 
-TEST_F(CommandLine, FlyTakesTheRatesThatThereAre) {
+TEST_F(CommandLine, FlyAcceptsSupportedRates) {
   EXPECT_TRUE(parses("fly square --imu-rate 1000"));
   EXPECT_TRUE(parses("fly square --imu-rate 500 --seed 3 --domain 232 --json --transport shm"));
   EXPECT_FALSE(parses("fly square --imu-rate 800"));
@@ -80,7 +80,7 @@ TEST_F(CommandLine, FlyTakesTheRatesThatThereAre) {
   EXPECT_FALSE(parses("fly square --transport pigeon"));
 }
 
-TEST_F(CommandLine, DomainsAndNamesThatCannotBeAreRefused) {
+TEST_F(CommandLine, RefusesInvalidDomainsAndVehicleNames) {
   EXPECT_FALSE(parses("status --domain 233"));
   EXPECT_FALSE(parses("status --domain -1"));
   EXPECT_FALSE(parses("status --vehicle-name kl/1"));
@@ -96,7 +96,7 @@ TEST_F(CommandLine, EveryCommandShowsAnExample) {
   }
 }
 
-TEST_F(CommandLine, UnknownWordsAreRefused) {
+TEST_F(CommandLine, RefusesUnknownWords) {
   EXPECT_FALSE(parses("loop"));
   EXPECT_FALSE(parses("arm now"));
   EXPECT_FALSE(parses("arm --force"));

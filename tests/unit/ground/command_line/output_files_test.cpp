@@ -10,7 +10,7 @@
 namespace swiftlet::ground {
 namespace {
 
-TEST(OutputFiles, AreNoInputs) {
+TEST(OutputFiles, MustNotOverwriteInputs) {
   const tests::TemporaryFolder folder;
   const std::string log = folder.write("log.csv", "t\n");
   const std::string by_another_name = (folder.path() / "." / "log.csv").string();
@@ -23,7 +23,7 @@ TEST(OutputFiles, AreNoInputs) {
       InputError);
 }
 
-TEST(OutputFiles, AreNotTheSame) {
+TEST(OutputFiles, MustBeDistinct) {
   EXPECT_THROW(refuse_overwriting({{"--out", "a"}, {"--report", "./a"}}, {}), InputError);
   EXPECT_NO_THROW(refuse_overwriting({{"--out", ""}, {"--report", ""}}, {}));
 }

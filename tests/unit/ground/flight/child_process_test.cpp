@@ -24,7 +24,7 @@ class ChildProcessTest : public testing::Test {
   ProcessSettings shell(const std::string& script) const {
     return {"child", "/bin/sh", {"-c", script}, folder_ / "child.log"};
   }
-  // A shell that has printed `ready` and set its traps.
+  // A shell whose traps are set: it has printed `ready`.
   ChildProcess ready(const std::string& before, const std::string& after) const {
     ChildProcess child(shell(before + "; echo ready; " + after));
     const auto deadline = std::chrono::steady_clock::now() + 10s;
@@ -37,7 +37,7 @@ class ChildProcessTest : public testing::Test {
   const std::filesystem::path folder_ = temporary_.path();
 };
 
-TEST_F(ChildProcessTest, TellsTheExitStatusAndTheLastLine) {
+TEST_F(ChildProcessTest, ReportsExitStatusAndLastLogLine) {
   ChildProcess child(shell("echo one; echo two >&2; echo; exit 7"));
   const auto end = child.wait(10s);
   ASSERT_TRUE(end);
@@ -45,7 +45,7 @@ TEST_F(ChildProcessTest, TellsTheExitStatusAndTheLastLine) {
   EXPECT_EQ(child.last_log_line(), "two");
 }
 
-TEST_F(ChildProcessTest, TellsTheSignal) {
+TEST_F(ChildProcessTest, ReportsTheSignal) {
   ChildProcess child = ready(":", "exec sleep 100");
   EXPECT_FALSE(child.poll());
   child.signal(SIGKILL);
@@ -54,17 +54,17 @@ TEST_F(ChildProcessTest, TellsTheSignal) {
   EXPECT_EQ(end->to_string(), "was killed by signal 9 (Killed)");
 }
 
-TEST_F(ChildProcessTest, StopsByTermFirst) {
+TEST_F(ChildProcessTest, StopSendsSigtermFirst) {
   ChildProcess child = ready("trap 'exit 0' TERM", "while :; do sleep 0.01; done");
   EXPECT_EQ(child.stop(10s).to_string(), "ended with exit status 0");
 }
 
-TEST_F(ChildProcessTest, KillsOneThatDoesNotHearTerm) {
+TEST_F(ChildProcessTest, StopKillsAProcessThatIgnoresSigterm) {
   ChildProcess child = ready("trap '' TERM", "while :; do sleep 0.01; done");
   EXPECT_EQ(child.stop(50ms).to_string(), "was killed by signal 9 (Killed)");
 }
 
-TEST_F(ChildProcessTest, LeavesNoneBehind) {
+TEST_F(ChildProcessTest, DestructorEndsTheProcess) {
   pid_t pid = -1;
   {
     const ChildProcess child = ready(":", "exec sleep 100");
@@ -75,12 +75,12 @@ TEST_F(ChildProcessTest, LeavesNoneBehind) {
   EXPECT_EQ(errno, ESRCH);
 }
 
-TEST_F(ChildProcessTest, StandsInAProcessGroupOfItsOwn) {
+TEST_F(ChildProcessTest, HasItsOwnProcessGroup) {
   const ChildProcess child = ready(":", "exec sleep 100");
-  EXPECT_EQ(getpgid(child.pid()), child.pid()) << "Ctrl-C of the launcher's terminal would reach it";
+  EXPECT_EQ(getpgid(child.pid()), child.pid()) << "must not receive Ctrl-C of the launcher's terminal";
 }
 
-TEST_F(ChildProcessTest, RunsInTheFolderThatItIsGiven) {
+TEST_F(ChildProcessTest, RunsInTheGivenFolder) {
   ProcessSettings settings = shell("pwd -P");
   settings.working_directory = folder_;
   ChildProcess child(settings);
@@ -88,17 +88,17 @@ TEST_F(ChildProcessTest, RunsInTheFolderThatItIsGiven) {
   EXPECT_EQ(child.last_log_line(), std::filesystem::canonical(folder_).string());
 }
 
-TEST_F(ChildProcessTest, SaysThatAProgramCannotBeStarted) {
+TEST_F(ChildProcessTest, ReportsAProgramThatCannotBeStarted) {
   try {
     const ChildProcess child({"swiftlet-plant", folder_ / "nothing", {}, folder_ / "child.log"});
-    FAIL() << "it was started";
+    FAIL() << "expected std::runtime_error";
   } catch (const std::runtime_error& error) {
     EXPECT_EQ(std::string(error.what()), "swiftlet-plant: " + (folder_ / "nothing").string() +
                                              " cannot be started: No such file or directory");
   }
 }
 
-TEST_F(ChildProcessTest, GroupNamesTheOneThatDied) {
+TEST_F(ChildProcessTest, GroupNamesTheExitedProcess) {
   ProcessSettings well = shell("exec sleep 100");
   well.name = "well";
   well.log_file = folder_ / "well.log";
@@ -113,7 +113,7 @@ TEST_F(ChildProcessTest, GroupNamesTheOneThatDied) {
             "ill was killed by signal 11 (Segmentation fault); last log line: out of luck");
 }
 
-TEST_F(ChildProcessTest, GroupSaysWhoDidNotEndCleanly) {
+TEST_F(ChildProcessTest, GroupReportsUncleanExits) {
   ProcessSettings fails = shell("exit 3");
   fails.name = "fails";
   ProcessGroup processes({fails});

@@ -10,21 +10,22 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr std::int64_t kSample_ns = 10'000'000;  // as telemetry comes
+constexpr std::int64_t kSample_ns = 10'000'000;  // period of telemetry
 constexpr int kSamples = 1000;
 
-// The report of a flight of 10 s whose truth is off its reference by error(i) m to the north, of which so many samples came.
+// Report of a 10 s flight whose truth deviates from its reference by error(i) m north, with `samples` samples
+// of telemetry.
 FlightReport evaluated(const std::function<double(int)>& error, int samples = kSamples,
                        const std::string& reason = "") {
   FlightRecord record(kSamples);
   for (int i = 0; i < samples; ++i) {
-    ReferenceRow asked;
-    asked.stamp_ns = i * kSample_ns;
-    asked.position_ned = {0.01 * i, 0.5, -1.0};
+    ReferenceRow reference;
+    reference.stamp_ns = i * kSample_ns;
+    reference.position_ned = {0.01 * i, 0.5, -1.0};
     TruthRow truth;
-    truth.stamp_ns = asked.stamp_ns;
-    truth.position_ned = {asked.position_ned[0] + error(i), 0.5, -1.0};
-    record.reference.append(asked);
+    truth.stamp_ns = reference.stamp_ns;
+    truth.position_ned = {reference.position_ned[0] + error(i), 0.5, -1.0};
+    record.reference.append(reference);
     record.truth.append(truth);
   }
   FlightReport report;
@@ -34,36 +35,36 @@ FlightReport evaluated(const std::function<double(int)>& error, int samples = kS
   return report;
 }
 
-TEST(Evaluate, AFlightWithinTheToleranceIsCompleted) {
+TEST(Evaluate, CompletesAFlightWithinTolerance) {
   const FlightReport report = evaluated([](int) { return 0.099; });
   EXPECT_TRUE(report.completed);
   EXPECT_EQ(report.reason, "");
   EXPECT_NEAR(report.errors.peak_3d_m, 0.099, 1e-12);
 }
 
-// One sample of 0.2 m among a thousand of 0.01 m: an RMS of 0.012 m, far below the tolerance.
-TEST(Evaluate, OneSampleBeyondTheToleranceIsEnough) {
+// One sample of 0.2 m among 999 of 0.01 m has an RMS of 0.012 m, far below the tolerance.
+TEST(Evaluate, FailsOnOneSampleBeyondTolerance) {
   const FlightReport report = evaluated([](int i) { return i == 700 ? -0.2 : 0.01; });
   EXPECT_LT(report.errors.rms_3d_m, 0.02);
   EXPECT_FALSE(report.completed);
   EXPECT_EQ(report.reason, "the peak tracking error was 0.200 m, the tolerance is 0.100 m");
 }
 
-TEST(Evaluate, WhatEndedTheFlightIsTheReason) {
+TEST(Evaluate, KeepsTheReasonThatEndedTheFlight) {
   const FlightReport report = evaluated([](int) { return 0.5; }, kSamples, "the vehicle is silent");
   EXPECT_FALSE(report.completed);
   EXPECT_EQ(report.reason, "the vehicle is silent");
-  EXPECT_NEAR(report.errors.peak_3d_m, 0.5, 1e-12) << "the errors are taken all the same";
+  EXPECT_NEAR(report.errors.peak_3d_m, 0.5, 1e-12) << "the errors are still evaluated";
 }
 
-TEST(Evaluate, WithoutTelemetryToTheEndNothingIsCompleted) {
+TEST(Evaluate, FailsWithoutTelemetryToTheEnd) {
   const FlightReport report = evaluated([](int) { return 0.0; }, kSamples - 30);
   EXPECT_FALSE(report.completed);
   EXPECT_NE(report.reason.find("too little telemetry"), std::string::npos) << report.reason;
   EXPECT_FALSE(evaluated([](int) { return 0.0; }, 0).completed);
 }
 
-TEST(Evaluate, ATruthThatIsNotFiniteIsNoTruth) {
+TEST(Evaluate, FailsOnAGroundTruthThatIsNotFinite) {
   const FlightReport report =
       evaluated([](int i) { return i == 5 ? std::numeric_limits<double>::quiet_NaN() : 0.0; });
   EXPECT_FALSE(report.completed);

@@ -1,4 +1,4 @@
-// Files of other projects, read as they are and flown in one process with all sensor models.
+// Files of other projects, read unchanged and flown in one process with all sensor models.
 #include <string>
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ class ForeignFlight : public testing::Test {
     FlightRecord record(plan_.record_capacity());
     return fly_in_process(loop, plan_, plan_.seed, record, nullptr, {}).report;
   }
-  // The vehicle can do what the path asks, down to the voltage at which it would land.
+  // The path is feasible down to the low battery voltage.
   void expect_feasible() const {
     for (const control::WorstDemand& worst :
          control::worst_demands(plan_.vehicle, plan_.control.limits,
@@ -43,7 +43,7 @@ class ForeignFlight : public testing::Test {
 
 class ForeignCsv : public ForeignFlight, public testing::WithParamInterface<const char*> {};
 
-TEST_P(ForeignCsv, IsFeasibleAndFlownClosely) {
+TEST_P(ForeignCsv, IsFeasibleAndTrackedClosely) {
   plan(GetParam());
   expect_feasible();
   const FlightReport report = fly();
@@ -55,13 +55,13 @@ TEST_P(ForeignCsv, IsFeasibleAndFlownClosely) {
 INSTANTIATE_TEST_SUITE_P(Files, ForeignCsv, testing::Values("crazyswarm_figure8.csv", "uav_waypoints.csv"),
                          [](const auto& file) { return file.index == 0 ? "Crazyswarm" : "UavTrajectories"; });
 
-TEST_F(ForeignFlight, Px4sBox) {
+TEST_F(ForeignFlight, TracksThePx4BoxMission) {
   std::string settings = runtime::read_text_file(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml");
   const auto set = [&](const std::string& key, const std::string& value) {
     const std::size_t begin = settings.find(key + ":");
     settings.replace(begin, settings.find('\n', begin) - begin, key + ": " + value);
   };
-  set("fence_min_ned_m", "[-30, -30, -12]");  // a field, not a room
+  set("fence_min_ned_m", "[-30, -30, -12]");  // outdoors
   set("fence_max_ned_m", "[30, 30, 0.2]");
   plan("px4_mission_box.plan", folder_.write("field.yaml", settings));
   const FlightReport report = fly();

@@ -1,5 +1,4 @@
-// A vehicle of another make, config/vehicles/crazyflie2.yaml: flown, and compared with the data that it is
-// from.
+// A second vehicle, config/vehicles/crazyflie2.yaml: flown, and compared with the data it comes from.
 #include <string>
 
 #include <gtest/gtest.h>
@@ -48,13 +47,13 @@ TEST(SecondVehicle, FliesTheZigzag) {
   EXPECT_LT(report.errors.rms_3d_m, 0.003);
 }
 
-TEST(SecondVehicle, FliesTheSquareOnThePapersLoops) {
+TEST(SecondVehicle, FliesTheSquareWithThePapersControlLaws) {
   const FlightReport report = fly("square", "paper");
   EXPECT_TRUE(report.completed) << report.reason;
   EXPECT_LT(report.errors.rms_3d_m, 0.030);
 }
 
-TEST(SecondVehicle, HasTheMotorsThatItsBenchGives) {
+TEST(SecondVehicle, MatchesTheIdentificationFromItsBench) {
   const plant::Vehicle vehicle = crazyflie();
   const std::string folder = SWIFTLET_SOURCE_DIR "/tests/data/crazyflie2_bench";
   const Bench bench = load_bench(folder, load_bench_settings(folder), vehicle.esc);
@@ -64,8 +63,8 @@ TEST(SecondVehicle, HasTheMotorsThatItsBenchGives) {
   EXPECT_NEAR(found.rotor.thrust / vehicle.rotor.thrust, 1.0, 1e-3);
 }
 
-// Bitcraze's table: 15924 rpm at half the duty cycle of 3.71 V, 24.4 g of four rotors.
-TEST(SecondVehicle, TurnsItsRotorsAsMeasured) {
+// Bitcraze's table: 15924 rpm and 24.4 g of four rotors at 50 % duty cycle and 3.71 V.
+TEST(SecondVehicle, MatchesTheMeasuredRotorSpeedAndThrust) {
   const plant::Vehicle vehicle = crazyflie();
   const double throttle = 0.5 * 0.5;  // the square of the duty cycle
   EXPECT_NEAR(plant::steady_speed_from_throttle(vehicle, 3.71, throttle), 1667.6, 0.05 * 1667.6);

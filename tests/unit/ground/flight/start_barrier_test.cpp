@@ -11,15 +11,15 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kLong = 60s;  // as long as no test takes
+constexpr auto kLong = 60s;  // longer than any test
 
-TEST(StartBarrier, AllBeginWhenTheLastIsReady) {
+TEST(StartBarrier, ReleasesAllWhenTheLastIsReady) {
   constexpr int kFlights = 4;
   StartBarrier barrier(kFlights);
   std::vector<char> began(kFlights, 0);
   std::vector<std::thread> flights;
   barrier.ready();
-  EXPECT_FALSE(barrier.wait_for_all(1ms)) << "three are missing";
+  EXPECT_FALSE(barrier.wait_for_all(1ms)) << "three are not ready";
   for (std::size_t i = 1; i < kFlights; ++i) {
     flights.emplace_back([&, i] {
       barrier.ready();
@@ -32,16 +32,16 @@ TEST(StartBarrier, AllBeginWhenTheLastIsReady) {
   EXPECT_FALSE(barrier.failure().has_value());
 }
 
-TEST(StartBarrier, NoneBeginsOnceOneHasFailed) {
+TEST(StartBarrier, ReleasesNoneAfterAFailure) {
   StartBarrier barrier(2);
   barrier.ready();
   std::thread other([&] { barrier.fail("kl2: no pose"); });
-  EXPECT_FALSE(barrier.wait_for_all(kLong)) << "and does not wait for it";
+  EXPECT_FALSE(barrier.wait_for_all(kLong)) << "must return at the failure";
   other.join();
   barrier.fail("kl1: another one");
-  EXPECT_EQ(barrier.failure(), "kl2: no pose") << "the first";
+  EXPECT_EQ(barrier.failure(), "kl2: no pose") << "the first failure counts";
   barrier.ready();
-  EXPECT_FALSE(barrier.wait_for_all(1ms)) << "ready as they are now";
+  EXPECT_FALSE(barrier.wait_for_all(1ms)) << "although both are ready";
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ class BenchFolder : public testing::Test {
     } catch (const std::exception& error) {
       return error.what();
     }
-    ADD_FAILURE() << "nothing was refused";
+    ADD_FAILURE() << "expected an exception";
     return "";
   }
   std::string at(const char* name) const { return (folder_.path() / name).string(); }
@@ -51,7 +51,7 @@ TEST_F(BenchFolder, ReadsBackWhatWasWritten) {
   EXPECT_EQ(bench.files.at("esc").lines[3], 5);
 }
 
-TEST_F(BenchFolder, TurnsPulseWidthsIntoThrottlesByEq8) {
+TEST_F(BenchFolder, ConvertsPulseWidthToThrottleByEq8) {
   folder_.write("esc.csv", "v_s [V],pwm [us],v_a [mV]\n4.0,1539,2500\n");
   const identification::EscData data = *load().data.esc;
   EXPECT_DOUBLE_EQ(data.throttle[0], 0.5);
@@ -69,7 +69,7 @@ TEST_F(BenchFolder, RefusesThrottleAndPulseWidthTogether) {
   EXPECT_NE(refused().find("has a throttle and a pulse width"), std::string::npos);
 }
 
-TEST_F(BenchFolder, RefusesFilesThatItDoesNotKnow) {
+TEST_F(BenchFolder, RefusesUnknownFiles) {
   EXPECT_NE(refused().find("contains no experiment, must contain at least one of mass.csv, esc.csv"),
             std::string::npos);
   folder_.write("stedy_motor.csv", "x\n1\n");
@@ -78,7 +78,7 @@ TEST_F(BenchFolder, RefusesFilesThatItDoesNotKnow) {
   EXPECT_EQ(refused().find(at("mass.CSV") + ": is not a known experiment"), 0U);
 }
 
-TEST_F(BenchFolder, ReadsEitherSetUpForInertia) {
+TEST_F(BenchFolder, ReadsSwingAndBifilarInertiaFiles) {
   folder_.write("inertia_yaw.csv", "arm [cm],period [s]\n5,0.5\n");
   EXPECT_DOUBLE_EQ(load().data.inertia[2]->swing->arm_m[0], 0.05);
   folder_.write("inertia_yaw.csv", "arm [cm],length [m],period [s]\n5,1,0.5\n");

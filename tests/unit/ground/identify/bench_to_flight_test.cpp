@@ -1,4 +1,4 @@
-// From a bench to a flight: an unknown vehicle is measured, identified, designed for, and flown.
+// From a bench to a flight: an unknown vehicle is measured and identified, gains are designed, and it flies.
 #include <algorithm>
 #include <cstdint>
 #include <string>
@@ -19,23 +19,23 @@
 namespace swiftlet::ground {
 namespace {
 
-// A vehicle of which nobody knows but that it is of KayLion's make.
-plant::Vehicle unknown(const plant::Vehicle& like, std::uint64_t seed) {
+// A vehicle with randomly perturbed parameters of `like`.
+plant::Vehicle perturbed(const plant::Vehicle& like, std::uint64_t seed) {
   plant::RandomStream random(seed, 20250920);
   plant::Vehicle out = like;
-  const auto dispersion = [&](double& value, double by) { value *= random.uniform(1.0 - by, 1.0 + by); };
-  dispersion(out.mass_kg, 0.1);
-  for (int axis = 0; axis < 3; ++axis) dispersion(out.inertia(axis, axis), 0.1);
+  const auto scale = [&](double& value, double by) { value *= random.uniform(1.0 - by, 1.0 + by); };
+  scale(out.mass_kg, 0.1);
+  for (int axis = 0; axis < 3; ++axis) scale(out.inertia(axis, axis), 0.1);
   out.inertia *= random.uniform(0.8, 1.2);
   out.inertia(2, 2) = std::min(out.inertia(2, 2), 0.98 * (out.inertia(0, 0) + out.inertia(1, 1)));
-  dispersion(out.rotor.thrust, 0.1);
-  dispersion(out.rotor.torque, 0.1);
-  dispersion(out.motor.time_constant_s, 0.2);
-  dispersion(out.motor.k2, 0.1);
-  dispersion(out.motor.k3, 0.1);
+  scale(out.rotor.thrust, 0.1);
+  scale(out.rotor.torque, 0.1);
+  scale(out.motor.time_constant_s, 0.2);
+  scale(out.motor.k2, 0.1);
+  scale(out.motor.k3, 0.1);
   out.motor.armature_resistance_ohm = 0.99 * out.motor.k2 * out.motor.k3 / out.rotor.torque;
-  dispersion(out.esc.gain, 0.05);
-  dispersion(out.esc.offset_v2, 0.1);
+  scale(out.esc.gain, 0.05);
+  scale(out.esc.offset_v2, 0.1);
   return out;
 }
 
@@ -71,10 +71,10 @@ class BenchToFlight : public testing::TestWithParam<std::uint64_t> {
  protected:
   tests::TemporaryFolder folder_;
   plant::Vehicle kaylion_ = runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
-  plant::Vehicle truth_ = unknown(kaylion_, GetParam());
+  plant::Vehicle truth_ = perturbed(kaylion_, GetParam());
 };
 
-TEST_P(BenchToFlight, TheSquareOnTheTruePlant) {
+TEST_P(BenchToFlight, FliesTheSquareOnTheTruePlant) {
   ASSERT_TRUE(plant::validate(truth_).empty());
   const LaunchConfiguration plan = plan_of(identified_file(folder_, truth_, kaylion_, GetParam()), folder_);
   const FlightReport report = fly(plan, truth_, GetParam());
@@ -83,7 +83,7 @@ TEST_P(BenchToFlight, TheSquareOnTheTruePlant) {
   EXPECT_LT(report.errors.peak_3d_m, 0.02);
 }
 
-TEST_P(BenchToFlight, KeepsItsMarginsOverWhatTheBenchLeftOpen) {
+TEST_P(BenchToFlight, KeepsItsMarginsWithinTheBenchUncertainty) {
   const std::string file = identified_file(folder_, truth_, kaylion_, GetParam());
   const LaunchConfiguration plan = plan_of(file, folder_, kUncertainty);
   ASSERT_EQ(plan.dispersion.name, kUncertainty);
@@ -98,7 +98,7 @@ TEST_P(BenchToFlight, KeepsItsMarginsOverWhatTheBenchLeftOpen) {
     EXPECT_LE(loop.worst.phase_deg, loop.most.phase_deg) << kLoopNames[i];
     EXPECT_LE(loop.worst.delay_s, loop.most.delay_s) << kLoopNames[i];
     EXPECT_GE(loop.worst.gain_decrease, loop.most.gain_decrease) << kLoopNames[i];
-    // A bench of half a percent leaves margins about where they are.
+    // A bench with 0.5 % noise hardly changes the margins.
     EXPECT_NEAR(loop.most.phase_deg, loop.designed.phase_deg, 3.0) << kLoopNames[i];
   }
 }

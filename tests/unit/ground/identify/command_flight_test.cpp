@@ -1,5 +1,4 @@
-// What a flight's commands and IMU alone tell: of flights in the plant, whose truth is known, and of a real
-// vehicle.
+// Identification from commands and IMU alone: of simulated flights with known truth, and of a real vehicle.
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -22,7 +21,7 @@ using identification::ParameterEstimate;
 using identification::SpeedSource;
 
 const std::string kSource = SWIFTLET_SOURCE_DIR;
-constexpr double kDelayS = 0.006;  // that is added to the commands of simulated flights
+constexpr double kDelayS = 0.006;  // added to the commands of simulated flights
 
 LaunchConfiguration delayed_plan() {
   LaunchConfiguration plan = plan_of("identification");
@@ -31,7 +30,7 @@ LaunchConfiguration delayed_plan() {
   return plan;
 }
 
-FlightLog blinded(FlightLog log) {
+FlightLog with_commands_and_imu(FlightLog log) {
   log.poses.clear();
   log.supply_voltage_v.clear();
   log.rotor_speeds.clear();
@@ -47,23 +46,23 @@ std::map<std::string, double> truth_of(const plant::Vehicle& v) {
   return out;
 }
 
-// Of several flights of vehicles unlike the plan's, whose batteries are not quite the plan's either.
+// Results of several flights of vehicles whose parameters and batteries differ from those of the plan.
 struct Tally {
   int count = 0;
   int covered = 0;
-  double bias = 0.0;    // sum of errors, each in half widths of its own interval
-  double worst = 0.0;   // of their magnitudes
-  double widest = 0.0;  // half width of an interval, relative
+  double bias = 0.0;    // sum of errors in half widths of their intervals
+  double worst = 0.0;   // largest error in half widths
+  double widest = 0.0;  // largest relative half width
 };
 
 std::map<std::string, Tally> recover(const LaunchConfiguration& plan, const char* what, int seeds) {
   std::map<std::string, Tally> tallies;
   for (int i = 1; i <= seeds; ++i) {
     const auto seed = static_cast<std::uint64_t>(i);
-    plant::Vehicle truth = another(plan.vehicle, seed);
+    plant::Vehicle truth = perturbed(plan.vehicle, seed);
     truth.battery.internal_resistance_ohm *= i % 2 == 0 ? 1.2 : 0.8;
     const FlightIdentification found =
-        identification::identify_flight({blinded(flown(plan, truth, seed))}, plan.vehicle, {});
+        identification::identify_flight({with_commands_and_imu(flown(plan, truth, seed))}, plan.vehicle, {});
     EXPECT_EQ(found.source, SpeedSource::kCommanded);
     EXPECT_TRUE(found.converged) << seed;
     for (const auto& [name, value] : truth_of(truth)) {
@@ -93,10 +92,9 @@ std::map<std::string, Tally> recover(const LaunchConfiguration& plan, const char
   return tallies;
 }
 
-// What the intervals say has to be true, and to be of use. The half width of one is two standard deviations of its error,
-// so that one error of ten thousand exceeds two half widths, and one mean of n errors of three hundred 1.5 over root n.
-// The vehicle files give moments of inertia to 25 %: what a flight tells of the gains is narrower, and of the lag narrower
-// by far.
+// The intervals must cover the truth and be narrow. A half width is two standard deviations of the error, so
+// 1 error in 10,000 exceeds two half widths, and 1 mean of n errors in 300 exceeds 1.5 / sqrt(n). The vehicle
+// files give moments of inertia to 25 %: the gains must be narrower than this, the lag to 5 %.
 void expect_true_and_narrow(const std::map<std::string, Tally>& tallies) {
   for (const auto& [name, tally] : tallies) {
     EXPECT_GE(tally.covered, tests::least_covered(tally.count)) << name;
@@ -110,18 +108,18 @@ TEST(CommandFlight, RecoversLagAndGains) {
   expect_true_and_narrow(recover(delayed_plan(), "calm", tests::draws(1, 8)));
 }
 
-TEST(CommandFlight, RecoversThemInGusts) {
+TEST(CommandFlight, RecoversLagAndGainsInGusts) {
   LaunchConfiguration plan = delayed_plan();
   plan.simulation.air.wind_ned = {1.0, -0.7, 0.0};
   plan.simulation.air.gust_sigma_ned = {0.7, 0.7, 0.3};
   expect_true_and_narrow(recover(plan, "gusts", tests::draws(1, 8)));
 }
 
-// The log of a real Crazyflie: what others have published of its kind, and of this log, lies near.
-TEST(CommandFlight, OfARealVehicle) {
+// GIVEN the log of a real Crazyflie THEN the result is near values published for this type and this log
+TEST(CommandFlight, AgreesWithPublishedValuesOfARealVehicle) {
   const plant::Vehicle base = runtime::load_vehicle(kSource + "/config/vehicles/crazyflie2.yaml");
   const ReadFlightLog read =
-      read_flight_log(kSource + "/tests/data/crazyflie_flight.csv.gz", base, BodyAxes::kAsSaid);
+      read_flight_log(kSource + "/tests/data/crazyflie_flight.csv.gz", base, BodyAxes::kAsDeclared);
   ASSERT_EQ(read.log.size(), 50496U);
   const FlightIdentification found = identification::identify_flight({read.log}, base, {});
   EXPECT_EQ(found.source, SpeedSource::kCommanded);
@@ -156,9 +154,9 @@ TEST(CommandFlight, OfARealVehicle) {
   }
 }
 
-TEST(CommandFlight, RefusesMotorsInAnotherOrder) {
+TEST(CommandFlight, RefusesSwappedMotors) {
   const LaunchConfiguration plan = delayed_plan();
-  FlightLog log = blinded(flown(plan, plan.vehicle, 4));
+  FlightLog log = with_commands_and_imu(flown(plan, plan.vehicle, 4));
   swap_motors(log);
   expect_refused({log}, plan.vehicle, "are the motors in its order");
 }

@@ -1,5 +1,4 @@
-// Logs of flights whose readings contradict each other, or physics: refused with a sentence, before a fit can
-// make numbers of them.
+// Flight logs whose readings contradict each other or physics are refused before the fit.
 #include <cmath>
 #include <functional>
 #include <string>
@@ -56,7 +55,7 @@ std::function<void(FlightLog&)> rows(const std::function<void(FlightLog&, std::s
   };
 }
 
-TEST_F(FlightChecks, UnitsThatPhysicsExcludes) {
+TEST_F(FlightChecks, RefusesWrongUnits) {
   expect_refused_with(rows([](FlightLog& log, std::size_t row) { log.specific_force_frd[row] /= 9.81; }),
                       "specific force: has the median 0.98");
   expect_refused_with(rows([](FlightLog& log, std::size_t row) { log.specific_force_frd[row] *= 1000.0; }),
@@ -77,21 +76,21 @@ TEST_F(FlightChecks, UnitsThatPhysicsExcludes) {
                       "has no pose more than 0.1 m above");
 }
 
-TEST_F(FlightChecks, UnitsOfALogWithoutPoses) {
-  const auto blind = [](FlightLog& log) {
+TEST_F(FlightChecks, RefusesWrongUnitsInALogWithoutPoses) {
+  const auto keep_commands_and_imu = [](FlightLog& log) {
     log.poses.clear();
     log.supply_voltage_v.clear();
     log.rotor_speeds.clear();
   };
   expect_refused_with(
       [&](FlightLog& log) {
-        blind(log);
+        keep_commands_and_imu(log);
         for (Eigen::Vector3d& rates : log.body_rates_frd) rates *= 180.0 / M_PI;
       },
       "body rates: leads to J_xx");
 }
 
-TEST_F(FlightChecks, ReadingsThatNeverChange) {
+TEST_F(FlightChecks, RefusesConstantReadings) {
   expect_refused_with(rows([](FlightLog& log, std::size_t row) { log.body_rates_frd[row].y() = 0.0; }),
                       "body rate y: is 0 rad/s all through the flight, must vary");
   expect_refused_with(rows([](FlightLog& log, std::size_t row) { log.specific_force_frd[row].x() = 0.1; }),
@@ -102,7 +101,7 @@ TEST_F(FlightChecks, ReadingsThatNeverChange) {
                       "speed of rotor 2: is 0 rad/s all through the flight, must vary");
 }
 
-TEST_F(FlightChecks, FramesAndClocksThatContradict) {
+TEST_F(FlightChecks, RefusesInconsistentFramesAndClocks) {
   expect_refused_with(
       poses([](FlightPose& pose) {
         pose.position_ned = {-pose.position_ned.x(), -pose.position_ned.y(), pose.position_ned.z()};
@@ -113,7 +112,7 @@ TEST_F(FlightChecks, FramesAndClocksThatContradict) {
   expect_refused_with(poses([](FlightPose& pose) { pose.time_s += 1.7e9; }), "must have both on one clock");
 }
 
-TEST_F(FlightChecks, PosesThatEndBeforeTheFlight) {
+TEST_F(FlightChecks, WarnsWhenPosesEndBeforeTheFlight) {
   const double end_s = log_->time_s.back() - 20.0;
   const auto cut = [end_s](FlightLog& log) {
     while (log.poses.back().time_s > end_s) log.poses.pop_back();
@@ -126,7 +125,7 @@ TEST_F(FlightChecks, PosesThatEndBeforeTheFlight) {
   expect_refused({log}, plan_->vehicle, "must have them all through the flight", options);
 }
 
-TEST_F(FlightChecks, WhatAGapLeavesOutIsTold) {
+TEST_F(FlightChecks, WarnsOfDataAfterAGap) {
   const FlightIdentification found = identified([](FlightLog& log) {
     for (std::size_t row = log.size() / 2; row < log.size(); ++row) log.time_s[row] += 2.0;
     for (FlightPose& pose : log.poses) {
@@ -136,13 +135,13 @@ TEST_F(FlightChecks, WhatAGapLeavesOutIsTold) {
   EXPECT_TRUE(contains(found.warnings, "rotors ran for another"));
 }
 
-TEST_F(FlightChecks, PosesMayBeStampedMostOfASecondLate) {
+TEST_F(FlightChecks, IdentifiesPoseDelaysUpTo600Ms) {
   const FlightIdentification found = identified(poses([](FlightPose& pose) { pose.time_s += 0.6; }));
   EXPECT_NEAR(found.find("delay.poses")->value, 0.6, 3e-4);
   EXPECT_NEAR(found.find("rotor.thrust_factor")->value / plan_->vehicle.rotor.thrust, 1.0, 1e-3);
 }
 
-TEST_F(FlightChecks, PredictionsGoByTheCommands) {
+TEST_F(FlightChecks, PredictionErrorGrowsWithWrongCommands) {
   const FlightIdentification found = identified([](FlightLog& log) {
     for (std::size_t row = log.size() - 12000; row < log.size(); ++row) log.command[row].fill(0.3);
   });
@@ -150,36 +149,37 @@ TEST_F(FlightChecks, PredictionsGoByTheCommands) {
   EXPECT_GT(found.errors[0].half_second, 5.0 * right.errors[0].half_second);
 }
 
-TEST_F(FlightChecks, LogsWithoutPosesAreOfOneRate) {
+TEST_F(FlightChecks, RefusesLogsOfDifferentRatesWithoutPoses) {
   FlightLog fast = *log_;
   fast.poses.clear();
   FlightLog slow = fast;
   slow.name = "slow.csv";
-  const auto thin = [](auto& values) {
-    std::size_t validation_set = 0;
-    for (std::size_t i = 0; i < values.size(); i += 5) values[validation_set++] = values[i];
-    values.resize(validation_set);
+  const auto keep_every_fifth = [](auto& values) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < values.size(); i += 5) values[kept++] = values[i];
+    values.resize(kept);
   };
-  thin(slow.time_s);
-  thin(slow.specific_force_frd);
-  thin(slow.body_rates_frd);
-  thin(slow.command);
-  thin(slow.running);
-  thin(slow.supply_voltage_v);
-  thin(slow.rotor_speeds);
+  keep_every_fifth(slow.time_s);
+  keep_every_fifth(slow.specific_force_frd);
+  keep_every_fifth(slow.body_rates_frd);
+  keep_every_fifth(slow.command);
+  keep_every_fifth(slow.running);
+  keep_every_fifth(slow.supply_voltage_v);
+  keep_every_fifth(slow.rotor_speeds);
   expect_refused({fast, slow}, plan_->vehicle, "slow.csv has a sample every 10 ms");
 }
 
-TEST(CalmFlight, DoesNotTellMomentsOfInertia) {
+TEST(CalmFlight, DoesNotIdentifyMomentsOfInertia) {
   const LaunchConfiguration plan = plan_of("square");
   const FlightIdentification found =
       identification::identify_flight({flown(plan, plan.vehicle, 2)}, plan.vehicle, {});
-  EXPECT_LT(found.find("inertia.zz")->high(), plan.vehicle.inertia(2, 2)) << "the trap is gone";
+  EXPECT_LT(found.find("inertia.zz")->high(), plan.vehicle.inertia(2, 2))
+      << "the fit must be biased here, or the test checks nothing";
   EXPECT_EQ(found.vehicle.inertia, plan.vehicle.inertia);
   EXPECT_EQ(found.sources.count("inertia.zz"), 0U);
 }
 
-TEST(CalmFlight, WithoutPosesDoesNotTellThemEither) {
+TEST(CalmFlight, DoesNotIdentifyInertiaOrLagWithoutPoses) {
   const LaunchConfiguration plan = plan_of("square");
   FlightLog log = flown(plan, plan.vehicle, 2);
   log.poses.clear();

@@ -1,4 +1,4 @@
-// From a flight back to the vehicle that flew it, in the plant, whose truth is known.
+// Identification of the vehicle from a simulated flight with known truth.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -30,18 +30,18 @@ struct Tally {
   int count = 0;
   int covered = 0;
   double bias = 0.0;    // sum of relative errors
-  double square = 0.0;  // of their squares
+  double square = 0.0;  // sum of their squares
 };
 
-// What is left out of a log of all that a vehicle can send.
-enum class Left { kAll, kNoSpeeds };
+// The channels in a log.
+enum class Channels { kAll, kNoSpeeds };
 
-std::map<std::string, Tally> recover(Left left, int seeds) {
+std::map<std::string, Tally> recover(Channels channels, int seeds) {
   LaunchConfiguration plan = plan_of("identification");
-  if (left == Left::kNoSpeeds) plan.simulation.rotor_speed_rate_hz = 0.0;
+  if (channels == Channels::kNoSpeeds) plan.simulation.rotor_speed_rate_hz = 0.0;
   std::map<std::string, Tally> tallies;
   for (int seed = 1; seed <= seeds; ++seed) {
-    const plant::Vehicle truth = another(plan.vehicle, static_cast<std::uint64_t>(seed));
+    const plant::Vehicle truth = perturbed(plan.vehicle, static_cast<std::uint64_t>(seed));
     const FlightLog log = flown(plan, truth, static_cast<std::uint64_t>(seed));
     const FlightIdentification found = identification::identify_flight({log}, plan.vehicle, {});
     EXPECT_TRUE(found.converged) << seed;
@@ -60,23 +60,23 @@ std::map<std::string, Tally> recover(Left left, int seeds) {
     }
   }
   for (const auto& [name, tally] : tallies) {
-    const std::string key = (left == Left::kAll ? "all " : "no speeds ") + name;
+    const std::string key = (channels == Channels::kAll ? "all " : "no speeds ") + name;
     std::printf("%-32s covered %d of %d, bias %+.3f %%, RMS %.3f %%\n", key.c_str(), tally.covered,
                 tally.count, 100.0 * tally.bias / tally.count, 100.0 * std::sqrt(tally.square / tally.count));
   }
   return tallies;
 }
 
-// Bounds of the mean relative error are a few times what 30 seeds leave.
+// The bounds of the mean relative error are a few times the error of 30 seeds.
 void expect_unbiased(const std::map<std::string, Tally>& tallies,
                      const std::map<std::string, double>& bounds) {
   for (const auto& [name, tally] : tallies)
     EXPECT_LT(std::abs(tally.bias) / tally.count, bounds.at(name)) << name;
 }
 
-TEST(FlightIdentification, RecoversAVehicleWithItsIntervals) {
+TEST(FlightIdentification, RecoversTheVehicleWithinItsIntervals) {
   const int seeds = tests::draws(3, 30);
-  const auto tallies = recover(Left::kAll, seeds);
+  const auto tallies = recover(Channels::kAll, seeds);
   expect_unbiased(tallies, {{"motor.time_constant", 1e-4},
                             {"rotor.thrust_factor", 1e-4},
                             {"inertia.xx", 2e-3},
@@ -93,8 +93,8 @@ TEST(FlightIdentification, RecoversAVehicleWithItsIntervals) {
   EXPECT_GE(covered, 0.9 * count);
 }
 
-TEST(FlightIdentification, RecoversAVehicleThatDoesNotTellItsRotorSpeeds) {
-  const auto tallies = recover(Left::kNoSpeeds, tests::draws(2, 30));
+TEST(FlightIdentification, RecoversTheVehicleWithoutRotorSpeeds) {
+  const auto tallies = recover(Channels::kNoSpeeds, tests::draws(2, 30));
   for (const auto& [name, tally] : tallies)
     EXPECT_GE(tally.covered, tests::least_covered(tally.count)) << name;
   expect_unbiased(tallies, {{"motor.time_constant", 5e-3},
@@ -105,7 +105,7 @@ TEST(FlightIdentification, RecoversAVehicleThatDoesNotTellItsRotorSpeeds) {
                             {"linear_drag", 0.02}});
 }
 
-TEST(FlightIdentification, TellsMassInsteadWhereTheThrustIsKnown) {
+TEST(FlightIdentification, IdentifiesMassWhenThrustIsKnown) {
   const LaunchConfiguration plan = plan_of("identification");
   plant::Vehicle truth = plan.vehicle;
   truth.mass_kg *= 1.1;
@@ -120,15 +120,15 @@ TEST(FlightIdentification, TellsMassInsteadWhereTheThrustIsKnown) {
   EXPECT_EQ(found.find("rotor.thrust_factor"), nullptr);
 }
 
-TEST(FlightIdentification, RefusesLogsThatDoNotHoldTheSame) {
+TEST(FlightIdentification, RefusesLogsWithDifferentChannels) {
   const LaunchConfiguration plan = plan_of("identification");
   const FlightLog log = flown(plan, plan.vehicle, 5);
-  FlightLog blind = log;
-  blind.poses.clear();
-  expect_refused({log, blind}, plan.vehicle, "hold different data");
+  FlightLog without_poses = log;
+  without_poses.poses.clear();
+  expect_refused({log, without_poses}, plan.vehicle, "hold different data");
 }
 
-TEST(FlightIdentification, TellsADelayOfTheCommands) {
+TEST(FlightIdentification, IdentifiesACommandDelay) {
   LaunchConfiguration plan = plan_of("identification");
   plan.simulation.rotor_speed_rate_hz = 0.0;
   delay_commands(plan, 0.006);
@@ -137,23 +137,23 @@ TEST(FlightIdentification, TellsADelayOfTheCommands) {
   EXPECT_NEAR(found.find("delay.rates")->value, 0.006, 0.0015);
 }
 
-TEST(FlightIdentification, FindsPosesThatAreStampedLateAndSetsThemRight) {
+TEST(FlightIdentification, IdentifiesAndCorrectsAPoseDelay) {
   const LaunchConfiguration plan = plan_of("identification");
-  const plant::Vehicle truth = another(plan.vehicle, 6);
+  const plant::Vehicle truth = perturbed(plan.vehicle, 6);
   FlightLog log = flown(plan, truth, 6);
-  const FlightIdentification right = identification::identify_flight({log}, plan.vehicle, {});
+  const FlightIdentification on_time = identification::identify_flight({log}, plan.vehicle, {});
   for (identification::FlightPose& pose : log.poses) pose.time_s += 0.03;
   const FlightIdentification late = identification::identify_flight({log}, plan.vehicle, {});
-  EXPECT_NEAR(right.find("delay.poses")->value, 0.0, 3e-4);
+  EXPECT_NEAR(on_time.find("delay.poses")->value, 0.0, 3e-4);
   EXPECT_NEAR(late.find("delay.poses")->value, 0.03, 3e-4);
-  EXPECT_NEAR(right.find("linear_drag")->value / truth.linear_drag, 1.0, 0.03);
+  EXPECT_NEAR(on_time.find("linear_drag")->value / truth.linear_drag, 1.0, 0.03);
   for (const char* const same : {"linear_drag", "inertia.xx", "accelerometer_offset.z"})
-    EXPECT_NEAR(late.find(same)->value / right.find(same)->value, 1.0, 1e-3) << same;
+    EXPECT_NEAR(late.find(same)->value / on_time.find(same)->value, 1.0, 1e-3) << same;
   EXPECT_TRUE(tests::contains(late.findings, "poses are stamped"));
-  EXPECT_FALSE(tests::contains(right.findings, "poses are stamped"));
+  EXPECT_FALSE(tests::contains(on_time.findings, "poses are stamped"));
 }
 
-TEST(FlightIdentification, SaysWhatAHoverDoesNotTell) {
+TEST(FlightIdentification, ReportsUnexcitedParametersOfAHover) {
   const LaunchConfiguration plan = plan_of(tests::TemporaryFolder().write("hover.yaml", R"(name: hover
 frame: ned
 tolerance_m: 0.2
@@ -169,7 +169,7 @@ items:
   EXPECT_EQ(found.vehicle.inertia(2, 2), plan.vehicle.inertia(2, 2));
 }
 
-TEST(FlightIdentification, RefusesMotorsInAnotherOrder) {
+TEST(FlightIdentification, RefusesSwappedMotors) {
   const LaunchConfiguration plan = plan_of("identification");
   FlightLog log = flown(plan, plan.vehicle, 4);
   swap_motors(log);

@@ -34,7 +34,7 @@ std::size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
-TEST(IdentificationPage, HoldsThePapersFiguresAndNeedsNothingElse) {
+TEST(IdentificationPage, HasThePapersFiguresWithoutExternalResources) {
   const std::string page = identification_html(report());
   for (const char* figure : {"<figcaption>Fig. 2:", "<figcaption>Fig. 3:", "<figcaption>Fig. 4:",
                              "<figcaption>Fig. 6:", "<figcaption>Fig. 7:"})
@@ -48,7 +48,7 @@ TEST(IdentificationPage, HoldsThePapersFiguresAndNeedsNothingElse) {
   EXPECT_GT(count(page, "a &lt;bench&gt;"), 0U);
 }
 
-TEST(IdentificationJson, GivesEveryParameterWithItsInterval) {
+TEST(IdentificationJson, ListsEveryParameterWithItsInterval) {
   const IdentificationReport given = report();
   const nlohmann::json out = nlohmann::json::parse(identification_json(given));
   std::size_t in_vehicle = 0;

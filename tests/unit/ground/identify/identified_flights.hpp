@@ -1,4 +1,4 @@
-// Flights in the plant, whose truth is known, for identifications.
+// Simulated flights with known truth, for tests of identification.
 #pragma once
 
 #include <algorithm>
@@ -29,8 +29,8 @@ inline LaunchConfiguration plan_of(const std::string& mission) {
   return plan_flight(options);
 }
 
-// What may have come off the workbench in place of the plan's vehicle, of a weight that is known.
-inline plant::Vehicle another(const plant::Vehicle& nominal, std::uint64_t seed) {
+// The nominal vehicle with randomly perturbed parameters and the same mass.
+inline plant::Vehicle perturbed(const plant::Vehicle& nominal, std::uint64_t seed) {
   plant::RandomStream random(seed, 20250919);
   plant::Vehicle out = nominal;
   out.rotor.thrust *= random.uniform(0.9, 1.1);
@@ -54,7 +54,7 @@ inline identification::FlightLog flown(const LaunchConfiguration& plan, const pl
   return flight_log_of(record);
 }
 
-// Commands come to the motors later.
+// Delays the commands to the motors.
 inline void delay_commands(LaunchConfiguration& plan, double delay_s) {
   plant::Fault late;
   late.kind = plant::FaultKind::kCommandsDelay;
@@ -64,7 +64,7 @@ inline void delay_commands(LaunchConfiguration& plan, double delay_s) {
   plan.simulation.faults = {late};
 }
 
-// As if the motors of each side were plugged in the wrong way round.
+// Swaps the motors of each side.
 inline void swap_motors(identification::FlightLog& log) {
   const auto swap = [](plant::PerRotor& of) {
     std::swap(of[0], of[1]);

@@ -1,4 +1,4 @@
-// Draws from what a vehicle file says of how sure its parameters are.
+// Samples of the parameter uncertainty in a vehicle file.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -31,19 +31,19 @@ std::string refused(const plant::VehicleUncertainty& given) {
   } catch (const runtime::ConfigError& fault) {
     return fault.what();
   }
-  ADD_FAILURE() << "was not refused";
+  ADD_FAILURE() << "expected ConfigError";
   return "";
 }
 
-TEST(Uncertainty, IsDrawnWithItsErrorsAndCorrelations) {
+TEST(Uncertainty, SamplesHaveItsVariancesAndCorrelations) {
   const plant::Vehicle vehicle = kaylion();
   const Dispersion dispersion = dispersion_of(uncertainty(), vehicle, "v.yaml");
   constexpr int kDraws = 4000;
   double k2 = 0.0;
   double k3 = 0.0;
   double mass = 0.0;
-  double both = 0.0;
-  double apart = 0.0;
+  double k2_k3 = 0.0;
+  double k2_mass = 0.0;
   for (int seed = 0; seed < kDraws; ++seed) {
     const plant::Vehicle drawn =
         draw(dispersion, {vehicle, {}}, static_cast<std::uint64_t>(seed)).world.vehicle;
@@ -53,30 +53,30 @@ TEST(Uncertainty, IsDrawnWithItsErrorsAndCorrelations) {
     k2 += e2 * e2 / kDraws;
     k3 += e3 * e3 / kDraws;
     mass += em * em / kDraws;
-    both += e2 * e3 / kDraws;
-    apart += e2 * em / kDraws;
+    k2_k3 += e2 * e3 / kDraws;
+    k2_mass += e2 * em / kDraws;
   }
   EXPECT_NEAR(k2, 1.0, 0.1);
   EXPECT_NEAR(k3, 1.0, 0.1);
   EXPECT_NEAR(mass, 1.0, 0.1);
-  EXPECT_NEAR(both, -0.9, 0.1);
-  EXPECT_NEAR(apart, 0.0, 0.1);
+  EXPECT_NEAR(k2_k3, -0.9, 0.1);
+  EXPECT_NEAR(k2_mass, 0.0, 0.1);
 }
 
-TEST(Uncertainty, GivesOneDrawForOneSeed) {
+TEST(Uncertainty, SampleDependsOnTheSeedAlone) {
   const plant::Vehicle vehicle = kaylion();
   const Dispersion dispersion = dispersion_of(uncertainty(), vehicle, "v.yaml");
   EXPECT_EQ(draw(dispersion, {vehicle, {}}, 7).values, draw(dispersion, {vehicle, {}}, 7).values);
   EXPECT_NE(draw(dispersion, {vehicle, {}}, 7).values, draw(dispersion, {vehicle, {}}, 8).values);
 }
 
-TEST(Uncertainty, OfFilesThatStateNoneIsRefused) {
+TEST(Uncertainty, RefusesFilesWithoutUncertainty) {
   EXPECT_EQ(refused({}),
             "v.yaml: uncertainty: is missing, must list the standard errors of the parameters; `swiftlet "
             "identify` writes it");
 }
 
-TEST(Uncertainty, OfWhatCannotBeVariedIsRefused) {
+TEST(Uncertainty, RefusesParametersThatCannotVary) {
   plant::VehicleUncertainty given;
   given.parameters = {{"esc.pulse_min", 1.0, 1037.0, 1041.0}};
   EXPECT_EQ(refused(given), "v.yaml: uncertainty: esc.pulse_min cannot be varied");

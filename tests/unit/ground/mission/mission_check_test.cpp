@@ -24,7 +24,7 @@ using control::WorstDemand;
 const std::string kConfig = SWIFTLET_SOURCE_DIR "/config/";
 const std::string kHead = "frame: ned\ntolerance_m: 0.1\nitems:\n";
 
-class MissionChecked : public testing::Test {
+class MissionCheckTest : public testing::Test {
  protected:
   MissionFile parse(const std::string& text) const {
     return parse_mission_file(text, "m.yaml", settings_.limits);
@@ -40,7 +40,7 @@ class MissionChecked : public testing::Test {
   control::ControlSettings settings_ = runtime::load_control_settings(kConfig + "control/motor_lag.yaml");
 };
 
-TEST_F(MissionChecked, TheMissionsOfTheConfigurationCanBeFlown) {
+TEST_F(MissionCheckTest, AcceptsTheConfiguredMissions) {
   for (const char* name : {"square", "zigzag", "tour"}) {
     const MissionFile file = load_mission_file(kConfig + "missions/" + name + ".yaml", settings_.limits);
     const MissionCheck check = checked(file);
@@ -49,8 +49,8 @@ TEST_F(MissionChecked, TheMissionsOfTheConfigurationCanBeFlown) {
   }
 }
 
-// The supervision plans a move of 2 m at 0.5 m/s as minimum jerk of 7.5 s: its peaks are known.
-TEST_F(MissionChecked, FindsTheWorstWithItsTimeAndPlace) {
+// The controller plans a move of 2 m at 0.5 m/s as a minimum-jerk path of 7.5 s with known peaks.
+TEST_F(MissionCheckTest, FindsTheWorstDemandWithTimeAndPosition) {
   const MissionFile file = parse(kHead +
                                  "  - {kind: takeoff, height_m: 1, speed_m_s: 0.5, hold_s: 1.5}\n"
                                  "  - {kind: waypoint, position_m: [2, 0, -1], speed_m_s: 0.5}\n"
@@ -59,21 +59,21 @@ TEST_F(MissionChecked, FindsTheWorstWithItsTimeAndPlace) {
   const MissionCheck check = checked(file);
   ASSERT_TRUE(check.feasible()) << check_table(check, file, vehicle_.name);
   ASSERT_EQ(check.items.size(), 4U);
-  const ItemCheck& way = check.items[1];
-  EXPECT_EQ(way.line, 5);
+  const ItemCheck& leg = check.items[1];
+  EXPECT_EQ(leg.line, 5);
   EXPECT_NEAR(check.items[0].duration_s, 0.8 + 3.75 + 1.5, 0.01) << "spool-up, climb, hold";
-  EXPECT_NEAR(way.start_s, check.items[0].duration_s, 1e-6);
-  EXPECT_NEAR(way.duration_s, 7.5, 0.01);
-  const WorstDemand& speed = worst(way, Demand::kSpeed);
+  EXPECT_NEAR(leg.start_s, check.items[0].duration_s, 1e-6);
+  EXPECT_NEAR(leg.duration_s, 7.5, 0.01);
+  const WorstDemand& speed = worst(leg, Demand::kSpeed);
   EXPECT_NEAR(speed.value, 0.5, 1e-4);
-  EXPECT_NEAR(speed.time_s, way.start_s + 3.75, 0.02);
+  EXPECT_NEAR(speed.time_s, leg.start_s + 3.75, 0.02);
   EXPECT_NEAR(speed.position_ned.x(), 1.0, 0.01);
-  EXPECT_NEAR(worst(way, Demand::kAcceleration).value, 10.0 / std::sqrt(3.0) * 2.0 / (7.5 * 7.5), 1e-4);
-  EXPECT_TRUE(check.items[2].demands.empty()) << "nothing moves";
+  EXPECT_NEAR(worst(leg, Demand::kAcceleration).value, 10.0 / std::sqrt(3.0) * 2.0 / (7.5 * 7.5), 1e-4);
+  EXPECT_TRUE(check.items[2].demands.empty()) << "the vehicle does not move";
   EXPECT_NEAR(check.items[2].duration_s, 2.0, 0.01);
 }
 
-TEST_F(MissionChecked, AVehicleThatIsTooHeavyCannotAndIsToldWhereAndWhy) {
+TEST_F(MissionCheckTest, ReportsWhereATooHeavyVehicleExceedsItsLimit) {
   const MissionFile file = load_mission_file(kConfig + "missions/square.yaml", settings_.limits);
   vehicle_.mass_kg *= 2.5;
   const MissionCheck check = checked(file);
@@ -92,9 +92,9 @@ TEST_F(MissionChecked, AVehicleThatIsTooHeavyCannotAndIsToldWhereAndWhy) {
   EXPECT_DOUBLE_EQ(demand.at("value").get<double>(), rotor.value);
 }
 
-// A trajectory of two segments after the way to its start, and one after a wait: the worst of each leg is told by the
-// mission's time, of which the legs before it, holds and waits are part.
-TEST_F(MissionChecked, TellsTheTimeOfTheWorstInALaterLeg) {
+// GIVEN a trajectory of two segments after a leg to its start, and a move after a wait THEN the time of each
+// worst demand is mission time, which includes earlier legs, holds and waits
+TEST_F(MissionCheckTest, GivesTheWorstDemandOfALaterLegInMissionTime) {
   MissionFile file = parse(kHead +
                            "  - {kind: takeoff, height_m: 1, speed_m_s: 0.5, hold_s: 1}\n"
                            "  - {kind: waypoint, position_m: [0.5, 0, -1], speed_m_s: 0.5}\n"
@@ -110,19 +110,19 @@ TEST_F(MissionChecked, TellsTheTimeOfTheWorstInALaterLeg) {
   ASSERT_TRUE(check.feasible()) << check_table(check, file, vehicle_.name);
   ASSERT_EQ(check.items.size(), 5U);
   // The second segment is the faster one: 15/8 of 1.5 m in 4 s, in its middle.
-  const ItemCheck& way = check.items[1];
-  const WorstDemand& speed = worst(way, Demand::kSpeed);
+  const ItemCheck& leg = check.items[1];
+  const WorstDemand& speed = worst(leg, Demand::kSpeed);
   EXPECT_NEAR(speed.value, 15.0 / 8.0 * 1.5 / 4.0, 1e-3);
-  EXPECT_NEAR(speed.time_s, way.start_s + way.duration_s - 2.0, 0.05);
+  EXPECT_NEAR(speed.time_s, leg.start_s + leg.duration_s - 2.0, 0.05);
   EXPECT_NEAR(speed.position_ned.x(), 0.25, 0.02);
   const ItemCheck& last = check.items[3];
   EXPECT_NEAR(worst(last, Demand::kSpeed).value, 0.4, 1e-3);
   EXPECT_NEAR(worst(last, Demand::kSpeed).time_s, last.start_s + 0.5 * last.duration_s, 0.05);
-  EXPECT_NEAR(last.start_s, way.start_s + way.duration_s + 2.0, 0.02) << "the wait";
+  EXPECT_NEAR(last.start_s, leg.start_s + leg.duration_s + 2.0, 0.02) << "the wait";
 }
 
-// What passes the checks of speed and acceleration may still tilt too far: sideways while it sinks away.
-TEST_F(MissionChecked, ATrajectoryThatTiltsTooFarIsFoundInTheMiddleOfTheMission) {
+// A segment within the limits of speed and acceleration can still exceed the tilt limit.
+TEST_F(MissionCheckTest, FindsATrajectoryThatTiltsTooFar) {
   MissionFile file = parse(kHead +
                            "  - {kind: takeoff, height_m: 2, speed_m_s: 0.5}\n"
                            "  - {kind: waypoint, position_m: [-0.5, 0, -2], speed_m_s: 0.5}\n"
@@ -143,7 +143,7 @@ TEST_F(MissionChecked, ATrajectoryThatTiltsTooFarIsFoundInTheMiddleOfTheMission)
   EXPECT_NEAR(tilt.value, std::atan(10.0 / std::sqrt(3.0) / (1.2 * 1.2) / 9.81), 0.02);
 }
 
-TEST_F(MissionChecked, WhatTheControlServiceWouldRefuseIsNotFeasible) {
+TEST_F(MissionCheckTest, RefusesWhatTheControlServiceRefuses) {
   const MissionFile file = parse("geofence: {min_m: [0.5, -1, -2], max_m: [2, 1, 0.2]}\n" + kHead +
                                  "  - {kind: takeoff, height_m: 1, speed_m_s: 0.5}\n"
                                  "  - {kind: waypoint, position_m: [1, 0, -1], speed_m_s: 0.5}\n"
@@ -156,7 +156,7 @@ TEST_F(MissionChecked, WhatTheControlServiceWouldRefuseIsNotFeasible) {
   EXPECT_TRUE(check_mission(file, inside, vehicle_, settings_, 3.3).feasible()) << inside.reason;
 }
 
-TEST_F(MissionChecked, OneThatBeginsInTheAirIsRehearsedFromAHover) {
+TEST_F(MissionCheckTest, StartsAnAirborneMissionFromAHover) {
   const MissionFile file =
       parse("ends: hovering\n" + kHead + "  - {kind: waypoint, position_m: [1, 0, -1], speed_m_s: 0.5}\n");
   const MissionCheck check = checked(file);
@@ -164,8 +164,8 @@ TEST_F(MissionChecked, OneThatBeginsInTheAirIsRehearsedFromAHover) {
   EXPECT_NEAR(check.duration_s, 15.0 / 8.0 / 0.5, 0.01);
 }
 
-// The rehearsal is what is flown: its legs are those of the mission's own segments, to the last bit.
-TEST_F(MissionChecked, TheRehearsalFliesEverySegmentOfATrajectory) {
+// The legs of the dry run equal the segments of the mission bit for bit.
+TEST_F(MissionCheckTest, DryRunFliesEverySegmentOfATrajectory) {
   const MissionFile file = load_mission_file(kConfig + "missions/tour.yaml", settings_.limits);
   const MissionDryRun run = dry_run(file.mission, settings_, {0.0, 0.0});
   ASSERT_TRUE(run.completed) << run.reason;
@@ -182,7 +182,7 @@ TEST_F(MissionChecked, TheRehearsalFliesEverySegmentOfATrajectory) {
   }
 }
 
-TEST_F(MissionChecked, IsDrawn) {
+TEST_F(MissionCheckTest, DrawsThePathAsPng) {
   const tests::TemporaryFolder folder;
   const MissionFile file = load_mission_file(kConfig + "missions/tour.yaml", settings_.limits);
   const std::filesystem::path png = folder.path() / "tour.png";

@@ -24,7 +24,7 @@ TEST(FlatYaml, EverySettingHasItsKey) {
                       {"items[1].at", ""}}));
 }
 
-TEST(FlatYaml, NamesTheLineOfWhatIsNoYaml) {
+TEST(FlatYaml, NamesTheLineOfInvalidYaml) {
   try {
     runtime::flatten_yaml("a: 1\nb: [1, 2\n", "a.yaml");
     FAIL();
@@ -46,32 +46,31 @@ class FlightComparison : public testing::Test {
   tests::TemporaryFolder folder_;
 };
 
-TEST_F(FlightComparison, OneFlightShowsItsFiguresAndLoops) {
+TEST_F(FlightComparison, ShowsFiguresAndGainsOfOneFlight) {
   const std::string table = comparison_table({load_recorded_flight(flight("a", "0.001234", "2.0"))});
   EXPECT_NE(table.find("RMS 3-D, mm   1.23\n"), std::string::npos) << table;
   EXPECT_NE(table.find("control.position.omega_n  2.0\n"), std::string::npos) << table;
-  EXPECT_NE(table.find("peak 3-D, mm  -\n"), std::string::npos) << "not in its report";
+  EXPECT_NE(table.find("peak 3-D, mm  -\n"), std::string::npos) << "not in the report";
 }
 
-TEST_F(FlightComparison, SeveralShowWhereTheyDiffer) {
+TEST_F(FlightComparison, ShowsTheDifferencesOfSeveralFlights) {
   const std::vector<RecordedFlight> flights = {load_recorded_flight(flight("a", "0.001", "2.0")),
                                                load_recorded_flight(flight("b", "0.010", "1.3"))};
   const std::string table = comparison_table(flights);
   EXPECT_NE(table.find("control.position.omega_n  2.0  1.3\n"), std::string::npos) << table;
-  EXPECT_EQ(table.find("zeta"), std::string::npos) << "is the same in both";
+  EXPECT_EQ(table.find("zeta"), std::string::npos) << "equal in both";
   EXPECT_EQ(comparison_json(flights)["differ"], nlohmann::ordered_json::array({"control.position.omega_n"}));
 }
 
-TEST_F(FlightComparison, TheNewestIsTheOneWithTheLastReport) {
-  const std::filesystem::path old_one = flight("b", "0.001", "2.0");
-  const std::filesystem::path new_one = flight("a", "0.001", "2.0");
+TEST_F(FlightComparison, NewestFlightHasTheLatestReport) {
+  const std::filesystem::path older = flight("b", "0.001", "2.0");
+  const std::filesystem::path newer = flight("a", "0.001", "2.0");
   std::filesystem::last_write_time(
-      old_one / "report.json",
-      std::filesystem::last_write_time(new_one / "report.json") - std::chrono::hours(1));
-  EXPECT_EQ(newest_flight(folder_.path()), new_one);
+      older / "report.json", std::filesystem::last_write_time(newer / "report.json") - std::chrono::hours(1));
+  EXPECT_EQ(newest_flight(folder_.path()), newer);
 }
 
-TEST_F(FlightComparison, SaysWhatIsNoFlight) {
+TEST_F(FlightComparison, RefusesFoldersWithoutAFlight) {
   EXPECT_THROW(load_recorded_flight(folder_.path()), InputError);
   EXPECT_THROW(newest_flight(folder_.path() / "none"), InputError);
   folder_.write("report.json", "{\"completed\": tr");

@@ -37,7 +37,7 @@ std::vector<std::vector<std::string>> table(const fs::path& file) {
   return rows;
 }
 
-// Truth at 500 Hz, a reference with each fifth of it until `last_reference`.
+// Truth at 500 Hz, and a reference with every fifth sample up to `last_reference`.
 FlightRecord& fly(FlightRecord& record, int count, int last_reference) {
   for (int i = 0; i < count; ++i) {
     TruthRow truth;
@@ -57,7 +57,7 @@ FlightRecord& fly(FlightRecord& record, int count, int last_reference) {
   return record;
 }
 
-TEST_F(FlightFilesTest, CsvHasARowForEachReferenceAndGoesOnWithoutThem) {
+TEST_F(FlightFilesTest, CsvHasARowForEachReferenceAndForLaterTruth) {
   FlightRecord record(100);
   write_flight_csv(folder_ / "flight.csv", fly(record, 30, 10), {1'010'000'000, 1'100'000'000});
   const auto rows = table(folder_ / "flight.csv");
@@ -71,21 +71,21 @@ TEST_F(FlightFilesTest, CsvHasARowForEachReferenceAndGoesOnWithoutThem) {
   EXPECT_EQ(rows[3][column("px")], "0.51");
   EXPECT_EQ(rows[3][column("ref_px")], "0.511");
   EXPECT_EQ(rows[3][column("mode")], "4");
-  EXPECT_EQ(rows[3][column("est_px")], "") << "no estimate of this stamp came";
+  EXPECT_EQ(rows[3][column("est_px")], "") << "no estimate with this stamp";
   EXPECT_EQ(rows[3][column("v_s")], "4.1");
   EXPECT_EQ(rows[3][column("om4")], "1603");
   EXPECT_EQ(rows[4][column("t")], "0.026000");
-  EXPECT_EQ(rows[4][column("ref_px")], "") << "no reference of this stamp came";
+  EXPECT_EQ(rows[4][column("ref_px")], "") << "no reference with this stamp";
   EXPECT_EQ(rows[5][column("t")], "0.042000");
 }
 
 TEST_F(FlightFilesTest, DrawsAPicture) {
-  ASSERT_FALSE(find_program("gnuplot").empty()) << "packages.txt names what the tests need";
+  ASSERT_FALSE(find_program("gnuplot").empty()) << "install the packages of packages.txt";
   FlightRecord record(2000);
   const Window window = {1'000'000'000, 3'000'000'000};
   write_flight_csv(folder_ / "flight.csv", fly(record, 1000, 1000), window);
   FlightReport report;
-  report.mission = "it's_a 'square'";  // quotes and commands of gnuplot's are text
+  report.mission = "it's_a 'square'";  // must be escaped for gnuplot
   report.duration_s = 2.0;
   EXPECT_EQ(draw_flight(folder_, report, window), "");
   std::ifstream picture(folder_ / "flight.png", std::ios::binary);
@@ -93,10 +93,10 @@ TEST_F(FlightFilesTest, DrawsAPicture) {
   picture.read(magic.data(), 8);
   EXPECT_EQ(magic, "\x89PNG\r\n\x1a\n");
   EXPECT_GT(fs::file_size(folder_ / "flight.png"), 20'000U);
-  EXPECT_TRUE(fs::exists(folder_ / "flight.gp")) << "to draw it anew";
+  EXPECT_TRUE(fs::exists(folder_ / "flight.gp")) << "kept to draw the picture again";
 }
 
-TEST_F(FlightFilesTest, SaysWhyThereIsNoPicture) {
+TEST_F(FlightFilesTest, ReportsWhyNoPictureIsDrawn) {
   const char* const before = std::getenv("PATH");
   const std::string path = before != nullptr ? before : "";
   setenv("PATH", folder_.c_str(), 1);
@@ -105,13 +105,13 @@ TEST_F(FlightFilesTest, SaysWhyThereIsNoPicture) {
   EXPECT_EQ(sentence, "no picture was drawn: gnuplot is not installed (flight.gp draws it from flight.csv)");
 }
 
-TEST_F(FlightFilesTest, SaysWhatGnuplotSaid) {
-  ASSERT_FALSE(find_program("gnuplot").empty()) << "packages.txt names what the tests need";
+TEST_F(FlightFilesTest, ReportsTheExitStatusOfGnuplot) {
+  ASSERT_FALSE(find_program("gnuplot").empty()) << "install the packages of packages.txt";
   const std::string sentence = draw_flight(folder_, {}, {});  // there is no flight.csv
   EXPECT_EQ(sentence.find("no picture was drawn: gnuplot ended with exit status"), 0U) << sentence;
 }
 
-TEST_F(FlightFilesTest, AFolderThatIsGoneIsAFailure) {
+TEST_F(FlightFilesTest, ThrowsWhenTheFolderIsMissing) {
   FlightRecord record(10);
   EXPECT_THROW(write_flight_csv(folder_ / "gone" / "flight.csv", record, {}), std::runtime_error);
   EXPECT_THROW(write_report_json(folder_ / "gone" / "report.json", {}), std::runtime_error);

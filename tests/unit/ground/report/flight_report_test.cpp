@@ -30,7 +30,7 @@ FlightReport flown_report() {
   return report;
 }
 
-TEST(FlightReportJson, HoldsWhatScriptsRead) {
+TEST(FlightReportJson, HasTheDocumentedKeys) {
   const nlohmann::ordered_json json = to_json(flown_report());
   EXPECT_EQ(json.at("completed"), true);
   EXPECT_FALSE(json.contains("reason"));
@@ -51,7 +51,7 @@ TEST(FlightReportJson, HoldsWhatScriptsRead) {
   EXPECT_EQ(json.at("sense_to_actuate_us").at("max"), 900.0);
 }
 
-TEST(FlightReportJson, SaysWhyAFlightDidNotComplete) {
+TEST(FlightReportJson, GivesTheReasonOfAFailedFlight) {
   FlightReport report = flown_report();
   report.completed = false;
   report.reason = "swiftlet-plant was killed";
@@ -64,7 +64,7 @@ TEST(FlightReportJson, IsNullWhereNothingWasMeasured) {
   EXPECT_EQ(nlohmann::json::parse(to_json(report).dump()).at("rms_3d_m"), nullptr);
 }
 
-TEST(FlightReportText, NamesTheFiguresInMillimetres) {
+TEST(FlightReportText, ShowsErrorsInMillimetres) {
   const std::string text = to_text(flown_report());
   EXPECT_NE(text.find("square: completed"), std::string::npos) << text;
   EXPECT_NE(text.find("3.74"), std::string::npos) << text;
@@ -73,7 +73,7 @@ TEST(FlightReportText, NamesTheFiguresInMillimetres) {
   EXPECT_NE(text.find("p50 90 us, p99 200 us, max 900 us"), std::string::npos) << text;
 }
 
-TEST(FlightReportText, LeavesOutWhatWasNotMeasured) {
+TEST(FlightReportText, OmitsFiguresThatWereNotMeasured) {
   FlightReport report;
   report.mission = "square";
   report.reason = "swiftlet-plant cannot be started";

@@ -42,7 +42,7 @@ TEST(SvgFigure, NamesThePowerOfTenOfItsTicks) {
   EXPECT_EQ(svg(line(1.0, 1.0)).find("tspan"), std::string::npos);
 }
 
-TEST(SvgFigure, PutsItsLegendWhereItHidesNothing) {
+TEST(SvgFigure, PlacesTheLegendBesideTheCurve) {
   const std::regex box(
       "<rect x=\"([0-9.]+)\" y=\"([0-9.]+)\" width=\"[0-9.]+\" height=\"[0-9.]+\" fill=\"#fff\"");
   std::smatch rising;
@@ -59,7 +59,7 @@ TEST(SvgFigure, EscapesText) {
   EXPECT_NE(svg(line(1.0, 1.0)).find("<title>a &lt; b &amp; c</title>"), std::string::npos);
 }
 
-TEST(SvgFigure, DrawsWhatHasNoExtent) {
+TEST(SvgFigure, DrawsDataWithoutExtent) {
   Figure figure = line(0.0, 0.0);
   EXPECT_EQ(svg(figure).find("nan"), std::string::npos);
   figure.series.clear();

@@ -14,7 +14,7 @@ void hear(Latest<T>& latest, const T& message) {
   latest = {message, kNow, 1};
 }
 
-// Holding at 1 m, all well.
+// Holding at 1 m, without warnings.
 View in_flight() {
   View view;
   msg::ControlStatus control;
@@ -53,7 +53,7 @@ std::string text_of(const std::vector<ScreenLine>& lines) {
   return text;
 }
 
-TEST(WatchScreen, FitsEveryScreenAndKeepsTheKeysAtItsEnd) {
+TEST(WatchScreen, FitsAnyScreenSizeWithKeysOnTheLastLine) {
   View view = in_flight();
   view.battery.message.voltage_v(3.0);
   for (const int width : {1, 10, 40, 80, 200}) {
@@ -67,18 +67,19 @@ TEST(WatchScreen, FitsEveryScreenAndKeepsTheKeysAtItsEnd) {
   }
   const auto small = watch_screen(view, facts(), kNow, 80, 3);
   EXPECT_EQ(small[0].text, "kl1 in domain 0: holding (take-off completed), airborne");
-  EXPECT_EQ(small[1].text, "! battery is critical: 3.00 V, below 3.30 V") << "what matters most stays";
+  EXPECT_EQ(small[1].text, "! battery is critical: 3.00 V, below 3.30 V")
+      << "the most important warning stays";
   EXPECT_EQ(small[1].emphasis, Emphasis::kWarning);
 }
 
-TEST(WatchScreen, ShowsPositionAgainstReference) {
+TEST(WatchScreen, ShowsPositionAndTrackingError) {
   const std::string text = text_of(watch_screen(in_flight(), facts(), kNow, 100, 40));
   EXPECT_NE(text.find("no warnings\n"), std::string::npos) << text;
   EXPECT_NE(text.find("position       0.001    0.000   -1.000 m\n"), std::string::npos) << text;
   EXPECT_NE(text.find("error            1.0      0.0      0.0 mm   3-D 1.0 mm\n"), std::string::npos) << text;
 }
 
-TEST(WatchScreen, SaysWhatItWaitsFor) {
+TEST(WatchScreen, ShowsWhatItWaitsFor) {
   WatchFacts waiting = facts();
   waiting.where = "no control service for vehicle kl1 in domain 0";
   const std::string text = text_of(watch_screen(View(), waiting, kNow, 100, 10));
@@ -87,7 +88,7 @@ TEST(WatchScreen, SaysWhatItWaitsFor) {
             "kl1: waiting: no control service for vehicle kl1 in domain 0");
 }
 
-TEST(Warnings, NameWhatStandsAgainstAQuietFlight) {
+TEST(Warnings, NameEveryAbnormalCondition) {
   EXPECT_TRUE(warnings_of(in_flight(), kNow).empty());
   const auto warns = [](const std::function<void(View&)>& change, const std::string& sentence) {
     View view = in_flight();
@@ -110,10 +111,10 @@ TEST(Warnings, NameWhatStandsAgainstAQuietFlight) {
   EXPECT_EQ(warnings_of(View(), kNow), std::vector<std::string>({"no control service"}));
 }
 
-// The vehicle's settings say when it lands, not the defaults of this program.
-TEST(Warnings, OfTheBatteryGoByTheVehiclesOwnSettings) {
+// The thresholds come from the vehicle's settings, not from the defaults of this program.
+TEST(Warnings, UseTheBatteryThresholdsOfTheVehicle) {
   View view = in_flight();
-  view.control.message.low_battery_voltage_v(6.8);  // of two cells
+  view.control.message.low_battery_voltage_v(6.8);  // two cells
   view.control.message.critical_battery_voltage_v(6.4);
   view.battery.message.voltage_v(6.7);
   EXPECT_EQ(warnings_of(view, kNow), std::vector<std::string>({"battery is low: 6.70 V, below 6.80 V"}));
@@ -126,7 +127,7 @@ TEST(Warnings, OfTheBatteryGoByTheVehiclesOwnSettings) {
   EXPECT_EQ(warnings_of(view, kNow), std::vector<std::string>());
 }
 
-TEST(Warnings, SayWhichThresholdIsAssumed) {
+TEST(Warnings, MarkAnAssumedThreshold) {
   View view = in_flight();
   view.control.message.low_battery_voltage_v(0.0);
   view.control.message.critical_battery_voltage_v(0.0);

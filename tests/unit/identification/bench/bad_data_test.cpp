@@ -1,4 +1,4 @@
-// What every experiment refuses alike.
+// Data that every experiment refuses.
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -14,26 +14,26 @@ using tests::bench_of;
 using tests::kaylion;
 using tests::refused;
 
-TEST(BadBenchData, TooFewRows) {
+TEST(BadBenchData, RefusesTooFewRows) {
   EXPECT_EQ(refused([] {
               identify_steady_motor({{1.0, 2.0, 3.0}, {500.0, 900.0, 1200.0}}, {});
             }),
             "has 3 rows, must have at least 6");
 }
 
-TEST(BadBenchData, NumbersThatAreNone) {
+TEST(BadBenchData, RefusesNaNAndNamesItsRow) {
   SteadyMotorData data = *bench_of(kaylion(), 0.005).steady_motor;
   data.speed_rad_s[4] = std::numeric_limits<double>::quiet_NaN();
   try {
     identify_steady_motor(data, {});
-    FAIL() << "nothing was refused";
+    FAIL() << "expected BadData";
   } catch (const BadData& fault) {
     EXPECT_STREQ(fault.what(), "speed: is not a finite number, must be");
     EXPECT_EQ(fault.row(), 4U);
   }
 }
 
-TEST(BadBenchData, ConstantColumnsWhateverASingleRowDoes) {
+TEST(BadBenchData, RefusesAConstantColumnEvenWithOneOutlier) {
   SteadyMotorData data = *bench_of(kaylion(), 0.005).steady_motor;
   data.speed_rad_s.assign(data.speed_rad_s.size(), 1500.0);
   EXPECT_EQ(refused([&] { identify_steady_motor(data, {}); }),
@@ -42,20 +42,22 @@ TEST(BadBenchData, ConstantColumnsWhateverASingleRowDoes) {
   EXPECT_NE(refused([&] { identify_steady_motor(data, {}); }).find("must vary"), std::string::npos);
 }
 
-TEST(BadBenchData, ColumnsOfOtherLengths) {
+TEST(BadBenchData, RefusesColumnsOfUnequalLength) {
   EXPECT_EQ(refused([] {
               identify_steady_motor({{1, 2, 3, 4, 5, 6}, {1, 2, 3}}, {});
             }),
             "speed: has 3 values, must have 6");
 }
 
-TEST(BadBenchData, UnitsThatPhysicsExcludes) {
+TEST(BadBenchData, RefusesValuesInAWrongUnit) {
   SteadyMotorData data = *bench_of(kaylion(), 0.005).steady_motor;
   data.motor_voltage_v = tests::times(data.motor_voltage_v, 1000.0);
   EXPECT_NE(refused([&] { identify_steady_motor(data, {}); }).find("is the unit right?"), std::string::npos);
 }
 
-TEST(BadBenchData, NoExperimentAtAll) { EXPECT_THROW(identify_bench({}, kaylion()), BenchError); }
+TEST(BadBenchData, RefusesABenchWithoutExperiments) {
+  EXPECT_THROW(identify_bench({}, kaylion()), BenchError);
+}
 
 }  // namespace
 }  // namespace swiftlet::identification

@@ -1,5 +1,5 @@
-// Benches written down by the paper's equations alone, without the code that simulates them: what is found of them is
-// right, and what the code simulates is the same.
+// Bench data computed from the paper's equations alone, independent of simulate_bench(): identification
+// recovers their parameters, and simulate_bench() gives the same data.
 #include <cmath>
 #include <functional>
 #include <map>
@@ -19,7 +19,7 @@ using tests::kaylion;
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kWeightPerMass = 9.80665;  // m/s^2
 
-// Another vehicle than KayLion, in all that a bench measures.
+// Differs from KayLion in every parameter that a bench measures.
 struct Truth {
   double mass_kg = 0.045;
   double esc_gain = 0.88, esc_offset = 0.4;
@@ -58,8 +58,8 @@ struct Truth {
 double reduced_rise(const Truth& truth, double t) {
   return truth.hover_speed() * (1.0 - std::exp(-t / truth.tau_s));
 }
-// Omega(t) of J dOmega/dt = c (v - K2 Omega - K3 Omega^2) from rest, which has reached 1 - 1/e of its end at tau. With the
-// roots W1 > 0 > W2 of the right side, (Omega - W1) / (Omega - W2) = W1 / W2 e^(-k t).
+// Omega(t) of J dOmega/dt = c (v - K2 Omega - K3 Omega^2) from rest, which reaches 1 - 1/e of its final value
+// at tau. With the roots W1 > 0 > W2 of the right side, (Omega - W1) / (Omega - W2) = W1 / W2 e^(-k t).
 double physical_rise(const Truth& truth, double t) {
   const double w1 = truth.hover_speed();
   const double ratio = w1 / (-truth.k2 / truth.k3 - w1);
@@ -68,7 +68,7 @@ double physical_rise(const Truth& truth, double t) {
   return w1 * (1.0 - std::exp(-k * t)) / (1.0 - ratio * std::exp(-k * t));
 }
 
-// noise: standard deviation of what is read, over the largest of its column.
+// noise: standard deviation of a reading over its column's largest value.
 BenchData bench_by_formulas(const Truth& truth, double noise, unsigned seed,
                             const std::function<double(const Truth&, double)>& rise = reduced_rise) {
   std::seed_seq seeds{seed, 9u};
@@ -155,7 +155,7 @@ std::map<std::string, double> values_of(const Truth& t) {
           {"inertia.zz", t.inertia[2]}};
 }
 
-TEST(BenchByFormulas, GivesBackTheNumbersThatItWasWrittenWith) {
+TEST(BenchByFormulas, IdentifiesTheTrueParametersWithoutNoise) {
   const Truth truth;
   const plant::Vehicle v = identify_bench(bench_by_formulas(truth, 0.0, 1), kaylion()).vehicle;
   EXPECT_NEAR(v.mass_kg / truth.mass_kg, 1.0, 1e-9);
@@ -169,7 +169,7 @@ TEST(BenchByFormulas, GivesBackTheNumbersThatItWasWrittenWith) {
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(v.inertia(i, i) / truth.inertia[i], 1.0, 1e-8) << i;
 }
 
-TEST(BenchByFormulas, GivesAPhysicalMotorsTimeConstant) {
+TEST(BenchByFormulas, IdentifiesTheTimeConstantOfAPhysicalMotor) {
   const Truth truth;
   plant::Vehicle base = truth.vehicle();
   base.motor.model = plant::MotorModel::kPhysical;
@@ -182,7 +182,7 @@ TEST(BenchByFormulas, GivesAPhysicalMotorsTimeConstant) {
   EXPECT_NEAR(found.motor_step->reading.value / truth.tau_s, 1.0, 0.01) << "63.2 % of the rise";
 }
 
-TEST(BenchByFormulas, ItsIntervalsHoldTheTruth) {
+TEST(BenchByFormulas, IntervalsCoverTheTruthAt95Percent) {
   const Truth truth;
   const std::map<std::string, double> expected = values_of(truth);
   constexpr int kBenches = 60;
@@ -200,9 +200,9 @@ TEST(BenchByFormulas, ItsIntervalsHoldTheTruth) {
       errors[p.parameter] += (0.5 * (p.low + p.high) - value) / (0.5 * (p.high - p.low)) / kBenches;
     }
   }
-  // Those of a bench hang together: as if they were five, and not eleven.
+  // The parameters of a bench are correlated: they count as 5 independent ones, not 11.
   EXPECT_NEAR(static_cast<double>(held) / count, 0.95, 3.0 * std::sqrt(0.95 * 0.05 / (5.0 * kBenches)));
-  // The mean error of so many, in half widths, of which one has a standard deviation of 1 / 1.96 and some more.
+  // Mean error in half widths. One error has a standard deviation of slightly more than 1 / 1.96 half widths.
   for (const auto& [name, mean] : errors) EXPECT_LT(std::abs(mean), 3.5 * 0.55 / std::sqrt(kBenches)) << name;
 }
 
@@ -214,13 +214,13 @@ void expect_same(const std::vector<double>& simulated, const std::vector<double>
     EXPECT_NEAR(simulated[i], by_formulas[i], accuracy * full) << "row " << i;
 }
 
-// The many benches of the other tests are simulated: they are those of the equations.
-TEST(BenchByFormulas, IsWhatIsSimulated) {
+// The other tests use simulated benches: this one ties them to the equations.
+TEST(BenchByFormulas, EqualsTheSimulatedBench) {
   const Truth truth;
   const BenchData formulas = bench_by_formulas(truth, 0.0, 1);
   const BenchData simulated = tests::bench_of(truth.vehicle(), 0.0);
   expect_same(*simulated.mass_kg, *formulas.mass_kg, 1e-12);
-  // The supplies are shares of a full battery's voltage, which is rounded.
+  // The supplies are fractions of a full battery's voltage, rounded here.
   expect_same(simulated.esc->supply_voltage_v, formulas.esc->supply_voltage_v, 3e-3);
   for (std::size_t i = 0; i < simulated.esc->throttle.size(); ++i) {
     const double v_a = truth.voltage(simulated.esc->supply_voltage_v[i], simulated.esc->throttle[i]);

@@ -15,7 +15,7 @@ using tests::bench_of;
 using tests::contains;
 using tests::kaylion;
 
-// Another vehicle than the base, in all that a bench measures.
+// Differs from the base in every parameter that a bench measures.
 plant::Vehicle other() {
   plant::Vehicle v = kaylion();
   v.mass_kg = 0.045;
@@ -31,7 +31,7 @@ plant::Vehicle other() {
   return v;
 }
 
-TEST(Bench, GivesTheWholeVehicleWithoutNoise) {
+TEST(Bench, IdentifiesTheWholeVehicleWithoutNoise) {
   const plant::Vehicle truth = other();
   ASSERT_TRUE(plant::validate(truth).empty());
   const BenchIdentification found = identify_bench(bench_of(truth, 0.0), kaylion());
@@ -62,7 +62,7 @@ TEST(Bench, KeepsTheBaseWhereNothingWasMeasured) {
   EXPECT_LT(found.uncertainty.correlations[0].value, -0.3);
 }
 
-TEST(Bench, TellsThatK2AndK3ErrTogether) {
+TEST(Bench, ReportsTheCorrelationOfK2AndK3) {
   const BenchIdentification found = identify_bench(bench_of(other(), 0.005), kaylion());
   const auto& all = found.uncertainty.correlations;
   const auto it = std::find_if(all.begin(), all.end(), [](const auto& c) { return c.first == "motor.k2"; });
@@ -71,9 +71,9 @@ TEST(Bench, TellsThatK2AndK3ErrTogether) {
   EXPECT_LT(it->value, -0.9);
 }
 
-TEST(Bench, TellsThatMomentsOfInertiaErrWithTheMass) {
+TEST(Bench, ReportsTheCorrelationOfInertiaAndMass) {
   BenchData data = bench_of(kaylion(), 0.001);
-  data.mass_kg->front() *= 1.02;  // a spread of a percent
+  data.mass_kg->front() *= 1.02;  // 1 % spread
   const BenchIdentification found = identify_bench(data, kaylion());
   std::map<std::string, double> correlations;
   for (const plant::ParameterCorrelation& c : found.uncertainty.correlations)
@@ -90,7 +90,7 @@ TEST(Bench, TellsThatMomentsOfInertiaErrWithTheMass) {
               correlations["mass inertia.xx"] * correlations["mass inertia.yy"], 1e-9);
 }
 
-TEST(Bench, LetsAResistanceThatWasNotMeasuredGiveWay) {
+TEST(Bench, AdaptsAResistanceThatWasNotMeasured) {
   plant::Vehicle base = kaylion();
   base.motor.armature_resistance_ohm = 1.5;
   const BenchIdentification found = identify_bench(bench_of(other(), 0.0), base);
@@ -99,8 +99,8 @@ TEST(Bench, LetsAResistanceThatWasNotMeasuredGiveWay) {
   EXPECT_TRUE(plant::validate(found.vehicle).empty());
 }
 
-// KayLion's moments leave 1 % to the limit: noise of the periods alone goes beyond it.
-TEST(Bench, TakesThePossibleInertiaNearest) {
+// KayLion's moments are 1 % below the limit: noise of the periods alone exceeds it.
+TEST(Bench, ProjectsNoisyInertiaOntoTheTriangleInequality) {
   int beyond = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     BenchData data;
@@ -118,14 +118,14 @@ TEST(Bench, TakesThePossibleInertiaNearest) {
   EXPECT_GT(beyond, 0);
 }
 
-TEST(Bench, LeavesAnImpossibleInertiaToBeRefused) {
+TEST(Bench, KeepsAnInertiaFarBeyondTheLimitForValidation) {
   BenchData data;
   data.inertia = bench_of(kaylion(), 0.002).inertia;
   data.inertia[2]->bifilar->period_s = tests::times(data.inertia[2]->bifilar->period_s, 1.2);
   EXPECT_FALSE(plant::validate(identify_bench(data, kaylion()).vehicle).empty());
 }
 
-TEST(Bench, MovesMomentsThatWereNotMeasured) {
+TEST(Bench, AdaptsMomentsThatWereNotMeasured) {
   BenchData data;
   data.inertia[2] = bench_of(kaylion(), 0.0).inertia[2];
   data.inertia[2]->bifilar->period_s = tests::times(data.inertia[2]->bifilar->period_s, 1.2);
@@ -134,14 +134,14 @@ TEST(Bench, MovesMomentsThatWereNotMeasured) {
   EXPECT_NEAR(found.vehicle.inertia(2, 2), 1.44 * 8.8e-5, 1e-10);
 }
 
-TEST(Bench, SeesThatThrustOverThrottleIsOfAnotherSetUp) {
+TEST(Bench, WarnsWhenThrustOverThrottleContradictsTheRest) {
   BenchData data = bench_of(other(), 0.005);
   EXPECT_TRUE(contains(identify_bench(data, kaylion()).throttle_thrust->findings, "closes"));
   data.throttle_thrust->thrust_n = tests::times(data.throttle_thrust->thrust_n, 1.2);
   EXPECT_TRUE(contains(identify_bench(data, kaylion()).throttle_thrust->warnings, "should be within 5 %"));
 }
 
-TEST(Bench, RefusesRadiansTakenForRevolutions) {
+TEST(Bench, RefusesSpeedsInAWrongUnit) {
   BenchData data;
   data.thrust_torque = bench_of(kaylion(), 0.005).thrust_torque;
   EXPECT_NO_THROW(identify_bench(data, kaylion()));
@@ -150,7 +150,7 @@ TEST(Bench, RefusesRadiansTakenForRevolutions) {
                        "the largest propeller that fits"));
 }
 
-TEST(Bench, HoldsATorqueAloneAgainstTheThrustOfTheBase) {
+TEST(Bench, ChecksTorqueAloneAgainstTheThrustOfTheBase) {
   for (const double unit : {1e-3, 1e3}) {
     BenchData data;
     data.thrust_torque = bench_of(kaylion(), 0.005).thrust_torque;
@@ -162,19 +162,19 @@ TEST(Bench, HoldsATorqueAloneAgainstTheThrustOfTheBase) {
   }
 }
 
-TEST(Bench, NamesTheExperimentAtFault) {
+TEST(Bench, NamesTheInvalidExperiment) {
   BenchData data = bench_of(other(), 0.005);
   data.steady_motor->speed_rad_s.resize(3);
   data.steady_motor->motor_voltage_v.resize(3);
   try {
     identify_bench(data, kaylion());
-    FAIL() << "nothing was refused";
+    FAIL() << "expected BenchError";
   } catch (const BenchError& fault) {
     EXPECT_EQ(fault.experiment(), kSteadyMotorName);
   }
 }
 
-TEST(Bench, IsTheSameEveryTime) {
+TEST(Bench, IsDeterministic) {
   const BenchData data = bench_of(other(), 0.01, 5, 0.05);
   const BenchIdentification first = identify_bench(data, kaylion());
   const BenchIdentification second = identify_bench(bench_of(other(), 0.01, 5, 0.05), kaylion());

@@ -1,4 +1,4 @@
-// Benches that the tests of identification/ share.
+// Simulated benches for the tests of identification.
 #pragma once
 
 #include <vector>

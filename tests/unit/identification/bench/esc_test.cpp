@@ -21,14 +21,14 @@ TEST(EscExperiment, FindsEq9WithoutNoise) {
   EXPECT_TRUE(found.warnings.empty());
 }
 
-TEST(EscExperiment, SaysThatEq9BeatsTheNaiveRatio) {
+TEST(EscExperiment, ReportsThatEq9FitsBetterThanTheNaiveRatio) {
   const EscData data = *bench_of(kaylion(), 0.005).esc;
   const Experiment found = identify_esc(data, {});
   EXPECT_TRUE(contains(found.findings, "Eq. (9) fits better"));
   EXPECT_GT(naive_esc(data, {}).residual_sd_v, 0.3);
 }
 
-TEST(EscExperiment, SaysWhenTheNaiveRatioIsRight) {
+TEST(EscExperiment, ReportsThatTheNaiveRatioFitsBetter) {
   EscData data = *bench_of(kaylion(), 0.005, 2).esc;
   for (std::size_t i = 0; i < data.throttle.size(); ++i)
     data.motor_voltage_v[i] = 0.95 * data.supply_voltage_v[i] * data.throttle[i];
@@ -38,7 +38,7 @@ TEST(EscExperiment, SaysWhenTheNaiveRatioIsRight) {
   EXPECT_TRUE(contains(found.warnings, "not quite a straight line"));
 }
 
-TEST(EscExperiment, ListsASpoiledReading) {
+TEST(EscExperiment, ListsAnOutlier) {
   EscData data = *bench_of(kaylion(), 0.005).esc;
   data.motor_voltage_v[17] = 0.3;
   const Experiment found = identify_esc(data, {});
@@ -46,19 +46,19 @@ TEST(EscExperiment, ListsASpoiledReading) {
   EXPECT_NEAR(found.estimate("esc.gain").value, 0.9205, 0.02);
 }
 
-TEST(EscExperiment, RefusesWhatNoEscDoes) {
+TEST(EscExperiment, RefusesReadingsNoEscCanProduce) {
   const EscData good = *bench_of(kaylion(), 0.005).esc;
   EscData bad = good;
-  bad.motor_voltage_v = tests::times(good.motor_voltage_v, 1000.0);  // mV taken for V
+  bad.motor_voltage_v = tests::times(good.motor_voltage_v, 1000.0);  // mV instead of V
   EXPECT_NE(refused([&] { identify_esc(bad, {}); }).find("an ESC cannot raise its supply"),
             std::string::npos);
   bad = good;
-  bad.throttle = tests::times(good.throttle, 100.0);  // percent taken for shares
+  bad.throttle = tests::times(good.throttle, 100.0);  // percent instead of fractions
   EXPECT_NE(refused([&] { identify_esc(bad, {}); }).find("throttle: is 10, must be 0 to 1"),
             std::string::npos)
       << refused([&] { identify_esc(bad, {}); });
   bad = good;
-  bad.throttle = tests::times(good.throttle, 0.01);  // shares taken for percent
+  bad.throttle = tests::times(good.throttle, 0.01);  // fractions divided by 100
   EXPECT_NE(refused([&] { identify_esc(bad, {}); }).find("throttle: at full throttle the ESC would give 9.6"),
             std::string::npos)
       << refused([&] { identify_esc(bad, {}); });

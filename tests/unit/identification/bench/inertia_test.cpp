@@ -28,22 +28,22 @@ SwingData swing(double inertia, const std::vector<double>& arms) {
   return data;
 }
 
-TEST(InertiaExperiment, FindsItByTwoStrings) {
+TEST(InertiaExperiment, IdentifiesInertiaFromABifilarPendulum) {
   const Experiment found = identify_inertia(*bench_of(kaylion(), 0.0).inertia[2]->bifilar, target());
   EXPECT_NEAR(found.estimate("inertia.zz").value / 8.8e-5, 1.0, 1e-9);
 }
 
-TEST(InertiaExperiment, FindsItBySwinging) {
+TEST(InertiaExperiment, IdentifiesInertiaFromAPhysicalPendulum) {
   const Experiment found = identify_inertia(swing(8.8e-5, {0.05, 0.06, 0.08, 0.1}), target());
   EXPECT_NEAR(found.estimate("inertia.zz").value / 8.8e-5, 1.0, 1e-8);
   EXPECT_TRUE(found.warnings.empty());
 }
 
-TEST(InertiaExperiment, WarnsOfArmsThatHideIt) {
+TEST(InertiaExperiment, WarnsWhenLongArmsHideTheInertia) {
   EXPECT_TRUE(contains(identify_inertia(swing(8.8e-5, {0.5, 0.6, 0.8, 1.0}), target()).warnings, "hides it"));
 }
 
-TEST(InertiaExperiment, SharesTheErrorOfTheMass) {
+TEST(InertiaExperiment, PropagatesTheErrorOfTheMass) {
   const ParameterEstimate found =
       identify_inertia(*bench_of(kaylion(), 0.0).inertia[2]->bifilar, target(0.02)).estimates.front();
   EXPECT_NEAR(found.standard_error / found.value, 0.02, 1e-9);
@@ -61,7 +61,7 @@ TEST(MassExperiment, IsTheMeanWithStudentsInterval) {
   EXPECT_GT(found.estimate("mass").half_width, 2.776 * 2.1e-4 / std::sqrt(5.0));
 }
 
-TEST(MassExperiment, SaysThatABalanceThatNeverChangesHidesItsSpread) {
+TEST(MassExperiment, WarnsThatEqualReadingsHideTheirSpread) {
   const Experiment found = identify_mass({0.04, 0.04, 0.04, 0.04});
   EXPECT_EQ(found.estimate("mass").value, 0.04);
   EXPECT_TRUE(contains(found.warnings, "the balance's resolution hides their spread"));

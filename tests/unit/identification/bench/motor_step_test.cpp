@@ -39,8 +39,8 @@ TEST(MotorStepExperiment, FindsThePhysicalMotorAndItsInertia) {
   EXPECT_NEAR(found.rotor_inertia.value / plant::motor_dynamics(physical()).rotor_inertia, 1.0, 0.005);
 }
 
-TEST(MotorStepExperiment, FindsItFromAnyOtherSpeedAndTime) {
-  // A step between two speeds, at an odd time, by the closed form of the reduced model.
+TEST(MotorStepExperiment, FindsTheStepAtAnySpeedAndTime) {
+  // A step between two speeds at a non-sampled time: closed form of the reduced model.
   MotorStepData data;
   for (int i = 0; i < 500; ++i) {
     const double time = 1000.0 + 1e-3 * i;
@@ -54,7 +54,7 @@ TEST(MotorStepExperiment, FindsItFromAnyOtherSpeedAndTime) {
   EXPECT_NEAR(found.reading.value, 0.05, 5e-4);
 }
 
-TEST(MotorStepExperiment, SharesTheErrorOfTheTorqueFactor) {
+TEST(MotorStepExperiment, PropagatesTheErrorOfTheTorqueFactor) {
   const MotorStepData data = *bench_of(physical(), 0.005).motor_step;
   const ParameterEstimate without = identify_motor_step(data, physical(), 0.0).rotor_inertia;
   const ParameterEstimate with = identify_motor_step(data, physical(), 0.05).rotor_inertia;
@@ -79,7 +79,7 @@ TEST(MotorStepExperiment, WarnsOfARecordThatEndsEarly) {
       contains(identify_motor_step(data, kaylion(), 0.0).reduced.warnings, "time constants after the step"));
 }
 
-TEST(MotorStepExperiment, RefusesWhatIsNoStep) {
+TEST(MotorStepExperiment, RefusesRecordsWithoutAValidStep) {
   const MotorStepData good = *bench_of(kaylion(), 0.005).motor_step;
   const auto refusal = [&](const auto& spoil) {
     MotorStepData bad = good;
@@ -87,7 +87,7 @@ TEST(MotorStepExperiment, RefusesWhatIsNoStep) {
     return refused([&] { identify_motor_step(bad, kaylion(), 0.0); });
   };
   EXPECT_NE(refusal([](MotorStepData& d) { d.time_s = tests::times(d.time_s, 1000.0); }).find("tau_m = 8"),
-            std::string::npos);  // ms taken for s
+            std::string::npos);  // ms instead of s
   EXPECT_NE(refusal([](MotorStepData& d) { d.time_s[7] = d.time_s[3]; }).find("must rise"),
             std::string::npos);
   EXPECT_NE(refusal([](MotorStepData& d) {

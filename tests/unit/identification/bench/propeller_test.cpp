@@ -14,7 +14,7 @@ const Propeller kPropeller{0.0275, 1.2};
 
 ParameterEstimate factor(double value) { return {"", "", "", value, 0.01 * value, 0.02 * value}; }
 
-TEST(PropellerCoefficientsOf, AreThoseOfEq23And24) {
+TEST(PropellerCoefficients, FollowEq23And24) {
   const PropellerCoefficients found =
       propeller_coefficients(factor(3.7901e-8), factor(1.8623e-10), kPropeller, 2200.0);
   const plant::RotorCoefficients back =
@@ -26,12 +26,12 @@ TEST(PropellerCoefficientsOf, AreThoseOfEq23And24) {
   EXPECT_LT(*found.figure_of_merit, 0.8);
 }
 
-TEST(PropellerCoefficientsOf, RefuseWhatNoPropellerDoes) {
+TEST(PropellerCoefficients, RefuseValuesNoPropellerCanHave) {
   const auto refusal = [](double thrust, double torque, double speed) {
     return refused([&] { propeller_coefficients(factor(thrust), factor(torque), kPropeller, speed); });
   };
   EXPECT_NE(refusal(3.7901e-8, 1.8623e-10, 20000.0).find("speed of sound"), std::string::npos);
-  const double rpm = 3600.0 / (4.0 * 9.8696);  // (rad/s)^2 over rpm^2, backwards
+  const double rpm = 3600.0 / (4.0 * 9.8696);  // rpm^2 over (rad/s)^2
   EXPECT_NE(refusal(3.7901e-8 / rpm, 1.8623e-10 / rpm, 2200.0).find("C_T = "), std::string::npos);
   EXPECT_NE(refusal(3.7901e-8, 1.8623e-11, 2200.0).find("figure of merit"), std::string::npos);
 }

@@ -1,5 +1,4 @@
-// Whether the bench's identification finds what was put in, and knows how well: bias and coverage over many
-// seeds.
+// Bias and interval coverage of bench identification over many seeds.
 #include <cmath>
 #include <map>
 #include <string>
@@ -39,7 +38,7 @@ enum class Records { kAll, kStatic };
 
 std::map<std::string, Tally> recover(const plant::Vehicle& truth, double share, double outliers, int seeds,
                                      Records records) {
-  // What is known before is another vehicle, so that nothing is found by being left as it is.
+  // The base differs from the truth, so that an unchanged value is not taken for an identified one.
   plant::Vehicle base = truth;
   base.esc = {1.0, 0.3, truth.esc.pulse_min_us, truth.esc.pulse_range_us};
   base.mass_kg *= 1.3;
@@ -60,7 +59,7 @@ std::map<std::string, Tally> recover(const plant::Vehicle& truth, double share, 
   return tallies;
 }
 
-constexpr double kBias = 0.07;  // of one bench, by which the mean of many is judged: 0.5 % of 200
+constexpr double kBias = 0.07;  // of one bench; bounds the mean of 200 benches to 0.5 %
 
 double pooled_coverage(const std::map<std::string, Tally>& tallies) {
   double covered = 0.0;
@@ -72,8 +71,9 @@ double pooled_coverage(const std::map<std::string, Tally>& tallies) {
   return covered / count;
 }
 
-// Of 200 benches the coverage of one parameter is known to 1.5 %. Each has three of these standard errors. All
-// together have 1.3 of them, as if they were five and not eleven: they hang together.
+// With 200 benches the standard error of one parameter's coverage is 1.5 %. Each parameter may deviate by
+// three of these, the pooled coverage by 1.3: the parameters are correlated and count as 5 independent ones,
+// not 11.
 void expect_recovery(double share, double outliers) {
   const int benches = tests::draws(40, 200);
   const std::map<std::string, Tally> tallies =
@@ -87,12 +87,12 @@ void expect_recovery(double share, double outliers) {
   EXPECT_NEAR(pooled_coverage(tallies), 0.95, 1.3 * tests::coverage_error(benches));
 }
 
-TEST(Recovery, OfManyBenches) { expect_recovery(0.005, 0.0); }
+TEST(Recovery, IsUnbiasedAndCoversTheTruth) { expect_recovery(0.005, 0.0); }
 
-TEST(Recovery, OfManyBenchesWithOutliers) { expect_recovery(0.005, 0.04); }
+TEST(Recovery, IsUnbiasedAndCoversTheTruthWithOutliers) { expect_recovery(0.005, 0.04); }
 
-// In a soak enough benches that the coverage of each parameter by itself is known to 0.6 %.
-TEST(Recovery, CoversAsItSaysForEachParameter) {
+// In a soak, 1500 benches give each parameter's coverage a standard error of 0.6 %.
+TEST(Recovery, CoversTheTruthOfEachParameter) {
   const int benches = tests::draws(100, 1500);
   for (const auto& [name, tally] : recover(tests::kaylion(), 0.005, 0.0, benches, Records::kStatic)) {
     EXPECT_LT(std::abs(tally.bias()), tests::bound_of_mean(kBias, benches)) << name;
@@ -100,8 +100,8 @@ TEST(Recovery, CoversAsItSaysForEachParameter) {
   }
 }
 
-// With the true parameters of the other motor model, whose answer has another shape.
-TEST(Recovery, OfAPhysicalMotorsTimeConstant) {
+// The step response of the physical model differs in shape from the reduced model's.
+TEST(Recovery, CoversTheTimeConstantOfAPhysicalMotor) {
   plant::Vehicle truth = tests::kaylion();
   truth.motor.model = plant::MotorModel::kPhysical;
   Tally tally;

@@ -1,4 +1,4 @@
-// What identification says.
+// Expectations of the messages of identification.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@
 
 namespace swiftlet::tests {
 
-// The sentence with which data are refused; fails the test if they are not.
+// The message of the Fault that work() throws; fails the test if it throws none.
 template <class Fault = identification::BadData>
 std::string refused(const std::function<void()>& work) {
   try {
@@ -19,13 +19,13 @@ std::string refused(const std::function<void()>& work) {
   } catch (const Fault& fault) {
     return fault.what();
   }
-  ADD_FAILURE() << "nothing was refused";
+  ADD_FAILURE() << "expected an exception";
   return "";
 }
 
-// Whether one of the sentences holds this part; says all if not.
+// Whether one of the sentences contains this part; lists them all if not.
 inline testing::AssertionResult contains(const std::vector<std::string>& sentences, const std::string& part) {
-  testing::AssertionResult none = testing::AssertionFailure() << "none holds \"" << part << "\":";
+  testing::AssertionResult none = testing::AssertionFailure() << "none contains \"" << part << "\":";
   for (const std::string& sentence : sentences) {
     if (sentence.find(part) != std::string::npos) return testing::AssertionSuccess() << sentence;
     none << "\n" << sentence;

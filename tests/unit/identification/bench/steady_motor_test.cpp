@@ -22,7 +22,7 @@ TEST(SteadyMotorExperiment, FindsEq22WithoutNoise) {
   EXPECT_TRUE(found.warnings.empty());
 }
 
-TEST(SteadyMotorExperiment, IsNotFlattenedByANoisyTachometer) {
+TEST(SteadyMotorExperiment, IsUnbiasedWithANoisyTachometer) {
   // GIVEN 4,000 readings whose speeds are noisy and whose voltages are not
   SteadyMotorData data;
   plant::RandomStream random(1, 1);
@@ -32,7 +32,7 @@ TEST(SteadyMotorExperiment, IsNotFlattenedByANoisyTachometer) {
     data.speed_rad_s.push_back(plant::steady_speed_from_voltage(kaylion().motor, voltage) +
                                60.0 * random.normal());
   }
-  // WHEN the instruments are known THEN K3 is right, which least squares on v_a alone would miss by far
+  // WHEN the noise of both instruments is given THEN K3 is right; least squares on v_a alone is far off
   Instruments known;
   known.motor_voltage_v = 1e-4;
   known.speed_rad_s = 60.0;
@@ -45,7 +45,7 @@ TEST(SteadyMotorExperiment, IsNotFlattenedByANoisyTachometer) {
   EXPECT_GT(std::abs(naive.value - 2.817e-7), 2.0 * naive.half_width);
 }
 
-TEST(SteadyMotorExperiment, SeesCoulombFriction) {
+TEST(SteadyMotorExperiment, WarnsOfCoulombFriction) {
   SteadyMotorData data = *bench_of(kaylion(), 0.003).steady_motor;
   for (double& voltage : data.motor_voltage_v) voltage += 0.3;
   EXPECT_TRUE(contains(identify_steady_motor(data, {}).warnings, "Coulomb friction"));
@@ -53,7 +53,7 @@ TEST(SteadyMotorExperiment, SeesCoulombFriction) {
       contains(identify_steady_motor(*bench_of(kaylion(), 0.003).steady_motor, {}).warnings, "Coulomb"));
 }
 
-TEST(SteadyMotorExperiment, WarnsWhereK2AndK3CannotBeTold) {
+TEST(SteadyMotorExperiment, WarnsWhenK2AndK3AreNotSeparable) {
   SteadyMotorData data;
   plant::RandomStream random(3, 1);
   for (int i = 0; i < 30; ++i) {

@@ -12,7 +12,7 @@ using tests::bench_of;
 using tests::contains;
 using tests::kaylion;
 
-TEST(ThrottleThrustExperiment, FindsTheFactorThroughAKnownChain) {
+TEST(ThrottleThrustExperiment, FindsTheThrustFactorOfAKnownEscAndMotor) {
   plant::Vehicle base = kaylion();
   base.rotor.thrust *= 1.3;
   const Experiment found =
@@ -31,8 +31,9 @@ TEST(ThrottleThrustExperiment, FindsTheMotorBehindAKnownEsc) {
   EXPECT_NEAR(found.estimate("motor.k3").value / 2.817e-7, 1.0, 1e-6);
 }
 
-// Nothing but thrust over throttle, and a base that is another vehicle: no part can be right, the chain can.
-TEST(ThrottleThrustExperiment, GetsTheChainRightWhereItsPartsAreOpen) {
+// GIVEN thrust over throttle alone and a base that differs from the vehicle: only the whole chain is
+// identifiable.
+TEST(ThrottleThrustExperiment, FitsTheChainWhenItsPartsAreUnknown) {
   plant::Vehicle base = kaylion();
   base.esc.gain *= 0.8;
   base.esc.offset_v2 = 0.1;

@@ -19,7 +19,7 @@ TEST(ThrustTorqueExperiment, FindsEq25And26WithoutNoise) {
   EXPECT_TRUE(found.thrust->warnings.empty());
 }
 
-TEST(ThrustTorqueExperiment, DoesWithOneOfBoth) {
+TEST(ThrustTorqueExperiment, IdentifiesFromThrustAlone) {
   ThrustTorqueData data = *bench_of(kaylion(), 0.005).thrust_torque;
   data.torque_n_m.clear();
   const ThrustTorque found = identify_thrust_torque(data, {});
@@ -30,13 +30,13 @@ TEST(ThrustTorqueExperiment, DoesWithOneOfBoth) {
             std::string::npos);
 }
 
-TEST(ThrustTorqueExperiment, SeesASensorThatWasNotZeroed) {
+TEST(ThrustTorqueExperiment, WarnsOfASensorThatWasNotZeroed) {
   ThrustTorqueData data = *bench_of(kaylion(), 0.005).thrust_torque;
   for (double& thrust : data.thrust_n) thrust += 0.01;
   EXPECT_TRUE(contains(identify_thrust_torque(data, {}).thrust->warnings, "was the sensor zeroed"));
 }
 
-// A photo-interrupter that counts both blades.
+// GIVEN a photo-interrupter that counts both blades
 TEST(ThrustTorqueExperiment, ListsSpeedsThatWereCountedTwice) {
   ThrustTorqueData data = *bench_of(kaylion(), 0.005).thrust_torque;
   for (const std::size_t row : {5U, 14U, 30U}) data.speed_rad_s[row] *= 2.0;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kReflection[kNoiseParameters] = {0.4, -0.3, -0.9, 0.5};
 
-// v = C / D e, from the definition.
+// v = C / D e, by definition.
 std::vector<double> coloured(const ArmaNoise& noise, const std::vector<double>& e) {
   std::vector<double> v(e.size(), 0.0);
   for (std::size_t k = 0; k < e.size(); ++k) {
@@ -30,14 +30,14 @@ std::vector<double> white(std::size_t count) {
   return out;
 }
 
-TEST(ArmaNoise, IsUndoneByItsInnovations) {
+TEST(ArmaNoise, InnovationsInvertTheFilter) {
   const ArmaNoise noise = arma_noise(kReflection);
   const std::vector<double> e = white(500);
   const std::vector<double> found = innovations(noise, coloured(noise, e));
   for (std::size_t k = 0; k < e.size(); ++k) ASSERT_NEAR(found[k], e[k], 1e-9) << k;
 }
 
-// Of q^2 + a q + b: inside the unit circle if and only if |b| < 1 and |a| < 1 + b.
+// The roots of q^2 + a q + b lie inside the unit circle if and only if |b| < 1 and |a| < 1 + b.
 TEST(ArmaNoise, IsStableForAllReflectionsBelowOne) {
   for (double first = -0.99; first < 1.0; first += 0.06) {
     for (double second = -0.99; second < 1.0; second += 0.06) {
@@ -50,7 +50,7 @@ TEST(ArmaNoise, IsStableForAllReflectionsBelowOne) {
   }
 }
 
-TEST(ArmaNoise, IsExpectedAsWithoutFurtherInnovations) {
+TEST(ArmaNoise, PredictionAssumesZeroFutureInnovations) {
   const ArmaNoise noise = arma_noise(kReflection);
   std::vector<double> e = white(60);
   for (std::size_t k = 40; k < e.size(); ++k) e[k] = 0.0;

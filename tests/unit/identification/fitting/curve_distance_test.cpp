@@ -10,8 +10,8 @@
 namespace swiftlet::identification {
 namespace {
 
-// In units of the spreads, a straight line is as far from a point as school has it.
-TEST(CurveDistance, ToALineIsThePerpendicular) {
+// In units of the spreads, the distance to a straight line is the perpendicular one.
+TEST(CurveDistance, OfALineIsPerpendicular) {
   const auto line = [](double x) { return CurveValue{2.0 * x + 1.0, 2.0}; };
   const double x_spread = 0.5;
   const double y_spread = 3.0;
@@ -24,8 +24,8 @@ TEST(CurveDistance, ToALineIsThePerpendicular) {
   EXPECT_EQ(exact_x.x, 4.0);
 }
 
-// Against a search over all x.
-TEST(CurveDistance, ToAParabolaIsTheLeast) {
+// Compared with a search over x.
+TEST(CurveDistance, OfAParabolaIsTheMinimum) {
   const auto parabola = [](double x) { return CurveValue{0.5 * x * x, x}; };
   constexpr double kXSpread = 0.05;
   constexpr double kYSpread = 0.1;
@@ -49,7 +49,7 @@ TEST(CurveDistance, ToAParabolaIsTheLeast) {
   }
 }
 
-TEST(RecentResults, AreComputedOnceWhileTheyAreKept) {
+TEST(RecentResults, AreComputedOnceWhileCached) {
   RecentResults<int, int> results(2);
   int computed = 0;
   const auto of = [&](int key) {
@@ -62,15 +62,15 @@ TEST(RecentResults, AreComputedOnceWhileTheyAreKept) {
   EXPECT_EQ(of(2), 20);
   EXPECT_EQ(of(1), 10);
   EXPECT_EQ(computed, 2);
-  EXPECT_EQ(of(3), 30) << "in place of the oldest, 1";
+  EXPECT_EQ(of(3), 30) << "evicts the oldest key, 1";
   EXPECT_EQ(of(2), 20);
   EXPECT_EQ(computed, 3);
   EXPECT_EQ(of(1), 10);
   EXPECT_EQ(computed, 4);
 }
 
-// Whoever has a result keeps it when it is forgotten here.
-TEST(RecentResults, OutliveTheirPlace) {
+// A result that a caller holds stays valid after the cache evicts it.
+TEST(RecentResults, RemainValidAfterEviction) {
   RecentResults<int, int> results(1);
   const auto first = results.of(1, [] { return 11; });
   results.of(2, [] { return 22; });

@@ -22,7 +22,7 @@ Matrix3d inertia_of(double xx, double yy, double zz) {
 }
 double variance(double deviation) { return std::pow(deviation * kUnit, 2); }
 
-TEST(PossibleInertia, LeavesWhatABodyCanHave) {
+TEST(InertiaTriangleInequality, KeepsAValidInertia) {
   Matrix3d inertia = inertia_of(4.4, 4.5, 8.89);
   const Matrix3d before = inertia;
   EXPECT_FALSE(
@@ -31,15 +31,15 @@ TEST(PossibleInertia, LeavesWhatABodyCanHave) {
   EXPECT_EQ(inertia, before);
 }
 
-TEST(PossibleInertia, LeavesWhatNobodyIdentified) {
+TEST(InertiaTriangleInequality, KeepsMomentsThatWereAllGiven) {
   Matrix3d inertia = inertia_of(4.0, 5.0, 12.0);
   const Matrix3d before = inertia;
   EXPECT_FALSE(enforce_triangle_inequality(inertia, {}).has_value());
   EXPECT_EQ(inertia, before);
 }
 
-// Whichever axis it is: 3 too much is taken up by the two others, as their squares: 16 to 25.
-TEST(PossibleInertia, MovesTheMomentsThatWereNotIdentified) {
+// For each axis: an excess of 3 is distributed to the two others in proportion to their squares, 16 to 25.
+TEST(InertiaTriangleInequality, AdaptsTheMomentsThatWereNotIdentified) {
   for (int largest = 0; largest < 3; ++largest) {
     const int small = (largest + 1) % 3;
     const int middle = (largest + 2) % 3;
@@ -65,8 +65,8 @@ TEST(PossibleInertia, MovesTheMomentsThatWereNotIdentified) {
   }
 }
 
-// Roll and pitch were swung, yaw is another vehicle's: that one is brought down.
-TEST(PossibleInertia, BringsDownALargestOneThatWasNotIdentified) {
+// GIVEN roll and pitch identified and a yaw moment of the base
+TEST(InertiaTriangleInequality, LowersALargestMomentThatWasNotIdentified) {
   Matrix3d inertia = inertia_of(4.0, 5.0, 12.0);
   ASSERT_TRUE(enforce_triangle_inequality(inertia, {variance(0.1), variance(0.1), std::nullopt}).has_value());
   EXPECT_DOUBLE_EQ(inertia(0, 0), 4.0 * kUnit);
@@ -74,8 +74,8 @@ TEST(PossibleInertia, BringsDownALargestOneThatWasNotIdentified) {
   EXPECT_NEAR(inertia(2, 2), 9.0 * kUnit, 1e-12 * kUnit);
 }
 
-// Of all bodies, none is nearer to what was identified, in the standard deviations of that.
-TEST(PossibleInertia, TakesTheNearestWhereAllWereIdentified) {
+// No valid inertia is nearer to the identified one, in its standard deviations.
+TEST(InertiaTriangleInequality, TakesTheNearestWhenAllWereIdentified) {
   const Vector3d deviation(0.3, 0.6, 0.2);
   const Vector3d identified(4.4, 4.5, 9.4);
   Matrix3d inertia = inertia_of(identified[0], identified[1], identified[2]);
@@ -93,8 +93,8 @@ TEST(PossibleInertia, TakesTheNearestWhereAllWereIdentified) {
   }
 }
 
-// 0.5 too much, of which chance gives 4 deviations of the sum.
-TEST(PossibleInertia, LeavesWhatChanceDoesNotGive) {
+// An excess of 0.5 is corrected within 4 standard deviations of the sum.
+TEST(InertiaTriangleInequality, KeepsAViolationBeyondFourDeviations) {
   const double just_enough = 0.5 / 4.0 / std::sqrt(3.0);
   for (const double factor : {0.99, 1.01}) {
     Matrix3d inertia = inertia_of(4.4, 4.5, 9.4);

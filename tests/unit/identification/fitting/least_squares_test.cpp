@@ -62,7 +62,7 @@ TEST(LeastSquares, AgreesWithTheClosedForm) {
   EXPECT_NEAR(found.parameters[0], exact[0], 1e-8);
   EXPECT_NEAR(found.parameters[1], exact[1], 1e-8);
   EXPECT_EQ(found.degrees_of_freedom, 198);
-  // The textbook's covariance for one spread everywhere, which HC3 comes near to with many rows.
+  // The covariance for equal variances, which HC3 approaches with many rows.
   const Eigen::Matrix2d covariance = found.sigma * found.sigma * (design.transpose() * design).inverse();
   EXPECT_NEAR(found.standard_error(0) / std::sqrt(covariance(0, 0)), 1.0, 0.15);
   EXPECT_NEAR(found.correlation(0, 1), covariance(0, 1) / std::sqrt(covariance(0, 0) * covariance(1, 1)),
@@ -79,8 +79,8 @@ TEST(LeastSquares, ListsOutliersAndKeepsTheRest) {
   EXPECT_FALSE(found.is_outlier(24));
 }
 
-// A third of the rows taken at ten times their x: any fit that begins with all rows follows them.
-TEST(LeastSquares, IsNotPulledAlongByBadLeverage) {
+// GIVEN a third of the rows at ten times their x: a fit that starts from all rows follows them
+TEST(LeastSquares, ResistsOutliersWithHighLeverage) {
   Line line(30, 0.01, 4);
   for (std::size_t row = 20; row < 30; ++row) line.x[row] *= 10.0;
   const Fit found = fit(line.problem());
@@ -88,13 +88,13 @@ TEST(LeastSquares, IsNotPulledAlongByBadLeverage) {
   EXPECT_NEAR(found.parameters[0], 2.0, 0.05);
 }
 
-TEST(LeastSquares, SeldomCallsGoodRowsOutliers) {
+TEST(LeastSquares, RarelyFlagsGoodRowsAsOutliers) {
   int with_outliers = 0;
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
     const Line line(40, 0.1, seed);
     with_outliers += fit(line.problem()).outliers.empty() ? 0 : 1;
   }
-  EXPECT_LE(with_outliers, 15);  // 1 % of 500 are meant, 3 standard deviations of that allowed and some
+  EXPECT_LE(with_outliers, 15);  // 1 % of 500 expected; more than 3 standard deviations of that allowed
 }
 
 TEST(LeastSquares, WidensIntervalsOfCorrelatedSeries) {
@@ -110,14 +110,14 @@ TEST(LeastSquares, WidensIntervalsOfCorrelatedSeries) {
   EXPECT_GT(as_series.standard_error(0), 3.0 * as_independent.standard_error(0));
 }
 
-TEST(LeastSquares, TellsCollinearParameters) {
+TEST(LeastSquares, ReportsCollinearParameters) {
   Line line(40, 0.01, 7);
   for (double& x : line.x) x = 1.0 + 1e-3 * x;
   EXPECT_GT(fit(line.problem()).condition, 1000.0);
   EXPECT_LT(fit(Line(40, 0.01, 7).problem()).condition, 10.0);
 }
 
-TEST(LeastSquares, IntervalFactorIsStudents) {
+TEST(LeastSquares, IntervalFactorFollowsStudentsT) {
   EXPECT_NEAR(interval_factor(10), 2.2281, 1e-4);
   EXPECT_NEAR(interval_factor(1000000), 1.95996, 1e-4);
 }

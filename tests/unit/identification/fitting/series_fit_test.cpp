@@ -1,4 +1,4 @@
-// Fits whose answers are known in closed form.
+// Fits with a known closed-form solution.
 #include "swiftlet/identification/fitting/series_fit.hpp"
 
 #include <cmath>
@@ -33,7 +33,7 @@ struct Readings {
   explicit Readings(unsigned seed, double truth = 3.0) {
     std::mt19937 generator(seed);
     std::normal_distribution<double> normal;
-    for (std::size_t s = 0; s < kStretches; ++s) {
+    for (std::size_t s = 0; s < kSegments; ++s) {
       const double shared = normal(generator);
       for (int i = 0; i < 10; ++i) {
         value.push_back(truth + shared + 0.3 * normal(generator));
@@ -41,13 +41,13 @@ struct Readings {
       }
     }
   }
-  static constexpr std::size_t kStretches = 25;
+  static constexpr std::size_t kSegments = 25;
   std::vector<double> value;
   std::vector<std::size_t> segment;
 };
 
 SeriesFit mean_of(const Readings& readings) {
-  SeriesProblem problem = problem_of(1, readings.segment, Readings::kStretches);
+  SeriesProblem problem = problem_of(1, readings.segment, Readings::kSegments);
   problem.residuals = [&](const VectorXd& x, VectorXd& out) {
     for (std::size_t i = 0; i < readings.value.size(); ++i)
       out[static_cast<Index>(i)] = readings.value[i] - x[0];
@@ -56,10 +56,10 @@ SeriesFit mean_of(const Readings& readings) {
 }
 
 // The standard error of a mean of S independent means: sqrt(sum (mean_s - mean)^2 / (S (S - 1))).
-TEST(SeriesFit, AMeanHasTheErrorOfItsStretchesMeans) {
+TEST(SeriesFit, ErrorOfAMeanFollowsFromTheSegmentMeans) {
   const Readings readings(1);
   const SeriesFit fit = mean_of(readings);
-  std::vector<double> means(Readings::kStretches, 0.0);
+  std::vector<double> means(Readings::kSegments, 0.0);
   for (std::size_t i = 0; i < readings.value.size(); ++i)
     means[readings.segment[i]] += 0.1 * readings.value[i];
   double mean = 0.0;
@@ -74,8 +74,9 @@ TEST(SeriesFit, AMeanHasTheErrorOfItsStretchesMeans) {
   EXPECT_EQ(fit.residuals.size(), 250);
 }
 
-// As if all 250 were independent, the error would be a third of the true one, and two of three intervals would miss.
-TEST(SeriesFit, TheErrorIsTrueOfReadingsThatHangTogether) {
+// With all 250 readings taken as independent, the error would be a third of the true one and 2 of 3 intervals
+// would miss.
+TEST(SeriesFit, CoversTheTruthOfCorrelatedReadings) {
   constexpr int kDraws = 300;
   int covered = 0;
   for (unsigned seed = 1; seed <= kDraws; ++seed) {
@@ -86,9 +87,9 @@ TEST(SeriesFit, TheErrorIsTrueOfReadingsThatHangTogether) {
   EXPECT_NEAR(static_cast<double>(covered) / kDraws, 0.95, 3.0 * std::sqrt(0.95 * 0.05 / kDraws));
 }
 
-// Two instruments of one value, in units of which the second reads coarser: each counts by the square of its spread
-// about the common value.
-TEST(SeriesFit, ChannelsCountByTheirSpread) {
+// GIVEN two instruments of one value, the second noisier: each is weighted by the inverse square of its
+// spread about the common value
+TEST(SeriesFit, WeighsChannelsByTheirSpread) {
   std::mt19937 generator(3);
   std::normal_distribution<double> normal;
   std::vector<double> fine, coarse;
@@ -111,15 +112,15 @@ TEST(SeriesFit, ChannelsCountByTheirSpread) {
   double expected = 5.0;
   for (int round = 0; round < 20; ++round) {
     double weights = 0.0;
-    double weighed = 0.0;
+    double weighted_sum = 0.0;
     for (const std::vector<double>& values : {fine, coarse}) {
       const double weight = std::pow(spread_about(values, expected), -2);
       for (const double v : values) {
         weights += weight;
-        weighed += weight * v;
+        weighted_sum += weight * v;
       }
     }
-    expected = weighed / weights;
+    expected = weighted_sum / weights;
   }
   EXPECT_NEAR(fit.parameters[0], expected, 2e-4);
   ASSERT_EQ(fit.channel_spread.size(), 2U);
@@ -127,8 +128,8 @@ TEST(SeriesFit, ChannelsCountByTheirSpread) {
   EXPECT_NEAR(fit.channel_spread[1], spread_about(coarse, expected), 0.1);
 }
 
-// y = a exp(-b t) without noise, in parameters of very different scales.
-TEST(SeriesFit, FindsACurveFromAfar) {
+// y = a exp(-b t) without noise, with parameters of very different scales.
+TEST(SeriesFit, ConvergesFromADistantStart) {
   std::vector<std::size_t> segments;
   for (std::size_t i = 0; i < 200; ++i) segments.push_back(i / 10);
   SeriesProblem problem = problem_of(2, segments, 20);
@@ -146,9 +147,9 @@ TEST(SeriesFit, FindsACurveFromAfar) {
   EXPECT_NEAR(fit.parameters[1], 4e-3, 1e-7);
 }
 
-TEST(SeriesFit, StaysWithinItsBounds) {
+TEST(SeriesFit, StaysWithinBounds) {
   const Readings readings(5);
-  SeriesProblem problem = problem_of(1, readings.segment, Readings::kStretches);
+  SeriesProblem problem = problem_of(1, readings.segment, Readings::kSegments);
   problem.high[0] = 2.0;
   problem.residuals = [&](const VectorXd& x, VectorXd& out) {
     EXPECT_LE(x[0], 2.0 + 1e-12);
@@ -158,10 +159,10 @@ TEST(SeriesFit, StaysWithinItsBounds) {
   EXPECT_NEAR(fit_series(problem).parameters[0], 2.0, 1e-6);
 }
 
-// What no reading depends on is told to be unknown, and does not spoil the rest.
-TEST(SeriesFit, WhatIsNotSeenIsUnknown) {
+// A parameter that no reading depends on has a large variance and does not affect the others.
+TEST(SeriesFit, ReportsUnobservableParametersAsUnknown) {
   const Readings readings(6);
-  SeriesProblem problem = problem_of(2, readings.segment, Readings::kStretches);
+  SeriesProblem problem = problem_of(2, readings.segment, Readings::kSegments);
   problem.scale[1] = 0.01;
   problem.residuals = [&](const VectorXd& x, VectorXd& out) {
     for (std::size_t i = 0; i < readings.value.size(); ++i)
@@ -171,7 +172,7 @@ TEST(SeriesFit, WhatIsNotSeenIsUnknown) {
   const SeriesFit alone = mean_of(readings);
   EXPECT_NEAR(fit.parameters[0], alone.parameters[0], 1e-5);
   EXPECT_NEAR(std::sqrt(fit.covariance(1, 1)), 1e4 * 0.01, 1e-3);
-  // One parameter more is one degree of freedom less.
+  // One more parameter is one degree of freedom less.
   EXPECT_NEAR(fit.covariance(0, 0) / alone.covariance(0, 0), 24.0 / 23.0, 1e-3);
 }
 

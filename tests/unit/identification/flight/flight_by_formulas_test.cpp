@@ -1,4 +1,5 @@
-// A flight that is integrated here, by Eq. (1) to (34) written down for this vehicle alone: what its log tells is right.
+// A flight integrated by Eq. (1) to (34), independent of plant/: identification recovers its parameters from
+// the log.
 #include <cmath>
 #include <random>
 #include <string>
@@ -24,7 +25,7 @@ constexpr int kSubsteps = 20;
 constexpr double kOnGround_s = 0.5;
 constexpr double kEnd_s = 60.0;
 
-// What flies is not the base, which has KayLion's numbers.
+// Differs from the base, KayLion.
 struct Truth {
   double mass = 0.040;
   Vector3d inertia{5.0e-5, 4.1e-5, 8.2e-5};
@@ -75,7 +76,7 @@ Rates rates_of(const Truth& t, const State& s, const Vector4d& steady) {
                    (moment[2] + (j[0] - j[1]) * w[0] * w[1]) / j[2]),
           (steady - s.speeds) / t.tau};
 }
-State moved(const State& s, const Rates& r, double dt) {
+State integrated(const State& s, const Rates& r, double dt) {
   State out = s;
   out.position += dt * r.velocity;
   out.velocity += dt * r.acceleration;
@@ -85,12 +86,12 @@ State moved(const State& s, const Rates& r, double dt) {
   out.speeds += dt * r.speeds;
   return out;
 }
-// The midpoint rule: errors of the third order of a tenth of a millisecond.
-State stepped(const Truth& t, const State& s, const Vector4d& steady, double dt) {
-  return moved(s, rates_of(t, moved(s, rates_of(t, s, steady), 0.5 * dt), steady), dt);
+// Midpoint rule: local error of third order in a step of 0.1 ms.
+State midpoint_step(const Truth& t, const State& s, const Vector4d& steady, double dt) {
+  return integrated(s, rates_of(t, integrated(s, rates_of(t, s, steady), 0.5 * dt), steady), dt);
 }
 
-// Swings about every axis, by a loop that knows the truth and a sum of cosines beside it.
+// Excites every axis: a feedback loop on the true state plus a sum of cosines.
 Vector4d throttles(const Truth& t, const State& s, double supply_v, double time) {
   const auto cosine = [&](double amplitude, double hertz) {
     return amplitude * std::cos(2.0 * M_PI * hertz * time);
@@ -152,7 +153,7 @@ FlightLog flown(const Truth& truth, unsigned seed) {
     if (!flies) continue;
     Vector4d steady;
     for (Eigen::Index i = 0; i < 4; ++i) steady[i] = truth.steady_speed(supply_v, throttle[i]);
-    for (int i = 0; i < kSubsteps; ++i) state = stepped(truth, state, steady, kSample_s / kSubsteps);
+    for (int i = 0; i < kSubsteps; ++i) state = midpoint_step(truth, state, steady, kSample_s / kSubsteps);
     state.q.normalize();
   }
   return log;
@@ -163,8 +164,8 @@ const FlightLog& log_of_truth() {
   return log;
 }
 
-// Within twice the half of its own interval, which one error of ten thousand exceeds, and within what a factor that is
-// missing would exceed by far.
+// The error is within twice the half width of the interval, which 1 error in 10,000 exceeds, and within a
+// share that a missing factor would exceed by far.
 void expect_found(const FlightIdentification& found, const std::string& name, double truth, double share) {
   const ParameterEstimate* const estimate = found.find(name);
   ASSERT_NE(estimate, nullptr) << name;
@@ -174,7 +175,7 @@ void expect_found(const FlightIdentification& found, const std::string& name, do
       << name << " " << estimate->value << " for " << truth;
 }
 
-TEST(FlightByFormulas, TellsTheVehicleByItsRotorSpeeds) {
+TEST(FlightByFormulas, IdentifiesTheVehicleFromRotorSpeeds) {
   const Truth truth;
   const FlightIdentification found = identify_flight({log_of_truth()}, kaylion(), {});
   ASSERT_EQ(found.source, SpeedSource::kMeasured);
@@ -187,7 +188,7 @@ TEST(FlightByFormulas, TellsTheVehicleByItsRotorSpeeds) {
   expect_found(found, "linear_drag", truth.drag, 0.1);
 }
 
-TEST(FlightByFormulas, TellsItWithoutThem) {
+TEST(FlightByFormulas, IdentifiesTheVehicleWithoutRotorSpeeds) {
   const Truth truth;
   FlightLog log = log_of_truth();
   log.rotor_speeds.clear();
@@ -201,15 +202,14 @@ TEST(FlightByFormulas, TellsItWithoutThem) {
   expect_found(found, "inertia.zz", truth.inertia[2], 0.04);
 }
 
-TEST(FlightByFormulas, TellsLagAndGainsByCommandsAlone) {
+TEST(FlightByFormulas, IdentifiesLagAndGainsFromCommandsAlone) {
   const Truth truth;
   FlightLog log = log_of_truth();
   log.rotor_speeds.clear();
   log.supply_voltage_v.clear();
   log.poses.clear();
   plant::Vehicle base = kaylion();
-  base.battery.internal_resistance_ohm =
-      0.0;  // the supply of this flight does not sag under what the rotors draw
+  base.battery.internal_resistance_ohm = 0.0;  // the supply of this flight does not sag with rotor current
   const FlightIdentification found = identify_flight({log}, base, {});
   ASSERT_EQ(found.source, SpeedSource::kCommanded);
   EXPECT_TRUE(found.converged);
@@ -221,7 +221,7 @@ TEST(FlightByFormulas, TellsLagAndGainsByCommandsAlone) {
 }
 
 // Eq. (6) with three different moments and rates, in the form of Eq. (32) to (34).
-TEST(FlightModel, RatesChangeByMomentAndCoupling) {
+TEST(FlightModel, RateDerivativeFollowsEq32To34) {
   const Vector3d j(2.0, 3.0, 4.0);
   const Vector3d found = FlightModel::rate_derivative(j, {10.0, 20.0, 30.0}, {1.0, 2.0, 3.0});
   const Vector3d expected(10.0 + (3.0 - 4.0) * 3.0 * 2.0 / 2.0, 20.0 + (4.0 - 2.0) * 1.0 * 3.0 / 3.0,
@@ -229,8 +229,8 @@ TEST(FlightModel, RatesChangeByMomentAndCoupling) {
   EXPECT_LT((found - expected).norm(), 1e-12) << found.transpose();
 }
 
-// By the true numbers, put in by hand, the model makes of the log's rotor speeds what was flown.
-TEST(FlightModel, MakesOfTheSpeedsWhatWasFlown) {
+// GIVEN the true parameters, the model predicts specific force and rates from the log's rotor speeds.
+TEST(FlightModel, PredictsTheFlightFromRotorSpeeds) {
   const Truth truth;
   const std::vector<FlightLog> logs = {log_of_truth()};
   const plant::Vehicle base = kaylion();
@@ -246,23 +246,23 @@ TEST(FlightModel, MakesOfTheSpeedsWhatWasFlown) {
   const FlightModel::Drive drive = model.drive(x, 0, rows);
   ASSERT_EQ(drive.specific_force.size(), rows.size());
   double force = 0.0;
-  Vector3d gained = Vector3d::Zero();
+  Vector3d integrated_rates = Vector3d::Zero();
   Vector3d worst = Vector3d::Zero();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::size_t row = rows.first + i;
     force += (logs[0].specific_force_frd[row] - drive.specific_force[i]).squaredNorm() /
              static_cast<double>(rows.size());
-    if (i % 250 == 0) gained = logs[0].body_rates_frd[row];  // half a second at a time
-    worst = worst.cwiseMax((logs[0].body_rates_frd[row] - gained).cwiseAbs());
-    gained += kSample_s *
-              FlightModel::rate_derivative(truth.inertia, drive.acceleration[i], logs[0].body_rates_frd[row]);
+    if (i % 250 == 0) integrated_rates = logs[0].body_rates_frd[row];  // half a second at a time
+    worst = worst.cwiseMax((logs[0].body_rates_frd[row] - integrated_rates).cwiseAbs());
+    integrated_rates += kSample_s * FlightModel::rate_derivative(truth.inertia, drive.acceleration[i],
+                                                                 logs[0].body_rates_frd[row]);
   }
   EXPECT_LT(std::sqrt(force), 0.02 * std::sqrt(3.0) * 1.2) << "the accelerometer's noise";
-  // The gyro's noise at both ends, and the rectangle's error: half a sample of the acceleration's change.
+  // Gyro noise at both ends and the error of the rectangle rule: half a sample of the acceleration's change.
   EXPECT_LT(worst.maxCoeff(), 0.06) << worst.transpose();
 }
 
-TEST(ThrustCurve, HasTheSlopeOfItsValues) {
+TEST(ThrustCurve, SlopeMatchesItsFiniteDifference) {
   const ThrustCurve curve{0.4, 9.8, 30.0, -12.0};
   EXPECT_DOUBLE_EQ(curve.at(0.4), 9.8);
   EXPECT_DOUBLE_EQ(curve.at(0.6), 9.8 + 0.2 * 30.0 - 0.04 * 12.0);

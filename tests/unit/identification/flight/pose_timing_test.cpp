@@ -1,4 +1,4 @@
-// Poses that are stamped late, of a body whose motion is known.
+// Poses with delayed time stamps, of a body with known motion.
 #include "swiftlet/identification/flight/pose_timing.hpp"
 
 #include <cmath>
@@ -51,8 +51,8 @@ FlightLog log_of(const Swing& swing, double delay_s, double noise_rad, std::uint
   return log;
 }
 
-// Half a second each.
-std::vector<Rows> stretches_of(const FlightLog& log) {
+// Segments of 0.5 s.
+std::vector<Rows> segments_of(const FlightLog& log) {
   std::vector<Rows> out;
   for (std::size_t row = 0; row + 250 <= log.size(); row += 250) out.push_back({row, row + 250});
   return out;
@@ -61,7 +61,7 @@ std::vector<Rows> stretches_of(const FlightLog& log) {
 TEST(PoseTiming, FindsTheDelayOfExactPoses) {
   for (const double delay_s : {-0.02, 0.0, 0.0031, 0.04}) {
     const FlightLog log = log_of({}, delay_s, 0.0, 1);
-    const PoseTiming found = find_pose_timing(log, stretches_of(log));
+    const PoseTiming found = find_pose_timing(log, segments_of(log));
     EXPECT_TRUE(found.identified);
     EXPECT_NEAR(found.delay.value, delay_s, 1e-5);
     for (int axis = 0; axis < 3; ++axis)
@@ -69,14 +69,14 @@ TEST(PoseTiming, FindsTheDelayOfExactPoses) {
   }
 }
 
-TEST(PoseTiming, ItsIntervalsHoldTheTruth) {
+TEST(PoseTiming, IntervalsCoverTheTruth) {
   const int seeds = tests::draws(25, 100);
   constexpr double kDelay_s = 0.007;
   int covered[4] = {};
   double sum_s = 0.0;
   for (int seed = 1; seed <= seeds; ++seed) {
     const FlightLog log = log_of({}, kDelay_s, 0.003, static_cast<std::uint64_t>(seed));
-    const PoseTiming found = find_pose_timing(log, stretches_of(log));
+    const PoseTiming found = find_pose_timing(log, segments_of(log));
     EXPECT_TRUE(found.identified);
     sum_s += found.delay.value / seeds;
     const auto holds = [](const ParameterEstimate& e, double truth) {
@@ -92,15 +92,15 @@ TEST(PoseTiming, ItsIntervalsHoldTheTruth) {
   for (const int count : covered) EXPECT_GE(count, 0.95 * seeds - 3.2 * seeds * tests::coverage_error(seeds));
 }
 
-TEST(PoseTiming, IsNotToldByABodyThatDoesNotTurn) {
+TEST(PoseTiming, IsNotIdentifiedWithoutRotation) {
   const FlightLog log = log_of({0.0}, 0.01, 0.003, 2);
-  EXPECT_FALSE(find_pose_timing(log, stretches_of(log)).identified);
+  EXPECT_FALSE(find_pose_timing(log, segments_of(log)).identified);
 }
 
-TEST(PoseTiming, IsNotToldByAFewPoses) {
+TEST(PoseTiming, IsNotIdentifiedFromFewPoses) {
   FlightLog log = log_of({}, 0.01, 0.003, 3);
   log.poses.resize(100);
-  EXPECT_FALSE(find_pose_timing(log, stretches_of(log)).identified);
+  EXPECT_FALSE(find_pose_timing(log, segments_of(log)).identified);
 }
 
 }  // namespace

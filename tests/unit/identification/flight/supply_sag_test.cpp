@@ -1,4 +1,4 @@
-// The sag's ratio, beside that of the simulated vehicle.
+// Compares the ratio of the supply sag with the simulated vehicle.
 #include "swiftlet/identification/flight/supply_sag.hpp"
 
 #include <cmath>
@@ -19,7 +19,7 @@ plant::Vehicle vehicle_named(const std::string& name) {
   return runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/" + name + ".yaml");
 }
 
-// Thrusts of all rotors, N, once they have settled at half the charge.
+// Settled thrust of each rotor, N, at half the charge.
 plant::PerRotor settled_thrusts(const plant::Vehicle& vehicle, const plant::PerRotor& commands) {
   const plant::Dynamics dynamics(vehicle, plant::Supply::battery());
   plant::MotorCommand drive;
@@ -47,7 +47,7 @@ plant::PerRotor all(double command) {
   return out;
 }
 
-// By what the rotors do when all go up, and when the first goes up as the second goes down.
+// Thrust change of rotor 1 when all commands rise, over its change when the first rises and the second falls.
 double simulated_ratio(const plant::Vehicle& vehicle) {
   double low = 0.05;
   double high = 1.0;
@@ -55,16 +55,16 @@ double simulated_ratio(const plant::Vehicle& vehicle) {
     const double middle = 0.5 * (low + high);
     (settled_thrusts(vehicle, all(middle))[0] < plant::hover_thrust(vehicle) ? low : high) = middle;
   }
-  plant::PerRotor apart = all(low);
-  apart[0] += kStep;
-  apart[1] -= kStep;
-  const plant::PerRotor moment = settled_thrusts(vehicle, apart);
-  const double shared =
+  plant::PerRotor differential = all(low);
+  differential[0] += kStep;
+  differential[1] -= kStep;
+  const plant::PerRotor differential_thrusts = settled_thrusts(vehicle, differential);
+  const double common_change =
       settled_thrusts(vehicle, all(low + kStep))[0] - settled_thrusts(vehicle, all(low - kStep))[0];
-  return shared / (moment[0] - moment[1]);
+  return common_change / (differential_thrusts[0] - differential_thrusts[1]);
 }
 
-TEST(SupplySag, IsThatOfTheSimulatedVehicle) {
+TEST(SupplySag, MatchesTheSimulatedVehicle) {
   for (const char* const name : {"kaylion", "crazyflie2"}) {
     const plant::Vehicle vehicle = vehicle_named(name);
     const double ratio = shared_over_single(vehicle);
@@ -74,7 +74,7 @@ TEST(SupplySag, IsThatOfTheSimulatedVehicle) {
   }
 }
 
-TEST(SupplySag, IsNoneWithoutResistance) {
+TEST(SupplySag, IsZeroWithoutResistance) {
   plant::Vehicle vehicle = vehicle_named("kaylion");
   vehicle.battery.internal_resistance_ohm = 0.0;
   EXPECT_NEAR(shared_over_single(vehicle), 1.0, 1e-9);

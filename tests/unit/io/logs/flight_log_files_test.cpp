@@ -20,7 +20,7 @@ plant::Vehicle kaylion() {
   return runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
 }
 
-// 8 IMU samples 2 ms apart; poses and battery samples come now and then.
+// 8 IMU samples 2 ms apart; a pose and a battery sample with every fourth.
 FlightLog recorded() {
   SensorRecord record(16);
   for (int i = 0; i < 8; ++i) {
@@ -56,7 +56,7 @@ FlightLog recorded() {
   return flight_log_of(record);
 }
 
-ReadFlightLog read(const std::string& text, BodyAxes axes = BodyAxes::kAsSaid) {
+ReadFlightLog read(const std::string& text, BodyAxes axes = BodyAxes::kAsDeclared) {
   const tests::TemporaryFolder folder;
   return read_flight_log(folder.write("log.csv", text), kaylion(), axes);
 }
@@ -87,11 +87,11 @@ TEST(FlightLogFiles, JoinsSamplesByTheirStamps) {
   ASSERT_EQ(log.poses.size(), 2U);
 }
 
-TEST(FlightLogFiles, ReadWhatTheyWrote) {
+TEST(FlightLogFiles, ReadsBackWhatItWrote) {
   const tests::TemporaryFolder folder;
   const FlightLog log = recorded();
   write_flight_log(folder.path() / kSensorsFile, log);
-  const ReadFlightLog again = read_flight_log(folder.path(), kaylion(), BodyAxes::kAsSaid);
+  const ReadFlightLog again = read_flight_log(folder.path(), kaylion(), BodyAxes::kAsDeclared);
   EXPECT_TRUE(again.assumptions.empty());
   ASSERT_EQ(again.log.size(), log.size());
   EXPECT_EQ(again.log.rotor_count, 4);
@@ -111,7 +111,7 @@ TEST(FlightLogFiles, ReadWhatTheyWrote) {
 
 const std::string kRow = "0.0,1,2,9.8,0.1,0.2,0.3,0.5\n0.01,1,2,9.8,0.1,0.2,0.3,0.5\n";
 
-TEST(FlightLogFiles, TakesUpFromGravity) {
+TEST(FlightLogFiles, DetectsBodyAxesFromGravity) {
   const ReadFlightLog up = read(
       "t [s],acc_x [m/s^2],acc_y [m/s^2],acc_z [m/s^2],gyro_x [rad/s],gyro_y [rad/s],gyro_z [rad/s],motor1 "
       "[1]\n" +
@@ -122,7 +122,7 @@ TEST(FlightLogFiles, TakesUpFromGravity) {
   EXPECT_TRUE(up.log.body_rates_frd[0].isApprox(Eigen::Vector3d(0.1, -0.2, -0.3)));
 }
 
-TEST(FlightLogFiles, BelievesNamesThatSayTheirAxes) {
+TEST(FlightLogFiles, UsesTheAxesInColumnNames) {
   const std::string header =
       "t [s],acc_x_frd [m/s^2],acc_y_frd [m/s^2],acc_z_frd [m/s^2],p_frd [rad/s],q_frd [rad/s],r_frd "
       "[rad/s],motor1 [1]\n";
@@ -130,7 +130,7 @@ TEST(FlightLogFiles, BelievesNamesThatSayTheirAxes) {
   EXPECT_TRUE(read(header + row).log.specific_force_frd[0].isApprox(Eigen::Vector3d(1.0, 2.0, -9.8)));
 }
 
-TEST(FlightLogFiles, RefuseAxesThatGravityContradicts) {
+TEST(FlightLogFiles, RefusesAxesThatGravityContradicts) {
   const std::string values =
       "acc_x [m/s^2],acc_y [m/s^2],acc_z [m/s^2],p [rad/s],q [rad/s],r [rad/s],m1 [1]\n";
   expect_contains(refused("t [s],acc_x_frd [m/s^2],acc_y_frd [m/s^2],acc_z_frd [m/s^2],p_frd [rad/s],q_frd "
@@ -141,13 +141,13 @@ TEST(FlightLogFiles, RefuseAxesThatGravityContradicts) {
   EXPECT_THROW(read("t [s]," + values + kRow, BodyAxes::kFrd), runtime::ConfigError);
 }
 
-TEST(FlightLogFiles, TakesPosesEastNorthUp) {
+TEST(FlightLogFiles, ConvertsPosesFromEnuToNed) {
   const double h = std::sqrt(0.5);
   const std::string header =
       "t [s],ax_flu [g],ay_flu [g],az_flu [g],p_flu [rad/s],q_flu [rad/s],r_flu [rad/s],m1 [1],pose_time "
       "[s],x_enu [m],y_enu "
       "[m],z_enu [m],qw_enu_from_flu [1],qx_enu_from_flu [1],qy_enu_from_flu [1],qz_enu_from_flu [1]\n";
-  // Level, nose to the north: a turn of 90 degrees about up from east.
+  // Level, nose to the north: 90 degrees about up from east.
   const std::string row =
       ",0,0,1,0,0,0,0.5,0,1,2,3," + std::to_string(h) + ",0,0," + std::to_string(h) + "\n";
   const ReadFlightLog log = read(header + "0" + row + "0.1" + row);
@@ -156,7 +156,7 @@ TEST(FlightLogFiles, TakesPosesEastNorthUp) {
   EXPECT_LT(log.log.poses[0].q_ned_from_frd.angularDistance(Eigen::Quaterniond::Identity()), 1e-5);
 }
 
-TEST(FlightLogFiles, MakesThrottlesOfPulses) {
+TEST(FlightLogFiles, ConvertsPulseWidthsToThrottles) {
   const ReadFlightLog log = read(
       "t [s],acc_x [g],acc_y [g],acc_z [g],gyro_x [deg/s],gyro_y [deg/s],gyro_z [deg/s],pwm1 [us]\n"
       "0,0,0,1,0,0,0,1539\n0.01,0,0,1,0,0,0,1039\n");
@@ -167,7 +167,7 @@ TEST(FlightLogFiles, MakesThrottlesOfPulses) {
       "log.csv:2: pwm1 [us]: is 15390.000000 us, must be 0 or between 539.000000 and 2539.000000 us");
 }
 
-TEST(FlightLogFiles, RefuseWhatTheyCannotTell) {
+TEST(FlightLogFiles, RefusesAmbiguousOrIncompleteLogs) {
   const std::string head = "t [s],acc_x [g],acc_y [g],acc_z [g],p [rad/s],q [rad/s],r [rad/s],m1 [1]";
   expect_contains(refused(head + "\n0,0,0,0.1,0,0,0,0.5\n"), "give --axes frd or --axes flu");
   expect_contains(refused(head + "\n0,0,0,1,0,0,0,1.5\n"), "of full command, must be between 0 and 1");
@@ -189,7 +189,7 @@ TEST(FlightLogFiles, RefuseWhatTheyCannotTell) {
                   "has m3 [1] but none of motor 2");
 }
 
-TEST(FlightLogFiles, UnpackGzipAndSayIfTheyCannot) {
+TEST(FlightLogFiles, ReadsGzipAndReportsCorruptArchives) {
   const tests::TemporaryFolder folder;
   const std::string file = (folder.path() / "log.csv.gz").string();
   const gzFile out = gzopen(file.c_str(), "wb");
@@ -197,11 +197,11 @@ TEST(FlightLogFiles, UnpackGzipAndSayIfTheyCannot) {
       "t [s],acc_x [g],acc_y [g],acc_z [g],p [rad/s],q [rad/s],r [rad/s],m1 [1]\n0,0,0,1,0,0,0,1\n";
   gzwrite(out, text.data(), static_cast<unsigned>(text.size()));
   gzclose(out);
-  EXPECT_EQ(read_flight_log(file, kaylion(), BodyAxes::kAsSaid).log.size(), 1U);
+  EXPECT_EQ(read_flight_log(file, kaylion(), BodyAxes::kAsDeclared).log.size(), 1U);
 
   const std::string broken = folder.write("broken.csv.gz", runtime::read_text_file(file).substr(0, 40));
   try {
-    read_flight_log(broken, kaylion(), BodyAxes::kAsSaid);
+    read_flight_log(broken, kaylion(), BodyAxes::kAsDeclared);
     ADD_FAILURE() << "was not refused";
   } catch (const runtime::ConfigError& fault) {
     expect_contains(fault.what(), "cannot be unpacked");

@@ -63,9 +63,9 @@ TEST(MissionFile, ReadsEveryItem) {
   EXPECT_DOUBLE_EQ(items[3].speed, 0.3);
 }
 
-TEST(MissionFile, IsNamedAfterTheFileUnlessItSays) { EXPECT_EQ(parse(kHovers + kTakeoff).name, "m"); }
+TEST(MissionFile, UsesTheFileNameWithoutANameKey) { EXPECT_EQ(parse(kHovers + kTakeoff).name, "m"); }
 
-TEST(MissionFile, TurnsEnuIntoNed) {
+TEST(MissionFile, ConvertsEnuToNed) {
   const MissionFile file = parse(
       "frame: enu\ntolerance_m: 0.1\nends: hovering\nitems:\n"
       "  - {kind: takeoff, height_m: 1.0, speed_m_s: 0.5}\n"
@@ -78,7 +78,7 @@ TEST(MissionFile, TurnsEnuIntoNed) {
   EXPECT_NEAR(items[2].yaw_rad, M_PI / 2 + 3.0 - 2 * M_PI, 1e-12);
 }
 
-TEST(MissionFile, SetsWhatTheItemsAfterItDoNotSay) {
+TEST(MissionFile, SetItemGivesDefaultsForLaterItems) {
   const MissionFile file =
       parse(kHovers + "  - {kind: set, speed_m_s: 0.7, hold_s: 1}\n" +
             "  - {kind: takeoff, height_m: 1.0}\n" + "  - {kind: waypoint, position_m: [1, 0, -1]}\n" +
@@ -102,7 +102,7 @@ TEST(MissionFile, SetsWhatTheItemsAfterItDoNotSay) {
   EXPECT_EQ(file.lines, (std::vector<int>{6, 7, 9, 10}));
 }
 
-TEST(MissionFile, PlansAPathThroughItsPointsUnderItsLimits) {
+TEST(MissionFile, PlansAPathThroughItsPointsWithinLimits) {
   const MissionFile file = parse("limits: {acceleration_m_s2: 1, jerk_m_s3: 5}\n" + kHead + kTakeoff +
                                  "  - {kind: path, speed_m_s: 0.8, points: [[0, 0, -1], {position_m: [1, 1, "
                                  "-1.5], yaw_rad: 3}, [2, 0, -1],"
@@ -125,15 +125,15 @@ TEST(MissionFile, PlansAPathThroughItsPointsUnderItsLimits) {
   };
   EXPECT_TRUE(end_of(0).position_ned.isApprox(Eigen::Vector3d(1, 1, -1.5), 1e-6));
   EXPECT_GT(end_of(0).velocity_ned.norm(), 0.1) << "it does not stop";
-  EXPECT_NEAR(file.mission.segments[0].yaw[0], 3.0, 1e-9) << "that of the first point that has one";
-  EXPECT_NEAR(end_of(1).yaw_rad, 3.0, 1e-6) << "that of the point before";
-  EXPECT_NEAR(end_of(2).yaw_rad, 2 * M_PI - 3.0, 1e-6) << "the short way round";
+  EXPECT_NEAR(file.mission.segments[0].yaw[0], 3.0, 1e-9) << "yaw of the first point that has one";
+  EXPECT_NEAR(end_of(1).yaw_rad, 3.0, 1e-6) << "yaw of the previous point";
+  EXPECT_NEAR(end_of(2).yaw_rad, 2 * M_PI - 3.0, 1e-6) << "the shorter turn";
   EXPECT_GT(planned_duration_s(file.mission, control::Limits{}), duration_s);
 }
 
-TEST(MissionFile, APathIsStraightInACorridorOrOfFreeYawWhereItSays) {
+TEST(MissionFile, PathStaysInACorridorOrOnStraightLegs) {
   const std::string corner = "points: [[0, 0, -1], [1, 0, -1], [1, 1, -1]], speed_m_s: 0.8";
-  const auto greatest_east_of_the_first_leg = [&](const std::string& shape) {
+  const auto first_leg_deviation = [&](const std::string& shape) {
     const MissionFile file = parse(kHead + kTakeoff + "  - {kind: path, " + corner + shape + "}\n" + kLand);
     EXPECT_TRUE(file.mission.items[1].yaw_free);
     double greatest = 0.0;
@@ -145,12 +145,12 @@ TEST(MissionFile, APathIsStraightInACorridorOrOfFreeYawWhereItSays) {
     }
     return greatest;
   };
-  EXPECT_GT(greatest_east_of_the_first_leg(""), 0.05);
-  EXPECT_LT(greatest_east_of_the_first_leg(", corridor_m: 0.03"), 0.0301);
-  EXPECT_LT(greatest_east_of_the_first_leg(", straight: true"), 1e-9);
+  EXPECT_GT(first_leg_deviation(""), 0.05);
+  EXPECT_LT(first_leg_deviation(", corridor_m: 0.03"), 0.0301);
+  EXPECT_LT(first_leg_deviation(", straight: true"), 1e-9);
 }
 
-TEST(MissionFile, FliesTrajectoriesFromFilesBesideIt) {
+TEST(MissionFile, LoadsTrajectoriesFromFilesBesideIt) {
   const tests::TemporaryFolder folder;
   folder.write("samples.csv", "t,x,y,z\n0,0,0,1\n1,0.3,0,1\n2,0.6,0.2,1.1\n4,1,0,1\n");
   const std::string path = folder.write(
@@ -176,7 +176,7 @@ TEST(MissionFile, FliesTrajectoriesFromFilesBesideIt) {
                   .accepted);
 }
 
-TEST(MissionFile, TurnsTheFenceIntoNed) {
+TEST(MissionFile, ConvertsTheFenceToNed) {
   const MissionFile file = parse(
       "geofence: {min_m: [-1, -2, -0.1], max_m: [2, 2.5, 1.8]}\nframe: enu\ntolerance_m: 0.1\nitems:\n" +
       kTakeoff + kLand);
@@ -246,15 +246,15 @@ INSTANTIATE_TEST_SUITE_P(
               "m.yaml:4: items[0].height_m: is given twice, first in line 4"},
         Fault{"NoSpeed", kHead + "  - {kind: takeoff, height_m: 1}\n" + kLand,
               "m.yaml:4: items[0].speed_m_s: is missing, must be given"},
-        Fault{"SetsNothing", kHead + "  - {kind: set}\n" + kLand,
+        Fault{"EmptySet", kHead + "  - {kind: set}\n" + kLand,
               "m.yaml:4: items[0]: sets nothing, must give one of speed_m_s, yaw_rad, acceptance_radius_m or "
               "hold_s"},
-        Fault{"NothingFlown", kHead + "  - {kind: set, speed_m_s: 1}\n",
+        Fault{"NoItemToFly", kHead + "  - {kind: set, speed_m_s: 1}\n",
               "m.yaml:3: items: has no item to fly, must have at least one besides set"},
         Fault{"NoLanding", kHead + kTakeoff + kWaypoint,
               "m.yaml:5: items[1]: is the last item, which must be a land unless the mission has `ends: "
               "hovering`"},
-        Fault{"LandsThoughItHovers", kHovers + kTakeoff + kLand,
+        Fault{"LandsButEndsHovering", kHovers + kTakeoff + kLand,
               "m.yaml:1: ends: is hovering, must be landed: the last item is a land"},
         Fault{"LooserLimit", "limits: {speed_m_s: 2.5}\n" + kHead + kTakeoff + kLand,
               "m.yaml:1: limits.speed_m_s: is 2.5, must be above 0 and at most 2"},
@@ -269,8 +269,7 @@ INSTANTIATE_TEST_SUITE_P(
               "m.yaml:1: geofence: the mission's fence, minimum corner: x is -9.000 m, outside the fence "
               "of -3.000 "
               "to 3.000 m"},
-        Fault{"FenceOfNoSize",
-              "geofence: {min_m: [-1, 1, -2], max_m: [1, 1, 0.2]}\n" + kHead + kTakeoff + kLand,
+        Fault{"EmptyFence", "geofence: {min_m: [-1, 1, -2], max_m: [1, 1, 0.2]}\n" + kHead + kTakeoff + kLand,
               "m.yaml:1: geofence.max_m: number 2 is 1, must be above that of min_m, 1"},
         Fault{"OutsideItsOwnFence",
               "geofence: {min_m: [-1, -1, -2], max_m: [1, 1, 0.2]}\n" + kHead + kTakeoff + kWaypoint + kLand,
@@ -289,7 +288,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "corridor_m: 1}\n",
               "m.yaml:5: items[1].corridor_m: is given for a path of straight legs, must be left out"},
         Fault{
-            "YawThatIsNone",
+            "YawNotANumber",
             kHead + kTakeoff + "  - {kind: waypoint, position_m: [1, 0, -1], speed_m_s: 1, yaw_rad: north}\n",
             "m.yaml:5: items[1].yaw_rad: is north, must be a number"},
         Fault{"RadiusBelowZero",
@@ -298,13 +297,14 @@ INSTANTIATE_TEST_SUITE_P(
               "m.yaml:5: items[1].acceptance_radius_m: is -1, must be at least 0 and at most 10"},
         Fault{"EmptyWait", kHead + kTakeoff + "  - {kind: wait, duration_s: 0}\n",
               "m.yaml:5: items[1].duration_s: is 0, must be above 0 and at most 3600"},
-        Fault{"NoSuchTrajectory", kHead + kTakeoff + "  - {kind: trajectory, file: none.csv, speed_m_s: 1}\n",
+        Fault{"MissingTrajectory",
+              kHead + kTakeoff + "  - {kind: trajectory, file: none.csv, speed_m_s: 1}\n",
               "m.yaml:5: items[1].file: is none.csv, must be an existing file: looked for none.csv"},
         Fault{"NameWithAFolder", "name: ../x\n" + kHead + kTakeoff,
               "m.yaml:1: name: must be at most 64 characters and hold no /"}),
     name_of);
 
-TEST(MissionFile, RefusesOneThatIsCutShort) {
+TEST(MissionFile, RefusesEveryTruncation) {
   const std::string whole =
       "limits: {speed_m_s: 1}\ngeofence: {min_m: [-1, -2, -2], max_m: [2.5, 1, 0.2]}\n" + kHead + kTakeoff +
       kWaypoint + kLand;
@@ -323,7 +323,7 @@ TEST(PlannedDuration, IsTheSumOfMinimumJerkMovesAndHolds) {
   EXPECT_NEAR(planned_duration_s(file.mission, control::Limits{}), 3.75 + 2.0 + 7.5 + 3.75, 1e-9);
 }
 
-TEST(PlannedDuration, WaitsForTheYaw) {
+TEST(PlannedDuration, IncludesTheYawTurn) {
   const MissionFile file =
       parse(kHovers + "  - {kind: takeoff, height_m: 1, speed_m_s: 0.5}\n" +
             "  - {kind: waypoint, position_m: [0, 0, -1], yaw_rad: 3, speed_m_s: 0.5}\n");
@@ -333,7 +333,7 @@ TEST(PlannedDuration, WaitsForTheYaw) {
 
 class PaperMission : public testing::TestWithParam<const char*> {};
 
-TEST_P(PaperMission, TakesAboutFortySecondsInsideTheFiguresAxes) {
+TEST_P(PaperMission, TakesAboutFortySecondsWithinTheFigureAxes) {
   const MissionFile file = load_mission_file(
       std::string(SWIFTLET_SOURCE_DIR "/config/missions/") + GetParam() + ".yaml", control::Limits{});
   EXPECT_EQ(file.name, GetParam());

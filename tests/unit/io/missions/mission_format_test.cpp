@@ -49,7 +49,7 @@ control::Reference at_path_start(const MissionFile& file) {
   return control::evaluate(file.mission.segments.front(), 0.0);
 }
 
-TEST(DetectFormat, LooksAtTheContent) {
+TEST(DetectFormat, RecognisesEveryFormat) {
   EXPECT_EQ(detect_format("duration,x^0\n", "a.csv"), MissionFormat::kPolynomialCsv);
   EXPECT_EQ(detect_format("t,x,y,z\n", "a.csv"), MissionFormat::kSampledCsv);
   EXPECT_EQ(detect_format("t,x,y,z\n", "a.txt"), MissionFormat::kSampledCsv);
@@ -65,7 +65,7 @@ TEST(DetectFormat, LooksAtTheContent) {
   EXPECT_EQ(detect_format("frame: ned\n", "a"), MissionFormat::kYaml);
 }
 
-TEST(DetectFormat, SaysWhatACsvFileMustBeginWith) {
+TEST(DetectFormat, ErrorListsTheKnownCsvHeaders) {
   const std::string known =
       "duration,x^0,... (polynomials), t,x,y,z,... (samples) or x,y,z[,yaw] (waypoints, also without a "
       "header)";
@@ -87,10 +87,10 @@ std::string header() {
 }
 const std::string kHeader = header();
 
-// Rest to rest from x to x + way east, at a height, by minimum jerk.
-std::string row(double duration_s, double x, double way, double height, double yaw = 0.0) {
+// Minimum jerk from rest at x to rest at x + distance east, at a height.
+std::string row(double duration_s, double x, double distance, double height, double yaw = 0.0) {
   const control::PolynomialSegment s =
-      control::minimum_jerk({x, 0, height}, yaw, {x + way, 0, height}, yaw, duration_s);
+      control::minimum_jerk({x, 0, height}, yaw, {x + distance, 0, height}, yaw, duration_s);
   std::string text = runtime::exact(duration_s);
   for (const control::Polynomial* const axis : {&s.x, &s.y, &s.z, &s.yaw}) {
     for (const double c : *axis) text += "," + runtime::exact(c);
@@ -102,7 +102,7 @@ MissionFile polynomials(const std::string& text) {
   return parse_polynomial_csv(text, "p.csv", control::Limits());
 }
 
-TEST(PolynomialCsv, TurnsEnuIntoNed) {
+TEST(PolynomialCsv, ConvertsEnuToNed) {
   const MissionFile file = polynomials(kHeader + "\n" + row(4.0, 0.5, 1.0, 1.5, 0.3) + "\n");
   EXPECT_EQ(file.name, "p");
   ASSERT_EQ(file.mission.items.size(), 3U);
@@ -121,13 +121,13 @@ TEST(PolynomialCsv, TurnsEnuIntoNed) {
   EXPECT_TRUE(assumes(file, "take-off to 1.50 m and a landing are added"));
 }
 
-TEST(PolynomialCsv, OnTheGroundItIsTakenFromAHover) {
+TEST(PolynomialCsv, RaisesALowPathToTheHoverHeight) {
   const MissionFile file = polynomials(kHeader + "\n" + row(4.0, 0.5, 1.0, 0.1));
   EXPECT_NEAR(at_path_start(file).position_ned.z(), -1.0, 1e-9);
   EXPECT_TRUE(assumes(file, "raised by 0.90 m"));
 }
 
-TEST(PolynomialCsv, ReadsWhatCrazyswarmWrites) {
+TEST(PolynomialCsv, ReadsACrazyswarmFile) {
   const MissionFile file = load_mission_file(kData + "crazyswarm_figure8.csv", control::Limits());
   EXPECT_EQ(file.name, "crazyswarm_figure8");
   EXPECT_EQ(file.mission.segments.size(), 10U);
@@ -161,35 +161,36 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Fault{"empty", "", "p.csv: is empty, must begin with the header " + kHeader},
         Fault{"no_rows", kHeader + "\n", "p.csv: has 0 rows behind the header, must have at least 1"},
-        Fault{"a_column_is_missing", kHeader + "\n" + kRow.substr(0, kRow.rfind(',')) + "\n",
+        Fault{"missing_column", kHeader + "\n" + kRow.substr(0, kRow.rfind(',')) + "\n",
               "p.csv:2: has 32 fields, must have 33: " + kHeader},
-        Fault{"a_column_too_many", kHeader + "\n" + kRow + "\n" + kRow + ",1\n",
+        Fault{"extra_column", kHeader + "\n" + kRow + "\n" + kRow + ",1\n",
               "p.csv:3: has 34 fields, must have 33: " + kHeader},
-        Fault{"two_commas_at_the_end", kHeader + "\n" + kRow + ",,\n",
+        Fault{"two_trailing_commas", kHeader + "\n" + kRow + ",,\n",
               "p.csv:2: has 34 fields, must have 33: " + kHeader},
         Fault{"nan", kHeader + "\n" + replaced(kRow, 4, "nan"),
               "p.csv:2: x^3: is nan, must be a finite number"},
         Fault{"infinity", kHeader + "\n" + replaced(kRow, 32, "-inf"),
               "p.csv:2: yaw^7: is -inf, must be a finite number"},
-        Fault{"a_word", kHeader + "\n" + replaced(kRow, 9, "north"),
+        Fault{"word", kHeader + "\n" + replaced(kRow, 9, "north"),
               "p.csv:2: y^0: is north, must be a finite number"},
-        Fault{"duration_0", kHeader + "\n" + replaced(kRow, 0, "0"),
+        Fault{"zero_duration", kHeader + "\n" + replaced(kRow, 0, "0"),
               "p.csv:2: duration: is 0, must be above 0 and at most 3600 s"},
-        Fault{"duration_beyond", kHeader + "\n" + replaced(kRow, 0, "3600.1"),
+        Fault{"duration_above_limit", kHeader + "\n" + replaced(kRow, 0, "3600.1"),
               "p.csv:2: duration: is 3600.1, must be above 0 and at most 3600 s"},
-        Fault{"too_many", repeated_hover(1025), "p.csv:1026: duration: is segment 1025, at most 1024 fit"},
+        Fault{"too_many_segments", repeated_hover(1025),
+              "p.csv:1026: duration: is segment 1025, at most 1024 fit"},
         Fault{"outside_the_fence", kHeader + "\n" + row(9.0, 0.0, 3.01, 1.0),
               "p.csv:2: segment 1 in NED: y is 3.010 m, outside the fence of -3.000 to 3.000 m"},
         Fault{"too_fast", kHeader + "\n" + row(1.8, 0.0, 2.0, 1.0),
               "p.csv:2: segment 1 in NED reaches 2.08 m/s, the limit is 2.00 m/s"},
-        Fault{"a_step", kHeader + "\n" + row(4.0, 0.0, 1.0, 1.0) + "\n" + row(4.0, 1.1, 1.0, 1.0),
+        Fault{"discontinuous", kHeader + "\n" + row(4.0, 0.0, 1.0, 1.0) + "\n" + row(4.0, 1.1, 1.0, 1.0),
               "p.csv:3: segment 2 in NED does not start where the previous one ends: 0.100 m and 0.000 m/s "
               "apart"},
-        Fault{"in_motion", kHeader + "\n" + replaced(kRow, 2, "0.5"),
+        Fault{"starts_in_motion", kHeader + "\n" + replaced(kRow, 2, "0.5"),
               "p.csv:2: segment 1 in NED starts at 0.50 m/s, must start at rest"}),
     name_of);
 
-TEST(PolynomialCsv, TakesAsManySegmentsAsFit) {
+TEST(PolynomialCsv, AcceptsTheMaximumOfSegments) {
   EXPECT_EQ(polynomials(repeated_hover(1024)).mission.segments.size(), 1024U);
 }
 
@@ -208,7 +209,7 @@ std::string sampled(double rate_hz, const std::string& columns, bool yaw = false
   for (int i = 0; i <= rows; ++i) {
     const control::Reference r = control::evaluate(s, i / rate_hz);
     text += std::to_string(i / rate_hz);
-    add(r.position_ned);  // the frame is what the file says it is
+    add(r.position_ned);  // the file is read as ENU
     if (columns.find("vx") != std::string::npos) add(r.velocity_ned);
     if (columns.find("ax") != std::string::npos) add(r.acceleration_ned);
     if (yaw)
@@ -236,7 +237,7 @@ double furthest_from_truth(const MissionFile& file) {
   return furthest;
 }
 
-TEST(SampledCsv, IsFollowedBetweenItsSamples) {
+TEST(SampledCsv, InterpolatesBetweenSamples) {
   EXPECT_LT(furthest_from_truth(samples(sampled(10.0, "t,x,y,z"))), 1e-4);
   EXPECT_LT(furthest_from_truth(samples(sampled(10.0, "t,x,y,z,vx,vy,vz"))), 1e-3);
   EXPECT_LT(furthest_from_truth(samples(sampled(10.0, "t,x,y,z,vx,vy,vz,ax,ay,az"))), 1e-5);
@@ -245,7 +246,7 @@ TEST(SampledCsv, IsFollowedBetweenItsSamples) {
   EXPECT_TRUE(assumes(file, "no yaw"));
 }
 
-TEST(SampledCsv, ThinsOutWhatDoesNotFitAndSaysHowFarThatIsOff) {
+TEST(SampledCsv, ReducesExcessSamplesAndReportsTheDeviation) {
   const MissionFile file = samples(sampled(1000.0, "t,x,y,z,vx,vy,vz,ax,ay,az"));
   EXPECT_EQ(file.mission.segments.size(), 1024U);
   EXPECT_LT(furthest_from_truth(file), 1e-4);
@@ -253,7 +254,7 @@ TEST(SampledCsv, ThinsOutWhatDoesNotFitAndSaysHowFarThatIsOff) {
   EXPECT_TRUE(assumes(file, "largest deviation is 0.0 mm"));
 }
 
-TEST(SampledCsv, YawGoesOnWithoutWholeTurns) {
+TEST(SampledCsv, UnwrapsYaw) {
   const MissionFile file = samples(sampled(10.0, "t,x,y,z,yaw", true));
   double before = at_path_start(file).yaw_rad;
   EXPECT_NEAR(before, M_PI / 2 - 3.0, 1e-6);
@@ -272,18 +273,17 @@ INSTANTIATE_TEST_SUITE_P(
     , BadSampledCsv,
     testing::Values(
         Fault{"one_row", "t,x,y,z\n0,0,0,1\n", "s.csv: has 1 rows behind the header, must have at least 2"},
-        Fault{"time_stands_still", "t,x,y,z\n0,0,0,1\n1,0,0,1\n1,0,0,1\n",
+        Fault{"time_repeats", "t,x,y,z\n0,0,0,1\n1,0,0,1\n1,0,0,1\n",
               "s.csv:4: t: is 1, must be at least 1.0001 and at most 3601 s"},
-        Fault{"time_goes_back", "t,x,y,z\n5,0,0,1\n4,0,0,1\n",
+        Fault{"time_decreases", "t,x,y,z\n5,0,0,1\n4,0,0,1\n",
               "s.csv:3: t: is 4, must be at least 5.0001 and at most 3605 s"},
         Fault{"nan", "t,x,y,z\n0,0,0,1\n1,0,nan,1\n", "s.csv:3: y: is nan, must be a finite number"},
-        Fault{"a_gap_in_the_columns", "t,x,y,z,ax,ay,az\n0,0,0,1,0,0,0\n",
+        Fault{"acceleration_without_velocity", "t,x,y,z,ax,ay,az\n0,0,0,1,0,0,0\n",
               "s.csv:1: header: is t,x,y,z,ax,ay,az, must be t,x,y,z,vx,vy,vz,ax,ay,az"},
-        Fault{"an_unknown_column", "t,x,y,z,roll\n0,0,0,1,0\n",
+        Fault{"unknown_column", "t,x,y,z,roll\n0,0,0,1,0\n",
               "s.csv:1: header: is t,x,y,z,roll, must be t,x,y,z"},
-        Fault{"a_field_is_missing", "t,x,y,z\n0,0,0,1\n1,0,0\n",
-              "s.csv:3: has 3 fields, must have 4: t,x,y,z"},
-        Fault{"it_begins_in_motion", "t,x,y,z,vx,vy,vz\n0,0,0,1,0.5,0,0\n1,0.5,0,1,0.5,0,0\n2,1,0,1,0,0,0\n",
+        Fault{"missing_field", "t,x,y,z\n0,0,0,1\n1,0,0\n", "s.csv:3: has 3 fields, must have 4: t,x,y,z"},
+        Fault{"starts_in_motion", "t,x,y,z,vx,vy,vz\n0,0,0,1,0.5,0,0\n1,0.5,0,1,0.5,0,0\n2,1,0,1,0,0,0\n",
               "s.csv:2: segment 1 in NED starts at 0.50 m/s, must start at rest"}),
     name_of);
 
@@ -293,7 +293,7 @@ MissionFile waypoints(const std::string& text) {
   return parse_waypoint_csv(text, "w.csv", control::Limits());
 }
 
-TEST(WaypointCsv, IsFlownThrough) {
+TEST(WaypointCsv, PassesWaypointsWithoutStopping) {
   const MissionFile with_header = waypoints("x,y,z,yaw\n0,0,1,1.57\n1,0,1,1.57\n1,1,1.5,0\n");
   const MissionFile without = waypoints("0,0,1,1.57\n1,0,1,1.57\n1,1,1.5,0");
   ASSERT_EQ(with_header.mission.segments.size(), 2U);
@@ -306,7 +306,7 @@ TEST(WaypointCsv, IsFlownThrough) {
   EXPECT_TRUE(control::check(without.mission, control::Limits()).accepted);
 }
 
-TEST(WaypointCsv, ReadsWhatUavTrajectoriesHas) {
+TEST(WaypointCsv, ReadsAUavTrajectoriesFile) {
   const MissionFile file = load_mission_file(kData + "uav_waypoints.csv", control::Limits());
   EXPECT_EQ(file.mission.segments.size(), 17U);
   EXPECT_LT((at_path_start(file).position_ned - Vector3d(0.453548997641, 0, -1.4156037569)).norm(), 1e-12);
@@ -325,23 +325,24 @@ std::string hover_points(int rows) {
 }
 INSTANTIATE_TEST_SUITE_P(
     , BadWaypointCsv,
-    testing::Values(
-        Fault{"one_point", "0,0,1\n", "w.csv: has 1 rows, must have at least 2"},
-        Fault{"two_columns_later", "0,0,1\n1,0\n", "w.csv:2: has 2 fields, must have 3: x,y,z"},
-        Fault{"infinite", "0,0,1\n1,inf,1\n", "w.csv:2: y: is inf, must be a finite number"},
-        Fault{"outside", "0,0,1\n3.1,0,1\n",
-              "w.csv:2: x,y,z: in NED: y is 3.100 m, outside the fence of -3.000 to 3.000 m"},
-        Fault{"one_place", "0,0,1\n0,0,1\n", "w.csv: the path has no length: all points are at one place"},
-        Fault{"too_many", hover_points(1026), "w.csv:1026: x,y,z: is waypoint 1026, at most 1025 fit"}),
+    testing::Values(Fault{"one_point", "0,0,1\n", "w.csv: has 1 rows, must have at least 2"},
+                    Fault{"missing_field", "0,0,1\n1,0\n", "w.csv:2: has 2 fields, must have 3: x,y,z"},
+                    Fault{"infinite", "0,0,1\n1,inf,1\n", "w.csv:2: y: is inf, must be a finite number"},
+                    Fault{"outside_the_fence", "0,0,1\n3.1,0,1\n",
+                          "w.csv:2: x,y,z: in NED: y is 3.100 m, outside the fence of -3.000 to 3.000 m"},
+                    Fault{"equal_points", "0,0,1\n0,0,1\n",
+                          "w.csv: the path has no length: all points are at one place"},
+                    Fault{"too_many_points", hover_points(1026),
+                          "w.csv:1026: x,y,z: is waypoint 1026, at most 1025 fit"}),
     name_of);
 
-TEST(WaypointCsv, APathThatSwingsOutsideIsRefusedWithTheWaypointBeforeIt) {
+TEST(WaypointCsv, NamesTheWaypointBeforeAFenceViolation) {
   const std::string sentence = refusal([] { waypoints("0,0,1\n3,0,1\n3,2.9,1\n0,0,1\n"); });
   EXPECT_EQ(sentence.find("w.csv:2: the path from here: segment 2 in NED: y is "), 0U) << sentence;
   EXPECT_NE(sentence.find("outside the fence of -3.000 to 3.000 m"), std::string::npos) << sentence;
 }
 
-TEST(WaypointCsv, TakesAsManyPointsAsFit) {
+TEST(WaypointCsv, AcceptsTheMaximumOfPoints) {
   EXPECT_EQ(waypoints(hover_points(1025)).mission.segments.size(), 1024U);
 }
 
@@ -360,7 +361,7 @@ MissionFile qgc(const std::string& text, const control::Limits& limits = control
   return parse_qgroundcontrol_plan(text, "q.plan", limits);
 }
 
-TEST(QGroundControlPlan, ReadsPx4sBox) {
+TEST(QGroundControlPlan, ReadsThePx4BoxMission) {
   const MissionFile file = load_mission_file(kData + "px4_mission_box.plan", field());
   const auto& items = file.mission.items;
   ASSERT_EQ(items.size(), 7U);
@@ -401,7 +402,7 @@ TEST(QGroundControlPlan, ReadsLocalCoordinatesInBothFrames) {
   EXPECT_TRUE(assumes(file, "a landing is added"));
 }
 
-TEST(QGroundControlPlan, AltitudesAboveTheSeaAreTakenFromHome) {
+TEST(QGroundControlPlan, ConvertsSeaLevelAltitudesToHeightsAboveHome) {
   const MissionFile file = qgc(plan(item(16, 0, "0,0,0,null,47.4,8.50001,489.5")));
   ASSERT_EQ(file.mission.items.size(), 3U);  // take-off and landing are added
   EXPECT_EQ(file.mission.items[0].kind, MissionItemKind::kTakeoff);
@@ -409,7 +410,7 @@ TEST(QGroundControlPlan, AltitudesAboveTheSeaAreTakenFromHome) {
   EXPECT_NEAR(file.mission.items[1].position_ned.y(), 0.755, 0.002);
 }
 
-TEST(QGroundControlPlan, ReturnsToLaunch) {
+TEST(QGroundControlPlan, ConvertsReturnToLaunch) {
   const MissionFile file = qgc(plan(item(22, 1, "0,0,0,null,null,null,-1") + "," +
                                     item(16, 1, "0,0,0,null,1,1,-1") + "," + item(20, 2, "0,0,0,0,0,0,0")));
   ASSERT_EQ(file.mission.items.size(), 4U);
@@ -417,7 +418,7 @@ TEST(QGroundControlPlan, ReturnsToLaunch) {
   EXPECT_EQ(file.mission.items[3].kind, MissionItemKind::kLand);
 }
 
-TEST(QGroundControlPlan, IsReadWithoutWhiteSpaceAndWithTabs) {
+TEST(QGroundControlPlan, AcceptsAnyWhiteSpace) {
   std::string text = plan(item(16, 1, "0,0,0,null,1,1,-1"));
   std::string tight;
   for (const char c : text) {
@@ -438,20 +439,19 @@ INSTANTIATE_TEST_SUITE_P(
     , BadPlan,
     testing::Values(
         Fault{"empty", "", "q.plan:1: column 1: the file is empty, must be a JSON document"},
-        Fault{"cut_short", "{\n \"fileType\": \"Plan\",\n \"mission", "q.plan:3: column 9: is invalid JSON"},
-        Fault{"a_number_beyond_all", plan(item(16, 1, "0,0,0,null,1e309,1,-1")),
+        Fault{"truncated", "{\n \"fileType\": \"Plan\",\n \"mission", "q.plan:3: column 9: is invalid JSON"},
+        Fault{"number_overflow", plan(item(16, 1, "0,0,0,null,1e309,1,-1")),
               "q.plan: holds a number beyond 1.8e308, must hold smaller ones"},
-        Fault{"of_another_kind", "{\"fileType\": \"Fence\"}", "q.plan:1: fileType: is Fence, must be Plan"},
-        Fault{"without_items", plan(""),
-              "q.plan:4: mission.items: is a list of 0, must be a list of 1 to 2048"},
-        Fault{"a_command_that_is_not_flown", plan(kUp + ",\n" + item(206, 2, "1,2,3,4,5,6,7")),
+        Fault{"other_file_type", "{\"fileType\": \"Fence\"}", "q.plan:1: fileType: is Fence, must be Plan"},
+        Fault{"no_items", plan(""), "q.plan:4: mission.items: is a list of 0, must be a list of 1 to 2048"},
+        Fault{"unsupported_command", plan(kUp + ",\n" + item(206, 2, "1,2,3,4,5,6,7")),
               "q.plan:6: mission.items[1].command: is 206, must be 16 (waypoint), 19 (loiter for a time), 20 "
               "(return to "
               "launch), 21 (land), 22 (take-off) or 178 (change speed)"},
-        Fault{"a_pattern", plan("{\"type\": \"ComplexItem\"}"),
+        Fault{"complex_item", plan("{\"type\": \"ComplexItem\"}"),
               "q.plan:5: mission.items[0].type: is ComplexItem, must be SimpleItem: draw the pattern as "
               "waypoints"},
-        Fault{"a_frame_that_is_not_known", plan(item(16, 10, "0,0,0,null,1,1,1")),
+        Fault{"unknown_frame", plan(item(16, 10, "0,0,0,null,1,1,1")),
               "q.plan:5: mission.items[0].frame: is 10, must be 0 or 3 (global, altitude above the sea or "
               "above home), 1 (local "
               "NED) or 4 (local ENU)"},
@@ -459,9 +459,9 @@ INSTANTIATE_TEST_SUITE_P(
               "q.plan:5: mission.items[0].params: is a list of 6, must be a list of 7"},
         Fault{"no_latitude", plan(item(16, 3, "0,0,0,null,null,8.5,1")),
               "q.plan:5: mission.items[0].params[4]: is empty, must be a number"},
-        Fault{"a_latitude_beyond", plan(item(16, 3, "0,0,0,null,90.5,8.5,1")),
+        Fault{"latitude_out_of_range", plan(item(16, 3, "0,0,0,null,90.5,8.5,1")),
               "q.plan:5: mission.items[0].params[4]: is 90.5, must be at least -90 and at most 90"},
-        Fault{"home_beyond", plan(kUp, "47, 181, 0"),
+        Fault{"home_out_of_range", plan(kUp, "47, 181, 0"),
               "q.plan:3: mission.plannedHomePosition[1]: is 181, must be at least -180 and at most 180"},
         Fault{"outside_the_fence", plan(kUp + ",\n" + item(16, 1, "0,0,0,null,3.5,1,-1")),
               "q.plan:6: mission.items[1]: north is 3.500 m, must be inside the fence, -3 to 3 m"},
@@ -471,18 +471,18 @@ INSTANTIATE_TEST_SUITE_P(
             "at home"},
         Fault{"lands_first", plan(item(21, 1, "0,0,0,null,0,0,0")),
               "q.plan:5: mission.items[0]: is the first item, must follow a take-off or a waypoint"},
-        Fault{"goes_on_after_landing",
+        Fault{"item_after_landing",
               plan(kUp + ",\n" + item(21, 1, "0,0,0,null,0,0,0") + ",\n" + item(16, 1, "0,0,0,null,0,0,-1")),
               "q.plan:7: mission.items[2]: follows a landing, which must be the last item"},
-        Fault{"a_hold_beyond", plan(item(16, 1, "3601,0,0,null,1,1,-1")),
+        Fault{"hold_above_limit", plan(item(16, 1, "3601,0,0,null,1,1,-1")),
               "q.plan:5: mission.items[0].params[0]: is 3601, must be at least 0 and at most 3600"},
-        Fault{"a_speed_of_0", plan(item(178, 2, "1,0,-1,0,0,0,0")),
+        Fault{"zero_speed", plan(item(178, 2, "1,0,-1,0,0,0,0")),
               "q.plan:5: mission.items[0].params[1]: is 0, must be above 0"},
-        Fault{"only_a_speed", plan(item(178, 2, "1,1,-1,0,0,0,0")),
+        Fault{"no_item_to_fly", plan(item(178, 2, "1,1,-1,0,0,0,0")),
               "q.plan:4: mission.items: has no item to fly, must have a take-off or a waypoint"}),
     name_of);
 
-TEST(QGroundControlPlan, GeographicItemsNeedAHome) {
+TEST(QGroundControlPlan, RequiresAHomeForGeographicItems) {
   std::string text = plan(item(16, 3, "0,0,0,null,47,8,1"));
   const std::size_t begin = text.find("\"plannedHomePosition\"");
   text.erase(begin, text.find("],", begin) + 2 - begin);
@@ -490,7 +490,7 @@ TEST(QGroundControlPlan, GeographicItemsNeedAHome) {
             "q.plan:3: mission: has items with geographic coordinates, must have a plannedHomePosition");
 }
 
-TEST(Geodesy, IsThatOfTheEllipsoid) {
+TEST(Geodesy, MatchesTheWgs84Ellipsoid) {
   // A degree of latitude and of longitude at 45 deg north, WGS 84: 111,132 m and 78,847 m.
   const GeographicPosition home{45.0, 179.9999};
   EXPECT_NEAR(north_east_of(home, {45.01, 179.9999}).x(), 1111.32, 0.05);

@@ -23,7 +23,7 @@ std::string refusal(const std::string& header, const std::vector<std::string>& l
   return "none";
 }
 
-TEST(SetpointRows, TellTheirKindByTheirColumns) {
+TEST(SetpointRows, DetectKindFromColumns) {
   EXPECT_EQ(SetpointRows("t [s],x [m],y [m],z [m]", "f").kind(), SetpointKind::kPosition);
   EXPECT_EQ(SetpointRows("t [s],vx [m/s],vy [m/s],vz [m/s],x [m],y [m],z [m]", "f").kind(),
             SetpointKind::kPosition);
@@ -36,7 +36,7 @@ TEST(SetpointRows, TellTheirKindByTheirColumns) {
             SetpointKind::kBodyRates);
 }
 
-TEST(SetpointRows, ComeInSiUnits) {
+TEST(SetpointRows, ConvertToSiUnits) {
   SetpointRows rows("t [ms],vy [cm/s],vx [m/s],vz [m/s],yaw [deg]", "f");
   const auto row = rows.read("500, 20, 0.3, -0.1, 90\r");
   ASSERT_TRUE(row);
@@ -52,7 +52,7 @@ TEST(SetpointRows, ComeInSiUnits) {
   EXPECT_LT((euler * 180.0 / M_PI - Vector3d(10, -5, 30)).norm(), 1e-9);
 }
 
-TEST(SetpointRows, WithoutUnitsAreTakenAsOthersHaveThem) {
+TEST(SetpointRows, AssumeEnuPositionsWithoutUnits) {
   SetpointRows rows("t,x,y,z,yaw", "f");
   ASSERT_TRUE(rows.assumption());
   EXPECT_NE(rows.assumption()->find("in ENU"), std::string::npos);
@@ -62,7 +62,7 @@ TEST(SetpointRows, WithoutUnitsAreTakenAsOthersHaveThem) {
   EXPECT_NE(refusal("t,vx,vy,vz").find("has no units, must have them"), std::string::npos);
 }
 
-TEST(SetpointRows, RefuseWithWhatTheyCannotRead) {
+TEST(SetpointRows, RefuseInvalidColumnsAndRows) {
   EXPECT_EQ(refusal("t [s],x [m],y [m]"),
             "s.csv:1: header: has no column z [m], must have x [m], y [m] and z [m]");
   EXPECT_EQ(refusal("x [m],y [m],z [m]"), "s.csv:1: header: has no column t [s], must have t [s]");
@@ -94,7 +94,7 @@ SetpointSource of(std::vector<TimedSetpoint> rows) {
   };
 }
 
-TEST(Resampled, GoesStraightBetweenTheRowsAndByTheShorterWayAround) {
+TEST(Resampled, InterpolatesLinearlyAndTakesTheShorterTurn) {
   TimedSetpoint a, b;
   a.time_s = 2.0;
   a.setpoint.yaw_rad = 3.0;

@@ -18,12 +18,12 @@ std::string file(const std::string& name) {
   return read_text_file(SWIFTLET_SOURCE_DIR "/config/control/" + name + ".yaml");
 }
 
-TEST(ControlSettingsFile, BothLoopsOfTheProjectLoad) {
+TEST(ControlSettingsFile, LoadsBothConfigurations) {
   EXPECT_EQ(parse_control_settings(file("motor_lag"), "c.yaml").attitude.model, AttitudeModel::kMotorLag);
   EXPECT_EQ(parse_control_settings(file("paper"), "c.yaml").attitude.model, AttitudeModel::kDoubleIntegrator);
 }
 
-TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
+TEST(ControlSettingsFile, ReadsEveryKeyIntoItsMember) {
   const ControlSettings s = parse_control_settings(
       "name: n\n"
       "attitude:\n"
@@ -91,7 +91,7 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
       "failsafe:\n"
       "  imu_timeout_s: 46\n"
       "  imu_gap_s: 47\n"
-      "  blow_m_s2: 61\n"
+      "  impact_m_s2: 61\n"
       "  mocap_timeout_s: 48\n"
       "  descent_speed_m_s: 49\n"
       "  descent_timeout_s: 50\n"
@@ -191,7 +191,7 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
   EXPECT_EQ(s.arming.max_rotor_speed, 45);
   EXPECT_EQ(s.failsafe.imu_timeout_s, 46);
   EXPECT_EQ(s.failsafe.imu_gap_s, 47);
-  EXPECT_EQ(s.failsafe.blow, 61);
+  EXPECT_EQ(s.failsafe.impact_acceleration, 61);
   EXPECT_EQ(s.failsafe.mocap_timeout_s, 48);
   EXPECT_EQ(s.failsafe.descent_speed, 49);
   EXPECT_EQ(s.failsafe.descent_timeout_s, 50);
@@ -207,7 +207,7 @@ TEST(ControlSettingsFile, EveryKeyReachesItsMember) {
   EXPECT_EQ(s.failsafe.ground_link_action, control::GroundLinkAction::kHold);
 }
 
-TEST(ControlSettingsFile, EveryTruncationIsRefused) {
+TEST(ControlSettingsFile, RefusesEveryTruncation) {
   for (const char* name : {"motor_lag", "paper"}) {
     const std::string text = file(name);
     for (std::size_t length = 0; length < text.size(); ++length) {
@@ -216,7 +216,7 @@ TEST(ControlSettingsFile, EveryTruncationIsRefused) {
   }
 }
 
-TEST(ControlSettingsFile, EveryLineThatHoldsAKeyIsNeeded) {
+TEST(ControlSettingsFile, RequiresEveryKey) {
   for (const char* name : {"motor_lag", "paper"}) {
     const std::string text = file(name);
     for (std::size_t begin = 0; begin < text.size();) {
@@ -234,15 +234,15 @@ TEST(ControlSettingsFile, EveryLineThatHoldsAKeyIsNeeded) {
 }
 
 struct Fault {
-  const char* key;    // as the message has it
-  const char* value;  // in place of what stands behind the key
+  const char* key;    // as in the message
+  const char* value;  // replaces that of the key
   const char* message;
 };
 void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.key << ": " << fault.value; }
 
 class SettingsFaults : public testing::TestWithParam<Fault> {};
 
-// Puts a value behind a key "section.name" of paper.yaml, and says in which line.
+// paper.yaml with another value for the key "section.name"; `line` becomes that of the key.
 std::string with_value(const Fault& fault, int& line) {
   std::string text = file("paper");
   const std::string key = fault.key;
@@ -352,7 +352,7 @@ const Fault kFaults[] = {
     {"arming.max_rotor_speed_rad_s", ".nan", "must be a finite number"},
     {"failsafe.imu_timeout_s", "0", "above 0"},
     {"failsafe.imu_gap_s", "0", "above 0"},
-    {"failsafe.blow_m_s2", "9", "above 9.80665"},
+    {"failsafe.impact_m_s2", "9", "above 9.80665"},
     {"failsafe.low_battery_voltage_v", "-1", "at least 0"},
     {"failsafe.critical_battery_voltage_v", "3.4", "is 3.4, must be at least 0 and at most 3.3"},
     {"failsafe.battery_delay_s", "-1", "at least 0"},

@@ -15,7 +15,7 @@ std::string file(const std::string& name) {
   return read_text_file(SWIFTLET_SOURCE_DIR "/config/simulation/" + name + ".yaml");
 }
 
-// default.yaml with one text in place of another.
+// default.yaml with one text replaced.
 std::string changed(const std::string& from, const std::string& to) {
   std::string text = file("default");
   const std::size_t at = text.find(from);
@@ -30,42 +30,42 @@ std::string refused(const std::string& from, const std::string& to) {
   return refusal([&] { parse_simulation_settings(changed(from, to), "s.yaml"); });
 }
 
-TEST(SimulationFile, DefaultIsWhatTheStructSays) {
-  const SimulationSettings file_says = parse_simulation_settings(file("default"), "s.yaml");
-  const SimulationSettings struct_says;
-  EXPECT_EQ(file_says.name, struct_says.name);
-  EXPECT_EQ(file_says.step_ns, struct_says.step_ns);
-  EXPECT_EQ(file_says.command_timeout_s, struct_says.command_timeout_s);
-  EXPECT_EQ(file_says.rotor_speed_rate_hz, struct_says.rotor_speed_rate_hz);
-  EXPECT_EQ(file_says.imu.rate_hz, struct_says.imu.rate_hz);
-  EXPECT_EQ(file_says.imu.accelerometer_noise_density, struct_says.imu.accelerometer_noise_density);
-  EXPECT_EQ(file_says.imu.gyro_noise_density, struct_says.imu.gyro_noise_density);
-  EXPECT_EQ(file_says.imu.accelerometer_bias_sigma, struct_says.imu.accelerometer_bias_sigma);
-  EXPECT_EQ(file_says.imu.gyro_bias_sigma, struct_says.imu.gyro_bias_sigma);
-  EXPECT_EQ(file_says.imu.accelerometer_bias_walk, struct_says.imu.accelerometer_bias_walk);
-  EXPECT_EQ(file_says.imu.gyro_bias_walk, struct_says.imu.gyro_bias_walk);
-  EXPECT_NEAR(file_says.imu.accelerometer_range, struct_says.imu.accelerometer_range, 0.01);
-  EXPECT_EQ(file_says.imu.gyro_range, struct_says.imu.gyro_range);
-  EXPECT_EQ(file_says.mocap.rate_hz, struct_says.mocap.rate_hz);
-  EXPECT_EQ(file_says.mocap.latency_s, struct_says.mocap.latency_s);
-  EXPECT_EQ(file_says.mocap.position_error_m, struct_says.mocap.position_error_m);
-  EXPECT_EQ(file_says.mocap.orientation_error_rad, struct_says.mocap.orientation_error_rad);
-  EXPECT_EQ(file_says.mocap.misalignment_rad, struct_says.mocap.misalignment_rad);
-  EXPECT_EQ(file_says.mocap.dropout_probability, struct_says.mocap.dropout_probability);
-  EXPECT_EQ(file_says.mocap.dropout_length_s, struct_says.mocap.dropout_length_s);
-  EXPECT_EQ(file_says.supply.ideal, struct_says.supply.ideal);
-  EXPECT_EQ(file_says.supply.initial_state_of_charge, struct_says.supply.initial_state_of_charge);
-  EXPECT_EQ(file_says.supply.rate_hz, struct_says.supply.rate_hz);
-  EXPECT_EQ(file_says.air.drag, struct_says.air.drag);
-  EXPECT_EQ(file_says.air.wind_ned, struct_says.air.wind_ned);
-  EXPECT_EQ(file_says.air.gust_sigma_ned, struct_says.air.gust_sigma_ned);
-  EXPECT_EQ(file_says.air.gust_time_constant_s, struct_says.air.gust_time_constant_s);
-  EXPECT_EQ(file_says.ground.present, struct_says.ground.present);
-  EXPECT_EQ(file_says.ground.leg_height_m, struct_says.ground.leg_height_m);
-  EXPECT_EQ(file_says.ground.friction, struct_says.ground.friction);
+TEST(SimulationFile, DefaultFileMatchesTheStruct) {
+  const SimulationSettings from_file = parse_simulation_settings(file("default"), "s.yaml");
+  const SimulationSettings defaults;
+  EXPECT_EQ(from_file.name, defaults.name);
+  EXPECT_EQ(from_file.step_ns, defaults.step_ns);
+  EXPECT_EQ(from_file.command_timeout_s, defaults.command_timeout_s);
+  EXPECT_EQ(from_file.rotor_speed_rate_hz, defaults.rotor_speed_rate_hz);
+  EXPECT_EQ(from_file.imu.rate_hz, defaults.imu.rate_hz);
+  EXPECT_EQ(from_file.imu.accelerometer_noise_density, defaults.imu.accelerometer_noise_density);
+  EXPECT_EQ(from_file.imu.gyro_noise_density, defaults.imu.gyro_noise_density);
+  EXPECT_EQ(from_file.imu.accelerometer_bias_sigma, defaults.imu.accelerometer_bias_sigma);
+  EXPECT_EQ(from_file.imu.gyro_bias_sigma, defaults.imu.gyro_bias_sigma);
+  EXPECT_EQ(from_file.imu.accelerometer_bias_walk, defaults.imu.accelerometer_bias_walk);
+  EXPECT_EQ(from_file.imu.gyro_bias_walk, defaults.imu.gyro_bias_walk);
+  EXPECT_NEAR(from_file.imu.accelerometer_range, defaults.imu.accelerometer_range, 0.01);
+  EXPECT_EQ(from_file.imu.gyro_range, defaults.imu.gyro_range);
+  EXPECT_EQ(from_file.mocap.rate_hz, defaults.mocap.rate_hz);
+  EXPECT_EQ(from_file.mocap.latency_s, defaults.mocap.latency_s);
+  EXPECT_EQ(from_file.mocap.position_error_m, defaults.mocap.position_error_m);
+  EXPECT_EQ(from_file.mocap.orientation_error_rad, defaults.mocap.orientation_error_rad);
+  EXPECT_EQ(from_file.mocap.misalignment_rad, defaults.mocap.misalignment_rad);
+  EXPECT_EQ(from_file.mocap.dropout_probability, defaults.mocap.dropout_probability);
+  EXPECT_EQ(from_file.mocap.dropout_length_s, defaults.mocap.dropout_length_s);
+  EXPECT_EQ(from_file.supply.ideal, defaults.supply.ideal);
+  EXPECT_EQ(from_file.supply.initial_state_of_charge, defaults.supply.initial_state_of_charge);
+  EXPECT_EQ(from_file.supply.rate_hz, defaults.supply.rate_hz);
+  EXPECT_EQ(from_file.air.drag, defaults.air.drag);
+  EXPECT_EQ(from_file.air.wind_ned, defaults.air.wind_ned);
+  EXPECT_EQ(from_file.air.gust_sigma_ned, defaults.air.gust_sigma_ned);
+  EXPECT_EQ(from_file.air.gust_time_constant_s, defaults.air.gust_time_constant_s);
+  EXPECT_EQ(from_file.ground.present, defaults.ground.present);
+  EXPECT_EQ(from_file.ground.leg_height_m, defaults.ground.leg_height_m);
+  EXPECT_EQ(from_file.ground.friction, defaults.ground.friction);
 }
 
-TEST(SimulationFile, OptitrackDrawsItsIntervals) {
+TEST(SimulationFile, OptitrackSamplesItsIntervals) {
   const SimulationSettings s = parse_simulation_settings(file("optitrack"), "s.yaml");
   EXPECT_EQ(s.name, "optitrack");
   EXPECT_EQ(s.mocap.model, plant::MocapModel::kOptitrack);
@@ -93,7 +93,7 @@ TEST(SimulationFile, IdealHasNoErrors) {
   EXPECT_TRUE(s.air.gust_sigma_ned.isZero(0.0));
 }
 
-TEST(SimulationFile, FaultsHaveTheirSentence) {
+TEST(SimulationFile, RefusesValuesOutOfRange) {
   EXPECT_EQ(refused("  friction: 0.6", "  friction: -1"),
             "s.yaml:49: ground.friction: is -1, must be at least 0 and at most 10");
   EXPECT_EQ(refused("rate_hz: 500  #", "rate_hz: 400  #"),
@@ -102,7 +102,7 @@ TEST(SimulationFile, FaultsHaveTheirSentence) {
             "s.yaml:41: air.wind_ned_m_s[1]: is 99, must be at least -30 and at most 30");
 }
 
-TEST(SimulationFile, RefusesWhatIsNoSetting) {
+TEST(SimulationFile, RefusesUnknownKeysAndInvalidValues) {
   EXPECT_NE(refused("  drag:", "  drug:").find("s.yaml:39: air.drag: "), std::string::npos);
   EXPECT_NE(refused("  drag: true", "  drag: true\n  lift: 1").find("s.yaml:41: air.lift: "),
             std::string::npos);
@@ -165,7 +165,7 @@ TEST(SimulationFile, ReadsFaultsOfEveryKind) {
   EXPECT_EQ(s.faults[17].delay_s, 0.05);
 }
 
-TEST(SimulationFile, FaultsThatCannotBeAreRefused) {
+TEST(SimulationFile, RefusesInvalidFaults) {
   EXPECT_EQ(refused_faults("  - {kind: imu_stop, at_s: -1, for_s: 1}\n"),
             "s.yaml:51: faults[0].at_s: is -1, must be at least 0 and at most 86400");
   EXPECT_NE(refused_faults("  - {kind: imu_stopped, at_s: 1, for_s: 1}\n")
@@ -182,7 +182,7 @@ TEST(SimulationFile, FaultsThatCannotBeAreRefused) {
       "one kind must not overlap");
 }
 
-TEST(SimulationFile, TheExampleOfFaultsIsTheDefaultWithThem) {
+TEST(SimulationFile, FaultsExampleExtendsTheDefault) {
   const std::string example = file("faults_example");
   EXPECT_GT(parse_simulation_settings(example, "s.yaml").faults.size(), 10U);
   const std::string world = file("default");
@@ -190,7 +190,7 @@ TEST(SimulationFile, TheExampleOfFaultsIsTheDefaultWithThem) {
   EXPECT_NE(example.find(settings), std::string::npos);
 }
 
-TEST(SimulationFile, NamesAFileThatIsNotThere) {
+TEST(SimulationFile, NamesAMissingFile) {
   EXPECT_NE(refusal([] { load_simulation_settings("/nowhere/s.yaml"); }).find("/nowhere/s.yaml: "),
             std::string::npos);
 }

@@ -28,14 +28,14 @@ std::string replaced(const std::string& from, const std::string& to) {
   return text.replace(at, from.size(), to);
 }
 
-// The number of the first line that holds a text.
+// The number of the first line that contains a text.
 std::string line_of(const std::string& text, const std::string& part) {
   const std::size_t at = text.find(part);
   EXPECT_NE(at, std::string::npos) << part;
   return std::to_string(1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
 }
 
-// All that a vehicle holds, to compare two of them.
+// All parameters of a vehicle, for comparisons.
 std::vector<double> numbers(const Vehicle& v) {
   std::vector<double> out = {v.mass_kg, v.linear_drag};
   out.insert(out.end(), v.inertia.data(), v.inertia.data() + 9);
@@ -55,7 +55,7 @@ std::vector<double> numbers(const Vehicle& v) {
   return out;
 }
 
-TEST(VehicleFile, KayLionIsAsIdentified) {
+TEST(VehicleFile, KayLionHasTheIdentifiedParameters) {
   const Vehicle v = load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");
   EXPECT_EQ(v.name, "kaylion");
   EXPECT_EQ(v.mass_kg, 0.040);
@@ -76,7 +76,7 @@ TEST(VehicleFile, KayLionIsAsIdentified) {
   EXPECT_EQ(v.battery.open_circuit_voltage_v.back(), 4.19);
 }
 
-TEST(VehicleFile, EveryParameterHasItsSource) {
+TEST(VehicleFile, EveryParameterNamesItsSource) {
   std::size_t quantities = 0;
   for (std::size_t at = kaylion_text().find("value:"); at != std::string::npos;
        at = kaylion_text().find("value:", at + 1)) {
@@ -94,7 +94,7 @@ struct Fault {
   const char* name;
   const char* from;  // text in kaylion.yaml
   const char* to;
-  const char* at;  // text on the line that must be named
+  const char* at;  // text in the line that the message names
   const char* message;
 };
 void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
@@ -140,7 +140,7 @@ const Fault kFaults[] = {
 INSTANTIATE_TEST_SUITE_P(Vehicle, Faults, testing::ValuesIn(kFaults),
                          [](const auto& fault) { return fault.param.name; });
 
-TEST(VehicleFile, RotorMayBeGivenByBladeCoefficients) {
+TEST(VehicleFile, AcceptsBladeCoefficients) {
   const plant::BladeCoefficients blade = plant::blade_coefficients({3.7901e-8, 1.8623e-10}, 0.0275, 1.2);
   std::ostringstream rotor;
   rotor.precision(17);
@@ -158,15 +158,15 @@ TEST(VehicleFile, RotorMayBeGivenByBladeCoefficients) {
   EXPECT_NEAR(vehicle.rotor.torque / 1.8623e-10, 1.0, 1e-12);
 }
 
-TEST(VehicleFile, EveryTruncationIsRefused) {
+TEST(VehicleFile, RefusesEveryTruncation) {
   const std::string& text = kaylion_text();
   for (std::size_t length = 0; length < text.size(); ++length) {
     EXPECT_THROW(parse_vehicle(text.substr(0, length), "v.yaml"), ConfigError) << length;
   }
 }
 
-TEST(VehicleFile, EveryLineThatHoldsAKeyIsNeeded) {
-  // Without any one of them the file is refused: nothing falls back to a default.
+TEST(VehicleFile, RequiresEveryKey) {
+  // No key falls back to a default.
   const std::string& text = kaylion_text();
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = text.find('\n', begin) + 1;
@@ -181,7 +181,7 @@ TEST(VehicleFile, EveryLineThatHoldsAKeyIsNeeded) {
   }
 }
 
-TEST(VehicleFile, MutatedBytesAreRefusedOrLoadAValidVehicle) {
+TEST(VehicleFile, MutatedFilesAreRefusedOrLoadAValidVehicle) {
   std::mt19937 generator(11);
   const std::string& text = kaylion_text();
   int refused = 0;
@@ -190,7 +190,7 @@ TEST(VehicleFile, MutatedBytesAreRefusedOrLoadAValidVehicle) {
     std::string mutated = text;
     for (int k = 0; k < 1 + i % 4; ++k) {
       const std::size_t at = generator() % text.size();
-      // Half of them printable: those reach further into the loader.
+      // Half of the bytes are printable: those get further into the loader.
       mutated[at] = static_cast<char>(i % 2 == 0 ? generator() % 256 : 0x20 + generator() % 95);
     }
     try {
@@ -206,7 +206,7 @@ TEST(VehicleFile, MutatedBytesAreRefusedOrLoadAValidVehicle) {
   EXPECT_GT(loaded, 100);
 }
 
-TEST(VehicleFile, CommentsAndStyleDoNotMatter) {
+TEST(VehicleFile, IgnoresCommentsAndBlankLines) {
   std::string flow;
   for (const char c : kaylion_text()) {
     flow += c;

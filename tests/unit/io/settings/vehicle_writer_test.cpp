@@ -23,7 +23,7 @@ const plant::VehicleUncertainty kUncertainty = {{{"motor.k2", 1.2e-5, 9.9e-4, 1.
                                                  {"inertia.zz", 1e-6, 8.6e-5, 9e-5}},
                                                 {{"motor.k2", "motor.k3", -0.97}}};
 
-TEST(VehicleWriter, WritesWhatReadsBackAsTheSameVehicle) {
+TEST(VehicleWriter, WrittenVehicleReadsBackUnchanged) {
   const std::string once = written();
   const plant::Vehicle back = parse_vehicle(once, "once.yaml");
   EXPECT_EQ(vehicle_text(back, parse_vehicle_sources(once, "once.yaml"), {}, "first line\nsecond"), once);
@@ -43,7 +43,7 @@ TEST(VehicleWriter, KeepsSources) {
   EXPECT_EQ(sources.at("mass"), "estimate: published as under 40 g");
 }
 
-TEST(VehicleWriter, WritesSourcesWithQuotes) {
+TEST(VehicleWriter, EscapesQuotesInSources) {
   VehicleSources sources = load_vehicle_sources(kKaylion);
   sources["mass"] = "the \"good\" balance, \\ or not: #1";
   const std::string text = vehicle_text(load_vehicle(kKaylion), sources, {}, "");
@@ -65,7 +65,7 @@ TEST(VehicleUncertaintySection, ReadsBack) {
   EXPECT_TRUE(load_vehicle_uncertainty(kKaylion).parameters.empty());
 }
 
-TEST(VehicleUncertaintySection, IsRefusedWhereItIsWrong) {
+TEST(VehicleUncertaintySection, RefusesInvalidEntries) {
   const auto refused = [](plant::VehicleUncertainty uncertainty) {
     return refusal([&] { parse_vehicle(written(uncertainty), "f.yaml"); });
   };

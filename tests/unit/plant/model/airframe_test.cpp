@@ -12,7 +12,7 @@ using tests::Draw;
 using tests::kaylion;
 using tests::multirotor;
 
-TEST(Airframe, KayLionIsEquations27And28) {
+TEST(Airframe, KayLionMatchesEquations27And28) {
   Draw draw;
   const double d = 0.0695 / std::sqrt(2.0);
   const RotorCoefficients& rotor = kaylion().rotor;
@@ -53,7 +53,7 @@ TEST(Airframe, MomentsAreLeverTimesForce) {
   }
 }
 
-TEST(Airframe, HoverSharesTheWeight) {
+TEST(Airframe, HoverThrustIsAnEqualShareOfTheWeight) {
   for (int count = kMinRotors; count <= kMaxRotors; ++count) {
     const Vehicle vehicle = multirotor(count);
     EXPECT_NEAR(count * hover_thrust(vehicle), vehicle.mass_kg * kGravity, 1e-15);
@@ -61,11 +61,11 @@ TEST(Airframe, HoverSharesTheWeight) {
   }
 }
 
-TEST(Airframe, TrimCarriesTheWeightWithoutAMoment) {
+TEST(Airframe, TrimBalancesTheWeightWithoutAMoment) {
   Draw draw;
   for (int count = kMinRotors; count <= kMaxRotors; ++count) {
     Vehicle vehicle = multirotor(count);
-    if (count % 2 == 1) vehicle.rotors.back().spin = Spin::kClockwise;  // two neighbours alike
+    if (count % 2 == 1) vehicle.rotors.back().spin = Spin::kClockwise;  // equal to its neighbour
     const Eigen::Vector3d off_centre(draw(-0.01, 0.01), draw(-0.01, 0.01), 0.0);
     for (RotorMount& mount : vehicle.rotors) mount.position_frd += off_centre;
     const RotorThrusts trim = trim_thrusts(vehicle);
@@ -73,7 +73,7 @@ TEST(Airframe, TrimCarriesTheWeightWithoutAMoment) {
     const Eigen::Vector4d wrench = effectiveness(vehicle) * trim;
     EXPECT_NEAR(wrench[0], vehicle.mass_kg * kGravity, 1e-12);
     EXPECT_NEAR(wrench.tail<3>().norm(), 0.0, 1e-13);
-    // Least squares: orthogonal to whatever changes nothing, that is, within the rows' span.
+    // Least squares: the trim lies in the row space of the effectiveness.
     const Eigen::MatrixXd e = effectiveness(vehicle);
     const Eigen::VectorXd within = e.transpose() * (e * e.transpose()).ldlt().solve(e * trim);
     EXPECT_NEAR((within - trim).norm(), 0.0, 1e-10);

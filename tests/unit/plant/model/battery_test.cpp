@@ -12,7 +12,7 @@ namespace {
 using tests::Draw;
 using tests::kaylion;
 
-TEST(Battery, OpenCircuitVoltageMeetsTheTable) {
+TEST(Battery, OpenCircuitVoltageMatchesTheTable) {
   const BatteryParameters& battery = kaylion().battery;
   for (std::size_t i = 0; i < battery.state_of_charge.size(); ++i) {
     EXPECT_NEAR(open_circuit_voltage(battery, battery.state_of_charge[i]), battery.open_circuit_voltage_v[i],
@@ -30,7 +30,7 @@ TEST(Battery, OpenCircuitVoltageIsLinearBetweenPoints) {
   EXPECT_NEAR(open_circuit_voltage(battery, 0.5), 3.7, 1e-12);
 }
 
-TEST(Battery, BeyondTheTableItsEndsHold) {
+TEST(Battery, ClampsToTheEndsOfTheTable) {
   const BatteryParameters& battery = kaylion().battery;
   EXPECT_DOUBLE_EQ(open_circuit_voltage(battery, -0.5), 3.60);
   EXPECT_DOUBLE_EQ(open_circuit_voltage(battery, 1.5), 4.19);
@@ -47,7 +47,7 @@ TEST(Battery, StateOfChargeInvertsVoltage) {
   }
 }
 
-TEST(Battery, DischargeCountsCharge) {
+TEST(Battery, DischargeRateIsCurrentOverCapacity) {
   // 240 mAh at 2.4 A last a tenth of an hour.
   EXPECT_NEAR(state_of_charge_rate(kaylion().battery, 2.4), -1.0 / 360.0, 1e-15);
 }

@@ -12,7 +12,7 @@ namespace {
 using tests::Draw;
 using tests::kaylion;
 
-TEST(Esc, PulseWidthIsEquation8) {
+TEST(Esc, PulseWidthMatchesEquation8) {
   const Esc& esc = kaylion().esc;
   EXPECT_DOUBLE_EQ(throttle_from_pulse_width(esc, 1039.0), 0.0);
   EXPECT_DOUBLE_EQ(throttle_from_pulse_width(esc, 1289.0), 0.25);
@@ -20,7 +20,7 @@ TEST(Esc, PulseWidthIsEquation8) {
   EXPECT_DOUBLE_EQ(pulse_width_from_throttle(esc, 0.25), 1289.0);
 }
 
-TEST(Esc, VoltageIsEquation9) {
+TEST(Esc, VoltageMatchesEquation9) {
   const Esc& esc = kaylion().esc;
   EXPECT_NEAR(motor_voltage(esc, 4.19, 0.5), std::sqrt(0.9205 * 4.19 * 4.19 * 0.5 + 0.6472), 1e-14);
   EXPECT_NEAR(motor_voltage(esc, 3.7, 0.0), 0.804, 5e-4);  // the intercept
@@ -46,14 +46,14 @@ TEST(Esc, VoltageInvertsThrottle) {
   }
 }
 
-TEST(Esc, WhatCannotBeReachedIsClipped) {
+TEST(Esc, ClampsUnreachableValues) {
   const Esc& esc = kaylion().esc;
   EXPECT_EQ(throttle_from_pulse_width(esc, 500.0), 0.0);
   EXPECT_EQ(throttle_from_pulse_width(esc, 9000.0), 1.0);
   EXPECT_EQ(motor_voltage(esc, 3.7, -1.0), motor_voltage(esc, 3.7, 0.0));
   EXPECT_EQ(motor_voltage(esc, 3.7, 2.0), motor_voltage(esc, 3.7, 1.0));
   EXPECT_EQ(throttle_from_motor_voltage(esc, 3.7, 0.8), 0.0);   // below the intercept
-  EXPECT_EQ(throttle_from_motor_voltage(esc, 3.7, -3.0), 0.0);  // not the root of 9
+  EXPECT_EQ(throttle_from_motor_voltage(esc, 3.7, -3.0), 0.0);  // not the throttle of +3 V
   EXPECT_EQ(throttle_from_motor_voltage(esc, 3.7, 4.0), 1.0);
   EXPECT_EQ(throttle_from_motor_voltage(esc, 0.0, 2.0), 1.0);
 }

@@ -31,7 +31,7 @@ State runge_kutta(const State& y, double dt, const Rate& rate) {
   return y + dt / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
 }
 
-// When a step of voltage from rest has brought the speed to 1 - 1/e of its final value.
+// Time from rest to 1 - 1/e of the final speed after a step of voltage.
 double rise_time(const MotorDynamics& dynamics, double voltage) {
   const double target = (1.0 - std::exp(-1.0)) * steady_speed_from_voltage(dynamics.motor, voltage);
   const double dt = 1e-5;
@@ -45,7 +45,7 @@ double rise_time(const MotorDynamics& dynamics, double voltage) {
   return std::numeric_limits<double>::infinity();
 }
 
-TEST(Motor, SteadyStateIsEquation22) {
+TEST(Motor, SteadyStateMatchesEquation22) {
   const Motor& motor = kaylion().motor;
   EXPECT_DOUBLE_EQ(voltage_from_steady_speed(motor, 1600.0), 1.020e-3 * 1600.0 + 2.817e-7 * 1600.0 * 1600.0);
   const double v_a = 2.3;
@@ -64,7 +64,7 @@ TEST(Motor, SteadySpeedInvertsVoltage) {
   EXPECT_NEAR(steady_speed_from_voltage(kaylion().motor, 1e-12) / (1e-12 / 1.020e-3), 1.0, 1e-9);
 }
 
-TEST(Motor, BelowZeroCountsAsZero) {
+TEST(Motor, TreatsNegativeInputAsZero) {
   EXPECT_EQ(voltage_from_steady_speed(kaylion().motor, -5.0), 0.0);
   EXPECT_EQ(steady_speed_from_voltage(kaylion().motor, -5.0), 0.0);
 }
@@ -78,7 +78,7 @@ TEST(Motor, DerivedConstantsSatisfyEquation21) {
   EXPECT_NEAR(d.torque_constant * d.inverse_resistance, 6.611e-4, 1e-7);
 }
 
-TEST(Motor, AllModelsRestAtTheSteadySpeed) {
+TEST(Motor, AllModelsAreInEquilibriumAtTheSteadySpeed) {
   Draw draw;
   for (int i = 0; i < 1000; ++i) {
     const double voltage = draw(0.1, 4.2);
@@ -107,12 +107,12 @@ TEST(Motor, PhysicalFormsAgree) {
   }
 }
 
-TEST(Motor, ReducedStepRisesInTheTimeConstant) {
+TEST(Motor, ReducedModelRisesWithTheTimeConstant) {
   const MotorDynamics d = motor_dynamics(with_model(MotorModel::kReduced));
   for (const double voltage : {1.0, 2.37, 4.0}) EXPECT_NEAR(rise_time(d, voltage), 0.0821, 1e-6);
 }
 
-TEST(Motor, PhysicalStepToHoverRisesInTheTimeConstant) {
+TEST(Motor, PhysicalModelRisesToHoverWithTheTimeConstant) {
   const Vehicle vehicle = with_model(MotorModel::kPhysical);
   const MotorDynamics d = motor_dynamics(vehicle);
   const double hover_voltage = voltage_from_steady_speed(d.motor, hover_speed(vehicle));
@@ -158,7 +158,7 @@ double inductance_error(double inductance_h) {
   return error;
 }
 
-TEST(Motor, ElectricalModelTendsToThePhysicalOne) {
+TEST(Motor, ElectricalModelConvergesToThePhysicalModel) {
   // The speed lags by tau_a = L_a / R_a: the error falls in proportion to L_a.
   const double coarse = inductance_error(4e-4);
   const double middle = inductance_error(4e-5);
@@ -183,7 +183,7 @@ TEST(Motor, RotorsThatAreOffSlowDownAndStop) {
   }
 }
 
-TEST(Motor, DragOpposesTurningEitherWay) {
+TEST(Motor, DragOpposesRotationInBothDirections) {
   const MotorDynamics d = motor_dynamics(with_model(MotorModel::kPhysical));
   EXPECT_GT(speed_rate_from_current(d, 0.0, -100.0), 0.0);
   EXPECT_LT(speed_rate_from_current(d, 0.0, 100.0), 0.0);

@@ -13,7 +13,7 @@ namespace {
 using tests::Draw;
 using tests::kaylion;
 
-// The numbers of the identified model, worked out apart from this code, for g = 9.81 m/s^2.
+// Values of the identified model, computed independently of this code, for g = 9.81 m/s^2.
 struct HoverAnchor {
   double mass_kg, speed, voltage;
   double throttle_36, throttle_37, throttle_42;  // at a supply of 3.6, 3.7 and 4.2 V
@@ -23,7 +23,7 @@ void PrintTo(const HoverAnchor& anchor, std::ostream* out) { *out << anchor.mass
 
 class HoverAnchors : public testing::TestWithParam<HoverAnchor> {};
 
-TEST_P(HoverAnchors, AreMet) {
+TEST_P(HoverAnchors, MatchTheModel) {
   const HoverAnchor& anchor = GetParam();
   const double thrust = anchor.mass_kg * 9.81 / 4.0;
   const double speed = speed_from_thrust(kaylion().rotor, thrust);
@@ -38,19 +38,19 @@ INSTANTIATE_TEST_SUITE_P(KayLion, HoverAnchors,
                          testing::Values(HoverAnchor{0.036, 1526.3, 2.213, 0.356, 0.337, 0.262},
                                          HoverAnchor{0.040, 1608.8, 2.370, 0.417, 0.394, 0.306}));
 
-TEST(Propulsion, FullThrottleAnchors) {
+TEST(Propulsion, MatchesTheFullThrottleAnchors) {
   EXPECT_NEAR(steady_speed_from_throttle(kaylion(), 3.7, 1.0), 2214.0, 0.5);
   EXPECT_NEAR(4.0 * steady_thrust_range(kaylion(), 3.7).max, 0.743, 5e-4);
   EXPECT_NEAR(steady_speed_from_throttle(kaylion(), 4.2, 1.0), 2416.0, 0.5);
   EXPECT_NEAR(4.0 * steady_thrust_range(kaylion(), 4.2).max, 0.885, 5e-4);
 }
 
-TEST(Propulsion, IdleStillTurns) {
+TEST(Propulsion, RotorsTurnAtZeroThrottle) {
   EXPECT_NEAR(steady_speed_from_throttle(kaylion(), 3.7, 0.0), 666.0, 0.5);
   EXPECT_GT(steady_thrust_range(kaylion(), 3.7).min, 0.0);
 }
 
-TEST(Propulsion, EachStepInvertsAlongTheChain) {
+TEST(Propulsion, ThrottleRoundTripsThroughSpeedAndThrust) {
   Draw draw;
   for (int i = 0; i < 1000; ++i) {
     const double supply = draw(3.0, 4.3);
@@ -73,7 +73,7 @@ TEST(Propulsion, ThrustRisesWithThrottleAndSupply) {
   }
 }
 
-TEST(Propulsion, WhatCannotBeReachedIsClipped) {
+TEST(Propulsion, ClampsUnreachableThrust) {
   const ThrustRange range = steady_thrust_range(kaylion(), 3.7);
   EXPECT_EQ(throttle_from_steady_thrust(kaylion(), 3.7, 0.9 * range.min), 0.0);
   EXPECT_EQ(throttle_from_steady_thrust(kaylion(), 3.7, 1.1 * range.max), 1.0);

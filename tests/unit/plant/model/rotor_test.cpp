@@ -10,7 +10,7 @@ namespace {
 using tests::Draw;
 using tests::kaylion;
 
-TEST(Rotor, ThrustAndTorqueAreEquations25And26) {
+TEST(Rotor, ThrustAndTorqueMatchEquations25And26) {
   EXPECT_DOUBLE_EQ(thrust_from_speed(kaylion().rotor, 1600.0), 3.7901e-8 * 1600.0 * 1600.0);
   EXPECT_DOUBLE_EQ(torque_from_speed(kaylion().rotor, 1600.0), 1.8623e-10 * 1600.0 * 1600.0);
   EXPECT_NEAR(torque_per_thrust(kaylion().rotor), 4.9136e-3, 1e-7);
@@ -25,8 +25,7 @@ TEST(Rotor, SpeedInvertsThrust) {
   EXPECT_EQ(speed_from_thrust(kaylion().rotor, -0.1), 0.0);
 }
 
-TEST(Rotor, BladeCoefficientsAreEquations23And24) {
-  // GIVEN a blade, WHEN it turns, THEN thrust and torque are as Eq. (23) and (24) say.
+TEST(Rotor, BladeCoefficientsMatchEquations23And24) {
   const BladeCoefficients blade{0.012, 0.0015, 0.0275, 1.2};
   const RotorCoefficients rotor = rotor_coefficients(blade);
   const double area = 3.14159265358979 * 0.0275 * 0.0275;
@@ -37,7 +36,7 @@ TEST(Rotor, BladeCoefficientsAreEquations23And24) {
               1e-14);
 }
 
-TEST(Rotor, BladeCoefficientsInvert) {
+TEST(Rotor, BladeCoefficientsRoundTrip) {
   Draw draw;
   for (int i = 0; i < 1000; ++i) {
     const BladeCoefficients blade{draw(0.001, 0.1), draw(0.0001, 0.01), draw(0.01, 0.2), draw(0.9, 1.4)};

@@ -18,9 +18,9 @@ using tests::multirotor;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-TEST(Validate, KayLionBreaksNoRule) { EXPECT_TRUE(validate(kaylion()).empty()); }
+TEST(Validate, AcceptsKayLion) { EXPECT_TRUE(validate(kaylion()).empty()); }
 
-TEST(Validate, EvenMultirotorsBreakNoRule) {
+TEST(Validate, AcceptsEvenMultirotors) {
   for (const int count : {4, 6, 8}) EXPECT_TRUE(validate(multirotor(count)).empty()) << count;
 }
 
@@ -67,7 +67,7 @@ const Rule kRules[] = {
     {"NoRotors", [](Vehicle& v) { v.rotors.clear(); }, "rotors", "is a list of 0"},
     {"RotorNan", [](Vehicle& v) { v.rotors[2].position_frd.x() = kNan; }, "rotors[2].position_frd",
      "not finite"},
-    {"RotorsAtOnePlace", [](Vehicle& v) { v.rotors[3].position_frd = v.rotors[1].position_frd; },
+    {"CoincidentRotors", [](Vehicle& v) { v.rotors[3].position_frd = v.rotors[1].position_frd; },
      "rotors[3].position_frd", "is 0 m from that of rotors[1], must be at least 0.001"},
     {"NoYaw",
      [](Vehicle& v) {
@@ -86,7 +86,7 @@ const Rule kRules[] = {
          v.rotors[i].position_frd = {0.05 * static_cast<double>(i) - 0.1, 0, 0};
      },
      "rotors", "rank below 4"},
-    {"WeightBesideTheRotors",
+    {"CentreOfMassOutsideTheRotors",
      [](Vehicle& v) {
        for (RotorMount& m : v.rotors) m.position_frd.x() += 0.06;
      },
@@ -134,7 +134,7 @@ const Rule kRules[] = {
 INSTANTIATE_TEST_SUITE_P(Vehicle, Rules, testing::ValuesIn(kRules),
                          [](const auto& rule) { return rule.param.name; });
 
-TEST(Validate, AllBrokenRulesAreListed) {
+TEST(Validate, ListsAllViolations) {
   Vehicle vehicle = kaylion();
   vehicle.mass_kg = -1.0;
   vehicle.motor.k2 = kNan;
@@ -142,9 +142,9 @@ TEST(Validate, AllBrokenRulesAreListed) {
   EXPECT_EQ(validate(vehicle).size(), 3U);
 }
 
-TEST(Validate, AnEmptyVehicleIsRefusedWithoutACrash) { EXPECT_GT(validate(Vehicle{}).size(), 10U); }
+TEST(Validate, ReportsAnEmptyVehicle) { EXPECT_GT(validate(Vehicle{}).size(), 10U); }
 
-TEST(Validate, InertiaMayBeTurned) {
+TEST(Validate, AcceptsARotatedInertia) {
   // The triangle inequality is on the principal moments, whatever the axes.
   Vehicle vehicle = kaylion();
   const Eigen::Matrix3d turn =
@@ -154,7 +154,7 @@ TEST(Validate, InertiaMayBeTurned) {
   EXPECT_TRUE(validate(vehicle).empty());
 }
 
-TEST(Validate, ACentreOfMassOffTheMiddleMayBeFlown) {
+TEST(Validate, AcceptsAnOffsetCentreOfMass) {
   Vehicle vehicle = kaylion();
   for (RotorMount& mount : vehicle.rotors) mount.position_frd += Eigen::Vector3d(0.01, -0.005, 0.0);
   EXPECT_TRUE(validate(vehicle).empty());

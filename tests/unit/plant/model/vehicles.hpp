@@ -9,7 +9,7 @@
 
 namespace swiftlet::tests {
 
-// As config/vehicles/kaylion.yaml has it.
+// The vehicle of config/vehicles/kaylion.yaml.
 inline const plant::Vehicle& kaylion() {
   static const plant::Vehicle vehicle =
       runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml");

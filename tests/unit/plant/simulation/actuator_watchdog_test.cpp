@@ -27,51 +27,52 @@ ActuatorCommand command(std::int64_t stamp_ns, double throttle = 0.5) {
 
 TEST(ActuatorWatchdog, KeepsRotorsOffUntilTheFirstCommand) {
   const ActuatorWatchdog watchdog(4, kTimeout);
-  EXPECT_EQ(watchdog.drive(0).state, RotorState::kOff);
-  EXPECT_EQ(watchdog.drive(1'000'000).state, RotorState::kOff);
-  EXPECT_FALSE(watchdog.expired(1'000'000));  // nothing has ceased
+  EXPECT_EQ(watchdog.motor_command(0).state, RotorState::kOff);
+  EXPECT_EQ(watchdog.motor_command(1'000'000).state, RotorState::kOff);
+  EXPECT_FALSE(watchdog.expired(1'000'000));  // there was no command yet
 }
 
-TEST(ActuatorWatchdog, PassesGoodCommandsOn) {
+TEST(ActuatorWatchdog, PassesValidCommandsOn) {
   ActuatorWatchdog watchdog(4, kTimeout);
   ActuatorCommand good = command(1000);
   good.throttle = {0.0, 1.0, 0.25, 0.75, 0.9, 0.9, 0.9, 0.9};
   EXPECT_EQ(watchdog.accept(good, 1000), CommandFault::kNone);
-  EXPECT_EQ(watchdog.drive(1000).state, RotorState::kRunning);
-  EXPECT_EQ(watchdog.drive(1000).throttle, (plant::PerRotor{0.0, 1.0, 0.25, 0.75, 0.0, 0.0, 0.0, 0.0}));
+  EXPECT_EQ(watchdog.motor_command(1000).state, RotorState::kRunning);
+  EXPECT_EQ(watchdog.motor_command(1000).throttle,
+            (plant::PerRotor{0.0, 1.0, 0.25, 0.75, 0.0, 0.0, 0.0, 0.0}));
   good.rotor_state = RotorState::kOff;
   EXPECT_EQ(watchdog.accept(good, 1001), CommandFault::kNone);  // answers the same sample again
-  EXPECT_EQ(watchdog.drive(1001).state, RotorState::kOff);
+  EXPECT_EQ(watchdog.motor_command(1001).state, RotorState::kOff);
 }
 
-TEST(ActuatorWatchdog, StopsRotorsWhenCommandsCease) {
+TEST(ActuatorWatchdog, StopsRotorsWhenCommandsStop) {
   ActuatorWatchdog watchdog(4, kTimeout);
   watchdog.accept(command(1000), 1100);
   EXPECT_FALSE(watchdog.expired(1200));
-  EXPECT_EQ(watchdog.drive(1200).state, RotorState::kRunning);
-  EXPECT_TRUE(watchdog.expired(1201));  // counted from the sample, not from the command's arrival
-  EXPECT_EQ(watchdog.drive(1201).state, RotorState::kOff);
-  EXPECT_EQ(watchdog.drive(1201).throttle, plant::PerRotor{});
+  EXPECT_EQ(watchdog.motor_command(1200).state, RotorState::kRunning);
+  EXPECT_TRUE(watchdog.expired(1201));  // counted from the stamp of the sample, not from the arrival
+  EXPECT_EQ(watchdog.motor_command(1201).state, RotorState::kOff);
+  EXPECT_EQ(watchdog.motor_command(1201).throttle, plant::PerRotor{});
   EXPECT_EQ(watchdog.accept(command(1300), 1300), CommandFault::kNone);
-  EXPECT_EQ(watchdog.drive(1300).state, RotorState::kRunning);
+  EXPECT_EQ(watchdog.motor_command(1300).state, RotorState::kRunning);
 }
 
-TEST(ActuatorWatchdog, ATermRulesOutLowerOnesUntilItsCommandsCease) {
+TEST(ActuatorWatchdog, RefusesLowerTermsUntilTheTermTimesOut) {
   ActuatorWatchdog watchdog(4, kTimeout);
-  const auto of_term = [](std::uint32_t term, std::int64_t stamp_ns) {
+  const auto with_term = [](std::uint32_t term, std::int64_t stamp_ns) {
     ActuatorCommand sent = command(stamp_ns);
     sent.term = term;
     return sent;
   };
-  EXPECT_EQ(watchdog.accept(of_term(5, 1000), 1000), CommandFault::kNone);
-  EXPECT_EQ(watchdog.accept(of_term(4, 1100), 1100), CommandFault::kOvertaken);
-  EXPECT_EQ(watchdog.accept(of_term(6, 1150), 1150), CommandFault::kNone);
-  EXPECT_EQ(watchdog.accept(of_term(5, 1350), 1350), CommandFault::kOvertaken);
-  EXPECT_EQ(watchdog.accept(of_term(0, 1351), 1351), CommandFault::kNone)
-      << "nobody of the higher term is left";
+  EXPECT_EQ(watchdog.accept(with_term(5, 1000), 1000), CommandFault::kNone);
+  EXPECT_EQ(watchdog.accept(with_term(4, 1100), 1100), CommandFault::kOvertaken);
+  EXPECT_EQ(watchdog.accept(with_term(6, 1150), 1150), CommandFault::kNone);
+  EXPECT_EQ(watchdog.accept(with_term(5, 1350), 1350), CommandFault::kOvertaken);
+  EXPECT_EQ(watchdog.accept(with_term(0, 1351), 1351), CommandFault::kNone)
+      << "the higher term has timed out";
 }
 
-TEST(ActuatorWatchdog, SaysWhatItObeyed) {
+TEST(ActuatorWatchdog, ReportsTheCommandInEffect) {
   ActuatorWatchdog watchdog(4, kTimeout);
   EXPECT_TRUE(watchdog.obeyed().reported);
   EXPECT_FALSE(watchdog.obeyed().any);
@@ -86,15 +87,15 @@ TEST(ActuatorWatchdog, SaysWhatItObeyed) {
   EXPECT_EQ(watchdog.obeyed().stamp_ns, 1000);
 }
 
-struct Broken {
+struct InvalidCommand {
   const char* name;
   CommandFault fault;
   ActuatorCommand command;
   std::string sentence;
 };
 
-std::vector<Broken> broken_commands() {
-  std::vector<Broken> all;
+std::vector<InvalidCommand> invalid_commands() {
+  std::vector<InvalidCommand> all;
   const auto add = [&](const char* name, CommandFault fault, const ActuatorCommand& c, const char* sentence) {
     all.push_back({name, fault, c, sentence});
   };
@@ -120,22 +121,22 @@ std::vector<Broken> broken_commands() {
   return all;
 }
 
-TEST(ActuatorWatchdog, RefusesBrokenCommandsWithoutEffect) {
-  for (const Broken& broken : broken_commands()) {
-    SCOPED_TRACE(broken.name);
+TEST(ActuatorWatchdog, RefusesInvalidCommandsWithoutEffect) {
+  for (const InvalidCommand& invalid : invalid_commands()) {
+    SCOPED_TRACE(invalid.name);
     ActuatorWatchdog watchdog(4, kTimeout);
     ASSERT_EQ(watchdog.accept(command(900), 900), CommandFault::kNone);
-    EXPECT_EQ(watchdog.accept(broken.command, 1050), broken.fault);
-    EXPECT_EQ(plant::to_string(broken.fault), broken.sentence);
-    EXPECT_EQ(watchdog.drive(1100).throttle[0], 0.5);
-    EXPECT_EQ(watchdog.drive(1101).state, RotorState::kOff) << "it counted as a command";
+    EXPECT_EQ(watchdog.accept(invalid.command, 1050), invalid.fault);
+    EXPECT_EQ(plant::to_string(invalid.fault), invalid.sentence);
+    EXPECT_EQ(watchdog.motor_command(1100).throttle[0], 0.5);
+    EXPECT_EQ(watchdog.motor_command(1101).state, RotorState::kOff) << "the invalid command reset the timeout";
   }
 }
 
-TEST(ActuatorWatchdog, RefusesCommandsBeyondTheTimeout) {
+TEST(ActuatorWatchdog, RefusesCommandsOlderThanTheTimeout) {
   ActuatorWatchdog watchdog(4, kTimeout);
   EXPECT_EQ(watchdog.accept(command(999), 1200), CommandFault::kStale);
-  EXPECT_EQ(watchdog.drive(1200).state, RotorState::kOff);
+  EXPECT_EQ(watchdog.motor_command(1200).state, RotorState::kOff);
   EXPECT_EQ(watchdog.accept(command(1000), 1200), CommandFault::kNone);
 }
 

@@ -1,4 +1,4 @@
-// Dynamics by its properties: order, invariants, equilibria, time constants.
+// Properties of the dynamics: order, invariants, equilibria, time constants.
 #include "swiftlet/plant/simulation/dynamics.hpp"
 
 #include <algorithm>
@@ -27,9 +27,9 @@ using plant::VehicleState;
 
 const Vector3d kStillAir = Vector3d::Zero();
 
-void fly(const Dynamics& dynamics, VehicleState& state, const MotorCommand& drive, double duration_s,
+void fly(const Dynamics& dynamics, VehicleState& state, const MotorCommand& command, double duration_s,
          int steps, const Vector3d& wind_ned = kStillAir) {
-  for (int i = 0; i < steps; ++i) dynamics.advance(state, drive, wind_ned, duration_s / steps);
+  for (int i = 0; i < steps; ++i) dynamics.advance(state, command, wind_ned, duration_s / steps);
 }
 
 VehicleState hovering(const Vehicle& vehicle) {
@@ -63,12 +63,12 @@ TEST_P(EveryMotor, HalvingTheStepDividesTheErrorBySixteen) {
   Vehicle vehicle = kaylion();
   vehicle.motor.model = GetParam();
   const Dynamics dynamics(vehicle, Supply::battery());
-  MotorCommand drive = running(0.4);
-  drive.throttle[1] = 0.7;
+  MotorCommand command = running(0.4);
+  command.throttle[1] = 0.7;
   const auto end = [&](int steps) {
     VehicleState state = tumbling();
     state.state_of_charge = 0.95;  // far from the ends of the table's segment
-    fly(dynamics, state, drive, 0.4, steps);
+    fly(dynamics, state, command, 0.4, steps);
     return state;
   };
   const VehicleState exact = end(12800);
@@ -95,17 +95,17 @@ TEST(Dynamics, TorqueFreeRotationKeepsEnergyAndAngularMomentum) {
   const Vector3d momentum_at_start = momentum();
   const double energy_at_start = energy();
   const Vector3d rates_at_start = state.body_rates_frd;
-  double turned_away = 0.0;
+  double rate_change = 0.0;
   for (int i = 0; i < 20000; ++i) {
     dynamics.advance(state, {}, kStillAir, 1.0e-3);
-    turned_away = std::max(turned_away, (state.body_rates_frd - rates_at_start).norm());
+    rate_change = std::max(rate_change, (state.body_rates_frd - rates_at_start).norm());
     ASSERT_NEAR(energy(), energy_at_start, 1.0e-7 * energy_at_start);
     ASSERT_LT((momentum() - momentum_at_start).norm(), 1.0e-6 * momentum_at_start.norm());
   }
-  EXPECT_GT(turned_away, 5.0) << "the rotation does not change in the body: nothing is shown";
+  EXPECT_GT(rate_change, 5.0) << "the body rates hardly change: the test shows nothing";
 }
 
-TEST(Dynamics, FallsFreely) {
+TEST(Dynamics, FallsFreelyWithRotorsOff) {
   const Dynamics dynamics(kaylion(), Supply::battery());
   VehicleState state;
   state.velocity_ned = {1.0, 2.0, -3.0};
@@ -124,7 +124,7 @@ struct HoverAnchor {
 
 class Hover : public testing::TestWithParam<HoverAnchor> {};
 
-TEST_P(Hover, StaysAtThePapersThrottle) {
+TEST_P(Hover, IsInEquilibriumAtThePapersThrottle) {
   const HoverAnchor& anchor = GetParam();
   Vehicle vehicle = kaylion();
   vehicle.mass_kg = anchor.mass_kg;
@@ -157,7 +157,7 @@ TEST(Dynamics, RotorsIdleAtThrottleZeroAndStopWhenOff) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(state.rotor_speeds[i], 0.0, 1.0e-4);
 }
 
-TEST(Dynamics, FliesAsManyRotorsAsTheVehicleHas) {
+TEST(Dynamics, SimulatesEveryRotorOfTheVehicle) {
   for (int rotors = plant::kMinRotors; rotors <= plant::kMaxRotors; ++rotors) {
     const Vehicle vehicle = multirotor(rotors);
     const Dynamics dynamics(vehicle, Supply::constant(4.2));
@@ -172,7 +172,7 @@ TEST(Dynamics, FliesAsManyRotorsAsTheVehicleHas) {
 
 // ---- inductance
 
-TEST(Dynamics, CurrentStaysStableAtAnyInductance) {
+TEST(Dynamics, CurrentIsStableAtAnyInductance) {
   for (const double inductance : {1.0e-5, 1.0e-4, 1.0e-3, 1.0e-2}) {
     Vehicle vehicle = kaylion();
     vehicle.motor.model = plant::MotorModel::kPhysical;
@@ -189,7 +189,7 @@ TEST(Dynamics, CurrentStaysStableAtAnyInductance) {
   }
 }
 
-TEST(Dynamics, InductiveMotorTendsToThePhysicalOne) {
+TEST(Dynamics, InductiveMotorConvergesToThePhysicalModel) {
   Vehicle vehicle = kaylion();
   vehicle.motor.model = plant::MotorModel::kPhysical;
   const auto speed_after = [&](double inductance) {
@@ -208,7 +208,7 @@ TEST(Dynamics, InductiveMotorTendsToThePhysicalOne) {
   EXPECT_LT(std::abs(speed_after(1.0e-6) - limit), 0.01 * coarse);
 }
 
-TEST(Dynamics, TakesStepsThatTheFastestTimeConstantAllows) {
+TEST(Dynamics, LimitsStepsByTheFastestTimeConstant) {
   Vehicle vehicle = kaylion();
   EXPECT_DOUBLE_EQ(Dynamics(vehicle, Supply::constant(4.0)).max_step_s(), 0.0821 / 3.0);
   EXPECT_DOUBLE_EQ(Dynamics(vehicle, Supply::battery()).max_step_s(), 0.02 / 3.0);
@@ -216,7 +216,7 @@ TEST(Dynamics, TakesStepsThatTheFastestTimeConstantAllows) {
   vehicle.motor.armature_inductance_h = 1.54e-4;
   EXPECT_DOUBLE_EQ(Dynamics(vehicle, Supply::battery()).max_step_s(), 1.0e-4 / 3.0);
 
-  // One long advance() and the short ones that it must be made of.
+  // One long advance() equals the short steps that it is divided into.
   const Dynamics dynamics(vehicle, Supply::battery());
   VehicleState at_once = tumbling();
   VehicleState in_steps = tumbling();
@@ -227,7 +227,7 @@ TEST(Dynamics, TakesStepsThatTheFastestTimeConstantAllows) {
 
 // ---- battery
 
-TEST(Dynamics, SagFollowsItsLag) {
+TEST(Dynamics, SagFollowsAFirstOrderLag) {
   Vehicle vehicle = kaylion();
   vehicle.battery.electronics_current_a = 2.0;
   const Dynamics dynamics(vehicle, Supply::battery());
@@ -266,7 +266,7 @@ TEST(Dynamics, HoverDrawsItsPowerFromTheBattery) {
   EXPECT_NEAR(0.9 - state.state_of_charge, current * 0.3 / 864.0, 0.01 * current * 0.3 / 864.0);
 }
 
-TEST(Dynamics, EmptyBatteryHoldsItsLastVoltageAndNoCharge) {
+TEST(Dynamics, EmptyBatteryKeepsItsLowestVoltage) {
   Vehicle vehicle = kaylion();
   vehicle.battery.electronics_current_a = 1.0;
   const Dynamics dynamics(vehicle, Supply::battery());
@@ -287,7 +287,7 @@ TEST(Dynamics, IdealSupplyNeitherSagsNorEmpties) {
   EXPECT_NEAR(state.rotor_speeds[0], 2214.0, 1.0);  // the anchor for full throttle at 3.7 V
 }
 
-TEST(Dynamics, BrakingRotorsChargeNothing) {
+TEST(Dynamics, BrakingRotorsDoNotChargeTheBattery) {
   const Dynamics dynamics(kaylion(), Supply::battery());
   VehicleState state = hovering(kaylion());
   state.state_of_charge = 0.5;
@@ -299,7 +299,7 @@ TEST(Dynamics, BrakingRotorsChargeNothing) {
 
 // ---- air
 
-TEST(Dynamics, DragEndsInTheTerminalVelocity) {
+TEST(Dynamics, FallReachesTheTerminalVelocity) {
   Vehicle vehicle = kaylion();
   vehicle.linear_drag = 0.1;
   const Dynamics dynamics(vehicle, Supply::battery());
@@ -310,7 +310,7 @@ TEST(Dynamics, DragEndsInTheTerminalVelocity) {
   EXPECT_LT((state.velocity_ned - terminal * (1.0 - std::exp(-1.0))).norm(), 1.0e-9);
   fly(dynamics, state, {}, 20.0, 20000, wind);
   EXPECT_LT((state.velocity_ned - terminal).norm(), 1.0e-9);
-  // Falling so, an accelerometer measures what one on a table does.
+  // At the terminal velocity an accelerometer measures the same as at rest.
   state.q_ned_from_frd = Eigen::Quaterniond::Identity();
   EXPECT_LT((dynamics.specific_force_frd(state, wind) - Vector3d(0.0, 0.0, -plant::kGravity)).norm(), 1.0e-8);
 }

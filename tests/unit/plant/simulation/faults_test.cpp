@@ -49,7 +49,7 @@ std::vector<std::string> violations_of(const std::vector<Fault>& faults) {
   return sentences;
 }
 
-TEST(FaultSchedule, HasEachFaultFromItsBeginningUpToItsEnd) {
+TEST(FaultSchedule, FaultsAreActiveFromStartUpToEnd) {
   const FaultSchedule schedule({fault(FaultKind::kImuStop, 3.0, 0.5), fault(FaultKind::kImuStop, 1.0, 0.25),
                                 fault(FaultKind::kMocapStop, 1.1, 0.1)});
   for (std::int64_t t = 0; t < 5'000 * kMillisecond; t += kMillisecond) {
@@ -64,7 +64,7 @@ TEST(FaultSchedule, HasEachFaultFromItsBeginningUpToItsEnd) {
   EXPECT_EQ(changes, (std::vector<std::int64_t>{1000, 1100, 1200, 1250, 3000, 3500}));
 }
 
-TEST(FaultSchedule, RulesHaveTheirSentence) {
+TEST(FaultSchedule, ReportsViolations) {
   EXPECT_TRUE(violations_of({fault(FaultKind::kImuStop, 0.0, 1.0), fault(FaultKind::kImuStop, 1.0, 1.0),
                              fault(FaultKind::kImuNan, 0.5, 1.0)})
                   .empty());
@@ -91,7 +91,7 @@ TEST(FaultSchedule, RulesHaveTheirSentence) {
   EXPECT_EQ(of_vehicle[0].message, "is 5, must be at most 4, the rotors of kaylion");
 }
 
-// Frames of a body that moves, one every 10 ms, sent down the path at every millisecond.
+// Frames of a moving body every 10 ms, through a path that is polled every millisecond.
 class MocapFaults : public testing::Test {
  protected:
   static PoseSample frame_at(std::int64_t stamp_ns) {
@@ -123,14 +123,14 @@ class MocapFaults : public testing::Test {
   }
 };
 
-TEST_F(MocapFaults, StopKeepsFramesBackAndTheirNumbersGoOn) {
+TEST_F(MocapFaults, StopDropsFramesAndSequenceNumbersContinue) {
   std::vector<std::uint64_t> numbers;
   for (const Delivered& d : deliver({fault(FaultKind::kMocapStop, 0.02, 0.03)}, 80))
     numbers.push_back(d.frame.sequence);
   EXPECT_EQ(numbers, (std::vector<std::uint64_t>{1, 2, 6, 7, 8}));
 }
 
-TEST_F(MocapFaults, FreezeRepeatsThePoseWithNewStampsAndNumbers) {
+TEST_F(MocapFaults, FreezeRepeatsThePoseWithNewStampsAndSequenceNumbers) {
   for (const Delivered& d : deliver({fault(FaultKind::kMocapFreeze, 0.02, 0.03)}, 80)) {
     const bool frozen = d.at_ms >= 20 && d.at_ms < 50;
     const PoseSample sound = frame_at(d.at_ms * kMillisecond);
@@ -141,7 +141,7 @@ TEST_F(MocapFaults, FreezeRepeatsThePoseWithNewStampsAndNumbers) {
   }
 }
 
-TEST_F(MocapFaults, FreezeGoesBackToTheLastPoseThatThereWas) {
+TEST_F(MocapFaults, FreezeRepeatsTheLastTrackedPose) {
   SimulationSettings settings;
   settings.faults = {fault(FaultKind::kMocapFreeze, 0.02, 0.03)};
   MocapPath path(settings, 1);
@@ -154,7 +154,7 @@ TEST_F(MocapFaults, FreezeGoesBackToTheLastPoseThatThereWas) {
   EXPECT_EQ(frozen->position_ned, frame_at(0).position_ned);
 }
 
-TEST_F(MocapFaults, UntrackedFramesTellNothing) {
+TEST_F(MocapFaults, UntrackedFramesContainNoPosition) {
   int untracked = 0;
   for (const Delivered& d : deliver({fault(FaultKind::kMocapUntracked, 0.02, 0.03)}, 80)) {
     if (d.frame.tracked) continue;
@@ -165,7 +165,7 @@ TEST_F(MocapFaults, UntrackedFramesTellNothing) {
   EXPECT_EQ(untracked, 3);
 }
 
-TEST_F(MocapFaults, JumpPutsPosesOffAndTurnsThem) {
+TEST_F(MocapFaults, JumpOffsetsAndRotatesPoses) {
   Fault jump = fault(FaultKind::kMocapJump, 0.02, 0.03);
   jump.position_ned = {0.5, -0.25, 0.125};
   jump.rotation_frd = {0.0, 0.0, M_PI};
@@ -177,7 +177,19 @@ TEST_F(MocapFaults, JumpPutsPosesOffAndTurnsThem) {
   }
 }
 
-TEST_F(MocapFaults, SwapShowsABodyThatStandsElsewhereAndIsNotFrozen) {
+// The rotation is about the axes of the body, FRD, as its name says.
+TEST_F(MocapFaults, JumpRotatesAboutTheAxesOfTheBody) {
+  SimulationSettings settings;
+  settings.faults = {fault(FaultKind::kMocapJump, 0.0, 0.03)};
+  settings.faults.front().rotation_frd = {0.4, 0.0, 0.0};
+  MocapPath path(settings, 1);
+  PoseSample yawed = frame_at(0);
+  yawed.q_ned_from_frd = Eigen::AngleAxisd(1.0, Vector3d::UnitZ());
+  const Quaterniond rolled = yawed.q_ned_from_frd * Quaterniond(Eigen::AngleAxisd(0.4, Vector3d::UnitX()));
+  EXPECT_LT(path.pass(yawed, 0)->q_ned_from_frd.angularDistance(rolled), 1e-9);
+}
+
+TEST_F(MocapFaults, SwapShowsAnotherBodyAtRestWithNoise) {
   Fault swap = fault(FaultKind::kMocapSwap, 0.02, 0.03);
   swap.position_ned = {-1.0, 1.0, 0.0};
   swap.yaw_rad = 1.0;
@@ -195,30 +207,30 @@ TEST_F(MocapFaults, SwapShowsABodyThatStandsElsewhereAndIsNotFrozen) {
   EXPECT_TRUE(before.has_value());
 }
 
-TEST_F(MocapFaults, LatencyDelaysFramesAndAnOvertakenOneIsLost) {
+TEST_F(MocapFaults, LatencyDelaysFramesAndDropsOvertakenOnes) {
   Fault late = fault(FaultKind::kMocapLatency, 0.02, 0.04);
   late.delay_s = 0.025;
   std::vector<std::pair<std::int64_t, std::int64_t>> times;
   for (const Delivered& d : deliver({late}, 90)) times.emplace_back(d.at_ms, d.frame.stamp_ns / kMillisecond);
-  // Those of 20 and 30 ms come at 45 and 55; at 60 the fault is over, and the frame of 60 overtakes two.
+  // The frames of 20 and 30 ms arrive at 45 and 55. The fault ends at 60, and the frame of 60 overtakes two.
   EXPECT_EQ(times, (std::vector<std::pair<std::int64_t, std::int64_t>>{
                        {0, 0}, {10, 10}, {45, 20}, {55, 30}, {60, 60}, {70, 70}, {80, 80}}));
 }
 
-TEST_F(MocapFaults, StartAnewWithThePlant) {
+TEST_F(MocapFaults, RestartWithThePlant) {
   SimulationSettings settings;
   settings.faults = {fault(FaultKind::kMocapLatency, 0.02, 0.5)};
   settings.faults[0].delay_s = 0.2;
   MocapPath path(settings, 1);
   for (std::int64_t t = 0; t < 100 * kMillisecond; t += kFramePeriod) path.pass(frame_at(t), t);
-  // Nothing of the time before comes out after.
+  // No frame from before the restart arrives after it.
   for (std::int64_t t = 0; t < 300 * kMillisecond; t += kMillisecond) {
     const auto out = path.pass(std::nullopt, t);
     EXPECT_FALSE(out.has_value()) << t;
   }
 }
 
-TEST(CommandFaults, StopLosesAndDelayPutsOff) {
+TEST(CommandFaults, StopDropsCommandsAndDelayPostponesThem) {
   SimulationSettings settings;
   settings.imu.rate_hz = 1000.0;  // a command for each sample
   settings.faults = {fault(FaultKind::kCommandsStop, 0.01, 0.01),
@@ -234,7 +246,7 @@ TEST(CommandFaults, StopLosesAndDelayPutsOff) {
     const bool stopped = ms >= 10 && ms < 20;
     const bool delayed = ms >= 30 && ms < 40;
     ASSERT_EQ(at_once, !stopped && !delayed) << ms;
-    // At 40 ms and later those under way are overtaken.
+    // From 40 ms on the commands under way are overtaken.
     ASSERT_EQ(late.has_value(), ms >= 35 && ms <= 40) << ms;
     if (late) {
       ASSERT_EQ(late->stamp_ns, now - 5 * kMillisecond);
@@ -250,7 +262,7 @@ class PlantFaults : public testing::Test {
   }
 };
 
-TEST_F(PlantFaults, ChangeNothingButTheSamplesTheyAreAbout) {
+TEST_F(PlantFaults, ChangeOnlyTheAffectedSamples) {
   Fault bias = fault(FaultKind::kImuBias, 0.5, 0.1);
   bias.specific_force_frd = {1.0, 2.0, 3.0};
   bias.body_rates_frd = {0.1, 0.2, 0.3};
@@ -296,8 +308,8 @@ TEST_F(PlantFaults, ChangeNothingButTheSamplesTheyAreAbout) {
   EXPECT_EQ(missing, 25);
 }
 
-// A force for a while is its impulse; the accelerometer feels it.
-TEST_F(PlantFaults, PushGivesItsImpulse) {
+// The momentum changes by the impulse, and the accelerometer measures the force.
+TEST_F(PlantFaults, PushChangesTheVelocityByItsImpulse) {
   const plant::Vehicle& vehicle = kaylion();
   Fault push = fault(FaultKind::kPush, 0.1, 0.05);
   push.force_ned = {0.4, -0.2, 0.1};
@@ -315,7 +327,7 @@ TEST_F(PlantFaults, PushGivesItsImpulse) {
   EXPECT_NEAR(plant.state().body_rates_frd.z(), 1.0e-4 * 0.05 / vehicle.inertia(2, 2), 1e-9);
 }
 
-TEST_F(PlantFaults, ARotorThatGivesLessTipsTheBody) {
+TEST_F(PlantFaults, LossOfRotorThrustRotatesTheBody) {
   Fault lost = fault(FaultKind::kRotorThrust, 0.3, 0.1);
   lost.rotor = 1;  // front right: the body rolls right and pitches down
   lost.factor = 0.0;
@@ -330,7 +342,7 @@ TEST_F(PlantFaults, ARotorThatGivesLessTipsTheBody) {
   EXPECT_LT((plant.state().body_rates_frd - rates).norm(), 0.05 * rates.norm());
 }
 
-TEST_F(PlantFaults, ABatteryDropIsMeasuredAndSlowsTheRotors) {
+TEST_F(PlantFaults, BatteryDropIsMeasuredAndSlowsTheRotors) {
   Fault drop = fault(FaultKind::kBatteryDrop, 1.0, 0.5);
   drop.voltage_v = 0.5;
   PlantSimulation faulty = plant({drop}, SimulationSettings());
@@ -349,7 +361,7 @@ TEST_F(PlantFaults, ABatteryDropIsMeasuredAndSlowsTheRotors) {
               0.001 * sound.truth().rotor_speeds[0]);
 }
 
-TEST_F(PlantFaults, WindTakesAlongWhatHasDrag) {
+TEST_F(PlantFaults, WindAcceleratesAVehicleWithDrag) {
   plant::Vehicle vehicle = kaylion();
   vehicle.linear_drag = 0.02;
   SimulationSettings settings = empty_space();

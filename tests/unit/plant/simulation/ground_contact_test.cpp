@@ -41,8 +41,8 @@ double clearance(const VehicleState& state) {
   return plant::GroundContact(kaylion(), on_floor().ground).clearance(state);
 }
 
-void step(PlantSimulation& plant, const MotorCommand& drive, int milliseconds) {
-  for (int i = 0; i < milliseconds; ++i) plant.step(drive);
+void step(PlantSimulation& plant, const MotorCommand& command, int milliseconds) {
+  for (int i = 0; i < milliseconds; ++i) plant.step(command);
 }
 
 void expect_rest(const VehicleState& state) {
@@ -50,17 +50,17 @@ void expect_rest(const VehicleState& state) {
   EXPECT_TRUE(state.body_rates_frd.isZero(0.0)) << state.body_rates_frd.transpose();
 }
 
-TEST(GroundContact, StandsStill) {
-  for (const MotorCommand& drive : {MotorCommand{}, running(0.0), running(0.2)}) {
+TEST(GroundContact, StandsStillAtLowThrottle) {
+  for (const MotorCommand& command : {MotorCommand{}, running(0.0), running(0.2)}) {
     PlantSimulation plant(kaylion(), on_floor(), 1);
     EXPECT_TRUE(plant.on_ground());
     for (int i = 0; i < 10'000; ++i) {
-      plant.step(drive);
+      plant.step(command);
       ASSERT_TRUE(plant.on_ground()) << i;
       ASSERT_LT(plant.state().position_ned.norm(), 1.0e-4) << i;
       ASSERT_LT(tilt(plant.state()), 1.0e-4) << i;
       if (plant.imu()) {
-        // While rotors spin up, their lift at the sample and the floor's mean share are a step apart.
+        // While rotors spin up, the lift of the sample and the mean contact force differ by a step.
         const double tolerance = i < 2000 ? 0.05 : 1.0e-6;
         const Vector3d at_rest(0.0, 0.0, -plant::kGravity);
         ASSERT_LT((plant.imu()->specific_force_frd - at_rest).norm(), tolerance) << i;
@@ -96,7 +96,7 @@ TEST(GroundContact, LandsAndComesToRest) {
   }
 }
 
-TEST(GroundContact, DropsNeverGainEnergyNorSinkIn) {
+TEST(GroundContact, DropsNeverGainEnergyOrPenetrate) {
   Draw draw;
   for (int trial = 0; trial < 40; ++trial) {
     SCOPED_TRACE(trial);
@@ -121,7 +121,7 @@ TEST(GroundContact, DropsNeverGainEnergyNorSinkIn) {
   }
 }
 
-TEST(GroundContact, WindPushesOnlyBeyondTheFrictionCone) {
+TEST(GroundContact, WindMovesItOnlyBeyondTheFrictionCone) {
   plant::Vehicle vehicle = kaylion();
   vehicle.linear_drag = 0.05;
   const double weight = vehicle.mass_kg * plant::kGravity;
@@ -155,13 +155,13 @@ TEST(GroundContact, SlidesToRestByCoulombsLaw) {
   expect_rest(plant.state());
 }
 
-TEST(GroundContact, TakesOffCleanly) {
+TEST(GroundContact, TakesOffWithoutTouchingAgain) {
   PlantSimulation plant(kaylion(), on_floor(), 1);
   step(plant, running(0.0), 500);
-  const MotorCommand drive = running(0.5);
+  const MotorCommand command = running(0.5);
   int lifted_at = 0;
   for (int i = 1; i <= 1000; ++i) {
-    plant.step(drive);
+    plant.step(command);
     if (!plant.on_ground() && lifted_at == 0) lifted_at = i;
     if (lifted_at > 0) {
       ASSERT_FALSE(plant.on_ground()) << "touched again after " << i << " ms";
@@ -174,7 +174,7 @@ TEST(GroundContact, TakesOffCleanly) {
   EXPECT_LT(tilt(plant.state()), 1.0e-6);
 }
 
-TEST(GroundContact, LiesOnItsBack) {
+TEST(GroundContact, RestsUpsideDown) {
   VehicleState start;
   start.position_ned = {0.0, 0.0, -0.1};
   start.q_ned_from_frd = AngleAxisd(M_PI, Vector3d::UnitX());
@@ -185,14 +185,14 @@ TEST(GroundContact, LiesOnItsBack) {
   expect_rest(plant.state());
 }
 
-TEST(GroundContact, IsAbsentWhenSwitchedOff) {
+TEST(GroundContact, IsAbsentWhenDisabled) {
   PlantSimulation plant(kaylion(), empty_space(), 1);
   EXPECT_FALSE(plant.on_ground());
   step(plant, {}, 1000);
   EXPECT_NEAR(plant.state().position_ned.z(), 0.5 * plant::kGravity, 1.0e-9);
 }
 
-TEST(GroundContact, IsWhereTheLegsEnd) {
+TEST(GroundContact, FloorIsAtTheEndOfTheLegs) {
   const plant::GroundContact ground(kaylion(), on_floor().ground);
   EXPECT_DOUBLE_EQ(ground.floor_z_ned(), 0.02);
   VehicleState state;

@@ -38,7 +38,7 @@ TEST_P(ImuAtRate, NoiseIsDensityTimesRootOfRate) {
   settings.accelerometer_noise_density = 4.0e-3;
   settings.gyro_noise_density = 2.0e-4;
   Imu imu(settings, 5);
-  constexpr int kCount = 100'000;  // the standard deviation's own is 0.22 %
+  constexpr int kCount = 100'000;  // the standard error of the standard deviation is 0.22 %
   Vector3d sums[2] = {Vector3d::Zero(), Vector3d::Zero()};
   Vector3d squares[2] = {Vector3d::Zero(), Vector3d::Zero()};
   Vector3d neighbours = Vector3d::Zero();
@@ -61,12 +61,12 @@ TEST_P(ImuAtRate, NoiseIsDensityTimesRootOfRate) {
       EXPECT_NEAR(sums[sensor][axis] / kCount, 0.0, 5.0 * sigmas[sensor] / std::sqrt(kCount));
     }
   }
-  EXPECT_LT((neighbours / kCount).norm(), 0.03 * sigmas[0] * sigmas[0]) << "not white";
+  EXPECT_LT((neighbours / kCount).norm(), 0.03 * sigmas[0] * sigmas[0]) << "the noise is not white";
 }
 
 INSTANTIATE_TEST_SUITE_P(Rates, ImuAtRate, testing::Values(500.0, 1000.0));
 
-TEST(Imu, BiasIsConstantInARunAndSpreadOverRuns) {
+TEST(Imu, BiasIsConstantInARunAndVariesBetweenRuns) {
   ImuSettings settings = empty_space().imu;
   settings.accelerometer_bias_sigma = 0.1;
   settings.gyro_bias_sigma = 0.01;
@@ -88,7 +88,7 @@ TEST(Imu, BiasIsConstantInARunAndSpreadOverRuns) {
   EXPECT_NEAR(std::sqrt(rates_squares / (3 * kRuns)), 0.01, 0.01 * 0.03);
 }
 
-TEST_P(ImuAtRate, BiasWandersWithTheRootOfTime) {
+TEST_P(ImuAtRate, BiasWalksWithTheRootOfTime) {
   ImuSettings settings = empty_space().imu;
   settings.rate_hz = GetParam();
   settings.accelerometer_bias_walk = 1.0e-3;
@@ -107,7 +107,7 @@ TEST_P(ImuAtRate, BiasWandersWithTheRootOfTime) {
   EXPECT_NEAR(std::sqrt(rates_squares / (3 * kRuns)), 2.0e-4, 0.05 * 2.0e-4);
 }
 
-TEST(Imu, Saturates) {
+TEST(Imu, SaturatesAtItsRange) {
   ImuSettings settings = empty_space().imu;
   settings.accelerometer_range = 20.0;
   settings.gyro_range = 5.0;
@@ -117,7 +117,7 @@ TEST(Imu, Saturates) {
   EXPECT_EQ(sample.body_rates_frd, Vector3d(-5.0, 4.0, 5.0));
 }
 
-TEST_P(ImuAtRate, TheVehicleSamplesAtTheRate) {
+TEST_P(ImuAtRate, SamplesComeAtTheirRates) {
   plant::SimulationSettings settings = empty_space();
   settings.imu.rate_hz = GetParam();
   settings.rotor_speed_rate_hz = 250.0;
@@ -152,7 +152,7 @@ TEST_P(ImuAtRate, TheVehicleSamplesAtTheRate) {
   }
 }
 
-TEST(Imu, NoRotorSpeedsAtRateZero) {
+TEST(Imu, SendsNoRotorSpeedsAtRateZero) {
   plant::SimulationSettings settings = empty_space();
   settings.rotor_speed_rate_hz = 0.0;
   plant::PlantSimulation plant(kaylion(), settings, 1);
@@ -162,7 +162,7 @@ TEST(Imu, NoRotorSpeedsAtRateZero) {
   }
 }
 
-TEST(Imu, SumsUpToAnImpactsChangeOfVelocity) {
+TEST(Imu, IntegratesToTheVelocityChangeOfAnImpact) {
   plant::SimulationSettings settings = empty_space();
   settings.ground.present = true;
   settings.imu.rate_hz = 500.0;

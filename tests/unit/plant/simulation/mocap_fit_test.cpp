@@ -1,4 +1,4 @@
-// The OptiTrack model of config/simulation/optitrack.yaml against a session that was recorded
+// The OptiTrack model of config/simulation/optitrack.yaml against a recorded session
 // (tests/data/README.md).
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ struct Frame {
   Vector3d position = Vector3d::Zero();
 };
 
-// The recorded session; t, x, y, z, qx, qy, qz, qw under a line of names.
+// The recorded session; t, x, y, z, qx, qy, qz, qw below a header.
 std::vector<Frame> recorded() {
   const std::string text = runtime::read_text_file(SWIFTLET_SOURCE_DIR "/tests/data/optitrack_poses.csv");
   std::vector<Frame> frames;
@@ -40,7 +40,7 @@ std::vector<Frame> recorded() {
   return frames;
 }
 
-// What the model makes of a vehicle at rest in a time, seen as the session was: when frames arrive.
+// Frames of the model for a vehicle at rest, by arrival time as in the session.
 std::vector<Frame> modelled(double time_s) {
   plant::MocapSettings settings =
       runtime::load_simulation_settings(SWIFTLET_SOURCE_DIR "/config/simulation/optitrack.yaml").mocap;
@@ -75,21 +75,21 @@ class Intervals {
   std::vector<double> sorted_;
 };
 
-// Of an axis, in mm, in stretches short enough that nothing drifts.
+// Standard deviation of an axis in mm, over blocks that are too short for drift.
 double deviation_mm(const std::vector<Frame>& frames, std::size_t count) {
-  constexpr std::size_t kStretch = 50;
+  constexpr std::size_t kBlock = 50;
   double sum = 0.0;
-  std::size_t stretches = 0;
-  for (std::size_t at = 0; at + kStretch <= count; at += kStretch, ++stretches) {
+  std::size_t blocks = 0;
+  for (std::size_t at = 0; at + kBlock <= count; at += kBlock, ++blocks) {
     Vector3d mean = Vector3d::Zero();
-    for (std::size_t i = at; i < at + kStretch; ++i) mean += frames[i].position / kStretch;
-    for (std::size_t i = at; i < at + kStretch; ++i)
-      sum += (frames[i].position - mean).squaredNorm() / (3.0 * (kStretch - 1));
+    for (std::size_t i = at; i < at + kBlock; ++i) mean += frames[i].position / kBlock;
+    for (std::size_t i = at; i < at + kBlock; ++i)
+      sum += (frames[i].position - mean).squaredNorm() / (3.0 * (kBlock - 1));
   }
-  return 1e3 * std::sqrt(sum / static_cast<double>(stretches));
+  return 1e3 * std::sqrt(sum / static_cast<double>(blocks));
 }
 
-TEST(MocapFit, IntervalsAreThoseOfTheRecordedSession) {
+TEST(MocapFit, IntervalsMatchTheRecordedSession) {
   const Intervals session(recorded());
   const Intervals model(modelled(300.0));
   for (const double probability : {0.05, 0.10, 0.25, 0.50, 0.75, 0.90, 0.95}) {
@@ -98,7 +98,7 @@ TEST(MocapFit, IntervalsAreThoseOfTheRecordedSession) {
   EXPECT_NEAR(model.mean_ms(), session.mean_ms(), 1.0);
 }
 
-TEST(MocapFit, GapsAreThoseOfAllSessions) {
+TEST(MocapFit, GapsMatchAllSessions) {
   const Intervals model(modelled(1800.0));
   EXPECT_NEAR(model.quantile_ms(0.50), 19.7, 0.5);
   EXPECT_NEAR(model.quantile_ms(0.90), 30.0, 0.5);
@@ -107,11 +107,11 @@ TEST(MocapFit, GapsAreThoseOfAllSessions) {
   EXPECT_LE(model.quantile_ms(1.0), 140.2);
 }
 
-TEST(MocapFit, NoiseAtRestIsThatOfTheSessions) {
+TEST(MocapFit, NoiseAtRestMatchesTheSessions) {
   constexpr std::size_t kAtRest = 200;  // rows of the session
   const double session = deviation_mm(recorded(), kAtRest);
   const double model = deviation_mm(modelled(60.0), 2000);
-  EXPECT_NEAR(model, session, 0.4 * session);  // this session is a quiet one
+  EXPECT_NEAR(model, session, 0.4 * session);  // this session has little noise
   EXPECT_GT(model, 0.9 * 0.024);               // all sessions: 0.024 to 0.029 mm
   EXPECT_LT(model, 1.1 * 0.029);
 }

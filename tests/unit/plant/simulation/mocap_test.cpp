@@ -21,7 +21,7 @@ using plant::TruthSample;
 
 constexpr std::int64_t kMillisecond = 1'000'000;
 
-// Somewhere else at every stamp.
+// A different pose at every stamp.
 TruthSample truth_at(std::int64_t stamp_ns) {
   TruthSample truth;
   const double t = 1.0e-9 * static_cast<double>(stamp_ns);
@@ -75,7 +75,7 @@ TEST(Mocap, DeliversFramesOnTimeAtEveryRateAndLatency) {
   }
 }
 
-TEST(Mocap, NeedsOnlySomeOfTheTruth) {
+TEST(Mocap, NeedsTheTruthOnlyAtScheduledEvents) {
   for (const double rate : {50.0, 100.0, 120.0, 240.0, 500.0, 1000.0}) {
     for (const double latency_s : {0.0, 0.0031, 0.010, 0.0457}) {
       SCOPED_TRACE(std::to_string(rate) + " Hz, " + std::to_string(latency_s) + " s");
@@ -108,7 +108,7 @@ TEST(Mocap, NeedsOnlySomeOfTheTruth) {
   }
 }
 
-TEST(Mocap, ErrorsStayInTheirBoundAndFillIt) {
+TEST(Mocap, ErrorsStayWithinTheirBoundAndReachIt) {
   MocapSettings settings;
   settings.latency_s = 0.0;
   settings.misalignment_rad = 0.0;
@@ -134,7 +134,7 @@ TEST(Mocap, ErrorsStayInTheirBoundAndFillIt) {
   EXPECT_LT(mean.norm(), 0.03e-4);
 }
 
-TEST(Mocap, MisalignmentIsOneAngleForTheWholeRun) {
+TEST(Mocap, MisalignmentIsConstantInARun) {
   MocapSettings settings = perfect();
   settings.latency_s = 0.0;
   settings.misalignment_rad = 0.05;
@@ -153,7 +153,7 @@ TEST(Mocap, MisalignmentIsOneAngleForTheWholeRun) {
   EXPECT_GT(angle(turns[0], turns[1]), 1.0e-3);
 }
 
-TEST(Mocap, DropoutsComeWithTheirProbabilityAndLength) {
+TEST(Mocap, DropoutsHaveTheirProbabilityAndLength) {
   MocapSettings settings = perfect();
   settings.latency_s = 0.0;
   settings.dropout_probability = 0.02;
@@ -168,17 +168,17 @@ TEST(Mocap, DropoutsComeWithTheirProbabilityAndLength) {
     if (!pose.tracked) {
       ++untracked;
       ++run;
-      EXPECT_TRUE(pose.position_ned.isZero(0.0)) << "an untracked frame tells where the vehicle is";
+      EXPECT_TRUE(pose.position_ned.isZero(0.0)) << "an untracked frame contains the position";
     } else {
       ASSERT_EQ(run % 5, 0) << "a dropout of " << run << " frames";
       run = 0;
     }
   }
-  // Every 1/p tracked frames on average a dropout of 5 begins: 5 p / (1 + 4 p) of all.
+  // A dropout of 5 begins every 1/p tracked frames on average: 5 p / (1 + 4 p) of all.
   EXPECT_NEAR(static_cast<double>(untracked) / kFrames, 0.1 / 1.08, 0.03 * 0.1 / 1.08);
 }
 
-TEST(Mocap, ADropoutChangesNoOtherFrame) {
+TEST(Mocap, DropoutsDoNotChangeOtherFrames) {
   MocapSettings settings;
   settings.latency_s = 0.0;
   Mocap whole(settings, 7);
@@ -197,7 +197,7 @@ TEST(Mocap, ADropoutChangesNoOtherFrame) {
   EXPECT_LT(tracked, 900);
 }
 
-TEST(Mocap, StartsAnewWhenThePlantIsRestarted) {
+TEST(Mocap, RestartsWithThePlant) {
   Mocap mocap(perfect(), 1);
   std::uint64_t last = 0;
   for (std::int64_t now = 0; now <= 105 * kMillisecond; now += kMillisecond) {
@@ -212,7 +212,7 @@ TEST(Mocap, StartsAnewWhenThePlantIsRestarted) {
   EXPECT_GT(pose->sequence, last);
 }
 
-TEST(Mocap, AGapInTheTruthCostsItsFrames) {
+TEST(Mocap, GapInTheTruthLosesItsFrames) {
   Mocap mocap(perfect(), 1);
   for (std::int64_t now = 0; now <= 20 * kMillisecond; now += kMillisecond) mocap.update(truth_at(now));
   // Nothing for 100 ms: the frame of 20 ms comes late, then one that is exposed at the gap's end.
@@ -227,9 +227,9 @@ TEST(Mocap, AGapInTheTruthCostsItsFrames) {
   EXPECT_EQ(poses[2].sequence, poses[0].sequence + 2);
 }
 
-// Uneven intervals: whoever keeps the same schedule knows each frame, whether all of the truth is looked at
-// or only what is needed; another seed has others.
-TEST(Mocap, UnevenFramesAreAFunctionOfTheSeed) {
+// With uneven intervals the same seed gives the same frames, from all of the truth or only from the truth at
+// scheduled events. Another seed gives other frames.
+TEST(Mocap, UnevenFramesDependOnTheSeedOnly) {
   MocapSettings settings = perfect();
   settings.model = plant::MocapModel::kOptitrack;
   Mocap all(settings, 5);

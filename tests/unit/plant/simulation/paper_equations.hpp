@@ -1,6 +1,5 @@
-// The paper's equations written down a second time, as they are printed and with the paper's numbers, for
-// another method to integrate: body velocities, a rotation matrix, an embedded Runge-Kutta pair of order 7(8)
-// at 1e-10.
+// An independent implementation of the paper's equations, as printed and with the paper's numbers: body
+// velocities, a rotation matrix, an embedded Runge-Kutta pair of order 7(8) at 1e-10.
 #pragma once
 
 #include <algorithm>
@@ -85,7 +84,7 @@ struct Equations {
     const Vector3d velocity_rate =
         (force + rotation.transpose() * Vector3d(0.0, 0.0, kMass * kGravity)) / kMass -
         rates.cross(body_velocity);
-    // dR/dt = R [w]x, which Eq. (2)-(4) say in Euler angles
+    // dR/dt = R [w]x, Eq. (2)-(4) without Euler angles
     Matrix3d cross;
     cross << 0.0, -rates.z(), rates.y(), rates.z(), 0.0, -rates.x(), -rates.y(), rates.x(), 0.0;
     const Matrix3d rotation_rate = rotation * cross;
@@ -127,7 +126,7 @@ inline State state_of(const plant::VehicleState& state) {
   return s;
 }
 
-// Brings the state from one time to another, in s, with the commands held.
+// Integrates the state from one time to another, in s, with constant commands.
 inline void integrate(const Equations& equations, State& state, double from, double to) {
   namespace odeint = boost::numeric::odeint;
   odeint::integrate_adaptive(
@@ -135,7 +134,7 @@ inline void integrate(const Equations& equations, State& state, double from, dou
       from, to, 1.0e-4);
 }
 
-// The worst differences of a motion and the largest values that each quantity takes in it.
+// The largest difference and the largest value of each quantity over a motion.
 struct Comparison {
   State worst = State(kNames.size());
   State peak = State(kNames.size());

@@ -1,4 +1,4 @@
-// Runs that repeat bit by bit, and noise that keeps to itself.
+// Runs are reproducible bit by bit, and noise streams are independent.
 #include "swiftlet/plant/simulation/plant_simulation.hpp"
 
 #include <cstring>
@@ -57,9 +57,9 @@ Recording fly(const SimulationSettings& settings, std::uint64_t seed) {
       append(run.positions, pose->position_ned.data(), 3);
       append(run.orientations, pose->q_ned_from_frd.coeffs().data(), 4);
     }
-    plant::MotorCommand drive = running(0.36);
-    drive.throttle[static_cast<std::size_t>(i / 10 % 4)] += 0.02;
-    plant.step(drive);
+    plant::MotorCommand command = running(0.36);
+    command.throttle[static_cast<std::size_t>(i / 10 % 4)] += 0.02;
+    plant.step(command);
   }
   return run;
 }
@@ -68,7 +68,7 @@ bool same(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
-TEST(PlantSimulation, RepeatsBitByBit) {
+TEST(PlantSimulation, IsReproducibleBitByBit) {
   const Recording a = fly(noisy_world(), 42);
   const Recording b = fly(noisy_world(), 42);
   EXPECT_TRUE(same(a.truth, b.truth));
@@ -88,14 +88,14 @@ TEST(PlantSimulation, DiffersWithTheSeed) {
   EXPECT_FALSE(same(a.orientations, b.orientations));
 }
 
-TEST(PlantSimulation, SensorNoiseLeavesTheTruthAlone) {
+TEST(PlantSimulation, SensorNoiseDoesNotChangeTheTruth) {
   SimulationSettings quiet = noisy_world();
   quiet.imu = empty_space().imu;
   quiet.mocap.position_error_m = 0.0;
   EXPECT_TRUE(same(fly(noisy_world(), 42).truth, fly(quiet, 42).truth));
 }
 
-TEST(PlantSimulation, NoiseStreamsDoNotMoveEachOther) {
+TEST(PlantSimulation, NoiseStreamsAreIndependent) {
   const Recording all = fly(noisy_world(), 42);
   SimulationSettings settings = noisy_world();
   settings.imu.accelerometer_noise_density = 0.0;

@@ -12,7 +12,7 @@ namespace {
 
 using plant::SimulationSettings;
 
-TEST(SimulationSettings, DefaultsBreakNoRule) { EXPECT_TRUE(plant::validate(SimulationSettings()).empty()); }
+TEST(SimulationSettings, DefaultsAreValid) { EXPECT_TRUE(plant::validate(SimulationSettings()).empty()); }
 
 struct Rule {
   const char* key;
@@ -56,7 +56,7 @@ const std::vector<Rule>& rules() {
   return all;
 }
 
-// What the settings are refused for, the whole-steps rule left aside.
+// Keys that are out of range, without the rule of whole steps.
 std::vector<std::string> out_of_range(const SimulationSettings& settings) {
   std::vector<std::string> keys;
   for (const plant::Violation& violation : plant::validate(settings)) {
@@ -65,7 +65,7 @@ std::vector<std::string> out_of_range(const SimulationSettings& settings) {
   return keys;
 }
 
-TEST(SimulationSettings, EveryNumberHasItsRange) {
+TEST(SimulationSettings, ChecksTheRangeOfEveryNumber) {
   for (const Rule& rule : rules()) {
     SCOPED_TRACE(rule.key);
     SimulationSettings settings;
@@ -83,7 +83,7 @@ TEST(SimulationSettings, EveryNumberHasItsRange) {
   }
 }
 
-TEST(SimulationSettings, StepHasItsRange) {
+TEST(SimulationSettings, ChecksTheRangeOfTheStep) {
   for (const std::int64_t step_ns : {0, -1'000'000, 9'000, 2'000'000}) {
     SimulationSettings settings;
     settings.step_ns = step_ns;
@@ -91,7 +91,7 @@ TEST(SimulationSettings, StepHasItsRange) {
   }
 }
 
-TEST(SimulationSettings, SamplesFallOnStepsEnds) {
+TEST(SimulationSettings, RequiresSamplePeriodsOfWholeSteps) {
   SimulationSettings settings;
   settings.imu.rate_hz = 400.0;  // 2.5 ms
   settings.rotor_speed_rate_hz = 300.0;

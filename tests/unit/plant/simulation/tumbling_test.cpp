@@ -1,4 +1,4 @@
-// The simulated vehicle against the paper's equations as another method integrates them.
+// The simulated vehicle against an independent integration of the paper's equations.
 #include <algorithm>
 #include <string>
 
@@ -38,8 +38,8 @@ plant::VehicleState random_tumble(Draw& draw) {
 
 constexpr double kSupplyVoltage = 4.19;  // of a full battery
 
-// Flies 2 s with commands that change every 3 .. 80 ms, and compares at each change. Every quantity must
-// agree within tolerance of the largest value that it takes in the flight.
+// Flies 2 s with commands that change every 3 .. 80 ms, and compares at each change. The tolerance is
+// relative to the peak of each quantity.
 void compare(const plant::Vehicle& vehicle, Motor motor, Draw& draw, double tolerance) {
   constexpr int kSteps = 2000;
 
@@ -52,28 +52,28 @@ void compare(const plant::Vehicle& vehicle, Motor motor, Draw& draw, double tole
   double fastest = 0.0;
   for (int now = 0; now < kSteps;) {
     const int until = std::min(now + static_cast<int>(draw(3, 80)), kSteps);
-    plant::MotorCommand drive;
+    plant::MotorCommand command;
     equations.running = draw(0, 1) > 0.1;
-    drive.state = equations.running ? plant::RotorState::kRunning : plant::RotorState::kOff;
+    command.state = equations.running ? plant::RotorState::kRunning : plant::RotorState::kOff;
     for (std::size_t i = 0; i < 4; ++i) {
       equations.throttle[i] = std::clamp(draw(-0.2, 0.9), 0.0, 1.0);
-      drive.throttle[i] = equations.throttle[i];
+      command.throttle[i] = equations.throttle[i];
     }
     paper::integrate(equations, reference, now * 1.0e-3, until * 1.0e-3);
-    for (; now < until; ++now) plant.step(drive);
+    for (; now < until; ++now) plant.step(command);
 
     comparison.add(reference, paper::state_of(plant.state()));
     fastest = std::max(fastest, plant.state().body_rates_frd.norm());
   }
   EXPECT_EQ(plant.stamp_ns(), 2'000'000'000);
-  EXPECT_GT(fastest, 3.0) << "not much of a tumble";
+  EXPECT_GT(fastest, 3.0) << "the vehicle hardly tumbles";
   for (std::size_t i = 0; i < paper::kNames.size(); ++i) {
     EXPECT_LT(comparison.worst[i], tolerance * comparison.peak[i])
         << paper::kNames[i] << " reaches " << comparison.peak[i];
   }
 }
 
-TEST(Tumbling, AgreesWithThePaperReducedMotor) {
+TEST(Tumbling, MatchesThePaperWithTheReducedMotor) {
   Draw draw;
   for (int flight = 0; flight < 10; ++flight) {
     SCOPED_TRACE("flight " + std::to_string(flight));
@@ -81,7 +81,7 @@ TEST(Tumbling, AgreesWithThePaperReducedMotor) {
   }
 }
 
-TEST(Tumbling, AgreesWithThePaperPhysicalMotor) {
+TEST(Tumbling, MatchesThePaperWithThePhysicalMotor) {
   plant::Vehicle vehicle = kaylion();
   vehicle.motor.model = plant::MotorModel::kPhysical;
   Draw draw;
@@ -91,7 +91,7 @@ TEST(Tumbling, AgreesWithThePaperPhysicalMotor) {
   }
 }
 
-TEST(Tumbling, AgreesWithThePaperProductsOfInertia) {
+TEST(Tumbling, MatchesThePaperWithProductsOfInertia) {
   plant::Vehicle vehicle = kaylion();
   vehicle.inertia << 4.4e-5, 3.0e-6, -2.0e-6, 3.0e-6, 5.5e-5, 4.0e-6, -2.0e-6, 4.0e-6, 8.8e-5;
   ASSERT_TRUE(plant::validate(vehicle).empty());

@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 using plant::AirSettings;
 using plant::WindModel;
 
-TEST(WindModel, BlowsSteadilyWithoutGusts) {
+TEST(WindModel, IsConstantWithoutGusts) {
   AirSettings settings;
   settings.wind_ned = {3.0, -2.0, 1.0};
   WindModel air(settings, 0.001, 1);
@@ -28,7 +28,7 @@ TEST(WindModel, GustsHaveTheirVarianceAndCorrelationTime) {
   settings.gust_sigma_ned = {1.0, 0.5, 0.0};
   settings.gust_time_constant_s = 0.2;
   constexpr double kStep = 0.002;
-  constexpr int kCount = 2'000'000;  // 4000 s, some 10 000 independent ones
+  constexpr int kCount = 2'000'000;  // 4000 s, about 10 000 independent ones
   constexpr int kLag = 100;          // one time constant
   WindModel air(settings, kStep, 3);
 
@@ -46,7 +46,7 @@ TEST(WindModel, GustsHaveTheirVarianceAndCorrelationTime) {
     across += gust.x() * gust.y();
     past[i % kLag] = gust;
   }
-  // The standard deviation of these means is about 1 % of the variance; four of them.
+  // The standard deviation of these means is about 1 % of the variance; the bounds are four of them.
   for (int axis = 0; axis < 2; ++axis) {
     const double variance = std::pow(settings.gust_sigma_ned[axis], 2);
     EXPECT_NEAR(sum[axis] / kCount, 0.0, 0.04 * settings.gust_sigma_ned[axis]);
@@ -57,7 +57,7 @@ TEST(WindModel, GustsHaveTheirVarianceAndCorrelationTime) {
   EXPECT_EQ(squares.z(), 0.0);
 }
 
-TEST(WindModel, GustsAreThereFromTheStart) {
+TEST(WindModel, GustsHaveTheirVarianceFromTheStart) {
   AirSettings settings;
   settings.gust_sigma_ned = {1.0, 1.0, 1.0};
   double squares = 0.0;

@@ -1,4 +1,4 @@
-// Simulation settings and drives that the tests of plant/simulation share.
+// Simulation settings and motor commands that the tests of plant/simulation share.
 #pragma once
 
 #include "swiftlet/plant/simulation/settings.hpp"
@@ -24,10 +24,10 @@ inline plant::SimulationSettings empty_space() {
 }
 
 inline plant::MotorCommand running(double throttle) {
-  plant::MotorCommand drive;
-  drive.state = plant::RotorState::kRunning;
-  drive.throttle.fill(throttle);
-  return drive;
+  plant::MotorCommand command;
+  command.state = plant::RotorState::kRunning;
+  command.throttle.fill(throttle);
+  return command;
 }
 
 }  // namespace swiftlet::tests

@@ -1,4 +1,4 @@
-// Requests through the desk and the inner loop, and what the inner loop costs.
+// Requests through the command server and the inner loop, and the allocations of the inner loop.
 #include "swiftlet/services/control/command_server.hpp"
 
 #include <chrono>
@@ -25,15 +25,15 @@ using namespace std::chrono_literals;
 
 constexpr std::uint64_t kClient = 77;
 
-class Desk : public testing::Test {
+class CommandServerTest : public testing::Test {
  protected:
-  Desk()
+  CommandServerTest()
       : vehicle_(runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml")),
         settings_(runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml")),
         loop_(vehicle_, settings_),
         command_server_(loop_, settings_.limits, wake_) {}
 
-  // The vehicle at rest on the ground: one IMU sample, with a pose each tenth and a battery sample each.
+  // The vehicle at rest on the ground: one IMU and battery sample, and a pose with every fifth.
   plant::ActuatorCommand step() {
     ++sequence_;
     const auto stamp = static_cast<std::int64_t>(sequence_) * 2'000'000;
@@ -101,7 +101,7 @@ class Desk : public testing::Test {
   Snapshot last_;
 };
 
-TEST_F(Desk, ARequestIsJudgedInTheNextStepAndAnswered) {
+TEST_F(CommandServerTest, AnswersARequestInTheNextStep) {
   settle();
   command_server_.on_command(command(Command_Constants::ARM, 1));
   EXPECT_TRUE(command_server_.collect().empty());
@@ -118,8 +118,8 @@ TEST_F(Desk, ARequestIsJudgedInTheNextStepAndAnswered) {
   EXPECT_EQ(mode(), control::Mode::kArmed);
 }
 
-// GIVEN an answer with its stamp, THEN whatever is told of a later stamp knows the request, from its first step on.
-TEST_F(Desk, WhatIsToldAfterAnAcceptanceKnowsTheRequest) {
+// GIVEN an accepted request, THEN every status with a later stamp than the answer lists it.
+TEST_F(CommandServerTest, StatusesAfterAnAcceptanceIncludeTheRequest) {
   settle();
   command_server_.on_command(command(Command_Constants::ARM, 1));
   step();
@@ -142,7 +142,7 @@ TEST_F(Desk, WhatIsToldAfterAnAcceptanceKnowsTheRequest) {
   EXPECT_GT(reported, 2);
 }
 
-TEST_F(Desk, ARefusalOfTheControllerIsAnsweredWithItsReason) {
+TEST_F(CommandServerTest, AnswersARefusalWithItsReason) {
   settle();
   command_server_.on_command(command(Command_Constants::LAND, 1));
   step();
@@ -152,7 +152,7 @@ TEST_F(Desk, ARefusalOfTheControllerIsAnsweredWithItsReason) {
   EXPECT_GT(std::string(answers[0].outcome.reason).size(), 0U);
 }
 
-TEST_F(Desk, ARequestThatWasAnsweredIsAnsweredAgainAndNotAppliedTwice) {
+TEST_F(CommandServerTest, AnswersARepeatedRequestWithoutApplyingItAgain) {
   settle();
   command_server_.on_command(command(Command_Constants::ARM, 1));
   step();
@@ -162,7 +162,7 @@ TEST_F(Desk, ARequestThatWasAnsweredIsAnsweredAgainAndNotAppliedTwice) {
   ASSERT_EQ(command_server_.collect().size(), 1U);
   ASSERT_EQ(mode(), control::Mode::kDisarmed);
 
-  command_server_.on_command(command(Command_Constants::ARM, 1));  // the network repeats the first
+  command_server_.on_command(command(Command_Constants::ARM, 1));  // repeated by the network
 
   EXPECT_EQ(step().rotor_state, plant::RotorState::kOff);
   const std::vector<RequestResult> answers = command_server_.collect();
@@ -173,14 +173,14 @@ TEST_F(Desk, ARequestThatWasAnsweredIsAnsweredAgainAndNotAppliedTwice) {
   EXPECT_EQ(mode(), control::Mode::kDisarmed);
 }
 
-TEST_F(Desk, ARequestThatIsUnderWayIsNotTakenInAgain) {
+TEST_F(CommandServerTest, IgnoresRepetitionsOfAPendingRequest) {
   settle();
   for (int i = 0; i < 3; ++i) command_server_.on_command(command(Command_Constants::ARM, 1));
   step();
   EXPECT_EQ(command_server_.collect().size(), 1U);
 }
 
-TEST_F(Desk, TheSameIdOfAnotherClientIsAnotherRequest) {
+TEST_F(CommandServerTest, DistinguishesEqualIdsOfDifferentClients) {
   settle();
   command_server_.on_command(command(Command_Constants::ARM, 1));
   msg::Command other = command(Command_Constants::DISARM, 1);
@@ -191,7 +191,7 @@ TEST_F(Desk, TheSameIdOfAnotherClientIsAnotherRequest) {
   EXPECT_EQ(mode(), control::Mode::kDisarmed);
 }
 
-TEST_F(Desk, BrokenRequestsAreRefusedWithoutTheInnerLoop) {
+TEST_F(CommandServerTest, RefusesInvalidRequestsBeforeTheInnerLoop) {
   msg::Command go = command(Command_Constants::GOTO, 1);
   go.position_ned()[1] = std::numeric_limits<double>::quiet_NaN();
   command_server_.on_command(go);
@@ -215,7 +215,7 @@ TEST_F(Desk, BrokenRequestsAreRefusedWithoutTheInnerLoop) {
   EXPECT_EQ(loop_.requests.read_available(), 0U);
 }
 
-TEST_F(Desk, AMissionIsFlownFromTheDesksOwnCopy) {
+TEST_F(CommandServerTest, KeepsItsOwnCopyOfAMission) {
   settle();
   command_server_.on_command(command(Command_Constants::ARM, 1));
   step();
@@ -235,7 +235,7 @@ TEST_F(Desk, AMissionIsFlownFromTheDesksOwnCopy) {
   EXPECT_EQ(last_.status.mission.item_count, 3);
 }
 
-TEST_F(Desk, WithoutImuSamplesARequestIsRefusedAndNotAppliedLater) {
+TEST_F(CommandServerTest, RefusesRequestsWithoutImuSamples) {
   settle();
   command_server_.on_command(command(Command_Constants::ARM, 1));
   std::vector<RequestResult> answers;
@@ -251,7 +251,7 @@ TEST_F(Desk, WithoutImuSamplesARequestIsRefusedAndNotAppliedLater) {
   EXPECT_EQ(mode(), control::Mode::kDisarmed);
 }
 
-TEST_F(Desk, MoreThanFitAreRefused) {
+TEST_F(CommandServerTest, RefusesRequestsBeyondItsCapacity) {
   for (std::uint64_t id = 1; id <= kMaxPendingRequests + 1; ++id)
     command_server_.on_command(command(Command_Constants::HOLD, id));
   const std::vector<RequestResult> answers = command_server_.collect();
@@ -262,7 +262,7 @@ TEST_F(Desk, MoreThanFitAreRefused) {
   EXPECT_EQ(command_server_.collect().size(), static_cast<std::size_t>(kMaxPendingRequests));
 }
 
-TEST_F(Desk, TelemetryIsSampledAHundredTimesASecondByTheImusNumbers) {
+TEST_F(CommandServerTest, SamplesTelemetryAt100HzOfImuTime) {
   settle();
   std::size_t sampled = 0;
   for (int i = 0; i < 500; ++i) {
@@ -278,7 +278,7 @@ TEST_F(Desk, TelemetryIsSampledAHundredTimesASecondByTheImusNumbers) {
   EXPECT_EQ(sampled, 100U);
 }
 
-TEST_F(Desk, TheInnerLoopDoesNotAllocate) {
+TEST_F(CommandServerTest, InnerLoopDoesNotAllocate) {
   settle();
   command_server_.on_command(command(Command_Constants::ARM, 1));
   command_server_.on_mission(mission(2, 1.0));
@@ -293,26 +293,26 @@ TEST_F(Desk, TheInnerLoopDoesNotAllocate) {
   EXPECT_EQ(command_server_.collect().size(), 3U);
 }
 
-// A standby beside the fixture's controller, which hears the same samples.
-class DeskOfAStandby : public Desk {
+// A standby that receives the same samples as the fixture's controller.
+class StandbyCommandServerTest : public CommandServerTest {
  protected:
-  DeskOfAStandby()
-      : standby_loop_(vehicle_, settings_), standby_desk_(standby_loop_, settings_.limits, wake_) {
-    standby_desk_.set_active(false);
+  StandbyCommandServerTest()
+      : standby_loop_(vehicle_, settings_), standby_server_(standby_loop_, settings_.limits, wake_) {
+    standby_server_.set_active(false);
   }
   static constexpr std::uint32_t kTerm = 7;
 
-  // What the active one reports after a step, as the network hands it on.
-  void hand_over() {
+  // Passes the report of the active controller to the standby.
+  void pass_state_to_standby() {
     comms::ControllerReport report;
     loop_.report(report);
     ASSERT_TRUE(report.active);
-    comms::ControllerReport heard;
-    ASSERT_FALSE(comms::from_message(comms::to_message(report), heard));
+    comms::ControllerReport received;
+    ASSERT_FALSE(comms::from_message(comms::to_message(report), received));
     FailoverState failover_state;
     failover_state.term = kTerm;
-    failover_state.flight = heard.flight;
-    standby_desk_.follow(failover_state);
+    failover_state.flight = received.flight;
+    standby_server_.follow(failover_state);
   }
   plant::ActuatorCommand step_standby(Role role) {
     standby_loop_.pose.put(last_pose_);
@@ -335,7 +335,7 @@ class DeskOfAStandby : public Desk {
   void follow(int steps) {
     for (int i = 0; i < steps; ++i) {
       step();
-      hand_over();
+      pass_state_to_standby();
       step_standby(Role::kStandby);
     }
   }
@@ -347,23 +347,22 @@ class DeskOfAStandby : public Desk {
   }
 
   InnerLoop standby_loop_;
-  CommandServer standby_desk_;
+  CommandServer standby_server_;
 };
 
-TEST_F(DeskOfAStandby, AnswersNothing) {
+TEST_F(StandbyCommandServerTest, AnswersNoRequests) {
   settle();
-  standby_desk_.on_command(command(Command_Constants::ARM, 1));
+  standby_server_.on_command(command(Command_Constants::ARM, 1));
   step();
   step_standby(Role::kStandby);
-  EXPECT_TRUE(standby_desk_.collect().empty());
+  EXPECT_TRUE(standby_server_.collect().empty());
   EXPECT_EQ(standby_state().mode, control::Mode::kDisarmed);
 }
 
-// Setpoints reach all controllers; the active one judges them. A standby that does too would count them, and tell of
-// refusals that nobody is to act on.
-TEST_F(DeskOfAStandby, JudgesNoSetpoints) {
+// Setpoints reach all controllers, but only the active one evaluates them and reports refusals.
+TEST_F(StandbyCommandServerTest, IgnoresSetpoints) {
   settle();
-  const control::Setpoint setpoint;  // refused on the ground
+  const control::Setpoint setpoint;  // is refused on the ground
   const auto tally = [&] {
     Snapshot snapshot;
     SetpointTally newest;
@@ -382,17 +381,17 @@ TEST_F(DeskOfAStandby, JudgesNoSetpoints) {
     step_standby(Role::kActive);
   }
   const SetpointTally active = tally();
-  EXPECT_GT(active.refused, 10U) << "the same, of the active one";
+  EXPECT_GT(active.refused, 10U) << "the active controller must count them";
   EXPECT_NE(std::string(active.refusal.reason), "");
 }
 
-TEST_F(DeskOfAStandby, GoesOnWithTheMissionThatItHeardBeingAskedFor) {
+TEST_F(StandbyCommandServerTest, ContinuesAMissionKnownFromItsUpload) {
   fly_mission();
-  standby_desk_.on_mission(mission(2, 1.0));
-  follow(20);  // until it has a pose
+  standby_server_.on_mission(mission(2, 1.0));
+  follow(20);  // until the standby has a pose
   for (int i = 0; i < 1500; ++i) {
     const plant::ActuatorCommand flown = step();
-    hand_over();
+    pass_state_to_standby();
     const plant::ActuatorCommand followed = step_standby(Role::kStandby);
     EXPECT_EQ(followed.rotor_state, flown.rotor_state);
   }
@@ -404,54 +403,54 @@ TEST_F(DeskOfAStandby, GoesOnWithTheMissionThatItHeardBeingAskedFor) {
   EXPECT_EQ(state.guidance.mission.id, 2U);
   EXPECT_EQ(state.guidance.phase, active.flight.supervisor.guidance.phase);
   EXPECT_EQ(state.guidance.path.segment.z, active.flight.supervisor.guidance.path.segment.z);
-  EXPECT_TRUE(standby_desk_.collect().empty());
+  EXPECT_TRUE(standby_server_.collect().empty());
 }
 
-TEST_F(DeskOfAStandby, GoesOnWithTheMissionThatItHeardBeingFlown) {
+TEST_F(StandbyCommandServerTest, ContinuesAMissionKnownFromTheActiveController) {
   fly_mission();
-  standby_desk_.on_flown_mission(command_server_.mission(2));
+  standby_server_.on_flown_mission(command_server_.mission(2));
   follow(20);
   EXPECT_EQ(standby_state().mode, control::Mode::kMission);
 }
 
-// GIVEN a mission that was uploaded and waits, WHEN another controller takes over, THEN it starts it.
-TEST_F(DeskOfAStandby, StartsTheMissionThatWasUploadedBeforeItTookOver) {
-  for (const bool heard_asked_for : {true, false}) {
-    SCOPED_TRACE(heard_asked_for);
+// GIVEN an uploaded mission WHEN a standby takes over THEN it can start the mission.
+TEST_F(StandbyCommandServerTest, StartsAMissionUploadedBeforeTheFailover) {
+  for (const bool upload_received : {true, false}) {
+    SCOPED_TRACE(upload_received);
     settle();
-    const std::uint64_t id = heard_asked_for ? 12 : 22;
+    const std::uint64_t id = upload_received ? 12 : 22;
     command_server_.on_command(command(Command_Constants::ARM, id - 1));
     command_server_.on_mission(mission(id, 1.0));
     step();
     command_server_.collect();
-    if (heard_asked_for) {
-      standby_desk_.on_mission(mission(id, 1.0));
+    if (upload_received) {
+      standby_server_.on_mission(mission(id, 1.0));
     } else {
-      standby_desk_.on_flown_mission(command_server_.mission(id));
+      standby_server_.on_flown_mission(command_server_.mission(id));
     }
     follow(20);
     control::SupervisorState state = standby_state();
     EXPECT_EQ(state.guidance.mission.id, id);
     EXPECT_EQ(state.guidance.mission.state, control::MissionState::kUploaded);
     EXPECT_EQ(state.guidance.mission.item_count, 3);
-    standby_desk_.set_active(true);
-    standby_desk_.on_command(command(Command_Constants::MISSION_START, id + 1));
+    standby_server_.set_active(true);
+    standby_server_.on_command(command(Command_Constants::MISSION_START, id + 1));
     step();
     step_standby(Role::kActive);
-    const std::vector<RequestResult> answers = standby_desk_.collect();
+    const std::vector<RequestResult> answers = standby_server_.collect();
     ASSERT_EQ(answers.size(), 1U);
     EXPECT_TRUE(answers[0].outcome.accepted) << answers[0].outcome.reason;
     state = standby_state();
     EXPECT_EQ(state.mode, control::Mode::kMission);
     EXPECT_EQ(state.guidance.mission.state, control::MissionState::kRunning);
-    standby_desk_.set_active(false);
+    standby_server_.set_active(false);
     command_server_.on_command(command(Command_Constants::DISARM, id + 2));
     step();
     command_server_.collect();
   }
 }
 
-TEST_F(Desk, AnotherMissionOfAKnownIdIsRefusedAndTheSameIsNot) {
+TEST_F(CommandServerTest, RefusesADifferentMissionOfAKnownId) {
   settle();
   command_server_.on_mission(mission(2, 1.0));
   step();
@@ -470,7 +469,7 @@ TEST_F(Desk, AnotherMissionOfAKnownIdIsRefusedAndTheSameIsNot) {
   EXPECT_TRUE(answers[1].outcome.accepted) << answers[1].outcome.reason;
 }
 
-TEST_F(DeskOfAStandby, WithoutTheMissionItStaysOnTheGround) {
+TEST_F(StandbyCommandServerTest, StaysDisarmedWithoutTheMission) {
   fly_mission();
   follow(20);
   const control::SupervisorState state = standby_state();
@@ -478,37 +477,37 @@ TEST_F(DeskOfAStandby, WithoutTheMissionItStaysOnTheGround) {
   EXPECT_EQ(state.reason, control::Reason::kPlanUnknown);
 }
 
-TEST_F(DeskOfAStandby, DoesNotFollowAnotherTerm) {
+TEST_F(StandbyCommandServerTest, IgnoresStateOfAnotherTerm) {
   fly_mission();
-  standby_desk_.on_mission(mission(2, 1.0));
+  standby_server_.on_mission(mission(2, 1.0));
   step();
   comms::ControllerReport report;
   loop_.report(report);
   FailoverState failover_state;
   failover_state.term = kTerm - 1;
   failover_state.flight = report.flight;
-  standby_desk_.follow(failover_state);
+  standby_server_.follow(failover_state);
   step_standby(Role::kStandby);
   EXPECT_EQ(standby_state().mode, control::Mode::kDisarmed);
 }
 
-// GIVEN a request that was accepted, WHEN its answer is lost with the controller that gave it, THEN whoever
-// takes over gives it again and does not apply it twice.
-TEST_F(DeskOfAStandby, ARequestThatWasAcceptedBeforeIsAnsweredAndNotAppliedAgain) {
+// GIVEN an accepted request WHEN the controller dies before its answer arrives THEN the new controller
+// answers it and does not apply it again.
+TEST_F(StandbyCommandServerTest, AnswersARequestAcceptedBeforeTheFailover) {
   settle();
   command_server_.on_command(command(Command_Constants::ARM, 1));
   step();
-  hand_over();
+  pass_state_to_standby();
   step_standby(Role::kStandby);
 
-  standby_desk_.set_active(true);
+  standby_server_.set_active(true);
   step_standby(Role::kActive);
-  standby_desk_.on_command(command(Command_Constants::DISARM, 2));
-  standby_desk_.on_command(command(Command_Constants::ARM, 1));
+  standby_server_.on_command(command(Command_Constants::DISARM, 2));
+  standby_server_.on_command(command(Command_Constants::ARM, 1));
   step();
   step_standby(Role::kActive);
 
-  const std::vector<RequestResult> answers = standby_desk_.collect();
+  const std::vector<RequestResult> answers = standby_server_.collect();
   ASSERT_EQ(answers.size(), 2U);
   EXPECT_EQ(answers[0].id, 1U);
   EXPECT_TRUE(answers[0].outcome.accepted);
@@ -517,33 +516,33 @@ TEST_F(DeskOfAStandby, ARequestThatWasAcceptedBeforeIsAnsweredAndNotAppliedAgain
   EXPECT_EQ(standby_state().mode, control::Mode::kDisarmed);
 }
 
-// GIVEN a mission that is executed, WHEN a standby takes over, THEN it says so of the request, and that it is canceled
-// by what it is asked for itself.
-TEST_F(DeskOfAStandby, TheRequestUnderWayIsGoneOnWith) {
-  standby_desk_.on_mission(mission(2, 1.0));
+// GIVEN an executing mission WHEN a standby takes over THEN it reports the request as executing, and as
+// canceled after a newer request.
+TEST_F(StandbyCommandServerTest, ContinuesTheExecutingRequest) {
+  standby_server_.on_mission(mission(2, 1.0));
   fly_mission();
   follow(600);
-  const control::RequestStatus taken = standby_state().requests.back();
-  EXPECT_EQ(taken.key, (control::RequestKey{kClient, 3}));
-  EXPECT_EQ(taken.state, control::RequestState::kExecuting);
+  const control::RequestStatus before = standby_state().requests.back();
+  EXPECT_EQ(before.key, (control::RequestKey{kClient, 3}));
+  EXPECT_EQ(before.state, control::RequestState::kExecuting);
 
-  standby_desk_.set_active(true);
-  standby_desk_.on_command(command(Command_Constants::STOP, 4));
+  standby_server_.set_active(true);
+  standby_server_.on_command(command(Command_Constants::STOP, 4));
   step();
   step_standby(Role::kActive);
-  const control::RequestStatuses after = standby_state().requests;
-  EXPECT_EQ(after[after.size() - 2].key, taken.key);
-  EXPECT_EQ(result_of(after[after.size() - 2]), "canceled by a newer request: stop");
-  EXPECT_EQ(after.back().state, control::RequestState::kSucceeded);
+  const control::RequestStatuses after_stop = standby_state().requests;
+  EXPECT_EQ(after_stop[after_stop.size() - 2].key, before.key);
+  EXPECT_EQ(result_of(after_stop[after_stop.size() - 2]), "canceled by a newer request: stop");
+  EXPECT_EQ(after_stop.back().state, control::RequestState::kSucceeded);
 }
 
-TEST_F(DeskOfAStandby, FollowingDoesNotAllocateInTheInnerLoop) {
+TEST_F(StandbyCommandServerTest, FollowingDoesNotAllocate) {
   fly_mission();
-  standby_desk_.on_mission(mission(2, 1.0));
+  standby_server_.on_mission(mission(2, 1.0));
   std::size_t calls = 0;
   for (int i = 0; i < 50; ++i) {
     step();
-    hand_over();
+    pass_state_to_standby();
     const test::MallocGuard guard;
     step_standby(Role::kStandby);
     calls += guard.calls();

@@ -1,4 +1,4 @@
-// The control service on a network of its own: what the kernel says of its threads, and what it says itself.
+// The control service on its own DDS domain: scheduling of its threads, and how it reports it.
 #include "swiftlet/services/control/control_service.hpp"
 
 #include <atomic>
@@ -50,7 +50,7 @@ comms::NodeSettings settings_of(const char* name, const comms::DomainLock& lock)
   return settings;
 }
 
-// A service whose vehicle, at rest, and motion capture are the test.
+// A service for which the test plays motion capture and a vehicle at rest.
 class RealtimeService : public testing::Test {
  protected:
   RealtimeService() {
@@ -60,10 +60,10 @@ class RealtimeService : public testing::Test {
         runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml"),
         runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml"), 0,
         control_node_, realtime, runtime::Clock::kRealtime);
-    telemetry_ = std::thread([this] { service_->run(ends_); });
+    telemetry_ = std::thread([this] { service_->run(stop_); });
   }
   ~RealtimeService() override {
-    ends_ = true;
+    stop_ = true;
     service_->wake();
     telemetry_.join();
   }
@@ -82,44 +82,46 @@ class RealtimeService : public testing::Test {
     pose.q_ned_from_frd({1.0, 0.0, 0.0, 0.0});
     pose_.publish(pose);
   }
-  // While samples come: so many threads have SCHED_FIFO, and a status that was made since says this.
-  bool becomes(std::size_t threads, bool said) {
+  // While samples arrive: waits for this number of SCHED_FIFO threads and for a status that reports
+  // `reported`.
+  bool becomes(std::size_t threads, bool reported) {
     return eventually([&] {
       send_samples();
-      return realtime_threads().size() == threads && said_ == static_cast<int>(said);
+      return realtime_threads().size() == threads && reported_ == static_cast<int>(reported);
     });
   }
-  void forget_what_was_said() { said_ = -1; }
+  void forget_reported() { reported_ = -1; }
 
   comms::DomainLock lock_;
   comms::Node vehicle_node_{settings_of("plant", lock_)};
   comms::Node control_node_{settings_of("control", lock_)};
-  std::atomic<int> said_{-1};
+  std::atomic<int> reported_{-1};
   comms::Subscription status_ = vehicle_node_.subscribe<msg::ControlStatus>(
-      topics::kControlStatus,
-      [this](const msg::ControlStatus& status) { said_ = static_cast<int>(status.realtime_scheduling()); });
+      topics::kControlStatus, [this](const msg::ControlStatus& status) {
+        reported_ = static_cast<int>(status.realtime_scheduling());
+      });
   comms::Publisher<msg::Imu> imu_ = vehicle_node_.publish(topics::kImu);
   comms::Publisher<msg::MocapPose> pose_ = vehicle_node_.publish(topics::kMocapPose);
   std::uint64_t sequence_ = 0;
-  std::atomic<bool> ends_{false};
+  std::atomic<bool> stop_{false};
   std::unique_ptr<ControlService> service_;
   std::thread telemetry_;
 };
 
-TEST_F(RealtimeService, ThreadsThatARejoinBeginsAreRealtimeToo) {
+TEST_F(RealtimeService, ThreadsAreRealtimeAgainAfterARejoin) {
   if (!may_be_realtime()) GTEST_SKIP() << "SCHED_FIFO is not permitted here";
-  ASSERT_TRUE(becomes(2, true)) << "the threads of the IMU and of poses";
+  ASSERT_TRUE(becomes(2, true)) << "threads of the IMU and of poses";
   const std::vector<pid_t> before = realtime_threads();
 
   control_node_.rejoin();
-  EXPECT_EQ(realtime_threads().size(), 0U) << "those threads have ended";
-  forget_what_was_said();
+  EXPECT_EQ(realtime_threads().size(), 0U) << "the threads have ended";
+  forget_reported();
 
   EXPECT_TRUE(becomes(2, true));
   EXPECT_NE(realtime_threads(), before);
 }
 
-TEST_F(RealtimeService, SaysWhatIsTrueOfItsThreadsNow) {
+TEST_F(RealtimeService, StatusReflectsTheCurrentScheduling) {
   if (!may_be_realtime()) GTEST_SKIP() << "SCHED_FIFO is not permitted here";
   ASSERT_TRUE(becomes(2, true));
   const sched_param none{};

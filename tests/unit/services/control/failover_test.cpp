@@ -1,5 +1,5 @@
-// Who acts, on sequences of samples, commands and heartbeats as several controllers and their vehicle make
-// them.
+// Which controller is active, for sequences of samples, commands and heartbeats of several controllers and a
+// vehicle.
 #include "swiftlet/services/control/failover.hpp"
 
 #include <algorithm>
@@ -13,12 +13,12 @@ namespace swiftlet::services {
 namespace {
 
 constexpr std::int64_t kPeriodNs = 2'000'000;
-constexpr std::int64_t kStartNs = 5'000'000'000;  // of the computers' clock
+constexpr std::int64_t kStartNs = 5'000'000'000;  // of the host clock
 
 std::int64_t ms(std::int64_t time) { return time * 1'000'000; }
 
-// A vehicle, and controllers that hear each other: what each would do on a network without delay. Heartbeats
-// of an active controller come with each of its commands, those of standbys too.
+// A vehicle and its controllers on a network without delay. Every controller, active or standby, sends a
+// heartbeat with each sample.
 class Vehicle {
  public:
   struct Controller {
@@ -28,7 +28,7 @@ class Vehicle {
     int n;
     Failover failover;
     bool runs = true;  // false: dead or stopped
-    bool hears_others = true;
+    bool receives_heartbeats = true;
     std::deque<std::pair<std::int64_t, plant::ObeyedCommand>> inbox;  // samples, by stamp
   };
 
@@ -45,7 +45,7 @@ class Vehicle {
     stamp_ns_ += kPeriodNs;
     now_ns_ += kPeriodNs;
     for (const auto& c : controllers_)
-      c->inbox.emplace_back(stamp_ns_, told_ ? obeyed_ : plant::ObeyedCommand());
+      c->inbox.emplace_back(stamp_ns_, reports_ ? obeyed_ : plant::ObeyedCommand());
     for (const auto& c : controllers_) {
       if (c->runs) answer(*c);
     }
@@ -58,13 +58,13 @@ class Vehicle {
       const Role role = c.failover.sample(stamp_ns, obeyed, now_ns_);
       if (role == Role::kActive) command(c, stamp_ns);
       for (const auto& other : controllers_) {
-        if (other.get() != &c && other->runs && other->hears_others && c.hears_others)
+        if (other.get() != &c && other->runs && other->receives_heartbeats && c.receives_heartbeats)
           other->failover.heard({c.id, c.n, c.failover.term(), role, now_ns_});
       }
     }
   }
 
-  // As the vehicle's watchdog takes them.
+  // As in the vehicle's watchdog.
   void command(const Controller& c, std::int64_t stamp_ns) {
     if (!obeys_ || (obeyed_.any && stamp_ns < obeyed_.stamp_ns)) return;
     if (obeyed_.any && c.failover.term() < obeyed_.term && stamp_ns_ - obeyed_.stamp_ns < ms(200)) {
@@ -82,7 +82,7 @@ class Vehicle {
     obeyed_ = {true, false, 0, 0};
     longest_gap_ns_ = 0;
   }
-  void tell_nothing() { told_ = false; }
+  void stop_reporting() { reports_ = false; }
   void obey(bool obeys) { obeys_ = obeys; }
 
   int active() const {
@@ -98,7 +98,7 @@ class Vehicle {
  private:
   std::int64_t stamp_ns_ = 0;
   std::int64_t now_ns_ = kStartNs;
-  bool told_ = true;
+  bool reports_ = true;
   bool obeys_ = true;
   plant::ObeyedCommand obeyed_{true, false, 0, 0};
   std::uint64_t commander_ = 0;
@@ -108,7 +108,7 @@ class Vehicle {
   std::vector<std::unique_ptr<Controller>> controllers_;
 };
 
-TEST(Failover, OneAloneBecomesActiveAndStaysIt) {
+TEST(Failover, SingleControllerBecomesAndStaysActive) {
   Vehicle vehicle;
   const auto& only = vehicle.add(7, 0);
   vehicle.run(200);
@@ -119,7 +119,7 @@ TEST(Failover, OneAloneBecomesActiveAndStaysIt) {
   EXPECT_EQ(vehicle.longest_gap_ns(), kPeriodNs);
 }
 
-TEST(Failover, ALaterOneIsAStandbyHoweverStrong) {
+TEST(Failover, LaterControllerIsStandbyAtAnyPriority) {
   Vehicle vehicle;
   vehicle.add(7, 1);
   vehicle.run(300);
@@ -130,7 +130,7 @@ TEST(Failover, ALaterOneIsAStandbyHoweverStrong) {
   EXPECT_EQ(vehicle.changes(), 1);
 }
 
-TEST(Failover, TheStandbyTakesOverWithinItsPatience) {
+TEST(Failover, StandbyTakesOverWithinItsPatience) {
   Vehicle vehicle;
   auto& first = vehicle.add(7, 5);
   vehicle.run(300);
@@ -144,36 +144,36 @@ TEST(Failover, TheStandbyTakesOverWithinItsPatience) {
   EXPECT_GT(standby.failover.term(), first.failover.term());
 }
 
-TEST(Failover, OfTwoStandbysTheStrongerGoesFirstAndTheOtherStays) {
+TEST(Failover, StandbyOfHigherPriorityTakesOver) {
   Vehicle vehicle;
   auto& first = vehicle.add(7, 5);
   vehicle.run(300);
-  const auto& weak = vehicle.add(8, 2);
-  const auto& strong = vehicle.add(9, 3);
+  const auto& low_priority = vehicle.add(8, 2);
+  const auto& high_priority = vehicle.add(9, 3);
   vehicle.run(1000);
   first.runs = false;
   vehicle.run(1000);
   EXPECT_EQ(vehicle.commander(), 9U);
-  EXPECT_EQ(strong.failover.role(), Role::kActive);
-  EXPECT_EQ(weak.failover.role(), Role::kStandby);
+  EXPECT_EQ(high_priority.failover.role(), Role::kActive);
+  EXPECT_EQ(low_priority.failover.role(), Role::kStandby);
   EXPECT_EQ(vehicle.changes(), 2);
 }
 
-TEST(Failover, WhenTheFirstInRankDiesTooTheSecondTakesOver) {
+TEST(Failover, SecondStandbyTakesOverWhenTheFirstDiesToo) {
   Vehicle vehicle;
   auto& first = vehicle.add(7, 5);
   vehicle.run(300);
-  auto& strong = vehicle.add(9, 3);
+  auto& high_priority = vehicle.add(9, 3);
   vehicle.add(8, 2);
   vehicle.run(1000);
   first.runs = false;
-  strong.runs = false;
+  high_priority.runs = false;
   vehicle.run(200);
   EXPECT_EQ(vehicle.commander(), 8U);
   EXPECT_LE(vehicle.longest_gap_ns(), Failover::kPatienceNs + Failover::kPerRankNs + 2 * kPeriodNs);
 }
 
-TEST(Failover, OneThatWasStoppedComesBackAsStandbyAndIsNotObeyed) {
+TEST(Failover, ResumedControllerBecomesStandby) {
   Vehicle vehicle;
   auto& first = vehicle.add(7, 1000);
   vehicle.run(300);
@@ -183,7 +183,7 @@ TEST(Failover, OneThatWasStoppedComesBackAsStandbyAndIsNotObeyed) {
   vehicle.run(200);
   ASSERT_EQ(vehicle.commander(), 8U);
 
-  first.runs = true;  // and finds the samples of that time waiting
+  first.runs = true;  // with the samples of that time queued
   vehicle.run(1000);
 
   EXPECT_EQ(vehicle.commander(), 8U);
@@ -192,10 +192,10 @@ TEST(Failover, OneThatWasStoppedComesBackAsStandbyAndIsNotObeyed) {
   EXPECT_EQ(first.failover.role(), Role::kStandby);
 }
 
-TEST(Failover, AStandbyThatWasStoppedTakesNobodyForDead) {
+TEST(Failover, ResumedStandbyDoesNotTakeOver) {
   for (const bool reported : {true, false}) {
     Vehicle vehicle;
-    if (!reported) vehicle.tell_nothing();
+    if (!reported) vehicle.stop_reporting();
     vehicle.add(7, 1);
     vehicle.run(1500);
     auto& standby = vehicle.add(8, 9);
@@ -205,43 +205,42 @@ TEST(Failover, AStandbyThatWasStoppedTakesNobodyForDead) {
     vehicle.run(200);
     standby.runs = true;
     vehicle.run(500);
-    EXPECT_EQ(vehicle.changes(), 1) << (reported ? "told" : "not told");
+    EXPECT_EQ(vehicle.changes(), 1) << (reported ? "reported" : "not reported");
     EXPECT_EQ(standby.failover.role(), Role::kStandby);
   }
 }
 
-TEST(Failover, OfSeveralStartedAtOnceOneIsLeft) {
-  for (const int other_strength : {0, 1, 2}) {
+TEST(Failover, OneOfSeveralStartedTogetherBecomesActive) {
+  for (const int other_priority : {0, 1, 2}) {
     Vehicle vehicle;
     vehicle.add(70, 1);
-    vehicle.add(80, other_strength);
+    vehicle.add(80, other_priority);
     vehicle.add(90, 1);
     vehicle.run(1000);
-    EXPECT_EQ(vehicle.active(), 1) << other_strength;
-    if (other_strength == 2) {
+    EXPECT_EQ(vehicle.active(), 1) << other_priority;
+    if (other_priority == 2) {
       EXPECT_EQ(vehicle.commander(), 80U);
     }
   }
 }
 
-// The vehicle alone settles it.
-TEST(Failover, ThoseThatDoNotHearEachOtherAgreeByWhatTheVehicleObeys) {
+TEST(Failover, PartitionedControllersAgreeThroughTheVehicle) {
   Vehicle vehicle;
   auto& one = vehicle.add(70, 1);
   auto& two = vehicle.add(80, 1);
-  one.hears_others = two.hears_others = false;
+  one.receives_heartbeats = two.receives_heartbeats = false;
   vehicle.run(1000);
   EXPECT_EQ(vehicle.active(), 1);
   EXPECT_LE(vehicle.changes(), 2);
-  auto& acting = one.failover.role() == Role::kActive ? one : two;
-  auto& waiting = &acting == &one ? two : one;
-  acting.runs = false;
+  auto& active = one.failover.role() == Role::kActive ? one : two;
+  auto& standby = &active == &one ? two : one;
+  active.runs = false;
   vehicle.run(300);
-  EXPECT_EQ(vehicle.commander(), waiting.id);
-  EXPECT_FALSE(waiting.failover.continues()) << "it has heard nothing of the flight";
+  EXPECT_EQ(vehicle.commander(), standby.id);
+  EXPECT_FALSE(standby.failover.continues()) << "received no flight state";
 }
 
-TEST(Failover, OneStartedWhileNobodyFliesTakesOverAtItsFirstSample) {
+TEST(Failover, StartsActiveWhenNoControllerIsActive) {
   Vehicle vehicle;
   auto& first = vehicle.add(7, 1);
   vehicle.run(1000);
@@ -254,7 +253,7 @@ TEST(Failover, OneStartedWhileNobodyFliesTakesOverAtItsFirstSample) {
   EXPECT_GT(restarted.failover.term(), first.failover.term());
 }
 
-TEST(Failover, AStrangerLeavesTheTakeoverToThoseWhoKnowTheFlight) {
+TEST(Failover, ControllerWithFlightStateTakesOverFirst) {
   Vehicle vehicle;
   auto& first = vehicle.add(7, 1);
   vehicle.run(300);
@@ -262,12 +261,12 @@ TEST(Failover, AStrangerLeavesTheTakeoverToThoseWhoKnowTheFlight) {
   vehicle.run(1000);
   first.runs = false;
   auto& stranger = vehicle.add(9, 1000);
-  stranger.hears_others = false;
+  stranger.receives_heartbeats = false;
   vehicle.run(300);
   EXPECT_EQ(vehicle.commander(), 8U);
 }
 
-TEST(Failover, AVehicleThatIsStartedAgainKeepsItsController) {
+TEST(Failover, RestartedVehicleKeepsItsController) {
   Vehicle vehicle;
   vehicle.add(7, 1);
   vehicle.run(300);
@@ -279,12 +278,12 @@ TEST(Failover, AVehicleThatIsStartedAgainKeepsItsController) {
   EXPECT_EQ(vehicle.active(), 1);
 }
 
-TEST(Failover, AVehicleThatSaysNothingIsFlownByHeartbeats) {
+TEST(Failover, HeartbeatsSufficeWithoutReportsOfTheVehicle) {
   Vehicle vehicle;
-  vehicle.tell_nothing();
+  vehicle.stop_reporting();
   auto& first = vehicle.add(7, 1);
   vehicle.run(900);
-  EXPECT_EQ(vehicle.active(), 0) << "it looks for others first";
+  EXPECT_EQ(vehicle.active(), 0) << "waits for other controllers first";
   vehicle.run(200);
   EXPECT_EQ(vehicle.active(), 1);
   const auto& standby = vehicle.add(8, 1000);
@@ -301,7 +300,7 @@ TEST(Failover, AVehicleThatSaysNothingIsFlownByHeartbeats) {
   EXPECT_EQ(vehicle.commander(), 8U);
 }
 
-TEST(Failover, AVehicleThatObeysNobodyIsNotFoughtOver) {
+TEST(Failover, TakeoversAreLimitedWhenTheVehicleObeysNobody) {
   Vehicle vehicle;
   auto& one = vehicle.add(7, 1);
   auto& two = vehicle.add(8, 1);
@@ -323,16 +322,16 @@ TEST(Failover, TermsRiseWithEachTakeover) {
   vehicle.run(1000);
   std::uint32_t term = 0;
   for (int kill = 0; kill < 20; ++kill) {
-    const auto acting = std::find_if(controllers.begin(), controllers.end(), [](const auto* c) {
+    const auto active = std::find_if(controllers.begin(), controllers.end(), [](const auto* c) {
       return c->failover.role() == Role::kActive && c->runs;
     });
-    ASSERT_NE(acting, controllers.end());
-    EXPECT_GT((*acting)->failover.term(), term);
-    term = (*acting)->failover.term();
-    (*acting)->runs = false;
+    ASSERT_NE(active, controllers.end());
+    EXPECT_GT((*active)->failover.term(), term);
+    term = (*active)->failover.term();
+    (*active)->runs = false;
     vehicle.run(150);
     ASSERT_EQ(vehicle.active(), 1);
-    (*acting)->runs = true;
+    (*active)->runs = true;
     vehicle.run(150);
     ASSERT_EQ(vehicle.active(), 1);
   }

@@ -17,7 +17,7 @@ comms::msg::Imu imu(std::uint64_t number, std::uint64_t pose, std::uint64_t batt
   return message;
 }
 
-TEST(LockstepGate, LetsASampleThatWaitsForNothingThroughOnce) {
+TEST(LockstepGate, PassesASampleWithoutDependenciesOnce) {
   LockstepGate gate;
   EXPECT_FALSE(gate.take().has_value());
   EXPECT_TRUE(gate.offer(imu(1, 0, 0, 0)));
@@ -25,11 +25,11 @@ TEST(LockstepGate, LetsASampleThatWaitsForNothingThroughOnce) {
   ASSERT_TRUE(first.has_value());
   EXPECT_EQ(first->sequence_number(), 1U);
   EXPECT_FALSE(gate.take().has_value());
-  EXPECT_FALSE(gate.offer(imu(1, 0, 0, 0))) << "it came again";
+  EXPECT_FALSE(gate.offer(imu(1, 0, 0, 0))) << "a repetition";
   EXPECT_FALSE(gate.take().has_value());
 }
 
-TEST(LockstepGate, HoldsASampleBackUntilAllThatItNamesHaveCome) {
+TEST(LockstepGate, HoldsASampleUntilItsDependenciesArrive) {
   LockstepGate gate;
   gate.offer(imu(7, 2, 3, 4));
   EXPECT_TRUE(gate.is_new(Stream::kRotorSpeeds, 4));
@@ -37,18 +37,18 @@ TEST(LockstepGate, HoldsASampleBackUntilAllThatItNamesHaveCome) {
   EXPECT_TRUE(gate.is_new(Stream::kPose, 2));
   EXPECT_FALSE(gate.take().has_value());
   EXPECT_TRUE(gate.is_new(Stream::kBattery, 2));
-  EXPECT_FALSE(gate.take().has_value()) << "an older one than it names";
+  EXPECT_FALSE(gate.take().has_value()) << "older than the one required";
   EXPECT_TRUE(gate.is_new(Stream::kBattery, 3));
   EXPECT_TRUE(gate.take().has_value());
 }
 
-TEST(LockstepGate, KnowsWhatCameBefore) {
+TEST(LockstepGate, RecognizesOldSamplesPerStream) {
   LockstepGate gate;
-  EXPECT_FALSE(gate.is_new(Stream::kPose, 0)) << "a sign of life";
+  EXPECT_FALSE(gate.is_new(Stream::kPose, 0)) << "0 is no sample";
   EXPECT_TRUE(gate.is_new(Stream::kPose, 5));
   EXPECT_FALSE(gate.is_new(Stream::kPose, 5));
   EXPECT_FALSE(gate.is_new(Stream::kPose, 4));
-  EXPECT_TRUE(gate.is_new(Stream::kBattery, 4)) << "each stream counts for itself";
+  EXPECT_TRUE(gate.is_new(Stream::kBattery, 4)) << "each stream has its own counter";
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace {
 
 using State = PendingRequest::State;
 
-TEST(PendingRequest, IsTheFirstOnes) {
+TEST(PendingRequest, FirstClaimWins) {
   PendingRequest request;
   EXPECT_TRUE(request.claim(State::kTaken));
   EXPECT_FALSE(request.claim(State::kGivenUp));
@@ -18,19 +18,20 @@ TEST(PendingRequest, IsTheFirstOnes) {
   EXPECT_EQ(request.state, State::kTaken);
 }
 
-// The inner loop takes it while the desk gives it up: one of them has it, and writes its outcome.
-TEST(PendingRequest, IsOneThreadsAlone) {
+// The inner loop takes the request while the command server gives it up: one of them claims it and writes its
+// outcome.
+TEST(PendingRequest, OneOfTwoThreadsClaimsIt) {
   constexpr int kRounds = 500;
   for (int i = 0; i < kRounds; ++i) {
     PendingRequest request;
     std::atomic<int> ready{0};
     bool taken = false;
     bool given_up = false;
-    const auto race = [&](State as, bool& mine) {
+    const auto race = [&](State as, bool& claimed) {
       ++ready;
       while (ready < 2) std::this_thread::yield();
-      mine = request.claim(as);
-      if (mine) request.outcome.accepted = as == State::kTaken;
+      claimed = request.claim(as);
+      if (claimed) request.outcome.accepted = as == State::kTaken;
     };
     std::thread loop([&] { race(State::kTaken, taken); });
     race(State::kGivenUp, given_up);

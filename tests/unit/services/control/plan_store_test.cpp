@@ -10,7 +10,7 @@ namespace swiftlet::services {
 namespace {
 
 using control::Mission;
-using Shelf = PlanStore<Mission>;
+using MissionStore = PlanStore<Mission>;
 
 std::unique_ptr<Mission> mission(std::uint64_t id) {
   auto mission = std::make_unique<Mission>();
@@ -20,7 +20,7 @@ std::unique_ptr<Mission> mission(std::uint64_t id) {
 }
 
 TEST(PlanStore, FindsTheNewestOfAnId) {
-  Shelf store;
+  MissionStore store;
   EXPECT_EQ(store.find(1), nullptr);
   store.put(mission(1));
   const Mission* const first = store.find(1);
@@ -29,18 +29,18 @@ TEST(PlanStore, FindsTheNewestOfAnId) {
   EXPECT_NE(store.find(1), first);
 }
 
-TEST(PlanStore, TheOldestMakeRoom) {
-  Shelf store;
-  for (std::uint64_t id = 1; id <= Shelf::kCapacity + 2; ++id) store.put(mission(id));
+TEST(PlanStore, EvictsTheOldest) {
+  MissionStore store;
+  for (std::uint64_t id = 1; id <= MissionStore::kCapacity + 2; ++id) store.put(mission(id));
   store.tidy(0);
-  EXPECT_EQ(store.size(), Shelf::kCapacity);
+  EXPECT_EQ(store.size(), MissionStore::kCapacity);
   EXPECT_EQ(store.find(1), nullptr);
   EXPECT_EQ(store.find(2), nullptr);
   EXPECT_NE(store.find(3), nullptr);
 }
 
-TEST(PlanStore, WhatIsFlownStays) {
-  Shelf store;
+TEST(PlanStore, KeepsTheFlownMission) {
+  MissionStore store;
   store.put_flown(mission(1));
   for (std::uint64_t id = 2; id <= 20; ++id) {
     store.put(mission(id));
@@ -53,16 +53,16 @@ TEST(PlanStore, WhatIsFlownStays) {
   EXPECT_NE(store.find(21), nullptr);
 }
 
-TEST(PlanStore, WhatWasLentStaysUntilALaterHandoverIsTaken) {
-  Shelf store;
+TEST(PlanStore, KeepsALentMissionUntilALaterStateIsTaken) {
+  MissionStore store;
   store.put(mission(1));
   store.lend(store.find(1), 5);
   for (std::uint64_t id = 2; id <= 20; ++id) store.put(mission(id));
   store.tidy(4);
-  EXPECT_NE(store.find(1), nullptr) << "on its way";
+  EXPECT_NE(store.find(1), nullptr) << "sent but not taken";
   store.tidy(5);
   EXPECT_NE(store.find(1), nullptr) << "in use";
-  EXPECT_EQ(store.size(), Shelf::kCapacity);
+  EXPECT_EQ(store.size(), MissionStore::kCapacity);
   store.put(mission(21));
   store.tidy(6);
   EXPECT_EQ(store.find(1), nullptr);

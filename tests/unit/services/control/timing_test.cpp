@@ -1,4 +1,4 @@
-// What the services measure of themselves.
+// Timing figures of the services.
 #include <cstdint>
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::int64_t kPeriod = 2'000'000;  // ns
 
-// Samples of 500 Hz whose arrival is delayed as told.
+// Samples at 500 Hz with a given delay of arrival.
 class Arrivals {
  public:
   explicit Arrivals(StepTiming& timing) : timing_(timing) {}
@@ -21,7 +21,7 @@ class Arrivals {
     timing_.arrived(sequence_, stamp, 1'000'000'000 + stamp + delay_ns, rotors_running);
     timing_.answered(1'000'000'000 + stamp + delay_ns + 50'000);
   }
-  void lose(std::uint64_t samples) { sequence_ += samples; }
+  void skip(std::uint64_t samples) { sequence_ += samples; }
 
  private:
   StepTiming& timing_;
@@ -41,23 +41,23 @@ TEST(StepTiming, CountsStepsSinceTheRotorsWereStarted) {
   EXPECT_EQ(timing.figures().deadline_misses, 0U);
 
   for (int i = 0; i < 10; ++i) samples.arrive(0, false);
-  EXPECT_EQ(timing.figures().cycles, 101U);  // kept until they start again
+  EXPECT_EQ(timing.figures().cycles, 101U);  // kept until the rotors start again
   samples.arrive();
   EXPECT_EQ(timing.figures().cycles, 1U);
 }
 
-TEST(StepTiming, JitterIsOfTheTimeBetweenSteps) {
+TEST(StepTiming, MeasuresJitterOfTheTimeBetweenSteps) {
   StepTiming timing;
   Arrivals samples(timing);
   for (std::uint64_t i = 0; i < 2 * StepTiming::kJitterUpdate; ++i) samples.arrive(i % 2 == 0 ? 0 : 30'000);
   EXPECT_NEAR(static_cast<double>(timing.figures().jitter_p50_ns), 30'000.0, 1'000.0);
   EXPECT_NEAR(static_cast<double>(timing.figures().jitter_p99_ns), 30'000.0, 1'000.0);
-  samples.lose(3);
+  samples.skip(3);
   samples.arrive(30'000 + 200'000);
-  EXPECT_EQ(timing.figures().jitter_max_ns, 200'000) << "lost samples are no jitter";
+  EXPECT_EQ(timing.figures().jitter_max_ns, 200'000) << "lost samples do not count as jitter";
 }
 
-TEST(StepTiming, AStepIsLateBeyondHalfAPeriod) {
+TEST(StepTiming, CountsStepsLaterThanHalfAPeriod) {
   StepTiming timing;
   Arrivals samples(timing);
   for (int i = 0; i < 100; ++i) samples.arrive();
@@ -70,7 +70,7 @@ TEST(StepTiming, AStepIsLateBeyondHalfAPeriod) {
   EXPECT_EQ(timing.figures().deadline_misses, 1U);
 }
 
-TEST(StepTiming, ALastingDelayBecomesThePace) {
+TEST(StepTiming, AdaptsToALastingDelay) {
   StepTiming timing;
   Arrivals samples(timing);
   for (int i = 0; i < 100; ++i) samples.arrive();
@@ -79,18 +79,18 @@ TEST(StepTiming, ALastingDelayBecomesThePace) {
   EXPECT_LE(timing.figures().deadline_misses, 12U);
 }
 
-TEST(StepTiming, LostSamplesAreNotLateOnes) {
+TEST(StepTiming, DoesNotCountLostSamplesAsLate) {
   StepTiming timing;
   Arrivals samples(timing);
   for (int i = 0; i < 10; ++i) samples.arrive();
-  samples.lose(5);
+  samples.skip(5);
   samples.arrive();
   EXPECT_EQ(timing.figures().deadline_misses, 0U);
   EXPECT_EQ(timing.period_ns(), kPeriod);
-  EXPECT_NEAR(timing.figures().rate_hz, 500.0 * 10.0 / 15.0, 1e-9);  // what was flown, not what was sent
+  EXPECT_NEAR(timing.figures().rate_hz, 500.0 * 10.0 / 15.0, 1e-9);  // rate of steps, not of samples sent
 }
 
-TEST(StepTiming, AClockThatStartsAnewIsNoDelay) {
+TEST(StepTiming, DoesNotCountAClockResetAsLate) {
   StepTiming timing;
   timing.arrived(100, 100 * kPeriod, 1'000'000, true);
   timing.arrived(101, 101 * kPeriod, 1'000'000 + kPeriod, true);
@@ -99,18 +99,18 @@ TEST(StepTiming, AClockThatStartsAnewIsNoDelay) {
   EXPECT_EQ(timing.figures().deadline_misses, 0U);
 }
 
-TEST(AnswerLatencies, AreFromSampleToItsFirstAnswer) {
+TEST(AnswerLatencies, RunFromASampleToItsFirstAnswer) {
   AnswerLatencies times(kPeriod);
   times.written(1, 1000);
   times.answered(1, 1500);
-  times.answered(1, 9000);  // again
+  times.answered(1, 9000);  // repeated
   times.answered(7, 9000);  // never written
   EXPECT_EQ(times.times().count(), 1U);
   EXPECT_EQ(times.times().max_ns(), 500);
   EXPECT_EQ(times.unanswered(), 0U);
 }
 
-TEST(AnswerLatencies, AnAnswerIsLateAfterAPeriod) {
+TEST(AnswerLatencies, CountAnswersLaterThanAPeriod) {
   AnswerLatencies times(kPeriod);
   times.written(1, 0);
   times.answered(1, kPeriod);
@@ -122,13 +122,13 @@ TEST(AnswerLatencies, AnAnswerIsLateAfterAPeriod) {
   EXPECT_EQ(times.late(), 0U);
 }
 
-TEST(AnswerLatencies, ASampleWithoutAnswerIsCountedWhenPatienceEnds) {
+TEST(AnswerLatencies, CountUnansweredSamplesAfterThePatience) {
   AnswerLatencies times(kPeriod);
   for (std::uint64_t sequence = 1; sequence <= AnswerLatencies::kPatience; ++sequence)
     times.written(sequence, 0);
   EXPECT_EQ(times.unanswered(), 0U);
   times.answered(2, 10);
-  times.written(AnswerLatencies::kPatience + 1, 0);  // ends the wait for 1
+  times.written(AnswerLatencies::kPatience + 1, 0);  // gives up on 1
   times.written(AnswerLatencies::kPatience + 2, 0);  // 2 was answered
   EXPECT_EQ(times.unanswered(), 1U);
   times.answered(1, 20);  // too late

@@ -1,4 +1,4 @@
-// Topics between participants, each with its own sockets: in one process delivery takes the same way as
+// Topics between participants with their own sockets: delivery within one process uses the same path as
 // between two.
 #include "swiftlet/services/dds/node.hpp"
 
@@ -67,7 +67,7 @@ using Messages = testing::Types<msg::Imu, msg::ActuatorCommand, msg::MocapPose, 
                                 msg::Command, msg::Mission, msg::Trajectory, msg::CommandAck>;
 TYPED_TEST_SUITE(EachTopic, Messages);
 
-TYPED_TEST(EachTopic, ArrivesAsItWasSent) {
+TYPED_TEST(EachTopic, ArrivesUnchanged) {
   const DomainLock lock;
   Node here(settings(lock, "here"));
   Node there(settings(lock, "there"));
@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(Transports, LongMission, testing::Values(Transport::kUd
                            return run.param == Transport::kUdp ? "Udp" : "SharedMemory";
                          });
 
-TEST(Requests, AllArriveInOrder) {
+TEST(Requests, ArriveInOrder) {
   const DomainLock lock;
   Node ground(settings(lock, "ground"));
   Node control(settings(lock, "control"));
@@ -142,7 +142,7 @@ TEST(Requests, AllArriveInOrder) {
   for (const std::uint64_t id : ids.items()) EXPECT_EQ(id, ++expected);
 }
 
-TEST(State, ReachesLateJoiners) {
+TEST(LatchedTopic, ReachesLateJoiners) {
   const DomainLock lock;
   Node control(settings(lock, "control"));
   auto publisher = control.publish(topics::kControlStatus);
@@ -161,8 +161,8 @@ TEST(State, ReachesLateJoiners) {
   EXPECT_TRUE(inbox.items().front() == status);
 }
 
-// Two controllers of one vehicle that both send all the time, numbered by their strength.
-class OwnedStream : public testing::Test {
+// Two controllers of one vehicle that both send continuously; messages are numbered by ownership strength.
+class ExclusiveOwnership : public testing::Test {
  protected:
   class Controller {
    public:
@@ -170,7 +170,7 @@ class OwnedStream : public testing::Test {
         : node_(settings(lock, "control")),
           publisher_(node_.publish(topics::kActuatorCommand, strength)),
           sender_(publisher_, static_cast<std::uint64_t>(strength)) {}
-    void mute() { sender_.mute(); }
+    void silence() { sender_.silence(); }
     int matched() const { return publisher_.matched(); }
 
    private:
@@ -179,63 +179,64 @@ class OwnedStream : public testing::Test {
     SteadySender sender_;
   };
 
-  OwnedStream()
+  ExclusiveOwnership()
       : plant_(settings(lock_, "plant")),
         subscription_(plant_.subscribe<msg::ActuatorCommand>(
             topics::kActuatorCommand,
-            [this](const msg::ActuatorCommand& command) { heard_.put(command.sequence_number()); })) {}
+            [this](const msg::ActuatorCommand& command) { received_.put(command.sequence_number()); })) {}
 
-  // Twenty in a row of this strength.
-  bool hears_only(std::uint64_t strength) {
-    return heard_.wait([&](const std::vector<std::uint64_t>& heard) {
-      if (heard.size() < 20) return false;
-      return std::all_of(heard.end() - 20, heard.end(), [&](std::uint64_t s) { return s == strength; });
+  // The last 20 messages have this strength.
+  bool receives_only(std::uint64_t strength) {
+    return received_.wait([&](const std::vector<std::uint64_t>& received) {
+      if (received.size() < 20) return false;
+      return std::all_of(received.end() - 20, received.end(), [&](std::uint64_t s) { return s == strength; });
     });
   }
 
   DomainLock lock_;
-  Inbox<std::uint64_t> heard_;
+  Inbox<std::uint64_t> received_;
   Node plant_;
   Subscription subscription_;
 };
 
-TEST_F(OwnedStream, TheStrongestIsHeard) {
+TEST_F(ExclusiveOwnership, DeliversTheStrongestWriter) {
   Controller weak(lock_, 1);
-  ASSERT_TRUE(hears_only(1));
+  ASSERT_TRUE(receives_only(1));
   Controller strong(lock_, 2);
-  ASSERT_TRUE(hears_only(2));
+  ASSERT_TRUE(receives_only(2));
   ASSERT_TRUE(eventually([&] { return weak.matched() == 1 && subscription_.matched() == 2; }));
-  const std::size_t before = heard_.size();
-  ASSERT_TRUE(heard_.wait_for_count(before + 100));
-  const auto heard = heard_.items();
-  EXPECT_TRUE(std::all_of(heard.begin() + static_cast<std::ptrdiff_t>(before), heard.end(),
+  const std::size_t before = received_.size();
+  ASSERT_TRUE(received_.wait_for_count(before + 100));
+  const auto received = received_.items();
+  EXPECT_TRUE(std::all_of(received.begin() + static_cast<std::ptrdiff_t>(before), received.end(),
                           [](std::uint64_t s) { return s == 2; }));
 }
 
-TEST_F(OwnedStream, TheOtherTakesOverWhenTheStrongestLeaves) {
+TEST_F(ExclusiveOwnership, FallsBackWhenTheStrongestWriterLeaves) {
   Controller weak(lock_, 1);
   {
     Controller strong(lock_, 2);
-    ASSERT_TRUE(hears_only(2));
+    ASSERT_TRUE(receives_only(2));
     ASSERT_TRUE(eventually([&] { return weak.matched() == 1 && subscription_.matched() == 2; }));
   }
-  EXPECT_TRUE(hears_only(1));
+  EXPECT_TRUE(receives_only(1));
 }
 
-TEST_F(OwnedStream, TheOtherTakesOverWithinTheDeadlineWhenTheStrongestFallsSilent) {
+TEST_F(ExclusiveOwnership, FallsBackWithinTheDeadlineOfASilentWriter) {
   Controller weak(lock_, 1);
   Controller strong(lock_, 2);
-  ASSERT_TRUE(hears_only(2));
+  ASSERT_TRUE(receives_only(2));
   ASSERT_TRUE(eventually([&] { return weak.matched() == 1 && subscription_.matched() == 2; }));
   const auto silent_since = std::chrono::steady_clock::now();
-  strong.mute();
-  ASSERT_TRUE(heard_.wait([](const std::vector<std::uint64_t>& heard) { return heard.back() == 1; }));
-  // Far less than the lease of a participant, which a loaded machine may stretch the deadline to.
+  strong.silence();
+  ASSERT_TRUE(
+      received_.wait([](const std::vector<std::uint64_t>& received) { return received.back() == 1; }));
+  // Well below the liveliness lease; a loaded machine may exceed the deadline itself.
   EXPECT_LT(std::chrono::steady_clock::now() - silent_since, kLivelinessLease / 2);
-  EXPECT_TRUE(hears_only(1));
+  EXPECT_TRUE(receives_only(1));
 }
 
-TEST(Delivery, OwnThreadIsOfThatSubscriptionAlone) {
+TEST(Delivery, OwnThreadServesOneSubscription) {
   const DomainLock lock;
   Node plant(settings(lock, "plant"));
   Node control(settings(lock, "control"));
@@ -266,7 +267,7 @@ TEST(Delivery, OwnThreadIsOfThatSubscriptionAlone) {
   EXPECT_NE(own.items()[0], shared.items()[0]);
 }
 
-TEST(Vehicles, DoNotHearEachOther) {
+TEST(Vehicles, AreIsolatedFromEachOther) {
   const DomainLock lock;
   NodeSettings first = settings(lock, "plant");
   NodeSettings second = first;
@@ -277,9 +278,9 @@ TEST(Vehicles, DoNotHearEachOther) {
   Node control1(first);
   Inbox<std::string> peers;
   control1.on_peer([&](const PeerEvent& event) { peers.put(event.name); });
-  Inbox<std::uint64_t> heard;
+  Inbox<std::uint64_t> received;
   const auto subscription = control1.subscribe<msg::Imu>(
-      topics::kImu, [&](const msg::Imu& imu) { heard.put(imu.sequence_number()); });
+      topics::kImu, [&](const msg::Imu& imu) { received.put(imu.sequence_number()); });
   Node control2(second);
   const auto other = control2.subscribe<msg::Imu>(topics::kImu, [](const msg::Imu&) {});
   auto imu1 = plant1.publish(topics::kImu);
@@ -293,15 +294,15 @@ TEST(Vehicles, DoNotHearEachOther) {
   imu.sequence_number(1);
   imu1.publish(imu);
 
-  ASSERT_TRUE(heard.wait_for_count(1));
-  EXPECT_EQ(heard.items().front(), 1U);
+  ASSERT_TRUE(received.wait_for_count(1));
+  EXPECT_EQ(received.items().front(), 1U);
   ASSERT_TRUE(peers.wait_for_count(1));
   EXPECT_EQ(peers.items(), std::vector<std::string>{"plant"});
 }
 
-// GIVEN the processes of two vehicles, WHEN one participant serves both, one after the other, THEN its nodes hear and
-// are heard by their own, and each side knows the other as its peer.
-TEST(Vehicles, ShareAParticipant) {
+// GIVEN the processes of two vehicles WHEN one participant serves both THEN each node communicates with its
+// own vehicle only, and each side reports the other as its peer.
+TEST(Vehicles, CanShareAParticipant) {
   const DomainLock lock;
   NodeSettings plant = settings(lock, "plant");
   Node plant1(plant);
@@ -314,17 +315,17 @@ TEST(Vehicles, ShareAParticipant) {
   Node ground1(shared, "kl1");
   auto imu1 = plant1.publish(topics::kImu);
   auto imu2 = plant2.publish(topics::kImu);
-  Inbox<std::uint64_t> heard1;
+  Inbox<std::uint64_t> received1;
   const auto first = ground1.subscribe<msg::Imu>(
-      topics::kImu, [&](const msg::Imu& imu) { heard1.put(imu.sequence_number()); });
+      topics::kImu, [&](const msg::Imu& imu) { received1.put(imu.sequence_number()); });
   ASSERT_TRUE(eventually([&] { return first.matched() == 1; }));
 
   Node ground2(shared, "kl2");
   Inbox<std::string> peers_of_ground2;
   ground2.on_peer([&](const PeerEvent& event) { peers_of_ground2.put(event.name); });
-  Inbox<std::uint64_t> heard2;
+  Inbox<std::uint64_t> received2;
   const auto second = ground2.subscribe<msg::Imu>(
-      topics::kImu, [&](const msg::Imu& imu) { heard2.put(imu.sequence_number()); });
+      topics::kImu, [&](const msg::Imu& imu) { received2.put(imu.sequence_number()); });
   auto command1 = ground1.publish(topics::kCommand);
   auto command2 = ground2.publish(topics::kCommand);
   ASSERT_TRUE(
@@ -337,41 +338,41 @@ TEST(Vehicles, ShareAParticipant) {
   imu1.publish(imu);
   imu.sequence_number(2);
   imu2.publish(imu);
-  ASSERT_TRUE(heard1.wait_for_count(1));
-  ASSERT_TRUE(heard2.wait_for_count(1));
-  EXPECT_EQ(heard1.items(), std::vector<std::uint64_t>{1});
-  EXPECT_EQ(heard2.items(), std::vector<std::uint64_t>{2});
+  ASSERT_TRUE(received1.wait_for_count(1));
+  ASSERT_TRUE(received2.wait_for_count(1));
+  EXPECT_EQ(received1.items(), std::vector<std::uint64_t>{1});
+  EXPECT_EQ(received2.items(), std::vector<std::uint64_t>{2});
   ASSERT_TRUE(peers_of_ground2.wait_for_count(1));
   EXPECT_EQ(peers_of_ground2.items(), std::vector<std::string>{"plant"});
   ASSERT_TRUE(peers_of_plant2.wait_for_count(1));
   EXPECT_EQ(peers_of_plant2.items(), std::vector<std::string>{"ground"});
 }
 
-TEST(Subscription, DeliversNothingOnceItIsGone) {
+TEST(Subscription, DeliversNothingAfterItsDestruction) {
   const DomainLock lock;
   Node plant(settings(lock, "plant"));
   Node control(settings(lock, "control"));
   auto publisher = plant.publish(topics::kImu);
   for (int round = 0; round < 20; ++round) {
     std::atomic<bool> gone{false};
-    std::atomic<int> heard{0};
-    std::atomic<int> heard_when_gone{0};
+    std::atomic<int> received{0};
+    std::atomic<int> received_when_gone{0};
     auto subscription = control.subscribe<msg::Imu>(topics::kImu, [&](const msg::Imu&) {
-      if (gone) ++heard_when_gone;
-      ++heard;
+      if (gone) ++received_when_gone;
+      ++received;
     });
     ASSERT_TRUE(eventually([&] {
       publisher.publish(example<msg::Imu>());
-      return heard > 0;
+      return received > 0;
     }));
     subscription = {};
     gone = true;
     publisher.publish(example<msg::Imu>());
-    EXPECT_EQ(heard_when_gone, 0);
+    EXPECT_EQ(received_when_gone, 0);
   }
 }
 
-TEST(NodeSettings, BadOnesAreRefusedInWords) {
+TEST(NodeSettings, RefusesInvalidValues) {
   NodeSettings settings;
   settings.name = "plant";
   settings.domain = 233;

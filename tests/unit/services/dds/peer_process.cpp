@@ -1,8 +1,8 @@
-// A process of its own for the tests: joins a domain as "peer", publishes its state and the strongest
-// actuator commands until its standard input is closed, then leaves.
-//   comms_peer DOMAIN udp|shm
-// With "isolated" for the domain, it enters a fresh network namespace instead, checks that two nodes find
-// each other there, and exits with 0, or 77 if it may not.
+// A separate process for the tests: joins a domain as "peer", publishes its status and actuator commands of
+// the highest strength until its standard input is closed, then leaves.
+//   dds_peer DOMAIN udp|shm
+// With "isolated" as DOMAIN, it enters a new network namespace, checks that two nodes discover each other
+// there, and exits with 0, or with 77 if it lacks the permission.
 #include <atomic>
 #include <cstdlib>
 #include <cstring>
@@ -24,7 +24,7 @@ namespace {
 constexpr int kNotPermitted = 77;
 constexpr int kStrongest = 9;
 
-bool enter_fresh_network() {
+bool enter_new_network_namespace() {
   if (::unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0 && ::unshare(CLONE_NEWNET) != 0) return false;
   const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
   ifreq request{};
@@ -36,25 +36,26 @@ bool enter_fresh_network() {
   return up;
 }
 
-int talk_in_isolation() {
-  if (!enter_fresh_network()) return kNotPermitted;
+int check_isolated_nodes() {
+  if (!enter_new_network_namespace()) return kNotPermitted;
   NodeSettings settings;
   settings.localhost_only = true;
   settings.name = "here";
   Node here(settings);
   settings.name = "there";
   Node there(settings);
-  std::atomic<bool> heard{false};
-  const auto subscription = there.subscribe<msg::Imu>(topics::kImu, [&](const msg::Imu&) { heard = true; });
+  std::atomic<bool> received{false};
+  const auto subscription =
+      there.subscribe<msg::Imu>(topics::kImu, [&](const msg::Imu&) { received = true; });
   auto publisher = here.publish(topics::kImu);
   const bool done = swiftlet::tests::eventually([&] {
     publisher.publish(example<msg::Imu>());
-    return heard.load();
+    return received.load();
   });
   return done ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
-int live(int domain, Transport transport) {
+int run_peer(int domain, Transport transport) {
   NodeSettings settings;
   settings.localhost_only = true;
   settings.name = "peer";
@@ -78,7 +79,7 @@ int main(int argc, char** argv) {
   using namespace swiftlet::comms;
   if (argc < 2) return EXIT_FAILURE;
   const std::string domain = argv[1];
-  if (domain == "isolated") return tests::talk_in_isolation();
+  if (domain == "isolated") return tests::check_isolated_nodes();
   const bool shared_memory = argc > 2 && std::string(argv[2]) == "shm";
-  return tests::live(std::stoi(domain), shared_memory ? Transport::kSharedMemory : Transport::kUdp);
+  return tests::run_peer(std::stoi(domain), shared_memory ? Transport::kSharedMemory : Transport::kUdp);
 }

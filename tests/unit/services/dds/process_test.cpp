@@ -1,4 +1,4 @@
-// What other processes leave behind: peers that come, go and die, their streams, their shared memory.
+// Other processes: peers that join, leave and crash, their streams and their shared memory.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -30,7 +30,7 @@ using swiftlet::tests::eventually;
 using swiftlet::tests::Inbox;
 using namespace std::chrono_literals;
 
-// comms_peer, ended by force at the latest when this is destroyed.
+// Runs dds_peer; the destructor kills it.
 class PeerProcess {
  public:
   explicit PeerProcess(const std::vector<std::string>& words) {
@@ -54,15 +54,15 @@ class PeerProcess {
     input_ = ends[1];
   }
   ~PeerProcess() {
-    if (pid_ > 0) die();
+    if (pid_ > 0) crash();
   }
   PeerProcess(const PeerProcess&) = delete;
   PeerProcess& operator=(const PeerProcess&) = delete;
 
   pid_t pid() const { return pid_; }
   void stop() const { ::kill(pid_, SIGSTOP); }
-  void go_on() const { ::kill(pid_, SIGCONT); }
-  void die() {
+  void resume() const { ::kill(pid_, SIGCONT); }
+  void crash() {
     ::kill(pid_, SIGKILL);
     finish();
   }
@@ -74,7 +74,7 @@ class PeerProcess {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 
-  // Files in /dev/shm that it has mapped.
+  // Files in /dev/shm that the process maps.
   std::vector<std::string> shared_memory() const {
     std::vector<std::string> files;
     std::ifstream maps("/proc/" + std::to_string(pid_) + "/maps");
@@ -112,7 +112,7 @@ class Peers : public testing::Test {
   Node node_;
 };
 
-TEST_F(Peers, OneThatLeavesIsNamed) {
+TEST_F(Peers, AreReportedWhenTheyLeave) {
   PeerProcess peer = start();
   ASSERT_TRUE(events_.wait_for_count(1));
   EXPECT_EQ(events_.items()[0].name, "peer");
@@ -126,22 +126,22 @@ TEST_F(Peers, OneThatLeavesIsNamed) {
   EXPECT_TRUE(events_.items()[1].said_goodbye);
 }
 
-// This and ADeadControllersStream... judge how long it takes: nothing runs beside them.
-TEST_F(Peers, OneThatDiesIsNamedWithinTheLease) {
+// This and DeadControllersStream... measure real time and run alone (ALONE in CMakeLists.txt).
+TEST_F(Peers, AreReportedDeadWithinTheLease) {
   PeerProcess peer = start();
   ASSERT_TRUE(events_.wait_for_count(1));
 
-  peer.die();
-  const auto died = std::chrono::steady_clock::now();
+  peer.crash();
+  const auto crashed_at = std::chrono::steady_clock::now();
 
   ASSERT_TRUE(events_.wait_for_count(2));
-  EXPECT_LT(std::chrono::steady_clock::now() - died, kLivelinessLease + 1s);
+  EXPECT_LT(std::chrono::steady_clock::now() - crashed_at, kLivelinessLease + 1s);
   EXPECT_EQ(events_.items()[1].name, "peer");
   EXPECT_FALSE(events_.items()[1].alive);
   EXPECT_FALSE(events_.items()[1].said_goodbye);
 }
 
-TEST_F(Peers, ThoseThatWereThereBeforeAreTold) {
+TEST_F(Peers, AreReportedToALateListener) {
   const PeerProcess peer = start();
   ASSERT_TRUE(events_.wait_for_count(1));
   Inbox<PeerEvent> late;
@@ -152,7 +152,7 @@ TEST_F(Peers, ThoseThatWereThereBeforeAreTold) {
   node_.on_peer({});
 }
 
-TEST_F(Peers, StateOfAnotherProcessReachesALateJoiner) {
+TEST_F(Peers, StatusReachesALateJoiner) {
   const PeerProcess peer = start();
   ASSERT_TRUE(events_.wait_for_count(1));
   Inbox<msg::ControlStatus> states;
@@ -162,53 +162,55 @@ TEST_F(Peers, StateOfAnotherProcessReachesALateJoiner) {
   EXPECT_TRUE(states.items()[0] == example<msg::ControlStatus>());
 }
 
-TEST_F(Peers, ADeadControllersStreamIsTakenOverBeforeItsLeaseEnds) {
-  Inbox<std::uint64_t> heard;
+TEST_F(Peers, DeadControllersStreamIsTakenOverBeforeTheLeaseEnds) {
+  Inbox<std::uint64_t> received;
   const auto subscription = node_.subscribe<msg::ActuatorCommand>(
       topics::kActuatorCommand,
-      [&](const msg::ActuatorCommand& command) { heard.put(command.sequence_number()); });
+      [&](const msg::ActuatorCommand& command) { received.put(command.sequence_number()); });
   NodeSettings standby_settings = settings();
   standby_settings.name = "standby";
   Node standby(standby_settings);
   auto commands = standby.publish(topics::kActuatorCommand, 1);
   const SteadySender sender(commands, 1);
   PeerProcess strong = start();
-  const bool obeyed = heard.wait([](const auto& numbers) { return !numbers.empty() && numbers.back() == 9; });
+  const bool obeyed =
+      received.wait([](const auto& numbers) { return !numbers.empty() && numbers.back() == 9; });
 
-  strong.die();
-  const auto died = std::chrono::steady_clock::now();
-  const bool taken_over = heard.wait([](const auto& numbers) { return numbers.back() == 1; });
-  const auto outage = std::chrono::steady_clock::now() - died;
+  strong.crash();
+  const auto crashed_at = std::chrono::steady_clock::now();
+  const bool taken_over = received.wait([](const auto& numbers) { return numbers.back() == 1; });
+  const auto outage = std::chrono::steady_clock::now() - crashed_at;
 
   EXPECT_TRUE(obeyed);
   EXPECT_TRUE(taken_over);
   EXPECT_LT(outage, kLivelinessLease / 2);
 }
 
-TEST_F(Peers, OneThatWasStoppedUntilItCountedAsDeadIsHeardAgain) {
-  Inbox<std::uint64_t> heard;
+TEST_F(Peers, AreReceivedAgainAfterASuspension) {
+  Inbox<std::uint64_t> received;
   const auto subscription = node_.subscribe<msg::ActuatorCommand>(
       topics::kActuatorCommand,
-      [&](const msg::ActuatorCommand& command) { heard.put(command.sequence_number()); });
+      [&](const msg::ActuatorCommand& command) { received.put(command.sequence_number()); });
   const PeerProcess peer = start();
-  ASSERT_TRUE(heard.wait_for_count(1));
+  ASSERT_TRUE(received.wait_for_count(1));
 
   peer.stop();
   ASSERT_TRUE(events_.wait_for_count(2));
   ASSERT_FALSE(events_.items()[1].alive);
-  const std::size_t before = heard.size();
-  peer.go_on();
+  const std::size_t before = received.size();
+  peer.resume();
 
-  EXPECT_TRUE(heard.wait_for_count(before + 1500)) << heard.size() - before << " since";
+  EXPECT_TRUE(received.wait_for_count(before + 1500))
+      << received.size() - before << " received after it resumed";
 }
 
-TEST_F(Peers, WithUdpNothingIsSharedThatCouldStay) {
+TEST_F(Peers, UdpTransportMapsNoSharedMemory) {
   PeerProcess peer = start("udp");
   ASSERT_TRUE(events_.wait_for_count(1));
   EXPECT_EQ(peer.shared_memory(), std::vector<std::string>{});
 }
 
-TEST_F(Peers, SharedMemoryOfTheDeadIsRemovedAndThatOfTheLivingIsNot) {
+TEST_F(Peers, SharedMemoryIsRemovedForDeadProcessesOnly) {
   PeerProcess dead = start("shm");
   ASSERT_TRUE(events_.wait_for_count(1));
   PeerProcess alive = start("shm");
@@ -222,7 +224,7 @@ TEST_F(Peers, SharedMemoryOfTheDeadIsRemovedAndThatOfTheLivingIsNot) {
   ASSERT_FALSE(left_over.empty());
   ASSERT_FALSE(in_use.empty());
 
-  dead.die();
+  dead.crash();
   ASSERT_TRUE(exist(left_over));
 
   EXPECT_TRUE(eventually([&] {
@@ -236,14 +238,14 @@ TEST_F(Peers, SharedMemoryOfTheDeadIsRemovedAndThatOfTheLivingIsNot) {
   EXPECT_EQ(alive.finish(), 0);
 }
 
-TEST(Isolation, NodesFindEachOtherInAFreshNetworkNamespace) {
+TEST(Isolation, NodesDiscoverEachOtherInANewNetworkNamespace) {
   PeerProcess process({"isolated"});
   const int code = process.finish();
-  if (code == 77) GTEST_SKIP() << "a network namespace of its own is not permitted here";
+  if (code == 77) GTEST_SKIP() << "a new network namespace is not permitted";
   EXPECT_EQ(code, 0);
 }
 
-TEST(Domain, HoldsThirtyTwoProcesses) {
+TEST(Domain, Holds32Participants) {
   const DomainLock lock;
   NodeSettings settings;
   settings.domain = lock.domain();

@@ -1,4 +1,4 @@
-// What is said of endpoints of one topic that do not match.
+// Reports about endpoints of one topic whose QoS is incompatible.
 #include "swiftlet/services/dds/qos_conflicts.hpp"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ EndpointQos demand() { return endpoint_qos(dds::ReaderQos()); }
 
 TEST(QosConflicts, DefaultsMatch) { EXPECT_EQ(conflicts(offer(), demand()), ""); }
 
-TEST(QosConflicts, EachPolicyIsNamedWithBothValues) {
+TEST(QosConflicts, ListEachPolicyWithBothValues) {
   EndpointQos offered = offer();
   offered.reliability = dds::BEST_EFFORT_RELIABILITY_QOS;
   EndpointQos requested = demand();
@@ -54,7 +54,7 @@ TEST(QosConflicts, EachPolicyIsNamedWithBothValues) {
             "disabled positive acknowledgements (offered no, requested yes)");
 }
 
-TEST(QosConflicts, MoreThanWasAskedForMatches) {
+TEST(QosConflicts, MatchWhenMoreIsOfferedThanRequested) {
   EndpointQos offered = offer();
   offered.reliability = dds::RELIABLE_RELIABILITY_QOS;
   offered.durability = dds::TRANSIENT_LOCAL_DURABILITY_QOS;
@@ -66,7 +66,7 @@ TEST(QosConflicts, MoreThanWasAskedForMatches) {
   EXPECT_EQ(conflicts(offered, requested), "");
 }
 
-TEST(LineLimit, WritesOneASecondAndLosesNoneUncounted) {
+TEST(LineLimit, WritesOneLineASecondAndCountsTheRest) {
   const LineLimit::Time begin{};
   LineLimit limit;
   EXPECT_EQ(limit.offer("a", begin), "a");
@@ -96,7 +96,7 @@ class LineSink final : public spdlog::sinks::base_sink<std::mutex> {
   Inbox<std::string>& lines_;
 };
 
-// Collects what is logged while it lives; no other thread logs when that begins or ends.
+// Collects log lines during its lifetime. No other thread may log at its construction and destruction.
 class CollectedLog {
  public:
   explicit CollectedLog(Inbox<std::string>& lines) : before_(spdlog::default_logger()) {
@@ -111,7 +111,7 @@ class CollectedLog {
 };
 
 // Two processes, "talker" and "listener", whose log lines are collected.
-class Conflict : public testing::Test {
+class QosConflictLog : public testing::Test {
  protected:
   NodeSettings settings(const char* name) const {
     NodeSettings settings;
@@ -121,14 +121,14 @@ class Conflict : public testing::Test {
     return settings;
   }
 
-  // How many lines hold all of these words.
+  // Number of lines that contain all of these words.
   static long count(const std::vector<std::string>& lines, const std::vector<std::string>& words) {
     return std::count_if(lines.begin(), lines.end(), [&](const std::string& line) {
       return std::all_of(words.begin(), words.end(),
                          [&](const std::string& word) { return line.find(word) != std::string::npos; });
     });
   }
-  bool is_said(const std::vector<std::string>& words) const {
+  bool is_logged(const std::vector<std::string>& words) const {
     return lines_.wait([&](const auto& lines) { return count(lines, words) > 0; });
   }
   std::string all_lines() const {
@@ -147,23 +147,23 @@ class Conflict : public testing::Test {
 constexpr Topic<msg::Imu> kReliableImu{"imu", Qos::kRequest};
 constexpr Topic<msg::ActuatorCommand> kUnownedCommand{"actuator_command", Qos::kStream};
 
-TEST_F(Conflict, BothSidesNameTopicPolicyAndPeer) {
+TEST_F(QosConflictLog, NamesTopicPolicyAndPeerOnBothSides) {
   const auto publisher = talker_.publish(topics::kImu);
   const auto subscription = listener_.subscribe<msg::Imu>(kReliableImu, [](const msg::Imu&) {});
 
-  EXPECT_TRUE(is_said({"rt/kl1/imu: 'talker' (",
-                       ") is not received, their QoS is incompatible: "
-                       "reliability (offered best effort, requested reliable)"}))
+  EXPECT_TRUE(is_logged({"rt/kl1/imu: 'talker' (",
+                         ") is not received, their QoS is incompatible: "
+                         "reliability (offered best effort, requested reliable)"}))
       << all_lines();
-  EXPECT_TRUE(is_said({"rt/kl1/imu: 'listener' (",
-                       ") does not receive from this process, their QoS is incompatible: "
-                       "reliability (offered best effort, requested reliable)"}))
+  EXPECT_TRUE(is_logged({"rt/kl1/imu: 'listener' (",
+                         ") does not receive from this process, their QoS is incompatible: "
+                         "reliability (offered best effort, requested reliable)"}))
       << all_lines();
   EXPECT_EQ(publisher.matched(), 0);
   EXPECT_EQ(subscription.matched(), 0);
 }
 
-TEST_F(Conflict, IsToldAlsoByWhoComesLater) {
+TEST_F(QosConflictLog, IncludesALateSubscriber) {
   const auto publisher = talker_.publish(kUnownedCommand);
   ASSERT_TRUE(eventually([&] { return !listener_.topics_seen().empty(); }));
   const auto subscription =
@@ -171,32 +171,32 @@ TEST_F(Conflict, IsToldAlsoByWhoComesLater) {
 
   const std::string policies =
       "ownership (offered shared, requested exclusive), deadline (offered none, requested 50 ms)";
-  EXPECT_TRUE(is_said({"rt/kl1/actuator_command: 'talker' (", "is not received", policies})) << all_lines();
-  EXPECT_TRUE(is_said({"rt/kl1/actuator_command: 'listener' (", "does not receive", policies}))
+  EXPECT_TRUE(is_logged({"rt/kl1/actuator_command: 'talker' (", "is not received", policies})) << all_lines();
+  EXPECT_TRUE(is_logged({"rt/kl1/actuator_command: 'listener' (", "does not receive", policies}))
       << all_lines();
 }
 
-TEST_F(Conflict, ManyMakeOneLineASecond) {
+TEST_F(QosConflictLog, IsLimitedToOneLineASecond) {
   const auto publisher = talker_.publish(topics::kImu);
   std::vector<Subscription> subscriptions;
   subscriptions.reserve(5);
   for (int i = 0; i < 5; ++i)
     subscriptions.push_back(listener_.subscribe<msg::Imu>(kReliableImu, [](const msg::Imu&) {}));
 
-  EXPECT_TRUE(is_said({"does not receive from this process", "(and 3 more in the last second)"}))
+  EXPECT_TRUE(is_logged({"does not receive from this process", "(and 3 more in the last second)"}))
       << all_lines();
   EXPECT_EQ(count(lines_.items(), {"does not receive from this process"}), 2) << all_lines();
 }
 
-TEST_F(Conflict, OnesThatMatchAreNotMentioned) {
-  const auto good = talker_.publish(topics::kImu);
-  const auto bad = talker_.publish(topics::kMocapPose);
-  const auto heard = listener_.subscribe<msg::Imu>(topics::kImu, [](const msg::Imu&) {});
-  const auto unheard =
+TEST_F(QosConflictLog, OmitsEndpointsThatMatch) {
+  const auto matching_writer = talker_.publish(topics::kImu);
+  const auto conflicting_writer = talker_.publish(topics::kMocapPose);
+  const auto matching_reader = listener_.subscribe<msg::Imu>(topics::kImu, [](const msg::Imu&) {});
+  const auto conflicting_reader =
       listener_.subscribe<msg::MocapPose>({"mocap_pose", Qos::kRequest}, [](const msg::MocapPose&) {});
 
-  ASSERT_TRUE(eventually([&] { return good.matched() == 1 && heard.matched() == 1; }));
-  ASSERT_TRUE(is_said({"rt/kl1/mocap_pose", "is not received"})) << all_lines();
+  ASSERT_TRUE(eventually([&] { return matching_writer.matched() == 1 && matching_reader.matched() == 1; }));
+  ASSERT_TRUE(is_logged({"rt/kl1/mocap_pose", "is not received"})) << all_lines();
   EXPECT_EQ(count(lines_.items(), {"rt/kl1/imu"}), 0) << all_lines();
 }
 

@@ -1,4 +1,4 @@
-// A stream of actuator commands at 500 Hz, from a thread of its own.
+// Sends actuator commands at 500 Hz from its own thread.
 #pragma once
 
 #include <atomic>
@@ -13,14 +13,14 @@ namespace swiftlet::comms::tests {
 
 class SteadySender {
  public:
-  // The commands bear this sequence number; the publisher outlives the sender.
+  // All commands have this sequence number. The publisher must outlive the sender.
   SteadySender(Publisher<msg::ActuatorCommand>& publisher, std::uint64_t sequence_number)
       : thread_([this, &publisher, sequence_number] {
           msg::ActuatorCommand command = example<msg::ActuatorCommand>();
           command.sequence_number(sequence_number);
           runtime::PeriodicTimer timer(2'000'000, 2'000'000);
           while (!stop_) {
-            if (!mute_) publisher.publish(command);
+            if (!silent_) publisher.publish(command);
             timer.wait();
           }
         }) {}
@@ -31,11 +31,11 @@ class SteadySender {
   SteadySender(const SteadySender&) = delete;
   SteadySender& operator=(const SteadySender&) = delete;
 
-  void mute() { mute_ = true; }
+  void silence() { silent_ = true; }
 
  private:
   std::atomic<bool> stop_{false};
-  std::atomic<bool> mute_{false};
+  std::atomic<bool> silent_{false};
   std::thread thread_;
 };
 

@@ -1,4 +1,4 @@
-// Bytes of a peer that are no message of their topic's type: they are dropped, and what follows is heard.
+// Bytes that are not a valid message of their topic's type are dropped; later messages are received.
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -29,7 +29,7 @@ using swiftlet::tests::Inbox;
 
 using Bytes = std::vector<unsigned char>;
 
-// Goes by the name of another type and sends the bytes that it is given.
+// Poses as another type by name and sends raw bytes.
 class RawType final : public dds::TopicDataType {
  public:
   explicit RawType(const std::string& name) {
@@ -76,23 +76,23 @@ NodeSettings settings(const DomainLock& lock, const char* name) {
   return settings;
 }
 
-// A peer that publishes bytes on one topic.
+// A peer that publishes raw bytes on one topic.
 class RawPeer {
  public:
   RawPeer(const DomainLock& lock, const std::string& topic, const std::string& type, Qos qos)
-      : membership_(settings(lock, "raw"), nullptr) {
-    dds::Topic* const wire = membership_.topic("rt/kl1/" + topic, dds::TypeSupport(new RawType(type)));
-    writer_ = membership_.publisher->create_datawriter(wire, writer_qos(qos, 0, 0, Transport::kUdp));
+      : session_(settings(lock, "raw"), nullptr) {
+    dds::Topic* const raw_topic = session_.topic("rt/kl1/" + topic, dds::TypeSupport(new RawType(type)));
+    writer_ = session_.publisher->create_datawriter(raw_topic, writer_qos(qos, 0, 0, Transport::kUdp));
   }
   bool send(Bytes bytes) { return writer_->write(&bytes); }
-  bool is_heard() const {
+  bool is_matched() const {
     dds::PublicationMatchedStatus status;
     writer_->get_publication_matched_status(status);
     return status.current_count == 1;
   }
 
  private:
-  ParticipantSession membership_;
+  ParticipantSession session_;
   dds::DataWriter* writer_;
 };
 
@@ -105,20 +105,20 @@ void expect_dropped(const Topic<typename Type::type>& topic, const typename Type
   const auto subscription =
       node.subscribe<typename Type::type>(topic, [&](const auto& message) { inbox.put(message); });
   RawPeer peer(lock, topic.name, Type().getName(), topic.qos);
-  ASSERT_TRUE(eventually([&] { return subscription.matched() == 1 && peer.is_heard(); }));
+  ASSERT_TRUE(eventually([&] { return subscription.matched() == 1 && peer.is_matched(); }));
 
-  std::size_t heard = 0;
+  std::size_t received = 0;
   for (const Bytes& bytes : broken) {
     ASSERT_TRUE(peer.send(bytes));
     ASSERT_TRUE(peer.send(bytes_of<Type>(whole)));
-    ASSERT_TRUE(inbox.wait_for_count(++heard));
+    ASSERT_TRUE(inbox.wait_for_count(++received));
   }
   for (const auto& message : inbox.items()) EXPECT_TRUE(message == whole);
 }
 
 constexpr std::size_t kEncapsulation = 4;
 
-TEST(BrokenMessage, OfAStreamIsDropped) {
+TEST(BrokenMessage, IsDroppedOnAStream) {
   const msg::MocapPose pose = to_message(pose_sample());
   const Bytes whole = bytes_of<msg::MocapPosePubSubType>(pose);
   expect_dropped<msg::MocapPosePubSubType>(
@@ -127,11 +127,11 @@ TEST(BrokenMessage, OfAStreamIsDropped) {
        cut(whole, whole.size() - 9), cut(whole, kEncapsulation), cut(whole, 3), cut(whole, 0)});
 }
 
-TEST(BrokenMessage, OfARequestIsDropped) {
+TEST(BrokenMessage, IsDroppedOnARequestTopic) {
   const msg::Mission mission = to_message(tests::mission(3, 2));
   const Bytes whole = bytes_of<msg::MissionPubSubType>(mission);
   Bytes endless = whole;
-  for (std::size_t i = 0; i < 4; ++i) endless.at(kEncapsulation + 16 + i) = 0xff;  // the number of its items
+  for (std::size_t i = 0; i < 4; ++i) endless.at(kEncapsulation + 16 + i) = 0xff;  // the number of items
   expect_dropped<msg::MissionPubSubType>(topics::kMission, mission,
                                          {endless, cut(whole, whole.size() / 2), changed(whole, 0, 1)});
 }

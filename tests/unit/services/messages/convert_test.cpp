@@ -13,7 +13,7 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// There and back again is the same message.
+// A message converted to the struct and back is equal.
 template <class Plain, class Message>
 void expect_same(const Message& message) {
   Plain plain;
@@ -22,7 +22,7 @@ void expect_same(const Message& message) {
   EXPECT_TRUE(to_message(plain) == message);
 }
 
-TEST(Convert, ThereAndBackIsTheSame) {
+TEST(Convert, RoundTripPreservesMessages) {
   expect_same<plant::ImuSample>(example<msg::Imu>());
   expect_same<plant::PoseSample>(example<msg::MocapPose>());
   expect_same<plant::BatterySample>(example<msg::Battery>());
@@ -37,7 +37,7 @@ TEST(Convert, ThereAndBackIsTheSame) {
   expect_same<control::Trajectory>(to_message(trajectory(control::kMaxTrajectorySegments)));
 }
 
-TEST(Convert, PlainStructsKeepTheirFields) {
+TEST(Convert, RoundTripPreservesStructs) {
   plant::ActuatorCommand command;
   ASSERT_FALSE(from_message(example<msg::ActuatorCommand>(), command));
   const plant::ActuatorCommand sent = actuator_command();
@@ -56,8 +56,8 @@ TEST(Convert, PlainStructsKeepTheirFields) {
   EXPECT_EQ(pose.q_ned_from_frd.coeffs(), pose_sample().q_ned_from_frd.coeffs());
 }
 
-// GIVEN a good message, WHEN change breaks it, THEN it is refused with these words and the struct is left as
-// it was.
+// GIVEN a valid message WHEN `change` invalidates it THEN it is refused with these words and the struct is
+// unchanged.
 template <class Plain, class Message, class Change>
 void expect_refused(Message message, const char* words, Change change) {
   change(message);
@@ -68,8 +68,8 @@ void expect_refused(Message message, const char* words, Change change) {
   EXPECT_TRUE(to_message(plain) == to_message(untouched));
 }
 
-// The state is copied byte by byte from one process to another: what was left out would be missing there.
-TEST(Convert, TheStateOfAFlightArrivesWhole) {
+// The flight state is copied byte by byte between processes, so every field must be included.
+TEST(Convert, FlightStateIsTransferredCompletely) {
   ControllerReport report;
   ASSERT_FALSE(from_message(example<msg::ControllerState>(), report));
   const control::SupervisorState& got = report.flight.supervisor;
@@ -92,7 +92,7 @@ TEST(Convert, TheStateOfAFlightArrivesWhole) {
   EXPECT_EQ(report.flight.throttle, controller_report().flight.throttle);
 }
 
-TEST(Convert, WhatBecameOfARequestIsToldWithItsReason) {
+TEST(Convert, RequestStatusHasStateAndReason) {
   const control::RequestStatuses requests = controller_report().flight.supervisor.requests;
   const msg::RequestStatus executing = to_message(requests[1]);
   EXPECT_EQ(executing.client(), 40U);
@@ -107,7 +107,7 @@ TEST(Convert, WhatBecameOfARequestIsToldWithItsReason) {
   EXPECT_STREQ(to_message(requests[3]).result().c_str(), "aborted: tipped over");
 }
 
-TEST(Convert, AnImuSampleSaysWhatTheVehicleObeyed) {
+TEST(Convert, ImuSampleCarriesTheObeyedCommand) {
   for (const plant::ObeyedCommand& obeyed : {plant::ObeyedCommand{}, plant::ObeyedCommand{true, false, 0, 0},
                                              plant::ObeyedCommand{true, true, 7, 8}}) {
     msg::Imu message = example<msg::Imu>();
@@ -118,10 +118,10 @@ TEST(Convert, AnImuSampleSaysWhatTheVehicleObeyed) {
     EXPECT_EQ(got.term, obeyed.term);
     EXPECT_EQ(got.stamp_ns, obeyed.stamp_ns);
   }
-  EXPECT_FALSE(obeyed_command(msg::Imu()).reported) << "a vehicle that leaves the fields alone";
+  EXPECT_FALSE(obeyed_command(msg::Imu()).reported) << "a vehicle that does not set the fields";
 }
 
-TEST(Convert, BrokenSamplesAreRefused) {
+TEST(Convert, RefusesInvalidSamples) {
   expect_refused<plant::ImuSample>(example<msg::Imu>(), "body_rates_frd[1] is nan, must be finite",
                                    [](msg::Imu& m) { m.body_rates_frd()[1] = kNan; });
   expect_refused<plant::ImuSample>(example<msg::Imu>(), "specific_force_frd[2] is -inf, must be finite",
@@ -168,13 +168,13 @@ TEST(Convert, BrokenSamplesAreRefused) {
                                     [](msg::Setpoint& m) { m.yaw_rate(kInfinity); });
 }
 
-TEST(Convert, OfASetpointItsKindSaysWhatCounts) {
+TEST(Convert, SetpointKindSelectsTheFieldsThatAreRead) {
   using control::SetpointKind;
   control::Setpoint all = setpoint();
   all.q_ned_from_frd = Eigen::Quaterniond(0.5, -0.5, 0.5, 0.5);
   all.body_rates_frd = {0.1, 0.2, 0.3};
   all.specific_thrust = 9.0;
-  const auto taken = [&all](SetpointKind kind) {
+  const auto converted = [&all](SetpointKind kind) {
     all.kind = kind;
     control::Setpoint out;
     EXPECT_STREQ(from_message(to_message(all), out).text, "");
@@ -184,7 +184,7 @@ TEST(Convert, OfASetpointItsKindSaysWhatCounts) {
   const Eigen::Vector3d nothing = Eigen::Vector3d::Zero();
   for (const SetpointKind kind :
        {SetpointKind::kPosition, SetpointKind::kVelocity, SetpointKind::kAcceleration}) {
-    const control::Setpoint out = taken(kind);
+    const control::Setpoint out = converted(kind);
     EXPECT_EQ(out.position_ned, kind == SetpointKind::kPosition ? all.position_ned : nothing);
     EXPECT_EQ(out.velocity_ned, kind == SetpointKind::kAcceleration ? nothing : all.velocity_ned);
     EXPECT_EQ(out.acceleration_ned, all.acceleration_ned);
@@ -192,12 +192,12 @@ TEST(Convert, OfASetpointItsKindSaysWhatCounts) {
     EXPECT_EQ(out.yaw_rate, all.yaw_rate);
     EXPECT_EQ(out.specific_thrust, 0.0);
   }
-  const control::Setpoint attitude = taken(SetpointKind::kAttitude);
+  const control::Setpoint attitude = converted(SetpointKind::kAttitude);
   EXPECT_EQ(attitude.q_ned_from_frd.coeffs(), all.q_ned_from_frd.coeffs());
   EXPECT_EQ(attitude.body_rates_frd, all.body_rates_frd);
   EXPECT_EQ(attitude.specific_thrust, all.specific_thrust);
   EXPECT_EQ(attitude.acceleration_ned, nothing);
-  const control::Setpoint rates = taken(SetpointKind::kBodyRates);
+  const control::Setpoint rates = converted(SetpointKind::kBodyRates);
   EXPECT_EQ(rates.q_ned_from_frd.coeffs(), Eigen::Quaterniond::Identity().coeffs());
   EXPECT_EQ(rates.body_rates_frd, all.body_rates_frd);
 
@@ -222,7 +222,7 @@ TEST(Convert, OfASetpointItsKindSaysWhatCounts) {
       });
 }
 
-TEST(Convert, BrokenRequestsAreRefused) {
+TEST(Convert, RefusesInvalidRequests) {
   expect_refused<control::Request>(example<msg::Command>(), "kind is 12, must be at most 11",
                                    [](msg::Command& m) { m.kind(12); });
   expect_refused<control::Request>(example<msg::Command>(), "position_ned[1] is nan, must be finite",
@@ -247,7 +247,7 @@ TEST(Convert, BrokenRequestsAreRefused) {
                                       [](msg::Trajectory& m) { m.segments()[1].duration_s(-2.0); });
 }
 
-TEST(Convert, AnUntrackedPoseNeedsNoMeaning) {
+TEST(Convert, IgnoresThePositionOfAnUntrackedPose) {
   msg::MocapPose message = example<msg::MocapPose>();
   message.tracked(false);
   message.position_ned()[0] = kNan;
@@ -257,7 +257,7 @@ TEST(Convert, AnUntrackedPoseNeedsNoMeaning) {
   EXPECT_EQ(pose.position_ned, Eigen::Vector3d::Zero());
 }
 
-TEST(Convert, RotorsBeyondTheCountAreLeftOut) {
+TEST(Convert, IgnoresRotorsBeyondTheCount) {
   msg::ActuatorCommand message = example<msg::ActuatorCommand>();
   message.throttle()[6] = kNan;
   plant::ActuatorCommand command;

@@ -1,4 +1,4 @@
-// Messages with a value of its own in every field.
+// Example messages with a distinct value in every field.
 #pragma once
 
 #include <array>
@@ -265,7 +265,7 @@ inline msg::CommandAck example() {
   message.client(3);
   message.id(4);
   message.accepted(false);
-  message.reason() = std::string(192, 'x');  // as long as it can be
+  message.reason() = std::string(192, 'x');  // maximum length
   return message;
 }
 template <>

@@ -1,4 +1,4 @@
-// The loop of simulated time against a controller and motion capture on the network that answer, or do not.
+// The lockstep loop with a controller and motion capture that answer, or stay silent.
 #include "swiftlet/services/plant/lockstep_loop.hpp"
 
 #include <atomic>
@@ -86,13 +86,14 @@ class Lockstep : public testing::Test {
     command.rotor_count = 4;
     commands_.publish(comms::to_message(command));
   }
-  void grant(std::int64_t stamp_ns) {
+  void advance_to(std::int64_t stamp_ns) {
     msg::SimulationClock clock;
     clock.advance_to_ns(stamp_ns);
     clock_.publish(clock);
   }
-  // That this sample is the newest, and has come so often: what is due comes again while time stands still.
-  bool comes_again(std::int64_t stamp_ns, std::size_t times = 4) const {
+  // Waits until this sample is the newest and was received `times` times: it is resent while time stands
+  // still.
+  bool is_resent(std::int64_t stamp_ns, std::size_t times = 4) const {
     return samples_.wait([=](const Samples& samples) {
       std::size_t found = 0;
       for (const msg::Imu& sample : samples) found += sample.stamp_ns() == stamp_ns ? 1 : 0;
@@ -100,12 +101,12 @@ class Lockstep : public testing::Test {
     });
   }
   std::string failure() const {
-    return failure_.wait_for_count(1) ? failure_.items().front() : std::string("none came");
+    return failure_.wait_for_count(1) ? failure_.items().front() : std::string("no failure");
   }
 
   plant::SimulationSettings settings_;
   Inbox<msg::Imu> samples_;
-  std::atomic<bool> answers_{false};  // each sample at once
+  std::atomic<bool> answers_{false};  // answer each sample at once
   std::atomic<bool> mocap_answers_{true};
   std::int64_t began_ns_ = 0;
   comms::DomainLock lock_;
@@ -115,7 +116,7 @@ class Lockstep : public testing::Test {
   std::optional<LockstepLoop> loop_;
 
  private:
-  // As motion capture does: a frame of the truth, or a sign that there is none.
+  // As motion capture does: publishes a pose, or a message without one.
   void on_truth(const msg::GroundTruth& message) {
     if (!mocap_answers_) return;
     plant::TruthSample truth;
@@ -140,34 +141,34 @@ class Lockstep : public testing::Test {
   comms::Publisher<msg::SimulationClock> clock_ = peer_node_.publish(comms::topics::kSimulationClock);
   comms::Publisher<msg::ActuatorCommand> commands_ = peer_node_.publish(comms::topics::kActuatorCommand);
   comms::Publisher<msg::MocapPose> poses_ = peer_node_.publish(comms::topics::kMocapPose);
-  comms::Subscription truth_;  // last: their callbacks use what stands above
+  comms::Subscription truth_;  // last: the callbacks use the members above
   comms::Subscription imu_;
 };
 
-LockstepSettings patient() {
+LockstepSettings with_long_patience() {
   LockstepSettings settings;
   settings.patience_s = 60.0;
   return settings;
 }
 
-TEST_F(Lockstep, TimeWaitsForTheCommandThatAnswersTheNewestSample) {
-  start(patient());
-  ASSERT_TRUE(comes_again(0)) << "it is sent again until it is answered";
+TEST_F(Lockstep, TimeWaitsForTheAnswerToTheNewestSample) {
+  start(with_long_patience());
+  ASSERT_TRUE(is_resent(0)) << "the sample is resent until it is answered";
   const msg::Imu first = samples_.items().front();
   answer(first);
-  ASSERT_TRUE(comes_again(kPeriod_ns));
-  answer(first);  // an answer that came again
+  ASSERT_TRUE(is_resent(kPeriod_ns));
+  answer(first);  // a repeated answer
   samples_.clear();
-  ASSERT_TRUE(comes_again(kPeriod_ns, 3));
+  ASSERT_TRUE(is_resent(kPeriod_ns, 3));
   const msg::Imu second = samples_.items().back();
   EXPECT_EQ(second.sequence_number(), first.sequence_number() + 1);
   answer(second);
-  ASSERT_TRUE(comes_again(2 * kPeriod_ns));
+  ASSERT_TRUE(is_resent(2 * kPeriod_ns));
 }
 
-TEST_F(Lockstep, NoSampleIsLeftOut) {
+TEST_F(Lockstep, PublishesEverySample) {
   answers_ = true;
-  start(patient());
+  start(with_long_patience());
   ASSERT_TRUE(samples_.wait([](const Samples& samples) {
     return !samples.empty() && samples.back().stamp_ns() >= 200 * kPeriod_ns;
   }));
@@ -185,54 +186,66 @@ TEST_F(Lockstep, NoSampleIsLeftOut) {
               2.0);
 }
 
-TEST_F(Lockstep, NamesAControllerThatIsSilent) {
+TEST_F(Lockstep, NamesASilentController) {
   LockstepSettings settings;
   settings.patience_s = 0.3;
   start(settings);
   EXPECT_EQ(failure(), "lockstep: control is silent: IMU sample 1 of t = 0.000 s has no answer for 0.3 s");
 }
 
-TEST_F(Lockstep, NamesMotionCaptureThatIsSilent) {
+TEST_F(Lockstep, NamesSilentMotionCapture) {
   answers_ = true;
   mocap_answers_ = false;
   LockstepSettings settings;
   settings.patience_s = 0.3;
   start(settings);
   EXPECT_EQ(failure().rfind("lockstep: mocap is silent: ", 0), 0U) << failure();
-  EXPECT_EQ(samples_.items().back().stamp_ns(), 0) << "time has not passed";
+  EXPECT_EQ(samples_.items().back().stamp_ns(), 0) << "time must not advance";
 }
 
-// Time passes as far as it is granted, and a smaller grant takes nothing back.
-TEST_F(Lockstep, PausedTimePassesAsFarAsItIsGranted) {
+// Time advances up to the simulation clock; an earlier clock message has no effect.
+TEST_F(Lockstep, PausedTimeAdvancesWithTheSimulationClock) {
   answers_ = true;
-  LockstepSettings settings = patient();
+  LockstepSettings settings = with_long_patience();
   settings.paused = true;
   start(settings);
-  grant(0);
-  ASSERT_TRUE(comes_again(0));
-  grant(3 * kPeriod_ns + kPeriod_ns / 2);
-  ASSERT_TRUE(comes_again(3 * kPeriod_ns));
-  grant(kPeriod_ns);
+  advance_to(0);
+  ASSERT_TRUE(is_resent(0));
+  advance_to(3 * kPeriod_ns + kPeriod_ns / 2);
+  ASSERT_TRUE(is_resent(3 * kPeriod_ns));
+  advance_to(kPeriod_ns);
   samples_.clear();
-  ASSERT_TRUE(comes_again(3 * kPeriod_ns));
-  grant(10 * kPeriod_ns);
-  ASSERT_TRUE(comes_again(10 * kPeriod_ns));
+  ASSERT_TRUE(is_resent(3 * kPeriod_ns));
+  advance_to(10 * kPeriod_ns);
+  ASSERT_TRUE(is_resent(10 * kPeriod_ns));
 }
 
-TEST_F(Lockstep, NamesAGroundThatGrantsNoMore) {
+// A late grant must not take back one whose time has not been used yet: here no answer lets time advance.
+TEST_F(Lockstep, ASmallerGrantLeavesTheLargerOneInForce) {
+  LockstepSettings settings = with_long_patience();
+  settings.paused = true;
+  start(settings);
+  advance_to(4 * kPeriod_ns);
+  advance_to(kPeriod_ns);
+  ASSERT_TRUE(is_resent(0, 8));
+  answers_ = true;
+  EXPECT_TRUE(is_resent(4 * kPeriod_ns));
+}
+
+TEST_F(Lockstep, NamesASilentGround) {
   answers_ = true;
   LockstepSettings settings;
   settings.paused = true;
-  settings.patience_s = 2.0;  // also for answers, on a computer that has much to do
+  settings.patience_s = 2.0;  // also for answers on a loaded machine
   start(settings);
-  grant(5 * kPeriod_ns);
+  advance_to(5 * kPeriod_ns);
   EXPECT_EQ(failure(), "lockstep: ground is silent: no simulation_clock has come for 2 s");
 }
 
-// However fast the answers come, at half the speed of the clock at most.
-TEST_F(Lockstep, KeepsToItsSpeed) {
+// However fast the answers arrive, simulated time runs at half the speed of the clock at most.
+TEST_F(Lockstep, DoesNotExceedItsSpeed) {
   answers_ = true;
-  LockstepSettings settings = patient();
+  LockstepSettings settings = with_long_patience();
   settings.speed = 0.5;
   start(settings);
   std::int64_t newest_ns = 0;
@@ -245,7 +258,7 @@ TEST_F(Lockstep, KeepsToItsSpeed) {
 }
 
 TEST_F(Lockstep, RefusesATraceThatCannotBeWritten) {
-  LockstepSettings settings = patient();
+  LockstepSettings settings = with_long_patience();
   settings.trace = "/proc/none/trace.csv";
   vehicle_.emplace(tests::kaylion(), settings_, kSeed, plant::VehicleState(), plant_node_);
   EXPECT_THROW(LockstepLoop(*vehicle_, settings_, kSeed, settings, 4, plant_node_), std::runtime_error);

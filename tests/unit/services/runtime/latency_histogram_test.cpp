@@ -19,7 +19,7 @@ TEST(LatencyHistogram, IsEmptyAtFirst) {
   EXPECT_EQ(histogram.max_ns(), 0);
 }
 
-TEST(LatencyHistogram, QuantilesAreThoseOfTheSortedValuesWithinABucket) {
+TEST(LatencyHistogram, QuantilesMatchSortedValuesWithinABucket) {
   std::mt19937_64 random(1);
   std::lognormal_distribution<double> durations(std::log(80'000.0),
                                                 2.0);  // ns: from below 1 us to beyond 10 ms
@@ -44,7 +44,7 @@ TEST(LatencyHistogram, QuantilesAreThoseOfTheSortedValuesWithinABucket) {
   EXPECT_EQ(histogram.count(), sorted.size());
 }
 
-TEST(LatencyHistogram, EveryPowerOfTwoAndItsNeighboursAreKeptWithinABucket) {
+TEST(LatencyHistogram, ResolvesPowersOfTwoWithinABucket) {
   for (int bit = 0; bit < 36; ++bit) {
     for (const std::int64_t offset : {-1, 0, 1}) {
       const std::int64_t value = (std::int64_t{1} << bit) + offset;
@@ -57,7 +57,7 @@ TEST(LatencyHistogram, EveryPowerOfTwoAndItsNeighboursAreKeptWithinABucket) {
   }
 }
 
-TEST(LatencyHistogram, TakesWhatIsOutOfRange) {
+TEST(LatencyHistogram, ClampsValuesOutOfRange) {
   LatencyHistogram histogram;
   histogram.record(-5);
   EXPECT_EQ(histogram.quantile_ns(1.0), 0);
@@ -66,7 +66,7 @@ TEST(LatencyHistogram, TakesWhatIsOutOfRange) {
   EXPECT_EQ(histogram.quantile_ns(1.0), (std::int64_t{1} << 36) - 1);
 }
 
-TEST(LatencyHistogram, ForgetsOnReset) {
+TEST(LatencyHistogram, ResetClearsIt) {
   LatencyHistogram histogram;
   histogram.record(1000);
   histogram.reset();

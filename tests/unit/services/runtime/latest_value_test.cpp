@@ -10,7 +10,7 @@
 namespace swiftlet::runtime {
 namespace {
 
-TEST(LatestValue, GivesTheNewestValueOnce) {
+TEST(LatestValue, ReturnsTheNewestValueOnce) {
   LatestValue<int> latest;
   int value = -1;
   EXPECT_FALSE(latest.take(value));
@@ -25,7 +25,7 @@ TEST(LatestValue, GivesTheNewestValueOnce) {
   EXPECT_EQ(value, 3);
 }
 
-// A value is whole and newer than the one before, however the threads meet; the last one put arrives.
+// Values are never torn and only get newer for any interleaving; the last one put arrives.
 TEST(LatestValue, ValuesAreWholeAndInOrderBetweenThreads) {
   constexpr std::uint64_t kLast = 200'000;
   using Value = std::array<std::uint64_t, 16>;

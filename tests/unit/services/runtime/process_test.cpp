@@ -1,4 +1,4 @@
-// What the services' mains rest on: exit codes, stop signals, log, real-time rights.
+// Base of the services' main functions: exit codes, stop signals, logging, real-time privileges.
 #include "swiftlet/services/runtime/process.hpp"
 
 #include <chrono>
@@ -39,7 +39,7 @@ int run(std::vector<std::string> words, const std::function<void()>& body) {
       [&](CommandLine app) { add_process_options(app, options); }, body);
 }
 
-TEST(RunProcess, ExitCodesTellHowItEnded) {
+TEST(RunProcess, ExitCodeDependsOnTheException) {
   bool ran = false;
   EXPECT_EQ(run({}, [&] { ran = true; }), 0);
   EXPECT_TRUE(ran);
@@ -48,7 +48,7 @@ TEST(RunProcess, ExitCodesTellHowItEnded) {
   EXPECT_EQ(run({}, [] { throw std::runtime_error("broken"); }), 1);
 }
 
-TEST(RunProcess, WrongUsageRunsNothing) {
+TEST(RunProcess, WrongUsageDoesNotRunTheBody) {
   bool ran = false;
   const auto body = [&] { ran = true; };
   EXPECT_EQ(run({"--no-such-option"}, body), 2);
@@ -58,13 +58,13 @@ TEST(RunProcess, WrongUsageRunsNothing) {
   EXPECT_FALSE(ran);
 }
 
-TEST(RunProcess, AFaultIsOneLine) {
+TEST(RunProcess, PrintsAFaultAsOneLine) {
   testing::internal::CaptureStderr();
   run({}, [] { throw ConfigError("a.yaml", 3, "mass", "is 0, must be above 0"); });
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "prog: a.yaml:3: mass: is 0, must be above 0\n");
 }
 
-// Signals and limits are the process's: a child has its own.
+// Runs body in a child process, which has its own signals and limits.
 int in_child(const std::function<int()>& body) {
   const pid_t pid = ::fork();
   if (pid == 0) ::_exit(body());
@@ -73,8 +73,8 @@ int in_child(const std::function<int()>& body) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-// 8 MiB for each thread would all be resident once memory is locked.
-TEST(RunProcess, ItsThreadsHaveStacksOfOneMebibyte) {
+// With the default of 8 MiB, all stacks would be resident once memory is locked.
+TEST(RunProcess, ThreadStacksAreOneMebibyte) {
   EXPECT_EQ(in_child([] {
               std::size_t bytes = 0;
               run({}, [&bytes] {
@@ -90,7 +90,7 @@ TEST(RunProcess, ItsThreadsHaveStacksOfOneMebibyte) {
             0);
 }
 
-TEST(StopSignal, SignalsAreRequestsToEnd) {
+TEST(StopSignal, SigintAndSigtermRequestAStop) {
   for (const int signal : {SIGINT, SIGTERM}) {
     EXPECT_EQ(in_child([signal] {
                 StopSignal stop;
@@ -103,7 +103,7 @@ TEST(StopSignal, SignalsAreRequestsToEnd) {
   }
 }
 
-TEST(StopSignal, AnyThreadMayRequestToEnd) {
+TEST(StopSignal, AnyThreadMayRequestAStop) {
   EXPECT_EQ(in_child([] {
               StopSignal stop;
               std::thread other([&] { stop.request(); });
@@ -114,7 +114,7 @@ TEST(StopSignal, AnyThreadMayRequestToEnd) {
             0);
 }
 
-TEST(Realtime, WithoutRightsItIsRefusedInWords) {
+TEST(Realtime, RefusalWithoutPrivilegesIsExplained) {
   constexpr int kCannotDropRights = 77;
   const int code = in_child([] {
     rlimit none{0, 0};
@@ -129,11 +129,11 @@ TEST(Realtime, WithoutRightsItIsRefusedInWords) {
     if (lock_memory() != "memory is not locked (RLIMIT_MEMLOCK is limited)") return 2;
     return this_thread_is_realtime() ? 3 : 0;
   });
-  if (code == kCannotDropRights) GTEST_SKIP() << "cannot drop the rights of root";
+  if (code == kCannotDropRights) GTEST_SKIP() << "cannot drop root privileges";
   EXPECT_EQ(code, 0);
 }
 
-TEST(Realtime, ACoreThatIsNotThereIsRefusedInWords) {
+TEST(Realtime, RefusalOfAMissingCoreIsExplained) {
   EXPECT_EQ(in_child([] {
               RealtimeSettings settings;
               settings.priority = 10;
@@ -144,7 +144,7 @@ TEST(Realtime, ACoreThatIsNotThereIsRefusedInWords) {
             0);
 }
 
-TEST(Logging, WritesWhatIsQueuedAtItsEnd) {
+TEST(Logging, DestructorFlushesTheQueue) {
   const auto path = std::filesystem::temp_directory_path() / ("swiftlet-log-" + std::to_string(::getpid()));
   testing::internal::CaptureStderr();
   {
@@ -161,7 +161,7 @@ TEST(Logging, WritesWhatIsQueuedAtItsEnd) {
   EXPECT_NE(text.str().find("test warning: line 99\n"), std::string::npos);
 }
 
-TEST(Logging, AFileThatCannotBeWrittenIsNamed) {
+TEST(Logging, NamesAFileThatCannotBeWritten) {
   try {
     const Logging logging("test", {"info", "/proc/no/such/file"});
     FAIL();

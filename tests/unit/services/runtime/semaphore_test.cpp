@@ -11,7 +11,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kLong = 60s;  // as long as no test takes
+constexpr auto kLong = 60s;  // longer than any test
 
 TEST(Semaphore, APostBeforeTheWaitIsNotLost) {
   Semaphore semaphore;
@@ -21,7 +21,7 @@ TEST(Semaphore, APostBeforeTheWaitIsNotLost) {
   EXPECT_LT(Clock::now() - began, kLong / 2);
 }
 
-// Many posts wake once: a wait after the first lasts until its time has passed.
+// Many posts wake one wait: the next wait lasts its full time.
 TEST(Semaphore, PostsAreNotCounted) {
   Semaphore semaphore;
   for (int i = 0; i < 5; ++i) semaphore.post();
@@ -31,7 +31,7 @@ TEST(Semaphore, PostsAreNotCounted) {
   EXPECT_GE(Clock::now() - began, 20ms);
 }
 
-TEST(Semaphore, WhatWasWrittenBeforeThePostIsSeenAfterTheWait) {
+TEST(Semaphore, PostSynchronizesWithTheWait) {
   Semaphore there;
   Semaphore back;
   int value = 0;

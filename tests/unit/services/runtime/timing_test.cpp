@@ -1,5 +1,5 @@
-// The periodic timer and the semaphore, against the clock. Bounds are one-sided or generous: the machine may
-// be loaded.
+// The periodic timer and the semaphore against the clock. Bounds are one-sided or generous for loaded
+// machines.
 #include <chrono>
 #include <thread>
 
@@ -24,29 +24,29 @@ TEST(PeriodicTimer, NeverTicksBeforeItsTime) {
   }
 }
 
-TEST(PeriodicTimer, MakesUpForSmallDelays) {
+TEST(PeriodicTimer, CatchesUpSmallDelays) {
   const std::int64_t start = monotonic_ns();
   PeriodicTimer timer(2 * kMillisecond, 10'000 * kMillisecond);
   timer.wait();
   while (monotonic_ns() - start < 20 * kMillisecond) {
   }
-  for (int tick = 2; tick <= 9; ++tick) EXPECT_EQ(timer.wait(), 0);  // at once: their times have passed
+  for (int tick = 2; tick <= 9; ++tick) EXPECT_EQ(timer.wait(), 0);  // returns at once: the times have passed
   timer.wait();
   timer.wait();
   EXPECT_GE(monotonic_ns() - start, 22 * kMillisecond);  // the eleventh is on time again
 }
 
-TEST(PeriodicTimer, PutsOffWhatIsTooLate) {
+TEST(PeriodicTimer, SkipsTicksThatAreTooLate) {
   const std::int64_t start = monotonic_ns();
   PeriodicTimer timer(2 * kMillisecond, 4 * kMillisecond);
-  std::int64_t put_off = timer.wait();  // 0, or what a busy machine made of it
-  while (monotonic_ns() - start < 30 * kMillisecond + put_off) {
+  std::int64_t skipped_ns = timer.wait();  // 0, or more on a busy machine
+  while (monotonic_ns() - start < 30 * kMillisecond + skipped_ns) {
   }
   const std::int64_t too_late = timer.wait();
   EXPECT_GE(too_late, 26 * kMillisecond);
-  put_off += too_late;
+  skipped_ns += too_late;
   timer.wait();
-  EXPECT_GE(monotonic_ns() - start, 4 * kMillisecond + put_off + 2 * kMillisecond);  // no burst
+  EXPECT_GE(monotonic_ns() - start, 4 * kMillisecond + skipped_ns + 2 * kMillisecond);  // no burst
 }
 
 TEST(Semaphore, WakesAWaitingThread) {
@@ -58,7 +58,7 @@ TEST(Semaphore, WakesAWaitingThread) {
   poster.join();
 }
 
-TEST(Semaphore, RemembersOnePostOfMany) {
+TEST(Semaphore, CountsManyPostsAsOne) {
   Semaphore semaphore;
   semaphore.post();
   semaphore.post();

@@ -18,7 +18,9 @@ control::ControlSettings settings(control::AttitudeModel model, double integral_
   control::ControlSettings s =
       runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml");
   s.attitude.model = model;
-  s.attitude.roll = s.attitude.pitch = s.attitude.yaw = {Eigen::Vector3d(625.0, 2.0, 0.5), 4.0};
+  s.attitude.roll = {Eigen::Vector3d(625.0, 2.0, 0.5), 4.0};
+  s.attitude.pitch = {Eigen::Vector3d(500.0, 2.0, 0.5), 4.0};
+  s.attitude.yaw = {Eigen::Vector3d(100.0, 2.0, 0.5), 4.0};
   s.position.x = s.position.y = s.position.z = {1.5, 0.8, 0.5, integral_pole};
   return s;
 }
@@ -28,7 +30,7 @@ control::ControlDesign design(control::AttitudeModel model, double integral_pole
   return control::design(vehicle, settings(model, integral_pole));
 }
 
-TEST(GainsJson, GivesEveryAttitudeAxisOnItsModel) {
+TEST(GainsJson, ListsEveryAttitudeAxisWithItsModel) {
   for (const control::AttitudeModel model :
        {control::AttitudeModel::kDoubleIntegrator, control::AttitudeModel::kMotorLag}) {
     const bool lag = model == control::AttitudeModel::kMotorLag;
@@ -36,26 +38,32 @@ TEST(GainsJson, GivesEveryAttitudeAxisOnItsModel) {
     const Json out = Json::parse(gains_json(d, {}, "kaylion", "test"));
     EXPECT_EQ(out["vehicle"], "kaylion");
     EXPECT_EQ(out["control"], "test");
-    for (const char* name : {"roll", "pitch", "yaw"}) {
-      const Json& axis = out["attitude"][name];
+    struct Axis {
+      const char* name;
+      double q;
+      const decltype(d.roll)& design;
+    };
+    for (const Axis& wanted :
+         {Axis{"roll", 625.0, d.roll}, {"pitch", 500.0, d.pitch}, {"yaw", 100.0, d.yaw}}) {
+      const Json& axis = out["attitude"][wanted.name];
       EXPECT_EQ(axis["model"], lag ? "motor_lag" : "double_integrator");
-      EXPECT_EQ(axis["q"], lag ? Json({625.0, 2.0, 0.5}) : Json({625.0, 2.0}));
+      EXPECT_EQ(axis["q"], lag ? Json({wanted.q, 2.0, 0.5}) : Json({wanted.q, 2.0}));
       EXPECT_EQ(axis["r"], 4.0);
       ASSERT_EQ(axis["k"].size(), lag ? 3U : 2U);
       for (std::size_t i = 0; i < axis["k"].size(); ++i) {
-        EXPECT_EQ(axis["k"][i], d.roll.k[static_cast<Eigen::Index>(i)]);
+        EXPECT_EQ(axis["k"][i], wanted.design.k[static_cast<Eigen::Index>(i)]);
       }
       ASSERT_EQ(axis["poles"].size(), axis["k"].size());
       for (std::size_t i = 0; i < axis["poles"].size(); ++i) {
-        EXPECT_EQ(axis["poles"][i], Json({d.roll.poles[i].real(), d.roll.poles[i].imag()}));
+        EXPECT_EQ(axis["poles"][i], Json({wanted.design.poles[i].real(), wanted.design.poles[i].imag()}));
       }
       EXPECT_EQ(axis["poles_with_motor_lag"].size(), 3U);
-      EXPECT_EQ(axis["phase_margin_deg"], d.roll.phase_margin_deg);
+      EXPECT_EQ(axis["phase_margin_deg"], wanted.design.phase_margin_deg);
     }
   }
 }
 
-TEST(GainsJson, GivesEq49AndTheIntegralFormBesideIt) {
+TEST(GainsJson, ListsEq49AndTheIntegralForm) {
   for (const double integral_pole : {0.0, 0.4}) {
     const Json out =
         Json::parse(gains_json(design(control::AttitudeModel::kMotorLag, integral_pole), {}, "v", "c"));

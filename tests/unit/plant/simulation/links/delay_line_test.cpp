@@ -18,7 +18,7 @@ TEST(DelayLine, HoldsEachItemUntilItIsDue) {
   EXPECT_TRUE(line.empty());
 }
 
-TEST(DelayLine, GivesTheNewestOfThoseThatHaveArrivedTogether) {
+TEST(DelayLine, ReturnsTheNewestOfTheItemsThatAreDue) {
   DelayLine<int> line(4);
   line.put(1, 100);
   line.put(2, 110);
@@ -27,7 +27,7 @@ TEST(DelayLine, GivesTheNewestOfThoseThatHaveArrivedTogether) {
   EXPECT_EQ(line.take(120), 3);
 }
 
-// A delay that grows shorter: nothing overtakes what is under way.
+// With a decreasing delay no item overtakes an earlier one.
 TEST(DelayLine, KeepsTheOrder) {
   DelayLine<int> line(4);
   line.put(1, 300);
@@ -36,7 +36,7 @@ TEST(DelayLine, KeepsTheOrder) {
   EXPECT_EQ(line.take(300), 2);
 }
 
-TEST(DelayLine, LosesTheOldestWhenItIsFull) {
+TEST(DelayLine, DropsTheOldestWhenFull) {
   for (const int capacity : {1, 2, 3}) {
     DelayLine<int> line(static_cast<std::size_t>(capacity));
     for (int i = 1; i <= 7; ++i) line.put(i, 10 * i);
@@ -51,16 +51,16 @@ TEST(DelayLine, LosesTheOldestWhenItIsFull) {
   }
   DelayLine<int> none(0);
   none.put(5, 10);
-  EXPECT_EQ(none.take(10), 5) << "one is the least";
+  EXPECT_EQ(none.take(10), 5) << "the minimum capacity is one";
 }
 
-TEST(DelayLine, ForgetsWhatIsUnderWay) {
+TEST(DelayLine, ClearDropsItemsUnderWay) {
   DelayLine<int> line(2);
   line.put(1, 500);
   line.clear();
   EXPECT_TRUE(line.empty());
   line.put(2, 100);
-  EXPECT_EQ(line.take(100), 2) << "not held back by what was forgotten";
+  EXPECT_EQ(line.take(100), 2) << "delayed by an item that was cleared";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// How many processes of a host find each other. Ports that are taken stand in for processes.
+// How many processes of a host discover each other. Occupied ports stand in for processes.
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
 
 #include <arpa/inet.h>
@@ -22,7 +22,7 @@ namespace {
 
 using swiftlet::tests::Inbox;
 
-// Takes the first ports of a domain.
+// Occupies the first ports of a domain.
 class TakenPorts {
  public:
   TakenPorts(int domain, std::uint32_t count) {
@@ -57,7 +57,7 @@ NodeSettings settings(const DomainLock& lock, const char* name) {
   return settings;
 }
 
-TEST(DiscoveryPorts, OfADomainEndBeforeTheNextOnes) {
+TEST(DiscoveryPorts, DoNotOverlapBetweenDomains) {
   for (int domain = 0; domain < 232; ++domain) {
     const DiscoveryPorts ports = discovery_ports(domain);
     ASSERT_EQ(ports.count, 120U) << domain;
@@ -69,11 +69,11 @@ TEST(DiscoveryPorts, OfADomainEndBeforeTheNextOnes) {
   EXPECT_EQ(last.last() + 1, 65535U);
 }
 
-// The one takes the first port that is free, the other the last of the domain.
-TEST(DiscoveryPorts, TheFirstAndTheLastProcessFindEachOther) {
+// The first node takes the first free port, the last one the last port of the domain.
+TEST(DiscoveryPorts, LetFirstAndLastProcessDiscoverEachOther) {
   const DomainLock lock;
   const std::uint32_t count = discovery_ports(lock.domain()).count;
-  const TakenPorts but_the_last(lock.domain(), count - 2);
+  const TakenPorts all_but_last(lock.domain(), count - 2);
   Node first(settings(lock, "first"));
   Inbox<std::string> found_by_first;
   first.on_peer([&](const PeerEvent& peer) { found_by_first.put(peer.name); });
@@ -89,13 +89,13 @@ TEST(DiscoveryPorts, TheFirstAndTheLastProcessFindEachOther) {
   first.on_peer({});
 }
 
-// The one with the last port was there before; the other takes the first, and announces itself to few.
-TEST(DiscoveryPorts, OneThatComesLaterWithALowerPortIsFoundByTheHigherOne) {
+// GIVEN a node on the last port WHEN one joins on the first port and announces itself to few ports
+TEST(DiscoveryPorts, LetAHigherPortDiscoverALaterLowerOne) {
   const DomainLock lock;
   const DiscoveryPorts ports = discovery_ports(lock.domain());
-  std::optional<TakenPorts> but_the_last(std::in_place, lock.domain(), ports.count - 1);
+  std::optional<TakenPorts> all_but_last(std::in_place, lock.domain(), ports.count - 1);
   Node high(settings(lock, "high"));
-  but_the_last.reset();
+  all_but_last.reset();
   Inbox<std::string> found_by_high;
   high.on_peer([&](const PeerEvent& peer) { found_by_high.put(peer.name); });
   Node low(settings(lock, "low"));
@@ -109,14 +109,14 @@ TEST(DiscoveryPorts, OneThatComesLaterWithALowerPortIsFoundByTheHigherOne) {
   high.on_peer({});
 }
 
-TEST(DiscoveryPorts, EachIsAnnouncedToFromAllAbove) {
+TEST(DiscoveryPorts, AreAnnouncedToFromAllHigherPorts) {
   const DiscoveryPorts ports = discovery_ports(0);
   for (std::uint32_t own = 0; own < ports.count; ++own) ASSERT_GT(announced_ports(ports, own), own);
   EXPECT_EQ(announced_ports(ports, 0), 17U);
   EXPECT_EQ(announced_ports(ports, ports.count - 1), ports.count);
 }
 
-TEST(DiscoveryPorts, OnesOwnAreKnown) {
+TEST(DiscoveryPorts, OfThisProcessAreListed) {
   const DomainLock lock;
   const TakenPorts three(lock.domain(), 3);
   EXPECT_EQ(own_discovery_ports(lock.domain()), (std::set<std::uint32_t>{0, 1, 2}));
@@ -125,7 +125,7 @@ TEST(DiscoveryPorts, OnesOwnAreKnown) {
   EXPECT_EQ(own_discovery_ports(lock.domain()), (std::set<std::uint32_t>{0, 1, 2, 3}));
 }
 
-TEST(DiscoveryPorts, AProcessThatWouldNotBeFoundIsRefusedInWords) {
+TEST(DiscoveryPorts, FullDomainIsRefused) {
   const DomainLock lock;
   const DiscoveryPorts ports = discovery_ports(lock.domain());
   const TakenPorts all(lock.domain(), ports.count);
@@ -140,8 +140,8 @@ TEST(DiscoveryPorts, AProcessThatWouldNotBeFoundIsRefusedInWords) {
   }
 }
 
-// Its ports end with those of UDP, before 120 processes have one.
-TEST(DiscoveryPorts, TheLastDomainCanBeJoined) {
+// Domain 232 has fewer than 120 ports below the end of the UDP range.
+TEST(DiscoveryPorts, LastDomainCanBeJoined) {
   NodeSettings settings;
   settings.name = "here";
   settings.domain = 232;

@@ -11,9 +11,9 @@ using namespace std::chrono_literals;
 
 using Peers = RediscoveryMonitor<int>;
 
-class ReunionsTest : public testing::Test {
+class RediscoveryMonitorTest : public testing::Test {
  protected:
-  ReunionsTest() {
+  RediscoveryMonitorTest() {
     rediscovery_.came(1, start_);
     rediscovery_.has(1, Peers::kWriter);
     rediscovery_.has(1, Peers::kReader);
@@ -26,14 +26,14 @@ class ReunionsTest : public testing::Test {
   Peers rediscovery_;
 };
 
-TEST_F(ReunionsTest, APeerIsNotMissedBeforeItIsBack) {
+TEST_F(RediscoveryMonitorTest, IgnoresALostPeerUntilItReturns) {
   rediscovery_.came(2, start_);
-  EXPECT_FALSE(failed_after(1min)) << "it may have none";
+  EXPECT_FALSE(failed_after(1min)) << "it may have no endpoints";
   rediscovery_.lost(1);
   EXPECT_FALSE(failed_after(2min));
 }
 
-TEST_F(ReunionsTest, ItFailsWhenAKindOfEndpointStaysAway) {
+TEST_F(RediscoveryMonitorTest, FailsWhenAKindOfEndpointDoesNotReturn) {
   for (const auto kind : {Peers::kWriter, Peers::kReader}) {
     rediscovery_.lost(1);
     rediscovery_.came(1, start_);
@@ -45,7 +45,7 @@ TEST_F(ReunionsTest, ItFailsWhenAKindOfEndpointStaysAway) {
   EXPECT_FALSE(failed_after(1100ms));
 }
 
-TEST_F(ReunionsTest, ItSucceedsWithAllKinds) {
+TEST_F(RediscoveryMonitorTest, SucceedsWhenAllEndpointKindsReturn) {
   rediscovery_.lost(1);
   rediscovery_.came(1, start_);
   rediscovery_.has(1, Peers::kReader);
@@ -53,7 +53,7 @@ TEST_F(ReunionsTest, ItSucceedsWithAllKinds) {
   EXPECT_FALSE(failed_after(1min));
 }
 
-TEST_F(ReunionsTest, OneThatIsLostAgainOrSaysGoodbyeIsNoLongerAwaited) {
+TEST_F(RediscoveryMonitorTest, StopsWaitingForALostOrDepartedPeer) {
   for (const bool goodbye : {false, true}) {
     rediscovery_.lost(1);
     rediscovery_.came(1, start_);

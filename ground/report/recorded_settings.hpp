@@ -11,6 +11,6 @@ namespace swiftlet::ground {
 // Returns key and value, such as "control.position.x.omega_n" and "2.0", of every setting in control.yaml,
 // mission.yaml, simulation.yaml and vehicle.yaml. Skips a file that does not exist. Throws
 // runtime::ConfigError for a file that is not YAML.
-std::vector<std::pair<std::string, std::string>> kept_settings(const std::filesystem::path& folder);
+std::vector<std::pair<std::string, std::string>> recorded_settings(const std::filesystem::path& folder);
 
 }  // namespace swiftlet::ground

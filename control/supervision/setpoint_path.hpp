@@ -6,6 +6,6 @@ namespace swiftlet::control {
 
 // The blend() from the reference to the newest setpoint. It is computed once, so the checked path is the
 // flown one.
-const PolynomialSegment& way_into_setpoint(const SupervisorContext& context);
+const PolynomialSegment& path_to_setpoint(const SupervisorContext& context);
 
 }  // namespace swiftlet::control

@@ -1,4 +1,4 @@
-#include "swiftlet/ground/report/kept_settings.hpp"
+#include "swiftlet/ground/report/recorded_settings.hpp"
 
 #include <array>
 
@@ -14,7 +14,7 @@ constexpr std::array kKinds = {"control", "mission", "simulation", "vehicle"};
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> kept_settings(const fs::path& folder) {
+std::vector<std::pair<std::string, std::string>> recorded_settings(const fs::path& folder) {
   std::vector<std::pair<std::string, std::string>> all;
   for (const std::string kind : kKinds) {
     const fs::path file = folder / (kind + ".yaml");

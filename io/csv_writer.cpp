@@ -1,0 +1,71 @@
+#include "swiftlet/io/csv_writer.hpp"
+
+#include <iterator>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "swiftlet/io/csv.hpp"
+
+namespace swiftlet::runtime {
+
+CsvWriter::CsvWriter(const std::filesystem::path& file, const std::vector<std::string>& columns)
+    : path_(file), file_(std::fopen(file.c_str(), "w")) {
+  if (!file_) throw std::runtime_error(path_.string() + " cannot be written");
+  for (const std::string& column : columns) text(column);
+  end_row();
+}
+
+void CsvWriter::separate() {
+  if (!first_) row_ += ',';
+  first_ = false;
+}
+
+CsvWriter& CsvWriter::number(double value, int significant_digits) {
+  separate();
+  fmt::format_to(std::back_inserter(row_), "{:.{}g}", value, significant_digits);
+  return *this;
+}
+
+CsvWriter& CsvWriter::fixed(double value, int decimals) {
+  separate();
+  fmt::format_to(std::back_inserter(row_), "{:.{}f}", value, decimals);
+  return *this;
+}
+
+CsvWriter& CsvWriter::exact(double value) {
+  separate();
+  row_ += runtime::exact(value);
+  return *this;
+}
+
+CsvWriter& CsvWriter::text(const std::string& value) {
+  separate();
+  if (value.find_first_of(",\"\r\n") == std::string::npos) {
+    row_ += value;
+    return *this;
+  }
+  row_ += '"';
+  for (const char c : value) row_ += c == '"' ? std::string("\"\"") : std::string(1, c);
+  row_ += '"';
+  return *this;
+}
+
+CsvWriter& CsvWriter::empty(int cells) {
+  for (int i = 0; i < cells; ++i) separate();
+  return *this;
+}
+
+void CsvWriter::end_row() {
+  row_ += '\n';
+  std::fputs(row_.c_str(), file_.get());
+  row_.clear();
+  first_ = true;
+}
+
+void CsvWriter::finish() {
+  if (std::fflush(file_.get()) != 0 || std::ferror(file_.get()) != 0)
+    throw std::runtime_error(path_.string() + " cannot be written");
+}
+
+}  // namespace swiftlet::runtime

@@ -1,0 +1,19 @@
+// The longest steps of the controller: those in which a request or a setpoint is planned.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace swiftlet::tests {
+
+struct StepTimes {
+  std::string what;
+  double median_us = 0.0;
+  double longest_us = 0.0;
+};
+
+// CPU time of a step of plant and controller without a request, and of the steps that evaluate requests and setpoints
+// of a vehicle in motion. Each flight is repeated; a step counts with its shortest time.
+std::vector<StepTimes> longest_steps();
+
+}  // namespace swiftlet::tests
