@@ -18,7 +18,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kStep = 50ms;
 
-struct Options : RequestOptions {
+struct Options : CommandOptions {
   std::string file;
   std::string control = "motor_lag";
   bool no_wait = false;
@@ -77,7 +77,7 @@ int fly_mission(const Options& options) {
 Command add_mission_fly_command(runtime::CommandLine mission) {
   const auto options = std::make_shared<Options>();
   const runtime::CommandLine app =
-      add_request_subcommand(mission, "fly", "Upload a mission file, start it and wait until it ends",
+      add_vehicle_subcommand(mission, "fly", "Upload a mission file, start it and wait until it ends",
                              "swiftlet mission fly config/missions/square.yaml", options);
   app.add_option(
          "file", options->file,

@@ -12,7 +12,7 @@
 namespace swiftlet::ground {
 namespace {
 
-struct Options : RequestOptions {
+struct Options : CommandOptions {
   std::string file;
   std::string control = "motor_lag";
 };
@@ -43,7 +43,7 @@ int upload(const Options& options) {
 
 Command add_mission_upload_command(runtime::CommandLine mission) {
   const auto options = std::make_shared<Options>();
-  const runtime::CommandLine app = add_request_subcommand(
+  const runtime::CommandLine app = add_vehicle_subcommand(
       mission, "upload", "Upload a mission to the vehicle, to be started with `mission start`",
       "swiftlet mission upload square && swiftlet mission start", options);
   app.add_option("file", options->file,

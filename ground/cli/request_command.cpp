@@ -32,7 +32,7 @@ nlohmann::ordered_json to_json(const RequestOutcome& outcome) {
 
 runtime::CommandLine add_subcommand(runtime::CommandLine root, const std::string& name,
                                     const std::string& description, const std::string& example,
-                                    const std::shared_ptr<RequestOptions>& options, Vehicles vehicles) {
+                                    const std::shared_ptr<CommandOptions>& options, Vehicles vehicles) {
   const runtime::CommandLine app = root.add_subcommand(name, description);
   add_network_options(app, options->network, vehicles);
   app.add_option("--timeout", options->timeout_s, "longest wait for the acknowledgement, s")
@@ -45,9 +45,9 @@ runtime::CommandLine add_subcommand(runtime::CommandLine root, const std::string
 
 }  // namespace
 
-runtime::CommandLine add_request_subcommand(runtime::CommandLine root, const std::string& name,
+runtime::CommandLine add_vehicle_subcommand(runtime::CommandLine root, const std::string& name,
                                             const std::string& description, const std::string& example,
-                                            const std::shared_ptr<RequestOptions>& options) {
+                                            const std::shared_ptr<CommandOptions>& options) {
   return add_subcommand(root, name, description, example, options, Vehicles::kOne);
 }
 

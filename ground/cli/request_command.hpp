@@ -16,7 +16,8 @@
 
 namespace swiftlet::ground {
 
-struct RequestOptions {
+// Options of a command that talks to one vehicle.
+struct CommandOptions {
   comms::NodeSettings network;
   double timeout_s = 5.0;  // longest wait for the acknowledgement
   bool json = false;
@@ -27,17 +28,17 @@ struct RequestOptions {
 };
 
 // Options of a command that sends one request.
-struct RequestOptions : RequestOptions {
+struct RequestOptions : CommandOptions {
   std::optional<double> wait_s;  // longest wait for completion; unset: does not wait
 };
 
 // Adds a subcommand for one vehicle with the network options, --timeout and --json. The command's run
 // function must keep `options` alive.
-runtime::CommandLine add_request_subcommand(runtime::CommandLine root, const std::string& name,
+runtime::CommandLine add_vehicle_subcommand(runtime::CommandLine root, const std::string& name,
                                             const std::string& description, const std::string& example,
-                                            const std::shared_ptr<RequestOptions>& options);
+                                            const std::shared_ptr<CommandOptions>& options);
 
-// As add_request_subcommand(), with --wait in addition, and for several vehicles by default.
+// As add_vehicle_subcommand(), with --wait in addition, and for several vehicles by default.
 runtime::CommandLine add_request_subcommand(runtime::CommandLine root, const std::string& name,
                                             const std::string& description, const std::string& example,
                                             const std::shared_ptr<RequestOptions>& options,

@@ -18,7 +18,7 @@ namespace {
 constexpr std::chrono::milliseconds kRestTimeout{1000};
 constexpr double kControllerSilence_s = 0.5;  // a controller silent for longer is not listed
 
-struct Options : RequestOptions {
+struct Options : CommandOptions {
   double watch_s = 1.0;
 };
 
@@ -74,7 +74,7 @@ std::vector<msg::ControllerState> controllers_of(const View& view, Clock::time_p
   return controllers;
 }
 
-nlohmann::ordered_json to_json(const View& view, const Rates& rates, const RequestOptions& options) {
+nlohmann::ordered_json to_json(const View& view, const Rates& rates, const CommandOptions& options) {
   const auto now = Clock::now();
   const auto& control = view.control.message;
   const auto& mission = view.mission.message;
@@ -162,7 +162,7 @@ std::string age_text(const Latest<T>& latest, Clock::time_point now) {
   return fmt::format("{:.2f} s old", latest.age_s(now));
 }
 
-void print(const View& view, const Rates& rates, const RequestOptions& options) {
+void print(const View& view, const Rates& rates, const CommandOptions& options) {
   const auto now = Clock::now();
   const auto& control = view.control.message;
   const auto& mission = view.mission.message;
@@ -254,7 +254,7 @@ int show_status(const Options& options) {
 Command add_status_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
   const runtime::CommandLine app =
-      add_request_subcommand(root, "status", "Print mode, position, battery, mission, topic rates and ages",
+      add_vehicle_subcommand(root, "status", "Print mode, position, battery, mission, topic rates and ages",
                              "swiftlet status --json | jq .battery.voltage_v", options);
   app.add_option("--watch", options->watch_s, "time over which the rates are measured, s")
       .range(0.1, 60.0)

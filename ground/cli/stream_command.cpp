@@ -31,7 +31,7 @@ constexpr auto kSilence = 3s;
 constexpr auto kManoeuvreTimeout = 60s;
 constexpr double kThere_m = 0.02;  // from the reference to the first position of a stream
 
-struct Options : RequestOptions {
+struct Options : CommandOptions {
   std::string file;
   std::optional<double> rate_hz;
   bool land = false;
@@ -261,7 +261,7 @@ int stream(const Options& options) {
 
 Command add_stream_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
-  const runtime::CommandLine app = add_request_subcommand(
+  const runtime::CommandLine app = add_vehicle_subcommand(
       root, "stream",
       "Stream setpoints from a CSV file, timed by the vehicle's clock: positions, velocities, accelerations, "
       "attitudes and thrust, or body rates and thrust. The vehicle must hold; it holds again at the end, or "

@@ -97,7 +97,10 @@ class Flight {
 
 control::Trajectory through_two_positions(Flight& flight) {
   std::vector<control::PositionYaw> points(3);
-  for (control::PositionYaw& point : points) point << flight.position(), 0.0;
+  for (control::PositionYaw& point : points) {
+    const Vector3d position = flight.position();
+    point << position.x(), position.y(), position.z(), 0.0;
+  }
   return {1, control::spline(control::Smoothness::kMinimumSnap, points, {2.5, 2.5})};
 }
 
@@ -125,7 +128,7 @@ std::vector<StepTimes> longest_steps() {
   const std::vector<Kind> kinds = {
       {"trajectory joined in motion",
        [&](Flight& flight) {
-         flight.request(RequestKind::kTrajectory, {}, &trajectories[next++ % kEvents]);
+         flight.request(RequestKind::kTrajectory, Vector3d::Zero(), &trajectories[next++ % kEvents]);
        }},
       {"goto in motion", [](Flight& flight) { flight.request(RequestKind::kGoTo, flight.position()); }},
       {"hold or goto in motion",

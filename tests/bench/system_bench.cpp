@@ -526,7 +526,8 @@ void run(const Options& options) {
 }
 
 void add_options(runtime::CommandLine app, Options& options) {
-  app.add_option("--seconds", options.seconds, "duration of each measurement in real time, s").range(1.0, 3600.0);
+  app.add_option("--seconds", options.seconds, "duration of each measurement in real time, s")
+      .range(1.0, 3600.0);
   app.add_option("--only", options.only, "only these sections; may be repeated")
       .one_of({"latency", "jitter", "simulation", "planning", "missions", "fleet"});
   app.add_flag("--json", options.json, "print JSON");

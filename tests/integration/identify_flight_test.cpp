@@ -49,7 +49,8 @@ TEST_F(IdentifyFlight, WritesAVehicleFileFromARecord) {
   EXPECT_NE(page.str().find("<svg"), std::string::npos);
   EXPECT_EQ(page.str().find("http"), std::string::npos);
 
-  const ProgramResult gains = run({"gains", "--vehicle", in_folder("mine.yaml"), "--samples", "50", "--json"});
+  const ProgramResult gains =
+      run({"gains", "--vehicle", in_folder("mine.yaml"), "--samples", "50", "--json"});
   ASSERT_EQ(gains.exit_code, 0) << gains.errors;
   const nlohmann::json margins = nlohmann::json::parse(gains.output);
   EXPECT_EQ(margins["samples"], 50);

@@ -89,7 +89,7 @@ TEST_P(BenchToFlight, KeepsItsMarginsWithinTheBenchUncertainty) {
   ASSERT_EQ(plan.dispersion.name, kUncertainty);
   const MarginStudy study = study_margins(control::design(plan.vehicle, plan.control), plan.vehicle,
                                           plan.dispersion, 300, GetParam());
-  EXPECT_EQ(study.draws, 300U);
+  EXPECT_EQ(study.samples, 300U);
   EXPECT_EQ(study.unstable, 0U);
   for (std::size_t i = 0; i < kLoopNames.size(); ++i) {
     const MarginStudy::Loop& loop = study.loops[i];

@@ -129,7 +129,8 @@ TEST(ActuatorWatchdog, RefusesInvalidCommandsWithoutEffect) {
     EXPECT_EQ(watchdog.accept(invalid.command, 1050), invalid.fault);
     EXPECT_EQ(plant::to_string(invalid.fault), invalid.sentence);
     EXPECT_EQ(watchdog.motor_command(1100).throttle[0], 0.5);
-    EXPECT_EQ(watchdog.motor_command(1101).state, RotorState::kOff) << "the invalid command reset the timeout";
+    EXPECT_EQ(watchdog.motor_command(1101).state, RotorState::kOff)
+        << "the invalid command reset the timeout";
   }
 }
 
