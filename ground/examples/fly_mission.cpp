@@ -18,8 +18,8 @@ int main(int argc, char** argv) {
   const auto mission = load_mission_file(argc > 1 ? argv[1] : "mission.yaml", {}).mission;
   Vehicle vehicle(swiftlet::examples::network(argc - 1, argv + 1));
   vehicle.on_connection([](const ConnectionEvent& event) { std::printf("%s\n", event.text.c_str()); });
-  bool flown = done("arm", vehicle.arm()) && done("take off", vehicle.take_off(0.8)) &&
-               done("mission", vehicle.follow(mission));
+  if (!done("arm", vehicle.arm())) return 1;
+  bool flown = done("take off", vehicle.take_off(0.8)) && done("mission", vehicle.follow(mission));
   for (const double start_s = vehicle.clock_s(); flown && vehicle.clock_s() - start_s < 2.0;) {
     flown = vehicle.send(VelocitySetpoint{{0.2, 0.0, 0.0}});  // m/s north
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
