@@ -332,17 +332,26 @@ FlightController::FlightController(FlightController&&) noexcept = default;
 FlightController& FlightController::operator=(FlightController&&) noexcept = default;
 
 const plant::ActuatorCommand& FlightController::on_imu(const plant::ImuSample& sample) {
+  ClientInputs none;
+  return on_imu(sample, none);
+}
+
+const plant::ActuatorCommand& FlightController::on_imu(const plant::ImuSample& sample,
+                                                       ClientInputs& clients) {
   Impl& c = *impl_;
   // Estimate.
   c.restart_if_clock_went_back(sample);
   const bool usable = c.estimator.predict(sample);
   c.count_unusable(usable, sample.stamp_ns);
-  if (!usable && c.unusable_s < c.settings.failsafe.imu_timeout_s) return c.stamp_command(sample);
+  if (!usable && c.unusable_s < c.settings.failsafe.imu_timeout_s) {
+    answer(clients);
+    return c.stamp_command(sample);
+  }
   const double dt_s = usable ? c.store_sample(sample) : 0.0;
 
   // Supervision decides the mode, guidance generates the reference.
   const SupervisorInputs inputs = c.inputs();
-  const ControlSetpoint setpoint = c.supervisor.step(inputs);
+  const ControlSetpoint setpoint = c.supervisor.step(inputs, clients);
   c.resets_seen = inputs.estimate->resets;
   c.reference = setpoint.reference;
 
@@ -376,16 +385,18 @@ void FlightController::on_rotor_speeds(const plant::RotorSpeedSample& sample) {
   impl_->rotors.correct(sample);
 }
 
-Outcome FlightController::on_setpoint(const Setpoint& setpoint) {
-  return impl_->supervisor.setpoint(setpoint, impl_->inputs());
-}
-
 bool FlightController::on_ground_heartbeat(const GroundHeartbeat& heartbeat) {
   return impl_->supervisor.ground_heartbeat(heartbeat);
 }
 
+void FlightController::answer(ClientInputs& clients) { impl_->supervisor.answer(clients, impl_->inputs()); }
+
 Outcome FlightController::request(const Request& request) {
   return impl_->supervisor.request(request, impl_->inputs());
+}
+
+Outcome FlightController::on_setpoint(const Setpoint& setpoint) {
+  return impl_->supervisor.setpoint(setpoint, impl_->inputs());
 }
 
 FlightState FlightController::state() const {

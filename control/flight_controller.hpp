@@ -36,19 +36,22 @@ class FlightController {
 
   // One step of the inner loop. Returns the command for this sample. A sample that is not finite or not
   // newer than the last is not used, and the last command is repeated. The returned reference stays valid
-  // until the next call.
+  // until the next call. Requests and setpoints are accepted or refused in every step, by the mode and the
+  // estimate at its sample. A refused one changes nothing. A mission or trajectory must have passed check()
+  // of planning/checks.hpp before; setpoints are accepted in holding and setpoint mode.
   const plant::ActuatorCommand& on_imu(const plant::ImuSample& sample);
+  const plant::ActuatorCommand& on_imu(const plant::ImuSample& sample, ClientInputs& clients);
 
   void on_pose(const plant::PoseSample& sample);
   void on_battery(const plant::BatterySample& sample);
   void on_rotor_speeds(const plant::RotorSpeedSample& sample);
-  // Setpoints are accepted in holding and setpoint mode. A refused one changes nothing.
-  Outcome on_setpoint(const Setpoint& setpoint);
   // Returns false if the link-loss failsafe is on for too many other clients already.
   bool on_ground_heartbeat(const GroundHeartbeat& heartbeat);
-  // Accepts or refuses by the present mode. A mission or trajectory must have passed check() of
-  // planning/checks.hpp before.
+
+  // While simulated time stands still: answers clients as on_imu() does, at the last sample.
+  void answer(ClientInputs& clients);
   Outcome request(const Request& request);
+  Outcome on_setpoint(const Setpoint& setpoint);
 
   // The state of the flight. Another controller of the same vehicle and settings adopts it and continues in
   // its next step. The mission and trajectory being flown are passed separately, as in Supervisor::adopt().

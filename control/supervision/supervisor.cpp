@@ -19,14 +19,15 @@ const Limits& Supervisor::limits() const {
                                                                                  : settings_.limits;
 }
 
-ControlSetpoint Supervisor::step(const SupervisorInputs& inputs) {
+ControlSetpoint Supervisor::step(const SupervisorInputs& inputs, ClientInputs& clients) {
   state_.now_ns = inputs.stamp_ns;
-  SupervisorContext now = context(inputs);
+  if (!rotors_off(state_.mode)) advance(context(inputs).guidance());
+  answer(clients, inputs);
   if (rotors_off(state_.mode)) {
     forget_silent_ground_links(state_, settings_.failsafe);
     return setpoint(inputs);
   }
-  advance(now.guidance());
+  SupervisorContext now = context(inputs);
   const EventSet conditions = observe(now, tip_over_cosine_);
   const Transition* const row = find(now, conditions);
   const bool link_answered =
@@ -38,6 +39,11 @@ ControlSetpoint Supervisor::step(const SupervisorInputs& inputs) {
   const ControlSetpoint wanted = setpoint(inputs);
   follow_requests(now, wanted.reference);
   return wanted;
+}
+
+ControlSetpoint Supervisor::step(const SupervisorInputs& inputs) {
+  ClientInputs none;
+  return step(inputs, none);
 }
 
 void Supervisor::take(const Transition& row, SupervisorContext& context) {
@@ -112,6 +118,12 @@ Outcome Supervisor::answer(Event request, SupervisorContext& context) {
   const Outcome outcome = row->provided.evaluate(context);
   if (outcome.accepted) take(*row, context);
   return outcome;
+}
+
+void Supervisor::answer(ClientInputs& clients, const SupervisorInputs& inputs) {
+  if (clients.setpoint != nullptr) clients.setpoint_outcome = setpoint(*clients.setpoint, inputs);
+  for (std::size_t i = 0; i < clients.request_count; ++i)
+    *clients.requests[i].outcome = request(*clients.requests[i].request, inputs);
 }
 
 Outcome Supervisor::request(const Request& request, const SupervisorInputs& inputs) {

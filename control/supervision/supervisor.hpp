@@ -18,7 +18,11 @@ class Supervisor {
  public:
   explicit Supervisor(const SupervisionSettings& settings);
 
+  // Advances the manoeuvre, answers the clients, then evaluates the conditions: failsafes have the last word.
+  ControlSetpoint step(const SupervisorInputs& inputs, ClientInputs& clients);
   ControlSetpoint step(const SupervisorInputs& inputs);
+  // While time stands still: answers clients alone, as step() does.
+  void answer(ClientInputs& clients, const SupervisorInputs& inputs);
   Outcome request(const Request& request, const SupervisorInputs& inputs);
   // Refused setpoints (outside the fence, too fast, not in flight) change nothing.
   Outcome setpoint(const Setpoint& setpoint, const SupervisorInputs& inputs);

@@ -1,6 +1,8 @@
 // Requests to the flight controller, setpoints, and the outcome of each.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include <Eigen/Core>
@@ -81,6 +83,23 @@ struct Setpoint {
   Eigen::Quaterniond q_ned_from_frd = Eigen::Quaterniond::Identity();  // kAttitude
   Eigen::Vector3d body_rates_frd = Eigen::Vector3d::Zero();            // rad/s; kAttitude: fed forward
   double specific_thrust = 0.0;  // m/s^2 along -z of FRD: thrust over mass, 9.81 in hover
+};
+
+// What clients ask of one step: the newest setpoint, then requests in the order of their arrival. The step sets
+// the outcomes.
+struct ClientInputs {
+  struct PendingRequest {
+    const Request* request = nullptr;
+    Outcome* outcome = nullptr;
+  };
+  static constexpr std::size_t kMaxRequests = 32;
+
+  void add(const Request& request, Outcome& outcome) { requests.at(request_count++) = {&request, &outcome}; }
+
+  const Setpoint* setpoint = nullptr;  // null: none
+  Outcome setpoint_outcome;
+  std::array<PendingRequest, kMaxRequests> requests{};
+  std::size_t request_count = 0;
 };
 
 // Heartbeat of a ground client. depends: true switches the link-loss failsafe on for this client, false off.

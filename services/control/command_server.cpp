@@ -182,7 +182,7 @@ void CommandServer::submit(std::unique_ptr<PendingRequest> pending) {
   const Key key{pending->client, pending->id};
   if (pending_.size() >= kMaxPendingRequests) {
     return settle(key, pending->request.kind,
-                  control::refuse("%d requests are pending, the limit", kMaxPendingRequests));
+                  control::refuse("%zu requests are pending, the limit", kMaxPendingRequests));
   }
   pending->request.key = {pending->client, pending->id};
   pending->asked_ns = runtime::monotonic_ns();

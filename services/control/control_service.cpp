@@ -189,12 +189,12 @@ Role ControlService::take_role_in_lockstep(const msg::Imu& message) {
   return Role::kActive;
 }
 
-// While time is paused, the plant repeats an IMU sample that was answered before: pending requests are then
-// evaluated, and the same command is published again.
+// While simulated time stands still, the plant repeats an IMU sample that was answered before: the pending
+// requests are answered, and the same command is published again.
 void ControlService::on_imu_in_lockstep(const msg::Imu& message) {
   const std::lock_guard<std::mutex> lock(gate_mutex_);
   if (!gate_.offer(message)) {
-    loop_.evaluate_requests();
+    loop_.answer_requests();
     commands_.publish(last_answer_);
     if (loop_.finish(runtime::monotonic_ns())) wake_.post();
   } else if (const auto imu = gate_.take()) {

@@ -21,10 +21,13 @@ plant::ActuatorCommand InnerLoop::step(const plant::ImuSample& sample, std::int6
   role_ = role;
   take_samples();
   take_heartbeats();
-  evaluate_requests();
   if (role == Role::kStandby) follow(followed_term);
   if (detecting_airborne()) detect_airborne(sample);
-  const plant::ActuatorCommand command = controller_.on_imu(sample);
+  Clients clients;
+  take_setpoint(clients);
+  take_requests(clients);
+  const plant::ActuatorCommand command = controller_.on_imu(sample, clients.inputs);
+  return_outcomes(clients, sample.stamp_ns);
   rotors_running_ = command.rotor_state == plant::RotorState::kRunning;
   stamp_ns_ = sample.stamp_ns;
   imu_sequence_ = sample.sequence;
@@ -42,18 +45,11 @@ void InnerLoop::take_samples() {
     controller_.on_rotor_speeds(new_rotor_speeds);
     ++rotor_samples_;
   }
-  control::Setpoint new_setpoint;
-  if (setpoint.take(new_setpoint) && role_ == Role::kActive) take_setpoint(new_setpoint);
 }
 
-void InnerLoop::take_setpoint(const control::Setpoint& new_setpoint) {
-  const control::Outcome outcome = controller_.on_setpoint(new_setpoint);
-  if (outcome.accepted) {
-    ++setpoints_.accepted;
-    return;
-  }
-  ++setpoints_.refused;
-  setpoints_.refusal = outcome;
+void InnerLoop::take_setpoint(Clients& clients) {
+  if (setpoint.take(clients.setpoint) && role_ == Role::kActive)
+    clients.inputs.setpoint = &clients.setpoint;
 }
 
 void InnerLoop::follow(std::uint32_t term) {
@@ -90,20 +86,44 @@ void InnerLoop::take_heartbeats() {
       [this](const control::GroundHeartbeat& heartbeat) { controller_.on_ground_heartbeat(heartbeat); });
 }
 
-void InnerLoop::evaluate_requests() {
+// The active controller receives a standby's requests too and answers them.
+void InnerLoop::take_requests(Clients& clients) {
   PendingRequest* pending = nullptr;
   while (requests.pop(pending)) {
-    // The active controller receives the request too and answers it.
+    clients.requests.at(clients.request_count++) = pending;
     if (role_ == Role::kStandby) {
       pending->claim(PendingRequest::State::kGivenUp);
     } else if (pending->claim(PendingRequest::State::kTaken)) {
-      pending->outcome = controller_.request(pending->request);
-      pending->stamp_ns = stamp_ns_;
-      accepted_any_ = accepted_any_ || pending->outcome.accepted;
+      clients.inputs.add(pending->request, pending->outcome);
     }
+  }
+}
+
+void InnerLoop::return_outcomes(const Clients& clients, std::int64_t stamp_ns) {
+  if (clients.inputs.setpoint != nullptr) count(clients.inputs.setpoint_outcome);
+  for (std::size_t i = 0; i < clients.request_count; ++i) {
+    PendingRequest* const pending = clients.requests[i];
+    pending->stamp_ns = stamp_ns;
+    accepted_any_ = accepted_any_ || pending->outcome.accepted;
     evaluated.push(pending);  // always fits: at most kMaxPendingRequests
     evaluated_any_ = true;
   }
+}
+
+void InnerLoop::count(const control::Outcome& setpoint_outcome) {
+  if (setpoint_outcome.accepted) {
+    ++setpoints_.accepted;
+    return;
+  }
+  ++setpoints_.refused;
+  setpoints_.refusal = setpoint_outcome;
+}
+
+void InnerLoop::answer_requests() {
+  Clients clients;
+  take_requests(clients);
+  controller_.answer(clients.inputs);
+  return_outcomes(clients, stamp_ns_);
 }
 
 void InnerLoop::report(comms::ControllerReport& report) const {

@@ -3,7 +3,9 @@
 // block, allocate or log.
 #pragma once
 
+#include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 
 #include <boost/lockfree/spsc_queue.hpp>
@@ -95,12 +97,23 @@ class InnerLoop {
   // Monotonic; 0 before the first sample. Call from any thread.
   std::int64_t last_arrival_ns() const { return last_arrival_ns_.load(std::memory_order_relaxed); }
 
-  // Evaluates pending requests between two steps. step() does so too.
-  void evaluate_requests();
+  // While simulated time stands still: answers pending requests as step() does, at the last sample.
+  void answer_requests();
 
  private:
+  // The pending requests and the newest setpoint, for one step.
+  struct Clients {
+    control::ClientInputs inputs;
+    control::Setpoint setpoint;
+    std::array<PendingRequest*, kMaxPendingRequests> requests{};
+    std::size_t request_count = 0;
+  };
+
   void take_samples();
-  void take_setpoint(const control::Setpoint& setpoint);
+  void take_requests(Clients& clients);
+  void take_setpoint(Clients& clients);
+  void return_outcomes(const Clients& clients, std::int64_t stamp_ns);
+  void count(const control::Outcome& setpoint_outcome);
   void follow(std::uint32_t term);
   void detect_airborne(const plant::ImuSample& sample);
   void take_heartbeats();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 
@@ -9,7 +10,7 @@
 
 namespace swiftlet::services {
 
-constexpr int kMaxPendingRequests = 32;
+constexpr std::size_t kMaxPendingRequests = control::ClientInputs::kMaxRequests;
 
 struct PendingRequest {
   // kTaken: the inner loop evaluates it. kGivenUp: it does not, or did not in time. The first claim()
@@ -25,7 +26,7 @@ struct PendingRequest {
 
   std::atomic<State> state{State::kWaiting};
   control::Outcome outcome;   // if kTaken; written by the inner loop
-  std::int64_t stamp_ns = 0;  // likewise: of the last IMU sample before
+  std::int64_t stamp_ns = 0;  // likewise: of the IMU sample
 
   // Returns true for the first caller only.
   bool claim(State as) noexcept {

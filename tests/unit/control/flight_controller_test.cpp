@@ -296,6 +296,21 @@ TEST_F(InFlight, StopsTheRotorsAfterATenthOfASecondOfInvalidImu) {
   EXPECT_EQ(loop_.controller.status().mode, Mode::kStopped);
 }
 
+TEST_F(InFlight, AnswersRequestsAlsoWithAnInvalidImuSample) {
+  plant::ImuSample broken = *loop_.plant.imu();
+  broken.body_rates_frd.setConstant(std::numeric_limits<double>::quiet_NaN());
+  broken.stamp_ns += 2'000'000;
+  ++broken.sequence;
+  const Request stop = request(RequestKind::kStop);
+  Outcome outcome;
+  control::ClientInputs clients;
+  clients.add(stop, outcome);
+  loop_.controller.on_imu(broken, clients);
+  EXPECT_TRUE(outcome.accepted) << outcome.reason;
+  loop_.step();
+  EXPECT_EQ(loop_.command.rotor_state, plant::RotorState::kOff);
+}
+
 TEST(FlightController, LandsWhenTheBatteryIsLow) {
   ControlSettings careful = settings("motor_lag");
   careful.failsafe.low_battery_voltage = 4.0;

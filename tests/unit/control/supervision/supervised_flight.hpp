@@ -27,9 +27,13 @@ class SupervisedFlight {
   SupervisedFlight& operator=(const SupervisedFlight&) = delete;
 
   void step() {
+    control::ClientInputs none;
+    step(none);
+  }
+  void step(control::ClientInputs& clients) {
     inputs_.stamp_ns += kStep_ns;
     estimate_.stamp_ns = inputs_.stamp_ns;
-    control_setpoint_ = supervisor_.step(inputs_);
+    control_setpoint_ = supervisor_.step(inputs_, clients);
     if (control_setpoint_.control_mode == control::ControlMode::kFly && follows_) {
       estimate_.position_ned = control_setpoint_.reference.position_ned;
       estimate_.velocity_ned = control_setpoint_.reference.velocity_ned;
@@ -58,6 +62,17 @@ class SupervisedFlight {
     request.position_ned = position;
     request.speed = speed;
     return supervisor_.request(request, inputs_);
+  }
+  // The outcome of a request that is an input of the next step.
+  control::Outcome step_with(control::RequestKind kind,
+                             const Eigen::Vector3d& position = Eigen::Vector3d::Zero()) {
+    control::Request request = next_request(kind);
+    request.position_ned = position;
+    control::Outcome outcome;
+    control::ClientInputs clients;
+    clients.add(request, outcome);
+    step(clients);
+    return outcome;
   }
   control::Outcome upload(const control::Mission& mission) {
     control::Request request = next_request(control::RequestKind::kMissionUpload);

@@ -325,6 +325,43 @@ TEST_F(Flight, FollowsSetpointsAndHoldsWhenTheyStop) {
   EXPECT_EQ(supervisor_.reason(), Reason::kSetpointsStopped);
 }
 
+TEST_F(Flight, RequestTakesEffectInItsStep) {
+  ASSERT_TRUE(ask(RequestKind::kArm).accepted);
+  const Outcome takeoff = step_with(RequestKind::kTakeoff, {0, 0, -1});
+  ASSERT_TRUE(takeoff.accepted) << takeoff.reason;
+  EXPECT_EQ(control_setpoint_.control_mode, ControlMode::kSpoolUp);
+}
+
+TEST_F(Flight, StepAnswersRequestsByItsOwnInputs) {
+  inputs_.has_battery = false;
+  EXPECT_FALSE(step_with(RequestKind::kArm).accepted);
+  inputs_.has_battery = true;
+  EXPECT_TRUE(step_with(RequestKind::kArm).accepted);
+  EXPECT_EQ(supervisor_.mode(), Mode::kArmed);
+}
+
+TEST_F(Flight, FailsafeOverridesARequestOfTheSameStep) {
+  hover();
+  inputs_.pose_age_s = 10.0;
+  step_with(RequestKind::kHold);
+  EXPECT_EQ(supervisor_.mode(), Mode::kDescent);
+}
+
+TEST_F(Flight, RequestFollowsTheSetpointOfTheSameStep) {
+  hover();
+  Setpoint setpoint;
+  setpoint.position_ned = {0.2, 0, -1};
+  ClientInputs clients;
+  clients.setpoint = &setpoint;
+  Outcome land;
+  const Request request = next_request(RequestKind::kLand);
+  clients.add(request, land);
+  step(clients);
+  EXPECT_TRUE(clients.setpoint_outcome.accepted) << clients.setpoint_outcome.reason;
+  EXPECT_TRUE(land.accepted) << land.reason;
+  EXPECT_EQ(supervisor_.mode(), Mode::kLanding);
+}
+
 TEST_F(Flight, FliesATrajectoryFromItsStartToItsEnd) {
   hover();
   Trajectory trajectory;
