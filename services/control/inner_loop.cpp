@@ -48,8 +48,7 @@ void InnerLoop::take_samples() {
 }
 
 void InnerLoop::take_setpoint(Clients& clients) {
-  if (setpoint.take(clients.setpoint) && role_ == Role::kActive)
-    clients.inputs.setpoint = &clients.setpoint;
+  if (setpoint.take(clients.setpoint) && role_ == Role::kActive) clients.inputs.setpoint = &clients.setpoint;
 }
 
 void InnerLoop::follow(std::uint32_t term) {
