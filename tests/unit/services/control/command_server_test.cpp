@@ -118,24 +118,25 @@ TEST_F(CommandServerTest, AnswersARequestInTheNextStep) {
   EXPECT_EQ(mode(), control::Mode::kArmed);
 }
 
-// GIVEN an accepted request, THEN every status with a later stamp than the answer lists it.
+// GIVEN a request that a step accepts, THEN the answer has the stamp of its sample, and every status from then on
+// lists the request.
 TEST_F(CommandServerTest, StatusesAfterAnAcceptanceIncludeTheRequest) {
   settle();
   command_server_.on_command(command(Command_Constants::ARM, 1));
   step();
   command_server_.on_command(command(Command_Constants::TAKEOFF, 2));
-  const std::int64_t before_ns = last_imu_.stamp_ns;
   step();
+  const std::int64_t accepted_ns = last_imu_.stamp_ns;
   for (const RequestResult& answer : command_server_.collect()) EXPECT_GT(answer.stamp_ns, 0) << answer.kind;
   command_server_.on_command(command(Command_Constants::TAKEOFF, 2));
   const std::vector<RequestResult> again = command_server_.collect();
   ASSERT_EQ(again.size(), 1U);
-  EXPECT_EQ(again[0].stamp_ns, before_ns);
+  EXPECT_EQ(again[0].stamp_ns, accepted_ns);
   for (int i = 0; i < 20; ++i) step();
   int reported = 0;
   Snapshot snapshot;
   while (loop_.snapshots.pop(snapshot)) {
-    if (snapshot.stamp_ns <= before_ns) continue;
+    if (snapshot.stamp_ns < accepted_ns) continue;
     ++reported;
     EXPECT_EQ(snapshot.requests.back().key, (control::RequestKey{kClient, 2})) << snapshot.stamp_ns;
   }
