@@ -30,7 +30,7 @@ class CsvWriter {
   CsvWriter& empty(int cells = 1);
   void end_row();
 
-  // Throws std::runtime_error if a row could not be written. Without it errors stay unnoticed.
+  // Call it last: throws std::runtime_error if a row could not be written. Errors are reported here only.
   void finish();
 
  private:

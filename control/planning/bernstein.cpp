@@ -54,21 +54,27 @@ Bernstein split_off_left(Bernstein& a) {
 class MaximumSearch {
  public:
   MaximumSearch(const Bernstein& polynomial, double tolerance)
-      : tolerance_(tolerance), best_{polynomial.c[0], 0.0} {
+      : tolerance_(tolerance), best_{polynomial.c[0]} {
     search(polynomial, 0.0, 1.0);
   }
   const Extremum& best() const { return best_; }
 
  private:
   void update_best(double value, double at) {
-    if (value > best_.value) best_ = {value, at};
+    if (value <= best_.value) return;
+    best_.value = value;
+    best_.at = at;
   }
 
   void search(Bernstein part, double from, double width) {
     update_best(part.c[0], from);
     update_best(part.c[index(part.degree)], from + width);
     if (!(part.greatest() > best_.value + tolerance_)) return;
-    if (subdivisions_ == kMaxSubdivisions) return update_best(part.greatest(), from + 0.5 * width);
+    if (subdivisions_ == kMaxSubdivisions) {
+      best_.value = std::max(best_.value, part.greatest());
+      best_.bound_only = true;
+      return;
+    }
     ++subdivisions_;
     const Bernstein left = split_off_left(part);
     const double half = 0.5 * width;
@@ -144,8 +150,9 @@ Extremum maximum(const Bernstein& polynomial, double tolerance) {
 }
 
 Extremum minimum(const Bernstein& polynomial, double tolerance) {
-  const Extremum of_negative = maximum(-1.0 * polynomial, tolerance);
-  return {-of_negative.value, of_negative.at};
+  Extremum out = maximum(-1.0 * polynomial, tolerance);
+  out.value = -out.value;
+  return out;
 }
 
 }  // namespace swiftlet::control

@@ -127,6 +127,12 @@ class Survey {
                          with_drag(evaluate(segment, t_s), drag_per_mass_).acceleration_ned;
       note(Demand::kTilt, std::atan2(b.head<2>().norm(), b.z()), segment, t_s);
     }
+    if (most.bound_only) {
+      const double lift = std::max(least.value, kPrecision * plant::kGravity);
+      const double beyond_limit = std::max(most.value, 0.0) / (lift * lift);
+      note(Demand::kTilt, std::atan(std::sqrt(tangent * tangent + beyond_limit)), segment,
+           most.at * segment.duration_s);
+    }
   }
 
   void add_rotors(const PolynomialSegment& segment) {

@@ -40,7 +40,7 @@ VehicleState state_of(const View& view) {
     state.airborne = view.control.message.airborne();
     state.has_pose = view.control.message.has_pose();
     state.age_s = view.control.age_s(Clock::now());
-    state.setpoints = {view.control.message.setpoints_taken(), view.control.message.setpoints_refused(),
+    state.setpoints = {view.control.message.setpoints_accepted(), view.control.message.setpoints_refused(),
                        view.control.message.setpoint_refusal().c_str()};
   }
   if (view.estimate.seen()) {

@@ -32,7 +32,7 @@ struct IdentifyFlightOptions {
   std::string report;
   std::string name;
   identification::FlightOptions fit;
-  BodyAxes axes = BodyAxes::kAsDeclared;
+  BodyAxes axes = BodyAxes::kDetected;
   bool json = false;
 };
 

@@ -120,7 +120,7 @@ bool is_frd(const Measurements& table, const std::vector<Eigen::Vector3d>& speci
   for (int i = 0; i < 3; ++i)
     columns.insert(columns.end(), {Quantity::kSpecificForceX + i, Quantity::kBodyRateX + i});
   std::optional<bool> declared = has_first_ending(table, columns, "_frd", "_flu");
-  if (axes != BodyAxes::kAsDeclared) {
+  if (axes != BodyAxes::kDetected) {
     const bool frd = axes == BodyAxes::kFrd;
     if (declared && *declared != frd)
       throw ConfigError(

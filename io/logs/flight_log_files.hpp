@@ -24,9 +24,9 @@ void write_flight_log(const std::filesystem::path& file, const identification::F
 
 // The body axes of a log's IMU samples.
 enum class BodyAxes {
-  kAsDeclared,  // from the column names, or else from the sign of gravity along z, with x forward
-  kFrd,         // forward, right, down
-  kFlu,         // forward, left, up
+  kDetected,  // from the column names, or else from the sign of gravity along z, with x forward
+  kFrd,       // forward, right, down
+  kFlu,       // forward, left, up
 };
 
 struct ReadFlightLog {

@@ -120,7 +120,7 @@ class Fleet {
   }
 
   // Lets the time pass. Throws if a process ends meanwhile.
-  void stay(std::chrono::milliseconds duration) const {
+  void wait_while_running(std::chrono::milliseconds duration) const {
     const auto one_has_ended = [this] {
       return std::any_of(processes_.begin(), processes_.end(), [](pid_t pid) {
         siginfo_t ended{};
@@ -157,10 +157,10 @@ nlohmann::ordered_json measure(int count, const Options& options) {
   const int known = fleet.wait_until_known(std::chrono::duration<double>(options.patience_s));
   const double found_s = std::chrono::duration<double>(Clock::now() - start).count();
   const double finding_s = fleet.time_s();
-  fleet.stay(kFirstAnnouncements);
+  fleet.wait_while_running(kFirstAnnouncements);
   const double before_s = fleet.time_s();
   const auto rest = Clock::now();
-  fleet.stay(
+  fleet.wait_while_running(
       std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(options.seconds)));
   const double rest_s = std::chrono::duration<double>(Clock::now() - rest).count();
   const double cpu_s = fleet.time_s() - before_s;

@@ -100,6 +100,14 @@ TEST(Bernstein, ConstantIsItsOwnExtremum) {
   EXPECT_EQ(minimum(bernstein({2.0}, 1.0), 0.0).value, 2.0);
 }
 
+double by_de_casteljau(Bernstein polynomial, double u) {
+  for (int degree = polynomial.degree; degree > 0; --degree) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(degree); ++i)
+      polynomial.c[i] += u * (polynomial.c[i + 1] - polynomial.c[i]);
+  }
+  return polynomial.c[0];
+}
+
 // With a tolerance of 0, rounding errors leave each part of a constant in doubt.
 TEST(Bernstein, BoundsTheSearchForAMaximum) {
   Bernstein flat;
@@ -111,6 +119,11 @@ TEST(Bernstein, BoundsTheSearchForAMaximum) {
   const Extremum least = minimum(flat, 0.0);
   EXPECT_LE(least.value, 0.1 + 1e-13);
   EXPECT_GE(least.value, 0.1);
+  for (int i = 0; i <= 1000; ++i) {
+    const double value = by_de_casteljau(flat, i / 1000.0);
+    EXPECT_LE(value, most.value + 1e-16);
+    EXPECT_GE(value, least.value - 1e-16);
+  }
 }
 
 }  // namespace

@@ -101,7 +101,7 @@ TEST_F(Requests, AreSentOnceForALongMission) {
   EXPECT_EQ(control.received_.size(), 1U);
 }
 
-TEST_F(Requests, AreSentAgainAfterALongTimeout) {
+TEST_F(Requests, AreSentAgainAfterTheResendPeriod) {
   Control control(lock_);
   EXPECT_TRUE(is_unanswered(ask(3500ms)));
   EXPECT_EQ(control.received_.size(), 2U);

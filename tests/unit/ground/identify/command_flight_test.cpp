@@ -119,7 +119,7 @@ TEST(CommandFlight, RecoversLagAndGainsInGusts) {
 TEST(CommandFlight, AgreesWithPublishedValuesOfARealVehicle) {
   const plant::Vehicle base = runtime::load_vehicle(kSource + "/config/vehicles/crazyflie2.yaml");
   const ReadFlightLog read =
-      read_flight_log(kSource + "/tests/data/crazyflie_flight.csv.gz", base, BodyAxes::kAsDeclared);
+      read_flight_log(kSource + "/tests/data/crazyflie_flight.csv.gz", base, BodyAxes::kDetected);
   ASSERT_EQ(read.log.size(), 50496U);
   const FlightIdentification found = identification::identify_flight({read.log}, base, {});
   EXPECT_EQ(found.source, SpeedSource::kCommanded);

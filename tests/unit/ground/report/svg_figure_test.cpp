@@ -42,7 +42,7 @@ TEST(SvgFigure, NamesThePowerOfTenOfItsTicks) {
   EXPECT_EQ(svg(line(1.0, 1.0)).find("tspan"), std::string::npos);
 }
 
-TEST(SvgFigure, PlacesTheLegendBesideTheCurve) {
+TEST(SvgFigure, PlacesTheLegendInAFreeCorner) {
   const std::regex box(
       "<rect x=\"([0-9.]+)\" y=\"([0-9.]+)\" width=\"[0-9.]+\" height=\"[0-9.]+\" fill=\"#fff\"");
   std::smatch rising;

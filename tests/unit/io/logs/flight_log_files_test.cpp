@@ -56,7 +56,7 @@ FlightLog recorded() {
   return flight_log_of(record);
 }
 
-ReadFlightLog read(const std::string& text, BodyAxes axes = BodyAxes::kAsDeclared) {
+ReadFlightLog read(const std::string& text, BodyAxes axes = BodyAxes::kDetected) {
   const tests::TemporaryFolder folder;
   return read_flight_log(folder.write("log.csv", text), kaylion(), axes);
 }
@@ -91,7 +91,7 @@ TEST(FlightLogFiles, ReadsBackWhatItWrote) {
   const tests::TemporaryFolder folder;
   const FlightLog log = recorded();
   write_flight_log(folder.path() / kSensorsFile, log);
-  const ReadFlightLog again = read_flight_log(folder.path(), kaylion(), BodyAxes::kAsDeclared);
+  const ReadFlightLog again = read_flight_log(folder.path(), kaylion(), BodyAxes::kDetected);
   EXPECT_TRUE(again.assumptions.empty());
   ASSERT_EQ(again.log.size(), log.size());
   EXPECT_EQ(again.log.rotor_count, 4);
@@ -197,11 +197,11 @@ TEST(FlightLogFiles, ReadsGzipAndReportsCorruptArchives) {
       "t [s],acc_x [g],acc_y [g],acc_z [g],p [rad/s],q [rad/s],r [rad/s],m1 [1]\n0,0,0,1,0,0,0,1\n";
   gzwrite(out, text.data(), static_cast<unsigned>(text.size()));
   gzclose(out);
-  EXPECT_EQ(read_flight_log(file, kaylion(), BodyAxes::kAsDeclared).log.size(), 1U);
+  EXPECT_EQ(read_flight_log(file, kaylion(), BodyAxes::kDetected).log.size(), 1U);
 
   const std::string broken = folder.write("broken.csv.gz", runtime::read_text_file(file).substr(0, 40));
   try {
-    read_flight_log(broken, kaylion(), BodyAxes::kAsDeclared);
+    read_flight_log(broken, kaylion(), BodyAxes::kDetected);
     ADD_FAILURE() << "was not refused";
   } catch (const runtime::ConfigError& fault) {
     expect_contains(fault.what(), "cannot be unpacked");
