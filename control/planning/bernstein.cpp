@@ -54,21 +54,26 @@ Bernstein split_off_left(Bernstein& a) {
 class MaximumSearch {
  public:
   MaximumSearch(const Bernstein& polynomial, double tolerance)
-      : tolerance_(tolerance), best_{polynomial.c[0], 0.0} {
+      : tolerance_(tolerance), attained_(polynomial.c[0]), best_{polynomial.c[0], 0.0} {
     search(polynomial, 0.0, 1.0);
   }
   const Extremum& best() const { return best_; }
 
  private:
   void update_best(double value, double at) {
-    if (value > best_.value) best_ = {value, at};
+    if (value <= attained_) return;
+    attained_ = value;
+    best_ = {std::max(best_.value, value), at};
   }
 
   void search(Bernstein part, double from, double width) {
     update_best(part.c[0], from);
     update_best(part.c[index(part.degree)], from + width);
     if (!(part.greatest() > best_.value + tolerance_)) return;
-    if (subdivisions_ == kMaxSubdivisions) return update_best(part.greatest(), from + 0.5 * width);
+    if (subdivisions_ == kMaxSubdivisions) {
+      best_.value = std::max(best_.value, part.greatest());
+      return;
+    }
     ++subdivisions_;
     const Bernstein left = split_off_left(part);
     const double half = 0.5 * width;
@@ -83,6 +88,7 @@ class MaximumSearch {
 
   double tolerance_;
   int subdivisions_ = 0;
+  double attained_;  // at best_.at; less than best_.value only if the subdivisions did not suffice
   Extremum best_;
 };
 

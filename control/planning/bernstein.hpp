@@ -44,8 +44,8 @@ struct Extremum {
 constexpr int kMaxSubdivisions = 256;
 
 // The maximum to within `tolerance` (the true one is not more than that above): branch and bound with at most
-// kMaxSubdivisions of de Casteljau's subdivisions. If they do not suffice, the value is an upper
-// bound that may be further above the maximum.
+// kMaxSubdivisions of de Casteljau's subdivisions. If they do not suffice, `value` is an upper bound that may
+// be further above the maximum, and `at` is the best point found.
 Extremum maximum(const Bernstein& polynomial, double tolerance);
 // The minimum, likewise; the true one is at most `tolerance` below.
 Extremum minimum(const Bernstein& polynomial, double tolerance);

@@ -106,11 +106,32 @@ TEST(Bernstein, BoundsTheSearchForAMaximum) {
   flat.degree = kMaxBernsteinDegree;
   for (std::size_t i = 0; i < flat.c.size(); ++i) flat.c[i] = i % 2 == 0 ? 0.1 : 0.1 + 1e-13;
   const Extremum most = maximum(flat, 0.0);
-  EXPECT_GE(most.value, 0.1);
   EXPECT_LE(most.value, 0.1 + 1e-13);
   const Extremum least = minimum(flat, 0.0);
-  EXPECT_LE(least.value, 0.1 + 1e-13);
   EXPECT_GE(least.value, 0.1);
+  for (int i = 0; i <= 1000; ++i) {
+    EXPECT_GE(most.value, value(flat, i / 1000.0) - 1e-15);
+    EXPECT_LE(least.value, value(flat, i / 1000.0) + 1e-15);
+  }
+}
+
+// A tolerance far below 0 leaves every part in doubt.
+TEST(Bernstein, BoundsTheExtremaWhenSubdivisionsDoNotSuffice) {
+  std::mt19937 generator(3);
+  for (int trial = 0; trial < 20; ++trial) {
+    const Bernstein p = bernstein(random_polynomial(generator), 2.0);
+    const Extremum most = maximum(p, -1e9);
+    const Extremum least = minimum(p, -1e9);
+    const double rounding = 1e-12 * (std::abs(p.greatest()) + std::abs(p.least()));
+    for (int i = 0; i <= 1000; ++i) {
+      ASSERT_GE(most.value, value(p, i / 1000.0) - rounding);
+      ASSERT_LE(least.value, value(p, i / 1000.0) + rounding);
+    }
+    for (const double end : {0.0, 1.0}) {
+      EXPECT_GE(value(p, most.at), value(p, end) - rounding) << "the best point found";
+      EXPECT_LE(value(p, least.at), value(p, end) + rounding) << "the best point found";
+    }
+  }
 }
 
 }  // namespace
