@@ -185,6 +185,7 @@ TEST_F(OnlineFlight, JoinsASecondTrajectoryDuringTheFirst) {
   ASSERT_TRUE(modes.wait_for_count(2));
   expect_accepted({"trajectory", other});
   ASSERT_TRUE(reaches_mode("holding"));
+  ASSERT_TRUE(modes.wait_for_count(3));
   EXPECT_EQ(modes.items(), (std::vector<std::string>{"holding", "trajectory", "holding"}))
       << "it must not hold between the two";
   EXPECT_EQ(status().at("reason"), "trajectory completed");
