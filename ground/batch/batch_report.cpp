@@ -215,12 +215,14 @@ void write_batch_csv(const std::filesystem::path& file, const BatchReport& repor
   for (const char* name : kMarginNames) columns.push_back(std::string("margin_") + name + "_deg");
   columns.insert(columns.end(), report.parameters.begin(), report.parameters.end());
   runtime::CsvWriter csv(file, columns);
-  const auto finite = [&csv](double value) { std::isfinite(value) ? csv.exact(value) : csv.empty(); };
+  const auto write_if_finite = [&csv](double value) {
+    std::isfinite(value) ? csv.exact(value) : csv.empty();
+  };
   for (const BatchRun& run : report.batch.runs) {
-    csv.text(std::to_string(run.seed)).text(run.completed ? "1" : "0").text(run.reason);
-    for (const double value : {run.rms_3d_m, run.peak_3d_m, run.duration_s}) finite(value);
-    for (const double margin : as_array(run.margins_deg)) finite(margin);
-    for (const double value : run.values) finite(value);
+    csv.text(std::to_string(run.seed)).text(run.completed ? "1" : "0").quoted(run.reason);
+    for (const double value : {run.rms_3d_m, run.peak_3d_m, run.duration_s}) write_if_finite(value);
+    for (const double margin : as_array(run.margins_deg)) write_if_finite(margin);
+    for (const double value : run.values) write_if_finite(value);
     csv.end_row();
   }
   csv.finish();
