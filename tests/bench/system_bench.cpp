@@ -378,7 +378,7 @@ void latency_and_load(Table& table, const Options& options) {
     row("p99.9", own.sense_to_actuate_p999_us(), "p999_us", "");
     row("max", own.sense_to_actuate_max_us(), "max_us", "");
   }
-  table.section("(f) load of one vehicle that hovers");
+  table.section("(b) load of one vehicle that hovers");
   for (const auto& [rate_hz, figures] : flown) {
     for (std::size_t i = 0; i < kProcesses.size(); ++i) {
       const std::string name = std::to_string(rate_hz) + " Hz, swiftlet-" + kProcesses[i];
@@ -389,7 +389,7 @@ void latency_and_load(Table& table, const Options& options) {
 }
 
 void jitter(Table& table, const Options& options) {
-  table.section("(b) jitter of the control period of 2 ms");
+  table.section("(c) jitter of the control period of 2 ms");
   for (const bool loaded : {false, true}) {
     for (const bool realtime : {true, false}) {
       const VehicleFigures figures = hover(1, 500, realtime, options.seconds, loaded).front();
@@ -440,18 +440,18 @@ void simulated_time(Table& table) {
     factors.push_back(flown.at("real_time_factor"));
   }
   std::sort(factors.begin(), factors.end());
-  table.section("(c) lockstep, separate processes, 500 Hz control");
+  table.section("(d) lockstep, separate processes, 500 Hz control");
   table.add({"square, simulated over wall time, median of 3", factors[1], "x",
              "plant and controller steps alone", 2e6 / (2.0 * plant_ns + inner_ns), "at least 20"});
 
-  table.section("(d) closed loop in one process, 1 kHz control, all sensor models");
+  table.section("(e) closed loop in one process, 1 kHz control, all sensor models");
   for (const auto& [name, entry] : loop.items()) {
     if (entry.contains("real_time_factor"))
       table.add({name, entry.at("real_time_factor").get<double>(), "x", "plant steps alone", 1e6 / plant_ns,
                  "at least 1000"});
   }
 
-  table.section("(e) steps, CPU time, median of 5");
+  table.section("(f) steps, CPU time, median of 5");
   for (const auto& [name, entry] : plant.items()) {
     table.add(
         {name, cpu_ns(entry), "ns", "the target", 300.0, name == "simulation_step" ? "with sensors" : ""});
@@ -462,7 +462,7 @@ void simulated_time(Table& table) {
 
 void missions(Table& table) {
   constexpr std::size_t kWaypoints = 1000;
-  table.section("(f) a mission of 1,000 waypoints, to a vehicle that hovers");
+  table.section("(h) a mission of 1,000 waypoints, to a vehicle that hovers");
   const tests::TemporaryFolder folder;
   Vehicle vehicle(1, 500, true, folder.path());
   vehicle.take_off();
@@ -474,7 +474,7 @@ void missions(Table& table) {
 
 void planning(Table& table) {
   table.section(
-      "(h) a step of plant and controller that evaluates a request or setpoint in motion, CPU time");
+      "(g) a step of plant and controller that evaluates a request or setpoint in motion, CPU time");
   for (const tests::StepTimes& times : tests::longest_steps()) {
     table.add({times.what + ": median", times.median_us, "us", "", 0.0, ""});
     table.add(
@@ -485,7 +485,7 @@ void planning(Table& table) {
 constexpr double kFleetShare = 4.0;  // times longer, since the counts are small
 
 void fleets(Table& table, const Options& options) {
-  table.section("(g) vehicles on this computer, 500 Hz each, each in a domain of its own");
+  table.section("(i) vehicles on this computer, 500 Hz each, each in a domain of its own");
   for (const int vehicles : {1, 2, 4, 8, 16}) {
     double stalls = 0.0;
     const std::vector<VehicleFigures> all =
