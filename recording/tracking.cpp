@@ -18,23 +18,23 @@ TrackingErrors tracking_errors(const Track<TruthRow>& truth, const Track<Referen
   std::int64_t last_ns = window.from_ns;
 
   const TruthRow* flown = truth.begin();
-  const ReferenceRow* asked = reference.begin();
+  const ReferenceRow* reference_row = reference.begin();
   const TruthRow* const flown_end = truth.end();
-  const ReferenceRow* const asked_end = reference.end();
-  while (flown != flown_end && asked != asked_end) {
-    if (flown->stamp_ns < asked->stamp_ns) {
+  const ReferenceRow* const reference_end = reference.end();
+  while (flown != flown_end && reference_row != reference_end) {
+    if (flown->stamp_ns < reference_row->stamp_ns) {
       ++flown;
       continue;
     }
-    if (asked->stamp_ns < flown->stamp_ns) {
-      ++asked;
+    if (reference_row->stamp_ns < flown->stamp_ns) {
+      ++reference_row;
       continue;
     }
     const std::int64_t stamp_ns = flown->stamp_ns;
     if (stamp_ns >= window.from_ns && stamp_ns < window.to_ns) {
       double distance_squared = 0.0;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double error = flown->position_ned[axis] - asked->position_ned[axis];
+        const double error = flown->position_ned[axis] - reference_row->position_ned[axis];
         sum_of_squares[axis] += error * error;
         errors.peak_m[axis] = std::max(errors.peak_m[axis], std::abs(error));
         distance_squared += error * error;
@@ -45,7 +45,7 @@ TrackingErrors tracking_errors(const Track<TruthRow>& truth, const Track<Referen
       ++errors.matched;
     }
     ++flown;
-    ++asked;
+    ++reference_row;
   }
   errors.longest_gap_s = std::max(errors.longest_gap_s, seconds(window.to_ns - last_ns));
 

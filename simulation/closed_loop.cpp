@@ -24,7 +24,7 @@ ClosedLoop::ClosedLoop(const plant::Vehicle& plant_vehicle, const plant::Vehicle
 
 void ClosedLoop::step() {
   do {
-    plant.step(drive());
+    plant.step(motor_command());
     collect();
   } while (!plant.imu_due());
   answer();
@@ -60,7 +60,7 @@ void ClosedLoop::record_sensors() const {
   if (rotor_speeds_) sensors->rotor_speeds.append(*rotor_speeds_);
 }
 
-const plant::MotorCommand& ClosedLoop::drive() {
+const plant::MotorCommand& ClosedLoop::motor_command() {
   if (const auto arrived = command_path.arrived(plant.stamp_ns()))
     watchdog.accept(*arrived, plant.stamp_ns());
   return watchdog.motor_command(plant.stamp_ns());

@@ -57,7 +57,7 @@ class ClosedLoop {
   void collect();
   void answer();
   void record_sensors() const;
-  const plant::MotorCommand& drive();
+  const plant::MotorCommand& motor_command();
 
   // Newest samples since the last IMU sample that the controller processed.
   std::optional<plant::PoseSample> pose_;

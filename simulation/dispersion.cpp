@@ -235,7 +235,7 @@ DispersionSample draw(const Dispersion& dispersion, const World& nominal, std::u
   }
   throw runtime::ConfigError(dispersion.file, 0, "parameters",
                              "seed " + std::to_string(seed) + ": " + std::to_string(kMostRejected) +
-                                 " draws in a row break a rule, the last: " + violations.front().key + " " +
+                                 " samples in a row break a rule, the last: " + violations.front().key + " " +
                                  violations.front().message);
 }
 

@@ -24,7 +24,7 @@ Reference after_blend(const PolynomialSegment& blend, double after_s);
 PolynomialSegment coast(const Reference& from, double duration_s);
 
 // Follows a segment that starts at the present reference, such as a blend().
-void follow_path(const GuidanceContext& context, const PolynomialSegment& way);
+void follow_path(const GuidanceContext& context, const PolynomialSegment& segment);
 // After a blend, coasts until the next setpoint arrives.
 void start_coast(const GuidanceContext& context);
 // Stores an attitude or body-rate setpoint, which Supervisor::step() then outputs.

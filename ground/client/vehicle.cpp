@@ -40,7 +40,7 @@ VehicleState state_of(const View& view) {
     state.airborne = view.control.message.airborne();
     state.has_pose = view.control.message.has_pose();
     state.age_s = view.control.age_s(Clock::now());
-    state.setpoints = {view.control.message.setpoints_taken(), view.control.message.setpoints_refused(),
+    state.setpoints = {view.control.message.setpoints_accepted(), view.control.message.setpoints_refused(),
                        view.control.message.setpoint_refusal().c_str()};
   }
   if (view.estimate.seen()) {
@@ -84,8 +84,8 @@ void Vehicle::on_connection(std::function<void(const ConnectionEvent&)> callback
   periodic_task_.reset();
   if (!callback) return;
   const auto update = [client = client_, watch = std::make_shared<ConnectionWatch>(),
-                       tell = std::move(callback)] {
-    if (const auto event = watch->update(client->view(), Clock::now())) tell(*event);
+                       report = std::move(callback)] {
+    if (const auto event = watch->update(client->view(), Clock::now())) report(*event);
   };
   periodic_task_ = std::make_unique<comms::PeriodicTask>(kConnectionPollPeriod, update);
 }

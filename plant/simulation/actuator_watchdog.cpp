@@ -40,8 +40,8 @@ CommandFault ActuatorWatchdog::accept(const ActuatorCommand& command, std::int64
   if (command.term < term_ && !expired(now_ns)) return CommandFault::kOvertaken;
   term_ = command.term;
   last_stamp_ns_ = command.stamp_ns;
-  drive_.state = command.rotor_state;
-  for (std::size_t i = 0; i < count; ++i) drive_.throttle[i] = command.throttle[i];
+  motor_command_.state = command.rotor_state;
+  for (std::size_t i = 0; i < count; ++i) motor_command_.throttle[i] = command.throttle[i];
   return CommandFault::kNone;
 }
 
@@ -55,7 +55,7 @@ ObeyedCommand ActuatorWatchdog::obeyed() const {
 
 const MotorCommand& ActuatorWatchdog::motor_command(std::int64_t now_ns) const {
   static constexpr MotorCommand kOff;
-  return expired(now_ns) ? kOff : drive_;
+  return expired(now_ns) ? kOff : motor_command_;
 }
 
 }  // namespace swiftlet::plant

@@ -44,7 +44,7 @@ class ActuatorWatchdog {
   std::int64_t timeout_ns_;
   std::optional<std::int64_t> last_stamp_ns_;
   std::uint32_t term_ = 0;
-  MotorCommand drive_;
+  MotorCommand motor_command_;
 };
 
 }  // namespace swiftlet::plant

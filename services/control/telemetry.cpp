@@ -157,7 +157,7 @@ void Telemetry::publish_status() {
   message.period_jitter_p99_us(static_cast<double>(last_.timing.jitter_p99_ns) * 1e-3);
   message.period_jitter_max_us(static_cast<double>(last_.timing.jitter_max_ns) * 1e-3);
   message.ground_links(static_cast<std::uint8_t>(status.ground_links));
-  message.setpoints_taken(last_.setpoints.accepted);
+  message.setpoints_accepted(last_.setpoints.accepted);
   message.setpoints_refused(last_.setpoints.refused);
   message.setpoint_refusal() = last_.setpoints.refusal.reason;
   message.realtime_scheduling(realtime_);

@@ -120,7 +120,7 @@ class Fleet {
   }
 
   // Lets the time pass. Throws if a process ends meanwhile.
-  void stay(std::chrono::milliseconds duration) const {
+  void wait_while_running(std::chrono::milliseconds duration) const {
     const auto one_has_ended = [this] {
       return std::any_of(processes_.begin(), processes_.end(), [](pid_t pid) {
         siginfo_t ended{};
@@ -157,10 +157,10 @@ nlohmann::ordered_json measure(int count, const Options& options) {
   const int known = fleet.wait_until_known(std::chrono::duration<double>(options.patience_s));
   const double found_s = std::chrono::duration<double>(Clock::now() - start).count();
   const double finding_s = fleet.time_s();
-  fleet.stay(kFirstAnnouncements);
+  fleet.wait_while_running(kFirstAnnouncements);
   const double before_s = fleet.time_s();
   const auto rest = Clock::now();
-  fleet.stay(
+  fleet.wait_while_running(
       std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(options.seconds)));
   const double rest_s = std::chrono::duration<double>(Clock::now() - rest).count();
   const double cpu_s = fleet.time_s() - before_s;
@@ -208,7 +208,7 @@ int main(int argc, char** argv) {
       [&](runtime::CommandLine app) {
         app.add_option("--processes", options.processes, "number of processes; may be repeated")
             .range(2, 120);
-        app.add_option("--seconds", options.seconds, "duration of the CPU measurement").range(1.0, 60.0);
+        app.add_option("--seconds", options.seconds, "duration of the CPU measurement, s").range(1.0, 60.0);
         app.add_option("--patience", options.patience_s, "timeout of discovery, s").range(1.0, 600.0);
         app.add_flag("--json", options.json, "print JSON");
       },

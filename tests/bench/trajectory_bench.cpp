@@ -33,13 +33,13 @@ void plan_path(benchmark::State& state, Smoothness smoothness) {
   state.counters["duration_s"] = duration_s;
   state.SetComplexityN(state.range(0));
 }
-BENCHMARK_CAPTURE(plan_path, least_snap, Smoothness::kMinimumSnap)
+BENCHMARK_CAPTURE(plan_path, minimum_snap, Smoothness::kMinimumSnap)
     ->Arg(10)
     ->Arg(100)
     ->Arg(1000)
     ->Unit(benchmark::kMillisecond)
     ->Complexity(benchmark::oN);
-BENCHMARK_CAPTURE(plan_path, least_jerk, Smoothness::kMinimumJerk)
+BENCHMARK_CAPTURE(plan_path, minimum_jerk, Smoothness::kMinimumJerk)
     ->Arg(10)
     ->Arg(100)
     ->Arg(1000)

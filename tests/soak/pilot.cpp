@@ -50,7 +50,7 @@ void Pilot::act(ground::ClosedLoop& loop) {
     case Mode::kArmed:
       return take_off(loop);
     case Mode::kHolding:
-      return fly_something(loop);
+      return start_random_action(loop);
     case Mode::kMission:
     case Mode::kTrajectory:
     case Mode::kSetpoint:
@@ -85,7 +85,7 @@ void Pilot::take_off(ground::ClosedLoop& loop) {
   ask(loop, request, "take off");
 }
 
-void Pilot::fly_something(ground::ClosedLoop& loop) {
+void Pilot::start_random_action(ground::ClosedLoop& loop) {
   const double what = random_.uniform();
   wait(random_.uniform(0.5, 5.0));
   if (what < 0.45) return go_to(loop);

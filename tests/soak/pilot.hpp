@@ -34,7 +34,7 @@ class Pilot {
   bool ask(ground::ClosedLoop& loop, const control::Request& request, const std::string& what);
   void arm(ground::ClosedLoop& loop);
   void take_off(ground::ClosedLoop& loop);
-  void fly_something(ground::ClosedLoop& loop);
+  void start_random_action(ground::ClosedLoop& loop);
   void go_to(ground::ClosedLoop& loop);
   void fly_mission(ground::ClosedLoop& loop, bool from_ground);
   void fly_trajectory(ground::ClosedLoop& loop);

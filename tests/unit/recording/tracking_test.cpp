@@ -28,11 +28,11 @@ struct SyntheticFlight {
       TruthRow flown;
       flown.stamp_ns = i * kStep;
       flown.position_ned = {at[0] + e[0], at[1] + e[1], at[2] + e[2]};
-      ReferenceRow asked;
-      asked.stamp_ns = i * kStep;
-      asked.position_ned = at;
+      ReferenceRow reference_row;
+      reference_row.stamp_ns = i * kStep;
+      reference_row.position_ned = at;
       if (keep_truth(i)) truth.append(flown);
-      if (keep_reference(i)) reference.append(asked);
+      if (keep_reference(i)) reference.append(reference_row);
     }
   }
 };

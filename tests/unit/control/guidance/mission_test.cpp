@@ -61,7 +61,7 @@ class MissionFlight : public testing::Test, protected SupervisedFlight {
   int item() const { return supervisor_.mission().item_index; }
   Outcome pause() { return ask(RequestKind::kMissionPause); }
   Outcome resume() { return ask(RequestKind::kMissionResume); }
-  void fly_on(double seconds) {
+  void fly_for(double seconds) {
     step_until([] { return false; }, seconds);
   }
 
@@ -88,7 +88,7 @@ class MissionFlight : public testing::Test, protected SupervisedFlight {
 TEST_F(MissionFlight, UploadedMissionWaitsForStart) {
   const Mission mission = mission_of({waypoint({1, 0, -1})});
   ASSERT_TRUE(upload(mission).accepted);
-  fly_on(2.0);
+  fly_for(2.0);
   EXPECT_EQ(supervisor_.mode(), Mode::kHolding);
   EXPECT_EQ(state(), MissionState::kUploaded);
   EXPECT_EQ(supervisor_.mission().id, 7u);
@@ -106,7 +106,7 @@ TEST_F(MissionFlight, EndedMissionCanBeStartedAgain) {
   ASSERT_TRUE(step_until([&] { return item() == 1; }, 10.0));
   ASSERT_TRUE(ask(RequestKind::kHold).accepted);
   EXPECT_EQ(state(), MissionState::kAborted);
-  fly_on(3.0);
+  fly_for(3.0);
   ASSERT_TRUE(ask(RequestKind::kMissionStart).accepted);
   EXPECT_EQ(item(), 0);
   ASSERT_TRUE(step_until([&] { return state() == MissionState::kCompleted; }, 20.0));
@@ -159,7 +159,7 @@ TEST_F(MissionFlight, PauseStopsOnThePathAndResumesThere) {
     EXPECT_EQ(control_setpoint_.reference.velocity_ned, Vector3d::Zero());
     const Vector3d rest = control_setpoint_.reference.position_ned;
     EXPECT_LT(distance_from(mission.segments, rest), 2e-3) << "paused at " << pause_at_s << " s";
-    fly_on(1.0);
+    fly_for(1.0);
     EXPECT_EQ(control_setpoint_.reference.position_ned, rest);
     ASSERT_TRUE(resume().accepted);
     EXPECT_EQ(state(), MissionState::kRunning);
@@ -174,7 +174,7 @@ TEST_F(MissionFlight, PauseAndResumeAreContinuousAtAnyTime) {
   const Mission mission = curve();
   for (double after_s = 0.05; after_s < 2.2; after_s += 0.15) {
     ASSERT_TRUE(fly(mission).accepted);
-    fly_on(2.0);
+    fly_for(2.0);
     ASSERT_TRUE(pause().accepted);
     ASSERT_NO_FATAL_FAILURE(step_smoothly(after_s));
     ASSERT_TRUE(resume().accepted);
@@ -191,13 +191,13 @@ TEST_F(MissionFlight, ResumeAfterGoToReturnsToThePausedPosition) {
   const Mission mission = curve();
   for (const double pause_s : {0.4, 4.0}) {  // before it has come to rest, and after
     ASSERT_TRUE(fly(mission).accepted);
-    fly_on(2.0);
+    fly_for(2.0);
     ASSERT_TRUE(pause().accepted);
     ASSERT_NO_FATAL_FAILURE(step_smoothly(pause_s));
     const Vector3d left = control_setpoint_.reference.position_ned;
     ASSERT_TRUE(ask(RequestKind::kGoTo, {-1, -1, -2}).accepted);
     EXPECT_EQ(state(), MissionState::kPaused);
-    fly_on(12.0);
+    fly_for(12.0);
     EXPECT_NEAR((estimate_.position_ned - Vector3d(-1, -1, -2)).norm(), 0.0, 1e-6);
     ASSERT_TRUE(resume().accepted);
     double nearest = 1e9;
@@ -220,12 +220,12 @@ TEST_F(MissionFlight, ResumeAfterGoToReturnsToThePausedPosition) {
 TEST_F(MissionFlight, ReturnToThePathCanBePausedAndResumed) {
   const Mission mission = curve();
   ASSERT_TRUE(fly(mission).accepted);
-  fly_on(2.0);
+  fly_for(2.0);
   ASSERT_TRUE(pause().accepted);
-  fly_on(3.0);
+  fly_for(3.0);
   const Vector3d left = control_setpoint_.reference.position_ned;
   ASSERT_TRUE(ask(RequestKind::kGoTo, {-1, -1, -2}).accepted);
-  fly_on(12.0);
+  fly_for(12.0);
   ASSERT_TRUE(resume().accepted);
   ASSERT_NO_FATAL_FAILURE(step_smoothly(2.0));
   ASSERT_TRUE(pause().accepted);
@@ -246,9 +246,9 @@ TEST_F(MissionFlight, PauseKeepsTheRestOfAHold) {
   const Mission mission = mission_of({waypoint({0.5, 0, -1}, 0.5, 4.0), waypoint({0, 0, -1})});
   ASSERT_TRUE(fly(mission).accepted);
   ASSERT_TRUE(step_until([&] { return supervisor_.state().guidance.item_end_ns != 0; }, 10.0));
-  fly_on(1.0);
+  fly_for(1.0);
   ASSERT_TRUE(pause().accepted);
-  fly_on(30.0);
+  fly_for(30.0);
   EXPECT_EQ(item(), 0);
   ASSERT_TRUE(resume().accepted);
   const std::int64_t resumed_ns = inputs_.stamp_ns;
@@ -275,7 +275,7 @@ TEST_F(MissionFlight, SkipContinuesFromThePresentMotion) {
   const Mission mission =
       mission_of({waypoint({2, 0, -1}, 0.8), waypoint({0, 1, -1}, 0.8), waypoint({0, 0, -1}, 0.8)});
   ASSERT_TRUE(fly(mission).accepted);
-  fly_on(2.0);
+  fly_for(2.0);
   const double speed = control_setpoint_.reference.velocity_ned.x();
   ASSERT_GT(speed, 0.3);
   ASSERT_TRUE(ask(RequestKind::kMissionSkip).accepted);
@@ -289,9 +289,9 @@ TEST_F(MissionFlight, SkipContinuesFromThePresentMotion) {
 TEST_F(MissionFlight, SkipInAPauseFliesTheNextItem) {
   const Mission mission = mission_of({waypoint({2, 0, -1}), waypoint({0, 1, -1})});
   ASSERT_TRUE(fly(mission).accepted);
-  fly_on(1.5);
+  fly_for(1.5);
   ASSERT_TRUE(pause().accepted);
-  fly_on(0.3);
+  fly_for(0.3);
   ASSERT_TRUE(ask(RequestKind::kMissionSkip).accepted);
   EXPECT_EQ(supervisor_.mode(), Mode::kMission);
   ASSERT_NO_FATAL_FAILURE(step_smoothly(10.0));
@@ -302,9 +302,9 @@ TEST_F(MissionFlight, SkipInAPauseFliesTheNextItem) {
 TEST_F(MissionFlight, ClearInAPauseStopsAndForgetsTheMission) {
   const Mission mission = curve();
   ASSERT_TRUE(fly(mission).accepted);
-  fly_on(2.0);
+  fly_for(2.0);
   ASSERT_TRUE(pause().accepted);
-  fly_on(0.2);
+  fly_for(0.2);
   ASSERT_TRUE(ask(RequestKind::kMissionClear).accepted);
   EXPECT_EQ(state(), MissionState::kNone);
   EXPECT_EQ(supervisor_.mission().id, 0u);
@@ -317,7 +317,7 @@ TEST_F(MissionFlight, ClearInAPauseStopsAndForgetsTheMission) {
 TEST_F(MissionFlight, PauseEndsWithAnyOtherModeThanHold) {
   const Mission mission = mission_of({waypoint({2, 0, -1}), waypoint({0, 0, -1})});
   ASSERT_TRUE(fly(mission).accepted);
-  fly_on(1.0);
+  fly_for(1.0);
   ASSERT_TRUE(pause().accepted);
   ASSERT_TRUE(ask(RequestKind::kHold).accepted);
   EXPECT_EQ(state(), MissionState::kPaused);
@@ -366,9 +366,9 @@ TEST_F(MissionFlight, FailoverWithoutTheMissionForgetsOrAbortsIt) {
   EXPECT_EQ(follower.mode(), Mode::kHolding);
   EXPECT_EQ(follower.mission().state, MissionState::kNone);
   ASSERT_TRUE(ask(RequestKind::kMissionStart).accepted);
-  fly_on(2.0);
+  fly_for(2.0);
   ASSERT_TRUE(pause().accepted);
-  fly_on(0.2);
+  fly_for(0.2);
   follower.adopt(SupervisorState(supervisor_.state()), nullptr, nullptr);
   EXPECT_EQ(follower.mode(), Mode::kHolding);
   EXPECT_EQ(follower.reason(), Reason::kPlanUnknown);
@@ -379,16 +379,16 @@ TEST_F(MissionFlight, AcceptanceRadiusWaitsForTheVehicle) {
   Mission mission = mission_of({waypoint({1, 0, -1}, 0.5, 1.0), waypoint({0, 0, -1})});
   mission.items[0].acceptance_radius_m = 0.05;
   ASSERT_TRUE(fly(mission).accepted);
-  fly_on(2.0);
+  fly_for(2.0);
   follows_ = false;  // the vehicle is off the reference
   estimate_.position_ned = {0.9, 0, -1};
-  fly_on(10.0);
+  fly_for(10.0);
   EXPECT_EQ(item(), 0);
   EXPECT_NEAR(control_setpoint_.reference.position_ned.x(), 1.0, 1e-9);
   estimate_.position_ned = {0.951, 0, -1};
-  fly_on(0.9);
+  fly_for(0.9);
   EXPECT_EQ(item(), 0) << "the hold starts when the vehicle has arrived";
-  fly_on(0.2);
+  fly_for(0.2);
   EXPECT_EQ(item(), 1);
 }
 
@@ -446,7 +446,7 @@ TEST_F(MissionFlight, MissionLimitsHoldDuringTheMission) {
         },
         60.0);
     EXPECT_TRUE(ask(RequestKind::kGoTo, {0, 0, -1}, 2.0).accepted);
-    fly_on(10.0);
+    fly_for(10.0);
     return peak;
   };
   EXPECT_GT(peaks().y(), 1.5);
@@ -467,9 +467,9 @@ TEST_F(MissionFlight, MissionFenceHoldsUntilTheMissionEnds) {
   mission.bounds.fence_max_ned = {1.5, 0.5, 0.2};
   ASSERT_TRUE(check(mission, Limits{}).accepted) << check(mission, Limits{}).reason;
   ASSERT_TRUE(fly(mission).accepted);
-  fly_on(1.0);
+  fly_for(1.0);
   ASSERT_TRUE(pause().accepted);
-  fly_on(2.0);
+  fly_for(2.0);
   EXPECT_STREQ(ask(RequestKind::kGoTo, {0, 1, -1}).reason,
                "goto: y is 1.000 m, outside the fence of -0.500 to 0.500 m");
   ASSERT_TRUE(resume().accepted);
@@ -483,7 +483,7 @@ TEST_F(MissionFlight, MissionFenceHoldsUntilTheMissionEnds) {
   estimate_.position_ned = inside;
   follows_ = true;
   ASSERT_TRUE(ask(RequestKind::kGoTo, {0, 1, -1}).accepted) << "the mission is over";
-  fly_on(5.0);
+  fly_for(5.0);
   EXPECT_EQ(supervisor_.mode(), Mode::kHolding);
 }
 

@@ -426,7 +426,7 @@ TEST(EngagedInFlight, ComesToRestAndHoldsButNeedsAPose) {
 class GroundLinks : public testing::Test {
  protected:
   // Flies for seconds, with a heartbeat of these clients each 0.2 s.
-  void fly_on(double seconds, const std::vector<std::uint64_t>& clients) {
+  void fly_for(double seconds, const std::vector<std::uint64_t>& clients) {
     const std::int64_t end_ns = flight_.inputs_.stamp_ns + std::llround(seconds * 1e9);
     for (int i = 0; flight_.inputs_.stamp_ns < end_ns; ++i) {
       if (i % 100 == 0) {
@@ -441,43 +441,43 @@ class GroundLinks : public testing::Test {
 
 TEST_F(GroundLinks, FlightWithoutClientsContinues) {
   ASSERT_TRUE(flight_.take_off());
-  fly_on(5.0, {});
+  fly_for(5.0, {});
   EXPECT_EQ(flight_.mode(), Mode::kHolding);
 }
 
 TEST_F(GroundLinks, SilentClientTriggersDespiteAnother) {
   ASSERT_TRUE(flight_.take_off());
-  fly_on(5.0, {1, 2});
+  fly_for(5.0, {1, 2});
   EXPECT_EQ(flight_.mode(), Mode::kHolding);
-  fly_on(0.7, {2});
+  fly_for(0.7, {2});
   EXPECT_EQ(flight_.mode(), Mode::kHolding);
-  fly_on(0.4, {2});
+  fly_for(0.4, {2});
   EXPECT_EQ(flight_.mode(), Mode::kLanding);
   EXPECT_EQ(flight_.supervisor_.reason(), Reason::kGroundLinkLost);
 }
 
 TEST_F(GroundLinks, ClientThatLeavesDoesNotTrigger) {
   ASSERT_TRUE(flight_.take_off());
-  fly_on(1.0, {1});
+  fly_for(1.0, {1});
   EXPECT_TRUE(flight_.supervisor_.ground_heartbeat({1, false}));
-  fly_on(3.0, {});
+  fly_for(3.0, {});
   EXPECT_EQ(flight_.mode(), Mode::kHolding);
 }
 
 TEST_F(GroundLinks, LossTriggersOnceOnly) {
   ASSERT_TRUE(flight_.take_off());
-  fly_on(1.0, {1});
+  fly_for(1.0, {1});
   ASSERT_TRUE(flight_.step_until(Mode::kLanding, 1.2));
   ASSERT_TRUE(flight_.ask(RequestKind::kHold).accepted);
-  fly_on(3.0, {});
+  fly_for(3.0, {});
   EXPECT_EQ(flight_.mode(), Mode::kHolding);
 }
 
 TEST_F(GroundLinks, LossWithoutPoseTriggersWhenThePoseReturns) {
   ASSERT_TRUE(flight_.take_off());
-  fly_on(1.0, {1});
+  fly_for(1.0, {1});
   flight_.inputs_.pose_age_s = 1.0;
-  fly_on(2.0, {});
+  fly_for(2.0, {});
   ASSERT_EQ(flight_.mode(), Mode::kDescent);
   flight_.inputs_.pose_age_s = 0.0;
   flight_.step();
@@ -499,7 +499,7 @@ TEST_F(GroundLinks, RefusesMoreClientsThanFit) {
 
 TEST_F(GroundLinks, LossOnTheGroundDoesNotEndTheNextFlight) {
   EXPECT_TRUE(flight_.supervisor_.ground_heartbeat({1, true}));
-  fly_on(3.0, {});
+  fly_for(3.0, {});
   ASSERT_TRUE(flight_.take_off());
   EXPECT_EQ(flight_.mode(), Mode::kHolding);
 }

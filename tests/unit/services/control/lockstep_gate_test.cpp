@@ -42,7 +42,7 @@ TEST(LockstepGate, HoldsASampleUntilItsDependenciesArrive) {
   EXPECT_TRUE(gate.take().has_value());
 }
 
-TEST(LockstepGate, RecognizesOldSamplesPerStream) {
+TEST(LockstepGate, RecognisesOldSamplesPerStream) {
   LockstepGate gate;
   EXPECT_FALSE(gate.is_new(Stream::kPose, 0)) << "0 is no sample";
   EXPECT_TRUE(gate.is_new(Stream::kPose, 5));

@@ -31,7 +31,7 @@ TEST(Semaphore, PostsAreNotCounted) {
   EXPECT_GE(Clock::now() - began, 20ms);
 }
 
-TEST(Semaphore, PostSynchronizesWithTheWait) {
+TEST(Semaphore, PostSynchronisesWithTheWait) {
   Semaphore there;
   Semaphore back;
   int value = 0;
