@@ -42,7 +42,7 @@ enum class Reason : std::uint8_t {
   kImuUnusable,
   kImuGap,
   kGroundLinkLost,
-  kImpact,                  // the specific force exceeded failsafe.blow: the vehicle hit the ground or a wall
+  kImpact,  // the specific force exceeded failsafe.impact_m_s2: the vehicle hit the ground or a wall
   kTakeoffInconsistent,     // poses do not follow the take-off: another body, or markers that came off
   kPoseJumped,              // poses disagreed with the estimate for long, and the estimate was reset to them
   kPlanUnknown,             // the mission or trajectory is not known here after a failover

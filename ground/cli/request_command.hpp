@@ -16,7 +16,7 @@
 
 namespace swiftlet::ground {
 
-// Options of a command that talks to one vehicle.
+// Options of every command that talks to running vehicles.
 struct CommandOptions {
   comms::NodeSettings network;
   double timeout_s = 5.0;  // longest wait for the acknowledgement

@@ -28,8 +28,8 @@ void warn_of_collinearity(const Fit& fit, Experiment& experiment) {
   const auto symbol = [&](Eigen::Index i) {
     return experiment.estimates[static_cast<std::size_t>(i)].symbol;
   };
-  experiment.warnings.push_back("these data hardly tell " + symbol(first) + " and " + symbol(second) +
-                                " apart: correlation " + format_number(fit.correlation(first, second)) +
+  experiment.warnings.push_back("these data barely separate " + symbol(first) + " and " + symbol(second) +
+                                ": correlation " + format_number(fit.correlation(first, second)) +
                                 ", condition number " + format_number(fit.condition) + ", should be below " +
                                 format_number(kIllConditioned) + "; readings over a wider range are needed");
 }

@@ -8,7 +8,7 @@ run(${CMAKE_COMMAND} -S ${TEST_DIR}/embedded -B ${embedding} ${configuration} -D
 file(STRINGS ${embedding}/compile_commands.json commands REGEX "\"command\"")
 foreach(command IN LISTS commands)
   if(command MATCHES "-Werror|gtest|cmake_pch")
-    message(FATAL_ERROR "compiled with what is for the project alone: ${command}")
+    message(FATAL_ERROR "compile command has flags that only this project's own build may use: ${command}")
   endif()
 endforeach()
 # One of the files that take longest to compile; embedding_math.cmake builds the rest of the folder.

@@ -36,9 +36,9 @@ struct GainsOptions {
 //     poles: of the closed loop with inner loop and rotor lag (x with pitch, y with roll, at yaw 0)
 //     phase_margin_deg: loop opened at the acceleration command, with inner loop and rotor lag
 //   margins.{roll,pitch,yaw,x,y,z}.{designed,most,worst}: of the nominal vehicle, held by 95 % of the samples
-//     of its uncertainty, and worst of all samples; most and worst exist only if draws > 0
+//     of its uncertainty, and worst of all samples; most and worst exist only if samples > 0
 //     phase_deg, gain_increase_db, gain_decrease_db, delay_s; null if no such change makes the loop unstable
-//   draws, seed, unstable: number of samples, seed of the first, number of samples with an unstable loop
+//   samples, seed, unstable: number of samples, seed of the first, number of samples with an unstable loop
 // Margins and poles do not include the estimator and the sampling.
 std::string gains_json(const control::ControlDesign& design, const MarginStudy& margins,
                        const std::string& vehicle, const std::string& control);
