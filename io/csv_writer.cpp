@@ -40,11 +40,14 @@ CsvWriter& CsvWriter::exact(double value) {
 }
 
 CsvWriter& CsvWriter::text(const std::string& value) {
+  if (value.find_first_of(",\"\r\n") != std::string::npos) return quoted(value);
   separate();
-  if (value.find_first_of(",\"\r\n") == std::string::npos) {
-    row_ += value;
-    return *this;
-  }
+  row_ += value;
+  return *this;
+}
+
+CsvWriter& CsvWriter::quoted(const std::string& value) {
+  separate();
   row_ += '"';
   for (const char c : value) row_ += c == '"' ? std::string("\"\"") : std::string(1, c);
   row_ += '"';

@@ -25,12 +25,13 @@ class CsvWriter {
     return *this;
   }
   CsvWriter& fixed(double value, int decimals);
-  CsvWriter& exact(double value);             // the shortest decimal that reads back as the same number
-  CsvWriter& text(const std::string& value);  // quoted if it needs to be (RFC 4180)
+  CsvWriter& exact(double value);               // the shortest decimal that reads back as the same number
+  CsvWriter& text(const std::string& value);    // quoted if it needs to be (RFC 4180)
+  CsvWriter& quoted(const std::string& value);  // always quoted
   CsvWriter& empty(int cells = 1);
   void end_row();
 
-  // Call it last: throws std::runtime_error if a row could not be written. Errors are reported here only.
+  // Throws std::runtime_error if a row could not be written. Call it last: errors are reported here only.
   void finish();
 
  private:

@@ -20,8 +20,8 @@ TrackingErrors tracking_errors(const Track<TruthRow>& truth, const Track<Referen
   const TruthRow* flown = truth.begin();
   const ReferenceRow* reference_row = reference.begin();
   const TruthRow* const flown_end = truth.end();
-  const ReferenceRow* const asked_end = reference.end();
-  while (flown != flown_end && reference_row != asked_end) {
+  const ReferenceRow* const reference_end = reference.end();
+  while (flown != flown_end && reference_row != reference_end) {
     if (flown->stamp_ns < reference_row->stamp_ns) {
       ++flown;
       continue;

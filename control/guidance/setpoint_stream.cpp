@@ -143,9 +143,9 @@ double stream_period_s(const GuidanceContext& context) {
   return std::clamp(since_s, kLeastPeriod_s, std::max(kLeastPeriod_s, context.failsafe.setpoint_timeout_s));
 }
 
-void follow_path(const GuidanceContext& context, const PolynomialSegment& way) {
+void follow_path(const GuidanceContext& context, const PolynomialSegment& segment) {
   context.state.phase = Phase::kPath;
-  context.state.path.follow(way, context.now_ns);
+  context.state.path.follow(segment, context.now_ns);
 }
 
 void start_coast(const GuidanceContext& context) {

@@ -54,16 +54,16 @@ Bernstein split_off_left(Bernstein& a) {
 class MaximumSearch {
  public:
   MaximumSearch(const Bernstein& polynomial, double tolerance)
-      : tolerance_(tolerance), best_{polynomial.c[0]} {
+      : tolerance_(tolerance), attained_(polynomial.c[0]), best_{polynomial.c[0], 0.0} {
     search(polynomial, 0.0, 1.0);
   }
   const Extremum& best() const { return best_; }
 
  private:
   void update_best(double value, double at) {
-    if (value <= best_.value) return;
-    best_.value = value;
-    best_.at = at;
+    if (value <= attained_) return;
+    attained_ = value;
+    best_ = {std::max(best_.value, value), at};
   }
 
   void search(Bernstein part, double from, double width) {
@@ -72,7 +72,6 @@ class MaximumSearch {
     if (!(part.greatest() > best_.value + tolerance_)) return;
     if (subdivisions_ == kMaxSubdivisions) {
       best_.value = std::max(best_.value, part.greatest());
-      best_.bound_only = true;
       return;
     }
     ++subdivisions_;
@@ -89,6 +88,7 @@ class MaximumSearch {
 
   double tolerance_;
   int subdivisions_ = 0;
+  double attained_;  // at best_.at; less than best_.value only if the subdivisions did not suffice
   Extremum best_;
 };
 
@@ -150,9 +150,8 @@ Extremum maximum(const Bernstein& polynomial, double tolerance) {
 }
 
 Extremum minimum(const Bernstein& polynomial, double tolerance) {
-  Extremum out = maximum(-1.0 * polynomial, tolerance);
-  out.value = -out.value;
-  return out;
+  const Extremum of_negative = maximum(-1.0 * polynomial, tolerance);
+  return {-of_negative.value, of_negative.at};
 }
 
 }  // namespace swiftlet::control

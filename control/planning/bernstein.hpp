@@ -37,16 +37,15 @@ Bernstein squared_length(const Components&... components) {
 }
 
 struct Extremum {
-  double value = 0.0;       // of the polynomial
-  double at = 0.0;          // u
-  bool bound_only = false;  // the search did not suffice: `value` is a bound, `at` the best point found
+  double value = 0.0;  // of the polynomial
+  double at = 0.0;     // u
 };
 
 constexpr int kMaxSubdivisions = 256;
 
 // The maximum to within `tolerance` (the true one is not more than that above): branch and bound with at most
-// kMaxSubdivisions of de Casteljau's subdivisions. If they do not suffice, the value is
-// an upper bound that may be further above the maximum.
+// kMaxSubdivisions of de Casteljau's subdivisions. If they do not suffice, `value` is an upper bound that may
+// be further above the maximum, and `at` is the best point found.
 Extremum maximum(const Bernstein& polynomial, double tolerance);
 // The minimum, likewise; the true one is at most `tolerance` below.
 Extremum minimum(const Bernstein& polynomial, double tolerance);

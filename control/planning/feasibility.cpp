@@ -120,18 +120,24 @@ class Survey {
     // The tilt exceeds its limit where the horizontal part is longer than tan(limit) times the vertical one.
     const double tangent = std::tan(limits_.max_tilt_rad);
     const Bernstein beyond = squared_length(x, y) - tangent * tangent * squared_length(z);
-    const Extremum most = maximum(beyond, kPrecision * plant::kGravity * plant::kGravity);
+    const double tolerance = kPrecision * plant::kGravity * plant::kGravity;
+    const Extremum most = maximum(beyond, tolerance);
+    const auto force_at = [&](double at) -> Vector3d {
+      const Reference effective = with_drag(evaluate(segment, at * segment.duration_s), drag_per_mass_);
+      return Vector3d(0.0, 0.0, plant::kGravity) - effective.acceleration_ned;
+    };
     for (const double at : {most.at, least.at}) {
-      const double t_s = at * segment.duration_s;
-      const Vector3d b = Vector3d(0.0, 0.0, plant::kGravity) -
-                         with_drag(evaluate(segment, t_s), drag_per_mass_).acceleration_ned;
-      note(Demand::kTilt, std::atan2(b.head<2>().norm(), b.z()), segment, t_s);
+      const Vector3d b = force_at(at);
+      note(Demand::kTilt, std::atan2(b.head<2>().norm(), b.z()), segment, at * segment.duration_s);
     }
-    if (most.bound_only) {
-      const double lift = std::max(least.value, kPrecision * plant::kGravity);
-      const double beyond_limit = std::max(most.value, 0.0) / (lift * lift);
-      note(Demand::kTilt, std::atan(std::sqrt(tangent * tangent + beyond_limit)), segment,
-           most.at * segment.duration_s);
+    // If the search did not suffice, most.value is an upper bound that is not attained. Above 0 it does not
+    // exclude a violation: the tilt is then bounded by that of this horizontal part at the least vertical one.
+    const Vector3d b = force_at(most.at);
+    const double attained = b.head<2>().squaredNorm() - tangent * tangent * b.z() * b.z();
+    if (most.value > std::max(0.0, attained + tolerance)) {
+      const double vertical = std::max(least.value, 0.0);
+      const double horizontal = std::sqrt(tangent * tangent * vertical * vertical + most.value);
+      note(Demand::kTilt, std::atan2(horizontal, vertical), segment, most.at * segment.duration_s);
     }
   }
 

@@ -82,8 +82,8 @@ Outcome check_start(const SupervisorContext& context) {
 }
 
 Outcome check_start_from_ground(const SupervisorContext& context) {
-  const Outcome sound = check_start(context);
-  if (!sound.accepted) return sound;
+  const Outcome start = check_start(context);
+  if (!start.accepted) return start;
   const Outcome battery = battery_sufficient(context);
   if (!battery.accepted) return battery;
   const MissionItem& first = context.plan.mission->items.front();

@@ -219,7 +219,7 @@ void write_batch_csv(const std::filesystem::path& file, const BatchReport& repor
     std::isfinite(value) ? csv.exact(value) : csv.empty();
   };
   for (const BatchRun& run : report.batch.runs) {
-    csv.text(std::to_string(run.seed)).text(run.completed ? "1" : "0").text(run.reason);
+    csv.text(std::to_string(run.seed)).text(run.completed ? "1" : "0").quoted(run.reason);
     for (const double value : {run.rms_3d_m, run.peak_3d_m, run.duration_s}) write_if_finite(value);
     for (const double margin : as_array(run.margins_deg)) write_if_finite(margin);
     for (const double value : run.values) write_if_finite(value);

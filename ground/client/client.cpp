@@ -145,7 +145,7 @@ void Client::subscribe_all() {
   subscriptions_.push_back(
       node_.subscribe<msg::VehicleInfo>(kVehicleInfo, [this](const msg::VehicleInfo& info) {
         keep(&View::vehicle, info);
-        grant_after(info.stamp_ns());
+        advance_after(info.stamp_ns());
         changed_.notify_all();
       }));
   subscriptions_.push_back(node_.subscribe<msg::CommandAck>(kCommandAck, [this](const msg::CommandAck& ack) {
@@ -170,7 +170,7 @@ void Client::subscribe_all() {
       node_.subscribe<msg::Reference>(kReference, [this](const msg::Reference& reference) {
         if (record_ != nullptr) record_->reference.append(row_of(reference));
         keep(&View::reference, reference);
-        grant_after(reference.stamp_ns());
+        advance_after(reference.stamp_ns());
         std::unique_lock lock(mutex_);
         const auto heartbeat = heartbeat_;
         lock.unlock();
@@ -213,7 +213,7 @@ void Client::subscribe_sensors(SensorRecord& sensors) {
   subscriptions_.push_back(node_.subscribe<msg::Imu>(kImu, [this, &sensors](const msg::Imu& imu) {
     keep_sample(imu, sensors.imu);
     note_heard(&HeardSamples::imu);
-    grant_after(imu.stamp_ns());
+    advance_after(imu.stamp_ns());
   }));
 }
 
@@ -250,7 +250,7 @@ SimulationClockPublisher& Client::simulation_clock() {
   return *clock_publisher_;
 }
 
-void Client::grant_after(std::int64_t stamp_ns) {
+void Client::advance_after(std::int64_t stamp_ns) {
   std::unique_lock lock(mutex_);
   const auto simulation_clock = clock_publisher_;
   lock.unlock();

@@ -80,7 +80,8 @@ class Client {
   // Fills View::controllers from controller_state, which standbys publish too. Call once, from one thread.
   void hear_controllers();
 
-  // Grants time to a lockstep plant that was started paused. The first call starts the publisher.
+  // Publishes the time up to which a lockstep plant that was started paused may advance. The first call
+  // starts the publisher.
   SimulationClockPublisher& simulation_clock();
 
   // Publishes the ground heartbeat until the failsafe is disabled or the client is destroyed: if it stops
@@ -129,7 +130,7 @@ class Client {
   void subscribe_all();
   void subscribe_sensors(SensorRecord& sensors);
   void note_heard(bool HeardSamples::*kind);
-  void grant_after(std::int64_t stamp_ns);
+  void advance_after(std::int64_t stamp_ns);
   template <class T>
   Result ask(comms::Publisher<T>& publisher, const T& request, std::chrono::milliseconds timeout,
              const Cancelled& cancelled);

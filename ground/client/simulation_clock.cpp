@@ -27,21 +27,21 @@ SimulationClockPublisher::~SimulationClockPublisher() {
 void SimulationClockPublisher::up_to(std::int64_t stamp_ns) {
   const std::lock_guard<std::mutex> lock(mutex_);
   goal_ns_ = std::max(goal_ns_, stamp_ns);
-  grant();
+  advance();
 }
 
 void SimulationClockPublisher::has_come(std::int64_t stamp_ns) {
   const std::lock_guard<std::mutex> lock(mutex_);
   come_ns_ = std::max(come_ns_, stamp_ns);
-  grant();
+  advance();
 }
 
-// Grants at least a quarter of the window at once, or the rest to the goal, not a message per sample.
-void SimulationClockPublisher::grant() {
-  const std::int64_t granted_ns = clock_.advance_to_ns();
+// Advances by at least a quarter of the window at once, or the rest to the goal: not by a message per sample.
+void SimulationClockPublisher::advance() {
+  const std::int64_t published_ns = clock_.advance_to_ns();
   const std::int64_t wanted_ns = std::min(goal_ns_, come_ns_ + window_ns_);
-  const std::int64_t least_ns = wanted_ns == goal_ns_ ? granted_ns + 1 : granted_ns + window_ns_ / 4;
-  if (wanted_ns < least_ns && clock_.sequence_number() > 0) return;  // the first grant starts the plant
+  const std::int64_t least_ns = wanted_ns == goal_ns_ ? published_ns + 1 : published_ns + window_ns_ / 4;
+  if (wanted_ns < least_ns && clock_.sequence_number() > 0) return;  // the first message starts the plant
   clock_.advance_to_ns(wanted_ns);
   publish();
 }

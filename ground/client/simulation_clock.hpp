@@ -1,4 +1,4 @@
-// Lockstep: grants simulated time to the plant, no faster than its samples are recorded.
+// Lockstep: publishes the time up to which the plant may advance, no faster than its samples are recorded.
 #pragma once
 
 #include <condition_variable>
@@ -11,10 +11,10 @@
 
 namespace swiftlet::ground {
 
-// A plant that was started with --paused advances as far as simulation_clock grants: to the goal, but at most
+// Publishes the time up to which a plant that was started with --paused may advance: the goal, but at most
 // window_ns beyond the newest sample received from it. The window bounds the samples in transit, so that a
-// socket's buffer holds them. Repeats the last grant every 0.2 s: the plant ends the run if it receives none.
-// Thread-safe.
+// socket's buffer holds them. Repeats the last message every 0.2 s: the plant ends the run if it receives
+// none. Thread-safe.
 class SimulationClockPublisher {
  public:
   SimulationClockPublisher(comms::Node& node, std::int64_t window_ns);
@@ -30,7 +30,7 @@ class SimulationClockPublisher {
   void has_come(std::int64_t stamp_ns);
 
  private:
-  void grant();  // call with mutex_ held, as publish()
+  void advance();  // call with mutex_ held, as publish()
   void publish();
   void repeat();
 

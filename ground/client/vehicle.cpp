@@ -84,8 +84,8 @@ void Vehicle::on_connection(std::function<void(const ConnectionEvent&)> callback
   periodic_task_.reset();
   if (!callback) return;
   const auto update = [client = client_, watch = std::make_shared<ConnectionWatch>(),
-                       tell = std::move(callback)] {
-    if (const auto event = watch->update(client->view(), Clock::now())) tell(*event);
+                       report = std::move(callback)] {
+    if (const auto event = watch->update(client->view(), Clock::now())) report(*event);
   };
   periodic_task_ = std::make_unique<comms::PeriodicTask>(kConnectionPollPeriod, update);
 }

@@ -45,7 +45,7 @@ class Client;
 
 // Setpoints that the controller received since it became active.
 struct SetpointTally {
-  std::uint64_t accepted = 0;  // accepted
+  std::uint64_t accepted = 0;
   std::uint64_t refused = 0;
   std::string refusal;  // a sentence: why the last one was refused
 };

@@ -152,7 +152,7 @@ void NetworkTransport::wait_until_samples_come() {
              "no first samples from plant, mocap and control");
 }
 
-// Grants time up to stamp_ns and waits until the plant has reached it and all samples are answered.
+// Lets time advance up to stamp_ns and waits until the plant has reached it and all samples are answered.
 void NetworkTransport::wait_until_paused_at(std::int64_t stamp_ns) {
   client_.simulation_clock().up_to(stamp_ns);
   paused_at_ns_ = stamp_ns;

@@ -21,7 +21,7 @@ namespace swiftlet::services {
 
 // Setpoints received while this controller was active.
 struct SetpointTally {
-  std::uint64_t accepted = 0;  // accepted
+  std::uint64_t accepted = 0;
   std::uint64_t refused = 0;
   control::Outcome refusal;  // of the last one refused
 };

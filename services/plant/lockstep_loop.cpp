@@ -31,7 +31,7 @@ LockstepLoop::LockstepLoop(SimulatedVehicle& vehicle, const plant::SimulationSet
       lockstep_(lockstep),
       imu_period_ns_(plant::period_ns(settings.imu.rate_hz)),
       expected_(settings, 0),
-      granted_ns_(lockstep.paused ? -1 : std::numeric_limits<std::int64_t>::max()),
+      advance_to_ns_(lockstep.paused ? -1 : std::numeric_limits<std::int64_t>::max()),
       paced_ns_(lockstep.speed > 0.0 ? 0 : std::numeric_limits<std::int64_t>::max()) {
   if (!lockstep.trace.empty()) trace_.emplace(lockstep.trace, rotor_count);
   commands_ = node.subscribe<comms::msg::ActuatorCommand>(
@@ -82,12 +82,12 @@ void LockstepLoop::on_clock(const comms::msg::SimulationClock& message) {
   const Lock lock(mutex_);
   clock_heard_ = true;
   clock_silence_s_ = 0.0;
-  granted_ns_ = std::max(granted_ns_, message.advance_to_ns());
+  advance_to_ns_ = std::max(advance_to_ns_, message.advance_to_ns());
   advance();
 }
 
 bool LockstepLoop::is_paused() const {
-  return vehicle_.simulation().stamp_ns() + imu_period_ns_ > granted_ns_;
+  return vehicle_.simulation().stamp_ns() + imu_period_ns_ > advance_to_ns_;
 }
 
 bool LockstepLoop::may_advance() const {
@@ -159,7 +159,7 @@ bool LockstepLoop::frame_is_due(std::int64_t stamp_ns, bool delivered) {
 void LockstepLoop::poll(double awake_s) {
   if (!failure_.empty()) throw std::runtime_error(failure_);
   if (!started_) {
-    if (granted_ns_ < 0) return;
+    if (advance_to_ns_ < 0) return;
     started_ = true;
     publish();
     return;

@@ -21,7 +21,7 @@
 namespace swiftlet::services {
 
 struct LockstepSettings {
-  bool paused = false;      // time advances only as far as simulation_clock grants
+  bool paused = false;      // time advances only up to simulation_clock
   double speed = 0.0;       // limit, simulated time per real time; 0: no limit
   double patience_s = 2.0;  // time-out of an answer
   std::string trace;        // file; empty: no trace
@@ -75,7 +75,7 @@ class LockstepLoop {
   std::int64_t mocap_seen_ns_ = -1;  // newest truth without a frame that mocap answered
   std::int64_t truth_sent_ns_ = -1;  // newest truth without a frame that was sent
   plant::MocapPath expected_;        // passes the sequence numbers of the frames due
-  std::int64_t granted_ns_ = 0;
+  std::int64_t advance_to_ns_ = 0;
   std::int64_t paced_ns_;  // time limit at lockstep_.speed
   bool clock_heard_ = false;
   double silence_s_ = 0.0;        // since the last progress

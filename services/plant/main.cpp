@@ -64,8 +64,7 @@ void add_options(runtime::CommandLine app, Options& options) {
          "Simulated time per real time; default 1. In lockstep an upper limit; default: as fast as answers "
          "arrive")
       .range(0.01, 100.0);
-  app.add_flag("--paused", options.lockstep.paused,
-               "Lockstep: advance time only as far as simulation_clock grants");
+  app.add_flag("--paused", options.lockstep.paused, "Lockstep: advance time only up to simulation_clock");
   app.add_option("--trace", options.lockstep.trace,
                  "Lockstep: write every sample and command of the flight to this CSV file, without rounding");
   comms::add_node_options(app, options.node);

@@ -58,15 +58,15 @@ void SimulatedVehicle::refuse(const comms::Fault& fault) {
 
 void SimulatedVehicle::step() {
   if (const auto arrived = command_path_.arrived(simulation_.stamp_ns())) accept(*arrived);
-  const plant::MotorCommand drive = watchdog_.motor_command(simulation_.stamp_ns());
-  const bool running = drive.state == plant::RotorState::kRunning;
+  const plant::MotorCommand command = watchdog_.motor_command(simulation_.stamp_ns());
+  const bool running = command.state == plant::RotorState::kRunning;
   if (running && !report_.rotors_running) {
     answers_.reset();
     report_.timed_out = false;
   }
   if (!running && report_.rotors_running) report_.timed_out = watchdog_.expired(simulation_.stamp_ns());
   report_.rotors_running = running;
-  simulation_.step(drive);
+  simulation_.step(command);
 }
 
 void SimulatedVehicle::publish_samples() {

@@ -208,7 +208,7 @@ int main(int argc, char** argv) {
       [&](runtime::CommandLine app) {
         app.add_option("--processes", options.processes, "number of processes; may be repeated")
             .range(2, 120);
-        app.add_option("--seconds", options.seconds, "duration of the CPU measurement").range(1.0, 60.0);
+        app.add_option("--seconds", options.seconds, "duration of the CPU measurement, s").range(1.0, 60.0);
         app.add_option("--patience", options.patience_s, "timeout of discovery, s").range(1.0, 600.0);
         app.add_flag("--json", options.json, "print JSON");
       },

@@ -14,7 +14,7 @@ struct StepTimes {
 
 // CPU time of a step of plant and controller without a request, and of the steps that evaluate requests and
 // setpoints of a vehicle in motion. Each flight is repeated; a step counts with its shortest time. Throws
-// std::runtime_error if more than a tenth of the requests are refused.
+// std::runtime_error if more than a tenth of the requests or setpoints of a kind were refused.
 std::vector<StepTimes> longest_steps();
 
 }  // namespace swiftlet::tests

@@ -246,7 +246,8 @@ class RoundTrips {
  public:
   explicit RoundTrips(std::uint64_t count) : written_(count + 1) {}
 
-  // Called by the sending thread: 0.5 s of warm-up, then the measurement.
+  // Sends from its own thread, 0.5 s of warm-up and then the measurement; returns when all are answered or
+  // 100 ms have passed.
   void pace(const Options& options, int rate_hz, const std::function<void(std::uint64_t)>& send) {
     std::thread([&] {
       if (options.process.realtime.enabled) runtime::make_this_thread_realtime(options.process.realtime);

@@ -210,13 +210,13 @@ struct Score {
 };
 
 control::Request request(control::RequestKind kind) {
-  control::Request desired;
-  desired.kind = kind;
-  return desired;
+  control::Request out;
+  out.kind = kind;
+  return out;
 }
 
-void send_request(ground::ClosedLoop& loop, const control::Request& desired) {
-  const control::Outcome outcome = loop.controller.request(desired);
+void send_request(ground::ClosedLoop& loop, const control::Request& request) {
+  const control::Outcome outcome = loop.controller.request(request);
   if (!outcome.accepted) throw std::runtime_error(outcome.reason);
 }
 

@@ -99,15 +99,15 @@ int main(int argc, char** argv) {
   const std::string name = fs::path(argv[0]).filename();
   if (LLVMFuzzerInitialize != nullptr) LLVMFuzzerInitialize(&argc, &argv);
 
-  const fs::path kept = fs::absolute(name + ".input");
-  std::printf("the current input is in %s\n", kept.c_str());
+  const fs::path input_file = fs::absolute(name + ".input");
+  std::printf("the current input is in %s\n", input_file.c_str());
   std::fflush(stdout);
-  const int file = open(kept.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC,
+  const int file = open(input_file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC,
                         0600);  // opened once, since this costs more than writing
   const auto feed = [&](const std::string& input) {
     if (pwrite(file, input.data(), input.size(), 0) < 0 ||
         ftruncate(file, static_cast<off_t>(input.size())) != 0)
-      std::perror(kept.c_str());
+      std::perror(input_file.c_str());
     alarm(kLongest_s);
     LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(input.data()), input.size());
   };
@@ -115,7 +115,7 @@ int main(int argc, char** argv) {
   Mutations mutated(inputs, longest);
   for (std::size_t i = 0; i < mutations; ++i) feed(mutated.next());
   alarm(0);
-  fs::remove(kept);
+  fs::remove(input_file);
   std::printf("%zu files and %zu mutations of them: no fault\n", inputs.size() - 1, mutations);
   return 0;
 }

@@ -112,7 +112,7 @@ void print_json(const Summary& summary, const Options& options) {
     json["violations"].push_back({{"seed", flight.seed},
                                   {"at_s", flight.violation->at_s},
                                   {"what", flight.violation->what},
-                                  {"again", repeat_command(options, flight)}});
+                                  {"repeat", repeat_command(options, flight)}});
   }
   std::printf("%s\n", json.dump(2).c_str());
 }

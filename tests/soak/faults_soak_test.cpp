@@ -36,7 +36,7 @@ TEST_P(SoakFlights, StaysInsideTheFenceAndUpright) {
 
 INSTANTIATE_TEST_SUITE_P(First, SoakFlights, testing::Range<std::uint64_t>(1, 6),
                          [](const auto& seed) { return std::to_string(seed.param); });
-INSTANTIATE_TEST_SUITE_P(Kept, SoakFlights, testing::ValuesIn(regression_seeds()),
+INSTANTIATE_TEST_SUITE_P(Regression, SoakFlights, testing::ValuesIn(regression_seeds()),
                          [](const auto& seed) { return std::to_string(seed.param); });
 
 TEST(FaultsSoak, FlightRepeatsWithItsSeed) {

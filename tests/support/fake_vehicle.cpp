@@ -62,7 +62,7 @@ void FakeVehicle::move() {
   rotor_speed_ += (wanted_speed - rotor_speed_) * kPeriodS / parameters_.motor.time_constant_s;
   const double lift = parameters_.rotor_count() * plant::thrust_from_speed(parameters_.rotor, rotor_speed_);
   up_acceleration_ = lift / parameters_.mass_kg - plant::kGravity;
-  // The floor stops the vehicle within 20 ms, which its accelerometer measures.
+  // The floor brakes the vehicle with a time constant of 20 ms, which its accelerometer measures.
   if (height_m_ <= 0.0) up_acceleration_ = std::max(up_acceleration_, -up_speed_ / kBraking_s);
   up_speed_ += up_acceleration_ * kPeriodS;
   height_m_ = std::max(height_m_ + up_speed_ * kPeriodS, 0.0);

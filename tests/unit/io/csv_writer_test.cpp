@@ -40,6 +40,13 @@ TEST_F(CsvWriterTest, QuotesTextThatWouldBreakTheRow) {
   EXPECT_EQ(written(), "\"a,b\",c\n\"says \"\"no\"\"\",\"two\nlines\"\n");
 }
 
+TEST_F(CsvWriterTest, QuotesAllTextOnRequest) {
+  CsvWriter csv(file_, {"a", "b", "c"});
+  csv.quoted("").quoted("plain").quoted("says \"no\", twice").end_row();
+  csv.finish();
+  EXPECT_EQ(written(), "a,b,c\n\"\",\"plain\",\"says \"\"no\"\", twice\"\n");
+}
+
 TEST_F(CsvWriterTest, ReportsAFileThatCannotBeWritten) {
   EXPECT_THROW(CsvWriter(folder_.path() / "none" / "table.csv", {"a"}), std::runtime_error);
   CsvWriter full("/dev/full", {"a"});

@@ -119,8 +119,8 @@ TEST(DispersionSample, IsRefusedAfterOneHundredInvalidDraws) {
   const Dispersion dispersion =
       parse("  vehicle.inertia.zz: {distribution: uniform, min: 1.5, max: 2, unit: nominal, source: x}\n");
   const std::string sentence = tests::refusal([&] { draw(dispersion, nominal(), 17); });
-  EXPECT_EQ(sentence.find("v.yaml: parameters: seed 17: 100 samples in a row break a rule, the last: inertia "),
-            0U)
+  EXPECT_EQ(
+      sentence.find("v.yaml: parameters: seed 17: 100 samples in a row break a rule, the last: inertia "), 0U)
       << sentence;
 }
 

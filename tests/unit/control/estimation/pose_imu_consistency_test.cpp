@@ -80,19 +80,19 @@ TEST(PoseImuConsistencyTest, RestartsAfterBegin) {
   PoseImuConsistencyTest test;
   const EstimatorSettings settings;
   plant::PoseSample pose;
-  const auto look = [&](double z_ned) {
+  const auto update = [&](double z_ned) {
     pose.stamp_ns += static_cast<std::int64_t>(1e9 * settings.detectors.pose_imu_consistency.interval_s);
     pose.position_ned.z() = z_ned;
     return test.update(pose, {{0.0, 0.0, z_ned}, Vector3d::Zero()}, settings);
   };
-  EXPECT_EQ(look(0.0), Verdict::kNone);
-  EXPECT_EQ(look(0.0), Verdict::kNone);
-  EXPECT_EQ(look(0.0), Verdict::kAgree);
-  EXPECT_EQ(look(0.5), Verdict::kDisagree);
+  EXPECT_EQ(update(0.0), Verdict::kNone);
+  EXPECT_EQ(update(0.0), Verdict::kNone);
+  EXPECT_EQ(update(0.0), Verdict::kAgree);
+  EXPECT_EQ(update(0.5), Verdict::kDisagree);
   test.begin();
-  EXPECT_EQ(look(0.5), Verdict::kNone);
-  EXPECT_EQ(look(0.5), Verdict::kNone);
-  EXPECT_EQ(look(0.5), Verdict::kAgree);
+  EXPECT_EQ(update(0.5), Verdict::kNone);
+  EXPECT_EQ(update(0.5), Verdict::kNone);
+  EXPECT_EQ(update(0.5), Verdict::kAgree);
 }
 
 }  // namespace

@@ -100,29 +100,37 @@ TEST(Bernstein, ConstantIsItsOwnExtremum) {
   EXPECT_EQ(minimum(bernstein({2.0}, 1.0), 0.0).value, 2.0);
 }
 
-double by_de_casteljau(Bernstein polynomial, double u) {
-  for (int degree = polynomial.degree; degree > 0; --degree) {
-    for (std::size_t i = 0; i < static_cast<std::size_t>(degree); ++i)
-      polynomial.c[i] += u * (polynomial.c[i + 1] - polynomial.c[i]);
-  }
-  return polynomial.c[0];
-}
-
 // With a tolerance of 0, rounding errors leave each part of a constant in doubt.
 TEST(Bernstein, BoundsTheSearchForAMaximum) {
   Bernstein flat;
   flat.degree = kMaxBernsteinDegree;
   for (std::size_t i = 0; i < flat.c.size(); ++i) flat.c[i] = i % 2 == 0 ? 0.1 : 0.1 + 1e-13;
   const Extremum most = maximum(flat, 0.0);
-  EXPECT_GE(most.value, 0.1);
   EXPECT_LE(most.value, 0.1 + 1e-13);
   const Extremum least = minimum(flat, 0.0);
-  EXPECT_LE(least.value, 0.1 + 1e-13);
   EXPECT_GE(least.value, 0.1);
   for (int i = 0; i <= 1000; ++i) {
-    const double value = by_de_casteljau(flat, i / 1000.0);
-    EXPECT_LE(value, most.value + 1e-16);
-    EXPECT_GE(value, least.value - 1e-16);
+    EXPECT_GE(most.value, value(flat, i / 1000.0) - 1e-15);
+    EXPECT_LE(least.value, value(flat, i / 1000.0) + 1e-15);
+  }
+}
+
+// A tolerance far below 0 leaves every part in doubt.
+TEST(Bernstein, BoundsTheExtremaWhenSubdivisionsDoNotSuffice) {
+  std::mt19937 generator(3);
+  for (int trial = 0; trial < 20; ++trial) {
+    const Bernstein p = bernstein(random_polynomial(generator), 2.0);
+    const Extremum most = maximum(p, -1e9);
+    const Extremum least = minimum(p, -1e9);
+    const double rounding = 1e-12 * (std::abs(p.greatest()) + std::abs(p.least()));
+    for (int i = 0; i <= 1000; ++i) {
+      ASSERT_GE(most.value, value(p, i / 1000.0) - rounding);
+      ASSERT_LE(least.value, value(p, i / 1000.0) + rounding);
+    }
+    for (const double end : {0.0, 1.0}) {
+      EXPECT_GE(value(p, most.at), value(p, end) - rounding) << "the best point found";
+      EXPECT_LE(value(p, least.at), value(p, end) + rounding) << "the best point found";
+    }
   }
 }
 

@@ -60,12 +60,12 @@ class RequestProgress : public testing::Test, protected SupervisedFlight {
   }
 };
 
-TEST_F(RequestProgress, AreUnknownBeforeTheFirst) {
+TEST_F(RequestProgress, IsUnknownBeforeTheFirstRequest) {
   for (const RequestStatus& request : supervisor_.requests())
     EXPECT_EQ(request.state, RequestState::kUnknown);
 }
 
-TEST_F(RequestProgress, AreNotKeptWhenRefused) {
+TEST_F(RequestProgress, IsNotKeptForRefusedRequests) {
   EXPECT_FALSE(ask(RequestKind::kTakeoff, {0, 0, -1}).accepted);
   EXPECT_EQ(last().state, RequestState::kUnknown);
 }
@@ -300,7 +300,7 @@ TEST_F(RequestProgress, ActiveRequestIsForgottenLast) {
 }
 
 // GIVEN a standby that adopts the state during a goto, WHEN it flies on, THEN the request succeeds there.
-TEST_F(RequestProgress, StandbyContinuesThem) {
+TEST_F(RequestProgress, IsContinuedByAStandby) {
   hover();
   ASSERT_TRUE(ask(RequestKind::kGoTo, {1, 0, -1}).accepted);
   for (int i = 0; i < 300; ++i) step();

@@ -230,7 +230,7 @@ TEST_F(BatchTest, CsvHasARowForEachRun) {
   EXPECT_EQ(text,
             "seed,completed,reason,rms_3d_m,peak_3d_m,duration_s,margin_roll_deg,margin_pitch_deg,"
             "margin_yaw_deg,margin_x_deg,margin_y_deg,margin_z_deg,vehicle.mass\n"
-            "11,1,,0.001,0.005,0,60,61,62,31,32,47,0.04\n"
+            "11,1,\"\",0.001,0.005,0,60,61,62,31,32,47,0.04\n"
             "12,0,\"it went away, \"\"far\"\"\",,,0,60,61,62,31,32,47,0.06\n");
 }
 

@@ -109,7 +109,7 @@ TEST_F(Requests, AreSentAgainAfterTheResendPeriod) {
   EXPECT_EQ(ids.front(), ids.back());
 }
 
-// The client sends again before its timeout when a restarted controller or a standby appears.
+// The client sends again before its resend period when a restarted controller or a standby appears.
 TEST_F(Requests, AreAnsweredByARestartedController) {
   auto first = std::make_unique<Control>(lock_);
   std::future<Result> answer = ask(10s);
@@ -150,7 +150,7 @@ TEST_F(Requests, AreSentAgainAfterAFailover) {
 }
 
 // One side may discover the reader before the other discovers the writer. A request sent in between must not
-// wait for the long timeout.
+// wait for the resend period.
 TEST_F(Requests, ReachAJustDiscoveredControllerWithoutDelay) {
   for (int round = 0; round < 10; ++round) {
     Control control(lock_, true);

@@ -61,7 +61,7 @@ TEST(SteadyMotorExperiment, WarnsWhenK2AndK3AreNotSeparable) {
     data.motor_voltage_v.push_back(plant::voltage_from_steady_speed(kaylion().motor, 1500.0 + 3.0 * i) +
                                    0.003 * random.normal());
   }
-  EXPECT_TRUE(contains(identify_steady_motor(data, {}).warnings, "barely separate K2 and K3"));
+  EXPECT_TRUE(contains(identify_steady_motor(data, {}).warnings, "these data barely separate K2 and K3"));
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ TEST(InertiaTriangleInequality, TakesTheNearestWhenAllWereIdentified) {
   }
 }
 
-// An excess of 0.5 is corrected within 4 standard deviations of the sum.
+// An excess of 0.5 is corrected if it is at most 4 standard deviations of the sum, and kept otherwise.
 TEST(InertiaTriangleInequality, KeepsAViolationBeyondFourDeviations) {
   const double just_enough = 0.5 / 4.0 / std::sqrt(3.0);
   for (const double factor : {0.99, 1.01}) {

@@ -133,10 +133,10 @@ TEST_F(MocapFaults, StopDropsFramesAndSequenceNumbersContinue) {
 TEST_F(MocapFaults, FreezeRepeatsThePoseWithNewStampsAndSequenceNumbers) {
   for (const Delivered& d : deliver({fault(FaultKind::kMocapFreeze, 0.02, 0.03)}, 80)) {
     const bool frozen = d.at_ms >= 20 && d.at_ms < 50;
-    const PoseSample sound = frame_at(d.at_ms * kMillisecond);
-    EXPECT_EQ(d.frame.position_ned, frozen ? frame_at(kFramePeriod).position_ned : sound.position_ned);
-    EXPECT_EQ(d.frame.stamp_ns, sound.stamp_ns);
-    EXPECT_EQ(d.frame.sequence, sound.sequence);
+    const PoseSample unfaulted = frame_at(d.at_ms * kMillisecond);
+    EXPECT_EQ(d.frame.position_ned, frozen ? frame_at(kFramePeriod).position_ned : unfaulted.position_ned);
+    EXPECT_EQ(d.frame.stamp_ns, unfaulted.stamp_ns);
+    EXPECT_EQ(d.frame.sequence, unfaulted.sequence);
     EXPECT_TRUE(d.frame.tracked);
   }
 }
@@ -272,18 +272,18 @@ TEST_F(PlantFaults, ChangeOnlyTheAffectedSamples) {
              fault(FaultKind::kImuStuck, 0.3, 0.05), bias, fault(FaultKind::kBatteryStop, 0.15, 0.1),
              fault(FaultKind::kRotorSpeedsStop, 0.1, 0.05)},
             settings);
-  PlantSimulation sound = plant({}, settings);
+  PlantSimulation unfaulted = plant({}, settings);
   std::optional<plant::ImuSample> before_stuck;
   int missing = 0;
   for (int ms = 0; ms < 1000; ++ms) {
-    ASSERT_EQ(faulty.imu_due(), sound.imu_due());
-    ASSERT_EQ(faulty.imu_count(), sound.imu_count());
+    ASSERT_EQ(faulty.imu_due(), unfaulted.imu_due());
+    ASSERT_EQ(faulty.imu_count(), unfaulted.imu_count());
     const bool stopped = ms >= 100 && ms < 150;
-    ASSERT_EQ(faulty.imu().has_value(), sound.imu().has_value() && !stopped) << ms;
-    if (sound.imu() && stopped) ++missing;
+    ASSERT_EQ(faulty.imu().has_value(), unfaulted.imu().has_value() && !stopped) << ms;
+    if (unfaulted.imu() && stopped) ++missing;
     if (faulty.imu()) {
       const plant::ImuSample& a = *faulty.imu();
-      const plant::ImuSample& b = *sound.imu();
+      const plant::ImuSample& b = *unfaulted.imu();
       ASSERT_EQ(a.sequence, b.sequence);
       ASSERT_EQ(a.stamp_ns, b.stamp_ns);
       if (ms >= 200 && ms < 250) {
@@ -299,11 +299,11 @@ TEST_F(PlantFaults, ChangeOnlyTheAffectedSamples) {
       }
     }
     const bool no_battery = ms >= 150 && ms < 250;
-    ASSERT_EQ(faulty.battery().has_value(), sound.battery().has_value() && !no_battery);
-    ASSERT_EQ(faulty.rotor_speeds().has_value(), sound.rotor_speeds().has_value() && !stopped);
-    ASSERT_EQ(faulty.state().position_ned, sound.state().position_ned);
+    ASSERT_EQ(faulty.battery().has_value(), unfaulted.battery().has_value() && !no_battery);
+    ASSERT_EQ(faulty.rotor_speeds().has_value(), unfaulted.rotor_speeds().has_value() && !stopped);
+    ASSERT_EQ(faulty.state().position_ned, unfaulted.state().position_ned);
     faulty.step(running(0.4));
-    sound.step(running(0.4));
+    unfaulted.step(running(0.4));
   }
   EXPECT_EQ(missing, 25);
 }
@@ -346,19 +346,19 @@ TEST_F(PlantFaults, BatteryDropIsMeasuredAndSlowsTheRotors) {
   Fault drop = fault(FaultKind::kBatteryDrop, 1.0, 0.5);
   drop.voltage_v = 0.5;
   PlantSimulation faulty = plant({drop}, SimulationSettings());
-  PlantSimulation sound = plant({}, SimulationSettings());
+  PlantSimulation unfaulted = plant({}, SimulationSettings());
   for (int ms = 0; ms < 1450; ++ms) {
     faulty.step(running(0.2));
-    sound.step(running(0.2));
+    unfaulted.step(running(0.2));
   }
-  EXPECT_NEAR(sound.truth().supply_voltage_v - faulty.truth().supply_voltage_v, 0.5, 0.1);
-  EXPECT_LT(faulty.truth().rotor_speeds[0], 0.95 * sound.truth().rotor_speeds[0]);
+  EXPECT_NEAR(unfaulted.truth().supply_voltage_v - faulty.truth().supply_voltage_v, 0.5, 0.1);
+  EXPECT_LT(faulty.truth().rotor_speeds[0], 0.95 * unfaulted.truth().rotor_speeds[0]);
   for (int ms = 0; ms < 1000; ++ms) {
     faulty.step(running(0.2));
-    sound.step(running(0.2));
+    unfaulted.step(running(0.2));
   }
-  EXPECT_NEAR(faulty.truth().rotor_speeds[0], sound.truth().rotor_speeds[0],
-              0.001 * sound.truth().rotor_speeds[0]);
+  EXPECT_NEAR(faulty.truth().rotor_speeds[0], unfaulted.truth().rotor_speeds[0],
+              0.001 * unfaulted.truth().rotor_speeds[0]);
 }
 
 TEST_F(PlantFaults, WindAcceleratesAVehicleWithDrag) {

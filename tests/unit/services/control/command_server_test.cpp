@@ -33,7 +33,7 @@ class CommandServerTest : public testing::Test {
         loop_(vehicle_, settings_),
         command_server_(loop_, settings_.limits, wake_) {}
 
-  // The vehicle at rest on the ground: one IMU and battery sample, and a pose with every fifth.
+  // The vehicle at rest on the ground: one IMU, battery and rotor speed sample, and a pose with every fifth.
   plant::ActuatorCommand step() {
     ++sequence_;
     const auto stamp = static_cast<std::int64_t>(sequence_) * 2'000'000;

@@ -220,7 +220,8 @@ TEST_F(Lockstep, PausedTimeAdvancesWithTheSimulationClock) {
   ASSERT_TRUE(is_resent(10 * kPeriod_ns));
 }
 
-// An earlier clock message must not reduce the time allowed by the one before; here no answer lets time advance.
+// An earlier clock message must not reduce the time allowed by the one before; here no answer lets time
+// advance.
 TEST_F(Lockstep, EarlierClockMessageHasNoEffect) {
   LockstepSettings settings = with_long_patience();
   settings.paused = true;
