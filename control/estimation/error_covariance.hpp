@@ -1,10 +1,10 @@
 // Covariance of the error state of an error-state Kalman filter whose attitude error is taken in the world
 // frame: J. Sola, "Quaternion kinematics for the error-state Kalman filter", 2017, arXiv:1711.02508, ch. 7,
-// "The ESKF using global angular errors".
+// "The ESKF using global angular errors". Equation numbers are those of version 1 on arXiv.
 //
 // The error is (position, velocity, rotation vector, gyro bias, accelerometer bias), truth minus estimate:
 // the first three in NED, the biases in FRD. The true attitude is rotation(error) * q_ned_from_frd. With R =
-// R_ned_from_frd and f = R * (specific force - bias) the error obeys Sola's Eq. (300)-(302),
+// R_ned_from_frd and f = R * (specific force - bias) the error obeys Sola's Eq. (295a)-(295c),
 //   d position = velocity,  d velocity = -[f]x rotation - R accelerometer_bias - noise,
 //   d rotation = -R gyro_bias - noise.
 // Integrated over an interval T, exactly for constant f and R, this is
@@ -19,15 +19,15 @@
 // velocity and rotation, and u and s are known from the nominal state. So the covariance P stays at the time
 // of the last pose and is propagated to the next in one step, P <- F P F' + Q, not with each IMU sample.
 //
-// A pose measures z = H error + noise of covariance V (Sola's 6.1, "Observation of the error state via filter
-// correction"),
+// A pose measures z = H error + noise of covariance V (Sola's Eq. (272)-(276), 6.1, "Observation of the error
+// state via filter correction"),
 //
 //   H = | I 0 0 0 0 |,   S = H P H' + V,   K = P H' S^-1,   error = K z,   P <- P - K S K'.
 //       | 0 0 I 0 0 |
 //
-// The last equation is the symmetric form of (I - K H) P. It equals Joseph's form, (I - K H) P (I - K H)' +
-// K V K', for this K, and no other K is used. V is far above the rounding error of H P H', so P stays
-// positive definite (estimator_consistency_test.cpp tests both).
+// The last equation is the symmetric form of (I - K H) P (Sola's footnote 26). It equals Joseph's form,
+// (I - K H) P (I - K H)' + K V K', for this K, and no other K is used. V is far above the rounding error of
+// H P H', so P stays positive definite (estimator_consistency_test.cpp tests both).
 #pragma once
 
 #include <Eigen/Core>

@@ -86,7 +86,7 @@ bool Estimator::predict(const plant::ImuSample& sample) {
   now_.stamp_ns = sample.stamp_ns;
   now_.body_rates_frd = sample.body_rates_frd - now_.gyro_bias;
 
-  // Sola's nominal state, q <- q rotation(w dt), v <- v + (R a + g) dt, with the mean of the two samples
+  // Sola's Eq. (260a)-(260c), v <- v + (R a + g) dt, q <- q rotation(w dt), with the mean of the two samples
   const Vector3d mean_rates = 0.5 * (before.body_rates_frd + sample.body_rates_frd) - now_.gyro_bias;
   const Vector3d mean_force =
       0.5 * (before.specific_force_frd + sample.specific_force_frd) - now_.accelerometer_bias;
@@ -157,7 +157,7 @@ PoseFault Estimator::fuse(const plant::PoseSample& pose, plant::RotorState rotor
   return PoseFault::kNone;
 }
 
-// z = y - h(x) of Sola's 6.1 at the pose's own stamp, to which the covariance is propagated.
+// z = y - h(x) of Sola's Eq. (275) at the pose's own stamp, to which the covariance is propagated.
 PoseInnovation Estimator::compare(const plant::PoseSample& pose) {
   std::uint64_t first_newer = next_;
   while (first_newer > first_after_anchor_ && history_at(first_newer - 1).stamp_ns > pose.stamp_ns)
@@ -271,9 +271,9 @@ void Estimator::apply(const ErrorState& step) {
       bounded(now_.accelerometer_bias + step.segment<3>(12), settings_.accelerometer_bias_limit);
 }
 
-// F of error_covariance.hpp, with the attitude step as a rotation: Sola's 7.3.2, "Injection of the observed
-// error into the nominal state", q <- rotation(step) q. The covariance's reset, P <- G P G' with G = I +
-// [step / 2]x up to sign, is left out: G differs from I by half a step of attitude, some mrad.
+// F of error_covariance.hpp, with the attitude step as a rotation: Sola's Eq. (314c), q <- rotation(step) q.
+// The covariance's reset, Eq. (316) and (317), P <- G P G' with G = I + [step / 2]x, is left out: G differs
+// from I by half a step of attitude, some mrad.
 void Estimator::Correction::apply_to(StateSnapshot& snapshot) const {
   const ErrorInterval since = interval(at, snapshot);
   const double t = since.duration_s;

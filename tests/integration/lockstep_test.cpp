@@ -239,6 +239,41 @@ TEST_F(LockstepServices, PlantReportsMissingControl) {
   EXPECT_NE(plant->errors().find("lockstep: control is silent: "), std::string::npos) << plant->errors();
 }
 
+// The plant repeats a truth whose answer was lost. The repetition is answered again and is no gap.
+TEST_F(LockstepServices, MocapAnswersARepeatedTruthAgain) {
+  const auto mocap = start("swiftlet-mocap");
+  comms::NodeSettings settings;
+  settings.name = "plant";
+  settings.domain = domain_.domain();
+  settings.localhost_only = true;
+  settings.deadlines = false;
+  comms::Node plant(settings);
+  Inbox<comms::msg::MocapPose> poses;
+  const auto subscription = plant.subscribe<comms::msg::MocapPose>(
+      comms::topics::kMocapPose, [&](const auto& pose) { poses.put(pose); });
+  auto truths = plant.publish(comms::topics::kGroundTruth);
+  comms::msg::GroundTruth truth;
+  truth.q_ned_from_frd({1.0, 0.0, 0.0, 0.0});
+  truth.rotor_count(4);
+  for (std::uint64_t sequence = 1; sequence <= 40; ++sequence) {
+    truth.sequence_number(sequence);
+    truth.stamp_ns(static_cast<std::int64_t>(sequence - 1) * 1'000'000);
+    for (const char* time : {"first", "again"}) {
+      poses.clear();
+      ASSERT_TRUE(eventually(
+          [&] {
+            truths.publish(truth);
+            return poses.wait([](const auto& all) { return !all.empty(); }, 200ms) || mocap->exit_code();
+          },
+          20s))
+          << time << " " << sequence << ": " << mocap->errors();
+      ASSERT_FALSE(mocap->exit_code()) << time << " " << sequence << ": " << mocap->errors();
+    }
+  }
+  mocap->signal(SIGTERM);
+  EXPECT_EQ(mocap->wait(20s), 0) << mocap->errors();
+}
+
 // Time advances up to each simulation clock message; without further messages, the plant ends the run.
 TEST_F(LockstepServices, TimeAdvancesWithTheSimulationClockOnly) {
   const auto mocap = start("swiftlet-mocap");

@@ -136,6 +136,19 @@ TEST_F(InFlight, ControllerContinuesWithAdoptedState) {
   EXPECT_LT((loop_.plant.state().position_ned - Vector3d(1.0, 0.0, -1.0)).norm(), 0.02);
 }
 
+// The state between two steps is that of the controller that hands it over.
+TEST_F(InFlight, AdoptedStateIsPassedOnUnchanged) {
+  FlightState adopted = loop_.controller.state();
+  adopted.position_integral = {0.3, -0.2, 0.1};
+  FlightController follower(kaylion(), settings("motor_lag"));
+  follower.adopt(adopted, nullptr, nullptr);
+  const FlightState passed_on = follower.state();
+  EXPECT_EQ(passed_on.position_integral, adopted.position_integral);
+  EXPECT_EQ(passed_on.rotor_state, plant::RotorState::kRunning);
+  EXPECT_EQ(passed_on.throttle, loop_.command.throttle);
+  EXPECT_EQ(passed_on.supervisor.mode, Mode::kHolding);
+}
+
 class Seeds : public testing::TestWithParam<int> {};
 
 TEST_P(Seeds, MotorAwareLoopsFlyTheSquareWithinTenMillimetres) {
@@ -182,6 +195,33 @@ TEST(FlightController, KeepsTheRotorsOffUntilRequested) {
     ASSERT_EQ(loop.command.rotor_state, plant::RotorState::kOff);
   }
   EXPECT_NEAR(loop.plant.state().position_ned.norm(), 0.0, 1e-3);
+}
+
+// GIVEN a vehicle that was carried to another place, so that its estimate was reset, WHEN it is armed, THEN
+// it stays armed: the reset is over.
+TEST(FlightController, StaysArmedAfterAResetOnTheGround) {
+  FlightController controller(kaylion(), settings("motor_lag"));
+  plant::ImuSample imu;
+  imu.specific_force_frd = {0.0, 0.0, -plant::kGravity};
+  const auto stand_at = [&](double x_ned, int steps) {
+    for (int i = 0; i < steps; ++i) {
+      imu.stamp_ns += 2'000'000;
+      ++imu.sequence;
+      const std::int64_t exposed_ns = imu.stamp_ns - 2'000'000;
+      const Vector3d place(x_ned, 0.0, 0.0);
+      if (imu.sequence % 5 == 0)
+        controller.on_pose({exposed_ns, imu.sequence, true, place, Eigen::Quaterniond::Identity()});
+      controller.on_battery({imu.stamp_ns, imu.sequence, 4.0, 0.1, 0.9});
+      controller.on_imu(imu);
+    }
+  };
+  stand_at(0.0, 1000);
+  stand_at(1.0, 1000);
+  ASSERT_EQ(controller.estimate().resets, 1U);
+  const Outcome armed = controller.request(request(RequestKind::kArm));
+  ASSERT_TRUE(armed.accepted) << armed.reason;
+  stand_at(1.0, 50);
+  EXPECT_EQ(controller.status().mode, Mode::kArmed) << to_string(controller.status().reason);
 }
 
 TEST_F(InFlight, StepAllocatesNoMemory) {

@@ -175,6 +175,17 @@ TEST_F(EstimatorFaults, RefusesAnInterruptedStreamAgainstTheImu) {
   }
 }
 
+// An IMU silence ends with the next pose that agrees: it does not excuse a difference after a later gap.
+TEST_F(EstimatorFaults, RefusesAnInterruptedStreamAfterAnEarlierImuSilence) {
+  fly(3.0);
+  time_ns_ += 50'000'000;
+  EXPECT_EQ(fly(2.0), PoseFault::kNone);
+  fly(0.2, [](PoseSample& pose) { pose.tracked = false; });
+  EXPECT_EQ(fly(0.5, [](PoseSample& pose) { pose.position_ned.x() += 0.08; }), PoseFault::kOutlier);
+  EXPECT_EQ(estimator_.estimate().resets, 0U);
+  EXPECT_LT(position_error(), 0.06);
+}
+
 // The vehicle may have hit the ground meanwhile: poses in reach of a body are accepted, others are not.
 TEST_F(EstimatorFaults, AcceptsPosesInReachAfterImuSilence) {
   for (const double off : {0.5, 2.0}) {

@@ -497,6 +497,20 @@ TEST_F(MissionFlight, RefusesToStartOutsideTheMissionFence) {
                "the vehicle: x is 0.000 m, outside the fence of 1.000 to 3.000 m");
 }
 
+// The vehicle hovers at 1 m inside a fence that ends 0.5 m above the ground.
+TEST_F(MissionFlight, RefusesToStartIfItWouldLandOutsideTheMissionFence) {
+  Mission mission =
+      mission_of({waypoint({1, 0, -1}), {MissionItemKind::kLand, {0, 0, 0}, 0, true, 0.4, 0.0}});
+  mission.bounds.fenced = true;
+  mission.bounds.fence_min_ned = {-1, -1, -2};
+  mission.bounds.fence_max_ned = {2, 1, -0.5};
+  ASSERT_TRUE(upload(mission).accepted);
+  EXPECT_STREQ(ask(RequestKind::kMissionStart).reason,
+               "the landing point: z is 0.000 m, outside the fence of -2.000 to -0.500 m");
+  mission.items.pop_back();
+  EXPECT_TRUE(fly(mission).accepted) << "it does not land";
+}
+
 TEST(MissionBounds, AreTighterThanTheSettingsAndNotEmpty) {
   const Limits limits;
   const auto refusal = [&](const MissionBounds& bounds) { return std::string(check(bounds, limits).reason); };

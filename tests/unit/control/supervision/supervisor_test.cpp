@@ -43,6 +43,29 @@ TEST_F(Flight, TakesOffHoldsAndLands) {
   EXPECT_FALSE(supervisor_.airborne());
 }
 
+// On the ground the contact force would wind up the integrals.
+TEST_F(Flight, IntegratesInTheAirOnly) {
+  const auto check_at_height = [&] {
+    const double height_m = -estimate_.position_ned.z();
+    if (height_m < 0.01 || height_m > 0.2) {
+      EXPECT_EQ(control_setpoint_.integrate, height_m > 0.2) << height_m << " m";
+    }
+  };
+  ASSERT_TRUE(ask(RequestKind::kArm).accepted);
+  ASSERT_TRUE(ask(RequestKind::kTakeoff, {0, 0, -1}).accepted);
+  const auto flies_until = [&](Mode mode) {
+    return step_until(
+        [&] {
+          check_at_height();
+          return supervisor_.mode() == mode;
+        },
+        20.0);
+  };
+  ASSERT_TRUE(flies_until(Mode::kHolding));
+  ASSERT_TRUE(ask(RequestKind::kLand).accepted);
+  ASSERT_TRUE(flies_until(Mode::kDisarmed));
+}
+
 // A push at the end of a landing, while the rotors still carry nearly the weight.
 TEST_F(Flight, DetectsLandingWhileSliding) {
   for (const double height_m : {0.0, 0.3}) {

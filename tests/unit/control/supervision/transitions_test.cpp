@@ -393,6 +393,26 @@ TEST(Failsafes, LandingResumesWhenThePoseReturns) {
   }
 }
 
+// GIVEN a landing that continued after a loss of the pose, WHEN it is canceled and the pose is lost again,
+// THEN the vehicle holds as the pose returns.
+TEST(Failsafes, CanceledLandingDoesNotResumeAfterTheNextLossOfPose) {
+  Placed flight(kLand);
+  ASSERT_TRUE(flight.take_off());
+  ASSERT_TRUE(flight.ask(RequestKind::kLand).accepted);
+  const auto lose_the_pose = [&] {
+    flight.inputs_.pose_age_s = 1.0;
+    EXPECT_TRUE(flight.step_until(Mode::kDescent, 0.1));
+    flight.inputs_.pose_age_s = 0.0;
+    flight.step();
+  };
+  lose_the_pose();
+  ASSERT_EQ(flight.mode(), Mode::kLanding);
+  ASSERT_TRUE(flight.ask(RequestKind::kGoTo, {0, 0, -1}).accepted);
+  lose_the_pose();
+  EXPECT_EQ(flight.mode(), Mode::kHolding);
+  EXPECT_EQ(flight.supervisor_.reason(), Reason::kPoseIsBack);
+}
+
 TEST(Failsafes, LandingRequestedWithoutPoseStartsWhenItReturns) {
   Placed flight(kLand);
   ASSERT_TRUE(flight.take_off());

@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/ground/client/vehicle.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "tests/support/eventually.hpp"
 
@@ -39,6 +40,7 @@ class Control {
         acks_(node_.publish(comms::topics::kCommandAck)),
         statuses_(node_.publish(comms::topics::kControlStatus)) {
     commands_ = node_.subscribe<msg::Command>(comms::topics::kCommand, [this](const msg::Command& command) {
+      commands_received_.put(command);
       received_.put(command.id());
       if (answers_) answer(command.client(), command.id());
     });
@@ -56,6 +58,7 @@ class Control {
     return ids.empty() ? 0 : *std::max_element(ids.begin(), ids.end());
   }
   Inbox<std::uint64_t> received_;  // ids of requests
+  Inbox<msg::Command> commands_received_;
 
  private:
   void answer(std::uint64_t client, std::uint64_t id) {
@@ -158,6 +161,17 @@ TEST_F(Requests, ReachAJustDiscoveredControllerWithoutDelay) {
     ASSERT_TRUE(ask(10s).get().accepted()) << round;
     EXPECT_LT(Clock::now() - since, 1500ms) << round;
   }
+}
+
+// A height is upward, z of NED downward.
+TEST_F(Requests, ToTakeOffContainTheHeightAsNegativeZ) {
+  Control control(lock_, true);
+  Vehicle vehicle(settings_of("pilot", lock_));
+  ASSERT_TRUE(vehicle.take_off(1.5, 0.4).accepted());
+  const msg::Command received = control.commands_received_.items().back();
+  EXPECT_EQ(received.kind(), msg::Command_Constants::TAKEOFF);
+  EXPECT_EQ(received.position_ned()[2], -1.5);
+  EXPECT_EQ(received.speed(), 0.4);
 }
 
 }  // namespace

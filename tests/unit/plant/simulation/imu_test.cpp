@@ -162,6 +162,24 @@ TEST(Imu, SendsNoRotorSpeedsAtRateZero) {
   }
 }
 
+// Sliding north with the nose to the east: friction points south, to the right of the body (Coulomb's law).
+TEST(Imu, MeasuresFrictionInBodyAxes) {
+  plant::SimulationSettings settings = empty_space();
+  settings.ground.present = true;
+  settings.ground.friction = 0.2;
+  settings.imu.rate_hz = 500.0;
+  plant::VehicleState start;
+  start.velocity_ned = {1.0, 0.0, 0.0};
+  start.q_ned_from_frd = Eigen::AngleAxisd(0.5 * M_PI, Vector3d::UnitZ());
+  plant::PlantSimulation plant(kaylion(), settings, 1, start);
+  const Vector3d expected_frd(0.0, 0.2 * plant::kGravity, -plant::kGravity);
+  for (int i = 0; i < 200; ++i) {
+    plant.step({});
+    if (!plant.imu()) continue;
+    ASSERT_LT((plant.imu()->specific_force_frd - expected_frd).norm(), 0.05) << i;
+  }
+}
+
 TEST(Imu, IntegratesToTheVelocityChangeOfAnImpact) {
   plant::SimulationSettings settings = empty_space();
   settings.ground.present = true;

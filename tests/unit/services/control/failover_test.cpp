@@ -240,6 +240,22 @@ TEST(Failover, PartitionedControllersAgreeThroughTheVehicle) {
   EXPECT_FALSE(standby.failover.continues()) << "received no flight state";
 }
 
+// Terms contain six bits of the controller's number: 7 and 71 get equal ones.
+TEST(Failover, HigherNumberStaysActiveOfTwoWithEqualTerms) {
+  Vehicle vehicle;
+  auto& low = vehicle.add(7, 1);
+  auto& high = vehicle.add(71, 1);
+  low.receives_heartbeats = high.receives_heartbeats = false;
+  vehicle.run(1000);
+  ASSERT_EQ(vehicle.active(), 2);
+  ASSERT_EQ(low.failover.term(), high.failover.term());
+  low.receives_heartbeats = high.receives_heartbeats = true;
+  vehicle.run(20);
+  EXPECT_EQ(low.failover.role(), Role::kStandby);
+  EXPECT_EQ(high.failover.role(), Role::kActive);
+  EXPECT_EQ(vehicle.commander(), 71U);
+}
+
 TEST(Failover, StartsActiveWhenNoControllerIsActive) {
   Vehicle vehicle;
   auto& first = vehicle.add(7, 1);
