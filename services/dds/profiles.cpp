@@ -17,7 +17,7 @@ Duration_t duration(std::chrono::milliseconds time) {
 
 bool is_stream(Qos profile) { return profile == Qos::kStream || profile == Qos::kOwnedStream; }
 bool is_reliable(Qos profile) {
-  return profile == Qos::kLatched || profile == Qos::kLatchedLarge || profile == Qos::kRequest;
+  return is_latched(profile) || profile == Qos::kRequest || profile == Qos::kReply;
 }
 bool is_long(Qos profile) { return profile == Qos::kLatchedLarge || profile == Qos::kRequest; }
 
@@ -27,8 +27,8 @@ void set_common(EndpointQos& qos, Qos profile, int deadline_ms, Transport transp
   qos.reliability().kind =
       is_reliable(profile) ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
   qos.reliability().max_blocking_time = duration(kReliableWriteTimeout);
-  qos.durability().kind =
-      is_latched(profile) ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
+  qos.durability().kind = is_latched(profile) || profile == Qos::kReply ? dds::TRANSIENT_LOCAL_DURABILITY_QOS
+                                                                        : dds::VOLATILE_DURABILITY_QOS;
   if (deadline_ms > 0) qos.deadline().period = duration(std::chrono::milliseconds(deadline_ms));
   if (profile == Qos::kOwnedStream) qos.ownership().kind = dds::EXCLUSIVE_OWNERSHIP_QOS;
 
@@ -42,6 +42,13 @@ void set_common(EndpointQos& qos, Qos profile, int deadline_ms, Transport transp
     limits.max_samples = kMaxPendingRequests;
     limits.max_samples_per_instance = kMaxPendingRequests;
     limits.allocated_samples = 1;
+  } else if (profile == Qos::kReply) {
+    qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
+    qos.history().depth = kKeptReplies;
+    limits.max_samples = kKeptReplies;
+    limits.max_samples_per_instance = kKeptReplies;
+    limits.allocated_samples = 1;
+    limits.extra_samples = 2;
   } else {
     // The application may hold one sample besides the last one while the next arrives; the pool never grows.
     qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;

@@ -12,11 +12,14 @@ enum class Qos {
   kLatched,       // reliable, transient local, keep last 1
   kLatchedLarge,  // latched, for long messages: allocates memory as needed
   kRequest,       // reliable, volatile, keep all up to kMaxPendingRequests
+  kReply,         // reliable, transient local, keep last kKeptReplies
 };
 
 // Number of unacknowledged requests of a writer before publish() waits, and how long it waits.
 constexpr int kMaxPendingRequests = 64;
 constexpr std::chrono::milliseconds kReliableWriteTimeout{200};
+// Replies that reach a client whose reader is discovered only after they were sent.
+constexpr int kKeptReplies = 32;
 
 // A process announces itself once per period. After a lease without an announcement the others take it for
 // dead.

@@ -57,7 +57,7 @@ inline constexpr Topic<msg::Mission> kMission{"mission", Qos::kRequest};
 inline constexpr Topic<msg::Trajectory> kTrajectory{"trajectory", Qos::kRequest};
 inline constexpr Topic<msg::Mission> kFlownMission{"flown_mission", Qos::kLatchedLarge};
 inline constexpr Topic<msg::Trajectory> kFlownTrajectory{"flown_trajectory", Qos::kLatchedLarge};
-inline constexpr Topic<msg::CommandAck> kCommandAck{"command_ack", Qos::kRequest};
+inline constexpr Topic<msg::CommandAck> kCommandAck{"command_ack", Qos::kReply};
 }  // namespace topics
 
 }  // namespace swiftlet::comms

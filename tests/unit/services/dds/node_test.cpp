@@ -161,6 +161,24 @@ TEST(LatchedTopic, ReachesLateJoiners) {
   EXPECT_TRUE(inbox.items().front() == status);
 }
 
+TEST(Replies, ReachAReaderThatIsDiscoveredAfterThem) {
+  const DomainLock lock;
+  Node control(settings(lock, "control"));
+  auto publisher = control.publish(topics::kCommandAck);
+  msg::CommandAck ack;
+  for (std::uint64_t id = 1; id <= std::uint64_t{kKeptReplies} + 3; ++id) {
+    ack.id(id);
+    ASSERT_TRUE(publisher.publish(ack)) << id;
+  }
+  Node ground(settings(lock, "ground"));
+  Inbox<std::uint64_t> ids;
+  const auto subscription = ground.subscribe<msg::CommandAck>(
+      topics::kCommandAck, [&](const msg::CommandAck& message) { ids.put(message.id()); });
+  ASSERT_TRUE(ids.wait_for_count(kKeptReplies));
+  std::uint64_t expected = 3;
+  for (const std::uint64_t id : ids.items()) EXPECT_EQ(id, ++expected);
+}
+
 // Two controllers of one vehicle that both send continuously; messages are numbered by ownership strength.
 class ExclusiveOwnership : public testing::Test {
  protected:
