@@ -1,11 +1,11 @@
 #include "swiftlet/ground/identify/flight_identification_report.hpp"
 
+#include <initializer_list>
+
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "swiftlet/ground/identify/identification_figures.hpp"
 #include "swiftlet/ground/identify/report_page.hpp"
-#include "swiftlet/ground/report/svg_figure.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -16,6 +16,8 @@ using identification::HorizonError;
 using identification::ParameterEstimate;
 using identification::PredictionError;
 using identification::SpeedSource;
+using plot::Colour;
+using plot::Style;
 using Json = nlohmann::ordered_json;
 
 constexpr double kShownS = 8.0;  // s, length of the figures of predictions
@@ -52,66 +54,69 @@ std::vector<std::pair<std::string, const std::vector<std::string>*>> notes(
           {"warning", &report.found.warnings}};
 }
 
-CaptionedFigure prediction_figure(const FlightIdentification& found, int quantity, const char* label) {
-  FigureSeries measured{"measured", Mark::kLine, "#1f6fb4", {}};
-  FigureSeries predicted{"predicted", Mark::kLine, "#c0392b", {}};
+// A figure of the page: less tall, and named otherwise than by its caption.
+plot::Figure figure_of(const std::string& title, const std::string& caption, const std::string& x_label,
+                       const std::string& y_label) {
+  plot::Figure figure = plot::captioned(caption, x_label, y_label);
+  figure.title = title;
+  figure.height = 300;
+  return figure;
+}
+
+plot::Figure prediction_figure(const FlightIdentification& found, int quantity, const std::string& label) {
+  plot::Series measured{Style::kLine, Colour::kBlue, "measured"};
+  plot::Series predicted{Style::kLine, Colour::kOrange, "predicted"};
   const std::vector<double>& time = found.trace.time_s;
   for (std::size_t i = 0; i < time.size() && time[i] < kShownS; ++i) {
     measured.points.push_back({time[i], found.trace.measured[quantity][i]});
     predicted.points.push_back({time[i], found.trace.predicted[quantity][i]});
   }
-  Figure figure;
-  figure.title = std::string(label) + " over time, measured and predicted";
-  figure.x_label = "time from the start of the validation set (s)";
-  figure.y_label = label;
-  figure.height = 300;
-  figure.series = {measured, predicted};
-  const bool restarts_all = found.source == SpeedSource::kCommanded;
-  return {quantity < 3 || restarts_all
-              ? fmt::format("Predicted by the commands alone, restarted from the measured value every {:g} s",
-                            found.trace.restart_s)
-              : "Predicted by the commands alone",
-          figure};
+  std::string caption = "Predicted by the commands alone";
+  if (quantity < 3 || found.source == SpeedSource::kCommanded)
+    caption += fmt::format(", restarted from the measured value every {:g} s", found.trace.restart_s);
+  plot::Figure figure = figure_of(label + " over time, measured and predicted", caption,
+                                  "time from the start of the validation set (s)", label);
+  figure.panels[0].series = {measured, predicted};
+  return figure;
 }
 
-CaptionedFigure thrust_figure(const FlightIdentification& found) {
-  FigureBand band{"95 % interval", "#c0392b", {}, {}};
-  FigureSeries curve{"thrust over mass", Mark::kLine, "#c0392b", {}};
-  FigureSeries weight{"weight", Mark::kDashes, "#555555", {}};
+plot::Figure thrust_figure(const FlightIdentification& found) {
+  plot::Series band{Style::kBand, Colour::kBlue, "95 % interval"};
+  plot::Series curve{Style::kLine, Colour::kBlue, "thrust over mass"};
+  plot::Series weight{Style::kDashes, Colour::kInk, "weight"};
   const identification::CommandedThrust& thrust = found.thrust;
-  for (std::size_t i = 0; i < thrust.command.size(); ++i) {
-    const double command = thrust.command[i];
-    band.low.push_back({command, thrust.over_mass[i] - thrust.half_width[i]});
-    band.high.push_back({command, thrust.over_mass[i] + thrust.half_width[i]});
-    curve.points.push_back({command, thrust.over_mass[i]});
-    weight.points.push_back({command, plant::kGravity});
+  const std::size_t count = thrust.command.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    curve.points.push_back({thrust.command[i], thrust.over_mass[i]});
+    weight.points.push_back({thrust.command[i], plant::kGravity});
+    band.points.push_back({thrust.command[i], thrust.over_mass[i] - thrust.half_width[i]});
   }
-  Figure figure;
-  figure.title = "Thrust over mass by command";
-  figure.x_label = "command of all motors (share of full command)";
-  figure.y_label = "thrust over mass (m/s^2)";
-  figure.height = 300;
-  figure.bands = {band};
-  figure.series = {curve, weight};
-  return {"Steady thrust of all rotors together, over the range of commands in this flight", figure};
+  for (std::size_t i = count; i-- > 0;)
+    band.points.push_back({thrust.command[i], thrust.over_mass[i] + thrust.half_width[i]});
+  plot::Figure figure =
+      figure_of("Thrust over mass by command",
+                "Steady thrust of all rotors together, over the range of commands in this flight",
+                "command of all motors (share of full command)", "thrust over mass (m/s^2)");
+  figure.panels[0].series = {band, curve, weight};
+  return figure;
 }
 
-CaptionedFigure horizon_figure(const FlightIdentification& found, const std::string& quantity) {
-  FigureSeries by_commands{"by the commands alone", Mark::kLine, "#c0392b", {}};
-  FigureSeries persistence{"persistence baseline", Mark::kDashes, "#1f6fb4", {}};
-  Figure figure;
+plot::Figure horizon_figure(const FlightIdentification& found, const std::string& quantity) {
+  plot::Series by_commands{Style::kLine, Colour::kOrange, "by the commands alone"};
+  plot::Series persistence{Style::kDashes, Colour::kBlue, "persistence baseline"};
+  std::string label;
   for (const HorizonError& e : found.horizons) {
     if (e.quantity != quantity) continue;
     by_commands.points.push_back({e.horizon_s, e.by_commands});
     persistence.points.push_back({e.horizon_s, e.persistence});
-    figure.y_label = "RMS error of " + quantity + " (" + e.unit + ")";
+    label = "RMS error of " + quantity + " (" + e.unit + ")";
   }
-  figure.title = figure.y_label + " over the prediction horizon";
-  figure.x_label = "prediction horizon (s)";
-  figure.zero_line = true;
-  figure.height = 300;
-  figure.series = {by_commands, persistence};
-  return {"Prediction error by the commands alone, " + quantity, figure};
+  plot::Figure figure =
+      figure_of(label + " over the prediction horizon", "Prediction error by the commands alone, " + quantity,
+                "prediction horizon (s)", label);
+  figure.panels[0].zero_line = true;
+  figure.panels[0].series = {by_commands, persistence};
+  return figure;
 }
 
 std::string comparison_table(const FlightIdentification& found) {
@@ -137,24 +142,48 @@ std::string horizon_table(const FlightIdentification& found) {
   return out;
 }
 
-std::string comparison_html(const FlightIdentification& found) {
-  if (found.comparisons.empty()) return "";
-  std::string out =
-      "<h2>Comparison with the vehicle file</h2>\n<table><tr><th>parameter</th><th>symbol</th>"
-      "<th>identified</th><th>&plusmn; (95 %)</th><th>file</th><th>ratio</th><th>unit</th></tr>\n";
-  for (const FileComparison& row : found.comparisons) {
-    out += "<tr><td>" + html_escaped(row.identified.parameter) + "</td><td>" +
-           html_escaped(row.identified.symbol) + "</td>";
-    for (const double value : {row.identified.value, row.identified.half_width, row.file, row.ratio()})
-      out += fmt::format("<td class=\"n\">{:.4g}</td>", value);
-    out += "<td>" + html_unit(row.identified.unit) + "</td></tr>\n";
-  }
-  return out + "</table>\n";
+// A row with a text, numbers and a unit.
+plot::Page::Row row_of(plot::Page::Row texts, std::initializer_list<double> numbers,
+                       const std::string& unit) {
+  for (const double number : numbers) texts.push_back(fmt::format("{:.4g}", number));
+  texts.push_back(unit_cell(unit));
+  return texts;
 }
 
-std::string figure_html(const CaptionedFigure& figure) {
-  return "<figure>" + svg(figure.figure) + "<figcaption>" + html_escaped(figure.caption) +
-         "</figcaption></figure>\n";
+void add_comparison(plot::Page& page, const FlightIdentification& found) {
+  if (found.comparisons.empty()) return;
+  std::vector<plot::Page::Row> rows;
+  for (const FileComparison& row : found.comparisons) {
+    const ParameterEstimate& e = row.identified;
+    rows.push_back(row_of({e.parameter, e.symbol}, {e.value, e.half_width, row.file, row.ratio()}, e.unit));
+  }
+  page.heading("Comparison with the vehicle file");
+  page.table({"parameter", "symbol", "identified", "\u00b1 (95 %)", "file", "ratio", "unit"}, rows);
+}
+
+void add_prediction(plot::Page& page, const FlightIdentification& found) {
+  std::vector<plot::Page::Row> rows;
+  for (const PredictionError& e : found.errors)
+    rows.push_back(row_of({e.quantity},
+                          {e.one_step, e.persistence_one_step, e.half_second, e.persistence_half_second},
+                          e.unit));
+  page.heading("Prediction of the validation set");
+  page.table({"RMS error of", "one step", "persistence", "0.5 s", "persistence", "unit"}, rows);
+  if (found.step_s > 0.0)
+    page.paragraph(
+        fmt::format("One step is {:.4g} s. The forecast 0.5 s ahead is the weighted sum of the "
+                    "prediction by the commands, the value at the start and the mean that is best on "
+                    "the estimation set.",
+                    found.step_s),
+        "quiet");
+  std::vector<plot::Figure> figures;
+  const char* const labels[4] = {"p (rad/s)", "q (rad/s)", "r (rad/s)", "specific force along z (m/s^2)"};
+  for (int i = 0; i < 4; ++i) figures.push_back(prediction_figure(found, i, labels[i]));
+  if (found.source == SpeedSource::kCommanded) {
+    figures.push_back(thrust_figure(found));
+    for (const char* const quantity : {"p", "q", "r"}) figures.push_back(horizon_figure(found, quantity));
+  }
+  page.figures(figures);
 }
 
 }  // namespace
@@ -258,50 +287,25 @@ std::string flight_identification_json(const FlightIdentificationReport& report)
   return out.dump();
 }
 
-std::string flight_identification_html(const FlightIdentificationReport& report) {
+plot::Page flight_identification_page(const FlightIdentificationReport& report) {
   const FlightIdentification& found = report.found;
-  std::string out =
-      page_head("Identification of " + found.vehicle.name + " from flights") + "<p class=\"quiet\">from";
-  for (const std::string& log : report.logs) out += " " + html_escaped(log);
-  out += "; " + html_escaped(data_sets_text(found)) + "; other parameters are those of " +
-         html_escaped(report.base_vehicle) +
-         "</p>\n<p class=\"quiet\">95 % intervals by Student's t; residuals may be correlated within "
-         "segments of half a second</p>\n" +
-         estimates_html(found.estimates);
+  plot::Page page("Identification of " + found.vehicle.name + " from flights");
+  std::string logs;
+  for (const std::string& log : report.logs) logs += " " + log;
+  page.paragraph(
+      "from" + logs + "; " + data_sets_text(found) + "; other parameters are those of " + report.base_vehicle,
+      "quiet");
+  page.paragraph(
+      "95 % intervals by Student's t; residuals may be correlated within segments of half a second", "quiet");
+  add_estimates(page, found.estimates);
   for (const auto& [kind, sentences] : notes(report)) {
     const bool loud = kind == "warning" || kind == "not identifiable";
     for (const std::string& sentence : *sentences)
-      out += std::string("<p class=\"") + (loud ? "warning" : "finding") + "\">" + kind + ": " +
-             html_escaped(sentence) + ".</p>\n";
+      page.paragraph(kind + ": " + sentence + ".", loud ? "warning" : "finding");
   }
-  out += comparison_html(found);
-  out +=
-      "<h2>Prediction of the validation set</h2>\n<table><tr><th>RMS error of</th><th>one step</th>"
-      "<th>persistence</th><th>0.5 s</th><th>persistence</th><th>unit</th></tr>\n";
-  for (const PredictionError& e : found.errors) {
-    out += "<tr><td>" + html_escaped(e.quantity) + "</td>";
-    for (const double value : {e.one_step, e.persistence_one_step, e.half_second, e.persistence_half_second})
-      out += fmt::format("<td class=\"n\">{:.4g}</td>", value);
-    out += "<td>" + html_unit(e.unit) + "</td></tr>\n";
-  }
-  out += "</table>\n";
-  if (found.step_s > 0.0)
-    out += fmt::format(
-        "<p class=\"quiet\">One step is {:.4g} s. The forecast 0.5 s ahead is the weighted sum of the "
-        "prediction by the commands, the value at the start and the mean that is best on the estimation "
-        "set.</p>\n",
-        found.step_s);
-  out += "<div class=\"figures\">\n";
-  const char* const labels[4] = {"p (rad/s)", "q (rad/s)", "r (rad/s)", "specific force along z (m/s^2)"};
-  for (int i = 0; i < 4; ++i) {
-    const CaptionedFigure figure = prediction_figure(found, i, labels[i]);
-    out += figure_html(figure);
-  }
-  if (found.source == SpeedSource::kCommanded) {
-    out += figure_html(thrust_figure(found));
-    for (const char* const quantity : {"p", "q", "r"}) out += figure_html(horizon_figure(found, quantity));
-  }
-  return out + "</div>\n</body></html>\n";
+  add_comparison(page, found);
+  add_prediction(page, found);
+  return page;
 }
 
 }  // namespace swiftlet::ground

@@ -1,0 +1,33 @@
+// Draws figures with gnuplot.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "swiftlet/ground/plot/figure.hpp"
+
+namespace swiftlet::plot {
+
+enum class Format { kPng, kSvg };
+
+// A gnuplot script with the data of the figure, which draws it to the file `output`. Texts of the figure are
+// drawn as they are: gnuplot interprets nothing in them.
+std::string gnuplot_script(const Figure& figure, Format format, const std::string& output);
+
+// Draws the figure to a PNG file. Returns an empty string, or one sentence with the reason why there is no
+// picture; the file is then as before.
+std::string draw_png(const Figure& figure, const std::filesystem::path& png);
+
+// Also writes the script beside the picture, NAME.gp for NAME.png, to draw it again. Throws
+// std::runtime_error if the script cannot be written.
+std::string draw_png_and_script(const Figure& figure, const std::filesystem::path& png);
+
+struct Drawings {
+  std::vector<std::string> svg;  // <svg> elements for an HTML page, in the order of the figures
+  std::string fault;             // why there are none; empty if there are
+};
+
+Drawings draw_svg(const std::vector<Figure>& figures);
+
+}  // namespace swiftlet::plot
