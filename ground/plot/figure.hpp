@@ -34,8 +34,8 @@ constexpr Point kGap = {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0};
 struct Series {
   Style style = Style::kLine;
   Colour colour = Colour::kBlue;
-  std::string label;  // in the legend; empty: not in the legend
-  std::vector<Point> points;
+  std::string label = {};  // in the legend; empty: not in the legend
+  std::vector<Point> points = {};
   double weight = 1.0;  // factor on the usual width of a line, or size of a point
 };
 

@@ -34,9 +34,10 @@ constexpr const char* kNotInstalled = "gnuplot is not installed";
 constexpr const char* kPanel = R"(
 reset
 set border lc rgb '#555555'
-set grid lc rgb '#dddddd' lw 0.8
+set grid lt 1 lc rgb '#dddddd' lw 0.8
 set tics nomirror
-set key tmargin center horizontal samplen 2.5
+set format '%g'
+set key tmargin center horizontal Left reverse samplen 2.5
 set style boxplot fraction 0.90 outliers pointtype 7
 set pointsize 0.35
 )";
@@ -268,11 +269,16 @@ std::vector<std::string> drawn(const std::string& script, const std::vector<std:
   return files;
 }
 
-// An <svg> element without the prolog, namespaces and size of the file.
+// An <svg> element without the prolog, namespaces and size of the file, and without the tooltips of gnuplot.
 std::string element_of(const std::string& file, const Figure& figure) {
   constexpr std::string_view kEndOfHead = "</desc>";
+  constexpr std::string_view kTooltip = "<title>gnuplot_plot_";
+  constexpr std::string_view kEndOfTooltip = "</title>";
+  std::string body = file.substr(file.find(kEndOfHead) + kEndOfHead.size());
+  for (std::size_t at = body.find(kTooltip); at != std::string::npos; at = body.find(kTooltip, at))
+    body.erase(at, body.find(kEndOfTooltip, at) + kEndOfTooltip.size() - at);
   return fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\"><title>", figure.width, figure.height) +
-         html_escaped(figure.title) + "</title>" + file.substr(file.find(kEndOfHead) + kEndOfHead.size());
+         html_escaped(figure.title) + "</title>" + body;
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ const std::string kTricky = R"(it's "quoted" {/Bold a_b^c} @x &{y} `touch oh_no`
 
 Figure with(Style style, const std::vector<Point>& points) {
   Figure figure = captioned("a < b & c", "speed (rad/s)", "thrust (N)");
-  figure.panels[0].series = {{style, Colour::kBlue, "readings", points}};
+  figure.panels[0].series = {{style, Colour::kBlue, "", points}};
   return figure;
 }
 
@@ -50,7 +50,7 @@ std::vector<Point> dots(const std::string& drawn) {
   return places(drawn, "#gpPt6' transform='translate\\(([0-9.]+),([0-9.]+)\\)");
 }
 std::vector<Point> texts(const std::string& drawn, const std::string& text) {
-  return places(drawn, "translate\\(([0-9.]+),([0-9.]+)\\)[^>]*>\\s*<text><tspan[^>]*>" + text + "<");
+  return places(drawn, "translate\\(([0-9.]+),([0-9.]+)\\)[^>]*>\\s*<text>" + text + "</text>");
 }
 
 std::string text_of(const fs::path& file) {
@@ -99,7 +99,7 @@ TEST_F(GnuplotTest, DrawsAHeadlineAsItIs) {
 
 TEST_F(GnuplotTest, PlacesPointsInProportion) {
   const std::vector<Point> at = dots(svg(parabola(1.0, 1.0)));
-  ASSERT_GE(at.size(), 11U);  // and one in the legend
+  ASSERT_EQ(at.size(), 11U);
   for (std::size_t i = 1; i < 10; ++i) {
     EXPECT_NEAR(at[i + 1].x - at[i].x, at[1].x - at[0].x, 0.11);
     EXPECT_NEAR((at[i].y - at[0].y) / (at[10].y - at[0].y), 0.01 * static_cast<double>(i * i), 0.001);
@@ -111,7 +111,6 @@ TEST_F(GnuplotTest, PlacesPointsInProportion) {
 TEST_F(GnuplotTest, PlacesPointsOnALogarithmicAxis) {
   Figure figure = with(Style::kDots, {{0.01, 1.0}, {0.1, 2.0}, {1.0, 3.0}, {0.0, 4.0}});
   figure.panels[0].x.logarithmic = true;
-  figure.panels[0].series[0].label.clear();
   const std::vector<Point> at = dots(svg(figure));
   ASSERT_EQ(at.size(), 3U) << "a logarithmic axis has no 0";
   EXPECT_NEAR(at[2].x - at[1].x, at[1].x - at[0].x, 0.11);
@@ -121,14 +120,13 @@ TEST_F(GnuplotTest, ReversesAnAxis) {
   Figure figure = parabola(1.0, 1.0);
   figure.panels[0].y.reversed = true;
   const std::vector<Point> at = dots(svg(figure));
-  ASSERT_GE(at.size(), 11U);
+  ASSERT_EQ(at.size(), 11U);
   EXPECT_GT(at[10].y, at[0].y);
 }
 
 TEST_F(GnuplotTest, GivesEqualAxesTheSameScale) {
   Figure figure = with(Style::kDots, {{0.0, 0.0}, {1.0, 0.0}, {0.0, 2.0}});
   figure.panels[0].equal = true;
-  figure.panels[0].series[0].label.clear();
   const std::vector<Point> at = dots(svg(figure));
   ASSERT_EQ(at.size(), 3U);
   EXPECT_NEAR(at[0].y - at[2].y, 2.0 * (at[1].x - at[0].x), 0.5);
@@ -143,12 +141,14 @@ TEST_F(GnuplotTest, NamesThePowerOfTenOfItsNumbers) {
 }
 
 TEST_F(GnuplotTest, PlacesTheLegendAboveTheData) {
-  const std::string drawn = svg(parabola(1.0, 1.0));
+  Figure figure = parabola(1.0, 1.0);
+  figure.panels[0].series[0].label = "readings";
+  const std::string drawn = svg(figure);
   const std::vector<Point> legend = texts(drawn, "readings");
   ASSERT_EQ(legend.size(), 1U) << drawn;
-  const std::vector<Point> at = dots(drawn);
-  ASSERT_GE(at.size(), 11U);
-  EXPECT_LT(legend[0].y, at[10].y - 10.0);
+  const std::vector<Point> at = dots(drawn);  // the first one is that of the legend
+  ASSERT_EQ(at.size(), 12U);
+  for (std::size_t i = 1; i < at.size(); ++i) EXPECT_LT(legend[0].y, at[i].y - 10.0);
 }
 
 TEST_F(GnuplotTest, InterruptsLines) {
