@@ -38,31 +38,24 @@ plot::Series distribution(const Batch& batch, double BatchRun::*error_m, Colour 
 }
 
 plot::Panel error_panel(const BatchReport& report) {
+  constexpr double kTop = 102.0;
   const double tolerance_mm = 1e3 * report.tolerance_m;
-  plot::Panel panel;
-  panel.box = plot::Box{0.060, 0.470, 0.575, 0.900};
-  panel.x.label = "tracking error, 3-D (mm)";
+  plot::Panel panel{"",
+                    plot::Box{0.060, 0.470, 0.575, 0.915},
+                    {"tracking error, 3-D (mm)"},
+                    {"share of the runs at or below (%)", 0.0, kTop}};
   panel.x.logarithmic = true;
-  panel.y.label = "share of the runs at or below (%)";
-  panel.y.from = 0.0;
-  panel.y.to = 102.0;
-  panel.series = {distribution(report.batch, &BatchRun::rms_3d_m, Colour::kBlue, "RMS"),
-                  distribution(report.batch, &BatchRun::peak_3d_m, Colour::kOrange, "peak"),
-                  {Style::kDashes,
-                   Colour::kRed,
-                   "tolerance on the peak",
-                   {{tolerance_mm, 0.0}, {tolerance_mm, *panel.y.to}}}};
+  panel.series = {
+      distribution(report.batch, &BatchRun::rms_3d_m, Colour::kBlue, "RMS"),
+      distribution(report.batch, &BatchRun::peak_3d_m, Colour::kOrange, "peak"),
+      {Style::kDashes, Colour::kRed, "tolerance on the peak", {{tolerance_mm, 0.0}, {tolerance_mm, kTop}}}};
   return panel;
 }
 
 plot::Panel margin_panel(const Batch& batch) {
   constexpr double kHalfWidth = 0.36;
-  plot::Panel panel;
-  panel.box = plot::Box{0.560, 0.975, 0.575, 0.900};
-  panel.x.from = 0.4;
-  panel.x.to = 6.6;
+  plot::Panel panel{"", plot::Box{0.560, 0.975, 0.575, 0.915}, {"", 0.4, 6.6}, {"phase margin (deg)"}};
   panel.x.names.assign(kMarginNames.begin(), kMarginNames.end());
-  panel.y.label = "phase margin (deg)";
   plot::Series nominal{Style::kLine, Colour::kOrange, "nominal vehicle", {}, 1.3};
   for (std::size_t i = 0; i < kMarginNames.size(); ++i) {
     const double x = static_cast<double>(i + 1);
@@ -89,13 +82,14 @@ std::string axis_label(const std::string& name) {
 }
 
 // The RMS error over a parameter.
-plot::Panel scatter_panel(const BatchReport& report, const ParameterEffect& effect) {
+plot::Panel scatter_panel(const BatchReport& report, const ParameterEffect& effect, plot::Box box) {
   const auto index = static_cast<std::size_t>(
       std::find(report.parameters.begin(), report.parameters.end(), effect.name) - report.parameters.begin());
-  plot::Panel panel;
-  panel.title =
-      fmt::format("rank correlation {:+.2f}, distance {:+.2f}", effect.of_value, effect.of_distance);
-  panel.x.label = axis_label(effect.name);
+  plot::Panel panel{
+      fmt::format("rank correlation {:+.2f}, distance {:+.2f}", effect.of_value, effect.of_distance),
+      box,
+      {axis_label(effect.name)},
+      {"tracking error, RMS (mm)"}};
   panel.y.logarithmic = report.rms_3d_m.max > kLongTail * report.rms_3d_m.median;
   if (!panel.y.logarithmic) panel.y.from = 0.0;
   panel.series = {{Style::kDots, Colour::kBlue}, {Style::kDots, Colour::kRed, "", {}, 1.5}};
@@ -105,13 +99,12 @@ plot::Panel scatter_panel(const BatchReport& report, const ParameterEffect& effe
 }
 
 plot::Figure batch_figure(const BatchReport& report) {
-  plot::Figure figure{headline(report), "", 1600, 1100, {error_panel(report), margin_panel(report.batch)}};
+  plot::Figure figure{headline(report), 1600, 1100, {error_panel(report), margin_panel(report.batch)}};
   for (std::size_t i = 0; i < std::min(kMostScatters, report.effects.size()); ++i) {
     if (report.effects[i].strength() < 0.0) break;
     const double left = 0.060 + 0.3225 * static_cast<double>(i);
-    figure.panels.push_back(scatter_panel(report, report.effects[i]));
-    figure.panels.back().box = plot::Box{left, left + 0.260, 0.085, 0.445};
-    if (i == 0) figure.panels.back().y.label = "tracking error, RMS (mm)";
+    figure.panels.push_back(scatter_panel(report, report.effects[i], {left, left + 0.260, 0.085, 0.445}));
+    if (i > 0) figure.panels.back().y.label.clear();
   }
   return figure;
 }
@@ -120,7 +113,7 @@ plot::Figure batch_figure(const BatchReport& report) {
 
 std::string draw_batch(const std::filesystem::path& folder, const BatchReport& report) {
   if (report.rms_3d_m.count == 0) return "no picture was drawn: no run has a tracking error";
-  return plot::draw_png_and_script(batch_figure(report), folder / "batch.png");
+  return plot::draw_png(batch_figure(report), folder / "batch.png", true);
 }
 
 }  // namespace swiftlet::ground

@@ -1,5 +1,6 @@
 #include "swiftlet/ground/identify/flight_identification_report.hpp"
 
+#include <algorithm>
 #include <initializer_list>
 
 #include <fmt/core.h>
@@ -21,6 +22,7 @@ using plot::Style;
 using Json = nlohmann::ordered_json;
 
 constexpr double kShownS = 8.0;  // s, length of the figures of predictions
+constexpr int kHeight = 300;     // px, of the figures
 
 const char* source_text(SpeedSource source) {
   switch (source) {
@@ -54,68 +56,55 @@ std::vector<std::pair<std::string, const std::vector<std::string>*>> notes(
           {"warning", &report.found.warnings}};
 }
 
-// A figure of the page: less tall, and named otherwise than by its caption.
-plot::Figure figure_of(const std::string& title, const std::string& caption, const std::string& x_label,
-                       const std::string& y_label) {
-  plot::Figure figure = plot::captioned(caption, x_label, y_label);
-  figure.title = title;
-  figure.height = 300;
-  return figure;
-}
-
 plot::Figure prediction_figure(const FlightIdentification& found, int quantity, const std::string& label) {
-  plot::Series measured{Style::kLine, Colour::kBlue, "measured"};
-  plot::Series predicted{Style::kLine, Colour::kOrange, "predicted"};
-  const std::vector<double>& time = found.trace.time_s;
-  for (std::size_t i = 0; i < time.size() && time[i] < kShownS; ++i) {
-    measured.points.push_back({time[i], found.trace.measured[quantity][i]});
-    predicted.points.push_back({time[i], found.trace.predicted[quantity][i]});
-  }
-  std::string caption = "Predicted by the commands alone";
+  const identification::PredictionTrace& trace = found.trace;
+  std::string title = label + ", predicted by the commands alone";
   if (quantity < 3 || found.source == SpeedSource::kCommanded)
-    caption += fmt::format(", restarted from the measured value every {:g} s", found.trace.restart_s);
-  plot::Figure figure = figure_of(label + " over time, measured and predicted", caption,
-                                  "time from the start of the validation set (s)", label);
-  figure.panels[0].series = {measured, predicted};
+    title += fmt::format(", restarted from the measured value every {:g} s", trace.restart_s);
+  plot::Figure figure =
+      plot::one_panel(title, "time from the start of the validation set (s)", label, kHeight);
+  figure.panels[0].series = {
+      {Style::kLine, Colour::kBlue, "measured", plot::points(trace.time_s, trace.measured[quantity])},
+      {Style::kLine, Colour::kOrange, "predicted", plot::points(trace.time_s, trace.predicted[quantity])}};
+  const auto shown =
+      std::lower_bound(trace.time_s.begin(), trace.time_s.end(), kShownS) - trace.time_s.begin();
+  for (plot::Series& series : figure.panels[0].series) series.points.resize(static_cast<std::size_t>(shown));
   return figure;
 }
 
-plot::Figure thrust_figure(const FlightIdentification& found) {
+plot::Figure thrust_figure(const identification::CommandedThrust& thrust) {
   plot::Series band{Style::kBand, Colour::kBlue, "95 % interval"};
-  plot::Series curve{Style::kLine, Colour::kBlue, "thrust over mass"};
   plot::Series weight{Style::kDashes, Colour::kInk, "weight"};
-  const identification::CommandedThrust& thrust = found.thrust;
   const std::size_t count = thrust.command.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    curve.points.push_back({thrust.command[i], thrust.over_mass[i]});
-    weight.points.push_back({thrust.command[i], plant::kGravity});
-    band.points.push_back({thrust.command[i], thrust.over_mass[i] - thrust.half_width[i]});
+  for (std::size_t i = 0; i < 2 * count; ++i) {  // below the curve from left to right, above it back
+    const std::size_t k = i < count ? i : 2 * count - 1 - i;
+    band.points.push_back(
+        {thrust.command[k], thrust.over_mass[k] + (i < count ? -1.0 : 1.0) * thrust.half_width[k]});
+    weight.points.push_back({thrust.command[k], plant::kGravity});
   }
-  for (std::size_t i = count; i-- > 0;)
-    band.points.push_back({thrust.command[i], thrust.over_mass[i] + thrust.half_width[i]});
-  plot::Figure figure =
-      figure_of("Thrust over mass by command",
-                "Steady thrust of all rotors together, over the range of commands in this flight",
-                "command of all motors (share of full command)", "thrust over mass (m/s^2)");
-  figure.panels[0].series = {band, curve, weight};
+  plot::Figure figure = plot::one_panel(
+      "Thrust over mass by command: steady, all rotors together, over the range of commands in this flight",
+      "command of all motors (share of full command)", "thrust over mass (m/s^2)", kHeight);
+  figure.panels[0].series = {
+      band,
+      {Style::kLine, Colour::kBlue, "thrust over mass", plot::points(thrust.command, thrust.over_mass)},
+      weight};
   return figure;
 }
 
 plot::Figure horizon_figure(const FlightIdentification& found, const std::string& quantity) {
-  plot::Series by_commands{Style::kLine, Colour::kOrange, "by the commands alone"};
-  plot::Series persistence{Style::kDashes, Colour::kBlue, "persistence baseline"};
-  std::string label;
+  plot::Figure figure = plot::one_panel("Prediction error by the commands alone, " + quantity,
+                                        "prediction horizon (s)", "", kHeight);
+  plot::Panel& panel = figure.panels[0];
+  panel.zero_line = true;
+  panel.series = {{Style::kLine, Colour::kOrange, "by the commands alone"},
+                  {Style::kDashes, Colour::kBlue, "persistence baseline"}};
   for (const HorizonError& e : found.horizons) {
     if (e.quantity != quantity) continue;
-    by_commands.points.push_back({e.horizon_s, e.by_commands});
-    persistence.points.push_back({e.horizon_s, e.persistence});
-    label = "RMS error of " + quantity + " (" + e.unit + ")";
+    panel.series[0].points.push_back({e.horizon_s, e.by_commands});
+    panel.series[1].points.push_back({e.horizon_s, e.persistence});
+    panel.y.label = "RMS error of " + quantity + " (" + e.unit + ")";
   }
-  plot::Figure figure =
-      figure_of(label + " over the prediction horizon", "Prediction error by the commands alone, " + quantity,
-                "prediction horizon (s)", label);
-  figure.panels[0].zero_line = true;
-  figure.panels[0].series = {by_commands, persistence};
   return figure;
 }
 
@@ -180,7 +169,7 @@ void add_prediction(plot::Page& page, const FlightIdentification& found) {
   const char* const labels[4] = {"p (rad/s)", "q (rad/s)", "r (rad/s)", "specific force along z (m/s^2)"};
   for (int i = 0; i < 4; ++i) figures.push_back(prediction_figure(found, i, labels[i]));
   if (found.source == SpeedSource::kCommanded) {
-    figures.push_back(thrust_figure(found));
+    figures.push_back(thrust_figure(found.thrust));
     for (const char* const quantity : {"p", "q", "r"}) figures.push_back(horizon_figure(found, quantity));
   }
   page.figures(figures);
@@ -223,14 +212,7 @@ std::string flight_identification_json(const FlightIdentificationReport& report)
                     {"to_row", found.windows[i].flight.last}});
   }
   Json parameters = Json::array();
-  for (const ParameterEstimate& e : found.estimates) {
-    parameters.push_back({{"parameter", e.parameter},
-                          {"symbol", e.symbol},
-                          {"value", e.value},
-                          {"standard_error", e.standard_error},
-                          {"interval_95", {e.low(), e.high()}},
-                          {"unit", e.unit}});
-  }
+  for (const ParameterEstimate& e : found.estimates) parameters.push_back(json_of(e));
   Json prediction = Json::array();
   for (const PredictionError& e : found.errors) {
     prediction.push_back({{"quantity", e.quantity},

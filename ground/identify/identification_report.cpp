@@ -154,16 +154,6 @@ void add_summary(plot::Page& page, const IdentificationReport& report) {
   for (const std::string& warning : report.found.warnings) page.paragraph(warning + ".", "warning");
 }
 
-Json json_of(const ParameterEstimate& estimate, const std::string& experiment) {
-  return {{"parameter", estimate.parameter},
-          {"symbol", estimate.symbol},
-          {"value", estimate.value},
-          {"standard_error", estimate.standard_error},
-          {"interval_95", {estimate.low(), estimate.high()}},
-          {"unit", estimate.unit},
-          {"experiment", experiment}};
-}
-
 }  // namespace
 
 plot::Page identification_page(const IdentificationReport& report) {
@@ -209,8 +199,10 @@ std::string identification_json(const IdentificationReport& report) {
   Json parameters = Json::array();
   Json experiments = Json::array();
   for (const Part& part : parts_of(report)) {
-    for (const ParameterEstimate& estimate : part.estimates)
-      parameters.push_back(json_of(estimate, part.name));
+    for (const ParameterEstimate& estimate : part.estimates) {
+      parameters.push_back(json_of(estimate));
+      parameters.back()["experiment"] = part.name;
+    }
     experiments.push_back({{"name", part.name},
                            {"title", part.title},
                            {"rows", part.fit->measured.size()},

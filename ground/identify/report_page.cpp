@@ -3,28 +3,29 @@
 #include <cmath>
 #include <cstdio>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include "swiftlet/io/atomic_write.hpp"
 
 namespace swiftlet::ground {
 
 std::string written_unit(const std::string& unit) {
-  std::string out;
-  for (std::size_t i = 0; i < unit.size(); ++i) {
-    if (unit.compare(i, 2, "^2") == 0) {
-      out += "\u00b2";
-      ++i;
-    } else if (unit[i] == '*') {
-      out += "\u00b7";
-    } else {
-      out += unit[i];
-    }
-  }
-  return out;
+  using boost::algorithm::replace_all_copy;
+  return replace_all_copy(replace_all_copy(unit, "^2", "\u00b2"), "*", "\u00b7");
 }
 
 std::string unit_cell(const std::string& unit) { return unit == "1" ? "" : written_unit(unit); }
+
+nlohmann::ordered_json json_of(const identification::ParameterEstimate& estimate) {
+  return {{"parameter", estimate.parameter},
+          {"symbol", estimate.symbol},
+          {"value", estimate.value},
+          {"standard_error", estimate.standard_error},
+          {"interval_95", {estimate.low(), estimate.high()}},
+          {"unit", estimate.unit}};
+}
 
 void add_estimates(plot::Page& page, const std::vector<identification::ParameterEstimate>& estimates) {
   std::vector<plot::Page::Row> rows;

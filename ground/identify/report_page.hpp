@@ -1,8 +1,10 @@
-// Common parts of the HTML reports of identifications.
+// Common parts of the reports of identifications.
 #pragma once
 
 #include <string>
 #include <vector>
+
+#include <nlohmann/json_fwd.hpp>
 
 #include "swiftlet/ground/plot/page.hpp"
 #include "swiftlet/identification/fitting/estimate.hpp"
@@ -14,6 +16,9 @@ std::string written_unit(const std::string& unit);
 
 // The same for a cell of a table: empty for the unit 1.
 std::string unit_cell(const std::string& unit);
+
+// Keys: parameter, symbol, value, standard_error, interval_95, unit.
+nlohmann::ordered_json json_of(const identification::ParameterEstimate& estimate);
 
 // Adds a table with a row for each estimate.
 void add_estimates(plot::Page& page, const std::vector<identification::ParameterEstimate>& estimates);

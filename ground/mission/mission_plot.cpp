@@ -1,6 +1,5 @@
 #include "swiftlet/ground/mission/mission_plot.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -22,8 +21,6 @@ using plot::Style;
 constexpr double kStep_s = 0.02;
 constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 constexpr std::size_t kMaxLabels = 40;  // of places; more places get no labels
-constexpr double kAboveLimit = 1.12;    // end of the axis over the limit
-constexpr double kAroundFence = 0.04;   // of its length, on both sides
 
 plot::Point seen(const Eigen::Vector3d& position_ned) {
   return {position_ned.y(), position_ned.x(), -position_ned.z()};
@@ -31,10 +28,7 @@ plot::Point seen(const Eigen::Vector3d& position_ned) {
 
 // Height, speed, acceleration and tilt over time, and the path.
 void add_motion(plot::Figure& figure, const MissionDryRun& dry_run) {
-  std::array<plot::Series, 4> over_time;
-  plot::Series path;
-  for (plot::Series* series : {&over_time[0], &over_time[1], &over_time[2], &over_time[3], &path})
-    series->weight = 1.2;
+  for (plot::Panel& panel : figure.panels) panel.series.emplace_back();
   for (const DryRunLeg& leg : dry_run.legs) {
     const double steps = std::ceil(leg.segment.duration_s / kStep_s);
     for (double i = 0.0; i <= steps; i += 1.0) {
@@ -45,12 +39,11 @@ void add_motion(plot::Figure& figure, const MissionDryRun& dry_run) {
                                             at.acceleration_ned.norm(),
                                             std::atan2(thrust.head<2>().norm(), -thrust.z()) * kDegrees};
       for (std::size_t k = 0; k < values.size(); ++k)
-        over_time[k].points.push_back({leg.start_s + t_s, values[k]});
-      path.points.push_back(seen(at.position_ned));
+        figure.panels[k].series.back().points.push_back({leg.start_s + t_s, values[k]});
+      for (const std::size_t view : {plot::kFromAbove, plot::kInSpace})
+        figure.panels[view].series.back().points.push_back(seen(at.position_ned));
     }
   }
-  for (std::size_t k = 0; k < over_time.size(); ++k) figure.panels[k].series.push_back(over_time[k]);
-  plot::add_to_views(figure, path);
 }
 
 // A horizontal line over the whole time, with its name at the right.
@@ -59,37 +52,21 @@ void add_limit(plot::Panel& panel, double limit, const char* name) {
   panel.labels.push_back({{*panel.x.to, limit}, name, Colour::kRed, true});
 }
 
-void set_range(plot::Axis& axis, double a, double b) {
-  const double margin = kAroundFence * std::abs(b - a);
-  axis.from = std::min(a, b) - margin;
-  axis.to = std::max(a, b) + margin;
-}
-
 // The fence as a ring, from above, and as a box, in space.
 void add_fence(plot::Figure& figure, const control::Limits& limits) {
-  const Eigen::Vector3d& from = limits.fence_min_ned;
-  const Eigen::Vector3d& to = limits.fence_max_ned;
-  plot::Panel& above = figure.panels[plot::kFromAbove];
-  plot::Panel& space = figure.panels[plot::kInSpace];
-  plot::Panel& heights = figure.panels[0];
-  set_range(heights.y, -from.z(), -to.z());
-  space.z.to = heights.y.to;
+  const plot::Point from = seen(limits.fence_min_ned);
+  const plot::Point to = seen(limits.fence_max_ned);
   plot::Series ring{Style::kDashes, Colour::kRed};
   plot::Series posts = ring;
-  for (const auto& [north, east] :
-       {std::pair{from.x(), from.y()}, std::pair{from.x(), to.y()}, std::pair{to.x(), to.y()},
-        std::pair{to.x(), from.y()}, std::pair{from.x(), from.y()}}) {
-    ring.points.push_back({east, north, -from.z()});
-    posts.points.insert(posts.points.end(), {{east, north, 0.0}, {east, north, -from.z()}, plot::kGap});
+  for (const auto& [east, north] : {std::pair{from.x, from.y}, std::pair{to.x, from.y}, std::pair{to.x, to.y},
+                                    std::pair{from.x, to.y}, std::pair{from.x, from.y}}) {
+    ring.points.push_back({east, north, from.z});
+    posts.points.insert(posts.points.end(), {{east, north, 0.0}, {east, north, from.z}, plot::kGap});
   }
   plot::add_to_views(figure, ring);
-  space.series.push_back(posts);
-  for (plot::Panel* view : {&above, &space}) {
-    set_range(view->x, from.y(), to.y());
-    set_range(view->y, from.x(), to.x());
-  }
-  add_limit(heights, -from.z(), "fence");
-  add_limit(heights, -to.z(), "");
+  figure.panels[plot::kInSpace].series.push_back(posts);
+  add_limit(figure.panels[0], from.z, "fence");
+  add_limit(figure.panels[0], to.z, "");
 }
 
 // A place where items end, with their numbers: "2", or "2, 5" if several end there.
@@ -130,14 +107,6 @@ void add_places(plot::Figure& figure, const MissionDryRun& dry_run) {
   plot::add_to_views(figure, dots);
 }
 
-void add_item_starts(plot::Panel& heights, const MissionDryRun& dry_run) {
-  plot::Series starts{Style::kDashes, Colour::kGrey, "", {}, 0.5};
-  for (const double start_s : dry_run.item_starts_s)
-    starts.points.insert(starts.points.end(),
-                         {{start_s, *heights.y.from}, {start_s, *heights.y.to}, plot::kGap});
-  heights.series.push_back(starts);
-}
-
 plot::Figure mission_figure(const MissionFile& file, const MissionDryRun& dry_run,
                             const control::Limits& limits) {
   const std::string title = file.name + (file.description.empty() ? "" : " - " + file.description) +
@@ -147,15 +116,15 @@ plot::Figure mission_figure(const MissionFile& file, const MissionDryRun& dry_ru
       title, {"height -z (m)", "speed (m/s)", "acceleration (m/s^2)", "tilt of the thrust (deg)"},
       dry_run.duration_s);
   add_fence(figure, limits);
-  add_item_starts(figure.panels[0], dry_run);
-  const std::array<double, 3> largest = {limits.max_speed, limits.max_acceleration,
-                                         limits.max_tilt_rad * kDegrees};
-  for (std::size_t i = 0; i < largest.size(); ++i) {
-    plot::Panel& panel = figure.panels[i + 1];
-    panel.y.from = 0.0;
-    panel.y.to = kAboveLimit * largest[i];
-    add_limit(panel, largest[i], "limit");
-  }
+  plot::Series starts{Style::kDashes, Colour::kGrey, "", {}, 0.5};
+  for (const double at_s : dry_run.item_starts_s)
+    starts.points.insert(starts.points.end(),
+                         {{at_s, -limits.fence_max_ned.z()}, {at_s, -limits.fence_min_ned.z()}, plot::kGap});
+  figure.panels[0].series.push_back(starts);
+  add_limit(figure.panels[1], limits.max_speed, "limit");
+  add_limit(figure.panels[2], limits.max_acceleration, "limit");
+  add_limit(figure.panels[3], limits.max_tilt_rad * kDegrees, "limit");
+  for (const std::size_t panel : {1U, 2U, 3U}) figure.panels[panel].y.from = 0.0;
   add_motion(figure, dry_run);
   add_places(figure, dry_run);
   return figure;

@@ -28,8 +28,15 @@ struct Point {
   double z = 0.0;  // only in space
 };
 
+inline std::vector<Point> points(const std::vector<double>& x, const std::vector<double>& y) {
+  std::vector<Point> out;
+  for (std::size_t i = 0; i < x.size(); ++i) out.push_back({x[i], y[i]});
+  return out;
+}
+
 // Interrupts a line, as does every point that is not finite.
-constexpr Point kGap = {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0};
+constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
+constexpr Point kGap = {kNowhere, kNowhere, kNowhere};
 
 struct Series {
   Style style = Style::kLine;
@@ -49,14 +56,14 @@ struct Label {
 // Limits that are not given are those of the data, with a margin. Numbers that would be long are divided by a
 // power of ten, which the label shows.
 struct Axis {
-  std::string label;  // with the unit: "thrust (N)"
-  std::optional<double> from;
-  std::optional<double> to;
+  std::string label = {};  // with the unit: "thrust (N)"
+  std::optional<double> from = {};
+  std::optional<double> to = {};
   double least_span = 0.0;  // of limits that are not given
   bool logarithmic = false;
   bool reversed = false;
   bool numbered = true;
-  std::vector<std::string> names;  // at 1, 2, ..., in place of numbers
+  std::vector<std::string> names = {};  // at 1, 2, ..., in place of numbers; at most 49 bytes each
 };
 
 // Where the axes are, as fractions of the figure from its lower left corner.
@@ -69,30 +76,28 @@ struct Box {
 
 // The series are drawn in their order. The legend is above the axes.
 struct Panel {
-  std::string title;
-  Axis x, y, z;
+  std::string title = {};
+  std::optional<Box> box = {};  // missing: the panel fills the figure
+  Axis x = {};
+  Axis y = {};
+  Axis z = {};
   bool in_space = false;   // seen obliquely, z up from the ground at 0
   bool equal = false;      // equal scales of all axes
   bool zero_line = false;  // at y = 0
-  std::vector<Series> series;
-  std::vector<Label> labels;
-  std::optional<Box> box;  // missing: the panel fills the figure
+  std::vector<Series> series = {};
+  std::vector<Label> labels = {};
 };
 
 struct Figure {
-  std::string title;    // headline of a picture; name of a figure in a page, for screen readers
-  std::string caption;  // in a page, below the figure
-  int width = 640;      // px
-  int height = 400;     // px
+  std::string title;  // headline of a picture, caption in a page
+  int width = 640;    // px
+  int height = 400;   // px
   std::vector<Panel> panels;
 };
 
-// A figure of one panel for a page.
-inline Figure captioned(const std::string& caption, const std::string& x_label, const std::string& y_label) {
-  Figure figure{caption, caption, 640, 400, std::vector<Panel>(1)};
-  figure.panels[0].x.label = x_label;
-  figure.panels[0].y.label = y_label;
-  return figure;
+inline Figure one_panel(const std::string& title, const std::string& x_label, const std::string& y_label,
+                        int height = 400) {
+  return {title, 640, height, {{"", {}, {x_label}, {y_label}}}};
 }
 
 }  // namespace swiftlet::plot

@@ -16,12 +16,8 @@ enum class Format { kPng, kSvg };
 std::string gnuplot_script(const Figure& figure, Format format, const std::string& output);
 
 // Draws the figure to a PNG file. Returns an empty string, or one sentence with the reason why there is no
-// picture; the file is then as before.
-std::string draw_png(const Figure& figure, const std::filesystem::path& png);
-
-// Also writes the script beside the picture, NAME.gp for NAME.png, to draw it again. Throws
-// std::runtime_error if the script cannot be written.
-std::string draw_png_and_script(const Figure& figure, const std::filesystem::path& png);
+// picture; the file is then as before. with_script: also writes NAME.gp beside NAME.png, to draw it again.
+std::string draw_png(const Figure& figure, const std::filesystem::path& png, bool with_script = false);
 
 struct Drawings {
   std::vector<std::string> svg;  // <svg> elements for an HTML page, in the order of the figures

@@ -1,5 +1,7 @@
 #include "swiftlet/ground/plot/page.hpp"
 
+#include <boost/algorithm/string/replace.hpp>
+
 #include "swiftlet/ground/plot/gnuplot.hpp"
 
 namespace swiftlet::plot {
@@ -12,7 +14,7 @@ table { border-collapse: collapse; margin: 8px 0; } th, td { padding: 3px 14px 3
 th { border-bottom: 1px solid #999; font-weight: 600; } td { font-variant-numeric: tabular-nums; }
 td:not(:last-child) { white-space: nowrap; }
 .figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(520px, 1fr)); gap: 14px 22px; align-items: end; }
-figure { margin: 0; } figcaption { font-size: 13px; color: #444; padding-left: 48px; } svg { width: 100%; height: auto; display: block; }
+figure { margin: 0; } figcaption { font-size: 13px; color: #444; padding-left: 48px; } svg { width: 100%; height: auto; display: block; pointer-events: none; }
 .warning { background: #fff3cd; border-left: 4px solid #e0a800; padding: 4px 10px; margin: 5px 0; }
 .finding { margin: 4px 0; } .quiet { color: #555; font-size: 14px; }
 </style>
@@ -53,7 +55,7 @@ void Page::figures(const std::vector<Figure>& figures) {
   for (const Figure& figure : figures) {
     add("<figure>");
     figures_.push_back(figure);
-    texts_.push_back(element("figcaption", figure.caption) + "</figure>\n");
+    texts_.push_back(element("figcaption", figure.title) + "</figure>\n");
   }
   add("</div>\n");
 }
@@ -69,27 +71,12 @@ Page::Html Page::html() const {
   return {text + "</body></html>\n", drawings.fault};
 }
 
-std::string html_escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
+std::string html_escaped(std::string text) {
+  boost::algorithm::replace_all(text, "&", "&amp;");
+  boost::algorithm::replace_all(text, "<", "&lt;");
+  boost::algorithm::replace_all(text, ">", "&gt;");
+  boost::algorithm::replace_all(text, "\"", "&quot;");
+  return text;
 }
 
 }  // namespace swiftlet::plot

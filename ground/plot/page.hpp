@@ -40,6 +40,6 @@ class Page {
 };
 
 // Escapes text for element content and attributes.
-std::string html_escaped(const std::string& text);
+std::string html_escaped(std::string text);
 
 }  // namespace swiftlet::plot

@@ -8,31 +8,19 @@ constexpr double kLeastView_m = 1.0;  // a vehicle that hovers needs no magnific
 }  // namespace
 
 Figure path_figure(const std::string& title, const std::array<std::string, 4>& labels, double duration_s) {
-  Figure figure{title, "", 1600, 1150, std::vector<Panel>(6)};
+  Figure figure{title, 1600, 1150, {}};
   for (std::size_t i = 0; i < labels.size(); ++i) {
-    Panel& panel = figure.panels[i];
     const double bottom = 0.725 - 0.22 * static_cast<double>(i);
-    panel.box = Box{0.065, 0.520, bottom, bottom + 0.19};
-    panel.y.label = labels[i];
-    panel.x.from = 0.0;
-    panel.x.to = duration_s;
-    panel.x.numbered = i + 1 == labels.size();
-    if (panel.x.numbered) panel.x.label = "time (s)";
+    figure.panels.push_back(
+        {"", Box{0.065, 0.520, bottom, bottom + 0.19}, {"", 0.0, duration_s}, {labels[i]}});
+    figure.panels.back().x.numbered = i + 1 == labels.size();
   }
-  for (const std::size_t view : {kFromAbove, kInSpace}) {
-    Panel& panel = figure.panels[view];
-    panel.equal = true;
-    panel.x.label = "east y (m)";
-    panel.y.label = "north x (m)";
-    panel.x.least_span = panel.y.least_span = kLeastView_m;
-  }
-  figure.panels[kFromAbove].title = "plan view";
-  figure.panels[kFromAbove].box = Box{0.590, 0.975, 0.500, 0.915};
-  Panel& space = figure.panels[kInSpace];
-  space.box = Box{0.600, 0.960, 0.060, 0.430};
-  space.in_space = true;
-  space.z.label = "height -z (m)";
-  space.z.from = 0.0;
+  figure.panels.back().x.label = "time (s)";
+  const Axis east{"east y (m)", {}, {}, kLeastView_m};
+  const Axis north{"north x (m)", {}, {}, kLeastView_m};
+  figure.panels.push_back({"plan view", Box{0.590, 0.975, 0.530, 0.915}, east, north, {}, false, true});
+  figure.panels.push_back(
+      {"", Box{0.600, 0.960, 0.067, 0.437}, east, north, {"height -z (m)", 0.0}, true, true});
   return figure;
 }
 

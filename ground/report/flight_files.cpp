@@ -46,51 +46,42 @@ void for_each_row(const FlightRecord& record, const Visit& visit) {
   }
 }
 
-std::string headline(const FlightReport& report, Window window) {
-  return report.mission + " - " + report.vehicle + ", " + report.control +
-         fmt::format(": 3-D error RMS {:.1f} mm, peak {:.1f} mm over {:.0f} s", report.errors.rms_3d_m * 1e3,
-                     report.errors.peak_3d_m * 1e3, window.duration_s()) +
-         (report.completed ? "" : " - NOT completed");
-}
-
 plot::Figure flight_figure(const FlightRecord& record, const FlightReport& report, Window window) {
   using plot::Colour;
   using plot::Style;
-  plot::Series flown{Style::kLine, Colour::kBlue, "", {}, 1.8};
-  plot::Series reference{Style::kDashes, Colour::kInk, "", {}, 0.7};
-  std::array<plot::Series, 3> flown_over_time = {flown, flown, flown};
-  std::array<plot::Series, 3> reference_over_time = {reference, reference, reference};
-  std::array<plot::Series, 4> errors_mm = {{{Style::kLine, Colour::kOrange, "x", {}, 0.6},
-                                            {Style::kLine, Colour::kGreen, "y", {}, 0.6},
-                                            {Style::kLine, Colour::kPurple, "z", {}, 0.6},
-                                            {Style::kLine, Colour::kInk, "3-D", {}, 1.0}}};
-  for_each_row(record, [&](const TruthRow& truth, const ReferenceRow* referred, const EstimateRow*) {
-    const double t_s = seconds(truth.stamp_ns - window.from_ns);
-    const std::array<double, 3>& at = truth.position_ned;
-    flown.points.push_back({at[1], at[0], -at[2]});
-    for (std::size_t i = 0; i < 3; ++i) flown_over_time[i].points.push_back({t_s, at[i]});
-    if (referred == nullptr) return;
-    const std::array<double, 3>& to = referred->position_ned;
-    reference.points.push_back({to[1], to[0], -to[2]});
-    for (std::size_t i = 0; i < 3; ++i) reference_over_time[i].points.push_back({t_s, to[i]});
-    if (t_s < 0.0 || t_s >= window.duration_s()) return;
-    for (std::size_t i = 0; i < 3; ++i) errors_mm[i].points.push_back({t_s, 1e3 * (at[i] - to[i])});
-    errors_mm[3].points.push_back({t_s, 1e3 * std::hypot(at[0] - to[0], at[1] - to[1], at[2] - to[2])});
-  });
-
   plot::Figure figure = plot::path_figure(
-      headline(report, window), {"north x (m)", "east y (m)", "down z (m)", "error, flown - reference (mm)"},
+      report.mission + " - " + report.vehicle + ", " + report.control +
+          fmt::format(": 3-D error RMS {:.1f} mm, peak {:.1f} mm over {:.0f} s", report.errors.rms_3d_m * 1e3,
+                      report.errors.peak_3d_m * 1e3, window.duration_s()) +
+          (report.completed ? "" : " - NOT completed"),
+      {"north x (m)", "east y (m)", "down z (m)", "error, flown - reference (mm)"},
       std::max(report.duration_s, 1.0) + 0.5);
-  for (std::size_t i = 0; i < 3; ++i) {
-    figure.panels[i].y.least_span = kLeastSpan_m;
-    figure.panels[i].series = {flown_over_time[i], reference_over_time[i]};
-  }
-  figure.panels[0].series[0].label = "flown";
-  figure.panels[0].series[1].label = "reference";
+  for (const std::size_t panel : {0U, 1U, 2U, plot::kFromAbove, plot::kInSpace})
+    figure.panels[panel].series = {{Style::kLine, Colour::kBlue, panel == 0 ? "flown" : "", {}, 1.8},
+                                   {Style::kDashes, Colour::kInk, panel == 0 ? "reference" : "", {}, 0.7}};
+  for (const std::size_t panel : {0U, 1U, 2U}) figure.panels[panel].y.least_span = kLeastSpan_m;
   figure.panels[2].y.reversed = true;
-  figure.panels[3].series.assign(errors_mm.begin(), errors_mm.end());
-  plot::add_to_views(figure, flown);
-  plot::add_to_views(figure, reference);
+  std::vector<plot::Series>& errors_mm = figure.panels[3].series;
+  errors_mm = {{Style::kLine, Colour::kOrange, "x", {}, 0.6},
+               {Style::kLine, Colour::kGreen, "y", {}, 0.6},
+               {Style::kLine, Colour::kPurple, "z", {}, 0.6},
+               {Style::kLine, Colour::kInk, "3-D", {}, 1.0}};
+  for_each_row(record, [&](const TruthRow& truth, const ReferenceRow* reference, const EstimateRow*) {
+    const double t_s = seconds(truth.stamp_ns - window.from_ns);
+    const auto add = [&](std::size_t series, const std::array<double, 3>& ned) {
+      for (std::size_t i = 0; i < 3; ++i) figure.panels[i].series[series].points.push_back({t_s, ned[i]});
+      for (const std::size_t view : {plot::kFromAbove, plot::kInSpace})
+        figure.panels[view].series[series].points.push_back({ned[1], ned[0], -ned[2]});
+    };
+    add(0, truth.position_ned);
+    if (reference == nullptr) return;
+    add(1, reference->position_ned);
+    if (t_s < 0.0 || t_s >= window.duration_s()) return;
+    Eigen::Vector3d error_mm;
+    for (int i = 0; i < 3; ++i) error_mm[i] = 1e3 * (truth.position_ned[i] - reference->position_ned[i]);
+    for (int i = 0; i < 3; ++i) errors_mm[i].points.push_back({t_s, error_mm[i]});
+    errors_mm[3].points.push_back({t_s, error_mm.norm()});
+  });
   return figure;
 }
 
@@ -140,7 +131,7 @@ void write_report_json(const std::filesystem::path& file, const FlightReport& re
 
 std::string draw_flight(const std::filesystem::path& folder, const FlightRecord& record,
                         const FlightReport& report, Window window) {
-  return plot::draw_png_and_script(flight_figure(record, report, window), folder / "flight.png");
+  return plot::draw_png(flight_figure(record, report, window), folder / "flight.png", true);
 }
 
 }  // namespace swiftlet::ground

@@ -13,7 +13,7 @@ Page example() {
   page.heading("b & c");
   page.paragraph("d \"e\"", "quiet");
   page.table({"<name>", "value"}, {{"mass", "1 < 2"}});
-  Figure figure = captioned("<caption>", "x", "y");
+  Figure figure = one_panel("<caption>", "x", "y");
   figure.panels[0].series = {{Style::kLine, Colour::kBlue, "", {{0.0, 0.0}, {1.0, 1.0}}}};
   page.figures({figure, figure});
   page.paragraph("after the figures", "finding");
@@ -33,8 +33,9 @@ TEST(Page, EscapesTexts) {
 TEST(Page, HasItsFiguresInTheirPlaces) {
   const std::string text = example().html().text;
   std::size_t at = 0;
-  for (const char* const part : {"</h1>", "<figure><svg ", "</svg>\n<figcaption>", "<figure><svg ",
-                                 "</svg>\n<figcaption>", "</div>", "after the figures", "</body></html>\n"}) {
+  for (const char* const part :
+       {"</h1>", "<figure><svg ", "</svg>", "<figcaption>", "<figure><svg ", "</svg>", "<figcaption>",
+        "</div>", "after the figures", "</body></html>\n"}) {
     at = text.find(part, at);
     ASSERT_NE(at, std::string::npos) << part;
   }

@@ -116,11 +116,11 @@ TEST_F(FlightFilesTest, DrawsPositionsPathAndErrors) {
        {"'square - kaylion, motor_lag: 3-D error RMS 1.0 mm, peak 4.7 mm over 0 s - NOT completed'",
         "'north x (m)'", "'east y (m)'", "'down z (m)'", "'error, flown - reference (mm)'", "'time (s)'",
         "'plan view'", "'height -z (m)'", "title 'flown'", "title 'reference'", "title '3-D'",
-        "\n0.01 0.51\n",             // north over time, of the truth
-        "\n0.01 0.511\n",            // and of the reference
-        "\n0.042 0.526\n",           // also without a reference
-        "\n0.25 0.51 1\n",           // east, north, height
-        "EOD\n0 -1\n0.01 -1\nEOD"})  // north errors, mm, in the window alone
+        "\n0.01 0.51 0\n",               // north over time, of the truth
+        "\n0.01 0.511 0\n",              // and of the reference
+        "\n0.042 0.526 0\n",             // also without a reference
+        "\n0.25 0.51 1\n",               // east, north, height
+        "EOD\n0 -1 0\n0.01 -1 0\nEOD"})  // north errors, mm, in the window alone
     EXPECT_NE(script.find(part), std::string::npos) << part << "\n" << script;
 }
 
