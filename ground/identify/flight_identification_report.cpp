@@ -80,7 +80,7 @@ plot::Figure thrust_figure(const identification::CommandedThrust& thrust) {
     const std::size_t k = i < count ? i : 2 * count - 1 - i;
     band.points.push_back(
         {thrust.command[k], thrust.over_mass[k] + (i < count ? -1.0 : 1.0) * thrust.half_width[k]});
-    weight.points.push_back({thrust.command[k], plant::kGravity});
+    if (i < count) weight.points.push_back({thrust.command[k], plant::kGravity});
   }
   plot::Figure figure = plot::one_panel(
       "Thrust over mass by command: steady, all rotors together, over the range of commands in this flight",

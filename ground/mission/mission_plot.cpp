@@ -124,7 +124,7 @@ plot::Figure mission_figure(const MissionFile& file, const MissionDryRun& dry_ru
   add_limit(figure.panels[1], limits.max_speed, "limit");
   add_limit(figure.panels[2], limits.max_acceleration, "limit");
   add_limit(figure.panels[3], limits.max_tilt_rad * kDegrees, "limit");
-  for (const std::size_t panel : {1U, 2U, 3U}) figure.panels[panel].y.from = 0.0;
+  for (const std::size_t panel : {1, 2, 3}) figure.panels[panel].y.from = 0.0;
   add_motion(figure, dry_run);
   add_places(figure, dry_run);
   return figure;

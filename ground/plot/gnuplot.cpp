@@ -69,6 +69,12 @@ set xlabel offset 0,-0.5
 set ylabel offset 0,-0.5
 set zlabel rotate by 90 offset -1
 )";
+constexpr const char* kInBox = R"(set lmargin at screen {:g}
+set rmargin at screen {:g}
+set bmargin at screen {:g}
+set tmargin at screen {:g}
+set key at graph 0.5,1.01 center bottom
+)";
 
 const char* colour_of(Colour colour) { return kColours.at(static_cast<std::size_t>(colour)); }
 
@@ -180,9 +186,7 @@ void add_panel(std::string& script, const Panel& panel, std::size_t number) {
   if (panel.zero_line) script += "set xzeroaxis lt 1 lc rgb '#777777'\n";
   script += "set title " + quoted(panel.title) + "\n";
   if (panel.box)
-    fmt::format_to(out,
-                   "set key at graph 0.5,1.01 center bottom\nset margins at screen {:g},{:g},{:g},{:g}\n",
-                   panel.box->left, panel.box->right, panel.box->bottom, panel.box->top);
+    fmt::format_to(out, kInBox, panel.box->left, panel.box->right, panel.box->bottom, panel.box->top);
   for (const Label& label : panel.labels)
     fmt::format_to(out, "set label {} at {:.7g},{:.7g} {} front tc rgb '{}'\n", quoted(label.text),
                    label.at.x / x.power, label.at.y / y.power,

@@ -56,10 +56,11 @@ plot::Figure flight_figure(const FlightRecord& record, const FlightReport& repor
           (report.completed ? "" : " - NOT completed"),
       {"north x (m)", "east y (m)", "down z (m)", "error, flown - reference (mm)"},
       std::max(report.duration_s, 1.0) + 0.5);
-  for (const std::size_t panel : {0U, 1U, 2U, plot::kFromAbove, plot::kInSpace})
-    figure.panels[panel].series = {{Style::kLine, Colour::kBlue, panel == 0 ? "flown" : "", {}, 1.8},
-                                   {Style::kDashes, Colour::kInk, panel == 0 ? "reference" : "", {}, 0.7}};
-  for (const std::size_t panel : {0U, 1U, 2U}) figure.panels[panel].y.least_span = kLeastSpan_m;
+  for (plot::Panel& panel : figure.panels)
+    panel.series = {{Style::kLine, Colour::kBlue, "", {}, 1.8}, {Style::kDashes, Colour::kInk, "", {}, 0.7}};
+  figure.panels[0].series[0].label = "flown";
+  figure.panels[0].series[1].label = "reference";
+  for (std::size_t i = 0; i < 3; ++i) figure.panels[i].y.least_span = kLeastSpan_m;
   figure.panels[2].y.reversed = true;
   std::vector<plot::Series>& errors_mm = figure.panels[3].series;
   errors_mm = {{Style::kLine, Colour::kOrange, "x", {}, 0.6},
@@ -77,9 +78,10 @@ plot::Figure flight_figure(const FlightRecord& record, const FlightReport& repor
     if (reference == nullptr) return;
     add(1, reference->position_ned);
     if (t_s < 0.0 || t_s >= window.duration_s()) return;
-    Eigen::Vector3d error_mm;
-    for (int i = 0; i < 3; ++i) error_mm[i] = 1e3 * (truth.position_ned[i] - reference->position_ned[i]);
-    for (int i = 0; i < 3; ++i) errors_mm[i].points.push_back({t_s, error_mm[i]});
+    const Eigen::Vector3d error_mm =
+        1e3 * (Eigen::Vector3d(truth.position_ned.data()) - Eigen::Vector3d(reference->position_ned.data()));
+    for (std::size_t i = 0; i < 3; ++i)
+      errors_mm[i].points.push_back({t_s, error_mm[static_cast<Eigen::Index>(i)]});
     errors_mm[3].points.push_back({t_s, error_mm.norm()});
   });
   return figure;

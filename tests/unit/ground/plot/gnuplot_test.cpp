@@ -140,6 +140,22 @@ TEST_F(GnuplotTest, GivesEqualAxesTheSameScale) {
   EXPECT_NEAR(at[0].y - at[2].y, 2.0 * (at[1].x - at[0].x), 0.5);
 }
 
+TEST_F(GnuplotTest, PlacesPanelsInTheirBoxes) {
+  Figure figure = parabola(1.0, 1.0);
+  figure.panels.push_back(figure.panels[0]);
+  figure.panels[0].box = Box{0.1, 0.45, 0.6, 0.9};
+  figure.panels[1].box = Box{0.55, 0.95, 0.1, 0.4};
+  const std::vector<Point> at = dots(svg(figure));
+  ASSERT_EQ(at.size(), 22U);
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const Box box = *figure.panels[i / 11].box;
+    EXPECT_GT(at[i].x, 640 * box.left);
+    EXPECT_LT(at[i].x, 640 * box.right);
+    EXPECT_GT(at[i].y, 400 * (1.0 - box.top));
+    EXPECT_LT(at[i].y, 400 * (1.0 - box.bottom));
+  }
+}
+
 TEST_F(GnuplotTest, NamesThePowerOfTenOfItsNumbers) {
   const std::string drawn = svg(parabola(1e6, 1e-7));
   EXPECT_EQ(texts(drawn, "speed \\(10\u2076 rad/s\\)").size(), 1U) << drawn;
