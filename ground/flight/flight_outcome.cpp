@@ -52,7 +52,7 @@ void write_record(const std::filesystem::path& folder, const FlightRecord& recor
   if (record.sensors) write_flight_log(folder / kSensorsFile, flight_log_of(*record.sensors));
   write_report_json(folder / "report.json", report);
   if (report.errors.matched == 0) return;
-  const std::string no_picture = draw_flight(folder, report, window);
+  const std::string no_picture = draw_flight(folder, record, report, window);
   if (!no_picture.empty()) progress.say(no_picture);
 }
 

@@ -1,11 +1,12 @@
 #include "swiftlet/ground/identify/flight_identification_report.hpp"
 
+#include <algorithm>
+#include <initializer_list>
+
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "swiftlet/ground/identify/identification_figures.hpp"
 #include "swiftlet/ground/identify/report_page.hpp"
-#include "swiftlet/ground/report/svg_figure.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -16,9 +17,12 @@ using identification::HorizonError;
 using identification::ParameterEstimate;
 using identification::PredictionError;
 using identification::SpeedSource;
+using plot::Colour;
+using plot::Style;
 using Json = nlohmann::ordered_json;
 
 constexpr double kShownS = 8.0;  // s, length of the figures of predictions
+constexpr int kHeight = 300;     // px, of the figures
 
 const char* source_text(SpeedSource source) {
   switch (source) {
@@ -52,66 +56,56 @@ std::vector<std::pair<std::string, const std::vector<std::string>*>> notes(
           {"warning", &report.found.warnings}};
 }
 
-CaptionedFigure prediction_figure(const FlightIdentification& found, int quantity, const char* label) {
-  FigureSeries measured{"measured", Mark::kLine, "#1f6fb4", {}};
-  FigureSeries predicted{"predicted", Mark::kLine, "#c0392b", {}};
-  const std::vector<double>& time = found.trace.time_s;
-  for (std::size_t i = 0; i < time.size() && time[i] < kShownS; ++i) {
-    measured.points.push_back({time[i], found.trace.measured[quantity][i]});
-    predicted.points.push_back({time[i], found.trace.predicted[quantity][i]});
-  }
-  Figure figure;
-  figure.title = std::string(label) + " over time, measured and predicted";
-  figure.x_label = "time from the start of the validation set (s)";
-  figure.y_label = label;
-  figure.height = 300;
-  figure.series = {measured, predicted};
-  const bool restarts_all = found.source == SpeedSource::kCommanded;
-  return {quantity < 3 || restarts_all
-              ? fmt::format("Predicted by the commands alone, restarted from the measured value every {:g} s",
-                            found.trace.restart_s)
-              : "Predicted by the commands alone",
-          figure};
+plot::Figure prediction_figure(const FlightIdentification& found, int quantity, const std::string& label) {
+  const identification::PredictionTrace& trace = found.trace;
+  std::string title = label + ", predicted by the commands alone";
+  if (quantity < 3 || found.source == SpeedSource::kCommanded)
+    title += fmt::format(", restarted from the measured value every {:g} s", trace.restart_s);
+  plot::Figure figure =
+      plot::one_panel(title, "time from the start of the validation set (s)", label, kHeight);
+  figure.panels[0].series = {
+      {Style::kLine, Colour::kBlue, "measured", plot::points(trace.time_s, trace.measured[quantity])},
+      {Style::kLine, Colour::kOrange, "predicted", plot::points(trace.time_s, trace.predicted[quantity])}};
+  const auto shown =
+      std::lower_bound(trace.time_s.begin(), trace.time_s.end(), kShownS) - trace.time_s.begin();
+  for (plot::Series& series : figure.panels[0].series) series.points.resize(static_cast<std::size_t>(shown));
+  return figure;
 }
 
-CaptionedFigure thrust_figure(const FlightIdentification& found) {
-  FigureBand band{"95 % interval", "#c0392b", {}, {}};
-  FigureSeries curve{"thrust over mass", Mark::kLine, "#c0392b", {}};
-  FigureSeries weight{"weight", Mark::kDashes, "#555555", {}};
-  const identification::CommandedThrust& thrust = found.thrust;
-  for (std::size_t i = 0; i < thrust.command.size(); ++i) {
-    const double command = thrust.command[i];
-    band.low.push_back({command, thrust.over_mass[i] - thrust.half_width[i]});
-    band.high.push_back({command, thrust.over_mass[i] + thrust.half_width[i]});
-    curve.points.push_back({command, thrust.over_mass[i]});
-    weight.points.push_back({command, plant::kGravity});
+plot::Figure thrust_figure(const identification::CommandedThrust& thrust) {
+  plot::Series band{Style::kBand, Colour::kBlue, "95 % interval"};
+  plot::Series weight{Style::kDashes, Colour::kInk, "weight"};
+  const std::size_t count = thrust.command.size();
+  for (std::size_t i = 0; i < 2 * count; ++i) {  // below the curve from left to right, above it back
+    const std::size_t k = i < count ? i : 2 * count - 1 - i;
+    band.points.push_back(
+        {thrust.command[k], thrust.over_mass[k] + (i < count ? -1.0 : 1.0) * thrust.half_width[k]});
+    if (i < count) weight.points.push_back({thrust.command[k], plant::kGravity});
   }
-  Figure figure;
-  figure.title = "Thrust over mass by command";
-  figure.x_label = "command of all motors (share of full command)";
-  figure.y_label = "thrust over mass (m/s^2)";
-  figure.height = 300;
-  figure.bands = {band};
-  figure.series = {curve, weight};
-  return {"Steady thrust of all rotors together, over the range of commands in this flight", figure};
+  plot::Figure figure = plot::one_panel(
+      "Thrust over mass by command: steady, all rotors together, over the range of commands in this flight",
+      "command of all motors (share of full command)", "thrust over mass (m/s^2)", kHeight);
+  figure.panels[0].series = {
+      band,
+      {Style::kLine, Colour::kBlue, "thrust over mass", plot::points(thrust.command, thrust.over_mass)},
+      weight};
+  return figure;
 }
 
-CaptionedFigure horizon_figure(const FlightIdentification& found, const std::string& quantity) {
-  FigureSeries by_commands{"by the commands alone", Mark::kLine, "#c0392b", {}};
-  FigureSeries persistence{"persistence baseline", Mark::kDashes, "#1f6fb4", {}};
-  Figure figure;
+plot::Figure horizon_figure(const FlightIdentification& found, const std::string& quantity) {
+  plot::Figure figure = plot::one_panel("Prediction error by the commands alone, " + quantity,
+                                        "prediction horizon (s)", "", kHeight);
+  plot::Panel& panel = figure.panels[0];
+  panel.zero_line = true;
+  panel.series = {{Style::kLine, Colour::kOrange, "by the commands alone"},
+                  {Style::kDashes, Colour::kBlue, "persistence baseline"}};
   for (const HorizonError& e : found.horizons) {
     if (e.quantity != quantity) continue;
-    by_commands.points.push_back({e.horizon_s, e.by_commands});
-    persistence.points.push_back({e.horizon_s, e.persistence});
-    figure.y_label = "RMS error of " + quantity + " (" + e.unit + ")";
+    panel.series[0].points.push_back({e.horizon_s, e.by_commands});
+    panel.series[1].points.push_back({e.horizon_s, e.persistence});
+    panel.y.label = "RMS error of " + quantity + " (" + e.unit + ")";
   }
-  figure.title = figure.y_label + " over the prediction horizon";
-  figure.x_label = "prediction horizon (s)";
-  figure.zero_line = true;
-  figure.height = 300;
-  figure.series = {by_commands, persistence};
-  return {"Prediction error by the commands alone, " + quantity, figure};
+  return figure;
 }
 
 std::string comparison_table(const FlightIdentification& found) {
@@ -137,24 +131,48 @@ std::string horizon_table(const FlightIdentification& found) {
   return out;
 }
 
-std::string comparison_html(const FlightIdentification& found) {
-  if (found.comparisons.empty()) return "";
-  std::string out =
-      "<h2>Comparison with the vehicle file</h2>\n<table><tr><th>parameter</th><th>symbol</th>"
-      "<th>identified</th><th>&plusmn; (95 %)</th><th>file</th><th>ratio</th><th>unit</th></tr>\n";
-  for (const FileComparison& row : found.comparisons) {
-    out += "<tr><td>" + html_escaped(row.identified.parameter) + "</td><td>" +
-           html_escaped(row.identified.symbol) + "</td>";
-    for (const double value : {row.identified.value, row.identified.half_width, row.file, row.ratio()})
-      out += fmt::format("<td class=\"n\">{:.4g}</td>", value);
-    out += "<td>" + html_unit(row.identified.unit) + "</td></tr>\n";
-  }
-  return out + "</table>\n";
+// A row with a text, numbers and a unit.
+plot::Page::Row row_of(plot::Page::Row texts, std::initializer_list<double> numbers,
+                       const std::string& unit) {
+  for (const double number : numbers) texts.push_back(fmt::format("{:.4g}", number));
+  texts.push_back(unit_cell(unit));
+  return texts;
 }
 
-std::string figure_html(const CaptionedFigure& figure) {
-  return "<figure>" + svg(figure.figure) + "<figcaption>" + html_escaped(figure.caption) +
-         "</figcaption></figure>\n";
+void add_comparison(plot::Page& page, const FlightIdentification& found) {
+  if (found.comparisons.empty()) return;
+  std::vector<plot::Page::Row> rows;
+  for (const FileComparison& row : found.comparisons) {
+    const ParameterEstimate& e = row.identified;
+    rows.push_back(row_of({e.parameter, e.symbol}, {e.value, e.half_width, row.file, row.ratio()}, e.unit));
+  }
+  page.heading("Comparison with the vehicle file");
+  page.table({"parameter", "symbol", "identified", "\u00b1 (95 %)", "file", "ratio", "unit"}, rows);
+}
+
+void add_prediction(plot::Page& page, const FlightIdentification& found) {
+  std::vector<plot::Page::Row> rows;
+  for (const PredictionError& e : found.errors)
+    rows.push_back(row_of({e.quantity},
+                          {e.one_step, e.persistence_one_step, e.half_second, e.persistence_half_second},
+                          e.unit));
+  page.heading("Prediction of the validation set");
+  page.table({"RMS error of", "one step", "persistence", "0.5 s", "persistence", "unit"}, rows);
+  if (found.step_s > 0.0)
+    page.paragraph(
+        fmt::format("One step is {:.4g} s. The forecast 0.5 s ahead is the weighted sum of the "
+                    "prediction by the commands, the value at the start and the mean that is best on "
+                    "the estimation set.",
+                    found.step_s),
+        "quiet");
+  std::vector<plot::Figure> figures;
+  const char* const labels[4] = {"p (rad/s)", "q (rad/s)", "r (rad/s)", "specific force along z (m/s^2)"};
+  for (int i = 0; i < 4; ++i) figures.push_back(prediction_figure(found, i, labels[i]));
+  if (found.source == SpeedSource::kCommanded) {
+    figures.push_back(thrust_figure(found.thrust));
+    for (const char* const quantity : {"p", "q", "r"}) figures.push_back(horizon_figure(found, quantity));
+  }
+  page.figures(figures);
 }
 
 }  // namespace
@@ -194,14 +212,7 @@ std::string flight_identification_json(const FlightIdentificationReport& report)
                     {"to_row", found.windows[i].flight.last}});
   }
   Json parameters = Json::array();
-  for (const ParameterEstimate& e : found.estimates) {
-    parameters.push_back({{"parameter", e.parameter},
-                          {"symbol", e.symbol},
-                          {"value", e.value},
-                          {"standard_error", e.standard_error},
-                          {"interval_95", {e.low(), e.high()}},
-                          {"unit", e.unit}});
-  }
+  for (const ParameterEstimate& e : found.estimates) parameters.push_back(json_of(e));
   Json prediction = Json::array();
   for (const PredictionError& e : found.errors) {
     prediction.push_back({{"quantity", e.quantity},
@@ -258,50 +269,25 @@ std::string flight_identification_json(const FlightIdentificationReport& report)
   return out.dump();
 }
 
-std::string flight_identification_html(const FlightIdentificationReport& report) {
+plot::Page flight_identification_page(const FlightIdentificationReport& report) {
   const FlightIdentification& found = report.found;
-  std::string out =
-      page_head("Identification of " + found.vehicle.name + " from flights") + "<p class=\"quiet\">from";
-  for (const std::string& log : report.logs) out += " " + html_escaped(log);
-  out += "; " + html_escaped(data_sets_text(found)) + "; other parameters are those of " +
-         html_escaped(report.base_vehicle) +
-         "</p>\n<p class=\"quiet\">95 % intervals by Student's t; residuals may be correlated within "
-         "segments of half a second</p>\n" +
-         estimates_html(found.estimates);
+  plot::Page page("Identification of " + found.vehicle.name + " from flights");
+  std::string logs;
+  for (const std::string& log : report.logs) logs += " " + log;
+  page.paragraph(
+      "from" + logs + "; " + data_sets_text(found) + "; other parameters are those of " + report.base_vehicle,
+      "quiet");
+  page.paragraph(
+      "95 % intervals by Student's t; residuals may be correlated within segments of half a second", "quiet");
+  add_estimates(page, found.estimates);
   for (const auto& [kind, sentences] : notes(report)) {
     const bool loud = kind == "warning" || kind == "not identifiable";
     for (const std::string& sentence : *sentences)
-      out += std::string("<p class=\"") + (loud ? "warning" : "finding") + "\">" + kind + ": " +
-             html_escaped(sentence) + ".</p>\n";
+      page.paragraph(kind + ": " + sentence + ".", loud ? "warning" : "finding");
   }
-  out += comparison_html(found);
-  out +=
-      "<h2>Prediction of the validation set</h2>\n<table><tr><th>RMS error of</th><th>one step</th>"
-      "<th>persistence</th><th>0.5 s</th><th>persistence</th><th>unit</th></tr>\n";
-  for (const PredictionError& e : found.errors) {
-    out += "<tr><td>" + html_escaped(e.quantity) + "</td>";
-    for (const double value : {e.one_step, e.persistence_one_step, e.half_second, e.persistence_half_second})
-      out += fmt::format("<td class=\"n\">{:.4g}</td>", value);
-    out += "<td>" + html_unit(e.unit) + "</td></tr>\n";
-  }
-  out += "</table>\n";
-  if (found.step_s > 0.0)
-    out += fmt::format(
-        "<p class=\"quiet\">One step is {:.4g} s. The forecast 0.5 s ahead is the weighted sum of the "
-        "prediction by the commands, the value at the start and the mean that is best on the estimation "
-        "set.</p>\n",
-        found.step_s);
-  out += "<div class=\"figures\">\n";
-  const char* const labels[4] = {"p (rad/s)", "q (rad/s)", "r (rad/s)", "specific force along z (m/s^2)"};
-  for (int i = 0; i < 4; ++i) {
-    const CaptionedFigure figure = prediction_figure(found, i, labels[i]);
-    out += figure_html(figure);
-  }
-  if (found.source == SpeedSource::kCommanded) {
-    out += figure_html(thrust_figure(found));
-    for (const char* const quantity : {"p", "q", "r"}) out += figure_html(horizon_figure(found, quantity));
-  }
-  return out + "</div>\n</body></html>\n";
+  add_comparison(page, found);
+  add_prediction(page, found);
+  return page;
 }
 
 }  // namespace swiftlet::ground

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "swiftlet/ground/plot/page.hpp"
 #include "swiftlet/identification/flight/flight.hpp"
 
 namespace swiftlet::ground {
@@ -28,7 +29,7 @@ std::string flight_identification_table(const FlightIdentificationReport& report
 // newline.
 std::string flight_identification_json(const FlightIdentificationReport& report);
 
-// A self-contained HTML page: the same, and figures of predictions and measurements.
-std::string flight_identification_html(const FlightIdentificationReport& report);
+// The same, and figures of predictions and measurements.
+plot::Page flight_identification_page(const FlightIdentificationReport& report);
 
 }  // namespace swiftlet::ground

@@ -4,38 +4,30 @@
 #include <string>
 #include <vector>
 
-#include "swiftlet/ground/report/svg_figure.hpp"
+#include "swiftlet/ground/plot/figure.hpp"
 #include "swiftlet/identification/bench/bench.hpp"
 
 namespace swiftlet::ground {
 
-struct CaptionedFigure {
-  std::string caption;
-  Figure figure;
-};
-
 // Figs. 2 and 3: v_a over delta for each supply voltage, and v_a^2 over v_s^2 delta.
-std::vector<CaptionedFigure> esc_figures(const identification::EscData& data,
-                                         const identification::Experiment& fit);
+std::vector<plot::Figure> esc_figures(const identification::EscData& data,
+                                      const identification::Experiment& fit);
 // Fig. 4: speed over v_a.
-CaptionedFigure steady_motor_figure(const identification::SteadyMotorData& data,
-                                    const identification::Experiment& fit);
+plot::Figure steady_motor_figure(const identification::SteadyMotorData& data,
+                                 const identification::Experiment& fit);
 // Figs. 6 and 7: thrust and torque over the square of the speed.
-CaptionedFigure thrust_figure(const identification::ThrustTorqueData& data,
-                              const identification::Experiment& fit);
-CaptionedFigure torque_figure(const identification::ThrustTorqueData& data,
-                              const identification::Experiment& fit);
+plot::Figure thrust_figure(const identification::ThrustTorqueData& data,
+                           const identification::Experiment& fit);
+plot::Figure torque_figure(const identification::ThrustTorqueData& data,
+                           const identification::Experiment& fit);
 // Speed over time, with both models and the 63.2 % reading.
-CaptionedFigure motor_step_figure(const identification::MotorStepData& data,
-                                  const identification::MotorStep& step);
+plot::Figure motor_step_figure(const identification::MotorStepData& data,
+                               const identification::MotorStep& step);
 // Thrust over delta for each supply voltage.
-CaptionedFigure throttle_thrust_figure(const identification::ThrottleThrustData& data,
-                                       const identification::Experiment& fit, const plant::Vehicle& vehicle);
+plot::Figure throttle_thrust_figure(const identification::ThrottleThrustData& data,
+                                    const identification::Experiment& fit, const plant::Vehicle& vehicle);
 // Residuals of a fit in the order of the rows. Outliers outside the range of the others are clipped to the
 // edge.
-CaptionedFigure residual_figure(const identification::Experiment& fit);
-
-// A unit, "V*s^2/rad^2", with superscript 2 and centred dots, UTF-8.
-std::string written_unit(const std::string& unit);
+plot::Figure residual_figure(const identification::Experiment& fit);
 
 }  // namespace swiftlet::ground

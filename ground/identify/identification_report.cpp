@@ -11,7 +11,6 @@
 
 #include "swiftlet/ground/identify/identification_figures.hpp"
 #include "swiftlet/ground/identify/report_page.hpp"
-#include "swiftlet/ground/report/svg_figure.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -33,11 +32,10 @@ struct Part {
   const Experiment* fit = nullptr;
   std::vector<ParameterEstimate> estimates;
   std::vector<std::string> findings;
-  std::vector<CaptionedFigure> figures;
+  std::vector<plot::Figure> figures;
 };
 
-Part part_of(const char* name, const char* title, const Experiment& fit,
-             std::vector<CaptionedFigure> figures) {
+Part part_of(const char* name, const char* title, const Experiment& fit, std::vector<plot::Figure> figures) {
   figures.push_back(residual_figure(fit));
   return {name, title, &fit, fit.estimates, fit.findings, std::move(figures)};
 }
@@ -109,85 +107,64 @@ std::vector<int> outlier_lines(const IdentificationReport& report, const Part& p
   return lines;
 }
 
-std::string outliers_html(const IdentificationReport& report, const Part& part) {
+void add_outliers(plot::Page& page, const IdentificationReport& report, const Part& part) {
   const std::vector<int> lines = outlier_lines(report, part);
-  if (lines.empty()) return "";
-  std::string out =
-      fmt::format("<details{}><summary>{} of {} rows are outliers and are left out</summary>\n",
-                  lines.size() <= kFewOutliers ? " open" : "", lines.size(), part.fit->measured.size());
-  out += "<table><tr><th>line of the file</th><th>measured</th><th>fitted</th><th>unit</th></tr>\n";
+  if (lines.empty()) return;
+  page.add(fmt::format("<details{}><summary>{} of {} rows are outliers and are left out</summary>\n",
+                       lines.size() <= kFewOutliers ? " open" : "", lines.size(), part.fit->measured.size()));
+  std::vector<plot::Page::Row> rows;
   for (std::size_t i = 0; i < std::min(lines.size(), kMostOutliersShown); ++i) {
     const std::size_t row = part.fit->outliers[i];
-    out +=
-        fmt::format("<tr><td class=\"n\">{}</td><td class=\"n\">{:.5g}</td><td class=\"n\">{:.5g}</td><td>",
-                    lines[i], part.fit->measured[row], part.fit->predicted[row]) +
-        html_unit(part.fit->residual_unit) + "</td></tr>\n";
+    rows.push_back({std::to_string(lines[i]), fmt::format("{:.5g}", part.fit->measured[row]),
+                    fmt::format("{:.5g}", part.fit->predicted[row]), unit_cell(part.fit->residual_unit)});
   }
-  out += "</table>\n";
+  page.table({"line of the file", "measured", "fitted", "unit"}, rows);
   if (lines.size() > kMostOutliersShown)
-    out += fmt::format("<p class=\"quiet\">and {} more</p>\n", lines.size() - kMostOutliersShown);
-  return out + "</details>\n";
+    page.paragraph(fmt::format("and {} more", lines.size() - kMostOutliersShown), "quiet");
+  page.add("</details>\n");
 }
 
-std::string part_html(const IdentificationReport& report, const Part& part) {
-  std::string out = "<h2>" + html_escaped(part.title) + "</h2>\n<p class=\"quiet\">" +
-                    html_escaped(report.bench.files.at(part.name).file) +
-                    fmt::format(": {} rows; R\xc2\xb2 ", part.fit->measured.size()) +
-                    r_squared_text(*part.fit) + fmt::format("; residuals {:.3g} ", part.fit->residual_sd) +
-                    html_unit(part.fit->residual_unit) + " (standard deviation)</p>\n" +
-                    estimates_html(part.estimates);
-  for (const std::string& finding : part.findings)
-    out += "<p class=\"finding\">" + html_escaped(finding) + ".</p>\n";
-  for (const std::string& warning : part.fit->warnings)
-    out += "<p class=\"warning\">" + html_escaped(warning) + ".</p>\n";
-  out += outliers_html(report, part) + "<div class=\"figures\">\n";
-  for (const CaptionedFigure& figure : part.figures) {
-    out += "<figure>" + svg(figure.figure) + "<figcaption>" + html_escaped(figure.caption) +
-           "</figcaption></figure>\n";
-  }
-  return out + "</div>\n";
+void add_part(plot::Page& page, const IdentificationReport& report, const Part& part) {
+  const Experiment& fit = *part.fit;
+  page.heading(part.title);
+  page.paragraph(
+      report.bench.files.at(part.name).file +
+          fmt::format(": {} rows; R\u00b2 {}; residuals {:.3g} {} (standard deviation)", fit.measured.size(),
+                      r_squared_text(fit), fit.residual_sd, unit_cell(fit.residual_unit)),
+      "quiet");
+  add_estimates(page, part.estimates);
+  for (const std::string& finding : part.findings) page.paragraph(finding + ".", "finding");
+  for (const std::string& warning : fit.warnings) page.paragraph(warning + ".", "warning");
+  add_outliers(page, report, part);
+  page.figures(part.figures);
 }
 
-std::string summary_html(const IdentificationReport& report) {
-  const std::map<std::string, std::string>& sources = report.found.sources;
-  std::string out =
-      "<p class=\"quiet\">95 % intervals by Student's t, from the spread of the readings. Parameters that "
-      "are not listed were not measured and are those of the base vehicle " +
-      html_escaped(report.base_vehicle) + ".</p>\n";
-  out += "<table><tr><th>parameter</th><th>value</th><th>95 % interval</th><th>source</th></tr>\n";
-  for (const plant::ParameterUncertainty& p : report.found.uncertainty.parameters) {
-    out += "<tr><td>" + html_escaped(p.parameter) + "</td>" +
-           fmt::format("<td class=\"n\">{:.5g}</td><td class=\"n\">{:.5g} to {:.5g}</td><td>",
-                       0.5 * (p.low + p.high), p.low, p.high) +
-           html_escaped(sources.at(p.parameter)) + "</td></tr>\n";
-  }
-  out += "</table>\n";
-  for (const std::string& warning : report.found.warnings)
-    out += "<p class=\"warning\">" + html_escaped(warning) + ".</p>\n";
-  return out;
-}
-
-Json json_of(const ParameterEstimate& estimate, const std::string& experiment) {
-  return {{"parameter", estimate.parameter},
-          {"symbol", estimate.symbol},
-          {"value", estimate.value},
-          {"standard_error", estimate.standard_error},
-          {"interval_95", {estimate.low(), estimate.high()}},
-          {"unit", estimate.unit},
-          {"experiment", experiment}};
+void add_summary(plot::Page& page, const IdentificationReport& report) {
+  page.paragraph(
+      "95 % intervals by Student's t, from the spread of the readings. Parameters that are not listed were "
+      "not "
+      "measured and are those of the base vehicle " +
+          report.base_vehicle + ".",
+      "quiet");
+  std::vector<plot::Page::Row> rows;
+  for (const plant::ParameterUncertainty& p : report.found.uncertainty.parameters)
+    rows.push_back({p.parameter, fmt::format("{:.5g}", 0.5 * (p.low + p.high)),
+                    fmt::format("{:.5g} to {:.5g}", p.low, p.high), report.found.sources.at(p.parameter)});
+  page.table({"parameter", "value", "95 % interval", "source"}, rows);
+  for (const std::string& warning : report.found.warnings) page.paragraph(warning + ".", "warning");
 }
 
 }  // namespace
 
-std::string identification_html(const IdentificationReport& report) {
-  const std::string title = "Identification of " + report.found.vehicle.name;
-  std::string out =
-      page_head(title) + "<p class=\"quiet\">from the bench data in " + html_escaped(report.bench_folder) +
-      "; equations and figures are numbered as in Phang, Li, Wang, Chen, Lee, <i>Explicit Model "
-      "Identification and Control of a Micro Aerial Vehicle</i>, ICUAS 2014</p>\n" +
-      summary_html(report);
-  for (const Part& part : parts_of(report)) out += part_html(report, part);
-  return out + "</body></html>\n";
+plot::Page identification_page(const IdentificationReport& report) {
+  plot::Page page("Identification of " + report.found.vehicle.name);
+  page.paragraph("from the bench data in " + report.bench_folder +
+                     "; equations and figures are numbered as in Phang, Li, Wang, Chen, Lee, Explicit Model "
+                     "Identification and Control of a Micro Aerial Vehicle, ICUAS 2014",
+                 "quiet");
+  add_summary(page, report);
+  for (const Part& part : parts_of(report)) add_part(page, report, part);
+  return page;
 }
 
 std::string identification_table(const IdentificationReport& report) {
@@ -222,8 +199,10 @@ std::string identification_json(const IdentificationReport& report) {
   Json parameters = Json::array();
   Json experiments = Json::array();
   for (const Part& part : parts_of(report)) {
-    for (const ParameterEstimate& estimate : part.estimates)
-      parameters.push_back(json_of(estimate, part.name));
+    for (const ParameterEstimate& estimate : part.estimates) {
+      parameters.push_back(json_of(estimate));
+      parameters.back()["experiment"] = part.name;
+    }
     experiments.push_back({{"name", part.name},
                            {"title", part.title},
                            {"rows", part.fit->measured.size()},

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "swiftlet/ground/identify/bench_files.hpp"
+#include "swiftlet/ground/plot/page.hpp"
 #include "swiftlet/identification/bench/bench.hpp"
 
 namespace swiftlet::ground {
@@ -16,9 +17,9 @@ struct IdentificationReport {
   identification::BenchIdentification found;
 };
 
-// A self-contained HTML page: the paper's Figs. 2, 3, 4, 6 and 7 from these data, fits, intervals,
+// The paper's Figs. 2, 3, 4, 6 and 7 from these data, fits, intervals,
 // residuals, outliers by line, findings and warnings.
-std::string identification_html(const IdentificationReport& report);
+plot::Page identification_page(const IdentificationReport& report);
 
 // A row for each parameter, then outliers, findings and warnings. Ends in a newline.
 std::string identification_table(const IdentificationReport& report);

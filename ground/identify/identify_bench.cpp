@@ -10,6 +10,7 @@
 #include "swiftlet/ground/identify/bench_files.hpp"
 #include "swiftlet/ground/identify/identification_report.hpp"
 #include "swiftlet/ground/identify/identify_actions.hpp"
+#include "swiftlet/ground/identify/report_page.hpp"
 #include "swiftlet/ground/terminal/progress_line.hpp"
 #include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/config_error.hpp"
@@ -92,7 +93,7 @@ int identify_bench(const IdentifyBenchOptions& options) {
   const std::string text =
       runtime::vehicle_text(report.found.vehicle, sources, report.found.uncertainty, comment);
   runtime::parse_vehicle(text, options.out);
-  if (!options.report.empty()) write_whole_file(options.report, identification_html(report));
+  if (!options.report.empty()) write_page(identification_page(report), options.report);
   write_whole_file(options.out, text);
 
   if (options.json) {

@@ -11,6 +11,7 @@
 #include "swiftlet/ground/command_line/output_files.hpp"
 #include "swiftlet/ground/identify/flight_identification_report.hpp"
 #include "swiftlet/ground/identify/identify_actions.hpp"
+#include "swiftlet/ground/identify/report_page.hpp"
 #include "swiftlet/ground/terminal/progress_line.hpp"
 #include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/format.hpp"
@@ -87,7 +88,7 @@ int identify_flight(IdentifyFlightOptions options) {
   } else {
     std::printf("%s", flight_identification_table(report).c_str());
   }
-  if (!options.report.empty()) write_whole_file(options.report, flight_identification_html(report));
+  if (!options.report.empty()) write_page(flight_identification_page(report), options.report);
   if (!report.found.converged)
     throw std::runtime_error(options.out.empty() ? "the fit did not converge within its bounds"
                                                  : "the fit did not converge within its bounds: " +

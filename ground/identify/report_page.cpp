@@ -1,58 +1,46 @@
 #include "swiftlet/ground/identify/report_page.hpp"
 
 #include <cmath>
+#include <cstdio>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
-#include "swiftlet/ground/identify/identification_figures.hpp"
-#include "swiftlet/ground/report/svg_figure.hpp"
+#include "swiftlet/io/atomic_write.hpp"
 
 namespace swiftlet::ground {
-namespace {
 
-using identification::ParameterEstimate;
-
-// "value +- half width".
-std::string with_interval(const ParameterEstimate& estimate) {
-  return fmt::format("{:.5g} \xc2\xb1 {:.2g}", estimate.value, estimate.half_width);
+std::string written_unit(const std::string& unit) {
+  using boost::algorithm::replace_all_copy;
+  return replace_all_copy(replace_all_copy(unit, "^2", "\u00b2"), "*", "\u00b7");
 }
 
-double share_percent(const ParameterEstimate& estimate) {
-  return estimate.value != 0.0 ? 100.0 * estimate.half_width / std::abs(estimate.value) : 0.0;
+std::string unit_cell(const std::string& unit) { return unit == "1" ? "" : written_unit(unit); }
+
+nlohmann::ordered_json json_of(const identification::ParameterEstimate& estimate) {
+  return {{"parameter", estimate.parameter},
+          {"symbol", estimate.symbol},
+          {"value", estimate.value},
+          {"standard_error", estimate.standard_error},
+          {"interval_95", {estimate.low(), estimate.high()}},
+          {"unit", estimate.unit}};
 }
 
-constexpr const char* kStyle = R"(<style>
-body { font: 15px/1.45 sans-serif; color: #1a1a1a; max-width: 1360px; margin: 24px auto; padding: 0 20px; }
-h1 { font-size: 25px; margin-bottom: 4px; } h2 { font-size: 19px; margin: 34px 0 6px; border-bottom: 1px solid #ccc; }
-table { border-collapse: collapse; margin: 8px 0; } th, td { padding: 3px 14px 3px 0; text-align: left; }
-th { border-bottom: 1px solid #999; font-weight: 600; } td.n { font-variant-numeric: tabular-nums; white-space: nowrap; }
-.figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(520px, 1fr)); gap: 14px 22px; align-items: end; }
-figure { margin: 0; } figcaption { font-size: 13px; color: #444; padding-left: 48px; } svg { width: 100%; height: auto; display: block; }
-.warning { background: #fff3cd; border-left: 4px solid #e0a800; padding: 4px 10px; margin: 5px 0; }
-.finding { margin: 4px 0; } .quiet { color: #555; font-size: 14px; }
-</style>
-)";
-
-}  // namespace
-
-std::string page_head(const std::string& title) {
-  return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + html_escaped(title) +
-         "</title>\n" + kStyle + "</head><body>\n<h1>" + html_escaped(title) + "</h1>\n";
-}
-
-std::string html_unit(const std::string& unit) { return unit == "1" ? "" : html_escaped(written_unit(unit)); }
-
-std::string estimates_html(const std::vector<ParameterEstimate>& estimates) {
-  std::string out =
-      "<table><tr><th>parameter</th><th></th><th>estimate, 95 % "
-      "interval</th><th>unit</th><th>interval</th></tr>\n";
-  for (const ParameterEstimate& estimate : estimates) {
-    out += "<tr><td>" + html_escaped(estimate.parameter) + "</td><td>" + html_escaped(estimate.symbol) +
-           "</td><td class=\"n\">" + with_interval(estimate) + "</td><td>" + html_unit(estimate.unit) +
-           "</td><td class=\"n\">" + fmt::format("\xc2\xb1 {:.2g} %", share_percent(estimate)) +
-           "</td></tr>\n";
+void add_estimates(plot::Page& page, const std::vector<identification::ParameterEstimate>& estimates) {
+  std::vector<plot::Page::Row> rows;
+  for (const identification::ParameterEstimate& e : estimates) {
+    const double percent = e.value != 0.0 ? 100.0 * e.half_width / std::abs(e.value) : 0.0;
+    rows.push_back({e.parameter, e.symbol, fmt::format("{:.5g} \u00b1 {:.2g}", e.value, e.half_width),
+                    unit_cell(e.unit), fmt::format("\u00b1 {:.2g} %", percent)});
   }
-  return out + "</table>\n";
+  page.table({"parameter", "", "estimate, 95 % interval", "unit", "interval"}, rows);
+}
+
+void write_page(const plot::Page& page, const std::string& file) {
+  const plot::Page::Html html = page.html();
+  write_whole_file(file, html.text);
+  if (!html.fault.empty()) std::fprintf(stderr, "swiftlet: %s: %s\n", file.c_str(), html.fault.c_str());
 }
 
 }  // namespace swiftlet::ground

@@ -1,20 +1,30 @@
-// Common parts of the HTML reports of identifications.
+// Common parts of the reports of identifications.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
+#include "swiftlet/ground/plot/page.hpp"
 #include "swiftlet/identification/fitting/estimate.hpp"
 
 namespace swiftlet::ground {
 
-// The start of the page, up to and including its headline.
-std::string page_head(const std::string& title);
+// A unit, "V*s^2/rad^2", with superscript 2 and centred dots, UTF-8.
+std::string written_unit(const std::string& unit);
 
-// A unit as HTML, with superscripts; empty for the unit 1.
-std::string html_unit(const std::string& unit);
+// The same for a cell of a table: empty for the unit 1.
+std::string unit_cell(const std::string& unit);
 
-// A table with a row for each estimate.
-std::string estimates_html(const std::vector<identification::ParameterEstimate>& estimates);
+// Keys: parameter, symbol, value, standard_error, interval_95, unit.
+nlohmann::ordered_json json_of(const identification::ParameterEstimate& estimate);
+
+// Adds a table with a row for each estimate.
+void add_estimates(plot::Page& page, const std::vector<identification::ParameterEstimate>& estimates);
+
+// Writes the page. Prints the reason if its figures cannot be drawn. Throws std::runtime_error if the file
+// cannot be written.
+void write_page(const plot::Page& page, const std::string& file);
 
 }  // namespace swiftlet::ground

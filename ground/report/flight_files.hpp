@@ -17,8 +17,9 @@ void write_flight_csv(const std::filesystem::path& file, const FlightRecord& rec
 
 void write_report_json(const std::filesystem::path& file, const FlightReport& report);
 
-// Writes folder/flight.gp, which draws folder/flight.png from folder/flight.csv, and runs gnuplot on it.
-// Returns an empty string, or one sentence with the reason why there is no picture.
-std::string draw_flight(const std::filesystem::path& folder, const FlightReport& report, Window window);
+// Draws folder/flight.png, and writes the gnuplot script folder/flight.gp to draw it again. Returns an empty
+// string, or one sentence with the reason why there is no picture.
+std::string draw_flight(const std::filesystem::path& folder, const FlightRecord& record,
+                        const FlightReport& report, Window window);
 
 }  // namespace swiftlet::ground

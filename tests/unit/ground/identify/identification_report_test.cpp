@@ -35,7 +35,9 @@ std::size_t count(const std::string& text, const std::string& part) {
 }
 
 TEST(IdentificationPage, HasThePapersFiguresWithoutExternalResources) {
-  const std::string page = identification_html(report());
+  const plot::Page::Html html = identification_page(report()).html();
+  EXPECT_EQ(html.fault, "");
+  const std::string& page = html.text;
   for (const char* figure : {"<figcaption>Fig. 2:", "<figcaption>Fig. 3:", "<figcaption>Fig. 4:",
                              "<figcaption>Fig. 6:", "<figcaption>Fig. 7:"})
     EXPECT_EQ(count(page, figure), 1U) << figure;

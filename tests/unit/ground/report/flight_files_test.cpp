@@ -1,7 +1,6 @@
 #include "swiftlet/ground/report/flight_files.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <vector>
@@ -9,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/services/runtime/child_process.hpp"
+#include "tests/support/program_path.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::ground {
@@ -35,6 +35,12 @@ std::vector<std::vector<std::string>> table(const fs::path& file) {
   std::ifstream stream(file);
   for (std::string line; std::getline(stream, line);) rows.push_back(cells(line));
   return rows;
+}
+
+std::string text_of(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
 }
 
 // Truth at 500 Hz, and a reference with every fifth sample up to `last_reference`.
@@ -83,11 +89,10 @@ TEST_F(FlightFilesTest, DrawsAPicture) {
   ASSERT_FALSE(find_program("gnuplot").empty()) << "install the packages of packages.txt";
   FlightRecord record(2000);
   const Window window = {1'000'000'000, 3'000'000'000};
-  write_flight_csv(folder_ / "flight.csv", fly(record, 1000, 1000), window);
   FlightReport report;
   report.mission = "it's_a 'square'";  // must be escaped for gnuplot
   report.duration_s = 2.0;
-  EXPECT_EQ(draw_flight(folder_, report, window), "");
+  EXPECT_EQ(draw_flight(folder_, fly(record, 1000, 1000), report, window), "");
   std::ifstream picture(folder_ / "flight.png", std::ios::binary);
   std::string magic(8, '\0');
   picture.read(magic.data(), 8);
@@ -96,19 +101,33 @@ TEST_F(FlightFilesTest, DrawsAPicture) {
   EXPECT_TRUE(fs::exists(folder_ / "flight.gp")) << "kept to draw the picture again";
 }
 
-TEST_F(FlightFilesTest, ReportsWhyNoPictureIsDrawn) {
-  const char* const before = std::getenv("PATH");
-  const std::string path = before != nullptr ? before : "";
-  setenv("PATH", folder_.c_str(), 1);
-  const std::string sentence = draw_flight(folder_, {}, {});
-  setenv("PATH", path.c_str(), 1);
-  EXPECT_EQ(sentence, "no picture was drawn: gnuplot is not installed (flight.gp draws it from flight.csv)");
+// The script contains the data that it draws.
+TEST_F(FlightFilesTest, DrawsPositionsPathAndErrors) {
+  FlightRecord record(100);
+  FlightReport report;
+  report.mission = "square";
+  report.vehicle = "kaylion";
+  report.control = "motor_lag";
+  report.errors.rms_3d_m = 0.001;
+  report.errors.peak_3d_m = 0.0047;
+  draw_flight(folder_, fly(record, 30, 10), report, {1'010'000'000, 1'100'000'000});
+  const std::string script = text_of(folder_ / "flight.gp");
+  for (const char* const part :
+       {"'square - kaylion, motor_lag: 3-D error RMS 1.0 mm, peak 4.7 mm over 0 s - NOT completed'",
+        "'north x (m)'", "'east y (m)'", "'down z (m)'", "'error, flown - reference (mm)'", "'time (s)'",
+        "'plan view'", "'height -z (m)'", "title 'flown'", "title 'reference'", "title '3-D'",
+        "\n0.01 0.51 0\n",               // north over time, of the truth
+        "\n0.01 0.511 0\n",              // and of the reference
+        "\n0.042 0.526 0\n",             // also without a reference
+        "\n0.25 0.51 1\n",               // east, north, height
+        "EOD\n0 -1 0\n0.01 -1 0\nEOD"})  // north errors, mm, in the window alone
+    EXPECT_NE(script.find(part), std::string::npos) << part << "\n" << script;
 }
 
-TEST_F(FlightFilesTest, ReportsTheExitStatusOfGnuplot) {
-  ASSERT_FALSE(find_program("gnuplot").empty()) << "install the packages of packages.txt";
-  const std::string sentence = draw_flight(folder_, {}, {});  // there is no flight.csv
-  EXPECT_EQ(sentence.find("no picture was drawn: gnuplot ended with exit status"), 0U) << sentence;
+TEST_F(FlightFilesTest, ReportsWhyNoPictureIsDrawn) {
+  const tests::ProgramPath empty(folder_);
+  EXPECT_EQ(draw_flight(folder_, FlightRecord(1), {}, {}),
+            "no picture was drawn: gnuplot is not installed (flight.gp draws it)");
 }
 
 TEST_F(FlightFilesTest, ThrowsWhenTheFolderIsMissing) {
