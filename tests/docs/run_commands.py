@@ -153,8 +153,10 @@ def lock_domain():
     for i in range(count):
         domain = FIRST_DOMAIN + (os.getpid() + i) % count
         path = os.path.join(tempfile.gettempdir(), f"swiftlet-domain-{domain}.lock")
+        flags = os.O_RDONLY | os.O_NOFOLLOW | os.O_CLOEXEC
         try:
-            lock = os.open(path, os.O_RDONLY | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o644)
+            # With O_CREAT, the lock of another user would be refused.
+            lock = os.open(path, flags if os.path.exists(path) else flags | os.O_CREAT, 0o644)
         except OSError:
             continue
         try:
@@ -285,18 +287,22 @@ class Page:
         if code != block.exit_code:
             self.fail(block, f"exit code {code}, must be {block.exit_code}", log)
         if re.search(r"swiftlet-control\b[^\n]*&", block.text):
-            self.await_pose(block, log)
+            for words in commands_of(block.text):
+                if words[0] == "swiftlet-control":
+                    named = words.index("--vehicle-name") + 1 if "--vehicle-name" in words else 0
+                    self.await_pose(words[named] if named else "kl1", block, log)
 
-    def await_pose(self, block, log):
+    def await_pose(self, vehicle, block, log):
         """A reader of the manual types the next command seconds later; the test waits until the vehicle is ready for it."""
         while time.monotonic() < self.deadline:
             status = subprocess.run(
                 [str(self.bin_folder / "swiftlet"), "status", "--json", "--watch", "0.1", "--localhost-only", "--domain",
-                 str(self.domain)], env=self.environment, capture_output=True, text=True, timeout=60, check=False)
+                 str(self.domain), "--vehicle-name", vehicle],
+                env=self.environment, capture_output=True, text=True, timeout=60, check=False)
             if status.returncode == 0 and json.loads(status.stdout).get("has_pose") is True:
                 return
             time.sleep(0.1)
-        self.fail(block, "the vehicle that it starts has no pose", log)
+        self.fail(block, f"the vehicle {vehicle} that it starts has no pose", log)
 
     def fail(self, block, sentence, log):
         logs = sorted(self.logs.glob("*.log"), key=lambda file: int(file.stem))
