@@ -79,8 +79,8 @@ TEST_F(FleetFlight, StartsTogetherSideBySide) {
 
 TEST_F(FleetFlight, LandsTheOthersWhenOneFails) {
   Program fly("swiftlet", arguments({}), folder_.path());
-  ASSERT_TRUE(
-      eventually([&] { return fly.errors().find("2/") != std::string::npos || fly.exit_code(); }, 60s));
+  ASSERT_TRUE(eventually(
+      [&] { return fly.errors().find("2/3 waypoint") != std::string::npos || fly.exit_code(); }, 60s));
   const pid_t control = control_of(fly, "kl2");
   ASSERT_GT(control, 0) << fly.errors();
   kill(control, SIGKILL);
