@@ -479,17 +479,22 @@ TEST_F(StandbyCommandServerTest, StaysDisarmedWithoutTheMission) {
 }
 
 TEST_F(StandbyCommandServerTest, IgnoresStateOfAnotherTerm) {
-  fly_mission();
-  standby_server_.on_mission(mission(2, 1.0));
+  settle();
+  command_server_.on_command(command(Command_Constants::ARM, 1));
   step();
   comms::ControllerReport report;
   loop_.report(report);
-  FailoverState failover_state;
-  failover_state.term = kTerm - 1;
-  failover_state.flight = report.flight;
-  standby_server_.follow(failover_state);
-  step_standby(Role::kStandby);
-  EXPECT_EQ(standby_state().mode, control::Mode::kDisarmed);
+  const auto mode_after_a_state_of = [&](std::uint32_t term) {
+    FailoverState failover_state;
+    failover_state.term = term;
+    failover_state.flight = report.flight;
+    standby_server_.follow(failover_state);
+    step_standby(Role::kStandby);
+    return standby_state().mode;
+  };
+  EXPECT_EQ(mode_after_a_state_of(kTerm - 1), control::Mode::kDisarmed);
+  EXPECT_EQ(mode_after_a_state_of(kTerm + 1), control::Mode::kDisarmed);
+  EXPECT_EQ(mode_after_a_state_of(kTerm), control::Mode::kArmed);
 }
 
 // GIVEN an accepted request WHEN the controller dies before its answer arrives THEN the new controller

@@ -130,7 +130,7 @@ TEST(Requests, ArriveInOrder) {
   auto publisher = ground.publish(topics::kCommand);
   ASSERT_TRUE(eventually([&] { return publisher.matched() == 1 && subscription.matched() == 1; }));
 
-  constexpr std::uint64_t kCount = std::uint64_t{3} * kMaxPendingRequests;
+  constexpr std::uint64_t kCount = std::uint64_t{3} * kMaxUnacknowledgedRequests;
   msg::Command command;
   for (std::uint64_t id = 1; id <= kCount; ++id) {
     command.id(id);
