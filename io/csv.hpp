@@ -60,8 +60,10 @@ CsvTable parse_csv(std::string_view text, const std::string& file_name,
                    const CsvForm& form = {});
 CsvTable load_csv(const std::string& path, const std::vector<std::string>& columns, std::size_t min_rows = 1);
 
-// The fields of the first non-blank line; empty if there is none.
-std::vector<std::string> first_csv_line(std::string_view text);
+// The fields of the first non-blank line; empty if there is none. file_name and first_line, the line of the text
+// in the file, appear in messages only. Throws ConfigError for control characters.
+std::vector<std::string> first_csv_line(std::string_view text, const std::string& file_name,
+                                        int first_line = 1);
 bool is_number(std::string_view field);  // true for a finite number
 // Reads a table with any column names in its header, at least one.
 CsvTable parse_csv_as_headed(std::string_view text, const std::string& file_name, std::size_t min_rows = 1);

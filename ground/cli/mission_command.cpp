@@ -20,7 +20,8 @@ Command add_mission_request(runtime::CommandLine mission, const std::string& nam
   const runtime::CommandLine app =
       add_request_subcommand(mission, name, description, "swiftlet mission " + name, options);
   app.add_option("--id", options->id,
-                 "mission id that `mission upload` printed; refused if the vehicle has another mission");
+                 "mission id that `mission upload` printed; refused if the vehicle has another mission")
+      .whole();
   return {app, [options, name, ask] {
             return run_request(*options, "mission " + name, [&](Vehicle& vehicle) {
               return (vehicle.*ask)(options->id, options->timeout());

@@ -47,7 +47,9 @@ Command add_mission_plot_command(runtime::CommandLine mission) {
   app.add_option("--control", options->control,
                  "control settings file, or the name of one in config/control: its limits and fence apply")
       .show_default();
-  app.add_option("--start", options->start, "start position of the vehicle: north and east, m").expected(2);
+  app.add_option("--start", options->start, "start position of the vehicle: north and east, m")
+      .finite()
+      .expected(2);
   return {app, [options] { return run(*options); }};
 }
 

@@ -49,7 +49,7 @@ fs::path base_file_of(const std::string& base, const IdentifyBenchOptions& optio
                       const BenchSettings& settings) {
   try {
     return configuration_file("vehicles", base);
-  } catch (const runtime::ConfigError& fault) {
+  } catch (const std::runtime_error& fault) {
     if (!options.base.empty() || settings.base_vehicle.empty()) throw;
     throw runtime::ConfigError((fs::path(options.bench) / kBenchSettingsFile).string(),
                                settings.base_vehicle_line, "base_vehicle", fault.what());

@@ -29,7 +29,7 @@ MissionFormat detect_format(std::string_view text, const std::string& file_name)
   if (extension == ".plan" || json) return MissionFormat::kQGroundControlPlan;
   if (extension == ".yaml" || extension == ".yml") return MissionFormat::kYaml;
 
-  const std::vector<std::string> fields = runtime::first_csv_line(text);
+  const std::vector<std::string> fields = runtime::first_csv_line(text, file_name);
   if (!fields.empty()) {
     if (fields.front() == "duration") return MissionFormat::kPolynomialCsv;
     if (fields.front() == "t") return MissionFormat::kSampledCsv;

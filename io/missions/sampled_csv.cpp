@@ -140,7 +140,7 @@ double greatest_deviation(const Samples& samples, const std::vector<std::size_t>
 
 TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file_name,
                                 const control::Limits& limits) {
-  const Columns columns = columns_of(runtime::first_csv_line(text));
+  const Columns columns = columns_of(runtime::first_csv_line(text, file_name));
   const runtime::CsvTable table = runtime::parse_csv(text, file_name, columns.names, 2, {true, true});
   Samples samples = read(table, columns);
   std::vector<std::string> assumptions = {

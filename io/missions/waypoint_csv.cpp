@@ -41,7 +41,7 @@ std::size_t row_of(const control::PlannedPath& planned, std::size_t segment) {
 
 TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& file_name,
                                  const control::Limits& limits) {
-  std::vector<std::string> first = runtime::first_csv_line(text);
+  std::vector<std::string> first = runtime::first_csv_line(text, file_name);
   if (first.empty()) first.emplace_back();  // parse_csv() refuses the empty file
   const bool has_header = !runtime::is_number(first.front());
   std::vector<std::string> columns = {"x", "y", "z"};

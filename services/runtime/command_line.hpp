@@ -36,6 +36,7 @@ class Option {
   // Number is int, std::int64_t, std::size_t or double. The limits are valid values.
   template <class Number>
   Option& range(Number least, Number most);
+  Option& whole();     // from 0 to 2^64 - 1
   Option& finite();    // neither infinite nor NaN
   Option& positive();  // finite and above 0
   Option& one_of(std::initializer_list<const char*> texts);

@@ -212,6 +212,7 @@ Command add_gains_command(runtime::CommandLine root) {
       .range(std::size_t{1}, std::size_t{1'000'000})
       .show_default();
   app.add_option("--seed", options->seed, "seed of the first sample; each further sample adds one")
+      .whole()
       .show_default();
   app.add_flag("--json", options->json, "print JSON");
   return {app, [options] { return run_gains(*options); }};
