@@ -69,10 +69,10 @@ Outcome check_mission_fence(const SupervisorContext& context) {
   const Limits& limits = context.plan.mission_limits;
   const double margin_m = context.settings.failsafe.fence_margin_m;
   Eigen::Vector3d at = context.estimate().position_ned;
-  if (beyond_fence(limits, at) > margin_m) return check_position("the vehicle", at, limits);
+  if (beyond_fence(limits, at) > margin_m) return check_inside_fence("the vehicle", at, limits);
   if (context.plan.mission->items.back().kind != MissionItemKind::kLand) return accept();
   at.z() = context.state.guidance.ground_z_ned;
-  if (beyond_fence(limits, at) > margin_m) return check_position("the landing point", at, limits);
+  if (beyond_fence(limits, at) > margin_m) return check_inside_fence("the landing point", at, limits);
   return accept();
 }
 
@@ -152,7 +152,7 @@ Outcome check_end_of_stream(const SupervisorContext& context) {
     last.velocity_ned = setpoint.velocity_ned;
     last.position_ned = setpoint.position_ned + timeout_s * setpoint.velocity_ned;
   } else {
-    const Reference from = context.state.guidance.path.at(context.state.now_ns);
+    const Reference from = reference_on_path(context.guidance(), context.state.now_ns);
     last = after_blend(path_to_setpoint(context), timeout_s);
     // Prevents a stream that was stopped before the fence from creeping towards it in short moves from rest.
     Reference in_full_motion;
@@ -208,7 +208,8 @@ Outcome check_direct_setpoint(const SupervisorContext& context) {
     if (!attitude.accepted) return attitude;
   }
   return violates_fence(context.guidance())
-             ? refuse("setpoint: the vehicle cannot come to rest inside the fence")
+             ? refuse("setpoint: the vehicle cannot come to rest inside the fence and above %.3f m",
+                      limits.min_height_m)
              : accept();
 }
 
@@ -232,8 +233,7 @@ Outcome check_goto(const SupervisorContext& context) {
   if (!position.accepted) return position;
   const Outcome speed = check_speed("goto", request.speed, context.limits);
   if (!speed.accepted) return speed;
-  if (!request.yaw_free && !std::isfinite(request.yaw_rad)) return refuse("goto: yaw is not a finite number");
-  return accept();
+  return request.yaw_free ? accept() : check_yaw("goto", request.yaw_rad);
 }
 
 }  // namespace

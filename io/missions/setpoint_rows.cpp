@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/missions/whole_flight.hpp"
@@ -187,7 +188,7 @@ Setpoint between(const TimedSetpoint& before, const TimedSetpoint& after, double
 }  // namespace
 
 SetpointRows::SetpointRows(const std::string& header, const std::string& file_name) : file_(file_name) {
-  names_ = runtime::first_csv_line(header);
+  names_ = runtime::first_csv_line(header, file_);
   const bool declared = header.find('[') != std::string::npos;
   std::vector<int> slots;
   for (const std::string& text : names_) {
@@ -260,7 +261,7 @@ Setpoint SetpointRows::setpoint_of(const std::vector<double>& values) const {
 
 std::optional<TimedSetpoint> SetpointRows::read(const std::string& line) {
   ++line_;
-  const std::vector<std::string> fields = runtime::first_csv_line(line);
+  const std::vector<std::string> fields = runtime::first_csv_line(line, file_, line_);
   if (fields.empty()) return std::nullopt;
   if (fields.size() != columns_.size()) {
     throw ConfigError(
@@ -277,7 +278,12 @@ std::optional<TimedSetpoint> SetpointRows::read(const std::string& line) {
                           runtime::exact(*last_time_s_) + " s");
   }
   last_time_s_ = time_s;
-  return TimedSetpoint{time_s, setpoint_of(values)};
+  const Setpoint setpoint = setpoint_of(values);
+  if (kind_ == SetpointKind::kPosition) {
+    const control::Outcome outcome = control::check_above_ground("in NED", setpoint.position_ned.z());
+    if (!outcome.accepted) throw ConfigError(file_, line_, "z", outcome.reason);
+  }
+  return TimedSetpoint{time_s, setpoint};
 }
 
 SetpointSource resampled(SetpointSource source, double rate_hz) {

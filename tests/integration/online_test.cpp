@@ -28,6 +28,11 @@ TEST_F(OnlineFlight, ExecutesEveryCommand) {
   take_off();
   expect_refused({"disarm"}, "cannot disarm while holding; land first, or stop");
   expect_refused({"goto", "-1", "9", "-1"}, "goto: y is 9.000 m, outside the fence of -3.000 to 3.000 m");
+  expect_refused(
+      {"goto", "1", "0", "0"},
+      "goto: z = 0.000 m is 0.000 m above the ground; the minimum height is 0.100 m, z = -0.100 m");
+  expect_accepted({"goto", "0", "0", "--height", "0.5"});
+  ASSERT_TRUE(reaches_place(0.0, 0.0, -0.5));
   expect_accepted({"goto", "-0.4", "0.3", "-0.8", "--yaw", "0.5", "--speed", "0.8"});
   ASSERT_TRUE(reaches_place(-0.4, 0.3, -0.8));
   expect_accepted({"hold"});

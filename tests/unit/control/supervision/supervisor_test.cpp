@@ -84,7 +84,7 @@ TEST_F(Flight, LandingRequestedNearTheGroundDoesNotRise) {
   hover();
   ASSERT_TRUE(ask(RequestKind::kLand).accepted);
   ASSERT_TRUE(step_until([&] { return estimate_.position_ned.z() > -0.01; }, 10.0));
-  ASSERT_TRUE(ask(RequestKind::kGoTo, estimate_.position_ned).accepted);
+  ASSERT_TRUE(ask(RequestKind::kHold).accepted);
   const double before_z = control_setpoint_.reference.position_ned.z();
   ASSERT_TRUE(ask(RequestKind::kLand).accepted);
   while (supervisor_.mode() == Mode::kLanding) {

@@ -36,6 +36,21 @@ TEST(SetpointRows, DetectKindFromColumns) {
             SetpointKind::kBodyRates);
 }
 
+TEST(SetpointRows, RefusePositionsBelowTheGround) {
+  EXPECT_EQ(refusal("t [s],x [m],y [m],z [m]", {"0,0,0,-1", "1,0,0,0.1"}),
+            "s.csv:3: z: in NED: z = +0.100 m is below the ground, as z points down (NED); 0.100 m above the "
+            "ground "
+            "is z = -0.100 m");
+  EXPECT_NE(refusal("t,x,y,z", {"0,0,0,-1"}).find("s.csv:2: z: in NED: z = +1.000 m is below"),
+            std::string::npos);
+  EXPECT_EQ(refusal("t [s],vx [m/s],vy [m/s],vz [m/s]", {"0,0,0,1"}), "none");
+}
+
+TEST(SetpointRows, RefuseBinaryInputWithoutShowingIt) {
+  EXPECT_EQ(refusal("t,x\x01\x1b[31m,y,z"), "s.csv:1: is not a text file: it has control characters");
+  EXPECT_EQ(refusal("t,x,y,z", {"0,0,0,\x1b"}), "s.csv:2: is not a text file: it has control characters");
+}
+
 TEST(SetpointRows, ConvertToSiUnits) {
   SetpointRows rows("t [ms],vy [cm/s],vx [m/s],vz [m/s],yaw [deg]", "f");
   const auto row = rows.read("500, 20, 0.3, -0.1, 90\r");
