@@ -1,10 +1,13 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <future>
 #include <memory>
 #include <optional>
 #include <vector>
+
+#include <fmt/core.h>
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
@@ -14,6 +17,7 @@
 #include "swiftlet/ground/flight/launch_configuration.hpp"
 #include "swiftlet/ground/flight/process_flight.hpp"
 #include "swiftlet/ground/terminal/fleet_progress.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/shared_memory.hpp"
 
@@ -24,13 +28,20 @@ constexpr std::size_t kMostVehicles = 12;  // three processes each; discovery co
 
 void check(const FlyOptions& options, std::size_t vehicles) {
   const bool lockstep = options.clock == runtime::Clock::kLockstep;
-  if (lockstep && options.speed != 1.0)
-    throw InputError("--speed: cannot be used with --clock lockstep, which runs as fast as possible");
   if (!lockstep && options.trace) throw InputError("--trace: requires --clock lockstep");
   if (vehicles > kMostVehicles) {
     throw InputError("--vehicle-name: names " + std::to_string(vehicles) + " vehicles, limit " +
                      std::to_string(kMostVehicles) + " per command");
   }
+}
+
+// The vehicles start beside each other.
+void require_room(double spacing_m, const plant::Vehicle& vehicle) {
+  const double width_m = plant::width(vehicle);
+  if (std::abs(spacing_m) >= width_m) return;
+  throw InputError(
+      fmt::format("--spacing: {:g} m puts the vehicles inside each other: a {} is up to {:.2f} m wide",
+                  spacing_m, vehicle.name, width_m));
 }
 
 // Returns one launch configuration per vehicle. A single mission is flown by all vehicles; otherwise the i-th
@@ -57,6 +68,8 @@ std::vector<LaunchConfiguration> plan_flights(const FlyOptions& options,
     }
     plans.push_back(std::move(plan));
   }
+  if (vehicles.size() > 1 && options.launch_mode == LaunchMode::kStarted)
+    require_room(options.spacing_m, plans.front().vehicle);
   return plans;
 }
 
@@ -145,9 +158,10 @@ Command add_fly_command(runtime::CommandLine root) {
       "--attach", [options] { options->launch_mode = LaunchMode::kAttached; },
       "start no processes: use the plant, mocap and control that run in the domain (default: 0)");
   runtime::add_clock_option(app, options->clock);
-  app.add_option("--speed", options->speed, "simulated seconds per second of real time")
-      .range(0.01, 100.0)
-      .show_default();
+  app.add_option("--speed", options->speed,
+                 "simulated seconds per second of real time; default: 1, or with --clock lockstep as fast as "
+                 "possible")
+      .range(0.01, 100.0);
   app.add_flag("--trace", options->trace,
                "lockstep only: write trace.csv, which holds every sample and command bit for bit");
   for (const char* launch_option :

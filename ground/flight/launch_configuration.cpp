@@ -172,9 +172,8 @@ std::vector<ProcessSettings> processes(const LaunchConfiguration& plan, const co
   if (plan.clock == runtime::Clock::kLockstep) {
     plant.emplace_back("--paused");
     if (!plan.trace_file.empty()) plant.insert(plant.end(), {"--trace", absolute_path(plan.trace_file)});
-  } else {
-    plant.insert(plant.end(), {"--speed", std::to_string(plan.speed)});
   }
+  if (plan.speed) plant.insert(plant.end(), {"--speed", runtime::exact(*plan.speed)});
   return {
       process("swiftlet-plant", plan.plant_program, std::move(plant)),
       process("swiftlet-mocap", plan.mocap_program, {"--simulation", simulation, "--seed", seed}),

@@ -31,7 +31,8 @@ enum class LaunchMode {
 struct FlyOptions {
   LaunchMode launch_mode = LaunchMode::kStarted;
   runtime::Clock clock = runtime::Clock::kRealtime;
-  double speed = 1.0;  // simulated time per real time
+  // Simulated time per real time. Unset: real time, or in lockstep as fast as possible.
+  std::optional<double> speed;
   std::string mission = "square";
   std::string vehicle = "kaylion";
   std::string control = "motor_lag";
@@ -53,7 +54,7 @@ struct FlyOptions {
 struct LaunchConfiguration {
   LaunchMode launch_mode = LaunchMode::kStarted;
   runtime::Clock clock = runtime::Clock::kRealtime;
-  double speed = 1.0;
+  std::optional<double> speed;
   MissionFile mission;
   double planned_duration_s = 0.0;
   std::filesystem::path vehicle_file, control_file, simulation_file, mission_file;

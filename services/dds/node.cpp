@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cctype>
 #include <iterator>
 #include <map>
 #include <mutex>
@@ -47,6 +46,7 @@
 #include "swiftlet/services/dds/profiles.hpp"
 #include "swiftlet/services/dds/qos_conflicts.hpp"
 #include "swiftlet/services/dds/shared_memory.hpp"
+#include "swiftlet/services/dds/vehicle_name.hpp"
 
 // All message types of topics.
 // clang-format off
@@ -83,12 +83,8 @@ void check(const NodeSettings& settings) {
 }
 
 const std::string& checked(const std::string& vehicle) {
-  const bool plain = std::all_of(vehicle.begin(), vehicle.end(),
-                                 [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
-  if (vehicle.empty() || vehicle.size() > 64 || !plain) {
-    throw std::runtime_error("vehicle name is '" + vehicle +
-                             "', must be 1 to 64 letters, digits and underscores");
-  }
+  const std::string fault = fault_of_vehicle_name(vehicle);
+  if (!fault.empty()) throw std::runtime_error("vehicle name is '" + vehicle + "', " + fault);
   return vehicle;
 }
 

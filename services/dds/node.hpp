@@ -22,7 +22,7 @@ enum class Transport {
 
 struct NodeSettings {
   std::string name;             // process: "plant", "mocap", "control", "ground"
-  std::string vehicle = "kl1";  // namespace of the topics: letters, digits and _, at most 64
+  std::string vehicle = "kl1";  // namespace of the topics: see vehicle_name.hpp
   int domain = 0;               // 0 .. 232
   Transport transport = Transport::kUdp;
   bool localhost_only = false;  // loopback interface only, without multicast

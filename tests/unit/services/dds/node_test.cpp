@@ -406,7 +406,9 @@ TEST(NodeSettings, RefusesInvalidValues) {
     const Node node(settings);
     FAIL();
   } catch (const std::runtime_error& error) {
-    EXPECT_STREQ(error.what(), "vehicle name is 'kl/1', must be 1 to 64 letters, digits and underscores");
+    EXPECT_STREQ(
+        error.what(),
+        "vehicle name is 'kl/1', must be 1 to 64 letters, digits and _, begin with a letter and have no __");
   }
 }
 
