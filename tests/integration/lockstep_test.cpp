@@ -212,6 +212,8 @@ TEST_F(Lockstep, NamesASilentController) {
   EXPECT_NE(fly.errors().find("lockstep: control is silent: IMU sample"), std::string::npos) << fly.errors();
 }
 
+bool contains(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
+
 // The services in lockstep without a ground tool.
 class LockstepServices : public testing::Test {
  protected:
@@ -225,18 +227,30 @@ class LockstepServices : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(LockstepServices, PlantReportsMissingMocap) {
+TEST_F(LockstepServices, PlantWaitsForMocapAndReportsItsEnd) {
   const auto control = start("swiftlet-control");
   const auto plant = start("swiftlet-plant");
+  ASSERT_TRUE(eventually([&] { return contains(plant->errors(), "waiting for mocap\n"); }, 20s))
+      << plant->errors();
+  const auto mocap = start("swiftlet-mocap");
+  ASSERT_TRUE(eventually([&] { return contains(control->errors(), "role is active"); }, 20s))
+      << control->errors();
+  mocap->signal(SIGKILL);
   EXPECT_EQ(plant->wait(20s), 1);
-  EXPECT_NE(plant->errors().find("lockstep: mocap is silent: "), std::string::npos) << plant->errors();
+  EXPECT_TRUE(contains(plant->errors(), "lockstep: mocap is silent: ")) << plant->errors();
 }
 
-TEST_F(LockstepServices, PlantReportsMissingControl) {
+TEST_F(LockstepServices, PlantWaitsForControlAndReportsItsEnd) {
   const auto mocap = start("swiftlet-mocap");
   const auto plant = start("swiftlet-plant");
+  ASSERT_TRUE(eventually([&] { return contains(plant->errors(), "waiting for control\n"); }, 20s))
+      << plant->errors();
+  const auto control = start("swiftlet-control");
+  ASSERT_TRUE(eventually([&] { return contains(control->errors(), "role is active"); }, 20s))
+      << control->errors();
+  control->signal(SIGKILL);
   EXPECT_EQ(plant->wait(20s), 1);
-  EXPECT_NE(plant->errors().find("lockstep: control is silent: "), std::string::npos) << plant->errors();
+  EXPECT_TRUE(contains(plant->errors(), "lockstep: control is silent: ")) << plant->errors();
 }
 
 // The plant repeats a truth whose answer was lost. The repetition is answered again and is no gap.

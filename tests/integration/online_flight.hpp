@@ -63,7 +63,9 @@ class OnlineFlight : public Online {
   bool reaches(const char* what, const Predicate& predicate) const {
     json last;
     const bool reached = eventually([&] { return predicate(last = status()); }, 30s);
-    EXPECT_TRUE(reached) << what << "\n" << last << "\n" << control_.errors();
+    EXPECT_TRUE(reached) << what << "\n"
+                         << last << "\n"
+                         << plant_.errors() << mocap_.errors() << control_.errors();
     return reached;
   }
   bool reaches_mode(const std::string& mode) const {
