@@ -233,7 +233,7 @@ TEST_F(LockstepServices, PlantWaitsForMocapAndReportsItsEnd) {
   ASSERT_TRUE(eventually([&] { return contains(plant->errors(), "waiting for mocap\n"); }, 20s))
       << plant->errors();
   const auto mocap = start("swiftlet-mocap");
-  ASSERT_TRUE(eventually([&] { return contains(control->errors(), "role is active"); }, 20s))
+  ASSERT_TRUE(eventually([&] { return contains(control->errors(), "mocap available"); }, 20s))
       << control->errors();
   mocap->signal(SIGKILL);
   EXPECT_EQ(plant->wait(20s), 1);
