@@ -1,5 +1,6 @@
 #include "swiftlet/ground/terminal/state_lines.hpp"
 
+#include <cmath>
 #include <unistd.h>
 
 #include <fmt/core.h>
@@ -12,6 +13,11 @@ namespace {
 
 constexpr double kDegreesPerRadian = 57.29577951308232;
 
+// Rounded as it is shown, so that neither -0.0 nor 360.0 appears.
+double tenths_of_degrees(double angle_rad) {
+  return std::round(10.0 * kDegreesPerRadian * angle_rad) / 10.0 + 0.0;
+}
+
 }  // namespace
 
 void print_alarm(std::FILE* stream, const std::string& line) {
@@ -22,9 +28,9 @@ void print_alarm(std::FILE* stream, const std::string& line) {
 std::string attitude_text(const comms::msg::Estimate& estimate) {
   const control::EulerAngles angles =
       control::euler_angles(comms::wire::quaternion(estimate.q_ned_from_frd()));
-  const double yaw_deg = kDegreesPerRadian * angles.heading.yaw_rad;
-  return fmt::format("roll {:.1f}, pitch {:.1f}, heading {:.1f} deg", kDegreesPerRadian * angles.roll_rad,
-                     kDegreesPerRadian * angles.pitch_rad, yaw_deg < 0.0 ? yaw_deg + 360.0 : yaw_deg);
+  const double yaw_deg = tenths_of_degrees(angles.heading.yaw_rad);
+  return fmt::format("roll {:.1f}, pitch {:.1f}, heading {:.1f} deg", tenths_of_degrees(angles.roll_rad),
+                     tenths_of_degrees(angles.pitch_rad), yaw_deg < 0.0 ? yaw_deg + 360.0 : yaw_deg);
 }
 
 }  // namespace swiftlet::ground
