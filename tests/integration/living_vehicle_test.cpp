@@ -233,7 +233,7 @@ TEST(Attached, AFlightThatFindsNothingSaysWhereItLooked) {
       folder.path());
   EXPECT_EQ(fly.exit_code, 1);
   for (const char* part :
-       {"no control service for vehicle kl1 in domain ", "Looked on lo (127.0.0.1) only; with --network on lo"})
+       {"no control service for vehicle kl1 in domain ", "looked on lo (127.0.0.1) only; with --network on "})
     EXPECT_NE(fly.errors.find(part), std::string::npos) << part << "\n" << fly.errors;
 }
 
