@@ -23,6 +23,9 @@ constexpr std::int64_t kKeepStrengthNs = 200'000'000;
 // refused, with that reason.
 constexpr std::int64_t kIsolationNs = 1'000'000'000;
 
+// Without an IMU sample for this long, the vehicle's clock is not used: it may have stopped.
+constexpr double kVehicleClockStands_s = 0.5;
+
 // The battery is sampled at 10 Hz only, and less often in a slow simulation.
 constexpr auto kBatterySourceSilence = 2500ms;
 
@@ -296,8 +299,8 @@ StreamAges ControlService::stream_ages() const {
   const std::int64_t now_ns = runtime::monotonic_ns();
   StreamAges ages;
   ages.imu_s = imu_arrivals_.age_s(now_ns);
-  std::optional<std::int64_t> vehicle_now_ns;  // its clock runs while IMU samples arrive
-  if (ages.imu_s >= 0.0 && ages.imu_s < kImuSilence_s) vehicle_now_ns = imu_arrivals_.stamp_ns();
+  std::optional<std::int64_t> vehicle_now_ns;
+  if (ages.imu_s >= 0.0 && ages.imu_s < kVehicleClockStands_s) vehicle_now_ns = imu_arrivals_.stamp_ns();
   ages.pose_s = pose_arrivals_.age_s(now_ns, vehicle_now_ns);
   ages.battery_s = battery_arrivals_.age_s(now_ns, vehicle_now_ns);
   return ages;
