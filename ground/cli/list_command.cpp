@@ -136,7 +136,7 @@ int list(const Options& options) {
 Command add_list_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
   const runtime::CommandLine app = root.add_subcommand(
-      "list", "List the vehicles of the domain with model, mode, battery, controllers and pose rate");
+      "list", "List the vehicles of the domain: who is silent, model, mode, battery, controllers and pose rate");
   add_network_options(app, options->network);
   app.remove_option("--vehicle-name");
   app.add_option("--time", options->look_s, "duration of the discovery, s").range(0.4, 60.0).show_default();
