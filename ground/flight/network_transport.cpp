@@ -131,7 +131,7 @@ void NetworkTransport::wait_until_ready() {
     require_no_interrupt();
     const auto waited = Clock::now() - start;
     if (!watch_.networks.empty() && waited > kDiscoveryTimeout && finds_nothing(client_.view()))
-      throw FlightFailure(client_.no_control() + "\nlooked on " + watch_.networks);
+      throw FlightFailure("looked on " + watch_.networks + ": " + client_.no_control());
     if (waited > kReadyTimeout) {
       throw FlightFailure("not ready after 20 s: missing " + absent + "; looked for " + client_.where() +
                           (watch_.networks.empty() ? "" : "; on " + watch_.networks));
