@@ -133,7 +133,8 @@ TEST_F(BadInput, OnlineCommands) {
     EXPECT_EQ(result.exit_code, 2) << result.errors;
     EXPECT_NE(result.errors.find(sentence), std::string::npos) << result.errors;
   };
-  refuses({"goto", "1", "2"}, "z is required");
+  refuses({"goto", "1", "2"}, "z is required\nUsage: swiftlet goto [OPTIONS] x y z\n");
+  refuses({"mission", "fly"}, "file is required\nUsage: swiftlet mission fly [OPTIONS] file\n");
   refuses({"goto", "1", "2", "nan"}, "nan is not a finite number");
   refuses({"takeoff", "-1"}, "must be a finite number above 0");
   refuses({"land", "--speed", "0"}, "must be a finite number above 0");
