@@ -14,16 +14,27 @@ int main(int argc, char** argv) {
       "example: swiftlet fly square\n`swiftlet COMMAND --help` explains a command.\nExit codes: 0 success, 1 "
       "failed or refused, 2 bad input.");
   const std::vector<ground::Command> commands = {
-      ground::add_fly_command(root),        ground::add_arm_command(root),
-      ground::add_disarm_command(root),     ground::add_takeoff_command(root),
-      ground::add_goto_command(root),       ground::add_land_command(root),
-      ground::add_hold_command(root),       ground::add_stop_command(root),
-      ground::add_mission_command(root),    ground::add_trajectory_command(root),
-      ground::add_stream_command(root),     ground::add_status_command(root),
-      ground::add_watch_command(root),      ground::add_list_command(root),
-      ground::add_report_command(root),     ground::add_gains_command(root),
-      ground::add_sim_command(root),        ground::add_identify_command(root, argv),
-      ground::add_completion_command(root), ground::add_manual_command(root),
+      ground::add_fly_command(root),
+      ground::add_arm_command(root),
+      ground::add_disarm_command(root),
+      ground::add_takeoff_command(root),
+      ground::add_goto_command(root),
+      ground::add_land_command(root),
+      ground::add_hold_command(root),
+      ground::add_stop_command(root),
+      ground::add_mission_command(root),
+      ground::add_trajectory_command(root),
+      ground::add_stream_command(root),
+      ground::add_teleop_command(root),
+      ground::add_status_command(root),
+      ground::add_watch_command(root),
+      ground::add_list_command(root),
+      ground::add_report_command(root),
+      ground::add_gains_command(root),
+      ground::add_sim_command(root),
+      ground::add_identify_command(root, argv),
+      ground::add_completion_command(root),
+      ground::add_manual_command(root),
   };
   return ground::run_command_line(program, argc, argv, [&] {
     for (const ground::Command& command : commands) {

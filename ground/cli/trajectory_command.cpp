@@ -34,8 +34,9 @@ int send_trajectory(const Options& options) {
   const control::Trajectory trajectory = trajectory_of(file, path);
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
-  return run_request(options, "trajectory",
-                     [&](Vehicle& vehicle) { return vehicle.follow(trajectory, options.timeout()); });
+  return run_request(options, {"trajectory", [&](Vehicle& vehicle) {
+                                 return vehicle.follow(trajectory, options.timeout());
+                               }});
 }
 
 }  // namespace

@@ -47,12 +47,15 @@ void confirm(const StopOptions& options) {
 }  // namespace
 
 Command add_arm_command(runtime::CommandLine root) {
-  return add_plain_request_command(root, "arm", "Start the rotors on the ground if all arming checks pass",
-                                   &Vehicle::arm);
+  return add_plain_request_command(
+      root,
+      {"arm", "Start the rotors on the ground if all arming checks pass; of several vehicles, all or none",
+       &Vehicle::arm, OnInterrupt::kHold, true, &Vehicle::disarm});
 }
 
 Command add_disarm_command(runtime::CommandLine root) {
-  return add_plain_request_command(root, "disarm", "Stop the rotors on the ground", &Vehicle::disarm);
+  return add_plain_request_command(
+      root, {"disarm", "Stop the rotors on the ground", &Vehicle::disarm, OnInterrupt::kNothing, true});
 }
 
 Command add_takeoff_command(runtime::CommandLine root) {
@@ -63,9 +66,10 @@ Command add_takeoff_command(runtime::CommandLine root) {
   app.add_option("height", options->height_m, "height above the origin, m").positive().show_default();
   app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
   return {app, [options] {
-            return run_request(*options, "takeoff", [&](Vehicle& vehicle) {
-              return vehicle.take_off(options->height_m, options->speed, options->timeout());
-            });
+            return run_request(*options, {"takeoff", [&](Vehicle& vehicle) {
+                                            return vehicle.take_off(options->height_m, options->speed,
+                                                                    options->timeout());
+                                          }});
           }};
 }
 
@@ -85,15 +89,17 @@ Command add_goto_command(runtime::CommandLine root) {
       .finite();
   app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
   return {app, [options] {
-            return run_request(*options, "goto", [&](Vehicle& vehicle) {
-              const auto& [x, y, z] = options->position_ned;
-              return vehicle.go_to({{x, y, z}, options->yaw_rad, options->speed}, options->timeout());
-            });
+            return run_request(
+                *options,
+                {"goto", [&](Vehicle& vehicle) {
+                   const auto& [x, y, z] = options->position_ned;
+                   return vehicle.go_to({{x, y, z}, options->yaw_rad, options->speed}, options->timeout());
+                 }});
           }};
 }
 
 Command add_hold_command(runtime::CommandLine root) {
-  return add_plain_request_command(root, "hold", "Come to rest and hold the position", &Vehicle::hold);
+  return add_plain_request_command(root, {"hold", "Come to rest and hold the position", &Vehicle::hold});
 }
 
 Command add_land_command(runtime::CommandLine root) {
@@ -102,9 +108,9 @@ Command add_land_command(runtime::CommandLine root) {
       root, "land", "Descend vertically, land and stop the rotors", "swiftlet land --speed 0.3", options);
   app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
   return {app, [options] {
-            return run_request(*options, "land", [&](Vehicle& vehicle) {
-              return vehicle.land(options->speed, options->timeout());
-            });
+            return run_request(*options, {"land", [&](Vehicle& vehicle) {
+                                            return vehicle.land(options->speed, options->timeout());
+                                          }});
           }};
 }
 
@@ -116,8 +122,9 @@ Command add_stop_command(runtime::CommandLine root) {
   app.add_flag("--yes,-y", options->yes, "do not ask for confirmation");
   return {app, [options] {
             confirm(*options);
-            return run_request(*options, "stop",
-                               [&](Vehicle& vehicle) { return vehicle.stop(options->timeout()); });
+            return run_request(*options,
+                               {"stop", [&](Vehicle& vehicle) { return vehicle.stop(options->timeout()); },
+                                OnInterrupt::kNothing, true});
           }};
 }
 

@@ -109,6 +109,11 @@ class Vehicle {
   // call replaces the callback. An ActionHandle reports whether a request survives such an event.
   void on_connection(std::function<void(const ConnectionEvent&)> callback);
 
+  // From now on, connect() and the requests of this object stop waiting for an answer as soon as `cancelled`
+  // returns true: they return Result::Kind::kCancelled. An empty function removes it. Do not call it while a
+  // request waits.
+  void cancel_when(std::function<bool()> cancelled);
+
   VehicleState state() const;
   // Waits until `holds` returns true for the state. Returns false after the time-out.
   bool wait_until(const std::function<bool(const VehicleState&)>& holds,
@@ -174,6 +179,7 @@ class Vehicle {
   ActionHandle request_of_mission(std::uint8_t kind, std::uint64_t id, std::chrono::milliseconds timeout);
 
   std::shared_ptr<Client> client_;
+  std::function<bool()> cancelled_;
   std::unique_ptr<comms::PeriodicTask> periodic_task_;  // last: it uses client_
 };
 

@@ -4,8 +4,10 @@
 #include <clocale>
 #include <cstdio>
 #include <cstdlib>
+#include <poll.h>
 #include <stdexcept>
 #include <string>
+#include <unistd.h>
 
 #define NCURSES_NOMACROS  // the macro names are common words
 #include <ncurses.h>
@@ -37,14 +39,14 @@ struct TerminalScreen::Impl {
   bool colours = false;
 };
 
-TerminalScreen::TerminalScreen() : impl_(new Impl) {
+TerminalScreen::TerminalScreen(const std::string& instead) : impl_(new Impl) {
   std::setlocale(LC_CTYPE, "");
   impl_->screen = newterm(nullptr, stdout, stdin);
   if (impl_->screen == nullptr) {
     delete impl_;
     const char* const kind = std::getenv("TERM");
     throw std::runtime_error(std::string("terminal type '") + (kind != nullptr ? kind : "") +
-                             "' does not support full screen; use `swiftlet watch --plain`");
+                             "' does not support full screen; " + instead);
   }
   set_term(impl_->screen);
   cbreak();
@@ -88,8 +90,27 @@ void TerminalScreen::show(const std::vector<ScreenLine>& lines) {
 std::optional<int> TerminalScreen::key(int within_ms) {
   wtimeout(stdscr, within_ms);
   const int key = wgetch(stdscr);
-  if (key == ERR) return std::nullopt;
-  return key == KEY_RESIZE ? kResized : key;
+  switch (key) {
+    case ERR:
+      return std::nullopt;
+    case KEY_RESIZE:
+      return kResized;
+    case KEY_UP:
+      return kUpArrow;
+    case KEY_DOWN:
+      return kDownArrow;
+    case KEY_LEFT:
+      return kLeftArrow;
+    case KEY_RIGHT:
+      return kRightArrow;
+    default:
+      return key;
+  }
+}
+
+bool TerminalScreen::is_open() const {
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  return poll(&input, 1, 0) <= 0 || (input.revents & (POLLHUP | POLLERR | POLLNVAL)) == 0;
 }
 
 }  // namespace swiftlet::ground

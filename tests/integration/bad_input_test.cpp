@@ -133,19 +133,25 @@ TEST_F(BadInput, OnlineCommands) {
     EXPECT_EQ(result.exit_code, 2) << result.errors;
     EXPECT_NE(result.errors.find(sentence), std::string::npos) << result.errors;
   };
-  refuses({"goto", "1", "2"}, "z is required");
+  refuses({"goto", "1", "2"}, "z is required\nUsage: swiftlet goto [OPTIONS] x y z\n");
+  refuses({"mission", "fly"}, "file is required\nUsage: swiftlet mission fly [OPTIONS] file\n");
   refuses({"goto", "1", "2", "nan"}, "nan is not a finite number");
   refuses({"takeoff", "-1"}, "must be a finite number above 0");
   refuses({"land", "--speed", "0"}, "must be a finite number above 0");
   refuses({"mission", "check", folder_.write("far.yaml", replaced(kMission, "[1, 0, -1]", "[1, 40, -1]"))},
           "east is 40 m");
+  refuses({"teleop"}, "teleop: requires a terminal, or --joystick DEVICE");
+  const std::string text = folder_.write("event3", "");
+  refuses({"teleop", "--joystick", text}, text + " is not an event device; they are /dev/input/event*");
+  refuses({"teleop", "--joystick", text + "x"}, "cannot open " + text + "x: No such file or directory");
   refuses({"circle"}, "circle");
   refuses({}, "swiftlet: a command is required");
 }
 
 TEST_F(BadInput, HelpIsNotRefused) {
-  for (const char* command : {"fly", "arm", "disarm", "takeoff", "goto", "land", "hold", "stop", "mission",
-                              "trajectory", "stream", "status", "watch", "list", "gains", "identify"}) {
+  for (const char* command :
+       {"fly", "arm", "disarm", "takeoff", "goto", "land", "hold", "stop", "mission", "trajectory", "stream",
+        "teleop", "status", "watch", "list", "gains", "identify"}) {
     const ProgramResult result = run_program("swiftlet", {command, "--help"}, folder_.path());
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_NE(result.output.find("example: swiftlet " + std::string(command)), std::string::npos)

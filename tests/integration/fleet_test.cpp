@@ -128,8 +128,9 @@ TEST_F(TwoVehicles, AnswerOneCommandIndependently) {
     armed = swiftlet("kl1,kl2", {"arm", "--json"});
     return armed.exit_code == 0;
   })) << armed.errors;
-  EXPECT_EQ(json::parse(armed.output),
-            json::parse(R"({"kl1": {"accepted": true}, "kl2": {"accepted": true}})"));
+  EXPECT_EQ(
+      json::parse(armed.output),
+      json::parse(R"({"kl1": {"accepted": true, "done": true}, "kl2": {"accepted": true, "done": true}})"));
 
   const ProgramResult disarmed = swiftlet("kl2", {"disarm"});
   EXPECT_EQ(disarmed.exit_code, 0) << disarmed.errors;
@@ -140,10 +141,43 @@ TEST_F(TwoVehicles, AnswerOneCommandIndependently) {
   EXPECT_EQ(taken_off.errors.find("kl1"), std::string::npos) << taken_off.errors;
 }
 
+TEST_F(TwoVehicles, ArmTogetherOrNotAtAll) {
+  const auto mode_of = [this](const std::string& vehicle) {
+    const ProgramResult result = swiftlet(vehicle, {"status", "--json", "--watch", "0.1"});
+    return result.exit_code == 0 ? json::parse(result.output).value("mode", "") : "";
+  };
+  const ProgramResult absent = swiftlet("kl1,kl9", {"arm", "--timeout", "5"});
+  EXPECT_EQ(absent.exit_code, 1);
+  EXPECT_EQ(absent.output, "");
+  EXPECT_NE(absent.errors.find("swiftlet: arm: kl1: nothing was sent, because kl9 was not found\n"),
+            std::string::npos)
+      << absent.errors;
+  EXPECT_NE(absent.errors.find("swiftlet: arm: kl9: no control service for vehicle kl9"), std::string::npos)
+      << absent.errors;
+  EXPECT_EQ(mode_of("kl1"), "disarmed");
+
+  // GIVEN one vehicle that refuses WHEN both are to arm THEN the other one is disarmed again.
+  ASSERT_EQ(swiftlet("kl2", {"stop", "--yes"}).exit_code, 0);
+  ProgramResult refused;
+  ASSERT_TRUE(eventually([&] {
+    refused = swiftlet("kl1,kl2", {"arm"});
+    return refused.errors.find("kl1: disarmed again, because kl2 did not arm") != std::string::npos;
+  })) << refused.errors;
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_EQ(refused.output, "");
+  EXPECT_EQ(mode_of("kl1"), "disarmed");
+  EXPECT_EQ(mode_of("kl2"), "stopped");
+
+  // GIVEN a vehicle that was armed before THEN it stays armed.
+  ASSERT_EQ(swiftlet("kl1", {"arm"}).exit_code, 0);
+  EXPECT_EQ(swiftlet("kl1,kl2", {"arm"}).exit_code, 1);
+  EXPECT_EQ(mode_of("kl1"), "armed");
+}
+
 TEST_F(TwoVehicles, MissingVehicleIsNamed) {
   const ProgramResult result = swiftlet("kl1,kl9", {"stop", "--yes", "--timeout", "5"});
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_EQ(result.output, "stop: accepted by kl1\n");
+  EXPECT_EQ(result.output, "stop: accepted by kl1\nstop: kl1: done\n");
   EXPECT_NE(result.errors.find("swiftlet: stop: kl9: "), std::string::npos) << result.errors;
 }
 

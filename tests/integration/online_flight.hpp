@@ -77,10 +77,13 @@ class OnlineFlight : public Online {
       return std::hypot(at[0].get<double>() - x, at[1].get<double>() - y, at[2].get<double>() - z) < 0.02;
     });
   }
-  void expect_accepted(const std::vector<std::string>& words) const {
+  // Does not wait until the action ends.
+  void expect_accepted(std::vector<std::string> words) const {
+    const std::string what = words.front();
+    words.emplace_back("--no-wait");
     const ProgramResult result = swiftlet(words);
-    EXPECT_EQ(result.exit_code, 0) << words.front() << ": " << result.errors;
-    EXPECT_EQ(result.output, words.front() + ": accepted by kl7\n");
+    EXPECT_EQ(result.exit_code, 0) << what << ": " << result.errors;
+    EXPECT_EQ(result.output, what + ": accepted by kl7\n");
   }
   void expect_refused(const std::vector<std::string>& words, const std::string& reason) const {
     const ProgramResult result = swiftlet(words);

@@ -67,6 +67,22 @@ ProgramResult example(const std::string& name, int domain) {
   return run_program(name, {"kl7", std::to_string(domain), "--localhost-only"}, folder.path(), 120s);
 }
 
+TEST(Examples, ExplainTheirArguments) {
+  const TemporaryFolder folder;
+  for (const std::string name : {"example-fly-square", "example-stream-circle", "example-fly-mission"}) {
+    const ProgramResult help = run_program(name, {"--help"}, folder.path());
+    EXPECT_EQ(help.exit_code, 0) << name << help.errors;
+    EXPECT_NE(help.output.find(" [VEHICLE] [DOMAIN] [--localhost-only]\n"), std::string::npos) << help.output;
+    EXPECT_EQ(run_program(name, {"file", "kl7", "domain"}, folder.path()).exit_code, 2) << name;
+    EXPECT_EQ(run_program(name, {"--fast"}, folder.path()).exit_code, 2) << name;
+  }
+  const ProgramResult name =
+      run_program("example-fly-square", {"kl 7", "0", "--localhost-only"}, folder.path());
+  EXPECT_EQ(name.exit_code, 1);
+  EXPECT_NE(name.errors.find("kl 7"), std::string::npos) << name.errors;
+  EXPECT_EQ(run_program("example-fly-mission", {}, folder.path()).exit_code, 2);
+}
+
 TEST_F(OnlineFlight, ExampleFliesASquare) {
   const ProgramResult result = example("example-fly-square", lock_.domain());
   EXPECT_EQ(result.exit_code, 0) << result.errors << result.output;

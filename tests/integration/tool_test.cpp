@@ -143,6 +143,22 @@ TEST_F(AtATerminal, InterruptedWatchRestoresTheTerminal) {
   }
 }
 
+TEST_F(AtATerminal, GotoShowsItsProgressAndCtrlCHolds) {
+  take_off();
+  Terminal terminal("swiftlet", with_network({"goto", "2", "0", "-0.6", "--speed", "0.2"}), 80, 24);
+  const auto shows = [&](const std::string& text) {
+    return eventually([&] { return terminal.text().find(text) != std::string::npos; }, 20s);
+  };
+  ASSERT_TRUE(shows(" %  holding  (")) << terminal.text();
+  terminal.type("\x03");
+  EXPECT_EQ(terminal.wait(10s), 1);
+  EXPECT_TRUE(shows("swiftlet: goto: interrupted; kl7 holds")) << terminal.text();
+  ASSERT_TRUE(reaches("rest", [](const json& status) {
+    return status.at("request").at("kind") == "hold" && status.at("request").at("state") == "succeeded";
+  }));
+  EXPECT_LT(status().at("position_ned_m")[0].get<double>(), 1.9);
+}
+
 TEST_F(AtATerminal, StopRequiresATypedConfirmation) {
   expect_accepted({"arm"});
   {
