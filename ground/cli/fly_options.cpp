@@ -30,9 +30,11 @@ void add_mission_options(runtime::CommandLine app, FlyOptions& options) {
 
 void add_fly_options(runtime::CommandLine app, FlyOptions& options) {
   add_mission_options(app, options);
-  app.add_option(
+  const runtime::Option record = app.add_option(
       "--record", options.record,
-      "folder for flight.csv, report.json, flight.png and logs; default: flights/<date>-<mission>");
+      "new folder for flight.csv, report.json, flight.png and logs; default: flights/<date>-<mission>");
+  app.add_flag("--replace", options.replace, "delete the record that the folder of --record holds first")
+      .needs(record);
   app.add_flag(
       "--sensors", options.sensors,
       "write sensors.csv, the input of `swiftlet identify flight`: every IMU sample, command, pose, voltage "

@@ -10,7 +10,7 @@ namespace swiftlet::ground {
 
 // Adds mission, --vehicle, --control, --simulation, --seed and --imu-rate.
 void add_mission_options(runtime::CommandLine app, FlyOptions& options);
-// Adds the options of add_mission_options(), --record, --sensors and --json.
+// Adds the options of add_mission_options(), --record, --replace, --sensors and --json.
 void add_fly_options(runtime::CommandLine app, FlyOptions& options);
 // Adds --dispersion.
 runtime::Option add_dispersion_option(runtime::CommandLine app, FlyOptions& options);

@@ -25,6 +25,10 @@ constexpr std::size_t kMostJobs = 1024;
 constexpr std::size_t kBarLength = 30;
 constexpr std::size_t kStages = 5;  // progress lines in all if standard error is no terminal
 
+// Sizes of the files of a batch, somewhat above those of real ones.
+constexpr std::uintmax_t kPictureBytes = 1'000'000;
+constexpr std::uintmax_t kRunBytes = 1'500;  // a row of batch.csv and its part of batch.gp
+
 struct BatchOptions {
   FlyOptions flight;
   std::size_t runs = 100;
@@ -44,12 +48,14 @@ std::string bar(const BatchProgress& progress) {
 }
 
 int sim_batch(const BatchOptions& options) {
-  const LaunchConfiguration plan = plan_flight(options.flight);
+  LaunchConfiguration plan = plan_flight(options.flight);
   if (plan.seed > std::numeric_limits<std::uint64_t>::max() - options.runs)
     throw InputError("--seed " + std::to_string(plan.seed) + ": too large for " +
                      std::to_string(options.runs) + " runs");
   const BatchRunner runner(plan, options.runs);
-  make_record_folder(plan.folder, "--out");
+  require_space(plan.folder, kPictureBytes + kRunBytes * options.runs, "--out");
+  const RecordFolder folder(plan.folder, existing_record(options.flight), "--out");
+  plan.record_in(folder.path());
   ProgressLine progress;
   for (const std::string& assumption : plan.mission.assumptions)
     progress.say(plan.mission.name + ": " + assumption);
@@ -89,8 +95,10 @@ Command add_sim_batch_command(runtime::CommandLine sim) {
       .show_default();
   app.add_option("--jobs", options->jobs, "number of parallel runs; default: one per core")
       .range(std::size_t{1}, kMostJobs);
-  app.add_option("--out", flight.record,
-                 "folder for batch.csv and batch.png; default: flights/<date>-<mission>");
+  const runtime::Option out = app.add_option(
+      "--out", flight.record, "new folder for batch.csv and batch.png; default: flights/<date>-<mission>");
+  app.add_flag("--replace", flight.replace, "delete the record that the folder of --out holds first")
+      .needs(out);
   app.add_flag("--json", flight.json, "print one JSON object instead of the table");
   app.footer(
       "The controller is designed on --vehicle; the flown vehicles are sampled around it. `swiftlet sim fly` "

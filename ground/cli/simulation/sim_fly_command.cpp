@@ -13,9 +13,11 @@ namespace swiftlet::ground {
 namespace {
 
 int sim_fly(const FlyOptions& options) {
-  const LaunchConfiguration plan = plan_flight(options);
+  LaunchConfiguration plan = plan_flight(options);
   ClosedLoop loop = closed_loop(plan, draw(plan, plan.seed).world, plan.seed);
-  make_record_folder(plan.folder);
+  require_space(plan.folder, plan.record_bytes());
+  const RecordFolder folder(plan.folder, existing_record(options));
+  plan.record_in(folder.path());
   keep_settings(plan);
   std::optional<runtime::FlightTrace> trace;
   if (!plan.trace_file.empty()) trace.emplace(plan.trace_file, plan.vehicle.rotor_count());
