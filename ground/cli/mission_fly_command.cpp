@@ -1,12 +1,12 @@
 #include <cstdio>
 
-#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/request_command.hpp"
 #include "swiftlet/ground/command_line/installation.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
+#include "swiftlet/ground/terminal/mission_progress.hpp"
 #include "swiftlet/ground/terminal/progress_line.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
@@ -26,11 +26,7 @@ struct Options : CommandOptions {
 };
 
 void show(const VehicleState& state, ProgressLine& progress) {
-  const Eigen::Vector3d& position = state.position_ned_m;
-  const std::string text = fmt::format(
-      "{}/{}  {}  ({:5.2f}, {:5.2f}, {:5.2f}) m, {:.2f} V", state.mission.item, state.mission.items,
-      control::to_string(state.mode), position.x(), position.y(), position.z(), state.battery_voltage_v);
-  progress.update(state.mission.item, text);
+  progress.update(state.mission.item, mission_progress_text(state));
 }
 
 ActionResult follow(const Vehicle& vehicle, const ActionHandle& flight) {

@@ -6,6 +6,7 @@
 #include <ctime>
 #include <fcntl.h>
 #include <fstream>
+#include <iterator>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <system_error>
@@ -137,13 +138,18 @@ RecordFolder::RecordFolder(const fs::path& wanted, ExistingRecord existing, cons
 }
 
 RecordFolder::~RecordFolder() {
-  if (claim_ >= 0) close(claim_);
+  if (claim_ < 0) return;
+  std::error_code fault;
+  const auto entries = std::distance(fs::directory_iterator(path_, fault), fs::directory_iterator());
+  if (entries == 1) fs::remove(path_ / kClaim, fault);
+  if (entries == 1 && made_) fs::remove(path_, fault);
+  close(claim_);
 }
 
 // Returns false if the folder holds anything already.
 bool RecordFolder::take(const fs::path& folder, const std::string& option) {
   std::error_code fault;
-  fs::create_directories(folder, fault);
+  made_ = fs::create_directories(folder, fault);
   if (fault) throw InputError(named(option, folder) + "the folder cannot be created: " + fault.message());
   if (!fs::is_empty(folder)) return false;
   claim_ = open((folder / kClaim).c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0644);

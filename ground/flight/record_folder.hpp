@@ -21,7 +21,7 @@ class RecordFolder {
   // files that no flight writes, or belongs to a flight in progress.
   RecordFolder(const std::filesystem::path& wanted, ExistingRecord existing,
                const std::string& option = "--record");
-  ~RecordFolder();
+  ~RecordFolder();  // leaves no trace if nothing was written into the folder
   RecordFolder(const RecordFolder&) = delete;
   RecordFolder& operator=(const RecordFolder&) = delete;
 
@@ -31,7 +31,8 @@ class RecordFolder {
   bool take(const std::filesystem::path& folder, const std::string& option);
 
   std::filesystem::path path_;
-  int claim_ = -1;  // descriptor of record.txt, locked while this object lives
+  bool made_ = false;  // did not exist before
+  int claim_ = -1;     // descriptor of record.txt, locked while this object lives
 };
 
 // Throws InputError if the file system of the folder, which need not exist, has fewer free bytes than needed.

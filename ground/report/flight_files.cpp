@@ -133,7 +133,7 @@ void write_report_json(const std::filesystem::path& file, const FlightReport& re
 
 std::string draw_flight(const std::filesystem::path& folder, const FlightRecord& record,
                         const FlightReport& report, Window window) {
-  return plot::draw_png(flight_figure(record, report, window), folder / "flight.png", true);
+  return plot::draw_png_if_installed(flight_figure(record, report, window), folder / "flight.png");
 }
 
 }  // namespace swiftlet::ground

@@ -18,7 +18,8 @@ void write_flight_csv(const std::filesystem::path& file, const FlightRecord& rec
 void write_report_json(const std::filesystem::path& file, const FlightReport& report);
 
 // Draws folder/flight.png, and writes the gnuplot script folder/flight.gp to draw it again. Returns an empty
-// string, or one sentence with the reason why there is no picture.
+// string, or a sentence if gnuplot is not installed. Throws std::runtime_error if the picture could not be
+// drawn or written whole; there is none then.
 std::string draw_flight(const std::filesystem::path& folder, const FlightRecord& record,
                         const FlightReport& report, Window window);
 

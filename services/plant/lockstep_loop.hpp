@@ -81,7 +81,6 @@ class LockstepLoop {
   double silence_s_ = 0.0;        // since the last progress
   double clock_silence_s_ = 0.0;  // since simulation_clock was last heard
   std::optional<runtime::FlightTrace> trace_;
-  std::string failure_;  // error of a callback
 
   comms::Subscription commands_;  // last: their callbacks use all members above
   comms::Subscription poses_;

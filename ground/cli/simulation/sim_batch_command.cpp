@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cstdio>
+#include <exception>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <string>
@@ -47,6 +49,25 @@ std::string bar(const BatchProgress& progress) {
   return text;
 }
 
+// Returns a sentence if a file cannot be written whole.
+std::string write_files(const std::filesystem::path& folder, const BatchReport& report, Progress& progress) {
+  std::string fault;
+  try {
+    write_batch_csv(folder / "batch.csv", report);
+  } catch (const std::exception& error) {
+    fault = error.what();
+    std::error_code ignored;
+    std::filesystem::rename(folder / "batch.csv", folder / "batch.csv.part", ignored);
+  }
+  try {
+    const std::string no_picture = draw_batch(folder, report);
+    if (!no_picture.empty()) progress.say(no_picture);
+  } catch (const std::exception& error) {
+    if (fault.empty()) fault = error.what();
+  }
+  return fault;
+}
+
 int sim_batch(const BatchOptions& options) {
   LaunchConfiguration plan = plan_flight(options.flight);
   if (plan.seed > std::numeric_limits<std::uint64_t>::max() - options.runs)
@@ -68,16 +89,16 @@ int sim_batch(const BatchOptions& options) {
                     [&](const BatchProgress& now) {
                       progress.update(static_cast<int>(kStages * now.done / now.requested), bar(now));
                     }));
-  write_batch_csv(plan.folder / "batch.csv", report);
-  const std::string no_picture = draw_batch(plan.folder, report);
-  if (!no_picture.empty()) progress.say(no_picture);
+  const std::string record_fault = write_files(plan.folder, report, progress);
 
   progress.close();
   std::printf("%s", options.flight.json ? (to_json(report).dump() + "\n").c_str() : to_text(report).c_str());
   if (report.interrupted())
     progress.say(fmt::format("swiftlet: batch cancelled after {} of {} runs", report.batch.runs.size(),
                              report.batch.requested));
-  return report.completed() ? kDone : kFailed;
+  if (!record_fault.empty())
+    progress.say("swiftlet: the record " + report.folder + " is incomplete: " + record_fault);
+  return report.completed() && record_fault.empty() ? kDone : kFailed;
 }
 
 }  // namespace

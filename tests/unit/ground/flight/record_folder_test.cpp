@@ -29,7 +29,7 @@ class RecordFolderTest : public testing::Test {
     }
   }
   void make_record(const std::string& name) {
-    { const RecordFolder made(folder_ / name, ExistingRecord::kRefused); }
+    const RecordFolder made(folder_ / name, ExistingRecord::kRefused);
     temporary_.write(name + "/report.json", "{}");
     temporary_.write(name + "/sensors.csv", "t [s]\n");
     temporary_.write(name + "/swiftlet-plant.log", "");
@@ -120,9 +120,15 @@ TEST_F(RecordFolderTest, DoesNotReplaceTheRecordOfAFlightInProgress) {
   EXPECT_TRUE(fs::exists(folder_ / "first/record.txt"));
 }
 
-TEST_F(RecordFolderTest, UsesAnEmptyFolder) {
+TEST_F(RecordFolderTest, LeavesNoTraceOfAFlightThatWroteNothing) {
+  EXPECT_EQ(refusal(folder_ / "new", ExistingRecord::kRefused), "none");
+  EXPECT_FALSE(fs::exists(folder_ / "new"));
   fs::create_directory(folder_ / "empty");
   EXPECT_EQ(refusal(folder_ / "empty", ExistingRecord::kRefused), "none");
+  EXPECT_TRUE(fs::is_empty(folder_ / "empty"));
+}
+
+TEST_F(RecordFolderTest, CannotBeMadeInAFile) {
   temporary_.write("file", "");
   EXPECT_NE(refusal(folder_ / "file/record", ExistingRecord::kRefused).find("cannot be created"),
             std::string::npos);
