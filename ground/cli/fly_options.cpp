@@ -11,6 +11,7 @@ void add_mission_options(runtime::CommandLine app, FlyOptions& options) {
          "mission file, or the name of one in config/missions; also a trajectory or waypoints as CSV, or a "
          "QGroundControl .plan file")
       .show_default();
+  add_frame_option(app, options.frame);
   app.add_option("--vehicle", options.vehicle, "vehicle file, or the name of one in config/vehicles")
       .show_default();
   app.add_option("--control", options.control,
@@ -26,6 +27,12 @@ void add_mission_options(runtime::CommandLine app, FlyOptions& options) {
   app.add_option("--imu-rate", options.imu_rate_hz,
                  "IMU and inner-loop rate, Hz; default: that of the simulation file")
       .one_of({500, 1000});
+}
+
+void add_frame_option(runtime::CommandLine app, std::optional<MissionFrame>& frame) {
+  app.add_choice<std::optional<MissionFrame>>(
+      "--frame", frame, {{"ned", MissionFrame::kNed}, {"enu", MissionFrame::kEnu}},
+      "frame of a CSV file that names none: ned (north, east, down) or enu (east, north, up)");
 }
 
 void add_fly_options(runtime::CommandLine app, FlyOptions& options) {

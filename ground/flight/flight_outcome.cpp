@@ -38,11 +38,11 @@ void say_record_fault(const FlightReport& report, Progress& progress) {
 
 }  // namespace
 
-void make_record_folder(const std::filesystem::path& folder, const std::string& option) {
+void make_record_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error)
-    throw InputError(option + " " + folder.string() + ": the folder cannot be created: " + error.message());
+    throw InputError("--record " + folder.string() + ": the folder cannot be created: " + error.message());
 }
 
 void evaluate(FlightReport& report, const FlightRecord& record, Window window) {

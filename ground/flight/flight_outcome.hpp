@@ -11,8 +11,8 @@
 
 namespace swiftlet::ground {
 
-// Throws InputError if the folder cannot be created. option: the command-line option that names it.
-void make_record_folder(const std::filesystem::path& folder, const std::string& option = "--record");
+// Throws InputError if the folder, that of --record or one inside it, cannot be created.
+void make_record_folder(const std::filesystem::path& folder);
 
 // Computes the tracking errors inside the window and sets report.completed: true if report.reason is empty,
 // the telemetry is complete enough and the peak error is within the tolerance.

@@ -24,7 +24,6 @@ constexpr double kHighestImuRateHz = 1000.0;
 constexpr double kSpareS = 30.0;  // recorded before and after the mission
 
 // Sizes of a record, somewhat above those of real ones.
-constexpr double kTelemetryRateHz = 100.0;
 constexpr double kTelemetryRowBytes = 1000.0;  // a row of flight.csv and its part of flight.gp
 constexpr double kSensorsRowBytes = 450.0;
 constexpr double kTraceRowBytes = 450.0;
@@ -101,7 +100,7 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
   plan.seed = options.seed;
 
   plan.mission_file = configuration_file("missions", options.mission);
-  plan.mission = load_mission_file(plan.mission_file, plan.control.limits);
+  plan.mission = load_mission_file(plan.mission_file, plan.control.limits, options.frame);
   plan.start_ned = options.start_ned;
   displace(plan.mission.mission, options.start_ned, plan.control.limits);
   if (const control::Outcome outcome = control::check(plan.mission.mission, plan.control.limits);

@@ -34,6 +34,7 @@ struct FlyOptions {
   runtime::Clock clock = runtime::Clock::kRealtime;
   double speed = 1.0;  // simulated time per real time
   std::string mission = "square";
+  std::optional<MissionFrame> frame;  // of a CSV file as mission, if it names none
   std::string vehicle = "kaylion";
   std::string control = "motor_lag";
   std::string simulation = "default";

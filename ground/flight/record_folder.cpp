@@ -158,8 +158,12 @@ bool RecordFolder::take(const fs::path& folder, const std::string& option) {
   const bool written = claim_ >= 0 && flock(claim_, LOCK_EX | LOCK_NB) == 0 && !is_deleted(claim_) &&
                        write(claim_, owner.data(), owner.size()) == static_cast<ssize_t>(owner.size());
   if (!written) {
-    throw InputError(named(option, folder) +
-                     "the folder cannot be written: " + std::generic_category().message(errno));
+    const std::string reason = std::generic_category().message(errno);
+    if (claim_ >= 0) {
+      fs::remove(folder / kClaim, fault);
+      close(claim_);
+    }
+    throw InputError(named(option, folder) + "the folder cannot be written: " + reason);
   }
   path_ = folder;
   return true;
