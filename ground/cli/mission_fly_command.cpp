@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/cli/fly_options.hpp"
 #include "swiftlet/ground/cli/request_command.hpp"
 #include "swiftlet/ground/command_line/installation.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
@@ -15,6 +16,7 @@ namespace {
 
 struct Options : CommandOptions {
   std::string file;
+  std::optional<MissionFrame> frame;
   std::string control = "motor_lag";
   bool no_wait = false;
   bool link = false;
@@ -23,7 +25,7 @@ struct Options : CommandOptions {
 int fly_mission(const Options& options) {
   const auto settings = runtime::load_control_settings(configuration_file("control", options.control));
   const MissionFile mission =
-      load_mission_file(configuration_file("missions", options.file), settings.limits);
+      load_mission_file(configuration_file("missions", options.file), settings.limits, options.frame);
   for (const std::string& assumption : mission.assumptions)
     std::fprintf(stderr, "%s: %s\n", mission.name.c_str(), assumption.c_str());
   Vehicle vehicle(options.network);
@@ -69,6 +71,7 @@ Command add_mission_fly_command(runtime::CommandLine mission) {
          "mission file, or the name of one in config/missions; also a trajectory or waypoints as CSV, "
          "or a QGroundControl .plan file")
       .required();
+  add_frame_option(app, options->frame);
   app.add_option("--control", options->control,
                  "control settings with the limits and the fence for the mission check")
       .show_default();

@@ -46,7 +46,11 @@ ReferenceRow row_of(const msg::Reference& reference) {
   row.mode = reference.mode();
   row.position_ned = reference.position_ned();
   row.velocity_ned = reference.velocity_ned();
+  row.acceleration_ned = reference.acceleration_ned();
   row.yaw_rad = reference.yaw();
+  row.q_ned_from_frd = reference.attitude_setpoint();
+  row.thrust_n = reference.thrust_setpoint();
+  row.moment_frd = reference.moment_setpoint();
   return row;
 }
 

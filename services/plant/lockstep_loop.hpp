@@ -85,7 +85,6 @@ class LockstepLoop {
   bool waiting_logged_ = false;   // for peers that have not answered yet
   double clock_silence_s_ = 0.0;  // since simulation_clock was last heard
   std::optional<runtime::FlightTrace> trace_;
-  std::string failure_;  // error of a callback
 
   comms::Subscription commands_;  // last: their callbacks use all members above
   comms::Subscription poses_;

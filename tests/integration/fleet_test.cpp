@@ -75,6 +75,9 @@ TEST_F(FleetFlight, StartsTogetherSideBySide) {
     EXPECT_NEAR(first_east_m(record() / name / "flight.csv"), 2.0 * i - 1.0, 0.01);
     EXPECT_TRUE(fs::exists(record() / name / "flight.png"));
   }
+  const ProgramResult listed = run_program("swiftlet", {"report", record().string()}, folder_.path());
+  EXPECT_EQ(listed.exit_code, 0) << listed.errors;
+  EXPECT_NE(listed.output.find("record/kl1  record/kl2"), std::string::npos) << listed.output;
 }
 
 TEST_F(FleetFlight, LandsTheOthersWhenOneFails) {

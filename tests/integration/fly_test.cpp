@@ -37,7 +37,7 @@ const std::string kLongMission =
 class Fly : public testing::Test {
  protected:
   std::vector<std::string> arguments(const std::string& mission, std::vector<std::string> more = {}) const {
-    std::vector<std::string> words = {"fly", mission, "--json", "--record", record().string()};
+    std::vector<std::string> words = {"fly", mission, "--json", "--record", record().string(), "--replace"};
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }

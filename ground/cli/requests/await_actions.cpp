@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "swiftlet/ground/terminal/fleet_progress.hpp"
+#include "swiftlet/ground/terminal/mission_progress.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -23,15 +24,8 @@ constexpr auto kQuietTime = 10s;    // without a terminal, shorter actions show 
 constexpr int kAttemptsToHold = 3;  // a vehicle may lift off or touch down between two attempts
 
 std::string progress_text(const std::string& what, double progress, const VehicleState& state) {
-  const bool in_mission = state.mode == control::Mode::kMission;
-  std::string text = in_mission ? fmt::format("{}/{}", state.mission.item, state.mission.items)
-                                : fmt::format("{} {:3.0f} %", what, 100.0 * progress);
-  text += fmt::format("  {}", control::to_string(state.mode));
-  const Eigen::Vector3d& position = state.position_ned_m;
-  if (position.allFinite())
-    text += fmt::format("  ({:5.2f}, {:5.2f}, {:5.2f}) m", position.x(), position.y(), position.z());
-  if (std::isfinite(state.battery_voltage_v)) text += fmt::format(", {:.2f} V", state.battery_voltage_v);
-  return text;
+  if (state.mode == control::Mode::kMission) return mission_progress_text(state);
+  return fmt::format("{} {:3.0f} %  {}", what, 100.0 * progress, state_text(state));
 }
 
 int stage_of(const VehicleState& state) {
