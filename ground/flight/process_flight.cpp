@@ -73,6 +73,10 @@ void ProcessFlight::fly_mission(const Interrupts& interrupts, StartBarrier* barr
     vehicle.wait_for_last_figures();
   } catch (const FlightFailure& failure) {
     report_.reason = failure.what();
+    // The end of a process may be noticed after what it caused.
+    const auto exited_process = processes_->exited_process();
+    if (exited_process && report_.reason.find(*exited_process) == std::string::npos)
+      report_.reason = *exited_process + "; " + report_.reason;
     if (barrier != nullptr) barrier->fail(network_.vehicle + " failed: " + report_.reason);
   }
   report_.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
