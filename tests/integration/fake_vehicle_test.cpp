@@ -29,7 +29,7 @@ using control::Mode;
 using ground::View;
 namespace msg = comms::msg;
 
-constexpr auto kTimeout = 20s;
+constexpr auto kTimeout = kStuck;
 
 class FakeVehicleFlight : public testing::Test {
  protected:
@@ -159,7 +159,7 @@ TEST_F(FakeVehicleFlight, FliesAMission) {
   ASSERT_TRUE(answer.accepted()) << answer.reason;
   answer = client_.mission_command(msg::Command_Constants::MISSION_START, client_.mission_id(), kTimeout);
   ASSERT_TRUE(answer.accepted()) << answer.reason;
-  ASSERT_TRUE(client_.wait(40s, [&](const View& view) {
+  ASSERT_TRUE(client_.wait(kStuck, [&](const View& view) {
     return view.mission.message.mission_id() == client_.mission_id() &&
            view.mission.message.state() == msg::MissionStatus_Constants::COMPLETED;
   })) << control_.errors();

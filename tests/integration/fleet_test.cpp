@@ -59,7 +59,7 @@ class FleetFlight : public testing::Test {
 
 TEST_F(FleetFlight, StartsTogetherSideBySide) {
   const ProgramResult result = run_program(
-      "swiftlet", arguments({"--clock", "lockstep", "--spacing", "2", "--json"}), folder_.path(), 90s);
+      "swiftlet", arguments({"--clock", "lockstep", "--spacing", "2", "--json"}), folder_.path(), kStuck);
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const json report_of_all = json::parse(result.output);
   EXPECT_EQ(report_of_all.at("completed"), true);
@@ -83,11 +83,11 @@ TEST_F(FleetFlight, StartsTogetherSideBySide) {
 TEST_F(FleetFlight, LandsTheOthersWhenOneFails) {
   Program fly("swiftlet", arguments({}), folder_.path());
   ASSERT_TRUE(eventually(
-      [&] { return fly.errors().find("2/3 waypoint") != std::string::npos || fly.exit_code(); }, 60s));
+      [&] { return fly.errors().find("2/3 waypoint") != std::string::npos || fly.exit_code(); }, kStuck));
   const pid_t control = control_of(fly, "kl2");
   ASSERT_GT(control, 0) << fly.errors();
   kill(control, SIGKILL);
-  EXPECT_EQ(fly.wait(60s), 1);
+  EXPECT_EQ(fly.wait(kStuck), 1);
   const std::string errors = fly.errors();
   EXPECT_NE(errors.find("kl2, hop: NOT completed: swiftlet-control was killed by signal 9"),
             std::string::npos)

@@ -25,7 +25,7 @@ class Online : public testing::Test {
     return {"--domain", std::to_string(lock_.domain()), "--vehicle-name", "kl7", "--localhost-only"};
   }
   // Runs `swiftlet` with these arguments on this domain.
-  ProgramResult swiftlet(std::vector<std::string> words, std::chrono::milliseconds timeout = 30s) const {
+  ProgramResult swiftlet(std::vector<std::string> words, std::chrono::milliseconds timeout = kStuck) const {
     for (const std::string& word : network()) words.push_back(word);
     return run_program("swiftlet", std::move(words), folder_.path(), timeout);
   }
@@ -62,7 +62,7 @@ class OnlineFlight : public Online {
   template <class Predicate>
   bool reaches(const char* what, const Predicate& predicate) const {
     json last;
-    const bool reached = eventually([&] { return predicate(last = status()); }, 30s);
+    const bool reached = eventually([&] { return predicate(last = status()); }, kStuck);
     EXPECT_TRUE(reached) << what << "\n"
                          << last << "\n"
                          << plant_.errors() << mocap_.errors() << control_.errors();

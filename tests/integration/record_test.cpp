@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/integration/program.hpp"
+#include "tests/support/eventually.hpp"
 #include "tests/support/hop_mission.hpp"
 #include "tests/support/program_path.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -64,7 +65,7 @@ TEST_F(Record, FlightsBegunTogetherHaveRecordsOfTheirOwn) {
         folder_.path()));
   std::set<std::string> folders;
   for (std::size_t i = 0; i < kFlights; ++i) {
-    ASSERT_EQ(flights[i]->wait(60s), 0) << flights[i]->errors();
+    ASSERT_EQ(flights[i]->wait(kStuck), 0) << flights[i]->errors();
     const std::string folder = json::parse(flights[i]->output()).at("record_dir");
     std::ifstream in(fs::path(folder) / "report.json");
     EXPECT_EQ(json::parse(in).at("seed"), i);

@@ -189,20 +189,20 @@ TEST_F(Standby, ActionSucceedsAcrossAFailover) {
   ground::Vehicle vehicle(flight_.node_settings("program"));
   Inbox<ground::ConnectionEvent> events;
   vehicle.on_connection([&](const ground::ConnectionEvent& event) { events.put(event); });
-  ASSERT_TRUE(vehicle.connect(10s).accepted());
+  ASSERT_TRUE(vehicle.connect(kStuck).accepted());
   ASSERT_TRUE(vehicle.arm().accepted());
   const ground::ActionHandle climb = vehicle.take_off(1.0, 0.4);
   ASSERT_TRUE(climb.accepted()) << climb.answer().reason;
-  ASSERT_TRUE(eventually([&] { return climb.progress() > 0.2; }, 10s));
+  ASSERT_TRUE(eventually([&] { return climb.progress() > 0.2; }, kStuck));
   ASSERT_LT(climb.progress(), 1.0);
   flight_.kill(flight_.active());
-  const ground::ActionResult result = climb.wait(20s);
+  const ground::ActionResult result = climb.wait(kStuck);
   EXPECT_TRUE(result.done()) << result.reason;
   EXPECT_NEAR(vehicle.state().position_ned_m.z(), -1.0, 0.06);
   EXPECT_TRUE(events.wait(
       [](const auto& all) { return all.back().kind == ground::ConnectionEvent::Kind::kReplaced; }));
   EXPECT_TRUE(vehicle.connected());
-  EXPECT_TRUE(vehicle.land().wait(20s).done());
+  EXPECT_TRUE(vehicle.land().wait(kStuck).done());
 }
 
 // GIVEN a controller that dies during an action WHEN another one starts THEN the client reports the lost
@@ -230,7 +230,7 @@ TEST_F(Standby, ClientReconnectsToARestartedController) {
   EXPECT_EQ(events.items()[2].kind, Kind::kReplaced);
   EXPECT_EQ(events.items()[2].controller, second.id);
   EXPECT_TRUE(vehicle.connected());
-  const ground::ActionResult lost = climb.wait(10s);
+  const ground::ActionResult lost = climb.wait(kStuck);
   EXPECT_EQ(lost.kind, ground::ActionResult::Kind::kLost) << lost.reason;
   std::string refusal;
   EXPECT_TRUE(eventually(
@@ -239,7 +239,7 @@ TEST_F(Standby, ClientReconnectsToARestartedController) {
         refusal = answer.reason;
         return answer.accepted();
       },
-      20s))
+      kStuck))
       << refusal;
   EXPECT_TRUE(vehicle.disarm().wait(5s).done());
 }

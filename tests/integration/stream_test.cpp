@@ -26,7 +26,7 @@ class StreamFlight : public OnlineFlight {
 
 TEST_F(StreamFlight, FliesAFileOfPositionsAndHolds) {
   take_off();
-  const ProgramResult result = swiftlet({"stream", circle(10.0, 4.0), "--json"}, 60s);
+  const ProgramResult result = swiftlet({"stream", circle(10.0, 4.0), "--json"}, kStuck);
   ASSERT_EQ(result.exit_code, 0) << result.errors << result.output;
   const json report = json::parse(result.output);
   EXPECT_EQ(report.at("sent"), 41);
@@ -45,7 +45,7 @@ TEST_F(StreamFlight, FliesTheReferenceOfARecord) {
       folder_.path());
   ASSERT_EQ(flown.exit_code, 0) << flown.errors;
   take_off();
-  const ProgramResult result = swiftlet({"stream", folder_.path() / "first" / "flight.csv", "--json"}, 60s);
+  const ProgramResult result = swiftlet({"stream", folder_.path() / "first" / "flight.csv", "--json"}, kStuck);
   ASSERT_EQ(result.exit_code, 0) << result.errors << result.output;
   const json report = json::parse(result.output);
   EXPECT_EQ(report.at("refused"), 0);
@@ -60,7 +60,7 @@ TEST_F(StreamFlight, ReportsAVelocityThatLeavesTheFence) {
   EXPECT_EQ(slow.exit_code, 2);
   EXPECT_NE(slow.errors.find("the row after t = 0.000 s is 9.000 s later, limit 0.5 s"), std::string::npos)
       << slow.errors;
-  const ProgramResult result = swiftlet({"stream", file, "--rate", "5", "--land"}, 90s);
+  const ProgramResult result = swiftlet({"stream", file, "--rate", "5", "--land"}, kStuck);
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.errors.find("the vehicle is holding: setpoints stopped; setpoint: stopping point: x is"),
             std::string::npos)
@@ -70,7 +70,7 @@ TEST_F(StreamFlight, ReportsAVelocityThatLeavesTheFence) {
 }
 
 TEST_F(StreamFlight, IsRefusedOnTheGround) {
-  const ProgramResult result = swiftlet({"stream", circle(10.0, 4.0)}, 60s);
+  const ProgramResult result = swiftlet({"stream", circle(10.0, 4.0)}, kStuck);
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.errors.find("setpoints are not accepted while disarmed"), std::string::npos)
       << result.errors;

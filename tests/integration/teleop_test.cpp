@@ -34,7 +34,7 @@ class TeleopFlight : public OnlineFlight {
 
   void SetUp() override {
     OnlineFlight::SetUp();
-    ASSERT_TRUE(vehicle_.connect(20s).accepted());
+    ASSERT_TRUE(vehicle_.connect(kStuck).accepted());
   }
   std::vector<std::string> teleop(std::vector<std::string> more = {}) const {
     more.insert(more.begin(), "teleop");
@@ -46,7 +46,7 @@ class TeleopFlight : public OnlineFlight {
   double height_m() const { return -state().position_ned_m.z(); }
 
   static bool shows(Terminal& terminal, const std::string& text) {
-    return eventually([&] { return terminal.text().find(text) != std::string::npos; }, 20s);
+    return eventually([&] { return terminal.text().find(text) != std::string::npos; }, kStuck);
   }
   // Holds a key until the condition is true: types it again and again, as a keyboard does.
   static bool hold_key(Terminal& terminal, const std::string& key, const std::function<bool()>& condition) {
@@ -55,7 +55,7 @@ class TeleopFlight : public OnlineFlight {
           terminal.type(key);
           return condition();
         },
-        20s, 30ms);
+        kStuck, 30ms);
   }
   // By a request, not because setpoints stopped to come.
   bool comes_to_hold_by_request() {
@@ -63,11 +63,11 @@ class TeleopFlight : public OnlineFlight {
         [](const VehicleState& state) {
           return state.mode == Mode::kHolding && state.mode_reason == "requested";
         },
-        10s);
+        kStuck);
   }
   bool comes_to_rest() {
     return vehicle_.wait_until([](const VehicleState& state) { return state.velocity_ned_m_s.norm() < 0.02; },
-                               10s);
+                               kStuck);
   }
 
   ground::Vehicle vehicle_;
@@ -102,7 +102,7 @@ TEST_F(TeleopFlight, KeysMoveTheVehicleAndTheirReleaseHoldsIt) {
   terminal.type(" ");
   ASSERT_TRUE(comes_to_hold_by_request()) << state().mode_reason;
   terminal.type("x");
-  EXPECT_EQ(terminal.wait(10s), 0) << terminal.text();
+  EXPECT_EQ(terminal.wait(kStuck), 0) << terminal.text();
   EXPECT_TRUE(terminal.is_restored());
   EXPECT_TRUE(shows(terminal, "refused; now holding at (")) << terminal.text();
 }
@@ -125,7 +125,7 @@ TEST_F(TeleopFlight, HoldsWhenTheTerminalIsClosed) {
       << terminal.text();
   terminal.hang_up();
   ASSERT_TRUE(comes_to_hold_by_request()) << state().mode_reason;
-  EXPECT_EQ(terminal.wait(10s), 1);
+  EXPECT_EQ(terminal.wait(kStuck), 1);
 }
 
 TEST_F(TeleopFlight, HoldsWhenItIsInterrupted) {
@@ -134,7 +134,7 @@ TEST_F(TeleopFlight, HoldsWhenItIsInterrupted) {
   ASSERT_TRUE(shows(terminal, "kl7 holding")) << terminal.text();
   ASSERT_TRUE(hold_key(terminal, kUp, [this] { return north_m() > 0.1; })) << terminal.text();
   terminal.type("\x03");
-  EXPECT_EQ(terminal.wait(10s), 0);
+  EXPECT_EQ(terminal.wait(kStuck), 0);
   EXPECT_TRUE(terminal.is_restored());
   ASSERT_TRUE(comes_to_hold_by_request()) << state().mode_reason;
 }
@@ -146,14 +146,14 @@ TEST_F(TeleopFlight, VehicleHoldsWhenTeleopIsKilled) {
   ASSERT_TRUE(hold_key(terminal, kUp, [this] { return north_m() > 0.1; })) << terminal.text();
   terminal.signal(SIGKILL);
   ASSERT_TRUE(vehicle_.wait_until(
-      [](const VehicleState& state) { return state.mode_reason == "setpoints stopped"; }, 10s));
+      [](const VehicleState& state) { return state.mode_reason == "setpoints stopped"; }, kStuck));
   EXPECT_EQ(state().mode, Mode::kHolding);
 }
 
 TEST_F(TeleopFlight, RequiresAVehicleInTheAirAndEndsWhenItLands) {
   {
     Terminal terminal("swiftlet", teleop(), 80, 24);
-    EXPECT_EQ(terminal.wait(20s), 1);
+    EXPECT_EQ(terminal.wait(kStuck), 1);
     EXPECT_TRUE(shows(terminal, "kl7 is disarmed; take off first: swiftlet arm && swiftlet"))
         << terminal.text();
   }
@@ -161,7 +161,7 @@ TEST_F(TeleopFlight, RequiresAVehicleInTheAirAndEndsWhenItLands) {
   Terminal terminal("swiftlet", teleop(), 80, 24);
   ASSERT_TRUE(shows(terminal, "kl7 holding")) << terminal.text();
   ASSERT_TRUE(vehicle_.land().accepted());
-  EXPECT_EQ(terminal.wait(20s), 1);
+  EXPECT_EQ(terminal.wait(kStuck), 1);
   EXPECT_TRUE(terminal.is_restored());
   EXPECT_TRUE(shows(terminal, "swiftlet: teleop: the vehicle is landing: requested")) << terminal.text();
 }
@@ -177,7 +177,7 @@ class JoystickFlight : public TeleopFlight {
   std::string path() const { return folder_.path() / "event5"; }
   void plug() {
     ASSERT_TRUE(
-        eventually([this] { return (writer_ = open(path().c_str(), O_WRONLY | O_NONBLOCK)) >= 0; }, 20s))
+        eventually([this] { return (writer_ = open(path().c_str(), O_WRONLY | O_NONBLOCK)) >= 0; }, kStuck))
         << "nobody reads the FIFO";
   }
   void unplug() {
@@ -201,12 +201,12 @@ TEST_F(JoystickFlight, MovesWhileTheDeadManButtonIsHeld) {
   plug();
   put(EV_ABS, ABS_RY, -32768);
   ASSERT_TRUE(
-      eventually([&] { return program.errors().find("teleop: kl7 holding") != std::string::npos; }, 20s))
+      eventually([&] { return program.errors().find("teleop: kl7 holding") != std::string::npos; }, kStuck))
       << program.errors();
   put(EV_KEY, BTN_TR, 1);
   put(EV_SYN, SYN_REPORT, 0);
   ASSERT_TRUE(
-      vehicle_.wait_until([](const VehicleState& state) { return state.position_ned_m.x() > 0.2; }, 20s));
+      vehicle_.wait_until([](const VehicleState& state) { return state.position_ned_m.x() > 0.2; }, kStuck));
   put(EV_KEY, BTN_TR, 0);
   ASSERT_TRUE(comes_to_hold_by_request()) << state().mode_reason;
   ASSERT_TRUE(comes_to_rest());
@@ -216,11 +216,11 @@ TEST_F(JoystickFlight, MovesWhileTheDeadManButtonIsHeld) {
   put(EV_ABS, ABS_Y, -32768);
   put(EV_KEY, BTN_TL, 1);
   ASSERT_TRUE(
-      vehicle_.wait_until([](const VehicleState& state) { return state.position_ned_m.z() < -0.8; }, 20s));
+      vehicle_.wait_until([](const VehicleState& state) { return state.position_ned_m.z() < -0.8; }, kStuck));
   EXPECT_NEAR(north_m(), north_before_m, 0.05);
   unplug();
   ASSERT_TRUE(comes_to_hold_by_request()) << state().mode_reason;
-  EXPECT_EQ(program.wait(10s), 1);
+  EXPECT_EQ(program.wait(kStuck), 1);
   const json report = json::parse(program.output());
   EXPECT_EQ(report.at("mode"), "holding");
   EXPECT_EQ(report.at("reason"), "the joystick " + path() + " was lost");
