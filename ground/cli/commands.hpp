@@ -26,6 +26,7 @@ Command add_mission_skip_command(runtime::CommandLine mission);
 Command add_mission_clear_command(runtime::CommandLine mission);
 Command add_trajectory_command(runtime::CommandLine root);
 Command add_stream_command(runtime::CommandLine root);
+Command add_set_command(runtime::CommandLine root);  // `set control`
 Command add_status_command(runtime::CommandLine root);
 Command add_watch_command(runtime::CommandLine root);
 Command add_list_command(runtime::CommandLine root);  // all vehicles of the domain
