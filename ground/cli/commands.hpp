@@ -42,6 +42,7 @@ Command add_completion_command(runtime::CommandLine root);
 Command add_manual_command(runtime::CommandLine root);
 
 // Controller design, mission checks and simulation.
+Command add_tune_command(runtime::CommandLine root);  // `tune plot`
 Command add_gains_command(runtime::CommandLine root);
 Command add_mission_check_command(runtime::CommandLine mission);
 Command add_mission_plot_command(runtime::CommandLine mission);

@@ -26,11 +26,11 @@ int set_control(const Options& options) {
 
 Command add_set_control_command(runtime::CommandLine set) {
   const auto options = std::make_shared<Options>();
-  const runtime::CommandLine app =
-      add_request_subcommand(set, "control",
-                             "Fly with the gains of a control settings file: checked for stability, changed to "
-                             "smoothly; other settings must be those that the controller was started with",
-                             "swiftlet set control mine.yaml --ramp 3 --wait 10", options);
+  const runtime::CommandLine app = add_request_subcommand(
+      set, "control",
+      "Fly with the gains of a control settings file: checked for stability, changed to "
+      "smoothly; other settings must be those that the controller was started with",
+      "swiftlet set control mine.yaml --ramp 3 --wait 10", options);
   app.add_option("file", options->file, "control settings file, or the name of one in config/control")
       .required();
   app.add_option("--ramp", options->ramp_s, "time over which the gains change, s")
