@@ -31,6 +31,8 @@ int main(int argc, char** argv) {
       ground::add_list_command(root),
       ground::add_report_command(root),
       ground::add_gains_command(root),
+      ground::add_tune_command(root),
+      ground::add_set_command(root),
       ground::add_sim_command(root),
       ground::add_identify_command(root, argv),
       ground::add_completion_command(root),

@@ -44,6 +44,18 @@ Rates rates_between(const View& before, const View& after, double time_s) {
           rate_hz(before.truth, after.truth, time_s)};
 }
 
+nlohmann::ordered_json to_json(const msg::ControlGains& gains) {
+  return {{"attitude_angle_per_s2", gains.attitude_angle()},
+          {"attitude_rate_per_s", gains.attitude_rate()},
+          {"attitude_acceleration", gains.attitude_acceleration()},
+          {"position_p_per_s2", gains.position_p()},
+          {"position_v_per_s", gains.position_v()},
+          {"position_i_per_s3", gains.position_i()},
+          {"integral_limit_m_s2", gains.integral_limit()},
+          {"disturbance_bandwidth_rad_s", gains.disturbance_bandwidth()},
+          {"disturbance_limit_m_s2", gains.disturbance_limit()}};
+}
+
 template <class T>
 nlohmann::ordered_json age_of(const Latest<T>& latest, Clock::time_point now) {
   if (!latest.seen()) return nullptr;
@@ -142,6 +154,9 @@ nlohmann::ordered_json to_json(const View& view, const Rates& rates, const Comma
                      {"deadline_misses", control.deadline_misses()},
                      {"step_time_max_us", control.step_time_max_us()},
                      {"realtime_scheduling", control.realtime_scheduling()}};
+  json["settings"] = {{"name", control.settings().c_str()},
+                      {"progress", control.gains_progress()},
+                      {"gains", to_json(control.gains())}};
   json["controllers"] = nlohmann::ordered_json::array();
   for (const msg::ControllerState& controller : controllers_of(view, now)) {
     json["controllers"].push_back({{"number", controller.controller()},
@@ -231,6 +246,12 @@ void print(const View& view, const Rates& rates, const CommandOptions& options) 
       control.rate_hz(), static_cast<unsigned long long>(control.deadline_misses()),
       static_cast<unsigned long long>(control.cycles()), control.step_time_max_us(),
       control.realtime_scheduling() ? "" : ", no real-time scheduling");
+  if (control.settings().size() > 0) {
+    std::printf("  settings  %s", control.settings().c_str());
+    if (control.gains_progress() < 1.0)
+      std::printf(", the gains change to it: %.0f %%", 100.0 * control.gains_progress());
+    std::printf("\n");
+  }
   for (const msg::ControllerState& controller : controllers_of(view, now)) {
     std::printf("  controller %016llx: %s%s, failover priority %u, term %u\n",
                 static_cast<unsigned long long>(controller.controller()), role_name(controller),

@@ -96,6 +96,7 @@ Client::Client(const comms::Participant* shared, const comms::NodeSettings& sett
       commands_(node_.publish(comms::topics::kCommand)),
       missions_(node_.publish(comms::topics::kMission)),
       trajectories_(node_.publish(comms::topics::kTrajectory)),
+      settings_changes_(node_.publish(comms::topics::kControlSettings)),
       setpoints_(node_.publish(comms::topics::kSetpoint)) {
   subscribe_all();
 }
@@ -370,6 +371,14 @@ Result Client::upload(const control::Trajectory& trajectory, std::chrono::millis
   message.client(client_id_);
   message.id(++last_id_);
   return ask(trajectories_, message, timeout, cancelled);
+}
+
+Result Client::change_settings(const control::SettingsRequest& settings, std::chrono::milliseconds timeout,
+                               const Cancelled& cancelled) {
+  msg::ControlSettings message = comms::to_message(settings);
+  message.client(client_id_);
+  message.id(++last_id_);
+  return ask(settings_changes_, message, timeout, cancelled);
 }
 
 bool Client::send(control::Setpoint setpoint) {

@@ -180,6 +180,10 @@ ActionHandle Vehicle::follow(const control::Trajectory& trajectory, milliseconds
   return {client_, client_->upload(trajectory, timeout, cancelled_)};
 }
 
+ActionHandle Vehicle::change_settings(const control::SettingsRequest& settings, milliseconds timeout) {
+  return {client_, client_->change_settings(settings, timeout)};
+}
+
 void Vehicle::enable_link_loss_failsafe() { client_->enable_link_loss_failsafe(); }
 
 void Vehicle::disable_link_loss_failsafe() { client_->disable_link_loss_failsafe(); }

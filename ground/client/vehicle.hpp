@@ -28,6 +28,7 @@
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/control/types/polynomial.hpp"
 #include "swiftlet/control/types/request.hpp"
+#include "swiftlet/control/types/settings_request.hpp"
 #include "swiftlet/ground/client/action.hpp"
 #include "swiftlet/ground/client/connection.hpp"
 #include "swiftlet/ground/client/context.hpp"
@@ -153,6 +154,12 @@ class Vehicle {
   // trajectory without a step in position, velocity, acceleration or jerk.
   ActionHandle follow(const control::Trajectory& trajectory,
                       std::chrono::milliseconds timeout = kAnswerTimeout);
+
+  // Flies with other control settings, after a change of the gains over settings.ramp_s. Done: the gains are
+  // in force. Refused if a loop would be unstable on the way, if a fixed setting differs, and outside calm
+  // flight.
+  ActionHandle change_settings(const control::SettingsRequest& settings,
+                               std::chrono::milliseconds timeout = kAnswerTimeout);
 
   // Enables the link-loss failsafe: if this program falls silent, the controller does what its setting
   // failsafe.ground_link_action says. Ends with disable_link_loss_failsafe() or with this object. Call both

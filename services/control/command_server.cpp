@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <tuple>
+#include <utility>
 
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/services/control/arrivals.hpp"
@@ -46,6 +47,8 @@ const char* name_of(control::RequestKind kind) {
       return "mission clear";
     case control::RequestKind::kTrajectory:
       return "trajectory";
+    case control::RequestKind::kSettings:
+      return "set control";
   }
   return "request of unknown kind";
 }
@@ -71,8 +74,13 @@ control::Outcome read(const Message& message, const control::Limits& limits, Pla
 
 }  // namespace
 
-CommandServer::CommandServer(InnerLoop& loop, const control::Limits& limits, runtime::Semaphore& wake)
-    : loop_(loop), limits_(limits), wake_(wake) {}
+CommandServer::CommandServer(InnerLoop& loop, const control::Limits& limits, GainDesigner designer,
+                             runtime::Semaphore& wake)
+    : loop_(loop),
+      limits_(limits),
+      designer_(std::move(designer)),
+      wake_(wake),
+      gains_in_force_(designer_.initial()) {}
 
 void CommandServer::on_command(const comms::msg::Command& message) {
   if (!active()) return;
@@ -115,6 +123,33 @@ void CommandServer::on_trajectory(const comms::msg::Trajectory& message) {
   pending->request.kind = control::RequestKind::kTrajectory;
   pending->request.trajectory = pending->trajectory.get();
   submit(std::move(pending));
+}
+
+void CommandServer::on_control_settings(const comms::msg::ControlSettings& message) {
+  if (!active()) return;
+  const Key key{message.client(), message.id()};
+  if (is_known(key)) return;
+  control::SettingsRequest asked;
+  control::ControlGains in_force;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    in_force = gains_in_force_;
+  }
+  auto pending = std::make_unique<PendingRequest>();
+  pending->gains = std::make_unique<control::GainChange>();
+  const comms::Fault fault = comms::from_message(message, asked);
+  const control::Outcome outcome =
+      fault ? refusal(fault) : designer_.design(asked, in_force, *pending->gains);
+  if (!outcome.accepted) return refuse(key, control::RequestKind::kSettings, outcome);
+  std::tie(pending->client, pending->id) = key;
+  pending->request.kind = control::RequestKind::kSettings;
+  pending->request.gains = pending->gains.get();
+  submit(std::move(pending));
+}
+
+void CommandServer::set_gains_in_force(const control::ControlGains& gains) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  gains_in_force_ = gains;
 }
 
 // True if a stored mission has the same id but different contents. The same contents are the same upload,

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <limits>
 #include <random>
+#include <utility>
 
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
@@ -38,12 +39,13 @@ std::uint64_t random_number() {
 
 ControlService::ControlService(const plant::Vehicle& vehicle, const control::ControlSettings& settings,
                                int failover_priority, comms::Node& node,
-                               const runtime::RealtimeSettings& realtime, runtime::Clock clock)
+                               const runtime::RealtimeSettings& realtime, runtime::Clock clock,
+                               std::vector<control::FixedSetting> fixed)
     : controller_(random_number()),
       clock_(clock),
       realtime_(realtime),
       loop_(vehicle, settings),
-      command_server_(loop_, settings.limits, wake_),
+      command_server_(loop_, settings.limits, GainDesigner(vehicle, settings, std::move(fixed)), wake_),
       telemetry_(loop_, command_server_, settings.failsafe, node, controller_),
       failover_(controller_, failover_priority),
       reports_(node.publish(topics::kControllerState)),
@@ -111,6 +113,10 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
       Delivery::kOwnThread));
   subscriptions_.push_back(node.subscribe<msg::Trajectory>(
       topics::kTrajectory, [this](const auto& message) { command_server_.on_trajectory(message); },
+      Delivery::kOwnThread));
+  // The gains are designed in this subscription's thread, beside the inner loop's.
+  subscriptions_.push_back(node.subscribe<msg::ControlSettings>(
+      topics::kControlSettings, [this](const auto& message) { command_server_.on_control_settings(message); },
       Delivery::kOwnThread));
   if (clock == runtime::Clock::kRealtime) {
     subscriptions_.push_back(node.subscribe<msg::Mission>(

@@ -39,10 +39,11 @@ namespace swiftlet::services {
 class ControlService {
  public:
   // Throws std::invalid_argument as FlightController does, std::runtime_error as Node does.
-  // failover_priority: of several standbys the one of the highest priority takes over first.
+  // failover_priority: of several standbys the one of the highest priority takes over first. fixed: the
+  // settings that cannot change in flight; empty: changes of them are not noticed.
   ControlService(const plant::Vehicle& vehicle, const control::ControlSettings& settings,
                  int failover_priority, comms::Node& node, const runtime::RealtimeSettings& realtime,
-                 runtime::Clock clock);
+                 runtime::Clock clock, std::vector<control::FixedSetting> fixed = {});
 
   void run(const std::atomic<bool>& stop);
   void wake() { wake_.post(); }

@@ -56,7 +56,8 @@ void Telemetry::set_streams(const StreamAges& ages, const std::string& source_co
 }
 
 void Telemetry::publish_due() {
-  loop_.snapshots.consume_all([this](const Snapshot& snapshot) { take(snapshot); });
+  const bool any = loop_.snapshots.consume_all([this](const Snapshot& snapshot) { take(snapshot); }) > 0;
+  if (any) command_server_.set_gains_in_force(last_.gains);
   const std::vector<RequestResult> answers = command_server_.collect();
   if (last_.role == Role::kActive) publish_plan();  // before its acceptance is published
   answer_requests(answers);
@@ -113,6 +114,9 @@ void Telemetry::take(const Snapshot& snapshot) {
   }
   if (now.ground_links != before.ground_links)
     spdlog::info("link-loss failsafe watches {} ground tools", now.ground_links);
+  if ((now.gains_progress < 1.0) != (before.gains_progress < 1.0))
+    spdlog::info("{} the gains of {}", now.gains_progress < 1.0 ? "changing to" : "flying with",
+                 now.settings.data());
   if (snapshot.sampled) publish_sampled(snapshot);
   saturated_ = saturated_ || snapshot.saturated;
   last_ = snapshot;
@@ -173,6 +177,9 @@ void Telemetry::publish_status() {
   message.setpoint_refusal() = last_.setpoints.refusal.reason;
   message.realtime_scheduling(realtime_);
   message.controller(controller_);
+  message.settings() = status.settings.data();
+  message.gains_progress(status.gains_progress);
+  message.gains(comms::to_message(last_.gains));
   const control::RequestStatuses& requests = last_.requests;
   message.request() = comms::to_message(requests.back());
   for (std::size_t i = 0; i < message.earlier_requests().size(); ++i)

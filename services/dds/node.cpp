@@ -26,6 +26,7 @@
 #include "swiftlet_msgs/msg/BatteryPubSubTypes.h"
 #include "swiftlet_msgs/msg/CommandAckPubSubTypes.h"
 #include "swiftlet_msgs/msg/CommandPubSubTypes.h"
+#include "swiftlet_msgs/msg/ControlSettingsPubSubTypes.h"
 #include "swiftlet_msgs/msg/ControlStatusPubSubTypes.h"
 #include "swiftlet_msgs/msg/ControllerStatePubSubTypes.h"
 #include "swiftlet_msgs/msg/EstimatePubSubTypes.h"
@@ -56,7 +57,7 @@
 // All message types of topics.
 // clang-format off
 #define SWIFTLET_FOR_EACH_MESSAGE(X)                                      \
-  X(ActuatorCommand) X(Battery) X(Command) X(CommandAck) X(ControllerState) X(ControlStatus) \
+  X(ActuatorCommand) X(Battery) X(Command) X(CommandAck) X(ControllerState) X(ControlSettings) X(ControlStatus) \
   X(Estimate) X(GroundLink) X(GroundTruth) X(Imu) X(Mission) X(MissionStatus) \
   X(MocapPose) X(Reference) X(RotorSpeeds) X(Setpoint)                    \
   X(SimulationClock) X(Trajectory) X(VehicleInfo)

@@ -1,4 +1,5 @@
 // Redundant control services of one vehicle: failover when they die, are suspended, return or start together.
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <memory>
@@ -8,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/client/vehicle.hpp"
+#include "swiftlet/io/settings/control_settings_file.hpp"
 #include "tests/integration/program.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/redundant_flight.hpp"
@@ -203,6 +205,67 @@ TEST_F(Standby, ActionSucceedsAcrossAFailover) {
       [](const auto& all) { return all.back().kind == ground::ConnectionEvent::Kind::kReplaced; }));
   EXPECT_TRUE(vehicle.connected());
   EXPECT_TRUE(vehicle.land().wait(kStuck).done());
+}
+
+// The settings that the controllers are started with, with another bandwidth of x and y.
+control::SettingsRequest with_bandwidth(const char* name, double omega_n, double ramp_s) {
+  control::ControlSettings settings =
+      runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml");
+  settings.name = name;
+  settings.position.x.omega_n = settings.position.y.omega_n = omega_n;
+  return control::settings_request(settings, {}, ramp_s);
+}
+
+// omega^2 + 2 zeta omega pole, with zeta 1 and a pole of 0.4 rad/s.
+double p_gain(double omega_n) { return omega_n * omega_n + 0.8 * omega_n; }
+
+// GIVEN gains that were changed in flight WHEN the controller dies THEN the standby flies with them and never
+// with those of its file. The same for a standby that was started after the change, and in the middle of a
+// change.
+TEST_F(Standby, TakesOverWithTheGainsInForce) {
+  flight_.start_controller(5);
+  flight_.start_controller(1);
+  flight_.wait_for_roles(1, 1);
+  hover(1.0);
+  ground::Vehicle vehicle(flight_.node_settings("program"));
+  const ground::ActionHandle soft = vehicle.change_settings(with_bandwidth("soft", 1.0, 0.5));
+  ASSERT_TRUE(soft.accepted()) << soft.answer().reason;
+  ASSERT_TRUE(soft.wait(20s).done());
+
+  Inbox<msg::ControlStatus> statuses;
+  comms::Node node(flight_.node_settings("gains"));
+  const comms::Subscription subscription = node.subscribe<msg::ControlStatus>(
+      comms::topics::kControlStatus, [&](const msg::ControlStatus& status) { statuses.put(status); });
+  const auto waits_for = [&](const char* what,
+                             const std::function<bool(const msg::ControlStatus&)>& predicate) {
+    flight_.wait(what, [&] {
+      const auto all = statuses.items();
+      return !all.empty() && predicate(all.back());
+    });
+  };
+  std::uint64_t dead = flight_.active().id;
+  flight_.kill(flight_.active());
+  waits_for("the standby flies", [&](const auto& status) { return status.controller() != dead; });
+  EXPECT_STREQ(statuses.items().back().settings().c_str(), "soft");
+
+  flight_.start_controller(1);
+  flight_.wait_for_roles(1, 1);
+  ASSERT_TRUE(vehicle.change_settings(with_bandwidth("softer", 0.8, 3.0)).accepted());
+  waits_for("the gains change", [](const auto& status) {
+    return status.gains_progress() > 0.3 && status.gains_progress() < 0.9;
+  });
+  dead = flight_.active().id;
+  flight_.kill(flight_.active());
+  waits_for("the second standby flies", [&](const auto& status) { return status.controller() != dead; });
+  waits_for("the change is complete", [](const auto& status) { return status.gains_progress() == 1.0; });
+
+  EXPECT_STREQ(statuses.items().back().settings().c_str(), "softer");
+  EXPECT_NEAR(statuses.items().back().gains().position_p()[0], p_gain(0.8), 1e-9);
+  double most = 0.0;
+  for (const msg::ControlStatus& status : statuses.items())
+    most = std::max(most, status.gains().position_p()[0]);
+  EXPECT_NEAR(most, p_gain(1.0), 1e-9) << "a takeover fell back to the gains of the file";
+  EXPECT_EQ(mode(), "holding");
 }
 
 // GIVEN a controller that dies during an action WHEN another one starts THEN the client reports the lost

@@ -31,7 +31,7 @@ class CommandServerTest : public testing::Test {
       : vehicle_(runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml")),
         settings_(runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml")),
         loop_(vehicle_, settings_),
-        command_server_(loop_, settings_.limits, wake_) {}
+        command_server_(loop_, settings_.limits, GainDesigner(vehicle_, settings_), wake_) {}
 
   // The vehicle at rest on the ground: one IMU, battery and rotor speed sample, and a pose with every fifth.
   plant::ActuatorCommand step() {
@@ -88,6 +88,18 @@ class CommandServerTest : public testing::Test {
     return message;
   }
 
+  // The settings of the controller with another bandwidth of x.
+  msg::ControlSettings settings_message(std::uint64_t id, double omega_n, double zeta = 1.0) const {
+    control::ControlSettings settings = settings_;
+    settings.name = "soft";
+    settings.position.x.omega_n = omega_n;
+    settings.position.x.zeta = zeta;
+    msg::ControlSettings message = comms::to_message(control::settings_request(settings, {}, 1.0));
+    message.client(kClient);
+    message.id(id);
+    return message;
+  }
+
   plant::Vehicle vehicle_;
   control::ControlSettings settings_;
   runtime::Semaphore wake_;
@@ -141,6 +153,39 @@ TEST_F(CommandServerTest, StatusesAfterAnAcceptanceIncludeTheRequest) {
     EXPECT_EQ(snapshot.requests.back().key, (control::RequestKey{kClient, 2})) << snapshot.stamp_ns;
   }
   EXPECT_GT(reported, 2);
+}
+
+// GIVEN a request for other settings THEN their gains are designed before the step, which takes them over.
+TEST_F(CommandServerTest, ChangesTheGains) {
+  settle();
+  EXPECT_DOUBLE_EQ(last_.gains.position_p.x(), 5.6);
+  command_server_.on_control_settings(settings_message(1, 1.0));
+  step();
+  std::vector<RequestResult> answers = command_server_.collect();
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_STREQ(answers[0].kind, "set control");
+  EXPECT_TRUE(answers[0].outcome.accepted) << answers[0].outcome.reason;
+  mode();
+  EXPECT_DOUBLE_EQ(last_.gains.position_p.x(), 1.8);
+  EXPECT_STREQ(last_.status.settings.data(), "soft");
+
+  // The next change begins at these gains.
+  command_server_.on_control_settings(settings_message(2, 2.0));
+  step();
+  EXPECT_STREQ(command_server_.collect().at(0).outcome.reason,
+               "another request changed the gains meanwhile: send this one again");
+  command_server_.set_gains_in_force(last_.gains);
+  command_server_.on_control_settings(settings_message(3, 2.0));
+  step();
+  answers = command_server_.collect();
+  EXPECT_TRUE(answers.at(0).outcome.accepted) << answers[0].outcome.reason;
+}
+
+TEST_F(CommandServerTest, RefusesUnstableGainsBeforeTheInnerLoop) {
+  command_server_.on_control_settings(settings_message(1, 6.0, 0.2));
+  const std::vector<RequestResult> answers = command_server_.collect();
+  ASSERT_EQ(answers.size(), 1U) << "without a step";
+  EXPECT_STREQ(answers[0].outcome.reason, "position.x: with the rotor lag the loop is unstable");
 }
 
 TEST_F(CommandServerTest, AnswersARefusalWithItsReason) {
@@ -330,6 +375,7 @@ TEST_F(CommandServerTest, SamplesTelemetryAt100HzOfImuTime) {
 TEST_F(CommandServerTest, InnerLoopDoesNotAllocate) {
   settle();
   command_server_.on_command(command(Command_Constants::ARM, 1));
+  command_server_.on_control_settings(settings_message(4, 1.0));
   command_server_.on_mission(mission(2, 1.0));
   command_server_.on_command(command(Command_Constants::MISSION_START, 3));
   std::size_t calls = 0;
@@ -339,14 +385,15 @@ TEST_F(CommandServerTest, InnerLoopDoesNotAllocate) {
     calls = guard.calls();
   }
   EXPECT_EQ(calls, 0U);
-  EXPECT_EQ(command_server_.collect().size(), 3U);
+  EXPECT_EQ(command_server_.collect().size(), 4U);
 }
 
 // A standby that receives the same samples as the fixture's controller.
 class StandbyCommandServerTest : public CommandServerTest {
  protected:
   StandbyCommandServerTest()
-      : standby_loop_(vehicle_, settings_), standby_server_(standby_loop_, settings_.limits, wake_) {
+      : standby_loop_(vehicle_, settings_),
+        standby_server_(standby_loop_, settings_.limits, GainDesigner(vehicle_, settings_), wake_) {
     standby_server_.set_active(false);
   }
   static constexpr std::uint32_t kTerm = 7;
