@@ -399,14 +399,14 @@ class StandbyCommandServerTest : public CommandServerTest {
   static constexpr std::uint32_t kTerm = 7;
 
   // Passes the report of the active controller to the standby.
-  void pass_state_to_standby() {
+  void pass_state_to_standby(std::uint32_t term = kTerm) {
     comms::ControllerReport report;
     loop_.report(report);
     ASSERT_TRUE(report.active);
     comms::ControllerReport received;
     ASSERT_FALSE(comms::from_message(comms::to_message(report), received));
     FailoverState failover_state;
-    failover_state.term = kTerm;
+    failover_state.term = term;
     failover_state.flight = received.flight;
     standby_server_.follow(failover_state);
   }
@@ -479,6 +479,23 @@ TEST_F(StandbyCommandServerTest, IgnoresSetpoints) {
   const SetpointTally active = tally();
   EXPECT_GT(active.refused, 10U) << "the active controller must count them";
   EXPECT_NE(std::string(active.refusal.reason), "");
+}
+
+// A controller that was replaced may still send its state for a moment.
+TEST_F(StandbyCommandServerTest, FollowsOnlyTheControllerOfTheTermItFollows) {
+  settle();
+  follow(20);
+  command_server_.on_command(command(Command_Constants::ARM, 1));
+  step();
+  ASSERT_EQ(mode(), control::Mode::kArmed);
+  for (const std::uint32_t other_term : {kTerm - 1, kTerm + 1}) {
+    pass_state_to_standby(other_term);
+    step_standby(Role::kStandby);
+    EXPECT_EQ(standby_state().mode, control::Mode::kDisarmed) << other_term;
+  }
+  pass_state_to_standby();
+  step_standby(Role::kStandby);
+  EXPECT_EQ(standby_state().mode, control::Mode::kArmed);
 }
 
 TEST_F(StandbyCommandServerTest, ContinuesAMissionKnownFromItsUpload) {
