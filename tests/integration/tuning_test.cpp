@@ -58,7 +58,7 @@ class Tuning : public Online {
   template <class Predicate>
   bool reaches(const char* what, const Predicate& predicate) const {
     json last;
-    const bool reached = eventually([&] { return predicate(last = status()); }, 30s);
+    const bool reached = eventually([&] { return predicate(last = status()); }, kStuck);
     EXPECT_TRUE(reached) << what << "\n" << last << "\n" << control_.errors();
     return reached;
   }
@@ -69,8 +69,8 @@ class Tuning : public Online {
     });
   }
   void done(std::vector<std::string> words) const {
-    words.insert(words.end(), {"--wait", "25"});
-    const ProgramResult result = swiftlet(words, 30s);
+
+    const ProgramResult result = swiftlet(words);
     ASSERT_EQ(result.exit_code, 0) << words.front() << ": " << result.errors;
   }
   void expect_refused(const std::string& file, const std::string& reason) const {
@@ -97,7 +97,7 @@ TEST_F(Tuning, ChangesTheGainsInHover) {
   EXPECT_NEAR(before.at("gains").at("position_p_per_s2")[2].get<double>(), 11.4, 1e-9);
 
   const std::string sagging = folder_.write("sagging.yaml", settings(kSagging));
-  const ProgramResult changed = swiftlet({"set", "control", sagging, "--ramp", "1", "--wait", "25"}, 30s);
+  const ProgramResult changed = swiftlet({"set", "control", sagging, "--ramp", "1", "--wait", "25"});
   EXPECT_EQ(changed.exit_code, 0) << changed.errors;
   EXPECT_EQ(changed.output, "set control: accepted by kl7\nset control: done\n");
   const json after = status();
@@ -125,7 +125,7 @@ TEST_F(Tuning, RefusesChangesWithTheirReasons) {
                 .exit_code,
             2);
   EXPECT_EQ(status().at("settings").at("name"), "motor_lag");
-  const ProgramResult landing = swiftlet({"land", "--speed", "0.05"});
+  const ProgramResult landing = swiftlet({"land", "--speed", "0.05", "--no-wait"});
   ASSERT_EQ(landing.exit_code, 0) << landing.errors;
   expect_refused("motor_lag", "cannot change the gains while landing");
 }

@@ -20,8 +20,10 @@ int set_control(const Options& options) {
   const std::string file = configuration_file("control", options.file);
   const control::SettingsRequest request = control::settings_request(
       runtime::load_control_settings(file), runtime::load_fixed_settings(file), options.ramp_s);
-  return run_request(options, "set control",
-                     [&](Vehicle& vehicle) { return vehicle.change_settings(request, options.timeout()); });
+  return run_request(
+      options, {"set control",
+                [&](Vehicle& vehicle) { return vehicle.change_settings(request, options.timeout()); },
+                OnInterrupt::kNothing});
 }
 
 Command add_set_control_command(runtime::CommandLine set) {
@@ -30,7 +32,7 @@ Command add_set_control_command(runtime::CommandLine set) {
       set, "control",
       "Fly with the gains of a control settings file: checked for stability, changed to "
       "smoothly; other settings must be those that the controller was started with",
-      "swiftlet set control mine.yaml --ramp 3 --wait 10", options);
+      "swiftlet set control mine.yaml --ramp 3", options);
   app.add_option("file", options->file, "control settings file, or the name of one in config/control")
       .required();
   app.add_option("--ramp", options->ramp_s, "time over which the gains change, s")
