@@ -68,8 +68,7 @@ class Tuning : public Online {
              std::abs(now.at("velocity_ned_m_s")[2].get<double>()) < 0.01;
     });
   }
-  void done(std::vector<std::string> words) const {
-
+  void done(const std::vector<std::string>& words) const {
     const ProgramResult result = swiftlet(words);
     ASSERT_EQ(result.exit_code, 0) << words.front() << ": " << result.errors;
   }
