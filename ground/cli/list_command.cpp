@@ -89,9 +89,9 @@ nlohmann::ordered_json to_json(const Found& vehicle) {
 std::string mode_of(const Found& vehicle) {
   const View& view = vehicle.view;
   if (!view.control.seen()) return "no control";
-  const bool known =
-      std::none_of(vehicle.silences.begin(), vehicle.silences.end(),
-                   [](const Silence& s) { return s.who == "vehicle" || s.who == "control service"; });
+  const bool known = std::none_of(vehicle.silences.begin(), vehicle.silences.end(), [](const Silence& s) {
+    return s.who == "vehicle" || s.who == "control service";
+  });
   return known ? mode_name(view.control.message.mode()) : "SILENT";
 }
 
@@ -107,8 +107,8 @@ void print(const std::vector<Found>& vehicles) {
     const std::string battery =
         view.battery.seen() ? fmt::format("{:.2f} V", view.battery.message.voltage_v()) : "-";
     std::printf("%-16s %-12s %-12s %9s %11d %5.0f Hz\n", vehicle.name.c_str(),
-                view.vehicle.seen() ? view.vehicle.message.name().c_str() : "-",
-                mode_of(vehicle).c_str(), battery.c_str(), vehicle.controllers, vehicle.mocap_hz);
+                view.vehicle.seen() ? view.vehicle.message.name().c_str() : "-", mode_of(vehicle).c_str(),
+                battery.c_str(), vehicle.controllers, vehicle.mocap_hz);
   }
 }
 
@@ -136,7 +136,8 @@ int list(const Options& options) {
 Command add_list_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
   const runtime::CommandLine app = root.add_subcommand(
-      "list", "List the vehicles of the domain: who is silent, model, mode, battery, controllers and pose rate");
+      "list",
+      "List the vehicles of the domain: who is silent, model, mode, battery, controllers and pose rate");
   add_network_options(app, options->network);
   app.remove_option("--vehicle-name");
   app.add_option("--time", options->look_s, "duration of the discovery, s").range(0.4, 60.0).show_default();

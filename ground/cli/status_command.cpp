@@ -121,9 +121,8 @@ nlohmann::ordered_json to_json(const View& view, const Rates& rates, const Comma
     json["velocity_ned_m_s"] = view.estimate.message.velocity_ned();
     const control::EulerAngles attitude =
         control::euler_angles(comms::wire::quaternion(view.estimate.message.q_ned_from_frd()));
-    json["attitude_rad"] = {{"roll", attitude.roll_rad},
-                            {"pitch", attitude.pitch_rad},
-                            {"yaw", attitude.heading.yaw_rad}};
+    json["attitude_rad"] = {
+        {"roll", attitude.roll_rad}, {"pitch", attitude.pitch_rad}, {"yaw", attitude.heading.yaw_rad}};
     json["poses"] = {{"fault", pose_fault_name(view.estimate.message.pose_fault())},
                      {"accepted", view.estimate.message.poses_accepted()},
                      {"refused", view.estimate.message.poses_refused()},
@@ -216,7 +215,8 @@ void print(const View& view, const Rates& rates, const CommandOptions& options) 
                 v[0], v[1], v[2]);
     std::printf("  attitude  %s\n", attitude_text(view.estimate.message).c_str());
   }
-  std::printf("  pose      %s, %.3f s old", control.has_pose() ? "tracked" : "MISSING", pose_age_s(view, now));
+  std::printf("  pose      %s, %.3f s old", control.has_pose() ? "tracked" : "MISSING",
+              pose_age_s(view, now));
   if (view.estimate.seen()) {
     const auto& estimate = view.estimate.message;
     std::printf(", %llu accepted and %llu refused",
@@ -300,9 +300,9 @@ int show_status(const Options& options) {
 
 Command add_status_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
-  const runtime::CommandLine app =
-      add_vehicle_subcommand(root, "status", "Print who is silent, mode, position, attitude, battery, mission, topic rates and ages",
-                             "swiftlet status --json | jq .battery.voltage_v", options);
+  const runtime::CommandLine app = add_vehicle_subcommand(
+      root, "status", "Print who is silent, mode, position, attitude, battery, mission, topic rates and ages",
+      "swiftlet status --json | jq .battery.voltage_v", options);
   app.add_option("--watch", options->watch_s, "time over which the rates are measured, s")
       .range(0.1, 60.0)
       .show_default();

@@ -58,9 +58,8 @@ std::string missing_peer(const View& view) {
 // True if no process of the vehicle is discovered or heard; other ground tools do not count.
 bool finds_nothing(const View& view) {
   const bool heard = view.control.seen() || view.vehicle.seen() || view.battery.seen();
-  return !heard && std::none_of(view.peers.begin(), view.peers.end(), [](const auto& peer) {
-    return peer.first != "ground" && peer.second > 0;
-  });
+  return !heard && std::none_of(view.peers.begin(), view.peers.end(),
+                                [](const auto& peer) { return peer.first != "ground" && peer.second > 0; });
 }
 
 // Simulated time since `since_ns`. The time limits of a flight are in the vehicle's time.

@@ -30,7 +30,7 @@ struct WatchFacts {
   double pose_hz = 0.0;
   double battery_hz = 0.0;
   std::chrono::system_clock::time_point system_now;  // when the view is shown
-  std::string message;                               // result of the last key, or the question that it asks; empty: none
+  std::string message;  // result of the last key, or the question that it asks; empty: none
 };
 
 // Warnings besides silences_of(), most severe first, such as "battery is low: 3.25 V, below 3.30 V". The battery thresholds are

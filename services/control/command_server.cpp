@@ -57,9 +57,9 @@ control::Outcome stopped_without_imu(double imu_age_s) {
   control::Outcome outcome = control::accept();
   char since[32] = "ever";
   if (imu_age_s >= 0.0) std::snprintf(since, sizeof since, "for %.1f s", imu_age_s);
-  std::snprintf(outcome.reason, sizeof outcome.reason,
-                "rotors off is commanded, but no IMU sample has come %s: nothing shows that the vehicle obeys",
-                since);
+  std::snprintf(
+      outcome.reason, sizeof outcome.reason,
+      "rotors off is commanded, but no IMU sample has come %s: nothing shows that the vehicle obeys", since);
   return outcome;
 }
 

@@ -99,9 +99,9 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
                                                take_battery(message);
                                              },
                                              Delivery::kShared, kBatterySourceSilence)});
-  sensors_.push_back({"rotor speeds", node.subscribe<msg::RotorSpeeds>(topics::kRotorSpeeds, take_rotor_speeds,
-                                                                       Delivery::kShared,
-                                                                       comms::kSourceSilence)});
+  sensors_.push_back(
+      {"rotor speeds", node.subscribe<msg::RotorSpeeds>(topics::kRotorSpeeds, take_rotor_speeds,
+                                                        Delivery::kShared, comms::kSourceSilence)});
   subscriptions_.push_back(node.subscribe<msg::Setpoint>(
       topics::kSetpoint, deliver<msg::Setpoint>(loop_.setpoint, setpoint_faults_)));
   subscriptions_.push_back(node.subscribe<msg::GroundLink>(
@@ -312,12 +312,12 @@ StreamAges ControlService::stream_ages() const {
   return ages;
 }
 
-// A sentence; empty if each topic has one source.
+// A sentence; empty if each topic has one source. The IMU, subscribed last, comes first.
 std::string ControlService::source_conflict() const {
-  for (const Sensor& sensor : sensors_) {
-    const auto conflict = sensor.subscription.source_conflict();
+  for (auto sensor = sensors_.rbegin(); sensor != sensors_.rend(); ++sensor) {
+    const auto conflict = sensor->subscription.source_conflict();
     if (!conflict) continue;
-    return std::string(sensor.samples) + " of " + conflict->ignored.to_string() + " are ignored: those of " +
+    return std::string(sensor->samples) + " of " + conflict->ignored.to_string() + " are ignored: those of " +
            conflict->used.to_string() + " are used";
   }
   return {};

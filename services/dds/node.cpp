@@ -434,8 +434,8 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
   std::unique_ptr<ParticipantSession> session;
   std::vector<Endpoint*> endpoints;
 
-  std::mutex peers_mutex;      // guards all below; locked after session_mutex
-  Announcement announcement;   // of this process; changed with both mutexes locked
+  std::mutex peers_mutex;     // guards all below; locked after session_mutex
+  Announcement announcement;  // of this process; changed with both mutexes locked
   std::chrono::steady_clock::time_point established_at;
   std::function<void(const std::string&)> on_lost_source;
   std::map<rtps::GUID_t, Peer> peers;  // of any vehicle

@@ -63,7 +63,8 @@ dds::DomainParticipant* join(const NodeSettings& settings, const Announcement& a
   const std::set<std::uint32_t> before = own_discovery_ports(settings.domain);
   const std::uint32_t expected = free_discovery_port(settings.domain, settings.localhost_only);
   for (const std::uint32_t announced : {announced_ports(ports, expected), ports.count}) {
-    dds::DomainParticipant* const participant = create_participant(settings, announcement, listener, announced);
+    dds::DomainParticipant* const participant =
+        create_participant(settings, announcement, listener, announced);
     if (participant == nullptr) return nullptr;
     // Other processes may have taken ports meanwhile. If the own port is then too high to announce itself to
     // all ports below it, try again with all ports.

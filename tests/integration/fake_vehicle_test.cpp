@@ -101,8 +101,7 @@ TEST_F(FakeVehicleFlight, RefusesToArmWithoutAVehicle) {
 TEST_F(FakeVehicleFlight, StopReachesAVehicleWhoseSamplesDoNotArrive) {
   hover();
   vehicle_->sends_imu = false;
-  ASSERT_TRUE(client_.wait(
-      kTimeout, [](const View& view) { return view.control.message.imu_age_s() > 0.6; }))
+  ASSERT_TRUE(client_.wait(kTimeout, [](const View& view) { return view.control.message.imu_age_s() > 0.6; }))
       << "the age grows while nothing comes";
   EXPECT_FALSE(client_.view().control.message.has_pose()) << "nor is any pose used";
   ASSERT_FALSE(rotors_are_off()) << "this vehicle obeys its last command";

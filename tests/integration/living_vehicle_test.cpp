@@ -38,7 +38,8 @@ class LivingVehicle : public SeparateProcesses {
     char host[256] = {};
     ::gethostname(host, sizeof host - 1);
     return "vehicle kl1 already lives in domain " + std::to_string(lock_.domain()) + ": " + name +
-           " (process " + std::to_string(process.pid()) + " on host " + host + ") is the source of its " + topic;
+           " (process " + std::to_string(process.pid()) + " on host " + host + ") is the source of its " +
+           topic;
   }
   void expect_undisturbed() {
     EXPECT_EQ(mode_log(), "holding: take-off completed\n");
@@ -81,7 +82,8 @@ TEST_F(LivingVehicle, SurvivesASecondFlight) {
   const ProgramResult fly =
       run("swiftlet", {"fly", folder_.write("hop.yaml", kHopMission), "--record", record});
   EXPECT_EQ(fly.exit_code, 1);
-  EXPECT_NE(fly.errors.find("swiftlet: vehicle kl1 already lives in domain "), std::string::npos) << fly.errors;
+  EXPECT_NE(fly.errors.find("swiftlet: vehicle kl1 already lives in domain "), std::string::npos)
+      << fly.errors;
   EXPECT_NE(fly.errors.find("; choose another --vehicle-name or --domain, or fly it with --attach"),
             std::string::npos)
       << fly.errors;
@@ -148,7 +150,8 @@ TEST_F(LivingVehicle, IsFlownByTheSamplesOfOneSourceOnly) {
       poses.publish(pose);
     });
     EXPECT_TRUE(client_->wait(kTimeout, [](const View& view) {
-      return std::string(view.control.message.source_conflict().c_str()).find("impostor") != std::string::npos;
+      return std::string(view.control.message.source_conflict().c_str()).find("impostor") !=
+             std::string::npos;
     }));
     wait_vehicle_time(1.0);
     expect_undisturbed();
@@ -195,9 +198,9 @@ TEST_F(LivingVehicle, ADeadVehicleIsReportedSilentFirst) {
   EXPECT_EQ(rotors_off, 0);
   const ProgramResult stop = run("swiftlet", {"stop", "--yes"});
   EXPECT_EQ(stop.exit_code, 0) << stop.errors;
-  EXPECT_EQ(stop.output.rfind("stop: accepted by kl1: rotors off is commanded, but no IMU sample has come for ",
-                              0),
-            0U)
+  EXPECT_EQ(
+      stop.output.rfind("stop: accepted by kl1: rotors off is commanded, but no IMU sample has come for ", 0),
+      0U)
       << stop.output;
   EXPECT_TRUE(eventually([&] { return rotors_off > 0; }));
 }
@@ -217,7 +220,8 @@ TEST_F(LivingVehicle, ADeadControlServiceIsReportedSilentFirst) {
   const Program watch("swiftlet",
                       {"watch", "--plain", "--localhost-only", "--domain", std::to_string(lock_.domain())},
                       folder_.path());
-  ASSERT_TRUE(eventually([&] { return watch.output().find("kl1: disarmed") != std::string::npos; }, kTimeout));
+  ASSERT_TRUE(
+      eventually([&] { return watch.output().find("kl1: disarmed") != std::string::npos; }, kTimeout));
   control_->signal(SIGKILL);
   EXPECT_TRUE(eventually(
       [&] { return watch.output().find("kl1: CONTROL SERVICE SILENT for ") != std::string::npos; }, kTimeout))
@@ -227,10 +231,10 @@ TEST_F(LivingVehicle, ADeadControlServiceIsReportedSilentFirst) {
 TEST(Attached, AFlightThatFindsNothingSaysWhereItLooked) {
   const comms::DomainLock lock;
   const TemporaryFolder folder;
-  const ProgramResult fly = run_program(
-      "swiftlet",
-      {"fly", "square", "--attach", "--domain", std::to_string(lock.domain()), "--record", folder.path() / "r"},
-      folder.path());
+  const ProgramResult fly = run_program("swiftlet",
+                                        {"fly", "square", "--attach", "--domain",
+                                         std::to_string(lock.domain()), "--record", folder.path() / "r"},
+                                        folder.path());
   EXPECT_EQ(fly.exit_code, 1);
   for (const char* part :
        {"no control service for vehicle kl1 in domain ", "looked on lo (127.0.0.1) only; with --network on "})

@@ -18,11 +18,9 @@ NodeSettings announced(NodeSettings network) {
 FlightReservation::FlightReservation(const NodeSettings& network, const std::vector<std::string>& vehicles)
     : participant_(announced(network)) {
   for (const std::string& vehicle : vehicles) nodes_.emplace_back(participant_, vehicle);
-  const auto other =
-      participant_.become_source({kFlight, topics::kImu.name, topics::kMocapPose.name});
+  const auto other = participant_.become_source({kFlight, topics::kImu.name, topics::kMocapPose.name});
   if (other) {
-    throw std::runtime_error(*other +
-                             "; choose another --vehicle-name or --domain, or fly it with --attach");
+    throw std::runtime_error(*other + "; choose another --vehicle-name or --domain, or fly it with --attach");
   }
 }
 

@@ -18,7 +18,8 @@ std::string interfaces_text(bool localhost_only) {
     if ((it->ifa_flags & IFF_UP) == 0U) continue;
     if (localhost_only && (it->ifa_flags & IFF_LOOPBACK) == 0U) continue;
     char address[INET_ADDRSTRLEN] = {};
-    ::inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(it->ifa_addr)->sin_addr, address, sizeof address);
+    ::inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(it->ifa_addr)->sin_addr, address,
+                sizeof address);
     text += (text.empty() ? "" : ", ") + std::string(it->ifa_name) + " (" + address + ")";
   }
   return text.empty() ? "no interface that is up" : text;

@@ -13,13 +13,14 @@ namespace {
 }  // namespace
 
 SoleSource::SoleSource(Node& node, std::function<void()> on_lost) {
-  const auto other = node.become_source([loss = loss_, on_lost = std::move(on_lost)](const std::string& sentence) {
-    {
-      const std::lock_guard<std::mutex> lock(loss->mutex);
-      loss->other = sentence;
-    }
-    on_lost();
-  });
+  const auto other =
+      node.become_source([loss = loss_, on_lost = std::move(on_lost)](const std::string& sentence) {
+        {
+          const std::lock_guard<std::mutex> lock(loss->mutex);
+          loss->other = sentence;
+        }
+        on_lost();
+      });
   if (other) refuse(*other);
 }
 

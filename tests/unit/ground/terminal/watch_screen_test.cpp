@@ -65,8 +65,9 @@ TEST(WatchScreen, FitsAnyScreenSizeWithKeysOnTheLastLine) {
       const auto lines = watch_screen(view, facts(), kNow, width, height);
       ASSERT_EQ(lines.size(), static_cast<std::size_t>(height));
       for (const ScreenLine& line : lines) ASSERT_LE(line.text.size(), static_cast<std::size_t>(width));
-      EXPECT_EQ(lines.back().text, std::string("h hold   l land   s stop (rotors off): each asks for y   q quit")
-                                       .substr(0, static_cast<std::size_t>(width)));
+      EXPECT_EQ(lines.back().text,
+                std::string("h hold   l land   s stop (rotors off): each asks for y   q quit")
+                    .substr(0, static_cast<std::size_t>(width)));
     }
   }
   const auto small = watch_screen(view, facts(), kNow, 80, 3);
@@ -103,7 +104,8 @@ TEST(WatchScreen, ShowsFirstWhoIsSilent) {
   EXPECT_EQ(watch_line(view, facts(), kNow).rfind("kl1: VEHICLE SILENT for 3.0 s, since ", 0), 0U);
   view = in_flight();
   view.control.received -= std::chrono::seconds(3);
-  EXPECT_EQ(watch_screen(view, facts(), kNow, 80, 24)[0].text.rfind("CONTROL SERVICE SILENT for 3.0 s", 0), 0U);
+  EXPECT_EQ(watch_screen(view, facts(), kNow, 80, 24)[0].text.rfind("CONTROL SERVICE SILENT for 3.0 s", 0),
+            0U);
 }
 
 TEST(WatchScreen, UsesAWideScreenInTwoColumns) {

@@ -321,9 +321,10 @@ TEST_F(CommandServerTest, AcceptsAStopWithoutImuSamples) {
   ASSERT_EQ(answers.size(), 1U);
   EXPECT_TRUE(answers[0].outcome.accepted);
   EXPECT_EQ(answers[0].stamp_ns, 7);
-  EXPECT_STREQ(answers[0].outcome.reason,
-               "rotors off is commanded, but no IMU sample has come for 3.2 s: nothing shows that the vehicle "
-               "obeys");
+  EXPECT_STREQ(
+      answers[0].outcome.reason,
+      "rotors off is commanded, but no IMU sample has come for 3.2 s: nothing shows that the vehicle "
+      "obeys");
   EXPECT_TRUE(command_server_.accept_overdue_stop(3.3, 7)) << "until a sample comes";
   EXPECT_TRUE(command_server_.collect().empty()) << "answered once";
 

@@ -40,12 +40,12 @@ TEST(Announcement, ListsWholeNames) {
   EXPECT_TRUE(split_names("").empty());
 }
 
-TEST(Sources, ANewOneYieldsToAnEstablishedOne) {
+TEST(SourceOrder, ANewOneYieldsToAnEstablishedOne) {
   EXPECT_TRUE(yields(plant(1, false), plant(2, true)));
   EXPECT_FALSE(yields(plant(2, true), plant(1, false)));
 }
 
-TEST(Sources, ExactlyOneOfTwoYields) {
+TEST(SourceOrder, ExactlyOneOfTwoYields) {
   Announcement same_time = plant(1, false);
   same_time.pid = 43;
   for (const Announcement& other : {plant(2, false), same_time}) {
