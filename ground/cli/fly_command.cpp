@@ -15,6 +15,7 @@
 #include "swiftlet/ground/flight/process_flight.hpp"
 #include "swiftlet/ground/terminal/fleet_progress.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
+#include "swiftlet/services/dds/discovery/flight_reservation.hpp"
 #include "swiftlet/services/dds/shared_memory.hpp"
 
 namespace swiftlet::ground {
@@ -91,6 +92,9 @@ int fly(const FlyOptions& options) {
   if (options.domain < 0 && options.launch_mode == LaunchMode::kStarted) domain_lock.emplace();
   comms::NodeSettings network = options.network;
   network.domain = domain_lock ? domain_lock->domain() : std::max(options.domain, 0);
+  // In a domain that others may use, the vehicles must not live already.
+  std::optional<comms::FlightReservation> reservation;
+  if (!domain_lock && options.launch_mode == LaunchMode::kStarted) reservation.emplace(network, vehicles);
 
   ProgressLine progress;
   std::deque<ProcessFlight> flights;
