@@ -56,7 +56,7 @@ EstimateRow row_of(const msg::Estimate& estimate) {
 
 Result result_of(const msg::CommandAck& ack) {
   const control::RequestKey key{ack.client(), ack.id()};
-  if (ack.accepted()) return {Result::Kind::kAccepted, "", key, ack.stamp_ns()};
+  if (ack.accepted()) return {Result::Kind::kAccepted, ack.reason().c_str(), key, ack.stamp_ns()};
   return {Result::Kind::kRefused, ack.reason().c_str(), key};
 }
 

@@ -1,8 +1,10 @@
 #include "swiftlet/services/control/command_server.hpp"
 
+#include <cstdio>
 #include <tuple>
 
 #include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/services/control/arrivals.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
@@ -11,6 +13,8 @@ namespace {
 
 constexpr std::size_t kRememberedAnswers = 256;
 constexpr std::int64_t kPatienceNs = 500'000'000;
+constexpr std::int64_t kStopPatienceNs = 50'000'000;
+constexpr std::size_t kMostOtherRequests = kMaxPendingRequests - 1;  // a stop always has room
 
 const char* name_of(control::RequestKind kind) {
   switch (kind) {
@@ -44,6 +48,16 @@ const char* name_of(control::RequestKind kind) {
       return "trajectory";
   }
   return "request of unknown kind";
+}
+
+control::Outcome stopped_without_imu(double imu_age_s) {
+  control::Outcome outcome = control::accept();
+  char since[32] = "ever";
+  if (imu_age_s >= 0.0) std::snprintf(since, sizeof since, "for %.1f s", imu_age_s);
+  std::snprintf(
+      outcome.reason, sizeof outcome.reason,
+      "rotors off is commanded, but no IMU sample has come %s: nothing shows that the vehicle obeys", since);
+  return outcome;
 }
 
 control::Outcome refusal(const comms::Fault& fault) { return control::refuse("%s", fault.text); }
@@ -180,14 +194,33 @@ bool CommandServer::is_known(const Key& key) {
 void CommandServer::submit(std::unique_ptr<PendingRequest> pending) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const Key key{pending->client, pending->id};
-  if (pending_.size() >= kMaxPendingRequests) {
+  const bool stops = pending->request.kind == control::RequestKind::kStop;
+  if (!stops && pending_.size() >= kMostOtherRequests) {
     return settle(key, pending->request.kind,
-                  control::refuse("%zu requests are pending, the limit", kMaxPendingRequests));
+                  control::refuse("%zu requests are pending, the limit", kMostOtherRequests));
   }
+  if (pending_.size() >= kMaxPendingRequests)  // the last one of them is a stop
+    return settle(key, pending->request.kind, control::accept());
   pending->request.key = {pending->client, pending->id};
   pending->asked_ns = runtime::monotonic_ns();
   loop_.requests.push(pending.get());  // always fits: at most kMaxPendingRequests
   pending_[key] = std::move(pending);
+  if (stops) wake_.post();
+}
+
+bool CommandServer::accept_overdue_stop(double imu_age_s, std::int64_t stamp_ns) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const bool silent = imu_age_s < 0.0 || imu_age_s > kImuSilence_s;
+  const std::int64_t now_ns = runtime::monotonic_ns();
+  bool any = false;
+  for (const auto& [key, pending] : pending_) {
+    if (pending->request.kind != control::RequestKind::kStop) continue;
+    if (!silent && now_ns - pending->asked_ns < kStopPatienceNs) continue;
+    any = true;
+    if (std::exchange(pending->answered, true)) continue;
+    settle(key, pending->request.kind, stopped_without_imu(imu_age_s), stamp_ns);
+  }
+  return any;
 }
 
 void CommandServer::refuse(const Key& key, control::RequestKind kind, const control::Outcome& outcome) {
@@ -221,7 +254,7 @@ std::vector<RequestResult> CommandServer::collect() {
     const auto entry = pending_.find(key);
     const std::unique_ptr<PendingRequest> done = std::move(entry->second);
     pending_.erase(entry);
-    if (done->state == PendingRequest::State::kGivenUp) continue;  // already answered
+    if (done->answered || done->state == PendingRequest::State::kGivenUp) continue;
     if (done->outcome.accepted && done->mission) missions_.put_flown(std::move(done->mission));
     if (done->outcome.accepted && done->trajectory) trajectories_.put_flown(std::move(done->trajectory));
     settle(key, done->request.kind, done->outcome, done->stamp_ns);
@@ -230,7 +263,8 @@ std::vector<RequestResult> CommandServer::collect() {
   trajectories_.tidy(loop_.adopted_state());
   const std::int64_t now_ns = runtime::monotonic_ns();
   for (const auto& [key, pending] : pending_) {
-    if (now_ns - pending->asked_ns < kPatienceNs || !pending->claim(PendingRequest::State::kGivenUp))
+    if (pending->request.kind == control::RequestKind::kStop || now_ns - pending->asked_ns < kPatienceNs ||
+        !pending->claim(PendingRequest::State::kGivenUp))
       continue;
     settle(key, pending->request.kind, control::refuse("no IMU samples arrive: is the vehicle running?"));
   }

@@ -42,8 +42,13 @@ class CommandServer {
   void on_mission(const comms::msg::Mission& message);
   void on_trajectory(const comms::msg::Trajectory& message);
 
+  // True while a stop request waits that the inner loop cannot evaluate, because IMU samples are missing. It is
+  // accepted; call collect() after it and command rotors off. The inner loop evaluates it with the next IMU
+  // sample. imu_age_s: since the last sample, -1 if there was none. stamp_ns: of the last sample.
+  bool accept_overdue_stop(double imu_age_s, std::int64_t stamp_ns);
+
   // Returns the answers to publish. Refuses requests that the inner loop has not evaluated in time, because
-  // no IMU sample arrived. Erases missions and trajectories that are no longer in use. Call from one thread.
+  // no IMU sample arrived; never a stop. Erases missions and trajectories that are no longer in use. Call from one thread.
   std::vector<RequestResult> collect();
 
   // Active: accepts and answers requests. Active at construction. Call from any thread.

@@ -23,6 +23,7 @@ struct PendingRequest {
   std::unique_ptr<control::Mission> mission;  // what `request` points to
   std::unique_ptr<control::Trajectory> trajectory;
   std::int64_t asked_ns = 0;  // monotonic
+  bool answered = false;      // a stop that was accepted before the inner loop evaluated it
 
   std::atomic<State> state{State::kWaiting};
   control::Outcome outcome;   // if kTaken; written by the inner loop

@@ -253,14 +253,63 @@ TEST_F(CommandServerTest, RefusesRequestsWithoutImuSamples) {
 }
 
 TEST_F(CommandServerTest, RefusesRequestsBeyondItsCapacity) {
-  for (std::uint64_t id = 1; id <= kMaxPendingRequests + 1; ++id)
+  for (std::uint64_t id = 1; id <= kMaxPendingRequests; ++id)
     command_server_.on_command(command(Command_Constants::HOLD, id));
   const std::vector<RequestResult> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 1U);
-  EXPECT_EQ(answers[0].id, static_cast<std::uint64_t>(kMaxPendingRequests) + 1);
-  EXPECT_STREQ(answers[0].outcome.reason, "32 requests are pending, the limit");
+  EXPECT_EQ(answers[0].id, static_cast<std::uint64_t>(kMaxPendingRequests));
+  EXPECT_STREQ(answers[0].outcome.reason, "31 requests are pending, the limit");
   step();
-  EXPECT_EQ(command_server_.collect().size(), static_cast<std::size_t>(kMaxPendingRequests));
+  EXPECT_EQ(command_server_.collect().size(), static_cast<std::size_t>(kMaxPendingRequests) - 1);
+}
+
+TEST_F(CommandServerTest, AcceptsAStopWithoutImuSamples) {
+  settle();
+  command_server_.on_command(command(Command_Constants::ARM, 1));
+  step();
+  command_server_.collect();
+  ASSERT_FALSE(command_server_.accept_overdue_stop(3.2, 7)) << "no stop was requested";
+
+  command_server_.on_command(command(Command_Constants::STOP, 2));
+  EXPECT_TRUE(command_server_.accept_overdue_stop(3.2, 7)) << "rotors off must be commanded";
+  const std::vector<RequestResult> answers = command_server_.collect();
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_TRUE(answers[0].outcome.accepted);
+  EXPECT_EQ(answers[0].stamp_ns, 7);
+  EXPECT_STREQ(
+      answers[0].outcome.reason,
+      "rotors off is commanded, but no IMU sample has come for 3.2 s: nothing shows that the vehicle "
+      "obeys");
+  EXPECT_TRUE(command_server_.accept_overdue_stop(3.3, 7)) << "until a sample comes";
+  EXPECT_TRUE(command_server_.collect().empty()) << "answered once";
+
+  EXPECT_EQ(step().rotor_state, plant::RotorState::kOff) << "the next sample executes it";
+  EXPECT_TRUE(command_server_.collect().empty());
+  EXPECT_FALSE(command_server_.accept_overdue_stop(0.0, 7));
+  EXPECT_EQ(mode(), control::Mode::kStopped);
+}
+
+TEST_F(CommandServerTest, AcceptsAStopBesideAnyNumberOfRequests) {
+  for (std::uint64_t id = 1; id <= 2 * kMaxPendingRequests; ++id)
+    command_server_.on_command(command(Command_Constants::HOLD, id));
+  command_server_.collect();
+  for (const std::uint64_t id : {1001U, 1002U, 1003U})
+    command_server_.on_command(command(Command_Constants::STOP, id));
+  EXPECT_TRUE(command_server_.accept_overdue_stop(-1.0, 0));
+  const std::vector<RequestResult> answers = command_server_.collect();
+  ASSERT_EQ(answers.size(), 3U);
+  for (const RequestResult& answer : answers) EXPECT_TRUE(answer.outcome.accepted) << answer.id;
+}
+
+TEST_F(CommandServerTest, LetsTheInnerLoopAnswerAStopWhileSamplesArrive) {
+  settle();
+  command_server_.on_command(command(Command_Constants::STOP, 1));
+  EXPECT_FALSE(command_server_.accept_overdue_stop(0.002, 7));
+  step();
+  const std::vector<RequestResult> answers = command_server_.collect();
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_TRUE(answers[0].outcome.accepted);
+  EXPECT_STREQ(answers[0].outcome.reason, "");
 }
 
 TEST_F(CommandServerTest, SamplesTelemetryAt100HzOfImuTime) {

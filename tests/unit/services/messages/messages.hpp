@@ -236,6 +236,10 @@ inline msg::ControlStatus example() {
   message.airborne(true);
   message.has_pose(true);
   message.pose_age_s(0.015);
+  message.imu_age_s(0.001);
+  message.mocap_age_s(0.012);
+  message.battery_age_s(0.07);
+  message.source_conflict() = "poses of b are ignored: those of a are used";
   message.supply_voltage_v(3.7);
   message.saturated(true);
   message.cycles(1000);
