@@ -26,7 +26,7 @@ struct RequestOutcome {
 nlohmann::ordered_json to_json(const RequestOutcome& outcome) {
   nlohmann::ordered_json json = {{"accepted", outcome.answer.accepted()}};
   if (outcome.action_result) json["done"] = outcome.action_result->done();
-  if (outcome.failed()) json["reason"] = outcome.reason();
+  if (!outcome.reason().empty()) json["reason"] = outcome.reason();
   return json;
 }
 
@@ -73,7 +73,9 @@ int run_request(const RequestOptions& options, const std::string& what,
     RequestOutcome outcome{name, action.answer(), std::nullopt};
     if (outcome.answer.accepted() && !options.json) {
       const std::lock_guard<std::mutex> lock(printing);
-      std::printf("%s: accepted by %s\n", what.c_str(), name.c_str());
+      const std::string& note = outcome.answer.reason;
+      std::printf("%s: accepted by %s%s%s\n", what.c_str(), name.c_str(), note.empty() ? "" : ": ",
+                  note.c_str());
       std::fflush(stdout);
     }
     if (outcome.answer.accepted() && options.wait_s)

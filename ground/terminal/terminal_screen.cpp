@@ -1,5 +1,6 @@
 #include "swiftlet/ground/terminal/terminal_screen.hpp"
 
+#include <algorithm>
 #include <clocale>
 #include <cstdio>
 #include <cstdlib>
@@ -70,11 +71,16 @@ int TerminalScreen::height() const { return getmaxy(stdscr); }
 
 void TerminalScreen::show(const std::vector<ScreenLine>& lines) {
   werase(stdscr);
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const attr_t attributes = attributes_of(lines[i].emphasis, impl_->colours);
+  const auto draw = [this](std::size_t row, int column, const std::string& text, Emphasis emphasis) {
+    const attr_t attributes = attributes_of(emphasis, impl_->colours);
     wattron(stdscr, static_cast<int>(attributes));
-    mvwaddnstr(stdscr, static_cast<int>(i), 0, lines[i].text.c_str(), width());
+    mvwaddnstr(stdscr, static_cast<int>(row), column, text.c_str(), std::max(width() - column, 0));
     wattroff(stdscr, static_cast<int>(attributes));
+  };
+  for (std::size_t row = 0; row < lines.size(); ++row) {
+    draw(row, 0, lines[row].text, lines[row].emphasis);
+    if (!lines[row].right_text.empty())
+      draw(row, kRightColumn, lines[row].right_text, lines[row].right_emphasis);
   }
   wrefresh(stdscr);
 }
