@@ -55,7 +55,7 @@ const char* name_of(control::RequestKind kind) {
 
 control::Outcome stopped_without_imu(double imu_age_s) {
   control::Outcome outcome = control::accept();
-  char since[32] = "ever";
+  char since[32] = "yet";
   if (imu_age_s >= 0.0) std::snprintf(since, sizeof since, "for %.1f s", imu_age_s);
   std::snprintf(
       outcome.reason, sizeof outcome.reason,

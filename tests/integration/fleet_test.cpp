@@ -178,6 +178,10 @@ TEST_F(TwoVehicles, ArmTogetherOrNotAtAll) {
 }
 
 TEST_F(TwoVehicles, MissingVehicleIsNamed) {
+  ASSERT_TRUE(eventually([&] {
+    const ProgramResult result = swiftlet("kl1", {"status", "--json", "--watch", "0.1"});
+    return result.exit_code == 0 && json::parse(result.output).value("has_pose", false);
+  }));
   const ProgramResult result = swiftlet("kl1,kl9", {"stop", "--yes", "--timeout", "5"});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_EQ(result.output, "stop: accepted by kl1\nstop: kl1: done\n");
