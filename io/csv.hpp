@@ -69,7 +69,7 @@ CsvTable load_csv(const std::string& path, const std::vector<std::string>& colum
 
 // The fields of the first non-blank line; empty if there is none.
 std::vector<std::string> first_csv_line(std::string_view text);
-bool is_number(std::string_view field);  // true for a finite number
+bool is_number(std::string_view field);                      // true for a finite number
 std::optional<double> parse_number(std::string_view field);  // nothing if it is no finite number
 // Reads a table with any column names in its header, at least one.
 CsvTable parse_csv_as_headed(std::string_view text, const std::string& file_name, std::size_t min_rows = 1);

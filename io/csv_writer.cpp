@@ -71,7 +71,8 @@ void CsvWriter::end_row() {
 void CsvWriter::finish() {
   if (std::fflush(file_.get()) != 0 && error_ == 0) error_ = errno;
   if (error_ != 0)
-    throw std::runtime_error(path_.string() + " cannot be written: " + std::generic_category().message(error_));
+    throw std::runtime_error(path_.string() +
+                             " cannot be written: " + std::generic_category().message(error_));
 }
 
 }  // namespace swiftlet::runtime

@@ -25,7 +25,7 @@ struct TruthRow {
 
 struct ReferenceRow {
   std::int64_t stamp_ns = 0;
-  int mode = 0;  // ControlStatus_Constants::MODE_*
+  int mode = 0;                              // ControlStatus_Constants::MODE_*
   std::array<double, 3> position_ned{};      // m
   std::array<double, 3> velocity_ned{};      // m/s
   std::array<double, 3> acceleration_ned{};  // m/s^2

@@ -24,7 +24,8 @@ struct Options {
 int run(const Options& options) {
   const plant::Vehicle vehicle = runtime::load_vehicle(configuration_file("vehicles", options.vehicle));
   const auto settings = runtime::load_control_settings(configuration_file("control", options.control));
-  const MissionFile file = load_mission_file(configuration_file("missions", options.file), settings.limits, options.frame);
+  const MissionFile file =
+      load_mission_file(configuration_file("missions", options.file), settings.limits, options.frame);
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
   const MissionDryRun flown = dry_run(file.mission, settings, {options.start[0], options.start[1]});

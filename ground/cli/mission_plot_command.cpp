@@ -20,7 +20,8 @@ struct Options {
 
 int run(const Options& options) {
   const auto settings = runtime::load_control_settings(configuration_file("control", options.control));
-  const MissionFile file = load_mission_file(configuration_file("missions", options.file), settings.limits, options.frame);
+  const MissionFile file =
+      load_mission_file(configuration_file("missions", options.file), settings.limits, options.frame);
   const MissionDryRun flown = dry_run(file.mission, settings, {options.start[0], options.start[1]});
   if (!flown.completed)
     std::fprintf(stderr, "swiftlet: mission %s: %s\n", file.name.c_str(), flown.reason.c_str());

@@ -21,7 +21,8 @@ struct Options : CommandOptions {
 
 int upload(const Options& options) {
   const auto settings = runtime::load_control_settings(configuration_file("control", options.control));
-  const MissionFile file = load_mission_file(configuration_file("missions", options.file), settings.limits, options.frame);
+  const MissionFile file =
+      load_mission_file(configuration_file("missions", options.file), settings.limits, options.frame);
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
   Vehicle vehicle(options.network);

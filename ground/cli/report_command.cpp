@@ -36,7 +36,8 @@ Command add_report_command(runtime::CommandLine root) {
   const auto options = std::make_shared<ReportOptions>();
   const runtime::CommandLine app =
       root.add_subcommand("report", "Report recorded flights, and the settings in which they differ");
-  app.add_option("FOLDER", options->folders, "records of one or of several vehicles; default: the newest one in flights/");
+  app.add_option("FOLDER", options->folders,
+                 "records of one or of several vehicles; default: the newest one in flights/");
   app.add_flag("--json", options->json, "print JSON");
   app.footer("example: swiftlet report flights/20261121-093909-square flights/20261121-093910-square");
   return {app, [options] { return report(*options); }};

@@ -108,9 +108,8 @@ int print_report(const std::vector<FlightReport>& reports, bool json, ProgressLi
     say_record_fault(report, progress);
   }
   if (!json) std::printf("%zu of %zu flights completed\n", completed, reports.size());
-  const bool recorded = std::all_of(reports.begin(), reports.end(), [](const FlightReport& report) {
-    return report.record_fault.empty();
-  });
+  const bool recorded = std::all_of(reports.begin(), reports.end(),
+                                    [](const FlightReport& report) { return report.record_fault.empty(); });
   return all && recorded ? kDone : kFailed;
 }
 

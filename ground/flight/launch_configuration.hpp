@@ -66,10 +66,10 @@ struct LaunchConfiguration {
   Dispersion dispersion;       // of vehicle and simulation; empty unless requested
   int imu_rate_option_hz = 0;  // FlyOptions::imu_rate_hz
   std::uint64_t seed = 0;
-  Eigen::Vector2d start_ned = Eigen::Vector2d::Zero();                  // m
-  std::filesystem::path folder;                                         // of the record; not created by plan_flight()
-  std::filesystem::path trace_file;                                     // empty: no trace
-  bool sensors = false;                                                 // record sensors and commands
+  Eigen::Vector2d start_ned = Eigen::Vector2d::Zero();  // m
+  std::filesystem::path folder;                         // of the record; not created by plan_flight()
+  std::filesystem::path trace_file;                     // empty: no trace
+  bool sensors = false;                                 // record sensors and commands
   std::filesystem::path plant_program, mocap_program, control_program;  // if kStarted
 
   std::size_t record_capacity() const;  // rows: IMU samples within the flight's time limit

@@ -228,8 +228,9 @@ std::vector<std::string> run_gnuplot(const std::string& script, std::size_t file
   std::vector<std::string> out;
   for (std::size_t i = 0; i < files; ++i) {
     out.push_back(runtime::read_text_file(folder / std::to_string(i)));
-    if (!is_whole(out.back())) throw std::runtime_error(no_picture + "wrote a truncated file; is " +
-                                                        fs::temp_directory_path().string() + " full?");
+    if (!is_whole(out.back()))
+      throw std::runtime_error(no_picture + "wrote a truncated file; is " +
+                               fs::temp_directory_path().string() + " full?");
   }
   return out;
 }

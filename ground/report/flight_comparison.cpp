@@ -110,8 +110,7 @@ std::string layout(const std::vector<Row>& rows) {
 std::string failures(const std::vector<RecordedFlight>& flights) {
   std::string lines;
   for (const RecordedFlight& flight : flights) {
-    if (flight.report.contains("reason"))
-      lines += flight.name + ": " + text(flight.report, "reason") + "\n";
+    if (flight.report.contains("reason")) lines += flight.name + ": " + text(flight.report, "reason") + "\n";
   }
   return lines;
 }

@@ -263,9 +263,10 @@ void refuse_telemetry(const std::string& text, const std::string& file) {
     return std::find(header.begin(), header.end(), name) != header.end();
   };
   if (has("mode") && (has("ref_x_ned [m]") || has("ref_px"))) {
-    throw ConfigError(file, 1, "header",
-                      "is that of flight.csv, the telemetry of a flight; an identification needs sensors.csv, "
-                      "which flights with --sensors record");
+    throw ConfigError(
+        file, 1, "header",
+        "is that of flight.csv, the telemetry of a flight; an identification needs sensors.csv, "
+        "which flights with --sensors record");
   }
 }
 

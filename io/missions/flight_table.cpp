@@ -22,18 +22,17 @@ struct Column {
   const char* written;  // in flight.csv
   const char* older;    // in flight.csv of an older version; null: none
 };
-const std::vector<Column> kColumns = {
-    {"t [s]", "t [s]", "t"},
-    {"x_ned [m]", "ref_x_ned [m]", "ref_px"},
-    {"y_ned [m]", "ref_y_ned [m]", "ref_py"},
-    {"z_ned [m]", "ref_z_ned [m]", "ref_pz"},
-    {"vx_ned [m/s]", "ref_vx_ned [m/s]", "ref_vx"},
-    {"vy_ned [m/s]", "ref_vy_ned [m/s]", "ref_vy"},
-    {"vz_ned [m/s]", "ref_vz_ned [m/s]", "ref_vz"},
-    {"yaw_ned [rad]", "ref_yaw_ned [rad]", "ref_yaw"},
-    {"ax_ned [m/s^2]", "ref_ax_ned [m/s^2]", nullptr},
-    {"ay_ned [m/s^2]", "ref_ay_ned [m/s^2]", nullptr},
-    {"az_ned [m/s^2]", "ref_az_ned [m/s^2]", nullptr}};
+const std::vector<Column> kColumns = {{"t [s]", "t [s]", "t"},
+                                      {"x_ned [m]", "ref_x_ned [m]", "ref_px"},
+                                      {"y_ned [m]", "ref_y_ned [m]", "ref_py"},
+                                      {"z_ned [m]", "ref_z_ned [m]", "ref_pz"},
+                                      {"vx_ned [m/s]", "ref_vx_ned [m/s]", "ref_vx"},
+                                      {"vy_ned [m/s]", "ref_vy_ned [m/s]", "ref_vy"},
+                                      {"vz_ned [m/s]", "ref_vz_ned [m/s]", "ref_vz"},
+                                      {"yaw_ned [rad]", "ref_yaw_ned [rad]", "ref_yaw"},
+                                      {"ax_ned [m/s^2]", "ref_ax_ned [m/s^2]", nullptr},
+                                      {"ay_ned [m/s^2]", "ref_ay_ned [m/s^2]", nullptr},
+                                      {"az_ned [m/s^2]", "ref_az_ned [m/s^2]", nullptr}};
 constexpr std::size_t kZ = 3, kVx = 4, kAx = 8;
 
 std::optional<std::size_t> find(const std::vector<std::string>& header, const char* name) {

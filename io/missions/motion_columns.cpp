@@ -168,8 +168,8 @@ void MotionColumns::settle_frame(const std::string& file_name, std::optional<Mis
                                    [](Motion column) { return known(column).axes == Axes::kWorld; });
   if (framed == columns_.end()) return;
   if (named && option && *named != *option) {
-    refuse(file_name, std::string("names the frame ") + name_of(*named) + ", but --frame names " +
-                          name_of(*option));
+    refuse(file_name,
+           std::string("names the frame ") + name_of(*named) + ", but --frame names " + name_of(*option));
   }
   if (named || option) {
     frame_ = named ? *named : *option;

@@ -57,10 +57,10 @@ double time_of(const runtime::CsvTable& table, std::size_t row, const MotionColu
   const double factor = columns.factor(column);
   if (row == 0) return factor * table.number(row, column);
   const double last_s = before.time_s.back();
-  return factor * table.number(row, column,
-                               runtime::between((last_s + kLeastStep_s) / factor,
-                                                (last_s + kLongestStep_s) / factor),
-                               factor == 1.0 ? "s" : "");
+  return factor *
+         table.number(row, column,
+                      runtime::between((last_s + kLeastStep_s) / factor, (last_s + kLongestStep_s) / factor),
+                      factor == 1.0 ? "s" : "");
 }
 
 Samples read(const runtime::CsvTable& table, const MotionColumns& columns, const Given& given) {
@@ -175,7 +175,7 @@ TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file
                                     table.row_count(), segments.size(),
                                     given.acceleration ? "with their velocities and accelerations"
                                     : given.velocity   ? "with their velocities"
-                                                         : "of minimum snap, at rest at both ends",
+                                                       : "of minimum snap, at rest at both ends",
                                     greatest_deviation(samples, knots, segments) * 1e3));
   return checked(
       {std::move(segments), std::move(assumptions)}, limits,

@@ -30,25 +30,25 @@ const std::vector<Motion> kAttitude = {Motion::kRoll, Motion::kPitch, Motion::kY
 const std::vector<Motion> kBodyRates = {Motion::kP, Motion::kQ, Motion::kR};
 const std::vector<Motion> kRatesAndThrust = {Motion::kP, Motion::kQ, Motion::kR, Motion::kThrust};
 // The first form whose first required column is present applies.
-const std::vector<Form> kForms = {
-    {SetpointKind::kPosition,
-     "a stream of positions",
-     kPosition,
-     {kVelocity, kAcceleration, {Motion::kYaw}, {Motion::kYawRate}}},
-    {SetpointKind::kAttitude, "a stream of attitudes", kAttitude, {kBodyRates}},
-    {SetpointKind::kBodyRates, "a stream of body rates", kRatesAndThrust, {}},
-    {SetpointKind::kVelocity,
-     "a stream of velocities",
-     kVelocity,
-     {kAcceleration, {Motion::kYaw}, {Motion::kYawRate}}},
-    {SetpointKind::kAcceleration,
-     "a stream of accelerations",
-     kAcceleration,
-     {{Motion::kYaw}, {Motion::kYawRate}}}};
+const std::vector<Form> kForms = {{SetpointKind::kPosition,
+                                   "a stream of positions",
+                                   kPosition,
+                                   {kVelocity, kAcceleration, {Motion::kYaw}, {Motion::kYawRate}}},
+                                  {SetpointKind::kAttitude, "a stream of attitudes", kAttitude, {kBodyRates}},
+                                  {SetpointKind::kBodyRates, "a stream of body rates", kRatesAndThrust, {}},
+                                  {SetpointKind::kVelocity,
+                                   "a stream of velocities",
+                                   kVelocity,
+                                   {kAcceleration, {Motion::kYaw}, {Motion::kYawRate}}},
+                                  {SetpointKind::kAcceleration,
+                                   "a stream of accelerations",
+                                   kAcceleration,
+                                   {{Motion::kYaw}, {Motion::kYawRate}}}};
 
 const Form& form_of(const std::string& file, const MotionColumns& columns) {
-  const auto form = std::find_if(kForms.begin(), kForms.end(),
-                                 [&](const Form& candidate) { return columns.has(candidate.needed.front()); });
+  const auto form = std::find_if(kForms.begin(), kForms.end(), [&](const Form& candidate) {
+    return columns.has(candidate.needed.front());
+  });
   if (form == kForms.end()) {
     throw ConfigError(file, 1, "header",
                       "names no setpoint, must have " + list_of(kPosition) +
@@ -98,8 +98,7 @@ SetpointRows::SetpointRows(const std::vector<std::string>& header, const std::st
     : file_(file_name), names_(header), columns_(header, file_name, frame) {
   kind_ = form_of(file_, columns_).kind;
   if (!columns_.declares_units() && kind_ != SetpointKind::kPosition) {
-    throw ConfigError(file_, 1, "header",
-                      "has no units, must have them: vx_ned [m/s], thrust [m/s^2] ...");
+    throw ConfigError(file_, 1, "header", "has no units, must have them: vx_ned [m/s], thrust [m/s^2] ...");
   }
 }
 
@@ -113,8 +112,8 @@ Setpoint SetpointRows::setpoint_of(const std::vector<double>& row) const {
   setpoint.yaw_free = !columns_.has(Motion::kYaw);
   setpoint.yaw_rad = columns_.yaw_ned(row);
   setpoint.yaw_rate = columns_.yaw_rate_ned(row);
-  setpoint.q_ned_from_frd = control::quaternion_from_euler(
-      {number(Motion::kRoll), number(Motion::kPitch), number(Motion::kYaw)});
+  setpoint.q_ned_from_frd =
+      control::quaternion_from_euler({number(Motion::kRoll), number(Motion::kPitch), number(Motion::kYaw)});
   setpoint.body_rates_frd = {number(Motion::kP), number(Motion::kQ), number(Motion::kR)};
   setpoint.specific_thrust = number(Motion::kThrust);
   return setpoint;

@@ -329,7 +329,8 @@ TEST_F(LockstepServices, RunWithoutAGroundTool) {
   const auto mocap = start("swiftlet-mocap");
   const auto control = start("swiftlet-control");
   const auto plant = start("swiftlet-plant");
-  EXPECT_TRUE(eventually([&] { return control->errors().find("mocap available") != std::string::npos; }, kStuck))
+  EXPECT_TRUE(
+      eventually([&] { return control->errors().find("mocap available") != std::string::npos; }, kStuck))
       << plant->errors() << control->errors() << mocap->errors();
   plant->signal(SIGTERM);
   EXPECT_EQ(plant->wait(kStuck), 0) << plant->errors();

@@ -43,7 +43,8 @@ TEST_F(Record, OfAnEarlierFlightIsKeptOrReplacedWhole) {
 
   const ProgramResult second = fly(hop_, {"--record", record()});
   EXPECT_EQ(second.exit_code, 2);
-  EXPECT_NE(second.errors.find("the folder holds another record (process "), std::string::npos) << second.errors;
+  EXPECT_NE(second.errors.find("the folder holds another record (process "), std::string::npos)
+      << second.errors;
   EXPECT_NE(second.errors.find("add --replace"), std::string::npos) << second.errors;
   EXPECT_EQ(fs::last_write_time(record() / "report.json"), written);
   EXPECT_TRUE(fs::exists(record() / "sensors.csv"));
@@ -117,8 +118,9 @@ TEST_F(Record, OfABatchWithATruncatedPictureIsAFailure) {
       "vary.yaml",
       "parameters:\n"
       "  vehicle.mass: {distribution: uniform, min: 0.95, max: 1.05, unit: nominal, source: estimate}\n");
-  const ProgramResult result = run_program(
-      "swiftlet", {"sim", "batch", hop_, "--dispersion", vary, "--runs", "2", "--out", record()}, folder_.path());
+  const ProgramResult result =
+      run_program("swiftlet", {"sim", "batch", hop_, "--dispersion", vary, "--runs", "2", "--out", record()},
+                  folder_.path());
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.output.find("2 completed, 0 failed"), std::string::npos) << result.output;
   EXPECT_NE(result.errors.find("is incomplete: no picture was drawn: gnuplot wrote a truncated file"),

@@ -41,11 +41,13 @@ TEST_F(StreamFlight, FliesAFileOfPositionsAndHolds) {
 
 TEST_F(StreamFlight, FliesTheReferenceOfARecord) {
   const ProgramResult flown = run_program(
-      "swiftlet", {"sim", "fly", folder_.write("hop.yaml", kHopMission), "--record", folder_.path() / "first"},
+      "swiftlet",
+      {"sim", "fly", folder_.write("hop.yaml", kHopMission), "--record", folder_.path() / "first"},
       folder_.path());
   ASSERT_EQ(flown.exit_code, 0) << flown.errors;
   take_off();
-  const ProgramResult result = swiftlet({"stream", folder_.path() / "first" / "flight.csv", "--json"}, kStuck);
+  const ProgramResult result =
+      swiftlet({"stream", folder_.path() / "first" / "flight.csv", "--json"}, kStuck);
   ASSERT_EQ(result.exit_code, 0) << result.errors << result.output;
   const json report = json::parse(result.output);
   EXPECT_EQ(report.at("refused"), 0);

@@ -17,8 +17,7 @@ constexpr std::chrono::seconds kStuck{120};
 // Returns true as soon as the predicate holds, false after the timeout. For sources that cannot notify, such
 // as another process: evaluates it every `period`, and once more after the timeout even if this thread was
 // delayed.
-inline bool eventually(const std::function<bool()>& predicate,
-                       std::chrono::milliseconds timeout = kStuck,
+inline bool eventually(const std::function<bool()>& predicate, std::chrono::milliseconds timeout = kStuck,
                        std::chrono::milliseconds period = std::chrono::milliseconds(1)) {
   const auto give_up = std::chrono::steady_clock::now() + timeout;
   for (bool is_last = false; !predicate(); is_last = std::chrono::steady_clock::now() > give_up) {

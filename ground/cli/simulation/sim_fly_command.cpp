@@ -42,7 +42,7 @@ int sim_fly(const FlyOptions& options) {
   const Interrupts interrupts;
 
   InProcessFlight flight = fly_in_process(loop, plan, plan.seed, record, trace ? &*trace : nullptr,
-                                                [&] { return interrupts.count() > 0; });
+                                          [&] { return interrupts.count() > 0; });
   if (trace) flight.report.record_fault = close(*trace);
   write_record(plan.folder, record, flight.report, flight.window, progress);
   return print_report(flight.report, options.json, progress);

@@ -21,9 +21,9 @@ int set_control(const Options& options) {
   const control::SettingsRequest request = control::settings_request(
       runtime::load_control_settings(file), runtime::load_fixed_settings(file), options.ramp_s);
   return run_request(
-      options, {"set control",
-                [&](Vehicle& vehicle) { return vehicle.change_settings(request, options.timeout()); },
-                OnInterrupt::kNothing});
+      options,
+      {"set control", [&](Vehicle& vehicle) { return vehicle.change_settings(request, options.timeout()); },
+       OnInterrupt::kNothing});
 }
 
 Command add_set_control_command(runtime::CommandLine set) {

@@ -67,8 +67,7 @@ TEST_F(RecordFolderTest, FlightsOfOneSecondGetFoldersOfTheirOwn) {
   std::vector<std::thread> flights;
   for (std::unique_ptr<RecordFolder>& folder : folders) {
     flights.emplace_back([&] {
-      folder =
-          std::make_unique<RecordFolder>(folder_ / "20261121-093909-square", ExistingRecord::kNumbered);
+      folder = std::make_unique<RecordFolder>(folder_ / "20261121-093909-square", ExistingRecord::kNumbered);
     });
   }
   for (std::thread& flight : flights) flight.join();
@@ -107,9 +106,9 @@ TEST_F(RecordFolderTest, DeletesNothingButRecords) {
   EXPECT_EQ(refusal(folder_ / "first", ExistingRecord::kReplaced),
             "--record " + (folder_ / "first").string() +
                 ": --replace deletes records only, and no flight writes thesis.tex; choose another folder");
-  EXPECT_EQ(refusal(folder_ / "first", ExistingRecord::kRefused),
-            "--record " + (folder_ / "first").string() +
-                ": the folder is not empty; choose a new or an empty one");
+  EXPECT_EQ(
+      refusal(folder_ / "first", ExistingRecord::kRefused),
+      "--record " + (folder_ / "first").string() + ": the folder is not empty; choose a new or an empty one");
   EXPECT_TRUE(fs::exists(folder_ / "first/report.json"));
 }
 

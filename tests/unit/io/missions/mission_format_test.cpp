@@ -279,9 +279,9 @@ TEST(SampledCsv, ReadsWhatAStreamOfPositionsHas) {
   EXPECT_LT((at_start("t [ms],x [cm],y [cm],z [cm]", MissionFrame::kNed).position_ned - there).norm(), 1e-12);
   EXPECT_EQ(refusal([&] { at_start("t [ms],x_ned [cm],y_ned [cm],z_ned [cm]", MissionFrame::kEnu); }),
             "s.csv:1: header: names the frame ned, but --frame names enu");
-  const MissionFile file =
-      samples("z_enu [m],t [s],y_enu [m],x_enu [m],yaw_enu [deg],yaw_rate_enu [deg/s],ax_enu [m/s^2],"
-              "ay_enu [m/s^2],az_enu [m/s^2]\n1,0,0.2,0.1,90,0,0,0,0\n1,1,0.2,0.1,90,0,0,0,0\n");
+  const MissionFile file = samples(
+      "z_enu [m],t [s],y_enu [m],x_enu [m],yaw_enu [deg],yaw_rate_enu [deg/s],ax_enu [m/s^2],"
+      "ay_enu [m/s^2],az_enu [m/s^2]\n1,0,0.2,0.1,90,0,0,0,0\n1,1,0.2,0.1,90,0,0,0,0\n");
   EXPECT_LT((at_path_start(file).position_ned - Vector3d(0.2, 0.1, -1.0)).norm(), 1e-12);
   EXPECT_NEAR(at_path_start(file).yaw_rad, 0.0, 1e-12);
   EXPECT_FALSE(assumes(file, "taken as")) << "the header says all";
@@ -292,19 +292,21 @@ TEST(SampledCsv, ReadsWhatAStreamOfPositionsHas) {
 TEST(CsvFrame, OfAFileThatNamesNoneIsThatOfTheOption) {
   const control::Limits limits;
   const auto ned = MissionFrame::kNed;
-  EXPECT_EQ(at_path_start(parse_sampled_csv("t,x,y,z\n0,1,2,-1\n4,1,2,-1\n", "s.csv", limits, ned)).position_ned,
-            Vector3d(1, 2, -1));
+  EXPECT_EQ(
+      at_path_start(parse_sampled_csv("t,x,y,z\n0,1,2,-1\n4,1,2,-1\n", "s.csv", limits, ned)).position_ned,
+      Vector3d(1, 2, -1));
   EXPECT_EQ(at_path_start(parse_waypoint_csv("1,2,-1\n1,1,-1\n", "w.csv", limits, ned)).position_ned,
             Vector3d(1, 2, -1));
   EXPECT_EQ(at_path_start(parse_waypoint_csv("x_ned [cm],y_ned [cm],z_ned [cm]\n100,200,-100\n100,100,-100\n",
                                              "w.csv", limits))
                 .position_ned,
             Vector3d(1, 2, -1));
-  EXPECT_LT((at_path_start(parse_polynomial_csv(kHeader + "\n" + row(4.0, 0.5, 1.0, -1.5), "p.csv", limits, ned))
-                 .position_ned -
-             Vector3d(0.5, 0, -1.5))
-                .norm(),
-            1e-9);
+  EXPECT_LT(
+      (at_path_start(parse_polynomial_csv(kHeader + "\n" + row(4.0, 0.5, 1.0, -1.5), "p.csv", limits, ned))
+           .position_ned -
+       Vector3d(0.5, 0, -1.5))
+          .norm(),
+      1e-9);
 }
 
 // Flight records
@@ -335,16 +337,15 @@ std::string flight_table(const std::string& header, bool older) {
   fly({0, 0, -1}, {0, 0, 0}, 4.0);
   const std::size_t fields = static_cast<std::size_t>(std::count(header.begin(), header.end(), ',')) + 1;
   for (const char* const row : {"\n0,,0,\n", "\n0.01,,0,\n"})
-    text.replace(text.find(row), std::string(row).size(), std::string(row, std::string(row).size() - 1) +
-                                                              std::string(fields - 4, ',') + "\n");
+    text.replace(text.find(row), std::string(row).size(),
+                 std::string(row, std::string(row).size() - 1) + std::string(fields - 4, ',') + "\n");
   return text;
 }
 
 const std::string kFlight =
     "t [s],mode,x_ned [m],ref_x_ned [m],ref_y_ned [m],ref_z_ned [m],ref_vx_ned [m/s],ref_vy_ned [m/s],"
     "ref_vz_ned [m/s],ref_ax_ned [m/s^2],ref_ay_ned [m/s^2],ref_az_ned [m/s^2],ref_yaw_ned [rad]";
-const std::string kOlderFlight =
-    "t,mode,px,ref_px,ref_py,ref_pz,ref_vx,ref_vy,ref_vz,ref_yaw";
+const std::string kOlderFlight = "t,mode,px,ref_px,ref_py,ref_pz,ref_vx,ref_vy,ref_vz,ref_yaw";
 
 TEST(FlightTable, IsFlownAgainBetweenTakeOffAndLanding) {
   for (const bool older : {false, true}) {
@@ -362,9 +363,10 @@ TEST(FlightTable, IsFlownAgainBetweenTakeOffAndLanding) {
 }
 
 TEST(FlightTable, IsRefusedWithoutAFlight) {
-  EXPECT_EQ(refusal([] { samples(kFlight + "\n"); }),
-            "s.csv: has no reference between a take-off and a landing: it is never at rest at least 0.2 m above "
-            "the ground");
+  EXPECT_EQ(
+      refusal([] { samples(kFlight + "\n"); }),
+      "s.csv: has no reference between a take-off and a landing: it is never at rest at least 0.2 m above "
+      "the ground");
   EXPECT_EQ(refusal([] { samples("t,mode,ref_px\n0,4,1\n"); }),
             "s.csv:1: header: has no column ref_py, which the flight.csv of a record has");
 }

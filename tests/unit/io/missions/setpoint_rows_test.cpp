@@ -31,15 +31,15 @@ std::string refusal(const std::string& header, const std::vector<std::string>& l
 }
 
 TEST(SetpointRows, DetectKindFromColumns) {
-  const auto kind = [](const std::string& header) {
-    return reader(header, "f", MissionFrame::kNed).kind();
-  };
+  const auto kind = [](const std::string& header) { return reader(header, "f", MissionFrame::kNed).kind(); };
   EXPECT_EQ(kind("t [s],x [m],y [m],z [m]"), SetpointKind::kPosition);
   EXPECT_EQ(kind("t [s],vx [m/s],vy [m/s],vz [m/s],x [m],y [m],z [m]"), SetpointKind::kPosition);
-  EXPECT_EQ(kind("t [s],vx_ned [m/s],vy_ned [m/s],vz_ned [m/s],yaw_rate_ned [deg/s]"), SetpointKind::kVelocity);
+  EXPECT_EQ(kind("t [s],vx_ned [m/s],vy_ned [m/s],vz_ned [m/s],yaw_rate_ned [deg/s]"),
+            SetpointKind::kVelocity);
   EXPECT_EQ(kind("t [s],ax [m/s^2],ay [m/s^2],az [m/s^2]"), SetpointKind::kAcceleration);
   EXPECT_EQ(kind("t [s],roll [deg],pitch [deg],yaw [deg],thrust [g]"), SetpointKind::kAttitude);
-  EXPECT_EQ(kind("thrust [m/s^2],p_frd [rad/s],q_frd [rad/s],r_frd [rad/s],t [ms]"), SetpointKind::kBodyRates);
+  EXPECT_EQ(kind("thrust [m/s^2],p_frd [rad/s],q_frd [rad/s],r_frd [rad/s],t [ms]"),
+            SetpointKind::kBodyRates);
 }
 
 TEST(SetpointRows, ConvertToSiUnits) {
@@ -76,7 +76,8 @@ TEST(SetpointRows, TakeTheFrameFromTheHeaderOrTheOption) {
 
 TEST(SetpointRows, RefuseToGuessAFrame) {
   const std::string sentence =
-      "s.csv:1: header: names no frame: write x_ned [m] (north, east, down) or x_enu [m] (east, north, up), or "
+      "s.csv:1: header: names no frame: write x_ned [m] (north, east, down) or x_enu [m] (east, north, up), "
+      "or "
       "add --frame ned or --frame enu";
   EXPECT_EQ(refusal("t [s],x [m],y [m],z [m]"), sentence);
   EXPECT_EQ(refusal("t [s],x_ned [m],y_enu [m],z_ned [m]"),
@@ -100,10 +101,12 @@ TEST(SetpointRows, AssumeEnuPositionsWithoutUnits) {
 TEST(SetpointRows, RefuseInvalidColumnsAndRows) {
   EXPECT_EQ(refusal("t [s],x_ned [m],y_ned [m]"),
             "s.csv:1: header: has no column z [m], must have x [m], y [m] and z [m]");
-  EXPECT_EQ(refusal("x_ned [m],y_ned [m],z_ned [m]"), "s.csv:1: header: has no column t [s], must have t [s]");
-  EXPECT_EQ(refusal("t [s],x_ned [ft],y_ned [m],z_ned [m]"),
-            "s.csv:1: header: has the column x_ned [ft] with an unknown unit, must be x_ned [m] or x_ned [cm] or "
-            "x_ned [mm]");
+  EXPECT_EQ(refusal("x_ned [m],y_ned [m],z_ned [m]"),
+            "s.csv:1: header: has no column t [s], must have t [s]");
+  EXPECT_EQ(
+      refusal("t [s],x_ned [ft],y_ned [m],z_ned [m]"),
+      "s.csv:1: header: has the column x_ned [ft] with an unknown unit, must be x_ned [m] or x_ned [cm] or "
+      "x_ned [mm]");
   EXPECT_EQ(refusal("t [s],x,y [m],z [m]"),
             "s.csv:1: header: has the column x without a unit, must be x [m] or x [cm] or x [mm]");
   EXPECT_EQ(refusal("t [s],x_ned [m],y_ned [m],z_ned [m],thrust [g]"),
@@ -112,7 +115,8 @@ TEST(SetpointRows, RefuseInvalidColumnsAndRows) {
             "s.csv:1: header: has the column x twice, must have it once");
   EXPECT_NE(refusal("t [s],height [m]").find("has the column height [m], must be t [s], x_ned [m]"),
             std::string::npos);
-  EXPECT_NE(refusal("t [s],roll_ned [rad]").find("has the column roll_ned [rad], must be"), std::string::npos);
+  EXPECT_NE(refusal("t [s],roll_ned [rad]").find("has the column roll_ned [rad], must be"),
+            std::string::npos);
   EXPECT_NE(refusal("t [s]").find("names no setpoint"), std::string::npos);
   const std::string header = "t [s],x_ned [m],y_ned [m],z_ned [m]";
   EXPECT_EQ(refusal(header, {"0,0,0,-1", "0,0,0,-1"}),
