@@ -10,6 +10,7 @@ constexpr const char* kFlight = "flight";
 NodeSettings announced(NodeSettings network) {
   network.name = "swiftlet fly";
   network.source_of = kFlight;
+  network.announcement_period = kFixturePeriod;  // several announcements within kSourceSearchTime
   return network;
 }
 
