@@ -208,9 +208,12 @@ std::vector<std::string> first_csv_line(std::string_view text, const std::string
   return {};
 }
 
-bool is_number(std::string_view field) {
+bool is_number(std::string_view field) { return parse_number(field).has_value(); }
+
+std::optional<double> parse_number(std::string_view field) {
   double number = 0.0;
-  return read_number(field, number);
+  if (!read_number(field, number)) return std::nullopt;
+  return number;
 }
 
 std::string exact(double number) {

@@ -19,6 +19,7 @@
 #include "swiftlet/ground/terminal/fleet_progress.hpp"
 #include "swiftlet/plant/model/airframe.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
+#include "swiftlet/services/dds/discovery/flight_reservation.hpp"
 #include "swiftlet/services/dds/shared_memory.hpp"
 
 namespace swiftlet::ground {
@@ -60,17 +61,23 @@ std::vector<LaunchConfiguration> plan_flights(const FlyOptions& options,
     one.seed = options.seed + i;
     one.start_ned = {
         0.0, options.spacing_m * (static_cast<double>(i) - 0.5 * static_cast<double>(vehicles.size() - 1))};
-    LaunchConfiguration plan = plan_flight(one);
-    if (vehicles.size() > 1) {
-      if (i > 0) plan.folder = plans.front().folder.parent_path();
-      plan.folder /= vehicles[i];
-      if (options.trace) plan.trace_file = plan.folder / "trace.csv";
-    }
-    plans.push_back(std::move(plan));
+    plans.push_back(plan_flight(one));
   }
   if (vehicles.size() > 1 && options.launch_mode == LaunchMode::kStarted)
     require_room(options.spacing_m, plans.front().vehicle);
   return plans;
+}
+
+// Makes the folder of the record, with one inside for each of several vehicles.
+std::unique_ptr<RecordFolder> make_record(const FlyOptions& options, const std::vector<std::string>& vehicles,
+                                          std::vector<LaunchConfiguration>& plans) {
+  std::uintmax_t needed_bytes = 0;
+  for (const LaunchConfiguration& plan : plans) needed_bytes += plan.record_bytes();
+  require_space(plans.front().folder, needed_bytes);
+  auto folder = std::make_unique<RecordFolder>(plans.front().folder, existing_record(options));
+  for (std::size_t i = 0; i < plans.size(); ++i)
+    plans[i].record_in(plans.size() == 1 ? folder->path() : folder->path() / vehicles[i]);
+  return folder;
 }
 
 // Flies all vehicles at the same time, each from its own thread.
@@ -100,10 +107,15 @@ int fly(const FlyOptions& options) {
   check(options, vehicles.size());
   std::vector<LaunchConfiguration> plans = plan_flights(options, vehicles);
 
+  const std::unique_ptr<RecordFolder> record = make_record(options, vehicles, plans);
+
   std::optional<comms::DomainLock> domain_lock;
   if (options.domain < 0 && options.launch_mode == LaunchMode::kStarted) domain_lock.emplace();
   comms::NodeSettings network = options.network;
   network.domain = domain_lock ? domain_lock->domain() : std::max(options.domain, 0);
+  // In a domain that others may use, the vehicles must not live already.
+  std::optional<comms::FlightReservation> reservation;
+  if (!domain_lock && options.launch_mode == LaunchMode::kStarted) reservation.emplace(network, vehicles);
 
   ProgressLine progress;
   std::deque<ProcessFlight> flights;

@@ -62,12 +62,15 @@ Vehicle::Target target_of(const GotoOptions& options) {
 }  // namespace
 
 Command add_arm_command(runtime::CommandLine root) {
-  return add_plain_request_command(root, "arm", "Start the rotors on the ground if all arming checks pass",
-                                   &Vehicle::arm);
+  return add_plain_request_command(
+      root,
+      {"arm", "Start the rotors on the ground if all arming checks pass; of several vehicles, all or none",
+       &Vehicle::arm, OnInterrupt::kHold, true, &Vehicle::disarm});
 }
 
 Command add_disarm_command(runtime::CommandLine root) {
-  return add_plain_request_command(root, "disarm", "Stop the rotors on the ground", &Vehicle::disarm);
+  return add_plain_request_command(
+      root, {"disarm", "Stop the rotors on the ground", &Vehicle::disarm, OnInterrupt::kNothing, true});
 }
 
 Command add_takeoff_command(runtime::CommandLine root) {
@@ -80,9 +83,10 @@ Command add_takeoff_command(runtime::CommandLine root) {
       .show_default();
   app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
   return {app, [options] {
-            return run_request(*options, "takeoff", [&](Vehicle& vehicle) {
-              return vehicle.take_off(options->height_m, options->speed, options->timeout());
-            });
+            return run_request(*options, {"takeoff", [&](Vehicle& vehicle) {
+                                            return vehicle.take_off(options->height_m, options->speed,
+                                                                    options->timeout());
+                                          }});
           }};
 }
 
@@ -106,13 +110,14 @@ Command add_goto_command(runtime::CommandLine root) {
   app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
   return {app, [options] {
             const Vehicle::Target target = target_of(*options);
-            return run_request(*options, "goto",
-                               [&](Vehicle& vehicle) { return vehicle.go_to(target, options->timeout()); });
+            return run_request(*options, {"goto", [&](Vehicle& vehicle) {
+                                            return vehicle.go_to(target, options->timeout());
+                                          }});
           }};
 }
 
 Command add_hold_command(runtime::CommandLine root) {
-  return add_plain_request_command(root, "hold", "Come to rest and hold the position", &Vehicle::hold);
+  return add_plain_request_command(root, {"hold", "Come to rest and hold the position", &Vehicle::hold});
 }
 
 Command add_land_command(runtime::CommandLine root) {
@@ -121,9 +126,9 @@ Command add_land_command(runtime::CommandLine root) {
       root, "land", "Descend vertically, land and stop the rotors", "swiftlet land --speed 0.3", options);
   app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
   return {app, [options] {
-            return run_request(*options, "land", [&](Vehicle& vehicle) {
-              return vehicle.land(options->speed, options->timeout());
-            });
+            return run_request(*options, {"land", [&](Vehicle& vehicle) {
+                                            return vehicle.land(options->speed, options->timeout());
+                                          }});
           }};
 }
 
@@ -135,8 +140,9 @@ Command add_stop_command(runtime::CommandLine root) {
   app.add_flag("--yes,-y", options->yes, "do not ask for confirmation");
   return {app, [options] {
             confirm(*options);
-            return run_request(*options, "stop",
-                               [&](Vehicle& vehicle) { return vehicle.stop(options->timeout()); });
+            return run_request(*options,
+                               {"stop", [&](Vehicle& vehicle) { return vehicle.stop(options->timeout()); },
+                                OnInterrupt::kNothing, true});
           }};
 }
 

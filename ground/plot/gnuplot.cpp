@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include <boost/algorithm/string/predicate.hpp>
 #include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
 
@@ -23,6 +24,7 @@ namespace swiftlet::plot {
 namespace {
 
 namespace fs = std::filesystem;
+using boost::algorithm::ends_with;
 using boost::algorithm::replace_all_copy;
 
 constexpr std::chrono::seconds kLongest{30};
@@ -195,6 +197,15 @@ void add_panel(std::string& script, const Panel& panel, std::size_t number) {
   script += (panel.in_space ? "splot" : "plot") + (plots.empty() ? " NaN notitle" : plots) + "\n";
 }
 
+// True if the file has the last element of a PNG or SVG picture. gnuplot succeeds where it can write only the
+// beginning of one.
+bool is_whole(const std::string& picture) {
+  constexpr std::string_view kLastPngChunk("\0\0\0\0IEND\xae\x42\x60\x82", 12);
+  const std::size_t at = picture.find_last_not_of("\r\n ");
+  const std::string_view text = std::string_view(picture).substr(0, at == std::string::npos ? 0 : at + 1);
+  return ends_with(picture, kLastPngChunk) || ends_with(text, "</svg>");
+}
+
 // Runs the script in a temporary folder. Returns the files 0, 1, ... that it writes there. Throws
 // std::runtime_error.
 std::vector<std::string> run_gnuplot(const std::string& script, std::size_t files) {
@@ -207,7 +218,7 @@ std::vector<std::string> run_gnuplot(const std::string& script, std::size_t file
     std::error_code error;
     fs::remove_all(folder, error);
   });
-  ground::write_whole_file(folder / "script", script);
+  ground::write_atomically(folder / "script", script);
   ground::ChildProcess process({"gnuplot", gnuplot, {"script"}, folder / "log", folder});
   const auto end = process.wait(kLongest);
   const std::string no_picture = "no picture was drawn: gnuplot ";
@@ -215,7 +226,12 @@ std::vector<std::string> run_gnuplot(const std::string& script, std::size_t file
   if (end->by_signal || end->code != 0)
     throw std::runtime_error(no_picture + end->to_string() + ": " + process.last_log_line());
   std::vector<std::string> out;
-  for (std::size_t i = 0; i < files; ++i) out.push_back(runtime::read_text_file(folder / std::to_string(i)));
+  for (std::size_t i = 0; i < files; ++i) {
+    out.push_back(runtime::read_text_file(folder / std::to_string(i)));
+    if (!is_whole(out.back()))
+      throw std::runtime_error(no_picture + "wrote a truncated file; is " +
+                               fs::temp_directory_path().string() + " full?");
+  }
   return out;
 }
 
@@ -236,14 +252,20 @@ std::string draw_png(const Figure& figure, const fs::path& png, bool with_script
   const fs::path script = fs::path(png).replace_extension(".gp");
   try {
     if (with_script)
-      ground::write_whole_file(script, "# Run gnuplot on this file, in its folder.\n" +
+      ground::write_atomically(script, "# Run gnuplot on this file, in its folder.\n" +
                                            gnuplot_script(figure, Format::kPng, png.filename()));
-    ground::write_whole_file(png, run_gnuplot(gnuplot_script(figure, Format::kPng, "0"), 1).front());
+    ground::write_atomically(png, run_gnuplot(gnuplot_script(figure, Format::kPng, "0"), 1).front());
     return {};
   } catch (const std::exception& fault) {
     const bool hint = with_script && fault.what() == std::string_view(kNotInstalled);
     return fault.what() + (hint ? " (" + script.filename().string() + " draws it)" : "");
   }
+}
+
+std::string draw_png_if_installed(const Figure& figure, const fs::path& png) {
+  std::string fault = draw_png(figure, png, true);
+  if (!fault.empty() && !ground::find_program("gnuplot").empty()) throw std::runtime_error(fault);
+  return fault;
 }
 
 Drawings draw_svg(const std::vector<Figure>& figures) {

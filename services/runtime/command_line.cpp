@@ -16,6 +16,14 @@
 namespace swiftlet::runtime {
 namespace {
 
+// The error, and the usage line of the command that was given.
+std::string failure_text(const CLI::App* app, const CLI::Error& error) {
+  const std::string help = app->help();
+  const std::size_t begin = std::min(help.find("Usage:"), help.size());
+  const std::string usage = help.substr(begin, help.find('\n', begin) - begin);
+  return std::string(error.what()) + "\n" + usage + "\nRun with --help for more information.\n";
+}
+
 // CLI11's own checks accept "nan", and whole numbers too large for their type.
 std::optional<double> finite_number(const std::string& text) {
   double value = 0.0;
@@ -230,7 +238,9 @@ std::string CommandLine::help() const { return app_->help(); }
 bool CommandLine::parsed() const { return app_->parsed(); }
 
 Program::Program(const std::string& name, const std::string& purpose)
-    : app_(std::make_unique<CLI::App>(purpose, name)) {}
+    : app_(std::make_unique<CLI::App>(purpose, name)) {
+  app_->failure_message(failure_text);
+}
 Program::~Program() = default;
 
 Program::Parsed Program::parse(int argc, const char* const* argv) {

@@ -101,7 +101,7 @@ class Program {
   CommandLine command_line() const { return CommandLine(*app_); }
 
   enum class Parsed { kRun, kHelp, kWrongUsage };
-  // Prints the help to stdout (kHelp) or the error to stderr (kWrongUsage).
+  // Prints the help to stdout (kHelp), or the error and the usage line of the command to stderr (kWrongUsage).
   Parsed parse(int argc, const char* const* argv);
   // Parses one line without the program's name; prints nothing.
   Parsed parse(const std::string& line);

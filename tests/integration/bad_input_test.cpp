@@ -160,12 +160,14 @@ TEST_F(BadInput, OnlineCommands) {
     EXPECT_EQ(result.exit_code, 2) << result.errors;
     EXPECT_NE(result.errors.find(sentence), std::string::npos) << result.errors;
   };
+  refuses({"goto", "1"}, "y is required\nUsage: swiftlet goto [OPTIONS] x y [z]\n");
+  refuses({"mission", "fly"}, "file is required\nUsage: swiftlet mission fly [OPTIONS] file\n");
   refuses({"goto", "1", "2"}, "goto: needs either z (down: negative is up) or --height");
   refuses({"goto", "1", "0", "0.1"}, "goto: z = +0.100 m is below the ground, as z points down (NED)");
   refuses({"goto", "1", "0", "-1", "--yaw", "90"},
           "goto: yaw is 90 rad, more than a full turn: 90 degrees are");
   refuses({"goto", "1", "0", "--heigth", "1"}, "Unknown option '--heigth'. Did you mean '--height'?");
-  refuses({"stream", folder_.write("low.csv", "t [s],x [m],y [m],z [m]\n0,0,0,-1\n0.1,0,0,0.2\n")},
+  refuses({"stream", folder_.write("low.csv", "t [s],x_ned [m],y_ned [m],z_ned [m]\n0,0,0,-1\n0.1,0,0,0.2\n")},
           "low.csv:3: z: in NED: z = +0.200 m is below the ground");
   refuses({"stream", folder_.write("odd.csv", "t,x\x1b[31m\n")}, "odd.csv:1: is not a text file");
   refuses({"goto", "1", "2", "nan"}, "nan is not a finite number");
@@ -173,6 +175,10 @@ TEST_F(BadInput, OnlineCommands) {
   refuses({"land", "--speed", "0"}, "must be a finite number above 0");
   refuses({"mission", "check", folder_.write("far.yaml", replaced(kMission, "[1, 0, -1]", "[1, 40, -1]"))},
           "east is 40 m");
+  refuses({"teleop"}, "teleop: requires a terminal, or --joystick DEVICE");
+  const std::string text = folder_.write("event3", "");
+  refuses({"teleop", "--joystick", text}, text + " is not an event device; they are /dev/input/event*");
+  refuses({"teleop", "--joystick", text + "x"}, "cannot open " + text + "x: No such file or directory");
   refuses({"circle"}, "Unknown command 'circle'. Commands: fly, arm");
   refuses({"gains", "--seed", "100000000000000000000000"}, "is not a whole number from 0 to 2^64 - 1");
   refuses({"flyy"}, "Unknown command 'flyy'. Did you mean 'fly'?");
@@ -180,8 +186,9 @@ TEST_F(BadInput, OnlineCommands) {
 }
 
 TEST_F(BadInput, HelpIsNotRefused) {
-  for (const char* command : {"fly", "arm", "disarm", "takeoff", "goto", "land", "hold", "stop", "mission",
-                              "trajectory", "stream", "status", "watch", "list", "gains", "identify"}) {
+  for (const char* command :
+       {"fly", "arm", "disarm", "takeoff", "goto", "land", "hold", "stop", "mission", "trajectory", "stream",
+        "teleop", "status", "watch", "list", "gains", "identify"}) {
     const ProgramResult result = run_program("swiftlet", {command, "--help"}, folder_.path());
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_NE(result.output.find("example: swiftlet " + std::string(command)), std::string::npos)

@@ -264,12 +264,23 @@ TEST_F(GnuplotTest, KeepsTheOldPictureIfGnuplotFails) {
             "no picture was drawn: gnuplot ended with exit status 3: out of paper");
 }
 
+TEST_F(GnuplotTest, RefusesATruncatedPicture) {
+  temporary_.write("some.png", "old");
+  fs::create_directory(folder_ / "bin");
+  tests::write_program(folder_ / "bin" / "gnuplot", "printf '\\211PNG half' > 0");
+  const tests::ProgramPath path(folder_ / "bin");
+  const std::string sentence = draw_png(parabola(1.0, 1.0), folder_ / "some.png");
+  EXPECT_EQ(sentence.find("no picture was drawn: gnuplot wrote a truncated file; is "), 0U) << sentence;
+  EXPECT_EQ(text_of(folder_ / "some.png"), "old");
+  EXPECT_THROW(draw_png_if_installed(parabola(1.0, 1.0), folder_ / "some.png"), std::runtime_error);
+}
+
 TEST_F(GnuplotTest, ReportsThatGnuplotIsNotInstalled) {
   const tests::ProgramPath path(folder_);
   EXPECT_EQ(draw_png(parabola(1.0, 1.0), folder_ / "some.png"),
             "no picture was drawn: gnuplot is not installed");
   EXPECT_TRUE(fs::is_empty(folder_));
-  EXPECT_EQ(draw_png(parabola(1.0, 1.0), folder_ / "some.png", true),
+  EXPECT_EQ(draw_png_if_installed(parabola(1.0, 1.0), folder_ / "some.png"),
             "no picture was drawn: gnuplot is not installed (some.gp draws it)");
   const Drawings drawings = draw_svg({parabola(1.0, 1.0)});
   EXPECT_EQ(drawings.fault, "no picture was drawn: gnuplot is not installed");
