@@ -11,6 +11,7 @@
 #include "swiftlet/control/attitude/attitude_controller.hpp"
 #include "swiftlet/control/attitude/attitude_error.hpp"
 #include "swiftlet/control/design/control_design.hpp"
+#include "swiftlet/control/design/control_gains.hpp"
 #include "swiftlet/control/estimation/disturbance_observer.hpp"
 #include "swiftlet/control/estimation/rotor_observer.hpp"
 #include "swiftlet/control/estimation/takeoff_consistency.hpp"
@@ -68,6 +69,11 @@ struct FlightController::Impl {
   void report(const SupervisorInputs& inputs);
   const plant::ActuatorCommand& stamp_command(const plant::ImuSample& sample);
 
+  // Changes of gains.
+  void begin_gain_change(const Request& request, const Outcome& outcome);
+  void begin_gain_changes(const ClientInputs& clients);
+  void update_gains();
+
   // The outer loop for each control mode.
   AttitudeDemand follow_reference(bool integrate, double dt_s);
   AttitudeDemand spool_up(double lift_fraction) const;
@@ -86,6 +92,11 @@ struct FlightController::Impl {
   AttitudeController attitude;
   Allocator allocator;
   Supervisor supervisor;
+
+  GainChange gain_change;
+  ControlGains gains;              // in force
+  bool gains_are_constant = true;  // and set in the control laws
+  std::int64_t saturated_ns = -1;  // of the last saturated command; -1: none
 
   std::int64_t last_stamp_ns = 0;
   int unusable_samples = 0;            // in a row
@@ -122,6 +133,9 @@ FlightController::Impl::Impl(const plant::Vehicle& vehicle_in, const ControlSett
       supply_voltage_v(allocator.plausible_supply().assumed),
       supply(allocator.supply_at(supply_voltage_v)) {
   command.rotor_count = vehicle.rotor_count();
+  gains = control_gains(design_in, settings_in);
+  gain_change.from = gain_change.to = gains;
+  gain_change.name = settings_name(settings_in.name);
 }
 
 // A restarted vehicle counts its time from 0 again. This is accepted while the rotors are off.
@@ -132,6 +146,7 @@ void FlightController::Impl::restart_if_clock_went_back(const plant::ImuSample& 
   rotors = RotorObserver(vehicle, settings.estimator.rotor_speed_bandwidth);
   resets_seen = 0;
   last_stamp_ns = 0;
+  saturated_ns = -1;
   has_battery = false;
 }
 
@@ -164,6 +179,10 @@ SupervisorInputs FlightController::Impl::inputs() const {
   inputs.rotor_speed = *std::max_element(rotors.speeds().begin(), rotors.speeds().end());
   inputs.imu_unusable_s = unusable_s;
   inputs.imu_gap_s = imu_gap_s;
+  inputs.gains = &gain_change.to;
+  inputs.gains_progress = gain_change.progress(last_stamp_ns);
+  inputs.gains_changing_s = gain_change.remaining_s(last_stamp_ns);
+  if (saturated_ns >= 0) inputs.unsaturated_s = seconds(last_stamp_ns - saturated_ns);
   return inputs;
 }
 
@@ -176,6 +195,31 @@ double FlightController::Impl::store_sample(const plant::ImuSample& sample) {
   specific_force_frd = sample.specific_force_frd;
   rotors.step(dt_s, command, supply_voltage_v);
   return dt_s;
+}
+
+// The supervisor has accepted the request: the gains change from those of this step on.
+void FlightController::Impl::begin_gain_change(const Request& request, const Outcome& outcome) {
+  if (request.kind != RequestKind::kSettings || !outcome.accepted) return;
+  gain_change = *request.gains;
+  gain_change.from = gains;
+  gain_change.start_ns = last_stamp_ns;
+  gains_are_constant = false;
+}
+
+void FlightController::Impl::begin_gain_changes(const ClientInputs& clients) {
+  for (std::size_t i = 0; i < clients.request_count; ++i)
+    begin_gain_change(*clients.requests[i].request, *clients.requests[i].outcome);
+}
+
+// Sets the gains of this step in the control laws. With the rotors off they change at once.
+void FlightController::Impl::update_gains() {
+  if (gains_are_constant) return;
+  if (rotors_off(supervisor.mode())) gain_change.duration_s = 0.0;
+  gains = gain_change.at(last_stamp_ns);
+  position.set_gains(gains);
+  attitude.set_gains(gains);
+  disturbance.set({gains.disturbance_bandwidth, gains.disturbance_limit});
+  gains_are_constant = gain_change.progress(last_stamp_ns) >= 1.0;
 }
 
 // Updates the monitor and the observer that run in flight, in every control mode.
@@ -314,6 +358,8 @@ void FlightController::Impl::report(const SupervisorInputs& inputs) {
   status.ground_links = supervisor.ground_links();
   status.supply_voltage_v = supply_voltage_v;
   status.mission = supervisor.mission();
+  status.settings = gain_change.name;
+  status.gains_progress = gain_change.progress(last_stamp_ns);
 }
 
 const plant::ActuatorCommand& FlightController::Impl::stamp_command(const plant::ImuSample& sample) {
@@ -354,6 +400,8 @@ const plant::ActuatorCommand& FlightController::on_imu(const plant::ImuSample& s
   const ControlSetpoint setpoint = c.supervisor.step(inputs, clients);
   c.resets_seen = inputs.estimate->resets;
   c.reference = setpoint.reference;
+  c.begin_gain_changes(clients);
+  c.update_gains();
 
   // The control laws and the command.
   c.observe(setpoint, dt_s);
@@ -364,6 +412,7 @@ const plant::ActuatorCommand& FlightController::on_imu(const plant::ImuSample& s
     const AttitudeDemand demand = c.outer_loop(setpoint, dt_s);
     c.allocate(demand, c.inner_loop(demand));
   }
+  if (c.status.saturated) c.saturated_ns = sample.stamp_ns;
   c.report(inputs);
   return c.stamp_command(sample);
 }
@@ -389,10 +438,15 @@ bool FlightController::on_ground_heartbeat(const GroundHeartbeat& heartbeat) {
   return impl_->supervisor.ground_heartbeat(heartbeat);
 }
 
-void FlightController::answer(ClientInputs& clients) { impl_->supervisor.answer(clients, impl_->inputs()); }
+void FlightController::answer(ClientInputs& clients) {
+  impl_->supervisor.answer(clients, impl_->inputs());
+  impl_->begin_gain_changes(clients);
+}
 
 Outcome FlightController::request(const Request& request) {
-  return impl_->supervisor.request(request, impl_->inputs());
+  const Outcome outcome = impl_->supervisor.request(request, impl_->inputs());
+  impl_->begin_gain_change(request, outcome);
+  return outcome;
 }
 
 Outcome FlightController::on_setpoint(const Setpoint& setpoint) {
@@ -401,7 +455,8 @@ Outcome FlightController::on_setpoint(const Setpoint& setpoint) {
 
 FlightState FlightController::state() const {
   const Impl& l = *impl_;
-  return {l.supervisor.state(), l.position.integral(), l.command.rotor_state, l.command.throttle};
+  return {l.supervisor.state(), l.position.integral(), l.command.rotor_state, l.command.throttle,
+          l.gain_change};
 }
 
 void FlightController::adopt(const FlightState& state, const Mission* mission, const Trajectory* trajectory) {
@@ -410,6 +465,8 @@ void FlightController::adopt(const FlightState& state, const Mission* mission, c
   l.position.adopt(state.position_integral);
   l.command.rotor_state = state.rotor_state;
   l.command.throttle = state.throttle;
+  l.gain_change = state.gains;
+  l.gains_are_constant = false;
 }
 
 bool FlightController::detects_airborne() const {
@@ -428,6 +485,7 @@ ErrorState FlightController::estimate_deviation() const { return impl_->estimato
 const Reference& FlightController::reference() const { return impl_->reference; }
 const AttitudeSetpoint& FlightController::attitude_setpoint() const { return impl_->attitude_setpoint; }
 const Status& FlightController::status() const { return impl_->status; }
+const ControlGains& FlightController::gains() const { return impl_->gains; }
 const RequestStatuses& FlightController::requests() const { return impl_->supervisor.requests(); }
 
 }  // namespace swiftlet::control

@@ -8,6 +8,7 @@
 #include "swiftlet/control/estimation/estimator.hpp"
 #include "swiftlet/control/flight_state.hpp"
 #include "swiftlet/control/supervision/request_status.hpp"
+#include "swiftlet/control/types/gains.hpp"
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/control/types/reference.hpp"
 #include "swiftlet/control/types/request.hpp"
@@ -54,7 +55,8 @@ class FlightController {
   Outcome on_setpoint(const Setpoint& setpoint);
 
   // The state of the flight. Another controller of the same vehicle and settings adopts it and continues in
-  // its next step. The mission and trajectory being flown are passed separately, as in Supervisor::adopt().
+  // its next step, with the gains in force and a change of them under way. The mission and trajectory being
+  // flown are passed separately, as in Supervisor::adopt().
   FlightState state() const;
   void adopt(const FlightState& state, const Mission* mission, const Trajectory* trajectory);
   // True if the vehicle flies, by accelerometer and rotor speeds: nothing but the rotors carries it.
@@ -68,6 +70,7 @@ class FlightController {
   const Reference& reference() const;
   const AttitudeSetpoint& attitude_setpoint() const;
   const Status& status() const;
+  const ControlGains& gains() const;  // in force
   // Current status of the requests that were accepted last.
   const RequestStatuses& requests() const;
 

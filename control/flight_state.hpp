@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "swiftlet/control/supervision/state.hpp"
+#include "swiftlet/control/types/gains.hpp"
 #include "swiftlet/plant/model/samples.hpp"
 
 namespace swiftlet::control {
@@ -14,6 +15,7 @@ struct FlightState {
   Eigen::Vector3d position_integral = Eigen::Vector3d::Zero();  // m/s^2, in NED
   plant::RotorState rotor_state = plant::RotorState::kOff;      // of the last command, as is throttle
   plant::PerRotor throttle{};
+  GainChange gains;  // in force, or changing
 };
 
 }  // namespace swiftlet::control

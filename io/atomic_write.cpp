@@ -6,7 +6,7 @@
 
 namespace swiftlet::ground {
 
-void write_whole_file(const std::filesystem::path& file, const std::string& text) {
+void write_atomically(const std::filesystem::path& file, const std::string& text) {
   const std::filesystem::path unfinished = file.string() + ".part";
   std::ofstream out(unfinished, std::ios::binary);
   out << text;

@@ -8,6 +8,6 @@ namespace swiftlet::ground {
 
 // Writes FILE.part and renames it to the file. Throws std::runtime_error if that fails; the old file then
 // stays unchanged.
-void write_whole_file(const std::filesystem::path& file, const std::string& text);
+void write_atomically(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace swiftlet::ground

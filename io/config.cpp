@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <deque>
 #include <exception>
 #include <sstream>
 #include <utility>
@@ -11,6 +12,7 @@
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
+#include "swiftlet/io/nearest_name.hpp"
 #include "swiftlet/io/text_file.hpp"
 
 namespace swiftlet::runtime {
@@ -26,7 +28,7 @@ constexpr std::size_t kMaxShownLength = 60;
 // the file.
 constexpr const char* kDocumentEnd = "...\n";
 
-enum class Kind { kNull, kScalar, kList, kMap };
+enum class Kind { kMissing, kNull, kScalar, kList, kMap };
 
 // A number as a person would write it: 0.1, not 0.10000000000000001.
 std::string format_value(double number) {
@@ -59,54 +61,15 @@ std::string joined(const std::vector<std::string>& names) {
   return out;
 }
 
-// Edit distance: the number of inserted, deleted or replaced characters (Levenshtein 1966).
-std::size_t distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row[b.size()];
-}
-
-// "; nearest is hold_s" if a name starts with the wanted text or differs from it by few letters, else "".
+// "; nearest is hold_s", or "" if no name is near.
 std::string nearest_of(const std::vector<std::string>& names, const std::string& wanted) {
-  const auto nearest = std::min_element(names.begin(), names.end(), [&](const auto& a, const auto& b) {
-    return distance(a, wanted) < distance(b, wanted);
-  });
-  if (nearest == names.end()) return "";
-  const std::size_t longer = std::max(nearest->size(), wanted.size());
-  const bool begins_alike = wanted.size() >= 3 && nearest->compare(0, wanted.size(), wanted) == 0;
-  const std::size_t letters = distance(*nearest, wanted);
-  const bool few = 3 * letters <= longer || (letters <= 2 && longer > 3);
-  return begins_alike || few ? "; nearest is " + *nearest : "";
+  const std::string nearest = nearest_name(names, wanted);
+  return nearest.empty() ? "" : "; nearest is " + nearest;
 }
 
 std::string unknown_key(const std::vector<std::string>& known, const std::string& key) {
   if (known.empty()) return "is unknown, must be left out";
   return "is unknown, must be one of " + joined(known) + nearest_of(known, key);
-}
-
-// Length in bytes of the UTF-8 character at the start of text; 0 if it is invalid (truncated, overlong,
-// surrogate, beyond U+10FFFF).
-std::size_t utf8_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned>(static_cast<unsigned char>(text[i])); };
-  const unsigned lead = byte(0);
-  if (lead < 0x80) return 1;
-  const std::size_t length = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
-  if (lead < 0xc2 || lead > 0xf4 || text.size() < length) return 0;
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xc0U) != 0x80U) return 0;
-  }
-  const bool overlong = (lead == 0xe0 && byte(1) < 0xa0) || (lead == 0xf0 && byte(1) < 0x90);
-  const bool no_character = (lead == 0xed && byte(1) > 0x9f) || (lead == 0xf4 && byte(1) > 0x8f);
-  return overlong || no_character ? 0 : length;
 }
 
 // Refuses what is not a text file before the YAML parser reads it.
@@ -157,6 +120,8 @@ struct ConfigNode::Value {
 
   std::string describe() const {
     switch (kind) {
+      case Kind::kMissing:
+        return "missing";
       case Kind::kNull:
         return "empty";
       case Kind::kScalar:
@@ -183,6 +148,8 @@ struct ConfigNode::Value {
 struct ConfigNode::Tree {
   std::string file;
   std::unique_ptr<Value> root;
+  bool collects_missing = false;  // in read_known()
+  std::deque<Value> missing;      // keys that were missing in it, in the order of reading
 };
 
 namespace {
@@ -300,6 +267,10 @@ class TreeBuilder final : public YAML::EventHandler {
   std::vector<Frame> stack_;
 };
 
+ConfigError missing_key(const std::string& file, const Value& missing) {
+  return {file, missing.line, missing.key, "is missing, must be given"};
+}
+
 void reject_unknown(const std::string& file, const Value& value) {
   for (std::size_t i = 0; i < value.children.size(); ++i) {
     const Value& child = *value.children[i];
@@ -323,7 +294,10 @@ void ConfigNode::fail_type(const std::string& wanted) const {
   fail("is " + value_->describe() + ", must be " + wanted);
 }
 
+bool ConfigNode::is_missing() const { return value_->kind == Kind::kMissing; }
+
 std::optional<ConfigNode> ConfigNode::find(const std::string& key) const {
+  if (is_missing()) return std::nullopt;
   if (value_->kind != Kind::kMap) fail_type("a map");
   value_->mark_read(key);
   Value* const child = value_->child(key);
@@ -333,11 +307,31 @@ std::optional<ConfigNode> ConfigNode::find(const std::string& key) const {
 
 ConfigNode ConfigNode::at(const std::string& key) const {
   if (const auto child = find(key)) return *child;
-  throw ConfigError(tree_->file, value_->line, value_->key.empty() ? key : value_->key + "." + key,
-                    "is missing, must be given");
+  Value absent;
+  absent.kind = Kind::kMissing;
+  absent.line = value_->line;
+  absent.key = value_->key.empty() ? key : value_->key + "." + key;
+  if (!tree_->collects_missing) throw missing_key(tree_->file, absent);
+  tree_->missing.push_back(std::move(absent));
+  return {tree_, &tree_->missing.back()};
+}
+
+void ConfigNode::read_known(const std::function<void()>& read) const {
+  tree_->collects_missing = true;
+  try {
+    read();
+  } catch (const std::exception&) {
+    tree_->collects_missing = false;
+    if (!tree_->missing.empty()) throw missing_key(tree_->file, tree_->missing.front());
+    throw;
+  }
+  tree_->collects_missing = false;
+  reject_unknown(tree_->file, *value_);
+  if (!tree_->missing.empty()) throw missing_key(tree_->file, tree_->missing.front());
 }
 
 void ConfigNode::allow(std::initializer_list<const char*> keys) const {
+  if (is_missing()) return;
   if (value_->kind != Kind::kMap) fail_type("a map");
   const std::vector<std::string> known(keys.begin(), keys.end());
   for (std::size_t i = 0; i < value_->children.size(); ++i) {
@@ -349,6 +343,7 @@ void ConfigNode::allow(std::initializer_list<const char*> keys) const {
 }
 
 std::vector<std::pair<std::string, ConfigNode>> ConfigNode::entries() const {
+  if (is_missing()) return {};
   if (value_->kind != Kind::kMap) fail_type("a map");
   value_->open = true;
   std::vector<std::pair<std::string, ConfigNode>> out;
@@ -363,6 +358,7 @@ std::vector<ConfigNode> ConfigNode::items() const {
 }
 
 std::vector<ConfigNode> ConfigNode::items(std::size_t min_count, std::size_t max_count) const {
+  if (is_missing()) return std::vector<ConfigNode>(min_count, *this);
   const bool bounded = max_count != std::numeric_limits<std::size_t>::max();
   std::string wanted = "a list";
   if (min_count == max_count) {
@@ -383,6 +379,7 @@ std::vector<ConfigNode> ConfigNode::items(std::size_t min_count, std::size_t max
 }
 
 double ConfigNode::number(const Bounds& bounds) const {
+  if (is_missing()) return 0.0;
   if (value_->kind != Kind::kScalar || value_->quoted) fail_type("a number");
   std::string_view text = value_->scalar;
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
@@ -400,6 +397,7 @@ double ConfigNode::number(const Bounds& bounds) const {
 }
 
 std::int64_t ConfigNode::integer(std::int64_t min, std::int64_t max) const {
+  if (is_missing()) return min;
   if (value_->kind != Kind::kScalar || value_->quoted) fail_type("a whole number");
   const std::string& text = value_->scalar;
   std::int64_t number = 0;
@@ -413,6 +411,7 @@ std::int64_t ConfigNode::integer(std::int64_t min, std::int64_t max) const {
 }
 
 bool ConfigNode::boolean() const {
+  if (is_missing()) return false;
   if (value_->kind != Kind::kScalar || value_->quoted ||
       (value_->scalar != "true" && value_->scalar != "false")) {
     fail_type("true or false");
@@ -421,6 +420,7 @@ bool ConfigNode::boolean() const {
 }
 
 std::string ConfigNode::text() const {
+  if (is_missing()) return "";
   if (value_->kind != Kind::kScalar || value_->scalar.empty()) fail_type("a text");
   if (!std::all_of(value_->scalar.begin(), value_->scalar.end(), is_printable))
     fail_type("a text of one line");
@@ -428,9 +428,13 @@ std::string ConfigNode::text() const {
 }
 
 std::ptrdiff_t ConfigNode::choice_index(const std::vector<std::string>& names) const {
+  if (is_missing()) return 0;
   const auto it =
       value_->kind == Kind::kScalar ? std::find(names.begin(), names.end(), value_->scalar) : names.end();
-  if (it == names.end()) fail_type(joined(names));
+  if (it == names.end()) {
+    fail("is " + value_->describe() + ", must be " + joined(names) +
+         (value_->kind == Kind::kScalar ? nearest_of(names, value_->scalar) : ""));
+  }
   return it - names.begin();
 }
 
@@ -447,6 +451,7 @@ Eigen::Vector3d ConfigNode::vector3(const Bounds& bounds) const {
 }
 
 ConfigNode ConfigNode::quantity(const std::string& unit) const {
+  if (is_missing()) return *this;
   if (value_->kind != Kind::kMap) fail_type("a map {value, unit, source}");
   ConfigNode value = at("value");
   at("unit").choice<int>({{unit.c_str(), 0}});

@@ -4,13 +4,14 @@
 //   const ConfigNode root = load_config("square.yaml");
 //   const double speed = root.at("speed_m_s").number(above(0.0));
 //   for (const ConfigNode& item : root.at("items").items()) add(item.at("position_ned_m").vector3());
-//   root.reject_unknown_keys();
+//   root.reject_unknown_keys();  // or all of it in read_known(), for better messages
 //
 // The input is one UTF-8 document in block or flow style that ends with a newline. A last line without a
 // newline is reported as a truncated file. Anchors, aliases and tags are refused.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <initializer_list>
 #include <limits>
 #include <memory>
@@ -95,6 +96,11 @@ class ConfigNode {
   // Throws for the first key, here or below, that has not been read. Call it on the root after reading.
   void reject_unknown_keys() const;
 
+  // Runs `read`, which reads this map with all below, then throws for the first key that was not read, or else
+  // for the first that was missing: of a misspelt key, the message names what the file has. Meanwhile a
+  // missing key reads as 0, false, "", the first choice, or a list of these.
+  void read_known(const std::function<void()>& read) const;
+
   // The deepest existing value along the path key ("rotors[1].spin"), relative to this node; this node itself
   // if no part of the path exists.
   ConfigNode nearest(const std::string& key) const;
@@ -107,6 +113,7 @@ class ConfigNode {
   int line() const;                // from 1
 
  private:
+  bool is_missing() const;
   std::ptrdiff_t choice_index(const std::vector<std::string>& names) const;
   [[noreturn]] void fail_type(const std::string& wanted) const;
 

@@ -4,10 +4,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "swiftlet/io/text_file.hpp"
+
 namespace swiftlet::runtime {
 
 // what() is one sentence: "FILE:LINE: KEY: is VALUE, must be LIMIT". It omits a line of 0 and an empty key,
-// and shows control characters as "?".
+// and is printable().
 class ConfigError : public std::runtime_error {
  public:
   ConfigError(const std::string& file, int line, const std::string& key, const std::string& message)
@@ -22,13 +24,6 @@ class ConfigError : public std::runtime_error {
   const std::string& key() const { return key_; }  // "motor.time_constant", "rotors[2].spin"; may be empty
 
  private:
-  static std::string printable(std::string text) {
-    for (char& c : text) {
-      if ((c >= 0 && c < 0x20 && c != '\n') || c == 0x7f) c = '?';
-    }
-    return text;
-  }
-
   std::string file_;
   int line_;
   std::string key_;

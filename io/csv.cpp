@@ -84,6 +84,13 @@ class Lines {
   int number_ = 0;
 };
 
+// first_line: that of the text in the file
+void require_text(std::string_view text, const std::string& file, int first_line = 1) {
+  const int line = line_of_control_character(text);
+  if (line > 0)
+    throw ConfigError(file, first_line + line - 1, "", "is not a text file: it has control characters");
+}
+
 void check_header(std::string_view line, const std::string& file, const std::vector<std::string>& columns,
                   const CsvForm& form) {
   const std::vector<std::string_view> names = fields_of(line, form);
@@ -154,6 +161,7 @@ void CsvTable::fail(std::size_t row, const std::string& columns, const std::stri
 
 CsvTable parse_csv(std::string_view text, const std::string& file_name,
                    const std::vector<std::string>& columns, std::size_t min_rows, const CsvForm& form) {
+  require_text(text, file_name);
   Lines lines(without_byte_order_mark(text));
   std::string_view line;
   if (lines.only_blank_left()) {
@@ -169,6 +177,7 @@ CsvTable parse_csv(std::string_view text, const std::string& file_name,
 }
 
 CsvTable parse_csv_as_headed(std::string_view text, const std::string& file_name, std::size_t min_rows) {
+  require_text(text, file_name);
   Lines lines(without_byte_order_mark(text));
   std::string_view header;
   if (lines.only_blank_left()) throw ConfigError(file_name, 0, "", "is empty, must begin with a header");
@@ -187,7 +196,8 @@ CsvTable load_csv(const std::string& path, const std::vector<std::string>& colum
   return parse_csv(read_text_file(path), path, columns, min_rows);
 }
 
-std::vector<std::string> first_csv_line(std::string_view text) {
+std::vector<std::string> first_csv_line(std::string_view text, const std::string& file_name, int first_line) {
+  require_text(text, file_name, first_line);
   Lines lines(without_byte_order_mark(text));
   std::string_view line;
   while (lines.next(line)) {
@@ -198,9 +208,12 @@ std::vector<std::string> first_csv_line(std::string_view text) {
   return {};
 }
 
-bool is_number(std::string_view field) {
+bool is_number(std::string_view field) { return parse_number(field).has_value(); }
+
+std::optional<double> parse_number(std::string_view field) {
   double number = 0.0;
-  return read_number(field, number);
+  if (!read_number(field, number)) return std::nullopt;
+  return number;
 }
 
 std::string exact(double number) {

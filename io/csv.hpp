@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,12 +32,18 @@ class CsvTable {
   double number(std::size_t row, std::size_t column, const Bounds& bounds = any_number(),
                 const char* unit = "") const;
 
+  std::vector<double> row(std::size_t row) const {
+    const auto begin = numbers_.begin() + static_cast<std::ptrdiff_t>(row * columns_.size());
+    return {begin, begin + static_cast<std::ptrdiff_t>(columns_.size())};
+  }
+
   // Throws ConfigError for this row. columns names the affected columns; message reads like "is 3, must be
   // below 2".
   [[noreturn]] void fail(std::size_t row, const std::string& columns, const std::string& message) const;
 
   const std::string& file() const { return file_; }
   const std::string& column(std::size_t column) const { return columns_[column]; }
+  const std::vector<std::string>& columns() const { return columns_; }
   int line(std::size_t row) const { return lines_[row]; }  // from 1, which is the header
 
   void add_row(int line, const std::vector<double>& numbers);
@@ -60,9 +67,12 @@ CsvTable parse_csv(std::string_view text, const std::string& file_name,
                    const CsvForm& form = {});
 CsvTable load_csv(const std::string& path, const std::vector<std::string>& columns, std::size_t min_rows = 1);
 
-// The fields of the first non-blank line; empty if there is none.
-std::vector<std::string> first_csv_line(std::string_view text);
-bool is_number(std::string_view field);  // true for a finite number
+// The fields of the first non-blank line; empty if there is none. file_name and first_line, the line of the text
+// in the file, appear in messages only. Throws ConfigError for control characters.
+std::vector<std::string> first_csv_line(std::string_view text, const std::string& file_name,
+                                        int first_line = 1);
+bool is_number(std::string_view field);                      // true for a finite number
+std::optional<double> parse_number(std::string_view field);  // nothing if it is no finite number
 // Reads a table with any column names in its header, at least one.
 CsvTable parse_csv_as_headed(std::string_view text, const std::string& file_name, std::size_t min_rows = 1);
 

@@ -1,7 +1,9 @@
 #include "swiftlet/io/csv_writer.hpp"
 
+#include <cerrno>
 #include <iterator>
 #include <stdexcept>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -61,14 +63,16 @@ CsvWriter& CsvWriter::empty(int cells) {
 
 void CsvWriter::end_row() {
   row_ += '\n';
-  std::fputs(row_.c_str(), file_.get());
+  if (std::fputs(row_.c_str(), file_.get()) < 0 && error_ == 0) error_ = errno;
   row_.clear();
   first_ = true;
 }
 
 void CsvWriter::finish() {
-  if (std::fflush(file_.get()) != 0 || std::ferror(file_.get()) != 0)
-    throw std::runtime_error(path_.string() + " cannot be written");
+  if (std::fflush(file_.get()) != 0 && error_ == 0) error_ = errno;
+  if (error_ != 0)
+    throw std::runtime_error(path_.string() +
+                             " cannot be written: " + std::generic_category().message(error_));
 }
 
 }  // namespace swiftlet::runtime

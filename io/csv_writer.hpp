@@ -44,6 +44,7 @@ class CsvWriter {
   std::unique_ptr<std::FILE, Closer> file_;
   std::string row_;
   bool first_ = true;
+  int error_ = 0;  // errno of the first row that could not be written
 };
 
 }  // namespace swiftlet::runtime

@@ -1,5 +1,6 @@
 #include "swiftlet/io/text_file.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -16,7 +17,45 @@ namespace {
   throw ConfigError(path, 0, "", "cannot be read: " + std::generic_category().message(errno));
 }
 
+bool is_printable(char c) { return static_cast<unsigned char>(c) >= 0x20 && c != 0x7f; }
+
+constexpr std::size_t kLongestMessage = 2000;
+
 }  // namespace
+
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned>(static_cast<unsigned char>(text[i])); };
+  const unsigned lead = byte(0);
+  if (lead < 0x80) return 1;
+  const std::size_t length = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
+  if (lead < 0xc2 || lead > 0xf4 || text.size() < length) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xc0U) != 0x80U) return 0;
+  }
+  const bool overlong = (lead == 0xe0 && byte(1) < 0xa0) || (lead == 0xf0 && byte(1) < 0x90);
+  const bool no_character = (lead == 0xed && byte(1) > 0x9f) || (lead == 0xf4 && byte(1) > 0x8f);
+  return overlong || no_character ? 0 : length;
+}
+
+std::string printable(std::string_view text) {
+  std::string out;
+  while (!text.empty() && out.size() < kLongestMessage) {
+    const std::size_t length = utf8_length(text);
+    const bool is_second_control_set =
+        length == 2 && text[0] == '\xc2' && static_cast<unsigned char>(text[1]) < 0xa0;
+    const bool shown =
+        length == 1 ? is_printable(text[0]) || text[0] == '\n' : length > 1 && !is_second_control_set;
+    out += shown ? std::string(text.substr(0, length)) : "?";
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return text.empty() ? out : out + "...";
+}
+
+int line_of_control_character(std::string_view text) {
+  const auto is_control = [](char c) { return !is_printable(c) && c != '\n' && c != '\r' && c != '\t'; };
+  const auto found = std::find_if(text.begin(), text.end(), is_control);
+  return found == text.end() ? 0 : 1 + static_cast<int>(std::count(text.begin(), found, '\n'));
+}
 
 std::string read_text_file(const std::string& path, std::size_t max_bytes) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);

@@ -25,10 +25,14 @@ struct TruthRow {
 
 struct ReferenceRow {
   std::int64_t stamp_ns = 0;
-  int mode = 0;  // ControlStatus_Constants::MODE_*
-  std::array<double, 3> position_ned{};
-  std::array<double, 3> velocity_ned{};
+  int mode = 0;                              // ControlStatus_Constants::MODE_*
+  std::array<double, 3> position_ned{};      // m
+  std::array<double, 3> velocity_ned{};      // m/s
+  std::array<double, 3> acceleration_ned{};  // m/s^2
   double yaw_rad = 0.0;
+  std::array<double, 4> q_ned_from_frd{};  // w, x, y, z: attitude that the position law asks for
+  double thrust_n = 0.0;                   // commanded
+  std::array<double, 3> moment_frd{};      // N m, commanded
 };
 
 struct EstimateRow {

@@ -40,7 +40,7 @@ FlightTrace::FlightTrace(const std::string& path, int rotor_count)
 }
 
 void FlightTrace::add(const plant::TruthSample& truth, const plant::ActuatorCommand& command) {
-  if (complete_) return;
+  if (complete_ || failed_) return;
   const bool runs = command.rotor_state == plant::RotorState::kRunning;
   complete_ = running_ && !runs;
   running_ = runs;
@@ -59,11 +59,11 @@ void FlightTrace::add(const plant::TruthSample& truth, const plant::ActuatorComm
   append(row_, runs ? 1 : 0);
   append_all(row_, command.throttle.data(), command.rotor_count);
   row_ += '\n';
-  require_written(std::fwrite(row_.data(), 1, row_.size(), file_.get()) == row_.size());
+  failed_ = std::fwrite(row_.data(), 1, row_.size(), file_.get()) != row_.size();
 }
 
 void FlightTrace::close() {
-  if (file_) require_written(std::fclose(file_.release()) == 0);
+  if (file_) require_written(std::fclose(file_.release()) == 0 && !failed_);
 }
 
 void FlightTrace::require_written(bool written) const {

@@ -16,10 +16,12 @@ namespace swiftlet::runtime {
 // value.
 class FlightTrace {
  public:
-  // All functions throw std::runtime_error if the file cannot be written.
+  // Throws std::runtime_error if the file cannot be written.
   FlightTrace(const std::string& path, int rotor_count);
 
+  // A flight goes on without its trace: a row that cannot be written ends the trace, and close() reports it.
   void add(const plant::TruthSample& truth, const plant::ActuatorCommand& command);
+  // Throws std::runtime_error if not all rows could be written.
   void close();
 
   bool complete() const { return complete_; }  // the rotors ran and have stopped; add() has no further effect
@@ -35,6 +37,7 @@ class FlightTrace {
   std::string row_;
   bool running_ = false;
   bool complete_ = false;
+  bool failed_ = false;
 };
 
 }  // namespace swiftlet::runtime

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "swiftlet/io/config.hpp"
+#include "swiftlet/io/nearest_name.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -15,9 +16,14 @@ std::size_t parameter_index(const std::string& name, const ConfigNode& node) {
   const auto found = std::find_if(known.begin(), known.end(),
                                   [&](const Parameter& parameter) { return parameter.name == name; });
   if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
-  std::string names;
-  for (const Parameter& parameter : known) names += (names.empty() ? "" : ", ") + parameter.name;
-  node.fail("is unknown, must be one of " + names);
+  std::vector<std::string> names;
+  std::string list;
+  for (const Parameter& parameter : known) {
+    names.push_back(parameter.name);
+    list += (list.empty() ? "" : ", ") + parameter.name;
+  }
+  const std::string nearest = runtime::nearest_name(names, name);
+  node.fail("is unknown, must be one of " + list + (nearest.empty() ? "" : "; nearest is " + nearest));
 }
 
 bool read_unit(const ConfigNode& node, const Parameter& parameter) {
@@ -77,11 +83,12 @@ Dispersion read_dispersion(const ConfigNode& root, const World& nominal) {
   dispersion.file = root.file();
   const auto name = root.find("name");
   dispersion.name = name ? name->text() : std::filesystem::path(root.file()).stem().string();
-  const ConfigNode list = root.at("parameters");
-  for (const auto& [key, node] : list.entries())
-    dispersion.distributions.push_back(read_distribution(key, node, nominal));
-  if (dispersion.distributions.empty()) list.fail("is empty, must name at least one parameter");
-  root.reject_unknown_keys();
+  root.read_known([&] {
+    const ConfigNode list = root.at("parameters");
+    for (const auto& [key, node] : list.entries())
+      dispersion.distributions.push_back(read_distribution(key, node, nominal));
+    if (dispersion.distributions.empty()) list.fail("is empty, must name at least one parameter");
+  });
   std::sort(dispersion.distributions.begin(), dispersion.distributions.end(),
             [](const ParameterDistribution& a, const ParameterDistribution& b) {
               return a.parameter < b.parameter;

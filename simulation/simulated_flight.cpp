@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "swiftlet/control/attitude/attitude_error.hpp"
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/recording/telemetry_rate.hpp"
 #include "swiftlet/simulation/mission_runner.hpp"
@@ -89,11 +90,26 @@ class LoopTransport final : public MissionTransport {
       recorded_ = now;
     }
     if (!sampled || !loop_.plant.imu()) return;
-    const control::Reference& reference = loop_.controller.reference();
     const control::Estimate& estimate = loop_.controller.estimate();
-    record.reference.append({stamp_ns, static_cast<int>(status_.mode), array(reference.position_ned),
-                             array(reference.velocity_ned), reference.yaw_rad});
+    record.reference.append(reference_row(stamp_ns));
     record.estimate.append({estimate.stamp_ns, array(estimate.position_ned), array(estimate.velocity_ned)});
+  }
+
+  ReferenceRow reference_row(std::int64_t stamp_ns) const {
+    const control::Reference& reference = loop_.controller.reference();
+    const control::AttitudeSetpoint& setpoint = loop_.controller.attitude_setpoint();
+    const Eigen::Quaterniond q(control::attitude_along(setpoint.body_z_ned, setpoint.yaw_rad));
+    ReferenceRow row;
+    row.stamp_ns = stamp_ns;
+    row.mode = static_cast<int>(status_.mode);
+    row.position_ned = array(reference.position_ned);
+    row.velocity_ned = array(reference.velocity_ned);
+    row.acceleration_ned = array(reference.acceleration_ned);
+    row.yaw_rad = reference.yaw_rad;
+    row.q_ned_from_frd = {q.w(), q.x(), q.y(), q.z()};
+    row.thrust_n = setpoint.thrust_n;
+    row.moment_frd = array(setpoint.moment_frd);
+    return row;
   }
 
   ClosedLoop& loop_;

@@ -62,6 +62,12 @@ Eigen::Vector3d AttitudeController::moments_for_rates(const Eigen::Vector3d& bod
   return linearised(command, body_rates_frd, present_moment_frd, Eigen::Vector3d::Zero());
 }
 
+void AttitudeController::set_gains(const ControlGains& gains) {
+  k_angle_ = gains.attitude_angle;
+  k_rate_ = gains.attitude_rate;
+  k_acceleration_ = gains.attitude_acceleration;
+}
+
 Eigen::Vector3d AttitudeController::linearised(const Eigen::Vector3d& from_state,
                                                const Eigen::Vector3d& body_rates_frd,
                                                const Eigen::Vector3d& present_moment_frd,

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "swiftlet/control/design/control_design.hpp"
+#include "swiftlet/control/types/gains.hpp"
 #include "swiftlet/math/heading.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
 
@@ -45,6 +46,9 @@ class AttitudeController {
   Eigen::Vector3d moments_for_rates(const Eigen::Vector3d& body_rates_frd,
                                     const Eigen::Vector3d& present_moment_frd,
                                     const Eigen::Vector3d& wanted_rates_frd) const;
+
+  // Changes the gains, which must be designed on the model of the settings.
+  void set_gains(const ControlGains& gains);
 
  private:
   // Eq. (38)-(40) and (35)-(37). command: the part of moment / inertia that attitude and reference

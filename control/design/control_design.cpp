@@ -47,26 +47,6 @@ void analyse(PositionAxisDesign& axis, const Loop& loop) {
   axis.phase_margin_deg = phase_margin_deg(loop);
 }
 
-// A position axis without integral has one state less, so that no pole stays at 0.
-Loop with_outer_states(const RptGains& gains, const Eigen::MatrixXd& actuator_a,
-                       const Eigen::VectorXd& actuator_b, const Eigen::RowVectorXd& acceleration) {
-  const Eigen::Index integral = gains.k_i > 0.0 ? 1 : 0;
-  const Eigen::Index inner = actuator_a.rows();
-  const Eigen::Index n = integral + 2 + inner;
-  Loop loop{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), Eigen::RowVectorXd::Zero(n)};
-  if (integral > 0) {
-    loop.a(0, 1) = 1.0;
-    loop.c[0] = gains.k_i;
-  }
-  loop.a(integral, integral + 1) = 1.0;
-  loop.a.row(integral + 1).tail(inner) = acceleration;
-  loop.a.bottomRightCorner(inner, inner) = actuator_a;
-  loop.b.tail(inner) = actuator_b;
-  loop.c[integral] = gains.k_p;
-  loop.c[integral + 1] = gains.k_v;
-  return loop;
-}
-
 void note_if_unstable(std::vector<plant::Violation>& found, const char* key,
                       const std::vector<std::complex<double>>& poles) {
   if (poles.back().real() < 0.0) return;
@@ -99,17 +79,37 @@ Loop attitude_loop(const Eigen::Vector3d& k, const RotorResponse& moment) {
   return {axis.a, axis.b * moment.gain, Eigen::RowVector3d(k[0], k[1], k[2] * moment.observed)};
 }
 
+// A position axis without integral has one state less, so that no pole stays at 0.
+Loop position_loop(const RptGains& gains, const Eigen::MatrixXd& inner_a, const Eigen::VectorXd& inner_b,
+                   const Eigen::RowVectorXd& acceleration) {
+  const Eigen::Index integral = gains.k_i > 0.0 ? 1 : 0;
+  const Eigen::Index inner = inner_a.rows();
+  const Eigen::Index n = integral + 2 + inner;
+  Loop loop{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), Eigen::RowVectorXd::Zero(n)};
+  if (integral > 0) {
+    loop.a(0, 1) = 1.0;
+    loop.c[0] = gains.k_i;
+  }
+  loop.a(integral, integral + 1) = 1.0;
+  loop.a.row(integral + 1).tail(inner) = acceleration;
+  loop.a.bottomRightCorner(inner, inner) = inner_a;
+  loop.b.tail(inner) = inner_b;
+  loop.c[integral] = gains.k_p;
+  loop.c[integral + 1] = gains.k_v;
+  return loop;
+}
+
 Loop horizontal_position_loop(const RptGains& gains, const Eigen::Vector3d& attitude_k,
                               const RotorResponse& moment, double tilt_gain) {
   const Loop inner = attitude_loop(attitude_k, moment);
-  return with_outer_states(gains, inner.a - inner.b * inner.c, inner.b * attitude_k[0],
-                           Eigen::RowVector3d(tilt_gain, 0.0, 0.0));
+  return position_loop(gains, inner.a - inner.b * inner.c, inner.b * attitude_k[0],
+                       Eigen::RowVector3d(tilt_gain, 0.0, 0.0));
 }
 
 Loop vertical_position_loop(const RptGains& gains, const RotorResponse& thrust) {
-  return with_outer_states(gains, Eigen::MatrixXd::Constant(1, 1, -1.0 / thrust.lag_s),
-                           Eigen::VectorXd::Constant(1, thrust.gain / thrust.lag_s),
-                           Eigen::RowVectorXd::Constant(1, 1.0));
+  return position_loop(gains, Eigen::MatrixXd::Constant(1, 1, -1.0 / thrust.lag_s),
+                       Eigen::VectorXd::Constant(1, thrust.gain / thrust.lag_s),
+                       Eigen::RowVectorXd::Constant(1, 1.0));
 }
 
 Eigen::Matrix<double, 5, 1> rpt_feedback(const RptSettings& settings) {

@@ -67,6 +67,12 @@ struct RotorResponse {
 // The gains k (2 or 3 entries are used) closed around the axis with rotor lag, cut at the rotor command.
 Loop attitude_loop(const Eigen::Vector3d& k, const RotorResponse& moment);
 
+// A position axis over an inner loop x' = A x + b u that gives acceleration = `acceleration` x, cut at u, the
+// acceleration command. States: the integral of the position if k_i > 0, position, velocity, those of the
+// inner loop.
+Loop position_loop(const RptGains& gains, const Eigen::MatrixXd& inner_a, const Eigen::VectorXd& inner_b,
+                   const Eigen::RowVectorXd& acceleration);
+
 // A horizontal position axis over a closed attitude axis, cut at the acceleration command (small angles:
 // acceleration = tilt_gain * g * angle; the acceleration command is the angle command without delay).
 Loop horizontal_position_loop(const RptGains& gains, const Eigen::Vector3d& attitude_k,

@@ -20,6 +20,9 @@ class DisturbanceObserver {
   void step(double dt_s, const Eigen::Vector3d& specific_force_frd, const Eigen::Quaterniond& q_ned_from_frd,
             double lift);
 
+  // Changes the bandwidth and the limit. The estimate goes on from its present value.
+  void set(const DisturbanceSettings& settings) { settings_ = settings; }
+
   // Sets the estimate to zero: for a vehicle on the ground, whose contact force is no disturbance.
   void reset() { acceleration_ned_.setZero(); }
 

@@ -219,10 +219,10 @@ bool Estimator::trusted_after_silence(const plant::PoseSample& pose, const PoseI
     return true;
   if (pose.stamp_ns < silence_end_ns_) return false;
   if (continuity_.poses() == 1) pose_imu_test_.begin();
-  const PoseImuConsistencyTest::Verdict verdict = pose_imu_test_.update(pose, innovation, settings_);
-  if (verdict == PoseImuConsistencyTest::Verdict::kDisagree && continuity_.in_reach())
+  const PoseImuConsistencyTest::Result result = pose_imu_test_.update(pose, innovation, settings_);
+  if (result == PoseImuConsistencyTest::Result::kDisagree && continuity_.in_reach())
     continuity_.reject_track();
-  return verdict == PoseImuConsistencyTest::Verdict::kAgree && continuity_.in_reach();
+  return result == PoseImuConsistencyTest::Result::kAgree && continuity_.in_reach();
 }
 
 PoseFault Estimator::disagree(const plant::PoseSample& pose, const PoseInnovation& innovation,

@@ -12,20 +12,20 @@ double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 }  // namespace
 
-PoseImuConsistencyTest::Verdict PoseImuConsistencyTest::update(const plant::PoseSample& pose,
-                                                               const PoseInnovation& innovation,
-                                                               const EstimatorSettings& settings) {
+PoseImuConsistencyTest::Result PoseImuConsistencyTest::update(const plant::PoseSample& pose,
+                                                              const PoseInnovation& innovation,
+                                                              const EstimatorSettings& settings) {
   if (count_ > 0 && seconds(pose.stamp_ns - points_[count_ - 1].stamp_ns) <
                         settings.detectors.pose_imu_consistency.interval_s)
-    return Verdict::kNone;
+    return Result::kNone;
   points_[count_++] = {pose.stamp_ns, pose.position_ned, pose.position_ned - innovation.position,
                        plant::rotation(innovation.rotation)};
-  if (count_ < points_.size()) return Verdict::kNone;
-  const Verdict verdict = agree(settings) ? Verdict::kAgree : Verdict::kDisagree;
+  if (count_ < points_.size()) return Result::kNone;
+  const Result result = agree(settings) ? Result::kAgree : Result::kDisagree;
   points_[0] = points_[1];
   points_[1] = points_[2];
   --count_;
-  return verdict;
+  return result;
 }
 
 // The IMU's path is p + t v + t^2/2 g + S, S being the double integral of the specific force. The poses

@@ -18,13 +18,13 @@ namespace swiftlet::control {
 
 class PoseImuConsistencyTest {
  public:
-  enum class Verdict : std::uint8_t { kNone, kAgree, kDisagree };
+  enum class Result : std::uint8_t { kNone, kAgree, kDisagree };
 
   // Adds a pose and its innovation from the path that the IMU alone has propagated since begin(). Returns a
-  // verdict over the last two intervals whenever an interval ends. Uses the pose noise and
+  // result over the last two intervals whenever an interval ends. Uses the pose noise and
   // detectors.pose_imu_consistency of the settings.
-  Verdict update(const plant::PoseSample& pose, const PoseInnovation& innovation,
-                 const EstimatorSettings& settings);
+  Result update(const plant::PoseSample& pose, const PoseInnovation& innovation,
+                const EstimatorSettings& settings);
   void begin() { count_ = 0; }
 
  private:

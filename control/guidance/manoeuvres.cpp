@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "swiftlet/control/guidance/setpoint_stream.hpp"
 #include "swiftlet/control/planning/checks.hpp"
@@ -34,19 +35,37 @@ double nearest_turn(double to, double from) { return from + std::remainder(to - 
 // follows no path is at the vehicle's own motion.
 BrakingManoeuvre brakes_inside_fence(const GuidanceContext& context, const Reference& from) {
   const Limits& limits = context.limits;
-  BrakingManoeuvre stop =
-      context.state.path.moving ? brake_reference(limits, from) : brake_vehicle(limits, from);
-  stop.place_ned = stop.place_ned.cwiseMax(limits.fence_min_ned).cwiseMin(limits.fence_max_ned);
-  return stop;
+  return inside_fence(
+      limits, from, context.state.path.moving ? brake_reference(limits, from) : brake_vehicle(limits, from));
+}
+
+double value_at(const Polynomial& polynomial, double t) {
+  return std::accumulate(polynomial.rbegin(), polynomial.rend(), 0.0,
+                         [t](double sum, double coefficient) { return sum * t + coefficient; });
+}
+
+// Sets one coordinate of the reference, and its rates to zero.
+void rest_at(int axis, double position, Reference& reference) {
+  reference.position_ned[axis] = position;
+  for (Eigen::Vector3d* const rate :
+       {&reference.velocity_ned, &reference.acceleration_ned, &reference.jerk_ned, &reference.snap_ned})
+    (*rate)[axis] = 0.0;
+}
+
+// The minimum height, or the lower end of the segment if that is lower.
+double lowest_z_on(const Limits& limits, const PolynomialSegment& segment) {
+  return std::max({lowest_z_ned(limits), segment.z[0], value_at(segment.z, segment.duration_s)});
 }
 
 bool leaves_fence(const Limits& limits, const PolynomialSegment& segment) {
   constexpr int kSamples = 24;
+  constexpr double kRounding_m = 1e-6;
+  const double lowest = lowest_z_on(limits, segment) + kRounding_m;
   for (int i = 1; i < kSamples; ++i) {
     Reference at = evaluate(segment, segment.duration_s * i / kSamples);
     const Eigen::Vector3d position_ned = at.position_ned;
     clamp_to_fence(limits, at);
-    if (at.position_ned != position_ned) return true;
+    if (at.position_ned != position_ned || position_ned.z() > lowest) return true;
   }
   return false;
 }
@@ -196,14 +215,26 @@ double max_speed_ahead(const GuidanceContext& context) {
 
 void clamp_to_fence(const Limits& limits, Reference& reference) {
   for (int i = 0; i < 3; ++i) {
-    double& at = reference.position_ned[i];
+    const double at = reference.position_ned[i];
     const bool beyond = at < limits.fence_min_ned[i] || (i < 2 && at > limits.fence_max_ned[i]);
     if (!beyond) continue;
-    at = at < limits.fence_min_ned[i] ? limits.fence_min_ned[i] : limits.fence_max_ned[i];
-    for (Eigen::Vector3d* const rate :
-         {&reference.velocity_ned, &reference.acceleration_ned, &reference.jerk_ned, &reference.snap_ned})
-      (*rate)[i] = 0.0;
+    rest_at(i, at < limits.fence_min_ned[i] ? limits.fence_min_ned[i] : limits.fence_max_ned[i], reference);
   }
+}
+
+Reference reference_on_path(const GuidanceContext& context, std::int64_t at_ns) {
+  const ReferencePath& path = context.state.path;
+  Reference at = path.at(at_ns);
+  const double lowest = lowest_z_on(context.limits, path.segment);
+  if (at.position_ned.z() > lowest) rest_at(2, lowest, at);
+  return at;
+}
+
+Limits limits_from(const Limits& limits, double z_ned) {
+  Limits from = limits;
+  from.min_height_m = std::min(limits.min_height_m, -z_ned);
+  from.fence_max_ned.z() = std::max(limits.fence_max_ned.z(), z_ned);
+  return from;
 }
 
 Reference standing_at(const Estimate& estimate) {
@@ -223,6 +254,18 @@ BrakingManoeuvre brake_vehicle(const Limits& limits, const Reference& from) {
   return {duration_s, from.position_ned + 0.5 * duration_s * from.velocity_ned};
 }
 
+BrakingManoeuvre inside_fence(const Limits& limits, const Reference& from, BrakingManoeuvre stop) {
+  stop.place_ned = stop.place_ned.cwiseMax(limits.fence_min_ned).cwiseMin(limits.fence_max_ned);
+  const double below_m = stop.place_ned.z() - lowest_z_ned(limits);
+  if (below_m <= 0.0) return stop;
+  stop.place_ned.z() -= below_m;
+  const double ascent_m = std::max(from.position_ned.z() - stop.place_ned.z(), 0.0);
+  const double ascent_s = minimum_jerk_duration(ascent_m, limits.max_speed, limits.max_reference_acceleration,
+                                                limits.max_reference_jerk, kMinMove_s);
+  stop.duration_s = std::max(stop.duration_s, ascent_s);
+  return stop;
+}
+
 void start_takeoff(const GuidanceContext& context, double to_z_ned, double speed) {
   GuidanceState& state = context.state;
   state.phase = Phase::kSpoolUp;
@@ -235,7 +278,7 @@ void start_takeoff(const GuidanceContext& context, double to_z_ned, double speed
 void start_move(const GuidanceContext& context, const Eigen::Vector3d& to_ned, bool yaw_free, double yaw_rad,
                 double speed, std::int64_t start_ns) {
   const Limits& limits = context.limits;
-  const Reference from = context.state.path.at(start_ns);
+  const Reference from = reference_on_path(context, start_ns);
   const double to_yaw = yaw_free ? from.yaw_rad : nearest_turn(yaw_rad, from.yaw_rad);
   const double distance = (to_ned - from.position_ned).norm();
   double duration = minimum_jerk_duration(distance, speed, limits.max_reference_acceleration,
@@ -250,7 +293,7 @@ void start_join(const GuidanceContext& context, const PolynomialSegment& first, 
                 std::int64_t start_ns) {
   const Limits& limits = context.limits;
   GuidanceState& state = context.state;
-  const Reference from = state.path.at(start_ns);
+  const Reference from = reference_on_path(context, start_ns);
   Reference to = evaluate(first, 0.0);
   to.yaw_rad = keep_yaw ? from.yaw_rad : nearest_turn(to.yaw_rad, from.yaw_rad);
   if (keep_yaw) to.yaw_rate = to.yaw_acceleration = 0.0;
@@ -263,6 +306,7 @@ void start_join(const GuidanceContext& context, const PolynomialSegment& first, 
   const double gentle = (1.0 + 1e-5) * std::max({limits.max_reference_acceleration,
                                                  from.acceleration_ned.norm(), to.acceleration_ned.norm()});
   const MotionLimits unit{1.0, 1.0, 1.0, 1.0};
+  const Limits in_force = limits_from(limits, from.position_ned.z());
   PolynomialSegment gentlest;
   double least = std::numeric_limits<double>::infinity();  // m/s^2, its peak acceleration
   double duration = kMinMove_s;
@@ -273,7 +317,7 @@ void start_join(const GuidanceContext& context, const PolynomialSegment& first, 
   duration = std::max(duration, 35.0 / 16.0 * std::abs(to.yaw_rad - from.yaw_rad) / limits.max_yaw_rate);
   for (int attempt = 0; attempt < kJoinAttempts && least > gentle; ++attempt, duration *= kJoinStretch) {
     const PolynomialSegment candidate = join(from, to, duration);
-    if (!check_motion("join", candidate, limits).accepted) continue;
+    if (!check_motion("join", candidate, in_force).accepted) continue;
     const double acceleration = limit_use(candidate, unit).acceleration;
     if (acceleration >= least) continue;
     least = acceleration;
@@ -285,7 +329,7 @@ void start_join(const GuidanceContext& context, const PolynomialSegment& first, 
 
 void start_stop(const GuidanceContext& context) {
   GuidanceState& state = context.state;
-  const Reference from = state.path.at(context.now_ns);
+  const Reference from = reference_on_path(context, context.now_ns);
   const BrakingManoeuvre stop = brakes_inside_fence(context, from);
   state.phase = Phase::kPath;
   state.path.follow(join_to_rest(from, stop.place_ned, from.yaw_rad, stop.duration_s), context.now_ns);
@@ -368,7 +412,7 @@ void advance(const GuidanceContext& context) {
 
 Reference reference(const GuidanceContext& context) {
   if (!context.state.flying()) return standing_at(context.estimate);
-  Reference now = context.state.path.at(context.now_ns);
+  Reference now = reference_on_path(context, context.now_ns);
   clamp_to_fence(context.limits, now);
   return now;
 }

@@ -13,6 +13,13 @@ constexpr double kAirborneHeight_m = 0.03;  // m above the ground
 // it. The fence's lower end (maximum z) is not enforced, so that landings reach the ground.
 void clamp_to_fence(const Limits& limits, Reference& reference);
 
+// The reference of the present path at a time, raised to the minimum height, or to the lower end of the path's
+// segment if that is lower.
+Reference reference_on_path(const GuidanceContext& context, std::int64_t at_ns);
+
+// The limits for a path from z_ned: from below the minimum height, a path may be as low as it starts.
+Limits limits_from(const Limits& limits, double z_ned);
+
 // A reference at rest at the estimated position and yaw.
 Reference standing_at(const Estimate& estimate);
 
@@ -23,10 +30,14 @@ BrakingManoeuvre brake_reference(const Limits& limits, const Reference& from);
 // acceleration limit, since the loops must follow first. It ignores the present acceleration, which depends
 // on the attitude and changes with it.
 BrakingManoeuvre brake_vehicle(const Limits& limits, const Reference& from);
+// The manoeuvre with its stopping point moved inside the fence and up to the minimum height, and with the
+// time that the ascent takes.
+BrakingManoeuvre inside_fence(const Limits& limits, const Reference& from, BrakingManoeuvre stop);
 
 // Spools up, then climbs vertically to to_z_ned.
 void start_takeoff(const GuidanceContext& context, double to_z_ned, double speed);
-// Moves from the reference at start_ns to a position: straight from rest, by a quintic from motion.
+// Moves from the reference at start_ns to a position: straight from rest, by a quintic from motion. The path
+// is nowhere lower than the minimum height, or the lower of its ends if that is lower.
 void start_move(const GuidanceContext& context, const Eigen::Vector3d& to_ned, bool yaw_free, double yaw_rad,
                 double speed, std::int64_t start_ns);
 // Joins a trajectory from the reference at start_ns: position, velocity, acceleration and jerk are
@@ -34,7 +45,7 @@ void start_move(const GuidanceContext& context, const Eigen::Vector3d& to_ned, b
 // moves as start_move() does. The trajectory's segments follow from the first on.
 void start_join(const GuidanceContext& context, const PolynomialSegment& first, bool keep_yaw, double speed,
                 std::int64_t start_ns);
-// Brakes along the present velocity, inside the fence.
+// Brakes along the present velocity, inside the fence and above the minimum height: from below it, ascends.
 void start_stop(const GuidanceContext& context);
 // Brakes inside the fence while it descends, then sinks until touchdown is detected.
 void start_landing(const GuidanceContext& context, double speed, std::int64_t start_ns);

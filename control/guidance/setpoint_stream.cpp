@@ -105,6 +105,7 @@ PolynomialSegment blend(const Limits& limits, const Reference& from, const Setpo
   const double acceleration =
       std::max({limits.max_reference_acceleration, from.acceleration_ned.norm(), to.acceleration_ned.norm()});
   const double jerk = std::max(limits.max_reference_jerk, from.jerk_ned.norm());
+  const Limits in_force = limits_from(limits, from.position_ned.z());
   PolynomialSegment gentlest;
   double least = std::numeric_limits<double>::infinity();  // greatest use of the acceleration and jerk limits
   double duration = period_s;
@@ -112,15 +113,14 @@ PolynomialSegment blend(const Limits& limits, const Reference& from, const Setpo
     const PolynomialSegment candidate = blend_in(limits, from, to, duration, period_s);
     const LimitUse use = limit_use(candidate, unit);
     const double most = std::max(use.acceleration / acceleration, use.jerk / jerk);
-    if (most >= least || !check_motion("setpoint", candidate, limits).accepted) continue;
+    if (most >= least || !check_motion("setpoint", candidate, in_force).accepted) continue;
     least = most;
     gentlest = candidate;
   }
   if (std::isfinite(least)) return gentlest;
   // From outside the fence, or above the speed limit: brakes to rest as fast as allowed.
-  const BrakingManoeuvre stop = brake_reference(limits, from);
-  const Vector3d inside = stop.place_ned.cwiseMax(limits.fence_min_ned).cwiseMin(limits.fence_max_ned);
-  return join_to_rest(from, inside, from.yaw_rad, stop.duration_s);
+  const BrakingManoeuvre stop = inside_fence(limits, from, brake_reference(limits, from));
+  return join_to_rest(from, stop.place_ned, from.yaw_rad, stop.duration_s);
 }
 
 Reference after_blend(const PolynomialSegment& blend, double after_s) {
@@ -184,7 +184,7 @@ bool violates_fence(const GuidanceContext& context) {
   here.velocity_ned = context.estimate.velocity_ned;
   const Vector3d rest = brake_vehicle(limits, here).place_ned;
   return (rest.array() < limits.fence_min_ned.array()).any() ||
-         (rest.array() > limits.fence_max_ned.array()).any();
+         (rest.array() > limits.fence_max_ned.array()).any() || rest.z() > lowest_z_ned(limits);
 }
 
 }  // namespace swiftlet::control

@@ -35,7 +35,7 @@ void follow_estimate(const GuidanceContext& context);
 // Estimated time to the next setpoint: the time since the last one that the present mode follows.
 double stream_period_s(const GuidanceContext& context);
 
-// True if the stopping point of the vehicle's motion is outside the fence.
+// True if the stopping point of the vehicle's motion is outside the fence or below the minimum height.
 bool violates_fence(const GuidanceContext& context);
 
 }  // namespace swiftlet::control

@@ -27,12 +27,16 @@ struct NamedAxis {
 
 Outcome check_axis(const char* what, const NamedAxis& axis, double duration_s, const Limits& limits) {
   const double low = limits.fence_min_ned[axis.index];
-  const double high = limits.fence_max_ned[axis.index];
+  const double high = axis.index == 2 ? lowest_z_ned(limits) : limits.fence_max_ned[axis.index];
   const Bernstein position = bernstein(axis.polynomial, duration_s);
   if (position.least() >= low - kPlaceTolerance_m && position.greatest() <= high + kPlaceTolerance_m)
     return accept();
-  for (const double reached :
-       {minimum(position, kPlacePrecision_m).value, maximum(position, kPlacePrecision_m).value}) {
+  const double most = maximum(position, kPlacePrecision_m).value;
+  if (axis.index == 2) {
+    const Outcome height = check_height(what, most, limits);
+    if (!height.accepted) return height;
+  }
+  for (const double reached : {minimum(position, kPlacePrecision_m).value, most}) {
     if (reached >= low - kPlaceTolerance_m && reached <= high + kPlaceTolerance_m) continue;
     return refuse("%s: %c is %.3f m, outside the fence of %.3f to %.3f m", what, axis.name, reached, low,
                   high);
@@ -118,6 +122,12 @@ Outcome refuse(const char* format, ...) {
 }
 
 Outcome check_position(const char* what, const Eigen::Vector3d& position_ned, const Limits& limits) {
+  const Outcome height = check_height(what, position_ned.z(), limits);
+  if (!height.accepted && position_ned.allFinite()) return height;
+  return check_inside_fence(what, position_ned, limits);
+}
+
+Outcome check_inside_fence(const char* what, const Eigen::Vector3d& position_ned, const Limits& limits) {
   constexpr char kAxis[] = "xyz";
   for (int i = 0; i < 3; ++i) {
     if (!std::isfinite(position_ned[i])) return refuse("%s: %c is not a finite number", what, kAxis[i]);
@@ -127,6 +137,33 @@ Outcome check_position(const char* what, const Eigen::Vector3d& position_ned, co
     }
   }
   return accept();
+}
+
+Outcome check_height(const char* what, double z_ned, const Limits& limits) {
+  const double least_m = limits.min_height_m;
+  if (z_ned <= kPlaceTolerance_m - least_m) return accept();
+  if (z_ned > 0.0) {
+    return refuse(
+        "%s: z = +%.3f m is below the ground, as z points down (NED); %.3f m above the ground is z = -%.3f m",
+        what, z_ned, z_ned, z_ned);
+  }
+  return refuse("%s: z = %.3f m is %.3f m above the ground; the minimum height is %.3f m, z = -%.3f m", what,
+                z_ned, std::abs(z_ned), least_m, least_m);
+}
+
+Outcome check_above_ground(const char* what, double z_ned) {
+  Limits any_height;
+  any_height.min_height_m = 0.0;
+  return check_height(what, z_ned, any_height);
+}
+
+Outcome check_yaw(const char* what, double yaw_rad) {
+  constexpr double kTurn_rad = 2.0 * M_PI;
+  if (!std::isfinite(yaw_rad)) return refuse("%s: yaw is not a finite number", what);
+  if (std::abs(yaw_rad) <= kTurn_rad) return accept();
+  return refuse(
+      "%s: yaw is %.6g rad, more than a full turn: %.6g degrees are %.4f rad, %.6g rad are the yaw %.4f rad",
+      what, yaw_rad, yaw_rad, yaw_rad / 360.0 * kTurn_rad, yaw_rad, std::remainder(yaw_rad, kTurn_rad));
 }
 
 Outcome check_speed(const char* what, double speed, const Limits& limits) {
@@ -150,9 +187,10 @@ Outcome check(const MissionBounds& bounds, const Limits& limits) {
                   bound.value, bound.unit, bound.limit, bound.unit);
   }
   if (!bounds.fenced) return accept();
-  Outcome outcome = check_position("the mission's fence, minimum corner", bounds.fence_min_ned, limits);
-  if (outcome.accepted)
-    outcome = check_position("the mission's fence, maximum corner", bounds.fence_max_ned, limits);
+  Outcome outcome = check_inside_fence("the mission's fence, minimum corner", bounds.fence_min_ned, limits);
+  Eigen::Vector3d lower = bounds.fence_max_ned;
+  lower.z() = std::min(lower.z(), limits.fence_max_ned.z());
+  if (outcome.accepted) outcome = check_inside_fence("the mission's fence, maximum corner", lower, limits);
   if (!outcome.accepted) return outcome;
   for (int i = 0; i < 3; ++i) {
     if (bounds.fence_max_ned[i] > bounds.fence_min_ned[i]) continue;
@@ -198,8 +236,8 @@ Outcome check(const Mission& mission, const Limits& settings) {
     if (item.kind == MissionItemKind::kTakeoff)
       position.head<2>() = 0.5 * (limits.fence_min_ned + limits.fence_max_ned).head<2>();
     outcome = check_position(what, position, limits);
+    if (outcome.accepted && !item.yaw_free) outcome = check_yaw(what, item.yaw_rad);
     if (!outcome.accepted) return outcome;
-    if (!item.yaw_free && !std::isfinite(item.yaw_rad)) return refuse("%s: yaw is not a finite number", what);
   }
   return accept();
 }

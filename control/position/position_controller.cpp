@@ -39,4 +39,12 @@ PositionCommand PositionController::step(const Eigen::Vector3d& position_ned,
   return command;
 }
 
+void PositionController::set_gains(const ControlGains& gains) {
+  k_p_ = gains.position_p;
+  k_v_ = gains.position_v;
+  k_i_ = gains.position_i;
+  integral_limit_ = gains.integral_limit;
+  integral_ = integral_.cwiseMax(-integral_limit_).cwiseMin(integral_limit_);
+}
+
 }  // namespace swiftlet::control

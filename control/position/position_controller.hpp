@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include "swiftlet/control/design/control_design.hpp"
+#include "swiftlet/control/types/gains.hpp"
 #include "swiftlet/control/types/reference.hpp"
 #include "swiftlet/control/types/settings.hpp"
 
@@ -24,6 +25,10 @@ class PositionController {
   // does not grow on a clipped axis. Without integral_pole it is zero.
   PositionCommand step(const Eigen::Vector3d& position_ned, const Eigen::Vector3d& velocity_ned,
                        const Reference& reference, double dt_s, bool freeze_integral);
+
+  // Changes the gains and the limit of the integral. The integral is an acceleration: a change of k_i does
+  // not step the command.
+  void set_gains(const ControlGains& gains);
 
   // Sets the integral to zero.
   void reset() { integral_.setZero(); }

@@ -109,6 +109,8 @@ const Action kResume{"return to the paused path, then continue",
 const Action kSkip{"start the next item", skip_item};
 const Action kClearMission{"delete the mission; brake if still on its path", clear_mission};
 const Action kStartTrajectory{"join the start of the trajectory", start_trajectory};
+const Action kChangeGains{"change the gains over the requested time; at once with the rotors off",
+                          [](SupervisorContext&) {}};
 const Action kFollowSetpoint{"follow the setpoint", follow_setpoint};
 const Action kMove{"move to the target", move};
 const Action kStop{"brake to rest", [](SupervisorContext& context) {

@@ -23,6 +23,7 @@ extern const Action kSkip;
 extern const Action kClearMission;
 extern const Action kStartTrajectory;
 extern const Action kFollowSetpoint;
+extern const Action kChangeGains;  // does nothing itself: FlightController owns the gains
 extern const Action kMove;
 extern const Action kStop;
 extern const Action kLandAsAsked;

@@ -94,9 +94,12 @@ Outcome not_moving(const SupervisorContext& context) {
   return refuse("moving at %.2f m/s, the limit is %.2f m/s", speed, limit);
 }
 
+// A vehicle that stands on the ground may measure a z slightly below it.
 Outcome inside_fence(const SupervisorContext& context) {
   if (!context.inputs.has_estimate) return accept();
-  return check_position("the vehicle", context.estimate().position_ned, context.settings.limits);
+  Limits limits = context.settings.limits;
+  limits.fence_max_ned.z() += context.settings.failsafe.fence_margin_m;
+  return check_inside_fence("the vehicle", context.estimate().position_ned, limits);
 }
 
 constexpr ArmingCheck kChecks[] = {pose_available, pose_accepted, imu_usable,   battery_available,

@@ -70,6 +70,8 @@ const char* to_string(Event event) {
       return "land";
     case Event::kStop:
       return "stop";
+    case Event::kSettings:
+      return "set control";
     case Event::kPlanUnknown:
       return "plan unknown";
     case Event::kEngagedInFlight:
@@ -118,6 +120,9 @@ bool event_of(RequestKind kind, Event& event) {
       return true;
     case RequestKind::kMissionUpload:
       event = Event::kMissionUpload;
+      return true;
+    case RequestKind::kSettings:
+      event = Event::kSettings;
       return true;
     case RequestKind::kTrajectory:
       event = Event::kTrajectory;

@@ -43,6 +43,7 @@ enum class Event : std::uint8_t {
   kHold,
   kLand,
   kStop,
+  kSettings,
   kPlanUnknown,      // the mission or trajectory is not known here after a failover
   kEngagedInFlight,  // the controller started while its vehicle was in the air
 };

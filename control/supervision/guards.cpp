@@ -10,6 +10,7 @@
 #include "swiftlet/control/supervision/arming.hpp"
 #include "swiftlet/control/supervision/conditions.hpp"
 #include "swiftlet/control/supervision/setpoint_path.hpp"
+#include "swiftlet/control/types/gains.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -19,6 +20,11 @@ constexpr double kMaxSetpointStep_m = 1.0;
 constexpr double kUnitTolerance = 1e-3;
 constexpr double kDetectionDelay_s = 0.01;  // delay until a stream time-out is detected: the next IMU sample
 constexpr double kRounding = 1e-9;
+// Gains change only in calm flight: the rotors have not saturated for kCalm_s, tilt and body rate are below
+// kCalmFraction of their limits, and the vehicle is within kCalmError_m of its reference.
+constexpr double kCalm_s = 0.5;
+constexpr double kCalmFraction = 0.5;
+constexpr double kCalmError_m = 0.2;
 
 GroundLinkAction link_action(const SupervisorContext& context) {
   return context.settings.failsafe.ground_link_action;
@@ -69,10 +75,10 @@ Outcome check_mission_fence(const SupervisorContext& context) {
   const Limits& limits = context.plan.mission_limits;
   const double margin_m = context.settings.failsafe.fence_margin_m;
   Eigen::Vector3d at = context.estimate().position_ned;
-  if (beyond_fence(limits, at) > margin_m) return check_position("the vehicle", at, limits);
+  if (beyond_fence(limits, at) > margin_m) return check_inside_fence("the vehicle", at, limits);
   if (context.plan.mission->items.back().kind != MissionItemKind::kLand) return accept();
   at.z() = context.state.guidance.ground_z_ned;
-  if (beyond_fence(limits, at) > margin_m) return check_position("the landing point", at, limits);
+  if (beyond_fence(limits, at) > margin_m) return check_inside_fence("the landing point", at, limits);
   return accept();
 }
 
@@ -152,7 +158,7 @@ Outcome check_end_of_stream(const SupervisorContext& context) {
     last.velocity_ned = setpoint.velocity_ned;
     last.position_ned = setpoint.position_ned + timeout_s * setpoint.velocity_ned;
   } else {
-    const Reference from = context.state.guidance.path.at(context.state.now_ns);
+    const Reference from = reference_on_path(context.guidance(), context.state.now_ns);
     last = after_blend(path_to_setpoint(context), timeout_s);
     // Prevents a stream that was stopped before the fence from creeping towards it in short moves from rest.
     Reference in_full_motion;
@@ -208,7 +214,8 @@ Outcome check_direct_setpoint(const SupervisorContext& context) {
     if (!attitude.accepted) return attitude;
   }
   return violates_fence(context.guidance())
-             ? refuse("setpoint: the vehicle cannot come to rest inside the fence")
+             ? refuse("setpoint: the vehicle cannot come to rest inside the fence and above %.3f m",
+                      limits.min_height_m)
              : accept();
 }
 
@@ -232,8 +239,53 @@ Outcome check_goto(const SupervisorContext& context) {
   if (!position.accepted) return position;
   const Outcome speed = check_speed("goto", request.speed, context.limits);
   if (!speed.accepted) return speed;
-  if (!request.yaw_free && !std::isfinite(request.yaw_rad)) return refuse("goto: yaw is not a finite number");
-  return accept();
+  return request.yaw_free ? accept() : check_yaw("goto", request.yaw_rad);
+}
+
+// The mission takes off or lands.
+bool near_ground_in_mission(const SupervisorContext& context) {
+  if (context.state.mode != Mode::kMission || context.plan.mission == nullptr) return false;
+  const auto item = static_cast<std::size_t>(context.state.guidance.mission.item_index);
+  return context.plan.mission->items[item].kind == MissionItemKind::kTakeoff ||
+         on_landing_item(context.guidance());
+}
+
+Outcome check_calm(const SupervisorContext& context) {
+  const Estimate& estimate = context.estimate();
+  if (pose_lost(context.inputs, context.settings.failsafe))
+    return refuse("cannot change the gains without a mocap pose");
+  if (context.inputs.unsaturated_s < kCalm_s)
+    return refuse("cannot change the gains: the rotors were saturated %.2f s ago, must be at least %.1f s",
+                  context.inputs.unsaturated_s, kCalm_s);
+  const double tilt = std::acos(std::clamp(cosine_of_tilt(estimate.q_ned_from_frd), -1.0, 1.0));
+  const double most_tilt = kCalmFraction * context.settings.limits.max_tilt_rad;
+  if (!(tilt <= most_tilt))
+    return refuse("cannot change the gains: the tilt is %.2f rad, must be at most %.2f rad", tilt, most_tilt);
+  const double rate = estimate.body_rates_frd.norm();
+  const double most_rate = kCalmFraction * context.settings.limits.max_body_rate;
+  if (!(rate <= most_rate))
+    return refuse("cannot change the gains: the body rate is %.2f rad/s, must be at most %.2f rad/s", rate,
+                  most_rate);
+  const Reference reference = context.state.guidance.path.at(context.state.now_ns);
+  const double error_m = (estimate.position_ned - reference.position_ned).norm();
+  if (error_m <= kCalmError_m) return accept();
+  return refuse("cannot change the gains: the vehicle is %.2f m off its reference, must be at most %.2f m",
+                error_m, kCalmError_m);
+}
+
+Outcome check_settings(const SupervisorContext& context) {
+  const GainChange* const change = context.request->gains;
+  if (change == nullptr) return refuse("the request has no gains");
+  if (context.inputs.gains_changing_s > 0.0)
+    return refuse("the gains are still changing, for another %.1f s", context.inputs.gains_changing_s);
+  if (context.inputs.gains != nullptr && *context.inputs.gains != change->from)
+    return refuse("another request changed the gains meanwhile: send this one again");
+  if (rotors_off(context.state.mode) || context.state.mode == Mode::kArmed) return accept();
+  if (near_ground_in_mission(context))
+    return refuse("cannot change the gains while the mission takes off or lands");
+  if (context.state.mode == Mode::kSetpoint && goes_past_position(context.state.guidance.setpoint_kind))
+    return refuse("cannot change the gains during setpoints of attitude or body rates");
+  return check_calm(context);
 }
 
 }  // namespace
@@ -307,6 +359,9 @@ const Precondition kLand{"speed within the limit", [](const SupervisorContext& c
                            return check_speed("land", context.request->speed, context.limits);
                          }};
 
+const Precondition kSettings{
+    "stable gains; no other change of gains under way; on the ground, or in calm flight with a pose",
+    check_settings};
 const Precondition kPose{"a pose is available", [](const SupervisorContext& context) {
                            if (!pose_lost(context.inputs, context.settings.failsafe)) return accept();
                            return refuse("cannot engage in flight without a mocap pose");

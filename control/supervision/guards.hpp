@@ -52,6 +52,7 @@ extern const Precondition kSetpoint;
 extern const Precondition kGoTo;
 extern const Precondition kLand;
 extern const Precondition kPose;
+extern const Precondition kSettings;
 
 }  // namespace preconditions
 }  // namespace swiftlet::control

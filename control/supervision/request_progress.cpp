@@ -51,8 +51,13 @@ void end_with_mission(RequestStatus& request, MissionState mission, const Transi
 // Requests with a path of their own end with it. A landing also succeeds on the ground after a descent
 // without position.
 void end_with_path(RequestStatus& request, Mode mode, const Transition& row) {
-  if (row.event == Event::kMissionUpload || row.event == Event::kMissionClear) return;
+  if (row.event == Event::kMissionUpload || row.event == Event::kMissionClear ||
+      row.event == Event::kSettings)
+    return;
   switch (request.kind) {
+    case RequestKind::kSettings:
+      if (rotors_off(mode)) succeed(request);
+      return;
     case RequestKind::kTakeoff:
       if (row.event == Event::kPlanFinished) return;  // the reference is at the end
       break;
@@ -139,6 +144,12 @@ bool ends_at_rest(RequestKind kind) {
          kind == RequestKind::kMissionPause;
 }
 
+// The change begins with the step after its acceptance.
+void follow_gains(RequestStatus& request, double progress) {
+  request.progress = std::max(request.progress, progress);
+  if (progress >= 1.0) succeed(request);
+}
+
 }  // namespace
 
 const char* to_string(RequestState state) {
@@ -185,7 +196,8 @@ void note_accepted(SupervisorContext& context) {
   added.kind = request.kind;
   added.state = RequestState::kAccepted;
   const bool stands = request.kind == RequestKind::kLand && context.state.mode == Mode::kDisarmed;
-  if (is_done_when_accepted(request.kind) || stands) succeed(added);
+  const bool at_once = request.kind == RequestKind::kSettings && rotors_off(context.state.mode);
+  if (is_done_when_accepted(request.kind) || stands || at_once) succeed(added);
 }
 
 void end_requests(SupervisorContext& context, const Transition& row) {
@@ -203,7 +215,12 @@ void end_requests(SupervisorContext& context, const Transition& row) {
 void follow_requests(SupervisorContext& context, const Reference& reference) {
   for (RequestStatus& request : context.state.requests) {
     if (!is_under_way(request)) continue;
+    const bool begins = request.state == RequestState::kAccepted;
     request.state = RequestState::kExecuting;
+    if (request.kind == RequestKind::kSettings) {
+      if (!begins) follow_gains(request, context.inputs.gains_progress);
+      continue;
+    }
     request.progress = std::max(request.progress, progress(request, context));
     if (ends_at_rest(request.kind) && reference_rests(context.state) &&
         is_at_reference(context.estimate(), reference))

@@ -4,7 +4,7 @@
 // arm, disarm, stop, mission upload and mission clear succeed when they are accepted. takeoff, goto, hold
 // and mission pause succeed when the reference rests and the vehicle is there; land succeeds on the ground;
 // a trajectory at its end; mission start, resume and skip when the mission is completed, whatever pauses
-// come before.
+// come before; a change of gains when the new ones are in force.
 #pragma once
 
 #include "swiftlet/control/supervision/request_status.hpp"

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "swiftlet/control/estimation/estimator.hpp"
+#include "swiftlet/control/types/gains.hpp"
 #include "swiftlet/control/types/reference.hpp"
 
 namespace swiftlet::control {
@@ -26,6 +28,11 @@ struct SupervisorInputs {
   double rotor_speed = 0.0;                                      // rad/s, fastest rotor
   double imu_unusable_s = 0.0;                                   // time without a usable sample
   double imu_gap_s = 0.0;                                        // s between the last two usable samples
+  const ControlGains* gains = nullptr;                           // in force; null: not known
+  double gains_progress = 1.0;                                   // of their change
+  double gains_changing_s = 0.0;                                 // time until they stop changing
+  // Time since the rotors' limits cut a command.
+  double unsaturated_s = std::numeric_limits<double>::infinity();
 };
 
 enum class ControlMode : std::uint8_t {

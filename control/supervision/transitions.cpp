@@ -20,6 +20,8 @@ constexpr ModeSet kRotorsOn{M::kArmed,      M::kTakingOff, M::kHolding, M::kMiss
 constexpr ModeSet kWithPosition{M::kTakingOff,  M::kHolding,  M::kMission,
                                 M::kTrajectory, M::kSetpoint, M::kLanding};
 constexpr ModeSet kUnderWay{M::kTakingOff, M::kHolding, M::kMission, M::kTrajectory, M::kSetpoint};
+constexpr ModeSet kTunable{M::kDisarmed,   M::kArmed,    M::kHolding, M::kMission,
+                           M::kTrajectory, M::kSetpoint, M::kStopped};
 constexpr ModeSet kLeavingGround{M::kTakingOff, M::kMission};
 
 // clang-format off
@@ -94,6 +96,7 @@ const Transition kTransitions[] = {
   {{M::kHolding}, E::kMissionSkip, guards::kPaused, preconditions::kSkip, M::kMission, R::kRequested, actions::kSkip},
   {kAny, E::kMissionClear, guards::kNoneFlown, preconditions::kClear, kStay, R::kRequested, actions::kClearMission},
   {{M::kHolding, M::kTrajectory, M::kSetpoint}, E::kTrajectory, guards::kAlways, preconditions::kTrajectory, M::kTrajectory, R::kRequested, actions::kStartTrajectory},
+  {kTunable, E::kSettings, guards::kAlways, preconditions::kSettings, kStay, R::kRequested, actions::kChangeGains},
   {{M::kHolding}, E::kSetpoint, guards::kAlways, preconditions::kSetpoint, M::kSetpoint, R::kSetpointsCame, actions::kFollowSetpoint},
   {{M::kSetpoint}, E::kSetpoint, guards::kAlways, preconditions::kSetpoint, kStay, R::kSetpointsCame, actions::kFollowSetpoint},
   {kWithPosition, E::kGoTo, guards::kLiftedOff, preconditions::kGoTo, M::kHolding, R::kRequested, actions::kMove},
@@ -185,6 +188,8 @@ Outcome refusal(Event request, const SupervisorContext& context) {
       return refuse_to_change_mission(request, context);
     case Event::kTrajectory:
       return refuse("cannot start a trajectory while %s", now);
+    case Event::kSettings:
+      return refuse("cannot change the gains while %s", now);
     case Event::kSetpoint:
       return refuse("setpoints are not accepted while %s", now);
     default:

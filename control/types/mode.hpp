@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "swiftlet/control/types/gains.hpp"
+
 namespace swiftlet::control {
 
 enum class Mode : std::uint8_t {
@@ -82,6 +84,8 @@ struct Status {
   double supply_voltage_v = 0.0;
   bool saturated = false;  // the rotors' limits cut the last command
   MissionProgress mission;
+  SettingsName settings{};      // name of the control settings in force, or that the gains change to
+  double gains_progress = 1.0;  // 0 .. 1, of the change of gains
 };
 
 }  // namespace swiftlet::control

@@ -29,6 +29,7 @@ enum class RequestKind : std::uint8_t {
   // Sent by topics of their own, not by a command.
   kMissionUpload = 64,  // store the mission
   kTrajectory = 65,
+  kSettings = 66,  // change the gains
 };
 
 // Identifies a request: the client that sent it and the client's number for it.
@@ -38,6 +39,8 @@ struct RequestKey {
 
   bool operator==(const RequestKey& other) const { return client == other.client && id == other.id; }
 };
+
+struct GainChange;
 
 struct Request {
   RequestKey key;
@@ -50,6 +53,9 @@ struct Request {
   const Mission* mission =
       nullptr;  // kMissionUpload; owned by the caller, kept until another upload is accepted
   const Trajectory* trajectory = nullptr;  // kTrajectory; likewise, or until the controller has left it
+  // kSettings: from the gains in force to others, checked for stability; start_ns is ignored. Copied when the
+  // request is accepted.
+  const GainChange* gains = nullptr;
 };
 
 // Accepted, or refused with one sentence that names the value and the limit. A refused request changes

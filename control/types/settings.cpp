@@ -42,6 +42,11 @@ void check_limits(const Limits& limits, RuleChecker& check) {
     check.add("limits.fence_max_ned_m" + index, "is ", limits.fence_max_ned[i],
               ", must be above fence_min_ned_m in ", kAxis[i], ", ", limits.fence_min_ned[i]);
   }
+  if (check.above("limits.min_height_m", limits.min_height_m, 0.0) &&
+      limits.min_height_m > -limits.fence_min_ned.z()) {
+    check.add("limits.min_height_m", "is ", limits.min_height_m,
+              ", must be at most the height of the fence, ", -limits.fence_min_ned.z());
+  }
 }
 
 void check_estimator(const EstimatorSettings& estimator, RuleChecker& check) {

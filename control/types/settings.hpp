@@ -2,6 +2,7 @@
 // same keys.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -63,8 +64,14 @@ struct Limits {
   double max_yaw_rate = 1.5;                           // rad/s, of planned references
   double max_body_rate = 6.0;                          // rad/s, of body-rate setpoints
   Eigen::Vector3d fence_min_ned = {-3.0, -3.0, -2.5};  // m
-  Eigen::Vector3d fence_max_ned = {3.0, 3.0, 0.2};     // m
+  Eigen::Vector3d fence_max_ned = {3.0, 3.0, 0.0};     // m; z: the ground
+  double min_height_m = 0.1;  // above the ground, z = 0; take-offs and landings aside
 };
+
+// m, NED: the greatest z at which a reference may be, take-offs and landings aside.
+inline double lowest_z_ned(const Limits& limits) {
+  return std::min(limits.fence_max_ned.z(), -limits.min_height_m);
+}
 
 // The thresholds of the estimator's detectors (control/estimation/README.md: symptom, detector,
 // consequence). The defaults fit any vehicle of this size. Only max_speed and max_body_rate depend on the

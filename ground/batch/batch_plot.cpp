@@ -113,7 +113,7 @@ plot::Figure batch_figure(const BatchReport& report) {
 
 std::string draw_batch(const std::filesystem::path& folder, const BatchReport& report) {
   if (report.rms_3d_m.count == 0) return "no picture was drawn: no run has a tracking error";
-  return plot::draw_png(batch_figure(report), folder / "batch.png", true);
+  return plot::draw_png_if_installed(batch_figure(report), folder / "batch.png");
 }
 
 }  // namespace swiftlet::ground

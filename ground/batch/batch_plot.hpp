@@ -9,7 +9,8 @@
 namespace swiftlet::ground {
 
 // Draws folder/batch.png, and writes the gnuplot script folder/batch.gp to draw it again. Returns an empty
-// string, or one sentence with the reason why there is no picture.
+// string, or a sentence if gnuplot is not installed or no run has a tracking error. Throws std::runtime_error
+// if the picture could not be drawn or written whole; there is none then.
 std::string draw_batch(const std::filesystem::path& folder, const BatchReport& report);
 
 }  // namespace swiftlet::ground

@@ -30,6 +30,7 @@ std::string shell_word(const std::string& text) {
 std::string repeat_of(const FlyOptions& options) {
   const FlyOptions usual;
   std::string command = "swiftlet sim fly " + shell_word(options.mission);
+  if (options.frame) command += *options.frame == MissionFrame::kNed ? " --frame ned" : " --frame enu";
   const auto add = [&](const char* option, const std::string& value, const std::string& usual_value) {
     if (value != usual_value) command += std::string(" ") + option + " " + shell_word(value);
   };

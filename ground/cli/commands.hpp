@@ -26,6 +26,8 @@ Command add_mission_skip_command(runtime::CommandLine mission);
 Command add_mission_clear_command(runtime::CommandLine mission);
 Command add_trajectory_command(runtime::CommandLine root);
 Command add_stream_command(runtime::CommandLine root);
+Command add_teleop_command(runtime::CommandLine root);
+Command add_set_command(runtime::CommandLine root);  // `set control`
 Command add_status_command(runtime::CommandLine root);
 Command add_watch_command(runtime::CommandLine root);
 Command add_list_command(runtime::CommandLine root);  // all vehicles of the domain
@@ -41,6 +43,7 @@ Command add_completion_command(runtime::CommandLine root);
 Command add_manual_command(runtime::CommandLine root);
 
 // Controller design, mission checks and simulation.
+Command add_tune_command(runtime::CommandLine root);  // `tune plot`
 Command add_gains_command(runtime::CommandLine root);
 Command add_mission_check_command(runtime::CommandLine mission);
 Command add_mission_plot_command(runtime::CommandLine mission);

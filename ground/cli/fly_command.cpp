@@ -1,10 +1,13 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <future>
 #include <memory>
 #include <optional>
 #include <vector>
+
+#include <fmt/core.h>
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
@@ -14,7 +17,9 @@
 #include "swiftlet/ground/flight/launch_configuration.hpp"
 #include "swiftlet/ground/flight/process_flight.hpp"
 #include "swiftlet/ground/terminal/fleet_progress.hpp"
+#include "swiftlet/plant/model/airframe.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
+#include "swiftlet/services/dds/discovery/flight_reservation.hpp"
 #include "swiftlet/services/dds/shared_memory.hpp"
 
 namespace swiftlet::ground {
@@ -24,13 +29,20 @@ constexpr std::size_t kMostVehicles = 12;  // three processes each; discovery co
 
 void check(const FlyOptions& options, std::size_t vehicles) {
   const bool lockstep = options.clock == runtime::Clock::kLockstep;
-  if (lockstep && options.speed != 1.0)
-    throw InputError("--speed: cannot be used with --clock lockstep, which runs as fast as possible");
   if (!lockstep && options.trace) throw InputError("--trace: requires --clock lockstep");
   if (vehicles > kMostVehicles) {
     throw InputError("--vehicle-name: names " + std::to_string(vehicles) + " vehicles, limit " +
                      std::to_string(kMostVehicles) + " per command");
   }
+}
+
+// The vehicles start beside each other.
+void require_room(double spacing_m, const plant::Vehicle& vehicle) {
+  const double width_m = plant::width(vehicle);
+  if (std::abs(spacing_m) >= width_m) return;
+  throw InputError(
+      fmt::format("--spacing: {:g} m puts the vehicles inside each other: a {} is up to {:.2f} m wide",
+                  spacing_m, vehicle.name, width_m));
 }
 
 // Returns one launch configuration per vehicle. A single mission is flown by all vehicles; otherwise the i-th
@@ -49,15 +61,23 @@ std::vector<LaunchConfiguration> plan_flights(const FlyOptions& options,
     one.seed = options.seed + i;
     one.start_ned = {
         0.0, options.spacing_m * (static_cast<double>(i) - 0.5 * static_cast<double>(vehicles.size() - 1))};
-    LaunchConfiguration plan = plan_flight(one);
-    if (vehicles.size() > 1) {
-      if (i > 0) plan.folder = plans.front().folder.parent_path();
-      plan.folder /= vehicles[i];
-      if (options.trace) plan.trace_file = plan.folder / "trace.csv";
-    }
-    plans.push_back(std::move(plan));
+    plans.push_back(plan_flight(one));
   }
+  if (vehicles.size() > 1 && options.launch_mode == LaunchMode::kStarted)
+    require_room(options.spacing_m, plans.front().vehicle);
   return plans;
+}
+
+// Makes the folder of the record, with one inside for each of several vehicles.
+std::unique_ptr<RecordFolder> make_record(const FlyOptions& options, const std::vector<std::string>& vehicles,
+                                          std::vector<LaunchConfiguration>& plans) {
+  std::uintmax_t needed_bytes = 0;
+  for (const LaunchConfiguration& plan : plans) needed_bytes += plan.record_bytes();
+  require_space(plans.front().folder, needed_bytes);
+  auto folder = std::make_unique<RecordFolder>(plans.front().folder, existing_record(options));
+  for (std::size_t i = 0; i < plans.size(); ++i)
+    plans[i].record_in(plans.size() == 1 ? folder->path() : folder->path() / vehicles[i]);
+  return folder;
 }
 
 // Flies all vehicles at the same time, each from its own thread.
@@ -87,10 +107,15 @@ int fly(const FlyOptions& options) {
   check(options, vehicles.size());
   std::vector<LaunchConfiguration> plans = plan_flights(options, vehicles);
 
+  const std::unique_ptr<RecordFolder> record = make_record(options, vehicles, plans);
+
   std::optional<comms::DomainLock> domain_lock;
   if (options.domain < 0 && options.launch_mode == LaunchMode::kStarted) domain_lock.emplace();
   comms::NodeSettings network = options.network;
   network.domain = domain_lock ? domain_lock->domain() : std::max(options.domain, 0);
+  // In a domain that others may use, the vehicles must not live already.
+  std::optional<comms::FlightReservation> reservation;
+  if (!domain_lock && options.launch_mode == LaunchMode::kStarted) reservation.emplace(network, vehicles);
 
   ProgressLine progress;
   std::deque<ProcessFlight> flights;
@@ -145,9 +170,10 @@ Command add_fly_command(runtime::CommandLine root) {
       "--attach", [options] { options->launch_mode = LaunchMode::kAttached; },
       "start no processes: use the plant, mocap and control that run in the domain (default: 0)");
   runtime::add_clock_option(app, options->clock);
-  app.add_option("--speed", options->speed, "simulated seconds per second of real time")
-      .range(0.01, 100.0)
-      .show_default();
+  app.add_option("--speed", options->speed,
+                 "simulated seconds per second of real time; default: 1, or with --clock lockstep as fast as "
+                 "possible")
+      .range(0.01, 100.0);
   app.add_flag("--trace", options->trace,
                "lockstep only: write trace.csv, which holds every sample and command bit for bit");
   for (const char* launch_option :

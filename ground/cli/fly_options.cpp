@@ -11,6 +11,7 @@ void add_mission_options(runtime::CommandLine app, FlyOptions& options) {
          "mission file, or the name of one in config/missions; also a trajectory or waypoints as CSV, or a "
          "QGroundControl .plan file")
       .show_default();
+  add_frame_option(app, options.frame);
   app.add_option("--vehicle", options.vehicle, "vehicle file, or the name of one in config/vehicles")
       .show_default();
   app.add_option("--control", options.control,
@@ -28,11 +29,19 @@ void add_mission_options(runtime::CommandLine app, FlyOptions& options) {
       .one_of({500, 1000});
 }
 
+void add_frame_option(runtime::CommandLine app, std::optional<MissionFrame>& frame) {
+  app.add_choice<std::optional<MissionFrame>>(
+      "--frame", frame, {{"ned", MissionFrame::kNed}, {"enu", MissionFrame::kEnu}},
+      "frame of a CSV file that names none: ned (north, east, down) or enu (east, north, up)");
+}
+
 void add_fly_options(runtime::CommandLine app, FlyOptions& options) {
   add_mission_options(app, options);
-  app.add_option(
+  const runtime::Option record = app.add_option(
       "--record", options.record,
-      "folder for flight.csv, report.json, flight.png and logs; default: flights/<date>-<mission>");
+      "new folder for flight.csv, report.json, flight.png and logs; default: flights/<date>-<mission>");
+  app.add_flag("--replace", options.replace, "delete the record that the folder of --record holds first")
+      .needs(record);
   app.add_flag(
       "--sensors", options.sensors,
       "write sensors.csv, the input of `swiftlet identify flight`: every IMU sample, command, pose, voltage "

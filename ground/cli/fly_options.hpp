@@ -1,6 +1,8 @@
 // The options that the commands which fly a mission have in common.
 #pragma once
 
+#include <optional>
+
 #include "swiftlet/ground/flight/launch_configuration.hpp"
 #include "swiftlet/services/runtime/command_line.hpp"
 
@@ -8,10 +10,12 @@ namespace swiftlet::ground {
 
 // In all functions `options` must outlive the parsing.
 
-// Adds mission, --vehicle, --control, --simulation, --seed and --imu-rate.
+// Adds mission, --frame, --vehicle, --control, --simulation, --seed and --imu-rate.
 void add_mission_options(runtime::CommandLine app, FlyOptions& options);
-// Adds the options of add_mission_options(), --record, --sensors and --json.
+// Adds the options of add_mission_options(), --record, --replace, --sensors and --json.
 void add_fly_options(runtime::CommandLine app, FlyOptions& options);
+// Adds --frame: the frame of a CSV file that does not name its own.
+void add_frame_option(runtime::CommandLine app, std::optional<MissionFrame>& frame);
 // Adds --dispersion.
 runtime::Option add_dispersion_option(runtime::CommandLine app, FlyOptions& options);
 

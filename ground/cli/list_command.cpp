@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -10,7 +11,9 @@
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/ground/client/context.hpp"
+#include "swiftlet/ground/client/silence.hpp"
 #include "swiftlet/ground/command_line/network_options.hpp"
+#include "swiftlet/ground/terminal/state_lines.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -25,6 +28,7 @@ struct Options {
 struct Found {
   std::string name;
   View view;
+  std::vector<Silence> silences{};
   double mocap_hz = 0.0;  // poses a second, accepted and refused
   int controllers = 0;
 };
@@ -58,6 +62,7 @@ std::vector<Found> discover(const Options& options) {
   std::vector<Found> found;
   for (const auto& [name, client] : clients) {
     Found vehicle{name, client->view()};
+    vehicle.silences = silences_of(vehicle.view, Clock::now());
     vehicle.controllers = static_cast<int>(vehicle.view.controllers.size());
     if (before[name].estimate.seen())
       vehicle.mocap_hz = static_cast<double>(poses(vehicle.view) - poses(before[name])) / time_s;
@@ -69,6 +74,8 @@ std::vector<Found> discover(const Options& options) {
 nlohmann::ordered_json to_json(const Found& vehicle) {
   nlohmann::ordered_json json = {{"vehicle", vehicle.name}, {"mode", nullptr}};
   if (vehicle.view.control.seen()) json["mode"] = mode_name(vehicle.view.control.message.mode());
+  json["silent"] = nlohmann::ordered_json::array();
+  for (const Silence& silence : vehicle.silences) json["silent"].push_back(silence.who);
   json["model"] = nullptr;
   if (vehicle.view.vehicle.seen()) json["model"] = vehicle.view.vehicle.message.name().c_str();
   json["battery_v"] = nullptr;
@@ -78,7 +85,21 @@ nlohmann::ordered_json to_json(const Found& vehicle) {
   return json;
 }
 
+// The mode, unless vehicle or control are silent: then it is not known.
+std::string mode_of(const Found& vehicle) {
+  const View& view = vehicle.view;
+  if (!view.control.seen()) return "no control";
+  const bool known = std::none_of(vehicle.silences.begin(), vehicle.silences.end(), [](const Silence& s) {
+    return s.who == "vehicle" || s.who == "control service";
+  });
+  return known ? mode_name(view.control.message.mode()) : "SILENT";
+}
+
 void print(const std::vector<Found>& vehicles) {
+  for (const Found& vehicle : vehicles) {
+    for (const Silence& silence : vehicle.silences)
+      print_alarm(stdout, vehicle.name + ": " + to_string(silence, std::chrono::system_clock::now()));
+  }
   std::printf("%-16s %-12s %-12s %9s %11s %8s\n", "vehicle", "model", "mode", "battery", "controllers",
               "mocap");
   for (const Found& vehicle : vehicles) {
@@ -86,9 +107,8 @@ void print(const std::vector<Found>& vehicles) {
     const std::string battery =
         view.battery.seen() ? fmt::format("{:.2f} V", view.battery.message.voltage_v()) : "-";
     std::printf("%-16s %-12s %-12s %9s %11d %5.0f Hz\n", vehicle.name.c_str(),
-                view.vehicle.seen() ? view.vehicle.message.name().c_str() : "-",
-                view.control.seen() ? mode_name(view.control.message.mode()) : "no control", battery.c_str(),
-                vehicle.controllers, vehicle.mocap_hz);
+                view.vehicle.seen() ? view.vehicle.message.name().c_str() : "-", mode_of(vehicle).c_str(),
+                battery.c_str(), vehicle.controllers, vehicle.mocap_hz);
   }
 }
 
@@ -116,7 +136,8 @@ int list(const Options& options) {
 Command add_list_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
   const runtime::CommandLine app = root.add_subcommand(
-      "list", "List the vehicles of the domain with model, mode, battery, controllers and pose rate");
+      "list",
+      "List the vehicles of the domain: who is silent, model, mode, battery, controllers and pose rate");
   add_network_options(app, options->network);
   app.remove_option("--vehicle-name");
   app.add_option("--time", options->look_s, "duration of the discovery, s").range(0.4, 60.0).show_default();

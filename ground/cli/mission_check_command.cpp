@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/cli/fly_options.hpp"
 #include "swiftlet/ground/command_line/installation.hpp"
 #include "swiftlet/ground/mission/mission_check.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
@@ -12,6 +13,7 @@ namespace {
 
 struct Options {
   std::string file;
+  std::optional<MissionFrame> frame;
   std::string vehicle = "kaylion";
   std::string control = "motor_lag";
   std::vector<double> start = {0.0, 0.0};
@@ -22,7 +24,8 @@ struct Options {
 int run(const Options& options) {
   const plant::Vehicle vehicle = runtime::load_vehicle(configuration_file("vehicles", options.vehicle));
   const auto settings = runtime::load_control_settings(configuration_file("control", options.control));
-  const MissionFile file = load_mission_file(configuration_file("missions", options.file), settings.limits);
+  const MissionFile file =
+      load_mission_file(configuration_file("missions", options.file), settings.limits, options.frame);
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
   const MissionDryRun flown = dry_run(file.mission, settings, {options.start[0], options.start[1]});
@@ -49,12 +52,15 @@ Command add_mission_check_command(runtime::CommandLine mission) {
   app.add_option("file", options->file,
                  "mission file, or the name of one in config/missions; also CSV or QGroundControl .plan")
       .required();
+  add_frame_option(app, options->frame);
   app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
       .show_default();
   app.add_option("--control", options->control,
                  "control settings file, or the name of one in config/control: its limits and fence apply")
       .show_default();
-  app.add_option("--start", options->start, "start position of the vehicle: north and east, m").expected(2);
+  app.add_option("--start", options->start, "start position of the vehicle: north and east, m")
+      .finite()
+      .expected(2);
   app.add_option("--supply", options->supply_voltage_v,
                  "battery voltage of the check, V; default: the low-battery threshold")
       .range(0.1, 100.0);

@@ -15,30 +15,35 @@ struct Options : RequestOptions {
 using Ask = ActionHandle (Vehicle::*)(std::uint64_t, std::chrono::milliseconds);
 
 Command add_mission_request(runtime::CommandLine mission, const std::string& name,
-                            const std::string& description, Ask ask) {
+                            const std::string& description, Ask ask,
+                            OnInterrupt on_interrupt = OnInterrupt::kPauseMission,
+                            bool done_when_accepted = false) {
   const auto options = std::make_shared<Options>();
   const runtime::CommandLine app =
       add_request_subcommand(mission, name, description, "swiftlet mission " + name, options);
   app.add_option("--id", options->id,
-                 "mission id that `mission upload` printed; refused if the vehicle has another mission");
-  return {app, [options, name, ask] {
-            return run_request(*options, "mission " + name, [&](Vehicle& vehicle) {
-              return (vehicle.*ask)(options->id, options->timeout());
-            });
+                 "mission id that `mission upload` printed; refused if the vehicle has another mission")
+      .whole();
+  return {app, [=] {
+            return run_request(
+                *options, {"mission " + name,
+                           [&](Vehicle& vehicle) { return (vehicle.*ask)(options->id, options->timeout()); },
+                           on_interrupt, done_when_accepted});
           }};
 }
 
 }  // namespace
 
 Command add_mission_start_command(runtime::CommandLine mission) {
-  return add_mission_request(mission, "start",
-                             "Start the uploaded mission at its first item; also after it has ended",
-                             &Vehicle::start_mission);
+  return add_mission_request(
+      mission, "start",
+      "Start the uploaded mission at its first item; also after it has ended. Ctrl-C pauses it",
+      &Vehicle::start_mission);
 }
 
 Command add_mission_pause_command(runtime::CommandLine mission) {
   return add_mission_request(mission, "pause", "Come to rest on the path and hold; `resume` continues",
-                             &Vehicle::pause_mission);
+                             &Vehicle::pause_mission, OnInterrupt::kNothing);
 }
 
 Command add_mission_resume_command(runtime::CommandLine mission) {
@@ -53,7 +58,7 @@ Command add_mission_skip_command(runtime::CommandLine mission) {
 
 Command add_mission_clear_command(runtime::CommandLine mission) {
   return add_mission_request(mission, "clear", "Delete the uploaded mission; refused while it is flown",
-                             &Vehicle::clear_mission);
+                             &Vehicle::clear_mission, OnInterrupt::kNothing, true);
 }
 
 Command add_mission_command(runtime::CommandLine root) {

@@ -1,63 +1,50 @@
 #include <cstdio>
+#include <optional>
 
-#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/cli/fly_options.hpp"
 #include "swiftlet/ground/cli/request_command.hpp"
 #include "swiftlet/ground/command_line/installation.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
-#include "swiftlet/ground/terminal/progress_line.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
-using namespace std::chrono_literals;
-
-constexpr auto kStep = 50ms;
-
 struct Options : CommandOptions {
   std::string file;
+  std::optional<MissionFrame> frame;
   std::string control = "motor_lag";
   bool no_wait = false;
   bool link = false;
 };
 
-void show(const VehicleState& state, ProgressLine& progress) {
-  const Eigen::Vector3d& position = state.position_ned_m;
-  const std::string text = fmt::format(
-      "{}/{}  {}  ({:5.2f}, {:5.2f}, {:5.2f}) m, {:.2f} V", state.mission.item, state.mission.items,
-      control::to_string(state.mode), position.x(), position.y(), position.z(), state.battery_voltage_v);
-  progress.update(state.mission.item, text);
-}
-
-ActionResult follow(const Vehicle& vehicle, const ActionHandle& flight) {
-  const Interrupts interrupts;
-  ProgressLine progress;
-  while (true) {
-    ActionResult result = flight.wait(kStep);
-    if (result.kind != ActionResult::Kind::kTimedOut) return result;
-    show(vehicle.state(), progress);
-    if (interrupts.count() > 0)
-      return {ActionResult::Kind::kTimedOut, "interrupted; the vehicle continues the mission"};
-  }
-}
-
 int fly_mission(const Options& options) {
   const auto settings = runtime::load_control_settings(configuration_file("control", options.control));
   const MissionFile mission =
-      load_mission_file(configuration_file("missions", options.file), settings.limits);
+      load_mission_file(configuration_file("missions", options.file), settings.limits, options.frame);
   for (const std::string& assumption : mission.assumptions)
     std::fprintf(stderr, "%s: %s\n", mission.name.c_str(), assumption.c_str());
   Vehicle vehicle(options.network);
   log_connection(vehicle, "mission " + mission.name);
   if (options.link) vehicle.enable_link_loss_failsafe();
+  const Interrupts interrupts;
+  vehicle.cancel_when([&] { return interrupts.count() > 0; });
   const ActionHandle flight = vehicle.follow(mission.mission, options.timeout());
   ActionResult end = {ActionResult::Kind::kNotAccepted, flight.answer().reason};
-  if (flight.accepted())
-    end = options.no_wait ? ActionResult{ActionResult::Kind::kCompleted, ""} : follow(vehicle, flight);
+  if (flight.answer().kind == Result::Kind::kCancelled) {
+    end.reason =
+        vehicle.connected() ? rest_after_interrupt(vehicle, OnInterrupt::kPauseMission) : "interrupted";
+  } else if (flight.accepted() && options.no_wait) {
+    end = {ActionResult::Kind::kCompleted, ""};
+  } else if (flight.accepted()) {
+    end = await_actions({{&vehicle, flight}}, mission.name, OnInterrupt::kPauseMission, interrupts,
+                        std::nullopt)
+              .front();
+  }
 
   if (options.json) {
     nlohmann::ordered_json json = {{"mission", mission.name}, {"accepted", flight.accepted()}};
@@ -76,14 +63,15 @@ int fly_mission(const Options& options) {
 
 Command add_mission_fly_command(runtime::CommandLine mission) {
   const auto options = std::make_shared<Options>();
-  const runtime::CommandLine app =
-      add_vehicle_subcommand(mission, "fly", "Upload a mission file, start it and wait until it ends",
-                             "swiftlet mission fly config/missions/square.yaml", options);
+  const runtime::CommandLine app = add_vehicle_subcommand(
+      mission, "fly", "Upload a mission file, start it and wait until it ends; Ctrl-C pauses it",
+      "swiftlet mission fly config/missions/square.yaml", options);
   app.add_option(
          "file", options->file,
          "mission file, or the name of one in config/missions; also a trajectory or waypoints as CSV, "
          "or a QGroundControl .plan file")
       .required();
+  add_frame_option(app, options->frame);
   app.add_option("--control", options->control,
                  "control settings with the limits and the fence for the mission check")
       .show_default();

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/cli/fly_options.hpp"
 #include "swiftlet/ground/cli/request_command.hpp"
 #include "swiftlet/ground/command_line/installation.hpp"
 #include "swiftlet/io/format.hpp"
@@ -14,12 +15,14 @@ namespace {
 
 struct Options : CommandOptions {
   std::string file;
+  std::optional<MissionFrame> frame;
   std::string control = "motor_lag";
 };
 
 int upload(const Options& options) {
   const auto settings = runtime::load_control_settings(configuration_file("control", options.control));
-  const MissionFile file = load_mission_file(configuration_file("missions", options.file), settings.limits);
+  const MissionFile file =
+      load_mission_file(configuration_file("missions", options.file), settings.limits, options.frame);
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
   Vehicle vehicle(options.network);
@@ -49,6 +52,7 @@ Command add_mission_upload_command(runtime::CommandLine mission) {
   app.add_option("file", options->file,
                  "mission file, or the name of one in config/missions; also CSV or QGroundControl .plan")
       .required();
+  add_frame_option(app, options->frame);
   app.add_option("--control", options->control,
                  "control settings with the limits and the fence for the mission check")
       .show_default();

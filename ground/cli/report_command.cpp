@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,9 +18,13 @@ struct ReportOptions {
 };
 
 int report(const ReportOptions& options) {
+  std::vector<std::filesystem::path> records(options.folders.begin(), options.folders.end());
+  if (records.empty()) records.push_back(newest_record("flights"));
   std::vector<RecordedFlight> flights;
-  for (const std::string& folder : options.folders) flights.push_back(load_recorded_flight(folder));
-  if (flights.empty()) flights.push_back(load_recorded_flight(newest_flight("flights")));
+  for (const std::filesystem::path& record : records) {
+    for (const std::filesystem::path& flight : flights_of(record))
+      flights.push_back(load_recorded_flight(flight));
+  }
   const std::string text = options.json ? comparison_json(flights).dump(2) + "\n" : comparison_table(flights);
   std::fputs(text.c_str(), stdout);
   return kDone;
@@ -31,7 +36,8 @@ Command add_report_command(runtime::CommandLine root) {
   const auto options = std::make_shared<ReportOptions>();
   const runtime::CommandLine app =
       root.add_subcommand("report", "Report recorded flights, and the settings in which they differ");
-  app.add_option("FOLDER", options->folders, "flight records; default: the newest one in flights/");
+  app.add_option("FOLDER", options->folders,
+                 "records of one or of several vehicles; default: the newest one in flights/");
   app.add_flag("--json", options->json, "print JSON");
   app.footer("example: swiftlet report flights/20261121-093909-square flights/20261121-093910-square");
   return {app, [options] { return report(*options); }};

@@ -1,5 +1,6 @@
 #include "swiftlet/ground/cli/request_command.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <future>
 #include <mutex>
@@ -13,20 +14,25 @@
 namespace swiftlet::ground {
 namespace {
 
-// The result of a request to one vehicle.
+// A request to one vehicle and its result.
 struct RequestOutcome {
-  std::string vehicle;
+  std::unique_ptr<Vehicle> vehicle;
+  control::Mode mode_before = control::Mode::kDisarmed;
   Result answer;
-  std::optional<ActionResult> action_result;  // unset without --wait
+  std::optional<ActionHandle> action;         // unset until the request is sent
+  std::optional<ActionResult> action_result;  // unset with --no-wait
 
   bool failed() const { return action_result ? !action_result->done() : !answer.accepted(); }
-  const std::string& reason() const { return action_result ? action_result->reason : answer.reason; }
+  const std::string& reason() const {
+    return action_result && !action_result->reason.empty() ? action_result->reason : answer.reason;
+  }
 };
+using RequestOutcomes = std::vector<RequestOutcome>;
 
 nlohmann::ordered_json to_json(const RequestOutcome& outcome) {
   nlohmann::ordered_json json = {{"accepted", outcome.answer.accepted()}};
-  if (outcome.action_result) json["done"] = outcome.action_result->done();
-  if (outcome.failed()) json["reason"] = outcome.reason();
+  if (outcome.action_result && outcome.answer.accepted()) json["done"] = outcome.action_result->done();
+  if (!outcome.reason().empty()) json["reason"] = outcome.reason();
   return json;
 }
 
@@ -43,6 +49,126 @@ runtime::CommandLine add_subcommand(runtime::CommandLine root, const std::string
   return app;
 }
 
+void for_all(RequestOutcomes& outcomes, const std::function<void(RequestOutcome&)>& act) {
+  std::vector<std::future<void>> pending;
+  pending.reserve(outcomes.size());
+  for (RequestOutcome& outcome : outcomes)
+    pending.push_back(std::async(std::launch::async, [&act, &outcome] { act(outcome); }));
+  for (std::future<void>& one : pending) one.get();
+}
+
+std::string failed_names(const RequestOutcomes& outcomes) {
+  std::string names;
+  for (const RequestOutcome& outcome : outcomes) {
+    if (!outcome.answer.accepted()) names += (names.empty() ? "" : ", ") + outcome.vehicle->name();
+  }
+  return names;
+}
+
+void send(RequestOutcome& outcome, const VehicleRequest& request) {
+  outcome.action = request.ask(*outcome.vehicle);
+  outcome.answer = outcome.action->answer();
+}
+
+void print_acceptance(const RequestOutcome& outcome, const std::string& what) {
+  if (!outcome.answer.accepted()) return;
+  const std::string& note = outcome.answer.reason;
+  std::printf("%s: accepted by %s%s%s\n", what.c_str(), outcome.vehicle->name().c_str(),
+              note.empty() ? "" : ": ", note.c_str());
+  std::fflush(stdout);
+}
+
+// Sends the request to each vehicle, whatever the others answer. Prints each acceptance as soon as it arrives.
+void send_to_each(RequestOutcomes& outcomes, const VehicleRequest& request, const RequestOptions& options) {
+  std::mutex printing;
+  for_all(outcomes, [&](RequestOutcome& outcome) {
+    send(outcome, request);
+    const std::lock_guard<std::mutex> lock(printing);
+    if (!options.json) print_acceptance(outcome, request.what);
+  });
+}
+
+// Returns false if a vehicle is not found. Its answer and those of the others then say so.
+bool find_all(RequestOutcomes& outcomes, const RequestOptions& options) {
+  for_all(outcomes, [&](RequestOutcome& outcome) {
+    outcome.answer = outcome.vehicle->connect(options.timeout());
+    outcome.mode_before = outcome.vehicle->state().mode;
+  });
+  const std::string missing = failed_names(outcomes);
+  if (missing.empty()) return true;
+  for (RequestOutcome& outcome : outcomes) {
+    if (outcome.answer.accepted())
+      outcome.answer = {Result::Kind::kCancelled, "nothing was sent, because " + missing + " was not found"};
+  }
+  return false;
+}
+
+// Disarms those again that this request armed.
+void take_back(RequestOutcomes& outcomes, const VehicleRequest& request, const std::string& refusing) {
+  for_all(outcomes, [&](RequestOutcome& outcome) {
+    const bool may_be_armed = outcome.answer.accepted() || outcome.answer.kind == Result::Kind::kSilence;
+    if (!may_be_armed || outcome.mode_before != control::Mode::kDisarmed) return;
+    const Result undone = request.undo(*outcome.vehicle).answer();
+    if (!outcome.answer.accepted()) return;
+    const std::string now = undone.accepted() ? "disarmed again" : "still armed (" + undone.reason + ")";
+    outcome.answer = {Result::Kind::kCancelled, now + ", because " + refusing + " did not arm"};
+  });
+}
+
+// Sends the request to all, or takes it back from those that accepted it.
+void send_to_all_or_none(RequestOutcomes& outcomes, const VehicleRequest& request,
+                         const RequestOptions& options) {
+  if (!find_all(outcomes, options)) return;
+  for_all(outcomes, [&](RequestOutcome& outcome) { send(outcome, request); });
+  const std::string refusing = failed_names(outcomes);
+  if (!refusing.empty()) take_back(outcomes, request, refusing);
+  for (const RequestOutcome& outcome : outcomes) {
+    if (!options.json) print_acceptance(outcome, request.what);
+  }
+}
+
+// An interrupt signal has cancelled requests. A controller may have accepted one before that.
+void rest_unanswered(RequestOutcomes& outcomes, OnInterrupt on_interrupt) {
+  for_all(outcomes, [on_interrupt](RequestOutcome& outcome) {
+    if (outcome.answer.kind != Result::Kind::kCancelled || !outcome.action) return;
+    outcome.answer.reason =
+        outcome.vehicle->connected() ? rest_after_interrupt(*outcome.vehicle, on_interrupt) : "interrupted";
+  });
+}
+
+void await_all(RequestOutcomes& outcomes, const VehicleRequest& request, const RequestOptions& options,
+               const Interrupts& interrupts) {
+  std::vector<RequestOutcome*> accepted;
+  std::vector<AwaitedAction> actions;
+  for (RequestOutcome& outcome : outcomes) {
+    if (!outcome.answer.accepted()) continue;
+    if (request.done_when_accepted) {
+      outcome.action_result = ActionResult{ActionResult::Kind::kCompleted, ""};
+    } else {
+      accepted.push_back(&outcome);
+      actions.push_back({outcome.vehicle.get(), *outcome.action});
+    }
+  }
+  const std::vector<ActionResult> results =
+      await_actions(actions, request.what, request.on_interrupt, interrupts, options.wait_s);
+  for (std::size_t i = 0; i < results.size(); ++i) accepted[i]->action_result = results[i];
+}
+
+void print_json(const RequestOutcomes& outcomes) {
+  nlohmann::ordered_json json;
+  for (const RequestOutcome& outcome : outcomes) json[outcome.vehicle->name()] = to_json(outcome);
+  std::printf("%s\n", (outcomes.size() == 1 ? json.front() : json).dump().c_str());
+}
+
+void print_results(const RequestOutcomes& outcomes, const std::string& what, bool json) {
+  for (const RequestOutcome& outcome : outcomes) {
+    const std::string who = outcomes.size() == 1 ? what : what + ": " + outcome.vehicle->name();
+    if (outcome.failed()) std::fprintf(stderr, "swiftlet: %s: %s\n", who.c_str(), outcome.reason().c_str());
+    if (outcome.action_result && outcome.action_result->done() && !json)
+      std::printf("%s: done\n", who.c_str());
+  }
+}
+
 }  // namespace
 
 runtime::CommandLine add_vehicle_subcommand(runtime::CommandLine root, const std::string& name,
@@ -56,52 +182,38 @@ runtime::CommandLine add_request_subcommand(runtime::CommandLine root, const std
                                             const std::shared_ptr<RequestOptions>& options,
                                             Vehicles vehicles) {
   const runtime::CommandLine app = add_subcommand(root, name, description, example, options, vehicles);
+  runtime::Option no_wait = app.add_flag("--no-wait", options->no_wait,
+                                         "return as soon as the request is accepted; default: wait until the "
+                                         "action completes, Ctrl-C holds");
   app.add_option("--wait", options->wait_s,
                  "wait at most so many s until the action completes; exit code 1 if it does not")
-      .range(0.1, 3600.0);
+      .range(0.1, 3600.0)
+      .excludes(no_wait);
   return app;
 }
 
-int run_request(const RequestOptions& options, const std::string& what,
-                const std::function<ActionHandle(Vehicle&)>& ask) {
-  const std::vector<std::string> names = split_list(options.network.vehicle);
+int run_request(const RequestOptions& options, const VehicleRequest& request) {
   const Context context(options.network);
-  std::mutex printing;
-  const auto ask_one = [&](const std::string& name) {
-    Vehicle vehicle(context, name);
-    const ActionHandle action = ask(vehicle);
-    RequestOutcome outcome{name, action.answer(), std::nullopt};
-    if (outcome.answer.accepted() && !options.json) {
-      const std::lock_guard<std::mutex> lock(printing);
-      std::printf("%s: accepted by %s\n", what.c_str(), name.c_str());
-      std::fflush(stdout);
-    }
-    if (outcome.answer.accepted() && options.wait_s)
-      outcome.action_result =
-          action.wait(std::chrono::milliseconds(static_cast<std::int64_t>(*options.wait_s * 1e3)));
-    return outcome;
-  };
-  std::vector<std::future<RequestOutcome>> pending;
-  pending.reserve(names.size());
-  for (const std::string& name : names) pending.push_back(std::async(std::launch::async, ask_one, name));
-  std::vector<RequestOutcome> all;
-  all.reserve(names.size());
-  for (std::future<RequestOutcome>& one : pending) all.push_back(one.get());
-
-  const bool alone = all.size() == 1;
-  if (options.json) {
-    nlohmann::ordered_json json;
-    for (const RequestOutcome& outcome : all) json[outcome.vehicle] = to_json(outcome);
-    std::printf("%s\n", (alone ? json.front() : json).dump().c_str());
+  RequestOutcomes outcomes;
+  for (const std::string& name : split_list(options.network.vehicle)) {
+    RequestOutcome outcome;
+    outcome.vehicle = std::make_unique<Vehicle>(context, name);
+    outcomes.push_back(std::move(outcome));
   }
-  bool failed = false;
-  for (const RequestOutcome& outcome : all) {
-    const std::string who = alone ? what : what + ": " + outcome.vehicle;
-    if (outcome.failed()) std::fprintf(stderr, "swiftlet: %s: %s\n", who.c_str(), outcome.reason().c_str());
-    if (outcome.action_result && outcome.action_result->done() && !options.json)
-      std::printf("%s: done\n", who.c_str());
-    failed = failed || outcome.failed();
+  const Interrupts interrupts;
+  for (RequestOutcome& outcome : outcomes)
+    outcome.vehicle->cancel_when([&] { return interrupts.count() > 0; });
+  if (request.undo) {
+    send_to_all_or_none(outcomes, request, options);
+  } else {
+    send_to_each(outcomes, request, options);
   }
+  if (interrupts.count() > 0) rest_unanswered(outcomes, request.on_interrupt);
+  if (!options.no_wait) await_all(outcomes, request, options, interrupts);
+  if (options.json) print_json(outcomes);
+  print_results(outcomes, request.what, options.json);
+  const bool failed = std::any_of(outcomes.begin(), outcomes.end(),
+                                  [](const RequestOutcome& outcome) { return outcome.failed(); });
   return failed ? kFailed : kDone;
 }
 
@@ -111,15 +223,19 @@ void log_connection(Vehicle& vehicle, const std::string& command) {
   });
 }
 
-Command add_plain_request_command(runtime::CommandLine root, const std::string& name,
-                                  const std::string& description,
-                                  ActionHandle (Vehicle::*ask)(std::chrono::milliseconds)) {
+Command add_plain_request_command(runtime::CommandLine root, const PlainRequest& request) {
   const auto options = std::make_shared<RequestOptions>();
+  const std::string name = request.name;
   const runtime::CommandLine app = add_request_subcommand(
-      root, name, description, "swiftlet " + name + " --vehicle-name kl1,kl2", options);
-  return {app, [options, name, ask] {
-            return run_request(*options, name,
-                               [&](Vehicle& vehicle) { return (vehicle.*ask)(options->timeout()); });
+      root, name, request.description, "swiftlet " + name + " --vehicle-name kl1,kl2", options);
+  return {app, [options, request] {
+            const auto call = [&](ActionHandle (Vehicle::*method)(std::chrono::milliseconds)) {
+              return [&options, method](Vehicle& vehicle) { return (vehicle.*method)(options->timeout()); };
+            };
+            VehicleRequest sent{request.name, call(request.ask), request.on_interrupt,
+                                request.done_when_accepted};
+            if (request.undo != nullptr) sent.undo = call(request.undo);
+            return run_request(*options, sent);
           }};
 }
 

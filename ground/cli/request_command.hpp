@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "swiftlet/ground/cli/requests/await_actions.hpp"
 #include "swiftlet/ground/client/action.hpp"
 #include "swiftlet/ground/client/vehicle.hpp"
 #include "swiftlet/ground/command_line/command.hpp"
@@ -29,7 +30,18 @@ struct CommandOptions {
 
 // Options of a command that sends one request.
 struct RequestOptions : CommandOptions {
-  std::optional<double> wait_s;  // longest wait for completion; unset: does not wait
+  bool no_wait = false;          // return as soon as the request is answered
+  std::optional<double> wait_s;  // longest wait for completion; unset: no limit
+};
+
+struct VehicleRequest {
+  std::string what;  // "takeoff": begins each line of output
+  std::function<ActionHandle(Vehicle&)> ask;
+  OnInterrupt on_interrupt = OnInterrupt::kHold;
+  bool done_when_accepted = false;  // the action ends as soon as the request is accepted
+  // If set, the request is sent to all vehicles or to none: it is not sent if one of them is not found. If one
+  // refuses it, `undo` is sent to the others that were disarmed before.
+  std::function<ActionHandle(Vehicle&)> undo{};
 };
 
 // Adds a subcommand for one vehicle with the network options, --timeout and --json. The command's run
@@ -38,26 +50,31 @@ runtime::CommandLine add_vehicle_subcommand(runtime::CommandLine root, const std
                                             const std::string& description, const std::string& example,
                                             const std::shared_ptr<CommandOptions>& options);
 
-// As add_vehicle_subcommand(), with --wait in addition, and for several vehicles by default.
+// As add_vehicle_subcommand(), with --wait and --no-wait in addition, and for several vehicles by default.
 runtime::CommandLine add_request_subcommand(runtime::CommandLine root, const std::string& name,
                                             const std::string& description, const std::string& example,
                                             const std::shared_ptr<RequestOptions>& options,
                                             Vehicles vehicles = Vehicles::kSeveral);
 
-// Joins the network, sends the request to all vehicles at once, each from its own thread, and prints the
-// results. With --wait, waits until the action of each vehicle ends. The JSON output is the result of the
-// vehicle, or with several vehicles an object with their names as keys. Returns the exit code: kFailed if a
-// vehicle failed.
-int run_request(const RequestOptions& options, const std::string& what,
-                const std::function<ActionHandle(Vehicle&)>& ask);
+// Joins the network, sends the request to all vehicles at once, each from its own thread, and waits until the
+// action of each vehicle ends. Prints the answers and results. The JSON output is the result of the vehicle,
+// or with several vehicles an object with their names as keys. Returns the exit code: kFailed if a vehicle
+// failed or the wait was interrupted.
+int run_request(const RequestOptions& options, const VehicleRequest& request);
 
 // Prints a line to standard error, prefixed with `command`, whenever the connection to the vehicle's control
 // process is lost, is restored or changes to another process.
 void log_connection(Vehicle& vehicle, const std::string& command);
 
-// Adds a subcommand whose request has no arguments.
-Command add_plain_request_command(runtime::CommandLine root, const std::string& name,
-                                  const std::string& description,
-                                  ActionHandle (Vehicle::*ask)(std::chrono::milliseconds));
+// A request without arguments.
+struct PlainRequest {
+  const char* name;
+  const char* description;
+  ActionHandle (Vehicle::*ask)(std::chrono::milliseconds);
+  OnInterrupt on_interrupt = OnInterrupt::kNothing;
+  bool done_when_accepted = false;
+  ActionHandle (Vehicle::*undo)(std::chrono::milliseconds) = nullptr;  // see VehicleRequest
+};
+Command add_plain_request_command(runtime::CommandLine root, const PlainRequest& request);
 
 }  // namespace swiftlet::ground

@@ -11,6 +11,10 @@
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/request_command.hpp"
 #include "swiftlet/ground/client/client.hpp"
+#include "swiftlet/ground/client/silence.hpp"
+#include "swiftlet/ground/terminal/state_lines.hpp"
+#include "swiftlet/math/euler.hpp"
+#include "swiftlet/services/messages/wire.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -38,6 +42,18 @@ Rates rates_between(const View& before, const View& after, double time_s) {
   return {rate_hz(before.estimate, after.estimate, time_s),
           rate_hz(before.reference, after.reference, time_s), rate_hz(before.battery, after.battery, time_s),
           rate_hz(before.truth, after.truth, time_s)};
+}
+
+nlohmann::ordered_json to_json(const msg::ControlGains& gains) {
+  return {{"attitude_angle_per_s2", gains.attitude_angle()},
+          {"attitude_rate_per_s", gains.attitude_rate()},
+          {"attitude_acceleration", gains.attitude_acceleration()},
+          {"position_p_per_s2", gains.position_p()},
+          {"position_v_per_s", gains.position_v()},
+          {"position_i_per_s3", gains.position_i()},
+          {"integral_limit_m_s2", gains.integral_limit()},
+          {"disturbance_bandwidth_rad_s", gains.disturbance_bandwidth()},
+          {"disturbance_limit_m_s2", gains.disturbance_limit()}};
 }
 
 template <class T>
@@ -74,6 +90,15 @@ std::vector<msg::ControllerState> controllers_of(const View& view, Clock::time_p
   return controllers;
 }
 
+nlohmann::ordered_json silent_json(const View& view, Clock::time_point now) {
+  nlohmann::ordered_json silent = nlohmann::ordered_json::array();
+  for (const Silence& silence : silences_of(view, now)) {
+    silent.push_back({{"who", silence.who}, {"for_s", nullptr}});
+    if (silence.for_s) silent.back()["for_s"] = *silence.for_s;
+  }
+  return silent;
+}
+
 nlohmann::ordered_json to_json(const View& view, const Rates& rates, const CommandOptions& options) {
   const auto now = Clock::now();
   const auto& control = view.control.message;
@@ -81,16 +106,23 @@ nlohmann::ordered_json to_json(const View& view, const Rates& rates, const Comma
   nlohmann::ordered_json json;
   json["vehicle"] = options.network.vehicle;
   json["domain"] = options.network.domain;
+  json["silent"] = silent_json(view, now);
+  json["source_conflict"] = control.source_conflict().c_str();
   json["mode"] = mode_name(control.mode());
   json["reason"] = control.reason().c_str();
   json["airborne"] = control.airborne();
   json["has_pose"] = control.has_pose();
-  json["pose_age_s"] = control.pose_age_s();
+  json["pose_age_s"] = pose_age_s(view, now);
   json["position_ned_m"] = nullptr;
   json["velocity_ned_m_s"] = nullptr;
+  json["attitude_rad"] = nullptr;
   if (view.estimate.seen()) {
     json["position_ned_m"] = view.estimate.message.position_ned();
     json["velocity_ned_m_s"] = view.estimate.message.velocity_ned();
+    const control::EulerAngles attitude =
+        control::euler_angles(comms::wire::quaternion(view.estimate.message.q_ned_from_frd()));
+    json["attitude_rad"] = {
+        {"roll", attitude.roll_rad}, {"pitch", attitude.pitch_rad}, {"yaw", attitude.heading.yaw_rad}};
     json["poses"] = {{"fault", pose_fault_name(view.estimate.message.pose_fault())},
                      {"accepted", view.estimate.message.poses_accepted()},
                      {"refused", view.estimate.message.poses_refused()},
@@ -121,6 +153,9 @@ nlohmann::ordered_json to_json(const View& view, const Rates& rates, const Comma
                      {"deadline_misses", control.deadline_misses()},
                      {"step_time_max_us", control.step_time_max_us()},
                      {"realtime_scheduling", control.realtime_scheduling()}};
+  json["settings"] = {{"name", control.settings().c_str()},
+                      {"progress", control.gains_progress()},
+                      {"gains", to_json(control.gains())}};
   json["controllers"] = nlohmann::ordered_json::array();
   for (const msg::ControllerState& controller : controllers_of(view, now)) {
     json["controllers"].push_back({{"number", controller.controller()},
@@ -166,16 +201,22 @@ void print(const View& view, const Rates& rates, const CommandOptions& options) 
   const auto now = Clock::now();
   const auto& control = view.control.message;
   const auto& mission = view.mission.message;
-  std::printf("%s in domain %d: %s (%s), %s\n", options.network.vehicle.c_str(), options.network.domain,
-              mode_name(control.mode()), control.reason().c_str(),
+  const std::vector<Silence> silences = silences_of(view, now);
+  for (const Silence& silence : silences)
+    print_alarm(stdout, to_string(silence, std::chrono::system_clock::now()));
+  if (control.source_conflict().size() > 0) print_alarm(stdout, control.source_conflict().c_str());
+  std::printf("%s in domain %d: %s%s (%s), %s\n", options.network.vehicle.c_str(), options.network.domain,
+              silences.empty() ? "" : "last known: ", mode_name(control.mode()), control.reason().c_str(),
               control.airborne() ? "airborne" : "on the ground");
   if (view.estimate.seen()) {
     const auto& p = view.estimate.message.position_ned();
     const auto& v = view.estimate.message.velocity_ned();
     std::printf("  position  %.3f, %.3f, %.3f m   velocity %.2f, %.2f, %.2f m/s   (NED)\n", p[0], p[1], p[2],
                 v[0], v[1], v[2]);
+    std::printf("  attitude  %s\n", attitude_text(view.estimate.message).c_str());
   }
-  std::printf("  pose      %s, %.3f s old", control.has_pose() ? "tracked" : "MISSING", control.pose_age_s());
+  std::printf("  pose      %s, %.3f s old", control.has_pose() ? "tracked" : "MISSING",
+              pose_age_s(view, now));
   if (view.estimate.seen()) {
     const auto& estimate = view.estimate.message;
     std::printf(", %llu accepted and %llu refused",
@@ -205,6 +246,12 @@ void print(const View& view, const Rates& rates, const CommandOptions& options) 
       control.rate_hz(), static_cast<unsigned long long>(control.deadline_misses()),
       static_cast<unsigned long long>(control.cycles()), control.step_time_max_us(),
       control.realtime_scheduling() ? "" : ", no real-time scheduling");
+  if (control.settings().size() > 0) {
+    std::printf("  settings  %s", control.settings().c_str());
+    if (control.gains_progress() < 1.0)
+      std::printf(", the gains change to it: %.0f %%", 100.0 * control.gains_progress());
+    std::printf("\n");
+  }
   for (const msg::ControllerState& controller : controllers_of(view, now)) {
     std::printf("  controller %016llx: %s%s, failover priority %u, term %u\n",
                 static_cast<unsigned long long>(controller.controller()), role_name(controller),
@@ -253,9 +300,9 @@ int show_status(const Options& options) {
 
 Command add_status_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
-  const runtime::CommandLine app =
-      add_vehicle_subcommand(root, "status", "Print mode, position, battery, mission, topic rates and ages",
-                             "swiftlet status --json | jq .battery.voltage_v", options);
+  const runtime::CommandLine app = add_vehicle_subcommand(
+      root, "status", "Print who is silent, mode, position, attitude, battery, mission, topic rates and ages",
+      "swiftlet status --json | jq .battery.voltage_v", options);
   app.add_option("--watch", options->watch_s, "time over which the rates are measured, s")
       .range(0.1, 60.0)
       .show_default();

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
+#include <iterator>
 #include <sstream>
 #include <thread>
 #include <vector>
@@ -9,11 +10,13 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/cli/fly_options.hpp"
 #include "swiftlet/ground/cli/request_command.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/terminal/progress_line.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/csv.hpp"
+#include "swiftlet/io/missions/flight_table.hpp"
 #include "swiftlet/io/missions/setpoint_rows.hpp"
 #include "swiftlet/io/text_file.hpp"
 
@@ -34,6 +37,7 @@ constexpr double kThere_m = 0.02;  // from the reference to the first position o
 struct Options : CommandOptions {
   std::string file;
   std::optional<double> rate_hz;
+  std::optional<MissionFrame> frame;
   bool land = false;
 };
 
@@ -85,25 +89,37 @@ SetpointSource lines_of(std::shared_ptr<SetpointRows> reader, std::istream& in) 
   };
 }
 
+std::string rest_of(std::istream& in) { return {std::istreambuf_iterator<char>(in), {}}; }
+
+void say(const std::string& name, const std::string& assumption) {
+  std::fprintf(stderr, "%s: %s\n", name.c_str(), assumption.c_str());
+}
+
 SetpointSource open(const Options& options) {
   const bool piped = options.file == "-";
   const std::string name = piped ? "standard input" : options.file;
   auto file = std::make_shared<std::istringstream>(piped ? "" : runtime::read_text_file(options.file));
   std::istream& in = piped ? std::cin : *file;
-  std::string header;
-  std::getline(in, header);
-  auto reader = std::make_shared<SetpointRows>(header, name);
-  if (reader->assumption()) std::fprintf(stderr, "%s: %s\n", name.c_str(), reader->assumption()->c_str());
-  SetpointSource source;
-  if (piped) {
-    source = lines_of(std::move(reader), in);
+  std::string first;
+  std::getline(in, first);
+  const std::vector<std::string> header = table_header(first, name);
+  std::vector<TimedSetpoint> rows;
+  if (is_flight_table(header)) {
+    const runtime::CsvTable reference = reference_of_flight(first + "\n" + rest_of(in), name);
+    say(name, extent_of(reference));
+    rows = setpoints_of(reference);
   } else {
-    std::vector<TimedSetpoint> rows = rows_of(*reader, in);
-    if (!options.rate_hz) require_rate(rows, name);
-    source = each_of(std::move(rows));
+    auto reader = std::make_shared<SetpointRows>(header, name, options.frame);
+    if (reader->assumption()) say(name, *reader->assumption());
+    if (piped) {
+      SetpointSource source = lines_of(std::move(reader), in);
+      return options.rate_hz ? resampled(std::move(source), *options.rate_hz) : source;
+    }
+    rows = rows_of(*reader, in);
   }
-  if (!options.rate_hz) return source;
-  return resampled(std::move(source), *options.rate_hz);
+  if (!options.rate_hz) require_rate(rows, name);
+  SetpointSource source = each_of(std::move(rows));
+  return options.rate_hz ? resampled(std::move(source), *options.rate_hz) : source;
 }
 
 // Flies to the first setpoint of a stream of positions. Returns a sentence if that fails.
@@ -266,11 +282,13 @@ Command add_stream_command(runtime::CommandLine root) {
       "Stream setpoints from a CSV file, timed by the vehicle's clock: positions, velocities, accelerations, "
       "attitudes and thrust, or body rates and thrust. The vehicle must hold; it holds again at the end, or "
       "lands with --land",
-      "swiftlet stream circle.csv --rate 50    (header: t [s],x [m],y [m],z [m])", options);
+      "swiftlet stream circle.csv --rate 50    (header: t [s],x_ned [m],y_ned [m],z_ned [m])", options);
   app.add_option("file", options->file,
-                 "CSV file whose header names the columns with their units (NED), or is "
-                 "t,x,y,z[,vx,vy,vz[,ax,ay,az]][,yaw] (ENU); - streams from standard input")
+                 "CSV file whose header names the columns with frame and unit, or is "
+                 "t,x,y,z[,vx,vy,vz[,ax,ay,az]][,yaw] (ENU); or flight.csv of a record; - streams from "
+                 "standard input")
       .required();
+  add_frame_option(app, options->frame);
   app.add_option("--rate", options->rate_hz,
                  "interpolate between the rows and send at this rate, Hz; default: send each row at its time")
       .range(kLeastRate_hz, 1000.0);

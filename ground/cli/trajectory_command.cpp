@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/cli/fly_options.hpp"
 #include "swiftlet/ground/cli/request_command.hpp"
 #include "swiftlet/ground/command_line/installation.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
@@ -12,6 +13,7 @@ namespace {
 
 struct Options : RequestOptions {
   std::string file;
+  std::optional<MissionFrame> frame;
   std::string control = "motor_lag";
 };
 
@@ -30,12 +32,13 @@ control::Trajectory trajectory_of(const MissionFile& file, const std::string& pa
 int send_trajectory(const Options& options) {
   const auto settings = runtime::load_control_settings(configuration_file("control", options.control));
   const std::string path = configuration_file("missions", options.file);
-  const MissionFile file = load_mission_file(path, settings.limits);
+  const MissionFile file = load_mission_file(path, settings.limits, options.frame);
   const control::Trajectory trajectory = trajectory_of(file, path);
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
-  return run_request(options, "trajectory",
-                     [&](Vehicle& vehicle) { return vehicle.follow(trajectory, options.timeout()); });
+  return run_request(options, {"trajectory", [&](Vehicle& vehicle) {
+                                 return vehicle.follow(trajectory, options.timeout());
+                               }});
 }
 
 }  // namespace
@@ -48,6 +51,7 @@ Command add_trajectory_command(runtime::CommandLine root) {
       "from its current motion",
       "swiftlet trajectory figure8.csv", options, Vehicles::kOne);
   app.add_option("file", options->file, "trajectory or waypoints as CSV").required();
+  add_frame_option(app, options->frame);
   app.add_option("--control", options->control,
                  "control settings with the limits and the fence for the check of the file")
       .show_default();

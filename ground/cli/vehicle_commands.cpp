@@ -1,11 +1,11 @@
 // `swiftlet arm`, `disarm`, `takeoff`, `goto`, `hold`, `land` and `stop`: each sends one request.
-#include <array>
 #include <cstdio>
 #include <iostream>
 #include <optional>
 #include <string>
 #include <unistd.h>
 
+#include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/request_command.hpp"
 
@@ -18,7 +18,10 @@ struct TakeoffOptions : RequestOptions {
 };
 
 struct GotoOptions : RequestOptions {
-  std::array<double, 3> position_ned{};
+  double north_m = 0.0;
+  double east_m = 0.0;
+  std::optional<double> z_ned_m;
+  std::optional<double> height_m;  // instead of z
   std::optional<double> yaw_rad;
   double speed = 0.5;
 };
@@ -44,15 +47,30 @@ void confirm(const StopOptions& options) {
   if (typed != "stop") throw InputError("stop: not confirmed, nothing was sent");
 }
 
+// Throws InputError for what every vehicle refuses: a place below the ground, a yaw that may be in degrees. The
+// vehicle itself knows its minimum height and its fence.
+Vehicle::Target target_of(const GotoOptions& options) {
+  if (options.z_ned_m.has_value() == options.height_m.has_value())
+    throw InputError("goto: needs either z (down: negative is up) or --height (up, above the ground)");
+  const double z_ned_m = options.z_ned_m ? *options.z_ned_m : -*options.height_m;
+  control::Outcome outcome = control::check_above_ground("goto", z_ned_m);
+  if (outcome.accepted && options.yaw_rad) outcome = control::check_yaw("goto", *options.yaw_rad);
+  if (!outcome.accepted) throw InputError(outcome.reason);
+  return {{options.north_m, options.east_m, z_ned_m}, options.yaw_rad, options.speed};
+}
+
 }  // namespace
 
 Command add_arm_command(runtime::CommandLine root) {
-  return add_plain_request_command(root, "arm", "Start the rotors on the ground if all arming checks pass",
-                                   &Vehicle::arm);
+  return add_plain_request_command(
+      root,
+      {"arm", "Start the rotors on the ground if all arming checks pass; of several vehicles, all or none",
+       &Vehicle::arm, OnInterrupt::kHold, true, &Vehicle::disarm});
 }
 
 Command add_disarm_command(runtime::CommandLine root) {
-  return add_plain_request_command(root, "disarm", "Stop the rotors on the ground", &Vehicle::disarm);
+  return add_plain_request_command(
+      root, {"disarm", "Stop the rotors on the ground", &Vehicle::disarm, OnInterrupt::kNothing, true});
 }
 
 Command add_takeoff_command(runtime::CommandLine root) {
@@ -60,12 +78,15 @@ Command add_takeoff_command(runtime::CommandLine root) {
   const runtime::CommandLine app =
       add_request_subcommand(root, "takeoff", "Climb vertically and hold; the vehicle must be armed",
                              "swiftlet takeoff 1.2 --speed 0.5", options);
-  app.add_option("height", options->height_m, "height above the origin, m").positive().show_default();
+  app.add_option("height,--height", options->height_m, "height above the ground, m")
+      .positive()
+      .show_default();
   app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
   return {app, [options] {
-            return run_request(*options, "takeoff", [&](Vehicle& vehicle) {
-              return vehicle.take_off(options->height_m, options->speed, options->timeout());
-            });
+            return run_request(*options, {"takeoff", [&](Vehicle& vehicle) {
+                                            return vehicle.take_off(options->height_m, options->speed,
+                                                                    options->timeout());
+                                          }});
           }};
 }
 
@@ -73,27 +94,30 @@ Command add_goto_command(runtime::CommandLine root) {
   const auto options = std::make_shared<GotoOptions>();
   const runtime::CommandLine app = add_request_subcommand(
       root, "goto", "Fly straight to a position (NED, relative to the origin) and hold there",
-      "swiftlet goto -1 0 -1.5 --yaw 1.57    (1 m south of the origin, 1.5 m up, nose to the east)", options,
-      Vehicles::kOne);  // two vehicles cannot hold at one position
-  constexpr const char* kNames[] = {"x", "y", "z"};
-  constexpr const char* kMeanings[] = {"north, m", "east, m", "down, m: negative is up"};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    app.add_option(kNames[axis], options->position_ned[axis], kMeanings[axis]).required().finite();
-  }
+      "swiftlet goto -1 0 --height 1.5 --yaw 1.57    (1 m south of the origin, 1.5 m up, nose to the east; "
+      "the "
+      "same as goto -1 0 -1.5)",
+      options, Vehicles::kOne);  // two vehicles cannot hold at one position
+  app.add_option("x", options->north_m, "north, m").required().finite();
+  app.add_option("y", options->east_m, "east, m").required().finite();
+  runtime::Option z = app.add_option("z", options->z_ned_m, "down, m: negative is up").finite();
+  app.add_option("--height", options->height_m, "height above the ground, m, instead of z")
+      .positive()
+      .excludes(z);
   app.add_option("--yaw", options->yaw_rad,
                  "yaw at the position, rad from north to east; default: the yaw does not change")
       .finite();
   app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
   return {app, [options] {
-            return run_request(*options, "goto", [&](Vehicle& vehicle) {
-              const auto& [x, y, z] = options->position_ned;
-              return vehicle.go_to({{x, y, z}, options->yaw_rad, options->speed}, options->timeout());
-            });
+            const Vehicle::Target target = target_of(*options);
+            return run_request(*options, {"goto", [&](Vehicle& vehicle) {
+                                            return vehicle.go_to(target, options->timeout());
+                                          }});
           }};
 }
 
 Command add_hold_command(runtime::CommandLine root) {
-  return add_plain_request_command(root, "hold", "Come to rest and hold the position", &Vehicle::hold);
+  return add_plain_request_command(root, {"hold", "Come to rest and hold the position", &Vehicle::hold});
 }
 
 Command add_land_command(runtime::CommandLine root) {
@@ -102,9 +126,9 @@ Command add_land_command(runtime::CommandLine root) {
       root, "land", "Descend vertically, land and stop the rotors", "swiftlet land --speed 0.3", options);
   app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
   return {app, [options] {
-            return run_request(*options, "land", [&](Vehicle& vehicle) {
-              return vehicle.land(options->speed, options->timeout());
-            });
+            return run_request(*options, {"land", [&](Vehicle& vehicle) {
+                                            return vehicle.land(options->speed, options->timeout());
+                                          }});
           }};
 }
 
@@ -116,8 +140,9 @@ Command add_stop_command(runtime::CommandLine root) {
   app.add_flag("--yes,-y", options->yes, "do not ask for confirmation");
   return {app, [options] {
             confirm(*options);
-            return run_request(*options, "stop",
-                               [&](Vehicle& vehicle) { return vehicle.stop(options->timeout()); });
+            return run_request(*options,
+                               {"stop", [&](Vehicle& vehicle) { return vehicle.stop(options->timeout()); },
+                                OnInterrupt::kNothing, true});
           }};
 }
 

@@ -97,7 +97,8 @@ class Keys {
     command.kind(action.kind);
     command.speed(kLandingSpeed_m_s);
     const Result answer = client_.command(command, kAnswerTimeout);
-    return std::string(action.name) + ": " + (answer.accepted() ? "accepted" : answer.reason);
+    if (!answer.accepted()) return std::string(action.name) + ": " + answer.reason;
+    return std::string(action.name) + ": accepted" + (answer.reason.empty() ? "" : "; " + answer.reason);
   }
 
   static constexpr double kLandingSpeed_m_s = 0.4;
@@ -144,6 +145,7 @@ class Watch {
   View update() {
     View view = client_.view();
     rates_.update(view, facts_);
+    facts_.system_now = std::chrono::system_clock::now();
     const std::optional<ConnectionEvent> event = connection_.update(view, Clock::now());
     if (event && event->kind != ConnectionEvent::Kind::kConnected) facts_.message = event->text;
     if (!view.control.seen()) facts_.where = client_.no_control();
@@ -168,11 +170,11 @@ int watch(const Options& options) {
 
 Command add_watch_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
-  const runtime::CommandLine app =
-      root.add_subcommand("watch",
-                          "Show a vehicle full screen: mode, position and reference, battery, rates, "
-                          "latencies and warnings; keys request hold, land and stop. Without a terminal, "
-                          "print a line a second");
+  const runtime::CommandLine app = root.add_subcommand(
+      "watch",
+      "Show a vehicle full screen: who is silent, mode, position, attitude, reference, battery, "
+      "rates, latencies and warnings; keys request hold, land and stop, each after a "
+      "confirmation with y. Without a terminal, print a line a second");
   add_network_options(app, options->network);
   app.add_flag("--plain", options->plain, "print a line a second, also on a terminal");
   app.add_option("--duration", options->duration_s, "end after so many s; default: end with q or Ctrl-C")

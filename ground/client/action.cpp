@@ -62,18 +62,17 @@ ActionResult ActionHandle::wait(std::chrono::milliseconds timeout) const {
   if (const auto status = client_->reported_status(answer_.key)) {
     if (const auto result = action_result_of(*status)) return *result;
   }
-  const auto begin = Clock::now();
-  const auto deadline = begin + timeout;
+  const auto deadline = Clock::now() + timeout;
   while (true) {
     std::optional<ActionResult> result;
     bool silent = false;
     const auto ended = [&](const View& view) {
-      const auto last_heard = std::max(view.control.received, begin);
+      const auto last_heard = std::max(view.control.received, answered_);
       silent = Clock::now() - last_heard > kSilence;
       if (view.control.seen()) result = action_result_by(view.control.message, answer_);
       return result || silent;
     };
-    client_->wait(kPollPeriod, ended);
+    client_->wait(std::min(kPollPeriod, timeout), ended);
     if (result) return *result;
     if (silent)
       return {ActionResult::Kind::kLost,

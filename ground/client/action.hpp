@@ -59,7 +59,8 @@ class ActionHandle {
   // (mission) or of the segments (trajectory).
   double progress() const;
 
-  // Blocks until the action ends or the time-out expires. Returns at once if it was not accepted.
+  // Blocks until the action ends or the time-out expires. Returns at once if it was not accepted. May be
+  // called again after kTimedOut.
   ActionResult wait(std::chrono::milliseconds timeout = std::chrono::seconds(60)) const;
   // Runs wait() in a thread of its own.
   std::future<ActionResult> future(std::chrono::milliseconds timeout = std::chrono::seconds(60)) const;
@@ -67,6 +68,7 @@ class ActionHandle {
  private:
   std::shared_ptr<const Client> client_;
   Result answer_;
+  std::chrono::steady_clock::time_point answered_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace swiftlet::ground

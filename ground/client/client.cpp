@@ -46,7 +46,11 @@ ReferenceRow row_of(const msg::Reference& reference) {
   row.mode = reference.mode();
   row.position_ned = reference.position_ned();
   row.velocity_ned = reference.velocity_ned();
+  row.acceleration_ned = reference.acceleration_ned();
   row.yaw_rad = reference.yaw();
+  row.q_ned_from_frd = reference.attitude_setpoint();
+  row.thrust_n = reference.thrust_setpoint();
+  row.moment_frd = reference.moment_setpoint();
   return row;
 }
 
@@ -56,7 +60,7 @@ EstimateRow row_of(const msg::Estimate& estimate) {
 
 Result result_of(const msg::CommandAck& ack) {
   const control::RequestKey key{ack.client(), ack.id()};
-  if (ack.accepted()) return {Result::Kind::kAccepted, "", key, ack.stamp_ns()};
+  if (ack.accepted()) return {Result::Kind::kAccepted, ack.reason().c_str(), key, ack.stamp_ns()};
   return {Result::Kind::kRefused, ack.reason().c_str(), key};
 }
 
@@ -92,6 +96,7 @@ Client::Client(const comms::Participant* shared, const comms::NodeSettings& sett
       commands_(node_.publish(comms::topics::kCommand)),
       missions_(node_.publish(comms::topics::kMission)),
       trajectories_(node_.publish(comms::topics::kTrajectory)),
+      settings_changes_(node_.publish(comms::topics::kControlSettings)),
       setpoints_(node_.publish(comms::topics::kSetpoint)) {
   subscribe_all();
 }
@@ -366,6 +371,14 @@ Result Client::upload(const control::Trajectory& trajectory, std::chrono::millis
   message.client(client_id_);
   message.id(++last_id_);
   return ask(trajectories_, message, timeout, cancelled);
+}
+
+Result Client::change_settings(const control::SettingsRequest& settings, std::chrono::milliseconds timeout,
+                               const Cancelled& cancelled) {
+  msg::ControlSettings message = comms::to_message(settings);
+  message.client(client_id_);
+  message.id(++last_id_);
+  return ask(settings_changes_, message, timeout, cancelled);
 }
 
 bool Client::send(control::Setpoint setpoint) {

@@ -16,6 +16,7 @@
 #include "swiftlet/control/types/mission.hpp"
 #include "swiftlet/control/types/polynomial.hpp"
 #include "swiftlet/control/types/request.hpp"
+#include "swiftlet/control/types/settings_request.hpp"
 #include "swiftlet/ground/client/ground_heartbeat.hpp"
 #include "swiftlet/ground/client/result.hpp"
 #include "swiftlet/ground/client/simulation_clock.hpp"
@@ -103,6 +104,8 @@ class Client {
                 const Cancelled& cancelled = {});
   Result upload(const control::Trajectory& trajectory, std::chrono::milliseconds timeout,
                 const Cancelled& cancelled = {});
+  Result change_settings(const control::SettingsRequest& settings, std::chrono::milliseconds timeout,
+                         const Cancelled& cancelled = {});
   // Publishes one setpoint of a stream; setpoints are not answered. Fills in stamp and sequence. Returns
   // false if no controller subscribes.
   bool send(control::Setpoint setpoint);
@@ -152,6 +155,7 @@ class Client {
   comms::Publisher<msg::Command> commands_;
   comms::Publisher<msg::Mission> missions_;
   comms::Publisher<msg::Trajectory> trajectories_;
+  comms::Publisher<msg::ControlSettings> settings_changes_;
   comms::Publisher<msg::Setpoint> setpoints_;
   std::mutex sending_;  // guards all publishers
   std::uint64_t setpoint_count_ = 0;

@@ -23,7 +23,7 @@ struct Result {
       : kind(kind_in), reason(std::move(reason_in)), key(key_in), stamp_ns(stamp_ns_in) {}
 
   Kind kind = Kind::kSilence;
-  std::string reason;         // a sentence; empty if accepted
+  std::string reason;         // a sentence; if accepted, what to know about it, usually empty
   control::RequestKey key;    // of the request, if the controller answered
   std::int64_t stamp_ns = 0;  // if accepted: a control_status of a later stamp lists the request
 

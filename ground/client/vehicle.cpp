@@ -91,10 +91,14 @@ void Vehicle::on_connection(std::function<void(const ConnectionEvent&)> callback
 }
 
 Result Vehicle::connect(milliseconds timeout) const {
-  if (client_->wait(timeout, [](const View& view) { return view.control.seen(); }))
-    return {Result::Kind::kAccepted, ""};
+  const auto is_cancelled = [this] { return cancelled_ && cancelled_(); };
+  client_->wait(timeout, [&](const View& view) { return view.control.seen() || is_cancelled(); });
+  if (client_->view().control.seen()) return {Result::Kind::kAccepted, ""};
+  if (is_cancelled()) return {Result::Kind::kCancelled, "the request was cancelled"};
   return {Result::Kind::kNoControl, client_->no_control()};
 }
+
+void Vehicle::cancel_when(std::function<bool()> cancelled) { cancelled_ = std::move(cancelled); }
 
 VehicleState Vehicle::state() const { return state_of(client_->view()); }
 
@@ -103,7 +107,7 @@ bool Vehicle::wait_until(const std::function<bool(const VehicleState&)>& holds, 
 }
 
 ActionHandle Vehicle::request(const control::Request& request, milliseconds timeout) {
-  return {client_, client_->command(comms::to_message(request), timeout)};
+  return {client_, client_->command(comms::to_message(request), timeout, cancelled_)};
 }
 
 ActionHandle Vehicle::arm(milliseconds timeout) { return request(of_kind(RequestKind::kArm), timeout); }
@@ -137,19 +141,19 @@ ActionHandle Vehicle::land(double speed_m_s, milliseconds timeout) {
 ActionHandle Vehicle::stop(milliseconds timeout) { return request(of_kind(RequestKind::kStop), timeout); }
 
 ActionHandle Vehicle::upload(const control::Mission& mission, milliseconds timeout) {
-  return {client_, client_->upload(mission, timeout)};
+  return {client_, client_->upload(mission, timeout, cancelled_)};
 }
 
 std::uint64_t Vehicle::uploaded_id() const { return client_->mission_id(); }
 
 ActionHandle Vehicle::follow(const control::Mission& mission, milliseconds timeout) {
-  Result uploaded = client_->upload(mission, timeout);
+  Result uploaded = client_->upload(mission, timeout, cancelled_);
   if (!uploaded.accepted()) return {client_, std::move(uploaded)};
   return start_mission(client_->mission_id(), timeout);
 }
 
 ActionHandle Vehicle::request_of_mission(std::uint8_t kind, std::uint64_t id, milliseconds timeout) {
-  return {client_, client_->mission_command(kind, id, timeout)};
+  return {client_, client_->mission_command(kind, id, timeout, cancelled_)};
 }
 
 ActionHandle Vehicle::start_mission(std::uint64_t id, milliseconds timeout) {
@@ -173,7 +177,11 @@ ActionHandle Vehicle::clear_mission(std::uint64_t id, milliseconds timeout) {
 }
 
 ActionHandle Vehicle::follow(const control::Trajectory& trajectory, milliseconds timeout) {
-  return {client_, client_->upload(trajectory, timeout)};
+  return {client_, client_->upload(trajectory, timeout, cancelled_)};
+}
+
+ActionHandle Vehicle::change_settings(const control::SettingsRequest& settings, milliseconds timeout) {
+  return {client_, client_->change_settings(settings, timeout)};
 }
 
 void Vehicle::enable_link_loss_failsafe() { client_->enable_link_loss_failsafe(); }

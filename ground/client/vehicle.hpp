@@ -28,6 +28,7 @@
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/control/types/polynomial.hpp"
 #include "swiftlet/control/types/request.hpp"
+#include "swiftlet/control/types/settings_request.hpp"
 #include "swiftlet/ground/client/action.hpp"
 #include "swiftlet/ground/client/connection.hpp"
 #include "swiftlet/ground/client/context.hpp"
@@ -109,6 +110,11 @@ class Vehicle {
   // call replaces the callback. An ActionHandle reports whether a request survives such an event.
   void on_connection(std::function<void(const ConnectionEvent&)> callback);
 
+  // From now on, connect() and the requests of this object stop waiting for an answer as soon as `cancelled`
+  // returns true: they return Result::Kind::kCancelled. An empty function removes it. Do not call it while a
+  // request waits.
+  void cancel_when(std::function<bool()> cancelled);
+
   VehicleState state() const;
   // Waits until `holds` returns true for the state. Returns false after the time-out.
   bool wait_until(const std::function<bool(const VehicleState&)>& holds,
@@ -149,6 +155,12 @@ class Vehicle {
   ActionHandle follow(const control::Trajectory& trajectory,
                       std::chrono::milliseconds timeout = kAnswerTimeout);
 
+  // Flies with other control settings, after a change of the gains over settings.ramp_s. Done: the gains are
+  // in force. Refused if a loop would be unstable on the way, if a fixed setting differs, and outside calm
+  // flight.
+  ActionHandle change_settings(const control::SettingsRequest& settings,
+                               std::chrono::milliseconds timeout = kAnswerTimeout);
+
   // Enables the link-loss failsafe: if this program falls silent, the controller does what its setting
   // failsafe.ground_link_action says. Ends with disable_link_loss_failsafe() or with this object. Call both
   // from one thread.
@@ -174,6 +186,7 @@ class Vehicle {
   ActionHandle request_of_mission(std::uint8_t kind, std::uint64_t id, std::chrono::milliseconds timeout);
 
   std::shared_ptr<Client> client_;
+  std::function<bool()> cancelled_;
   std::unique_ptr<comms::PeriodicTask> periodic_task_;  // last: it uses client_
 };
 

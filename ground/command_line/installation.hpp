@@ -12,7 +12,7 @@ std::filesystem::path program_beside(const std::string& name);
 
 // Returns the path of a configuration file. `name` is a path, or the bare name of a file of this kind
 // ("square" of "missions") in the folders of runtime::find_config(). Throws runtime::ConfigError if there is
-// no such file.
+// no such file, InputError with the nearest name and all there are if there is no such name.
 std::filesystem::path configuration_file(const std::string& kind, const std::string& name);
 
 }  // namespace swiftlet::ground

@@ -3,22 +3,16 @@
 #include <algorithm>
 
 #include "swiftlet/services/dds/node_options.hpp"
+#include "swiftlet/services/dds/vehicle_name.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
-constexpr std::size_t kMaxName = 64;
-constexpr const char* kNameCharacters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
-
-std::string fault_of_name(const std::string& name) {
-  const bool plain = name.find_first_not_of(kNameCharacters) == std::string::npos;
-  return plain && !name.empty() && name.size() <= kMaxName ? "" : "must be 1 to 64 letters, digits and _";
-}
-
 std::string fault_of_names(const std::string& list) {
   const std::vector<std::string> names = split_list(list);
   for (auto name = names.begin(); name != names.end(); ++name) {
-    if (const std::string fault = fault_of_name(*name); !fault.empty()) return "each name " + fault;
+    if (const std::string fault = comms::fault_of_vehicle_name(*name); !fault.empty())
+      return "each name " + fault;
     if (std::find(names.begin(), name, *name) != name) return "names " + *name + " twice";
   }
   return "";
@@ -31,7 +25,7 @@ void add_network_options(runtime::CommandLine app, comms::NodeSettings& network,
   comms::add_node_options(app, network);
   runtime::Option name = app.option("--vehicle-name");
   if (vehicles == Vehicles::kOne) {
-    name.check(fault_of_name, "NAME");
+    name.check(comms::fault_of_vehicle_name, "NAME");
   } else {
     name.check(fault_of_names, "NAME[,NAME...]");
     name.describe(name.description() + "; separate several names with commas");

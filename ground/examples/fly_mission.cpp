@@ -14,9 +14,9 @@ bool done(const char* what, const ActionHandle& action) {
   return result.done();
 }
 
-int main(int argc, char** argv) {
-  const auto mission = load_mission_file(argc > 1 ? argv[1] : "mission.yaml", {}).mission;
-  Vehicle vehicle(swiftlet::examples::network(argc - 1, argv + 1));
+int main(int argc, char** argv) try {
+  Vehicle vehicle(swiftlet::examples::network(argc, argv, {"FILE"}));
+  const auto mission = load_mission_file(argv[1], {}).mission;
   vehicle.on_connection([](const ConnectionEvent& event) { std::printf("%s\n", event.text.c_str()); });
   if (!done("arm", vehicle.arm())) return 1;
   bool flown = done("take off", vehicle.take_off(0.8)) && done("mission", vehicle.follow(mission));
@@ -25,4 +25,7 @@ int main(int argc, char** argv) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   return done("land", vehicle.land()) && flown ? 0 : 1;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 1;
 }

@@ -42,7 +42,7 @@ bool fly(Vehicle& vehicle) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   Vehicle vehicle(swiftlet::examples::network(argc, argv));
   const swiftlet::ground::Result connection = vehicle.connect();
   if (!connection.accepted()) {
@@ -51,5 +51,8 @@ int main(int argc, char** argv) {
   }
   if (fly(vehicle)) return 0;
   vehicle.land();  // after any failure; refused on the ground
+  return 1;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "%s\n", error.what());
   return 1;
 }

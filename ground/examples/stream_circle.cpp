@@ -77,7 +77,7 @@ bool fly_circle(Vehicle& vehicle) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   Vehicle vehicle(swiftlet::examples::network(argc, argv));
   const swiftlet::ground::Result connection = vehicle.connect();
   if (!connection.accepted()) {
@@ -87,4 +87,7 @@ int main(int argc, char** argv) {
   const bool flown =
       vehicle.arm().wait().done() && vehicle.take_off(1.0).wait().done() && fly_circle(vehicle);
   return vehicle.land().wait().done() && flown ? 0 : 1;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 1;
 }

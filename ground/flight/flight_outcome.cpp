@@ -31,13 +31,18 @@ std::string shortfall(const FlightReport& report, Window window) {
   return {};
 }
 
+void say_record_fault(const FlightReport& report, Progress& progress) {
+  if (!report.record_fault.empty())
+    progress.say("swiftlet: the record " + report.record_dir + " is incomplete: " + report.record_fault);
+}
+
 }  // namespace
 
-void make_record_folder(const std::filesystem::path& folder, const std::string& option) {
+void make_record_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error)
-    throw InputError(option + " " + folder.string() + ": the folder cannot be created: " + error.message());
+    throw InputError("--record " + folder.string() + ": the folder cannot be created: " + error.message());
 }
 
 void evaluate(FlightReport& report, const FlightRecord& record, Window window) {
@@ -46,14 +51,29 @@ void evaluate(FlightReport& report, const FlightRecord& record, Window window) {
   report.completed = report.reason.empty();
 }
 
-void write_record(const std::filesystem::path& folder, const FlightRecord& record, const FlightReport& report,
+void write_record(const std::filesystem::path& folder, const FlightRecord& record, FlightReport& report,
                   Window window, Progress& progress) {
-  write_flight_csv(folder / "flight.csv", record, window);
-  if (record.sensors) write_flight_log(folder / kSensorsFile, flight_log_of(*record.sensors));
-  write_report_json(folder / "report.json", report);
+  const auto attempt = [&](const std::filesystem::path& file, const auto& write) {
+    try {
+      write(file);
+    } catch (const std::exception& fault) {
+      if (report.record_fault.empty()) report.record_fault = fault.what();
+      std::error_code ignored;
+      std::filesystem::rename(file, file.string() + ".part", ignored);
+    }
+  };
+  // First the smallest file, with the result.
+  attempt(folder / "report.json", [&](const auto& file) { write_report_json(file, report); });
+  attempt(folder / "flight.csv", [&](const auto& file) { write_flight_csv(file, record, window); });
+  if (record.sensors) {
+    attempt(folder / kSensorsFile,
+            [&](const auto& file) { write_flight_log(file, flight_log_of(*record.sensors)); });
+  }
   if (report.errors.matched == 0) return;
-  const std::string no_picture = draw_flight(folder, record, report, window);
-  if (!no_picture.empty()) progress.say(no_picture);
+  attempt(folder / "flight.png", [&](const auto&) {
+    const std::string no_picture = draw_flight(folder, record, report, window);
+    if (!no_picture.empty()) progress.say(no_picture);
+  });
 }
 
 int print_report(const FlightReport& report, bool json, ProgressLine& progress) {
@@ -64,7 +84,8 @@ int print_report(const FlightReport& report, bool json, ProgressLine& progress) 
   } else {
     std::fputs(to_text(report).c_str(), report.completed ? stdout : stderr);
   }
-  return report.completed ? kDone : kFailed;
+  say_record_fault(report, progress);
+  return report.completed && report.record_fault.empty() ? kDone : kFailed;
 }
 
 int print_report(const std::vector<FlightReport>& reports, bool json, ProgressLine& progress) {
@@ -84,9 +105,12 @@ int print_report(const std::vector<FlightReport>& reports, bool json, ProgressLi
     } else if (!report.completed) {
       progress.say("swiftlet: " + report.vehicle_name + ": " + report.reason);
     }
+    say_record_fault(report, progress);
   }
   if (!json) std::printf("%zu of %zu flights completed\n", completed, reports.size());
-  return all ? kDone : kFailed;
+  const bool recorded = std::all_of(reports.begin(), reports.end(),
+                                    [](const FlightReport& report) { return report.record_fault.empty(); });
+  return all && recorded ? kDone : kFailed;
 }
 
 }  // namespace swiftlet::ground

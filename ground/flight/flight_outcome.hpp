@@ -11,19 +11,21 @@
 
 namespace swiftlet::ground {
 
-// Throws InputError if the folder cannot be created. option: the command-line option that names it.
-void make_record_folder(const std::filesystem::path& folder, const std::string& option = "--record");
+// Throws InputError if the folder, that of --record or one inside it, cannot be created.
+void make_record_folder(const std::filesystem::path& folder);
 
 // Computes the tracking errors inside the window and sets report.completed: true if report.reason is empty,
 // the telemetry is complete enough and the peak error is within the tolerance.
 void evaluate(FlightReport& report, const FlightRecord& record, Window window);
 
-// Writes flight.csv, report.json, flight.gp and flight.png. Throws std::runtime_error if a file cannot be
-// written. If the figure cannot be drawn, says so in the progress only.
-void write_record(const std::filesystem::path& folder, const FlightRecord& record, const FlightReport& report,
+// Writes report.json, flight.csv, sensors.csv, flight.gp and flight.png. Where a file cannot be written, on a
+// full disk, writes the others, sets report.record_fault, and leaves an unfinished CSV file as NAME.part.
+// Without gnuplot, says in the progress that there is no picture; that is no fault.
+void write_record(const std::filesystem::path& folder, const FlightRecord& record, FlightReport& report,
                   Window window, Progress& progress);
 
-// Prints the report as JSON to standard output, or as text. Returns the program's exit code.
+// Prints the report as JSON to standard output, or as text. Returns the program's exit code: kFailed also for
+// a completed flight whose record is incomplete.
 int print_report(const FlightReport& report, bool json, ProgressLine& progress);
 // Prints the reports of vehicles that flew together. JSON: one object {completed, vehicles: [...]}.
 int print_report(const std::vector<FlightReport>& reports, bool json, ProgressLine& progress);

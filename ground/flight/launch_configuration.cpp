@@ -23,16 +23,20 @@ namespace fs = std::filesystem;
 constexpr double kHighestImuRateHz = 1000.0;
 constexpr double kSpareS = 30.0;  // recorded before and after the mission
 
+// Sizes of a record, somewhat above those of real ones.
+constexpr double kTelemetryRowBytes = 1000.0;  // a row of flight.csv and its part of flight.gp
+constexpr double kSensorsRowBytes = 450.0;
+constexpr double kTraceRowBytes = 450.0;
+constexpr double kOtherFilesBytes = 1e6;  // settings, logs, pictures
+constexpr double kGroundTimeS = 10.0;     // recorded before take-off and after landing
+
 fs::path default_folder(const std::string& mission) {
   const std::time_t now = std::time(nullptr);
   std::tm local{};
   localtime_r(&now, &local);
   char stamp[32];
   std::strftime(stamp, sizeof stamp, "%Y%m%d-%H%M%S", &local);
-  const fs::path wanted = fs::path("flights") / (std::string(stamp) + "-" + mission);
-  fs::path folder = wanted;
-  for (int i = 2; fs::exists(folder); ++i) folder = wanted.string() + "-" + std::to_string(i);
-  return folder;
+  return fs::path("flights") / (std::string(stamp) + "-" + mission);
 }
 
 void require_takeoff_and_land(const MissionFile& mission, const fs::path& file, double duration_s) {
@@ -96,7 +100,7 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
   plan.seed = options.seed;
 
   plan.mission_file = configuration_file("missions", options.mission);
-  plan.mission = load_mission_file(plan.mission_file, plan.control.limits);
+  plan.mission = load_mission_file(plan.mission_file, plan.control.limits, options.frame);
   plan.start_ned = options.start_ned;
   displace(plan.mission.mission, options.start_ned, plan.control.limits);
   if (const control::Outcome outcome = control::check(plan.mission.mission, plan.control.limits);
@@ -112,8 +116,8 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
     plan.mocap_program = program_beside("swiftlet-mocap");
     plan.control_program = program_beside("swiftlet-control");
   }
-  plan.folder = options.record.empty() ? default_folder(plan.mission.name) : fs::path(options.record);
-  if (options.trace) plan.trace_file = plan.folder / "trace.csv";
+  if (options.trace) plan.trace_file = "trace.csv";
+  plan.record_in(options.record.empty() ? default_folder(plan.mission.name) : fs::path(options.record));
   plan.sensors = options.sensors;
   return plan;
 }
@@ -126,6 +130,23 @@ std::size_t LaunchConfiguration::record_capacity() const {
   // The IMU rate of a running vehicle is not known yet.
   const double rate_hz = launch_mode == LaunchMode::kAttached ? kHighestImuRateHz : simulation.imu.rate_hz;
   return static_cast<std::size_t>((FlightSchedule::time_limit_s(planned_duration_s) + kSpareS) * rate_hz);
+}
+
+std::uintmax_t LaunchConfiguration::record_bytes() const {
+  const double imu_row_bytes =
+      (sensors ? kSensorsRowBytes : 0.0) + (trace_file.empty() ? 0.0 : kTraceRowBytes);
+  const double bytes_per_s = kTelemetryRateHz * kTelemetryRowBytes + simulation.imu.rate_hz * imu_row_bytes;
+  return static_cast<std::uintmax_t>((planned_duration_s + kGroundTimeS) * bytes_per_s + kOtherFilesBytes);
+}
+
+void LaunchConfiguration::record_in(const std::filesystem::path& record_folder) {
+  folder = record_folder;
+  if (!trace_file.empty()) trace_file = folder / "trace.csv";
+}
+
+ExistingRecord existing_record(const FlyOptions& options) {
+  if (options.record.empty()) return ExistingRecord::kNumbered;
+  return options.replace ? ExistingRecord::kReplaced : ExistingRecord::kRefused;
 }
 
 FlightReport report_of(const LaunchConfiguration& plan) {
@@ -172,9 +193,8 @@ std::vector<ProcessSettings> processes(const LaunchConfiguration& plan, const co
   if (plan.clock == runtime::Clock::kLockstep) {
     plant.emplace_back("--paused");
     if (!plan.trace_file.empty()) plant.insert(plant.end(), {"--trace", absolute_path(plan.trace_file)});
-  } else {
-    plant.insert(plant.end(), {"--speed", std::to_string(plan.speed)});
   }
+  if (plan.speed) plant.insert(plant.end(), {"--speed", runtime::exact(*plan.speed)});
   return {
       process("swiftlet-plant", plan.plant_program, std::move(plant)),
       process("swiftlet-mocap", plan.mocap_program, {"--simulation", simulation, "--seed", seed}),

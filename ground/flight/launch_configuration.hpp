@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "swiftlet/control/types/settings.hpp"
+#include "swiftlet/ground/flight/record_folder.hpp"
 #include "swiftlet/ground/report/flight_report.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
 #include "swiftlet/plant/model/vehicle.hpp"
@@ -31,13 +32,16 @@ enum class LaunchMode {
 struct FlyOptions {
   LaunchMode launch_mode = LaunchMode::kStarted;
   runtime::Clock clock = runtime::Clock::kRealtime;
-  double speed = 1.0;  // simulated time per real time
+  // Simulated time per real time. Unset: real time, or in lockstep as fast as possible.
+  std::optional<double> speed;
   std::string mission = "square";
+  std::optional<MissionFrame> frame;  // of a CSV file as mission, if it names none
   std::string vehicle = "kaylion";
   std::string control = "motor_lag";
   std::string simulation = "default";
   std::string dispersion;  // kInProcess: a dispersion file; empty: no dispersion
   std::string record;      // empty: flights/<date-time>-<mission>
+  bool replace = false;    // delete the record that is in the folder `record`
   std::uint64_t seed = 1;
   int imu_rate_hz = 0;  // 0: as in the simulation file
   comms::NodeSettings network;
@@ -53,7 +57,7 @@ struct FlyOptions {
 struct LaunchConfiguration {
   LaunchMode launch_mode = LaunchMode::kStarted;
   runtime::Clock clock = runtime::Clock::kRealtime;
-  double speed = 1.0;
+  std::optional<double> speed;
   MissionFile mission;
   double planned_duration_s = 0.0;
   std::filesystem::path vehicle_file, control_file, simulation_file, mission_file;
@@ -63,13 +67,15 @@ struct LaunchConfiguration {
   Dispersion dispersion;       // of vehicle and simulation; empty unless requested
   int imu_rate_option_hz = 0;  // FlyOptions::imu_rate_hz
   std::uint64_t seed = 0;
-  Eigen::Vector2d start_ned = Eigen::Vector2d::Zero();                  // m
-  std::filesystem::path folder;                                         // of the record; not created yet
-  std::filesystem::path trace_file;                                     // empty: no trace
-  bool sensors = false;                                                 // record sensors and commands
+  Eigen::Vector2d start_ned = Eigen::Vector2d::Zero();  // m
+  std::filesystem::path folder;                         // of the record; not created by plan_flight()
+  std::filesystem::path trace_file;                     // empty: no trace
+  bool sensors = false;                                 // record sensors and commands
   std::filesystem::path plant_program, mocap_program, control_program;  // if kStarted
 
   std::size_t record_capacity() const;  // rows: IMU samples within the flight's time limit
+  std::uintmax_t record_bytes() const;  // size of the record's files, estimated from duration and rates
+  void record_in(const std::filesystem::path& record_folder);  // sets folder and trace_file
 };
 
 // Longer missions are refused: the record is kept in memory.
@@ -78,6 +84,8 @@ constexpr double kLongestMissionS = 600.0;
 // Throws runtime::ConfigError or InputError if the input is invalid or cannot be flown. Starts no process and
 // writes no file.
 LaunchConfiguration plan_flight(const FlyOptions& options);
+
+ExistingRecord existing_record(const FlyOptions& options);
 
 // Samples the vehicle and simulation to fly with this seed; the controller is designed for plan.vehicle.
 // Throws as draw() of dispersion.hpp does.

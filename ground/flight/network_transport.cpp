@@ -17,6 +17,7 @@ using namespace std::chrono_literals;
 using ControlMode = control::Mode;
 
 constexpr auto kReadyTimeout = 20s;
+constexpr auto kDiscoveryTimeout = 5s;  // without any process of the vehicle
 constexpr auto kRequestTimeout = 3s;
 constexpr auto kRetryPeriod = 200ms;
 constexpr auto kStep = 50ms;
@@ -52,6 +53,13 @@ std::string missing_peer(const View& view) {
     if (peer == view.peers.end() || !peer->second) return name;
   }
   return {};
+}
+
+// True if no process of the vehicle is discovered or heard; other ground tools do not count.
+bool finds_nothing(const View& view) {
+  const bool heard = view.control.seen() || view.vehicle.seen() || view.battery.seen();
+  return !heard && std::none_of(view.peers.begin(), view.peers.end(),
+                                [](const auto& peer) { return peer.first != "ground" && peer.second > 0; });
 }
 
 // Simulated time since `since_ns`. The time limits of a flight are in the vehicle's time.
@@ -120,8 +128,12 @@ void NetworkTransport::wait_until_ready() {
     if (ready) break;
     require_alive();
     require_no_interrupt();
-    if (Clock::now() - start > kReadyTimeout) {
-      throw FlightFailure("not ready after 20 s: missing " + absent + "; looked for " + client_.where());
+    const auto waited = Clock::now() - start;
+    if (!watch_.networks.empty() && waited > kDiscoveryTimeout && finds_nothing(client_.view()))
+      throw FlightFailure("looked on " + watch_.networks + ": " + client_.no_control());
+    if (waited > kReadyTimeout) {
+      throw FlightFailure("not ready after 20 s: missing " + absent + "; looked for " + client_.where() +
+                          (watch_.networks.empty() ? "" : "; on " + watch_.networks));
     }
     progress_.update(kBeforeFlight, "waiting for " + absent);
   }

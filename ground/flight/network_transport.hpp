@@ -24,6 +24,7 @@ class NetworkTransport final : public MissionTransport {
     std::function<std::optional<std::string>()> exited_process;  // a process that ended, as a sentence
     std::function<int()> interrupts;                             // by the user, so far
     StartBarrier* barrier = nullptr;                             // with other vehicles; null: alone
+    std::string networks{};  // where running processes are looked for; empty: they were started by this one
   };
 
   // In lockstep the plant was started paused.

@@ -9,6 +9,7 @@
 #include "swiftlet/ground/flight/flight_settings.hpp"
 #include "swiftlet/ground/flight/network_transport.hpp"
 #include "swiftlet/recording/flight_window.hpp"
+#include "swiftlet/services/dds/discovery/interfaces.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -26,6 +27,13 @@ void take_figures(const View& view, FlightReport& report) {
   report.unanswered = vehicle.unanswered();
   report.sense_to_actuate = {vehicle.sense_to_actuate_p50_us(), vehicle.sense_to_actuate_p99_us(),
                              vehicle.sense_to_actuate_max_us()};
+}
+
+// Where an attached flight looks for the processes: "lo (127.0.0.1) only; --network also looks on ...".
+std::string networks_of(const LaunchConfiguration& plan, const comms::NodeSettings& network) {
+  if (plan.launch_mode != LaunchMode::kAttached) return {};
+  if (!network.localhost_only) return comms::interfaces_text(false);
+  return comms::interfaces_text(true) + " only; with --network on " + comms::interfaces_text(false);
 }
 
 }  // namespace
@@ -58,12 +66,17 @@ void ProcessFlight::fly_mission(const Interrupts& interrupts, StartBarrier* barr
   const auto start = Clock::now();
   try {
     const NetworkTransport::Watch watch{[this] { return processes_->exited_process(); },
-                                        [&] { return interrupts.count(); }, barrier};
+                                        [&] { return interrupts.count(); }, barrier,
+                                        networks_of(plan_, network_)};
     NetworkTransport vehicle(client, record_, plan_.mission, plan_.clock, watch, progress);
     ground::fly_mission(vehicle, plan_.planned_duration_s);
     vehicle.wait_for_last_figures();
   } catch (const FlightFailure& failure) {
     report_.reason = failure.what();
+    // The end of a process may be noticed after what it caused.
+    const auto exited_process = processes_->exited_process();
+    if (exited_process && report_.reason.find(*exited_process) == std::string::npos)
+      report_.reason = *exited_process + "; " + report_.reason;
     if (barrier != nullptr) barrier->fail(network_.vehicle + " failed: " + report_.reason);
   }
   report_.wall_s = std::chrono::duration<double>(Clock::now() - start).count();

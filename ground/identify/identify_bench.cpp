@@ -49,7 +49,7 @@ fs::path base_file_of(const std::string& base, const IdentifyBenchOptions& optio
                       const BenchSettings& settings) {
   try {
     return configuration_file("vehicles", base);
-  } catch (const runtime::ConfigError& fault) {
+  } catch (const std::runtime_error& fault) {
     if (!options.base.empty() || settings.base_vehicle.empty()) throw;
     throw runtime::ConfigError((fs::path(options.bench) / kBenchSettingsFile).string(),
                                settings.base_vehicle_line, "base_vehicle", fault.what());
@@ -94,7 +94,7 @@ int identify_bench(const IdentifyBenchOptions& options) {
       runtime::vehicle_text(report.found.vehicle, sources, report.found.uncertainty, comment);
   runtime::parse_vehicle(text, options.out);
   if (!options.report.empty()) write_page(identification_page(report), options.report);
-  write_whole_file(options.out, text);
+  write_atomically(options.out, text);
 
   if (options.json) {
     std::printf("%s\n", identification_json(report).c_str());

@@ -63,7 +63,7 @@ Command add_simulate_command(runtime::CommandLine identify, const IdentifyAction
       .finite()
       .range(0.0, 0.4)
       .show_default();
-  app.add_option("--seed", options->seed, "seed of the noise").show_default();
+  app.add_option("--seed", options->seed, "seed of the noise").whole().show_default();
   app.add_option("--out", options->out, "folder to write the bench data to").required().type_name("DIR");
   app.footer(
       "example: swiftlet identify simulate --vehicle kaylion --noise 0.01 --outliers 0.02 --out bench");

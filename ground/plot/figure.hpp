@@ -28,6 +28,7 @@ struct Point {
   double z = 0.0;  // only in space
 };
 
+// x and y have the same length.
 inline std::vector<Point> points(const std::vector<double>& x, const std::vector<double>& y) {
   std::vector<Point> out;
   for (std::size_t i = 0; i < x.size(); ++i) out.push_back({x[i], y[i]});

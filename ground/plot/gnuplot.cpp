@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -12,6 +11,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include <boost/algorithm/string/predicate.hpp>
 #include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
 
@@ -24,6 +24,7 @@ namespace swiftlet::plot {
 namespace {
 
 namespace fs = std::filesystem;
+using boost::algorithm::ends_with;
 using boost::algorithm::replace_all_copy;
 
 constexpr std::chrono::seconds kLongest{30};
@@ -38,17 +39,18 @@ constexpr std::array<const char*, 10> kColours = {"#3385c6", "#d9741a", "#2e8b57
                                                   "#008b8b", "#7f5539", "#c0392b", "#1a1a1a", "#9a9a9a"};
 
 // How gnuplot draws a series, in the order of Style.
-struct Drawn {
+struct StyleCommand {
   const char* with;
   double size;  // line width, or size of points
 };
-constexpr std::array<Drawn, 7> kStyles = {{{"lines lw", 1.8},
-                                           {"lines dt (10,6) lw", 1.8},
-                                           {"steps lw", 1.8},
-                                           {"points pt 7 ps", 0.6},
-                                           {"points pt 2 lw 1.8 ps", 1.0},
-                                           {"filledcurves closed fs transparent solid 0.25 noborder lw", 1.0},
-                                           {"boxplot fs solid 0.25 lw", 1.4}}};
+constexpr std::array<StyleCommand, 7> kStyles = {
+    {{"lines lw", 1.8},
+     {"lines dt (10,6) lw", 1.8},
+     {"steps lw", 1.8},
+     {"points pt 7 ps", 0.6},
+     {"points pt 2 lw 1.8 ps", 1.0},
+     {"filledcurves closed fs transparent solid 0.25 noborder lw", 1.0},
+     {"boxplot fs solid 0.25 lw", 1.4}}};
 
 constexpr const char* kPanel = R"(
 reset
@@ -82,7 +84,7 @@ const char* colour_of(Colour colour) { return kColours.at(static_cast<std::size_
 // break would end the command.
 std::string quoted(std::string text) {
   std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
+      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
   return "'" + replace_all_copy(text, "'", "''") + "'";
 }
 
@@ -170,14 +172,14 @@ void add_panel(std::string& script, const Panel& panel, std::size_t number) {
         script += "\n\n";  // interrupts a line
     }
     script += "EOD\n";
-    const Drawn& drawn = kStyles.at(static_cast<std::size_t>(series.style));
+    const StyleCommand& style = kStyles.at(static_cast<std::size_t>(series.style));
     const bool many = series.style == Style::kDots && series.points.size() > kManyDots;
     plots +=
         fmt::format("{} {} using {} with {} {:g} lc rgb '{}' title {}", plots.empty() ? "" : ", \\\n ", name,
                     panel.in_space                  ? "1:2:3"
                     : series.style == Style::kBoxes ? "1:2:(0.5)"
                                                     : "1:2",
-                    drawn.with, drawn.size * series.weight * (many ? kOfManyDots : 1.0),
+                    style.with, style.size * series.weight * (many ? kOfManyDots : 1.0),
                     colour_of(series.colour), quoted(series.label));
   }
   script += kPanel + axis_commands('x', panel.x, x) + axis_commands('y', panel.y, y);
@@ -195,9 +197,18 @@ void add_panel(std::string& script, const Panel& panel, std::size_t number) {
   script += (panel.in_space ? "splot" : "plot") + (plots.empty() ? " NaN notitle" : plots) + "\n";
 }
 
+// True if the file has the last element of a PNG or SVG picture. gnuplot succeeds where it can write only the
+// beginning of one.
+bool is_whole(const std::string& picture) {
+  constexpr std::string_view kLastPngChunk("\0\0\0\0IEND\xae\x42\x60\x82", 12);
+  const std::size_t at = picture.find_last_not_of("\r\n ");
+  const std::string_view text = std::string_view(picture).substr(0, at == std::string::npos ? 0 : at + 1);
+  return ends_with(picture, kLastPngChunk) || ends_with(text, "</svg>");
+}
+
 // Runs the script in a temporary folder. Returns the files 0, 1, ... that it writes there. Throws
 // std::runtime_error.
-std::vector<std::string> drawn(const std::string& script, std::size_t files) {
+std::vector<std::string> run_gnuplot(const std::string& script, std::size_t files) {
   const fs::path gnuplot = ground::find_program("gnuplot");
   if (gnuplot.empty()) throw std::runtime_error(kNotInstalled);
   std::string name = fs::temp_directory_path() / "swiftlet-plot.XXXXXX";
@@ -207,7 +218,7 @@ std::vector<std::string> drawn(const std::string& script, std::size_t files) {
     std::error_code error;
     fs::remove_all(folder, error);
   });
-  ground::write_whole_file(folder / "script", script);
+  ground::write_atomically(folder / "script", script);
   ground::ChildProcess process({"gnuplot", gnuplot, {"script"}, folder / "log", folder});
   const auto end = process.wait(kLongest);
   const std::string no_picture = "no picture was drawn: gnuplot ";
@@ -215,7 +226,12 @@ std::vector<std::string> drawn(const std::string& script, std::size_t files) {
   if (end->by_signal || end->code != 0)
     throw std::runtime_error(no_picture + end->to_string() + ": " + process.last_log_line());
   std::vector<std::string> out;
-  for (std::size_t i = 0; i < files; ++i) out.push_back(runtime::read_text_file(folder / std::to_string(i)));
+  for (std::size_t i = 0; i < files; ++i) {
+    out.push_back(runtime::read_text_file(folder / std::to_string(i)));
+    if (!is_whole(out.back()))
+      throw std::runtime_error(no_picture + "wrote a truncated file; is " +
+                               fs::temp_directory_path().string() + " full?");
+  }
   return out;
 }
 
@@ -235,13 +251,21 @@ std::string gnuplot_script(const Figure& figure, Format format, const std::strin
 std::string draw_png(const Figure& figure, const fs::path& png, bool with_script) {
   const fs::path script = fs::path(png).replace_extension(".gp");
   try {
-    if (with_script) ground::write_whole_file(script, gnuplot_script(figure, Format::kPng, png.filename()));
-    ground::write_whole_file(png, drawn(gnuplot_script(figure, Format::kPng, "0"), 1).front());
+    if (with_script)
+      ground::write_atomically(script, "# Run gnuplot on this file, in its folder.\n" +
+                                           gnuplot_script(figure, Format::kPng, png.filename()));
+    ground::write_atomically(png, run_gnuplot(gnuplot_script(figure, Format::kPng, "0"), 1).front());
     return {};
   } catch (const std::exception& fault) {
     const bool hint = with_script && fault.what() == std::string_view(kNotInstalled);
     return fault.what() + (hint ? " (" + script.filename().string() + " draws it)" : "");
   }
+}
+
+std::string draw_png_if_installed(const Figure& figure, const fs::path& png) {
+  std::string fault = draw_png(figure, png, true);
+  if (!fault.empty() && !ground::find_program("gnuplot").empty()) throw std::runtime_error(fault);
+  return fault;
 }
 
 Drawings draw_svg(const std::vector<Figure>& figures) {
@@ -251,7 +275,7 @@ Drawings draw_svg(const std::vector<Figure>& figures) {
   for (std::size_t i = 0; i < figures.size(); ++i)
     script += gnuplot_script(figures[i], Format::kSvg, std::to_string(i));
   try {
-    out.svg = drawn(script, figures.size());
+    out.svg = run_gnuplot(script, figures.size());
   } catch (const std::exception& fault) {
     out.fault = fault.what();
   }

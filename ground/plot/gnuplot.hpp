@@ -19,6 +19,10 @@ std::string gnuplot_script(const Figure& figure, Format format, const std::strin
 // picture; the file is then as before. with_script: also writes NAME.gp beside NAME.png, to draw it again.
 std::string draw_png(const Figure& figure, const std::filesystem::path& png, bool with_script = false);
 
+// As draw_png() with the script. Returns a sentence if gnuplot is not installed. Throws std::runtime_error if
+// it is, and there is no whole picture.
+std::string draw_png_if_installed(const Figure& figure, const std::filesystem::path& png);
+
 struct Drawings {
   std::vector<std::string> svg;  // <svg> elements for an HTML page, in the order of the figures
   std::string fault;             // why there are none; empty if there are

@@ -18,6 +18,18 @@ namespace fs = std::filesystem;
 using Row = std::vector<std::string>;  // label, then one cell per flight
 
 constexpr const char* kMissing = "-";
+constexpr const char* kReport = "report.json";
+
+std::vector<fs::path> flights_in(const fs::path& record) {
+  if (fs::exists(record / kReport)) return {record};
+  std::vector<fs::path> flights;
+  std::error_code none;
+  for (const fs::directory_entry& entry : fs::directory_iterator(record, none)) {
+    if (fs::exists(entry.path() / kReport)) flights.push_back(entry.path());
+  }
+  std::sort(flights.begin(), flights.end());
+  return flights;
+}
 
 std::string value_of(const RecordedFlight& flight, const std::string& key) {
   const auto found = std::find_if(flight.settings.begin(), flight.settings.end(),
@@ -66,7 +78,7 @@ std::vector<Row> figures(const std::vector<RecordedFlight>& flights) {
                             "seed",   "completed", "RMS 3-D, mm", "peak 3-D, mm"};
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i].emplace_back(heads[i]);
   for (const RecordedFlight& flight : flights) {
-    rows[0].push_back(flight.folder.filename().string());
+    rows[0].push_back(flight.name);
     rows[1].push_back(text(flight.report, "mission"));
     rows[2].push_back(text(flight.report, "vehicle"));
     rows[3].push_back(text(flight.report, "control"));
@@ -98,8 +110,7 @@ std::string layout(const std::vector<Row>& rows) {
 std::string failures(const std::vector<RecordedFlight>& flights) {
   std::string lines;
   for (const RecordedFlight& flight : flights) {
-    if (flight.report.contains("reason"))
-      lines += flight.folder.filename().string() + ": " + text(flight.report, "reason") + "\n";
+    if (flight.report.contains("reason")) lines += flight.name + ": " + text(flight.report, "reason") + "\n";
   }
   return lines;
 }
@@ -107,26 +118,39 @@ std::string failures(const std::vector<RecordedFlight>& flights) {
 }  // namespace
 
 RecordedFlight load_recorded_flight(const fs::path& folder) {
-  const fs::path file = folder / "report.json";
+  const fs::path file = folder / kReport;
   if (!fs::exists(file))
     throw InputError(folder.string() + ": contains no report.json, is not a flight record");
   RecordedFlight flight;
   flight.folder = fs::absolute(folder).lexically_normal();
   if (flight.folder.filename().empty()) flight.folder = flight.folder.parent_path();
+  flight.name = flight.folder.filename();
   flight.report = nlohmann::ordered_json::parse(runtime::read_text_file(file.string()), nullptr, false);
   if (!flight.report.is_object()) throw runtime::ConfigError(file.string(), 0, "", "is not valid JSON");
+  if (text(flight.report, "vehicle_name") == flight.name)
+    flight.name = flight.folder.parent_path().filename() / flight.name;
   flight.settings = recorded_settings(folder);
   return flight;
 }
 
-fs::path newest_flight(const fs::path& below) {
+std::vector<fs::path> flights_of(const fs::path& record) {
+  std::vector<fs::path> flights = flights_in(record);
+  if (flights.empty())
+    throw InputError(record.string() + ": contains no report.json, is not a flight record");
+  return flights;
+}
+
+fs::path newest_record(const fs::path& below) {
   std::optional<fs::path> newest;
+  fs::file_time_type newest_time;
   std::error_code none;
   for (const fs::directory_entry& entry : fs::directory_iterator(below, none)) {
-    const fs::path report = entry.path() / "report.json";
-    if (!fs::exists(report)) continue;
-    if (!newest || fs::last_write_time(report) > fs::last_write_time(*newest / "report.json"))
+    for (const fs::path& flight : flights_in(entry.path())) {
+      const fs::file_time_type time = fs::last_write_time(flight / kReport);
+      if (newest && time <= newest_time) continue;
       newest = entry.path();
+      newest_time = time;
+    }
   }
   if (!newest) throw InputError(below.string() + ": contains no flight record; pass the folder of a record");
   return *newest;

@@ -12,6 +12,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/ground/plot/gnuplot.hpp"
 #include "swiftlet/ground/plot/path_figure.hpp"
 #include "swiftlet/io/csv_writer.hpp"
@@ -87,41 +88,106 @@ plot::Figure flight_figure(const FlightRecord& record, const FlightReport& repor
   return figure;
 }
 
+std::vector<std::string> flight_columns(std::size_t rotors, bool has_commands) {
+  std::vector<std::string> columns = {"t [s]",
+                                      "mode",
+                                      "x_ned [m]",
+                                      "y_ned [m]",
+                                      "z_ned [m]",
+                                      "vx_ned [m/s]",
+                                      "vy_ned [m/s]",
+                                      "vz_ned [m/s]",
+                                      "qw_ned_from_frd [1]",
+                                      "qx_ned_from_frd [1]",
+                                      "qy_ned_from_frd [1]",
+                                      "qz_ned_from_frd [1]",
+                                      "p_frd [rad/s]",
+                                      "q_frd [rad/s]",
+                                      "r_frd [rad/s]",
+                                      "ref_x_ned [m]",
+                                      "ref_y_ned [m]",
+                                      "ref_z_ned [m]",
+                                      "ref_vx_ned [m/s]",
+                                      "ref_vy_ned [m/s]",
+                                      "ref_vz_ned [m/s]",
+                                      "ref_ax_ned [m/s^2]",
+                                      "ref_ay_ned [m/s^2]",
+                                      "ref_az_ned [m/s^2]",
+                                      "ref_yaw_ned [rad]",
+                                      "ref_qw_ned_from_frd [1]",
+                                      "ref_qx_ned_from_frd [1]",
+                                      "ref_qy_ned_from_frd [1]",
+                                      "ref_qz_ned_from_frd [1]",
+                                      "command_thrust [N]",
+                                      "command_moment_x_frd [N*m]",
+                                      "command_moment_y_frd [N*m]",
+                                      "command_moment_z_frd [N*m]",
+                                      "est_x_ned [m]",
+                                      "est_y_ned [m]",
+                                      "est_z_ned [m]",
+                                      "est_vx_ned [m/s]",
+                                      "est_vy_ned [m/s]",
+                                      "est_vz_ned [m/s]",
+                                      "supply_voltage [V]"};
+  for (std::size_t i = 1; i <= rotors; ++i) columns.push_back(fmt::format("rotor_speed{} [rad/s]", i));
+  for (std::size_t i = 1; i <= rotors && has_commands; ++i)
+    columns.push_back(fmt::format("throttle{} [1]", i));
+  return columns;
+}
+
+void write_reference(runtime::CsvWriter& csv, const ReferenceRow* reference) {
+  constexpr int kCells = 18;
+  if (reference == nullptr) {
+    csv.empty(kCells);
+    return;
+  }
+  csv.numbers(reference->position_ned).numbers(reference->velocity_ned).numbers(reference->acceleration_ned);
+  csv.number(reference->yaw_rad).numbers(reference->q_ned_from_frd);
+  csv.number(reference->thrust_n).numbers(reference->moment_frd);
+}
+
+// Throttles of the command computed from the IMU sample of this stamp; 0 with the rotors off.
+void write_throttles(runtime::CsvWriter& csv, const plant::ActuatorCommand* command, std::size_t rotors) {
+  for (std::size_t i = 0; i < rotors; ++i) {
+    if (command != nullptr) {
+      csv.number(command->throttle[i]);
+    } else {
+      csv.empty();
+    }
+  }
+}
+
 }  // namespace
 
 void write_flight_csv(const std::filesystem::path& file, const FlightRecord& record, Window window) {
   const auto rotors = static_cast<std::size_t>(record.truth.empty() ? 0 : record.truth.back().rotor_count);
-  std::vector<std::string> columns = {
-      "t",      "mode",    "px",     "py",     "pz",     "vx",     "vy",     "vz",     "qw",     "qx",
-      "qy",     "qz",      "p",      "q",      "r",      "ref_px", "ref_py", "ref_pz", "ref_vx", "ref_vy",
-      "ref_vz", "ref_yaw", "est_px", "est_py", "est_pz", "est_vx", "est_vy", "est_vz", "v_s"};
-  for (std::size_t i = 1; i <= rotors; ++i) columns.push_back("om" + std::to_string(i));
-  runtime::CsvWriter csv(file, columns);
+  const bool has_commands = record.sensors && !record.sensors->commands.empty();
+  runtime::CsvWriter csv(file, flight_columns(rotors, has_commands));
+  const plant::ActuatorCommand* next_command = has_commands ? record.sensors->commands.begin() : nullptr;
+  const plant::ActuatorCommand* const commands_end = has_commands ? record.sensors->commands.end() : nullptr;
 
-  for_each_row(
-      record, [&](const TruthRow& truth, const ReferenceRow* reference, const EstimateRow* estimate) {
-        csv.fixed(seconds(truth.stamp_ns - window.from_ns), 6);
-        if (reference != nullptr) {
-          csv.number(reference->mode);
-        } else {
-          csv.empty();
-        }
-        csv.numbers(truth.position_ned).numbers(truth.velocity_ned).numbers(truth.q_ned_from_frd);
-        csv.numbers(truth.body_rates_frd);
-        if (reference != nullptr) {
-          csv.numbers(reference->position_ned).numbers(reference->velocity_ned).number(reference->yaw_rad);
-        } else {
-          csv.empty(7);
-        }
-        if (estimate != nullptr) {
-          csv.numbers(estimate->position_ned).numbers(estimate->velocity_ned);
-        } else {
-          csv.empty(6);
-        }
-        csv.number(truth.supply_voltage_v, 6);
-        for (std::size_t i = 0; i < rotors; ++i) csv.number(truth.rotor_speeds[i]);
-        csv.end_row();
-      });
+  for_each_row(record,
+               [&](const TruthRow& truth, const ReferenceRow* reference, const EstimateRow* estimate) {
+                 csv.fixed(seconds(truth.stamp_ns - window.from_ns), 6);
+                 if (reference != nullptr) {
+                   csv.text(control::to_string(static_cast<control::Mode>(reference->mode)));
+                 } else {
+                   csv.empty();
+                 }
+                 csv.numbers(truth.position_ned).numbers(truth.velocity_ned).numbers(truth.q_ned_from_frd);
+                 csv.numbers(truth.body_rates_frd);
+                 write_reference(csv, reference);
+                 if (estimate != nullptr) {
+                   csv.numbers(estimate->position_ned).numbers(estimate->velocity_ned);
+                 } else {
+                   csv.empty(6);
+                 }
+                 csv.number(truth.supply_voltage_v, 6);
+                 for (std::size_t i = 0; i < rotors; ++i) csv.number(truth.rotor_speeds[i]);
+                 if (has_commands)
+                   write_throttles(csv, row_at(next_command, commands_end, truth.stamp_ns), rotors);
+                 csv.end_row();
+               });
   csv.finish();
 }
 
@@ -133,7 +199,7 @@ void write_report_json(const std::filesystem::path& file, const FlightReport& re
 
 std::string draw_flight(const std::filesystem::path& folder, const FlightRecord& record,
                         const FlightReport& report, Window window) {
-  return plot::draw_png(flight_figure(record, report, window), folder / "flight.png", true);
+  return plot::draw_png_if_installed(flight_figure(record, report, window), folder / "flight.png");
 }
 
 }  // namespace swiftlet::ground

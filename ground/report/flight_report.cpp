@@ -31,6 +31,7 @@ nlohmann::ordered_json to_json(const FlightReport& report) {
   if (!report.dispersion.empty()) json["dispersion"] = report.dispersion;
   json["seed"] = report.seed;
   json["record_dir"] = report.record_dir;
+  if (!report.record_fault.empty()) json["record_fault"] = report.record_fault;
   json["duration_s"] = report.duration_s;
   json["tolerance_m"] = report.tolerance_m;
   json["rms_3d_m"] = report.errors.rms_3d_m;

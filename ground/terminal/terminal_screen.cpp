@@ -1,10 +1,13 @@
 #include "swiftlet/ground/terminal/terminal_screen.hpp"
 
+#include <algorithm>
 #include <clocale>
 #include <cstdio>
 #include <cstdlib>
+#include <poll.h>
 #include <stdexcept>
 #include <string>
+#include <unistd.h>
 
 #define NCURSES_NOMACROS  // the macro names are common words
 #include <ncurses.h>
@@ -36,14 +39,14 @@ struct TerminalScreen::Impl {
   bool colours = false;
 };
 
-TerminalScreen::TerminalScreen() : impl_(new Impl) {
+TerminalScreen::TerminalScreen(const std::string& instead) : impl_(new Impl) {
   std::setlocale(LC_CTYPE, "");
   impl_->screen = newterm(nullptr, stdout, stdin);
   if (impl_->screen == nullptr) {
     delete impl_;
     const char* const kind = std::getenv("TERM");
     throw std::runtime_error(std::string("terminal type '") + (kind != nullptr ? kind : "") +
-                             "' does not support full screen; use `swiftlet watch --plain`");
+                             "' does not support full screen; " + instead);
   }
   set_term(impl_->screen);
   cbreak();
@@ -70,11 +73,16 @@ int TerminalScreen::height() const { return getmaxy(stdscr); }
 
 void TerminalScreen::show(const std::vector<ScreenLine>& lines) {
   werase(stdscr);
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const attr_t attributes = attributes_of(lines[i].emphasis, impl_->colours);
+  const auto draw = [this](std::size_t row, int column, const std::string& text, Emphasis emphasis) {
+    const attr_t attributes = attributes_of(emphasis, impl_->colours);
     wattron(stdscr, static_cast<int>(attributes));
-    mvwaddnstr(stdscr, static_cast<int>(i), 0, lines[i].text.c_str(), width());
+    mvwaddnstr(stdscr, static_cast<int>(row), column, text.c_str(), std::max(width() - column, 0));
     wattroff(stdscr, static_cast<int>(attributes));
+  };
+  for (std::size_t row = 0; row < lines.size(); ++row) {
+    draw(row, 0, lines[row].text, lines[row].emphasis);
+    if (!lines[row].right_text.empty())
+      draw(row, kRightColumn, lines[row].right_text, lines[row].right_emphasis);
   }
   wrefresh(stdscr);
 }
@@ -82,8 +90,27 @@ void TerminalScreen::show(const std::vector<ScreenLine>& lines) {
 std::optional<int> TerminalScreen::key(int within_ms) {
   wtimeout(stdscr, within_ms);
   const int key = wgetch(stdscr);
-  if (key == ERR) return std::nullopt;
-  return key == KEY_RESIZE ? kResized : key;
+  switch (key) {
+    case ERR:
+      return std::nullopt;
+    case KEY_RESIZE:
+      return kResized;
+    case KEY_UP:
+      return kUpArrow;
+    case KEY_DOWN:
+      return kDownArrow;
+    case KEY_LEFT:
+      return kLeftArrow;
+    case KEY_RIGHT:
+      return kRightArrow;
+    default:
+      return key;
+  }
+}
+
+bool TerminalScreen::is_open() const {
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  return poll(&input, 1, 0) <= 0 || (input.revents & (POLLHUP | POLLERR | POLLNVAL)) == 0;
 }
 
 }  // namespace swiftlet::ground

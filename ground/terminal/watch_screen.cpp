@@ -7,6 +7,8 @@
 
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/control/types/settings.hpp"
+#include "swiftlet/ground/client/silence.hpp"
+#include "swiftlet/ground/terminal/state_lines.hpp"
 #include "swiftlet/services/messages/wire.hpp"
 
 namespace swiftlet::ground {
@@ -19,7 +21,7 @@ using Eigen::Vector3d;
 constexpr double kSilence_s = 1.0;
 constexpr double kFarOff_m = 0.1;    // tracking error
 constexpr double kLateSteps = 0.01;  // share of the control steps
-constexpr const char* kKeys = "h hold   l land   s stop (rotors off)   q quit";
+constexpr const char* kKeys = "h hold   l land   s stop (rotors off): each asks for y   q quit";
 
 Mode mode_of(const View& view) { return static_cast<Mode>(view.control.message.mode()); }
 
@@ -82,79 +84,144 @@ std::string gauge(double part, int width) {
   return std::string(full, '#') + std::string(static_cast<std::size_t>(width) - full, '.');
 }
 
+using Lines = std::vector<ScreenLine>;
+
+void add(Lines& lines, std::string text, Emphasis emphasis = Emphasis::kPlain) {
+  lines.push_back({std::move(text), emphasis});
+}
+
+// Breaks the text at blanks into lines of at most `width` characters; the further lines are indented.
+std::vector<std::string> wrapped(std::string text, std::size_t width) {
+  constexpr std::size_t kIndent = 2;
+  std::vector<std::string> lines;
+  while (text.size() > width && width > 2 * kIndent) {
+    const std::size_t blank = text.rfind(' ', width);
+    const bool breaks = blank != std::string::npos && blank > kIndent;
+    lines.push_back(text.substr(0, breaks ? blank : width));
+    text = std::string(kIndent, ' ') + text.substr(breaks ? blank + 1 : width);
+  }
+  lines.push_back(std::move(text));
+  return lines;
+}
+
 class Screen {
  public:
-  Screen(int width, int height) : width_(std::max(width, 1)), height_(std::max(height, 1)) {}
+  Screen(int width, int height) : width_(at_least_one(width)), height_(at_least_one(height)) {}
 
-  void add(std::string text, Emphasis emphasis = Emphasis::kPlain) {
-    if (static_cast<int>(lines_.size()) + 1 < height_) lines_.push_back({cut(std::move(text)), emphasis});
+  void add(ScreenLine line) {
+    if (lines_.size() + 1 >= height_) return;
+    cut(line);
+    lines_.push_back(std::move(line));
   }
-  // Fills the screen with empty lines, and adds the last line.
-  std::vector<ScreenLine> close(std::string last, Emphasis emphasis) {
-    while (static_cast<int>(lines_.size()) + 1 < height_) lines_.push_back({"", Emphasis::kPlain});
-    lines_.push_back({cut(std::move(last)), emphasis});
+  void add_wrapped(const std::string& text, Emphasis emphasis) {
+    for (const std::string& line : wrapped(text, width_)) add({line, emphasis});
+  }
+  // Side by side on a wide screen, else one after the other.
+  void add_columns(const Lines& left, const Lines& right) {
+    if (width_ < static_cast<std::size_t>(kWideScreen)) {
+      for (const Lines* const column : {&left, &right}) {
+        for (const ScreenLine& line : *column) add(line);
+      }
+      return;
+    }
+    for (std::size_t i = 0; i < std::max(left.size(), right.size()); ++i) {
+      ScreenLine line = i < left.size() ? left[i] : ScreenLine();
+      if (i < right.size()) {
+        line.right_text = right[i].text;
+        line.right_emphasis = right[i].emphasis;
+      }
+      add(std::move(line));
+    }
+  }
+  // Fills the screen with empty lines, and puts the last ones below.
+  Lines close(std::vector<std::string> last, Emphasis emphasis) {
+    if (last.size() > height_) last.resize(height_);
+    const std::size_t above = height_ - last.size();
+    lines_.resize(above);
+    for (std::string& text : last) {
+      ScreenLine line{std::move(text), emphasis};
+      cut(line);
+      lines_.push_back(std::move(line));
+    }
     return std::move(lines_);
   }
 
  private:
-  std::string cut(std::string text) const {
-    if (static_cast<int>(text.size()) > width_) text.resize(static_cast<std::size_t>(width_));
-    return text;
+  static std::size_t at_least_one(int size) { return static_cast<std::size_t>(std::max(size, 1)); }
+  void cut(ScreenLine& line) const {
+    if (line.text.size() > width_) line.text.resize(width_);
+    const std::size_t right = width_ > kRightColumn ? width_ - kRightColumn : 0;
+    if (line.right_text.size() > right) line.right_text.resize(right);
   }
 
-  int width_, height_;
-  std::vector<ScreenLine> lines_;
+  std::size_t width_, height_;
+  Lines lines_;
 };
 
-void show_motion(const View& view, Screen& screen) {
-  if (!view.estimate.seen()) return;
+Lines motion_of(const View& view) {
+  Lines lines;
+  if (!view.estimate.seen()) return lines;
   const msg::Estimate& estimate = view.estimate.message;
   const Vector3d position = vector(estimate.position_ned());
-  screen.add("              north     east     down", Emphasis::kHeading);
-  screen.add(of_vector("position", position, "m"));
-  if (view.reference.seen()) {
-    const Vector3d reference = vector(view.reference.message.position_ned());
-    const Vector3d off_mm = 1e3 * (position - reference);
-    screen.add(of_vector("reference", reference, "m"));
-    screen.add(fmt::format("{:<11} {:8.1f} {:8.1f} {:8.1f} mm   3-D {:.1f} mm", "error", off_mm.x(),
-                           off_mm.y(), off_mm.z(), off_mm.norm()),
-               off_mm.norm() > 1e3 * kFarOff_m && flies(view) ? Emphasis::kWarning : Emphasis::kPlain);
-    for (int i = 0; i < 3; ++i)
-      screen.add(fmt::format("  {:<9} [{}] 100 mm",
-                             i == 0   ? "north"
-                             : i == 1 ? "east"
-                                      : "down",
-                             bar(off_mm[i], 100.0, 41).c_str()));
-  }
-  screen.add(of_vector("velocity", vector(estimate.velocity_ned()), "m/s"));
+  add(lines, "              north     east     down", Emphasis::kHeading);
+  add(lines, of_vector("position", position, "m"));
+  add(lines, of_vector("velocity", vector(estimate.velocity_ned()), "m/s"));
+  add(lines, fmt::format("{:<11} {}", "attitude", attitude_text(estimate)));
+  if (!view.reference.seen()) return lines;
+  const Vector3d reference = vector(view.reference.message.position_ned());
+  const Vector3d off_mm = 1e3 * (position - reference);
+  add(lines, of_vector("reference", reference, "m"));
+  add(lines,
+      fmt::format("{:<11} {:8.1f} {:8.1f} {:8.1f} mm   3-D {:.1f} mm", "error", off_mm.x(), off_mm.y(),
+                  off_mm.z(), off_mm.norm()),
+      off_mm.norm() > 1e3 * kFarOff_m && flies(view) ? Emphasis::kWarning : Emphasis::kPlain);
+  constexpr const char* kAxes[] = {"north", "east", "down"};
+  for (int i = 0; i < 3; ++i)
+    add(lines, fmt::format("  {:<9} [{}] 100 mm", kAxes[i], bar(off_mm[i], 100.0, 37)));
+  return lines;
 }
 
-void show_power(const View& view, Screen& screen) {
+void add_power(const View& view, Lines& lines) {
   if (!view.battery.seen()) return;
   const msg::Battery& battery = view.battery.message;
-  screen.add(fmt::format("{:<11} {:5.2f} V  {:5.2f} A  [{}] {:3.0f} %   lands {}", "battery",
-                         battery.voltage_v(), battery.current_a(),
-                         gauge(battery.state_of_charge(), 20).c_str(), 100.0 * battery.state_of_charge(),
-                         below(low_battery(view)).c_str()));
+  add(lines, fmt::format("{:<11} {:5.2f} V  {:5.2f} A   lands {}", "battery", battery.voltage_v(),
+                         battery.current_a(), below(low_battery(view))));
+  add(lines, fmt::format("{:<11} [{}] {:3.0f} %", "", gauge(battery.state_of_charge(), 20),
+                         100.0 * battery.state_of_charge()));
 }
 
-void show_timing(const View& view, const WatchFacts& facts, Clock::time_point now, Screen& screen) {
+void add_mission(const View& view, Lines& lines) {
+  const msg::MissionStatus& mission = view.mission.message;
+  if (mission.state() == msg::MissionStatus_Constants::NONE) return;
+  add(lines, fmt::format("{:<11} {}, item {} of {}", "mission", mission_state_name(mission.state()),
+                         mission.item_index() + 1, mission.item_count()));
+}
+
+void add_timing(const View& view, const WatchFacts& facts, Clock::time_point now, Lines& lines) {
   const msg::ControlStatus& control = view.control.message;
-  screen.add(fmt::format("{:<11} estimate {:.0f} Hz, poses {:.0f} Hz, battery {:.0f} Hz; pose {:.3f} s old",
-                         "rates", facts.estimate_hz, facts.pose_hz, facts.battery_hz, control.pose_age_s()));
+  add(lines, fmt::format("{:<11} estimate {:.0f} Hz, poses {:.0f} Hz, battery {:.0f} Hz", "rates",
+                         facts.estimate_hz, facts.pose_hz, facts.battery_hz));
+  add(lines, fmt::format("{:<11} {:.3f} s old", "pose", pose_age_s(view, now)));
   if (view.vehicle.seen()) {
     const msg::VehicleInfo& vehicle = view.vehicle.message;
-    screen.add(fmt::format("{:<11} sense to actuate p50 {:.0f}, p99 {:.0f}, max {:.0f} us; IMU {:.0f} Hz",
-                           "latency", vehicle.sense_to_actuate_p50_us(), vehicle.sense_to_actuate_p99_us(),
-                           vehicle.sense_to_actuate_max_us(), vehicle.imu_rate_hz()));
+    add(lines, fmt::format("{:<11} sense to actuate, us: p50 {:.0f}, p99 {:.0f}, max {:.0f}", "latency",
+                           vehicle.sense_to_actuate_p50_us(), vehicle.sense_to_actuate_p99_us(),
+                           vehicle.sense_to_actuate_max_us()));
+    add(lines, fmt::format("{:<11} {:.0f} Hz", "IMU", vehicle.imu_rate_hz()));
   }
-  screen.add(fmt::format("{:<11} {:.1f} Hz, {} of {} steps late, longest {:.0f} us", "control",
+  add(lines, fmt::format("{:<11} {:.1f} Hz, {} of {} steps late, longest {:.0f} us", "control",
                          control.rate_hz(), static_cast<unsigned long long>(control.deadline_misses()),
                          static_cast<unsigned long long>(control.cycles()), control.step_time_max_us()));
   int controllers = 0;
   for (const auto& [number, latest] : view.controllers) controllers += latest.age_s(now) < kSilence_s ? 1 : 0;
-  screen.add(fmt::format("{:<11} {}, of which {} on standby", "controllers", controllers,
+  add(lines, fmt::format("{:<11} {}, of which {} on standby", "controllers", controllers,
                          std::max(controllers - 1, 0)));
+}
+
+std::vector<std::string> silence_lines(const View& view, const WatchFacts& facts, Clock::time_point now) {
+  std::vector<std::string> lines;
+  for (const Silence& silence : silences_of(view, now)) lines.push_back(to_string(silence, facts.system_now));
+  return lines;
 }
 
 }  // namespace
@@ -163,13 +230,12 @@ std::vector<std::string> warnings_of(const View& view, Clock::time_point now) {
   std::vector<std::string> warnings;
   if (!view.control.seen()) return {"no control service"};
   const msg::ControlStatus& control = view.control.message;
-  if (view.control.age_s(now) > kSilence_s)
-    warnings.push_back(fmt::format("no control status for {:.0f} s", view.control.age_s(now)));
+  if (control.source_conflict().size() > 0) warnings.emplace_back(control.source_conflict().c_str());
   if (mode_of(view) == Mode::kStopped)
     warnings.push_back("rotors stopped: " + std::string(control.reason().c_str()));
   if (view.vehicle.seen() && view.vehicle.message.fault().size() > 0)
     warnings.push_back("vehicle: " + std::string(view.vehicle.message.fault().c_str()));
-  if (!control.has_pose()) warnings.push_back(fmt::format("no pose for {:.1f} s", control.pose_age_s()));
+  if (!control.has_pose()) warnings.push_back(fmt::format("no pose for {:.1f} s", pose_age_s(view, now)));
   if (view.estimate.seen() && view.estimate.message.pose_fault() != msg::Estimate_Constants::POSE_FAULT_NONE)
     warnings.push_back(std::string("poses are refused: ") +
                        pose_fault_name(view.estimate.message.pose_fault()));
@@ -190,49 +256,52 @@ std::vector<ScreenLine> watch_screen(const View& view, const WatchFacts& facts, 
                                      int width, int height) {
   Screen screen(width, height);
   const msg::ControlStatus& control = view.control.message;
-  const std::string last = facts.message.empty() ? kKeys : facts.message;
-  const Emphasis emphasis = facts.message.empty() ? Emphasis::kPlain : Emphasis::kHeading;
+  const auto close = [&] {
+    if (facts.message.empty()) return screen.close({kKeys}, Emphasis::kPlain);
+    return screen.close(wrapped(facts.message, static_cast<std::size_t>(std::max(width, 1))),
+                        Emphasis::kHeading);
+  };
   if (!view.control.seen()) {
-    screen.add(fmt::format("{} in domain {}", facts.vehicle.c_str(), facts.domain), Emphasis::kHeading);
-    screen.add("waiting: " + facts.where, Emphasis::kWarning);
-    return screen.close(last, emphasis);
+    screen.add({fmt::format("{} in domain {}", facts.vehicle, facts.domain), Emphasis::kHeading});
+    screen.add_wrapped("waiting: " + facts.where, Emphasis::kWarning);
+    return close();
   }
-  screen.add(fmt::format("{} in domain {}: {} ({}), {}", facts.vehicle.c_str(), facts.domain,
-                         mode_name(control.mode()), control.reason().c_str(),
-                         control.airborne() ? "airborne" : "on the ground"),
-             Emphasis::kHeading);
+  const std::vector<std::string> silences = silence_lines(view, facts, now);
+  for (const std::string& silence : silences) screen.add_wrapped(silence, Emphasis::kWarning);
+  screen.add({fmt::format("{} in domain {}: {}{} ({}), {}", facts.vehicle, facts.domain,
+                          silences.empty() ? "" : "last known: ", mode_name(control.mode()),
+                          control.reason().c_str(), control.airborne() ? "airborne" : "on the ground"),
+              Emphasis::kHeading});
   const std::vector<std::string> warnings = warnings_of(view, now);
-  for (const std::string& warning : warnings) screen.add("! " + warning, Emphasis::kWarning);
-  if (warnings.empty()) screen.add("no warnings", Emphasis::kGood);
-  show_motion(view, screen);
-  show_power(view, screen);
-  const msg::MissionStatus& mission = view.mission.message;
-  if (mission.state() != msg::MissionStatus_Constants::NONE) {
-    screen.add(fmt::format("{:<11} {}, item {} of {}", "mission", mission_state_name(mission.state()),
-                           mission.item_index() + 1, mission.item_count()));
-  }
-  show_timing(view, facts, now, screen);
-  return screen.close(last, emphasis);
+  for (const std::string& warning : warnings) screen.add_wrapped("! " + warning, Emphasis::kWarning);
+  if (warnings.empty() && silences.empty()) screen.add({"no warnings", Emphasis::kGood});
+  Lines right;
+  add_power(view, right);
+  add_mission(view, right);
+  add_timing(view, facts, now, right);
+  screen.add_columns(motion_of(view), right);
+  return close();
 }
 
 std::string watch_line(const View& view, const WatchFacts& facts, Clock::time_point now) {
-  std::string line;
-  if (view.control.seen()) {
-    const msg::ControlStatus& control = view.control.message;
-    line = fmt::format("{}: {} ({})", facts.vehicle.c_str(), mode_name(control.mode()),
-                       control.reason().c_str());
-    if (view.estimate.seen()) {
-      const auto& p = view.estimate.message.position_ned();
-      line += fmt::format(", at ({:.3f}, {:.3f}, {:.3f}) m", p[0], p[1], p[2]);
-    }
-    if (view.reference.seen() && view.estimate.seen())
-      line += fmt::format(", error {:.1f} mm", 1e3 * off_reference_m(view));
-    if (view.battery.seen()) line += fmt::format(", {:.2f} V", view.battery.message.voltage_v());
-    line += fmt::format(", poses {:.0f} Hz", facts.pose_hz);
-    for (const std::string& warning : warnings_of(view, now)) line += "; ! " + warning;
-    return line;
+  if (!view.control.seen()) return facts.vehicle + ": waiting: " + facts.where;
+  const msg::ControlStatus& control = view.control.message;
+  std::string line = facts.vehicle + ": ";
+  const std::vector<std::string> silences = silence_lines(view, facts, now);
+  for (const std::string& silence : silences) line += silence + "; ";
+  if (!silences.empty()) line += "last known: ";
+  line += fmt::format("{} ({})", mode_name(control.mode()), control.reason().c_str());
+  if (view.estimate.seen()) {
+    const auto& p = view.estimate.message.position_ned();
+    line += fmt::format(", at ({:.3f}, {:.3f}, {:.3f}) m, {}", p[0], p[1], p[2],
+                        attitude_text(view.estimate.message));
   }
-  return facts.vehicle + ": waiting: " + facts.where;
+  if (view.reference.seen() && view.estimate.seen())
+    line += fmt::format(", error {:.1f} mm", 1e3 * off_reference_m(view));
+  if (view.battery.seen()) line += fmt::format(", {:.2f} V", view.battery.message.voltage_v());
+  line += fmt::format(", poses {:.0f} Hz", facts.pose_hz);
+  for (const std::string& warning : warnings_of(view, now)) line += "; ! " + warning;
+  return line;
 }
 
 }  // namespace swiftlet::ground

@@ -1,6 +1,7 @@
 // The screen of `swiftlet watch` as lines of text for a given size.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -11,9 +12,13 @@ namespace swiftlet::ground {
 
 enum class Emphasis : std::uint8_t { kPlain, kHeading, kGood, kWarning };
 
+// A line of text, and on a wide screen a second text from kRightColumn on. One column per character.
+constexpr int kRightColumn = 60;
 struct ScreenLine {
-  std::string text;  // one column per character
+  std::string text;
   Emphasis emphasis = Emphasis::kPlain;
+  std::string right_text{};
+  Emphasis right_emphasis = Emphasis::kPlain;
 };
 
 // Data shown in addition to the view: rates over the last second and the last message to the user.
@@ -24,16 +29,19 @@ struct WatchFacts {
   double estimate_hz = 0.0;
   double pose_hz = 0.0;
   double battery_hz = 0.0;
+  std::chrono::system_clock::time_point system_now;  // when the view is shown
   std::string message;  // result of the last key, or the question that it asks; empty: none
 };
 
-// Warnings, most severe first, such as "battery is low: 3.25 V, below 3.30 V". The battery thresholds are
+// Warnings besides silences_of(), most severe first, such as "battery is low: 3.25 V, below 3.30 V". The battery thresholds are
 // those of the vehicle's control settings; "(assumed)" marks default thresholds, used if the vehicle does not
 // publish its own.
 std::vector<std::string> warnings_of(const View& view, Clock::time_point now);
 
 // Returns `height` lines of at most `width` characters, the most important first, so that a small screen
-// shows these. The last line shows the keys or the message.
+// shows these: who is silent, mode, warnings. From kWideScreen columns on, the rest has two columns. The last
+// lines show the keys or the message.
+constexpr int kWideScreen = 120;
 std::vector<ScreenLine> watch_screen(const View& view, const WatchFacts& facts, Clock::time_point now,
                                      int width, int height);
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/csv_writer.hpp"
 #include "swiftlet/io/logs/compressed_file.hpp"
 #include "swiftlet/io/measurements.hpp"
@@ -255,6 +256,20 @@ void read_poses(const Measurements& table, FlightLog& log) {
   }
 }
 
+// Refuses the flight.csv of a record, which has neither specific forces nor all samples.
+void refuse_telemetry(const std::string& text, const std::string& file) {
+  const std::vector<std::string> header = runtime::first_csv_line(text, file);
+  const auto has = [&](const char* name) {
+    return std::find(header.begin(), header.end(), name) != header.end();
+  };
+  if (has("mode") && (has("ref_x_ned [m]") || has("ref_px"))) {
+    throw ConfigError(
+        file, 1, "header",
+        "is that of flight.csv, the telemetry of a flight; an identification needs sensors.csv, "
+        "which flights with --sensors record");
+  }
+}
+
 }  // namespace
 
 FlightLog flight_log_of(const SensorRecord& record) {
@@ -328,8 +343,9 @@ void write_flight_log(const fs::path& file, const FlightLog& log) {
 
 ReadFlightLog read_flight_log(const fs::path& path, const plant::Vehicle& base, BodyAxes axes) {
   const fs::path file = fs::is_directory(path) ? path / kSensorsFile : path;
-  const Measurements table =
-      runtime::parse_measurements(read_unpacked(file.string()), file.string(), flight_quantities());
+  const std::string text = read_unpacked(file.string());
+  refuse_telemetry(text, file.string());
+  const Measurements table = runtime::parse_measurements(text, file.string(), flight_quantities());
   ReadFlightLog out;
   FlightLog& log = out.log;
   log.name = file.string();

@@ -112,17 +112,21 @@ bool MissionFile::lands() const {
   return !mission.items.empty() && mission.items.back().kind == MissionItemKind::kLand;
 }
 
-MissionFile load_mission_file(const std::string& path, const control::Limits& limits) {
+MissionFile load_mission_file(const std::string& path, const control::Limits& limits,
+                              std::optional<MissionFrame> frame) {
   const std::string text = runtime::read_text_file(path);
-  switch (detect_format(text, path)) {
+  const MissionFormat format = detect_format(text, path);
+  if (frame && (format == MissionFormat::kYaml || format == MissionFormat::kQGroundControlPlan))
+    throw runtime::ConfigError(path, 0, "", "names its frame itself: --frame is for CSV files");
+  switch (format) {
     case MissionFormat::kYaml:
       return parse_mission_file(text, path, limits);
     case MissionFormat::kPolynomialCsv:
-      return parse_polynomial_csv(text, path, limits);
+      return parse_polynomial_csv(text, path, limits, frame);
     case MissionFormat::kSampledCsv:
-      return parse_sampled_csv(text, path, limits);
+      return parse_sampled_csv(text, path, limits, frame);
     case MissionFormat::kWaypointCsv:
-      return parse_waypoint_csv(text, path, limits);
+      return parse_waypoint_csv(text, path, limits, frame);
     case MissionFormat::kQGroundControlPlan:
       return parse_qgroundcontrol_plan(text, path, limits);
   }

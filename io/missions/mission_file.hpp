@@ -20,6 +20,7 @@
 // too (mission_format.hpp).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,10 @@
 #include "swiftlet/control/types/settings.hpp"
 
 namespace swiftlet::ground {
+
+// The frame of positions and yaws in a file: north, east, down with yaw clockwise from north, or east, north,
+// up with yaw counter-clockwise from east.
+enum class MissionFrame { kNed, kEnu };
 
 struct MissionFile {
   std::string name;
@@ -42,8 +47,10 @@ struct MissionFile {
 
 // Both throw runtime::ConfigError with file, line, key, value and limit for a violation of the format, the
 // limits or the fence. load_mission_file() reads any supported format, parse_mission_file() YAML only.
-// Trajectory files are searched in the folder of file_name.
-MissionFile load_mission_file(const std::string& path, const control::Limits& limits);
+// Trajectory files are searched in the folder of file_name. frame: that of a CSV file which does not name its
+// own, from the option --frame; refused for other formats, which always name it.
+MissionFile load_mission_file(const std::string& path, const control::Limits& limits,
+                              std::optional<MissionFrame> frame = std::nullopt);
 MissionFile parse_mission_file(const std::string& text, const std::string& file_name,
                                const control::Limits& limits);
 

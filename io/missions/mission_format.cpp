@@ -5,13 +5,15 @@
 #include <vector>
 
 #include "swiftlet/io/csv.hpp"
+#include "swiftlet/io/missions/motion_columns.hpp"
 #include "swiftlet/io/missions/whole_flight.hpp"
 
 namespace swiftlet::ground {
 namespace {
 
 constexpr const char* kKnown =
-    "duration,x^0,... (polynomials), t,x,y,z,... (samples) or x,y,z[,yaw] (waypoints, also without a header)";
+    "duration,x^0,... (polynomials), t,x,y,z,... (samples) or x,y,z[,yaw] (waypoints, also without a "
+    "header); x may be x_ned [m]";
 
 std::string lower_case_extension(const std::string& file_name) {
   std::string extension = std::filesystem::path(file_name).extension().string();
@@ -29,13 +31,15 @@ MissionFormat detect_format(std::string_view text, const std::string& file_name)
   if (extension == ".plan" || json) return MissionFormat::kQGroundControlPlan;
   if (extension == ".yaml" || extension == ".yml") return MissionFormat::kYaml;
 
-  const std::vector<std::string> fields = runtime::first_csv_line(text);
+  const std::vector<std::string> fields = runtime::first_csv_line(text, file_name);
   if (!fields.empty()) {
     if (fields.front() == "duration") return MissionFormat::kPolynomialCsv;
-    if (fields.front() == "t") return MissionFormat::kSampledCsv;
+    const bool timed = std::any_of(fields.begin(), fields.end(),
+                                   [](const std::string& field) { return motion_name(field) == "t"; });
+    if (timed) return MissionFormat::kSampledCsv;
     const bool numbers = std::all_of(fields.begin(), fields.end(),
                                      [](const std::string& field) { return runtime::is_number(field); });
-    if ((fields.front() == "x" && fields.size() > 1) ||
+    if ((motion_name(fields.front()) == "x" && fields.size() > 1) ||
         (numbers && (fields.size() == 3 || fields.size() == 4)))
       return MissionFormat::kWaypointCsv;
   }
@@ -48,18 +52,18 @@ MissionFormat detect_format(std::string_view text, const std::string& file_name)
 }
 
 MissionFile parse_polynomial_csv(const std::string& text, const std::string& file_name,
-                                 const control::Limits& limits) {
-  return whole_flight(file_name, read_polynomial_csv(text, file_name, limits), limits);
+                                 const control::Limits& limits, std::optional<MissionFrame> frame) {
+  return whole_flight(file_name, read_polynomial_csv(text, file_name, limits, frame), limits);
 }
 
 MissionFile parse_sampled_csv(const std::string& text, const std::string& file_name,
-                              const control::Limits& limits) {
-  return whole_flight(file_name, read_sampled_csv(text, file_name, limits), limits);
+                              const control::Limits& limits, std::optional<MissionFrame> frame) {
+  return whole_flight(file_name, read_sampled_csv(text, file_name, limits, frame), limits);
 }
 
 MissionFile parse_waypoint_csv(const std::string& text, const std::string& file_name,
-                               const control::Limits& limits) {
-  return whole_flight(file_name, read_waypoint_csv(text, file_name, limits), limits);
+                               const control::Limits& limits, std::optional<MissionFrame> frame) {
+  return whole_flight(file_name, read_waypoint_csv(text, file_name, limits, frame), limits);
 }
 
 }  // namespace swiftlet::ground

@@ -2,13 +2,16 @@
 // landing. MissionFile::assumptions states how the file was interpreted.
 //
 //   polynomial CSV      duration,x^0..x^7,y^0..y^7,z^0..z^7,yaw^0..yaw^7 (Crazyswarm, uav_trajectories)
-//   sampled CSV         t,x,y,z[,vx,vy,vz[,ax,ay,az]][,yaw]
-//   waypoint CSV        x,y,z[,yaw], with or without a header line
+//   sampled CSV         t, x, y, z and, if given, vx, vy, vz, ax, ay, az, yaw
+//   flight.csv          of a flight record: its reference between take-off and landing
+//   waypoint CSV        x, y, z and, if given, yaw; or x,y,z[,yaw] without a header line
 //   QGroundControl      .plan, JSON: a simple mission with a planned home position
 //
-// CSV files are in ENU: m and s, yaw in rad counter-clockwise from east.
+// Columns, frames and units of CSV files are those of motion_columns.hpp. Polynomials and waypoints without a
+// header name no frame: they are in ENU, m, rad and s, unless --frame names another.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -32,19 +35,25 @@ struct TrajectoryFile {
 // All functions below throw runtime::ConfigError with file, line, column, value and limit for a violation of
 // the format, the limits or the fence.
 TrajectoryFile read_polynomial_csv(const std::string& text, const std::string& file_name,
-                                   const control::Limits& limits);
+                                   const control::Limits& limits,
+                                   std::optional<MissionFrame> frame = std::nullopt);
 TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file_name,
-                                const control::Limits& limits);
+                                const control::Limits& limits,
+                                std::optional<MissionFrame> frame = std::nullopt);
 TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& file_name,
-                                 const control::Limits& limits);
+                                 const control::Limits& limits,
+                                 std::optional<MissionFrame> frame = std::nullopt);
 
 // Complete flights: take-off, the path, landing.
 MissionFile parse_polynomial_csv(const std::string& text, const std::string& file_name,
-                                 const control::Limits& limits);
+                                 const control::Limits& limits,
+                                 std::optional<MissionFrame> frame = std::nullopt);
 MissionFile parse_sampled_csv(const std::string& text, const std::string& file_name,
-                              const control::Limits& limits);
+                              const control::Limits& limits,
+                              std::optional<MissionFrame> frame = std::nullopt);
 MissionFile parse_waypoint_csv(const std::string& text, const std::string& file_name,
-                               const control::Limits& limits);
+                               const control::Limits& limits,
+                               std::optional<MissionFrame> frame = std::nullopt);
 MissionFile parse_qgroundcontrol_plan(const std::string& text, const std::string& file_name,
                                       const control::Limits& limits);
 

@@ -111,6 +111,9 @@ class Reader {
         0.5 * (limits_.fence_min_ned + limits_.fence_max_ned);  // horizontal position unknown
     top_ned.z() = item.position_ned.z();
     require_inside_fence(height, top_ned);
+    if (!control::check_height("", top_ned.z(), limits_).accepted)
+      height.fail(fmt::format("is {:g} m, must be at least the minimum height, {:g} m", -top_ned.z(),
+                              limits_.min_height_m));
     item.speed = speed(node);
     item.hold_s = hold(node);
     return item;
@@ -280,8 +283,14 @@ class Reader {
     }
   }
 
+  void require_height(const ConfigNode& node, double z_ned) const {
+    const control::Outcome outcome = control::check_height("in NED", z_ned, limits_);
+    if (!outcome.accepted) node.fail(outcome.reason);
+  }
+
   Eigen::Vector3d position(const ConfigNode& node) const {
     Eigen::Vector3d position_ned = ned_from(frame_, node.vector3());
+    require_height(node, position_ned.z());
     require_inside_fence(node, position_ned);
     return position_ned;
   }

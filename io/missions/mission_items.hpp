@@ -10,10 +10,6 @@
 
 namespace swiftlet::ground {
 
-// The frame of positions and yaws in the file: north, east, down with yaw clockwise from north, or east,
-// north, up with yaw counter-clockwise from east.
-enum class MissionFrame { kNed, kEnu };
-
 Eigen::Vector3d ned_from(MissionFrame frame, const Eigen::Vector3d& position);
 double ned_yaw_from(MissionFrame frame, double yaw);
 

@@ -29,7 +29,7 @@ control::PolynomialSegment read(const runtime::CsvTable& table, std::size_t row)
 }  // namespace
 
 TrajectoryFile read_polynomial_csv(const std::string& text, const std::string& file_name,
-                                   const control::Limits& limits) {
+                                   const control::Limits& limits, std::optional<MissionFrame> frame) {
   const runtime::CsvTable table = runtime::parse_csv(text, file_name, columns(), 1, {true, true});
   if (table.row_count() > control::kMaxTrajectorySegments) {
     table.fail(control::kMaxTrajectorySegments, "duration",
@@ -37,9 +37,14 @@ TrajectoryFile read_polynomial_csv(const std::string& text, const std::string& f
                    std::to_string(control::kMaxTrajectorySegments) + " fit");
   }
   std::vector<control::PolynomialSegment> segments;
-  for (std::size_t row = 0; row < table.row_count(); ++row) segments.push_back(ned_segment(read(table, row)));
-  std::vector<std::string> assumptions = {
-      "taken as a polynomial trajectory in ENU: m, rad and s, from the origin of motion capture"};
+  const bool enu = frame != MissionFrame::kNed;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    const control::PolynomialSegment segment = read(table, row);
+    segments.push_back(enu ? ned_segment(segment) : segment);
+  }
+  std::vector<std::string> assumptions = {std::string("taken as a polynomial trajectory in ") +
+                                          (enu ? "ENU" : "NED") +
+                                          ": m, rad and s, from the origin of motion capture"};
   const double raise_m = raise_by(least_height(segments), assumptions);
   for (control::PolynomialSegment& segment : segments) segment.z[0] -= raise_m;
   return checked({std::move(segments), std::move(assumptions)}, limits,

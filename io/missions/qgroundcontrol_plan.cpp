@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/io/config.hpp"
 #include "swiftlet/io/missions/geodesy.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
@@ -243,6 +244,8 @@ class PlanReader {
   }
 
   void require_inside(const ConfigNode& item, const Eigen::Vector3d& position_ned) const {
+    const control::Outcome height = control::check_height("in NED", position_ned.z(), limits_);
+    if (!height.accepted) item.fail(height.reason);
     constexpr const char* kAxes[] = {"north", "east", "down"};
     for (int axis = 0; axis < 3; ++axis) {
       const double low = limits_.fence_min_ned[axis];

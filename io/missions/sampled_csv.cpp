@@ -5,7 +5,9 @@
 
 #include "swiftlet/control/planning/spline.hpp"
 #include "swiftlet/io/csv.hpp"
+#include "swiftlet/io/missions/flight_table.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
+#include "swiftlet/io/missions/motion_columns.hpp"
 #include "swiftlet/io/missions/whole_flight.hpp"
 
 namespace swiftlet::ground {
@@ -17,30 +19,28 @@ using control::PositionYaw;
 constexpr double kLeastStep_s = 1e-4;
 constexpr double kLongestStep_s = 3600.0;
 
-struct Columns {
-  std::vector<std::string> names = {"t", "x", "y", "z"};
+// What a table gives besides times and positions.
+struct Given {
   bool velocity = false;
-  bool acceleration = false;
+  bool acceleration = false;  // only with velocities
   bool yaw = false;
 };
 
-// Returns the columns of the header. For an unsupported header, returns the nearest supported columns;
-// parse_csv() then refuses the header.
-Columns columns_of(const std::vector<std::string>& header) {
-  const auto has = [&](const char* name) {
-    return std::find(header.begin(), header.end(), name) != header.end();
-  };
-  Columns columns;
-  const auto add = [&](std::initializer_list<const char*> names) {
-    columns.names.insert(columns.names.end(), names.begin(), names.end());
-  };
-  columns.acceleration = has("ax");
-  columns.velocity = has("vx") || columns.acceleration;
-  columns.yaw = has("yaw");
-  if (columns.velocity) add({"vx", "vy", "vz"});
-  if (columns.acceleration) add({"ax", "ay", "az"});
-  if (columns.yaw) add({"yaw"});
-  return columns;
+Given given_in(const MotionColumns& columns, const std::string& file_name) {
+  if (!columns.has(Motion::kX) && columns.has_any({Motion::kVx, Motion::kAx, Motion::kRoll, Motion::kP})) {
+    throw runtime::ConfigError(file_name, 1, "header",
+                               "has no positions, must have " +
+                                   list_of({Motion::kX, Motion::kY, Motion::kZ}) +
+                                   "; `swiftlet stream` flies velocities, accelerations, attitudes and "
+                                   "body rates");
+  }
+  require_columns(columns, file_name, "a trajectory", {Motion::kT, Motion::kX, Motion::kY, Motion::kZ},
+                  {{Motion::kVx, Motion::kVy, Motion::kVz},
+                   {Motion::kAx, Motion::kAy, Motion::kAz},
+                   {Motion::kYaw},
+                   {Motion::kYawRate}});
+  const bool velocity = columns.has(Motion::kVx);
+  return {velocity, velocity && columns.has(Motion::kAx), columns.has(Motion::kYaw)};
 }
 
 // In NED, one entry per row.
@@ -50,31 +50,35 @@ struct Samples {
   std::vector<PlaceDerivatives> derivatives;  // velocity and acceleration, as far as they are known
 };
 
-Eigen::Vector3d ned_of(const runtime::CsvTable& table, std::size_t row, std::size_t column) {
-  return ned_position(
-      {table.number(row, column), table.number(row, column + 1), table.number(row, column + 2)});
+// The time of a row, s.
+double time_of(const runtime::CsvTable& table, std::size_t row, const MotionColumns& columns,
+               const Samples& before) {
+  const std::size_t column = *columns.index(Motion::kT);
+  const double factor = columns.factor(column);
+  if (row == 0) return factor * table.number(row, column);
+  const double last_s = before.time_s.back();
+  return factor *
+         table.number(row, column,
+                      runtime::between((last_s + kLeastStep_s) / factor, (last_s + kLongestStep_s) / factor),
+                      factor == 1.0 ? "s" : "");
 }
 
-Samples read(const runtime::CsvTable& table, const Columns& columns) {
+Samples read(const runtime::CsvTable& table, const MotionColumns& columns, const Given& given) {
   Samples samples;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
-    const double t = row == 0 ? table.number(row, 0)
-                              : table.number(row, 0,
-                                             runtime::between(samples.time_s.back() + kLeastStep_s,
-                                                              samples.time_s.back() + kLongestStep_s),
-                                             "s");
-    samples.time_s.push_back(t);
+    samples.time_s.push_back(time_of(table, row, columns, samples));
+    const std::vector<double> numbers = table.row(row);
     PositionYaw place;
-    place.head<3>() = ned_of(table, row, 1);
-    place[3] = columns.yaw ? ned_yaw(table.number(row, columns.names.size() - 1)) : 0.0;
+    place.head<3>() = columns.ned(numbers, Motion::kX);
+    place[3] = given.yaw ? columns.yaw_ned(numbers) : 0.0;
     if (row > 0) {  // unwrapped: less than half a turn between rows
       const double before = samples.places.back()[3];
       place[3] = before + std::remainder(place[3] - before, 2.0 * M_PI);
     }
     samples.places.push_back(place);
     PlaceDerivatives derivatives = PlaceDerivatives::Zero();
-    if (columns.velocity) derivatives.col(0).head<3>() = ned_of(table, row, 4);
-    if (columns.acceleration) derivatives.col(1).head<3>() = ned_of(table, row, 7);
+    if (given.velocity) derivatives.col(0).head<3>() = columns.ned(numbers, Motion::kVx);
+    if (given.acceleration) derivatives.col(1).head<3>() = columns.ned(numbers, Motion::kAx);
     samples.derivatives.push_back(derivatives);
   }
   return samples;
@@ -82,12 +86,12 @@ Samples read(const runtime::CsvTable& table, const Columns& columns) {
 
 // Fills in derivatives that the file does not give by central differences over the neighbouring rows; they
 // stay zero at both ends.
-void difference(Samples& samples, const Columns& columns) {
+void difference(Samples& samples, const Given& given) {
   const std::size_t last = samples.places.size() - 1;
   for (std::size_t i = 1; i < last; ++i) {
     const double span_s = samples.time_s[i + 1] - samples.time_s[i - 1];
     PlaceDerivatives& here = samples.derivatives[i];
-    if (!columns.acceleration) {
+    if (!given.acceleration) {
       here.col(1).head<3>() =
           (samples.derivatives[i + 1].col(0) - samples.derivatives[i - 1].col(0)).head<3>() / span_s;
     }
@@ -139,26 +143,39 @@ double greatest_deviation(const Samples& samples, const std::vector<std::size_t>
 }  // namespace
 
 TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file_name,
-                                const control::Limits& limits) {
-  const Columns columns = columns_of(runtime::first_csv_line(text));
-  const runtime::CsvTable table = runtime::parse_csv(text, file_name, columns.names, 2, {true, true});
-  Samples samples = read(table, columns);
-  std::vector<std::string> assumptions = {
-      "taken as a sampled trajectory in ENU: m, rad and s, from the origin of motion capture"};
-  if (!columns.yaw) assumptions.emplace_back("the file has no yaw: the vehicle faces north");
+                                const control::Limits& limits, std::optional<MissionFrame> frame) {
+  std::vector<std::string> header = table_header(text, file_name);
+  std::optional<runtime::CsvTable> recorded;
+  if (is_flight_table(header)) {
+    recorded = reference_of_flight(text, file_name);
+    header = recorded->columns();
+  }
+  const MotionColumns columns(header, file_name, frame);
+  const Given given = given_in(columns, file_name);
+  const runtime::CsvTable table =
+      recorded ? *recorded : runtime::parse_csv(text, file_name, header, 2, {true, true});
+  Samples samples = read(table, columns, given);
+  std::vector<std::string> assumptions;
+  if (recorded) assumptions.push_back(extent_of(table));
+  if (const auto assumption = columns.assumption("a sampled trajectory")) assumptions.push_back(*assumption);
+  if (!given.yaw) assumptions.emplace_back("the file has no yaw: the vehicle faces north");
+  if (columns.has(Motion::kYawRate))
+    assumptions.emplace_back("yaw_rate is not used: the rate follows from the yaw");
+  if (columns.has(Motion::kAx) && !given.acceleration)
+    assumptions.emplace_back("accelerations are not used, because the file has no velocities");
   double least_m = -samples.places.front().z();
   for (const PositionYaw& place : samples.places) least_m = std::min(least_m, -place.z());
   const double raise_m = raise_by(least_m, assumptions);
   for (PositionYaw& place : samples.places) place.z() -= raise_m;
 
-  if (columns.velocity) difference(samples, columns);
+  if (given.velocity) difference(samples, given);
   const std::vector<std::size_t> knots = knots_of(table.row_count());
-  std::vector<control::PolynomialSegment> segments = through(samples, knots, columns.velocity);
+  std::vector<control::PolynomialSegment> segments = through(samples, knots, given.velocity);
   assumptions.push_back(fmt::format("{} samples became {} segments {}; the largest deviation is {:.1f} mm",
                                     table.row_count(), segments.size(),
-                                    columns.acceleration ? "with their velocities and accelerations"
-                                    : columns.velocity   ? "with their velocities"
-                                                         : "of minimum snap, at rest at both ends",
+                                    given.acceleration ? "with their velocities and accelerations"
+                                    : given.velocity   ? "with their velocities"
+                                                       : "of minimum snap, at rest at both ends",
                                     greatest_deviation(samples, knots, segments) * 1e3));
   return checked(
       {std::move(segments), std::move(assumptions)}, limits,

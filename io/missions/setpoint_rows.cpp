@@ -1,15 +1,13 @@
 #include "swiftlet/io/missions/setpoint_rows.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <memory>
 #include <utility>
 
+#include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/csv.hpp"
-#include "swiftlet/io/missions/whole_flight.hpp"
 #include "swiftlet/math/euler.hpp"
 
 namespace swiftlet::ground {
@@ -19,148 +17,58 @@ using control::Setpoint;
 using control::SetpointKind;
 using runtime::ConfigError;
 
-constexpr double kRadPerDeg = M_PI / 180.0;
-constexpr double kStandardGravity = 9.80665;  // m/s^2, one g
-
-enum Slot : int {
-  kT,
-  kX,
-  kY,
-  kZ,
-  kVx,
-  kVy,
-  kVz,
-  kAx,
-  kAy,
-  kAz,
-  kYaw,
-  kYawRate,
-  kRoll,
-  kPitch,
-  kP,
-  kQ,
-  kR,
-  kThrust
-};
-
-struct Unit {
-  const char* name;
-  double factor;  // to SI
-};
-const std::vector<Unit> kSeconds = {{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}};
-const std::vector<Unit> kMetres = {{"m", 1.0}, {"cm", 1e-2}, {"mm", 1e-3}};
-const std::vector<Unit> kSpeeds = {{"m/s", 1.0}, {"cm/s", 1e-2}};
-const std::vector<Unit> kAccelerations = {{"m/s^2", 1.0}, {"m/s2", 1.0}, {"g", kStandardGravity}};
-const std::vector<Unit> kAngles = {{"rad", 1.0}, {"deg", kRadPerDeg}};
-const std::vector<Unit> kRates = {{"rad/s", 1.0}, {"deg/s", kRadPerDeg}};
-
-struct Known {
-  const char* name;
-  const std::vector<Unit>* units;  // first the unit of the topics
-};
-// Indexed by Slot.
-const std::array<Known, 18> kKnown = {{{"t", &kSeconds},
-                                       {"x", &kMetres},
-                                       {"y", &kMetres},
-                                       {"z", &kMetres},
-                                       {"vx", &kSpeeds},
-                                       {"vy", &kSpeeds},
-                                       {"vz", &kSpeeds},
-                                       {"ax", &kAccelerations},
-                                       {"ay", &kAccelerations},
-                                       {"az", &kAccelerations},
-                                       {"yaw", &kAngles},
-                                       {"yaw_rate", &kRates},
-                                       {"roll", &kAngles},
-                                       {"pitch", &kAngles},
-                                       {"p", &kRates},
-                                       {"q", &kRates},
-                                       {"r", &kRates},
-                                       {"thrust", &kAccelerations}}};
-
-// The columns of a kind of stream besides the time: the required ones, and optional groups, each complete or
-// absent.
+// The columns of a kind of stream: the required ones, and optional groups, each complete or absent.
 struct Form {
   SetpointKind kind;
   const char* name;
-  std::vector<int> needed;
-  std::vector<std::vector<int>> more;
+  std::vector<Motion> needed;
+  std::vector<std::vector<Motion>> more;
 };
-const std::vector<int> kVelocity = {kVx, kVy, kVz};
-const std::vector<int> kAcceleration = {kAx, kAy, kAz};
-const std::vector<int> kBodyRates = {kP, kQ, kR};
+const std::vector<Motion> kPosition = {Motion::kX, Motion::kY, Motion::kZ};
+const std::vector<Motion> kVelocity = {Motion::kVx, Motion::kVy, Motion::kVz};
+const std::vector<Motion> kAcceleration = {Motion::kAx, Motion::kAy, Motion::kAz};
+const std::vector<Motion> kAttitude = {Motion::kRoll, Motion::kPitch, Motion::kYaw, Motion::kThrust};
+const std::vector<Motion> kBodyRates = {Motion::kP, Motion::kQ, Motion::kR};
+const std::vector<Motion> kRatesAndThrust = {Motion::kP, Motion::kQ, Motion::kR, Motion::kThrust};
 // The first form whose first required column is present applies.
-const std::vector<Form> kForms = {
-    {SetpointKind::kPosition, "positions", {kX, kY, kZ}, {kVelocity, kAcceleration, {kYaw}, {kYawRate}}},
-    {SetpointKind::kAttitude, "attitudes", {kRoll, kPitch, kYaw, kThrust}, {kBodyRates}},
-    {SetpointKind::kBodyRates, "body rates", {kP, kQ, kR, kThrust}, {}},
-    {SetpointKind::kVelocity, "velocities", kVelocity, {kAcceleration, {kYaw}, {kYawRate}}},
-    {SetpointKind::kAcceleration, "accelerations", kAcceleration, {{kYaw}, {kYawRate}}}};
+const std::vector<Form> kForms = {{SetpointKind::kPosition,
+                                   "a stream of positions",
+                                   kPosition,
+                                   {kVelocity, kAcceleration, {Motion::kYaw}, {Motion::kYawRate}}},
+                                  {SetpointKind::kAttitude, "a stream of attitudes", kAttitude, {kBodyRates}},
+                                  {SetpointKind::kBodyRates, "a stream of body rates", kRatesAndThrust, {}},
+                                  {SetpointKind::kVelocity,
+                                   "a stream of velocities",
+                                   kVelocity,
+                                   {kAcceleration, {Motion::kYaw}, {Motion::kYawRate}}},
+                                  {SetpointKind::kAcceleration,
+                                   "a stream of accelerations",
+                                   kAcceleration,
+                                   {{Motion::kYaw}, {Motion::kYawRate}}}};
 
-std::string header_of(int slot) {
-  const Known& known = kKnown[static_cast<std::size_t>(slot)];
-  return std::string(known.name) + " [" + known.units->front().name + "]";
-}
-
-std::string list_of(const std::vector<int>& slots) {
-  std::string text;
-  for (std::size_t i = 0; i < slots.size(); ++i)
-    text += (i == 0 ? "" : i + 1 == slots.size() ? " and " : ", ") + header_of(slots[i]);
-  return text;
-}
-
-int slot_named(const std::string& name) {
-  const auto known = std::find_if(kKnown.begin(), kKnown.end(),
-                                  [&](const Known& candidate) { return name == candidate.name; });
-  return known == kKnown.end() ? -1 : static_cast<int>(known - kKnown.begin());
-}
-
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
-[[noreturn]] void refuse_header(const std::string& file, const std::string& message) {
-  throw ConfigError(file, 1, "header", message);
-}
-
-const Form& form_of(const std::string& file, const std::vector<int>& slots) {
-  const auto has = [&](int slot) { return std::find(slots.begin(), slots.end(), slot) != slots.end(); };
-  const auto form = std::find_if(kForms.begin(), kForms.end(),
-                                 [&](const Form& candidate) { return has(candidate.needed.front()); });
+const Form& form_of(const std::string& file, const MotionColumns& columns) {
+  const auto form = std::find_if(kForms.begin(), kForms.end(), [&](const Form& candidate) {
+    return columns.has(candidate.needed.front());
+  });
   if (form == kForms.end()) {
-    refuse_header(file, "names no setpoint, must have " + list_of({kX, kY, kZ}) +
-                            ", or velocities, accelerations, " + list_of({kRoll, kPitch, kYaw, kThrust}) +
-                            ", or " + list_of({kP, kQ, kR, kThrust}));
+    throw ConfigError(file, 1, "header",
+                      "names no setpoint, must have " + list_of(kPosition) +
+                          ", or velocities, accelerations, " + list_of(kAttitude) + ", or " +
+                          list_of(kRatesAndThrust));
   }
-  std::vector<int> used = {kT};
-  const auto require = [&](const std::vector<int>& group) {
-    for (const int slot : group) {
-      if (!has(slot))
-        refuse_header(file, "has no column " + header_of(slot) + ", must have " + list_of(group));
-    }
-    used.insert(used.end(), group.begin(), group.end());
-  };
-  require({kT});
-  require(form->needed);
-  for (const std::vector<int>& group : form->more) {
-    if (std::any_of(group.begin(), group.end(), has)) require(group);
-  }
-  for (const int slot : slots) {
-    if (std::find(used.begin(), used.end(), slot) == used.end()) {
-      refuse_header(
-          file, "has the column " + header_of(slot) + ", which a stream of " + form->name + " does not use");
-    }
-  }
+  if (!columns.has(Motion::kT))
+    throw ConfigError(file, 1, "header",
+                      "has no column " + header_of(Motion::kT) + ", must have " + header_of(Motion::kT));
+  std::vector<std::vector<Motion>> more = form->more;
+  more.push_back({Motion::kT});
+  require_columns(columns, file, form->name, form->needed, more);
   return *form;
 }
 
 double number_of(const std::string& text, const std::string& file, int line, const std::string& column) {
-  double value = 0.0;
-  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (read.ec != std::errc() || read.ptr != text.data() + text.size() || !std::isfinite(value))
-    throw ConfigError(file, line, column, "is '" + text + "', must be a finite number");
-  return value;
+  const auto number = runtime::parse_number(text);
+  if (!number) throw ConfigError(file, line, column, "is '" + text + "', must be a finite number");
+  return *number;
 }
 
 double between(double a, double b, double part) { return a + part * (b - a); }
@@ -186,98 +94,69 @@ Setpoint between(const TimedSetpoint& before, const TimedSetpoint& after, double
 
 }  // namespace
 
-SetpointRows::SetpointRows(const std::string& header, const std::string& file_name) : file_(file_name) {
-  names_ = runtime::first_csv_line(header);
-  const bool declared = header.find('[') != std::string::npos;
-  std::vector<int> slots;
-  for (const std::string& text : names_) {
-    const std::size_t open = text.find('[');
-    const bool has_unit = open != std::string::npos && text.back() == ']';
-    const std::string name = trimmed(text.substr(0, open));
-    const int slot = slot_named(name);
-    if (slot < 0) {
-      std::string known;
-      for (std::size_t i = 0; i < kKnown.size(); ++i)
-        known += (i == 0 ? "" : i + 1 == kKnown.size() ? " or " : ", ") + header_of(static_cast<int>(i));
-      refuse_header(file_, "has the column " + text + ", must be " + known);
-    }
-    if (std::find(slots.begin(), slots.end(), slot) != slots.end())
-      refuse_header(file_, "has the column " + name + " twice, must have it once");
-    slots.push_back(slot);
-    const std::vector<Unit>& units = *kKnown[static_cast<std::size_t>(slot)].units;
-    const std::string unit =
-        has_unit ? trimmed(text.substr(open + 1, text.size() - open - 2)) : units.front().name;
-    const auto meant = std::find_if(units.begin(), units.end(),
-                                    [&](const Unit& candidate) { return unit == candidate.name; });
-    if (meant == units.end() || has_unit != declared) {
-      std::string choices;
-      for (const Unit& choice : units)
-        choices += (choices.empty() ? "" : " or ") + name + " [" + choice.name + "]";
-      refuse_header(file_, "has the column " + text +
-                               (has_unit ? " with an unknown unit" : " without a unit") + ", must be " +
-                               choices);
-    }
-    columns_.push_back({slot, meant->factor});
+SetpointRows::SetpointRows(const std::vector<std::string>& header, const std::string& file_name,
+                           std::optional<MissionFrame> frame)
+    : file_(file_name), names_(header), columns_(header, file_name, frame) {
+  kind_ = form_of(file_, columns_).kind;
+  if (!columns_.declares_units() && kind_ != SetpointKind::kPosition) {
+    throw ConfigError(file_, 1, "header", "has no units, must have them: vx_ned [m/s], thrust [m/s^2] ...");
   }
-  kind_ = form_of(file_, slots).kind;
-  if (declared) return;
-  enu_ = true;
-  if (kind_ != SetpointKind::kPosition)
-    refuse_header(file_, "has no units, must have them: vx [m/s], thrust [m/s^2] ...");
-  assumption_ = "taken as a sampled trajectory in ENU: m, rad and s, from the origin of motion capture";
 }
 
-double SetpointRows::value(const std::vector<double>& values, int slot) const {
-  for (std::size_t i = 0; i < columns_.size(); ++i) {
-    if (columns_[i].slot == slot) return columns_[i].factor * values[i];
-  }
-  return 0.0;
-}
-
-Setpoint SetpointRows::setpoint_of(const std::vector<double>& values) const {
-  const auto number = [&](int slot) { return value(values, slot); };
-  const auto vector = [&](int slot) {
-    const Eigen::Vector3d read(number(slot), number(slot + 1), number(slot + 2));
-    return enu_ ? ned_position(read) : read;
-  };
-  const auto has = [&](int slot) {
-    return std::any_of(columns_.begin(), columns_.end(),
-                       [&](const Column& column) { return column.slot == slot; });
-  };
+Setpoint SetpointRows::setpoint_of(const std::vector<double>& row) const {
+  const auto number = [&](Motion column) { return columns_.value(row, column); };
   Setpoint setpoint;
   setpoint.kind = kind_;
-  setpoint.position_ned = vector(kX);
-  setpoint.velocity_ned = vector(kVx);
-  setpoint.acceleration_ned = vector(kAx);
-  setpoint.yaw_free = !has(kYaw);
-  setpoint.yaw_rad = enu_ ? ned_yaw(number(kYaw)) : number(kYaw);
-  setpoint.yaw_rate = number(kYawRate);
-  setpoint.q_ned_from_frd = control::quaternion_from_euler({number(kRoll), number(kPitch), number(kYaw)});
-  setpoint.body_rates_frd = {number(kP), number(kQ), number(kR)};
-  setpoint.specific_thrust = number(kThrust);
+  setpoint.position_ned = columns_.ned(row, Motion::kX);
+  setpoint.velocity_ned = columns_.ned(row, Motion::kVx);
+  setpoint.acceleration_ned = columns_.ned(row, Motion::kAx);
+  setpoint.yaw_free = !columns_.has(Motion::kYaw);
+  setpoint.yaw_rad = columns_.yaw_ned(row);
+  setpoint.yaw_rate = columns_.yaw_rate_ned(row);
+  setpoint.q_ned_from_frd =
+      control::quaternion_from_euler({number(Motion::kRoll), number(Motion::kPitch), number(Motion::kYaw)});
+  setpoint.body_rates_frd = {number(Motion::kP), number(Motion::kQ), number(Motion::kR)};
+  setpoint.specific_thrust = number(Motion::kThrust);
   return setpoint;
 }
 
 std::optional<TimedSetpoint> SetpointRows::read(const std::string& line) {
   ++line_;
-  const std::vector<std::string> fields = runtime::first_csv_line(line);
+  const std::vector<std::string> fields = runtime::first_csv_line(line, file_, line_);
   if (fields.empty()) return std::nullopt;
-  if (fields.size() != columns_.size()) {
+  if (fields.size() != names_.size()) {
     throw ConfigError(
         file_, line_, "row",
-        "has " + std::to_string(fields.size()) + " fields, must have " + std::to_string(columns_.size()));
+        "has " + std::to_string(fields.size()) + " fields, must have " + std::to_string(names_.size()));
   }
-  std::vector<double> values;
+  std::vector<double> row;
   for (std::size_t i = 0; i < fields.size(); ++i)
-    values.push_back(number_of(fields[i], file_, line_, names_[i]));
-  const double time_s = value(values, kT);
+    row.push_back(number_of(fields[i], file_, line_, names_[i]));
+  return setpoint(row, line_);
+}
+
+TimedSetpoint SetpointRows::setpoint(const std::vector<double>& row, int line) {
+  const double time_s = columns_.value(row, Motion::kT);
   if (last_time_s_ && time_s <= *last_time_s_) {
-    throw ConfigError(file_, line_, "t",
+    throw ConfigError(file_, line, "t",
                       "is " + runtime::exact(time_s) + " s, must be above that of the previous row, " +
                           runtime::exact(*last_time_s_) + " s");
   }
   last_time_s_ = time_s;
-  return TimedSetpoint{time_s, setpoint_of(values)};
+  const Setpoint setpoint = setpoint_of(row);
+  if (kind_ == SetpointKind::kPosition) {
+    const control::Outcome outcome = control::check_above_ground("in NED", setpoint.position_ned.z());
+    if (!outcome.accepted) throw ConfigError(file_, line, "z", outcome.reason);
+  }
+  return TimedSetpoint{time_s, setpoint};
+}
+
+std::vector<TimedSetpoint> setpoints_of(const runtime::CsvTable& table) {
+  SetpointRows reader(table.columns(), table.file());
+  std::vector<TimedSetpoint> rows;
+  for (std::size_t row = 0; row < table.row_count(); ++row)
+    rows.push_back(reader.setpoint(table.row(row), table.line(row)));
+  return rows;
 }
 
 SetpointSource resampled(SetpointSource source, double rate_hz) {

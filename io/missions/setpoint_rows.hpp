@@ -1,16 +1,14 @@
-// Tables of setpoints over time, one per row, for `swiftlet stream`.
+// Tables of setpoints over time, one per row, for `swiftlet stream`. Names, frames and units of the columns are
+// those of motion_columns.hpp.
 //
-//   t [s],x [m],y [m],z [m][,vx [m/s],vy ..,vz ..][,ax [m/s^2],ay ..,az ..]     positions
-//   t [s],vx [m/s],vy [m/s],vz [m/s][,ax ..,ay ..,az ..]                        velocities
-//   t [s],ax [m/s^2],ay [m/s^2],az [m/s^2]                                      accelerations
-//   t [s],roll [rad],pitch [rad],yaw [rad],thrust [m/s^2][,p [rad/s],q ..,r ..] attitudes
-//   t [s],p [rad/s],q [rad/s],r [rad/s],thrust [m/s^2]                          body rates
+//   t, x, y, z; also vx, vy, vz; ax, ay, az      positions
+//   t, vx, vy, vz; also ax, ay, az               velocities
+//   t, ax, ay, az                                accelerations
+//   t, roll, pitch, yaw, thrust; also p, q, r    attitudes
+//   t, p, q, r, thrust                           body rates
 //
-// The columns may have any order. The first three kinds may have yaw [rad] and yaw_rate [rad/s]; without yaw
-// the heading is kept. Other common units are accepted: deg, deg/s, cm, ms, thrust in g. Frames are those of
-// the topics: x north, y east, z down; roll, pitch and yaw as in Eq. (3). A header without units,
-// t,x,y,z[,vx,vy,vz[,ax,ay,az]][,yaw], is read as a sampled trajectory of another project, in ENU;
-// assumption() says so.
+// The first three kinds may have yaw and yaw_rate; without yaw the heading is kept. All but positions must
+// have units.
 #pragma once
 
 #include <functional>
@@ -19,6 +17,8 @@
 #include <vector>
 
 #include "swiftlet/control/types/request.hpp"
+#include "swiftlet/io/csv.hpp"
+#include "swiftlet/io/missions/motion_columns.hpp"
 
 namespace swiftlet::ground {
 
@@ -30,33 +30,34 @@ struct TimedSetpoint {
 // Reads rows one at a time, so that the input may be a live stream.
 class SetpointRows {
  public:
-  // header is the first line. Throws runtime::ConfigError with the invalid column and the valid ones.
-  SetpointRows(const std::string& header, const std::string& file_name);
+  // header: the columns of the first line. frame: that of --frame, if given. Throws runtime::ConfigError with
+  // the invalid column and the valid ones.
+  SetpointRows(const std::vector<std::string>& header, const std::string& file_name,
+               std::optional<MissionFrame> frame = std::nullopt);
 
   // Returns the setpoint of the next line; nothing for a blank line. Throws runtime::ConfigError for an
   // invalid row, or if its time is not later than that of the previous row.
   std::optional<TimedSetpoint> read(const std::string& line);
+  // The same for the numbers of a row that was read already.
+  TimedSetpoint setpoint(const std::vector<double>& row, int line);
 
   control::SetpointKind kind() const { return kind_; }
-  const std::optional<std::string>& assumption() const { return assumption_; }  // a sentence
+  // A sentence if frame and units were assumed.
+  std::optional<std::string> assumption() const { return columns_.assumption("a sampled trajectory"); }
 
  private:
-  struct Column {
-    int slot;
-    double factor;
-  };
-  double value(const std::vector<double>& values, int slot) const;
-  control::Setpoint setpoint_of(const std::vector<double>& values) const;
+  control::Setpoint setpoint_of(const std::vector<double>& row) const;
 
   std::string file_;
   std::vector<std::string> names_;
-  std::vector<Column> columns_;
+  MotionColumns columns_;
   control::SetpointKind kind_ = control::SetpointKind::kPosition;
-  std::optional<std::string> assumption_;
-  bool enu_ = false;
   int line_ = 1;
   std::optional<double> last_time_s_;
 };
+
+// The rows of a table whose columns name their frame. Throws runtime::ConfigError as SetpointRows does.
+std::vector<TimedSetpoint> setpoints_of(const runtime::CsvTable& table);
 
 // Returns the next row; nothing at the end.
 using SetpointSource = std::function<std::optional<TimedSetpoint>()>;

@@ -7,6 +7,7 @@
 #include "swiftlet/control/planning/waypoint_path.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
+#include "swiftlet/io/missions/motion_columns.hpp"
 #include "swiftlet/io/missions/whole_flight.hpp"
 
 namespace swiftlet::ground {
@@ -14,20 +15,29 @@ namespace {
 
 constexpr std::size_t kMaxPoints = control::kMaxTrajectorySegments + 1;
 
-control::WaypointPath read(const runtime::CsvTable& table) {
+control::WaypointPath read(const runtime::CsvTable& table, const MotionColumns& columns) {
   control::WaypointPath path;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     if (row == kMaxPoints)
       table.fail(row, "x,y,z", fmt::format("is waypoint {}, at most {} fit", row + 1, kMaxPoints));
+    const std::vector<double> numbers = table.row(row);
     control::PathPoint& point = path.points.emplace_back();
-    point.position_ned = ned_position({table.number(row, 0), table.number(row, 1), table.number(row, 2)});
-    if (table.column_count() < 4) continue;
-    point.yaw_rad = ned_yaw(table.number(row, 3));
+    point.position_ned = columns.ned(numbers, Motion::kX);
+    if (!columns.has(Motion::kYaw)) continue;
+    point.yaw_rad = columns.yaw_ned(numbers);
     if (row == 0) continue;
     const double before = path.points[row - 1].yaw_rad;  // unwrapped
     point.yaw_rad = before + std::remainder(point.yaw_rad - before, 2.0 * M_PI);
   }
   return path;
+}
+
+// The columns of the first line, or those that its numbers mean.
+std::vector<std::string> columns_of(const std::vector<std::string>& first, bool has_header) {
+  if (has_header) return first;
+  std::vector<std::string> columns = {"x", "y", "z"};
+  if (first.size() > 3) columns.emplace_back("yaw");
+  return columns;
 }
 
 // Returns the row of the last waypoint at or before the start of a segment.
@@ -40,20 +50,22 @@ std::size_t row_of(const control::PlannedPath& planned, std::size_t segment) {
 }  // namespace
 
 TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& file_name,
-                                 const control::Limits& limits) {
-  std::vector<std::string> first = runtime::first_csv_line(text);
+                                 const control::Limits& limits, std::optional<MissionFrame> frame) {
+  std::vector<std::string> first = runtime::first_csv_line(text, file_name);
   if (first.empty()) first.emplace_back();  // parse_csv() refuses the empty file
-  const bool has_header = !runtime::is_number(first.front());
-  std::vector<std::string> columns = {"x", "y", "z"};
-  const std::size_t fields = first.back().empty() ? first.size() - 1 : first.size();
-  if (fields > 3) columns.emplace_back("yaw");
-  const runtime::CsvTable table = runtime::parse_csv(text, file_name, columns, 2, {has_header, true});
-  control::WaypointPath path = read(table);
+  const bool has_header = !first.front().empty() && !runtime::is_number(first.front());
+  if (first.size() > 1 && first.back().empty()) first.pop_back();
+  const std::vector<std::string> header = columns_of(first, has_header);
+  const MotionColumns columns(header, file_name, frame);
+  require_columns(columns, file_name, "a list of waypoints", {Motion::kX, Motion::kY, Motion::kZ},
+                  {{Motion::kYaw}});
+  const runtime::CsvTable table = runtime::parse_csv(text, file_name, header, 2, {has_header, true});
+  control::WaypointPath path = read(table, columns);
   path.limits = reference_limits(limits);
 
-  std::vector<std::string> assumptions = {
-      "taken as waypoints in ENU: m and rad, from the origin of motion capture"};
-  if (columns.size() < 4) assumptions.emplace_back("the file has no yaw: the vehicle faces north");
+  std::vector<std::string> assumptions;
+  if (const auto assumption = columns.assumption("waypoints")) assumptions.push_back(*assumption);
+  if (!columns.has(Motion::kYaw)) assumptions.emplace_back("the file has no yaw: the vehicle faces north");
   double least_m = -path.points.front().position_ned.z();
   for (const control::PathPoint& point : path.points) least_m = std::min(least_m, -point.position_ned.z());
   const double raise_m = raise_by(least_m, assumptions);

@@ -69,6 +69,7 @@ control::Limits read_limits(const ConfigNode& node) {
   limits.max_body_rate = node.at("max_body_rate_rad_s").number();
   limits.fence_min_ned = node.at("fence_min_ned_m").vector3();
   limits.fence_max_ned = node.at("fence_max_ned_m").vector3();
+  limits.min_height_m = node.at("min_height_m").number();
   return limits;
 }
 
@@ -181,15 +182,16 @@ control::FailsafeSettings read_failsafe(const ConfigNode& node) {
 control::ControlSettings parse_control_settings(std::string_view text, const std::string& file_name) {
   const ConfigNode root = parse_config(text, file_name);
   control::ControlSettings settings;
-  settings.name = root.at("name").text();
-  settings.attitude = read_attitude(root.at("attitude"));
-  settings.position = read_position(root.at("position"));
-  settings.disturbance = read_disturbance(root.at("disturbance"));
-  settings.limits = read_limits(root.at("limits"));
-  settings.estimator = read_estimator(root.at("estimator"));
-  settings.arming = read_arming(root.at("arming"));
-  settings.failsafe = read_failsafe(root.at("failsafe"));
-  root.reject_unknown_keys();
+  root.read_known([&] {
+    settings.name = root.at("name").text();
+    settings.attitude = read_attitude(root.at("attitude"));
+    settings.position = read_position(root.at("position"));
+    settings.disturbance = read_disturbance(root.at("disturbance"));
+    settings.limits = read_limits(root.at("limits"));
+    settings.estimator = read_estimator(root.at("estimator"));
+    settings.arming = read_arming(root.at("arming"));
+    settings.failsafe = read_failsafe(root.at("failsafe"));
+  });
   reject_violations(root, control::validate(settings));
   return settings;
 }

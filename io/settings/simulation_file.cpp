@@ -139,17 +139,18 @@ std::vector<plant::Fault> read_faults(const ConfigNode& root) {
 plant::SimulationSettings parse_simulation_settings(std::string_view text, const std::string& file_name) {
   const ConfigNode root = parse_config(text, file_name);
   plant::SimulationSettings settings;
-  settings.name = root.at("name").text();
-  settings.step_ns = std::llround(root.at("step_s").number(between(0.0, 1.0)) * 1.0e9);
-  settings.command_timeout_s = root.at("command_timeout_s").number();
-  settings.rotor_speed_rate_hz = root.at("rotor_speed_rate_hz").number();
-  settings.imu = read_imu(root.at("imu"));
-  settings.mocap = read_mocap(root.at("mocap"));
-  settings.supply = read_supply(root.at("supply"));
-  settings.air = read_air(root.at("air"));
-  settings.ground = read_ground(root.at("ground"));
-  settings.faults = read_faults(root);
-  root.reject_unknown_keys();
+  root.read_known([&] {
+    settings.name = root.at("name").text();
+    settings.step_ns = std::llround(root.at("step_s").number(between(0.0, 1.0)) * 1.0e9);
+    settings.command_timeout_s = root.at("command_timeout_s").number();
+    settings.rotor_speed_rate_hz = root.at("rotor_speed_rate_hz").number();
+    settings.imu = read_imu(root.at("imu"));
+    settings.mocap = read_mocap(root.at("mocap"));
+    settings.supply = read_supply(root.at("supply"));
+    settings.air = read_air(root.at("air"));
+    settings.ground = read_ground(root.at("ground"));
+    settings.faults = read_faults(root);
+  });
   reject_violations(root, plant::validate(settings));
   return settings;
 }

@@ -4,8 +4,10 @@
 #include <array>
 
 #include "swiftlet/io/config.hpp"
+#include "swiftlet/io/nearest_name.hpp"
 #include "swiftlet/io/settings/violations.hpp"
 #include "swiftlet/io/text_file.hpp"
+#include "swiftlet/plant/model/plausibility.hpp"
 #include "swiftlet/plant/model/rotor.hpp"
 
 namespace swiftlet::runtime {
@@ -105,7 +107,8 @@ std::string read_parameter_key(const ConfigNode& node) {
   if (std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end()) return key;
   std::string known;
   for (const char* name : kKeys) known += std::string(known.empty() ? "" : ", ") + name;
-  node.fail("is " + key + ", must be one of " + known);
+  const std::string nearest = nearest_name({kKeys.begin(), kKeys.end()}, key);
+  node.fail("is " + key + ", must be one of " + known + (nearest.empty() ? "" : "; nearest is " + nearest));
 }
 
 plant::VehicleUncertainty read_uncertainty(const ConfigNode& root) {
@@ -142,17 +145,19 @@ plant::VehicleUncertainty read_uncertainty(const ConfigNode& root) {
 Vehicle parse_vehicle(std::string_view text, const std::string& file_name) {
   const ConfigNode root = parse_config(text, file_name);
   Vehicle vehicle;
-  vehicle.name = root.at("name").text();
-  vehicle.mass_kg = root.at("mass").quantity("kg").number();
-  vehicle.inertia = read_inertia(root.at("inertia"));
-  vehicle.linear_drag = root.at("linear_drag").quantity("N*s/m").number();
-  vehicle.rotors = read_rotors(root.at("rotors"));
-  vehicle.rotor = read_rotor(root.at("rotor"));
-  vehicle.motor = read_motor(root.at("motor"));
-  vehicle.esc = read_esc(root.at("esc"));
-  vehicle.battery = read_battery(root.at("battery"));
-  read_uncertainty(root);
-  root.reject_unknown_keys();
+  root.read_known([&] {
+    vehicle.name = root.at("name").text();
+    vehicle.mass_kg = root.at("mass").quantity("kg").number();
+    vehicle.inertia = read_inertia(root.at("inertia"));
+    vehicle.linear_drag = root.at("linear_drag").quantity("N*s/m").number();
+    vehicle.rotors = read_rotors(root.at("rotors"));
+    vehicle.rotor = read_rotor(root.at("rotor"));
+    vehicle.motor = read_motor(root.at("motor"));
+    vehicle.esc = read_esc(root.at("esc"));
+    vehicle.battery = read_battery(root.at("battery"));
+    read_uncertainty(root);
+  });
+  reject_violations(root, plant::implausible(vehicle));
   reject_violations(root, plant::validate(vehicle));
   return vehicle;
 }

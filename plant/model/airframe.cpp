@@ -1,5 +1,8 @@
 #include "swiftlet/plant/model/airframe.hpp"
 
+#include <algorithm>
+#include <limits>
+
 #include "swiftlet/math/linear_algebra.hpp"
 
 namespace swiftlet::plant {
@@ -28,6 +31,19 @@ double least_authority(const Effectiveness& effectiveness) {
     if (length > 0.0) rows.row(i) /= length;
   }
   return math::singular_values(rows)[3];
+}
+
+double width(const Vehicle& vehicle) {
+  double furthest = 0.0;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < vehicle.rotors.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const double apart = (vehicle.rotors[i].position_frd - vehicle.rotors[j].position_frd).head<2>().norm();
+      furthest = std::max(furthest, apart);
+      nearest = std::min(nearest, apart);
+    }
+  }
+  return furthest + nearest;
 }
 
 RotorThrusts trim_thrusts(const Vehicle& vehicle) {

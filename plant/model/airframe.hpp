@@ -43,6 +43,10 @@ inline double mean_lever(const Vehicle& vehicle, int axis) {
 // Distance from the centre of mass to the hub of the first rotor, m.
 inline double hub_distance(const Vehicle& vehicle) { return vehicle.rotors.front().position_frd.norm(); }
 
+// Greatest horizontal extent, m: between the two hubs that are furthest apart, plus two propellers that are as
+// large as the hubs that are nearest to each other allow.
+double width(const Vehicle& vehicle);
+
 // Thrust, N, and speed, rad/s, of each rotor in hover if all rotors carry the same share of the weight.
 inline double hover_thrust(const Vehicle& vehicle) {
   return vehicle.mass_kg * kGravity / vehicle.rotor_count();

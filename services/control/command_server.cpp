@@ -1,8 +1,11 @@
 #include "swiftlet/services/control/command_server.hpp"
 
+#include <cstdio>
 #include <tuple>
+#include <utility>
 
 #include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/services/control/arrivals.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
@@ -11,6 +14,8 @@ namespace {
 
 constexpr std::size_t kRememberedAnswers = 256;
 constexpr std::int64_t kPatienceNs = 500'000'000;
+constexpr std::int64_t kStopPatienceNs = 50'000'000;
+constexpr std::size_t kMostOtherRequests = kMaxPendingRequests - 1;  // a stop always has room
 
 const char* name_of(control::RequestKind kind) {
   switch (kind) {
@@ -42,8 +47,20 @@ const char* name_of(control::RequestKind kind) {
       return "mission clear";
     case control::RequestKind::kTrajectory:
       return "trajectory";
+    case control::RequestKind::kSettings:
+      return "set control";
   }
   return "request of unknown kind";
+}
+
+control::Outcome stopped_without_imu(double imu_age_s) {
+  control::Outcome outcome = control::accept();
+  char since[32] = "yet";
+  if (imu_age_s >= 0.0) std::snprintf(since, sizeof since, "for %.1f s", imu_age_s);
+  std::snprintf(
+      outcome.reason, sizeof outcome.reason,
+      "rotors off is commanded, but no IMU sample has come %s: nothing shows that the vehicle obeys", since);
+  return outcome;
 }
 
 control::Outcome refusal(const comms::Fault& fault) { return control::refuse("%s", fault.text); }
@@ -57,8 +74,13 @@ control::Outcome read(const Message& message, const control::Limits& limits, Pla
 
 }  // namespace
 
-CommandServer::CommandServer(InnerLoop& loop, const control::Limits& limits, runtime::Semaphore& wake)
-    : loop_(loop), limits_(limits), wake_(wake) {}
+CommandServer::CommandServer(InnerLoop& loop, const control::Limits& limits, GainDesigner designer,
+                             runtime::Semaphore& wake)
+    : loop_(loop),
+      limits_(limits),
+      designer_(std::move(designer)),
+      wake_(wake),
+      gains_in_force_(designer_.initial()) {}
 
 void CommandServer::on_command(const comms::msg::Command& message) {
   if (!active()) return;
@@ -101,6 +123,33 @@ void CommandServer::on_trajectory(const comms::msg::Trajectory& message) {
   pending->request.kind = control::RequestKind::kTrajectory;
   pending->request.trajectory = pending->trajectory.get();
   submit(std::move(pending));
+}
+
+void CommandServer::on_control_settings(const comms::msg::ControlSettings& message) {
+  if (!active()) return;
+  const Key key{message.client(), message.id()};
+  if (is_known(key)) return;
+  control::SettingsRequest asked;
+  control::ControlGains in_force;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    in_force = gains_in_force_;
+  }
+  auto pending = std::make_unique<PendingRequest>();
+  pending->gains = std::make_unique<control::GainChange>();
+  const comms::Fault fault = comms::from_message(message, asked);
+  const control::Outcome outcome =
+      fault ? refusal(fault) : designer_.design(asked, in_force, *pending->gains);
+  if (!outcome.accepted) return refuse(key, control::RequestKind::kSettings, outcome);
+  std::tie(pending->client, pending->id) = key;
+  pending->request.kind = control::RequestKind::kSettings;
+  pending->request.gains = pending->gains.get();
+  submit(std::move(pending));
+}
+
+void CommandServer::set_gains_in_force(const control::ControlGains& gains) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  gains_in_force_ = gains;
 }
 
 // True if a stored mission has the same id but different contents. The same contents are the same upload,
@@ -180,14 +229,33 @@ bool CommandServer::is_known(const Key& key) {
 void CommandServer::submit(std::unique_ptr<PendingRequest> pending) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const Key key{pending->client, pending->id};
-  if (pending_.size() >= kMaxPendingRequests) {
+  const bool stops = pending->request.kind == control::RequestKind::kStop;
+  if (!stops && pending_.size() >= kMostOtherRequests) {
     return settle(key, pending->request.kind,
-                  control::refuse("%zu requests are pending, the limit", kMaxPendingRequests));
+                  control::refuse("%zu requests are pending, the limit", kMostOtherRequests));
   }
+  if (pending_.size() >= kMaxPendingRequests)  // the last one of them is a stop
+    return settle(key, pending->request.kind, control::accept());
   pending->request.key = {pending->client, pending->id};
   pending->asked_ns = runtime::monotonic_ns();
   loop_.requests.push(pending.get());  // always fits: at most kMaxPendingRequests
   pending_[key] = std::move(pending);
+  if (stops) wake_.post();
+}
+
+bool CommandServer::accept_overdue_stop(double imu_age_s, std::int64_t stamp_ns) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const bool silent = imu_age_s < 0.0 || imu_age_s > kImuSilence_s;
+  const std::int64_t now_ns = runtime::monotonic_ns();
+  bool any = false;
+  for (const auto& [key, pending] : pending_) {
+    if (pending->request.kind != control::RequestKind::kStop) continue;
+    if (!silent && now_ns - pending->asked_ns < kStopPatienceNs) continue;
+    any = true;
+    if (std::exchange(pending->answered, true)) continue;
+    settle(key, pending->request.kind, stopped_without_imu(imu_age_s), stamp_ns);
+  }
+  return any;
 }
 
 void CommandServer::refuse(const Key& key, control::RequestKind kind, const control::Outcome& outcome) {
@@ -221,7 +289,7 @@ std::vector<RequestResult> CommandServer::collect() {
     const auto entry = pending_.find(key);
     const std::unique_ptr<PendingRequest> done = std::move(entry->second);
     pending_.erase(entry);
-    if (done->state == PendingRequest::State::kGivenUp) continue;  // already answered
+    if (done->answered || done->state == PendingRequest::State::kGivenUp) continue;
     if (done->outcome.accepted && done->mission) missions_.put_flown(std::move(done->mission));
     if (done->outcome.accepted && done->trajectory) trajectories_.put_flown(std::move(done->trajectory));
     settle(key, done->request.kind, done->outcome, done->stamp_ns);
@@ -230,7 +298,8 @@ std::vector<RequestResult> CommandServer::collect() {
   trajectories_.tidy(loop_.adopted_state());
   const std::int64_t now_ns = runtime::monotonic_ns();
   for (const auto& [key, pending] : pending_) {
-    if (now_ns - pending->asked_ns < kPatienceNs || !pending->claim(PendingRequest::State::kGivenUp))
+    if (pending->request.kind == control::RequestKind::kStop || now_ns - pending->asked_ns < kPatienceNs ||
+        !pending->claim(PendingRequest::State::kGivenUp))
       continue;
     settle(key, pending->request.kind, control::refuse("no IMU samples arrive: is the vehicle running?"));
   }

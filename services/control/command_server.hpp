@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "swiftlet/control/types/settings.hpp"
+#include "swiftlet/services/control/gain_designer.hpp"
 #include "swiftlet/services/control/inner_loop.hpp"
 #include "swiftlet/services/control/plan_store.hpp"
 #include "swiftlet/services/messages/topics.hpp"
@@ -34,17 +35,28 @@ struct RequestResult {
 class CommandServer {
  public:
   // Posts `wake` when collect() has something to return.
-  CommandServer(InnerLoop& loop, const control::Limits& limits, runtime::Semaphore& wake);
+  CommandServer(InnerLoop& loop, const control::Limits& limits, GainDesigner designer,
+                runtime::Semaphore& wake);
 
   // Call from any thread that may lock a mutex; each message type from one thread at a time. Refuses
   // malformed and infeasible requests at once; the inner loop evaluates the others.
   void on_command(const comms::msg::Command& message);
   void on_mission(const comms::msg::Mission& message);
   void on_trajectory(const comms::msg::Trajectory& message);
+  // Designs the gains in the calling thread.
+  void on_control_settings(const comms::msg::ControlSettings& message);
+
+  // True while a stop request waits that the inner loop cannot evaluate, because IMU samples are missing. It is
+  // accepted; call collect() after it and command rotors off. The inner loop evaluates it with the next IMU
+  // sample. imu_age_s: since the last sample, -1 if there was none. stamp_ns: of the last sample.
+  bool accept_overdue_stop(double imu_age_s, std::int64_t stamp_ns);
 
   // Returns the answers to publish. Refuses requests that the inner loop has not evaluated in time, because
-  // no IMU sample arrived. Erases missions and trajectories that are no longer in use. Call from one thread.
+  // no IMU sample arrived; never a stop. Erases missions and trajectories that are no longer in use. Call from one thread.
   std::vector<RequestResult> collect();
+
+  // The gains that the inner loop flies with: changes begin there.
+  void set_gains_in_force(const control::ControlGains& gains);
 
   // Active: accepts and answers requests. Active at construction. Call from any thread.
   void set_active(bool active) { active_.store(active, std::memory_order_relaxed); }
@@ -75,6 +87,7 @@ class CommandServer {
   InnerLoop& loop_;
   std::atomic<bool> active_{true};
   const control::Limits limits_;
+  const GainDesigner designer_;
   runtime::Semaphore& wake_;
 
   std::mutex mutex_;  // guards all members below; held briefly
@@ -84,6 +97,7 @@ class CommandServer {
   std::vector<RequestResult> outbox_;
   PlanStore<control::Mission> missions_;
   PlanStore<control::Trajectory> trajectories_;
+  control::ControlGains gains_in_force_;
   std::uint64_t failover_states_ = 0;
 };
 

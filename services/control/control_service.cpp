@@ -4,6 +4,7 @@
 #include <chrono>
 #include <limits>
 #include <random>
+#include <utility>
 
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 
@@ -23,6 +24,12 @@ constexpr std::int64_t kKeepStrengthNs = 200'000'000;
 // refused, with that reason.
 constexpr std::int64_t kIsolationNs = 1'000'000'000;
 
+// Without an IMU sample for this long, the vehicle's clock is not used: it may have stopped.
+constexpr double kVehicleClockStands_s = 0.5;
+
+// The battery is sampled at 10 Hz only, and less often in a slow simulation.
+constexpr auto kBatterySourceSilence = 2500ms;
+
 std::uint64_t random_number() {
   std::random_device device;
   return (static_cast<std::uint64_t>(device()) << 32) | device();
@@ -32,16 +39,18 @@ std::uint64_t random_number() {
 
 ControlService::ControlService(const plant::Vehicle& vehicle, const control::ControlSettings& settings,
                                int failover_priority, comms::Node& node,
-                               const runtime::RealtimeSettings& realtime, runtime::Clock clock)
+                               const runtime::RealtimeSettings& realtime, runtime::Clock clock,
+                               std::vector<control::FixedSetting> fixed)
     : controller_(random_number()),
       clock_(clock),
       realtime_(realtime),
       loop_(vehicle, settings),
-      command_server_(loop_, settings.limits, wake_),
+      command_server_(loop_, settings.limits, GainDesigner(vehicle, settings, std::move(fixed)), wake_),
       telemetry_(loop_, command_server_, settings.failsafe, node, controller_),
       failover_(controller_, failover_priority),
       reports_(node.publish(topics::kControllerState)),
       commands_(node.publish(topics::kActuatorCommand, failover_.next_term())),
+      rotor_count_(static_cast<std::uint8_t>(vehicle.rotor_count())),
       wanted_strength_(failover_.next_term()),
       active_heard_ns_(runtime::monotonic_ns()),
       offered_strength_(failover_.next_term()) {
@@ -75,15 +84,24 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
   }
 
   // Poses are needed to hold position: their thread has real-time priority, like the IMU's.
-  subscriptions_.push_back(node.subscribe<msg::MocapPose>(
-      topics::kMocapPose,
-      [this, take_pose](const auto& message) {
-        pose_thread_.enter(realtime_);
-        take_pose(message);
-      },
-      delivery));
-  subscriptions_.push_back(node.subscribe<msg::Battery>(topics::kBattery, take_battery));
-  subscriptions_.push_back(node.subscribe<msg::RotorSpeeds>(topics::kRotorSpeeds, take_rotor_speeds));
+  sensors_.push_back({"poses", node.subscribe<msg::MocapPose>(
+                                   topics::kMocapPose,
+                                   [this, take_pose](const auto& message) {
+                                     pose_thread_.enter(realtime_);
+                                     note(pose_arrivals_, message);
+                                     take_pose(message);
+                                   },
+                                   delivery, comms::kSourceSilence)});
+  sensors_.push_back({"battery samples", node.subscribe<msg::Battery>(
+                                             topics::kBattery,
+                                             [this, take_battery](const auto& message) {
+                                               note(battery_arrivals_, message);
+                                               take_battery(message);
+                                             },
+                                             Delivery::kShared, kBatterySourceSilence)});
+  sensors_.push_back(
+      {"rotor speeds", node.subscribe<msg::RotorSpeeds>(topics::kRotorSpeeds, take_rotor_speeds,
+                                                        Delivery::kShared, comms::kSourceSilence)});
   subscriptions_.push_back(node.subscribe<msg::Setpoint>(
       topics::kSetpoint, deliver<msg::Setpoint>(loop_.setpoint, setpoint_faults_)));
   subscriptions_.push_back(node.subscribe<msg::GroundLink>(
@@ -96,6 +114,10 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
   subscriptions_.push_back(node.subscribe<msg::Trajectory>(
       topics::kTrajectory, [this](const auto& message) { command_server_.on_trajectory(message); },
       Delivery::kOwnThread));
+  // The gains are designed in this subscription's thread, beside the inner loop's.
+  subscriptions_.push_back(node.subscribe<msg::ControlSettings>(
+      topics::kControlSettings, [this](const auto& message) { command_server_.on_control_settings(message); },
+      Delivery::kOwnThread));
   if (clock == runtime::Clock::kRealtime) {
     subscriptions_.push_back(node.subscribe<msg::Mission>(
         topics::kFlownMission, [this](const auto& message) { command_server_.on_flown_mission(message); },
@@ -107,7 +129,18 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
         topics::kControllerState, [this](const auto& message) { on_controller_state(message); },
         Delivery::kOwnThread));
   }
-  subscriptions_.push_back(node.subscribe<msg::Imu>(topics::kImu, take_imu, delivery));
+  sensors_.push_back({"IMU samples", node.subscribe<msg::Imu>(
+                                         topics::kImu,
+                                         [this, take_imu](const auto& message) {
+                                           note(imu_arrivals_, message);
+                                           take_imu(message);
+                                         },
+                                         delivery, comms::kSourceSilence)});
+}
+
+template <class Message>
+void ControlService::note(Arrivals& arrivals, const Message& message) {
+  arrivals.note(message.stamp_ns(), message.sequence_number(), runtime::monotonic_ns());
 }
 
 // Returns a callback that passes valid samples to the inner loop and warns of invalid ones.
@@ -195,7 +228,7 @@ void ControlService::on_imu_in_lockstep(const msg::Imu& message) {
   const std::lock_guard<std::mutex> lock(gate_mutex_);
   if (!gate_.offer(message)) {
     loop_.answer_requests();
-    commands_.publish(last_answer_);
+    publish_command(last_answer_);
     if (loop_.finish(runtime::monotonic_ns())) wake_.post();
   } else if (const auto imu = gate_.take()) {
     answer(*imu, take_role_in_lockstep(*imu));
@@ -221,7 +254,7 @@ void ControlService::answer(const msg::Imu& message, Role role) {
   }
   last_answer_ = comms::to_message(loop_.step(sample, arrived_ns, role, failover_.followed_term()));
   last_answer_.term(clock_ == runtime::Clock::kLockstep ? failover_.next_term() : failover_.term());
-  if (role == Role::kActive && !loop_.detecting_airborne()) commands_.publish(last_answer_);
+  if (role == Role::kActive && !loop_.detecting_airborne()) publish_command(last_answer_);
   if (loop_.finish(runtime::monotonic_ns())) wake_.post();
   if (loop_.report_due()) report(message.stamp_ns());
 }
@@ -237,11 +270,57 @@ void ControlService::report(std::int64_t stamp_ns) {
 void ControlService::run(const std::atomic<bool>& stop) {
   while (!stop.load(std::memory_order_relaxed)) {
     update_strength();
+    const StreamAges ages = stream_ages();
+    publish_pending_stop(ages);
     telemetry_.set_realtime(is_realtime());
+    telemetry_.set_streams(ages, source_conflict());
     telemetry_.publish_due();
     activate_if_isolated();
     wake_.wait_for(50ms);
   }
+}
+
+// Two threads publish commands: that of the IMU samples, and while there are none, run(). Neither waits for
+// the other.
+void ControlService::publish_command(const msg::ActuatorCommand& command) {
+  if (commands_in_use_.test_and_set(std::memory_order_acquire)) return;
+  commands_.publish(command);
+  commands_in_use_.clear(std::memory_order_release);
+}
+
+// A stop request that no IMU sample lets the inner loop evaluate: commands rotors off until one does.
+void ControlService::publish_pending_stop(const StreamAges& ages) {
+  if (!command_server_.accept_overdue_stop(ages.imu_s, imu_arrivals_.stamp_ns())) return;
+  msg::ActuatorCommand command;
+  command.stamp_ns(imu_arrivals_.stamp_ns());
+  command.sequence_number(imu_arrivals_.sequence());
+  command.imu_sequence_number(imu_arrivals_.sequence());
+  command.rotor_state(msg::ActuatorCommand_Constants::ROTORS_OFF);
+  command.rotor_count(rotor_count_);
+  command.term(wanted_strength_.load(std::memory_order_relaxed));
+  publish_command(command);
+}
+
+StreamAges ControlService::stream_ages() const {
+  const std::int64_t now_ns = runtime::monotonic_ns();
+  StreamAges ages;
+  ages.imu_s = imu_arrivals_.age_s(now_ns);
+  std::optional<std::int64_t> vehicle_now_ns;
+  if (ages.imu_s >= 0.0 && ages.imu_s < kVehicleClockStands_s) vehicle_now_ns = imu_arrivals_.stamp_ns();
+  ages.pose_s = pose_arrivals_.age_s(now_ns, vehicle_now_ns);
+  ages.battery_s = battery_arrivals_.age_s(now_ns, vehicle_now_ns);
+  return ages;
+}
+
+// A sentence; empty if each topic has one source. The IMU, subscribed last, comes first.
+std::string ControlService::source_conflict() const {
+  for (auto sensor = sensors_.rbegin(); sensor != sensors_.rend(); ++sensor) {
+    const auto conflict = sensor->subscription.source_conflict();
+    if (!conflict) continue;
+    return std::string(sensor->samples) + " of " + conflict->ignored.to_string() + " are ignored: those of " +
+           conflict->used.to_string() + " are used";
+  }
+  return {};
 }
 
 bool ControlService::is_realtime() const {

@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <string>
 #include <vector>
 
 #include <boost/lockfree/spsc_queue.hpp>
 
+#include "swiftlet/services/control/arrivals.hpp"
 #include "swiftlet/services/control/command_server.hpp"
 #include "swiftlet/services/control/failover.hpp"
 #include "swiftlet/services/control/inner_loop.hpp"
@@ -27,6 +29,9 @@ namespace swiftlet::services {
 // steps with the same samples, follows the active controller's state and takes over when it falls silent
 // (Failover). In lockstep only one is allowed.
 //
+// Of each sensor topic the samples of one process are used. If another one sends them too, control_status
+// reports both.
+//
 // Threads: the thread of the IMU subscription runs the inner loop and publishes the command before its
 // callback returns. Poses, missions, trajectories and controller states have a thread each; the other topics
 // share one. run() is the telemetry thread. In lockstep the inner loop runs in the thread that receives the
@@ -34,10 +39,11 @@ namespace swiftlet::services {
 class ControlService {
  public:
   // Throws std::invalid_argument as FlightController does, std::runtime_error as Node does.
-  // failover_priority: of several standbys the one of the highest priority takes over first.
+  // failover_priority: of several standbys the one of the highest priority takes over first. fixed: the
+  // settings that cannot change in flight; empty: changes of them are not noticed.
   ControlService(const plant::Vehicle& vehicle, const control::ControlSettings& settings,
                  int failover_priority, comms::Node& node, const runtime::RealtimeSettings& realtime,
-                 runtime::Clock clock);
+                 runtime::Clock clock, std::vector<control::FixedSetting> fixed = {});
 
   void run(const std::atomic<bool>& stop);
   void wake() { wake_.post(); }
@@ -60,6 +66,12 @@ class ControlService {
   void activate_if_isolated();
   void update_strength();
   bool is_realtime() const;
+  template <class Message>
+  static void note(Arrivals& arrivals, const Message& message);
+  StreamAges stream_ages() const;
+  std::string source_conflict() const;
+  void publish_pending_stop(const StreamAges& ages);
+  void publish_command(const comms::msg::ActuatorCommand& command);
   template <class Message, class Sample>
   std::function<void(const Message&)> deliver(runtime::LatestValue<Sample>& latest,
                                               comms::ThrottledWarning& faults);
@@ -83,6 +95,9 @@ class ControlService {
   comms::msg::ActuatorCommand last_answer_;
 
   comms::Publisher<comms::msg::ActuatorCommand> commands_;
+  std::atomic_flag commands_in_use_ = ATOMIC_FLAG_INIT;  // by the thread that publishes a command
+  const std::uint8_t rotor_count_;
+  Arrivals imu_arrivals_, pose_arrivals_, battery_arrivals_;
   boost::lockfree::spsc_queue<Heartbeat, boost::lockfree::capacity<64>> heartbeats_;
   std::atomic<bool> active_{false};
   std::atomic<std::uint32_t> wanted_strength_;    // DDS ownership strength of the commands
@@ -103,6 +118,11 @@ class ControlService {
   comms::ThrottledWarning controller_faults_{"controller_state"};
   comms::ThrottledWarning ground_link_faults_{"ground_link"};
 
+  struct Sensor {
+    const char* samples;  // "IMU samples"
+    comms::Subscription subscription;
+  };
+  std::vector<Sensor> sensors_;
   std::vector<comms::Subscription> subscriptions_;  // last: their callbacks use all members above
 };
 

@@ -155,6 +155,7 @@ bool InnerLoop::finish(std::int64_t now_ns) {
   snapshot_.setpoint = controller_.attitude_setpoint();
   snapshot_.status = status;
   snapshot_.requests = controller_.requests();
+  snapshot_.gains = controller_.gains();
   snapshot_.trajectory_id = controller_.state().supervisor.guidance.trajectory_id;
   snapshot_.role = role_;
   snapshot_.saturated = saturated_;
@@ -176,6 +177,7 @@ bool InnerLoop::status_changed() const {
          now.ground_links != last_snapshot_.ground_links || now.mission.id != last_snapshot_.mission.id ||
          now.mission.state != last_snapshot_.mission.state ||
          now.mission.item_index != last_snapshot_.mission.item_index ||
+         (now.gains_progress < 1.0) != (last_snapshot_.gains_progress < 1.0) ||
          differ_in_state(controller_.requests(), snapshot_requests_);
 }
 

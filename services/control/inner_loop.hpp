@@ -38,7 +38,8 @@ struct Snapshot {
   control::RequestStatuses requests;
   std::uint64_t trajectory_id = 0;  // of the trajectory being flown
   Role role = Role::kStandby;
-  bool saturated = false;  // in any step since the last snapshot
+  bool saturated = false;       // in any step since the last snapshot
+  control::ControlGains gains;  // in force
   StepTiming::Figures timing;
   SetpointTally setpoints;
 };

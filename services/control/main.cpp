@@ -9,6 +9,7 @@
 
 #include "swiftlet/io/find_config.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
+#include "swiftlet/io/settings/fixed_settings.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/services/control/control_service.hpp"
 #include "swiftlet/services/dds/discovery/peer_log.hpp"
@@ -47,8 +48,8 @@ void add_options(runtime::CommandLine app, Options& options) {
 
 void run(const Options& options) {
   const plant::Vehicle vehicle = runtime::load_vehicle(runtime::find_config(options.vehicle));
-  const control::ControlSettings settings =
-      runtime::load_control_settings(runtime::find_config(options.control));
+  const std::string settings_file = runtime::find_config(options.control);
+  const control::ControlSettings settings = runtime::load_control_settings(settings_file);
 
   runtime::StopSignal stop;
   const runtime::Logging logging("control", options.process.log);
@@ -60,7 +61,8 @@ void run(const Options& options) {
   node_settings.deadlines = options.clock == runtime::Clock::kRealtime;
   comms::Node node(node_settings);
   comms::log_peers(node);
-  ControlService service(vehicle, settings, options.failover_priority, node, realtime, options.clock);
+  ControlService service(vehicle, settings, options.failover_priority, node, realtime, options.clock,
+                         runtime::load_fixed_settings(settings_file));
   spdlog::info("ready: {} with {} control, vehicle {}, domain {}, failover priority {}", vehicle.name,
                settings.name, node_settings.vehicle, node_settings.domain, options.failover_priority);
 

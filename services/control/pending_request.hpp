@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "swiftlet/control/types/gains.hpp"
 #include "swiftlet/control/types/request.hpp"
 
 namespace swiftlet::services {
@@ -22,7 +23,9 @@ struct PendingRequest {
   control::Request request;
   std::unique_ptr<control::Mission> mission;  // what `request` points to
   std::unique_ptr<control::Trajectory> trajectory;
+  std::unique_ptr<control::GainChange> gains;
   std::int64_t asked_ns = 0;  // monotonic
+  bool answered = false;      // a stop that was accepted before the inner loop evaluated it
 
   std::atomic<State> state{State::kWaiting};
   control::Outcome outcome;   // if kTaken; written by the inner loop

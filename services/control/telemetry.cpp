@@ -14,7 +14,6 @@ namespace topics = comms::topics;
 
 constexpr std::int64_t kStatusPeriodNs = 100'000'000;
 constexpr std::int64_t kMissionPeriodNs = 500'000'000;
-constexpr std::int64_t kImuSilenceNs = 50'000'000;
 
 bool differ(const control::MissionProgress& a, const control::MissionProgress& b) {
   return a.id != b.id || a.state != b.state || a.item_index != b.item_index || a.item_count != b.item_count;
@@ -49,13 +48,21 @@ void Telemetry::open() {
   published_trajectory_ = 0;
 }
 
+void Telemetry::set_streams(const StreamAges& ages, const std::string& source_conflict) {
+  ages_ = ages;
+  if (source_conflict == source_conflict_) return;
+  if (!source_conflict.empty()) spdlog::warn(source_conflict);
+  source_conflict_ = source_conflict;
+}
+
 void Telemetry::publish_due() {
-  loop_.snapshots.consume_all([this](const Snapshot& snapshot) { take(snapshot); });
+  const bool any = loop_.snapshots.consume_all([this](const Snapshot& snapshot) { take(snapshot); }) > 0;
+  if (any) command_server_.set_gains_in_force(last_.gains);
   const std::vector<RequestResult> answers = command_server_.collect();
   if (last_.role == Role::kActive) publish_plan();  // before its acceptance is published
   answer_requests(answers);
   const std::int64_t now_ns = runtime::monotonic_ns();
-  if (watches_imu_) log_imu_silence(now_ns);
+  if (watches_imu_) log_imu_silence();
   if (!command_server_.active()) return;
   if (now_ns >= status_due_ns_) publish_status();
   if (now_ns >= mission_due_ns_) publish_mission();
@@ -107,6 +114,9 @@ void Telemetry::take(const Snapshot& snapshot) {
   }
   if (now.ground_links != before.ground_links)
     spdlog::info("link-loss failsafe watches {} ground tools", now.ground_links);
+  if ((now.gains_progress < 1.0) != (before.gains_progress < 1.0))
+    spdlog::info("{} the gains of {}", now.gains_progress < 1.0 ? "changing to" : "flying with",
+                 now.settings.data());
   if (snapshot.sampled) publish_sampled(snapshot);
   saturated_ = saturated_ || snapshot.saturated;
   last_ = snapshot;
@@ -115,10 +125,9 @@ void Telemetry::take(const Snapshot& snapshot) {
   if (mission_changed) publish_mission();
 }
 
-void Telemetry::log_imu_silence(std::int64_t now_ns) {
-  const std::int64_t arrival_ns = loop_.last_arrival_ns();
-  const bool silent = arrival_ns > 0 && now_ns - arrival_ns > kImuSilenceNs;
-  if (silent && !imu_silent_) spdlog::warn("no IMU sample for {} ms", kImuSilenceNs / 1'000'000);
+void Telemetry::log_imu_silence() {
+  const bool silent = ages_.imu_s > kImuSilence_s;
+  if (silent && !imu_silent_) spdlog::warn("no IMU sample for {:.0f} ms", 1e3 * ages_.imu_s);
   imu_silent_ = silent;
 }
 
@@ -143,8 +152,14 @@ void Telemetry::publish_status() {
   message.mode(static_cast<std::uint8_t>(status.mode));
   message.reason() = control::to_string(status.reason);
   message.airborne(status.airborne);
-  message.has_pose(status.has_pose);
-  message.pose_age_s(status.pose_age_s);
+  // The controller's own age of the pose stands still while no IMU sample arrives.
+  const double pose_age_s = status.pose_age_s + (ages_.imu_s > kImuSilence_s ? ages_.imu_s : 0.0);
+  message.has_pose(status.has_pose && pose_age_s <= thresholds_.mocap_timeout_s);
+  message.pose_age_s(pose_age_s);
+  message.imu_age_s(ages_.imu_s);
+  message.mocap_age_s(ages_.pose_s);
+  message.battery_age_s(ages_.battery_s);
+  message.source_conflict() = source_conflict_.c_str();
   message.supply_voltage_v(status.supply_voltage_v);
   message.low_battery_voltage_v(thresholds_.low_battery_voltage);
   message.critical_battery_voltage_v(thresholds_.critical_battery_voltage);
@@ -162,6 +177,9 @@ void Telemetry::publish_status() {
   message.setpoint_refusal() = last_.setpoints.refusal.reason;
   message.realtime_scheduling(realtime_);
   message.controller(controller_);
+  message.settings() = status.settings.data();
+  message.gains_progress(status.gains_progress);
+  message.gains(comms::to_message(last_.gains));
   const control::RequestStatuses& requests = last_.requests;
   message.request() = comms::to_message(requests.back());
   for (std::size_t i = 0; i < message.earlier_requests().size(); ++i)
@@ -196,6 +214,8 @@ void Telemetry::answer_requests(const std::vector<RequestResult>& answers) {
     acks_.publish(ack);
     if (answer.repeated) {
       spdlog::debug("{} {} is a repeated request: answered again", answer.kind, answer.id);
+    } else if (answer.outcome.accepted && answer.outcome.reason[0] != '\0') {
+      spdlog::warn("{} {} accepted: {}", answer.kind, answer.id, answer.outcome.reason);
     } else if (answer.outcome.accepted) {
       spdlog::info("{} {} accepted", answer.kind, answer.id);
     } else {

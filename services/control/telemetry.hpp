@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
+#include "swiftlet/services/control/arrivals.hpp"
 #include "swiftlet/services/control/command_server.hpp"
 #include "swiftlet/services/control/inner_loop.hpp"
 #include "swiftlet/services/dds/node.hpp"
@@ -22,6 +24,9 @@ class Telemetry {
 
   // Sets whether the flight threads have real-time scheduling.
   void set_realtime(bool realtime) { realtime_ = realtime; }
+  // Sets what control_status reports of the streams. source_conflict: a sentence or empty; logged when it
+  // begins.
+  void set_streams(const StreamAges& ages, const std::string& source_conflict);
   // Warns when IMU samples stop. Call before publish_due().
   void watch_imu() { watches_imu_ = true; }
   // Call from the thread of publish_due(), or after it has ended.
@@ -33,7 +38,7 @@ class Telemetry {
   void change_role();
   void publish_plan();
   void answer_requests(const std::vector<RequestResult>& answers);
-  void log_imu_silence(std::int64_t now_ns);
+  void log_imu_silence();
   void publish_sampled(const Snapshot& snapshot);
   void publish_status();
   void publish_mission();
@@ -46,6 +51,8 @@ class Telemetry {
   bool realtime_ = false;
   bool watches_imu_ = false;
   bool imu_silent_ = false;
+  StreamAges ages_;
+  std::string source_conflict_;
 
   Snapshot last_;
   bool saturated_ = false;        // since the last control_status

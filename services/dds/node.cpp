@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cctype>
+#include <climits>
 #include <iterator>
 #include <map>
 #include <mutex>
@@ -10,6 +10,8 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
+#include <unistd.h>
 #include <utility>
 #include <vector>
 
@@ -23,6 +25,7 @@
 #include "swiftlet_msgs/msg/BatteryPubSubTypes.h"
 #include "swiftlet_msgs/msg/CommandAckPubSubTypes.h"
 #include "swiftlet_msgs/msg/CommandPubSubTypes.h"
+#include "swiftlet_msgs/msg/ControlSettingsPubSubTypes.h"
 #include "swiftlet_msgs/msg/ControlStatusPubSubTypes.h"
 #include "swiftlet_msgs/msg/ControllerStatePubSubTypes.h"
 #include "swiftlet_msgs/msg/EstimatePubSubTypes.h"
@@ -40,6 +43,7 @@
 #include "swiftlet_msgs/msg/VehicleInfoPubSubTypes.h"
 
 #include "swiftlet/services/dds/checked_type_support.hpp"
+#include "swiftlet/services/dds/discovery/announcement.hpp"
 #include "swiftlet/services/dds/discovery/rediscovery_monitor.hpp"
 #include "swiftlet/services/dds/participant_qos.hpp"
 #include "swiftlet/services/dds/participant_session.hpp"
@@ -47,11 +51,13 @@
 #include "swiftlet/services/dds/profiles.hpp"
 #include "swiftlet/services/dds/qos_conflicts.hpp"
 #include "swiftlet/services/dds/shared_memory.hpp"
+#include "swiftlet/services/dds/single_source.hpp"
+#include "swiftlet/services/dds/vehicle_name.hpp"
 
 // All message types of topics.
 // clang-format off
 #define SWIFTLET_FOR_EACH_MESSAGE(X)                                      \
-  X(ActuatorCommand) X(Battery) X(Command) X(CommandAck) X(ControllerState) X(ControlStatus) \
+  X(ActuatorCommand) X(Battery) X(Command) X(CommandAck) X(ControllerState) X(ControlSettings) X(ControlStatus) \
   X(Estimate) X(GroundLink) X(GroundTruth) X(Imu) X(Mission) X(MissionStatus) \
   X(MocapPose) X(Reference) X(RotorSpeeds) X(Setpoint)                    \
   X(SimulationClock) X(Trajectory) X(VehicleInfo)
@@ -83,19 +89,34 @@ void check(const NodeSettings& settings) {
 }
 
 const std::string& checked(const std::string& vehicle) {
-  const bool plain = std::all_of(vehicle.begin(), vehicle.end(),
-                                 [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
-  if (vehicle.empty() || vehicle.size() > 64 || !plain) {
-    throw std::runtime_error("vehicle name is '" + vehicle +
-                             "', must be 1 to 64 letters, digits and underscores");
-  }
+  const std::string fault = fault_of_vehicle_name(vehicle);
+  if (!fault.empty()) throw std::runtime_error("vehicle name is '" + vehicle + "', " + fault);
   return vehicle;
 }
 
-// True if the list of a participant's user data, "kl1,kl2", contains the vehicle.
-bool lists(const std::string& names, const std::string& vehicle) {
-  return ("," + names + ",").find("," + vehicle + ",") != std::string::npos;
+Announcement announcement_of(const NodeSettings& settings, const std::string& vehicle) {
+  Announcement announcement;
+  announcement.vehicles = vehicle;
+  char host[HOST_NAME_MAX + 1] = {};
+  ::gethostname(host, HOST_NAME_MAX);
+  announcement.host = host;
+  announcement.pid = ::getpid();
+  announcement.source_of = settings.source_of;
+  announcement.since_ns = std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+  return announcement;
 }
+
+// A process as the sender of samples. Fast DDS begins the identifiers of all participants of a process, also
+// of one that rejoined the domain, with the same octets.
+struct SenderId {
+  static constexpr std::size_t kProcessOctets = 8;
+
+  rtps::GuidPrefix_t participant;
+
+  bool operator==(const SenderId& other) const {
+    return std::equal(participant.value, participant.value + kProcessOctets, other.participant.value);
+  }
+};
 
 constexpr std::chrono::milliseconds kRediscoveryPatience{1000};
 constexpr std::chrono::milliseconds kCheckPeriod{250};
@@ -117,7 +138,7 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
   using RemoteEndpoints = std::map<rtps::GUID_t, RemoteEndpoint>;
   struct Peer {
     std::string name;
-    std::string vehicles;
+    Announcement announced;
   };
   struct PeerListener {
     std::string vehicle;
@@ -126,11 +147,10 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
 
   // vehicle: may be empty
   Impl(const NodeSettings& node_settings, const std::string& vehicle)
-      : settings(node_settings), served(vehicle) {
-    settings.vehicle = vehicle;
+      : settings(node_settings), announcement(announcement_of(node_settings, vehicle)) {
     check(settings);
     if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
-    session = std::make_unique<ParticipantSession>(settings, this);
+    session = std::make_unique<ParticipantSession>(settings, announcement, this);
     periodic_task.emplace(kCheckPeriod, [this] {
       rejoin_if_rediscovery_failed();
       log_conflicts_due();
@@ -149,17 +169,31 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
   // Adds a vehicle that this process serves.
   void serve(const std::string& vehicle) {
     const std::lock_guard<std::mutex> lock(session_mutex);
-    if (lists(settings.vehicle, vehicle)) return;
-    settings.vehicle += (settings.vehicle.empty() ? "" : ",") + vehicle;
+    if (lists(announcement.vehicles, vehicle)) return;
     {
       const std::lock_guard<std::mutex> peers_lock(peers_mutex);
       for (const auto& [guid, peer] : peers) {
-        if (!is_own(peer) && lists(peer.vehicles, vehicle))
+        if (!is_own(peer) && lists(peer.announced.vehicles, vehicle))
           rediscovery.came(guid.guidPrefix, std::chrono::steady_clock::now());
       }
-      served = settings.vehicle;
+      announcement.vehicles += (announcement.vehicles.empty() ? "" : ",") + vehicle;
     }
-    if (session != nullptr) session->announce_vehicles(settings);
+    if (session != nullptr) session->announce(announcement);
+  }
+
+  std::optional<std::string> become_source(const std::vector<std::string>& excluded,
+                                           std::function<void(const std::string&)> on_lost) {
+    std::this_thread::sleep_for(kSourceSearchTime);
+    const std::lock_guard<std::mutex> lock(session_mutex);
+    {
+      const std::lock_guard<std::mutex> peers_lock(peers_mutex);
+      if (auto other = other_source(excluded)) return other;
+      announcement.is_established = true;
+      established_at = std::chrono::steady_clock::now();
+      on_lost_source = std::move(on_lost);
+    }
+    if (session != nullptr) session->announce(announcement);
+    return std::nullopt;
   }
 
   void add(Endpoint* endpoint) {
@@ -187,7 +221,7 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
     const std::lock_guard<std::mutex> lock(session_mutex);
     leave();
     try {
-      session = std::make_unique<ParticipantSession>(settings, this);
+      session = std::make_unique<ParticipantSession>(settings, announcement, this);
       for (Endpoint* const endpoint : endpoints) endpoint->join(*session);
       return !away.exchange(false);
     } catch (const std::runtime_error& error) {
@@ -222,7 +256,7 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
       case rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT:
       case rtps::ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT:
         update_peer(info.info.m_guid,
-                    {info.info.m_participantName.c_str(), vehicle_of(info.info.m_userData.dataVec())});
+                    {info.info.m_participantName.c_str(), from_user_data(info.info.m_userData.dataVec())});
         break;
       case rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT:
       case rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT: {
@@ -237,7 +271,7 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
         event.said_goodbye ? rediscovery.gone(info.info.m_guid.guidPrefix)
                            : rediscovery.lost(info.info.m_guid.guidPrefix);
         for (const auto& [node, listener] : peer_listeners) {
-          if (lists(gone.vehicles, listener.vehicle)) listener.callback(event);
+          if (lists(gone.announced.vehicles, listener.vehicle)) listener.callback(event);
         }
         break;
       }
@@ -249,19 +283,65 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
     const Peer before = std::exchange(known, peer);
     if (is_own(peer) && !is_own(before)) rediscovery.came(guid.guidPrefix, std::chrono::steady_clock::now());
     for (const auto& [node, listener] : peer_listeners) {
-      if (lists(peer.vehicles, listener.vehicle) && !lists(before.vehicles, listener.vehicle))
+      if (lists(peer.announced.vehicles, listener.vehicle) &&
+          !lists(before.announced.vehicles, listener.vehicle))
         listener.callback({peer.name, true, false});
     }
+    yield_source_to(peer);
   }
   // True if the peer serves a vehicle that this process serves. Requires peers_mutex.
-  bool is_own(const Peer& peer) const {
-    std::size_t begin = 0;
-    while (begin < served.size()) {
-      const std::size_t end = std::min(served.find(',', begin), served.size());
-      if (lists(peer.vehicles, served.substr(begin, end - begin))) return true;
-      begin = end + 1;
+  bool is_own(const Peer& peer) const { return !shared_vehicle(peer).empty(); }
+
+  // The first vehicle that both serve; empty if none. Requires peers_mutex.
+  std::string shared_vehicle(const Peer& peer) const {
+    for (const std::string& vehicle : split_names(announcement.vehicles)) {
+      if (lists(peer.announced.vehicles, vehicle)) return vehicle;
     }
-    return false;
+    return {};
+  }
+
+  // A sentence about another process to which this one must yield (become_source()); nullopt if there is none.
+  // Requires peers_mutex.
+  std::optional<std::string> other_source(const std::vector<std::string>& excluded) const {
+    for (const auto& [guid, peer] : peers) {
+      const bool same = std::count(excluded.begin(), excluded.end(), peer.announced.source_of) > 0;
+      if (same && is_own(peer) && yields(announcement, peer.announced))
+        return already_lives(shared_vehicle(peer), peer.announced.source_of, identity_of(peer));
+    }
+    // Programs of others do not announce of what they are the source.
+    for (const std::string& vehicle : split_names(announcement.vehicles)) {
+      for (const std::string& topic : excluded) {
+        for (const auto& [guid, writer] : writers) {
+          if (writer.topic != "rt/" + vehicle + "/" + topic) continue;
+          const auto peer = peers.find(rtps::GUID_t(guid.guidPrefix, rtps::c_EntityId_RTPSParticipant));
+          if (peer == peers.end() || peer->second.announced.source_of == topic) continue;
+          return already_lives(vehicle, topic, identity_of(peer->second));
+        }
+      }
+    }
+    return std::nullopt;
+  }
+  // Two sources that joined at the same time, and discovered each other late. Requires peers_mutex.
+  void yield_source_to(const Peer& peer) {
+    const bool on_probation = announcement.is_established && on_lost_source &&
+                              std::chrono::steady_clock::now() - established_at < kSourceProbation;
+    if (!on_probation || peer.announced.source_of != announcement.source_of || !is_own(peer)) return;
+    if (!peer.announced.is_established || !yields(announcement, peer.announced)) return;
+    on_lost_source(already_lives(shared_vehicle(peer), peer.announced.source_of, identity_of(peer)));
+    on_lost_source = nullptr;
+  }
+  std::string already_lives(const std::string& vehicle, const std::string& topic,
+                            const ProcessIdentity& process) const {
+    return "vehicle " + vehicle + " already lives in domain " + std::to_string(settings.domain) + ": " +
+           process.to_string() + " is the source of its " + topic;
+  }
+  static ProcessIdentity identity_of(const Peer& peer) {
+    return {peer.name, peer.announced.host, peer.announced.pid};
+  }
+  ProcessIdentity identity_of(const rtps::GuidPrefix_t& participant) {
+    const std::lock_guard<std::mutex> lock(peers_mutex);
+    const auto peer = peers.find(rtps::GUID_t(participant, rtps::c_EntityId_RTPSParticipant));
+    return peer == peers.end() ? ProcessIdentity() : identity_of(peer->second);
   }
 
   void on_publisher_discovery(dds::DomainParticipant* own, rtps::WriterDiscoveryInfo&& info) override {
@@ -345,13 +425,15 @@ struct Participant::Impl final : public dds::DomainParticipantListener {
     if (known != peers.end() && is_own(known->second)) rediscovery.has(guid.guidPrefix, kind);
   }
 
-  std::mutex session_mutex;  // guards these, except constant fields of the settings
-  NodeSettings settings;     // vehicle: all served vehicles, "kl1,kl2"
+  const NodeSettings settings;
+  std::mutex session_mutex;  // guards session and endpoints
   std::unique_ptr<ParticipantSession> session;
   std::vector<Endpoint*> endpoints;
 
-  std::mutex peers_mutex;
-  std::string served;                  // same as settings.vehicle
+  std::mutex peers_mutex;     // guards all below; locked after session_mutex
+  Announcement announcement;  // of this process; changed with both mutexes locked
+  std::chrono::steady_clock::time_point established_at;
+  std::function<void(const std::string&)> on_lost_source;
   std::map<rtps::GUID_t, Peer> peers;  // of any vehicle
   RemoteEndpoints writers;             // of other processes, any vehicle
   RemoteEndpoints readers;
@@ -451,12 +533,14 @@ template <class Impl, class T>
 class DdsReader final : public detail::Reader, private Endpoint, private dds::DataReaderListener {
  public:
   DdsReader(std::shared_ptr<Impl> node, std::string vehicle, const Topic<T>& topic,
-            std::function<void(const T&)> callback, Delivery delivery)
+            std::function<void(const T&)> callback, Delivery delivery,
+            std::optional<std::chrono::milliseconds> source_silence)
       : node_(std::move(node)),
         vehicle_(std::move(vehicle)),
         topic_(topic),
         delivery_(delivery),
         callback_(std::move(callback)) {
+    if (source_silence) source_.emplace(*source_silence);
     node_->add(this);
   }
   ~DdsReader() override { node_->remove(this); }
@@ -470,7 +554,24 @@ class DdsReader final : public detail::Reader, private Endpoint, private dds::Da
     return status.current_count;
   }
 
+  std::optional<SourceConflict> source_conflict() const override {
+    std::optional<Conflict> last;
+    {
+      const std::lock_guard<std::mutex> lock(conflict_mutex_);
+      last = conflict_;
+    }
+    if (!last || std::chrono::steady_clock::now() - last->at > kConflictReportTime) return std::nullopt;
+    return SourceConflict{node_->identity_of(last->used.participant),
+                          node_->identity_of(last->ignored.participant)};
+  }
+
  private:
+  struct Conflict {
+    SenderId used;
+    SenderId ignored;
+    std::chrono::steady_clock::time_point at;
+  };
+
   void join(ParticipantSession& session) override {
     open(true);
     dds::DataReader* const reader = session.subscriber->create_datareader(
@@ -497,8 +598,19 @@ class DdsReader final : public detail::Reader, private Endpoint, private dds::Da
     dds::SampleInfo info;
     while (open_ && reader->take_next_sample(&sample_, &info) == ReturnCode_t::RETCODE_OK) {
       if (!info.valid_data) continue;
+      if (source_ && !is_from_source(info)) continue;
       callback_(sample_);
     }
+  }
+
+  // Locks a mutex only while samples of several processes arrive.
+  bool is_from_source(const dds::SampleInfo& info) {
+    const SenderId sender{info.sample_identity.writer_guid().guidPrefix};
+    const auto now = std::chrono::steady_clock::now();
+    if (source_->accepts(sender, now)) return true;
+    const std::lock_guard<std::mutex> lock(conflict_mutex_);
+    conflict_ = Conflict{*source_->id(), sender, now};
+    return false;
   }
 
   std::shared_ptr<Impl> node_;
@@ -506,19 +618,28 @@ class DdsReader final : public detail::Reader, private Endpoint, private dds::Da
   const Topic<T> topic_;
   const Delivery delivery_;
   GuardedPointer<dds::DataReader> reader_;
+  mutable std::mutex conflict_mutex_;
+  std::optional<Conflict> conflict_;
   std::mutex mutex_;  // guards all below; held while a callback runs
   std::function<void(const T&)> callback_;
+  std::optional<SingleSource<SenderId>> source_;
   T sample_;
   bool open_ = false;
 };
 
 }  // namespace
 
+std::string ProcessIdentity::to_string() const {
+  const std::string program = name.empty() ? "an unnamed program" : name;
+  return host.empty() ? program : program + " (process " + std::to_string(pid) + " on host " + host + ")";
+}
+
 Participant::Participant(const NodeSettings& settings) : impl_(std::make_shared<Impl>(settings, "")) {}
 
 Node::Node(const NodeSettings& settings)
     : participant_(std::make_shared<Participant::Impl>(settings, checked(settings.vehicle))),
-      vehicle_(settings.vehicle) {}
+      vehicle_(settings.vehicle),
+      source_of_(settings.source_of) {}
 
 Node::Node(const Participant& participant, const std::string& vehicle)
     : participant_(participant), vehicle_(checked(vehicle)) {
@@ -534,13 +655,22 @@ std::vector<std::string> Participant::topics_seen() const {
   return {topics.begin(), topics.end()};
 }
 
+std::optional<std::string> Participant::become_source(const std::vector<std::string>& excluded,
+                                                      std::function<void(const std::string&)> on_lost) {
+  return impl_->become_source(excluded, std::move(on_lost));
+}
+
+std::optional<std::string> Node::become_source(std::function<void(const std::string&)> on_lost) {
+  return participant_.become_source({source_of_}, std::move(on_lost));
+}
+
 void Node::on_peer(std::function<void(const PeerEvent&)> callback) {
   Participant::Impl& impl = *participant_.impl_;
   const std::lock_guard<std::mutex> lock(impl.peers_mutex);
   impl.peer_listeners.erase(this);
   if (!callback) return;
   for (const auto& [guid, peer] : impl.peers) {
-    if (lists(peer.vehicles, vehicle_)) callback({peer.name, true, false});
+    if (lists(peer.announced.vehicles, vehicle_)) callback({peer.name, true, false});
   }
   impl.peer_listeners[this] = {vehicle_, std::move(callback)};
 }
@@ -554,16 +684,16 @@ Publisher<T> Node::publish(const Topic<T>& topic, std::uint32_t strength) {
 }
 
 template <class T>
-Subscription Node::subscribe(const Topic<T>& topic, std::function<void(const T&)> callback,
-                             Delivery delivery) {
-  return Subscription(std::make_unique<DdsReader<Participant::Impl, T>>(participant_.impl_, vehicle_, topic,
-                                                                        std::move(callback), delivery));
+Subscription Node::subscribe(const Topic<T>& topic, std::function<void(const T&)> callback, Delivery delivery,
+                             std::optional<std::chrono::milliseconds> source_silence) {
+  return Subscription(std::make_unique<DdsReader<Participant::Impl, T>>(
+      participant_.impl_, vehicle_, topic, std::move(callback), delivery, source_silence));
 }
 
 #define SWIFTLET_INSTANTIATE(Name)                                                                      \
   template Publisher<msg::Name> Node::publish(const Topic<msg::Name>&, std::uint32_t);                  \
   template Subscription Node::subscribe(const Topic<msg::Name>&, std::function<void(const msg::Name&)>, \
-                                        Delivery);
+                                        Delivery, std::optional<std::chrono::milliseconds>);
 SWIFTLET_FOR_EACH_MESSAGE(SWIFTLET_INSTANTIATE)
 #undef SWIFTLET_INSTANTIATE
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,7 +23,7 @@ enum class Transport {
 
 struct NodeSettings {
   std::string name;             // process: "plant", "mocap", "control", "ground"
-  std::string vehicle = "kl1";  // namespace of the topics: letters, digits and _, at most 64
+  std::string vehicle = "kl1";  // namespace of the topics: see vehicle_name.hpp
   int domain = 0;               // 0 .. 232
   Transport transport = Transport::kUdp;
   bool localhost_only = false;  // loopback interface only, without multicast
@@ -31,7 +32,34 @@ struct NodeSettings {
   bool deadlines = true;
   // Period of its announcements: kFixturePeriod for vehicle and motion capture.
   std::chrono::milliseconds announcement_period = kLivelinessPeriod;
+  // Name of the topic of which this process is to be the only source for its vehicle, such as "imu"; then
+  // call become_source() before it publishes. Empty: none.
+  std::string source_of{};
 };
+
+// A process of the domain, as it announces itself. Programs of others announce neither host nor process.
+struct ProcessIdentity {
+  std::string name;  // "plant"
+  std::string host;
+  int pid = 0;
+
+  std::string to_string() const;  // "plant (process 4711 on host lab1)"
+};
+
+// Two processes that send samples of the same topic of a vehicle.
+struct SourceConflict {
+  ProcessIdentity used;
+  ProcessIdentity ignored;
+};
+
+// Samples of another process are taken once the source of a fast stream has been silent for this time.
+constexpr std::chrono::milliseconds kSourceSilence{200};
+// How long become_source() looks for another source: an announcement is sent several times in that time.
+constexpr std::chrono::milliseconds kSourceSearchTime{250};
+// After become_source(), a source that turns out to be the later of two yields within this time only.
+constexpr std::chrono::milliseconds kSourceProbation{3000};
+// How long a SourceConflict is reported after the last ignored sample.
+constexpr std::chrono::milliseconds kConflictReportTime{2000};
 
 // Another process of the same vehicle was discovered or lost.
 struct PeerEvent {
@@ -62,6 +90,7 @@ class Reader {
  public:
   virtual ~Reader() = default;
   virtual int matched() const = 0;
+  virtual std::optional<SourceConflict> source_conflict() const = 0;
 };
 }  // namespace detail
 
@@ -90,6 +119,8 @@ class Subscription {
   Subscription() = default;
   explicit Subscription(std::unique_ptr<detail::Reader> reader) : reader_(std::move(reader)) {}
   int matched() const { return reader_->matched(); }  // number of matched writers
+  // Of a subscription with one source: set while samples of another process arrive and are ignored.
+  std::optional<SourceConflict> source_conflict() const { return reader_->source_conflict(); }
 
  private:
   std::unique_ptr<detail::Reader> reader_;
@@ -108,6 +139,15 @@ class Participant {
   // vehicle; sorted, without duplicates. Topics of processes with localhost_only are seen only with
   // localhost_only.
   std::vector<std::string> topics_seen() const;
+
+  // Checks that this process is the only source of settings.source_of for the vehicles that it serves, and that
+  // none of `excluded` has a source either. Blocks for kSourceSearchTime. Returns a sentence that names the
+  // vehicle, the other process and its host, if there is one; then this process must not publish the topic.
+  // A process that joined at the same time is refused on one side only. on_lost: called with such a sentence
+  // if an earlier source is discovered only within kSourceProbation after; the process must end then. It runs
+  // in a middleware thread and must not call this class.
+  std::optional<std::string> become_source(const std::vector<std::string>& excluded,
+                                           std::function<void(const std::string&)> on_lost = {});
 
  private:
   friend class Node;
@@ -132,12 +172,17 @@ class Node {
   Publisher<T> publish(const Topic<T>& topic, std::uint32_t strength = 0);
 
   // The callback runs in the thread that received the sample, once per sample, never concurrently. It must
-  // not block. Throws std::runtime_error.
+  // not block. source_silence: if given, the samples of only one process are delivered, that which was heard
+  // first, until it has been silent for this time. Throws std::runtime_error.
   template <class T>
   Subscription subscribe(const Topic<T>& topic, std::function<void(const T&)> callback,
-                         Delivery delivery = Delivery::kShared);
+                         Delivery delivery = Delivery::kShared,
+                         std::optional<std::chrono::milliseconds> source_silence = std::nullopt);
 
   std::vector<std::string> topics_seen() const { return participant_.topics_seen(); }
+
+  // As Participant::become_source(), for settings.source_of alone.
+  std::optional<std::string> become_source(std::function<void(const std::string&)> on_lost = {});
 
   // Sets the callback for discovered and lost peers of the vehicle; it is called at once for known peers. It
   // runs in a middleware thread. A new callback replaces the previous one, which no longer runs when this
@@ -152,6 +197,7 @@ class Node {
  private:
   Participant participant_;
   const std::string vehicle_;
+  const std::string source_of_;
 };
 
 }  // namespace swiftlet::comms

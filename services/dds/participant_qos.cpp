@@ -18,7 +18,6 @@ using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
 using eprosima::fastrtps::Duration_t;
 
 constexpr const char* kLoopback = "127.0.0.1";
-constexpr const char* kVehicleKey = "vehicle=";
 constexpr std::uint32_t kSegmentBytes = 1 << 20;  // of shared memory: fits seven missions of maximum length
 
 Duration_t duration(std::chrono::milliseconds time) {
@@ -39,7 +38,6 @@ rtps::Locator_t loopback_locator(std::uint32_t port) {
 dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uint32_t announced_ports) {
   dds::DomainParticipantQos qos;
   qos.name(settings.name);
-  qos.user_data().data_vec(user_data(settings.vehicle));
 
   auto& builtin = qos.wire_protocol().builtin;
   builtin.discovery_config.leaseDuration = duration(kLivelinessLease);
@@ -70,21 +68,6 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uin
     qos.transport().user_transports.push_back(shared_memory);
   }
   return qos;
-}
-
-std::string vehicle_of(const std::vector<rtps::octet>& user_data) {
-  const std::string text(user_data.begin(), user_data.end());
-  const std::string key(kVehicleKey);
-  const auto begin = text.find(key);
-  if (begin == std::string::npos) return {};
-  const auto end = text.find(';', begin);
-  return text.substr(begin + key.size(), end == std::string::npos ? end : end - begin - key.size());
-}
-
-std::vector<rtps::octet> user_data(const std::string& vehicle) {
-  const std::string text =
-      "enclave=/;" + std::string(kVehicleKey) + vehicle + ";";  // ROS 2 expects the enclave
-  return {text.begin(), text.end()};
 }
 
 }  // namespace swiftlet::comms

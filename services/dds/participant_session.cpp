@@ -42,25 +42,29 @@ void end(dds::DomainParticipant* participant) {
   dds::DomainParticipantFactory::get_instance()->delete_participant(participant);
 }
 
-dds::DomainParticipant* create_participant(const NodeSettings& settings,
+dds::DomainParticipant* create_participant(const NodeSettings& settings, const Announcement& announcement,
                                            dds::DomainParticipantListener* listener,
                                            std::uint32_t announced) {
+  dds::DomainParticipantQos qos = participant_qos(settings, announced);
+  qos.user_data().data_vec(to_user_data(announcement));
   return dds::DomainParticipantFactory::get_instance()->create_participant(
-      static_cast<std::uint32_t>(settings.domain), participant_qos(settings, announced), listener,
+      static_cast<std::uint32_t>(settings.domain), qos, listener,
       dds::StatusMask::requested_incompatible_qos() << dds::StatusMask::offered_incompatible_qos());
 }
 
 // Serialized by a mutex, because Fast DDS 2.9 calls getpwuid(), which is not thread-safe. Fast DDS reports
 // neither the port at which it listens nor that it found none, hence the comparison of ports before and
 // after.
-dds::DomainParticipant* join(const NodeSettings& settings, dds::DomainParticipantListener* listener) {
+dds::DomainParticipant* join(const NodeSettings& settings, const Announcement& announcement,
+                             dds::DomainParticipantListener* listener) {
   static std::mutex mutex;
   const std::lock_guard<std::mutex> lock(mutex);
   const DiscoveryPorts ports = discovery_ports(settings.domain);
   const std::set<std::uint32_t> before = own_discovery_ports(settings.domain);
   const std::uint32_t expected = free_discovery_port(settings.domain, settings.localhost_only);
   for (const std::uint32_t announced : {announced_ports(ports, expected), ports.count}) {
-    dds::DomainParticipant* const participant = create_participant(settings, listener, announced);
+    dds::DomainParticipant* const participant =
+        create_participant(settings, announcement, listener, announced);
     if (participant == nullptr) return nullptr;
     // Other processes may have taken ports meanwhile. If the own port is then too high to announce itself to
     // all ports below it, try again with all ports.
@@ -74,10 +78,10 @@ dds::DomainParticipant* join(const NodeSettings& settings, dds::DomainParticipan
 
 }  // namespace
 
-ParticipantSession::ParticipantSession(const NodeSettings& settings,
+ParticipantSession::ParticipantSession(const NodeSettings& settings, const Announcement& announcement,
                                        dds::DomainParticipantListener* listener) {
   set_up_library();
-  participant = join(settings, listener);
+  participant = join(settings, announcement, listener);
   if (participant == nullptr) {
     throw std::runtime_error("cannot join DDS domain " + std::to_string(settings.domain) +
                              ": no port could be opened or the transport could not be set up");
@@ -92,9 +96,9 @@ ParticipantSession::ParticipantSession(const NodeSettings& settings,
 
 ParticipantSession::~ParticipantSession() { end(participant); }
 
-void ParticipantSession::announce_vehicles(const NodeSettings& settings) {
+void ParticipantSession::announce(const Announcement& announcement) {
   dds::DomainParticipantQos qos = participant->get_qos();
-  qos.user_data().data_vec(user_data(settings.vehicle));
+  qos.user_data().data_vec(to_user_data(announcement));
   participant->set_qos(qos);
 }
 

@@ -15,6 +15,7 @@
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
 
+#include "swiftlet/services/dds/discovery/announcement.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::comms {
@@ -24,7 +25,7 @@ namespace swiftlet::comms {
 class ParticipantSession {
  public:
   // Throws std::runtime_error if the participant cannot be created.
-  ParticipantSession(const NodeSettings& settings,
+  ParticipantSession(const NodeSettings& settings, const Announcement& announcement,
                      eprosima::fastdds::dds::DomainParticipantListener* listener);
   ~ParticipantSession();
   ParticipantSession(const ParticipantSession&) = delete;
@@ -34,8 +35,8 @@ class ParticipantSession {
   eprosima::fastdds::dds::Topic* topic(const std::string& wire_name,
                                        const eprosima::fastdds::dds::TypeSupport& type);
 
-  // Announces the vehicles in settings.vehicle to the peers.
-  void announce_vehicles(const NodeSettings& settings);
+  // Announces a change to the peers.
+  void announce(const Announcement& announcement);
 
   eprosima::fastdds::dds::DomainParticipant* participant = nullptr;
   eprosima::fastdds::dds::Publisher* publisher = nullptr;

@@ -39,8 +39,8 @@ void set_common(EndpointQos& qos, Qos profile, int deadline_ms, Transport transp
       is_long(profile) ? rtps::DYNAMIC_REUSABLE_MEMORY_MODE : rtps::PREALLOCATED_MEMORY_MODE;
   if (profile == Qos::kRequest) {
     qos.history().kind = dds::KEEP_ALL_HISTORY_QOS;
-    limits.max_samples = kMaxPendingRequests;
-    limits.max_samples_per_instance = kMaxPendingRequests;
+    limits.max_samples = kMaxUnacknowledgedRequests;
+    limits.max_samples_per_instance = kMaxUnacknowledgedRequests;
     limits.allocated_samples = 1;
   } else if (profile == Qos::kReply) {
     qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;

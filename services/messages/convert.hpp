@@ -9,9 +9,11 @@
 #include "swiftlet/control/estimation/estimator.hpp"
 #include "swiftlet/control/flight_controller.hpp"
 #include "swiftlet/control/flight_state.hpp"
+#include "swiftlet/control/types/gains.hpp"
 #include "swiftlet/control/types/mission.hpp"
 #include "swiftlet/control/types/polynomial.hpp"
 #include "swiftlet/control/types/request.hpp"
+#include "swiftlet/control/types/settings_request.hpp"
 #include "swiftlet/plant/model/samples.hpp"
 #include "swiftlet/services/messages/topics.hpp"
 
@@ -53,6 +55,7 @@ Fault from_message(const msg::Command& in, control::Request& out);
 Fault from_message(const msg::Mission& in, control::Mission& out);
 Fault from_message(const msg::Trajectory& in, control::Trajectory& out);
 Fault from_message(const msg::ControllerState& in, ControllerReport& out);
+Fault from_message(const msg::ControlSettings& in, control::SettingsRequest& out);
 
 msg::Imu to_message(const plant::ImuSample& in);
 void set_obeyed_command(const plant::ObeyedCommand& obeyed, msg::Imu& in);  // into an IMU sample
@@ -71,6 +74,8 @@ msg::Reference to_message(const control::Reference& in, const control::AttitudeS
 msg::Command to_message(const control::Request& in);
 msg::Mission to_message(const control::Mission& in);
 msg::Trajectory to_message(const control::Trajectory& in);
+msg::ControlSettings to_message(const control::SettingsRequest& in);
+msg::ControlGains to_message(const control::ControlGains& in);
 msg::RequestStatus to_message(const control::RequestStatus& in);
 
 }  // namespace swiftlet::comms

@@ -1,4 +1,5 @@
 #include "swiftlet/services/messages/convert.hpp"
+#include "swiftlet/services/messages/convert_gains.hpp"
 #include "swiftlet/services/messages/wire.hpp"
 
 namespace swiftlet::comms {
@@ -8,6 +9,7 @@ using namespace wire;
 
 constexpr std::uint64_t kMaxFailoverPriority = 1000;
 constexpr std::size_t kReplicatedStateBytes = 1096;
+constexpr std::size_t kReplicatedGainsBytes = 384;
 
 }  // namespace
 
@@ -45,6 +47,7 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
       .finite("setpoint_body_rates", in.setpoint_body_rates())
       .finite("setpoint_specific_thrust", in.setpoint_specific_thrust())
       .finite("position_integral_ned", in.position_integral_ned())
+      .at_least("gains_duration_s", in.gains_duration_s(), 0.0)
       .at_most("rotor_state", in.rotor_state(), ActuatorCommand_Constants::ROTORS_RUNNING)
       .per_rotor("throttle", in.rotor_count(), in.throttle(), 0.0, 1.0);
   for (std::size_t i = 0; i < control::kRememberedRequests; ++i) {
@@ -53,6 +56,8 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
         .at_most("request_reasons", in.request_reasons()[i], control::kReasonCount - 1)
         .within("request_progress", in.request_progress()[i], 0.0, 1.0);
   }
+  check_gains("gains_from", in.gains_from(), check);
+  check_gains("gains_to", in.gains_to(), check);
   if (!check.ok()) return check.fault();
   out.stamp_ns = in.stamp_ns();
   out.sequence = in.sequence_number();
@@ -108,6 +113,11 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
                          in.request_progress()[i]};
   }
   out.flight.position_integral = vector(in.position_integral_ned());
+  out.flight.gains.from = from_message(in.gains_from());
+  out.flight.gains.to = from_message(in.gains_to());
+  std::copy_n(in.settings_name().begin(), control::kMaxSettingsName, out.flight.gains.name.begin());
+  out.flight.gains.start_ns = in.gains_start_ns();
+  out.flight.gains.duration_s = in.gains_duration_s();
   out.flight.rotor_state = static_cast<plant::RotorState>(in.rotor_state());
   out.rotor_count = in.rotor_count();
   copy_rotors(out.rotor_count, in.throttle(), out.flight.throttle);
@@ -117,6 +127,8 @@ Fault from_message(const msg::ControllerState& in, ControllerReport& out) {
 // A field added to the state must be added to the message: otherwise a standby continues without it.
 static_assert(sizeof(control::SupervisorState) == kReplicatedStateBytes,
               "controller_state does not carry all of SupervisorState");
+static_assert(sizeof(control::GainChange) == kReplicatedGainsBytes,
+              "controller_state does not carry all of GainChange");
 
 msg::ControllerState to_message(const ControllerReport& in) {
   const control::SupervisorState& state = in.flight.supervisor;
@@ -180,6 +192,11 @@ msg::ControllerState to_message(const ControllerReport& in) {
     out.ground_link_heard_ns()[i] = state.ground_links[i].heard_ns;
   }
   out.position_integral_ned(array(in.flight.position_integral));
+  out.gains_from(to_message(in.flight.gains.from));
+  out.gains_to(to_message(in.flight.gains.to));
+  std::copy(in.flight.gains.name.begin(), in.flight.gains.name.end(), out.settings_name().begin());
+  out.gains_start_ns(in.flight.gains.start_ns);
+  out.gains_duration_s(in.flight.gains.duration_s);
   out.rotor_state(static_cast<std::uint8_t>(in.flight.rotor_state));
   out.rotor_count(static_cast<std::uint8_t>(in.rotor_count));
   out.throttle(in.flight.throttle);

@@ -11,12 +11,12 @@ enum class Qos {
   kTelemetry,     // best effort, keep last 1, volatile
   kLatched,       // reliable, transient local, keep last 1
   kLatchedLarge,  // latched, for long messages: allocates memory as needed
-  kRequest,       // reliable, volatile, keep all up to kMaxPendingRequests
+  kRequest,       // reliable, volatile, keep all up to kMaxUnacknowledgedRequests
   kReply,         // reliable, transient local, keep last kKeptReplies
 };
 
 // Number of unacknowledged requests of a writer before publish() waits, and how long it waits.
-constexpr int kMaxPendingRequests = 64;
+constexpr int kMaxUnacknowledgedRequests = 64;
 constexpr std::chrono::milliseconds kReliableWriteTimeout{200};
 // Replies that reach a client whose reader is discovered only after they were sent.
 constexpr int kKeptReplies = 32;

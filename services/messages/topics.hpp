@@ -6,6 +6,7 @@
 #include "swiftlet_msgs/msg/Battery.h"
 #include "swiftlet_msgs/msg/Command.h"
 #include "swiftlet_msgs/msg/CommandAck.h"
+#include "swiftlet_msgs/msg/ControlSettings.h"
 #include "swiftlet_msgs/msg/ControlStatus.h"
 #include "swiftlet_msgs/msg/ControllerState.h"
 #include "swiftlet_msgs/msg/Estimate.h"
@@ -55,6 +56,7 @@ inline constexpr Topic<msg::SimulationClock> kSimulationClock{"simulation_clock"
 inline constexpr Topic<msg::Command> kCommand{"command", Qos::kRequest};
 inline constexpr Topic<msg::Mission> kMission{"mission", Qos::kRequest};
 inline constexpr Topic<msg::Trajectory> kTrajectory{"trajectory", Qos::kRequest};
+inline constexpr Topic<msg::ControlSettings> kControlSettings{"control_settings", Qos::kRequest};
 inline constexpr Topic<msg::Mission> kFlownMission{"flown_mission", Qos::kLatchedLarge};
 inline constexpr Topic<msg::Trajectory> kFlownTrajectory{"flown_trajectory", Qos::kLatchedLarge};
 inline constexpr Topic<msg::CommandAck> kCommandAck{"command_ack", Qos::kReply};

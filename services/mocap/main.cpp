@@ -14,6 +14,7 @@
 #include "swiftlet/plant/simulation/links/mocap_path.hpp"
 #include "swiftlet/plant/simulation/mocap.hpp"
 #include "swiftlet/services/dds/discovery/peer_log.hpp"
+#include "swiftlet/services/dds/discovery/sole_source.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/node_options.hpp"
 #include "swiftlet/services/messages/convert.hpp"
@@ -57,7 +58,7 @@ class MotionCaptureSimulator {
         poses_(node.publish(comms::topics::kMocapPose)),
         truth_(node.subscribe<comms::msg::GroundTruth>(
             comms::topics::kGroundTruth, [this](const auto& message) { on_truth(message); },
-            comms::Delivery::kOwnThread)) {}
+            comms::Delivery::kOwnThread, comms::kSourceSilence)) {}
 
   std::uint64_t frames() const { return frames_; }
   std::uint64_t untracked() const { return untracked_; }
@@ -157,12 +158,15 @@ void run(const Options& options) {
   node_settings.name = "mocap";
   node_settings.announcement_period = comms::kFixturePeriod;
   node_settings.deadlines = options.clock == runtime::Clock::kRealtime;
+  node_settings.source_of = comms::topics::kMocapPose.name;
   comms::Node node(node_settings);
   comms::log_peers(node);
+  const comms::SoleSource source(node, [&stop] { stop.request(); });
   const MotionCaptureSimulator simulator(settings, options.seed, node, realtime, options.clock, stop);
   spdlog::info("ready: vehicle {}, domain {}, frames {}, seed {}", node_settings.vehicle,
                node_settings.domain, frame_rate(settings.mocap), options.seed);
   stop.wait();
+  source.check();
   if (simulator.lost_truth()) throw std::runtime_error("lockstep: a ground_truth sample was lost");
   spdlog::info("ended: {} frames, {} untracked", simulator.frames(), simulator.untracked());
 }

@@ -6,8 +6,10 @@
 #include <limits>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include <fmt/core.h>
+#include <spdlog/spdlog.h>
 
 #include "swiftlet/recording/telemetry_rate.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
@@ -65,6 +67,7 @@ void LockstepLoop::on_command(const comms::msg::ActuatorCommand& message) {
   if (message.imu_sequence_number() != vehicle_.simulation().imu()->sequence) return;
   const ReceivedCommand received(message, runtime::monotonic_ns());
   if (!vehicle_.obey(received)) return;
+  control_heard_ = true;
   command_ = received.command;
   command_arrived_ = true;
   advance();
@@ -106,18 +109,13 @@ void LockstepLoop::keep_pace(double awake_s) {
 // Runs in the thread that received the last missing answer. Loops while simulated faults leave no answer to
 // wait for.
 void LockstepLoop::advance() {
-  while (failure_.empty() && started_ && answered()) {
+  while (started_ && answered()) {
     vehicle_.note_pause(is_paused());
     vehicle_.report();
     if (!may_advance()) return;
     silence_s_ = 0.0;
     command_arrived_ = false;
-    try {
-      if (trace_) trace_->add(vehicle_.simulation().truth(), command_);
-    } catch (const std::runtime_error& error) {
-      failure_ = error.what();
-      return;
-    }
+    if (trace_) trace_->add(vehicle_.simulation().truth(), command_);
     advance_to_imu_stamp();
   }
 }
@@ -157,7 +155,6 @@ bool LockstepLoop::frame_is_due(std::int64_t stamp_ns, bool delivered) {
 }
 
 void LockstepLoop::poll(double awake_s) {
-  if (!failure_.empty()) throw std::runtime_error(failure_);
   if (!started_) {
     if (advance_to_ns_ < 0) return;
     started_ = true;
@@ -174,8 +171,16 @@ void LockstepLoop::poll(double awake_s) {
     vehicle_.publish_imu_again();
     return;
   }
-  if ((silence_s_ += awake_s) > lockstep_.patience_s) throw std::runtime_error(silent_peer());
+  note_silence(awake_s);
   if (silence_s_ > std::chrono::duration<double>(kPollPeriod).count()) vehicle_.publish_again();
+}
+
+void LockstepLoop::note_silence(double awake_s) {
+  silence_s_ += awake_s;
+  if (silence_s_ <= lockstep_.patience_s) return;
+  if (control_heard_ && mocap_heard_) throw std::runtime_error(silent_peer());
+  if (std::exchange(waiting_logged_, true)) return;
+  spdlog::info("waiting for {}", control_heard_ ? "mocap" : mocap_heard_ ? "control" : "mocap and control");
 }
 
 std::string LockstepLoop::silent_ground() const {

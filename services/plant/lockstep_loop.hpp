@@ -23,7 +23,7 @@ namespace swiftlet::services {
 struct LockstepSettings {
   bool paused = false;      // time advances only up to simulation_clock
   double speed = 0.0;       // limit, simulated time per real time; 0: no limit
-  double patience_s = 2.0;  // time-out of an answer
+  double patience_s = 2.0;  // time-out of an answer of a peer that has answered before
   std::string trace;        // file; empty: no trace
 };
 
@@ -34,8 +34,9 @@ class LockstepLoop {
   LockstepLoop(SimulatedVehicle& vehicle, const plant::SimulationSettings& settings, std::uint64_t seed,
                const LockstepSettings& lockstep, int rotor_count, comms::Node& node);
 
-  // Runs until `stop`. Throws std::runtime_error naming the peer whose answer is missing after patience_s.
-  // Only time in which this process was running counts.
+  // Runs until `stop`. Waits without limit until motion capture and control have answered once, as they may start
+  // later. Throws std::runtime_error naming the peer whose answer is missing after patience_s from then on. Only
+  // time in which this process was running counts.
   void run(const std::atomic<bool>& stop);
 
  private:
@@ -57,6 +58,7 @@ class LockstepLoop {
   void publish();
   bool frame_is_due(std::int64_t stamp_ns, bool delivered);
   void poll(double awake_s);
+  void note_silence(double awake_s);
   std::string silent_peer() const;
   std::string silent_ground() const;
 
@@ -69,6 +71,7 @@ class LockstepLoop {
   bool started_ = false;  // the first samples have been published
   plant::ActuatorCommand command_;
   bool command_arrived_ = false;
+  bool control_heard_ = false;
   bool mocap_heard_ = false;
   std::uint64_t mocap_sequence_ = 0;
   std::uint64_t mocap_due_ = 0;
@@ -79,9 +82,9 @@ class LockstepLoop {
   std::int64_t paced_ns_;  // time limit at lockstep_.speed
   bool clock_heard_ = false;
   double silence_s_ = 0.0;        // since the last progress
+  bool waiting_logged_ = false;   // for peers that have not answered yet
   double clock_silence_s_ = 0.0;  // since simulation_clock was last heard
   std::optional<runtime::FlightTrace> trace_;
-  std::string failure_;  // error of a callback
 
   comms::Subscription commands_;  // last: their callbacks use all members above
   comms::Subscription poses_;

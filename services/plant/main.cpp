@@ -18,6 +18,7 @@
 #include "swiftlet/io/settings/simulation_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/services/dds/discovery/peer_log.hpp"
+#include "swiftlet/services/dds/discovery/sole_source.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/node_options.hpp"
 #include "swiftlet/services/plant/lockstep_loop.hpp"
@@ -221,8 +222,10 @@ void run(const Options& options) {
   node_settings.name = "plant";
   node_settings.announcement_period = comms::kFixturePeriod;
   node_settings.deadlines = options.clock == runtime::Clock::kRealtime;
+  node_settings.source_of = comms::topics::kImu.name;
   comms::Node node(node_settings);
   comms::log_peers(node);
+  const comms::SoleSource source(node, [&stop] { stop.request(); });
   Reporter reporter(node, vehicle, settings);
   plant::VehicleState initial;
   initial.position_ned.head<2>() = Eigen::Vector2d(options.start[0], options.start[1]);
@@ -247,6 +250,7 @@ void run(const Options& options) {
         if (lockstep_loop) lockstep_loop->run(ends);
       },
       simulated, reporter, stop);
+  source.check();
 
   spdlog::info(
       "ended after {:.1f} s of simulated time: {} commands obeyed, {} refused; sense to actuate p50 {:.0f} "

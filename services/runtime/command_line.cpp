@@ -2,21 +2,90 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
+#include <iostream>
 #include <optional>
+#include <type_traits>
 
 #include <CLI/CLI.hpp>
+
+#include "swiftlet/io/nearest_name.hpp"
 
 namespace swiftlet::runtime {
 namespace {
 
-// CLI11's own checks accept "nan".
+// The error, and the usage line of the command that was given.
+std::string failure_text(const CLI::App* app, const CLI::Error& error) {
+  const std::string help = app->help();
+  const std::size_t begin = std::min(help.find("Usage:"), help.size());
+  const std::string usage = help.substr(begin, help.find('\n', begin) - begin);
+  return std::string(error.what()) + "\n" + usage + "\nRun with --help for more information.\n";
+}
+
+// CLI11's own checks accept "nan", and whole numbers too large for their type.
 std::optional<double> finite_number(const std::string& text) {
   double value = 0.0;
   if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value)) return std::nullopt;
   return value;
+}
+
+template <class Number>
+std::optional<Number> whole_number(const std::string& text) {
+  Number value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end) return std::nullopt;
+  return value;
+}
+
+template <class Number>
+std::optional<Number> number_of(const std::string& text) {
+  if constexpr (std::is_floating_point_v<Number>) {
+    return finite_number(text);
+  } else {
+    return whole_number<Number>(text);
+  }
+}
+
+std::vector<std::string> long_options(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* const option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+std::vector<std::string> commands_of(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* const command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  return names;
+}
+
+std::string list_of(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+// The sentence about the first argument that a parsed command does not know; "" if there is none.
+std::string unknown_argument(const CLI::App& program) {
+  const CLI::App* app = &program;
+  while (app->remaining().empty() && !app->get_subcommands().empty()) app = app->get_subcommands().back();
+  const std::vector<std::string> rest = app->remaining();
+  if (rest.empty()) return "";
+  const std::string word = rest.front().substr(0, rest.front().find('='));
+  const bool is_option = word.size() > 1 && word.front() == '-';
+  const std::vector<std::string> commands = commands_of(*app);
+  if (!is_option && commands.empty()) {
+    return "Unexpected argument '" + word + "'.";
+  }
+  const std::string nearest = nearest_name(is_option ? long_options(*app) : commands, word);
+  std::string sentence = std::string("Unknown ") + (is_option ? "option" : "command") + " '" + word + "'.";
+  if (!nearest.empty()) return sentence + " Did you mean '" + nearest + "'?";
+  return is_option ? sentence : sentence + " Commands: " + list_of(commands) + ".";
 }
 
 }  // namespace
@@ -60,8 +129,21 @@ Option& Option::needs(Option other) {
 
 template <class Number>
 Option& Option::range(Number least, Number most) {
-  option_->check(CLI::Range(least, most));
-  return *this;
+  return check(
+      [least, most](const std::string& text) {
+        const std::optional<Number> number = number_of<Number>(text);
+        if (number && *number >= least && *number <= most) return std::string();
+        return "Value " + text + " not in range " + CLI::detail::to_string(least) + " to " +
+               CLI::detail::to_string(most);
+      },
+      CLI::Range(least, most).get_description());
+}
+Option& Option::whole() {
+  return check(
+      [](const std::string& text) {
+        return whole_number<std::uint64_t>(text) ? "" : text + " is not a whole number from 0 to 2^64 - 1";
+      },
+      "UINT");
 }
 template Option& Option::range(int, int);
 template Option& Option::range(std::int64_t, std::int64_t);
@@ -156,7 +238,9 @@ std::string CommandLine::help() const { return app_->help(); }
 bool CommandLine::parsed() const { return app_->parsed(); }
 
 Program::Program(const std::string& name, const std::string& purpose)
-    : app_(std::make_unique<CLI::App>(purpose, name)) {}
+    : app_(std::make_unique<CLI::App>(purpose, name)) {
+  app_->failure_message(failure_text);
+}
 Program::~Program() = default;
 
 Program::Parsed Program::parse(int argc, const char* const* argv) {
@@ -164,7 +248,10 @@ Program::Parsed Program::parse(int argc, const char* const* argv) {
     app_->parse(argc, argv);
     return Parsed::kRun;
   } catch (const CLI::ParseError& stop) {
-    return app_->exit(stop) == 0 ? Parsed::kHelp : Parsed::kWrongUsage;
+    const std::string unknown = stop.get_exit_code() == 0 ? "" : unknown_argument(*app_);
+    if (unknown.empty()) return app_->exit(stop) == 0 ? Parsed::kHelp : Parsed::kWrongUsage;
+    std::cerr << unknown << "\nRun with --help for more information.\n";
+    return Parsed::kWrongUsage;
   }
 }
 Program::Parsed Program::parse(const std::string& line) {

@@ -36,6 +36,7 @@ class Option {
   // Number is int, std::int64_t, std::size_t or double. The limits are valid values.
   template <class Number>
   Option& range(Number least, Number most);
+  Option& whole();     // from 0 to 2^64 - 1
   Option& finite();    // neither infinite nor NaN
   Option& positive();  // finite and above 0
   Option& one_of(std::initializer_list<const char*> texts);
@@ -100,7 +101,7 @@ class Program {
   CommandLine command_line() const { return CommandLine(*app_); }
 
   enum class Parsed { kRun, kHelp, kWrongUsage };
-  // Prints the help to stdout (kHelp) or the error to stderr (kWrongUsage).
+  // Prints the help to stdout (kHelp), or the error and the usage line of the command to stderr (kWrongUsage).
   Parsed parse(int argc, const char* const* argv);
   // Parses one line without the program's name; prints nothing.
   Parsed parse(const std::string& line);

@@ -57,7 +57,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   using namespace swiftlet::tests;
   check_selected<Imu, MocapPose, Battery, RotorSpeeds, ActuatorCommand, GroundTruth, Setpoint,
-                 ControllerState, GroundLink, Command, Mission, Trajectory>(static_cast<char>(*data),
-                                                                            data + 1, size - 1);
+                 ControllerState, GroundLink, Command, ControlSettings, Mission, Trajectory>(
+      static_cast<char>(*data), data + 1, size - 1);
   return 0;
 }

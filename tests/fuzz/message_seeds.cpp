@@ -46,6 +46,7 @@ int main(int argc, char** argv) {
   write<Setpoint>(folder, "setpoint", to_message(setpoint()));
   write<ControllerState>(folder, "controller_state", to_message(controller_report()));
   write<Command>(folder, "command", to_message(request()));
+  write<ControlSettings>(folder, "control_settings", to_message(settings_request()));
   msg::GroundLink link;
   link.client(4);
   link.depends(true);

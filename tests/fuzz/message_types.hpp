@@ -6,6 +6,7 @@
 #include "swiftlet_msgs/msg/ActuatorCommandPubSubTypes.h"
 #include "swiftlet_msgs/msg/BatteryPubSubTypes.h"
 #include "swiftlet_msgs/msg/CommandPubSubTypes.h"
+#include "swiftlet_msgs/msg/ControlSettingsPubSubTypes.h"
 #include "swiftlet_msgs/msg/ControllerStatePubSubTypes.h"
 #include "swiftlet_msgs/msg/GroundLinkPubSubTypes.h"
 #include "swiftlet_msgs/msg/GroundTruthPubSubTypes.h"
@@ -40,6 +41,7 @@ using ControllerState = MessageType<'c', comms::msg::ControllerStatePubSubType, 
 using GroundLink = MessageType<'l', comms::msg::GroundLinkPubSubType, control::GroundHeartbeat>;
 using Command = MessageType<'q', comms::msg::CommandPubSubType, control::Request>;
 using Mission = MessageType<'m', comms::msg::MissionPubSubType, control::Mission>;
+using ControlSettings = MessageType<'n', comms::msg::ControlSettingsPubSubType, control::SettingsRequest>;
 using Trajectory = MessageType<'t', comms::msg::TrajectoryPubSubType, control::Trajectory>;
 
 }  // namespace swiftlet::tests

@@ -64,11 +64,34 @@ TEST_F(BadInput, SeveralVehicles) {
                  "names 13 vehicles, limit 12 per command");
   expect_refusal({file, "--vehicle-name", "a,b", "--spacing", "40"},
                  "mission.yaml: started at 0 m north and -20 m east of the origin: item 2: y is -20.000 m");
+  expect_refusal({file, "--vehicle-name", "kl1,2nd"}, "begin with a letter and have no __");
+  expect_refusal({file, "--vehicle-name", "kl__1"}, "begin with a letter and have no __");
+  expect_refusal({file, "--vehicle-name", "a,b", "--spacing", "0"},
+                 "--spacing: 0 m puts the vehicles inside each other: a kaylion is up to 0.24 m wide");
   const ProgramResult goto_result =
       run_program("swiftlet", {"goto", "0", "0", "-1", "--vehicle-name", "kl1,kl2"}, folder_.path());
   EXPECT_EQ(goto_result.exit_code, 2);
   EXPECT_NE(goto_result.errors.find("must be 1 to 64 letters, digits and _"), std::string::npos)
       << goto_result.errors;
+}
+
+TEST_F(BadInput, UnknownNames) {
+  expect_refusal({"squre"},
+                 "No mission 'squre'. Did you mean 'square'? Available: identification, square, tour");
+  expect_refusal({"square", "--vehicle", "kaylon"}, "No vehicle 'kaylon'. Did you mean 'kaylion'?");
+  expect_refusal({"square", "--control", "papr"}, "No control settings 'papr'. Did you mean 'paper'?");
+  const std::string file = folder_.write("kind.yaml", replaced(kMission, "waypoint", "waypont"));
+  expect_refusal({file}, "items[1].kind: is waypont, must be takeoff, waypoint");
+}
+
+TEST_F(BadInput, MissionBelowTheMinimumHeight) {
+  const std::string below = folder_.write("below.yaml", replaced(kMission, "[1, 0, -1]", "[1, 0, 1]"));
+  expect_refusal({below},
+                 below +
+                     ":5: items[1].position_m: in NED: z = +1.000 m is below the ground, as z points down "
+                     "(NED); 1.000 m above the ground is z = -1.000 m");
+  const std::string low = folder_.write("low.yaml", replaced(kMission, "height_m: 1", "height_m: 0.05"));
+  expect_refusal({low}, low + ":4: items[0].height_m: is 0.05 m, must be at least the minimum height, 0.1 m");
 }
 
 TEST_F(BadInput, MissingMission) { expect_refusal({"nowhere.yaml"}, "nowhere.yaml: is not found"); }
@@ -109,13 +132,17 @@ TEST_F(BadInput, ControlSettingsWithAnUnknownKey) {
   expect_refusal({"square", "--control", file}, "odd.yaml:");
 }
 
-TEST_F(BadInput, MissingSimulation) { expect_refusal({"square", "--simulation", "moon"}, "moon.yaml"); }
+TEST_F(BadInput, MissingSimulation) {
+  expect_refusal({"square", "--simulation", "moon"}, "No simulation settings 'moon'. Available: ");
+}
 
 TEST_F(BadInput, WrongUsage) {
   expect_refusal({"square", "--imu-rate", "777"}, "--imu-rate");
   expect_refusal({"square", "--domain", "500"}, "--domain");
   expect_refusal({"square", "--vehicle-name", "a b"}, "--vehicle-name");
   expect_refusal({"square", "--seed", "-1"}, "--seed: Value -1 not in range");
+  expect_refusal({"square", "--seed", "100000000000000000000000"}, "--seed: Value 1000");
+  expect_refusal({"square", "--speed", "nan"}, "--speed: Value nan not in range");
   expect_refusal({"square", "--transport", "pigeon"}, "--transport: pigeon not in {udp,shm}");
 }
 
@@ -133,19 +160,35 @@ TEST_F(BadInput, OnlineCommands) {
     EXPECT_EQ(result.exit_code, 2) << result.errors;
     EXPECT_NE(result.errors.find(sentence), std::string::npos) << result.errors;
   };
-  refuses({"goto", "1", "2"}, "z is required");
+  refuses({"goto", "1"}, "y is required\nUsage: swiftlet goto [OPTIONS] x y [z]\n");
+  refuses({"mission", "fly"}, "file is required\nUsage: swiftlet mission fly [OPTIONS] file\n");
+  refuses({"goto", "1", "2"}, "goto: needs either z (down: negative is up) or --height");
+  refuses({"goto", "1", "0", "0.1"}, "goto: z = +0.100 m is below the ground, as z points down (NED)");
+  refuses({"goto", "1", "0", "-1", "--yaw", "90"},
+          "goto: yaw is 90 rad, more than a full turn: 90 degrees are");
+  refuses({"goto", "1", "0", "--heigth", "1"}, "Unknown option '--heigth'. Did you mean '--height'?");
+  refuses({"stream", folder_.write("low.csv", "t [s],x_ned [m],y_ned [m],z_ned [m]\n0,0,0,-1\n0.1,0,0,0.2\n")},
+          "low.csv:3: z: in NED: z = +0.200 m is below the ground");
+  refuses({"stream", folder_.write("odd.csv", "t,x\x1b[31m\n")}, "odd.csv:1: is not a text file");
   refuses({"goto", "1", "2", "nan"}, "nan is not a finite number");
   refuses({"takeoff", "-1"}, "must be a finite number above 0");
   refuses({"land", "--speed", "0"}, "must be a finite number above 0");
   refuses({"mission", "check", folder_.write("far.yaml", replaced(kMission, "[1, 0, -1]", "[1, 40, -1]"))},
           "east is 40 m");
-  refuses({"circle"}, "circle");
+  refuses({"teleop"}, "teleop: requires a terminal, or --joystick DEVICE");
+  const std::string text = folder_.write("event3", "");
+  refuses({"teleop", "--joystick", text}, text + " is not an event device; they are /dev/input/event*");
+  refuses({"teleop", "--joystick", text + "x"}, "cannot open " + text + "x: No such file or directory");
+  refuses({"circle"}, "Unknown command 'circle'. Commands: fly, arm");
+  refuses({"gains", "--seed", "100000000000000000000000"}, "is not a whole number from 0 to 2^64 - 1");
+  refuses({"flyy"}, "Unknown command 'flyy'. Did you mean 'fly'?");
   refuses({}, "swiftlet: a command is required");
 }
 
 TEST_F(BadInput, HelpIsNotRefused) {
-  for (const char* command : {"fly", "arm", "disarm", "takeoff", "goto", "land", "hold", "stop", "mission",
-                              "trajectory", "stream", "status", "watch", "list", "gains", "identify"}) {
+  for (const char* command :
+       {"fly", "arm", "disarm", "takeoff", "goto", "land", "hold", "stop", "mission", "trajectory", "stream",
+        "teleop", "status", "watch", "list", "gains", "identify"}) {
     const ProgramResult result = run_program("swiftlet", {command, "--help"}, folder_.path());
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_NE(result.output.find("example: swiftlet " + std::string(command)), std::string::npos)

@@ -86,9 +86,9 @@ TEST_F(SimBatch, RepeatsAFailedRunExactly) {
 TEST_F(SimBatch, ReportsCompletedRunsWhenCancelled) {
   Program program("swiftlet", words("batch", kMass, {"--runs", "20000", "--json", "--out", out().string()}),
                   folder_.path());
-  ASSERT_TRUE(eventually([&] { return program.errors().find("/20000 runs") != std::string::npos; }, 30s));
+  ASSERT_TRUE(eventually([&] { return program.errors().find("/20000 runs") != std::string::npos; }, kStuck));
   program.signal(SIGINT);
-  EXPECT_EQ(program.wait(30s), 1) << program.errors();
+  EXPECT_EQ(program.wait(kStuck), 1) << program.errors();
   const json report = json::parse(program.output());
   EXPECT_EQ(report.at("interrupted"), true);
   EXPECT_LT(report.at("runs_done"), 20000);

@@ -59,14 +59,14 @@ TEST_F(OneContext, FliesTwoVehiclesConcurrently) {
       [&] {
         return context.discovered_vehicles() == std::vector<std::string>{"kl1", "kl2"};
       },
-      20s));
+      kStuck));
   Vehicle first(context, "kl1");
   Vehicle second(context, "kl2");
   for (Vehicle* const vehicle : {&first, &second}) {
-    ASSERT_TRUE(vehicle->connect(20s).accepted());
-    ASSERT_TRUE(vehicle->wait_until([](const auto& state) { return state.has_pose; }, 20s));
+    ASSERT_TRUE(vehicle->connect(kStuck).accepted());
+    ASSERT_TRUE(vehicle->wait_until([](const auto& state) { return state.has_pose; }, kStuck));
     EXPECT_TRUE(vehicle->connected());
-    ASSERT_TRUE(eventually([&] { return vehicle->arm().accepted(); }, 20s));
+    ASSERT_TRUE(eventually([&] { return vehicle->arm().accepted(); }, kStuck));
   }
   EXPECT_EQ(first.name(), "kl1");
 
@@ -75,7 +75,7 @@ TEST_F(OneContext, FliesTwoVehiclesConcurrently) {
   EXPECT_TRUE(lower.accepted()) << lower.answer().reason;
   EXPECT_TRUE(higher.accepted()) << higher.answer().reason;
   for (const ground::ActionHandle& action : {lower, higher}) {
-    const ActionResult result = action.wait(60s);
+    const ActionResult result = action.wait(kStuck);
     EXPECT_TRUE(result.done()) << result.reason;
     EXPECT_EQ(action.progress(), 1.0);
   }
@@ -84,9 +84,9 @@ TEST_F(OneContext, FliesTwoVehiclesConcurrently) {
 
   const ground::ActionHandle move = first.go_to({{0.8, 0.0, -0.5}});
   const ground::ActionHandle landing = second.land();
-  EXPECT_TRUE(landing.wait(60s).done());
+  EXPECT_TRUE(landing.wait(kStuck).done());
   EXPECT_EQ(second.state().mode, control::Mode::kDisarmed);
-  EXPECT_TRUE(move.wait(60s).done());
+  EXPECT_TRUE(move.wait(kStuck).done());
   EXPECT_NEAR(first.state().position_ned_m.x(), 0.8, 0.06);
 
   // More requests than the controller keeps in its history.

@@ -106,7 +106,7 @@ class FaultInFlight : public testing::Test {
     simulation += "faults:\n  - {kind: " + kind + ", at_s: " + std::to_string(at_s) + ", for_s: " + for_s +
                   (parameters.empty() ? "" : ", " + parameters) + "}\n";
     const std::string file = folder_.write("faulty.yaml", simulation);
-    const auto record = folder_.path() / "record";
+    const auto record = folder_.path() / ("record-" + std::to_string(++flights_));
     const ProgramResult result =
         run_program("swiftlet",
                     {"fly", folder_.write("hover.yaml", kHover), "--simulation", file, "--clock", "lockstep",
@@ -123,6 +123,7 @@ class FaultInFlight : public testing::Test {
   static std::string reason(const FaultFlight& flight) { return flight.report.value("reason", "completed"); }
 
   TemporaryFolder folder_;
+  int flights_ = 0;
 };
 
 void expect_descended_level(const FaultFlight& flight) {

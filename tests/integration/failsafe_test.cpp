@@ -208,7 +208,7 @@ TEST_F(Failsafe, RotorsStayOffWhenThePlantRestarts) {
 
 TEST_F(Failsafe, HoldsInsideTheFenceWhenSetpointsLeaveIt) {
   start_all(
-      {"--control", settings_with("fence_max_ned_m: [3.0, 3.0, 0.2]", "fence_max_ned_m: [0.6, 3.0, 0.2]")});
+      {"--control", settings_with("fence_max_ned_m: [3.0, 3.0, 0.0]", "fence_max_ned_m: [0.6, 3.0, 0.0]")});
   hover();
   auto setpoints = watcher_->publish(comms::topics::kSetpoint);
   ASSERT_TRUE(eventually([&] { return setpoints.matched() == 1; }));

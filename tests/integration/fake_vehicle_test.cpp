@@ -29,7 +29,7 @@ using control::Mode;
 using ground::View;
 namespace msg = comms::msg;
 
-constexpr auto kTimeout = 20s;
+constexpr auto kTimeout = kStuck;
 
 class FakeVehicleFlight : public testing::Test {
  protected:
@@ -97,6 +97,26 @@ TEST_F(FakeVehicleFlight, RefusesToArmWithoutAVehicle) {
   EXPECT_NE(answer.reason.find("IMU"), std::string::npos) << answer.reason;
 }
 
+// The link from the vehicle is cut, that to the vehicle is not.
+TEST_F(FakeVehicleFlight, StopReachesAVehicleWhoseSamplesDoNotArrive) {
+  hover();
+  vehicle_->sends_imu = false;
+  ASSERT_TRUE(client_.wait(kTimeout, [](const View& view) { return view.control.message.imu_age_s() > 0.6; }))
+      << "the age grows while nothing comes";
+  EXPECT_FALSE(client_.view().control.message.has_pose()) << "nor is any pose used";
+  ASSERT_FALSE(rotors_are_off()) << "this vehicle obeys its last command";
+
+  const ground::Result answer = ask(msg::Command_Constants::STOP);
+  EXPECT_TRUE(answer.accepted()) << answer.reason;
+  EXPECT_NE(answer.reason.find("rotors off is commanded, but no IMU sample has come for "), std::string::npos)
+      << answer.reason;
+  EXPECT_TRUE(eventually([&] { return rotors_are_off(); }));
+
+  vehicle_->sends_imu = true;
+  EXPECT_TRUE(wait_for(Mode::kStopped)) << "the samples that come again do not undo it";
+  EXPECT_TRUE(rotors_are_off());
+}
+
 TEST_F(FakeVehicleFlight, EveryCommandAnswersASample) {
   start_vehicle();
   ASSERT_TRUE(ask(msg::Command_Constants::ARM).accepted());
@@ -138,7 +158,7 @@ TEST_F(FakeVehicleFlight, FliesAMission) {
   ASSERT_TRUE(answer.accepted()) << answer.reason;
   answer = client_.mission_command(msg::Command_Constants::MISSION_START, client_.mission_id(), kTimeout);
   ASSERT_TRUE(answer.accepted()) << answer.reason;
-  ASSERT_TRUE(client_.wait(40s, [&](const View& view) {
+  ASSERT_TRUE(client_.wait(kStuck, [&](const View& view) {
     return view.mission.message.mission_id() == client_.mission_id() &&
            view.mission.message.state() == msg::MissionStatus_Constants::COMPLETED;
   })) << control_.errors();

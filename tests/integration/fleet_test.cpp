@@ -59,7 +59,7 @@ class FleetFlight : public testing::Test {
 
 TEST_F(FleetFlight, StartsTogetherSideBySide) {
   const ProgramResult result = run_program(
-      "swiftlet", arguments({"--clock", "lockstep", "--spacing", "2", "--json"}), folder_.path(), 90s);
+      "swiftlet", arguments({"--clock", "lockstep", "--spacing", "2", "--json"}), folder_.path(), kStuck);
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const json report_of_all = json::parse(result.output);
   EXPECT_EQ(report_of_all.at("completed"), true);
@@ -75,16 +75,19 @@ TEST_F(FleetFlight, StartsTogetherSideBySide) {
     EXPECT_NEAR(first_east_m(record() / name / "flight.csv"), 2.0 * i - 1.0, 0.01);
     EXPECT_TRUE(fs::exists(record() / name / "flight.png"));
   }
+  const ProgramResult listed = run_program("swiftlet", {"report", record().string()}, folder_.path());
+  EXPECT_EQ(listed.exit_code, 0) << listed.errors;
+  EXPECT_NE(listed.output.find("record/kl1  record/kl2"), std::string::npos) << listed.output;
 }
 
 TEST_F(FleetFlight, LandsTheOthersWhenOneFails) {
   Program fly("swiftlet", arguments({}), folder_.path());
-  ASSERT_TRUE(
-      eventually([&] { return fly.errors().find("2/") != std::string::npos || fly.exit_code(); }, 60s));
+  ASSERT_TRUE(eventually(
+      [&] { return fly.errors().find("2/3 waypoint") != std::string::npos || fly.exit_code(); }, kStuck));
   const pid_t control = control_of(fly, "kl2");
   ASSERT_GT(control, 0) << fly.errors();
   kill(control, SIGKILL);
-  EXPECT_EQ(fly.wait(60s), 1);
+  EXPECT_EQ(fly.wait(kStuck), 1);
   const std::string errors = fly.errors();
   EXPECT_NE(errors.find("kl2, hop: NOT completed: swiftlet-control was killed by signal 9"),
             std::string::npos)
@@ -128,8 +131,9 @@ TEST_F(TwoVehicles, AnswerOneCommandIndependently) {
     armed = swiftlet("kl1,kl2", {"arm", "--json"});
     return armed.exit_code == 0;
   })) << armed.errors;
-  EXPECT_EQ(json::parse(armed.output),
-            json::parse(R"({"kl1": {"accepted": true}, "kl2": {"accepted": true}})"));
+  EXPECT_EQ(
+      json::parse(armed.output),
+      json::parse(R"({"kl1": {"accepted": true, "done": true}, "kl2": {"accepted": true, "done": true}})"));
 
   const ProgramResult disarmed = swiftlet("kl2", {"disarm"});
   EXPECT_EQ(disarmed.exit_code, 0) << disarmed.errors;
@@ -140,10 +144,47 @@ TEST_F(TwoVehicles, AnswerOneCommandIndependently) {
   EXPECT_EQ(taken_off.errors.find("kl1"), std::string::npos) << taken_off.errors;
 }
 
+TEST_F(TwoVehicles, ArmTogetherOrNotAtAll) {
+  const auto mode_of = [this](const std::string& vehicle) {
+    const ProgramResult result = swiftlet(vehicle, {"status", "--json", "--watch", "0.1"});
+    return result.exit_code == 0 ? json::parse(result.output).value("mode", "") : "";
+  };
+  const ProgramResult absent = swiftlet("kl1,kl9", {"arm", "--timeout", "5"});
+  EXPECT_EQ(absent.exit_code, 1);
+  EXPECT_EQ(absent.output, "");
+  EXPECT_NE(absent.errors.find("swiftlet: arm: kl1: nothing was sent, because kl9 was not found\n"),
+            std::string::npos)
+      << absent.errors;
+  EXPECT_NE(absent.errors.find("swiftlet: arm: kl9: no control service for vehicle kl9"), std::string::npos)
+      << absent.errors;
+  EXPECT_EQ(mode_of("kl1"), "disarmed");
+
+  // GIVEN one vehicle that refuses WHEN both are to arm THEN the other one is disarmed again.
+  ASSERT_EQ(swiftlet("kl2", {"stop", "--yes"}).exit_code, 0);
+  ProgramResult refused;
+  ASSERT_TRUE(eventually([&] {
+    refused = swiftlet("kl1,kl2", {"arm"});
+    return refused.errors.find("kl1: disarmed again, because kl2 did not arm") != std::string::npos;
+  })) << refused.errors;
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_EQ(refused.output, "");
+  EXPECT_EQ(mode_of("kl1"), "disarmed");
+  EXPECT_EQ(mode_of("kl2"), "stopped");
+
+  // GIVEN a vehicle that was armed before THEN it stays armed.
+  ASSERT_EQ(swiftlet("kl1", {"arm"}).exit_code, 0);
+  EXPECT_EQ(swiftlet("kl1,kl2", {"arm"}).exit_code, 1);
+  EXPECT_EQ(mode_of("kl1"), "armed");
+}
+
 TEST_F(TwoVehicles, MissingVehicleIsNamed) {
+  ASSERT_TRUE(eventually([&] {
+    const ProgramResult result = swiftlet("kl1", {"status", "--json", "--watch", "0.1"});
+    return result.exit_code == 0 && json::parse(result.output).value("has_pose", false);
+  }));
   const ProgramResult result = swiftlet("kl1,kl9", {"stop", "--yes", "--timeout", "5"});
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_EQ(result.output, "stop: accepted by kl1\n");
+  EXPECT_EQ(result.output, "stop: accepted by kl1\nstop: kl1: done\n");
   EXPECT_NE(result.errors.find("swiftlet: stop: kl9: "), std::string::npos) << result.errors;
 }
 

@@ -22,7 +22,7 @@ using namespace std::chrono_literals;
 using nlohmann::json;
 
 constexpr auto kStartTimeout =
-    40s;  // until the vehicle is airborne; processes start slowly on a busy machine
+    kStuck;  // until the vehicle is airborne; processes start slowly on a busy machine
 
 // Long enough to disturb it in flight.
 const std::string kLongMission =
@@ -37,26 +37,26 @@ const std::string kLongMission =
 class Fly : public testing::Test {
  protected:
   std::vector<std::string> arguments(const std::string& mission, std::vector<std::string> more = {}) const {
-    std::vector<std::string> words = {"fly", mission, "--json", "--record", record().string()};
+    std::vector<std::string> words = {"fly", mission, "--json", "--record", record().string(), "--replace"};
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }
   fs::path record() const { return folder_.path() / "record"; }
 
-  // Flies in real time. A flight during which the machine stalls for more than 100 ms is repeated, twice at
+  // Flies in real time. A flight during which the machine stalls for 100 ms in total is repeated, twice at
   // most.
   void fly_in_real_time(const std::vector<std::string>& words) {
     for (int attempt = 0; attempt < 3; ++attempt) {
       Program fly("swiftlet", words, folder_.path());
-      exit_code_ = fly.wait(90s);
+      exit_code_ = fly.wait(kStuck);
       log_text_ = all_output(fly);
       output_ = fly.output();
       errors_ = fly.errors();
-      if (longest_stall_ms() < 100.0) return;
+      if (delay_ms() < 100.0) return;
     }
   }
-  // The plant's longest delay behind real time, from its last log line.
-  double longest_stall_ms() const {
+  // By how much the plant fell behind real time in total, from its last log line.
+  double delay_ms() const {
     const std::size_t at = log_text_.rfind("behind real time ");
     const std::size_t comma = log_text_.find(", ", at);
     return at == std::string::npos || comma == std::string::npos ? 0.0
@@ -132,7 +132,11 @@ TEST_F(Fly, SpeedScalesRealTime) {
   fly_in_real_time(arguments(folder_.write("hop.yaml", kHopMission), {"--speed", "4"}));
   ASSERT_EQ(exit_code_, 0) << log_text_;
   const json report = json::parse(output_);
-  EXPECT_NEAR(report.at("control_rate_hz"), 2000.0, 200.0);
+  const double rate_hz = report.at("control_rate_hz");
+  EXPECT_LT(rate_hz, 2200.0);
+  // The plant says for how long it did not run: time stood still meanwhile.
+  const double measured_s = report.at("cycles").get<double>() / rate_hz;
+  EXPECT_GT(rate_hz * measured_s / (measured_s - 1e-3 * delay_ms()), 1800.0) << log_text_;
   EXPECT_LT(report.at("rms_3d_m"), 0.010);
 }
 
@@ -150,7 +154,7 @@ TEST_F(Fly, FliesOverSharedMemoryAndRemovesIt) {
       kStartTimeout))
       << all_output(fly);
   EXPECT_FALSE(files.empty()) << "no process used shared memory";
-  ASSERT_EQ(fly.wait(90s), 0) << all_output(fly);
+  ASSERT_EQ(fly.wait(kStuck), 0) << all_output(fly);
   for (const std::string& file : files) EXPECT_FALSE(fs::exists(file)) << file;
 }
 
@@ -159,7 +163,7 @@ TEST_F(Fly, FailsBeyondTheMissionsTolerance) {
   mission.replace(mission.find("0.1"), 3, "1e-6");
   Program fly("swiftlet", arguments(folder_.write("strict.yaml", mission), {"--clock", "lockstep"}),
               folder_.path());
-  ASSERT_EQ(fly.wait(90s), 1) << all_output(fly);
+  ASSERT_EQ(fly.wait(kStuck), 1) << all_output(fly);
   const json report = json::parse(fly.output());
   EXPECT_EQ(report.at("completed"), false);
   EXPECT_NE(report.at("reason").get<std::string>().find("the tolerance is 0.000 m"), std::string::npos)
@@ -177,8 +181,8 @@ TEST_P(FlyTwoAtOnce, DoNotInterfere) {
   };
   Program first("swiftlet", words("a"), folder_.path());
   Program second("swiftlet", words("b"), folder_.path());
-  EXPECT_EQ(first.wait(90s), 0) << first.errors();
-  EXPECT_EQ(second.wait(90s), 0) << second.errors();
+  EXPECT_EQ(first.wait(kStuck), 0) << first.errors();
+  EXPECT_EQ(second.wait(kStuck), 0) << second.errors();
 }
 
 INSTANTIATE_TEST_SUITE_P(, FlyTwoAtOnce, testing::Values("udp", "shm"));
@@ -200,7 +204,7 @@ class FlyInterrupted : public Fly {
 
   void expect_end_without_leftovers() {
     for (const pid_t child : children_) {
-      EXPECT_TRUE(eventually([&] { return !is_running(child); }, 10s)) << child << " still runs";
+      EXPECT_TRUE(eventually([&] { return !is_running(child); }, kStuck)) << child << " still runs";
     }
   }
 
@@ -214,7 +218,7 @@ TEST_P(FlyWithADeadProcess, NamesTheProcessThatDied) {
   const pid_t victim = child_of(fly_.pid(), GetParam());
   ASSERT_GT(victim, 0);
   ASSERT_EQ(kill(victim, SIGKILL), 0);
-  ASSERT_EQ(fly_.wait(20s), 1) << all_output(fly_);
+  ASSERT_EQ(fly_.wait(kStuck), 1) << all_output(fly_);
   const json report = json::parse(fly_.output());
   EXPECT_EQ(report.at("completed"), false);
   EXPECT_EQ(report.at("reason").get<std::string>().find(std::string(GetParam()) +
@@ -241,13 +245,13 @@ TEST_F(FlyOverSharedMemoryWithADeadProcess, RemovesItsSharedMemory) {
   }
   EXPECT_FALSE(files.empty()) << "no process used shared memory";
   ASSERT_EQ(kill(child_of(fly_.pid(), "swiftlet-control"), SIGKILL), 0);
-  ASSERT_EQ(fly_.wait(20s), 1) << all_output(fly_);
+  ASSERT_EQ(fly_.wait(kStuck), 1) << all_output(fly_);
   for (const std::string& file : files) EXPECT_FALSE(fs::exists(file)) << file;
 }
 
 TEST_F(FlyInterrupted, LandsOnTheFirstInterrupt) {
   fly_.signal(SIGINT);
-  ASSERT_EQ(fly_.wait(30s), 1) << all_output(fly_);
+  ASSERT_EQ(fly_.wait(kStuck), 1) << all_output(fly_);
   const json report = json::parse(fly_.output());
   EXPECT_EQ(report.at("completed"), false);
   EXPECT_EQ(report.at("reason"), "interrupted; landed");
@@ -257,10 +261,10 @@ TEST_F(FlyInterrupted, LandsOnTheFirstInterrupt) {
 TEST_F(FlyInterrupted, QuitsOnTheSecondInterrupt) {
   fly_.signal(SIGINT);
   ASSERT_TRUE(eventually(
-      [&] { return fly_.errors().find("interrupt again to quit at once") != std::string::npos; }, 10s));
+      [&] { return fly_.errors().find("interrupt again to quit at once") != std::string::npos; }, kStuck));
   const auto second = std::chrono::steady_clock::now();
   fly_.signal(SIGINT);
-  ASSERT_EQ(fly_.wait(30s), 1) << all_output(fly_);
+  ASSERT_EQ(fly_.wait(kStuck), 1) << all_output(fly_);
   EXPECT_EQ(json::parse(fly_.output()).at("reason"), "interrupted; quit in flight");
   EXPECT_LT(std::chrono::steady_clock::now() - second, 10s);
   expect_end_without_leftovers();
@@ -268,7 +272,7 @@ TEST_F(FlyInterrupted, QuitsOnTheSecondInterrupt) {
 
 TEST_F(FlyInterrupted, EndsItsProcessesWhenKilled) {
   fly_.signal(SIGKILL);
-  ASSERT_EQ(fly_.wait(10s), 128 + SIGKILL);
+  ASSERT_EQ(fly_.wait(kStuck), 128 + SIGKILL);
   expect_end_without_leftovers();
 }
 

@@ -78,6 +78,8 @@ INVALID_FORM = {
 # Faults that a schema cannot detect.
 INVALID_CONTENT = {
     "outside the fence": mission("{kind: waypoint, position_m: [9, 0, -1], speed_m_s: 1}"),
+    "below the ground": mission("{kind: waypoint, position_m: [1, 0, 1], speed_m_s: 1}"),
+    "below the minimum height": mission("{kind: waypoint, position_m: [1, 0, -0.05], speed_m_s: 1}"),
     "too fast": mission("{kind: waypoint, position_m: [1, 0, -1], speed_m_s: 9}"),
     "a second takeoff": mission("{kind: takeoff, height_m: 1, speed_m_s: 0.5}"),
     "an early land": mission("{kind: land, speed_m_s: 0.5}"),

@@ -25,7 +25,7 @@ class Online : public testing::Test {
     return {"--domain", std::to_string(lock_.domain()), "--vehicle-name", "kl7", "--localhost-only"};
   }
   // Runs `swiftlet` with these arguments on this domain.
-  ProgramResult swiftlet(std::vector<std::string> words, std::chrono::milliseconds timeout = 30s) const {
+  ProgramResult swiftlet(std::vector<std::string> words, std::chrono::milliseconds timeout = kStuck) const {
     for (const std::string& word : network()) words.push_back(word);
     return run_program("swiftlet", std::move(words), folder_.path(), timeout);
   }
@@ -62,8 +62,10 @@ class OnlineFlight : public Online {
   template <class Predicate>
   bool reaches(const char* what, const Predicate& predicate) const {
     json last;
-    const bool reached = eventually([&] { return predicate(last = status()); }, 30s);
-    EXPECT_TRUE(reached) << what << "\n" << last << "\n" << control_.errors();
+    const bool reached = eventually([&] { return predicate(last = status()); }, kStuck);
+    EXPECT_TRUE(reached) << what << "\n"
+                         << last << "\n"
+                         << plant_.errors() << mocap_.errors() << control_.errors();
     return reached;
   }
   bool reaches_mode(const std::string& mode) const {
@@ -75,10 +77,13 @@ class OnlineFlight : public Online {
       return std::hypot(at[0].get<double>() - x, at[1].get<double>() - y, at[2].get<double>() - z) < 0.02;
     });
   }
-  void expect_accepted(const std::vector<std::string>& words) const {
+  // Does not wait until the action ends.
+  void expect_accepted(std::vector<std::string> words) const {
+    const std::string what = words.front();
+    words.emplace_back("--no-wait");
     const ProgramResult result = swiftlet(words);
-    EXPECT_EQ(result.exit_code, 0) << words.front() << ": " << result.errors;
-    EXPECT_EQ(result.output, words.front() + ": accepted by kl7\n");
+    EXPECT_EQ(result.exit_code, 0) << what << ": " << result.errors;
+    EXPECT_EQ(result.output, what + ": accepted by kl7\n");
   }
   void expect_refused(const std::vector<std::string>& words, const std::string& reason) const {
     const ProgramResult result = swiftlet(words);

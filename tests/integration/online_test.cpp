@@ -2,6 +2,8 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,11 @@ TEST_F(OnlineFlight, ExecutesEveryCommand) {
   take_off();
   expect_refused({"disarm"}, "cannot disarm while holding; land first, or stop");
   expect_refused({"goto", "-1", "9", "-1"}, "goto: y is 9.000 m, outside the fence of -3.000 to 3.000 m");
+  expect_refused(
+      {"goto", "1", "0", "0"},
+      "goto: z = 0.000 m is 0.000 m above the ground; the minimum height is 0.100 m, z = -0.100 m");
+  expect_accepted({"goto", "0", "0", "--height", "0.5"});
+  ASSERT_TRUE(reaches_place(0.0, 0.0, -0.5));
   expect_accepted({"goto", "-0.4", "0.3", "-0.8", "--yaw", "0.5", "--speed", "0.8"});
   ASSERT_TRUE(reaches_place(-0.4, 0.3, -0.8));
   expect_accepted({"hold"});
@@ -42,7 +49,7 @@ TEST_F(OnlineFlight, WaitOptionWaitsForTheResult) {
   const auto done = [this](std::vector<std::string> words) {
     const std::string what = words.front();
     words.insert(words.end(), {"--wait", "60"});
-    const ProgramResult result = swiftlet(words, 70s);
+    const ProgramResult result = swiftlet(words, kStuck);
     EXPECT_EQ(result.exit_code, 0) << result.errors;
     EXPECT_EQ(result.output, what + ": accepted by kl7\n" + what + ": done\n");
   };
@@ -61,14 +68,113 @@ TEST_F(OnlineFlight, WaitOptionWaitsForTheResult) {
   EXPECT_EQ(status().at("mode"), "disarmed");
 }
 
+// The line of README.md, or else of docs, as a reader copies it.
+std::string documented_chain() {
+  namespace fs = std::filesystem;
+  std::vector<fs::path> files = {fs::path(SWIFTLET_SOURCE_DIR) / "README.md"};
+  for (const auto& entry : fs::recursive_directory_iterator(SWIFTLET_SOURCE_DIR "/docs")) {
+    if (entry.path().extension() == ".md") files.push_back(entry.path());
+  }
+  for (const fs::path& file : files) {
+    std::ifstream text(file);
+    for (std::string line; std::getline(text, line);) {
+      if (line.rfind("swiftlet arm && swiftlet takeoff 1 && swiftlet goto 1 0 -1 && swiftlet land", 0) == 0)
+        return line;
+    }
+  }
+  return "";
+}
+
+TEST_F(OnlineFlight, DocumentedChainOfCommandsFlies) {
+  const std::string chain = documented_chain();
+  ASSERT_NE(chain, "");
+  std::string options;
+  for (const std::string& word : network()) options += " " + word;
+  const std::string script = folder_.write(
+      "chain.bash", "swiftlet() { '" SWIFTLET_BIN_DIR "/swiftlet' \"$@\"" + options + "; }\n" + chain + "\n");
+  const ProgramResult result = run_program("/bin/bash", {"--norc", script}, folder_.path(), kStuck);
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(result.errors, "");
+  for (const char* line : {"arm: done\n", "takeoff: done\n", "goto: done\n", "land: done\n"})
+    EXPECT_NE(result.output.find(line), std::string::npos) << line << result.output;
+  const json now = status();
+  EXPECT_EQ(now.at("mode"), "disarmed");
+  EXPECT_NEAR(now.at("position_ned_m")[0].get<double>(), 1.0, 0.1);
+}
+
+// GIVEN a command that waits WHEN it is interrupted THEN the vehicle does not go on.
+TEST_F(OnlineFlight, InterruptedTakeOffHoldsOrDisarms) {
+  expect_accepted({"arm"});
+  std::vector<std::string> words = {"takeoff", "2", "--speed", "0.2"};
+  for (const std::string& word : network()) words.push_back(word);
+  Program takeoff("swiftlet", words, folder_.path());
+  ASSERT_TRUE(eventually([&] { return takeoff.output() == "takeoff: accepted by kl7\n"; }, kStuck));
+  takeoff.signal(SIGTERM);
+  EXPECT_EQ(takeoff.wait(kStuck), 1);
+  const std::string mode = status().at("mode");
+  const std::string now = mode == "disarmed" ? "kl7 is disarmed" : "kl7 holds";
+  EXPECT_TRUE(mode == "disarmed" || mode == "holding") << mode;
+  EXPECT_EQ(takeoff.errors(), "swiftlet: takeoff: interrupted; " + now + "\n");
+}
+
+TEST_F(OnlineFlight, InterruptedMissionIsPaused) {
+  const std::string file = folder_.write("walk.yaml",
+                                         "frame: ned\ntolerance_m: 0.1\nends: hovering\nitems:\n"
+                                         "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.8}\n"
+                                         "  - {kind: waypoint, position_m: [2, 0, -0.6], speed_m_s: 0.1}\n");
+  expect_accepted({"arm"});
+  std::vector<std::string> words = {"mission", "fly", file};
+  for (const std::string& word : network()) words.push_back(word);
+  Program mission("swiftlet", words, folder_.path());
+  ASSERT_TRUE(eventually([&] { return mission.errors().find("2/2") != std::string::npos; }, kStuck))
+      << mission.errors();
+  mission.signal(SIGINT);
+  EXPECT_EQ(mission.wait(kStuck), 1);
+  EXPECT_NE(mission.errors().find("interrupted; kl7 paused the mission and holds"), std::string::npos)
+      << mission.errors();
+  EXPECT_EQ(status().at("mission").at("state"), "paused");
+}
+
+TEST_F(OnlineFlight, WaitEndsWhenTheControlServiceDies) {
+  take_off();
+  std::vector<std::string> words = {"goto", "2", "0", "-0.6", "--speed", "0.15"};
+  for (const std::string& word : network()) words.push_back(word);
+  Program going("swiftlet", words, folder_.path());
+  ASSERT_TRUE(eventually([&] { return going.output() == "goto: accepted by kl7\n"; }, kStuck));
+  control_.signal(SIGKILL);
+  EXPECT_EQ(going.wait(kStuck), 1);
+  EXPECT_NE(going.errors().find("no control_status for 3 s"), std::string::npos) << going.errors();
+}
+
+// Whether the process handles SIGINT itself.
+bool catches_interrupts(pid_t pid) {
+  std::ifstream status("/proc/" + std::to_string(pid) + "/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.rfind("SigCgt:", 0) == 0) return (std::stoull(line.substr(7), nullptr, 16) >> (SIGINT - 1)) & 1U;
+  }
+  return false;
+}
+
+TEST_F(Online, InterruptEndsTheSearchForAVehicle) {
+  for (const char* command : {"arm", "land"}) {
+    std::vector<std::string> words = {command, "--timeout", "600"};
+    for (const std::string& word : network()) words.push_back(word);
+    Program program("swiftlet", words, folder_.path());
+    ASSERT_TRUE(eventually([&] { return catches_interrupts(program.pid()); }, kStuck));
+    program.signal(SIGINT);
+    EXPECT_EQ(program.wait(kStuck), 1) << command;
+    EXPECT_EQ(program.output(), "");
+  }
+}
+
 TEST_F(OnlineFlight, WaitOptionReportsACancellation) {
   take_off();
   std::vector<std::string> words = {"goto", "2", "0", "-0.6", "--speed", "0.15", "--wait", "60"};
   for (const std::string& word : network()) words.push_back(word);
   Program going("swiftlet", words, folder_.path());
-  ASSERT_TRUE(eventually([&] { return going.output() == "goto: accepted by kl7\n"; }, 20s));
+  ASSERT_TRUE(eventually([&] { return going.output() == "goto: accepted by kl7\n"; }, kStuck));
   expect_accepted({"land"});
-  EXPECT_EQ(going.wait(20s), 1);
+  EXPECT_EQ(going.wait(kStuck), 1);
   EXPECT_EQ(going.errors(), "swiftlet: goto: canceled by a newer request: land\n");
 }
 
@@ -93,7 +199,7 @@ TEST_F(OnlineFlight, FliesAMissionFileToItsEnd) {
   EXPECT_EQ(unarmed.exit_code, 1);
   EXPECT_EQ(unarmed.errors, "swiftlet: mission hop: cannot start a mission while disarmed; arm first\n");
   expect_accepted({"arm"});
-  const ProgramResult flown = swiftlet({"mission", "fly", file, "--json"}, 60s);
+  const ProgramResult flown = swiftlet({"mission", "fly", file, "--json"}, kStuck);
   EXPECT_EQ(flown.exit_code, 0) << flown.errors;
   EXPECT_EQ(json::parse(flown.output), json({{"mission", "hop"}, {"accepted", true}, {"completed", true}}));
   EXPECT_NE(flown.errors.find("2/3"), std::string::npos) << "no progress shown: " << flown.errors;
@@ -115,7 +221,7 @@ TEST_F(OnlineFlight, UploadsStartsPausesResumesSkipsAndClearsAMission) {
                    [&](const json& status) { return status.at("mission").at("state") == state; });
   };
   const auto accepted = [&](const std::string& request) {
-    const ProgramResult result = swiftlet({"mission", request});
+    const ProgramResult result = swiftlet({"mission", request, "--no-wait"});
     EXPECT_EQ(result.exit_code, 0) << result.errors;
     EXPECT_EQ(result.output, "mission " + request + ": accepted by kl7\n");
   };
@@ -203,7 +309,7 @@ TEST_F(OnlineFlight, ReportsACanceledMission) {
   Program mission("swiftlet", words, folder_.path());
   ASSERT_TRUE(reaches("in the air", [](const json& status) { return status.at("airborne") == true; }));
   expect_accepted({"land"});
-  EXPECT_EQ(mission.wait(20s), 1);
+  EXPECT_EQ(mission.wait(kStuck), 1);
   EXPECT_NE(mission.errors().find("swiftlet: mission hover: canceled by a newer request: land"),
             std::string::npos)
       << mission.errors();
@@ -215,7 +321,7 @@ TEST_F(OnlineFlight, FlyAttachesToRunningProcesses) {
                                          "frame: ned\ntolerance_m: 0.1\nitems:\n"
                                          "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.8}\n"
                                          "  - {kind: land, speed_m_s: 0.8}\n");
-  const ProgramResult result = run_program("swiftlet", attach(file), folder_.path(), 60s);
+  const ProgramResult result = run_program("swiftlet", attach(file), folder_.path(), kStuck);
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const json report = json::parse(result.output);
   EXPECT_EQ(report.at("completed"), true);
@@ -231,10 +337,10 @@ TEST_F(OnlineFlight, FlyReportsASilentVehicle) {
                                          "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.8, hold_s: 100}\n"
                                          "  - {kind: land, speed_m_s: 0.8}\n");
   Program fly("swiftlet", attach(file), folder_.path());
-  ASSERT_TRUE(eventually([&] { return fly.errors().find("1/2 takeoff") != std::string::npos; }, 30s))
+  ASSERT_TRUE(eventually([&] { return fly.errors().find("1/2 takeoff") != std::string::npos; }, kStuck))
       << fly.errors();
   plant_.signal(SIGKILL);
-  ASSERT_EQ(fly.wait(30s), 1) << fly.errors();
+  ASSERT_EQ(fly.wait(kStuck), 1) << fly.errors();
   EXPECT_EQ(json::parse(fly.output()).at("reason"), "the vehicle has sent nothing for 3 s");
 }
 
@@ -275,7 +381,7 @@ TEST_F(OnlineFlight, ListShowsTheVehicle) {
                list[0].at("model") == "kaylion" && list[0].at("controllers") == 1 &&
                list[0].at("battery_v") > 4.0 && list[0].at("mocap_hz") > 20.0;
       },
-      30s));
+      kStuck));
   const ProgramResult text = run_program(
       "swiftlet", {"list", "--domain", std::to_string(lock_.domain()), "--localhost-only"}, folder_.path());
   EXPECT_EQ(text.output.rfind("vehicle ", 0), 0U) << text.output;
@@ -338,7 +444,7 @@ TEST_F(Online, NamesOtherVehiclesFound) {
                result.errors.find("processes found: none; other vehicles found: kl7 (--vehicle-name)") !=
                    std::string::npos;
       },
-      20s));
+      kStuck));
 }
 
 TEST_F(Online, NamesTopicsFoundWhenControlIsMissing) {
@@ -350,7 +456,7 @@ TEST_F(Online, NamesTopicsFoundWhenControlIsMissing) {
                result.errors.find("processes found: plant; topics found: battery, ground_truth, imu, ") !=
                    std::string::npos;
       },
-      20s));
+      kStuck));
 }
 
 }  // namespace

@@ -55,11 +55,16 @@ void SeparateProcesses::hover() {
   ground::Result armed;
   ASSERT_TRUE(eventually([&] { return (armed = ask(msg::Command_Constants::ARM)).accepted(); }, kTimeout))
       << armed.reason;
+  clear_history();
+  const auto start = client_->view().truth.message.position_ned();
   const ground::Result off = ask(msg::Command_Constants::TAKEOFF);
   ASSERT_TRUE(off.accepted()) << off.reason;
   ASSERT_TRUE(reported(control::Mode::kHolding, "take-off completed")) << mode_log() << control_->errors();
-  const auto start = client_->view().truth.message.position_ned();
-  ASSERT_TRUE(eventually([&] { return distance_m(start[0], start[1], -1) < 0.05; }, kTimeout));
+  const bool arrived = eventually([&] { return distance_m(start[0], start[1], -1) < 0.05; }, kTimeout);
+  const auto end = client_->view().truth.message.position_ned();
+  ASSERT_TRUE(arrived) << "at " << end[0] << " " << end[1] << " " << end[2] << " m, from " << start[0] << " "
+                       << start[1] << " m\n"
+                       << mode_log() << plant_->errors() << control_->errors();
   clear_history();
   ASSERT_TRUE(reported(control::Mode::kHolding, "take-off completed"))
       << "status must continue after clear_history()";

@@ -21,7 +21,7 @@ namespace swiftlet::tests {
 
 class SeparateProcesses : public testing::Test {
  protected:
-  static constexpr std::chrono::seconds kTimeout{30};
+  static constexpr std::chrono::seconds kTimeout = kStuck;
 
   SeparateProcesses();
 

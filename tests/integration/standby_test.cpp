@@ -1,4 +1,5 @@
 // Redundant control services of one vehicle: failover when they die, are suspended, return or start together.
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <memory>
@@ -8,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/client/vehicle.hpp"
+#include "swiftlet/io/settings/control_settings_file.hpp"
 #include "tests/integration/program.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/redundant_flight.hpp"
@@ -189,20 +191,81 @@ TEST_F(Standby, ActionSucceedsAcrossAFailover) {
   ground::Vehicle vehicle(flight_.node_settings("program"));
   Inbox<ground::ConnectionEvent> events;
   vehicle.on_connection([&](const ground::ConnectionEvent& event) { events.put(event); });
-  ASSERT_TRUE(vehicle.connect(10s).accepted());
+  ASSERT_TRUE(vehicle.connect(kStuck).accepted());
   ASSERT_TRUE(vehicle.arm().accepted());
   const ground::ActionHandle climb = vehicle.take_off(1.0, 0.4);
   ASSERT_TRUE(climb.accepted()) << climb.answer().reason;
-  ASSERT_TRUE(eventually([&] { return climb.progress() > 0.2; }, 10s));
+  ASSERT_TRUE(eventually([&] { return climb.progress() > 0.2; }, kStuck));
   ASSERT_LT(climb.progress(), 1.0);
   flight_.kill(flight_.active());
-  const ground::ActionResult result = climb.wait(20s);
+  const ground::ActionResult result = climb.wait(kStuck);
   EXPECT_TRUE(result.done()) << result.reason;
   EXPECT_NEAR(vehicle.state().position_ned_m.z(), -1.0, 0.06);
   EXPECT_TRUE(events.wait(
       [](const auto& all) { return all.back().kind == ground::ConnectionEvent::Kind::kReplaced; }));
   EXPECT_TRUE(vehicle.connected());
-  EXPECT_TRUE(vehicle.land().wait(20s).done());
+  EXPECT_TRUE(vehicle.land().wait(kStuck).done());
+}
+
+// The settings that the controllers are started with, with another bandwidth of x and y.
+control::SettingsRequest with_bandwidth(const char* name, double omega_n, double ramp_s) {
+  control::ControlSettings settings =
+      runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml");
+  settings.name = name;
+  settings.position.x.omega_n = settings.position.y.omega_n = omega_n;
+  return control::settings_request(settings, {}, ramp_s);
+}
+
+// omega^2 + 2 zeta omega pole, with zeta 1 and a pole of 0.4 rad/s.
+double p_gain(double omega_n) { return omega_n * omega_n + 0.8 * omega_n; }
+
+// GIVEN gains that were changed in flight WHEN the controller dies THEN the standby flies with them and never
+// with those of its file. The same for a standby that was started after the change, and in the middle of a
+// change.
+TEST_F(Standby, TakesOverWithTheGainsInForce) {
+  flight_.start_controller(5);
+  flight_.start_controller(1);
+  flight_.wait_for_roles(1, 1);
+  hover(1.0);
+  ground::Vehicle vehicle(flight_.node_settings("program"));
+  const ground::ActionHandle soft = vehicle.change_settings(with_bandwidth("soft", 1.0, 0.5));
+  ASSERT_TRUE(soft.accepted()) << soft.answer().reason;
+  ASSERT_TRUE(soft.wait(20s).done());
+
+  Inbox<msg::ControlStatus> statuses;
+  comms::Node node(flight_.node_settings("gains"));
+  const comms::Subscription subscription = node.subscribe<msg::ControlStatus>(
+      comms::topics::kControlStatus, [&](const msg::ControlStatus& status) { statuses.put(status); });
+  const auto waits_for = [&](const char* what,
+                             const std::function<bool(const msg::ControlStatus&)>& predicate) {
+    flight_.wait(what, [&] {
+      const auto all = statuses.items();
+      return !all.empty() && predicate(all.back());
+    });
+  };
+  std::uint64_t dead = flight_.active().id;
+  flight_.kill(flight_.active());
+  waits_for("the standby flies", [&](const auto& status) { return status.controller() != dead; });
+  EXPECT_STREQ(statuses.items().back().settings().c_str(), "soft");
+
+  flight_.start_controller(1);
+  flight_.wait_for_roles(1, 1);
+  ASSERT_TRUE(vehicle.change_settings(with_bandwidth("softer", 0.8, 3.0)).accepted());
+  waits_for("the gains change", [](const auto& status) {
+    return status.gains_progress() > 0.3 && status.gains_progress() < 0.9;
+  });
+  dead = flight_.active().id;
+  flight_.kill(flight_.active());
+  waits_for("the second standby flies", [&](const auto& status) { return status.controller() != dead; });
+  waits_for("the change is complete", [](const auto& status) { return status.gains_progress() == 1.0; });
+
+  EXPECT_STREQ(statuses.items().back().settings().c_str(), "softer");
+  EXPECT_NEAR(statuses.items().back().gains().position_p()[0], p_gain(0.8), 1e-9);
+  double most = 0.0;
+  for (const msg::ControlStatus& status : statuses.items())
+    most = std::max(most, status.gains().position_p()[0]);
+  EXPECT_NEAR(most, p_gain(1.0), 1e-9) << "a takeover fell back to the gains of the file";
+  EXPECT_EQ(mode(), "holding");
 }
 
 // GIVEN a controller that dies during an action WHEN another one starts THEN the client reports the lost
@@ -230,7 +293,7 @@ TEST_F(Standby, ClientReconnectsToARestartedController) {
   EXPECT_EQ(events.items()[2].kind, Kind::kReplaced);
   EXPECT_EQ(events.items()[2].controller, second.id);
   EXPECT_TRUE(vehicle.connected());
-  const ground::ActionResult lost = climb.wait(10s);
+  const ground::ActionResult lost = climb.wait(kStuck);
   EXPECT_EQ(lost.kind, ground::ActionResult::Kind::kLost) << lost.reason;
   std::string refusal;
   EXPECT_TRUE(eventually(
@@ -239,7 +302,7 @@ TEST_F(Standby, ClientReconnectsToARestartedController) {
         refusal = answer.reason;
         return answer.accepted();
       },
-      20s))
+      kStuck))
       << refusal;
   EXPECT_TRUE(vehicle.disarm().wait(5s).done());
 }

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "tests/integration/online_flight.hpp"
+#include "tests/support/hop_mission.hpp"
 
 namespace swiftlet::tests {
 namespace {
@@ -10,7 +11,7 @@ namespace {
 class StreamFlight : public OnlineFlight {
  protected:
   std::string circle(double rate_hz, double duration_s) const {
-    std::string rows = "t [s],x [m],y [m],z [m],vx [m/s],vy [m/s],vz [m/s]\n";
+    std::string rows = "t [s],x_ned [m],y_ned [m],z_ned [m],vx_ned [m/s],vy_ned [m/s],vz_ned [m/s]\n";
     for (int i = 0; i <= static_cast<int>(duration_s * rate_hz); ++i) {
       const double t = i / rate_hz;
       const double angle = 0.5 * t;
@@ -25,7 +26,7 @@ class StreamFlight : public OnlineFlight {
 
 TEST_F(StreamFlight, FliesAFileOfPositionsAndHolds) {
   take_off();
-  const ProgramResult result = swiftlet({"stream", circle(10.0, 4.0), "--json"}, 60s);
+  const ProgramResult result = swiftlet({"stream", circle(10.0, 4.0), "--json"}, kStuck);
   ASSERT_EQ(result.exit_code, 0) << result.errors << result.output;
   const json report = json::parse(result.output);
   EXPECT_EQ(report.at("sent"), 41);
@@ -38,15 +39,30 @@ TEST_F(StreamFlight, FliesAFileOfPositionsAndHolds) {
   EXPECT_NEAR(now.at("position_ned_m")[1].get<double>(), 0.4 * std::sin(2.0), 0.25);
 }
 
+TEST_F(StreamFlight, FliesTheReferenceOfARecord) {
+  const ProgramResult flown = run_program(
+      "swiftlet",
+      {"sim", "fly", folder_.write("hop.yaml", kHopMission), "--record", folder_.path() / "first"},
+      folder_.path());
+  ASSERT_EQ(flown.exit_code, 0) << flown.errors;
+  take_off();
+  const ProgramResult result =
+      swiftlet({"stream", folder_.path() / "first" / "flight.csv", "--json"}, kStuck);
+  ASSERT_EQ(result.exit_code, 0) << result.errors << result.output;
+  const json report = json::parse(result.output);
+  EXPECT_EQ(report.at("refused"), 0);
+  EXPECT_TRUE(reaches_place(0.5, -0.3, -0.7)) << "the hop before its landing";
+}
+
 TEST_F(StreamFlight, ReportsAVelocityThatLeavesTheFence) {
   take_off();
   const std::string file =
-      folder_.write("out.csv", "t [s],vx [cm/s],vy [cm/s],vz [cm/s]\n0,150,0,0\n9,150,0,0\n");
+      folder_.write("out.csv", "t [s],vx_ned [cm/s],vy_ned [cm/s],vz_ned [cm/s]\n0,150,0,0\n9,150,0,0\n");
   const ProgramResult slow = swiftlet({"stream", file});
   EXPECT_EQ(slow.exit_code, 2);
   EXPECT_NE(slow.errors.find("the row after t = 0.000 s is 9.000 s later, limit 0.5 s"), std::string::npos)
       << slow.errors;
-  const ProgramResult result = swiftlet({"stream", file, "--rate", "5", "--land"}, 90s);
+  const ProgramResult result = swiftlet({"stream", file, "--rate", "5", "--land"}, kStuck);
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.errors.find("the vehicle is holding: setpoints stopped; setpoint: stopping point: x is"),
             std::string::npos)
@@ -56,7 +72,7 @@ TEST_F(StreamFlight, ReportsAVelocityThatLeavesTheFence) {
 }
 
 TEST_F(StreamFlight, IsRefusedOnTheGround) {
-  const ProgramResult result = swiftlet({"stream", circle(10.0, 4.0)}, 60s);
+  const ProgramResult result = swiftlet({"stream", circle(10.0, 4.0)}, kStuck);
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.errors.find("setpoints are not accepted while disarmed"), std::string::npos)
       << result.errors;
@@ -65,6 +81,22 @@ TEST_F(StreamFlight, IsRefusedOnTheGround) {
 ProgramResult example(const std::string& name, int domain) {
   const TemporaryFolder folder;
   return run_program(name, {"kl7", std::to_string(domain), "--localhost-only"}, folder.path(), 120s);
+}
+
+TEST(Examples, ExplainTheirArguments) {
+  const TemporaryFolder folder;
+  for (const std::string name : {"example-fly-square", "example-stream-circle", "example-fly-mission"}) {
+    const ProgramResult help = run_program(name, {"--help"}, folder.path());
+    EXPECT_EQ(help.exit_code, 0) << name << help.errors;
+    EXPECT_NE(help.output.find(" [VEHICLE] [DOMAIN] [--localhost-only]\n"), std::string::npos) << help.output;
+    EXPECT_EQ(run_program(name, {"file", "kl7", "domain"}, folder.path()).exit_code, 2) << name;
+    EXPECT_EQ(run_program(name, {"--fast"}, folder.path()).exit_code, 2) << name;
+  }
+  const ProgramResult name =
+      run_program("example-fly-square", {"kl 7", "0", "--localhost-only"}, folder.path());
+  EXPECT_EQ(name.exit_code, 1);
+  EXPECT_NE(name.errors.find("kl 7"), std::string::npos) << name.errors;
+  EXPECT_EQ(run_program("example-fly-mission", {}, folder.path()).exit_code, 2);
 }
 
 TEST_F(OnlineFlight, ExampleFliesASquare) {

@@ -275,10 +275,15 @@ Terminal::~Terminal() {
     kill(impl_->pid, SIGKILL);
     waitpid(impl_->pid, &impl_->status, 0);
   }
-  impl_->ends = true;
-  impl_->reader.join();
+  hang_up();
   close(impl_->slave);
-  close(impl_->master);
+}
+
+void Terminal::hang_up() {
+  impl_->ends = true;
+  if (impl_->reader.joinable()) impl_->reader.join();
+  if (impl_->master >= 0) close(impl_->master);
+  impl_->master = -1;
 }
 
 void Terminal::type(const std::string& keys) {

@@ -20,6 +20,9 @@ class Terminal {
   // Resizes the terminal and notifies the program; the screen is empty until it redraws.
   void resize(int width, int height);
 
+  // Closes the terminal, as a window or connection that ends.
+  void hang_up();
+
   std::string line(int row);  // without trailing blanks
   std::string text();         // all lines
 

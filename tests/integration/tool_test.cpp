@@ -103,7 +103,7 @@ TEST_F(AtATerminal, WatchShowsTheFlightAndExecutesKeys) {
   take_off();
   Terminal terminal("swiftlet", with_network({"watch"}), 80, 24);
   const auto shows = [&](const std::string& text) {
-    return eventually([&] { return terminal.text().find(text) != std::string::npos; }, 20s);
+    return eventually([&] { return terminal.text().find(text) != std::string::npos; }, kStuck);
   };
   ASSERT_TRUE(shows(": holding (take-off completed), airborne")) << terminal.text();
   ASSERT_TRUE(shows("position ")) << terminal.text();
@@ -111,10 +111,12 @@ TEST_F(AtATerminal, WatchShowsTheFlightAndExecutesKeys) {
     EXPECT_TRUE(shows(part)) << part << "\n" << terminal.text();
 
   terminal.resize(50, 8);
-  ASSERT_TRUE(eventually([&] { return terminal.line(7).rfind("h hold", 0) == 0; }, 20s)) << terminal.text();
+  ASSERT_TRUE(eventually([&] { return terminal.line(7).rfind("h hold", 0) == 0; }, kStuck))
+      << terminal.text();
   EXPECT_EQ(terminal.line(0).rfind("kl7 in domain", 0), 0U) << terminal.text();
   terminal.resize(120, 40);
-  ASSERT_TRUE(eventually([&] { return terminal.line(39).rfind("h hold", 0) == 0; }, 20s)) << terminal.text();
+  ASSERT_TRUE(eventually([&] { return terminal.line(39).rfind("h hold", 0) == 0; }, kStuck))
+      << terminal.text();
 
   terminal.type("l");
   ASSERT_TRUE(shows("land: descend vertically? y confirms")) << terminal.text();
@@ -127,20 +129,36 @@ TEST_F(AtATerminal, WatchShowsTheFlightAndExecutesKeys) {
   ASSERT_TRUE(shows("land: accepted")) << terminal.text();
   ASSERT_TRUE(shows(": disarmed (landed)")) << terminal.text();
   terminal.type("q");
-  EXPECT_EQ(terminal.wait(10s), 0);
+  EXPECT_EQ(terminal.wait(kStuck), 0);
   EXPECT_TRUE(terminal.is_restored());
 }
 
 TEST_F(AtATerminal, InterruptedWatchRestoresTheTerminal) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     Terminal terminal("swiftlet", with_network({"watch"}), 80, 24);
-    ASSERT_TRUE(eventually([&] { return terminal.text().find("disarmed") != std::string::npos; }, 20s))
+    ASSERT_TRUE(eventually([&] { return terminal.text().find("disarmed") != std::string::npos; }, kStuck))
         << terminal.text();
     EXPECT_FALSE(terminal.is_restored());
     terminal.signal(signal);
-    EXPECT_EQ(terminal.wait(10s), 0) << signal;
+    EXPECT_EQ(terminal.wait(kStuck), 0) << signal;
     EXPECT_TRUE(terminal.is_restored()) << signal;
   }
+}
+
+TEST_F(AtATerminal, GotoShowsItsProgressAndCtrlCHolds) {
+  take_off();
+  Terminal terminal("swiftlet", with_network({"goto", "2", "0", "-0.6", "--speed", "0.2"}), 80, 24);
+  const auto shows = [&](const std::string& text) {
+    return eventually([&] { return terminal.text().find(text) != std::string::npos; }, kStuck);
+  };
+  ASSERT_TRUE(shows(" %  holding  (")) << terminal.text();
+  terminal.type("\x03");
+  EXPECT_EQ(terminal.wait(kStuck), 1);
+  EXPECT_TRUE(shows("swiftlet: goto: interrupted; kl7 holds")) << terminal.text();
+  ASSERT_TRUE(reaches("rest", [](const json& status) {
+    return status.at("request").at("kind") == "hold" && status.at("request").at("state") == "succeeded";
+  }));
+  EXPECT_LT(status().at("position_ned_m")[0].get<double>(), 1.9);
 }
 
 TEST_F(AtATerminal, StopRequiresATypedConfirmation) {
@@ -148,9 +166,9 @@ TEST_F(AtATerminal, StopRequiresATypedConfirmation) {
   {
     Terminal terminal("swiftlet", with_network({"stop"}), 80, 24);
     ASSERT_TRUE(
-        eventually([&] { return terminal.text().find("Type stop to do it:") != std::string::npos; }, 20s));
+        eventually([&] { return terminal.text().find("Type stop to do it:") != std::string::npos; }, kStuck));
     terminal.type("y\n");
-    EXPECT_EQ(terminal.wait(10s), 2);
+    EXPECT_EQ(terminal.wait(kStuck), 2);
     EXPECT_TRUE(eventually([&] {
       return terminal.text().find("not confirmed, nothing was sent") != std::string::npos;
     })) << terminal.text();
@@ -158,9 +176,9 @@ TEST_F(AtATerminal, StopRequiresATypedConfirmation) {
   EXPECT_EQ(status().at("mode"), "armed");
   Terminal terminal("swiftlet", with_network({"stop"}), 80, 24);
   ASSERT_TRUE(
-      eventually([&] { return terminal.text().find("Type stop to do it:") != std::string::npos; }, 20s));
+      eventually([&] { return terminal.text().find("Type stop to do it:") != std::string::npos; }, kStuck));
   terminal.type("stop\n");
-  EXPECT_EQ(terminal.wait(10s), 0);
+  EXPECT_EQ(terminal.wait(kStuck), 0);
   EXPECT_EQ(status().at("mode"), "stopped");
 }
 

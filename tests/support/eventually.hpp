@@ -11,11 +11,13 @@
 
 namespace swiftlet::tests {
 
+// What takes longer hangs. It is no bound on how fast something is: a busy machine may stall for half a minute.
+constexpr std::chrono::seconds kStuck{120};
+
 // Returns true as soon as the predicate holds, false after the timeout. For sources that cannot notify, such
 // as another process: evaluates it every `period`, and once more after the timeout even if this thread was
 // delayed.
-inline bool eventually(const std::function<bool()>& predicate,
-                       std::chrono::milliseconds timeout = std::chrono::seconds(10),
+inline bool eventually(const std::function<bool()>& predicate, std::chrono::milliseconds timeout = kStuck,
                        std::chrono::milliseconds period = std::chrono::milliseconds(1)) {
   const auto give_up = std::chrono::steady_clock::now() + timeout;
   for (bool is_last = false; !predicate(); is_last = std::chrono::steady_clock::now() > give_up) {
@@ -46,7 +48,7 @@ class Inbox {
 
   // Returns true as soon as the predicate holds for the items, false after the timeout.
   bool wait(const std::function<bool(const std::vector<T>&)>& predicate,
-            std::chrono::milliseconds timeout = std::chrono::seconds(10)) const {
+            std::chrono::milliseconds timeout = kStuck) const {
     std::unique_lock<std::mutex> lock(mutex_);
     return changed_.wait_for(lock, timeout, [&] { return predicate(items_); });
   }

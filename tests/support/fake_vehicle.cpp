@@ -93,7 +93,7 @@ void FakeVehicle::publish() {
   imu.stamp_ns(stamp_ns);
   imu.sequence_number(sequence);
   imu.specific_force_frd({0.0, 0.0, -(up_acceleration_ + plant::kGravity)});
-  imu_.publish(imu);
+  if (sends_imu) imu_.publish(imu);
 }
 
 }  // namespace swiftlet::tests

@@ -24,6 +24,7 @@ class FakeVehicle {
   // Switches for the test.
   std::atomic<bool> seen_by_mocap{true};  // poses are published
   std::atomic<bool> tracked{true};        // poses are valid
+  std::atomic<bool> sends_imu{true};
 
   // Commands received, in order.
   std::vector<comms::msg::ActuatorCommand> commands() const;

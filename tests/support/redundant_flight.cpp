@@ -143,7 +143,7 @@ int RedundantFlight::active_count() const { return count(msg::ControllerState_Co
 int RedundantFlight::standby_count() const { return count(msg::ControllerState_Constants::STANDBY); }
 
 void RedundantFlight::wait(const char* what, const std::function<bool()>& predicate) const {
-  if (!eventually(predicate, 30s)) throw std::runtime_error(std::string("timed out after 30 s: ") + what);
+  if (!eventually(predicate)) throw std::runtime_error(std::string("timed out: ") + what);
 }
 
 void RedundantFlight::wait_for_roles(int active, int standby) const {

@@ -86,16 +86,23 @@ std::string text_of(const Poles& poles) {
 
 std::string row(const char* name, const AttitudeAxisDesign& axis) {
   std::string k;
-  for (Eigen::Index i = 0; i < state_count(axis.model); ++i) k += fmt::format(" {:9.4g}", axis.k[i]);
-  return fmt::format("  {:<6} k ={:<30}  margin {:5.1f} deg  poles ", name, k.c_str(),
-                     axis.phase_margin_deg) +
+  for (Eigen::Index i = 0; i < state_count(axis.model); ++i) k += fmt::format(" {:8.4g}", axis.k[i]);
+  return fmt::format("  {:<6}{:<27} {:7.1f}  ", name, k, axis.phase_margin_deg) +
          text_of(axis.poles_with_lag) + "\n";
 }
 
 std::string row(const char* name, const PositionAxisDesign& axis) {
-  return fmt::format("  {:<6} k_p ={:7.3f}  k_v ={:7.3f}  k_i ={:7.3f}  margin {:5.1f} deg  poles ", name,
-                     axis.gains.k_p, axis.gains.k_v, axis.gains.k_i, axis.phase_margin_deg) +
+  return fmt::format("  {:<6} {:8.3f} {:8.3f} {:8.3f} {:7.1f}  ", name, axis.gains.k_p, axis.gains.k_v,
+                     axis.gains.k_i, axis.phase_margin_deg) +
          text_of(axis.poles) + "\n";
+}
+
+std::string attitude_heading(AttitudeModel model) {
+  const bool lag = model == AttitudeModel::kMotorLag;
+  return fmt::format("attitude: LQR designed on {}; moment / inertia = -k (angle, rate{}), rad/s^2\n",
+                     lag ? "the motor-lag model" : "double integrators", lag ? ", moment / inertia" : "") +
+         fmt::format("            angle     rate {:>8}  margin  poles\n", lag ? "moment" : "") +
+         fmt::format("            1/s^2      1/s {:>8}     deg  rad/s\n", lag ? "1" : "");
 }
 
 double decibels(double factor) { return 20.0 * std::log10(factor); }
@@ -168,13 +175,12 @@ std::string gains_table(const ControlDesign& design, const MarginStudy& margins,
                         const std::string& control) {
   return fmt::format("{} with {}; all margins and poles (rad/s) include the rotor lag of {:.4g} s\n",
                      vehicle.c_str(), control.c_str(), design.rotor_lag_s) +
-         fmt::format(
-             "attitude: LQR designed on {}, u = -k (angle, rate{})\n",
-             design.roll.model == AttitudeModel::kDoubleIntegrator ? "double integrators" : "motor-lag model",
-             design.roll.model == AttitudeModel::kDoubleIntegrator ? "" : ", moment / inertia") +
-         row("roll", design.roll) + row("pitch", design.pitch) + row("yaw", design.yaw) +
-         "position: RPT around the closed attitude loop\n" + row("x", design.x) + row("y", design.y) +
-         row("z", design.z) + text_of(margins);
+         attitude_heading(design.roll.model) + row("roll", design.roll) + row("pitch", design.pitch) +
+         row("yaw", design.yaw) +
+         "position: RPT around the closed attitude loop; gains give m/s^2\n"
+         "              k_p      k_v      k_i  margin  poles\n"
+         "            1/s^2      1/s    1/s^3     deg  rad/s\n" +
+         row("x", design.x) + row("y", design.y) + row("z", design.z) + text_of(margins);
 }
 
 int run_gains(const GainsOptions& options) {
@@ -212,6 +218,7 @@ Command add_gains_command(runtime::CommandLine root) {
       .range(std::size_t{1}, std::size_t{1'000'000})
       .show_default();
   app.add_option("--seed", options->seed, "seed of the first sample; each further sample adds one")
+      .whole()
       .show_default();
   app.add_flag("--json", options->json, "print JSON");
   return {app, [options] { return run_gains(*options); }};

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cstdio>
+#include <exception>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <string>
@@ -25,6 +27,10 @@ constexpr std::size_t kMostJobs = 1024;
 constexpr std::size_t kBarLength = 30;
 constexpr std::size_t kStages = 5;  // progress lines in all if standard error is no terminal
 
+// Sizes of the files of a batch, somewhat above those of real ones.
+constexpr std::uintmax_t kPictureBytes = 1'000'000;
+constexpr std::uintmax_t kRunBytes = 1'500;  // a row of batch.csv and its part of batch.gp
+
 struct BatchOptions {
   FlyOptions flight;
   std::size_t runs = 100;
@@ -43,13 +49,34 @@ std::string bar(const BatchProgress& progress) {
   return text;
 }
 
+// Returns a sentence if a file cannot be written whole.
+std::string write_files(const std::filesystem::path& folder, const BatchReport& report, Progress& progress) {
+  std::string fault;
+  try {
+    write_batch_csv(folder / "batch.csv", report);
+  } catch (const std::exception& error) {
+    fault = error.what();
+    std::error_code ignored;
+    std::filesystem::rename(folder / "batch.csv", folder / "batch.csv.part", ignored);
+  }
+  try {
+    const std::string no_picture = draw_batch(folder, report);
+    if (!no_picture.empty()) progress.say(no_picture);
+  } catch (const std::exception& error) {
+    if (fault.empty()) fault = error.what();
+  }
+  return fault;
+}
+
 int sim_batch(const BatchOptions& options) {
-  const LaunchConfiguration plan = plan_flight(options.flight);
+  LaunchConfiguration plan = plan_flight(options.flight);
   if (plan.seed > std::numeric_limits<std::uint64_t>::max() - options.runs)
     throw InputError("--seed " + std::to_string(plan.seed) + ": too large for " +
                      std::to_string(options.runs) + " runs");
   const BatchRunner runner(plan, options.runs);
-  make_record_folder(plan.folder, "--out");
+  require_space(plan.folder, kPictureBytes + kRunBytes * options.runs, "--out");
+  const RecordFolder folder(plan.folder, existing_record(options.flight), "--out");
+  plan.record_in(folder.path());
   ProgressLine progress;
   for (const std::string& assumption : plan.mission.assumptions)
     progress.say(plan.mission.name + ": " + assumption);
@@ -62,16 +89,16 @@ int sim_batch(const BatchOptions& options) {
                     [&](const BatchProgress& now) {
                       progress.update(static_cast<int>(kStages * now.done / now.requested), bar(now));
                     }));
-  write_batch_csv(plan.folder / "batch.csv", report);
-  const std::string no_picture = draw_batch(plan.folder, report);
-  if (!no_picture.empty()) progress.say(no_picture);
+  const std::string record_fault = write_files(plan.folder, report, progress);
 
   progress.close();
   std::printf("%s", options.flight.json ? (to_json(report).dump() + "\n").c_str() : to_text(report).c_str());
   if (report.interrupted())
     progress.say(fmt::format("swiftlet: batch cancelled after {} of {} runs", report.batch.runs.size(),
                              report.batch.requested));
-  return report.completed() ? kDone : kFailed;
+  if (!record_fault.empty())
+    progress.say("swiftlet: the record " + report.folder + " is incomplete: " + record_fault);
+  return report.completed() && record_fault.empty() ? kDone : kFailed;
 }
 
 }  // namespace
@@ -89,8 +116,10 @@ Command add_sim_batch_command(runtime::CommandLine sim) {
       .show_default();
   app.add_option("--jobs", options->jobs, "number of parallel runs; default: one per core")
       .range(std::size_t{1}, kMostJobs);
-  app.add_option("--out", flight.record,
-                 "folder for batch.csv and batch.png; default: flights/<date>-<mission>");
+  const runtime::Option out = app.add_option(
+      "--out", flight.record, "new folder for batch.csv and batch.png; default: flights/<date>-<mission>");
+  app.add_flag("--replace", flight.replace, "delete the record that the folder of --out holds first")
+      .needs(out);
   app.add_flag("--json", flight.json, "print one JSON object instead of the table");
   app.footer(
       "The controller is designed on --vehicle; the flown vehicles are sampled around it. `swiftlet sim fly` "

@@ -1,5 +1,7 @@
 #include <memory>
 #include <optional>
+#include <stdexcept>
+#include <string>
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
@@ -12,10 +14,22 @@
 namespace swiftlet::ground {
 namespace {
 
+// Returns a sentence if the trace could not be written whole.
+std::string close(runtime::FlightTrace& trace) {
+  try {
+    trace.close();
+    return {};
+  } catch (const std::runtime_error& fault) {
+    return fault.what();
+  }
+}
+
 int sim_fly(const FlyOptions& options) {
-  const LaunchConfiguration plan = plan_flight(options);
+  LaunchConfiguration plan = plan_flight(options);
   ClosedLoop loop = closed_loop(plan, draw(plan, plan.seed).world, plan.seed);
-  make_record_folder(plan.folder);
+  require_space(plan.folder, plan.record_bytes());
+  const RecordFolder folder(plan.folder, existing_record(options));
+  plan.record_in(folder.path());
   keep_settings(plan);
   std::optional<runtime::FlightTrace> trace;
   if (!plan.trace_file.empty()) trace.emplace(plan.trace_file, plan.vehicle.rotor_count());
@@ -27,9 +41,9 @@ int sim_fly(const FlyOptions& options) {
     progress.say(plan.mission.name + ": " + assumption);
   const Interrupts interrupts;
 
-  const InProcessFlight flight = fly_in_process(loop, plan, plan.seed, record, trace ? &*trace : nullptr,
-                                                [&] { return interrupts.count() > 0; });
-  if (trace) trace->close();
+  InProcessFlight flight = fly_in_process(loop, plan, plan.seed, record, trace ? &*trace : nullptr,
+                                          [&] { return interrupts.count() > 0; });
+  if (trace) flight.report.record_fault = close(*trace);
   write_record(plan.folder, record, flight.report, flight.window, progress);
   return print_report(flight.report, options.json, progress);
 }

@@ -15,10 +15,9 @@ class DelayLine {
   // capacity: largest number of items. When the line is full, put() drops the oldest item.
   explicit DelayLine(std::size_t capacity) : items_(std::max<std::size_t>(capacity, 1)) {}
 
-  // Adds an item that arrives at due_ns, or together with the item before it if that one is due later.
+  // Adds an item that arrives at due_ns, or together with the one before it if that is later: take() keeps the order.
   void put(const Item& item, std::int64_t due_ns) {
     if (count_ == items_.size()) drop_oldest();
-    if (count_ > 0) due_ns = std::max(due_ns, at(count_ - 1).due_ns);
     at(count_++) = {item, due_ns};
   }
 

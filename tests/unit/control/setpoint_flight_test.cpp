@@ -102,6 +102,8 @@ TEST_P(SetpointFlight, FollowsBodyRates) {
 }
 
 TEST_P(SetpointFlight, StopsTheRotorsWhenBodyRatesTipItOver) {
+  ASSERT_TRUE(ask(RequestKind::kGoTo, {0, 0, -2.3}));  // high enough to tip over before it must stop sinking
+  loop_.step_until([&] { return truth().position_ned.z() < -2.29; }, 6.0);
   stream(body_rates({4.0, 0, 0}), 1.0);
   EXPECT_EQ(mode(), Mode::kStopped);
   EXPECT_EQ(loop_.controller.status().reason, Reason::kTippedOver);

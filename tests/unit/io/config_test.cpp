@@ -189,6 +189,46 @@ TEST(Config, RefusesValuesWithKeyLineValueAndLimit) {
   EXPECT_EQ(refusal([&] { root.at("n").quantity("kg"); }), "f.yaml:14: n.source: is \"\", must be a text");
 }
 
+// Reads a, b.c and b.kind as a loader does.
+std::string loading(const std::string& text) {
+  try {
+    const ConfigNode root = parse_config(text, "f.yaml");
+    root.read_known([&] {
+      root.at("mass").quantity("kg").number();
+      const ConfigNode rotor = root.at("rotor");
+      rotor.at("spin").choice<int>({{"left", 1}, {"right", 2}});
+      rotor.at("place").vector3(above(0.0));
+    });
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "read";
+}
+
+TEST(Config, AMisspeltKeyIsNamedBeforeTheMissingOne) {
+  const std::string mass = "mass: {value: 1, unit: kg, source: s}\n";
+  const std::string rotor = "rotor: {spin: left, place: [1, 2, 3]}\n";
+  EXPECT_EQ(loading(mass + rotor), "read");
+  EXPECT_EQ(loading("masss: 0.04\n" + rotor),
+            "f.yaml:1: masss: is unknown, must be one of mass or rotor; nearest is mass");
+  EXPECT_EQ(loading("weight: 0.04\n" + rotor), "f.yaml:1: weight: is unknown, must be one of mass or rotor");
+  EXPECT_EQ(loading(mass + "rotor: {spinn: left, place: [1, 2, 3]}\n"),
+            "f.yaml:2: rotor.spinn: is unknown, must be one of spin or place; nearest is spin");
+  EXPECT_EQ(loading("mass: {valu: 1, unit: kg, source: s}\n" + rotor),
+            "f.yaml:1: mass.valu: is unknown, must be one of value, unit or source; nearest is value");
+  EXPECT_EQ(loading(rotor), "f.yaml:1: mass: is missing, must be given");
+  EXPECT_EQ(loading(mass), "f.yaml:1: rotor: is missing, must be given");
+  EXPECT_EQ(loading(mass + "rotor: {spin: left}\n"), "f.yaml:2: rotor.place: is missing, must be given");
+}
+
+TEST(Config, AMisspeltChoiceGetsTheNearestName) {
+  const ConfigNode root = parse_config("kind: waypont\n", "f.yaml");
+  EXPECT_EQ(refusal([&] {
+              root.at("kind").choice<int>({{"takeoff", 1}, {"waypoint", 2}, {"land", 3}});
+            }),
+            "f.yaml:1: kind: is waypont, must be takeoff, waypoint or land; nearest is waypoint");
+}
+
 TEST(Config, RefusesKeysThatWereNotRead) {
   const ConfigNode root = parse_config("mass: 1\nspeed:\n  limit: 1\n  limti: 2\n", "f.yaml");
   root.at("mass");

@@ -65,7 +65,8 @@ TEST(Csv, RefusesBadRows) {
 }
 
 TEST(Csv, QuotesBadFieldsInShortAscii) {
-  EXPECT_EQ(refused("t,a\n0,\xff\x01z\n"), "f.csv:2: a: is ??z, must be a finite number");
+  EXPECT_EQ(refused("t,a\n0,\xff\xfez\n"), "f.csv:2: a: is ??z, must be a finite number");
+  EXPECT_EQ(refused("t,a\n0,\x01z\n"), "f.csv:2: is not a text file: it has control characters");
   EXPECT_EQ(refused("t,a\n0," + std::string(100, 'x') + "\n"),
             "f.csv:2: a: is " + std::string(60, 'x') + "..., must be a finite number");
 }

@@ -50,7 +50,13 @@ TEST_F(CsvWriterTest, QuotesAllTextOnRequest) {
 TEST_F(CsvWriterTest, ReportsAFileThatCannotBeWritten) {
   EXPECT_THROW(CsvWriter(folder_.path() / "none" / "table.csv", {"a"}), std::runtime_error);
   CsvWriter full("/dev/full", {"a"});
-  EXPECT_THROW(full.finish(), std::runtime_error);
+  for (int i = 0; i < 10000; ++i) full.number(i).end_row();
+  try {
+    full.finish();
+    FAIL() << "no error on a full disk";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "/dev/full cannot be written: No space left on device");
+  }
 }
 
 }  // namespace

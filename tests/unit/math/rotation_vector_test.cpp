@@ -12,7 +12,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-using tests::Draw;
+using tests::UniformRandom;
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -25,7 +25,7 @@ Matrix3d rodrigues(const Vector3d& vector) {
   return Matrix3d::Identity() + std::sin(angle) * hat + (1.0 - std::cos(angle)) * hat * hat;
 }
 
-Vector3d direction(Draw& draw) {
+Vector3d direction(UniformRandom& draw) {
   return Vector3d(draw(-1.0, 1.0), draw(-1.0, 1.0), draw(-1.0, 1.0)).normalized();
 }
 
@@ -34,7 +34,7 @@ const double kAngles[] = {1e-9,   1e-5,   1e-3, 0.06, 0.0632, 0.0633, 0.07, 0.19
                           0.1999, 0.2001, 0.3,  1.0,  2.0,    3.0,    3.14};
 
 TEST(RotationVector, MatchesRodriguesFormula) {
-  Draw draw;
+  UniformRandom draw;
   for (const double angle : kAngles) {
     const Vector3d vector = angle * direction(draw);
     const Quaterniond q = rotation(vector);
@@ -45,7 +45,7 @@ TEST(RotationVector, MatchesRodriguesFormula) {
 }
 
 TEST(RotationVector, IsRecoveredFromTheQuaternion) {
-  Draw draw;
+  UniformRandom draw;
   for (const double angle : kAngles) {
     const Vector3d vector = angle * direction(draw);
     const Vector3d axis = vector.normalized();

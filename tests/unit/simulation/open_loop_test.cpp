@@ -108,7 +108,7 @@ void expect_paper_motion(const plant::VehicleState& initial, const std::vector<P
 }
 
 TEST(OpenLoop, TumblingMatchesThePaperEquations) {
-  tests::Draw draw;
+  tests::UniformRandom draw;
   for (int flight = 0; flight < 5; ++flight) {
     SCOPED_TRACE("flight " + std::to_string(flight));
     plant::VehicleState initial;

@@ -34,8 +34,9 @@ plant::Vehicle skewed() {
   return vehicle;
 }
 
-struct Loops {
-  explicit Loops(AttitudeModel model, AttitudeErrorKind error, bool feed_forward = true) : vehicle(skewed()) {
+struct ControlledVehicle {
+  explicit ControlledVehicle(AttitudeModel model, AttitudeErrorKind error, bool feed_forward = true)
+      : vehicle(skewed()) {
     ControlSettings s = settings(model);
     s.attitude.error = error;
     s.attitude.feed_forward = feed_forward;
@@ -119,11 +120,11 @@ struct Law {
   }
 };
 
-Law law_of(const Loops& loops, AttitudeModel model, AttitudeErrorKind error) {
-  const ControlDesign& g = loops.gains;
+Law law_of(const ControlledVehicle& controlled, AttitudeModel model, AttitudeErrorKind error) {
+  const ControlDesign& g = controlled.gains;
   return {model,
           error,
-          loops.vehicle.inertia,
+          controlled.vehicle.inertia,
           0.0821,  // tau_m
           {g.roll.k[0], g.pitch.k[0], g.yaw.k[0]},
           {g.roll.k[1], g.pitch.k[1], g.yaw.k[1]},
@@ -133,8 +134,8 @@ Law law_of(const Loops& loops, AttitudeModel model, AttitudeErrorKind error) {
 // Large angles, body rates, a present moment and all feed-forward terms.
 TEST_P(AttitudeControllerTest, MomentsMatchTheControlLaw) {
   for (const AttitudeModel model : {AttitudeModel::kDoubleIntegrator, AttitudeModel::kMotorLag}) {
-    const Loops loops(model, GetParam());
-    const Law law = law_of(loops, model, GetParam());
+    const ControlledVehicle controlled(model, GetParam());
+    const Law law = law_of(controlled, model, GetParam());
     for (int trial = 0; trial < 1000; ++trial) {
       const Vector3d euler = any(1.0).cwiseProduct(Vector3d(1.0, 1.0, 3.0));
       const Vector3d euler_r = any(1.0).cwiseProduct(Vector3d(1.0, 1.0, 3.0));
@@ -155,7 +156,7 @@ TEST_P(AttitudeControllerTest, MomentsMatchTheControlLaw) {
                          law.k_rate.cwiseProduct(turn * reference.body_rates - rates);
       if (model == AttitudeModel::kMotorLag) command += law.lag_s * (turn * reference.body_jerks);
       const Vector3d expected = law.moment(command, rates, present, accelerations_r);
-      const Vector3d found = loops.controller->moments(Quaterniond(r), rates, present, reference);
+      const Vector3d found = controlled.controller->moments(Quaterniond(r), rates, present, reference);
       ASSERT_LT((found - expected).norm(), 1e-7 * expected.norm()) << "trial " << trial;
     }
   }
@@ -163,15 +164,15 @@ TEST_P(AttitudeControllerTest, MomentsMatchTheControlLaw) {
 
 TEST_P(AttitudeControllerTest, MomentsForRatesMatchTheRateLaw) {
   for (const AttitudeModel model : {AttitudeModel::kDoubleIntegrator, AttitudeModel::kMotorLag}) {
-    const Loops loops(model, GetParam());
-    const Law law = law_of(loops, model, GetParam());
+    const ControlledVehicle controlled(model, GetParam());
+    const Law law = law_of(controlled, model, GetParam());
     for (int trial = 0; trial < 100; ++trial) {
       const Vector3d rates = any(10.0);
       const Vector3d wanted = any(10.0);
       const Vector3d present = any(2e-3);
       const Vector3d expected =
           law.moment(law.k_rate.cwiseProduct(wanted - rates), rates, present, Vector3d::Zero());
-      ASSERT_LT((loops.controller->moments_for_rates(rates, present, wanted) - expected).norm(),
+      ASSERT_LT((controlled.controller->moments_for_rates(rates, present, wanted) - expected).norm(),
                 1e-12 * expected.norm());
     }
   }
@@ -180,27 +181,27 @@ TEST_P(AttitudeControllerTest, MomentsForRatesMatchTheRateLaw) {
 // The double integrator's LQR in closed form, Q = diag(q1, q2) and R = 1:
 // K = [sqrt(q1), sqrt(q2 + 2 sqrt(q1))].
 TEST_P(AttitudeControllerTest, SmallErrorsOfEachAxisUseItsGains) {
-  const Loops loops(AttitudeModel::kDoubleIntegrator, GetParam());
+  const ControlledVehicle controlled(AttitudeModel::kDoubleIntegrator, GetParam());
   const Vector3d k_angle(25.0, 30.0, 5.0);
   const Vector3d k_rate(std::sqrt(50.0), std::sqrt(61.0), std::sqrt(10.0));
   for (int axis = 0; axis < 3; ++axis) {
     const Vector3d unit = Vector3d::Unit(axis);
     const Quaterniond turned(Eigen::AngleAxisd(1e-5, unit));
-    const Vector3d angle_moment =
-        loops.controller->moments(turned, Vector3d::Zero(), Vector3d::Zero(), reference_at(Vector3d::Zero()));
-    EXPECT_LT((angle_moment + loops.vehicle.inertia * (1e-5 * k_angle[axis] * unit)).norm(),
+    const Vector3d angle_moment = controlled.controller->moments(turned, Vector3d::Zero(), Vector3d::Zero(),
+                                                                 reference_at(Vector3d::Zero()));
+    EXPECT_LT((angle_moment + controlled.vehicle.inertia * (1e-5 * k_angle[axis] * unit)).norm(),
               1e-9 * angle_moment.norm())
         << axis;
-    const Vector3d rate_moment = loops.controller->moments(Quaterniond::Identity(), 1e-5 * unit,
-                                                           Vector3d::Zero(), reference_at(Vector3d::Zero()));
-    EXPECT_LT((rate_moment + loops.vehicle.inertia * (1e-5 * k_rate[axis] * unit)).norm(),
+    const Vector3d rate_moment = controlled.controller->moments(
+        Quaterniond::Identity(), 1e-5 * unit, Vector3d::Zero(), reference_at(Vector3d::Zero()));
+    EXPECT_LT((rate_moment + controlled.vehicle.inertia * (1e-5 * k_rate[axis] * unit)).norm(),
               1e-4 * rate_moment.norm())
         << axis;
   }
 }
 
 TEST_P(AttitudeControllerTest, FeedForwardCanBeDisabled) {
-  const Loops loops(AttitudeModel::kMotorLag, GetParam(), false);
+  const ControlledVehicle controlled(AttitudeModel::kMotorLag, GetParam(), false);
   const Quaterniond q = quaternion_from_euler({0.1, 0.2, 0.3});
   const Vector3d rates = any(2.0);
   const AttitudeReference still = reference_at({0.3, 0.1, 0.2});
@@ -208,30 +209,33 @@ TEST_P(AttitudeControllerTest, FeedForwardCanBeDisabled) {
   moving.body_rates = any(2.0);
   moving.body_accelerations = any(9.0);
   moving.body_jerks = any(30.0);
-  EXPECT_EQ(loops.controller->moments(q, rates, Vector3d::Zero(), moving),
-            loops.controller->moments(q, rates, Vector3d::Zero(), still));
+  EXPECT_EQ(controlled.controller->moments(q, rates, Vector3d::Zero(), moving),
+            controlled.controller->moments(q, rates, Vector3d::Zero(), still));
 }
 
 TEST_P(AttitudeControllerTest, YawTurnsTheShorterWay) {
-  const Loops loops(AttitudeModel::kMotorLag, GetParam());
-  const Vector3d moment = loops.controller->moments(quaternion_from_euler({0.0, 0.0, 3.0}), Vector3d::Zero(),
-                                                    Vector3d::Zero(), reference_at({0.0, 0.0, -3.0}));
+  const ControlledVehicle controlled(AttitudeModel::kMotorLag, GetParam());
+  const Vector3d moment =
+      controlled.controller->moments(quaternion_from_euler({0.0, 0.0, 3.0}), Vector3d::Zero(),
+                                     Vector3d::Zero(), reference_at({0.0, 0.0, -3.0}));
   const double angle = 2.0 * M_PI - 6.0;
   const double error = GetParam() == AttitudeErrorKind::kRotation ? 2.0 * std::sin(0.5 * angle) : angle;
-  EXPECT_NEAR(loops.accelerations(moment, Vector3d::Zero()).z(), loops.gains.yaw.k[0] * error, 1e-9);
+  EXPECT_NEAR(controlled.accelerations(moment, Vector3d::Zero()).z(), controlled.gains.yaw.k[0] * error,
+              1e-9);
 }
 
 TEST_P(AttitudeControllerTest, StaysFiniteAndBoundedAtAnyAttitude) {
-  const Loops loops(AttitudeModel::kMotorLag, GetParam());
+  const ControlledVehicle controlled(AttitudeModel::kMotorLag, GetParam());
   const double most =
-      (Vector3d(loops.gains.roll.k[0], loops.gains.pitch.k[0], loops.gains.yaw.k[0]) * M_PI).norm() *
-      loops.vehicle.inertia.norm();
+      (Vector3d(controlled.gains.roll.k[0], controlled.gains.pitch.k[0], controlled.gains.yaw.k[0]) * M_PI)
+          .norm() *
+      controlled.vehicle.inertia.norm();
   for (int step = -64; step <= 64; ++step) {
     const double theta = step * M_PI / 64.0;  // passes +-90 degrees exactly
     for (const double phi : {-2.0, 0.0, 0.7}) {
       const Quaterniond q = Quaterniond(Eigen::AngleAxisd(theta, Vector3d::UnitY())) *
                             Quaterniond(Eigen::AngleAxisd(phi, Vector3d::UnitX()));
-      const Vector3d moment = loops.controller->moments(q, Vector3d::Zero(), Vector3d::Zero(), {});
+      const Vector3d moment = controlled.controller->moments(q, Vector3d::Zero(), Vector3d::Zero(), {});
       ASSERT_TRUE(moment.allFinite()) << "theta " << theta;
       EXPECT_LE(moment.norm(), most);
     }
@@ -243,10 +247,10 @@ struct Body {
   Quaterniond q = Quaterniond::Identity();
   Vector3d rates = Vector3d::Zero();
   Vector3d moment = Vector3d::Zero();
-  void step(const Loops& loops, const Vector3d& command, double dt) {
+  void step(const ControlledVehicle& controlled, const Vector3d& command, double dt) {
     const Vector3d before = rates;
-    rates += dt * loops.accelerations(moment, rates);
-    moment += dt / loops.gains.rotor_lag_s * (command - moment);
+    rates += dt * controlled.accelerations(moment, rates);
+    moment += dt / controlled.gains.rotor_lag_s * (command - moment);
     const Vector3d turn = 0.5 * dt * (before + rates);
     const double angle = turn.norm();
     if (angle > 0.0) q = q * Quaterniond(Eigen::AngleAxisd(angle, turn / angle));
@@ -256,7 +260,7 @@ struct Body {
 
 TEST_P(AttitudeControllerTest, BringsALargeAttitudeErrorToRest) {
   for (const AttitudeModel model : {AttitudeModel::kDoubleIntegrator, AttitudeModel::kMotorLag}) {
-    const Loops loops(model, GetParam());
+    const ControlledVehicle controlled(model, GetParam());
     const Vector3d wanted(-0.2, 0.3, -1.0);
     const AttitudeReference reference = reference_at(wanted);
     Body body;
@@ -264,7 +268,8 @@ TEST_P(AttitudeControllerTest, BringsALargeAttitudeErrorToRest) {
     body.rates = {3.0, -2.0, 1.0};
     constexpr double kStep = 1e-3;
     for (int i = 0; i < 8000; ++i) {
-      body.step(loops, loops.controller->moments(body.q, body.rates, body.moment, reference), kStep);
+      body.step(controlled, controlled.controller->moments(body.q, body.rates, body.moment, reference),
+                kStep);
     }
     EXPECT_LT(body.q.angularDistance(quaternion_from_euler(wanted)), 1e-3);
     EXPECT_LT(body.rates.norm(), 1e-3);
@@ -273,7 +278,7 @@ TEST_P(AttitudeControllerTest, BringsALargeAttitudeErrorToRest) {
 
 TEST_P(AttitudeControllerTest, FeedForwardOfTheJerkCompensatesTheLag) {
   // Pitch follows 0.3 sin(4 t): behind the lag of 82 ms alone it would be 0.3 rad late in phase.
-  const Loops loops(AttitudeModel::kMotorLag, GetParam());
+  const ControlledVehicle controlled(AttitudeModel::kMotorLag, GetParam());
   const auto worst = [&](bool lead) {
     constexpr double kStep = 5e-4;
     constexpr double kSize = 0.3;
@@ -288,7 +293,8 @@ TEST_P(AttitudeControllerTest, FeedForwardOfTheJerkCompensatesTheLag) {
       reference.body_accelerations.y() = -kOmega * kOmega * s;
       if (lead) reference.body_jerks.y() = -kOmega * kOmega * kOmega * c;
       if (i > 6000) error = std::max(error, std::abs(euler_angles(body.q).vector().y() - s));
-      body.step(loops, loops.controller->moments(body.q, body.rates, body.moment, reference), kStep);
+      body.step(controlled, controlled.controller->moments(body.q, body.rates, body.moment, reference),
+                kStep);
     }
     return error;
   };
@@ -299,15 +305,15 @@ TEST_P(AttitudeControllerTest, FeedForwardOfTheJerkCompensatesTheLag) {
 // Pitching through the vertical, the Euler angles phi and psi jump by half a turn.
 TEST(AttitudeController, OnlyTheRotationErrorIsContinuous) {
   const auto largest_jump = [](AttitudeErrorKind kind) {
-    const Loops loops(AttitudeModel::kMotorLag, kind);
+    const ControlledVehicle controlled(AttitudeModel::kMotorLag, kind);
     const AttitudeReference reference = reference_at({0.0, 0.0, 0.5});
-    const double scale = loops.vehicle.inertia.norm() * loops.gains.roll.k[0];
+    const double scale = controlled.vehicle.inertia.norm() * controlled.gains.roll.k[0];
     double largest = 0.0;
     for (const double phi : {-0.4, 0.0, 0.3}) {
       const auto moment = [&](double theta) {
         const Quaterniond q = Quaterniond(Eigen::AngleAxisd(theta, Vector3d::UnitY())) *
                               Quaterniond(Eigen::AngleAxisd(phi, Vector3d::UnitX()));
-        return loops.controller->moments(q, Vector3d::Zero(), Vector3d::Zero(), reference);
+        return controlled.controller->moments(q, Vector3d::Zero(), Vector3d::Zero(), reference);
       };
       constexpr double kStep = 1e-3;
       for (double theta = -2.5; theta < 2.5; theta += kStep)

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-using Verdict = PoseImuConsistencyTest::Verdict;
+using Result = PoseImuConsistencyTest::Result;
 
 // The IMU's path starts at any position, speed and attitude: none of these contradicts the poses.
 struct Path {
@@ -39,9 +39,9 @@ class PoseImuConsistency : public testing::TestWithParam<std::uint64_t> {
       const double t = static_cast<double>(pose_.stamp_ns) * 1e-9;
       innovation.position = pose_.position_ned - path_.position(t);
       innovation.rotation = rotation_vector(pose_.q_ned_from_frd * path_.attitude(t).conjugate());
-      const Verdict verdict = test_.update(pose_, innovation, settings_);
-      agree_ += verdict == Verdict::kAgree ? 1 : 0;
-      disagree_ += verdict == Verdict::kDisagree ? 1 : 0;
+      const Result result = test_.update(pose_, innovation, settings_);
+      agree_ += result == Result::kAgree ? 1 : 0;
+      disagree_ += result == Result::kDisagree ? 1 : 0;
     }
   }
   void take_pose(int frame, const Vector3d& turned_frd) {
@@ -85,14 +85,14 @@ TEST(PoseImuConsistencyTest, RestartsAfterBegin) {
     pose.position_ned.z() = z_ned;
     return test.update(pose, {{0.0, 0.0, z_ned}, Vector3d::Zero()}, settings);
   };
-  EXPECT_EQ(update(0.0), Verdict::kNone);
-  EXPECT_EQ(update(0.0), Verdict::kNone);
-  EXPECT_EQ(update(0.0), Verdict::kAgree);
-  EXPECT_EQ(update(0.5), Verdict::kDisagree);
+  EXPECT_EQ(update(0.0), Result::kNone);
+  EXPECT_EQ(update(0.0), Result::kNone);
+  EXPECT_EQ(update(0.0), Result::kAgree);
+  EXPECT_EQ(update(0.5), Result::kDisagree);
   test.begin();
-  EXPECT_EQ(update(0.5), Verdict::kNone);
-  EXPECT_EQ(update(0.5), Verdict::kNone);
-  EXPECT_EQ(update(0.5), Verdict::kAgree);
+  EXPECT_EQ(update(0.5), Result::kNone);
+  EXPECT_EQ(update(0.5), Result::kNone);
+  EXPECT_EQ(update(0.5), Result::kAgree);
 }
 
 }  // namespace

@@ -99,6 +99,14 @@ TEST(BrakingManoeuvre, DoesNotIncreaseAMotionBeyondTheLimits) {
   EXPECT_LE(most.jerk, 2.5 * kPeakJerk * kRounding);
 }
 
+// From rest with acceleration a the largest jerk is 4 a / T, at the start. A motion with twice the limit of
+// acceleration A may use twice the limit of jerk J: T = 4 A / J.
+TEST(BrakingManoeuvre, LetsAMotionBeyondTheLimitsBrakeAsMuchHarder) {
+  const Reference from = motion(Vector3d::Zero(), {2.0 * kPeakAcceleration, 0, 0});
+  EXPECT_NEAR(limited_braking(from, kPeakAcceleration, kPeakJerk, 0.0).duration_s,
+              4.0 * kPeakAcceleration / kPeakJerk, 1e-12);
+}
+
 TEST(BrakingManoeuvre, StaysInPlaceForTheMinimumDuration) {
   const Reference from = motion(Vector3d::Zero(), Vector3d::Zero());
   const BrakingManoeuvre stop = limited_braking(from, kPeakAcceleration, kPeakJerk, 0.5);

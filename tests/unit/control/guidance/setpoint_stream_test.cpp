@@ -287,7 +287,7 @@ TEST_F(Stream, RefusesValuesBeyondALimitAndNamesBoth) {
   const double nan = std::nan("");
   Setpoint setpoint = of_kind(SetpointKind::kPosition);
   setpoint.position_ned = {0, 0, -2.6};
-  EXPECT_EQ(refusal(setpoint), "setpoint: z is -2.600 m, outside the fence of -2.500 to 0.200 m");
+  EXPECT_EQ(refusal(setpoint), "setpoint: z is -2.600 m, outside the fence of -2.500 to 0.000 m");
   setpoint.position_ned = {1.5, 0, -1};
   EXPECT_EQ(refusal(setpoint), "setpoint: 1.50 m away from the vehicle, the limit is 1.00 m");
   setpoint = of_kind(SetpointKind::kVelocity);

@@ -84,7 +84,7 @@ TEST_F(Flight, LandingRequestedNearTheGroundDoesNotRise) {
   hover();
   ASSERT_TRUE(ask(RequestKind::kLand).accepted);
   ASSERT_TRUE(step_until([&] { return estimate_.position_ned.z() > -0.01; }, 10.0));
-  ASSERT_TRUE(ask(RequestKind::kGoTo, estimate_.position_ned).accepted);
+  ASSERT_TRUE(ask(RequestKind::kHold).accepted);
   const double before_z = control_setpoint_.reference.position_ned.z();
   ASSERT_TRUE(ask(RequestKind::kLand).accepted);
   while (supervisor_.mode() == Mode::kLanding) {
@@ -251,6 +251,20 @@ TEST_F(Flight, ForgetsContactOfACanceledLanding) {
   step();
   EXPECT_EQ(supervisor_.mode(), Mode::kDescent);
   EXPECT_EQ(control_setpoint_.control_mode, ControlMode::kLevelDescent);
+}
+
+// A landing needs contact for 0.2 s, a descent without position for 0.3 s of its own.
+TEST_F(Flight, DescentDoesNotContinueTheContactOfALanding) {
+  hover();
+  ASSERT_TRUE(ask(RequestKind::kLand).accepted);
+  ASSERT_TRUE(step_until([&] { return supervisor_.state().contact_since_ns != 0; }, 20.0));
+  for (int i = 0; i < 75; ++i) step();
+  ASSERT_EQ(supervisor_.mode(), Mode::kLanding);
+  inputs_.pose_age_s = 1.0;
+  inputs_.vertical_specific_force_residual = 2.0;
+  for (int i = 0; i < 125; ++i) step();
+  EXPECT_EQ(supervisor_.mode(), Mode::kDescent) << "after 0.25 s";
+  ASSERT_TRUE(step_until(Mode::kDisarmed, 0.1));
 }
 
 TEST_F(Flight, ForgetsContactBeforeThePoseReturned) {

@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/control/types/gains.hpp"
 #include "tests/unit/control/placed_flight.hpp"
 
 namespace swiftlet::control {
@@ -109,6 +110,15 @@ Cause request(RequestKind kind) {
   };
 }
 
+Cause change_gains() {
+  return [](Placed& flight) {
+    const GainChange change;
+    Request request = flight.next_request(RequestKind::kSettings);
+    request.gains = &change;
+    return std::optional(flight.supervisor_.request(request, flight.inputs_));
+  };
+}
+
 // A row of the grid: for each place, the mode that follows. ".": nothing happens; "=": accepted, and the mode
 // stays; "x": refused; " ": cannot happen there.
 struct Row {
@@ -159,6 +169,7 @@ const Row kGrid[] = {
     {Event::kMissionSkip, kLand,   "xxxxxx=xxxxxxM", Reason::kRequested, request(RequestKind::kMissionSkip)},
     {Event::kMissionClear, kLand,  "=====xxx======", Reason::kRequested, request(RequestKind::kMissionClear)},
     {Event::kTrajectory, kLand,    "xxxxJxxx=JxxxJ", Reason::kRequested, request(RequestKind::kTrajectory)},
+    {Event::kSettings, kLand,      "==xx=x=x==xx==", Reason::kRequested, change_gains()},
     {Event::kSetpoint, kLand,      "xxxxSxxxx=xxxS", Reason::kSetpointsCame, [](Placed& f) { return std::optional(f.stream(f.estimate_.position_ned)); }},
     {Event::kGoTo, kLand,          "xxxHHxHHHHHxxH", Reason::kRequested, request(RequestKind::kGoTo)},
     {Event::kHold, kLand,          "xxxHHxHHHHHxxH", Reason::kRequested, request(RequestKind::kHold)},

@@ -224,6 +224,24 @@ TEST_F(BatchTest, JsonHasNullForMissingFigures) {
   EXPECT_EQ(json.at("failures")[0].at("reason"), "it went away, \"far\"");
 }
 
+// An error that grows to both sides of the median depends on the distance from it, not on the value.
+TEST_F(BatchTest, EffectsIncludeTheDistanceFromTheMedian) {
+  const FlyOptions how = options(kMass);
+  Batch batch;
+  batch.requested = 5;
+  for (const double value : {1.0, 2.0, 3.0, 4.0, 5.0}) {
+    BatchRun run;
+    run.completed = true;
+    run.rms_3d_m = std::abs(value - 3.0);
+    run.values = {value};
+    batch.runs.push_back(run);
+  }
+  const BatchReport report = report_of(plan_flight(how), how, batch);
+  ASSERT_EQ(report.effects.size(), 1U);
+  EXPECT_NEAR(report.effects[0].of_value, 0.0, 1e-12);
+  EXPECT_NEAR(report.effects[0].of_distance, 1.0, 1e-12);
+}
+
 TEST_F(BatchTest, CsvHasARowForEachRun) {
   const FlyOptions how = options(kMass);
   const std::string text = csv(example_report(plan_flight(how), how));

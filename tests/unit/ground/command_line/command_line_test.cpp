@@ -48,12 +48,21 @@ TEST_F(CommandLine, GotoAcceptsNegativeNumbersWithExponents) {
 }
 
 TEST_F(CommandLine, GotoRefusesInvalidPositions) {
-  EXPECT_FALSE(parses("goto 1 2"));
+  EXPECT_FALSE(parses("goto 1"));
   EXPECT_FALSE(parses("goto 1 2 up"));
+  EXPECT_FALSE(parses("goto 1 2 -1 --height 1"));
+  EXPECT_FALSE(parses("goto 1 2 --height -1"));
   EXPECT_FALSE(parses("goto 1 2 -1 4"));
   EXPECT_FALSE(parses("goto nan 2 -1"));
   EXPECT_FALSE(parses("goto 1 2 -1 --yaw inf"));
   EXPECT_FALSE(parses("goto 1 2 -1 --speed 0"));
+}
+
+TEST_F(CommandLine, HeightIsAnotherWordForZ) {
+  ASSERT_TRUE(parses("goto -1 0 --height 1.5"));
+  EXPECT_EQ(value("goto", "--height"), 1.5);
+  ASSERT_TRUE(parses("takeoff --height 1.2"));
+  EXPECT_EQ(value("takeoff", "height"), 1.2);
 }
 
 TEST_F(CommandLine, FlyAttachesOrStartsProcesses) {

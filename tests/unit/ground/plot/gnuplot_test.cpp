@@ -22,8 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What gnuplot would interpret: quotes, enhanced text, macros, backquotes, formats.
-const std::string kTricky = R"(it's "quoted" {/Bold a_b^c} @x &{y} `touch oh_no` \n \ %g $1 <b> & ~)";
+// What gnuplot would interpret elsewhere: quotes, enhanced text, macros, backquotes, formats.
+const std::string kTricky =
+    R"(it's "quoted" {/Bold a_b^c} @GPVAL_TERM &{y} `touch oh_no` \n \ %g $1 <b> & ~)";
 
 Figure with(Style style, const std::vector<Point>& points) {
   Figure figure = one_panel("a < b & c", "speed (rad/s)", "thrust (N)");
@@ -78,7 +79,7 @@ TEST_F(GnuplotTest, DrawsTextsAsTheyAre) {
   Panel& panel = figure.panels[0];
   panel.title = panel.x.label = panel.y.label = panel.series[0].label = kTricky;
   panel.labels = {{{5.0, 50.0}, kTricky}};
-  panel.x.names = {"it's {a_b^c} @x `y` \\n %g %", "roll"};  // gnuplot cuts longer ones off
+  panel.x.names = {"it's {a_b^c} @GPVAL_TERM `y` \\n %g %", "roll"};  // gnuplot cuts longer ones off
   const std::string drawn = svg(figure);
   std::string escaped;
   for (const char c : kTricky) escaped += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
@@ -86,7 +87,7 @@ TEST_F(GnuplotTest, DrawsTextsAsTheyAre) {
   for (std::size_t at = drawn.find(escaped); at != std::string::npos; at = drawn.find(escaped, at + 1))
     ++count;
   EXPECT_EQ(count, 5U) << "title, two axes, legend and label\n" << drawn;
-  EXPECT_NE(drawn.find("<text>it's {a_b^c} @x `y` \\n %g %</text>"), std::string::npos) << drawn;
+  EXPECT_NE(drawn.find("<text>it's {a_b^c} @GPVAL_TERM `y` \\n %g %</text>"), std::string::npos) << drawn;
   EXPECT_EQ(texts(drawn, "roll").size(), 1U);
   EXPECT_EQ(texts(drawn, "2").size(), 0U) << "names are in place of numbers";
 }
@@ -97,8 +98,9 @@ TEST_F(GnuplotTest, DrawsAHeadlineAsItIs) {
   const std::string script = gnuplot_script(figure, Format::kPng, "it's.png");
   EXPECT_NE(script.find("set output 'it''s.png'\n"), std::string::npos);
   EXPECT_NE(
-      script.find("title 'it''s \"quoted\" {/Bold a_b^c} @x &{y} `touch oh_no` \\n \\ %g $1 <b> & ~   ; "
-                  "set output' font"),
+      script.find(
+          "title 'it''s \"quoted\" {/Bold a_b^c} @GPVAL_TERM &{y} `touch oh_no` \\n \\ %g $1 <b> & ~   ; "
+          "set output' font"),
       std::string::npos)
       << script;
   EXPECT_EQ(draw_png(figure, folder_ / "it's.png"), "");
@@ -262,12 +264,23 @@ TEST_F(GnuplotTest, KeepsTheOldPictureIfGnuplotFails) {
             "no picture was drawn: gnuplot ended with exit status 3: out of paper");
 }
 
+TEST_F(GnuplotTest, RefusesATruncatedPicture) {
+  temporary_.write("some.png", "old");
+  fs::create_directory(folder_ / "bin");
+  tests::write_program(folder_ / "bin" / "gnuplot", "printf '\\211PNG half' > 0");
+  const tests::ProgramPath path(folder_ / "bin");
+  const std::string sentence = draw_png(parabola(1.0, 1.0), folder_ / "some.png");
+  EXPECT_EQ(sentence.find("no picture was drawn: gnuplot wrote a truncated file; is "), 0U) << sentence;
+  EXPECT_EQ(text_of(folder_ / "some.png"), "old");
+  EXPECT_THROW(draw_png_if_installed(parabola(1.0, 1.0), folder_ / "some.png"), std::runtime_error);
+}
+
 TEST_F(GnuplotTest, ReportsThatGnuplotIsNotInstalled) {
   const tests::ProgramPath path(folder_);
   EXPECT_EQ(draw_png(parabola(1.0, 1.0), folder_ / "some.png"),
             "no picture was drawn: gnuplot is not installed");
   EXPECT_TRUE(fs::is_empty(folder_));
-  EXPECT_EQ(draw_png(parabola(1.0, 1.0), folder_ / "some.png", true),
+  EXPECT_EQ(draw_png_if_installed(parabola(1.0, 1.0), folder_ / "some.png"),
             "no picture was drawn: gnuplot is not installed (some.gp draws it)");
   const Drawings drawings = draw_svg({parabola(1.0, 1.0)});
   EXPECT_EQ(drawings.fault, "no picture was drawn: gnuplot is not installed");

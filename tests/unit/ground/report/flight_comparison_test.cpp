@@ -67,12 +67,27 @@ TEST_F(FlightComparison, NewestFlightHasTheLatestReport) {
   const std::filesystem::path newer = flight("a", "0.001", "2.0");
   std::filesystem::last_write_time(
       older / "report.json", std::filesystem::last_write_time(newer / "report.json") - std::chrono::hours(1));
-  EXPECT_EQ(newest_flight(folder_.path()), newer);
+  EXPECT_EQ(newest_record(folder_.path()), newer);
+}
+
+TEST_F(FlightComparison, FindsTheFlightsOfSeveralVehicles) {
+  const std::filesystem::path single = flight("a", "0.001", "2.0");
+  std::filesystem::create_directory(folder_.path() / "b");
+  const std::filesystem::path kl2 = flight("b/kl2", "0.002", "2.0");
+  const std::filesystem::path kl1 = flight("b/kl1", "0.003", "2.0");
+  std::filesystem::last_write_time(
+      single / "report.json", std::filesystem::last_write_time(kl1 / "report.json") - std::chrono::hours(1));
+  EXPECT_EQ(newest_record(folder_.path()), folder_.path() / "b");
+  EXPECT_EQ(flights_of(folder_.path() / "b"), (std::vector<std::filesystem::path>{kl1, kl2}));
+  EXPECT_EQ(flights_of(single), std::vector<std::filesystem::path>{single});
+  folder_.write("b/kl1/report.json", R"({"completed": true, "vehicle_name": "kl1"})");
+  EXPECT_EQ(load_recorded_flight(kl1).name, "b/kl1");
 }
 
 TEST_F(FlightComparison, RefusesFoldersWithoutAFlight) {
   EXPECT_THROW(load_recorded_flight(folder_.path()), InputError);
-  EXPECT_THROW(newest_flight(folder_.path() / "none"), InputError);
+  EXPECT_THROW(newest_record(folder_.path() / "none"), InputError);
+  EXPECT_THROW(flights_of(folder_.path()), InputError);
   folder_.write("report.json", "{\"completed\": tr");
   EXPECT_THROW(load_recorded_flight(folder_.path()), runtime::ConfigError);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <memory>
 #include <sstream>
 #include <vector>
 
@@ -58,6 +59,10 @@ FlightRecord& fly(FlightRecord& record, int count, int last_reference) {
     reference.stamp_ns = truth.stamp_ns;
     reference.mode = 4;
     reference.position_ned = {0.501 + 0.001 * i, 0.25, -1.0};
+    reference.acceleration_ned = {0.0, 0.0, 0.25};
+    reference.q_ned_from_frd = {0.8, 0.6, 0.0, 0.0};
+    reference.thrust_n = 0.4;
+    reference.moment_frd = {0.001, 0.002, 0.003};
     record.reference.append(reference);
   }
   return record;
@@ -73,16 +78,40 @@ TEST_F(FlightFilesTest, CsvHasARowForEachReferenceAndForLaterTruth) {
   const auto column = [&](const std::string& name) {
     return static_cast<std::size_t>(std::find(header.begin(), header.end(), name) - header.begin());
   };
-  EXPECT_EQ(rows[1][column("t")], "-0.010000") << "t = 0 is the window's start";
-  EXPECT_EQ(rows[3][column("px")], "0.51");
-  EXPECT_EQ(rows[3][column("ref_px")], "0.511");
-  EXPECT_EQ(rows[3][column("mode")], "4");
-  EXPECT_EQ(rows[3][column("est_px")], "") << "no estimate with this stamp";
-  EXPECT_EQ(rows[3][column("v_s")], "4.1");
-  EXPECT_EQ(rows[3][column("om4")], "1603");
-  EXPECT_EQ(rows[4][column("t")], "0.026000");
-  EXPECT_EQ(rows[4][column("ref_px")], "") << "no reference with this stamp";
-  EXPECT_EQ(rows[5][column("t")], "0.042000");
+  EXPECT_EQ(rows[1][column("t [s]")], "-0.010000") << "t = 0 is the window's start";
+  EXPECT_EQ(rows[3][column("x_ned [m]")], "0.51");
+  EXPECT_EQ(rows[3][column("ref_x_ned [m]")], "0.511");
+  EXPECT_EQ(rows[3][column("ref_az_ned [m/s^2]")], "0.25");
+  EXPECT_EQ(rows[3][column("ref_qx_ned_from_frd [1]")], "0.6");
+  EXPECT_EQ(rows[3][column("command_thrust [N]")], "0.4");
+  EXPECT_EQ(rows[3][column("command_moment_z_frd [N*m]")], "0.003");
+  EXPECT_EQ(rows[3][column("mode")], "mission");
+  EXPECT_EQ(rows[3][column("est_x_ned [m]")], "") << "no estimate with this stamp";
+  EXPECT_EQ(rows[3][column("supply_voltage [V]")], "4.1");
+  EXPECT_EQ(rows[3][column("rotor_speed4 [rad/s]")], "1603");
+  EXPECT_EQ(header.back(), "rotor_speed4 [rad/s]") << "no commands were recorded";
+  EXPECT_EQ(rows[4][column("t [s]")], "0.026000");
+  EXPECT_EQ(rows[4][column("mode")], "") << "no reference with this stamp";
+  EXPECT_EQ(rows[4][column("ref_x_ned [m]")], "") << "no reference with this stamp";
+  EXPECT_EQ(rows[5][column("t [s]")], "0.042000");
+}
+
+TEST_F(FlightFilesTest, CsvHasTheCommandsOfARecordWithSensors) {
+  FlightRecord record(100);
+  record.sensors = std::make_unique<SensorRecord>(100);
+  for (int i = 0; i < 30; ++i) {
+    plant::ActuatorCommand command;
+    command.stamp_ns = 1'000'000'000 + i * 2'000'000LL;
+    command.rotor_count = 4;
+    command.throttle = {0.01 * i, 0.2, 0.3, 0.4};
+    record.sensors->commands.append(command);
+  }
+  write_flight_csv(folder_ / "flight.csv", fly(record, 30, 10), {1'010'000'000, 1'100'000'000});
+  const auto rows = table(folder_ / "flight.csv");
+  const std::size_t first = rows.front().size() - 4;
+  EXPECT_EQ(rows.front()[first], "throttle1 [1]");
+  EXPECT_EQ(rows[3][first], "0.1") << "of the sample of the same stamp";
+  EXPECT_EQ(rows[3][first + 3], "0.4");
 }
 
 TEST_F(FlightFilesTest, DrawsAPicture) {

@@ -22,12 +22,16 @@ View in_flight() {
   control.reason() = "take-off completed";
   control.airborne(true);
   control.has_pose(true);
+  control.imu_age_s(0.001);
+  control.mocap_age_s(0.01);
+  control.battery_age_s(0.1);
   control.cycles(1000);
   control.low_battery_voltage_v(3.5);
   control.critical_battery_voltage_v(3.3);
   hear(view.control, control);
   msg::Estimate estimate;
   estimate.position_ned({0.001, 0.0, -1.0});
+  estimate.q_ned_from_frd({0.9238795325, 0.0, 0.0, -0.3826834324});  // yaw -45 deg
   hear(view.estimate, estimate);
   msg::Reference reference;
   reference.position_ned({0.0, 0.0, -1.0});
@@ -61,8 +65,9 @@ TEST(WatchScreen, FitsAnyScreenSizeWithKeysOnTheLastLine) {
       const auto lines = watch_screen(view, facts(), kNow, width, height);
       ASSERT_EQ(lines.size(), static_cast<std::size_t>(height));
       for (const ScreenLine& line : lines) ASSERT_LE(line.text.size(), static_cast<std::size_t>(width));
-      EXPECT_EQ(lines.back().text, std::string("h hold   l land   s stop (rotors off)   q quit")
-                                       .substr(0, static_cast<std::size_t>(width)));
+      EXPECT_EQ(lines.back().text,
+                std::string("h hold   l land   s stop (rotors off): each asks for y   q quit")
+                    .substr(0, static_cast<std::size_t>(width)));
     }
   }
   const auto small = watch_screen(view, facts(), kNow, 80, 3);
@@ -77,6 +82,68 @@ TEST(WatchScreen, ShowsPositionAndTrackingError) {
   EXPECT_NE(text.find("no warnings\n"), std::string::npos) << text;
   EXPECT_NE(text.find("position       0.001    0.000   -1.000 m\n"), std::string::npos) << text;
   EXPECT_NE(text.find("error            1.0      0.0      0.0 mm   3-D 1.0 mm\n"), std::string::npos) << text;
+}
+
+TEST(WatchScreen, ShowsAttitudeAndHeading) {
+  const std::string text = text_of(watch_screen(in_flight(), facts(), kNow, 80, 24));
+  EXPECT_NE(text.find("attitude    roll 0.0, pitch 0.0, heading 315.0 deg\n"), std::string::npos) << text;
+  EXPECT_NE(watch_line(in_flight(), facts(), kNow).find("heading 315.0 deg"), std::string::npos);
+}
+
+TEST(WatchScreen, ShowsFirstWhoIsSilent) {
+  View view = in_flight();
+  view.control.message.imu_age_s(3.0);
+  view.battery.message.voltage_v(3.0);
+  for (const int width : {80, 200}) {
+    const auto lines = watch_screen(view, facts(), kNow, width, 24);
+    EXPECT_EQ(lines[0].text.rfind("VEHICLE SILENT for 3.0 s, since ", 0), 0U) << lines[0].text;
+    EXPECT_EQ(lines[0].emphasis, Emphasis::kWarning);
+    EXPECT_EQ(lines[1].text, "kl1 in domain 0: last known: holding (take-off completed), airborne");
+    EXPECT_EQ(text_of(lines).find("no warnings"), std::string::npos);
+  }
+  EXPECT_EQ(watch_line(view, facts(), kNow).rfind("kl1: VEHICLE SILENT for 3.0 s, since ", 0), 0U);
+  view = in_flight();
+  view.control.received -= std::chrono::seconds(3);
+  EXPECT_EQ(watch_screen(view, facts(), kNow, 80, 24)[0].text.rfind("CONTROL SERVICE SILENT for 3.0 s", 0),
+            0U);
+}
+
+TEST(WatchScreen, UsesAWideScreenInTwoColumns) {
+  const auto line_with = [](const std::vector<ScreenLine>& lines, const std::string& word) {
+    return std::find_if(lines.begin(), lines.end(), [&](const ScreenLine& line) {
+      return line.text.rfind(word, 0) == 0 || line.right_text.rfind(word, 0) == 0;
+    });
+  };
+  for (const int width : {kWideScreen, 200}) {
+    const auto lines = watch_screen(in_flight(), facts(), kNow, width, 12);
+    for (const char* word : {"position", "attitude", "error"}) {
+      ASSERT_NE(line_with(lines, word), lines.end()) << word;
+      EXPECT_LE(line_with(lines, word)->text.size(), static_cast<std::size_t>(kRightColumn) - 1);
+    }
+    for (const char* word : {"battery", "rates", "latency", "control ", "controllers"}) {
+      ASSERT_NE(line_with(lines, word), lines.end()) << word;
+      EXPECT_NE(line_with(lines, word)->right_text, "") << word;
+      EXPECT_LE(line_with(lines, word)->right_text.size(), static_cast<std::size_t>(width - kRightColumn));
+    }
+  }
+  for (const ScreenLine& line : watch_screen(in_flight(), facts(), kNow, kWideScreen - 1, 40))
+    EXPECT_EQ(line.right_text, "");
+}
+
+TEST(WatchScreen, WrapsWhatDoesNotFitOnALine) {
+  WatchFacts waiting = facts();
+  waiting.where =
+      "no control service for vehicle kl1 in domain 0; processes found: none; is it running in this domain "
+      "(--domain, ROS_DOMAIN_ID)?";
+  const std::string text = text_of(watch_screen(View(), waiting, kNow, 80, 10));
+  EXPECT_NE(text.find("ROS_DOMAIN_ID)?"), std::string::npos) << text;
+
+  WatchFacts refused = facts();
+  refused.message = "hold: " + waiting.where;
+  const auto lines = watch_screen(in_flight(), refused, kNow, 80, 24);
+  ASSERT_EQ(lines.size(), 24U);
+  EXPECT_EQ(lines[22].text.rfind("hold: no control service", 0), 0U) << lines[22].text;
+  EXPECT_NE(lines[23].text.find("ROS_DOMAIN_ID)?"), std::string::npos) << lines[23].text;
 }
 
 TEST(WatchScreen, ShowsWhatItWaitsFor) {
@@ -96,7 +163,8 @@ TEST(Warnings, NameEveryAbnormalCondition) {
     const auto warnings = warnings_of(view, kNow);
     EXPECT_TRUE(std::find(warnings.begin(), warnings.end(), sentence) != warnings.end()) << sentence;
   };
-  warns([](View& v) { v.control.received -= std::chrono::seconds(3); }, "no control status for 3 s");
+  warns([](View& v) { v.control.message.source_conflict() = "IMU samples of b are ignored"; },
+        "IMU samples of b are ignored");
   warns([](View& v) { v.control.message.mode(msg::ControlStatus_Constants::MODE_STOPPED); },
         "rotors stopped: take-off completed");
   warns([](View& v) { v.control.message.has_pose(false); }, "no pose for 0.0 s");

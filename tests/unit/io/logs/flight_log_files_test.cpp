@@ -181,6 +181,9 @@ TEST(FlightLogFiles, RefusesAmbiguousOrIncompleteLogs) {
       refused(
           "t [s],acc_x_frd [g],acc_y [g],acc_z [g],p [rad/s],q [rad/s],r [rad/s],m1 [1]\n0,0,0,1,0,0,0,1\n"),
       "names axes in some columns only");
+  for (const char* const telemetry : {"t [s],mode,ref_x_ned [m]\n0,mission,1\n", "t,mode,ref_px\n0,4,1\n"})
+    expect_contains(refused(telemetry),
+                    "is that of flight.csv, the telemetry of a flight; an identification");
   expect_contains(
       refused("t [s],acc_x [g],acc_y [g],acc_z [g],p [rad/s],q [rad/s],r [rad/s]\n0,0,0,1,0,0,0\n"),
       "has no column throttle1 [1]");

@@ -196,7 +196,7 @@ INSTANTIATE_TEST_SUITE_P(
               kHead + kTakeoff + "  - {kind: waypoint, position_m: [0, 7.5, -1], speed_m_s: 0.5}\n",
               "m.yaml:5: items[1].position_m: east is 7.5 m, must be inside the fence, -3 to 3 m"},
         Fault{"TooHigh", kHead + "  - {kind: takeoff, height_m: 9, speed_m_s: 0.5}\n",
-              "m.yaml:4: items[0].height_m: down is -9 m, must be inside the fence, -2.5 to 0.2 m"},
+              "m.yaml:4: items[0].height_m: down is -9 m, must be inside the fence, -2.5 to 0 m"},
         Fault{"TooFast", kHead + kTakeoff + "  - {kind: land, speed_m_s: 4}\n",
               "m.yaml:5: items[1].speed_m_s: is 4, must be above 0 and at most 2"},
         Fault{"NotANumber",

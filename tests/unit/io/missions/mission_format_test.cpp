@@ -1,7 +1,9 @@
 #include "swiftlet/io/missions/mission_format.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -53,7 +55,9 @@ TEST(DetectFormat, RecognisesEveryFormat) {
   EXPECT_EQ(detect_format("duration,x^0\n", "a.csv"), MissionFormat::kPolynomialCsv);
   EXPECT_EQ(detect_format("t,x,y,z\n", "a.csv"), MissionFormat::kSampledCsv);
   EXPECT_EQ(detect_format("t,x,y,z\n", "a.txt"), MissionFormat::kSampledCsv);
+  EXPECT_EQ(detect_format("t [ms],x_ned [m]\n", "a.csv"), MissionFormat::kSampledCsv);
   EXPECT_EQ(detect_format("x,y,z\n", "a.csv"), MissionFormat::kWaypointCsv);
+  EXPECT_EQ(detect_format("x_enu [cm],y_enu [cm],z_enu [cm]\n", "a.csv"), MissionFormat::kWaypointCsv);
   EXPECT_EQ(detect_format("\xef\xbb\xbf"
                           "0.0, 1.5,2e-1\r\n",
                           "a.csv"),
@@ -68,7 +72,7 @@ TEST(DetectFormat, RecognisesEveryFormat) {
 TEST(DetectFormat, ErrorListsTheKnownCsvHeaders) {
   const std::string known =
       "duration,x^0,... (polynomials), t,x,y,z,... (samples) or x,y,z[,yaw] (waypoints, also without a "
-      "header)";
+      "header); x may be x_ned [m]";
   EXPECT_EQ(refusal([] { detect_format("", "a.csv"); }), "a.csv: is empty, must hold " + known);
   EXPECT_EQ(refusal([] { detect_format("1,2,3,4,5\n", "a.csv"); }),
             "a.csv:1: has 5 fields, of which the first is 1; must begin with " + known);
@@ -265,6 +269,108 @@ TEST(SampledCsv, UnwrapsYaw) {
   EXPECT_NEAR(before, M_PI / 2 - 5.0, 1e-3);
 }
 
+TEST(SampledCsv, ReadsWhatAStreamOfPositionsHas) {
+  const std::string rows = "0,10,20,-100\n1000,10,20,-100\n2000,10,20,-100\n";
+  const auto at_start = [&](const std::string& header, std::optional<MissionFrame> frame) {
+    return at_path_start(parse_sampled_csv(header + "\n" + rows, "s.csv", control::Limits(), frame));
+  };
+  const Vector3d there(0.1, 0.2, -1.0);
+  EXPECT_LT((at_start("t [ms],x_ned [cm],y_ned [cm],z_ned [cm]", {}).position_ned - there).norm(), 1e-12);
+  EXPECT_LT((at_start("t [ms],x [cm],y [cm],z [cm]", MissionFrame::kNed).position_ned - there).norm(), 1e-12);
+  EXPECT_EQ(refusal([&] { at_start("t [ms],x_ned [cm],y_ned [cm],z_ned [cm]", MissionFrame::kEnu); }),
+            "s.csv:1: header: names the frame ned, but --frame names enu");
+  const MissionFile file = samples(
+      "z_enu [m],t [s],y_enu [m],x_enu [m],yaw_enu [deg],yaw_rate_enu [deg/s],ax_enu [m/s^2],"
+      "ay_enu [m/s^2],az_enu [m/s^2]\n1,0,0.2,0.1,90,0,0,0,0\n1,1,0.2,0.1,90,0,0,0,0\n");
+  EXPECT_LT((at_path_start(file).position_ned - Vector3d(0.2, 0.1, -1.0)).norm(), 1e-12);
+  EXPECT_NEAR(at_path_start(file).yaw_rad, 0.0, 1e-12);
+  EXPECT_FALSE(assumes(file, "taken as")) << "the header says all";
+  EXPECT_TRUE(assumes(file, "accelerations are not used"));
+  EXPECT_TRUE(assumes(file, "yaw_rate is not used"));
+}
+
+TEST(CsvFrame, OfAFileThatNamesNoneIsThatOfTheOption) {
+  const control::Limits limits;
+  const auto ned = MissionFrame::kNed;
+  EXPECT_EQ(
+      at_path_start(parse_sampled_csv("t,x,y,z\n0,1,2,-1\n4,1,2,-1\n", "s.csv", limits, ned)).position_ned,
+      Vector3d(1, 2, -1));
+  EXPECT_EQ(at_path_start(parse_waypoint_csv("1,2,-1\n1,1,-1\n", "w.csv", limits, ned)).position_ned,
+            Vector3d(1, 2, -1));
+  EXPECT_EQ(at_path_start(parse_waypoint_csv("x_ned [cm],y_ned [cm],z_ned [cm]\n100,200,-100\n100,100,-100\n",
+                                             "w.csv", limits))
+                .position_ned,
+            Vector3d(1, 2, -1));
+  EXPECT_LT(
+      (at_path_start(parse_polynomial_csv(kHeader + "\n" + row(4.0, 0.5, 1.0, -1.5), "p.csv", limits, ned))
+           .position_ned -
+       Vector3d(0.5, 0, -1.5))
+          .norm(),
+      1e-9);
+}
+
+// Flight records
+
+// A vertical take-off to 1 m, `moves` m north in 2 s and back, and a landing, at 100 Hz; 20 ms on the ground
+// have no reference.
+std::string flight_table(const std::string& header, bool older) {
+  std::string text = header + "\n0,,0,\n0.01,,0,\n";
+  double begin_s = 0.02;
+  const auto fly = [&](const Vector3d& from, const Vector3d& to, double duration_s) {
+    const control::PolynomialSegment s = control::minimum_jerk(from, 0.3, to, 0.3, duration_s);
+    for (int i = 0; i < std::lround(duration_s * 100); ++i) {
+      const control::Reference r = control::evaluate(s, i * 0.01);
+      text += runtime::exact(begin_s + i * 0.01) + (older ? ",4,0" : ",mission,0");
+      const auto add = [&](const Vector3d& v) {
+        for (int axis = 0; axis < 3; ++axis) text += "," + runtime::exact(v[axis]);
+      };
+      add(r.position_ned);
+      add(r.velocity_ned);
+      if (!older) add(r.acceleration_ned);
+      text += ",0.3\n";
+    }
+    begin_s += duration_s;
+  };
+  fly({0, 0, 0}, {0, 0, -1}, 3.0);
+  fly({0, 0, -1}, {1, 0, -1}, 4.0);
+  fly({1, 0, -1}, {0, 0, -1}, 4.0);
+  fly({0, 0, -1}, {0, 0, 0}, 4.0);
+  const std::size_t fields = static_cast<std::size_t>(std::count(header.begin(), header.end(), ',')) + 1;
+  for (const char* const row : {"\n0,,0,\n", "\n0.01,,0,\n"})
+    text.replace(text.find(row), std::string(row).size(),
+                 std::string(row, std::string(row).size() - 1) + std::string(fields - 4, ',') + "\n");
+  return text;
+}
+
+const std::string kFlight =
+    "t [s],mode,x_ned [m],ref_x_ned [m],ref_y_ned [m],ref_z_ned [m],ref_vx_ned [m/s],ref_vy_ned [m/s],"
+    "ref_vz_ned [m/s],ref_ax_ned [m/s^2],ref_ay_ned [m/s^2],ref_az_ned [m/s^2],ref_yaw_ned [rad]";
+const std::string kOlderFlight = "t,mode,px,ref_px,ref_py,ref_pz,ref_vx,ref_vy,ref_vz,ref_yaw";
+
+TEST(FlightTable, IsFlownAgainBetweenTakeOffAndLanding) {
+  for (const bool older : {false, true}) {
+    const MissionFile file = samples(flight_table(older ? kOlderFlight : kFlight, older));
+    EXPECT_TRUE(assumes(file, "the reference of a recorded flight between take-off and landing, t = 2.9"))
+        << file.assumptions.front();
+    EXPECT_TRUE(control::check(file.mission, control::Limits()).accepted);
+    EXPECT_LT((at_path_start(file).position_ned - Vector3d(0, 0, -1)).norm(), 1e-3);
+    EXPECT_NEAR(at_path_start(file).yaw_rad, 0.3, 1e-9);
+    double farthest = 0.0;
+    for (const control::PolynomialSegment& s : file.mission.segments)
+      farthest = std::max(farthest, control::evaluate(s, s.duration_s).position_ned.x());
+    EXPECT_NEAR(farthest, 1.0, 1e-3);
+  }
+}
+
+TEST(FlightTable, IsRefusedWithoutAFlight) {
+  EXPECT_EQ(
+      refusal([] { samples(kFlight + "\n"); }),
+      "s.csv: has no reference between a take-off and a landing: it is never at rest at least 0.2 m above "
+      "the ground");
+  EXPECT_EQ(refusal([] { samples("t,mode,ref_px\n0,4,1\n"); }),
+            "s.csv:1: header: has no column ref_py, which the flight.csv of a record has");
+}
+
 class BadSampledCsv : public testing::TestWithParam<Fault> {};
 TEST_P(BadSampledCsv, IsRefusedWithASentence) {
   EXPECT_EQ(refusal([] { samples(GetParam().text); }), GetParam().sentence);
@@ -278,10 +384,16 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"time_decreases", "t,x,y,z\n5,0,0,1\n4,0,0,1\n",
               "s.csv:3: t: is 4, must be at least 5.0001 and at most 3605 s"},
         Fault{"nan", "t,x,y,z\n0,0,0,1\n1,0,nan,1\n", "s.csv:3: y: is nan, must be a finite number"},
-        Fault{"acceleration_without_velocity", "t,x,y,z,ax,ay,az\n0,0,0,1,0,0,0\n",
-              "s.csv:1: header: is t,x,y,z,ax,ay,az, must be t,x,y,z,vx,vy,vz,ax,ay,az"},
-        Fault{"unknown_column", "t,x,y,z,roll\n0,0,0,1,0\n",
-              "s.csv:1: header: is t,x,y,z,roll, must be t,x,y,z"},
+        Fault{"part_of_a_velocity", "t,x,y,z,vx\n0,0,0,1,0\n",
+              "s.csv:1: header: has no column vy [m/s], must have vx [m/s], vy [m/s] and vz [m/s]"},
+        Fault{"unused_column", "t,x,y,z,roll\n0,0,0,1,0\n",
+              "s.csv:1: header: has the column roll [rad], which a trajectory does not use"},
+        Fault{"velocities_alone", "t [s],vx_ned [m/s],vy_ned [m/s],vz_ned [m/s]\n0,0,0,0\n1,0,0,0\n",
+              "s.csv:1: header: has no positions, must have x [m], y [m] and z [m]; `swiftlet stream` flies "
+              "velocities, accelerations, attitudes and body rates"},
+        Fault{"no_frame", "t [s],x [m],y [m],z [m]\n0,0,0,1\n1,0,0,1\n",
+              "s.csv:1: header: names no frame: write x_ned [m] (north, east, down) or x_enu [m] (east, "
+              "north, up), or add --frame ned or --frame enu"},
         Fault{"missing_field", "t,x,y,z\n0,0,0,1\n1,0,0\n", "s.csv:3: has 3 fields, must have 4: t,x,y,z"},
         Fault{"starts_in_motion", "t,x,y,z,vx,vy,vz\n0,0,0,1,0.5,0,0\n1,0.5,0,1,0.5,0,0\n2,1,0,1,0,0,0\n",
               "s.csv:2: segment 1 in NED starts at 0.50 m/s, must start at rest"}),

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/csv.hpp"
 #include "swiftlet/math/euler.hpp"
 
 namespace swiftlet::ground {
@@ -13,9 +14,15 @@ namespace {
 using control::SetpointKind;
 using Eigen::Vector3d;
 
-std::string refusal(const std::string& header, const std::vector<std::string>& lines = {}) {
+SetpointRows reader(const std::string& header, const std::string& file,
+                    std::optional<MissionFrame> frame = std::nullopt) {
+  return {runtime::first_csv_line(header, file), file, frame};
+}
+
+std::string refusal(const std::string& header, const std::vector<std::string>& lines = {},
+                    std::optional<MissionFrame> frame = std::nullopt) {
   try {
-    SetpointRows rows(header, "s.csv");
+    SetpointRows rows = reader(header, "s.csv", frame);
     for (const std::string& line : lines) rows.read(line);
   } catch (const runtime::ConfigError& error) {
     return error.what();
@@ -24,20 +31,34 @@ std::string refusal(const std::string& header, const std::vector<std::string>& l
 }
 
 TEST(SetpointRows, DetectKindFromColumns) {
-  EXPECT_EQ(SetpointRows("t [s],x [m],y [m],z [m]", "f").kind(), SetpointKind::kPosition);
-  EXPECT_EQ(SetpointRows("t [s],vx [m/s],vy [m/s],vz [m/s],x [m],y [m],z [m]", "f").kind(),
-            SetpointKind::kPosition);
-  EXPECT_EQ(SetpointRows("t [s],vx [m/s],vy [m/s],vz [m/s],yaw_rate [deg/s]", "f").kind(),
+  const auto kind = [](const std::string& header) { return reader(header, "f", MissionFrame::kNed).kind(); };
+  EXPECT_EQ(kind("t [s],x [m],y [m],z [m]"), SetpointKind::kPosition);
+  EXPECT_EQ(kind("t [s],vx [m/s],vy [m/s],vz [m/s],x [m],y [m],z [m]"), SetpointKind::kPosition);
+  EXPECT_EQ(kind("t [s],vx_ned [m/s],vy_ned [m/s],vz_ned [m/s],yaw_rate_ned [deg/s]"),
             SetpointKind::kVelocity);
-  EXPECT_EQ(SetpointRows("t [s],ax [m/s^2],ay [m/s^2],az [m/s^2]", "f").kind(), SetpointKind::kAcceleration);
-  EXPECT_EQ(SetpointRows("t [s],roll [deg],pitch [deg],yaw [deg],thrust [g]", "f").kind(),
-            SetpointKind::kAttitude);
-  EXPECT_EQ(SetpointRows("thrust [m/s^2],p [rad/s],q [rad/s],r [rad/s],t [ms]", "f").kind(),
+  EXPECT_EQ(kind("t [s],ax [m/s^2],ay [m/s^2],az [m/s^2]"), SetpointKind::kAcceleration);
+  EXPECT_EQ(kind("t [s],roll [deg],pitch [deg],yaw [deg],thrust [g]"), SetpointKind::kAttitude);
+  EXPECT_EQ(kind("thrust [m/s^2],p_frd [rad/s],q_frd [rad/s],r_frd [rad/s],t [ms]"),
             SetpointKind::kBodyRates);
 }
 
+TEST(SetpointRows, RefusePositionsBelowTheGround) {
+  EXPECT_EQ(refusal("t [s],x [m],y [m],z [m]", {"0,0,0,-1", "1,0,0,0.1"}),
+            "s.csv:3: z: in NED: z = +0.100 m is below the ground, as z points down (NED); 0.100 m above the "
+            "ground "
+            "is z = -0.100 m");
+  EXPECT_NE(refusal("t,x,y,z", {"0,0,0,-1"}).find("s.csv:2: z: in NED: z = +1.000 m is below"),
+            std::string::npos);
+  EXPECT_EQ(refusal("t [s],vx [m/s],vy [m/s],vz [m/s]", {"0,0,0,1"}), "none");
+}
+
+TEST(SetpointRows, RefuseBinaryInputWithoutShowingIt) {
+  EXPECT_EQ(refusal("t,x\x01\x1b[31m,y,z"), "s.csv:1: is not a text file: it has control characters");
+  EXPECT_EQ(refusal("t,x,y,z", {"0,0,0,\x1b"}), "s.csv:2: is not a text file: it has control characters");
+}
+
 TEST(SetpointRows, ConvertToSiUnits) {
-  SetpointRows rows("t [ms],vy [cm/s],vx [m/s],vz [m/s],yaw [deg]", "f");
+  SetpointRows rows = reader("t [ms],vy_ned [cm/s],vx_ned [m/s],vz_ned [m/s],yaw_ned [deg]", "f");
   const auto row = rows.read("500, 20, 0.3, -0.1, 90\r");
   ASSERT_TRUE(row);
   EXPECT_EQ(row->time_s, 0.5);
@@ -45,15 +66,45 @@ TEST(SetpointRows, ConvertToSiUnits) {
   EXPECT_FALSE(row->setpoint.yaw_free);
   EXPECT_NEAR(row->setpoint.yaw_rad, M_PI / 2, 1e-12);
   EXPECT_FALSE(rows.read("")) << "a blank line is no row";
-  SetpointRows attitudes("t [s],roll [deg],pitch [deg],yaw [deg],thrust [g]", "f");
+  SetpointRows attitudes = reader("t [s],roll [deg],pitch [deg],yaw [deg],thrust [g]", "f");
   const auto attitude = attitudes.read("0,10,-5,30,1");
   EXPECT_NEAR(attitude->setpoint.specific_thrust, 9.80665, 1e-12);
   const Vector3d euler = control::euler_angles(attitude->setpoint.q_ned_from_frd).vector();
   EXPECT_LT((euler * 180.0 / M_PI - Vector3d(10, -5, 30)).norm(), 1e-9);
 }
 
+TEST(SetpointRows, TakeTheFrameFromTheHeaderOrTheOption) {
+  const auto position = [](const std::string& header, std::optional<MissionFrame> frame) {
+    return reader(header, "f", frame).read("0,1,2,-3")->setpoint.position_ned;
+  };
+  EXPECT_EQ(position("t [s],x_ned [m],y_ned [m],z_ned [m]", {}), Vector3d(1, 2, -3));
+  EXPECT_EQ(position("t [s],x_enu [m],y_enu [m],z_enu [m]", {}), Vector3d(2, 1, 3));
+  EXPECT_EQ(position("t [s],x [m],y [m],z [m]", MissionFrame::kNed), Vector3d(1, 2, -3));
+  EXPECT_EQ(position("t,x,y,z", MissionFrame::kNed), Vector3d(1, 2, -3));
+  EXPECT_EQ(position("t,x,y,z", MissionFrame::kEnu), Vector3d(2, 1, 3));
+  EXPECT_FALSE(reader("t,x,y,z", "f", MissionFrame::kNed).assumption());
+  const auto turning =
+      reader("t [s],vx_enu [m/s],vy_enu [m/s],vz_enu [m/s],yaw_rate_enu [rad/s]", "f").read("0,1,2,3,0.5");
+  EXPECT_EQ(turning->setpoint.velocity_ned, Vector3d(2, 1, -3));
+  EXPECT_EQ(turning->setpoint.yaw_rate, -0.5) << "clockwise from north";
+}
+
+TEST(SetpointRows, RefuseToGuessAFrame) {
+  const std::string sentence =
+      "s.csv:1: header: names no frame: write x_ned [m] (north, east, down) or x_enu [m] (east, north, up), "
+      "or "
+      "add --frame ned or --frame enu";
+  EXPECT_EQ(refusal("t [s],x [m],y [m],z [m]"), sentence);
+  EXPECT_EQ(refusal("t [s],x_ned [m],y_enu [m],z_ned [m]"),
+            "s.csv:1: header: mixes _ned and _enu, must name one frame");
+  EXPECT_EQ(refusal("t [s],x_ned [m],y_ned [m],z_ned [m]", {}, MissionFrame::kEnu),
+            "s.csv:1: header: names the frame ned, but --frame names enu");
+  EXPECT_EQ(refusal("t [s],p [rad/s],q [rad/s],r [rad/s],thrust [g]", {}, MissionFrame::kEnu),
+            "s.csv:1: header: has attitudes or body rates in ENU, must have them in NED and FRD");
+}
+
 TEST(SetpointRows, AssumeEnuPositionsWithoutUnits) {
-  SetpointRows rows("t,x,y,z,yaw", "f");
+  SetpointRows rows = reader("t,x,y,z,yaw", "f");
   ASSERT_TRUE(rows.assumption());
   EXPECT_NE(rows.assumption()->find("in ENU"), std::string::npos);
   const auto row = rows.read("0,1,2,3,0");
@@ -63,28 +114,32 @@ TEST(SetpointRows, AssumeEnuPositionsWithoutUnits) {
 }
 
 TEST(SetpointRows, RefuseInvalidColumnsAndRows) {
-  EXPECT_EQ(refusal("t [s],x [m],y [m]"),
+  EXPECT_EQ(refusal("t [s],x_ned [m],y_ned [m]"),
             "s.csv:1: header: has no column z [m], must have x [m], y [m] and z [m]");
-  EXPECT_EQ(refusal("x [m],y [m],z [m]"), "s.csv:1: header: has no column t [s], must have t [s]");
-  EXPECT_EQ(refusal("t [s],x [ft],y [m],z [m]"),
-            "s.csv:1: header: has the column x [ft] with an unknown unit, must be x [m] or x [cm] or "
-            "x [mm]");
+  EXPECT_EQ(refusal("x_ned [m],y_ned [m],z_ned [m]"),
+            "s.csv:1: header: has no column t [s], must have t [s]");
+  EXPECT_EQ(
+      refusal("t [s],x_ned [ft],y_ned [m],z_ned [m]"),
+      "s.csv:1: header: has the column x_ned [ft] with an unknown unit, must be x_ned [m] or x_ned [cm] or "
+      "x_ned [mm]");
   EXPECT_EQ(refusal("t [s],x,y [m],z [m]"),
             "s.csv:1: header: has the column x without a unit, must be x [m] or x [cm] or x [mm]");
-  EXPECT_EQ(refusal("t [s],x [m],y [m],z [m],roll [rad]"),
-            "s.csv:1: header: has the column roll [rad], which a stream of positions does not use");
-  EXPECT_EQ(refusal("t [s],x [m],x [m],y [m],z [m]"),
+  EXPECT_EQ(refusal("t [s],x_ned [m],y_ned [m],z_ned [m],thrust [g]"),
+            "s.csv:1: header: has the column thrust [m/s^2], which a stream of positions does not use");
+  EXPECT_EQ(refusal("t [s],x_ned [m],x_ned [m],y_ned [m],z_ned [m]"),
             "s.csv:1: header: has the column x twice, must have it once");
-  EXPECT_NE(refusal("t [s],height [m]").find("has the column height [m], must be t [s], x [m]"),
+  EXPECT_NE(refusal("t [s],height [m]").find("has the column height [m], must be t [s], x_ned [m]"),
+            std::string::npos);
+  EXPECT_NE(refusal("t [s],roll_ned [rad]").find("has the column roll_ned [rad], must be"),
             std::string::npos);
   EXPECT_NE(refusal("t [s]").find("names no setpoint"), std::string::npos);
-  const std::string header = "t [s],x [m],y [m],z [m]";
+  const std::string header = "t [s],x_ned [m],y_ned [m],z_ned [m]";
   EXPECT_EQ(refusal(header, {"0,0,0,-1", "0,0,0,-1"}),
             "s.csv:3: t: is 0 s, must be above that of the previous row, 0 s");
   EXPECT_EQ(refusal(header, {"0,0,0"}), "s.csv:2: row: has 3 fields, must have 4");
   for (const char* text : {"nan", "inf", "up", ""})
     EXPECT_EQ(refusal(header, {std::string("0,") + text + ",0,-1"}),
-              std::string("s.csv:2: x [m]: is '") + text + "', must be a finite number");
+              std::string("s.csv:2: x_ned [m]: is '") + text + "', must be a finite number");
 }
 
 SetpointSource of(std::vector<TimedSetpoint> rows) {

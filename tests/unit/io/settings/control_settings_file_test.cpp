@@ -51,6 +51,7 @@ TEST(ControlSettingsFile, ReadsEveryKeyIntoItsMember) {
       "  max_body_rate_rad_s: 30.5\n"
       "  fence_min_ned_m: [-31, -32, -33]\n"
       "  fence_max_ned_m: [34, 35, 36]\n"
+      "  min_height_m: 32.5\n"
       "estimator:\n"
       "  accelerometer_noise_m_s2_per_sqrt_hz: 50\n"
       "  gyro_noise_rad_s_per_sqrt_hz: 51\n"
@@ -133,6 +134,7 @@ TEST(ControlSettingsFile, ReadsEveryKeyIntoItsMember) {
   EXPECT_EQ(s.limits.max_body_rate, 30.5);
   EXPECT_EQ(s.limits.fence_min_ned, Eigen::Vector3d(-31, -32, -33));
   EXPECT_EQ(s.limits.fence_max_ned, Eigen::Vector3d(34, 35, 36));
+  EXPECT_EQ(s.limits.min_height_m, 32.5);
   EXPECT_EQ(s.estimator.accelerometer_noise_density, 50);
   EXPECT_EQ(s.estimator.gyro_noise_density, 51);
   EXPECT_EQ(s.estimator.accelerometer_bias_walk, 52);
@@ -293,6 +295,8 @@ const Fault kFaults[] = {
     {"limits.max_yaw_rate_rad_s", "0", "above 0"},
     {"limits.max_body_rate_rad_s", "0", "above 0"},
     {"limits.fence_max_ned_m", "[3, -99, 0.2]", "[1]: is -99, must be above fence_min_ned_m in y, -"},
+    {"limits.min_height_m", "0", "above 0"},
+    {"limits.min_height_m", "2.6", "is 2.6, must be at most the height of the fence, 2.5"},
     {"limits.fence_min_ned_m", "[-3, .nan, -2]", "[1]: is .nan, must be a finite number"},
     {"estimator.accelerometer_noise_m_s2_per_sqrt_hz", "0", "above 0"},
     {"estimator.gyro_noise_rad_s_per_sqrt_hz", "0", "above 0"},

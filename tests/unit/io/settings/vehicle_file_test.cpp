@@ -117,7 +117,17 @@ const Fault kFaults[] = {
      "time_constant:", "motor.time_constant.source: is missing, must be given"},
     {"BareNumber", "{value: 0.0821, unit: s, source: \"Eq. (18)\"}", "0.0821",
      "time_constant:", "motor.time_constant: is 0.0821, must be a map {value, unit, source}"},
-    {"Misspelt", "linear_drag:", "linear_darg:", "name:", "linear_drag: is missing, must be given"},
+    {"Misspelt", "linear_drag:", "linear_darg:", "linear_darg:",
+     "linear_darg: is unknown, must be one of name, mass, inertia, linear_drag, rotors, rotor, motor, esc, "
+     "battery or uncertainty; nearest is linear_drag"},
+    {"MassMisspelt", "mass:", "masss:", "masss:",
+     "masss: is unknown, must be one of name, mass, inertia, linear_drag, rotors, rotor, motor, esc, battery "
+     "or "
+     "uncertainty; nearest is mass"},
+    {"ArmInMillimetres", "[0.04914392129246505, 0.04914392129246505, 0]", "[49.1, 49.1, 0]",
+     "[49.1, 49.1, 0]",
+     "rotors[0].position_frd: is 69.4379 m, which is implausible: the mass over the longest arm cubed, in "
+     "kg/m^3, is 1.19473e-07, must be between 0.5 and 50000; mm entered as m?"},
     {"Unknown", "name: kaylion", "name: kaylion\ncolour: red", "colour",
      "colour: is unknown, must be one of name, mass, inertia, linear_drag, rotors, rotor, motor, esc, "
      "battery or uncertainty"},

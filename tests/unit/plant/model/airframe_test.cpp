@@ -8,12 +8,12 @@
 namespace swiftlet::plant {
 namespace {
 
-using tests::Draw;
 using tests::kaylion;
 using tests::multirotor;
+using tests::UniformRandom;
 
 TEST(Airframe, KayLionMatchesEquations27And28) {
-  Draw draw;
+  UniformRandom draw;
   const double d = 0.0695 / std::sqrt(2.0);
   const RotorCoefficients& rotor = kaylion().rotor;
   for (int i = 0; i < 100; ++i) {
@@ -34,7 +34,7 @@ TEST(Airframe, KayLionMatchesEquations27And28) {
 
 TEST(Airframe, MomentsAreLeverTimesForce) {
   // For any geometry: the column of a rotor is its position x (0, 0, -T), plus its torque.
-  Draw draw;
+  UniformRandom draw;
   for (int count = kMinRotors; count <= kMaxRotors; ++count) {
     Vehicle vehicle = multirotor(count);
     for (RotorMount& mount : vehicle.rotors)
@@ -62,7 +62,7 @@ TEST(Airframe, HoverThrustIsAnEqualShareOfTheWeight) {
 }
 
 TEST(Airframe, TrimBalancesTheWeightWithoutAMoment) {
-  Draw draw;
+  UniformRandom draw;
   for (int count = kMinRotors; count <= kMaxRotors; ++count) {
     Vehicle vehicle = multirotor(count);
     if (count % 2 == 1) vehicle.rotors.back().spin = Spin::kClockwise;  // equal to its neighbour

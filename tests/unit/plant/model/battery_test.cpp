@@ -9,8 +9,8 @@
 namespace swiftlet::plant {
 namespace {
 
-using tests::Draw;
 using tests::kaylion;
+using tests::UniformRandom;
 
 TEST(Battery, OpenCircuitVoltageMatchesTheTable) {
   const BatteryParameters& battery = kaylion().battery;
@@ -39,7 +39,7 @@ TEST(Battery, ClampsToTheEndsOfTheTable) {
 }
 
 TEST(Battery, StateOfChargeInvertsVoltage) {
-  Draw draw;
+  UniformRandom draw;
   for (int i = 0; i < 1000; ++i) {
     const double soc = draw(0.0, 1.0);
     EXPECT_NEAR(state_of_charge_from_voltage(kaylion().battery, open_circuit_voltage(kaylion().battery, soc)),

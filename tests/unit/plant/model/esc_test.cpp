@@ -9,8 +9,8 @@
 namespace swiftlet::plant {
 namespace {
 
-using tests::Draw;
 using tests::kaylion;
+using tests::UniformRandom;
 
 TEST(Esc, PulseWidthMatchesEquation8) {
   const Esc& esc = kaylion().esc;
@@ -28,7 +28,7 @@ TEST(Esc, VoltageMatchesEquation9) {
 }
 
 TEST(Esc, PulseWidthInvertsThrottle) {
-  Draw draw;
+  UniformRandom draw;
   for (int i = 0; i < 1000; ++i) {
     const double throttle = draw(0.0, 1.0);
     EXPECT_NEAR(throttle_from_pulse_width(kaylion().esc, pulse_width_from_throttle(kaylion().esc, throttle)),
@@ -37,7 +37,7 @@ TEST(Esc, PulseWidthInvertsThrottle) {
 }
 
 TEST(Esc, VoltageInvertsThrottle) {
-  Draw draw;
+  UniformRandom draw;
   for (int i = 0; i < 1000; ++i) {
     const double supply = draw(3.0, 4.3);
     const double throttle = draw(0.0, 1.0);

@@ -11,8 +11,8 @@
 namespace swiftlet::plant {
 namespace {
 
-using tests::Draw;
 using tests::kaylion;
+using tests::UniformRandom;
 
 Vehicle with_model(MotorModel model, double inductance_h = 0.0) {
   Vehicle vehicle = kaylion();
@@ -54,7 +54,7 @@ TEST(Motor, SteadyStateMatchesEquation22) {
 }
 
 TEST(Motor, SteadySpeedInvertsVoltage) {
-  Draw draw;
+  UniformRandom draw;
   for (int i = 0; i < 1000; ++i) {
     const double speed = draw(0.0, 3000.0);
     EXPECT_NEAR(steady_speed_from_voltage(kaylion().motor, voltage_from_steady_speed(kaylion().motor, speed)),
@@ -79,7 +79,7 @@ TEST(Motor, DerivedConstantsSatisfyEquation21) {
 }
 
 TEST(Motor, AllModelsAreInEquilibriumAtTheSteadySpeed) {
-  Draw draw;
+  UniformRandom draw;
   for (int i = 0; i < 1000; ++i) {
     const double voltage = draw(0.1, 4.2);
     for (const MotorModel model : {MotorModel::kReduced, MotorModel::kPhysical}) {
@@ -97,7 +97,7 @@ TEST(Motor, AllModelsAreInEquilibriumAtTheSteadySpeed) {
 TEST(Motor, PhysicalFormsAgree) {
   // J_r dOmega/dt = (K1 / R_a) (v_a - K2 Omega - K3 Omega^2), from K1 i_a - F Omega - k_Q Omega^2.
   const MotorDynamics d = motor_dynamics(with_model(MotorModel::kPhysical));
-  Draw draw;
+  UniformRandom draw;
   for (int i = 0; i < 1000; ++i) {
     const double voltage = draw(0.0, 4.2);
     const double speed = draw(0.0, 2500.0);

@@ -10,8 +10,8 @@
 namespace swiftlet::plant {
 namespace {
 
-using tests::Draw;
 using tests::kaylion;
+using tests::UniformRandom;
 
 // Values of the identified model, computed independently of this code, for g = 9.81 m/s^2.
 struct HoverAnchor {
@@ -51,7 +51,7 @@ TEST(Propulsion, RotorsTurnAtZeroThrottle) {
 }
 
 TEST(Propulsion, ThrottleRoundTripsThroughSpeedAndThrust) {
-  Draw draw;
+  UniformRandom draw;
   for (int i = 0; i < 1000; ++i) {
     const double supply = draw(3.0, 4.3);
     const double throttle = draw(0.0, 1.0);
@@ -63,7 +63,7 @@ TEST(Propulsion, ThrottleRoundTripsThroughSpeedAndThrust) {
 }
 
 TEST(Propulsion, ThrustRisesWithThrottleAndSupply) {
-  Draw draw;
+  UniformRandom draw;
   for (int i = 0; i < 1000; ++i) {
     const double supply = draw(3.0, 4.3);
     const double throttle = draw(0.0, 0.99);

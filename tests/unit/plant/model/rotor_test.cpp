@@ -7,8 +7,8 @@
 namespace swiftlet::plant {
 namespace {
 
-using tests::Draw;
 using tests::kaylion;
+using tests::UniformRandom;
 
 TEST(Rotor, ThrustAndTorqueMatchEquations25And26) {
   EXPECT_DOUBLE_EQ(thrust_from_speed(kaylion().rotor, 1600.0), 3.7901e-8 * 1600.0 * 1600.0);
@@ -17,7 +17,7 @@ TEST(Rotor, ThrustAndTorqueMatchEquations25And26) {
 }
 
 TEST(Rotor, SpeedInvertsThrust) {
-  Draw draw;
+  UniformRandom draw;
   for (int i = 0; i < 1000; ++i) {
     const double speed = draw(0.0, 3000.0);
     EXPECT_NEAR(speed_from_thrust(kaylion().rotor, thrust_from_speed(kaylion().rotor, speed)), speed, 1e-9);
@@ -37,7 +37,7 @@ TEST(Rotor, BladeCoefficientsMatchEquations23And24) {
 }
 
 TEST(Rotor, BladeCoefficientsRoundTrip) {
-  Draw draw;
+  UniformRandom draw;
   for (int i = 0; i < 1000; ++i) {
     const BladeCoefficients blade{draw(0.001, 0.1), draw(0.0001, 0.01), draw(0.01, 0.2), draw(0.9, 1.4)};
     const BladeCoefficients again =

@@ -32,7 +32,7 @@ inline plant::Vehicle multirotor(int rotor_count) {
   return vehicle;
 }
 
-class Draw {
+class UniformRandom {
  public:
   double operator()(double min, double max) {
     return std::uniform_real_distribution<double>(min, max)(generator_);

@@ -97,7 +97,7 @@ TEST(GroundContact, LandsAndComesToRest) {
 }
 
 TEST(GroundContact, DropsNeverGainEnergyOrPenetrate) {
-  Draw draw;
+  UniformRandom draw;
   for (int trial = 0; trial < 40; ++trial) {
     SCOPED_TRACE(trial);
     VehicleState start;

@@ -18,7 +18,7 @@ namespace {
 using Eigen::Vector3d;
 using paper::Motor;
 
-Vector3d random_vector(Draw& draw, double length) {
+Vector3d random_vector(UniformRandom& draw, double length) {
   Vector3d v;
   do {
     v = Vector3d(draw(-1, 1), draw(-1, 1), draw(-1, 1));
@@ -26,7 +26,7 @@ Vector3d random_vector(Draw& draw, double length) {
   return length * v;
 }
 
-plant::VehicleState random_tumble(Draw& draw) {
+plant::VehicleState random_tumble(UniformRandom& draw) {
   plant::VehicleState state;
   state.position_ned = random_vector(draw, 2.0);
   state.velocity_ned = random_vector(draw, 3.0);
@@ -40,7 +40,7 @@ constexpr double kSupplyVoltage = 4.19;  // of a full battery
 
 // Flies 2 s with commands that change every 3 .. 80 ms, and compares at each change. The tolerance is
 // relative to the peak of each quantity.
-void compare(const plant::Vehicle& vehicle, Motor motor, Draw& draw, double tolerance) {
+void compare(const plant::Vehicle& vehicle, Motor motor, UniformRandom& draw, double tolerance) {
   constexpr int kSteps = 2000;
 
   const plant::VehicleState initial = random_tumble(draw);
@@ -74,7 +74,7 @@ void compare(const plant::Vehicle& vehicle, Motor motor, Draw& draw, double tole
 }
 
 TEST(Tumbling, MatchesThePaperWithTheReducedMotor) {
-  Draw draw;
+  UniformRandom draw;
   for (int flight = 0; flight < 10; ++flight) {
     SCOPED_TRACE("flight " + std::to_string(flight));
     compare(kaylion(), Motor::kReduced, draw, 1.0e-5);
@@ -84,7 +84,7 @@ TEST(Tumbling, MatchesThePaperWithTheReducedMotor) {
 TEST(Tumbling, MatchesThePaperWithThePhysicalMotor) {
   plant::Vehicle vehicle = kaylion();
   vehicle.motor.model = plant::MotorModel::kPhysical;
-  Draw draw;
+  UniformRandom draw;
   for (int flight = 0; flight < 10; ++flight) {
     SCOPED_TRACE("flight " + std::to_string(flight));
     compare(vehicle, Motor::kPhysical, draw, 1.0e-5);
@@ -95,7 +95,7 @@ TEST(Tumbling, MatchesThePaperWithProductsOfInertia) {
   plant::Vehicle vehicle = kaylion();
   vehicle.inertia << 4.4e-5, 3.0e-6, -2.0e-6, 3.0e-6, 5.5e-5, 4.0e-6, -2.0e-6, 4.0e-6, 8.8e-5;
   ASSERT_TRUE(plant::validate(vehicle).empty());
-  Draw draw;
+  UniformRandom draw;
   for (int flight = 0; flight < 10; ++flight) {
     SCOPED_TRACE("flight " + std::to_string(flight));
     compare(vehicle, Motor::kReduced, draw, 1.0e-5);

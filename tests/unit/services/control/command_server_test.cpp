@@ -31,7 +31,7 @@ class CommandServerTest : public testing::Test {
       : vehicle_(runtime::load_vehicle(SWIFTLET_SOURCE_DIR "/config/vehicles/kaylion.yaml")),
         settings_(runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml")),
         loop_(vehicle_, settings_),
-        command_server_(loop_, settings_.limits, wake_) {}
+        command_server_(loop_, settings_.limits, GainDesigner(vehicle_, settings_), wake_) {}
 
   // The vehicle at rest on the ground: one IMU, battery and rotor speed sample, and a pose with every fifth.
   plant::ActuatorCommand step() {
@@ -88,6 +88,18 @@ class CommandServerTest : public testing::Test {
     return message;
   }
 
+  // The settings of the controller with another bandwidth of x.
+  msg::ControlSettings settings_message(std::uint64_t id, double omega_n, double zeta = 1.0) const {
+    control::ControlSettings settings = settings_;
+    settings.name = "soft";
+    settings.position.x.omega_n = omega_n;
+    settings.position.x.zeta = zeta;
+    msg::ControlSettings message = comms::to_message(control::settings_request(settings, {}, 1.0));
+    message.client(kClient);
+    message.id(id);
+    return message;
+  }
+
   plant::Vehicle vehicle_;
   control::ControlSettings settings_;
   runtime::Semaphore wake_;
@@ -141,6 +153,39 @@ TEST_F(CommandServerTest, StatusesAfterAnAcceptanceIncludeTheRequest) {
     EXPECT_EQ(snapshot.requests.back().key, (control::RequestKey{kClient, 2})) << snapshot.stamp_ns;
   }
   EXPECT_GT(reported, 2);
+}
+
+// GIVEN a request for other settings THEN their gains are designed before the step, which takes them over.
+TEST_F(CommandServerTest, ChangesTheGains) {
+  settle();
+  EXPECT_DOUBLE_EQ(last_.gains.position_p.x(), 5.6);
+  command_server_.on_control_settings(settings_message(1, 1.0));
+  step();
+  std::vector<RequestResult> answers = command_server_.collect();
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_STREQ(answers[0].kind, "set control");
+  EXPECT_TRUE(answers[0].outcome.accepted) << answers[0].outcome.reason;
+  mode();
+  EXPECT_DOUBLE_EQ(last_.gains.position_p.x(), 1.8);
+  EXPECT_STREQ(last_.status.settings.data(), "soft");
+
+  // The next change begins at these gains.
+  command_server_.on_control_settings(settings_message(2, 2.0));
+  step();
+  EXPECT_STREQ(command_server_.collect().at(0).outcome.reason,
+               "another request changed the gains meanwhile: send this one again");
+  command_server_.set_gains_in_force(last_.gains);
+  command_server_.on_control_settings(settings_message(3, 2.0));
+  step();
+  answers = command_server_.collect();
+  EXPECT_TRUE(answers.at(0).outcome.accepted) << answers[0].outcome.reason;
+}
+
+TEST_F(CommandServerTest, RefusesUnstableGainsBeforeTheInnerLoop) {
+  command_server_.on_control_settings(settings_message(1, 6.0, 0.2));
+  const std::vector<RequestResult> answers = command_server_.collect();
+  ASSERT_EQ(answers.size(), 1U) << "without a step";
+  EXPECT_STREQ(answers[0].outcome.reason, "position.x: with the rotor lag the loop is unstable");
 }
 
 TEST_F(CommandServerTest, AnswersARefusalWithItsReason) {
@@ -253,14 +298,63 @@ TEST_F(CommandServerTest, RefusesRequestsWithoutImuSamples) {
 }
 
 TEST_F(CommandServerTest, RefusesRequestsBeyondItsCapacity) {
-  for (std::uint64_t id = 1; id <= kMaxPendingRequests + 1; ++id)
+  for (std::uint64_t id = 1; id <= kMaxPendingRequests; ++id)
     command_server_.on_command(command(Command_Constants::HOLD, id));
   const std::vector<RequestResult> answers = command_server_.collect();
   ASSERT_EQ(answers.size(), 1U);
-  EXPECT_EQ(answers[0].id, static_cast<std::uint64_t>(kMaxPendingRequests) + 1);
-  EXPECT_STREQ(answers[0].outcome.reason, "32 requests are pending, the limit");
+  EXPECT_EQ(answers[0].id, static_cast<std::uint64_t>(kMaxPendingRequests));
+  EXPECT_STREQ(answers[0].outcome.reason, "31 requests are pending, the limit");
   step();
-  EXPECT_EQ(command_server_.collect().size(), static_cast<std::size_t>(kMaxPendingRequests));
+  EXPECT_EQ(command_server_.collect().size(), static_cast<std::size_t>(kMaxPendingRequests) - 1);
+}
+
+TEST_F(CommandServerTest, AcceptsAStopWithoutImuSamples) {
+  settle();
+  command_server_.on_command(command(Command_Constants::ARM, 1));
+  step();
+  command_server_.collect();
+  ASSERT_FALSE(command_server_.accept_overdue_stop(3.2, 7)) << "no stop was requested";
+
+  command_server_.on_command(command(Command_Constants::STOP, 2));
+  EXPECT_TRUE(command_server_.accept_overdue_stop(3.2, 7)) << "rotors off must be commanded";
+  const std::vector<RequestResult> answers = command_server_.collect();
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_TRUE(answers[0].outcome.accepted);
+  EXPECT_EQ(answers[0].stamp_ns, 7);
+  EXPECT_STREQ(
+      answers[0].outcome.reason,
+      "rotors off is commanded, but no IMU sample has come for 3.2 s: nothing shows that the vehicle "
+      "obeys");
+  EXPECT_TRUE(command_server_.accept_overdue_stop(3.3, 7)) << "until a sample comes";
+  EXPECT_TRUE(command_server_.collect().empty()) << "answered once";
+
+  EXPECT_EQ(step().rotor_state, plant::RotorState::kOff) << "the next sample executes it";
+  EXPECT_TRUE(command_server_.collect().empty());
+  EXPECT_FALSE(command_server_.accept_overdue_stop(0.0, 7));
+  EXPECT_EQ(mode(), control::Mode::kStopped);
+}
+
+TEST_F(CommandServerTest, AcceptsAStopBesideAnyNumberOfRequests) {
+  for (std::uint64_t id = 1; id <= 2 * kMaxPendingRequests; ++id)
+    command_server_.on_command(command(Command_Constants::HOLD, id));
+  command_server_.collect();
+  for (const std::uint64_t id : {1001U, 1002U, 1003U})
+    command_server_.on_command(command(Command_Constants::STOP, id));
+  EXPECT_TRUE(command_server_.accept_overdue_stop(-1.0, 0));
+  const std::vector<RequestResult> answers = command_server_.collect();
+  ASSERT_EQ(answers.size(), 3U);
+  for (const RequestResult& answer : answers) EXPECT_TRUE(answer.outcome.accepted) << answer.id;
+}
+
+TEST_F(CommandServerTest, LetsTheInnerLoopAnswerAStopWhileSamplesArrive) {
+  settle();
+  command_server_.on_command(command(Command_Constants::STOP, 1));
+  EXPECT_FALSE(command_server_.accept_overdue_stop(0.002, 7));
+  step();
+  const std::vector<RequestResult> answers = command_server_.collect();
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_TRUE(answers[0].outcome.accepted);
+  EXPECT_STREQ(answers[0].outcome.reason, "");
 }
 
 TEST_F(CommandServerTest, SamplesTelemetryAt100HzOfImuTime) {
@@ -282,6 +376,7 @@ TEST_F(CommandServerTest, SamplesTelemetryAt100HzOfImuTime) {
 TEST_F(CommandServerTest, InnerLoopDoesNotAllocate) {
   settle();
   command_server_.on_command(command(Command_Constants::ARM, 1));
+  command_server_.on_control_settings(settings_message(4, 1.0));
   command_server_.on_mission(mission(2, 1.0));
   command_server_.on_command(command(Command_Constants::MISSION_START, 3));
   std::size_t calls = 0;
@@ -291,27 +386,28 @@ TEST_F(CommandServerTest, InnerLoopDoesNotAllocate) {
     calls = guard.calls();
   }
   EXPECT_EQ(calls, 0U);
-  EXPECT_EQ(command_server_.collect().size(), 3U);
+  EXPECT_EQ(command_server_.collect().size(), 4U);
 }
 
 // A standby that receives the same samples as the fixture's controller.
 class StandbyCommandServerTest : public CommandServerTest {
  protected:
   StandbyCommandServerTest()
-      : standby_loop_(vehicle_, settings_), standby_server_(standby_loop_, settings_.limits, wake_) {
+      : standby_loop_(vehicle_, settings_),
+        standby_server_(standby_loop_, settings_.limits, GainDesigner(vehicle_, settings_), wake_) {
     standby_server_.set_active(false);
   }
   static constexpr std::uint32_t kTerm = 7;
 
   // Passes the report of the active controller to the standby.
-  void pass_state_to_standby() {
+  void pass_state_to_standby(std::uint32_t term = kTerm) {
     comms::ControllerReport report;
     loop_.report(report);
     ASSERT_TRUE(report.active);
     comms::ControllerReport received;
     ASSERT_FALSE(comms::from_message(comms::to_message(report), received));
     FailoverState failover_state;
-    failover_state.term = kTerm;
+    failover_state.term = term;
     failover_state.flight = received.flight;
     standby_server_.follow(failover_state);
   }
@@ -384,6 +480,23 @@ TEST_F(StandbyCommandServerTest, IgnoresSetpoints) {
   const SetpointTally active = tally();
   EXPECT_GT(active.refused, 10U) << "the active controller must count them";
   EXPECT_NE(std::string(active.refusal.reason), "");
+}
+
+// A controller that was replaced may still send its state for a moment.
+TEST_F(StandbyCommandServerTest, FollowsOnlyTheControllerOfTheTermItFollows) {
+  settle();
+  follow(20);
+  command_server_.on_command(command(Command_Constants::ARM, 1));
+  step();
+  ASSERT_EQ(mode(), control::Mode::kArmed);
+  for (const std::uint32_t other_term : {kTerm - 1, kTerm + 1}) {
+    pass_state_to_standby(other_term);
+    step_standby(Role::kStandby);
+    EXPECT_EQ(standby_state().mode, control::Mode::kDisarmed) << other_term;
+  }
+  pass_state_to_standby();
+  step_standby(Role::kStandby);
+  EXPECT_EQ(standby_state().mode, control::Mode::kArmed);
 }
 
 TEST_F(StandbyCommandServerTest, ContinuesAMissionKnownFromItsUpload) {
@@ -479,17 +592,22 @@ TEST_F(StandbyCommandServerTest, StaysDisarmedWithoutTheMission) {
 }
 
 TEST_F(StandbyCommandServerTest, IgnoresStateOfAnotherTerm) {
-  fly_mission();
-  standby_server_.on_mission(mission(2, 1.0));
+  settle();
+  command_server_.on_command(command(Command_Constants::ARM, 1));
   step();
   comms::ControllerReport report;
   loop_.report(report);
-  FailoverState failover_state;
-  failover_state.term = kTerm - 1;
-  failover_state.flight = report.flight;
-  standby_server_.follow(failover_state);
-  step_standby(Role::kStandby);
-  EXPECT_EQ(standby_state().mode, control::Mode::kDisarmed);
+  const auto mode_after_a_state_of = [&](std::uint32_t term) {
+    FailoverState failover_state;
+    failover_state.term = term;
+    failover_state.flight = report.flight;
+    standby_server_.follow(failover_state);
+    step_standby(Role::kStandby);
+    return standby_state().mode;
+  };
+  EXPECT_EQ(mode_after_a_state_of(kTerm - 1), control::Mode::kDisarmed);
+  EXPECT_EQ(mode_after_a_state_of(kTerm + 1), control::Mode::kDisarmed);
+  EXPECT_EQ(mode_after_a_state_of(kTerm), control::Mode::kArmed);
 }
 
 // GIVEN an accepted request WHEN the controller dies before its answer arrives THEN the new controller

@@ -130,7 +130,7 @@ TEST(Requests, ArriveInOrder) {
   auto publisher = ground.publish(topics::kCommand);
   ASSERT_TRUE(eventually([&] { return publisher.matched() == 1 && subscription.matched() == 1; }));
 
-  constexpr std::uint64_t kCount = std::uint64_t{3} * kMaxPendingRequests;
+  constexpr std::uint64_t kCount = std::uint64_t{3} * kMaxUnacknowledgedRequests;
   msg::Command command;
   for (std::uint64_t id = 1; id <= kCount; ++id) {
     command.id(id);
@@ -406,7 +406,9 @@ TEST(NodeSettings, RefusesInvalidValues) {
     const Node node(settings);
     FAIL();
   } catch (const std::runtime_error& error) {
-    EXPECT_STREQ(error.what(), "vehicle name is 'kl/1', must be 1 to 64 letters, digits and underscores");
+    EXPECT_STREQ(
+        error.what(),
+        "vehicle name is 'kl/1', must be 1 to 64 letters, digits and _, begin with a letter and have no __");
   }
 }
 

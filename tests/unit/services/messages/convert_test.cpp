@@ -34,6 +34,7 @@ TEST(Convert, RoundTripPreservesMessages) {
   expect_same<control::Request>(to_message(request()));
   expect_same<control::Mission>(
       to_message(mission(control::kMaxMissionItems, control::kMaxTrajectorySegments)));
+  expect_same<control::SettingsRequest>(to_message(settings_request()));
   expect_same<control::Trajectory>(to_message(trajectory(control::kMaxTrajectorySegments)));
 }
 

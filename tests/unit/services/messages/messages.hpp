@@ -83,6 +83,30 @@ inline control::Mission mission(std::size_t items, std::size_t segments = 3) {
   return mission;
 }
 
+// A distinct value in every gain.
+inline control::ControlGains control_gains(double first) {
+  return {{first, first + 0.1, first + 0.2},
+          {3.0, 3.1, 3.2},
+          {4.0, 4.1, 4.2},
+          {5.0, 5.1, 5.2},
+          {6.0, 6.1, 6.2},
+          {7.0, 7.1, 7.2},
+          8.0,
+          first + 9.0,
+          10.0};
+}
+inline control::SettingsRequest settings_request() {
+  control::SettingsRequest request;
+  request.name = "soft";
+  request.ramp_s = 3.0;
+  request.tunable.roll = {{1.0, 2.0, 3.0}, 4.0};
+  request.tunable.pitch = {{5.0, 6.0, 7.0}, 8.0};
+  request.tunable.yaw = {{9.0, 10.0, 11.0}, 12.0};
+  request.tunable.position = {{1.1, 1.2, 1.3, 1.4}, {2.1, 2.2, 2.3, 2.4}, {3.1, 3.2, 3.3, 3.4}, 1.5};
+  request.tunable.disturbance = {20.0, 2.5};
+  request.fixed = {{"limits.max_speed_m_s", "2.0"}, {"attitude.error", "rotation"}};
+  return request;
+}
 inline ControllerReport controller_report() {
   ControllerReport report;
   report.stamp_ns = 1010;
@@ -129,6 +153,7 @@ inline ControllerReport controller_report() {
        {{42, 43}, RequestKind::kGoTo, RequestState::kCanceled, Event::kHold, Reason::kRequested, 0.3},
        {{44, 45}, RequestKind::kLand, RequestState::kAborted, Event::kTippedOver, Reason::kTippedOver, 0.2}}};
   report.flight.position_integral = {0.1, -0.2, 0.3};
+  report.flight.gains = {control_gains(1.0), control_gains(2.0), control::settings_name("soft"), 60, 2.5};
   report.flight.rotor_state = plant::RotorState::kRunning;
   report.rotor_count = 4;
   report.flight.throttle = four_rotors(0.4);
@@ -236,6 +261,10 @@ inline msg::ControlStatus example() {
   message.airborne(true);
   message.has_pose(true);
   message.pose_age_s(0.015);
+  message.imu_age_s(0.001);
+  message.mocap_age_s(0.012);
+  message.battery_age_s(0.07);
+  message.source_conflict() = "poses of b are ignored: those of a are used";
   message.supply_voltage_v(3.7);
   message.saturated(true);
   message.cycles(1000);

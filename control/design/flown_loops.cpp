@@ -1,0 +1,134 @@
+#include "swiftlet/control/design/flown_loops.hpp"
+
+#include <cmath>
+
+namespace swiftlet::control {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::RowVectorXd;
+using Eigen::VectorXd;
+
+// Rotors behind the delay, with their observer: x' = A x + b u.
+struct Rotors {
+  MatrixXd a;
+  VectorXd b;
+  static constexpr Index kResponse = 0;  // state: moment / inertia, or thrust / mass
+  static constexpr Index kObserved = 1;  // state: the same, as observed
+};
+
+// Pade approximation of third order of exp(-s T), with z = s T:
+//   -1 + (24 z^2 + 240) / (z^3 + 12 z^2 + 60 z + 120).
+void add_delay(Rotors& rotors, double lag_s, double delay_s) {
+  const Index first = rotors.a.rows();
+  const Index n = first + 3;
+  rotors.a.conservativeResizeLike(MatrixXd::Zero(n, n));
+  rotors.b.conservativeResizeLike(VectorXd::Zero(n));
+  rotors.a.block<3, 3>(first, first) << 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, -120.0, -60.0, -12.0;
+  rotors.a.block<3, 3>(first, first) /= delay_s;
+  rotors.b[first + 2] = 1.0 / delay_s;
+  rotors.a.block<1, 3>(Rotors::kResponse, first) << 240.0 / lag_s, 0.0, 24.0 / lag_s;
+  rotors.b[Rotors::kResponse] = -1.0 / lag_s;
+}
+
+// correction: bandwidth of the observer's correction by measured speeds, rad/s.
+Rotors rotors_of(double lag_s, double delay_s, double correction) {
+  Rotors rotors{MatrixXd::Zero(2, 2), VectorXd::Constant(2, 1.0 / lag_s)};
+  rotors.a << -1.0 / lag_s, 0.0, correction, -1.0 / lag_s - correction;
+  if (delay_s > 0.0) add_delay(rotors, lag_s, delay_s);
+  return rotors;
+}
+
+// States: angle, rate, then those of the rotors.
+FlownLoop attitude(const Eigen::Vector3d& k, const Rotors& rotors) {
+  const Index n = 2 + rotors.a.rows();
+  Loop loop{MatrixXd::Zero(n, n), VectorXd::Zero(n), RowVectorXd::Zero(n)};
+  loop.a(0, 1) = 1.0;
+  loop.a(1, 2 + Rotors::kResponse) = 1.0;
+  loop.a.bottomRightCorner(n - 2, n - 2) = rotors.a;
+  loop.b.tail(n - 2) = rotors.b;
+  loop.c[0] = k[0];
+  loop.c[1] = k[1];
+  loop.c[2 + Rotors::kObserved] = k[2];
+  return {loop, k[0] * loop.b, RowVectorXd::Unit(n, 0)};
+}
+
+// The integral is that of the error.
+FlownLoop position(const RptGains& gains, const Loop& loop) {
+  const Index place = gains.k_i > 0.0 ? 1 : 0;
+  FlownLoop out{loop, gains.k_p * loop.b, RowVectorXd::Unit(loop.a.rows(), place)};
+  if (gains.k_i > 0.0) out.reference[0] = -1.0;
+  return out;
+}
+
+FlownLoop horizontal(const RptGains& gains, const FlownLoop& inner) {
+  return position(
+      gains, position_loop(gains, inner.loop.a - inner.loop.b * inner.loop.c, inner.reference, inner.output));
+}
+
+FlownLoop vertical(const RptGains& gains, const Rotors& rotors, double disturbance_bandwidth) {
+  const bool observed = disturbance_bandwidth > 0.0;
+  const Index n = rotors.a.rows();
+  MatrixXd a = rotors.a;
+  VectorXd b = rotors.b;
+  if (observed) {  // one more state, the disturbance, which the command compensates
+    a.conservativeResizeLike(MatrixXd::Zero(n + 1, n + 1));
+    b.conservativeResizeLike(VectorXd::Zero(n + 1));
+    a(n, Rotors::kResponse) = disturbance_bandwidth;
+    a(n, Rotors::kObserved) = -disturbance_bandwidth;
+    a(n, n) = -disturbance_bandwidth;
+    a.col(n) -= b;
+  }
+  return position(gains, position_loop(gains, a, b, RowVectorXd::Unit(a.rows(), Rotors::kResponse)));
+}
+
+// exp(A) by scaling, a Taylor series, and squaring.
+MatrixXd exponential(const MatrixXd& a) {
+  constexpr int kTerms = 16;
+  const double norm = a.cwiseAbs().rowwise().sum().maxCoeff();
+  const int squarings = norm > 0.25 ? static_cast<int>(std::ceil(std::log2(norm / 0.25))) : 0;
+  const MatrixXd scaled = a / std::exp2(squarings);
+  MatrixXd sum = MatrixXd::Identity(a.rows(), a.rows());
+  MatrixXd term = sum;
+  for (int i = 1; i <= kTerms; ++i) {
+    term = (term * scaled / i).eval();
+    sum += term;
+  }
+  for (int i = 0; i < squarings; ++i) sum = (sum * sum).eval();
+  return sum;
+}
+
+}  // namespace
+
+std::array<FlownLoop, 6> flown_loops(const ControlDesign& design, const ControlSettings& settings,
+                                     double delay_s) {
+  const Rotors rotors = rotors_of(design.rotor_lag_s, delay_s, settings.estimator.rotor_speed_bandwidth);
+  const FlownLoop roll = attitude(design.roll.k, rotors);
+  const FlownLoop pitch = attitude(design.pitch.k, rotors);
+  return {roll,
+          pitch,
+          attitude(design.yaw.k, rotors),
+          horizontal(design.x.gains, pitch),
+          horizontal(design.y.gains, roll),
+          vertical(design.z.gains, rotors, settings.disturbance.bandwidth)};
+}
+
+// The reference is one more state, which is constant.
+std::vector<double> step_response(const FlownLoop& loop, double step_s, std::size_t count) {
+  const Index n = loop.loop.a.rows();
+  MatrixXd a = MatrixXd::Zero(n + 1, n + 1);
+  a.topLeftCorner(n, n) = loop.loop.a - loop.loop.b * loop.loop.c;
+  a.topRightCorner(n, 1) = loop.reference;
+  const MatrixXd transition = exponential(a * step_s);
+  VectorXd state = VectorXd::Unit(n + 1, n);
+  std::vector<double> out;
+  out.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    out.push_back(loop.output.dot(state.head(n)));
+    state = (transition * state).eval();
+  }
+  return out;
+}
+
+}  // namespace swiftlet::control

@@ -1,0 +1,41 @@
+// The six loops of a design as they run in flight: with the rotor lag, the observers of the estimator, and
+// the delay from a sample to the rotors. ControlDesign and its margins leave the last two out.
+//
+// - The delay T acts on the rotor command. Its transfer function is the Pade approximation of third order,
+//   whose phase is exact to 0.1 degrees for omega T < 2.
+// - The rotor observer runs the motor model on the commands as they are sent, without the delay, and is
+//   corrected by the measured rotor speeds. Its moment is the third state of the attitude law.
+// - The disturbance observer compares the vertical acceleration with the thrust of the rotor observer. A
+//   delay makes the two differ. On the horizontal axes it has no effect in hover.
+// - The Kalman filter integrates gyro and accelerometer, and corrects drift by poses at their own stamps. For
+//   sensors without errors its estimate is the true state, whatever its gains: it adds no lag.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "swiftlet/control/design/control_design.hpp"
+#include "swiftlet/control/design/loop.hpp"
+#include "swiftlet/control/types/settings.hpp"
+
+namespace swiftlet::control {
+
+// A loop with its reference r and output y: x' = (A - b c) x + reference r, y = output x.
+struct FlownLoop {
+  Loop loop;                  // cut at the rotor command (attitude), at the acceleration command (position)
+  Eigen::VectorXd reference;  // of angle or position, without feed-forward
+  Eigen::RowVectorXd output;  // the angle or position
+};
+
+constexpr std::array<const char*, 6> kFlownLoopNames = {"roll", "pitch", "yaw", "x", "y", "z"};
+
+// In the order of kFlownLoopNames. delay_s: at least 0, from the sample to the rotors.
+std::array<FlownLoop, 6> flown_loops(const ControlDesign& design, const ControlSettings& settings,
+                                     double delay_s);
+
+// y at the times 0, step_s, 2 step_s, ... after a unit step of the reference: `count` values, exact but for
+// rounding. Diverges for an unstable loop.
+std::vector<double> step_response(const FlownLoop& loop, double step_s, std::size_t count);
+
+}  // namespace swiftlet::control

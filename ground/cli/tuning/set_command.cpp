@@ -1,0 +1,54 @@
+// `swiftlet set control`: changes the control settings of a running controller, also in flight.
+#include <memory>
+#include <string>
+
+#include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/cli/request_command.hpp"
+#include "swiftlet/ground/command_line/installation.hpp"
+#include "swiftlet/io/settings/control_settings_file.hpp"
+#include "swiftlet/io/settings/fixed_settings.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+struct Options : RequestOptions {
+  std::string file;
+  double ramp_s = 2.0;
+};
+
+int set_control(const Options& options) {
+  const std::string file = configuration_file("control", options.file);
+  const control::SettingsRequest request = control::settings_request(
+      runtime::load_control_settings(file), runtime::load_fixed_settings(file), options.ramp_s);
+  return run_request(
+      options,
+      {"set control", [&](Vehicle& vehicle) { return vehicle.change_settings(request, options.timeout()); },
+       OnInterrupt::kNothing});
+}
+
+Command add_set_control_command(runtime::CommandLine set) {
+  const auto options = std::make_shared<Options>();
+  const runtime::CommandLine app = add_request_subcommand(
+      set, "control",
+      "Fly with the gains of a control settings file: checked for stability, changed to "
+      "smoothly; other settings must be those that the controller was started with",
+      "swiftlet set control mine.yaml --ramp 3", options);
+  app.add_option("file", options->file, "control settings file, or the name of one in config/control")
+      .required();
+  app.add_option("--ramp", options->ramp_s, "time over which the gains change, s")
+      .range(control::kShortestGainChange_s, control::kLongestGainChange_s)
+      .show_default();
+  return {app, [options] { return set_control(*options); }};
+}
+
+}  // namespace
+
+Command add_set_command(runtime::CommandLine root) {
+  const runtime::CommandLine app = root.add_subcommand("set", "Change settings of a running vehicle");
+  app.require_subcommand(1, 1);
+  app.footer("example: swiftlet set control mine.yaml");
+  const Command control = add_set_control_command(app);
+  return {app, control.run};
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,36 @@
+#include "swiftlet/ground/terminal/state_lines.hpp"
+
+#include <cmath>
+#include <unistd.h>
+
+#include <fmt/core.h>
+
+#include "swiftlet/math/euler.hpp"
+#include "swiftlet/services/messages/wire.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+constexpr double kDegreesPerRadian = 57.29577951308232;
+
+// Rounded as it is shown, so that neither -0.0 nor 360.0 appears.
+double tenths_of_degrees(double angle_rad) {
+  return std::round(10.0 * kDegreesPerRadian * angle_rad) / 10.0 + 0.0;
+}
+
+}  // namespace
+
+void print_alarm(std::FILE* stream, const std::string& line) {
+  const bool terminal = isatty(fileno(stream)) != 0;
+  std::fprintf(stream, terminal ? "\x1b[1;31m%s\x1b[0m\n" : "%s\n", line.c_str());
+}
+
+std::string attitude_text(const comms::msg::Estimate& estimate) {
+  const control::EulerAngles angles =
+      control::euler_angles(comms::wire::quaternion(estimate.q_ned_from_frd()));
+  const double yaw_deg = tenths_of_degrees(angles.heading.yaw_rad);
+  return fmt::format("roll {:.1f}, pitch {:.1f}, heading {:.1f} deg", tenths_of_degrees(angles.roll_rad),
+                     tenths_of_degrees(angles.pitch_rad), yaw_deg < 0.0 ? yaw_deg + 360.0 : yaw_deg);
+}
+
+}  // namespace swiftlet::ground

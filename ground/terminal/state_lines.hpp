@@ -1,0 +1,18 @@
+// Lines about the state of a vehicle, for terminals and other output.
+#pragma once
+
+#include <cstdio>
+#include <string>
+
+#include "swiftlet/services/messages/topics.hpp"
+
+namespace swiftlet::ground {
+
+// Prints the line, bold and red if the stream is a terminal.
+void print_alarm(std::FILE* stream, const std::string& line);
+
+// "roll 1.2, pitch -0.4, heading 90.0 deg": Euler angles of the estimate, Eq. (3); heading from north to
+// east, 0 to 360.
+std::string attitude_text(const comms::msg::Estimate& estimate);
+
+}  // namespace swiftlet::ground

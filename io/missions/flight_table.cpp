@@ -1,0 +1,145 @@
+#include "swiftlet/io/missions/flight_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <sstream>
+
+#include <fmt/core.h>
+
+#include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/missions/whole_flight.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using runtime::ConfigError;
+
+constexpr double kAtRest_m_s = 1e-3;
+
+struct Column {
+  const char* header;   // in the table that is returned
+  const char* written;  // in flight.csv
+  const char* older;    // in flight.csv of an older version; null: none
+};
+const std::vector<Column> kColumns = {{"t [s]", "t [s]", "t"},
+                                      {"x_ned [m]", "ref_x_ned [m]", "ref_px"},
+                                      {"y_ned [m]", "ref_y_ned [m]", "ref_py"},
+                                      {"z_ned [m]", "ref_z_ned [m]", "ref_pz"},
+                                      {"vx_ned [m/s]", "ref_vx_ned [m/s]", "ref_vx"},
+                                      {"vy_ned [m/s]", "ref_vy_ned [m/s]", "ref_vy"},
+                                      {"vz_ned [m/s]", "ref_vz_ned [m/s]", "ref_vz"},
+                                      {"yaw_ned [rad]", "ref_yaw_ned [rad]", "ref_yaw"},
+                                      {"ax_ned [m/s^2]", "ref_ax_ned [m/s^2]", nullptr},
+                                      {"ay_ned [m/s^2]", "ref_ay_ned [m/s^2]", nullptr},
+                                      {"az_ned [m/s^2]", "ref_az_ned [m/s^2]", nullptr}};
+constexpr std::size_t kZ = 3, kVx = 4, kAx = 8;
+
+std::optional<std::size_t> find(const std::vector<std::string>& header, const char* name) {
+  const auto found = std::find(header.begin(), header.end(), name);
+  if (found == header.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - header.begin());
+}
+
+// The position in flight.csv of each column of kColumns; shorter without accelerations.
+std::vector<std::size_t> places(const std::vector<std::string>& header, const std::string& file_name) {
+  const bool older = find(header, "t").has_value();
+  std::vector<std::size_t> places;
+  for (const Column& column : kColumns) {
+    const char* const name = older ? column.older : column.written;
+    if (name == nullptr) break;
+    const auto place = find(header, name);
+    if (!place) {
+      throw ConfigError(file_name, 1, "header",
+                        std::string("has no column ") + name + ", which the flight.csv of a record has");
+    }
+    places.push_back(*place);
+  }
+  return places;
+}
+
+struct Row {
+  int line = 0;
+  std::vector<double> numbers;  // in the order of kColumns
+
+  bool is_between_takeoff_and_landing() const {
+    const double speed = std::hypot(numbers[kVx], numbers[kVx + 1], numbers[kVx + 2]);
+    return -numbers[kZ] >= kLeastHeight_m && speed <= kAtRest_m_s;
+  }
+};
+
+// The rows that have a reference.
+std::vector<Row> rows_of(std::istream& in, const std::vector<std::string>& header,
+                         const std::vector<std::size_t>& places, const std::string& file_name) {
+  std::vector<Row> rows;
+  int line = 1;
+  for (std::string text; std::getline(in, text);) {
+    ++line;
+    const std::vector<std::string> fields = runtime::first_csv_line(text, file_name, line);
+    if (fields.empty()) continue;
+    if (fields.size() != header.size()) {
+      throw ConfigError(file_name, line, "",
+                        fmt::format("has {} fields, must have {}", fields.size(), header.size()));
+    }
+    if (fields[places[1]].empty()) continue;
+    Row row{line, {}};
+    for (const std::size_t place : places) {
+      const auto number = runtime::parse_number(fields[place]);
+      if (!number) throw ConfigError(file_name, line, header[place], "is not a finite number");
+      row.numbers.push_back(*number);
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+// The path begins and ends at rest: what is left of its motion in the record is that of the next moment.
+void stop(std::vector<double>& numbers) {
+  for (std::size_t i = kVx; i < kVx + 3; ++i) numbers[i] = 0.0;
+  for (std::size_t i = kAx; i < numbers.size(); ++i) numbers[i] = 0.0;
+}
+
+}  // namespace
+
+std::vector<std::string> table_header(std::string_view text, const std::string& file_name) {
+  std::vector<std::string> header = runtime::first_csv_line(text, file_name);
+  if (header.size() > 1 && header.back().empty()) header.pop_back();
+  return header;
+}
+
+bool is_flight_table(const std::vector<std::string>& header) {
+  return find(header, "mode").has_value() && (find(header, "ref_x_ned [m]") || find(header, "ref_px"));
+}
+
+runtime::CsvTable reference_of_flight(const std::string& text, const std::string& file_name) {
+  std::istringstream in(text);
+  std::string first;
+  std::getline(in, first);
+  const std::vector<std::string> header = table_header(first, file_name);
+  const std::vector<std::size_t> at = places(header, file_name);
+  std::vector<Row> rows = rows_of(in, header, at, file_name);
+  const auto flown = [](const Row& row) { return row.is_between_takeoff_and_landing(); };
+  const auto begin = std::find_if(rows.begin(), rows.end(), flown);
+  const auto end = std::find_if(rows.rbegin(), rows.rend(), flown).base();
+  if (begin == rows.end() || end - begin < 2) {
+    throw ConfigError(file_name, 0, "",
+                      fmt::format("has no reference between a take-off and a landing: it is never at rest at "
+                                  "least {:g} m above the ground",
+                                  kLeastHeight_m));
+  }
+  stop(begin->numbers);
+  stop((end - 1)->numbers);
+  std::vector<std::string> columns;
+  for (std::size_t i = 0; i < at.size(); ++i) columns.emplace_back(kColumns[i].header);
+  runtime::CsvTable table(file_name, columns);
+  std::for_each(begin, end, [&](const Row& row) { table.add_row(row.line, row.numbers); });
+  return table;
+}
+
+std::string extent_of(const runtime::CsvTable& reference) {
+  return fmt::format(
+      "the reference of a recorded flight between take-off and landing, t = {:.2f} to {:.2f} s, in NED",
+      reference.number(0, 0), reference.number(reference.row_count() - 1, 0));
+}
+
+}  // namespace swiftlet::ground

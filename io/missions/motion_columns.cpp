@@ -1,0 +1,252 @@
+#include "swiftlet/io/missions/motion_columns.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/missions/whole_flight.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+constexpr double kRadPerDeg = M_PI / 180.0;
+constexpr double kStandardGravity = 9.80665;  // m/s^2, one g
+
+struct Unit {
+  const char* name;
+  double factor;  // to SI
+};
+const std::vector<Unit> kSeconds = {{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}};
+const std::vector<Unit> kMetres = {{"m", 1.0}, {"cm", 1e-2}, {"mm", 1e-3}};
+const std::vector<Unit> kSpeeds = {{"m/s", 1.0}, {"cm/s", 1e-2}};
+const std::vector<Unit> kAccelerations = {{"m/s^2", 1.0}, {"m/s2", 1.0}, {"g", kStandardGravity}};
+const std::vector<Unit> kAngles = {{"rad", 1.0}, {"deg", kRadPerDeg}};
+const std::vector<Unit> kRates = {{"rad/s", 1.0}, {"deg/s", kRadPerDeg}};
+
+enum class Axes { kNone, kWorld, kBody };
+
+struct Known {
+  const char* name;
+  const std::vector<Unit>* units;  // first the SI one
+  Axes axes;                       // what the ending of the name may say
+};
+// Indexed by Motion.
+const std::array<Known, 18> kKnown = {{{"t", &kSeconds, Axes::kNone},
+                                       {"x", &kMetres, Axes::kWorld},
+                                       {"y", &kMetres, Axes::kWorld},
+                                       {"z", &kMetres, Axes::kWorld},
+                                       {"vx", &kSpeeds, Axes::kWorld},
+                                       {"vy", &kSpeeds, Axes::kWorld},
+                                       {"vz", &kSpeeds, Axes::kWorld},
+                                       {"ax", &kAccelerations, Axes::kWorld},
+                                       {"ay", &kAccelerations, Axes::kWorld},
+                                       {"az", &kAccelerations, Axes::kWorld},
+                                       {"yaw", &kAngles, Axes::kWorld},
+                                       {"yaw_rate", &kRates, Axes::kWorld},
+                                       {"roll", &kAngles, Axes::kNone},
+                                       {"pitch", &kAngles, Axes::kNone},
+                                       {"p", &kRates, Axes::kBody},
+                                       {"q", &kRates, Axes::kBody},
+                                       {"r", &kRates, Axes::kBody},
+                                       {"thrust", &kAccelerations, Axes::kNone}}};
+
+const Known& known(Motion column) { return kKnown[static_cast<std::size_t>(column)]; }
+
+[[noreturn]] void refuse(const std::string& file, const std::string& message) {
+  throw runtime::ConfigError(file, 1, "header", message);
+}
+
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+bool ends_with(const std::string& text, const std::string& ending) {
+  return text.size() > ending.size() && text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+// "x_ned [m]" -> "x", "_ned" and "m".
+struct Declaration {
+  std::string name;
+  std::string axes;  // "_ned", "_enu", "_frd" or none
+  std::optional<std::string> unit;
+};
+
+Declaration declaration_of(const std::string& header) {
+  Declaration out;
+  const std::size_t open = header.find('[');
+  if (open != std::string::npos && header.back() == ']')
+    out.unit = trimmed(header.substr(open + 1, header.size() - open - 2));
+  out.name = trimmed(header.substr(0, open));
+  for (const char* axes : {"_ned", "_enu", "_frd"}) {
+    if (!ends_with(out.name, axes)) continue;
+    out.axes = axes;
+    out.name.resize(out.name.size() - out.axes.size());
+    break;
+  }
+  return out;
+}
+
+bool may_end_in(const Known& column, const std::string& axes) {
+  if (axes.empty()) return true;
+  return axes == "_frd" ? column.axes == Axes::kBody : column.axes == Axes::kWorld;
+}
+
+// "x_ned [m]": the recommended header.
+std::string full_header_of(const Known& column) {
+  const char* const axes = column.axes == Axes::kWorld ? "_ned" : column.axes == Axes::kBody ? "_frd" : "";
+  return std::string(column.name) + axes + " [" + column.units->front().name + "]";
+}
+
+std::string all_headers() {
+  std::string text;
+  for (std::size_t i = 0; i < kKnown.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == kKnown.size() ? " or " : ", ") + full_header_of(kKnown[i]);
+  return text;
+}
+
+const char* name_of(MissionFrame frame) { return frame == MissionFrame::kNed ? "ned" : "enu"; }
+
+}  // namespace
+
+std::string motion_name(const std::string& header) { return declaration_of(header).name; }
+
+std::string header_of(Motion column) {
+  return std::string(known(column).name) + " [" + known(column).units->front().name + "]";
+}
+
+MotionColumns::MotionColumns(const std::vector<std::string>& header, const std::string& file_name,
+                             std::optional<MissionFrame> frame) {
+  declares_units_ = std::any_of(header.begin(), header.end(), [](const std::string& column) {
+    return declaration_of(column).unit.has_value();
+  });
+  std::optional<MissionFrame> named;
+  for (const std::string& column : header) {
+    read(column, file_name);
+    const std::string axes = declaration_of(column).axes;
+    if (axes != "_ned" && axes != "_enu") continue;
+    const MissionFrame its = axes == "_ned" ? MissionFrame::kNed : MissionFrame::kEnu;
+    if (named && *named != its) refuse(file_name, "mixes _ned and _enu, must name one frame");
+    named = its;
+  }
+  settle_frame(file_name, named, frame);
+}
+
+void MotionColumns::read(const std::string& header, const std::string& file_name) {
+  const Declaration declared = declaration_of(header);
+  const auto found = std::find_if(kKnown.begin(), kKnown.end(), [&](const Known& candidate) {
+    return declared.name == candidate.name && may_end_in(candidate, declared.axes);
+  });
+  if (found == kKnown.end()) refuse(file_name, "has the column " + header + ", must be " + all_headers());
+  const auto column = static_cast<Motion>(found - kKnown.begin());
+  if (has(column)) refuse(file_name, "has the column " + declared.name + " twice, must have it once");
+  const std::vector<Unit>& units = *found->units;
+  const std::string unit = declared.unit.value_or(units.front().name);
+  const auto meant =
+      std::find_if(units.begin(), units.end(), [&](const Unit& candidate) { return unit == candidate.name; });
+  if (meant == units.end() || declared.unit.has_value() != declares_units_) {
+    std::string choices;
+    for (const Unit& choice : units)
+      choices += (choices.empty() ? "" : " or ") + declared.name + declared.axes + " [" + choice.name + "]";
+    refuse(file_name, "has the column " + header +
+                          (declared.unit ? " with an unknown unit" : " without a unit") + ", must be " +
+                          choices);
+  }
+  columns_.push_back(column);
+  factors_.push_back(meant->factor);
+}
+
+void MotionColumns::settle_frame(const std::string& file_name, std::optional<MissionFrame> named,
+                                 std::optional<MissionFrame> option) {
+  const bool attitudes = has_any({Motion::kRoll, Motion::kPitch, Motion::kP, Motion::kQ, Motion::kR});
+  if (attitudes) {
+    if (named.value_or(option.value_or(MissionFrame::kNed)) == MissionFrame::kEnu)
+      refuse(file_name, "has attitudes or body rates in ENU, must have them in NED and FRD");
+    return;
+  }
+  const auto framed = std::find_if(columns_.begin(), columns_.end(),
+                                   [](Motion column) { return known(column).axes == Axes::kWorld; });
+  if (framed == columns_.end()) return;
+  if (named && option && *named != *option) {
+    refuse(file_name,
+           std::string("names the frame ") + name_of(*named) + ", but --frame names " + name_of(*option));
+  }
+  if (named || option) {
+    frame_ = named ? *named : *option;
+    return;
+  }
+  if (declares_units_) {
+    const std::string name = known(*framed).name;
+    const std::string unit = std::string(" [") + known(*framed).units->front().name + "]";
+    refuse(file_name, "names no frame: write " + name + "_ned" + unit + " (north, east, down) or " + name +
+                          "_enu" + unit + " (east, north, up), or add --frame ned or --frame enu");
+  }
+  frame_ = MissionFrame::kEnu;
+  assumed_ = true;
+}
+
+std::optional<std::string> MotionColumns::assumption(const std::string& what) const {
+  if (!assumed_) return std::nullopt;
+  return "taken as " + what + " in ENU: m, rad and s, from the origin of motion capture";
+}
+
+bool MotionColumns::has_any(const std::vector<Motion>& columns) const {
+  return std::any_of(columns.begin(), columns.end(), [this](Motion column) { return has(column); });
+}
+
+std::optional<std::size_t> MotionColumns::index(Motion column) const {
+  const auto found = std::find(columns_.begin(), columns_.end(), column);
+  if (found == columns_.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - columns_.begin());
+}
+
+double MotionColumns::value(const std::vector<double>& row, Motion column) const {
+  const auto at = index(column);
+  return at ? factors_[*at] * row[*at] : 0.0;
+}
+
+Eigen::Vector3d MotionColumns::ned(const std::vector<double>& row, Motion x) const {
+  const int first = static_cast<int>(x);
+  const auto part = [&](int axis) { return value(row, static_cast<Motion>(first + axis)); };
+  const Eigen::Vector3d read(part(0), part(1), part(2));
+  return frame_ == MissionFrame::kEnu ? ned_position(read) : read;
+}
+
+double MotionColumns::yaw_ned(const std::vector<double>& row) const {
+  const double yaw = value(row, Motion::kYaw);
+  return frame_ == MissionFrame::kEnu ? ground::ned_yaw(yaw) : yaw;
+}
+
+double MotionColumns::yaw_rate_ned(const std::vector<double>& row) const {
+  const double rate = value(row, Motion::kYawRate);
+  return frame_ == MissionFrame::kEnu ? -rate : rate;
+}
+
+void require_columns(const MotionColumns& columns, const std::string& file_name, const std::string& what,
+                     const std::vector<Motion>& needed, const std::vector<std::vector<Motion>>& more) {
+  std::vector<Motion> used;
+  const auto require = [&](const std::vector<Motion>& group) {
+    for (const Motion column : group) {
+      if (!columns.has(column))
+        refuse(file_name, "has no column " + header_of(column) + ", must have " + list_of(group));
+    }
+    used.insert(used.end(), group.begin(), group.end());
+  };
+  require(needed);
+  for (const std::vector<Motion>& group : more) {
+    if (columns.has_any(group)) require(group);
+  }
+  for (const Motion column : columns.all()) {
+    if (std::find(used.begin(), used.end(), column) == used.end())
+      refuse(file_name, "has the column " + header_of(column) + ", which " + what + " does not use");
+  }
+}
+
+std::string list_of(const std::vector<Motion>& columns) {
+  std::string text;
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == columns.size() ? " and " : ", ") + header_of(columns[i]);
+  return text;
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,13 @@
+// The name that a misspelt one probably means.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace swiftlet::runtime {
+
+// The nearest of the names by edit distance, if `wanted` differs from it by few letters or is its beginning;
+// else "".
+std::string nearest_name(const std::vector<std::string>& names, const std::string& wanted);
+
+}  // namespace swiftlet::runtime

@@ -1,0 +1,31 @@
+// Makes a process the only source of its topic, or ends it.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "swiftlet/services/dds/node.hpp"
+
+namespace swiftlet::comms {
+
+// The source that the settings of a node name. A process that finds another source ends with an error.
+class SoleSource {
+ public:
+  // Blocks for kSourceSearchTime. Throws std::runtime_error with a sentence if there is another source.
+  // on_lost: called from another thread if an earlier source is discovered later; then call check().
+  SoleSource(Node& node, std::function<void()> on_lost);
+
+  // Throws std::runtime_error if an earlier source was discovered.
+  void check() const;
+
+ private:
+  struct Loss {
+    std::mutex mutex;
+    std::string other;  // a sentence
+  };
+  std::shared_ptr<Loss> loss_ = std::make_shared<Loss>();  // the node's callback may outlive this object
+};
+
+}  // namespace swiftlet::comms

@@ -1,0 +1,245 @@
+// A vehicle that lives: a second start of its name leaves it alone, and who falls silent is reported at once.
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "swiftlet/services/dds/periodic_task.hpp"
+#include "tests/integration/separate_processes.hpp"
+#include "tests/support/hop_mission.hpp"
+
+namespace swiftlet::tests {
+namespace {
+
+using namespace std::chrono_literals;
+using control::Mode;
+using ground::View;
+using nlohmann::json;
+namespace msg = ground::msg;
+namespace topics = comms::topics;
+
+class LivingVehicle : public SeparateProcesses {
+ protected:
+  ProgramResult run(const std::string& program, std::vector<std::string> words) const {
+    words.insert(words.end(), {"--domain", std::to_string(lock_.domain())});
+    if (words.front() != "fly") words.emplace_back("--localhost-only");
+    return run_program(program, std::move(words), folder_.path());
+  }
+  // "vehicle kl1 already lives in domain 20: plant (process 4711 on host lab1) is the source of its imu"
+  std::string lives(const std::string& name, const Program& process, const std::string& topic) const {
+    char host[256] = {};
+    ::gethostname(host, sizeof host - 1);
+    return "vehicle kl1 already lives in domain " + std::to_string(lock_.domain()) + ": " + name +
+           " (process " + std::to_string(process.pid()) + " on host " + host + ") is the source of its " +
+           topic;
+  }
+  void expect_undisturbed() {
+    EXPECT_EQ(mode_log(), "holding: take-off completed\n");
+    EXPECT_LT(distance_m(0, 0, -1), 0.05);
+  }
+  bool eventually_silent(const std::string& who) const {
+    json last;
+    const bool silent = eventually(
+        [&] {
+          const ProgramResult result = run("swiftlet", {"status", "--json", "--watch", "0.1"});
+          if (result.exit_code != 0) return false;
+          last = json::parse(result.output).at("silent");
+          return !last.empty() && last[0].at("who") == who && last[0].at("for_s") > 1.0;
+        },
+        kTimeout);
+    EXPECT_TRUE(silent) << last;
+    return silent;
+  }
+};
+
+TEST_F(LivingVehicle, SurvivesASecondPlantAndASecondMocap) {
+  start_all();
+  hover();
+  const ProgramResult plant = run("swiftlet-plant", {"--seed", "2"});
+  EXPECT_EQ(plant.exit_code, 1);
+  EXPECT_NE(plant.errors.find("swiftlet-plant: " + lives("plant", *plant_, "imu") +
+                              "; choose another --vehicle-name or --domain"),
+            std::string::npos)
+      << plant.errors;
+  const ProgramResult mocap = run("swiftlet-mocap", {"--seed", "2"});
+  EXPECT_EQ(mocap.exit_code, 1);
+  EXPECT_NE(mocap.errors.find(lives("mocap", *mocap_, "mocap_pose")), std::string::npos) << mocap.errors;
+  expect_undisturbed();
+}
+
+TEST_F(LivingVehicle, SurvivesASecondFlight) {
+  start_all();
+  hover();
+  const std::string record = folder_.path() / "record";
+  const ProgramResult fly =
+      run("swiftlet", {"fly", folder_.write("hop.yaml", kHopMission), "--record", record});
+  EXPECT_EQ(fly.exit_code, 1);
+  EXPECT_NE(fly.errors.find("swiftlet: vehicle kl1 already lives in domain "), std::string::npos)
+      << fly.errors;
+  EXPECT_NE(fly.errors.find("; choose another --vehicle-name or --domain, or fly it with --attach"),
+            std::string::npos)
+      << fly.errors;
+  EXPECT_FALSE(std::filesystem::exists(record)) << "nothing was started";
+  expect_undisturbed();
+}
+
+TEST_F(LivingVehicle, OneOfTwoFlightsThatStartAtOnceIsRefused) {
+  const std::string mission = folder_.write("hop.yaml", kHopMission);
+  const auto fly = [&](const std::string& name) {
+    return std::make_unique<Program>(
+        "swiftlet",
+        std::vector<std::string>{"fly", mission, "--clock", "lockstep", "--domain",
+                                 std::to_string(lock_.domain()), "--record", folder_.path() / name},
+        folder_.path());
+  };
+  const auto first = fly("first");
+  const auto second = fly("second");
+  std::vector<int> codes = {first->wait(kTimeout), second->wait(kTimeout)};
+  std::sort(codes.begin(), codes.end());
+  EXPECT_EQ(codes, (std::vector<int>{0, 1})) << first->errors() << second->errors();
+  const std::string errors = first->errors() + second->errors();
+  EXPECT_NE(errors.find("swiftlet: vehicle kl1 already lives in domain "), std::string::npos) << errors;
+}
+
+TEST_F(LivingVehicle, MayBeStartedAgainAtOnceAfterACrash) {
+  start_all();
+  wait_until_ready();
+  plant_->signal(SIGKILL);
+  mocap_->signal(SIGKILL);
+  plant_->wait(kTimeout);
+  mocap_->wait(kTimeout);
+  plant_ = start("swiftlet-plant");
+  mocap_ = start("swiftlet-mocap");
+  EXPECT_TRUE(eventually([&] { return plant_->errors().find("ready: ") != std::string::npos; }, kTimeout))
+      << plant_->errors();
+  EXPECT_TRUE(eventually([&] { return mocap_->errors().find("ready: ") != std::string::npos; }, kTimeout))
+      << mocap_->errors();
+  hover();
+}
+
+// Samples of another program, which does not ask whether the vehicle lives.
+TEST_F(LivingVehicle, IsFlownByTheSamplesOfOneSourceOnly) {
+  start_all();
+  hover();
+  comms::Node impostor(node("impostor"));
+  auto imu = impostor.publish(topics::kImu);
+  auto poses = impostor.publish(topics::kMocapPose);
+  std::uint64_t sequence = 1'000'000;
+  {
+    const comms::PeriodicTask shouting(2ms, [&] {
+      const double nan = std::numeric_limits<double>::quiet_NaN();
+      msg::Imu sample;
+      sample.stamp_ns(stamp_ns());
+      sample.sequence_number(++sequence);
+      sample.specific_force_frd({nan, nan, nan});
+      imu.publish(sample);
+      msg::MocapPose pose;
+      pose.stamp_ns(stamp_ns());
+      pose.sequence_number(sequence);
+      pose.tracked(true);
+      pose.position_ned({5.0, 5.0, -1.0});
+      pose.q_ned_from_frd({1.0, 0.0, 0.0, 0.0});
+      poses.publish(pose);
+    });
+    EXPECT_TRUE(client_->wait(kTimeout, [](const View& view) {
+      return std::string(view.control.message.source_conflict().c_str()).find("impostor") !=
+             std::string::npos;
+    }));
+    wait_vehicle_time(1.0);
+    expect_undisturbed();
+    const ProgramResult status = run("swiftlet", {"status", "--watch", "0.1"});
+    EXPECT_NE(status.output.find(" of impostor (process " + std::to_string(::getpid())), std::string::npos)
+        << status.output;
+    EXPECT_NE(status.output.find(" (process " + std::to_string(plant_->pid())), std::string::npos)
+        << status.output;
+  }
+  EXPECT_NE(control_->errors().find("are ignored: those of "), std::string::npos) << control_->errors();
+  EXPECT_TRUE(client_->wait(kTimeout, [](const View& view) {
+    return view.control.message.source_conflict().size() == 0;
+  })) << "it ends with the last sample";
+}
+
+TEST_F(LivingVehicle, ADeadVehicleIsReportedSilentFirst) {
+  start_all();
+  hover();
+  std::atomic<int> rotors_off{0};
+  const auto commands = watcher_->subscribe<msg::ActuatorCommand>(
+      topics::kActuatorCommand, [&](const msg::ActuatorCommand& command) {
+        if (command.rotor_state() == msg::ActuatorCommand_Constants::ROTORS_OFF) ++rotors_off;
+      });
+  ASSERT_TRUE(eventually([&] { return commands.matched() > 0; }));
+  plant_->signal(SIGKILL);
+  ASSERT_TRUE(eventually_silent("vehicle"));
+
+  const ProgramResult status = run("swiftlet", {"status", "--watch", "0.1"});
+  EXPECT_EQ(status.output.rfind("VEHICLE SILENT for ", 0), 0U) << status.output;
+  EXPECT_NE(status.output.find("s, since "), std::string::npos) << status.output;
+  EXPECT_NE(status.output.find("\nkl1 in domain " + std::to_string(lock_.domain()) + ": last known: holding"),
+            std::string::npos)
+      << status.output;
+  EXPECT_NE(status.output.find("pose      MISSING"), std::string::npos) << status.output;
+
+  const ProgramResult list = run("swiftlet", {"list", "--time", "1"});
+  EXPECT_EQ(list.output.rfind("kl1: VEHICLE SILENT for ", 0), 0U) << list.output;
+  EXPECT_EQ(list.output.find("holding"), std::string::npos) << list.output;
+
+  const ProgramResult watch = run("swiftlet", {"watch", "--plain", "--duration", "1.5"});
+  EXPECT_NE(watch.output.find("kl1: VEHICLE SILENT for "), std::string::npos) << watch.output;
+  EXPECT_EQ(watch.output.find("no warnings"), std::string::npos) << watch.output;
+
+  EXPECT_EQ(rotors_off, 0);
+  const ProgramResult stop = run("swiftlet", {"stop", "--yes"});
+  EXPECT_EQ(stop.exit_code, 0) << stop.errors;
+  EXPECT_EQ(
+      stop.output.rfind("stop: accepted by kl1: rotors off is commanded, but no IMU sample has come for ", 0),
+      0U)
+      << stop.output;
+  EXPECT_TRUE(eventually([&] { return rotors_off > 0; }));
+}
+
+TEST_F(LivingVehicle, ADeadMotionCaptureIsReportedSilentFirst) {
+  start_all();
+  wait_until_ready();
+  mocap_->signal(SIGKILL);
+  ASSERT_TRUE(eventually_silent("motion capture"));
+  const ProgramResult list = run("swiftlet", {"list", "--time", "1"});
+  EXPECT_EQ(list.output.rfind("kl1: MOTION CAPTURE SILENT for ", 0), 0U) << list.output;
+}
+
+TEST_F(LivingVehicle, ADeadControlServiceIsReportedSilentFirst) {
+  start_all();
+  wait_until_ready();
+  const Program watch("swiftlet",
+                      {"watch", "--plain", "--localhost-only", "--domain", std::to_string(lock_.domain())},
+                      folder_.path());
+  ASSERT_TRUE(
+      eventually([&] { return watch.output().find("kl1: disarmed") != std::string::npos; }, kTimeout));
+  control_->signal(SIGKILL);
+  EXPECT_TRUE(eventually(
+      [&] { return watch.output().find("kl1: CONTROL SERVICE SILENT for ") != std::string::npos; }, kTimeout))
+      << watch.output();
+}
+
+TEST(Attached, AFlightThatFindsNothingSaysWhereItLooked) {
+  const comms::DomainLock lock;
+  const TemporaryFolder folder;
+  const ProgramResult fly = run_program("swiftlet",
+                                        {"fly", "square", "--attach", "--domain",
+                                         std::to_string(lock.domain()), "--record", folder.path() / "r"},
+                                        folder.path());
+  EXPECT_EQ(fly.exit_code, 1);
+  for (const char* part :
+       {"no control service for vehicle kl1 in domain ", "looked on lo (127.0.0.1) only; with --network on "})
+    EXPECT_NE(fly.errors.find(part), std::string::npos) << part << "\n" << fly.errors;
+}
+
+}  // namespace
+}  // namespace swiftlet::tests

@@ -1,0 +1,165 @@
+// The commands of docs/tuning.md: gains that change in flight, and the plot of control settings.
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "swiftlet/io/text_file.hpp"
+#include "tests/integration/online_flight.hpp"
+
+namespace swiftlet::tests {
+namespace {
+
+using Replacements = std::vector<std::pair<std::string, std::string>>;
+
+std::string replaced(const std::string& file, const Replacements& replacements) {
+  std::string text = runtime::read_text_file(std::string(SWIFTLET_SOURCE_DIR) + "/" + file);
+  for (const auto& [from, to] : replacements) {
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    if (at != std::string::npos) text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+std::string settings(const Replacements& replacements) {
+  return replaced("config/control/motor_lag.yaml", replacements);
+}
+
+// Without integral and disturbance observer, so that the vehicle sags under a weight that the controller does
+// not know; z with half the bandwidth.
+const Replacements kSagging = {{"name: motor_lag", "name: sagging"},
+                               {"z: {omega_n: 3.0", "z: {omega_n: 2.0"},
+                               {"integral_limit_m_s2: 2.0", "integral_limit_m_s2: 0.0"},
+                               {"limit_m_s2: 3.0", "limit_m_s2: 0.0"}};
+constexpr double kSaggingP = 5.6;  // omega^2 + 2 zeta omega pole
+
+// A vehicle that is 5 % heavier than in the controller's file.
+class Tuning : public Online {
+ protected:
+  static constexpr double kHeight_m = 0.6;
+  static constexpr double kSag_m = 0.05 * 9.81 / kSaggingP;
+
+  std::vector<std::string> lockstep(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = network();
+    words.insert(words.end(), {"--clock", "lockstep"});
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  json status() const {
+    const ProgramResult result = swiftlet({"status", "--json", "--watch", "0.1"});
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    return result.exit_code == 0 ? json::parse(result.output) : json();
+  }
+  template <class Predicate>
+  bool reaches(const char* what, const Predicate& predicate) const {
+    json last;
+    const bool reached = eventually([&] { return predicate(last = status()); }, kStuck);
+    EXPECT_TRUE(reached) << what << "\n" << last << "\n" << control_.errors();
+    return reached;
+  }
+  bool hovers_at(double height_m) const {
+    return reaches("height", [&](const json& now) {
+      return std::abs(-now.at("position_ned_m")[2].get<double>() - height_m) < 0.01 &&
+             std::abs(now.at("velocity_ned_m_s")[2].get<double>()) < 0.01;
+    });
+  }
+  void done(const std::vector<std::string>& words) const {
+    const ProgramResult result = swiftlet(words);
+    ASSERT_EQ(result.exit_code, 0) << words.front() << ": " << result.errors;
+  }
+  void expect_refused(const std::string& file, const std::string& reason) const {
+    const ProgramResult result = swiftlet({"set", "control", file});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_EQ(result.errors, "swiftlet: set control: " + reason + "\n");
+  }
+
+  const std::string heavy_ = folder_.write(
+      "heavy.yaml",
+      replaced("config/vehicles/kaylion.yaml", {{"mass: {value: 0.040", "mass: {value: 0.042"}}));
+  const Program plant_{"swiftlet-plant", lockstep({"--speed", "4", "--vehicle", heavy_}), folder_.path()};
+  const Program mocap_{"swiftlet-mocap", lockstep(), folder_.path()};
+  const Program control_{"swiftlet-control", lockstep(), folder_.path()};
+};
+
+TEST_F(Tuning, ChangesTheGainsInHover) {
+  ASSERT_TRUE(reaches("has_pose", [](const json& now) { return now.at("has_pose") == true; }));
+  ASSERT_NO_FATAL_FAILURE(done({"arm"}));
+  ASSERT_NO_FATAL_FAILURE(done({"takeoff", "0.6"}));
+  ASSERT_TRUE(hovers_at(kHeight_m));
+  const json before = status().at("settings");
+  EXPECT_EQ(before.at("name"), "motor_lag");
+  EXPECT_NEAR(before.at("gains").at("position_p_per_s2")[2].get<double>(), 11.4, 1e-9);
+
+  const std::string sagging = folder_.write("sagging.yaml", settings(kSagging));
+  const ProgramResult changed = swiftlet({"set", "control", sagging, "--ramp", "1", "--wait", "25"});
+  EXPECT_EQ(changed.exit_code, 0) << changed.errors;
+  EXPECT_EQ(changed.output, "set control: accepted by kl7\nset control: done\n");
+  const json after = status();
+  EXPECT_EQ(after.at("mode"), "holding");
+  EXPECT_EQ(after.at("settings").at("name"), "sagging");
+  EXPECT_EQ(after.at("settings").at("progress"), 1.0);
+  EXPECT_NEAR(after.at("settings").at("gains").at("position_p_per_s2")[2].get<double>(), kSaggingP, 1e-9);
+  EXPECT_TRUE(hovers_at(kHeight_m - kSag_m)) << "the vehicle sags by weight over gain";
+
+  ASSERT_NO_FATAL_FAILURE(done({"set", "control", "motor_lag", "--ramp", "1"}));
+  EXPECT_EQ(status().at("settings").at("gains"), before.at("gains"));
+  EXPECT_TRUE(hovers_at(kHeight_m));
+}
+
+TEST_F(Tuning, RefusesChangesWithTheirReasons) {
+  ASSERT_TRUE(reaches("has_pose", [](const json& now) { return now.at("has_pose") == true; }));
+  ASSERT_NO_FATAL_FAILURE(done({"arm"}));
+  ASSERT_NO_FATAL_FAILURE(done({"takeoff", "0.6"}));
+  expect_refused(folder_.write("fast.yaml", settings({{"max_speed_m_s: 2.0", "max_speed_m_s: 3.0"}})),
+                 "limits.max_speed_m_s: cannot change in flight: is 2.0, the file has 3.0");
+  expect_refused(
+      folder_.write("shaky.yaml", settings({{"x: {omega_n: 2.0, zeta: 1.0", "x: {omega_n: 6.0, zeta: 0.2"}})),
+      "position.x: with the rotor lag the loop is unstable");
+  EXPECT_EQ(swiftlet({"set", "control", folder_.write("broken.yaml", settings({{"zeta: 1.0", "zeta: -1"}}))})
+                .exit_code,
+            2);
+  EXPECT_EQ(status().at("settings").at("name"), "motor_lag");
+  const ProgramResult landing = swiftlet({"land", "--speed", "0.05", "--no-wait"});
+  ASSERT_EQ(landing.exit_code, 0) << landing.errors;
+  expect_refused("motor_lag", "cannot change the gains while landing");
+}
+
+TEST(TunePlot, DrawsSettingsOverEachOther) {
+  const TemporaryFolder folder;
+  const std::string soft = folder.write(
+      "soft.yaml", settings({{"name: motor_lag", "name: soft"}, {"x: {omega_n: 2.0", "x: {omega_n: 1.0"}}));
+  const std::string picture = folder.path() / "tuning.png";
+  const ProgramResult result = run_program(
+      "swiftlet", {"tune", "plot", "motor_lag", soft, "--delay", "0.004", "-o", picture, "--json"},
+      folder.path());
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const json study = json::parse(result.output);
+  EXPECT_EQ(study.at("delay").at("measured_s"), 0.004);
+  ASSERT_EQ(study.at("settings").size(), 2U);
+  EXPECT_EQ(study.at("settings")[1].at("name"), "soft");
+  EXPECT_GT(study.at("settings")[1].at("loops").at("x").at("rise_time_s"),
+            study.at("settings")[0].at("loops").at("x").at("rise_time_s"));
+  std::ifstream in(picture, std::ios::binary);
+  const std::string png{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_EQ(png.substr(1, 3), "PNG");
+  EXPECT_GT(png.size(), 50'000U);
+}
+
+TEST(TunePlot, RefusesARecordWithoutAMeasuredDelay) {
+  const TemporaryFolder folder;
+  folder.write("report.json",
+               R"({"imu_rate_hz": 500, "sense_to_actuate_us": {"p50": 0, "p99": 0, "max": 0}})");
+  const ProgramResult result =
+      run_program("swiftlet", {"tune", "plot", "motor_lag", "--flight", folder.path()}, folder.path());
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.errors.find("no latency was measured; fly in real time"), std::string::npos)
+      << result.errors;
+}
+
+}  // namespace
+}  // namespace swiftlet::tests

@@ -1,0 +1,169 @@
+// Sources of a topic: a second process that is to be the source is refused, and a subscription with one source
+// keeps to it.
+#include <algorithm>
+#include <future>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
+#include "swiftlet/services/dds/discovery/flight_reservation.hpp"
+#include "swiftlet/services/dds/discovery/interfaces.hpp"
+#include "swiftlet/services/dds/discovery/sole_source.hpp"
+#include "swiftlet/services/dds/node.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/unit/services/messages/messages.hpp"
+
+namespace swiftlet::comms::tests {
+namespace {
+
+using swiftlet::tests::eventually;
+using swiftlet::tests::Inbox;
+using namespace std::chrono_literals;
+
+class Sources : public testing::Test {
+ protected:
+  NodeSettings settings(const char* name, const char* source_of, const char* vehicle = "kl1") const {
+    NodeSettings settings;
+    settings.name = name;
+    settings.vehicle = vehicle;
+    settings.domain = lock_.domain();
+    settings.localhost_only = true;
+    settings.source_of = source_of;
+    return settings;
+  }
+  std::string lives(const std::string& process) const {
+    char host[256] = {};
+    ::gethostname(host, sizeof host - 1);
+    return "vehicle kl1 already lives in domain " + std::to_string(lock_.domain()) + ": " + process +
+           " (process " + std::to_string(::getpid()) + " on host " + host + ") is the source of its imu";
+  }
+
+  DomainLock lock_;
+};
+
+TEST_F(Sources, ASecondOneIsRefusedAndNamesTheFirst) {
+  Node first(settings("plant", "imu"));
+  EXPECT_EQ(first.become_source(), std::nullopt);
+  Node second(settings("impostor", "imu"));
+  EXPECT_EQ(second.become_source(), lives("plant"));
+}
+
+TEST_F(Sources, OfOtherVehiclesAndTopicsDoNotExcludeEachOther) {
+  Node plant(settings("plant", "imu"));
+  EXPECT_EQ(plant.become_source(), std::nullopt);
+  Node mocap(settings("mocap", "mocap_pose"));
+  EXPECT_EQ(mocap.become_source(), std::nullopt);
+  Node other(settings("plant", "imu", "kl2"));
+  EXPECT_EQ(other.become_source(), std::nullopt);
+}
+
+TEST_F(Sources, ExactlyOneOfTwoThatStartAtOnceIsRefused) {
+  Node first(settings("first", "imu"));
+  Node second(settings("second", "imu"));
+  auto other_of_first = std::async(std::launch::async, [&] { return first.become_source(); });
+  const auto other_of_second = second.become_source();
+  EXPECT_EQ(other_of_first.get(), std::nullopt) << "it joined earlier";
+  EXPECT_EQ(other_of_second, lives("first"));
+}
+
+TEST_F(Sources, AreFreeAgainOnceTheFirstHasLeft) {
+  auto first = std::make_unique<Node>(settings("plant", "imu"));
+  EXPECT_EQ(first->become_source(), std::nullopt);
+  first.reset();
+  Node second(settings("plant", "imu"));
+  EXPECT_EQ(second.become_source(), std::nullopt);
+}
+
+TEST_F(Sources, AProgramThatAnnouncesNothingExcludesASecondOne) {
+  Node vehicle(settings("vehicle of another make", ""));
+  const auto imu = vehicle.publish(topics::kImu);
+  Node second(settings("plant", "imu"));
+  const auto other = second.become_source();
+  ASSERT_TRUE(other);
+  EXPECT_EQ(*other, lives("vehicle of another make"));
+}
+
+TEST_F(Sources, StayAfterARejoin) {
+  Node first(settings("plant", "imu"));
+  EXPECT_EQ(first.become_source(), std::nullopt);
+  first.rejoin();
+  Node second(settings("impostor", "imu"));
+  EXPECT_EQ(second.become_source(), lives("plant"));
+}
+
+TEST_F(Sources, EndAProcessThatIsNotTheFirst) {
+  Node first(settings("plant", "imu"));
+  const SoleSource source(first, [] {});
+  EXPECT_NO_THROW(source.check());
+  Node second(settings("impostor", "imu"));
+  try {
+    const SoleSource refused(second, [] {});
+    FAIL() << "not refused";
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(error.what(), lives("plant") + "; choose another --vehicle-name or --domain");
+  }
+}
+
+TEST_F(Sources, AReservedFlightExcludesAnotherAndLivingVehicles) {
+  const NodeSettings network = settings("ground", "");
+  const auto refusal_of = [&](const std::vector<std::string>& vehicles) -> std::string {
+    try {
+      const FlightReservation reservation(network, vehicles);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return {};
+  };
+  // A busy machine may discover the other only after the search has ended.
+  const auto is_refused = [&](const std::vector<std::string>& vehicles, const char* sentence) {
+    return tests::eventually([&] { return refusal_of(vehicles).find(sentence) != std::string::npos; });
+  };
+  {
+    const FlightReservation reservation(network, {"kl1", "kl2"});
+    EXPECT_EQ(refusal_of({"kl3"}), "");
+    EXPECT_TRUE(is_refused({"kl3", "kl2"}, "vehicle kl2 already lives in domain "));
+    Node plant(settings("plant", "imu"));
+    EXPECT_EQ(plant.become_source(), std::nullopt) << "the flight starts its own processes";
+    EXPECT_TRUE(is_refused({"kl1"}, "vehicle kl1 already lives in domain "));
+  }
+  EXPECT_EQ(refusal_of({"kl1"}), "");
+  Node mocap(settings("mocap", "mocap_pose"));
+  EXPECT_EQ(mocap.become_source(), std::nullopt);
+  EXPECT_TRUE(is_refused({"kl1"}, "mocap (process "));
+}
+
+// It has another participant then, in the same process.
+TEST_F(Sources, StayTheSourceOfASubscriptionAfterARejoin) {
+  Node plant(settings("plant", "imu"));
+  Node control(settings("control", ""));
+  Inbox<std::uint64_t> received;
+  const auto subscription = control.subscribe<msg::Imu>(
+      topics::kImu, [&](const msg::Imu& imu) { received.put(imu.sequence_number()); }, Delivery::kShared, 1h);
+  auto publisher = plant.publish(topics::kImu);
+  msg::Imu imu = example<msg::Imu>();
+  const auto receives = [&](std::uint64_t number) {
+    imu.sequence_number(number);
+    return eventually([&] {
+      publisher.publish(imu);
+      const auto items = received.items();
+      return std::find(items.begin(), items.end(), number) != items.end();
+    });
+  };
+  ASSERT_TRUE(receives(1));
+  plant.rejoin();
+  EXPECT_TRUE(receives(2));
+  EXPECT_EQ(subscription.source_conflict().has_value(), false);
+}
+
+TEST(Interfaces, NameTheLoopbackInterface) {
+  EXPECT_EQ(interfaces_text(true), "lo (127.0.0.1)");
+  EXPECT_NE(interfaces_text(false).find("lo (127.0.0.1)"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace swiftlet::comms::tests
