@@ -45,7 +45,7 @@ Outcome battery_available(const SupervisorContext& context) {
                   failsafe.battery_timeout_s);
   }
   if (inputs.supply_voltage_v < failsafe.low_battery_voltage) {
-    return refuse("the battery has %.2f V, the limit is %.2f V", inputs.supply_voltage_v,
+    return refuse("battery voltage %.2f V is too low; minimum is %.2f V", inputs.supply_voltage_v,
                   failsafe.low_battery_voltage);
   }
   return accept();

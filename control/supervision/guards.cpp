@@ -34,8 +34,16 @@ Outcome battery_sufficient(const SupervisorContext& context) {
   const SupervisorInputs& inputs = context.inputs;
   const double limit = context.settings.failsafe.low_battery_voltage;
   if (inputs.supply_voltage_v >= limit) return accept();
-  return refuse("cannot take off: the battery has %.2f V, the limit is %.2f V", inputs.supply_voltage_v,
+  return refuse("battery voltage %.2f V is too low to take off; minimum is %.2f V", inputs.supply_voltage_v,
                 limit);
+}
+
+// A take-off ends above the ground, and at the minimum height or above.
+Outcome check_takeoff_height(const char* what, double z_ned, const SupervisorContext& context) {
+  const double ground_z_ned = context.state.guidance.ground_z_ned;
+  const double least_m = std::max(context.limits.min_height_m, kLeastClimb_m - ground_z_ned);
+  if (!(-z_ned < least_m - kRounding)) return accept();
+  return refuse("%s: height %.2f m is too low; minimum is %.2f m", what, -z_ned, least_m);
 }
 
 Outcome check_takeoff(const SupervisorContext& context) {
@@ -47,11 +55,8 @@ Outcome check_takeoff(const SupervisorContext& context) {
   if (!outcome.accepted) return outcome;
   Eigen::Vector3d top = context.estimate().position_ned;
   top.z() = request.position_ned.z();
-  outcome = check_position("takeoff", top, limits);
-  if (!outcome.accepted) return outcome;
-  if (top.z() <= context.state.guidance.ground_z_ned - kLeastClimb_m) return accept();
-  return refuse("takeoff: z is %.3f m, must be above the ground at %.3f m (z points down)", top.z(),
-                context.state.guidance.ground_z_ned);
+  outcome = check_takeoff_height("takeoff", top.z(), context);
+  return outcome.accepted ? check_position("takeoff", top, limits) : outcome;
 }
 
 Outcome check_upload(const SupervisorContext& context) {
@@ -64,9 +69,9 @@ Outcome check_upload(const SupervisorContext& context) {
 Outcome check_mission_named(const SupervisorContext& context) {
   const MissionProgress& there = context.state.guidance.mission;
   const std::uint64_t asked = context.request->mission_id;
-  if (context.plan.mission == nullptr) return refuse("no mission is uploaded: upload one first");
+  if (context.plan.mission == nullptr) return refuse("no mission is uploaded; upload one first");
   if (asked == 0 || asked == there.id) return accept();
-  return refuse("mission %llu is not uploaded: the uploaded mission is %llu",
+  return refuse("mission %llu is not uploaded; the uploaded mission is %llu",
                 static_cast<unsigned long long>(asked), static_cast<unsigned long long>(there.id));
 }
 
@@ -94,10 +99,8 @@ Outcome check_start_from_ground(const SupervisorContext& context) {
   if (!battery.accepted) return battery;
   const MissionItem& first = context.plan.mission->items.front();
   if (first.kind != MissionItemKind::kTakeoff)
-    return refuse("the vehicle stands on the ground: the mission must begin with a takeoff");
-  if (first.position_ned.z() <= context.state.guidance.ground_z_ned - kLeastClimb_m) return accept();
-  return refuse("item 1: takeoff to z = %.3f m, must be above the ground at %.3f m (z points down)",
-                first.position_ned.z(), context.state.guidance.ground_z_ned);
+    return refuse("the vehicle stands on the ground; the mission must begin with a takeoff");
+  return check_takeoff_height("item 1: takeoff", first.position_ned.z(), context);
 }
 
 Outcome check_skip(const SupervisorContext& context) {
@@ -105,7 +108,7 @@ Outcome check_skip(const SupervisorContext& context) {
   if (!named.accepted) return named;
   const MissionProgress& there = context.state.guidance.mission;
   if (there.item_index + 1 < there.item_count) return accept();
-  return refuse("item %d is the last of the mission: there is no item to skip to", there.item_count);
+  return refuse("item %d is the last of the mission; there is no item to skip to", there.item_count);
 }
 
 // If no mission is uploaded, there is nothing to clear.
@@ -279,7 +282,7 @@ Outcome check_settings(const SupervisorContext& context) {
   if (context.inputs.gains_changing_s > 0.0)
     return refuse("the gains are still changing, for another %.1f s", context.inputs.gains_changing_s);
   if (context.inputs.gains != nullptr && *context.inputs.gains != change->from)
-    return refuse("another request changed the gains meanwhile: send this one again");
+    return refuse("another request changed the gains meanwhile; send this one again");
   if (rotors_off(context.state.mode) || context.state.mode == Mode::kArmed) return accept();
   if (near_ground_in_mission(context))
     return refuse("cannot change the gains while the mission takes off or lands");

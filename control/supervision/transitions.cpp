@@ -150,7 +150,7 @@ namespace {
 
 Outcome refuse_for_mission(const SupervisorContext& context) {
   return refuse("mission %llu is %s", static_cast<unsigned long long>(context.state.guidance.mission.id),
-                context.paused() ? "paused: resume or clear it" : "running: end it with hold, goto or land");
+                context.paused() ? "paused; resume or clear it" : "running; end it with hold, goto or land");
 }
 
 // Refuses pause, resume or skip of a mission that does not run, or cannot be interrupted now.
@@ -161,39 +161,47 @@ Outcome refuse_to_change_mission(Event request, const SupervisorContext& context
                   static_cast<unsigned long long>(context.state.guidance.mission.id));
   if (context.state.guidance.phase == Phase::kSpoolUp) return refuse("the mission has not taken off yet");
   if (request == Event::kMissionResume) return refuse("the mission is not paused");
-  return refuse("the mission is landing: end it with goto or hold");
+  return refuse("the mission is landing; end it with goto or hold");
 }
 
 }  // namespace
 
 Outcome refusal(Event request, const SupervisorContext& context) {
-  const char* const now = to_string(context.state.mode);
+  const Mode mode = context.state.mode;
+  const char* const now = to_string(mode);
+  const bool grounded = mode == Mode::kDisarmed || mode == Mode::kArmed;
+  if (mode == Mode::kStopped && request != Event::kMissionUpload && request != Event::kMissionClear)
+    return refuse("emergency stop is active; run `swiftlet disarm` first");
   switch (request) {
     case Event::kArm:
-      return refuse("cannot arm while %s", now);
+      return refuse(mode == Mode::kArmed ? "already armed" : "already armed and %s", now);
     case Event::kDisarm:
-      return refuse("cannot disarm while %s; land first, or stop", now);
+      return refuse("cannot disarm while %s; land first, or run `swiftlet stop`", now);
     case Event::kTakeoff:
-      return refuse("cannot take off while %s; arm first", now);
+      if (mode == Mode::kDisarmed) return refuse("not armed; run `swiftlet arm` first");
+      if (mode == Mode::kLanding || mode == Mode::kDescent) return refuse("cannot take off while %s", now);
+      return refuse("already airborne; use goto");
     case Event::kMissionUpload:
     case Event::kMissionClear:
       return refuse_for_mission(context);
     case Event::kMissionStart:
       if (context.state.mode == Mode::kMission || context.paused()) return refuse_for_mission(context);
-      return refuse("cannot start a mission while %s%s", now,
-                    context.state.mode == Mode::kDisarmed ? "; arm first" : "");
+      if (mode == Mode::kDisarmed) return refuse("not armed; run `swiftlet arm` first");
+      return refuse("cannot start a mission while %s", now);
     case Event::kMissionPause:
     case Event::kMissionResume:
     case Event::kMissionSkip:
       return refuse_to_change_mission(request, context);
     case Event::kTrajectory:
+      if (grounded) return refuse("on the ground; take off first");
       return refuse("cannot start a trajectory while %s", now);
     case Event::kSettings:
       return refuse("cannot change the gains while %s", now);
     case Event::kSetpoint:
       return refuse("setpoints are not accepted while %s", now);
     default:
-      return refuse("the request is not allowed while %s", now);
+      if (grounded) return refuse("on the ground; take off first");
+      return refuse("cannot do this while %s", now);
   }
 }
 

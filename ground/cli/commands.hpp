@@ -38,6 +38,9 @@ Command add_report_command(runtime::CommandLine root);
 // Vehicle parameters from bench data or flights.
 Command add_identify_command(runtime::CommandLine root, char** argv);  // executes `swiftlet-identify`
 
+// Named configuration files: `config ls`, `config show`.
+Command add_config_command(runtime::CommandLine root);
+
 // Shell completion and manual pages.
 Command add_completion_command(runtime::CommandLine root);
 Command add_manual_command(runtime::CommandLine root);

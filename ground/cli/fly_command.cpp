@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
@@ -36,6 +36,19 @@ void check(const FlyOptions& options, std::size_t vehicles) {
   }
 }
 
+// A mission for each vehicle, or one for all.
+void require_one_for_each(std::size_t missions, std::vector<std::string> vehicles) {
+  if (missions == 1 || missions == vehicles.size()) return;
+  const std::string counts = fmt::format("{} missions but {} {}; ", missions, vehicles.size(),
+                                         vehicles.size() == 1 ? "vehicle" : "vehicles");
+  if (missions < vehicles.size()) throw InputError(counts + "give one for all, or one for each");
+  for (int number = 1; vehicles.size() < missions; ++number) {
+    const std::string name = fmt::format("kl{}", number);
+    if (std::find(vehicles.begin(), vehicles.end(), name) == vehicles.end()) vehicles.push_back(name);
+  }
+  throw InputError(fmt::format("{}add --vehicle-name {}", counts, fmt::join(vehicles, ",")));
+}
+
 // The vehicles start beside each other.
 void require_room(double spacing_m, const plant::Vehicle& vehicle) {
   const double width_m = plant::width(vehicle);
@@ -50,10 +63,7 @@ void require_room(double spacing_m, const plant::Vehicle& vehicle) {
 std::vector<LaunchConfiguration> plan_flights(const FlyOptions& options,
                                               const std::vector<std::string>& vehicles) {
   const std::vector<std::string> missions = split_list(options.mission);
-  if (missions.size() != 1 && missions.size() != vehicles.size()) {
-    throw InputError("mission: " + std::to_string(missions.size()) + " missions for " +
-                     std::to_string(vehicles.size()) + " vehicles, must be one for all or one for each");
-  }
+  require_one_for_each(missions.size(), vehicles);
   std::vector<LaunchConfiguration> plans;
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     FlyOptions one = options;
@@ -170,9 +180,9 @@ Command add_fly_command(runtime::CommandLine root) {
       "--attach", [options] { options->launch_mode = LaunchMode::kAttached; },
       "start no processes: use the plant, mocap and control that run in the domain (default: 0)");
   runtime::add_clock_option(app, options->clock);
-  app.add_option("--speed", options->speed,
-                 "simulated seconds per second of real time; default: 1, or with --clock lockstep as fast as "
-                 "possible")
+  app.add_option(
+         "--speed", options->speed,
+         "simulation speed factor (1 = real time); default: 1, or with --clock lockstep as fast as possible")
       .range(0.01, 100.0);
   app.add_flag("--trace", options->trace,
                "lockstep only: write trace.csv, which holds every sample and command bit for bit");

@@ -10,23 +10,27 @@ void add_mission_options(runtime::CommandLine app, FlyOptions& options) {
          "mission", options.mission,
          "mission file, or the name of one in config/missions; also a trajectory or waypoints as CSV, or a "
          "QGroundControl .plan file")
+      .type_name("MISSION")
       .show_default();
   add_frame_option(app, options.frame);
   app.add_option("--vehicle", options.vehicle, "vehicle file, or the name of one in config/vehicles")
+      .type_name("VEHICLE")
       .show_default();
   app.add_option("--control", options.control,
                  "control settings file, or the name of one in config/control: motor_lag, or paper for the "
                  "control laws of the paper")
+      .type_name("CONTROL")
       .show_default();
   app.add_option("--simulation", options.simulation,
                  "simulation settings file, or the name of one in config/simulation")
+      .type_name("SIMULATION")
       .show_default();
-  app.add_option("--seed", options.seed, "seed of all random numbers of the simulation")
+  app.add_option("--seed", options.seed, "random seed of the simulation: sensor errors, dropouts and gusts")
       .range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max())
       .show_default();
   app.add_option("--imu-rate", options.imu_rate_hz,
                  "IMU and inner-loop rate, Hz; default: that of the simulation file")
-      .one_of({500, 1000});
+      .one_of({"500", "1000"});
 }
 
 void add_frame_option(runtime::CommandLine app, std::optional<MissionFrame>& frame) {
@@ -50,11 +54,14 @@ void add_fly_options(runtime::CommandLine app, FlyOptions& options) {
 }
 
 runtime::Option add_dispersion_option(runtime::CommandLine app, FlyOptions& options) {
-  return app.add_option(
-      "--dispersion", options.dispersion,
-      "dispersion file, or the name of one in config/dispersion: the distributions from which the parameters "
-      "of the flown vehicle and of the simulation are sampled; the controller is designed on --vehicle. "
-      "`uncertainty` samples from the parameter uncertainty in the vehicle file");
+  return app
+      .add_option(
+          "--dispersion", options.dispersion,
+          "dispersion file, or the name of one in config/dispersion: the distributions from which the "
+          "parameters "
+          "of the flown vehicle and of the simulation are sampled; the controller is designed on --vehicle. "
+          "`uncertainty` samples from the parameter uncertainty in the vehicle file")
+      .type_name("DISPERSION");
 }
 
 }  // namespace swiftlet::ground

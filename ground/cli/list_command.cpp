@@ -22,6 +22,7 @@ struct Options {
   comms::NodeSettings network;
   double look_s = 2.0;
   bool json = false;
+  bool names = false;
 };
 
 // A discovered vehicle.
@@ -118,6 +119,8 @@ int list(const Options& options) {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     for (const Found& vehicle : vehicles) json.push_back(to_json(vehicle));
     std::printf("%s\n", json.dump(2).c_str());
+  } else if (options.names) {
+    for (const Found& vehicle : vehicles) std::printf("%s\n", vehicle.name.c_str());
   } else if (!vehicles.empty()) {
     print(vehicles);
   }
@@ -136,12 +139,12 @@ int list(const Options& options) {
 Command add_list_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
   const runtime::CommandLine app = root.add_subcommand(
-      "list",
-      "List the vehicles of the domain: who is silent, model, mode, battery, controllers and pose rate");
+      "list", "List the vehicles of the domain: who is silent first, then mode, battery and controllers");
   add_network_options(app, options->network);
   app.remove_option("--vehicle-name");
   app.add_option("--time", options->look_s, "duration of the discovery, s").range(0.4, 60.0).show_default();
   app.add_flag("--json", options->json, "print the list as JSON");
+  app.add_flag("--names", options->names, "print only the names, one a line");
   app.footer("example: swiftlet list --json | jq -r .[].vehicle");
   return {app, [options] { return list(*options); }};
 }

@@ -4,10 +4,12 @@
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/command_line/run_command_line.hpp"
+#include "swiftlet/services/runtime/version.hpp"
 
 int main(int argc, char** argv) {
   using namespace swiftlet;
   runtime::Program program("swiftlet", "Swiftlet: fly micro quadrotors over DDS");
+  program.add_version(runtime::version_text());
   const runtime::CommandLine root = program.command_line();
   root.require_subcommand(0, 1);
   root.footer(
@@ -35,6 +37,7 @@ int main(int argc, char** argv) {
       ground::add_set_command(root),
       ground::add_sim_command(root),
       ground::add_identify_command(root, argv),
+      ground::add_config_command(root),
       ground::add_completion_command(root),
       ground::add_manual_command(root),
   };

@@ -3,7 +3,7 @@
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
-#include "swiftlet/ground/command_line/installation.hpp"
+#include "swiftlet/ground/command_line/configuration.hpp"
 #include "swiftlet/ground/mission/mission_check.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
@@ -22,10 +22,10 @@ struct Options {
 };
 
 int run(const Options& options) {
-  const plant::Vehicle vehicle = runtime::load_vehicle(configuration_file("vehicles", options.vehicle));
-  const auto settings = runtime::load_control_settings(configuration_file("control", options.control));
+  const plant::Vehicle vehicle = runtime::load_vehicle(configuration_file(kinds::kVehicle, options.vehicle));
+  const auto settings = runtime::load_control_settings(configuration_file(kinds::kControl, options.control));
   const MissionFile file =
-      load_mission_file(configuration_file("missions", options.file), settings.limits, options.frame);
+      load_mission_file(configuration_file(kinds::kMission, options.file), settings.limits, options.frame);
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
   const MissionDryRun flown = dry_run(file.mission, settings, {options.start[0], options.start[1]});
@@ -51,12 +51,15 @@ Command add_mission_check_command(runtime::CommandLine mission) {
       "cannot, 2 the file is invalid.");
   app.add_option("file", options->file,
                  "mission file, or the name of one in config/missions; also CSV or QGroundControl .plan")
+      .type_name("MISSION")
       .required();
   add_frame_option(app, options->frame);
   app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
+      .type_name("VEHICLE")
       .show_default();
   app.add_option("--control", options->control,
                  "control settings file, or the name of one in config/control: its limits and fence apply")
+      .type_name("CONTROL")
       .show_default();
   app.add_option("--start", options->start, "start position of the vehicle: north and east, m")
       .finite()

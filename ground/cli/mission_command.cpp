@@ -35,10 +35,9 @@ Command add_mission_request(runtime::CommandLine mission, const std::string& nam
 }  // namespace
 
 Command add_mission_start_command(runtime::CommandLine mission) {
-  return add_mission_request(
-      mission, "start",
-      "Start the uploaded mission at its first item; also after it has ended. Ctrl-C pauses it",
-      &Vehicle::start_mission);
+  return add_mission_request(mission, "start",
+                             "Start the uploaded mission at its first item; Ctrl-C pauses it",
+                             &Vehicle::start_mission);
 }
 
 Command add_mission_pause_command(runtime::CommandLine mission) {

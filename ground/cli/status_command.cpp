@@ -301,7 +301,8 @@ int show_status(const Options& options) {
 Command add_status_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
   const runtime::CommandLine app = add_vehicle_subcommand(
-      root, "status", "Print who is silent, mode, position, attitude, battery, mission, topic rates and ages",
+      root, "status",
+      "Print the state of a vehicle: who is silent first, then mode, position, battery and rates",
       "swiftlet status --json | jq .battery.voltage_v", options);
   app.add_option("--watch", options->watch_s, "time over which the rates are measured, s")
       .range(0.1, 60.0)

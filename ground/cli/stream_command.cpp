@@ -278,11 +278,13 @@ int stream(const Options& options) {
 Command add_stream_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
   const runtime::CommandLine app = add_vehicle_subcommand(
-      root, "stream",
-      "Stream setpoints from a CSV file, timed by the vehicle's clock: positions, velocities, accelerations, "
-      "attitudes and thrust, or body rates and thrust. The vehicle must hold; it holds again at the end, or "
-      "lands with --land",
+      root, "stream", "Stream setpoints from a CSV file, timed by the vehicle's clock",
       "swiftlet stream circle.csv --rate 50    (header: t [s],x_ned [m],y_ned [m],z_ned [m])", options);
+  app.footer(
+      "Setpoints are positions, velocities, accelerations, attitudes and thrust, or body rates and "
+      "thrust.\nThe "
+      "vehicle must hold. It holds again at the end, or lands with --land.\n\n" +
+      app.footer());
   app.add_option("file", options->file,
                  "CSV file whose header names the columns with frame and unit, or is "
                  "t,x,y,z[,vx,vy,vz[,ax,ay,az]][,yaw] (ENU); or flight.csv of a record; - streams from "

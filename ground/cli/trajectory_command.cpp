@@ -4,7 +4,7 @@
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
 #include "swiftlet/ground/cli/request_command.hpp"
-#include "swiftlet/ground/command_line/installation.hpp"
+#include "swiftlet/ground/command_line/configuration.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 
@@ -30,8 +30,8 @@ control::Trajectory trajectory_of(const MissionFile& file, const std::string& pa
 }
 
 int send_trajectory(const Options& options) {
-  const auto settings = runtime::load_control_settings(configuration_file("control", options.control));
-  const std::string path = configuration_file("missions", options.file);
+  const auto settings = runtime::load_control_settings(configuration_file(kinds::kControl, options.control));
+  const std::string path = configuration_file(kinds::kMission, options.file);
   const MissionFile file = load_mission_file(path, settings.limits, options.frame);
   const control::Trajectory trajectory = trajectory_of(file, path);
   for (const std::string& assumption : file.assumptions)
@@ -46,14 +46,13 @@ int send_trajectory(const Options& options) {
 Command add_trajectory_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
   const runtime::CommandLine app = add_request_subcommand(
-      root, "trajectory",
-      "Fly a trajectory from hold, from a setpoint stream or from another trajectory: the vehicle joins it "
-      "from its current motion",
-      "swiftlet trajectory figure8.csv", options, Vehicles::kOne);
+      root, "trajectory", "Fly a trajectory of a CSV file; the vehicle joins it from its motion",
+      "swiftlet trajectory config/missions/wave.csv", options, Vehicles::kOne);
   app.add_option("file", options->file, "trajectory or waypoints as CSV").required();
   add_frame_option(app, options->frame);
   app.add_option("--control", options->control,
                  "control settings with the limits and the fence for the check of the file")
+      .type_name("CONTROL")
       .show_default();
   return {app, [options] { return send_trajectory(*options); }};
 }

@@ -63,9 +63,8 @@ Vehicle::Target target_of(const GotoOptions& options) {
 
 Command add_arm_command(runtime::CommandLine root) {
   return add_plain_request_command(
-      root,
-      {"arm", "Start the rotors on the ground if all arming checks pass; of several vehicles, all or none",
-       &Vehicle::arm, OnInterrupt::kHold, true, &Vehicle::disarm});
+      root, {"arm", "Start the rotors on the ground, if all arming checks pass; all vehicles or none",
+             &Vehicle::arm, OnInterrupt::kHold, true, &Vehicle::disarm});
 }
 
 Command add_disarm_command(runtime::CommandLine root) {
@@ -94,9 +93,8 @@ Command add_goto_command(runtime::CommandLine root) {
   const auto options = std::make_shared<GotoOptions>();
   const runtime::CommandLine app = add_request_subcommand(
       root, "goto", "Fly straight to a position (NED, relative to the origin) and hold there",
-      "swiftlet goto -1 0 --height 1.5 --yaw 1.57    (1 m south of the origin, 1.5 m up, nose to the east; "
-      "the "
-      "same as goto -1 0 -1.5)",
+      "swiftlet goto -1 0 --height 1.5 --yaw 1.57    (1 m south of the origin, 1.5 m up, nose to the east)\n"
+      "         swiftlet goto -1 0 -1.5 --yaw 1.57            (the same, with z down)",
       options, Vehicles::kOne);  // two vehicles cannot hold at one position
   app.add_option("x", options->north_m, "north, m").required().finite();
   app.add_option("y", options->east_m, "east, m").required().finite();

@@ -170,16 +170,16 @@ int watch(const Options& options) {
 
 Command add_watch_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
-  const runtime::CommandLine app = root.add_subcommand(
-      "watch",
-      "Show a vehicle full screen: who is silent, mode, position, attitude, reference, battery, "
-      "rates, latencies and warnings; keys request hold, land and stop, each after a "
-      "confirmation with y. Without a terminal, print a line a second");
+  const runtime::CommandLine app =
+      root.add_subcommand("watch", "Show a vehicle full screen, with keys for hold, land and stop");
   add_network_options(app, options->network);
   app.add_flag("--plain", options->plain, "print a line a second, also on a terminal");
   app.add_option("--duration", options->duration_s, "end after so many s; default: end with q or Ctrl-C")
       .range(0.1, 86400.0);
-  app.footer("example: swiftlet watch --vehicle-name kl2");
+  app.footer(
+      "Who is silent comes first. h, l and s request hold, land and stop, each after a confirmation with y.\n"
+      "Without a terminal, the command prints a line a second.\n\nexample: swiftlet watch --vehicle-name "
+      "kl2");
   return {app, [options] { return watch(*options); }};
 }
 

@@ -1,8 +1,10 @@
 // Completion scripts for bash and zsh. Both determine the current command from the words typed so far, and
-// look up what may follow it.
+// look up what may follow it. Names of configuration files and of vehicles that live in the domain are asked of the
+// program when they are needed.
 #include <functional>
 
 #include "swiftlet/ground/command_line/command_text.hpp"
+#include "swiftlet/ground/command_line/configuration.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -43,20 +45,38 @@ std::vector<std::string> value_patterns(const CommandText& command, const Option
   return patterns;
 }
 
-// Options without a list of choices complete as file names.
-std::string values_after_options(const CommandText& program, const char* open, const char* list_begin,
-                                 const char* list_end, const char* files) {
+// The arguments with which the program prints the names that the option may have, one a line; "" if it has none.
+std::string names_command(const OptionText& option) {
+  if (option.names.front() == "--vehicle-name") return "list --names --time 0.5";
+  for (const ConfigurationKind& kind : configuration_kinds()) {
+    if (option.value == kind.value) return std::string("config ls --names ") + kind.folder;
+  }
+  return "";
+}
+
+// The output of the program with these arguments. program: its path, as the shell has it.
+std::string output_of(const std::string& program, const std::string& arguments) {
+  return "$(" + program + " " + arguments + " 2> /dev/null)";
+}
+
+// Options without a list of choices or names complete as file names. program_word: as in output_of().
+std::string values_after_options(const CommandText& program, const std::string& program_word,
+                                 const char* open, const char* list_begin, const char* list_end,
+                                 const char* files) {
   std::string text;
   std::vector<std::string> others;
   for_each(program, [&](const CommandText& command) {
     for (const OptionText& option : command.options) {
       const std::vector<std::string> patterns = value_patterns(command, option);
       if (patterns.empty()) continue;
-      if (option.choices.empty()) {
+      const std::string asked = names_command(option);
+      const std::string choices =
+          asked.empty() ? joined(option.choices, " ") : output_of(program_word, asked);
+      if (choices.empty()) {
         others.insert(others.end(), patterns.begin(), patterns.end());
       } else {
-        text += std::string("    ") + open + joined(patterns, " | ") + ") " + list_begin +
-                joined(option.choices, " ") + list_end + " return ;;\n";
+        text += std::string("    ") + open + joined(patterns, " | ") + ") " + list_begin + choices +
+                list_end + " return ;;\n";
       }
     }
   });
@@ -82,6 +102,16 @@ std::vector<std::string> plain_words(const CommandText& command) {
   return words;
 }
 
+// The names that a positional argument of the command may have, printed by the program.
+std::string positional_names(const CommandText& command, const std::string& program_word) {
+  std::string names;
+  for (const OptionText& option : command.options) {
+    const std::string asked = option.positional ? names_command(option) : "";
+    if (!asked.empty()) names += (names.empty() ? "" : " ") + output_of(program_word, asked);
+  }
+  return names;
+}
+
 // 'name:description' for zsh's _describe.
 std::string described(const std::string& name, const std::string& description) {
   std::string text = "'";
@@ -95,6 +125,7 @@ std::string described(const std::string& name, const std::string& description) {
 
 std::string bash_completion(const CommandText& program) {
   const std::string name = program.words.front();
+  const std::string program_word = "\"${COMP_WORDS[0]}\"";
   std::string text =
       "# Completion of " + name + " for bash, written by `" + name + " completion bash`.\n_" + name +
       "() {\n"
@@ -113,13 +144,16 @@ std::string bash_completion(const CommandText& program) {
       "    esac\n"
       "  done\n"
       "  case \"$chosen $prev\" in\n" +
-      values_after_options(program, "", "mapfile -t COMPREPLY < <(compgen -W \"", "\" -- \"$cur\");", "") +
+      values_after_options(program, program_word, "", "mapfile -t COMPREPLY < <(compgen -W \"",
+                           "\" -- \"$cur\");", "") +
       "  esac\n"
       "  local options=\"\" words=\"\"\n"
       "  case \"$chosen\" in\n";
   for_each(program, [&](const CommandText& command) {
     text += "    \"" + path_of(command) + "\")\n      options=\"" + joined(option_names(command), " ") +
-            "\"\n      words=\"" + joined(plain_words(command), " ") + "\"\n      ;;\n";
+            "\"\n      words=\"" + joined(plain_words(command), " ");
+    const std::string names = positional_names(command, program_word);
+    text += (names.empty() ? "" : " " + names) + "\"\n      ;;\n";
   });
   return text +
          "  esac\n"
@@ -132,6 +166,7 @@ std::string bash_completion(const CommandText& program) {
 
 std::string zsh_completion(const CommandText& program) {
   const std::string name = program.words.front();
+  const std::string program_word = "$words[1]";
   std::string text = "#compdef " + name + "\n# Completion of " + name + " for zsh, written by `" + name +
                      " completion zsh`.\n_" + name +
                      "() {\n"
@@ -144,9 +179,9 @@ std::string zsh_completion(const CommandText& program) {
                      "    esac\n"
                      "  done\n"
                      "  case \"$chosen $prev\" in\n" +
-                     values_after_options(program, "(", "compadd -- ", ";", "_files;") +
+                     values_after_options(program, program_word, "(", "compadd -- ", "; _files;", "_files;") +
                      "  esac\n"
-                     "  local -a options commands\n"
+                     "  local -a options commands names\n"
                      "  case \"$chosen\" in\n";
   for_each(program, [&](const CommandText& command) {
     text += "    (\"" + path_of(command) + "\")\n      options=(\n";
@@ -163,7 +198,10 @@ std::string zsh_completion(const CommandText& program) {
         if (option.positional) text += "        " + described(choice, option.description) + "\n";
       }
     }
-    text += "      )\n      ;;\n";
+    text += "      )\n";
+    if (const std::string names = positional_names(command, program_word); !names.empty())
+      text += "      names=(" + names + ")\n";
+    text += "      ;;\n";
   });
   return text +
          "  esac\n"
@@ -172,6 +210,7 @@ std::string zsh_completion(const CommandText& program) {
          "    return\n"
          "  fi\n"
          "  (( $#commands )) && _describe command commands\n"
+         "  (( $#names )) && compadd -- $names\n"
          "  [[ -n $chosen ]] && _files\n"
          "}\n"
          "_" +

@@ -7,7 +7,7 @@
 
 #include <fmt/core.h>
 
-#include "swiftlet/ground/command_line/installation.hpp"
+#include "swiftlet/ground/command_line/configuration.hpp"
 #include "swiftlet/ground/command_line/output_files.hpp"
 #include "swiftlet/ground/identify/flight_identification_report.hpp"
 #include "swiftlet/ground/identify/identify_actions.hpp"
@@ -33,11 +33,11 @@ struct Base {
 
 // The base vehicle: --base, else that of the record around the log, else kaylion.
 Base base_of(const IdentifyFlightOptions& options) {
-  if (!options.base.empty()) return {configuration_file("vehicles", options.base), false};
+  if (!options.base.empty()) return {configuration_file(kinds::kVehicle, options.base), false};
   const fs::path log = options.logs.front();
   const fs::path record_vehicle = (fs::is_directory(log) ? log : log.parent_path()) / "vehicle.yaml";
   if (fs::is_regular_file(record_vehicle)) return {record_vehicle, false};
-  return {configuration_file("vehicles", "kaylion"), true};
+  return {configuration_file(kinds::kVehicle, "kaylion"), true};
 }
 
 }  // namespace

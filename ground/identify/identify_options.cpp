@@ -52,6 +52,7 @@ Command add_simulate_command(runtime::CommandLine identify, const IdentifyAction
   const runtime::CommandLine app = identify.add_subcommand(
       "simulate", "Simulate bench data of a known vehicle, to test the identification");
   app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in the configuration")
+      .type_name("VEHICLE")
       .show_default();
   app.add_option("--noise", options->noise.share,
                  "standard deviation of each reading, as a fraction of the largest of its column")
@@ -63,7 +64,7 @@ Command add_simulate_command(runtime::CommandLine identify, const IdentifyAction
       .finite()
       .range(0.0, 0.4)
       .show_default();
-  app.add_option("--seed", options->seed, "seed of the noise").whole().show_default();
+  app.add_option("--seed", options->seed, "random seed of the noise").whole().show_default();
   app.add_option("--out", options->out, "folder to write the bench data to").required().type_name("DIR");
   app.footer(
       "example: swiftlet identify simulate --vehicle kaylion --noise 0.01 --outliers 0.02 --out bench");

@@ -212,10 +212,13 @@ void add_timing(const View& view, const WatchFacts& facts, Clock::time_point now
   add(lines, fmt::format("{:<11} {:.1f} Hz, {} of {} steps late, longest {:.0f} us", "control",
                          control.rate_hz(), static_cast<unsigned long long>(control.deadline_misses()),
                          static_cast<unsigned long long>(control.cycles()), control.step_time_max_us()));
-  int controllers = 0;
-  for (const auto& [number, latest] : view.controllers) controllers += latest.age_s(now) < kSilence_s ? 1 : 0;
-  add(lines, fmt::format("{:<11} {}, of which {} on standby", "controllers", controllers,
-                         std::max(controllers - 1, 0)));
+  int active = 0;
+  int standby = 0;
+  for (const auto& [number, latest] : view.controllers) {
+    if (latest.age_s(now) >= kSilence_s) continue;
+    ++(latest.message.role() == msg::ControllerState_Constants::ACTIVE ? active : standby);
+  }
+  add(lines, fmt::format("{:<11} {} active, {} standby", "controllers", active, standby));
 }
 
 std::vector<std::string> silence_lines(const View& view, const WatchFacts& facts, Clock::time_point now) {

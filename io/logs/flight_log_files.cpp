@@ -343,6 +343,8 @@ void write_flight_log(const fs::path& file, const FlightLog& log) {
 
 ReadFlightLog read_flight_log(const fs::path& path, const plant::Vehicle& base, BodyAxes axes) {
   const fs::path file = fs::is_directory(path) ? path / kSensorsFile : path;
+  if (fs::is_directory(path) && !fs::exists(file))
+    throw ConfigError(path.string(), 0, "", "has no sensor log; fly with --sensors");
   const std::string text = read_unpacked(file.string());
   refuse_telemetry(text, file.string());
   const Measurements table = runtime::parse_measurements(text, file.string(), flight_quantities());

@@ -19,6 +19,7 @@
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/process.hpp"
 #include "swiftlet/services/runtime/stop_signal.hpp"
+#include "swiftlet/services/runtime/version.hpp"
 
 namespace swiftlet::services {
 namespace {
@@ -94,7 +95,7 @@ int main(int argc, char** argv) {
   return runtime::run_process(
       {"swiftlet-control",
        "The flight controller: answers each IMU sample with an actuator command, executes requests.",
-       "--control config/control/motor_lag.yaml --localhost-only"},
+       "--control config/control/motor_lag.yaml --localhost-only", runtime::version_text()},
       argc, argv, [&](runtime::CommandLine app) { services::add_options(app, options); },
       [&] { services::run(options); });
 }

@@ -22,6 +22,7 @@
 #include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/process.hpp"
 #include "swiftlet/services/runtime/stop_signal.hpp"
+#include "swiftlet/services/runtime/version.hpp"
 
 namespace swiftlet::services {
 namespace {
@@ -36,7 +37,7 @@ struct Options {
 
 void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--simulation", options.simulation, "Simulation file").show_default();
-  app.add_option("--seed", options.seed, "Seed of pose errors and dropouts")
+  app.add_option("--seed", options.seed, "Random seed of pose errors and dropouts")
       .range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max())
       .show_default();
   runtime::add_clock_option(app, options.clock);
@@ -181,7 +182,7 @@ int main(int argc, char** argv) {
   return runtime::run_process(
       {"swiftlet-mocap",
        "Simulates motion capture: receives the ground truth of a simulated vehicle, publishes its pose.",
-       "--seed 7 --localhost-only"},
+       "--seed 7 --localhost-only", runtime::version_text()},
       argc, argv, [&](runtime::CommandLine app) { services::add_options(app, options); },
       [&] { services::run(options); });
 }

@@ -29,6 +29,7 @@
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 #include "swiftlet/services/runtime/process.hpp"
 #include "swiftlet/services/runtime/stop_signal.hpp"
+#include "swiftlet/services/runtime/version.hpp"
 
 namespace swiftlet::services {
 namespace {
@@ -51,19 +52,18 @@ struct Options {
 void add_options(runtime::CommandLine app, Options& options) {
   app.add_option("--vehicle", options.vehicle, "Vehicle file").show_default();
   app.add_option("--simulation", options.simulation, "Simulation file").show_default();
-  app.add_option("--seed", options.seed, "Seed of noise, biases and gusts")
+  app.add_option("--seed", options.seed, "Random seed of noise, biases and gusts")
       .range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max())
       .show_default();
   app.add_option("--start", options.start, "Initial position on the ground, m north and m east of the origin")
       .range(-1e3, 1e3);
   app.add_option("--imu-rate", options.imu_rate,
                  "IMU rate, Hz, 500 or 1000; default: as in the simulation file")
-      .one_of({500, 1000});
+      .one_of({"500", "1000"});
   runtime::add_clock_option(app, options.clock);
-  app.add_option(
-         "--speed", options.speed,
-         "Simulated time per real time; default 1. In lockstep an upper limit; default: as fast as answers "
-         "arrive")
+  app.add_option("--speed", options.speed,
+                 "Simulation speed factor (1 = real time). In lockstep an upper limit; default: as fast as "
+                 "answers arrive")
       .range(0.01, 100.0);
   app.add_flag("--paused", options.lockstep.paused, "Lockstep: advance time only up to simulation_clock");
   app.add_option("--trace", options.lockstep.trace,
@@ -272,7 +272,7 @@ int main(int argc, char** argv) {
   return runtime::run_process(
       {"swiftlet-plant",
        "Simulates a quadrotor on the network: publishes sensor samples, obeys actuator commands.",
-       "--vehicle config/vehicles/kaylion.yaml --seed 7 --localhost-only"},
+       "--vehicle config/vehicles/kaylion.yaml --seed 7 --localhost-only", runtime::version_text()},
       argc, argv, [&](runtime::CommandLine app) { services::add_options(app, options); },
       [&] { services::run(options); });
 }

@@ -24,6 +24,14 @@ std::string failure_text(const CLI::App* app, const CLI::Error& error) {
   return std::string(error.what()) + "\n" + usage + "\nRun with --help for more information.\n";
 }
 
+// "a", "a or b", "a, b or c"
+std::string choice_of(const std::vector<std::string>& texts) {
+  std::string list;
+  for (std::size_t i = 0; i < texts.size(); ++i)
+    list += (i == 0 ? "" : i + 1 == texts.size() ? " or " : ", ") + texts[i];
+  return list;
+}
+
 // CLI11's own checks accept "nan", and whole numbers too large for their type.
 std::optional<double> finite_number(const std::string& text) {
   double value = 0.0;
@@ -133,7 +141,7 @@ Option& Option::range(Number least, Number most) {
       [least, most](const std::string& text) {
         const std::optional<Number> number = number_of<Number>(text);
         if (number && *number >= least && *number <= most) return std::string();
-        return "Value " + text + " not in range " + CLI::detail::to_string(least) + " to " +
+        return "is " + text + ", must be from " + CLI::detail::to_string(least) + " to " +
                CLI::detail::to_string(most);
       },
       CLI::Range(least, most).get_description());
@@ -141,7 +149,9 @@ Option& Option::range(Number least, Number most) {
 Option& Option::whole() {
   return check(
       [](const std::string& text) {
-        return whole_number<std::uint64_t>(text) ? "" : text + " is not a whole number from 0 to 2^64 - 1";
+        return whole_number<std::uint64_t>(text)
+                   ? ""
+                   : "is " + text + ", must be a whole number from 0 to 2^64 - 1";
       },
       "UINT");
 }
@@ -152,23 +162,28 @@ template Option& Option::range(double, double);
 
 Option& Option::finite() {
   return check(
-      [](const std::string& text) { return finite_number(text) ? "" : text + " is not a finite number"; },
+      [](const std::string& text) {
+        return finite_number(text) ? "" : "is " + text + ", must be a finite number";
+      },
       "NUMBER");
 }
 Option& Option::positive() {
   return check(
       [](const std::string& text) {
-        return finite_number(text).value_or(0.0) > 0.0 ? "" : text + " must be a finite number above 0";
+        return finite_number(text).value_or(0.0) > 0.0 ? ""
+                                                       : "is " + text + ", must be a finite number above 0";
       },
       "NUMBER > 0");
 }
-Option& Option::one_of(std::initializer_list<const char*> texts) {
-  option_->check(CLI::IsMember(std::vector<std::string>(texts.begin(), texts.end())));
-  return *this;
-}
-Option& Option::one_of(std::initializer_list<int> numbers) {
-  option_->check(CLI::IsMember(numbers));
-  return *this;
+Option& Option::one_of(const std::vector<std::string>& texts) {
+  std::string braces;
+  for (const std::string& text : texts) braces += (braces.empty() ? "{" : ",") + text;
+  return check(
+      [texts](const std::string& text) {
+        const bool is_one = std::find(texts.begin(), texts.end(), text) != texts.end();
+        return is_one ? "" : "is " + text + ", must be " + choice_of(texts);
+      },
+      braces + "}");
 }
 Option& Option::check(std::function<std::string(const std::string&)> fault_of,
                       const std::string& value_name) {
@@ -186,6 +201,7 @@ void CommandLine::require_subcommand(std::size_t least, std::size_t most) const 
   app_->require_subcommand(least, most);
 }
 void CommandLine::footer(const std::string& text) const { app_->footer(text); }
+std::string CommandLine::footer() const { return app_->get_footer(); }
 
 template <class Value>
 Option CommandLine::add_option(const std::string& name, Value& value, const std::string& description) const {
@@ -217,8 +233,7 @@ Option CommandLine::add_choice(const std::string& name, const std::vector<std::s
         choose(static_cast<std::size_t>(std::find(choices.begin(), choices.end(), chosen) - choices.begin()));
       },
       description);
-  option->check(CLI::IsMember(choices));
-  return Option(*option);
+  return Option(*option).one_of(choices);
 }
 Option CommandLine::add_flag(const std::string& name, bool& value, const std::string& description) const {
   return Option(*app_->add_flag(name, value, description));
@@ -242,6 +257,10 @@ Program::Program(const std::string& name, const std::string& purpose)
   app_->failure_message(failure_text);
 }
 Program::~Program() = default;
+
+void Program::add_version(const std::string& text) {
+  app_->set_version_flag("--version", text, "Print the version and exit");
+}
 
 Program::Parsed Program::parse(int argc, const char* const* argv) {
   try {

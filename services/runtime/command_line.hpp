@@ -6,7 +6,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <initializer_list>
 #include <memory>
 #include <string>
 #include <utility>
@@ -39,8 +38,7 @@ class Option {
   Option& whole();     // from 0 to 2^64 - 1
   Option& finite();    // neither infinite nor NaN
   Option& positive();  // finite and above 0
-  Option& one_of(std::initializer_list<const char*> texts);
-  Option& one_of(std::initializer_list<int> numbers);
+  Option& one_of(const std::vector<std::string>& texts);
   // fault_of returns why a text is refused, a sentence, or "" if it is valid. --help shows value_name.
   Option& check(std::function<std::string(const std::string&)> fault_of, const std::string& value_name);
 
@@ -58,6 +56,7 @@ class CommandLine {
   CommandLine add_subcommand(const std::string& name, const std::string& description) const;
   void require_subcommand(std::size_t least, std::size_t most) const;
   void footer(const std::string& text) const;
+  std::string footer() const;
 
   // name: "--name", "-n,--name", or "name" for a positional argument. `value` must outlive the parsing; its
   // content is the default. command_line.cpp lists the types for Value.
@@ -99,9 +98,10 @@ class Program {
   Program& operator=(const Program&) = delete;
 
   CommandLine command_line() const { return CommandLine(*app_); }
+  void add_version(const std::string& text);  // what --version prints
 
   enum class Parsed { kRun, kHelp, kWrongUsage };
-  // Prints the help to stdout (kHelp), or the error and the usage line of the command to stderr (kWrongUsage).
+  // Prints the help or version to stdout (kHelp), or the error and the usage line of the command to stderr (kWrongUsage).
   Parsed parse(int argc, const char* const* argv);
   // Parses one line without the program's name; prints nothing.
   Parsed parse(const std::string& line);

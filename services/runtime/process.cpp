@@ -54,6 +54,7 @@ int run_process(const ProgramText& text, int argc, char** argv,
                 const std::function<void(CommandLine)>& add_options, const std::function<void()>& body) {
   try {
     Program program(text.name, text.purpose);
+    if (text.version != nullptr) program.add_version(text.version);
     const CommandLine app = program.command_line();
     app.footer(std::string("Example: ") + text.name + ' ' + text.example);
     add_options(app);

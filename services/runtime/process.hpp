@@ -27,10 +27,11 @@ RealtimeSettings prepare_realtime(RealtimeSettings settings, Clock clock);
 struct ProgramText {
   const char* name;
   const char* purpose;
-  const char* example;  // arguments
+  const char* example;            // arguments
+  const char* version = nullptr;  // with it, the program has --version
 };
 
-// Parses the command line, limits the stacks of threads, then runs body. Exit code: 0 done (also --help); 2
+// Parses the command line, which also has --version, limits the stacks of threads, then runs body. Exit code: 0 done (also --help); 2
 // wrong usage or bad input (ConfigError, std::invalid_argument); 1 any other exception. Prints an error as
 // one line on stderr.
 int run_process(const ProgramText& text, int argc, char** argv,

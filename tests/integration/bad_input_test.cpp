@@ -59,7 +59,10 @@ TEST_F(BadInput, SeveralVehicles) {
   expect_refusal({file, "--vehicle-name", "kl1,kl1"}, "names kl1 twice");
   expect_refusal({file, "--vehicle-name", "kl1,,kl2"}, "each name must be 1 to 64 letters, digits and _");
   expect_refusal({file + "," + file, "--vehicle-name", "a,b,c"},
-                 "mission: 2 missions for 3 vehicles, must be one for all or one for each");
+                 "2 missions but 3 vehicles; give one for all, or one for each");
+  expect_refusal({file + "," + file}, "2 missions but 1 vehicle; add --vehicle-name kl1,kl2");
+  expect_refusal({file + "," + file + "," + file, "--vehicle-name", "kl2,a"},
+                 "3 missions but 2 vehicles; add --vehicle-name kl2,a,kl1");
   expect_refusal({file, "--vehicle-name", "a,b,c,d,e,f,g,h,i,j,k,l,m"},
                  "names 13 vehicles, limit 12 per command");
   expect_refusal({file, "--vehicle-name", "a,b", "--spacing", "40"},
@@ -140,10 +143,11 @@ TEST_F(BadInput, WrongUsage) {
   expect_refusal({"square", "--imu-rate", "777"}, "--imu-rate");
   expect_refusal({"square", "--domain", "500"}, "--domain");
   expect_refusal({"square", "--vehicle-name", "a b"}, "--vehicle-name");
-  expect_refusal({"square", "--seed", "-1"}, "--seed: Value -1 not in range");
-  expect_refusal({"square", "--seed", "100000000000000000000000"}, "--seed: Value 1000");
-  expect_refusal({"square", "--speed", "nan"}, "--speed: Value nan not in range");
-  expect_refusal({"square", "--transport", "pigeon"}, "--transport: pigeon not in {udp,shm}");
+  expect_refusal({"square", "--seed", "-1"}, "--seed: is -1, must be from 0 to 9223372036854775807");
+  expect_refusal({"square", "--seed", "100000000000000000000000"},
+                 "--seed: is 100000000000000000000000, must be from 0 to");
+  expect_refusal({"square", "--speed", "nan"}, "--speed: is nan, must be from 0.01 to 100");
+  expect_refusal({"square", "--transport", "pigeon"}, "--transport: is pigeon, must be udp or shm");
 }
 
 TEST_F(BadInput, RecordFolderThatCannotBeCreated) {
@@ -167,10 +171,11 @@ TEST_F(BadInput, OnlineCommands) {
   refuses({"goto", "1", "0", "-1", "--yaw", "90"},
           "goto: yaw is 90 rad, more than a full turn: 90 degrees are");
   refuses({"goto", "1", "0", "--heigth", "1"}, "Unknown option '--heigth'. Did you mean '--height'?");
-  refuses({"stream", folder_.write("low.csv", "t [s],x_ned [m],y_ned [m],z_ned [m]\n0,0,0,-1\n0.1,0,0,0.2\n")},
-          "low.csv:3: z: in NED: z = +0.200 m is below the ground");
+  refuses(
+      {"stream", folder_.write("low.csv", "t [s],x_ned [m],y_ned [m],z_ned [m]\n0,0,0,-1\n0.1,0,0,0.2\n")},
+      "low.csv:3: z: in NED: z = +0.200 m is below the ground");
   refuses({"stream", folder_.write("odd.csv", "t,x\x1b[31m\n")}, "odd.csv:1: is not a text file");
-  refuses({"goto", "1", "2", "nan"}, "nan is not a finite number");
+  refuses({"goto", "1", "2", "nan"}, "is nan, must be a finite number");
   refuses({"takeoff", "-1"}, "must be a finite number above 0");
   refuses({"land", "--speed", "0"}, "must be a finite number above 0");
   refuses({"mission", "check", folder_.write("far.yaml", replaced(kMission, "[1, 0, -1]", "[1, 40, -1]"))},
@@ -180,7 +185,7 @@ TEST_F(BadInput, OnlineCommands) {
   refuses({"teleop", "--joystick", text}, text + " is not an event device; they are /dev/input/event*");
   refuses({"teleop", "--joystick", text + "x"}, "cannot open " + text + "x: No such file or directory");
   refuses({"circle"}, "Unknown command 'circle'. Commands: fly, arm");
-  refuses({"gains", "--seed", "100000000000000000000000"}, "is not a whole number from 0 to 2^64 - 1");
+  refuses({"gains", "--seed", "100000000000000000000000"}, "must be a whole number from 0 to 2^64 - 1");
   refuses({"flyy"}, "Unknown command 'flyy'. Did you mean 'fly'?");
   refuses({}, "swiftlet: a command is required");
 }

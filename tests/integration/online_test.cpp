@@ -21,14 +21,19 @@ using namespace std::chrono_literals;
 using nlohmann::json;
 
 TEST_F(OnlineFlight, ExecutesEveryCommand) {
-  expect_refused({"takeoff"}, "cannot take off while disarmed; arm first");
-  expect_refused({"hold"}, "the request is not allowed while disarmed");
+  expect_refused({"takeoff"}, "not armed; run `swiftlet arm` first");
+  expect_refused({"hold"}, "on the ground; take off first");
   expect_accepted({"arm"});
   ASSERT_TRUE(reaches_mode("armed"));
+  expect_refused({"takeoff", "0.01"}, "takeoff: height 0.01 m is too low; minimum is 0.10 m");
+  expect_accepted({"stop", "--yes"});
+  ASSERT_TRUE(reaches_mode("stopped"));
+  expect_refused({"arm"}, "emergency stop is active; run `swiftlet disarm` first");
   expect_accepted({"disarm"});
   ASSERT_TRUE(reaches_mode("disarmed"));
   take_off();
-  expect_refused({"disarm"}, "cannot disarm while holding; land first, or stop");
+  expect_refused({"takeoff"}, "already airborne; use goto");
+  expect_refused({"disarm"}, "cannot disarm while holding; land first, or run `swiftlet stop`");
   expect_refused({"goto", "-1", "9", "-1"}, "goto: y is 9.000 m, outside the fence of -3.000 to 3.000 m");
   expect_refused(
       {"goto", "1", "0", "0"},
@@ -197,7 +202,7 @@ TEST_F(OnlineFlight, FliesAMissionFileToItsEnd) {
                                          "  - {kind: land, speed_m_s: 0.8}\n");
   const ProgramResult unarmed = swiftlet({"mission", "fly", file});
   EXPECT_EQ(unarmed.exit_code, 1);
-  EXPECT_EQ(unarmed.errors, "swiftlet: mission hop: cannot start a mission while disarmed; arm first\n");
+  EXPECT_EQ(unarmed.errors, "swiftlet: mission hop: not armed; run `swiftlet arm` first\n");
   expect_accepted({"arm"});
   const ProgramResult flown = swiftlet({"mission", "fly", file, "--json"}, kStuck);
   EXPECT_EQ(flown.exit_code, 0) << flown.errors;
@@ -235,22 +240,22 @@ TEST_F(OnlineFlight, UploadsStartsPausesResumesSkipsAndClearsAMission) {
   ASSERT_EQ(uploaded.exit_code, 0) << uploaded.errors;
   const std::string id = std::to_string(json::parse(uploaded.output).at("mission_id").get<std::uint64_t>());
   ASSERT_TRUE(mission_is("uploaded"));
-  refused("start", "cannot start a mission while disarmed; arm first");
+  refused("start", "not armed; run `swiftlet arm` first");
   refused("pause", "no mission is running");
   expect_accepted({"arm"});
   const ProgramResult other = swiftlet({"mission", "start", "--id", "5"});
   EXPECT_EQ(other.errors,
-            "swiftlet: mission start: mission 5 is not uploaded: the uploaded mission is " + id + "\n");
+            "swiftlet: mission start: mission 5 is not uploaded; the uploaded mission is " + id + "\n");
   accepted("start");
   ASSERT_TRUE(
       reaches("its second item", [](const json& status) { return status.at("mission").at("item") == 2; }));
   accepted("pause");
   ASSERT_TRUE(mission_is("paused"));
   EXPECT_EQ(status().at("mode"), "holding");
-  refused("start", "mission " + id + " is paused: resume or clear it");
+  refused("start", "mission " + id + " is paused; resume or clear it");
   accepted("resume");
   ASSERT_TRUE(mission_is("running"));
-  refused("clear", "mission " + id + " is running: end it with hold, goto or land");
+  refused("clear", "mission " + id + " is running; end it with hold, goto or land");
   accepted("skip");
   ASSERT_TRUE(mission_is("completed"));
   ASSERT_TRUE(reaches_place(0.3, 0.2, -0.6));
@@ -268,8 +273,7 @@ TEST_F(OnlineFlight, JoinsASecondTrajectoryDuringTheFirst) {
   const ProgramResult disarmed = swiftlet({"trajectory", tour});
   EXPECT_EQ(disarmed.exit_code, 1);
   EXPECT_NE(disarmed.errors.find("tour: taken as waypoints in ENU"), std::string::npos) << disarmed.errors;
-  EXPECT_NE(disarmed.errors.find("swiftlet: trajectory: cannot start a trajectory while disarmed\n"),
-            std::string::npos)
+  EXPECT_NE(disarmed.errors.find("swiftlet: trajectory: on the ground; take off first\n"), std::string::npos)
       << disarmed.errors;
   EXPECT_EQ(swiftlet({"trajectory", mission}).exit_code, 2);
   take_off();

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
+#include <regex>
 #include <sstream>
 
 #include "tests/integration/online_flight.hpp"
@@ -51,6 +52,44 @@ TEST_F(Tool, BashCompletesCommandsOptionsAndTheirValues) {
   EXPECT_EQ(completed({"swiftlet", "completion", "z"}), Words({"zsh"}));
   EXPECT_EQ(completed({"swiftlet", "report", ""}), Words()) << "bash completes files itself";
   EXPECT_EQ(completed({"swiftlet", "fly", "--record", ""}), Words());
+}
+
+TEST_F(Tool, BashCompletesNamesOfConfigurationFilesAndVehicles) {
+  // The script asks the program that is typed: this one prints what it was asked.
+  const std::string asked = folder_.write("swiftlet", "#!/bin/sh\necho \"asked:$*\" | tr ' ' _\n");
+  std::filesystem::permissions(asked, std::filesystem::perms::owner_all);
+  EXPECT_EQ(completed({asked, "fly", ""}), Words({"asked:config_ls_--names_missions"}));
+  EXPECT_EQ(completed({asked, "mission", "check", "as"}), Words({"asked:config_ls_--names_missions"}));
+  EXPECT_EQ(completed({asked, "gains", "--vehicle", ""}), Words({"asked:config_ls_--names_vehicles"}));
+  EXPECT_EQ(completed({asked, "set", "control", ""}), Words({"asked:config_ls_--names_control"}));
+  EXPECT_EQ(completed({asked, "arm", "--vehicle-name", ""}), Words({"asked:list_--names_--time_0.5"}));
+  EXPECT_EQ(run({"config", "ls", "--names", "missions"}).output, "identification\nsquare\ntour\nzigzag\n");
+}
+
+TEST_F(Tool, ConfigListsAndPrintsNamedFiles) {
+  const std::string list = run({"config", "ls"}).output;
+  for (const char* part : {"vehicles\n", "  kaylion          KayLion, the micro quadrotor", "missions\n",
+                           "  square           Square of 2 m, height kept (Fig. 8)\n", "control\n"})
+    EXPECT_NE(list.find(part), std::string::npos) << part << "\n" << list;
+  const std::string path = run({"config", "show", "--path", "motor_lag"}).output;
+  EXPECT_NE(path.find("config/control/motor_lag.yaml\n"), std::string::npos) << path;
+  const std::string shown = run({"config", "show", "vehicles/kaylion"}).output;
+  EXPECT_EQ(shown.rfind("# /", 0), 0U) << shown;
+  EXPECT_NE(shown.find("\nmass: {value: "), std::string::npos) << shown;
+  const ProgramResult unknown = run({"config", "show", "squre"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_NE(unknown.errors.find("No configuration file 'squre'. Did you mean 'square'?"), std::string::npos)
+      << unknown.errors;
+  EXPECT_EQ(run({"config", "ls", "moons"}).exit_code, 2);
+}
+
+TEST_F(Tool, ProgramsPrintTheirVersion) {
+  const std::regex form("swiftlet [0-9]+\\.[0-9]+\\.[0-9]+(, commit [0-9a-f]{10}(-dirty)?)?\n");
+  for (const char* program : {"swiftlet", "swiftlet-plant", "swiftlet-mocap", "swiftlet-control"}) {
+    const ProgramResult result = run_program(program, {"--version"}, folder_.path());
+    EXPECT_EQ(result.exit_code, 0) << program;
+    EXPECT_TRUE(std::regex_match(result.output, form)) << program << ": " << result.output;
+  }
 }
 
 TEST_F(Tool, EveryCommandHasACompletionAndAManualPage) {

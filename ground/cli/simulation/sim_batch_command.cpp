@@ -108,7 +108,7 @@ Command add_sim_batch_command(runtime::CommandLine sim) {
   FlyOptions& flight = options->flight;
   flight.launch_mode = LaunchMode::kInProcess;
   const runtime::CommandLine app = sim.add_subcommand(
-      "batch", "Monte Carlo: fly a mission many times, with vehicle and simulation sampled for each run");
+      "batch", "Fly a mission many times, with sampled vehicles and simulations (Monte Carlo)");
   add_mission_options(app, flight);
   add_dispersion_option(app, flight).required();
   app.add_option("--runs", options->runs, "number of runs; the first uses --seed, each further run adds one")

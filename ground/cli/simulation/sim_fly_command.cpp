@@ -53,13 +53,15 @@ int sim_fly(const FlyOptions& options) {
 Command add_sim_fly_command(runtime::CommandLine sim) {
   const auto options = std::make_shared<FlyOptions>();
   options->launch_mode = LaunchMode::kInProcess;
-  const runtime::CommandLine app = sim.add_subcommand(
-      "fly", "Fly a mission in one process, as fast as possible; the same flight as with --clock lockstep");
+  const runtime::CommandLine app =
+      sim.add_subcommand("fly", "Fly a mission in one process, as fast as possible");
   add_fly_options(app, *options);
   add_dispersion_option(app, *options);
   app.add_flag("--trace", options->trace,
                "write trace.csv, which holds every sample and command bit for bit, to compare flights");
-  app.footer("example: swiftlet sim fly square --seed 7 --json | jq .rms_3d_m");
+  app.footer(
+      "The flight equals that of `swiftlet fly --clock lockstep` with the same files and seed.\n\n"
+      "example: swiftlet sim fly square --seed 7 --json | jq .rms_3d_m");
   return {app, [options] { return sim_fly(*options); }};
 }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "swiftlet/ground/cli/commands.hpp"
-#include "swiftlet/ground/command_line/installation.hpp"
+#include "swiftlet/ground/command_line/configuration.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/simulation/open_loop.hpp"
@@ -21,7 +21,7 @@ struct OpenLoopOptions {
 };
 
 int run_open_loop(const OpenLoopOptions& options) {
-  const plant::Vehicle vehicle = runtime::load_vehicle(configuration_file("vehicles", options.vehicle));
+  const plant::Vehicle vehicle = runtime::load_vehicle(configuration_file(kinds::kVehicle, options.vehicle));
   const int rotors = vehicle.rotor_count();
   const std::vector<PulseWidths> pulses =
       read_pulses(runtime::load_csv(options.pulses, pulse_columns(rotors), 2), vehicle);
@@ -41,17 +41,19 @@ int run_open_loop(const OpenLoopOptions& options) {
 
 Command add_sim_open_loop_command(runtime::CommandLine sim) {
   const auto options = std::make_shared<OpenLoopOptions>();
-  const runtime::CommandLine open_loop = sim.add_subcommand(
-      "open-loop",
-      "Simulate the response to pulse widths: no ground, drag or noise, an ideal supply; one row per ms");
+  const runtime::CommandLine open_loop =
+      sim.add_subcommand("open-loop", "Simulate the response to pulse widths, without a controller");
   open_loop.footer(
       "--pwm has the columns t,pwm1,pwm2,...: seconds and microseconds, held until the next row; the time of "
       "the last row\n"
       "ends the run. --initial has one row px,py,pz,vx,vy,vz,qw,qx,qy,qz,p,q,r,om1,...: position and "
       "velocity in NED (m, m/s),\n"
-      "quaternion NED from FRD, body rates and rotor speeds (rad/s). --out has column t, then the same.\n\n"
+      "quaternion NED from FRD, body rates and rotor speeds (rad/s). --out has column t, then the same, one "
+      "row per "
+      "ms.\nThere is no ground, drag or noise, and the supply is ideal.\n\n"
       "example: swiftlet sim open-loop --vehicle kaylion --pwm pulses.csv --supply 3.7 --out motion.csv");
   open_loop.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
+      .type_name("VEHICLE")
       .required();
   open_loop.add_option("--pwm", options->pulses, "pulse widths, CSV file").required();
   open_loop.add_option("--supply", options->supply_voltage_v, "supply voltage v_s of Eq. (9), V")

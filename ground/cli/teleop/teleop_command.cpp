@@ -279,12 +279,15 @@ int teleop(const Options& options) {
 Command add_teleop_command(runtime::CommandLine root) {
   const auto options = std::make_shared<Options>();
   const runtime::CommandLine app = add_vehicle_subcommand(
-      root, "teleop",
-      "Fly by the keys of the terminal: arrows forward, back, left and right as seen from the vehicle, w/s "
-      "up "
-      "and down, q/e turn, space hold, x quit. The vehicle must be in the air. It holds when no key is held, "
-      "and when this command ends or the terminal is closed",
+      root, "teleop", "Fly by the keys of the terminal, or with a gamepad",
       "swiftlet teleop --speed 0.3    (after swiftlet arm && swiftlet takeoff 1)", options);
+  app.footer(
+      "Arrows: forward, back, left and right, as seen from the vehicle. w, s: up, down. q, e: turn. Space: "
+      "hold.\n"
+      "x: quit. The vehicle must be in the air. It holds when no key is held, and when this command ends or "
+      "the\n"
+      "terminal is closed.\n\n" +
+      app.footer());
   TeleopLimits& limits = options->limits;
   app.add_option("--speed", limits.horizontal_m_s, "horizontal speed, m/s").range(0.05, 10.0).show_default();
   app.add_option("--climb-speed", limits.vertical_m_s, "vertical speed, m/s")

@@ -4,7 +4,7 @@
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/request_command.hpp"
-#include "swiftlet/ground/command_line/installation.hpp"
+#include "swiftlet/ground/command_line/configuration.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/fixed_settings.hpp"
 
@@ -17,7 +17,7 @@ struct Options : RequestOptions {
 };
 
 int set_control(const Options& options) {
-  const std::string file = configuration_file("control", options.file);
+  const std::string file = configuration_file(kinds::kControl, options.file);
   const control::SettingsRequest request = control::settings_request(
       runtime::load_control_settings(file), runtime::load_fixed_settings(file), options.ramp_s);
   return run_request(
@@ -29,11 +29,15 @@ int set_control(const Options& options) {
 Command add_set_control_command(runtime::CommandLine set) {
   const auto options = std::make_shared<Options>();
   const runtime::CommandLine app = add_request_subcommand(
-      set, "control",
-      "Fly with the gains of a control settings file: checked for stability, changed to "
-      "smoothly; other settings must be those that the controller was started with",
+      set, "control", "Change the gains to those of a control settings file, also in flight",
       "swiftlet set control mine.yaml --ramp 3", options);
+  app.footer(
+      "The gains are checked for stability and change smoothly. The other settings of the file must be those "
+      "that\n"
+      "the controller was started with (docs/tuning.md).\n\n" +
+      app.footer());
   app.add_option("file", options->file, "control settings file, or the name of one in config/control")
+      .type_name("CONTROL")
       .required();
   app.add_option("--ramp", options->ramp_s, "time over which the gains change, s")
       .range(control::kShortestGainChange_s, control::kLongestGainChange_s)

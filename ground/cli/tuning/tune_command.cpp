@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/cli/commands.hpp"
-#include "swiftlet/ground/command_line/installation.hpp"
+#include "swiftlet/ground/command_line/configuration.hpp"
 #include "swiftlet/ground/command_line/output_files.hpp"
 #include "swiftlet/ground/tuning/tuning_figure.hpp"
 #include "swiftlet/ground/tuning/tuning_table.hpp"
@@ -57,7 +57,7 @@ LoopDelay delay_of(const Options& options) {
 std::vector<control::ControlSettings> load_all(const Options& options) {
   std::vector<control::ControlSettings> out;
   for (const std::string& name : options.control) {
-    out.push_back(runtime::load_control_settings(configuration_file("control", name)));
+    out.push_back(runtime::load_control_settings(configuration_file(kinds::kControl, name)));
     for (std::size_t i = 0; i + 1 < out.size(); ++i)
       if (out[i].name == out.back().name) out.back().name += " (" + name + ")";
   }
@@ -66,9 +66,9 @@ std::vector<control::ControlSettings> load_all(const Options& options) {
 
 int plot_tuning(const Options& options) {
   std::vector<std::filesystem::path> inputs;
-  for (const std::string& name : options.control) inputs.push_back(configuration_file("control", name));
+  for (const std::string& name : options.control) inputs.push_back(configuration_file(kinds::kControl, name));
   refuse_overwriting({{"--out", options.output}}, inputs);
-  const plant::Vehicle vehicle = runtime::load_vehicle(configuration_file("vehicles", options.vehicle));
+  const plant::Vehicle vehicle = runtime::load_vehicle(configuration_file(kinds::kVehicle, options.vehicle));
   const TuningStudy study = study_tuning(vehicle, load_all(options), delay_of(options));
   std::printf("%s", (options.json ? tuning_json(study) + "\n" : tuning_table(study)).c_str());
   const std::string fault = draw_tuning(options.output, study);
@@ -82,15 +82,17 @@ int plot_tuning(const Options& options) {
 
 Command add_plot_command(runtime::CommandLine tune) {
   const auto options = std::make_shared<Options>();
-  const runtime::CommandLine app =
-      tune.add_subcommand("plot",
-                          "Draw step responses and Bode diagrams with margins of one or several control "
-                          "settings over each other, with rotor lag, observers and delay");
-  app.footer("example: swiftlet tune plot motor_lag mine.yaml --flight flights/A -o tuning.png");
+  const runtime::CommandLine app = tune.add_subcommand(
+      "plot", "Draw step responses and Bode diagrams of control settings over each other");
+  app.footer(
+      "The loops include rotor lag, observers and delay; their margins are printed (docs/tuning.md).\n\n"
+      "example: swiftlet tune plot motor_lag mine.yaml --flight flights/A -o tuning.png");
   app.add_option("control", options->control,
                  "control settings files, or the names of such in config/control")
+      .type_name("CONTROL")
       .required();
   app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
+      .type_name("VEHICLE")
       .show_default();
   app.add_option("-o,--out", options->output, "output file, PNG").show_default();
   app.add_option(
@@ -111,8 +113,7 @@ Command add_plot_command(runtime::CommandLine tune) {
 }  // namespace
 
 Command add_tune_command(runtime::CommandLine root) {
-  const runtime::CommandLine app =
-      root.add_subcommand("tune", "Compare control settings before flight (docs/tuning.md)");
+  const runtime::CommandLine app = root.add_subcommand("tune", "Compare control settings before flight");
   app.require_subcommand(1, 1);
   app.footer("example: swiftlet tune plot motor_lag paper");
   const Command plot = add_plot_command(app);

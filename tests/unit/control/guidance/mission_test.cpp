@@ -113,7 +113,7 @@ TEST_F(MissionFlight, EndedMissionCanBeStartedAgain) {
 }
 
 TEST_F(MissionFlight, RefusalsGiveTheReason) {
-  EXPECT_STREQ(ask(RequestKind::kMissionStart).reason, "no mission is uploaded: upload one first");
+  EXPECT_STREQ(ask(RequestKind::kMissionStart).reason, "no mission is uploaded; upload one first");
   EXPECT_STREQ(pause().reason, "no mission is running");
   EXPECT_STREQ(resume().reason, "no mission is running");
   EXPECT_STREQ(ask(RequestKind::kMissionSkip).reason, "no mission is running");
@@ -124,22 +124,22 @@ TEST_F(MissionFlight, RefusalsGiveTheReason) {
   start.kind = RequestKind::kMissionStart;
   start.mission_id = 9;
   EXPECT_STREQ(supervisor_.request(start, inputs_).reason,
-               "mission 9 is not uploaded: the uploaded mission is 7");
+               "mission 9 is not uploaded; the uploaded mission is 7");
   start.mission_id = 7;
   ASSERT_TRUE(supervisor_.request(start, inputs_).accepted);
-  EXPECT_STREQ(upload(other).reason, "mission 7 is running: end it with hold, goto or land");
+  EXPECT_STREQ(upload(other).reason, "mission 7 is running; end it with hold, goto or land");
   EXPECT_STREQ(ask(RequestKind::kMissionStart).reason,
-               "mission 7 is running: end it with hold, goto or land");
+               "mission 7 is running; end it with hold, goto or land");
   EXPECT_STREQ(ask(RequestKind::kMissionClear).reason,
-               "mission 7 is running: end it with hold, goto or land");
+               "mission 7 is running; end it with hold, goto or land");
   EXPECT_STREQ(resume().reason, "the mission is not paused");
   ASSERT_TRUE(pause().accepted);
   EXPECT_STREQ(pause().reason, "mission 7 is already paused");
-  EXPECT_STREQ(upload(other).reason, "mission 7 is paused: resume or clear it");
+  EXPECT_STREQ(upload(other).reason, "mission 7 is paused; resume or clear it");
   ASSERT_TRUE(ask(RequestKind::kMissionSkip).accepted);
   EXPECT_EQ(item(), 1);
   EXPECT_STREQ(ask(RequestKind::kMissionSkip).reason,
-               "item 2 is the last of the mission: there is no item to skip to");
+               "item 2 is the last of the mission; there is no item to skip to");
 }
 
 TEST_F(MissionFlight, PauseStopsOnThePathAndResumesThere) {

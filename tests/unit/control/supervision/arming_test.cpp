@@ -54,7 +54,8 @@ const ArmingLimit kArmingLimits[] = {
      [](Placed& f) { f.inputs_.battery_age_s = 2.1; },
      "the last battery voltage is 2.1 s old, the limit is 2.0 s"},
     {"voltage", [](Placed& f) { f.inputs_.supply_voltage_v = 3.3; },
-     [](Placed& f) { f.inputs_.supply_voltage_v = 3.29; }, "the battery has 3.29 V, the limit is 3.30 V"},
+     [](Placed& f) { f.inputs_.supply_voltage_v = 3.29; },
+     "battery voltage 3.29 V is too low; minimum is 3.30 V"},
     {"specific force",
      [](Placed& f) {
        f.inputs_.specific_force_frd = {0.6, 0.0, -plant::kGravity - 0.79};

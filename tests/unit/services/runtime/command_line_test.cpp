@@ -54,6 +54,8 @@ class Words : public testing::Test {
     const CommandLine fly = root.add_subcommand("fly", "");
     fly.add_option("mission", text_, "");
     fly.add_option("--vehicle", text_, "");
+    fly.add_choice<int>("--clock", clock_, {{"realtime", 0}, {"lockstep", 1}}, "");
+    fly.add_option("--colour", text_, "").one_of({"red", "green", "blue"});
     const CommandLine go = root.add_subcommand("goto", "");
     go.add_option("x", text_, "").required();
     go.add_option("--speed", text_, "");
@@ -71,6 +73,7 @@ class Words : public testing::Test {
 
   Program program_{"test", "a test"};
   std::string text_;
+  int clock_ = 0;
 };
 
 TEST_F(Words, ThatAreUnknownGetTheNearestName) {
@@ -82,6 +85,12 @@ TEST_F(Words, ThatAreUnknownGetTheNearestName) {
   EXPECT_EQ(message({"fly", "--vehcle=kaylion"}), "Unknown option '--vehcle'. Did you mean '--vehicle'?");
   EXPECT_EQ(message({"fly", "--zzz"}), "Unknown option '--zzz'.");
   EXPECT_EQ(message({"fly", "square", "circle"}), "Unexpected argument 'circle'.");
+}
+
+TEST_F(Words, ThatAreNoChoiceGetTheChoices) {
+  EXPECT_EQ(message({"fly", "--clock", "lockstep"}), "run");
+  EXPECT_EQ(message({"fly", "--clock", "sundial"}), "--clock: is sundial, must be realtime or lockstep");
+  EXPECT_EQ(message({"fly", "--colour", "pink"}), "--colour: is pink, must be red, green or blue");
 }
 
 TEST_F(Words, ThatAreUnknownAreNamedBeforeThoseThatAreMissing) {

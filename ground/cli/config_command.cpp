@@ -1,0 +1,106 @@
+// `swiftlet config`: `ls` lists the configuration files that have a name, `show` prints one and where it lies.
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "swiftlet/ground/cli/commands.hpp"
+#include "swiftlet/ground/command_line/configuration.hpp"
+#include "swiftlet/io/nearest_name.hpp"
+#include "swiftlet/io/text_file.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+struct ListOptions {
+  std::string kind;  // a folder; empty: all
+  bool names = false;
+};
+
+struct ShowOptions {
+  std::string name;
+  bool path = false;
+};
+
+// The first sentence, without its full stop.
+std::string first_sentence(const std::string& text) {
+  const std::string sentence = text.substr(0, text.find(". "));
+  return sentence.substr(0, sentence.find_last_not_of(" .:,") + 1);
+}
+
+int list(const ListOptions& options) {
+  for (const ConfigurationKind& kind : configuration_kinds()) {
+    if (!options.kind.empty() && options.kind != kind.folder) continue;
+    if (!options.names) fmt::print("{}\n", kind.folder);
+    for (const ConfigurationFile& file : configuration_files(kind)) {
+      if (options.names) {
+        fmt::print("{}\n", file.name);
+      } else {
+        fmt::print("  {:<16} {}\n", file.name, first_sentence(description_of(file.path)));
+      }
+    }
+  }
+  return kDone;
+}
+
+// Prints all files of this name: a vehicle and a dispersion may have the same.
+int show(const ShowOptions& options) {
+  std::vector<std::string> names;
+  bool found = false;
+  for (const ConfigurationKind& kind : configuration_kinds()) {
+    for (const ConfigurationFile& file : configuration_files(kind)) {
+      const std::string full_name = std::string(kind.folder) + "/" + file.name;
+      names.insert(names.end(), {file.name, full_name});
+      if (options.name != file.name && options.name != full_name) continue;
+      found = true;
+      if (options.path) {
+        fmt::print("{}\n", file.path.string());
+      } else {
+        fmt::print("# {}\n{}", file.path.string(), runtime::read_text_file(file.path));
+      }
+    }
+  }
+  if (found) return kDone;
+  const std::string nearest = runtime::nearest_name(names, options.name);
+  throw InputError("No configuration file '" + options.name + "'." +
+                   (nearest.empty() ? "" : " Did you mean '" + nearest + "'?") +
+                   " `swiftlet config ls` lists all");
+}
+
+Command add_list(runtime::CommandLine config) {
+  const auto options = std::make_shared<ListOptions>();
+  const runtime::CommandLine app =
+      config.add_subcommand("ls", "List the configuration files that have a name");
+  app.add_option("kind", options->kind, "only this kind")
+      .one_of({"vehicles", "control", "simulation", "missions", "dispersion"});
+  app.add_flag("--names", options->names, "print only the names, one a line");
+  app.footer("example: swiftlet config ls missions");
+  return {app, [options] { return list(*options); }};
+}
+
+Command add_show(runtime::CommandLine config) {
+  const auto options = std::make_shared<ShowOptions>();
+  const runtime::CommandLine app =
+      config.add_subcommand("show", "Print a configuration file, after a comment that says where it lies");
+  app.add_option("name", options->name, "name, or KIND/NAME").required();
+  app.add_flag("--path", options->path, "print only where it lies");
+  app.footer("example: cp $(swiftlet config show motor_lag --path) mine.yaml");
+  return {app, [options] { return show(*options); }};
+}
+
+}  // namespace
+
+Command add_config_command(runtime::CommandLine root) {
+  const runtime::CommandLine config =
+      root.add_subcommand("config", "List and print vehicles, control settings, simulations and missions");
+  config.require_subcommand(1, 1);
+  config.footer("example: swiftlet config ls");
+  const Command list_command = add_list(config);
+  const Command show_command = add_show(config);
+  return {config, [list_command, show_command] {
+            return list_command.app.parsed() ? list_command.run() : show_command.run();
+          }};
+}
+
+}  // namespace swiftlet::ground

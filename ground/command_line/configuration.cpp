@@ -1,0 +1,86 @@
+#include "swiftlet/ground/command_line/configuration.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <string_view>
+#include <system_error>
+
+#include "swiftlet/ground/command_line/command.hpp"
+#include "swiftlet/io/find_config.hpp"
+#include "swiftlet/io/nearest_name.hpp"
+#include "swiftlet/io/text_file.hpp"
+
+namespace swiftlet::ground {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Names what there is instead of a name that is not there.
+[[noreturn]] void refuse_name(const ConfigurationKind& kind, const std::string& name) {
+  std::vector<std::string> names;
+  std::string list;
+  for (const ConfigurationFile& file : configuration_files(kind)) {
+    names.push_back(file.name);
+    list += (list.empty() ? "" : ", ") + file.name;
+  }
+  const std::string nearest = runtime::nearest_name(names, name);
+  throw InputError(std::string("No ") + kind.noun + " '" + name + "'." +
+                   (nearest.empty() ? "" : " Did you mean '" + nearest + "'?") +
+                   (list.empty() ? "" : " Available: " + list));
+}
+
+// The text after a prefix; "" if the line begins otherwise.
+std::string text_after(std::string_view prefix, const std::string& line) {
+  return line.compare(0, prefix.size(), prefix) == 0 ? line.substr(prefix.size()) : "";
+}
+
+}  // namespace
+
+const std::vector<ConfigurationKind>& configuration_kinds() {
+  static const std::vector<ConfigurationKind> kinds = {kinds::kVehicle, kinds::kControl, kinds::kSimulation,
+                                                       kinds::kMission, kinds::kDispersion};
+  return kinds;
+}
+
+std::vector<ConfigurationFile> configuration_files(const ConfigurationKind& kind) {
+  std::vector<ConfigurationFile> files;
+  for (const std::string& directory : runtime::config_directories()) {
+    std::error_code error;
+    for (const fs::directory_entry& entry :
+         fs::directory_iterator(fs::path(directory) / kind.folder, error)) {
+      const std::string name = entry.path().stem().string();
+      const bool is_known = std::any_of(files.begin(), files.end(),
+                                        [&](const ConfigurationFile& file) { return file.name == name; });
+      if (entry.path().extension() == ".yaml" && !is_known)
+        files.push_back({name, entry.path().lexically_normal()});
+    }
+  }
+  std::sort(files.begin(), files.end(),
+            [](const ConfigurationFile& a, const ConfigurationFile& b) { return a.name < b.name; });
+  return files;
+}
+
+fs::path configuration_file(const ConfigurationKind& kind, const std::string& name) {
+  const bool bare = name.find('/') == std::string::npos && !fs::path(name).has_extension();
+  const bool is_file = fs::exists(name) && !fs::is_directory(name);
+  if (!bare || is_file) return fs::path(runtime::find_config(name)).lexically_normal();
+  for (const ConfigurationFile& file : configuration_files(kind)) {
+    if (file.name == name) return file.path;
+  }
+  refuse_name(kind, name);
+}
+
+std::string description_of(const fs::path& file) {
+  std::ifstream in(file);
+  std::string comment;
+  for (std::string line; std::getline(in, line);) {
+    const std::string description = text_after("description: ", line);
+    if (!description.empty()) return runtime::printable(description);
+    const bool is_schema = line.find("yaml-language-server") != std::string::npos;
+    if (comment.empty() && !is_schema) comment = text_after("# ", line);
+  }
+  return runtime::printable(comment);
+}
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,45 @@
+// The configuration files that have a name: vehicles, control settings, simulations, missions, dispersions.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "swiftlet/services/runtime/command_line.hpp"
+
+namespace swiftlet::ground {
+
+struct ConfigurationKind {
+  const char* folder;  // in the configuration: "vehicles"
+  const char* noun;    // "vehicle"
+  const char* value;   // name of an option's value in --help: "VEHICLE"
+};
+
+namespace kinds {
+inline constexpr ConfigurationKind kVehicle{"vehicles", "vehicle", "VEHICLE"};
+inline constexpr ConfigurationKind kControl{"control", "control settings", "CONTROL"};
+inline constexpr ConfigurationKind kSimulation{"simulation", "simulation settings", "SIMULATION"};
+inline constexpr ConfigurationKind kMission{"missions", "mission", "MISSION"};
+inline constexpr ConfigurationKind kDispersion{"dispersion", "dispersion", "DISPERSION"};
+}  // namespace kinds
+
+const std::vector<ConfigurationKind>& configuration_kinds();
+
+struct ConfigurationFile {
+  std::string name;  // "square"
+  std::filesystem::path path;
+};
+
+// All files of this kind in the folders of runtime::config_directories(), by name. Of two with one name only the
+// first, which is the one that configuration_file() finds.
+std::vector<ConfigurationFile> configuration_files(const ConfigurationKind& kind);
+
+// Returns the path of a configuration file. `name` is a path, or the bare name of a file of this kind. Throws
+// runtime::ConfigError if there is no such file, InputError with the nearest name and all there are if there is
+// no such name.
+std::filesystem::path configuration_file(const ConfigurationKind& kind, const std::string& name);
+
+// The description in the file, else its first comment; "" if it has neither or cannot be read.
+std::string description_of(const std::filesystem::path& file);
+
+}  // namespace swiftlet::ground
