@@ -7,8 +7,8 @@
 #include "swiftlet/ground/client/context.hpp"
 #include "swiftlet/ground/client/vehicle.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
-#include "tests/integration/program.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::tests {

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/io/text_file.hpp"
-#include "tests/integration/program.hpp"
+#include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::tests {

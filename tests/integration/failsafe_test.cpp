@@ -15,7 +15,7 @@
 
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/messages/convert.hpp"
-#include "tests/integration/separate_processes.hpp"
+#include "tests/support/separate_processes.hpp"
 
 namespace swiftlet::tests {
 namespace {

@@ -17,8 +17,8 @@
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/messages/convert.hpp"
-#include "tests/integration/program.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::tests {

@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/integration/program.hpp"
 #include "tests/support/campaign.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/hop_mission.hpp"
+#include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::tests {

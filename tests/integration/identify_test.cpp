@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/io/settings/vehicle_file.hpp"
-#include "tests/integration/program.hpp"
+#include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::tests {

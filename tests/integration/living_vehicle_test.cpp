@@ -13,8 +13,8 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/services/dds/periodic_task.hpp"
-#include "tests/integration/separate_processes.hpp"
 #include "tests/support/hop_mission.hpp"
+#include "tests/support/separate_processes.hpp"
 
 namespace swiftlet::tests {
 namespace {

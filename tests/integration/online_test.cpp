@@ -12,7 +12,7 @@
 
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/services/dds/node.hpp"
-#include "tests/integration/online_flight.hpp"
+#include "tests/support/online_flight.hpp"
 
 namespace swiftlet::tests {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "swiftlet/ground/client/vehicle.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
-#include "tests/integration/program.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/program.hpp"
 #include "tests/support/redundant_flight.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "tests/integration/online_flight.hpp"
 #include "tests/support/hop_mission.hpp"
+#include "tests/support/online_flight.hpp"
 
 namespace swiftlet::tests {
 namespace {

@@ -7,8 +7,8 @@
 #include <unistd.h>
 
 #include "swiftlet/ground/client/vehicle.hpp"
-#include "tests/integration/online_flight.hpp"
-#include "tests/integration/terminal.hpp"
+#include "tests/support/online_flight.hpp"
+#include "tests/support/terminal.hpp"
 
 namespace swiftlet::tests {
 namespace {

@@ -5,8 +5,8 @@
 #include <regex>
 #include <sstream>
 
-#include "tests/integration/online_flight.hpp"
-#include "tests/integration/terminal.hpp"
+#include "tests/support/online_flight.hpp"
+#include "tests/support/terminal.hpp"
 
 namespace swiftlet::tests {
 namespace {

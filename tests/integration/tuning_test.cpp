@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/io/text_file.hpp"
-#include "tests/integration/online_flight.hpp"
+#include "tests/support/online_flight.hpp"
 
 namespace swiftlet::tests {
 namespace {

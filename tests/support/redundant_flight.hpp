@@ -14,7 +14,7 @@
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
-#include "tests/integration/program.hpp"
+#include "tests/support/program.hpp"
 
 namespace swiftlet::tests {
 

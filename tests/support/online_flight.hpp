@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
-#include "tests/integration/program.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::tests {

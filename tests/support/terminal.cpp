@@ -1,4 +1,4 @@
-#include "tests/integration/terminal.hpp"
+#include "tests/support/terminal.hpp"
 
 #include <algorithm>
 #include <atomic>

@@ -13,8 +13,8 @@
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
-#include "tests/integration/program.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::tests {

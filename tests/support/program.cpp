@@ -1,4 +1,4 @@
-#include "tests/integration/program.hpp"
+#include "tests/support/program.hpp"
 
 #include <atomic>
 #include <cerrno>

@@ -1,4 +1,4 @@
-#include "tests/integration/separate_processes.hpp"
+#include "tests/support/separate_processes.hpp"
 
 #include <algorithm>
 #include <cmath>
