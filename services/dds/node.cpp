@@ -603,13 +603,13 @@ class DdsReader final : public detail::Reader, private Endpoint, private dds::Da
     }
   }
 
-  // Locks a mutex only while samples of several processes arrive.
+  // Never waits: what a reader of the conflict misses, the next ignored sample reports.
   bool is_from_source(const dds::SampleInfo& info) {
     const SenderId sender{info.sample_identity.writer_guid().guidPrefix};
     const auto now = std::chrono::steady_clock::now();
     if (source_->accepts(sender, now)) return true;
-    const std::lock_guard<std::mutex> lock(conflict_mutex_);
-    conflict_ = Conflict{*source_->id(), sender, now};
+    const std::unique_lock<std::mutex> lock(conflict_mutex_, std::try_to_lock);
+    if (lock) conflict_ = Conflict{*source_->id(), sender, now};
     return false;
   }
 
