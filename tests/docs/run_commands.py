@@ -232,7 +232,7 @@ case "$name ${1-} ${2-}" in
   "swiftlet mission fly" | "swiftlet mission upload" | "swiftlet mission start" | "swiftlet mission pause" | \
     "swiftlet mission resume" | "swiftlet mission skip" | "swiftlet mission clear" | \
     "swiftlet arm "* | "swiftlet disarm "* | "swiftlet takeoff "* | "swiftlet goto "* | "swiftlet land "* | "swiftlet hold "* | \
-    "swiftlet stop "* | "swiftlet trajectory "* | "swiftlet stream "* | "swiftlet status "* | "swiftlet watch "* | \
+    "swiftlet stop "* | "swiftlet set control" | "swiftlet trajectory "* | "swiftlet stream "* | "swiftlet status "* | "swiftlet watch "* | \
     "swiftlet list "*) add --localhost-only ;;
 esac
 exec "$DOCS_BIN/$name" "${words[@]}"
