@@ -1,5 +1,5 @@
 // `swiftlet config`: `ls` lists the configuration files that have a name, `show` prints one and where it lies.
-#include <cstdio>
+#include <cctype>
 #include <string>
 #include <vector>
 
@@ -23,9 +23,12 @@ struct ShowOptions {
   bool path = false;
 };
 
-// The first sentence, without its full stop.
+// The first sentence, without its full stop. "Fig. 8" does not end one.
 std::string first_sentence(const std::string& text) {
-  const std::string sentence = text.substr(0, text.find(". "));
+  std::size_t end = text.find(". ");
+  while (end != std::string::npos && std::isdigit(static_cast<unsigned char>(text[end + 2])) != 0)
+    end = text.find(". ", end + 1);
+  const std::string sentence = text.substr(0, end);
   return sentence.substr(0, sentence.find_last_not_of(" .:,") + 1);
 }
 
