@@ -109,7 +109,7 @@ TEST_F(SimBatch, RefusesBadInputBeforeItCreatesAFolder) {
   expect_refusal(kMass, {"--jobs", "0"}, "--jobs");
   expect_refusal(kMass, {"--seed", "-1"}, "--seed");
   expect_refusal(kMass, {"--seed", "18446744073709551615", "--runs", "2"}, "--seed");
-  expect_refusal(kMass, {"--vehicle", "nobody"}, "nobody.yaml");
+  expect_refusal(kMass, {"--vehicle", "nobody"}, "No vehicle 'nobody'. Available: crazyflie2, kaylion");
   const ProgramResult without_dispersion =
       run_program("swiftlet", {"sim", "batch", "square"}, folder_.path());
   EXPECT_EQ(without_dispersion.exit_code, 2);

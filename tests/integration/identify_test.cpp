@@ -109,7 +109,7 @@ TEST_F(Identify, RefusesWrongUnits) {
 
 TEST_F(Identify, NamesTheLineOfAMissingBase) {
   overwrite("bench.yaml", "name: mine\nbase_vehicle: krazyflie\n");
-  expect_refusal("bench.yaml:2: base_vehicle: vehicles/krazyflie.yaml: is not found");
+  expect_refusal("bench.yaml:2: base_vehicle: No vehicle 'krazyflie'. Did you mean 'crazyflie2'?");
   EXPECT_EQ(run({"identify", bench().string(), "--base", "kaylion", "--out", vehicle()}).exit_code, 0);
 }
 

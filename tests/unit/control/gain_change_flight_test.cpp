@@ -126,7 +126,7 @@ TEST_F(GainChangeInFlight, IsRefusedFromGainsThatAreNotInForce) {
   run(0.6);
   change_.from = gains_of(motor_lag());
   EXPECT_STREQ(ask(RequestKind::kSettings).reason,
-               "another request changed the gains meanwhile: send this one again");
+               "another request changed the gains meanwhile; send this one again");
 }
 
 TEST_F(GainChangeInFlight, IsRefusedWhileLanding) {

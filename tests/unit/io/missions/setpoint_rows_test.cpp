@@ -43,13 +43,13 @@ TEST(SetpointRows, DetectKindFromColumns) {
 }
 
 TEST(SetpointRows, RefusePositionsBelowTheGround) {
-  EXPECT_EQ(refusal("t [s],x [m],y [m],z [m]", {"0,0,0,-1", "1,0,0,0.1"}),
+  EXPECT_EQ(refusal("t [s],x_ned [m],y_ned [m],z_ned [m]", {"0,0,0,-1", "1,0,0,0.1"}),
             "s.csv:3: z: in NED: z = +0.100 m is below the ground, as z points down (NED); 0.100 m above the "
             "ground "
             "is z = -0.100 m");
   EXPECT_NE(refusal("t,x,y,z", {"0,0,0,-1"}).find("s.csv:2: z: in NED: z = +1.000 m is below"),
             std::string::npos);
-  EXPECT_EQ(refusal("t [s],vx [m/s],vy [m/s],vz [m/s]", {"0,0,0,1"}), "none");
+  EXPECT_EQ(refusal("t [s],vx_ned [m/s],vy_ned [m/s],vz_ned [m/s]", {"0,0,0,1"}), "none");
 }
 
 TEST(SetpointRows, RefuseBinaryInputWithoutShowingIt) {
@@ -74,14 +74,15 @@ TEST(SetpointRows, ConvertToSiUnits) {
 }
 
 TEST(SetpointRows, TakeTheFrameFromTheHeaderOrTheOption) {
-  const auto position = [](const std::string& header, std::optional<MissionFrame> frame) {
-    return reader(header, "f", frame).read("0,1,2,-3")->setpoint.position_ned;
+  const auto position = [](const std::string& header, std::optional<MissionFrame> frame,
+                           const char* row = "0,1,2,-3") {
+    return reader(header, "f", frame).read(row)->setpoint.position_ned;
   };
   EXPECT_EQ(position("t [s],x_ned [m],y_ned [m],z_ned [m]", {}), Vector3d(1, 2, -3));
-  EXPECT_EQ(position("t [s],x_enu [m],y_enu [m],z_enu [m]", {}), Vector3d(2, 1, 3));
+  EXPECT_EQ(position("t [s],x_enu [m],y_enu [m],z_enu [m]", {}, "0,1,2,3"), Vector3d(2, 1, -3));
   EXPECT_EQ(position("t [s],x [m],y [m],z [m]", MissionFrame::kNed), Vector3d(1, 2, -3));
   EXPECT_EQ(position("t,x,y,z", MissionFrame::kNed), Vector3d(1, 2, -3));
-  EXPECT_EQ(position("t,x,y,z", MissionFrame::kEnu), Vector3d(2, 1, 3));
+  EXPECT_EQ(position("t,x,y,z", MissionFrame::kEnu, "0,1,2,3"), Vector3d(2, 1, -3));
   EXPECT_FALSE(reader("t,x,y,z", "f", MissionFrame::kNed).assumption());
   const auto turning =
       reader("t [s],vx_enu [m/s],vy_enu [m/s],vz_enu [m/s],yaw_rate_enu [rad/s]", "f").read("0,1,2,3,0.5");

@@ -173,7 +173,7 @@ TEST_F(CommandServerTest, ChangesTheGains) {
   command_server_.on_control_settings(settings_message(2, 2.0));
   step();
   EXPECT_STREQ(command_server_.collect().at(0).outcome.reason,
-               "another request changed the gains meanwhile: send this one again");
+               "another request changed the gains meanwhile; send this one again");
   command_server_.set_gains_in_force(last_.gains);
   command_server_.on_control_settings(settings_message(3, 2.0));
   step();
