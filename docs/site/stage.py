@@ -164,6 +164,7 @@ def stage(texts, known, bin_folder, out, with_api):
         site.write(f"reference/{name}", text)
     for source, text in texts.items():
         site.stage(source, text)
+    shutil.copyfile(ROOT / "docs/site/site.css", out / "site.css")
     page = out / known["docs/reference.md"]
     page.write_text(page.read_text().replace(GENERATED, "\n".join(listed)))
     return len(texts) + len(reference)
