@@ -7,7 +7,10 @@
 #include <cstdint>
 #include <iostream>
 #include <optional>
+#include <sstream>
+#include <sys/ioctl.h>
 #include <type_traits>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 
@@ -23,6 +26,44 @@ std::string failure_text(const CLI::App* app, const CLI::Error& error) {
   const std::string usage = help.substr(begin, help.find('\n', begin) - begin);
   return std::string(error.what()) + "\n" + usage + "\nRun with --help for more information.\n";
 }
+
+constexpr std::size_t kHelpColumn = 30;  // of descriptions
+
+// The columns of the terminal; 100 if the help goes elsewhere.
+std::size_t help_width() {
+  winsize window{};
+  if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) != 0 || window.ws_col == 0) return 100;
+  return std::clamp<std::size_t>(window.ws_col, 60, 120);
+}
+
+// The text in lines of at most `width` characters, broken at spaces.
+std::string wrapped(const std::string& text, std::size_t width) {
+  std::string out;
+  std::size_t column = 0;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const bool fits = column + 1 + word.size() <= width;
+    if (column > 0) out += fits ? ' ' : '\n';
+    column = column > 0 && fits ? column + 1 + word.size() : word.size();
+    out += word;
+  }
+  return out;
+}
+
+// CLI11 2.1 does not wrap descriptions.
+class WrappedHelp final : public CLI::Formatter {
+ public:
+  WrappedHelp() { column_width(kHelpColumn); }
+  std::string make_option_desc(const CLI::Option* option) const override {
+    return wrapped(Formatter::make_option_desc(option), help_width() - kHelpColumn);
+  }
+  std::string make_subcommand(const CLI::App* command) const override {
+    std::ostringstream out;
+    CLI::detail::format_help(out, command->get_name(),
+                             wrapped(command->get_description(), help_width() - kHelpColumn), kHelpColumn);
+    return out.str();
+  }
+};
 
 // "a", "a or b", "a, b or c"
 std::string choice_of(const std::vector<std::string>& texts) {
@@ -254,6 +295,7 @@ bool CommandLine::parsed() const { return app_->parsed(); }
 
 Program::Program(const std::string& name, const std::string& purpose)
     : app_(std::make_unique<CLI::App>(purpose, name)) {
+  app_->formatter(std::make_shared<WrappedHelp>());
   app_->failure_message(failure_text);
 }
 Program::~Program() = default;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -96,6 +97,22 @@ TEST_F(Words, ThatAreNoChoiceGetTheChoices) {
 TEST_F(Words, ThatAreUnknownAreNamedBeforeThoseThatAreMissing) {
   EXPECT_EQ(message({"goto", "--sped"}), "Unknown option '--sped'. Did you mean '--speed'?");
   EXPECT_EQ(message({"goto"}), "x is required");
+}
+
+TEST(Help, WrapsDescriptions) {
+  Program program("test", "a test");
+  std::string text;
+  std::string description = "begin";
+  for (int i = 0; i < 40; ++i) description += " word" + std::to_string(i);
+  program.command_line().add_option("--text", text, description);
+  program.command_line().add_subcommand("fly", description);
+  std::istringstream lines(program.command_line().help());
+  int wrapped = 0;
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_LE(line.size(), 120U) << line;
+    wrapped += line.rfind(std::string(30, ' ') + "word", 0) == 0 ? 1 : 0;
+  }
+  EXPECT_GE(wrapped, 4) << program.command_line().help();
 }
 
 }  // namespace
