@@ -44,24 +44,7 @@ class Tuning : public Online {
   static constexpr double kHeight_m = 0.6;
   static constexpr double kSag_m = 0.05 * 9.81 / kSaggingP;
 
-  std::vector<std::string> lockstep(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> words = network();
-    words.insert(words.end(), {"--clock", "lockstep"});
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-  }
-  json status() const {
-    const ProgramResult result = swiftlet({"status", "--json", "--watch", "0.1"});
-    EXPECT_EQ(result.exit_code, 0) << result.errors;
-    return result.exit_code == 0 ? json::parse(result.output) : json();
-  }
-  template <class Predicate>
-  bool reaches(const char* what, const Predicate& predicate) const {
-    json last;
-    const bool reached = eventually([&] { return predicate(last = status()); }, kStuck);
-    EXPECT_TRUE(reached) << what << "\n" << last << "\n" << control_.errors();
-    return reached;
-  }
+  std::string logs() const override { return control_.errors(); }
   bool hovers_at(double height_m) const {
     return reaches("height", [&](const json& now) {
       return std::abs(-now.at("position_ned_m")[2].get<double>() - height_m) < 0.01 &&

@@ -29,6 +29,27 @@ class Online : public testing::Test {
     for (const std::string& word : network()) words.push_back(word);
     return run_program("swiftlet", std::move(words), folder_.path(), timeout);
   }
+  std::vector<std::string> lockstep(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = network();
+    words.insert(words.end(), {"--clock", "lockstep"});
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+
+  json status() const {
+    const ProgramResult result = swiftlet({"status", "--json", "--watch", "0.1"});
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    return result.exit_code == 0 ? json::parse(result.output) : json();
+  }
+  // Waits until the status meets the predicate; otherwise prints the last one and logs().
+  template <class Predicate>
+  bool reaches(const char* what, const Predicate& predicate) const {
+    json last;
+    const bool reached = eventually([&] { return predicate(last = status()); }, kStuck);
+    EXPECT_TRUE(reached) << what << "\n" << last << "\n" << logs();
+    return reached;
+  }
+  virtual std::string logs() const { return ""; }
 
   comms::DomainLock lock_;
   TemporaryFolder folder_;
@@ -43,31 +64,12 @@ class OnlineFlight : public Online {
         mocap_("swiftlet-mocap", lockstep(), folder_.path()),
         control_("swiftlet-control", lockstep(), folder_.path()) {}
 
-  std::vector<std::string> lockstep(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> words = network();
-    words.insert(words.end(), {"--clock", "lockstep"});
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-  }
-
   void SetUp() override {
     ASSERT_TRUE(reaches("has_pose", [](const json& status) { return status.at("has_pose") == true; }));
   }
 
-  json status() const {
-    const ProgramResult result = swiftlet({"status", "--json", "--watch", "0.1"});
-    EXPECT_EQ(result.exit_code, 0) << result.errors;
-    return result.exit_code == 0 ? json::parse(result.output) : json();
-  }
-  template <class Predicate>
-  bool reaches(const char* what, const Predicate& predicate) const {
-    json last;
-    const bool reached = eventually([&] { return predicate(last = status()); }, kStuck);
-    EXPECT_TRUE(reached) << what << "\n"
-                         << last << "\n"
-                         << plant_.errors() << mocap_.errors() << control_.errors();
-    return reached;
-  }
+  std::string logs() const override { return plant_.errors() + mocap_.errors() + control_.errors(); }
+
   bool reaches_mode(const std::string& mode) const {
     return reaches(mode.c_str(), [&](const json& status) { return status.at("mode") == mode; });
   }
