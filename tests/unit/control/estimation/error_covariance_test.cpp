@@ -4,8 +4,9 @@
 #include <random>
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <gtest/gtest.h>
+
+#include "tests/unit/control/estimation/inverse.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -124,14 +125,15 @@ TEST_F(Covariance, FusesAPoseWithTheKalmanGain) {
     Matrix6 n = Matrix6::Zero();
     n.diagonal() << Vector3d::Constant(position_variance), Vector3d::Constant(rotation_variance);
     const Matrix6 s = h * p * h.transpose() + n;
-    const Eigen::Matrix<double, kErrorStates, 6> gain = p * h.transpose() * s.inverse();
+    const Matrix6 s_inverse = inverse(s);
+    const Eigen::Matrix<double, kErrorStates, 6> gain = p * h.transpose() * s_inverse;
     const PoseInnovation innovation{any(0.3), any(0.3)};
     Eigen::Matrix<double, 6, 1> nu;
     nu << innovation.position, innovation.rotation;
 
     const ErrorCovariance::Update correction =
         covariance.compute_update(innovation, position_variance, rotation_variance);
-    const double chi_square = nu.dot(s.inverse() * nu);
+    const double chi_square = nu.dot(s_inverse * nu);
     EXPECT_NEAR(correction.normalised_square(), chi_square, 1e-11 * chi_square);
     EXPECT_LT((correction.step() - gain * nu).norm(), 1e-11);
     EXPECT_EQ(covariance.matrix(), p) << "compute_update() changes nothing";

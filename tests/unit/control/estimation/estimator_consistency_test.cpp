@@ -4,13 +4,13 @@
 #include <cmath>
 #include <cstdint>
 
-#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include "swiftlet/control/estimation/estimator.hpp"
 #include "swiftlet/math/linear_algebra.hpp"
 #include "tests/support/malloc_guard.hpp"
 #include "tests/unit/control/estimation/estimator_motion.hpp"
+#include "tests/unit/control/estimation/inverse.hpp"
 
 namespace swiftlet::control {
 namespace {
@@ -181,13 +181,14 @@ TEST(EstimatorConsistency, CovarianceMatchesTheDenseEquations) {
     Eigen::Matrix<double, 6, 1> v;
     v << Vector3d::Constant(1e-4), Vector3d::Constant(4e-4);
     const Eigen::Matrix<double, 6, 6> s = h * p * h.transpose() + Eigen::Matrix<double, 6, 6>(v.asDiagonal());
-    const Eigen::Matrix<double, kErrorStates, 6> k = p * h.transpose() * s.inverse();
+    const Eigen::Matrix<double, 6, 6> s_inverse = inverse(s);
+    const Eigen::Matrix<double, kErrorStates, 6> k = p * h.transpose() * s_inverse;
     const PoseInnovation innovation{{0.01, -0.02, 0.03}, {-0.02, 0.01, 0.04}};
     Eigen::Matrix<double, 6, 1> z;
     z << innovation.position, innovation.rotation;
     const auto correction = covariance.compute_update(innovation, 1e-4, 4e-4);
     EXPECT_LT((correction.step() - k * z).norm(), 1e-12);
-    EXPECT_NEAR(correction.normalised_square(), z.dot(s.inverse() * z), 1e-9);
+    EXPECT_NEAR(correction.normalised_square(), z.dot(s_inverse * z), 1e-9);
     covariance.apply_update(correction);
     const Matrix15 rest = Matrix15::Identity() - k * h;
     const Matrix15 joseph = rest * p * rest.transpose() + k * v.asDiagonal() * k.transpose();
