@@ -220,6 +220,7 @@ void FlightController::Impl::update_gains() {
   attitude.set_gains(gains);
   disturbance.set({gains.disturbance_bandwidth, gains.disturbance_limit});
   gains_are_constant = gain_change.progress(last_stamp_ns) >= 1.0;
+  if (gains_are_constant) gain_change.duration_s = 0.0;  // has ended, also for a clock that starts again
 }
 
 // Updates the monitor and the observer that run in flight, in every control mode.

@@ -174,7 +174,7 @@ Outcome refusal(Event request, const SupervisorContext& context) {
     return refuse("emergency stop is active; run `swiftlet disarm` first");
   switch (request) {
     case Event::kArm:
-      return refuse(mode == Mode::kArmed ? "already armed" : "already armed and %s", now);
+      return refuse("already in flight: %s", now);
     case Event::kDisarm:
       return refuse("cannot disarm while %s; land first, or run `swiftlet stop`", now);
     case Event::kTakeoff:

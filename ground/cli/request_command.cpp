@@ -160,10 +160,18 @@ void print_json(const RequestOutcomes& outcomes) {
   std::printf("%s\n", (outcomes.size() == 1 ? json.front() : json).dump().c_str());
 }
 
+// Some reasons begin with the name of the request, which the line already has.
+std::string without_prefix(const std::string& reason, const std::string& what) {
+  const std::string prefix = what + ": ";
+  return reason.compare(0, prefix.size(), prefix) == 0 ? reason.substr(prefix.size()) : reason;
+}
+
 void print_results(const RequestOutcomes& outcomes, const std::string& what, bool json) {
   for (const RequestOutcome& outcome : outcomes) {
     const std::string who = outcomes.size() == 1 ? what : what + ": " + outcome.vehicle->name();
-    if (outcome.failed()) std::fprintf(stderr, "swiftlet: %s: %s\n", who.c_str(), outcome.reason().c_str());
+    if (outcome.failed()) {
+      std::fprintf(stderr, "swiftlet: %s: %s\n", who.c_str(), without_prefix(outcome.reason(), what).c_str());
+    }
     if (outcome.action_result && outcome.action_result->done() && !json)
       std::printf("%s: done\n", who.c_str());
   }

@@ -224,6 +224,7 @@ case "$name ${1-} ${2-}" in
     [[ $DOCS_CLOCK == realtime ]] || add --clock lockstep
     ;;
   "swiftlet fly "*)
+    for i in "${!words[@]}"; do [[ ${words[i]} == --network ]] && unset "words[i]"; done
     has --attach || {
       unset ROS_DOMAIN_ID  # it takes a free one
       [[ $DOCS_CLOCK == realtime ]] || has --speed || add --clock lockstep

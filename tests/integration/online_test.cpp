@@ -25,7 +25,7 @@ TEST_F(OnlineFlight, ExecutesEveryCommand) {
   expect_refused({"hold"}, "on the ground; take off first");
   expect_accepted({"arm"});
   ASSERT_TRUE(reaches_mode("armed"));
-  expect_refused({"takeoff", "0.01"}, "takeoff: height 0.01 m is too low; minimum is 0.10 m");
+  expect_refused({"takeoff", "0.01"}, "height 0.01 m is too low; minimum is 0.10 m");
   expect_accepted({"stop", "--yes"});
   ASSERT_TRUE(reaches_mode("stopped"));
   expect_refused({"arm"}, "emergency stop is active; run `swiftlet disarm` first");
@@ -34,10 +34,9 @@ TEST_F(OnlineFlight, ExecutesEveryCommand) {
   take_off();
   expect_refused({"takeoff"}, "already airborne; use goto");
   expect_refused({"disarm"}, "cannot disarm while holding; land first, or run `swiftlet stop`");
-  expect_refused({"goto", "-1", "9", "-1"}, "goto: y is 9.000 m, outside the fence of -3.000 to 3.000 m");
-  expect_refused(
-      {"goto", "1", "0", "0"},
-      "goto: z = 0.000 m is 0.000 m above the ground; the minimum height is 0.100 m, z = -0.100 m");
+  expect_refused({"goto", "-1", "9", "-1"}, "y is 9.000 m, outside the fence of -3.000 to 3.000 m");
+  expect_refused({"goto", "1", "0", "0"},
+                 "z = 0.000 m is 0.000 m above the ground; the minimum height is 0.100 m, z = -0.100 m");
   expect_accepted({"goto", "0", "0", "--height", "0.5"});
   ASSERT_TRUE(reaches_place(0.0, 0.0, -0.5));
   expect_accepted({"goto", "-0.4", "0.3", "-0.8", "--yaw", "0.5", "--speed", "0.8"});

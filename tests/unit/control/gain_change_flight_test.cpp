@@ -121,6 +121,18 @@ TEST_F(GainChangeInFlight, IsRefusedDuringAnotherChange) {
   EXPECT_TRUE(change_to(motor_lag(), 2.0).accepted);
 }
 
+TEST_F(GainChangeInFlight, HasEndedAlsoForAVehicleThatWasRestarted) {
+  ASSERT_TRUE(change_to(soft(), 0.5).accepted);
+  run(0.6);
+  ASSERT_TRUE(ask(RequestKind::kStop).accepted);
+  run(0.01);
+  plant::ImuSample first = *loop_.plant.imu();
+  first.stamp_ns = 2'000'000;
+  loop_.controller.on_imu(first);
+  EXPECT_EQ(loop_.controller.status().gains_progress, 1.0);
+  EXPECT_EQ(loop_.controller.gains(), gains_of(soft()));
+}
+
 TEST_F(GainChangeInFlight, IsRefusedFromGainsThatAreNotInForce) {
   ASSERT_TRUE(change_to(soft(), 0.5).accepted);
   run(0.6);
