@@ -128,9 +128,10 @@ int list(const Options& options) {
   std::fprintf(
       stderr,
       "swiftlet: list: no vehicle found in domain %d within %.1f s%s; check that it runs and that the domain "
-      "is right (--domain, ROS_DOMAIN_ID)\n",
+      "is right (--domain, ROS_DOMAIN_ID)%s\n",
       options.network.domain, options.look_s,
-      options.network.localhost_only ? " on the loopback interface" : "");
+      options.network.localhost_only ? " on the loopback interface" : "",
+      options.network.localhost_only ? "" : ", or try --localhost-only");
   return kFailed;
 }
 

@@ -24,6 +24,9 @@ control::WaypointPath read(const runtime::CsvTable& table, const MotionColumns& 
     control::PathPoint& point = path.points.emplace_back();
     point.position_ned = columns.ned(numbers, Motion::kX);
     if (!columns.has(Motion::kYaw)) continue;
+    const std::string what = fmt::format("waypoint {}", row + 1);
+    const control::Outcome yaw = control::check_yaw(what.c_str(), columns.value(numbers, Motion::kYaw));
+    if (!yaw.accepted) table.fail(row, "yaw", yaw.reason);
     point.yaw_rad = columns.yaw_ned(numbers);
     if (row == 0) continue;
     const double before = path.points[row - 1].yaw_rad;  // unwrapped

@@ -437,15 +437,18 @@ std::string hover_points(int rows) {
 }
 INSTANTIATE_TEST_SUITE_P(
     , BadWaypointCsv,
-    testing::Values(Fault{"one_point", "0,0,1\n", "w.csv: has 1 rows, must have at least 2"},
-                    Fault{"missing_field", "0,0,1\n1,0\n", "w.csv:2: has 2 fields, must have 3: x,y,z"},
-                    Fault{"infinite", "0,0,1\n1,inf,1\n", "w.csv:2: y: is inf, must be a finite number"},
-                    Fault{"outside_the_fence", "0,0,1\n3.1,0,1\n",
-                          "w.csv:2: x,y,z: in NED: y is 3.100 m, outside the fence of -3.000 to 3.000 m"},
-                    Fault{"equal_points", "0,0,1\n0,0,1\n",
-                          "w.csv: the path has no length: all points are at one place"},
-                    Fault{"too_many_points", hover_points(1026),
-                          "w.csv:1026: x,y,z: is waypoint 1026, at most 1025 fit"}),
+    testing::Values(
+        Fault{"one_point", "0,0,1\n", "w.csv: has 1 rows, must have at least 2"},
+        Fault{"missing_field", "0,0,1\n1,0\n", "w.csv:2: has 2 fields, must have 3: x,y,z"},
+        Fault{"infinite", "0,0,1\n1,inf,1\n", "w.csv:2: y: is inf, must be a finite number"},
+        Fault{"degrees", "0,0,1,0\n1,0,1,90\n",
+              "w.csv:2: yaw: waypoint 2: yaw is 90 rad, more than a full turn: 90 degrees are 1.5708 "
+              "rad, 90 rad are the yaw 2.0354 rad"},
+        Fault{"outside_the_fence", "0,0,1\n3.1,0,1\n",
+              "w.csv:2: x,y,z: in NED: y is 3.100 m, outside the fence of -3.000 to 3.000 m"},
+        Fault{"equal_points", "0,0,1\n0,0,1\n", "w.csv: the path has no length: all points are at one place"},
+        Fault{"too_many_points", hover_points(1026),
+              "w.csv:1026: x,y,z: is waypoint 1026, at most 1025 fit"}),
     name_of);
 
 TEST(WaypointCsv, NamesTheWaypointBeforeAFenceViolation) {
