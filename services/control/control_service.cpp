@@ -27,8 +27,8 @@ constexpr std::int64_t kIsolationNs = 1'000'000'000;
 // Without an IMU sample for this long, the vehicle's clock is not used: it may have stopped.
 constexpr double kVehicleClockStands_s = 0.5;
 
-// The battery is sampled at 10 Hz only, and less often in a slow simulation.
-constexpr auto kBatterySourceSilence = 2500ms;
+// The battery is sampled at 10 Hz only. Well below battery_timeout_s, so that a restarted vehicle is heard in time.
+constexpr auto kBatterySourceSilence = 1000ms;
 
 std::uint64_t random_number() {
   std::random_device device;
