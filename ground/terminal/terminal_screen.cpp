@@ -50,6 +50,7 @@ TerminalScreen::TerminalScreen(const std::string& instead) : impl_(new Impl) {
   }
   set_term(impl_->screen);
   cbreak();
+  noqiflush();  // Ctrl-C would discard a key that key() has seen, and key() would then wait for the next one
   noecho();
   keypad(stdscr, TRUE);
   set_escdelay(25);
