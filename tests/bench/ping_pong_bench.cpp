@@ -31,7 +31,7 @@
 
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/participant_qos.hpp"
-#include "swiftlet/services/dds/profiles.hpp"
+#include "swiftlet/services/dds/qos/profiles.hpp"
 #include "swiftlet/services/runtime/latency_histogram.hpp"
 #include "swiftlet/services/runtime/periodic_timer.hpp"
 #include "swiftlet/services/runtime/process.hpp"

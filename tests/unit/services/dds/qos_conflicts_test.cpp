@@ -1,5 +1,5 @@
 // Reports about endpoints of one topic whose QoS is incompatible.
-#include "swiftlet/services/dds/qos_conflicts.hpp"
+#include "swiftlet/services/dds/qos/qos_conflicts.hpp"
 
 #include <algorithm>
 #include <memory>

@@ -15,7 +15,7 @@
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/participant_session.hpp"
-#include "swiftlet/services/dds/profiles.hpp"
+#include "swiftlet/services/dds/qos/profiles.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 

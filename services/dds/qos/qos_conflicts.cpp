@@ -1,4 +1,4 @@
-#include "swiftlet/services/dds/qos_conflicts.hpp"
+#include "swiftlet/services/dds/qos/qos_conflicts.hpp"
 
 #include <cstdio>
 

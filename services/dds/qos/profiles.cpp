@@ -1,4 +1,4 @@
-#include "swiftlet/services/dds/profiles.hpp"
+#include "swiftlet/services/dds/qos/profiles.hpp"
 
 namespace swiftlet::comms {
 

@@ -1,0 +1,342 @@
+#include "swiftlet/services/dds/participant.hpp"
+
+#include <algorithm>
+#include <climits>
+#include <iterator>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+#include <unistd.h>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "swiftlet/services/dds/shared_memory.hpp"
+
+namespace swiftlet::comms {
+namespace {
+
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kRediscoveryPatience{1000};
+constexpr std::chrono::milliseconds kCheckPeriod{250};
+
+void check(const NodeSettings& settings) {
+  if (settings.domain < 0 || settings.domain > 232) {
+    throw std::runtime_error("DDS domain is " + std::to_string(settings.domain) +
+                             ", must be between 0 and 232");
+  }
+  if (settings.name.empty()) throw std::runtime_error("the node has no name");
+}
+
+Announcement announcement_of(const NodeSettings& settings, const std::string& vehicle) {
+  Announcement announcement;
+  announcement.vehicles = vehicle;
+  char host[HOST_NAME_MAX + 1] = {};
+  ::gethostname(host, HOST_NAME_MAX);
+  announcement.host = host;
+  announcement.pid = ::getpid();
+  announcement.source_of = settings.source_of;
+  announcement.since_ns = std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+  return announcement;
+}
+
+std::string named(const std::string& name, const rtps::GuidPrefix_t& participant) {
+  std::ostringstream text;
+  text << "'" << name << "' (" << participant << ")";
+  return text.str();
+}
+
+rtps::GUID_t participant_guid(const rtps::GuidPrefix_t& participant) {
+  return {participant, rtps::c_EntityId_RTPSParticipant};
+}
+
+}  // namespace
+
+Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& vehicle)
+    : settings(node_settings), announcement_(announcement_of(node_settings, vehicle)) {
+  check(settings);
+  if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
+  session_ = std::make_unique<ParticipantSession>(settings, announcement_, this);
+  periodic_task_.emplace(kCheckPeriod, [this] {
+    rejoin_if_rediscovery_failed();
+    const std::lock_guard<std::mutex> lock(peers_mutex_);
+    conflict_log_.write_due(Clock::now());
+  });
+}
+
+Participant::Impl::~Impl() {
+  periodic_task_.reset();
+  session_.reset();
+  if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
+}
+
+void Participant::Impl::serve(const std::string& vehicle) {
+  const std::lock_guard<std::mutex> lock(session_mutex_);
+  if (lists(announcement_.vehicles, vehicle)) return;
+  {
+    const std::lock_guard<std::mutex> peers_lock(peers_mutex_);
+    for (const auto& [guid, peer] : peers_) {
+      if (!is_own(peer) && lists(peer.announced.vehicles, vehicle))
+        rediscovery_.came(guid.guidPrefix, Clock::now());
+    }
+    announcement_.vehicles += (announcement_.vehicles.empty() ? "" : ",") + vehicle;
+  }
+  if (session_ != nullptr) session_->announce(announcement_);
+}
+
+void Participant::Impl::add(Endpoint* endpoint) {
+  const std::lock_guard<std::mutex> lock(session_mutex_);
+  if (session_ != nullptr) endpoint->join(*session_);
+  endpoints_.push_back(endpoint);
+}
+
+void Participant::Impl::remove(Endpoint* endpoint) {
+  const std::lock_guard<std::mutex> lock(session_mutex_);
+  if (session_ != nullptr) endpoint->leave(*session_);
+  endpoints_.erase(std::remove(endpoints_.begin(), endpoints_.end(), endpoint), endpoints_.end());
+}
+
+void Participant::Impl::rejoin_if_rediscovery_failed() {
+  {
+    const std::lock_guard<std::mutex> lock(peers_mutex_);
+    if (!rediscovery_.failed(Clock::now(), kRediscoveryPatience) && !away_) return;
+  }
+  if (rejoin()) spdlog::warn("rejoined the network: a peer was rediscovered without its endpoints");
+}
+
+bool Participant::Impl::rejoin() {
+  const std::lock_guard<std::mutex> lock(session_mutex_);
+  leave();
+  try {
+    session_ = std::make_unique<ParticipantSession>(settings, announcement_, this);
+    for (Endpoint* const endpoint : endpoints_) endpoint->join(*session_);
+    return !away_.exchange(false);
+  } catch (const std::runtime_error& error) {
+    if (!away_) spdlog::error("cannot rejoin the network, trying again: {}", error.what());
+    away_ = true;
+    leave();
+    return false;
+  }
+}
+
+void Participant::Impl::leave() {
+  if (session_ == nullptr) return;
+  for (Endpoint* const endpoint : endpoints_) endpoint->leave(*session_);
+  session_.reset();
+  const std::lock_guard<std::mutex> lock(peers_mutex_);
+  peers_.clear();
+  writers_.clear();
+  readers_.clear();
+  conflict_log_.clear();
+  rediscovery_.clear();
+}
+
+// ---- other processes
+
+std::vector<std::string> Participant::Impl::topics_seen() const {
+  const std::lock_guard<std::mutex> lock(peers_mutex_);
+  std::set<std::string> topics;
+  for (const auto& [guid, writer] : writers_) topics.insert(writer.topic);
+  return {topics.begin(), topics.end()};
+}
+
+ProcessIdentity Participant::Impl::identity_of(const GuidPrefix& participant) const {
+  const std::lock_guard<std::mutex> lock(peers_mutex_);
+  const Peer* const peer = peer_of(participant);
+  if (peer == nullptr) return {};
+  return {peer->name, peer->announced.host, peer->announced.pid};
+}
+
+void Participant::Impl::listen(const Node* node, const std::string& vehicle,
+                               std::function<void(const PeerEvent&)> callback) {
+  const std::lock_guard<std::mutex> lock(peers_mutex_);
+  peer_listeners_.erase(node);
+  if (!callback) return;
+  for (const auto& [guid, peer] : peers_) {
+    if (lists(peer.announced.vehicles, vehicle)) callback({peer.name, true, false});
+  }
+  peer_listeners_[node] = {vehicle, std::move(callback)};
+}
+
+void Participant::Impl::on_participant_discovery(DomainParticipant*, rtps::ParticipantDiscoveryInfo&& info) {
+  const std::lock_guard<std::mutex> lock(peers_mutex_);
+  switch (info.status) {
+    case rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT:
+    case rtps::ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT:
+      update_peer(info.info.m_guid,
+                  {info.info.m_participantName.c_str(), from_user_data(info.info.m_userData.dataVec())});
+      break;
+    case rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT:
+      drop_peer(info.info.m_guid, true);
+      break;
+    case rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT:
+      drop_peer(info.info.m_guid, false);
+      break;
+  }
+}
+
+void Participant::Impl::update_peer(const Guid& guid, const Peer& peer) {
+  Peer& known = peers_[guid];
+  const Peer before = std::exchange(known, peer);
+  if (is_own(peer) && !is_own(before)) rediscovery_.came(guid.guidPrefix, Clock::now());
+  for (const auto& [node, listener] : peer_listeners_) {
+    if (lists(peer.announced.vehicles, listener.vehicle) &&
+        !lists(before.announced.vehicles, listener.vehicle))
+      listener.callback({peer.name, true, false});
+  }
+  yield_source_to(peer);
+}
+
+void Participant::Impl::drop_peer(const Guid& guid, bool said_goodbye) {
+  for (RemoteEndpoints* const remote : {&writers_, &readers_}) {
+    for (auto it = remote->begin(); it != remote->end();)
+      it = it->first.guidPrefix == guid.guidPrefix ? remote->erase(it) : std::next(it);
+  }
+  conflict_log_.forget(guid.guidPrefix);
+  const auto peer = peers_.find(guid);
+  if (peer == peers_.end()) return;
+  const Peer gone = peer->second;
+  peers_.erase(peer);
+  if (!is_own(gone)) return;
+  said_goodbye ? rediscovery_.gone(guid.guidPrefix) : rediscovery_.lost(guid.guidPrefix);
+  for (const auto& [node, listener] : peer_listeners_) {
+    if (lists(gone.announced.vehicles, listener.vehicle)) listener.callback({gone.name, false, said_goodbye});
+  }
+}
+
+void Participant::Impl::on_publisher_discovery(DomainParticipant* own, rtps::WriterDiscoveryInfo&& info) {
+  if (info.info.guid().guidPrefix == own->guid().guidPrefix) return;
+  const std::lock_guard<std::mutex> lock(peers_mutex_);
+  if (info.status == rtps::WriterDiscoveryInfo::DISCOVERED_WRITER) {
+    add_endpoint(writers_, info.info.guid(), {info.info.topicName().c_str(), endpoint_qos(info.info.m_qos)},
+                 PeerMonitor::kWriter);
+  } else if (info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) {
+    writers_.erase(info.info.guid());
+  }
+}
+
+void Participant::Impl::on_subscriber_discovery(DomainParticipant* own, rtps::ReaderDiscoveryInfo&& info) {
+  if (info.info.guid().guidPrefix == own->guid().guidPrefix) return;
+  const std::lock_guard<std::mutex> lock(peers_mutex_);
+  if (info.status == rtps::ReaderDiscoveryInfo::DISCOVERED_READER) {
+    add_endpoint(readers_, info.info.guid(), {info.info.topicName().c_str(), endpoint_qos(info.info.m_qos)},
+                 PeerMonitor::kReader);
+  } else if (info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER) {
+    readers_.erase(info.info.guid());
+  }
+}
+
+void Participant::Impl::add_endpoint(RemoteEndpoints& endpoints, const Guid& guid, RemoteEndpoint endpoint,
+                                     PeerMonitor::Kind kind) {
+  const Peer* const peer = peer_of(guid.guidPrefix);
+  if (peer != nullptr && is_own(*peer)) rediscovery_.has(guid.guidPrefix, kind);
+  endpoints[guid] = std::move(endpoint);
+}
+
+const Participant::Impl::Peer* Participant::Impl::peer_of(const GuidPrefix& participant) const {
+  const auto peer = peers_.find(participant_guid(participant));
+  return peer == peers_.end() ? nullptr : &peer->second;
+}
+
+std::string Participant::Impl::shared_vehicle(const Peer& peer) const {
+  for (const std::string& vehicle : split_names(announcement_.vehicles)) {
+    if (lists(peer.announced.vehicles, vehicle)) return vehicle;
+  }
+  return {};
+}
+
+// ---- incompatible QoS
+
+void Participant::Impl::on_requested_incompatible_qos(dds::DataReader* reader,
+                                                      const dds::RequestedIncompatibleQosStatus&) {
+  const EndpointQos requested = endpoint_qos(reader->get_qos().get_readerqos(dds::SUBSCRIBER_QOS_DEFAULT));
+  log_conflicts(reader->guid(), reader->get_topicdescription()->get_name(), writers_, "is not received",
+                [&](const EndpointQos& offered) { return conflicts(offered, requested); });
+}
+
+void Participant::Impl::on_offered_incompatible_qos(dds::DataWriter* writer,
+                                                    const dds::OfferedIncompatibleQosStatus&) {
+  const EndpointQos offered =
+      endpoint_qos(writer->get_qos().get_writerqos(dds::PUBLISHER_QOS_DEFAULT, dds::TOPIC_QOS_DEFAULT));
+  log_conflicts(writer->guid(), writer->get_topic()->get_name(), readers_,
+                "does not receive from this process",
+                [&](const EndpointQos& requested) { return conflicts(offered, requested); });
+}
+
+template <class ConflictsWith>
+void Participant::Impl::log_conflicts(const Guid& own, const std::string& topic,
+                                      const RemoteEndpoints& others, const char* consequence,
+                                      const ConflictsWith& conflicts_with) {
+  const std::lock_guard<std::mutex> lock(peers_mutex_);
+  for (const auto& [guid, other] : others) {
+    if (other.topic != topic || conflict_log_.has_noted(own, guid)) continue;
+    const std::string policies = conflicts_with(other.qos);
+    if (policies.empty()) continue;
+    const Peer* const peer = peer_of(guid.guidPrefix);
+    conflict_log_.note(own, guid, topic, named(peer == nullptr ? "" : peer->name, guid.guidPrefix),
+                       consequence, policies, Clock::now());
+  }
+}
+
+// ---- the only source of a topic
+
+std::optional<std::string> Participant::Impl::become_source(const std::vector<std::string>& excluded,
+                                                            std::function<void(const std::string&)> on_lost) {
+  std::this_thread::sleep_for(kSourceSearchTime);
+  const std::lock_guard<std::mutex> lock(session_mutex_);
+  {
+    const std::lock_guard<std::mutex> peers_lock(peers_mutex_);
+    if (auto other = other_source(excluded)) return other;
+    announcement_.is_established = true;
+    established_at_ = Clock::now();
+    on_lost_source_ = std::move(on_lost);
+  }
+  if (session_ != nullptr) session_->announce(announcement_);
+  return std::nullopt;
+}
+
+std::optional<std::string> Participant::Impl::other_source(const std::vector<std::string>& excluded) const {
+  for (const auto& [guid, peer] : peers_) {
+    const bool same = std::count(excluded.begin(), excluded.end(), peer.announced.source_of) > 0;
+    if (same && is_own(peer) && yields(announcement_, peer.announced))
+      return already_lives(shared_vehicle(peer), peer.announced.source_of, peer);
+  }
+  for (const std::string& vehicle : split_names(announcement_.vehicles)) {
+    for (const std::string& topic : excluded) {
+      if (auto other = unannounced_source(vehicle, topic)) return other;
+    }
+  }
+  return std::nullopt;
+}
+
+// Programs of others do not announce of what they are the source.
+std::optional<std::string> Participant::Impl::unannounced_source(const std::string& vehicle,
+                                                                 const std::string& topic) const {
+  for (const auto& [guid, writer] : writers_) {
+    if (writer.topic != "rt/" + vehicle + "/" + topic) continue;
+    const Peer* const peer = peer_of(guid.guidPrefix);
+    if (peer != nullptr && peer->announced.source_of != topic) return already_lives(vehicle, topic, *peer);
+  }
+  return std::nullopt;
+}
+
+void Participant::Impl::yield_source_to(const Peer& peer) {
+  const bool on_probation =
+      announcement_.is_established && on_lost_source_ && Clock::now() - established_at_ < kSourceProbation;
+  if (!on_probation || peer.announced.source_of != announcement_.source_of || !is_own(peer)) return;
+  if (!peer.announced.is_established || !yields(announcement_, peer.announced)) return;
+  on_lost_source_(already_lives(shared_vehicle(peer), peer.announced.source_of, peer));
+  on_lost_source_ = nullptr;
+}
+
+std::string Participant::Impl::already_lives(const std::string& vehicle, const std::string& topic,
+                                             const Peer& source) const {
+  const ProcessIdentity process{source.name, source.announced.host, source.announced.pid};
+  return "vehicle " + vehicle + " already lives in domain " + std::to_string(settings.domain) + ": " +
+         process.to_string() + " is the source of its " + topic;
+}
+
+}  // namespace swiftlet::comms

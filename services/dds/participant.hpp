@@ -1,0 +1,122 @@
+// The inside of comms::Participant: the session in the domain, the endpoints that survive a rejoin, and the other
+// processes that were discovered.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+
+#include "swiftlet/services/dds/discovery/announcement.hpp"
+#include "swiftlet/services/dds/discovery/rediscovery_monitor.hpp"
+#include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/dds/participant_session.hpp"
+#include "swiftlet/services/dds/periodic_task.hpp"
+#include "swiftlet/services/dds/qos/qos_conflict_log.hpp"
+
+namespace swiftlet::comms {
+
+struct Participant::Impl final : public eprosima::fastdds::dds::DomainParticipantListener {
+  // vehicle: may be empty
+  Impl(const NodeSettings& node_settings, const std::string& vehicle);
+  ~Impl() override;
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  // Adds a vehicle that this process serves.
+  void serve(const std::string& vehicle);
+  std::optional<std::string> become_source(const std::vector<std::string>& excluded,
+                                           std::function<void(const std::string&)> on_lost);
+  void add(Endpoint* endpoint);
+  void remove(Endpoint* endpoint);
+  // Leaves the domain and joins it again. Returns false if joining failed this time or the previous time.
+  bool rejoin();
+
+  std::vector<std::string> topics_seen() const;
+  ProcessIdentity identity_of(const eprosima::fastrtps::rtps::GuidPrefix_t& participant) const;
+  // node: key of the callback; an empty callback removes it. Calls it at once for known peers of the vehicle.
+  void listen(const Node* node, const std::string& vehicle, std::function<void(const PeerEvent&)> callback);
+
+  int deadline_ms(int of_topic) const { return settings.deadlines ? of_topic : 0; }
+
+  const NodeSettings settings;
+
+ private:
+  using Guid = eprosima::fastrtps::rtps::GUID_t;
+  using GuidPrefix = eprosima::fastrtps::rtps::GuidPrefix_t;
+  using PeerMonitor = RediscoveryMonitor<GuidPrefix>;
+  using DomainParticipant = eprosima::fastdds::dds::DomainParticipant;
+  struct Peer {
+    std::string name;
+    Announcement announced;
+  };
+  struct PeerListener {
+    std::string vehicle;
+    std::function<void(const PeerEvent&)> callback;
+  };
+
+  // If a peer was rediscovered without its endpoints, rejoins the domain. The peers then discover a new process.
+  void rejoin_if_rediscovery_failed();
+  void leave();  // requires session_mutex_
+
+  void on_participant_discovery(DomainParticipant* own,
+                                eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
+  void on_publisher_discovery(DomainParticipant* own,
+                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
+  void on_subscriber_discovery(DomainParticipant* own,
+                               eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
+  // Fast DDS reports which own reader or writer has a conflict, but not the peer. Logs every known peer
+  // endpoint of the topic that does not match.
+  void on_requested_incompatible_qos(eprosima::fastdds::dds::DataReader* reader,
+                                     const eprosima::fastdds::dds::RequestedIncompatibleQosStatus&) override;
+  void on_offered_incompatible_qos(eprosima::fastdds::dds::DataWriter* writer,
+                                   const eprosima::fastdds::dds::OfferedIncompatibleQosStatus&) override;
+
+  // All of these require peers_mutex_.
+  void update_peer(const Guid& guid, const Peer& peer);  // a known peer may serve more vehicles now
+  void drop_peer(const Guid& guid, bool said_goodbye);
+  void add_endpoint(RemoteEndpoints& endpoints, const Guid& guid, RemoteEndpoint endpoint,
+                    PeerMonitor::Kind kind);
+  const Peer* peer_of(const GuidPrefix& participant) const;
+  std::string shared_vehicle(const Peer& peer) const;  // the first vehicle that both serve; empty if none
+  bool is_own(const Peer& peer) const { return !shared_vehicle(peer).empty(); }
+  template <class ConflictsWith>
+  void log_conflicts(const Guid& own, const std::string& topic, const RemoteEndpoints& others,
+                     const char* consequence, const ConflictsWith& conflicts_with);
+
+  // A sentence about another process to which this one must yield (become_source()); nullopt if there is none.
+  std::optional<std::string> other_source(const std::vector<std::string>& excluded) const;
+  std::optional<std::string> unannounced_source(const std::string& vehicle, const std::string& topic) const;
+  // Two sources that joined at the same time, and discovered each other late.
+  void yield_source_to(const Peer& peer);
+  std::string already_lives(const std::string& vehicle, const std::string& topic, const Peer& source) const;
+
+  std::mutex session_mutex_;  // guards session_ and endpoints_
+  std::unique_ptr<ParticipantSession> session_;
+  std::vector<Endpoint*> endpoints_;
+
+  mutable std::mutex peers_mutex_;  // guards all below; locked after session_mutex_
+  Announcement announcement_;       // of this process; changed with both mutexes locked
+  std::chrono::steady_clock::time_point established_at_;
+  std::function<void(const std::string&)> on_lost_source_;
+  std::map<Guid, Peer> peers_;  // of any vehicle
+  RemoteEndpoints writers_;     // of other processes, any vehicle
+  RemoteEndpoints readers_;
+  QosConflictLog conflict_log_;
+  std::map<const Node*, PeerListener> peer_listeners_;
+  PeerMonitor rediscovery_;
+
+  std::atomic<bool> away_{false};  // the last rejoin failed
+  std::optional<PeriodicTask> periodic_task_;
+};
+
+}  // namespace swiftlet::comms
