@@ -36,7 +36,7 @@ ControlSetpoint Supervisor::step(const SupervisorInputs& inputs, ClientInputs& c
   // A lost link triggers its row once, but only if no more urgent row was taken.
   if (link_answered && conditions.has(Event::kGroundLinkLost))
     forget_silent_ground_links(state_, settings_.failsafe);
-  const ControlSetpoint wanted = setpoint(inputs);
+  ControlSetpoint wanted = setpoint(inputs);
   follow_requests(now, wanted.reference);
   return wanted;
 }
