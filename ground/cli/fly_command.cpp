@@ -84,9 +84,15 @@ std::unique_ptr<RecordFolder> make_record(const FlyOptions& options, const std::
   std::uintmax_t needed_bytes = 0;
   for (const LaunchConfiguration& plan : plans) needed_bytes += plan.record_bytes();
   require_space(plans.front().folder, needed_bytes);
-  auto folder = std::make_unique<RecordFolder>(plans.front().folder, existing_record(options));
+  std::vector<std::filesystem::path> inputs;
+  for (const LaunchConfiguration& plan : plans) {
+    const std::vector<std::filesystem::path> files = plan.input_files();
+    inputs.insert(inputs.end(), files.begin(), files.end());
+  }
+  auto folder =
+      std::make_unique<RecordFolder>(plans.front().folder, existing_record(options), "--record", inputs);
   for (std::size_t i = 0; i < plans.size(); ++i)
-    plans[i].record_in(plans.size() == 1 ? folder->path() : folder->path() / vehicles[i]);
+    plans[i].folder = plans.size() == 1 ? folder->path() : folder->folder_of(vehicles[i]);
   return folder;
 }
 
@@ -117,8 +123,6 @@ int fly(const FlyOptions& options) {
   check(options, vehicles.size());
   std::vector<LaunchConfiguration> plans = plan_flights(options, vehicles);
 
-  const std::unique_ptr<RecordFolder> record = make_record(options, vehicles, plans);
-
   std::optional<comms::DomainLock> domain_lock;
   if (options.domain < 0 && options.launch_mode == LaunchMode::kStarted) domain_lock.emplace();
   comms::NodeSettings network = options.network;
@@ -126,6 +130,7 @@ int fly(const FlyOptions& options) {
   // In a domain that others may use, the vehicles must not live already.
   std::optional<comms::FlightReservation> reservation;
   if (!domain_lock && options.launch_mode == LaunchMode::kStarted) reservation.emplace(network, vehicles);
+  const std::unique_ptr<RecordFolder> record = make_record(options, vehicles, plans);
 
   ProgressLine progress;
   std::deque<ProcessFlight> flights;

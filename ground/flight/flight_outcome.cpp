@@ -38,13 +38,6 @@ void say_record_fault(const FlightReport& report, Progress& progress) {
 
 }  // namespace
 
-void make_record_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw InputError("--record " + folder.string() + ": the folder cannot be created: " + error.message());
-}
-
 void evaluate(FlightReport& report, const FlightRecord& record, Window window) {
   report.errors = tracking_errors(record.truth, record.reference, window);
   if (report.reason.empty()) report.reason = shortfall(report, window);

@@ -11,9 +11,6 @@
 
 namespace swiftlet::ground {
 
-// Throws InputError if the folder, that of --record or one inside it, cannot be created.
-void make_record_folder(const std::filesystem::path& folder);
-
 // Computes the tracking errors inside the window and sets report.completed: true if report.reason is empty,
 // the telemetry is complete enough and the peak error is within the tolerance.
 void evaluate(FlightReport& report, const FlightRecord& record, Window window);

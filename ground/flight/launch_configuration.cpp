@@ -117,8 +117,8 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
     plan.mocap_program = program_beside("swiftlet-mocap");
     plan.control_program = program_beside("swiftlet-control");
   }
-  if (options.trace) plan.trace_file = "trace.csv";
-  plan.record_in(options.record.empty() ? default_folder(plan.mission.name) : fs::path(options.record));
+  plan.folder = options.record.empty() ? default_folder(plan.mission.name) : fs::path(options.record);
+  plan.trace = options.trace;
   plan.sensors = options.sensors;
   return plan;
 }
@@ -134,15 +134,13 @@ std::size_t LaunchConfiguration::record_capacity() const {
 }
 
 std::uintmax_t LaunchConfiguration::record_bytes() const {
-  const double imu_row_bytes =
-      (sensors ? kSensorsRowBytes : 0.0) + (trace_file.empty() ? 0.0 : kTraceRowBytes);
+  const double imu_row_bytes = (sensors ? kSensorsRowBytes : 0.0) + (trace ? kTraceRowBytes : 0.0);
   const double bytes_per_s = kTelemetryRateHz * kTelemetryRowBytes + simulation.imu.rate_hz * imu_row_bytes;
   return static_cast<std::uintmax_t>((planned_duration_s + kGroundTimeS) * bytes_per_s + kOtherFilesBytes);
 }
 
-void LaunchConfiguration::record_in(const std::filesystem::path& record_folder) {
-  folder = record_folder;
-  if (!trace_file.empty()) trace_file = folder / "trace.csv";
+std::vector<fs::path> LaunchConfiguration::input_files() const {
+  return {mission_file, vehicle_file, control_file, simulation_file};
 }
 
 ExistingRecord existing_record(const FlyOptions& options) {
@@ -193,7 +191,7 @@ std::vector<ProcessSettings> processes(const LaunchConfiguration& plan, const co
   }
   if (plan.clock == runtime::Clock::kLockstep) {
     plant.emplace_back("--paused");
-    if (!plan.trace_file.empty()) plant.insert(plant.end(), {"--trace", absolute_path(plan.trace_file)});
+    if (plan.trace) plant.insert(plant.end(), {"--trace", absolute_path(plan.trace_file())});
   }
   if (plan.speed) plant.insert(plant.end(), {"--speed", runtime::exact(*plan.speed)});
   return {

@@ -69,13 +69,14 @@ struct LaunchConfiguration {
   std::uint64_t seed = 0;
   Eigen::Vector2d start_ned = Eigen::Vector2d::Zero();  // m
   std::filesystem::path folder;                         // of the record; not created by plan_flight()
-  std::filesystem::path trace_file;                     // empty: no trace
+  bool trace = false;                                   // write trace_file()
   bool sensors = false;                                 // record sensors and commands
   std::filesystem::path plant_program, mocap_program, control_program;  // if kStarted
 
   std::size_t record_capacity() const;  // rows: IMU samples within the flight's time limit
   std::uintmax_t record_bytes() const;  // size of the record's files, estimated from duration and rates
-  void record_in(const std::filesystem::path& record_folder);  // sets folder and trace_file
+  std::filesystem::path trace_file() const { return folder / "trace.csv"; }
+  std::vector<std::filesystem::path> input_files() const;
 };
 
 // Longer missions are refused: the record is kept in memory.

@@ -29,7 +29,7 @@ void take_figures(const View& view, FlightReport& report) {
                              vehicle.sense_to_actuate_max_us()};
 }
 
-// Where an attached flight looks for the processes: "lo (127.0.0.1) only; --network also looks on ...".
+// Where an attached flight looks for the processes: "lo (127.0.0.1) only; with --network on ...".
 std::string networks_of(const LaunchConfiguration& plan, const comms::NodeSettings& network) {
   if (plan.launch_mode != LaunchMode::kAttached) return {};
   if (!network.localhost_only) return comms::interfaces_text(false);
@@ -45,7 +45,6 @@ ProcessFlight::ProcessFlight(LaunchConfiguration plan, comms::NodeSettings netwo
       report_(report_of(plan_)) {
   report_.vehicle_name = network_.vehicle;
   if (plan_.sensors) record_.sensors = std::make_unique<SensorRecord>(plan_.record_capacity());
-  make_record_folder(plan_.folder);
   keep_settings(plan_);
   processes_.emplace(processes(plan_, network_));
 }

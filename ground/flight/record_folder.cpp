@@ -40,12 +40,16 @@ fs::path foreign_entry(const fs::path& folder, bool may_hold_vehicles = true) {
     if (entry.is_symlink()) return entry.path();
     if (entry.is_directory()) {
       if (!may_hold_vehicles) return entry.path();
-      if (const fs::path inside = foreign_entry(entry.path(), false); !inside.empty()) return inside;
+      if (fs::path inside = foreign_entry(entry.path(), false); !inside.empty()) return inside;
     } else if (!is_record_file(entry.path())) {
       return entry.path();
     }
   }
   return {};
+}
+
+bool holds_record(const fs::path& folder) {
+  return fs::exists(folder / kClaim) || fs::exists(folder / "report.json");
 }
 
 std::string who_claims() {
@@ -65,6 +69,11 @@ std::string owner_of(const fs::path& folder) {
   std::string owner;
   std::getline(in, owner);
   return owner.empty() ? "" : " (" + owner + ")";
+}
+
+bool is_inside(const fs::path& folder, const fs::path& file) {
+  const fs::path relative = fs::weakly_canonical(file).lexically_relative(fs::weakly_canonical(folder));
+  return !relative.empty() && *relative.begin() != "..";
 }
 
 std::string named(const std::string& option, const fs::path& folder) {
@@ -98,7 +107,16 @@ class OldClaim {
   bool free_;
 };
 
-void remove_record(const fs::path& folder, const std::string& option) {
+void remove_record(const fs::path& folder, const std::string& option, const std::vector<fs::path>& inputs) {
+  if (fs::is_empty(folder)) return;
+  if (!holds_record(folder))
+    throw InputError(named(option, folder) + "--replace deletes records only, and the folder holds none (" +
+                     "no record.txt or report.json); choose another folder");
+  for (const fs::path& input : inputs) {
+    if (is_inside(folder, input))
+      throw InputError(named(option, folder) + "--replace would delete " + input.string() +
+                       ", which this flight reads; choose another folder");
+  }
   if (const fs::path foreign = foreign_entry(folder); !foreign.empty()) {
     throw InputError(named(option, folder) + "--replace deletes records only, and no flight writes " +
                      foreign.lexically_relative(folder).string() + "; choose another folder");
@@ -125,9 +143,12 @@ fs::path nearest_existing(const fs::path& folder) {
 
 }  // namespace
 
-RecordFolder::RecordFolder(const fs::path& wanted, ExistingRecord existing, const std::string& option) {
+RecordFolder::RecordFolder(const fs::path& wanted, ExistingRecord existing, const std::string& option,
+                           const std::vector<fs::path>& inputs)
+    : option_(option) {
   try {
-    if (existing == ExistingRecord::kReplaced && fs::is_directory(wanted)) remove_record(wanted, option);
+    if (existing == ExistingRecord::kReplaced && fs::is_directory(wanted))
+      remove_record(wanted, option, inputs);
     bool taken = take(wanted, option);
     for (int i = 2; !taken && existing == ExistingRecord::kNumbered; ++i)
       taken = take(wanted.string() + "-" + std::to_string(i), option);
@@ -144,6 +165,14 @@ RecordFolder::~RecordFolder() {
   if (entries == 1) fs::remove(path_ / kClaim, fault);
   if (entries == 1 && made_) fs::remove(path_, fault);
   close(claim_);
+}
+
+fs::path RecordFolder::folder_of(const std::string& vehicle) const {
+  std::error_code fault;
+  fs::create_directory(path_ / vehicle, fault);
+  if (fault)
+    throw InputError(named(option_, path_ / vehicle) + "the folder cannot be created: " + fault.message());
+  return path_ / vehicle;
 }
 
 // Returns false if the folder holds anything already.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace swiftlet::ground {
 
@@ -17,19 +18,22 @@ class RecordFolder {
  public:
   // Makes the folder and claims it with the file record.txt, which names the process. Of several processes
   // that claim one folder at the same time, one gets it. option: the command-line option that names the
-  // folder. Throws InputError if the folder cannot be made, holds anything and may not be replaced, holds
-  // files that no flight writes, or belongs to a flight in progress.
+  // folder. inputs: files that the flight reads. Throws InputError if the folder cannot be made, holds anything
+  // and may not be replaced, holds files that no flight writes or an input, or belongs to a flight in progress.
   RecordFolder(const std::filesystem::path& wanted, ExistingRecord existing,
-               const std::string& option = "--record");
+               const std::string& option = "--record", const std::vector<std::filesystem::path>& inputs = {});
   ~RecordFolder();  // leaves no trace if nothing was written into the folder
   RecordFolder(const RecordFolder&) = delete;
   RecordFolder& operator=(const RecordFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
+  // Makes the folder of one of several vehicles. Throws InputError.
+  std::filesystem::path folder_of(const std::string& vehicle) const;
 
  private:
   bool take(const std::filesystem::path& folder, const std::string& option);
 
+  std::string option_;
   std::filesystem::path path_;
   bool made_ = false;  // did not exist before
   int claim_ = -1;     // descriptor of record.txt, locked while this object lives

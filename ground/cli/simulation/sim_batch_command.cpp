@@ -75,8 +75,8 @@ int sim_batch(const BatchOptions& options) {
                      std::to_string(options.runs) + " runs");
   const BatchRunner runner(plan, options.runs);
   require_space(plan.folder, kPictureBytes + kRunBytes * options.runs, "--out");
-  const RecordFolder folder(plan.folder, existing_record(options.flight), "--out");
-  plan.record_in(folder.path());
+  const RecordFolder folder(plan.folder, existing_record(options.flight), "--out", plan.input_files());
+  plan.folder = folder.path();
   ProgressLine progress;
   for (const std::string& assumption : plan.mission.assumptions)
     progress.say(plan.mission.name + ": " + assumption);

@@ -28,11 +28,11 @@ int sim_fly(const FlyOptions& options) {
   LaunchConfiguration plan = plan_flight(options);
   ClosedLoop loop = closed_loop(plan, draw(plan, plan.seed).world, plan.seed);
   require_space(plan.folder, plan.record_bytes());
-  const RecordFolder folder(plan.folder, existing_record(options));
-  plan.record_in(folder.path());
+  const RecordFolder folder(plan.folder, existing_record(options), "--record", plan.input_files());
+  plan.folder = folder.path();
   keep_settings(plan);
   std::optional<runtime::FlightTrace> trace;
-  if (!plan.trace_file.empty()) trace.emplace(plan.trace_file, plan.vehicle.rotor_count());
+  if (plan.trace) trace.emplace(plan.trace_file(), plan.vehicle.rotor_count());
   FlightRecord record(plan.record_capacity());
   if (plan.sensors) record.sensors = std::make_unique<SensorRecord>(plan.record_capacity());
   loop.sensors = record.sensors.get();

@@ -112,6 +112,31 @@ TEST_F(RecordFolderTest, DeletesNothingButRecords) {
   EXPECT_TRUE(fs::exists(folder_ / "first/report.json"));
 }
 
+TEST_F(RecordFolderTest, DoesNotReplaceAFolderOfSettings) {
+  fs::create_directory(folder_ / "mine");
+  for (const char* name : {"mission.yaml", "vehicle.yaml", "control.yaml"})
+    temporary_.write(std::string("mine/") + name, "");
+  EXPECT_EQ(refusal(folder_ / "mine", ExistingRecord::kReplaced),
+            "--record " + (folder_ / "mine").string() +
+                ": --replace deletes records only, and the folder holds none (no record.txt or report.json); "
+                "choose another folder");
+  EXPECT_TRUE(fs::exists(folder_ / "mine/mission.yaml"));
+}
+
+TEST_F(RecordFolderTest, DoesNotReplaceTheFilesThatTheFlightReads) {
+  make_record("first");
+  const fs::path mission = folder_ / "first/mission.yaml";
+  temporary_.write("first/mission.yaml", "");
+  try {
+    const RecordFolder made(folder_ / "first", ExistingRecord::kReplaced, "--record", {mission});
+    FAIL() << "the record was replaced";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(), "--record " + (folder_ / "first").string() + ": --replace would delete " +
+                                mission.string() + ", which this flight reads; choose another folder");
+  }
+  EXPECT_TRUE(fs::exists(mission));
+}
+
 TEST_F(RecordFolderTest, DoesNotReplaceTheRecordOfAFlightInProgress) {
   const RecordFolder flying(folder_ / "first", ExistingRecord::kRefused);
   const std::string sentence = refusal(folder_ / "first", ExistingRecord::kReplaced);
