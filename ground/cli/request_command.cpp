@@ -192,7 +192,7 @@ runtime::CommandLine add_request_subcommand(runtime::CommandLine root, const std
   const runtime::CommandLine app = add_subcommand(root, name, description, example, options, vehicles);
   runtime::Option no_wait = app.add_flag("--no-wait", options->no_wait,
                                          "return as soon as the request is accepted; default: wait until the "
-                                         "action completes, Ctrl-C holds");
+                                         "action completes");
   app.add_option("--wait", options->wait_s,
                  "wait at most so many s until the action completes; exit code 1 if it does not")
       .range(0.1, 3600.0)

@@ -181,7 +181,7 @@ ActionHandle Vehicle::follow(const control::Trajectory& trajectory, milliseconds
 }
 
 ActionHandle Vehicle::change_settings(const control::SettingsRequest& settings, milliseconds timeout) {
-  return {client_, client_->change_settings(settings, timeout)};
+  return {client_, client_->change_settings(settings, timeout, cancelled_)};
 }
 
 void Vehicle::enable_link_loss_failsafe() { client_->enable_link_loss_failsafe(); }

@@ -10,9 +10,14 @@
 
 namespace swiftlet::examples {
 
+struct Arguments {
+  std::vector<std::string> own;  // of the example itself
+  comms::NodeSettings network;
+};
+
 // Reads [VEHICLE] [DOMAIN] [--localhost-only], after the arguments of the example itself, whose names are
 // `own`. Prints the usage and ends the program if the arguments ask for help (exit code 0) or are wrong (2).
-inline comms::NodeSettings network(int argc, char** argv, const std::vector<std::string>& own = {}) {
+inline Arguments read_arguments(int argc, char** argv, const std::vector<std::string>& own = {}) {
   const std::vector<std::string> words(argv + 1, argv + argc);
   const auto end_with_usage = [&](std::FILE* out, int exit_code) {
     std::fprintf(out, "usage: %s", argv[0]);
@@ -42,7 +47,8 @@ inline comms::NodeSettings network(int argc, char** argv, const std::vector<std:
     if (*end != '\0' || domain < 0 || domain > 232) end_with_usage(stderr, 2);
     network.domain = static_cast<int>(domain);
   }
-  return network;
+  places.resize(first);
+  return {places, network};
 }
 
 }  // namespace swiftlet::examples

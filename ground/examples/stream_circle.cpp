@@ -78,7 +78,7 @@ bool fly_circle(Vehicle& vehicle) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  Vehicle vehicle(swiftlet::examples::network(argc, argv));
+  Vehicle vehicle(swiftlet::examples::read_arguments(argc, argv).network);
   const swiftlet::ground::Result connection = vehicle.connect();
   if (!connection.accepted()) {
     std::fprintf(stderr, "%s\n", connection.reason.c_str());

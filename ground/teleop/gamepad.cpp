@@ -29,25 +29,35 @@ Gamepad::Gamepad(const GamepadAxes& axes) : axes_(axes) {
 }
 
 void Gamepad::take(const input_event& event) {
-  if (event.type == EV_ABS) {
+  if (event.type == EV_SYN) {
+    if (event.code == SYN_DROPPED) forget_state();
+    losing_events_ = event.code == SYN_DROPPED || (losing_events_ && event.code != SYN_REPORT);
+  } else if (losing_events_) {
+    return;
+  } else if (event.type == EV_ABS) {
     const auto axis = axes_.find(event.code);
-    if (axis != axes_.end()) axis->second.value = event.value;
+    if (axis == axes_.end()) return;
+    axis->second.value = event.value;
+    axis->second.is_known = true;
   } else if (event.type == EV_KEY && is_dead_man_button(event.code)) {
     if (event.value != 0) {
       held_buttons_.insert(event.code);
     } else {
       held_buttons_.erase(event.code);
     }
-  } else if (event.type == EV_SYN && event.code == SYN_DROPPED) {
-    release_buttons();  // events were lost, perhaps the release
   }
+}
+
+void Gamepad::forget_state() {
+  release_buttons();
+  for (auto& [code, axis] : axes_) axis.is_known = false;
 }
 
 double Gamepad::deflection(int code) const {
   const GamepadAxis& axis = axes_.at(code);
   const double centre = 0.5 * axis.minimum + 0.5 * axis.maximum;
   const double half = axis.maximum - centre;
-  if (half <= 0.0) return 0.0;
+  if (half <= 0.0 || !axis.is_known) return 0.0;
   const double value = std::clamp((axis.value - centre) / half, -1.0, 1.0);
   const double dead = std::clamp(axis.flat / half, kLeastDeadZone, kMostDeadZone);
   return std::copysign(std::max(std::abs(value) - dead, 0.0) / (1.0 - dead), value);

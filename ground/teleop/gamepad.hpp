@@ -19,6 +19,7 @@ struct GamepadAxis {
   int maximum = 32767;
   int flat = 0;  // half the width of the dead zone
   int value = 0;
+  bool is_known = true;  // false: events were lost since; it counts as centred until it moves
 };
 
 using GamepadAxes = std::map<int, GamepadAxis>;  // by code: ABS_X ...
@@ -32,6 +33,7 @@ class Gamepad {
   // or ABS_Z and ABS_RZ.
   explicit Gamepad(const GamepadAxes& axes);
 
+  // After lost events (SYN_DROPPED) the buttons count as released, and the axes as centred.
   void take(const input_event& event);
   void release_buttons() { held_buttons_.clear(); }
 
@@ -39,11 +41,13 @@ class Gamepad {
   Sticks sticks() const;                                   // centred unless enabled
 
  private:
+  void forget_state();
   double deflection(int code) const;  // -1 .. 1
 
   GamepadAxes axes_;
   int right_x_ = 0, right_y_ = 0;  // codes
   std::set<std::uint16_t> held_buttons_;
+  bool losing_events_ = false;  // until the report that ends them
 };
 
 }  // namespace swiftlet::ground

@@ -11,6 +11,11 @@ using control::Mode;
 
 constexpr auto kHoldTimeout = 1s;
 
+// In the air, and on its way without the sticks.
+bool flies_by_itself(Mode mode) {
+  return mode == Mode::kTakingOff || mode == Mode::kMission || mode == Mode::kTrajectory;
+}
+
 double yaw_of(const Eigen::Quaterniond& q_ned_from_frd) {
   const Eigen::Vector3d nose_ned = q_ned_from_frd * Eigen::Vector3d::UnitX();
   return std::atan2(nose_ned.y(), nose_ned.x());
@@ -41,7 +46,7 @@ void Teleop::hold() {
 
 bool Teleop::finish() {
   take_hold_answer();
-  if (moving_) hold();
+  if (moving_ || flies_by_itself(vehicle_.state().mode)) hold();
   take_hold_answer();
   return !moving_;
 }
@@ -49,7 +54,7 @@ bool Teleop::finish() {
 void Teleop::take_hold_answer() {
   if (!holding_.valid()) return;
   const Result answer = holding_.get();
-  hold_fault_ = answer.reason;
+  hold_fault_ = answer.accepted() ? "" : answer.reason;
   // An answer that does not come is asked for again. A refusal means that the vehicle does not follow setpoints.
   if (!answer.accepted() && answer.kind != Result::Kind::kRefused) moving_ = true;
 }

@@ -23,14 +23,13 @@ class Teleop {
   void update(const Sticks& sticks);
   // Requests hold in the background.
   void hold();
-  // Requests hold if the vehicle still moves by the last setpoint, and waits for the answer, 2 s at most.
-  // Returns false if it was not accepted.
+  // Requests hold if the vehicle moves by the last setpoint, takes off, or flies a mission or trajectory, and
+  // waits for the answer, 2 s at most. Returns false if it was not accepted.
   bool finish();
 
   std::uint64_t sent() const { return sent_; }  // setpoints
-  const std::string& hold_fault() const {
-    return hold_fault_;
-  }  // why the last hold was not accepted; or empty
+  // Why the last hold was not accepted; or empty.
+  const std::string& hold_fault() const { return hold_fault_; }
 
  private:
   void take_hold_answer();

@@ -14,11 +14,11 @@ namespace swiftlet::ground {
 
 // The delay from a sample to the rotors, s.
 struct LoopDelay {
-  double sampling_s = 0.0;  // half a period of the IMU: a command holds until the next one
-  double measured_s = 0.0;  // from sample to actuator, measured in flight
-  std::string source = {};  // of the measurement: "flights/A"; empty: there is none
+  double sampling_s = 0.0;   // half a period of the IMU: a command holds until the next one
+  double actuation_s = 0.0;  // from sample to actuator
+  std::string flight = {};   // the record that measured it: "flights/A"; empty: it was given, or is 0
 
-  double total_s() const { return sampling_s + measured_s; }
+  double total_s() const { return sampling_s + actuation_s; }
 };
 
 // Of a unit step of the reference. NaN: not reached within eight times the plotted time, or the loop is

@@ -46,10 +46,12 @@ std::string row(const char* name, const LoopStudy& loop) {
 
 std::string delay_text(const TuningStudy& study) {
   const LoopDelay& delay = study.delay;
-  const std::string measured =
-      delay.source.empty() ? "" : fmt::format(", {:.2f} ms {}", 1e3 * delay.measured_s, delay.source);
+  std::string actuation;
+  if (delay.actuation_s > 0.0)
+    actuation = fmt::format(", {:.2f} ms to the actuator", 1e3 * delay.actuation_s);
+  if (!delay.flight.empty()) actuation += ", measured in " + delay.flight;
   return fmt::format("rotor lag {:.1f} ms, delay {:.2f} ms ({:.2f} ms of sampling{})",
-                     1e3 * study.rotor_lag_s, 1e3 * delay.total_s(), 1e3 * delay.sampling_s, measured);
+                     1e3 * study.rotor_lag_s, 1e3 * delay.total_s(), 1e3 * delay.sampling_s, actuation);
 }
 
 std::string tuning_table(const TuningStudy& study) {
@@ -78,8 +80,8 @@ std::string tuning_json(const TuningStudy& study) {
                     {"rotor_lag_s", study.rotor_lag_s},
                     {"delay",
                      {{"sampling_s", study.delay.sampling_s},
-                      {"measured_s", study.delay.measured_s},
-                      {"source", study.delay.source}}},
+                      {"actuation_s", study.delay.actuation_s},
+                      {"flight", study.delay.flight}}},
                     {"settings", settings}};
   return out.dump(2);
 }

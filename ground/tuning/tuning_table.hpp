@@ -14,7 +14,7 @@ std::string delay_text(const TuningStudy& study);
 std::string tuning_table(const TuningStudy& study);
 
 // JSON without a newline at the end:
-//   vehicle, rotor_lag_s, delay.{sampling_s,measured_s,source}
+//   vehicle, rotor_lag_s, delay.{sampling_s,actuation_s,flight}
 //   settings[].name, settings[].loops.{roll,pitch,yaw,x,y,z}
 //     stable, crossover_rad_s, phase_margin_deg, gain_increase_db, gain_decrease_db, delay_margin_s
 //     rise_time_s, overshoot, settling_time_s

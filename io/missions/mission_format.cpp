@@ -34,13 +34,14 @@ MissionFormat detect_format(std::string_view text, const std::string& file_name)
   const std::vector<std::string> fields = runtime::first_csv_line(text, file_name);
   if (!fields.empty()) {
     if (fields.front() == "duration") return MissionFormat::kPolynomialCsv;
-    const bool timed = std::any_of(fields.begin(), fields.end(),
-                                   [](const std::string& field) { return motion_name(field) == "t"; });
-    if (timed) return MissionFormat::kSampledCsv;
+    const auto has = [&](const char* name) {
+      return std::any_of(fields.begin(), fields.end(),
+                         [&](const std::string& field) { return motion_name(field) == name; });
+    };
+    if (has("t")) return MissionFormat::kSampledCsv;
     const bool numbers = std::all_of(fields.begin(), fields.end(),
                                      [](const std::string& field) { return runtime::is_number(field); });
-    if ((motion_name(fields.front()) == "x" && fields.size() > 1) ||
-        (numbers && (fields.size() == 3 || fields.size() == 4)))
+    if ((has("x") && has("y")) || (numbers && (fields.size() == 3 || fields.size() == 4)))
       return MissionFormat::kWaypointCsv;
   }
   if (extension != ".csv") return MissionFormat::kYaml;

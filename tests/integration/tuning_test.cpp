@@ -122,7 +122,7 @@ TEST(TunePlot, DrawsSettingsOverEachOther) {
       folder.path());
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const json study = json::parse(result.output);
-  EXPECT_EQ(study.at("delay").at("measured_s"), 0.004);
+  EXPECT_EQ(study.at("delay").at("actuation_s"), 0.004);
   ASSERT_EQ(study.at("settings").size(), 2U);
   EXPECT_EQ(study.at("settings")[1].at("name"), "soft");
   EXPECT_GT(study.at("settings")[1].at("loops").at("x").at("rise_time_s"),

@@ -126,7 +126,7 @@ class Session {
       }
       if (!screen.is_open()) return "the terminal was closed";
       if (interrupts_.count() > 0) return "";
-      if (const std::string fault = step(); !fault.empty()) return fault;
+      if (std::string fault = step(); !fault.empty()) return fault;
     }
   }
 
@@ -136,7 +136,7 @@ class Session {
       progress.update(sticks().centred() ? 0 : 1, "teleop: " + status_text() + "; " + command_text());
       std::this_thread::sleep_for(kTick);
       if (interrupts_.count() > 0) return "";
-      if (const std::string fault = step(); !fault.empty()) return fault;
+      if (std::string fault = step(); !fault.empty()) return fault;
     }
   }
 
@@ -210,7 +210,7 @@ class Session {
     lines.push_back({"arrows    forward, back, left, right, as seen from the vehicle"});
     lines.push_back({"w s       up, down                  q e   turn left, right"});
     lines.push_back({"space     hold                      x     hold and quit"});
-    lines.push_back({"The vehicle holds as soon as no key is held."});
+    lines.push_back({"The vehicle flies as long as a key is held, and then holds."});
     return lines;
   }
 
@@ -284,9 +284,10 @@ Command add_teleop_command(runtime::CommandLine root) {
   app.footer(
       "Arrows: forward, back, left and right, as seen from the vehicle. w, s: up, down. q, e: turn. Space: "
       "hold.\n"
-      "x: quit. The vehicle must be in the air. It holds when no key is held, and when this command ends or "
+      "x: quit. The vehicle must be in the air. It holds when a key is released, and when this command ends "
+      "or "
       "the\n"
-      "terminal is closed.\n\n" +
+      "terminal is closed, also if it was taking off or flying a mission.\n\n" +
       app.footer());
   TeleopLimits& limits = options->limits;
   app.add_option("--speed", limits.horizontal_m_s, "horizontal speed, m/s").range(0.05, 10.0).show_default();

@@ -44,14 +44,12 @@ LoopDelay measured_delay(const std::string& folder) {
   const double rate_hz = number(nlohmann::json::json_pointer("/imu_rate_hz"));
   if (!(latency_us > 0.0) || !(rate_hz > 0.0))
     throw InputError(file + ": no latency was measured; fly in real time, not in lockstep or in one process");
-  return {0.5 / rate_hz, 1e-6 * latency_us, "measured in " + folder};
+  return {0.5 / rate_hz, 1e-6 * latency_us, folder};
 }
 
 LoopDelay delay_of(const Options& options) {
   if (!options.flight.empty()) return measured_delay(options.flight);
-  const double sampling_s = 0.5 / options.imu_rate_hz;
-  if (options.delay_s) return {sampling_s, *options.delay_s, "by --delay"};
-  return {sampling_s};
+  return {0.5 / options.imu_rate_hz, options.delay_s.value_or(0.0)};
 }
 
 std::vector<control::ControlSettings> load_all(const Options& options) {
@@ -65,10 +63,11 @@ std::vector<control::ControlSettings> load_all(const Options& options) {
 }
 
 int plot_tuning(const Options& options) {
-  std::vector<std::filesystem::path> inputs;
+  const std::filesystem::path vehicle_file = configuration_file(kinds::kVehicle, options.vehicle);
+  std::vector<std::filesystem::path> inputs = {vehicle_file};
   for (const std::string& name : options.control) inputs.push_back(configuration_file(kinds::kControl, name));
   refuse_overwriting({{"--out", options.output}}, inputs);
-  const plant::Vehicle vehicle = runtime::load_vehicle(configuration_file(kinds::kVehicle, options.vehicle));
+  const plant::Vehicle vehicle = runtime::load_vehicle(vehicle_file);
   const TuningStudy study = study_tuning(vehicle, load_all(options), delay_of(options));
   std::printf("%s", (options.json ? tuning_json(study) + "\n" : tuning_table(study)).c_str());
   const std::string fault = draw_tuning(options.output, study);
@@ -105,7 +104,8 @@ Command add_plot_command(runtime::CommandLine tune) {
       .excludes(app.option("--flight"));
   app.add_option("--imu-rate", options->imu_rate_hz, "rate of the IMU, Hz; half its period adds to the delay")
       .range(50.0, 10000.0)
-      .show_default();
+      .show_default()
+      .excludes(app.option("--flight"));
   app.add_flag("--json", options->json, "print JSON");
   return {app, [options] { return plot_tuning(*options); }};
 }

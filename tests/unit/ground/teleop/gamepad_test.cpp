@@ -89,13 +89,22 @@ TEST(Gamepad, UsesAxesOfBytesAndTheirOwnValue) {
   EXPECT_EQ(sticks.forward, 1.0) << "without ABS_RX and ABS_RY, the right stick is ABS_Z and ABS_RZ";
 }
 
-TEST(Gamepad, LostEventsReleaseTheButtons) {
+// GIVEN a deflected stick whose return is among the lost events, THEN it counts as centred until it moves again.
+TEST(Gamepad, LostEventsReleaseTheButtonsAndCentreTheAxes) {
   Gamepad gamepad(usual_axes());
   gamepad.take(event(EV_KEY, BTN_TL, 1));
+  gamepad.take(event(EV_ABS, ABS_X, 32767));
   gamepad.take(event(EV_SYN, SYN_REPORT, 0));
   EXPECT_TRUE(gamepad.enabled());
   gamepad.take(event(EV_SYN, SYN_DROPPED, 0));
   EXPECT_FALSE(gamepad.enabled());
+  gamepad.take(event(EV_KEY, BTN_TL, 1));  // before the report: part of an incomplete packet
+  EXPECT_FALSE(gamepad.enabled());
+  gamepad.take(event(EV_SYN, SYN_REPORT, 0));
+  gamepad.take(event(EV_KEY, BTN_TL, 1));
+  EXPECT_TRUE(gamepad.sticks().centred());
+  gamepad.take(event(EV_ABS, ABS_X, 32767));
+  EXPECT_EQ(gamepad.sticks().turn, 1.0);
 }
 
 TEST(Gamepad, RequiresTwoSticks) {

@@ -96,10 +96,9 @@ TEST(TuningStudy, MarksAnUnstableLoop) {
 }
 
 TEST(TuningTable, NamesItsUnitsAndItsDelay) {
-  const TuningStudy study =
-      study_tuning(kaylion(), {settings("motor_lag")}, {1e-3, 5e-4, "measured in flights/A"});
+  const TuningStudy study = study_tuning(kaylion(), {settings("motor_lag")}, {1e-3, 5e-4, "flights/A"});
   const std::string table = tuning_table(study);
-  EXPECT_NE(table.find("delay 1.50 ms (1.00 ms of sampling, 0.50 ms measured in flights/A)"),
+  EXPECT_NE(table.find("delay 1.50 ms (1.00 ms of sampling, 0.50 ms to the actuator, measured in flights/A)"),
             std::string::npos)
       << table;
   for (const char* unit : {"rad/s", "deg", "dB", "ms", "%"})

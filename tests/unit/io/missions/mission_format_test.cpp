@@ -18,6 +18,8 @@ TEST(DetectFormat, RecognisesEveryFormat) {
   EXPECT_EQ(detect_format("t [ms],x_ned [m]\n", "a.csv"), MissionFormat::kSampledCsv);
   EXPECT_EQ(detect_format("x,y,z\n", "a.csv"), MissionFormat::kWaypointCsv);
   EXPECT_EQ(detect_format("x_enu [cm],y_enu [cm],z_enu [cm]\n", "a.csv"), MissionFormat::kWaypointCsv);
+  EXPECT_EQ(detect_format("yaw_ned [deg],y_ned [m],x_ned [m],z_ned [m]\n", "a.csv"),
+            MissionFormat::kWaypointCsv);
   EXPECT_EQ(detect_format("\xef\xbb\xbf"
                           "0.0, 1.5,2e-1\r\n",
                           "a.csv"),
