@@ -61,15 +61,9 @@ std::string joined(const std::vector<std::string>& names) {
   return out;
 }
 
-// "; nearest is hold_s", or "" if no name is near.
-std::string nearest_of(const std::vector<std::string>& names, const std::string& wanted) {
-  const std::string nearest = nearest_name(names, wanted);
-  return nearest.empty() ? "" : "; nearest is " + nearest;
-}
-
 std::string unknown_key(const std::vector<std::string>& known, const std::string& key) {
   if (known.empty()) return "is unknown, must be left out";
-  return "is unknown, must be one of " + joined(known) + nearest_of(known, key);
+  return "is unknown, must be one of " + joined(known) + or_nearest(known, key);
 }
 
 // Refuses what is not a text file before the YAML parser reads it.
@@ -433,7 +427,7 @@ std::ptrdiff_t ConfigNode::choice_index(const std::vector<std::string>& names) c
       value_->kind == Kind::kScalar ? std::find(names.begin(), names.end(), value_->scalar) : names.end();
   if (it == names.end()) {
     fail("is " + value_->describe() + ", must be " + joined(names) +
-         (value_->kind == Kind::kScalar ? nearest_of(names, value_->scalar) : ""));
+         (value_->kind == Kind::kScalar ? or_nearest(names, value_->scalar) : ""));
   }
   return it - names.begin();
 }

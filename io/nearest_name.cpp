@@ -39,4 +39,14 @@ std::string nearest_name(const std::vector<std::string>& names, const std::strin
   return 3 * differ <= longer || (differ <= 2 && longer > 3) ? *nearest : "";
 }
 
+std::string did_you_mean(const std::vector<std::string>& names, const std::string& wanted) {
+  const std::string nearest = nearest_name(names, wanted);
+  return nearest.empty() ? "" : " Did you mean '" + nearest + "'?";
+}
+
+std::string or_nearest(const std::vector<std::string>& names, const std::string& wanted) {
+  const std::string nearest = nearest_name(names, wanted);
+  return nearest.empty() ? "" : "; nearest is " + nearest;
+}
+
 }  // namespace swiftlet::runtime

@@ -22,8 +22,7 @@ std::size_t parameter_index(const std::string& name, const ConfigNode& node) {
     names.push_back(parameter.name);
     list += (list.empty() ? "" : ", ") + parameter.name;
   }
-  const std::string nearest = runtime::nearest_name(names, name);
-  node.fail("is unknown, must be one of " + list + (nearest.empty() ? "" : "; nearest is " + nearest));
+  node.fail("is unknown, must be one of " + list + runtime::or_nearest(names, name));
 }
 
 bool read_unit(const ConfigNode& node, const Parameter& parameter) {

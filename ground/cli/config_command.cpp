@@ -65,10 +65,8 @@ int show(const ShowOptions& options) {
     }
   }
   if (found) return kDone;
-  const std::string nearest = runtime::nearest_name(names, options.name);
   throw InputError("No configuration file '" + options.name + "'." +
-                   (nearest.empty() ? "" : " Did you mean '" + nearest + "'?") +
-                   " `swiftlet config ls` lists all");
+                   runtime::did_you_mean(names, options.name) + " `swiftlet config ls` lists all");
 }
 
 Command add_list(runtime::CommandLine config) {

@@ -16,6 +16,7 @@
 #include "swiftlet/ground/terminal/progress_line.hpp"
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/csv.hpp"
+#include "swiftlet/io/flight_csv.hpp"
 #include "swiftlet/io/missions/flight_table.hpp"
 #include "swiftlet/io/missions/setpoint_rows.hpp"
 #include "swiftlet/io/text_file.hpp"
@@ -104,7 +105,7 @@ SetpointSource open(const Options& options) {
   std::getline(in, first);
   const std::vector<std::string> header = table_header(first, name);
   std::vector<TimedSetpoint> rows;
-  if (is_flight_table(header)) {
+  if (runtime::is_flight_csv(header)) {
     const runtime::CsvTable reference = reference_of_flight(first + "\n" + rest_of(in), name);
     say(name, extent_of(reference));
     rows = setpoints_of(reference);

@@ -24,9 +24,7 @@ namespace {
     names.push_back(file.name);
     list += (list.empty() ? "" : ", ") + file.name;
   }
-  const std::string nearest = runtime::nearest_name(names, name);
-  throw InputError(std::string("No ") + kind.noun + " '" + name + "'." +
-                   (nearest.empty() ? "" : " Did you mean '" + nearest + "'?") +
+  throw InputError(std::string("No ") + kind.noun + " '" + name + "'." + runtime::did_you_mean(names, name) +
                    (list.empty() ? "" : " Available: " + list));
 }
 

@@ -3,6 +3,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "swiftlet/math/euler.hpp"
+
 namespace swiftlet::ground {
 namespace {
 
@@ -16,11 +18,6 @@ bool flies_by_itself(Mode mode) {
   return mode == Mode::kTakingOff || mode == Mode::kMission || mode == Mode::kTrajectory;
 }
 
-double yaw_of(const Eigen::Quaterniond& q_ned_from_frd) {
-  const Eigen::Vector3d nose_ned = q_ned_from_frd * Eigen::Vector3d::UnitX();
-  return std::atan2(nose_ned.y(), nose_ned.x());
-}
-
 }  // namespace
 
 void Teleop::update(const Sticks& sticks) {
@@ -32,7 +29,7 @@ void Teleop::update(const Sticks& sticks) {
   }
   const VehicleState state = vehicle_.state();
   if (state.mode != Mode::kHolding && state.mode != Mode::kSetpoint) return;
-  const double yaw_rad = yaw_of(state.q_ned_from_frd);
+  const double yaw_rad = control::euler_angles(state.q_ned_from_frd).heading.yaw_rad;
   if (!std::isfinite(yaw_rad) || !vehicle_.send(velocity_of(sticks, limits_, yaw_rad))) return;
   moving_ = true;
   ++sent_;

@@ -25,12 +25,16 @@ void print_alarm(std::FILE* stream, const std::string& line) {
   std::fprintf(stream, terminal ? "\x1b[1;31m%s\x1b[0m\n" : "%s\n", line.c_str());
 }
 
+double heading_deg(const Eigen::Quaterniond& q_ned_from_frd) {
+  const double yaw_deg = tenths_of_degrees(control::euler_angles(q_ned_from_frd).heading.yaw_rad);
+  return yaw_deg < 0.0 ? yaw_deg + 360.0 : yaw_deg;
+}
+
 std::string attitude_text(const comms::msg::Estimate& estimate) {
-  const control::EulerAngles angles =
-      control::euler_angles(comms::wire::quaternion(estimate.q_ned_from_frd()));
-  const double yaw_deg = tenths_of_degrees(angles.heading.yaw_rad);
+  const Eigen::Quaterniond q_ned_from_frd = comms::wire::quaternion(estimate.q_ned_from_frd());
+  const control::EulerAngles angles = control::euler_angles(q_ned_from_frd);
   return fmt::format("roll {:.1f}, pitch {:.1f}, heading {:.1f} deg", tenths_of_degrees(angles.roll_rad),
-                     tenths_of_degrees(angles.pitch_rad), yaw_deg < 0.0 ? yaw_deg + 360.0 : yaw_deg);
+                     tenths_of_degrees(angles.pitch_rad), heading_deg(q_ned_from_frd));
 }
 
 }  // namespace swiftlet::ground

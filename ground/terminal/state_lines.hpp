@@ -4,12 +4,17 @@
 #include <cstdio>
 #include <string>
 
+#include <Eigen/Geometry>
+
 #include "swiftlet/services/messages/topics.hpp"
 
 namespace swiftlet::ground {
 
 // Prints the line, bold and red if the stream is a terminal.
 void print_alarm(std::FILE* stream, const std::string& line);
+
+// 0 .. 360, clockwise from north, rounded to a tenth.
+double heading_deg(const Eigen::Quaterniond& q_ned_from_frd);
 
 // "roll 1.2, pitch -0.4, heading 90.0 deg": Euler angles of the estimate, Eq. (3); heading from north to
 // east, 0 to 360.

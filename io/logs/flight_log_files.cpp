@@ -10,6 +10,7 @@
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/csv_writer.hpp"
+#include "swiftlet/io/flight_csv.hpp"
 #include "swiftlet/io/logs/compressed_file.hpp"
 #include "swiftlet/io/measurements.hpp"
 #include "swiftlet/plant/model/esc.hpp"
@@ -258,11 +259,7 @@ void read_poses(const Measurements& table, FlightLog& log) {
 
 // Refuses the flight.csv of a record, which has neither specific forces nor all samples.
 void refuse_telemetry(const std::string& text, const std::string& file) {
-  const std::vector<std::string> header = runtime::first_csv_line(text, file);
-  const auto has = [&](const char* name) {
-    return std::find(header.begin(), header.end(), name) != header.end();
-  };
-  if (has("mode") && (has("ref_x_ned [m]") || has("ref_px"))) {
+  if (runtime::is_flight_csv(runtime::first_csv_line(text, file))) {
     throw ConfigError(
         file, 1, "header",
         "is that of flight.csv, the telemetry of a flight; an identification needs sensors.csv, "

@@ -107,10 +107,6 @@ std::vector<std::string> table_header(std::string_view text, const std::string& 
   return header;
 }
 
-bool is_flight_table(const std::vector<std::string>& header) {
-  return find(header, "mode").has_value() && (find(header, "ref_x_ned [m]") || find(header, "ref_px"));
-}
-
 runtime::CsvTable reference_of_flight(const std::string& text, const std::string& file_name) {
   std::istringstream in(text);
   std::string first;

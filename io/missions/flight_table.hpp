@@ -13,9 +13,6 @@ namespace swiftlet::ground {
 // runtime::ConfigError if the text has control characters.
 std::vector<std::string> table_header(std::string_view text, const std::string& file_name);
 
-// True for the header of flight.csv.
-bool is_flight_table(const std::vector<std::string>& header);
-
 // Returns the reference of a recorded flight from take-off to landing: from the first to the last row at
 // which it is at rest and at least 0.2 m above the ground. Columns: t, position, velocity, acceleration and yaw
 // in NED, as motion_columns.hpp names them; without acceleration for a record of an older version. Throws

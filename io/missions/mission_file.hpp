@@ -26,12 +26,9 @@
 
 #include "swiftlet/control/types/mission.hpp"
 #include "swiftlet/control/types/settings.hpp"
+#include "swiftlet/io/missions/mission_frame.hpp"
 
 namespace swiftlet::ground {
-
-// The frame of positions and yaws in a file: north, east, down with yaw clockwise from north, or east, north,
-// up with yaw counter-clockwise from east.
-enum class MissionFrame { kNed, kEnu };
 
 struct MissionFile {
   std::string name;

@@ -232,7 +232,7 @@ class Reader {
         point.position_ned = position(node.at("position_m"));
         if (const auto stop = node.find("stop")) point.stop = stop->boolean();
         if (const auto yaw = node.find("yaw_rad")) {
-          const double to = ned_yaw_from(frame_, yaw->number(runtime::between(-M_PI, M_PI)));
+          const double to = wrapped_yaw_ned(*yaw);
           last = {false, last.free ? to : last.rad + std::remainder(to - last.rad, 2.0 * M_PI)};
         }
       }
@@ -310,10 +310,14 @@ class Reader {
     return given ? given->number(runtime::between(0.0, kLargestRadiusM)) : defaults_.acceptance_radius_m;
   }
 
+  double wrapped_yaw_ned(const ConfigNode& node) const {
+    return std::remainder(ned_yaw_from(frame_, node.number(runtime::between(-M_PI, M_PI))), 2 * M_PI);
+  }
+
   // Reads a number in rad, or the word free.
   Yaw yaw_of(const ConfigNode& node) const {
     if (node.is_scalar() && node.text() == "free") return {};
-    return {false, ned_yaw_from(frame_, node.number(runtime::between(-M_PI, M_PI)))};
+    return {false, wrapped_yaw_ned(node)};
   }
   Yaw yaw_or_default(const ConfigNode& node) const {
     const auto given = node.find("yaw_rad");
@@ -327,14 +331,6 @@ class Reader {
 };
 
 }  // namespace
-
-Eigen::Vector3d ned_from(MissionFrame frame, const Eigen::Vector3d& position) {
-  return frame == MissionFrame::kNed ? position : ned_position(position);
-}
-
-double ned_yaw_from(MissionFrame frame, double yaw) {
-  return frame == MissionFrame::kNed ? yaw : std::remainder(ned_yaw(yaw), 2 * M_PI);
-}
 
 void read_mission_items(const ConfigNode& list, MissionFrame frame, const control::Limits& limits,
                         MissionFile& file) {

@@ -10,9 +10,6 @@
 
 namespace swiftlet::ground {
 
-Eigen::Vector3d ned_from(MissionFrame frame, const Eigen::Vector3d& position);
-double ned_yaw_from(MissionFrame frame, double yaw);
-
 // Reads list into file.mission, file.lines and file.assumptions. limits are those of the control settings,
 // tightened by the mission. Throws runtime::ConfigError.
 void read_mission_items(const runtime::ConfigNode& list, MissionFrame frame, const control::Limits& limits,

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "swiftlet/io/config_error.hpp"
-#include "swiftlet/io/missions/whole_flight.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -158,6 +157,10 @@ void MotionColumns::read(const std::string& header, const std::string& file_name
 
 void MotionColumns::settle_frame(const std::string& file_name, std::optional<MissionFrame> named,
                                  std::optional<MissionFrame> option) {
+  if (named && option && *named != *option) {
+    refuse(file_name,
+           std::string("names the frame ") + name_of(*named) + ", but --frame names " + name_of(*option));
+  }
   const bool attitudes = has_any({Motion::kRoll, Motion::kPitch, Motion::kP, Motion::kQ, Motion::kR});
   if (attitudes) {
     if (named.value_or(option.value_or(MissionFrame::kNed)) == MissionFrame::kEnu)
@@ -167,10 +170,6 @@ void MotionColumns::settle_frame(const std::string& file_name, std::optional<Mis
   const auto framed = std::find_if(columns_.begin(), columns_.end(),
                                    [](Motion column) { return known(column).axes == Axes::kWorld; });
   if (framed == columns_.end()) return;
-  if (named && option && *named != *option) {
-    refuse(file_name,
-           std::string("names the frame ") + name_of(*named) + ", but --frame names " + name_of(*option));
-  }
   if (named || option) {
     frame_ = named ? *named : *option;
     return;
@@ -208,13 +207,11 @@ double MotionColumns::value(const std::vector<double>& row, Motion column) const
 Eigen::Vector3d MotionColumns::ned(const std::vector<double>& row, Motion x) const {
   const int first = static_cast<int>(x);
   const auto part = [&](int axis) { return value(row, static_cast<Motion>(first + axis)); };
-  const Eigen::Vector3d read(part(0), part(1), part(2));
-  return frame_ == MissionFrame::kEnu ? ned_position(read) : read;
+  return ned_from(frame_, {part(0), part(1), part(2)});
 }
 
 double MotionColumns::yaw_ned(const std::vector<double>& row) const {
-  const double yaw = value(row, Motion::kYaw);
-  return frame_ == MissionFrame::kEnu ? ground::ned_yaw(yaw) : yaw;
+  return ned_yaw_from(frame_, value(row, Motion::kYaw));
 }
 
 double MotionColumns::yaw_rate_ned(const std::vector<double>& row) const {

@@ -18,7 +18,7 @@
 
 #include <Eigen/Core>
 
-#include "swiftlet/io/missions/mission_file.hpp"
+#include "swiftlet/io/missions/mission_frame.hpp"
 
 namespace swiftlet::ground {
 

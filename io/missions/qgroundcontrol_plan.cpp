@@ -233,7 +233,7 @@ class PlanReader {
           return params[i].number(runtime::between(-kHighest_m, kHighest_m));
         };
         Eigen::Vector3d given(placed ? metres(4) : 0.0, placed ? metres(5) : 0.0, metres(6));
-        if (kind == kLocalEnu) given = ned_position(given);
+        if (kind == kLocalEnu) given = ned_from(MissionFrame::kEnu, given);
         return placed ? given : Eigen::Vector3d(at_.x(), at_.y(), given.z());
       }
       default:

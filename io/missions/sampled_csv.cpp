@@ -5,6 +5,7 @@
 
 #include "swiftlet/control/planning/spline.hpp"
 #include "swiftlet/io/csv.hpp"
+#include "swiftlet/io/flight_csv.hpp"
 #include "swiftlet/io/missions/flight_table.hpp"
 #include "swiftlet/io/missions/mission_format.hpp"
 #include "swiftlet/io/missions/motion_columns.hpp"
@@ -146,7 +147,7 @@ TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file
                                 const control::Limits& limits, std::optional<MissionFrame> frame) {
   std::vector<std::string> header = table_header(text, file_name);
   std::optional<runtime::CsvTable> recorded;
-  if (is_flight_table(header)) {
+  if (runtime::is_flight_csv(header)) {
     recorded = reference_of_flight(text, file_name);
     header = recorded->columns();
   }

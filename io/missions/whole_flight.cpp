@@ -22,16 +22,10 @@ control::Polynomial negative(control::Polynomial polynomial) {
 
 }  // namespace
 
-Eigen::Vector3d ned_position(const Eigen::Vector3d& position_enu) {
-  return {position_enu.y(), position_enu.x(), -position_enu.z()};
-}
-
-double ned_yaw(double yaw_enu) { return M_PI / 2 - yaw_enu; }
-
 control::PolynomialSegment ned_segment(const control::PolynomialSegment& segment_enu) {
   control::PolynomialSegment ned{segment_enu.duration_s, segment_enu.y, segment_enu.x,
                                  negative(segment_enu.z), negative(segment_enu.yaw)};
-  ned.yaw[0] = ned_yaw(segment_enu.yaw[0]);
+  ned.yaw[0] = ned_yaw_from(MissionFrame::kEnu, segment_enu.yaw[0]);
   return ned;
 }
 

@@ -12,9 +12,6 @@
 
 namespace swiftlet::ground {
 
-Eigen::Vector3d ned_position(const Eigen::Vector3d& position_enu);
-// ENU yaw is counter-clockwise from east, NED yaw clockwise from north.
-double ned_yaw(double yaw_enu);
 control::PolynomialSegment ned_segment(const control::PolynomialSegment& segment_enu);
 
 constexpr double kHoverHeight_m = 1.0;  // lowest point of a path that was raised

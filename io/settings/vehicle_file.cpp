@@ -107,8 +107,7 @@ std::string read_parameter_key(const ConfigNode& node) {
   if (std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end()) return key;
   std::string known;
   for (const char* name : kKeys) known += std::string(known.empty() ? "" : ", ") + name;
-  const std::string nearest = nearest_name({kKeys.begin(), kKeys.end()}, key);
-  node.fail("is " + key + ", must be one of " + known + (nearest.empty() ? "" : "; nearest is " + nearest));
+  node.fail("is " + key + ", must be one of " + known + or_nearest({kKeys.begin(), kKeys.end()}, key));
 }
 
 plant::VehicleUncertainty read_uncertainty(const ConfigNode& root) {

@@ -131,9 +131,9 @@ std::string unknown_argument(const CLI::App& program) {
   if (!is_option && commands.empty()) {
     return "Unexpected argument '" + word + "'.";
   }
-  const std::string nearest = nearest_name(is_option ? long_options(*app) : commands, word);
+  const std::string meant = did_you_mean(is_option ? long_options(*app) : commands, word);
   std::string sentence = std::string("Unknown ") + (is_option ? "option" : "command") + " '" + word + "'.";
-  if (!nearest.empty()) return sentence + " Did you mean '" + nearest + "'?";
+  if (!meant.empty()) return sentence + meant;
   return is_option ? sentence : sentence + " Commands: " + list_of(commands) + ".";
 }
 

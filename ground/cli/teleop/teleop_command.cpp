@@ -19,6 +19,7 @@
 #include "swiftlet/ground/teleop/key_sticks.hpp"
 #include "swiftlet/ground/teleop/teleop.hpp"
 #include "swiftlet/ground/terminal/progress_line.hpp"
+#include "swiftlet/ground/terminal/state_lines.hpp"
 #include "swiftlet/ground/terminal/terminal_screen.hpp"
 
 namespace swiftlet::ground {
@@ -31,7 +32,6 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kTick = 40ms;
 constexpr auto kRefusalShown = 1500ms;
 constexpr auto kRestTimeout = 1s;
-constexpr double kDegrees = 180.0 / M_PI;
 
 struct Options : CommandOptions {
   TeleopLimits limits;
@@ -74,10 +74,9 @@ std::optional<StickKey> stick_key(int key) {
 }
 
 std::string position_text(const VehicleState& state) {
-  const Eigen::Vector3d nose_ned = state.q_ned_from_frd * Eigen::Vector3d::UnitX();
-  std::string text = fmt::format(
-      "north {:6.2f}  east {:6.2f}  up {:6.2f} m   heading {:4.0f} deg", state.position_ned_m.x(),
-      state.position_ned_m.y(), -state.position_ned_m.z(), kDegrees * std::atan2(nose_ned.y(), nose_ned.x()));
+  std::string text =
+      fmt::format("north {:6.2f}  east {:6.2f}  up {:6.2f} m   heading {:5.1f} deg", state.position_ned_m.x(),
+                  state.position_ned_m.y(), -state.position_ned_m.z(), heading_deg(state.q_ned_from_frd));
   if (std::isfinite(state.battery_voltage_v)) text += fmt::format("   {:.2f} V", state.battery_voltage_v);
   return text;
 }
