@@ -73,8 +73,9 @@ Command add_list(runtime::CommandLine config) {
   const auto options = std::make_shared<ListOptions>();
   const runtime::CommandLine app =
       config.add_subcommand("ls", "List the configuration files that have a name");
-  app.add_option("kind", options->kind, "only this kind")
-      .one_of({"vehicles", "control", "simulation", "missions", "dispersion"});
+  std::vector<std::string> kinds;
+  for (const ConfigurationKind& kind : configuration_kinds()) kinds.emplace_back(kind.folder);
+  app.add_option("kind", options->kind, "only this kind").one_of(kinds);
   app.add_flag("--names", options->names, "print only the names, one a line");
   app.footer("example: swiftlet config ls missions");
   return {app, [options] { return list(*options); }};

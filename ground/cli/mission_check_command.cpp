@@ -51,15 +51,15 @@ Command add_mission_check_command(runtime::CommandLine mission) {
       "cannot, 2 the file is invalid.");
   app.add_option("file", options->file,
                  "mission file, or the name of one in config/missions; also CSV or QGroundControl .plan")
-      .type_name("MISSION")
+      .type_name(kinds::kMission.value)
       .required();
   add_frame_option(app, options->frame);
   app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
-      .type_name("VEHICLE")
+      .type_name(kinds::kVehicle.value)
       .show_default();
   app.add_option("--control", options->control,
                  "control settings file, or the name of one in config/control: its limits and fence apply")
-      .type_name("CONTROL")
+      .type_name(kinds::kControl.value)
       .show_default();
   app.add_option("--start", options->start, "start position of the vehicle: north and east, m")
       .finite()

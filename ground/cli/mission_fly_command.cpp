@@ -70,12 +70,12 @@ Command add_mission_fly_command(runtime::CommandLine mission) {
          "file", options->file,
          "mission file, or the name of one in config/missions; also a trajectory or waypoints as CSV, "
          "or a QGroundControl .plan file")
-      .type_name("MISSION")
+      .type_name(kinds::kMission.value)
       .required();
   add_frame_option(app, options->frame);
   app.add_option("--control", options->control,
                  "control settings with the limits and the fence for the mission check")
-      .type_name("CONTROL")
+      .type_name(kinds::kControl.value)
       .show_default();
   runtime::Option no_wait =
       app.add_flag("--no-wait", options->no_wait, "return when the mission has started");

@@ -45,13 +45,13 @@ Command add_mission_plot_command(runtime::CommandLine mission) {
   app.footer("example: swiftlet mission plot square -o square.png");
   app.add_option("file", options->file,
                  "mission file, or the name of one in config/missions; also CSV or QGroundControl .plan")
-      .type_name("MISSION")
+      .type_name(kinds::kMission.value)
       .required();
   add_frame_option(app, options->frame);
   app.add_option("-o,--out", options->output, "output file, PNG").show_default();
   app.add_option("--control", options->control,
                  "control settings file, or the name of one in config/control: its limits and fence apply")
-      .type_name("CONTROL")
+      .type_name(kinds::kControl.value)
       .show_default();
   app.add_option("--start", options->start, "start position of the vehicle: north and east, m")
       .finite()

@@ -51,12 +51,12 @@ Command add_mission_upload_command(runtime::CommandLine mission) {
       "swiftlet mission upload square && swiftlet mission start", options);
   app.add_option("file", options->file,
                  "mission file, or the name of one in config/missions; also CSV or QGroundControl .plan")
-      .type_name("MISSION")
+      .type_name(kinds::kMission.value)
       .required();
   add_frame_option(app, options->frame);
   app.add_option("--control", options->control,
                  "control settings with the limits and the fence for the mission check")
-      .type_name("CONTROL")
+      .type_name(kinds::kControl.value)
       .show_default();
   return {app, [options] { return upload(*options); }};
 }

@@ -17,25 +17,13 @@ struct Options : RequestOptions {
   std::string control = "motor_lag";
 };
 
-// The trajectory of a file that holds exactly one, without take-off and landing. Throws InputError otherwise.
-control::Trajectory trajectory_of(const MissionFile& file, const std::string& path) {
-  const auto is_trajectory = [](const control::MissionItem& item) {
-    return item.kind == control::MissionItemKind::kTrajectory;
-  };
-  const auto& items = file.mission.items;
-  if (std::count_if(items.begin(), items.end(), is_trajectory) != 1) {
-    throw InputError(path + ": must hold exactly one trajectory; `swiftlet mission fly` flies missions");
-  }
-  return {0, file.mission.segments};
-}
-
 int send_trajectory(const Options& options) {
   const auto settings = runtime::load_control_settings(configuration_file(kinds::kControl, options.control));
   const std::string path = configuration_file(kinds::kMission, options.file);
-  const MissionFile file = load_mission_file(path, settings.limits, options.frame);
-  const control::Trajectory trajectory = trajectory_of(file, path);
+  TrajectoryFile file = load_trajectory_file(path, settings.limits, options.frame);
   for (const std::string& assumption : file.assumptions)
-    std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
+    std::fprintf(stderr, "%s: %s\n", options.file.c_str(), assumption.c_str());
+  const control::Trajectory trajectory{0, std::move(file.segments)};
   return run_request(options, {"trajectory", [&](Vehicle& vehicle) {
                                  return vehicle.follow(trajectory, options.timeout());
                                }});
@@ -48,11 +36,14 @@ Command add_trajectory_command(runtime::CommandLine root) {
   const runtime::CommandLine app = add_request_subcommand(
       root, "trajectory", "Fly a trajectory of a CSV file; the vehicle joins it from its motion",
       "swiftlet trajectory config/missions/wave.csv", options, Vehicles::kOne);
-  app.add_option("file", options->file, "trajectory or waypoints as CSV").required();
+  app.add_option("file", options->file,
+                 "trajectory or waypoints as CSV, or the name of such in config/missions")
+      .type_name(kinds::kMission.value)
+      .required();
   add_frame_option(app, options->frame);
   app.add_option("--control", options->control,
                  "control settings with the limits and the fence for the check of the file")
-      .type_name("CONTROL")
+      .type_name(kinds::kControl.value)
       .show_default();
   return {app, [options] { return send_trajectory(*options); }};
 }

@@ -60,6 +60,8 @@ class Keys {
  public:
   explicit Keys(Client& client) : client_(client) {}
 
+  bool is_asking() const { return asked_ != nullptr; }
+
   // Returns false if the key quits.
   bool press(int key, std::string& message) {
     if (asked_ != nullptr) {
@@ -108,7 +110,7 @@ class Keys {
 
 class Watch {
  public:
-  explicit Watch(const Options& options) : client_(options.network) {
+  explicit Watch(const Options& options) : client_(options.network), keys_(client_) {
     client_.hear_controllers();
     facts_.vehicle = options.network.vehicle;
     facts_.domain = options.network.domain;
@@ -119,11 +121,10 @@ class Watch {
 
   int on_screen() {
     TerminalScreen screen;
-    Keys keys(client_);
     while (goes_on()) {
       screen.show(watch_screen(update(), facts_, Clock::now(), screen.width(), screen.height()));
       const std::optional<int> key = screen.key(kFrame_ms);
-      if (key && *key != TerminalScreen::kResized && !keys.press(*key, facts_.message)) break;
+      if (key && *key != TerminalScreen::kResized && !keys_.press(*key, facts_.message)) break;
     }
     return kDone;
   }
@@ -146,17 +147,25 @@ class Watch {
     View view = client_.view();
     rates_.update(view, facts_);
     facts_.system_now = std::chrono::system_clock::now();
-    const std::optional<ConnectionEvent> event = connection_.update(view, Clock::now());
-    if (event && event->kind != ConnectionEvent::Kind::kConnected) facts_.message = event->text;
+    if (const auto event = connection_.update(view, Clock::now())) report(*event);
     if (!view.control.seen()) facts_.where = client_.no_control();
     return view;
   }
 
+  // A question that waits for its answer stays on the screen.
+  void report(const ConnectionEvent& event) {
+    const bool is_news = event.kind != ConnectionEvent::Kind::kConnected || was_lost_;
+    was_lost_ = event.kind == ConnectionEvent::Kind::kLost;
+    if (is_news && !keys_.is_asking()) facts_.message = event.text;
+  }
+
   const Interrupts interrupts_;
   Client client_;
+  Keys keys_;
   WatchFacts facts_;
   Rates rates_;
   ConnectionWatch connection_;
+  bool was_lost_ = false;
   std::optional<Clock::time_point> end_;
 };
 

@@ -1,6 +1,6 @@
 // Completion scripts for bash and zsh. Both determine the current command from the words typed so far, and
-// look up what may follow it. Names of configuration files and of vehicles that live in the domain are asked of the
-// program when they are needed.
+// look up what may follow it. Names of configuration files and of vehicles that live in the domain are asked of
+// the program when they are needed.
 #include <functional>
 
 #include "swiftlet/ground/command_line/command_text.hpp"
@@ -59,7 +59,8 @@ std::string output_of(const std::string& program, const std::string& arguments) 
   return "$(" + program + " " + arguments + " 2> /dev/null)";
 }
 
-// Options without a list of choices or names complete as file names. program_word: as in output_of().
+// Options without a list of choices or names complete as file names; those with names as both. program_word: as
+// in output_of(). files: what completes file names; "" if the shell falls back to them.
 std::string values_after_options(const CommandText& program, const std::string& program_word,
                                  const char* open, const char* list_begin, const char* list_end,
                                  const char* files) {
@@ -76,7 +77,7 @@ std::string values_after_options(const CommandText& program, const std::string& 
         others.insert(others.end(), patterns.begin(), patterns.end());
       } else {
         text += std::string("    ") + open + joined(patterns, " | ") + ") " + list_begin + choices +
-                list_end + " return ;;\n";
+                list_end + (asked.empty() ? "" : files) + " return ;;\n";
       }
     }
   });
@@ -179,7 +180,7 @@ std::string zsh_completion(const CommandText& program) {
                      "    esac\n"
                      "  done\n"
                      "  case \"$chosen $prev\" in\n" +
-                     values_after_options(program, program_word, "(", "compadd -- ", "; _files;", "_files;") +
+                     values_after_options(program, program_word, "(", "compadd -- ", ";", " _files;") +
                      "  esac\n"
                      "  local -a options commands names\n"
                      "  case \"$chosen\" in\n";

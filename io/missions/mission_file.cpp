@@ -133,6 +133,31 @@ MissionFile load_mission_file(const std::string& path, const control::Limits& li
   throw std::logic_error("a format that is not read");
 }
 
+TrajectoryFile load_trajectory_file(const std::string& path, const control::Limits& limits,
+                                    std::optional<MissionFrame> frame) {
+  const std::string text = runtime::read_text_file(path);
+  switch (detect_format(text, path)) {
+    case MissionFormat::kPolynomialCsv:
+      return read_polynomial_csv(text, path, limits, frame);
+    case MissionFormat::kSampledCsv:
+      return read_sampled_csv(text, path, limits, frame);
+    case MissionFormat::kWaypointCsv:
+      return read_waypoint_csv(text, path, limits, frame);
+    default:
+      break;
+  }
+  MissionFile file = load_mission_file(path, limits, frame);
+  const auto is_trajectory = [](const control::MissionItem& item) {
+    return item.kind == control::MissionItemKind::kTrajectory;
+  };
+  const auto& items = file.mission.items;
+  if (std::count_if(items.begin(), items.end(), is_trajectory) != 1) {
+    throw runtime::ConfigError(path, 0, "",
+                               "must hold exactly one trajectory; `swiftlet mission fly` flies missions");
+  }
+  return {std::move(file.mission.segments), std::move(file.assumptions)};
+}
+
 MissionFile parse_mission_file(const std::string& text, const std::string& file_name,
                                const control::Limits& limits) {
   return read_mission(runtime::parse_config(text, file_name), limits);

@@ -30,6 +30,12 @@
 
 namespace swiftlet::ground {
 
+// A path in NED that begins at rest, and the assumptions made in reading it.
+struct TrajectoryFile {
+  std::vector<control::PolynomialSegment> segments;
+  std::vector<std::string> assumptions;
+};
+
 struct MissionFile {
   std::string name;
   std::string description;
@@ -50,6 +56,11 @@ MissionFile load_mission_file(const std::string& path, const control::Limits& li
                               std::optional<MissionFrame> frame = std::nullopt);
 MissionFile parse_mission_file(const std::string& text, const std::string& file_name,
                                const control::Limits& limits);
+
+// Reads only the path: a CSV file of any format, or the trajectory of a mission that holds exactly one. Throws
+// runtime::ConfigError as load_mission_file() does.
+TrajectoryFile load_trajectory_file(const std::string& path, const control::Limits& limits,
+                                    std::optional<MissionFrame> frame = std::nullopt);
 
 // Returns the duration of the mission, s, from the ground at the origin. Moves take the items' speeds and the
 // limits of acceleration, jerk and yaw rate.

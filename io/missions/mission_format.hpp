@@ -26,12 +26,6 @@ enum class MissionFormat { kYaml, kPolynomialCsv, kSampledCsv, kWaypointCsv, kQG
 // runtime::ConfigError for a CSV file of another format.
 MissionFormat detect_format(std::string_view text, const std::string& file_name);
 
-// A path in NED that begins at rest, and the assumptions made in reading it.
-struct TrajectoryFile {
-  std::vector<control::PolynomialSegment> segments;
-  std::vector<std::string> assumptions;
-};
-
 // All functions below throw runtime::ConfigError with file, line, column, value and limit for a violation of
 // the format, the limits or the fence.
 TrajectoryFile read_polynomial_csv(const std::string& text, const std::string& file_name,

@@ -45,7 +45,8 @@ TrajectoryFile read_polynomial_csv(const std::string& text, const std::string& f
   std::vector<std::string> assumptions = {std::string("taken as a polynomial trajectory in ") +
                                           (enu ? "ENU" : "NED") +
                                           ": m, rad and s, from the origin of motion capture"};
-  const double raise_m = raise_by(least_height(segments), assumptions);
+  const double raise_m =
+      raise_by(heights_of(segments), enu ? MissionFrame::kEnu : MissionFrame::kNed, file_name, assumptions);
   for (control::PolynomialSegment& segment : segments) segment.z[0] -= raise_m;
   return checked({std::move(segments), std::move(assumptions)}, limits,
                  [&](std::size_t segment, const std::string& fault) { table.fail(segment, "", fault); });

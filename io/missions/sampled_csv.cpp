@@ -164,9 +164,9 @@ TrajectoryFile read_sampled_csv(const std::string& text, const std::string& file
     assumptions.emplace_back("yaw_rate is not used: the rate follows from the yaw");
   if (columns.has(Motion::kAx) && !given.acceleration)
     assumptions.emplace_back("accelerations are not used, because the file has no velocities");
-  double least_m = -samples.places.front().z();
-  for (const PositionYaw& place : samples.places) least_m = std::min(least_m, -place.z());
-  const double raise_m = raise_by(least_m, assumptions);
+  Heights heights;
+  for (const PositionYaw& place : samples.places) heights.add(place.z());
+  const double raise_m = raise_by(heights, columns.frame(), file_name, assumptions);
   for (PositionYaw& place : samples.places) place.z() -= raise_m;
 
   if (given.velocity) difference(samples, given);

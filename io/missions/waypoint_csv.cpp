@@ -69,9 +69,9 @@ TrajectoryFile read_waypoint_csv(const std::string& text, const std::string& fil
   std::vector<std::string> assumptions;
   if (const auto assumption = columns.assumption("waypoints")) assumptions.push_back(*assumption);
   if (!columns.has(Motion::kYaw)) assumptions.emplace_back("the file has no yaw: the vehicle faces north");
-  double least_m = -path.points.front().position_ned.z();
-  for (const control::PathPoint& point : path.points) least_m = std::min(least_m, -point.position_ned.z());
-  const double raise_m = raise_by(least_m, assumptions);
+  Heights heights;
+  for (const control::PathPoint& point : path.points) heights.add(point.position_ned.z());
+  const double raise_m = raise_by(heights, columns.frame(), file_name, assumptions);
   for (std::size_t row = 0; row < path.points.size(); ++row) {
     Eigen::Vector3d& position_ned = path.points[row].position_ned;
     position_ned.z() -= raise_m;

@@ -9,6 +9,7 @@
 
 #include "swiftlet/control/planning/bernstein.hpp"
 #include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/io/config_error.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -29,25 +30,44 @@ control::PolynomialSegment ned_segment(const control::PolynomialSegment& segment
   return ned;
 }
 
-double raise_by(double least_height_m, std::vector<std::string>& assumptions) {
-  const double rounded_m = std::round(least_height_m * 100.0) / 100.0 + 0.0;  // no -0.00
-  if (least_height_m >= kLeastHeight_m) {
+void Heights::add(double z_ned) {
+  least_m = std::min(least_m, -z_ned);
+  greatest_m = std::max(greatest_m, -z_ned);
+}
+
+double raise_by(const Heights& heights, MissionFrame frame, const std::string& file_name,
+                std::vector<std::string>& assumptions) {
+  if (heights.greatest_m < 0.0) {
+    const bool down = frame == MissionFrame::kNed;
+    throw runtime::ConfigError(
+        file_name, 0, "",
+        fmt::format("the whole path is below the ground, at heights of {:.2f} to {:.2f} m: z is read as {}; "
+                    "if it points {} in this file, the frame is {}: --frame {}",
+                    heights.least_m, heights.greatest_m, down ? "down (NED)" : "up (ENU)",
+                    down ? "up" : "down", down ? "ENU" : "NED", down ? "enu" : "ned"));
+  }
+  const double rounded_m = std::round(heights.least_m * 100.0) / 100.0 + 0.0;  // no -0.00
+  if (heights.least_m >= kLeastHeight_m) {
     assumptions.push_back(
         fmt::format("heights are above the ground: the lowest point is {:.2f} m", rounded_m));
     return 0.0;
   }
-  const double raise_m = kHoverHeight_m - least_height_m;
+  const double raise_m = kHoverHeight_m - heights.least_m;
   assumptions.push_back(
       fmt::format("the lowest point is {:.2f} m, so heights are relative to a hover: raised by {:.2f} m",
                   rounded_m, raise_m));
   return raise_m;
 }
 
-double least_height(const std::vector<control::PolynomialSegment>& segments) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const control::PolynomialSegment& segment : segments)
-    least = std::min(least, -control::maximum(control::bernstein(segment.z, segment.duration_s), 1e-6).value);
-  return least;
+Heights heights_of(const std::vector<control::PolynomialSegment>& segments) {
+  constexpr double kTolerance = 1e-6;  // m
+  Heights heights;
+  for (const control::PolynomialSegment& segment : segments) {
+    heights.add(control::maximum(control::bernstein(segment.z, segment.duration_s), kTolerance).value);
+    heights.add(
+        -control::maximum(control::bernstein(negative(segment.z), segment.duration_s), kTolerance).value);
+  }
+  return heights;
 }
 
 control::MotionLimits reference_limits(const control::Limits& limits) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,22 @@ constexpr double kLeastHeight_m = 0.2;  // a path with a lower point is raised
 constexpr double kApproachSpeed =
     0.5;  // m/s, largest speed of take-off, of the flight to the start of the path, and of landing
 
+// Heights above z = 0, m.
+struct Heights {
+  double least_m = std::numeric_limits<double>::infinity();
+  double greatest_m = -std::numeric_limits<double>::infinity();
+
+  void add(double z_ned);
+};
+
+// Along the whole path.
+Heights heights_of(const std::vector<control::PolynomialSegment>& segments);
+
 // Returns by how much a path must be raised, m; 0 if it stays above kLeastHeight_m. Adds the decision to the
-// assumptions.
-double raise_by(double least_height_m, std::vector<std::string>& assumptions);
+// assumptions. Throws runtime::ConfigError for a path that lies below the ground as a whole: its z probably
+// points the other way. frame: in which it was read.
+double raise_by(const Heights& heights, MissionFrame frame, const std::string& file_name,
+                std::vector<std::string>& assumptions);
 
 // Returns the path if it can be flown. Calls `where`, which must throw, with the index of the first segment
 // that violates the fence or the limits or does not continue the previous segment, and with the reason.
@@ -30,9 +44,6 @@ TrajectoryFile checked(TrajectoryFile path, const control::Limits& limits,
 
 // Returns take-off to the height of the path's start, the path, and landing.
 MissionFile whole_flight(const std::string& file_name, TrajectoryFile path, const control::Limits& limits);
-
-// Returns the least height above z = 0 along the path, m.
-double least_height(const std::vector<control::PolynomialSegment>& segments);
 
 control::MotionLimits reference_limits(const control::Limits& limits);
 

@@ -172,6 +172,24 @@ TEST_F(AtATerminal, WatchShowsTheFlightAndExecutesKeys) {
   EXPECT_TRUE(terminal.is_restored());
 }
 
+TEST_F(AtATerminal, WatchKeepsItsQuestionWhileControlIsSilent) {
+  Terminal terminal("swiftlet", with_network({"watch"}), 80, 24);
+  const auto shows = [&](const std::string& text) {
+    return eventually([&] { return terminal.text().find(text) != std::string::npos; }, kStuck);
+  };
+  const std::string question = "land: descend vertically? y confirms";
+  ASSERT_TRUE(shows("position ")) << terminal.text();
+  terminal.type("l");
+  ASSERT_TRUE(shows(question)) << terminal.text();
+  control_.signal(SIGSTOP);
+  ASSERT_TRUE(shows("CONTROL SERVICE SILENT")) << terminal.text();
+  EXPECT_NE(terminal.text().find(question), std::string::npos) << terminal.text();
+  terminal.type("x");
+  ASSERT_TRUE(shows("land: not confirmed")) << terminal.text();
+  control_.signal(SIGCONT);
+  ASSERT_TRUE(shows("control process connected again")) << terminal.text();
+}
+
 TEST_F(AtATerminal, InterruptedWatchRestoresTheTerminal) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     Terminal terminal("swiftlet", with_network({"watch"}), 80, 24);

@@ -210,10 +210,10 @@ Command add_gains_command(runtime::CommandLine root) {
       root.add_subcommand("gains", "Print the gains, poles and margins for a vehicle and control settings");
   app.footer("example: swiftlet gains --vehicle config/vehicles/kaylion.yaml --json");
   app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
-      .type_name("VEHICLE")
+      .type_name(kinds::kVehicle.value)
       .show_default();
   app.add_option("--control", options->control, "control settings file, or the name of one in config/control")
-      .type_name("CONTROL")
+      .type_name(kinds::kControl.value)
       .show_default();
   app.add_option("--samples", options->samples,
                  "number of vehicles sampled from the uncertainty in the vehicle file, for the margins")

@@ -53,7 +53,7 @@ Command add_sim_open_loop_command(runtime::CommandLine sim) {
       "ms.\nThere is no ground, drag or noise, and the supply is ideal.\n\n"
       "example: swiftlet sim open-loop --vehicle kaylion --pwm pulses.csv --supply 3.7 --out motion.csv");
   open_loop.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
-      .type_name("VEHICLE")
+      .type_name(kinds::kVehicle.value)
       .required();
   open_loop.add_option("--pwm", options->pulses, "pulse widths, CSV file").required();
   open_loop.add_option("--supply", options->supply_voltage_v, "supply voltage v_s of Eq. (9), V")

@@ -37,7 +37,7 @@ Command add_set_control_command(runtime::CommandLine set) {
       "the controller was started with (docs/tuning.md).\n\n" +
       app.footer());
   app.add_option("file", options->file, "control settings file, or the name of one in config/control")
-      .type_name("CONTROL")
+      .type_name(kinds::kControl.value)
       .required();
   app.add_option("--ramp", options->ramp_s, "time over which the gains change, s")
       .range(control::kShortestGainChange_s, control::kLongestGainChange_s)

@@ -88,10 +88,10 @@ Command add_plot_command(runtime::CommandLine tune) {
       "example: swiftlet tune plot motor_lag mine.yaml --flight flights/A -o tuning.png");
   app.add_option("control", options->control,
                  "control settings files, or the names of such in config/control")
-      .type_name("CONTROL")
+      .type_name(kinds::kControl.value)
       .required();
   app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
-      .type_name("VEHICLE")
+      .type_name(kinds::kVehicle.value)
       .show_default();
   app.add_option("-o,--out", options->output, "output file, PNG").show_default();
   app.add_option(

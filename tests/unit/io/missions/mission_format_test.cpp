@@ -42,6 +42,38 @@ TEST(DetectFormat, ErrorListsTheKnownCsvHeaders) {
             "a.CSV:1: has 2 fields, of which the first is north; must begin with " + known);
 }
 
+TEST(CsvFrame, OfAPathBelowTheGroundIsSuspected) {
+  EXPECT_EQ(
+      refusal([] { parse_waypoint_csv("0,0,-1\n1,0,-1.5\n", "w.csv", control::Limits()); }),
+      "w.csv: the whole path is below the ground, at heights of -1.50 to -1.00 m: z is read as up (ENU); "
+      "if it points down in this file, the frame is NED: --frame ned");
+  EXPECT_EQ(
+      refusal([] {
+        parse_sampled_csv("t [s],x_ned [m],y_ned [m],z_ned [m]\n0,0,0,1\n1,0,0,1\n", "s.csv",
+                          control::Limits());
+      }),
+      "s.csv: the whole path is below the ground, at heights of -1.00 to -1.00 m: z is read as down (NED); "
+      "if it points up in this file, the frame is ENU: --frame enu");
+  EXPECT_EQ(refusal([] {
+              parse_polynomial_csv(kPolynomialHeader + "\n" + polynomial_row(4.0, 0.0, 1.0, -1.0), "p.csv",
+                                   control::Limits());
+            }).rfind("p.csv: the whole path is below the ground, at heights of -1.00 to -1.00 m", 0),
+            0U);
+}
+
+TEST(LoadTrajectoryFile, AddsNeitherTakeOffNorLanding) {
+  const TrajectoryFile path = load_trajectory_file(kData + "uav_waypoints.csv", control::Limits());
+  EXPECT_EQ(path.segments.size(), 17U);
+  for (const std::string& assumption : path.assumptions)
+    EXPECT_EQ(assumption.find("take-off"), std::string::npos) << assumption;
+  EXPECT_EQ(refusal([] {
+              load_trajectory_file(SWIFTLET_SOURCE_DIR "/config/missions/square.yaml", control::Limits());
+            }),
+            SWIFTLET_SOURCE_DIR
+            "/config/missions/square.yaml: must hold exactly one trajectory; `swiftlet mission fly` flies "
+            "missions");
+}
+
 TEST(CsvFrame, OfAFileThatNamesNoneIsThatOfTheOption) {
   const control::Limits limits;
   const auto ned = MissionFrame::kNed;
