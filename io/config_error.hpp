@@ -19,13 +19,16 @@ class ConfigError : public std::runtime_error {
         line_(line),
         key_(key) {}
 
+  // A sentence that is not about the content of a file.
+  explicit ConfigError(const std::string& sentence) : std::runtime_error(printable(sentence)) {}
+
   const std::string& file() const { return file_; }
   int line() const { return line_; }               // from 1; 0: the file as a whole
   const std::string& key() const { return key_; }  // "motor.time_constant", "rotors[2].spin"; may be empty
 
  private:
   std::string file_;
-  int line_;
+  int line_ = 0;
   std::string key_;
 };
 

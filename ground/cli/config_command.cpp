@@ -6,7 +6,7 @@
 #include <fmt/core.h>
 
 #include "swiftlet/ground/cli/commands.hpp"
-#include "swiftlet/ground/command_line/configuration.hpp"
+#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/nearest_name.hpp"
 #include "swiftlet/io/text_file.hpp"
 
@@ -33,14 +33,14 @@ std::string first_sentence(const std::string& text) {
 }
 
 int list(const ListOptions& options) {
-  for (const ConfigurationKind& kind : configuration_kinds()) {
+  for (const runtime::ConfigurationKind& kind : runtime::configuration_kinds()) {
     if (!options.kind.empty() && options.kind != kind.folder) continue;
     if (!options.names) fmt::print("{}\n", kind.folder);
-    for (const ConfigurationFile& file : configuration_files(kind)) {
+    for (const runtime::ConfigurationFile& file : runtime::configuration_files(kind)) {
       if (options.names) {
         fmt::print("{}\n", file.name);
       } else {
-        fmt::print("  {:<16} {}\n", file.name, first_sentence(description_of(file.path)));
+        fmt::print("  {:<16} {}\n", file.name, first_sentence(runtime::description_of(file.path)));
       }
     }
   }
@@ -51,8 +51,8 @@ int list(const ListOptions& options) {
 int show(const ShowOptions& options) {
   std::vector<std::string> names;
   bool found = false;
-  for (const ConfigurationKind& kind : configuration_kinds()) {
-    for (const ConfigurationFile& file : configuration_files(kind)) {
+  for (const runtime::ConfigurationKind& kind : runtime::configuration_kinds()) {
+    for (const runtime::ConfigurationFile& file : runtime::configuration_files(kind)) {
       const std::string full_name = std::string(kind.folder) + "/" + file.name;
       names.insert(names.end(), {file.name, full_name});
       if (options.name != file.name && options.name != full_name) continue;
@@ -74,7 +74,8 @@ Command add_list(runtime::CommandLine config) {
   const runtime::CommandLine app =
       config.add_subcommand("ls", "List the configuration files that have a name");
   std::vector<std::string> kinds;
-  for (const ConfigurationKind& kind : configuration_kinds()) kinds.emplace_back(kind.folder);
+  for (const runtime::ConfigurationKind& kind : runtime::configuration_kinds())
+    kinds.emplace_back(kind.folder);
   app.add_option("kind", options->kind, "only this kind").one_of(kinds);
   app.add_flag("--names", options->names, "print only the names, one a line");
   app.footer("example: swiftlet config ls missions");

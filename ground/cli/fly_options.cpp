@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "swiftlet/ground/command_line/configuration.hpp"
+#include "swiftlet/io/configuration.hpp"
 
 namespace swiftlet::ground {
 
@@ -12,20 +12,20 @@ void add_mission_options(runtime::CommandLine app, FlyOptions& options) {
          "mission", options.mission,
          "mission file, or the name of one in config/missions; also a trajectory or waypoints as CSV, or a "
          "QGroundControl .plan file")
-      .type_name(kinds::kMission.value)
+      .type_name(runtime::kinds::kMission.value)
       .show_default();
   add_frame_option(app, options.frame);
   app.add_option("--vehicle", options.vehicle, "vehicle file, or the name of one in config/vehicles")
-      .type_name(kinds::kVehicle.value)
+      .type_name(runtime::kinds::kVehicle.value)
       .show_default();
   app.add_option("--control", options.control,
                  "control settings file, or the name of one in config/control: motor_lag, or paper for the "
                  "control laws of the paper")
-      .type_name(kinds::kControl.value)
+      .type_name(runtime::kinds::kControl.value)
       .show_default();
   app.add_option("--simulation", options.simulation,
                  "simulation settings file, or the name of one in config/simulation")
-      .type_name(kinds::kSimulation.value)
+      .type_name(runtime::kinds::kSimulation.value)
       .show_default();
   app.add_option("--seed", options.seed, "random seed of the simulation: sensor errors, dropouts and gusts")
       .range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max())
@@ -63,7 +63,7 @@ runtime::Option add_dispersion_option(runtime::CommandLine app, FlyOptions& opti
           "parameters "
           "of the flown vehicle and of the simulation are sampled; the controller is designed on --vehicle. "
           "`uncertainty` samples from the parameter uncertainty in the vehicle file")
-      .type_name(kinds::kDispersion.value);
+      .type_name(runtime::kinds::kDispersion.value);
 }
 
 }  // namespace swiftlet::ground

@@ -3,8 +3,8 @@
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
-#include "swiftlet/ground/command_line/configuration.hpp"
 #include "swiftlet/ground/mission/mission_check.hpp"
+#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 
@@ -22,10 +22,12 @@ struct Options {
 };
 
 int run(const Options& options) {
-  const plant::Vehicle vehicle = runtime::load_vehicle(configuration_file(kinds::kVehicle, options.vehicle));
-  const auto settings = runtime::load_control_settings(configuration_file(kinds::kControl, options.control));
-  const MissionFile file =
-      load_mission_file(configuration_file(kinds::kMission, options.file), settings.limits, options.frame);
+  const plant::Vehicle vehicle =
+      runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle));
+  const auto settings =
+      runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, options.control));
+  const MissionFile file = load_mission_file(
+      runtime::configuration_file(runtime::kinds::kMission, options.file), settings.limits, options.frame);
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
   const MissionDryRun flown = dry_run(file.mission, settings, {options.start[0], options.start[1]});
@@ -51,15 +53,15 @@ Command add_mission_check_command(runtime::CommandLine mission) {
       "cannot, 2 the file is invalid.");
   app.add_option("file", options->file,
                  "mission file, or the name of one in config/missions; also CSV or QGroundControl .plan")
-      .type_name(kinds::kMission.value)
+      .type_name(runtime::kinds::kMission.value)
       .required();
   add_frame_option(app, options->frame);
   app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
-      .type_name(kinds::kVehicle.value)
+      .type_name(runtime::kinds::kVehicle.value)
       .show_default();
   app.add_option("--control", options->control,
                  "control settings file, or the name of one in config/control: its limits and fence apply")
-      .type_name(kinds::kControl.value)
+      .type_name(runtime::kinds::kControl.value)
       .show_default();
   app.add_option("--start", options->start, "start position of the vehicle: north and east, m")
       .finite()

@@ -6,8 +6,8 @@
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
 #include "swiftlet/ground/cli/request_command.hpp"
-#include "swiftlet/ground/command_line/configuration.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
+#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 
@@ -23,9 +23,10 @@ struct Options : CommandOptions {
 };
 
 int fly_mission(const Options& options) {
-  const auto settings = runtime::load_control_settings(configuration_file(kinds::kControl, options.control));
-  const MissionFile mission =
-      load_mission_file(configuration_file(kinds::kMission, options.file), settings.limits, options.frame);
+  const auto settings =
+      runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, options.control));
+  const MissionFile mission = load_mission_file(
+      runtime::configuration_file(runtime::kinds::kMission, options.file), settings.limits, options.frame);
   for (const std::string& assumption : mission.assumptions)
     std::fprintf(stderr, "%s: %s\n", mission.name.c_str(), assumption.c_str());
   Vehicle vehicle(options.network);
@@ -70,12 +71,12 @@ Command add_mission_fly_command(runtime::CommandLine mission) {
          "file", options->file,
          "mission file, or the name of one in config/missions; also a trajectory or waypoints as CSV, "
          "or a QGroundControl .plan file")
-      .type_name(kinds::kMission.value)
+      .type_name(runtime::kinds::kMission.value)
       .required();
   add_frame_option(app, options->frame);
   app.add_option("--control", options->control,
                  "control settings with the limits and the fence for the mission check")
-      .type_name(kinds::kControl.value)
+      .type_name(runtime::kinds::kControl.value)
       .show_default();
   runtime::Option no_wait =
       app.add_flag("--no-wait", options->no_wait, "return when the mission has started");

@@ -3,8 +3,8 @@
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
-#include "swiftlet/ground/command_line/configuration.hpp"
 #include "swiftlet/ground/mission/mission_plot.hpp"
+#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 
 namespace swiftlet::ground {
@@ -19,9 +19,10 @@ struct Options {
 };
 
 int run(const Options& options) {
-  const auto settings = runtime::load_control_settings(configuration_file(kinds::kControl, options.control));
-  const MissionFile file =
-      load_mission_file(configuration_file(kinds::kMission, options.file), settings.limits, options.frame);
+  const auto settings =
+      runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, options.control));
+  const MissionFile file = load_mission_file(
+      runtime::configuration_file(runtime::kinds::kMission, options.file), settings.limits, options.frame);
   const MissionDryRun flown = dry_run(file.mission, settings, {options.start[0], options.start[1]});
   if (!flown.completed)
     std::fprintf(stderr, "swiftlet: mission %s: %s\n", file.name.c_str(), flown.reason.c_str());
@@ -45,13 +46,13 @@ Command add_mission_plot_command(runtime::CommandLine mission) {
   app.footer("example: swiftlet mission plot square -o square.png");
   app.add_option("file", options->file,
                  "mission file, or the name of one in config/missions; also CSV or QGroundControl .plan")
-      .type_name(kinds::kMission.value)
+      .type_name(runtime::kinds::kMission.value)
       .required();
   add_frame_option(app, options->frame);
   app.add_option("-o,--out", options->output, "output file, PNG").show_default();
   app.add_option("--control", options->control,
                  "control settings file, or the name of one in config/control: its limits and fence apply")
-      .type_name(kinds::kControl.value)
+      .type_name(runtime::kinds::kControl.value)
       .show_default();
   app.add_option("--start", options->start, "start position of the vehicle: north and east, m")
       .finite()

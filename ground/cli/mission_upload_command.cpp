@@ -5,7 +5,7 @@
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
 #include "swiftlet/ground/cli/request_command.hpp"
-#include "swiftlet/ground/command_line/configuration.hpp"
+#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/format.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
@@ -20,9 +20,10 @@ struct Options : CommandOptions {
 };
 
 int upload(const Options& options) {
-  const auto settings = runtime::load_control_settings(configuration_file(kinds::kControl, options.control));
-  const MissionFile file =
-      load_mission_file(configuration_file(kinds::kMission, options.file), settings.limits, options.frame);
+  const auto settings =
+      runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, options.control));
+  const MissionFile file = load_mission_file(
+      runtime::configuration_file(runtime::kinds::kMission, options.file), settings.limits, options.frame);
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", file.name.c_str(), assumption.c_str());
   Vehicle vehicle(options.network);
@@ -51,12 +52,12 @@ Command add_mission_upload_command(runtime::CommandLine mission) {
       "swiftlet mission upload square && swiftlet mission start", options);
   app.add_option("file", options->file,
                  "mission file, or the name of one in config/missions; also CSV or QGroundControl .plan")
-      .type_name(kinds::kMission.value)
+      .type_name(runtime::kinds::kMission.value)
       .required();
   add_frame_option(app, options->frame);
   app.add_option("--control", options->control,
                  "control settings with the limits and the fence for the mission check")
-      .type_name(kinds::kControl.value)
+      .type_name(runtime::kinds::kControl.value)
       .show_default();
   return {app, [options] { return upload(*options); }};
 }

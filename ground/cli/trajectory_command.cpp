@@ -4,7 +4,7 @@
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
 #include "swiftlet/ground/cli/request_command.hpp"
-#include "swiftlet/ground/command_line/configuration.hpp"
+#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 
@@ -18,8 +18,9 @@ struct Options : RequestOptions {
 };
 
 int send_trajectory(const Options& options) {
-  const auto settings = runtime::load_control_settings(configuration_file(kinds::kControl, options.control));
-  const std::string path = configuration_file(kinds::kMission, options.file);
+  const auto settings =
+      runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, options.control));
+  const std::string path = runtime::configuration_file(runtime::kinds::kMission, options.file);
   TrajectoryFile file = load_trajectory_file(path, settings.limits, options.frame);
   for (const std::string& assumption : file.assumptions)
     std::fprintf(stderr, "%s: %s\n", options.file.c_str(), assumption.c_str());
@@ -38,12 +39,12 @@ Command add_trajectory_command(runtime::CommandLine root) {
       "swiftlet trajectory config/missions/wave.csv", options, Vehicles::kOne);
   app.add_option("file", options->file,
                  "trajectory or waypoints as CSV, or the name of such in config/missions")
-      .type_name(kinds::kMission.value)
+      .type_name(runtime::kinds::kMission.value)
       .required();
   add_frame_option(app, options->frame);
   app.add_option("--control", options->control,
                  "control settings with the limits and the fence for the check of the file")
-      .type_name(kinds::kControl.value)
+      .type_name(runtime::kinds::kControl.value)
       .show_default();
   return {app, [options] { return send_trajectory(*options); }};
 }

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "swiftlet/ground/command_line/command_text.hpp"
-#include "swiftlet/ground/command_line/configuration.hpp"
+#include "swiftlet/io/configuration.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -48,7 +48,7 @@ std::vector<std::string> value_patterns(const CommandText& command, const Option
 // The arguments with which the program prints the names that the option may have, one a line; "" if it has none.
 std::string names_command(const OptionText& option) {
   if (option.names.front() == "--vehicle-name") return "list --names --time 0.5";
-  for (const ConfigurationKind& kind : configuration_kinds()) {
+  for (const runtime::ConfigurationKind& kind : runtime::configuration_kinds()) {
     if (option.value == kind.value) return std::string("config ls --names ") + kind.folder;
   }
   return "";

@@ -6,9 +6,9 @@
 
 #include "swiftlet/control/planning/checks.hpp"
 #include "swiftlet/ground/command_line/command.hpp"
-#include "swiftlet/ground/command_line/configuration.hpp"
 #include "swiftlet/ground/command_line/installation.hpp"
 #include "swiftlet/ground/command_line/network_options.hpp"
+#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/simulation_file.hpp"
@@ -77,9 +77,9 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
   plan.launch_mode = options.launch_mode;
   plan.clock = options.clock;
   plan.speed = options.speed;
-  plan.vehicle_file = configuration_file(kinds::kVehicle, options.vehicle);
-  plan.control_file = configuration_file(kinds::kControl, options.control);
-  plan.simulation_file = configuration_file(kinds::kSimulation, options.simulation);
+  plan.vehicle_file = runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle);
+  plan.control_file = runtime::configuration_file(runtime::kinds::kControl, options.control);
+  plan.simulation_file = runtime::configuration_file(runtime::kinds::kSimulation, options.simulation);
   plan.vehicle = runtime::load_vehicle(plan.vehicle_file);
   plan.control = runtime::load_control_settings(plan.control_file);
   plan.simulation = runtime::load_simulation_settings(plan.simulation_file);
@@ -95,12 +95,13 @@ LaunchConfiguration plan_flight(const FlyOptions& options) {
     const std::string file = plan.vehicle_file.string();
     plan.dispersion = dispersion_of(runtime::load_vehicle_uncertainty(file), plan.vehicle, file);
   } else if (!options.dispersion.empty()) {
-    plan.dispersion = load_dispersion_file(configuration_file(kinds::kDispersion, options.dispersion),
-                                           {plan.vehicle, plan.simulation});
+    plan.dispersion =
+        load_dispersion_file(runtime::configuration_file(runtime::kinds::kDispersion, options.dispersion),
+                             {plan.vehicle, plan.simulation});
   }
   plan.seed = options.seed;
 
-  plan.mission_file = configuration_file(kinds::kMission, options.mission);
+  plan.mission_file = runtime::configuration_file(runtime::kinds::kMission, options.mission);
   plan.mission = load_mission_file(plan.mission_file, plan.control.limits, options.frame);
   plan.start_ned = options.start_ned;
   displace(plan.mission.mission, options.start_ned, plan.control.limits);

@@ -5,7 +5,6 @@
 
 #include <fmt/core.h>
 
-#include "swiftlet/ground/command_line/configuration.hpp"
 #include "swiftlet/ground/command_line/output_files.hpp"
 #include "swiftlet/ground/identify/bench_files.hpp"
 #include "swiftlet/ground/identify/identification_report.hpp"
@@ -14,6 +13,7 @@
 #include "swiftlet/ground/terminal/progress_line.hpp"
 #include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/format.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/io/settings/vehicle_writer.hpp"
@@ -48,7 +48,7 @@ identification::BenchIdentification identify(const Bench& bench, const std::stri
 fs::path base_file_of(const std::string& base, const IdentifyBenchOptions& options,
                       const BenchSettings& settings) {
   try {
-    return configuration_file(kinds::kVehicle, base);
+    return runtime::configuration_file(runtime::kinds::kVehicle, base);
   } catch (const std::runtime_error& fault) {
     if (!options.base.empty() || settings.base_vehicle.empty()) throw;
     throw runtime::ConfigError((fs::path(options.bench) / kBenchSettingsFile).string(),

@@ -7,13 +7,13 @@
 
 #include <fmt/core.h>
 
-#include "swiftlet/ground/command_line/configuration.hpp"
 #include "swiftlet/ground/command_line/output_files.hpp"
 #include "swiftlet/ground/identify/flight_identification_report.hpp"
 #include "swiftlet/ground/identify/identify_actions.hpp"
 #include "swiftlet/ground/identify/report_page.hpp"
 #include "swiftlet/ground/terminal/progress_line.hpp"
 #include "swiftlet/io/atomic_write.hpp"
+#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/format.hpp"
 #include "swiftlet/io/logs/flight_log_files.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
@@ -33,11 +33,12 @@ struct Base {
 
 // The base vehicle: --base, else that of the record around the log, else kaylion.
 Base base_of(const IdentifyFlightOptions& options) {
-  if (!options.base.empty()) return {configuration_file(kinds::kVehicle, options.base), false};
+  if (!options.base.empty())
+    return {runtime::configuration_file(runtime::kinds::kVehicle, options.base), false};
   const fs::path log = options.logs.front();
   const fs::path record_vehicle = (fs::is_directory(log) ? log : log.parent_path()) / "vehicle.yaml";
   if (fs::is_regular_file(record_vehicle)) return {record_vehicle, false};
-  return {configuration_file(kinds::kVehicle, "kaylion"), true};
+  return {runtime::configuration_file(runtime::kinds::kVehicle, "kaylion"), true};
 }
 
 }  // namespace

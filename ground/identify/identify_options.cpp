@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "swiftlet/ground/command_line/configuration.hpp"
+#include "swiftlet/io/configuration.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -18,7 +18,7 @@ Command add_flight_command(runtime::CommandLine identify, const IdentifyActions&
   app.add_option("--base", options->base,
                  "base vehicle for parameters that are not identified: a vehicle file, or the name of one in "
                  "the configuration; default: the record's vehicle, else kaylion")
-      .type_name(kinds::kVehicle.value);
+      .type_name(runtime::kinds::kVehicle.value);
   app.add_choice("--known", options->fit.known,
                  {{"mass", identification::Known::kMass}, {"thrust", identification::Known::kThrust}},
                  "value of the base vehicle that is correct; a flight determines only thrust over mass")
@@ -54,7 +54,7 @@ Command add_simulate_command(runtime::CommandLine identify, const IdentifyAction
   const runtime::CommandLine app = identify.add_subcommand(
       "simulate", "Simulate bench data of a known vehicle, to test the identification");
   app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in the configuration")
-      .type_name(kinds::kVehicle.value)
+      .type_name(runtime::kinds::kVehicle.value)
       .show_default();
   app.add_option("--noise", options->noise.share,
                  "standard deviation of each reading, as a fraction of the largest of its column")
@@ -87,7 +87,7 @@ Command add_identify_options(runtime::CommandLine app, const IdentifyActions& ac
   app.add_option("--base", options->base,
                  "base vehicle for parameters that are not measured: a vehicle file, or the name of one in "
                  "the configuration; default: base_vehicle of bench.yaml, else kaylion")
-      .type_name(kinds::kVehicle.value);
+      .type_name(runtime::kinds::kVehicle.value);
   app.add_option("--name", options->name, "name of the identified vehicle; default: stem of --out");
   app.add_flag("--json", options->json, "print one JSON object instead of the table");
   app.footer(

@@ -5,10 +5,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "swiftlet/ground/command_line/configuration.hpp"
 #include "swiftlet/ground/identify/bench_files.hpp"
 #include "swiftlet/ground/identify/identify_actions.hpp"
 #include "swiftlet/identification/bench/bench_simulation.hpp"
+#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/io/text_file.hpp"
@@ -23,7 +23,7 @@ constexpr const char* kTruth = "truth.yaml";
 }  // namespace
 
 int identify_simulate(const IdentifySimulateOptions& options) {
-  const fs::path vehicle_file = configuration_file(kinds::kVehicle, options.vehicle);
+  const fs::path vehicle_file = runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle);
   const std::string vehicle_text = runtime::read_text_file(vehicle_file.string());
   const plant::Vehicle vehicle = runtime::parse_vehicle(vehicle_text, vehicle_file.string());
   const fs::path folder = options.out;

@@ -7,7 +7,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include "swiftlet/io/find_config.hpp"
+#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/fixed_settings.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
@@ -27,8 +27,8 @@ namespace {
 constexpr std::chrono::milliseconds kPollPeriod{100};  // of the main thread
 
 struct Options {
-  std::string vehicle = "vehicles/kaylion.yaml";
-  std::string control = "control/motor_lag.yaml";
+  std::string vehicle = "kaylion";
+  std::string control = "motor_lag";
   int failover_priority = 0;
   runtime::Clock clock = runtime::Clock::kRealtime;
   comms::NodeSettings node;
@@ -36,8 +36,10 @@ struct Options {
 };
 
 void add_options(runtime::CommandLine app, Options& options) {
-  app.add_option("--vehicle", options.vehicle, "Vehicle file").show_default();
-  app.add_option("--control", options.control, "Control settings file").show_default();
+  app.add_option("--vehicle", options.vehicle, "Vehicle file, or the name of one in config/vehicles")
+      .show_default();
+  app.add_option("--control", options.control, "Control settings file, or the name of one in config/control")
+      .show_default();
   app.add_option("--failover-priority", options.failover_priority,
                  "When the active controller fails, the standby of the highest priority takes over")
       .range(0, 1000)
@@ -48,8 +50,9 @@ void add_options(runtime::CommandLine app, Options& options) {
 }
 
 void run(const Options& options) {
-  const plant::Vehicle vehicle = runtime::load_vehicle(runtime::find_config(options.vehicle));
-  const std::string settings_file = runtime::find_config(options.control);
+  const plant::Vehicle vehicle =
+      runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle));
+  const std::string settings_file = runtime::configuration_file(runtime::kinds::kControl, options.control);
   const control::ControlSettings settings = runtime::load_control_settings(settings_file);
 
   runtime::StopSignal stop;

@@ -9,7 +9,7 @@
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
-#include "swiftlet/io/find_config.hpp"
+#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/simulation_file.hpp"
 #include "swiftlet/plant/simulation/links/mocap_path.hpp"
 #include "swiftlet/plant/simulation/mocap.hpp"
@@ -28,7 +28,7 @@ namespace swiftlet::services {
 namespace {
 
 struct Options {
-  std::string simulation = "simulation/default.yaml";
+  std::string simulation = "default";
   std::uint64_t seed = 1;
   runtime::Clock clock = runtime::Clock::kRealtime;
   comms::NodeSettings node;
@@ -147,8 +147,8 @@ std::string frame_rate(const plant::MocapSettings& settings) {
 }
 
 void run(const Options& options) {
-  const plant::SimulationSettings settings =
-      runtime::load_simulation_settings(runtime::find_config(options.simulation));
+  const plant::SimulationSettings settings = runtime::load_simulation_settings(
+      runtime::configuration_file(runtime::kinds::kSimulation, options.simulation));
 
   runtime::StopSignal stop;
   const runtime::Logging logging("mocap", options.process.log);

@@ -14,7 +14,7 @@
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
-#include "swiftlet/io/find_config.hpp"
+#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/simulation_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/services/dds/discovery/peer_log.hpp"
@@ -37,8 +37,8 @@ namespace {
 using namespace std::chrono_literals;
 
 struct Options {
-  std::string vehicle = "vehicles/kaylion.yaml";
-  std::string simulation = "simulation/default.yaml";
+  std::string vehicle = "kaylion";
+  std::string simulation = "default";
   std::uint64_t seed = 1;
   std::array<double, 2> start{};  // m, north and east
   int imu_rate = 0;               // Hz; 0: as in the simulation file
@@ -50,7 +50,8 @@ struct Options {
 };
 
 void add_options(runtime::CommandLine app, Options& options) {
-  app.add_option("--vehicle", options.vehicle, "Vehicle file").show_default();
+  app.add_option("--vehicle", options.vehicle, "Vehicle file, or the name of one in config/vehicles")
+      .show_default();
   app.add_option("--simulation", options.simulation, "Simulation file").show_default();
   app.add_option("--seed", options.seed, "Random seed of noise, biases and gusts")
       .range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max())
@@ -200,9 +201,10 @@ PlantReport run_loop(const std::function<void(const std::atomic<bool>&)>& loop, 
 }
 
 void run(const Options& options) {
-  const plant::Vehicle vehicle = runtime::load_vehicle(runtime::find_config(options.vehicle));
-  plant::SimulationSettings settings =
-      runtime::load_simulation_settings(runtime::find_config(options.simulation));
+  const plant::Vehicle vehicle =
+      runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle));
+  plant::SimulationSettings settings = runtime::load_simulation_settings(
+      runtime::configuration_file(runtime::kinds::kSimulation, options.simulation));
   if (options.imu_rate != 0) settings.imu.rate_hz = options.imu_rate;
   for (const plant::Violation& violation : plant::validate(settings)) {
     throw std::invalid_argument("--imu-rate: " + violation.key + " " + violation.message);

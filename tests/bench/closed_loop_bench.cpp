@@ -4,7 +4,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "swiftlet/io/find_config.hpp"
+#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/missions/mission_file.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/simulation_file.hpp"

@@ -6,7 +6,7 @@
 #include <benchmark/benchmark.h>
 
 #include "swiftlet/control/flight_controller.hpp"
-#include "swiftlet/io/find_config.hpp"
+#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/simulation/closed_loop.hpp"

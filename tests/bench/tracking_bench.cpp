@@ -14,8 +14,8 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/control/planning/checks.hpp"
+#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/csv.hpp"
-#include "swiftlet/io/find_config.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/simulation_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"

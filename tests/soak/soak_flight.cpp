@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "swiftlet/control/attitude/attitude_error.hpp"
-#include "swiftlet/ground/command_line/configuration.hpp"
+#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/simulation_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
@@ -172,13 +172,13 @@ class Run {
 SoakSetup load_setup(const std::string& control) {
   SoakSetup setup;
   setup.nominal.vehicle =
-      runtime::load_vehicle(ground::configuration_file(ground::kinds::kVehicle, "kaylion"));
+      runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, "kaylion"));
   setup.nominal.simulation =
-      runtime::load_simulation_settings(ground::configuration_file(ground::kinds::kSimulation, "default"));
+      runtime::load_simulation_settings(runtime::configuration_file(runtime::kinds::kSimulation, "default"));
   setup.control =
-      runtime::load_control_settings(ground::configuration_file(ground::kinds::kControl, control));
+      runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, control));
   setup.dispersion = ground::load_dispersion_file(
-      ground::configuration_file(ground::kinds::kDispersion, "kaylion"), setup.nominal);
+      runtime::configuration_file(runtime::kinds::kDispersion, "kaylion"), setup.nominal);
   return setup;
 }
 

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/cli/commands.hpp"
-#include "swiftlet/ground/command_line/configuration.hpp"
+#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 
@@ -184,10 +184,10 @@ std::string gains_table(const ControlDesign& design, const MarginStudy& margins,
 }
 
 int run_gains(const GainsOptions& options) {
-  const std::string file = configuration_file(kinds::kVehicle, options.vehicle).string();
+  const std::string file = runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle).string();
   const plant::Vehicle vehicle = runtime::load_vehicle(file);
   const control::ControlSettings settings =
-      runtime::load_control_settings(configuration_file(kinds::kControl, options.control));
+      runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, options.control));
   const ControlDesign design = control::design(vehicle, settings);
   for (const plant::Violation& loop : control::unstable_loops(design)) {
     std::fprintf(stderr, "swiftlet: not flyable: %s: %s\n", loop.key.c_str(), loop.message.c_str());
@@ -210,10 +210,10 @@ Command add_gains_command(runtime::CommandLine root) {
       root.add_subcommand("gains", "Print the gains, poles and margins for a vehicle and control settings");
   app.footer("example: swiftlet gains --vehicle config/vehicles/kaylion.yaml --json");
   app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
-      .type_name(kinds::kVehicle.value)
+      .type_name(runtime::kinds::kVehicle.value)
       .show_default();
   app.add_option("--control", options->control, "control settings file, or the name of one in config/control")
-      .type_name(kinds::kControl.value)
+      .type_name(runtime::kinds::kControl.value)
       .show_default();
   app.add_option("--samples", options->samples,
                  "number of vehicles sampled from the uncertainty in the vehicle file, for the margins")

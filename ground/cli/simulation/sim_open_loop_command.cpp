@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "swiftlet/ground/cli/commands.hpp"
-#include "swiftlet/ground/command_line/configuration.hpp"
+#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/simulation/open_loop.hpp"
@@ -21,7 +21,8 @@ struct OpenLoopOptions {
 };
 
 int run_open_loop(const OpenLoopOptions& options) {
-  const plant::Vehicle vehicle = runtime::load_vehicle(configuration_file(kinds::kVehicle, options.vehicle));
+  const plant::Vehicle vehicle =
+      runtime::load_vehicle(runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle));
   const int rotors = vehicle.rotor_count();
   const std::vector<PulseWidths> pulses =
       read_pulses(runtime::load_csv(options.pulses, pulse_columns(rotors), 2), vehicle);
@@ -53,7 +54,7 @@ Command add_sim_open_loop_command(runtime::CommandLine sim) {
       "ms.\nThere is no ground, drag or noise, and the supply is ideal.\n\n"
       "example: swiftlet sim open-loop --vehicle kaylion --pwm pulses.csv --supply 3.7 --out motion.csv");
   open_loop.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
-      .type_name(kinds::kVehicle.value)
+      .type_name(runtime::kinds::kVehicle.value)
       .required();
   open_loop.add_option("--pwm", options->pulses, "pulse widths, CSV file").required();
   open_loop.add_option("--supply", options->supply_voltage_v, "supply voltage v_s of Eq. (9), V")

@@ -4,7 +4,7 @@
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/request_command.hpp"
-#include "swiftlet/ground/command_line/configuration.hpp"
+#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/fixed_settings.hpp"
 
@@ -17,7 +17,7 @@ struct Options : RequestOptions {
 };
 
 int set_control(const Options& options) {
-  const std::string file = configuration_file(kinds::kControl, options.file);
+  const std::string file = runtime::configuration_file(runtime::kinds::kControl, options.file);
   const control::SettingsRequest request = control::settings_request(
       runtime::load_control_settings(file), runtime::load_fixed_settings(file), options.ramp_s);
   return run_request(
@@ -37,7 +37,7 @@ Command add_set_control_command(runtime::CommandLine set) {
       "the controller was started with (docs/tuning.md).\n\n" +
       app.footer());
   app.add_option("file", options->file, "control settings file, or the name of one in config/control")
-      .type_name(kinds::kControl.value)
+      .type_name(runtime::kinds::kControl.value)
       .required();
   app.add_option("--ramp", options->ramp_s, "time over which the gains change, s")
       .range(control::kShortestGainChange_s, control::kLongestGainChange_s)

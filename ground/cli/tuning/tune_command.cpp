@@ -10,10 +10,10 @@
 #include <nlohmann/json.hpp>
 
 #include "swiftlet/ground/cli/commands.hpp"
-#include "swiftlet/ground/command_line/configuration.hpp"
 #include "swiftlet/ground/command_line/output_files.hpp"
 #include "swiftlet/ground/tuning/tuning_figure.hpp"
 #include "swiftlet/ground/tuning/tuning_table.hpp"
+#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
 #include "swiftlet/io/text_file.hpp"
@@ -55,7 +55,8 @@ LoopDelay delay_of(const Options& options) {
 std::vector<control::ControlSettings> load_all(const Options& options) {
   std::vector<control::ControlSettings> out;
   for (const std::string& name : options.control) {
-    out.push_back(runtime::load_control_settings(configuration_file(kinds::kControl, name)));
+    out.push_back(
+        runtime::load_control_settings(runtime::configuration_file(runtime::kinds::kControl, name)));
     for (std::size_t i = 0; i + 1 < out.size(); ++i)
       if (out[i].name == out.back().name) out.back().name += " (" + name + ")";
   }
@@ -63,9 +64,11 @@ std::vector<control::ControlSettings> load_all(const Options& options) {
 }
 
 int plot_tuning(const Options& options) {
-  const std::filesystem::path vehicle_file = configuration_file(kinds::kVehicle, options.vehicle);
+  const std::filesystem::path vehicle_file =
+      runtime::configuration_file(runtime::kinds::kVehicle, options.vehicle);
   std::vector<std::filesystem::path> inputs = {vehicle_file};
-  for (const std::string& name : options.control) inputs.push_back(configuration_file(kinds::kControl, name));
+  for (const std::string& name : options.control)
+    inputs.push_back(runtime::configuration_file(runtime::kinds::kControl, name));
   refuse_overwriting({{"--out", options.output}}, inputs);
   const plant::Vehicle vehicle = runtime::load_vehicle(vehicle_file);
   const TuningStudy study = study_tuning(vehicle, load_all(options), delay_of(options));
@@ -88,10 +91,10 @@ Command add_plot_command(runtime::CommandLine tune) {
       "example: swiftlet tune plot motor_lag mine.yaml --flight flights/A -o tuning.png");
   app.add_option("control", options->control,
                  "control settings files, or the names of such in config/control")
-      .type_name(kinds::kControl.value)
+      .type_name(runtime::kinds::kControl.value)
       .required();
   app.add_option("--vehicle", options->vehicle, "vehicle file, or the name of one in config/vehicles")
-      .type_name(kinds::kVehicle.value)
+      .type_name(runtime::kinds::kVehicle.value)
       .show_default();
   app.add_option("-o,--out", options->output, "output file, PNG").show_default();
   app.add_option(

@@ -8,7 +8,7 @@
 
 #include "swiftlet/control/allocation/allocator.hpp"
 #include "swiftlet/control/attitude/attitude_controller.hpp"
-#include "swiftlet/io/find_config.hpp"
+#include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
 #include "swiftlet/plant/model/airframe.hpp"
 #include "swiftlet/plant/simulation/plant_simulation.hpp"

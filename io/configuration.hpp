@@ -1,13 +1,20 @@
-// The configuration files that have a name: vehicles, control settings, simulations, missions, dispersions.
+// Where configuration files lie: vehicles, control settings, simulations, missions, dispersions.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "swiftlet/services/runtime/command_line.hpp"
+namespace swiftlet::runtime {
 
-namespace swiftlet::ground {
+// The folders that are searched for vehicles/, control/, missions/, in order: $SWIFTLET_CONFIG_DIR if it is
+// set, then, relative to the folder of the running executable, ../share/swiftlet/config (installed) and
+// ../../config (build tree).
+std::vector<std::string> config_directories();
+
+// Returns the first file that exists: path as given, then, if it is relative ("vehicles/kaylion.yaml"), path
+// below each of config_directories(). Throws ConfigError that lists all searched places if there is none.
+std::string find_config(const std::string& path);
 
 struct ConfigurationKind {
   const char* folder;  // in the configuration: "vehicles"
@@ -30,16 +37,15 @@ struct ConfigurationFile {
   std::filesystem::path path;
 };
 
-// All files of this kind in the folders of runtime::config_directories(), by name. Of two with one name only the
+// All files of this kind in the folders of config_directories(), by name. Of two with one name only the
 // first, which is the one that configuration_file() finds.
 std::vector<ConfigurationFile> configuration_files(const ConfigurationKind& kind);
 
 // Returns the path of a configuration file. `name` is a path, or the bare name of a file of this kind. Throws
-// runtime::ConfigError if there is no such file, InputError with the nearest name and all there are if there is
-// no such name.
+// ConfigError if there is no such file, or with the nearest name and all there are if there is no such name.
 std::filesystem::path configuration_file(const ConfigurationKind& kind, const std::string& name);
 
 // The description in the file, else its first comment; "" if it has neither or cannot be read.
 std::string description_of(const std::filesystem::path& file);
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::runtime

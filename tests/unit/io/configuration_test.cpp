@@ -1,4 +1,4 @@
-#include "swiftlet/io/find_config.hpp"
+#include "swiftlet/io/configuration.hpp"
 
 #include <cstdlib>
 #include <filesystem>
@@ -61,6 +61,13 @@ TEST_F(FindConfig, ErrorListsTheSearchedPaths) {
             0U)
       << sentence;
   EXPECT_NE(sentence.find("/share/swiftlet/config/vehicles/none.yaml"), std::string::npos);
+}
+
+TEST_F(FindConfig, TakesNamesOfAKind) {
+  EXPECT_EQ(configuration_file(kinds::kVehicle, "own"), folder_ / "vehicles" / "own.yaml");
+  EXPECT_EQ(refusal([] { configuration_file(kinds::kVehicle, "owl"); })
+                .rfind("No vehicle 'owl'. Did you mean 'own'? Available: ", 0),
+            0U);
 }
 
 TEST_F(FindConfig, SearchesAnAbsolutePathOnce) {

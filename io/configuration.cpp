@@ -1,16 +1,16 @@
-#include "swiftlet/ground/command_line/configuration.hpp"
+#include "swiftlet/io/configuration.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <string_view>
 #include <system_error>
 
-#include "swiftlet/ground/command_line/command.hpp"
-#include "swiftlet/io/find_config.hpp"
+#include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/nearest_name.hpp"
 #include "swiftlet/io/text_file.hpp"
 
-namespace swiftlet::ground {
+namespace swiftlet::runtime {
 
 namespace fs = std::filesystem;
 
@@ -24,8 +24,8 @@ namespace {
     names.push_back(file.name);
     list += (list.empty() ? "" : ", ") + file.name;
   }
-  throw InputError(std::string("No ") + kind.noun + " '" + name + "'." + runtime::did_you_mean(names, name) +
-                   (list.empty() ? "" : " Available: " + list));
+  throw ConfigError(std::string("No ") + kind.noun + " '" + name + "'." + did_you_mean(names, name) +
+                    (list.empty() ? "" : " Available: " + list));
 }
 
 // The text after a prefix; "" if the line begins otherwise.
@@ -35,6 +35,36 @@ std::string text_after(std::string_view prefix, const std::string& line) {
 
 }  // namespace
 
+std::vector<std::string> config_directories() {
+  std::vector<std::string> directories;
+  const char* const from_environment = std::getenv("SWIFTLET_CONFIG_DIR");
+  if (from_environment != nullptr && *from_environment != 0) directories.emplace_back(from_environment);
+  std::error_code error;
+  const fs::path executable = fs::read_symlink("/proc/self/exe", error);
+  if (!error) {
+    const fs::path prefix = executable.parent_path().parent_path();
+    directories.push_back((prefix / "share" / "swiftlet" / "config").string());
+    directories.push_back((prefix.parent_path() / "config").string());
+  }
+  return directories;
+}
+
+std::string find_config(const std::string& path) {
+  std::vector<std::string> candidates = {path};
+  if (fs::path(path).is_relative() && !path.empty()) {
+    for (const std::string& directory : config_directories())
+      candidates.push_back((fs::path(directory) / path).string());
+  }
+  std::string places;
+  for (const std::string& candidate : candidates) {
+    std::error_code error;
+    const fs::file_status status = fs::status(candidate, error);
+    if (fs::exists(status) && !fs::is_directory(status)) return candidate;
+    places += (places.empty() ? "" : ", ") + candidate;
+  }
+  throw ConfigError(path, 0, "", "is not found, looked for " + places);
+}
+
 const std::vector<ConfigurationKind>& configuration_kinds() {
   static const std::vector<ConfigurationKind> kinds = {kinds::kVehicle, kinds::kControl, kinds::kSimulation,
                                                        kinds::kMission, kinds::kDispersion};
@@ -43,7 +73,7 @@ const std::vector<ConfigurationKind>& configuration_kinds() {
 
 std::vector<ConfigurationFile> configuration_files(const ConfigurationKind& kind) {
   std::vector<ConfigurationFile> files;
-  for (const std::string& directory : runtime::config_directories()) {
+  for (const std::string& directory : config_directories()) {
     std::error_code error;
     for (const fs::directory_entry& entry :
          fs::directory_iterator(fs::path(directory) / kind.folder, error)) {
@@ -62,7 +92,7 @@ std::vector<ConfigurationFile> configuration_files(const ConfigurationKind& kind
 fs::path configuration_file(const ConfigurationKind& kind, const std::string& name) {
   const bool bare = name.find('/') == std::string::npos && !fs::path(name).has_extension();
   const bool is_file = fs::exists(name) && !fs::is_directory(name);
-  if (!bare || is_file) return fs::path(runtime::find_config(name)).lexically_normal();
+  if (!bare || is_file) return fs::path(find_config(name)).lexically_normal();
   for (const ConfigurationFile& file : configuration_files(kind)) {
     if (file.name == name) return file.path;
   }
@@ -74,11 +104,11 @@ std::string description_of(const fs::path& file) {
   std::string comment;
   for (std::string line; std::getline(in, line);) {
     const std::string description = text_after("description: ", line);
-    if (!description.empty()) return runtime::printable(description);
+    if (!description.empty()) return printable(description);
     const bool is_schema = line.find("yaml-language-server") != std::string::npos;
     if (comment.empty() && !is_schema) comment = text_after("# ", line);
   }
-  return runtime::printable(comment);
+  return printable(comment);
 }
 
-}  // namespace swiftlet::ground
+}  // namespace swiftlet::runtime
