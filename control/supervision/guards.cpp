@@ -55,7 +55,9 @@ Outcome check_takeoff(const SupervisorContext& context) {
   if (!outcome.accepted) return outcome;
   Eigen::Vector3d top = context.estimate().position_ned;
   top.z() = request.position_ned.z();
-  outcome = check_takeoff_height("takeoff", top.z(), context);
+  // Below the ground, the sign is explained first.
+  if (top.z() > 0.0) outcome = check_position("takeoff", top, limits);
+  if (outcome.accepted) outcome = check_takeoff_height("takeoff", top.z(), context);
   return outcome.accepted ? check_position("takeoff", top, limits) : outcome;
 }
 

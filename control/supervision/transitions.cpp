@@ -180,7 +180,12 @@ Outcome refusal(Event request, const SupervisorContext& context) {
     case Event::kTakeoff:
       if (mode == Mode::kDisarmed) return refuse("not armed; run `swiftlet arm` first");
       if (mode == Mode::kLanding || mode == Mode::kDescent) return refuse("cannot take off while %s", now);
+      if (mode == Mode::kTakingOff || context.state.guidance.phase == Phase::kSpoolUp)
+        return refuse("already taking off");
       return refuse("already airborne; use goto");
+    case Event::kLand:
+      if (grounded) return refuse("already on the ground");
+      return refuse("cannot land while %s", now);
     case Event::kMissionUpload:
     case Event::kMissionClear:
       return refuse_for_mission(context);

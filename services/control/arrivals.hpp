@@ -44,7 +44,7 @@ struct StreamAges {
   double battery_s = -1.0;
 };
 
-// An IMU older than this is silent: control commands nothing.
+// An IMU older than this is silent. The controller takes no step meanwhile; only a stop request is obeyed.
 constexpr double kImuSilence_s = 0.05;
 
 }  // namespace swiftlet::services

@@ -53,14 +53,21 @@ const char* name_of(control::RequestKind kind) {
   return "request of unknown kind";
 }
 
-control::Outcome stopped_without_imu(double imu_age_s) {
+template <class... Values>
+control::Outcome accept_with(const char* reason, Values... values) {
   control::Outcome outcome = control::accept();
-  char since[32] = "yet";
-  if (imu_age_s >= 0.0) std::snprintf(since, sizeof since, "for %.1f s", imu_age_s);
-  std::snprintf(
-      outcome.reason, sizeof outcome.reason,
-      "rotors off is commanded, but no IMU sample has come %s: nothing shows that the vehicle obeys", since);
+  std::snprintf(outcome.reason, sizeof outcome.reason, reason, values...);
   return outcome;
+}
+
+control::Outcome stopped_without_imu(double imu_age_s) {
+  if (imu_age_s < 0.0) {
+    return accept_with(
+        "rotors off is commanded, but no IMU sample has come yet: nothing shows that the vehicle obeys");
+  }
+  return accept_with(
+      "rotors off is commanded, but no IMU sample has come for %.1f s: nothing shows that the vehicle obeys",
+      imu_age_s);
 }
 
 control::Outcome refusal(const comms::Fault& fault) { return control::refuse("%s", fault.text); }
@@ -235,7 +242,7 @@ void CommandServer::submit(std::unique_ptr<PendingRequest> pending) {
                   control::refuse("%zu requests are pending, the limit", kMostOtherRequests));
   }
   if (pending_.size() >= kMaxPendingRequests)  // the last one of them is a stop
-    return settle(key, pending->request.kind, control::accept());
+    return settle(key, pending->request.kind, accept_with("another stop request is pending"));
   pending->request.key = {pending->client, pending->id};
   pending->asked_ns = runtime::monotonic_ns();
   loop_.requests.push(pending.get());  // always fits: at most kMaxPendingRequests
@@ -250,10 +257,14 @@ bool CommandServer::accept_overdue_stop(double imu_age_s, std::int64_t stamp_ns)
   bool any = false;
   for (const auto& [key, pending] : pending_) {
     if (pending->request.kind != control::RequestKind::kStop) continue;
+    if (pending->state.load(std::memory_order_acquire) != PendingRequest::State::kWaiting) continue;
     if (!silent && now_ns - pending->asked_ns < kStopPatienceNs) continue;
     any = true;
     if (std::exchange(pending->answered, true)) continue;
-    settle(key, pending->request.kind, stopped_without_imu(imu_age_s), stamp_ns);
+    settle(key, pending->request.kind,
+           silent ? stopped_without_imu(imu_age_s)
+                  : accept_with("rotors off is commanded, but the IMU samples are not usable"),
+           stamp_ns);
   }
   return any;
 }

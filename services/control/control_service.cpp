@@ -88,7 +88,7 @@ void ControlService::subscribe(comms::Node& node, runtime::Clock clock) {
                                    topics::kMocapPose,
                                    [this, take_pose](const auto& message) {
                                      pose_thread_.enter(realtime_);
-                                     note(pose_arrivals_, message);
+                                     if (message.sequence_number() > 0) note(pose_arrivals_, message);
                                      take_pose(message);
                                    },
                                    delivery, comms::kSourceSilence)});
@@ -281,15 +281,17 @@ void ControlService::run(const std::atomic<bool>& stop) {
 }
 
 // Two threads publish commands: that of the IMU samples, and while there are none, run(). Neither waits for
-// the other.
+// the other: a sample whose command is left out for that reason counts as unanswered at the vehicle.
 void ControlService::publish_command(const msg::ActuatorCommand& command) {
   if (commands_in_use_.test_and_set(std::memory_order_acquire)) return;
   commands_.publish(command);
   commands_in_use_.clear(std::memory_order_release);
 }
 
-// A stop request that no IMU sample lets the inner loop evaluate: commands rotors off until one does.
+// A stop request that no IMU sample lets the inner loop evaluate: commands rotors off until one does. In
+// lockstep, time stands while samples that arrive wait for others: they are evaluated later.
 void ControlService::publish_pending_stop(const StreamAges& ages) {
+  if (clock_ == runtime::Clock::kLockstep && ages.imu_s >= 0.0 && ages.imu_s < kImuSilence_s) return;
   if (!command_server_.accept_overdue_stop(ages.imu_s, imu_arrivals_.stamp_ns())) return;
   msg::ActuatorCommand command;
   command.stamp_ns(imu_arrivals_.stamp_ns());

@@ -50,8 +50,7 @@ void Telemetry::open() {
 
 void Telemetry::set_streams(const StreamAges& ages, const std::string& source_conflict) {
   ages_ = ages;
-  if (source_conflict == source_conflict_) return;
-  if (!source_conflict.empty()) spdlog::warn(source_conflict);
+  if (source_conflict_.empty() && !source_conflict.empty()) spdlog::warn(source_conflict);
   source_conflict_ = source_conflict;
 }
 

@@ -296,6 +296,7 @@ std::optional<std::string> Participant::become_source(const std::vector<std::str
 }
 
 std::optional<std::string> Node::become_source(std::function<void(const std::string&)> on_lost) {
+  if (source_of_.empty()) throw std::logic_error("become_source: NodeSettings::source_of is empty");
   return participant_.become_source({source_of_}, std::move(on_lost));
 }
 

@@ -54,6 +54,9 @@ struct SourceConflict {
 
 // Samples of another process are taken once the source of a fast stream has been silent for this time.
 constexpr std::chrono::milliseconds kSourceSilence{200};
+// source_of of who starts a simulated vehicle (flight_reservation.hpp).
+constexpr const char* kFlight = "flight";
+
 // How long become_source() looks for another source: an announcement is sent several times in that time.
 constexpr std::chrono::milliseconds kSourceSearchTime{250};
 // After become_source(), a source that turns out to be the later of two yields within this time only.
@@ -181,7 +184,7 @@ class Node {
 
   std::vector<std::string> topics_seen() const { return participant_.topics_seen(); }
 
-  // As Participant::become_source(), for settings.source_of alone.
+  // As Participant::become_source(), for settings.source_of alone. Throws std::logic_error if that is empty.
   std::optional<std::string> become_source(std::function<void(const std::string&)> on_lost = {});
 
   // Sets the callback for discovered and lost peers of the vehicle; it is called at once for known peers. It

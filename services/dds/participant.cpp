@@ -302,7 +302,7 @@ std::optional<std::string> Participant::Impl::other_source(const std::vector<std
   for (const auto& [guid, peer] : peers_) {
     const bool same = std::count(excluded.begin(), excluded.end(), peer.announced.source_of) > 0;
     if (same && is_own(peer) && yields(announcement_, peer.announced))
-      return already_lives(shared_vehicle(peer), peer.announced.source_of, peer);
+      return in_use_by(shared_vehicle(peer), peer.announced.source_of, peer);
   }
   for (const std::string& vehicle : split_names(announcement_.vehicles)) {
     for (const std::string& topic : excluded) {
@@ -318,7 +318,7 @@ std::optional<std::string> Participant::Impl::unannounced_source(const std::stri
   for (const auto& [guid, writer] : writers_) {
     if (writer.topic != "rt/" + vehicle + "/" + topic) continue;
     const Peer* const peer = peer_of(guid.guidPrefix);
-    if (peer != nullptr && peer->announced.source_of != topic) return already_lives(vehicle, topic, *peer);
+    if (peer != nullptr && peer->announced.source_of != topic) return in_use_by(vehicle, topic, *peer);
   }
   return std::nullopt;
 }
@@ -328,15 +328,16 @@ void Participant::Impl::yield_source_to(const Peer& peer) {
       announcement_.is_established && on_lost_source_ && Clock::now() - established_at_ < kSourceProbation;
   if (!on_probation || peer.announced.source_of != announcement_.source_of || !is_own(peer)) return;
   if (!peer.announced.is_established || !yields(announcement_, peer.announced)) return;
-  on_lost_source_(already_lives(shared_vehicle(peer), peer.announced.source_of, peer));
+  on_lost_source_(in_use_by(shared_vehicle(peer), peer.announced.source_of, peer));
   on_lost_source_ = nullptr;
 }
 
-std::string Participant::Impl::already_lives(const std::string& vehicle, const std::string& topic,
-                                             const Peer& source) const {
+std::string Participant::Impl::in_use_by(const std::string& vehicle, const std::string& topic,
+                                         const Peer& source) const {
   const ProcessIdentity process{source.name, source.announced.host, source.announced.pid};
-  return "vehicle " + vehicle + " already lives in domain " + std::to_string(settings.domain) + ": " +
-         process.to_string() + " is the source of its " + topic;
+  const std::string what = topic == kFlight ? " has reserved it for a flight" : " publishes its " + topic;
+  return "vehicle " + vehicle + " is already in use in domain " + std::to_string(settings.domain) + ": " +
+         process.to_string() + what;
 }
 
 }  // namespace swiftlet::comms

@@ -98,7 +98,7 @@ struct Participant::Impl final : public eprosima::fastdds::dds::DomainParticipan
   std::optional<std::string> unannounced_source(const std::string& vehicle, const std::string& topic) const;
   // Two sources that joined at the same time, and discovered each other late.
   void yield_source_to(const Peer& peer);
-  std::string already_lives(const std::string& vehicle, const std::string& topic, const Peer& source) const;
+  std::string in_use_by(const std::string& vehicle, const std::string& topic, const Peer& source) const;
 
   std::mutex session_mutex_;  // guards session_ and endpoints_
   std::unique_ptr<ParticipantSession> session_;

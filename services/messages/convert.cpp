@@ -288,8 +288,9 @@ Fault from_message(const msg::Command& in, control::Request& out) {
   check.at_most("kind", in.kind(), msg::Command_Constants::MISSION_CLEAR);
   const bool placed =
       in.kind() == msg::Command_Constants::GOTO || in.kind() == msg::Command_Constants::TAKEOFF;
+  const bool moves = placed || in.kind() == msg::Command_Constants::LAND;
   if (placed) check.finite("position_ned", in.position_ned()).finite("yaw", in.yaw());
-  check.finite("speed", in.speed());
+  if (moves) check.finite("speed", in.speed());
   if (!check.ok()) return check.fault();
   out = {};
   out.kind = static_cast<control::RequestKind>(in.kind());
@@ -298,7 +299,7 @@ Fault from_message(const msg::Command& in, control::Request& out) {
     out.yaw_rad = in.yaw();
   }
   out.yaw_free = in.yaw_free();
-  out.speed = in.speed();
+  if (moves) out.speed = in.speed();
   out.mission_id = in.mission_id();
   return {};
 }

@@ -178,9 +178,11 @@ void LockstepLoop::poll(double awake_s) {
 void LockstepLoop::note_silence(double awake_s) {
   silence_s_ += awake_s;
   if (silence_s_ <= lockstep_.patience_s) return;
-  if (control_heard_ && mocap_heard_) throw std::runtime_error(silent_peer());
-  if (std::exchange(waiting_logged_, true)) return;
-  spdlog::info("waiting for {}", control_heard_ ? "mocap" : mocap_heard_ ? "control" : "mocap and control");
+  const bool control_to_start = command_due() && !control_heard_;
+  const bool mocap_to_start = mocap_silent() && !mocap_heard_;
+  if (!control_to_start && !mocap_to_start) throw std::runtime_error(silent_peer());
+  const std::string peers = control_to_start ? mocap_to_start ? "mocap and control" : "control" : "mocap";
+  if (std::exchange(logged_wait_, peers) != peers) spdlog::info("waiting for {}", peers);
 }
 
 std::string LockstepLoop::silent_ground() const {

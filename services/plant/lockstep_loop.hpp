@@ -34,9 +34,9 @@ class LockstepLoop {
   LockstepLoop(SimulatedVehicle& vehicle, const plant::SimulationSettings& settings, std::uint64_t seed,
                const LockstepSettings& lockstep, int rotor_count, comms::Node& node);
 
-  // Runs until `stop`. Waits without limit until motion capture and control have answered once, as they may start
-  // later. Throws std::runtime_error naming the peer whose answer is missing after patience_s from then on. Only
-  // time in which this process was running counts.
+  // Runs until `stop`. Waits without limit for a peer that has not answered yet, as it may start later. Throws
+  // std::runtime_error naming a peer that has answered before and is then silent for patience_s. Only time in
+  // which this process was running counts.
   void run(const std::atomic<bool>& stop);
 
  private:
@@ -82,7 +82,7 @@ class LockstepLoop {
   std::int64_t paced_ns_;  // time limit at lockstep_.speed
   bool clock_heard_ = false;
   double silence_s_ = 0.0;        // since the last progress
-  bool waiting_logged_ = false;   // for peers that have not answered yet
+  std::string logged_wait_;       // for peers that have not answered yet; the last line of the log
   double clock_silence_s_ = 0.0;  // since simulation_clock was last heard
   std::optional<runtime::FlightTrace> trace_;
 

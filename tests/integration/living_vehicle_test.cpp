@@ -33,13 +33,12 @@ class LivingVehicle : public SeparateProcesses {
     if (words.front() != "fly") words.emplace_back("--localhost-only");
     return run_program(program, std::move(words), folder_.path());
   }
-  // "vehicle kl1 already lives in domain 20: plant (process 4711 on host lab1) is the source of its imu"
+  // "vehicle kl1 is already in use in domain 20: plant (process 4711 on host lab1) publishes its imu"
   std::string lives(const std::string& name, const Program& process, const std::string& topic) const {
     char host[256] = {};
     ::gethostname(host, sizeof host - 1);
-    return "vehicle kl1 already lives in domain " + std::to_string(lock_.domain()) + ": " + name +
-           " (process " + std::to_string(process.pid()) + " on host " + host + ") is the source of its " +
-           topic;
+    return "vehicle kl1 is already in use in domain " + std::to_string(lock_.domain()) + ": " + name +
+           " (process " + std::to_string(process.pid()) + " on host " + host + ") publishes its " + topic;
   }
   void expect_undisturbed() {
     EXPECT_EQ(mode_log(), "holding: take-off completed\n");
@@ -82,7 +81,7 @@ TEST_F(LivingVehicle, SurvivesASecondFlight) {
   const ProgramResult fly =
       run("swiftlet", {"fly", folder_.write("hop.yaml", kHopMission), "--record", record});
   EXPECT_EQ(fly.exit_code, 1);
-  EXPECT_NE(fly.errors.find("swiftlet: vehicle kl1 already lives in domain "), std::string::npos)
+  EXPECT_NE(fly.errors.find("swiftlet: vehicle kl1 is already in use in domain "), std::string::npos)
       << fly.errors;
   EXPECT_NE(fly.errors.find("; choose another --vehicle-name or --domain, or fly it with --attach"),
             std::string::npos)
@@ -106,7 +105,7 @@ TEST_F(LivingVehicle, OneOfTwoFlightsThatStartAtOnceIsRefused) {
   std::sort(codes.begin(), codes.end());
   EXPECT_EQ(codes, (std::vector<int>{0, 1})) << first->errors() << second->errors();
   const std::string errors = first->errors() + second->errors();
-  EXPECT_NE(errors.find("swiftlet: vehicle kl1 already lives in domain "), std::string::npos) << errors;
+  EXPECT_NE(errors.find("swiftlet: vehicle kl1 is already in use in domain "), std::string::npos) << errors;
 }
 
 TEST_F(LivingVehicle, MayBeStartedAgainAtOnceAfterACrash) {

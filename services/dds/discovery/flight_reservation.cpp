@@ -5,8 +5,6 @@
 namespace swiftlet::comms {
 namespace {
 
-constexpr const char* kFlight = "flight";
-
 NodeSettings announced(NodeSettings network) {
   network.name = "swiftlet fly";
   network.source_of = kFlight;

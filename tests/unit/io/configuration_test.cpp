@@ -65,8 +65,9 @@ TEST_F(FindConfig, ErrorListsTheSearchedPaths) {
 
 TEST_F(FindConfig, TakesNamesOfAKind) {
   EXPECT_EQ(configuration_file(kinds::kVehicle, "own"), folder_ / "vehicles" / "own.yaml");
-  EXPECT_EQ(refusal([] { configuration_file(kinds::kVehicle, "owl"); })
-                .rfind("No vehicle 'owl'. Did you mean 'own'? Available: ", 0),
+  EXPECT_EQ(refusal([] {
+              configuration_file(kinds::kVehicle, "owl");
+            }).rfind("No vehicle 'owl'. Did you mean 'own'? Available: ", 0),
             0U);
 }
 

@@ -39,8 +39,8 @@ class Sources : public testing::Test {
   std::string lives(const std::string& process) const {
     char host[256] = {};
     ::gethostname(host, sizeof host - 1);
-    return "vehicle kl1 already lives in domain " + std::to_string(lock_.domain()) + ": " + process +
-           " (process " + std::to_string(::getpid()) + " on host " + host + ") is the source of its imu";
+    return "vehicle kl1 is already in use in domain " + std::to_string(lock_.domain()) + ": " + process +
+           " (process " + std::to_string(::getpid()) + " on host " + host + ") publishes its imu";
   }
 
   DomainLock lock_;
@@ -126,10 +126,10 @@ TEST_F(Sources, AReservedFlightExcludesAnotherAndLivingVehicles) {
   {
     const FlightReservation reservation(network, {"kl1", "kl2"});
     EXPECT_EQ(refusal_of({"kl3"}), "");
-    EXPECT_TRUE(is_refused({"kl3", "kl2"}, "vehicle kl2 already lives in domain "));
+    EXPECT_TRUE(is_refused({"kl3", "kl2"}, "vehicle kl2 is already in use in domain "));
     Node plant(settings("plant", "imu"));
     EXPECT_EQ(plant.become_source(), std::nullopt) << "the flight starts its own processes";
-    EXPECT_TRUE(is_refused({"kl1"}, "vehicle kl1 already lives in domain "));
+    EXPECT_TRUE(is_refused({"kl1"}, "vehicle kl1 is already in use in domain "));
   }
   EXPECT_EQ(refusal_of({"kl1"}), "");
   Node mocap(settings("mocap", "mocap_pose"));
