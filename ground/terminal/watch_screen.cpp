@@ -1,5 +1,3 @@
-#include "swiftlet/ground/terminal/watch_screen.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +7,7 @@
 #include "swiftlet/control/types/settings.hpp"
 #include "swiftlet/ground/client/silence.hpp"
 #include "swiftlet/ground/terminal/state_lines.hpp"
+#include "swiftlet/ground/terminal/watch_screen.hpp"
 #include "swiftlet/services/messages/wire.hpp"
 
 namespace swiftlet::ground {
@@ -22,6 +21,9 @@ constexpr double kSilence_s = 1.0;
 constexpr double kFarOff_m = 0.1;    // tracking error
 constexpr double kLateSteps = 0.01;  // share of the control steps
 constexpr const char* kKeys = "h hold   l land   s stop (rotors off): each asks for y   q quit";
+constexpr const char* kShortKeys = "h hold l land s stop q quit";
+constexpr std::size_t kFullWidth = 80;  // a screen of this size shows everything
+constexpr std::size_t kFullHeight = 24;
 
 Mode mode_of(const View& view) { return static_cast<Mode>(view.control.message.mode()); }
 
@@ -109,7 +111,10 @@ class Screen {
   Screen(int width, int height) : width_(at_least_one(width)), height_(at_least_one(height)) {}
 
   void add(ScreenLine line) {
-    if (lines_.size() + 1 >= height_) return;
+    if (lines_.size() + 1 >= height_) {
+      incomplete_ = true;
+      return;
+    }
     cut(line);
     lines_.push_back(std::move(line));
   }
@@ -134,26 +139,38 @@ class Screen {
     }
   }
   // Fills the screen with empty lines, and puts the last ones below.
-  Lines close(std::vector<std::string> last, Emphasis emphasis) {
-    if (last.size() > height_) last.resize(height_);
-    const std::size_t above = height_ - last.size();
-    lines_.resize(above);
-    for (std::string& text : last) {
-      ScreenLine line{std::move(text), emphasis};
-      cut(line);
-      lines_.push_back(std::move(line));
+  Lines close(const std::vector<std::string>& last, Emphasis emphasis) {
+    Lines below;
+    for (const std::string& text : last) {
+      below.push_back({text, emphasis});
+      cut(below.back());
     }
+    const bool overflows = lines_.size() + below.size() > height_;
+    if ((incomplete_ || overflows) && height_ >= static_cast<std::size_t>(kNoteHeight)) {
+      below.push_back({too_small(), Emphasis::kWarning});
+      cut(below.back());
+    }
+    if (below.size() > height_) below.resize(height_);
+    lines_.resize(height_ - below.size());
+    lines_.insert(lines_.end(), below.begin(), below.end());
     return std::move(lines_);
   }
+  std::size_t width() const { return width_; }
 
  private:
   static std::size_t at_least_one(int size) { return static_cast<std::size_t>(std::max(size, 1)); }
-  void cut(ScreenLine& line) const {
-    if (line.text.size() > width_) line.text.resize(width_);
-    const std::size_t right = width_ > kRightColumn ? width_ - kRightColumn : 0;
-    if (line.right_text.size() > right) line.right_text.resize(right);
+  bool is_small() const { return width_ < kFullWidth || height_ < kFullHeight; }
+  const char* too_small() const {
+    return is_small() ? "terminal too small, 80x24 shows all" : "terminal too small for all lines";
+  }
+  void cut(ScreenLine& line) {
+    const std::string whole = line.text;
+    line.text = cut_to(line.text, width_);
+    line.right_text = cut_to(line.right_text, width_ > kRightColumn ? width_ - kRightColumn : 0);
+    if (is_small() && line.text != whole) incomplete_ = true;
   }
 
+  bool incomplete_ = false;  // a line is left out, or cut on a small screen
   std::size_t width_, height_;
   Lines lines_;
 };
@@ -229,6 +246,18 @@ std::vector<std::string> silence_lines(const View& view, const WatchFacts& facts
 
 }  // namespace
 
+std::string cut_to(const std::string& text, std::size_t columns) {
+  std::size_t cut_at = 0;  // the byte of the last column
+  std::size_t characters = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool begins = (static_cast<unsigned char>(text[i]) & 0xC0U) != 0x80U;
+    if (!begins) continue;
+    if (++characters == columns) cut_at = i;
+  }
+  if (characters <= columns) return text;
+  return columns > 0 ? text.substr(0, cut_at) + kCut : "";
+}
+
 std::vector<std::string> warnings_of(const View& view, Clock::time_point now) {
   std::vector<std::string> warnings;
   if (!view.control.seen()) return {"no control service"};
@@ -260,9 +289,10 @@ std::vector<ScreenLine> watch_screen(const View& view, const WatchFacts& facts, 
   Screen screen(width, height);
   const msg::ControlStatus& control = view.control.message;
   const auto close = [&] {
-    if (facts.message.empty()) return screen.close({kKeys}, Emphasis::kPlain);
-    return screen.close(wrapped(facts.message, static_cast<std::size_t>(std::max(width, 1))),
-                        Emphasis::kHeading);
+    if (!facts.message.empty())
+      return screen.close(wrapped(facts.message, screen.width()), Emphasis::kHeading);
+    const std::string keys = kKeys;
+    return screen.close({keys.size() <= screen.width() ? keys : kShortKeys}, Emphasis::kPlain);
   };
   if (!view.control.seen()) {
     screen.add({fmt::format("{} in domain {}", facts.vehicle, facts.domain), Emphasis::kHeading});
@@ -271,10 +301,10 @@ std::vector<ScreenLine> watch_screen(const View& view, const WatchFacts& facts, 
   }
   const std::vector<std::string> silences = silence_lines(view, facts, now);
   for (const std::string& silence : silences) screen.add_wrapped(silence, Emphasis::kWarning);
-  screen.add({fmt::format("{} in domain {}: {}{} ({}), {}", facts.vehicle, facts.domain,
-                          silences.empty() ? "" : "last known: ", mode_name(control.mode()),
-                          control.reason().c_str(), control.airborne() ? "airborne" : "on the ground"),
-              Emphasis::kHeading});
+  screen.add_wrapped(fmt::format("{} in domain {}: {}{} ({}), {}", facts.vehicle, facts.domain,
+                                 silences.empty() ? "" : "last known: ", mode_name(control.mode()),
+                                 control.reason().c_str(), control.airborne() ? "airborne" : "on the ground"),
+                     Emphasis::kHeading);
   const std::vector<std::string> warnings = warnings_of(view, now);
   for (const std::string& warning : warnings) screen.add_wrapped("! " + warning, Emphasis::kWarning);
   if (warnings.empty() && silences.empty()) screen.add({"no warnings", Emphasis::kGood});

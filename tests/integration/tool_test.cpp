@@ -165,8 +165,9 @@ TEST_F(AtATerminal, WatchShowsTheFlightAndExecutesKeys) {
     EXPECT_TRUE(shows(part)) << part << "\n" << terminal.text();
 
   terminal.resize(50, 8);
-  ASSERT_TRUE(eventually([&] { return terminal.line(7).rfind("h hold", 0) == 0; }, kStuck))
+  ASSERT_TRUE(eventually([&] { return terminal.line(7).rfind("terminal too small", 0) == 0; }, kStuck))
       << terminal.text();
+  EXPECT_EQ(terminal.line(6).rfind("h hold", 0), 0U) << terminal.text();
   EXPECT_EQ(terminal.line(0).rfind("kl7 in domain", 0), 0U) << terminal.text();
   terminal.resize(120, 40);
   ASSERT_TRUE(eventually([&] { return terminal.line(39).rfind("h hold", 0) == 0; }, kStuck))
