@@ -1,3 +1,5 @@
+#include "swiftlet/ground/terminal/watch_screen.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -5,9 +7,9 @@
 
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/control/types/settings.hpp"
+#include "swiftlet/ground/client/controllers.hpp"
 #include "swiftlet/ground/client/silence.hpp"
 #include "swiftlet/ground/terminal/state_lines.hpp"
-#include "swiftlet/ground/terminal/watch_screen.hpp"
 #include "swiftlet/services/messages/wire.hpp"
 
 namespace swiftlet::ground {
@@ -17,7 +19,6 @@ using comms::wire::vector;
 using control::Mode;
 using Eigen::Vector3d;
 
-constexpr double kSilence_s = 1.0;
 constexpr double kFarOff_m = 0.1;    // tracking error
 constexpr double kLateSteps = 0.01;  // share of the control steps
 constexpr const char* kKeys = "h hold   l land   s stop (rotors off): each asks for y   q quit";
@@ -229,19 +230,16 @@ void add_timing(const View& view, const WatchFacts& facts, Clock::time_point now
   add(lines, fmt::format("{:<11} {:.1f} Hz, {} of {} steps late, longest {:.0f} us", "control",
                          control.rate_hz(), static_cast<unsigned long long>(control.deadline_misses()),
                          static_cast<unsigned long long>(control.cycles()), control.step_time_max_us()));
-  int active = 0;
-  int standby = 0;
-  for (const auto& [number, latest] : view.controllers) {
-    if (latest.age_s(now) >= kSilence_s) continue;
-    ++(latest.message.role() == msg::ControllerState_Constants::ACTIVE ? active : standby);
-  }
-  add(lines, fmt::format("{:<11} {} active, {} standby", "controllers", active, standby));
+  const LiveControllers controllers = controllers_of(view, now);
+  const auto active = std::count_if(controllers.known.begin(), controllers.known.end(),
+                                    [](const LiveController& controller) { return controller.active; });
+  const std::string others = controllers.others > 0 ? fmt::format(", {} unknown", controllers.others) : "";
+  add(lines, fmt::format("{:<11} {} active, {} standby{}", "controllers", active,
+                         static_cast<std::ptrdiff_t>(controllers.known.size()) - active, others));
 }
 
-std::vector<std::string> silence_lines(const View& view, const WatchFacts& facts, Clock::time_point now) {
-  std::vector<std::string> lines;
-  for (const Silence& silence : silences_of(view, now)) lines.push_back(to_string(silence, facts.system_now));
-  return lines;
+const char* last_known(const std::vector<Silence>& silences) {
+  return control_is_silent(silences) ? "last known: " : "";
 }
 
 }  // namespace
@@ -299,11 +297,12 @@ std::vector<ScreenLine> watch_screen(const View& view, const WatchFacts& facts, 
     screen.add_wrapped("waiting: " + facts.where, Emphasis::kWarning);
     return close();
   }
-  const std::vector<std::string> silences = silence_lines(view, facts, now);
-  for (const std::string& silence : silences) screen.add_wrapped(silence, Emphasis::kWarning);
+  const std::vector<Silence> silences = silences_of(view, now);
+  for (const Silence& silence : silences)
+    screen.add_wrapped(to_string(silence, facts.system_now), Emphasis::kWarning);
   screen.add_wrapped(fmt::format("{} in domain {}: {}{} ({}), {}", facts.vehicle, facts.domain,
-                                 silences.empty() ? "" : "last known: ", mode_name(control.mode()),
-                                 control.reason().c_str(), control.airborne() ? "airborne" : "on the ground"),
+                                 last_known(silences), mode_name(control.mode()), control.reason().c_str(),
+                                 control.airborne() ? "airborne" : "on the ground"),
                      Emphasis::kHeading);
   const std::vector<std::string> warnings = warnings_of(view, now);
   for (const std::string& warning : warnings) screen.add_wrapped("! " + warning, Emphasis::kWarning);
@@ -320,9 +319,9 @@ std::string watch_line(const View& view, const WatchFacts& facts, Clock::time_po
   if (!view.control.seen()) return facts.vehicle + ": waiting: " + facts.where;
   const msg::ControlStatus& control = view.control.message;
   std::string line = facts.vehicle + ": ";
-  const std::vector<std::string> silences = silence_lines(view, facts, now);
-  for (const std::string& silence : silences) line += silence + "; ";
-  if (!silences.empty()) line += "last known: ";
+  const std::vector<Silence> silences = silences_of(view, now);
+  for (const Silence& silence : silences) line += to_string(silence, facts.system_now) + "; ";
+  line += last_known(silences);
   line += fmt::format("{} ({})", mode_name(control.mode()), control.reason().c_str());
   if (view.estimate.seen()) {
     const auto& p = view.estimate.message.position_ned();

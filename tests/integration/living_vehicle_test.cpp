@@ -182,14 +182,18 @@ TEST_F(LivingVehicle, ADeadVehicleIsReportedSilentFirst) {
   const ProgramResult status = run("swiftlet", {"status", "--watch", "0.1"});
   EXPECT_EQ(status.output.rfind("VEHICLE SILENT for ", 0), 0U) << status.output;
   EXPECT_NE(status.output.find("s, since "), std::string::npos) << status.output;
-  EXPECT_NE(status.output.find("\nkl1 in domain " + std::to_string(lock_.domain()) + ": last known: holding"),
+  EXPECT_NE(status.output.find(" (no IMU sample)\n"), std::string::npos) << status.output;
+  EXPECT_NE(status.output.find("\nkl1 in domain " + std::to_string(lock_.domain()) + ": holding"),
             std::string::npos)
       << status.output;
   EXPECT_NE(status.output.find("pose      MISSING"), std::string::npos) << status.output;
+  EXPECT_NE(status.output.find("\n  controller "), std::string::npos) << status.output;
 
   const ProgramResult list = run("swiftlet", {"list", "--time", "1"});
   EXPECT_EQ(list.output.rfind("kl1: VEHICLE SILENT for ", 0), 0U) << list.output;
-  EXPECT_EQ(list.output.find("holding"), std::string::npos) << list.output;
+  EXPECT_NE(list.output.find(" holding "), std::string::npos) << list.output;
+  const ProgramResult facts = run("swiftlet", {"list", "--json", "--time", "1"});
+  EXPECT_EQ(json::parse(facts.output).at(0).at("controllers"), 1) << facts.output;
 
   const ProgramResult watch = run("swiftlet", {"watch", "--plain", "--duration", "1.5"});
   EXPECT_NE(watch.output.find("kl1: VEHICLE SILENT for "), std::string::npos) << watch.output;
