@@ -55,11 +55,12 @@ const char* name_of(control::RequestKind kind) {
 
 control::Outcome stopped_without_imu(double imu_age_s) {
   control::Outcome outcome = control::accept();
-  char since[32] = "yet";
-  if (imu_age_s >= 0.0) std::snprintf(since, sizeof since, "for %.1f s", imu_age_s);
-  std::snprintf(
-      outcome.reason, sizeof outcome.reason,
-      "rotors off is commanded, but no IMU sample has come %s: nothing shows that the vehicle obeys", since);
+  char silence[64] = "no IMU sample of the vehicle has come yet";
+  if (imu_age_s >= 0.0)
+    std::snprintf(silence, sizeof silence, "the vehicle has been silent for %.1f s (no IMU sample)",
+                  imu_age_s);
+  std::snprintf(outcome.reason, sizeof outcome.reason,
+                "rotors off is commanded, but %s: it cannot confirm the stop", silence);
   return outcome;
 }
 
@@ -243,19 +244,20 @@ void CommandServer::submit(std::unique_ptr<PendingRequest> pending) {
   if (stops) wake_.post();
 }
 
-bool CommandServer::accept_overdue_stop(double imu_age_s, std::int64_t stamp_ns) {
+std::optional<control::RequestKey> CommandServer::accept_overdue_stop(double imu_age_s,
+                                                                      std::int64_t stamp_ns) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const bool silent = imu_age_s < 0.0 || imu_age_s > kImuSilence_s;
   const std::int64_t now_ns = runtime::monotonic_ns();
-  bool any = false;
+  std::optional<control::RequestKey> stop;
   for (const auto& [key, pending] : pending_) {
     if (pending->request.kind != control::RequestKind::kStop) continue;
     if (!silent && now_ns - pending->asked_ns < kStopPatienceNs) continue;
-    any = true;
+    stop = pending->request.key;
     if (std::exchange(pending->answered, true)) continue;
     settle(key, pending->request.kind, stopped_without_imu(imu_age_s), stamp_ns);
   }
-  return any;
+  return stop;
 }
 
 void CommandServer::refuse(const Key& key, control::RequestKind kind, const control::Outcome& outcome) {

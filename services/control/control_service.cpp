@@ -290,7 +290,9 @@ void ControlService::publish_command(const msg::ActuatorCommand& command) {
 
 // A stop request that no IMU sample lets the inner loop evaluate: commands rotors off until one does.
 void ControlService::publish_pending_stop(const StreamAges& ages) {
-  if (!command_server_.accept_overdue_stop(ages.imu_s, imu_arrivals_.stamp_ns())) return;
+  const auto stop = command_server_.accept_overdue_stop(ages.imu_s, imu_arrivals_.stamp_ns());
+  telemetry_.set_unconfirmed_stop(stop);
+  if (!stop) return;
   msg::ActuatorCommand command;
   command.stamp_ns(imu_arrivals_.stamp_ns());
   command.sequence_number(imu_arrivals_.sequence());

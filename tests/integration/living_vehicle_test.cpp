@@ -201,12 +201,20 @@ TEST_F(LivingVehicle, ADeadVehicleIsReportedSilentFirst) {
 
   EXPECT_EQ(rotors_off, 0);
   const ProgramResult stop = run("swiftlet", {"stop", "--yes"});
-  EXPECT_EQ(stop.exit_code, 0) << stop.errors;
+  EXPECT_EQ(stop.exit_code, 1) << stop.output;
+  EXPECT_EQ(stop.output, "stop: accepted by kl1\n");
   EXPECT_EQ(
-      stop.output.rfind("stop: accepted by kl1: rotors off is commanded, but no IMU sample has come for ", 0),
+      stop.errors.rfind("swiftlet: stop: published and accepted by the controller, not confirmed: rotors "
+                        "off is commanded, but the vehicle has been silent for ",
+                        0),
       0U)
-      << stop.output;
+      << stop.errors;
   EXPECT_TRUE(eventually([&] { return rotors_off > 0; }));
+  const ProgramResult stopped = run("swiftlet", {"status", "--watch", "0.1"});
+  EXPECT_NE(stopped.output.find(": stopped (emergency stop is active, but the vehicle is silent"),
+            std::string::npos)
+      << stopped.output;
+  EXPECT_NE(stopped.output.find("  request   stop: accepted"), std::string::npos) << stopped.output;
 }
 
 TEST_F(LivingVehicle, ADeadMotionCaptureIsReportedSilentFirst) {
