@@ -244,12 +244,12 @@ TEST(Attached, AFlightThatFindsNothingSaysWhereItLooked) {
   const comms::DomainLock lock;
   const TemporaryFolder folder;
   const ProgramResult fly = run_program("swiftlet",
-                                        {"fly", "square", "--attach", "--domain",
+                                        {"fly", "square", "--attach", "--localhost-only", "--domain",
                                          std::to_string(lock.domain()), "--record", folder.path() / "r"},
                                         folder.path());
   EXPECT_EQ(fly.exit_code, 1);
-  for (const char* part :
-       {"no control service for vehicle kl1 in domain ", "looked on lo (127.0.0.1) only; with --network on "})
+  for (const char* part : {"no control service for vehicle kl1 in domain ",
+                           "looked on lo (127.0.0.1) only; without --localhost-only on "})
     EXPECT_NE(fly.errors.find(part), std::string::npos) << part << "\n" << fly.errors;
 }
 
