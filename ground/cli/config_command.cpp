@@ -1,9 +1,8 @@
 // `swiftlet config`: `ls` lists the configuration files that have a name, `show` prints one and where it lies.
 #include <cctype>
+#include <cstdio>
 #include <string>
 #include <vector>
-
-#include <fmt/core.h>
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/io/configuration.hpp"
@@ -35,12 +34,13 @@ std::string first_sentence(const std::string& text) {
 int list(const ListOptions& options) {
   for (const runtime::ConfigurationKind& kind : runtime::configuration_kinds()) {
     if (!options.kind.empty() && options.kind != kind.folder) continue;
-    if (!options.names) fmt::print("{}\n", kind.folder);
+    if (!options.names) std::printf("%s\n", kind.folder);
     for (const runtime::ConfigurationFile& file : runtime::configuration_files(kind)) {
       if (options.names) {
-        fmt::print("{}\n", file.name);
+        std::printf("%s\n", file.name.c_str());
       } else {
-        fmt::print("  {:<16} {}\n", file.name, first_sentence(runtime::description_of(file.path)));
+        std::printf("  %-16s %s\n", file.name.c_str(),
+                    first_sentence(runtime::description_of(file.path)).c_str());
       }
     }
   }
@@ -58,9 +58,9 @@ int show(const ShowOptions& options) {
       if (options.name != file.name && options.name != full_name) continue;
       found = true;
       if (options.path) {
-        fmt::print("{}\n", file.path.string());
+        std::printf("%s\n", file.path.c_str());
       } else {
-        fmt::print("# {}\n{}", file.path.string(), runtime::read_text_file(file.path));
+        std::printf("# %s\n%s", file.path.c_str(), runtime::read_text_file(file.path).c_str());
       }
     }
   }

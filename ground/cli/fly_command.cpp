@@ -12,6 +12,7 @@
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
 #include "swiftlet/ground/command_line/network_options.hpp"
+#include "swiftlet/ground/flight/attached_vehicle.hpp"
 #include "swiftlet/ground/flight/flight_outcome.hpp"
 #include "swiftlet/ground/flight/interrupts.hpp"
 #include "swiftlet/ground/flight/launch_configuration.hpp"
@@ -123,13 +124,16 @@ int fly(const FlyOptions& options) {
   check(options, vehicles.size());
   std::vector<LaunchConfiguration> plans = plan_flights(options, vehicles);
 
+  const bool attached = options.launch_mode == LaunchMode::kAttached;
   std::optional<comms::DomainLock> domain_lock;
-  if (options.domain < 0 && options.launch_mode == LaunchMode::kStarted) domain_lock.emplace();
+  if (options.domain < 0 && !attached) domain_lock.emplace();
   comms::NodeSettings network = options.network;
   network.domain = domain_lock ? domain_lock->domain() : std::max(options.domain, 0);
+  network.localhost_only = network.localhost_only || !attached;
+  if (attached) require_on_ground(network, vehicles);
   // In a domain that others may use, the vehicles must not live already.
   std::optional<comms::FlightReservation> reservation;
-  if (!domain_lock && options.launch_mode == LaunchMode::kStarted) reservation.emplace(network, vehicles);
+  if (!domain_lock && !attached) reservation.emplace(network, vehicles);
   const std::unique_ptr<RecordFolder> record = make_record(options, vehicles, plans);
 
   ProgressLine progress;
@@ -166,7 +170,6 @@ int fly(const FlyOptions& options) {
 
 Command add_fly_command(runtime::CommandLine root) {
   const auto options = std::make_shared<FlyOptions>();
-  options->network.localhost_only = true;
   const runtime::CommandLine app =
       root.add_subcommand("fly", "Start plant, mocap and control on this computer, fly a mission and report");
   add_fly_options(app, *options);
@@ -176,8 +179,10 @@ Command add_fly_command(runtime::CommandLine root) {
                  "the origin; each mission is shifted with its vehicle")
       .range(-100.0, 100.0)
       .show_default();
-  app.remove_option("--localhost-only");  // always set, except with --network
-  app.remove_option("--domain");          // added below with another default
+  app.option("--localhost-only")
+      .describe(
+          "with --attach: use the loopback interface only, without multicast; always set without --attach");
+  app.remove_option("--domain");  // added below with another default
   app.add_option("--domain", options->domain, "DDS domain; default: a free one")
       .environment("ROS_DOMAIN_ID")
       .range(0, 232);
@@ -195,8 +200,6 @@ Command add_fly_command(runtime::CommandLine root) {
        {"--vehicle", "--simulation", "--seed", "--imu-rate", "--clock", "--speed"}) {
     attach.excludes(app.option(launch_option));
   }
-  app.add_flag("--network{false}", options->network.localhost_only, "use all interfaces, not only loopback")
-      .needs(attach);
   app.footer(
       "Several vehicles (--vehicle-name kl1,kl2) start their missions at the same time. If one fails, the "
       "others land.\nThe paths are not checked for collisions between vehicles.\nCtrl-C lands; a second "

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -11,6 +10,7 @@
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/ground/client/context.hpp"
+#include "swiftlet/ground/client/controllers.hpp"
 #include "swiftlet/ground/client/silence.hpp"
 #include "swiftlet/ground/command_line/network_options.hpp"
 #include "swiftlet/ground/terminal/state_lines.hpp"
@@ -64,7 +64,7 @@ std::vector<Found> discover(const Options& options) {
   for (const auto& [name, client] : clients) {
     Found vehicle{name, client->view()};
     vehicle.silences = silences_of(vehicle.view, Clock::now());
-    vehicle.controllers = static_cast<int>(vehicle.view.controllers.size());
+    vehicle.controllers = controllers_of(vehicle.view, Clock::now()).count();
     if (before[name].estimate.seen())
       vehicle.mocap_hz = static_cast<double>(poses(vehicle.view) - poses(before[name])) / time_s;
     found.push_back(std::move(vehicle));
@@ -86,14 +86,11 @@ nlohmann::ordered_json to_json(const Found& vehicle) {
   return json;
 }
 
-// The mode, unless vehicle or control are silent: then it is not known.
+// The mode, unless control is silent: then it is not known.
 std::string mode_of(const Found& vehicle) {
   const View& view = vehicle.view;
   if (!view.control.seen()) return "no control";
-  const bool known = std::none_of(vehicle.silences.begin(), vehicle.silences.end(), [](const Silence& s) {
-    return s.who == "vehicle" || s.who == "control service";
-  });
-  return known ? mode_name(view.control.message.mode()) : "SILENT";
+  return control_is_silent(vehicle.silences) ? "SILENT" : mode_name(view.control.message.mode());
 }
 
 void print(const std::vector<Found>& vehicles) {

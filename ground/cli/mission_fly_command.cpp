@@ -45,6 +45,7 @@ int fly_mission(const Options& options) {
     end = await_actions({{&vehicle, flight}}, mission.name, OnInterrupt::kPauseMission, interrupts,
                         std::nullopt)
               .front();
+    if (end.kind == ActionResult::Kind::kCanceled) end.reason = interruption_by(end);
   }
 
   if (options.json) {

@@ -14,6 +14,8 @@
 namespace swiftlet::ground {
 namespace {
 
+constexpr std::chrono::seconds kConfirmationTimeout{1};  // of a stop that no IMU sample let control evaluate
+
 // A request to one vehicle and its result.
 struct RequestOutcome {
   std::unique_ptr<Vehicle> vehicle;
@@ -70,11 +72,13 @@ void send(RequestOutcome& outcome, const VehicleRequest& request) {
   outcome.answer = outcome.action->answer();
 }
 
-void print_acceptance(const RequestOutcome& outcome, const std::string& what) {
-  if (!outcome.answer.accepted()) return;
-  const std::string& note = outcome.answer.reason;
-  std::printf("%s: accepted by %s%s%s\n", what.c_str(), outcome.vehicle->name().c_str(),
-              note.empty() ? "" : ": ", note.c_str());
+// The note of a request that is done when it is accepted becomes a part of its result.
+void print_acceptance(const RequestOutcome& outcome, const VehicleRequest& request,
+                      const RequestOptions& options) {
+  if (options.json || !outcome.answer.accepted()) return;
+  const bool noted = !outcome.answer.reason.empty() && (options.no_wait || !request.done_when_accepted);
+  std::printf("%s: accepted by %s%s%s\n", request.what.c_str(), outcome.vehicle->name().c_str(),
+              noted ? ": " : "", noted ? outcome.answer.reason.c_str() : "");
   std::fflush(stdout);
 }
 
@@ -84,7 +88,7 @@ void send_to_each(RequestOutcomes& outcomes, const VehicleRequest& request, cons
   for_all(outcomes, [&](RequestOutcome& outcome) {
     send(outcome, request);
     const std::lock_guard<std::mutex> lock(printing);
-    if (!options.json) print_acceptance(outcome, request.what);
+    print_acceptance(outcome, request, options);
   });
 }
 
@@ -122,9 +126,7 @@ void send_to_all_or_none(RequestOutcomes& outcomes, const VehicleRequest& reques
   for_all(outcomes, [&](RequestOutcome& outcome) { send(outcome, request); });
   const std::string refusing = failed_names(outcomes);
   if (!refusing.empty()) take_back(outcomes, request, refusing);
-  for (const RequestOutcome& outcome : outcomes) {
-    if (!options.json) print_acceptance(outcome, request.what);
-  }
+  for (const RequestOutcome& outcome : outcomes) print_acceptance(outcome, request, options);
 }
 
 // An interrupt signal has cancelled requests. A controller may have accepted one before that.
@@ -136,6 +138,14 @@ void rest_unanswered(RequestOutcomes& outcomes, OnInterrupt on_interrupt) {
   });
 }
 
+// A note at the acceptance of such a request says what the controller cannot confirm yet.
+ActionResult result_when_accepted(const RequestOutcome& outcome) {
+  if (outcome.answer.reason.empty()) return {ActionResult::Kind::kCompleted, ""};
+  const ActionResult result = outcome.action->wait(kConfirmationTimeout);
+  if (result.done()) return result;
+  return {result.kind, "published and accepted by the controller, not confirmed: " + outcome.answer.reason};
+}
+
 void await_all(RequestOutcomes& outcomes, const VehicleRequest& request, const RequestOptions& options,
                const Interrupts& interrupts) {
   std::vector<RequestOutcome*> accepted;
@@ -143,7 +153,7 @@ void await_all(RequestOutcomes& outcomes, const VehicleRequest& request, const R
   for (RequestOutcome& outcome : outcomes) {
     if (!outcome.answer.accepted()) continue;
     if (request.done_when_accepted) {
-      outcome.action_result = ActionResult{ActionResult::Kind::kCompleted, ""};
+      outcome.action_result = result_when_accepted(outcome);
     } else {
       accepted.push_back(&outcome);
       actions.push_back({outcome.vehicle.get(), *outcome.action});

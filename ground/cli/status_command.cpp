@@ -1,6 +1,4 @@
-#include <algorithm>
 #include <cstdio>
-#include <tuple>
 #include <vector>
 
 #include <fmt/core.h>
@@ -11,6 +9,7 @@
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/request_command.hpp"
 #include "swiftlet/ground/client/client.hpp"
+#include "swiftlet/ground/client/controllers.hpp"
 #include "swiftlet/ground/client/silence.hpp"
 #include "swiftlet/ground/terminal/state_lines.hpp"
 #include "swiftlet/math/euler.hpp"
@@ -20,7 +19,6 @@ namespace swiftlet::ground {
 namespace {
 
 constexpr std::chrono::milliseconds kRestTimeout{1000};
-constexpr double kControllerSilence_s = 0.5;  // a controller silent for longer is not listed
 
 struct Options : CommandOptions {
   double watch_s = 1.0;
@@ -62,9 +60,7 @@ nlohmann::ordered_json age_of(const Latest<T>& latest, Clock::time_point now) {
   return latest.age_s(now);
 }
 
-const char* role_name(const msg::ControllerState& state) {
-  return state.role() == msg::ControllerState_Constants::ACTIVE ? "active" : "standby";
-}
+const char* role_name(const LiveController& controller) { return controller.active ? "active" : "standby"; }
 
 const char* kind_name(const msg::RequestStatus& request) {
   control::Event event{};
@@ -77,17 +73,41 @@ const char* state_name(const msg::RequestStatus& request) {
   return control::to_string(static_cast<control::RequestState>(request.state()));
 }
 
-// The controllers that are alive: the active one first, then by descending failover priority.
-std::vector<msg::ControllerState> controllers_of(const View& view, Clock::time_point now) {
-  std::vector<msg::ControllerState> controllers;
-  for (const auto& [number, latest] : view.controllers) {
-    if (latest.age_s(now) < kControllerSilence_s) controllers.push_back(latest.message);
+// What a controller does not report is null.
+nlohmann::ordered_json controllers_json(const LiveControllers& controllers) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  const nlohmann::ordered_json unknown = {{"number", nullptr},
+                                          {"role", nullptr},
+                                          {"ready", nullptr},
+                                          {"failover_priority", nullptr},
+                                          {"term", nullptr}};
+  for (const LiveController& controller : controllers.known) {
+    nlohmann::ordered_json entry = unknown;
+    entry["number"] = controller.number;
+    entry["role"] = role_name(controller);
+    if (controller.state) {
+      entry["ready"] = controller.state->ready();
+      entry["failover_priority"] = controller.state->failover_priority();
+      entry["term"] = controller.state->term();
+    }
+    list.push_back(entry);
   }
-  std::sort(controllers.begin(), controllers.end(), [](const auto& a, const auto& b) {
-    return std::tuple(a.role(), a.failover_priority(), a.controller()) >
-           std::tuple(b.role(), b.failover_priority(), b.controller());
-  });
-  return controllers;
+  list.insert(list.end(), static_cast<std::size_t>(controllers.others), unknown);
+  return list;
+}
+
+void print(const LiveControllers& controllers) {
+  for (const LiveController& controller : controllers.known) {
+    std::printf("  controller %016llx: %s", static_cast<unsigned long long>(controller.number),
+                role_name(controller));
+    if (controller.state) {
+      std::printf("%s, failover priority %u, term %u", controller.state->ready() ? "" : ", not ready",
+                  controller.state->failover_priority(), controller.state->term());
+    }
+    std::printf("\n");
+  }
+  if (controllers.others > 0)
+    std::printf("  controller %d more found, which report no state\n", controllers.others);
 }
 
 nlohmann::ordered_json silent_json(const View& view, Clock::time_point now) {
@@ -156,14 +176,7 @@ nlohmann::ordered_json to_json(const View& view, const Rates& rates, const Comma
   json["settings"] = {{"name", control.settings().c_str()},
                       {"progress", control.gains_progress()},
                       {"gains", to_json(control.gains())}};
-  json["controllers"] = nlohmann::ordered_json::array();
-  for (const msg::ControllerState& controller : controllers_of(view, now)) {
-    json["controllers"].push_back({{"number", controller.controller()},
-                                   {"role", role_name(controller)},
-                                   {"ready", controller.ready()},
-                                   {"failover_priority", controller.failover_priority()},
-                                   {"term", controller.term()}});
-  }
+  json["controllers"] = controllers_json(controllers_of(view, now));
   json["vehicle_info"] = nullptr;
   if (view.vehicle.seen()) {
     const auto& info = view.vehicle.message;
@@ -206,8 +219,8 @@ void print(const View& view, const Rates& rates, const CommandOptions& options) 
     print_alarm(stdout, to_string(silence, std::chrono::system_clock::now()));
   if (control.source_conflict().size() > 0) print_alarm(stdout, control.source_conflict().c_str());
   std::printf("%s in domain %d: %s%s (%s), %s\n", options.network.vehicle.c_str(), options.network.domain,
-              silences.empty() ? "" : "last known: ", mode_name(control.mode()), control.reason().c_str(),
-              control.airborne() ? "airborne" : "on the ground");
+              control_is_silent(silences) ? "last known: " : "", mode_name(control.mode()),
+              control.reason().c_str(), control.airborne() ? "airborne" : "on the ground");
   if (view.estimate.seen()) {
     const auto& p = view.estimate.message.position_ned();
     const auto& v = view.estimate.message.velocity_ned();
@@ -252,11 +265,7 @@ void print(const View& view, const Rates& rates, const CommandOptions& options) 
       std::printf(", the gains change to it: %.0f %%", 100.0 * control.gains_progress());
     std::printf("\n");
   }
-  for (const msg::ControllerState& controller : controllers_of(view, now)) {
-    std::printf("  controller %016llx: %s%s, failover priority %u, term %u\n",
-                static_cast<unsigned long long>(controller.controller()), role_name(controller),
-                controller.ready() ? "" : ", not ready", controller.failover_priority(), controller.term());
-  }
+  print(controllers_of(view, now));
   if (view.vehicle.seen()) {
     const auto& info = view.vehicle.message;
     std::printf(

@@ -164,8 +164,11 @@ class Streamer {
         kSilence);
     const SetpointTally tally = vehicle_.state().setpoints;
     result_.tally = {tally.accepted - before_.accepted, tally.refused - before_.refused, tally.refusal};
-    if (result_.fault.empty() && result_.tally.accepted == 0) result_.fault = "no setpoint was accepted";
-    if (!result_.fault.empty() && result_.tally.refused > 0) result_.fault += "; " + result_.tally.refusal;
+    if (result_.tally.refused > 0) {
+      result_.fault = with_refusal();
+    } else if (result_.fault.empty() && result_.tally.accepted == 0) {
+      result_.fault = "no setpoint was accepted";
+    }
     return result_;
   }
 
@@ -200,8 +203,19 @@ class Streamer {
     if (state.mode == Mode::kSetpoint || (!followed_ && since_s < kSlack_s)) return true;
     result_.fault =
         fmt::format("stopped after {:.1f} s: the vehicle is {}", since_s, control::to_string(state.mode));
+    starved_ = followed_ && state.mode_reason == control::to_string(control::Reason::kSetpointsStopped);
     if (followed_) result_.fault += ": " + state.mode_reason;
     return false;
+  }
+
+  // The fault of a stream with refused setpoints. A vehicle that holds because the setpoints stopped does so
+  // because of the refusals.
+  std::string with_refusal() const {
+    const SetpointTally& tally = result_.tally;
+    const std::string refused =
+        fmt::format("{} of {} setpoints refused: {}", tally.refused, result_.sent, tally.refusal);
+    if (starved_) return fmt::format("stopped after {:.1f} s: ", result_.duration_s) + refused;
+    return result_.fault.empty() ? refused : result_.fault + "; " + refused;
   }
 
   Vehicle& vehicle_;
@@ -209,6 +223,7 @@ class Streamer {
   SetpointTally before_;
   double begin_s_ = 0.0;
   bool followed_ = false;
+  bool starved_ = false;  // the vehicle holds, because the setpoints stopped
   StreamResult result_;
 };
 

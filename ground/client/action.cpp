@@ -49,6 +49,15 @@ std::optional<ActionResult> action_result_by(const msg::ControlStatus& status, c
       "the controller no longer lists this request: it was restarted, or newer requests replaced it"};
 }
 
+std::string interruption_by(const ActionResult& canceled) {
+  const std::string request = "canceled by a newer request: ";
+  const std::string begin = "mission interrupted: ";
+  if (canceled.reason.compare(0, request.size(), request) == 0)
+    return begin + "another ground tool sent " + canceled.reason.substr(request.size());
+  if (canceled.reason == "canceled by setpoints") return begin + "another ground tool sent setpoints";
+  return begin + canceled.reason;
+}
+
 ActionHandle::ActionHandle(std::shared_ptr<const Client> client, Result answer)
     : client_(std::move(client)), answer_(std::move(answer)) {}
 

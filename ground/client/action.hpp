@@ -47,6 +47,9 @@ std::optional<ActionResult> action_result_of(const swiftlet_msgs::msg::RequestSt
 std::optional<ActionResult> action_result_by(const swiftlet_msgs::msg::ControlStatus& status,
                                              const Result& answer);
 
+// What canceled a mission: "mission interrupted: another ground tool sent goto".
+std::string interruption_by(const ActionResult& canceled);
+
 // Copyable. May outlive the Vehicle that returned it. Thread-safe.
 class ActionHandle {
  public:

@@ -13,6 +13,7 @@ namespace {
 
 // Longer than any gap of a healthy stream: IMU and poses come at 100 Hz or more, control_status and battery at
 // 10 Hz, vehicle_info at 1 Hz.
+constexpr const char* kControl = "control service";
 constexpr double kControlSilence_s = std::chrono::duration<double>(kConnectionSilence).count();
 constexpr double kSensorSilence_s = 0.5;
 constexpr double kBatterySilence_s = 2.0;
@@ -23,48 +24,48 @@ double age_s(const Latest<T>& latest, Clock::time_point now) {
   return latest.seen() ? latest.age_s(now) : INFINITY;
 }
 
-void judge(const char* who, double age_s, double limit_s, std::vector<Silence>& silences) {
-  if (age_s < 0.0) {
-    silences.push_back({who, std::nullopt});
+// age_s: below 0 or infinite if no sample has come.
+void judge(const char* who, double age_s, double limit_s, const char* missing,
+           std::vector<Silence>& silences) {
+  if (age_s < 0.0 || std::isinf(age_s)) {
+    silences.push_back({who, std::nullopt, missing});
   } else if (age_s > limit_s) {
-    silences.push_back({who, age_s});
+    silences.push_back({who, age_s, missing});
   }
 }
 
 // By the topics that come from the vehicle itself.
-void judge_vehicle(const View& view, Clock::time_point now, std::vector<Silence>& silences) {
-  if (!view.vehicle.seen() && !view.battery.seen() && !view.truth.seen()) {
-    silences.push_back({"vehicle", std::nullopt});
-    return;
-  }
+void judge_without_control(const View& view, Clock::time_point now, std::vector<Silence>& silences) {
   const double newest_s =
       std::min({age_s(view.vehicle, now), age_s(view.battery, now), age_s(view.truth, now)});
-  judge("vehicle", newest_s, kVehicleTopicsSilence_s, silences);
+  judge("vehicle", newest_s, kVehicleTopicsSilence_s, "no vehicle_info, battery or ground_truth", silences);
+  if (view.battery.seen())
+    judge("battery", age_s(view.battery, now), kBatterySilence_s, "no voltage", silences);
 }
 
 }  // namespace
 
 std::vector<Silence> silences_of(const View& view, Clock::time_point now) {
   std::vector<Silence> silences;
-  if (!view.control.seen()) {
-    silences.push_back({"control service", std::nullopt});
-    judge_vehicle(view, now, silences);
-    return silences;
-  }
   const msg::ControlStatus& control = view.control.message;
-  const double control_age_s = view.control.age_s(now);
-  judge("control service", control_age_s, kControlSilence_s, silences);
+  const double control_age_s = age_s(view.control, now);
+  judge(kControl, control_age_s, kControlSilence_s, "no control_status", silences);
   if (!silences.empty()) {
-    judge_vehicle(view, now, silences);
+    judge_without_control(view, now, silences);
     return silences;
   }
-  judge("vehicle", control.imu_age_s(), kSensorSilence_s, silences);
-  judge("motion capture", control.mocap_age_s(), kSensorSilence_s, silences);
-  judge("battery", control.battery_age_s(), kBatterySilence_s, silences);
+  judge("vehicle", control.imu_age_s(), kSensorSilence_s, "no IMU sample", silences);
+  judge("motion capture", control.mocap_age_s(), kSensorSilence_s, "no pose", silences);
+  judge("battery", control.battery_age_s(), kBatterySilence_s, "no voltage", silences);
   for (Silence& silence : silences) {
     if (silence.for_s) *silence.for_s += control_age_s;
   }
   return silences;
+}
+
+bool control_is_silent(const std::vector<Silence>& silences) {
+  return std::any_of(silences.begin(), silences.end(),
+                     [](const Silence& silence) { return silence.who == kControl; });
 }
 
 double pose_age_s(const View& view, Clock::time_point now) {
@@ -87,7 +88,7 @@ std::string to_string(const Silence& silence, std::chrono::system_clock::time_po
   std::strftime(clock, sizeof clock, "%H:%M:%S", &local);
   char duration[48];
   std::snprintf(duration, sizeof duration, " for %.1f s, since %s", *silence.for_s, clock);
-  return text + duration;
+  return text + duration + (silence.missing.empty() ? "" : " (" + silence.missing + ")");
 }
 
 }  // namespace swiftlet::ground

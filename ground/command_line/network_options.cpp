@@ -22,14 +22,10 @@ std::string fault_of_names(const std::string& list) {
 
 void add_network_options(runtime::CommandLine app, comms::NodeSettings& network, Vehicles vehicles) {
   network.name = "ground";
-  comms::add_node_options(app, network);
+  if (vehicles == Vehicles::kOne) return comms::add_node_options(app, network);
+  comms::add_node_options(app, network, {fault_of_names, "NAME[,NAME...]"});
   runtime::Option name = app.option("--vehicle-name");
-  if (vehicles == Vehicles::kOne) {
-    name.check(comms::fault_of_vehicle_name, "NAME");
-  } else {
-    name.check(fault_of_names, "NAME[,NAME...]");
-    name.describe(name.description() + "; separate several names with commas");
-  }
+  name.describe(name.description() + "; separate several names with commas");
 }
 
 std::vector<std::string> split_list(const std::string& list) {

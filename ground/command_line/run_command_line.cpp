@@ -5,6 +5,7 @@
 
 #include "swiftlet/ground/command_line/command.hpp"
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/services/runtime/process.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -14,9 +15,7 @@ int report_error(const std::exception& error, int code) {
   return code;
 }
 
-}  // namespace
-
-int run_command_line(runtime::Program& program, int argc, char** argv, const std::function<int()>& run) {
+int run_reporting_errors(runtime::Program& program, int argc, char** argv, const std::function<int()>& run) {
   using Parsed = runtime::Program::Parsed;
   try {
     const Parsed parsed = program.parse(argc, argv);
@@ -28,6 +27,12 @@ int run_command_line(runtime::Program& program, int argc, char** argv, const std
   } catch (const std::exception& error) {
     return report_error(error, kFailed);
   }
+}
+
+}  // namespace
+
+int run_command_line(runtime::Program& program, int argc, char** argv, const std::function<int()>& run) {
+  return runtime::exit_code_after_output("swiftlet", run_reporting_errors(program, argc, argv, run));
 }
 
 }  // namespace swiftlet::ground

@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "swiftlet/control/types/mode.hpp"
+#include "swiftlet/ground/client/action.hpp"
 #include "swiftlet/recording/flight_window.hpp"
 
 namespace swiftlet::ground {
@@ -17,12 +18,12 @@ using namespace std::chrono_literals;
 using ControlMode = control::Mode;
 
 constexpr auto kReadyTimeout = 20s;
-constexpr auto kDiscoveryTimeout = 5s;  // without any process of the vehicle
 constexpr auto kRequestTimeout = 3s;
 constexpr auto kRetryPeriod = 200ms;
 constexpr auto kStep = 50ms;
 constexpr auto kLastFiguresTimeout = 1500ms;
 constexpr auto kEndTimeout = 2s;
+constexpr auto kResultTimeout = 1s;    // of control_status after mission_status
 constexpr double kLongestStepS = 0.2;  // of this process, between two polls
 constexpr double kSilenceS = 3.0;      // without control_status or ground_truth
 constexpr double kLandingTimeoutS = 30.0;
@@ -53,13 +54,6 @@ std::string missing_peer(const View& view) {
     if (peer == view.peers.end() || !peer->second) return name;
   }
   return {};
-}
-
-// True if no process of the vehicle is discovered or heard; other ground tools do not count.
-bool finds_nothing(const View& view) {
-  const bool heard = view.control.seen() || view.vehicle.seen() || view.battery.seen();
-  return !heard && std::none_of(view.peers.begin(), view.peers.end(),
-                                [](const auto& peer) { return peer.first != "ground" && peer.second > 0; });
 }
 
 // Simulated time since `since_ns`. The time limits of a flight are in the vehicle's time.
@@ -129,11 +123,8 @@ void NetworkTransport::wait_until_ready() {
     require_alive();
     require_no_interrupt();
     const auto waited = Clock::now() - start;
-    if (!watch_.networks.empty() && waited > kDiscoveryTimeout && finds_nothing(client_.view()))
-      throw FlightFailure("looked on " + watch_.networks + ": " + client_.no_control());
     if (waited > kReadyTimeout) {
-      throw FlightFailure("not ready after 20 s: missing " + absent + "; looked for " + client_.where() +
-                          (watch_.networks.empty() ? "" : "; on " + watch_.networks));
+      throw FlightFailure("not ready after 20 s: missing " + absent + "; looked for " + client_.where());
     }
     progress_.update(kBeforeFlight, "waiting for " + absent);
   }
@@ -213,6 +204,7 @@ MissionTransport::Reply NetworkTransport::start_mission() {
                                      kRequestTimeout, cancelled);
   }
   require_alive();
+  start_ = answer;
   if (watch_.interrupts() > 0) abandon("interrupted");
   if (answer.accepted() && lockstep_) client_.simulation_clock().without_end();
   return {answer.accepted(), false, answer.reason};
@@ -228,12 +220,30 @@ void NetworkTransport::advance() {
   require_alive();
   const View view = client_.view();
   update_progress(view);
+  yield_to_other_tool(view);
   if (watch_.interrupts() > 0) abandon("interrupted");
   if (watch_.barrier != nullptr) {
     if (const auto failure = watch_.barrier->failure()) abandon(*failure);
   }
   if (control_silence_.lasts(view.control.count)) fail_silent("control");
   if (vehicle_silence_.lasts(view.truth.count)) fail_silent("the vehicle");
+}
+
+// Ends the flight if another tool's request or setpoints have ended the mission. The processes of an attached
+// vehicle outlive this one: the other tool goes on flying it.
+void NetworkTransport::yield_to_other_tool(const View& view) {
+  const auto& mission = view.mission.message;
+  if (mission.mission_id() != client_.mission_id() ||
+      mission.state() != msg::MissionStatus_Constants::ABORTED)
+    return;
+  std::optional<ActionResult> result;
+  client_.wait(kResultTimeout, [&](const View& news) {
+    result = action_result_by(news.control.message, start_);
+    return result.has_value();
+  });
+  if (!result || result->kind != ActionResult::Kind::kCanceled) return;
+  if (!watch_.attached) abandon(interruption_by(*result));
+  throw FlightFailure(interruption_by(*result) + "; the vehicle is left to it");
 }
 
 MissionTransport::Status NetworkTransport::status() const {

@@ -15,7 +15,8 @@
 
 namespace swiftlet::ground {
 
-// Lands the vehicle where a flight fails in the air and landing is possible. The first interrupt lands it, the second
+// Lands the vehicle where a flight fails in the air and landing is possible, but not an attached one that another
+// ground tool has taken over. The first interrupt lands it, the second
 // ends the flight at once. Together with other vehicles the mission starts when all are armed, and the failure of
 // another one lands this one.
 class NetworkTransport final : public MissionTransport {
@@ -24,7 +25,7 @@ class NetworkTransport final : public MissionTransport {
     std::function<std::optional<std::string>()> exited_process;  // a process that ended, as a sentence
     std::function<int()> interrupts;                             // by the user, so far
     StartBarrier* barrier = nullptr;                             // with other vehicles; null: alone
-    std::string networks{};  // where running processes are looked for; empty: they were started by this one
+    bool attached = false;                                       // to processes that outlive the flight
   };
 
   // In lockstep the plant was started paused.
@@ -64,12 +65,14 @@ class NetworkTransport final : public MissionTransport {
   void require_alive() const;
   void require_no_interrupt() const;
   void update_progress(const View& view);
+  void yield_to_other_tool(const View& view);
 
   Client& client_;
   const FlightRecord& record_;
   const MissionFile& mission_;
   bool lockstep_;
   std::int64_t paused_at_ns_ = 0;  // in lockstep, before the mission
+  Result start_;                   // the answer to the request that started the mission
   Watch watch_;
   Progress& progress_;
   Silence control_silence_, vehicle_silence_;

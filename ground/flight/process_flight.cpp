@@ -9,7 +9,6 @@
 #include "swiftlet/ground/flight/flight_settings.hpp"
 #include "swiftlet/ground/flight/network_transport.hpp"
 #include "swiftlet/recording/flight_window.hpp"
-#include "swiftlet/services/dds/discovery/interfaces.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -27,13 +26,6 @@ void take_figures(const View& view, FlightReport& report) {
   report.unanswered = vehicle.unanswered();
   report.sense_to_actuate = {vehicle.sense_to_actuate_p50_us(), vehicle.sense_to_actuate_p99_us(),
                              vehicle.sense_to_actuate_max_us()};
-}
-
-// Where an attached flight looks for the processes: "lo (127.0.0.1) only; with --network on ...".
-std::string networks_of(const LaunchConfiguration& plan, const comms::NodeSettings& network) {
-  if (plan.launch_mode != LaunchMode::kAttached) return {};
-  if (!network.localhost_only) return comms::interfaces_text(false);
-  return comms::interfaces_text(true) + " only; with --network on " + comms::interfaces_text(false);
 }
 
 }  // namespace
@@ -66,7 +58,7 @@ void ProcessFlight::fly_mission(const Interrupts& interrupts, StartBarrier* barr
   try {
     const NetworkTransport::Watch watch{[this] { return processes_->exited_process(); },
                                         [&] { return interrupts.count(); }, barrier,
-                                        networks_of(plan_, network_)};
+                                        plan_.launch_mode == LaunchMode::kAttached};
     NetworkTransport vehicle(client, record_, plan_.mission, plan_.clock, watch, progress);
     ground::fly_mission(vehicle, plan_.planned_duration_s);
     vehicle.wait_for_last_figures();

@@ -4,6 +4,8 @@
 #include <clocale>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <langinfo.h>
 #include <poll.h>
 #include <stdexcept>
 #include <string>
@@ -30,6 +32,14 @@ attr_t attributes_of(Emphasis emphasis, bool colours) {
       break;
   }
   return A_NORMAL;
+}
+
+// Where the terminal's characters are not UTF-8, '>' marks a text that is cut.
+std::string in_this_locale(std::string text) {
+  if (std::strcmp(nl_langinfo(CODESET), "UTF-8") == 0) return text;
+  if (const std::size_t cut = text.find(kCut); cut != std::string::npos)
+    text.replace(cut, std::strlen(kCut), ">");
+  return text;
 }
 
 }  // namespace
@@ -77,7 +87,8 @@ void TerminalScreen::show(const std::vector<ScreenLine>& lines) {
   const auto draw = [this](std::size_t row, int column, const std::string& text, Emphasis emphasis) {
     const attr_t attributes = attributes_of(emphasis, impl_->colours);
     wattron(stdscr, static_cast<int>(attributes));
-    mvwaddnstr(stdscr, static_cast<int>(row), column, text.c_str(), std::max(width() - column, 0));
+    const std::string shown = cut_to(text, static_cast<std::size_t>(std::max(width() - column, 0)));
+    mvwaddstr(stdscr, static_cast<int>(row), column, in_this_locale(shown).c_str());
     wattroff(stdscr, static_cast<int>(attributes));
   };
   for (std::size_t row = 0; row < lines.size(); ++row) {

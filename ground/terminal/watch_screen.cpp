@@ -7,6 +7,7 @@
 
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/control/types/settings.hpp"
+#include "swiftlet/ground/client/controllers.hpp"
 #include "swiftlet/ground/client/silence.hpp"
 #include "swiftlet/ground/terminal/state_lines.hpp"
 #include "swiftlet/services/messages/wire.hpp"
@@ -18,10 +19,12 @@ using comms::wire::vector;
 using control::Mode;
 using Eigen::Vector3d;
 
-constexpr double kSilence_s = 1.0;
 constexpr double kFarOff_m = 0.1;    // tracking error
 constexpr double kLateSteps = 0.01;  // share of the control steps
 constexpr const char* kKeys = "h hold   l land   s stop (rotors off): each asks for y   q quit";
+constexpr const char* kShortKeys = "h hold l land s stop q quit";
+constexpr std::size_t kFullWidth = 80;  // a screen of this size shows everything
+constexpr std::size_t kFullHeight = 24;
 
 Mode mode_of(const View& view) { return static_cast<Mode>(view.control.message.mode()); }
 
@@ -109,7 +112,10 @@ class Screen {
   Screen(int width, int height) : width_(at_least_one(width)), height_(at_least_one(height)) {}
 
   void add(ScreenLine line) {
-    if (lines_.size() + 1 >= height_) return;
+    if (lines_.size() + 1 >= height_) {
+      incomplete_ = true;
+      return;
+    }
     cut(line);
     lines_.push_back(std::move(line));
   }
@@ -134,26 +140,38 @@ class Screen {
     }
   }
   // Fills the screen with empty lines, and puts the last ones below.
-  Lines close(std::vector<std::string> last, Emphasis emphasis) {
-    if (last.size() > height_) last.resize(height_);
-    const std::size_t above = height_ - last.size();
-    lines_.resize(above);
-    for (std::string& text : last) {
-      ScreenLine line{std::move(text), emphasis};
-      cut(line);
-      lines_.push_back(std::move(line));
+  Lines close(const std::vector<std::string>& last, Emphasis emphasis) {
+    Lines below;
+    for (const std::string& text : last) {
+      below.push_back({text, emphasis});
+      cut(below.back());
     }
+    const bool overflows = lines_.size() + below.size() > height_;
+    if ((incomplete_ || overflows) && height_ >= static_cast<std::size_t>(kNoteHeight)) {
+      below.push_back({too_small(), Emphasis::kWarning});
+      cut(below.back());
+    }
+    if (below.size() > height_) below.resize(height_);
+    lines_.resize(height_ - below.size());
+    lines_.insert(lines_.end(), below.begin(), below.end());
     return std::move(lines_);
   }
+  std::size_t width() const { return width_; }
 
  private:
   static std::size_t at_least_one(int size) { return static_cast<std::size_t>(std::max(size, 1)); }
-  void cut(ScreenLine& line) const {
-    if (line.text.size() > width_) line.text.resize(width_);
-    const std::size_t right = width_ > kRightColumn ? width_ - kRightColumn : 0;
-    if (line.right_text.size() > right) line.right_text.resize(right);
+  bool is_small() const { return width_ < kFullWidth || height_ < kFullHeight; }
+  const char* too_small() const {
+    return is_small() ? "terminal too small, 80x24 shows all" : "terminal too small for all lines";
+  }
+  void cut(ScreenLine& line) {
+    const std::string whole = line.text;
+    line.text = cut_to(line.text, width_);
+    line.right_text = cut_to(line.right_text, width_ > kRightColumn ? width_ - kRightColumn : 0);
+    if (is_small() && line.text != whole) incomplete_ = true;
   }
 
+  bool incomplete_ = false;  // a line is left out, or cut on a small screen
   std::size_t width_, height_;
   Lines lines_;
 };
@@ -212,22 +230,31 @@ void add_timing(const View& view, const WatchFacts& facts, Clock::time_point now
   add(lines, fmt::format("{:<11} {:.1f} Hz, {} of {} steps late, longest {:.0f} us", "control",
                          control.rate_hz(), static_cast<unsigned long long>(control.deadline_misses()),
                          static_cast<unsigned long long>(control.cycles()), control.step_time_max_us()));
-  int active = 0;
-  int standby = 0;
-  for (const auto& [number, latest] : view.controllers) {
-    if (latest.age_s(now) >= kSilence_s) continue;
-    ++(latest.message.role() == msg::ControllerState_Constants::ACTIVE ? active : standby);
-  }
-  add(lines, fmt::format("{:<11} {} active, {} standby", "controllers", active, standby));
+  const LiveControllers controllers = controllers_of(view, now);
+  const auto active = std::count_if(controllers.known.begin(), controllers.known.end(),
+                                    [](const LiveController& controller) { return controller.active; });
+  const std::string others = controllers.others > 0 ? fmt::format(", {} unknown", controllers.others) : "";
+  add(lines, fmt::format("{:<11} {} active, {} standby{}", "controllers", active,
+                         static_cast<std::ptrdiff_t>(controllers.known.size()) - active, others));
 }
 
-std::vector<std::string> silence_lines(const View& view, const WatchFacts& facts, Clock::time_point now) {
-  std::vector<std::string> lines;
-  for (const Silence& silence : silences_of(view, now)) lines.push_back(to_string(silence, facts.system_now));
-  return lines;
+const char* last_known(const std::vector<Silence>& silences) {
+  return control_is_silent(silences) ? "last known: " : "";
 }
 
 }  // namespace
+
+std::string cut_to(const std::string& text, std::size_t columns) {
+  std::size_t cut_at = 0;  // the byte of the last column
+  std::size_t characters = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool begins = (static_cast<unsigned char>(text[i]) & 0xC0U) != 0x80U;
+    if (!begins) continue;
+    if (++characters == columns) cut_at = i;
+  }
+  if (characters <= columns) return text;
+  return columns > 0 ? text.substr(0, cut_at) + kCut : "";
+}
 
 std::vector<std::string> warnings_of(const View& view, Clock::time_point now) {
   std::vector<std::string> warnings;
@@ -260,21 +287,23 @@ std::vector<ScreenLine> watch_screen(const View& view, const WatchFacts& facts, 
   Screen screen(width, height);
   const msg::ControlStatus& control = view.control.message;
   const auto close = [&] {
-    if (facts.message.empty()) return screen.close({kKeys}, Emphasis::kPlain);
-    return screen.close(wrapped(facts.message, static_cast<std::size_t>(std::max(width, 1))),
-                        Emphasis::kHeading);
+    if (!facts.message.empty())
+      return screen.close(wrapped(facts.message, screen.width()), Emphasis::kHeading);
+    const std::string keys = kKeys;
+    return screen.close({keys.size() <= screen.width() ? keys : kShortKeys}, Emphasis::kPlain);
   };
   if (!view.control.seen()) {
     screen.add({fmt::format("{} in domain {}", facts.vehicle, facts.domain), Emphasis::kHeading});
     screen.add_wrapped("waiting: " + facts.where, Emphasis::kWarning);
     return close();
   }
-  const std::vector<std::string> silences = silence_lines(view, facts, now);
-  for (const std::string& silence : silences) screen.add_wrapped(silence, Emphasis::kWarning);
-  screen.add({fmt::format("{} in domain {}: {}{} ({}), {}", facts.vehicle, facts.domain,
-                          silences.empty() ? "" : "last known: ", mode_name(control.mode()),
-                          control.reason().c_str(), control.airborne() ? "airborne" : "on the ground"),
-              Emphasis::kHeading});
+  const std::vector<Silence> silences = silences_of(view, now);
+  for (const Silence& silence : silences)
+    screen.add_wrapped(to_string(silence, facts.system_now), Emphasis::kWarning);
+  screen.add_wrapped(fmt::format("{} in domain {}: {}{} ({}), {}", facts.vehicle, facts.domain,
+                                 last_known(silences), mode_name(control.mode()), control.reason().c_str(),
+                                 control.airborne() ? "airborne" : "on the ground"),
+                     Emphasis::kHeading);
   const std::vector<std::string> warnings = warnings_of(view, now);
   for (const std::string& warning : warnings) screen.add_wrapped("! " + warning, Emphasis::kWarning);
   if (warnings.empty() && silences.empty()) screen.add({"no warnings", Emphasis::kGood});
@@ -290,9 +319,9 @@ std::string watch_line(const View& view, const WatchFacts& facts, Clock::time_po
   if (!view.control.seen()) return facts.vehicle + ": waiting: " + facts.where;
   const msg::ControlStatus& control = view.control.message;
   std::string line = facts.vehicle + ": ";
-  const std::vector<std::string> silences = silence_lines(view, facts, now);
-  for (const std::string& silence : silences) line += silence + "; ";
-  if (!silences.empty()) line += "last known: ";
+  const std::vector<Silence> silences = silences_of(view, now);
+  for (const Silence& silence : silences) line += to_string(silence, facts.system_now) + "; ";
+  line += last_known(silences);
   line += fmt::format("{} ({})", mode_name(control.mode()), control.reason().c_str());
   if (view.estimate.seen()) {
     const auto& p = view.estimate.message.position_ned();

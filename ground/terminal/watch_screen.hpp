@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -11,6 +12,10 @@
 namespace swiftlet::ground {
 
 enum class Emphasis : std::uint8_t { kPlain, kHeading, kGood, kWarning };
+
+// At most `columns` characters of UTF-8 text. A text that is longer ends with kCut instead.
+constexpr const char* kCut = "\u2026";
+std::string cut_to(const std::string& text, std::size_t columns);
 
 // A line of text, and on a wide screen a second text from kRightColumn on. One column per character.
 constexpr int kRightColumn = 60;
@@ -40,7 +45,9 @@ std::vector<std::string> warnings_of(const View& view, Clock::time_point now);
 
 // Returns `height` lines of at most `width` characters, the most important first, so that a small screen
 // shows these: who is silent, mode, warnings. From kWideScreen columns on, the rest has two columns. The last
-// lines show the keys or the message.
+// lines show the keys or the message. If a line is left out, or cut on less than 80x24, the last line says so,
+// from kNoteHeight lines on.
+constexpr int kNoteHeight = 5;
 constexpr int kWideScreen = 120;
 std::vector<ScreenLine> watch_screen(const View& view, const WatchFacts& facts, Clock::time_point now,
                                      int width, int height);

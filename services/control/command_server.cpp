@@ -63,10 +63,12 @@ control::Outcome accept_with(const char* reason, Values... values) {
 control::Outcome stopped_without_imu(double imu_age_s) {
   if (imu_age_s < 0.0) {
     return accept_with(
-        "rotors off is commanded, but no IMU sample has come yet: nothing shows that the vehicle obeys");
+        "rotors off is commanded, but no IMU sample of the vehicle has come yet: it cannot confirm the stop");
   }
   return accept_with(
-      "rotors off is commanded, but no IMU sample has come for %.1f s: nothing shows that the vehicle obeys",
+      "rotors off is commanded, but the vehicle has been silent for %.1f s (no IMU sample): it cannot "
+      "confirm "
+      "the stop",
       imu_age_s);
 }
 
@@ -250,23 +252,25 @@ void CommandServer::submit(std::unique_ptr<PendingRequest> pending) {
   if (stops) wake_.post();
 }
 
-bool CommandServer::accept_overdue_stop(double imu_age_s, std::int64_t stamp_ns) {
+std::optional<control::RequestKey> CommandServer::accept_overdue_stop(double imu_age_s,
+                                                                      std::int64_t stamp_ns) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const bool silent = imu_age_s < 0.0 || imu_age_s > kImuSilence_s;
   const std::int64_t now_ns = runtime::monotonic_ns();
-  bool any = false;
+  std::optional<control::RequestKey> stop;
   for (const auto& [key, pending] : pending_) {
     if (pending->request.kind != control::RequestKind::kStop) continue;
     if (pending->state.load(std::memory_order_acquire) != PendingRequest::State::kWaiting) continue;
     if (!silent && now_ns - pending->asked_ns < kStopPatienceNs) continue;
-    any = true;
+    stop = pending->request.key;
     if (std::exchange(pending->answered, true)) continue;
     settle(key, pending->request.kind,
            silent ? stopped_without_imu(imu_age_s)
-                  : accept_with("rotors off is commanded, but the IMU samples are not usable"),
+                  : accept_with("rotors off is commanded, but the IMU samples of the vehicle are not usable: "
+                                "it cannot confirm the stop"),
            stamp_ns);
   }
-  return any;
+  return stop;
 }
 
 void CommandServer::refuse(const Key& key, control::RequestKind kind, const control::Outcome& outcome) {

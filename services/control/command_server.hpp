@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -46,10 +47,11 @@ class CommandServer {
   // Designs the gains in the calling thread.
   void on_control_settings(const comms::msg::ControlSettings& message);
 
-  // True while a stop request waits that the inner loop cannot evaluate, because IMU samples are missing or not
-  // usable. It is accepted; call collect() after it and command rotors off. The inner loop evaluates it with the
-  // next IMU sample. imu_age_s: since the last sample, -1 if there was none. stamp_ns: of the last sample.
-  bool accept_overdue_stop(double imu_age_s, std::int64_t stamp_ns);
+  // The stop request that waits and that the inner loop cannot evaluate, because IMU samples are missing
+  // or not usable; nullopt if there is none. It is accepted; call collect() after it and command rotors off. The inner loop
+  // evaluates it with the next IMU sample. imu_age_s: since the last sample, -1 if there was none. stamp_ns:
+  // of the last sample.
+  std::optional<control::RequestKey> accept_overdue_stop(double imu_age_s, std::int64_t stamp_ns);
 
   // Returns the answers to publish. Refuses requests that the inner loop has not evaluated in time, because
   // no IMU sample arrived; never a stop. Erases missions and trajectories that are no longer in use. Call from

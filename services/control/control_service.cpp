@@ -291,8 +291,11 @@ void ControlService::publish_command(const msg::ActuatorCommand& command) {
 // A stop request that no IMU sample lets the inner loop evaluate: commands rotors off until one does. In
 // lockstep, time stands while samples that arrive wait for others: they are evaluated later.
 void ControlService::publish_pending_stop(const StreamAges& ages) {
-  if (clock_ == runtime::Clock::kLockstep && ages.imu_s >= 0.0 && ages.imu_s < kImuSilence_s) return;
-  if (!command_server_.accept_overdue_stop(ages.imu_s, imu_arrivals_.stamp_ns())) return;
+  const bool waits = clock_ == runtime::Clock::kLockstep && ages.imu_s >= 0.0 && ages.imu_s < kImuSilence_s;
+  std::optional<control::RequestKey> stop;
+  if (!waits) stop = command_server_.accept_overdue_stop(ages.imu_s, imu_arrivals_.stamp_ns());
+  telemetry_.set_unconfirmed_stop(stop);
+  if (!stop) return;
   msg::ActuatorCommand command;
   command.stamp_ns(imu_arrivals_.stamp_ns());
   command.sequence_number(imu_arrivals_.sequence());

@@ -23,6 +23,19 @@ bool is_over(control::MissionState state) {
   return state == control::MissionState::kCompleted || state == control::MissionState::kAborted;
 }
 
+void show_stop(const control::RequestKey& key, comms::msg::ControlStatus& message) {
+  message.mode(static_cast<std::uint8_t>(control::Mode::kStopped));
+  message.reason() = "emergency stop is active, but the vehicle is silent and cannot confirm it";
+  auto& earlier = message.earlier_requests();
+  std::rotate(earlier.begin(), earlier.end() - 1, earlier.end());
+  earlier.front() = message.request();
+  control::RequestStatus stop;
+  stop.key = key;
+  stop.kind = control::RequestKind::kStop;
+  stop.state = control::RequestState::kAccepted;
+  message.request() = comms::to_message(stop);
+}
+
 }  // namespace
 
 Telemetry::Telemetry(InnerLoop& loop, CommandServer& command_server,
@@ -52,6 +65,11 @@ void Telemetry::set_streams(const StreamAges& ages, const std::string& source_co
   ages_ = ages;
   if (source_conflict_.empty() && !source_conflict.empty()) spdlog::warn(source_conflict);
   source_conflict_ = source_conflict;
+}
+
+void Telemetry::set_unconfirmed_stop(const std::optional<control::RequestKey>& stop) {
+  if (stop.has_value() != unconfirmed_stop_.has_value()) status_due_ns_ = 0;
+  unconfirmed_stop_ = stop;
 }
 
 void Telemetry::publish_due() {
@@ -183,6 +201,7 @@ void Telemetry::publish_status() {
   message.request() = comms::to_message(requests.back());
   for (std::size_t i = 0; i < message.earlier_requests().size(); ++i)
     message.earlier_requests()[i] = comms::to_message(requests[requests.size() - 2 - i]);
+  if (unconfirmed_stop_) show_stop(*unconfirmed_stop_, message);
   statuses_.publish(message);
   saturated_ = false;
   status_due_ns_ = runtime::monotonic_ns() + kStatusPeriodNs;

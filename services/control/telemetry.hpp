@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,9 @@ class Telemetry {
   // Sets what control_status reports of the streams. source_conflict: a sentence or empty; logged when it
   // begins.
   void set_streams(const StreamAges& ages, const std::string& source_conflict);
+  // A stop request that is accepted and commanded, but that no IMU sample has let the inner loop evaluate:
+  // control_status shows it.
+  void set_unconfirmed_stop(const std::optional<control::RequestKey>& stop);
   // Warns when IMU samples stop. Call before publish_due().
   void watch_imu() { watches_imu_ = true; }
   // Call from the thread of publish_due(), or after it has ended.
@@ -53,6 +57,7 @@ class Telemetry {
   bool imu_silent_ = false;
   StreamAges ages_;
   std::string source_conflict_;
+  std::optional<control::RequestKey> unconfirmed_stop_;
 
   Snapshot last_;
   bool saturated_ = false;        // since the last control_status

@@ -2,12 +2,14 @@
 
 namespace swiftlet::comms {
 
-void add_node_options(runtime::CommandLine app, NodeSettings& settings) {
+void add_node_options(runtime::CommandLine app, NodeSettings& settings, const NameCheck& name) {
   app.add_option("--domain", settings.domain, "DDS domain")
       .environment("ROS_DOMAIN_ID")
       .range(0, 232)
       .show_default();
-  app.add_option("--vehicle-name", settings.vehicle, "Namespace of the topics").show_default();
+  app.add_option("--vehicle-name", settings.vehicle, "Namespace of the topics")
+      .show_default()
+      .check(name.fault_of, name.value_name);
   app.add_choice("--transport", settings.transport,
                  {{"udp", Transport::kUdp}, {"shm", Transport::kSharedMemory}},
                  "udp, or shm: shared memory between processes of this host")

@@ -1,12 +1,22 @@
 // The command-line options of every program that joins the network.
 #pragma once
 
+#include <functional>
+#include <string>
+
 #include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/dds/vehicle_name.hpp"
 #include "swiftlet/services/runtime/command_line.hpp"
 
 namespace swiftlet::comms {
 
+// The check of --vehicle-name, as for runtime::Option::check().
+struct NameCheck {
+  std::function<std::string(const std::string&)> fault_of = fault_of_vehicle_name;
+  std::string value_name = "NAME";
+};
+
 // --domain (default $ROS_DOMAIN_ID or 0), --vehicle-name, --transport udp|shm, --localhost-only.
-void add_node_options(runtime::CommandLine app, NodeSettings& settings);
+void add_node_options(runtime::CommandLine app, NodeSettings& settings, const NameCheck& name = {});
 
 }  // namespace swiftlet::comms

@@ -31,9 +31,13 @@ struct ProgramText {
   const char* version = nullptr;  // with it, the program has --version
 };
 
-// Parses the command line, which also has --version, limits the stacks of threads, then runs body. Exit code: 0 done (also --help); 2
-// wrong usage or bad input (ConfigError, std::invalid_argument); 1 any other exception. Prints an error as
-// one line on stderr.
+// The last step of a main function: writes out standard output. Returns `exit_code`, or 1 instead of 0 after
+// one line on stderr if some of the output could not be written.
+int exit_code_after_output(const char* program, int exit_code);
+
+// Parses the command line, which also has --version, limits the stacks of threads, then runs body. Exit code:
+// 0 done (also --help); 2 wrong usage or bad input (ConfigError, std::invalid_argument); 1 any other
+// exception, or standard output that cannot be written. Prints an error as one line on stderr.
 int run_process(const ProgramText& text, int argc, char** argv,
                 const std::function<void(CommandLine)>& add_options, const std::function<void()>& body);
 

@@ -224,11 +224,12 @@ case "$name ${1-} ${2-}" in
     [[ $DOCS_CLOCK == realtime ]] || add --clock lockstep
     ;;
   "swiftlet fly "*)
-    for i in "${!words[@]}"; do [[ ${words[i]} == --network ]] && unset "words[i]"; done
-    has --attach || {
+    if has --attach; then
+      add --localhost-only
+    else
       unset ROS_DOMAIN_ID  # it takes a free one
       [[ $DOCS_CLOCK == realtime ]] || has --speed || add --clock lockstep
-    }
+    fi
     ;;
   "swiftlet mission fly" | "swiftlet mission upload" | "swiftlet mission start" | "swiftlet mission pause" | \
     "swiftlet mission resume" | "swiftlet mission skip" | "swiftlet mission clear" | \

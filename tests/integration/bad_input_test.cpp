@@ -150,6 +150,15 @@ TEST_F(BadInput, WrongUsage) {
   expect_refusal({"square", "--transport", "pigeon"}, "--transport: is pigeon, must be udp or shm");
 }
 
+TEST_F(BadInput, NameOfAVehicle) {
+  for (const char* program : {"swiftlet-plant", "swiftlet-mocap", "swiftlet-control"}) {
+    const ProgramResult result = run_program(program, {"--vehicle-name", "a b"}, folder_.path());
+    EXPECT_EQ(result.exit_code, 2) << program;
+    EXPECT_NE(result.errors.find("--vehicle-name: must be 1 to 64 letters, digits and _"), std::string::npos)
+        << result.errors;
+  }
+}
+
 TEST_F(BadInput, RecordFolderThatCannotBeCreated) {
   const std::string file = folder_.write("file", "");
   const ProgramResult result =

@@ -100,8 +100,8 @@ TEST_F(Failsafe, LandsWhenTheGroundToolIsKilled) {
                     "  - {kind: takeoff, height_m: 0.8, speed_m_s: 0.8, hold_s: 300}\n"
                     "  - {kind: land, speed_m_s: 0.4}\n");
   Program fly("swiftlet",
-              {"fly", mission, "--attach", "--domain", std::to_string(lock_.domain()), "--record",
-               folder_.path() / "record"},
+              {"fly", mission, "--attach", "--localhost-only", "--domain", std::to_string(lock_.domain()),
+               "--record", folder_.path() / "record"},
               folder_.path());
   ASSERT_TRUE(eventually([&] { return -client_->view().truth.message.position_ned()[2] > 0.7; }, kTimeout))
       << fly.errors();

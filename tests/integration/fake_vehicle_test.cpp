@@ -108,11 +108,18 @@ TEST_F(FakeVehicleFlight, StopReachesAVehicleWhoseSamplesDoNotArrive) {
 
   const ground::Result answer = ask(msg::Command_Constants::STOP);
   EXPECT_TRUE(answer.accepted()) << answer.reason;
-  EXPECT_NE(answer.reason.find("rotors off is commanded, but no IMU sample has come for "), std::string::npos)
+  EXPECT_NE(answer.reason.find("rotors off is commanded, but the vehicle has been silent for "),
+            std::string::npos)
       << answer.reason;
+  EXPECT_TRUE(wait_for(Mode::kStopped)) << "it is shown before a sample confirms it";
+  EXPECT_EQ(client_.view().control.message.request().state(), msg::RequestStatus_Constants::ACCEPTED);
+  EXPECT_EQ(client_.view().control.message.request().id(), answer.key.id);
   EXPECT_TRUE(eventually([&] { return rotors_are_off(); }));
 
   vehicle_->sends_imu = true;
+  EXPECT_TRUE(client_.wait(kTimeout, [](const View& view) {
+    return view.control.message.request().state() == msg::RequestStatus_Constants::SUCCEEDED;
+  }));
   EXPECT_TRUE(wait_for(Mode::kStopped)) << "the samples that come again do not undo it";
   EXPECT_TRUE(rotors_are_off());
 }

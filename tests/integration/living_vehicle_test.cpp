@@ -181,14 +181,18 @@ TEST_F(LivingVehicle, ADeadVehicleIsReportedSilentFirst) {
   const ProgramResult status = run("swiftlet", {"status", "--watch", "0.1"});
   EXPECT_EQ(status.output.rfind("VEHICLE SILENT for ", 0), 0U) << status.output;
   EXPECT_NE(status.output.find("s, since "), std::string::npos) << status.output;
-  EXPECT_NE(status.output.find("\nkl1 in domain " + std::to_string(lock_.domain()) + ": last known: holding"),
+  EXPECT_NE(status.output.find(" (no IMU sample)\n"), std::string::npos) << status.output;
+  EXPECT_NE(status.output.find("\nkl1 in domain " + std::to_string(lock_.domain()) + ": holding"),
             std::string::npos)
       << status.output;
   EXPECT_NE(status.output.find("pose      MISSING"), std::string::npos) << status.output;
+  EXPECT_NE(status.output.find("\n  controller "), std::string::npos) << status.output;
 
   const ProgramResult list = run("swiftlet", {"list", "--time", "1"});
   EXPECT_EQ(list.output.rfind("kl1: VEHICLE SILENT for ", 0), 0U) << list.output;
-  EXPECT_EQ(list.output.find("holding"), std::string::npos) << list.output;
+  EXPECT_NE(list.output.find(" holding "), std::string::npos) << list.output;
+  const ProgramResult facts = run("swiftlet", {"list", "--json", "--time", "1"});
+  EXPECT_EQ(json::parse(facts.output).at(0).at("controllers"), 1) << facts.output;
 
   const ProgramResult watch = run("swiftlet", {"watch", "--plain", "--duration", "1.5"});
   EXPECT_NE(watch.output.find("kl1: VEHICLE SILENT for "), std::string::npos) << watch.output;
@@ -196,12 +200,20 @@ TEST_F(LivingVehicle, ADeadVehicleIsReportedSilentFirst) {
 
   EXPECT_EQ(rotors_off, 0);
   const ProgramResult stop = run("swiftlet", {"stop", "--yes"});
-  EXPECT_EQ(stop.exit_code, 0) << stop.errors;
+  EXPECT_EQ(stop.exit_code, 1) << stop.output;
+  EXPECT_EQ(stop.output, "stop: accepted by kl1\n");
   EXPECT_EQ(
-      stop.output.rfind("stop: accepted by kl1: rotors off is commanded, but no IMU sample has come for ", 0),
+      stop.errors.rfind("swiftlet: stop: published and accepted by the controller, not confirmed: rotors "
+                        "off is commanded, but the vehicle has been silent for ",
+                        0),
       0U)
-      << stop.output;
+      << stop.errors;
   EXPECT_TRUE(eventually([&] { return rotors_off > 0; }));
+  const ProgramResult stopped = run("swiftlet", {"status", "--watch", "0.1"});
+  EXPECT_NE(stopped.output.find(": stopped (emergency stop is active, but the vehicle is silent"),
+            std::string::npos)
+      << stopped.output;
+  EXPECT_NE(stopped.output.find("  request   stop: accepted"), std::string::npos) << stopped.output;
 }
 
 TEST_F(LivingVehicle, ADeadMotionCaptureIsReportedSilentFirst) {
@@ -231,12 +243,12 @@ TEST(Attached, AFlightThatFindsNothingSaysWhereItLooked) {
   const comms::DomainLock lock;
   const TemporaryFolder folder;
   const ProgramResult fly = run_program("swiftlet",
-                                        {"fly", "square", "--attach", "--domain",
+                                        {"fly", "square", "--attach", "--localhost-only", "--domain",
                                          std::to_string(lock.domain()), "--record", folder.path() / "r"},
                                         folder.path());
   EXPECT_EQ(fly.exit_code, 1);
-  for (const char* part :
-       {"no control service for vehicle kl1 in domain ", "looked on lo (127.0.0.1) only; with --network on "})
+  for (const char* part : {"no control service for vehicle kl1 in domain ",
+                           "looked on lo (127.0.0.1) only; without --localhost-only on "})
     EXPECT_NE(fly.errors.find(part), std::string::npos) << part << "\n" << fly.errors;
 }
 

@@ -313,8 +313,9 @@ TEST_F(OnlineFlight, ReportsACanceledMission) {
   ASSERT_TRUE(reaches("in the air", [](const json& status) { return status.at("airborne") == true; }));
   expect_accepted({"land"});
   EXPECT_EQ(mission.wait(kStuck), 1);
-  EXPECT_NE(mission.errors().find("swiftlet: mission hover: canceled by a newer request: land"),
-            std::string::npos)
+  EXPECT_NE(
+      mission.errors().find("swiftlet: mission hover: mission interrupted: another ground tool sent land"),
+      std::string::npos)
       << mission.errors();
   ASSERT_TRUE(reaches_mode("disarmed"));
 }
@@ -334,11 +335,38 @@ TEST_F(OnlineFlight, FlyAttachesToRunningProcesses) {
       << "fly must not end processes that it did not start";
 }
 
+const std::string kHoverMission =
+    "frame: ned\ntolerance_m: 0.1\nitems:\n"
+    "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.8, hold_s: 100}\n"
+    "  - {kind: land, speed_m_s: 0.8}\n";
+
+TEST_F(OnlineFlight, FlyRefusesAVehicleThatIsInFlight) {
+  const std::string file = folder_.write("hover.yaml", kHoverMission);
+  expect_accepted({"arm"});
+  ASSERT_EQ(swiftlet({"mission", "fly", file, "--no-wait"}).exit_code, 0);
+  ASSERT_TRUE(reaches_mode("mission"));
+  const ProgramResult result = run_program("swiftlet", attach(file), folder_.path(), kStuck);
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.errors,
+            "swiftlet: vehicle kl7 is in flight: mission, item 1 of 2; wait until it has landed, or end its "
+            "flight with `swiftlet hold` and `swiftlet land`\n");
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "record"));
+  EXPECT_EQ(status().at("mode"), "mission");
+}
+
+TEST_F(OnlineFlight, FlyLeavesTheVehicleToAToolThatTakesOver) {
+  Program fly("swiftlet", attach(folder_.write("hover.yaml", kHoverMission)), folder_.path());
+  ASSERT_TRUE(reaches_place(0.0, 0.0, -0.5));
+  expect_accepted({"goto", "0.2", "0", "-0.5"});
+  ASSERT_EQ(fly.wait(kStuck), 1) << fly.errors();
+  EXPECT_EQ(json::parse(fly.output()).at("reason"),
+            "mission interrupted: another ground tool sent goto; the vehicle is left to it");
+  ASSERT_TRUE(reaches_place(0.2, 0.0, -0.5));
+  EXPECT_EQ(status().at("mode"), "holding") << "it was not landed";
+}
+
 TEST_F(OnlineFlight, FlyReportsASilentVehicle) {
-  const std::string file = folder_.write("hover.yaml",
-                                         "frame: ned\ntolerance_m: 0.1\nitems:\n"
-                                         "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.8, hold_s: 100}\n"
-                                         "  - {kind: land, speed_m_s: 0.8}\n");
+  const std::string file = folder_.write("hover.yaml", kHoverMission);
   Program fly("swiftlet", attach(file), folder_.path());
   ASSERT_TRUE(eventually([&] { return fly.errors().find("1/2 takeoff") != std::string::npos; }, kStuck))
       << fly.errors();

@@ -64,11 +64,23 @@ TEST_F(StreamFlight, ReportsAVelocityThatLeavesTheFence) {
       << slow.errors;
   const ProgramResult result = swiftlet({"stream", file, "--rate", "5", "--land"}, kStuck);
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_NE(result.errors.find("the vehicle is holding: setpoints stopped; setpoint: stopping point: x is"),
-            std::string::npos)
+  EXPECT_NE(result.errors.find(" setpoints refused: setpoint: stopping point: x is"), std::string::npos)
       << result.errors;
+  EXPECT_EQ(result.errors.find("setpoints stopped"), std::string::npos) << result.errors;
   EXPECT_NE(result.output.find("now disarmed at ("), std::string::npos) << result.output;
   EXPECT_LT(status().at("position_ned_m")[0].get<double>(), 3.0);
+}
+
+TEST_F(StreamFlight, NamesTheRefusalOfItsLastSetpoints) {
+  take_off();
+  const std::string file = folder_.write(
+      "low.csv", "t [s],x_ned [m],y_ned [m],z_ned [m]\n0,0,0,-0.6\n0.4,0,0,-0.5\n0.8,0,0,-0.05\n");
+  const ProgramResult result = swiftlet({"stream", file, "--json"}, kStuck);
+  EXPECT_EQ(result.exit_code, 1) << result.output;
+  const std::string reason = json::parse(result.output).at("reason");
+  EXPECT_NE(reason.find("1 of 3 setpoints refused: setpoint: z = -0.050 m is 0.050 m above the ground"),
+            std::string::npos)
+      << reason;
 }
 
 TEST_F(StreamFlight, IsRefusedOnTheGround) {

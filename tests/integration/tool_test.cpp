@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <regex>
 #include <sstream>
+#include <utility>
 
 #include "tests/support/online_flight.hpp"
 #include "tests/support/terminal.hpp"
@@ -64,6 +65,20 @@ TEST_F(Tool, BashCompletesNamesOfConfigurationFilesAndVehicles) {
   EXPECT_EQ(completed({asked, "set", "control", ""}), Words({"asked:config_ls_--names_control"}));
   EXPECT_EQ(completed({asked, "arm", "--vehicle-name", ""}), Words({"asked:list_--names_--time_0.5"}));
   EXPECT_EQ(run({"config", "ls", "--names", "missions"}).output, "identification\nsquare\ntour\nzigzag\n");
+}
+
+TEST_F(Tool, AllProgramsFailIfTheirOutputCannotBeWritten) {
+  const std::vector<std::pair<std::string, std::string>> commands = {
+      {"swiftlet", "config ls"},    {"swiftlet", "config show kaylion"}, {"swiftlet-identify", "--help"},
+      {"swiftlet-plant", "--help"}, {"swiftlet-mocap", "--version"},     {"swiftlet-control", "--help"}};
+  for (const auto& [program, arguments] : commands) {
+    const ProgramResult result =
+        run_program("/bin/sh", {"-c", "'" SWIFTLET_BIN_DIR "/" + program + "' " + arguments + " > /dev/full"},
+                    folder_.path());
+    EXPECT_EQ(result.exit_code, 1) << program;
+    const std::string name = program == "swiftlet-identify" ? "swiftlet" : program;
+    EXPECT_EQ(result.errors, name + ": cannot write to standard output: No space left on device\n");
+  }
 }
 
 TEST_F(Tool, ConfigListsAndPrintsNamedFiles) {
@@ -150,8 +165,9 @@ TEST_F(AtATerminal, WatchShowsTheFlightAndExecutesKeys) {
     EXPECT_TRUE(shows(part)) << part << "\n" << terminal.text();
 
   terminal.resize(50, 8);
-  ASSERT_TRUE(eventually([&] { return terminal.line(7).rfind("h hold", 0) == 0; }, kStuck))
+  ASSERT_TRUE(eventually([&] { return terminal.line(7).rfind("terminal too small", 0) == 0; }, kStuck))
       << terminal.text();
+  EXPECT_EQ(terminal.line(6).rfind("h hold", 0), 0U) << terminal.text();
   EXPECT_EQ(terminal.line(0).rfind("kl7 in domain", 0), 0U) << terminal.text();
   terminal.resize(120, 40);
   ASSERT_TRUE(eventually([&] { return terminal.line(39).rfind("h hold", 0) == 0; }, kStuck))

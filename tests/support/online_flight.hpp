@@ -102,6 +102,7 @@ class OnlineFlight : public Online {
     return {"fly",
             mission,
             "--attach",
+            "--localhost-only",
             "--domain",
             std::to_string(lock_.domain()),
             "--vehicle-name",

@@ -71,5 +71,17 @@ TEST(ActionResults, AreLostWhenALaterStatusOmitsTheRequest) {
   EXPECT_EQ(summary_of(action_result_by({}, kAnswer)), "under way");
 }
 
+TEST(Interruption, NamesWhatAnotherToolSent) {
+  const auto text = [](Event ended_by) {
+    RequestStatus request;
+    request.state = RequestState::kCanceled;
+    request.ended_by = ended_by;
+    return interruption_by({ActionResult::Kind::kCanceled, result_of(request)});
+  };
+  EXPECT_EQ(text(Event::kGoTo), "mission interrupted: another ground tool sent goto");
+  EXPECT_EQ(text(Event::kSetpoint), "mission interrupted: another ground tool sent setpoints");
+  EXPECT_EQ(interruption_by({ActionResult::Kind::kCanceled, "replaced"}), "mission interrupted: replaced");
+}
+
 }  // namespace
 }  // namespace swiftlet::ground

@@ -72,7 +72,9 @@ TEST(Silences, OfControlAloneLeaveTheVehicleToItsOwnTopics) {
   View view = healthy(3s);
   EXPECT_EQ(text_of(view), "control service 3;");
   view.vehicle.received = view.battery.received = kNow - 4s;
-  EXPECT_EQ(text_of(view), "control service 3;vehicle 4;");
+  EXPECT_EQ(text_of(view), "control service 3;vehicle 4;battery 4;");
+  view.vehicle.received = kNow;
+  EXPECT_EQ(text_of(view), "control service 3;battery 4;");
   view.battery.received = kNow;
   EXPECT_EQ(text_of(view), "control service 3;");
   EXPECT_EQ(text_of(View()), "control service never;vehicle never;");
@@ -87,8 +89,18 @@ TEST(Silences, SaySinceWhen) {
   local.tm_sec = 10;
   const auto now = std::chrono::system_clock::from_time_t(std::mktime(&local));
   EXPECT_EQ(to_string(Silence{"vehicle", 3.0}, now), "VEHICLE SILENT for 3.0 s, since 14:03:07");
+  EXPECT_EQ(to_string(Silence{"vehicle", 3.0, "no IMU sample"}, now),
+            "VEHICLE SILENT for 3.0 s, since 14:03:07 (no IMU sample)");
   EXPECT_EQ(to_string(Silence{"motion capture", std::nullopt}, now),
             "MOTION CAPTURE SILENT: nothing has come from it yet");
+}
+
+TEST(ControlIsSilent, ByItsOwnSilenceAlone) {
+  View view = healthy();
+  view.control.message.imu_age_s(3.0);
+  EXPECT_FALSE(control_is_silent(silences_of(view, kNow)));
+  EXPECT_TRUE(control_is_silent(silences_of(healthy(3s), kNow)));
+  EXPECT_TRUE(control_is_silent(silences_of(View(), kNow)));
 }
 
 TEST(PoseAge, GrowsWhileControlIsSilent) {

@@ -66,10 +66,10 @@ TEST_F(CommandLine, HeightIsAnotherWordForZ) {
 }
 
 TEST_F(CommandLine, FlyAttachesOrStartsProcesses) {
-  EXPECT_TRUE(parses("fly square --attach --network"));
+  EXPECT_TRUE(parses("fly square --attach"));
+  EXPECT_TRUE(parses("fly square --attach --localhost-only"));
   EXPECT_FALSE(parses("fly square --attach --seed 2"));
   EXPECT_FALSE(parses("fly square --attach --vehicle other.yaml"));
-  EXPECT_FALSE(parses("fly square --network"));
 }
 
 TEST_F(CommandLine, TakeoffRequiresAPositiveHeight) {

@@ -57,17 +57,15 @@ std::string text_of(const std::vector<ScreenLine>& lines) {
   return text;
 }
 
-TEST(WatchScreen, FitsAnyScreenSizeWithKeysOnTheLastLine) {
+TEST(WatchScreen, FitsAnyScreenSize) {
   View view = in_flight();
   view.battery.message.voltage_v(3.0);
   for (const int width : {1, 10, 40, 80, 200}) {
     for (const int height : {1, 2, 5, 24, 60}) {
       const auto lines = watch_screen(view, facts(), kNow, width, height);
       ASSERT_EQ(lines.size(), static_cast<std::size_t>(height));
-      for (const ScreenLine& line : lines) ASSERT_LE(line.text.size(), static_cast<std::size_t>(width));
-      EXPECT_EQ(lines.back().text,
-                std::string("h hold   l land   s stop (rotors off): each asks for y   q quit")
-                    .substr(0, static_cast<std::size_t>(width)));
+      for (const ScreenLine& line : lines)
+        ASSERT_EQ(cut_to(line.text, static_cast<std::size_t>(width)), line.text);
     }
   }
   const auto small = watch_screen(view, facts(), kNow, 80, 3);
@@ -75,6 +73,30 @@ TEST(WatchScreen, FitsAnyScreenSizeWithKeysOnTheLastLine) {
   EXPECT_EQ(small[1].text, "! battery is critical: 3.00 V, below 3.30 V")
       << "the most important warning stays";
   EXPECT_EQ(small[1].emphasis, Emphasis::kWarning);
+}
+
+TEST(WatchScreen, ShowsTheKeysBelow) {
+  EXPECT_EQ(watch_screen(in_flight(), facts(), kNow, 80, 24).back().text,
+            "h hold   l land   s stop (rotors off): each asks for y   q quit");
+  EXPECT_EQ(watch_screen(in_flight(), facts(), kNow, 40, 3).back().text, "h hold l land s stop q quit");
+}
+
+TEST(WatchScreen, SaysThatLinesAreCutOrLeftOut) {
+  const auto narrow = watch_screen(in_flight(), facts(), kNow, 30, 60);
+  EXPECT_EQ(narrow.back().text, "terminal too small, 80x24 sho" + std::string(kCut));
+  EXPECT_NE(text_of(narrow).find("position       0.001    0.000" + std::string(kCut)), std::string::npos);
+  const auto small = watch_screen(in_flight(), facts(), kNow, 40, 12);
+  EXPECT_EQ(small[10].text, "h hold l land s stop q quit");
+  EXPECT_EQ(small[11].text, "terminal too small, 80x24 shows all");
+  EXPECT_EQ(small[11].emphasis, Emphasis::kWarning);
+  EXPECT_EQ(text_of(watch_screen(in_flight(), facts(), kNow, 80, 24)).find("too small"), std::string::npos);
+}
+
+TEST(CutTo, CountsCharactersAndMarksTheCut) {
+  EXPECT_EQ(cut_to("abc", 3), "abc");
+  EXPECT_EQ(cut_to("abcd", 3), "ab" + std::string(kCut));
+  EXPECT_EQ(cut_to("ab" + std::string(kCut), 3), "ab" + std::string(kCut));
+  EXPECT_EQ(cut_to("abc", 0), "");
 }
 
 TEST(WatchScreen, ShowsPositionAndTrackingError) {
@@ -98,14 +120,15 @@ TEST(WatchScreen, ShowsFirstWhoIsSilent) {
     const auto lines = watch_screen(view, facts(), kNow, width, 24);
     EXPECT_EQ(lines[0].text.rfind("VEHICLE SILENT for 3.0 s, since ", 0), 0U) << lines[0].text;
     EXPECT_EQ(lines[0].emphasis, Emphasis::kWarning);
-    EXPECT_EQ(lines[1].text, "kl1 in domain 0: last known: holding (take-off completed), airborne");
+    EXPECT_EQ(lines[1].text, "kl1 in domain 0: holding (take-off completed), airborne");
     EXPECT_EQ(text_of(lines).find("no warnings"), std::string::npos);
   }
   EXPECT_EQ(watch_line(view, facts(), kNow).rfind("kl1: VEHICLE SILENT for 3.0 s, since ", 0), 0U);
   view = in_flight();
   view.control.received -= std::chrono::seconds(3);
-  EXPECT_EQ(watch_screen(view, facts(), kNow, 80, 24)[0].text.rfind("CONTROL SERVICE SILENT for 3.0 s", 0),
-            0U);
+  const auto lines = watch_screen(view, facts(), kNow, 80, 24);
+  EXPECT_EQ(lines[0].text.rfind("CONTROL SERVICE SILENT for 3.0 s", 0), 0U) << lines[0].text;
+  EXPECT_EQ(lines[1].text, "kl1 in domain 0: last known: holding (take-off completed), airborne");
 }
 
 TEST(WatchScreen, UsesAWideScreenInTwoColumns) {

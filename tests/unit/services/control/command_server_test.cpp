@@ -228,9 +228,9 @@ TEST_F(CommandServerTest, AcceptsAStopWithoutImuSamples) {
   EXPECT_EQ(answers[0].stamp_ns, 7);
   EXPECT_STREQ(
       answers[0].outcome.reason,
-      "rotors off is commanded, but no IMU sample has come for 3.2 s: nothing shows that the vehicle "
-      "obeys");
-  EXPECT_TRUE(command_server_.accept_overdue_stop(3.3, 7)) << "until a sample comes";
+      "rotors off is commanded, but the vehicle has been silent for 3.2 s (no IMU sample): it cannot confirm "
+      "the stop");
+  EXPECT_EQ(command_server_.accept_overdue_stop(3.3, 7)->id, 2U) << "until a sample comes";
   EXPECT_TRUE(command_server_.collect().empty()) << "answered once";
 
   EXPECT_EQ(step().rotor_state, plant::RotorState::kOff) << "the next sample executes it";

@@ -1,0 +1,76 @@
+#include "swiftlet/ground/flight/attached_vehicle.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+
+#include <fmt/core.h>
+
+#include "swiftlet/control/types/mode.hpp"
+#include "swiftlet/ground/client/client.hpp"
+#include "swiftlet/services/dds/discovery/interfaces.hpp"
+
+namespace swiftlet::ground {
+namespace {
+
+using namespace std::chrono_literals;
+using control::Mode;
+
+constexpr auto kDiscoveryTimeout = 5s;
+constexpr auto kMissionTimeout = 500ms;  // mission_status arrives with control_status
+
+bool finds(const View& view, const std::string& process) {
+  const auto peer = view.peers.find(process);
+  return peer != view.peers.end() && peer->second > 0;
+}
+
+// True if no process of the vehicle is discovered or heard; other ground tools do not count.
+bool finds_nothing(const View& view) {
+  const bool heard = view.vehicle.seen() || view.battery.seen();
+  return !heard && std::none_of(view.peers.begin(), view.peers.end(),
+                                [](const auto& peer) { return peer.first != "ground" && peer.second > 0; });
+}
+
+// Where it looks for the processes: "lo (127.0.0.1) only; without --localhost-only on ...".
+std::string interfaces_of(const comms::NodeSettings& network) {
+  if (!network.localhost_only) return comms::interfaces_text(false);
+  return comms::interfaces_text(true) + " only; without --localhost-only on " + comms::interfaces_text(false);
+}
+
+std::string flight_of(const View& view) {
+  const auto mode = static_cast<Mode>(view.control.message.mode());
+  const std::string text = control::to_string(mode);
+  if (mode != Mode::kMission || !view.mission.seen())
+    return text + " (" + view.control.message.reason().c_str() + ")";
+  return fmt::format("{}, item {} of {}", text, view.mission.message.item_index() + 1,
+                     view.mission.message.item_count());
+}
+
+bool is_on_ground(Mode mode) { return control::rotors_off(mode) || mode == Mode::kArmed; }
+
+void require_on_ground(const Client& client, const comms::NodeSettings& network) {
+  const bool found = client.wait(kDiscoveryTimeout, [](const View& view) { return view.control.seen(); });
+  const View view = client.view();
+  if (!found && (finds_nothing(view) || finds(view, "control")))
+    throw std::runtime_error("looked on " + interfaces_of(network) + ": " + client.no_control());
+  if (!found || is_on_ground(static_cast<Mode>(view.control.message.mode()))) return;
+  client.wait(kMissionTimeout, [](const View& news) { return news.mission.seen(); });
+  throw std::runtime_error(
+      fmt::format("vehicle {} is in flight: {}; wait until it has landed, or end its flight with `swiftlet "
+                  "hold` and `swiftlet land`",
+                  client.vehicle(), flight_of(client.view())));
+}
+
+}  // namespace
+
+void require_on_ground(const comms::NodeSettings& network, const std::vector<std::string>& vehicles) {
+  const comms::Participant participant(network);
+  for (const std::string& vehicle : vehicles) {
+    comms::NodeSettings settings = network;
+    settings.vehicle = vehicle;
+    const Client client(participant, settings);
+    require_on_ground(client, settings);
+  }
+}
+
+}  // namespace swiftlet::ground
