@@ -203,6 +203,8 @@ std::vector<std::string> first_csv_line(std::string_view text, const std::string
   while (lines.next(line)) {
     if (trimmed(line).empty()) continue;
     const std::vector<std::string_view> fields = fields_of(line);
+    if (fields.size() == 1 && line.find(';') != std::string_view::npos)
+      throw ConfigError(file_name, first_line, "", "is separated by semicolons, must be separated by commas");
     return {fields.begin(), fields.end()};
   }
   return {};

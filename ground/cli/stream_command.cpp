@@ -96,6 +96,11 @@ void say(const std::string& name, const std::string& assumption) {
   std::fprintf(stderr, "%s: %s\n", name.c_str(), assumption.c_str());
 }
 
+SetpointSource at_rate(SetpointSource source, const std::optional<double>& rate_hz) {
+  if (!rate_hz) return source;
+  return resampled(std::move(source), *rate_hz);
+}
+
 SetpointSource open(const Options& options) {
   const bool piped = options.file == "-";
   const std::string name = piped ? "standard input" : options.file;
@@ -104,28 +109,26 @@ SetpointSource open(const Options& options) {
   std::string first;
   std::getline(in, first);
   const std::vector<std::string> header = table_header(first, name);
+  if (header.empty())
+    throw runtime::ConfigError(name, 0, "", "is empty, must hold setpoints such as t,x,y,z");
   std::vector<TimedSetpoint> rows;
   if (runtime::is_flight_csv(header)) {
     const runtime::CsvTable reference = reference_of_flight(first + "\n" + rest_of(in), name);
     say(name, extent_of(reference));
-    rows = setpoints_of(reference);
+    rows = setpoints_of(reference, options.frame);
   } else {
     auto reader = std::make_shared<SetpointRows>(header, name, options.frame);
     if (reader->assumption()) say(name, *reader->assumption());
-    if (piped) {
-      SetpointSource source = lines_of(std::move(reader), in);
-      return options.rate_hz ? resampled(std::move(source), *options.rate_hz) : source;
-    }
+    if (piped) return at_rate(lines_of(std::move(reader), in), options.rate_hz);
     rows = rows_of(*reader, in);
   }
   if (!options.rate_hz) require_rate(rows, name);
-  SetpointSource source = each_of(std::move(rows));
-  return options.rate_hz ? resampled(std::move(source), *options.rate_hz) : source;
+  return at_rate(each_of(std::move(rows)), options.rate_hz);
 }
 
 // Flies to the first setpoint of a stream of positions. Returns a sentence if that fails.
 std::optional<std::string> go_to_start(Vehicle& vehicle, const control::Setpoint& first,
-                                       const Options& options) {
+                                       const Options& options, const Interrupts& interrupts) {
   if (first.kind != control::SetpointKind::kPosition) return std::nullopt;
   const VehicleState state = vehicle.state();
   if (state.mode != Mode::kHolding ||
@@ -136,7 +139,9 @@ std::optional<std::string> go_to_start(Vehicle& vehicle, const control::Setpoint
   place.position_ned_m = first.position_ned;
   if (!first.yaw_free) place.yaw_rad = first.yaw_rad;
   const ActionHandle going = vehicle.go_to(place, options.timeout());
-  const ActionResult ending = going.wait(kManoeuvreTimeout);
+  const double limit_s = std::chrono::duration<double>(kManoeuvreTimeout).count();
+  const ActionResult ending =
+      await_actions({{&vehicle, going}}, "stream", OnInterrupt::kHold, interrupts, limit_s).front();
   if (ending.done()) return std::nullopt;
   return "the first setpoint was not reached: " + ending.reason;
 }
@@ -162,8 +167,7 @@ class Streamer {
     vehicle_.wait_until(
         [&](const VehicleState& state) { return 1e-9 * static_cast<double>(state.stamp_ns) > last_s + 0.25; },
         kSilence);
-    const SetpointTally tally = vehicle_.state().setpoints;
-    result_.tally = {tally.accepted - before_.accepted, tally.refused - before_.refused, tally.refusal};
+    result_.tally = vehicle_.state().setpoints.since(before_);
     if (result_.tally.refused > 0) {
       result_.fault = with_refusal();
     } else if (result_.fault.empty() && result_.tally.accepted == 0) {
@@ -264,6 +268,7 @@ int stream(const Options& options) {
   SetpointSource source = open(options);
   const Interrupts interrupts;
   Vehicle vehicle(options.network);
+  vehicle.cancel_when([&] { return interrupts.count() > 0; });
   const Result there = vehicle.connect(options.timeout());
   if (!there.accepted()) {
     std::fprintf(stderr, "swiftlet: stream: %s\n", there.reason.c_str());
@@ -278,9 +283,10 @@ int stream(const Options& options) {
   const std::optional<TimedSetpoint> first = source();
   if (!first) throw InputError(options.file + ": has no rows");
   StreamResult result;
-  if (const auto fault = go_to_start(vehicle, first->setpoint, options)) {
+  if (const auto fault = go_to_start(vehicle, first->setpoint, options, interrupts)) {
     result.fault = *fault;
   } else {
+    vehicle.cancel_when({});  // the streamer ends with an interrupt, and the vehicle may still land
     result = Streamer(vehicle, interrupts).run(*first, source);
     const auto left = come_to_rest(vehicle, options);
     if (result.fault.empty() && left) result.fault = *left;

@@ -1,5 +1,5 @@
-#include <algorithm>
 #include <cstdio>
+#include <filesystem>
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/cli/fly_options.hpp"
@@ -23,7 +23,7 @@ int send_trajectory(const Options& options) {
   const std::string path = runtime::configuration_file(runtime::kinds::kMission, options.file);
   TrajectoryFile file = load_trajectory_file(path, settings.limits, options.frame);
   for (const std::string& assumption : file.assumptions)
-    std::fprintf(stderr, "%s: %s\n", options.file.c_str(), assumption.c_str());
+    std::fprintf(stderr, "%s: %s\n", std::filesystem::path(path).stem().c_str(), assumption.c_str());
   const control::Trajectory trajectory{0, std::move(file.segments)};
   return run_request(options, {"trajectory", [&](Vehicle& vehicle) {
                                  return vehicle.follow(trajectory, options.timeout());

@@ -77,9 +77,9 @@ Command add_takeoff_command(runtime::CommandLine root) {
   const runtime::CommandLine app =
       add_request_subcommand(root, "takeoff", "Climb vertically and hold; the vehicle must be armed",
                              "swiftlet takeoff 1.2 --speed 0.5", options);
-  app.add_option("height,--height", options->height_m, "height above the ground, m")
-      .positive()
-      .show_default();
+  const runtime::Option height =
+      app.add_option("height", options->height_m, "height above the ground, m").positive().show_default();
+  app.add_option("--height", options->height_m, "the same").positive().excludes(height);
   app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
   return {app, [options] {
             return run_request(*options, {"takeoff", [&](Vehicle& vehicle) {
@@ -93,7 +93,7 @@ Command add_goto_command(runtime::CommandLine root) {
   const auto options = std::make_shared<GotoOptions>();
   const runtime::CommandLine app = add_request_subcommand(
       root, "goto", "Fly straight to a position (NED, relative to the origin) and hold there",
-      "swiftlet goto -1 0 --height 1.5 --yaw 1.57    (1 m south of the origin, 1.5 m up, nose to the east)\n"
+      "swiftlet goto -1 0 --height 1.5 --yaw 1.57    (1 m south, 1.5 m up, nose east)\n"
       "         swiftlet goto -1 0 -1.5 --yaw 1.57            (the same, with z down)",
       options, Vehicles::kOne);  // two vehicles cannot hold at one position
   app.add_option("x", options->north_m, "north, m").required().finite();

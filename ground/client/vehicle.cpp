@@ -69,6 +69,11 @@ VehicleState state_of(const View& view) {
 
 }  // namespace
 
+SetpointTally SetpointTally::since(const SetpointTally& before) const {
+  const auto grown = [](std::uint64_t from, std::uint64_t to) { return to - (to < from ? 0 : from); };
+  return {grown(before.accepted, accepted), grown(before.refused, refused), refusal};
+}
+
 Vehicle::Vehicle(const comms::NodeSettings& network) : client_(std::make_shared<Client>(network)) {}
 
 Vehicle::Vehicle(const Context& context, const std::string& name)

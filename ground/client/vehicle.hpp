@@ -49,6 +49,9 @@ struct SetpointTally {
   std::uint64_t accepted = 0;
   std::uint64_t refused = 0;
   std::string refusal;  // a sentence: why the last one was refused
+
+  // Counted since `before`. A controller that took over in between counts from 0.
+  SetpointTally since(const SetpointTally& before) const;
 };
 
 // The state of the mission that the vehicle has.

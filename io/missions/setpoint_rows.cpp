@@ -58,7 +58,8 @@ const Form& form_of(const std::string& file, const MotionColumns& columns) {
   }
   if (!columns.has(Motion::kT))
     throw ConfigError(file, 1, "header",
-                      "has no column " + header_of(Motion::kT) + ", must have " + header_of(Motion::kT));
+                      "has no column " + header_of(Motion::kT) +
+                          ", must have it; a list of waypoints is flown by `swiftlet mission fly`");
   std::vector<std::vector<Motion>> more = form->more;
   more.push_back({Motion::kT});
   require_columns(columns, file, form->name, form->needed, more);
@@ -151,8 +152,8 @@ TimedSetpoint SetpointRows::setpoint(const std::vector<double>& row, int line) {
   return TimedSetpoint{time_s, setpoint};
 }
 
-std::vector<TimedSetpoint> setpoints_of(const runtime::CsvTable& table) {
-  SetpointRows reader(table.columns(), table.file());
+std::vector<TimedSetpoint> setpoints_of(const runtime::CsvTable& table, std::optional<MissionFrame> frame) {
+  SetpointRows reader(table.columns(), table.file(), frame);
   std::vector<TimedSetpoint> rows;
   for (std::size_t row = 0; row < table.row_count(); ++row)
     rows.push_back(reader.setpoint(table.row(row), table.line(row)));

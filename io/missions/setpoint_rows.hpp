@@ -57,7 +57,7 @@ class SetpointRows {
 };
 
 // The rows of a table whose columns name their frame. Throws runtime::ConfigError as SetpointRows does.
-std::vector<TimedSetpoint> setpoints_of(const runtime::CsvTable& table);
+std::vector<TimedSetpoint> setpoints_of(const runtime::CsvTable& table, std::optional<MissionFrame> frame);
 
 // Returns the next row; nothing at the end.
 using SetpointSource = std::function<std::optional<TimedSetpoint>()>;

@@ -149,7 +149,7 @@ class DdsWriter final : public detail::Writer, private Endpoint {
     if (writer == nullptr) return;
     dds::PublicationMatchedStatus last;
     writer->get_publication_matched_status(last);
-    changes_before_ += static_cast<std::uint64_t>(2 * last.total_count);  // all readers unmatched
+    changes_before_ += 2 * static_cast<std::uint64_t>(last.total_count);  // all readers unmatched
     session.publisher->delete_datawriter(writer);
   }
   dds::PublicationMatchedStatus readers() const {

@@ -5,12 +5,14 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <iostream>
 #include <optional>
 #include <sstream>
 #include <sys/ioctl.h>
 #include <type_traits>
 #include <unistd.h>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -19,12 +21,24 @@
 namespace swiftlet::runtime {
 namespace {
 
+// Names the environment variable instead of the option whose value came from it.
+std::string with_source(const CLI::App& app, const std::string& fault) {
+  for (const CLI::Option* const option : app.get_options()) {
+    const char* const value =
+        option->get_envname().empty() ? nullptr : std::getenv(option->get_envname().c_str());
+    const std::string refused = option->get_name() + ": is " + (value == nullptr ? "" : value) + ",";
+    if (value != nullptr && fault.compare(0, refused.size(), refused) == 0)
+      return option->get_envname() + fault.substr(option->get_name().size());
+  }
+  return fault;
+}
+
 // The error, and the usage line of the command that was given.
 std::string failure_text(const CLI::App* app, const CLI::Error& error) {
   const std::string help = app->help();
   const std::size_t begin = std::min(help.find("Usage:"), help.size());
   const std::string usage = help.substr(begin, help.find('\n', begin) - begin);
-  return std::string(error.what()) + "\n" + usage + "\nRun with --help for more information.\n";
+  return with_source(*app, error.what()) + "\n" + usage + "\nRun with --help for more information.\n";
 }
 
 constexpr std::size_t kHelpColumn = 30;  // of descriptions
@@ -182,8 +196,8 @@ Option& Option::range(Number least, Number most) {
       [least, most](const std::string& text) {
         const std::optional<Number> number = number_of<Number>(text);
         if (number && *number >= least && *number <= most) return std::string();
-        return "is " + text + ", must be from " + CLI::detail::to_string(least) + " to " +
-               CLI::detail::to_string(most);
+        return "is " + text + ", must be " + (std::is_integral_v<Number> ? "a whole number " : "") + "from " +
+               CLI::detail::to_string(least) + " to " + CLI::detail::to_string(most);
       },
       CLI::Range(least, most).get_description());
 }
@@ -228,7 +242,8 @@ Option& Option::one_of(const std::vector<std::string>& texts) {
 }
 Option& Option::check(std::function<std::string(const std::string&)> fault_of,
                       const std::string& value_name) {
-  option_->check(CLI::Validator([fault_of](std::string& text) { return fault_of(text); }, value_name));
+  option_->check(CLI::Validator(
+      [fault_of = std::move(fault_of)](std::string& text) { return fault_of(text); }, value_name));
   return *this;
 }
 
@@ -270,7 +285,7 @@ Option CommandLine::add_choice(const std::string& name, const std::vector<std::s
                                std::function<void(std::size_t)> choose) const {
   CLI::Option* const option = app_->add_option_function<std::string>(
       name,
-      [choices, choose](const std::string& chosen) {
+      [choices, choose = std::move(choose)](const std::string& chosen) {
         choose(static_cast<std::size_t>(std::find(choices.begin(), choices.end(), chosen) - choices.begin()));
       },
       description);
@@ -282,7 +297,7 @@ Option CommandLine::add_flag(const std::string& name, bool& value, const std::st
 Option CommandLine::add_flag(const std::string& name, std::function<void()> is_set,
                              const std::string& description) const {
   return Option(*app_->add_flag_function(
-      name, [is_set](std::int64_t) { is_set(); }, description));
+      name, [is_set = std::move(is_set)](std::int64_t) { is_set(); }, description));
 }
 Option CommandLine::option(const std::string& name) const { return Option(*app_->get_option(name)); }
 void CommandLine::remove_option(const std::string& name) const {

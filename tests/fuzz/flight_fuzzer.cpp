@@ -224,7 +224,7 @@ class Flight {
   // A pose that passes the message checks but need not be true.
   void send_pose() {
     plant::PoseSample pose;
-    pose.stamp_ns = loop_.plant.stamp_ns() - 1'000'000 * input_.byte();
+    pose.stamp_ns = loop_.plant.stamp_ns() - std::int64_t{1'000'000} * input_.byte();
     pose.sequence = ++sequence_;
     pose.tracked = input_.byte() % 8 != 0;
     pose.position_ned = input_.vector();

@@ -23,9 +23,9 @@ namespace swiftlet::tests {
 
 using Payload = eprosima::fastrtps::rtps::SerializedPayload_t;
 
-template <char tag, class PubSubType, class PlainStruct>
+template <char kTagValue, class PubSubType, class PlainStruct>
 struct MessageType {
-  static constexpr char kTag = tag;
+  static constexpr char kTag = kTagValue;
   using PubSub = PubSubType;
   using Plain = PlainStruct;
 };

@@ -143,9 +143,10 @@ TEST_F(BadInput, WrongUsage) {
   expect_refusal({"square", "--imu-rate", "777"}, "--imu-rate");
   expect_refusal({"square", "--domain", "500"}, "--domain");
   expect_refusal({"square", "--vehicle-name", "a b"}, "--vehicle-name");
-  expect_refusal({"square", "--seed", "-1"}, "--seed: is -1, must be from 0 to 9223372036854775807");
+  expect_refusal({"square", "--seed", "-1"},
+                 "--seed: is -1, must be a whole number from 0 to 9223372036854775807");
   expect_refusal({"square", "--seed", "100000000000000000000000"},
-                 "--seed: is 100000000000000000000000, must be from 0 to");
+                 "--seed: is 100000000000000000000000, must be a whole number from 0 to");
   expect_refusal({"square", "--speed", "nan"}, "--speed: is nan, must be from 0.01 to 100");
   expect_refusal({"square", "--transport", "pigeon"}, "--transport: is pigeon, must be udp or shm");
 }

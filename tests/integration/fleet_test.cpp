@@ -101,6 +101,14 @@ TEST_F(FleetFlight, LandsTheOthersWhenOneFails) {
 
 class TwoVehicles : public testing::Test {
  protected:
+  void SetUp() override {
+    for (const char* const vehicle : {"kl1", "kl2"}) {
+      ASSERT_TRUE(eventually([&] {
+        const ProgramResult result = swiftlet(vehicle, {"status", "--json", "--watch", "0.1"});
+        return result.exit_code == 0 && json::parse(result.output).value("has_pose", false);
+      })) << vehicle;
+    }
+  }
   std::vector<std::string> words(const std::string& vehicles, const std::vector<std::string>& more) const {
     std::vector<std::string> words = more;
     words.insert(words.end(), {"--domain", std::to_string(lock_.domain()), "--vehicle-name", vehicles,
@@ -178,10 +186,6 @@ TEST_F(TwoVehicles, ArmTogetherOrNotAtAll) {
 }
 
 TEST_F(TwoVehicles, MissingVehicleIsNamed) {
-  ASSERT_TRUE(eventually([&] {
-    const ProgramResult result = swiftlet("kl1", {"status", "--json", "--watch", "0.1"});
-    return result.exit_code == 0 && json::parse(result.output).value("has_pose", false);
-  }));
   const ProgramResult result = swiftlet("kl1,kl9", {"stop", "--yes", "--timeout", "5"});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_EQ(result.output, "stop: accepted by kl1\nstop: kl1: done\n");

@@ -20,7 +20,6 @@ namespace swiftlet::tests {
 namespace {
 
 using namespace std::chrono_literals;
-using control::Mode;
 using ground::View;
 using nlohmann::json;
 namespace msg = ground::msg;
@@ -188,14 +187,24 @@ TEST_F(LivingVehicle, ADeadVehicleIsReportedSilentFirst) {
   EXPECT_NE(status.output.find("pose      MISSING"), std::string::npos) << status.output;
   EXPECT_NE(status.output.find("\n  controller "), std::string::npos) << status.output;
 
-  const ProgramResult list = run("swiftlet", {"list", "--time", "1"});
-  EXPECT_EQ(list.output.rfind("kl1: VEHICLE SILENT for ", 0), 0U) << list.output;
+  ProgramResult list;
+  EXPECT_TRUE(eventually([&] {
+    list = run("swiftlet", {"list", "--time", "1"});
+    return list.output.rfind("kl1: VEHICLE SILENT for ", 0) == 0;
+  })) << list.output;
   EXPECT_NE(list.output.find(" holding "), std::string::npos) << list.output;
-  const ProgramResult facts = run("swiftlet", {"list", "--json", "--time", "1"});
-  EXPECT_EQ(json::parse(facts.output).at(0).at("controllers"), 1) << facts.output;
+  ProgramResult facts;
+  EXPECT_TRUE(eventually([&] {
+    facts = run("swiftlet", {"list", "--json", "--time", "1"});
+    const json vehicles = json::parse(facts.output, nullptr, false);
+    return vehicles.is_array() && vehicles.size() == 1 && vehicles[0].value("controllers", 0) == 1;
+  })) << facts.output;
 
-  const ProgramResult watch = run("swiftlet", {"watch", "--plain", "--duration", "1.5"});
-  EXPECT_NE(watch.output.find("kl1: VEHICLE SILENT for "), std::string::npos) << watch.output;
+  ProgramResult watch;
+  EXPECT_TRUE(eventually([&] {
+    watch = run("swiftlet", {"watch", "--plain", "--duration", "1.5"});
+    return watch.output.find("kl1: VEHICLE SILENT for ") != std::string::npos;
+  })) << watch.output;
   EXPECT_EQ(watch.output.find("no warnings"), std::string::npos) << watch.output;
 
   EXPECT_EQ(rotors_off, 0);
@@ -221,8 +230,11 @@ TEST_F(LivingVehicle, ADeadMotionCaptureIsReportedSilentFirst) {
   wait_until_ready();
   mocap_->signal(SIGKILL);
   ASSERT_TRUE(eventually_silent("motion capture"));
-  const ProgramResult list = run("swiftlet", {"list", "--time", "1"});
-  EXPECT_EQ(list.output.rfind("kl1: MOTION CAPTURE SILENT for ", 0), 0U) << list.output;
+  ProgramResult list;
+  EXPECT_TRUE(eventually([&] {
+    list = run("swiftlet", {"list", "--time", "1"});
+    return list.output.rfind("kl1: MOTION CAPTURE SILENT for ", 0) == 0;
+  })) << list.output;
 }
 
 TEST_F(LivingVehicle, ADeadControlServiceIsReportedSilentFirst) {

@@ -150,7 +150,7 @@ TEST_F(Standby, StatusNamesAllControllers) {
 TEST_F(Standby, RestartedControllerEngagesInFlight) {
   Controller& first = flight_.start_controller(0);
   flight_.wait_for_roles(1, 0);
-  hover(1.5);
+  hover(2.2);  // a fall from there lasts 0.67 s
   const std::int64_t at_ns = flight_.stamp_ns();
   flight_.kill(first);
   flight_.stop_time();  // a process may start slowly on a busy machine

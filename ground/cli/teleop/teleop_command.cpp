@@ -106,14 +106,7 @@ class Session {
   }
 
   std::uint64_t sent() const { return teleop_.sent(); }
-  SetpointTally tally() const {
-    // A controller that took over counts from 0.
-    const auto since = [](std::uint64_t before, std::uint64_t now) {
-      return now - (now < before ? 0 : before);
-    };
-    const SetpointTally now = vehicle_.state().setpoints;
-    return {since(before_.accepted, now.accepted), since(before_.refused, now.refused), now.refusal};
-  }
+  SetpointTally tally() const { return vehicle_.state().setpoints.since(before_); }
 
  private:
   std::string fly_on(TerminalScreen& screen) {

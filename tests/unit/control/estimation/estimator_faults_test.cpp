@@ -419,7 +419,8 @@ TEST_F(EstimatorFaults, ReachDependsOnTheMaximumSpeed) {
 class EstimatorAtRest : public testing::TestWithParam<std::tuple<bool, bool>> {};
 
 TEST_P(EstimatorAtRest, DetectsAFrozenStreamOnlyIfItHadNoise) {
-  const auto [noisy, flips] = GetParam();
+  const bool noisy = std::get<0>(GetParam());
+  const bool flips = std::get<1>(GetParam());
   const EstimatorSettings settings;
   Estimator estimator(settings);
   plant::RandomStream noise(1, 1);

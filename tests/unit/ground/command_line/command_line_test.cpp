@@ -62,7 +62,8 @@ TEST_F(CommandLine, HeightIsAnotherWordForZ) {
   ASSERT_TRUE(parses("goto -1 0 --height 1.5"));
   EXPECT_EQ(value("goto", "--height"), 1.5);
   ASSERT_TRUE(parses("takeoff --height 1.2"));
-  EXPECT_EQ(value("takeoff", "height"), 1.2);
+  EXPECT_EQ(value("takeoff", "--height"), 1.2);
+  EXPECT_FALSE(parses("takeoff 1 --height 1"));
 }
 
 TEST_F(CommandLine, FlyAttachesOrStartsProcesses) {

@@ -37,11 +37,9 @@ class FlightChecks : public testing::Test {
     return identification::identify_flight({log}, plan_->vehicle, {});
   }
 
-  static LaunchConfiguration* plan_;
-  static FlightLog* log_;
+  inline static LaunchConfiguration* plan_ = nullptr;
+  inline static FlightLog* log_ = nullptr;
 };
-LaunchConfiguration* FlightChecks::plan_ = nullptr;
-FlightLog* FlightChecks::log_ = nullptr;
 
 std::function<void(FlightLog&)> poses(const std::function<void(FlightPose&)>& change) {
   return [change](FlightLog& log) {

@@ -233,7 +233,7 @@ TEST(FlightModel, RateDerivativeFollowsEq32To34) {
 TEST(FlightModel, PredictsTheFlightFromRotorSpeeds) {
   const Truth truth;
   const std::vector<FlightLog> logs = {log_of_truth()};
-  const plant::Vehicle base = kaylion();
+  const plant::Vehicle& base = kaylion();
   const FlightModel model(prepare_flights(logs, base, {}), base);
   const FlightLayout& l = model.layout();
   Eigen::VectorXd x = model.problem({}).start;
