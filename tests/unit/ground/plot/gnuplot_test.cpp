@@ -289,7 +289,7 @@ TEST_F(GnuplotTest, ReportsThatGnuplotIsNotInstalled) {
 
 TEST_F(GnuplotTest, ReportsAFileThatCannotBeWritten) {
   EXPECT_EQ(draw_png(parabola(1.0, 1.0), folder_ / "none" / "some.png"),
-            (folder_ / "none" / "some.png").string() + ": cannot be written");
+            (folder_ / "none" / "some.png").string() + ": cannot be written: No such file or directory");
 }
 
 }  // namespace
