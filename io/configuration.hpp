@@ -28,6 +28,7 @@ inline constexpr ConfigurationKind kControl{"control", "control settings", "CONT
 inline constexpr ConfigurationKind kSimulation{"simulation", "simulation settings", "SIMULATION"};
 inline constexpr ConfigurationKind kMission{"missions", "mission", "MISSION"};
 inline constexpr ConfigurationKind kDispersion{"dispersion", "dispersion", "DISPERSION"};
+inline constexpr const char* kAnyValue = "NAME";  // the value of an option that may name a file of any kind
 }  // namespace kinds
 
 const std::vector<ConfigurationKind>& configuration_kinds();

@@ -3,17 +3,17 @@
 #include <cerrno>
 #include <iterator>
 #include <stdexcept>
-#include <system_error>
 
 #include <fmt/format.h>
 
+#include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/csv.hpp"
 
 namespace swiftlet::runtime {
 
 CsvWriter::CsvWriter(const std::filesystem::path& file, const std::vector<std::string>& columns)
-    : path_(file), file_(std::fopen(file.c_str(), "w")) {
-  if (!file_) throw std::runtime_error(path_.string() + " cannot be written");
+    : path_(file), file_(std::fopen(unfinished_name(file).c_str(), "w")) {
+  if (!file_) throw std::runtime_error(write_fault(path_, errno));
   for (const std::string& column : columns) text(column);
   end_row();
 }
@@ -70,9 +70,8 @@ void CsvWriter::end_row() {
 
 void CsvWriter::finish() {
   if (std::fflush(file_.get()) != 0 && error_ == 0) error_ = errno;
-  if (error_ != 0)
-    throw std::runtime_error(path_.string() +
-                             " cannot be written: " + std::generic_category().message(error_));
+  if (error_ != 0) throw std::runtime_error(write_fault(path_, error_));
+  finish_file(path_);
 }
 
 }  // namespace swiftlet::runtime

@@ -1,4 +1,5 @@
-// Writes a CSV table, cell by cell.
+// Writes a CSV table, cell by cell. The file is called NAME.part until it is finished; a table that is never
+// finished keeps that name.
 //
 //   CsvWriter csv("path.csv", {"t", "x", "y"});
 //   csv.fixed(0.01, 6).number(1.5).number(-2.0).end_row();
@@ -31,7 +32,8 @@ class CsvWriter {
   CsvWriter& empty(int cells = 1);
   void end_row();
 
-  // Throws std::runtime_error if a row could not be written. Call it last: errors are reported here only.
+  // Gives the file its name. Throws std::runtime_error if a row could not be written. Call it last: errors are
+  // reported here only.
   void finish();
 
  private:

@@ -1,8 +1,10 @@
 #include "swiftlet/recording/flight_trace.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 namespace swiftlet::runtime {
@@ -34,13 +36,13 @@ std::string header(int rotor_count) {
 
 FlightTrace::FlightTrace(const std::string& path, int rotor_count)
     : path_(path), file_(std::fopen(path.c_str(), "w")) {
-  require_written(file_ != nullptr);
+  if (!file_) fail(errno);
   const std::string columns = header(rotor_count);
-  require_written(std::fwrite(columns.data(), 1, columns.size(), file_.get()) == columns.size());
+  if (std::fwrite(columns.data(), 1, columns.size(), file_.get()) != columns.size()) fail(errno);
 }
 
 void FlightTrace::add(const plant::TruthSample& truth, const plant::ActuatorCommand& command) {
-  if (complete_ || failed_) return;
+  if (complete_ || error_ != 0) return;
   const bool runs = command.rotor_state == plant::RotorState::kRunning;
   complete_ = running_ && !runs;
   running_ = runs;
@@ -59,15 +61,17 @@ void FlightTrace::add(const plant::TruthSample& truth, const plant::ActuatorComm
   append(row_, runs ? 1 : 0);
   append_all(row_, command.throttle.data(), command.rotor_count);
   row_ += '\n';
-  failed_ = std::fwrite(row_.data(), 1, row_.size(), file_.get()) != row_.size();
+  if (std::fwrite(row_.data(), 1, row_.size(), file_.get()) != row_.size()) error_ = errno;
 }
 
 void FlightTrace::close() {
-  if (file_) require_written(std::fclose(file_.release()) == 0 && !failed_);
+  if (!file_) return;
+  if (std::fclose(file_.release()) != 0 && error_ == 0) error_ = errno;
+  if (error_ != 0) fail(error_);
 }
 
-void FlightTrace::require_written(bool written) const {
-  if (!written) throw std::runtime_error(path_ + ": cannot be written");
+void FlightTrace::fail(int error) const {
+  throw std::runtime_error(path_ + ": cannot be written: " + std::generic_category().message(error));
 }
 
 }  // namespace swiftlet::runtime

@@ -27,7 +27,7 @@ class FlightTrace {
   bool complete() const { return complete_; }  // the rotors ran and have stopped; add() has no further effect
 
  private:
-  void require_written(bool written) const;
+  [[noreturn]] void fail(int error) const;
 
   struct Closer {
     void operator()(std::FILE* file) const { std::fclose(file); }
@@ -37,7 +37,7 @@ class FlightTrace {
   std::string row_;
   bool running_ = false;
   bool complete_ = false;
-  bool failed_ = false;
+  int error_ = 0;  // errno of the first row that could not be written
 };
 
 }  // namespace swiftlet::runtime

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <stdexcept>
 
+#include "swiftlet/io/csv_writer.hpp"
 #include "swiftlet/plant/model/esc.hpp"
 #include "swiftlet/plant/simulation/dynamics.hpp"
 
@@ -151,27 +150,15 @@ std::vector<MotionRow> simulate_open_loop(const plant::Vehicle& vehicle, double 
 }
 
 void write_motion(const std::string& path, const std::vector<MotionRow>& rows, int rotor_count) {
-  namespace fs = std::filesystem;
-  std::error_code fault;
-  const bool is_device = fs::exists(path, fault) && !fs::is_regular_file(path, fault);  // a pipe, a terminal
-  const std::string unfinished = is_device ? path : path + ".part";
-  std::ofstream out(unfinished);
-  out << "t";
-  for (const std::string& column : state_columns(rotor_count)) out << ',' << column;
-  out << '\n';
+  std::vector<std::string> columns = state_columns(rotor_count);
+  columns.insert(columns.begin(), "t");
+  runtime::CsvWriter csv(path, columns);
   for (const MotionRow& row : rows) {
-    out << runtime::exact(seconds(row.time_ns));
-    for (const double value : values(row.state, rotor_count)) out << ',' << runtime::exact(value);
-    out << '\n';
+    csv.exact(seconds(row.time_ns));
+    for (const double value : values(row.state, rotor_count)) csv.exact(value);
+    csv.end_row();
   }
-  out.close();
-  const bool written = static_cast<bool>(out);
-  if (is_device && written) return;
-  fault.clear();
-  if (written) fs::rename(unfinished, path, fault);
-  if (written && !fault) return;
-  if (!is_device) fs::remove(unfinished, fault);
-  throw std::runtime_error(path + ": cannot be written");
+  csv.finish();
 }
 
 }  // namespace swiftlet::ground

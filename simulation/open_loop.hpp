@@ -45,7 +45,7 @@ std::vector<MotionRow> simulate_open_loop(const plant::Vehicle& vehicle, double 
                                           const std::vector<PulseWidths>& pulses);
 
 // Writes t and state_columns() as CSV. Each number has the shortest form that parses to the same value. The
-// file is written atomically. Throws std::runtime_error if it cannot be written.
+// file has its name only when it is complete. Throws std::runtime_error if it cannot be written.
 void write_motion(const std::string& path, const std::vector<MotionRow>& rows, int rotor_count);
 
 }  // namespace swiftlet::ground

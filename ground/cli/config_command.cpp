@@ -86,7 +86,7 @@ Command add_show(runtime::CommandLine config) {
   const auto options = std::make_shared<ShowOptions>();
   const runtime::CommandLine app =
       config.add_subcommand("show", "Print a configuration file, after a comment that says where it lies");
-  app.add_option("name", options->name, "name, or KIND/NAME").required();
+  app.add_option("name", options->name, "name, or KIND/NAME").type_name(runtime::kinds::kAnyValue).required();
   app.add_flag("--path", options->path, "print only where it lies");
   app.footer("example: cp $(swiftlet config show motor_lag --path) mine.yaml");
   return {app, [options] { return show(*options); }};

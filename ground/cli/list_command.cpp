@@ -75,8 +75,7 @@ std::vector<Found> discover(const Options& options) {
 nlohmann::ordered_json to_json(const Found& vehicle) {
   nlohmann::ordered_json json = {{"vehicle", vehicle.name}, {"mode", nullptr}};
   if (vehicle.view.control.seen()) json["mode"] = mode_name(vehicle.view.control.message.mode());
-  json["silent"] = nlohmann::ordered_json::array();
-  for (const Silence& silence : vehicle.silences) json["silent"].push_back(silence.who);
+  json["silent"] = to_json(vehicle.silences);
   json["model"] = nullptr;
   if (vehicle.view.vehicle.seen()) json["model"] = vehicle.view.vehicle.message.name().c_str();
   json["battery_v"] = nullptr;

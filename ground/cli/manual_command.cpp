@@ -1,11 +1,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <stdexcept>
 
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/ground/command_line/command_text.hpp"
+#include "swiftlet/io/atomic_write.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -16,11 +15,7 @@ struct Options {
 };
 
 void write_all(const CommandText& command, const std::filesystem::path& folder) {
-  const std::filesystem::path file = folder / (manual_page_name(command) + ".1");
-  std::ofstream out(file);
-  out << manual_page(command);
-  out.close();
-  if (!out) throw std::runtime_error(file.string() + ": cannot be written");
+  runtime::write_atomically(folder / (manual_page_name(command) + ".1"), manual_page(command));
   for (const CommandText& sub : command.commands) write_all(sub, folder);
 }
 

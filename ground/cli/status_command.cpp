@@ -110,15 +110,6 @@ void print(const LiveControllers& controllers) {
     std::printf("  controller %d more found, which report no state\n", controllers.others);
 }
 
-nlohmann::ordered_json silent_json(const View& view, Clock::time_point now) {
-  nlohmann::ordered_json silent = nlohmann::ordered_json::array();
-  for (const Silence& silence : silences_of(view, now)) {
-    silent.push_back({{"who", silence.who}, {"for_s", nullptr}});
-    if (silence.for_s) silent.back()["for_s"] = *silence.for_s;
-  }
-  return silent;
-}
-
 nlohmann::ordered_json to_json(const View& view, const Rates& rates, const CommandOptions& options) {
   const auto now = Clock::now();
   const auto& control = view.control.message;
@@ -126,7 +117,7 @@ nlohmann::ordered_json to_json(const View& view, const Rates& rates, const Comma
   nlohmann::ordered_json json;
   json["vehicle"] = options.network.vehicle;
   json["domain"] = options.network.domain;
-  json["silent"] = silent_json(view, now);
+  json["silent"] = to_json(silences_of(view, now));
   json["source_conflict"] = control.source_conflict().c_str();
   json["mode"] = mode_name(control.mode());
   json["reason"] = control.reason().c_str();

@@ -122,7 +122,10 @@ Command add_land_command(runtime::CommandLine root) {
   const auto options = std::make_shared<LandOptions>();
   const runtime::CommandLine app = add_request_subcommand(
       root, "land", "Descend vertically, land and stop the rotors", "swiftlet land --speed 0.3", options);
-  app.add_option("--speed", options->speed, "peak speed, m/s").positive().show_default();
+  app.add_option("--speed", options->speed,
+                 "peak speed, m/s; at most descent_speed_m_s of the control settings")
+      .positive()
+      .show_default();
   return {app, [options] {
             return run_request(*options, {"land", [&](Vehicle& vehicle) {
                                             return vehicle.land(options->speed, options->timeout());

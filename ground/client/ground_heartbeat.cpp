@@ -1,9 +1,13 @@
 #include "swiftlet/ground/client/ground_heartbeat.hpp"
 
+#include <chrono>
+
 namespace swiftlet::ground {
 namespace {
 
 constexpr std::int64_t kPeriodNs = 200'000'000;
+// A controller that misses the last heartbeat takes the end of this tool for a lost link.
+constexpr std::chrono::milliseconds kLastHeartbeatTimeout{500};
 
 }  // namespace
 
@@ -13,7 +17,10 @@ GroundHeartbeatPublisher::GroundHeartbeatPublisher(comms::Node& node, std::uint6
   publish(true);
 }
 
-GroundHeartbeatPublisher::~GroundHeartbeatPublisher() { publish(false); }
+GroundHeartbeatPublisher::~GroundHeartbeatPublisher() {
+  publish(false);
+  publisher_.wait_until_received(kLastHeartbeatTimeout);
+}
 
 void GroundHeartbeatPublisher::telemetry(std::int64_t stamp_ns) {
   const std::int64_t elapsed_ns = stamp_ns - heartbeat_.stamp_ns();

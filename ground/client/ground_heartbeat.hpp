@@ -12,7 +12,9 @@ namespace swiftlet::ground {
 class GroundHeartbeatPublisher {
  public:
   GroundHeartbeatPublisher(comms::Node& node, std::uint64_t client);
-  ~GroundHeartbeatPublisher();  // publishes `depends` = false: ends the failsafe
+  // Ends the failsafe: publishes `depends` = false, and waits until the controllers have received it, 0.5 s at
+  // most.
+  ~GroundHeartbeatPublisher();
   GroundHeartbeatPublisher(const GroundHeartbeatPublisher&) = delete;
   GroundHeartbeatPublisher& operator=(const GroundHeartbeatPublisher&) = delete;
 

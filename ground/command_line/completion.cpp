@@ -48,6 +48,7 @@ std::vector<std::string> value_patterns(const CommandText& command, const Option
 // The arguments with which the program prints the names that the option may have, one a line; "" if it has none.
 std::string names_command(const OptionText& option) {
   if (option.names.front() == "--vehicle-name") return "list --names --time 0.5";
+  if (option.value == runtime::kinds::kAnyValue) return "config ls --names";
   for (const runtime::ConfigurationKind& kind : runtime::configuration_kinds()) {
     if (option.value == kind.value) return std::string("config ls --names ") + kind.folder;
   }

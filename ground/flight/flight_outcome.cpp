@@ -51,22 +51,23 @@ void write_record(const std::filesystem::path& folder, const FlightRecord& recor
       write(file);
     } catch (const std::exception& fault) {
       if (report.record_fault.empty()) report.record_fault = fault.what();
-      std::error_code ignored;
-      std::filesystem::rename(file, file.string() + ".part", ignored);
     }
   };
-  // First the smallest file, with the result.
+  // First the smallest file, with the result. It is written again at the end if another one has failed.
   attempt(folder / "report.json", [&](const auto& file) { write_report_json(file, report); });
   attempt(folder / "flight.csv", [&](const auto& file) { write_flight_csv(file, record, window); });
   if (record.sensors) {
     attempt(folder / kSensorsFile,
             [&](const auto& file) { write_flight_log(file, flight_log_of(*record.sensors)); });
   }
-  if (report.errors.matched == 0) return;
-  attempt(folder / "flight.png", [&](const auto&) {
-    const std::string no_picture = draw_flight(folder, record, report, window);
-    if (!no_picture.empty()) progress.say(no_picture);
-  });
+  if (report.errors.matched > 0) {
+    attempt(folder / "flight.png", [&](const auto&) {
+      const std::string no_picture = draw_flight(folder, record, report, window);
+      if (!no_picture.empty()) progress.say(no_picture);
+    });
+  }
+  if (!report.record_fault.empty())
+    attempt(folder / "report.json", [&](const auto& file) { write_report_json(file, report); });
 }
 
 int print_report(const FlightReport& report, bool json, ProgressLine& progress) {

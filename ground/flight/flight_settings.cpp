@@ -10,7 +10,7 @@ namespace fs = std::filesystem;
 void copy_to_record(const fs::path& file, const fs::path& copy) {
   std::error_code error;
   fs::copy_file(file, copy, fs::copy_options::overwrite_existing, error);
-  if (error) throw std::runtime_error(copy.string() + " cannot be written: " + error.message());
+  if (error) throw std::runtime_error(copy.string() + ": cannot be written: " + error.message());
 }
 
 }  // namespace

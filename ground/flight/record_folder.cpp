@@ -22,13 +22,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kClaim = "record.txt";
-constexpr std::array kRecordFiles = {"record.txt", "report.json",    "flight.csv",       "flight.csv.part",
-                                     "flight.gp",  "flight.png",     "trace.csv",        "sensors.csv",
-                                     "batch.csv",  "batch.csv.part", "sensors.csv.part", "batch.gp",
-                                     "batch.png",  "control.yaml",   "vehicle.yaml",     "simulation.yaml"};
+constexpr std::array kRecordFiles = {"record.txt",     "report.json", "flight.csv",   "flight.gp",
+                                     "flight.png",     "trace.csv",   "sensors.csv",  "batch.csv",
+                                     "batch.gp",       "batch.png",   "control.yaml", "vehicle.yaml",
+                                     "simulation.yaml"};
 
 bool is_record_file(const fs::path& file) {
-  const std::string name = file.filename();
+  const std::string name = file.extension() == ".part" ? file.stem() : file.filename();
   const bool named = std::find(kRecordFiles.begin(), kRecordFiles.end(), name) != kRecordFiles.end();
   return named || file.stem() == "mission" || (file.extension() == ".log" && name.rfind("swiftlet-", 0) == 0);
 }

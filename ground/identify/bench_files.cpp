@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <set>
 
 #include "swiftlet/ground/command_line/command.hpp"
+#include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/config.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/csv_writer.hpp"
@@ -250,10 +250,7 @@ void write_bench(const fs::path& folder, const BenchData& data, const std::strin
                                                             {Quantity::kSeparation, &strings.separation_m},
                                                             {Quantity::kPeriod, &strings.period_s}});
   }
-  std::ofstream settings(folder / kBenchSettingsFile);
-  settings << settings_yaml;
-  if (!settings.flush())
-    throw std::runtime_error((folder / kBenchSettingsFile).string() + " cannot be written");
+  runtime::write_atomically(folder / kBenchSettingsFile, settings_yaml);
 }
 
 }  // namespace swiftlet::ground

@@ -94,7 +94,7 @@ int identify_bench(const IdentifyBenchOptions& options) {
       runtime::vehicle_text(report.found.vehicle, sources, report.found.uncertainty, comment);
   runtime::parse_vehicle(text, options.out);
   if (!options.report.empty()) write_page(identification_page(report), options.report);
-  write_atomically(options.out, text);
+  runtime::write_atomically(options.out, text);
 
   if (options.json) {
     std::printf("%s\n", identification_json(report).c_str());

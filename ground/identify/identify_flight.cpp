@@ -108,7 +108,7 @@ int identify_flight(IdentifyFlightOptions options) {
         "Identified by `swiftlet identify flight`; parameters that were not identified are those of " +
             base.name + ". Frame: Forward-Right-Down, origin at the centre of mass.");
     runtime::parse_vehicle(text, options.out);
-    write_atomically(options.out, text);
+    runtime::write_atomically(options.out, text);
   }
   std::string wrote;
   for (const std::string& file : {options.out, options.report}) {

@@ -1,13 +1,12 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <stdexcept>
 #include <string>
 
 #include "swiftlet/ground/identify/bench_files.hpp"
 #include "swiftlet/ground/identify/identify_actions.hpp"
 #include "swiftlet/identification/bench/bench_simulation.hpp"
+#include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/csv.hpp"
 #include "swiftlet/io/settings/vehicle_file.hpp"
@@ -36,9 +35,7 @@ int identify_simulate(const IdentifySimulateOptions& options) {
               "# Simulated: " + vehicle.name + ", noise " + runtime::exact(options.noise.share) +
                   ", outliers " + runtime::exact(options.noise.outliers) + ", seed " +
                   std::to_string(options.seed) + ".\nbase_vehicle: " + kTruth + "\n");
-  std::ofstream truth(folder / kTruth);
-  truth << vehicle_text;
-  if (!truth.flush()) throw std::runtime_error((folder / kTruth).string() + " cannot be written");
+  runtime::write_atomically(folder / kTruth, vehicle_text);
   std::fprintf(stderr, "swiftlet: wrote a bench of %s to %s\n", vehicle.name.c_str(), options.out.c_str());
   return kDone;
 }

@@ -39,7 +39,7 @@ void add_estimates(plot::Page& page, const std::vector<identification::Parameter
 
 void write_page(const plot::Page& page, const std::string& file) {
   const plot::Page::Html html = page.html();
-  write_atomically(file, html.text);
+  runtime::write_atomically(file, html.text);
   if (!html.fault.empty()) std::fprintf(stderr, "swiftlet: %s: %s\n", file.c_str(), html.fault.c_str());
 }
 

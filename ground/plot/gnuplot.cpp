@@ -218,7 +218,7 @@ std::vector<std::string> run_gnuplot(const std::string& script, std::size_t file
     std::error_code error;
     fs::remove_all(folder, error);
   });
-  ground::write_atomically(folder / "script", script);
+  runtime::write_atomically(folder / "script", script);
   ground::ChildProcess process({"gnuplot", gnuplot, {"script"}, folder / "log", folder});
   const auto end = process.wait(kLongest);
   const std::string no_picture = "no picture was drawn: gnuplot ";
@@ -252,9 +252,9 @@ std::string draw_png(const Figure& figure, const fs::path& png, bool with_script
   const fs::path script = fs::path(png).replace_extension(".gp");
   try {
     if (with_script)
-      ground::write_atomically(script, "# Run gnuplot on this file, in its folder.\n" +
-                                           gnuplot_script(figure, Format::kPng, png.filename()));
-    ground::write_atomically(png, run_gnuplot(gnuplot_script(figure, Format::kPng, "0"), 1).front());
+      runtime::write_atomically(script, "# Run gnuplot on this file, in its folder.\n" +
+                                            gnuplot_script(figure, Format::kPng, png.filename()));
+    runtime::write_atomically(png, run_gnuplot(gnuplot_script(figure, Format::kPng, "0"), 1).front());
     return {};
   } catch (const std::exception& fault) {
     const bool hint = with_script && fault.what() == std::string_view(kNotInstalled);

@@ -107,6 +107,13 @@ std::string layout(const std::vector<Row>& rows) {
   return table;
 }
 
+[[noreturn]] void refuse(const fs::path& folder) {
+  throw InputError(folder.string() + ": contains no report.json, " +
+                   (fs::exists(folder / "record.txt")
+                        ? "its flight still flies or was killed (record.txt names its process)"
+                        : "is not a flight record"));
+}
+
 std::string failures(const std::vector<RecordedFlight>& flights) {
   std::string lines;
   for (const RecordedFlight& flight : flights) {
@@ -119,8 +126,7 @@ std::string failures(const std::vector<RecordedFlight>& flights) {
 
 RecordedFlight load_recorded_flight(const fs::path& folder) {
   const fs::path file = folder / kReport;
-  if (!fs::exists(file))
-    throw InputError(folder.string() + ": contains no report.json, is not a flight record");
+  if (!fs::exists(file)) refuse(folder);
   RecordedFlight flight;
   flight.folder = fs::absolute(folder).lexically_normal();
   if (flight.folder.filename().empty()) flight.folder = flight.folder.parent_path();
@@ -135,8 +141,7 @@ RecordedFlight load_recorded_flight(const fs::path& folder) {
 
 std::vector<fs::path> flights_of(const fs::path& record) {
   std::vector<fs::path> flights = flights_in(record);
-  if (flights.empty())
-    throw InputError(record.string() + ": contains no report.json, is not a flight record");
+  if (flights.empty()) refuse(record);
   return flights;
 }
 

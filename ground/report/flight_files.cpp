@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -15,6 +14,7 @@
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/ground/plot/gnuplot.hpp"
 #include "swiftlet/ground/plot/path_figure.hpp"
+#include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/csv_writer.hpp"
 
 namespace swiftlet::ground {
@@ -192,9 +192,7 @@ void write_flight_csv(const std::filesystem::path& file, const FlightRecord& rec
 }
 
 void write_report_json(const std::filesystem::path& file, const FlightReport& report) {
-  std::ofstream json(file);
-  json << to_json(report).dump(2) << "\n";
-  if (!json.flush()) throw std::runtime_error(file.string() + " cannot be written");
+  runtime::write_atomically(file, to_json(report).dump(2) + "\n");
 }
 
 std::string draw_flight(const std::filesystem::path& folder, const FlightRecord& record,

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include "swiftlet/math/euler.hpp"
 #include "swiftlet/services/messages/wire.hpp"
@@ -19,6 +20,15 @@ double tenths_of_degrees(double angle_rad) {
 }
 
 }  // namespace
+
+nlohmann::ordered_json to_json(const std::vector<Silence>& silences) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const Silence& silence : silences) {
+    json.push_back({{"who", silence.who}, {"for_s", nullptr}});
+    if (silence.for_s) json.back()["for_s"] = *silence.for_s;
+  }
+  return json;
+}
 
 void print_alarm(std::FILE* stream, const std::string& line) {
   const bool terminal = isatty(fileno(stream)) != 0;

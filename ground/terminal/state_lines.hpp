@@ -3,12 +3,18 @@
 
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include <Eigen/Geometry>
+#include <nlohmann/json_fwd.hpp>
 
+#include "swiftlet/ground/client/silence.hpp"
 #include "swiftlet/services/messages/topics.hpp"
 
 namespace swiftlet::ground {
+
+// [{"who": "vehicle", "for_s": 3.2}, ...]; for_s is null if nothing has come at all.
+nlohmann::ordered_json to_json(const std::vector<Silence>& silences);
 
 // Prints the line, bold and red if the stream is a terminal.
 void print_alarm(std::FILE* stream, const std::string& line);

@@ -35,6 +35,7 @@
 #include "swiftlet/services/dds/checked_type_support.hpp"
 #include "swiftlet/services/dds/participant.hpp"
 #include "swiftlet/services/dds/participant_qos.hpp"
+#include "swiftlet/services/dds/qos/duration.hpp"
 #include "swiftlet/services/dds/qos/profiles.hpp"
 #include "swiftlet/services/dds/single_source.hpp"
 #include "swiftlet/services/dds/vehicle_name.hpp"
@@ -83,9 +84,6 @@ struct SenderId {
   }
 };
 
-const eprosima::fastrtps::Duration_t kWriteTimeout{0,
-                                                   std::chrono::nanoseconds(kReliableWriteTimeout).count()};
-
 template <class T>
 dds::Topic* topic_in(ParticipantSession& session, const std::string& vehicle, const char* name) {
   return session.topic("rt/" + vehicle + "/" + name,
@@ -115,8 +113,12 @@ class DdsWriter final : public detail::Writer, private Endpoint {
     if (writer->write(data)) return true;
     // A full history of requests has room again once they are acknowledged. write() does not always wait for
     // that.
-    return topic_.qos == Qos::kRequest &&
-           writer->wait_for_acknowledgments(kWriteTimeout) == ReturnCode_t::RETCODE_OK && writer->write(data);
+    return topic_.qos == Qos::kRequest && wait_until_received(kReliableWriteTimeout) && writer->write(data);
+  }
+
+  bool wait_until_received(std::chrono::milliseconds timeout) override {
+    const typename GuardedPointer<dds::DataWriter>::Use writer(writer_);
+    return writer && writer->wait_for_acknowledgments(duration(timeout)) == ReturnCode_t::RETCODE_OK;
   }
 
   void set_strength(std::uint32_t strength) override {

@@ -85,6 +85,7 @@ class Writer {
  public:
   virtual ~Writer() = default;
   virtual bool write(const void* sample) = 0;
+  virtual bool wait_until_received(std::chrono::milliseconds timeout) = 0;
   virtual int matched() const = 0;
   virtual std::uint64_t changes() const = 0;
   virtual void set_strength(std::uint32_t strength) = 0;
@@ -105,6 +106,12 @@ class Publisher {
   explicit Publisher(std::unique_ptr<detail::Writer> writer) : writer_(std::move(writer)) {}
   // Returns false if the sample was not sent (no resources, or time-out of a reliable writer).
   bool publish(const T& sample) { return writer_->write(&sample); }
+  // Of a reliable topic: waits until all matched readers have received all samples. A reader drops what arrives
+  // after it has heard that the writer is gone: wait before the writer of an important last sample ends.
+  // Returns false after the timeout.
+  bool wait_until_received(std::chrono::milliseconds timeout) {
+    return writer_->wait_until_received(timeout);
+  }
   int matched() const { return writer_->matched(); }  // number of matched readers
   // Number of matches and unmatches of readers. A sample sent before the last one may not have reached all.
   std::uint64_t changes() const { return writer_->changes(); }

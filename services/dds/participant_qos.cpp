@@ -7,6 +7,7 @@
 #include <fastrtps/utils/IPLocator.h>
 
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
+#include "swiftlet/services/dds/qos/duration.hpp"
 
 namespace swiftlet::comms {
 namespace {
@@ -15,15 +16,9 @@ namespace dds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastdds::rtps::SharedMemTransportDescriptor;
 using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
-using eprosima::fastrtps::Duration_t;
 
 constexpr const char* kLoopback = "127.0.0.1";
 constexpr std::uint32_t kSegmentBytes = 1 << 20;  // of shared memory: fits seven missions of maximum length
-
-Duration_t duration(std::chrono::milliseconds time) {
-  return {static_cast<std::int32_t>(time.count() / 1000),
-          static_cast<std::uint32_t>(time.count() % 1000 * 1'000'000)};
-}
 
 rtps::Locator_t loopback_locator(std::uint32_t port) {
   rtps::Locator_t locator;

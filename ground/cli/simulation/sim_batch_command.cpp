@@ -56,8 +56,6 @@ std::string write_files(const std::filesystem::path& folder, const BatchReport& 
     write_batch_csv(folder / "batch.csv", report);
   } catch (const std::exception& error) {
     fault = error.what();
-    std::error_code ignored;
-    std::filesystem::rename(folder / "batch.csv", folder / "batch.csv.part", ignored);
   }
   try {
     const std::string no_picture = draw_batch(folder, report);

@@ -1,5 +1,7 @@
 #include "swiftlet/services/dds/qos/profiles.hpp"
 
+#include "swiftlet/services/dds/qos/duration.hpp"
+
 namespace swiftlet::comms {
 
 bool is_latched(Qos profile) { return profile == Qos::kLatched || profile == Qos::kLatchedLarge; }
@@ -8,12 +10,6 @@ namespace {
 
 namespace dds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
-using eprosima::fastrtps::Duration_t;
-
-Duration_t duration(std::chrono::milliseconds time) {
-  return {static_cast<std::int32_t>(time.count() / 1000),
-          static_cast<std::uint32_t>(time.count() % 1000 * 1'000'000)};
-}
 
 bool is_stream(Qos profile) { return profile == Qos::kStream || profile == Qos::kOwnedStream; }
 bool is_reliable(Qos profile) {

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "swiftlet/io/atomic_write.hpp"
 #include "swiftlet/io/text_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -47,6 +48,15 @@ TEST_F(CsvWriterTest, QuotesAllTextOnRequest) {
   EXPECT_EQ(written(), "a,b,c\n\"\",\"plain\",\"says \"\"no\"\", twice\"\n");
 }
 
+TEST_F(CsvWriterTest, NamesTheFileWhenItIsComplete) {
+  CsvWriter csv(file_, {"t"});
+  csv.number(1).end_row();
+  EXPECT_FALSE(std::filesystem::exists(file_));
+  csv.finish();
+  EXPECT_EQ(written(), "t\n1\n");
+  EXPECT_FALSE(std::filesystem::exists(unfinished_name(file_)));
+}
+
 TEST_F(CsvWriterTest, ReportsAFileThatCannotBeWritten) {
   EXPECT_THROW(CsvWriter(folder_.path() / "none" / "table.csv", {"a"}), std::runtime_error);
   CsvWriter full("/dev/full", {"a"});
@@ -55,7 +65,7 @@ TEST_F(CsvWriterTest, ReportsAFileThatCannotBeWritten) {
     full.finish();
     FAIL() << "no error on a full disk";
   } catch (const std::runtime_error& error) {
-    EXPECT_STREQ(error.what(), "/dev/full cannot be written: No space left on device");
+    EXPECT_STREQ(error.what(), "/dev/full: cannot be written: No space left on device");
   }
 }
 

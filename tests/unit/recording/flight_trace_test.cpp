@@ -77,7 +77,7 @@ TEST(FlightTrace, ReportsAFileThatCannotBeWritten) {
     FlightTrace trace("/nonexistent/trace.csv", 4);
     FAIL() << "no error for a path that does not exist";
   } catch (const std::runtime_error& error) {
-    EXPECT_STREQ(error.what(), "/nonexistent/trace.csv: cannot be written");
+    EXPECT_STREQ(error.what(), "/nonexistent/trace.csv: cannot be written: No such file or directory");
   }
   FlightTrace full("/dev/full", 4);
   for (int i = 0; i < 1000; ++i)  // more than a buffer

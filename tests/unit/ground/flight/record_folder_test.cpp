@@ -100,6 +100,14 @@ TEST_F(RecordFolderTest, ReplacesARecordWhole) {
     EXPECT_EQ(entry.path().filename(), "record.txt");
 }
 
+TEST_F(RecordFolderTest, ReplacesARecordWithUnfinishedFiles) {
+  make_record("first");
+  for (const char* name : {"flight.csv.part", "report.json.part", "flight.png.part"})
+    temporary_.write(std::string("first/") + name, "");
+  const RecordFolder made(folder_ / "first", ExistingRecord::kReplaced);
+  EXPECT_FALSE(fs::exists(folder_ / "first/flight.csv.part"));
+}
+
 TEST_F(RecordFolderTest, DeletesNothingButRecords) {
   make_record("first");
   temporary_.write("first/thesis.tex", "");

@@ -84,6 +84,18 @@ TEST_F(FlightComparison, FindsTheFlightsOfSeveralVehicles) {
   EXPECT_EQ(load_recorded_flight(kl1).name, "b/kl1");
 }
 
+TEST_F(FlightComparison, SaysThatAFlightHasNotEnded) {
+  folder_.write("record.txt", "process 12 on lab, 2026-11-21 09:39:09\n");
+  try {
+    load_recorded_flight(folder_.path());
+    FAIL() << "a flight without a report was loaded";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(), folder_.path().string() +
+                                ": contains no report.json, its flight still flies or was killed (record.txt "
+                                "names its process)");
+  }
+}
+
 TEST_F(FlightComparison, RefusesFoldersWithoutAFlight) {
   EXPECT_THROW(load_recorded_flight(folder_.path()), InputError);
   EXPECT_THROW(newest_record(folder_.path() / "none"), InputError);

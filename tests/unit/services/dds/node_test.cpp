@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <future>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -140,6 +142,34 @@ TEST(Requests, ArriveInOrder) {
   ASSERT_TRUE(ids.wait_for_count(kCount));
   std::uint64_t expected = 0;
   for (const std::uint64_t id : ids.items()) EXPECT_EQ(id, ++expected);
+}
+
+TEST(LastSample, IsReceivedBeforeItsWriterEnds) {
+  const DomainLock lock;
+  Node ground(settings(lock, "ground"));
+  Node control(settings(lock, "control"));
+  std::promise<void> release;
+  Inbox<bool> busy;
+  Inbox<msg::GroundLink> inbox;
+  const auto blocked = control.subscribe<msg::Battery>(topics::kBattery, [&](const msg::Battery&) {
+    busy.put(true);
+    release.get_future().wait();
+  });
+  const auto subscription = control.subscribe<msg::GroundLink>(
+      topics::kGroundLink, [&](const msg::GroundLink& message) { inbox.put(message); });
+  auto battery = ground.publish(topics::kBattery);
+  auto heartbeat = std::make_unique<Publisher<msg::GroundLink>>(ground.publish(topics::kGroundLink));
+  ASSERT_TRUE(eventually([&] { return battery.matched() == 1 && heartbeat->matched() == 1; }));
+  ASSERT_TRUE(eventually([&] { return blocked.matched() == 1 && subscription.matched() == 1; }));
+
+  battery.publish(example<msg::Battery>());
+  ASSERT_TRUE(busy.wait_for_count(1));
+  heartbeat->publish(example<msg::GroundLink>());
+  EXPECT_FALSE(heartbeat->wait_until_received(50ms)) << "the only receive thread is busy";
+  release.set_value();
+  EXPECT_TRUE(heartbeat->wait_until_received(5s));
+  heartbeat.reset();
+  EXPECT_TRUE(inbox.wait_for_count(1));
 }
 
 TEST(LatchedTopic, ReachesLateJoiners) {
