@@ -141,7 +141,7 @@ void rest_unanswered(RequestOutcomes& outcomes, OnInterrupt on_interrupt) {
 // A note at the acceptance of such a request says what the controller cannot confirm yet.
 ActionResult result_when_accepted(const RequestOutcome& outcome) {
   if (outcome.answer.reason.empty()) return {ActionResult::Kind::kCompleted, ""};
-  const ActionResult result = outcome.action->wait(kConfirmationTimeout);
+  ActionResult result = outcome.action->wait(kConfirmationTimeout);
   if (result.done()) return result;
   return {result.kind, "published and accepted by the controller, not confirmed: " + outcome.answer.reason};
 }

@@ -53,10 +53,9 @@ const char* name_of(control::RequestKind kind) {
   return "request of unknown kind";
 }
 
-template <class... Values>
-control::Outcome accept_with(const char* reason, Values... values) {
+control::Outcome accept_with(const char* reason) {
   control::Outcome outcome = control::accept();
-  std::snprintf(outcome.reason, sizeof outcome.reason, reason, values...);
+  std::snprintf(outcome.reason, sizeof outcome.reason, "%s", reason);
   return outcome;
 }
 
@@ -65,11 +64,13 @@ control::Outcome stopped_without_imu(double imu_age_s) {
     return accept_with(
         "rotors off is commanded, but no IMU sample of the vehicle has come yet: it cannot confirm the stop");
   }
-  return accept_with(
+  control::Outcome outcome = control::accept();
+  std::snprintf(
+      outcome.reason, sizeof outcome.reason,
       "rotors off is commanded, but the vehicle has been silent for %.1f s (no IMU sample): it cannot "
-      "confirm "
-      "the stop",
+      "confirm the stop",
       imu_age_s);
+  return outcome;
 }
 
 control::Outcome refusal(const comms::Fault& fault) { return control::refuse("%s", fault.text); }

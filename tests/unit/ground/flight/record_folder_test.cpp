@@ -183,9 +183,9 @@ TEST(RecordSpace, GrowsWithDurationRateAndFiles) {
   const std::uintmax_t telemetry = plan.record_bytes();
   plan.sensors = true;
   const std::uintmax_t sensors = plan.record_bytes();
-  EXPECT_GT(sensors, telemetry + 60 * 500 * 200);
+  EXPECT_GT(sensors, telemetry + std::uintmax_t{60} * 500 * 200);
   plan.simulation.imu.rate_hz = 1000;
-  EXPECT_GT(plan.record_bytes(), sensors + 60 * 500 * 200);
+  EXPECT_GT(plan.record_bytes(), sensors + std::uintmax_t{60} * 500 * 200);
 }
 
 }  // namespace

@@ -52,6 +52,13 @@ comms::NodeSettings settings_of(const char* name, const comms::DomainLock& lock)
 
 // A service for which the test plays motion capture and a vehicle at rest.
 class RealtimeService : public testing::Test {
+ public:
+  ~RealtimeService() override {
+    stop_ = true;
+    service_->wake();
+    telemetry_.join();
+  }
+
  protected:
   RealtimeService() {
     runtime::RealtimeSettings realtime;
@@ -61,11 +68,6 @@ class RealtimeService : public testing::Test {
         runtime::load_control_settings(SWIFTLET_SOURCE_DIR "/config/control/motor_lag.yaml"), 0,
         control_node_, realtime, runtime::Clock::kRealtime);
     telemetry_ = std::thread([this] { service_->run(stop_); });
-  }
-  ~RealtimeService() override {
-    stop_ = true;
-    service_->wake();
-    telemetry_.join();
   }
 
   void send_samples() {

@@ -34,6 +34,9 @@ constexpr std::int64_t kPeriod_ns = 2'000'000;  // of the IMU
 constexpr std::uint64_t kSeed = 3;
 
 class Lockstep : public testing::Test {
+ public:
+  ~Lockstep() override { stop(); }
+
  protected:
   static comms::NodeSettings node_settings(const comms::DomainLock& lock, const char* name) {
     comms::NodeSettings settings;
@@ -53,7 +56,6 @@ class Lockstep : public testing::Test {
       if (answers_) answer(message);
     });
   }
-  ~Lockstep() override { stop(); }
 
   void start(const LockstepSettings& lockstep) {
     vehicle_.emplace(tests::kaylion(), settings_, kSeed, plant::VehicleState(), plant_node_);

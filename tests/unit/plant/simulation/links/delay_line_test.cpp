@@ -39,9 +39,10 @@ TEST(DelayLine, KeepsTheOrder) {
 TEST(DelayLine, DropsTheOldestWhenFull) {
   for (const int capacity : {1, 2, 3}) {
     DelayLine<int> line(static_cast<std::size_t>(capacity));
-    for (int i = 1; i <= 7; ++i) line.put(i, 10 * i);
+    const auto due_ns = [](int i) { return std::int64_t{10} * i; };
+    for (int i = 1; i <= 7; ++i) line.put(i, due_ns(i));
     for (int i = 1; i <= 7; ++i) {
-      const auto found = line.take(10 * i);
+      const auto found = line.take(due_ns(i));
       if (i <= 7 - capacity) {
         EXPECT_FALSE(found.has_value()) << i << " of " << capacity;
       } else {
