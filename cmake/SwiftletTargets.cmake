@@ -28,18 +28,23 @@ endif()
 # what it uses: ./dev lint compiles without precompiled headers.
 option(SWIFTLET_PRECOMPILED_HEADERS "Precompile the headers of the standard library, Eigen and GoogleTest" ${PROJECT_IS_TOP_LEVEL})
 
-# swiftlet_add_precompiled_headers(NAME LIBS ...): adds the target swiftlet_NAME, which precompiles cmake/NAME.hpp. Other targets
-# reuse it.
-function(swiftlet_add_precompiled_headers name)
-  add_library(swiftlet_${name} OBJECT ${PROJECT_SOURCE_DIR}/cmake/${name}.cpp)
-  target_precompile_headers(swiftlet_${name} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/${name}.hpp)
+# swiftlet_add_precompiled_headers(NAME HEADERS LIBS ...): adds the target swiftlet_NAME, which precompiles cmake/HEADERS.hpp. Other
+# targets reuse it; they are compiled with its optimisation, whatever their own is.
+function(swiftlet_add_precompiled_headers name headers)
+  add_library(swiftlet_${name} OBJECT ${PROJECT_SOURCE_DIR}/cmake/${headers}.cpp)
+  target_precompile_headers(swiftlet_${name} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/${headers}.hpp)
   target_link_libraries(swiftlet_${name} PRIVATE ${ARGN} swiftlet_flags)
 endfunction()
 
+# Code that runs for each IMU sample: the compiler inlines more, which saves a fifth of the controller's step.
+set(SWIFTLET_EACH_SAMPLE_OPTIONS $<$<CONFIG:RelWithDebInfo,Release>:-O3> -fno-semantic-interposition)
+
 if(SWIFTLET_PRECOMPILED_HEADERS)
   target_compile_options(swiftlet_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)  # what ccache needs
-  swiftlet_add_precompiled_headers(library_headers Eigen3::Eigen)
-  set_target_properties(swiftlet_library_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  swiftlet_add_precompiled_headers(library_headers library_headers Eigen3::Eigen)
+  swiftlet_add_precompiled_headers(each_sample_headers library_headers Eigen3::Eigen)
+  target_compile_options(swiftlet_each_sample_headers PRIVATE ${SWIFTLET_EACH_SAMPLE_OPTIONS})
+  set_target_properties(swiftlet_library_headers swiftlet_each_sample_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
 endif()
 
 # Headers are included as <swiftlet/FOLDER/...> in the build tree and after installation.
@@ -50,10 +55,11 @@ foreach(folder IN LISTS SWIFTLET_HEADER_FOLDERS)
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${folder} ${SWIFTLET_INCLUDE_DIR}/swiftlet/${folder} SYMBOLIC)
 endforeach()
 
-# swiftlet_add_library(NAME [SOURCES ...] [PUBLIC ...] [PRIVATE ...]): adds a static library swiftlet_NAME with the alias
-# swiftlet::NAME, installed and exported. PUBLIC and PRIVATE list link libraries.
+# swiftlet_add_library(NAME [EACH_SAMPLE] [SOURCES ...] [PUBLIC ...] [PRIVATE ...]): adds a static library swiftlet_NAME with the
+# alias swiftlet::NAME, installed and exported. PUBLIC and PRIVATE list link libraries.
+#   EACH_SAMPLE  its code runs for each IMU sample
 function(swiftlet_add_library name)
-  cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(arg "EACH_SAMPLE" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   set(target swiftlet_${name})
   add_library(${target} STATIC ${arg_SOURCES})
   add_library(swiftlet::${name} ALIAS ${target})
@@ -62,8 +68,13 @@ function(swiftlet_add_library name)
   target_include_directories(${target} PUBLIC
     $<BUILD_INTERFACE:${SWIFTLET_INCLUDE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(${target} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:swiftlet_flags>)
+  set(headers library_headers)
+  if(arg_EACH_SAMPLE)
+    set(headers each_sample_headers)
+    target_compile_options(${target} PRIVATE ${SWIFTLET_EACH_SAMPLE_OPTIONS})
+  endif()
   if(SWIFTLET_PRECOMPILED_HEADERS)
-    target_precompile_headers(${target} REUSE_FROM swiftlet_library_headers)
+    target_precompile_headers(${target} REUSE_FROM swiftlet_${headers})
   endif()
   swiftlet_export(${name} ${arg_PUBLIC} ${arg_PRIVATE})
 endfunction()
