@@ -13,6 +13,7 @@
 #include <thread>
 #include <unistd.h>
 
+#include "tests/support/eventually.hpp"
 #include "tests/support/program.hpp"
 
 namespace swiftlet::tests {
@@ -23,13 +24,16 @@ namespace fs = std::filesystem;
 constexpr const char* kNames = "swiftlet-net-";
 constexpr const char* kFolder = "/run/netns";
 
-void shell(const std::string& command) {
+std::string output_of(const std::string& command) {
   std::FILE* const pipe = popen(("{ " + command + "; } 2>&1").c_str(), "r");
   if (pipe == nullptr) throw std::system_error(errno, std::generic_category(), command);
   std::string output;
   for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) output += static_cast<char>(c);
   if (pclose(pipe) != 0) throw std::runtime_error(command + ": " + output);
+  return output;
 }
+
+void shell(const std::string& command) { output_of(command); }
 
 void remove_namespace(const std::string& name) {
   try {
@@ -118,6 +122,13 @@ void HostNetwork::connect(Layout layout) {
                    ? "route add 224.0.0.0/4 dev eth0\n"
                    : "route add default via 10.77." + std::to_string(host + 1) + ".254\n";
     shell("printf '" + of_host + "' | ip -n " + hosts_[host] + " -batch -");
+  }
+  // Until the kernel reports the link, within a second, programs take it for unplugged.
+  for (const std::string& host : hosts_) {
+    if (!eventually([&] {
+          return output_of("ip -n " + host + " link show eth0").find("state UP") != std::string::npos;
+        }))
+      throw std::runtime_error(host + ": eth0 does not come up");
   }
 }
 
