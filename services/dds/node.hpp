@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "swiftlet/services/dds/network_settings.hpp"
 #include "swiftlet/services/messages/topics.hpp"
 
 namespace swiftlet::comms {
@@ -27,6 +28,7 @@ struct NodeSettings {
   int domain = 0;               // 0 .. 232
   Transport transport = Transport::kUdp;
   bool localhost_only = false;  // loopback interface only, without multicast
+  NetworkSettings network{};    // not with localhost_only
   // Offer and request the topics' deadlines. False in lockstep, where time may stand still. A reader that
   // requests a deadline does not match a writer that offers none.
   bool deadlines = true;

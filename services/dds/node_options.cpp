@@ -1,5 +1,8 @@
 #include "swiftlet/services/dds/node_options.hpp"
 
+#include "swiftlet/services/dds/discovery/host_address.hpp"
+#include "swiftlet/services/dds/discovery/interfaces.hpp"
+
 namespace swiftlet::comms {
 
 void add_node_options(runtime::CommandLine app, NodeSettings& settings, const NameCheck& name) {
@@ -14,8 +17,18 @@ void add_node_options(runtime::CommandLine app, NodeSettings& settings, const Na
                  {{"udp", Transport::kUdp}, {"shm", Transport::kSharedMemory}},
                  "udp, or shm: shared memory between processes of this host")
       .show_default("udp");
-  app.add_flag("--localhost-only", settings.localhost_only,
-               "Use the loopback interface only, without multicast");
+  runtime::Option localhost_only = app.add_flag("--localhost-only", settings.localhost_only,
+                                                "Use the loopback interface only, without multicast");
+  app.add_option("--peer", settings.network.peers,
+                 "Find the processes of this host without multicast; once for each other host")
+      .repeated()
+      .check(fault_of_host_address, "HOST[:PORT]")
+      .excludes(localhost_only);
+  app.add_option("--interface", settings.network.interfaces,
+                 "Use this network interface only; may be repeated")
+      .repeated()
+      .check(fault_of_interface, "NAME|ADDRESS")
+      .excludes(localhost_only);
 }
 
 }  // namespace swiftlet::comms

@@ -7,6 +7,7 @@
 #include <fastrtps/utils/IPLocator.h>
 
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
+#include "swiftlet/services/dds/network_qos.hpp"
 #include "swiftlet/services/dds/qos/duration.hpp"
 
 namespace swiftlet::comms {
@@ -53,6 +54,8 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uin
     // on no multicast address. For the peers (port 0) the middleware tries maxInitialPeersRange ports.
     builtin.metatrafficUnicastLocatorList.push_back(loopback_locator(ports.first));
     builtin.initialPeersList.push_back(loopback_locator(0));
+  } else {
+    set_network(settings, announced_ports, qos, *udp);
   }
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports.push_back(udp);

@@ -9,7 +9,8 @@
 
 namespace swiftlet::comms {
 
-// announced_ports: number of ports to which it announces itself with localhost_only (discovery_ports.hpp).
+// announced_ports: number of ports to which it announces itself without multicast (discovery_ports.hpp). Throws
+// std::runtime_error for an unknown host or interface.
 eprosima::fastdds::dds::DomainParticipantQos participant_qos(const NodeSettings& settings,
                                                              std::uint32_t announced_ports);
 

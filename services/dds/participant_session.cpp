@@ -4,6 +4,8 @@
 #include <mutex>
 #include <set>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
@@ -11,6 +13,7 @@
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
+#include "swiftlet/services/dds/discovery/interfaces.hpp"
 #include "swiftlet/services/dds/participant_qos.hpp"
 #include "swiftlet/services/dds/shared_memory.hpp"
 
@@ -52,6 +55,13 @@ dds::DomainParticipant* create_participant(const NodeSettings& settings, const A
       dds::StatusMask::requested_incompatible_qos() << dds::StatusMask::offered_incompatible_qos());
 }
 
+// Empty: all addresses of this host.
+std::string listening_address(const NodeSettings& settings) {
+  if (settings.localhost_only) return "127.0.0.1";
+  const std::vector<std::string> addresses = addresses_of_interfaces(settings.network.interfaces);
+  return addresses.empty() ? "" : addresses.front();
+}
+
 // Serialized by a mutex, because Fast DDS 2.9 calls getpwuid(), which is not thread-safe. Fast DDS reports
 // neither the port at which it listens nor that it found none, hence the comparison of ports before and
 // after.
@@ -61,7 +71,8 @@ dds::DomainParticipant* join(const NodeSettings& settings, const Announcement& a
   const std::lock_guard<std::mutex> lock(mutex);
   const DiscoveryPorts ports = discovery_ports(settings.domain);
   const std::set<std::uint32_t> before = own_discovery_ports(settings.domain);
-  const std::uint32_t expected = free_discovery_port(settings.domain, settings.localhost_only);
+  const std::uint32_t expected = free_discovery_port(settings.domain, listening_address(settings));
+  const bool uses_multicast = !settings.localhost_only && settings.network.uses_multicast();
   for (const std::uint32_t announced : {announced_ports(ports, expected), ports.count}) {
     dds::DomainParticipant* const participant =
         create_participant(settings, announcement, listener, announced);
@@ -69,7 +80,7 @@ dds::DomainParticipant* join(const NodeSettings& settings, const Announcement& a
     // Other processes may have taken ports meanwhile. If the own port is then too high to announce itself to
     // all ports below it, try again with all ports.
     for (const std::uint32_t port : own_discovery_ports(settings.domain)) {
-      if (before.count(port) == 0 && (port < announced || !settings.localhost_only)) return participant;
+      if (before.count(port) == 0 && (port < announced || uses_multicast)) return participant;
     }
     end(participant);
   }

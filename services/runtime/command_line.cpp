@@ -161,6 +161,10 @@ Option& Option::expected(int values) {
   option_->expected(values);
   return *this;
 }
+Option& Option::repeated() {
+  option_->allow_extra_args(false);
+  return *this;
+}
 Option& Option::show_default() {
   option_->capture_default_str();
   return *this;

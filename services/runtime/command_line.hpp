@@ -24,6 +24,7 @@ class Option {
 
   Option& required();
   Option& expected(int values);
+  Option& repeated();      // of a list: one value each time that it is given
   Option& show_default();  // in --help: the present value of the variable
   Option& show_default(const std::string& text);
   Option& type_name(const std::string& name);

@@ -1,19 +1,27 @@
 // Hosts on a switch, and behind routers that forward no multicast: who reaches whom.
 #include <arpa/inet.h>
-#include <chrono>
+#include <memory>
 #include <netinet/in.h>
 #include <string>
 #include <sys/socket.h>
 #include <unistd.h>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
+#include "tests/support/eventually.hpp"
 #include "tests/support/network_namespace.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::tests {
 namespace {
 
+using nlohmann::json;
 using Layout = HostNetwork::Layout;
+using Words = std::vector<std::string>;
 
 constexpr const char* kGroup = "239.255.0.1";
 constexpr std::uint16_t kPort = 7400;
@@ -64,6 +72,92 @@ TEST(HostNetwork, CarriesMulticastOverASwitchButNotThroughARouter) {
   EXPECT_FALSE(arrives(network, 0, 1, kGroup));
   network.run(0, "ip link set eth0 down");
   EXPECT_FALSE(arrives(network, 0, 1, network.address(1)));
+}
+
+// Plant and motion capture on host 0, control on host 1, and the ground tools on host 2. In lockstep, so that a busy
+// machine slows the flight down instead of failing it.
+class Networks : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string why = HostNetwork::why_unavailable(); !why.empty()) GTEST_SKIP() << why;
+  }
+
+  void connect(Layout layout) { hosts_ = std::make_unique<HostNetwork>(layout, 3); }
+  void start_all(const std::vector<Words>& options_of_hosts) {
+    options_ = options_of_hosts;
+    plant_ = start(0, "swiftlet-plant", {"--clock", "lockstep", "--speed", "8"});
+    mocap_ = start(0, "swiftlet-mocap", {"--clock", "lockstep"});
+    control_ = start(1, "swiftlet-control", {"--clock", "lockstep"});
+  }
+  // The other hosts, as peers.
+  std::vector<Words> all_peers() const {
+    const std::string a = hosts_->address(0);
+    const std::string b = hosts_->address(1);
+    const std::string c = hosts_->address(2);
+    return {{"--peer", b, "--peer", c}, {"--peer", a, "--peer", c}, {"--peer", a, "--peer", b}};
+  }
+
+  std::unique_ptr<Program> start(int host, const std::string& program, Words words) const {
+    const Words& options = options_.at(static_cast<std::size_t>(host));
+    words.insert(words.end(), options.begin(), options.end());
+    const HostNetwork::Inside inside(*hosts_, host);
+    return std::make_unique<Program>(program, std::move(words), folder_.path());
+  }
+  ProgramResult swiftlet(int host, Words words) const {
+    const std::unique_ptr<Program> program = start(host, "swiftlet", std::move(words));
+    const int exit_code = program->wait(kStuck);
+    return {exit_code, program->output(), program->errors()};
+  }
+  bool finds_the_vehicle(int host) const {
+    return eventually([&] {
+      const ProgramResult result = swiftlet(host, {"list", "--json"});
+      if (result.exit_code != 0) return false;
+      const json list = json::parse(result.output);
+      return list.size() == 1 && list[0].at("mode") == "disarmed" && list[0].at("model") == "kaylion" &&
+             list[0].at("controllers") == 1 && list[0].at("mocap_hz") > 20.0;
+    });
+  }
+  void expect_flies(const Words& mission) const {
+    Words words = {"fly"};
+    words.insert(words.end(), mission.begin(), mission.end());
+    words.insert(words.end(), {"--attach", "--json", "--record", (folder_.path() / "record").string()});
+    const ProgramResult flight = swiftlet(2, words);
+    ASSERT_EQ(flight.exit_code, 0) << flight.errors << logs();
+    EXPECT_LT(json::parse(flight.output).at("rms_3d_m"), 0.05);
+  }
+  std::string logs() const { return plant_->errors() + mocap_->errors() + control_->errors(); }
+
+  TemporaryFolder folder_;
+  std::unique_ptr<HostNetwork> hosts_;
+  std::vector<Words> options_;
+  std::unique_ptr<Program> plant_, mocap_, control_;
+};
+
+TEST_F(Networks, PeersFlyThroughRoutersWithoutMulticast) {
+  connect(Layout::kRouter);
+  start_all(all_peers());
+  ASSERT_TRUE(finds_the_vehicle(2)) << logs();
+  const ProgramResult status = swiftlet(2, {"status", "--json", "--watch", "0.1"});
+  EXPECT_EQ(status.exit_code, 0) << status.errors;
+  expect_flies({"square"});
+  EXPECT_EQ(logs().find("rejoined"), std::string::npos) << logs();
+}
+
+TEST_F(Networks, FindNothingThroughRoutersWithoutPeers) {
+  connect(Layout::kRouter);
+  start_all({{}, {}, {}});
+  ASSERT_TRUE(eventually([&] { return plant_->errors().find("mocap joined") != std::string::npos; }));
+  const ProgramResult list = swiftlet(2, {"list", "--time", "1"});
+  EXPECT_EQ(list.exit_code, 1) << list.output;
+  EXPECT_EQ(logs().find("control joined"), std::string::npos) << logs();
+}
+
+TEST_F(Networks, UseTheChosenInterfaceOnly) {
+  connect(Layout::kSwitch);
+  start_all({{"--interface", "eth0"}, {"--interface", hosts_->address(1)}, {"--interface", "eth0"}});
+  EXPECT_TRUE(finds_the_vehicle(2)) << logs();
+  options_[2] = {"--interface", "lo"};
+  EXPECT_EQ(swiftlet(2, {"list", "--time", "1"}).exit_code, 1);
 }
 
 }  // namespace

@@ -19,13 +19,13 @@ constexpr std::uint32_t kPortsAbove = 16;
 // Above the number of descriptors of any process here.
 constexpr int kMostDescriptors = 4096;
 
-bool is_free(std::uint32_t port, bool localhost_only) {
+bool is_free(std::uint32_t port, const std::string& own_address) {
   const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (socket < 0) return true;  // unknown; the participant will report the error
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(port));
-  address.sin_addr.s_addr = htonl(localhost_only ? INADDR_LOOPBACK : INADDR_ANY);
+  if (!own_address.empty()) ::inet_pton(AF_INET, own_address.c_str(), &address.sin_addr);
   const bool free = ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
   ::close(socket);
   return free;
@@ -54,10 +54,10 @@ std::runtime_error domain_is_full(int domain) {
                             ", are taken; choose another with --domain");
 }
 
-std::uint32_t free_discovery_port(int domain, bool localhost_only) {
+std::uint32_t free_discovery_port(int domain, const std::string& address) {
   const DiscoveryPorts ports = discovery_ports(domain);
   for (std::uint32_t i = 0; i < ports.count; ++i) {
-    if (is_free(ports.first + i * ports.gap, localhost_only)) return i;
+    if (is_free(ports.first + i * ports.gap, address)) return i;
   }
   throw domain_is_full(domain);
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <set>
 #include <stdexcept>
+#include <string>
 
 namespace swiftlet::comms {
 
@@ -22,8 +23,9 @@ DiscoveryPorts discovery_ports(int domain);
 // The error "DDS domain 5 is full ...": all ports are taken. The others would not discover one more process.
 std::runtime_error domain_is_full(int domain);
 
-// Returns the index of the first free port of the domain, from 0. Throws domain_is_full().
-std::uint32_t free_discovery_port(int domain, bool localhost_only);
+// Returns the index of the first free port of the domain, from 0. address: an IPv4 address of this host; empty:
+// all of them. Throws domain_is_full().
+std::uint32_t free_discovery_port(int domain, const std::string& address);
 
 // Returns the indices of the ports that sockets of this process are bound to.
 std::set<std::uint32_t> own_discovery_ports(int domain);

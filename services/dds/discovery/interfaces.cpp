@@ -5,24 +5,53 @@
 #include <memory>
 #include <net/if.h>
 #include <netinet/in.h>
+#include <stdexcept>
 
 namespace swiftlet::comms {
 
-std::string interfaces_text(bool localhost_only) {
+std::vector<Interface> interfaces_up() {
   ifaddrs* first = nullptr;
-  if (::getifaddrs(&first) != 0) return "unknown interfaces";
+  if (::getifaddrs(&first) != 0) return {};
   const std::unique_ptr<ifaddrs, void (*)(ifaddrs*)> owner(first, ::freeifaddrs);
-  std::string text;
+  std::vector<Interface> found;
   for (const ifaddrs* it = first; it != nullptr; it = it->ifa_next) {
     if (it->ifa_addr == nullptr || it->ifa_addr->sa_family != AF_INET) continue;
-    if ((it->ifa_flags & IFF_UP) == 0U) continue;
-    if (localhost_only && (it->ifa_flags & IFF_LOOPBACK) == 0U) continue;
+    if ((it->ifa_flags & IFF_UP) == 0U || (it->ifa_flags & IFF_RUNNING) == 0U) continue;
     char address[INET_ADDRSTRLEN] = {};
     ::inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(it->ifa_addr)->sin_addr, address,
                 sizeof address);
-    text += (text.empty() ? "" : ", ") + std::string(it->ifa_name) + " (" + address + ")";
+    found.push_back({it->ifa_name, address, (it->ifa_flags & IFF_LOOPBACK) != 0U});
+  }
+  return found;
+}
+
+std::string interfaces_text(bool localhost_only) {
+  std::string text;
+  for (const Interface& it : interfaces_up()) {
+    if (localhost_only && !it.is_loopback) continue;
+    text += (text.empty() ? "" : ", ") + it.name + " (" + it.address + ")";
   }
   return text.empty() ? "no interface that is up" : text;
+}
+
+std::string fault_of_interface(const std::string& name_or_address) {
+  for (const Interface& it : interfaces_up()) {
+    if (it.name == name_or_address || it.address == name_or_address) return "";
+  }
+  return "is '" + name_or_address +
+         "', must be an interface that is up, by name or IPv4 address: " + interfaces_text(false);
+}
+
+std::vector<std::string> addresses_of_interfaces(const std::vector<std::string>& names_or_addresses) {
+  std::vector<std::string> addresses;
+  for (const std::string& wanted : names_or_addresses) {
+    if (const std::string fault = fault_of_interface(wanted); !fault.empty())
+      throw std::runtime_error("interface " + fault);
+    for (const Interface& it : interfaces_up()) {
+      if (it.name == wanted || it.address == wanted) addresses.push_back(it.address);
+    }
+  }
+  return addresses;
 }
 
 }  // namespace swiftlet::comms

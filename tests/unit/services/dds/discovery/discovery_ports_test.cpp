@@ -120,7 +120,7 @@ TEST(DiscoveryPorts, OfThisProcessAreListed) {
   const DomainLock lock;
   const TakenPorts three(lock.domain(), 3);
   EXPECT_EQ(own_discovery_ports(lock.domain()), (std::set<std::uint32_t>{0, 1, 2}));
-  EXPECT_EQ(free_discovery_port(lock.domain(), true), 3U);
+  EXPECT_EQ(free_discovery_port(lock.domain(), "127.0.0.1"), 3U);
   const Node node(settings(lock, "fourth"));
   EXPECT_EQ(own_discovery_ports(lock.domain()), (std::set<std::uint32_t>{0, 1, 2, 3}));
 }

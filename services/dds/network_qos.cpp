@@ -1,0 +1,64 @@
+#include "swiftlet/services/dds/network_qos.hpp"
+
+#include <string>
+#include <vector>
+
+#include <fastrtps/utils/IPLocator.h>
+
+#include "swiftlet/services/dds/discovery/discovery_ports.hpp"
+#include "swiftlet/services/dds/discovery/host_address.hpp"
+#include "swiftlet/services/dds/discovery/interfaces.hpp"
+
+namespace swiftlet::comms {
+namespace {
+
+namespace rtps = eprosima::fastrtps::rtps;
+
+constexpr const char* kAnyAddress = "0.0.0.0";
+constexpr const char* kLoopback = "127.0.0.1";
+
+rtps::Locator_t locator_of(const std::string& ipv4, std::uint32_t port) {
+  rtps::Locator_t locator;
+  locator.kind = LOCATOR_KIND_UDPv4;
+  rtps::IPLocator::setIPv4(locator, ipv4);
+  locator.port = port;
+  return locator;
+}
+
+// All first ports of the domain on a host, as its processes take the first that are free there.
+void add_host(const std::string& ipv4, const DiscoveryPorts& ports, std::uint32_t count,
+              rtps::LocatorList_t& peers) {
+  for (std::uint32_t i = 0; i < count; ++i) peers.push_back(locator_of(ipv4, ports.first + i * ports.gap));
+}
+
+}  // namespace
+
+void set_network(const NodeSettings& settings, std::uint32_t announced_ports,
+                 eprosima::fastdds::dds::DomainParticipantQos& qos,
+                 eprosima::fastdds::rtps::UDPv4TransportDescriptor& udp) {
+  const NetworkSettings& network = settings.network;
+  const std::vector<std::string> own_addresses = addresses_of_interfaces(network.interfaces);
+  udp.interfaceWhiteList = own_addresses;
+  if (network.uses_multicast()) return;
+
+  auto& builtin = qos.wire_protocol().builtin;
+  const DiscoveryPorts ports = discovery_ports(settings.domain);
+  // Instead of the multicast address, only this: the first free port of the domain.
+  builtin.metatrafficUnicastLocatorList.push_back(locator_of(kAnyAddress, ports.first));
+  // The processes of this host.
+  if (own_addresses.empty()) add_host(kLoopback, ports, announced_ports, builtin.initialPeersList);
+  for (const std::string& address : own_addresses)
+    add_host(address, ports, announced_ports, builtin.initialPeersList);
+  for (const std::string& peer : network.peers) {
+    const HostAddress host = parse_host_address(peer);
+    for (const std::string& address : ipv4_addresses_of(host.host)) {
+      if (host.port != 0) {
+        builtin.initialPeersList.push_back(locator_of(address, host.port));
+      } else {
+        add_host(address, ports, announced_ports, builtin.initialPeersList);
+      }
+    }
+  }
+}
+
+}  // namespace swiftlet::comms

@@ -1,0 +1,19 @@
+// The QoS by which a participant finds other hosts: peers and interfaces.
+#pragma once
+
+#include <cstdint>
+
+#include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+
+#include "swiftlet/services/dds/node.hpp"
+
+namespace swiftlet::comms {
+
+// Sets the interfaces of the transport, and with peers the addresses of discovery. announced_ports: as for
+// participant_qos(). Throws std::runtime_error for an unknown host or interface.
+void set_network(const NodeSettings& settings, std::uint32_t announced_ports,
+                 eprosima::fastdds::dds::DomainParticipantQos& qos,
+                 eprosima::fastdds::rtps::UDPv4TransportDescriptor& udp);
+
+}  // namespace swiftlet::comms
