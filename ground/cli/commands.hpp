@@ -32,6 +32,9 @@ Command add_status_command(runtime::CommandLine root);
 Command add_watch_command(runtime::CommandLine root);
 Command add_list_command(runtime::CommandLine root);  // all vehicles of the domain
 
+// The network.
+Command add_discovery_server_command(runtime::CommandLine root);
+
 // Recorded flights.
 Command add_report_command(runtime::CommandLine root);
 

@@ -201,7 +201,9 @@ Command add_fly_command(runtime::CommandLine root) {
     attach.excludes(app.option(launch_option));
   }
   // Processes that it starts are on this host.
-  for (const char* network_option : {"--peer", "--interface"}) app.option(network_option).needs(attach);
+  for (const char* network_option :
+       {"--network", "--peer", "--discovery-server", "--interface", "--dds-profile"})
+    app.option(network_option).needs(attach);
   app.footer(
       "Several vehicles (--vehicle-name kl1,kl2) start their missions at the same time. If one fails, the "
       "others land.\nThe paths are not checked for collisions between vehicles.\nCtrl-C lands; a second "

@@ -14,6 +14,7 @@
 #include "swiftlet/ground/client/silence.hpp"
 #include "swiftlet/ground/command_line/network_options.hpp"
 #include "swiftlet/ground/terminal/state_lines.hpp"
+#include "swiftlet/services/dds/search_text.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -125,9 +126,8 @@ int list(const Options& options) {
       stderr,
       "swiftlet: list: no vehicle found in domain %d within %.1f s%s; check that it runs and that the domain "
       "is right (--domain, ROS_DOMAIN_ID)%s\n",
-      options.network.domain, options.look_s,
-      options.network.localhost_only ? " on the loopback interface" : "",
-      options.network.localhost_only ? "" : ", or try --localhost-only");
+      options.network.domain, options.look_s, comms::search_text(options.network).c_str(),
+      comms::search_text(options.network).empty() ? ", or try --localhost-only" : "");
   return kFailed;
 }
 

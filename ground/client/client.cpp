@@ -8,6 +8,7 @@
 #include "swiftlet/control/estimation/estimator.hpp"
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/ground/client/discovery.hpp"
+#include "swiftlet/services/dds/search_text.hpp"
 #include "swiftlet/services/messages/convert.hpp"
 
 namespace swiftlet::ground {
@@ -404,7 +405,7 @@ std::string Client::no_control() const {
   const auto peers = view().peers;
   const auto control = peers.find("control");
   const bool seen = control != peers.end() && control->second > 0;
-  if (seen && !settings_.localhost_only) text += " (try --localhost-only)";
+  if (seen && comms::search_text(settings_).empty()) text += " (try --localhost-only)";
   const std::vector<std::string> topics = node_.topics_seen();
   const std::string own = listed(topics_of(settings_.vehicle, topics));
   if (!own.empty()) text += "; topics found: " + own;

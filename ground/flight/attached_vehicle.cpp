@@ -9,6 +9,7 @@
 #include "swiftlet/control/types/mode.hpp"
 #include "swiftlet/ground/client/client.hpp"
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
+#include "swiftlet/services/dds/search_text.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -33,7 +34,7 @@ bool finds_nothing(const View& view) {
 
 // Where it looks for the processes: "lo (127.0.0.1) only; without --localhost-only on ...".
 std::string interfaces_of(const comms::NodeSettings& network) {
-  if (!network.localhost_only) return comms::interfaces_text(false);
+  if (!network.localhost_only) return comms::interfaces_text(false) + comms::search_text(network);
   return comms::interfaces_text(true) + " only; without --localhost-only on " + comms::interfaces_text(false);
 }
 

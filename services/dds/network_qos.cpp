@@ -3,9 +3,12 @@
 #include <string>
 #include <vector>
 
+#include <fastdds/rtps/attributes/ServerAttributes.h>
 #include <fastrtps/utils/IPLocator.h>
 
+#include "swiftlet/io/config_error.hpp"
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
+#include "swiftlet/services/dds/discovery/discovery_servers.hpp"
 #include "swiftlet/services/dds/discovery/host_address.hpp"
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
 
@@ -31,6 +34,20 @@ void add_host(const std::string& ipv4, const DiscoveryPorts& ports, std::uint32_
   for (std::uint32_t i = 0; i < count; ++i) peers.push_back(locator_of(ipv4, ports.first + i * ports.gap));
 }
 
+// As a client that hears of all processes of the domain, not only of those with the same topics.
+void add_servers(const std::string& list, rtps::DiscoverySettings& discovery) {
+  if (const std::string fault = fault_of_discovery_servers(list); !fault.empty())
+    throw runtime::ConfigError("discovery server " + fault);
+  discovery.discoveryProtocol = rtps::DiscoveryProtocol::SUPER_CLIENT;
+  for (const DiscoveryServerAddress& server : parse_discovery_servers(list)) {
+    eprosima::fastdds::rtps::RemoteServerAttributes remote;
+    eprosima::fastdds::rtps::get_server_client_default_guidPrefix(server.number, remote.guidPrefix);
+    for (const std::string& address : ipv4_addresses_of(server.address.host))
+      remote.metatrafficUnicastLocatorList.push_back(locator_of(address, server.address.port));
+    discovery.m_DiscoveryServers.push_back(remote);
+  }
+}
+
 }  // namespace
 
 void set_network(const NodeSettings& settings, std::uint32_t announced_ports,
@@ -38,13 +55,14 @@ void set_network(const NodeSettings& settings, std::uint32_t announced_ports,
                  eprosima::fastdds::rtps::UDPv4TransportDescriptor& udp) {
   const NetworkSettings& network = settings.network;
   const std::vector<std::string> own_addresses = addresses_of_interfaces(network.interfaces);
-  udp.interfaceWhiteList = own_addresses;
+  if (!own_addresses.empty()) udp.interfaceWhiteList = own_addresses;
   if (network.uses_multicast()) return;
 
   auto& builtin = qos.wire_protocol().builtin;
   const DiscoveryPorts ports = discovery_ports(settings.domain);
   // Instead of the multicast address, only this: the first free port of the domain.
   builtin.metatrafficUnicastLocatorList.push_back(locator_of(kAnyAddress, ports.first));
+  if (network.peers.empty()) return add_servers(network.discovery_servers, builtin.discovery_config);
   // The processes of this host.
   if (own_addresses.empty()) add_host(kLoopback, ports, announced_ports, builtin.initialPeersList);
   for (const std::string& address : own_addresses)

@@ -1,4 +1,5 @@
-// The QoS by which a participant finds other hosts: peers and interfaces.
+// The QoS by which a participant finds other hosts: peers, discovery
+// servers and interfaces.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +12,8 @@
 namespace swiftlet::comms {
 
 // Sets the interfaces of the transport, and with peers the addresses of discovery. announced_ports: as for
-// participant_qos(). Throws std::runtime_error for an unknown host or interface.
+// participant_qos(). Throws std::runtime_error for an unknown host or interface, and
+// ConfigError for malformed servers.
 void set_network(const NodeSettings& settings, std::uint32_t announced_ports,
                  eprosima::fastdds::dds::DomainParticipantQos& qos,
                  eprosima::fastdds::rtps::UDPv4TransportDescriptor& udp);

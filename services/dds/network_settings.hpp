@@ -13,7 +13,16 @@ struct NetworkSettings {
   // It sends and receives on these interfaces only, by name or IPv4 address. Empty: on all.
   std::vector<std::string> interfaces{};
 
-  bool uses_multicast() const { return peers.empty(); }
+  // The servers that tell it of the others, "HOST[:PORT][;...]" (discovery_servers.hpp). It uses no multicast then. Not
+  // with peers. Empty: none.
+  std::string discovery_servers{};
+  // An XML file of Fast DDS, whose default participant profile applies under what Swiftlet sets itself
+  // (dds_profile.hpp). Empty: none.
+  std::string dds_profile{};
+
+  std::string file{};  // that was applied (network_file.hpp); empty: none
+
+  bool uses_multicast() const { return peers.empty() && discovery_servers.empty(); }
 };
 
 }  // namespace swiftlet::comms

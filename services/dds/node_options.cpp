@@ -1,11 +1,87 @@
 #include "swiftlet/services/dds/node_options.hpp"
 
+#include <cstdlib>
+
+#include "swiftlet/io/config_error.hpp"
+#include "swiftlet/services/dds/discovery/discovery_servers.hpp"
 #include "swiftlet/services/dds/discovery/host_address.hpp"
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
+#include "swiftlet/services/dds/network_file.hpp"
 
 namespace swiftlet::comms {
+namespace {
+
+std::string environment(const char* variable) {
+  const char* const value = std::getenv(variable);
+  return value == nullptr ? "" : value;
+}
+
+// Applies the file.
+std::string fault_of_network_file(const std::string& file, NodeSettings& settings) {
+  try {
+    load_network_file(file, settings);
+    return "";
+  } catch (const runtime::ConfigError& error) {
+    return error.what();
+  }
+}
+
+// The options of this host's network: each wins over the environment.
+void add_network_options(runtime::CommandLine app, NodeSettings& settings) {
+  runtime::Option localhost_only = app.add_flag(
+      "--localhost-only",
+      [&settings] {
+        settings.localhost_only = true;
+        settings.network.peers.clear();
+        settings.network.discovery_servers.clear();
+        settings.network.interfaces.clear();
+      },
+      "Use the loopback interface only, without multicast");
+  runtime::Option peer =
+      app.add_option("--peer", settings.network.peers,
+                     "Find the processes of this host without multicast; once for each other host");
+  peer.repeated()
+      .check(fault_of_host_address, "HOST[:PORT]")
+      .excludes(localhost_only)
+      .when_given([&settings] {
+        settings.localhost_only = false;
+        settings.network.discovery_servers.clear();
+      });
+  app.add_option("--discovery-server", settings.network.discovery_servers,
+                 "Find the other processes by `swiftlet discovery-server` at this address (port 11811 unless "
+                 "given), without multicast; default: $ROS_DISCOVERY_SERVER")
+      .check(fault_of_discovery_servers, "HOST[:PORT]")
+      .excludes(localhost_only)
+      .excludes(peer)
+      .when_given([&settings] {
+        settings.localhost_only = false;
+        settings.network.peers.clear();
+      });
+  app.add_option("--interface", settings.network.interfaces,
+                 "Use this network interface only; may be repeated")
+      .repeated()
+      .check(fault_of_interface, "NAME|ADDRESS")
+      .excludes(localhost_only)
+      .when_given([&settings] { settings.localhost_only = false; });
+}
+
+void add_profile_option(runtime::CommandLine app, NodeSettings& settings) {
+  settings.network.dds_profile = environment("FASTRTPS_DEFAULT_PROFILES_FILE");
+  app.add_option("--dds-profile", settings.network.dds_profile,
+                 "Participant profile of Fast DDS: buffers, transport, properties; default: "
+                 "$FASTRTPS_DEFAULT_PROFILES_FILE")
+      .type_name("FILE");
+}
+
+}  // namespace
 
 void add_node_options(runtime::CommandLine app, NodeSettings& settings, const NameCheck& name) {
+  settings.localhost_only = environment("ROS_LOCALHOST_ONLY") == "1";
+  settings.network.discovery_servers = settings.localhost_only ? "" : environment("ROS_DISCOVERY_SERVER");
+  // First, so that other options win over the file.
+  app.add_option("--network", settings.network.file,
+                 "File of the options of the network (YAML); other options win over it")
+      .check([&settings](const std::string& file) { return fault_of_network_file(file, settings); }, "FILE");
   app.add_option("--domain", settings.domain, "DDS domain")
       .environment("ROS_DOMAIN_ID")
       .range(0, 232)
@@ -17,18 +93,8 @@ void add_node_options(runtime::CommandLine app, NodeSettings& settings, const Na
                  {{"udp", Transport::kUdp}, {"shm", Transport::kSharedMemory}},
                  "udp, or shm: shared memory between processes of this host")
       .show_default("udp");
-  runtime::Option localhost_only = app.add_flag("--localhost-only", settings.localhost_only,
-                                                "Use the loopback interface only, without multicast");
-  app.add_option("--peer", settings.network.peers,
-                 "Find the processes of this host without multicast; once for each other host")
-      .repeated()
-      .check(fault_of_host_address, "HOST[:PORT]")
-      .excludes(localhost_only);
-  app.add_option("--interface", settings.network.interfaces,
-                 "Use this network interface only; may be repeated")
-      .repeated()
-      .check(fault_of_interface, "NAME|ADDRESS")
-      .excludes(localhost_only);
+  add_network_options(app, settings);
+  add_profile_option(app, settings);
 }
 
 }  // namespace swiftlet::comms

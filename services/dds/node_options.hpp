@@ -16,7 +16,9 @@ struct NameCheck {
   std::string value_name = "NAME";
 };
 
-// --domain (default $ROS_DOMAIN_ID or 0), --vehicle-name, --transport udp|shm, --localhost-only.
+// --domain (default $ROS_DOMAIN_ID or 0), --vehicle-name, --transport udp|shm; --localhost-only (default
+// $ROS_LOCALHOST_ONLY), --network, --peer, --discovery-server (default $ROS_DISCOVERY_SERVER), --interface, --dds-profile (default
+// $FASTRTPS_DEFAULT_PROFILES_FILE).
 void add_node_options(runtime::CommandLine app, NodeSettings& settings, const NameCheck& name = {});
 
 }  // namespace swiftlet::comms

@@ -1,11 +1,13 @@
 #include "swiftlet/services/dds/participant_qos.hpp"
 
 #include <memory>
+#include <string>
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 
+#include "swiftlet/services/dds/dds_profile.hpp"
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
 #include "swiftlet/services/dds/network_qos.hpp"
 #include "swiftlet/services/dds/qos/duration.hpp"
@@ -32,7 +34,9 @@ rtps::Locator_t loopback_locator(std::uint32_t port) {
 }  // namespace
 
 dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uint32_t announced_ports) {
-  dds::DomainParticipantQos qos;
+  const std::string& file = settings.network.dds_profile;
+  const DdsProfile profile = file.empty() ? DdsProfile{} : load_dds_profile(file);
+  dds::DomainParticipantQos qos = profile.participant;
   qos.name(settings.name);
 
   auto& builtin = qos.wire_protocol().builtin;
@@ -45,7 +49,7 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uin
   const DiscoveryPorts ports = discovery_ports(settings.domain);
   builtin.mutation_tries = ports.count - 1;
 
-  const auto udp = std::make_shared<UDPv4TransportDescriptor>();
+  const auto udp = std::make_shared<UDPv4TransportDescriptor>(profile.udp);
   udp->non_blocking_send = true;  // a full socket buffer drops a sample instead of blocking the sender
   if (settings.localhost_only) {
     udp->interfaceWhiteList = {kLoopback};

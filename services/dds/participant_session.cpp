@@ -1,6 +1,5 @@
 #include "swiftlet/services/dds/participant_session.hpp"
 
-#include <memory>
 #include <mutex>
 #include <set>
 #include <stdexcept>
@@ -8,12 +7,10 @@
 #include <vector>
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
-#include <fastdds/dds/log/Log.hpp>
-#include <fastdds/dds/log/StdoutErrConsumer.hpp>
-#include <fastrtps/xmlparser/XMLProfileManager.h>
 
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
+#include "swiftlet/services/dds/fast_dds_library.hpp"
 #include "swiftlet/services/dds/participant_qos.hpp"
 #include "swiftlet/services/dds/shared_memory.hpp"
 
@@ -22,22 +19,6 @@ namespace {
 
 namespace dds = eprosima::fastdds::dds;
 using eprosima::fastrtps::types::ReturnCode_t;
-
-// Runs once per process, before its first participant.
-void set_up_library() {
-  static const bool done = [] {
-    dds::Log::ClearConsumers();
-    dds::Log::RegisterConsumer(
-        std::make_unique<dds::StdoutErrConsumer>());  // stderr, because stdout belongs to the program
-    dds::Log::SetVerbosity(dds::Log::Kind::Error);
-    // Two nodes in one process communicate as two processes do: publish() never runs a callback.
-    auto settings = eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings();
-    settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
-    eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
-    return true;
-  }();
-  static_cast<void>(done);
-}
 
 void end(dds::DomainParticipant* participant) {
   participant->set_listener(nullptr);
@@ -72,7 +53,7 @@ dds::DomainParticipant* join(const NodeSettings& settings, const Announcement& a
   const DiscoveryPorts ports = discovery_ports(settings.domain);
   const std::set<std::uint32_t> before = own_discovery_ports(settings.domain);
   const std::uint32_t expected = free_discovery_port(settings.domain, listening_address(settings));
-  const bool uses_multicast = !settings.localhost_only && settings.network.uses_multicast();
+  const bool announces_to_ports = settings.localhost_only || !settings.network.peers.empty();
   for (const std::uint32_t announced : {announced_ports(ports, expected), ports.count}) {
     dds::DomainParticipant* const participant =
         create_participant(settings, announcement, listener, announced);
@@ -80,7 +61,7 @@ dds::DomainParticipant* join(const NodeSettings& settings, const Announcement& a
     // Other processes may have taken ports meanwhile. If the own port is then too high to announce itself to
     // all ports below it, try again with all ports.
     for (const std::uint32_t port : own_discovery_ports(settings.domain)) {
-      if (before.count(port) == 0 && (port < announced || uses_multicast)) return participant;
+      if (before.count(port) == 0 && (port < announced || !announces_to_ports)) return participant;
     }
     end(participant);
   }
@@ -91,7 +72,7 @@ dds::DomainParticipant* join(const NodeSettings& settings, const Announcement& a
 
 ParticipantSession::ParticipantSession(const NodeSettings& settings, const Announcement& announcement,
                                        dds::DomainParticipantListener* listener) {
-  set_up_library();
+  set_up_fast_dds();
   participant = join(settings, announcement, listener);
   if (participant == nullptr) {
     throw std::runtime_error("cannot join DDS domain " + std::to_string(settings.domain) +

@@ -161,6 +161,10 @@ Option& Option::expected(int values) {
   option_->expected(values);
   return *this;
 }
+Option& Option::when_given(std::function<void()> action) {
+  option_->each([action = std::move(action)](const std::string&) { action(); });
+  return *this;
+}
 Option& Option::repeated() {
   option_->allow_extra_args(false);
   return *this;

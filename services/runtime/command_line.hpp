@@ -24,6 +24,8 @@ class Option {
 
   Option& required();
   Option& expected(int values);
+  // Runs if the option is given, before the options are taken that were added after this one.
+  Option& when_given(std::function<void()> action);
   Option& repeated();      // of a list: one value each time that it is given
   Option& show_default();  // in --help: the present value of the variable
   Option& show_default(const std::string& text);

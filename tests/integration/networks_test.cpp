@@ -1,5 +1,7 @@
 // Hosts on a switch, and behind routers that forward no multicast: who reaches whom.
 #include <arpa/inet.h>
+#include <csignal>
+#include <cstdlib>
 #include <memory>
 #include <netinet/in.h>
 #include <string>
@@ -85,7 +87,7 @@ class Networks : public testing::Test {
   void connect(Layout layout) { hosts_ = std::make_unique<HostNetwork>(layout, 3); }
   void start_all(const std::vector<Words>& options_of_hosts) {
     options_ = options_of_hosts;
-    plant_ = start(0, "swiftlet-plant", {"--clock", "lockstep", "--speed", "8"});
+    plant_ = start(0, "swiftlet-plant", {"--clock", "lockstep", "--speed", "16"});
     mocap_ = start(0, "swiftlet-mocap", {"--clock", "lockstep"});
     control_ = start(1, "swiftlet-control", {"--clock", "lockstep"});
   }
@@ -149,6 +151,11 @@ TEST_F(Networks, FindNothingThroughRoutersWithoutPeers) {
   ASSERT_TRUE(eventually([&] { return plant_->errors().find("mocap joined") != std::string::npos; }));
   const ProgramResult list = swiftlet(2, {"list", "--time", "1"});
   EXPECT_EQ(list.exit_code, 1) << list.output;
+  options_[2] = {"--peer", hosts_->address(0), "--interface", "lo"};
+  const ProgramResult elsewhere = swiftlet(2, {"list", "--time", "1"});
+  EXPECT_EQ(elsewhere.exit_code, 1) << elsewhere.output;
+  EXPECT_NE(elsewhere.errors.find(" at the peers " + hosts_->address(0) + " on lo; check"), std::string::npos)
+      << elsewhere.errors;
   EXPECT_EQ(logs().find("control joined"), std::string::npos) << logs();
 }
 
@@ -158,6 +165,37 @@ TEST_F(Networks, UseTheChosenInterfaceOnly) {
   EXPECT_TRUE(finds_the_vehicle(2)) << logs();
   options_[2] = {"--interface", "lo"};
   EXPECT_EQ(swiftlet(2, {"list", "--time", "1"}).exit_code, 1);
+}
+
+// GIVEN a discovery server on host 1 WHEN it ends in flight THEN the flight goes on.
+TEST_F(Networks, ADiscoveryServerIntroducesTheHosts) {
+  connect(Layout::kRouter);
+  const Words client = {"--discovery-server", hosts_->address(1)};
+  options_ = {{}, {}, {}};
+  const std::unique_ptr<Program> server = start(1, "swiftlet", {"discovery-server"});
+  start_all({client, client, client});
+  ASSERT_TRUE(finds_the_vehicle(2)) << logs() << server->output();
+  const std::string begin =
+      "discovery server 0 of domain 0 listens on UDP port 11811; start the others with --domain 0 "
+      "--discovery-server " +
+      hosts_->address(1) + ":11811\n";
+  EXPECT_EQ(server->output().rfind(begin, 0), 0U) << server->output();
+  EXPECT_NE(server->output().find("control (process " + std::to_string(control_->pid())), std::string::npos);
+
+  options_[2] = {};
+  setenv("ROS_DISCOVERY_SERVER", (hosts_->address(1) + ":11811").c_str(), 1);
+  EXPECT_EQ(swiftlet(2, {"list", "--names"}).output, "kl1\n");
+  unsetenv("ROS_DISCOVERY_SERVER");
+  EXPECT_EQ(swiftlet(2, {"list", "--time", "1"}).exit_code, 1);
+
+  options_[2] = client;
+  ASSERT_EQ(swiftlet(2, {"arm", "--wait", "60"}).exit_code, 0);
+  const std::unique_ptr<Program> takeoff = start(2, "swiftlet", {"takeoff", "--wait", "60"});
+  ASSERT_TRUE(eventually([&] { return control_->errors().find("taking off") != std::string::npos; }));
+  server->signal(SIGTERM);
+  EXPECT_EQ(server->wait(kStuck), 0) << server->errors();
+  EXPECT_NE(server->output().find("remain and keep what they know of each other"), std::string::npos);
+  EXPECT_EQ(takeoff->wait(kStuck), 0) << takeoff->errors();
 }
 
 }  // namespace

@@ -1,9 +1,12 @@
 #include "swiftlet/services/dds/node_options.hpp"
 
+#include <cstdlib>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::comms {
 namespace {
@@ -34,6 +37,47 @@ TEST_F(NodeOptions, RefuseWhatCannotBe) {
   EXPECT_FALSE(parses("--peer lab2 --localhost-only"));
   EXPECT_FALSE(parses("--interface lo --localhost-only"));
   EXPECT_FALSE(parses("--peer lab2 lab3"));
+  EXPECT_FALSE(parses("--discovery-server lab1:0"));
+  EXPECT_FALSE(parses("--discovery-server lab1 --peer lab2"));
+  EXPECT_FALSE(parses("--discovery-server lab1 --localhost-only"));
+}
+
+TEST_F(NodeOptions, WinOverTheNetworkFile) {
+  const tests::TemporaryFolder folder;
+  const std::string peers = "--network " + folder.write("peers.yaml", "peers: [lab2]\ntransport: shm\n");
+  ASSERT_TRUE(parses(peers));
+  EXPECT_EQ(settings_.network.peers, std::vector<std::string>{"lab2"});
+  EXPECT_EQ(settings_.transport, Transport::kSharedMemory);
+  ASSERT_TRUE(parses("--peer lab3 --transport udp " + peers));
+  EXPECT_EQ(settings_.network.peers, std::vector<std::string>{"lab3"});
+  EXPECT_EQ(settings_.transport, Transport::kUdp);
+  ASSERT_TRUE(parses("--localhost-only " + peers));
+  EXPECT_TRUE(settings_.network.peers.empty());
+  ASSERT_TRUE(parses("--discovery-server lab1 " + peers));
+  EXPECT_TRUE(settings_.network.peers.empty());
+  EXPECT_FALSE(parses("--network " + folder.write("wrong.yaml", "peers: [lab2:0]\n")));
+  EXPECT_FALSE(parses("--network " + (folder.path() / "missing.yaml").string()));
+}
+
+TEST_F(NodeOptions, WinOverTheEnvironment) {
+  setenv("ROS_DISCOVERY_SERVER", "lab1:11811;lab2:11811", 1);
+  EXPECT_TRUE(parses(""));
+  EXPECT_EQ(settings_.network.discovery_servers, "lab1:11811;lab2:11811");
+  EXPECT_TRUE(parses("--discovery-server lab3"));
+  EXPECT_EQ(settings_.network.discovery_servers, "lab3");
+  EXPECT_TRUE(parses("--peer lab3"));
+  EXPECT_EQ(settings_.network.discovery_servers, "");
+  EXPECT_TRUE(parses("--localhost-only"));
+  EXPECT_EQ(settings_.network.discovery_servers, "");
+  setenv("ROS_LOCALHOST_ONLY", "1", 1);
+  EXPECT_TRUE(parses(""));
+  EXPECT_TRUE(settings_.localhost_only);
+  for (const char* line : {"--peer lab2", "--discovery-server lab3", "--interface lo"}) {
+    EXPECT_TRUE(parses(line));
+    EXPECT_FALSE(settings_.localhost_only) << line;
+  }
+  unsetenv("ROS_LOCALHOST_ONLY");
+  unsetenv("ROS_DISCOVERY_SERVER");
 }
 
 }  // namespace

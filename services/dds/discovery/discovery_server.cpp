@@ -1,0 +1,114 @@
+#include "swiftlet/services/dds/discovery/discovery_server.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <map>
+#include <mutex>
+#include <netinet/in.h>
+#include <stdexcept>
+#include <sys/socket.h>
+#include <unistd.h>
+#include <utility>
+
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
+#include <fastdds/rtps/attributes/ServerAttributes.h>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+
+#include "swiftlet/services/dds/discovery/announcement.hpp"
+#include "swiftlet/services/dds/discovery/interfaces.hpp"
+#include "swiftlet/services/dds/fast_dds_library.hpp"
+#include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/dds/qos/duration.hpp"
+
+namespace swiftlet::comms {
+namespace {
+
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
+
+// Fast DDS does not say why it fails.
+void require_free(int port) {
+  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  const bool bound = ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  const int error = errno;
+  ::close(socket);
+  if (!bound)
+    throw std::runtime_error("cannot listen on UDP port " + std::to_string(port) + ": " +
+                             std::strerror(error));
+}
+
+dds::DomainParticipantQos server_qos(const DiscoveryServerSettings& settings) {
+  dds::DomainParticipantQos qos;
+  qos.name("discovery-server");
+  auto& protocol = qos.wire_protocol();
+  // The processes know the server by this prefix, that of ROS 2.
+  eprosima::fastdds::rtps::get_server_client_default_guidPrefix(settings.number, protocol.prefix);
+  protocol.builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol::SERVER;
+  protocol.builtin.discovery_config.leaseDuration = duration(kLivelinessLease);
+  protocol.builtin.discovery_config.leaseDuration_announcementperiod = duration(kLivelinessPeriod);
+  rtps::Locator_t locator;
+  rtps::IPLocator::createLocator(LOCATOR_KIND_UDPv4, "0.0.0.0", static_cast<std::uint32_t>(settings.port),
+                                 locator);
+  protocol.builtin.metatrafficUnicastLocatorList.push_back(locator);
+  const auto udp = std::make_shared<UDPv4TransportDescriptor>();
+  udp->interfaceWhiteList = addresses_of_interfaces(settings.interfaces);
+  qos.transport().use_builtin_transports = false;
+  qos.transport().user_transports.push_back(udp);
+  return qos;
+}
+
+}  // namespace
+
+struct DiscoveryServer::Impl final : public dds::DomainParticipantListener {
+  explicit Impl(std::function<void(const DiscoveryServerEvent&)> event) : on_event(std::move(event)) {}
+
+  void on_participant_discovery(dds::DomainParticipant*, rtps::ParticipantDiscoveryInfo&& info) override {
+    const std::lock_guard<std::mutex> lock(mutex);
+    using Info = rtps::ParticipantDiscoveryInfo;
+    const auto known = processes.find(info.info.m_guid);
+    if (info.status == Info::DISCOVERED_PARTICIPANT && known == processes.end()) {
+      const Announcement announced = from_user_data(info.info.m_userData.dataVec());
+      const std::string name = info.info.m_participantName.c_str();
+      const std::string process =
+          announced.host.empty() ? name : ProcessIdentity{name, announced.host, announced.pid}.to_string();
+      processes[info.info.m_guid] = process;
+      on_event({process, true, false});
+    } else if (known != processes.end() &&
+               (info.status == Info::REMOVED_PARTICIPANT || info.status == Info::DROPPED_PARTICIPANT)) {
+      on_event({known->second, false, info.status == Info::REMOVED_PARTICIPANT});
+      processes.erase(known);
+    }
+  }
+
+  std::mutex mutex;
+  std::map<rtps::GUID_t, std::string> processes;
+  std::function<void(const DiscoveryServerEvent&)> on_event;
+  dds::DomainParticipant* participant = nullptr;
+};
+
+DiscoveryServer::DiscoveryServer(const DiscoveryServerSettings& settings,
+                                 std::function<void(const DiscoveryServerEvent&)> on_event)
+    : impl_(std::make_unique<Impl>(std::move(on_event))) {
+  set_up_fast_dds();
+  require_free(settings.port);
+  impl_->participant = dds::DomainParticipantFactory::get_instance()->create_participant(
+      static_cast<std::uint32_t>(settings.domain), server_qos(settings), impl_.get(),
+      dds::StatusMask::none());
+  if (impl_->participant == nullptr)
+    throw std::runtime_error("cannot start the discovery server on UDP port " +
+                             std::to_string(settings.port));
+}
+
+DiscoveryServer::~DiscoveryServer() {
+  impl_->participant->set_listener(nullptr);
+  dds::DomainParticipantFactory::get_instance()->delete_participant(impl_->participant);
+}
+
+}  // namespace swiftlet::comms

@@ -1,0 +1,40 @@
+#include "swiftlet/services/dds/fast_dds_library.hpp"
+
+#include <cstdlib>
+#include <memory>
+
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/log/Log.hpp>
+#include <fastdds/dds/log/StdoutErrConsumer.hpp>
+#include <fastdds/rtps/attributes/ServerAttributes.h>
+#include <fastrtps/xmlparser/XMLProfileManager.h>
+
+namespace swiftlet::comms {
+
+namespace dds = eprosima::fastdds::dds;
+
+void log_fast_dds_to_stderr() {
+  dds::Log::ClearConsumers();
+  dds::Log::RegisterConsumer(std::make_unique<dds::StdoutErrConsumer>());
+}
+
+void set_up_fast_dds() {
+  using eprosima::fastrtps::xmlparser::XMLProfileManager;
+  static const bool done = [] {
+    log_fast_dds_to_stderr();
+    dds::Log::SetVerbosity(dds::Log::Kind::Error);
+    // Otherwise Fast DDS makes a client of a server of each participant that uses multicast, peers or the loopback
+    // interface. The options have read the variable.
+    unsetenv(eprosima::fastdds::rtps::DEFAULT_ROS2_MASTER_URI);
+    // The default files of Fast DDS, so that what follows holds also if they say otherwise.
+    dds::DomainParticipantFactory::get_instance()->load_profiles();
+    // Two nodes in one process communicate as two processes do: publish() never runs a callback.
+    auto settings = XMLProfileManager::library_settings();
+    settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
+    XMLProfileManager::library_settings(settings);
+    return true;
+  }();
+  static_cast<void>(done);
+}
+
+}  // namespace swiftlet::comms

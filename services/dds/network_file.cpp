@@ -1,0 +1,88 @@
+#include "swiftlet/services/dds/network_file.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "swiftlet/io/config.hpp"
+#include "swiftlet/io/text_file.hpp"
+#include "swiftlet/services/dds/discovery/discovery_servers.hpp"
+#include "swiftlet/services/dds/discovery/host_address.hpp"
+#include "swiftlet/services/dds/discovery/interfaces.hpp"
+
+namespace swiftlet::comms {
+namespace {
+
+using runtime::ConfigNode;
+
+constexpr std::size_t kMaxPeers = 64;  // each costs an announcement to 17 ports and more
+constexpr std::size_t kMaxInterfaces = 16;
+
+// At most one of the three.
+constexpr const char* kLocalhostOnly = "localhost_only";
+constexpr const char* kPeers = "peers";
+constexpr const char* kDiscoveryServers = "discovery_servers";
+
+std::vector<std::string> texts(const ConfigNode& list, std::size_t max_count,
+                               const std::function<std::string(const std::string&)>& fault_of) {
+  std::vector<std::string> found;
+  for (const ConfigNode& item : list.items(1, max_count)) {
+    const std::string text = item.text();
+    if (const std::string fault = fault_of(text); !fault.empty()) item.fail(fault);
+    found.push_back(text);
+  }
+  return found;
+}
+
+std::string joined(const std::vector<std::string>& texts) {
+  std::string list;
+  for (std::size_t i = 0; i < texts.size(); ++i) list += (i == 0 ? "" : ";") + texts[i];
+  return list;
+}
+
+void read_discovery(const ConfigNode& root, NodeSettings& settings) {
+  const auto local = root.find(kLocalhostOnly);
+  const auto peers = root.find(kPeers);
+  const auto servers = root.find(kDiscoveryServers);
+  const bool localhost_only = local && local->boolean();
+  if (localhost_only && peers) peers->fail("excludes localhost_only: true");
+  if (localhost_only && servers) servers->fail("excludes localhost_only: true");
+  if (peers && servers) servers->fail("excludes peers");
+  if (!local && !peers && !servers) return;
+  settings.localhost_only = localhost_only;
+  settings.network.peers.clear();
+  settings.network.discovery_servers.clear();
+  if (peers) settings.network.peers = texts(*peers, kMaxPeers, fault_of_host_address);
+  if (servers)
+    settings.network.discovery_servers = joined(texts(*servers, kMaxDiscoveryServers, fault_of_host_address));
+}
+
+void read(const ConfigNode& root, NodeSettings& settings) {
+  read_discovery(root, settings);
+  if (const auto interfaces = root.find("interfaces")) {
+    if (settings.localhost_only) interfaces->fail("excludes localhost_only: true");
+    settings.network.interfaces = texts(*interfaces, kMaxInterfaces, fault_of_interface);
+  }
+  if (const auto transport = root.find("transport"))
+    settings.transport =
+        transport->choice<Transport>({{"udp", Transport::kUdp}, {"shm", Transport::kSharedMemory}});
+  if (const auto profile = root.find("dds_profile"))
+    settings.network.dds_profile = std::filesystem::path(root.file()).parent_path() / profile->text();
+}
+
+}  // namespace
+
+void apply_network_file(std::string_view text, const std::string& file_name, NodeSettings& settings) {
+  const ConfigNode root = runtime::parse_config(text, file_name);
+  NodeSettings changed = settings;
+  root.read_known([&] { read(root, changed); });
+  settings = changed;
+}
+
+void load_network_file(const std::string& path, NodeSettings& settings) {
+  apply_network_file(runtime::read_text_file(path), path, settings);
+}
+
+}  // namespace swiftlet::comms

@@ -1,0 +1,119 @@
+#include <string>
+#include <sys/socket.h>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/io/config_error.hpp"
+#include "swiftlet/services/dds/discovery/domain_lock.hpp"
+#include "swiftlet/services/dds/node.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace swiftlet::comms {
+namespace {
+
+// Fast DDS keeps the profiles of all files that it has read.
+std::string unique_name() {
+  static int count = 0;
+  return "lab" + std::to_string(++count);
+}
+
+std::string with(const std::string& in_profiles, const std::string& in_rtps) {
+  return "<?xml version=\"1.0\"?>\n<dds>\n<profiles>\n" + in_profiles + "<participant profile_name=\"" +
+         unique_name() + "\">\n<rtps>\n" + in_rtps + "</rtps>\n</participant>\n</profiles>\n</dds>\n";
+}
+
+std::string descriptor(const std::string& id, const std::string& more) {
+  return "<transport_descriptors><transport_descriptor>\n<transport_id>" + id + "</transport_id>\n" + more +
+         "</transport_descriptor></transport_descriptors>\n";
+}
+
+std::string user_transport(const std::string& id) {
+  return "<userTransports><transport_id>" + id + "</transport_id></userTransports>\n";
+}
+
+class DdsProfiles : public testing::Test {
+ protected:
+  NodeSettings settings_with(const std::string& file) const {
+    NodeSettings settings;
+    settings.name = "here";
+    settings.domain = lock_.domain();
+    settings.localhost_only = true;
+    settings.network.dds_profile = file;
+    return settings;
+  }
+  std::string refusal(const std::string& text) const {
+    try {
+      const Node node(settings_with(folder_.write("p.xml", text)));
+      return "accepted";
+    } catch (const runtime::ConfigError& error) {
+      const std::string prefix = (folder_.path() / "p.xml").string() + ":";
+      const std::string what = error.what();
+      return what.rfind(prefix, 0) == 0 ? what.substr(prefix.size()) : what;
+    }
+  }
+
+  const DomainLock lock_;
+  const tests::TemporaryFolder folder_;
+};
+
+// The receive buffers of the sockets of this process.
+int sockets_with_buffer(int bytes) {
+  int count = 0;
+  for (int descriptor = 0; descriptor < 1024; ++descriptor) {
+    int size = 0;
+    socklen_t length = sizeof size;
+    if (::getsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &size, &length) == 0 && size == bytes) ++count;
+  }
+  return count;
+}
+
+TEST_F(DdsProfiles, AreApplied) {
+  constexpr int kBytes = 77000;
+  const std::string file = folder_.write(
+      "buffers.xml", with(descriptor("mine", "<type>UDPv4</type>\n<receiveBufferSize>" +
+                                                 std::to_string(kBytes) + "</receiveBufferSize>\n"),
+                          user_transport("mine")));
+  {
+    const Node plain(settings_with(""));
+    EXPECT_EQ(sockets_with_buffer(2 * kBytes), 0);  // the kernel doubles it
+  }
+  {
+    const Node node(settings_with(file));
+    EXPECT_GE(sockets_with_buffer(2 * kBytes), 2);
+  }
+  const std::string of_participant =
+      folder_.write("sizes.xml", with("", "<listenSocketBufferSize>78000</listenSocketBufferSize>\n"));
+  const Node node(settings_with(of_participant));
+  EXPECT_GE(sockets_with_buffer(2 * 78000), 2);
+}
+
+TEST_F(DdsProfiles, NameWhatTheyMayNotSet) {
+  const std::string swiftlet = "may not be set: Swiftlet sets it, or ignores it; of ";
+  EXPECT_EQ(refusal(with("", "<name>other</name>\n")).rfind("6: <name>: " + swiftlet + "<rtps>", 0), 0U)
+      << refusal(with("", "<name>other</name>\n"));
+  const std::string writer = refusal(with("<data_writer profile_name=\"w\"/>\n", ""));
+  EXPECT_EQ(writer, "4: <data_writer>: " + swiftlet +
+                        "<profiles> a profile may set transport_descriptors, participant");
+  EXPECT_EQ(refusal(with("", "<useBuiltinTransports>true</useBuiltinTransports>\n")),
+            "6: <useBuiltinTransports>: is true, must be false");
+  EXPECT_EQ(refusal(with(descriptor("t", "<type>TCPv4</type>\n"), user_transport("t"))),
+            "4: <transport_descriptor>: is of type TCPv4, must be UDPv4");
+  EXPECT_EQ(refusal(with("", user_transport("t"))),
+            "6: <transport_id>: is 't', must be the transport_id of a <transport_descriptor>");
+}
+
+TEST_F(DdsProfiles, AreRefusedIfBroken) {
+  EXPECT_EQ(refusal("<dds>\n<profiles>\n</dds>\n").rfind("2: is no valid XML: ", 0), 0U)
+      << refusal("<dds>\n<profiles>\n</dds>\n");
+  EXPECT_EQ(refusal("<html/>\n"), "1: <html>: must be <dds> with <profiles>");
+  EXPECT_EQ(refusal("<dds><profiles></profiles></dds>\n"), "1: <profiles>: has no <participant>");
+  const std::string many = "<participant profile_name=\"other\"><rtps/></participant>\n";
+  EXPECT_EQ(refusal(with(many, "")),
+            "3: <profiles>: has several <participant>, of which none has is_default_profile=\"true\"");
+  const std::string by_fast_dds = refusal(with("", "<sendSocketBufferSize>much</sendSocketBufferSize>\n"));
+  EXPECT_EQ(by_fast_dds.rfind(" is refused by Fast DDS: ", 0), 0U) << by_fast_dds;
+  EXPECT_THROW(Node(settings_with("/no/such/profile.xml")), runtime::ConfigError);
+}
+
+}  // namespace
+}  // namespace swiftlet::comms

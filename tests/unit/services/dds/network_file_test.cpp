@@ -1,0 +1,73 @@
+#include "swiftlet/services/dds/network_file.hpp"
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/io/config_error.hpp"
+#include "swiftlet/services/dds/discovery/interfaces.hpp"
+
+namespace swiftlet::comms {
+namespace {
+
+NodeSettings applied(const std::string& text, NodeSettings settings = {}) {
+  apply_network_file(text, "/etc/swiftlet/network.yaml", settings);
+  return settings;
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    applied(text);
+    return "accepted";
+  } catch (const runtime::ConfigError& error) {
+    return error.what();
+  }
+}
+
+TEST(NetworkFile, SetsWhatItHas) {
+  const NodeSettings peers =
+      applied("peers: [lab2, 10.0.0.7:7412]\ninterfaces: [lo]\ntransport: shm\ndds_profile: profile.xml\n");
+  EXPECT_EQ(peers.network.peers, (std::vector<std::string>{"lab2", "10.0.0.7:7412"}));
+  EXPECT_EQ(peers.network.interfaces, std::vector<std::string>{"lo"});
+  EXPECT_EQ(peers.transport, Transport::kSharedMemory);
+  EXPECT_EQ(peers.network.dds_profile, "/etc/swiftlet/profile.xml");
+  EXPECT_EQ(applied("discovery_servers: [lab1, lab2:11812]\n").network.discovery_servers, "lab1;lab2:11812");
+  EXPECT_TRUE(applied("localhost_only: true\n").localhost_only);
+  EXPECT_EQ(applied("interfaces: [lo]\n", peers).network.peers, peers.network.peers);
+}
+
+TEST(NetworkFile, ReplacesAnotherWayOfDiscovery) {
+  NodeSettings local;
+  local.localhost_only = true;
+  const NodeSettings peers = applied("peers: [lab2]\n", local);
+  EXPECT_FALSE(peers.localhost_only);
+  const NodeSettings server = applied("discovery_servers: [lab1]\n", peers);
+  EXPECT_TRUE(server.network.peers.empty());
+  EXPECT_TRUE(applied("localhost_only: true\n", server).network.discovery_servers.empty());
+}
+
+TEST(NetworkFile, NamesWhatIsWrong) {
+  const std::string file = "/etc/swiftlet/network.yaml:";
+  const std::string address =
+      ", must be HOST or HOST:PORT, a name or IPv4 address and a port from 1 to 65535";
+  EXPECT_EQ(refusal("peers:\n  - lab2\n  - lab3:0\n"), file + "3: peers[1]: is 'lab3:0'" + address);
+  EXPECT_EQ(refusal("discovery_servers: [':1']\n"), file + "1: discovery_servers[0]: is ':1'" + address);
+  EXPECT_EQ(refusal("transport: udp\ninterfaces: [wlan9]\n"),
+            file +
+                "2: interfaces[0]: is 'wlan9', must be an interface that is up, by name or IPv4 address: " +
+                interfaces_text(false));
+  EXPECT_EQ(refusal("transport: tcp\n"), file + "1: transport: is tcp, must be udp or shm");
+  EXPECT_EQ(refusal("peers: [lab2]\nlocalhost_only: true\n"),
+            file + "1: peers: excludes localhost_only: true");
+  EXPECT_EQ(refusal("peers: [lab2]\ndiscovery_servers: [lab1]\n"),
+            file + "2: discovery_servers: excludes peers");
+  EXPECT_EQ(refusal("interfaces: [lo]\nlocalhost_only: true\n"),
+            file + "1: interfaces: excludes localhost_only: true");
+  EXPECT_NE(refusal("peer: [lab2]\n").find(file + "1: "), std::string::npos) << refusal("peer: [lab2]\n");
+  EXPECT_NE(refusal("peers: []\n"), "accepted");
+  EXPECT_NE(refusal("localhost_only: yes please\n"), "accepted");
+}
+
+}  // namespace
+}  // namespace swiftlet::comms
