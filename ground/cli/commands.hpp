@@ -34,6 +34,8 @@ Command add_list_command(runtime::CommandLine root);  // all vehicles of the dom
 
 // The network.
 Command add_discovery_server_command(runtime::CommandLine root);
+Command add_doctor_command(runtime::CommandLine root);  // `doctor network`
+Command add_doctor_network_command(runtime::CommandLine doctor);
 
 // Recorded flights.
 Command add_report_command(runtime::CommandLine root);

@@ -291,6 +291,8 @@ Node::Node(const Participant& participant, const std::string& vehicle)
 Node::~Node() { on_peer({}); }
 
 std::vector<std::string> Participant::topics_seen() const { return impl_->topics_seen(); }
+std::vector<ProcessIdentity> Participant::processes_seen() const { return impl_->processes_seen(); }
+std::vector<std::string> Participant::qos_conflicts_seen() const { return impl_->qos_conflicts_seen(); }
 
 std::optional<std::string> Participant::become_source(const std::vector<std::string>& excluded,
                                                       std::function<void(const std::string&)> on_lost) {

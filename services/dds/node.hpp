@@ -151,6 +151,11 @@ class Participant {
   // vehicle; sorted, without duplicates. Topics of processes with localhost_only are seen only with
   // localhost_only.
   std::vector<std::string> topics_seen() const;
+  // The other processes of the domain that are known now, of any vehicle.
+  std::vector<ProcessIdentity> processes_seen() const;
+  // Of the other processes that are known now: a sentence for each two that do not receive each other's topic,
+  // "rt/kl1/imu: control (...) does not receive from plant (...): reliability (...)".
+  std::vector<std::string> qos_conflicts_seen() const;
 
   // Checks that this process is the only source of settings.source_of for the vehicles that it serves, and that
   // none of `excluded` has a source either. Blocks for kSourceSearchTime. Returns a sentence that names the

@@ -143,6 +143,34 @@ std::vector<std::string> Participant::Impl::topics_seen() const {
   return {topics.begin(), topics.end()};
 }
 
+std::vector<ProcessIdentity> Participant::Impl::processes_seen() const {
+  const std::lock_guard<std::mutex> lock(peers_mutex_);
+  std::vector<ProcessIdentity> processes;
+  for (const auto& [guid, peer] : peers_)
+    processes.push_back({peer.name, peer.announced.host, peer.announced.pid});
+  return processes;
+}
+
+std::vector<std::string> Participant::Impl::qos_conflicts_seen() const {
+  const std::lock_guard<std::mutex> lock(peers_mutex_);
+  const auto process = [this](const Guid& guid) {
+    const Peer* const peer = peer_of(guid.guidPrefix);
+    if (peer == nullptr) return std::string("an unknown program");
+    return ProcessIdentity{peer->name, peer->announced.host, peer->announced.pid}.to_string();
+  };
+  std::vector<std::string> sentences;
+  for (const auto& [writer_guid, writer] : writers_) {
+    for (const auto& [reader_guid, reader] : readers_) {
+      if (writer.topic != reader.topic) continue;
+      const std::string policies = conflicts(writer.qos, reader.qos);
+      if (policies.empty()) continue;
+      sentences.push_back(writer.topic + ": " + process(reader_guid) + " does not receive from " +
+                          process(writer_guid) + ": " + policies);
+    }
+  }
+  return sentences;
+}
+
 ProcessIdentity Participant::Impl::identity_of(const GuidPrefix& participant) const {
   const std::lock_guard<std::mutex> lock(peers_mutex_);
   const Peer* const peer = peer_of(participant);

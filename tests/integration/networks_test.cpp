@@ -1,5 +1,7 @@
 // Hosts on a switch, and behind routers that forward no multicast: who reaches whom.
+#include <algorithm>
 #include <arpa/inet.h>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <memory>
@@ -135,9 +137,18 @@ class Networks : public testing::Test {
   std::unique_ptr<Program> plant_, mocap_, control_;
 };
 
+// Control has its options from a file.
 TEST_F(Networks, PeersFlyThroughRoutersWithoutMulticast) {
   connect(Layout::kRouter);
-  start_all(all_peers());
+  std::vector<Words> options = all_peers();
+  folder_.write(
+      "profile.xml",
+      "<dds><profiles><participant profile_name=\"lab\"><rtps>"
+      "<listenSocketBufferSize>150000</listenSocketBufferSize></rtps></participant></profiles></dds>\n");
+  options[1] = {"--network",
+                folder_.write("network.yaml", "peers: [" + hosts_->address(0) + ", " + hosts_->address(2) +
+                                                  "]\ninterfaces: [eth0]\ndds_profile: profile.xml\n")};
+  start_all(options);
   ASSERT_TRUE(finds_the_vehicle(2)) << logs();
   const ProgramResult status = swiftlet(2, {"status", "--json", "--watch", "0.1"});
   EXPECT_EQ(status.exit_code, 0) << status.errors;
@@ -196,6 +207,72 @@ TEST_F(Networks, ADiscoveryServerIntroducesTheHosts) {
   EXPECT_EQ(server->wait(kStuck), 0) << server->errors();
   EXPECT_NE(server->output().find("remain and keep what they know of each other"), std::string::npos);
   EXPECT_EQ(takeoff->wait(kStuck), 0) << takeoff->errors();
+}
+
+// The reports of `swiftlet doctor network` on hosts 0 and 1 at the same time, of which host 0 expects this exit code.
+class Doctors : public Networks {
+ protected:
+  json examine(int expected_exit_code) {
+    const Words words = {"doctor", "network", "--time", "1", "--json"};
+    const std::unique_ptr<Program> other = start(1, "swiftlet", words);
+    const ProgramResult own = swiftlet(0, words);
+    EXPECT_EQ(own.exit_code, expected_exit_code) << own.output << own.errors;
+    EXPECT_EQ(other->wait(kStuck), expected_exit_code) << other->output() << other->errors();
+    return json::parse(own.output);
+  }
+  void expect_measured(const json& host) const {
+    EXPECT_EQ(host.at("address"), hosts_->address(1));
+    EXPECT_GT(host.at("answered"), 0);
+    EXPECT_LE(host.at("answered"), host.at("sent"));
+    const double shortest_ms = host.at("round_trip_min_ms");
+    EXPECT_GT(shortest_ms, 0.0);
+    EXPECT_LE(host.at("round_trip_min_ms"), host.at("round_trip_median_ms"));
+    // Both have the same clock.
+    EXPECT_LE(std::abs(host.at("clock_offset_ms").get<double>()), 0.5 * shortest_ms + 0.01);
+  }
+};
+
+TEST_F(Doctors, MeasureMulticastBothWaysOverASwitch) {
+  connect(Layout::kSwitch);
+  options_ = {{}, {}, {}};
+  const json report = examine(0);
+  EXPECT_EQ(report.at("faults"), json::array());
+  ASSERT_EQ(report.at("interfaces").size(), 1U) << report;
+  EXPECT_EQ(report.at("interfaces")[0].at("name"), "eth0");
+  EXPECT_EQ(report.at("interfaces")[0].at("mtu_bytes"), 1500);
+  EXPECT_EQ(report.at("interfaces")[0].at("own_multicast"), true);
+  ASSERT_EQ(report.at("hosts").size(), 1U) << report;
+  EXPECT_EQ(report.at("hosts")[0].at("multicast_from_there"), true);
+  EXPECT_EQ(report.at("hosts")[0].at("multicast_to_there"), true);
+  expect_measured(report.at("hosts")[0]);
+}
+
+TEST_F(Doctors, FindEachOtherThroughRoutersByPeersOnly) {
+  connect(Layout::kRouter);
+  options_ = {{}, {}, {}};
+  const json alone = examine(1);
+  EXPECT_EQ(alone.at("hosts"), json::array());
+  EXPECT_EQ(alone.at("faults").size(), 1U) << alone;
+  EXPECT_EQ(alone.at("faults")[0].get<std::string>().rfind("nobody answers in domain 0: ", 0), 0U) << alone;
+
+  options_ = all_peers();
+  const std::unique_ptr<Program> plant = start(2, "swiftlet-plant", {});
+  json report;
+  ASSERT_TRUE(eventually([&] {
+    report = examine(0);
+    const json& processes = report.at("processes");
+    return std::any_of(processes.begin(), processes.end(), [&](const json& it) {
+      return it.at("name") == "plant" && it.at("process") == plant->pid();
+    });
+  })) << report;
+  EXPECT_EQ(report.at("faults"), json::array());
+  ASSERT_EQ(report.at("hosts").size(), 1U) << report;
+  EXPECT_EQ(report.at("hosts")[0].at("multicast_from_there"), false);
+  expect_measured(report.at("hosts")[0]);
+  ASSERT_EQ(report.at("hints").size(), 1U) << report;  // no doctor on host 2
+  EXPECT_EQ(
+      report.at("hints")[0].get<std::string>().rfind("peer " + hosts_->address(2) + " did not answer", 0),
+      0U);
 }
 
 }  // namespace

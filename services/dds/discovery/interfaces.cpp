@@ -1,13 +1,29 @@
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
 
 #include <arpa/inet.h>
+#include <cstring>
 #include <ifaddrs.h>
 #include <memory>
 #include <net/if.h>
 #include <netinet/in.h>
 #include <stdexcept>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 namespace swiftlet::comms {
+namespace {
+
+int mtu_of(const char* interface) {
+  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  ifreq request{};
+  std::strncpy(request.ifr_name, interface, IFNAMSIZ - 1);
+  const bool known = ::ioctl(socket, SIOCGIFMTU, &request) == 0;
+  ::close(socket);
+  return known ? request.ifr_mtu : 0;
+}
+
+}  // namespace
 
 std::vector<Interface> interfaces_up() {
   ifaddrs* first = nullptr;
@@ -20,7 +36,8 @@ std::vector<Interface> interfaces_up() {
     char address[INET_ADDRSTRLEN] = {};
     ::inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(it->ifa_addr)->sin_addr, address,
                 sizeof address);
-    found.push_back({it->ifa_name, address, (it->ifa_flags & IFF_LOOPBACK) != 0U});
+    found.push_back({it->ifa_name, address, (it->ifa_flags & IFF_LOOPBACK) != 0U,
+                     (it->ifa_flags & IFF_MULTICAST) != 0U, mtu_of(it->ifa_name)});
   }
   return found;
 }

@@ -11,6 +11,8 @@ struct Interface {
   std::string name;     // "eth0"
   std::string address;  // "192.168.1.4"
   bool is_loopback = false;
+  bool has_multicast = false;
+  int mtu_bytes = 0;  // 0: unknown
 };
 std::vector<Interface> interfaces_up();
 

@@ -1,0 +1,12 @@
+#include "swiftlet/ground/cli/commands.hpp"
+
+namespace swiftlet::ground {
+
+Command add_doctor_command(runtime::CommandLine root) {
+  const runtime::CommandLine doctor = root.add_subcommand("doctor", "Examine what a flight depends on");
+  doctor.require_subcommand(1, 1);
+  const Command network = add_doctor_network_command(doctor);
+  return {doctor, network.run};
+}
+
+}  // namespace swiftlet::ground

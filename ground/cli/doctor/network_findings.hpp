@@ -1,0 +1,29 @@
+// What `swiftlet doctor network` concludes from what it has measured.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "swiftlet/services/dds/discovery/interfaces.hpp"
+#include "swiftlet/services/dds/discovery/network_probe.hpp"
+#include "swiftlet/services/dds/node.hpp"
+
+namespace swiftlet::ground {
+
+struct NetworkFacts {
+  comms::NodeSettings settings;
+  std::vector<comms::Interface> interfaces;  // those that are used
+  comms::ProbeReport probe;
+  std::vector<comms::ProcessIdentity> processes;  // discovered over DDS
+  std::vector<std::string> qos_conflicts;         // sentences
+};
+
+struct NetworkFinding {
+  bool is_fault = false;  // else a hint: it may be as intended
+  std::string sentence;
+};
+
+// Faults first.
+std::vector<NetworkFinding> findings(const NetworkFacts& facts);
+
+}  // namespace swiftlet::ground

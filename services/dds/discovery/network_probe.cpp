@@ -1,0 +1,307 @@
+#include "swiftlet/services/dds/discovery/network_probe.hpp"
+
+#include <algorithm>
+#include <arpa/inet.h>
+#include <cerrno>
+#include <climits>
+#include <cstring>
+#include <map>
+#include <netinet/in.h>
+#include <poll.h>
+#include <random>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace swiftlet::comms {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+constexpr const char* kGroup = "239.255.0.1";
+constexpr const char* kMagic = "swiftlet-probe-1";
+constexpr auto kPeriod = 50ms;
+constexpr auto kLastAnswers = 300ms;
+constexpr std::size_t kMaxDatagram = 512;
+constexpr std::size_t kMaxPartners = 256;
+
+enum class Kind : char { kMulticast = 'm', kUnicast = 'u', kAnswer = 'a', kGoodbye = 'g' };
+
+// One datagram, as text: "swiftlet-probe-1 KIND SENDER HOST NUMBER ...".
+struct Message {
+  Kind kind = Kind::kUnicast;
+  std::uint64_t sender = 0;  // a random number of each run
+  std::string host;
+  int number = 0;
+  // Of an answer: to whom, to which kind, and when the question arrived.
+  std::uint64_t asker = 0;
+  Kind of = Kind::kUnicast;
+  std::int64_t arrived_ns = 0;
+  std::string via;  // of multicast: the address of the sending interface
+};
+
+std::string to_text(const Message& message) {
+  std::ostringstream text;
+  text << kMagic << ' ' << static_cast<char>(message.kind) << ' ' << message.sender << ' ' << message.host
+       << ' ' << message.number;
+  if (message.kind == Kind::kMulticast) text << ' ' << message.via;
+  if (message.kind == Kind::kAnswer)
+    text << ' ' << message.asker << ' ' << static_cast<char>(message.of) << ' ' << message.arrived_ns;
+  return text.str();
+}
+
+// It is printed: no control characters.
+bool is_printable_name(const std::string& name) {
+  return name.size() <= HOST_NAME_MAX &&
+         std::all_of(name.begin(), name.end(), [](unsigned char c) { return c > 0x20 && c < 0x7f; });
+}
+
+bool from_text(const std::string& datagram, Message& message) {
+  std::istringstream text(datagram);
+  std::string magic;
+  char kind = 0;
+  if (!(text >> magic >> kind >> message.sender >> message.host >> message.number) || magic != kMagic)
+    return false;
+  if (!is_printable_name(message.host)) return false;
+  message.kind = static_cast<Kind>(kind);
+  if (message.kind == Kind::kUnicast || message.kind == Kind::kGoodbye) return true;
+  if (message.kind == Kind::kMulticast) return static_cast<bool>(text >> message.via);
+  char of = 0;
+  if (message.kind != Kind::kAnswer || !(text >> message.asker >> of >> message.arrived_ns)) return false;
+  message.of = static_cast<Kind>(of);
+  return true;
+}
+
+std::int64_t system_ns() {
+  return std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+sockaddr_in socket_address(const std::string& ipv4, int port) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  ::inet_pton(AF_INET, ipv4.c_str(), &address.sin_addr);
+  return address;
+}
+
+std::string text_of(const sockaddr_in& address) {
+  char text[INET_ADDRSTRLEN] = {};
+  ::inet_ntop(AF_INET, &address.sin_addr, text, sizeof text);
+  return text;
+}
+
+class Socket {
+ public:
+  Socket(int port, bool shared)
+      : descriptor_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)) {
+    const int yes = 1;
+    if (shared) ::setsockopt(descriptor_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    const sockaddr_in any = socket_address("0.0.0.0", port);
+    if (descriptor_ >= 0 && ::bind(descriptor_, reinterpret_cast<const sockaddr*>(&any), sizeof any) == 0)
+      return;
+    const int error = errno;
+    ::close(descriptor_);
+    throw std::runtime_error("cannot listen on UDP port " + std::to_string(port) + ": " +
+                             std::strerror(error));
+  }
+  ~Socket() { ::close(descriptor_); }
+  Socket(const Socket&) = delete;
+  Socket& operator=(const Socket&) = delete;
+
+  int descriptor() const { return descriptor_; }
+  void send(const Message& message, const sockaddr_in& to) const {
+    const std::string text = to_text(message);
+    ::sendto(descriptor_, text.data(), text.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
+  }
+  // False if nothing more has arrived. Datagrams of others leave `message` without a host.
+  bool receive(Message& message, sockaddr_in& from) const {
+    char buffer[kMaxDatagram];
+    socklen_t length = sizeof from;
+    const ssize_t size =
+        ::recvfrom(descriptor_, buffer, sizeof buffer, 0, reinterpret_cast<sockaddr*>(&from), &length);
+    if (size < 0) return false;
+    message = {};
+    if (!from_text(std::string(buffer, static_cast<std::size_t>(size)), message)) message.host.clear();
+    return true;
+  }
+
+ private:
+  int descriptor_;
+};
+
+// What is known of another host during the run.
+struct Partner {
+  ProbedHost host;
+  sockaddr_in address{};
+  std::map<int, Clock::time_point> asked;
+  std::map<int, std::int64_t> asked_ns;  // by the system clock
+  std::vector<double> round_trips_ms{};
+  bool gone = false;
+};
+
+}  // namespace
+
+struct NetworkProbe::Impl {
+  Impl(int of_domain, const std::vector<std::string>& own, const std::vector<std::string>& asked)
+      : domain(of_domain),
+        addresses(own),
+        peers(asked.begin(), asked.end()),
+        direct(probe_port(of_domain), false),
+        multicast(probe_multicast_port(of_domain), true) {
+    std::random_device random;
+    own_id = (static_cast<std::uint64_t>(random()) << 32U) | random();
+    char name[HOST_NAME_MAX + 1] = {};
+    ::gethostname(name, HOST_NAME_MAX);
+    host = name[0] == '\0' ? "unknown" : name;
+    for (const std::string& address : addresses) {
+      const ip_mreq group{socket_address(kGroup, 0).sin_addr, socket_address(address, 0).sin_addr};
+      ::setsockopt(multicast.descriptor(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &group, sizeof group);
+    }
+  }
+
+  Message own(Kind kind, int of) const {
+    Message message;
+    message.kind = kind;
+    message.sender = own_id;
+    message.host = host;
+    message.number = of;
+    return message;
+  }
+
+  void send_probes() {
+    ++number;
+    for (const std::string& address : addresses) {
+      const in_addr out = socket_address(address, 0).sin_addr;
+      ::setsockopt(direct.descriptor(), IPPROTO_IP, IP_MULTICAST_IF, &out, sizeof out);
+      Message message = own(Kind::kMulticast, number);
+      message.via = address;
+      direct.send(message, socket_address(kGroup, probe_multicast_port(domain)));
+    }
+    for (const std::string& peer : peers)
+      direct.send(own(Kind::kUnicast, 0), socket_address(peer, probe_port(domain)));
+    for (auto& [id, partner] : partners) {
+      if (partner.gone) continue;
+      partner.asked[number] = Clock::now();
+      partner.asked_ns[number] = system_ns();
+      ++partner.host.sent;
+      direct.send(own(Kind::kUnicast, number), partner.address);
+    }
+  }
+
+  void receive_for(std::chrono::milliseconds time) {
+    const auto end = Clock::now() + time;
+    for (auto left = time; left.count() > 0;
+         left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now())) {
+      pollfd sockets[] = {{direct.descriptor(), POLLIN, 0}, {multicast.descriptor(), POLLIN, 0}};
+      if (::poll(sockets, 2, static_cast<int>(left.count())) <= 0) continue;
+      Message message;
+      sockaddr_in from{};
+      for (const Socket* const socket : {&direct, &multicast}) {
+        while (socket->receive(message, from)) take(message, from);
+      }
+    }
+  }
+
+  void take(const Message& message, const sockaddr_in& from) {
+    if (message.host.empty()) return;
+    if (message.sender == own_id) {
+      if (message.kind == Kind::kMulticast) own_multicast.insert(message.via);
+      return;
+    }
+    if (partners.size() >= kMaxPartners && partners.count(message.sender) == 0) return;
+    Partner& partner = partners[message.sender];
+    partner.host.name = message.host;
+    partner.host.address = text_of(from);
+    partner.address = from;
+    if (message.kind == Kind::kAnswer) return take_answer(message, partner);
+    if (message.kind == Kind::kGoodbye) return take_goodbye(partner);
+    if (message.kind == Kind::kMulticast) partner.host.multicast_heard = true;
+    Message answer = own(Kind::kAnswer, message.number);
+    answer.asker = message.sender;
+    answer.of = message.kind;
+    answer.arrived_ns = system_ns();
+    direct.send(answer, from);
+  }
+
+  void take_answer(const Message& message, Partner& partner) {
+    if (message.asker != own_id) return;
+    if (message.of == Kind::kMulticast) partner.host.multicast_answered = true;
+    const auto asked = partner.asked.find(message.number);
+    if (message.of != Kind::kUnicast || asked == partner.asked.end()) return;
+    const double round_trip_ms =
+        std::chrono::duration<double, std::milli>(Clock::now() - asked->second).count();
+    const double half_way_ns = 0.5e6 * round_trip_ms;
+    if (partner.round_trips_ms.empty() || round_trip_ms < partner.host.round_trip_min_ms) {
+      partner.host.round_trip_min_ms = round_trip_ms;
+      const auto since_asked_ns = message.arrived_ns - partner.asked_ns[message.number];
+      partner.host.clock_offset_ms = (static_cast<double>(since_asked_ns) - half_way_ns) * 1e-6;
+    }
+    partner.round_trips_ms.push_back(round_trip_ms);
+    partner.asked.erase(asked);
+  }
+
+  // What it was asked just now does not count.
+  static void take_goodbye(Partner& partner) {
+    if (partner.gone) return;
+    partner.gone = true;
+    const auto recent = Clock::now() - kLastAnswers;
+    for (const auto& [of, time] : partner.asked) partner.host.sent -= time > recent ? 1 : 0;
+  }
+
+  // Several times, as one may be lost.
+  void say_goodbye() const {
+    for (int i = 0; i < 3; ++i) {
+      for (const auto& [id, partner] : partners) direct.send(own(Kind::kGoodbye, 0), partner.address);
+    }
+  }
+
+  ProbeReport report() {
+    ProbeReport result;
+    result.own_multicast.assign(own_multicast.begin(), own_multicast.end());
+    std::set<std::string> silent = peers;
+    for (auto& [id, partner] : partners) {
+      std::vector<double>& times = partner.round_trips_ms;
+      std::sort(times.begin(), times.end());
+      partner.host.answered = static_cast<int>(times.size());
+      if (!times.empty()) {
+        partner.host.round_trip_median_ms = times[times.size() / 2];
+        partner.host.round_trip_max_ms = times.back();
+      }
+      silent.erase(partner.host.address);
+      result.hosts.push_back(partner.host);
+    }
+    result.silent_peers.assign(silent.begin(), silent.end());
+    return result;
+  }
+
+  const int domain;
+  const std::vector<std::string> addresses;
+  const std::set<std::string> peers;
+  const Socket direct;
+  const Socket multicast;
+  std::uint64_t own_id = 0;
+  std::string host;
+  int number = 0;
+  std::set<std::string> own_multicast;
+  std::map<std::uint64_t, Partner> partners;
+};
+
+NetworkProbe::NetworkProbe(int domain, const std::vector<std::string>& addresses,
+                           const std::vector<std::string>& peers)
+    : impl_(std::make_unique<Impl>(domain, addresses, peers)) {}
+NetworkProbe::~NetworkProbe() = default;
+
+ProbeReport NetworkProbe::run(std::chrono::milliseconds time) {
+  for (const auto end = Clock::now() + time; Clock::now() < end;) {
+    impl_->send_probes();
+    impl_->receive_for(kPeriod);
+  }
+  impl_->receive_for(kLastAnswers);
+  impl_->say_goodbye();
+  return impl_->report();
+}
+
+}  // namespace swiftlet::comms
