@@ -4,6 +4,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
+#include <functional>
 #include <memory>
 #include <netinet/in.h>
 #include <string>
@@ -209,20 +210,30 @@ TEST_F(Networks, ADiscoveryServerIntroducesTheHosts) {
   EXPECT_EQ(takeoff->wait(kStuck), 0) << takeoff->errors();
 }
 
-// The reports of `swiftlet doctor network` on hosts 0 and 1 at the same time, of which host 0 expects this exit code.
 class Doctors : public Networks {
  protected:
-  json examine(int expected_exit_code) {
+  // Runs `swiftlet doctor network` on hosts 0 and 1 at the same time. Returns the report of host 0.
+  json examine() const {
     const Words words = {"doctor", "network", "--time", "1", "--json"};
     const std::unique_ptr<Program> other = start(1, "swiftlet", words);
     const ProgramResult own = swiftlet(0, words);
-    EXPECT_EQ(own.exit_code, expected_exit_code) << own.output << own.errors;
-    EXPECT_EQ(other->wait(kStuck), expected_exit_code) << other->output() << other->errors();
-    return json::parse(own.output);
+    EXPECT_NE(other->wait(kStuck), -1) << other->errors();
+    json report = json::parse(own.output);
+    EXPECT_EQ(own.exit_code, report.at("faults").empty() ? 0 : 1) << own.output << own.errors;
+    return report;
   }
-  void expect_measured(const json& host) const {
+  // The same until a report meets the predicate: on a busy machine one may end before the other begins.
+  json examine_until(const std::function<bool(const json&)>& predicate) const {
+    json report;
+    EXPECT_TRUE(eventually([&] { return predicate(report = examine()); })) << report;
+    return report;
+  }
+  bool has_measured(const json& report) const {
+    const json& hosts = report.at("hosts");
+    return hosts.size() == 1 && hosts[0].at("answered") > 0 && report.at("faults").empty();
+  }
+  void expect_plausible(const json& host) const {
     EXPECT_EQ(host.at("address"), hosts_->address(1));
-    EXPECT_GT(host.at("answered"), 0);
     EXPECT_LE(host.at("answered"), host.at("sent"));
     const double shortest_ms = host.at("round_trip_min_ms");
     EXPECT_GT(shortest_ms, 0.0);
@@ -235,44 +246,39 @@ class Doctors : public Networks {
 TEST_F(Doctors, MeasureMulticastBothWaysOverASwitch) {
   connect(Layout::kSwitch);
   options_ = {{}, {}, {}};
-  const json report = examine(0);
-  EXPECT_EQ(report.at("faults"), json::array());
+  const json report = examine_until([&](const json& it) { return has_measured(it); });
   ASSERT_EQ(report.at("interfaces").size(), 1U) << report;
   EXPECT_EQ(report.at("interfaces")[0].at("name"), "eth0");
   EXPECT_EQ(report.at("interfaces")[0].at("mtu_bytes"), 1500);
   EXPECT_EQ(report.at("interfaces")[0].at("own_multicast"), true);
-  ASSERT_EQ(report.at("hosts").size(), 1U) << report;
   EXPECT_EQ(report.at("hosts")[0].at("multicast_from_there"), true);
   EXPECT_EQ(report.at("hosts")[0].at("multicast_to_there"), true);
-  expect_measured(report.at("hosts")[0]);
+  expect_plausible(report.at("hosts")[0]);
 }
 
 TEST_F(Doctors, FindEachOtherThroughRoutersByPeersOnly) {
   connect(Layout::kRouter);
   options_ = {{}, {}, {}};
-  const json alone = examine(1);
+  const json alone = examine();
   EXPECT_EQ(alone.at("hosts"), json::array());
-  EXPECT_EQ(alone.at("faults").size(), 1U) << alone;
+  ASSERT_EQ(alone.at("faults").size(), 1U) << alone;
   EXPECT_EQ(alone.at("faults")[0].get<std::string>().rfind("nobody answers in domain 0: ", 0), 0U) << alone;
 
   options_ = all_peers();
   const std::unique_ptr<Program> plant = start(2, "swiftlet-plant", {});
-  json report;
-  ASSERT_TRUE(eventually([&] {
-    report = examine(0);
-    const json& processes = report.at("processes");
-    return std::any_of(processes.begin(), processes.end(), [&](const json& it) {
-      return it.at("name") == "plant" && it.at("process") == plant->pid();
-    });
-  })) << report;
-  EXPECT_EQ(report.at("faults"), json::array());
-  ASSERT_EQ(report.at("hosts").size(), 1U) << report;
+  const json report = examine_until([&](const json& it) {
+    const json& processes = it.at("processes");
+    return has_measured(it) && std::any_of(processes.begin(), processes.end(), [&](const json& process) {
+             return process.at("name") == "plant" && process.at("process") == plant->pid();
+           });
+  });
   EXPECT_EQ(report.at("hosts")[0].at("multicast_from_there"), false);
-  expect_measured(report.at("hosts")[0]);
-  ASSERT_EQ(report.at("hints").size(), 1U) << report;  // no doctor on host 2
-  EXPECT_EQ(
-      report.at("hints")[0].get<std::string>().rfind("peer " + hosts_->address(2) + " did not answer", 0),
-      0U);
+  expect_plausible(report.at("hosts")[0]);
+  const std::string silent = "peer " + hosts_->address(2) + " did not answer";  // no doctor there
+  const json& hints = report.at("hints");
+  EXPECT_TRUE(std::any_of(hints.begin(), hints.end(), [&](const json& hint) {
+    return hint.get<std::string>().rfind(silent, 0) == 0;
+  })) << report;
 }
 
 }  // namespace
