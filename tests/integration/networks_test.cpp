@@ -46,7 +46,7 @@ bool arrives(const HostNetwork& network, int from, int at, const std::string& ad
     const HostNetwork::Inside inside(network, at);
     receiver = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
     const sockaddr_in any = socket_address("0.0.0.0");
-    bind(receiver, reinterpret_cast<const sockaddr*>(&any), sizeof any);
+    EXPECT_EQ(bind(receiver, reinterpret_cast<const sockaddr*>(&any), sizeof any), 0);
     const ip_mreq group{{inet_addr(kGroup)}, {inet_addr(network.address(at).c_str())}};
     setsockopt(receiver, IPPROTO_IP, IP_ADD_MEMBERSHIP, &group, sizeof group);
     const timeval patience{1, 0};
