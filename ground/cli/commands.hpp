@@ -46,6 +46,9 @@ Command add_identify_command(runtime::CommandLine root, char** argv);  // execut
 // Named configuration files: `config ls`, `config show`.
 Command add_config_command(runtime::CommandLine root);
 
+// Keys that protect a network: `keys network`.
+Command add_keys_command(runtime::CommandLine root);
+
 // Shell completion and manual pages.
 Command add_completion_command(runtime::CommandLine root);
 Command add_manual_command(runtime::CommandLine root);

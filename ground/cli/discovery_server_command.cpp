@@ -10,6 +10,7 @@
 #include "swiftlet/services/dds/discovery/discovery_server.hpp"
 #include "swiftlet/services/dds/discovery/discovery_servers.hpp"
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
+#include "swiftlet/services/dds/node_options.hpp"
 #include "swiftlet/services/runtime/stop_signal.hpp"
 
 namespace swiftlet::ground {
@@ -100,6 +101,7 @@ Command add_discovery_server_command(runtime::CommandLine root) {
                  "listen on this network interface only; may be repeated")
       .repeated()
       .check(comms::fault_of_interface, "NAME|ADDRESS");
+  comms::add_network_key_option(app, settings->network_key_file);
   app.footer(
       "It prints a line for each process that joins or leaves, until Ctrl-C. It carries no samples: a flight "
       "goes "

@@ -40,6 +40,7 @@ int main(int argc, char** argv) {
       ground::add_sim_command(root),
       ground::add_identify_command(root, argv),
       ground::add_config_command(root),
+      ground::add_keys_command(root),
       ground::add_completion_command(root),
       ground::add_manual_command(root),
   };

@@ -170,6 +170,8 @@ std::vector<ProcessSettings> processes(const LaunchConfiguration& plan, const co
       "--domain",    std::to_string(network.domain), "--vehicle-name", network.vehicle,
       "--transport", to_string(network.transport),   "--clock",        runtime::to_string(plan.clock)};
   if (network.localhost_only) common.emplace_back("--localhost-only");
+  if (!network.network_key_file.empty())
+    common.insert(common.end(), {"--network-key", absolute_path(network.network_key_file)});
   const auto process = [&](const std::string& name, const fs::path& program,
                            std::vector<std::string> arguments) {
     arguments.insert(arguments.end(), common.begin(), common.end());

@@ -29,6 +29,9 @@ struct NodeSettings {
   Transport transport = Transport::kUdp;
   bool localhost_only = false;  // loopback interface only, without multicast
   NetworkSettings network{};    // not with localhost_only
+  // File with the keys of the network (io/network_key.hpp): only datagrams of processes with one of them are
+  // received. Empty: from everyone.
+  std::string network_key_file{};
   // Offer and request the topics' deadlines. False in lockstep, where time may stand still. A reader that
   // requests a deadline does not match a writer that offers none.
   bool deadlines = true;

@@ -1,8 +1,10 @@
 #include "swiftlet/services/dds/node_options.hpp"
 
 #include <cstdlib>
+#include <stdexcept>
 
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/network_key.hpp"
 #include "swiftlet/services/dds/discovery/discovery_servers.hpp"
 #include "swiftlet/services/dds/discovery/host_address.hpp"
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
@@ -10,6 +12,15 @@
 
 namespace swiftlet::comms {
 namespace {
+
+std::string fault_of_key_file(const std::string& file) {
+  try {
+    runtime::read_network_keys(file);
+    return {};
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+}
 
 std::string environment(const char* variable) {
   const char* const value = std::getenv(variable);
@@ -95,6 +106,14 @@ void add_node_options(runtime::CommandLine app, NodeSettings& settings, const Na
       .show_default("udp");
   add_network_options(app, settings);
   add_profile_option(app, settings);
+  add_network_key_option(app, settings.network_key_file);
+}
+
+void add_network_key_option(runtime::CommandLine app, std::string& file) {
+  app.add_option("--network-key", file,
+                 "Key that all processes of the network share, made by `swiftlet keys network`")
+      .environment("SWIFTLET_NETWORK_KEY")
+      .check(fault_of_key_file, "FILE");
 }
 
 }  // namespace swiftlet::comms

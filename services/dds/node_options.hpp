@@ -17,8 +17,11 @@ struct NameCheck {
 };
 
 // --domain (default $ROS_DOMAIN_ID or 0), --vehicle-name, --transport udp|shm; --localhost-only (default
-// $ROS_LOCALHOST_ONLY), --network, --peer, --discovery-server (default $ROS_DISCOVERY_SERVER), --interface, --dds-profile (default
-// $FASTRTPS_DEFAULT_PROFILES_FILE).
+// $ROS_LOCALHOST_ONLY), --network, --peer, --discovery-server (default $ROS_DISCOVERY_SERVER), --interface,
+// --dds-profile (default $FASTRTPS_DEFAULT_PROFILES_FILE), --network-key (default $SWIFTLET_NETWORK_KEY).
 void add_node_options(runtime::CommandLine app, NodeSettings& settings, const NameCheck& name = {});
+
+// --network-key alone.
+void add_network_key_option(runtime::CommandLine app, std::string& file);
 
 }  // namespace swiftlet::comms

@@ -11,6 +11,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "swiftlet/io/network_key.hpp"
 #include "swiftlet/services/dds/shared_memory.hpp"
 
 namespace swiftlet::comms {
@@ -43,6 +44,14 @@ Announcement announcement_of(const NodeSettings& settings, const std::string& ve
   return announcement;
 }
 
+std::shared_ptr<DatagramGuard> guard_of(const NodeSettings& settings) {
+  DatagramLimits limits;
+  limits.discovery_servers = !settings.network.discovery_servers.empty();
+  const std::string& file = settings.network_key_file;
+  return std::make_shared<DatagramGuard>(
+      file.empty() ? runtime::NetworkKeys() : runtime::read_network_keys(file), limits);
+}
+
 std::string named(const std::string& name, const rtps::GuidPrefix_t& participant) {
   std::ostringstream text;
   text << "'" << name << "' (" << participant << ")";
@@ -56,12 +65,15 @@ rtps::GUID_t participant_guid(const rtps::GuidPrefix_t& participant) {
 }  // namespace
 
 Participant::Impl::Impl(const NodeSettings& node_settings, const std::string& vehicle)
-    : settings(node_settings), announcement_(announcement_of(node_settings, vehicle)) {
+    : settings(node_settings),
+      guard_(guard_of(node_settings)),
+      announcement_(announcement_of(node_settings, vehicle)) {
   check(settings);
   if (settings.transport == Transport::kSharedMemory) remove_stale_shared_memory();
-  session_ = std::make_unique<ParticipantSession>(settings, announcement_, this);
+  session_ = std::make_unique<ParticipantSession>(settings, announcement_, guard_, this);
   periodic_task_.emplace(kCheckPeriod, [this] {
     rejoin_if_rediscovery_failed();
+    guard_->refusals().write_due(Clock::now());
     const std::lock_guard<std::mutex> lock(peers_mutex_);
     conflict_log_.write_due(Clock::now());
   });
@@ -111,7 +123,7 @@ bool Participant::Impl::rejoin() {
   const std::lock_guard<std::mutex> lock(session_mutex_);
   leave();
   try {
-    session_ = std::make_unique<ParticipantSession>(settings, announcement_, this);
+    session_ = std::make_unique<ParticipantSession>(settings, announcement_, guard_, this);
     for (Endpoint* const endpoint : endpoints_) endpoint->join(*session_);
     return !away_.exchange(false);
   } catch (const std::runtime_error& error) {

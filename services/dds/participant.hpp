@@ -16,6 +16,7 @@
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
 
+#include "swiftlet/services/dds/datagram/datagram_guard.hpp"
 #include "swiftlet/services/dds/discovery/announcement.hpp"
 #include "swiftlet/services/dds/discovery/rediscovery_monitor.hpp"
 #include "swiftlet/services/dds/node.hpp"
@@ -102,6 +103,7 @@ struct Participant::Impl final : public eprosima::fastdds::dds::DomainParticipan
   void yield_source_to(const Peer& peer);
   std::string in_use_by(const std::string& vehicle, const std::string& topic, const Peer& source) const;
 
+  const std::shared_ptr<DatagramGuard> guard_;
   std::mutex session_mutex_;  // guards session_ and endpoints_
   std::unique_ptr<ParticipantSession> session_;
   std::vector<Endpoint*> endpoints_;

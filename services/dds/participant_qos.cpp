@@ -1,12 +1,12 @@
 #include "swiftlet/services/dds/participant_qos.hpp"
 
-#include <memory>
 #include <string>
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 
+#include "swiftlet/services/dds/datagram/guarded_transport.hpp"
 #include "swiftlet/services/dds/dds_profile.hpp"
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
 #include "swiftlet/services/dds/network_qos.hpp"
@@ -33,7 +33,8 @@ rtps::Locator_t loopback_locator(std::uint32_t port) {
 
 }  // namespace
 
-dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uint32_t announced_ports) {
+dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uint32_t announced_ports,
+                                          const std::shared_ptr<DatagramGuard>& guard) {
   const std::string& file = settings.network.dds_profile;
   const DdsProfile profile = file.empty() ? DdsProfile{} : load_dds_profile(file);
   dds::DomainParticipantQos qos = profile.participant;
@@ -49,25 +50,28 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uin
   const DiscoveryPorts ports = discovery_ports(settings.domain);
   builtin.mutation_tries = ports.count - 1;
 
-  const auto udp = std::make_shared<UDPv4TransportDescriptor>(profile.udp);
-  udp->non_blocking_send = true;  // a full socket buffer drops a sample instead of blocking the sender
+  // Announcements of forged participants must not fill the memory. When the limit is reached, Fast DDS ignores newcomers.
+  qos.allocation().participants = {0, kMostParticipants, 1};
+
+  UDPv4TransportDescriptor udp = profile.udp;
+  udp.non_blocking_send = true;  // a full socket buffer drops a sample instead of blocking the sender
   if (settings.localhost_only) {
-    udp->interfaceWhiteList = {kLoopback};
-    udp->maxInitialPeersRange = announced_ports;
+    udp.interfaceWhiteList = {kLoopback};
+    udp.maxInitialPeersRange = announced_ports;
     // Listen on the first free port of the domain, whatever ID the middleware assigns to the participant, and
     // on no multicast address. For the peers (port 0) the middleware tries maxInitialPeersRange ports.
     builtin.metatrafficUnicastLocatorList.push_back(loopback_locator(ports.first));
     builtin.initialPeersList.push_back(loopback_locator(0));
   } else {
-    set_network(settings, announced_ports, qos, *udp);
+    set_network(settings, announced_ports, qos, udp);
   }
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(udp);
+  qos.transport().user_transports.push_back(guarded(udp, guard));
 
   if (settings.transport == Transport::kSharedMemory) {
-    const auto shared_memory = std::make_shared<SharedMemTransportDescriptor>();
-    shared_memory->segment_size(kSegmentBytes);
-    qos.transport().user_transports.push_back(shared_memory);
+    SharedMemTransportDescriptor shared_memory;
+    shared_memory.segment_size(kSegmentBytes);
+    qos.transport().user_transports.push_back(guarded(shared_memory, guard));
   }
   return qos;
 }

@@ -27,9 +27,10 @@ void end(dds::DomainParticipant* participant) {
 }
 
 dds::DomainParticipant* create_participant(const NodeSettings& settings, const Announcement& announcement,
+                                           const std::shared_ptr<DatagramGuard>& guard,
                                            dds::DomainParticipantListener* listener,
                                            std::uint32_t announced) {
-  dds::DomainParticipantQos qos = participant_qos(settings, announced);
+  dds::DomainParticipantQos qos = participant_qos(settings, announced, guard);
   qos.user_data().data_vec(to_user_data(announcement));
   return dds::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<std::uint32_t>(settings.domain), qos, listener,
@@ -47,6 +48,7 @@ std::string listening_address(const NodeSettings& settings) {
 // neither the port at which it listens nor that it found none, hence the comparison of ports before and
 // after.
 dds::DomainParticipant* join(const NodeSettings& settings, const Announcement& announcement,
+                             const std::shared_ptr<DatagramGuard>& guard,
                              dds::DomainParticipantListener* listener) {
   static std::mutex mutex;
   const std::lock_guard<std::mutex> lock(mutex);
@@ -56,7 +58,7 @@ dds::DomainParticipant* join(const NodeSettings& settings, const Announcement& a
   const bool announces_to_ports = settings.localhost_only || !settings.network.peers.empty();
   for (const std::uint32_t announced : {announced_ports(ports, expected), ports.count}) {
     dds::DomainParticipant* const participant =
-        create_participant(settings, announcement, listener, announced);
+        create_participant(settings, announcement, guard, listener, announced);
     if (participant == nullptr) return nullptr;
     // Other processes may have taken ports meanwhile. If the own port is then too high to announce itself to
     // all ports below it, try again with all ports.
@@ -71,9 +73,10 @@ dds::DomainParticipant* join(const NodeSettings& settings, const Announcement& a
 }  // namespace
 
 ParticipantSession::ParticipantSession(const NodeSettings& settings, const Announcement& announcement,
+                                       const std::shared_ptr<DatagramGuard>& guard,
                                        dds::DomainParticipantListener* listener) {
   set_up_fast_dds();
-  participant = join(settings, announcement, listener);
+  participant = join(settings, announcement, guard, listener);
   if (participant == nullptr) {
     throw std::runtime_error("cannot join DDS domain " + std::to_string(settings.domain) +
                              ": no port could be opened or the transport could not be set up");

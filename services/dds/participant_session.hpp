@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -15,6 +16,7 @@
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
 
+#include "swiftlet/services/dds/datagram/datagram_guard.hpp"
 #include "swiftlet/services/dds/discovery/announcement.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
@@ -26,6 +28,7 @@ class ParticipantSession {
  public:
   // Throws std::runtime_error if the participant cannot be created.
   ParticipantSession(const NodeSettings& settings, const Announcement& announcement,
+                     const std::shared_ptr<DatagramGuard>& guard,
                      eprosima::fastdds::dds::DomainParticipantListener* listener);
   ~ParticipantSession();
   ParticipantSession(const ParticipantSession&) = delete;

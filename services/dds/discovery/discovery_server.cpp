@@ -1,6 +1,7 @@
 #include "swiftlet/services/dds/discovery/discovery_server.hpp"
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <map>
 #include <mutex>
@@ -17,10 +18,13 @@
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 
+#include "swiftlet/services/dds/datagram/datagram_guard.hpp"
+#include "swiftlet/services/dds/datagram/guarded_transport.hpp"
 #include "swiftlet/services/dds/discovery/announcement.hpp"
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
 #include "swiftlet/services/dds/fast_dds_library.hpp"
 #include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/dds/periodic_task.hpp"
 #include "swiftlet/services/dds/qos/duration.hpp"
 
 namespace swiftlet::comms {
@@ -29,6 +33,8 @@ namespace {
 namespace dds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
+
+constexpr std::chrono::milliseconds kLogPeriod{250};
 
 // Fast DDS does not say why it fails.
 void require_free(int port) {
@@ -44,7 +50,8 @@ void require_free(int port) {
                              std::strerror(error));
 }
 
-dds::DomainParticipantQos server_qos(const DiscoveryServerSettings& settings) {
+dds::DomainParticipantQos server_qos(const DiscoveryServerSettings& settings,
+                                     const std::shared_ptr<DatagramGuard>& guard) {
   dds::DomainParticipantQos qos;
   qos.name("discovery-server");
   auto& protocol = qos.wire_protocol();
@@ -57,17 +64,27 @@ dds::DomainParticipantQos server_qos(const DiscoveryServerSettings& settings) {
   rtps::IPLocator::createLocator(LOCATOR_KIND_UDPv4, "0.0.0.0", static_cast<std::uint32_t>(settings.port),
                                  locator);
   protocol.builtin.metatrafficUnicastLocatorList.push_back(locator);
-  const auto udp = std::make_shared<UDPv4TransportDescriptor>();
-  udp->interfaceWhiteList = addresses_of_interfaces(settings.interfaces);
+  UDPv4TransportDescriptor udp;
+  udp.interfaceWhiteList = addresses_of_interfaces(settings.interfaces);
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(udp);
+  qos.transport().user_transports.push_back(guarded(udp, guard));
+  qos.allocation().participants = {0, kMostParticipants, 1};
   return qos;
+}
+
+std::shared_ptr<DatagramGuard> guard_of(const DiscoveryServerSettings& settings) {
+  DatagramLimits limits;
+  limits.discovery_servers = true;
+  const std::string& file = settings.network_key_file;
+  return std::make_shared<DatagramGuard>(
+      file.empty() ? runtime::NetworkKeys() : runtime::read_network_keys(file), limits);
 }
 
 }  // namespace
 
 struct DiscoveryServer::Impl final : public dds::DomainParticipantListener {
-  explicit Impl(std::function<void(const DiscoveryServerEvent&)> event) : on_event(std::move(event)) {}
+  Impl(const DiscoveryServerSettings& settings, std::function<void(const DiscoveryServerEvent&)> event)
+      : guard(guard_of(settings)), on_event(std::move(event)) {}
 
   void on_participant_discovery(dds::DomainParticipant*, rtps::ParticipantDiscoveryInfo&& info) override {
     const std::lock_guard<std::mutex> lock(mutex);
@@ -87,19 +104,22 @@ struct DiscoveryServer::Impl final : public dds::DomainParticipantListener {
     }
   }
 
+  const std::shared_ptr<DatagramGuard> guard;
   std::mutex mutex;
   std::map<rtps::GUID_t, std::string> processes;
   std::function<void(const DiscoveryServerEvent&)> on_event;
   dds::DomainParticipant* participant = nullptr;
+  PeriodicTask log_refusals{kLogPeriod,
+                            [this] { guard->refusals().write_due(std::chrono::steady_clock::now()); }};
 };
 
 DiscoveryServer::DiscoveryServer(const DiscoveryServerSettings& settings,
                                  std::function<void(const DiscoveryServerEvent&)> on_event)
-    : impl_(std::make_unique<Impl>(std::move(on_event))) {
+    : impl_(std::make_unique<Impl>(settings, std::move(on_event))) {
   set_up_fast_dds();
   require_free(settings.port);
   impl_->participant = dds::DomainParticipantFactory::get_instance()->create_participant(
-      static_cast<std::uint32_t>(settings.domain), server_qos(settings), impl_.get(),
+      static_cast<std::uint32_t>(settings.domain), server_qos(settings, impl_->guard), impl_.get(),
       dds::StatusMask::none());
   if (impl_->participant == nullptr)
     throw std::runtime_error("cannot start the discovery server on UDP port " +

@@ -14,6 +14,7 @@ struct DiscoveryServerSettings {
   int domain = 0;
   int port = 0;
   std::vector<std::string> interfaces{};  // as in NetworkSettings
+  std::string network_key_file{};         // as in NodeSettings
 };
 
 // A process registered at the server, or is gone.
@@ -25,7 +26,8 @@ struct DiscoveryServerEvent {
 
 class DiscoveryServer {
  public:
-  // on_event runs in a middleware thread. Throws std::runtime_error if the port cannot be opened.
+  // on_event runs in a middleware thread. Throws std::runtime_error if the port cannot be opened, or
+  // the key file is not valid.
   DiscoveryServer(const DiscoveryServerSettings& settings,
                   std::function<void(const DiscoveryServerEvent&)> on_event);
   ~DiscoveryServer();

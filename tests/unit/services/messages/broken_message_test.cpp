@@ -80,7 +80,7 @@ NodeSettings settings(const DomainLock& lock, const char* name) {
 class RawPeer {
  public:
   RawPeer(const DomainLock& lock, const std::string& topic, const std::string& type, Qos qos)
-      : session_(settings(lock, "raw"), Announcement(), nullptr) {
+      : session_(settings(lock, "raw"), Announcement(), std::make_shared<DatagramGuard>(), nullptr) {
     dds::Topic* const raw_topic = session_.topic("rt/kl1/" + topic, dds::TypeSupport(new RawType(type)));
     writer_ = session_.publisher->create_datawriter(raw_topic, writer_qos(qos, 0, 0, Transport::kUdp));
   }

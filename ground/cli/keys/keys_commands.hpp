@@ -1,0 +1,10 @@
+// The subcommands of `swiftlet keys`.
+#pragma once
+
+#include "swiftlet/ground/command_line/command.hpp"
+
+namespace swiftlet::ground {
+
+Command add_keys_network_command(runtime::CommandLine keys);
+
+}  // namespace swiftlet::ground

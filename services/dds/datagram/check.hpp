@@ -1,0 +1,57 @@
+// Checks a received RTPS datagram before the middleware parses it. Fast DDS trusts lengths, counts and numbers of a
+// datagram in many places, where it then asserts, allocates without bound or reads beyond the end.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "swiftlet/services/dds/datagram/rtps_ids.hpp"
+
+namespace swiftlet::comms {
+
+struct DatagramLimits {
+  // With DDS Security, participants sign or encrypt datagrams as a whole, and the security plugin checks these.
+  bool security = false;
+  // Discovery servers announce other participants than themselves.
+  bool discovery_servers = false;
+  std::uint32_t largest_sample_bytes = 1 << 20;  // of a sample sent in fragments
+};
+
+// A writer that a datagram names, with the newest sequence number that the datagram gives it.
+struct NumberedWriter {
+  EntityId entity{};
+  std::uint32_t newest = 0;
+};
+
+// The result of a check. Allocates nothing.
+struct CheckedDatagram {
+  // The broken rule with its section of the RTPS 2.5 specification, a string literal; nullptr if there is none. Only
+  // then the rest is valid.
+  const char* fault = nullptr;
+  GuidPrefix source{};
+  // Bytes to hand to the middleware: less than received if the datagram ends with a submessage that it must not see.
+  std::size_t length = 0;
+  bool about_participant = false;  // holds a DATA in which a participant announces itself, or says goodbye
+
+  static constexpr std::size_t kMostWriters = 32;
+  std::array<NumberedWriter, kMostWriters> writers{};
+  std::size_t writer_count = 0;
+
+  // Where parameters begin that the middleware must not parse: see hide_parameters().
+  static constexpr std::size_t kMostHidden = 8;
+  std::array<std::size_t, kMostHidden> hidden{};
+  std::size_t hidden_count = 0;
+};
+
+// Checks the header, the submessages with their elements, and the parameter lists of discovery.
+CheckedDatagram check_datagram(const std::uint8_t* data, std::size_t size, const DatagramLimits& limits);
+
+// Removes the statistics submessage that Fast DDS appends to a message that it sends.
+void remove_statistics(std::vector<std::uint8_t>& message);
+
+// Turns the hidden parameters into padding, which receivers skip (9.6.3.2). copy: of the datagram that was checked.
+void hide_parameters(const CheckedDatagram& checked, std::uint8_t* copy);
+
+}  // namespace swiftlet::comms

@@ -1,0 +1,43 @@
+#include "swiftlet/services/dds/datagram/datagram_guard.hpp"
+
+namespace swiftlet::comms {
+
+DatagramGuard::DatagramGuard(const runtime::NetworkKeys& keys, const DatagramLimits& limits)
+    : limits_(limits) {
+  if (keys.empty()) return;
+  sealer_.emplace(keys);
+  opener_.emplace(keys);
+}
+
+CheckedDatagram DatagramGuard::admit(const std::uint8_t* data, std::size_t size, const SenderAddress& sender,
+                                     std::uint32_t port, const Now& now) {
+  CheckedDatagram checked;
+  if (opener_) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    checked.fault = opener_->open(data, size, port, now.since_1970_ns);
+  }
+  if (checked.fault == nullptr) checked = check_datagram(data, opener_ ? size - kSealBytes : size, limits_);
+  if (checked.fault == nullptr) checked.fault = fault_of(checked, sender, now);
+  if (checked.fault != nullptr) refuse(sender, checked.fault);
+  return checked;
+}
+
+const char* DatagramGuard::fault_of(const CheckedDatagram& checked, const SenderAddress& sender,
+                                    const Now& now) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (std::size_t i = 0; i < checked.writer_count; ++i) {
+    const NumberedWriter& writer = checked.writers[i];
+    if (!sequences_.admit(checked.source, writer.entity, writer.newest, now.steady_ns))
+      return "sequence number that the writer cannot have reached (8.3.5.5)";
+  }
+  if (checked.about_participant && !participants_.admit(checked.source, sender, now.steady_ns))
+    return "more new participants than a host may announce";
+  return nullptr;
+}
+
+void DatagramGuard::seal(std::vector<std::uint8_t>& datagram, const Now& now) {
+  remove_statistics(datagram);
+  sealer_->seal(datagram, now.since_1970_ns);
+}
+
+}  // namespace swiftlet::comms

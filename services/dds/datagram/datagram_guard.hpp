@@ -1,0 +1,52 @@
+// Decides which received datagrams the middleware of a participant may parse.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "swiftlet/services/dds/datagram/check.hpp"
+#include "swiftlet/services/dds/datagram/datagram_seal.hpp"
+#include "swiftlet/services/dds/datagram/participant_admission.hpp"
+#include "swiftlet/services/dds/datagram/refusal_log.hpp"
+#include "swiftlet/services/dds/datagram/sequence_window.hpp"
+
+namespace swiftlet::comms {
+
+struct Now {
+  std::int64_t steady_ns = 0;      // of a monotonic clock
+  std::int64_t since_1970_ns = 0;  // of the clock that hosts share
+};
+
+// Thread-safe: shared by the transports of a participant and their receiving threads. Allocates only when constructed.
+class DatagramGuard {
+ public:
+  // keys: of the network; empty: datagrams are not sealed.
+  explicit DatagramGuard(const runtime::NetworkKeys& keys = {}, const DatagramLimits& limits = {});
+
+  // Counts a refusal; the result then has a fault. port: the local one.
+  CheckedDatagram admit(const std::uint8_t* data, std::size_t size, const SenderAddress& sender,
+                        std::uint32_t port, const Now& now);
+  void refuse(const SenderAddress& sender, const char* rule) { refusals_.note(sender, rule); }
+
+  bool seals() const { return sealer_.has_value(); }
+  // Turns a datagram of the middleware into a sealed one. Requires seals().
+  void seal(std::vector<std::uint8_t>& datagram, const Now& now);
+
+  RefusalLog& refusals() { return refusals_; }
+
+ private:
+  const char* fault_of(const CheckedDatagram& checked, const SenderAddress& sender, const Now& now);
+
+  const DatagramLimits limits_;
+  std::optional<DatagramSealer> sealer_;
+  RefusalLog refusals_;
+  std::mutex mutex_;  // guards the rest
+  std::optional<DatagramOpener> opener_;
+  SequenceWindow sequences_;
+  ParticipantAdmission participants_;
+};
+
+}  // namespace swiftlet::comms

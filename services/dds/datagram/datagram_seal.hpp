@@ -1,0 +1,68 @@
+// Authenticates datagrams with a shared key: a trailer that the sender appends and the receiver checks before anything is
+// parsed. It is a vendor-specific submessage, which receivers without the key skip (RTPS 2.5, 8.3.4.1).
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "swiftlet/io/network_key.hpp"
+#include "swiftlet/services/dds/datagram/rtps_ids.hpp"
+
+namespace swiftlet::comms {
+
+// Of the trailer. It replaces the statistics submessage of Fast DDS, which has the same size: the datagram does not grow.
+constexpr std::size_t kSealBytes = 60;
+// How much the clocks of two hosts may differ. A process that never heard a participant accepts a recording of it for this
+// long.
+constexpr std::int64_t kSealTolerance_ns = 30'000'000'000;
+
+// Appends trailers. Thread-safe.
+class DatagramSealer {
+ public:
+  explicit DatagramSealer(const runtime::NetworkKeys& keys);
+
+  // Appends the trailer to a datagram without one. now_ns: since 1970.
+  void seal(std::vector<std::uint8_t>& datagram, std::int64_t now_ns);
+
+ private:
+  const runtime::NetworkKey key_;
+  const std::uint32_t key_id_;
+  std::atomic<std::uint64_t> count_;
+};
+
+// Checks trailers. Allocates only when constructed. Not thread-safe.
+class DatagramOpener {
+ public:
+  explicit DatagramOpener(const runtime::NetworkKeys& keys);
+
+  // Returns the broken rule as a string literal, nullptr if the trailer is valid; the datagram is then kSealBytes shorter. A
+  // datagram is valid once on each port: port is the local one, because a participant may receive it on several.
+  const char* open(const std::uint8_t* data, std::size_t size, std::uint32_t port, std::int64_t now_ns);
+
+ private:
+  struct Key {
+    runtime::NetworkKey secret;
+    std::uint32_t id;
+  };
+  // What was received from a participant on a port.
+  struct Sender {
+    GuidPrefix participant{};
+    std::uint32_t port = 0;
+    std::int64_t heard_ns = 0;
+    std::uint64_t newest = 0;                 // count
+    std::array<std::uint64_t, 4> received{};  // a bit for each of the 256 counts up to the newest
+    bool take(std::uint64_t count);           // false if it was received, or is too old to know
+  };
+  static constexpr std::size_t kSenders = 2048;  // a power of two
+  static constexpr std::size_t kPlaces = 8;
+
+  Sender& sender(const std::uint8_t* participant, std::uint32_t port);
+
+  std::vector<Key> keys_;
+  std::vector<Sender> senders_;
+};
+
+}  // namespace swiftlet::comms

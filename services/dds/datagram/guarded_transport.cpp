@@ -1,0 +1,217 @@
+#include "swiftlet/services/dds/datagram/guarded_transport.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include <fastdds/rtps/network/SenderResource.h>
+#include <fastdds/rtps/transport/ChainingTransport.h>
+#include <fastdds/rtps/transport/TransportReceiverInterface.h>
+
+namespace swiftlet::comms {
+namespace {
+
+namespace transport = eprosima::fastdds::rtps;
+namespace rtps = eprosima::fastrtps::rtps;
+
+// All zeros for shared memory: its locators have no address of a host.
+SenderAddress address_of(const rtps::Locator_t& locator) {
+  SenderAddress address{};
+  if (locator.kind != LOCATOR_KIND_SHM) std::copy_n(locator.address, address.size(), address.begin());
+  return address;
+}
+
+Now now() {
+  return {std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1),
+          std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1)};
+}
+
+class GuardedTransport final : public transport::ChainingTransport {
+ public:
+  GuardedTransport(const transport::ChainingTransportDescriptor& descriptor,
+                   std::shared_ptr<DatagramGuard> guard)
+      : ChainingTransport(descriptor), guard_(std::move(guard)) {}
+
+  transport::TransportDescriptorInterface* get_configuration() override {
+    return low_level_transport_->get_configuration();
+  }
+  void shutdown() override { low_level_transport_->shutdown(); }
+
+  // ChainingTransport takes a port for open after an attempt to open it has failed, and after it was closed.
+  bool OpenInputChannel(const rtps::Locator_t& locator, transport::TransportReceiverInterface* next,
+                        std::uint32_t largest_message) override;
+  bool CloseInputChannel(const rtps::Locator_t& locator) override;
+
+  // The transport below recognizes the channels that it opened before only if they are not wrapped; it would open a
+  // second one and send everything twice.
+  bool OpenOutputChannel(transport::SendResourceList& channels, const rtps::Locator_t& locator) override;
+
+  bool send(rtps::SenderResource* below, const rtps::octet* data, std::uint32_t size,
+            rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
+            const std::chrono::steady_clock::time_point& deadline) override {
+    if (!guard_->seals()) return below->send(data, size, begin, end, deadline);
+    thread_local std::vector<rtps::octet> sealed(1
+                                                 << 16);  // allocates when a thread sends for the first time
+    sealed.assign(data, data + size);
+    guard_->seal(sealed, now());
+    return below->send(sealed.data(), static_cast<std::uint32_t>(sealed.size()), begin, end, deadline);
+  }
+
+  void receive(transport::TransportReceiverInterface* next, const rtps::octet* data, std::uint32_t size,
+               const rtps::Locator_t& local, const rtps::Locator_t& remote) override;
+
+ private:
+  // Receives from the transport below, for the next receiver.
+  class Receiver final : public transport::TransportReceiverInterface {
+   public:
+    Receiver(GuardedTransport& owner, TransportReceiverInterface* next) : owner_(owner), next_(next) {}
+    void OnDataReceived(const rtps::octet* data, std::uint32_t size, const rtps::Locator_t& local,
+                        const rtps::Locator_t& remote) override {
+      owner_.receive(next_, data, size, local, remote);
+    }
+
+   private:
+    GuardedTransport& owner_;
+    TransportReceiverInterface* const next_;
+  };
+
+  const std::shared_ptr<DatagramGuard> guard_;
+  std::mutex receivers_mutex_;
+  std::map<rtps::Locator_t, std::unique_ptr<Receiver>> receivers_;
+};
+
+// A channel of the transport below, through which a GuardedTransport sends.
+class GuardedChannel final : public rtps::SenderResource {
+ public:
+  GuardedChannel(GuardedTransport& owner, std::unique_ptr<rtps::SenderResource> below)
+      : SenderResource(owner.kind()), owner_(&owner), below_(std::move(below)) {
+    send_lambda_ = [this](const rtps::octet* data, std::uint32_t size, rtps::LocatorsIterator* begin,
+                          rtps::LocatorsIterator* end,
+                          const std::chrono::steady_clock::time_point& deadline) {
+      return owner_->send(below_.get(), data, size, begin, end, deadline);
+    };
+  }
+
+  void add_locators_to_list(rtps::LocatorList_t& locators) const override {
+    below_->add_locators_to_list(locators);
+  }
+  bool is_of(const GuardedTransport& owner) const { return owner_ == &owner; }
+  std::unique_ptr<rtps::SenderResource> take() { return std::move(below_); }
+
+ private:
+  GuardedTransport* const owner_;
+  std::unique_ptr<rtps::SenderResource> below_;
+};
+
+bool GuardedTransport::OpenOutputChannel(transport::SendResourceList& channels,
+                                         const rtps::Locator_t& locator) {
+  transport::SendResourceList below;
+  transport::SendResourceList others;
+  for (auto& channel : channels) {
+    auto* const guarded = dynamic_cast<GuardedChannel*>(channel.get());
+    if (guarded != nullptr && guarded->is_of(*this)) {
+      below.push_back(guarded->take());
+    } else {
+      others.push_back(std::move(channel));
+    }
+  }
+  const bool opened = low_level_transport_->OpenOutputChannel(below, locator);
+  channels = std::move(others);
+  for (auto& channel : below) channels.push_back(std::make_unique<GuardedChannel>(*this, std::move(channel)));
+  return opened;
+}
+
+bool GuardedTransport::OpenInputChannel(const rtps::Locator_t& locator,
+                                        transport::TransportReceiverInterface* next,
+                                        std::uint32_t largest_message) {
+  const std::lock_guard<std::mutex> lock(receivers_mutex_);
+  auto receiver = std::make_unique<Receiver>(*this, next);
+  if (!low_level_transport_->OpenInputChannel(locator, receiver.get(), largest_message)) return false;
+  receivers_[locator] = std::move(receiver);
+  return true;
+}
+
+bool GuardedTransport::CloseInputChannel(const rtps::Locator_t& locator) {
+  const bool closed = low_level_transport_->CloseInputChannel(locator);  // waits for the thread that receives
+  const std::lock_guard<std::mutex> lock(receivers_mutex_);
+  if (closed) receivers_.erase(locator);
+  return closed;
+}
+
+void GuardedTransport::receive(transport::TransportReceiverInterface* next, const rtps::octet* data,
+                               std::uint32_t size, const rtps::Locator_t& local,
+                               const rtps::Locator_t& remote) {
+  const SenderAddress sender = address_of(remote);
+  const CheckedDatagram checked = guard_->admit(data, size, sender, local.port, now());
+  if (checked.fault != nullptr) return;
+  try {
+    if (checked.hidden_count > 0) {  // only datagrams of discovery
+      std::vector<rtps::octet> copy(data, data + checked.length);
+      hide_parameters(checked, copy.data());
+      next->OnDataReceived(copy.data(), static_cast<std::uint32_t>(copy.size()), local, remote);
+    } else {
+      next->OnDataReceived(data, static_cast<std::uint32_t>(checked.length), local, remote);
+    }
+  } catch (const std::exception&) {
+    guard_->refuse(sender, "the middleware could not parse it");
+  }
+}
+
+// Leaves room for the seal, if the middleware does not.
+std::uint32_t message_size(std::uint32_t below, const DatagramGuard& guard) {
+  return below - (guard.seals() ? static_cast<std::uint32_t>(kSealBytes) : 0U);
+}
+
+struct GuardedUdp final : transport::ChainingTransportDescriptor {
+  std::uint32_t max_message_size() const override {
+    return message_size(low_level_descriptor->max_message_size(), *guard);
+  }
+  GuardedUdp(const transport::UDPv4TransportDescriptor& udp, std::shared_ptr<DatagramGuard> shared)
+      : ChainingTransportDescriptor(std::make_shared<transport::UDPv4TransportDescriptor>(udp)),
+        guard(std::move(shared)) {}
+  transport::TransportInterface* create_transport() const override {
+    return new GuardedTransport(*this, guard);
+  }
+
+  std::shared_ptr<DatagramGuard> guard;
+};
+
+// Not a ChainingTransportDescriptor: Fast DDS 2.9 ignores locators of shared memory unless it finds a descriptor of this
+// type.
+struct GuardedSharedMemory final : transport::SharedMemTransportDescriptor {
+  std::uint32_t max_message_size() const override {
+    return message_size(SharedMemTransportDescriptor::max_message_size(), *guard);
+  }
+  struct Chain final : transport::ChainingTransportDescriptor {
+    using ChainingTransportDescriptor::ChainingTransportDescriptor;
+    transport::TransportInterface* create_transport() const override { return nullptr; }
+  };
+
+  GuardedSharedMemory(const transport::SharedMemTransportDescriptor& shared_memory,
+                      std::shared_ptr<DatagramGuard> shared)
+      : SharedMemTransportDescriptor(shared_memory), guard(std::move(shared)) {}
+  transport::TransportInterface* create_transport() const override {
+    return new GuardedTransport(Chain(std::make_shared<transport::SharedMemTransportDescriptor>(*this)),
+                                guard);
+  }
+
+  std::shared_ptr<DatagramGuard> guard;
+};
+
+}  // namespace
+
+TransportDescriptor guarded(const transport::UDPv4TransportDescriptor& udp,
+                            std::shared_ptr<DatagramGuard> guard) {
+  return std::make_shared<GuardedUdp>(udp, std::move(guard));
+}
+
+TransportDescriptor guarded(const transport::SharedMemTransportDescriptor& shared_memory,
+                            std::shared_ptr<DatagramGuard> guard) {
+  return std::make_shared<GuardedSharedMemory>(shared_memory, std::move(guard));
+}
+
+}  // namespace swiftlet::comms

@@ -1,0 +1,22 @@
+// A transport of Fast DDS that checks each received datagram before the middleware parses it.
+#pragma once
+
+#include <memory>
+
+#include <fastdds/rtps/transport/TransportDescriptorInterface.h>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+
+#include "swiftlet/services/dds/datagram/datagram_guard.hpp"
+
+namespace swiftlet::comms {
+
+using TransportDescriptor = std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface>;
+
+// Descriptors of the transports with such a check in front. All transports of a participant share a guard.
+TransportDescriptor guarded(const eprosima::fastdds::rtps::UDPv4TransportDescriptor& udp,
+                            std::shared_ptr<DatagramGuard> guard);
+TransportDescriptor guarded(const eprosima::fastdds::rtps::SharedMemTransportDescriptor& shared_memory,
+                            std::shared_ptr<DatagramGuard> guard);
+
+}  // namespace swiftlet::comms

@@ -1,0 +1,40 @@
+// Checks of the parameter lists in DATA submessages: inline QoS, and what discovery sends about participants and
+// endpoints.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "swiftlet/services/dds/datagram/byte_reader.hpp"
+#include "swiftlet/services/dds/datagram/rtps_ids.hpp"
+
+namespace swiftlet::comms {
+
+// Parameters that the middleware must not parse: it reads type descriptions and filter expressions without bounds on
+// depth and size, and nothing here needs them.
+struct HiddenParameters {
+  static constexpr std::size_t kMost = 8;
+  std::array<const std::uint8_t*, kMost> at{};  // where each begins
+  std::size_t count = 0;
+};
+
+// Of the DATA that holds the list.
+struct ListContext {
+  GuidPrefix source{};  // of the datagram
+  BuiltinTopic topic = BuiltinTopic::kUser;
+  bool security = false;
+  bool relays = false;  // the source may announce other participants
+};
+
+// All return the broken rule as a string literal, nullptr if there is none.
+
+// Leaves `body` behind the list. names_key: set to true if it holds a key of the topic.
+const char* check_inline_qos(ByteReader& body, const ListContext& context, bool& names_key);
+// Of the topics kParticipant and kEndpoint. key_only: the payload names what is gone, and holds no more.
+const char* check_discovery_payload(ByteReader payload, const ListContext& context, bool key_only,
+                                    HiddenParameters& hidden);
+// Of the topic kLiveliness.
+const char* check_liveliness_payload(ByteReader payload, const ListContext& context);
+
+}  // namespace swiftlet::comms

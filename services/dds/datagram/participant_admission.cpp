@@ -1,0 +1,47 @@
+#include "swiftlet/services/dds/datagram/participant_admission.hpp"
+
+namespace swiftlet::comms {
+namespace {
+
+constexpr double kBurstOfHost = 256.0;
+constexpr double kRateOfHost = 4.0;  // 1/s
+constexpr double kBurstOfAll = 512.0;
+constexpr double kRateOfAll = 16.0;  // 1/s
+constexpr std::size_t kHosts = 64;
+
+// Entries that were never used have been silent longest.
+template <class T>
+T& longest_silent(std::vector<T>& all) {
+  return *std::min_element(all.begin(), all.end(),
+                           [](const T& a, const T& b) { return a.heard_ns < b.heard_ns; });
+}
+
+}  // namespace
+
+ParticipantAdmission::ParticipantAdmission()
+    : known_(kMostParticipants), hosts_(kHosts), all_(kBurstOfAll, kRateOfAll) {}
+
+bool ParticipantAdmission::admit(const GuidPrefix& participant, const SenderAddress& address,
+                                 std::int64_t now_ns) {
+  const auto known = std::find_if(known_.begin(), known_.end(),
+                                  [&](const Known& other) { return other.participant == participant; });
+  if (known != known_.end()) {
+    known->heard_ns = now_ns;
+    return true;
+  }
+  if (!host(address, now_ns).tokens.take(now_ns) || !all_.take(now_ns)) return false;
+  longest_silent(known_) = {participant, now_ns};
+  return true;
+}
+
+ParticipantAdmission::Host& ParticipantAdmission::host(const SenderAddress& address, std::int64_t now_ns) {
+  const auto known = std::find_if(hosts_.begin(), hosts_.end(), [&](const Host& other) {
+    return other.heard_ns > 0 && other.address == address;
+  });
+  Host& host = known != hosts_.end() ? *known : longest_silent(hosts_);
+  if (known == hosts_.end()) host = {address, 0, TokenBucket(kBurstOfHost, kRateOfHost)};
+  host.heard_ns = now_ns;
+  return host;
+}
+
+}  // namespace swiftlet::comms

@@ -1,0 +1,70 @@
+// Bounds how fast unknown participants may join. Each one costs memory until its lease ends.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "swiftlet/services/dds/datagram/rtps_ids.hpp"
+
+namespace swiftlet::comms {
+
+// Participants that a process knows at the same time, itself included.
+constexpr std::size_t kMostParticipants = 512;
+
+// Full at the start; some more tokens each second.
+class TokenBucket {
+ public:
+  TokenBucket() = default;
+  TokenBucket(double size, double per_second) : tokens_(size), size_(size), per_second_(per_second) {}
+
+  // Returns false if it is empty. now_ns: of a monotonic clock.
+  bool take(std::int64_t now_ns) {
+    if (last_ns_ != 0)
+      tokens_ = std::min(size_, tokens_ + static_cast<double>(now_ns - last_ns_) * 1e-9 * per_second_);
+    last_ns_ = now_ns;
+    if (tokens_ < 1.0) return false;
+    tokens_ -= 1.0;
+    return true;
+  }
+
+ private:
+  double tokens_ = 0.0;
+  double size_ = 0.0;
+  double per_second_ = 0.0;
+  std::int64_t last_ns_ = 0;
+};
+
+// Of a host: an IPv4 or IPv6 address as in a locator.
+using SenderAddress = std::array<std::uint8_t, 16>;
+
+// Each host may announce 256 participants at once, and 4 more each second; all hosts together 512, and 16. Allocates
+// only when constructed. Not thread-safe.
+class ParticipantAdmission {
+ public:
+  ParticipantAdmission();
+
+  // True if the participant was admitted before, or may join now. now_ns: of a monotonic clock.
+  bool admit(const GuidPrefix& participant, const SenderAddress& host, std::int64_t now_ns);
+
+ private:
+  struct Known {
+    GuidPrefix participant{};
+    std::int64_t heard_ns = 0;
+  };
+  struct Host {
+    SenderAddress address{};
+    std::int64_t heard_ns = 0;
+    TokenBucket tokens;
+  };
+
+  Host& host(const SenderAddress& address, std::int64_t now_ns);
+
+  std::vector<Known> known_;  // the longest silent one is replaced
+  std::vector<Host> hosts_;
+  TokenBucket all_;
+};
+
+}  // namespace swiftlet::comms

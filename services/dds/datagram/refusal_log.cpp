@@ -1,0 +1,55 @@
+#include "swiftlet/services/dds/datagram/refusal_log.hpp"
+
+#include <algorithm>
+#include <arpa/inet.h>
+#include <string>
+
+#include <spdlog/spdlog.h>
+
+namespace swiftlet::comms {
+namespace {
+
+// Of a locator: an IPv4 address is in the last four bytes. All zeros: shared memory, which has no address.
+std::string text_of(const SenderAddress& address) {
+  const bool is_ipv4 =
+      std::all_of(address.begin(), address.begin() + 12, [](std::uint8_t byte) { return byte == 0; });
+  if (address == SenderAddress{}) return "this host";
+  char text[INET6_ADDRSTRLEN] = {};
+  ::inet_ntop(is_ipv4 ? AF_INET : AF_INET6, is_ipv4 ? address.data() + 12 : address.data(), text,
+              sizeof text);
+  return text;
+}
+
+}  // namespace
+
+void RefusalLog::note(const SenderAddress& address, const char* rule) {
+  ++total_;
+  const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
+  if (!lock) return;
+  auto sender = std::find_if(senders_.begin(), senders_.end() - 1, [&](const Sender& other) {
+    return other.last_rule == nullptr || other.address == address;
+  });
+  sender->address = address;
+  sender->last_rule = rule;
+  ++sender->refused;
+}
+
+void RefusalLog::write_due(std::chrono::steady_clock::time_point now) {
+  std::array<Sender, kSenders> due{};
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (std::size_t i = 0; i < kSenders; ++i) {
+      if (senders_[i].refused == 0 || now < senders_[i].next_line) continue;
+      due[i] = senders_[i];
+      senders_[i].refused = 0;
+      senders_[i].next_line = now + kRefusalLogPeriod;
+    }
+  }
+  for (const Sender& sender : due) {
+    if (sender.refused == 0) continue;
+    spdlog::warn("refused {} datagram{} from {}; the last: {}", sender.refused,
+                 sender.refused == 1 ? "" : "s", text_of(sender.address), sender.last_rule);
+  }
+}
+
+}  // namespace swiftlet::comms

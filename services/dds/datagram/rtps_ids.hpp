@@ -1,0 +1,34 @@
+// Identifiers of RTPS as bytes on the wire: participants, their endpoints, and the built-in topics of discovery.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+namespace swiftlet::comms {
+
+using GuidPrefix = std::array<std::uint8_t, 12>;  // of a participant
+using EntityId = std::array<std::uint8_t, 4>;     // of one of its endpoints
+
+// By the prefixes that ROS 2 gives to discovery servers: 44.53.N.5f.45.50.52.4f.53.49.4d.41.
+bool is_discovery_server(const GuidPrefix& participant);
+
+constexpr EntityId kUnknownEntity{};
+constexpr EntityId kParticipantEntity{0x00, 0x00, 0x01, 0xc1};
+
+// What a DATA submessage is about (9.3.1.3, 9.6.3).
+enum class BuiltinTopic {
+  kUser,         // a topic of the application
+  kParticipant,  // SPDP: a participant announces itself
+  kEndpoint,     // SEDP: a participant announces a writer or reader
+  kLiveliness,   // a participant asserts that it is alive
+  kSecurity,     // handshake and keys of DDS Security
+};
+
+// By the kind in the last byte (9.3.1.2). The readers of Fast DDS accept samples of a writer without a kind from anyone.
+bool is_writer(const EntityId& entity);
+
+// nullopt: no writer, a built-in writer that is unknown, or one that does not belong to the reader.
+std::optional<BuiltinTopic> topic_of(const EntityId& reader, const EntityId& writer);
+
+}  // namespace swiftlet::comms

@@ -1,0 +1,56 @@
+#include "swiftlet/services/dds/datagram/sequence_window.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace swiftlet::comms {
+namespace {
+
+constexpr double kFirstInterval_ns = 50e3;  // of a writer that was heard once
+constexpr double kAveraging = 1.0 / 8.0;    // weight of the newest interval
+constexpr double kRateMargin = 4.0;
+
+std::size_t hash(const GuidPrefix& participant, const EntityId& entity) {
+  std::uint64_t words[2];
+  std::memcpy(words, participant.data(), 8);
+  std::memcpy(words + 1, participant.data() + 8, 4);
+  std::memcpy(reinterpret_cast<unsigned char*>(words + 1) + 4, entity.data(), 4);
+  std::uint64_t mixed = (words[0] ^ (words[1] * 0x9e3779b97f4a7c15U)) * 0xff51afd7ed558ccdU;
+  mixed ^= mixed >> 32U;
+  return static_cast<std::size_t>(mixed);
+}
+
+}  // namespace
+
+bool SequenceWindow::Writer::admit(std::uint32_t number, std::int64_t now_ns) {
+  if (number <= newest) return true;
+  const std::uint32_t ahead = number - newest;
+  const auto passed_ns = static_cast<double>(now_ns - heard_ns);
+  if (ahead > kSampleBurst + kRateMargin * passed_ns / interval_ns) {
+    agreeing = number >= refused && number - refused <= kSampleBurst ? agreeing + 1 : 1;
+    refused = number;
+    if (agreeing < kAgreeingDatagrams) return false;
+  } else {
+    interval_ns += kAveraging * (passed_ns / ahead - interval_ns);
+    interval_ns = std::max(interval_ns, kFirstInterval_ns);
+  }
+  newest = number;
+  heard_ns = now_ns;
+  agreeing = 0;
+  return true;
+}
+
+bool SequenceWindow::admit(const GuidPrefix& participant, const EntityId& entity, std::uint32_t number,
+                           std::int64_t now_ns) {
+  const std::size_t first = hash(participant, entity);
+  Writer* longest_silent = nullptr;
+  for (std::size_t i = 0; i < kPlaces; ++i) {
+    Writer& writer = writers_[(first + i) & (kWriters - 1)];
+    if (writer.entity == entity && writer.participant == participant) return writer.admit(number, now_ns);
+    if (longest_silent == nullptr || writer.heard_ns < longest_silent->heard_ns) longest_silent = &writer;
+  }
+  *longest_silent = {participant, entity, number, now_ns, kFirstInterval_ns, 0, 0};
+  return true;
+}
+
+}  // namespace swiftlet::comms

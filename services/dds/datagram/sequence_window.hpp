@@ -1,0 +1,48 @@
+// Refuses sequence numbers that a writer cannot have reached yet. A reader ignores all samples below the highest number
+// that it has seen: one changed bit in a copied datagram would silence a stream.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "swiftlet/services/dds/datagram/rtps_ids.hpp"
+
+namespace swiftlet::comms {
+
+// A writer may be ahead of its newest number by this many samples, and by four times as many as it sent at its usual rate
+// since then.
+constexpr std::uint32_t kSampleBurst = 8;
+// As many datagrams in a row with numbers that are beyond, but agree with each other, show that the writer is there.
+constexpr int kAgreeingDatagrams = 4;
+
+// Remembers a fixed number of writers; beyond that, it forgets writers that have been silent for long. Allocates only when
+// constructed. Not thread-safe.
+class SequenceWindow {
+ public:
+  SequenceWindow() : writers_(kWriters) {}
+
+  // Returns whether the writer may have this number now, and remembers it. now_ns: of a monotonic clock.
+  bool admit(const GuidPrefix& participant, const EntityId& entity, std::uint32_t number,
+             std::int64_t now_ns);
+
+ private:
+  static constexpr std::size_t kWriters = 4096;  // a power of two
+  static constexpr std::size_t kPlaces = 8;      // in which a writer may be stored
+
+  struct Writer {
+    GuidPrefix participant{};
+    EntityId entity{};
+    std::uint32_t newest = 0;
+    std::int64_t heard_ns = 0;
+    double interval_ns = 0.0;   // between samples, a moving average
+    std::uint32_t refused = 0;  // the last refused number
+    int agreeing = 0;           // refused numbers in a row that agree with each other
+
+    bool admit(std::uint32_t number, std::int64_t now_ns);
+  };
+
+  std::vector<Writer> writers_;
+};
+
+}  // namespace swiftlet::comms

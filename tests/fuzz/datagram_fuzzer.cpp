@@ -1,0 +1,30 @@
+// Fuzzes the check of received datagrams. The first byte switches security on.
+#include <algorithm>
+#include <vector>
+
+#include "swiftlet/services/dds/datagram/check.hpp"
+#include "swiftlet/services/dds/datagram/datagram_guard.hpp"
+#include "tests/fuzz/refusal.hpp"
+
+using namespace swiftlet;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  comms::DatagramLimits limits;
+  limits.security = *data % 2 == 1;
+  const std::vector<std::uint8_t> datagram(data + 1, data + size);
+  const comms::CheckedDatagram checked = comms::check_datagram(datagram.data(), datagram.size(), limits);
+  static comms::DatagramGuard guard;
+  guard.admit(datagram.data(), datagram.size(), {}, 7411, {1, 1});
+  if (checked.fault != nullptr) return 0;
+  tests::demand(checked.length <= datagram.size(), "the middleware gets no more than was received");
+  std::vector<std::uint8_t> copy(datagram.begin(),
+                                 datagram.begin() + static_cast<std::ptrdiff_t>(checked.length));
+  for (std::size_t i = 0; i < checked.hidden_count; ++i)
+    tests::demand(checked.hidden[i] + 4 <= copy.size(), "a hidden parameter is in the datagram");
+  comms::hide_parameters(checked, copy.data());
+  if (copy.size() <= 20) return 0;  // it held nothing but what the middleware must not see
+  const comms::CheckedDatagram again = comms::check_datagram(copy.data(), copy.size(), limits);
+  tests::demand(again.fault == nullptr && again.hidden_count == 0, "what the middleware gets is valid");
+  return 0;
+}

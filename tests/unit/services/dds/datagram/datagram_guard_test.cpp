@@ -1,0 +1,183 @@
+#include "swiftlet/services/dds/datagram/datagram_guard.hpp"
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/rtps_message.hpp"
+
+namespace swiftlet::comms::tests {
+namespace {
+
+using namespace swiftlet::tests;
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr SenderAddress kHost{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 10, 0, 0, 1};
+constexpr SenderAddress kOtherHost{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 10, 0, 0, 2};
+
+RtpsMessage sample(std::uint32_t number, const GuidPrefix& source = kAlice) {
+  return RtpsMessage(source).add(0x15, 4, data_fields(kUserReader, kUserWriter, number).u32(0x0100).u32(0));
+}
+
+bool admits(DatagramGuard& guard, const RtpsMessage& message, std::int64_t now_ns,
+            const SenderAddress& host = kHost) {
+  return guard.admit(message.bytes().data(), message.bytes().size(), host, 7411, {now_ns, now_ns}).fault ==
+         nullptr;
+}
+
+GuidPrefix numbered_participant(std::uint32_t number) {
+  GuidPrefix prefix = kAlice;
+  for (std::size_t i = 0; i < 4; ++i) prefix[i + 4] = static_cast<std::uint8_t>(number >> (8 * i));
+  return prefix;
+}
+RtpsMessage newcomer(std::uint32_t number) {
+  const GuidPrefix prefix = numbered_participant(number);
+  return announcement(prefix, participant_parameters(prefix));
+}
+
+TEST(DatagramGuard, RefusesNumbersThatAWriterCannotHaveReached) {
+  DatagramGuard guard;
+  std::int64_t now_ns = kSecond_ns;
+  for (std::uint32_t number = 1000; number < 1100; ++number, now_ns += 2'000'000)
+    EXPECT_TRUE(admits(guard, sample(number), now_ns));
+  EXPECT_FALSE(admits(guard, sample(1100 + (1U << 20U)), now_ns)) << "a changed bit";
+  EXPECT_TRUE(admits(guard, sample(1100), now_ns)) << "and the stream goes on";
+  EXPECT_TRUE(admits(guard, sample(1050), now_ns)) << "sent again";
+  EXPECT_TRUE(admits(guard, sample(1100 + 5000), now_ns + 5 * kSecond_ns))
+      << "after 5 s without contact, at 1 kHz";
+  EXPECT_TRUE(admits(guard, sample(7, kBob), now_ns)) << "another writer";
+  EXPECT_EQ(guard.refusals().total(), 1U);
+}
+
+TEST(DatagramGuard, FollowsAWriterThatIsReallyAhead) {
+  DatagramGuard guard;
+  for (std::uint32_t number = 1; number <= 20; ++number)
+    EXPECT_TRUE(admits(guard, sample(number), number * kSecond_ns));
+  for (std::uint32_t number = 1001; number < 1004; ++number)
+    EXPECT_FALSE(admits(guard, sample(number), 21 * kSecond_ns)) << number;
+  EXPECT_TRUE(admits(guard, sample(1004), 21 * kSecond_ns));
+  EXPECT_TRUE(admits(guard, sample(1005), 21 * kSecond_ns));
+}
+
+TEST(DatagramGuard, RemembersABusyWriterAmongManyForgedOnes) {
+  DatagramGuard guard;
+  std::int64_t now_ns = kSecond_ns;
+  for (std::uint32_t i = 1; i < 100'000; ++i, now_ns += 100'000) {
+    EXPECT_TRUE(admits(guard, sample(1, numbered_participant(i)), now_ns));
+    if (i % 20 == 0) {
+      EXPECT_TRUE(admits(guard, sample(i / 20), now_ns));
+    }
+  }
+  EXPECT_FALSE(admits(guard, sample(1U << 30U), now_ns));
+}
+
+TEST(DatagramGuard, BoundsTheParticipantsThatAHostAnnounces) {
+  DatagramGuard guard;
+  std::uint32_t admitted = 0;
+  for (std::uint32_t i = 1; i <= 10'000; ++i) admitted += admits(guard, newcomer(i), kSecond_ns) ? 1U : 0U;
+  EXPECT_EQ(admitted, 256U);
+  EXPECT_TRUE(admits(guard, newcomer(256), kSecond_ns)) << "that is known already";
+  EXPECT_TRUE(admits(guard, newcomer(20'000), kSecond_ns, kOtherHost));
+  EXPECT_TRUE(admits(guard, newcomer(20'001), 2 * kSecond_ns)) << "later";
+}
+
+TEST(DatagramGuard, BoundsTheParticipantsOfAllHostsTogether) {
+  DatagramGuard guard;
+  std::uint32_t admitted = 0;
+  for (std::uint32_t i = 1; i <= 10'000; ++i) {
+    SenderAddress host = kHost;
+    host[14] = static_cast<std::uint8_t>(i >> 8U);
+    host[15] = static_cast<std::uint8_t>(i);
+    admitted += admits(guard, newcomer(i), kSecond_ns, host) ? 1U : 0U;
+  }
+  EXPECT_EQ(admitted, kMostParticipants);
+}
+
+// What a receiver with these keys says of a sealed datagram, "" if it accepts it.
+std::string fault_of(DatagramGuard& guard, const Bytes& datagram, std::int64_t now_ns,
+                     std::uint32_t port = 7411) {
+  const char* const fault =
+      guard.admit(datagram.data(), datagram.size(), kHost, port, {now_ns, now_ns}).fault;
+  return fault == nullptr ? "" : fault;
+}
+
+Bytes sealed(const runtime::NetworkKeys& keys, const RtpsMessage& message, std::int64_t now_ns) {
+  DatagramGuard sender(keys);
+  Bytes datagram = message.bytes();
+  sender.seal(datagram, {now_ns, now_ns});
+  return datagram;
+}
+
+const runtime::NetworkKey kOldKey{1};
+const runtime::NetworkKey kNewKey{2};
+
+TEST(Seal, IsAcceptedOnceOnEachPort) {
+  DatagramGuard guard({kOldKey});
+  const Bytes datagram = sealed({kOldKey}, sample(1), kSecond_ns);
+  EXPECT_EQ(fault_of(guard, datagram, kSecond_ns), "");
+  EXPECT_EQ(fault_of(guard, datagram, kSecond_ns), "received before");
+  EXPECT_EQ(fault_of(guard, datagram, kSecond_ns, 7000), "") << "of a reader with a port of its own";
+}
+
+TEST(Seal, IsAcceptedInAnyOrder) {
+  DatagramGuard sender({kOldKey});
+  DatagramGuard guard({kOldKey});
+  std::vector<Bytes> datagrams(300, sample(1).bytes());
+  for (Bytes& datagram : datagrams) sender.seal(datagram, {kSecond_ns, kSecond_ns});
+  EXPECT_EQ(fault_of(guard, datagrams[100], kSecond_ns), "");
+  EXPECT_EQ(fault_of(guard, datagrams[7], kSecond_ns), "");
+  EXPECT_EQ(fault_of(guard, datagrams[7], kSecond_ns), "received before");
+  EXPECT_EQ(fault_of(guard, datagrams[299], kSecond_ns), "");
+  EXPECT_EQ(fault_of(guard, datagrams[100], kSecond_ns), "received before");
+  EXPECT_EQ(fault_of(guard, datagrams[44], kSecond_ns), "");
+  EXPECT_EQ(fault_of(guard, datagrams[43], kSecond_ns), "received before") << "too old to know";
+}
+
+TEST(Seal, RefusesWhoHasNotTheKey) {
+  DatagramGuard guard({kOldKey});
+  EXPECT_EQ(fault_of(guard, sample(1).bytes(), kSecond_ns), "not sealed with a network key");
+  EXPECT_EQ(fault_of(guard, sealed({kNewKey}, sample(1), kSecond_ns), kSecond_ns),
+            "sealed with another network key");
+  const Bytes datagram = sealed({kOldKey}, sample(1), kSecond_ns);
+  for (std::size_t at = 20; at < datagram.size() - 20; ++at) {
+    Bytes changed = datagram;
+    changed[at] ^= 1U;
+    EXPECT_NE(fault_of(guard, changed, kSecond_ns), "") << at;
+  }
+  EXPECT_EQ(fault_of(guard, datagram, kSecond_ns), "") << "forgeries do not use up its number";
+}
+
+TEST(Seal, RefusesRecordings) {
+  DatagramGuard guard({kOldKey});
+  EXPECT_NE(fault_of(guard, sealed({kOldKey}, sample(1), kSecond_ns), 40 * kSecond_ns), "");
+  EXPECT_NE(fault_of(guard, sealed({kOldKey}, sample(1), 80 * kSecond_ns), 40 * kSecond_ns), "");
+  EXPECT_EQ(fault_of(guard, sealed({kOldKey}, sample(1), 43 * kSecond_ns), 40 * kSecond_ns), "")
+      << "a clock 3 s ahead";
+}
+
+TEST(Seal, AcceptsTwoKeysWhileOneIsExchanged) {
+  DatagramGuard before({kOldKey});
+  DatagramGuard first_step({kOldKey, kNewKey});
+  DatagramGuard second_step({kNewKey, kOldKey});
+  DatagramGuard after({kNewKey});
+  const Bytes old_one = sealed({kOldKey, kNewKey}, sample(1), kSecond_ns);
+  const Bytes new_one = sealed({kNewKey, kOldKey}, sample(1), kSecond_ns);
+  EXPECT_EQ(fault_of(before, old_one, kSecond_ns), "");
+  EXPECT_EQ(fault_of(first_step, old_one, kSecond_ns), "");
+  EXPECT_EQ(fault_of(first_step, new_one, kSecond_ns), "");
+  EXPECT_EQ(fault_of(second_step, old_one, kSecond_ns), "");
+  EXPECT_EQ(fault_of(after, new_one, kSecond_ns), "");
+  EXPECT_NE(fault_of(after, old_one, kSecond_ns), "");
+}
+
+TEST(Seal, ReplacesTheStatisticsSubmessage) {
+  const RtpsMessage with =
+      RtpsMessage().add(0x07, 0, ByteWriter().zeros(4)).add(0x80, 0, ByteWriter().zeros(56));
+  EXPECT_EQ(sealed({kOldKey}, with, kSecond_ns).size(), with.bytes().size());
+  const RtpsMessage without = RtpsMessage().add(0x07, 0, ByteWriter().zeros(80));
+  EXPECT_EQ(sealed({kOldKey}, without, kSecond_ns).size(), without.bytes().size() + kSealBytes);
+}
+
+}  // namespace
+}  // namespace swiftlet::comms::tests
