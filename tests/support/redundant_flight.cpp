@@ -31,8 +31,11 @@ double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 }  // namespace
 
-RedundantFlight::RedundantFlight(const std::filesystem::path& folder, std::vector<std::string> plant_options)
+RedundantFlight::RedundantFlight(const std::filesystem::path& folder, std::vector<std::string> plant_options,
+                                 const comms::NodeSettings& network_settings)
     : folder_(folder),
+      transport_(network_settings.transport),
+      network_key_file_(network_settings.network_key_file),
       plant_(
           "swiftlet-plant",
           [&] {
@@ -64,13 +67,19 @@ RedundantFlight::RedundantFlight(const std::filesystem::path& folder, std::vecto
 }
 
 std::vector<std::string> RedundantFlight::network() const {
-  return {"--domain", std::to_string(lock_.domain()), "--localhost-only"};
+  const char* const transport = transport_ == comms::Transport::kSharedMemory ? "shm" : "udp";
+  std::vector<std::string> words = {"--domain", std::to_string(lock_.domain()), "--localhost-only",
+                                    "--transport", transport};
+  if (!network_key_file_.empty()) words.insert(words.end(), {"--network-key", network_key_file_});
+  return words;
 }
 
 comms::NodeSettings RedundantFlight::node_settings(const char* name) const {
   comms::NodeSettings settings;
   settings.name = name;
   settings.domain = lock_.domain();
+  settings.transport = transport_;
+  settings.network_key_file = network_key_file_;
   settings.localhost_only = true;
   return settings;
 }

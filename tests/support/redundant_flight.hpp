@@ -38,8 +38,9 @@ struct FlightMetrics {
 
 class RedundantFlight {
  public:
-  // Starts plant and mocap. Programs write their output into the folder.
-  explicit RedundantFlight(const std::filesystem::path& folder, std::vector<std::string> plant_options = {});
+  // Starts plant and mocap. Programs write their output into the folder. network: transport and key of all.
+  explicit RedundantFlight(const std::filesystem::path& folder, std::vector<std::string> plant_options = {},
+                           const comms::NodeSettings& network = {});
 
   // Starts a controller and waits for its state. Throws std::runtime_error if none arrives.
   Controller& start_controller(int failover_priority);
@@ -52,6 +53,8 @@ class RedundantFlight {
   void stop_time();
   void resume_time();
   const std::vector<std::unique_ptr<Controller>>& controllers() const { return controllers_; }
+  const Program& plant() const { return plant_; }
+  const Program& mocap() const { return mocap_; }
 
   // By the controller_state messages of the last 0.5 s.
   int active_count() const;
@@ -93,6 +96,8 @@ class RedundantFlight {
 
   comms::DomainLock lock_;
   std::filesystem::path folder_;
+  const comms::Transport transport_;
+  const std::string network_key_file_;
   Program plant_, mocap_;
   std::vector<std::unique_ptr<Controller>> controllers_;
 
