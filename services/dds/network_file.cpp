@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "swiftlet/io/config.hpp"
+#include "swiftlet/io/network_key.hpp"
 #include "swiftlet/io/text_file.hpp"
 #include "swiftlet/services/dds/discovery/discovery_servers.hpp"
 #include "swiftlet/services/dds/discovery/host_address.hpp"
@@ -59,6 +60,10 @@ void read_discovery(const ConfigNode& root, NodeSettings& settings) {
     settings.network.discovery_servers = joined(texts(*servers, kMaxDiscoveryServers, fault_of_host_address));
 }
 
+std::string path_beside(const ConfigNode& file) {
+  return std::filesystem::path(file.file()).parent_path() / file.text();
+}
+
 void read(const ConfigNode& root, NodeSettings& settings) {
   read_discovery(root, settings);
   if (const auto interfaces = root.find("interfaces")) {
@@ -68,8 +73,11 @@ void read(const ConfigNode& root, NodeSettings& settings) {
   if (const auto transport = root.find("transport"))
     settings.transport =
         transport->choice<Transport>({{"udp", Transport::kUdp}, {"shm", Transport::kSharedMemory}});
-  if (const auto profile = root.find("dds_profile"))
-    settings.network.dds_profile = std::filesystem::path(root.file()).parent_path() / profile->text();
+  if (const auto profile = root.find("dds_profile")) settings.network.dds_profile = path_beside(*profile);
+  if (const auto key = root.find("network_key")) {
+    settings.network_key_file = path_beside(*key);
+    runtime::read_network_keys(settings.network_key_file);  // throws for an invalid one
+  }
 }
 
 }  // namespace

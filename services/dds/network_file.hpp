@@ -3,6 +3,7 @@
 //   interfaces: [eth0]
 //   transport: udp                      # or shm
 //   dds_profile: profile.xml            # relative to this file
+//   network_key: lab.key                # relative to this file
 #pragma once
 
 #include <string>

@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/io/network_key.hpp"
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace swiftlet::comms {
 namespace {
@@ -35,6 +37,16 @@ TEST(NetworkFile, SetsWhatItHas) {
   EXPECT_EQ(applied("discovery_servers: [lab1, lab2:11812]\n").network.discovery_servers, "lab1;lab2:11812");
   EXPECT_TRUE(applied("localhost_only: true\n").localhost_only);
   EXPECT_EQ(applied("interfaces: [lo]\n", peers).network.peers, peers.network.peers);
+}
+
+TEST(NetworkFile, NamesAValidNetworkKey) {
+  const swiftlet::tests::TemporaryFolder folder;
+  runtime::write_network_keys(folder.path() / "lab.key", {runtime::random_network_key()});
+  NodeSettings settings;
+  apply_network_file("network_key: lab.key\n", folder.path() / "network.yaml", settings);
+  EXPECT_EQ(settings.network_key_file, folder.path() / "lab.key");
+  EXPECT_EQ(refusal("network_key: none.key\n"),
+            "/etc/swiftlet/none.key: cannot be read: No such file or directory");
 }
 
 TEST(NetworkFile, ReplacesAnotherWayOfDiscovery) {
