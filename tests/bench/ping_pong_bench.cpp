@@ -103,10 +103,11 @@ class BarePair final : private dds::DataReaderListener {
     settings.localhost_only = true;
     const int sent_deadline_ms = options.no_deadline ? 0 : sent.deadline_ms;
     const int received_deadline_ms = options.no_deadline ? 0 : received.deadline_ms;
-    participant_ =
-        require_created(dds::DomainParticipantFactory::get_instance()->create_participant(
-                            static_cast<std::uint32_t>(domain), comms::participant_qos(settings, kProcesses)),
-                        "participant");
+    participant_ = require_created(
+        dds::DomainParticipantFactory::get_instance()->create_participant(
+            static_cast<std::uint32_t>(domain),
+            comms::participant_qos(settings, kProcesses, std::make_shared<comms::DatagramGuard>())),
+        "participant");
     auto* const publisher =
         require_created(participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT), "publisher");
     auto* const subscriber =

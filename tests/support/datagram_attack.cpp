@@ -78,7 +78,7 @@ void DatagramCapture::run() {
 }
 
 void DatagramCapture::keep(const std::uint8_t* packet, std::size_t size) {
-  const std::size_t ip_header = (packet[0] & 0x0fU) * 4U;
+  const std::size_t ip_header = std::size_t{4} * (packet[0] & 0x0fU);
   const std::size_t before = ip_header + kUdpHeaderBytes;
   if (size < before + kRtpsHeaderBytes || packet[9] != IPPROTO_UDP ||
       std::memcmp(packet + before, "RTPS", 4) != 0)

@@ -35,7 +35,12 @@ ByteWriter payload(ByteWriter fields, std::size_t bytes = 32) { return fields.u3
 
 ByteWriter number_set(std::uint32_t base, std::uint32_t bits) {
   ByteWriter out;
-  out.bytes(kUserReader).bytes(kUserWriter).number(0, base).u32(bits).zeros((bits + 31) / 32 * 4).u32(1);
+  out.bytes(kUserReader)
+      .bytes(kUserWriter)
+      .number(0, base)
+      .u32(bits)
+      .zeros(std::size_t{4} * ((bits + 31) / 32))
+      .u32(1);
   return out;
 }
 
