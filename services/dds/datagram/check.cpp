@@ -110,7 +110,7 @@ class DatagramCheck {
   const char* check_payload(Submessage& submessage, const ListContext& context, bool names_key);
   const char* check_data_frag(Submessage& submessage);
   const char* check_fragments(ByteReader& body, std::uint64_t& payload_bytes);
-  const char* note(const EntityId& writer, std::uint32_t newest);
+  const char* note(const EntityId& writer, std::uint32_t number);
 
   const std::uint8_t* begin_;
   const DatagramLimits& limits_;
@@ -188,17 +188,19 @@ const char* DatagramCheck::check_body(Submessage& submessage) {
   return nullptr;  // receivers skip other kinds (8.3.4.1)
 }
 
-const char* DatagramCheck::note(const EntityId& writer, std::uint32_t newest) {
+const char* DatagramCheck::note(const EntityId& writer, std::uint32_t number) {
   if (!is_writer(writer)) return "submessage of a writer that is none (9.3.1.2)";
+  if (is_builtin(writer) && writer != kParticipantWriter)
+    return nullptr;  // reliable: no number makes a reader ignore samples
   auto* const end = result_.writers.begin() + result_.writer_count;
   auto* const known = std::find_if(result_.writers.begin(), end,
                                    [&](const NumberedWriter& other) { return other.entity == writer; });
   if (known != end) {
-    known->newest = std::max(known->newest, newest);
+    known->number = std::max(known->number, number);
     return nullptr;
   }
   if (result_.writer_count == CheckedDatagram::kMostWriters) return "submessages of more than 32 writers";
-  result_.writers[result_.writer_count++] = {writer, newest};
+  result_.writers[result_.writer_count++] = {writer, number};
   return nullptr;
 }
 
@@ -221,7 +223,7 @@ const char* DatagramCheck::check_heartbeat(ByteReader body) {
   if (!first.in_range || !last.in_range) return "HEARTBEAT with a sequence number out of range (8.3.5.5)";
   if (first.value == 0 || last.value + 1 < first.value)
     return "HEARTBEAT that ends before it begins (8.3.8.6.3)";
-  return note(writer, last.value);
+  return note(writer, first.value);  // a reader ignores all samples before it
 }
 
 const char* DatagramCheck::check_gap(ByteReader body) {

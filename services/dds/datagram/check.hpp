@@ -19,10 +19,10 @@ struct DatagramLimits {
   std::uint32_t largest_sample_bytes = 1 << 20;  // of a sample sent in fragments
 };
 
-// A writer that a datagram names, with the newest sequence number that the datagram gives it.
+// A writer whose readers ignore all samples with lower numbers than this, once they have the datagram.
 struct NumberedWriter {
   EntityId entity{};
-  std::uint32_t newest = 0;
+  std::uint32_t number = 0;
 };
 
 // The result of a check. Allocates nothing.

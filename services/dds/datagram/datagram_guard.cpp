@@ -27,7 +27,7 @@ const char* DatagramGuard::fault_of(const CheckedDatagram& checked, const Sender
   const std::lock_guard<std::mutex> lock(mutex_);
   for (std::size_t i = 0; i < checked.writer_count; ++i) {
     const NumberedWriter& writer = checked.writers[i];
-    if (!sequences_.admit(checked.source, writer.entity, writer.newest, now.steady_ns))
+    if (!sequences_.admit(checked.source, writer.entity, writer.number, now.steady_ns))
       return "sequence number that the writer cannot have reached (8.3.5.5)";
   }
   if (checked.about_participant && !participants_.admit(checked.source, sender, now.steady_ns))

@@ -3,15 +3,12 @@
 namespace swiftlet::comms {
 namespace {
 
-// The upper two bits of the last byte.
-bool is_builtin(const EntityId& entity) { return (entity[3] & 0xc0U) == 0xc0U; }
-
 struct BuiltinWriter {
   EntityId writer;
   BuiltinTopic topic;
 };
 constexpr BuiltinWriter kWriters[] = {
-    {{0x00, 0x01, 0x00, 0xc2}, BuiltinTopic::kParticipant},
+    {kParticipantWriter, BuiltinTopic::kParticipant},
     {{0x00, 0x00, 0x03, 0xc2}, BuiltinTopic::kEndpoint},
     {{0x00, 0x00, 0x04, 0xc2}, BuiltinTopic::kEndpoint},
     {{0x00, 0x02, 0x00, 0xc2}, BuiltinTopic::kLiveliness},
@@ -37,6 +34,8 @@ bool is_discovery_server(const GuidPrefix& participant) {
   numberless[2] = 0;
   return numberless == kServer;
 }
+
+bool is_builtin(const EntityId& entity) { return (entity[3] & 0xc0U) == 0xc0U; }
 
 bool is_writer(const EntityId& entity) {
   const unsigned kind = entity[3] & 0x3fU;

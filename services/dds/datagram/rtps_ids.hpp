@@ -14,6 +14,7 @@ using EntityId = std::array<std::uint8_t, 4>;     // of one of its endpoints
 bool is_discovery_server(const GuidPrefix& participant);
 
 constexpr EntityId kUnknownEntity{};
+constexpr EntityId kParticipantWriter{0x00, 0x01, 0x00, 0xc2};  // of announcements of participants
 constexpr EntityId kParticipantEntity{0x00, 0x00, 0x01, 0xc1};
 
 // What a DATA submessage is about (9.3.1.3, 9.6.3).
@@ -27,6 +28,9 @@ enum class BuiltinTopic {
 
 // By the kind in the last byte (9.3.1.2). The readers of Fast DDS accept samples of a writer without a kind from anyone.
 bool is_writer(const EntityId& entity);
+
+// Of discovery, liveliness or security.
+bool is_builtin(const EntityId& entity);
 
 // nullopt: no writer, a built-in writer that is unknown, or one that does not belong to the reader.
 std::optional<BuiltinTopic> topic_of(const EntityId& reader, const EntityId& writer);
