@@ -190,8 +190,6 @@ const char* DatagramCheck::check_body(Submessage& submessage) {
 
 const char* DatagramCheck::note(const EntityId& writer, std::uint32_t number) {
   if (!is_writer(writer)) return "submessage of a writer that is none (9.3.1.2)";
-  if (is_builtin(writer) && writer != kParticipantWriter)
-    return nullptr;  // reliable: no number makes a reader ignore samples
   auto* const end = result_.writers.begin() + result_.writer_count;
   auto* const known = std::find_if(result_.writers.begin(), end,
                                    [&](const NumberedWriter& other) { return other.entity == writer; });
@@ -223,7 +221,7 @@ const char* DatagramCheck::check_heartbeat(ByteReader body) {
   if (!first.in_range || !last.in_range) return "HEARTBEAT with a sequence number out of range (8.3.5.5)";
   if (first.value == 0 || last.value + 1 < first.value)
     return "HEARTBEAT that ends before it begins (8.3.8.6.3)";
-  return note(writer, first.value);  // a reader ignores all samples before it
+  return note(writer, last.value);
 }
 
 const char* DatagramCheck::check_gap(ByteReader body) {
@@ -285,8 +283,12 @@ const char* DatagramCheck::check_payload(Submessage& submessage, const ListConte
   if (payload.rest() < 4) return "payload shorter than its encapsulation (10.2)";
   if (of_discovery) {
     HiddenParameters hidden;
+    std::uint64_t digest = 0xcbf29ce484222325U;
     const bool key_only = submessage.has(kKeyFlag);
-    if (const char* const fault = check_discovery_payload(payload, context, key_only, hidden)) return fault;
+    if (const char* const fault = check_discovery_payload(payload, context, key_only, hidden, digest))
+      return fault;
+    if (context.topic == BuiltinTopic::kParticipant && !key_only && !context.relays)
+      result_.announcement_digest = digest;
     if (result_.hidden_count + hidden.count > CheckedDatagram::kMostHidden)
       return "discovery data with more than 8 type descriptions (9.6.3.2)";
     for (std::size_t i = 0; i < hidden.count; ++i)

@@ -19,7 +19,7 @@ struct DatagramLimits {
   std::uint32_t largest_sample_bytes = 1 << 20;  // of a sample sent in fragments
 };
 
-// A writer whose readers ignore all samples with lower numbers than this, once they have the datagram.
+// A writer that a datagram names, with the highest sequence number that the datagram gives it.
 struct NumberedWriter {
   EntityId entity{};
   std::uint32_t number = 0;
@@ -34,6 +34,8 @@ struct CheckedDatagram {
   // Bytes to hand to the middleware: less than received if the datagram ends with a submessage that it must not see.
   std::size_t length = 0;
   bool about_participant = false;  // holds a DATA in which a participant announces itself, or says goodbye
+  // Of its lease, locators and built-in endpoints in an announcement; 0 for others, and if another announces it.
+  std::uint64_t announcement_digest = 0;
 
   static constexpr std::size_t kMostWriters = 32;
   std::array<NumberedWriter, kMostWriters> writers{};

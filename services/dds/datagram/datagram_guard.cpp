@@ -30,9 +30,8 @@ const char* DatagramGuard::fault_of(const CheckedDatagram& checked, const Sender
     if (!sequences_.admit(checked.source, writer.entity, writer.number, now.steady_ns))
       return "sequence number that the writer cannot have reached (8.3.5.5)";
   }
-  if (checked.about_participant && !participants_.admit(checked.source, sender, now.steady_ns))
-    return "more new participants than a host may announce";
-  return nullptr;
+  if (!checked.about_participant) return nullptr;
+  return participants_.admit(checked.source, checked.announcement_digest, sender, now.steady_ns);
 }
 
 void DatagramGuard::seal(std::vector<std::uint8_t>& datagram, const Now& now) {

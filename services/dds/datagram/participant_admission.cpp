@@ -21,17 +21,30 @@ T& longest_silent(std::vector<T>& all) {
 ParticipantAdmission::ParticipantAdmission()
     : known_(kMostParticipants), hosts_(kHosts), all_(kBurstOfAll, kRateOfAll) {}
 
-bool ParticipantAdmission::admit(const GuidPrefix& participant, const SenderAddress& address,
-                                 std::int64_t now_ns) {
+// A changed announcement, of other interfaces for example, is repeated as often as any.
+bool ParticipantAdmission::Known::agrees(std::uint64_t announced) {
+  constexpr int kRepetitions = 2;
+  if (announced == 0 || announced == digest) return true;
+  repeated = announced == other_digest ? repeated + 1 : 0;
+  other_digest = announced;
+  if (digest != 0 && repeated < kRepetitions) return false;
+  digest = announced;
+  return true;
+}
+
+const char* ParticipantAdmission::admit(const GuidPrefix& participant, std::uint64_t digest,
+                                        const SenderAddress& address, std::int64_t now_ns) {
   const auto known = std::find_if(known_.begin(), known_.end(),
                                   [&](const Known& other) { return other.participant == participant; });
   if (known != known_.end()) {
     known->heard_ns = now_ns;
-    return true;
+    return known->agrees(digest) ? nullptr
+                                 : "announcement that differs from the participant's earlier ones (8.5.3)";
   }
-  if (!host(address, now_ns).tokens.take(now_ns) || !all_.take(now_ns)) return false;
-  longest_silent(known_) = {participant, now_ns};
-  return true;
+  if (!host(address, now_ns).tokens.take(now_ns) || !all_.take(now_ns))
+    return "more new participants than a host may announce";
+  longest_silent(known_) = {participant, now_ns, digest, 0, 0};
+  return nullptr;
 }
 
 ParticipantAdmission::Host& ParticipantAdmission::host(const SenderAddress& address, std::int64_t now_ns) {

@@ -1,4 +1,5 @@
-// Bounds how fast unknown participants may join. Each one costs memory until its lease ends.
+// Bounds how fast unknown participants may join, each of which costs memory until its lease ends; and holds known ones to
+// what they announced: a changed copy could end the lease of a participant, or divert what is sent to it.
 #pragma once
 
 #include <algorithm>
@@ -46,13 +47,21 @@ class ParticipantAdmission {
  public:
   ParticipantAdmission();
 
-  // True if the participant was admitted before, or may join now. now_ns: of a monotonic clock.
-  bool admit(const GuidPrefix& participant, const SenderAddress& host, std::int64_t now_ns);
+  // Returns the broken rule, a string literal; nullptr if the participant may join, or announces what it did before. A
+  // different announcement is accepted when it is repeated. digest: of the announcement; 0 for other datagrams about it.
+  // now_ns: of a monotonic clock.
+  const char* admit(const GuidPrefix& participant, std::uint64_t digest, const SenderAddress& host,
+                    std::int64_t now_ns);
 
  private:
   struct Known {
     GuidPrefix participant{};
     std::int64_t heard_ns = 0;
+    std::uint64_t digest = 0;
+    std::uint64_t other_digest = 0;  // of the last announcement that differed
+    int repeated = 0;                // how often that was repeated
+
+    bool agrees(std::uint64_t announced);
   };
   struct Host {
     SenderAddress address{};

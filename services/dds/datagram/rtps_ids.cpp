@@ -3,6 +3,9 @@
 namespace swiftlet::comms {
 namespace {
 
+// Of discovery, liveliness or security: the upper two bits of the last byte.
+bool is_builtin(const EntityId& entity) { return (entity[3] & 0xc0U) == 0xc0U; }
+
 struct BuiltinWriter {
   EntityId writer;
   BuiltinTopic topic;
@@ -34,8 +37,6 @@ bool is_discovery_server(const GuidPrefix& participant) {
   numberless[2] = 0;
   return numberless == kServer;
 }
-
-bool is_builtin(const EntityId& entity) { return (entity[3] & 0xc0U) == 0xc0U; }
 
 bool is_writer(const EntityId& entity) {
   const unsigned kind = entity[3] & 0x3fU;

@@ -29,9 +29,6 @@ enum class BuiltinTopic {
 // By the kind in the last byte (9.3.1.2). The readers of Fast DDS accept samples of a writer without a kind from anyone.
 bool is_writer(const EntityId& entity);
 
-// Of discovery, liveliness or security.
-bool is_builtin(const EntityId& entity);
-
 // nullopt: no writer, a built-in writer that is unknown, or one that does not belong to the reader.
 std::optional<BuiltinTopic> topic_of(const EntityId& reader, const EntityId& writer);
 

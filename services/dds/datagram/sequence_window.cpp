@@ -26,7 +26,8 @@ bool SequenceWindow::Writer::admit(std::uint32_t number, std::int64_t now_ns) {
   if (number <= newest) return true;
   const std::uint32_t ahead = number - newest;
   const auto passed_ns = static_cast<double>(now_ns - heard_ns);
-  if (ahead > kSampleBurst + kRateMargin * passed_ns / interval_ns) {
+  const std::uint32_t burst = now_ns - met_ns < kFirstContact_ns ? kFirstBurst : kSampleBurst;
+  if (ahead > burst + kRateMargin * passed_ns / interval_ns) {
     agreeing = number >= refused && number - refused <= kSampleBurst ? agreeing + 1 : 1;
     refused = number;
     if (agreeing < kAgreeingDatagrams) return false;
@@ -49,7 +50,7 @@ bool SequenceWindow::admit(const GuidPrefix& participant, const EntityId& entity
     if (writer.entity == entity && writer.participant == participant) return writer.admit(number, now_ns);
     if (longest_silent == nullptr || writer.heard_ns < longest_silent->heard_ns) longest_silent = &writer;
   }
-  *longest_silent = {participant, entity, number, now_ns, kFirstInterval_ns, 0, 0};
+  *longest_silent = {participant, entity, number, now_ns, now_ns, kFirstInterval_ns, 0, 0};
   return true;
 }
 

@@ -13,6 +13,9 @@ namespace swiftlet::comms {
 // A writer may be ahead of its newest number by this many samples, and by four times as many as it sent at its usual rate
 // since then.
 constexpr std::uint32_t kSampleBurst = 8;
+// At first, while a reader learns what the writer has sent before.
+constexpr std::uint32_t kFirstBurst = 1024;
+constexpr std::int64_t kFirstContact_ns = 2'000'000'000;
 // As many datagrams in a row with numbers that are beyond, but agree with each other, show that the writer is there.
 constexpr int kAgreeingDatagrams = 4;
 
@@ -34,6 +37,7 @@ class SequenceWindow {
     GuidPrefix participant{};
     EntityId entity{};
     std::uint32_t newest = 0;
+    std::int64_t met_ns = 0;  // heard for the first time
     std::int64_t heard_ns = 0;
     double interval_ns = 0.0;   // between samples, a moving average
     std::uint32_t refused = 0;  // the last refused number

@@ -72,6 +72,21 @@ TEST(DatagramGuard, RemembersABusyWriterAmongManyForgedOnes) {
   EXPECT_FALSE(admits(guard, sample(1U << 30U), now_ns));
 }
 
+TEST(DatagramGuard, HoldsAParticipantToWhatItAnnounced) {
+  DatagramGuard guard;
+  const RtpsMessage real = announcement(kAlice, participant_parameters(kAlice));
+  const RtpsMessage other = announcement(kAlice, participant_parameters(kAlice).parameter(0x0002, lease(1)));
+  const RtpsMessage renamed =
+      announcement(kAlice, participant_parameters(kAlice).parameter(0x0062, ByteWriter().string("control")));
+  EXPECT_TRUE(admits(guard, real, kSecond_ns));
+  EXPECT_FALSE(admits(guard, other, kSecond_ns)) << "another lease";
+  EXPECT_TRUE(admits(guard, real, kSecond_ns));
+  EXPECT_TRUE(admits(guard, renamed, kSecond_ns)) << "reached as before";
+  EXPECT_FALSE(admits(guard, other, kSecond_ns));
+  EXPECT_TRUE(admits(guard, other, kSecond_ns)) << "which it repeats";
+  EXPECT_FALSE(admits(guard, real, kSecond_ns));
+}
+
 TEST(DatagramGuard, BoundsTheParticipantsThatAHostAnnounces) {
   DatagramGuard guard;
   std::uint32_t admitted = 0;
