@@ -5,6 +5,7 @@
 
 #include "swiftlet/ground/command_line/command.hpp"
 #include "swiftlet/io/config_error.hpp"
+#include "swiftlet/services/runtime/log.hpp"
 #include "swiftlet/services/runtime/process.hpp"
 
 namespace swiftlet::ground {
@@ -32,6 +33,7 @@ int run_reporting_errors(runtime::Program& program, int argc, char** argv, const
 }  // namespace
 
 int run_command_line(runtime::Program& program, int argc, char** argv, const std::function<int()>& run) {
+  runtime::log_to_stderr();
   return runtime::exit_code_after_output("swiftlet", run_reporting_errors(program, argc, argv, run));
 }
 

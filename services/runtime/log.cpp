@@ -16,6 +16,10 @@ constexpr std::size_t kQueuedLines = 1024;
 
 }  // namespace
 
+void log_to_stderr() {
+  spdlog::default_logger()->sinks() = {std::make_shared<spdlog::sinks::stderr_color_sink_mt>()};
+}
+
 Logging::Logging(const std::string& process, const LogSettings& settings) {
   std::vector<spdlog::sink_ptr> sinks{std::make_shared<spdlog::sinks::stderr_color_sink_mt>()};
   try {

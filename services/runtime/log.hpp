@@ -11,6 +11,9 @@ struct LogSettings {
   std::string file;            // written in addition to stderr; empty: none
 };
 
+// Lets the default logger write to stderr, for a program whose output is on stdout.
+void log_to_stderr();
+
 // Sets the default logger for its lifetime; the destructor writes the queued lines. One per process.
 class Logging {
  public:

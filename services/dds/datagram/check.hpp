@@ -34,7 +34,7 @@ struct CheckedDatagram {
   // Bytes to hand to the middleware: less than received if the datagram ends with a submessage that it must not see.
   std::size_t length = 0;
   bool about_participant = false;  // holds a DATA in which a participant announces itself, or says goodbye
-  // Of its lease, locators and built-in endpoints in an announcement; 0 for others, and if another announces it.
+  // Of its lease and built-in endpoints in an announcement; 0 for others, and if another announces it.
   std::uint64_t announcement_digest = 0;
 
   static constexpr std::size_t kMostWriters = 32;

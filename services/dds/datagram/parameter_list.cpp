@@ -187,11 +187,8 @@ struct Parameter {
   const ParameterRule* rule = nullptr;
 };
 
-// Lease, locators and built-in endpoints of a participant.
-bool decides_reach(std::uint16_t id) {
-  constexpr std::uint16_t kIds[] = {0x0002, 0x0031, 0x0032, 0x0033, 0x0048, 0x0058};
-  return std::find(std::begin(kIds), std::end(kIds), id) != std::end(kIds);
-}
+// The lease of a participant and its built-in endpoints. Locators change with the interfaces of its host.
+bool never_changes(std::uint16_t id) { return id == 0x0002 || id == 0x0058; }
 
 // FNV-1a.
 void add_to(std::uint64_t& digest, const Parameter& parameter) {
@@ -241,7 +238,7 @@ const char* check_discovery_payload(ByteReader payload, const ListContext& conte
   const std::uint16_t key = context.topic == BuiltinTopic::kParticipant ? 0x0050 : 0x005a;
   const char* const fault = check_list(list, context, [&](const Parameter& parameter) -> const char* {
     names_key = names_key || parameter.id == key || (key_only && parameter.id == kKeyHash);
-    if (decides_reach(parameter.id)) add_to(digest, parameter);
+    if (never_changes(parameter.id)) add_to(digest, parameter);
     if (parameter.rule->shape != Shape::kHidden) return nullptr;
     if (hidden.count == HiddenParameters::kMost)
       return "discovery data with more than 8 type descriptions (9.6.3.2)";

@@ -32,7 +32,7 @@ struct ListContext {
 // Leaves `body` behind the list. names_key: set to true if it holds a key of the topic.
 const char* check_inline_qos(ByteReader& body, const ListContext& context, bool& names_key);
 // Of the topics kParticipant and kEndpoint. key_only: the payload names what is gone, and holds no more.
-// digest: of the parameters that decide whether and where a participant is reached.
+// digest: of the parameters that a participant never changes.
 const char* check_discovery_payload(ByteReader payload, const ListContext& context, bool key_only,
                                     HiddenParameters& hidden, std::uint64_t& digest);
 // Of the topic kLiveliness.

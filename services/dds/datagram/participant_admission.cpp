@@ -21,7 +21,6 @@ T& longest_silent(std::vector<T>& all) {
 ParticipantAdmission::ParticipantAdmission()
     : known_(kMostParticipants), hosts_(kHosts), all_(kBurstOfAll, kRateOfAll) {}
 
-// A changed announcement, of other interfaces for example, is repeated as often as any.
 bool ParticipantAdmission::Known::agrees(std::uint64_t announced) {
   constexpr int kRepetitions = 2;
   if (announced == 0 || announced == digest) return true;

@@ -1,5 +1,5 @@
 // Bounds how fast unknown participants may join, each of which costs memory until its lease ends; and holds known ones to
-// what they announced: a changed copy could end the lease of a participant, or divert what is sent to it.
+// what they announced: a changed copy could end the lease of a participant.
 #pragma once
 
 #include <algorithm>
