@@ -3,11 +3,39 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace swiftlet::ground {
 namespace {
 
+using Position = std::array<double, 3>;
+
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
+
+// The cubic Hermite polynomial between two rows.
+Position interpolated(const TruthRow& a, const TruthRow& b, std::int64_t stamp_ns) {
+  const double h = seconds(b.stamp_ns - a.stamp_ns);
+  const double s = seconds(stamp_ns - a.stamp_ns) / h;
+  Position position;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    position[axis] = (1.0 + 2.0 * s) * (1.0 - s) * (1.0 - s) * a.position_ned[axis] +
+                     s * (1.0 - s) * (1.0 - s) * h * a.velocity_ned[axis] +
+                     s * s * (3.0 - 2.0 * s) * b.position_ned[axis] -
+                     s * s * (1.0 - s) * h * b.velocity_ned[axis];
+  }
+  return position;
+}
+
+// The true position; nullopt if it is not known at this stamp. after: the first row that is not older.
+std::optional<Position> position_at(const Track<TruthRow>& truth, const TruthRow* after,
+                                    std::int64_t stamp_ns) {
+  if (after == truth.end()) return std::nullopt;
+  if (after->stamp_ns == stamp_ns) return after->position_ned;
+  if (after == truth.begin()) return std::nullopt;
+  const TruthRow& before = *(after - 1);
+  if (seconds(after->stamp_ns - before.stamp_ns) > kLongestInterpolationS) return std::nullopt;
+  return interpolated(before, *after, stamp_ns);
+}
 
 }  // namespace
 
@@ -17,35 +45,23 @@ TrackingErrors tracking_errors(const Track<TruthRow>& truth, const Track<Referen
   std::array<double, 3> sum_of_squares{};
   std::int64_t last_ns = window.from_ns;
 
-  const TruthRow* flown = truth.begin();
-  const ReferenceRow* reference_row = reference.begin();
-  const TruthRow* const flown_end = truth.end();
-  const ReferenceRow* const reference_end = reference.end();
-  while (flown != flown_end && reference_row != reference_end) {
-    if (flown->stamp_ns < reference_row->stamp_ns) {
-      ++flown;
-      continue;
+  const TruthRow* after = truth.begin();
+  for (const ReferenceRow& row : reference) {
+    while (after != truth.end() && after->stamp_ns < row.stamp_ns) ++after;
+    if (row.stamp_ns < window.from_ns || row.stamp_ns >= window.to_ns) continue;
+    const std::optional<Position> flown = position_at(truth, after, row.stamp_ns);
+    if (!flown) continue;
+    double distance_squared = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double error = (*flown)[axis] - row.position_ned[axis];
+      sum_of_squares[axis] += error * error;
+      errors.peak_m[axis] = std::max(errors.peak_m[axis], std::abs(error));
+      distance_squared += error * error;
     }
-    if (reference_row->stamp_ns < flown->stamp_ns) {
-      ++reference_row;
-      continue;
-    }
-    const std::int64_t stamp_ns = flown->stamp_ns;
-    if (stamp_ns >= window.from_ns && stamp_ns < window.to_ns) {
-      double distance_squared = 0.0;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double error = flown->position_ned[axis] - reference_row->position_ned[axis];
-        sum_of_squares[axis] += error * error;
-        errors.peak_m[axis] = std::max(errors.peak_m[axis], std::abs(error));
-        distance_squared += error * error;
-      }
-      errors.peak_3d_m = std::max(errors.peak_3d_m, std::sqrt(distance_squared));
-      errors.longest_gap_s = std::max(errors.longest_gap_s, seconds(stamp_ns - last_ns));
-      last_ns = stamp_ns;
-      ++errors.matched;
-    }
-    ++flown;
-    ++reference_row;
+    errors.peak_3d_m = std::max(errors.peak_3d_m, std::sqrt(distance_squared));
+    errors.longest_gap_s = std::max(errors.longest_gap_s, seconds(row.stamp_ns - last_ns));
+    last_ns = row.stamp_ns;
+    ++errors.matched;
   }
   errors.longest_gap_s = std::max(errors.longest_gap_s, seconds(window.to_ns - last_ns));
 

@@ -5,7 +5,7 @@
 namespace swiftlet::ground {
 namespace {
 
-constexpr std::int64_t kPeriodNs = 200'000'000;
+constexpr std::int64_t kPeriodNs = 50'000'000;
 // A controller that misses the last heartbeat takes the end of this tool for a lost link.
 constexpr std::chrono::milliseconds kLastHeartbeatTimeout{500};
 

@@ -18,7 +18,7 @@ class GroundHeartbeatPublisher {
   GroundHeartbeatPublisher(const GroundHeartbeatPublisher&) = delete;
   GroundHeartbeatPublisher& operator=(const GroundHeartbeatPublisher&) = delete;
 
-  // Call with the stamp of each received telemetry sample. Publishes a heartbeat every 0.2 s of the vehicle's
+  // Call with the stamp of each received telemetry sample. Publishes a heartbeat every 0.05 s of the vehicle's
   // clock, at any speed of the simulation. A tool that receives no telemetry sends no heartbeat.
   void telemetry(std::int64_t stamp_ns);
 

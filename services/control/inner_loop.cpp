@@ -30,6 +30,7 @@ plant::ActuatorCommand InnerLoop::step(const plant::ImuSample& sample, std::int6
   return_outcomes(clients, sample.stamp_ns);
   rotors_running_ = command.rotor_state == plant::RotorState::kRunning;
   stamp_ns_ = sample.stamp_ns;
+  last_imu_sequence_ = imu_sequence_;
   imu_sequence_ = sample.sequence;
   timing_.arrived(sample.sequence, sample.stamp_ns, now_ns, rotors_running_);
   return command;
@@ -136,8 +137,8 @@ bool InnerLoop::finish(std::int64_t now_ns) {
   timing_.answered(now_ns);
   const control::Status& status = controller_.status();
   saturated_ = saturated_ || status.saturated;
-  const bool sampled =
-      timing_.period_ns() > 0 && runtime::is_telemetry_sample(imu_sequence_, timing_.period_ns());
+  const bool sampled = timing_.period_ns() > 0 &&
+                       runtime::is_telemetry_sample(imu_sequence_, last_imu_sequence_, timing_.period_ns());
   const bool answers = evaluated_any_;
   const bool changed = status_changed() || role_ != snapshot_role_;
   const bool old = stamp_ns_ < reported_ns_ || stamp_ns_ - reported_ns_ >= kStandbyReportNs;

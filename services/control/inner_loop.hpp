@@ -130,6 +130,7 @@ class InnerLoop {
   control::RequestStatuses snapshot_requests_{};
   std::int64_t stamp_ns_ = 0;
   std::uint64_t imu_sequence_ = 0;
+  std::uint64_t last_imu_sequence_ = 0;  // of the sample before
   std::atomic<std::int64_t> last_arrival_ns_{0};
   std::atomic<std::uint64_t> adopted_state_{0};
   Role role_ = Role::kStandby;

@@ -9,8 +9,10 @@
 #include "swiftlet/services/dds/datagram/guarded_transport.hpp"
 #include "swiftlet/services/dds/dds_profile.hpp"
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
+#include "swiftlet/services/dds/discovery/repeated_discovery.hpp"
 #include "swiftlet/services/dds/network_qos.hpp"
 #include "swiftlet/services/dds/qos/duration.hpp"
+#include "swiftlet/services/dds/qos/profiles.hpp"
 
 namespace swiftlet::comms {
 namespace {
@@ -50,6 +52,8 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uin
   const DiscoveryPorts ports = discovery_ports(settings.domain);
   builtin.mutation_tries = ports.count - 1;
 
+  qos.flow_controllers().push_back(long_message_flow());
+
   // Announcements of forged participants must not fill the memory. When the limit is reached, Fast DDS ignores newcomers.
   qos.allocation().participants = {0, kMostParticipants, 1};
 
@@ -66,7 +70,10 @@ dds::DomainParticipantQos participant_qos(const NodeSettings& settings, std::uin
     set_network(settings, announced_ports, qos, udp);
   }
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(guarded(udp, guard));
+  // Loopback loses nothing.
+  TransportDescriptor checked = guarded(udp, guard);
+  qos.transport().user_transports.push_back(
+      settings.localhost_only ? checked : repeat_discovery(checked, settings.domain));
 
   if (settings.transport == Transport::kSharedMemory) {
     SharedMemTransportDescriptor shared_memory;

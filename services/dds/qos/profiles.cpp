@@ -11,6 +11,17 @@ namespace {
 namespace dds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
 
+using std::chrono::milliseconds;
+
+constexpr const char* kLongMessageFlow = "long messages";
+constexpr std::int32_t kFragmentBytes = 1400;  // with the headers of RTPS; 1472 fit into a frame
+constexpr std::uint64_t kFragmentPeriod_ms = 1;
+
+// A reader that misses a sample learns it from the next heartbeat, and requests it again. Each step may be lost too.
+constexpr milliseconds kHeartbeatPeriod{10};
+constexpr milliseconds kResponseDelay{1};
+constexpr milliseconds kFirstRequestPeriod{20};
+
 bool is_stream(Qos profile) { return profile == Qos::kStream || profile == Qos::kOwnedStream; }
 bool is_reliable(Qos profile) {
   return is_latched(profile) || profile == Qos::kRequest || profile == Qos::kReply;
@@ -64,15 +75,24 @@ void set_common(EndpointQos& qos, Qos profile, int deadline_ms, Transport transp
 
 }  // namespace
 
+std::shared_ptr<eprosima::fastdds::rtps::FlowControllerDescriptor> long_message_flow() {
+  auto flow = std::make_shared<eprosima::fastdds::rtps::FlowControllerDescriptor>();
+  flow->name = kLongMessageFlow;
+  flow->max_bytes_per_period = kFragmentBytes;
+  flow->period_ms = kFragmentPeriod_ms;
+  return flow;
+}
+
 dds::DataWriterQos writer_qos(Qos profile, int deadline_ms, std::uint32_t strength, Transport transport) {
   dds::DataWriterQos qos;
   set_common(qos, profile, deadline_ms, transport);
   if (profile == Qos::kOwnedStream) qos.ownership_strength().value = strength;
   // A middleware thread sends long messages in fragments. The calling thread sends all others.
   qos.publish_mode().kind = is_long(profile) ? dds::ASYNCHRONOUS_PUBLISH_MODE : dds::SYNCHRONOUS_PUBLISH_MODE;
-  // Readers request a lost fragment again after one heartbeat.
+  if (is_long(profile)) qos.publish_mode().flow_controller_name = kLongMessageFlow;
   if (is_reliable(profile)) {
-    qos.reliable_writer_qos().times.heartbeatPeriod = duration(std::chrono::milliseconds(100));
+    qos.reliable_writer_qos().times.heartbeatPeriod = duration(kHeartbeatPeriod);
+    qos.reliable_writer_qos().times.nackResponseDelay = duration(kResponseDelay);
   }
   return qos;
 }
@@ -80,6 +100,10 @@ dds::DataWriterQos writer_qos(Qos profile, int deadline_ms, std::uint32_t streng
 dds::DataReaderQos reader_qos(Qos profile, int deadline_ms, Transport transport, Delivery delivery) {
   dds::DataReaderQos qos;
   set_common(qos, profile, deadline_ms, transport);
+  if (is_reliable(profile)) {
+    qos.reliable_reader_qos().times.heartbeatResponseDelay = duration(kResponseDelay);
+    qos.reliable_reader_qos().times.initialAcknackDelay = duration(kFirstRequestPeriod);
+  }
   // Not over shared memory: Fast DDS can give two processes the same port there, and one receives nothing.
   if (delivery == Delivery::kOwnThread && transport != Transport::kSharedMemory) {
     qos.properties().properties().emplace_back("fastdds.unique_network_flows", "");

@@ -1,8 +1,11 @@
 // The QoS profiles in terms of Fast DDS.
 #pragma once
 
+#include <memory>
+
 #include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
 #include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
+#include <fastdds/rtps/flowcontrol/FlowControllerDescriptor.hpp>
 
 #include "swiftlet/services/dds/node.hpp"
 
@@ -10,6 +13,10 @@ namespace swiftlet::comms {
 
 // True if late joiners receive the last sample (durability transient local).
 bool is_latched(Qos profile);
+
+// Sends the fragments of long messages: each fits into a frame of Ethernet, so that a lost frame costs one fragment, and a
+// long message does not fill the buffers on the way.
+std::shared_ptr<eprosima::fastdds::rtps::FlowControllerDescriptor> long_message_flow();
 
 eprosima::fastdds::dds::DataWriterQos writer_qos(Qos profile, int deadline_ms, std::uint32_t strength,
                                                  Transport transport);

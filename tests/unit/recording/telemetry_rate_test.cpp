@@ -1,6 +1,8 @@
 #include "swiftlet/recording/telemetry_rate.hpp"
 
 #include <cstdint>
+#include <initializer_list>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -27,6 +29,22 @@ TEST(TelemetryRate, IsOneHundredSamplesPerSecond) {
 TEST(TelemetryRate, SelectsMultiplesOfTheDecimation) {
   for (std::uint64_t sequence = 1; sequence <= 20; ++sequence)
     EXPECT_EQ(is_telemetry_sample(sequence, 2'000'000), sequence % 5 == 0) << sequence;
+}
+
+TEST(TelemetryRate, SelectsTheFirstSampleAfterAMissedOne) {
+  const auto selected = [](std::initializer_list<std::uint64_t> received) {
+    std::vector<std::uint64_t> list;
+    std::uint64_t last = 0;
+    for (const std::uint64_t sequence : received) {
+      if (is_telemetry_sample(sequence, last, 2'000'000)) list.push_back(sequence);
+      last = sequence;
+    }
+    return list;
+  };
+  using List = std::vector<std::uint64_t>;
+  EXPECT_EQ(selected({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}), (List{5, 10})) << "without losses";
+  EXPECT_EQ(selected({1, 4, 6, 7, 9, 12, 13, 15, 23}), (List{6, 12, 15, 23}));
+  EXPECT_EQ(selected({5, 5, 5}), (List{5, 5, 5})) << "a sample that lockstep repeats";
 }
 
 TEST(TelemetryRate, SelectsAllSamplesOfAnUnknownPeriod) {
