@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "swiftlet/control/design/flown_delay.hpp"
 #include "swiftlet/ground/cli/commands.hpp"
 #include "swiftlet/io/configuration.hpp"
 #include "swiftlet/io/settings/control_settings_file.hpp"
@@ -153,9 +154,29 @@ std::string text_of(const MarginStudy& study) {
   return out;
 }
 
+Json json_of_delays(const FlownDelays& delays_s) {
+  Json out = Json::object();
+  for (std::size_t i = 0; i < delays_s.size(); ++i)
+    out[control::kFlownLoopNames[i]] = json_of_margin(delays_s[i]);
+  return out;
+}
+
+std::string text_of(const FlownDelays& delays_s) {
+  std::string out =
+      "delay from a sample to the rotors that each loop tolerates in flight, with the observers (ms); "
+      "sampling takes "
+      "half a\nperiod of the IMU of it, 1 ms at 500 Hz\n";
+  for (std::size_t i = 0; i < delays_s.size(); ++i) {
+    out += fmt::format("  {:<6} ", control::kFlownLoopNames[i]) +
+           (std::isfinite(delays_s[i]) ? fmt::format("{:6.1f}", delays_s[i] * 1e3) : "   any") + "\n";
+  }
+  return out;
+}
+
 }  // namespace
 
-std::string gains_json(const ControlDesign& design, const MarginStudy& margins, const std::string& vehicle,
+std::string gains_json(const ControlDesign& design, const MarginStudy& margins,
+                       const FlownDelays& flown_delay_s, const std::string& vehicle,
                        const std::string& control) {
   const Json out = {
       {"vehicle", vehicle},
@@ -165,13 +186,15 @@ std::string gains_json(const ControlDesign& design, const MarginStudy& margins, 
        {{"roll", json_of(design.roll)}, {"pitch", json_of(design.pitch)}, {"yaw", json_of(design.yaw)}}},
       {"position", {{"x", json_of(design.x)}, {"y", json_of(design.y)}, {"z", json_of(design.z)}}},
       {"margins", json_of(margins)},
+      {"flown_delay_s", json_of_delays(flown_delay_s)},
       {"samples", margins.samples},
       {"seed", margins.seed},
       {"unstable", margins.unstable}};
   return out.dump(2);
 }
 
-std::string gains_table(const ControlDesign& design, const MarginStudy& margins, const std::string& vehicle,
+std::string gains_table(const ControlDesign& design, const MarginStudy& margins,
+                        const FlownDelays& flown_delay_s, const std::string& vehicle,
                         const std::string& control) {
   return fmt::format("{} with {}; all margins and poles (rad/s) include the rotor lag of {:.4g} s\n",
                      vehicle.c_str(), control.c_str(), design.rotor_lag_s) +
@@ -180,7 +203,8 @@ std::string gains_table(const ControlDesign& design, const MarginStudy& margins,
          "position: RPT around the closed attitude loop; gains give m/s^2\n"
          "              k_p      k_v      k_i  margin  poles\n"
          "            1/s^2      1/s    1/s^3     deg  rad/s\n" +
-         row("x", design.x) + row("y", design.y) + row("z", design.z) + text_of(margins);
+         row("x", design.x) + row("y", design.y) + row("z", design.z) + text_of(margins) +
+         text_of(flown_delay_s);
 }
 
 int run_gains(const GainsOptions& options) {
@@ -196,10 +220,11 @@ int run_gains(const GainsOptions& options) {
   const Dispersion dispersion =
       uncertainty.parameters.empty() ? Dispersion{} : dispersion_of(uncertainty, vehicle, file);
   const MarginStudy margins = study_margins(design, vehicle, dispersion, options.samples, options.seed);
+  const FlownDelays flown_delay_s = control::flown_delay_margins(design, settings);
   if (options.json) {
-    std::printf("%s\n", gains_json(design, margins, vehicle.name, settings.name).c_str());
+    std::printf("%s\n", gains_json(design, margins, flown_delay_s, vehicle.name, settings.name).c_str());
   } else {
-    std::printf("%s", gains_table(design, margins, vehicle.name, settings.name).c_str());
+    std::printf("%s", gains_table(design, margins, flown_delay_s, vehicle.name, settings.name).c_str());
   }
   return kDone;
 }

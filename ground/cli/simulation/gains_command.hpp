@@ -1,6 +1,7 @@
 // `swiftlet gains`: the control design that results from a vehicle file and control settings.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -18,6 +19,8 @@ struct GainsOptions {
   std::uint64_t seed = 1;             // of the first sample
   bool json = false;
 };
+
+using FlownDelays = std::array<double, 6>;  // as control::flown_delay_margins() returns them
 
 // Returns the design as JSON, indented by two spaces, without a newline at the end:
 //   vehicle, control: names
@@ -38,14 +41,18 @@ struct GainsOptions {
 //   margins.{roll,pitch,yaw,x,y,z}.{designed,most,worst}: of the nominal vehicle, held by 95 % of the samples
 //     of its uncertainty, and worst of all samples; most and worst exist only if samples > 0
 //     phase_deg, gain_increase_db, gain_decrease_db, delay_s; null if no such change makes the loop unstable
+//   flown_delay_s.{roll,pitch,yaw,x,y,z}: least delay from a sample to the rotors that makes the loop unstable, with the
+//     observers of the estimator; null if none up to 0.5 s does
 //   samples, seed, unstable: number of samples, seed of the first, number of samples with an unstable loop
-// Margins and poles do not include the estimator and the sampling.
+// The other margins and poles do not include the estimator and the sampling.
 std::string gains_json(const control::ControlDesign& design, const MarginStudy& margins,
-                       const std::string& vehicle, const std::string& control);
+                       const FlownDelays& flown_delay_s, const std::string& vehicle,
+                       const std::string& control);
 
 // Returns the design as a table for a terminal, with a newline at the end.
 std::string gains_table(const control::ControlDesign& design, const MarginStudy& margins,
-                        const std::string& vehicle, const std::string& control);
+                        const FlownDelays& flown_delay_s, const std::string& vehicle,
+                        const std::string& control);
 
 // Prints the JSON or the table, and names unstable loops on standard error. Returns kDone. Throws
 // runtime::ConfigError for an invalid file.

@@ -1,6 +1,7 @@
 #include "swiftlet/ground/cli/simulation/gains_command.hpp"
 
 #include <complex>
+#include <limits>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -13,6 +14,9 @@ namespace swiftlet::ground {
 namespace {
 
 using Json = nlohmann::json;
+
+constexpr double kAny = std::numeric_limits<double>::infinity();
+constexpr FlownDelays kDelays_s = {0.041, 0.042, kAny, 0.031, 0.032, 0.033};
 
 control::ControlSettings settings(control::AttitudeModel model, double integral_pole) {
   control::ControlSettings s =
@@ -35,7 +39,7 @@ TEST(GainsJson, ListsEveryAttitudeAxisWithItsModel) {
        {control::AttitudeModel::kDoubleIntegrator, control::AttitudeModel::kMotorLag}) {
     const bool lag = model == control::AttitudeModel::kMotorLag;
     const control::ControlDesign d = design(model, 0.0);
-    const Json out = Json::parse(gains_json(d, {}, "kaylion", "test"));
+    const Json out = Json::parse(gains_json(d, {}, kDelays_s, "kaylion", "test"));
     EXPECT_EQ(out["vehicle"], "kaylion");
     EXPECT_EQ(out["control"], "test");
     struct Axis {
@@ -65,8 +69,8 @@ TEST(GainsJson, ListsEveryAttitudeAxisWithItsModel) {
 
 TEST(GainsJson, ListsEq49AndTheIntegralForm) {
   for (const double integral_pole : {0.0, 0.4}) {
-    const Json out =
-        Json::parse(gains_json(design(control::AttitudeModel::kMotorLag, integral_pole), {}, "v", "c"));
+    const Json out = Json::parse(
+        gains_json(design(control::AttitudeModel::kMotorLag, integral_pole), {}, kDelays_s, "v", "c"));
     for (const char* name : {"x", "y", "z"}) {
       const Json& axis = out["position"][name];
       EXPECT_EQ(axis["omega_n"], 1.5);
@@ -88,10 +92,21 @@ TEST(GainsJson, ListsEq49AndTheIntegralForm) {
 
 TEST(GainsTable, HasARowForEveryAxis) {
   const std::string table =
-      gains_table(design(control::AttitudeModel::kMotorLag, 0.0), {}, "kaylion", "test");
+      gains_table(design(control::AttitudeModel::kMotorLag, 0.0), {}, kDelays_s, "kaylion", "test");
   for (const char* axis : {"\n  roll ", "\n  pitch ", "\n  yaw ", "\n  x ", "\n  y ", "\n  z "}) {
     EXPECT_NE(table.find(axis), std::string::npos) << axis;
   }
+}
+
+TEST(Gains, HoldTheDelayOfEachLoopInFlight) {
+  const control::ControlDesign d = design(control::AttitudeModel::kMotorLag, 0.0);
+  const Json out = Json::parse(gains_json(d, {}, kDelays_s, "kaylion", "test"))["flown_delay_s"];
+  EXPECT_EQ(out["roll"], 0.041);
+  EXPECT_TRUE(out["yaw"].is_null()) << "stable with any";
+  EXPECT_EQ(out["z"], 0.033);
+  const std::string table = gains_table(d, {}, kDelays_s, "kaylion", "test");
+  EXPECT_NE(table.find("\n  roll     41.0\n"), std::string::npos) << table;
+  EXPECT_NE(table.find("\n  yaw       any\n"), std::string::npos) << table;
 }
 
 }  // namespace

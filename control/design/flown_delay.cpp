@@ -1,0 +1,49 @@
+#include "swiftlet/control/design/flown_delay.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace swiftlet::control {
+namespace {
+
+constexpr double kStep_s = 1e-3;
+constexpr double kAccuracy_s = 1e-5;
+
+bool is_stable(const Loop& loop) {
+  const auto poles = closed_loop_poles(loop);
+  return std::all_of(poles.begin(), poles.end(), [](const auto& pole) { return pole.real() < 0.0; });
+}
+
+}  // namespace
+
+std::array<double, 6> flown_delay_margins(const ControlDesign& design, const ControlSettings& settings) {
+  const auto stable = [&](double delay_s) {
+    const std::array<FlownLoop, 6> loops = flown_loops(design, settings, delay_s);
+    std::array<bool, 6> all{};
+    std::transform(loops.begin(), loops.end(), all.begin(),
+                   [](const FlownLoop& flown) { return is_stable(flown.loop); });
+    return all;
+  };
+  std::array<double, 6> margins;
+  margins.fill(std::numeric_limits<double>::infinity());
+  const std::array<bool, 6> without = stable(0.0);
+  for (std::size_t i = 0; i < margins.size(); ++i) {
+    if (!without[i]) margins[i] = 0.0;
+  }
+  for (double delay_s = kStep_s; delay_s <= kLongestDelay_s; delay_s += kStep_s) {
+    const std::array<bool, 6> with = stable(delay_s);
+    for (std::size_t i = 0; i < margins.size(); ++i) {
+      if (with[i] || margins[i] < delay_s) continue;
+      double below_s = delay_s - kStep_s;
+      double above_s = delay_s;
+      while (above_s - below_s > kAccuracy_s) {
+        const double middle_s = 0.5 * (below_s + above_s);
+        (stable(middle_s)[i] ? below_s : above_s) = middle_s;
+      }
+      margins[i] = above_s;
+    }
+  }
+  return margins;
+}
+
+}  // namespace swiftlet::control

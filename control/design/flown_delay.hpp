@@ -1,0 +1,18 @@
+// The delay that the loops of a design tolerate in flight.
+#pragma once
+
+#include <array>
+
+#include "swiftlet/control/design/flown_loops.hpp"
+
+namespace swiftlet::control {
+
+// Longest delay that is examined, s.
+constexpr double kLongestDelay_s = 0.5;
+
+// Least delay from a sample to the rotors, s, at which each loop of flown_loops() is unstable, to 0.01 ms; infinite if that
+// is none up to kLongestDelay_s, 0 for a loop that is unstable without delay. In the order of kFlownLoopNames. Sampling
+// takes half a period of the IMU of it, because a command holds until the next one.
+std::array<double, 6> flown_delay_margins(const ControlDesign& design, const ControlSettings& settings);
+
+}  // namespace swiftlet::control
