@@ -28,10 +28,10 @@ Position interpolated(const TruthRow& a, const TruthRow& b, std::int64_t stamp_n
 
 // The true position; nullopt if it is not known at this stamp. after: the first row that is not older.
 std::optional<Position> position_at(const Track<TruthRow>& truth, const TruthRow* after,
-                                    std::int64_t stamp_ns) {
+                                    std::int64_t stamp_ns, TruthSource source) {
   if (after == truth.end()) return std::nullopt;
   if (after->stamp_ns == stamp_ns) return after->position_ned;
-  if (after == truth.begin()) return std::nullopt;
+  if (source == TruthSource::kEqualStamps || after == truth.begin()) return std::nullopt;
   const TruthRow& before = *(after - 1);
   if (seconds(after->stamp_ns - before.stamp_ns) > kLongestInterpolationS) return std::nullopt;
   return interpolated(before, *after, stamp_ns);
@@ -40,7 +40,7 @@ std::optional<Position> position_at(const Track<TruthRow>& truth, const TruthRow
 }  // namespace
 
 TrackingErrors tracking_errors(const Track<TruthRow>& truth, const Track<ReferenceRow>& reference,
-                               Window window) {
+                               Window window, TruthSource source) {
   TrackingErrors errors;
   std::array<double, 3> sum_of_squares{};
   std::int64_t last_ns = window.from_ns;
@@ -49,7 +49,8 @@ TrackingErrors tracking_errors(const Track<TruthRow>& truth, const Track<Referen
   for (const ReferenceRow& row : reference) {
     while (after != truth.end() && after->stamp_ns < row.stamp_ns) ++after;
     if (row.stamp_ns < window.from_ns || row.stamp_ns >= window.to_ns) continue;
-    const std::optional<Position> flown = position_at(truth, after, row.stamp_ns);
+    if (errors.matched > 0 && row.stamp_ns == last_ns) continue;  // lockstep repeats samples
+    const std::optional<Position> flown = position_at(truth, after, row.stamp_ns, source);
     if (!flown) continue;
     double distance_squared = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {

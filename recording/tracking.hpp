@@ -17,12 +17,16 @@ struct TrackingErrors {
   double longest_gap_s = 0.0;  // between matched samples or a matched sample and an end of the window
 };
 
-// The rows of both tracks must be in ascending order of their stamps. Where the network lost the row of the truth at the stamp
-// of a reference, the truth is interpolated between rows at most kLongestInterpolationS apart, with position and velocity:
-// at a snap of 1000 m/s^4 the error is below 1 um. A reference without such rows is not matched.
-constexpr double kLongestInterpolationS = 0.02;
+// Where the truth of a reference comes from. Without a source the reference is not matched.
+enum class TruthSource {
+  kEqualStamps,  // a row of the same stamp
+  kInterpolated,  // else from rows at most kLongestInterpolationS apart, with position and velocity: a network may lose rows
+};
+constexpr double kLongestInterpolationS = 0.02;  // at a snap of 1000 m/s^4 the error is below 1 um
+
+// The rows of both tracks must be in ascending order of their stamps.
 TrackingErrors tracking_errors(const Track<TruthRow>& truth, const Track<ReferenceRow>& reference,
-                               Window window);
+                               Window window, TruthSource source = TruthSource::kEqualStamps);
 
 // True if there are enough samples to evaluate the flight: at least a quarter of the number expected at rate_hz in
 // the window, and no gap longer than kLongestGapS. In a longer gap a slow loop could diverge and return

@@ -10,6 +10,7 @@
 #include "swiftlet/ground/command_line/command.hpp"
 #include "swiftlet/ground/report/flight_files.hpp"
 #include "swiftlet/io/logs/flight_log_files.hpp"
+#include "swiftlet/services/runtime/clock.hpp"
 
 namespace swiftlet::ground {
 namespace {
@@ -39,7 +40,9 @@ void say_record_fault(const FlightReport& report, Progress& progress) {
 }  // namespace
 
 void evaluate(FlightReport& report, const FlightRecord& record, Window window) {
-  report.errors = tracking_errors(record.truth, record.reference, window);
+  const bool complete = report.clock != runtime::to_string(runtime::Clock::kRealtime);  // no sample is lost
+  report.errors = tracking_errors(record.truth, record.reference, window,
+                                  complete ? TruthSource::kEqualStamps : TruthSource::kInterpolated);
   if (report.reason.empty()) report.reason = shortfall(report, window);
   report.completed = report.reason.empty();
 }

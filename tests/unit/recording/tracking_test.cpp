@@ -85,16 +85,35 @@ TEST(TrackingErrors, InterpolateTheTruthWhereItsRowIsMissing) {
         return std::array<double, 3>{0.001, 0.0, 0.0};
       },
       [](int i) { return i % 3 != 0; }, [](int i) { return i % 5 != 0; });
-  const TrackingErrors errors = tracking_errors(flight.truth, flight.reference, {0, 1000 * kStep});
+  const TrackingErrors errors =
+      tracking_errors(flight.truth, flight.reference, {0, 1000 * kStep}, TruthSource::kInterpolated);
   EXPECT_EQ(errors.matched, 799U) << "of 800 references, the last is beyond the truth or the first before it";
   EXPECT_NEAR(errors.peak_3d_m, 0.001, 1e-9) << "the truth of the path is a cubic to within 1 nm";
+}
+
+TEST(TrackingErrors, CompareSamplesOfEqualStampsOnlyUnlessTold) {
+  const SyntheticFlight flight(
+      1000, [](int) { return std::array<double, 3>{}; }, [](int i) { return i % 3 != 0; },
+      [](int i) { return i % 5 != 0; });
+  EXPECT_EQ(tracking_errors(flight.truth, flight.reference, {0, 1000 * kStep}).matched, 533U);
+}
+
+TEST(TrackingErrors, CountARepeatedReferenceOnce) {
+  SyntheticFlight flight(100, [](int) { return std::array<double, 3>{}; });
+  Track<ReferenceRow> repeated(200);
+  for (const ReferenceRow& row : flight.reference) {
+    repeated.append(row);
+    repeated.append(row);
+  }
+  EXPECT_EQ(tracking_errors(flight.truth, repeated, {0, 100 * kStep}).matched, 100U);
 }
 
 TEST(TrackingErrors, DoNotInterpolateOverLongGaps) {
   const auto none = [](int) { return std::array<double, 3>{}; };
   const auto matched = [&](int missing) {
     const SyntheticFlight flight(100, none, [=](int i) { return i < 50 || i >= 50 + missing; });
-    return tracking_errors(flight.truth, flight.reference, {0, 100 * kStep}).matched;
+    return tracking_errors(flight.truth, flight.reference, {0, 100 * kStep}, TruthSource::kInterpolated)
+        .matched;
   };
   EXPECT_EQ(matched(9), 100U) << "20 ms between the rows";
   EXPECT_EQ(matched(10), 90U) << "22 ms between the rows";
