@@ -81,7 +81,7 @@ class GuardedTransport final : public transport::ChainingTransport {
 
   const std::shared_ptr<DatagramGuard> guard_;
   std::mutex receivers_mutex_;
-  std::map<rtps::Locator_t, std::unique_ptr<Receiver>> receivers_;
+  std::multimap<rtps::Locator_t, std::unique_ptr<Receiver>> receivers_;
 };
 
 // A channel of the transport below, through which a GuardedTransport sends.
@@ -131,7 +131,7 @@ bool GuardedTransport::OpenInputChannel(const rtps::Locator_t& locator,
   const std::lock_guard<std::mutex> lock(receivers_mutex_);
   auto receiver = std::make_unique<Receiver>(*this, next);
   if (!low_level_transport_->OpenInputChannel(locator, receiver.get(), largest_message)) return false;
-  receivers_[locator] = std::move(receiver);
+  receivers_.emplace(locator, std::move(receiver));
   return true;
 }
 
