@@ -1,0 +1,34 @@
+// Certificates, signed documents and lists of revoked certificates for DDS Security, with OpenSSL: ECDSA on P-256 with
+// SHA-256 (DDS Security 1.1, 9.3).
+#pragma once
+
+#include <string>
+
+namespace swiftlet::runtime {
+
+// Both in PEM.
+struct Credential {
+  std::string certificate;
+  std::string private_key;
+};
+
+// The subject is "CN=common_name,O=Swiftlet". All of these throw std::runtime_error with what failed.
+Credential make_authority(const std::string& common_name, int days);
+Credential issue(const Credential& authority, const std::string& common_name, int days);
+
+// The document as S/MIME with a detached signature (DDS Security 1.1, 9.4.1).
+std::string sign(const Credential& authority, const std::string& document);
+
+// An empty list of revoked certificates, in PEM. It ends with the authority.
+std::string make_revocation_list(const Credential& authority);
+std::string revoke(const Credential& authority, const std::string& list, const std::string& certificate);
+
+// Why a certificate is not valid now, such as "has expired on 2026-11-01"; empty if it is.
+std::string fault_of_certificate(const std::string& certificate, const std::string& authority_certificate,
+                                 const std::string& revocation_list);
+// Whether the private key is that of the certificate.
+bool belongs(const std::string& private_key, const std::string& certificate);
+// "2027-11-23"
+std::string last_day_of(const std::string& certificate);
+
+}  // namespace swiftlet::runtime

@@ -1,0 +1,154 @@
+// DDS Security: the roles fly together, and others neither hear nor change anything.
+#include <chrono>
+#include <csignal>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "swiftlet/io/security/security_folder.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/redundant_flight.hpp"
+#include "tests/support/shifted_clock.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace swiftlet::tests {
+namespace {
+
+namespace fs = std::filesystem;
+namespace msg = comms::msg;
+using namespace std::chrono_literals;
+
+constexpr double kLongestGap_ms = 120.0;         // as without security, on a busy machine
+constexpr std::int64_t kSecond = 1'000'000'000;  // ns
+constexpr std::int64_t kDays_s = 24 * 3600;
+
+class Security : public testing::Test {
+ protected:
+  ProgramResult swiftlet(std::vector<std::string> words) const {
+    return run_program("swiftlet", std::move(words), folder_.path());
+  }
+  std::string keys(const std::string& name) const {
+    const std::string path = folder_.path() / name;
+    if (!fs::exists(path)) {
+      const ProgramResult made = swiftlet({"keys", "create", path, "--vehicle", "kl1"});
+      if (made.exit_code != 0) throw std::runtime_error(made.errors);
+    }
+    return path;
+  }
+  static comms::NodeSettings secured(const std::string& security) {
+    comms::NodeSettings settings;
+    settings.security = security;
+    return settings;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Security, StandbyTakesOverAndGroundMayNotFlyTheVehicle) {
+  RedundantFlight flight(folder_.path(), {}, secured(keys("lab")));
+  flight.start_controller(5);
+  flight.start_controller(1);
+  flight.wait_for_roles(1, 1);
+  flight.fly(square_laps(0.5, 50));
+  flight.wait("the vehicle flies a side", [&] { return flight.z_ned() < -0.98 && flight.speed() > 0.3; });
+
+  comms::Node ground(flight.node_settings("ground"));
+  EXPECT_THROW(ground.publish(comms::topics::kActuatorCommand), std::runtime_error);
+
+  const std::int64_t at_ns = flight.stamp_ns();
+  flight.kill(flight.active());
+  const FlightMetrics metrics = flight.metrics(at_ns, at_ns + kSecond);
+  EXPECT_LT(metrics.longest_gap_ms, kLongestGap_ms);
+  EXPECT_EQ(metrics.changes_of_controller, 1);
+}
+
+TEST_F(Security, StrangersAreRefusedByName) {
+  const std::string lab = [&] {
+    const ShiftedClock early(folder_.path() / "shift",
+                             {-3 * kDays_s});  // so that a certificate can have expired
+    return keys("lab");
+  }();
+  RedundantFlight flight(folder_.path(), {}, secured(lab));
+  const Program& control = *flight.start_controller(5).process;
+  flight.wait_for_roles(1, 0);
+  std::vector<std::string> network = flight.network();
+  network.resize(network.size() - 2);  // without --security
+  const auto status = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> words{"status", "--timeout", "3"};
+    words.insert(words.end(), network.begin(), network.end());
+    words.insert(words.end(), options.begin(), options.end());
+    return swiftlet(words);
+  };
+  const auto says = [](const Program& program, const std::string& text) {
+    return program.errors().find(text) != std::string::npos;
+  };
+  const auto refused = [&](const std::string& reason) {
+    return eventually([&] { return says(control, reason); }, kStuck, 20ms);
+  };
+
+  EXPECT_EQ(status({"--security", lab}).exit_code, 0);
+  EXPECT_EQ(status({}).exit_code, 1) << "without identity";
+  EXPECT_TRUE(refused("refused ground (process ")) << control.errors();
+
+  // Either side may be the first to see a foreign certificate.
+  EXPECT_EQ(status({"--security", keys("foreign")}).exit_code, 1);
+  EXPECT_TRUE(eventually(
+      [&] {
+        return says(control, "its certificate signature failure") ||
+               says(control, "it does not complete the handshake");
+      },
+      kStuck, 20ms))
+      << control.errors();
+
+  // Who was revoked after it got its copy of the list.
+  const std::string thief = folder_.path() / "thief";
+  fs::copy(lab, thief, fs::copy_options::recursive);
+  ASSERT_EQ(swiftlet({"keys", "renew", thief, "ground"}).exit_code, 0);
+  runtime::revoke_identity({lab}, runtime::SecurityFolder{thief}.certificate("ground"));
+  const Program& wary = *flight.start_controller(1).process;
+  EXPECT_EQ(status({"--security", thief}).exit_code, 0) << "the first controller has the old list";
+  EXPECT_TRUE(eventually([&] { return says(wary, "its certificate revoked"); }, kStuck, 20ms))
+      << wary.errors();
+
+  // Whose clock is three days late.
+  const std::string old = folder_.path() / "old";
+  fs::copy(thief, old, fs::copy_options::recursive);
+  const ShiftedClock late(folder_.path() / "shift", {-3 * kDays_s});
+  ASSERT_EQ(swiftlet({"keys", "renew", old, "ground", "--days", "1"}).exit_code, 0);
+  EXPECT_EQ(status({"--security", old}).exit_code, 1);
+  EXPECT_TRUE(refused("its certificate has expired")) << control.errors();
+}
+
+TEST_F(Security, OwnFaultsAreToldBeforeJoining) {
+  const std::string lab = keys("lab");
+  const ProgramResult missing = swiftlet({"status", "--security", folder_.path() / "none"});
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_NE(missing.errors.find("none/observer/certificate.pem: cannot be read"), std::string::npos)
+      << missing.errors;
+  ASSERT_EQ(swiftlet({"keys", "revoke", lab, "ground"}).exit_code, 0);
+  const ProgramResult revoked = swiftlet({"status", "--security", lab});
+  EXPECT_EQ(revoked.exit_code, 2);
+  EXPECT_NE(revoked.errors.find("lab/ground/certificate.pem is revoked"), std::string::npos)
+      << revoked.errors;
+  EXPECT_EQ(swiftlet({"keys", "create", lab, "--vehicle", "kl1"}).exit_code, 2) << "it exists";
+}
+
+TEST_F(Security, WholeFlightIsFlown) {
+  const std::string mission =
+      folder_.write("hop.yaml",
+                    "name: hop\nframe: ned\ntolerance_m: 0.1\nitems:\n"
+                    "  - {kind: takeoff, height_m: 0.5, speed_m_s: 0.5}\n"
+                    "  - {kind: waypoint, position_m: [0.3, 0, -0.5], speed_m_s: 0.5}\n"
+                    "  - {kind: land, speed_m_s: 0.5}\n");
+  const comms::DomainLock lock;
+  const ProgramResult flight =
+      swiftlet({"fly", mission, "--security", keys("lab"), "--domain", std::to_string(lock.domain())});
+  EXPECT_EQ(flight.exit_code, 0) << flight.output << flight.errors;
+}
+
+}  // namespace
+}  // namespace swiftlet::tests
