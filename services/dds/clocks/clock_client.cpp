@@ -1,0 +1,92 @@
+#include "swiftlet/services/dds/clocks/clock_client.hpp"
+
+#include <random>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+namespace swiftlet::comms {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kStatusPeriod{500};
+
+std::uint64_t random_id() {
+  std::random_device random;
+  return (static_cast<std::uint64_t>(random()) << 32U) | random();
+}
+
+}  // namespace
+
+ClockClient::ClockClient(Node& node, std::function<std::int64_t()> own_ns)
+    : own_ns_(std::move(own_ns)),
+      id_(random_id()),
+      requests_(node.publish(topics::kClockRequest)),
+      status_(node.publish(topics::kClockStatus)),
+      replies_(node.subscribe<msg::ClockReply>(topics::kClockReply,
+                                               [this](const msg::ClockReply& reply) { take(reply); })) {}
+
+void ClockClient::ask_if_due() {
+  latest_.take(known_);
+  const Time now = Clock::now();
+  if (now < due_) return;
+  due_ = now + (known_.is_certain ? kPeriod : kFirstPeriod);
+  msg::ClockRequest request;
+  request.client(id_);
+  request.sequence_number(++requests_sent_);
+  request.sent_ns(own_ns_());
+  requests_.publish(request);
+}
+
+std::optional<std::int64_t> ClockClient::to_vehicle(std::int64_t own_ns) {
+  latest_.take(known_);
+  if (!known_.is_certain) return std::nullopt;
+  return own_ns + known_.clock.offset_at(own_ns);
+}
+
+void ClockClient::take(const msg::ClockReply& reply) {
+  const std::int64_t now_ns = own_ns_();
+  if (reply.client() != id_ || reply.sequence_number() <= last_answered_) return;
+  last_answered_ = reply.sequence_number();
+  if (filter_.add({reply.sent_ns(), reply.received_ns(), reply.answered_ns(), now_ns}) != nullptr) return;
+  const ClockEstimate& clock = *filter_.estimate();
+  const bool is_certain = filter_.exchanges() >= ClockFilter::kStepExchanges && !filter_.is_in_doubt();
+  latest_.put({clock, is_certain});
+  log_changes(is_certain, clock, now_ns);
+  publish_status(is_certain, clock, now_ns);
+}
+
+void ClockClient::log_changes(bool is_known, const ClockEstimate& clock, std::int64_t now_ns) {
+  const double offset_s = -1e-9 * static_cast<double>(clock.offset_at(now_ns));
+  const double uncertainty_ms = 1e-6 * clock.uncertainty_ns(now_ns);
+  if (filter_.steps() > steps_logged_) {
+    spdlog::warn(
+        "a clock was set: that of the frames minus the vehicle's is now {:+.6f} s (within {:.3f} ms)",
+        offset_s, uncertainty_ms);
+  } else if (is_known && !was_known_) {
+    spdlog::info("clock of the frames minus the vehicle's: {:+.6f} s (within {:.3f} ms)", offset_s,
+                 uncertainty_ms);
+  }
+  steps_logged_ = filter_.steps();
+  was_known_ = was_known_ || is_known;
+}
+
+void ClockClient::publish_status(bool is_known, const ClockEstimate& clock, std::int64_t now_ns) {
+  const Time now = Clock::now();
+  if (now < status_due_) return;
+  status_due_ = now + kStatusPeriod;
+  msg::ClockStatus status;
+  status.stamp_ns(now_ns + clock.offset_at(now_ns));
+  status.sequence_number(++statuses_);
+  status.offset_ns(-clock.offset_at(now_ns));
+  status.drift(-clock.drift);
+  status.drift_uncertainty(2.0 * clock.drift_deviation);
+  status.uncertainty_ns(clock.uncertainty_ns(now_ns));
+  status.round_trip_ns(2.0 * clock.half_round_trip_ns);
+  status.steps(static_cast<std::uint32_t>(filter_.steps()));
+  status.known(is_known);
+  status_.publish(status);
+}
+
+}  // namespace swiftlet::comms

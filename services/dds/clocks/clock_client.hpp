@@ -1,0 +1,64 @@
+// Translates the stamps of a clock of its own to the vehicle's clock.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "swiftlet/services/dds/clocks/clock_filter.hpp"
+#include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/runtime/latest_value.hpp"
+
+namespace swiftlet::comms {
+
+// For a process at the border of the domain, whose measurements carry stamps of another clock: it asks the vehicle for its
+// clock, filters the answers and publishes what it knows as clock_status. Neither clock needs to be right or steady.
+class ClockClient {
+ public:
+  static constexpr std::chrono::milliseconds kPeriod{50};       // of the requests
+  static constexpr std::chrono::milliseconds kFirstPeriod{10};  // while the vehicle's clock is unknown
+
+  // own_ns: reads the own clock; each may have any origin. Called in several threads.
+  ClockClient(Node& node, std::function<std::int64_t()> own_ns);
+
+  // Call these two in one thread, for each measurement. Neither waits.
+  void ask_if_due();
+  // nullopt as long as the vehicle's clock is unknown: at first, and while one of the clocks may have been set.
+  std::optional<std::int64_t> to_vehicle(std::int64_t own_ns);
+
+ private:
+  using Time = std::chrono::steady_clock::time_point;
+  struct Knowledge {
+    ClockEstimate clock;
+    bool is_certain = false;
+  };
+
+  // In the thread that receives.
+  void take(const msg::ClockReply& reply);
+  void log_changes(bool is_known, const ClockEstimate& clock, std::int64_t now_ns);
+  void publish_status(bool is_known, const ClockEstimate& clock, std::int64_t now_ns);
+
+  const std::function<std::int64_t()> own_ns_;
+  const std::uint64_t id_;
+  runtime::LatestValue<Knowledge> latest_;
+
+  // Of the thread that asks.
+  Knowledge known_;
+  std::uint64_t requests_sent_ = 0;
+  Time due_;
+
+  // Of the thread that receives.
+  ClockFilter filter_;
+  std::uint64_t last_answered_ = 0;
+  bool was_known_ = false;
+  int steps_logged_ = 0;
+  std::uint64_t statuses_ = 0;
+  Time status_due_;
+
+  Publisher<msg::ClockRequest> requests_;
+  Publisher<msg::ClockStatus> status_;
+  Subscription replies_;  // last: its callback uses all members above
+};
+
+}  // namespace swiftlet::comms
