@@ -1,0 +1,11 @@
+// The subcommands of `swiftlet tune`.
+#pragma once
+
+#include "swiftlet/ground/command_line/command.hpp"
+
+namespace swiftlet::ground {
+
+Command add_tune_delay_command(runtime::CommandLine tune);
+Command add_tune_plot_command(runtime::CommandLine tune);
+
+}  // namespace swiftlet::ground

@@ -1,0 +1,58 @@
+#include "tests/soak/network_flight.hpp"
+
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+namespace swiftlet::soak {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kFlightTimeout = 240s;
+
+}  // namespace
+
+NetworkFlight::NetworkFlight(std::filesystem::path folder)
+    : folder_(std::move(folder)), network_(tests::HostNetwork::Layout::kSwitch, kHosts) {}
+
+void NetworkFlight::run(Host host, const char* program, const std::vector<std::string>& options) {
+  const tests::HostNetwork::Inside inside(network_, host);
+  programs_.emplace_back(program, options, folder_);
+}
+
+void NetworkFlight::start(std::uint64_t seed, const std::vector<std::string>& control_options, Host mocap) {
+  run(kVehicle, "swiftlet-plant", {"--seed", std::to_string(seed)});
+  run(mocap, "swiftlet-mocap", {"--seed", std::to_string(seed)});
+  run(kControl, "swiftlet-control", control_options);
+}
+
+void NetworkFlight::start_standby() { run(kVehicle, "swiftlet-control", {}); }
+
+tests::ProgramResult NetworkFlight::ground(const std::vector<std::string>& words,
+                                           std::chrono::seconds timeout) const {
+  const tests::HostNetwork::Inside inside(network_, kGround);
+  return tests::run_program("swiftlet", words, folder_, timeout);
+}
+
+NetworkFlight::Result NetworkFlight::fly(const std::string& mission) const {
+  const tests::ProgramResult flight = ground(
+      {"fly", mission, "--attach", "--json", "--record", (folder_ / "flight").string()}, kFlightTimeout);
+  Result result;
+  const auto report = nlohmann::json::parse(flight.output, nullptr, false);
+  if (report.is_discarded() || !report.is_object()) {
+    result.fault = "fly: " + flight.errors;
+    return result;
+  }
+  const auto number = [&](const char* key) {
+    return report.contains(key) && report[key].is_number() ? report[key].get<double>() : 0.0;
+  };
+  result.completed = report.value("completed", false);
+  if (!result.completed) result.fault = report.value("reason", "no reason");
+  result.rms_m = number("rms_3d_m");
+  result.peak_m = number("peak_3d_m");
+  result.longest_gap_s = number("longest_gap_s");
+  return result;
+}
+
+}  // namespace swiftlet::soak
