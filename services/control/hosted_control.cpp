@@ -1,0 +1,34 @@
+#include "swiftlet/services/control/hosted_control.hpp"
+
+#include <stdexcept>
+
+#include <spdlog/spdlog.h>
+
+#include "swiftlet/services/dds/discovery/peer_log.hpp"
+
+namespace swiftlet::services {
+
+HostedControl::HostedControl(const comms::Participant& participant, const std::string& name,
+                             const ControllerSettings& settings)
+    : HostedVehicle(name),
+      node_(participant, name, [this](const std::string& fault) { fail(fault); }),
+      service_(settings.vehicle, settings.control, settings.failover_priority, node_, settings.realtime,
+               settings.clock, settings.fixed) {
+  comms::log_peers(node_);
+}
+
+void HostedControl::attend() {
+  if (service_.has_rival())
+    throw std::runtime_error("lockstep: another controller commands this vehicle; only one is allowed");
+}
+
+void HostedControl::log_end() {
+  const Snapshot& last = service_.last();
+  spdlog::info(
+      "ended in mode {}: {} steps at {:.1f} Hz since the rotors were last started, {} late, longest {:.0f} "
+      "us",
+      control::to_string(last.status.mode), last.timing.cycles, last.timing.rate_hz,
+      last.timing.deadline_misses, static_cast<double>(last.timing.longest_ns) * 1e-3);
+}
+
+}  // namespace swiftlet::services

@@ -1,0 +1,41 @@
+// The flight controller of a vehicle of swiftlet-control, which serves one or several.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "swiftlet/control/types/settings.hpp"
+#include "swiftlet/plant/model/vehicle.hpp"
+#include "swiftlet/services/control/control_service.hpp"
+#include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/runtime/clock.hpp"
+#include "swiftlet/services/runtime/hosting.hpp"
+#include "swiftlet/services/runtime/realtime.hpp"
+
+namespace swiftlet::services {
+
+struct ControllerSettings {
+  plant::Vehicle vehicle;
+  control::ControlSettings control;
+  std::vector<control::FixedSetting> fixed;
+  int failover_priority = 0;
+  runtime::Clock clock = runtime::Clock::kRealtime;
+  runtime::RealtimeSettings realtime;
+};
+
+class HostedControl final : public runtime::HostedVehicle {
+ public:
+  // Throws as ControlService does.
+  HostedControl(const comms::Participant& participant, const std::string& name,
+                const ControllerSettings& settings);
+
+  void run(const std::atomic<bool>& stop) override { service_.run(stop); }
+  void attend() override;
+  void log_end() override;
+
+ private:
+  comms::Node node_;
+  ControlService service_;
+};
+
+}  // namespace swiftlet::services

@@ -1,0 +1,50 @@
+// A simulated vehicle of swiftlet-plant, which serves one or several.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "swiftlet/plant/model/vehicle.hpp"
+#include "swiftlet/plant/simulation/settings.hpp"
+#include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/plant/lockstep_loop.hpp"
+#include "swiftlet/services/plant/plant_reporter.hpp"
+#include "swiftlet/services/plant/realtime_loop.hpp"
+#include "swiftlet/services/plant/simulated_vehicle.hpp"
+#include "swiftlet/services/runtime/clock.hpp"
+#include "swiftlet/services/runtime/hosting.hpp"
+#include "swiftlet/services/runtime/realtime.hpp"
+
+namespace swiftlet::services {
+
+struct PlantSettings {
+  plant::Vehicle vehicle;
+  plant::SimulationSettings simulation;
+  runtime::Clock clock = runtime::Clock::kRealtime;
+  double speed = 0.0;  // 0: real time, or in lockstep no limit
+  LockstepSettings lockstep;
+  runtime::RealtimeSettings realtime;
+  std::uint64_t seed = 1;
+  plant::VehicleState initial;
+};
+
+class HostedPlant final : public runtime::HostedVehicle {
+ public:
+  // Throws std::runtime_error as Node and LockstepLoop do.
+  HostedPlant(const comms::Participant& participant, const std::string& name, const PlantSettings& settings);
+
+  void run(const std::atomic<bool>& stop) override;
+  void attend() override;
+  void log_end() override { PlantReporter::log_end(last_); }
+
+ private:
+  comms::Node node_;
+  PlantReporter reporter_;
+  SimulatedVehicle simulated_;
+  PlantReport last_;
+  std::optional<RealtimeLoop> realtime_loop_;  // last: their subscriptions use all members above
+  std::optional<LockstepLoop> lockstep_loop_;
+};
+
+}  // namespace swiftlet::services

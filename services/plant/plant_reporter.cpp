@@ -1,0 +1,101 @@
+#include "swiftlet/services/plant/plant_reporter.hpp"
+
+#include <fmt/core.h>
+#include <spdlog/spdlog.h>
+
+#include "swiftlet/services/runtime/periodic_timer.hpp"
+
+namespace swiftlet::services {
+namespace {
+
+constexpr std::int64_t kPeriodNs = 1'000'000'000;
+constexpr std::int64_t kTroublePeriodNs = 10'000'000'000;
+
+comms::msg::VehicleInfo describe(const plant::Vehicle& vehicle, double imu_rate_hz) {
+  comms::msg::VehicleInfo info;
+  info.name() = vehicle.name;
+  info.simulated(true);
+  info.rotor_count(static_cast<std::uint8_t>(vehicle.rotor_count()));
+  info.mass_kg(vehicle.mass_kg);
+  info.imu_rate_hz(imu_rate_hz);
+  return info;
+}
+
+void update(comms::msg::VehicleInfo& info, const PlantReport& report, const std::string& fault) {
+  info.stamp_ns(report.stamp_ns);
+  info.sequence_number(info.sequence_number() + 1);
+  info.rotors_running(report.rotors_running);
+  info.paused(report.paused);
+  info.answered(report.answered);
+  info.unanswered(report.unanswered);
+  info.late(report.late);
+  info.sense_to_actuate_p50_us(static_cast<double>(report.answer_p50_ns) * 1e-3);
+  info.sense_to_actuate_p99_us(static_cast<double>(report.answer_p99_ns) * 1e-3);
+  info.sense_to_actuate_p999_us(static_cast<double>(report.answer_p999_ns) * 1e-3);
+  info.sense_to_actuate_max_us(static_cast<double>(report.answer_max_ns) * 1e-3);
+  info.fault() = fault;
+}
+
+}  // namespace
+
+PlantReporter::PlantReporter(comms::Node& node, const plant::Vehicle& vehicle,
+                             const plant::SimulationSettings& settings)
+    : publisher_(node.publish(comms::topics::kVehicleInfo)),
+      info_(describe(vehicle, settings.imu.rate_hz)),
+      timeout_fault_(fmt::format("no actuator command for {:g} s", settings.command_timeout_s)) {}
+
+void PlantReporter::publish_due(const PlantReport& report) {
+  const bool changed = report.rotors_running != last_report_.rotors_running ||
+                       report.timed_out != last_report_.timed_out || report.paused != last_report_.paused ||
+                       (report.paused && report.stamp_ns != last_report_.stamp_ns);
+  const std::int64_t now_ns = runtime::monotonic_ns();
+  if (!changed && now_ns < due_ns_) return;
+  due_ns_ = now_ns + kPeriodNs;
+  const std::string fault = report.timed_out ? timeout_fault_ : "";
+  update(info_, report, fault);
+  publisher_.publish(info_);
+  log_rotors(report, fault);
+  if (now_ns >= trouble_due_ns_ && log_trouble(report)) trouble_due_ns_ = now_ns + kTroublePeriodNs;
+  last_report_ = report;
+}
+
+void PlantReporter::log_rotors(const PlantReport& report, const std::string& fault) {
+  if (report.rotors_running == last_report_.rotors_running) return;
+  if (report.rotors_running) {
+    spdlog::info("rotors started");
+  } else if (report.timed_out) {
+    spdlog::error("rotors stopped: {}", fault);
+  } else {
+    spdlog::info("rotors stopped on command");
+  }
+}
+
+// Logs refused commands and slips since the last call. Returns true if there were any.
+bool PlantReporter::log_trouble(const PlantReport& report) {
+  const bool refused = report.refused_commands > logged_report_.refused_commands;
+  const bool slipped = report.slips > logged_report_.slips;
+  if (refused) {
+    spdlog::warn("refused {} actuator commands, the last: {}",
+                 report.refused_commands - logged_report_.refused_commands, report.refusal.text);
+  }
+  if (slipped) {
+    spdlog::warn("fell behind real time: delayed simulated time {} times, by {:.1f} ms in total",
+                 report.slips - logged_report_.slips,
+                 static_cast<double>(report.slipped_ns - logged_report_.slipped_ns) * 1e-6);
+  }
+  logged_report_ = report;
+  return refused || slipped;
+}
+
+void PlantReporter::log_end(const PlantReport& last) {
+  spdlog::info(
+      "ended after {:.1f} s of simulated time: {} commands obeyed, {} refused; sense to actuate p50 {:.0f} "
+      "us, "
+      "p99 {:.0f} us, max {:.0f} us over {} samples, {} unanswered; behind real time {} times, {:.1f} ms",
+      static_cast<double>(last.stamp_ns) * 1e-9, last.commands, last.refused_commands,
+      static_cast<double>(last.answer_p50_ns) * 1e-3, static_cast<double>(last.answer_p99_ns) * 1e-3,
+      static_cast<double>(last.answer_max_ns) * 1e-3, last.answered, last.unanswered, last.slips,
+      static_cast<double>(last.slipped_ns) * 1e-6);
+}
+
+}  // namespace swiftlet::services

@@ -1,0 +1,36 @@
+// Publishes and logs the reports of a simulated vehicle.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "swiftlet/plant/model/vehicle.hpp"
+#include "swiftlet/plant/simulation/settings.hpp"
+#include "swiftlet/services/dds/node.hpp"
+#include "swiftlet/services/plant/simulated_vehicle.hpp"
+
+namespace swiftlet::services {
+
+class PlantReporter {
+ public:
+  PlantReporter(comms::Node& node, const plant::Vehicle& vehicle, const plant::SimulationSettings& settings);
+
+  // Publishes vehicle_info every second, and at once when the rotors start or stop or the pause changes.
+  void publish_due(const PlantReport& report);
+  // Logs the figures of the whole run.
+  static void log_end(const PlantReport& last);
+
+ private:
+  void log_rotors(const PlantReport& report, const std::string& fault);
+  bool log_trouble(const PlantReport& report);
+
+  comms::Publisher<comms::msg::VehicleInfo> publisher_;
+  comms::msg::VehicleInfo info_;
+  std::string timeout_fault_;
+  PlantReport last_report_;
+  PlantReport logged_report_;
+  std::int64_t due_ns_ = 0;
+  std::int64_t trouble_due_ns_ = 0;
+};
+
+}  // namespace swiftlet::services

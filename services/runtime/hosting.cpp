@@ -1,0 +1,122 @@
+#include "swiftlet/services/runtime/hosting.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <stdexcept>
+#include <thread>
+
+#include <spdlog/spdlog.h>
+
+#include "swiftlet/services/runtime/log_label.hpp"
+
+namespace swiftlet::runtime {
+namespace {
+
+// A hosted vehicle and its thread.
+class Running {
+ public:
+  Running(std::unique_ptr<HostedVehicle> vehicle, std::size_t vehicles)
+      : vehicle_(std::move(vehicle)), label_(log_label_of(vehicle_->name(), vehicles)), thread_([this] {
+          const LogLabel label(label_);
+          guarded([this] { vehicle_->run(stop_); });
+        }) {}
+  ~Running() { join(); }
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+  bool has_failed() const { return !vehicle_->failure().empty(); }
+  std::string failure() const { return (label_.empty() ? "" : label_ + ": ") + vehicle_->failure(); }
+
+  void attend() {
+    const LogLabel label(label_);
+    guarded([this] { vehicle_->attend(); });
+  }
+
+  void request_stop() { stop_ = true; }
+
+  void end() {
+    join();
+    attend();
+    const LogLabel label(label_);
+    if (!has_failed()) guarded([this] { vehicle_->log_end(); });
+  }
+
+ private:
+  template <class Work>
+  void guarded(const Work& work) {
+    try {
+      work();
+    } catch (const std::exception& error) {
+      vehicle_->fail(error.what());
+    }
+  }
+
+  void join() {
+    stop_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+
+  std::unique_ptr<HostedVehicle> vehicle_;
+  const std::string label_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;  // last: uses all members above
+};
+
+using Fleet = std::vector<std::unique_ptr<Running>>;
+
+// Ends the vehicles that have failed, and keeps their sentences.
+void end_failed(Fleet& fleet, std::size_t vehicles, std::vector<std::string>& failures) {
+  for (auto one = fleet.begin(); one != fleet.end();) {
+    if (!(*one)->has_failed()) {
+      ++one;
+      continue;
+    }
+    failures.push_back((*one)->failure());
+    if (vehicles > 1) spdlog::error("{}; this vehicle ends, {} go on", failures.back(), fleet.size() - 1);
+    one = fleet.erase(one);
+  }
+}
+
+std::string join(const std::vector<std::string>& sentences) {
+  std::string text;
+  for (const std::string& sentence : sentences) text += (text.empty() ? "" : "; ") + sentence;
+  return text;
+}
+
+}  // namespace
+
+void HostedVehicle::fail(const std::string& sentence) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (failure_.empty()) failure_ = sentence;
+}
+
+std::string HostedVehicle::failure() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return failure_;
+}
+
+std::string log_label_of(const std::string& vehicle, std::size_t vehicles) {
+  return vehicles > 1 ? vehicle : std::string();
+}
+
+void host(std::vector<std::unique_ptr<HostedVehicle>> vehicles, StopSignal& stop,
+          std::chrono::milliseconds period) {
+  const std::size_t count = vehicles.size();
+  Fleet fleet;
+  fleet.reserve(count);
+  for (auto& vehicle : vehicles) fleet.push_back(std::make_unique<Running>(std::move(vehicle), count));
+  std::vector<std::string> failures;
+  do {
+    for (const auto& one : fleet) one->attend();
+    end_failed(fleet, count, failures);
+  } while (!fleet.empty() && !stop.wait_for(period));
+  for (const auto& one : fleet) one->request_stop();
+  for (const auto& one : fleet) one->end();
+  end_failed(fleet, count, failures);
+  if (failures.empty()) return;
+  if (count == 1) throw std::runtime_error(failures.front());
+  throw std::runtime_error(std::to_string(failures.size()) + " of " + std::to_string(count) +
+                           " vehicles failed: " + join(failures));
+}
+
+}  // namespace swiftlet::runtime
