@@ -11,6 +11,9 @@ target_compile_options(swiftlet_flags INTERFACE
   -ffp-contract=off  # same result on every machine: lockstep runs are compared bit by bit
   -fno-math-errno -fno-trapping-math  # no code reads errno after a math function or the floating-point exception flags
   $<$<BOOL:${SWIFTLET_WERROR}>:-Werror>)
+if(SWIFTLET_FAST_DDS STREQUAL fastdds)  # brings it to its users; precompiled headers need it everywhere
+  target_compile_definitions(swiftlet_flags INTERFACE _FILE_OFFSET_BITS=64)
+endif()
 if(SWIFTLET_SANITIZE)
   # A sanitizer error ends the program, so that the test fails.
   target_compile_options(swiftlet_flags INTERFACE

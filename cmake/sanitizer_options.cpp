@@ -5,7 +5,7 @@
 
 extern "C" {
 
-// Debian's Fast DDS 2.9 deletes its own objects through a base class with sized delete. The mismatch stays
+// Debian's Fast DDS deletes its own objects through a base class with sized delete. The mismatch stays
 // inside the library.
 const char* __asan_default_options() { return "new_delete_type_mismatch=0"; }
 
@@ -17,6 +17,7 @@ const char* __ubsan_default_options() { return "print_stacktrace=1"; }
 // DDS locks some mutexes recursively; spdlog counts references to a logger with atomics.
 const char* __tsan_default_suppressions() {
   return "deadlock:libfastrtps.so\n"
+         "deadlock:libfastdds.so\n"
          "race:libspdlog.so\n";
 }
 

@@ -10,10 +10,10 @@
 
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
-#include <fastrtps/types/TypesBase.h>
 
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/io/text_file.hpp"
+#include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/fast_dds_library.hpp"
 
 namespace swiftlet::comms {
@@ -21,7 +21,6 @@ namespace {
 
 namespace dds = eprosima::fastdds::dds;
 using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
-using eprosima::fastrtps::types::ReturnCode_t;
 using Element = tinyxml2::XMLElement;
 
 constexpr const char* kUseBuiltinTransports = "useBuiltinTransports";
@@ -100,9 +99,9 @@ class ProfileFile {
   }
 
   void check_participant(const Element& profiles, const Element& rtps) const {
+    // No flow controllers: see kHasFlowControllers.
     require_known(rtps, {"allocation", "sendSocketBufferSize", "listenSocketBufferSize",
-                         "throughputController", "flow_controller_descriptor_list", "propertiesPolicy",
-                         kUserTransports, kUseBuiltinTransports});
+                         "throughputController", "propertiesPolicy", kUserTransports, kUseBuiltinTransports});
     const Element* const builtin = rtps.FirstChildElement(kUseBuiltinTransports);
     if (builtin != nullptr && builtin->BoolText(false)) fail(*builtin, "is true, must be false");
     const Element* const transports = rtps.FirstChildElement(kUserTransports);
@@ -142,10 +141,10 @@ void load_into_fast_dds(const std::string& file) {
   dds::Log::Flush();
   dds::Log::ClearConsumers();
   dds::Log::RegisterConsumer(std::make_unique<MessageCollector>(messages));
-  const ReturnCode_t loaded = dds::DomainParticipantFactory::get_instance()->load_XML_profiles_file(file);
+  const ReturnCode loaded = dds::DomainParticipantFactory::get_instance()->load_XML_profiles_file(file);
   dds::Log::Flush();
   log_fast_dds_to_stderr();
-  if (loaded != ReturnCode_t::RETCODE_OK || !messages.empty())
+  if (!succeeded(loaded) || !messages.empty())
     throw runtime::ConfigError(file, 0, "",
                                "is refused by Fast DDS: " + (messages.empty() ? "" : messages.front()));
 }

@@ -4,7 +4,8 @@
 #include <string>
 
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+
+#include "swiftlet/services/dds/fast_dds.hpp"
 
 namespace swiftlet::comms {
 
@@ -15,8 +16,8 @@ struct DdsProfile {
 };
 
 // Reads the participant profile of a file: the only one, or that with is_default_profile="true". It may set
-//   rtps: allocation, sendSocketBufferSize, listenSocketBufferSize, throughputController,
-//         flow_controller_descriptor_list, propertiesPolicy, userTransports with one UDPv4 transport
+//   rtps: allocation, sendSocketBufferSize, listenSocketBufferSize, throughputController (Fast DDS 2.9 only),
+//         propertiesPolicy, userTransports with one UDPv4 transport
 //   transport_descriptor: sendBufferSize, receiveBufferSize, TTL, maxMessageSize, output_port, interfaceWhiteList
 // Throws runtime::ConfigError with file, line and element for everything else, and for what Fast DDS refuses. Not
 // thread-safe.

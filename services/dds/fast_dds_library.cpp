@@ -6,8 +6,8 @@
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/dds/log/StdoutErrConsumer.hpp>
-#include <fastdds/rtps/attributes/ServerAttributes.h>
-#include <fastrtps/xmlparser/XMLProfileManager.h>
+
+#include "swiftlet/services/dds/fast_dds.hpp"
 
 namespace swiftlet::comms {
 
@@ -19,19 +19,16 @@ void log_fast_dds_to_stderr() {
 }
 
 void set_up_fast_dds() {
-  using eprosima::fastrtps::xmlparser::XMLProfileManager;
   static const bool done = [] {
     log_fast_dds_to_stderr();
     dds::Log::SetVerbosity(dds::Log::Kind::Error);
     // Otherwise Fast DDS makes a client of a server of each participant that uses multicast, peers or the loopback
     // interface. The options have read the variable.
-    unsetenv(eprosima::fastdds::rtps::DEFAULT_ROS2_MASTER_URI);
+    unsetenv("ROS_DISCOVERY_SERVER");
     // The default files of Fast DDS, so that what follows holds also if they say otherwise.
     dds::DomainParticipantFactory::get_instance()->load_profiles();
     // Two nodes in one process communicate as two processes do: publish() never runs a callback.
-    auto settings = XMLProfileManager::library_settings();
-    settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
-    XMLProfileManager::library_settings(settings);
+    switch_off_intraprocess_delivery();
     return true;
   }();
   static_cast<void>(done);

@@ -1,21 +1,18 @@
 #include "swiftlet/services/dds/network_qos.hpp"
 
+#include <algorithm>
 #include <string>
 #include <vector>
-
-#include <fastdds/rtps/attributes/ServerAttributes.h>
-#include <fastrtps/utils/IPLocator.h>
 
 #include "swiftlet/io/config_error.hpp"
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
 #include "swiftlet/services/dds/discovery/discovery_servers.hpp"
 #include "swiftlet/services/dds/discovery/host_address.hpp"
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
+#include "swiftlet/services/dds/fast_dds.hpp"
 
 namespace swiftlet::comms {
 namespace {
-
-namespace rtps = eprosima::fastrtps::rtps;
 
 constexpr const char* kAnyAddress = "0.0.0.0";
 constexpr const char* kLoopback = "127.0.0.1";
@@ -34,17 +31,25 @@ void add_host(const std::string& ipv4, const DiscoveryPorts& ports, std::uint32_
   for (std::uint32_t i = 0; i < count; ++i) peers.push_back(locator_of(ipv4, ports.first + i * ports.gap));
 }
 
-// As a client that hears of all processes of the domain, not only of those with the same topics.
-void add_servers(const std::string& list, rtps::DiscoverySettings& discovery) {
+bool is_own(const std::string& ipv4) {
+  const std::vector<Interface> own = interfaces_up();
+  return std::any_of(own.begin(), own.end(), [&](const Interface& it) { return it.address == ipv4; });
+}
+
+// As a client that hears of all processes of the domain, not only of those with the same topics. Fast DDS 2.9 fails an
+// assertion if a server of this host has another address than that of the loopback interface.
+void add_servers(const std::string& list, rtps::DiscoverySettings& discovery,
+                 eprosima::fastdds::rtps::UDPv4TransportDescriptor& udp) {
   if (const std::string fault = fault_of_discovery_servers(list); !fault.empty())
     throw runtime::ConfigError("discovery server " + fault);
   discovery.discoveryProtocol = rtps::DiscoveryProtocol::SUPER_CLIENT;
   for (const DiscoveryServerAddress& server : parse_discovery_servers(list)) {
-    eprosima::fastdds::rtps::RemoteServerAttributes remote;
-    eprosima::fastdds::rtps::get_server_client_default_guidPrefix(server.number, remote.guidPrefix);
-    for (const std::string& address : ipv4_addresses_of(server.address.host))
-      remote.metatrafficUnicastLocatorList.push_back(locator_of(address, server.address.port));
-    discovery.m_DiscoveryServers.push_back(remote);
+    std::vector<rtps::Locator_t> addresses;
+    for (const std::string& address : ipv4_addresses_of(server.address.host)) {
+      addresses.push_back(locator_of(is_own(address) ? kLoopback : address, server.address.port));
+      if (is_own(address) && !udp.interfaceWhiteList.empty()) udp.interfaceWhiteList.emplace_back(kLoopback);
+    }
+    add_discovery_server(discovery, server.number, addresses);
   }
 }
 
@@ -62,7 +67,7 @@ void set_network(const NodeSettings& settings, std::uint32_t announced_ports,
   const DiscoveryPorts ports = discovery_ports(settings.domain);
   // Instead of the multicast address, only this: the first free port of the domain.
   builtin.metatrafficUnicastLocatorList.push_back(locator_of(kAnyAddress, ports.first));
-  if (network.peers.empty()) return add_servers(network.discovery_servers, builtin.discovery_config);
+  if (network.peers.empty()) return add_servers(network.discovery_servers, builtin.discovery_config, udp);
   // The processes of this host.
   if (own_addresses.empty()) add_host(kLoopback, ports, announced_ports, builtin.initialPeersList);
   for (const std::string& address : own_addresses)

@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 
+#include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/node.hpp"
 
 namespace swiftlet::comms {

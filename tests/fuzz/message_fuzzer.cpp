@@ -1,5 +1,4 @@
 // Fuzzes received messages, from bytes to the structs for the controller. The first byte selects the type.
-#include <algorithm>
 #include <cstring>
 
 #include <spdlog/spdlog.h>
@@ -17,11 +16,8 @@ namespace {
 template <class Type>
 bool is_accepted(const std::uint8_t* data, std::size_t size, typename Type::Plain& out) {
   static comms::CheckedTypeSupport<typename Type::PubSub> type;
-  tests::Payload payload(static_cast<std::uint32_t>(size));
-  payload.length = static_cast<std::uint32_t>(size);
-  std::copy_n(data, size, payload.data);
   typename Type::PubSub::type message;
-  if (!type.deserialize(&payload, &message)) return false;
+  if (!tests::deserialize(type, data, size, &message)) return false;
   const comms::Fault fault = comms::from_message(message, out);
   if (fault) tests::demand(std::strlen(fault.text) > 8, "a refusal says what is wrong");
   return !fault;

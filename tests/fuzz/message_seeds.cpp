@@ -18,13 +18,12 @@ using comms::to_message;
 namespace msg = comms::msg;
 
 template <class Type>
-void write(const std::filesystem::path& folder, const char* name, typename Type::PubSub::type message) {
-  typename Type::PubSub type;
-  tests::Payload payload(type.getSerializedSizeProvider(&message)());
-  type.serialize(&message, &payload);
+void write(const std::filesystem::path& folder, const char* name,
+           const typename Type::PubSub::type& message) {
+  const auto bytes = swiftlet::tests::serialized<typename Type::PubSub>(message);
   std::ofstream file(folder / name, std::ios::binary);
   file.put(Type::kTag);
-  file.write(reinterpret_cast<const char*>(payload.data), payload.length);
+  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }
 
 }  // namespace

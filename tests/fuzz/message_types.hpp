@@ -1,8 +1,6 @@
 // The message types of the fuzzer, each with the letter that selects it.
 #pragma once
 
-#include <fastdds/rtps/common/SerializedPayload.h>
-
 #include "swiftlet_msgs/msg/ActuatorCommandPubSubTypes.h"
 #include "swiftlet_msgs/msg/BatteryPubSubTypes.h"
 #include "swiftlet_msgs/msg/CommandPubSubTypes.h"
@@ -18,10 +16,9 @@
 #include "swiftlet_msgs/msg/TrajectoryPubSubTypes.h"
 
 #include "swiftlet/services/messages/convert.hpp"
+#include "tests/support/serialization.hpp"
 
 namespace swiftlet::tests {
-
-using Payload = eprosima::fastrtps::rtps::SerializedPayload_t;
 
 template <char kTagValue, class PubSubType, class PlainStruct>
 struct MessageType {

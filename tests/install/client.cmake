@@ -6,7 +6,7 @@ run(${CMAKE_COMMAND} --build ${consumer} --target fly_mission)
 # Libraries that the client links, directly and indirectly.
 execute_process(COMMAND readelf -d ${consumer}/fly_mission OUTPUT_VARIABLE needed COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ldd ${consumer}/fly_mission OUTPUT_VARIABLE loaded COMMAND_ERROR_IS_FATAL ANY)
-if(NOT needed MATCHES "libfastrtps")
+if(NOT needed MATCHES "libfast(rtps|dds)")
   message(FATAL_ERROR "readelf did not say what is linked: ${needed}")
 endif()
 foreach(heavy ceres glog CLI11 ncurses tinfo gnuplot)

@@ -6,35 +6,15 @@
 
 #include "swiftlet/services/dds/datagram/byte_reader.hpp"
 #include "swiftlet/services/dds/datagram/parameter_list.hpp"
+#include "swiftlet/services/dds/datagram/submessage.hpp"
 
 namespace swiftlet::comms {
 namespace {
 
-constexpr std::size_t kHeaderBytes = 20;
 constexpr std::uint8_t kMagic[] = {'R', 'T', 'P', 'S', 2};  // 9.4.4: protocol, major version
-
-// Kinds of submessages (9.4.5.1.1).
-enum Kind : std::uint8_t {
-  kPad = 0x01,
-  kAcknack = 0x06,
-  kHeartbeat = 0x07,
-  kGap = 0x08,
-  kInfoTimestamp = 0x09,
-  kInfoSource = 0x0c,
-  kInfoDestination = 0x0e,
-  kNackFrag = 0x12,
-  kHeartbeatFrag = 0x13,
-  kData = 0x15,
-  kDataFrag = 0x16,
-  kSecureBody = 0x30,         // the first and
-  kSecureRtpsPostfix = 0x34,  // the last of DDS Security
-  kSecureRtpsPrefix = 0x33,
-  kStatistics = 0x80,  // of Fast DDS built with statistics, which appends it to every message
-};
-constexpr std::size_t kStatisticsBytes = 4 + 56;  // with its header
+constexpr std::size_t kStatisticsBytes = 4 + 56;            // with its header
 
 // Bits of the flags of a submessage.
-constexpr std::uint8_t kLittleEndianFlag = 1;
 constexpr std::uint8_t kInlineQosFlag = 2;
 constexpr std::uint8_t kInvalidateFlag = 2;   // of INFO_TS
 constexpr std::uint8_t kDataFlag = 4;         // of DATA
@@ -46,6 +26,8 @@ constexpr std::uint32_t kSmallestFragment = 1024;
 constexpr std::uint32_t kSmallestLastFragment = 4;
 // Fast DDS keeps each sample of a gap in memory.
 constexpr std::uint32_t kLongestGap = 256;
+// A discovery server skips all announcements that do not concern a client.
+constexpr std::uint32_t kLongestBuiltinGap = 65'536;
 constexpr std::uint32_t kMostNumbers = 256;  // of a set (9.4.2.6)
 
 struct Submessage {
@@ -233,7 +215,8 @@ const char* DatagramCheck::check_gap(ByteReader body) {
   if (!body.ok()) return "GAP too short (8.3.8.4)";
   if (!start.in_range || !base.in_range) return "GAP with a sequence number out of range (8.3.5.5)";
   if (start.value == 0 || base.value < start.value) return "GAP that ends before it begins (8.3.8.4.3)";
-  if (base.value - start.value > kLongestGap) return "GAP of more than 256 samples (8.3.8.4)";
+  if (base.value - start.value > (is_builtin(writer) ? kLongestBuiltinGap : kLongestGap))
+    return "GAP of more than 256 samples (8.3.8.4)";
   return note(writer, base.value);
 }
 

@@ -8,15 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include <fastdds/rtps/network/SenderResource.h>
-#include <fastdds/rtps/transport/ChainingTransport.h>
-#include <fastdds/rtps/transport/TransportReceiverInterface.h>
-
 namespace swiftlet::comms {
 namespace {
 
 namespace transport = eprosima::fastdds::rtps;
-namespace rtps = eprosima::fastrtps::rtps;
 
 // All zeros for shared memory: its locators have no address of a host.
 SenderAddress address_of(const rtps::Locator_t& locator) {
@@ -30,16 +25,11 @@ Now now() {
           std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1)};
 }
 
-class GuardedTransport final : public transport::ChainingTransport {
+class GuardedTransport final : public ChainedTransport {
  public:
   GuardedTransport(const transport::ChainingTransportDescriptor& descriptor,
                    std::shared_ptr<DatagramGuard> guard)
-      : ChainingTransport(descriptor), guard_(std::move(guard)) {}
-
-  transport::TransportDescriptorInterface* get_configuration() override {
-    return low_level_transport_->get_configuration();
-  }
-  void shutdown() override { low_level_transport_->shutdown(); }
+      : ChainedTransport(descriptor), guard_(std::move(guard)) {}
 
   // ChainingTransport takes a port for open after an attempt to open it has failed, and after it was closed.
   bool OpenInputChannel(const rtps::Locator_t& locator, transport::TransportReceiverInterface* next,
@@ -50,15 +40,13 @@ class GuardedTransport final : public transport::ChainingTransport {
   // second one and send everything twice.
   bool OpenOutputChannel(transport::SendResourceList& channels, const rtps::Locator_t& locator) override;
 
-  bool send(rtps::SenderResource* below, const rtps::octet* data, std::uint32_t size,
-            rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
-            const std::chrono::steady_clock::time_point& deadline) override {
-    if (!guard_->seals()) return below->send(data, size, begin, end, deadline);
-    thread_local std::vector<rtps::octet> sealed(1
-                                                 << 16);  // allocates when a thread sends for the first time
-    sealed.assign(data, data + size);
+  bool send_sealed(rtps::SenderResource& below, const OutgoingDatagram& datagram, const Destination& to) {
+    if (!guard_->seals()) return comms::send(below, datagram, to);
+    // Allocates when a thread sends for the first time.
+    thread_local std::vector<rtps::octet> sealed(1 << 16);
+    datagram.copy_to(sealed);
     guard_->seal(sealed, now());
-    return below->send(sealed.data(), static_cast<std::uint32_t>(sealed.size()), begin, end, deadline);
+    return comms::send(below, sealed, to);
   }
 
   void receive(transport::TransportReceiverInterface* next, const rtps::octet* data, std::uint32_t size,
@@ -85,26 +73,19 @@ class GuardedTransport final : public transport::ChainingTransport {
 };
 
 // A channel of the transport below, through which a GuardedTransport sends.
-class GuardedChannel final : public rtps::SenderResource {
+class GuardedChannel final : public OutputChannel {
  public:
   GuardedChannel(GuardedTransport& owner, std::unique_ptr<rtps::SenderResource> below)
-      : SenderResource(owner.kind()), owner_(&owner), below_(std::move(below)) {
-    send_lambda_ = [this](const rtps::octet* data, std::uint32_t size, rtps::LocatorsIterator* begin,
-                          rtps::LocatorsIterator* end,
-                          const std::chrono::steady_clock::time_point& deadline) {
-      return owner_->send(below_.get(), data, size, begin, end, deadline);
-    };
-  }
+      : OutputChannel(std::move(below)), owner_(&owner) {}
 
-  void add_locators_to_list(rtps::LocatorList_t& locators) const override {
-    below_->add_locators_to_list(locators);
-  }
   bool is_of(const GuardedTransport& owner) const { return owner_ == &owner; }
-  std::unique_ptr<rtps::SenderResource> take() { return std::move(below_); }
 
  private:
+  bool send_datagram(const OutgoingDatagram& datagram, const Destination& to) override {
+    return owner_->send_sealed(below(), datagram, to);
+  }
+
   GuardedTransport* const owner_;
-  std::unique_ptr<rtps::SenderResource> below_;
 };
 
 bool GuardedTransport::OpenOutputChannel(transport::SendResourceList& channels,
@@ -180,7 +161,7 @@ struct GuardedUdp final : transport::ChainingTransportDescriptor {
   std::shared_ptr<DatagramGuard> guard;
 };
 
-// Not a ChainingTransportDescriptor: Fast DDS 2.9 ignores locators of shared memory unless it finds a descriptor of this
+// Not a ChainingTransportDescriptor: Fast DDS ignores locators of shared memory unless it finds a descriptor of this
 // type.
 struct GuardedSharedMemory final : transport::SharedMemTransportDescriptor {
   std::uint32_t max_message_size() const override {

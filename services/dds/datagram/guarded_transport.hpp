@@ -3,11 +3,8 @@
 
 #include <memory>
 
-#include <fastdds/rtps/transport/TransportDescriptorInterface.h>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
-
 #include "swiftlet/services/dds/datagram/datagram_guard.hpp"
+#include "swiftlet/services/dds/fast_dds.hpp"
 
 namespace swiftlet::comms {
 

@@ -9,8 +9,10 @@ namespace {
 
 constexpr std::uint16_t kSentinel = 0x0001;
 constexpr std::uint16_t kKeyHash = 0x0070;
-constexpr int kMostParameters = 256;           // of a list
-constexpr std::int32_t kLongestLease_s = 300;  // of a participant; the longest default of a vendor
+constexpr int kMostParameters = 256;  // of a list
+// Leases of a participant: a short one would end between two announcements; the longest default of a vendor.
+constexpr std::int32_t kShortestLease_s = 1;
+constexpr std::int32_t kLongestLease_s = 300;
 
 // What a parameter holds.
 enum class Shape {
@@ -132,9 +134,9 @@ bool is_own_guid(const std::uint8_t* guid, const ListContext& context) {
 
 const char* check_lease(ByteReader value) {
   const auto seconds = static_cast<std::int32_t>(value.u32());
-  const std::uint32_t fraction = value.u32();
-  if (!value.ok() || seconds < 0 || (seconds == 0 && fraction == 0) || seconds > kLongestLease_s)
-    return "participant with a lease that is not between 0 and 300 s (9.6.3.2)";
+  value.skip(4);  // the fraction of a second
+  if (!value.ok() || seconds < kShortestLease_s || seconds > kLongestLease_s)
+    return "participant with a lease that is not between 1 and 300 s (9.6.3.2)";
   return nullptr;
 }
 

@@ -23,7 +23,11 @@ ParticipantAdmission::ParticipantAdmission()
 
 bool ParticipantAdmission::Known::agrees(std::uint64_t announced) {
   constexpr int kRepetitions = 2;
-  if (announced == 0 || announced == digest) return true;
+  if (announced == 0) return true;
+  if (announced == digest) {
+    other_digest = 0;
+    return true;
+  }
   repeated = announced == other_digest ? repeated + 1 : 0;
   other_digest = announced;
   if (digest != 0 && repeated < kRepetitions) return false;

@@ -48,7 +48,7 @@ class ParticipantAdmission {
   ParticipantAdmission();
 
   // Returns the broken rule, a string literal; nullptr if the participant may join, or announces what it did before. A
-  // different announcement is accepted when it is repeated. digest: of the announcement; 0 for other datagrams about it.
+  // different announcement is accepted when it arrives three times in a row. digest: of the announcement; 0 for other datagrams about it.
   // now_ns: of a monotonic clock.
   const char* admit(const GuidPrefix& participant, std::uint64_t digest, const SenderAddress& host,
                     std::int64_t now_ns);
@@ -58,7 +58,7 @@ class ParticipantAdmission {
     GuidPrefix participant{};
     std::int64_t heard_ns = 0;
     std::uint64_t digest = 0;
-    std::uint64_t other_digest = 0;  // of the last announcement that differed
+    std::uint64_t other_digest = 0;  // of the last announcement, if it differed; else 0
     int repeated = 0;                // how often that was repeated
 
     bool agrees(std::uint64_t announced);

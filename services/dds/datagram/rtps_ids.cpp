@@ -4,7 +4,6 @@ namespace swiftlet::comms {
 namespace {
 
 // Of discovery, liveliness or security: the upper two bits of the last byte.
-bool is_builtin(const EntityId& entity) { return (entity[3] & 0xc0U) == 0xc0U; }
 
 struct BuiltinWriter {
   EntityId writer;

@@ -29,6 +29,9 @@ enum class BuiltinTopic {
 // By the kind in the last byte (9.3.1.2). The readers of Fast DDS accept samples of a writer without a kind from anyone.
 bool is_writer(const EntityId& entity);
 
+// An endpoint of the middleware itself (9.3.1.2).
+inline bool is_builtin(const EntityId& entity) { return (entity[3] & 0xc0U) == 0xc0U; }
+
 // nullopt: no writer, a built-in writer that is unknown, or one that does not belong to the reader.
 std::optional<BuiltinTopic> topic_of(const EntityId& reader, const EntityId& writer);
 

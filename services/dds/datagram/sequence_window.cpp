@@ -26,7 +26,8 @@ bool SequenceWindow::Writer::admit(std::uint32_t number, std::int64_t now_ns) {
   if (number <= newest) return true;
   const std::uint32_t ahead = number - newest;
   const auto passed_ns = static_cast<double>(now_ns - heard_ns);
-  const std::uint32_t burst = now_ns - met_ns < kFirstContact_ns ? kFirstBurst : kSampleBurst;
+  const bool may_burst = is_builtin(entity) || now_ns - met_ns < kFirstContact_ns;
+  const std::uint32_t burst = may_burst ? kFirstBurst : kSampleBurst;
   if (ahead > burst + kRateMargin * passed_ns / interval_ns) {
     agreeing = number >= refused && number - refused <= kSampleBurst ? agreeing + 1 : 1;
     refused = number;

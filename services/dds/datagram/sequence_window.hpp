@@ -13,7 +13,8 @@ namespace swiftlet::comms {
 // A writer may be ahead of its newest number by this many samples, and by four times as many as it sent at its usual rate
 // since then.
 constexpr std::uint32_t kSampleBurst = 8;
-// At first, while a reader learns what the writer has sent before.
+// At first, while a reader learns what the writer has sent before; and of the middleware's own writers at all times. A
+// process of many vehicles announces hundreds of endpoints at once, and a refused announcement is repeated after seconds.
 constexpr std::uint32_t kFirstBurst = 1024;
 constexpr std::int64_t kFirstContact_ns = 2'000'000'000;
 // As many datagrams in a row with numbers that are beyond, but agree with each other, show that the writer is there.

@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <tuple>
 
+#include "swiftlet/services/runtime/split_text.hpp"
+
 namespace swiftlet::comms {
 namespace {
 
@@ -45,13 +47,15 @@ bool lists(const std::string& names, const std::string& name) {
 }
 
 std::vector<std::string> split_names(const std::string& names) {
-  std::vector<std::string> parts;
-  for (std::size_t begin = 0; begin < names.size();) {
-    const std::size_t end = std::min(names.find(',', begin), names.size());
-    if (end > begin) parts.push_back(names.substr(begin, end - begin));
-    begin = end + 1;
-  }
+  std::vector<std::string> parts = runtime::split_text(names, ',');
+  parts.erase(std::remove(parts.begin(), parts.end(), ""), parts.end());
   return parts;
+}
+
+std::string join_names(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ",") + name;
+  return list;
 }
 
 bool yields(const Announcement& own, const Announcement& other) {

@@ -26,6 +26,7 @@ Announcement from_user_data(const std::vector<std::uint8_t>& user_data);
 // True if a list of names, "kl1,kl2", contains the name.
 bool lists(const std::string& names, const std::string& name);
 std::vector<std::string> split_names(const std::string& names);
+std::string join_names(const std::vector<std::string>& names);
 
 // Of two processes that are to be the only source of a topic, decides whether `own` yields to `other`. The one
 // that is not established yields to the established one. Otherwise the one that joined later yields, so that

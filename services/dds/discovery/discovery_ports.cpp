@@ -8,7 +8,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <fastdds/rtps/common/PortParameters.h>
+#include "swiftlet/services/dds/fast_dds.hpp"
 
 namespace swiftlet::comms {
 namespace {
@@ -34,14 +34,15 @@ bool is_free(std::uint32_t port, const std::string& own_address) {
 }  // namespace
 
 DiscoveryPorts discovery_ports(int domain) {
-  const eprosima::fastrtps::rtps::PortParameters rtps;
+  const rtps::PortParameters parameters;
   DiscoveryPorts ports;
-  ports.first = rtps.getUnicastPort(static_cast<std::uint32_t>(domain), 0);
-  ports.gap = rtps.participantIDGain;
+  ports.first = parameters.getUnicastPort(static_cast<std::uint32_t>(domain), 0);
+  ports.gap = parameters.participantIDGain;
   // The data port of a process follows its discovery port.
-  const std::uint32_t data_offset = rtps.offsetd3 - rtps.offsetd1;
-  const std::uint32_t end = std::min<std::uint32_t>(ports.first - rtps.offsetd1 + rtps.domainIDGain,
-                                                    std::numeric_limits<std::uint16_t>::max() + 1U);
+  const std::uint32_t data_offset = parameters.offsetd3 - parameters.offsetd1;
+  const std::uint32_t end =
+      std::min<std::uint32_t>(ports.first - parameters.offsetd1 + parameters.domainIDGain,
+                              std::numeric_limits<std::uint16_t>::max() + 1U);
   ports.count = (end - data_offset - ports.first + ports.gap - 1) / ports.gap;
   return ports;
 }

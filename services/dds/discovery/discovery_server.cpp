@@ -11,29 +11,24 @@
 #include <unistd.h>
 #include <utility>
 
-#include <fastdds/dds/domain/DomainParticipant.hpp>
-#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
-#include <fastdds/rtps/attributes/ServerAttributes.h>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
-
 #include "swiftlet/services/dds/datagram/datagram_guard.hpp"
 #include "swiftlet/services/dds/datagram/guarded_transport.hpp"
 #include "swiftlet/services/dds/discovery/announcement.hpp"
 #include "swiftlet/services/dds/discovery/interfaces.hpp"
+#include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/fast_dds_library.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "swiftlet/services/dds/periodic_task.hpp"
 #include "swiftlet/services/dds/qos/duration.hpp"
+#include "swiftlet/services/dds/security/security_qos.hpp"
 
 namespace swiftlet::comms {
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
 
+constexpr const char* kName = "discovery-server";
 constexpr std::chrono::milliseconds kLogPeriod{250};
 
 // Fast DDS does not say why it fails.
@@ -53,7 +48,8 @@ void require_free(int port) {
 dds::DomainParticipantQos server_qos(const DiscoveryServerSettings& settings,
                                      const std::shared_ptr<DatagramGuard>& guard) {
   dds::DomainParticipantQos qos;
-  qos.name("discovery-server");
+  qos.name(kName);
+  if (!settings.security.empty()) set_security(settings.security, kName, qos);
   auto& protocol = qos.wire_protocol();
   // The processes know the server by this prefix, that of ROS 2.
   eprosima::fastdds::rtps::get_server_client_default_guidPrefix(settings.number, protocol.prefix);
@@ -66,6 +62,8 @@ dds::DomainParticipantQos server_qos(const DiscoveryServerSettings& settings,
   protocol.builtin.metatrafficUnicastLocatorList.push_back(locator);
   UDPv4TransportDescriptor udp;
   udp.interfaceWhiteList = addresses_of_interfaces(settings.interfaces);
+  if (!settings.interfaces.empty())
+    udp.interfaceWhiteList.emplace_back("127.0.0.1");  // for clients of this host
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports.push_back(guarded(udp, guard));
   qos.allocation().participants = {0, kMostParticipants, 1};
@@ -75,6 +73,7 @@ dds::DomainParticipantQos server_qos(const DiscoveryServerSettings& settings,
 std::shared_ptr<DatagramGuard> guard_of(const DiscoveryServerSettings& settings) {
   DatagramLimits limits;
   limits.discovery_servers = true;
+  limits.security = !settings.security.empty();
   const std::string& file = settings.network_key_file;
   return std::make_shared<DatagramGuard>(
       file.empty() ? runtime::NetworkKeys() : runtime::read_network_keys(file), limits);
@@ -82,26 +81,26 @@ std::shared_ptr<DatagramGuard> guard_of(const DiscoveryServerSettings& settings)
 
 }  // namespace
 
-struct DiscoveryServer::Impl final : public dds::DomainParticipantListener {
+struct DiscoveryServer::Impl final : public DiscoveryListener {
   Impl(const DiscoveryServerSettings& settings, std::function<void(const DiscoveryServerEvent&)> event)
       : guard(guard_of(settings)), on_event(std::move(event)) {}
 
-  void on_participant_discovery(dds::DomainParticipant*, rtps::ParticipantDiscoveryInfo&& info) override {
+  void on_participant(const rtps::GUID_t& guid, const std::string& name,
+                      const std::vector<std::uint8_t>& user_data) override {
     const std::lock_guard<std::mutex> lock(mutex);
-    using Info = rtps::ParticipantDiscoveryInfo;
-    const auto known = processes.find(info.info.m_guid);
-    if (info.status == Info::DISCOVERED_PARTICIPANT && known == processes.end()) {
-      const Announcement announced = from_user_data(info.info.m_userData.dataVec());
-      const std::string name = info.info.m_participantName.c_str();
-      const std::string process =
-          announced.host.empty() ? name : ProcessIdentity{name, announced.host, announced.pid}.to_string();
-      processes[info.info.m_guid] = process;
-      on_event({process, true, false});
-    } else if (known != processes.end() &&
-               (info.status == Info::REMOVED_PARTICIPANT || info.status == Info::DROPPED_PARTICIPANT)) {
-      on_event({known->second, false, info.status == Info::REMOVED_PARTICIPANT});
-      processes.erase(known);
-    }
+    if (processes.count(guid) > 0) return;
+    const Announcement announced = from_user_data(user_data);
+    const std::string process =
+        announced.host.empty() ? name : ProcessIdentity{name, announced.host, announced.pid}.to_string();
+    processes[guid] = process;
+    on_event({process, true, false});
+  }
+  void on_participant_gone(const rtps::GUID_t& guid, bool said_goodbye) override {
+    const std::lock_guard<std::mutex> lock(mutex);
+    const auto known = processes.find(guid);
+    if (known == processes.end()) return;
+    on_event({known->second, false, said_goodbye});
+    processes.erase(known);
   }
 
   const std::shared_ptr<DatagramGuard> guard;

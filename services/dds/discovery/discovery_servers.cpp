@@ -3,23 +3,12 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "swiftlet/services/runtime/split_text.hpp"
+
 namespace swiftlet::comms {
-namespace {
-
-std::vector<std::string> parts_of(const std::string& list) {
-  std::vector<std::string> parts;
-  std::size_t begin = 0;
-  for (std::size_t end = 0; end != std::string::npos; begin = end + 1) {
-    end = list.find(';', begin);
-    parts.push_back(list.substr(begin, end == std::string::npos ? end : end - begin));
-  }
-  return parts;
-}
-
-}  // namespace
 
 std::string fault_of_discovery_servers(const std::string& list) {
-  const std::vector<std::string> parts = parts_of(list);
+  const std::vector<std::string> parts = runtime::split_text(list, ';');
   const bool valid = std::all_of(parts.begin(), parts.end(), [](const std::string& part) {
     return part.empty() || fault_of_host_address(part).empty();
   });
@@ -34,7 +23,7 @@ std::string fault_of_discovery_servers(const std::string& list) {
 
 std::vector<DiscoveryServerAddress> parse_discovery_servers(const std::string& list) {
   std::vector<DiscoveryServerAddress> servers;
-  const std::vector<std::string> parts = parts_of(list);
+  const std::vector<std::string> parts = runtime::split_text(list, ';');
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (parts[i].empty()) continue;
     HostAddress address = parse_host_address(parts[i]);

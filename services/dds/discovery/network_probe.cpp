@@ -15,6 +15,9 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "swiftlet/services/dds/clocks/clock_filter.hpp"
+#include "swiftlet/services/runtime/periodic_timer.hpp"
+
 namespace swiftlet::comms {
 namespace {
 
@@ -22,7 +25,7 @@ using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 constexpr const char* kGroup = "239.255.0.1";
-constexpr const char* kMagic = "swiftlet-probe-1";
+constexpr const char* kMagic = "swiftlet-probe-2";
 constexpr auto kPeriod = 50ms;
 constexpr auto kLastAnswers = 300ms;
 constexpr std::size_t kMaxDatagram = 512;
@@ -30,16 +33,17 @@ constexpr std::size_t kMaxPartners = 256;
 
 enum class Kind : char { kMulticast = 'm', kUnicast = 'u', kAnswer = 'a', kGoodbye = 'g' };
 
-// One datagram, as text: "swiftlet-probe-1 KIND SENDER HOST NUMBER ...".
+// One datagram, as text: "swiftlet-probe-2 KIND SENDER HOST NUMBER ...".
 struct Message {
   Kind kind = Kind::kUnicast;
   std::uint64_t sender = 0;  // a random number of each run
   std::string host;
   int number = 0;
-  // Of an answer: to whom, to which kind, and when the question arrived.
+  // Of an answer: to whom, to which kind, when the question was received, and when it was answered.
   std::uint64_t asker = 0;
   Kind of = Kind::kUnicast;
-  std::int64_t arrived_ns = 0;
+  std::int64_t received_ns = 0;
+  std::int64_t answered_ns = 0;
   std::string via;  // of multicast: the address of the sending interface
 };
 
@@ -49,7 +53,8 @@ std::string to_text(const Message& message) {
        << ' ' << message.number;
   if (message.kind == Kind::kMulticast) text << ' ' << message.via;
   if (message.kind == Kind::kAnswer)
-    text << ' ' << message.asker << ' ' << static_cast<char>(message.of) << ' ' << message.arrived_ns;
+    text << ' ' << message.asker << ' ' << static_cast<char>(message.of) << ' ' << message.received_ns << ' '
+         << message.answered_ns;
   return text.str();
 }
 
@@ -70,14 +75,13 @@ bool from_text(const std::string& datagram, Message& message) {
   if (message.kind == Kind::kUnicast || message.kind == Kind::kGoodbye) return true;
   if (message.kind == Kind::kMulticast) return static_cast<bool>(text >> message.via);
   char of = 0;
-  if (message.kind != Kind::kAnswer || !(text >> message.asker >> of >> message.arrived_ns)) return false;
+  if (message.kind != Kind::kAnswer) return false;
+  if (!(text >> message.asker >> of >> message.received_ns >> message.answered_ns)) return false;
   message.of = static_cast<Kind>(of);
   return true;
 }
 
-std::int64_t system_ns() {
-  return std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
-}
+std::int64_t ns(Clock::time_point time) { return std::chrono::nanoseconds(time.time_since_epoch()).count(); }
 
 sockaddr_in socket_address(const std::string& ipv4, int port) {
   sockaddr_in address{};
@@ -137,8 +141,8 @@ struct Partner {
   ProbedHost host;
   sockaddr_in address{};
   std::map<int, Clock::time_point> asked;
-  std::map<int, std::int64_t> asked_ns;  // by the system clock
   std::vector<double> round_trips_ms{};
+  ClockFilter clock{};
   bool gone = false;
 };
 
@@ -185,7 +189,6 @@ struct NetworkProbe::Impl {
     for (auto& [id, partner] : partners) {
       if (partner.gone) continue;
       partner.asked[number] = Clock::now();
-      partner.asked_ns[number] = system_ns();
       ++partner.host.sent;
       direct.send(own(Kind::kUnicast, number), partner.address);
     }
@@ -206,6 +209,8 @@ struct NetworkProbe::Impl {
   }
 
   void take(const Message& message, const sockaddr_in& from) {
+    const Clock::time_point arrived = Clock::now();
+    const std::int64_t received_ns = runtime::system_ns();
     if (message.host.empty()) return;
     if (message.sender == own_id) {
       if (message.kind == Kind::kMulticast) own_multicast.insert(message.via);
@@ -216,30 +221,24 @@ struct NetworkProbe::Impl {
     partner.host.name = message.host;
     partner.host.address = text_of(from);
     partner.address = from;
-    if (message.kind == Kind::kAnswer) return take_answer(message, partner);
+    if (message.kind == Kind::kAnswer) return take_answer(message, arrived, partner);
     if (message.kind == Kind::kGoodbye) return take_goodbye(partner);
     if (message.kind == Kind::kMulticast) partner.host.multicast_heard = true;
     Message answer = own(Kind::kAnswer, message.number);
     answer.asker = message.sender;
     answer.of = message.kind;
-    answer.arrived_ns = system_ns();
+    answer.received_ns = received_ns;
+    answer.answered_ns = runtime::system_ns();
     direct.send(answer, from);
   }
 
-  void take_answer(const Message& message, Partner& partner) {
+  void take_answer(const Message& message, Clock::time_point arrived, Partner& partner) {
     if (message.asker != own_id) return;
     if (message.of == Kind::kMulticast) partner.host.multicast_answered = true;
     const auto asked = partner.asked.find(message.number);
     if (message.of != Kind::kUnicast || asked == partner.asked.end()) return;
-    const double round_trip_ms =
-        std::chrono::duration<double, std::milli>(Clock::now() - asked->second).count();
-    const double half_way_ns = 0.5e6 * round_trip_ms;
-    if (partner.round_trips_ms.empty() || round_trip_ms < partner.host.round_trip_min_ms) {
-      partner.host.round_trip_min_ms = round_trip_ms;
-      const auto since_asked_ns = message.arrived_ns - partner.asked_ns[message.number];
-      partner.host.clock_offset_ms = (static_cast<double>(since_asked_ns) - half_way_ns) * 1e-6;
-    }
-    partner.round_trips_ms.push_back(round_trip_ms);
+    partner.clock.add({ns(asked->second), message.received_ns, message.answered_ns, ns(arrived)});
+    partner.round_trips_ms.push_back(1e-6 * static_cast<double>(ns(arrived) - ns(asked->second)));
     partner.asked.erase(asked);
   }
 
@@ -267,14 +266,30 @@ struct NetworkProbe::Impl {
       std::sort(times.begin(), times.end());
       partner.host.answered = static_cast<int>(times.size());
       if (!times.empty()) {
+        partner.host.round_trip_min_ms = times.front();
         partner.host.round_trip_median_ms = times[times.size() / 2];
         partner.host.round_trip_max_ms = times.back();
       }
+      report_clock(partner);
       silent.erase(partner.host.address);
       result.hosts.push_back(partner.host);
     }
     result.silent_peers.assign(silent.begin(), silent.end());
     return result;
+  }
+
+  // Measured against the monotonic clock of this host, reported against its system clock, which may have been set
+  // meanwhile.
+  static void report_clock(Partner& partner) {
+    partner.host.clock_steps = partner.clock.steps();
+    if (!partner.clock.estimate()) return;
+    const ClockEstimate& clock = *partner.clock.estimate();
+    const std::int64_t now_ns = ns(Clock::now());
+    const std::int64_t own_offset_ns = runtime::system_ns() - now_ns;
+    partner.host.clock_offset_ms = 1e-6 * static_cast<double>(clock.offset_at(now_ns) - own_offset_ns);
+    partner.host.clock_uncertainty_ms = 1e-6 * clock.uncertainty_ns(now_ns);
+    partner.host.clock_drift_ppm = 1e6 * clock.drift;
+    partner.host.clock_drift_uncertainty_ppm = 2e6 * clock.drift_deviation;
   }
 
   const int domain;

@@ -25,8 +25,13 @@ struct ProbedHost {
   double round_trip_min_ms = 0.0;
   double round_trip_median_ms = 0.0;
   double round_trip_max_ms = 0.0;
-  // Its system clock minus that of this host, at half of the shortest round trip: wrong by up to half of that.
+  // Its system clock minus that of this host at the end, and how wrong that may be (clock_filter.hpp).
   double clock_offset_ms = 0.0;
+  double clock_uncertainty_ms = 0.0;
+  // How fast it is against the monotonic clock of this host, and twice its standard deviation.
+  double clock_drift_ppm = 0.0;
+  double clock_drift_uncertainty_ppm = 0.0;
+  int clock_steps = 0;  // while it was measured
 };
 
 struct ProbeReport {

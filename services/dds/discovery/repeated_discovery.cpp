@@ -1,77 +1,93 @@
 #include "swiftlet/services/dds/discovery/repeated_discovery.hpp"
 
-#include <chrono>
+#include <algorithm>
 #include <utility>
 #include <vector>
 
-#include <fastdds/rtps/common/Locator.h>
-#include <fastdds/rtps/common/PortParameters.h>
-#include <fastdds/rtps/network/SenderResource.h>
-#include <fastdds/rtps/transport/ChainingTransport.h>
-#include <fastdds/rtps/transport/TransportReceiverInterface.h>
-
+#include "swiftlet/services/dds/datagram/byte_reader.hpp"
+#include "swiftlet/services/dds/datagram/rtps_ids.hpp"
+#include "swiftlet/services/dds/datagram/submessage.hpp"
 #include "swiftlet/services/dds/discovery/discovery_ports.hpp"
 
 namespace swiftlet::comms {
 
 bool is_discovery_port(int domain, std::uint32_t port) {
   const DiscoveryPorts ports = discovery_ports(domain);
-  const std::uint32_t multicast =
-      eprosima::fastrtps::rtps::PortParameters().getMulticastPort(static_cast<std::uint32_t>(domain));
+  const std::uint32_t multicast = rtps::PortParameters().getMulticastPort(static_cast<std::uint32_t>(domain));
   return port == multicast ||
          (port >= ports.first && port <= ports.last() && (port - ports.first) % ports.gap == 0);
 }
 
 namespace {
 
+constexpr std::size_t kBytesBeforeIds = 4;  // of DATA: flags, and the distance to its inline QoS
+
+bool is_of_participant(ByteReader data) {
+  data.skip(kBytesBeforeIds);
+  EntityId reader{};
+  EntityId writer{};
+  for (EntityId* const id : {&reader, &writer}) {
+    const std::uint8_t* const bytes = data.take(id->size());
+    if (bytes != nullptr) std::copy_n(bytes, id->size(), id->begin());
+  }
+  const auto topic = topic_of(reader, writer);
+  return topic == BuiltinTopic::kParticipant || topic == BuiltinTopic::kLiveliness;
+}
+
+}  // namespace
+
+bool is_announcement(const std::uint8_t* message, std::size_t size) {
+  ByteReader rest(message, size, true);
+  rest.skip(kHeaderBytes);
+  while (rest.ok() && rest.rest() > 0) {
+    const std::uint8_t kind = rest.u8();
+    const std::uint8_t flags = rest.u8();
+    const std::uint8_t* const length = rest.take(2);
+    if (length == nullptr) return false;
+    const std::size_t bytes = ByteReader(length, 2, (flags & kLittleEndianFlag) != 0).u16();
+    // 0: the last submessage, of all bytes that follow.
+    const ByteReader body = rest.part(bytes == 0 ? rest.rest() : bytes);
+    if (kind == kInfoDestination || kind == kInfoTimestamp || kind == kStatistics) continue;
+    if (kind != kData || !is_of_participant(body)) return false;
+  }
+  return rest.ok();
+}
+
+namespace {
+
 namespace transport = eprosima::fastdds::rtps;
-namespace rtps = eprosima::fastrtps::rtps;
-using Deadline = std::chrono::steady_clock::time_point;
 
 // Sends through a channel of the transport below.
-class RepeatingChannel final : public rtps::SenderResource {
+class RepeatingChannel final : public OutputChannel {
  public:
   RepeatingChannel(int domain, std::unique_ptr<rtps::SenderResource> below)
-      : SenderResource(below->kind()), domain_(domain), below_(std::move(below)) {
-    send_lambda_ = [this](const rtps::octet* data, std::uint32_t size, rtps::LocatorsIterator* begin,
-                          rtps::LocatorsIterator* end,
-                          const Deadline& deadline) { return send_copies(data, size, begin, end, deadline); };
-  }
-
-  void add_locators_to_list(rtps::LocatorList_t& locators) const override {
-    below_->add_locators_to_list(locators);
-  }
-  std::unique_ptr<rtps::SenderResource> take() { return std::move(below_); }
+      : OutputChannel(std::move(below)), domain_(domain) {}
 
  private:
-  bool send_copies(const rtps::octet* data, std::uint32_t size, rtps::LocatorsIterator* begin,
-                   rtps::LocatorsIterator* end, const Deadline& deadline) {
-    if (*begin == *end || !is_discovery_port(domain_, (**begin).port))
-      return below_->send(data, size, begin, end, deadline);
+  bool send_datagram(const OutgoingDatagram& datagram, const Destination& to) override {
+    if (*to.begin == *to.end || !is_discovery_port(domain_, (**to.begin).port))
+      return comms::send(below(), datagram, to);
     std::vector<rtps::Locator_t> receivers;
-    for (; *begin != *end; ++*begin) receivers.push_back(**begin);
+    for (; *to.begin != *to.end; ++*to.begin) receivers.push_back(**to.begin);
     bool sent = true;
-    for (int copy = 0; copy < kDiscoveryCopies; ++copy) {
+    std::vector<rtps::octet> bytes;
+    datagram.copy_to(bytes);
+    const int copies = is_announcement(bytes.data(), bytes.size()) ? kAnnouncementCopies : kEndpointCopies;
+    for (int copy = 0; copy < copies; ++copy) {
       rtps::Locators first(receivers.begin());
       rtps::Locators last(receivers.end());
-      sent = below_->send(data, size, &first, &last, deadline) && sent;
+      sent = comms::send(below(), datagram, {&first, &last, to.deadline}) && sent;
     }
     return sent;
   }
 
   const int domain_;
-  std::unique_ptr<rtps::SenderResource> below_;
 };
 
-class RepeatingTransport final : public transport::ChainingTransport {
+class RepeatingTransport final : public ChainedTransport {
  public:
   RepeatingTransport(const transport::ChainingTransportDescriptor& descriptor, int domain)
-      : ChainingTransport(descriptor), domain_(domain) {}
-
-  transport::TransportDescriptorInterface* get_configuration() override {
-    return low_level_transport_->get_configuration();
-  }
-  void shutdown() override { low_level_transport_->shutdown(); }
+      : ChainedTransport(descriptor), domain_(domain) {}
 
   bool OpenInputChannel(const rtps::Locator_t& locator, transport::TransportReceiverInterface* next,
                         std::uint32_t largest_message) override {
@@ -97,11 +113,7 @@ class RepeatingTransport final : public transport::ChainingTransport {
     return opened;
   }
 
-  // The channels above pass these by.
-  bool send(rtps::SenderResource* below, const rtps::octet* data, std::uint32_t size,
-            rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end, const Deadline& deadline) override {
-    return below->send(data, size, begin, end, deadline);
-  }
+  // The input channels pass this by.
   void receive(transport::TransportReceiverInterface* next, const rtps::octet* data, std::uint32_t size,
                const rtps::Locator_t& local, const rtps::Locator_t& remote) override {
     next->OnDataReceived(data, size, local, remote);

@@ -12,9 +12,9 @@ namespace {
 
 }  // namespace
 
-SoleSource::SoleSource(Node& node, std::function<void()> on_lost) {
-  const auto other =
-      node.become_source([loss = loss_, on_lost = std::move(on_lost)](const std::string& sentence) {
+SoleSource::SoleSource(Participant& participant, const std::string& topic, std::function<void()> on_lost) {
+  const auto other = participant.become_source(
+      {topic}, [loss = loss_, on_lost = std::move(on_lost)](const std::string& sentence) {
         {
           const std::lock_guard<std::mutex> lock(loss->mutex);
           loss->other = sentence;

@@ -10,12 +10,12 @@
 
 namespace swiftlet::comms {
 
-// The source that the settings of a node name. A process that finds another source ends with an error.
+// A process that finds another source of one of its vehicles ends with an error.
 class SoleSource {
  public:
-  // Blocks for kSourceSearchTime. Throws std::runtime_error with a sentence if there is another source.
-  // on_lost: called from another thread if an earlier source is discovered later; then call check().
-  SoleSource(Node& node, std::function<void()> on_lost);
+  // topic: NodeSettings::source_of of the participant. Blocks for kSourceSearchTime. Throws std::runtime_error with a
+  // sentence if there is another source. on_lost: called from another thread if an earlier source is discovered later; then call check().
+  SoleSource(Participant& participant, const std::string& topic, std::function<void()> on_lost);
 
   // Throws std::runtime_error if an earlier source was discovered.
   void check() const;
@@ -25,7 +25,8 @@ class SoleSource {
     std::mutex mutex;
     std::string other;  // a sentence
   };
-  std::shared_ptr<Loss> loss_ = std::make_shared<Loss>();  // the node's callback may outlive this object
+  std::shared_ptr<Loss> loss_ =
+      std::make_shared<Loss>();  // the participant's callback may outlive this object
 };
 
 }  // namespace swiftlet::comms

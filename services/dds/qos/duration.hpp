@@ -2,11 +2,13 @@
 
 #include <chrono>
 
-#include <fastdds/rtps/common/Time_t.h>
+#include <fastdds/dds/core/policy/QosPolicies.hpp>
 
 namespace swiftlet::comms {
 
-inline eprosima::fastrtps::Duration_t duration(std::chrono::milliseconds time) {
+using Duration = decltype(eprosima::fastdds::dds::DeadlineQosPolicy::period);
+
+inline Duration duration(std::chrono::milliseconds time) {
   return {static_cast<std::int32_t>(time.count() / 1000),
           static_cast<std::uint32_t>(time.count() % 1000 * 1'000'000)};
 }

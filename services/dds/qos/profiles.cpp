@@ -1,5 +1,8 @@
 #include "swiftlet/services/dds/qos/profiles.hpp"
 
+#include <string>
+
+#include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/qos/duration.hpp"
 
 namespace swiftlet::comms {
@@ -9,7 +12,6 @@ bool is_latched(Qos profile) { return profile == Qos::kLatched || profile == Qos
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
 
 using std::chrono::milliseconds;
 
@@ -27,6 +29,14 @@ bool is_reliable(Qos profile) {
   return is_latched(profile) || profile == Qos::kRequest || profile == Qos::kReply;
 }
 bool is_long(Qos profile) { return profile == Qos::kLatchedLarge || profile == Qos::kRequest; }
+
+void set_fragments(dds::DataWriterQos& qos) {
+  if (kHasFlowControllers) {
+    qos.publish_mode().flow_controller_name = kLongMessageFlow;
+  } else {
+    qos.properties().properties().emplace_back("fastdds.max_message_size", std::to_string(kFragmentBytes));
+  }
+}
 
 // The policies that are the same for writer and reader, so that they match.
 template <class EndpointQos>
@@ -89,21 +99,15 @@ dds::DataWriterQos writer_qos(Qos profile, int deadline_ms, std::uint32_t streng
   if (profile == Qos::kOwnedStream) qos.ownership_strength().value = strength;
   // A middleware thread sends long messages in fragments. The calling thread sends all others.
   qos.publish_mode().kind = is_long(profile) ? dds::ASYNCHRONOUS_PUBLISH_MODE : dds::SYNCHRONOUS_PUBLISH_MODE;
-  if (is_long(profile)) qos.publish_mode().flow_controller_name = kLongMessageFlow;
-  if (is_reliable(profile)) {
-    qos.reliable_writer_qos().times.heartbeatPeriod = duration(kHeartbeatPeriod);
-    qos.reliable_writer_qos().times.nackResponseDelay = duration(kResponseDelay);
-  }
+  if (is_long(profile)) set_fragments(qos);
+  if (is_reliable(profile)) set_repair_times(qos, duration(kHeartbeatPeriod), duration(kResponseDelay));
   return qos;
 }
 
 dds::DataReaderQos reader_qos(Qos profile, int deadline_ms, Transport transport, Delivery delivery) {
   dds::DataReaderQos qos;
   set_common(qos, profile, deadline_ms, transport);
-  if (is_reliable(profile)) {
-    qos.reliable_reader_qos().times.heartbeatResponseDelay = duration(kResponseDelay);
-    qos.reliable_reader_qos().times.initialAcknackDelay = duration(kFirstRequestPeriod);
-  }
+  if (is_reliable(profile)) set_repair_times(qos, duration(kResponseDelay), duration(kFirstRequestPeriod));
   // Not over shared memory: Fast DDS can give two processes the same port there, and one receives nothing.
   if (delivery == Delivery::kOwnThread && transport != Transport::kSharedMemory) {
     qos.properties().properties().emplace_back("fastdds.unique_network_flows", "");

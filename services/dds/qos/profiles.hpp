@@ -15,7 +15,8 @@ namespace swiftlet::comms {
 bool is_latched(Qos profile);
 
 // Sends the fragments of long messages: each fits into a frame of Ethernet, so that a lost frame costs one fragment, and a
-// long message does not fill the buffers on the way.
+// long message does not fill the buffers on the way. For participants with kHasFlowControllers; without, only the size of
+// the fragments is limited.
 std::shared_ptr<eprosima::fastdds::rtps::FlowControllerDescriptor> long_message_flow();
 
 eprosima::fastdds::dds::DataWriterQos writer_qos(Qos profile, int deadline_ms, std::uint32_t strength,

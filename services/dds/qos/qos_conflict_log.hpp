@@ -8,8 +8,7 @@
 #include <string>
 #include <utility>
 
-#include <fastdds/rtps/common/Guid.h>
-
+#include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/qos/qos_conflicts.hpp"
 
 namespace swiftlet::comms {
@@ -18,13 +17,13 @@ struct RemoteEndpoint {
   std::string topic;
   EndpointQos qos;
 };
-using RemoteEndpoints = std::map<eprosima::fastrtps::rtps::GUID_t, RemoteEndpoint>;
+using RemoteEndpoints = std::map<rtps::GUID_t, RemoteEndpoint>;
 
 // Logs each pair of endpoints once, and at most one line a second. Not thread-safe.
 class QosConflictLog {
  public:
-  using Guid = eprosima::fastrtps::rtps::GUID_t;
-  using GuidPrefix = eprosima::fastrtps::rtps::GuidPrefix_t;
+  using Guid = rtps::GUID_t;
+  using GuidPrefix = rtps::GuidPrefix_t;
   using Time = std::chrono::steady_clock::time_point;
 
   // process: of the other endpoint, such as "'plant' (01.0f...)"; consequence: "is not received"; policies: those

@@ -6,7 +6,6 @@ namespace swiftlet::comms {
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
-using eprosima::fastrtps::Duration_t;
 
 constexpr std::chrono::seconds kLinePeriod{1};
 
@@ -44,8 +43,8 @@ const char* name_of(dds::LivelinessQosPolicyKind kind) {
   return "unknown";
 }
 
-std::string name_of(const Duration_t& time) {
-  if (time == eprosima::fastrtps::c_TimeInfinite) return "none";
+std::string name_of(const Duration& time) {
+  if (time == dds::DeadlineQosPolicy().period) return "none";
   char text[32];
   std::snprintf(text, sizeof text, "%g ms", 1e-6 * static_cast<double>(time.to_ns()));
   return text;
@@ -63,7 +62,7 @@ void add(std::string& list, const char* policy, const std::string& offered, cons
 
 }  // namespace
 
-// Same rules as EDP::valid_matching() of Fast DDS 2.9.
+// Same rules as EDP::valid_matching() of Fast DDS.
 std::string conflicts(const EndpointQos& offered, const EndpointQos& requested) {
   std::string list;
   if (offered.reliability < requested.reliability)

@@ -8,6 +8,8 @@
 
 #include <fastdds/dds/core/policy/QosPolicies.hpp>
 
+#include "swiftlet/services/dds/qos/duration.hpp"
+
 namespace swiftlet::comms {
 
 // The QoS policies of an endpoint that must be compatible with those of its peer.
@@ -15,23 +17,11 @@ struct EndpointQos {
   eprosima::fastdds::dds::ReliabilityQosPolicyKind reliability;
   eprosima::fastdds::dds::DurabilityQosPolicyKind durability;
   eprosima::fastdds::dds::OwnershipQosPolicyKind ownership;
-  eprosima::fastrtps::Duration_t deadline;
+  Duration deadline;
   eprosima::fastdds::dds::LivelinessQosPolicyKind liveliness;
-  eprosima::fastrtps::Duration_t lease;
+  Duration lease;
   bool without_positive_acks = false;
 };
-
-// Extracts them from a WriterQos or a ReaderQos.
-template <class Qos>
-EndpointQos endpoint_qos(const Qos& qos) {
-  return {qos.m_reliability.kind,
-          qos.m_durability.kind,
-          qos.m_ownership.kind,
-          qos.m_deadline.period,
-          qos.m_liveliness.kind,
-          qos.m_liveliness.lease_duration,
-          qos.m_disablePositiveACKs.enabled};
-}
 
 // Returns each incompatible policy with both values: "reliability (offered best effort, requested reliable)";
 // empty if all match.

@@ -94,6 +94,8 @@ TEST_F(DdsProfiles, NameWhatTheyMayNotSet) {
   const std::string writer = refusal(with("<data_writer profile_name=\"w\"/>\n", ""));
   EXPECT_EQ(writer, "4: <data_writer>: " + swiftlet +
                         "<profiles> a profile may set transport_descriptors, participant");
+  const std::string flow = refusal(with("", "<flow_controller_descriptor_list/>\n"));
+  EXPECT_EQ(flow.rfind("6: <flow_controller_descriptor_list>: " + swiftlet + "<rtps>", 0), 0U) << flow;
   EXPECT_EQ(refusal(with("", "<useBuiltinTransports>true</useBuiltinTransports>\n")),
             "6: <useBuiltinTransports>: is true, must be false");
   EXPECT_EQ(refusal(with(descriptor("t", "<type>TCPv4</type>\n"), user_transport("t"))),

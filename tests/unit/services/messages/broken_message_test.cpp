@@ -1,10 +1,8 @@
 // Bytes that are not a valid message of their topic's type are dropped; later messages are received.
-#include <algorithm>
 #include <string>
 #include <vector>
 
 #include <fastdds/dds/publisher/DataWriter.hpp>
-#include <fastdds/dds/topic/TopicDataType.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
 #include <gtest/gtest.h>
 
@@ -17,47 +15,19 @@
 #include "swiftlet/services/dds/participant_session.hpp"
 #include "swiftlet/services/dds/qos/profiles.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/serialization.hpp"
 #include "tests/unit/services/messages/messages.hpp"
 
 namespace swiftlet::comms::tests {
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
 using swiftlet::tests::eventually;
 using swiftlet::tests::Inbox;
 
-using Bytes = std::vector<unsigned char>;
-
-// Poses as another type by name and sends raw bytes.
-class RawType final : public dds::TopicDataType {
- public:
-  explicit RawType(const std::string& name) {
-    setName(name.c_str());
-    m_typeSize = 65000;
-  }
-  bool serialize(void* data, rtps::SerializedPayload_t* payload) override {
-    const Bytes& bytes = *static_cast<const Bytes*>(data);
-    payload->length = static_cast<std::uint32_t>(bytes.size());
-    std::copy(bytes.begin(), bytes.end(), payload->data);
-    return true;
-  }
-  bool deserialize(rtps::SerializedPayload_t*, void*) override { return false; }
-  std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
-    return [data] { return static_cast<std::uint32_t>(static_cast<const Bytes*>(data)->size()); };
-  }
-  void* createData() override { return new Bytes; }
-  void deleteData(void* data) override { delete static_cast<Bytes*>(data); }
-  bool getKey(void*, rtps::InstanceHandle_t*, bool) override { return false; }
-};
-
-template <class Type>
-Bytes bytes_of(typename Type::type message) {
-  Type type;
-  rtps::SerializedPayload_t payload(type.getSerializedSizeProvider(&message)());
-  type.serialize(&message, &payload);
-  return {payload.data, payload.data + payload.length};
-}
+using swiftlet::tests::RawType;
+using swiftlet::tests::serialized;
+using Bytes = RawType::Bytes;
 
 Bytes changed(Bytes bytes, std::size_t at, unsigned char value) {
   bytes.at(at) = value;
@@ -84,7 +54,7 @@ class RawPeer {
     dds::Topic* const raw_topic = session_.topic("rt/kl1/" + topic, dds::TypeSupport(new RawType(type)));
     writer_ = session_.publisher->create_datawriter(raw_topic, writer_qos(qos, 0, 0, Transport::kUdp));
   }
-  bool send(Bytes bytes) { return writer_->write(&bytes); }
+  bool send(const Bytes& bytes) { return write(*writer_, &bytes); }
   bool is_matched() const {
     dds::PublicationMatchedStatus status;
     writer_->get_publication_matched_status(status);
@@ -104,13 +74,13 @@ void expect_dropped(const Topic<typename Type::type>& topic, const typename Type
   Inbox<typename Type::type> inbox;
   const auto subscription =
       node.subscribe<typename Type::type>(topic, [&](const auto& message) { inbox.put(message); });
-  RawPeer peer(lock, topic.name, Type().getName(), topic.qos);
+  RawPeer peer(lock, topic.name, type_name(Type()), topic.qos);
   ASSERT_TRUE(eventually([&] { return subscription.matched() == 1 && peer.is_matched(); }));
 
   std::size_t received = 0;
   for (const Bytes& bytes : broken) {
     ASSERT_TRUE(peer.send(bytes));
-    ASSERT_TRUE(peer.send(bytes_of<Type>(whole)));
+    ASSERT_TRUE(peer.send(serialized<Type>(whole)));
     ASSERT_TRUE(inbox.wait_for_count(++received));
   }
   for (const auto& message : inbox.items()) EXPECT_TRUE(message == whole);
@@ -120,7 +90,7 @@ constexpr std::size_t kEncapsulation = 4;
 
 TEST(BrokenMessage, IsDroppedOnAStream) {
   const msg::MocapPose pose = to_message(pose_sample());
-  const Bytes whole = bytes_of<msg::MocapPosePubSubType>(pose);
+  const Bytes whole = serialized<msg::MocapPosePubSubType>(pose);
   expect_dropped<msg::MocapPosePubSubType>(
       topics::kMocapPose, pose,
       {changed(whole, kEncapsulation + 16, 2), changed(whole, 0, 0x5a), changed(whole, 1, 0x5a),
@@ -129,7 +99,7 @@ TEST(BrokenMessage, IsDroppedOnAStream) {
 
 TEST(BrokenMessage, IsDroppedOnARequestTopic) {
   const msg::Mission mission = to_message(tests::mission(3, 2));
-  const Bytes whole = bytes_of<msg::MissionPubSubType>(mission);
+  const Bytes whole = serialized<msg::MissionPubSubType>(mission);
   Bytes endless = whole;
   for (std::size_t i = 0; i < 4; ++i) endless.at(kEncapsulation + 16 + i) = 0xff;  // the number of items
   expect_dropped<msg::MissionPubSubType>(topics::kMission, mission,

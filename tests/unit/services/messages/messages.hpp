@@ -179,6 +179,38 @@ inline msg::RotorSpeeds example() {
   return to_message(rotor_speed_sample());
 }
 template <>
+inline msg::ClockRequest example() {
+  msg::ClockRequest message;
+  message.client(7);
+  message.sequence_number(2);
+  message.sent_ns(1'000'000'000);
+  return message;
+}
+template <>
+inline msg::ClockReply example() {
+  msg::ClockReply message;
+  message.client(7);
+  message.sequence_number(2);
+  message.sent_ns(1'000'000'000);
+  message.received_ns(5'000'000);
+  message.answered_ns(5'020'000);
+  return message;
+}
+template <>
+inline msg::ClockStatus example() {
+  msg::ClockStatus message;
+  message.stamp_ns(5'000'000);
+  message.sequence_number(3);
+  message.offset_ns(3'000'000'000);
+  message.drift(50e-6);
+  message.drift_uncertainty(3e-6);
+  message.uncertainty_ns(48e3);
+  message.round_trip_ns(90e3);
+  message.steps(1);
+  message.known(true);
+  return message;
+}
+template <>
 inline msg::ActuatorCommand example() {
   return to_message(actuator_command());
 }
@@ -271,6 +303,10 @@ inline msg::ControlStatus example() {
   message.deadline_misses(2);
   message.rate_hz(499.5);
   message.step_time_max_us(80.0);
+  message.loop_delay_p50_s(0.003);
+  message.loop_delay_p95_s(0.004);
+  message.delay_margin_s(0.05);
+  message.delay_near_margin(true);
   message.realtime_scheduling(true);
   message.low_battery_voltage_v(3.4);
   message.critical_battery_voltage_v(3.2);

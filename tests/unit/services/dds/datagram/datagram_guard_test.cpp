@@ -60,6 +60,21 @@ TEST(DatagramGuard, FollowsAWriterThatIsReallyAhead) {
   EXPECT_TRUE(admits(guard, sample(1005), 21 * kSecond_ns));
 }
 
+// A process of many vehicles announces their endpoints at once, long after it was met.
+TEST(SequenceWindow, LetsAnnouncementsOfEndpointsComeInBursts) {
+  SequenceWindow window;
+  const GuidPrefix participant{1};
+  const EntityId announcements{0x00, 0x00, 0x03, 0xc2};
+  const EntityId samples{0x00, 0x00, 0x03, 0x03};
+  for (const EntityId& writer : {announcements, samples}) {
+    for (std::uint32_t number = 1; number <= 5; ++number)
+      EXPECT_TRUE(window.admit(participant, writer, number, number * kSecond_ns));
+  }
+  EXPECT_TRUE(window.admit(participant, announcements, 900, 6 * kSecond_ns));
+  EXPECT_FALSE(window.admit(participant, announcements, 1U << 20U, 6 * kSecond_ns));
+  EXPECT_FALSE(window.admit(participant, samples, 900, 6 * kSecond_ns));
+}
+
 TEST(DatagramGuard, RemembersABusyWriterAmongManyForgedOnes) {
   DatagramGuard guard;
   std::int64_t now_ns = kSecond_ns;
@@ -79,9 +94,12 @@ TEST(DatagramGuard, HoldsAParticipantToWhatItAnnounced) {
   const RtpsMessage renamed =
       announcement(kAlice, participant_parameters(kAlice).parameter(0x0062, ByteWriter().string("control")));
   EXPECT_TRUE(admits(guard, real, kSecond_ns));
-  EXPECT_FALSE(admits(guard, other, kSecond_ns)) << "another lease";
-  EXPECT_TRUE(admits(guard, real, kSecond_ns));
+  for (int attempt = 0; attempt < 10; ++attempt) {
+    EXPECT_FALSE(admits(guard, other, kSecond_ns)) << "another lease";
+    EXPECT_TRUE(admits(guard, real, kSecond_ns));
+  }
   EXPECT_TRUE(admits(guard, renamed, kSecond_ns)) << "reached as before";
+  EXPECT_FALSE(admits(guard, other, kSecond_ns));
   EXPECT_FALSE(admits(guard, other, kSecond_ns));
   EXPECT_TRUE(admits(guard, other, kSecond_ns)) << "which it repeats";
   EXPECT_FALSE(admits(guard, real, kSecond_ns));

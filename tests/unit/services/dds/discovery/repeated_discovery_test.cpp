@@ -2,8 +2,21 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/rtps_message.hpp"
+
 namespace swiftlet::comms {
 namespace {
+
+using tests::ByteWriter;
+using tests::RtpsMessage;
+
+bool is_announcement_of(const RtpsMessage& message) {
+  return is_announcement(message.bytes().data(), message.bytes().size());
+}
+
+ByteWriter sample_of(const EntityId& reader, const EntityId& writer) {
+  return tests::data_fields(reader, writer, 1);
+}
 
 // RTPS 2.5, 9.6.1.1: 7400 + 250 domain, + 0 for multicast of discovery, + 10 + 2 n for discovery of process n; the data
 // ports are the odd ones.
@@ -16,6 +29,27 @@ TEST(DiscoveryPort, IsThatOfTheRtpsStandard) {
   EXPECT_FALSE(is_discovery_port(0, 7650)) << "of domain 1";
   EXPECT_TRUE(is_discovery_port(1, 7650));
   EXPECT_FALSE(is_discovery_port(0, 49'152)) << "a port of its own of a reader";
+}
+
+TEST(RepeatedDiscovery, KnowsAnnouncements) {
+  RtpsMessage announcement = tests::announcement(tests::kAlice, tests::participant_parameters(tests::kAlice));
+  EXPECT_TRUE(is_announcement_of(announcement));
+  EXPECT_TRUE(is_announcement_of(announcement.add(0x80, 0, ByteWriter().zeros(56)))) << "with statistics";
+  const EntityId liveliness_writer{0x00, 0x02, 0x00, 0xc2};
+  EXPECT_TRUE(is_announcement_of(RtpsMessage()
+                                     .add(0x0e, 0, ByteWriter().bytes(tests::kBob))
+                                     .add(0x15, 4, sample_of(kUnknownEntity, liveliness_writer))));
+}
+
+TEST(RepeatedDiscovery, KnowsWhatTellsOfEndpoints) {
+  const auto endpoint = [] { return sample_of(tests::kSedpReader, tests::kSedpWriter); };
+  const ByteWriter participant = sample_of(tests::kSpdpReader, tests::kSpdpWriter);
+  EXPECT_FALSE(is_announcement_of(RtpsMessage().add(0x15, 4, endpoint())));
+  EXPECT_FALSE(is_announcement_of(RtpsMessage().add(0x15, 4, participant).add(0x15, 4, endpoint())))
+      << "both";
+  EXPECT_FALSE(is_announcement_of(RtpsMessage().add(0x07, 0, ByteWriter().zeros(28)))) << "a heartbeat";
+  EXPECT_FALSE(is_announcement_of(RtpsMessage().add(0x15, 4, ByteWriter().zeros(3)))) << "too short";
+  EXPECT_FALSE(is_announcement_of(RtpsMessage().add(0x15, 4, participant, 200))) << "longer than the message";
 }
 
 }  // namespace

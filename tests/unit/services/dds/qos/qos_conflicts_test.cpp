@@ -7,13 +7,12 @@
 #include <string>
 #include <vector>
 
-#include <fastdds/dds/publisher/qos/WriterQos.hpp>
-#include <fastdds/dds/subscriber/qos/ReaderQos.hpp>
 #include <gtest/gtest.h>
 #include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
 
 #include "swiftlet/services/dds/discovery/domain_lock.hpp"
+#include "swiftlet/services/dds/fast_dds.hpp"
 #include "swiftlet/services/dds/node.hpp"
 #include "tests/support/eventually.hpp"
 
@@ -25,8 +24,8 @@ using swiftlet::tests::eventually;
 using swiftlet::tests::Inbox;
 using namespace std::chrono_literals;
 
-EndpointQos offer() { return endpoint_qos(dds::WriterQos()); }
-EndpointQos demand() { return endpoint_qos(dds::ReaderQos()); }
+EndpointQos offer() { return endpoint_qos(dds::DataWriterQos()); }
+EndpointQos demand() { return endpoint_qos(dds::DataReaderQos()); }
 
 TEST(QosConflicts, DefaultsMatch) { EXPECT_EQ(conflicts(offer(), demand()), ""); }
 

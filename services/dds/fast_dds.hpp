@@ -1,0 +1,378 @@
+// What Fast DDS 2.9 (Debian 12) and 3 (Debian 13) name or declare differently, under one name. No other file of the
+// project knows which of them it is built with.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
+#include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
+#include <fastdds/dds/topic/TopicDataType.hpp>
+#if __has_include(<fastdds/config.hpp>)
+#define SWIFTLET_FAST_DDS_3 1
+#include <fastdds/LibrarySettings.hpp>
+#include <fastdds/rtps/attributes/RTPSParticipantAttributes.hpp>
+#include <fastdds/rtps/common/Guid.hpp>
+#include <fastdds/rtps/common/Locator.hpp>
+#include <fastdds/rtps/common/PortParameters.hpp>
+#include <fastdds/rtps/common/SerializedPayload.hpp>
+#include <fastdds/rtps/transport/ChainingTransport.hpp>
+#include <fastdds/rtps/transport/SenderResource.hpp>
+#include <fastdds/rtps/transport/TransportReceiverInterface.hpp>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.hpp>
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.hpp>
+#include <fastdds/utils/IPLocator.hpp>
+#else
+#define SWIFTLET_FAST_DDS_3 0
+#include <fastdds/rtps/attributes/ServerAttributes.h>
+#include <fastdds/rtps/common/Guid.h>
+#include <fastdds/rtps/common/Locator.h>
+#include <fastdds/rtps/common/PortParameters.h>
+#include <fastdds/rtps/common/SerializedPayload.h>
+#include <fastdds/rtps/network/SenderResource.h>
+#include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
+#include <fastdds/rtps/reader/ReaderDiscoveryInfo.h>
+#include <fastdds/rtps/transport/ChainingTransport.h>
+#include <fastdds/rtps/transport/TransportReceiverInterface.h>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+#include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
+#include <fastrtps/utils/IPLocator.h>
+#include <fastrtps/xmlparser/XMLProfileManager.h>
+#endif
+
+#include "swiftlet/services/dds/qos/qos_conflicts.hpp"
+
+namespace swiftlet::comms {
+
+#if SWIFTLET_FAST_DDS_3
+namespace rtps = eprosima::fastdds::rtps;
+#else
+namespace rtps = eprosima::fastrtps::rtps;
+#endif
+
+// ---- results and types
+
+#if SWIFTLET_FAST_DDS_3
+using ReturnCode = eprosima::fastdds::dds::ReturnCode_t;
+using PayloadArgument = rtps::SerializedPayload_t&;  // of TopicDataType::deserialize()
+inline bool succeeded(ReturnCode code) { return code == eprosima::fastdds::dds::RETCODE_OK; }
+inline const char* type_name(const eprosima::fastdds::dds::TopicDataType& type) {
+  return type.get_name().c_str();
+}
+#else
+using ReturnCode = eprosima::fastrtps::types::ReturnCode_t;
+using PayloadArgument = rtps::SerializedPayload_t*;
+inline bool succeeded(ReturnCode code) { return code == ReturnCode::RETCODE_OK; }
+inline const char* type_name(const eprosima::fastdds::dds::TopicDataType& type) { return type.getName(); }
+#endif
+
+// Sends a sample: true if it went out or is stored until it can.
+inline bool write(eprosima::fastdds::dds::DataWriter& writer, const void* sample) {
+#if SWIFTLET_FAST_DDS_3
+  return succeeded(writer.write(sample));
+#else
+  return writer.write(const_cast<void*>(sample));  // serialized before write() returns, never modified
+#endif
+}
+
+// ---- settings of the library and of participants
+
+// If a participant has flow controllers, 3 sends its announcements from a queue, and the build of Debian asserts there
+// as soon as one follows another before it is sent.
+constexpr bool kHasFlowControllers = SWIFTLET_FAST_DDS_3 == 0;
+
+// Two nodes in one process communicate as two processes do.
+inline void switch_off_intraprocess_delivery() {
+#if SWIFTLET_FAST_DDS_3
+  auto* const factory = eprosima::fastdds::dds::DomainParticipantFactory::get_instance();
+  eprosima::fastdds::LibrarySettings settings;
+  factory->get_library_settings(settings);
+  settings.intraprocess_delivery = eprosima::fastdds::INTRAPROCESS_OFF;
+  factory->set_library_settings(settings);
+#else
+  using eprosima::fastrtps::xmlparser::XMLProfileManager;
+  auto settings = XMLProfileManager::library_settings();
+  settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
+  XMLProfileManager::library_settings(settings);
+#endif
+}
+
+// number: of the server in the list of ROS 2, by which 2.9 knows it; 3 knows it by its addresses.
+inline void add_discovery_server(rtps::DiscoverySettings& discovery, int number,
+                                 const std::vector<rtps::Locator_t>& addresses) {
+#if SWIFTLET_FAST_DDS_3
+  static_cast<void>(number);
+  for (const rtps::Locator_t& address : addresses) discovery.m_DiscoveryServers.push_back(address);
+#else
+  eprosima::fastdds::rtps::RemoteServerAttributes server;
+  eprosima::fastdds::rtps::get_server_client_default_guidPrefix(number, server.guidPrefix);
+  for (const rtps::Locator_t& address : addresses) server.metatrafficUnicastLocatorList.push_back(address);
+  discovery.m_DiscoveryServers.push_back(server);
+#endif
+}
+
+// Of a reliable writer: period of its heartbeats, and delay of its answer to a request for lost samples.
+inline void set_repair_times(eprosima::fastdds::dds::DataWriterQos& qos, const Duration& heartbeat_period,
+                             const Duration& answer_delay) {
+  auto& times = qos.reliable_writer_qos().times;
+#if SWIFTLET_FAST_DDS_3
+  times.heartbeat_period = heartbeat_period;
+  times.nack_response_delay = answer_delay;
+#else
+  times.heartbeatPeriod = heartbeat_period;
+  times.nackResponseDelay = answer_delay;
+#endif
+}
+
+// Of a reliable reader: delay of its answer to a heartbeat, and of its first request.
+inline void set_repair_times(eprosima::fastdds::dds::DataReaderQos& qos, const Duration& answer_delay,
+                             const Duration& first_request_delay) {
+  auto& times = qos.reliable_reader_qos().times;
+#if SWIFTLET_FAST_DDS_3
+  times.heartbeat_response_delay = answer_delay;
+  times.initial_acknack_delay = first_request_delay;
+#else
+  times.heartbeatResponseDelay = answer_delay;
+  times.initialAcknackDelay = first_request_delay;
+#endif
+}
+
+// ---- discovery
+
+template <class Qos>
+EndpointQos endpoint_qos(const Qos& qos, bool without_positive_acks) {
+  return {qos.reliability().kind, qos.durability().kind, qos.ownership().kind,
+          qos.deadline().period,  qos.liveliness().kind, qos.liveliness().lease_duration,
+          without_positive_acks};
+}
+inline EndpointQos endpoint_qos(const eprosima::fastdds::dds::DataWriterQos& qos) {
+  return endpoint_qos(qos, qos.reliable_writer_qos().disable_positive_acks.enabled);
+}
+inline EndpointQos endpoint_qos(const eprosima::fastdds::dds::DataReaderQos& qos) {
+#if SWIFTLET_FAST_DDS_3
+  return endpoint_qos(qos, qos.reliable_reader_qos().disable_positive_acks.enabled);
+#else
+  return endpoint_qos(qos, qos.reliable_reader_qos().disable_positive_ACKs.enabled);
+#endif
+}
+
+// Called for the other participants of the domain, and for their writers and readers.
+class DiscoveryListener : public eprosima::fastdds::dds::DomainParticipantListener {
+ protected:
+  // A participant was discovered, or has changed its user data.
+  virtual void on_participant(const rtps::GUID_t& guid, const std::string& name,
+                              const std::vector<std::uint8_t>& user_data) = 0;
+  virtual void on_participant_gone(const rtps::GUID_t& guid, bool said_goodbye) = 0;
+  // With security, before or after on_participant(): whether it is who it says.
+  virtual void on_authentication(const rtps::GUID_t&, bool /*authenticated*/) {}
+  virtual void on_writer(const rtps::GUID_t&, const std::string& /*topic*/, const EndpointQos&) {}
+  virtual void on_writer_gone(const rtps::GUID_t&) {}
+  virtual void on_reader(const rtps::GUID_t&, const std::string& /*topic*/, const EndpointQos&) {}
+  virtual void on_reader_gone(const rtps::GUID_t&) {}
+
+ private:
+  using Participant = eprosima::fastdds::dds::DomainParticipant;
+  static bool is_own(const Participant* own, const rtps::GUID_t& guid) {
+    return guid.guidPrefix == own->guid().guidPrefix;
+  }
+
+  void onParticipantAuthentication(Participant*, rtps::ParticipantAuthenticationInfo&& info) final {
+    on_authentication(info.guid, info.status == rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT);
+  }
+
+#if SWIFTLET_FAST_DDS_3
+  template <class Info>
+  static EndpointQos qos_of(const Info& info) {
+    return {info.reliability.kind,
+            info.durability.kind,
+            info.ownership.kind,
+            info.deadline.period,
+            info.liveliness.kind,
+            info.liveliness.lease_duration,
+            info.disable_positive_acks.enabled};
+  }
+
+  void on_participant_discovery(Participant*, rtps::ParticipantDiscoveryStatus status,
+                                const rtps::ParticipantBuiltinTopicData& info, bool&) final {
+    using Status = rtps::ParticipantDiscoveryStatus;
+    if (status == Status::DISCOVERED_PARTICIPANT || status == Status::CHANGED_QOS_PARTICIPANT)
+      on_participant(info.guid, info.participant_name.c_str(), info.user_data.data_vec());
+    if (status == Status::REMOVED_PARTICIPANT || status == Status::DROPPED_PARTICIPANT)
+      on_participant_gone(info.guid, status == Status::REMOVED_PARTICIPANT);
+  }
+  void on_data_writer_discovery(Participant* own, rtps::WriterDiscoveryStatus status,
+                                const rtps::PublicationBuiltinTopicData& info, bool&) final {
+    if (is_own(own, info.guid)) return;
+    using Status = rtps::WriterDiscoveryStatus;
+    if (status == Status::DISCOVERED_WRITER) on_writer(info.guid, info.topic_name.c_str(), qos_of(info));
+    if (status == Status::REMOVED_WRITER) on_writer_gone(info.guid);
+  }
+  void on_data_reader_discovery(Participant* own, rtps::ReaderDiscoveryStatus status,
+                                const rtps::SubscriptionBuiltinTopicData& info, bool&) final {
+    if (is_own(own, info.guid)) return;
+    using Status = rtps::ReaderDiscoveryStatus;
+    if (status == Status::DISCOVERED_READER) on_reader(info.guid, info.topic_name.c_str(), qos_of(info));
+    if (status == Status::REMOVED_READER) on_reader_gone(info.guid);
+  }
+#else
+  using DomainParticipantListener::on_participant_discovery;
+  using DomainParticipantListener::on_publisher_discovery;
+  using DomainParticipantListener::on_subscriber_discovery;
+
+  template <class Qos>
+  static EndpointQos qos_of(const Qos& qos) {
+    return {qos.m_reliability.kind,
+            qos.m_durability.kind,
+            qos.m_ownership.kind,
+            qos.m_deadline.period,
+            qos.m_liveliness.kind,
+            qos.m_liveliness.lease_duration,
+            qos.m_disablePositiveACKs.enabled};
+  }
+
+  void on_participant_discovery(Participant*, rtps::ParticipantDiscoveryInfo&& found) final {
+    using Info = rtps::ParticipantDiscoveryInfo;
+    const auto& info = found.info;
+    if (found.status == Info::DISCOVERED_PARTICIPANT || found.status == Info::CHANGED_QOS_PARTICIPANT)
+      on_participant(info.m_guid, info.m_participantName.c_str(), info.m_userData.dataVec());
+    if (found.status == Info::REMOVED_PARTICIPANT || found.status == Info::DROPPED_PARTICIPANT)
+      on_participant_gone(info.m_guid, found.status == Info::REMOVED_PARTICIPANT);
+  }
+  void on_publisher_discovery(Participant* own, rtps::WriterDiscoveryInfo&& found) final {
+    const auto& info = found.info;
+    if (is_own(own, info.guid())) return;
+    using Info = rtps::WriterDiscoveryInfo;
+    if (found.status == Info::DISCOVERED_WRITER)
+      on_writer(info.guid(), info.topicName().c_str(), qos_of(info.m_qos));
+    if (found.status == Info::REMOVED_WRITER) on_writer_gone(info.guid());
+  }
+  void on_subscriber_discovery(Participant* own, rtps::ReaderDiscoveryInfo&& found) final {
+    const auto& info = found.info;
+    if (is_own(own, info.guid())) return;
+    using Info = rtps::ReaderDiscoveryInfo;
+    if (found.status == Info::DISCOVERED_READER)
+      on_reader(info.guid(), info.topicName().c_str(), qos_of(info.m_qos));
+    if (found.status == Info::REMOVED_READER) on_reader_gone(info.guid());
+  }
+#endif
+};
+
+// ---- transports
+
+// A datagram that is to be sent, in one piece (2.9) or several (3).
+struct OutgoingDatagram {
+#if SWIFTLET_FAST_DDS_3
+  const std::vector<rtps::NetworkBuffer>& pieces;
+#else
+  const rtps::octet* bytes;
+#endif
+  std::uint32_t size;
+
+  void copy_to(std::vector<rtps::octet>& copy) const {
+#if SWIFTLET_FAST_DDS_3
+    copy.clear();
+    for (const rtps::NetworkBuffer& piece : pieces) {
+      const auto* const begin = static_cast<const rtps::octet*>(piece.buffer);
+      copy.insert(copy.end(), begin, begin + piece.size);
+    }
+#else
+    copy.assign(bytes, bytes + size);
+#endif
+  }
+};
+
+// Where a datagram is sent, and until when.
+struct Destination {
+  rtps::LocatorsIterator* begin;
+  rtps::LocatorsIterator* end;
+  const std::chrono::steady_clock::time_point& deadline;
+};
+
+inline bool send(rtps::SenderResource& channel, const OutgoingDatagram& datagram, const Destination& to) {
+#if SWIFTLET_FAST_DDS_3
+  return channel.send(datagram.pieces, datagram.size, to.begin, to.end, to.deadline);
+#else
+  return channel.send(datagram.bytes, datagram.size, to.begin, to.end, to.deadline);
+#endif
+}
+
+inline bool send(rtps::SenderResource& channel, const std::vector<rtps::octet>& bytes,
+                 const Destination& to) {
+  const auto size = static_cast<std::uint32_t>(bytes.size());
+#if SWIFTLET_FAST_DDS_3
+  thread_local std::vector<rtps::NetworkBuffer> pieces(1);
+  pieces.front() = {bytes.data(), size};
+  return send(channel, OutgoingDatagram{pieces, size}, to);
+#else
+  return send(channel, OutgoingDatagram{bytes.data(), size}, to);
+#endif
+}
+
+// A channel that a transport puts before a channel of the transport below it.
+class OutputChannel : public rtps::SenderResource {
+ public:
+  void add_locators_to_list(rtps::LocatorList_t& locators) const override {
+    below_->add_locators_to_list(locators);
+  }
+  std::unique_ptr<rtps::SenderResource> take() { return std::move(below_); }
+
+ protected:
+  explicit OutputChannel(std::unique_ptr<rtps::SenderResource> below)
+      : SenderResource(below->kind()), below_(std::move(below)) {
+#if SWIFTLET_FAST_DDS_3
+    send_buffers_lambda_ = [this](const std::vector<rtps::NetworkBuffer>& pieces, std::uint32_t size,
+                                  rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
+                                  const std::chrono::steady_clock::time_point& deadline) {
+      return send_datagram({pieces, size}, {begin, end, deadline});
+    };
+#else
+    send_lambda_ = [this](const rtps::octet* bytes, std::uint32_t size, rtps::LocatorsIterator* begin,
+                          rtps::LocatorsIterator* end,
+                          const std::chrono::steady_clock::time_point& deadline) {
+      return send_datagram({bytes, size}, {begin, end, deadline});
+    };
+#endif
+  }
+  virtual bool send_datagram(const OutgoingDatagram& datagram, const Destination& to) = 0;
+  rtps::SenderResource& below() { return *below_; }
+
+ private:
+  std::unique_ptr<rtps::SenderResource> below_;
+};
+
+// A transport before another one, which sends through an OutputChannel.
+class ChainedTransport : public eprosima::fastdds::rtps::ChainingTransport {
+ public:
+  using ChainingTransport::ChainingTransport;
+
+  eprosima::fastdds::rtps::TransportDescriptorInterface* get_configuration() override {
+    return low_level_transport_->get_configuration();
+  }
+  void shutdown() override { low_level_transport_->shutdown(); }
+
+  // For the channels of ChainingTransport; OutputChannel does without.
+#if SWIFTLET_FAST_DDS_3
+  bool send(rtps::SenderResource* below, const std::vector<rtps::NetworkBuffer>& pieces, std::uint32_t size,
+            rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
+            const std::chrono::steady_clock::time_point& deadline) final {
+    return below->send(pieces, size, begin, end, deadline);
+  }
+#else
+  bool send(rtps::SenderResource* below, const rtps::octet* bytes, std::uint32_t size,
+            rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
+            const std::chrono::steady_clock::time_point& deadline) final {
+    return below->send(bytes, size, begin, end, deadline);
+  }
+#endif
+};
+
+}  // namespace swiftlet::comms
